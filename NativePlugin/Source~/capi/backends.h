@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+// Which back ends this machine offers, and why not.
+#pragma once
+
+#include "quickses/quickses.h"
+
+namespace quickses {
+
+// What backend (not AUTO) is like. device: CUDA ordinal.
+qses_backend_description describe_backend(qses_backend backend, int device);
+
+}  // namespace quickses

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: MIT
+// The C API: handles and the exception barrier, nothing else.
+#include "quickses/quickses.h"
+
+#include "capi/atoms_in.h"
+#include "capi/backends.h"
+#include "capi/barrier.h"
+#include "capi/context.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+
+using quickses::guarded;
+using quickses::invalid;
+using quickses::require;
+
+namespace {
+
+// The caller's structure may be older, hence shorter, than ours: what it lacks keeps its default.
+template <class T>
+T read_struct(const T *given, void (*init)(T *), const char *name) {
+  T value;
+  init(&value);
+  if (!given) return value;
+  if (given->struct_size < sizeof(uint32_t) || given->struct_size > 65536)
+    invalid(std::string(name) + "->struct_size is " + std::to_string(given->struct_size) + ": use " + name +
+            "_init of the header first");
+  std::memcpy(static_cast<void *>(&value), given, std::min<size_t>(given->struct_size, sizeof(T)));
+  value.struct_size = sizeof(T);
+  return value;
+}
+
+template <class T>
+void write_struct(T *out, const T &value, const char *name) {
+  if (out->struct_size < sizeof(uint32_t) || out->struct_size > 65536)
+    invalid(std::string(name) + "->struct_size is " + std::to_string(out->struct_size) + ": initialise it first");
+  const uint32_t size = out->struct_size;
+  std::memcpy(static_cast<void *>(out), &value, std::min<size_t>(size, sizeof(T)));
+  out->struct_size = size;
+}
+
+void check_range(const char *name, double value, double low, double high, const char *unit) {
+  if (value >= low && value <= high) return;
+  char text[160];
+  std::snprintf(text, sizeof text, "%s is %g: it must lie between %g and %g%s", name, value, low, high, unit);
+  invalid(text);
+}
+
+void check_choice(const char *name, int64_t value, int64_t last) {
+  if (value < 0 || value > last)
+    invalid(std::string(name) + " is " + std::to_string(value) + ", which names nothing in the header");
+}
+
+void check_settings(const qses_settings &s) {
+  check_choice("settings.surface", s.surface, QSES_SURFACE_VDW);
+  check_choice("settings.method", s.method, QSES_METHOD_GRID);
+  check_choice("settings.winding", s.winding, QSES_WINDING_REVERSED);
+  check_range("settings.spacing", static_cast<double>(s.spacing), 0.001, 100, " Å");
+  check_range("settings.probe_radius", static_cast<double>(s.probe_radius), 0, 100, " Å");
+  check_range("settings.relaxation_steps", s.relaxation_steps, 0, 100, "");
+  if (s.slice_size != 0) check_range("settings.slice_size", s.slice_size, 8, 4294967295.0, " lattice points, or 0");
+  if (s.method == QSES_METHOD_GRID && s.surface != QSES_SURFACE_SES)
+    invalid("settings.method GRID makes the solvent-excluded surface only: use EXACT for the others");
+  if (s.method == QSES_METHOD_GRID && s.patch_types)
+    invalid("settings.patch_types is not available with method GRID");
+}
+
+void check_backend(qses_backend backend) { check_choice("backend", backend, QSES_BACKEND_CPU); }
+
+// The back end to use for what was asked; fills the description and, for AUTO, why it is not CUDA.
+qses_backend choose_backend(qses_backend asked, int device, qses_backend_description *description) {
+  if (asked != QSES_BACKEND_CPU) {
+    *description = quickses::describe_backend(QSES_BACKEND_CUDA, device);
+    if (description->available || asked == QSES_BACKEND_CUDA) return QSES_BACKEND_CUDA;
+  }
+  const qses_backend_description cuda = *description;
+  *description = quickses::describe_backend(QSES_BACKEND_CPU, 0);
+  if (asked == QSES_BACKEND_AUTO) std::memcpy(description->reason, cuda.reason, sizeof cuda.reason);
+  return QSES_BACKEND_CPU;
+}
+
+}  // namespace
+
+extern "C" {
+
+const char *qses_version(void) { return QUICKSES_VERSION; }
+
+uint32_t qses_abi_version(void) { return QSES_ABI_VERSION; }
+
+const char *qses_last_error(void) { return quickses::last_error_message().c_str(); }
+
+qses_status qses_backend_info(qses_backend backend, qses_backend_description *description) {
+  return guarded([&] {
+    require(description, "description");
+    check_backend(backend);
+    qses_backend_description d{};
+    choose_backend(backend, 0, &d);
+    *description = d;
+  });
+}
+
+void qses_context_options_init(qses_context_options *options) {
+  if (!options) return;
+  *options = qses_context_options{};
+  options->struct_size = sizeof *options;
+}
+
+qses_status qses_create(const qses_context_options *options, qses_context **context) {
+  if (context) *context = nullptr;
+  return guarded([&] {
+    require(context, "context");
+    const qses_context_options o = read_struct(options, qses_context_options_init, "qses_context_options");
+    check_backend(o.backend);
+    if (o.threads > 4096) invalid("options.threads is " + std::to_string(o.threads) + ": at most 4096");
+    auto made = std::make_unique<qses_context>();
+    made->backend = choose_backend(o.backend, o.device, &made->description);
+    if (!made->description.available)
+      throw quickses::Error(QSES_BACKEND_UNAVAILABLE, std::string("CUDA can't be used: ") + made->description.reason);
+#if defined(QUICKSES_HAS_CUDA)
+    if (made->backend == QSES_BACKEND_CUDA) made->engine = quickses::make_cuda_engine(o.device, o.memory_budget);
+#endif
+    if (!made->engine)
+      made->engine = quickses::make_cpu_engine(
+          o.threads, o.memory_budget ? o.memory_budget : made->description.free_memory);
+    *context = made.release();
+  });
+}
+
+void qses_destroy(qses_context *context) {
+  guarded([&] { delete context; });
+}
+
+qses_status qses_context_info(const qses_context *context, qses_backend *backend,
+                              qses_backend_description *description) {
+  return guarded([&] {
+    require(context, "context");
+    if (backend) *backend = context->backend;
+    if (description) *description = context->description;
+  });
+}
+
+qses_status qses_set_atoms(qses_context *context, const float *positions, size_t stride, const float *radii,
+                           size_t count) {
+  return guarded([&] {
+    require(context, "context");
+    quickses::check_layout(positions, stride, count);
+    quickses::AtomBounds bounds = quickses::check_positions(positions, stride, count);
+    bounds.max_radius = quickses::check_radii(radii, count);
+    quickses::Sphere *atoms = context->engine->atom_buffer(count);
+    quickses::copy_positions(positions, stride, count, atoms);
+    for (size_t i = 0; i < count; ++i) atoms[i].radius = radii[i];
+    context->engine->set_atoms(count, bounds);
+    context->atom_count = count;
+    context->max_radius = bounds.max_radius;
+    context->has_atoms = true;
+  });
+}
+
+qses_status qses_set_positions(qses_context *context, const float *positions, size_t stride, size_t count) {
+  return guarded([&] {
+    require(context, "context");
+    if (!context->has_atoms) throw quickses::Error(QSES_NO_RESULT, "qses_set_atoms must come before qses_set_positions");
+    if (count != context->atom_count)
+      invalid("count is " + std::to_string(count) + " but the context has " + std::to_string(context->atom_count) +
+              " atoms");
+    quickses::check_layout(positions, stride, count);
+    quickses::AtomBounds bounds = quickses::check_positions(positions, stride, count);
+    bounds.max_radius = context->max_radius;
+    quickses::copy_positions(positions, stride, count, context->engine->atom_buffer(count));
+    context->engine->set_atoms(count, bounds);
+  });
+}
+
+void qses_settings_init(qses_settings *settings) {
+  if (!settings) return;
+  *settings = qses_settings{};
+  settings->struct_size = sizeof *settings;
+  settings->probe_radius = 1.4f;
+  settings->spacing = 0.5f;
+  settings->relaxation_steps = 1;
+  settings->measure = 1;
+}
+
+void qses_mesh_init(qses_mesh *mesh) {
+  if (!mesh) return;
+  *mesh = qses_mesh{};
+  mesh->struct_size = sizeof *mesh;
+}
+
+void qses_report_init(qses_report *report) {
+  if (!report) return;
+  *report = qses_report{};
+  report->struct_size = sizeof *report;
+}
+
+qses_status qses_compute(qses_context *context, const qses_settings *settings, qses_mesh *mesh) {
+  return guarded([&] {
+    require(context, "context");
+    if (mesh && mesh->struct_size < sizeof(uint32_t)) invalid("mesh->struct_size is 0: use qses_mesh_init first");
+    const qses_settings s = read_struct(settings, qses_settings_init, "qses_settings");
+    check_settings(s);
+    if (!context->has_atoms) throw quickses::Error(QSES_NO_RESULT, "qses_set_atoms must come before qses_compute");
+    context->engine->compute(s);
+    context->has_result = true;
+    if (mesh) write_struct(mesh, context->engine->mesh(), "mesh");
+  });
+}
+
+qses_status qses_get_mesh(const qses_context *context, qses_mesh *mesh) {
+  return guarded([&] {
+    require(context, "context");
+    require(mesh, "mesh");
+    if (!context->has_result) throw quickses::Error(QSES_NO_RESULT, "nothing has been computed yet");
+    write_struct(mesh, context->engine->mesh(), "mesh");
+  });
+}
+
+qses_status qses_get_report(const qses_context *context, qses_report *report) {
+  return guarded([&] {
+    require(context, "context");
+    require(report, "report");
+    if (!context->has_result) throw quickses::Error(QSES_NO_RESULT, "nothing has been computed yet");
+    write_struct(report, context->engine->report(), "report");
+  });
+}
+
+qses_status qses_enable_stage_times(qses_context *context, int32_t enabled) {
+  return guarded([&] {
+    require(context, "context");
+    context->engine->enable_stage_times(enabled != 0);
+  });
+}
+
+qses_status qses_set_progress_callback(qses_context *context, qses_progress_callback callback, void *user_data) {
+  return guarded([&] {
+    require(context, "context");
+    if (callback)
+      context->engine->set_progress([callback, user_data](double fraction) { callback(user_data, fraction); });
+    else
+      context->engine->set_progress({});
+  });
+}
+
+}  // extern "C"

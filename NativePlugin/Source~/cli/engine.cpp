@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+// The C API for the program: handles that free themselves, statuses as exceptions.
+#include "cli/engine.h"
+
+#include <cstdio>
+
+#include "cli/exit_code.h"
+#include "io/radii.h"
+
+namespace quickses::cli {
+namespace {
+
+void check(qses_status status) {
+  if (status != QSES_OK) throw Failure(exit_code_of(status), qses_last_error());
+}
+
+}  // namespace
+
+Engine::Engine(const ComputeOptions &options) : context_(nullptr, &qses_destroy) {
+  qses_context_options context_options;
+  qses_context_options_init(&context_options);
+  context_options.backend = options.backend;
+  context_options.device = options.device;
+  context_options.threads = options.threads;
+  context_options.memory_budget = options.memory;
+  qses_context *context = nullptr;
+  const qses_status status = qses_create(&context_options, &context);
+  if (status != QSES_OK)
+    throw Failure(exit_code_of(status),
+                  std::string("--backend ") + name_of(options.backend) + ": " + qses_last_error());
+  context_.reset(context);
+  check(qses_context_info(context, &backend_, &description_));
+}
+
+void Engine::set_atoms(const io::Structure &structure, const std::string &path) {
+  const qses_status status =
+      qses_set_atoms(context(), structure.positions.data(), 0, structure.radii.data(), structure.atoms.size());
+  if (status == QSES_INVALID_ARGUMENT)  // what is wrong came from the file
+    throw Failure(kInputUnreadable, "'" + path + "': " + qses_last_error());
+  check(status);
+}
+
+qses_mesh Engine::compute(const qses_settings &settings) {
+  qses_mesh mesh;
+  qses_mesh_init(&mesh);
+  check(qses_compute(context(), &settings, &mesh));
+  return mesh;
+}
+
+qses_report Engine::report() const {
+  qses_report report;
+  qses_report_init(&report);
+  check(qses_get_report(context(), &report));
+  return report;
+}
+
+qses_settings settings_of(const ComputeOptions &options) {
+  qses_settings settings;
+  qses_settings_init(&settings);
+  settings.surface = options.surface;
+  settings.method = options.method;
+  settings.probe_radius = static_cast<float>(options.probe);
+  settings.spacing = static_cast<float>(options.spacing);
+  settings.relaxation_steps = options.steps;
+  settings.slice_size = options.slice;
+  return settings;
+}
+
+bool has_own_radii(io::StructureFormat format) {
+  return format == io::StructureFormat::kPqr || format == io::StructureFormat::kXyzr;
+}
+
+io::StructureFile load(const std::string &path, const io::ReadOptions &read, const ComputeOptions &options,
+                       bool quiet) {
+  const io::RadiusTable table = io::find_radii(options.radii);
+  io::StructureFile file = io::read_structure(path, read);
+  const bool has_radii = has_own_radii(file.format);
+  if (has_radii && options.radii_given) throw Failure(kUsage, "--radii: '" + path + "' has radii of its own");
+  if (!has_radii)
+    for (io::Structure &structure : file.models) io::assign_radii(structure, table);
+  if (!quiet)
+    for (const std::string &warning : file.warnings) std::fprintf(stderr, "quickses: warning: %s\n", warning.c_str());
+  return file;
+}
+
+void explain_fallback(const Engine &engine, const ComputeOptions &options, bool quiet) {
+  if (quiet || options.backend != QSES_BACKEND_AUTO || engine.backend() != QSES_BACKEND_CPU) return;
+  std::fprintf(stderr, "quickses: the CPU computes: %s\n", engine.why_not_cuda().c_str());
+}
+
+}  // namespace quickses::cli

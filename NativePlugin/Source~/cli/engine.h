@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// The C API for the program: handles that free themselves, statuses as exceptions.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "cli/options.h"
+#include "io/structure.h"
+#include "quickses/quickses.h"
+
+namespace quickses::cli {
+
+class Engine {
+ public:
+  // Throws Failure with the exit code that belongs to the status.
+  explicit Engine(const ComputeOptions &options);
+
+  qses_context *context() const { return context_.get(); }
+  qses_backend backend() const { return backend_; }
+  std::string device() const { return description_.device; }
+  std::string why_not_cuda() const { return description_.reason; }  // empty: it is CUDA, or the CPU was asked for
+
+  void set_atoms(const io::Structure &structure, const std::string &path);
+  qses_mesh compute(const qses_settings &settings);
+  qses_report report() const;
+
+ private:
+  std::unique_ptr<qses_context, void (*)(qses_context *)> context_;
+  qses_backend backend_ = QSES_BACKEND_CPU;
+  qses_backend_description description_ = {};
+};
+
+qses_settings settings_of(const ComputeOptions &options);
+
+// PQR and XYZR files say how large their atoms are.
+bool has_own_radii(io::StructureFormat format);
+
+// The structures of a file with their radii. Warnings go to standard error unless quiet.
+io::StructureFile load(const std::string &path, const io::ReadOptions &read, const ComputeOptions &options, bool quiet);
+
+// Says on standard error why the CPU computes although CUDA was preferred.
+void explain_fallback(const Engine &engine, const ComputeOptions &options, bool quiet);
+
+}  // namespace quickses::cli

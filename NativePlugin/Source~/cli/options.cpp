@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: MIT
+// The flags of the program.
+#include "cli/options.h"
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+
+#include "cli/exit_code.h"
+#include "io/mesh_writer.h"
+#include "io/text.h"
+
+namespace quickses::cli {
+namespace {
+
+const std::map<std::string, qses_surface> kSurfaces = {
+    {"ses", QSES_SURFACE_SES}, {"sas", QSES_SURFACE_SAS}, {"vdw", QSES_SURFACE_VDW}};
+const std::map<std::string, qses_method> kMethods = {{"exact", QSES_METHOD_EXACT}, {"grid", QSES_METHOD_GRID}};
+const std::map<std::string, qses_backend> kBackends = {
+    {"auto", QSES_BACKEND_AUTO}, {"cuda", QSES_BACKEND_CUDA}, {"cpu", QSES_BACKEND_CPU}};
+
+const char kFooter[] =
+    "Exit codes:\n"
+    "  0  done\n"
+    "  1  wrong usage: an unknown flag, a value out of range, an unknown extension of the output\n"
+    "  2  an input file can't be read, or has no atoms (after the filters)\n"
+    "  3  an output file can't be written\n"
+    "  4  computing failed: memory, the device, a spacing too fine for either\n"
+    "  5  the back end asked for can't be used here\n"
+    "\n"
+    "Owner atoms in PLY files are 0-based places among the atoms of the input's model, before any filter.\n"
+    "Lengths are in angstrom, areas in A^2, volumes in A^3.\n";
+
+template <typename Enum>
+const char *find_name(const std::map<std::string, Enum> &names, Enum value) {
+  for (const auto &entry : names)
+    if (entry.second == value) return entry.first.c_str();
+  return "unknown";
+}
+
+// An option whose text is looked up; anything else is refused with the list of what there is.
+template <typename Enum>
+void add_choice(CLI::App *app, const char *flag, Enum &value, const std::map<std::string, Enum> &names,
+                const char *help) {
+  app->add_option_function<std::string>(
+         flag,
+         [&value, &names, flag](const std::string &text) {
+           const auto found = names.find(text);
+           if (found != names.end()) {
+             value = found->second;
+             return;
+           }
+           std::string list;
+           for (const auto &entry : names) list += (list.empty() ? "" : ", ") + entry.first;
+           throw Failure(kUsage, std::string(flag) + ": '" + text + "' is not one of " + list);
+         },
+         help)
+      ->type_name("NAME")
+      ->default_str(find_name(names, value));
+}
+
+void add_number(CLI::App *app, const char *flags, const char *shown, double &value, double low, double high,
+                const char *help) {
+  app->add_option_function<std::string>(
+         flags,
+         [&value, shown, low, high](const std::string &text) {
+           double number = 0;
+           if (!io::parse_number(text, number))
+             throw Failure(kUsage, std::string(shown) + ": '" + text + "' is no number");
+           if (number < low || number > high) {
+             char range[96];
+             std::snprintf(range, sizeof range, " is not between %g and %g angstrom", low, high);
+             throw Failure(kUsage, std::string(shown) + ": " + text + range);
+           }
+           value = number;
+         },
+         help)
+      ->type_name("A")
+      ->default_str(CLI::detail::to_string(value));
+}
+
+void add_count(CLI::App *app, const char *flags, const char *shown, unsigned &value, int low, int high,
+               const char *help) {
+  app->add_option_function<std::string>(
+         flags,
+         [&value, shown, low, high](const std::string &text) {
+           int number = 0;
+           if (!io::parse_integer(text, number) || number < low || number > high)
+             throw Failure(kUsage, std::string(shown) + ": '" + text + "' is no whole number between " +
+                                       std::to_string(low) + " and " + std::to_string(high));
+           value = static_cast<unsigned>(number);
+         },
+         help)
+      ->type_name("N");
+}
+
+void add_compute_options(CLI::App *app, ComputeOptions &options, int &device) {
+  add_number(app, "-v,--spacing", "--spacing (-v)", options.spacing, 0.001, 100,
+             "Distance of lattice points (voxel size)");
+  add_count(app, "-l,--steps", "--steps (-l)", options.steps, 0, 100, "Smoothing steps; default 1");
+  add_count(app, "-s,--slice", "--slice (-s)", options.slice, 8, 1 << 20,
+            "Work in slices of at most N^3 lattice points; the mesh is the same. Default: as memory allows");
+  add_number(app, "--probe", "--probe", options.probe, 0, 100, "Radius of the probe (solvent molecule)");
+  add_choice(app, "--surface", options.surface, kSurfaces,
+             "ses: solvent-excluded; sas: solvent-accessible; vdw: the atoms themselves");
+  add_choice(app, "--method", options.method, kMethods,
+             "exact: vertices on the exact surface; grid: the voxel method of Martinez, Krone and Baaden 2019");
+  add_choice(app, "--backend", options.backend, kBackends, "What computes; auto: CUDA if it can be used, else the CPU");
+  app->add_option_function<std::string>(
+         "--device",
+         [&device](const std::string &text) {
+           if (!io::parse_integer(text, device) || device < 0)
+             throw Failure(kUsage, "--device: '" + text + "' is no number of a CUDA device");
+         },
+         "CUDA device; default 0")
+      ->type_name("N");
+  add_count(app, "--threads", "--threads", options.threads, 1, 4096, "CPU threads; default: all there are");
+  app->add_option_function<std::string>(
+         "--memory",
+         [&options](const std::string &text) {
+           if (!parse_size(text, options.memory))
+             throw Failure(kUsage, "--memory: '" + text + "' is no size such as 512M or 2G");
+         },
+         "Bound of the memory for the work, on the device or in the machine: 512M, 2G (K, M, G: powers of 1024)")
+      ->type_name("SIZE");
+  app->add_option_function<std::string>(
+         "--radii",
+         [&options](const std::string &text) {
+           options.radii = text;
+           options.radii_given = true;
+         },
+         "Van der Waals radii: quickses (O 1.52, C 1.70, N 1.55, H 1.20, S 1.80, P 1.80, others 1.40), bondi, or a "
+         "file with lines `ELEMENT radius` (`*` for all others)")
+      ->type_name("SET|FILE")
+      ->default_str("quickses");
+}
+
+void add_surface_options(CLI::App &app, Options &options) {
+  app.add_option("-i,--input,INPUT", options.input,
+                 "Structure: .pdb .ent .cif .mmcif .pqr .xyzr .gro, each also as .gz");
+  app.add_option("-o,--output", options.output, "Mesh: .obj, .ply (binary, with normals and owner atoms) or .stl")
+      ->type_name("FILE");
+  app.add_flag_callback(
+      "--no-water", [&options] { options.read.water = false; }, "Leave out water");
+  app.add_flag_callback(
+      "--no-hetero", [&options] { options.read.hetero = false; }, "Leave out HETATM records");
+  app.add_flag_callback(
+      "--no-hydrogen", [&options] { options.read.hydrogen = false; }, "Leave out hydrogen");
+  app.add_option("--select", options.read.selection, "Only these atoms, such as //A or //A/10-40 or (ALA)")
+      ->type_name("CID");
+  app.add_option_function<std::string>(
+         "--model",
+         [&options](const std::string &text) {
+           if (text == "all") {
+             options.read.model = 0;
+           } else if (!io::parse_integer(text, options.read.model) || options.read.model < 1) {
+             throw Failure(kUsage, "--model: '" + text + "' is neither a number from 1 on nor 'all'");
+           }
+         },
+         "Which model of the file; all: one mesh each, as out_0001.ply for -o out.ply; default 1")
+      ->type_name("N|all");
+}
+
+void add_report_options(CLI::App *app, Options &options) {
+  app->add_option("--json", options.json, "Report as JSON; - for standard output")->type_name("FILE|-");
+  app->add_flag("--quiet", options.quiet, "Print nothing but errors");
+}
+
+bool is_same_file(const std::string &a, const std::string &b) {
+  std::error_code error;
+  return a == b || std::filesystem::equivalent(a, b, error);
+}
+
+void check(const Options &options, bool has_device) {
+  if (has_device && options.compute.backend == QSES_BACKEND_CPU)
+    throw Failure(kUsage, "--device: only CUDA has devices to choose from, and --backend is cpu");
+  if (options.command == Options::Command::kBench) {
+    if (options.inputs.empty()) throw Failure(kUsage, "bench: no input file was given");
+    return;
+  }
+  if (options.input.empty()) throw Failure(kUsage, "no input file was given; see quickses --help");
+  if (is_same_file(options.json, options.input))
+    throw Failure(kUsage, "--json: '" + options.json + "' is the input itself");
+  if (!options.json.empty() && is_same_file(options.json, options.output))
+    throw Failure(kUsage, "--json: '" + options.json + "' is the output of --output (-o) as well");
+  if (!options.output.empty()) {
+    try {
+      io::mesh_format_of(options.output);
+    } catch (const std::exception &error) {
+      throw Failure(kUsage, std::string("--output (-o): ") + error.what());
+    }
+  }
+}
+
+}  // namespace
+
+bool parse_size(const std::string &text, uint64_t &bytes) {
+  size_t digits = 0;
+  while (digits < text.size() && ((text[digits] >= '0' && text[digits] <= '9') || text[digits] == '.')) ++digits;
+  double number = 0;
+  if (!io::parse_number(text.substr(0, digits), number)) return false;
+  std::string unit = text.substr(digits);
+  for (char &c : unit) c = io::to_upper(c);
+  if (unit.size() > 1 && unit.back() == 'B') unit.pop_back();
+  if (unit.size() > 1 && unit.back() == 'I') unit.pop_back();
+  if (unit == "B") unit.clear();
+  const size_t power = unit.empty() ? 0 : unit.size() > 1 ? std::string::npos : std::string("KMGT").find(unit[0]) + 1;
+  if (power > 4 || (!unit.empty() && power == 0)) return false;
+  const double size = std::ldexp(number, static_cast<int>(10 * power));
+  if (!(size >= 1) || size > 9e18) return false;
+  bytes = static_cast<uint64_t>(size);
+  return true;
+}
+
+const char *name_of(qses_surface surface) { return find_name(kSurfaces, surface); }
+const char *name_of(qses_method method) { return find_name(kMethods, method); }
+const char *name_of(qses_backend backend) { return find_name(kBackends, backend); }
+
+Options parse_options(int argc, char **argv) {
+  Options options;
+  int device = -1;
+  CLI::App app(
+      "Molecular surfaces as closed triangle meshes.\n\n"
+      "  quickses INPUT [-o OUT.obj|OUT.ply|OUT.stl] [options]\n"
+      "  quickses bench FILE... [--repeat N] [options]\n",
+      "quickses");
+  app.footer(kFooter);
+  app.set_version_flag("--version", std::string("quickses ") + qses_version(), "Print the version");
+  add_surface_options(app, options);
+  add_compute_options(&app, options.compute, device);
+  add_report_options(&app, options);
+
+  CLI::App *bench = app.add_subcommand("bench", "Time warm calls: median ms from atoms in memory to mesh in memory");
+  bench->footer(kFooter);
+  bench->add_option("FILE", options.inputs, "Structures")->type_name("FILE");
+  add_count(bench, "--repeat", "--repeat", options.repeat, 1, 1000000, "Timed calls per structure; default 20");
+  add_compute_options(bench, options.compute, device);
+  add_report_options(bench, options);
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success &success) {  // --help, --version
+    app.exit(success);
+    options.command = Options::Command::kNone;
+    return options;
+  } catch (const CLI::ParseError &error) {
+    std::string message = error.what();
+    for (char &c : message)
+      if (c == '\n') c = ' ';
+    throw Failure(kUsage, message);
+  }
+  if (bench->parsed()) {
+    if (app.count_all() > bench->count_all() + 1) throw Failure(kUsage, "bench: its options go behind the word bench");
+    options.command = Options::Command::kBench;
+  }
+  if (device >= 0) options.compute.device = device;
+  check(options, device >= 0);
+  return options;
+}
+
+}  // namespace quickses::cli

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// The flags of the program.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "io/structure.h"
+#include "quickses/quickses.h"
+
+namespace quickses::cli {
+
+// How to compute: flags that both commands share.
+struct ComputeOptions {
+  qses_backend backend = QSES_BACKEND_AUTO;
+  int device = 0;
+  unsigned threads = 0;  // 0 = one per hardware thread
+  uint64_t memory = 0;   // bytes; 0 = no bound
+  qses_surface surface = QSES_SURFACE_SES;
+  qses_method method = QSES_METHOD_EXACT;
+  double probe = 1.4;    // Å
+  double spacing = 0.5;  // Å
+  unsigned steps = 1;
+  unsigned slice = 0;  // 0 = sized by memory
+  std::string radii = "quickses";
+  bool radii_given = false;
+};
+
+struct Options {
+  enum class Command { kSurface, kBench, kNone } command = Command::kSurface;
+  ComputeOptions compute;
+  io::ReadOptions read;
+  std::string input;
+  std::string output;               // empty: no mesh file
+  std::vector<std::string> inputs;  // of bench
+  unsigned repeat = 20;             // of bench
+  std::string json;                 // a file, "-" for standard output, empty: no report
+  bool quiet = false;
+};
+
+// Reads the command line. After --help or --version, which print, the command is kNone.
+// Throws Failure (kUsage) with one sentence that names the flag.
+Options parse_options(int argc, char **argv);
+
+// "512M" and the like in bytes: K, M, G, T are powers of 1024. False where the text is no such size or none at all.
+bool parse_size(const std::string &text, uint64_t &bytes);
+
+const char *name_of(qses_surface surface);
+const char *name_of(qses_method method);
+const char *name_of(qses_backend backend);
+
+}  // namespace quickses::cli

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+// The JSON reports of the program.
+#include "cli/report.h"
+
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+
+#include "cli/exit_code.h"
+#include "cli/mesh_check.h"
+#include "io/atomic_file.h"
+
+namespace quickses::cli {
+namespace {
+
+Json components_json(const qses_mesh &mesh) {
+  Json list = Json::array();
+  for (const Component &component : find_components(mesh))
+    list.push_back({{"triangles", component.triangles},
+                    {"area", component.area},
+                    {"volume", component.volume},
+                    {"cavity", component.volume < 0}});
+  return list;
+}
+
+}  // namespace
+
+Json settings_json(const ComputeOptions &options) {
+  Json json = {{"surface", name_of(options.surface)},
+               {"method", name_of(options.method)},
+               {"probe", options.probe},
+               {"spacing", options.spacing},
+               {"steps", options.steps}};
+  if (options.slice != 0) json["slice"] = options.slice;
+  if (options.memory != 0) json["memory"] = options.memory;
+  if (options.threads != 0) json["threads"] = options.threads;
+  json["radii"] = options.radii;
+  return json;
+}
+
+Json surface_json(const Options &options, const io::Structure &structure, const Engine &engine, const qses_mesh &mesh,
+                  const qses_report &report, const Timings &timings) {
+  Json json;
+  json["version"] = qses_version();
+  json["input"] = options.input;
+  if (!options.output.empty()) json["output"] = options.output;
+  json["model"] = structure.model;
+  json["atoms"] = structure.atoms.size();
+  json["settings"] = settings_json(options.compute);
+  json["backend"] = name_of(engine.backend());
+  json["device"] = engine.device();
+  Json bounds = Json::array();
+  for (const float *corner : {mesh.bounds_min, mesh.bounds_max}) bounds.push_back({corner[0], corner[1], corner[2]});
+  json["mesh"] = {{"vertices", mesh.vertex_count},
+                  {"triangles", mesh.triangle_count},
+                  {"closed", is_closed(mesh)},
+                  {"bounds", bounds}};
+  json["area"] = report.area;
+  json["volume"] = report.volume;
+  json["components"] = components_json(mesh);
+  Json stages = Json::object();
+  for (uint32_t i = 0; i < report.stage_count && i < QSES_MAX_STAGES; ++i)
+    stages[report.stages[i].name] = report.stages[i].milliseconds;
+  json["time_ms"] = {
+      {"read", timings.read}, {"compute", report.compute_ms}, {"write", timings.write}, {"stages", stages}};
+  Json memory = Json::object();
+  if (engine.backend() == QSES_BACKEND_CUDA) memory["peak_device"] = report.work_bytes_peak;
+  memory["peak_host"] = report.host_bytes_peak;
+  memory["mesh"] = report.mesh_bytes;
+  json["memory"] = memory;
+  return json;
+}
+
+std::string dump(const Json &json, bool one_line) {
+  return json.dump(one_line ? -1 : 2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void write_text(const std::string &path, const std::string &text) {
+  if (path != "-") {
+    io::AtomicFile file(path);
+    file.write(text);
+    file.commit();
+  } else if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
+    throw Failure(kOutputUnwritable, std::string("standard output can't be written: ") + std::strerror(errno));
+  }
+}
+
+}  // namespace quickses::cli

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// The JSON reports of the program. Lengths in Å, areas in Å², volumes in Å³, times in ms, memory in bytes.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "cli/engine.h"
+#include "cli/options.h"
+
+namespace quickses::cli {
+
+using Json = nlohmann::ordered_json;
+
+struct Timings {
+  double read = 0;
+  double write = 0;
+};
+
+Json settings_json(const ComputeOptions &options);
+
+// The report of one surface.
+Json surface_json(const Options &options, const io::Structure &structure, const Engine &engine, const qses_mesh &mesh,
+                  const qses_report &report, const Timings &timings);
+
+// Text of a report; names that are no UTF-8 are made so.
+std::string dump(const Json &json, bool one_line);
+
+// Writes text to a file or, for "-", to standard output. Throws Failure or io::Error (output).
+void write_text(const std::string &path, const std::string &text);
+
+}  // namespace quickses::cli

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+// quickses INPUT: a structure in, a mesh and a report out.
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+
+#include "cli/commands.h"
+#include "cli/engine.h"
+#include "cli/exit_code.h"
+#include "cli/progress.h"
+#include "cli/report.h"
+#include "io/atomic_file.h"
+#include "io/mesh_writer.h"
+
+namespace quickses::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double ms_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+// out.ply for one model; out_0001.ply and so on with --model all.
+std::string output_of_model(const Options &options, int model) {
+  if (options.output.empty() || options.read.model != 0) return options.output;
+  const std::filesystem::path path(options.output);
+  char number[16];
+  std::snprintf(number, sizeof number, "_%04d", model);
+  return (path.parent_path() / (path.stem().string() + number + path.extension().string())).string();
+}
+
+void write_surface(const std::string &path, const qses_mesh &mesh, const io::Structure &structure) {
+  std::vector<uint32_t> owners(mesh.vertex_count);  // in the file, not among the atoms that were kept
+  for (uint32_t i = 0; i < mesh.vertex_count; ++i) owners[i] = structure.atoms[mesh.owners[i]].file_index;
+  io::MeshView view;
+  view.vertex_count = mesh.vertex_count;
+  view.triangle_count = mesh.triangle_count;
+  view.positions = mesh.positions;
+  view.normals = mesh.normals;
+  view.owners = owners.data();
+  view.indices = mesh.indices;
+  io::write_mesh(path, view, io::mesh_format_of(path));
+}
+
+void print_summary(const Options &options, const io::Structure &structure, const Engine &engine, const qses_mesh &mesh,
+                   const qses_report &report) {
+  std::printf("%zu atoms, %u vertices, %u triangles, area %.2f Å², volume %.2f Å³, %s, %.2f ms%s%s\n",
+              structure.atoms.size(), mesh.vertex_count, mesh.triangle_count, report.area, report.volume,
+              name_of(engine.backend()), report.compute_ms, options.output.empty() ? "" : ", ", options.output.c_str());
+}
+
+}  // namespace
+
+void run_surface(const Options &options) {
+  // Before anything takes time: can the results be written?
+  if (!options.output.empty()) io::check_writable(options.output);
+  if (!options.json.empty() && options.json != "-") io::check_writable(options.json);
+
+  const auto read_start = Clock::now();
+  const io::StructureFile file = load(options.input, options.read, options.compute, options.quiet);
+  Timings timings;
+  timings.read = ms_since(read_start);
+
+  Engine engine(options.compute);
+  explain_fallback(engine, options.compute, options.quiet);
+  qses_settings settings = settings_of(options.compute);
+  if (!options.json.empty()) qses_enable_stage_times(engine.context(), 1);
+
+  const bool all_models = options.read.model == 0;
+  std::string reports;
+  for (const io::Structure &structure : file.models) {
+    Options model_options = options;
+    model_options.output = output_of_model(options, structure.model);
+    if (has_own_radii(file.format)) model_options.compute.radii = "file";
+    engine.set_atoms(structure, options.input);
+    qses_mesh mesh;
+    {
+      ProgressBar bar(engine.context(), options.quiet);
+      mesh = engine.compute(settings);
+    }
+    const qses_report report = engine.report();
+    if (!options.output.empty()) {
+      const auto write_start = Clock::now();
+      write_surface(model_options.output, mesh, structure);
+      timings.write = ms_since(write_start);
+    }
+    if (!options.json.empty()) {
+      const Json json = surface_json(model_options, structure, engine, mesh, report, timings);
+      reports += dump(json, all_models);  // of several models: one line each
+    }
+    if (!options.quiet && options.json != "-") print_summary(model_options, structure, engine, mesh, report);
+  }
+  if (!options.json.empty()) write_text(options.json, reports);
+}
+
+}  // namespace quickses::cli

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: MIT
+# Finds the libraries. Installed ones come first; with QUICKSES_FETCH=ON what is missing is downloaded, pinned.
+include(FetchContent)
+if(POLICY CMP0169) # FetchContent_MakeAvailable can't leave out install rules before CMake 3.28
+  cmake_policy(SET CMP0169 OLD)
+endif()
+
+set(_how_to_get_it "on Debian and Ubuntu bash Scripts~/setup.sh installs it; -DQUICKSES_FETCH=ON downloads it")
+
+# quickses_fetch(<name> <repository> <tag>): the library as part of this build, its own tests and install rules off.
+macro(quickses_fetch name repository tag)
+  if(NOT QUICKSES_FETCH)
+    message(FATAL_ERROR "${name} was not found (${_how_to_get_it}).")
+  endif()
+  message(STATUS "${name} is not installed: fetching ${tag}")
+  FetchContent_Declare(${name} GIT_REPOSITORY ${repository} GIT_TAG ${tag} GIT_SHALLOW ON)
+  FetchContent_GetProperties(${name})
+  string(TOLOWER ${name} _lower)
+  if(NOT ${_lower}_POPULATED)
+    FetchContent_Populate(${name})
+    # EXCLUDE_FROM_ALL: only what we link is built, and nothing of it is installed with us.
+    set(_shared ${BUILD_SHARED_LIBS})
+    set(BUILD_SHARED_LIBS OFF)
+    set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+    add_subdirectory("${${_lower}_SOURCE_DIR}" "${${_lower}_BINARY_DIR}" EXCLUDE_FROM_ALL)
+    set(BUILD_SHARED_LIBS ${_shared})
+  endif()
+endmacro()
+
+set(THREADS_PREFER_PTHREAD_FLAG ON)
+find_package(Threads REQUIRED)
+
+# ---- GLM: types of storage and interfaces
+find_package(glm CONFIG QUIET)
+if(NOT TARGET glm::glm)
+  quickses_fetch(glm https://github.com/g-truc/glm.git 1.0.1)
+endif()
+
+# ---- Thrust: the parallel verbs. The CUDA Toolkit's own copy when there is one, for the CPU's files as well: two
+# versions in one binary would break the one-definition rule. (Debian's toolkit has none of its own but depends on
+# libthrust-dev, so there both are /usr/include. CUDA 13 keeps it in include/cccl.)
+if(QUICKSES_CUDA)
+  find_path(QUICKSES_THRUST_INCLUDE_DIR thrust/version.h
+    HINTS ${CUDAToolkit_INCLUDE_DIRS} PATH_SUFFIXES cccl NO_DEFAULT_PATH
+    DOC "Folder that holds thrust/version.h")
+endif()
+find_path(QUICKSES_THRUST_INCLUDE_DIR thrust/version.h DOC "Folder that holds thrust/version.h")
+mark_as_advanced(QUICKSES_THRUST_INCLUDE_DIR)
+if(NOT QUICKSES_THRUST_INCLUDE_DIR)
+  message(FATAL_ERROR "Thrust was not found: install libthrust-dev (Debian, Ubuntu) or the CUDA Toolkit, or set "
+    "QUICKSES_THRUST_INCLUDE_DIR to the folder that holds thrust/version.h.")
+endif()
+file(STRINGS "${QUICKSES_THRUST_INCLUDE_DIR}/thrust/version.h" _thrust_line REGEX "define THRUST_VERSION +[0-9]+")
+string(REGEX REPLACE ".*THRUST_VERSION +([0-9]+).*" "\\1" QUICKSES_THRUST_VERSION "${_thrust_line}")
+if(QUICKSES_THRUST_VERSION LESS 101500)
+  message(FATAL_ERROR "Thrust ${QUICKSES_THRUST_VERSION} in ${QUICKSES_THRUST_INCLUDE_DIR} is too old: 101500 (1.15) or later.")
+endif()
+message(STATUS "Thrust ${QUICKSES_THRUST_VERSION} in ${QUICKSES_THRUST_INCLUDE_DIR}")
+
+# ---- the CPU's threads
+if(NOT QUICKSES_CPU_SYSTEM STREQUAL "OMP")
+  find_package(TBB CONFIG QUIET)
+endif()
+if(QUICKSES_CPU_SYSTEM STREQUAL "TBB" AND NOT TARGET TBB::tbb)
+  message(FATAL_ERROR "QUICKSES_CPU_SYSTEM is TBB but oneTBB was not found (libtbb-dev).")
+endif()
+if(TARGET TBB::tbb)
+  set(QUICKSES_CPU_SYSTEM_FOUND TBB)
+  set(QUICKSES_CPU_LIBRARY TBB::tbb)
+else()
+  find_package(OpenMP REQUIRED COMPONENTS CXX)
+  set(QUICKSES_CPU_SYSTEM_FOUND OMP)
+  set(QUICKSES_CPU_LIBRARY OpenMP::OpenMP_CXX)
+endif()
+message(STATUS "CPU back end: Thrust's ${QUICKSES_CPU_SYSTEM_FOUND} system")
+
+if(QUICKSES_BUILD_CLI OR QUICKSES_BUILD_TESTS)
+  # ---- zlib and gemmi: structures. gemmi was headers only up to 0.5; later versions come with a library.
+  find_package(ZLIB REQUIRED)
+  find_package(gemmi CONFIG QUIET)
+  if(NOT TARGET gemmi::gemmi_cpp)
+    if(NOT CMAKE_DISABLE_FIND_PACKAGE_gemmi)
+      find_path(QUICKSES_GEMMI_INCLUDE_DIR gemmi/version.hpp DOC "Folder that holds gemmi/version.hpp")
+      find_library(QUICKSES_GEMMI_LIBRARY gemmi_cpp DOC "gemmi's library, from version 0.6 on")
+    endif()
+    mark_as_advanced(QUICKSES_GEMMI_INCLUDE_DIR QUICKSES_GEMMI_LIBRARY)
+    if(NOT QUICKSES_GEMMI_INCLUDE_DIR)
+      quickses_fetch(gemmi https://github.com/project-gemmi/gemmi.git v0.6.5)
+    endif()
+  endif()
+  add_library(quickses_gemmi INTERFACE)
+  if(TARGET gemmi::gemmi_cpp)
+    target_link_libraries(quickses_gemmi INTERFACE gemmi::gemmi_cpp)
+  elseif(TARGET gemmi_cpp)
+    target_link_libraries(quickses_gemmi INTERFACE gemmi_cpp)
+  else()
+    target_include_directories(quickses_gemmi SYSTEM INTERFACE "${QUICKSES_GEMMI_INCLUDE_DIR}")
+    if(QUICKSES_GEMMI_LIBRARY)
+      target_link_libraries(quickses_gemmi INTERFACE "${QUICKSES_GEMMI_LIBRARY}")
+    endif()
+  endif()
+
+  # ---- the program's options and reports
+  find_package(CLI11 CONFIG QUIET)
+  if(NOT TARGET CLI11::CLI11)
+    quickses_fetch(CLI11 https://github.com/CLIUtils/CLI11.git v2.4.2)
+  endif()
+  find_package(nlohmann_json CONFIG QUIET)
+  if(NOT TARGET nlohmann_json::nlohmann_json)
+    quickses_fetch(nlohmann_json https://github.com/nlohmann/json.git v3.11.3)
+  endif()
+endif()
+
+if(QUICKSES_BUILD_TESTS)
+  find_package(GTest CONFIG QUIET)
+  if(NOT TARGET GTest::gtest_main)
+    quickses_fetch(googletest https://github.com/google/googletest.git v1.14.0)
+  endif()
+endif()

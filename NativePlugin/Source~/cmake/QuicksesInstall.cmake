@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: MIT
+# Install rules: the library, its one header, the program, and what find_package and pkg-config read.
+include(CMakePackageConfigHelpers)
+
+install(TARGETS quickses EXPORT quicksesTargets
+  LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}"
+  ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}"
+  RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
+install(FILES include/quickses/quickses.h DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/quickses")
+install(FILES "${PROJECT_SOURCE_DIR}/LICENSE.md" "${PROJECT_SOURCE_DIR}/Third Party Notices.md"
+  DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+if(TARGET quickses_cli)
+  install(TARGETS quickses_cli RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
+endif()
+
+# ---- find_package(quickses CONFIG)
+set(_config_dir "${CMAKE_INSTALL_LIBDIR}/cmake/quickses")
+install(EXPORT quicksesTargets NAMESPACE quickses:: DESTINATION "${_config_dir}")
+configure_package_config_file("${CMAKE_CURRENT_LIST_DIR}/quicksesConfig.cmake.in"
+  "${PROJECT_BINARY_DIR}/quicksesConfig.cmake" INSTALL_DESTINATION "${_config_dir}")
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/quicksesConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
+install(FILES "${PROJECT_BINARY_DIR}/quicksesConfig.cmake" "${PROJECT_BINARY_DIR}/quicksesConfigVersion.cmake"
+  DESTINATION "${_config_dir}")
+
+# ---- pkg-config
+set(QUICKSES_PC_CFLAGS "")
+set(QUICKSES_PC_LIBS "")
+if(NOT BUILD_SHARED_LIBS)
+  set(QUICKSES_PC_CFLAGS " -DQSES_STATIC")
+  if(QUICKSES_CPU_SYSTEM_FOUND STREQUAL "TBB")
+    set(QUICKSES_PC_LIBS " -ltbb")
+  else()
+    set(QUICKSES_PC_LIBS " ${OpenMP_CXX_FLAGS}")
+  endif()
+  string(APPEND QUICKSES_PC_LIBS " -lstdc++ -lm -lpthread")
+  if(QUICKSES_CUDA)
+    string(APPEND QUICKSES_PC_LIBS " -L${CUDAToolkit_LIBRARY_DIR} -lcudart_static -ldl -lrt")
+  endif()
+endif()
+file(RELATIVE_PATH QUICKSES_PC_PREFIX "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")
+string(REGEX REPLACE "/$" "" QUICKSES_PC_PREFIX "${QUICKSES_PC_PREFIX}")
+configure_file("${CMAKE_CURRENT_LIST_DIR}/quickses.pc.in" "${PROJECT_BINARY_DIR}/quickses.pc" @ONLY)
+install(FILES "${PROJECT_BINARY_DIR}/quickses.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: MIT
+# Compiler options that every target of the project shares.
+
+add_library(quickses_options INTERFACE)
+target_compile_features(quickses_options INTERFACE cxx_std_17)
+
+if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
+  target_compile_options(quickses_options INTERFACE
+    "$<$<COMPILE_LANGUAGE:C,CXX>:-Wall;-Wextra>"
+    "$<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-Wall,-Wextra>")
+  if(QUICKSES_WERROR)
+    target_compile_options(quickses_options INTERFACE
+      "$<$<COMPILE_LANGUAGE:C,CXX>:-Werror>"
+      "$<$<COMPILE_LANGUAGE:CUDA>:-Werror=all-warnings>")
+  endif()
+elseif(MSVC)
+  target_compile_options(quickses_options INTERFACE "$<$<COMPILE_LANGUAGE:C,CXX>:/W4;/permissive-;/utf-8>")
+  target_compile_definitions(quickses_options INTERFACE _USE_MATH_DEFINES NOMINMAX)
+endif()
+target_compile_options(quickses_options INTERFACE
+  "$<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr;--extended-lambda>")
+
+if(QUICKSES_SANITIZE)
+  set(_sanitize "-fsanitize=${QUICKSES_SANITIZE};-fno-omit-frame-pointer")
+  if(QUICKSES_SANITIZE MATCHES "undefined")
+    list(APPEND _sanitize -fno-sanitize-recover=undefined)
+  endif()
+  target_compile_options(quickses_options INTERFACE "$<$<COMPILE_LANGUAGE:C,CXX>:${_sanitize}>")
+  target_link_options(quickses_options INTERFACE "-fsanitize=${QUICKSES_SANITIZE}")
+endif()
+
+# The same source gives the same bits on every compiler: a*b+c is not contracted behind our back.
+# (The CPU kernels, which ask for it, are given their own options instead of these.)
+set(QUICKSES_EXACT_OPTIONS "")
+set(QUICKSES_KERNEL_OPTIONS "")
+if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
+  set(QUICKSES_EXACT_OPTIONS
+    "$<$<COMPILE_LANGUAGE:C,CXX>:-ffp-contract=off>" "$<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-ffp-contract=off>")
+  set(QUICKSES_KERNEL_OPTIONS
+    "$<$<NOT:$<CONFIG:Debug>>:-O3>" -fno-math-errno -fno-trapping-math -ffp-contract=fast)
+endif()

@@ -1,0 +1,273 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * QuickSES for Unity: molecular surfaces as closed triangle meshes.
+ *
+ * This header is the manual of the library. It is C99, needs nothing but <stddef.h> and <stdint.h>, and is the only
+ * header that is installed.
+ *
+ * In one page
+ *   qses_context_options options;            qses_settings settings;            qses_mesh mesh;
+ *   qses_context_options_init(&options);     qses_settings_init(&settings);     qses_mesh_init(&mesh);
+ *   qses_context *context = NULL;
+ *   if (qses_create(&options, &context) != QSES_OK) { puts(qses_last_error()); return 1; }
+ *   qses_set_atoms(context, xyz, 0, radii, atom_count);
+ *   if (qses_compute(context, &settings, &mesh) != QSES_OK) puts(qses_last_error());
+ *   ... mesh.positions, mesh.normals, mesh.owners, mesh.indices ...
+ *   qses_set_positions(context, next_frame_xyz, 0, atom_count);      (and compute again: memory is reused)
+ *   qses_destroy(context);
+ *
+ * Units and conventions
+ *   Lengths are in angstrom (Å), areas in Å², volumes in Å³, times in milliseconds, memory in bytes.
+ *   Positions come in and go out as float32. The accuracy figures of the manual hold for coordinates up to 1000 Å from
+ *   the origin; beyond that the rounding of float32 itself adds to them.
+ *   Triangles have cross(b - a, c - a) pointing outward in the numbers they are given in: counter-clockwise in a
+ *   right-handed frame, and exactly the front face of Unity where the numbers are Unity's. A caller who mirrors an axis
+ *   afterwards asks for QSES_WINDING_REVERSED.
+ *   Owner atoms are 0-based indices into the array the caller gave to qses_set_atoms.
+ *
+ * Guarantees
+ *   The mesh is a closed, consistently oriented 2-manifold for every input; it has no NaN; every owner index is valid.
+ *   The same input, back end and settings give the same bytes, also with a slice size or a memory budget. (The CPU back
+ *   end rounds differently on processors without AVX2 and FMA; qses_backend_info names the instruction set in use.)
+ *
+ * Errors
+ *   Every function that can fail returns a qses_status. qses_last_error() then holds a sentence that names what is
+ *   wrong. Nothing here prints, exits, aborts or throws, and no call leaves another CUDA device selected than it found.
+ *   After any error the context is still usable, and the last good mesh stays valid.
+ *
+ * Threads
+ *   A context may be used by one thread at a time; different contexts are independent of each other. Functions without
+ *   a context may be called from any thread at any time.
+ */
+#ifndef QUICKSES_QUICKSES_H
+#define QUICKSES_QUICKSES_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(QSES_STATIC)
+#define QSES_API
+#elif defined(_WIN32)
+#if defined(QSES_BUILDING)
+#define QSES_API __declspec(dllexport)
+#else
+#define QSES_API __declspec(dllimport)
+#endif
+#else
+#define QSES_API __attribute__((visibility("default")))
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Increases whenever a structure or a function below changes in a way that old callers would notice. */
+#define QSES_ABI_VERSION 1
+
+typedef enum qses_status {
+  QSES_OK = 0,
+  QSES_INVALID_ARGUMENT = 1,    /* an argument is wrong; the message names it */
+  QSES_OUT_OF_MEMORY = 2,       /* the memory budget, the device or the machine refused memory */
+  QSES_BACKEND_UNAVAILABLE = 3, /* the back end asked for can't be used here; the message says why */
+  QSES_DEVICE_ERROR = 4,        /* the GPU or its driver reported an error */
+  QSES_TOO_FINE = 5,            /* the spacing would need more vertices than 32-bit indices can name */
+  QSES_NO_RESULT = 6,           /* nothing has been computed yet */
+  QSES_INTERNAL_ERROR = 7       /* a broken invariant of the library: please report it with the input */
+} qses_status;
+
+typedef enum qses_backend {
+  QSES_BACKEND_AUTO = 0, /* CUDA if a usable device is present, else the CPU */
+  QSES_BACKEND_CUDA = 1,
+  QSES_BACKEND_CPU = 2
+} qses_backend;
+
+typedef enum qses_surface {
+  QSES_SURFACE_SES = 0, /* solvent-excluded: what a probe sphere rolling over the atoms can't reach */
+  QSES_SURFACE_SAS = 1, /* solvent-accessible: where the centre of the probe may be */
+  QSES_SURFACE_VDW = 2  /* the union of the atoms themselves */
+} qses_surface;
+
+typedef enum qses_method {
+  QSES_METHOD_EXACT = 0, /* vertices on the exact surface */
+  QSES_METHOD_GRID = 1   /* the voxel method of Martinez, Krone, Baaden 2019 (SES only): the published baseline */
+} qses_method;
+
+typedef enum qses_winding {
+  QSES_WINDING_OUTWARD = 0, /* cross(b - a, c - a) points out of the molecule */
+  QSES_WINDING_REVERSED = 1 /* the opposite, for callers who mirror an axis afterwards */
+} qses_winding;
+
+/* What kind of surface a vertex lies on (Connolly's three). */
+typedef enum qses_patch {
+  QSES_PATCH_CONTACT = 0,   /* convex: on one atom */
+  QSES_PATCH_TOROIDAL = 1,  /* saddle: the probe touches two atoms */
+  QSES_PATCH_REENTRANT = 2  /* concave: the probe touches three or more atoms */
+} qses_patch;
+
+/* Device memory and CPU or GPU threads that compute surfaces, and the atoms they are computed of. Opaque. */
+typedef struct qses_context qses_context;
+
+/* ---- versions and back ends ------------------------------------------------------------------------------------ */
+
+/* The version of the library, such as "0.1.0". Static storage. */
+QSES_API const char *qses_version(void);
+
+/* QSES_ABI_VERSION of the library that is loaded; compare it with the header's before anything else. */
+QSES_API uint32_t qses_abi_version(void);
+
+typedef struct qses_backend_description {
+  int32_t available;     /* 1 if qses_create with this back end can succeed */
+  char device[128];      /* what computes: the GPU's name, or the CPU's instruction set and thread count */
+  char reason[256];      /* if not available: why; else empty */
+  uint64_t total_memory; /* bytes of the device, or of the machine */
+  uint64_t free_memory;  /* bytes free at the time of the call */
+} qses_backend_description;
+
+/* Tells whether a back end can be used here and, if not, why. AUTO describes the one that would be chosen; its reason
+ * then says why CUDA was not. Errors: INVALID_ARGUMENT (NULL, unknown back end). */
+QSES_API qses_status qses_backend_info(qses_backend backend, qses_backend_description *description);
+
+/* The sentence that belongs to the last call that failed on this thread; "" if none has. Valid until the next call
+ * into the library from the same thread. Never NULL. */
+QSES_API const char *qses_last_error(void);
+
+/* ---- contexts -------------------------------------------------------------------------------------------------- */
+
+typedef struct qses_context_options {
+  uint32_t struct_size;   /* set by qses_context_options_init */
+  qses_backend backend;   /* default AUTO */
+  int32_t device;         /* CUDA device ordinal; default 0 */
+  uint32_t threads;       /* CPU threads; 0 (default) = one per hardware thread */
+  uint64_t memory_budget; /* bytes this context may use for its work, on the device (CUDA) or in host memory (CPU);
+                             0 (default) = what is free at the time */
+} qses_context_options;
+
+/* Fills in the defaults. Always use it: later versions append fields. NULL is ignored. */
+QSES_API void qses_context_options_init(qses_context_options *options);
+
+/* Makes a context. options may be NULL (defaults). On success *context is owned by the caller, who ends it with
+ * qses_destroy; on failure it is NULL.
+ * Errors: INVALID_ARGUMENT, BACKEND_UNAVAILABLE, OUT_OF_MEMORY, DEVICE_ERROR. */
+QSES_API qses_status qses_create(const qses_context_options *options, qses_context **context);
+
+/* Frees the context and everything it handed out. NULL is ignored. */
+QSES_API void qses_destroy(qses_context *context);
+
+/* Which back end the context uses (CUDA or CPU, never AUTO), with the device's name. reason says, for a context made
+ * with AUTO, why it is not CUDA. Errors: INVALID_ARGUMENT. */
+QSES_API qses_status qses_context_info(const qses_context *context, qses_backend *backend,
+                                       qses_backend_description *description);
+
+/* ---- atoms ----------------------------------------------------------------------------------------------------- */
+
+/* Gives the context its atoms. Everything is copied before the call returns.
+ *   positions  count positions of three floats x, y, z in Å, each stride bytes after the one before;
+ *              stride 0 means tightly packed (12 bytes); else a multiple of 4, at least 12
+ *   radii      count van der Waals radii in Å, from 0 (excluded) to 100
+ *   count      number of atoms; 0 is allowed and gives an empty mesh
+ * Two atoms at the same place count as the larger of them (of equals, as the first). An atom inside another one owns
+ * no vertex.
+ * Errors: INVALID_ARGUMENT (NULL, stride, a position that is NaN or infinite or beyond 1e6 Å, a radius out of range:
+ * the message names the atom's index), OUT_OF_MEMORY. The atoms set before stay in place after an error. */
+QSES_API qses_status qses_set_atoms(qses_context *context, const float *positions, size_t stride, const float *radii,
+                                    size_t count);
+
+/* New positions for the atoms of qses_set_atoms, for instance the next frame of a trajectory; radii stay.
+ * count must be the number of atoms. Errors as above. */
+QSES_API qses_status qses_set_positions(qses_context *context, const float *positions, size_t stride, size_t count);
+
+/* ---- computing ------------------------------------------------------------------------------------------------- */
+
+typedef struct qses_settings {
+  uint32_t struct_size;      /* set by qses_settings_init */
+  qses_surface surface;      /* default SES */
+  qses_method method;        /* default EXACT */
+  float probe_radius;        /* Å, 0 to 100; default 1.4 (water). Below 0.05 the SES is the VDW surface. Ignored by VDW */
+  float spacing;             /* Å between lattice points ("voxel size"), 0.001 to 100; default 0.5 */
+  uint32_t relaxation_steps; /* default 1, at most 100. EXACT: tangential smoothing, each step projected back onto the
+                                exact surface. GRID: Laplacian smoothing as in the paper, which moves off it */
+  uint32_t slice_size;       /* work in slices of at most slice_size³ lattice points (at least 8); the mesh is the same
+                                byte for byte. 0 (default) = as large as memory allows */
+  qses_winding winding;      /* default OUTWARD */
+  uint32_t patch_types;      /* 1: qses_mesh.patches is filled; default 0. Not with GRID */
+  uint32_t measure;          /* 1 (default): qses_report.area and .volume are computed; 0: they are 0 */
+  uint32_t frame;            /* any number; comes back in qses_mesh.frame */
+} qses_settings;
+
+/* Fills in the defaults. Always use it: later versions append fields. NULL is ignored. */
+QSES_API void qses_settings_init(qses_settings *settings);
+
+/* A view of a mesh in memory of the context: valid until the next qses_compute that succeeds on the same context, or
+ * qses_destroy. (Page-locked memory with CUDA.) Nothing here may be written or freed by the caller. */
+typedef struct qses_mesh {
+  uint32_t struct_size;     /* set by qses_mesh_init */
+  uint32_t vertex_count;    /* V */
+  uint32_t triangle_count;  /* T */
+  uint32_t frame;           /* as in the settings */
+  const float *positions;   /* V x 3, Å */
+  const float *normals;     /* V x 3, unit length, outward; on a crease, that of one of its sides */
+  const uint32_t *owners;   /* V, the atom nearest to the vertex among those its patch belongs to */
+  const uint8_t *patches;   /* V of qses_patch, or NULL */
+  const uint32_t *indices;  /* T x 3 vertex numbers */
+  float bounds_min[3];      /* box of the vertices, Å; all 0 for an empty mesh */
+  float bounds_max[3];
+} qses_mesh;
+
+/* Empty view with struct_size set. NULL is ignored. */
+QSES_API void qses_mesh_init(qses_mesh *mesh);
+
+/* Computes the surface of the context's atoms and waits for it. settings may be NULL (defaults); mesh may be NULL if
+ * only qses_get_report is wanted, or the mesh later from qses_get_mesh.
+ * Errors: INVALID_ARGUMENT (settings out of range: the message names the field), TOO_FINE, OUT_OF_MEMORY (the message
+ * says how much was needed), DEVICE_ERROR, INTERNAL_ERROR, NO_RESULT (qses_set_atoms has not been called). */
+QSES_API qses_status qses_compute(qses_context *context, const qses_settings *settings, qses_mesh *mesh);
+
+/* The mesh of the last qses_compute that succeeded. Errors: INVALID_ARGUMENT, NO_RESULT. */
+QSES_API qses_status qses_get_mesh(const qses_context *context, qses_mesh *mesh);
+
+#define QSES_MAX_STAGES 16
+
+typedef struct qses_stage_time {
+  char name[24];       /* name of the stage, as its file is called: "neighbor_grid", "solvent_features", ... */
+  double milliseconds; /* with CUDA: between events on the stream */
+} qses_stage_time;
+
+/* What the last qses_compute did. */
+typedef struct qses_report {
+  uint32_t struct_size;           /* set by qses_report_init */
+  uint32_t stage_count;
+  double area;                    /* Å², sum over the triangles */
+  double volume;                  /* Å³, enclosed; cavities count negative */
+  double compute_ms;              /* atoms in host memory to mesh in host memory */
+  uint64_t work_bytes_peak;       /* most memory in use for the work: on the device with CUDA, else in host memory,
+                                     without the mesh */
+  uint64_t mesh_bytes;            /* of the mesh itself */
+  uint64_t host_bytes_peak;       /* host memory of the context, the mesh included */
+  uint64_t brick_count;           /* bricks of 8x8x8 lattice points that were evaluated */
+  uint64_t slice_count;
+  qses_stage_time stages[QSES_MAX_STAGES]; /* stage_count of them, in order; filled if asked for by
+                                              qses_enable_stage_times */
+} qses_report;
+
+/* Empty report with struct_size set. NULL is ignored. */
+QSES_API void qses_report_init(qses_report *report);
+
+/* Report of the last qses_compute that succeeded. Errors: INVALID_ARGUMENT, NO_RESULT. */
+QSES_API qses_status qses_get_report(const qses_context *context, qses_report *report);
+
+/* Switches the timing of the single stages on (1) or off (0, the default). With CUDA it costs some tens of microseconds
+ * per surface. Errors: INVALID_ARGUMENT. */
+QSES_API qses_status qses_enable_stage_times(qses_context *context, int32_t enabled);
+
+/* Called from the computing thread during qses_compute with the fraction done, rising from 0 to 1; at most a few hundred
+ * times. It must not call into the library. NULL (default) switches it off. It is meant for command
+ * line programs; games should not hand managed code to it. Errors: INVALID_ARGUMENT. */
+typedef void (*qses_progress_callback)(void *user_data, double fraction);
+QSES_API qses_status qses_set_progress_callback(qses_context *context, qses_progress_callback callback,
+                                                void *user_data);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// Files that appear under their name only when they are complete.
+#pragma once
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+namespace quickses::io {
+
+// Buffered output that goes to a temporary name in the folder of the target. commit() renames it over the target;
+// without it the destructor removes it, and whatever the target was before stays as it was. Devices and pipes
+// (/dev/stdout) are written directly. All but the destructor throw Error (kOutput), naming the target.
+class AtomicFile {
+ public:
+  explicit AtomicFile(const std::string &path);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile &) = delete;
+  AtomicFile &operator=(const AtomicFile &) = delete;
+
+  // Room for size bytes (at most kBufferSize / 2) of which the caller then says how many it filled.
+  char *reserve(size_t size) {
+    if (buffer_.size() - used_ < size) flush();
+    return buffer_.data() + used_;
+  }
+  void advance(size_t size) { used_ += size; }
+  void write(const void *data, size_t size);
+  void write(const std::string &text) { write(text.data(), text.size()); }
+  void commit();
+
+  static constexpr size_t kBufferSize = 1 << 20;
+
+ private:
+  void flush();
+  [[noreturn]] void fail(int error_number);
+  void close_and_remove();
+
+  std::string path_;       // as given, for messages
+  std::string target_;     // with links resolved
+  std::string temporary_;  // empty: the target is written directly
+  std::FILE *file_ = nullptr;
+  std::vector<char> buffer_;
+  size_t used_ = 0;
+};
+
+// Throws Error (kOutput) if AtomicFile could not write there: asks the file system itself, leaves nothing behind.
+void check_writable(const std::string &path);
+
+}  // namespace quickses::io

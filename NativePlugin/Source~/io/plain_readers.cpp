@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: MIT
+// Text formats of one line per atom: XYZR, PQR (as PDB2PQR writes it: words, not columns) and GRO (GROMACS, nm).
+#include "io/readers.h"  // first: settles how gemmi formats numbers
+
+#include <string_view>
+
+#include "io/elements.h"
+#include "io/error.h"
+#include "io/text.h"
+
+namespace quickses::io {
+namespace {
+
+constexpr double kMaxRadius = 100;  // Å, what the surface library takes
+
+double number_at_line(std::string_view text, const char *what, const std::string &path, size_t line) {
+  double value = 0;
+  if (!parse_number(text, value))
+    fail_input(at_line(path, line) + what + " '" + std::string(trim(text)) + "' is no number");
+  return value;
+}
+
+float radius_at_line(std::string_view text, const std::string &path, size_t line) {
+  const double radius = number_at_line(text, "the radius", path, line);
+  if (radius < 0 || radius > kMaxRadius)
+    fail_input(at_line(path, line) + "the radius '" + std::string(trim(text)) + "' is not between 0 and 100 Å");
+  return static_cast<float>(radius);
+}
+
+const char *axis_name(int axis) {
+  static const char *const kNames[] = {"the x coordinate", "the y coordinate", "the z coordinate"};
+  return kNames[axis];
+}
+
+// A residue number with a possible insertion code behind: "52A".
+bool parse_residue_number(std::string_view word, int &number) {
+  if (!word.empty() && to_upper(word.back()) >= 'A') word.remove_suffix(1);
+  return parse_integer(word, number);
+}
+
+}  // namespace
+
+std::string at_line(const std::string &path, size_t line) {
+  return "'" + path + "', line " + std::to_string(line) + ": ";
+}
+
+void ModelBuilder::add(const std::string &chain, const std::string &residue, int residue_number, bool hetero,
+                       gemmi::Atom atom) {
+  if (model_.chains.empty() || model_.chains.back().name != chain) model_.chains.emplace_back(chain);
+  std::vector<gemmi::Residue> &residues = model_.chains.back().residues;
+  gemmi::ResidueId id;
+  id.seqid.num = residue_number;
+  id.name = residue;
+  if (residues.empty() || !residues.back().matches(id)) {
+    residues.emplace_back(id);
+    residues.back().het_flag = hetero ? 'H' : 'A';
+  }
+  residues.back().atoms.push_back(std::move(atom));
+}
+
+RawFile read_xyzr_text(const std::string &text, const std::string &path) {
+  RawFile file;
+  RawModel raw;
+  raw.has_names = false;
+  ModelBuilder builder(raw.model);
+  std::string_view rest = text, line;
+  std::vector<std::string_view> words;
+  for (size_t number = 1; next_line(rest, line); ++number) {
+    split_words(line.substr(0, line.find('#')), words);
+    if (words.empty()) continue;
+    if (words.size() < 4) fail_input(at_line(path, number) + "expected x y z radius");
+    gemmi::Atom atom;
+    atom.pos.x = number_at_line(words[0], axis_name(0), path, number);
+    atom.pos.y = number_at_line(words[1], axis_name(1), path, number);
+    atom.pos.z = number_at_line(words[2], axis_name(2), path, number);
+    atom.serial = static_cast<int>(++raw.atom_count);
+    raw.radii.push_back(radius_at_line(words[3], path, number));
+    builder.add("", "", 0, false, std::move(atom));
+  }
+  file.model_count = raw.atom_count != 0;
+  if (raw.atom_count != 0) file.models.push_back(std::move(raw));
+  return file;
+}
+
+RawFile read_pqr_text(const std::string &text, const std::string &path) {
+  RawFile file;
+  RawModel raw;
+  ModelBuilder builder(raw.model);
+  std::string_view rest = text, line;
+  std::vector<std::string_view> words;
+  for (size_t number = 1; next_line(rest, line); ++number) {
+    split_words(line, words);
+    if (words.empty()) continue;
+    const bool hetero = words[0] == "HETATM";
+    if (!hetero && words[0] != "ATOM") continue;
+    // ATOM serial name residue [chain] number x y z charge radius
+    if (words.size() < 10)
+      fail_input(at_line(path, number) + "expected ATOM serial name residue [chain] number x y z charge radius");
+    const bool has_chain = words.size() > 10;
+    const std::string residue(words[3]), chain(has_chain ? std::string(words[4]) : std::string());
+    const std::string_view *field = words.data() + (has_chain ? 5 : 4);
+    int residue_number = 0;
+    if (!parse_residue_number(field[0], residue_number))
+      fail_input(at_line(path, number) + "the residue number '" + std::string(field[0]) + "' is no number");
+    gemmi::Atom atom;
+    atom.name = std::string(words[2]);
+    atom.pos.x = number_at_line(field[1], axis_name(0), path, number);
+    atom.pos.y = number_at_line(field[2], axis_name(1), path, number);
+    atom.pos.z = number_at_line(field[3], axis_name(2), path, number);
+    atom.element = infer_element(residue, atom.name);  // PQR has no elements: nothing to warn of
+    atom.serial = static_cast<int>(++raw.atom_count);
+    raw.radii.push_back(radius_at_line(field[5], path, number));
+    builder.add(chain, residue, residue_number, hetero, std::move(atom));
+  }
+  file.model_count = raw.atom_count != 0;
+  if (raw.atom_count != 0) file.models.push_back(std::move(raw));
+  return file;
+}
+
+RawFile read_gro_text(const std::string &text, const std::string &path, int model) {
+  RawFile file;
+  std::string_view rest = text, line;
+  size_t number = 0;
+  for (;;) {  // frames: title, number of atoms, atoms, box
+    ++number;
+    if (!next_line(rest, line)) break;
+    if (trim(line).empty() && trim(rest).find_first_not_of('\n') == std::string_view::npos) break;
+    ++number;
+    int count = 0;
+    if (!next_line(rest, line) || !parse_integer(line, count) || count < 0)
+      fail_input(at_line(path, number) + "expected the number of atoms");
+    ++file.model_count;
+    const bool wanted = model == 0 || model == file.model_count;
+    RawModel raw;
+    raw.number = file.model_count;
+    raw.model.name = std::to_string(file.model_count);
+    ModelBuilder builder(raw.model);
+    size_t width = 0;  // of a coordinate: the distance between decimal points, as GROMACS itself reads it
+    for (int i = 0; i < count; ++i) {
+      ++number;
+      if (!next_line(rest, line))
+        fail_input("'" + path + "' is cut off: it ends after " + std::to_string(i) + " of " + std::to_string(count) +
+                   " atoms");
+      if (!wanted) continue;
+      if (width == 0) {
+        const size_t first = line.find('.', 20);
+        const size_t second = first == std::string_view::npos ? first : line.find('.', first + 1);
+        if (second == std::string_view::npos) fail_input(at_line(path, number) + "expected three coordinates");
+        width = second - first;
+      }
+      if (line.size() < 20 + 3 * width) fail_input(at_line(path, number) + "the line ends before its coordinates");
+      int residue_number = 0;
+      if (!parse_integer(line.substr(0, 5), residue_number))
+        fail_input(at_line(path, number) + "the residue number '" + std::string(trim(line.substr(0, 5))) +
+                   "' is no number");
+      gemmi::Atom atom;
+      const std::string residue(trim(line.substr(5, 5)));
+      atom.name = std::string(trim(line.substr(10, 5)));
+      atom.pos.x = 10 * number_at_line(line.substr(20, width), axis_name(0), path, number);
+      atom.pos.y = 10 * number_at_line(line.substr(20 + width, width), axis_name(1), path, number);
+      atom.pos.z = 10 * number_at_line(line.substr(20 + 2 * width, width), axis_name(2), path, number);
+      // Four letters would be taken for the columns of PDB.
+      atom.element = infer_element(residue, atom.name.size() == 4 ? atom.name + " " : atom.name);
+      atom.serial = static_cast<int>(++raw.atom_count);
+      builder.add("", residue, residue_number, false, std::move(atom));
+    }
+    ++number;
+    if (!next_line(rest, line)) fail_input("'" + path + "' is cut off: the line of the box is missing");
+    if (wanted) file.models.push_back(std::move(raw));
+  }
+  return file;
+}
+
+}  // namespace quickses::io

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+// Van der Waals radii by element.
+#include "io/radii.h"
+
+#include <filesystem>
+#include <gemmi/elem.hpp>
+#include <string_view>
+
+#include "io/elements.h"
+#include "io/error.h"
+#include "io/file_bytes.h"
+#include "io/readers.h"
+#include "io/text.h"
+
+namespace quickses::io {
+namespace {
+
+struct ElementRadius {
+  gemmi::El element;
+  float radius;
+};
+
+RadiusTable read_radii(const std::string &path) {
+  const std::string text = read_file_bytes(path);
+  RadiusTable table = quickses_radii();
+  std::array<bool, std::tuple_size<RadiusTable>::value> named = {};
+  double others = 0;
+  std::string_view rest = text, line;
+  std::vector<std::string_view> words;
+  for (size_t number = 1; next_line(rest, line); ++number) {
+    split_words(line.substr(0, line.find('#')), words);
+    if (words.empty()) continue;
+    if (words.size() != 2) fail_input(at_line(path, number) + "expected an element and its radius");
+    double radius = 0;
+    if (!parse_number(words[1], radius) || !(radius > 0) || radius > 100)
+      fail_input(at_line(path, number) + "the radius '" + std::string(words[1]) +
+                 "' is no number above 0 and up to 100 Å");
+    if (words[0] == "*") {
+      others = radius;
+      continue;
+    }
+    const std::string symbol(words[0]);
+    const gemmi::Element element(parse_element(symbol));
+    if (element == gemmi::El::X && symbol != "X") fail_input(at_line(path, number) + "'" + symbol + "' is no element");
+    table[element.atomic_number()] = static_cast<float>(radius);
+    named[element.atomic_number()] = true;
+  }
+  if (others > 0)
+    for (size_t i = 0; i < table.size(); ++i)
+      if (!named[i]) table[i] = static_cast<float>(others);
+  return table;
+}
+
+}  // namespace
+
+RadiusTable quickses_radii() {
+  using gemmi::El;
+  RadiusTable table;
+  table.fill(1.40f);
+  for (const ElementRadius &entry : std::initializer_list<ElementRadius>{
+           {El::H, 1.20f}, {El::C, 1.70f}, {El::N, 1.55f}, {El::O, 1.52f}, {El::P, 1.80f}, {El::S, 1.80f}})
+    table[static_cast<size_t>(entry.element)] = entry.radius;
+  return table;
+}
+
+RadiusTable bondi_radii() {
+  using gemmi::El;
+  static const ElementRadius kBondi[] = {
+      {El::H, 1.20f},  {El::He, 1.40f}, {El::Li, 1.82f}, {El::C, 1.70f},  {El::N, 1.55f},  {El::O, 1.52f},
+      {El::F, 1.47f},  {El::Ne, 1.54f}, {El::Na, 2.27f}, {El::Mg, 1.73f}, {El::Si, 2.10f}, {El::P, 1.80f},
+      {El::S, 1.80f},  {El::Cl, 1.75f}, {El::Ar, 1.88f}, {El::K, 2.75f},  {El::Ni, 1.63f}, {El::Cu, 1.40f},
+      {El::Zn, 1.39f}, {El::Ga, 1.87f}, {El::As, 1.85f}, {El::Se, 1.90f}, {El::Br, 1.85f}, {El::Kr, 2.02f},
+      {El::Pd, 1.63f}, {El::Ag, 1.72f}, {El::Cd, 1.58f}, {El::In, 1.93f}, {El::Sn, 2.17f}, {El::Te, 2.06f},
+      {El::I, 1.98f},  {El::Xe, 2.16f}, {El::Pt, 1.75f}, {El::Au, 1.66f}, {El::Hg, 1.55f}, {El::Tl, 1.96f},
+      {El::Pb, 2.02f}, {El::U, 1.86f}};
+  static const ElementRadius kMantina[] = {{El::Be, 1.53f}, {El::B, 1.92f},  {El::Al, 1.84f}, {El::Ca, 2.31f},
+                                           {El::Ge, 2.11f}, {El::Rb, 3.03f}, {El::Sr, 2.49f}, {El::Sb, 2.06f},
+                                           {El::Cs, 3.43f}, {El::Ba, 2.68f}, {El::Bi, 2.07f}, {El::Po, 1.97f},
+                                           {El::At, 2.02f}, {El::Rn, 2.20f}, {El::Fr, 3.48f}, {El::Ra, 2.83f}};
+  RadiusTable table;
+  table.fill(2.00f);
+  for (const ElementRadius &entry : kMantina) table[static_cast<size_t>(entry.element)] = entry.radius;
+  for (const ElementRadius &entry : kBondi) table[static_cast<size_t>(entry.element)] = entry.radius;
+  return table;
+}
+
+RadiusTable find_radii(const std::string &name_or_path) {
+  if (name_or_path == "quickses") return quickses_radii();
+  if (name_or_path == "bondi") return bondi_radii();
+  std::error_code error;
+  if (!std::filesystem::exists(name_or_path, error))
+    fail_input("'" + name_or_path + "' is neither a set of radii (quickses, bondi) nor a file");
+  return read_radii(name_or_path);
+}
+
+void assign_radii(Structure &structure, const RadiusTable &table) {
+  structure.radii.clear();
+  structure.radii.reserve(structure.atoms.size());
+  for (const AtomInfo &atom : structure.atoms) structure.radii.push_back(table[atom.element]);
+}
+
+}  // namespace quickses::io

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// Van der Waals radii by element.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "io/structure.h"
+
+namespace quickses::io {
+
+// Radii in Å by atomic number; deuterium is hydrogen, [0] is the radius of atoms of unknown element.
+using RadiusTable = std::array<float, 119>;
+
+// The set of the QuickSES program: O 1.52, C 1.70, N 1.55, H 1.20, S 1.80, P 1.80, others 1.40.
+RadiusTable quickses_radii();
+
+// Bondi 1964 (J. Phys. Chem. 68, 441); for main-group elements not in there, Mantina, Chamberlin, Valero, Cramer and
+// Truhlar 2009 (J. Phys. Chem. A 113, 5806); others 2.00.
+RadiusTable bondi_radii();
+
+// "quickses", "bondi", or the name of a text file with lines `ELEMENT radius` (Å, above 0 and up to 100), `#` starting
+// a comment. The element `*` stands for all that the file does not name; without it those keep the quickses radius.
+// Throws Error (kInput), naming the line.
+RadiusTable find_radii(const std::string &name_or_path);
+
+// Fills structure.radii from the elements.
+void assign_radii(Structure &structure, const RadiusTable &table);
+
+}  // namespace quickses::io

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// The readers behind read_structure: each turns the text of a file into gemmi models whose atoms carry, in `serial`,
+// 1 + their place among the atom records of the model.
+#pragma once
+
+// gemmi formats numbers with the bundled stb_sprintf, which distributions take out; the C library does it as well.
+#ifndef USE_STD_SNPRINTF
+#define USE_STD_SNPRINTF
+#endif
+#include <gemmi/model.hpp>
+#include <string>
+#include <vector>
+
+namespace quickses::io {
+
+struct RawModel {
+  int number = 1;            // place in the file, from 1
+  gemmi::Model model{"1"};   // its name is the number the file gives it
+  uint32_t atom_count = 0;   // atom records
+  std::vector<float> radii;  // atom_count of them where the format has radii, else empty
+  bool has_names = true;     // false: XYZR
+};
+
+struct RawFile {
+  int model_count = 0;
+  std::vector<RawModel> models;  // those that were asked for
+  size_t inferred_elements = 0;  // atoms of those models whose element had to be inferred
+};
+
+// model: place in the file, from 1; 0 = all. path is for messages only. All throw Error (kInput).
+RawFile read_pdb_text(const std::string &text, const std::string &path, int model);
+RawFile read_mmcif_text(const std::string &text, const std::string &path, int model);
+RawFile read_pqr_text(const std::string &text, const std::string &path);
+RawFile read_xyzr_text(const std::string &text, const std::string &path);
+RawFile read_gro_text(const std::string &text, const std::string &path, int model);
+
+// "'FILE', line 12: " for messages.
+std::string at_line(const std::string &path, size_t line);
+
+// Adds atoms to a gemmi model in the order they come.
+class ModelBuilder {
+ public:
+  explicit ModelBuilder(gemmi::Model &model) : model_(model) {}
+  void add(const std::string &chain, const std::string &residue, int residue_number, bool hetero, gemmi::Atom atom);
+
+ private:
+  gemmi::Model &model_;
+};
+
+}  // namespace quickses::io

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: MIT
+// Molecular structures from files: choice of the format, filters, alternate locations.
+#include "io/structure.h"
+
+#include "io/readers.h"  // before other gemmi headers: settles how gemmi formats numbers
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <gemmi/select.hpp>
+#include <initializer_list>
+#include <memory>
+#include <unordered_map>
+
+#include "io/error.h"
+#include "io/file_bytes.h"
+#include "io/text.h"
+
+namespace quickses::io {
+namespace {
+
+struct AtomRef {
+  const gemmi::Chain *chain;
+  const gemmi::Residue *residue;
+  const gemmi::Atom *atom;
+};
+
+std::string lower_extension(std::filesystem::path path) {
+  std::string extension = path.extension().string();
+  for (char &c : extension) c = to_lower(c);
+  if (extension == ".gz") return lower_extension(path.replace_extension());
+  return extension;
+}
+
+bool format_of_content(std::string_view text, StructureFormat &format) {
+  std::string_view line;
+  while (next_line(text, line)) {
+    const std::string_view word = trim(line);
+    if (word.empty() || word[0] == '#') continue;
+    if (word.substr(0, 5) == "data_") {
+      format = StructureFormat::kMmcif;
+      return true;
+    }
+    for (const char *record : {"HEADER", "TITLE ", "REMARK", "CRYST1", "MODEL ", "ATOM  ", "HETATM", "COMPND"})
+      if (line.substr(0, 6) == record) {
+        format = StructureFormat::kPdb;
+        return true;
+      }
+    return false;
+  }
+  return false;
+}
+
+StructureFormat find_format(const std::string &path, const std::string &text) {
+  const std::string extension = lower_extension(path);
+  if (extension == ".pdb" || extension == ".ent" || extension == ".brk") return StructureFormat::kPdb;
+  if (extension == ".cif" || extension == ".mmcif") return StructureFormat::kMmcif;
+  if (extension == ".pqr") return StructureFormat::kPqr;
+  if (extension == ".xyzr" || extension == ".xyzrn") return StructureFormat::kXyzr;
+  if (extension == ".gro") return StructureFormat::kGro;
+  StructureFormat format;
+  if (!format_of_content(text, format))
+    fail_input("'" + path + "': its name and content tell no format; known are .pdb .ent .cif .mmcif .pqr .xyzr .gro" +
+               ", each also as .gz");
+  return format;
+}
+
+RawFile read_raw(StructureFormat format, const std::string &text, const std::string &path, int model) {
+  switch (format) {
+    case StructureFormat::kPdb:
+      return read_pdb_text(text, path, model);
+    case StructureFormat::kMmcif:
+      return read_mmcif_text(text, path, model);
+    case StructureFormat::kPqr:
+      return read_pqr_text(text, path);
+    case StructureFormat::kXyzr:
+      return read_xyzr_text(text, path);
+    case StructureFormat::kGro:
+      return read_gro_text(text, path, model);
+  }
+  fail_input("'" + path + "': unknown format");
+}
+
+// Keeps atoms without a label and, per residue (by number: residues of two kinds may share a place), those with the
+// first label met.
+class AlternateLocations {
+ public:
+  bool keep(const AtomRef &ref) {
+    if (ref.atom->altloc == '\0') return true;
+    const std::string key = ref.chain->name + '/' + ref.residue->seqid.str();
+    return first_label_.emplace(key, ref.atom->altloc).first->second == ref.atom->altloc;
+  }
+
+ private:
+  std::unordered_map<std::string, char> first_label_;
+};
+
+std::vector<AtomRef> in_file_order(const gemmi::Model &model) {
+  std::vector<AtomRef> refs;
+  for (const gemmi::Chain &chain : model.chains)
+    for (const gemmi::Residue &residue : chain.residues)
+      for (const gemmi::Atom &atom : residue.atoms) refs.push_back({&chain, &residue, &atom});
+  const auto by_place = [](const AtomRef &a, const AtomRef &b) { return a.atom->serial < b.atom->serial; };
+  if (!std::is_sorted(refs.begin(), refs.end(), by_place)) std::sort(refs.begin(), refs.end(), by_place);
+  return refs;
+}
+
+AtomInfo describe(const AtomRef &ref) {
+  AtomInfo info;
+  info.name = ref.atom->name;
+  info.residue_name = ref.residue->name;
+  info.chain = ref.chain->name;
+  if (ref.residue->seqid.num.has_value()) info.residue_number = *ref.residue->seqid.num;
+  info.insertion_code = ref.residue->seqid.icode;
+  info.element = static_cast<uint8_t>(ref.atom->element.atomic_number());
+  info.hetero = ref.residue->het_flag == 'H';
+  info.water = is_water_name(ref.residue->name);
+  info.hydrogen = ref.atom->element.is_hydrogen();
+  info.file_index = static_cast<uint32_t>(ref.atom->serial - 1);
+  return info;
+}
+
+struct Filter {
+  const ReadOptions &options;
+  std::unique_ptr<gemmi::Selection> selection;  // null: everything
+
+  bool keep(const AtomInfo &info, const gemmi::Model &model, const AtomRef &ref) const {
+    if (!options.water && info.water) return false;
+    if (!options.hetero && info.hetero) return false;
+    if (!options.hydrogen && info.hydrogen) return false;
+    return !selection || (selection->matches(model) && selection->matches(*ref.chain) &&
+                          selection->matches(*ref.residue) && selection->matches(*ref.atom));
+  }
+
+  bool is_any() const { return !options.water || !options.hetero || !options.hydrogen || selection; }
+};
+
+constexpr double kMaxCoordinate = 1e6;  // Å, what the surface library takes
+
+[[noreturn]] void fail_far_away(const std::string &path, const AtomInfo &info) {
+  fail_input("'" + path + "': atom " + std::to_string(info.file_index + 1) +
+             (info.name.empty() ? "" : " (" + info.name + " of " + info.residue_name + ")") +
+             " is more than 1,000,000 Å from the origin");
+}
+
+Structure flatten(const RawModel &raw, const Filter &filter, const std::string &path, size_t &radius_zero_count) {
+  Structure structure;
+  structure.model = raw.number;
+  structure.file_atom_count = raw.atom_count;
+  const bool chooses_location = filter.selection && !filter.selection->altlocs.all;
+  AlternateLocations locations;
+  for (const AtomRef &ref : in_file_order(raw.model)) {
+    if (!chooses_location && !locations.keep(ref)) continue;
+    AtomInfo info = describe(ref);
+    if (!filter.keep(info, raw.model, ref)) continue;
+    if (!raw.radii.empty()) {
+      const float radius = raw.radii[info.file_index];
+      if (radius == 0) {
+        ++radius_zero_count;
+        continue;
+      }
+      structure.radii.push_back(radius);
+    }
+    for (double x : {ref.atom->pos.x, ref.atom->pos.y, ref.atom->pos.z}) {
+      if (!(std::abs(x) <= kMaxCoordinate)) fail_far_away(path, info);
+      structure.positions.push_back(static_cast<float>(x));
+    }
+    structure.atoms.push_back(std::move(info));
+  }
+  return structure;
+}
+
+std::string count_of(size_t count, const char *one, const char *many) {
+  return std::to_string(count) + " " + (count == 1 ? one : many);
+}
+
+std::unique_ptr<gemmi::Selection> parse_selection(const std::string &cid) {
+  if (cid.empty()) return nullptr;
+  try {
+    return std::make_unique<gemmi::Selection>(cid);
+  } catch (const std::bad_alloc &) {
+    throw;
+  } catch (const std::exception &error) {
+    fail_usage("the selection '" + cid + "' can't be understood: " + error.what());
+  }
+}
+
+}  // namespace
+
+bool is_water_name(const std::string &residue_name) {
+  static const char *const kNames[] = {"HOH", "DOD", "WAT", "H2O",  "SOL", "TIP", "TP3", "TIP3", "TIP4", "TIP5",
+                                       "T3P", "T4P", "SPC", "SPCE", "OPC", "HHO", "OHH", "OH2",  "TP4",  "TP5"};
+  return std::any_of(std::begin(kNames), std::end(kNames), [&](const char *name) { return residue_name == name; });
+}
+
+StructureFile read_structure(const std::string &path, const ReadOptions &options) {
+  Filter filter{options, parse_selection(options.selection)};
+  const std::string text = read_file_bytes(path);
+  StructureFile file;
+  file.format = find_format(path, text);
+  RawFile raw_file = read_raw(file.format, text, path, options.model);
+  file.model_count = raw_file.model_count;
+  if (file.model_count == 0) fail_input("'" + path + "' has no atoms");
+  if (options.model < 0 || options.model > file.model_count)
+    fail_usage("'" + path + "' has " + count_of(file.model_count, "model", "models") + ": there is no model " +
+               std::to_string(options.model));
+
+  size_t radius_zero_count = 0;
+  for (RawModel &raw : raw_file.models) {
+    const std::string which = file.model_count == 1 ? "" : "model " + std::to_string(raw.number) + " of ";
+    if (raw.atom_count == 0) fail_input(which + "'" + path + "' has no atoms");
+    if (!raw.has_names && filter.is_any())
+      fail_usage("'" + path + "' has no names, so nothing can be selected from it or left out");
+    file.models.push_back(flatten(raw, filter, path, radius_zero_count));
+    raw.model = gemmi::Model(raw.model.name);
+    if (!file.models.back().atoms.empty()) continue;
+    const std::string why = filter.is_any() ? "the filters" : "those of radius 0 were left out";
+    fail_input("no atoms of " + which + "'" + path + "' are left after " + why);
+  }
+  if (raw_file.inferred_elements != 0)
+    file.warnings.push_back("'" + path + "': the element of " +
+                            count_of(raw_file.inferred_elements, "atom was", "atoms was") +
+                            " missing and was inferred from residue and atom name");
+  if (radius_zero_count != 0)
+    file.warnings.push_back("'" + path + "': " + count_of(radius_zero_count, "atom", "atoms") +
+                            " of radius 0 left out");
+  return file;
+}
+
+}  // namespace quickses::io

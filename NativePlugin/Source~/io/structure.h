@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+// Molecular structures from files: PDB, mmCIF, PQR, XYZR, GRO, each also gzipped.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace quickses::io {
+
+enum class StructureFormat { kPdb, kMmcif, kPqr, kXyzr, kGro };
+
+// What a file says about one atom. In XYZR files there are no names: the strings are empty.
+struct AtomInfo {
+  std::string name;
+  std::string residue_name;
+  std::string chain;
+  int residue_number = 0;
+  char insertion_code = ' ';
+  uint8_t element = 0;      // atomic number; 0 = unknown; deuterium counts as hydrogen
+  bool hetero = false;      // HETATM
+  bool water = false;       // residue of water
+  bool hydrogen = false;    // H or D
+  uint32_t file_index = 0;  // 0-based place among the atom records of its model, before any filter
+};
+
+// The atoms of one model that were kept, in the order of the file.
+struct Structure {
+  int model = 1;                 // place of the model in the file, from 1
+  std::vector<AtomInfo> atoms;   // N
+  std::vector<float> positions;  // N x 3, Å
+  std::vector<float> radii;      // N, Å; filled for PQR and XYZR only, else see assign_radii
+  uint32_t file_atom_count = 0;  // atom records of this model in the file
+};
+
+struct ReadOptions {
+  int model = 1;          // place of the model in the file, from 1; 0 = all models
+  bool water = true;      // false: waters are left out
+  bool hetero = true;     // false: HETATM records are left out (waters mostly are such records too)
+  bool hydrogen = true;   // false: hydrogen and deuterium are left out
+  std::string selection;  // CID syntax of gemmi, such as "//A" or "/1/A/10-40/CA[C]"; empty = everything
+};
+
+struct StructureFile {
+  StructureFormat format = StructureFormat::kPdb;
+  int model_count = 0;                // models in the file
+  std::vector<Structure> models;      // those that were asked for; each has at least one atom
+  std::vector<std::string> warnings;  // sentences for the user
+};
+
+// Reads a file. The format follows from the name, and for names that tell nothing from the content (PDB or mmCIF).
+// Of alternate locations those without a label and the first label met in each residue are kept, unless the selection
+// names locations itself. Elements that the file leaves out are inferred from residue and atom name, with one warning.
+// In PDB files, END and ENDMDL both end a model. Atoms of radius 0 (PQR, XYZR) are left out with a warning.
+// Throws Error: kInput (file, syntax, no atoms; the message has file and line), kUsage (selection; no such model;
+// filters on a file without names).
+StructureFile read_structure(const std::string &path, const ReadOptions &options = ReadOptions());
+
+// True for residue names of water in the PDB and in common molecular-dynamics packages.
+bool is_water_name(const std::string &residue_name);
+
+}  // namespace quickses::io

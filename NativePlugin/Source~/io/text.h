@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// Lines, words and numbers of text files, independent of the locale.
+#pragma once
+
+#include <charconv>
+#include <cmath>
+#include <string_view>
+#include <vector>
+
+namespace quickses::io {
+
+inline bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
+
+// ASCII only, whatever the locale.
+inline char to_upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
+inline char to_lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+// Names in structures are ASCII; gemmi shifts their characters as signed numbers.
+inline char to_ascii(char c) { return static_cast<unsigned char>(c) < 0x80 ? c : '?'; }
+
+inline std::string_view trim(std::string_view text) {
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+// Takes the first line off the text, without its end. False at the end of the text.
+inline bool next_line(std::string_view &text, std::string_view &line) {
+  if (text.empty()) return false;
+  const size_t end = text.find('\n');
+  line = text.substr(0, end);
+  text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+  return true;
+}
+
+inline void split_words(std::string_view line, std::vector<std::string_view> &words) {
+  words.clear();
+  for (line = trim(line); !line.empty(); line = trim(line)) {
+    size_t end = 0;
+    while (end < line.size() && !is_blank(line[end])) ++end;
+    words.push_back(line.substr(0, end));
+    line.remove_prefix(end);
+  }
+}
+
+// The whole of the text, blanks around it aside, as a finite number.
+inline bool parse_number(std::string_view text, double &value) {
+  text = trim(text);
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+  const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
+  return result.ec == std::errc() && result.ptr == text.data() + text.size() && std::isfinite(value);
+}
+
+inline bool parse_integer(std::string_view text, int &value) {
+  text = trim(text);
+  const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
+  return result.ec == std::errc() && result.ptr == text.data() + text.size();
+}
+
+}  // namespace quickses::io

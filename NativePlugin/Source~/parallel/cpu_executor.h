@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: MIT
+// The verbs of parallel/executor.h on the CPU, by one of Thrust's parallel systems: TBB, or OpenMP where there is no
+// TBB. Which one is a build option; nothing outside this file knows.
+#pragma once
+
+#include "parallel/arena.h"
+#include "parallel/executor.h"
+
+#if defined(QSES_CPU_SYSTEM_OMP)
+#include <omp.h>
+#include <thrust/system/omp/execution_policy.h>
+#else
+#include <tbb/task_arena.h>
+#include <thrust/system/tbb/execution_policy.h>
+#endif
+#include <thrust/for_each.h>
+#include <thrust/iterator/counting_iterator.h>
+#include <thrust/sort.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdlib>
+#include <cstring>
+#include <map>
+#include <memory>
+#include <thread>
+#include <typeindex>
+#include <vector>
+
+namespace quickses {
+
+struct CpuKernels;
+const CpuKernels &cpu_kernels();
+
+struct HostMemory {
+  static constexpr const char *kName = "the machine";
+  static void *acquire(size_t bytes) {
+#if defined(_WIN32)
+    return _aligned_malloc(bytes, 256);
+#else
+    return std::aligned_alloc(256, (bytes + 255) / 256 * 256);
+#endif
+  }
+  static void release(void *p) {
+#if defined(_WIN32)
+    _aligned_free(p);
+#else
+    std::free(p);
+#endif
+  }
+};
+
+class CpuExecutor {
+ public:
+  static constexpr bool kIsCuda = false;
+
+  // Held while a computation runs; on the CPU there is nothing to set up.
+  struct CallScope {
+    explicit CallScope(CpuExecutor &) {}
+  };
+
+  explicit CpuExecutor(unsigned threads)
+      : threads_(threads ? threads : std::max(1u, std::thread::hardware_concurrency()))
+#if !defined(QSES_CPU_SYSTEM_OMP)
+        ,
+        arena_threads_(static_cast<int>(threads_))
+#endif
+  {
+  }
+
+  unsigned threads() const { return threads_; }
+  // The instruction set's kernels that the hot stages use; tests set others.
+  const CpuKernels &kernels() const { return *kernels_; }
+  void set_kernels(const CpuKernels &kernels) { kernels_ = &kernels; }
+  Arena<HostMemory> &arena() { return arena_; }
+
+  template <class T>
+  Span<T> allocate(size_t n) {
+    return {static_cast<T *>(arena_.allocate(n * sizeof(T))), n};
+  }
+
+  template <class F>
+  void for_each(size_t n, F f) {
+    if (n == 0) return;
+    if (n < kSerialItems || threads_ == 1) {
+      for (size_t i = 0; i < n; ++i) f(i);
+      return;
+    }
+    // Chunks keep the functor's loop tight and the scheduler out of it.
+    const size_t chunk = std::max<size_t>(kSerialItems, n / (size_t(threads_) * 16));
+    run([&] {
+      thrust::for_each(policy(), thrust::counting_iterator<size_t>(0),
+                       thrust::counting_iterator<size_t>((n + chunk - 1) / chunk), [=](size_t c) {
+                         const size_t end = std::min(n, (c + 1) * chunk);
+                         for (size_t i = c * chunk; i < end; ++i) f(i);
+                       });
+    });
+  }
+
+  // The scratch objects of a type that for_each_brick hands to its threads, kept from call to call. A driver may leave
+  // results in them and collect those afterwards.
+  template <class Scratch>
+  std::vector<std::unique_ptr<Scratch>> &scratches() {
+    std::shared_ptr<void> &pool = scratch_pools_[std::type_index(typeid(Scratch))];
+    if (!pool) {
+      auto made = std::make_shared<std::vector<std::unique_ptr<Scratch>>>();
+      for (unsigned k = 0; k < threads_; ++k) made->emplace_back(new Scratch);
+      pool = made;
+    }
+    return *static_cast<std::vector<std::unique_ptr<Scratch>> *>(pool.get());
+  }
+
+  // grain: items a thread takes at a time. Each thread that works has a scratch of its own.
+  template <class Scratch, class F>
+  void for_each_brick(size_t n, F f, size_t grain = 8) {
+    if (n == 0) return;
+    const size_t chunks = (n + grain - 1) / grain;
+    const size_t workers = std::min<size_t>(threads_, chunks);
+    std::atomic<size_t> next{0};
+    auto &pool = scratches<Scratch>();
+    auto work = [&](size_t worker) {
+      Scratch *const scratch = pool[worker].get();
+      for (size_t c; (c = next.fetch_add(1, std::memory_order_relaxed)) < chunks;)
+        for (size_t i = c * grain; i < std::min(n, (c + 1) * grain); ++i) f(SoloTeam{}, *scratch, i);
+    };
+    if (workers == 1) {
+      work(0);
+      return;
+    }
+    run([&] {
+      thrust::for_each(policy(), thrust::counting_iterator<size_t>(0), thrust::counting_iterator<size_t>(workers),
+                       work);
+    });
+  }
+
+  template <class Load, class T>
+  void exclusive_scan(size_t n, Load load, Span<T> out) {
+    // Two sweeps over chunks: sums, then the running values. One sweep where there is little to do.
+    const size_t chunks = n < 65536 || threads_ == 1 ? 1 : size_t(threads_) * 4;
+    const size_t chunk = (n + chunks - 1) / (chunks ? chunks : 1);
+    std::vector<T> begin(chunks + 1, T(0));
+    if (chunks > 1) {
+      for_each_brick<char>(
+          chunks,
+          [&](SoloTeam, char &, size_t c) {
+            T sum = 0;
+            for (size_t i = c * chunk; i < std::min(n, (c + 1) * chunk); ++i) sum += static_cast<T>(load(i));
+            begin[c + 1] = sum;
+          },
+          1);
+      for (size_t c = 0; c < chunks; ++c) begin[c + 1] += begin[c];
+    }
+    for_each_brick<char>(
+        chunks,
+        [&](SoloTeam, char &, size_t c) {
+          T sum = begin[c];
+          const size_t end = std::min(n, (c + 1) * chunk);
+          for (size_t i = c * chunk; i < end; ++i) {
+            const T value = static_cast<T>(load(i));
+            out[i] = sum;
+            sum += value;
+          }
+          if (end == n && (c + 1 == chunks || c * chunk < n)) out[n] = sum;
+        },
+        1);
+    if (n == 0) out[0] = T(0);
+  }
+
+  template <class Load>
+  double reduce(size_t n, Load load) {
+    const size_t chunks = (n + kReduceChunk - 1) / kReduceChunk;
+    std::vector<double> sums(chunks);
+    for_each(chunks, SumChunk<Load>{load, n, sums.data()});
+    double sum = 0;
+    for (double s : sums) sum += s;
+    return sum;
+  }
+
+  template <class Key, class Value>
+  void sort_by_key(Span<Key> keys, Span<Value> values, int /*key_bits*/) {
+    run([&] { thrust::stable_sort_by_key(policy(), keys.begin(), keys.end(), values.begin()); });
+  }
+
+  template <class Keep, class T>
+  size_t compact(size_t n, Keep keep, Span<T> out) {
+    const size_t chunks = n < 65536 || threads_ == 1 ? 1 : size_t(threads_) * 4;
+    const size_t chunk = (n + chunks - 1) / chunks;
+    std::vector<size_t> begin(chunks + 1, 0);
+    for_each_brick<char>(
+        chunks,
+        [&](SoloTeam, char &, size_t c) {
+          size_t count = 0;
+          for (size_t i = c * chunk; i < std::min(n, (c + 1) * chunk); ++i) count += keep(i) ? 1 : 0;
+          begin[c + 1] = count;
+        },
+        1);
+    for (size_t c = 0; c < chunks; ++c) begin[c + 1] += begin[c];
+    for_each_brick<char>(
+        chunks,
+        [&](SoloTeam, char &, size_t c) {
+          size_t k = begin[c];
+          for (size_t i = c * chunk; i < std::min(n, (c + 1) * chunk); ++i)
+            if (keep(i)) out[k++] = static_cast<T>(i);
+        },
+        1);
+    return begin[chunks];
+  }
+
+  template <class T>
+  T fetch(const T *p) {
+    return *p;
+  }
+  template <class T>
+  void upload(T *destination, const T *host, size_t n) {
+    if (n) std::memcpy(destination, host, n * sizeof(T));
+  }
+  template <class T>
+  void download(T *host, const T *source, size_t n) {
+    if (n) std::memcpy(host, source, n * sizeof(T));
+  }
+  template <class T>
+  void fill(Span<T> span, int byte) {
+    if (span.size) std::memset(static_cast<void *>(span.data), byte, span.size * sizeof(T));
+  }
+  void wait() {}
+
+ private:
+  static constexpr size_t kSerialItems = 64;
+
+#if defined(QSES_CPU_SYSTEM_OMP)
+  static auto policy() -> decltype((thrust::omp::par)) { return thrust::omp::par; }
+  template <class F>
+  void run(F f) {
+    const int before = omp_get_max_threads();
+    omp_set_num_threads(static_cast<int>(threads_));
+    f();
+    omp_set_num_threads(before);
+  }
+#else
+  static auto policy() -> decltype((thrust::tbb::par)) { return thrust::tbb::par; }
+  template <class F>
+  void run(F f) {
+    arena_threads_.execute(f);
+  }
+#endif
+
+  unsigned threads_;
+#if !defined(QSES_CPU_SYSTEM_OMP)
+  tbb::task_arena arena_threads_;
+#endif
+  const CpuKernels *kernels_ = &cpu_kernels();
+  Arena<HostMemory> arena_;
+  std::map<std::type_index, std::shared_ptr<void>> scratch_pools_;
+};
+
+}  // namespace quickses

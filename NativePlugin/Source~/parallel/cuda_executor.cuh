@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: MIT
+// The verbs of parallel/executor.h on one CUDA stream: plain kernels, and CUB for sorting, scanning and compaction.
+#pragma once
+
+#include "parallel/arena.h"
+#include "parallel/cuda_memory.h"
+#include "parallel/executor.h"
+
+#include <cub/device/device_radix_sort.cuh>
+#include <cub/device/device_scan.cuh>
+#include <cub/device/device_select.cuh>
+#include <cuda_runtime.h>
+#include <thrust/iterator/counting_iterator.h>
+#include <thrust/iterator/transform_iterator.h>
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <string>
+
+namespace quickses {
+
+// Threads that work on one item of for_each_brick.
+struct BlockTeam {
+  static constexpr int kSize = 128;
+  __device__ __forceinline__ int rank() const { return static_cast<int>(threadIdx.x); }
+  __device__ __forceinline__ int size() const { return kSize; }
+  __device__ __forceinline__ void sync() const { __syncthreads(); }
+};
+
+namespace cuda {
+
+constexpr int kForEachThreads = 128;
+
+template <class F>
+__global__ __launch_bounds__(kForEachThreads) void for_each_kernel(size_t n, F f) {
+  const size_t i = static_cast<size_t>(blockIdx.x) * kForEachThreads + threadIdx.x;
+  if (i < n) f(i);
+}
+
+// The scratch is in dynamic shared memory: one object per block, used by one item after the other.
+template <class Scratch, class F>
+__global__ __launch_bounds__(BlockTeam::kSize) void for_each_brick_kernel(size_t n, F f) {
+  extern __shared__ __align__(16) unsigned char scratch_memory[];
+  Scratch &scratch = *reinterpret_cast<Scratch *>(scratch_memory);
+  for (size_t i = blockIdx.x; i < n; i += gridDim.x) {
+    f(BlockTeam{}, scratch, i);
+    __syncthreads();
+  }
+}
+
+// Sum of each chunk of reduce(): a thread adds every 128th item, then the threads are added as a tree. Always the same
+// order, but not the one of a single thread.
+template <class Load>
+__global__ __launch_bounds__(BlockTeam::kSize) void sum_chunks_kernel(size_t n, Load load, double *sums) {
+  __shared__ double partial[BlockTeam::kSize];
+  const size_t begin = static_cast<size_t>(blockIdx.x) * kReduceChunk;
+  const size_t end = begin + kReduceChunk < n ? begin + kReduceChunk : n;
+  double sum = 0;
+  for (size_t i = begin + threadIdx.x; i < end; i += BlockTeam::kSize) sum += static_cast<double>(load(i));
+  partial[threadIdx.x] = sum;
+  for (int half = BlockTeam::kSize / 2; half > 0; half >>= 1) {
+    __syncthreads();
+    if (static_cast<int>(threadIdx.x) < half) partial[threadIdx.x] += partial[threadIdx.x + half];
+  }
+  if (threadIdx.x == 0) sums[blockIdx.x] = partial[0];
+}
+
+// load(i), and 0 for the one element behind the last.
+template <class Load, class T>
+struct LoadOrZero {
+  Load load;
+  size_t n;
+  QSES_HOST_DEVICE T operator()(size_t i) const { return i < n ? static_cast<T>(load(i)) : T(0); }
+};
+
+template <class Keep, class T>
+struct KeepNumber {
+  Keep keep;
+  QSES_HOST_DEVICE bool operator()(T i) const { return keep(static_cast<size_t>(i)); }
+};
+
+}  // namespace cuda
+
+// Use from one thread at a time, with its device selected (DeviceGuard). Functions that fail throw Error.
+class CudaExecutor {
+ public:
+  static constexpr bool kIsCuda = true;
+
+  explicit CudaExecutor(int device) : device_(device) {
+    const DeviceGuard guard(device);
+    int value = 0;
+    check_cuda(cudaDeviceGetAttribute(&value, cudaDevAttrMultiProcessorCount, device), "cudaDeviceGetAttribute");
+    multiprocessors_ = static_cast<unsigned>(value);
+    staging_.reserve(kStagingBytes);
+    check_cuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "cudaStreamCreateWithFlags");
+  }
+  ~CudaExecutor() {
+    try {
+      const DeviceGuard guard(device_);
+      cudaStreamSynchronize(stream_);
+      arena_.release();
+      cudaStreamDestroy(stream_);
+      cudaGetLastError();
+    } catch (...) {  // the device is lost, and its memory with it
+    }
+  }
+  CudaExecutor(const CudaExecutor &) = delete;
+  CudaExecutor &operator=(const CudaExecutor &) = delete;
+
+  int device() const { return device_; }
+  unsigned multiprocessors() const { return multiprocessors_; }
+  cudaStream_t stream() const { return stream_; }
+  // Rewinding it is safe while kernels still use what was there: whoever gets the memory next runs after them.
+  Arena<DeviceMemory> &arena() { return arena_; }
+
+  template <class T>
+  Span<T> allocate(size_t n) {
+    return {static_cast<T *>(arena_.allocate(n * sizeof(T))), n};
+  }
+
+  // A kernel on this stream. No blocks: nothing to do.
+  template <class... Parameters, class... Arguments>
+  void launch(const char *name, void (*kernel)(Parameters...), size_t blocks, int threads, size_t shared_bytes,
+              Arguments... arguments) {
+    if (blocks == 0) return;
+    if (blocks > static_cast<size_t>(std::numeric_limits<int>::max()))
+      throw Error(QSES_OUT_OF_MEMORY, std::string(name) + ": too much work for one launch; use a smaller slice size");
+    kernel<<<static_cast<unsigned>(blocks), static_cast<unsigned>(threads), shared_bytes, stream_>>>(arguments...);
+    check_cuda(cudaGetLastError(), name);
+  }
+
+  template <class F>
+  void for_each(size_t n, F f) {
+    launch("for_each", cuda::for_each_kernel<F>, (n + cuda::kForEachThreads - 1) / cuda::kForEachThreads,
+           cuda::kForEachThreads, 0, n, f);
+  }
+
+  template <class Scratch, class F>
+  void for_each_brick(size_t n, F f, size_t /*grain*/ = 8) {
+    if (n == 0) return;
+    const auto kernel = cuda::for_each_brick_kernel<Scratch, F>;
+    if (sizeof(Scratch) > kDefaultSharedBytes)
+      check_cuda(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, sizeof(Scratch)),
+                 "cudaFuncSetAttribute");
+    launch("for_each_brick", kernel, std::min(n, size_t(multiprocessors_) * 32), BlockTeam::kSize, sizeof(Scratch), n,
+           f);
+  }
+
+  template <class Load, class T>
+  void exclusive_scan(size_t n, Load load, Span<T> out) {
+    check_count(n + 1, "exclusive_scan");
+    const auto in = thrust::make_transform_iterator(thrust::counting_iterator<size_t>(0),
+                                                    cuda::LoadOrZero<Load, T>{load, n});
+    with_temporary("cub::DeviceScan::ExclusiveSum", [&](void *temporary, size_t &bytes) {
+      return cub::DeviceScan::ExclusiveSum(temporary, bytes, in, out.data, static_cast<int>(n + 1), stream_);
+    });
+  }
+
+  template <class Load>
+  double reduce(size_t n, Load load) {
+    if (n == 0) return 0;
+    const size_t chunks = (n + kReduceChunk - 1) / kReduceChunk;
+    const auto mark = arena_.mark();
+    Span<double> sums = allocate<double>(chunks);
+    launch("reduce", cuda::sum_chunks_kernel<Load>, chunks, BlockTeam::kSize, 0, n, load, sums.data);
+    const double *host = static_cast<const double *>(to_staging(sums.data, chunks * sizeof(double)));
+    arena_.rewind(mark);
+    double sum = 0;
+    for (size_t c = 0; c < chunks; ++c) sum += host[c];
+    return sum;
+  }
+
+  template <class Key, class Value>
+  void sort_by_key(Span<Key> keys, Span<Value> values, int key_bits) {
+    const size_t n = keys.size;
+    if (n < 2) return;
+    check_count(n, "sort_by_key");
+    const auto mark = arena_.mark();
+    cub::DoubleBuffer<Key> key_buffer(keys.data, allocate<Key>(n).data);
+    cub::DoubleBuffer<Value> value_buffer(values.data, allocate<Value>(n).data);
+    with_temporary("cub::DeviceRadixSort::SortPairs", [&](void *temporary, size_t &bytes) {
+      return cub::DeviceRadixSort::SortPairs(temporary, bytes, key_buffer, value_buffer, static_cast<int>(n), 0,
+                                             std::min(key_bits, static_cast<int>(8 * sizeof(Key))), stream_);
+    });
+    if (key_buffer.Current() != keys.data) copy_device(keys.data, key_buffer.Current(), n);
+    if (value_buffer.Current() != values.data) copy_device(values.data, value_buffer.Current(), n);
+    arena_.rewind(mark);
+  }
+
+  template <class Keep, class T>
+  size_t compact(size_t n, Keep keep, Span<T> out) {
+    if (n == 0) return 0;
+    check_count(n, "compact");
+    const auto mark = arena_.mark();
+    Span<int> count = allocate<int>(1);
+    with_temporary("cub::DeviceSelect::If", [&](void *temporary, size_t &bytes) {
+      return cub::DeviceSelect::If(temporary, bytes, thrust::counting_iterator<T>(0), out.data, count.data,
+                                   static_cast<int>(n), cuda::KeepNumber<Keep, T>{keep}, stream_);
+    });
+    const size_t result = static_cast<size_t>(fetch(count.data));
+    arena_.rewind(mark);
+    return result;
+  }
+
+  template <class T>
+  T fetch(const T *p) {
+    T value;
+    std::memcpy(&value, to_staging(p, sizeof(T)), sizeof(T));
+    return value;
+  }
+  // Copies several values with one wait. Small ones: they go through the staging buffer.
+  template <class T>
+  void fetch_each(const T *const *sources, T *values, size_t n) {
+    char *host = static_cast<char *>(staging_.reserve(n * sizeof(T)));
+    for (size_t k = 0; k < n; ++k)
+      check_cuda(cudaMemcpyAsync(host + k * sizeof(T), sources[k], sizeof(T), cudaMemcpyDeviceToHost, stream_),
+                 "cudaMemcpyAsync");
+    wait();
+    std::memcpy(values, host, n * sizeof(T));
+  }
+  // From page-locked memory the copy goes on after the call returns: leave the memory alone until something waits.
+  template <class T>
+  void upload(T *destination, const T *host, size_t n) {
+    if (n == 0) return;
+    check_cuda(cudaMemcpyAsync(destination, host, n * sizeof(T), cudaMemcpyHostToDevice, stream_), "cudaMemcpyAsync");
+  }
+  // Into page-locked memory the values are there after the next wait.
+  template <class T>
+  void download(T *host, const T *source, size_t n) {
+    if (n == 0) return;
+    check_cuda(cudaMemcpyAsync(host, source, n * sizeof(T), cudaMemcpyDeviceToHost, stream_), "cudaMemcpyAsync");
+  }
+  template <class T>
+  void fill(Span<T> span, int byte) {
+    if (span.size)
+      check_cuda(cudaMemsetAsync(span.data, byte, span.size * sizeof(T), stream_), "cudaMemsetAsync");
+  }
+  void wait() { check_cuda(cudaStreamSynchronize(stream_), "cudaStreamSynchronize"); }
+
+ private:
+  static constexpr size_t kStagingBytes = 4096;
+  static constexpr size_t kDefaultSharedBytes = 48 * 1024;
+
+  static void check_count(size_t n, const char *verb) {
+    if (n >= static_cast<size_t>(std::numeric_limits<int>::max()))
+      throw Error(QSES_OUT_OF_MEMORY,
+                  std::string(verb) + ": more than 2^31 items; use a larger spacing or a smaller slice size");
+  }
+
+  template <class T>
+  void copy_device(T *destination, const T *source, size_t n) {
+    check_cuda(cudaMemcpyAsync(destination, source, n * sizeof(T), cudaMemcpyDeviceToDevice, stream_),
+               "cudaMemcpyAsync");
+  }
+
+  // CUB's two calls: how much memory, then the work.
+  template <class Call>
+  void with_temporary(const char *name, Call call) {
+    size_t bytes = 0;
+    check_cuda(call(nullptr, bytes), name);
+    const auto mark = arena_.mark();
+    void *temporary = arena_.allocate(bytes);
+    check_cuda(call(temporary, bytes), name);
+    arena_.rewind(mark);
+  }
+
+  // Waits; what it returns is valid until the next call that copies to the host.
+  const void *to_staging(const void *source, size_t bytes) {
+    void *host = staging_.reserve(bytes);
+    check_cuda(cudaMemcpyAsync(host, source, bytes, cudaMemcpyDeviceToHost, stream_), "cudaMemcpyAsync");
+    wait();
+    return host;
+  }
+
+  int device_;
+  unsigned multiprocessors_ = 0;
+  cudaStream_t stream_ = nullptr;
+  PinnedBuffer staging_;
+  Arena<DeviceMemory> arena_;
+};
+
+}  // namespace quickses

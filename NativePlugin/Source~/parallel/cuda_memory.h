@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// CUDA devices and their memory, for code that does not see CUDA's own headers.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace quickses {
+
+// Throws Error if a CUDA call failed: QSES_OUT_OF_MEMORY where memory was refused, QSES_DEVICE_ERROR otherwise, with the
+// call's name. error is a cudaError_t. The runtime's record of the failure is cleared.
+void check_cuda(int error, const char *call);
+
+struct CudaDevice {
+  bool available = false;
+  std::string reason;  // why not, if it is not available
+  std::string name;    // empty if there is no such device
+  uint64_t total_memory = 0, free_memory = 0;  // bytes
+  int multiprocessors = 0;
+};
+
+// Looks whether this library's kernels can run on a device. Never throws; leaves the selected device as it was.
+CudaDevice describe_cuda_device(int ordinal);
+
+// Selects a device for the calling thread, and the one selected before when it goes.
+class DeviceGuard {
+ public:
+  explicit DeviceGuard(int device);
+  ~DeviceGuard();
+  DeviceGuard(const DeviceGuard &) = delete;
+  DeviceGuard &operator=(const DeviceGuard &) = delete;
+
+ private:
+  int before_, device_;
+};
+
+// Sources for Arena.
+struct DeviceMemory {
+  static constexpr const char *kName = "the GPU";
+  static void *acquire(size_t bytes);
+  static void release(void *memory);
+};
+struct PinnedMemory {
+  static constexpr const char *kName = "the machine (page-locked memory)";
+  static void *acquire(size_t bytes);
+  static void release(void *memory);
+};
+
+// Page-locked host memory that only grows: what is in it is lost when it does. Not for use by several threads.
+class PinnedBuffer {
+ public:
+  PinnedBuffer() = default;
+  ~PinnedBuffer() { release(); }
+  PinnedBuffer(const PinnedBuffer &) = delete;
+  PinnedBuffer &operator=(const PinnedBuffer &) = delete;
+
+  // At least that many bytes. Throws Error (QSES_OUT_OF_MEMORY). Nothing may be in flight from or to the old memory.
+  void *reserve(size_t bytes);
+  void release();
+  void *data() const { return memory_; }
+  size_t size() const { return size_; }
+
+ private:
+  void *memory_ = nullptr;
+  size_t size_ = 0;
+};
+
+}  // namespace quickses

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+// Work that the 32 threads of a warp do together. All of a warp's threads must call these.
+#pragma once
+
+#include "surface/neighbor_grid.h"
+
+namespace quickses {
+namespace cuda {
+
+constexpr unsigned kFullWarp = 0xffffffffu;
+constexpr int kWarp = 32;
+
+__device__ __forceinline__ int lane_id() { return static_cast<int>(threadIdx.x & 31u); }
+
+// How many of the lanes before this one are in a ballot: the place of this lane among them.
+__device__ __forceinline__ int place_in(unsigned ballot, int lane) { return __popc(ballot & ((1u << lane) - 1u)); }
+
+// Sum over the lanes up to and including this one.
+template <class T>
+__device__ __forceinline__ T warp_inclusive_sum(T value, int lane) {
+#pragma unroll
+  for (int d = 1; d < kWarp; d <<= 1) {
+    const T other = __shfl_up_sync(kFullWarp, value, d);
+    if (lane >= d) value += other;
+  }
+  return value;
+}
+
+__device__ __forceinline__ float warp_maximum(float value) {
+#pragma unroll
+  for (int d = kWarp / 2; d > 0; d >>= 1) value = fmaxf(value, __shfl_xor_sync(kFullWarp, value, d));
+  return value;
+}
+
+// Calls visit(item, on) for every item of the runs run_of(0), ..., run_of(rows - 1), in this order, with 32 items at a
+// time: on tells whether the lane has one.
+template <class RunOf, class Visit>
+__device__ __forceinline__ void visit_runs(int rows, const RunOf &run_of, const Visit &visit) {
+  const int lane = lane_id();
+  for (int r0 = 0; r0 < rows; r0 += kWarp) {
+    ItemRun run{0, 0};
+    if (r0 + lane < rows) run = run_of(r0 + lane);
+    const int length = static_cast<int>(run.end - run.begin);
+    const int sum = warp_inclusive_sum(length, lane);
+    const int total = __shfl_sync(kFullWarp, sum, kWarp - 1);
+    const uint32_t shift = run.begin - static_cast<uint32_t>(sum - length);
+    for (int t0 = 0; t0 < total; t0 += kWarp) {
+      const int t = t0 + lane;
+      int row = 0;  // the first whose sum exceeds t
+#pragma unroll
+      for (int d = kWarp / 2; d > 0; d >>= 1) {
+        const int before = __shfl_sync(kFullWarp, sum, row + d - 1);
+        if (before <= t) row += d;
+      }
+      const uint32_t item = __shfl_sync(kFullWarp, shift, row) + static_cast<uint32_t>(t);
+      visit(item, t < total);
+    }
+  }
+}
+
+}  // namespace cuda
+}  // namespace quickses

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+// The exceptions that travel inside the library; the C API turns them into status codes.
+#pragma once
+
+#include "quickses/quickses.h"
+
+#include <stdexcept>
+#include <string>
+
+namespace quickses {
+
+class Error : public std::runtime_error {
+ public:
+  Error(qses_status status, const std::string &message) : std::runtime_error(message), status_(status) {}
+  qses_status status() const { return status_; }
+
+ private:
+  qses_status status_;
+};
+
+}  // namespace quickses

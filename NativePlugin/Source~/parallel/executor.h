@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+// The few verbs every pass is written in. There are two back ends with the same members: CpuExecutor (Thrust's TBB or
+// OpenMP system) and CudaExecutor (Thrust/CUB on one stream). Stages are templates over the executor and know neither.
+//
+//   Span<T> allocate<T>(n)                 memory of the back end, uninitialised, valid until the arena is rewound
+//   for_each(n, f)                         f(i) for i in [0, n), in any order
+//   for_each_brick<Scratch>(n, f)          f(team, scratch, i): a team of threads shares one Scratch per item
+//   exclusive_scan(n, load, out)           out[i] = load(0) + ... + load(i - 1); out has n + 1 elements
+//   reduce(n, load)                        sum of load(i) in double: fixed chunks, added in fixed order. Waits
+//   sort_by_key(keys, values, key_bits)    stable, by the low key_bits bits of the keys
+//   compact(n, keep, out)                  the i with keep(i), in order; returns their number. Waits
+//   fetch(p)                               copies one value to the host. Waits
+//   upload, download, fill                 copies between host and back end, and memset
+//
+// Functors are plain structs that hold views and have a QSES_HOST_DEVICE operator(). A verb may return before its work
+// is done, but everything runs in the order it was asked for; only what "waits" blocks the calling thread.
+//
+// A team has rank() in [0, size()), and sync(). On the CPU it is one thread, so its loops run straight through.
+#pragma once
+
+#include "surface/types.h"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace quickses {
+
+// Items per chunk of reduce(): part of the result's definition, since float sums depend on the order.
+constexpr size_t kReduceChunk = 2048;
+
+struct SoloTeam {
+  QSES_FN int rank() const { return 0; }
+  QSES_FN int size() const { return 1; }
+  QSES_FN void sync() const {}
+};
+
+// Sum of one chunk of reduce().
+template <class Load>
+struct SumChunk {
+  Load load;
+  size_t n;
+  double *sums;
+  QSES_HOST_DEVICE void operator()(size_t chunk) const {
+    const size_t begin = chunk * kReduceChunk, end = begin + kReduceChunk < n ? begin + kReduceChunk : n;
+    double sum = 0;
+    for (size_t i = begin; i < end; ++i) sum += load(i);
+    sums[chunk] = sum;
+  }
+};
+
+}  // namespace quickses

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// Compiler-dependent words that let one function serve the GPU and the CPU.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+// QSES_FN: a small function of geometry or bit arithmetic. It is always inlined, so that the CPU kernels, which are
+// compiled once per instruction set, never leave a copy behind that the linker could hand to the other ones.
+#if defined(__CUDACC__)
+#define QSES_HOST_DEVICE __host__ __device__
+#define QSES_FN __host__ __device__ __forceinline__
+#else
+#define QSES_HOST_DEVICE
+#if defined(_MSC_VER) && !defined(__clang__)
+#define QSES_FN __forceinline
+#else
+#define QSES_FN inline __attribute__((always_inline))
+#endif
+#endif
+
+#if defined(_MSC_VER) && !defined(__clang__)
+#define QSES_RESTRICT __restrict
+#else
+#define QSES_RESTRICT __restrict__
+#endif
+
+// GLM must know before its first inclusion that its functions run on both sides; its own inlining is forced for the
+// same reason as ours.
+#if defined(__CUDACC__) && !defined(GLM_FORCE_CUDA)
+#define GLM_FORCE_CUDA
+#endif
+#ifndef GLM_FORCE_INLINE
+#define GLM_FORCE_INLINE
+#endif
+
+#if defined(_MSC_VER) && !defined(__clang__)
+#include <intrin.h>
+#endif
+
+namespace quickses {
+
+QSES_FN int popcount64(uint64_t v) {
+#if defined(__CUDA_ARCH__)
+  return __popcll(v);
+#elif defined(_MSC_VER) && !defined(__clang__)
+  return static_cast<int>(__popcnt64(v));
+#else
+  return __builtin_popcountll(v);
+#endif
+}
+
+// Number of the lowest set bit; v must not be 0.
+QSES_FN int lowest_bit64(uint64_t v) {
+#if defined(__CUDA_ARCH__)
+  return __ffsll(static_cast<long long>(v)) - 1;
+#elif defined(_MSC_VER) && !defined(__clang__)
+  unsigned long bit;
+  _BitScanForward64(&bit, v);
+  return static_cast<int>(bit);
+#else
+  return __builtin_ctzll(v);
+#endif
+}
+
+QSES_FN int lowest_bit32(uint32_t v) { return lowest_bit64(v); }
+
+}  // namespace quickses

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// The functions of one float under the names that packs of floats have too, so that templates serve both.
+#pragma once
+
+#include "parallel/platform.h"
+
+#include <cmath>
+
+namespace quickses {
+
+// The scalar counterparts of the pack functions in parallel/pack.h.
+QSES_FN float square_root(float x) {
+#if defined(__CUDA_ARCH__)
+  float r;
+  asm("sqrt.approx.f32 %0, %1;" : "=f"(r) : "f"(x));  // 1 ulp off at most, and a third of the instructions
+  return r;
+#else
+  return std::sqrt(x);
+#endif
+}
+QSES_FN float reciprocal_root(float x) {
+#if defined(__CUDA_ARCH__)
+  float r;
+  asm("rsqrt.approx.f32 %0, %1;" : "=f"(r) : "f"(x));
+  return r * (1.5f - 0.5f * x * r * r);
+#else
+  return 1.f / std::sqrt(x);
+#endif
+}
+QSES_FN float absolute(float x) { return fabsf(x); }
+QSES_FN float maximum(float a, float b) { return a > b ? a : b; }
+QSES_FN float minimum(float a, float b) { return a < b ? a : b; }
+QSES_FN float select(bool m, float yes, float no) { return m ? yes : no; }
+QSES_FN bool without(bool a, bool b) { return a && !b; }
+
+}  // namespace quickses

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// Wall-clock times of the stages on the CPU. The CUDA executor has a timer with the same members that uses events.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace quickses {
+
+class CpuStageTimer {
+ public:
+  template <class Executor>
+  explicit CpuStageTimer(Executor &) {}
+
+  void enable(bool enabled) { enabled_ = enabled; }
+  void reset() {
+    times_.clear();
+    open_ = false;
+  }
+  // Ends the stage before, and starts one. A name that has been there before goes on adding to it.
+  void begin(const char *name) {
+    if (!enabled_) return;
+    end();
+    name_ = name;
+    start_ = Clock::now();
+    open_ = true;
+  }
+  void end() {
+    if (!enabled_ || !open_) return;
+    const double ms = std::chrono::duration<double, std::milli>(Clock::now() - start_).count();
+    open_ = false;
+    for (auto &t : times_)
+      if (t.first == name_) {
+        t.second += ms;
+        return;
+      }
+    times_.emplace_back(name_, ms);
+  }
+  // Names and milliseconds in the order of first appearance.
+  std::vector<std::pair<std::string, double>> collect() { return times_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  bool enabled_ = false, open_ = false;
+  std::string name_;
+  Clock::time_point start_;
+  std::vector<std::pair<std::string, double>> times_;
+};
+
+}  // namespace quickses

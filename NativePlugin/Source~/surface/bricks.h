@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: MIT
+// The sparse set of bricks that can hold surface (QuickSES 2019 section 2.2 narrows the voxels down to the border in
+// the same spirit). A brick is active if the box of its lattice points, grown by one spacing, meets the part of an
+// exposed atom's surface, or comes as near to an exposed arc as the surface does: then every corner of every cell that
+// the surface passes lies in an active brick.
+#pragma once
+
+#include "parallel/error.h"
+#include "surface/lattice.h"
+#include "surface/solvent_features.h"
+
+#include <string>
+
+namespace quickses {
+
+// Bricks are numbered by signed 32-bit integers.
+constexpr uint64_t kMaxBricks = 0x7fffffff;
+
+// Active bricks as kernels see them, sorted by linear index.
+struct BrickSet {
+  Lattice lattice;
+  const uint64_t *linear;  // of each active brick
+  const int32_t *table;    // linear -> number of the active brick, -1 if inactive; nullptr if the set is sparse
+  uint32_t count;
+
+  // Number of the active brick at a place of the table of bricks; -1 if there is none.
+  QSES_FN int find(const glm::ivec3 &b) const {
+    if (b.x < 0 || b.y < 0 || b.z < 0 || b.x >= lattice.brick_count.x || b.y >= lattice.brick_count.y ||
+        b.z >= lattice.brick_count.z)
+      return -1;
+    const uint64_t key = lattice.linear(b);
+    if (table) return table[key];
+    const uint32_t k = lower_bound(linear, count, key);
+    return k < count && linear[k] == key ? static_cast<int>(k) : -1;
+  }
+};
+
+// Calls visit(linear index) for each brick whose grown box meets the shell between two radii about a centre.
+template <class Visit>
+QSES_FN void visit_bricks_of_shell(const Lattice &lattice, const glm::vec3 &center, float inner, float outer,
+                                   const Visit &visit) {
+  const float h = lattice.spacing, size = lattice.brick_size(), slack = 0.01f * h + 1e-4f;
+  const float box = size + h + 2.f * slack;  // grown box: from -h - slack to 8h + slack
+  const float low_offset = -h - slack;
+  outer += slack;
+  inner = maximum(0.f, inner - slack);
+  const float inner2 = inner * inner, outer2 = outer * outer;
+  const float inverse = 1.f / size;
+  int first[3], last[3];
+  const float c[3] = {center.x, center.y, center.z};
+  for (int d = 0; d < 3; ++d) {
+    const int origin = lattice.first_brick[d];
+    first[d] = static_cast<int>(floorf((c[d] - outer - low_offset - box) * inverse)) - origin;
+    last[d] = static_cast<int>(floorf((c[d] + outer - low_offset) * inverse)) - origin;
+    first[d] = first[d] < 0 ? 0 : first[d];
+    last[d] = last[d] >= lattice.brick_count[d] ? lattice.brick_count[d] - 1 : last[d];
+  }
+  for (int z = first[2]; z <= last[2]; ++z) {
+    const float z0 = static_cast<float>(z + lattice.first_brick.z) * size + low_offset - c[2];
+    const float nz = maximum(0.f, maximum(z0, -z0 - box)), fz = maximum(absolute(z0), absolute(z0 + box));
+    for (int y = first[1]; y <= last[1]; ++y) {
+      const float y0 = static_cast<float>(y + lattice.first_brick.y) * size + low_offset - c[1];
+      const float ny = maximum(0.f, maximum(y0, -y0 - box)), fy = maximum(absolute(y0), absolute(y0 + box));
+      const float near2 = nz * nz + ny * ny, far2 = fz * fz + fy * fy;
+      if (near2 > outer2) continue;
+      const uint64_t row = lattice.linear(glm::ivec3(0, y, z));
+      for (int x = first[0]; x <= last[0]; ++x) {
+        const float x0 = static_cast<float>(x + lattice.first_brick.x) * size + low_offset - c[0];
+        const float nx = maximum(0.f, maximum(x0, -x0 - box)), fx = maximum(absolute(x0), absolute(x0 + box));
+        if (near2 + nx * nx <= outer2 && far2 + fx * fx >= inner2) visit(row + static_cast<uint64_t>(x));
+      }
+    }
+  }
+}
+
+// What the passes below go through: size() items, and visit(i, v), which calls v(linear index) for each brick that item
+// i makes active. Of the features, an item is an atom (i < atom count) or an arc's ball.
+struct FeatureBricks {
+  FeatureView features;
+  Lattice lattice;
+
+  QSES_FN size_t size() const { return size_t(features.atoms.count) + features.arc_bounds.count; }
+
+  template <class Visit>
+  QSES_FN void visit(size_t i, const Visit &visit_brick) const {
+    if (i < features.atoms.count) {
+      if (features.cap_ranges[i].count == kBuriedAtom) return;
+      const Sphere atom = features.atoms.items[i];
+      const float radius = maximum(0.f, atom.radius - features.parameters.depth);
+      visit_bricks_of_shell(lattice, atom.center, radius, radius, visit_brick);
+    } else {
+      const Sphere ball = features.arc_bounds.items[i - features.atoms.count];
+      visit_bricks_of_shell(lattice, ball.center, 0.f, ball.radius + features.parameters.depth, visit_brick);
+    }
+  }
+};
+
+template <class Items>
+struct FlagBricks {
+  Items items;
+  uint8_t *flags;
+  struct Visit {
+    uint8_t *flags;
+    QSES_FN void operator()(uint64_t linear) const {
+#if defined(__CUDA_ARCH__) || (defined(_MSC_VER) && !defined(__clang__))
+      flags[linear] = 1;
+#else
+      __atomic_store_n(&flags[linear], uint8_t(1), __ATOMIC_RELAXED);
+#endif
+    }
+  };
+  QSES_HOST_DEVICE void operator()(size_t i) const { items.visit(i, Visit{flags}); }
+};
+
+template <class Items>
+struct CountBricks {
+  Items items;
+  struct Visit {
+    uint64_t *count;
+    QSES_FN void operator()(uint64_t) const { ++*count; }
+  };
+  QSES_HOST_DEVICE uint64_t operator()(size_t i) const {
+    uint64_t count = 0;
+    items.visit(i, Visit{&count});
+    return count;
+  }
+};
+
+template <class Items>
+struct ListBricks {
+  Items items;
+  const uint64_t *first;
+  uint64_t *keys;
+  struct Visit {
+    uint64_t **next;
+    QSES_FN void operator()(uint64_t linear) const { *(*next)++ = linear; }
+  };
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    uint64_t *next = keys + first[i];
+    items.visit(i, Visit{&next});
+  }
+};
+
+struct IsFlagged {
+  const uint8_t *flags;
+  QSES_HOST_DEVICE bool operator()(size_t i) const { return flags[i] != 0; }
+};
+
+struct IsFirstOfEqual {
+  const uint64_t *keys;
+  QSES_HOST_DEVICE bool operator()(size_t i) const { return i == 0 || keys[i] != keys[i - 1]; }
+};
+
+struct GatherKeys {
+  const uint64_t *keys;
+  uint64_t *places;  // in: places of the first of equal keys; out: the keys
+  QSES_HOST_DEVICE void operator()(size_t i) const { places[i] = keys[places[i]]; }
+};
+
+struct FillBrickTable {
+  const uint64_t *linear;
+  int32_t *table;
+  QSES_HOST_DEVICE void operator()(size_t i) const { table[linear[i]] = static_cast<int32_t>(i); }
+};
+
+struct SortValue {
+  uint32_t *values;
+  QSES_HOST_DEVICE void operator()(size_t i) const { values[i] = static_cast<uint32_t>(i); }
+};
+
+// low and high bound the atoms' centres in the centred frame.
+inline Lattice layout_lattice(Lattice lattice, const glm::vec3 &low, const glm::vec3 &high, float max_radius) {
+  const double size = static_cast<double>(lattice.spacing) * kBrickEdge;
+  for (int d = 0; d < 3; ++d) {
+    const double reach = static_cast<double>(max_radius) + 2.0 * lattice.spacing;
+    const double first = std::floor((low[d] - reach) / size) - 1.0, last = std::floor((high[d] + reach) / size) + 1.0;
+    lattice.first_brick[d] = static_cast<int>(first);
+    lattice.brick_count[d] = static_cast<int>(last - first) + 1;
+  }
+  return lattice;
+}
+
+// The set of all bricks that the items visit.
+template <class Executor, class Items>
+BrickSet collect_bricks(Executor &executor, const Items &items, const Lattice &lattice) {
+  const size_t n = items.size();
+  BrickSet bricks{lattice, nullptr, nullptr, 0};
+  const uint64_t entries = lattice.table_size();
+  if (dense_table_pays(entries, n)) {
+    Span<int32_t> table = executor.template allocate<int32_t>(entries);
+    Span<uint8_t> flags = executor.template allocate<uint8_t>(entries);
+    executor.fill(flags, 0);
+    executor.fill(table, 0xff);
+    executor.for_each(n, FlagBricks<Items>{items, flags.data});
+    Span<uint64_t> linear = executor.template allocate<uint64_t>(entries);
+    bricks.count = static_cast<uint32_t>(executor.compact(entries, IsFlagged{flags.data}, linear));
+    executor.for_each(bricks.count, FillBrickTable{linear.data, table.data});
+    bricks.linear = linear.data;
+    bricks.table = table.data;
+  } else {
+    Span<uint64_t> first = executor.template allocate<uint64_t>(n + 1);
+    executor.exclusive_scan(n, CountBricks<Items>{items}, first);
+    const uint64_t visits = executor.fetch(first.data + n);
+    Span<uint64_t> keys = executor.template allocate<uint64_t>(visits);
+    Span<uint32_t> unused = executor.template allocate<uint32_t>(visits);
+    Span<uint64_t> linear = executor.template allocate<uint64_t>(visits);
+    executor.for_each(n, ListBricks<Items>{items, first.data, keys.data});
+    executor.for_each(visits, SortValue{unused.data});
+    executor.sort_by_key(keys, unused, bits_for(entries));
+    const size_t found = executor.compact(visits, IsFirstOfEqual{keys.data}, linear);
+    if (found > kMaxBricks)
+      throw Error(QSES_TOO_FINE, "the surface needs " + std::to_string(found) +
+                                     " bricks of the SES grid, more than 32-bit numbers can name: use a larger spacing");
+    bricks.count = static_cast<uint32_t>(found);
+    executor.for_each(bricks.count, GatherKeys{keys.data, linear.data});
+    bricks.linear = linear.data;
+  }
+  return bricks;
+}
+
+template <class Executor>
+BrickSet find_bricks(Executor &executor, const FeatureView &features, const Lattice &lattice) {
+  return collect_bricks(executor, FeatureBricks{features, lattice}, lattice);
+}
+
+}  // namespace quickses

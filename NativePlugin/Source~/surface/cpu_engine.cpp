@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+// The pipeline on the CPU.
+#include "surface/exact_ses_cpu.h"
+#include "surface/solvent_features_cpu.h"
+
+#include "parallel/stage_timer.h"
+#include "surface/pipeline.h"
+
+namespace quickses {
+
+std::unique_ptr<SurfaceEngine> make_cpu_engine(unsigned threads, uint64_t memory_budget) {
+  return std::make_unique<SurfacePipeline<CpuExecutor, CpuStageTimer>>(memory_budget, threads);
+}
+
+}  // namespace quickses

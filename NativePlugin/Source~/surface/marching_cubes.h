@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+// Marching cubes on sign masks (QuickSES 2019, section 2.4): count, scan, emit. Every lattice edge that changes sign
+// owns one vertex, named by counting bits, so the mesh is welded by construction and the same in every run.
+#pragma once
+
+#include "surface/bricks.h"
+#include "surface/marching_cubes_table.h"
+
+namespace quickses {
+
+// What counting leaves behind, per active brick. Vertices are numbered by brick, leaf, axis of their edge, and bit;
+// triangles by brick, leaf, bit of their cell, and place in the table.
+struct MeshLayout {
+  const uint64_t *signs;      // [brick][leaf]: bit set = lattice point inside
+  uint64_t *crossing;         // [brick][leaf][axis]: bit set = the edge from that point along the axis changes sign
+  uint16_t *vertex_rank;      // [brick][leaf][axis]: vertices of the brick before that mask
+  uint16_t *triangle_rank;    // [brick][leaf]: triangles of the brick before that leaf
+  uint32_t *vertex_base;      // [brick + 1]: vertices before the brick
+  uint32_t *triangle_base;    // [brick + 1]
+};
+
+struct MeshView {
+  float *positions;    // V x 3, caller's coordinates
+  float *normals;      // V x 3
+  uint32_t *owners;    // V, caller's atom numbers
+  uint8_t *patches;    // V, or nullptr
+  uint32_t *indices;   // T x 3
+  bool reversed;       // winding
+};
+
+// Leaf words around a leaf: itself and its neighbours towards larger x, y, z (bit 0, 1, 2 of the place).
+struct LeafWords {
+  uint64_t at[8];
+};
+
+// Word of the leaf at an offset (bits x, y, z) from a leaf of an active brick. No cell at an inactive brick has a sign
+// change, so there the word repeats the nearest point of the leaf itself.
+QSES_FN uint64_t neighbor_leaf_word(const BrickSet &bricks, const uint64_t *signs, int brick, const glm::ivec3 &place,
+                                    int leaf, int offset) {
+  const int carry = leaf & offset, other = leaf ^ offset;
+  if (carry == 0) return signs[static_cast<size_t>(brick) * kLeavesPerBrick + other];
+  const int k = bricks.find(place + glm::ivec3(carry & 1, carry >> 1 & 1, carry >> 2));
+  if (k >= 0) return signs[static_cast<size_t>(k) * kLeavesPerBrick + other];
+  const int bit = leaf_bit(offset & 1 ? 3 : 0, offset & 2 ? 3 : 0, offset & 4 ? 3 : 0);
+  return signs[static_cast<size_t>(brick) * kLeavesPerBrick + leaf] >> bit & 1 ? ~uint64_t(0) : 0;
+}
+
+QSES_FN LeafWords leaf_words(const BrickSet &bricks, const uint64_t *signs, int brick, int leaf) {
+  const glm::ivec3 place = bricks.lattice.brick_at(bricks.linear[brick]);
+  LeafWords w;
+  w.at[0] = signs[static_cast<size_t>(brick) * kLeavesPerBrick + leaf];
+  for (int d = 1; d < 8; ++d) w.at[d] = neighbor_leaf_word(bricks, signs, brick, place, leaf, d);
+  return w;
+}
+
+// The eight corner words: bit b of corner word c is the sign of corner c of the cell at point b.
+QSES_FN LeafWords cell_corners(const LeafWords &w) {
+  const uint64_t x0 = shift_x(w.at[0], w.at[1]), x2 = shift_x(w.at[2], w.at[3]);
+  const uint64_t x4 = shift_x(w.at[4], w.at[5]), x6 = shift_x(w.at[6], w.at[7]);
+  LeafWords c;
+  c.at[0] = w.at[0];
+  c.at[1] = x0;
+  c.at[2] = shift_y(w.at[0], w.at[2]);
+  c.at[3] = shift_y(x0, x2);
+  c.at[4] = shift_z(w.at[0], w.at[4]);
+  c.at[5] = shift_z(x0, x4);
+  c.at[6] = shift_z(c.at[2], shift_y(w.at[4], w.at[6]));
+  c.at[7] = shift_z(c.at[3], shift_y(x4, x6));
+  return c;
+}
+
+// Cells whose corners have both signs.
+QSES_FN uint64_t mixed_cells(const LeafWords &c) {
+  uint64_t any = c.at[0], all = c.at[0];
+  for (int d = 1; d < 8; ++d) {
+    any |= c.at[d];
+    all &= c.at[d];
+  }
+  return any & ~all;
+}
+
+QSES_FN int cell_case(const LeafWords &c, int bit) {
+  int code = 0;
+  for (int d = 0; d < 8; ++d) code |= static_cast<int>(c.at[d] >> bit & 1) << d;
+  return code;
+}
+
+// ---- count -----------------------------------------------------------------------------------------------------
+
+struct CountLeaf {
+  BrickSet bricks;
+  MeshLayout layout;
+  const uint8_t *case_triangles;
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    const int brick = static_cast<int>(i >> 3), leaf = static_cast<int>(i & 7);
+    const LeafWords c = cell_corners(leaf_words(bricks, layout.signs, brick, leaf));
+    layout.crossing[3 * i] = c.at[0] ^ c.at[1];
+    layout.crossing[3 * i + 1] = c.at[0] ^ c.at[2];
+    layout.crossing[3 * i + 2] = c.at[0] ^ c.at[4];
+    int triangles = 0;
+    for (uint64_t mixed = mixed_cells(c); mixed; mixed &= mixed - 1)
+      triangles += case_triangles[cell_case(c, lowest_bit64(mixed))];
+    layout.triangle_rank[i] = static_cast<uint16_t>(triangles);
+  }
+};
+
+// Turns the counts of a brick into ranks; its totals go to vertices and triangles.
+struct RankBrick {
+  MeshLayout layout;
+  uint32_t *vertices, *triangles;
+  QSES_HOST_DEVICE void operator()(size_t brick) const {
+    uint32_t v = 0, t = 0;
+    for (size_t i = brick * kLeavesPerBrick; i < (brick + 1) * kLeavesPerBrick; ++i) {
+      for (size_t k = 3 * i; k < 3 * i + 3; ++k) {
+        layout.vertex_rank[k] = static_cast<uint16_t>(v);
+        v += static_cast<uint32_t>(popcount64(layout.crossing[k]));
+      }
+      const uint32_t n = layout.triangle_rank[i];
+      layout.triangle_rank[i] = static_cast<uint16_t>(t);
+      t += n;
+    }
+    vertices[brick] = v;
+    triangles[brick] = t;
+  }
+};
+
+template <class T>
+struct LoadCount {
+  const T *counts;
+  QSES_HOST_DEVICE uint64_t operator()(size_t i) const { return counts[i]; }
+};
+
+// ---- emit ------------------------------------------------------------------------------------------------------
+
+// Number of the vertex of a mask's set bit, if `first` is that of the lowest.
+QSES_FN uint32_t vertex_number(uint32_t first, uint64_t crossing, int bit) {
+  return first + static_cast<uint32_t>(popcount64(crossing & ((uint64_t(1) << bit) - 1)));
+}
+
+// Number of the vertex on the edge that starts at a lattice point of a brick.
+QSES_FN uint32_t vertex_number(const MeshLayout &m, int brick, int leaf, int axis, int bit) {
+  const size_t k = (static_cast<size_t>(brick) * kLeavesPerBrick + static_cast<size_t>(leaf)) * 3 +
+                   static_cast<size_t>(axis);
+  return vertex_number(m.vertex_base[brick] + m.vertex_rank[k], m.crossing[k], bit);
+}
+
+// Where the vertex of an edge starts: on the edge, from its lower point, in units of the spacing.
+QSES_FN float vertex_start(bool low_inside) { return low_inside ? kVertexStart : 1.f - kVertexStart; }
+
+// Sum of the ring tables of the four cells around an edge. inside(along, second, third) is the sign at a point near
+// the edge: along the edge 0 or 1, in the other two axes, lower axis first, -1 ... 1.
+template <class Inside>
+QSES_FN uint64_t edge_ring(const Inside &inside, int axis, const uint64_t (*ring)[kCellEdges]) {
+  const int second = axis == 0 ? 1 : 0, third = axis == 2 ? 1 : 2;
+  uint64_t sum = 0;
+  for (int w = -1; w <= 0; ++w)
+    for (int v = -1; v <= 0; ++v) {
+      int code = 0;
+      for (int corner = 0; corner < 8; ++corner)
+        code |= (inside(corner >> axis & 1, v + (corner >> second & 1), w + (corner >> third & 1)) ? 1 : 0) << corner;
+      sum += ring[code][4 * axis - v - 2 * w];
+    }
+  return sum;
+}
+
+struct MeshCounts {
+  uint64_t vertices, triangles;
+};
+
+// Counts and scans; the signs of all bricks must be known. vertex_base and triangle_base of the layout are only valid
+// if both totals fit 32 bits.
+template <class Executor>
+MeshCounts lay_out_mesh(Executor &executor, const BrickSet &bricks, const uint64_t *signs,
+                        const uint8_t *case_triangles, MeshLayout *layout) {
+  const size_t n = bricks.count, leaves = n * kLeavesPerBrick;
+  layout->signs = signs;
+  layout->crossing = executor.template allocate<uint64_t>(leaves * 3).data;
+  layout->vertex_rank = executor.template allocate<uint16_t>(leaves * 3).data;
+  layout->triangle_rank = executor.template allocate<uint16_t>(leaves).data;
+  Span<uint32_t> vertex_base = executor.template allocate<uint32_t>(n + 1);
+  Span<uint32_t> triangle_base = executor.template allocate<uint32_t>(n + 1);
+  layout->vertex_base = vertex_base.data;
+  layout->triangle_base = triangle_base.data;
+  Span<uint32_t> vertices = executor.template allocate<uint32_t>(n);
+  Span<uint32_t> triangles = executor.template allocate<uint32_t>(n);
+  executor.for_each(leaves, CountLeaf{bricks, *layout, case_triangles});
+  executor.for_each(n, RankBrick{*layout, vertices.data, triangles.data});
+  executor.exclusive_scan(n, LoadCount<uint32_t>{vertices.data}, vertex_base);
+  executor.exclusive_scan(n, LoadCount<uint32_t>{triangles.data}, triangle_base);
+  // The bases wrap if there are too many; then the true totals are summed up for the message.
+  if (n * kBrickPoints * 5 > 0xffffffffull) {
+    const double v = executor.reduce(n, LoadCount<uint32_t>{vertices.data});
+    const double t = executor.reduce(n, LoadCount<uint32_t>{triangles.data});
+    return {static_cast<uint64_t>(v), static_cast<uint64_t>(t)};
+  }
+  return {executor.fetch(vertex_base.data + n), executor.fetch(triangle_base.data + n)};
+}
+
+}  // namespace quickses

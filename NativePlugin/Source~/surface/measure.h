@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+// Area, enclosed volume and bounding box of a closed mesh.
+#pragma once
+
+#include "parallel/atomics.h"
+#include "surface/marching_cubes.h"
+
+#include <cstring>
+
+namespace quickses {
+
+struct Bounds {
+  float min[3], max[3];  // Å, caller's coordinates; all 0 for an empty mesh
+};
+
+struct Measures {
+  double area;    // Å², sum over the triangles
+  double volume;  // Å³, positive if the surface encloses it; cavities count negative
+  Bounds bounds;
+};
+
+// ---- bounds ----------------------------------------------------------------------------------------------------
+
+// A float as an integer that is ordered like it.
+QSES_FN uint32_t ordered_bits(float value) {
+  uint32_t bits;
+  memcpy(&bits, &value, sizeof bits);
+  return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
+}
+QSES_FN float from_ordered_bits(uint32_t ordered) {
+  const uint32_t bits = ordered & 0x80000000u ? ordered & 0x7fffffffu : ~ordered;
+  float value;
+  memcpy(&value, &bits, sizeof value);
+  return value;
+}
+
+// Smallest x, y, z and smallest -x, -y, -z, as ordered bits.
+struct BoundsScratch {
+  uint32_t least[6];
+};
+
+struct FindBounds {
+  static constexpr size_t kChunk = 8192;
+  const float *positions;
+  size_t vertices;
+  uint32_t *least;
+  template <class Team>
+  QSES_HOST_DEVICE void operator()(const Team &team, BoundsScratch &scratch, size_t chunk) const {
+    for (int d = team.rank(); d < 6; d += team.size()) scratch.least[d] = ~uint32_t(0);
+    team.sync();
+    const size_t begin = chunk * kChunk, end = begin + kChunk < vertices ? begin + kChunk : vertices;
+    uint32_t own[6] = {~uint32_t(0), ~uint32_t(0), ~uint32_t(0), ~uint32_t(0), ~uint32_t(0), ~uint32_t(0)};
+    for (size_t v = begin + static_cast<size_t>(team.rank()); v < end; v += static_cast<size_t>(team.size()))
+      for (int d = 0; d < 3; ++d) {
+        const float x = positions[3 * v + static_cast<size_t>(d)];
+        const uint32_t low = ordered_bits(x), high = ordered_bits(-x);
+        own[d] = low < own[d] ? low : own[d];
+        own[d + 3] = high < own[d + 3] ? high : own[d + 3];
+      }
+    for (int d = 0; d < 6; ++d) atomic_min(scratch.least + d, own[d]);
+    team.sync();
+    for (int d = team.rank(); d < 6; d += team.size()) atomic_min(least + d, scratch.least[d]);
+    team.sync();
+  }
+};
+
+// Box of the vertices. Waits.
+template <class Executor>
+Bounds find_bounds(Executor &executor, const MeshView &mesh, const MeshCounts &counts) {
+  Bounds bounds = {};
+  if (counts.vertices == 0) return bounds;
+  const auto mark = executor.arena().mark();
+  Span<uint32_t> least = executor.template allocate<uint32_t>(6);
+  executor.fill(least, 0xff);
+  executor.template for_each_brick<BoundsScratch>((counts.vertices + FindBounds::kChunk - 1) / FindBounds::kChunk,
+                                                  FindBounds{mesh.positions, counts.vertices, least.data});
+  uint32_t found[6];
+  executor.download(found, least.data, 6);
+  executor.wait();
+  executor.arena().rewind(mark);
+  for (int d = 0; d < 3; ++d) {
+    bounds.min[d] = from_ordered_bits(found[d]);
+    bounds.max[d] = -from_ordered_bits(found[d + 3]);
+  }
+  return bounds;
+}
+
+// ---- area and volume -------------------------------------------------------------------------------------------
+
+struct DoubleTriangle {
+  double a[3], u[3], n[3];  // a corner, the edge from it to the second one, and twice the area along the normal
+};
+
+// Coordinates are taken from an origin near the mesh, so that the volume keeps its digits far away from zero.
+QSES_FN DoubleTriangle load_triangle(const float *positions, const uint32_t *t, const double *origin) {
+  DoubleTriangle d;
+  double v[3];
+  for (int k = 0; k < 3; ++k) {
+    d.a[k] = static_cast<double>(positions[3 * size_t(t[0]) + k]) - origin[k];
+    d.u[k] = static_cast<double>(positions[3 * size_t(t[1]) + k]) - origin[k] - d.a[k];
+    v[k] = static_cast<double>(positions[3 * size_t(t[2]) + k]) - origin[k] - d.a[k];
+  }
+  d.n[0] = d.u[1] * v[2] - d.u[2] * v[1];
+  d.n[1] = d.u[2] * v[0] - d.u[0] * v[2];
+  d.n[2] = d.u[0] * v[1] - d.u[1] * v[0];
+  return d;
+}
+QSES_FN double triangle_area(const DoubleTriangle &d) {
+  return 0.5 * sqrt(d.n[0] * d.n[0] + d.n[1] * d.n[1] + d.n[2] * d.n[2]);
+}
+// Signed volume of the tetrahedron over the triangle with its apex at the origin.
+QSES_FN double triangle_volume(const DoubleTriangle &d) {
+  return (d.a[0] * d.n[0] + d.a[1] * d.n[1] + d.a[2] * d.n[2]) / 6.0;
+}
+
+struct TriangleAreas {
+  const float *positions;
+  const uint32_t *indices;
+  double origin[3];
+  QSES_HOST_DEVICE double operator()(size_t t) const {
+    return triangle_area(load_triangle(positions, indices + 3 * t, origin));
+  }
+};
+
+struct TriangleVolumes {
+  const float *positions;
+  const uint32_t *indices;
+  double origin[3];
+  QSES_HOST_DEVICE double operator()(size_t t) const {
+    return triangle_volume(load_triangle(positions, indices + 3 * t, origin));
+  }
+};
+
+// Waits.
+template <class Executor>
+Measures measure(Executor &executor, const MeshView &mesh, const MeshCounts &counts) {
+  Measures m = {0.0, 0.0, find_bounds(executor, mesh, counts)};
+  if (counts.triangles == 0) return m;
+  double c[3];
+  for (int d = 0; d < 3; ++d)
+    c[d] = 0.5 * (static_cast<double>(m.bounds.min[d]) + static_cast<double>(m.bounds.max[d]));
+  m.area = executor.reduce(counts.triangles, TriangleAreas{mesh.positions, mesh.indices, {c[0], c[1], c[2]}});
+  m.volume = executor.reduce(counts.triangles, TriangleVolumes{mesh.positions, mesh.indices, {c[0], c[1], c[2]}});
+  if (mesh.reversed) m.volume = -m.volume;
+  return m;
+}
+
+}  // namespace quickses

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+// Uniform neighbour grid (QuickSES 2019, section 2.1): items are hashed to cells, sorted by cell with Thrust, and found
+// again by the runs of cells along x. Used for the atoms (edge p + r_max) and for the balls around exposed arcs.
+#pragma once
+
+#include "parallel/executor.h"
+
+namespace quickses {
+
+// Where the cells of a grid lie. Cells are numbered x fastest.
+struct CellLayout {
+  glm::vec3 origin;
+  float inverse_edge;
+  glm::ivec3 count;
+
+  QSES_FN int cell_along(float position, float start, int n) const {
+    const float c = floorf((position - start) * inverse_edge);
+    return c <= 0.f ? 0 : c >= static_cast<float>(n - 1) ? n - 1 : static_cast<int>(c);
+  }
+  QSES_FN uint64_t hash(const glm::vec3 &p) const {
+    return row(cell_along(p.y, origin.y, count.y), cell_along(p.z, origin.z, count.z)) +
+           static_cast<uint64_t>(cell_along(p.x, origin.x, count.x));
+  }
+  QSES_FN uint64_t row(int y, int z) const {
+    return (static_cast<uint64_t>(z) * static_cast<uint64_t>(count.y) + static_cast<uint64_t>(y)) *
+           static_cast<uint64_t>(count.x);
+  }
+  QSES_FN uint64_t cells() const { return row(0, count.z); }
+};
+
+// Number of the first of n sorted keys that is not below the key.
+QSES_FN uint32_t lower_bound(const uint64_t *keys, uint32_t n, uint64_t key) {
+  uint32_t first = 0;
+  while (n > 0) {
+    const uint32_t half = n >> 1;
+    const bool below = keys[first + half] < key;
+    first = below ? first + half + 1 : first;
+    n = below ? n - half - 1 : half;
+  }
+  return first;
+}
+
+struct ItemRun {
+  uint32_t begin, end;
+};
+
+// The grid as kernels see it.
+struct NeighborGridView {
+  CellLayout cells;
+  const Sphere *items;        // sorted by cell, then by the order they were given in
+  const uint32_t *order;      // sorted place -> number when given
+  const uint32_t *starts;     // first item of each cell, and the total; nullptr if the grid is sparse
+  const uint64_t *sorted_keys;  // cell of each sorted item
+  uint32_t count;
+
+  // Items of the cells x0 ... x1 of a row: one run, since x is fastest.
+  QSES_FN ItemRun run(int x0, int x1, int y, int z) const {
+    const uint64_t row = cells.row(y, z);
+    const uint64_t first = row + static_cast<uint64_t>(x0), last = row + static_cast<uint64_t>(x1) + 1;
+    if (starts) return {starts[first], starts[last]};
+    const uint32_t begin = lower_bound(sorted_keys, count, first);
+    return {begin, begin + lower_bound(sorted_keys + begin, count - begin, last)};
+  }
+};
+
+// Cells that a box can touch, clamped to the grid.
+struct CellBox {
+  int x0, x1, y0, y1, z0, z1;
+};
+QSES_FN CellBox cells_around(const CellLayout &cells, const Vec3<float> &low, const Vec3<float> &high) {
+  return {cells.cell_along(low.x, cells.origin.x, cells.count.x), cells.cell_along(high.x, cells.origin.x, cells.count.x),
+          cells.cell_along(low.y, cells.origin.y, cells.count.y), cells.cell_along(high.y, cells.origin.y, cells.count.y),
+          cells.cell_along(low.z, cells.origin.z, cells.count.z), cells.cell_along(high.z, cells.origin.z, cells.count.z)};
+}
+
+struct HashItems {
+  CellLayout cells;
+  const Sphere *items;
+  uint64_t *keys;
+  uint32_t *order;
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    keys[i] = cells.hash(items[i].center);
+    order[i] = static_cast<uint32_t>(i);
+  }
+};
+
+struct GatherItems {
+  const Sphere *items;
+  const uint32_t *order;
+  Sphere *sorted;
+  QSES_HOST_DEVICE void operator()(size_t i) const { sorted[i] = items[order[i]]; }
+};
+
+// First item of each cell of a chunk: found once, then walked.
+struct FindCellStarts {
+  static constexpr uint64_t kChunk = 16;
+  const uint64_t *keys;
+  uint32_t count;
+  uint64_t cells;
+  uint32_t *starts;
+  QSES_HOST_DEVICE void operator()(size_t chunk) const {
+    const uint64_t first = chunk * kChunk, last = first + kChunk <= cells ? first + kChunk : cells + 1;
+    uint32_t i = lower_bound(keys, count, first);
+    for (uint64_t cell = first; cell < last; ++cell) {
+      while (i < count && keys[i] < cell) ++i;
+      starts[cell] = i;
+    }
+  }
+};
+
+// A table with an entry per cell is used while it is small against the items; beyond that cells are looked up by
+// binary search, so that one stray atom far away costs nothing.
+constexpr uint64_t kMaxDenseCells = 100000000;
+constexpr bool dense_table_pays(uint64_t entries, uint64_t items) {
+  return entries <= kMaxDenseCells && (entries <= (uint64_t(1) << 22) || entries <= 64 * items);
+}
+
+inline CellLayout layout_cells(const glm::vec3 &low, const glm::vec3 &high, float edge) {
+  CellLayout cells;
+  cells.origin = low;
+  cells.inverse_edge = 1.f / edge;
+  for (int d = 0; d < 3; ++d) cells.count[d] = static_cast<int>((high[d] - low[d]) / edge) + 1;
+  return cells;
+}
+
+inline int bits_for(uint64_t values) {
+  int bits = 1;
+  while (bits < 64 && (values >> bits) != 0) ++bits;
+  return bits;
+}
+
+// low and high bound the items' centres.
+template <class Executor>
+NeighborGridView build_neighbor_grid(Executor &executor, Span<Sphere> items, const CellLayout &cells) {
+  const size_t n = items.size;
+  Span<uint64_t> keys = executor.template allocate<uint64_t>(n);
+  Span<uint32_t> order = executor.template allocate<uint32_t>(n);
+  // Kernels load whole packs of spheres: room behind the last one, far away.
+  Span<Sphere> sorted = executor.template allocate<Sphere>(n + 8);
+  executor.fill(Span<Sphere>{sorted.data + n, 8}, 0x4c);  // all bytes 0x4c: about 5e7 Å in every coordinate
+  executor.for_each(n, HashItems{cells, items.data, keys.data, order.data});
+  executor.sort_by_key(keys, order, bits_for(cells.cells()));
+  executor.for_each(n, GatherItems{items.data, order.data, sorted.data});
+  uint32_t *starts = nullptr;
+  if (dense_table_pays(cells.cells(), n)) {
+    starts = executor.template allocate<uint32_t>(cells.cells() + 1).data;
+    executor.for_each(cells.cells() / FindCellStarts::kChunk + 1,
+                      FindCellStarts{keys.data, static_cast<uint32_t>(n), cells.cells(), starts});
+  }
+  return {cells, sorted.data, order.data, starts, keys.data, static_cast<uint32_t>(n)};
+}
+
+}  // namespace quickses

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: MIT
+// The nearest point of the boundary of the solvent-accessible surface, and with it the exact place of a vertex on the
+// surface, its normal and its owner. The formulas are those of Connolly 1983, read backwards: a vertex lies `depth`
+// from the nearest place y where the probe's centre may be, on the line from y through where the vertex started.
+#pragma once
+
+#include "quickses/quickses.h"
+
+#include "surface/lattice.h"
+#include "surface/solvent_features.h"
+
+namespace quickses {
+
+// A vertex start is at most this far from the surface, in units of the spacing, if the spacing is at most two probe
+// radii; candidates are gathered accordingly.
+constexpr float kStartReach = 0.9f;
+// How far, in units of the spacing, a start may lie outside the box of the lattice points that own the edges: half an
+// edge and a relaxation step.
+constexpr float kStartOverhang = 1.2f;
+
+// Nothing that is deeper than this in the probe's way counts as a second hit.
+constexpr float kProjectionTolerance = 1e-4f;
+constexpr int kMaxProjections = 5;
+
+// Depth of a point in an inflated ball: R - |x - c|. The largest over the atoms is a lower bound of the distance to the
+// boundary, and the distance itself if the radial projection on that atom is exposed; no other atom's can be.
+template <class T>
+QSES_FN T ball_depth(const Sphere &atom, const Vec3<T> &x) {
+  return T(atom.radius) - square_root(length_squared(x - Vec3<T>(atom.center)));
+}
+
+// Is the projection of the point in direction d (of the given length) from an atom's centre exposed?
+QSES_FN bool is_exposed(const FeatureView &f, uint32_t atom, const Vec3<float> &d, float length) {
+  const CapRange range = f.cap_ranges[atom];
+  if (range.count == kBuriedAtom) return false;
+  const Cap *caps = f.caps + range.first;
+  for (int32_t k = 0; k < range.count; ++k)
+    if (cap_covers(load(caps + k), d, length)) return false;
+  return true;
+}
+
+// The atom whose ball the point is deepest in: also the one whose van der Waals surface is nearest. Candidates:
+// atom_count(), atom(k) -> atom number, arc_count(), arc(k) -> arc number.
+struct DeepestAtom {
+  uint32_t atom;
+  float depth;
+};
+template <class Candidates>
+QSES_FN DeepestAtom deepest_atom(const FeatureView &f, const Candidates &candidates, const Vec3<float> &x) {
+  DeepestAtom best{0, -2.f * kFarAway};
+  const int atoms = candidates.atom_count();
+  for (int k = 0; k < atoms; ++k) {
+    const uint32_t i = candidates.atom(k);
+    const float d = ball_depth(load(f.atoms.items + i), x);
+    if (d > best.depth) best = {i, d};
+  }
+  return best;
+}
+
+struct NearestArc {
+  int arc;           // -1: there is none
+  float distance2;   // squared
+  float second2;     // of the second nearest
+};
+template <class Candidates>
+QSES_FN NearestArc nearest_arc(const FeatureView &f, const Candidates &candidates, const Vec3<float> &x) {
+  NearestArc best{-1, kFarAway, kFarAway};
+  const int arcs = candidates.arc_count();
+  for (int k = 0; k < arcs; ++k) {
+    const int a = static_cast<int>(candidates.arc(k));
+    const float d2 = arc_distance2(load(f.arcs + a), x);
+    if (d2 < best.distance2 || (d2 == best.distance2 && a < best.arc)) {  // ties by number: they come in any order
+      best.second2 = best.distance2;
+      best.distance2 = d2;
+      best.arc = a;
+    } else {
+      best.second2 = minimum(best.second2, d2);
+    }
+  }
+  return best;
+}
+
+// What decides about one point.
+struct BoundaryPoint {
+  Vec3<float> position;  // y: where the probe's centre is when it touches the surface at the vertex
+  float distance;        // |x - y|; negative if x is outside the union of the inflated balls
+  float second;          // distance to the second nearest arc: only of interest where the first one decided
+  qses_patch patch;
+};
+
+// The length of the offset of a point at some depth in a ball.
+QSES_FN float offset_length(const Sphere &ball, float depth) { return maximum(ball.radius - depth, 1e-12f); }
+
+QSES_FN BoundaryPoint boundary_on_atom(const Sphere &ball, float depth, const Vec3<float> &x) {
+  const Vec3<float> offset = x - Vec3<float>(ball.center);
+  return {Vec3<float>(ball.center) + offset * (ball.radius / offset_length(ball, depth)), depth, kFarAway,
+          QSES_PATCH_CONTACT};
+}
+
+QSES_FN BoundaryPoint boundary_on_arc(const Arc &arc, float second2, const Vec3<float> &x) {
+  const ArcPoint p = nearest_on_arc(arc, x);
+  return {p.position, square_root(length_squared(p.position - x)), square_root(second2),
+          p.at_end ? QSES_PATCH_REENTRANT : QSES_PATCH_TOROIDAL};
+}
+
+template <class Candidates>
+QSES_FN BoundaryPoint nearest_boundary(const FeatureView &f, const Candidates &candidates, const Vec3<float> &x,
+                                       bool arcs_only = false) {
+  DeepestAtom deepest{0, -kFarAway};
+  if (!arcs_only && candidates.atom_count() > 0) {
+    deepest = deepest_atom(f, candidates, x);
+    const Sphere ball = load(f.atoms.items + deepest.atom);
+    if (is_exposed(f, deepest.atom, x - Vec3<float>(ball.center), offset_length(ball, deepest.depth)))
+      return boundary_on_atom(ball, deepest.depth, x);
+  }
+  const NearestArc nearest = nearest_arc(f, candidates, x);
+  if (nearest.arc >= 0) return boundary_on_arc(load(f.arcs + nearest.arc), nearest.second2, x);
+  // No candidate at all can only come from rounding: the radial projection is then within it.
+  return boundary_on_atom(load(f.atoms.items + deepest.atom), deepest.depth, x);
+}
+
+struct SurfacePoint {
+  Vec3<float> position, normal;
+  qses_patch patch;
+};
+
+// The point `depth` inside the boundary point y on the line through x, which lies `distance` (signed) inside it.
+QSES_FN SurfacePoint place_on_surface(const Vec3<float> &x, const Vec3<float> &y, float distance, float depth,
+                                      qses_patch patch) {
+  Vec3<float> outward = (y - x) * (1.f / (absolute(distance) > 1e-9f ? distance : 1e-9f));
+  const float length2 = length_squared(outward);
+  outward = length2 > 0.25f ? outward * reciprocal_root(length2) : Vec3<float>(0.f, 0.f, 1.f);
+  return {y - outward * depth, outward, patch};
+}
+
+// Does the projection from a start nearer to y than depth have to be checked against other probes?
+QSES_FN bool needs_another_look(float distance, float second, float depth) {
+  return distance < depth - kProjectionTolerance && second < 2.f * depth - distance;
+}
+
+template <class Candidates>
+QSES_FN SurfacePoint project_to_surface(const FeatureView &f, const Candidates &candidates, Vec3<float> x) {
+  const float depth = f.parameters.depth;
+  BoundaryPoint b = nearest_boundary(f, candidates, x);
+  SurfacePoint s = place_on_surface(x, b.position, b.distance, depth, b.patch);
+  for (int k = 1; k < kMaxProjections && b.patch != QSES_PATCH_CONTACT && needs_another_look(b.distance, b.second, depth);
+       ++k) {
+    x = s.position;
+    b = nearest_boundary(f, candidates, x, true);
+    s = place_on_surface(x, b.position, b.distance, depth, b.patch);
+  }
+  return s;
+}
+
+// The atom whose van der Waals surface is nearest to the point.
+template <class Candidates>
+QSES_FN uint32_t nearest_atom(const FeatureView &f, const Candidates &candidates, const Vec3<float> &x) {
+  return deepest_atom(f, candidates, x).atom;
+}
+
+// On the SAS and VDW surfaces vertices may sit on creases, where the line to y has no length: the normal is that of
+// the owner's sphere.
+QSES_FN Vec3<float> sphere_normal(const Sphere &owner, const Vec3<float> &x) {
+  const Vec3<float> d = x - Vec3<float>(owner.center);
+  const float length2 = length_squared(d);
+  return length2 > 1e-12f ? d * reciprocal_root(length2) : Vec3<float>(0.f, 0.f, 1.f);
+}
+
+// A lattice edge longer than the probe is wide may hold more than its middle tells: halve it towards the sign change
+// first. inside and outside are its ends.
+constexpr int kEdgeHalvings = 8;
+QSES_FN bool starts_by_halving(const SurfaceParameters &p) { return p.depth > 0.f && p.spacing > 2.f * p.depth; }
+
+template <class Candidates>
+QSES_FN Vec3<float> halve_edge(const FeatureView &f, const Candidates &candidates, Vec3<float> inside,
+                               Vec3<float> outside) {
+  for (int k = 0; k < kEdgeHalvings; ++k) {
+    const Vec3<float> middle = (inside + outside) * 0.5f;
+    if (nearest_boundary(f, candidates, middle).distance > f.parameters.depth)
+      inside = middle;
+    else
+      outside = middle;
+  }
+  return (inside + outside) * 0.5f;
+}
+
+}  // namespace quickses

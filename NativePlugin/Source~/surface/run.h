@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+// What the stages of one computation share.
+#pragma once
+
+#include "parallel/error.h"
+#include "surface/engine.h"
+#include "surface/measure.h"
+#include "surface/stages.h"
+
+#include <algorithm>
+
+namespace quickses {
+
+// Hands the fraction done to the caller, never falling, in steps of a few per mille.
+class Progress {
+ public:
+  void set(std::function<void(double)> callback) { callback_ = std::move(callback); }
+  void restart() { last_ = -1; }
+  bool wanted() const { return static_cast<bool>(callback_); }
+  void report(double fraction) {
+    if (!callback_ || fraction < last_ + 0.005) {
+      if (!callback_ || fraction < 1.0 || last_ >= 1.0) return;
+    }
+    last_ = fraction;
+    callback_(fraction);
+  }
+
+ private:
+  std::function<void(double)> callback_;
+  double last_ = -1;
+};
+
+// A mesh being made, in the memory of the back end.
+struct MeshMemoryView {
+  MeshView view{};
+  size_t vertices = 0, triangles = 0;
+  Bounds bounds{};
+};
+
+template <class Executor>
+class MeshMemory;
+
+template <class Executor, class Timer>
+struct Run {
+  Executor &executor;
+  Timer &timer;
+  MeshMemory<Executor> &memory;
+  Progress &progress;
+  TableView table;
+  const qses_settings &settings;
+  SurfaceParameters parameters;
+  Lattice lattice;
+  glm::vec3 low, high;  // bounds of the atoms' centres, centred frame
+  NeighborGridView atoms;
+  qses_report *report;
+};
+
+// Calls work(slice) for all bricks, in slices of at most `bricks_per_slice`, and reports progress from `begin` to
+// `end`. What work allocates is given up after each slice unless there is only one.
+template <class R, class Work>
+void for_each_slice(R &run, uint32_t brick_count, uint32_t bricks_per_slice, double begin, double end,
+                    const Work &work) {
+  const bool one = bricks_per_slice >= brick_count;
+  for (uint32_t first = 0; first < brick_count;) {
+    const uint32_t last = one ? brick_count : first + std::min(bricks_per_slice, brick_count - first);
+    const auto mark = run.executor.arena().mark();
+    work(BrickRange{first, last});
+    if (!one) run.executor.arena().rewind(mark);
+    first = last;
+    run.progress.report(begin + (end - begin) * first / brick_count);
+  }
+}
+
+// Bricks per slice from the settings: at most slice_size cubed lattice points. slice_size 0: all at once, or as many
+// as keep the caller informed if progress is asked for.
+inline uint32_t bricks_per_slice(const qses_settings &settings, uint32_t brick_count, bool want_progress) {
+  uint64_t n = brick_count;
+  if (settings.slice_size > 0) {
+    const uint64_t edge = settings.slice_size;
+    n = std::max<uint64_t>(1, edge > (uint64_t(1) << 20) ? brick_count : edge * edge * edge / kBrickPoints);
+  }
+  if (want_progress) n = std::min<uint64_t>(n, std::max<uint64_t>(64, brick_count / 32));
+  return static_cast<uint32_t>(std::max<uint64_t>(1, std::min<uint64_t>(n, brick_count)));
+}
+
+// Throws if the mesh needs more numbers than 32 bits hold.
+inline void check_mesh_size(const MeshCounts &counts) {
+  constexpr uint64_t kMost = 0xffffffffu;
+  if (counts.vertices >= kMost || counts.triangles >= kMost)
+    throw Error(QSES_TOO_FINE, "the spacing is too fine for this structure: the mesh would have " +
+                                   std::to_string(counts.vertices) + " vertices and " +
+                                   std::to_string(counts.triangles) +
+                                   " triangles, more than 32-bit indices can name");
+}
+
+}  // namespace quickses

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// The three hot stages that have one driver per back end. Both drivers use the same functions of geometry; they differ
+// in the shape of their loops: packs of eight and one thread per brick on the CPU, warps on the GPU. The pipeline calls
+// them by overload on the executor:
+//
+//   SolventFeatures find_solvent_features(Executor &, const NeighborGridView &atoms, const SurfaceParameters &)
+//   Candidates<Executor>   what the two stages below may share for a slice of bricks (CPU: nothing)
+//   void evaluate_signs(Executor &, const FeatureView &, const BrickSet &, BrickRange, Candidates<Executor> &,
+//                       uint64_t *signs)
+//       signs[8 * brick + leaf] for the bricks of the slice: bit set = farther than depth inside the boundary
+//   void emit_vertices(Executor &, const FeatureView &, const BrickSet &, const MeshLayout &, BrickRange,
+//                      Candidates<Executor> &, const VertexStarts &, const MeshView &)
+//   void emit_triangles(Executor &, const BrickSet &, const MeshLayout &, BrickRange, const TableView &,
+//                       const MeshView &)
+#pragma once
+
+#include "surface/marching_cubes.h"
+#include "surface/projection.h"
+
+namespace quickses {
+
+// A slice: a run of bricks in linear order.
+struct BrickRange {
+  uint32_t first, last;
+  QSES_FN uint32_t size() const { return last - first; }
+};
+
+// Where vertices start before they are projected.
+struct VertexStarts {
+  bool relax;               // move by the ring table first (relaxation step 1)
+  const glm::vec3 *moved;   // if not null: [vertex], centred frame: starts of a further relaxation step
+  const uint64_t (*ring)[kCellEdges];  // MarchingCubesTable::ring in the memory of the back end
+};
+
+// The table in the memory of the back end.
+struct TableView {
+  const uint8_t *triangle_count;         // [256]
+  const uint8_t (*edges)[16];            // [256]
+  const uint64_t (*ring)[kCellEdges];    // [256]
+};
+
+// CandidatesOf<E>::type; kFromSigns: emit_vertices needs what evaluate_signs left in it for the same slice;
+// max_bricks(executor, n): how many of n bricks one slice may have for the memory that is left.
+template <class Executor>
+struct CandidatesOf;
+template <class Executor>
+using Candidates = typename CandidatesOf<Executor>::type;
+
+}  // namespace quickses

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// Vec3<T>: the vector that geometry functions compute with, where T is a float or a pack of floats (glm::dot refuses
+// packs). Storage and interfaces use glm::vec3.
+#pragma once
+
+#include "parallel/scalar.h"
+
+#include <glm/glm.hpp>
+
+namespace quickses {
+
+template <class T>
+struct Vec3 {
+  T x, y, z;
+  Vec3() = default;
+  QSES_FN Vec3(T x_, T y_, T z_) : x(x_), y(y_), z(z_) {}
+  QSES_FN explicit Vec3(const glm::vec3 &v) : x(v.x), y(v.y), z(v.z) {}
+};
+
+template <class T>
+QSES_FN Vec3<T> operator+(const Vec3<T> &a, const Vec3<T> &b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <class T>
+QSES_FN Vec3<T> operator-(const Vec3<T> &a, const Vec3<T> &b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+template <class T>
+QSES_FN Vec3<T> operator*(const Vec3<T> &a, T s) {
+  return {a.x * s, a.y * s, a.z * s};
+}
+template <class T>
+QSES_FN T dot(const Vec3<T> &a, const Vec3<T> &b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <class T>
+QSES_FN T length_squared(const Vec3<T> &a) {
+  return dot(a, a);
+}
+QSES_FN glm::vec3 to_glm(const Vec3<float> &v) { return glm::vec3(v.x, v.y, v.z); }
+
+}  // namespace quickses

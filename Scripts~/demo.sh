@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Installs what is missing, builds the quickses program for the CPU, computes the surface of crambin (PDB entry 1CRN),
+# and says what it made and where.
+#   bash Scripts~/demo.sh
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+bash Scripts~/setup.sh
+mkdir -p .build/demo
+if ! cmake --preset cpu >.build/demo/configure.log 2>&1; then
+  cat .build/demo/configure.log
+  exit 1
+fi
+cmake --build --preset cpu --parallel "$(nproc)" --target quickses_cli
+
+program=.build/cpu/bin/quickses
+input=Tests/Data~/1CRN.pdb
+"$program" "$input" -o .build/demo/1crn.obj --json .build/demo/1crn.json --quiet
+"$program" "$input" -o .build/demo/1crn.ply --quiet
+
+python3 - "$input" .build/demo/1crn.json <<'PYTHON'
+import json, sys
+report = json.load(open(sys.argv[2]))
+mesh, settings = report["mesh"], report["settings"]
+print(f"\nSolvent-excluded surface of crambin ({sys.argv[1]}, {report['atoms']} atoms), back end {report['backend']}:")
+print(f"  {mesh['vertices']} vertices, {mesh['triangles']} triangles, computed in {report['time_ms']['compute']:.1f} ms")
+print(f"  area {report['area']:.1f} Å², volume {report['volume']:.1f} Å³")
+PYTHON
+for file in .build/demo/1crn.obj .build/demo/1crn.ply; do
+  echo "  $PWD/$file ($(du -h "$file" | cut -f1))"
+done
+echo "Open either file with a mesh viewer such as MeshLab or Blender. The program: $PWD/$program --help"

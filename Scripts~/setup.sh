@@ -1,0 +1,151 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Installs what the build needs and this machine lacks, by apt-get (Debian 12 and later, Ubuntu).
+#   bash Scripts~/setup.sh [--with-cuda]
+# Does nothing, and needs no network and no rights, where everything is there. Uses sudo where it isn't root.
+set -euo pipefail
+
+with_cuda=no
+for argument in "$@"; do
+  case "$argument" in
+    --with-cuda) with_cuda=yes ;;
+    -h | --help) sed -n '3,5s/^# //p' "$0"; exit 0 ;;
+    *) echo "setup.sh: unknown option $argument (there is --with-cuda)" >&2; exit 2 ;;
+  esac
+done
+
+say() { echo "setup: $*"; }
+fail() { echo "setup: $*" >&2; exit 1; }
+
+# ---- what is needed: a package, and a command (word) or a header (path) that shows it is there, however it came
+needs=(
+  "cmake cmake"
+  "ninja-build ninja"
+  "g++ c++"
+  "pkg-config pkg-config"
+  "python3 python3"
+  "zlib1g-dev zlib.h"
+  "libthrust-dev thrust/version.h"
+  "libtbb-dev tbb/parallel_for.h"
+  "libglm-dev glm/glm.hpp"
+  "gemmi-dev gemmi/version.hpp"
+  "tao-pegtl-dev tao/pegtl.hpp"
+  "libcli11-dev CLI/CLI.hpp"
+  "nlohmann-json3-dev nlohmann/json.hpp"
+  "libgtest-dev gtest/gtest.h"
+)
+
+is_there() {
+  case "$1" in
+    /*) [ -e "$1" ] ;;
+    *.h | *.hpp) [ -e "/usr/local/include/$1" ] || [ -e "/usr/include/$1" ] ;;
+    *) command -v "$1" >/dev/null ;;
+  esac
+}
+
+find_nvcc() {
+  local nvcc
+  for nvcc in "${CUDACXX:-}" "$(command -v nvcc || true)" "${CUDA_PATH:-}/bin/nvcc" /usr/local/cuda/bin/nvcc; do
+    if [ -n "$nvcc" ] && [ -x "$nvcc" ]; then echo "$nvcc"; return 0; fi
+  done
+  return 1
+}
+
+# CUDA 11 refuses GCC 12 and later.
+lacks_gcc11() {
+  local nvcc
+  nvcc=$(find_nvcc) && [[ $("$nvcc" --version) == *"release 11."* ]] || return 1
+  is_there g++-11 || is_there g++-10 && return 1
+  is_there c++ || return 0
+  [ "$(c++ -dumpversion | cut -d. -f1)" -gt 11 ]
+}
+
+missing=()
+for need in "${needs[@]}"; do
+  is_there "${need#* }" || missing+=("${need%% *}")
+done
+if [ "$with_cuda" = yes ]; then
+  if ! find_nvcc >/dev/null; then
+    missing+=(nvidia-cuda-toolkit)
+  elif lacks_gcc11; then
+    missing+=(g++-11)
+  fi
+fi
+if [ ${#missing[@]} -eq 0 ]; then
+  say "everything is installed"
+  exit 0
+fi
+
+# ---- where it can be had
+system="this system" codename=""
+if [ -r /etc/os-release ]; then
+  system=$(. /etc/os-release && echo "${PRETTY_NAME:-$ID}")
+  codename=$(. /etc/os-release && echo "${VERSION_CODENAME:-}")
+fi
+if ! command -v apt-get >/dev/null; then
+  fail "can install on Debian and Ubuntu only, and $system has no apt-get.
+Missing here (Debian's package names): ${missing[*]}
+Needed in all: CMake 3.22, Ninja, a C++17 compiler, Python 3, zlib, Thrust 1.15, oneTBB, GLM, gemmi (and PEGTL with
+gemmi 0.5), CLI11, nlohmann-json, GoogleTest; for the GPU the CUDA Toolkit 11.8 or later."
+fi
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+  command -v sudo >/dev/null || fail "needs root rights for: apt-get install ${missing[*]}"
+  as_root=(sudo)
+fi
+apt_get() { "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -y -q "$@"; }
+has_candidate() { [[ $(apt-cache policy "$1" 2>/dev/null) == *"  Candidate: "[!\(]* ]]; }
+
+# The CUDA Toolkit is in Debian's non-free section. A new entry for it repeats the options of the entry that offers
+# "main", above all Signed-By: apt refuses two entries of one archive that differ in it.
+add_debian_non_free() {
+  local entry suite source target text
+  entry=$(apt-get indextargets --format '$(COMPONENT)|$(CODENAME)|$(ORIGIN)|$(RELEASE)|$(SOURCESENTRY)' 'Created-By: Packages' |
+    grep "^main|$codename|Debian|") || return 1
+  entry=${entry%%$'\n'*} # the first one
+  suite=$(cut -d'|' -f4 <<<"$entry")
+  source=$(cut -d'|' -f5 <<<"$entry")
+  source=${source%:*}
+  [ -r "$source" ] || return 1
+  case "$source" in
+    *.sources)
+      target=/etc/apt/sources.list.d/quickses-non-free.sources
+      text=$(awk -v suite="$suite" '
+        function has(field, word) { return ("\n" $0 "\n") ~ ("\n" field ":[^\n]*[ \t]" word "[ \t\n]") }
+        BEGIN { RS = ""; FS = "\n" }
+        has("Types", "deb") && has("Suites", suite) && has("Components", "main") && !has("Enabled", "no") {
+          for (i = 1; i <= NF; ++i) {
+            if ($i ~ /^#/) continue
+            if ($i ~ /^Types:/) print "Types: deb"
+            else if ($i ~ /^Suites:/) print "Suites: " suite
+            else if ($i ~ /^Components:/) print "Components: contrib non-free"
+            else print $i
+          }
+          exit
+        }' "$source") ;;
+    *)
+      target=/etc/apt/sources.list.d/quickses-non-free.list
+      text=$(sed -nE "s|^deb[[:space:]]+((\[[^]]*\][[:space:]]+)?[^[:space:]]+[[:space:]]+$suite)[[:space:]]+(.*[[:space:]])?main([[:space:]].*)?\$|deb \1 contrib non-free|p;t end;b;:end;q" "$source") ;;
+  esac
+  [ -n "$text" ] || return 1
+  say "adding Debian's contrib and non-free sections in $target"
+  printf '# Added by Scripts~/setup.sh of QuickSES for Unity, for nvidia-cuda-toolkit.\n%s\n' "$text" |
+    "${as_root[@]}" tee "$target" >/dev/null
+}
+
+say "$system lacks ${missing[*]}"
+apt_get update
+for package in "${missing[@]}"; do
+  if [ "$package" = nvidia-cuda-toolkit ] && ! has_candidate "$package" && [ "$(. /etc/os-release && echo "$ID")" = debian ]; then
+    add_debian_non_free || fail "found no entry of Debian $codename in apt's sources to add non-free to. Please add it, or install the CUDA Toolkit."
+    apt_get update
+  fi
+  has_candidate "$package" || fail "$system offers no package $package. On Ubuntu the components universe and multiverse are needed (sudo add-apt-repository universe multiverse)."
+done
+apt_get install --no-install-recommends "${missing[@]}"
+
+# Debian's toolkit is content with any of several compilers; only now it can be asked which CUDA it is.
+if [ "$with_cuda" = yes ] && lacks_gcc11; then
+  apt_get install --no-install-recommends g++-11
+fi
+say "done"
