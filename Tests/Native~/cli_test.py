@@ -93,7 +93,7 @@ class ProgramTest(unittest.TestCase):
 
     def run_program(self, *arguments, code=OK):
         result = subprocess.run([PROGRAM, *map(str, arguments)], stdin=subprocess.DEVNULL, capture_output=True,
-                                cwd=self.folder, encoding="utf-8", timeout=300)
+                                cwd=self.folder, encoding="utf-8", timeout=120)
         self.assertEqual(result.returncode, code, result.stderr + result.stdout)
         return result
 
@@ -228,8 +228,9 @@ class Errors(ProgramTest):
     def test_the_budget_is_too_small(self):
         self.assert_fails(COMPUTE, ["memory"], CRAMBIN, "-o", "a.obj", "--backend", "cpu", "--memory", "1K")
 
-    def test_the_spacing_is_too_fine(self):
-        self.assert_fails(COMPUTE, [], CRAMBIN, "-o", "a.obj", "--backend", "cpu", "-v", "0.001", "--memory", "64M")
+    def test_the_spacing_is_too_fine_for_the_budget(self):
+        self.assert_fails(COMPUTE, ["memory", "spacing"], CRAMBIN, "-o", "a.obj", "--backend", "cpu", "-v", "0.02",
+                          "--memory", "4M")
 
     def test_cuda_where_there_is_none(self):
         environment = dict(os.environ, CUDA_VISIBLE_DEVICES="")  # no device on any machine

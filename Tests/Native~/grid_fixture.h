@@ -4,7 +4,6 @@
 
 #include "mesh_checks.h"
 
-#include "parallel/cpu_executor.h"
 #include "surface/grid_ses.h"
 #include "surface/measure.h"
 #include "surface/relaxation.h"
@@ -58,8 +57,10 @@ inline std::vector<Atom> read_pdb_atoms(const std::string &path) {
   return atoms;
 }
 
-struct GridRun {
-  CpuExecutor executor;
+// The executor's memory is host memory.
+template <class Executor>
+struct GridRunOn {
+  Executor executor;
   std::vector<Sphere> spheres;  // centred frame, inflated
   Lattice lattice{};
   GridParameters parameters{};
@@ -69,7 +70,7 @@ struct GridRun {
   MeshCounts counts{};
 
   // slice: bricks per slice, 0 for all at once.
-  GridRun(const std::vector<Atom> &atoms, float probe, float spacing, uint32_t slice = 0, unsigned threads = 2)
+  GridRunOn(const std::vector<Atom> &atoms, float probe, float spacing, uint32_t slice = 0, unsigned threads = 2)
       : executor(threads) {
     const double brick = static_cast<double>(spacing) * kBrickEdge;
     lattice.spacing = spacing;

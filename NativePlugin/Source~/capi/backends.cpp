@@ -61,7 +61,14 @@ qses_backend_description describe_cpu() {
 qses_backend_description describe_backend(qses_backend backend, int device) {
   if (backend == QSES_BACKEND_CPU) return describe_cpu();
 #if defined(QUICKSES_HAS_CUDA)
-  return describe_cuda_device(device);
+  const CudaDevice found = describe_cuda_device(device);
+  qses_backend_description d{};
+  d.available = found.available ? 1 : 0;
+  std::snprintf(d.device, sizeof d.device, "%s", found.name.c_str());
+  std::snprintf(d.reason, sizeof d.reason, "%s", found.reason.c_str());
+  d.total_memory = found.total_memory;
+  d.free_memory = found.free_memory;
+  return d;
 #else
   (void)device;
   qses_backend_description d{};

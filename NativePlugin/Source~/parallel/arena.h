@@ -15,10 +15,13 @@ namespace quickses {
 
 inline std::string describe_bytes(uint64_t bytes) {
   char text[32];
-  if (bytes >= uint64_t(1) << 30)
-    std::snprintf(text, sizeof text, "%.2f GiB", static_cast<double>(bytes) / (uint64_t(1) << 30));
+  const double value = static_cast<double>(bytes);
+  if (value >= 1024.0 * 1024.0 * 1024.0)
+    std::snprintf(text, sizeof text, "%.2f GiB", value / (1024.0 * 1024.0 * 1024.0));
+  else if (value >= 1024.0 * 1024.0)
+    std::snprintf(text, sizeof text, "%.1f MiB", value / (1024.0 * 1024.0));
   else
-    std::snprintf(text, sizeof text, "%.1f MiB", static_cast<double>(bytes) / (uint64_t(1) << 20));
+    std::snprintf(text, sizeof text, "%.1f KiB", value / 1024.0);
   return text;
 }
 
@@ -35,6 +38,7 @@ class Arena {
 
   // Bytes that may be held in all; 0 means no bound but the machine's.
   void set_budget(uint64_t bytes) { budget_ = bytes; }
+  uint64_t budget() const { return budget_; }
 
   void *allocate(size_t bytes) {
     bytes = (bytes + kAlignment - 1) / kAlignment * kAlignment;

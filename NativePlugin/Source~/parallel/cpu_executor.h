@@ -10,6 +10,8 @@
 #include <omp.h>
 #include <thrust/system/omp/execution_policy.h>
 #else
+#include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/task_arena.h>
 #include <thrust/system/tbb/execution_policy.h>
 #endif
@@ -23,6 +25,7 @@
 #include <cstring>
 #include <map>
 #include <memory>
+#include <optional>
 #include <thread>
 #include <typeindex>
 #include <vector>
@@ -66,6 +69,11 @@ class CpuExecutor {
         arena_threads_(static_cast<int>(threads_))
 #endif
   {
+#if !defined(QSES_CPU_SYSTEM_OMP)
+    // More threads than the machine has are only started, and TBB prints no warning, if its own limit is raised.
+    if (threads_ > static_cast<unsigned>(tbb::info::default_concurrency()))
+      more_threads_.emplace(tbb::global_control::max_allowed_parallelism, threads_);
+#endif
   }
 
   unsigned threads() const { return threads_; }
@@ -210,6 +218,11 @@ class CpuExecutor {
   T fetch(const T *p) {
     return *p;
   }
+  // Several values with one wait.
+  template <class T>
+  void fetch_each(const T *const *sources, T *values, size_t n) {
+    for (size_t k = 0; k < n; ++k) values[k] = *sources[k];
+  }
   template <class T>
   void upload(T *destination, const T *host, size_t n) {
     if (n) std::memcpy(destination, host, n * sizeof(T));
@@ -246,6 +259,7 @@ class CpuExecutor {
 
   unsigned threads_;
 #if !defined(QSES_CPU_SYSTEM_OMP)
+  std::optional<tbb::global_control> more_threads_;
   tbb::task_arena arena_threads_;
 #endif
   const CpuKernels *kernels_ = &cpu_kernels();

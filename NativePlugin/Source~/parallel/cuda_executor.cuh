@@ -87,8 +87,16 @@ class CudaExecutor {
  public:
   static constexpr bool kIsCuda = true;
 
+  // Held while a computation runs: keeps the device selected.
+  struct CallScope {
+    explicit CallScope(const CudaExecutor &executor) : guard(executor.device_) {}
+    DeviceGuard guard;
+  };
+
   explicit CudaExecutor(int device) : device_(device) {
     const DeviceGuard guard(device);
+    size_t free = 0;
+    check_cuda(cudaMemGetInfo(&free, &device_bytes_), "cudaMemGetInfo");
     int value = 0;
     check_cuda(cudaDeviceGetAttribute(&value, cudaDevAttrMultiProcessorCount, device), "cudaDeviceGetAttribute");
     multiprocessors_ = static_cast<unsigned>(value);
@@ -110,6 +118,7 @@ class CudaExecutor {
 
   int device() const { return device_; }
   unsigned multiprocessors() const { return multiprocessors_; }
+  uint64_t device_bytes() const { return device_bytes_; }
   cudaStream_t stream() const { return stream_; }
   // Rewinding it is safe while kernels still use what was there: whoever gets the memory next runs after them.
   Arena<DeviceMemory> &arena() { return arena_; }
@@ -275,6 +284,7 @@ class CudaExecutor {
 
   int device_;
   unsigned multiprocessors_ = 0;
+  size_t device_bytes_ = 0;
   cudaStream_t stream_ = nullptr;
   PinnedBuffer staging_;
   Arena<DeviceMemory> arena_;

@@ -32,6 +32,12 @@ __device__ __forceinline__ float warp_maximum(float value) {
   return value;
 }
 
+__device__ __forceinline__ uint32_t warp_or(uint32_t value) {
+#pragma unroll
+  for (int d = kWarp / 2; d > 0; d >>= 1) value |= __shfl_xor_sync(kFullWarp, value, d);
+  return value;
+}
+
 // Calls visit(item, on) for every item of the runs run_of(0), ..., run_of(rows - 1), in this order, with 32 items at a
 // time: on tells whether the lane has one.
 template <class RunOf, class Visit>

@@ -9,7 +9,7 @@
 //   reduce(n, load)                        sum of load(i) in double: fixed chunks, added in fixed order. Waits
 //   sort_by_key(keys, values, key_bits)    stable, by the low key_bits bits of the keys
 //   compact(n, keep, out)                  the i with keep(i), in order; returns their number. Waits
-//   fetch(p)                               copies one value to the host. Waits
+//   fetch(p), fetch_each(sources, values, n)  copies one value, or several, to the host. Waits
 //   upload, download, fill                 copies between host and back end, and memset
 //
 // Functors are plain structs that hold views and have a QSES_HOST_DEVICE operator(). A verb may return before its work
@@ -27,6 +27,13 @@ namespace quickses {
 
 // Items per chunk of reduce(): part of the result's definition, since float sums depend on the order.
 constexpr size_t kReduceChunk = 2048;
+
+// The usual thing to sum up or scan.
+template <class T>
+struct LoadCount {
+  const T *counts;
+  QSES_HOST_DEVICE uint64_t operator()(size_t i) const { return counts[i]; }
+};
 
 struct SoloTeam {
   QSES_FN int rank() const { return 0; }

@@ -27,8 +27,11 @@
 
 // GLM must know before its first inclusion that its functions run on both sides; its own inlining is forced for the
 // same reason as ours.
-#if defined(__CUDACC__) && !defined(GLM_FORCE_CUDA)
+#if defined(__CUDACC__)
+#include <cuda.h>  // CUDA_VERSION, which GLM asks for
+#ifndef GLM_FORCE_CUDA
 #define GLM_FORCE_CUDA
+#endif
 #endif
 #ifndef GLM_FORCE_INLINE
 #define GLM_FORCE_INLINE

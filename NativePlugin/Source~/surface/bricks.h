@@ -180,42 +180,62 @@ inline Lattice layout_lattice(Lattice lattice, const glm::vec3 &low, const glm::
   return lattice;
 }
 
-// The set of all bricks that the items visit.
+// Bytes per entry of a dense table of bricks, and per visit where the visits are listed and sorted instead.
+constexpr uint64_t kDenseEntryBytes = sizeof(int32_t) + sizeof(uint8_t);
+constexpr uint64_t kVisitBytes = 2 * sizeof(uint64_t) + sizeof(uint32_t);
+
+inline uint32_t checked_brick_count(size_t found) {
+  if (found > kMaxBricks)
+    throw Error(QSES_TOO_FINE, "the surface needs " + std::to_string(found) +
+                                   " bricks of the SES grid, more than 32-bit numbers can name: use a larger spacing");
+  return static_cast<uint32_t>(found);
+}
+
+template <class Executor, class Items>
+BrickSet flag_bricks(Executor &executor, const Items &items, const Lattice &lattice) {
+  const uint64_t entries = lattice.table_size();
+  Span<int32_t> table = executor.template allocate<int32_t>(entries);
+  Span<uint8_t> flags = executor.template allocate<uint8_t>(entries);
+  executor.fill(flags, 0);
+  executor.fill(table, 0xff);
+  executor.for_each(items.size(), FlagBricks<Items>{items, flags.data});
+  // Room for the list: for all entries while that is little, else counted first.
+  const uint64_t room = entries <= kSmallTable
+                            ? entries
+                            : static_cast<uint64_t>(executor.reduce(entries, LoadCount<uint8_t>{flags.data}));
+  Span<uint64_t> linear = executor.template allocate<uint64_t>(room);
+  const uint32_t count = checked_brick_count(executor.compact(entries, IsFlagged{flags.data}, linear));
+  executor.for_each(count, FillBrickTable{linear.data, table.data});
+  return {lattice, linear.data, table.data, count};
+}
+
+template <class Executor, class Items>
+BrickSet sort_bricks(Executor &executor, const Items &items, const Lattice &lattice, Span<uint64_t> first,
+                     uint64_t visits) {
+  Span<uint64_t> keys = executor.template allocate<uint64_t>(visits);
+  Span<uint64_t> linear = executor.template allocate<uint64_t>(visits);
+  Span<uint32_t> unused = executor.template allocate<uint32_t>(visits);
+  executor.for_each(items.size(), ListBricks<Items>{items, first.data, keys.data});
+  executor.for_each(visits, SortValue{unused.data});
+  executor.sort_by_key(keys, unused, bits_for(lattice.table_size()));
+  const uint32_t count = checked_brick_count(executor.compact(visits, IsFirstOfEqual{keys.data}, linear));
+  executor.for_each(count, GatherKeys{keys.data, linear.data});
+  return {lattice, linear.data, nullptr, count};
+}
+
+// The set of all bricks that the items visit. A table with an entry per brick of the box while that is the smaller way:
+// a stray atom far away makes the box large, a fine spacing makes the visits many.
 template <class Executor, class Items>
 BrickSet collect_bricks(Executor &executor, const Items &items, const Lattice &lattice) {
   const size_t n = items.size();
-  BrickSet bricks{lattice, nullptr, nullptr, 0};
   const uint64_t entries = lattice.table_size();
-  if (dense_table_pays(entries, n)) {
-    Span<int32_t> table = executor.template allocate<int32_t>(entries);
-    Span<uint8_t> flags = executor.template allocate<uint8_t>(entries);
-    executor.fill(flags, 0);
-    executor.fill(table, 0xff);
-    executor.for_each(n, FlagBricks<Items>{items, flags.data});
-    Span<uint64_t> linear = executor.template allocate<uint64_t>(entries);
-    bricks.count = static_cast<uint32_t>(executor.compact(entries, IsFlagged{flags.data}, linear));
-    executor.for_each(bricks.count, FillBrickTable{linear.data, table.data});
-    bricks.linear = linear.data;
-    bricks.table = table.data;
-  } else {
-    Span<uint64_t> first = executor.template allocate<uint64_t>(n + 1);
-    executor.exclusive_scan(n, CountBricks<Items>{items}, first);
-    const uint64_t visits = executor.fetch(first.data + n);
-    Span<uint64_t> keys = executor.template allocate<uint64_t>(visits);
-    Span<uint32_t> unused = executor.template allocate<uint32_t>(visits);
-    Span<uint64_t> linear = executor.template allocate<uint64_t>(visits);
-    executor.for_each(n, ListBricks<Items>{items, first.data, keys.data});
-    executor.for_each(visits, SortValue{unused.data});
-    executor.sort_by_key(keys, unused, bits_for(entries));
-    const size_t found = executor.compact(visits, IsFirstOfEqual{keys.data}, linear);
-    if (found > kMaxBricks)
-      throw Error(QSES_TOO_FINE, "the surface needs " + std::to_string(found) +
-                                     " bricks of the SES grid, more than 32-bit numbers can name: use a larger spacing");
-    bricks.count = static_cast<uint32_t>(found);
-    executor.for_each(bricks.count, GatherKeys{keys.data, linear.data});
-    bricks.linear = linear.data;
-  }
-  return bricks;
+  if (entries <= kSmallTable) return flag_bricks(executor, items, lattice);
+  Span<uint64_t> first = executor.template allocate<uint64_t>(n + 1);
+  executor.exclusive_scan(n, CountBricks<Items>{items}, first);
+  const uint64_t visits = executor.fetch(first.data + n);
+  if (entries <= kMaxDenseCells && entries * kDenseEntryBytes <= visits * kVisitBytes)
+    return flag_bricks(executor, items, lattice);
+  return sort_bricks(executor, items, lattice, first, visits);
 }
 
 template <class Executor>

@@ -5,6 +5,7 @@
 #include "surface/mesh_memory.h"
 #include "surface/relaxation.h"
 #include "surface/run.h"
+#include "surface/size_check.h"
 
 namespace quickses {
 
@@ -47,6 +48,7 @@ MeshMemoryView build_exact_surface(R &run) {
   auto &executor = run.executor;
   using Executor = std::remove_reference_t<decltype(executor)>;
   const FeatureView features = find_features(run);
+  refuse_hopeless_spacing(run, features, executor.arena().budget());
 
   run.timer.begin("bricks");
   const BrickSet bricks = find_bricks(executor, features, run.lattice);

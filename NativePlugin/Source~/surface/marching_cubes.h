@@ -124,12 +124,6 @@ struct RankBrick {
   }
 };
 
-template <class T>
-struct LoadCount {
-  const T *counts;
-  QSES_HOST_DEVICE uint64_t operator()(size_t i) const { return counts[i]; }
-};
-
 // ---- emit ------------------------------------------------------------------------------------------------------
 
 // Number of the vertex of a mask's set bit, if `first` is that of the lowest.
@@ -193,7 +187,10 @@ MeshCounts lay_out_mesh(Executor &executor, const BrickSet &bricks, const uint64
     const double t = executor.reduce(n, LoadCount<uint32_t>{triangles.data});
     return {static_cast<uint64_t>(v), static_cast<uint64_t>(t)};
   }
-  return {executor.fetch(vertex_base.data + n), executor.fetch(triangle_base.data + n)};
+  const uint32_t *const sources[2] = {vertex_base.data + n, triangle_base.data + n};
+  uint32_t totals[2];
+  executor.fetch_each(sources, totals, 2);
+  return {totals[0], totals[1]};
 }
 
 }  // namespace quickses

@@ -111,8 +111,9 @@ struct FindCellStarts {
 // A table with an entry per cell is used while it is small against the items; beyond that cells are looked up by
 // binary search, so that one stray atom far away costs nothing.
 constexpr uint64_t kMaxDenseCells = 100000000;
+constexpr uint64_t kSmallTable = uint64_t(1) << 22;  // entries that nobody notices
 constexpr bool dense_table_pays(uint64_t entries, uint64_t items) {
-  return entries <= kMaxDenseCells && (entries <= (uint64_t(1) << 22) || entries <= 64 * items);
+  return entries <= kMaxDenseCells && (entries <= kSmallTable || entries <= 64 * items);
 }
 
 inline CellLayout layout_cells(const glm::vec3 &low, const glm::vec3 &high, float edge) {

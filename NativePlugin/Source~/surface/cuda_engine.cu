@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+// The pipeline on the GPU.
+#include "surface/exact_ses_cuda.cuh"
+#include "surface/mesh_cuda.cuh"
+#include "surface/solvent_features_cuda.cuh"
+
+#include "parallel/cuda_stage_timer.cuh"
+#include "surface/mesh_memory_cuda.cuh"
+#include "surface/pipeline.h"
+
+namespace quickses {
+
+std::unique_ptr<SurfaceEngine> make_cuda_engine(int device, uint64_t memory_budget) {
+  return std::make_unique<SurfacePipeline<CudaExecutor, CudaStageTimer>>(memory_budget, device);
+}
+
+}  // namespace quickses

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: MIT
+// The verbs of the CUDA executor against plain loops, and how it fails.
+#include "parallel/cuda_executor.cuh"
+#include "parallel/cuda_stage_timer.cuh"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+#include <thread>
+
+namespace {
+
+using namespace quickses;
+
+CudaExecutor *device() {
+  static const CudaDevice description = describe_cuda_device(0);
+  if (!description.available) return nullptr;
+  static CudaExecutor executor(0);
+  return &executor;
+}
+
+#define REQUIRE_DEVICE()                                                                              \
+  if (!device()) GTEST_SKIP() << "skipped: no CUDA device (" << describe_cuda_device(0).reason << ")"; \
+  CudaExecutor &executor = *device();                                                                 \
+  executor.arena().reset()
+
+const size_t kSizes[] = {1, 31, 128, 129, 5000, 1000003};
+
+template <class T>
+std::vector<T> to_host(CudaExecutor &executor, Span<T> span) {
+  std::vector<T> host(span.size);
+  executor.download(host.data(), span.data, span.size);
+  executor.wait();
+  return host;
+}
+template <class T>
+Span<T> to_device(CudaExecutor &executor, const std::vector<T> &host) {
+  Span<T> span = executor.allocate<T>(host.size());
+  executor.upload(span.data, host.data(), host.size());
+  return span;
+}
+
+std::vector<uint32_t> random_numbers(size_t n, uint32_t limit) {
+  std::mt19937 random(static_cast<unsigned>(n));
+  std::vector<uint32_t> v(n);
+  for (uint32_t &x : v) x = static_cast<uint32_t>(random() % limit);
+  return v;
+}
+
+struct Square {
+  uint64_t *out;
+  QSES_HOST_DEVICE void operator()(size_t i) const { out[i] = i * i; }
+};
+struct Load {
+  const uint32_t *in;
+  QSES_HOST_DEVICE uint32_t operator()(size_t i) const { return in[i]; }
+};
+struct IsOdd {
+  const uint32_t *in;
+  QSES_HOST_DEVICE bool operator()(size_t i) const { return in[i] & 1; }
+};
+struct Root {
+  QSES_HOST_DEVICE double operator()(size_t i) const { return 1.0 / (1.0 + static_cast<double>(i)); }
+};
+struct Histogram {
+  int counts[256];
+};
+struct CountDigits {  // of 1000 numbers, by a team
+  const uint32_t *in;
+  uint32_t *out;
+  template <class Team>
+  QSES_HOST_DEVICE void operator()(Team team, Histogram &scratch, size_t item) const {
+    for (int k = team.rank(); k < 256; k += team.size()) scratch.counts[k] = 0;
+    team.sync();
+    for (int k = team.rank(); k < 256; k += team.size())
+      for (int j = 0; j < 1000; ++j) scratch.counts[k] += in[item * 1000 + static_cast<size_t>(j)] == static_cast<uint32_t>(k);
+    team.sync();
+    for (int k = team.rank(); k < 256; k += team.size())
+      out[item * 256 + static_cast<size_t>(k)] = static_cast<uint32_t>(scratch.counts[255 - k]);
+  }
+};
+
+TEST(CudaExecutor, ForEach) {
+  REQUIRE_DEVICE();
+  executor.for_each(0, Square{nullptr});
+  for (size_t n : kSizes) {
+    Span<uint64_t> out = executor.allocate<uint64_t>(n);
+    executor.for_each(n, Square{out.data});
+    const auto host = to_host(executor, out);
+    for (size_t i = 0; i < n; ++i) ASSERT_EQ(host[i], i * i);
+  }
+}
+
+TEST(CudaExecutor, ForEachBrick) {
+  REQUIRE_DEVICE();
+  const size_t n = 9000;  // more than there are blocks
+  const auto in = random_numbers(n * 1000, 256);
+  Span<uint32_t> out = executor.allocate<uint32_t>(n * 256);
+  executor.for_each_brick<Histogram>(n, CountDigits{to_device(executor, in).data, out.data});
+  const auto host = to_host(executor, out);
+  std::vector<uint32_t> expected(n * 256, 0);
+  for (size_t k = 0; k < in.size(); ++k) ++expected[k / 1000 * 256 + 255 - in[k]];
+  EXPECT_EQ(host, expected);
+}
+
+TEST(CudaExecutor, ExclusiveScan) {
+  REQUIRE_DEVICE();
+  Span<uint32_t> none = executor.allocate<uint32_t>(1);
+  executor.exclusive_scan(0, Load{nullptr}, none);
+  EXPECT_EQ(executor.fetch(none.data), 0u);
+  for (size_t n : kSizes) {
+    const auto in = random_numbers(n, 9000);
+    Span<uint64_t> out = executor.allocate<uint64_t>(n + 1);
+    executor.exclusive_scan(n, Load{to_device(executor, in).data}, out);
+    std::vector<uint64_t> expected(n + 1, 0);
+    for (size_t i = 0; i < n; ++i) expected[i + 1] = expected[i] + in[i];
+    EXPECT_EQ(to_host(executor, out), expected);
+  }
+}
+
+TEST(CudaExecutor, Reduce) {
+  REQUIRE_DEVICE();
+  EXPECT_EQ(executor.reduce(0, Root{}), 0.0);
+  for (size_t n : kSizes) {
+    double expected = 0;
+    for (size_t i = 0; i < n; ++i) expected += Root{}(i);
+    const double sum = executor.reduce(n, Root{});
+    EXPECT_NEAR(sum, expected, 1e-11 * expected);
+    for (int k = 0; k < 3; ++k) EXPECT_EQ(executor.reduce(n, Root{}), sum);
+  }
+}
+
+TEST(CudaExecutor, SortByKeyIsStable) {
+  REQUIRE_DEVICE();
+  for (size_t n : kSizes)
+    for (int bits : {4, 17, 40}) {
+      const auto random = random_numbers(n, 0xffffffffu);
+      std::vector<uint64_t> keys(n);
+      std::vector<uint32_t> values(n);
+      for (size_t i = 0; i < n; ++i) keys[i] = (uint64_t(random[i]) * 77777) & ((uint64_t(1) << bits) - 1);
+      std::iota(values.begin(), values.end(), 0u);
+      Span<uint64_t> device_keys = to_device(executor, keys);
+      Span<uint32_t> device_values = to_device(executor, values);
+      executor.sort_by_key(device_keys, device_values, bits);
+      std::stable_sort(values.begin(), values.end(), [&](uint32_t a, uint32_t b) { return keys[a] < keys[b]; });
+      std::stable_sort(keys.begin(), keys.end());
+      EXPECT_EQ(to_host(executor, device_keys), keys);
+      EXPECT_EQ(to_host(executor, device_values), values);
+    }
+}
+
+TEST(CudaExecutor, Compact) {
+  REQUIRE_DEVICE();
+  EXPECT_EQ(executor.compact(0, IsOdd{nullptr}, Span<uint64_t>{}), 0u);
+  for (size_t n : kSizes) {
+    const auto in = random_numbers(n, 1000);
+    std::vector<uint64_t> expected;
+    for (size_t i = 0; i < n; ++i)
+      if (in[i] & 1) expected.push_back(i);
+    Span<uint64_t> out = executor.allocate<uint64_t>(n);
+    out.size = executor.compact(n, IsOdd{to_device(executor, in).data}, out);
+    EXPECT_EQ(to_host(executor, out), expected);
+  }
+}
+
+TEST(CudaExecutor, CopiesAndFills) {
+  REQUIRE_DEVICE();
+  const auto in = random_numbers(1000, 5000);
+  Span<uint32_t> span = to_device(executor, in);
+  EXPECT_EQ(executor.fetch(span.data + 77), in[77]);
+  const uint32_t *const sources[3] = {span.data + 5, span.data + 999, span.data};
+  uint32_t values[3];
+  executor.fetch_each(sources, values, 3);
+  EXPECT_EQ(values[0], in[5]);
+  EXPECT_EQ(values[1], in[999]);
+  EXPECT_EQ(values[2], in[0]);
+  executor.fill(Span<uint32_t>{span.data, 500}, 0x11);
+  const auto host = to_host(executor, span);
+  EXPECT_EQ(host[499], 0x11111111u);
+  EXPECT_EQ(host[500], in[500]);
+}
+
+TEST(CudaExecutor, RefusedMemoryIsAnErrorAndNothingElse) {
+  REQUIRE_DEVICE();
+  const auto status_of = [&](size_t bytes) {
+    try {
+      executor.allocate<char>(bytes);
+    } catch (const Error &e) {
+      EXPECT_NE(std::string(e.what()), "");
+      return e.status();
+    }
+    return QSES_OK;
+  };
+  EXPECT_EQ(status_of(size_t(1) << 50), QSES_OUT_OF_MEMORY);
+  executor.arena().set_budget(executor.arena().held() + 1000000);
+  EXPECT_EQ(status_of(executor.arena().held() + 2000000), QSES_OUT_OF_MEMORY);
+  executor.arena().set_budget(0);
+  Span<uint64_t> out = executor.allocate<uint64_t>(1000);
+  executor.for_each(1000, Square{out.data});
+  EXPECT_EQ(executor.fetch(out.data + 999), 999u * 999u);
+}
+
+TEST(CudaExecutor, StageTimes) {
+  REQUIRE_DEVICE();
+  CudaStageTimer timer(executor);
+  timer.begin("nothing");
+  EXPECT_TRUE(timer.collect().empty());
+  timer.enable(true);
+  Span<uint64_t> out = executor.allocate<uint64_t>(1000000);
+  for (int run = 0; run < 2; ++run) {
+    timer.reset();
+    for (const char *name : {"first", "second", "first"}) {
+      timer.begin(name);
+      executor.for_each(out.size, Square{out.data});
+    }
+    timer.end();
+    const auto times = timer.collect();
+    ASSERT_EQ(times.size(), 2u);
+    EXPECT_EQ(times[0].first, "first");
+    EXPECT_EQ(times[1].first, "second");
+    EXPECT_GT(times[0].second, 0.0);
+    EXPECT_GT(times[1].second, 0.0);
+  }
+}
+
+TEST(CudaDevices, DescriptionNamesWhatIsWrong) {
+  int before = 0;
+  const bool any = cudaGetDevice(&before) == cudaSuccess;
+  const CudaDevice none = describe_cuda_device(1000);
+  EXPECT_FALSE(none.available);
+  EXPECT_NE(none.reason, "");
+  const CudaDevice first = describe_cuda_device(0);
+  EXPECT_EQ(first.available, first.reason.empty());
+  if (first.available) {
+    EXPECT_NE(first.name, "");
+    EXPECT_GT(first.total_memory, 0u);
+    EXPECT_LE(first.free_memory, first.total_memory);
+  }
+  int after = 0;
+  if (any) {
+    ASSERT_EQ(cudaGetDevice(&after), cudaSuccess);
+    EXPECT_EQ(after, before);
+  }
+  EXPECT_EQ(cudaGetLastError(), any ? cudaSuccess : cudaGetLastError());
+}
+
+TEST(CudaDevices, FailuresAreNamedAndForgotten) {
+  try {
+    check_cuda(cudaErrorInvalidValue, "cudaSomething");
+    FAIL();
+  } catch (const Error &e) {
+    EXPECT_EQ(e.status(), QSES_DEVICE_ERROR);
+    EXPECT_NE(std::string(e.what()).find("cudaSomething"), std::string::npos);
+  }
+  try {
+    check_cuda(cudaErrorMemoryAllocation, "cudaMalloc");
+    FAIL();
+  } catch (const Error &e) {
+    EXPECT_EQ(e.status(), QSES_OUT_OF_MEMORY);
+  }
+}
+
+TEST(CudaDevices, PinnedBufferGrowsOnly) {
+  REQUIRE_DEVICE();
+  (void)executor;
+  PinnedBuffer buffer;
+  void *first = buffer.reserve(1000);
+  ASSERT_NE(first, nullptr);
+  EXPECT_EQ(buffer.reserve(10), first);
+  EXPECT_GE(buffer.size(), 1000u);
+  ASSERT_NE(buffer.reserve(1000000), nullptr);
+  EXPECT_GE(buffer.size(), 1000000u);
+  try {
+    buffer.reserve(size_t(1) << 50);
+    FAIL();
+  } catch (const Error &e) {
+    EXPECT_EQ(e.status(), QSES_OUT_OF_MEMORY);
+  }
+  EXPECT_EQ(cudaGetLastError(), cudaSuccess);
+  EXPECT_NE(buffer.reserve(100), nullptr);
+}
+
+}  // namespace
