@@ -28,7 +28,8 @@ inline void put_chunk(std::string &out, const std::string &name, const std::stri
   put_number(out, static_cast<uint32_t>(data.size()));
   const std::string body = name + data;
   out += body;
-  put_number(out, static_cast<uint32_t>(crc32(0, reinterpret_cast<const Bytef *>(body.data()), static_cast<uInt>(body.size()))));
+  put_number(out, static_cast<uint32_t>(
+                      crc32(0, reinterpret_cast<const Bytef *>(body.data()), static_cast<uInt>(body.size()))));
 }
 
 // The row filtered in one of PNG's five ways.

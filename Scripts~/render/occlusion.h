@@ -47,7 +47,8 @@ class DepthMap {
     const Vec p = project(position);
     const float fx = p.x - 0.5f, fy = p.y - 0.5f;
     const int x = std::clamp(static_cast<int>(fx), 0, size_ - 2), y = std::clamp(static_cast<int>(fy), 0, size_ - 2);
-    const float u = std::clamp(fx - static_cast<float>(x), 0.f, 1.f), v = std::clamp(fy - static_cast<float>(y), 0.f, 1.f);
+    const float u = std::clamp(fx - static_cast<float>(x), 0.f, 1.f),
+                v = std::clamp(fy - static_cast<float>(y), 0.f, 1.f);
     const auto see = [&](int dx, int dy) { return at(x + dx, y + dy) <= p.z + bias ? 1.f : 0.f; };
     return (1 - v) * ((1 - u) * see(0, 0) + u * see(1, 0)) + v * ((1 - u) * see(0, 1) + u * see(1, 1));
   }
@@ -58,13 +59,17 @@ class DepthMap {
     const float half = 0.5f * static_cast<float>(size_);
     return {half + scale_ * dot(d, frame_.right), half + scale_ * dot(d, frame_.up), dot(d, frame_.toward)};
   }
-  float at(int x, int y) const { return depth_[static_cast<size_t>(y) * static_cast<size_t>(size_) + static_cast<size_t>(x)]; }
+  float at(int x, int y) const {
+    return depth_[static_cast<size_t>(y) * static_cast<size_t>(size_) + static_cast<size_t>(x)];
+  }
 
   void draw_triangle(Vec a, Vec b, Vec c) {
     const float area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
     if (area <= 0) return;  // seen from behind
-    const int x0 = std::max(0, static_cast<int>(std::min({a.x, b.x, c.x}))), x1 = std::min(size_ - 1, static_cast<int>(std::max({a.x, b.x, c.x})));
-    const int y0 = std::max(0, static_cast<int>(std::min({a.y, b.y, c.y}))), y1 = std::min(size_ - 1, static_cast<int>(std::max({a.y, b.y, c.y})));
+    const int x0 = std::max(0, static_cast<int>(std::min({a.x, b.x, c.x}))),
+              x1 = std::min(size_ - 1, static_cast<int>(std::max({a.x, b.x, c.x})));
+    const int y0 = std::max(0, static_cast<int>(std::min({a.y, b.y, c.y}))),
+              y1 = std::min(size_ - 1, static_cast<int>(std::max({a.y, b.y, c.y})));
     for (int y = y0; y <= y1; ++y)
       for (int x = x0; x <= x1; ++x) {
         const float px = static_cast<float>(x) + 0.5f, py = static_cast<float>(y) + 0.5f;
@@ -84,7 +89,8 @@ class DepthMap {
   float scale_ = 1;
 };
 
-// Per vertex the part of the directions from which it is seen, 0 to 1; weighted by the cosine to the normal if asked for.
+// Per vertex the part of the directions from which it is seen, 0 to 1; weighted by the cosine to the normal if asked
+// for.
 inline std::vector<float> find_light(const Mesh &mesh, const std::vector<Vec> &directions, bool by_cosine) {
   std::vector<float> seen(mesh.positions.size(), 0.f), total(mesh.positions.size(), 0.f);
   std::atomic<size_t> next{0};

@@ -17,8 +17,8 @@ struct Options {
   std::string mesh, structure, picture, color = "d3cdc2";
   int width = 900, height = 700, samples = 4;  // samples along one side of a pixel
   size_t run = 1;
-  Vec up = {0, 1, 0};         // the direction of the structure that points upward
-  float turn[2] = {0, 0};     // degrees: about the vertical, then towards the eye
+  Vec up = {0, 1, 0};      // the direction of the structure that points upward
+  float turn[2] = {0, 0};  // degrees: about the vertical, then towards the eye
   float zoom = 1, shift[2] = {0, 0};
   bool edges = false;
 };
@@ -41,13 +41,16 @@ class Canvas {
     const int bands = 32;
     std::atomic<int> next{0};
     run_threads([&] {
-      for (int band; (band = next++) < bands;) draw_band(screen, indices, band * height_ / bands, (band + 1) * height_ / bands);
+      for (int band; (band = next++) < bands;)
+        draw_band(screen, indices, band * height_ / bands, (band + 1) * height_ / bands);
     });
   }
 
  private:
   size_t size() const { return static_cast<size_t>(width_) * static_cast<size_t>(height_); }
-  size_t place(int x, int y) const { return static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x); }
+  size_t place(int x, int y) const {
+    return static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x);
+  }
 
   void draw_band(const std::vector<Vec> &screen, const std::vector<uint32_t> &indices, int first, int last) {
     for (size_t t = 0; t < indices.size(); t += 3) {
@@ -107,7 +110,10 @@ float smooth_step(float low, float high, float v) {
 class Renderer {
  public:
   Renderer(const Mesh &mesh, const std::vector<Atom> &atoms, const Options &options)
-      : mesh_(mesh), atoms_(atoms), colors_(color_atoms(atoms, options.color, options.run)), options_(options),
+      : mesh_(mesh),
+        atoms_(atoms),
+        colors_(color_atoms(atoms, options.color, options.run)),
+        options_(options),
         canvas_(options.width * options.samples, options.height * options.samples) {}
 
   Image render() {
@@ -122,7 +128,9 @@ class Renderer {
     run_threads([&] {
       for (int y; (y = next++) < image.height;)
         for (int x = 0; x < image.width; ++x)
-          resolve(x, y, &image.rgba[4 * (static_cast<size_t>(y) * static_cast<size_t>(image.width) + static_cast<size_t>(x))]);
+          resolve(
+              x, y,
+              &image.rgba[4 * (static_cast<size_t>(y) * static_cast<size_t>(image.width) + static_cast<size_t>(x))]);
     });
     return image;
   }
@@ -141,7 +149,8 @@ class Renderer {
       wide = std::max(wide, std::fabs(p.x * k)), tall = std::max(tall, std::fabs(p.y * k));
     }
     scale_ = options_.zoom * 0.485f * std::min(w / wide, h / tall);
-    for (Vec &p : screen_) p = {(0.5f + options_.shift[0]) * w + scale_ * p.x, (0.5f + options_.shift[1]) * h - scale_ * p.y, p.z};
+    for (Vec &p : screen_)
+      p = {(0.5f + options_.shift[0]) * w + scale_ * p.x, (0.5f + options_.shift[1]) * h - scale_ * p.y, p.z};
   }
 
   // The color of one sample, linear.
@@ -180,7 +189,8 @@ class Renderer {
     const Vec sky_color = Vec{0.78f, 0.74f, 0.72f} * (1 - up) + Vec{0.92f, 0.97f, 1.05f} * up;
     const float depth_of_sky = std::pow(sky, 1.15f);
     Vec color = albedo * (sky_color * (0.82f * depth_of_sky) + Vec{1.02f, 0.98f, 0.92f} * (0.78f * lit));
-    const float shine = 0.05f * lamp * std::pow(std::max(0.f, dot(normal, half)), 28.f) + 0.05f * sky * std::pow(1 - facing, 4.f);
+    const float shine =
+        0.05f * lamp * std::pow(std::max(0.f, dot(normal, half)), 28.f) + 0.05f * sky * std::pow(1 - facing, 4.f);
     color = color + Vec{1, 1, 1} * shine;
     if (options_.edges) color = color * (1 - 0.62f * edge_line(a, b, c, area, w));
     return color * (1 - 0.55f * outline(x, y));
@@ -262,18 +272,28 @@ Options parse(int argc, char **argv) {
     if (++k == argc) throw std::runtime_error(flag + " needs a value");
     const char *value = argv[k];
     bool good = true;
-    if (flag == "--color") o.color = value;
-    else if (flag == "--run") o.run = std::max(1ul, std::stoul(value));
-    else if (flag == "--size") good = std::sscanf(value, "%dx%d", &o.width, &o.height) == 2 && o.width > 0 && o.height > 0;
-    else if (flag == "--turn") good = std::sscanf(value, "%f,%f", &o.turn[0], &o.turn[1]) == 2;
-    else if (flag == "--up") good = std::sscanf(value, "%f,%f,%f", &o.up.x, &o.up.y, &o.up.z) == 3;
-    else if (flag == "--shift") good = std::sscanf(value, "%f,%f", &o.shift[0], &o.shift[1]) == 2;
-    else if (flag == "--zoom") good = std::sscanf(value, "%f", &o.zoom) == 1;
-    else if (flag == "--samples") good = std::sscanf(value, "%d", &o.samples) == 1 && o.samples > 0;
-    else throw std::runtime_error("unknown option " + flag);
+    if (flag == "--color")
+      o.color = value;
+    else if (flag == "--run")
+      o.run = std::max(1ul, std::stoul(value));
+    else if (flag == "--size")
+      good = std::sscanf(value, "%dx%d", &o.width, &o.height) == 2 && o.width > 0 && o.height > 0;
+    else if (flag == "--turn")
+      good = std::sscanf(value, "%f,%f", &o.turn[0], &o.turn[1]) == 2;
+    else if (flag == "--up")
+      good = std::sscanf(value, "%f,%f,%f", &o.up.x, &o.up.y, &o.up.z) == 3;
+    else if (flag == "--shift")
+      good = std::sscanf(value, "%f,%f", &o.shift[0], &o.shift[1]) == 2;
+    else if (flag == "--zoom")
+      good = std::sscanf(value, "%f", &o.zoom) == 1;
+    else if (flag == "--samples")
+      good = std::sscanf(value, "%d", &o.samples) == 1 && o.samples > 0;
+    else
+      throw std::runtime_error("unknown option " + flag);
     if (!good) throw std::runtime_error(flag + ": '" + value + "' can't be read");
   }
-  if (names.size() != 3) throw std::runtime_error("needs a mesh (PLY), its structure (PDB) and the name of a picture (PNG)");
+  if (names.size() != 3)
+    throw std::runtime_error("needs a mesh (PLY), its structure (PDB) and the name of a picture (PNG)");
   o.mesh = names[0], o.structure = names[1], o.picture = names[2];
   return o;
 }

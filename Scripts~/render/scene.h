@@ -63,7 +63,8 @@ inline Mesh read_ply(const std::string &path) {
     high = {std::max(high.x, q.x), std::max(high.y, q.y), std::max(high.z, q.z)};
   }
   mesh.indices.resize(3 * triangles);
-  for (size_t t = 0; t < triangles; ++t) std::memcpy(&mesh.indices[3 * t], bytes.data() + 28 * vertices + 13 * t + 1, 12);
+  for (size_t t = 0; t < triangles; ++t)
+    std::memcpy(&mesh.indices[3 * t], bytes.data() + 28 * vertices + 13 * t + 1, 12);
   mesh.center = (low + high) * 0.5f;
   for (const Vec &q : mesh.positions) mesh.radius = std::max(mesh.radius, dot(q - mesh.center, q - mesh.center));
   mesh.radius = std::sqrt(mesh.radius);
@@ -93,7 +94,8 @@ inline std::vector<Atom> read_atoms(const std::string &path) {
   std::vector<Atom> atoms;
   char line[256];
   while (gzgets(file, line, sizeof line) && std::strncmp(line, "ENDMDL", 6) != 0) {
-    if ((std::strncmp(line, "ATOM  ", 6) != 0 && std::strncmp(line, "HETATM", 6) != 0) || std::strlen(line) < 78) continue;
+    if ((std::strncmp(line, "ATOM  ", 6) != 0 && std::strncmp(line, "HETATM", 6) != 0) || std::strlen(line) < 78)
+      continue;
     const std::string text(line), element = text.substr(text[76] == ' ' ? 77 : 76, text[76] == ' ' ? 1 : 2);
     const Vec center{std::stof(text.substr(30, 8)), std::stof(text.substr(38, 8)), std::stof(text.substr(46, 8))};
     atoms.push_back({center, radius_of(element), line[21], line[0] == 'H', element});
@@ -110,8 +112,8 @@ inline Vec from_srgb(uint32_t rgb) {
   return {linear(rgb >> 16 & 255), linear(rgb >> 8 & 255), linear(rgb & 255)};
 }
 
-// One colour per atom: "chain" (the palette in turn; with run > 1 each colour serves that many chains, darker and lighter
-// by turns; hetero atoms are grey), "element", or one colour for all as RRGGBB.
+// One colour per atom: "chain" (the palette in turn; with run > 1 each colour serves that many chains, darker and
+// lighter by turns; hetero atoms are grey), "element", or one colour for all as RRGGBB.
 inline std::vector<Vec> color_atoms(const std::vector<Atom> &atoms, const std::string &scheme, size_t run) {
   static const std::vector<uint32_t> palette = {0x5e93b8, 0xdca850, 0x7fab7a, 0xc4736a, 0x9384b0, 0x6fb3ad, 0xcf95ae};
   static const std::map<std::string, uint32_t> elements = {{"C", 0xd3cdc2}, {"N", 0x6489bd}, {"O", 0xc96f64},

@@ -67,11 +67,12 @@ Molecule beaded_ring() {
   return m;
 }
 
-double worst_distance(const std::vector<Arc> &arcs, Point x) {
+double distance_to(const std::vector<Arc> &arcs, Point x) {
   double best = 1e30;
-  for (const Arc &a : arcs)
-    best = std::min(best, std::sqrt(std::max(0.0, double(arc_distance2(
-                                                     a, Vec3<float>(float(x.x), float(x.y), float(x.z)))))));
+  for (const Arc &a : arcs) {
+    const Vec3<float> y = nearest_on_arc(a, Vec3<float>(float(x.x), float(x.y), float(x.z))).position;
+    best = std::min(best, length(x - Point{y.x, y.y, y.z}));
+  }
   return best;
 }
 
@@ -95,7 +96,7 @@ void check_arcs(const StageResult &r, const ExactBoundary &exact) {
     exact_length += (a.end - a.begin) * a.radius;
     if ((a.end - a.begin) * a.radius < 2e-3) continue;  // too short to be told from rounding
     for (double share : {0.01, 0.3, 0.5, 0.99})
-      ASSERT_LT(worst_distance(r.arcs, a.at(a.begin + share * (a.end - a.begin))), 3e-3);
+      ASSERT_LT(distance_to(r.arcs, a.at(a.begin + share * (a.end - a.begin))), 3e-3);
   }
   EXPECT_NEAR(length, exact_length, 1e-3 * exact_length + 2e-3);
 }

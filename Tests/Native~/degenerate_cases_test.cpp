@@ -90,8 +90,6 @@ TEST(Cospherical, FullereneHasACavity) {
     EXPECT_EQ(mesh_checks::piece_count(surface.mesh), 2u);
     // A probe fits into the middle, with some room: the cavity counts negative.
     mesh_checks::Mesh hull = surface.mesh, cavity = surface.mesh;
-    const Point c = point(a.center(0)) + point(a.center(1)) + point(a.center(2));
-    (void)c;
     hull.indices.clear();
     cavity.indices.clear();
     Point middle{0, 0, 0};

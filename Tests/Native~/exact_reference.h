@@ -58,8 +58,13 @@ class Boundary {
  public:
   // tolerance: a point of the boundary may be this deep in other balls.
   Boundary(const surface_fixture::Atoms &atoms, double probe, double tolerance = 1e-9) : tolerance_(tolerance) {
-    for (size_t i = 0; i < atoms.size(); ++i)
-      balls_.push_back({point(atoms.center(i)), static_cast<double>(atoms.radii[i]) + probe});
+    for (size_t i = 0; i < atoms.size(); ++i) {
+      const Ball ball{point(atoms.center(i)), static_cast<double>(atoms.radii[i]) + probe};
+      bool contained = false;  // in an earlier one at the same place
+      for (const Ball &b : balls_)
+        contained = contained || (length(b.center - ball.center) == 0 && b.radius >= ball.radius);
+      if (!contained) balls_.push_back(ball);
+    }
     near_.resize(balls_.size());
     for (size_t i = 0; i < balls_.size(); ++i)
       for (size_t j = 0; j < balls_.size(); ++j)
@@ -134,7 +139,7 @@ class Boundary {
   void add_triple_points(size_t i, size_t j, size_t k) {
     const Point u = balls_[j].center - balls_[i].center, v = balls_[k].center - balls_[i].center, n = cross(u, v);
     const double uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), nn = dot(n, n);
-    if (nn < 1e-12 * uu * vv) return;
+    if (nn <= 1e-12 * uu * vv) return;
     const double a = balls_[i].radius, p = 0.5 * (uu + a * a - balls_[j].radius * balls_[j].radius),
                  q = 0.5 * (vv + a * a - balls_[k].radius * balls_[k].radius);
     const Point base = ((p * vv - q * uv) / nn) * u + ((q * uu - p * uv) / nn) * v;

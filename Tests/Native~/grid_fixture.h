@@ -137,7 +137,8 @@ struct GridRunOn {
   }
 
   uint32_t vertex_of_edge(int brick, int leaf, int bit, int edge) const {
-    int p[3] = {(leaf & 1) * 4 + (bit & 3) + edge_origin_x(edge), (leaf >> 1 & 1) * 4 + (bit >> 2 & 3) + edge_origin_y(edge),
+    int p[3] = {(leaf & 1) * 4 + (bit & 3) + edge_origin_x(edge),
+                (leaf >> 1 & 1) * 4 + (bit >> 2 & 3) + edge_origin_y(edge),
                 (leaf >> 2) * 4 + (bit >> 4) + edge_origin_z(edge)};
     glm::ivec3 place = field.bricks.lattice.brick_at(field.bricks.linear[brick]);
     for (int d = 0; d < 3; ++d)
@@ -147,7 +148,8 @@ struct GridRunOn {
       }
     const int owner = field.bricks.find(place);
     if (owner < 0) throw std::logic_error("a cell of the surface has a corner in an inactive brick");
-    return vertex_number(layout, owner, leaf_of(p[0], p[1], p[2]), edge_axis(edge), leaf_bit(p[0] & 3, p[1] & 3, p[2] & 3));
+    return vertex_number(layout, owner, leaf_of(p[0], p[1], p[2]), edge_axis(edge),
+                         leaf_bit(p[0] & 3, p[1] & 3, p[2] & 3));
   }
 };
 

@@ -69,7 +69,8 @@ void compare(const std::vector<Atom> &atoms, float probe, float spacing) {
   const Span<int32_t> distances = executor.allocate<int32_t>(kCorners * bricks.count);
   std::vector<int32_t> host_distances(kCorners * bricks.count);
   executor.for_each_brick<DistanceScratch<9>>(bricks.count, StoreDistances<9>{field, 0, distances.data});
-  serial.executor.for_each_brick<DistanceScratch<9>>(bricks.count, StoreDistances<9>{serial.field, 0, host_distances.data()});
+  serial.executor.for_each_brick<DistanceScratch<9>>(bricks.count,
+                                                     StoreDistances<9>{serial.field, 0, host_distances.data()});
   EXPECT_EQ(to_host(executor, distances.data, host_distances.size()), host_distances);
 
   MeshLayout layout{};
@@ -78,9 +79,12 @@ void compare(const std::vector<Atom> &atoms, float probe, float spacing) {
   ASSERT_EQ(counts.vertices, serial.counts.vertices);
   ASSERT_EQ(counts.triangles, serial.counts.triangles);
   const size_t values = 3 * counts.vertices;
-  const MeshView view = {executor.allocate<float>(values).data, executor.allocate<float>(values).data,
-                         executor.allocate<uint32_t>(counts.vertices).data, nullptr,
-                         to_device(executor, expected.indices.data(), expected.indices.size()).data, false};
+  const MeshView view = {executor.allocate<float>(values).data,
+                         executor.allocate<float>(values).data,
+                         executor.allocate<uint32_t>(counts.vertices).data,
+                         nullptr,
+                         to_device(executor, expected.indices.data(), expected.indices.size()).data,
+                         false};
   for (const BrickRange &range : serial.slices(100)) emit_grid_vertices(executor, field, layout, range, view);
   expect_near(to_host(executor, view.positions, values), expected.positions, 2e-6f * spacing + 1e-5f, "position");
   const std::vector<uint32_t> owners = to_host(executor, view.owners, counts.vertices);
@@ -105,7 +109,8 @@ void compare(const std::vector<Atom> &atoms, float probe, float spacing) {
   const Span<glm::vec3> starts = executor.allocate<glm::vec3>(counts.vertices);
   std::vector<glm::vec3> host_starts(counts.vertices);
   tangential_starts(executor, bricks, layout, view, counts, starts.data);
-  tangential_starts(serial.executor, host_bricks, serial.layout, serial.view(expected), serial.counts, host_starts.data());
+  tangential_starts(serial.executor, host_bricks, serial.layout, serial.view(expected), serial.counts,
+                    host_starts.data());
   const std::vector<glm::vec3> device_starts = to_host(executor, starts.data, counts.vertices);
   for (size_t v = 0; v < host_starts.size(); ++v)
     for (int d = 0; d < 3; ++d) ASSERT_NEAR(device_starts[v][d], host_starts[v][d], 1e-5f) << v;

@@ -99,7 +99,8 @@ TEST(Measure, EmptyMesh) {
 }
 
 TEST(Measure, OrderedBitsKeepTheOrderOfFloats) {
-  const float values[] = {-std::numeric_limits<float>::infinity(), -1e30f, -2.f, -1.f, -1e-40f, -0.f, 0.f, 1e-40f, 1.f, 1.5f, 1e30f};
+  const float values[] = {
+      -std::numeric_limits<float>::infinity(), -1e30f, -2.f, -1.f, -1e-40f, -0.f, 0.f, 1e-40f, 1.f, 1.5f, 1e30f};
   for (size_t k = 0; k < std::size(values); ++k) {
     EXPECT_EQ(from_ordered_bits(ordered_bits(values[k])), values[k]);
     for (size_t j = 0; j < k; ++j) EXPECT_LT(ordered_bits(values[j]), ordered_bits(values[k])) << j << " " << k;

@@ -26,9 +26,9 @@ struct Mesh {
   }
 };
 
-// An empty string if every index is valid, every edge has exactly two triangles that pass it in opposite directions, the
-// triangles around every vertex form one fan, every vertex is used, and no number is NaN or infinite. Else the first
-// fault in words. Triangles may have no area: that is geometry, not connection.
+// An empty string if every index is valid, every edge has exactly two triangles that pass it in opposite directions,
+// the triangles around every vertex form one fan, every vertex is used, and no number is NaN or infinite. Else the
+// first fault in words. Triangles may have no area: that is geometry, not connection.
 inline std::string manifold_fault(const Mesh &mesh) {
   const auto number = [](size_t n) { return std::to_string(n); };
   const size_t vertices = mesh.vertex_count();
@@ -47,7 +47,8 @@ inline std::string manifold_fault(const Mesh &mesh) {
   for (size_t t = 0; t < mesh.triangle_count(); ++t) {
     const uint32_t *c = mesh.indices.data() + 3 * t;
     for (int k = 0; k < 3; ++k) {
-      if (c[k] >= vertices) return "triangle " + number(t) + " names vertex " + number(c[k]) + " of " + number(vertices);
+      if (c[k] >= vertices)
+        return "triangle " + number(t) + " names vertex " + number(c[k]) + " of " + number(vertices);
       if (c[k] == c[(k + 1) % 3]) return "triangle " + number(t) + " names vertex " + number(c[k]) + " twice";
       links.push_back({c[k], c[(k + 1) % 3], c[(k + 2) % 3]});
     }

@@ -13,7 +13,8 @@ using mesh_checks::manifold_fault;
 using mesh_checks::Mesh;
 
 TEST(MeshChecks, AcceptClosedShapes) {
-  for (const Mesh &m : {mesh_shapes::tetrahedron(), mesh_shapes::cube(), mesh_shapes::octahedron(), mesh_shapes::sphere(3)}) {
+  for (const Mesh &m :
+       {mesh_shapes::tetrahedron(), mesh_shapes::cube(), mesh_shapes::octahedron(), mesh_shapes::sphere(3)}) {
     EXPECT_EQ(manifold_fault(m), "");
     EXPECT_GT(mesh_checks::signed_volume(m), 0.0);
     EXPECT_EQ(mesh_checks::piece_count(m), 1u);

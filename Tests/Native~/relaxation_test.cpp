@@ -150,7 +150,8 @@ struct Tangential {
   GridRun run;
   Mesh mesh;
   std::vector<glm::vec3> starts;
-  explicit Tangential(const std::vector<Atom> &atoms) : run(atoms, 1.4f, 0.5f), mesh(run.mesh()), starts(mesh.vertex_count()) {
+  explicit Tangential(const std::vector<Atom> &atoms)
+      : run(atoms, 1.4f, 0.5f), mesh(run.mesh()), starts(mesh.vertex_count()) {
     compute_normals(run.executor, run.view(mesh), run.counts, 0.5f);
     step();
   }
@@ -206,7 +207,10 @@ TEST(TangentialStep, IsLimited) {
         const double low = 0.5 * first[d] - 0.6, high = 0.5 * (first[d] + 7) + 0.6;
         ASSERT_GE(t.starts[v][d], low);
         ASSERT_LE(t.starts[v][d], high);
-        const double at = t.mesh.positions[3 * size_t(v) + static_cast<size_t>(d)] - (d == 0 ? t.run.lattice.center_x : d == 1 ? t.run.lattice.center_y : t.run.lattice.center_z);
+        const double at =
+            t.mesh.positions[3 * size_t(v) + static_cast<size_t>(d)] - (d == 0   ? t.run.lattice.center_x
+                                                                        : d == 1 ? t.run.lattice.center_y
+                                                                                 : t.run.lattice.center_z);
         outside = std::max(outside, std::max(low - at, at - high));
         length2 += (t.starts[v][d] - at) * (t.starts[v][d] - at);
       }

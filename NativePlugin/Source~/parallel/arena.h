@@ -61,7 +61,10 @@ class Arena {
       uint64_t merged = peak_ + peak_ / 16;
       if (budget_ && merged > budget_) merged = peak_;
       release();
-      add_block(static_cast<size_t>(merged));
+      try {
+        add_block(static_cast<size_t>(merged));
+      } catch (const Error &) {  // not in one piece: it comes in pieces again
+      }
     }
     current_ = 0;
     offset_ = 0;

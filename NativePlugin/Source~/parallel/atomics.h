@@ -22,8 +22,7 @@ QSES_FN T atomic_add(T *p, T value) {
   if constexpr (sizeof(T) == 4)
     return static_cast<T>(atomicAdd(reinterpret_cast<unsigned int *>(p), static_cast<unsigned int>(value)));
   else
-    return static_cast<T>(
-        atomicAdd(reinterpret_cast<unsigned long long *>(p), static_cast<unsigned long long>(value)));
+    return static_cast<T>(atomicAdd(reinterpret_cast<unsigned long long *>(p), static_cast<unsigned long long>(value)));
 #elif defined(_MSC_VER) && !defined(__clang__)
   return reinterpret_cast<std::atomic<T> *>(p)->fetch_add(value, std::memory_order_relaxed);
 #else
@@ -63,8 +62,7 @@ QSES_FN uint32_t atomic_min(uint32_t *p, uint32_t value) {
   return before;
 #else
   uint32_t before = __atomic_load_n(p, __ATOMIC_RELAXED);
-  while (value < before &&
-         !__atomic_compare_exchange_n(p, &before, value, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
+  while (value < before && !__atomic_compare_exchange_n(p, &before, value, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
   }
   return before;
 #endif

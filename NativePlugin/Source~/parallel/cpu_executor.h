@@ -174,13 +174,14 @@ class CpuExecutor {
     if (n == 0) out[0] = T(0);
   }
 
-  template <class Load>
-  double reduce(size_t n, Load load) {
+  template <class T = double, class Load>
+  T reduce(size_t n, Load load) {
     const size_t chunks = (n + kReduceChunk - 1) / kReduceChunk;
-    std::vector<double> sums(chunks);
-    for_each(chunks, SumChunk<Load>{load, n, sums.data()});
-    double sum = 0;
-    for (double s : sums) sum += s;
+    std::vector<T> sums(chunks);
+    for_each_brick<char>(
+        chunks, [&](SoloTeam, char &, size_t chunk) { SumChunk<T, Load>{load, n, sums.data()}(chunk); }, 4);
+    T sum{};
+    for (const T &s : sums) sum += s;
     return sum;
   }
 

@@ -51,13 +51,14 @@ __global__ __launch_bounds__(BlockTeam::kSize) void for_each_brick_kernel(size_t
 
 // Sum of each chunk of reduce(): a thread adds every 128th item, then the threads are added as a tree. Always the same
 // order, but not the one of a single thread.
-template <class Load>
-__global__ __launch_bounds__(BlockTeam::kSize) void sum_chunks_kernel(size_t n, Load load, double *sums) {
-  __shared__ double partial[BlockTeam::kSize];
+template <class T, class Load>
+__global__ __launch_bounds__(BlockTeam::kSize) void sum_chunks_kernel(size_t n, Load load, T *sums) {
+  __shared__ __align__(16) unsigned char partial_memory[BlockTeam::kSize * sizeof(T)];
+  T *partial = reinterpret_cast<T *>(partial_memory);
   const size_t begin = static_cast<size_t>(blockIdx.x) * kReduceChunk;
   const size_t end = begin + kReduceChunk < n ? begin + kReduceChunk : n;
-  double sum = 0;
-  for (size_t i = begin + threadIdx.x; i < end; i += BlockTeam::kSize) sum += static_cast<double>(load(i));
+  T sum{};
+  for (size_t i = begin + threadIdx.x; i < end; i += BlockTeam::kSize) sum += load(i);
   partial[threadIdx.x] = sum;
   for (int half = BlockTeam::kSize / 2; half > 0; half >>= 1) {
     __syncthreads();
@@ -166,16 +167,16 @@ class CudaExecutor {
     });
   }
 
-  template <class Load>
-  double reduce(size_t n, Load load) {
-    if (n == 0) return 0;
+  template <class T = double, class Load>
+  T reduce(size_t n, Load load) {
+    if (n == 0) return T{};
     const size_t chunks = (n + kReduceChunk - 1) / kReduceChunk;
     const auto mark = arena_.mark();
-    Span<double> sums = allocate<double>(chunks);
-    launch("reduce", cuda::sum_chunks_kernel<Load>, chunks, BlockTeam::kSize, 0, n, load, sums.data);
-    const double *host = static_cast<const double *>(to_staging(sums.data, chunks * sizeof(double)));
+    Span<T> sums = allocate<T>(chunks);
+    launch("reduce", cuda::sum_chunks_kernel<T, Load>, chunks, BlockTeam::kSize, 0, n, load, sums.data);
+    const T *host = static_cast<const T *>(to_staging(sums.data, chunks * sizeof(T)));
     arena_.rewind(mark);
-    double sum = 0;
+    T sum{};
     for (size_t c = 0; c < chunks; ++c) sum += host[c];
     return sum;
   }

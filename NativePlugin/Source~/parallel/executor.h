@@ -6,7 +6,7 @@
 //   for_each(n, f)                         f(i) for i in [0, n), in any order
 //   for_each_brick<Scratch>(n, f)          f(team, scratch, i): a team of threads shares one Scratch per item
 //   exclusive_scan(n, load, out)           out[i] = load(0) + ... + load(i - 1); out has n + 1 elements
-//   reduce(n, load)                        sum of load(i) in double: fixed chunks, added in fixed order. Waits
+//   reduce<T>(n, load)                     sum of load(i), T a double or a few: fixed chunks, added in fixed order. Waits
 //   sort_by_key(keys, values, key_bits)    stable, by the low key_bits bits of the keys
 //   compact(n, keep, out)                  the i with keep(i), in order; returns their number. Waits
 //   fetch(p), fetch_each(sources, values, n)  copies one value, or several, to the host. Waits
@@ -41,15 +41,25 @@ struct SoloTeam {
   QSES_FN void sync() const {}
 };
 
+// Two sums at once.
+struct SumPair {
+  double first = 0, second = 0;
+  QSES_FN SumPair &operator+=(const SumPair &other) {
+    first += other.first;
+    second += other.second;
+    return *this;
+  }
+};
+
 // Sum of one chunk of reduce().
-template <class Load>
+template <class T, class Load>
 struct SumChunk {
   Load load;
   size_t n;
-  double *sums;
+  T *sums;
   QSES_HOST_DEVICE void operator()(size_t chunk) const {
     const size_t begin = chunk * kReduceChunk, end = begin + kReduceChunk < n ? begin + kReduceChunk : n;
-    double sum = 0;
+    T sum{};
     for (size_t i = begin; i < end; ++i) sum += load(i);
     sums[chunk] = sum;
   }

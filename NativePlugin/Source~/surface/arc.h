@@ -21,7 +21,7 @@ QSES_FN T arc_distance2(const Arc &arc, const Vec3<T> &x) {
 
 struct ArcPoint {
   Vec3<float> position;
-  bool at_end;  // an exposed vertex, if the arc's end is not the joint of a split arc
+  bool at_end;  // an exposed vertex: the point is off the arc by more than rounding, so this is no joint of a split arc
 };
 
 QSES_FN ArcPoint nearest_on_arc(const Arc &arc, const Vec3<float> &x) {
@@ -29,8 +29,12 @@ QSES_FN ArcPoint nearest_on_arc(const Arc &arc, const Vec3<float> &x) {
   const float along_middle = dot(t, m), along_side = dot(t, s);
   const float in_plane = square_root(along_middle * along_middle + along_side * along_side);
   float cosine, sine;
-  const bool at_end = !(along_middle >= arc.cos_half * in_plane);
-  if (at_end) {
+  const bool beyond = !(along_middle >= arc.cos_half * in_plane);
+  // By how much, as sine and cosine of the angle past the end, times in_plane.
+  const float past = arc.cos_half * absolute(along_side) - arc.sin_half * along_middle;
+  const float near = arc.cos_half * along_middle + arc.sin_half * absolute(along_side);
+  const bool at_end = beyond && !(past <= 3e-5f * in_plane + 1e-6f * arc.radius && near >= 0.f);
+  if (beyond) {
     cosine = arc.cos_half;
     sine = along_side < 0.f ? -arc.sin_half : arc.sin_half;
   } else if (in_plane > 1e-6f * arc.radius) {

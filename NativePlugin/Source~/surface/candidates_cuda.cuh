@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// GPU: which atoms and arcs can matter in a brick, gathered once and kept as rows of numbers; which of its leaves can
-// hold surface; and, for those, the shorter rows that their vertices need.
+// GPU: which atoms and arcs can matter in a brick, gathered once and kept as rows of numbers, and which of its leaves
+// can hold surface.
 #pragma once
 
 #include "parallel/cuda_executor.cuh"
@@ -51,21 +51,15 @@ struct CandidateCounters {
   unsigned long long atoms, arcs, leaves;
 };
 
-// Row of a leaf: word 0 has the number of atoms in its lower and of arcs in its upper half, then they follow. If they
-// are too many the word is kLongRow, and the brick's row is to be used.
-constexpr int kRowWords = 64;
-constexpr uint32_t kLongRow = 0xffffffffu;
-
 // The lists for a slice of bricks, as kernels see them.
 struct CandidateView {
   uint32_t first_brick, bricks;
   BrickRow *brick_rows;
   uint32_t *atoms;
   uint32_t *arcs;
-  uint8_t *arc_leaves;    // per entry of arcs: bit set = can matter in that leaf
+  uint8_t *arc_leaves;    // per entry of arcs: bit set = can be within depth of a point of that leaf
   uint32_t *leaf_list;    // active leaves: 8 * brick of the slice + leaf
-  int32_t *leaf_row;      // per leaf of the slice: its place in the list, -1 if inactive
-  uint32_t *rows;         // kRowWords per active leaf
+  int32_t *leaf_place;    // per leaf of the slice: its place in the list, -1 if inactive
 };
 
 __device__ __forceinline__ Vec3<float> leaf_center(const Vec3<float> &low, int leaf, float h) {
@@ -192,6 +186,7 @@ __global__ __launch_bounds__(kGatherWarps *kWarp) void gather_candidates_kernel(
     uint32_t n = 0;
     visit_cells(f.arc_bounds, arc_low, arc_extent, reach.start_reach + f.max_arc_bound, [&](uint32_t k, bool on) {
       uint32_t leaves = 0;
+      bool near = false;
       if (on) {
         const Sphere ball = load(f.arc_bounds.items + k);
         const float limit = ball.radius + reach.start_reach;
@@ -200,13 +195,14 @@ __global__ __launch_bounds__(kGatherWarps *kWarp) void gather_candidates_kernel(
 #pragma unroll
           for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
             const float d2 = arc_distance2(arc, leaf_center(low, leaf, h));
-            if (d2 <= reach.row_arcs2) leaves |= 1u << leaf;
+            near |= d2 <= reach.row_arcs2;
+            if (d2 <= reach.sign_arcs2) leaves |= 1u << leaf;
             if (d2 <= reach.surface_arcs2) active |= 1u << leaf;
           }
         }
       }
-      const unsigned ballot = __ballot_sync(kFullWarp, leaves != 0);
-      if (leaves) store(n + static_cast<uint32_t>(place_in(ballot, lane)), k, static_cast<uint8_t>(leaves));
+      const unsigned ballot = __ballot_sync(kFullWarp, near);
+      if (near) store(n + static_cast<uint32_t>(place_in(ballot, lane)), k, static_cast<uint8_t>(leaves));
       n += static_cast<uint32_t>(__popc(ballot));
     });
     return n;
@@ -254,7 +250,7 @@ __global__ __launch_bounds__(kGatherWarps *kWarp) void gather_candidates_kernel(
   if (lane < kLeavesPerBrick) {
     const bool on = active >> lane & 1;
     const unsigned long long place = first_leaf + static_cast<unsigned>(place_in(active, lane));
-    job.view.leaf_row[b * kLeavesPerBrick + static_cast<uint32_t>(lane)] = on ? static_cast<int32_t>(place) : -1;
+    job.view.leaf_place[b * kLeavesPerBrick + static_cast<uint32_t>(lane)] = on ? static_cast<int32_t>(place) : -1;
     if (on) job.view.leaf_list[place] = b * kLeavesPerBrick + static_cast<uint32_t>(lane);
   }
   if (!job.signs) return;

@@ -129,8 +129,8 @@ std::vector<Component> find_components(Executor &executor, const MeshView &mesh,
   Span<ComponentSums> sums = executor.template allocate<ComponentSums>(count);
   executor.fill(sums, 0);
   const double h = static_cast<double>(spacing);
-  executor.for_each(counts.triangles, AddTriangle{mesh.positions, mesh.indices, labels.data, number_of_root.data,
-                                                  1.0 / h, sums.data});
+  executor.for_each(counts.triangles,
+                    AddTriangle{mesh.positions, mesh.indices, labels.data, number_of_root.data, 1.0 / h, sums.data});
   std::vector<ComponentSums> found(count);
   executor.download(found.data(), sums.data, count);
   executor.wait();

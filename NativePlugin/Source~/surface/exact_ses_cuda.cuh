@@ -7,7 +7,7 @@
 
 namespace quickses {
 
-// What the stages of a slice share: rows of atoms and arcs per brick and per active leaf.
+// What the stages of a slice share: rows of atoms and arcs per brick, and its active leaves.
 struct CudaCandidates {
   BrickRange slice{0, 0};  // the bricks they are for; empty: not gathered yet
   cuda::CandidateView view{};
@@ -38,7 +38,7 @@ struct SignJob {
   CandidateReach reach;
   CandidateView view;
   uint32_t leaves;
-  uint64_t *signs;  // nullptr: only the rows are wanted
+  uint64_t *signs;
 };
 
 // Shared memory of one warp.
@@ -51,18 +51,17 @@ struct LeafScratch {
 // A candidate is superfluous if another ball is deeper everywhere in a box. Its depth is at most that of its tangent
 // plane at the box's centre, and what exceeds the other's depth is then greatest at a corner.
 struct BoxCull {
-  Vec3<float> center;
-  float half;
+  Vec3<float> center, half;
   float corner_depth[8];  // of the other ball
 
   // Lane k < 8 works for corner k.
-  __device__ __forceinline__ void set(const Vec3<float> &box_center, float half_extent, const Sphere &other,
-                                      float slack) {
+  __device__ __forceinline__ void set(const Vec3<float> &box_center, const Vec3<float> &half_extents,
+                                      const Sphere &other, float slack) {
     center = box_center;
-    half = half_extent;
+    half = half_extents;
     const int lane = lane_id();
-    const Vec3<float> corner(center.x + (lane & 1 ? half : -half), center.y + (lane & 2 ? half : -half),
-                             center.z + (lane & 4 ? half : -half));
+    const Vec3<float> corner(center.x + (lane & 1 ? half.x : -half.x), center.y + (lane & 2 ? half.y : -half.y),
+                             center.z + (lane & 4 ? half.z : -half.z));
     const float depth = ball_depth(other, corner) - slack;
 #pragma unroll
     for (int k = 0; k < 8; ++k) corner_depth[k] = __shfl_sync(kFullWarp, depth, k);
@@ -70,9 +69,9 @@ struct BoxCull {
 
   // depth: of the box's centre in the ball.
   __device__ __forceinline__ bool keeps(const Sphere &ball, float depth) const {
-    const float scale = half / fmaxf(ball.radius - depth, 1e-6f);
-    const float x = (ball.center.x - center.x) * scale, y = (ball.center.y - center.y) * scale,
-                z = (ball.center.z - center.z) * scale;
+    const float scale = 1.f / fmaxf(ball.radius - depth, 1e-6f);
+    const float x = (ball.center.x - center.x) * half.x * scale, y = (ball.center.y - center.y) * half.y * scale,
+                z = (ball.center.z - center.z) * half.z * scale;
     bool keep = false;
 #pragma unroll
     for (int k = 0; k < 8; ++k)
@@ -134,77 +133,50 @@ __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_kernel(S
   const Vec3<float> center = leaf_center(lattice.position(first.x, first.y, first.z), leaf, h);
   first += glm::ivec3(4 * (leaf & 1), 4 * (leaf >> 1 & 1), 4 * (leaf >> 2));
 
+  // Atoms that can be deepest at a point.
   const LeafBest best = deepest_at(f, atoms, brick_row.atom_count, center);
-  uint32_t *const row = job.view.rows + static_cast<size_t>(leaf_place) * kRowWords;
-
-  // Atoms: those that can be deepest at a vertex go to the row, those that can at a lattice point to shared memory.
-  int row_atoms = 0, atom_count = 0;
+  int atom_count = 0;
   if (brick_row.atom_count > 0) {
-    const Sphere best_ball = load(f.atoms.items + best.atom);
-    BoxCull vertices, points;
-    vertices.set(center, 1.5f * h + reach.grown, best_ball, reach.slack);
-    points.set(center, 1.5f * h, best_ball, reach.slack);
+    BoxCull cull;
+    const float half = 1.5f * h;
+    cull.set(center, {half, half, half}, load(f.atoms.items + best.atom), reach.slack);
     for (uint32_t k0 = 0; k0 < brick_row.atom_count; k0 += kWarp) {
       const uint32_t k = k0 + static_cast<uint32_t>(lane);
-      bool keep = false, near = false;
+      bool near = false;
       uint32_t i = 0;
       Sphere ball{glm::vec3(0.f), 0.f};
       if (k < brick_row.atom_count) {
         i = __ldg(atoms + k);
         ball = load(f.atoms.items + i);
         const float d = ball_depth(ball, center);
-        keep = vertices.keeps(ball, d) || i == best.atom;
-        near = keep && d >= -reach.leaf_radius - reach.slack && (points.keeps(ball, d) || i == best.atom);
+        near = (d >= -reach.leaf_radius - reach.slack && cull.keeps(ball, d)) || i == best.atom;
       }
-      const unsigned kept = __ballot_sync(kFullWarp, keep), shared = __ballot_sync(kFullWarp, near);
-      if (keep) {
-        const int place = 1 + row_atoms + place_in(kept, lane);
-        if (place < kRowWords) row[place] = i;
-      }
+      const unsigned ballot = __ballot_sync(kFullWarp, near);
       if (near) {
-        const int place = atom_count + place_in(shared, lane);
+        const int place = atom_count + place_in(ballot, lane);
         if (place < kLeafAtoms) {
           scratch.atom[place] = ball;
           scratch.atom_number[place] = i;
         }
       }
-      row_atoms += __popc(kept);
-      atom_count += __popc(shared);
+      atom_count += __popc(ballot);
     }
   }
 
-  // Arcs: the same. Those for the lattice points are nearer.
-  int row_arcs = 0, arc_count = 0;
-  const auto stage_arcs = [&](uint32_t k0, bool write_row) {
+  // Arcs that can be within depth of a point.
+  int arc_count = 0;
+  const auto stage_arcs = [&](uint32_t k0) {
     const uint32_t k = k0 + static_cast<uint32_t>(lane);
-    bool keep = false, near = false;
-    uint32_t a = 0;
-    Arc arc{};
-    if (k < brick_row.arc_count && __ldg(arc_leaves + k) >> leaf & 1) {
-      a = __ldg(arcs + k);
-      arc = load(f.arcs + a);
-      keep = true;
-      near = arc_distance2(arc, center) <= reach.sign_arcs2;
-    }
-    const unsigned kept = __ballot_sync(kFullWarp, keep), shared = __ballot_sync(kFullWarp, near);
-    if (write_row && keep) {
-      const int place = 1 + row_atoms + row_arcs + place_in(kept, lane);
-      if (place < kRowWords) row[place] = a;
-    }
+    const bool near = k < brick_row.arc_count && (__ldg(arc_leaves + k) >> leaf & 1) != 0;
+    const unsigned ballot = __ballot_sync(kFullWarp, near);
     if (near) {
-      const int place = arc_count + place_in(shared, lane);
-      if (place < kLeafArcs) scratch.arc[place] = arc;
+      const int place = arc_count + place_in(ballot, lane);
+      if (place < kLeafArcs) scratch.arc[place] = load(f.arcs + __ldg(arcs + k));
     }
-    row_arcs += __popc(kept);
-    arc_count += __popc(shared);
+    arc_count += __popc(ballot);
   };
-  for (uint32_t k0 = 0; k0 < brick_row.arc_count; k0 += kWarp) stage_arcs(k0, true);
-  if (lane == 0)
-    row[0] = 1 + row_atoms + row_arcs <= kRowWords
-                 ? static_cast<uint32_t>(row_atoms) | static_cast<uint32_t>(row_arcs) << 16
-                 : kLongRow;
+  for (uint32_t k0 = 0; k0 < brick_row.arc_count; k0 += kWarp) stage_arcs(k0);
   __syncwarp();
-  if (!job.signs) return;
 
   LeafKind kind = LeafKind::kMixed;
   if (best.depth <= -reach.leaf_radius || (best.depth <= 0.f && depth > reach.leaf_radius + reach.slack))
@@ -268,7 +240,7 @@ __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_kernel(S
       } else {
         for (uint32_t k0 = 0; k0 < brick_row.arc_count; k0 += kWarp) {
           arc_count = 0;
-          stage_arcs(k0, false);
+          stage_arcs(k0);
           __syncwarp();
           meet_arcs(arc_count);
           __syncwarp();
@@ -295,7 +267,7 @@ inline void gather_candidates(CudaExecutor &executor, const FeatureView &feature
   view.bricks = n;
   view.brick_rows = executor.allocate<BrickRow>(n).data;
   view.leaf_list = executor.allocate<uint32_t>(size_t(n) * kLeavesPerBrick).data;
-  view.leaf_row = executor.allocate<int32_t>(size_t(n) * kLeavesPerBrick).data;
+  view.leaf_place = executor.allocate<int32_t>(size_t(n) * kLeavesPerBrick).data;
   Span<CandidateCounters> counters = executor.allocate<CandidateCounters>(1);
   // Half of a brick's surroundings filled as densely as a protein.
   const float wide = 8.f * reach.spacing + 2.f * reach.grown + 2.f * features.parameters.max_radius;
@@ -319,10 +291,10 @@ inline void gather_candidates(CudaExecutor &executor, const FeatureView &feature
     executor.arena().rewind(mark);
   }
   candidates.leaves = static_cast<size_t>(found.leaves);
-  view.rows = executor.allocate<uint32_t>(candidates.leaves * kRowWords).data;
-  executor.launch("evaluate_leaves", evaluate_leaves_kernel, (candidates.leaves + kSignWarps - 1) / kSignWarps,
-                  kSignWarps * kWarp, 0,
-                  SignJob{features, bricks, reach, view, static_cast<uint32_t>(candidates.leaves), signs});
+  if (signs)
+    executor.launch("evaluate_leaves", evaluate_leaves_kernel, (candidates.leaves + kSignWarps - 1) / kSignWarps,
+                    kSignWarps * kWarp, 0,
+                    SignJob{features, bricks, reach, view, static_cast<uint32_t>(candidates.leaves), signs});
   candidates.view = view;
   candidates.slice = slice;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Distance refinement of the voxel method (QuickSES 2019, section 2.3): for every lattice point the squared distance, in
-// lattice steps, to the nearest lattice point outside all inflated balls, within a cube of points around it. The paper
-// visits the whole cube; here the minimum is taken one axis at a time, which gives the same integers.
+// Distance refinement of the voxel method (QuickSES 2019, section 2.3): for every lattice point the squared distance,
+// in lattice steps, to the nearest lattice point outside all inflated balls, within a cube of points around it. The
+// paper visits the whole cube; here the minimum is taken one axis at a time, which gives the same integers.
 #pragma once
 
 #include "surface/stages.h"
@@ -10,10 +10,10 @@ namespace quickses {
 
 // What the voxel method needs to know about a surface.
 struct GridParameters {
-  float probe, spacing;        // p, h
-  float max_radius;            // largest inflated radius
-  int32_t reach;               // ceil(p / h): half edge of the cube of lattice points
-  int32_t max_outside;         // largest squared distance, in lattice steps, at which the field is not negative
+  float probe, spacing;  // p, h
+  float max_radius;      // largest inflated radius
+  int32_t reach;         // ceil(p / h): half edge of the cube of lattice points
+  int32_t max_outside;   // largest squared distance, in lattice steps, at which the field is not negative
 };
 
 // Squared distance of a lattice point that has no outside lattice point in its cube, or anything above.
@@ -21,9 +21,9 @@ constexpr int32_t kNoneInReach = 1 << 30;
 // Largest p / h: keeps sums of three squares below kNoneInReach.
 constexpr double kMaxGridReach = 16384.0;
 
-// The field f at a lattice point: p minus the distance to the nearest outside point, -h where none is in reach. Inside is
-// f < 0, strictly. This is decided on the integers, so a zero (p / h a whole number, say h = 0.7 or 0.35 Å) is outside
-// everywhere, whatever the rounding of h * sqrt(d2).
+// The field f at a lattice point: p minus the distance to the nearest outside point, -h where none is in reach. Inside
+// is f < 0, strictly. This is decided on the integers, so a zero (p / h a whole number, say h = 0.7 or 0.35 Å) is
+// outside everywhere, whatever the rounding of h * sqrt(d2).
 QSES_FN bool grid_is_inside(const GridParameters &g, int32_t distance2) { return distance2 > g.max_outside; }
 QSES_FN float grid_value(const GridParameters &g, int32_t distance2) {
   if (distance2 >= kNoneInReach) return -g.spacing;
@@ -33,7 +33,7 @@ QSES_FN float grid_value(const GridParameters &g, int32_t distance2) {
 
 // The lattice as the later steps see it.
 struct GridField {
-  NeighborGridView atoms;   // inflated spheres, order = the caller's numbers
+  NeighborGridView atoms;  // inflated spheres, order = the caller's numbers
   BrickSet bricks;
   const uint64_t *outside;  // [brick][leaf]: bit set = in no inflated ball; so are all points of inactive bricks
   GridParameters parameters;
@@ -91,18 +91,18 @@ QSES_FN void row_distances(const GridField &f, glm::ivec3 place, int y, int z, i
   }
 }
 
-// The first N x N x N lattice points of a brick: 8 for its own, 9 for the corners of its cells too. The cube around them
-// is worked off in tiles, so that the scratch does not grow with p / h.
+// The first N x N x N lattice points of a brick: 8 for its own, 9 for the corners of its cells too. The cube around
+// them is worked off in tiles, so that the scratch does not grow with p / h.
 template <int N>
 struct DistanceScratch {
   static constexpr int kTilePlanes = 8, kTileRows = 24;
-  int32_t nearest[N * N * N];                    // the result, x fastest
-  int32_t planes[kTilePlanes * N * N];           // nearest within one plane of constant z
-  int32_t rows[kTilePlanes * kTileRows * N];     // nearest within one row along x
+  int32_t nearest[N * N * N];                 // the result, x fastest
+  int32_t planes[kTilePlanes * N * N];        // nearest within one plane of constant z
+  int32_t rows[kTilePlanes * kTileRows * N];  // nearest within one row along x
 };
 
-// Work on rows of N values: as many threads as there are values share a row, a single thread takes them all, so that its
-// compiler can vectorise.
+// Work on rows of N values: as many threads as there are values share a row, a single thread takes them all, so that
+// its compiler can vectorise.
 struct RowShare {
   int first_row, row_step, first_x, x_step;
 };
@@ -146,7 +146,8 @@ QSES_HOST_DEVICE inline void find_distances(const GridField &f, uint32_t brick, 
         for (int i = first; i <= last; ++i) {
           const int32_t *from = scratch.rows + (plane * rows + i) * N;
           const int32_t step2 = (y - y0 - i) * (y - y0 - i);
-          for (int x = share.first_x; x < N; x += share.x_step) to[x] = to[x] < from[x] + step2 ? to[x] : from[x] + step2;
+          for (int x = share.first_x; x < N; x += share.x_step)
+            to[x] = to[x] < from[x] + step2 ? to[x] : from[x] + step2;
         }
       }
       team.sync();

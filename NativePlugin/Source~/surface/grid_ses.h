@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The voxel method of QuickSES (Martinez, Krone, Baaden 2019), kept as the published baseline: lattice points are
-// classified as outside, border or inside (section 2.2), the distance to the nearest outside point is refined (2.3), and
-// marching cubes interpolates it (2.4). Here on sparse bricks, and refined at every point.
+// classified as outside, border or inside (section 2.2), the distance to the nearest outside point is refined (2.3),
+// and marching cubes interpolates it (2.4). Here on sparse bricks, and refined at every point.
 #pragma once
 
 #include "parallel/atomics.h"

@@ -113,21 +113,17 @@ QSES_FN double triangle_volume(const DoubleTriangle &d) {
   return (d.a[0] * d.n[0] + d.a[1] * d.n[1] + d.a[2] * d.n[2]) / 6.0;
 }
 
-struct TriangleAreas {
+// Area and volume of one triangle.
+struct TriangleMeasures {
   const float *positions;
   const uint32_t *indices;
   double origin[3];
-  QSES_HOST_DEVICE double operator()(size_t t) const {
-    return triangle_area(load_triangle(positions, indices + 3 * t, origin));
-  }
-};
-
-struct TriangleVolumes {
-  const float *positions;
-  const uint32_t *indices;
-  double origin[3];
-  QSES_HOST_DEVICE double operator()(size_t t) const {
-    return triangle_volume(load_triangle(positions, indices + 3 * t, origin));
+  QSES_HOST_DEVICE SumPair operator()(size_t t) const {
+    const DoubleTriangle d = load_triangle(positions, indices + 3 * t, origin);
+    SumPair pair;
+    pair.first = triangle_area(d);
+    pair.second = triangle_volume(d);
+    return pair;
   }
 };
 
@@ -139,9 +135,10 @@ Measures measure(Executor &executor, const MeshView &mesh, const MeshCounts &cou
   double c[3];
   for (int d = 0; d < 3; ++d)
     c[d] = 0.5 * (static_cast<double>(m.bounds.min[d]) + static_cast<double>(m.bounds.max[d]));
-  m.area = executor.reduce(counts.triangles, TriangleAreas{mesh.positions, mesh.indices, {c[0], c[1], c[2]}});
-  m.volume = executor.reduce(counts.triangles, TriangleVolumes{mesh.positions, mesh.indices, {c[0], c[1], c[2]}});
-  if (mesh.reversed) m.volume = -m.volume;
+  const SumPair sums = executor.template reduce<SumPair>(
+      counts.triangles, TriangleMeasures{mesh.positions, mesh.indices, {c[0], c[1], c[2]}});
+  m.area = sums.first;
+  m.volume = mesh.reversed ? -sums.second : sums.second;
   return m;
 }
 

@@ -48,8 +48,9 @@ QSES_FN Vec3<float> cross(const Vec3<float> &a, const Vec3<float> &b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-// Adds to each corner of a triangle the ways to the other two, in units of the spacing. On a closed mesh every neighbour
-// is met twice, once in each triangle of their edge, so the mean of the ways is the plain mean over the neighbours.
+// Adds to each corner of a triangle the ways to the other two, in units of the spacing. On a closed mesh every
+// neighbour is met twice, once in each triangle of their edge, so the mean of the ways is the plain mean over the
+// neighbours.
 struct AddNeighborOffsets {
   const float *positions;
   const uint32_t *indices;
@@ -96,9 +97,9 @@ struct MoveToMean {
   }
 };
 
-// Every step puts every vertex at the mean of its neighbours, all with the same weight and without the vertex itself: the
-// weights of the paper's program. That program moves the vertices one after the other, so that later ones see earlier
-// ones moved; here all move at once, and the result does not depend on their order.
+// Every step puts every vertex at the mean of its neighbours, all with the same weight and without the vertex itself:
+// the weights of the paper's program. That program moves the vertices one after the other, so that later ones see
+// earlier ones moved; here all move at once, and the result does not depend on their order.
 template <class Executor>
 void smooth_laplacian(Executor &executor, const MeshView &mesh, const MeshCounts &counts, float spacing,
                       uint32_t steps) {
