@@ -90,29 +90,34 @@ class DepthMap {
 };
 
 // Per vertex the part of the directions from which it is seen, 0 to 1; weighted by the cosine to the normal if asked
-// for.
+// for. Sums are whole numbers, so that the threads may add in any order.
 inline std::vector<float> find_light(const Mesh &mesh, const std::vector<Vec> &directions, bool by_cosine) {
-  std::vector<float> seen(mesh.positions.size(), 0.f), total(mesh.positions.size(), 0.f);
+  constexpr float kOne = 65536.f;
+  const size_t vertices = mesh.positions.size();
+  std::vector<uint32_t> seen(vertices, 0), total(vertices, 0);
   std::atomic<size_t> next{0};
   std::mutex mutex;
   run_threads([&] {
     DepthMap map(std::clamp(static_cast<int>(2 * mesh.radius / 0.25f), 256, 1024));
-    const float texel = 2 * mesh.radius / 1024.f, bias = 0.15f + texel;
-    std::vector<float> own_seen(seen.size(), 0.f), own_total(seen.size(), 0.f);
+    const float bias = 0.15f + 2 * mesh.radius / 1024.f;
+    std::vector<uint32_t> own_seen(vertices, 0), own_total(vertices, 0);
     for (size_t k; (k = next++) < directions.size();) {
       map.draw(mesh, frame_of(directions[k]));
-      for (size_t v = 0; v < seen.size(); ++v) {
-        const float cosine = dot(mesh.normals[v], directions[k]), weight = by_cosine ? cosine : 1.f;
-        if (by_cosine && cosine <= 0) continue;
-        own_total[v] += weight;
-        if (cosine > 0) own_seen[v] += weight * map.lit(mesh.positions[v] + mesh.normals[v] * 0.35f, bias);
+      for (size_t v = 0; v < vertices; ++v) {
+        const float cosine = dot(mesh.normals[v], directions[k]), weight = by_cosine ? std::max(0.f, cosine) : 1.f;
+        own_total[v] += static_cast<uint32_t>(kOne * weight);
+        if (cosine > 0)
+          own_seen[v] +=
+              static_cast<uint32_t>(kOne * weight * map.lit(mesh.positions[v] + mesh.normals[v] * 0.35f, bias));
       }
     }
     const std::lock_guard<std::mutex> lock(mutex);
-    for (size_t v = 0; v < seen.size(); ++v) seen[v] += own_seen[v], total[v] += own_total[v];
+    for (size_t v = 0; v < vertices; ++v) seen[v] += own_seen[v], total[v] += own_total[v];
   });
-  for (size_t v = 0; v < seen.size(); ++v) seen[v] = total[v] > 0 ? seen[v] / total[v] : 0.f;
-  return seen;
+  std::vector<float> light(vertices);
+  for (size_t v = 0; v < vertices; ++v)
+    light[v] = total[v] > 0 ? static_cast<float>(seen[v]) / static_cast<float>(total[v]) : 0.f;
+  return light;
 }
 
 // Evenly spread directions: over the sphere, or over a cone about an axis.

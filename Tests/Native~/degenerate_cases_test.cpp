@@ -265,7 +265,8 @@ TEST(Probe, SmallAgainstTheSpacing) {
 }
 TEST(Probe, Huge) {
   checked_surface(cluster(60, 1), settings(0.5, 20.0));
-  checked_surface(cluster(60, 1), settings(1.0, 100.0), {1e-3, 0.1});
+  // Float32 is that much coarser where the probe's centre is.
+  checked_surface(cluster(60, 1), settings(1.0, 100.0), {5e-3, 0.1});
 }
 
 TEST(Spacing, ATenth) {

@@ -33,9 +33,15 @@ T read_struct(const T *given, void (*init)(T *), const char *name) {
 }
 
 template <class T>
-void write_struct(T *out, const T &value, const char *name) {
+void check_output(const T *out, const char *name) {
   if (out->struct_size < sizeof(uint32_t) || out->struct_size > 65536)
-    invalid(std::string(name) + "->struct_size is " + std::to_string(out->struct_size) + ": initialise it first");
+    invalid(std::string(name) + "->struct_size is " + std::to_string(out->struct_size) + ": use qses_" + name +
+            "_init first");
+}
+
+template <class T>
+void write_struct(T *out, const T &value, const char *name) {
+  check_output(out, name);
   const uint32_t size = out->struct_size;
   std::memcpy(static_cast<void *>(out), &value, std::min<size_t>(size, sizeof(T)));
   out->struct_size = size;
@@ -198,7 +204,7 @@ void qses_report_init(qses_report *report) {
 qses_status qses_compute(qses_context *context, const qses_settings *settings, qses_mesh *mesh) {
   return guarded([&] {
     require(context, "context");
-    if (mesh && mesh->struct_size < sizeof(uint32_t)) invalid("mesh->struct_size is 0: use qses_mesh_init first");
+    if (mesh) check_output(mesh, "mesh");  // before the last mesh is replaced
     const qses_settings s = read_struct(settings, qses_settings_init, "qses_settings");
     check_settings(s);
     if (!context->has_atoms) throw quickses::Error(QSES_NO_RESULT, "qses_set_atoms must come before qses_compute");

@@ -10,7 +10,6 @@
 #include <omp.h>
 #include <thrust/system/omp/execution_policy.h>
 #else
-#include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/task_arena.h>
 #include <thrust/system/tbb/execution_policy.h>
@@ -25,7 +24,6 @@
 #include <cstring>
 #include <map>
 #include <memory>
-#include <optional>
 #include <thread>
 #include <typeindex>
 #include <vector>
@@ -66,14 +64,10 @@ class CpuExecutor {
       : threads_(threads ? threads : std::max(1u, std::thread::hardware_concurrency()))
 #if !defined(QSES_CPU_SYSTEM_OMP)
         ,
-        arena_threads_(static_cast<int>(threads_))
+        // More than the machine has are of no use, and TBB would complain on stderr.
+        arena_threads_(std::min(static_cast<int>(threads_), tbb::info::default_concurrency()))
 #endif
   {
-#if !defined(QSES_CPU_SYSTEM_OMP)
-    // More threads than the machine has are only started, and TBB prints no warning, if its own limit is raised.
-    if (threads_ > static_cast<unsigned>(tbb::info::default_concurrency()))
-      more_threads_.emplace(tbb::global_control::max_allowed_parallelism, threads_);
-#endif
   }
 
   unsigned threads() const { return threads_; }
@@ -260,7 +254,6 @@ class CpuExecutor {
 
   unsigned threads_;
 #if !defined(QSES_CPU_SYSTEM_OMP)
-  std::optional<tbb::global_control> more_threads_;
   tbb::task_arena arena_threads_;
 #endif
   const CpuKernels *kernels_ = &cpu_kernels();

@@ -27,6 +27,18 @@ QSES_FN float reciprocal_root(float x) {
   return 1.f / std::sqrt(x);
 #endif
 }
+// a / b, on the GPU within 2 ulp.
+template <class T>
+QSES_FN T quotient(T a, T b) {
+  return a / b;
+}
+QSES_FN float quotient(float a, float b) {
+#if defined(__CUDA_ARCH__)
+  return __fdividef(a, b);
+#else
+  return a / b;
+#endif
+}
 QSES_FN float absolute(float x) { return fabsf(x); }
 QSES_FN float maximum(float a, float b) { return a > b ? a : b; }
 QSES_FN float minimum(float a, float b) { return a < b ? a : b; }

@@ -30,10 +30,11 @@ QSES_FN ArcPoint nearest_on_arc(const Arc &arc, const Vec3<float> &x) {
   const float in_plane = square_root(along_middle * along_middle + along_side * along_side);
   float cosine, sine;
   const bool beyond = !(along_middle >= arc.cos_half * in_plane);
-  // By how much, as sine and cosine of the angle past the end, times in_plane.
+  // By how much, as sine and cosine of the angle past the end, times in_plane. Near a joint either of its arcs may come
+  // out as the nearest: distances are the same within rounding for about its square root in angle.
   const float past = arc.cos_half * absolute(along_side) - arc.sin_half * along_middle;
   const float near = arc.cos_half * along_middle + arc.sin_half * absolute(along_side);
-  const bool at_end = beyond && !(past <= 3e-5f * in_plane + 1e-6f * arc.radius && near >= 0.f);
+  const bool at_end = beyond && !(past <= 1e-3f * in_plane + 1e-6f * arc.radius && near >= 0.f);
   if (beyond) {
     cosine = arc.cos_half;
     sine = along_side < 0.f ? -arc.sin_half : arc.sin_half;

@@ -16,9 +16,8 @@ struct CandidateReach {
   float overhang;        // of vertex starts around the points of a brick or leaf
   float grown;           // of vertices around them: a start moves by up to kStartReach when it is projected
   float leaf_radius;     // ball around the points of a leaf
-  float surface_radius;  // ball around its grown box: from -h to 4h
   float start_reach;     // arcs this near to a start decide about it
-  float sign_arcs2, row_arcs2, surface_arcs2;  // squared: arcs this near to a leaf's centre
+  float sign_arcs2;      // squared: arcs this near to a leaf's centre can be within depth of one of its points
   float slack;
 
   static CandidateReach of(const SurfaceParameters &p) {
@@ -30,13 +29,9 @@ struct CandidateReach {
     r.overhang = kStartOverhang * h;
     r.grown = (kStartOverhang + kStartReach) * h;
     r.leaf_radius = 1.5f * kRoot3 * h;
-    r.surface_radius = 2.5f * kRoot3 * h + r.slack;
     r.start_reach = d + kStartReach * h + r.slack;
-    const float sign = d + r.leaf_radius + r.slack, row = r.start_reach + (1.5f + kStartOverhang) * kRoot3 * h,
-                surface = d + r.surface_radius;
+    const float sign = d + r.leaf_radius + r.slack;
     r.sign_arcs2 = sign * sign;
-    r.row_arcs2 = row * row;
-    r.surface_arcs2 = surface * surface;
     return r;
   }
 };
@@ -58,8 +53,7 @@ struct CandidateView {
   uint32_t *atoms;
   uint32_t *arcs;
   uint8_t *arc_leaves;    // per entry of arcs: bit set = can be within depth of a point of that leaf
-  uint32_t *leaf_list;    // active leaves: 8 * brick of the slice + leaf
-  int32_t *leaf_place;    // per leaf of the slice: its place in the list, -1 if inactive
+  uint32_t *leaf_list;    // leaves between whose points the surface may pass: 8 * brick of the slice + leaf
 };
 
 __device__ __forceinline__ Vec3<float> leaf_center(const Vec3<float> &low, int leaf, float h) {
@@ -101,7 +95,7 @@ struct GatherJob {
   uint64_t *signs;  // of inactive leaves; nullptr: known already
 };
 
-// Sign of a leaf that holds no surface: that of its centre. No arc is as near to it as depth.
+// Sign of a leaf between whose points no surface passes: that of its centre. No arc is as near to it as depth.
 __device__ __forceinline__ bool uniform_leaf_inside(const GatherJob &job, const uint32_t *atoms, uint32_t count,
                                                     const Vec3<float> &center) {
   float depth = -kFarAway;
@@ -160,8 +154,8 @@ __global__ __launch_bounds__(kGatherWarps *kWarp) void gather_candidates_kernel(
       if (near) {
         store(n + static_cast<uint32_t>(place_in(ballot, lane)), k);
         if (mark && f.cap_ranges[k].count != kBuriedAtom) {
-          const float inner = fmaxf(0.f, atom.radius - reach.depth - reach.surface_radius);
-          const float outer = atom.radius - reach.depth + reach.surface_radius;
+          const float radius = atom.radius - reach.depth, shell = reach.leaf_radius + reach.slack;
+          const float inner = fmaxf(0.f, radius - shell), outer = radius + shell;
 #pragma unroll
           for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
             const float d2 = length_squared(leaf_center(low, leaf, h) - Vec3<float>(atom.center));
@@ -189,16 +183,14 @@ __global__ __launch_bounds__(kGatherWarps *kWarp) void gather_candidates_kernel(
       bool near = false;
       if (on) {
         const Sphere ball = load(f.arc_bounds.items + k);
-        const float limit = ball.radius + reach.start_reach;
-        if (box_distance2(arc_low, arc_extent, ball.center) < limit * limit) {
+        const float limit = ball.radius + reach.start_reach, sign_limit = ball.radius + reach.depth + reach.slack;
+        near = box_distance2(arc_low, arc_extent, ball.center) < limit * limit;
+        if (near && box_distance2(low, extent, ball.center) < sign_limit * sign_limit) {
           const Arc arc = load(f.arcs + k);
 #pragma unroll
-          for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
-            const float d2 = arc_distance2(arc, leaf_center(low, leaf, h));
-            near |= d2 <= reach.row_arcs2;
-            if (d2 <= reach.sign_arcs2) leaves |= 1u << leaf;
-            if (d2 <= reach.surface_arcs2) active |= 1u << leaf;
-          }
+          for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf)
+            if (arc_distance2(arc, leaf_center(low, leaf, h)) <= reach.sign_arcs2) leaves |= 1u << leaf;
+          active |= leaves;
         }
       }
       const unsigned ballot = __ballot_sync(kFullWarp, near);
@@ -248,10 +240,9 @@ __global__ __launch_bounds__(kGatherWarps *kWarp) void gather_candidates_kernel(
   __syncwarp();
 
   if (lane < kLeavesPerBrick) {
-    const bool on = active >> lane & 1;
-    const unsigned long long place = first_leaf + static_cast<unsigned>(place_in(active, lane));
-    job.view.leaf_place[b * kLeavesPerBrick + static_cast<uint32_t>(lane)] = on ? static_cast<int32_t>(place) : -1;
-    if (on) job.view.leaf_list[place] = b * kLeavesPerBrick + static_cast<uint32_t>(lane);
+    if (active >> lane & 1)
+      job.view.leaf_list[first_leaf + static_cast<unsigned>(place_in(active, lane))] =
+          b * kLeavesPerBrick + static_cast<uint32_t>(lane);
   }
   if (!job.signs) return;
   for (uint32_t rest = ~active & 0xffu; rest; rest &= rest - 1) {

@@ -310,7 +310,8 @@ inline void clip_circles(CudaExecutor &executor, CircleJob job) {
   executor.fill(arc_count, 0);
 
   executor.launch("list_circles", list_circles_kernel, std::min((n + 3) / 4, processors * 32), 128, 0, job);
-  const uint32_t chunk = n < 20000 ? 64 : 256;
+  // Enough warps to fill the GPU, and enough circles per warp to refill its lanes.
+  const uint32_t chunk = static_cast<uint32_t>(std::min<size_t>(256, std::max<size_t>(64, room.circles / (processors * 64))));
   executor.launch("clip_circles", clip_circles_kernel, std::min(room.circles / (4 * chunk) + 1, processors * 64),
                   kClipThreads, 0, job, chunk);
   if (room.intervals > 0) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The CPU's inner loops, compiled once per instruction set and chosen at run time. A kernel works on one atom or one
-// brick; the drivers (solvent_features_cpu.h, exact_ses_cpu.h, mesh_cpu.h) hand out the work and own all memory.
+// brick; the drivers (solvent_features_cpu.h, exact_ses_cpu.h) hand out the work and own all memory.
 #pragma once
 
 #include "surface/stages.h"

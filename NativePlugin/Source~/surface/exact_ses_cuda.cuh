@@ -267,7 +267,6 @@ inline void gather_candidates(CudaExecutor &executor, const FeatureView &feature
   view.bricks = n;
   view.brick_rows = executor.allocate<BrickRow>(n).data;
   view.leaf_list = executor.allocate<uint32_t>(size_t(n) * kLeavesPerBrick).data;
-  view.leaf_place = executor.allocate<int32_t>(size_t(n) * kLeavesPerBrick).data;
   Span<CandidateCounters> counters = executor.allocate<CandidateCounters>(1);
   // Half of a brick's surroundings filled as densely as a protein.
   const float wide = 8.f * reach.spacing + 2.f * reach.grown + 2.f * features.parameters.max_radius;

@@ -11,7 +11,7 @@ namespace quickses {
 // angle, which is all that ordering needs, and costs one division.
 template <class T>
 QSES_FN T pseudo_angle(T x, T y) {
-  const T t = absolute(y) / (absolute(x) + absolute(y));
+  const T t = quotient(absolute(y), absolute(x) + absolute(y));
   const T half = select(x < T(0.f), T(2.f) - t, t);
   const T full = select(y < T(0.f), T(4.f) - half, half);
   return select(full >= T(4.f), T(0.f), full);

@@ -51,8 +51,8 @@ BrickSet find_grid_bricks(Executor &executor, const NeighborGridView &atoms, con
 
 // ---- classes ---------------------------------------------------------------------------------------------------
 
-// The paper's text has the conditions of "inside" and "border" the other way round; its sentences about them and its
-// program agree with these.
+// The paper's text has the conditions of "inside" and "border" the other way round; its sentences about them agree with
+// these. (Its program starts "inside" one spacing deeper, which changes no vertex.)
 enum class GridClass : uint8_t {
   kOutside,  // in no inflated ball: the probe's centre may be here
   kBorder,   // in an inflated ball, but in no atom

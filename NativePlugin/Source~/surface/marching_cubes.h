@@ -17,6 +17,7 @@ struct MeshLayout {
   uint16_t *triangle_rank;    // [brick][leaf]: triangles of the brick before that leaf
   uint32_t *vertex_base;      // [brick + 1]: vertices before the brick
   uint32_t *triangle_base;    // [brick + 1]
+  uint64_t vertex_total;      // of all bricks
 };
 
 struct MeshView {
@@ -94,9 +95,11 @@ struct CountLeaf {
   QSES_HOST_DEVICE void operator()(size_t i) const {
     const int brick = static_cast<int>(i >> 3), leaf = static_cast<int>(i & 7);
     const LeafWords c = cell_corners(leaf_words(bricks, layout.signs, brick, leaf));
-    layout.crossing[3 * i] = c.at[0] ^ c.at[1];
-    layout.crossing[3 * i + 1] = c.at[0] ^ c.at[2];
-    layout.crossing[3 * i + 2] = c.at[0] ^ c.at[4];
+    for (int axis = 0; axis < kAxes; ++axis) {
+      const uint64_t crossing = c.at[0] ^ c.at[1 << axis];
+      layout.crossing[3 * i + static_cast<size_t>(axis)] = crossing;
+      layout.vertex_rank[3 * i + static_cast<size_t>(axis)] = static_cast<uint16_t>(popcount64(crossing));
+    }
     int triangles = 0;
     for (uint64_t mixed = mixed_cells(c); mixed; mixed &= mixed - 1)
       triangles += case_triangles[cell_case(c, lowest_bit64(mixed))];
@@ -112,8 +115,9 @@ struct RankBrick {
     uint32_t v = 0, t = 0;
     for (size_t i = brick * kLeavesPerBrick; i < (brick + 1) * kLeavesPerBrick; ++i) {
       for (size_t k = 3 * i; k < 3 * i + 3; ++k) {
+        const uint32_t n = layout.vertex_rank[k];
         layout.vertex_rank[k] = static_cast<uint16_t>(v);
-        v += static_cast<uint32_t>(popcount64(layout.crossing[k]));
+        v += n;
       }
       const uint32_t n = layout.triangle_rank[i];
       layout.triangle_rank[i] = static_cast<uint16_t>(t);
@@ -185,11 +189,13 @@ MeshCounts lay_out_mesh(Executor &executor, const BrickSet &bricks, const uint64
   if (n * kBrickPoints * 5 > 0xffffffffull) {
     const double v = executor.reduce(n, LoadCount<uint32_t>{vertices.data});
     const double t = executor.reduce(n, LoadCount<uint32_t>{triangles.data});
+    layout->vertex_total = static_cast<uint64_t>(v);
     return {static_cast<uint64_t>(v), static_cast<uint64_t>(t)};
   }
   const uint32_t *const sources[2] = {vertex_base.data + n, triangle_base.data + n};
   uint32_t totals[2];
   executor.fetch_each(sources, totals, 2);
+  layout->vertex_total = totals[0];
   return {totals[0], totals[1]};
 }
 

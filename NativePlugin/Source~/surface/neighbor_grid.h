@@ -91,9 +91,9 @@ struct GatherItems {
   QSES_HOST_DEVICE void operator()(size_t i) const { sorted[i] = items[order[i]]; }
 };
 
-// First item of each cell of a chunk: found once, then walked.
+// First item of each cell of a chunk: found once, then walked. On the GPU a chunk is one cell.
+template <uint64_t kChunk>
 struct FindCellStarts {
-  static constexpr uint64_t kChunk = 16;
   const uint64_t *keys;
   uint32_t count;
   uint64_t cells;
@@ -145,8 +145,9 @@ NeighborGridView build_neighbor_grid(Executor &executor, Span<Sphere> items, con
   uint32_t *starts = nullptr;
   if (dense_table_pays(cells.cells(), n)) {
     starts = executor.template allocate<uint32_t>(cells.cells() + 1).data;
-    executor.for_each(cells.cells() / FindCellStarts::kChunk + 1,
-                      FindCellStarts{keys.data, static_cast<uint32_t>(n), cells.cells(), starts});
+    constexpr uint64_t kChunk = Executor::kIsCuda ? 1 : 16;
+    executor.for_each(cells.cells() / kChunk + 1,
+                      FindCellStarts<kChunk>{keys.data, static_cast<uint32_t>(n), cells.cells(), starts});
   }
   return {cells, sorted.data, order.data, starts, keys.data, static_cast<uint32_t>(n)};
 }

@@ -57,24 +57,35 @@ QSES_FN DeepestAtom deepest_atom(const FeatureView &f, const Candidates &candida
   return best;
 }
 
+// Where three atoms hold the probe several arcs end: to a point nearest to that end they are one and the same.
+constexpr float kSameProbe = 2e-4f;  // Å
+QSES_FN bool same_nearest(const Arc &a, const Arc &b, const Vec3<float> &x) {
+  return length_squared(nearest_on_arc(a, x).position - nearest_on_arc(b, x).position) < kSameProbe * kSameProbe;
+}
+
 struct NearestArc {
   int arc;           // -1: there is none
   float distance2;   // squared
-  float second2;     // of the second nearest
+  float second2;     // of the nearest other place
 };
 template <class Candidates>
 QSES_FN NearestArc nearest_arc(const FeatureView &f, const Candidates &candidates, const Vec3<float> &x) {
+  constexpr float kClose = 1e-3f;  // squared distances to one place differ by less
   NearestArc best{-1, kFarAway, kFarAway};
   const int arcs = candidates.arc_count();
   for (int k = 0; k < arcs; ++k) {
     const int a = static_cast<int>(candidates.arc(k));
-    const float d2 = arc_distance2(load(f.arcs + a), x);
+    const Arc arc = load(f.arcs + a);
+    const float d2 = arc_distance2(arc, x);
+    if (d2 > best.second2) continue;
+    const bool same = absolute(d2 - best.distance2) < kClose && best.arc >= 0 &&
+                      same_nearest(arc, load(f.arcs + best.arc), x);
     if (d2 < best.distance2 || (d2 == best.distance2 && a < best.arc)) {  // ties by number: they come in any order
-      best.second2 = best.distance2;
+      if (!same) best.second2 = best.distance2;
       best.distance2 = d2;
       best.arc = a;
-    } else {
-      best.second2 = minimum(best.second2, d2);
+    } else if (!same) {
+      best.second2 = d2;
     }
   }
   return best;
@@ -84,7 +95,7 @@ QSES_FN NearestArc nearest_arc(const FeatureView &f, const Candidates &candidate
 struct BoundaryPoint {
   Vec3<float> position;  // y: where the probe's centre is when it touches the surface at the vertex
   float distance;        // |x - y|; negative if x is outside the union of the inflated balls
-  float second;          // distance to the second nearest arc: only of interest where the first one decided
+  float second;          // distance to the nearest other place on arcs: only of interest where an arc decided
   qses_patch patch;
 };
 

@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: MIT
+// GPU: where the vertices of a leaf start, and which atoms and arcs can decide about them: a short row of numbers per
+// leaf, so that a thread per vertex has little to look at.
+#pragma once
+
+#include "surface/exact_ses_cuda.cuh"
+
+namespace quickses {
+namespace cuda {
+
+struct VertexJob {
+  FeatureView features;
+  BrickSet bricks;
+  MeshLayout layout;
+  CandidateReach reach;
+  CandidateView view;
+  VertexStarts starts;
+  bool halved;            // the starts are in the mesh already
+  MeshView mesh;          // its positions hold the starts, in the centred frame, until they are projected
+  uint32_t first, count;  // vertices of the slice
+  uint32_t *vertex_row;   // per vertex: number of its leaf's row, or kBrickRow and the brick of the slice
+  uint32_t *rows;         // kRowWords each
+  uint32_t row_room;
+  uint32_t *row_count;
+};
+
+// Row of a leaf's vertices: word 0 has the number of atoms in its lower and of arcs in its upper half, then they follow.
+// If they are too many the brick's row is used.
+constexpr int kRowWords = 64;
+constexpr uint32_t kBrickRow = 0x80000000u;
+constexpr int kLeafWarps = 4;
+constexpr int kMostLeafVertices = kAxes * 64;
+
+// The candidates of one vertex.
+struct RowCandidates {
+  const uint32_t *atoms;
+  const uint32_t *arcs;
+  int atom_total, arc_total;
+  __device__ __forceinline__ int atom_count() const { return atom_total; }
+  __device__ __forceinline__ int arc_count() const { return arc_total; }
+  __device__ __forceinline__ uint32_t atom(int k) const { return __ldg(atoms + k); }
+  __device__ __forceinline__ uint32_t arc(int k) const { return __ldg(arcs + k); }
+};
+
+__device__ __forceinline__ RowCandidates brick_candidates(const CandidateView &view, uint32_t brick) {
+  const BrickRow row = view.brick_rows[brick];
+  return {view.atoms + row.first_atom, view.arcs + row.first_arc, static_cast<int>(row.atom_count),
+          static_cast<int>(row.arc_count)};
+}
+
+__device__ __forceinline__ RowCandidates vertex_candidates(const VertexJob &job, uint32_t row_number) {
+  if (row_number & kBrickRow) return brick_candidates(job.view, row_number & ~kBrickRow);
+  const uint32_t *row = job.rows + static_cast<size_t>(row_number) * kRowWords;
+  const uint32_t head = __ldg(row);
+  const int atoms = static_cast<int>(head & 0xffff);
+  return {row + 1, row + 1 + atoms, atoms, static_cast<int>(head >> 16)};
+}
+
+__device__ __forceinline__ Vec3<float> stored_start(const VertexJob &job, uint32_t vertex) {
+  const float *p = job.mesh.positions + size_t(3) * vertex;
+  return {p[0], p[1], p[2]};
+}
+__device__ __forceinline__ void store_start(const VertexJob &job, uint32_t vertex, const Vec3<float> &x) {
+  float *p = job.mesh.positions + size_t(3) * vertex;
+  p[0] = x.x;
+  p[1] = x.y;
+  p[2] = x.z;
+}
+
+// A leaf and the edges it owns vertices on.
+struct VertexLeaf {
+  uint32_t brick;      // of the set
+  int leaf;
+  glm::ivec3 place;    // of the brick
+  glm::ivec3 origin;   // first point of the leaf, counted from the brick's
+  uint32_t first;      // vertex
+  int count;
+};
+
+// False if it owns none. edges: 64 * axis + bit of the lower point, in the order of the vertices. A warp together.
+__device__ __forceinline__ bool open_leaf(const VertexJob &job, uint32_t slot, VertexLeaf *out, uint8_t *edges) {
+  const int lane = lane_id();
+  out->brick = job.view.first_brick + slot / kLeavesPerBrick;
+  out->leaf = static_cast<int>(slot % kLeavesPerBrick);
+  const size_t k = (static_cast<size_t>(out->brick) * kLeavesPerBrick + static_cast<size_t>(out->leaf)) * kAxes;
+  uint64_t masks[kAxes];
+  out->count = 0;
+#pragma unroll
+  for (int axis = 0; axis < kAxes; ++axis) {
+    masks[axis] = job.layout.crossing[k + static_cast<size_t>(axis)];
+#pragma unroll
+    for (int half = 0; half < 2; ++half) {
+      const int bit = lane + 32 * half;
+      if (masks[axis] >> bit & 1)
+        edges[out->count + popcount64(masks[axis] & ((uint64_t(1) << bit) - 1))] =
+            static_cast<uint8_t>(axis << 6 | bit);
+    }
+    out->count += popcount64(masks[axis]);
+  }
+  __syncwarp();
+  if (out->count == 0) return false;
+  out->first = job.layout.vertex_base[out->brick] + job.layout.vertex_rank[k];
+  out->place = job.bricks.lattice.brick_at(job.bricks.linear[out->brick]);
+  out->origin = glm::ivec3(4 * (out->leaf & 1), 4 * (out->leaf >> 1 & 1), 4 * (out->leaf >> 2));
+  return true;
+}
+
+__device__ __forceinline__ uint64_t word_at(const VertexJob &job, const VertexLeaf &leaf, int x, int y, int z) {
+  int b = static_cast<int>(leaf.brick);
+  if ((x | y | z) & ~7) {
+    b = job.bricks.find(leaf.place + glm::ivec3(x >> 3, y >> 3, z >> 3));
+    if (b < 0) b = static_cast<int>(leaf.brick);  // no cell with a sign change reaches there: any sign will do
+  }
+  return job.layout.signs[static_cast<size_t>(b) * kLeavesPerBrick + static_cast<size_t>(leaf_of(x & 7, y & 7, z & 7))];
+}
+
+// Signs of the points of a leaf and one further on every side: row (y + 1) + 6 (z + 1), bit x + 1.
+constexpr int kWindowRows = 36;
+__device__ __forceinline__ void fill_window(const VertexJob &job, const VertexLeaf &leaf, uint8_t *window) {
+  for (int r = lane_id(); r < kWindowRows; r += kWarp) {
+    const int x = leaf.origin.x, y = leaf.origin.y + r % 6 - 1, z = leaf.origin.z + r / 6 - 1;
+    const int row = leaf_bit(0, y & 3, z & 3);
+    window[r] = static_cast<uint8_t>((word_at(job, leaf, x - 1, y, z) >> (row + 3) & 1) |
+                                     (word_at(job, leaf, x, y, z) >> row & 15) << 1 |
+                                     (word_at(job, leaf, x + 4, y, z) >> row & 1) << 5);
+  }
+  __syncwarp();
+}
+
+// Signs of the 2 x 3 x 3 points around an edge.
+struct EdgeSigns {
+  uint32_t bits;
+  __device__ __forceinline__ bool operator()(int along, int second, int third) const {
+    return bits >> (along + 2 * (second + 1) + 6 * (third + 1)) & 1;
+  }
+};
+__device__ __forceinline__ EdgeSigns signs_around(const uint8_t *window, int axis, int x, int y, int z) {
+  EdgeSigns signs{0};
+  if (axis == 0) {
+#pragma unroll
+    for (int third = 0; third < 3; ++third)
+#pragma unroll
+      for (int second = 0; second < 3; ++second)
+        signs.bits |= (window[y + second + 6 * (z + third)] >> (x + 1) & 3u) << (2 * second + 6 * third);
+  } else {
+#pragma unroll
+    for (int third = 0; third < 3; ++third)
+#pragma unroll
+      for (int along = 0; along < 2; ++along) {
+        const int row = axis == 1 ? y + 1 + along + 6 * (z + third) : y + third + 6 * (z + 1 + along);
+        const uint32_t v = window[row] >> x;  // three points along x: every second bit of the result
+        signs.bits |= ((v & 1) | (v & 2) << 1 | (v & 4) << 2) << (along + 6 * third);
+      }
+  }
+  return signs;
+}
+
+// Starts found by halving the edges, for spacings much wider than the probe. A warp per leaf.
+__global__ __launch_bounds__(kLeafWarps *kWarp) void halve_starts_kernel(VertexJob job) {
+  __shared__ uint8_t edge_memory[kLeafWarps][kMostLeafVertices];
+  const int warp = static_cast<int>(threadIdx.x) / kWarp;
+  const uint32_t slot = blockIdx.x * kLeafWarps + static_cast<uint32_t>(warp);
+  VertexLeaf leaf;
+  if (slot >= job.view.bricks * kLeavesPerBrick || !open_leaf(job, slot, &leaf, edge_memory[warp])) return;
+  const Lattice &lattice = job.bricks.lattice;
+  const uint64_t word = job.layout.signs[static_cast<size_t>(leaf.brick) * kLeavesPerBrick + static_cast<size_t>(leaf.leaf)];
+  const RowCandidates candidates = brick_candidates(job.view, slot / kLeavesPerBrick);
+  for (int k = lane_id(); k < leaf.count; k += kWarp) {
+    const int axis = edge_memory[warp][k] >> 6, bit = edge_memory[warp][k] & 63;
+    const glm::ivec3 p = lattice.first_point(leaf.place) + leaf.origin + glm::ivec3(bit & 3, bit >> 2 & 3, bit >> 4);
+    Vec3<float> inside = lattice.position(p.x, p.y, p.z);
+    Vec3<float> outside = lattice.position(p.x + (axis == 0), p.y + (axis == 1), p.z + (axis == 2));
+    if (!(word >> bit & 1)) {
+      const Vec3<float> swap = inside;
+      inside = outside;
+      outside = swap;
+    }
+    store_start(job, leaf.first + static_cast<uint32_t>(k), halve_edge(job.features, candidates, inside, outside));
+  }
+}
+
+// Starts and rows of the leaves that own vertices. A warp per leaf.
+__global__ __launch_bounds__(kLeafWarps *kWarp) void prepare_vertices_kernel(VertexJob job) {
+  __shared__ uint8_t edge_memory[kLeafWarps][kMostLeafVertices];
+  __shared__ uint8_t window_memory[kLeafWarps][kWindowRows];
+  const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();
+  const uint32_t slot = blockIdx.x * kLeafWarps + static_cast<uint32_t>(warp);
+  const uint8_t *const edges = edge_memory[warp];
+  VertexLeaf leaf;
+  if (slot >= job.view.bricks * kLeavesPerBrick || !open_leaf(job, slot, &leaf, edge_memory[warp])) return;
+  const Lattice &lattice = job.bricks.lattice;
+  const bool ring = job.starts.relax && !job.halved && !job.starts.moved;
+  if (ring) fill_window(job, leaf, window_memory[warp]);
+
+  Vec3<float> low(kFarAway, kFarAway, kFarAway), high(-kFarAway, -kFarAway, -kFarAway);
+  const uint64_t word = job.layout.signs[static_cast<size_t>(leaf.brick) * kLeavesPerBrick + static_cast<size_t>(leaf.leaf)];
+  const glm::ivec3 origin = lattice.first_point(leaf.place) + leaf.origin;
+  for (int k = lane; k < leaf.count; k += kWarp) {
+    const uint32_t vertex = leaf.first + static_cast<uint32_t>(k);
+    Vec3<float> x(0.f, 0.f, 0.f);
+    if (job.starts.moved) {
+      x = Vec3<float>(job.starts.moved[vertex]);
+    } else if (job.halved) {
+      x = stored_start(job, vertex);
+    } else {
+      const int axis = edges[k] >> 6, bit = edges[k] & 63, px = bit & 3, py = bit >> 2 & 3, pz = bit >> 4;
+      Vec3<float> move(0.f, 0.f, 0.f);
+      if (ring)
+        ring_displacement(edge_ring(signs_around(window_memory[warp], axis, px, py, pz), axis, job.starts.ring),
+                          &move.x, &move.y, &move.z);
+      const float along = vertex_start(word >> bit & 1);
+      move.x += axis == 0 ? along : 0.f;
+      move.y += axis == 1 ? along : 0.f;
+      move.z += axis == 2 ? along : 0.f;
+      x = lattice.position(origin.x + px, origin.y + py, origin.z + pz) + move * lattice.spacing;
+    }
+    store_start(job, vertex, x);
+    low = {fminf(low.x, x.x), fminf(low.y, x.y), fminf(low.z, x.z)};
+    high = {fmaxf(high.x, x.x), fmaxf(high.y, x.y), fmaxf(high.z, x.z)};
+  }
+  low = {-warp_maximum(-low.x), -warp_maximum(-low.y), -warp_maximum(-low.z)};
+  high = {warp_maximum(high.x), warp_maximum(high.y), warp_maximum(high.z)};
+  const Vec3<float> center = (low + high) * 0.5f, half = (high - low) * 0.5f;
+
+  const FeatureView &f = job.features;
+  const RowCandidates all = brick_candidates(job.view, slot / kLeavesPerBrick);
+  uint32_t number = 0;
+  if (lane == 0) number = atomicAdd(job.row_count, 1u);
+  number = __shfl_sync(kFullWarp, number, 0);
+  const int room = number < job.row_room ? kRowWords : 0;
+  uint32_t *const row = job.rows + static_cast<size_t>(number) * kRowWords;
+  int atoms = 0, arcs = 0;
+  if (all.atom_total > 0) {
+    // What can be deepest at a start, or at its projection.
+    const LeafBest best = deepest_at(f, all.atoms, static_cast<uint32_t>(all.atom_total), center);
+    const float move = kStartReach * job.reach.spacing;
+    BoxCull cull;
+    cull.set(center, {half.x + move, half.y + move, half.z + move}, load(f.atoms.items + best.atom), job.reach.slack);
+    for (int k0 = 0; k0 < all.atom_total; k0 += kWarp) {
+      const int k = k0 + lane;
+      bool keep = false;
+      uint32_t i = 0;
+      if (k < all.atom_total) {
+        i = all.atom(k);
+        const Sphere ball = load(f.atoms.items + i);
+        keep = cull.keeps(ball, ball_depth(ball, center)) || i == best.atom;
+      }
+      const unsigned ballot = __ballot_sync(kFullWarp, keep);
+      const int at = 1 + atoms + place_in(ballot, lane);
+      if (keep && at < room) row[at] = i;
+      atoms += __popc(ballot);
+    }
+  }
+  const float radius = square_root(length_squared(half)), limit = job.reach.start_reach;
+  for (int k0 = 0; k0 < all.arc_total; k0 += kWarp) {
+    const int k = k0 + lane;
+    bool keep = false;
+    uint32_t a = 0;
+    if (k < all.arc_total) {
+      a = all.arc(k);
+      const Sphere ball = load(f.arc_bounds.items + a);
+      const float near = ball.radius + limit;
+      const Vec3<float> d(fmaxf(0.f, absolute(ball.center.x - center.x) - half.x),
+                          fmaxf(0.f, absolute(ball.center.y - center.y) - half.y),
+                          fmaxf(0.f, absolute(ball.center.z - center.z) - half.z));
+      if (length_squared(d) <= near * near)
+        keep = arc_distance2(load(f.arcs + a), center) <= (limit + radius) * (limit + radius);
+    }
+    const unsigned ballot = __ballot_sync(kFullWarp, keep);
+    const int at = 1 + atoms + arcs + place_in(ballot, lane);
+    if (keep && at < room) row[at] = a;
+    arcs += __popc(ballot);
+  }
+  const bool fits = 1 + atoms + arcs <= room;
+  if (fits && lane == 0) row[0] = static_cast<uint32_t>(atoms) | static_cast<uint32_t>(arcs) << 16;
+  for (int k = lane; k < leaf.count; k += kWarp)
+    job.vertex_row[leaf.first - job.first + static_cast<uint32_t>(k)] =
+        fits ? number : kBrickRow | slot / kLeavesPerBrick;
+}
+
+}  // namespace cuda
+}  // namespace quickses

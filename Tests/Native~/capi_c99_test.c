@@ -1,0 +1,87 @@
+/* SPDX-License-Identifier: MIT */
+/* The header as a C99 program sees it, against the library as users link it. */
+#include <quickses/quickses.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static int failures = 0;
+
+#define CHECK(condition)                                                                       \
+  do {                                                                                         \
+    if (!(condition)) {                                                                        \
+      fprintf(stderr, "%s:%d: %s (%s)\n", __FILE__, __LINE__, #condition, qses_last_error()); \
+      ++failures;                                                                              \
+    }                                                                                          \
+  } while (0)
+
+static void note_progress(void *user_data, double fraction) {
+  double *last = (double *)user_data;
+  if (fraction < *last) ++failures;
+  *last = fraction;
+}
+
+int main(void) {
+  const float xyz[] = {0.0f, 0.0f, 0.0f, 1.5f, 0.2f, 0.0f, 0.1f, 1.4f, 0.3f};
+  const float radii[] = {1.7f, 1.55f, 1.52f};
+  qses_backend_description description;
+  qses_context_options options;
+  qses_context *context = NULL;
+  qses_settings settings;
+  qses_mesh mesh;
+  qses_report report;
+  qses_backend backend = QSES_BACKEND_AUTO;
+  double progress = 0.0;
+  uint32_t v, t;
+
+  CHECK(qses_abi_version() == QSES_ABI_VERSION);
+  CHECK(strlen(qses_version()) >= 5);
+  CHECK(qses_backend_info(QSES_BACKEND_CPU, &description) == QSES_OK);
+  CHECK(description.available == 1);
+
+  qses_context_options_init(&options);
+  options.backend = QSES_BACKEND_CPU;
+  options.threads = 1;
+  CHECK(qses_create(&options, &context) == QSES_OK);
+  if (!context) return 1;
+  CHECK(qses_context_info(context, &backend, &description) == QSES_OK);
+  CHECK(backend == QSES_BACKEND_CPU);
+  CHECK(qses_set_progress_callback(context, note_progress, &progress) == QSES_OK);
+  CHECK(qses_enable_stage_times(context, 1) == QSES_OK);
+  CHECK(qses_set_atoms(context, xyz, 3 * sizeof(float), radii, 3) == QSES_OK);
+
+  qses_settings_init(&settings);
+  settings.spacing = 0.25f;
+  settings.patch_types = 1;
+  settings.frame = 12;
+  qses_mesh_init(&mesh);
+  CHECK(qses_compute(context, &settings, &mesh) == QSES_OK);
+  CHECK(progress == 1.0);
+  CHECK(mesh.frame == 12);
+  CHECK(mesh.vertex_count > 100);
+  CHECK(mesh.triangle_count == 2 * mesh.vertex_count - 4); /* a closed piece without holes */
+  for (v = 0; v < mesh.vertex_count; ++v) {
+    const float *n = mesh.normals + 3 * v;
+    if (mesh.owners[v] > 2 || mesh.patches[v] > QSES_PATCH_REENTRANT) ++failures;
+    if (fabs(sqrt((double)n[0] * n[0] + (double)n[1] * n[1] + (double)n[2] * n[2]) - 1.0) > 1e-5) ++failures;
+  }
+  for (t = 0; t < 3 * mesh.triangle_count; ++t)
+    if (mesh.indices[t] >= mesh.vertex_count) ++failures;
+
+  qses_report_init(&report);
+  CHECK(qses_get_report(context, &report) == QSES_OK);
+  CHECK(report.volume > 20.0 && report.volume < 100.0);
+  CHECK(report.stage_count > 0 && strlen(report.stages[0].name) > 0);
+
+  CHECK(qses_set_positions(context, xyz, 0, 3) == QSES_OK);
+  settings.spacing = 0.0f;
+  CHECK(qses_compute(context, &settings, NULL) == QSES_INVALID_ARGUMENT);
+  CHECK(strstr(qses_last_error(), "spacing") != NULL);
+  CHECK(qses_get_mesh(context, &mesh) == QSES_OK);
+  CHECK(mesh.frame == 12);
+
+  qses_destroy(context);
+  if (failures) fprintf(stderr, "%d failures\n", failures);
+  return failures ? 1 : 0;
+}
