@@ -8,6 +8,8 @@
 
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <random>
 #include <stdexcept>
@@ -101,13 +103,29 @@ inline qses_settings settings(double spacing = 0.5, double probe = 1.4, qses_sur
   return s;
 }
 
-// A context on the CPU that ends with the scope.
+// The back end that tests of surfaces run on: the CPU, or CUDA if the environment has QUICKSES_TEST_BACKEND=cuda. Where
+// there is no device then, the test program ends with 77, which CTest takes as skipped.
+inline qses_backend tested_backend() {
+  static const qses_backend backend = [] {
+    const char *wanted = std::getenv("QUICKSES_TEST_BACKEND");
+    if (!wanted || std::string(wanted) != "cuda") return QSES_BACKEND_CPU;
+    qses_backend_description description;
+    if (qses_backend_info(QSES_BACKEND_CUDA, &description) != QSES_OK || !description.available) {
+      std::printf("skipped: no CUDA device\n");
+      std::exit(77);
+    }
+    return QSES_BACKEND_CUDA;
+  }();
+  return backend;
+}
+
+// A context that ends with the scope.
 class Context {
  public:
-  explicit Context(unsigned threads = 2, uint64_t memory_budget = 0) {
+  explicit Context(unsigned threads = 2, uint64_t memory_budget = 0, qses_backend backend = tested_backend()) {
     qses_context_options options;
     qses_context_options_init(&options);
-    options.backend = QSES_BACKEND_CPU;
+    options.backend = backend;
     options.threads = threads;
     options.memory_budget = memory_budget;
     if (qses_create(&options, &context_) != QSES_OK) throw std::runtime_error(qses_last_error());

@@ -28,7 +28,7 @@ struct BlockTeam {
   __device__ __forceinline__ void sync() const { __syncthreads(); }
 };
 
-namespace cuda {
+namespace gpu {
 
 constexpr int kForEachThreads = 128;
 
@@ -81,7 +81,7 @@ struct KeepNumber {
   QSES_HOST_DEVICE bool operator()(T i) const { return keep(static_cast<size_t>(i)); }
 };
 
-}  // namespace cuda
+}  // namespace gpu
 
 // Use from one thread at a time, with its device selected (DeviceGuard). Functions that fail throw Error.
 class CudaExecutor {
@@ -142,14 +142,14 @@ class CudaExecutor {
 
   template <class F>
   void for_each(size_t n, F f) {
-    launch("for_each", cuda::for_each_kernel<F>, (n + cuda::kForEachThreads - 1) / cuda::kForEachThreads,
-           cuda::kForEachThreads, 0, n, f);
+    launch("for_each", gpu::for_each_kernel<F>, (n + gpu::kForEachThreads - 1) / gpu::kForEachThreads,
+           gpu::kForEachThreads, 0, n, f);
   }
 
   template <class Scratch, class F>
   void for_each_brick(size_t n, F f, size_t /*grain*/ = 8) {
     if (n == 0) return;
-    const auto kernel = cuda::for_each_brick_kernel<Scratch, F>;
+    const auto kernel = gpu::for_each_brick_kernel<Scratch, F>;
     if (sizeof(Scratch) > kDefaultSharedBytes)
       check_cuda(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, sizeof(Scratch)),
                  "cudaFuncSetAttribute");
@@ -161,7 +161,7 @@ class CudaExecutor {
   void exclusive_scan(size_t n, Load load, Span<T> out) {
     check_count(n + 1, "exclusive_scan");
     const auto in = thrust::make_transform_iterator(thrust::counting_iterator<size_t>(0),
-                                                    cuda::LoadOrZero<Load, T>{load, n});
+                                                    gpu::LoadOrZero<Load, T>{load, n});
     with_temporary("cub::DeviceScan::ExclusiveSum", [&](void *temporary, size_t &bytes) {
       return cub::DeviceScan::ExclusiveSum(temporary, bytes, in, out.data, static_cast<int>(n + 1), stream_);
     });
@@ -173,7 +173,7 @@ class CudaExecutor {
     const size_t chunks = (n + kReduceChunk - 1) / kReduceChunk;
     const auto mark = arena_.mark();
     Span<T> sums = allocate<T>(chunks);
-    launch("reduce", cuda::sum_chunks_kernel<T, Load>, chunks, BlockTeam::kSize, 0, n, load, sums.data);
+    launch("reduce", gpu::sum_chunks_kernel<T, Load>, chunks, BlockTeam::kSize, 0, n, load, sums.data);
     const T *host = static_cast<const T *>(to_staging(sums.data, chunks * sizeof(T)));
     arena_.rewind(mark);
     T sum{};
@@ -206,7 +206,7 @@ class CudaExecutor {
     Span<int> count = allocate<int>(1);
     with_temporary("cub::DeviceSelect::If", [&](void *temporary, size_t &bytes) {
       return cub::DeviceSelect::If(temporary, bytes, thrust::counting_iterator<T>(0), out.data, count.data,
-                                   static_cast<int>(n), cuda::KeepNumber<Keep, T>{keep}, stream_);
+                                   static_cast<int>(n), gpu::KeepNumber<Keep, T>{keep}, stream_);
     });
     const size_t result = static_cast<size_t>(fetch(count.data));
     arena_.rewind(mark);

@@ -5,7 +5,7 @@
 #include "surface/neighbor_grid.h"
 
 namespace quickses {
-namespace cuda {
+namespace gpu {
 
 constexpr unsigned kFullWarp = 0xffffffffu;
 constexpr int kWarp = 32;
@@ -64,5 +64,5 @@ __device__ __forceinline__ void visit_runs(int rows, const RunOf &run_of, const 
   }
 }
 
-}  // namespace cuda
+}  // namespace gpu
 }  // namespace quickses

@@ -8,7 +8,7 @@
 #include "surface/stages.h"
 
 namespace quickses {
-namespace cuda {
+namespace gpu {
 
 // How far things can matter, from the spacing h and the depth d. A leaf's points are within 1.5 root(3) h of its centre.
 struct CandidateReach {
@@ -255,5 +255,5 @@ __global__ __launch_bounds__(kGatherWarps *kWarp) void gather_candidates_kernel(
   }
 }
 
-}  // namespace cuda
+}  // namespace gpu
 }  // namespace quickses

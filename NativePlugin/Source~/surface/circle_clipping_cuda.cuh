@@ -8,7 +8,7 @@
 #include "surface/solvent_features.h"
 
 namespace quickses {
-namespace cuda {
+namespace gpu {
 
 // What was counted, whether there was room for it or not.
 struct FeatureCounters {
@@ -323,5 +323,5 @@ inline void clip_circles(CudaExecutor &executor, CircleJob job) {
   executor.launch("write_arcs", write_arcs_kernel, std::min(n / 64 + 1, processors * 16), 128, 0, job, arc_first.data);
 }
 
-}  // namespace cuda
+}  // namespace gpu
 }  // namespace quickses

@@ -10,7 +10,7 @@ namespace quickses {
 // What the stages of a slice share: rows of atoms and arcs per brick, and its active leaves.
 struct CudaCandidates {
   BrickRange slice{0, 0};  // the bricks they are for; empty: not gathered yet
-  cuda::CandidateView view{};
+  gpu::CandidateView view{};
   size_t leaves = 0;
 };
 template <>
@@ -26,7 +26,7 @@ struct CandidatesOf<CudaExecutor> {
   }
 };
 
-namespace cuda {
+namespace gpu {
 
 constexpr int kSignWarps = 4;
 constexpr int kLeafAtoms = 64;  // of a leaf in shared memory; more are read from the brick's row
@@ -298,12 +298,12 @@ inline void gather_candidates(CudaExecutor &executor, const FeatureView &feature
   candidates.slice = slice;
 }
 
-}  // namespace cuda
+}  // namespace gpu
 
 // The candidates live in the executor's arena: use them until it is rewound past here.
 inline void evaluate_signs(CudaExecutor &executor, const FeatureView &features, const BrickSet &bricks,
                            BrickRange slice, CudaCandidates &candidates, uint64_t *signs) {
-  if (slice.size() > 0) cuda::gather_candidates(executor, features, bricks, slice, candidates, signs);
+  if (slice.size() > 0) gpu::gather_candidates(executor, features, bricks, slice, candidates, signs);
 }
 
 }  // namespace quickses

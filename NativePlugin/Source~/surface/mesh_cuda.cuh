@@ -6,7 +6,7 @@
 #include "surface/vertex_rows_cuda.cuh"
 
 namespace quickses {
-namespace cuda {
+namespace gpu {
 
 // ---- vertices --------------------------------------------------------------------------------------------------
 
@@ -155,14 +155,14 @@ __global__ __launch_bounds__(kTriangleWarps *kWarp) void emit_triangles_kernel(T
   }
 }
 
-}  // namespace cuda
+}  // namespace gpu
 
 // Vertices are numbered over all slices: mesh.positions[0] is that of the very first. Waits once if there are several
 // slices.
 inline void emit_vertices(CudaExecutor &executor, const FeatureView &features, const BrickSet &bricks,
                           const MeshLayout &layout, BrickRange slice, CudaCandidates &candidates,
                           const VertexStarts &starts, const MeshView &mesh) {
-  using namespace cuda;
+  using namespace gpu;
   if (slice.size() == 0) return;
   uint32_t range[2] = {0, static_cast<uint32_t>(layout.vertex_total)};
   if (slice.size() < bricks.count) {
@@ -203,7 +203,7 @@ inline void emit_vertices(CudaExecutor &executor, const FeatureView &features, c
 
 inline void emit_triangles(CudaExecutor &executor, const BrickSet &bricks, const MeshLayout &layout, BrickRange slice,
                            const TableView &table, const MeshView &mesh) {
-  using namespace cuda;
+  using namespace gpu;
   executor.launch("emit_triangles", emit_triangles_kernel,
                   std::min<size_t>((slice.size() + kTriangleWarps - size_t(1)) / kTriangleWarps,
                                    size_t(executor.multiprocessors()) * 16),

@@ -7,7 +7,7 @@
 #include "surface/circle_clipping_cuda.cuh"
 
 namespace quickses {
-namespace cuda {
+namespace gpu {
 
 struct CapJob {
   NeighborGridView atoms;
@@ -221,11 +221,11 @@ struct ExposeAtoms {
   }
 };
 
-}  // namespace cuda
+}  // namespace gpu
 
 inline SolventFeatures find_solvent_features(CudaExecutor &executor, const NeighborGridView &atoms,
                                              const SurfaceParameters &parameters) {
-  using namespace cuda;
+  using namespace gpu;
   const uint32_t n = atoms.count;
   SolventFeatures features;
   features.cap_ranges = executor.allocate<CapRange>(n);

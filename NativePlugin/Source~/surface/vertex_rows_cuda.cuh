@@ -6,7 +6,7 @@
 #include "surface/exact_ses_cuda.cuh"
 
 namespace quickses {
-namespace cuda {
+namespace gpu {
 
 struct VertexJob {
   FeatureView features;
@@ -278,5 +278,5 @@ __global__ __launch_bounds__(kLeafWarps *kWarp) void prepare_vertices_kernel(Ver
         fits ? number : kBrickRow | slot / kLeavesPerBrick;
 }
 
-}  // namespace cuda
+}  // namespace gpu
 }  // namespace quickses
