@@ -84,9 +84,11 @@ TEST_F(Backends, GpuGivesTheSameBytesAlways) {
     const Surface again = compute(gpu, atoms, s);
     ASSERT_EQ(again.mesh.positions.size(), first.mesh.positions.size());
     EXPECT_EQ(std::memcmp(again.mesh.positions.data(), first.mesh.positions.data(),
-                          first.mesh.positions.size() * sizeof(float)), 0);
-    EXPECT_EQ(std::memcmp(again.mesh.normals.data(), first.mesh.normals.data(),
-                          first.mesh.normals.size() * sizeof(float)), 0);
+                          first.mesh.positions.size() * sizeof(float)),
+              0);
+    EXPECT_EQ(
+        std::memcmp(again.mesh.normals.data(), first.mesh.normals.data(), first.mesh.normals.size() * sizeof(float)),
+        0);
     EXPECT_EQ(again.mesh.owners, first.mesh.owners);
     EXPECT_EQ(again.mesh.indices, first.mesh.indices);
     EXPECT_EQ(again.patches, first.patches);

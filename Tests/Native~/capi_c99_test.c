@@ -8,12 +8,12 @@
 
 static int failures = 0;
 
-#define CHECK(condition)                                                                       \
-  do {                                                                                         \
-    if (!(condition)) {                                                                        \
+#define CHECK(condition)                                                                      \
+  do {                                                                                        \
+    if (!(condition)) {                                                                       \
       fprintf(stderr, "%s:%d: %s (%s)\n", __FILE__, __LINE__, #condition, qses_last_error()); \
-      ++failures;                                                                              \
-    }                                                                                          \
+      ++failures;                                                                             \
+    }                                                                                         \
   } while (0)
 
 static void note_progress(void *user_data, double fraction) {
@@ -39,6 +39,10 @@ int main(void) {
   CHECK(strlen(qses_version()) >= 5);
   CHECK(qses_backend_info(QSES_BACKEND_CPU, &description) == QSES_OK);
   CHECK(description.available == 1);
+  CHECK(qses_backend_info((qses_backend)3, &description) == QSES_INVALID_ARGUMENT);
+  CHECK(strstr(qses_last_error(), "backend is 3") != NULL);
+  CHECK(qses_backend_info((qses_backend)-1, &description) == QSES_INVALID_ARGUMENT);
+  CHECK(strstr(qses_last_error(), "backend is -1") != NULL);
 
   qses_context_options_init(&options);
   options.backend = QSES_BACKEND_CPU;

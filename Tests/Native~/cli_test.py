@@ -232,6 +232,10 @@ class Errors(ProgramTest):
         self.assert_fails(COMPUTE, ["memory", "spacing"], CRAMBIN, "-o", "a.obj", "--backend", "cpu", "-v", "0.02",
                           "--memory", "4M")
 
+    def test_the_spacing_is_too_fine_for_the_index_type(self):
+        self.assert_fails(COMPUTE, ["triangles", "spacing", "Å would do"], CRAMBIN, "-o", "a.obj", "--backend", "cpu",
+                          "-v", "0.001")
+
     def test_cuda_where_there_is_none(self):
         environment = dict(os.environ, CUDA_VISIBLE_DEVICES="")  # no device on any machine
         result = subprocess.run([PROGRAM, str(CRAMBIN), "--backend", "cuda"], capture_output=True, encoding="utf-8",

@@ -21,9 +21,9 @@ CudaExecutor *device() {
   return &executor;
 }
 
-#define REQUIRE_DEVICE()                                                                              \
+#define REQUIRE_DEVICE()                                                                               \
   if (!device()) GTEST_SKIP() << "skipped: no CUDA device (" << describe_cuda_device(0).reason << ")"; \
-  CudaExecutor &executor = *device();                                                                 \
+  CudaExecutor &executor = *device();                                                                  \
   executor.arena().reset()
 
 const size_t kSizes[] = {1, 31, 128, 129, 5000, 1000003};
@@ -75,7 +75,8 @@ struct CountDigits {  // of 1000 numbers, by a team
     for (int k = team.rank(); k < 256; k += team.size()) scratch.counts[k] = 0;
     team.sync();
     for (int k = team.rank(); k < 256; k += team.size())
-      for (int j = 0; j < 1000; ++j) scratch.counts[k] += in[item * 1000 + static_cast<size_t>(j)] == static_cast<uint32_t>(k);
+      for (int j = 0; j < 1000; ++j)
+        scratch.counts[k] += in[item * 1000 + static_cast<size_t>(j)] == static_cast<uint32_t>(k);
     team.sync();
     for (int k = team.rank(); k < 256; k += team.size())
       out[item * 256 + static_cast<size_t>(k)] = static_cast<uint32_t>(scratch.counts[255 - k]);

@@ -33,7 +33,7 @@ struct StageResult {
   std::vector<uint32_t> order;
   std::vector<CapRange> cap_ranges;
   std::vector<Cap> caps;
-  std::vector<Arc> arcs;       // in the order they were found
+  std::vector<Arc> arcs;  // in the order they were found
   std::vector<uint64_t> bricks;
   std::vector<uint64_t> signs;
   std::vector<float> positions, normals;
@@ -96,8 +96,8 @@ inline DeviceStages run_device_stages(CudaExecutor &executor, const DeviceTable 
   s.lattice = lattice = layout_lattice(lattice, low, high, p.max_radius);
   Span<Sphere> given = executor.allocate<Sphere>(n), atoms = executor.allocate<Sphere>(n);
   executor.upload(given.data, host_atoms, n);
-  executor.for_each(n, CenterAtoms{given.data, lattice.center_x, lattice.center_y, lattice.center_z, p.probe,
-                                   atoms.data});
+  executor.for_each(n,
+                    CenterAtoms{given.data, lattice.center_x, lattice.center_y, lattice.center_z, p.probe, atoms.data});
   s.grid = build_neighbor_grid(executor, atoms, layout_cells(low, high, p.max_radius));
   Span<uint8_t> swallowed = executor.allocate<uint8_t>(n);
   executor.for_each(n, FindSwallowedAtoms{s.grid, p.max_radius, swallowed.data});
@@ -136,12 +136,10 @@ inline DeviceStages run_device_stages(CudaExecutor &executor, const DeviceTable 
   }
   timer.begin("marching_cubes");
   s.counts = lay_out_mesh(executor, s.bricks, s.signs.data, table.view.triangle_count, &s.layout);
-  s.mesh = {executor.allocate<float>(s.counts.vertices * 3).data,
-            executor.allocate<float>(s.counts.vertices * 3).data,
-            executor.allocate<uint32_t>(s.counts.vertices).data,
-            executor.allocate<uint8_t>(s.counts.vertices).data,
-            executor.allocate<uint32_t>(s.counts.triangles * 3).data,
-            false};
+  s.mesh = {
+      executor.allocate<float>(s.counts.vertices * 3).data,     executor.allocate<float>(s.counts.vertices * 3).data,
+      executor.allocate<uint32_t>(s.counts.vertices).data,      executor.allocate<uint8_t>(s.counts.vertices).data,
+      executor.allocate<uint32_t>(s.counts.triangles * 3).data, false};
   timer.begin("projection");
   const VertexStarts starts{options.relax, nullptr, table.view.ring};
   for (uint32_t first = 0; first < count; first += per_slice) {
@@ -200,18 +198,14 @@ inline Point operator-(Point a, Point b) { return {a.x - b.x, a.y - b.y, a.z - b
 inline Point operator*(Point a, double s) { return {a.x * s, a.y * s, a.z * s}; }
 inline double dot(Point a, Point b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 inline double length(Point a) { return std::sqrt(dot(a, a)); }
-inline Point cross(Point a, Point b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
+inline Point cross(Point a, Point b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
 inline Point to_point(const glm::vec3 &v) { return {v.x, v.y, v.z}; }
 
 // An exposed stretch of the circle of two atoms, from all pairs and all third atoms, in double.
 struct ExactArc {
   Point center, e1, e2;
   double radius, begin, end;  // radians, end > begin
-  Point at(double angle) const {
-    return center + (e1 * std::cos(angle) + e2 * std::sin(angle)) * radius;
-  }
+  Point at(double angle) const { return center + (e1 * std::cos(angle) + e2 * std::sin(angle)) * radius; }
 };
 
 // The boundary of a union of balls, from all its atoms.
@@ -222,8 +216,8 @@ class ExactBoundary {
       bool inside_another = spheres[i].center.x > 0.5f * kFarAway;
       for (size_t j = 0; j < spheres.size() && !inside_another; ++j) {
         const double d = length(to_point(spheres[i].center) - to_point(spheres[j].center));
-        inside_another = j != i && (spheres[j].radius > spheres[i].radius ||
-                                    (spheres[j].radius == spheres[i].radius && j < i)) &&
+        inside_another = j != i &&
+                         (spheres[j].radius > spheres[i].radius || (spheres[j].radius == spheres[i].radius && j < i)) &&
                          d <= double(spheres[j].radius) - spheres[i].radius + 1e-5;
       }
       if (!inside_another) balls_.push_back({to_point(spheres[i].center), spheres[i].radius});
@@ -276,8 +270,8 @@ class ExactBoundary {
         const Point n = axis * (1 / d);
         const double along = (d * d + ri * ri - rj * rj) / (2 * d), radius2 = ri * ri - along * along;
         if (radius2 <= 1e-12) continue;
-        const Point helper = std::fabs(n.x) < 0.7 ? Point{1, 0, 0} : Point{0, 1, 0};
-        Point e1 = cross(n, helper);
+        const Point other = std::fabs(n.x) < 0.7 ? Point{1, 0, 0} : Point{0, 1, 0};
+        Point e1 = cross(n, other);
         e1 = e1 * (1 / length(e1));
         add_exposed({balls_[i].center + n * along, e1, cross(n, e1), std::sqrt(radius2), 0, 0}, i, j);
       }

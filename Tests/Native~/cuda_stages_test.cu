@@ -38,9 +38,9 @@ Molecule crambin() {
     if (line.compare(0, 6, "ATOM  ") != 0 && line.compare(0, 6, "HETATM") != 0) continue;
     const char element = line[13];
     const float radius = element == 'O' ? 1.52f : element == 'C' ? 1.7f : element == 'N' ? 1.55f : 1.8f;
-    m.atoms.push_back({glm::vec3(std::stof(line.substr(30, 8)), std::stof(line.substr(38, 8)),
-                                 std::stof(line.substr(46, 8))),
-                       radius});
+    m.atoms.push_back(
+        {glm::vec3(std::stof(line.substr(30, 8)), std::stof(line.substr(38, 8)), std::stof(line.substr(46, 8))),
+         radius});
   }
   return m;
 }
@@ -115,7 +115,8 @@ void check_signs(const StageResult &r, const ExactBoundary &exact) {
           const Point q{p.x, p.y, p.z};
           const double in_ball = exact.depth(q);
           double field = in_ball - 0.0;  // with depth 0 the sign is that of the union
-          if (depth > 0 && in_ball > 0) field = in_ball > depth ? in_ball - depth : exact.distance(q, depth + 1) - depth;
+          if (depth > 0 && in_ball > 0)
+            field = in_ball > depth ? in_ball - depth : exact.distance(q, depth + 1) - depth;
           const bool inside = r.signs[b * kLeavesPerBrick + leaf_of(x, y, z)] >> leaf_bit(x & 3, y & 3, z & 3) & 1;
           ++total;
           if (std::fabs(field) < 3e-4)
@@ -259,6 +260,58 @@ TEST(CudaStages, StrayAtom) {
   EXPECT_EQ(mesh_checks::manifold_fault(mesh), "");
   // 10,000 Å from the origin of the centred frame a float is good to 1e-3 Å.
   check_mesh(r, exact, 2e-2, 3);
+}
+
+// Vertices start where the table of marching cubes puts them, worked out point by point.
+TEST(CudaStages, StartsOfVertices) {
+  REQUIRE_DEVICE();
+  CudaExecutor &executor = *device();
+  const Molecule m = random_molecule(80, 8.f, 31);
+  const StageOptions o = options(0.5f);
+  const StageResult r = run_stages(executor, m, o);
+  const DeviceTable table(executor);
+  CudaStageTimer timer(executor);
+  const DeviceStages s = run_device_stages(executor, table, timer, m.atoms.data(), m.atoms.size(), bounds_of(m), o);
+  CudaCandidates candidates;
+  gpu::prepare_vertices(executor, s.features, s.bricks, s.layout, {0, s.bricks.count}, candidates,
+                        {true, nullptr, table.view.ring}, s.mesh);
+  const std::vector<float> starts = to_host(executor, s.mesh.positions, s.counts.vertices * 3);
+
+  const BrickSet bricks{r.lattice, r.bricks.data(), nullptr, static_cast<uint32_t>(r.bricks.size())};
+  size_t vertex = 0;
+  for (size_t b = 0; b < r.bricks.size(); ++b) {
+    const glm::ivec3 place = r.lattice.brick_at(r.bricks[b]);
+    for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf)
+      for (int axis = 0; axis < kAxes; ++axis)
+        for (int bit = 0; bit < 64; ++bit) {
+          const glm::ivec3 p(4 * (leaf & 1) + (bit & 3), 4 * (leaf >> 1 & 1) + (bit >> 2 & 3),
+                             4 * (leaf >> 2) + (bit >> 4));
+          const int second_axis = axis == 0 ? 1 : 0, third_axis = axis == 2 ? 1 : 2;
+          bool known = true;
+          const auto inside = [&](int along, int second, int third) {
+            glm::ivec3 q = p;
+            q[axis] += along;
+            q[second_axis] += second;
+            q[third_axis] += third;
+            const int k = bricks.find(place + glm::ivec3(q.x >> 3, q.y >> 3, q.z >> 3));
+            known &= k >= 0;
+            return k >= 0 && (r.signs[static_cast<size_t>(k) * kLeavesPerBrick + leaf_of(q.x & 7, q.y & 7, q.z & 7)] >>
+                                  leaf_bit(q.x & 3, q.y & 3, q.z & 3) &
+                              1) != 0;
+          };
+          const bool low = inside(0, 0, 0);
+          if (low == inside(1, 0, 0) || !known) continue;
+          float move[3];
+          ring_displacement(edge_ring(inside, axis, marching_cubes_table().ring), &move[0], &move[1], &move[2]);
+          ASSERT_TRUE(known);
+          move[axis] += vertex_start(low);
+          const glm::ivec3 first = r.lattice.first_point(place) + p;
+          for (int d = 0; d < 3; ++d)
+            ASSERT_NEAR(starts[3 * vertex + d], (first[d] + move[d]) * o.spacing, 1e-4) << "vertex " << vertex;
+          ++vertex;
+        }
+  }
+  EXPECT_EQ(vertex, s.counts.vertices);
 }
 
 TEST(CudaStages, SameBytesEveryTimeAndInSlices) {

@@ -98,7 +98,9 @@ TEST(SameBytes, WithAProgressCallback) {
     SCOPED_TRACE(c.name);
     const Context context;
     int calls = 0;
-    ASSERT_EQ(qses_set_progress_callback(context, [](void *n, double) { ++*static_cast<int *>(n); }, &calls), QSES_OK);
+    ASSERT_EQ(qses_set_progress_callback(
+                  context, [](void *n, double) { ++*static_cast<int *>(n); }, &calls),
+              QSES_OK);
     expect_same_bytes(compute(c.atoms, c.settings), compute(context, c.atoms, c.settings));
     EXPECT_GT(calls, 0);
   }

@@ -37,7 +37,8 @@ struct ExactRun {
     AtomBounds bounds{glm::vec3(1e9f), glm::vec3(-1e9f), 0.f};
     Span<Sphere> raw = executor.allocate<Sphere>(given.size()), centered = executor.allocate<Sphere>(given.size());
     for (size_t i = 0; i < given.size(); ++i) {
-      raw[i] = {glm::vec3(given.positions[3 * i], given.positions[3 * i + 1], given.positions[3 * i + 2]), given.radii[i]};
+      const float *p = &given.positions[3 * i];
+      raw[i] = {glm::vec3(p[0], p[1], p[2]), given.radii[i]};
       bounds.low = glm::min(bounds.low, raw[i].center);
       bounds.high = glm::max(bounds.high, raw[i].center);
       bounds.max_radius = std::max(bounds.max_radius, raw[i].radius);
@@ -69,8 +70,9 @@ struct ExactRun {
   // The whole method.
   mesh_checks::Mesh mesh() {
     const MarchingCubesTable &table = marching_cubes_table();
-    Run<CpuExecutor, CpuStageTimer> run{executor, timer, memory, progress, {table.triangle_count, table.edges, table.ring},
-                                        settings, parameters, lattice, low, high, atoms, &report};
+    const TableView view{table.triangle_count, table.edges, table.ring};
+    Run<CpuExecutor, CpuStageTimer> run{executor,   timer,   memory, progress, view,  settings,
+                                        parameters, lattice, low,    high,     atoms, &report};
     const MeshMemoryView built = build_exact_surface(run);
     mesh_checks::Mesh m;
     m.positions.assign(built.view.positions, built.view.positions + 3 * built.vertices);
@@ -80,7 +82,9 @@ struct ExactRun {
     return m;
   }
 
-  Point to_caller(double x, double y, double z) const { return {x + lattice.center_x, y + lattice.center_y, z + lattice.center_z}; }
+  Point to_caller(double x, double y, double z) const {
+    return {x + lattice.center_x, y + lattice.center_y, z + lattice.center_z};
+  }
 };
 
 inline Point point(const glm::vec3 &v) {

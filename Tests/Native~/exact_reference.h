@@ -178,8 +178,7 @@ inline std::vector<Point> sample_boundary(const std::vector<Ball> &balls, size_t
     for (const Point &d : directions) {
       const Point y = b.center + b.radius * d;
       bool free = true;
-      for (const Ball &other : balls)
-        free = free && (&other == &b || length(y - other.center) >= other.radius - 1e-9);
+      for (const Ball &other : balls) free = free && (&other == &b || length(y - other.center) >= other.radius - 1e-9);
       if (free) samples.push_back(y);
     }
   return samples;

@@ -120,8 +120,10 @@ TEST(TwoAtoms, HaveATorusBetweenThem) {
       const Surface surface = checked_surface(atoms, s, {1e-4, 1e-3});
       const Point between = point(atoms.center(1)) - point(atoms.center(0));
       const double d = length(between);
-      check_pair(surface, {point(atoms.center(0)), (1 / d) * between, d, static_cast<double>(atoms.radii[0]),
-                           static_cast<double>(atoms.radii[1])}, static_cast<double>(1.4f));
+      check_pair(surface,
+                 {point(atoms.center(0)), (1 / d) * between, d, static_cast<double>(atoms.radii[0]),
+                  static_cast<double>(atoms.radii[1])},
+                 static_cast<double>(1.4f));
       EXPECT_EQ(mesh_checks::piece_count(surface.mesh), 1u);
     }
 }
@@ -238,7 +240,8 @@ void check_against_samples(const Atoms &atoms, double h, double p, size_t per_sp
   const double apart = std::sqrt(4 * kPi * largest * largest / static_cast<double>(per_sphere));
   std::vector<double> excess;
   for (size_t v = 0; v < surface.vertex_count(); v += 3)
-    excess.push_back(exact_reference::nearest_sample(samples, point(surface.mesh.position(v))) - boundary_probe(settings(h, p)));
+    excess.push_back(exact_reference::nearest_sample(samples, point(surface.mesh.position(v))) -
+                     boundary_probe(settings(h, p)));
   EXPECT_GE(quantile(excess, 0), -0.05);
   EXPECT_GE(quantile(excess, 0.01), -1e-3);
   EXPECT_LE(quantile(excess, 0.5), 0.25 * apart);
@@ -251,7 +254,8 @@ void check_against_samples(const Atoms &atoms, double h, double p, size_t per_sp
     for (size_t i = 0; i < atoms.size(); ++i)
       if (std::abs(length(samples[k] - boundary.balls()[i].center) - boundary.balls()[i].radius) < 1e-9) atom = i;
     const Point c = boundary.balls()[atom].center;
-    const Point touched = c + (static_cast<double>(atoms.radii[atom]) / boundary.balls()[atom].radius) * (samples[k] - c);
+    const double share = static_cast<double>(atoms.radii[atom]) / boundary.balls()[atom].radius;
+    const Point touched = c + share * (samples[k] - c);
     double best = exact_reference::kInfinity;
     for (size_t v = 0; v < surface.vertex_count(); ++v)
       best = std::min(best, length(point(surface.mesh.position(v)) - touched));

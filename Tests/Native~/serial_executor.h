@@ -46,9 +46,9 @@ class SerialExecutor {
     }
     out[n] = sum;
   }
-  template <class Load>
-  double reduce(size_t n, Load load) {
-    double sum = 0;
+  template <class T = double, class Load>
+  T reduce(size_t n, Load load) {
+    T sum{};
     for (size_t i = 0; i < n; ++i) sum += load(i);
     return sum;
   }

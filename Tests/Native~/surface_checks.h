@@ -49,10 +49,11 @@ inline void check_owners(const Atoms &atoms, const mesh_checks::Mesh &mesh, cons
     ASSERT_LT(mesh.owners[v], atoms.size()) << "vertex " << v;
     double nearest = exact_reference::kInfinity;
     for (size_t i = 0; i < atoms.size(); ++i)
-      nearest = std::min(nearest, exact_reference::length(x - point(atoms.center(i))) -
-                                      static_cast<double>(atoms.radii[i]));
+      nearest =
+          std::min(nearest, exact_reference::length(x - point(atoms.center(i))) - static_cast<double>(atoms.radii[i]));
     const size_t owner = mesh.owners[v];
-    const double own = exact_reference::length(x - point(atoms.center(owner))) - static_cast<double>(atoms.radii[owner]);
+    const double own =
+        exact_reference::length(x - point(atoms.center(owner))) - static_cast<double>(atoms.radii[owner]);
     if (own > nearest + limits.owner_tie && ++wrong < 4)
       ADD_FAILURE() << "vertex " << v << " belongs to atom " << owner << ", " << own - nearest << " Å too far away";
   }

@@ -87,7 +87,10 @@ inline Atoms read_pdb(const std::string &path) {
     if (line.compare(0, 4, "ATOM") != 0) continue;
     const char element = line.at(13);
     atoms.add(std::stod(line.substr(30, 8)), std::stod(line.substr(38, 8)), std::stod(line.substr(46, 8)),
-              element == 'O' ? 1.52 : element == 'N' ? 1.55 : element == 'C' ? 1.7 : 1.8);
+              element == 'O'   ? 1.52
+              : element == 'N' ? 1.55
+              : element == 'C' ? 1.7
+                               : 1.8);
   }
   return atoms;
 }

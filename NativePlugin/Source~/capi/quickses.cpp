@@ -54,8 +54,13 @@ void check_range(const char *name, double value, double low, double high, const 
   invalid(text);
 }
 
-void check_choice(const char *name, int64_t value, int64_t last) {
-  if (value < 0 || value > last)
+// A C caller may put any number into an enumeration: it is looked at as a number before it is used as one.
+template <class Choice>
+void check_choice(const char *name, const Choice &given, Choice last) {
+  int32_t value;
+  static_assert(sizeof value == sizeof given, "enumerations of the header have the size of an int");
+  std::memcpy(&value, &given, sizeof value);
+  if (value < 0 || value > static_cast<int32_t>(last))
     invalid(std::string(name) + " is " + std::to_string(value) + ", which names nothing in the header");
 }
 
@@ -69,11 +74,10 @@ void check_settings(const qses_settings &s) {
   if (s.slice_size != 0) check_range("settings.slice_size", s.slice_size, 8, 4294967295.0, " lattice points, or 0");
   if (s.method == QSES_METHOD_GRID && s.surface != QSES_SURFACE_SES)
     invalid("settings.method GRID makes the solvent-excluded surface only: use EXACT for the others");
-  if (s.method == QSES_METHOD_GRID && s.patch_types)
-    invalid("settings.patch_types is not available with method GRID");
+  if (s.method == QSES_METHOD_GRID && s.patch_types) invalid("settings.patch_types is not available with method GRID");
 }
 
-void check_backend(qses_backend backend) { check_choice("backend", backend, QSES_BACKEND_CPU); }
+void check_backend(const qses_backend &backend) { check_choice("backend", backend, QSES_BACKEND_CPU); }
 
 // The back end to use for what was asked; fills the description and, for AUTO, why it is not CUDA.
 qses_backend choose_backend(qses_backend asked, int device, qses_backend_description *description) {
@@ -128,8 +132,8 @@ qses_status qses_create(const qses_context_options *options, qses_context **cont
     if (made->backend == QSES_BACKEND_CUDA) made->engine = quickses::make_cuda_engine(o.device, o.memory_budget);
 #endif
     if (!made->engine)
-      made->engine = quickses::make_cpu_engine(
-          o.threads, o.memory_budget ? o.memory_budget : made->description.free_memory);
+      made->engine =
+          quickses::make_cpu_engine(o.threads, o.memory_budget ? o.memory_budget : made->description.free_memory);
     *context = made.release();
   });
 }
@@ -167,7 +171,8 @@ qses_status qses_set_atoms(qses_context *context, const float *positions, size_t
 qses_status qses_set_positions(qses_context *context, const float *positions, size_t stride, size_t count) {
   return guarded([&] {
     require(context, "context");
-    if (!context->has_atoms) throw quickses::Error(QSES_NO_RESULT, "qses_set_atoms must come before qses_set_positions");
+    if (!context->has_atoms)
+      throw quickses::Error(QSES_NO_RESULT, "qses_set_atoms must come before qses_set_positions");
     if (count != context->atom_count)
       invalid("count is " + std::to_string(count) + " but the context has " + std::to_string(context->atom_count) +
               " atoms");

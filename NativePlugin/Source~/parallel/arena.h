@@ -84,8 +84,8 @@ class Arena {
     used_ = m.used;
   }
 
-  uint64_t peak() const { return peak_; }       // most bytes in use since the last reset
-  uint64_t held() const { return held_; }       // bytes of all blocks
+  uint64_t peak() const { return peak_; }  // most bytes in use since the last reset
+  uint64_t held() const { return held_; }  // bytes of all blocks
   uint64_t block_count() const { return blocks_.size(); }
 
   void release() {
@@ -118,8 +118,9 @@ class Arena {
       memory = Source::acquire(wanted);
     }
     if (!memory)
-      throw Error(QSES_OUT_OF_MEMORY, std::string(Source::kName) + " refused " + describe_bytes(wanted) + " on top of " +
-                                          describe_bytes(held_) + ": use a larger spacing or a smaller slice size");
+      throw Error(QSES_OUT_OF_MEMORY, std::string(Source::kName) + " refused " + describe_bytes(wanted) +
+                                          " on top of " + describe_bytes(held_) +
+                                          ": use a larger spacing or a smaller slice size");
     blocks_.push_back({memory, wanted});
     held_ += wanted;
   }

@@ -173,7 +173,11 @@ class CpuExecutor {
     const size_t chunks = (n + kReduceChunk - 1) / kReduceChunk;
     std::vector<T> sums(chunks);
     for_each_brick<char>(
-        chunks, [&](SoloTeam, char &, size_t chunk) { SumChunk<T, Load>{load, n, sums.data()}(chunk); }, 4);
+        chunks,
+        [&](SoloTeam, char &, size_t chunk) {
+          SumChunk<T, Load>{load, n, sums.data()}(chunk);
+        },
+        4);
     T sum{};
     for (const T &s : sums) sum += s;
     return sum;

@@ -6,12 +6,12 @@
 #include "parallel/cuda_memory.h"
 #include "parallel/executor.h"
 
-#include <cub/device/device_radix_sort.cuh>
-#include <cub/device/device_scan.cuh>
-#include <cub/device/device_select.cuh>
 #include <cuda_runtime.h>
 #include <thrust/iterator/counting_iterator.h>
 #include <thrust/iterator/transform_iterator.h>
+#include <cub/device/device_radix_sort.cuh>
+#include <cub/device/device_scan.cuh>
+#include <cub/device/device_select.cuh>
 
 #include <algorithm>
 #include <cstring>
@@ -160,8 +160,8 @@ class CudaExecutor {
   template <class Load, class T>
   void exclusive_scan(size_t n, Load load, Span<T> out) {
     check_count(n + 1, "exclusive_scan");
-    const auto in = thrust::make_transform_iterator(thrust::counting_iterator<size_t>(0),
-                                                    gpu::LoadOrZero<Load, T>{load, n});
+    const auto in =
+        thrust::make_transform_iterator(thrust::counting_iterator<size_t>(0), gpu::LoadOrZero<Load, T>{load, n});
     with_temporary("cub::DeviceScan::ExclusiveSum", [&](void *temporary, size_t &bytes) {
       return cub::DeviceScan::ExclusiveSum(temporary, bytes, in, out.data, static_cast<int>(n + 1), stream_);
     });
@@ -243,8 +243,7 @@ class CudaExecutor {
   }
   template <class T>
   void fill(Span<T> span, int byte) {
-    if (span.size)
-      check_cuda(cudaMemsetAsync(span.data, byte, span.size * sizeof(T), stream_), "cudaMemsetAsync");
+    if (span.size) check_cuda(cudaMemsetAsync(span.data, byte, span.size * sizeof(T), stream_), "cudaMemsetAsync");
   }
   void wait() { check_cuda(cudaStreamSynchronize(stream_), "cudaStreamSynchronize"); }
 

@@ -53,8 +53,8 @@ CudaDevice describe_cuda_device(int ordinal) {
     return device;
   }
   if (ordinal < 0 || ordinal >= count) {
-    device.reason = "there is no CUDA device " + std::to_string(ordinal) + ": the last one is " +
-                    std::to_string(count - 1);
+    device.reason =
+        "there is no CUDA device " + std::to_string(ordinal) + ": the last one is " + std::to_string(count - 1);
     return device;
   }
   cudaDeviceProp properties{};

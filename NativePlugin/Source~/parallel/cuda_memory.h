@@ -8,14 +8,14 @@
 
 namespace quickses {
 
-// Throws Error if a CUDA call failed: QSES_OUT_OF_MEMORY where memory was refused, QSES_DEVICE_ERROR otherwise, with the
-// call's name. error is a cudaError_t. The runtime's record of the failure is cleared.
+// Throws Error if a CUDA call failed: QSES_OUT_OF_MEMORY where memory was refused, QSES_DEVICE_ERROR otherwise, with
+// the call's name. error is a cudaError_t. The runtime's record of the failure is cleared.
 void check_cuda(int error, const char *call);
 
 struct CudaDevice {
   bool available = false;
-  std::string reason;  // why not, if it is not available
-  std::string name;    // empty if there is no such device
+  std::string reason;                          // why not, if it is not available
+  std::string name;                            // empty if there is no such device
   uint64_t total_memory = 0, free_memory = 0;  // bytes
   int multiprocessors = 0;
 };

@@ -85,8 +85,8 @@ QSES_FN Pack select(PackMask m, Pack yes, Pack no) { return _mm256_blendv_ps(no.
 QSES_FN uint32_t lane_bits(PackMask m) { return static_cast<uint32_t>(_mm256_movemask_ps(m.v)); }
 QSES_FN PackMask lane_mask(uint32_t bits) {
   const __m256i one = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
-  return {_mm256_castsi256_ps(
-      _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(static_cast<int>(bits)), one), one))};
+  return {
+      _mm256_castsi256_ps(_mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(static_cast<int>(bits)), one), one))};
 }
 QSES_FN Pack load_pack(const float *p) { return _mm256_loadu_ps(p); }
 QSES_FN void store_pack(float *p, Pack a) { _mm256_storeu_ps(p, a.v); }
@@ -105,15 +105,14 @@ QSES_FN void load_columns(const float *p, Pack *x, Pack *y, Pack *z, Pack *w) {
 }
 // Writes the lanes of the set to dst, packed together. dst must have room for eight.
 QSES_FN void store_lanes(float *dst, uint32_t set, Pack a) {
-  _mm256_storeu_ps(dst, _mm256_permutevar8x32_ps(
-                            a.v, _mm256_load_si256(reinterpret_cast<const __m256i *>(kLaneTable.lanes[set]))));
+  _mm256_storeu_ps(
+      dst, _mm256_permutevar8x32_ps(a.v, _mm256_load_si256(reinterpret_cast<const __m256i *>(kLaneTable.lanes[set]))));
 }
 // Writes base + lane for the lanes of the set. dst must have room for eight. Returns their number.
 QSES_FN int store_lane_numbers(int32_t *dst, uint32_t set, int32_t base) {
-  _mm256_storeu_si256(
-      reinterpret_cast<__m256i *>(dst),
-      _mm256_add_epi32(_mm256_set1_epi32(base),
-                       _mm256_load_si256(reinterpret_cast<const __m256i *>(kLaneTable.lanes[set]))));
+  _mm256_storeu_si256(reinterpret_cast<__m256i *>(dst),
+                      _mm256_add_epi32(_mm256_set1_epi32(base),
+                                       _mm256_load_si256(reinterpret_cast<const __m256i *>(kLaneTable.lanes[set]))));
   return popcount64(set);
 }
 QSES_FN float horizontal_minimum(Pack a) {
@@ -212,6 +211,7 @@ struct Pack {
 struct PackMask {
   bool v[8];
 };
+// clang-format off
 #define QSES_EACH_LANE for (int i = 0; i < 8; ++i)
 QSES_FN Pack operator+(Pack a, Pack b) { QSES_EACH_LANE a.v[i] += b.v[i]; return a; }
 QSES_FN Pack operator-(Pack a, Pack b) { QSES_EACH_LANE a.v[i] -= b.v[i]; return a; }
@@ -240,6 +240,7 @@ QSES_FN void load_columns(const float *p, Pack *x, Pack *y, Pack *z, Pack *w) {
 QSES_FN float horizontal_minimum(Pack a) { QSES_EACH_LANE if (a.v[i] < a.v[0]) a.v[0] = a.v[i]; return a.v[0]; }
 QSES_FN float horizontal_maximum(Pack a) { QSES_EACH_LANE if (a.v[i] > a.v[0]) a.v[0] = a.v[i]; return a.v[0]; }
 #undef QSES_EACH_LANE
+// clang-format on
 
 #endif
 

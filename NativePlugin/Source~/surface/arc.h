@@ -39,8 +39,8 @@ QSES_FN ArcPoint nearest_on_arc(const Arc &arc, const Vec3<float> &x) {
     cosine = arc.cos_half;
     sine = along_side < 0.f ? -arc.sin_half : arc.sin_half;
   } else if (in_plane > 1e-6f * arc.radius) {
-    cosine = along_middle / in_plane;
-    sine = along_side / in_plane;
+    cosine = quotient(along_middle, in_plane);
+    sine = quotient(along_side, in_plane);
   } else {  // on the axis: any direction is as near, so a fixed one
     cosine = 1.f;
     sine = 0.f;

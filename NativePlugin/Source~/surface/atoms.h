@@ -30,8 +30,8 @@ inline Lattice center_lattice(const AtomBounds &bounds, float spacing) {
   const double size = static_cast<double>(spacing) * kBrickEdge;
   double center[3];
   for (int d = 0; d < 3; ++d)
-    center[d] = std::floor(0.5 * (static_cast<double>(bounds.low[d]) + static_cast<double>(bounds.high[d])) / size) *
-                size;
+    center[d] =
+        std::floor(0.5 * (static_cast<double>(bounds.low[d]) + static_cast<double>(bounds.high[d])) / size) * size;
   lattice.center_x = center[0];
   lattice.center_y = center[1];
   lattice.center_z = center[2];

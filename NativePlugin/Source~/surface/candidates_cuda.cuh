@@ -10,14 +10,15 @@
 namespace quickses {
 namespace gpu {
 
-// How far things can matter, from the spacing h and the depth d. A leaf's points are within 1.5 root(3) h of its centre.
+// How far things can matter, from the spacing h and the depth d. A leaf's points are within 1.5 root(3) h of its
+// centre.
 struct CandidateReach {
   float depth, spacing;
-  float overhang;        // of vertex starts around the points of a brick or leaf
-  float grown;           // of vertices around them: a start moves by up to kStartReach when it is projected
-  float leaf_radius;     // ball around the points of a leaf
-  float start_reach;     // arcs this near to a start decide about it
-  float sign_arcs2;      // squared: arcs this near to a leaf's centre can be within depth of one of its points
+  float overhang;     // of vertex starts around the points of a brick or leaf
+  float grown;        // of vertices around them: a start moves by up to kStartReach when it is projected
+  float leaf_radius;  // ball around the points of a leaf
+  float start_reach;  // arcs this near to a start decide about it
+  float sign_arcs2;   // squared: arcs this near to a leaf's centre can be within depth of one of its points
   float slack;
 
   static CandidateReach of(const SurfaceParameters &p) {
@@ -52,8 +53,8 @@ struct CandidateView {
   BrickRow *brick_rows;
   uint32_t *atoms;
   uint32_t *arcs;
-  uint8_t *arc_leaves;    // per entry of arcs: bit set = can be within depth of a point of that leaf
-  uint32_t *leaf_list;    // leaves between whose points the surface may pass: 8 * brick of the slice + leaf
+  uint8_t *arc_leaves;  // per entry of arcs: bit set = can be within depth of a point of that leaf
+  uint32_t *leaf_list;  // leaves between whose points the surface may pass: 8 * brick of the slice + leaf
 };
 
 __device__ __forceinline__ Vec3<float> leaf_center(const Vec3<float> &low, int leaf, float h) {
@@ -123,13 +124,70 @@ __device__ __forceinline__ bool uniform_leaf_inside(const GatherJob &job, const 
   return !is_exposed(job.features, atom, center - Vec3<float>(ball.center), offset_length(ball, depth));
 }
 
+// A list of one kind of things, and a warp's shared memory for the row it gathers.
+struct RowMemory {
+  uint32_t *near;
+  uint8_t *near_leaves;  // nullptr: this kind has none
+  uint32_t *items;
+  uint8_t *leaves;
+  unsigned long long *counter;
+  unsigned long long room;
+};
+struct GatheredRow {
+  unsigned long long first;
+  uint32_t count;
+  bool fits;
+};
+
+// Gathers the things around a box for which test(item, &leaves) holds. The first round counts, and keeps short rows in
+// shared memory; a second one writes long rows. One copy of the test for both, so that they never disagree.
+template <class Test>
+__device__ __forceinline__ GatheredRow gather_row(const NeighborGridView &grid, const Vec3<float> &low, float extent,
+                                                  float reach, const RowMemory &memory, const Test &test) {
+  const int lane = lane_id();
+  uint32_t *items = memory.near;
+  uint8_t *leaves = memory.near_leaves;
+  uint32_t room = kGatherRoom;
+  GatheredRow row{0, 0, false};
+  for (int round = 0;; ++round) {
+    uint32_t n = 0;
+    visit_cells(grid, low, extent, reach, [&](uint32_t k, bool on) {
+      uint32_t set = 0;
+      const bool near = on && test(k, &set);
+      const unsigned ballot = __ballot_sync(kFullWarp, near);
+      const uint32_t place = n + static_cast<uint32_t>(place_in(ballot, lane));
+      if (near && place < room) {
+        items[place] = k;
+        if (leaves) leaves[place] = static_cast<uint8_t>(set);
+      }
+      n += static_cast<uint32_t>(__popc(ballot));
+    });
+    if (round == 1) break;
+    row.count = n;
+    if (lane == 0) row.first = atomicAdd(memory.counter, static_cast<unsigned long long>(n));
+    row.first = __shfl_sync(kFullWarp, row.first, 0);
+    row.fits = row.first + n <= memory.room;
+    if (!row.fits) break;  // all will be done again
+    items = memory.items + row.first;
+    if (leaves) leaves = memory.leaves + row.first;
+    room = 0xffffffffu;
+    if (n > kGatherRoom) continue;
+    __syncwarp();
+    for (uint32_t k = static_cast<uint32_t>(lane); k < n; k += kWarp) {
+      items[k] = memory.near[k];
+      if (leaves) leaves[k] = memory.near_leaves[k];
+    }
+    break;
+  }
+  __syncwarp();
+  return row;
+}
+
 // The rows of one brick. A warp per brick.
-__global__ __launch_bounds__(kGatherWarps *kWarp) void gather_candidates_kernel(GatherJob job) {
-  __shared__ uint32_t atom_memory[kGatherWarps][kGatherRoom], arc_memory[kGatherWarps][kGatherRoom];
-  __shared__ uint8_t leaf_memory[kGatherWarps][kGatherRoom];
+static __global__ __launch_bounds__(kGatherWarps *kWarp, 8) void gather_candidates_kernel(GatherJob job) {
+  __shared__ uint32_t near_memory[kGatherWarps][kGatherRoom];
+  __shared__ uint8_t near_leaves[kGatherWarps][kGatherRoom];
   const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();
-  uint32_t *const near_atoms = atom_memory[warp], *const near_arcs = arc_memory[warp];
-  uint8_t *const near_leaves = leaf_memory[warp];
   const uint32_t b = blockIdx.x * kGatherWarps + static_cast<uint32_t>(warp);
   if (b >= job.view.bricks) return;
   const FeatureView &f = job.features;
@@ -139,105 +197,57 @@ __global__ __launch_bounds__(kGatherWarps *kWarp) void gather_candidates_kernel(
   const glm::ivec3 first = lattice.first_point(lattice.brick_at(job.bricks.linear[job.view.first_brick + b]));
   const Vec3<float> low = lattice.position(first.x, first.y, first.z);
 
-  // Atoms whose ball meets the box of the brick's vertices. store(place, atom).
+  // Atoms whose ball meets the box of the brick's vertices.
   uint32_t active = 0;
   const float grown = reach.grown, atom_extent = extent + 2.f * grown;
   const Vec3<float> atom_low(low.x - grown, low.y - grown, low.z - grown);
-  const auto gather_atoms = [&](const auto &store, bool mark) {
-    uint32_t n = 0;
-    visit_cells(f.atoms, atom_low, atom_extent, f.parameters.max_radius + reach.slack, [&](uint32_t k, bool on) {
-      Sphere atom{glm::vec3(kFarAway), 0.f};
-      if (on) atom = load(f.atoms.items + k);
-      const float radius = atom.radius + reach.slack;
-      const bool near = on && box_distance2(atom_low, atom_extent, atom.center) < radius * radius;
-      const unsigned ballot = __ballot_sync(kFullWarp, near);
-      if (near) {
-        store(n + static_cast<uint32_t>(place_in(ballot, lane)), k);
-        if (mark && f.cap_ranges[k].count != kBuriedAtom) {
-          const float radius = atom.radius - reach.depth, shell = reach.leaf_radius + reach.slack;
-          const float inner = fmaxf(0.f, radius - shell), outer = radius + shell;
+  const GatheredRow atoms =
+      gather_row(f.atoms, atom_low, atom_extent, f.parameters.max_radius + reach.slack,
+                 {near_memory[warp], nullptr, job.view.atoms, nullptr, &job.counters->atoms, job.atom_room},
+                 [&](uint32_t k, uint32_t *) {
+                   const Sphere atom = load(f.atoms.items + k);
+                   const float radius = atom.radius + reach.slack;
+                   if (!(box_distance2(atom_low, atom_extent, atom.center) < radius * radius)) return false;
+                   if (f.cap_ranges[k].count != kBuriedAtom) {
+                     const float surface = atom.radius - reach.depth, shell = reach.leaf_radius + reach.slack;
+                     const float inner = fmaxf(0.f, surface - shell), outer = surface + shell;
 #pragma unroll
-          for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
-            const float d2 = length_squared(leaf_center(low, leaf, h) - Vec3<float>(atom.center));
-            if (d2 >= inner * inner && d2 <= outer * outer) active |= 1u << leaf;
-          }
-        }
-      }
-      n += static_cast<uint32_t>(__popc(ballot));
-    });
-    return n;
-  };
-  const uint32_t atom_count = gather_atoms(
-      [&](uint32_t place, uint32_t k) {
-        if (place < kGatherRoom) near_atoms[place] = k;
-      },
-      true);
+                     for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
+                       const float d2 = length_squared(leaf_center(low, leaf, h) - Vec3<float>(atom.center));
+                       if (d2 >= inner * inner && d2 <= outer * outer) active |= 1u << leaf;
+                     }
+                   }
+                   return true;
+                 });
 
-  // Arcs that can decide about a vertex start or a point of a leaf. store(place, arc, leaves).
+  // Arcs that can decide about a vertex start, and in which leaves about a lattice point.
   const float overhang = reach.overhang, arc_extent = extent + 2.f * overhang;
   const Vec3<float> arc_low(low.x - overhang, low.y - overhang, low.z - overhang);
-  const auto gather_arcs = [&](const auto &store) {
-    uint32_t n = 0;
-    visit_cells(f.arc_bounds, arc_low, arc_extent, reach.start_reach + f.max_arc_bound, [&](uint32_t k, bool on) {
-      uint32_t leaves = 0;
-      bool near = false;
-      if (on) {
+  const GatheredRow arcs = gather_row(
+      f.arc_bounds, arc_low, arc_extent, reach.start_reach + f.max_arc_bound,
+      {near_memory[warp], near_leaves[warp], job.view.arcs, job.view.arc_leaves, &job.counters->arcs, job.arc_room},
+      [&](uint32_t k, uint32_t *leaves) {
         const Sphere ball = load(f.arc_bounds.items + k);
         const float limit = ball.radius + reach.start_reach, sign_limit = ball.radius + reach.depth + reach.slack;
-        near = box_distance2(arc_low, arc_extent, ball.center) < limit * limit;
-        if (near && box_distance2(low, extent, ball.center) < sign_limit * sign_limit) {
+        if (!(box_distance2(arc_low, arc_extent, ball.center) < limit * limit)) return false;
+        if (box_distance2(low, extent, ball.center) < sign_limit * sign_limit) {
           const Arc arc = load(f.arcs + k);
-#pragma unroll
+#pragma unroll 2
           for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf)
-            if (arc_distance2(arc, leaf_center(low, leaf, h)) <= reach.sign_arcs2) leaves |= 1u << leaf;
-          active |= leaves;
+            if (arc_distance2(arc, leaf_center(low, leaf, h)) <= reach.sign_arcs2) *leaves |= 1u << leaf;
+          active |= *leaves;
         }
-      }
-      const unsigned ballot = __ballot_sync(kFullWarp, near);
-      if (near) store(n + static_cast<uint32_t>(place_in(ballot, lane)), k, static_cast<uint8_t>(leaves));
-      n += static_cast<uint32_t>(__popc(ballot));
-    });
-    return n;
-  };
-  const uint32_t arc_count = gather_arcs([&](uint32_t place, uint32_t k, uint8_t leaves) {
-    if (place < kGatherRoom) {
-      near_arcs[place] = k;
-      near_leaves[place] = leaves;
-    }
-  });
+        return true;
+      });
 
-  BrickRow row{0, 0, atom_count, arc_count};
-  unsigned long long first_leaf = 0;
   active = warp_or(active);
+  unsigned long long first_leaf = 0;
   if (lane == 0) {
-    row.first_atom = atomicAdd(&job.counters->atoms, static_cast<unsigned long long>(atom_count));
-    row.first_arc = atomicAdd(&job.counters->arcs, static_cast<unsigned long long>(arc_count));
     first_leaf = atomicAdd(&job.counters->leaves, static_cast<unsigned long long>(__popc(active)));
-    job.view.brick_rows[b] = row;
+    job.view.brick_rows[b] = {atoms.first, arcs.first, atoms.count, arcs.count};
   }
-  row.first_atom = __shfl_sync(kFullWarp, row.first_atom, 0);
-  row.first_arc = __shfl_sync(kFullWarp, row.first_arc, 0);
   first_leaf = __shfl_sync(kFullWarp, first_leaf, 0);
-  if (row.first_atom + atom_count > job.atom_room || row.first_arc + arc_count > job.arc_room) return;  // done again
-
-  uint32_t *const atoms = job.view.atoms + row.first_atom, *const arcs = job.view.arcs + row.first_arc;
-  uint8_t *const arc_leaves = job.view.arc_leaves + row.first_arc;
-  __syncwarp();
-  if (atom_count <= kGatherRoom)
-    for (uint32_t k = static_cast<uint32_t>(lane); k < atom_count; k += kWarp) atoms[k] = near_atoms[k];
-  else
-    gather_atoms([&](uint32_t place, uint32_t k) { atoms[place] = k; }, false);
-  if (arc_count <= kGatherRoom)
-    for (uint32_t k = static_cast<uint32_t>(lane); k < arc_count; k += kWarp) {
-      arcs[k] = near_arcs[k];
-      arc_leaves[k] = near_leaves[k];
-    }
-  else
-    gather_arcs([&](uint32_t place, uint32_t k, uint8_t leaves) {
-      arcs[place] = k;
-      arc_leaves[place] = leaves;
-    });
-  __syncwarp();
+  if (!atoms.fits || !arcs.fits) return;
 
   if (lane < kLeavesPerBrick) {
     if (active >> lane & 1)
@@ -247,8 +257,7 @@ __global__ __launch_bounds__(kGatherWarps *kWarp) void gather_candidates_kernel(
   if (!job.signs) return;
   for (uint32_t rest = ~active & 0xffu; rest; rest &= rest - 1) {
     const int leaf = __ffs(static_cast<int>(rest)) - 1;
-    const bool inside = uniform_leaf_inside(job, atom_count <= kGatherRoom ? near_atoms : atoms, atom_count,
-                                            leaf_center(low, leaf, h));
+    const bool inside = uniform_leaf_inside(job, job.view.atoms + atoms.first, atoms.count, leaf_center(low, leaf, h));
     if (lane == 0)
       job.signs[static_cast<size_t>(job.view.first_brick + b) * kLeavesPerBrick + static_cast<size_t>(leaf)] =
           inside ? ~uint64_t(0) : 0;

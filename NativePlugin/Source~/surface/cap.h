@@ -10,7 +10,7 @@ namespace quickses {
 // >= 1 where they do not meet, <= -1 where the ball swallows the sphere. inverse_distance = 1 / |offset|.
 template <class T>
 QSES_FN T cap_cosine(T radius, T other_radius, T distance2, T inverse_distance) {
-  return ((radius - other_radius) * (radius + other_radius) + distance2) * inverse_distance / (radius + radius);
+  return quotient(((radius - other_radius) * (radius + other_radius) + distance2) * inverse_distance, radius + radius);
 }
 
 // Nearly tangent spheres share no circle worth the name.

@@ -2,16 +2,16 @@
 // The circle where two inflated spheres meet, what a third ball covers of it, and the arcs that remain.
 #pragma once
 
-#include "surface/exposed_intervals.h"
 #include "surface/cap.h"
+#include "surface/exposed_intervals.h"
 
 namespace quickses {
 
 // Circle of sphere i (radius R) with its neighbour j: in units of R about i's centre, the plane dot(u, axis) = cosine.
 struct Circle {
-  Vec3<float> axis;     // from atom i towards atom j
-  Vec3<float> e1, e2;   // right-handed in-plane axes: e1 x e2 = axis
-  float cosine, sine;   // of the cap, without tolerance
+  Vec3<float> axis;    // from atom i towards atom j
+  Vec3<float> e1, e2;  // right-handed in-plane axes: e1 x e2 = axis
+  float cosine, sine;  // of the cap, without tolerance
   float inverse_sine;
 };
 
@@ -82,7 +82,8 @@ QSES_FN ExposedArc exposed_arc(const Interval *interval, float radius) {
     const glm::vec2 a = pseudo_direction(interval->begin), b = pseudo_direction(interval->end);
     const glm::vec2 chord = b - a;
     float x, y;
-    if (chord.x * chord.x + chord.y * chord.y > 0.5f) {  // perpendicular to the chord: well conditioned but for short arcs
+    if (chord.x * chord.x + chord.y * chord.y >
+        0.5f) {  // perpendicular to the chord: well conditioned but for short arcs
       x = chord.y;
       y = -chord.x;
     } else {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// GPU driver of the arcs: each lane of a warp clips one circle; lanes that are done are given new circles together, since
-// most circles are covered after a few balls and some need many.
+// GPU driver of the arcs: each lane of a warp clips one circle; lanes that are done are given new circles together,
+// since most circles are covered after a few balls and some need many.
 #pragma once
 
 #include "parallel/cuda_executor.cuh"
@@ -15,10 +15,10 @@ struct FeatureCounters {
   unsigned long long caps, circles;
   unsigned long long staged;  // circles with exposed arcs in the upper half, arcs before they are split in the lower
   unsigned long long arcs;
-  uint32_t neighbors;         // most of an atom for which the rows were too short
-  uint32_t long_atoms;        // number of those atoms
-  uint32_t longest_row;       // most caps of an atom
-  uint32_t long_circles;      // circles with more exposed intervals than a lane holds
+  uint32_t neighbors;     // most of an atom for which the rows were too short
+  uint32_t long_atoms;    // number of those atoms
+  uint32_t longest_row;   // most caps of an atom
+  uint32_t long_circles;  // circles with more exposed intervals than a lane holds
 };
 
 // How much of each there is room for.
@@ -75,16 +75,16 @@ struct CircleJob {
   uint8_t *exposed;
   Arc *arcs;
   // Made by clip_circles().
-  CircleName *names = nullptr;       // of the circles, by atom and rank
-  uint32_t *arc_count = nullptr;     // per circle: pieces of arcs
-  StagedCircle *staged = nullptr;    // circles with exposed arcs, in any order
+  CircleName *names = nullptr;     // of the circles, by atom and rank
+  uint32_t *arc_count = nullptr;   // per circle: pieces of arcs
+  StagedCircle *staged = nullptr;  // circles with exposed arcs, in any order
   ExposedArc *staged_arcs = nullptr;
   uint32_t *long_circles = nullptr;  // circles that need more intervals than a lane holds
 };
 
 constexpr int kClipThreads = 128;
-constexpr int kLaneIntervals = 8;   // exposed intervals of a circle that a lane holds
-constexpr int kIdleLanes = 10;      // refill when so many have nothing to do
+constexpr int kLaneIntervals = 8;  // exposed intervals of a circle that a lane holds
+constexpr int kIdleLanes = 10;     // refill when so many have nothing to do
 
 // Intervals of one lane, one block's worth apart.
 struct StridedIntervals {
@@ -94,7 +94,7 @@ struct StridedIntervals {
 };
 
 // Lists the circles of each atom: caps behind which a later atom is. A warp per atom.
-__global__ __launch_bounds__(128) void list_circles_kernel(CircleJob job) {
+static __global__ __launch_bounds__(128) void list_circles_kernel(CircleJob job) {
   const int lane = lane_id();
   for (uint32_t i = (blockIdx.x * blockDim.x + threadIdx.x) / kWarp; i < job.atoms.count;
        i += gridDim.x * blockDim.x / kWarp) {
@@ -113,12 +113,12 @@ __global__ __launch_bounds__(128) void list_circles_kernel(CircleJob job) {
 
 // A circle being clipped.
 struct ClippedCircle {
-  uint32_t number;       // of the circle
+  uint32_t number;  // of the circle
   uint32_t atom, other;
   uint32_t first_cap;
   int rank, cap_count;
-  float shrink;          // by how much the caps are stored smaller
-  float radius;          // of the circle, Å
+  float shrink;  // by how much the caps are stored smaller
+  float radius;  // of the circle, Å
   Circle circle;
 };
 
@@ -179,7 +179,7 @@ __device__ __forceinline__ void stage_circle(const CircleJob &job, const Clipped
   job.arc_count[c.number] = pieces;
 }
 
-__global__ __launch_bounds__(kClipThreads) void clip_circles_kernel(CircleJob job, uint32_t chunk) {
+static __global__ __launch_bounds__(kClipThreads) void clip_circles_kernel(CircleJob job, uint32_t chunk) {
   __shared__ Interval memory[kLaneIntervals * kClipThreads];
   const StridedIntervals storage{memory + threadIdx.x, kClipThreads};
   enum class State { kIdle, kActive, kDone };
@@ -187,7 +187,8 @@ __global__ __launch_bounds__(kClipThreads) void clip_circles_kernel(CircleJob jo
   const unsigned long long total = job.counters->circles;
   if (total > job.room.circles) return;  // all will be done again
   const uint32_t warps = gridDim.x * kClipThreads / kWarp;
-  for (unsigned long long base = (blockIdx.x * kClipThreads + threadIdx.x) / kWarp * static_cast<unsigned long long>(chunk);
+  for (unsigned long long base =
+           (blockIdx.x * kClipThreads + threadIdx.x) / kWarp * static_cast<unsigned long long>(chunk);
        base < total; base += static_cast<unsigned long long>(warps) * chunk) {
     uint32_t next = static_cast<uint32_t>(base);
     const uint32_t end = static_cast<uint32_t>(base + chunk < total ? base + chunk : total);
@@ -253,7 +254,7 @@ __global__ __launch_bounds__(kClipThreads) void clip_circles_kernel(CircleJob jo
 }
 
 // The circles that have more exposed intervals, with room for as many as they can have: one more than there are caps.
-__global__ __launch_bounds__(kWarp) void clip_long_circles_kernel(CircleJob job, Interval *memory) {
+static __global__ __launch_bounds__(kWarp) void clip_long_circles_kernel(CircleJob job, Interval *memory) {
   const uint32_t thread = blockIdx.x * kWarp + threadIdx.x, threads = gridDim.x * kWarp;
   const uint32_t count = job.counters->long_circles;
   for (uint32_t t = thread; t < count; t += threads) {
@@ -269,13 +270,12 @@ __global__ __launch_bounds__(kWarp) void clip_long_circles_kernel(CircleJob job,
       if (cut == CutKind::kPart) intervals.cover(begin, end);
       hidden = cut == CutKind::kAll || intervals.empty();
     }
-    if (!hidden)
-      stage_circle(job, c, intervals, atomicAdd(&job.counters->staged, (1ull << 32) + arcs_of(intervals)));
+    if (!hidden) stage_circle(job, c, intervals, atomicAdd(&job.counters->staged, (1ull << 32) + arcs_of(intervals)));
   }
 }
 
 // Writes the staged arcs, split, to their places in order.
-__global__ __launch_bounds__(128) void write_arcs_kernel(CircleJob job, const uint32_t *arc_first) {
+static __global__ __launch_bounds__(128) void write_arcs_kernel(CircleJob job, const uint32_t *arc_first) {
   const unsigned long long circles = job.counters->circles;
   if (circles > job.room.circles) return;
   if (blockIdx.x == 0 && threadIdx.x == 0) job.counters->arcs = arc_first[job.room.circles];
@@ -311,7 +311,8 @@ inline void clip_circles(CudaExecutor &executor, CircleJob job) {
 
   executor.launch("list_circles", list_circles_kernel, std::min((n + 3) / 4, processors * 32), 128, 0, job);
   // Enough warps to fill the GPU, and enough circles per warp to refill its lanes.
-  const uint32_t chunk = static_cast<uint32_t>(std::min<size_t>(256, std::max<size_t>(64, room.circles / (processors * 64))));
+  const uint32_t chunk =
+      static_cast<uint32_t>(std::min<size_t>(256, std::max<size_t>(64, room.circles / (processors * 64))));
   executor.launch("clip_circles", clip_circles_kernel, std::min(room.circles / (4 * chunk) + 1, processors * 64),
                   kClipThreads, 0, job, chunk);
   if (room.intervals > 0) {

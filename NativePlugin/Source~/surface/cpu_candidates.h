@@ -15,7 +15,7 @@ struct BallColumns {
 };
 
 struct BrickCandidates {
-  BallColumns atoms, exposed, arcs;  // all atoms; those with exposed parts; balls around arcs
+  BallColumns atoms, exposed, arcs;                 // all atoms; those with exposed parts; balls around arcs
   int32_t *atom_index, *exposed_index, *arc_index;  // places in the neighbour grids
   int32_t *near_list, *arc_list;                    // room for a choice of them
   int atom_count, exposed_count, arc_count;
@@ -77,8 +77,7 @@ QSES_FN uint32_t bits_of_bytes(const uint8_t *bytes) {
 
 // Gathers what can matter in the box: atoms whose ball, grown by atom_reach, meets it, and arcs within arc_reach.
 inline __attribute__((always_inline)) BrickCandidates gather_candidates(const FeatureView &f, const Vec3<float> &low,
-                                                                        float extent, float atom_reach,
-                                                                        float arc_reach,
+                                                                        float extent, float atom_reach, float arc_reach,
                                                                         const BrickScratch &scratch) {
   BrickCandidates c = cut_columns(scratch);
   const PackBox box(low, extent);

@@ -10,12 +10,12 @@ namespace {
 
 // The columns of AtomScratch.
 struct Columns {
-  float *x, *y, *z, *cosine, *sine;       // neighbours: direction and cap
-  float *sx, *sy, *sz, *scos, *ssin;      // the same, sorted by cosine, then without contained caps
-  float *begin, *end;                     // covered stretches of one circle
-  int32_t *index, *sorted_index;          // places of the neighbours in the grid
-  float *tangent;                         // stretches that came out as a point: the half-plane's c
-  Interval *intervals;                    // two columns
+  float *x, *y, *z, *cosine, *sine;   // neighbours: direction and cap
+  float *sx, *sy, *sz, *scos, *ssin;  // the same, sorted by cosine, then without contained caps
+  float *begin, *end;                 // covered stretches of one circle
+  int32_t *index, *sorted_index;      // places of the neighbours in the grid
+  float *tangent;                     // stretches that came out as a point: the half-plane's c
+  Interval *intervals;                // two columns
   uint64_t *taken;
 };
 
@@ -137,8 +137,7 @@ int drop_contained_caps(const Columns &c, int n) {
 }
 
 // The exposed intervals of circle j of the n caps; false if it is hidden.
-bool cut_by_neighbors(const Circle &circle, const Columns &c, int n, int j,
-                      ExposedIntervals<Interval *> *intervals) {
+bool cut_by_neighbors(const Circle &circle, const Columns &c, int n, int j, ExposedIntervals<Interval *> *intervals) {
   int cuts = 0;
   for (int q = 0; q < n; q += kPackSize) {
     const Vec3<Pack> axis(load_pack(c.x + q), load_pack(c.y + q), load_pack(c.z + q));

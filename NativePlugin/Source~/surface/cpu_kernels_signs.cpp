@@ -64,9 +64,10 @@ QSES_FN void fill_ball(uint64_t planes[8], const PlaneRows &rows, float cx, floa
   }
 }
 
-// Points of a leaf that no arc and no exposed atom puts outside, out of those set in `open`.
+// Points of a leaf that no arc and no exposed atom puts outside, out of those set in `open`. slack: how far rounding
+// may have put a point into a ball; a point that is hardly outside an exposed ball is still projected on it.
 uint64_t leaf_inside(const FeatureView &f, const BrickCandidates &c, const Lattice &lattice, const glm::ivec3 &first,
-                     uint64_t open) {
+                     uint64_t open, float slack) {
   alignas(32) float px[64 + kPackSize], py[64 + kPackSize], pz[64 + kPackSize];
   int n = 0;
   for (uint64_t w = open; w; w &= w - 1, ++n) {
@@ -86,8 +87,8 @@ uint64_t leaf_inside(const FeatureView &f, const BrickCandidates &c, const Latti
     for (int k = 0; k < arcs && lanes; ++k)
       lanes &= ~lane_bits(arc_distance2(f.arcs[c.arc_index[c.arc_list[k]]], p) <= depth2);
     if (lanes) {
-      const int near = choose_balls(c.exposed, c.exposed_count, ball.center, ball.radius, c.near_list);
-      const Deepest deepest = deepest_ball(c.exposed, c.near_list, near, p, 0.f);
+      const int near = choose_balls(c.exposed, c.exposed_count, ball.center, ball.radius + slack, c.near_list);
+      const Deepest deepest = deepest_ball(c.exposed, c.near_list, near, p, -slack);
       alignas(32) float number[kPackSize];
       store_pack(number, deepest.number);
       for (uint32_t todo = lanes & lane_bits(Pack(0.f) <= deepest.number); todo;) {
@@ -113,7 +114,10 @@ BrickNeeds evaluate_brick_signs(const FeatureView &f, const BrickSet &bricks, ui
   const float h = lattice.spacing, depth = f.parameters.depth;
   const glm::ivec3 first = lattice.first_point(lattice.brick_at(bricks.linear[brick]));
   const Vec3<float> low = lattice.position(first.x, first.y, first.z);
-  const BrickCandidates c = gather_candidates(f, low, 7.f * h, 1e-3f, depth + 1e-3f, scratch);
+  // Far more than rounding, far less than any probe radius.
+  const float farthest = maximum(maximum(absolute(low.x), absolute(low.y)), absolute(low.z));
+  const float slack = minimum(1e-3f + 1e-6f * farthest, 0.02f);
+  const BrickCandidates c = gather_candidates(f, low, 7.f * h, 1.1f * slack, depth + slack, scratch);
   if (c.needs.atoms || c.needs.arcs) return c.needs;
 
   const PlaneRows rows(h);
@@ -122,8 +126,7 @@ BrickNeeds evaluate_brick_signs(const FeatureView &f, const BrickSet &bricks, ui
   if (depth > 0.f) {
     for (int a = 0; a < c.atom_count; ++a) {
       const float r = c.atoms.radius[a] - depth;
-      if (r > 0.f)
-        fill_ball(core, rows, c.atoms.x[a] - low.x, c.atoms.y[a] - low.y, c.atoms.z[a] - low.z, r * r);
+      if (r > 0.f) fill_ball(core, rows, c.atoms.x[a] - low.x, c.atoms.y[a] - low.y, c.atoms.z[a] - low.z, r * r);
     }
     for (uint64_t plane : core) full &= plane == ~uint64_t(0);
   }
@@ -147,7 +150,7 @@ BrickNeeds evaluate_brick_signs(const FeatureView &f, const BrickSet &bricks, ui
     words[leaf] = in_core;
     if (open) {
       const glm::ivec3 corner(first.x + (leaf & 1) * 4, first.y + (leaf >> 1 & 1) * 4, first.z + (leaf >> 2) * 4);
-      words[leaf] |= leaf_inside(f, c, lattice, corner, open);
+      words[leaf] |= leaf_inside(f, c, lattice, corner, open, slack);
     }
   }
   return {0, 0};

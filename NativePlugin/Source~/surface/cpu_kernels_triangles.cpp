@@ -76,7 +76,8 @@ void emit_brick_triangles(const BrickSet &bricks, const MeshLayout &layout, uint
     const LeafWords corners = cell_corners(leaf_words(bricks, layout.signs, static_cast<int>(brick), leaf));
     for (uint64_t mixed = mixed_cells(corners); mixed; mixed &= mixed - 1) {
       const int bit = lowest_bit64(mixed), code = cell_case(corners, bit);
-      const int x = (leaf & 1) * 4 + (bit & 3), y = (leaf >> 1 & 1) * 4 + (bit >> 2 & 3), z = (leaf >> 2) * 4 + (bit >> 4);
+      const int x = (leaf & 1) * 4 + (bit & 3), y = (leaf >> 1 & 1) * 4 + (bit >> 2 & 3),
+                z = (leaf >> 2) * 4 + (bit >> 4);
       const uint32_t *here = &numbers.at[0][x + kSide * (y + kSide * z)];
       const uint8_t *edges = table.edges[code];
       for (int t = 0; t < table.triangle_count[code]; ++t, edges += 3, out += 3) {

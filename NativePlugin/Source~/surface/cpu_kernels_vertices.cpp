@@ -25,8 +25,8 @@ SignRows read_sign_rows(const BrickSet &bricks, const uint64_t *signs, uint32_t 
   const glm::ivec3 place = bricks.lattice.brick_at(bricks.linear[brick]);
   const uint64_t *near[27];
   for (int k = 0; k < 27; ++k) {
-    const int found = k == 13 ? static_cast<int>(brick)
-                              : bricks.find(place + glm::ivec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1));
+    const int found =
+        k == 13 ? static_cast<int>(brick) : bricks.find(place + glm::ivec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1));
     near[k] = found < 0 ? nullptr : signs + static_cast<size_t>(found) * kLeavesPerBrick;
   }
   const auto row_of = [](const uint64_t *words, int y, int z) {
@@ -78,13 +78,14 @@ int start_vertices(const FeatureView &f, const BrickSet &bricks, const MeshLayou
                                         static_cast<size_t>(axis)];
            w; w &= w - 1, ++n) {
         const int bit = lowest_bit64(w);
-        const int x = (leaf & 1) * 4 + (bit & 3), y = (leaf >> 1 & 1) * 4 + (bit >> 2 & 3), z = (leaf >> 2) * 4 + (bit >> 4);
+        const int x = (leaf & 1) * 4 + (bit & 3), y = (leaf >> 1 & 1) * 4 + (bit >> 2 & 3),
+                  z = (leaf >> 2) * 4 + (bit >> 4);
         const Vec3<float> low = lattice.position(first.x + x, first.y + y, first.z + z);
         const bool low_inside = rows.inside(x, y, z);
         Vec3<float> start = low;
         if (halve) {
-          const Vec3<float> high = lattice.position(first.x + x + (axis == 0), first.y + y + (axis == 1),
-                                                    first.z + z + (axis == 2));
+          const Vec3<float> high =
+              lattice.position(first.x + x + (axis == 0), first.y + y + (axis == 1), first.z + z + (axis == 2));
           start = halve_edge(f, AllCandidates{c}, low_inside ? low : high, low_inside ? high : low);
         } else {
           const float along = vertex_start(low_inside) * h;
@@ -117,7 +118,7 @@ struct Work {
   Points place, normal;
   int32_t owner[kMaxBrickVertices + kPackSize];  // place in the grid
   uint8_t patch[kMaxBrickVertices + kPackSize];
-  Points open;                                   // those whose radial projection is not exposed
+  Points open;  // those whose radial projection is not exposed
   int32_t open_number[kMaxBrickVertices + kPackSize];
 };
 
@@ -130,8 +131,8 @@ int project_contact(const FeatureView &f, const BrickCandidates &c, float spacin
     const Vec3<Pack> p = load_points(w->place.x + g, w->place.y + g, w->place.z + g);
     const uint32_t used = n - g < kPackSize ? (1u << (n - g)) - 1 : kAllLanes;
     const PointBall ball = ball_around(p);
-    const int near = choose_balls(c.exposed, c.exposed_count, ball.center, ball.radius + kStartReach * spacing - depth,
-                                  c.near_list);
+    const int near =
+        choose_balls(c.exposed, c.exposed_count, ball.center, ball.radius + kStartReach * spacing - depth, c.near_list);
     const Deepest deepest = deepest_ball(c.exposed, c.near_list, near, p, -kFarAway);
     alignas(32) float number[kPackSize];
     store_pack(number, deepest.number);

@@ -50,10 +50,10 @@ struct EvaluateBrick {
   }
 };
 
-inline void evaluate_signs(CpuExecutor &executor, const FeatureView &features, const BrickSet &bricks,
-                           BrickRange slice, NoCandidates &, uint64_t *signs) {
-  executor.for_each_brick<BrickColumns>(
-      slice.size(), EvaluateBrick{&executor.kernels(), &features, &bricks, slice.first, signs});
+inline void evaluate_signs(CpuExecutor &executor, const FeatureView &features, const BrickSet &bricks, BrickRange slice,
+                           NoCandidates &, uint64_t *signs) {
+  executor.for_each_brick<BrickColumns>(slice.size(),
+                                        EvaluateBrick{&executor.kernels(), &features, &bricks, slice.first, signs});
 }
 
 struct EmitBrickVertices {
@@ -75,8 +75,7 @@ inline void emit_vertices(CpuExecutor &executor, const FeatureView &features, co
                           const MeshLayout &layout, BrickRange slice, NoCandidates &, const VertexStarts &starts,
                           const MeshView &mesh) {
   executor.for_each_brick<BrickColumns>(
-      slice.size(),
-      EmitBrickVertices{&executor.kernels(), &features, &bricks, &layout, &starts, &mesh, slice.first});
+      slice.size(), EmitBrickVertices{&executor.kernels(), &features, &bricks, &layout, &starts, &mesh, slice.first});
 }
 
 struct EmitBrickTriangles {
@@ -93,8 +92,8 @@ struct EmitBrickTriangles {
 
 inline void emit_triangles(CpuExecutor &executor, const BrickSet &bricks, const MeshLayout &layout, BrickRange slice,
                            const TableView &table, const MeshView &mesh) {
-  executor.for_each_brick<char>(
-      slice.size(), EmitBrickTriangles{&executor.kernels(), &bricks, &layout, &table, &mesh, slice.first});
+  executor.for_each_brick<char>(slice.size(),
+                                EmitBrickTriangles{&executor.kernels(), &bricks, &layout, &table, &mesh, slice.first});
 }
 
 }  // namespace quickses

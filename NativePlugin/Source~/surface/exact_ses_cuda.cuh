@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// GPU driver of the exact field: only signs are found. A warp per active leaf, two lattice points per lane; the sphere a
-// point is deepest in decides about it by its caps, or else the nearest arc.
+// GPU driver of the exact field: only signs are found. A warp per active leaf, two lattice points per lane; the sphere
+// a point is deepest in decides about it by its caps, or else the nearest arc.
 #pragma once
 
 #include "surface/candidates_cuda.cuh"
@@ -69,7 +69,7 @@ struct BoxCull {
 
   // depth: of the box's centre in the ball.
   __device__ __forceinline__ bool keeps(const Sphere &ball, float depth) const {
-    const float scale = 1.f / fmaxf(ball.radius - depth, 1e-6f);
+    const float scale = quotient(1.f, fmaxf(ball.radius - depth, 1e-6f));
     const float x = (ball.center.x - center.x) * half.x * scale, y = (ball.center.y - center.y) * half.y * scale,
                 z = (ball.center.z - center.z) * half.z * scale;
     bool keep = false;
@@ -112,7 +112,7 @@ __device__ __forceinline__ bool projection_exposed(const FeatureView &f, uint32_
   return is_exposed(f, atom, x - Vec3<float>(ball.center), offset_length(ball, depth));
 }
 
-__global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_kernel(SignJob job) {
+static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_kernel(SignJob job) {
   __shared__ LeafScratch scratch_memory[kSignWarps];
   const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();
   LeafScratch &scratch = scratch_memory[warp];
@@ -256,8 +256,8 @@ __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_kernel(S
         static_cast<uint64_t>(high) << 32 | low;
 }
 
-// Gathers the candidates of a slice; evaluates its signs unless signs is nullptr. Waits once, or more often if the guess
-// of their number was too small.
+// Gathers the candidates of a slice; evaluates its signs unless signs is nullptr. Waits once, or more often if the
+// guess of their number was too small.
 inline void gather_candidates(CudaExecutor &executor, const FeatureView &features, const BrickSet &bricks,
                               BrickRange slice, CudaCandidates &candidates, uint64_t *signs) {
   const uint32_t n = slice.size();

@@ -17,10 +17,10 @@ constexpr int kAxes = 3;
 constexpr float kRoot3 = 1.7320508f;
 
 struct Lattice {
-  float spacing;                    // h
+  float spacing;                        // h
   double center_x, center_y, center_z;  // where the centred frame's origin is in the caller's coordinates
-  glm::ivec3 first_brick;           // of the table of bricks, in the centred frame
-  glm::ivec3 brick_count;           // size of the table of bricks
+  glm::ivec3 first_brick;               // of the table of bricks, in the centred frame
+  glm::ivec3 brick_count;               // size of the table of bricks
 
   QSES_FN float brick_size() const { return spacing * static_cast<float>(kBrickEdge); }
   QSES_FN uint64_t table_size() const {
@@ -31,8 +31,7 @@ struct Lattice {
   QSES_FN uint64_t linear(const glm::ivec3 &brick) const {
     return static_cast<uint64_t>(brick.x) +
            static_cast<uint64_t>(brick_count.x) *
-               (static_cast<uint64_t>(brick.y) +
-                static_cast<uint64_t>(brick_count.y) * static_cast<uint64_t>(brick.z));
+               (static_cast<uint64_t>(brick.y) + static_cast<uint64_t>(brick_count.y) * static_cast<uint64_t>(brick.z));
   }
   QSES_FN glm::ivec3 brick_at(uint64_t linear) const {
     const uint64_t nx = static_cast<uint64_t>(brick_count.x), ny = static_cast<uint64_t>(brick_count.y);

@@ -11,22 +11,22 @@ namespace quickses {
 // What counting leaves behind, per active brick. Vertices are numbered by brick, leaf, axis of their edge, and bit;
 // triangles by brick, leaf, bit of their cell, and place in the table.
 struct MeshLayout {
-  const uint64_t *signs;      // [brick][leaf]: bit set = lattice point inside
-  uint64_t *crossing;         // [brick][leaf][axis]: bit set = the edge from that point along the axis changes sign
-  uint16_t *vertex_rank;      // [brick][leaf][axis]: vertices of the brick before that mask
-  uint16_t *triangle_rank;    // [brick][leaf]: triangles of the brick before that leaf
-  uint32_t *vertex_base;      // [brick + 1]: vertices before the brick
-  uint32_t *triangle_base;    // [brick + 1]
-  uint64_t vertex_total;      // of all bricks
+  const uint64_t *signs;    // [brick][leaf]: bit set = lattice point inside
+  uint64_t *crossing;       // [brick][leaf][axis]: bit set = the edge from that point along the axis changes sign
+  uint16_t *vertex_rank;    // [brick][leaf][axis]: vertices of the brick before that mask
+  uint16_t *triangle_rank;  // [brick][leaf]: triangles of the brick before that leaf
+  uint32_t *vertex_base;    // [brick + 1]: vertices before the brick
+  uint32_t *triangle_base;  // [brick + 1]
+  uint64_t vertex_total;    // of all bricks
 };
 
 struct MeshView {
-  float *positions;    // V x 3, caller's coordinates
-  float *normals;      // V x 3
-  uint32_t *owners;    // V, caller's atom numbers
-  uint8_t *patches;    // V, or nullptr
-  uint32_t *indices;   // T x 3
-  bool reversed;       // winding
+  float *positions;   // V x 3, caller's coordinates
+  float *normals;     // V x 3
+  uint32_t *owners;   // V, caller's atom numbers
+  uint8_t *patches;   // V, or nullptr
+  uint32_t *indices;  // T x 3
+  bool reversed;      // winding
 };
 
 // Leaf words around a leaf: itself and its neighbours towards larger x, y, z (bit 0, 1, 2 of the place).
@@ -112,16 +112,20 @@ struct RankBrick {
   MeshLayout layout;
   uint32_t *vertices, *triangles;
   QSES_HOST_DEVICE void operator()(size_t brick) const {
+    constexpr int kMasks = kLeavesPerBrick * kAxes;
+    uint16_t *const vertex = layout.vertex_rank + brick * kMasks;
+    uint16_t *const triangle = layout.triangle_rank + brick * kLeavesPerBrick;
+    uint16_t vertex_counts[kMasks], triangle_counts[kLeavesPerBrick];  // all loads before the first store
+    for (int k = 0; k < kMasks; ++k) vertex_counts[k] = vertex[k];
+    for (int k = 0; k < kLeavesPerBrick; ++k) triangle_counts[k] = triangle[k];
     uint32_t v = 0, t = 0;
-    for (size_t i = brick * kLeavesPerBrick; i < (brick + 1) * kLeavesPerBrick; ++i) {
-      for (size_t k = 3 * i; k < 3 * i + 3; ++k) {
-        const uint32_t n = layout.vertex_rank[k];
-        layout.vertex_rank[k] = static_cast<uint16_t>(v);
-        v += n;
-      }
-      const uint32_t n = layout.triangle_rank[i];
-      layout.triangle_rank[i] = static_cast<uint16_t>(t);
-      t += n;
+    for (int k = 0; k < kMasks; ++k) {
+      vertex[k] = static_cast<uint16_t>(v);
+      v += vertex_counts[k];
+    }
+    for (int k = 0; k < kLeavesPerBrick; ++k) {
+      triangle[k] = static_cast<uint16_t>(t);
+      t += triangle_counts[k];
     }
     vertices[brick] = v;
     triangles[brick] = t;
@@ -137,28 +141,37 @@ QSES_FN uint32_t vertex_number(uint32_t first, uint64_t crossing, int bit) {
 
 // Number of the vertex on the edge that starts at a lattice point of a brick.
 QSES_FN uint32_t vertex_number(const MeshLayout &m, int brick, int leaf, int axis, int bit) {
-  const size_t k = (static_cast<size_t>(brick) * kLeavesPerBrick + static_cast<size_t>(leaf)) * 3 +
-                   static_cast<size_t>(axis);
+  const size_t k =
+      (static_cast<size_t>(brick) * kLeavesPerBrick + static_cast<size_t>(leaf)) * 3 + static_cast<size_t>(axis);
   return vertex_number(m.vertex_base[brick] + m.vertex_rank[k], m.crossing[k], bit);
 }
 
 // Where the vertex of an edge starts: on the edge, from its lower point, in units of the spacing.
 QSES_FN float vertex_start(bool low_inside) { return low_inside ? kVertexStart : 1.f - kVertexStart; }
 
-// Sum of the ring tables of the four cells around an edge. inside(along, second, third) is the sign at a point near
-// the edge: along the edge 0 or 1, in the other two axes, lower axis first, -1 ... 1.
+// Sum of the ring tables of the four cells around an edge. cell_case(second, third) is the case of the cell at the
+// edge's lower point moved by 0 or -1 along the other two axes, lower axis first.
+template <class CellCase>
+QSES_FN uint64_t edge_ring_of_cells(const CellCase &cell_case, int axis, const uint64_t (*ring)[kCellEdges]) {
+  uint64_t sum = 0;
+  for (int w = -1; w <= 0; ++w)
+    for (int v = -1; v <= 0; ++v) sum += ring[cell_case(v, w)][4 * axis - v - 2 * w];
+  return sum;
+}
+
+// The same from signs. inside(along, second, third) is the sign at a point near the edge: along the edge 0 or 1, in the
+// other two axes, lower axis first, -1 ... 1. Not for kernels: ptxas 11.8 was seen to lose one of the eight predicates.
 template <class Inside>
 QSES_FN uint64_t edge_ring(const Inside &inside, int axis, const uint64_t (*ring)[kCellEdges]) {
   const int second = axis == 0 ? 1 : 0, third = axis == 2 ? 1 : 2;
-  uint64_t sum = 0;
-  for (int w = -1; w <= 0; ++w)
-    for (int v = -1; v <= 0; ++v) {
-      int code = 0;
-      for (int corner = 0; corner < 8; ++corner)
-        code |= (inside(corner >> axis & 1, v + (corner >> second & 1), w + (corner >> third & 1)) ? 1 : 0) << corner;
-      sum += ring[code][4 * axis - v - 2 * w];
-    }
-  return sum;
+  return edge_ring_of_cells(
+      [&](int v, int w) {
+        int code = 0;
+        for (int corner = 0; corner < 8; ++corner)
+          code |= (inside(corner >> axis & 1, v + (corner >> second & 1), w + (corner >> third & 1)) ? 1 : 0) << corner;
+        return code;
+      },
+      axis, ring);
 }
 
 struct MeshCounts {

@@ -11,7 +11,7 @@ namespace quickses {
 namespace {
 
 struct CellEdge {
-  int low, high;              // corners
+  int low, high;               // corners
   std::array<int, 3> doubled;  // middle of the edge, times two
 };
 
@@ -112,8 +112,8 @@ std::array<int, 3> start_of(int cell_case, int edge) {
   const bool low_inside = (cell_case >> e.low & 1) != 0;
   std::array<int, 3> p;
   for (int d = 0; d < 3; ++d) p[d] = e.doubled[d] * kRingScale / 2;
-  p[edge_axis(edge)] += static_cast<int>(std::lround((low_inside ? kVertexStart - 0.5f : 0.5f - kVertexStart) *
-                                                     static_cast<float>(kRingScale)));
+  p[edge_axis(edge)] += static_cast<int>(
+      std::lround((low_inside ? kVertexStart - 0.5f : 0.5f - kVertexStart) * static_cast<float>(kRingScale)));
   return p;
 }
 

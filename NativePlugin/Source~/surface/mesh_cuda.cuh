@@ -12,44 +12,22 @@ namespace gpu {
 
 constexpr int kVertexThreads = 128;
 
-// project_to_surface() in steps that a warp takes together. A vertex on a contact patch knows its owner already.
-__global__ __launch_bounds__(kVertexThreads) void project_vertices_kernel(VertexJob job) {
-  const uint32_t k0 = blockIdx.x * kVertexThreads + threadIdx.x;
-  const bool on = k0 < job.count;
-  const uint32_t k = on ? k0 : job.count - 1, vertex = job.first + k;
-  const FeatureView &f = job.features;
-  const float depth = f.parameters.depth;
-  const RowCandidates candidates = vertex_candidates(job, job.vertex_row[k]);
-  Vec3<float> x = stored_start(job, vertex);
-  __syncwarp();
+// project_to_surface() in three kernels, so that lanes do not wait for each other: vertices on contact patches are done
+// with the first, nearly all others with the second; the third has those that turn from one probe to another.
 
-  const DeepestAtom deepest = deepest_atom(f, candidates, x);
-  __syncwarp();
-  const Sphere ball = load(f.atoms.items + deepest.atom);
-  const bool contact = candidates.atom_count() > 0 && is_exposed(f, deepest.atom, x - Vec3<float>(ball.center),
-                                                                 offset_length(ball, deepest.depth));
-  BoundaryPoint boundary = boundary_on_atom(ball, deepest.depth, x);
-  SurfacePoint s = place_on_surface(x, boundary.position, boundary.distance, depth, boundary.patch);
-  __syncwarp();
-  bool open = !contact && candidates.arc_count() > 0;
-  for (int round = 0; round < kMaxProjections; ++round) {
-    if (!__any_sync(kFullWarp, open)) break;
-    NearestArc nearest{-1, 0.f, 0.f};
-    if (open) nearest = nearest_arc(f, candidates, x);
-    __syncwarp();
-    if (open) {
-      boundary = boundary_on_arc(load(f.arcs + nearest.arc), nearest.second2, x);
-      s = place_on_surface(x, boundary.position, boundary.distance, depth, boundary.patch);
-      x = s.position;
-      open = needs_another_look(boundary.distance, boundary.second, depth);
-    }
-    __syncwarp();
-  }
-  uint32_t owner = deepest.atom;
-  if (s.patch != QSES_PATCH_CONTACT) owner = nearest_atom(f, candidates, s.position);
-  __syncwarp();
-  if (!on) return;
-  if (depth == 0.f) s.normal = sphere_normal(load(f.atoms.items + owner), s.position);
+// Adds a vertex to a list. A warp together.
+__device__ __forceinline__ void append(uint32_t *list, uint32_t *count, uint32_t k, bool on) {
+  const unsigned ballot = __ballot_sync(kFullWarp, on);
+  uint32_t base = 0;
+  if (lane_id() == 0 && ballot) base = atomicAdd(count, static_cast<uint32_t>(__popc(ballot)));
+  base = __shfl_sync(kFullWarp, base, 0);
+  if (on) list[base + static_cast<uint32_t>(place_in(ballot, lane_id()))] = k;
+}
+
+__device__ __forceinline__ void finish_vertex(const VertexJob &job, uint32_t k, SurfacePoint s, uint32_t owner) {
+  const FeatureView &f = job.features;
+  const uint32_t vertex = job.first + k;
+  if (f.parameters.depth == 0.f) s.normal = sphere_normal(load(f.atoms.items + owner), s.position);
   const glm::vec3 position = job.bricks.lattice.to_caller(s.position);
   float *const out = job.mesh.positions + size_t(3) * vertex, *const normal = job.mesh.normals + size_t(3) * vertex;
   out[0] = position.x;
@@ -60,6 +38,98 @@ __global__ __launch_bounds__(kVertexThreads) void project_vertices_kernel(Vertex
   normal[2] = s.normal.z;
   job.mesh.owners[vertex] = f.atoms.order[owner];
   if (job.mesh.patches) job.mesh.patches[vertex] = static_cast<uint8_t>(s.patch);
+}
+
+static __global__ __launch_bounds__(kVertexThreads) void project_on_atoms_kernel(VertexJob job) {
+  const uint32_t k0 = blockIdx.x * kVertexThreads + threadIdx.x;
+  const bool on = k0 < job.count;
+  const uint32_t k = on ? k0 : job.count - 1;
+  const FeatureView &f = job.features;
+  const RowCandidates candidates = vertex_candidates(job, job.vertex_row[k]);
+  const Vec3<float> x = stored_start(job, job.first + k);
+  const DeepestAtom deepest = deepest_atom(f, candidates, x);
+  __syncwarp();
+  const Sphere ball = load(f.atoms.items + deepest.atom);
+  bool contact = candidates.atom_count() > 0 &&
+                 is_exposed(f, deepest.atom, x - Vec3<float>(ball.center), offset_length(ball, deepest.depth));
+  contact |= candidates.arc_count() == 0;
+  __syncwarp();
+  append(job.open, job.open_count, k, on && !contact);
+  if (!on || !contact) return;
+  const BoundaryPoint y = boundary_on_atom(ball, deepest.depth, x);
+  finish_vertex(job, k, place_on_surface(x, y.position, y.distance, f.parameters.depth, y.patch), deepest.atom);
+}
+
+// What comes of a look at the arcs: where the point moves, and whether it must look again.
+struct Look {
+  SurfacePoint point;
+  float distance;
+  bool again;
+};
+__device__ __forceinline__ Look finish_look(const FeatureView &f, const NearestArc &nearest, const Vec3<float> &x) {
+  const BoundaryPoint y = boundary_on_arc(load(f.arcs + nearest.arc), nearest.second2, x);
+  const float depth = f.parameters.depth;
+  return {place_on_surface(x, y.position, y.distance, depth, y.patch), y.distance,
+          needs_another_look(y.distance, y.second, depth)};
+}
+
+__global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(VertexJob job) {
+  const uint32_t place = blockIdx.x * kVertexThreads + threadIdx.x, total = *job.open_count;
+  if (place - static_cast<uint32_t>(lane_id()) >= total) return;
+  const bool on = place < total;
+  const uint32_t k = job.open[on ? place : total - 1];
+  const FeatureView &f = job.features;
+  const RowCandidates candidates = vertex_candidates(job, job.vertex_row[k]);
+  const Vec3<float> x = stored_start(job, job.first + k);
+
+  // The nearest arc, and which are hardly farther than depth: no others can matter in a second look.
+  constexpr int kMaskBits = 64;
+  const float depth = f.parameters.depth, near = depth + 0.3f * job.reach.spacing;
+  NearestArc nearest;
+  uint64_t near_arcs = 0;
+  const int arcs = candidates.arc_count();
+  for (int q = 0; q < arcs; ++q) {
+    const int a = static_cast<int>(candidates.arc(q));
+    const float d2 = arc_distance2(load(f.arcs + a), x);
+    nearest.offer(a, d2);
+    near_arcs |= static_cast<uint64_t>(d2 < near * near) << (q & (kMaskBits - 1));
+  }
+  __syncwarp();
+  Look look = finish_look(f, nearest, x);
+  const bool mask_tells = arcs <= kMaskBits && 2.f * depth - look.distance < near;
+  __syncwarp();
+  if (look.again && mask_tells) {
+    const Vec3<float> from = look.point.position;
+    nearest = NearestArc();
+    for (uint64_t rest = near_arcs; rest; rest &= rest - 1) {
+      const int a = static_cast<int>(candidates.arc(lowest_bit64(rest)));
+      nearest.offer(a, arc_distance2(load(f.arcs + a), from));
+    }
+    look = finish_look(f, nearest, from);
+  }
+  __syncwarp();
+  append(job.again, job.again_count, k, on && look.again);
+  if (!on) return;
+  if (look.again)
+    store_start(job, job.first + k, look.point.position);
+  else
+    finish_vertex(job, k, look.point, nearest_atom(f, candidates, look.point.position));
+}
+
+__global__ __launch_bounds__(kVertexThreads) void project_again_kernel(VertexJob job) {
+  const uint32_t place = blockIdx.x * kVertexThreads + threadIdx.x, total = *job.again_count;
+  if (place >= total) return;
+  const uint32_t k = job.again[place];
+  const FeatureView &f = job.features;
+  const RowCandidates candidates = vertex_candidates(job, job.vertex_row[k]);
+  Look look{};
+  look.point.position = stored_start(job, job.first + k);
+  for (int round = 1; round < kMaxProjections; ++round) {
+    const Vec3<float> x = look.point.position;
+    look = finish_look(f, nearest_arc(f, candidates, x), x);
+    if (!look.again) break;
+  }
+  finish_vertex(job, k, look.point, nearest_atom(f, candidates, look.point.position));
 }
 
 // ---- triangles -------------------------------------------------------------------------------------------------
@@ -78,11 +148,11 @@ struct TriangleJob {
 // The 27 leaves whose vertices a brick's cells use.
 struct TriangleScratch {
   uint64_t crossing[27][kAxes];
-  uint32_t first[27][kAxes];         // vertex of each mask's lowest bit
-  uint32_t items[kTriangleItems];    // cell << 16 | case << 8 | triangle of the case
+  uint32_t first[27][kAxes];       // vertex of each mask's lowest bit
+  uint32_t items[kTriangleItems];  // cell << 16 | case << 8 | triangle of the case
 };
 
-__global__ __launch_bounds__(kTriangleWarps *kWarp) void emit_triangles_kernel(TriangleJob job) {
+static __global__ __launch_bounds__(kTriangleWarps *kWarp) void emit_triangles_kernel(TriangleJob job) {
   __shared__ TriangleScratch scratch_memory[kTriangleWarps];
   __shared__ __align__(16) uint8_t edges[kCellCases][16];
   __shared__ uint8_t triangle_count[kCellCases];
@@ -106,7 +176,8 @@ __global__ __launch_bounds__(kTriangleWarps *kWarp) void emit_triangles_kernel(T
       if (x == 2 || y == 2 || z == 2)
         k = job.bricks.find(job.bricks.lattice.brick_at(job.bricks.linear[b]) + glm::ivec3(x >> 1, y >> 1, z >> 1));
       if (k >= 0) {
-        const size_t leaf = static_cast<size_t>(k) * kLeavesPerBrick + static_cast<size_t>((x & 1) + 2 * (y & 1) + 4 * (z & 1));
+        const size_t leaf =
+            static_cast<size_t>(k) * kLeavesPerBrick + static_cast<size_t>((x & 1) + 2 * (y & 1) + 4 * (z & 1));
         for (int axis = 0; axis < kAxes; ++axis) {
           scratch.crossing[lane][axis] = layout.crossing[leaf * kAxes + axis];
           scratch.first[lane][axis] = layout.vertex_base[k] + layout.vertex_rank[leaf * kAxes + axis];
@@ -157,25 +228,24 @@ __global__ __launch_bounds__(kTriangleWarps *kWarp) void emit_triangles_kernel(T
 
 }  // namespace gpu
 
-// Vertices are numbered over all slices: mesh.positions[0] is that of the very first. Waits once if there are several
-// slices.
-inline void emit_vertices(CudaExecutor &executor, const FeatureView &features, const BrickSet &bricks,
-                          const MeshLayout &layout, BrickRange slice, CudaCandidates &candidates,
-                          const VertexStarts &starts, const MeshView &mesh) {
-  using namespace gpu;
-  if (slice.size() == 0) return;
+namespace gpu {
+
+// Starts and rows of the vertices of a slice; what they need is allocated here. No vertices: count is 0.
+inline VertexJob prepare_vertices(CudaExecutor &executor, const FeatureView &features, const BrickSet &bricks,
+                                  const MeshLayout &layout, BrickRange slice, CudaCandidates &candidates,
+                                  const VertexStarts &starts, const MeshView &mesh) {
+  VertexJob job{};
   uint32_t range[2] = {0, static_cast<uint32_t>(layout.vertex_total)};
   if (slice.size() < bricks.count) {
     const uint32_t *const sources[2] = {layout.vertex_base + slice.first, layout.vertex_base + slice.last};
     executor.fetch_each(sources, range, 2);
   }
-  const uint32_t count = range[1] - range[0];
-  if (count == 0) return;
+  job.first = range[0];
+  job.count = range[1] - range[0];
+  if (job.count == 0) return job;
   if (candidates.slice.first != slice.first || candidates.slice.last != slice.last)
     gather_candidates(executor, features, bricks, slice, candidates, nullptr);
-  const auto mark = executor.arena().mark();
   const size_t leaves = static_cast<size_t>(slice.size()) * kLeavesPerBrick;
-  VertexJob job{};
   job.features = features;
   job.bricks = bricks;
   job.layout = layout;
@@ -184,21 +254,40 @@ inline void emit_vertices(CudaExecutor &executor, const FeatureView &features, c
   job.starts = starts;
   job.halved = !starts.moved && starts_by_halving(features.parameters);
   job.mesh = mesh;
-  job.first = range[0];
-  job.count = count;
-  job.vertex_row = executor.allocate<uint32_t>(count).data;
+  job.vertex_row = executor.allocate<uint32_t>(job.count).data;
   // Half of the leaves own vertices at most, as a rule; those that get no row use their brick's.
-  job.row_room = static_cast<uint32_t>(std::min<size_t>({count, leaves, leaves / 2 + 1024}));
+  job.row_room = static_cast<uint32_t>(std::min<size_t>({job.count, leaves, leaves / 2 + 1024}));
   job.rows = executor.allocate<uint32_t>(size_t(job.row_room) * kRowWords).data;
-  Span<uint32_t> row_count = executor.allocate<uint32_t>(1);
-  job.row_count = row_count.data;
-  executor.fill(row_count, 0);
-  const size_t leaf_blocks = (leaves + kLeafWarps - 1) / kLeafWarps;
-  if (job.halved) executor.launch("halve_starts", halve_starts_kernel, leaf_blocks, kLeafWarps * kWarp, 0, job);
-  executor.launch("prepare_vertices", prepare_vertices_kernel, leaf_blocks, kLeafWarps * kWarp, 0, job);
-  executor.launch("project_vertices", project_vertices_kernel, (count + kVertexThreads - size_t(1)) / kVertexThreads,
-                  kVertexThreads, 0, job);
-  executor.arena().rewind(mark);
+  job.open = executor.allocate<uint32_t>(job.count).data;
+  job.again = executor.allocate<uint32_t>(job.count).data;
+  Span<uint32_t> counts = executor.allocate<uint32_t>(3);
+  job.row_count = counts.data;
+  job.open_count = counts.data + 1;
+  job.again_count = counts.data + 2;
+  executor.fill(counts, 0);
+  const size_t blocks = (leaves + kLeafWarps - 1) / kLeafWarps;
+  if (job.halved) executor.launch("halve_starts", halve_starts_kernel, blocks, kLeafWarps * kWarp, 0, job);
+  executor.launch("prepare_vertices", prepare_vertices_kernel, blocks, kLeafWarps * kWarp, 0, job);
+  return job;
+}
+
+}  // namespace gpu
+
+// Vertices are numbered over all slices: mesh.positions[0] is that of the very first. Waits once if there are several
+// slices.
+inline void emit_vertices(CudaExecutor &executor, const FeatureView &features, const BrickSet &bricks,
+                          const MeshLayout &layout, BrickRange slice, CudaCandidates &candidates,
+                          const VertexStarts &starts, const MeshView &mesh) {
+  using namespace gpu;
+  if (slice.size() == 0) return;
+  const auto mark = executor.arena().mark();
+  const bool gathered = candidates.slice.first == slice.first && candidates.slice.last == slice.last;
+  const VertexJob job = prepare_vertices(executor, features, bricks, layout, slice, candidates, starts, mesh);
+  const size_t blocks = (job.count + kVertexThreads - size_t(1)) / kVertexThreads;
+  executor.launch("project_on_atoms", project_on_atoms_kernel, blocks, kVertexThreads, 0, job);
+  executor.launch("project_on_arcs", project_on_arcs_kernel, blocks, kVertexThreads, 0, job);
+  executor.launch("project_again", project_again_kernel, blocks, kVertexThreads, 0, job);
+  if (gathered) executor.arena().rewind(mark);
 }
 
 inline void emit_triangles(CudaExecutor &executor, const BrickSet &bricks, const MeshLayout &layout, BrickRange slice,

@@ -23,7 +23,8 @@ class GrowingBuffer {
       const size_t wanted = bytes + bytes / 8;
       void *memory = Source::acquire(wanted);
       if (!memory)
-        throw Error(QSES_OUT_OF_MEMORY, std::string(Source::kName) + " refused " + describe_bytes(wanted) + " for the mesh");
+        throw Error(QSES_OUT_OF_MEMORY,
+                    std::string(Source::kName) + " refused " + describe_bytes(wanted) + " for the mesh");
       Source::release(memory_);
       memory_ = memory;
       size_ = wanted;
@@ -57,10 +58,12 @@ struct MeshArrays {
   }
   MeshView view(void *memory, bool with_patches, bool reversed) const {
     char *base = static_cast<char *>(memory);
-    return {reinterpret_cast<float *>(base + positions), reinterpret_cast<float *>(base + normals),
+    return {reinterpret_cast<float *>(base + positions),
+            reinterpret_cast<float *>(base + normals),
             reinterpret_cast<uint32_t *>(base + owners),
             with_patches ? reinterpret_cast<uint8_t *>(base + patches) : nullptr,
-            reinterpret_cast<uint32_t *>(base + indices), reversed};
+            reinterpret_cast<uint32_t *>(base + indices),
+            reversed};
   }
 };
 

@@ -47,9 +47,9 @@ struct ItemRun {
 // The grid as kernels see it.
 struct NeighborGridView {
   CellLayout cells;
-  const Sphere *items;        // sorted by cell, then by the order they were given in
-  const uint32_t *order;      // sorted place -> number when given
-  const uint32_t *starts;     // first item of each cell, and the total; nullptr if the grid is sparse
+  const Sphere *items;          // sorted by cell, then by the order they were given in
+  const uint32_t *order;        // sorted place -> number when given
+  const uint32_t *starts;       // first item of each cell, and the total; nullptr if the grid is sparse
   const uint64_t *sorted_keys;  // cell of each sorted item
   uint32_t count;
 
@@ -68,9 +68,10 @@ struct CellBox {
   int x0, x1, y0, y1, z0, z1;
 };
 QSES_FN CellBox cells_around(const CellLayout &cells, const Vec3<float> &low, const Vec3<float> &high) {
-  return {cells.cell_along(low.x, cells.origin.x, cells.count.x), cells.cell_along(high.x, cells.origin.x, cells.count.x),
-          cells.cell_along(low.y, cells.origin.y, cells.count.y), cells.cell_along(high.y, cells.origin.y, cells.count.y),
-          cells.cell_along(low.z, cells.origin.z, cells.count.z), cells.cell_along(high.z, cells.origin.z, cells.count.z)};
+  return {
+      cells.cell_along(low.x, cells.origin.x, cells.count.x), cells.cell_along(high.x, cells.origin.x, cells.count.x),
+      cells.cell_along(low.y, cells.origin.y, cells.count.y), cells.cell_along(high.y, cells.origin.y, cells.count.y),
+      cells.cell_along(low.z, cells.origin.z, cells.count.z), cells.cell_along(high.z, cells.origin.z, cells.count.z)};
 }
 
 struct HashItems {

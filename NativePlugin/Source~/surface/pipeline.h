@@ -48,8 +48,7 @@ class SurfacePipeline : public SurfaceEngine {
     timer_.begin("download");
     memory_.finish(built, settings, &mesh_);
     timer_.end();
-    report.compute_ms =
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    report.compute_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     report.work_bytes_peak = executor_.arena().peak();
     report.mesh_bytes = memory_.mesh_bytes(mesh_);
     report.host_bytes_peak = memory_.host_bytes() + (Executor::kIsCuda ? 0 : executor_.arena().peak());
@@ -93,8 +92,8 @@ class SurfacePipeline : public SurfaceEngine {
     const NeighborGridView grid = build_neighbor_grid(executor_, atoms, layout_cells(low, high, parameters.max_radius));
     remove_swallowed_atoms(executor_, grid, parameters.max_radius);
 
-    Run<Executor, Timer> run{executor_, timer_, memory_, progress_, table(), settings, parameters, lattice,
-                             low,       high,   grid,    report};
+    Run<Executor, Timer> run{executor_,  timer_,  memory_, progress_, table(), settings,
+                             parameters, lattice, low,     high,      grid,    report};
     MeshMemoryView mesh = settings.method == QSES_METHOD_GRID ? build_grid_surface(run) : build_exact_surface(run);
     timer_.begin("measure");
     const MeshCounts counts{mesh.vertices, mesh.triangles};

@@ -57,36 +57,28 @@ QSES_FN DeepestAtom deepest_atom(const FeatureView &f, const Candidates &candida
   return best;
 }
 
-// Where three atoms hold the probe several arcs end: to a point nearest to that end they are one and the same.
-constexpr float kSameProbe = 2e-4f;  // Å
-QSES_FN bool same_nearest(const Arc &a, const Arc &b, const Vec3<float> &x) {
-  return length_squared(nearest_on_arc(a, x).position - nearest_on_arc(b, x).position) < kSameProbe * kSameProbe;
-}
-
 struct NearestArc {
-  int arc;           // -1: there is none
-  float distance2;   // squared
-  float second2;     // of the nearest other place
+  int arc = -1;                // -1: there is none
+  float distance2 = kFarAway;  // squared
+  float second2 = kFarAway;    // of the second nearest
+
+  QSES_FN void offer(int a, float d2) {
+    if (d2 < distance2 || (d2 == distance2 && a < arc)) {  // ties by number: arcs come in any order
+      second2 = distance2;
+      distance2 = d2;
+      arc = a;
+    } else {
+      second2 = minimum(second2, d2);
+    }
+  }
 };
 template <class Candidates>
 QSES_FN NearestArc nearest_arc(const FeatureView &f, const Candidates &candidates, const Vec3<float> &x) {
-  constexpr float kClose = 1e-3f;  // squared distances to one place differ by less
-  NearestArc best{-1, kFarAway, kFarAway};
+  NearestArc best;
   const int arcs = candidates.arc_count();
   for (int k = 0; k < arcs; ++k) {
     const int a = static_cast<int>(candidates.arc(k));
-    const Arc arc = load(f.arcs + a);
-    const float d2 = arc_distance2(arc, x);
-    if (d2 > best.second2) continue;
-    const bool same = absolute(d2 - best.distance2) < kClose && best.arc >= 0 &&
-                      same_nearest(arc, load(f.arcs + best.arc), x);
-    if (d2 < best.distance2 || (d2 == best.distance2 && a < best.arc)) {  // ties by number: they come in any order
-      if (!same) best.second2 = best.distance2;
-      best.distance2 = d2;
-      best.arc = a;
-    } else if (!same) {
-      best.second2 = d2;
-    }
+    best.offer(a, arc_distance2(load(f.arcs + a), x));
   }
   return best;
 }
@@ -95,7 +87,7 @@ QSES_FN NearestArc nearest_arc(const FeatureView &f, const Candidates &candidate
 struct BoundaryPoint {
   Vec3<float> position;  // y: where the probe's centre is when it touches the surface at the vertex
   float distance;        // |x - y|; negative if x is outside the union of the inflated balls
-  float second;          // distance to the nearest other place on arcs: only of interest where an arc decided
+  float second;          // distance to the second nearest arc: only of interest where the first one decided
   qses_patch patch;
 };
 
@@ -104,7 +96,7 @@ QSES_FN float offset_length(const Sphere &ball, float depth) { return maximum(ba
 
 QSES_FN BoundaryPoint boundary_on_atom(const Sphere &ball, float depth, const Vec3<float> &x) {
   const Vec3<float> offset = x - Vec3<float>(ball.center);
-  return {Vec3<float>(ball.center) + offset * (ball.radius / offset_length(ball, depth)), depth, kFarAway,
+  return {Vec3<float>(ball.center) + offset * quotient(ball.radius, offset_length(ball, depth)), depth, kFarAway,
           QSES_PATCH_CONTACT};
 }
 
@@ -138,7 +130,7 @@ struct SurfacePoint {
 // The point `depth` inside the boundary point y on the line through x, which lies `distance` (signed) inside it.
 QSES_FN SurfacePoint place_on_surface(const Vec3<float> &x, const Vec3<float> &y, float distance, float depth,
                                       qses_patch patch) {
-  Vec3<float> outward = (y - x) * (1.f / (absolute(distance) > 1e-9f ? distance : 1e-9f));
+  Vec3<float> outward = (y - x) * quotient(1.f, absolute(distance) > 1e-9f ? distance : 1e-9f);
   const float length2 = length_squared(outward);
   outward = length2 > 0.25f ? outward * reciprocal_root(length2) : Vec3<float>(0.f, 0.f, 1.f);
   return {y - outward * depth, outward, patch};
@@ -154,8 +146,8 @@ QSES_FN SurfacePoint project_to_surface(const FeatureView &f, const Candidates &
   const float depth = f.parameters.depth;
   BoundaryPoint b = nearest_boundary(f, candidates, x);
   SurfacePoint s = place_on_surface(x, b.position, b.distance, depth, b.patch);
-  for (int k = 1; k < kMaxProjections && b.patch != QSES_PATCH_CONTACT && needs_another_look(b.distance, b.second, depth);
-       ++k) {
+  for (int k = 1; k < kMaxProjections; ++k) {
+    if (b.patch == QSES_PATCH_CONTACT || !needs_another_look(b.distance, b.second, depth)) break;
     x = s.position;
     b = nearest_boundary(f, candidates, x, true);
     s = place_on_surface(x, b.position, b.distance, depth, b.patch);

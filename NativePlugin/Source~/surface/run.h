@@ -89,8 +89,7 @@ inline void check_mesh_size(const MeshCounts &counts) {
   if (counts.vertices >= kMost || counts.triangles >= kMost)
     throw Error(QSES_TOO_FINE, "the spacing is too fine for this structure: the mesh would have " +
                                    std::to_string(counts.vertices) + " vertices and " +
-                                   std::to_string(counts.triangles) +
-                                   " triangles, more than 32-bit indices can name");
+                                   std::to_string(counts.triangles) + " triangles, more than 32-bit indices can name");
 }
 
 }  // namespace quickses

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Refuses a spacing that is hopelessly fine before any time is spent on it: a rough prediction of bytes from the exposed
-// area of the inflated spheres, which the surface's own area is never far from.
+// Refuses a spacing that is hopelessly fine before any time is spent on it: a rough prediction of bytes from the
+// exposed area of the inflated spheres, which the surface's own area is never far from.
 #pragma once
 
 #include "surface/projection.h"
@@ -55,10 +55,11 @@ void refuse_hopeless_spacing(R &run, const FeatureView &features, uint64_t avail
   }
   if (available_bytes > 0 && bytes > kCertainty * static_cast<double>(available_bytes)) {
     char text[200];
-    std::snprintf(text, sizeof text,
-                  "spacing %g Å needs about %s for this structure, but %s are available; about %.2g Å would do", h,
-                  describe_bytes(static_cast<uint64_t>(bytes)).c_str(), describe_bytes(available_bytes).c_str(),
-                  h * std::sqrt(bytes / static_cast<double>(available_bytes)));
+    std::snprintf(
+        text, sizeof text,
+        "spacing %g Å needs about %s of memory for this structure, but %s are available; about %.2g Å would do", h,
+        describe_bytes(static_cast<uint64_t>(bytes)).c_str(), describe_bytes(available_bytes).c_str(),
+        h * std::sqrt(bytes / static_cast<double>(available_bytes)));
     throw Error(QSES_OUT_OF_MEMORY, text);
   }
 }

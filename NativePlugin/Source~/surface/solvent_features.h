@@ -25,7 +25,7 @@ struct SolventFeatures {
   Span<CapRange> cap_ranges;  // per atom, in grid order
   Span<Cap> caps;             // cosine with the exposure tolerance, largest cap first
   Span<Arc> arcs;
-  Span<uint8_t> exposed;      // CPU only: per atom 1 or 0, and 8 bytes more
+  Span<uint8_t> exposed;  // CPU only: per atom 1 or 0, and 8 bytes more
 };
 
 // The features as the later stages see them: arcs sorted into a neighbour grid by their enclosing balls.
@@ -33,7 +33,7 @@ struct FeatureView {
   NeighborGridView atoms;  // inflated spheres; atoms that own no surface are far away
   const CapRange *cap_ranges;
   const Cap *caps;
-  const uint8_t *exposed;  // per atom 1 or 0, readable 8 beyond the last; only the CPU's kernels look at it
+  const uint8_t *exposed;       // per atom 1 or 0, readable 8 beyond the last; only the CPU's kernels look at it
   NeighborGridView arc_bounds;  // enclosing ball of each arc
   const Arc *arcs;              // in the order of arc_bounds.items
   float max_arc_bound;

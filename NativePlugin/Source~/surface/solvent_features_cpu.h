@@ -110,15 +110,15 @@ inline SolventFeatures find_solvent_features(CpuExecutor &executor, const Neighb
   Span<FeatureChunk> table = executor.allocate<FeatureChunk>(chunks);
   for (auto &s : executor.scratches<FeatureStaging>()) s->cap_count = s->arc_count = 0;
   executor.for_each_brick<FeatureStaging>(
-      chunks, FindChunkFeatures{&executor.kernels(), &atoms, &parameters, f.cap_ranges.data, f.exposed.data, table.data},
-      1);
+      chunks,
+      FindChunkFeatures{&executor.kernels(), &atoms, &parameters, f.cap_ranges.data, f.exposed.data, table.data}, 1);
   Span<uint64_t> cap_base = executor.allocate<uint64_t>(chunks + 1), arc_base = executor.allocate<uint64_t>(chunks + 1);
   executor.exclusive_scan(chunks, LoadChunkCaps{table.data}, cap_base);
   executor.exclusive_scan(chunks, LoadChunkArcs{table.data}, arc_base);
   f.caps = executor.allocate<Cap>(cap_base[chunks]);
   f.arcs = executor.allocate<Arc>(arc_base[chunks]);
-  executor.for_each(chunks, CollectChunk{table.data, cap_base.data, arc_base.data, n, f.exposed.data,
-                                         f.cap_ranges.data, f.caps.data, f.arcs.data});
+  executor.for_each(chunks, CollectChunk{table.data, cap_base.data, arc_base.data, n, f.exposed.data, f.cap_ranges.data,
+                                         f.caps.data, f.arcs.data});
   return f;
 }
 

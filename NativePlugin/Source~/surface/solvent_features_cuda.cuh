@@ -39,8 +39,8 @@ __device__ __forceinline__ int gather_caps(const NeighborGridView &atoms, float 
   const Vec3<float> center(self.center);
   const float reach = self.radius + max_radius;
   const CellLayout &cells = atoms.cells;
-  const CellBox box = cells_around(cells, center - Vec3<float>(reach, reach, reach),
-                                   center + Vec3<float>(reach, reach, reach));
+  const CellBox box =
+      cells_around(cells, center - Vec3<float>(reach, reach, reach), center + Vec3<float>(reach, reach, reach));
   const float edge = 1.f / cells.inverse_edge;
   // Cells are told apart by rounded arithmetic: coordinates are good to this much.
   const float slack = 1e-3f + 1e-6f * edge * static_cast<float>(cells.count.x + cells.count.y + cells.count.z);
@@ -50,7 +50,8 @@ __device__ __forceinline__ int gather_caps(const NeighborGridView &atoms, float 
     // Only the part of the row that the reach leaves beside the distance to it.
     const float y_low = cells.origin.y + static_cast<float>(y) * edge - self.center.y;
     const float z_low = cells.origin.z + static_cast<float>(z) * edge - self.center.z;
-    const float dy = fmaxf(0.f, fmaxf(y_low, -y_low - edge) - slack), dz = fmaxf(0.f, fmaxf(z_low, -z_low - edge) - slack);
+    const float dy = fmaxf(0.f, fmaxf(y_low, -y_low - edge) - slack),
+                dz = fmaxf(0.f, fmaxf(z_low, -z_low - edge) - slack);
     const float left2 = reach * reach - dy * dy - dz * dz;
     if (left2 <= 0.f) return ItemRun{0, 0};
     const float left = square_root(left2) + slack;
@@ -187,7 +188,7 @@ __device__ __forceinline__ bool find_caps(const CapJob &job, uint32_t i, const C
   return true;
 }
 
-__global__ __launch_bounds__(kCapWarps *kWarp) void find_caps_kernel(CapJob job) {
+static __global__ __launch_bounds__(kCapWarps *kWarp) void find_caps_kernel(CapJob job) {
   __shared__ Cap cap[kCapWarps][kRowNeighbors];
   __shared__ float sine[kCapWarps][kRowNeighbors];
   __shared__ uint32_t neighbor[kCapWarps][kRowNeighbors];
@@ -203,7 +204,7 @@ __global__ __launch_bounds__(kCapWarps *kWarp) void find_caps_kernel(CapJob job)
 }
 
 // The same for the atoms that have more neighbours, with rows of the needed length in global memory.
-__global__ __launch_bounds__(kCapWarps *kWarp) void find_long_caps_kernel(CapJob job, unsigned char *memory) {
+static __global__ __launch_bounds__(kCapWarps *kWarp) void find_long_caps_kernel(CapJob job, unsigned char *memory) {
   const uint32_t warp = (blockIdx.x * blockDim.x + threadIdx.x) / kWarp, warps = gridDim.x * kCapWarps;
   const size_t room = job.room.neighbors;
   unsigned char *row = memory + warp * room * (sizeof(Cap) + sizeof(float) + sizeof(uint32_t));
@@ -244,15 +245,17 @@ inline SolventFeatures find_solvent_features(CudaExecutor &executor, const Neigh
     executor.fill(counters, 0);
     executor.fill(exposed, 0);
 
-    const CapJob job{atoms,          parameters.max_radius, room,          counters.data,     features.cap_ranges.data,
-                     features.caps.data, neighbors.data,    circle_count.data, exposed.data, long_atoms.data};
+    const CapJob job{atoms,          parameters.max_radius,    room,
+                     counters.data,  features.cap_ranges.data, features.caps.data,
+                     neighbors.data, circle_count.data,        exposed.data,
+                     long_atoms.data};
     const size_t blocks = std::min<size_t>((n + kCapWarps - 1) / kCapWarps, size_t(executor.multiprocessors()) * 128);
     executor.launch("find_caps", find_caps_kernel, blocks, kCapWarps * kWarp, 0, job);
     if (room.neighbors > 0) {
       const size_t long_blocks = std::min<size_t>(blocks, size_t(executor.multiprocessors()) * 4);
       const auto mark = executor.arena().mark();
-      Span<unsigned char> memory = executor.allocate<unsigned char>(
-          long_blocks * kCapWarps * room.neighbors * (sizeof(Cap) + sizeof(float) + sizeof(uint32_t)));
+      Span<unsigned char> memory = executor.allocate<unsigned char>(long_blocks * kCapWarps * room.neighbors *
+                                                                    (sizeof(Cap) + sizeof(float) + sizeof(uint32_t)));
       executor.launch("find_long_caps", find_long_caps_kernel, long_blocks, kCapWarps * kWarp, 0, job, memory.data);
       executor.arena().rewind(mark);
     }

@@ -27,16 +27,16 @@ struct BrickRange {
 
 // Where vertices start before they are projected.
 struct VertexStarts {
-  bool relax;               // move by the ring table first (relaxation step 1)
-  const glm::vec3 *moved;   // if not null: [vertex], centred frame: starts of a further relaxation step
+  bool relax;                          // move by the ring table first (relaxation step 1)
+  const glm::vec3 *moved;              // if not null: [vertex], centred frame: starts of a further relaxation step
   const uint64_t (*ring)[kCellEdges];  // MarchingCubesTable::ring in the memory of the back end
 };
 
 // The table in the memory of the back end.
 struct TableView {
-  const uint8_t *triangle_count;         // [256]
-  const uint8_t (*edges)[16];            // [256]
-  const uint64_t (*ring)[kCellEdges];    // [256]
+  const uint8_t *triangle_count;       // [256]
+  const uint8_t (*edges)[16];          // [256]
+  const uint64_t (*ring)[kCellEdges];  // [256]
 };
 
 // CandidatesOf<E>::type; kFromSigns: emit_vertices needs what evaluate_signs left in it for the same slice;

@@ -22,10 +22,12 @@ struct VertexJob {
   uint32_t *rows;         // kRowWords each
   uint32_t row_room;
   uint32_t *row_count;
+  uint32_t *open, *open_count;    // vertices that no contact patch has
+  uint32_t *again, *again_count;  // those of them that must be checked against other probes
 };
 
-// Row of a leaf's vertices: word 0 has the number of atoms in its lower and of arcs in its upper half, then they follow.
-// If they are too many the brick's row is used.
+// Row of a leaf's vertices: word 0 has the number of atoms in its lower and of arcs in its upper half, then they
+// follow. If they are too many the brick's row is used.
 constexpr int kRowWords = 64;
 constexpr uint32_t kBrickRow = 0x80000000u;
 constexpr int kLeafWarps = 4;
@@ -69,11 +71,11 @@ __device__ __forceinline__ void store_start(const VertexJob &job, uint32_t verte
 
 // A leaf and the edges it owns vertices on.
 struct VertexLeaf {
-  uint32_t brick;      // of the set
+  uint32_t brick;  // of the set
   int leaf;
-  glm::ivec3 place;    // of the brick
-  glm::ivec3 origin;   // first point of the leaf, counted from the brick's
-  uint32_t first;      // vertex
+  glm::ivec3 place;   // of the brick
+  glm::ivec3 origin;  // first point of the leaf, counted from the brick's
+  uint32_t first;     // vertex
   int count;
 };
 
@@ -105,65 +107,52 @@ __device__ __forceinline__ bool open_leaf(const VertexJob &job, uint32_t slot, V
   return true;
 }
 
-__device__ __forceinline__ uint64_t word_at(const VertexJob &job, const VertexLeaf &leaf, int x, int y, int z) {
-  int b = static_cast<int>(leaf.brick);
-  if ((x | y | z) & ~7) {
-    b = job.bricks.find(leaf.place + glm::ivec3(x >> 3, y >> 3, z >> 3));
-    if (b < 0) b = static_cast<int>(leaf.brick);  // no cell with a sign change reaches there: any sign will do
-  }
-  return job.layout.signs[static_cast<size_t>(b) * kLeavesPerBrick + static_cast<size_t>(leaf_of(x & 7, y & 7, z & 7))];
-}
-
 // Signs of the points of a leaf and one further on every side: row (y + 1) + 6 (z + 1), bit x + 1.
 constexpr int kWindowRows = 36;
-__device__ __forceinline__ void fill_window(const VertexJob &job, const VertexLeaf &leaf, uint8_t *window) {
-  for (int r = lane_id(); r < kWindowRows; r += kWarp) {
-    const int x = leaf.origin.x, y = leaf.origin.y + r % 6 - 1, z = leaf.origin.z + r / 6 - 1;
-    const int row = leaf_bit(0, y & 3, z & 3);
-    window[r] = static_cast<uint8_t>((word_at(job, leaf, x - 1, y, z) >> (row + 3) & 1) |
-                                     (word_at(job, leaf, x, y, z) >> row & 15) << 1 |
-                                     (word_at(job, leaf, x + 4, y, z) >> row & 1) << 5);
+struct SignWindow {
+  uint64_t words[27];  // of the leaf and its neighbours, x fastest
+  uint8_t rows[kWindowRows];
+};
+__device__ __forceinline__ void fill_window(const VertexJob &job, const VertexLeaf &leaf, SignWindow *window) {
+  const int lane = lane_id();
+  if (lane < 27) {
+    const int x = leaf.origin.x + 4 * (lane % 3 - 1), y = leaf.origin.y + 4 * (lane / 3 % 3 - 1),
+              z = leaf.origin.z + 4 * (lane / 9 - 1);
+    int b = static_cast<int>(leaf.brick);
+    if ((x | y | z) & ~7) {
+      b = job.bricks.find(leaf.place + glm::ivec3(x >> 3, y >> 3, z >> 3));
+      if (b < 0) b = static_cast<int>(leaf.brick);  // no cell with a sign change reaches there: any sign will do
+    }
+    window->words[lane] =
+        job.layout.signs[static_cast<size_t>(b) * kLeavesPerBrick + static_cast<size_t>(leaf_of(x & 7, y & 7, z & 7))];
+  }
+  __syncwarp();
+  for (int r = lane; r < kWindowRows; r += kWarp) {
+    const int y = r % 6 - 1, z = r / 6 - 1, row = leaf_bit(0, y & 3, z & 3);
+    const uint64_t *const words = window->words + 3 * ((y >> 2) + 1) + 9 * ((z >> 2) + 1);
+    window->rows[r] =
+        static_cast<uint8_t>((words[0] >> (row + 3) & 1) | (words[1] >> row & 15) << 1 | (words[2] >> row & 1) << 5);
   }
   __syncwarp();
 }
 
-// Signs of the 2 x 3 x 3 points around an edge.
-struct EdgeSigns {
-  uint32_t bits;
-  __device__ __forceinline__ bool operator()(int along, int second, int third) const {
-    return bits >> (along + 2 * (second + 1) + 6 * (third + 1)) & 1;
-  }
-};
-__device__ __forceinline__ EdgeSigns signs_around(const uint8_t *window, int axis, int x, int y, int z) {
-  EdgeSigns signs{0};
-  if (axis == 0) {
-#pragma unroll
-    for (int third = 0; third < 3; ++third)
-#pragma unroll
-      for (int second = 0; second < 3; ++second)
-        signs.bits |= (window[y + second + 6 * (z + third)] >> (x + 1) & 3u) << (2 * second + 6 * third);
-  } else {
-#pragma unroll
-    for (int third = 0; third < 3; ++third)
-#pragma unroll
-      for (int along = 0; along < 2; ++along) {
-        const int row = axis == 1 ? y + 1 + along + 6 * (z + third) : y + third + 6 * (z + 1 + along);
-        const uint32_t v = window[row] >> x;  // three points along x: every second bit of the result
-        signs.bits |= ((v & 1) | (v & 2) << 1 | (v & 4) << 2) << (along + 6 * third);
-      }
-  }
-  return signs;
+// Case of the cell whose lower corner is point (x, y, z) of the leaf; -1 reaches back into the neighbours.
+__device__ __forceinline__ int window_case(const uint8_t *window, int x, int y, int z) {
+  const uint8_t *row = window + (y + 1) + 6 * (z + 1);
+  const int shift = x + 1;
+  return (row[0] >> shift & 3) | (row[1] >> shift & 3) << 2 | (row[6] >> shift & 3) << 4 | (row[7] >> shift & 3) << 6;
 }
 
 // Starts found by halving the edges, for spacings much wider than the probe. A warp per leaf.
-__global__ __launch_bounds__(kLeafWarps *kWarp) void halve_starts_kernel(VertexJob job) {
+static __global__ __launch_bounds__(kLeafWarps *kWarp) void halve_starts_kernel(VertexJob job) {
   __shared__ uint8_t edge_memory[kLeafWarps][kMostLeafVertices];
   const int warp = static_cast<int>(threadIdx.x) / kWarp;
   const uint32_t slot = blockIdx.x * kLeafWarps + static_cast<uint32_t>(warp);
   VertexLeaf leaf;
   if (slot >= job.view.bricks * kLeavesPerBrick || !open_leaf(job, slot, &leaf, edge_memory[warp])) return;
   const Lattice &lattice = job.bricks.lattice;
-  const uint64_t word = job.layout.signs[static_cast<size_t>(leaf.brick) * kLeavesPerBrick + static_cast<size_t>(leaf.leaf)];
+  const uint64_t word =
+      job.layout.signs[static_cast<size_t>(leaf.brick) * kLeavesPerBrick + static_cast<size_t>(leaf.leaf)];
   const RowCandidates candidates = brick_candidates(job.view, slot / kLeavesPerBrick);
   for (int k = lane_id(); k < leaf.count; k += kWarp) {
     const int axis = edge_memory[warp][k] >> 6, bit = edge_memory[warp][k] & 63;
@@ -180,9 +169,9 @@ __global__ __launch_bounds__(kLeafWarps *kWarp) void halve_starts_kernel(VertexJ
 }
 
 // Starts and rows of the leaves that own vertices. A warp per leaf.
-__global__ __launch_bounds__(kLeafWarps *kWarp) void prepare_vertices_kernel(VertexJob job) {
+static __global__ __launch_bounds__(kLeafWarps *kWarp) void prepare_vertices_kernel(VertexJob job) {
   __shared__ uint8_t edge_memory[kLeafWarps][kMostLeafVertices];
-  __shared__ uint8_t window_memory[kLeafWarps][kWindowRows];
+  __shared__ SignWindow window_memory[kLeafWarps];
   const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();
   const uint32_t slot = blockIdx.x * kLeafWarps + static_cast<uint32_t>(warp);
   const uint8_t *const edges = edge_memory[warp];
@@ -190,10 +179,11 @@ __global__ __launch_bounds__(kLeafWarps *kWarp) void prepare_vertices_kernel(Ver
   if (slot >= job.view.bricks * kLeavesPerBrick || !open_leaf(job, slot, &leaf, edge_memory[warp])) return;
   const Lattice &lattice = job.bricks.lattice;
   const bool ring = job.starts.relax && !job.halved && !job.starts.moved;
-  if (ring) fill_window(job, leaf, window_memory[warp]);
+  if (ring) fill_window(job, leaf, &window_memory[warp]);
 
   Vec3<float> low(kFarAway, kFarAway, kFarAway), high(-kFarAway, -kFarAway, -kFarAway);
-  const uint64_t word = job.layout.signs[static_cast<size_t>(leaf.brick) * kLeavesPerBrick + static_cast<size_t>(leaf.leaf)];
+  const uint64_t word =
+      job.layout.signs[static_cast<size_t>(leaf.brick) * kLeavesPerBrick + static_cast<size_t>(leaf.leaf)];
   const glm::ivec3 origin = lattice.first_point(leaf.place) + leaf.origin;
   for (int k = lane; k < leaf.count; k += kWarp) {
     const uint32_t vertex = leaf.first + static_cast<uint32_t>(k);
@@ -205,9 +195,17 @@ __global__ __launch_bounds__(kLeafWarps *kWarp) void prepare_vertices_kernel(Ver
     } else {
       const int axis = edges[k] >> 6, bit = edges[k] & 63, px = bit & 3, py = bit >> 2 & 3, pz = bit >> 4;
       Vec3<float> move(0.f, 0.f, 0.f);
-      if (ring)
-        ring_displacement(edge_ring(signs_around(window_memory[warp], axis, px, py, pz), axis, job.starts.ring),
-                          &move.x, &move.y, &move.z);
+      if (ring) {
+        const uint8_t *const window = window_memory[warp].rows;
+        const auto cell_case = [&](int second, int third) {
+          return window_case(window, px + (axis == 0 ? 0 : second),
+                             py + (axis == 0   ? second
+                                   : axis == 1 ? 0
+                                               : third),
+                             pz + (axis == 2 ? 0 : third));
+        };
+        ring_displacement(edge_ring_of_cells(cell_case, axis, job.starts.ring), &move.x, &move.y, &move.z);
+      }
       const float along = vertex_start(word >> bit & 1);
       move.x += axis == 0 ? along : 0.f;
       move.y += axis == 1 ? along : 0.f;

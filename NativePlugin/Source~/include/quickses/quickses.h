@@ -99,9 +99,9 @@ typedef enum qses_winding {
 
 /* What kind of surface a vertex lies on (Connolly's three). */
 typedef enum qses_patch {
-  QSES_PATCH_CONTACT = 0,   /* convex: on one atom */
-  QSES_PATCH_TOROIDAL = 1,  /* saddle: the probe touches two atoms */
-  QSES_PATCH_REENTRANT = 2  /* concave: the probe touches three or more atoms */
+  QSES_PATCH_CONTACT = 0,  /* convex: on one atom */
+  QSES_PATCH_TOROIDAL = 1, /* saddle: the probe touches two atoms */
+  QSES_PATCH_REENTRANT = 2 /* concave: the probe touches three or more atoms */
 } qses_patch;
 
 /* Device memory and CPU or GPU threads that compute surfaces, and the atoms they are computed of. Opaque. */
@@ -179,11 +179,11 @@ QSES_API qses_status qses_set_positions(qses_context *context, const float *posi
 /* ---- computing ------------------------------------------------------------------------------------------------- */
 
 typedef struct qses_settings {
-  uint32_t struct_size;      /* set by qses_settings_init */
-  qses_surface surface;      /* default SES */
-  qses_method method;        /* default EXACT */
-  float probe_radius;        /* Å, 0 to 100; default 1.4 (water). Below 0.05 the SES is the VDW surface. Ignored by VDW */
-  float spacing;             /* Å between lattice points ("voxel size"), 0.001 to 100; default 0.5 */
+  uint32_t struct_size; /* set by qses_settings_init */
+  qses_surface surface; /* default SES */
+  qses_method method;   /* default EXACT */
+  float probe_radius;   /* Å, 0 to 100; default 1.4 (water). Below 0.05 the SES is the VDW surface. Ignored by VDW */
+  float spacing;        /* Å between lattice points ("voxel size"), 0.001 to 100; default 0.5 */
   uint32_t relaxation_steps; /* default 1, at most 100. EXACT: tangential smoothing, each step projected back onto the
                                 exact surface. GRID: Laplacian smoothing as in the paper, which moves off it */
   uint32_t slice_size;       /* work in slices of at most slice_size³ lattice points (at least 8); the mesh is the same
@@ -200,16 +200,16 @@ QSES_API void qses_settings_init(qses_settings *settings);
 /* A view of a mesh in memory of the context: valid until the next qses_compute that succeeds on the same context, or
  * qses_destroy. (Page-locked memory with CUDA.) Nothing here may be written or freed by the caller. */
 typedef struct qses_mesh {
-  uint32_t struct_size;     /* set by qses_mesh_init */
-  uint32_t vertex_count;    /* V */
-  uint32_t triangle_count;  /* T */
-  uint32_t frame;           /* as in the settings */
-  const float *positions;   /* V x 3, Å */
-  const float *normals;     /* V x 3, unit length, outward; on a crease, that of one of its sides */
-  const uint32_t *owners;   /* V, the atom nearest to the vertex among those its patch belongs to */
-  const uint8_t *patches;   /* V of qses_patch, or NULL */
-  const uint32_t *indices;  /* T x 3 vertex numbers */
-  float bounds_min[3];      /* box of the vertices, Å; all 0 for an empty mesh */
+  uint32_t struct_size;    /* set by qses_mesh_init */
+  uint32_t vertex_count;   /* V */
+  uint32_t triangle_count; /* T */
+  uint32_t frame;          /* as in the settings */
+  const float *positions;  /* V x 3, Å */
+  const float *normals;    /* V x 3, unit length, outward; on a crease, that of one of its sides */
+  const uint32_t *owners;  /* V, the atom whose van der Waals surface is nearest to the vertex */
+  const uint8_t *patches;  /* V of qses_patch, or NULL */
+  const uint32_t *indices; /* T x 3 vertex numbers */
+  float bounds_min[3];     /* box of the vertices, Å; all 0 for an empty mesh */
   float bounds_max[3];
 } qses_mesh;
 
@@ -234,16 +234,16 @@ typedef struct qses_stage_time {
 
 /* What the last qses_compute did. */
 typedef struct qses_report {
-  uint32_t struct_size;           /* set by qses_report_init */
+  uint32_t struct_size; /* set by qses_report_init */
   uint32_t stage_count;
-  double area;                    /* Å², sum over the triangles */
-  double volume;                  /* Å³, enclosed; cavities count negative */
-  double compute_ms;              /* atoms in host memory to mesh in host memory */
-  uint64_t work_bytes_peak;       /* most memory in use for the work: on the device with CUDA, else in host memory,
-                                     without the mesh */
-  uint64_t mesh_bytes;            /* of the mesh itself */
-  uint64_t host_bytes_peak;       /* host memory of the context, the mesh included */
-  uint64_t brick_count;           /* bricks of 8x8x8 lattice points that were evaluated */
+  double area;              /* Å², sum over the triangles */
+  double volume;            /* Å³, enclosed; cavities count negative */
+  double compute_ms;        /* atoms in host memory to mesh in host memory */
+  uint64_t work_bytes_peak; /* most memory in use for the work: on the device with CUDA, else in host memory,
+                               without the mesh */
+  uint64_t mesh_bytes;      /* of the mesh itself */
+  uint64_t host_bytes_peak; /* host memory of the context, the mesh included */
+  uint64_t brick_count;     /* bricks of 8x8x8 lattice points that were evaluated */
   uint64_t slice_count;
   qses_stage_time stages[QSES_MAX_STAGES]; /* stage_count of them, in order; filled if asked for by
                                               qses_enable_stage_times */
@@ -259,9 +259,9 @@ QSES_API qses_status qses_get_report(const qses_context *context, qses_report *r
  * per surface. Errors: INVALID_ARGUMENT. */
 QSES_API qses_status qses_enable_stage_times(qses_context *context, int32_t enabled);
 
-/* Called from the computing thread during qses_compute with the fraction done, rising from 0 to 1; at most a few hundred
- * times. It must not call into the library. NULL (default) switches it off. It is meant for command
- * line programs; games should not hand managed code to it. Errors: INVALID_ARGUMENT. */
+/* Called from the computing thread during qses_compute with the fraction done, rising from 0 to 1; at most a few
+ * hundred times. It must not call into the library. NULL (default) switches it off. It is meant for command line
+ * programs; games should not hand managed code to it. Errors: INVALID_ARGUMENT. */
 typedef void (*qses_progress_callback)(void *user_data, double fraction);
 QSES_API qses_status qses_set_progress_callback(qses_context *context, qses_progress_callback callback,
                                                 void *user_data);

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+// Trajectories: choice of the format, and what all formats have in common.
+#include "io/trajectory.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+
+#include "io/dcd_reader.h"
+#include "io/pdb_frames.h"
+#include "io/text.h"
+#include "io/trajectory_reader.h"
+#include "io/xtc_reader.h"
+
+namespace quickses::io {
+namespace {
+
+constexpr float kMaxCoordinate = 1e6f;  // Å, what the surface library takes
+
+std::string lower_extension(std::filesystem::path path) {
+  std::string extension = path.extension().string();
+  for (char &c : extension) c = to_lower(c);
+  return extension == ".gz" ? lower_extension(path.replace_extension()) : extension;
+}
+
+TrajectoryFormat find_format(const std::string &path, const ByteSource &source) {
+  const std::string extension = lower_extension(path);
+  if (extension == ".dcd") return TrajectoryFormat::kDcd;
+  if (extension == ".xtc") return TrajectoryFormat::kXtc;
+  if (extension == ".pdb" || extension == ".ent" || extension == ".brk") return TrajectoryFormat::kPdb;
+  unsigned char head[256] = {};
+  const size_t count = static_cast<size_t>(std::min<uint64_t>(source.size(), sizeof head));
+  source.read(0, head, count);
+  if (is_dcd(head, count)) return TrajectoryFormat::kDcd;
+  if (is_xtc(head, count)) return TrajectoryFormat::kXtc;
+  if (is_pdb(head, count)) return TrajectoryFormat::kPdb;
+  fail_input("'" + path + "': its name and content tell no format of trajectories; known are .dcd .xtc .pdb .ent .brk" +
+             ", each also as .gz");
+}
+
+std::unique_ptr<TrajectoryReader> open_reader(TrajectoryFormat format, std::unique_ptr<ByteSource> source) {
+  switch (format) {
+    case TrajectoryFormat::kDcd:
+      return open_dcd(std::move(source));
+    case TrajectoryFormat::kXtc:
+      return open_xtc(std::move(source));
+    case TrajectoryFormat::kPdb:
+      return open_pdb_frames(std::move(source));
+  }
+  fail_usage("unknown format of trajectories");
+}
+
+}  // namespace
+
+Trajectory::Trajectory(TrajectoryFormat format, std::unique_ptr<TrajectoryReader> reader)
+    : format_(format), reader_(std::move(reader)) {}
+Trajectory::Trajectory(Trajectory &&) noexcept = default;
+Trajectory &Trajectory::operator=(Trajectory &&) noexcept = default;
+Trajectory::~Trajectory() = default;
+
+Trajectory Trajectory::open(const std::string &path) {
+  std::unique_ptr<ByteSource> source = ByteSource::open_file(path);
+  const TrajectoryFormat format = find_format(path, *source);
+  return Trajectory(format, open_reader(format, std::move(source)));
+}
+
+Trajectory Trajectory::open(const std::string &path, TrajectoryFormat format) {
+  return Trajectory(format, open_reader(format, ByteSource::open_file(path)));
+}
+
+Trajectory Trajectory::from_memory(std::string bytes, TrajectoryFormat format, const std::string &name) {
+  return Trajectory(format, open_reader(format, ByteSource::in_memory(std::move(bytes), name)));
+}
+
+size_t Trajectory::frame_count() const { return reader_->frame_count; }
+size_t Trajectory::atom_count() const { return reader_->atom_count; }
+bool Trajectory::incomplete() const { return reader_->incomplete; }
+const std::vector<std::string> &Trajectory::warnings() const { return reader_->warnings; }
+
+void Trajectory::check_frame(size_t frame) const {
+  if (frame < reader_->frame_count) return;
+  fail_usage("'" + reader_->name() + "' has no frame " + std::to_string(frame) + ": its frames are 0 to " +
+             std::to_string(reader_->frame_count - 1));
+}
+
+void Trajectory::read_frame(size_t frame, float *xyz) const {
+  check_frame(frame);
+  reader_->read_frame(frame, xyz);
+  const size_t count = 3 * reader_->atom_count;
+  const float *bad = std::find_if(xyz, xyz + count, [](float x) { return !(std::abs(x) <= kMaxCoordinate); });
+  if (bad == xyz + count) return;
+  const size_t place = static_cast<size_t>(bad - xyz);
+  fail_input("'" + reader_->name() + "': frame " + std::to_string(frame) + ": atom " + std::to_string(place / 3 + 1) +
+             (std::isfinite(*bad) ? " is more than 1,000,000 Å from the origin"
+                                  : std::string(" has no finite ") + "xyz"[place % 3] + " coordinate"));
+}
+
+std::optional<Box> Trajectory::box(size_t frame) const {
+  check_frame(frame);
+  return reader_->box(frame);
+}
+
+std::optional<double> Trajectory::time(size_t frame) const {
+  check_frame(frame);
+  return reader_->time(frame);
+}
+
+}  // namespace quickses::io

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// Trajectories: many frames of the same atoms. DCD (CHARMM, NAMD, X-PLOR), XTC (GROMACS), PDB with several models.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/box.h"
+
+namespace quickses::io {
+
+enum class TrajectoryFormat { kDcd, kXtc, kPdb };
+
+class TrajectoryReader;
+
+// An open trajectory. Frames count from 0 and are read in any order. Opening walks the headers of the frames, not the
+// coordinates, so damage inside of a frame shows when the frame is read.
+// All const members may be called from several threads at a time; files are read by position, without a lock.
+class Trajectory {
+ public:
+  // The format follows from the name (.dcd .xtc .pdb .ent .brk, each also with .gz behind), else from the content.
+  // A file that ends within a frame, or makes no sense from some frame on, gives the frames before: see incomplete().
+  // Throws Error (kInput): unreadable, no such format, not one whole frame, frames of different numbers of atoms, DCD
+  // with 64-bit record markers or with velocities.
+  static Trajectory open(const std::string &path);
+  static Trajectory open(const std::string &path, TrajectoryFormat format);
+
+  // As open, from bytes that are not gzipped. name: for messages.
+  static Trajectory from_memory(std::string bytes, TrajectoryFormat format, const std::string &name = "trajectory");
+
+  Trajectory(Trajectory &&) noexcept;
+  Trajectory &operator=(Trajectory &&) noexcept;
+  ~Trajectory();
+
+  TrajectoryFormat format() const { return format_; }
+  size_t frame_count() const;  // whole frames, at least 1
+  size_t atom_count() const;   // per frame, at least 1; in PDB files all ATOM and HETATM records of a model
+
+  // True if the file ends, or stops making sense, before it should: within a frame, or (DCD) before as many frames as
+  // its header announces. warnings() then says what and where.
+  bool incomplete() const;
+  const std::vector<std::string> &warnings() const;  // sentences for the user
+
+  // The positions of a frame in Å: atom_count() x 3 numbers, all finite and within 1e6 Å of the origin per axis.
+  // Throws Error: kUsage (no such frame), kInput (the frame is damaged; what xyz holds is then undefined).
+  void read_frame(size_t frame, float *xyz) const;
+
+  // The periodic box of a frame, if it has one. Throws as read_frame.
+  std::optional<Box> box(size_t frame) const;
+
+  // The time of a frame in ps, if the file tells. Throws as read_frame.
+  std::optional<double> time(size_t frame) const;
+
+ private:
+  Trajectory(TrajectoryFormat format, std::unique_ptr<TrajectoryReader> reader);
+  void check_frame(size_t frame) const;
+
+  TrajectoryFormat format_;
+  std::unique_ptr<TrajectoryReader> reader_;
+};
+
+}  // namespace quickses::io
