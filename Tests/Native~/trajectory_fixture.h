@@ -292,8 +292,9 @@ inline void expect_whole_frames_of_cuts(const std::string &bytes, TrajectoryForm
 }
 
 // Changes bytes at random: every file must be refused by an Error or be read, then only with finite positions.
-inline void expect_mutants_are_safe(const std::vector<std::string> &files, TrajectoryFormat format, int count) {
-  std::mt19937 random(20240607);
+inline void expect_mutants_are_safe(const std::vector<std::string> &files, TrajectoryFormat format, int count,
+                                    uint32_t seed = 1) {
+  std::mt19937 random(seed);
   int read = 0;
   for (int n = 0; n < count; ++n) {
     std::string bytes = files[random() % files.size()];

@@ -122,7 +122,9 @@ void ByteSource::check_range(uint64_t offset, uint64_t count) const {
 
 std::unique_ptr<ByteSource> ByteSource::open_file(const std::string &path) {
   std::error_code error;
-  if (fs::status(path, error).type() == fs::file_type::regular) {
+  const std::string extension = fs::path(path).extension().string();
+  const bool is_named_gzip = extension == ".gz" || extension == ".GZ";
+  if (!is_named_gzip && fs::status(path, error).type() == fs::file_type::regular) {
     const uint64_t size = fs::file_size(path, error);
     FilePointer file(std::fopen(path.c_str(), "rb"));
     if (!file) fail_input("'" + path + "' can't be opened: " + std::strerror(errno));

@@ -57,7 +57,7 @@ class BondFinder {
       for (int step = 14; step < 27; ++step) test_neighbor(c, {step / 9 - 1, step / 3 % 3 - 1, step % 3 - 1});
       if (bonds_.size() > kMinPairsRefused && bonds_.size() > kMaxBondsPerAtom * atoms_.size()) fail_crowded();
     }
-    if (*std::min_element(cells_.begin(), cells_.end()) < 3) remove_doubles();
+    if (*std::min_element(cells_.begin(), cells_.end()) == 1) remove_doubles();
     return std::move(bonds_);
   }
 
@@ -149,7 +149,7 @@ class BondFinder {
                       static_cast<float>(std::sqrt(squared) / radii) + (has_metal ? kMetalStretch : 0)});
   }
 
-  // Atoms may be bonded to several images of the same atom.
+  // In boxes of one cell, atoms may be bonded to several images of the same atom.
   void remove_doubles() {
     std::sort(bonds_.begin(), bonds_.end(), [](const Bond &x, const Bond &y) {
       return x.a != y.a ? x.a < y.a : x.b != y.b ? x.b < y.b : x.stretch < y.stretch;

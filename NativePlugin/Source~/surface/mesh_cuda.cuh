@@ -73,7 +73,7 @@ __device__ __forceinline__ Look finish_look(const FeatureView &f, const NearestA
           needs_another_look(y.distance, y.second, depth)};
 }
 
-__global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(VertexJob job) {
+static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(VertexJob job) {
   const uint32_t place = blockIdx.x * kVertexThreads + threadIdx.x, total = *job.open_count;
   if (place - static_cast<uint32_t>(lane_id()) >= total) return;
   const bool on = place < total;
@@ -116,7 +116,7 @@ __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(VertexJ
     finish_vertex(job, k, look.point, nearest_atom(f, candidates, look.point.position));
 }
 
-__global__ __launch_bounds__(kVertexThreads) void project_again_kernel(VertexJob job) {
+static __global__ __launch_bounds__(kVertexThreads) void project_again_kernel(VertexJob job) {
   const uint32_t place = blockIdx.x * kVertexThreads + threadIdx.x, total = *job.again_count;
   if (place >= total) return;
   const uint32_t k = job.again[place];
