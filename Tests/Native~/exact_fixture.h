@@ -72,7 +72,8 @@ struct ExactRun {
     const MarchingCubesTable &table = marching_cubes_table();
     const TableView view{table.triangle_count, table.edges, table.ring};
     Run<CpuExecutor, CpuStageTimer> run{executor,   timer,   memory, progress, view,  settings,
-                                        parameters, lattice, low,    high,     atoms, &report};
+                                        parameters, lattice, low,    high,     atoms, find_features(*this),
+                                        &report};
     const MeshMemoryView built = build_exact_surface(run);
     mesh_checks::Mesh m;
     m.positions.assign(built.view.positions, built.view.positions + 3 * built.vertices);

@@ -32,13 +32,15 @@ void check_layout(const float *positions, size_t stride, size_t count) {
     invalid("stride is " + std::to_string(stride) + ": it must be 0, or a multiple of 4 that is at least 12");
 }
 
-AtomBounds check_positions(const float *positions, size_t stride, size_t count) {
+namespace {
+
+// Box of the positions at(0) ... at(count - 1), each a pointer to three floats.
+template <class At>
+AtomBounds bound_positions(size_t count, const At &at) {
   AtomBounds bounds{glm::vec3(0.f), glm::vec3(0.f), 0.f};
-  const size_t step = stride ? stride : 12;
-  const char *at = reinterpret_cast<const char *>(positions);
-  for (size_t i = 0; i < count; ++i, at += step) {
+  for (size_t i = 0; i < count; ++i) {
     float p[3];
-    std::memcpy(p, at, sizeof p);
+    std::memcpy(p, at(i), sizeof p);
     // NaN fails every comparison, so it ends here too.
     if (!(std::fabs(p[0]) <= kLargestCoordinate && std::fabs(p[1]) <= kLargestCoordinate &&
           std::fabs(p[2]) <= kLargestCoordinate))
@@ -49,6 +51,26 @@ AtomBounds check_positions(const float *positions, size_t stride, size_t count) 
     }
   }
   return bounds;
+}
+
+const char *position_at(const float *positions, size_t stride, size_t i) {
+  return reinterpret_cast<const char *>(positions) + i * (stride ? stride : 12);
+}
+
+}  // namespace
+
+AtomBounds check_positions(const float *positions, size_t stride, size_t count) {
+  return bound_positions(count, [&](size_t i) { return position_at(positions, stride, i); });
+}
+
+AtomBounds check_indexed_positions(const float *positions, size_t stride, size_t position_count,
+                                   const uint32_t *indices, size_t count) {
+  if (count > 0) require(indices, "indices");
+  for (size_t i = 0; i < count; ++i)
+    if (indices[i] >= position_count)
+      invalid("indices[" + std::to_string(i) + "] is " + std::to_string(indices[i]) + " but there are " +
+              std::to_string(position_count) + " positions");
+  return bound_positions(count, [&](size_t i) { return position_at(positions, stride, indices[i]); });
 }
 
 float check_radii(const float *radii, size_t count) {
@@ -68,9 +90,12 @@ float check_radii(const float *radii, size_t count) {
 }
 
 void copy_positions(const float *positions, size_t stride, size_t count, Sphere *atoms) {
-  const size_t step = stride ? stride : 12;
-  const char *at = reinterpret_cast<const char *>(positions);
-  for (size_t i = 0; i < count; ++i, at += step) std::memcpy(&atoms[i].center, at, 12);
+  for (size_t i = 0; i < count; ++i) std::memcpy(&atoms[i].center, position_at(positions, stride, i), 12);
+}
+
+void copy_indexed_positions(const float *positions, size_t stride, const uint32_t *indices, size_t count,
+                            Sphere *atoms) {
+  for (size_t i = 0; i < count; ++i) std::memcpy(&atoms[i].center, position_at(positions, stride, indices[i]), 12);
 }
 
 }  // namespace quickses

@@ -19,4 +19,10 @@ float check_radii(const float *radii, size_t count);
 
 void copy_positions(const float *positions, size_t stride, size_t count, Sphere *atoms);
 
+// The same for positions[indices[i]].
+AtomBounds check_indexed_positions(const float *positions, size_t stride, size_t position_count,
+                                   const uint32_t *indices, size_t count);
+void copy_indexed_positions(const float *positions, size_t stride, const uint32_t *indices, size_t count,
+                            Sphere *atoms);
+
 }  // namespace quickses

@@ -72,6 +72,13 @@ void check_settings(const qses_settings &s) {
   check_range("settings.probe_radius", static_cast<double>(s.probe_radius), 0, 100, " Å");
   check_range("settings.relaxation_steps", s.relaxation_steps, 0, 100, "");
   if (s.slice_size != 0) check_range("settings.slice_size", s.slice_size, 8, 4294967295.0, " lattice points, or 0");
+  if (s.level_count > QSES_MAX_LEVELS)
+    invalid("settings.level_count is " + std::to_string(s.level_count) + ": at most " +
+            std::to_string(QSES_MAX_LEVELS));
+  for (uint32_t k = 0; k < s.level_count; ++k) {
+    check_range("settings.levels", static_cast<double>(s.levels[k]), 0.001, 100, " Å");
+    if (k > 0 && !(s.levels[k] < s.levels[k - 1])) invalid("settings.levels must fall from each one to the next");
+  }
   if (s.method == QSES_METHOD_GRID && s.surface != QSES_SURFACE_SES)
     invalid("settings.method GRID makes the solvent-excluded surface only: use EXACT for the others");
   if (s.method == QSES_METHOD_GRID && s.patch_types) invalid("settings.patch_types is not available with method GRID");
@@ -89,6 +96,43 @@ qses_backend choose_backend(qses_backend asked, int device, qses_backend_descrip
   *description = quickses::describe_backend(QSES_BACKEND_CPU, 0);
   if (asked == QSES_BACKEND_AUTO) std::memcpy(description->reason, cuda.reason, sizeof cuda.reason);
   return QSES_BACKEND_CPU;
+}
+
+void check_atom_count(const qses_context &context, size_t count, const char *function) {
+  if (!context.atoms) throw quickses::Error(QSES_NO_RESULT, std::string("qses_set_atoms must come before ") + function);
+  if (count != context.atoms->count)
+    invalid("count is " + std::to_string(count) + " but the context has " + std::to_string(context.atoms->count) +
+            " atoms");
+}
+
+// A new set with the radii of the one before; positions are still to be written.
+std::shared_ptr<quickses::AtomSet> next_frame(const qses_context &context, const quickses::AtomBounds &bounds) {
+  const quickses::AtomSet &before = *context.atoms;
+  std::shared_ptr<quickses::AtomSet> set = context.job->engine().make_atoms(before.count);
+  for (size_t i = 0; i < before.count; ++i) set->atoms[i].radius = before.atoms[i].radius;
+  set->bounds = bounds;
+  set->bounds.max_radius = before.bounds.max_radius;
+  return set;
+}
+
+constexpr const char *kNothingComputed = "nothing has been computed yet";
+
+qses_mesh held_mesh(const qses_context &context) {
+  qses_mesh mesh;
+  if (!context.job->held(&mesh, nullptr)) throw quickses::Error(QSES_NO_RESULT, kNothingComputed);
+  return mesh;
+}
+
+// What to compute: one level for qses_compute, the ladder for qses_begin.
+quickses::SurfaceRequest make_request(const qses_context &context, const qses_settings &settings, bool ladder,
+                                      const char *function) {
+  check_settings(settings);
+  if (!context.atoms) throw quickses::Error(QSES_NO_RESULT, std::string("qses_set_atoms must come before ") + function);
+  quickses::SurfaceRequest request{context.atoms, settings, {}};
+  for (uint32_t k = 0; ladder && k < settings.level_count; ++k)
+    if (settings.levels[k] > settings.spacing) request.spacings.push_back(settings.levels[k]);
+  request.spacings.push_back(settings.spacing);
+  return request;
 }
 
 }  // namespace
@@ -129,11 +173,12 @@ qses_status qses_create(const qses_context_options *options, qses_context **cont
     if (!made->description.available)
       throw quickses::Error(QSES_BACKEND_UNAVAILABLE, std::string("CUDA can't be used: ") + made->description.reason);
 #if defined(QUICKSES_HAS_CUDA)
-    if (made->backend == QSES_BACKEND_CUDA) made->engine = quickses::make_cuda_engine(o.device, o.memory_budget);
+    if (made->backend == QSES_BACKEND_CUDA)
+      made->job = std::make_unique<quickses::SurfaceJob>(quickses::make_cuda_engine(o.device, o.memory_budget));
 #endif
-    if (!made->engine)
-      made->engine =
-          quickses::make_cpu_engine(o.threads, o.memory_budget ? o.memory_budget : made->description.free_memory);
+    if (!made->job)
+      made->job = std::make_unique<quickses::SurfaceJob>(
+          quickses::make_cpu_engine(o.threads, o.memory_budget ? o.memory_budget : made->description.free_memory));
     *context = made.release();
   });
 }
@@ -158,29 +203,37 @@ qses_status qses_set_atoms(qses_context *context, const float *positions, size_t
     quickses::check_layout(positions, stride, count);
     quickses::AtomBounds bounds = quickses::check_positions(positions, stride, count);
     bounds.max_radius = quickses::check_radii(radii, count);
-    quickses::Sphere *atoms = context->engine->atom_buffer(count);
-    quickses::copy_positions(positions, stride, count, atoms);
-    for (size_t i = 0; i < count; ++i) atoms[i].radius = radii[i];
-    context->engine->set_atoms(count, bounds);
-    context->atom_count = count;
-    context->max_radius = bounds.max_radius;
-    context->has_atoms = true;
+    const std::shared_ptr<quickses::AtomSet> set = context->job->engine().make_atoms(count);
+    quickses::copy_positions(positions, stride, count, set->atoms);
+    for (size_t i = 0; i < count; ++i) set->atoms[i].radius = radii[i];
+    set->bounds = bounds;
+    context->atoms = set;
   });
 }
 
 qses_status qses_set_positions(qses_context *context, const float *positions, size_t stride, size_t count) {
   return guarded([&] {
     require(context, "context");
-    if (!context->has_atoms)
-      throw quickses::Error(QSES_NO_RESULT, "qses_set_atoms must come before qses_set_positions");
-    if (count != context->atom_count)
-      invalid("count is " + std::to_string(count) + " but the context has " + std::to_string(context->atom_count) +
-              " atoms");
+    check_atom_count(*context, count, "qses_set_positions");
     quickses::check_layout(positions, stride, count);
-    quickses::AtomBounds bounds = quickses::check_positions(positions, stride, count);
-    bounds.max_radius = context->max_radius;
-    quickses::copy_positions(positions, stride, count, context->engine->atom_buffer(count));
-    context->engine->set_atoms(count, bounds);
+    const quickses::AtomBounds bounds = quickses::check_positions(positions, stride, count);
+    const std::shared_ptr<quickses::AtomSet> set = next_frame(*context, bounds);
+    quickses::copy_positions(positions, stride, count, set->atoms);
+    context->atoms = set;
+  });
+}
+
+qses_status qses_set_positions_indexed(qses_context *context, const float *positions, size_t stride,
+                                       size_t position_count, const uint32_t *indices, size_t count) {
+  return guarded([&] {
+    require(context, "context");
+    check_atom_count(*context, count, "qses_set_positions_indexed");
+    quickses::check_layout(positions, stride, position_count);
+    const quickses::AtomBounds bounds =
+        quickses::check_indexed_positions(positions, stride, position_count, indices, count);
+    const std::shared_ptr<quickses::AtomSet> set = next_frame(*context, bounds);
+    quickses::copy_indexed_positions(positions, stride, indices, count, set->atoms);
+    context->atoms = set;
   });
 }
 
@@ -192,6 +245,9 @@ void qses_settings_init(qses_settings *settings) {
   settings->spacing = 0.5f;
   settings->relaxation_steps = 1;
   settings->measure = 1;
+  settings->levels[0] = 2.f;
+  settings->levels[1] = 1.f;
+  settings->level_count = 2;
 }
 
 void qses_mesh_init(qses_mesh *mesh) {
@@ -211,11 +267,8 @@ qses_status qses_compute(qses_context *context, const qses_settings *settings, q
     require(context, "context");
     if (mesh) check_output(mesh, "mesh");  // before the last mesh is replaced
     const qses_settings s = read_struct(settings, qses_settings_init, "qses_settings");
-    check_settings(s);
-    if (!context->has_atoms) throw quickses::Error(QSES_NO_RESULT, "qses_set_atoms must come before qses_compute");
-    context->engine->compute(s);
-    context->has_result = true;
-    if (mesh) write_struct(mesh, context->engine->mesh(), "mesh");
+    context->job->compute(make_request(*context, s, false, "qses_compute"));
+    if (mesh) write_struct(mesh, held_mesh(*context), "mesh");
   });
 }
 
@@ -223,8 +276,7 @@ qses_status qses_get_mesh(const qses_context *context, qses_mesh *mesh) {
   return guarded([&] {
     require(context, "context");
     require(mesh, "mesh");
-    if (!context->has_result) throw quickses::Error(QSES_NO_RESULT, "nothing has been computed yet");
-    write_struct(mesh, context->engine->mesh(), "mesh");
+    write_struct(mesh, held_mesh(*context), "mesh");
   });
 }
 
@@ -232,25 +284,78 @@ qses_status qses_get_report(const qses_context *context, qses_report *report) {
   return guarded([&] {
     require(context, "context");
     require(report, "report");
-    if (!context->has_result) throw quickses::Error(QSES_NO_RESULT, "nothing has been computed yet");
-    write_struct(report, context->engine->report(), "report");
+    qses_report held;
+    if (!context->job->held(nullptr, &held)) throw quickses::Error(QSES_NO_RESULT, kNothingComputed);
+    write_struct(report, held, "report");
+  });
+}
+
+void qses_progress_init(qses_progress *progress) {
+  if (!progress) return;
+  *progress = qses_progress{};
+  progress->struct_size = sizeof *progress;
+}
+
+qses_status qses_begin(qses_context *context, const qses_settings *settings) {
+  return guarded([&] {
+    require(context, "context");
+    const qses_settings s = read_struct(settings, qses_settings_init, "qses_settings");
+    context->job->begin(make_request(*context, s, true, "qses_begin"));
+  });
+}
+
+qses_status qses_poll(const qses_context *context, qses_progress *progress) {
+  return guarded([&] {
+    require(context, "context");
+    require(progress, "progress");
+    write_struct(progress, context->job->progress(), "progress");
+  });
+}
+
+qses_status qses_collect(qses_context *context, qses_mesh *mesh) {
+  return guarded([&] {
+    require(context, "context");
+    require(mesh, "mesh");
+    check_output(mesh, "mesh");
+    qses_mesh collected;
+    if (!context->job->collect(&collected, nullptr))
+      throw quickses::Error(QSES_NO_RESULT, "no level has been finished since the last qses_collect");
+    write_struct(mesh, collected, "mesh");
+  });
+}
+
+qses_status qses_cancel(qses_context *context) {
+  return guarded([&] {
+    require(context, "context");
+    context->job->cancel();
+  });
+}
+
+qses_status qses_wait(qses_context *context, double milliseconds, int32_t *finished) {
+  return guarded([&] {
+    require(context, "context");
+    if (std::isnan(milliseconds)) invalid("milliseconds is no number");
+    const bool done = context->job->wait(milliseconds);
+    if (finished) *finished = done ? 1 : 0;
   });
 }
 
 qses_status qses_enable_stage_times(qses_context *context, int32_t enabled) {
   return guarded([&] {
     require(context, "context");
-    context->engine->enable_stage_times(enabled != 0);
+    context->job->wait(-1.0);
+    context->job->engine().enable_stage_times(enabled != 0);
   });
 }
 
 qses_status qses_set_progress_callback(qses_context *context, qses_progress_callback callback, void *user_data) {
   return guarded([&] {
     require(context, "context");
+    context->job->wait(-1.0);
     if (callback)
-      context->engine->set_progress([callback, user_data](double fraction) { callback(user_data, fraction); });
+      context->job->engine().set_progress([callback, user_data](double fraction) { callback(user_data, fraction); });
     else
-      context->engine->set_progress({});
+      context->job->engine().set_progress({});
   });
 }
 

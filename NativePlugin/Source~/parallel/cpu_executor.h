@@ -60,6 +60,18 @@ class CpuExecutor {
     explicit CallScope(CpuExecutor &) {}
   };
 
+  // While it lives, loops over bricks give up once the flag is set, and throw Cancelled.
+  class StopScope {
+   public:
+    StopScope(CpuExecutor &executor, const std::atomic<bool> &flag) : executor_(executor) { executor.stop_ = &flag; }
+    ~StopScope() { executor_.stop_ = nullptr; }
+    StopScope(const StopScope &) = delete;
+    StopScope &operator=(const StopScope &) = delete;
+
+   private:
+    CpuExecutor &executor_;
+  };
+
   explicit CpuExecutor(unsigned threads)
       : threads_(threads ? threads : std::max(1u, std::thread::hardware_concurrency()))
 #if !defined(QSES_CPU_SYSTEM_OMP)
@@ -122,17 +134,18 @@ class CpuExecutor {
     auto &pool = scratches<Scratch>();
     auto work = [&](size_t worker) {
       Scratch *const scratch = pool[worker].get();
-      for (size_t c; (c = next.fetch_add(1, std::memory_order_relaxed)) < chunks;)
+      for (size_t c; !stopped() && (c = next.fetch_add(1, std::memory_order_relaxed)) < chunks;)
         for (size_t i = c * grain; i < std::min(n, (c + 1) * grain); ++i) f(SoloTeam{}, *scratch, i);
     };
     if (workers == 1) {
       work(0);
-      return;
+    } else {
+      run([&] {
+        thrust::for_each(policy(), thrust::counting_iterator<size_t>(0), thrust::counting_iterator<size_t>(workers),
+                         work);
+      });
     }
-    run([&] {
-      thrust::for_each(policy(), thrust::counting_iterator<size_t>(0), thrust::counting_iterator<size_t>(workers),
-                       work);
-    });
+    if (stopped()) throw Cancelled{};
   }
 
   template <class Load, class T>
@@ -239,6 +252,8 @@ class CpuExecutor {
  private:
   static constexpr size_t kSerialItems = 64;
 
+  bool stopped() const { return stop_ && stop_->load(std::memory_order_relaxed); }
+
 #if defined(QSES_CPU_SYSTEM_OMP)
   static auto policy() -> decltype((thrust::omp::par)) { return thrust::omp::par; }
   template <class F>
@@ -257,6 +272,7 @@ class CpuExecutor {
 #endif
 
   unsigned threads_;
+  const std::atomic<bool> *stop_ = nullptr;
 #if !defined(QSES_CPU_SYSTEM_OMP)
   tbb::task_arena arena_threads_;
 #endif

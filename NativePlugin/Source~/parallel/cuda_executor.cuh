@@ -14,6 +14,7 @@
 #include <cub/device/device_select.cuh>
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 #include <limits>
 #include <string>
@@ -89,6 +90,10 @@ class CudaExecutor {
   static constexpr bool kIsCuda = true;
 
   // Held while a computation runs: keeps the device selected.
+  // A GPU's queue is not cut short: what asks for the flag are the stages, between their kernels.
+  struct StopScope {
+    StopScope(CudaExecutor &, const std::atomic<bool> &) {}
+  };
   struct CallScope {
     explicit CallScope(const CudaExecutor &executor) : guard(executor.device_) {}
     DeviceGuard guard;

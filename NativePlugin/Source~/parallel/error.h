@@ -18,4 +18,7 @@ class Error : public std::runtime_error {
   qses_status status_;
 };
 
+// A computation that was told to stop. Not an error: whoever asked for it knows.
+struct Cancelled {};
+
 }  // namespace quickses

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
-// What the C API sees of a back end: atoms in, mesh out. One implementation per executor (pipeline.h).
+// What the jobs see of a back end: atoms in, meshes out, one level after the other. One implementation per executor
+// (pipeline.h).
 #pragma once
 
 #include "quickses/quickses.h"
 #include "surface/types.h"
 
+#include <atomic>
 #include <functional>
 #include <memory>
-#include <string>
+#include <vector>
 
 namespace quickses {
 
@@ -17,19 +19,45 @@ struct AtomBounds {
   float max_radius;     // without the probe
 };
 
+// The atoms of one frame in memory that the back end reads fast: centres in the caller's coordinates and van der Waals
+// radii. Filled once, then only read.
+struct AtomSet {
+  Sphere *atoms = nullptr;
+  size_t count = 0;
+  AtomBounds bounds{};
+
+  AtomSet() = default;
+  AtomSet(const AtomSet &) = delete;
+  AtomSet &operator=(const AtomSet &) = delete;
+  virtual ~AtomSet() = default;
+};
+
+// Meshes are made in buffers that the engine owns. With three of them one can be written while another one waits to be
+// collected and the caller still reads the third.
+constexpr int kMeshSlots = 3;
+
+// Who receives the levels. Called on the thread that computes.
+class LevelSink {
+ public:
+  virtual ~LevelSink() = default;
+  virtual int slot() = 0;  // the buffer for the next level
+  virtual void finished(const qses_mesh &mesh, const qses_report &report) = 0;
+  virtual void advance(double fraction) = 0;  // of all levels; never falls
+  virtual const std::atomic<bool> &stop_flag() const = 0;
+};
+
 class SurfaceEngine {
  public:
   virtual ~SurfaceEngine() = default;
 
-  // Room for the atoms in memory the back end reads fast: centre in the caller's coordinates and van der Waals radius.
-  // The caller fills it, then calls set_atoms. Throws Error.
-  virtual Sphere *atom_buffer(size_t count) = 0;
-  virtual void set_atoms(size_t count, const AtomBounds &bounds) = 0;
+  // Room for the atoms of a frame. Memory of sets that nobody holds any more is used again. Throws Error.
+  virtual std::shared_ptr<AtomSet> make_atoms(size_t count) = 0;
 
-  // Settings are checked already. On success mesh and report are replaced; on an exception they keep the last result.
-  virtual void compute(const qses_settings &settings) = 0;
-  virtual const qses_mesh &mesh() const = 0;
-  virtual const qses_report &report() const = 0;
+  // Computes the surface at each spacing, in that order; atoms, neighbour grid and features are made once. Settings are
+  // checked already. Throws Error, or Cancelled soon after the stop flag is set; levels finished before stay as they
+  // are.
+  virtual void compute(const AtomSet &atoms, const qses_settings &settings, const std::vector<float> &spacings,
+                       LevelSink &sink) = 0;
 
   virtual void enable_stage_times(bool enabled) = 0;
   // Called with the fraction done; empty: not at all.

@@ -16,7 +16,7 @@ void remove_swallowed_atoms(Executor &executor, const NeighborGridView &atoms, f
   executor.for_each(atoms.count, RemoveSwallowedAtoms{swallowed.data, const_cast<Sphere *>(atoms.items)});
 }
 
-// Features of the atoms, with the arcs in a grid of their own.
+// Features of the atoms, with the arcs in a grid of their own. They serve every spacing.
 template <class R>
 FeatureView find_features(R &run) {
   auto &executor = run.executor;
@@ -47,7 +47,7 @@ template <class R>
 MeshMemoryView build_exact_surface(R &run) {
   auto &executor = run.executor;
   using Executor = std::remove_reference_t<decltype(executor)>;
-  const FeatureView features = find_features(run);
+  const FeatureView &features = run.features;
   refuse_hopeless_spacing(run, features, executor.arena().budget());
 
   run.timer.begin("bricks");

@@ -6,6 +6,10 @@
 #include "parallel/cpu_executor.h"
 #include "surface/run.h"
 
+#include <memory>
+#include <mutex>
+#include <vector>
+
 namespace quickses {
 
 // Host memory that only grows, without initialisation.
@@ -88,27 +92,63 @@ inline void describe_mesh(const MeshMemoryView &built, const MeshView &host, con
   }
 }
 
+// Sets of atoms that are used again when nobody holds them any more. Set: an AtomSet with resize(count).
+template <class Set>
+class AtomPool {
+ public:
+  std::shared_ptr<AtomSet> make(size_t count) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    for (const std::shared_ptr<Set> &set : sets_)
+      if (set.use_count() == 1) {
+        set->resize(count);
+        return set;
+      }
+    auto made = std::make_shared<Set>();
+    made->resize(count);
+    sets_.push_back(made);
+    return made;
+  }
+  uint64_t bytes() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    uint64_t sum = 0;
+    for (const std::shared_ptr<Set> &set : sets_) sum += set->memory.size();
+    return sum;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::vector<std::shared_ptr<Set>> sets_;
+};
+
+template <class Buffer>
+struct BufferedAtoms : AtomSet {
+  Buffer memory;
+  void resize(size_t n) {
+    atoms = static_cast<Sphere *>(memory.reserve(n * sizeof(Sphere)));
+    count = n;
+  }
+};
+
 template <>
 class MeshMemory<CpuExecutor> {
  public:
   explicit MeshMemory(CpuExecutor &) {}
 
-  Sphere *atoms(size_t count) { return static_cast<Sphere *>(atoms_.reserve(count * sizeof(Sphere))); }
-  const Sphere *given_atoms() const { return static_cast<const Sphere *>(atoms_.data()); }
+  std::shared_ptr<AtomSet> make_atoms(size_t count) { return atoms_.make(count); }
 
-  // Two buffers in turn: the mesh handed out last stays whole until the next one is finished.
+  void use_slot(int slot) { slot_ = slot; }
+
   MeshMemoryView allocate_mesh(CpuExecutor &, size_t vertices, size_t triangles, const qses_settings &settings) {
     const MeshArrays arrays(vertices, triangles, wants_patches(settings));
     MeshMemoryView mesh;
     mesh.vertices = vertices;
     mesh.triangles = triangles;
-    mesh.view = arrays.view(mesh_[1 - current_].reserve(arrays.bytes), wants_patches(settings),
+    mesh.view = arrays.view(mesh_[slot_].reserve(arrays.bytes), wants_patches(settings),
                             settings.winding == QSES_WINDING_REVERSED);
     return mesh;
   }
 
   void finish(const MeshMemoryView &built, const qses_settings &settings, qses_mesh *mesh) {
-    current_ = 1 - current_;
     describe_mesh(built, built.view, settings, mesh);
   }
 
@@ -119,11 +159,16 @@ class MeshMemory<CpuExecutor> {
   uint64_t mesh_bytes(const qses_mesh &m) const {
     return MeshArrays(m.vertex_count, m.triangle_count, m.patches != nullptr).bytes;
   }
-  uint64_t host_bytes() const { return atoms_.size() + mesh_[0].size() + mesh_[1].size(); }
+  uint64_t host_bytes() const {
+    uint64_t sum = atoms_.bytes();
+    for (const auto &slot : mesh_) sum += slot.size();
+    return sum;
+  }
 
  private:
-  GrowingBuffer<HostMemory> atoms_, mesh_[2];
-  int current_ = 0;
+  AtomPool<BufferedAtoms<GrowingBuffer<HostMemory>>> atoms_;
+  GrowingBuffer<HostMemory> mesh_[kMeshSlots];
+  int slot_ = 0;
 };
 
 }  // namespace quickses

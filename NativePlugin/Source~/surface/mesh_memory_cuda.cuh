@@ -14,11 +14,12 @@ class MeshMemory<CudaExecutor> {
   explicit MeshMemory(CudaExecutor &executor) : executor_(executor) {}
   ~MeshMemory() { DeviceMemory::release(table_); }
 
-  Sphere *atoms(size_t count) {
+  std::shared_ptr<AtomSet> make_atoms(size_t count) {
     const DeviceGuard guard(executor_.device());
-    return static_cast<Sphere *>(atoms_.reserve(count * sizeof(Sphere)));
+    return atoms_.make(count);
   }
-  const Sphere *given_atoms() const { return static_cast<const Sphere *>(atoms_.data()); }
+
+  void use_slot(int slot) { slot_ = slot; }
 
   MeshMemoryView allocate_mesh(CudaExecutor &executor, size_t vertices, size_t triangles,
                                const qses_settings &settings) {
@@ -33,12 +34,11 @@ class MeshMemory<CudaExecutor> {
 
   void finish(const MeshMemoryView &built, const qses_settings &settings, qses_mesh *mesh) {
     const MeshArrays arrays(built.vertices, built.triangles, wants_patches(settings));
-    char *host = static_cast<char *>(mesh_[1 - current_].reserve(arrays.bytes));
+    char *host = static_cast<char *>(mesh_[slot_].reserve(arrays.bytes));
     if (built.vertices > 0) {
       executor_.download(host, static_cast<const char *>(device_), arrays.bytes);
       executor_.wait();
     }
-    current_ = 1 - current_;
     describe_mesh(built, arrays.view(host, wants_patches(settings), false), settings, mesh);
   }
 
@@ -54,13 +54,18 @@ class MeshMemory<CudaExecutor> {
   uint64_t mesh_bytes(const qses_mesh &m) const {
     return MeshArrays(m.vertex_count, m.triangle_count, m.patches != nullptr).bytes;
   }
-  uint64_t host_bytes() const { return atoms_.size() + mesh_[0].size() + mesh_[1].size(); }
+  uint64_t host_bytes() const {
+    uint64_t sum = atoms_.bytes();
+    for (const auto &slot : mesh_) sum += slot.size();
+    return sum;
+  }
 
  private:
   CudaExecutor &executor_;
-  PinnedBuffer atoms_, mesh_[2];
+  AtomPool<BufferedAtoms<PinnedBuffer>> atoms_;
+  PinnedBuffer mesh_[kMeshSlots];
   void *table_ = nullptr, *device_ = nullptr;
-  int current_ = 0;
+  int slot_ = 0;
 };
 
 }  // namespace quickses

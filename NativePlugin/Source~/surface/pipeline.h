@@ -18,6 +18,9 @@ namespace quickses {
 // Below this probe radius the solvent-excluded surface is the van der Waals surface within rounding.
 constexpr float kSmallestProbe = 0.05f;
 
+// Cells of the neighbour grid are at least this large, in Å, however small the atoms: their number must stay countable.
+constexpr float kSmallestCell = 1.f;
+
 template <class Executor, class Timer>
 class SurfacePipeline : public SurfaceEngine {
  public:
@@ -25,75 +28,116 @@ class SurfacePipeline : public SurfaceEngine {
   explicit SurfacePipeline(uint64_t memory_budget, Arguments &&...arguments)
       : executor_(std::forward<Arguments>(arguments)...), timer_(executor_), memory_(executor_) {
     executor_.arena().set_budget(memory_budget);
-    qses_mesh_init(&mesh_);
-    qses_report_init(&report_);
   }
 
-  Sphere *atom_buffer(size_t count) override { return memory_.atoms(count); }
+  std::shared_ptr<AtomSet> make_atoms(size_t count) override { return memory_.make_atoms(count); }
 
-  void set_atoms(size_t count, const AtomBounds &bounds) override {
-    atom_count_ = count;
-    bounds_ = bounds;
-  }
-
-  void compute(const qses_settings &settings) override {
+  void compute(const AtomSet &atoms, const qses_settings &settings, const std::vector<float> &spacings,
+               LevelSink &sink) override {
     const typename Executor::CallScope scope(executor_);
-    const auto start = std::chrono::steady_clock::now();
+    const typename Executor::StopScope stop(executor_, sink.stop_flag());
     executor_.arena().reset();
+    progress_.restart(sink);
+    progress_.enter(0.0, 0.0);
+    double total = 0;
+    for (float h : spacings) total += work_of(h);
+    double begun = 0;
+    auto start = std::chrono::steady_clock::now();
     timer_.reset();
-    progress_.restart();
-    qses_report report;
-    qses_report_init(&report);
-    MeshMemoryView built = atom_count_ > 0 ? build(settings, &report) : MeshMemoryView{};
-    timer_.begin("download");
-    memory_.finish(built, settings, &mesh_);
-    timer_.end();
-    report.compute_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-    report.work_bytes_peak = executor_.arena().peak();
-    report.mesh_bytes = memory_.mesh_bytes(mesh_);
-    report.host_bytes_peak = memory_.host_bytes() + (Executor::kIsCuda ? 0 : executor_.arena().peak());
-    for (const auto &stage : timer_.collect()) {
-      if (report.stage_count == QSES_MAX_STAGES) break;
-      qses_stage_time &out = report.stages[report.stage_count++];
-      std::snprintf(out.name, sizeof out.name, "%s", stage.first.c_str());
-      out.milliseconds = stage.second;
+    Prepared prepared;
+    if (atoms.count > 0) prepared = prepare(atoms, settings, spacings);
+    const auto mark = executor_.arena().mark();
+    for (float h : spacings) {
+      progress_.enter(begun / total, (begun + work_of(h)) / total);
+      progress_.report(0.0);
+      begun += work_of(h);
+      qses_report report;
+      qses_report_init(&report);
+      memory_.use_slot(sink.slot());
+      const MeshMemoryView built = atoms.count > 0 ? build(prepared, settings, h, &report) : MeshMemoryView{};
+      timer_.begin("download");
+      qses_mesh mesh;
+      memory_.finish(built, settings, &mesh);
+      timer_.end();
+      mesh.spacing = h;
+      const auto now = std::chrono::steady_clock::now();
+      report.compute_ms = std::chrono::duration<double, std::milli>(now - start).count();
+      start = now;
+      complete(mesh, &report);
+      timer_.reset();
+      executor_.arena().rewind(mark);
+      progress_.report(1.0);
+      sink.finished(mesh, report);
     }
-    report_ = report;
-    progress_.report(1.0);
   }
 
-  const qses_mesh &mesh() const override { return mesh_; }
-  const qses_report &report() const override { return report_; }
   void enable_stage_times(bool enabled) override { timer_.enable(enabled); }
   void set_progress(std::function<void(double)> progress) override { progress_.set(std::move(progress)); }
 
  private:
-  MeshMemoryView build(const qses_settings &settings, qses_report *report) {
-    SurfaceParameters parameters{};
+  // What all levels of a frame share, in the arena.
+  struct Prepared {
+    SurfaceParameters parameters{};  // spacing is the level's
+    Lattice frame{};                 // where the centred frame is
+    glm::vec3 low{0.f}, high{0.f};   // of the atoms' centres, in it
+    NeighborGridView grid{};
+    FeatureView features{};
+  };
+
+  // The work of a level grows with the number of its lattice points at the surface.
+  static double work_of(float spacing) { return 1.0 / (static_cast<double>(spacing) * static_cast<double>(spacing)); }
+
+  // All levels have their lattices anchored to the global origin if their spacings are whole multiples of each other;
+  // else only the finest has.
+  static float frame_spacing(const std::vector<float> &spacings) {
+    for (float h : spacings) {
+      const float ratio = spacings.front() / h;
+      if (std::fabs(ratio - std::round(ratio)) > 1e-6f * ratio) return spacings.back();
+    }
+    return spacings.front();
+  }
+
+  Run<Executor, Timer> run_of(const Prepared &p, const qses_settings &settings, qses_report *report) {
+    return {executor_, timer_, memory_, progress_, table(),    settings, p.parameters,
+            p.frame,   p.low,  p.high,  p.grid,    p.features, report};
+  }
+
+  Prepared prepare(const AtomSet &set, const qses_settings &settings, const std::vector<float> &spacings) {
+    Prepared p;
     const bool vdw = settings.surface == QSES_SURFACE_VDW ||
                      (settings.surface == QSES_SURFACE_SES && settings.method == QSES_METHOD_EXACT &&
                       settings.probe_radius < kSmallestProbe);
-    parameters.probe = vdw ? 0.f : settings.probe_radius;
-    parameters.depth = settings.surface == QSES_SURFACE_SES && !vdw ? parameters.probe : 0.f;
-    parameters.spacing = settings.spacing;
-    parameters.max_radius = bounds_.max_radius + parameters.probe;
+    p.parameters.probe = vdw ? 0.f : settings.probe_radius;
+    p.parameters.depth = settings.surface == QSES_SURFACE_SES && !vdw ? p.parameters.probe : 0.f;
+    p.parameters.spacing = spacings.back();
+    p.parameters.max_radius = set.bounds.max_radius + p.parameters.probe;
 
     timer_.begin("neighbor_grid");
-    Lattice lattice = center_lattice(bounds_, settings.spacing);
-    const glm::vec3 low = to_centered(lattice, bounds_.low), high = to_centered(lattice, bounds_.high);
-    lattice = layout_lattice(lattice, low, high, parameters.max_radius);
-    Span<Sphere> atoms = executor_.template allocate<Sphere>(atom_count_);
+    p.frame = center_lattice(set.bounds, frame_spacing(spacings));
+    p.low = to_centered(p.frame, set.bounds.low);
+    p.high = to_centered(p.frame, set.bounds.high);
+    Span<Sphere> atoms = executor_.template allocate<Sphere>(set.count);
     {
-      Span<Sphere> given = executor_.template allocate<Sphere>(atom_count_);
-      executor_.upload(given.data, memory_.given_atoms(), atom_count_);
-      executor_.for_each(atom_count_, CenterAtoms{given.data, lattice.center_x, lattice.center_y, lattice.center_z,
-                                                  parameters.probe, atoms.data});
+      Span<Sphere> given = executor_.template allocate<Sphere>(set.count);
+      executor_.upload(given.data, set.atoms, set.count);
+      executor_.for_each(set.count, CenterAtoms{given.data, p.frame.center_x, p.frame.center_y, p.frame.center_z,
+                                                p.parameters.probe, atoms.data});
     }
-    const NeighborGridView grid = build_neighbor_grid(executor_, atoms, layout_cells(low, high, parameters.max_radius));
-    remove_swallowed_atoms(executor_, grid, parameters.max_radius);
+    p.grid = build_neighbor_grid(executor_, atoms,
+                                 layout_cells(p.low, p.high, std::max(p.parameters.max_radius, kSmallestCell)));
+    remove_swallowed_atoms(executor_, p.grid, p.parameters.max_radius);
+    if (settings.method == QSES_METHOD_EXACT) {
+      auto run = run_of(p, settings, nullptr);
+      p.features = find_features(run);
+    }
+    return p;
+  }
 
-    Run<Executor, Timer> run{executor_,  timer_,  memory_, progress_, table(), settings,
-                             parameters, lattice, low,     high,      grid,    report};
+  MeshMemoryView build(Prepared p, const qses_settings &settings, float spacing, qses_report *report) {
+    p.parameters.spacing = p.frame.spacing = spacing;
+    p.features.parameters = p.parameters;
+    p.frame = layout_lattice(p.frame, p.low, p.high, p.parameters.max_radius);
+    auto run = run_of(p, settings, report);
     MeshMemoryView mesh = settings.method == QSES_METHOD_GRID ? build_grid_surface(run) : build_exact_surface(run);
     timer_.begin("measure");
     const MeshCounts counts{mesh.vertices, mesh.triangles};
@@ -108,6 +152,19 @@ class SurfacePipeline : public SurfaceEngine {
     return mesh;
   }
 
+  // Memory and times of the level that is just finished.
+  void complete(const qses_mesh &mesh, qses_report *report) {
+    report->work_bytes_peak = executor_.arena().peak();
+    report->mesh_bytes = memory_.mesh_bytes(mesh);
+    report->host_bytes_peak = memory_.host_bytes() + (Executor::kIsCuda ? 0 : executor_.arena().peak());
+    for (const auto &stage : timer_.collect()) {
+      if (report->stage_count == QSES_MAX_STAGES) break;
+      qses_stage_time &out = report->stages[report->stage_count++];
+      std::snprintf(out.name, sizeof out.name, "%s", stage.first.c_str());
+      out.milliseconds = stage.second;
+    }
+  }
+
   // The tables of marching cubes, uploaded once.
   TableView table() {
     if (!table_.triangle_count) table_ = memory_.upload_table(executor_, marching_cubes_table());
@@ -119,10 +176,6 @@ class SurfacePipeline : public SurfaceEngine {
   MeshMemory<Executor> memory_;
   Progress progress_;
   TableView table_{};
-  size_t atom_count_ = 0;
-  AtomBounds bounds_{};
-  qses_mesh mesh_;
-  qses_report report_;
 };
 
 }  // namespace quickses

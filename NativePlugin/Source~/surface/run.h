@@ -11,23 +11,35 @@
 
 namespace quickses {
 
-// Hands the fraction done to the caller, never falling, in steps of a few per mille.
+// Hands the fraction done to the caller, never falling, in steps of a few per mille; and ends the computation where it
+// was told to stop.
 class Progress {
  public:
   void set(std::function<void(double)> callback) { callback_ = std::move(callback); }
-  void restart() { last_ = -1; }
+  // Fractions reported from now on are those of the part from begin to end of the whole.
+  void restart(LevelSink &sink) {
+    sink_ = &sink;
+    last_ = -1;
+  }
+  void enter(double begin, double end) {
+    begin_ = begin;
+    end_ = end;
+  }
   bool wanted() const { return static_cast<bool>(callback_); }
   void report(double fraction) {
-    if (!callback_ || fraction < last_ + 0.005) {
-      if (!callback_ || fraction < 1.0 || last_ >= 1.0) return;
-    }
-    last_ = fraction;
-    callback_(fraction);
+    if (!sink_) return;
+    if (sink_->stop_flag().load(std::memory_order_relaxed)) throw Cancelled{};
+    const double whole = begin_ + (end_ - begin_) * fraction;
+    if (whole < last_ + 0.005 && !(whole >= 1.0 && last_ < 1.0)) return;
+    last_ = whole;
+    sink_->advance(whole);
+    if (callback_) callback_(whole);
   }
 
  private:
   std::function<void(double)> callback_;
-  double last_ = -1;
+  LevelSink *sink_ = nullptr;
+  double begin_ = 0, end_ = 1, last_ = -1;
 };
 
 // A mesh being made, in the memory of the back end.
@@ -52,6 +64,7 @@ struct Run {
   Lattice lattice;
   glm::vec3 low, high;  // bounds of the atoms' centres, centred frame
   NeighborGridView atoms;
+  FeatureView features;  // exact method only
   qses_report *report;
 };
 

@@ -36,8 +36,9 @@
  *   After any error the context is still usable, and the last good mesh stays valid.
  *
  * Threads
- *   A context may be used by one thread at a time; different contexts are independent of each other. Functions without
- *   a context may be called from any thread at any time.
+ *   A context may be used by one thread at a time, but for qses_poll and qses_cancel, which may be called from any
+ *   thread while another one uses the context. Different contexts are independent of each other. Functions without a
+ *   context may be called from any thread at any time.
  */
 #ifndef QUICKSES_QUICKSES_H
 #define QUICKSES_QUICKSES_H
@@ -72,7 +73,8 @@ typedef enum qses_status {
   QSES_DEVICE_ERROR = 4,        /* the GPU or its driver reported an error */
   QSES_TOO_FINE = 5,            /* the spacing would need more vertices than 32-bit indices can name */
   QSES_NO_RESULT = 6,           /* nothing has been computed yet */
-  QSES_INTERNAL_ERROR = 7       /* a broken invariant of the library: please report it with the input */
+  QSES_INTERNAL_ERROR = 7,      /* a broken invariant of the library: please report it with the input */
+  QSES_CANCELLED = 8            /* qses_cancel was called meanwhile */
 } qses_status;
 
 typedef enum qses_backend {
@@ -150,7 +152,7 @@ QSES_API void qses_context_options_init(qses_context_options *options);
  * Errors: INVALID_ARGUMENT, BACKEND_UNAVAILABLE, OUT_OF_MEMORY, DEVICE_ERROR. */
 QSES_API qses_status qses_create(const qses_context_options *options, qses_context **context);
 
-/* Frees the context and everything it handed out. NULL is ignored. */
+/* Cancels and joins what still runs, then frees the context and everything it handed out. NULL is ignored. */
 QSES_API void qses_destroy(qses_context *context);
 
 /* Which back end the context uses (CUDA or CPU, never AUTO), with the device's name. reason says, for a context made
@@ -176,7 +178,14 @@ QSES_API qses_status qses_set_atoms(qses_context *context, const float *position
  * count must be the number of atoms. Errors as above. */
 QSES_API qses_status qses_set_positions(qses_context *context, const float *positions, size_t stride, size_t count);
 
+/* The same for atoms that are picked out of a larger array: atom i is at positions[indices[i]]. position_count is the
+ * length of that array, count the number of indices and of atoms. Errors: also an index that is out of range. */
+QSES_API qses_status qses_set_positions_indexed(qses_context *context, const float *positions, size_t stride,
+                                                size_t position_count, const uint32_t *indices, size_t count);
+
 /* ---- computing ------------------------------------------------------------------------------------------------- */
+
+#define QSES_MAX_LEVELS 8
 
 typedef struct qses_settings {
   uint32_t struct_size; /* set by qses_settings_init */
@@ -192,6 +201,11 @@ typedef struct qses_settings {
   uint32_t patch_types;      /* 1: qses_mesh.patches is filled; default 0. Not with GRID */
   uint32_t measure;          /* 1 (default): qses_report.area and .volume are computed; 0: they are 0 */
   uint32_t frame;            /* any number; comes back in qses_mesh.frame */
+  float levels[QSES_MAX_LEVELS]; /* Å; for qses_begin: coarser spacings whose surfaces come before that of `spacing`, each
+                           a complete closed mesh on the true surface. Falling; those not above spacing are left out.
+                           Default 2, 1. The lattices of all levels are anchored to the global origin if the spacings
+                           are whole multiples of each other (else only the finest is) */
+  uint32_t level_count; /* of levels; default 2 */
 } qses_settings;
 
 /* Fills in the defaults. Always use it: later versions append fields. NULL is ignored. */
@@ -211,6 +225,9 @@ typedef struct qses_mesh {
   const uint32_t *indices; /* T x 3 vertex numbers */
   float bounds_min[3];     /* box of the vertices, Å; all 0 for an empty mesh */
   float bounds_max[3];
+  float spacing;           /* Å, of the level */
+  uint32_t level;          /* 0 is the coarsest */
+  uint32_t level_count;    /* of the computation it belongs to: level_count - 1 is the finest */
 } qses_mesh;
 
 /* Empty view with struct_size set. NULL is ignored. */
@@ -222,7 +239,7 @@ QSES_API void qses_mesh_init(qses_mesh *mesh);
  * says how much was needed), DEVICE_ERROR, INTERNAL_ERROR, NO_RESULT (qses_set_atoms has not been called). */
 QSES_API qses_status qses_compute(qses_context *context, const qses_settings *settings, qses_mesh *mesh);
 
-/* The mesh of the last qses_compute that succeeded. Errors: INVALID_ARGUMENT, NO_RESULT. */
+/* The mesh of the last qses_compute or qses_collect that succeeded. Errors: INVALID_ARGUMENT, NO_RESULT. */
 QSES_API qses_status qses_get_mesh(const qses_context *context, qses_mesh *mesh);
 
 #define QSES_MAX_STAGES 16
@@ -232,13 +249,13 @@ typedef struct qses_stage_time {
   double milliseconds; /* with CUDA: between events on the stream */
 } qses_stage_time;
 
-/* What the last qses_compute did. */
+/* What was done for one mesh. */
 typedef struct qses_report {
   uint32_t struct_size; /* set by qses_report_init */
   uint32_t stage_count;
   double area;              /* Å², sum over the triangles */
   double volume;            /* Å³, enclosed; cavities count negative */
-  double compute_ms;        /* atoms in host memory to mesh in host memory */
+  double compute_ms;        /* atoms in host memory to mesh in host memory; for a later level: since the one before */
   uint64_t work_bytes_peak; /* most memory in use for the work: on the device with CUDA, else in host memory,
                                without the mesh */
   uint64_t mesh_bytes;      /* of the mesh itself */
@@ -252,7 +269,7 @@ typedef struct qses_report {
 /* Empty report with struct_size set. NULL is ignored. */
 QSES_API void qses_report_init(qses_report *report);
 
-/* Report of the last qses_compute that succeeded. Errors: INVALID_ARGUMENT, NO_RESULT. */
+/* Report of the mesh that the last qses_compute or qses_collect gave. Errors: INVALID_ARGUMENT, NO_RESULT. */
 QSES_API qses_status qses_get_report(const qses_context *context, qses_report *report);
 
 /* Switches the timing of the single stages on (1) or off (0, the default). With CUDA it costs some tens of microseconds
@@ -265,6 +282,57 @@ QSES_API qses_status qses_enable_stage_times(qses_context *context, int32_t enab
 typedef void (*qses_progress_callback)(void *user_data, double fraction);
 QSES_API qses_status qses_set_progress_callback(qses_context *context, qses_progress_callback callback,
                                                 void *user_data);
+
+/* ---- jobs: a surface over time ----------------------------------------------------------------------------------- */
+
+/* Starts computing the surface of the context's atoms as they are now, level after level, and returns at once. Atoms and
+ * positions may be set for the next job while this one runs.
+ * During a job, a new one replaces it: the coarsest level of the job that runs is still finished and can be collected,
+ * then the newest request starts; requests in between are dropped. So frames that come faster than levels never starve
+ * the picture. Errors: INVALID_ARGUMENT (settings), NO_RESULT (no atoms), OUT_OF_MEMORY (the worker thread). What goes
+ * wrong later belongs to the job: see qses_poll. */
+QSES_API qses_status qses_begin(qses_context *context, const qses_settings *settings);
+
+typedef enum qses_job_state {
+  QSES_JOB_IDLE = 0,      /* none was begun */
+  QSES_JOB_RUNNING = 1,   /* or waiting to run */
+  QSES_JOB_FINISHED = 2,  /* all levels */
+  QSES_JOB_CANCELLED = 3, /* by qses_cancel */
+  QSES_JOB_FAILED = 4     /* status and message say why; levels finished before can be collected */
+} qses_job_state;
+
+typedef struct qses_progress {
+  uint32_t struct_size; /* set by qses_progress_init */
+  qses_job_state state;
+  uint32_t frame;           /* of the settings of the job that runs, or ran last */
+  uint32_t frame_requested; /* of the newest qses_begin */
+  uint32_t levels_finished; /* of this job */
+  uint32_t level_count;
+  float fraction;     /* of this job's work: from 0 to 1, never falls */
+  int32_t mesh_ready; /* 1 if qses_collect would succeed */
+  qses_status status; /* OK unless FAILED */
+  char message[256];  /* "" unless FAILED */
+} qses_progress;
+
+/* Empty progress with struct_size set. NULL is ignored. */
+QSES_API void qses_progress_init(qses_progress *progress);
+
+/* How the job stands. May be called from any thread at any time before qses_destroy. Errors: INVALID_ARGUMENT. */
+QSES_API qses_status qses_poll(const qses_context *context, qses_progress *progress);
+
+/* The finest level that was finished since the last call. Its memory stays valid until the next qses_collect or
+ * qses_compute that succeeds, or qses_destroy, also while further levels and jobs are computed.
+ * Errors: NO_RESULT (nothing new: not an error in itself), INVALID_ARGUMENT. */
+QSES_API qses_status qses_collect(qses_context *context, qses_mesh *mesh);
+
+/* Ends the job that runs as soon as it can (levels finished before stay collectable) and drops the one that waits.
+ * Returns at once; from any thread at any time before qses_destroy. Also ends a qses_compute, which then returns
+ * CANCELLED. Errors: INVALID_ARGUMENT. */
+QSES_API qses_status qses_cancel(qses_context *context);
+
+/* Waits until no job runs or waits, or for the given time (negative: without limit). OK either way; *finished, which may
+ * be NULL, tells which: 1 or 0. Errors: INVALID_ARGUMENT. */
+QSES_API qses_status qses_wait(qses_context *context, double milliseconds, int32_t *finished);
 
 #ifdef __cplusplus
 }

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: MIT
+#include "jobs/surface_job.h"
+
+#include "parallel/error.h"
+
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <new>
+
+namespace quickses {
+
+SurfaceJob::SurfaceJob(std::unique_ptr<SurfaceEngine> engine) : engine_(std::move(engine)) {
+  qses_progress_init(&state_);
+}
+
+SurfaceJob::~SurfaceJob() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    quit_ = true;
+    waiting_ = {};
+    stop_now_ = true;
+  }
+  changed_.notify_all();
+  if (worker_.joinable()) worker_.join();
+}
+
+void SurfaceJob::begin(SurfaceRequest request) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!worker_.joinable()) worker_ = std::thread([this] { work(); });
+    state_.frame_requested = request.settings.frame;
+    waiting_ = std::move(request);
+    if (running_) {
+      // The picture must keep moving: the coarsest level is finished first.
+      superseded_ = true;
+      if (levels_finished_ > 0) stop_now_ = true;
+    } else {
+      state_.state = QSES_JOB_RUNNING;
+      state_.status = QSES_OK;
+      state_.message[0] = '\0';
+    }
+  }
+  changed_.notify_all();
+}
+
+void SurfaceJob::work() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  for (;;) {
+    changed_.wait(lock, [&] { return quit_ || !waiting_.empty(); });
+    if (quit_) return;
+    const SurfaceRequest request = std::move(waiting_);
+    waiting_ = {};
+    running_ = true;
+    cancelled_ = superseded_ = false;
+    levels_finished_ = 0;
+    level_count_ = static_cast<uint32_t>(request.spacings.size());
+    stop_now_ = false;
+    fraction_ = 0.f;
+    state_.state = QSES_JOB_RUNNING;
+    state_.frame = request.settings.frame;
+    state_.levels_finished = 0;
+    state_.level_count = level_count_;
+    state_.status = QSES_OK;
+    state_.message[0] = '\0';
+    lock.unlock();
+    qses_status status = QSES_OK;
+    std::string message;
+    try {
+      run(request);
+    } catch (const Cancelled &) {
+    } catch (const Error &e) {
+      status = e.status();
+      message = e.what();
+    } catch (const std::bad_alloc &) {
+      status = QSES_OUT_OF_MEMORY;
+      message = "the machine refused memory";
+    } catch (const std::exception &e) {
+      status = QSES_INTERNAL_ERROR;
+      message = e.what();
+    }
+    lock.lock();
+    running_ = false;
+    writing_ = kNoSlot;
+    state_.status = status;
+    std::snprintf(state_.message, sizeof state_.message, "%s", message.c_str());
+    state_.state = status != QSES_OK                  ? QSES_JOB_FAILED
+                   : levels_finished_ == level_count_ ? QSES_JOB_FINISHED
+                                                      : QSES_JOB_CANCELLED;
+    if (!waiting_.empty() && !quit_) state_.state = QSES_JOB_RUNNING;
+    changed_.notify_all();
+  }
+}
+
+void SurfaceJob::run(const SurfaceRequest &request) {
+  engine_->compute(*request.atoms, request.settings, request.spacings, *this);
+}
+
+void SurfaceJob::compute(SurfaceRequest request) {
+  wait(-1.0);
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    // No worker runs and only this thread can begin one: it is safe to compute here.
+    cancelled_ = superseded_ = false;
+    stop_now_ = false;
+    levels_finished_ = 0;
+    level_count_ = static_cast<uint32_t>(request.spacings.size());
+    fraction_ = 0.f;
+    state_.state = QSES_JOB_RUNNING;
+    state_.frame = state_.frame_requested = request.settings.frame;
+    state_.levels_finished = 0;
+    state_.level_count = level_count_;
+    running_ = true;
+  }
+  struct Done {
+    SurfaceJob &job;
+    ~Done() {
+      const std::lock_guard<std::mutex> lock(job.mutex_);
+      job.running_ = false;
+      job.writing_ = kNoSlot;
+      job.state_.state = job.levels_finished_ == job.level_count_ ? QSES_JOB_FINISHED : QSES_JOB_CANCELLED;
+    }
+  };
+  {
+    const Done done{*this};
+    try {
+      run(request);
+    } catch (const Cancelled &) {
+      throw Error(QSES_CANCELLED, "the computation was cancelled");
+    }
+  }
+  const std::lock_guard<std::mutex> lock(mutex_);
+  held_ = ready_;
+  ready_ = {};
+}
+
+int SurfaceJob::slot() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  for (writing_ = 0; writing_ == held_.slot || writing_ == ready_.slot; ++writing_) {
+  }
+  return writing_;
+}
+
+void SurfaceJob::finished(const qses_mesh &mesh, const qses_report &report) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ready_.slot = writing_;
+    ready_.mesh = mesh;
+    ready_.report = report;
+    ready_.mesh.level = levels_finished_;
+    ready_.mesh.level_count = level_count_;
+    writing_ = kNoSlot;
+    state_.levels_finished = ++levels_finished_;
+    if (superseded_ || cancelled_) stop_now_ = true;
+  }
+  changed_.notify_all();
+}
+
+void SurfaceJob::advance(double fraction) { fraction_.store(static_cast<float>(fraction), std::memory_order_relaxed); }
+
+bool SurfaceJob::collect(qses_mesh *mesh, qses_report *report) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (ready_.slot == kNoSlot) return false;
+  held_ = ready_;
+  ready_ = {};
+  if (mesh) *mesh = held_.mesh;
+  if (report) *report = held_.report;
+  return true;
+}
+
+bool SurfaceJob::held(qses_mesh *mesh, qses_report *report) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (held_.slot == kNoSlot) return false;
+  if (mesh) *mesh = held_.mesh;
+  if (report) *report = held_.report;
+  return true;
+}
+
+bool SurfaceJob::wait(double milliseconds) {
+  std::unique_lock<std::mutex> lock(mutex_);
+  const auto idle = [&] { return !running_ && waiting_.empty(); };
+  if (milliseconds < 0.0) {
+    changed_.wait(lock, idle);
+    return true;
+  }
+  return changed_.wait_for(lock, std::chrono::duration<double, std::milli>(milliseconds), idle);
+}
+
+void SurfaceJob::cancel() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (running_) {
+      cancelled_ = true;
+      stop_now_ = true;
+    } else if (!waiting_.empty()) {
+      state_.state = QSES_JOB_CANCELLED;
+    }
+    waiting_ = {};
+  }
+  changed_.notify_all();
+}
+
+qses_progress SurfaceJob::progress() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  qses_progress p = state_;
+  p.fraction = p.state == QSES_JOB_FINISHED ? 1.f : fraction_.load(std::memory_order_relaxed);
+  p.mesh_ready = ready_.slot != kNoSlot ? 1 : 0;
+  return p;
+}
+
+}  // namespace quickses

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+// One surface over time: computations one after the other on a worker thread, coarse levels first, the newest request
+// replacing older ones, and the finished meshes handed over without copying.
+#pragma once
+
+#include "surface/engine.h"
+
+#include <atomic>
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace quickses {
+
+// A computation asked for: atoms as they were then, and how.
+struct SurfaceRequest {
+  std::shared_ptr<const AtomSet> atoms;
+  qses_settings settings;
+  std::vector<float> spacings;  // of the levels, coarsest first
+
+  bool empty() const { return !atoms; }
+};
+
+class SurfaceJob : private LevelSink {
+ public:
+  explicit SurfaceJob(std::unique_ptr<SurfaceEngine> engine);
+  ~SurfaceJob() override;  // cancels and joins
+  SurfaceJob(const SurfaceJob &) = delete;
+  SurfaceJob &operator=(const SurfaceJob &) = delete;
+
+  SurfaceEngine &engine() { return *engine_; }
+
+  // ---- from the thread that uses the context
+  // Replaces the request that waits, if any. A running job still finishes its coarsest level, then this one starts.
+  void begin(SurfaceRequest request);
+  // Computes on the calling thread once no job runs. Throws what went wrong.
+  void compute(SurfaceRequest request);
+  // The finest level finished since the last call; false if there is none. Its memory stays until the next call that
+  // returns true, or a compute.
+  bool collect(qses_mesh *mesh, qses_report *report);
+  // The mesh collected or computed last; false if there is none.
+  bool held(qses_mesh *mesh, qses_report *report) const;
+  // Until no job runs or waits, or the time is over (negative: no limit). True if none runs or waits.
+  bool wait(double milliseconds);
+
+  // ---- from any thread
+  void cancel();
+  qses_progress progress() const;
+
+ private:
+  static constexpr int kNoSlot = -1;
+
+  // LevelSink, called by the thread that computes.
+  int slot() override;
+  void finished(const qses_mesh &mesh, const qses_report &report) override;
+  const std::atomic<bool> &stop_flag() const override { return stop_now_; }
+  void advance(double fraction) override;
+
+  void work();
+  void run(const SurfaceRequest &request);
+
+  struct Level {
+    int slot = kNoSlot;
+    qses_mesh mesh{};
+    qses_report report{};
+  };
+
+  std::unique_ptr<SurfaceEngine> engine_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  SurfaceRequest waiting_;
+  bool running_ = false, quit_ = false, cancelled_ = false, superseded_ = false;
+  uint32_t levels_finished_ = 0, level_count_ = 0;
+  Level held_, ready_;
+  int writing_ = kNoSlot;
+  qses_progress state_{};
+  std::atomic<bool> stop_now_{false};
+  std::atomic<float> fraction_{0.f};
+  std::thread worker_;
+};
+
+}  // namespace quickses
