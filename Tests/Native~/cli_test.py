@@ -232,6 +232,15 @@ class Errors(ProgramTest):
         self.assert_fails(COMPUTE, ["memory", "spacing"], CRAMBIN, "-o", "a.obj", "--backend", "cpu", "-v", "0.02",
                           "--memory", "4M")
 
+    def test_bench_does_not_write_over_its_input(self):
+        shutil.copy(CRAMBIN, os.path.join(self.folder, "in.pdb"))
+        self.assert_fails(USAGE, ["--json", "inputs"], "bench", "in.pdb", "--repeat", "1", "--json", "in.pdb")
+        with open(CRAMBIN, "rb") as a, open(os.path.join(self.folder, "in.pdb"), "rb") as b:
+            self.assertEqual(a.read(), b.read())
+
+    def test_grid_makes_the_ses_only(self):
+        self.assert_fails(USAGE, ["--method grid", "--surface"], CRAMBIN, "--method", "grid", "--surface", "sas")
+
     def test_the_spacing_is_too_fine_for_the_index_type(self):
         self.assert_fails(COMPUTE, ["triangles", "spacing", "Å would do"], CRAMBIN, "-o", "a.obj", "--backend", "cpu",
                           "-v", "0.001")

@@ -362,4 +362,27 @@ TEST(Place, TheLatticeIsAnchored) {
   EXPECT_EQ(here.mesh.triangle_count(), there.mesh.triangle_count());
 }
 
+// Beyond 2^21 spacings from the middle float32 can't tell neighbouring lattice points apart well enough.
+TEST(DegenerateCases, SpacingsTooFineForTheExtentAreRefused) {
+  Atoms atoms;
+  atoms.add(-100000, -100000, -100000, 1.7).add(100000, 100000, 100000, 1.7);
+  const Context context;
+  set_atoms(context, atoms);
+  for (qses_method method : {QSES_METHOD_EXACT, QSES_METHOD_GRID}) {
+    qses_settings s = settings(0.01);
+    s.method = method;
+    EXPECT_EQ(qses_compute(context, &s, nullptr), QSES_TOO_FINE);
+    EXPECT_NE(std::string(qses_last_error()).find("0.048"), std::string::npos) << qses_last_error();
+    s.spacing = 0.05f;
+    EXPECT_EQ(mesh_checks::manifold_fault(compute(context, atoms, s).mesh), "");
+  }
+}
+
+TEST(DegenerateCases, TinyAtomsFarApartAreQuick) {
+  Atoms atoms;
+  atoms.add(0, 0, 0, 1e-6).add(1000, 2000, 3000, 1e-4).add(1000, 2000, 3000.5, 1e-5);
+  for (qses_surface kind : {QSES_SURFACE_VDW, QSES_SURFACE_SES})
+    EXPECT_EQ(mesh_checks::manifold_fault(compute(atoms, settings(0.5, 1.4, kind)).mesh), "");
+}
+
 }  // namespace

@@ -176,8 +176,13 @@ bool is_same_file(const std::string &a, const std::string &b) {
 void check(const Options &options, bool has_device) {
   if (has_device && options.compute.backend == QSES_BACKEND_CPU)
     throw Failure(kUsage, "--device: only CUDA has devices to choose from, and --backend is cpu");
+  if (options.compute.method == QSES_METHOD_GRID && options.compute.surface != QSES_SURFACE_SES)
+    throw Failure(kUsage, "--method grid makes the solvent-excluded surface only: leave --surface at ses");
   if (options.command == Options::Command::kBench) {
     if (options.inputs.empty()) throw Failure(kUsage, "bench: no input file was given");
+    for (const std::string &input : options.inputs)
+      if (!options.json.empty() && is_same_file(options.json, input))
+        throw Failure(kUsage, "--json: '" + options.json + "' is one of the inputs");
     return;
   }
   if (options.input.empty()) throw Failure(kUsage, "no input file was given; see quickses --help");

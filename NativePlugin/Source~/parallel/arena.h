@@ -86,7 +86,6 @@ class Arena {
 
   uint64_t peak() const { return peak_; }  // most bytes in use since the last reset
   uint64_t held() const { return held_; }  // bytes of all blocks
-  uint64_t block_count() const { return blocks_.size(); }
 
   void release() {
     for (const Block &b : blocks_) Source::release(b.memory);
@@ -111,7 +110,7 @@ class Arena {
     if (budget_ && held_ + wanted > budget_)
       throw Error(QSES_OUT_OF_MEMORY, "the work needs at least " + describe_bytes(held_ + wanted) +
                                           " but the memory budget is " + describe_bytes(budget_) +
-                                          ": use a larger spacing, a larger budget or a smaller slice size");
+                                          ": use a larger spacing or a larger budget");
     void *memory = Source::acquire(wanted);
     if (!memory && wanted > bytes) {
       wanted = bytes;
@@ -119,8 +118,7 @@ class Arena {
     }
     if (!memory)
       throw Error(QSES_OUT_OF_MEMORY, std::string(Source::kName) + " refused " + describe_bytes(wanted) +
-                                          " on top of " + describe_bytes(held_) +
-                                          ": use a larger spacing or a smaller slice size");
+                                          " on top of " + describe_bytes(held_) + ": use a larger spacing");
     blocks_.push_back({memory, wanted});
     held_ += wanted;
   }

@@ -22,6 +22,7 @@
 #include <atomic>
 #include <cstdlib>
 #include <cstring>
+#include <exception>
 #include <map>
 #include <memory>
 #include <thread>
@@ -132,10 +133,18 @@ class CpuExecutor {
     const size_t workers = std::min<size_t>(threads_, chunks);
     std::atomic<size_t> next{0};
     auto &pool = scratches<Scratch>();
+    // What one thread throws (memory that is refused) ends all of them and is thrown again here: not every parallel
+    // system lets exceptions out.
+    std::exception_ptr thrown;
+    std::atomic<bool> failed{false};
     auto work = [&](size_t worker) {
-      Scratch *const scratch = pool[worker].get();
-      for (size_t c; !stopped() && (c = next.fetch_add(1, std::memory_order_relaxed)) < chunks;)
-        for (size_t i = c * grain; i < std::min(n, (c + 1) * grain); ++i) f(SoloTeam{}, *scratch, i);
+      try {
+        Scratch *const scratch = pool[worker].get();
+        for (size_t c; !stopped() && !failed && (c = next.fetch_add(1, std::memory_order_relaxed)) < chunks;)
+          for (size_t i = c * grain; i < std::min(n, (c + 1) * grain); ++i) f(SoloTeam{}, *scratch, i);
+      } catch (...) {
+        if (!failed.exchange(true)) thrown = std::current_exception();
+      }
     };
     if (workers == 1) {
       work(0);
@@ -145,6 +154,7 @@ class CpuExecutor {
                          work);
       });
     }
+    if (thrown) std::rethrow_exception(thrown);
     if (stopped()) throw Cancelled{};
   }
 
@@ -258,10 +268,12 @@ class CpuExecutor {
   static auto policy() -> decltype((thrust::omp::par)) { return thrust::omp::par; }
   template <class F>
   void run(F f) {
-    const int before = omp_get_max_threads();
+    const struct Restore {
+      int threads = omp_get_max_threads();
+      ~Restore() { omp_set_num_threads(threads); }
+    } restore;
     omp_set_num_threads(static_cast<int>(threads_));
     f();
-    omp_set_num_threads(before);
   }
 #else
   static auto policy() -> decltype((thrust::tbb::par)) { return thrust::tbb::par; }

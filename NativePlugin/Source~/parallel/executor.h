@@ -2,14 +2,17 @@
 // The few verbs every pass is written in. There are two back ends with the same members: CpuExecutor (Thrust's TBB or
 // OpenMP system) and CudaExecutor (Thrust/CUB on one stream). Stages are templates over the executor and know neither.
 //
-//   Span<T> allocate<T>(n)                 memory of the back end, uninitialised, valid until the arena is rewound
-//   for_each(n, f)                         f(i) for i in [0, n), in any order
-//   for_each_brick<Scratch>(n, f)          f(team, scratch, i): a team of threads shares one Scratch per item
-//   exclusive_scan(n, load, out)           out[i] = load(0) + ... + load(i - 1); out has n + 1 elements
-//   reduce<T>(n, load)                     sum of load(i), T a double or a few: fixed chunks, added in fixed order.
-//   Waits sort_by_key(keys, values, key_bits)    stable, by the low key_bits bits of the keys compact(n, keep, out) the
-//   i with keep(i), in order; returns their number. Waits fetch(p), fetch_each(sources, values, n)  copies one value,
-//   or several, to the host. Waits upload, download, fill                 copies between host and back end, and memset
+// clang-format off
+//   Span<T> allocate<T>(n)         memory of the back end, uninitialised, valid until the arena is rewound
+//   for_each(n, f)                 f(i) for i in [0, n), in any order
+//   for_each_brick<Scratch>(n, f)  f(team, scratch, i): a team of threads shares one Scratch per item
+//   exclusive_scan(n, load, out)   out[i] = load(0) + ... + load(i - 1); out has n + 1 elements
+//   reduce<T>(n, load)             sum of load(i), T a double or a few: fixed chunks, added in fixed order. Waits
+//   sort_by_key(keys, values, key_bits)  stable, by the low key_bits bits of the keys
+//   compact(n, keep, out)          the i with keep(i), in order; returns their number. Waits
+//   fetch(p), fetch_each(sources, values, n)  copies one value, or several, to the host. Waits
+//   upload, download, fill         copies between host and back end, and memset
+// clang-format on
 //
 // Functors are plain structs that hold views and have a QSES_HOST_DEVICE operator(). A verb may return before its work
 // is done, but everything runs in the order it was asked for; only what "waits" blocks the calling thread.

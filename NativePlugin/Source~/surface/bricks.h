@@ -11,6 +11,11 @@
 
 #include <string>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
 namespace quickses {
 
 // Bricks are numbered by signed 32-bit integers.
@@ -168,9 +173,25 @@ struct SortValue {
   QSES_HOST_DEVICE void operator()(size_t i) const { values[i] = static_cast<uint32_t>(i); }
 };
 
+// Atoms may lie this many spacings from the middle of them all: a float32 coordinate then still tells eight places
+// between two lattice points, and all numbers of bricks are far from overflowing.
+constexpr double kMaxLatticeReach = 2097152;  // 2^21
+
 // low and high bound the atoms' centres in the centred frame.
 inline Lattice layout_lattice(Lattice lattice, const glm::vec3 &low, const glm::vec3 &high, float max_radius) {
   const double size = static_cast<double>(lattice.spacing) * kBrickEdge;
+  double farthest = 0;
+  for (int d = 0; d < 3; ++d)
+    farthest = std::max({farthest, std::fabs(static_cast<double>(low[d])), std::fabs(static_cast<double>(high[d]))});
+  if (farthest > kMaxLatticeReach * static_cast<double>(lattice.spacing)) {
+    char text[200];
+    std::snprintf(
+        text, sizeof text,
+        "spacing %g Å is too fine for atoms that lie %.3g Å from the middle of them all: float32 tells places "
+        "apart there for spacings from %.2g Å",
+        static_cast<double>(lattice.spacing), farthest, farthest / kMaxLatticeReach);
+    throw Error(QSES_TOO_FINE, text);
+  }
   for (int d = 0; d < 3; ++d) {
     const double reach = static_cast<double>(max_radius) + 2.0 * lattice.spacing;
     const double first = std::floor((low[d] - reach) / size) - 1.0, last = std::floor((high[d] + reach) / size) + 1.0;

@@ -34,7 +34,6 @@ QSES_FN float cap_sine(float cosine) { return square_root(maximum(0.f, 1.f - cos
 
 // What is stored for exposure tests: the cap shrunk by the tolerance.
 QSES_FN float stored_cap_cosine(float cosine, float radius) { return cosine + kExposureTolerance / radius; }
-QSES_FN float true_cap_cosine(float stored, float radius) { return stored - kExposureTolerance / radius; }
 
 // Does the ball (center, radius) swallow atom i so that i owns no surface? order tells which of two equal ones stays.
 QSES_FN bool swallows(const Sphere &j, uint32_t order_j, const Sphere &i, uint32_t order_i) {

@@ -43,7 +43,7 @@ class MeshMemory<CudaExecutor> {
   }
 
   TableView upload_table(CudaExecutor &executor, const MarchingCubesTable &table) {
-    table_ = DeviceMemory::acquire(sizeof table);
+    if (!table_) table_ = DeviceMemory::acquire(sizeof table);
     if (!table_) throw Error(QSES_OUT_OF_MEMORY, "the GPU refused memory for the tables of marching cubes");
     auto *device = static_cast<MarchingCubesTable *>(table_);
     executor.upload(device, &table, 1);

@@ -71,7 +71,8 @@ typedef enum qses_status {
   QSES_OUT_OF_MEMORY = 2,       /* the memory budget, the device or the machine refused memory */
   QSES_BACKEND_UNAVAILABLE = 3, /* the back end asked for can't be used here; the message says why */
   QSES_DEVICE_ERROR = 4,        /* the GPU or its driver reported an error */
-  QSES_TOO_FINE = 5,            /* the spacing would need more vertices than 32-bit indices can name */
+  QSES_TOO_FINE = 5,            /* the spacing would need more vertices than 32-bit indices can name, or finer places
+                                   than float32 can tell: atoms may lie 2^21 spacings from the middle of them all */
   QSES_NO_RESULT = 6,           /* nothing has been computed yet */
   QSES_INTERNAL_ERROR = 7,      /* a broken invariant of the library: please report it with the input */
   QSES_CANCELLED = 8            /* qses_cancel was called meanwhile */
@@ -141,7 +142,8 @@ typedef struct qses_context_options {
   int32_t device;         /* CUDA device ordinal; default 0 */
   uint32_t threads;       /* CPU threads; 0 (default) = one per hardware thread */
   uint64_t memory_budget; /* bytes this context may use for its work, on the device (CUDA) or in host memory (CPU);
-                             0 (default) = what is free at the time */
+                             0 (default) = what is free at the time. The mesh itself and, on the CPU, some
+                             hundred KB of scratch per thread come on top */
 } qses_context_options;
 
 /* Fills in the defaults. Always use it: later versions append fields. NULL is ignored. */
@@ -196,7 +198,9 @@ typedef struct qses_settings {
   uint32_t relaxation_steps; /* default 1, at most 100. EXACT: tangential smoothing, each step projected back onto the
                                 exact surface. GRID: Laplacian smoothing as in the paper, which moves off it */
   uint32_t slice_size;       /* work in slices of at most slice_size³ lattice points (at least 8); the mesh is the same
-                                byte for byte. 0 (default) = as large as memory allows */
+                                byte for byte. It bounds what CUDA keeps of the neighbourhood of the bricks in work, the
+                                largest part there; the CPU keeps that of one brick per thread anyway, and all else is
+                                less than a byte per lattice point. 0 (default) = as large as memory allows */
   qses_winding winding;      /* default OUTWARD */
   uint32_t patch_types;      /* 1: qses_mesh.patches is filled; default 0. Not with GRID */
   uint32_t measure;          /* 1 (default): qses_report.area and .volume are computed; 0: they are 0 */
