@@ -36,12 +36,24 @@ void SurfaceJob::begin(SurfaceRequest request) {
       superseded_ = true;
       if (levels_finished_ > 0) stop_now_ = true;
     } else {
-      state_.state = QSES_JOB_RUNNING;
-      state_.status = QSES_OK;
-      state_.message[0] = '\0';
+      announce(waiting_);
     }
   }
   changed_.notify_all();
+}
+
+void SurfaceJob::announce(const SurfaceRequest &request) {
+  cancelled_ = superseded_ = false;
+  stop_now_ = false;
+  fraction_ = 0.f;
+  levels_finished_ = 0;
+  level_count_ = static_cast<uint32_t>(request.spacings.size());
+  state_.state = QSES_JOB_RUNNING;
+  state_.frame = request.settings.frame;
+  state_.levels_finished = 0;
+  state_.level_count = level_count_;
+  state_.status = QSES_OK;
+  state_.message[0] = '\0';
 }
 
 void SurfaceJob::work() {
@@ -52,17 +64,7 @@ void SurfaceJob::work() {
     const SurfaceRequest request = std::move(waiting_);
     waiting_ = {};
     running_ = true;
-    cancelled_ = superseded_ = false;
-    levels_finished_ = 0;
-    level_count_ = static_cast<uint32_t>(request.spacings.size());
-    stop_now_ = false;
-    fraction_ = 0.f;
-    state_.state = QSES_JOB_RUNNING;
-    state_.frame = request.settings.frame;
-    state_.levels_finished = 0;
-    state_.level_count = level_count_;
-    state_.status = QSES_OK;
-    state_.message[0] = '\0';
+    announce(request);
     lock.unlock();
     qses_status status = QSES_OK;
     std::string message;
@@ -101,34 +103,31 @@ void SurfaceJob::compute(SurfaceRequest request) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     // No worker runs and only this thread can begin one: it is safe to compute here.
-    cancelled_ = superseded_ = false;
-    stop_now_ = false;
-    levels_finished_ = 0;
-    level_count_ = static_cast<uint32_t>(request.spacings.size());
-    fraction_ = 0.f;
-    state_.state = QSES_JOB_RUNNING;
-    state_.frame = state_.frame_requested = request.settings.frame;
-    state_.levels_finished = 0;
-    state_.level_count = level_count_;
+    announce(request);
+    state_.frame_requested = request.settings.frame;
     running_ = true;
   }
-  struct Done {
-    SurfaceJob &job;
-    ~Done() {
-      const std::lock_guard<std::mutex> lock(job.mutex_);
-      job.running_ = false;
-      job.writing_ = kNoSlot;
-      job.state_.state = job.levels_finished_ == job.level_count_ ? QSES_JOB_FINISHED : QSES_JOB_CANCELLED;
-    }
+  const auto end = [&](qses_job_state state, qses_status status, const char *message) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    running_ = false;
+    writing_ = kNoSlot;
+    state_.state = state;
+    state_.status = status;
+    std::snprintf(state_.message, sizeof state_.message, "%s", message);
   };
-  {
-    const Done done{*this};
-    try {
-      run(request);
-    } catch (const Cancelled &) {
-      throw Error(QSES_CANCELLED, "the computation was cancelled");
-    }
+  try {
+    run(request);
+  } catch (const Cancelled &) {
+    end(QSES_JOB_CANCELLED, QSES_OK, "");
+    throw Error(QSES_CANCELLED, "the computation was cancelled");
+  } catch (const Error &e) {
+    end(QSES_JOB_FAILED, e.status(), e.what());
+    throw;
+  } catch (...) {
+    end(QSES_JOB_FAILED, QSES_OUT_OF_MEMORY, "the machine refused memory");
+    throw;
   }
+  end(QSES_JOB_FINISHED, QSES_OK, "");
   const std::lock_guard<std::mutex> lock(mutex_);
   held_ = ready_;
   ready_ = {};

@@ -59,6 +59,8 @@ class SurfaceJob : private LevelSink {
   const std::atomic<bool> &stop_flag() const override { return stop_now_; }
   void advance(double fraction) override;
 
+  // The state of a job that is about to run. The mutex is held.
+  void announce(const SurfaceRequest &request);
   void work();
   void run(const SurfaceRequest &request);
 
