@@ -2,34 +2,13 @@
 // Facts about a mesh that the report states, found from its triangles alone.
 #include "cli/mesh_check.h"
 
+#include "io/disjoint_sets.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 namespace quickses::cli {
-namespace {
-
-class UnionFind {
- public:
-  explicit UnionFind(uint32_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
-
-  uint32_t find(uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-
-  void join(uint32_t a, uint32_t b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<uint32_t> parent_;
-};
-
-}  // namespace
-
 bool is_closed(const qses_mesh &mesh) {
   const size_t edge_count = size_t(mesh.triangle_count) * 3;
   for (size_t i = 0; i < edge_count; ++i)
@@ -58,7 +37,7 @@ bool is_closed(const qses_mesh &mesh) {
 }
 
 std::vector<Component> find_components(const qses_mesh &mesh) {
-  UnionFind pieces(mesh.vertex_count);
+  io::DisjointSets pieces(mesh.vertex_count);
   for (size_t t = 0; t < mesh.triangle_count; ++t) {
     const uint32_t *corner = mesh.indices + 3 * t;
     pieces.join(corner[0], corner[1]);

@@ -9,6 +9,7 @@
 #include <gemmi/elem.hpp>
 #include <numeric>
 
+#include "io/disjoint_sets.h"
 #include "io/error.h"
 
 namespace quickses::io {
@@ -164,28 +165,6 @@ class BondFinder {
   std::vector<Atom> atoms_;     // sorted by cell
   std::vector<size_t> starts_;  // of the cells in atoms_, and the end
   std::vector<Bond> bonds_;
-};
-
-class DisjointSets {
- public:
-  explicit DisjointSets(size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
-
-  uint32_t find(uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-
-  // False if they were joined already.
-  bool join(uint32_t a, uint32_t b) {
-    a = find(a);
-    b = find(b);
-    if (a == b) return false;
-    parent_[std::max(a, b)] = std::min(a, b);
-    return true;
-  }
-
- private:
-  std::vector<uint32_t> parent_;
 };
 
 }  // namespace

@@ -92,15 +92,13 @@ int start_vertices(const FeatureView &f, const BrickSet &bricks, const MeshLayou
           start = {low.x + (axis == 0 ? along : 0.f), low.y + (axis == 1 ? along : 0.f),
                    low.z + (axis == 2 ? along : 0.f)};
           if (starts.relax) {
-            const int dx = axis == 0 ? 0 : 1, dy = axis == 1 ? 0 : 1, dz = axis == 2 ? 0 : 1;
-            // The four cells around the edge: lower, then upper along the second and third axis.
-            const int sx = axis == 0 ? 0 : 1, sy = axis == 0 ? 1 : 0;  // second axis
-            const uint64_t ring = starts.ring[cell_case(rows, x, y, z)][4 * axis] +
-                                  starts.ring[cell_case(rows, x - sx, y - sy, z)][4 * axis + 1] +
-                                  starts.ring[cell_case(rows, x - dx + sx, y - dy + sy, z - dz)][4 * axis + 2] +
-                                  starts.ring[cell_case(rows, x - dx, y - dy, z - dz)][4 * axis + 3];
+            const auto case_near = [&](int second, int third) {
+              return axis == 0   ? cell_case(rows, x, y + second, z + third)
+                     : axis == 1 ? cell_case(rows, x + second, y, z + third)
+                                 : cell_case(rows, x + second, y + third, z);
+            };
             float mx, my, mz;
-            ring_displacement(ring, &mx, &my, &mz);
+            ring_displacement(edge_ring_of_cells(case_near, axis, starts.ring), &mx, &my, &mz);
             start = start + Vec3<float>(mx, my, mz) * h;
           }
         }
