@@ -91,16 +91,15 @@ struct ComponentSums {
 constexpr double kComponentUnits = 1073741824.0;
 
 struct AddTriangle {
-  const float *positions;
-  const uint32_t *indices;
+  MeshView mesh;
   const uint32_t *labels, *number_of_root;
   double inverse_spacing;
   ComponentSums *sums;
   QSES_HOST_DEVICE void operator()(size_t triangle) const {
-    const uint32_t *t = indices + 3 * triangle;
-    const size_t root = labels[t[0]];
-    const double origin[3] = {positions[3 * root], positions[3 * root + 1], positions[3 * root + 2]};
-    const DoubleTriangle d = load_triangle(positions, t, origin);
+    const uint32_t *t = mesh.triangle(triangle), root = labels[t[0]];
+    const float *const tip = mesh.position(root);
+    const double origin[3] = {tip[0], tip[1], tip[2]};
+    const DoubleTriangle d = load_triangle(mesh, t, origin);
     const double area = triangle_area(d) * inverse_spacing * inverse_spacing;
     const double volume = triangle_volume(d) * inverse_spacing * inverse_spacing * inverse_spacing;
     const double high = floor(volume);
@@ -129,8 +128,7 @@ std::vector<Component> find_components(Executor &executor, const MeshView &mesh,
   Span<ComponentSums> sums = executor.template allocate<ComponentSums>(count);
   executor.fill(sums, 0);
   const double h = static_cast<double>(spacing);
-  executor.for_each(counts.triangles,
-                    AddTriangle{mesh.positions, mesh.indices, labels.data, number_of_root.data, 1.0 / h, sums.data});
+  executor.for_each(counts.triangles, AddTriangle{mesh, labels.data, number_of_root.data, 1.0 / h, sums.data});
   std::vector<ComponentSums> found(count);
   executor.download(found.data(), sums.data, count);
   executor.wait();

@@ -71,7 +71,7 @@ void emit_brick_triangles(const BrickSet &bricks, const MeshLayout &layout, uint
     if (k >= 0) number_vertices(layout, static_cast<size_t>(k), towards, &numbers);
   }
   const int second = mesh.reversed ? 2 : 1, third = mesh.reversed ? 1 : 2;
-  uint32_t *out = mesh.indices + 3 * begin;
+  uint32_t *out = mesh.triangle(begin);
   for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
     const LeafWords corners = cell_corners(leaf_words(bricks, layout.signs, static_cast<int>(brick), leaf));
     for (uint64_t mixed = mixed_cells(corners); mixed; mixed &= mixed - 1) {

@@ -251,7 +251,7 @@ void find_owners(const BrickCandidates &c, int n, Work *w) {
   }
 }
 
-void write_vertices(const FeatureView &f, const Lattice &lattice, const MeshView &mesh, size_t base, int n,
+void write_vertices(const FeatureView &f, const Lattice &lattice, const MeshView &mesh, uint32_t base, int n,
                     const Work &w) {
   for (int v = 0; v < n; ++v) {
     const Vec3<float> place(w.place.x[v], w.place.y[v], w.place.z[v]);
@@ -259,12 +259,11 @@ void write_vertices(const FeatureView &f, const Lattice &lattice, const MeshView
     const uint32_t owner = static_cast<uint32_t>(w.owner[v]);
     if (f.parameters.depth == 0.f) normal = sphere_normal(f.atoms.items[owner], place);
     const glm::vec3 p = lattice.to_caller(place);
-    float *out = mesh.positions + 3 * (base + static_cast<size_t>(v));
-    out[0] = p.x, out[1] = p.y, out[2] = p.z;
-    out = mesh.normals + 3 * (base + static_cast<size_t>(v));
-    out[0] = normal.x, out[1] = normal.y, out[2] = normal.z;
-    mesh.owners[base + static_cast<size_t>(v)] = f.atoms.order[owner];
-    if (mesh.patches) mesh.patches[base + static_cast<size_t>(v)] = w.patch[v];
+    const uint32_t vertex = base + static_cast<uint32_t>(v);
+    store_vec3(mesh.position(vertex), Vec3<float>(p));
+    store_vec3(mesh.normal(vertex), normal);
+    mesh.owner(vertex) = f.atoms.order[owner];
+    if (mesh.patches) mesh.patch(vertex) = w.patch[v];
   }
 }
 
@@ -272,7 +271,7 @@ void write_vertices(const FeatureView &f, const Lattice &lattice, const MeshView
 
 BrickNeeds emit_brick_vertices(const FeatureView &f, const BrickSet &bricks, const MeshLayout &layout, uint32_t brick,
                                const VertexStarts &starts, const BrickScratch &scratch, const MeshView &mesh) {
-  const size_t base = layout.vertex_base[brick];
+  const uint32_t base = layout.vertex_base[brick];
   const int n = static_cast<int>(layout.vertex_base[brick + 1] - layout.vertex_base[brick]);
   if (n == 0) return {0, 0};
   const Lattice &lattice = bricks.lattice;
@@ -285,7 +284,7 @@ BrickNeeds emit_brick_vertices(const FeatureView &f, const BrickSet &bricks, con
   Work w;
   if (starts.moved) {
     for (int v = 0; v < n; ++v) {
-      const glm::vec3 p = starts.moved[base + static_cast<size_t>(v)];
+      const glm::vec3 p = starts.moved[base + static_cast<uint32_t>(v)];
       w.place.x[v] = p.x, w.place.y[v] = p.y, w.place.z[v] = p.z;
     }
   } else {

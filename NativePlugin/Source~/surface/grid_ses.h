@@ -268,18 +268,13 @@ struct EmitGridVertices {
 
  private:
   QSES_FN void write_vertex(uint32_t vertex, const Vec3<float> &p) const {
-    const size_t v = 3 * static_cast<size_t>(vertex);
     const glm::vec3 position = field.bricks.lattice.to_caller(p);
     // The inner end of the edge is in an inflated ball, and at most a spacing away.
     const uint32_t atom = nearest_grid_atom(field, p, 1.01f * field.parameters.spacing + 1e-4f);
     const Vec3<float> normal = sphere_normal(field.atoms.items[atom], p);
-    mesh.positions[v] = position.x;
-    mesh.positions[v + 1] = position.y;
-    mesh.positions[v + 2] = position.z;
-    mesh.normals[v] = normal.x;
-    mesh.normals[v + 1] = normal.y;
-    mesh.normals[v + 2] = normal.z;
-    mesh.owners[vertex] = field.atoms.order[atom];
+    store_vec3(mesh.position(vertex), Vec3<float>(position));
+    store_vec3(mesh.normal(vertex), normal);
+    mesh.owner(vertex) = field.atoms.order[atom];
   }
 };
 

@@ -5,6 +5,7 @@
 
 #include "surface/bricks.h"
 #include "surface/marching_cubes_table.h"
+#include "surface/mesh_view.h"
 
 namespace quickses {
 
@@ -18,15 +19,6 @@ struct MeshLayout {
   uint32_t *vertex_base;    // [brick + 1]: vertices before the brick
   uint32_t *triangle_base;  // [brick + 1]
   uint64_t vertex_total;    // of all bricks
-};
-
-struct MeshView {
-  float *positions;   // V x 3, caller's coordinates
-  float *normals;     // V x 3
-  uint32_t *owners;   // V, caller's atom numbers
-  uint8_t *patches;   // V, or nullptr
-  uint32_t *indices;  // T x 3
-  bool reversed;      // winding
 };
 
 // Leaf words around a leaf: itself and its neighbours towards larger x, y, z (bit 0, 1, 2 of the place).

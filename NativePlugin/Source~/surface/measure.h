@@ -41,7 +41,7 @@ struct BoundsScratch {
 
 struct FindBounds {
   static constexpr size_t kChunk = 8192;
-  const float *positions;
+  MeshView mesh;
   size_t vertices;
   uint32_t *least;
   template <class Team>
@@ -52,7 +52,7 @@ struct FindBounds {
     uint32_t own[6] = {~uint32_t(0), ~uint32_t(0), ~uint32_t(0), ~uint32_t(0), ~uint32_t(0), ~uint32_t(0)};
     for (size_t v = begin + static_cast<size_t>(team.rank()); v < end; v += static_cast<size_t>(team.size()))
       for (int d = 0; d < 3; ++d) {
-        const float x = positions[3 * v + static_cast<size_t>(d)];
+        const float x = mesh.position(static_cast<uint32_t>(v))[d];
         const uint32_t low = ordered_bits(x), high = ordered_bits(-x);
         own[d] = low < own[d] ? low : own[d];
         own[d + 3] = high < own[d + 3] ? high : own[d + 3];
@@ -73,7 +73,7 @@ Bounds find_bounds(Executor &executor, const MeshView &mesh, const MeshCounts &c
   Span<uint32_t> least = executor.template allocate<uint32_t>(6);
   executor.fill(least, 0xff);
   executor.template for_each_brick<BoundsScratch>((counts.vertices + FindBounds::kChunk - 1) / FindBounds::kChunk,
-                                                  FindBounds{mesh.positions, counts.vertices, least.data});
+                                                  FindBounds{mesh, counts.vertices, least.data});
   uint32_t found[6];
   executor.download(found, least.data, 6);
   executor.wait();
@@ -92,13 +92,13 @@ struct DoubleTriangle {
 };
 
 // Coordinates are taken from an origin near the mesh, so that the volume keeps its digits far away from zero.
-QSES_FN DoubleTriangle load_triangle(const float *positions, const uint32_t *t, const double *origin) {
+QSES_FN DoubleTriangle load_triangle(const MeshView &mesh, const uint32_t *t, const double *origin) {
   DoubleTriangle d;
   double v[3];
   for (int k = 0; k < 3; ++k) {
-    d.a[k] = static_cast<double>(positions[3 * size_t(t[0]) + k]) - origin[k];
-    d.u[k] = static_cast<double>(positions[3 * size_t(t[1]) + k]) - origin[k] - d.a[k];
-    v[k] = static_cast<double>(positions[3 * size_t(t[2]) + k]) - origin[k] - d.a[k];
+    d.a[k] = static_cast<double>(mesh.position(t[0])[k]) - origin[k];
+    d.u[k] = static_cast<double>(mesh.position(t[1])[k]) - origin[k] - d.a[k];
+    v[k] = static_cast<double>(mesh.position(t[2])[k]) - origin[k] - d.a[k];
   }
   d.n[0] = d.u[1] * v[2] - d.u[2] * v[1];
   d.n[1] = d.u[2] * v[0] - d.u[0] * v[2];
@@ -115,11 +115,10 @@ QSES_FN double triangle_volume(const DoubleTriangle &d) {
 
 // Area and volume of one triangle.
 struct TriangleMeasures {
-  const float *positions;
-  const uint32_t *indices;
+  MeshView mesh;
   double origin[3];
   QSES_HOST_DEVICE SumPair operator()(size_t t) const {
-    const DoubleTriangle d = load_triangle(positions, indices + 3 * t, origin);
+    const DoubleTriangle d = load_triangle(mesh, mesh.triangle(t), origin);
     SumPair pair;
     pair.first = triangle_area(d);
     pair.second = triangle_volume(d);
@@ -135,8 +134,7 @@ Measures measure(Executor &executor, const MeshView &mesh, const MeshCounts &cou
   double c[3];
   for (int d = 0; d < 3; ++d)
     c[d] = 0.5 * (static_cast<double>(m.bounds.min[d]) + static_cast<double>(m.bounds.max[d]));
-  const SumPair sums = executor.template reduce<SumPair>(
-      counts.triangles, TriangleMeasures{mesh.positions, mesh.indices, {c[0], c[1], c[2]}});
+  const SumPair sums = executor.template reduce<SumPair>(counts.triangles, TriangleMeasures{mesh, {c[0], c[1], c[2]}});
   m.area = sums.first;
   m.volume = mesh.reversed ? -sums.second : sums.second;
   return m;

@@ -29,15 +29,10 @@ __device__ __forceinline__ void finish_vertex(const VertexJob &job, uint32_t k, 
   const uint32_t vertex = job.first + k;
   if (f.parameters.depth == 0.f) s.normal = sphere_normal(load(f.atoms.items + owner), s.position);
   const glm::vec3 position = job.bricks.lattice.to_caller(s.position);
-  float *const out = job.mesh.positions + size_t(3) * vertex, *const normal = job.mesh.normals + size_t(3) * vertex;
-  out[0] = position.x;
-  out[1] = position.y;
-  out[2] = position.z;
-  normal[0] = s.normal.x;
-  normal[1] = s.normal.y;
-  normal[2] = s.normal.z;
-  job.mesh.owners[vertex] = f.atoms.order[owner];
-  if (job.mesh.patches) job.mesh.patches[vertex] = static_cast<uint8_t>(s.patch);
+  store_vec3(job.mesh.position(vertex), Vec3<float>(position));
+  store_vec3(job.mesh.normal(vertex), s.normal);
+  job.mesh.owner(vertex) = f.atoms.order[owner];
+  if (job.mesh.patches) job.mesh.patch(vertex) = static_cast<uint8_t>(s.patch);
 }
 
 static __global__ __launch_bounds__(kVertexThreads) void project_on_atoms_kernel(VertexJob job) {
@@ -216,7 +211,7 @@ static __global__ __launch_bounds__(kTriangleWarps *kWarp) void emit_triangles_k
           id[k] = vertex_number(scratch.first[place27][axis], scratch.crossing[place27][axis],
                                 leaf_bit(ex & 3, ey & 3, ez & 3));
         }
-        uint32_t *out = job.mesh.indices + size_t(3) * (base + start + r);
+        uint32_t *out = job.mesh.triangle(size_t(base) + start + r);
         out[0] = id[0];
         out[1] = job.mesh.reversed ? id[2] : id[1];
         out[2] = job.mesh.reversed ? id[1] : id[2];

@@ -36,14 +36,6 @@ QSES_FN Vec3<float> ring_vector(const RingSum &sum, float unit) {
   return {static_cast<float>(sum.x) * k, static_cast<float>(sum.y) * k, static_cast<float>(sum.z) * k};
 }
 
-QSES_FN Vec3<float> load_vec3(const float *values, size_t i) {
-  return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
-}
-QSES_FN void store_vec3(float *values, size_t i, const Vec3<float> &v) {
-  values[3 * i] = v.x;
-  values[3 * i + 1] = v.y;
-  values[3 * i + 2] = v.z;
-}
 QSES_FN Vec3<float> cross(const Vec3<float> &a, const Vec3<float> &b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
@@ -52,13 +44,13 @@ QSES_FN Vec3<float> cross(const Vec3<float> &a, const Vec3<float> &b) {
 // neighbour is met twice, once in each triangle of their edge, so the mean of the ways is the plain mean over the
 // neighbours.
 struct AddNeighborOffsets {
-  const float *positions;
-  const uint32_t *indices;
+  MeshView mesh;
   float inverse_spacing;
   RingSum *sums;
   QSES_HOST_DEVICE void operator()(size_t triangle) const {
-    const uint32_t *t = indices + 3 * triangle;
-    const Vec3<float> a = load_vec3(positions, t[0]), b = load_vec3(positions, t[1]), c = load_vec3(positions, t[2]);
+    const uint32_t *t = mesh.triangle(triangle);
+    const Vec3<float> a = load_vec3(mesh.position(t[0])), b = load_vec3(mesh.position(t[1])),
+                      c = load_vec3(mesh.position(t[2]));
     const Vec3<float> ab = b - a, ac = c - a, bc = c - b;
     add(t[0], ab, ac);
     add(t[1], bc, ab * -1.f);
@@ -91,9 +83,10 @@ Span<RingSum> allocate_ring_sums(Executor &executor, const MeshCounts &counts) {
 struct MoveToMean {
   const RingSum *sums;
   float spacing;
-  float *positions;
+  MeshView mesh;
   QSES_HOST_DEVICE void operator()(size_t v) const {
-    store_vec3(positions, v, load_vec3(positions, v) + mean_offset(sums[v], spacing));
+    float *const position = mesh.position(static_cast<uint32_t>(v));
+    store_vec3(position, load_vec3(position) + mean_offset(sums[v], spacing));
   }
 };
 
@@ -108,8 +101,8 @@ void smooth_laplacian(Executor &executor, const MeshView &mesh, const MeshCounts
   Span<RingSum> sums = allocate_ring_sums(executor, counts);
   for (uint32_t k = 0; k < steps; ++k) {
     executor.fill(sums, 0);
-    executor.for_each(counts.triangles, AddNeighborOffsets{mesh.positions, mesh.indices, 1.f / spacing, sums.data});
-    executor.for_each(counts.vertices, MoveToMean{sums.data, spacing, mesh.positions});
+    executor.for_each(counts.triangles, AddNeighborOffsets{mesh, 1.f / spacing, sums.data});
+    executor.for_each(counts.vertices, MoveToMean{sums.data, spacing, mesh});
   }
   executor.arena().rewind(mark);
 }
@@ -128,7 +121,7 @@ struct TangentialStarts {
   const uint64_t *linear;
   const uint32_t *vertex_base;
   const RingSum *sums;
-  const float *positions, *normals;
+  MeshView mesh;
   glm::vec3 *starts;
 
   template <class Team>
@@ -139,10 +132,10 @@ struct TangentialStarts {
     const uint32_t end = vertex_base[brick + 1];
     for (uint32_t v = vertex_base[brick] + static_cast<uint32_t>(team.rank()); v < end;
          v += static_cast<uint32_t>(team.size())) {
-      const Vec3<float> n = load_vec3(normals, v);
-      const Vec3<float> x = {centred(positions[3 * size_t(v)], lattice.center_x),
-                             centred(positions[3 * size_t(v) + 1], lattice.center_y),
-                             centred(positions[3 * size_t(v) + 2], lattice.center_z)};
+      const Vec3<float> n = load_vec3(mesh.normal(v));
+      const float *const position = mesh.position(v);
+      const Vec3<float> x = {centred(position[0], lattice.center_x), centred(position[1], lattice.center_y),
+                             centred(position[2], lattice.center_z)};
       const Vec3<float> d = mean_offset(sums[v], h);
       Vec3<float> step = (d - n * dot(d, n)) * kRelaxationWeight;
       const float length2 = length_squared(step), longest = kMaxTangentialStep * h;
@@ -169,37 +162,35 @@ void tangential_starts(Executor &executor, const BrickSet &bricks, const MeshLay
   const float spacing = bricks.lattice.spacing;
   Span<RingSum> sums = allocate_ring_sums(executor, counts);
   executor.fill(sums, 0);
-  executor.for_each(counts.triangles, AddNeighborOffsets{mesh.positions, mesh.indices, 1.f / spacing, sums.data});
+  executor.for_each(counts.triangles, AddNeighborOffsets{mesh, 1.f / spacing, sums.data});
   executor.template for_each_brick<NoScratch>(
-      bricks.count, TangentialStarts{bricks.lattice, bricks.linear, layout.vertex_base, sums.data, mesh.positions,
-                                     mesh.normals, starts});
+      bricks.count, TangentialStarts{bricks.lattice, bricks.linear, layout.vertex_base, sums.data, mesh, starts});
   executor.arena().rewind(mark);
 }
 
 // ---- normals ---------------------------------------------------------------------------------------------------
 
 struct AddTriangleNormals {
-  const float *positions;
-  const uint32_t *indices;
+  MeshView mesh;
   float scale;  // 1 / spacing², negative for reversed triangles
   RingSum *sums;
   QSES_HOST_DEVICE void operator()(size_t triangle) const {
-    const uint32_t *t = indices + 3 * triangle;
-    const Vec3<float> a = load_vec3(positions, t[0]);
-    const Vec3<float> n = cross(load_vec3(positions, t[1]) - a, load_vec3(positions, t[2]) - a);
+    const uint32_t *t = mesh.triangle(triangle);
+    const Vec3<float> a = load_vec3(mesh.position(t[0]));
+    const Vec3<float> n = cross(load_vec3(mesh.position(t[1])) - a, load_vec3(mesh.position(t[2])) - a);
     for (int k = 0; k < 3; ++k) add_to_ring(sums + t[k], n, scale);
   }
 };
 
 struct NormalizeSums {
   const RingSum *sums;
-  float *normals;
+  MeshView mesh;
   QSES_HOST_DEVICE void operator()(size_t v) const {
     const Vec3<float> n = ring_vector(sums[v], 1.f);
     const float length2 = length_squared(n);
     // Triangles of no area, around vertices that coincide, say nothing: what stands there stays.
     constexpr float kLeast = 8.f / kRingUnits;
-    if (length2 >= kLeast * kLeast) store_vec3(normals, v, n * reciprocal_root(length2));
+    if (length2 >= kLeast * kLeast) store_vec3(mesh.normal(static_cast<uint32_t>(v)), n * reciprocal_root(length2));
   }
 };
 
@@ -212,8 +203,8 @@ void compute_normals(Executor &executor, const MeshView &mesh, const MeshCounts 
   Span<RingSum> sums = allocate_ring_sums(executor, counts);
   executor.fill(sums, 0);
   const float scale = (mesh.reversed ? -1.f : 1.f) / (spacing * spacing);
-  executor.for_each(counts.triangles, AddTriangleNormals{mesh.positions, mesh.indices, scale, sums.data});
-  executor.for_each(counts.vertices, NormalizeSums{sums.data, mesh.normals});
+  executor.for_each(counts.triangles, AddTriangleNormals{mesh, scale, sums.data});
+  executor.for_each(counts.vertices, NormalizeSums{sums.data, mesh});
   executor.arena().rewind(mark);
 }
 

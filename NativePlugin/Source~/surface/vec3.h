@@ -37,6 +37,12 @@ template <class T>
 QSES_FN T length_squared(const Vec3<T> &a) {
   return dot(a, a);
 }
+QSES_FN Vec3<float> load_vec3(const float *p) { return {p[0], p[1], p[2]}; }
+QSES_FN void store_vec3(float *p, const Vec3<float> &v) {
+  p[0] = v.x;
+  p[1] = v.y;
+  p[2] = v.z;
+}
 QSES_FN glm::vec3 to_glm(const Vec3<float> &v) { return glm::vec3(v.x, v.y, v.z); }
 
 }  // namespace quickses

@@ -59,14 +59,10 @@ __device__ __forceinline__ RowCandidates vertex_candidates(const VertexJob &job,
 }
 
 __device__ __forceinline__ Vec3<float> stored_start(const VertexJob &job, uint32_t vertex) {
-  const float *p = job.mesh.positions + size_t(3) * vertex;
-  return {p[0], p[1], p[2]};
+  return load_vec3(job.mesh.position(vertex));
 }
 __device__ __forceinline__ void store_start(const VertexJob &job, uint32_t vertex, const Vec3<float> &x) {
-  float *p = job.mesh.positions + size_t(3) * vertex;
-  p[0] = x.x;
-  p[1] = x.y;
-  p[2] = x.z;
+  store_vec3(job.mesh.position(vertex), x);
 }
 
 // A leaf and the edges it owns vertices on.
