@@ -100,6 +100,14 @@ typedef enum qses_winding {
   QSES_WINDING_REVERSED = 1 /* the opposite, for callers who mirror an axis afterwards */
 } qses_winding;
 
+/* How the vertices of a mesh lie in memory. */
+typedef enum qses_vertex_layout {
+  QSES_VERTICES_SEPARATE = 0,   /* one tightly packed array per attribute */
+  QSES_VERTICES_INTERLEAVED = 1 /* the attributes of a vertex behind each other, as a graphics API takes them in one
+                                   copy: float position[3], float normal[3], uint8_t color[4] and, if asked for,
+                                   float texcoord[2]; 28 or 36 bytes per vertex */
+} qses_vertex_layout;
+
 /* What kind of surface a vertex lies on (Connolly's three). */
 typedef enum qses_patch {
   QSES_PATCH_CONTACT = 0,  /* convex: on one atom */
@@ -141,9 +149,10 @@ typedef struct qses_context_options {
   qses_backend backend;   /* default AUTO */
   int32_t device;         /* CUDA device ordinal; default 0 */
   uint32_t threads;       /* CPU threads; 0 (default) = one per hardware thread */
-  uint64_t memory_budget; /* bytes this context may use for its work, on the device (CUDA) or in host memory (CPU);
-                             0 (default) = what is free at the time. The mesh itself and, on the CPU, some
-                             hundred KB of scratch per thread come on top */
+  uint64_t memory_budget; /* bytes; 0 (default): what is free at the time. With CUDA it covers everything on the device:
+                             where the mesh does not fit, it leaves the device piece by piece. On the CPU it covers
+                             the work; the mesh that is handed out comes on top (qses_report.mesh_bytes). The mesh is
+                             the same byte for byte; only the time grows. qses_estimate tells what is needed */
 } qses_context_options;
 
 /* Fills in the defaults. Always use it: later versions append fields. NULL is ignored. */
@@ -185,6 +194,26 @@ QSES_API qses_status qses_set_positions(qses_context *context, const float *posi
 QSES_API qses_status qses_set_positions_indexed(qses_context *context, const float *positions, size_t stride,
                                                 size_t position_count, const uint32_t *indices, size_t count);
 
+/* ---- appearance --------------------------------------------------------------------------------------------------
+ * Copied before the calls return. They hold for the computations begun afterwards, until they are set again or
+ * qses_set_atoms changes the number of atoms, which takes them back. count must be the number of atoms.
+ * Errors of all three: INVALID_ARGUMENT, NO_RESULT (qses_set_atoms has not been called), OUT_OF_MEMORY. */
+
+/* Which atoms are shown: 1 or 0 per atom; visible may be NULL: all (default). The surface is that of all atoms; triangles
+ * with a vertex whose owner is hidden are dropped, and vertices that no triangle uses, so the mesh is open along the
+ * border of what is hidden. Owners keep the caller's numbers, vertices and triangles their order. Area and volume are
+ * those of the whole surface. The whole mesh needs memory besides the one handed out. */
+QSES_API qses_status qses_set_visible(qses_context *context, const uint8_t *visible, size_t count);
+
+/* Colours per atom, red, green, blue, alpha, 8 bits each, which go to the vertices the atom owns. NULL: none (default);
+ * QSES_VERTICES_INTERLEAVED then has white. */
+QSES_API qses_status qses_set_colors(qses_context *context, const uint8_t *rgba, size_t count);
+
+/* Two numbers per atom for the texture coordinates of its vertices (settings.texcoords), for instance values to be
+ * coloured by a shader. NULL: 1, 0 (default), which shaders with ambient occlusion in the first one take for none. Not
+ * checked. */
+QSES_API qses_status qses_set_texcoords(qses_context *context, const float *uv, size_t count);
+
 /* ---- computing ------------------------------------------------------------------------------------------------- */
 
 #define QSES_MAX_LEVELS 8
@@ -210,6 +239,8 @@ typedef struct qses_settings {
                            Default 2, 1. The lattices of all levels are anchored to the global origin if the spacings
                            are whole multiples of each other (else only the finest is) */
   uint32_t level_count; /* of levels; default 2 */
+  qses_vertex_layout vertex_layout; /* default SEPARATE */
+  uint32_t texcoords;               /* 1: vertices have texture coordinates (see qses_set_texcoords); default 0 */
 } qses_settings;
 
 /* Fills in the defaults. Always use it: later versions append fields. NULL is ignored. */
@@ -224,6 +255,11 @@ typedef struct qses_mesh {
   uint32_t frame;          /* as in the settings */
   const float *positions;  /* V x 3, Å */
   const float *normals;    /* V x 3, unit length, outward; on a crease, that of one of its sides */
+  const uint8_t *colors;   /* V x 4, or NULL if there are none */
+  const float *texcoords;  /* V x 2, or NULL if not asked for */
+  uint32_t vertex_bytes;   /* INTERLEAVED: bytes from one vertex to the next in the four arrays above, which begin with
+                              positions, in V * vertex_bytes bytes of memory. SEPARATE: 0, each is tightly packed */
+  uint32_t reserved;
   const uint32_t *owners;  /* V, the atom whose van der Waals surface is nearest to the vertex */
   const uint8_t *patches;  /* V of qses_patch, or NULL */
   const uint32_t *indices; /* T x 3 vertex numbers */
@@ -266,6 +302,8 @@ typedef struct qses_report {
   uint64_t host_bytes_peak; /* host memory of the context, the mesh included */
   uint64_t brick_count;     /* bricks of 8x8x8 lattice points that were evaluated */
   uint64_t slice_count;
+  uint32_t hidden_vertices; /* dropped since their atoms are hidden (qses_set_visible); else 0 */
+  uint32_t hidden_triangles;
   qses_stage_time stages[QSES_MAX_STAGES]; /* stage_count of them, in order; filled if asked for by
                                               qses_enable_stage_times */
 } qses_report;
@@ -275,6 +313,27 @@ QSES_API void qses_report_init(qses_report *report);
 
 /* Report of the mesh that the last qses_compute or qses_collect gave. Errors: INVALID_ARGUMENT, NO_RESULT. */
 QSES_API qses_status qses_get_report(const qses_context *context, qses_report *report);
+
+/* What a computation would give and need. */
+typedef struct qses_size_estimate {
+  uint32_t struct_size; /* set by qses_size_estimate_init */
+  int32_t fits;         /* 1 if it can be done within the budget of the context; else 0 */
+  uint64_t vertices, triangles;
+  uint64_t mesh_bytes;    /* of the mesh that is handed out, in host memory */
+  uint64_t work_bytes;    /* what qses_report.work_bytes_peak would be: on the device with CUDA, else in host memory */
+  uint64_t smallest_budget; /* the least qses_context_options.memory_budget that would do, with some reserve */
+} qses_size_estimate;
+
+/* Empty estimate with struct_size set. NULL is ignored. */
+QSES_API void qses_size_estimate_init(qses_size_estimate *estimate);
+
+/* Predicts the size of the mesh of settings.spacing (not of coarser levels), and the memory for it, without making it:
+ * the features of the atoms are computed, and signs on lattices that are coarse enough to be cheap. All
+ * numbers are within 25 % of the truth as a rule, and rarely more than 10 % below. Waits for a running job. The last mesh
+ * stays valid. settings may be NULL (defaults). Errors: as of qses_compute; also OUT_OF_MEMORY if the budget does not
+ * even suffice for the estimate (the message names one that would do). */
+QSES_API qses_status qses_estimate(qses_context *context, const qses_settings *settings,
+                                   qses_size_estimate *estimate);
 
 /* Switches the timing of the single stages on (1) or off (0, the default). With CUDA it costs some tens of microseconds
  * per surface. Errors: INVALID_ARGUMENT. */
