@@ -28,6 +28,7 @@ struct ExactRun {
   glm::vec3 low{}, high{};
   NeighborGridView atoms{};
   qses_report report{};
+  WorkFacts work{}, *facts = &work;
 
   // Up to the neighbour grid.
   ExactRun(const surface_fixture::Atoms &given, const qses_settings &s, unsigned threads = 2,
@@ -71,9 +72,23 @@ struct ExactRun {
   mesh_checks::Mesh mesh() {
     const MarchingCubesTable &table = marching_cubes_table();
     const TableView view{table.triangle_count, table.edges, table.ring};
-    Run<CpuExecutor, CpuStageTimer> run{executor,   timer,   memory, progress, view,  settings,
-                                        parameters, lattice, low,    high,     atoms, find_features(*this),
-                                        &report};
+    Run<CpuExecutor, CpuStageTimer> run{executor,
+                                        timer,
+                                        memory,
+                                        progress,
+                                        view,
+                                        settings,
+                                        parameters,
+                                        lattice,
+                                        low,
+                                        high,
+                                        atoms,
+                                        find_features(*this),
+                                        {},
+                                        shape_of(settings, false),
+                                        MeshPurpose::kDelivered,
+                                        &report,
+                                        facts};
     const MeshMemoryView built = build_exact_surface(run);
     mesh_checks::Mesh m;
     m.positions.assign(built.view.positions, built.view.positions + 3 * built.vertices);

@@ -20,6 +20,12 @@ namespace grid_fixture {
 
 using namespace quickses;
 
+// Room for the steps that sum around vertices.
+template <class Executor>
+Span<RingSum> ring_sums(Executor &executor, const MeshCounts &counts) {
+  return executor.template allocate<RingSum>(counts.vertices);
+}
+
 struct Atom {
   double x, y, z, r;
 };

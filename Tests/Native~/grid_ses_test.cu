@@ -97,20 +97,22 @@ void compare(const std::vector<Atom> &atoms, float probe, float spacing) {
 
   executor.upload(view.positions, expected.positions.data(), values);
   executor.upload(view.normals, expected.normals.data(), values);
-  smooth_laplacian(executor, view, counts, spacing, 3);
-  smooth_laplacian(serial.executor, serial.view(expected), serial.counts, spacing, 3);
+  smooth_laplacian(executor, view, counts, spacing, 3, ring_sums(executor, counts));
+  smooth_laplacian(serial.executor, serial.view(expected), serial.counts, spacing, 3,
+                   ring_sums(serial.executor, serial.counts));
   expect_near(to_host(executor, view.positions, values), expected.positions, 1e-5f, "smoothed position");
   executor.upload(view.positions, expected.positions.data(), values);
-  compute_normals(executor, view, counts, spacing);
-  compute_normals(serial.executor, serial.view(expected), serial.counts, spacing);
+  compute_normals(executor, view, counts, spacing, ring_sums(executor, counts));
+  compute_normals(serial.executor, serial.view(expected), serial.counts, spacing,
+                  ring_sums(serial.executor, serial.counts));
   expect_near(to_host(executor, view.normals, values), expected.normals, 1e-3f, "normal");
   executor.upload(view.normals, expected.normals.data(), values);
 
   const Span<glm::vec3> starts = executor.allocate<glm::vec3>(counts.vertices);
   std::vector<glm::vec3> host_starts(counts.vertices);
-  tangential_starts(executor, bricks, layout, view, counts, starts.data);
+  tangential_starts(executor, bricks, layout, view, counts, ring_sums(executor, counts), starts.data);
   tangential_starts(serial.executor, host_bricks, serial.layout, serial.view(expected), serial.counts,
-                    host_starts.data());
+                    ring_sums(serial.executor, serial.counts), host_starts.data());
   const std::vector<glm::vec3> device_starts = to_host(executor, starts.data, counts.vertices);
   for (size_t v = 0; v < host_starts.size(); ++v)
     for (int d = 0; d < 3; ++d) ASSERT_NEAR(device_starts[v][d], host_starts[v][d], 1e-5f) << v;

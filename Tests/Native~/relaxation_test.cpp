@@ -60,7 +60,7 @@ TEST(Laplacian, IsTheMeanOfTheNeighbors) {
     std::vector<Point> expected = points_of(mesh);
     for (uint32_t k = 0; k < steps; ++k) expected = means_of_neighbors(neighbors, expected);
     const std::vector<Point> before = points_of(mesh);
-    smooth_laplacian(run.executor, run.view(mesh), run.counts, 0.5f, steps);
+    smooth_laplacian(run.executor, run.view(mesh), run.counts, 0.5f, steps, ring_sums(run.executor, run.counts));
     EXPECT_LT(largest_difference(points_of(mesh), expected), 1e-5) << steps;
     if (steps == 0)
       EXPECT_EQ(points_of(mesh), before);
@@ -74,7 +74,7 @@ TEST(Laplacian, OfAnOctahedronIsItsCenter) {
   Mesh m = mesh_shapes::octahedron();
   mesh_shapes::scale_and_move(m, 1, 10, -20, 30);
   CpuExecutor executor(1);
-  smooth_laplacian(executor, view_of(m), counts_of(m), 0.5f, 1);
+  smooth_laplacian(executor, view_of(m), counts_of(m), 0.5f, 1, ring_sums(executor, counts_of(m)));
   for (const Point &p : points_of(m)) {
     EXPECT_NEAR(p[0], 10, 1e-5);
     EXPECT_NEAR(p[1], -20, 1e-5);
@@ -85,10 +85,10 @@ TEST(Laplacian, OfAnOctahedronIsItsCenter) {
 TEST(Laplacian, ThreadsGiveTheSameBytes) {
   GridRun one(random_cluster(60, 8), 1.4f, 0.35f, 0, 1), four(random_cluster(60, 8), 1.4f, 0.35f, 0, 4);
   Mesh a = one.mesh(), b = four.mesh();
-  smooth_laplacian(one.executor, one.view(a), one.counts, 0.35f, 3);
-  smooth_laplacian(four.executor, four.view(b), four.counts, 0.35f, 3);
-  compute_normals(one.executor, one.view(a), one.counts, 0.35f);
-  compute_normals(four.executor, four.view(b), four.counts, 0.35f);
+  smooth_laplacian(one.executor, one.view(a), one.counts, 0.35f, 3, ring_sums(one.executor, one.counts));
+  smooth_laplacian(four.executor, four.view(b), four.counts, 0.35f, 3, ring_sums(four.executor, four.counts));
+  compute_normals(one.executor, one.view(a), one.counts, 0.35f, ring_sums(one.executor, one.counts));
+  compute_normals(four.executor, four.view(b), four.counts, 0.35f, ring_sums(four.executor, four.counts));
   EXPECT_EQ(a.positions, b.positions);
   EXPECT_EQ(a.normals, b.normals);
 }
@@ -109,8 +109,8 @@ std::vector<Point> plain_normals(const Mesh &m) {
 TEST(Normals, AreWeightedByArea) {
   GridRun run(random_cluster(40, 4), 1.4f, 0.5f);
   Mesh mesh = run.mesh();
-  smooth_laplacian(run.executor, run.view(mesh), run.counts, 0.5f, 1);
-  compute_normals(run.executor, run.view(mesh), run.counts, 0.5f);
+  smooth_laplacian(run.executor, run.view(mesh), run.counts, 0.5f, 1, ring_sums(run.executor, run.counts));
+  compute_normals(run.executor, run.view(mesh), run.counts, 0.5f, ring_sums(run.executor, run.counts));
   EXPECT_LT(mesh_checks::worst_normal_length(mesh), 1e-5);
   const std::vector<Point> expected = plain_normals(mesh);
   size_t compared = 0;
@@ -129,7 +129,7 @@ TEST(Normals, PointOutwardWhateverTheWinding) {
     Mesh m = mesh_shapes::sphere(4);
     if (reversed) mesh_shapes::reverse(m);
     CpuExecutor executor(2);
-    compute_normals(executor, view_of(m, reversed), counts_of(m), 0.1f);
+    compute_normals(executor, view_of(m, reversed), counts_of(m), 0.1f, ring_sums(executor, counts_of(m)));
     EXPECT_LT(mesh_checks::worst_normal_length(m), 1e-5);
     for (size_t k = 0; k < m.positions.size(); ++k) ASSERT_NEAR(m.normals[k], m.positions[k], 0.03);
   }
@@ -142,7 +142,7 @@ TEST(Normals, OfAPointStay) {
   const std::vector<float> before = m.normals;
   mesh_shapes::scale_and_move(m, 0, 3, 4, 5);
   CpuExecutor executor(1);
-  compute_normals(executor, view_of(m), counts_of(m), 0.5f);
+  compute_normals(executor, view_of(m), counts_of(m), 0.5f, ring_sums(executor, counts_of(m)));
   EXPECT_EQ(m.normals, before);
 }
 
@@ -152,11 +152,12 @@ struct Tangential {
   std::vector<glm::vec3> starts;
   explicit Tangential(const std::vector<Atom> &atoms)
       : run(atoms, 1.4f, 0.5f), mesh(run.mesh()), starts(mesh.vertex_count()) {
-    compute_normals(run.executor, run.view(mesh), run.counts, 0.5f);
+    compute_normals(run.executor, run.view(mesh), run.counts, 0.5f, ring_sums(run.executor, run.counts));
     step();
   }
   void step() {
-    tangential_starts(run.executor, run.field.bricks, run.layout, run.view(mesh), run.counts, starts.data());
+    tangential_starts(run.executor, run.field.bricks, run.layout, run.view(mesh), run.counts,
+                      ring_sums(run.executor, run.counts), starts.data());
   }
   Point start(size_t v) const {
     return {starts[v].x + run.lattice.center_x, starts[v].y + run.lattice.center_y, starts[v].z + run.lattice.center_z};

@@ -2,13 +2,29 @@
 // What a qses_context holds.
 #pragma once
 
+#include "capi/barrier.h"
+
 #include "jobs/surface_job.h"
 
 #include <memory>
+#include <string>
 
 struct qses_context {
   qses_backend backend = QSES_BACKEND_CPU;
   qses_backend_description description{};
   std::unique_ptr<quickses::SurfaceJob> job;
   std::shared_ptr<const quickses::AtomSet> atoms;  // of the next computation; null before qses_set_atoms
+  std::shared_ptr<const quickses::Appearance> appearance = std::make_shared<quickses::Appearance>();
 };
+
+namespace quickses {
+
+// function: the one that was called, for the message.
+inline void check_atom_count(const qses_context &context, size_t count, const char *function) {
+  if (!context.atoms) throw Error(QSES_NO_RESULT, std::string("qses_set_atoms must come before ") + function);
+  if (count != context.atoms->count)
+    invalid("count is " + std::to_string(count) + " but the context has " + std::to_string(context.atoms->count) +
+            " atoms");
+}
+
+}  // namespace quickses

@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <cstring>
 
+using quickses::check_atom_count;
 using quickses::guarded;
 using quickses::invalid;
 using quickses::require;
@@ -68,6 +69,7 @@ void check_settings(const qses_settings &s) {
   check_choice("settings.surface", s.surface, QSES_SURFACE_VDW);
   check_choice("settings.method", s.method, QSES_METHOD_GRID);
   check_choice("settings.winding", s.winding, QSES_WINDING_REVERSED);
+  check_choice("settings.vertex_layout", s.vertex_layout, QSES_VERTICES_INTERLEAVED);
   check_range("settings.spacing", static_cast<double>(s.spacing), 0.001, 100, " Å");
   check_range("settings.probe_radius", static_cast<double>(s.probe_radius), 0, 100, " Å");
   check_range("settings.relaxation_steps", s.relaxation_steps, 0, 100, "");
@@ -98,13 +100,6 @@ qses_backend choose_backend(qses_backend asked, int device, qses_backend_descrip
   return QSES_BACKEND_CPU;
 }
 
-void check_atom_count(const qses_context &context, size_t count, const char *function) {
-  if (!context.atoms) throw quickses::Error(QSES_NO_RESULT, std::string("qses_set_atoms must come before ") + function);
-  if (count != context.atoms->count)
-    invalid("count is " + std::to_string(count) + " but the context has " + std::to_string(context.atoms->count) +
-            " atoms");
-}
-
 // A new set with the radii of the one before; positions are still to be written.
 std::shared_ptr<quickses::AtomSet> next_frame(const qses_context &context, const quickses::AtomBounds &bounds) {
   const quickses::AtomSet &before = *context.atoms;
@@ -128,7 +123,7 @@ quickses::SurfaceRequest make_request(const qses_context &context, const qses_se
                                       const char *function) {
   check_settings(settings);
   if (!context.atoms) throw quickses::Error(QSES_NO_RESULT, std::string("qses_set_atoms must come before ") + function);
-  quickses::SurfaceRequest request{context.atoms, settings, {}};
+  quickses::SurfaceRequest request{context.atoms, context.appearance, settings, {}};
   for (uint32_t k = 0; ladder && k < settings.level_count; ++k)
     if (settings.levels[k] > settings.spacing) request.spacings.push_back(settings.levels[k]);
   request.spacings.push_back(settings.spacing);
@@ -178,7 +173,7 @@ qses_status qses_create(const qses_context_options *options, qses_context **cont
 #endif
     if (!made->job)
       made->job = std::make_unique<quickses::SurfaceJob>(
-          quickses::make_cpu_engine(o.threads, o.memory_budget ? o.memory_budget : made->description.free_memory));
+          quickses::make_cpu_engine(o.threads, o.memory_budget, made->description.free_memory));
     *context = made.release();
   });
 }
@@ -207,6 +202,8 @@ qses_status qses_set_atoms(qses_context *context, const float *positions, size_t
     quickses::copy_positions(positions, stride, count, set->atoms);
     for (size_t i = 0; i < count; ++i) set->atoms[i].radius = radii[i];
     set->bounds = bounds;
+    if (!context->atoms || context->atoms->count != count)
+      context->appearance = std::make_shared<quickses::Appearance>();
     context->atoms = set;
   });
 }
@@ -287,6 +284,22 @@ qses_status qses_get_report(const qses_context *context, qses_report *report) {
     qses_report held;
     if (!context->job->held(nullptr, &held)) throw quickses::Error(QSES_NO_RESULT, kNothingComputed);
     write_struct(report, held, "report");
+  });
+}
+
+void qses_size_estimate_init(qses_size_estimate *estimate) {
+  if (!estimate) return;
+  *estimate = qses_size_estimate{};
+  estimate->struct_size = sizeof *estimate;
+}
+
+qses_status qses_estimate(qses_context *context, const qses_settings *settings, qses_size_estimate *estimate) {
+  return guarded([&] {
+    require(context, "context");
+    require(estimate, "estimate");
+    check_output(estimate, "size_estimate");
+    const qses_settings s = read_struct(settings, qses_settings_init, "qses_settings");
+    write_struct(estimate, context->job->estimate(make_request(*context, s, false, "qses_estimate")), "size_estimate");
   });
 }
 

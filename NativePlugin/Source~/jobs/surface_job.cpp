@@ -95,7 +95,7 @@ void SurfaceJob::work() {
 }
 
 void SurfaceJob::run(const SurfaceRequest &request) {
-  engine_->compute(*request.atoms, request.settings, request.spacings, *this);
+  engine_->compute(*request.atoms, *request.appearance, request.settings, request.spacings, *this);
 }
 
 void SurfaceJob::compute(SurfaceRequest request) {
@@ -131,6 +131,11 @@ void SurfaceJob::compute(SurfaceRequest request) {
   const std::lock_guard<std::mutex> lock(mutex_);
   held_ = ready_;
   ready_ = {};
+}
+
+qses_size_estimate SurfaceJob::estimate(const SurfaceRequest &request) {
+  wait(-1.0);  // nothing runs, and only this thread can begin something
+  return engine_->estimate(*request.atoms, *request.appearance, request.settings);
 }
 
 int SurfaceJob::slot() {

@@ -18,6 +18,7 @@ namespace quickses {
 // A computation asked for: atoms as they were then, and how.
 struct SurfaceRequest {
   std::shared_ptr<const AtomSet> atoms;
+  std::shared_ptr<const Appearance> appearance;
   qses_settings settings;
   std::vector<float> spacings;  // of the levels, coarsest first
 
@@ -38,6 +39,8 @@ class SurfaceJob : private LevelSink {
   void begin(SurfaceRequest request);
   // Computes on the calling thread once no job runs. Throws what went wrong.
   void compute(SurfaceRequest request);
+  // What a computation would need; once no job runs. Throws Error.
+  qses_size_estimate estimate(const SurfaceRequest &request);
   // The finest level finished since the last call; false if there is none. Its memory stays until the next call that
   // returns true, or a compute.
   bool collect(qses_mesh *mesh, qses_report *report);

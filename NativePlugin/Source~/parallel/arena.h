@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Work memory of one context: a bump allocator over a few large blocks that are kept from surface to surface. After a
-// reset the blocks are merged into one, so a trajectory soon runs without any allocation. The budget is enforced here.
+// reset the blocks are merged into one, so a trajectory soon runs without any allocation. With a budget all of it is
+// taken in one block, so that what is free can be used to the last byte.
 #pragma once
 
 #include "parallel/error.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -36,9 +38,16 @@ class Arena {
   Arena &operator=(const Arena &) = delete;
   ~Arena() { release(); }
 
-  // Bytes that may be held in all; 0 means no bound but the machine's.
-  void set_budget(uint64_t bytes) { budget_ = bytes; }
+  // Bytes that may be held in all; 0: no budget.
+  void set_budget(uint64_t bytes) { budget_ = bytes / kAlignment * kAlignment; }
   uint64_t budget() const { return budget_; }
+  // True if work should be cut into pieces that fit.
+  bool has_budget() const { return budget_ > 0; }
+  // Without a budget: what the machine had free, beyond which everything is refused; 0: unknown.
+  void set_limit(uint64_t bytes) { limit_ = bytes; }
+  uint64_t limit() const { return budget_ ? budget_ : limit_; }
+  // Bytes that can still be allocated, as far as is known.
+  uint64_t available() const { return limit() ? limit() - std::min(limit(), used_) : ~uint64_t(0) >> 1; }
 
   void *allocate(size_t bytes) {
     bytes = (bytes + kAlignment - 1) / kAlignment * kAlignment;
@@ -58,12 +67,11 @@ class Arena {
   // Everything allocated so far is given up; the blocks stay.
   void reset() {
     if (blocks_.size() > 1) {
-      uint64_t merged = peak_ + peak_ / 16;
-      if (budget_ && merged > budget_) merged = peak_;
+      const uint64_t merged = peak_ + peak_ / 16;
       release();
       try {
         add_block(static_cast<size_t>(merged));
-      } catch (const Error &) {  // not in one piece: it comes in pieces again
+      } catch (const MemoryRefused &) {  // not in one piece: it comes in pieces again
       }
     }
     current_ = 0;
@@ -84,6 +92,7 @@ class Arena {
     used_ = m.used;
   }
 
+  uint64_t used() const { return used_; }
   uint64_t peak() const { return peak_; }  // most bytes in use since the last reset
   uint64_t held() const { return held_; }  // bytes of all blocks
 
@@ -106,26 +115,29 @@ class Arena {
     size_t wanted = bytes > kSmallestBlock ? bytes : kSmallestBlock;
     // Grow by half of what is held: few blocks, little waste.
     if (wanted < held_ / 2) wanted = static_cast<size_t>(held_ / 2);
-    if (budget_ && held_ + wanted > budget_) wanted = bytes;
-    if (budget_ && held_ + wanted > budget_)
-      throw Error(QSES_OUT_OF_MEMORY, "the work needs at least " + describe_bytes(held_ + wanted) +
-                                          " but the memory budget is " + describe_bytes(budget_) +
-                                          ": use a larger spacing or a larger budget");
+    if (limit()) {
+      if (held_ + bytes > limit())
+        throw MemoryRefused("the work needs at least " + describe_bytes(held_ + bytes) + " but " +
+                            (budget_ ? "the memory budget is " : "the machine had free ") + describe_bytes(limit()) +
+                            ": use a larger spacing" + (budget_ ? " or a larger budget" : ""));
+      if (budget_ && held_ == 0) wanted = static_cast<size_t>(budget_);
+      wanted = static_cast<size_t>(std::min<uint64_t>(wanted, limit() - held_));
+    }
     void *memory = Source::acquire(wanted);
-    if (!memory && wanted > bytes) {
-      wanted = bytes;
+    while (!memory && wanted > bytes) {
+      wanted = std::max(bytes, wanted / 2);
       memory = Source::acquire(wanted);
     }
     if (!memory)
-      throw Error(QSES_OUT_OF_MEMORY, std::string(Source::kName) + " refused " + describe_bytes(wanted) +
-                                          " on top of " + describe_bytes(held_) + ": use a larger spacing");
+      throw MemoryRefused(std::string(Source::kName) + " refused " + describe_bytes(wanted) + " on top of " +
+                          describe_bytes(held_) + ": use a larger spacing");
     blocks_.push_back({memory, wanted});
     held_ += wanted;
   }
 
   std::vector<Block> blocks_;
   size_t current_ = 0, offset_ = 0;
-  uint64_t used_ = 0, peak_ = 0, held_ = 0, budget_ = 0;
+  uint64_t used_ = 0, peak_ = 0, held_ = 0, budget_ = 0, limit_ = 0;
 };
 
 }  // namespace quickses

@@ -50,6 +50,16 @@ QSES_FN void atomic_store(uint32_t *p, uint32_t value) {
 #endif
 }
 
+QSES_FN void atomic_or(uint32_t *p, uint32_t bits) {
+#if defined(__CUDA_ARCH__)
+  atomicOr(p, bits);
+#elif defined(_MSC_VER) && !defined(__clang__)
+  reinterpret_cast<std::atomic<uint32_t> *>(p)->fetch_or(bits, std::memory_order_relaxed);
+#else
+  __atomic_fetch_or(p, bits, __ATOMIC_RELAXED);
+#endif
+}
+
 // Returns the value before.
 QSES_FN uint32_t atomic_min(uint32_t *p, uint32_t value) {
 #if defined(__CUDA_ARCH__)

@@ -89,6 +89,12 @@ class CpuExecutor {
   void set_kernels(const CpuKernels &kernels) { kernels_ = &kernels; }
   Arena<HostMemory> &arena() { return arena_; }
 
+  // Scratch of the threads counts as this much.
+  uint64_t scratch_bytes() const { return threads_ * (uint64_t(192) << 10); }
+
+  // Memory was refused: to know how much there is would not help, since all work is cut small already.
+  void bound_arena() {}
+
   template <class T>
   Span<T> allocate(size_t n) {
     return {static_cast<T *>(arena_.allocate(n * sizeof(T))), n};

@@ -129,6 +129,13 @@ class CudaExecutor {
   // Rewinding it is safe while kernels still use what was there: whoever gets the memory next runs after them.
   Arena<DeviceMemory> &arena() { return arena_; }
 
+  // Memory was refused: from now on the arena knows how much there is.
+  void bound_arena() {
+    size_t free = 0, total = 0;
+    check_cuda(cudaMemGetInfo(&free, &total), "cudaMemGetInfo");
+    arena_.set_limit(arena_.held() + free / 16 * 15);
+  }
+
   template <class T>
   Span<T> allocate(size_t n) {
     return {static_cast<T *>(arena_.allocate(n * sizeof(T))), n};

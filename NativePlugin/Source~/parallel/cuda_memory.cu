@@ -121,29 +121,4 @@ void PinnedMemory::release(void *memory) {
   if (cudaFreeHost(memory) != cudaSuccess) cudaGetLastError();
 }
 
-void *PinnedBuffer::reserve(size_t bytes) {
-  if (bytes <= size_) return memory_;
-  // Page-locking is slow: grow by a quarter more than asked for, so that a trajectory soon stops growing.
-  const size_t roomy = bytes + bytes / 4 + 4096;
-  release();
-  size_ = roomy;
-  memory_ = PinnedMemory::acquire(roomy);
-  if (!memory_) {
-    size_ = bytes;
-    memory_ = PinnedMemory::acquire(bytes);
-  }
-  if (!memory_) {
-    size_ = 0;
-    throw Error(QSES_OUT_OF_MEMORY,
-                "the machine refused " + describe_bytes(bytes) + " of page-locked memory for the mesh");
-  }
-  return memory_;
-}
-
-void PinnedBuffer::release() {
-  if (memory_) PinnedMemory::release(memory_);
-  memory_ = nullptr;
-  size_ = 0;
-}
-
 }  // namespace quickses

@@ -2,6 +2,8 @@
 // CUDA devices and their memory, for code that does not see CUDA's own headers.
 #pragma once
 
+#include "parallel/growing_buffer.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -47,23 +49,7 @@ struct PinnedMemory {
   static void release(void *memory);
 };
 
-// Page-locked host memory that only grows: what is in it is lost when it does. Not for use by several threads.
-class PinnedBuffer {
- public:
-  PinnedBuffer() = default;
-  ~PinnedBuffer() { release(); }
-  PinnedBuffer(const PinnedBuffer &) = delete;
-  PinnedBuffer &operator=(const PinnedBuffer &) = delete;
-
-  // At least that many bytes. Throws Error (QSES_OUT_OF_MEMORY). Nothing may be in flight from or to the old memory.
-  void *reserve(size_t bytes);
-  void release();
-  void *data() const { return memory_; }
-  size_t size() const { return size_; }
-
- private:
-  void *memory_ = nullptr;
-  size_t size_ = 0;
-};
+// Page-locked host memory, which the GPU reads and writes at the same address.
+using PinnedBuffer = GrowingBuffer<PinnedMemory>;
 
 }  // namespace quickses

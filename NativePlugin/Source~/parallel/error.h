@@ -18,6 +18,12 @@ class Error : public std::runtime_error {
   qses_status status_;
 };
 
+// Memory that the budget or the machine refused. Stages that can do with less catch it; else it is the caller's error.
+class MemoryRefused : public Error {
+ public:
+  explicit MemoryRefused(const std::string &message) : Error(QSES_OUT_OF_MEMORY, message) {}
+};
+
 // A computation that was told to stop. Not an error: whoever asked for it knows.
 struct Cancelled {};
 

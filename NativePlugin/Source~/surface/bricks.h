@@ -221,7 +221,7 @@ BrickSet flag_bricks(Executor &executor, const Items &items, const Lattice &latt
   executor.fill(table, 0xff);
   executor.for_each(items.size(), FlagBricks<Items>{items, flags.data});
   // Room for the list: for all entries while that is little, else counted first.
-  const uint64_t room = entries <= kSmallTable
+  const uint64_t room = entries <= kSmallTable && !executor.arena().has_budget()
                             ? entries
                             : static_cast<uint64_t>(executor.reduce(entries, LoadCount<uint8_t>{flags.data}));
   Span<uint64_t> linear = executor.template allocate<uint64_t>(room);

@@ -37,6 +37,22 @@ struct CandidateReach {
   }
 };
 
+// How many atoms or arcs a brick lists, as a rule: half of its surroundings filled as densely as a protein.
+inline double listed_candidates(const SurfaceParameters &parameters) {
+  const CandidateReach reach = CandidateReach::of(parameters);
+  const double wide = static_cast<double>(8.f * reach.spacing + 2.f * reach.grown + 2.f * parameters.max_radius);
+  return 16.0 + 0.03 * std::min(1e6, wide * wide * wide);
+}
+
+// Bytes of a brick's candidates: atoms, arcs and their leaves, rows and lists of leaves.
+inline double candidate_bytes(const SurfaceParameters &parameters) {
+  return 9.0 * listed_candidates(parameters) + 56.0;
+}
+
+// Words of the row that a leaf with vertices has besides (vertex_rows_cuda.cuh); half of the leaves have one.
+constexpr int kRowWords = 64;
+constexpr double kRowBytesPerBrick = kLeavesPerBrick / 2.0 * kRowWords * sizeof(uint32_t);
+
 // Rows of a brick: runs in the lists of atoms and arcs.
 struct BrickRow {
   unsigned long long first_atom, first_arc;

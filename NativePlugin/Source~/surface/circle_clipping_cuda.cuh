@@ -48,6 +48,12 @@ struct FeatureRoom {
 
 QSES_FN bool is_far_away(const Sphere &s) { return s.center.x >= 0.5f * kFarAway; }
 
+// The atoms a pass is about.
+struct AtomRun {
+  uint32_t first, last;
+  QSES_FN uint32_t size() const { return last - first; }
+};
+
 struct LoadNumber {
   const uint32_t *numbers;
   QSES_HOST_DEVICE uint32_t operator()(size_t i) const { return numbers[i]; }
@@ -66,12 +72,13 @@ struct StagedCircle {
 
 struct CircleJob {
   NeighborGridView atoms;
+  AtomRun run;
   FeatureRoom room;
   FeatureCounters *counters;
   const CapRange *cap_ranges;
   const Cap *caps;
   const uint32_t *neighbors;
-  const uint32_t *circle_first;  // per atom
+  const uint32_t *circle_first;  // per atom of the run
   uint8_t *exposed;
   Arc *arcs;
   // Made by clip_circles().
@@ -96,11 +103,12 @@ struct StridedIntervals {
 // Lists the circles of each atom: caps behind which a later atom is. A warp per atom.
 static __global__ __launch_bounds__(128) void list_circles_kernel(CircleJob job) {
   const int lane = lane_id();
-  for (uint32_t i = (blockIdx.x * blockDim.x + threadIdx.x) / kWarp; i < job.atoms.count;
-       i += gridDim.x * blockDim.x / kWarp) {
+  for (uint32_t place = (blockIdx.x * blockDim.x + threadIdx.x) / kWarp; place < job.run.size();
+       place += gridDim.x * blockDim.x / kWarp) {
+    const uint32_t i = job.run.first + place;
     const CapRange range = job.cap_ranges[i];
-    uint32_t next = job.circle_first[i];
-    if (job.circle_first[i + 1] > job.room.circles) return;  // all will be done again
+    uint32_t next = job.circle_first[place];
+    if (job.circle_first[place + 1] > job.room.circles) return;  // all will be done again
     for (int q0 = 0; q0 < range.count; q0 += kWarp) {
       const int q = q0 + lane;
       const bool owns = q < range.count && job.neighbors[range.first + static_cast<uint32_t>(q)] > i;
@@ -299,7 +307,7 @@ static __global__ __launch_bounds__(128) void write_arcs_kernel(CircleJob job, c
 // All from the caps to the arcs.
 inline void clip_circles(CudaExecutor &executor, CircleJob job) {
   const FeatureRoom &room = job.room;
-  const size_t processors = executor.multiprocessors(), n = job.atoms.count;
+  const size_t processors = executor.multiprocessors(), n = job.run.size();
   job.names = executor.allocate<CircleName>(room.circles).data;
   Span<uint32_t> arc_count = executor.allocate<uint32_t>(room.circles);
   Span<uint32_t> arc_first = executor.allocate<uint32_t>(room.circles + 1);

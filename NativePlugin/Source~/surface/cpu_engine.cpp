@@ -8,8 +8,8 @@
 
 namespace quickses {
 
-std::unique_ptr<SurfaceEngine> make_cpu_engine(unsigned threads, uint64_t memory_budget) {
-  return std::make_unique<SurfacePipeline<CpuExecutor, CpuStageTimer>>(memory_budget, threads);
+std::unique_ptr<SurfaceEngine> make_cpu_engine(unsigned threads, uint64_t memory_budget, uint64_t memory_limit) {
+  return std::make_unique<SurfacePipeline<CpuExecutor, CpuStageTimer>>(memory_budget, memory_limit, threads);
 }
 
 }  // namespace quickses

@@ -11,7 +11,7 @@
 namespace quickses {
 
 std::unique_ptr<SurfaceEngine> make_cuda_engine(int device, uint64_t memory_budget) {
-  return std::make_unique<SurfacePipeline<CudaExecutor, CudaStageTimer>>(memory_budget, device);
+  return std::make_unique<SurfacePipeline<CudaExecutor, CudaStageTimer>>(memory_budget, uint64_t(0), device);
 }
 
 }  // namespace quickses

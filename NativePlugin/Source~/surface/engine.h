@@ -4,6 +4,7 @@
 #pragma once
 
 #include "quickses/quickses.h"
+#include "surface/appearance.h"
 #include "surface/types.h"
 
 #include <atomic>
@@ -54,17 +55,22 @@ class SurfaceEngine {
   virtual std::shared_ptr<AtomSet> make_atoms(size_t count) = 0;
 
   // Computes the surface at each spacing, in that order; atoms, neighbour grid and features are made once. Settings are
-  // checked already. Throws Error, or Cancelled soon after the stop flag is set; levels finished before stay as they
-  // are.
-  virtual void compute(const AtomSet &atoms, const qses_settings &settings, const std::vector<float> &spacings,
-                       LevelSink &sink) = 0;
+  // checked already; what the appearance has is there for all atoms. Throws Error, or Cancelled soon after the stop
+  // flag is set; levels finished before stay as they are.
+  virtual void compute(const AtomSet &atoms, const Appearance &appearance, const qses_settings &settings,
+                       const std::vector<float> &spacings, LevelSink &sink) = 0;
+
+  // What a computation at settings.spacing would need. Throws Error.
+  virtual qses_size_estimate estimate(const AtomSet &atoms, const Appearance &appearance,
+                                      const qses_settings &settings) = 0;
 
   virtual void enable_stage_times(bool enabled) = 0;
   // Called with the fraction done; empty: not at all.
   virtual void set_progress(std::function<void(double)> progress) = 0;
 };
 
-std::unique_ptr<SurfaceEngine> make_cpu_engine(unsigned threads, uint64_t memory_budget);
+// Budgets in bytes, 0 for none; without one, work beyond the limit is refused.
+std::unique_ptr<SurfaceEngine> make_cpu_engine(unsigned threads, uint64_t memory_budget, uint64_t memory_limit);
 #if defined(QUICKSES_HAS_CUDA)
 std::unique_ptr<SurfaceEngine> make_cuda_engine(int device, uint64_t memory_budget);
 #endif

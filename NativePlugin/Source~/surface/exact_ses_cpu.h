@@ -12,8 +12,9 @@ struct NoCandidates {};
 template <>
 struct CandidatesOf<CpuExecutor> {
   using type = NoCandidates;
-  static constexpr bool kFromSigns = false;
-  static uint32_t max_bricks(CpuExecutor &, uint32_t brick_count) { return brick_count; }
+  static double sign_bytes(const SurfaceParameters &) { return 0; }
+  static double emission_bytes(const SurfaceParameters &, double) { return 0; }
+  static uint64_t whole_bytes(const SurfaceParameters &) { return 0; }
 };
 
 // Columns of one thread for what is near a brick. Grows when a brick needs more; kept between surfaces.

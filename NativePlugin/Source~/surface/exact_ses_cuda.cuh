@@ -16,13 +16,15 @@ struct CudaCandidates {
 template <>
 struct CandidatesOf<CudaExecutor> {
   using type = CudaCandidates;
-  static constexpr bool kFromSigns = false;  // emit_vertices gathers them itself if they are not there
-  // A quarter of the memory may go into the rows of a slice: 2 KB per brick, four in bad cases.
-  static uint32_t max_bricks(CudaExecutor &executor, uint32_t brick_count) {
-    constexpr uint64_t kBytesPerBrick = 4096;
-    const uint64_t budget = executor.arena().budget();
-    const uint64_t bytes = budget ? std::min(budget, executor.device_bytes()) : executor.device_bytes();
-    return static_cast<uint32_t>(std::min<uint64_t>(brick_count, std::max<uint64_t>(256, bytes / 4 / kBytesPerBrick)));
+  static double sign_bytes(const SurfaceParameters &parameters) { return gpu::candidate_bytes(parameters); }
+  static double emission_bytes(const SurfaceParameters &parameters, double vertices) {
+    return gpu::candidate_bytes(parameters) + gpu::kRowBytesPerBrick + 12.0 * vertices;
+  }
+  // Signs and layout, and the mesh of a surface as dense as proteins have it.
+  static uint64_t whole_bytes(const SurfaceParameters &parameters) {
+    constexpr double kVertices = 60, kVertexBytes = 28, kTriangleBytes = 12;
+    return static_cast<uint64_t>(352 + emission_bytes(parameters, kVertices) +
+                                 kVertices * (kVertexBytes + 2 * kTriangleBytes));
   }
 };
 
@@ -268,9 +270,7 @@ inline void gather_candidates(CudaExecutor &executor, const FeatureView &feature
   view.brick_rows = executor.allocate<BrickRow>(n).data;
   view.leaf_list = executor.allocate<uint32_t>(size_t(n) * kLeavesPerBrick).data;
   Span<CandidateCounters> counters = executor.allocate<CandidateCounters>(1);
-  // Half of a brick's surroundings filled as densely as a protein.
-  const float wide = 8.f * reach.spacing + 2.f * reach.grown + 2.f * features.parameters.max_radius;
-  const double per_brick = 16.0 + 0.03 * std::min(1e6, static_cast<double>(wide) * wide * wide);
+  const double per_brick = listed_candidates(features.parameters);
   size_t atom_room = static_cast<size_t>(std::min(per_brick, double(features.atoms.count)) * n) + 1024;
   size_t arc_room = static_cast<size_t>(std::min(per_brick, double(features.arc_bounds.count)) * n) + 1024;
   const auto mark = executor.arena().mark();

@@ -23,16 +23,21 @@ MeshMemoryView build_grid_surface(R &run) {
   run.timer.begin("grid_ses");
   const GridField field = classify_grid_points(executor, run.atoms, parameters, bricks);
   const uint32_t per_slice = bricks_per_slice(run.settings, bricks.count, run.progress.wanted());
-  run.report->slice_count = bricks.count ? (bricks.count + per_slice - 1) / per_slice : 0;
   Span<uint64_t> signs = executor.template allocate<uint64_t>(size_t(bricks.count) * kLeavesPerBrick);
-  for_each_slice(run, bricks.count, per_slice, 0.1, 0.5,
-                 [&](BrickRange slice) { evaluate_grid_signs(executor, field, slice, signs.data); });
+  run.report->slice_count = for_each_slice(run, bricks.count, per_slice, 0.1, 0.5, [&](BrickRange slice) {
+    evaluate_grid_signs(executor, field, slice, signs.data);
+  });
 
   run.timer.begin("marching_cubes");
   MeshLayout layout{};
   const MeshCounts counts = lay_out_mesh(executor, bricks, signs.data, run.table.triangle_count, &layout);
   check_mesh_size(counts);
-  MeshMemoryView mesh = run.memory.allocate_mesh(executor, counts.vertices, counts.triangles, run.settings);
+  run.facts->brick_entries = bricks.table ? run.lattice.table_size() : 0;
+  run.facts->size = {static_cast<double>(bricks.count), static_cast<double>(counts.vertices),
+                     static_cast<double>(counts.triangles)};
+  const MeshMemoryView mesh =
+      run.memory.allocate_mesh(executor, counts.vertices, counts.triangles, run.shape, run.purpose,
+                               counts.vertices * sizeof(RingSum) + executor.arena().available() / 64);
   run.timer.begin("projection");
   for_each_slice(run, bricks.count, per_slice, 0.5, 0.8,
                  [&](BrickRange slice) { emit_grid_vertices(executor, field, layout, slice, mesh.view); });
@@ -41,8 +46,10 @@ MeshMemoryView build_grid_surface(R &run) {
   run.progress.report(0.85);
 
   run.timer.begin("relaxation");
-  smooth_laplacian(executor, mesh.view, counts, run.parameters.spacing, run.settings.relaxation_steps);
-  compute_normals(executor, mesh.view, counts, run.parameters.spacing);
+  Span<RingSum> sums = run.memory.template allocate_beside<RingSum>(executor, mesh, counts.vertices);
+  smooth_laplacian(executor, mesh.view, counts, run.parameters.spacing, run.settings.relaxation_steps, sums);
+  compute_normals(executor, mesh.view, counts, run.parameters.spacing, sums);
+  paint_vertices(executor, run.appearance, mesh.view, mesh.vertices);
   return mesh;
 }
 

@@ -184,12 +184,14 @@ MeshCounts lay_out_mesh(Executor &executor, const BrickSet &bricks, const uint64
   Span<uint32_t> triangle_base = executor.template allocate<uint32_t>(n + 1);
   layout->vertex_base = vertex_base.data;
   layout->triangle_base = triangle_base.data;
+  const auto mark = executor.arena().mark();
   Span<uint32_t> vertices = executor.template allocate<uint32_t>(n);
   Span<uint32_t> triangles = executor.template allocate<uint32_t>(n);
   executor.for_each(leaves, CountLeaf{bricks, *layout, case_triangles});
   executor.for_each(n, RankBrick{*layout, vertices.data, triangles.data});
   executor.exclusive_scan(n, LoadCount<uint32_t>{vertices.data}, vertex_base);
   executor.exclusive_scan(n, LoadCount<uint32_t>{triangles.data}, triangle_base);
+  executor.arena().rewind(mark);
   // The bases wrap if there are too many; then the true totals are summed up for the message.
   if (n * kBrickPoints * 5 > 0xffffffffull) {
     const double v = executor.reduce(n, LoadCount<uint32_t>{vertices.data});

@@ -4,6 +4,8 @@
 #pragma once
 
 #include "parallel/cpu_executor.h"
+#include "parallel/growing_buffer.h"
+#include "surface/mesh_arrays.h"
 #include "surface/run.h"
 
 #include <memory>
@@ -12,68 +14,7 @@
 
 namespace quickses {
 
-// Host memory that only grows, without initialisation.
-template <class Source>
-class GrowingBuffer {
- public:
-  GrowingBuffer() = default;
-  GrowingBuffer(const GrowingBuffer &) = delete;
-  GrowingBuffer &operator=(const GrowingBuffer &) = delete;
-  ~GrowingBuffer() { Source::release(memory_); }
-
-  // At least this many bytes; what was in it is lost if it has to grow.
-  void *reserve(size_t bytes) {
-    if (bytes > size_) {
-      const size_t wanted = bytes + bytes / 8;
-      void *memory = Source::acquire(wanted);
-      if (!memory)
-        throw Error(QSES_OUT_OF_MEMORY,
-                    std::string(Source::kName) + " refused " + describe_bytes(wanted) + " for the mesh");
-      Source::release(memory_);
-      memory_ = memory;
-      size_ = wanted;
-    }
-    return memory_;
-  }
-  void *data() const { return memory_; }
-  size_t size() const { return size_; }
-
- private:
-  void *memory_ = nullptr;
-  size_t size_ = 0;
-};
-
-// The arrays of one mesh behind each other in one buffer, each on a 256-byte boundary.
-struct MeshArrays {
-  size_t positions, normals, owners, patches, indices, bytes;
-  MeshArrays(size_t vertices, size_t triangles, bool with_patches) {
-    size_t at = 0;
-    const auto next = [&](size_t n) {
-      const size_t here = at;
-      at += (n + 255) / 256 * 256;
-      return here;
-    };
-    positions = next(vertices * 12);
-    normals = next(vertices * 12);
-    owners = next(vertices * 4);
-    patches = with_patches ? next(vertices) : 0;
-    indices = next(triangles * 12);
-    bytes = at;
-  }
-  MeshView view(void *memory, bool with_patches, bool reversed) const {
-    char *base = static_cast<char *>(memory);
-    return {reinterpret_cast<float *>(base + positions),
-            reinterpret_cast<float *>(base + normals),
-            reinterpret_cast<uint32_t *>(base + owners),
-            with_patches ? reinterpret_cast<uint8_t *>(base + patches) : nullptr,
-            reinterpret_cast<uint32_t *>(base + indices),
-            reversed};
-  }
-};
-
-inline bool wants_patches(const qses_settings &s) { return s.patch_types != 0 && s.method == QSES_METHOD_EXACT; }
-
-// Points the caller's view at a finished mesh.
+// Points the caller's view at a finished mesh. host: the same arrays in host memory.
 inline void describe_mesh(const MeshMemoryView &built, const MeshView &host, const qses_settings &settings,
                           qses_mesh *mesh) {
   qses_mesh_init(mesh);
@@ -83,6 +24,9 @@ inline void describe_mesh(const MeshMemoryView &built, const MeshView &host, con
   if (built.vertices == 0) return;
   mesh->positions = host.positions;
   mesh->normals = host.normals;
+  mesh->colors = reinterpret_cast<const uint8_t *>(host.colors);
+  mesh->texcoords = host.texcoords;
+  mesh->vertex_bytes = host.vertex_bytes;
   mesh->owners = host.owners;
   mesh->patches = host.patches;
   mesh->indices = host.indices;
@@ -124,9 +68,30 @@ template <class Buffer>
 struct BufferedAtoms : AtomSet {
   Buffer memory;
   void resize(size_t n) {
+    count = 0;
     atoms = static_cast<Sphere *>(memory.reserve(n * sizeof(Sphere)));
     count = n;
   }
+};
+
+// The host memory of both back ends.
+template <class Source>
+class HostSide {
+ public:
+  std::shared_ptr<AtomSet> make_atoms(size_t count) { return atoms_.make(count); }
+  void use_slot(int slot) { slot_ = slot; }
+  // Bytes of the mesh that is handed out, and of all.
+  void *reserve_mesh(size_t bytes) { return mesh_[slot_].reserve(bytes); }
+  uint64_t bytes() const {
+    uint64_t sum = atoms_.bytes();
+    for (const auto &slot : mesh_) sum += slot.size();
+    return sum;
+  }
+
+ private:
+  AtomPool<BufferedAtoms<GrowingBuffer<Source>>> atoms_;
+  GrowingBuffer<Source> mesh_[kMeshSlots];
+  int slot_ = 0;
 };
 
 template <>
@@ -134,18 +99,33 @@ class MeshMemory<CpuExecutor> {
  public:
   explicit MeshMemory(CpuExecutor &) {}
 
-  std::shared_ptr<AtomSet> make_atoms(size_t count) { return atoms_.make(count); }
+  std::shared_ptr<AtomSet> make_atoms(size_t count) { return host_.make_atoms(count); }
+  void use_slot(int slot) { host_.use_slot(slot); }
+  uint64_t host_bytes() const { return host_.bytes(); }
+  // Bytes of work that are not in the arena.
+  uint64_t beside_arena(const CpuExecutor &executor) const { return executor.scratch_bytes(); }
 
-  void use_slot(int slot) { slot_ = slot; }
-
-  MeshMemoryView allocate_mesh(CpuExecutor &, size_t vertices, size_t triangles, const qses_settings &settings) {
-    const MeshArrays arrays(vertices, triangles, wants_patches(settings));
+  MeshMemoryView allocate_mesh(CpuExecutor &executor, size_t vertices, size_t triangles, const MeshShape &shape,
+                               MeshPurpose purpose, uint64_t /*reserve*/) {
+    const MeshArrays arrays(vertices, triangles, shape);
     MeshMemoryView mesh;
+    mesh.shape = shape;
     mesh.vertices = vertices;
     mesh.triangles = triangles;
-    mesh.view = arrays.view(mesh_[slot_].reserve(arrays.bytes), wants_patches(settings),
-                            settings.winding == QSES_WINDING_REVERSED);
+    mesh.bytes = arrays.bytes();
+    mesh.view = arrays.view(purpose == MeshPurpose::kDelivered ? host_.reserve_mesh(arrays.bytes())
+                                                               : executor.allocate<char>(arrays.bytes()).data);
     return mesh;
+  }
+
+  template <class T>
+  Span<T> allocate_beside(CpuExecutor &executor, const MeshMemoryView &, size_t n) {
+    return executor.allocate<T>(n);
+  }
+
+  void save(CpuExecutor &, const MeshMemoryView &mesh, const MeshView &part, size_t vertices, size_t triangles) {
+    for_each_array(mesh.view, part, vertices, triangles,
+                   [](void *to, const void *from, size_t bytes) { std::memcpy(to, from, bytes); });
   }
 
   void finish(const MeshMemoryView &built, const qses_settings &settings, qses_mesh *mesh) {
@@ -156,19 +136,8 @@ class MeshMemory<CpuExecutor> {
     return {table.triangle_count, table.edges, table.ring};
   }
 
-  uint64_t mesh_bytes(const qses_mesh &m) const {
-    return MeshArrays(m.vertex_count, m.triangle_count, m.patches != nullptr).bytes;
-  }
-  uint64_t host_bytes() const {
-    uint64_t sum = atoms_.bytes();
-    for (const auto &slot : mesh_) sum += slot.size();
-    return sum;
-  }
-
  private:
-  AtomPool<BufferedAtoms<GrowingBuffer<HostMemory>>> atoms_;
-  GrowingBuffer<HostMemory> mesh_[kMeshSlots];
-  int slot_ = 0;
+  HostSide<HostMemory> host_;
 };
 
 }  // namespace quickses

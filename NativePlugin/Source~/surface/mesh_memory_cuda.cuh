@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Atoms and mesh with CUDA: both pass through page-locked memory; the mesh is made on the device, behind each other in
-// one piece so that one copy brings it over.
+// Atoms and mesh with CUDA: both pass through page-locked memory. The mesh is made on the device, its arrays behind
+// each other so that one copy brings them over. Where it does not fit there, its place is page-locked memory, which
+// kernels reach as well, slowly: what makes most of it goes through slabs on the device.
 #pragma once
 
 #include "parallel/cuda_executor.cuh"
@@ -16,56 +17,96 @@ class MeshMemory<CudaExecutor> {
 
   std::shared_ptr<AtomSet> make_atoms(size_t count) {
     const DeviceGuard guard(executor_.device());
-    return atoms_.make(count);
+    return host_.make_atoms(count);
+  }
+  void use_slot(int slot) {
+    host_.use_slot(slot);
+    spilled_ = 0;
+  }
+  uint64_t host_bytes() const {
+    uint64_t sum = host_.bytes();
+    for (const PinnedBuffer &spill : spill_) sum += spill.size();
+    return sum;
   }
 
-  void use_slot(int slot) { slot_ = slot; }
+  // Bytes of the device that are not in the arena.
+  uint64_t beside_arena(const CudaExecutor &) const { return sizeof(MarchingCubesTable); }
 
-  MeshMemoryView allocate_mesh(CudaExecutor &executor, size_t vertices, size_t triangles,
-                               const qses_settings &settings) {
-    const MeshArrays arrays(vertices, triangles, wants_patches(settings));
+  MeshMemoryView allocate_mesh(CudaExecutor &executor, size_t vertices, size_t triangles, const MeshShape &shape,
+                               MeshPurpose purpose, uint64_t reserve) {
+    const MeshArrays arrays(vertices, triangles, shape);
     MeshMemoryView mesh;
+    mesh.shape = shape;
     mesh.vertices = vertices;
     mesh.triangles = triangles;
-    device_ = executor.template allocate<char>(arrays.bytes).data;
-    mesh.view = arrays.view(device_, wants_patches(settings), settings.winding == QSES_WINDING_REVERSED);
+    mesh.bytes = arrays.bytes();
+    mesh.on_host = executor.arena().available() < arrays.bytes() + reserve;
+    if (!mesh.on_host) {
+      const auto mark = executor.arena().mark();
+      try {
+        mesh.memory = executor.template allocate<char>(arrays.bytes()).data;
+      } catch (const MemoryRefused &) {
+        executor.arena().rewind(mark);
+        mesh.on_host = true;
+      }
+    }
+    if (mesh.on_host)
+      mesh.memory = purpose == MeshPurpose::kDelivered ? host_.reserve_mesh(arrays.bytes()) : spill(arrays.bytes());
+    mesh.view = arrays.view(mesh.memory);
     return mesh;
   }
 
+  // Room for something as large as the mesh, where the mesh is.
+  template <class T>
+  Span<T> allocate_beside(CudaExecutor &executor, const MeshMemoryView &mesh, size_t n) {
+    if (!mesh.on_host) return executor.template allocate<T>(n);
+    return {static_cast<T *>(spill(n * sizeof(T))), n};
+  }
+
+  // Copies a part from the device to its place in a mesh on the host.
+  void save(CudaExecutor &executor, const MeshMemoryView &mesh, const MeshView &part, size_t vertices,
+            size_t triangles) {
+    for_each_array(mesh.view, part, vertices, triangles, [&](void *to, const void *from, size_t bytes) {
+      executor.download(static_cast<char *>(to), static_cast<const char *>(from), bytes);
+    });
+  }
+
   void finish(const MeshMemoryView &built, const qses_settings &settings, qses_mesh *mesh) {
-    const MeshArrays arrays(built.vertices, built.triangles, wants_patches(settings));
-    char *host = static_cast<char *>(mesh_[slot_].reserve(arrays.bytes));
+    const MeshArrays arrays(built.vertices, built.triangles, built.shape);
+    MeshView host = built.view;
     if (built.vertices > 0) {
-      executor_.download(host, static_cast<const char *>(device_), arrays.bytes);
+      if (!built.on_host) {
+        char *const memory = static_cast<char *>(host_.reserve_mesh(arrays.bytes()));
+        executor_.download(memory, static_cast<const char *>(built.memory), arrays.bytes());
+        host = arrays.view(memory);
+      }
       executor_.wait();
     }
-    describe_mesh(built, arrays.view(host, wants_patches(settings), false), settings, mesh);
+    describe_mesh(built, host, settings, mesh);
   }
 
   TableView upload_table(CudaExecutor &executor, const MarchingCubesTable &table) {
     if (!table_) table_ = DeviceMemory::acquire(sizeof table);
-    if (!table_) throw Error(QSES_OUT_OF_MEMORY, "the GPU refused memory for the tables of marching cubes");
+    if (!table_) throw MemoryRefused("the GPU refused memory for the tables of marching cubes");
     auto *device = static_cast<MarchingCubesTable *>(table_);
     executor.upload(device, &table, 1);
     executor.wait();
     return {device->triangle_count, device->edges, device->ring};
   }
 
-  uint64_t mesh_bytes(const qses_mesh &m) const {
-    return MeshArrays(m.vertex_count, m.triangle_count, m.patches != nullptr).bytes;
-  }
-  uint64_t host_bytes() const {
-    uint64_t sum = atoms_.bytes();
-    for (const auto &slot : mesh_) sum += slot.size();
-    return sum;
+ private:
+  // At most the unmasked mesh, sums and starts at a time.
+  void *spill(size_t bytes) {
+    constexpr size_t kSpills = sizeof spill_ / sizeof spill_[0];
+    if (spilled_ == kSpills) throw Error(QSES_INTERNAL_ERROR, "too many arrays beside a mesh");
+    return spill_[spilled_++].reserve(bytes);
   }
 
- private:
   CudaExecutor &executor_;
-  AtomPool<BufferedAtoms<PinnedBuffer>> atoms_;
-  PinnedBuffer mesh_[kMeshSlots];
-  void *table_ = nullptr, *device_ = nullptr;
-  int slot_ = 0;
+  HostSide<PinnedMemory> host_;
+  PinnedBuffer spill_[4];
+  size_t spilled_ = 0;
+  void *table_ = nullptr;
 };
 
 }  // namespace quickses

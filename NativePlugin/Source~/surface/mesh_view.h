@@ -16,7 +16,7 @@ struct MeshView {
   uint8_t *patches = nullptr;   // or nullptr
   uint32_t *indices = nullptr;  // three per triangle
   bool reversed = false;        // winding
-  uint8_t *colors = nullptr;    // RGBA, or nullptr
+  uint32_t *colors = nullptr;   // bytes red, green, blue, alpha; or nullptr
   float *texcoords = nullptr;   // two numbers, or nullptr
   uint32_t vertex_bytes = 0;    // from one vertex to the next in all attributes; 0: each array is tightly packed
   uint32_t first_vertex = 0;    // what the arrays begin with
@@ -25,7 +25,7 @@ struct MeshView {
   QSES_FN size_t place(uint32_t vertex) const { return vertex - first_vertex; }
   QSES_FN float *position(uint32_t vertex) const { return attribute(positions, 12, vertex); }
   QSES_FN float *normal(uint32_t vertex) const { return attribute(normals, 12, vertex); }
-  QSES_FN uint8_t *color(uint32_t vertex) const { return attribute(colors, 4, vertex); }
+  QSES_FN uint32_t *color(uint32_t vertex) const { return attribute(colors, 4, vertex); }
   QSES_FN float *texcoord(uint32_t vertex) const { return attribute(texcoords, 8, vertex); }
   QSES_FN uint32_t &owner(uint32_t vertex) const { return owners[place(vertex)]; }
   QSES_FN uint8_t &patch(uint32_t vertex) const { return patches[place(vertex)]; }

@@ -50,7 +50,7 @@ struct NeighborGridView {
   const Sphere *items;          // sorted by cell, then by the order they were given in
   const uint32_t *order;        // sorted place -> number when given
   const uint32_t *starts;       // first item of each cell, and the total; nullptr if the grid is sparse
-  const uint64_t *sorted_keys;  // cell of each sorted item
+  const uint64_t *sorted_keys;  // cell of each sorted item, if the grid is sparse
   uint32_t count;
 
   // Items of the cells x0 ... x1 of a row: one run, since x is fastest.
@@ -131,26 +131,41 @@ inline int bits_for(uint64_t values) {
   return bits;
 }
 
-// low and high bound the items' centres.
-template <class Executor>
-NeighborGridView build_neighbor_grid(Executor &executor, Span<Sphere> items, const CellLayout &cells) {
-  const size_t n = items.size;
-  Span<uint64_t> keys = executor.template allocate<uint64_t>(n);
-  Span<uint32_t> order = executor.template allocate<uint32_t>(n);
+// A grid of n items. make_items() returns them as a Span<Sphere>; what it allocates is given up again, as is all else
+// but the grid. The cells bound the items' centres.
+template <class Executor, class MakeItems>
+NeighborGridView build_neighbor_grid(Executor &executor, size_t n, const CellLayout &cells,
+                                     const MakeItems &make_items) {
   // Kernels load whole packs of spheres: room behind the last one, far away.
   Span<Sphere> sorted = executor.template allocate<Sphere>(n + 8);
+  Span<uint32_t> order = executor.template allocate<uint32_t>(n);
+  const bool dense = dense_table_pays(cells.cells(), n);
+  Span<uint32_t> starts{};
+  Span<uint64_t> keys{};
+  if (dense)
+    starts = executor.template allocate<uint32_t>(cells.cells() + 1);
+  else
+    keys = executor.template allocate<uint64_t>(n);
+  const auto mark = executor.arena().mark();
+  const Span<Sphere> items = make_items();
+  if (dense) keys = executor.template allocate<uint64_t>(n);
   executor.fill(Span<Sphere>{sorted.data + n, 8}, 0x4c);  // all bytes 0x4c: about 5e7 Å in every coordinate
   executor.for_each(n, HashItems{cells, items.data, keys.data, order.data});
   executor.sort_by_key(keys, order, bits_for(cells.cells()));
   executor.for_each(n, GatherItems{items.data, order.data, sorted.data});
-  uint32_t *starts = nullptr;
-  if (dense_table_pays(cells.cells(), n)) {
-    starts = executor.template allocate<uint32_t>(cells.cells() + 1).data;
+  if (dense) {
     constexpr uint64_t kChunk = Executor::kIsCuda ? 1 : 16;
     executor.for_each(cells.cells() / kChunk + 1,
-                      FindCellStarts<kChunk>{keys.data, static_cast<uint32_t>(n), cells.cells(), starts});
+                      FindCellStarts<kChunk>{keys.data, static_cast<uint32_t>(n), cells.cells(), starts.data});
   }
-  return {cells, sorted.data, order.data, starts, keys.data, static_cast<uint32_t>(n)};
+  executor.arena().rewind(mark);
+  return {cells, sorted.data, order.data, starts.data, dense ? nullptr : keys.data, static_cast<uint32_t>(n)};
+}
+
+// The same for items that are there already.
+template <class Executor>
+NeighborGridView build_neighbor_grid(Executor &executor, Span<Sphere> items, const CellLayout &cells) {
+  return build_neighbor_grid(executor, items.size, cells, [&] { return items; });
 }
 
 }  // namespace quickses

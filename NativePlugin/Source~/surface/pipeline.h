@@ -8,7 +8,11 @@
 #include "surface/exact_surface.h"
 #include "surface/grid_surface.h"
 #include "surface/measure.h"
+#include "surface/memory_plan.h"
 #include "surface/mesh_memory.h"
+#include "surface/size_check.h"
+#include "surface/size_estimate.h"
+#include "surface/visible_mask.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -25,27 +29,96 @@ template <class Executor, class Timer>
 class SurfacePipeline : public SurfaceEngine {
  public:
   template <class... Arguments>
-  explicit SurfacePipeline(uint64_t memory_budget, Arguments &&...arguments)
-      : executor_(std::forward<Arguments>(arguments)...), timer_(executor_), memory_(executor_) {
-    executor_.arena().set_budget(memory_budget);
+  SurfacePipeline(uint64_t memory_budget, uint64_t memory_limit, Arguments &&...arguments)
+      : executor_(std::forward<Arguments>(arguments)...),
+        timer_(executor_),
+        memory_(executor_),
+        budget_(memory_budget),
+        limit_(memory_limit) {
+    // What is held outside of the arena is taken off; the least budget is one that is surely too small.
+    const uint64_t beside = work_bytes(0);
+    if (memory_budget > 0) executor_.arena().set_budget(memory_budget > beside + 4096 ? memory_budget - beside : 4096);
   }
 
   std::shared_ptr<AtomSet> make_atoms(size_t count) override { return memory_.make_atoms(count); }
 
-  void compute(const AtomSet &atoms, const qses_settings &settings, const std::vector<float> &spacings,
-               LevelSink &sink) override {
+  void compute(const AtomSet &atoms, const Appearance &appearance, const qses_settings &settings,
+               const std::vector<float> &spacings, LevelSink &sink) override {
     const typename Executor::CallScope scope(executor_);
     const typename Executor::StopScope stop(executor_, sink.stop_flag());
     executor_.arena().reset();
+    executor_.arena().set_limit(limit_);
     progress_.restart(sink);
     progress_.enter(0.0, 0.0);
-    double total = 0;
-    for (float h : spacings) total += work_of(h);
-    double begun = 0;
-    auto start = std::chrono::steady_clock::now();
     timer_.reset();
+    facts_ = {};
+    try {
+      compute_levels(atoms, appearance, settings, spacings, sink);
+    } catch (const MemoryRefused &) {
+      name_smallest_budget(settings);
+      throw;
+    }
+  }
+
+  qses_size_estimate estimate(const AtomSet &atoms, const Appearance &appearance,
+                              const qses_settings &settings) override {
+    const typename Executor::CallScope scope(executor_);
+    executor_.arena().reset();
+    executor_.arena().set_limit(limit_);
+    timer_.reset();
+    facts_ = {};
+    qses_size_estimate out;
+    qses_size_estimate_init(&out);
+    out.fits = 1;
+    if (atoms.count == 0) return out;
+    const std::vector<float> spacings{settings.spacing};
+    try {
+      Prepared p = prepare(atoms, appearance, settings, spacings);
+      const double kept = static_cast<double>(executor_.arena().used());
+      const double peak = static_cast<double>(executor_.arena().peak());
+      p = at_spacing(p, settings.spacing);
+      auto run = run_of(p, settings, nullptr);
+      facts_.size = estimate_size(run);
+      if (settings.method == QSES_METHOD_EXACT) facts_.caps = count_kept_caps(run);
+      const MemoryPlan<Executor> plan(facts_, kind_of(p, settings));
+      const double whole = plan.whole(kept, peak), least = plan.least();
+      const double room = static_cast<double>(executor_.arena().budget());
+      out.vertices = static_cast<uint64_t>(facts_.size.vertices);
+      out.triangles = static_cast<uint64_t>(facts_.size.triangles);
+      out.mesh_bytes = static_cast<uint64_t>(plan.mesh_bytes());
+      out.fits = room == 0 || least <= room ? 1 : 0;
+      out.work_bytes = work_bytes(static_cast<uint64_t>(room > 0 && whole > room ? std::max(least, room) : whole));
+      out.smallest_budget = work_bytes(static_cast<uint64_t>(least));
+    } catch (const MemoryRefused &) {
+      name_smallest_budget(settings);
+      throw;
+    }
+    executor_.arena().reset();
+    return out;
+  }
+
+  void enable_stage_times(bool enabled) override { timer_.enable(enabled); }
+  void set_progress(std::function<void(double)> progress) override { progress_.set(std::move(progress)); }
+
+ private:
+  // What all levels of a frame share, in the arena.
+  struct Prepared {
+    SurfaceParameters parameters{};  // spacing is the level's
+    Lattice frame{};                 // where the centred frame is
+    glm::vec3 low{0.f}, high{0.f};   // of the atoms' centres, in it
+    NeighborGridView grid{};
+    FeatureView features{};
+    AppearanceView appearance{};
+    MeshShape shape{};
+  };
+
+  void compute_levels(const AtomSet &atoms, const Appearance &appearance, const qses_settings &settings,
+                      const std::vector<float> &spacings, LevelSink &sink) {
+    double total = 0, begun = 0;
+    for (float h : spacings) total += work_of(h);
+    auto start = std::chrono::steady_clock::now();
     Prepared prepared;
-    if (atoms.count > 0) prepared = prepare(atoms, settings, spacings);
+    if (atoms.count > 0) prepared = prepare(atoms, appearance, settings, spacings);
     const auto mark = executor_.arena().mark();
     for (float h : spacings) {
       progress_.enter(begun / total, (begun + work_of(h)) / total);
@@ -63,26 +136,13 @@ class SurfacePipeline : public SurfaceEngine {
       const auto now = std::chrono::steady_clock::now();
       report.compute_ms = std::chrono::duration<double, std::milli>(now - start).count();
       start = now;
-      complete(mesh, &report);
+      complete(built, &report);
       timer_.reset();
       executor_.arena().rewind(mark);
       progress_.report(1.0);
       sink.finished(mesh, report);
     }
   }
-
-  void enable_stage_times(bool enabled) override { timer_.enable(enabled); }
-  void set_progress(std::function<void(double)> progress) override { progress_.set(std::move(progress)); }
-
- private:
-  // What all levels of a frame share, in the arena.
-  struct Prepared {
-    SurfaceParameters parameters{};  // spacing is the level's
-    Lattice frame{};                 // where the centred frame is
-    glm::vec3 low{0.f}, high{0.f};   // of the atoms' centres, in it
-    NeighborGridView grid{};
-    FeatureView features{};
-  };
 
   // The work of a level grows with the number of its lattice points at the surface.
   static double work_of(float spacing) { return 1.0 / (static_cast<double>(spacing) * static_cast<double>(spacing)); }
@@ -98,12 +158,27 @@ class SurfacePipeline : public SurfaceEngine {
   }
 
   Run<Executor, Timer> run_of(const Prepared &p, const qses_settings &settings, qses_report *report) {
-    return {executor_, timer_, memory_, progress_, table(),    settings, p.parameters,
-            p.frame,   p.low,  p.high,  p.grid,    p.features, report};
+    return {executor_,    timer_,  memory_,
+            progress_,    table(), settings,
+            p.parameters, p.frame, p.low,
+            p.high,       p.grid,  p.features,
+            p.appearance, p.shape, p.appearance.visible ? MeshPurpose::kWork : MeshPurpose::kDelivered,
+            report,       &facts_};
   }
 
-  Prepared prepare(const AtomSet &set, const qses_settings &settings, const std::vector<float> &spacings) {
+  // Something the host has per atom, where the back end reads it.
+  template <class T>
+  const T *bring(const T *host, size_t n) {
+    if (n == 0 || !Executor::kIsCuda) return n ? host : nullptr;
+    Span<T> copy = executor_.template allocate<T>(n);
+    executor_.upload(copy.data, host, n);
+    return copy.data;
+  }
+
+  Prepared prepare(const AtomSet &set, const Appearance &appearance, const qses_settings &settings,
+                   const std::vector<float> &spacings) {
     Prepared p;
+    p.shape = shape_of(settings, !appearance.colors.empty());
     const bool vdw = settings.surface == QSES_SURFACE_VDW ||
                      (settings.surface == QSES_SURFACE_SES && settings.method == QSES_METHOD_EXACT &&
                       settings.probe_radius < kSmallestProbe);
@@ -116,15 +191,20 @@ class SurfacePipeline : public SurfaceEngine {
     p.frame = center_lattice(set.bounds, frame_spacing(spacings));
     p.low = to_centered(p.frame, set.bounds.low);
     p.high = to_centered(p.frame, set.bounds.high);
-    Span<Sphere> atoms = executor_.template allocate<Sphere>(set.count);
-    {
-      Span<Sphere> given = executor_.template allocate<Sphere>(set.count);
-      executor_.upload(given.data, set.atoms, set.count);
-      executor_.for_each(set.count, CenterAtoms{given.data, p.frame.center_x, p.frame.center_y, p.frame.center_z,
+    p.appearance = {bring(appearance.visible.data(), appearance.visible.size()),
+                    bring(appearance.colors.data(), appearance.colors.size()),
+                    bring(appearance.texcoords.data(), appearance.texcoords.size())};
+    const CellLayout cells = layout_cells(p.low, p.high, std::max(p.parameters.max_radius, kSmallestCell));
+    facts_.atoms = set.count;
+    facts_.atom_cells = dense_table_pays(cells.cells(), set.count) ? cells.cells() : 0;
+    prepared_ = p;
+    p.grid = build_neighbor_grid(executor_, set.count, cells, [&] {
+      Span<Sphere> atoms = executor_.template allocate<Sphere>(set.count);
+      const Sphere *const given = bring(set.atoms, set.count);
+      executor_.for_each(set.count, CenterAtoms{given, p.frame.center_x, p.frame.center_y, p.frame.center_z,
                                                 p.parameters.probe, atoms.data});
-    }
-    p.grid = build_neighbor_grid(executor_, atoms,
-                                 layout_cells(p.low, p.high, std::max(p.parameters.max_radius, kSmallestCell)));
+      return atoms;
+    });
     remove_swallowed_atoms(executor_, p.grid, p.parameters.max_radius);
     if (settings.method == QSES_METHOD_EXACT) {
       auto run = run_of(p, settings, nullptr);
@@ -133,11 +213,51 @@ class SurfacePipeline : public SurfaceEngine {
     return p;
   }
 
-  MeshMemoryView build(Prepared p, const qses_settings &settings, float spacing, qses_report *report) {
+  static Prepared at_spacing(Prepared p, float spacing) {
     p.parameters.spacing = p.frame.spacing = spacing;
     p.features.parameters = p.parameters;
     p.frame = layout_lattice(p.frame, p.low, p.high, p.parameters.max_radius);
+    return p;
+  }
+
+  static WorkKind kind_of(const Prepared &p, const qses_settings &settings) {
+    WorkKind kind;
+    kind.exact = settings.method == QSES_METHOD_EXACT;
+    kind.masked = p.appearance.visible != nullptr;
+    kind.relaxation_steps = settings.relaxation_steps;
+    kind.shape = p.shape;
+    kind.parameters = p.parameters;
+    return kind;
+  }
+
+  // Before time is spent on a spacing that is hopelessly fine.
+  void check_spacing(const Prepared &p, Run<Executor, Timer> &run) {
+    if (run.parameters.spacing >= kCheckedSpacing || run.settings.method == QSES_METHOD_GRID) return;
+    const SurfaceSize predicted = predict_size(run);
+    WorkFacts facts = facts_;
+    facts.size = predicted;
+    const MemoryPlan<Executor> plan(facts, kind_of(p, run.settings));
+    const auto &arena = executor_.arena();
+    const double needed =
+        arena.has_budget() ? plan.least() : plan.whole(0, 0) + (Executor::kIsCuda ? 0 : plan.mesh_bytes());
+    refuse_hopeless_spacing(static_cast<double>(run.parameters.spacing), predicted, needed,
+                            static_cast<double>(arena.limit()));
+  }
+
+  // Memory was refused. With a budget the user is told which one would do, as far as that is known by now.
+  void name_smallest_budget(const qses_settings &settings) {
+    if (budget_ == 0) return;
+    const double least = least_of_unfinished<Executor>(facts_, kind_of(prepared_, settings));
+    const uint64_t budget = work_bytes(static_cast<uint64_t>(least));
+    throw Error(QSES_OUT_OF_MEMORY,
+                "the memory budget of " + describe_bytes(budget_) + " does not suffice for this surface: about " +
+                    describe_bytes(std::max(budget, budget_ + budget_ / 8)) + " would do, or a larger spacing");
+  }
+
+  MeshMemoryView build(const Prepared &prepared, const qses_settings &settings, float spacing, qses_report *report) {
+    const Prepared p = prepared_ = at_spacing(prepared, spacing);
     auto run = run_of(p, settings, report);
+    check_spacing(p, run);
     MeshMemoryView mesh = settings.method == QSES_METHOD_GRID ? build_grid_surface(run) : build_exact_surface(run);
     timer_.begin("measure");
     const MeshCounts counts{mesh.vertices, mesh.triangles};
@@ -149,14 +269,18 @@ class SurfacePipeline : public SurfaceEngine {
     } else {
       mesh.bounds = find_bounds(executor_, mesh.view, counts);
     }
+    if (!p.appearance.visible || mesh.vertices == 0) return mesh;
+    timer_.begin("visible_mask");
+    mesh = drop_hidden(run, mesh);
+    mesh.bounds = find_bounds(executor_, mesh.view, MeshCounts{mesh.vertices, mesh.triangles});
     return mesh;
   }
 
   // Memory and times of the level that is just finished.
-  void complete(const qses_mesh &mesh, qses_report *report) {
-    report->work_bytes_peak = executor_.arena().peak();
-    report->mesh_bytes = memory_.mesh_bytes(mesh);
-    report->host_bytes_peak = memory_.host_bytes() + (Executor::kIsCuda ? 0 : executor_.arena().peak());
+  void complete(const MeshMemoryView &mesh, qses_report *report) {
+    report->work_bytes_peak = work_bytes(executor_.arena().peak());
+    report->mesh_bytes = mesh.bytes;
+    report->host_bytes_peak = memory_.host_bytes() + (Executor::kIsCuda ? 0 : report->work_bytes_peak);
     for (const auto &stage : timer_.collect()) {
       if (report->stage_count == QSES_MAX_STAGES) break;
       qses_stage_time &out = report->stages[report->stage_count++];
@@ -171,9 +295,15 @@ class SurfacePipeline : public SurfaceEngine {
     return table_;
   }
 
+  // Bytes of the arena and of what lies beside it.
+  uint64_t work_bytes(uint64_t arena) const { return arena + memory_.beside_arena(executor_); }
+
   Executor executor_;
   Timer timer_;
   MeshMemory<Executor> memory_;
+  uint64_t budget_, limit_;
+  WorkFacts facts_{};
+  Prepared prepared_{};  // of the computation that runs, for messages
   Progress progress_;
   TableView table_{};
 };

@@ -11,7 +11,8 @@ namespace quickses {
 // ---- sums over the triangles around each vertex ----------------------------------------------------------------
 
 // Sums are kept as integers, in 2^-19 of a unit: integers add up to the same in any order. A vertex of marching cubes
-// has at most 20 triangles, so with 40 terms of at most 64 units nothing overflows.
+// has at most 20 triangles, so with 40 terms of at most 64 units nothing overflows. Steps are given room for one sum
+// per vertex.
 constexpr float kRingUnits = 524288.f;
 constexpr float kMaxRingTerm = 64.f;
 
@@ -73,11 +74,6 @@ QSES_FN Vec3<float> mean_offset(const RingSum &sum, float spacing) {
   return ring_vector(sum, spacing / static_cast<float>(sum.count));
 }
 
-template <class Executor>
-Span<RingSum> allocate_ring_sums(Executor &executor, const MeshCounts &counts) {
-  return executor.template allocate<RingSum>(counts.vertices);
-}
-
 // ---- Laplacian smoothing ---------------------------------------------------------------------------------------
 
 struct MoveToMean {
@@ -94,17 +90,14 @@ struct MoveToMean {
 // the weights of the paper's program. That program moves the vertices one after the other, so that later ones see
 // earlier ones moved; here all move at once, and the result does not depend on their order.
 template <class Executor>
-void smooth_laplacian(Executor &executor, const MeshView &mesh, const MeshCounts &counts, float spacing,
-                      uint32_t steps) {
+void smooth_laplacian(Executor &executor, const MeshView &mesh, const MeshCounts &counts, float spacing, uint32_t steps,
+                      Span<RingSum> sums) {
   if (steps == 0 || counts.vertices == 0) return;
-  const auto mark = executor.arena().mark();
-  Span<RingSum> sums = allocate_ring_sums(executor, counts);
   for (uint32_t k = 0; k < steps; ++k) {
     executor.fill(sums, 0);
     executor.for_each(counts.triangles, AddNeighborOffsets{mesh, 1.f / spacing, sums.data});
     executor.for_each(counts.vertices, MoveToMean{sums.data, spacing, mesh});
   }
-  executor.arena().rewind(mark);
 }
 
 // ---- tangential steps of the exact method ----------------------------------------------------------------------
@@ -157,15 +150,12 @@ struct TangentialStarts {
 // Fills starts[vertex] (centred frame) from positions and normals of the mesh. starts is the caller's.
 template <class Executor>
 void tangential_starts(Executor &executor, const BrickSet &bricks, const MeshLayout &layout, const MeshView &mesh,
-                       const MeshCounts &counts, glm::vec3 *starts) {
-  const auto mark = executor.arena().mark();
+                       const MeshCounts &counts, Span<RingSum> sums, glm::vec3 *starts) {
   const float spacing = bricks.lattice.spacing;
-  Span<RingSum> sums = allocate_ring_sums(executor, counts);
   executor.fill(sums, 0);
   executor.for_each(counts.triangles, AddNeighborOffsets{mesh, 1.f / spacing, sums.data});
   executor.template for_each_brick<NoScratch>(
       bricks.count, TangentialStarts{bricks.lattice, bricks.linear, layout.vertex_base, sums.data, mesh, starts});
-  executor.arena().rewind(mark);
 }
 
 // ---- normals ---------------------------------------------------------------------------------------------------
@@ -197,15 +187,13 @@ struct NormalizeSums {
 // Unit normals, outward whatever the winding: the mean of the triangles around a vertex, weighted by their areas. A
 // vertex that has only triangles without area keeps the normal it had.
 template <class Executor>
-void compute_normals(Executor &executor, const MeshView &mesh, const MeshCounts &counts, float spacing) {
+void compute_normals(Executor &executor, const MeshView &mesh, const MeshCounts &counts, float spacing,
+                     Span<RingSum> sums) {
   if (counts.vertices == 0) return;
-  const auto mark = executor.arena().mark();
-  Span<RingSum> sums = allocate_ring_sums(executor, counts);
   executor.fill(sums, 0);
   const float scale = (mesh.reversed ? -1.f : 1.f) / (spacing * spacing);
   executor.for_each(counts.triangles, AddTriangleNormals{mesh, scale, sums.data});
   executor.for_each(counts.vertices, NormalizeSums{sums.data, mesh});
-  executor.arena().rewind(mark);
 }
 
 }  // namespace quickses

@@ -3,9 +3,12 @@
 #pragma once
 
 #include "parallel/error.h"
+#include "surface/appearance.h"
 #include "surface/engine.h"
 #include "surface/measure.h"
+#include "surface/mesh_arrays.h"
 #include "surface/stages.h"
+#include "surface/work_facts.h"
 
 #include <algorithm>
 
@@ -45,9 +48,15 @@ class Progress {
 // A mesh being made, in the memory of the back end.
 struct MeshMemoryView {
   MeshView view{};
-  size_t vertices = 0, triangles = 0;
+  MeshShape shape{};
+  size_t vertices = 0, triangles = 0, bytes = 0;
+  void *memory = nullptr;
+  bool on_host = false;  // CUDA: it did not fit on the device; it is filled slab by slab
   Bounds bounds{};
 };
+
+// What a mesh is for: to be handed out, or to be made into another one.
+enum class MeshPurpose { kDelivered, kWork };
 
 template <class Executor>
 class MeshMemory;
@@ -65,23 +74,45 @@ struct Run {
   glm::vec3 low, high;  // bounds of the atoms' centres, centred frame
   NeighborGridView atoms;
   FeatureView features;  // exact method only
+  AppearanceView appearance;
+  MeshShape shape;
+  MeshPurpose purpose;
   qses_report *report;
+  WorkFacts *facts;
 };
 
+// Slices are not cut smaller than this when memory is refused.
+constexpr uint32_t kLeastSlice = 16;
+// With room for the work on so many bricks at a time, slices cost next to nothing.
+constexpr uint32_t kRoomySlice = 4096;
+
 // Calls work(slice) for all bricks, in slices of at most `bricks_per_slice`, and reports progress from `begin` to
-// `end`. What work allocates is given up after each slice unless there is only one.
+// `end`. What work allocates is given up after each slice unless there is only one. If memory is refused, smaller
+// slices are tried, unless there is only one. Returns the number of slices.
 template <class R, class Work>
-void for_each_slice(R &run, uint32_t brick_count, uint32_t bricks_per_slice, double begin, double end,
-                    const Work &work) {
+uint64_t for_each_slice(R &run, uint32_t brick_count, uint32_t bricks_per_slice, double begin, double end,
+                        const Work &work) {
   const bool one = bricks_per_slice >= brick_count;
-  for (uint32_t first = 0; first < brick_count;) {
-    const uint32_t last = one ? brick_count : first + std::min(bricks_per_slice, brick_count - first);
+  uint64_t slices = 0;
+  for (uint32_t first = 0; first < brick_count; ++slices) {
+    uint32_t last = one ? brick_count : first + std::min(bricks_per_slice, brick_count - first);
     const auto mark = run.executor.arena().mark();
-    work(BrickRange{first, last});
+    for (;;) {
+      try {
+        work(BrickRange{first, last});
+        break;
+      } catch (const MemoryRefused &) {
+        if (one || last - first <= kLeastSlice) throw;
+        run.executor.arena().rewind(mark);
+        bricks_per_slice = std::max(kLeastSlice, (last - first) / 2);
+        last = first + bricks_per_slice;
+      }
+    }
     if (!one) run.executor.arena().rewind(mark);
     first = last;
     run.progress.report(begin + (end - begin) * first / brick_count);
   }
+  return slices;
 }
 
 // Bricks per slice from the settings: at most slice_size cubed lattice points. slice_size 0: all at once, or as many

@@ -5,6 +5,7 @@
 
 #include "surface/projection.h"
 #include "surface/run.h"
+#include "surface/work_facts.h"
 
 #include <cmath>
 
@@ -31,35 +32,38 @@ struct ExposedArea {
   }
 };
 
-// Bytes per Å² / spacing²: 1.5 vertices of 28 bytes, 3 triangles of 12, and 344 bytes for each of the
-// 1.8 / 64 bricks, as measured on proteins.
+// Per Å² / spacing², as measured on proteins: 1.5 vertices, 3 triangles, and 1.8 / 64 of a brick.
 constexpr double kVerticesPerCell = 1.5;
-constexpr double kBytesPerCell = kVerticesPerCell * 28 + 2 * kVerticesPerCell * 12 + 344 * 1.8 / 64;
+constexpr double kBricksPerCell = 1.8 / 64;
 // Coarser spacings are never refused here, and a prediction only if it fails by this factor.
 constexpr float kCheckedSpacing = 0.25f;
 constexpr double kCertainty = 1.5;
 
+// From the features, before any brick is looked for.
 template <class R>
-void refuse_hopeless_spacing(R &run, const FeatureView &features, uint64_t available_bytes) {
+SurfaceSize predict_size(R &run) {
   const double h = static_cast<double>(run.parameters.spacing);
-  if (run.parameters.spacing >= kCheckedSpacing) return;
-  const double cells = run.executor.reduce(features.atoms.count, ExposedArea{features}) / (h * h);
-  const double vertices = cells * kVerticesPerCell, bytes = cells * kBytesPerCell;
-  if (2.0 * vertices > kCertainty * 4294967295.0) {
-    char text[200];
+  const double cells = run.executor.reduce(run.features.atoms.count, ExposedArea{run.features}) / (h * h);
+  return {cells * kBricksPerCell, cells * kVerticesPerCell, 2.0 * cells * kVerticesPerCell};
+}
+
+// available: bytes; 0: not known. needed: of them, if the surface has the predicted size.
+inline void refuse_hopeless_spacing(double spacing, const SurfaceSize &predicted, double needed, double available) {
+  char text[240];
+  constexpr double kMostTriangles = 4294967295.0;
+  if (predicted.triangles > kCertainty * kMostTriangles) {
     std::snprintf(text, sizeof text,
                   "spacing %g Å is too fine for this structure: about %.2g triangles, more than 32-bit indices can "
                   "name; about %.2g Å would do",
-                  h, 2.0 * vertices, h * std::sqrt(2.0 * vertices / 4294967295.0));
+                  spacing, predicted.triangles, spacing * std::sqrt(predicted.triangles / kMostTriangles));
     throw Error(QSES_TOO_FINE, text);
   }
-  if (available_bytes > 0 && bytes > kCertainty * static_cast<double>(available_bytes)) {
-    char text[200];
-    std::snprintf(
-        text, sizeof text,
-        "spacing %g Å needs about %s of memory for this structure, but %s are available; about %.2g Å would do", h,
-        describe_bytes(static_cast<uint64_t>(bytes)).c_str(), describe_bytes(available_bytes).c_str(),
-        h * std::sqrt(bytes / static_cast<double>(available_bytes)));
+  if (available > 0 && needed > kCertainty * available) {
+    std::snprintf(text, sizeof text,
+                  "spacing %g Å needs about %s of memory for this structure, but %s are available; about %.2g Å "
+                  "would do",
+                  spacing, describe_bytes(static_cast<uint64_t>(needed)).c_str(),
+                  describe_bytes(static_cast<uint64_t>(available)).c_str(), spacing * std::sqrt(needed / available));
     throw Error(QSES_OUT_OF_MEMORY, text);
   }
 }

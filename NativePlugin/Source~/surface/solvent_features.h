@@ -88,6 +88,12 @@ struct GatherArcs {
   QSES_HOST_DEVICE void operator()(size_t i) const { sorted[i] = arcs[order[i]]; }
 };
 
+struct CopyArcs {
+  const Arc *from;
+  Arc *to;
+  QSES_HOST_DEVICE void operator()(size_t i) const { to[i] = from[i]; }
+};
+
 // Edge of the grid of arcs: arcs are looked for in boxes of about a brick, whatever the atoms' radii.
 constexpr float kArcCellEdge = 4.f;
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // GPU driver of the solvent features: a warp per atom for the caps, a lane per circle for the arcs. Results are staged
 // wherever there is room and then put in order; if a guess of their number was too small, all is done again with room
-// for what was counted.
+// for what was counted. With little memory the atoms are worked on in runs, and only the caps that later stages look at
+// are kept.
 #pragma once
 
 #include "surface/circle_clipping_cuda.cuh"
@@ -12,12 +13,13 @@ namespace gpu {
 struct CapJob {
   NeighborGridView atoms;
   float max_radius;
+  AtomRun run;
   FeatureRoom room;
   FeatureCounters *counters;
   CapRange *cap_ranges;
   Cap *caps;
-  uint32_t *neighbors;     // per cap: the atom behind it
-  uint32_t *circle_count;  // per atom: circles it owns
+  uint32_t *neighbors;     // per cap: the atom behind it; nullptr: of the exposed atoms, only caps are wanted
+  uint32_t *circle_count;  // per atom of the run: circles it owns
   uint8_t *exposed;        // per atom
   uint32_t *long_atoms;    // those with more neighbours than a warp's rows hold
 };
@@ -139,10 +141,11 @@ __device__ __forceinline__ int drop_contained_caps(const CapRows &rows, int n) {
 __device__ __forceinline__ bool find_caps(const CapJob &job, uint32_t i, const CapRows &rows, int room) {
   const int lane = lane_id();
   const Sphere self = load(job.atoms.items + i);
-  if (is_far_away(self)) {
+  const bool with_circles = job.neighbors != nullptr;
+  if (is_far_away(self) || (!with_circles && !job.exposed[i])) {
     if (lane == 0) {
       job.cap_ranges[i] = {0, 0};
-      job.circle_count[i] = 0;
+      if (with_circles) job.circle_count[i - job.run.first] = 0;
     }
     return true;
   }
@@ -171,7 +174,7 @@ __device__ __forceinline__ bool find_caps(const CapJob &job, uint32_t i, const C
       }
       if (fits) {
         job.caps[first + rank] = {cap.axis, stored_cap_cosine(cap.cosine, self.radius)};
-        job.neighbors[first + rank] = neighbor;
+        if (with_circles) job.neighbors[first + rank] = neighbor;
       }
       owns = neighbor > i;
     }
@@ -179,7 +182,7 @@ __device__ __forceinline__ bool find_caps(const CapJob &job, uint32_t i, const C
   }
   if (lane == 0) {
     job.cap_ranges[i] = {static_cast<uint32_t>(first), fits ? n : 0};
-    job.circle_count[i] = fits ? static_cast<uint32_t>(circles) : 0;
+    if (with_circles) job.circle_count[i - job.run.first] = fits ? static_cast<uint32_t>(circles) : 0;
     if (alone) job.exposed[i] = 1;
     if (circles > 0) atomicAdd(&job.counters->circles, static_cast<unsigned long long>(circles));
     if (n > 0) atomicMax(&job.counters->longest_row, static_cast<uint32_t>(n));
@@ -194,13 +197,15 @@ static __global__ __launch_bounds__(kCapWarps *kWarp) void find_caps_kernel(CapJ
   __shared__ uint32_t neighbor[kCapWarps][kRowNeighbors];
   const int warp = static_cast<int>(threadIdx.x) / kWarp;
   const CapRows rows{cap[warp], sine[warp], neighbor[warp]};
-  for (uint32_t i = blockIdx.x * kCapWarps + static_cast<uint32_t>(warp); i < job.atoms.count;
-       i += gridDim.x * kCapWarps)
+  for (uint32_t place = blockIdx.x * kCapWarps + static_cast<uint32_t>(warp); place < job.run.size();
+       place += gridDim.x * kCapWarps) {
+    const uint32_t i = job.run.first + place;
     if (!find_caps(job, i, rows, kRowNeighbors) && lane_id() == 0) {
       job.long_atoms[atomicAdd(&job.counters->long_atoms, 1u)] = i;
       job.cap_ranges[i] = {0, 0};
-      job.circle_count[i] = 0;
+      if (job.neighbors) job.circle_count[place] = 0;
     }
+  }
 }
 
 // The same for the atoms that have more neighbours, with rows of the needed length in global memory.
@@ -222,58 +227,152 @@ struct ExposeAtoms {
   }
 };
 
-}  // namespace gpu
+// What one pass over a run of atoms reads and writes besides its results.
+struct FeaturePass {
+  NeighborGridView atoms;
+  float max_radius;
+  CapRange *cap_ranges;
+  uint8_t *exposed;
+};
 
-inline SolventFeatures find_solvent_features(CudaExecutor &executor, const NeighborGridView &atoms,
-                                             const SurfaceParameters &parameters) {
-  using namespace gpu;
-  const uint32_t n = atoms.count;
-  SolventFeatures features;
-  features.cap_ranges = executor.allocate<CapRange>(n);
-  if (n == 0) return features;
+// The caps of a run of atoms.
+inline void find_caps(CudaExecutor &executor, const CapJob &job) {
+  const size_t blocks =
+      std::min<size_t>((job.run.size() + kCapWarps - 1) / kCapWarps, size_t(executor.multiprocessors()) * 128);
+  executor.launch("find_caps", find_caps_kernel, blocks, kCapWarps * kWarp, 0, job);
+  if (job.room.neighbors == 0) return;
+  const size_t long_blocks = std::min<size_t>(blocks, size_t(executor.multiprocessors()) * 4);
+  const auto mark = executor.arena().mark();
+  Span<unsigned char> memory = executor.allocate<unsigned char>(long_blocks * kCapWarps * job.room.neighbors *
+                                                                (sizeof(Cap) + sizeof(float) + sizeof(uint32_t)));
+  executor.launch("find_long_caps", find_long_caps_kernel, long_blocks, kCapWarps * kWarp, 0, job, memory.data);
+  executor.arena().rewind(mark);
+}
+
+// One attempt at the caps and arcs of a run of atoms; returns what was counted. Waits.
+inline FeatureCounters find_run_features(CudaExecutor &executor, const FeaturePass &pass, AtomRun run,
+                                         const FeatureRoom &room, Cap *caps, Arc *arcs) {
+  const auto mark = executor.arena().mark();
+  const size_t n = run.size();
+  Span<FeatureCounters> counters = executor.allocate<FeatureCounters>(1);
+  Span<uint32_t> neighbors = executor.allocate<uint32_t>(room.caps);
+  Span<uint32_t> circle_count = executor.allocate<uint32_t>(n), circle_first = executor.allocate<uint32_t>(n + 1);
+  Span<uint32_t> long_atoms = executor.allocate<uint32_t>(n);
+  executor.fill(counters, 0);
+  find_caps(executor, CapJob{pass.atoms, pass.max_radius, run, room, counters.data, pass.cap_ranges, caps,
+                             neighbors.data, circle_count.data, pass.exposed, long_atoms.data});
+  executor.exclusive_scan(n, LoadNumber{circle_count.data}, circle_first);
+  clip_circles(executor, CircleJob{pass.atoms, run, room, counters.data, pass.cap_ranges, caps, neighbors.data,
+                                   circle_first.data, pass.exposed, arcs});
+  const FeatureCounters found = executor.fetch(counters.data);
+  executor.arena().rewind(mark);
+  return found;
+}
+
+// All atoms at once.
+inline void find_all_features(CudaExecutor &executor, const FeaturePass &pass, SolventFeatures *features) {
+  const uint32_t n = pass.atoms.count;
   FeatureRoom room = FeatureRoom::guess(n);
-  const auto start = executor.arena().mark();
-  for (;;) {
-    features.caps = executor.allocate<Cap>(room.caps);
-    features.arcs = executor.allocate<Arc>(room.arcs);
-    const auto scratch = executor.arena().mark();
-    Span<FeatureCounters> counters = executor.allocate<FeatureCounters>(1);
-    Span<uint8_t> exposed = executor.allocate<uint8_t>(n);
-    Span<uint32_t> neighbors = executor.allocate<uint32_t>(room.caps);
-    Span<uint32_t> circle_count = executor.allocate<uint32_t>(n), circle_first = executor.allocate<uint32_t>(n + 1);
-    Span<uint32_t> long_atoms = executor.allocate<uint32_t>(n);
-    executor.fill(counters, 0);
-    executor.fill(exposed, 0);
-
-    const CapJob job{atoms,          parameters.max_radius,    room,
-                     counters.data,  features.cap_ranges.data, features.caps.data,
-                     neighbors.data, circle_count.data,        exposed.data,
-                     long_atoms.data};
-    const size_t blocks = std::min<size_t>((n + kCapWarps - 1) / kCapWarps, size_t(executor.multiprocessors()) * 128);
-    executor.launch("find_caps", find_caps_kernel, blocks, kCapWarps * kWarp, 0, job);
-    if (room.neighbors > 0) {
-      const size_t long_blocks = std::min<size_t>(blocks, size_t(executor.multiprocessors()) * 4);
-      const auto mark = executor.arena().mark();
-      Span<unsigned char> memory = executor.allocate<unsigned char>(long_blocks * kCapWarps * room.neighbors *
-                                                                    (sizeof(Cap) + sizeof(float) + sizeof(uint32_t)));
-      executor.launch("find_long_caps", find_long_caps_kernel, long_blocks, kCapWarps * kWarp, 0, job, memory.data);
-      executor.arena().rewind(mark);
-    }
-    executor.exclusive_scan(n, LoadNumber{circle_count.data}, circle_first);
-    clip_circles(executor, CircleJob{atoms, room, counters.data, features.cap_ranges.data, features.caps.data,
-                                     neighbors.data, circle_first.data, exposed.data, features.arcs.data});
-    executor.for_each(n, ExposeAtoms{exposed.data, features.cap_ranges.data});
-
-    const FeatureCounters found = executor.fetch(counters.data);
+  for (const auto start = executor.arena().mark();; executor.arena().rewind(start)) {
+    features->caps = executor.allocate<Cap>(room.caps);
+    features->arcs = executor.allocate<Arc>(room.arcs);
+    const FeatureCounters found =
+        find_run_features(executor, pass, AtomRun{0, n}, room, features->caps.data, features->arcs.data);
     if (room.holds(found)) {
-      features.caps.size = static_cast<size_t>(found.caps);
-      features.arcs.size = static_cast<size_t>(found.arcs);
-      executor.arena().rewind(scratch);
-      return features;
+      features->caps.size = static_cast<size_t>(found.caps);
+      features->arcs.size = static_cast<size_t>(found.arcs);
+      return;
     }
     room.grow(found);
-    executor.arena().rewind(start);
   }
+}
+
+struct CountExposedCaps {
+  const uint8_t *exposed;
+  const CapRange *cap_ranges;
+  QSES_HOST_DEVICE double operator()(size_t i) const { return exposed[i] ? cap_ranges[i].count : 0; }
+};
+
+// Bytes that the work on an atom takes, with the room that is guessed at first.
+constexpr size_t kAtomWorkBytes = 28 * 20 + 14 * 20 + 3 * sizeof(StagedCircle) + 5 * sizeof(ExposedArc) + 12;
+constexpr uint32_t kLeastRun = 128;
+
+// Run after run. The caps of a run serve its circles only; in the end those of the exposed atoms are found once more.
+inline void find_features_in_runs(CudaExecutor &executor, const FeaturePass &pass, SolventFeatures *features) {
+  const uint32_t n = pass.atoms.count;
+  auto &arena = executor.arena();
+  uint64_t atoms_per_run = std::min<uint64_t>(n, std::max<uint64_t>(kLeastRun, arena.available() / 8 / kAtomWorkBytes));
+  // The arcs get what the work leaves, and give back what they do not need.
+  const uint64_t reserve = 2 * atoms_per_run * kAtomWorkBytes + 65536;
+  const auto before_arcs = arena.mark();
+  const uint64_t free = arena.available();
+  Span<Arc> arcs = executor.allocate<Arc>(static_cast<size_t>((free > reserve ? free - reserve : 0) / sizeof(Arc)));
+  uint64_t arc_total = 0;
+  size_t neighbors = 0;
+  for (uint32_t first = 0; first < n;) {
+    const AtomRun run{first, static_cast<uint32_t>(std::min<uint64_t>(n, first + atoms_per_run))};
+    FeatureRoom room = FeatureRoom::guess(run.size());
+    const auto mark = arena.mark();
+    try {
+      for (;; arena.rewind(mark)) {
+        room.arcs = arcs.size > arc_total ? static_cast<size_t>(arcs.size - arc_total) : 0;
+        room.neighbors = std::max(room.neighbors, neighbors);
+        Cap *const caps = executor.allocate<Cap>(room.caps).data;
+        FeatureCounters found = find_run_features(executor, pass, run, room, caps, arcs.data + arc_total);
+        const unsigned long long run_arcs = found.arcs;
+        found.arcs = 0;  // if they do not fit, no other attempt would help: they are only counted from then on
+        if (room.holds(found)) {
+          arc_total += run_arcs;
+          break;
+        }
+        room.grow(found);
+      }
+      neighbors = std::max(neighbors, room.neighbors);
+      first = run.last;
+      arena.rewind(mark);
+    } catch (const MemoryRefused &) {
+      arena.rewind(mark);
+      if (run.size() <= kLeastRun) throw;
+      atoms_per_run = std::max<uint64_t>(kLeastRun, run.size() / 2);
+    }
+  }
+  const uint64_t cap_total = static_cast<uint64_t>(executor.reduce(n, CountExposedCaps{pass.exposed, pass.cap_ranges}));
+  features->caps.size = static_cast<size_t>(cap_total);
+  features->arcs.size = static_cast<size_t>(arc_total);
+  arena.rewind(before_arcs);
+  if (arc_total > arcs.size) throw MemoryRefused("the arcs of the atoms do not fit into the memory budget");
+  features->arcs = executor.allocate<Arc>(static_cast<size_t>(arc_total));  // where they are already
+  features->caps = executor.allocate<Cap>(static_cast<size_t>(cap_total));
+
+  const auto mark = arena.mark();
+  FeatureRoom room{};
+  room.caps = static_cast<size_t>(cap_total);
+  room.neighbors = neighbors;
+  Span<FeatureCounters> counters = executor.allocate<FeatureCounters>(1);
+  Span<uint32_t> long_atoms = executor.allocate<uint32_t>(n);
+  executor.fill(counters, 0);
+  find_caps(executor, CapJob{pass.atoms, pass.max_radius, AtomRun{0, n}, room, counters.data, pass.cap_ranges,
+                             features->caps.data, nullptr, nullptr, pass.exposed, long_atoms.data});
+  arena.rewind(mark);
+}
+
+}  // namespace gpu
+
+inline void find_solvent_features(CudaExecutor &executor, const NeighborGridView &atoms,
+                                  const SurfaceParameters &parameters, SolventFeatures *features) {
+  using namespace gpu;
+  features->cap_ranges = executor.allocate<CapRange>(atoms.count);
+  if (atoms.count == 0) return;
+  Span<uint8_t> exposed = executor.allocate<uint8_t>(atoms.count);
+  executor.fill(exposed, 0);
+  const FeaturePass pass{atoms, parameters.max_radius, features->cap_ranges.data, exposed.data};
+  // Work and results of all atoms, and half as much again for the arcs' grid.
+  const uint64_t all = atoms.count * uint64_t(kAtomWorkBytes + 7 * sizeof(Arc)) + 65536;
+  if (executor.arena().available() / 3 * 2 > all)
+    find_all_features(executor, pass, features);
+  else
+    find_features_in_runs(executor, pass, features);
+  executor.for_each(atoms.count, ExposeAtoms{exposed.data, features->cap_ranges.data});
 }
 
 }  // namespace quickses

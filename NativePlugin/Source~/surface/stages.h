@@ -3,7 +3,8 @@
 // in the shape of their loops: packs of eight and one thread per brick on the CPU, warps on the GPU. The pipeline calls
 // them by overload on the executor:
 //
-//   SolventFeatures find_solvent_features(Executor &, const NeighborGridView &atoms, const SurfaceParameters &)
+//   void find_solvent_features(Executor &, const NeighborGridView &atoms, const SurfaceParameters &, SolventFeatures *)
+//       throws MemoryRefused; the sizes of the features are set if they were counted before
 //   Candidates<Executor>   what the two stages below may share for a slice of bricks (CPU: nothing)
 //   void evaluate_signs(Executor &, const FeatureView &, const BrickSet &, BrickRange, Candidates<Executor> &,
 //                       uint64_t *signs)
@@ -39,8 +40,9 @@ struct TableView {
   const uint64_t (*ring)[kCellEdges];  // [256]
 };
 
-// CandidatesOf<E>::type; kFromSigns: emit_vertices needs what evaluate_signs left in it for the same slice;
-// max_bricks(executor, n): how many of n bricks one slice may have for the memory that is left.
+// CandidatesOf<E>::type, and bytes of arena that a brick takes, roughly: sign_bytes(parameters) while signs are
+// evaluated, emission_bytes(parameters, vertices of the brick) while vertices are emitted, whole_bytes(parameters) for
+// all until the mesh is done, if all bricks are worked on at once.
 template <class Executor>
 struct CandidatesOf;
 template <class Executor>

@@ -28,7 +28,6 @@ struct VertexJob {
 
 // Row of a leaf's vertices: word 0 has the number of atoms in its lower and of arcs in its upper half, then they
 // follow. If they are too many the brick's row is used.
-constexpr int kRowWords = 64;
 constexpr uint32_t kBrickRow = 0x80000000u;
 constexpr int kLeafWarps = 4;
 constexpr int kMostLeafVertices = kAxes * 64;

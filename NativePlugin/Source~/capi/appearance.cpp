@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// What vertices take from their atoms. A job that runs keeps what it was begun with: the sets are changed only while
+// nobody else holds them, else replaced.
+#include "capi/context.h"
+
+#include <algorithm>
+#include <cstring>
+
+using quickses::Appearance;
+using quickses::check_atom_count;
+using quickses::guarded;
+using quickses::require;
+
+namespace {
+
+// Calls change(appearance) on one that only the context holds.
+template <class Change>
+void change_appearance(qses_context *context, size_t count, const char *function, const Change &change) {
+  require(context, "context");
+  check_atom_count(*context, count, function);
+  auto next = std::make_shared<Appearance>(*context->appearance);
+  change(*next);
+  context->appearance = next;
+}
+
+}  // namespace
+
+extern "C" {
+
+qses_status qses_set_visible(qses_context *context, const uint8_t *visible, size_t count) {
+  return guarded([&] {
+    change_appearance(context, count, "qses_set_visible", [&](Appearance &a) {
+      a.visible.clear();
+      if (visible && std::find(visible, visible + count, uint8_t(0)) != visible + count)
+        a.visible.assign(visible, visible + count);
+    });
+  });
+}
+
+qses_status qses_set_colors(qses_context *context, const uint8_t *rgba, size_t count) {
+  return guarded([&] {
+    change_appearance(context, count, "qses_set_colors", [&](Appearance &a) {
+      a.colors.resize(rgba ? count : 0);
+      if (rgba && count > 0) std::memcpy(a.colors.data(), rgba, 4 * count);
+    });
+  });
+}
+
+qses_status qses_set_texcoords(qses_context *context, const float *uv, size_t count) {
+  return guarded([&] {
+    change_appearance(context, count, "qses_set_texcoords", [&](Appearance &a) {
+      a.texcoords.resize(uv ? count : 0);
+      if (uv && count > 0) std::memcpy(static_cast<void *>(a.texcoords.data()), uv, sizeof(glm::vec2) * count);
+    });
+  });
+}
+
+}  // extern "C"

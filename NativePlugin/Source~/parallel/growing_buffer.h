@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// Memory that only grows, without initialisation: what is in it is lost when it does.
+#pragma once
+
+#include "parallel/arena.h"
+
+namespace quickses {
+
+// Source as of Arena. Not for use by several threads.
+template <class Source>
+class GrowingBuffer {
+ public:
+  GrowingBuffer() = default;
+  GrowingBuffer(const GrowingBuffer &) = delete;
+  GrowingBuffer &operator=(const GrowingBuffer &) = delete;
+  ~GrowingBuffer() { release(); }
+
+  // At least this many bytes. Throws MemoryRefused; the buffer is empty then. Nothing may be in flight from or to the
+  // old memory.
+  void *reserve(size_t bytes) {
+    if (bytes <= size_) return memory_;
+    release();
+    // A little more than asked for, so that a trajectory soon stops growing.
+    size_ = bytes + bytes / 8 + 4096;
+    memory_ = Source::acquire(size_);
+    if (!memory_) memory_ = Source::acquire(size_ = bytes);
+    if (!memory_) {
+      size_ = 0;
+      throw MemoryRefused(std::string(Source::kName) + " refused " + describe_bytes(bytes) + " for the mesh");
+    }
+    return memory_;
+  }
+  void release() {
+    if (memory_) Source::release(memory_);
+    memory_ = nullptr;
+    size_ = 0;
+  }
+  void *data() const { return memory_; }
+  size_t size() const { return size_; }
+
+ private:
+  void *memory_ = nullptr;
+  size_t size_ = 0;
+};
+
+}  // namespace quickses

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+// How large a mesh will be, without making it: lattice edges that change sign are counted, on the lattice itself if
+// that is cheap, else on two coarser ones. Vertices times spacing squared come near a straight line over the spacing.
+#pragma once
+
+#include "surface/grid_surface.h"
+#include "surface/memory_plan.h"
+#include "surface/size_check.h"
+
+namespace quickses {
+
+// Bricks that are counted without a thought.
+constexpr double kCheapBricks = 32768;
+
+// Bricks of a surface, roughly: an atom has 10 Å² of it, and a cell in 64 / 1.8 of a brick is cut.
+inline double guess_bricks(double atoms, double spacing) { return atoms * 10.0 / (spacing * spacing) * 1.8 / 64.0; }
+
+// Counts at the spacing of the run. Gives up all memory it takes.
+template <class R>
+SurfaceSize count_size(R &run, uint64_t *brick_entries) {
+  auto &executor = run.executor;
+  using Executor = std::remove_reference_t<decltype(executor)>;
+  const auto mark = executor.arena().mark();
+  const auto count = [&](const BrickSet &bricks, const auto &evaluate) {
+    *brick_entries = bricks.table ? bricks.lattice.table_size() : 0;
+    Span<uint64_t> signs = executor.template allocate<uint64_t>(size_t(bricks.count) * kLeavesPerBrick);
+    evaluate(bricks, signs.data);
+    MeshLayout layout{};
+    const MeshCounts counts = lay_out_mesh(executor, bricks, signs.data, run.table.triangle_count, &layout);
+    executor.arena().rewind(mark);
+    return SurfaceSize{static_cast<double>(bricks.count), static_cast<double>(counts.vertices),
+                       static_cast<double>(counts.triangles)};
+  };
+  const auto in_slices = [&](const BrickSet &bricks, double bytes_per_brick, const auto &work) {
+    // One slice less than all, so that smaller ones are tried where memory is short.
+    const uint32_t fitting = bricks_that_fit(run, bricks.count, static_cast<uint64_t>(bytes_per_brick) + 1);
+    for_each_slice(run, bricks.count, std::max<uint32_t>(1, std::min(fitting, bricks.count - 1)), 0, 0, work);
+  };
+  if (run.settings.method == QSES_METHOD_GRID) {
+    const GridParameters parameters =
+        make_grid_parameters(run.parameters.probe, run.parameters.spacing, run.parameters.max_radius);
+    return count(find_grid_bricks(executor, run.atoms, parameters, run.lattice),
+                 [&](const BrickSet &bricks, uint64_t *signs) {
+                   if (bricks.count == 0) return;
+                   const GridField field = classify_grid_points(executor, run.atoms, parameters, bricks);
+                   in_slices(bricks, 0, [&](BrickRange slice) { evaluate_grid_signs(executor, field, slice, signs); });
+                 });
+  }
+  return count(find_bricks(executor, run.features, run.lattice), [&](const BrickSet &bricks, uint64_t *signs) {
+    if (bricks.count == 0) return;
+    in_slices(bricks, CandidatesOf<Executor>::sign_bytes(run.parameters), [&](BrickRange slice) {
+      Candidates<Executor> own{};
+      evaluate_signs(executor, run.features, bricks, slice, own, signs);
+    });
+  });
+}
+
+// What a straight line through the values at two spacings, in units of the surface, gives at a finer one.
+inline SurfaceSize extrapolate(const SurfaceSize &fine, double fine_spacing, const SurfaceSize &coarse,
+                               double coarse_spacing, double spacing) {
+  const auto at = [&](double f, double c) {
+    const double u = f * fine_spacing * fine_spacing, v = c * coarse_spacing * coarse_spacing;
+    const double value = u + (v - u) / (coarse_spacing - fine_spacing) * (spacing - fine_spacing);
+    return std::max(0.0, value) / (spacing * spacing);
+  };
+  return {at(fine.bricks, coarse.bricks), at(fine.vertices, coarse.vertices), at(fine.triangles, coarse.triangles)};
+}
+
+// Of the mesh at the spacing of the run.
+template <class R>
+SurfaceSize estimate_size(const R &wanted) {
+  const double spacing = static_cast<double>(wanted.parameters.spacing);
+  const auto count_at = [&](double h, uint64_t *entries) {
+    R run = wanted;
+    run.parameters.spacing = run.lattice.spacing = static_cast<float>(h);
+    run.features.parameters = run.parameters;
+    run.lattice = layout_lattice(run.lattice, run.low, run.high, run.parameters.max_radius);
+    return count_size(run, entries);
+  };
+  double h = spacing;
+  while (guess_bricks(static_cast<double>(wanted.facts->atoms), h) > kCheapBricks && 2 * h < 2) h *= 2;
+  if (h == spacing) return count_at(h, &wanted.facts->brick_entries);
+  uint64_t unused = 0;
+  const SurfaceSize fine = count_at(h, &unused), coarse = count_at(2 * h, &unused);
+  wanted.facts->brick_entries = wanted.lattice.table_size() <= kMaxDenseCells ? wanted.lattice.table_size() : 0;
+  return extrapolate(fine, h, coarse, 2 * h, spacing);
+}
+
+struct CountKeptCaps {
+  const CapRange *ranges;
+  QSES_HOST_DEVICE double operator()(size_t i) const { return ranges[i].count == kBuriedAtom ? 0 : ranges[i].count; }
+};
+
+// Caps of exposed atoms.
+template <class R>
+uint64_t count_kept_caps(const R &run) {
+  return static_cast<uint64_t>(run.executor.reduce(run.features.atoms.count, CountKeptCaps{run.features.cap_ranges}));
+}
+
+// The least that the work would have taken, where it ended before all was counted: the rest is guessed generously.
+template <class Executor>
+double least_of_unfinished(WorkFacts facts, const WorkKind &kind) {
+  const double atoms = static_cast<double>(facts.atoms), h = static_cast<double>(kind.parameters.spacing);
+  if (facts.arcs == 0) {
+    facts.caps = 18 * facts.atoms;
+    facts.arcs = 4 * facts.atoms;
+    facts.arc_cells = facts.atom_cells;
+  }
+  if (facts.size.bricks == 0) facts.size.bricks = 1.2 * guess_bricks(atoms, h) + 64;
+  if (facts.size.vertices == 0) {
+    facts.size.vertices = facts.size.bricks * kVerticesPerCell / kBricksPerCell;
+    facts.size.triangles = 2 * facts.size.vertices;
+  }
+  return MemoryPlan<Executor>(facts, kind).least();
+}
+
+}  // namespace quickses

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// What is known of the size of a computation while it runs.
+#pragma once
+
+#include "surface/mesh_arrays.h"
+#include "surface/solvent_features.h"
+
+namespace quickses {
+
+// Numbers of things, counted or predicted; 0: not known yet.
+struct SurfaceSize {
+  double bricks = 0, vertices = 0, triangles = 0;
+};
+
+struct WorkFacts {
+  uint64_t atoms = 0, atom_cells = 0, arc_cells = 0;  // cells: entries of the grids' tables, 0 if they are sparse
+  uint64_t caps = 0, arcs = 0;                        // of exposed atoms
+  uint64_t brick_entries = 0;                         // of the table of bricks, 0 if the set is sparse
+  SurfaceSize size{};
+};
+
+// What the plan depends on besides.
+struct WorkKind {
+  bool exact = true, masked = false;
+  uint32_t relaxation_steps = 1;
+  MeshShape shape{};
+  SurfaceParameters parameters{};
+};
+
+}  // namespace quickses
