@@ -103,7 +103,7 @@ inline DeviceStages run_device_stages(CudaExecutor &executor, const DeviceTable 
   executor.for_each(n, FindSwallowedAtoms{s.grid, p.max_radius, swallowed.data});
   executor.for_each(n, RemoveSwallowedAtoms{swallowed.data, const_cast<Sphere *>(s.grid.items)});
   timer.begin("solvent_features");
-  find_solvent_features(executor, s.grid, p, &s.found);
+  find_solvent_features(executor, s.grid, p, false, &s.found);
   timer.begin("arc_grid");
   FeatureView f{};
   f.atoms = s.grid;

@@ -29,6 +29,7 @@ struct ExactRun {
   NeighborGridView atoms{};
   qses_report report{};
   WorkFacts work{}, *facts = &work;
+  bool frugal = false;
 
   // Up to the neighbour grid.
   ExactRun(const surface_fixture::Atoms &given, const qses_settings &s, unsigned threads = 2,
@@ -87,6 +88,7 @@ struct ExactRun {
                                         {},
                                         shape_of(settings, false),
                                         MeshPurpose::kDelivered,
+                                        frugal,
                                         &report,
                                         facts};
     const MeshMemoryView built = build_exact_surface(run);

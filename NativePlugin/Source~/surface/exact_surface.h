@@ -28,7 +28,7 @@ FeatureView find_features(R &run) {
     run.facts->arcs = found.arcs.size;
   };
   try {
-    find_solvent_features(executor, run.atoms, run.parameters, &found);
+    find_solvent_features(executor, run.atoms, run.parameters, run.frugal, &found);
   } catch (const MemoryRefused &) {
     note();
     throw;
@@ -55,7 +55,7 @@ FeatureView find_features(R &run) {
     const auto mark = executor.arena().mark();
     Span<Arc> sorted = executor.template allocate<Arc>(n);
     executor.for_each(n, GatherArcs{found.arcs.data, f.arc_bounds.order, sorted.data});
-    if (executor.arena().has_budget()) {
+    if (run.frugal || executor.arena().has_budget()) {
       executor.for_each(n, CopyArcs{sorted.data, found.arcs.data});
       executor.arena().rewind(mark);
       f.arcs = found.arcs.data;

@@ -118,8 +118,9 @@ class SurfacePipeline : public SurfaceEngine {
     for (float h : spacings) total += work_of(h);
     auto start = std::chrono::steady_clock::now();
     Prepared prepared;
+    const auto start_mark = executor_.arena().mark();
     if (atoms.count > 0) prepared = prepare(atoms, appearance, settings, spacings);
-    const auto mark = executor_.arena().mark();
+    auto mark = executor_.arena().mark();
     for (float h : spacings) {
       progress_.enter(begun / total, (begun + work_of(h)) / total);
       progress_.report(0.0);
@@ -127,7 +128,20 @@ class SurfacePipeline : public SurfaceEngine {
       qses_report report;
       qses_report_init(&report);
       memory_.use_slot(sink.slot());
-      const MeshMemoryView built = atoms.count > 0 ? build(prepared, settings, h, &report) : MeshMemoryView{};
+      MeshMemoryView built{};
+      if (atoms.count > 0) {
+        try {
+          built = build(prepared, settings, h, &report);
+        } catch (const MemoryRefused &) {
+          // The features may have taken more than they must. Later frames know.
+          if (frugal(atoms.count) || settings.method == QSES_METHOD_GRID) throw;
+          frugal_from_ = atoms.count;
+          executor_.arena().rewind(start_mark);
+          prepared = prepare(atoms, appearance, settings, spacings);
+          mark = executor_.arena().mark();
+          built = build(prepared, settings, h, &report);
+        }
+      }
       timer_.begin("download");
       qses_mesh mesh;
       memory_.finish(built, settings, &mesh);
@@ -158,12 +172,24 @@ class SurfacePipeline : public SurfaceEngine {
   }
 
   Run<Executor, Timer> run_of(const Prepared &p, const qses_settings &settings, qses_report *report) {
-    return {executor_,    timer_,  memory_,
-            progress_,    table(), settings,
-            p.parameters, p.frame, p.low,
-            p.high,       p.grid,  p.features,
-            p.appearance, p.shape, p.appearance.visible ? MeshPurpose::kWork : MeshPurpose::kDelivered,
-            report,       &facts_};
+    return {executor_,
+            timer_,
+            memory_,
+            progress_,
+            table(),
+            settings,
+            p.parameters,
+            p.frame,
+            p.low,
+            p.high,
+            p.grid,
+            p.features,
+            p.appearance,
+            p.shape,
+            p.appearance.visible ? MeshPurpose::kWork : MeshPurpose::kDelivered,
+            frugal(p.grid.count),
+            report,
+            &facts_};
   }
 
   // Something the host has per atom, where the back end reads it.
@@ -213,6 +239,9 @@ class SurfacePipeline : public SurfaceEngine {
     return p;
   }
 
+  // With so many atoms memory was too short for the fast way before.
+  bool frugal(size_t atoms) const { return atoms >= frugal_from_; }
+
   static Prepared at_spacing(Prepared p, float spacing) {
     p.parameters.spacing = p.frame.spacing = spacing;
     p.features.parameters = p.parameters;
@@ -238,10 +267,11 @@ class SurfacePipeline : public SurfaceEngine {
     facts.size = predicted;
     const MemoryPlan<Executor> plan(facts, kind_of(p, run.settings));
     const auto &arena = executor_.arena();
-    const double needed =
-        arena.has_budget() ? plan.least() : plan.whole(0, 0) + (Executor::kIsCuda ? 0 : plan.mesh_bytes());
-    refuse_hopeless_spacing(static_cast<double>(run.parameters.spacing), predicted, needed,
-                            static_cast<double>(arena.limit()));
+    if (arena.has_budget() && plan.least() > kMemoryCertainty * static_cast<double>(arena.budget()))
+      throw MemoryRefused("the spacing is too fine for the memory budget");
+    refuse_hopeless_spacing(static_cast<double>(run.parameters.spacing), predicted,
+                            plan.whole(0, 0) + (Executor::kIsCuda ? 0 : plan.mesh_bytes()),
+                            arena.has_budget() ? 0.0 : static_cast<double>(arena.limit()));
   }
 
   // Memory was refused. With a budget the user is told which one would do, as far as that is known by now.
@@ -303,6 +333,7 @@ class SurfacePipeline : public SurfaceEngine {
   MeshMemory<Executor> memory_;
   uint64_t budget_, limit_;
   WorkFacts facts_{};
+  size_t frugal_from_ = ~size_t(0);
   Prepared prepared_{};  // of the computation that runs, for messages
   Progress progress_;
   TableView table_{};

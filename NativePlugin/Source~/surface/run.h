@@ -77,6 +77,7 @@ struct Run {
   AppearanceView appearance;
   MeshShape shape;
   MeshPurpose purpose;
+  bool frugal;  // memory is short
   qses_report *report;
   WorkFacts *facts;
 };

@@ -32,19 +32,24 @@ struct ExposedArea {
   }
 };
 
-// Per Å² / spacing², as measured on proteins: 1.5 vertices, 3 triangles, and 1.8 / 64 of a brick.
+// Per Å² / spacing², as measured on proteins: 1.5 vertices, 3 triangles.
 constexpr double kVerticesPerCell = 1.5;
-constexpr double kBricksPerCell = 1.8 / 64;
-// Coarser spacings are never refused here, and a prediction only if it fails by this factor.
+// Bricks of a surface of that area: those it passes, and those that arcs alone make active, within a probe radius of
+// them. Measured on proteins, the more generous figures.
+inline double guess_bricks(double atoms, double area, double spacing) {
+  return (0.0254 * area + 0.062 * atoms / spacing) / (spacing * spacing);
+}
+// Coarser spacings are never refused here, and a prediction only if it fails by these factors.
 constexpr float kCheckedSpacing = 0.25f;
-constexpr double kCertainty = 1.5;
+constexpr double kCertainty = 1.5, kMemoryCertainty = 2;
 
 // From the features, before any brick is looked for.
 template <class R>
 SurfaceSize predict_size(R &run) {
   const double h = static_cast<double>(run.parameters.spacing);
-  const double cells = run.executor.reduce(run.features.atoms.count, ExposedArea{run.features}) / (h * h);
-  return {cells * kBricksPerCell, cells * kVerticesPerCell, 2.0 * cells * kVerticesPerCell};
+  const double area = run.executor.reduce(run.features.atoms.count, ExposedArea{run.features}), cells = area / (h * h);
+  return {guess_bricks(static_cast<double>(run.features.atoms.count), area, h), cells * kVerticesPerCell,
+          2.0 * cells * kVerticesPerCell};
 }
 
 // available: bytes; 0: not known. needed: of them, if the surface has the predicted size.
@@ -58,7 +63,7 @@ inline void refuse_hopeless_spacing(double spacing, const SurfaceSize &predicted
                   spacing, predicted.triangles, spacing * std::sqrt(predicted.triangles / kMostTriangles));
     throw Error(QSES_TOO_FINE, text);
   }
-  if (available > 0 && needed > kCertainty * available) {
+  if (available > 0 && needed > kMemoryCertainty * available) {
     std::snprintf(text, sizeof text,
                   "spacing %g Å needs about %s of memory for this structure, but %s are available; about %.2g Å "
                   "would do",

@@ -12,8 +12,8 @@ namespace quickses {
 // Bricks that are counted without a thought.
 constexpr double kCheapBricks = 32768;
 
-// Bricks of a surface, roughly: an atom has 10 Å² of it, and a cell in 64 / 1.8 of a brick is cut.
-inline double guess_bricks(double atoms, double spacing) { return atoms * 10.0 / (spacing * spacing) * 1.8 / 64.0; }
+// Å² of surface per atom, if nothing else is known.
+constexpr double kUsualArea = 10;
 
 // Counts at the spacing of the run. Gives up all memory it takes.
 template <class R>
@@ -55,15 +55,18 @@ SurfaceSize count_size(R &run, uint64_t *brick_entries) {
   });
 }
 
-// What a straight line through the values at two spacings, in units of the surface, gives at a finer one.
+// What the values at two spacings give at a finer one. In units of area, vertices follow a straight line over the
+// spacing, bricks one over its inverse: many hold no surface, but fill the balls of probes.
 inline SurfaceSize extrapolate(const SurfaceSize &fine, double fine_spacing, const SurfaceSize &coarse,
                                double coarse_spacing, double spacing) {
-  const auto at = [&](double f, double c) {
+  const auto at = [&](double f, double c, double power) {
     const double u = f * fine_spacing * fine_spacing, v = c * coarse_spacing * coarse_spacing;
-    const double value = u + (v - u) / (coarse_spacing - fine_spacing) * (spacing - fine_spacing);
+    const double x = std::pow(fine_spacing, power), y = std::pow(coarse_spacing, power);
+    const double value = u + (v - u) / (y - x) * (std::pow(spacing, power) - x);
     return std::max(0.0, value) / (spacing * spacing);
   };
-  return {at(fine.bricks, coarse.bricks), at(fine.vertices, coarse.vertices), at(fine.triangles, coarse.triangles)};
+  return {at(fine.bricks, coarse.bricks, -1), at(fine.vertices, coarse.vertices, 1),
+          at(fine.triangles, coarse.triangles, 1)};
 }
 
 // Of the mesh at the spacing of the run.
@@ -78,7 +81,8 @@ SurfaceSize estimate_size(const R &wanted) {
     return count_size(run, entries);
   };
   double h = spacing;
-  while (guess_bricks(static_cast<double>(wanted.facts->atoms), h) > kCheapBricks && 2 * h < 2) h *= 2;
+  const double atoms = static_cast<double>(wanted.facts->atoms);
+  while (guess_bricks(atoms, kUsualArea * atoms, h) > kCheapBricks && 2 * h < 2) h *= 2;
   if (h == spacing) return count_at(h, &wanted.facts->brick_entries);
   uint64_t unused = 0;
   const SurfaceSize fine = count_at(h, &unused), coarse = count_at(2 * h, &unused);
@@ -106,12 +110,12 @@ double least_of_unfinished(WorkFacts facts, const WorkKind &kind) {
     facts.arcs = 4 * facts.atoms;
     facts.arc_cells = facts.atom_cells;
   }
-  if (facts.size.bricks == 0) facts.size.bricks = 1.2 * guess_bricks(atoms, h) + 64;
+  if (facts.size.bricks == 0) facts.size.bricks = 1.2 * guess_bricks(atoms, kUsualArea * atoms, h) + 64;
   if (facts.size.vertices == 0) {
-    facts.size.vertices = facts.size.bricks * kVerticesPerCell / kBricksPerCell;
+    facts.size.vertices = kVerticesPerCell * kUsualArea * atoms / (h * h);
     facts.size.triangles = 2 * facts.size.vertices;
   }
-  return MemoryPlan<Executor>(facts, kind).least();
+  return 1.1 * MemoryPlan<Executor>(facts, kind).least();
 }
 
 }  // namespace quickses

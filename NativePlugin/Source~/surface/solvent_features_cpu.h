@@ -175,13 +175,13 @@ struct PlaceChunkFeatures {
 constexpr uint64_t kStagedAtomBytes = 2000;
 
 inline void find_solvent_features(CpuExecutor &executor, const NeighborGridView &atoms,
-                                  const SurfaceParameters &parameters, SolventFeatures *features) {
+                                  const SurfaceParameters &parameters, bool frugal, SolventFeatures *features) {
   const size_t n = atoms.count, chunks = (n + kAtomsPerChunk - 1) / kAtomsPerChunk;
   SolventFeatures &f = *features;
   f.cap_ranges = executor.allocate<CapRange>(n);
   f.exposed = executor.allocate<uint8_t>(n + 8);
   executor.fill(f.exposed, 0);
-  const bool twice = executor.arena().available() < n * kStagedAtomBytes;
+  const bool twice = frugal || executor.arena().available() < n * kStagedAtomBytes;
   Span<FeatureChunk> table = executor.allocate<FeatureChunk>(chunks);
   for (auto &s : executor.scratches<FeatureStaging>()) s->cap_count = s->arc_count = 0;
   executor.for_each_brick<FeatureStaging>(

@@ -359,7 +359,7 @@ inline void find_features_in_runs(CudaExecutor &executor, const FeaturePass &pas
 }  // namespace gpu
 
 inline void find_solvent_features(CudaExecutor &executor, const NeighborGridView &atoms,
-                                  const SurfaceParameters &parameters, SolventFeatures *features) {
+                                  const SurfaceParameters &parameters, bool frugal, SolventFeatures *features) {
   using namespace gpu;
   features->cap_ranges = executor.allocate<CapRange>(atoms.count);
   if (atoms.count == 0) return;
@@ -368,7 +368,7 @@ inline void find_solvent_features(CudaExecutor &executor, const NeighborGridView
   const FeaturePass pass{atoms, parameters.max_radius, features->cap_ranges.data, exposed.data};
   // Work and results of all atoms, and half as much again for the arcs' grid.
   const uint64_t all = atoms.count * uint64_t(kAtomWorkBytes + 7 * sizeof(Arc)) + 65536;
-  if (executor.arena().available() / 3 * 2 > all)
+  if (!frugal && executor.arena().available() / 3 * 2 > all)
     find_all_features(executor, pass, features);
   else
     find_features_in_runs(executor, pass, features);

@@ -3,8 +3,10 @@
 // in the shape of their loops: packs of eight and one thread per brick on the CPU, warps on the GPU. The pipeline calls
 // them by overload on the executor:
 //
-//   void find_solvent_features(Executor &, const NeighborGridView &atoms, const SurfaceParameters &, SolventFeatures *)
-//       throws MemoryRefused; the sizes of the features are set if they were counted before
+//   void find_solvent_features(Executor &, const NeighborGridView &atoms, const SurfaceParameters &, bool frugal,
+//                              SolventFeatures *)
+//       frugal: with as little memory as possible, in more time. Throws MemoryRefused; the sizes of the features are
+//       set if they were counted before
 //   Candidates<Executor>   what the two stages below may share for a slice of bricks (CPU: nothing)
 //   void evaluate_signs(Executor &, const FeatureView &, const BrickSet &, BrickRange, Candidates<Executor> &,
 //                       uint64_t *signs)
