@@ -51,6 +51,8 @@ inline double candidate_bytes(const SurfaceParameters &parameters) {
 
 // Words of the row that a leaf with vertices has besides (vertex_rows_cuda.cuh); half of the leaves have one.
 constexpr int kRowWords = 64;
+// Room that small structures are given beyond what is usual.
+constexpr size_t kSpareRows = 1024, kSpareCandidates = 1024;
 constexpr double kRowBytesPerBrick = kLeavesPerBrick / 2.0 * kRowWords * sizeof(uint32_t);
 
 // Rows of a brick: runs in the lists of atoms and arcs.

@@ -16,6 +16,7 @@ struct CudaCandidates {
 template <>
 struct CandidatesOf<CudaExecutor> {
   using type = CudaCandidates;
+  static constexpr double kSpareBytes = gpu::kSpareRows * gpu::kRowWords * 4.0 + gpu::kSpareCandidates * 9.0;
   static double sign_bytes(const SurfaceParameters &parameters) { return gpu::candidate_bytes(parameters); }
   static double emission_bytes(const SurfaceParameters &parameters, double vertices) {
     return gpu::candidate_bytes(parameters) + gpu::kRowBytesPerBrick + 12.0 * vertices;
@@ -271,8 +272,8 @@ inline void gather_candidates(CudaExecutor &executor, const FeatureView &feature
   view.leaf_list = executor.allocate<uint32_t>(size_t(n) * kLeavesPerBrick).data;
   Span<CandidateCounters> counters = executor.allocate<CandidateCounters>(1);
   const double per_brick = listed_candidates(features.parameters);
-  size_t atom_room = static_cast<size_t>(std::min(per_brick, double(features.atoms.count)) * n) + 1024;
-  size_t arc_room = static_cast<size_t>(std::min(per_brick, double(features.arc_bounds.count)) * n) + 1024;
+  size_t atom_room = static_cast<size_t>(std::min(per_brick, double(features.atoms.count)) * n) + kSpareCandidates;
+  size_t arc_room = static_cast<size_t>(std::min(per_brick, double(features.arc_bounds.count)) * n) + kSpareCandidates;
   const auto mark = executor.arena().mark();
   CandidateCounters found;
   for (;;) {

@@ -117,7 +117,7 @@ MeshMemoryView make_exact_mesh(R &run, const BrickSet &bricks, bool together) {
   const FeatureView &features = run.features;
   const uint32_t asked = bricks_per_slice(run.settings, bricks.count, run.progress.wanted());
   const auto per_slice = [&](uint64_t bytes_per_brick) {
-    return together ? bricks.count : std::min(asked, bricks_that_fit(run, bricks.count, bytes_per_brick));
+    return Slicing{together, std::min(asked, bricks_that_fit(run, bricks.count, bytes_per_brick))};
   };
   run.timer.begin("exact_ses");
   Span<uint64_t> signs = executor.template allocate<uint64_t>(size_t(bricks.count) * kLeavesPerBrick);
@@ -142,8 +142,8 @@ MeshMemoryView make_exact_mesh(R &run, const BrickSet &bricks, bool together) {
   if (mesh.on_host && together && bricks.count > 0) throw MemoryRefused("the mesh does not fit beside the work");
   VertexStarts starts{run.settings.relaxation_steps > 0, nullptr, run.table.ring};
   const auto emit = [&](double begin, double end, bool with_triangles) {
-    const uint32_t slice_size = per_slice(mesh.on_host ? emission_bytes_per_brick(run, bricks, counts, true) : work);
-    run.report->slice_count = for_each_slice(run, bricks.count, slice_size, begin, end, [&](BrickRange slice) {
+    const Slicing slicing = per_slice(mesh.on_host ? emission_bytes_per_brick(run, bricks, counts, true) : work);
+    run.report->slice_count = for_each_slice(run, bricks.count, slicing, begin, end, [&](BrickRange slice) {
       Candidates<Executor> own{};  // gathered again if there are several slices
       MeshPart part{mesh.view, 0, 0};
       if (mesh.on_host) part = open_slab(run, layout, slice);

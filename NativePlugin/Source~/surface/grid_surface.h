@@ -22,7 +22,7 @@ MeshMemoryView build_grid_surface(R &run) {
 
   run.timer.begin("grid_ses");
   const GridField field = classify_grid_points(executor, run.atoms, parameters, bricks);
-  const uint32_t per_slice = bricks_per_slice(run.settings, bricks.count, run.progress.wanted());
+  const Slicing per_slice{false, bricks_per_slice(run.settings, bricks.count, run.progress.wanted())};
   Span<uint64_t> signs = executor.template allocate<uint64_t>(size_t(bricks.count) * kLeavesPerBrick);
   run.report->slice_count = for_each_slice(run, bricks.count, per_slice, 0.1, 0.5, [&](BrickRange slice) {
     evaluate_grid_signs(executor, field, slice, signs.data);

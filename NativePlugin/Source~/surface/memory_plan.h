@@ -18,7 +18,8 @@ class MemoryPlan {
   double whole(double prepared, double peak) const {
     double level = brick_bytes() + (k_.exact ? 0 : 64 * f_.size.bricks);
     if (Executor::kIsCuda && k_.exact)
-      level += f_.size.bricks * CandidatesOf<Executor>::emission_bytes(k_.parameters, f_.size.vertices / bricks());
+      level += f_.size.bricks * CandidatesOf<Executor>::emission_bytes(k_.parameters, f_.size.vertices / bricks()) +
+               CandidatesOf<Executor>::kSpareBytes;
     if (Executor::kIsCuda) level += mesh_bytes();
     return std::max(peak, prepared + level + beside_mesh() + mask_bytes());
   }

@@ -251,7 +251,7 @@ inline VertexJob prepare_vertices(CudaExecutor &executor, const FeatureView &fea
   job.mesh = mesh;
   job.vertex_row = executor.allocate<uint32_t>(job.count).data;
   // Half of the leaves own vertices at most, as a rule; those that get no row use their brick's.
-  job.row_room = static_cast<uint32_t>(std::min<size_t>({job.count, leaves, leaves / 2 + 1024}));
+  job.row_room = static_cast<uint32_t>(std::min<size_t>({job.count, leaves, leaves / 2 + kSpareRows}));
   job.rows = executor.allocate<uint32_t>(size_t(job.row_room) * kRowWords).data;
   job.open = executor.allocate<uint32_t>(job.count).data;
   job.again = executor.allocate<uint32_t>(job.count).data;

@@ -87,13 +87,18 @@ constexpr uint32_t kLeastSlice = 16;
 // With room for the work on so many bricks at a time, slices cost next to nothing.
 constexpr uint32_t kRoomySlice = 4096;
 
-// Calls work(slice) for all bricks, in slices of at most `bricks_per_slice`, and reports progress from `begin` to
-// `end`. What work allocates is given up after each slice unless there is only one. If memory is refused, smaller
-// slices are tried, unless there is only one. Returns the number of slices.
+// How bricks are worked on: all in one slice, whose memory is kept; or in slices of at most so many, which shrink where
+// memory is refused, and give up what they took.
+struct Slicing {
+  bool together;
+  uint32_t bricks;
+};
+
+// Calls work(slice) for all bricks and reports progress from `begin` to `end`. Returns the number of slices.
 template <class R, class Work>
-uint64_t for_each_slice(R &run, uint32_t brick_count, uint32_t bricks_per_slice, double begin, double end,
-                        const Work &work) {
-  const bool one = bricks_per_slice >= brick_count;
+uint64_t for_each_slice(R &run, uint32_t brick_count, Slicing slicing, double begin, double end, const Work &work) {
+  const bool one = slicing.together;
+  uint32_t bricks_per_slice = std::max<uint32_t>(1, slicing.bricks);
   uint64_t slices = 0;
   for (uint32_t first = 0; first < brick_count; ++slices) {
     uint32_t last = one ? brick_count : first + std::min(bricks_per_slice, brick_count - first);

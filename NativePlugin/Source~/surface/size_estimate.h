@@ -32,9 +32,8 @@ SurfaceSize count_size(R &run, uint64_t *brick_entries) {
                        static_cast<double>(counts.triangles)};
   };
   const auto in_slices = [&](const BrickSet &bricks, double bytes_per_brick, const auto &work) {
-    // One slice less than all, so that smaller ones are tried where memory is short.
     const uint32_t fitting = bricks_that_fit(run, bricks.count, static_cast<uint64_t>(bytes_per_brick) + 1);
-    for_each_slice(run, bricks.count, std::max<uint32_t>(1, std::min(fitting, bricks.count - 1)), 0, 0, work);
+    for_each_slice(run, bricks.count, Slicing{false, fitting}, 0, 0, work);
   };
   if (run.settings.method == QSES_METHOD_GRID) {
     const GridParameters parameters =
