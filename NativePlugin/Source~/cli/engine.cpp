@@ -66,18 +66,12 @@ qses_settings settings_of(const ComputeOptions &options) {
   return settings;
 }
 
-bool has_own_radii(io::StructureFormat format) {
-  return format == io::StructureFormat::kPqr || format == io::StructureFormat::kXyzr;
-}
-
 io::StructureFile load(const std::string &path, const io::ReadOptions &read, const ComputeOptions &options,
                        bool quiet) {
-  const io::RadiusTable table = io::find_radii(options.radii);
   io::StructureFile file = io::read_structure(path, read);
-  const bool has_radii = has_own_radii(file.format);
-  if (has_radii && options.radii_given) throw Failure(kUsage, "--radii: '" + path + "' has radii of its own");
-  if (!has_radii)
-    for (io::Structure &structure : file.models) io::assign_radii(structure, table);
+  if (io::has_own_radii(file.format) && options.radii_given)
+    throw Failure(kUsage, "--radii: '" + path + "' has radii of its own");
+  io::assign_radii(file, options.radii_given ? options.radii : "");
   if (!quiet)
     for (const std::string &warning : file.warnings) std::fprintf(stderr, "quickses: warning: %s\n", warning.c_str());
   return file;

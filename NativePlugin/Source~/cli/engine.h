@@ -33,9 +33,6 @@ class Engine {
 
 qses_settings settings_of(const ComputeOptions &options);
 
-// PQR and XYZR files say how large their atoms are.
-bool has_own_radii(io::StructureFormat format);
-
 // The structures of a file with their radii. Warnings go to standard error unless quiet.
 io::StructureFile load(const std::string &path, const io::ReadOptions &read, const ComputeOptions &options, bool quiet);
 

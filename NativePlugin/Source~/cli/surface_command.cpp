@@ -11,6 +11,7 @@
 #include "cli/report.h"
 #include "io/atomic_file.h"
 #include "io/mesh_writer.h"
+#include "io/radii.h"
 
 namespace quickses::cli {
 namespace {
@@ -72,7 +73,7 @@ void run_surface(const Options &options) {
   for (const io::Structure &structure : file.models) {
     Options model_options = options;
     model_options.output = output_of_model(options, structure.model);
-    if (has_own_radii(file.format)) model_options.compute.radii = "file";
+    if (io::has_own_radii(file.format)) model_options.compute.radii = "file";
     engine.set_atoms(structure, options.input);
     qses_mesh mesh;
     {
