@@ -40,6 +40,10 @@ void Engine::set_atoms(const io::Structure &structure, const std::string &path) 
   check(status);
 }
 
+void Engine::set_frame(const float *xyz, size_t position_count, const std::vector<uint32_t> &indices) {
+  check(qses_set_positions_indexed(context(), xyz, 0, position_count, indices.data(), indices.size()));
+}
+
 qses_mesh Engine::compute(const qses_settings &settings) {
   qses_mesh mesh;
   qses_mesh_init(&mesh);

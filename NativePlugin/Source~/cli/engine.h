@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "cli/options.h"
 #include "io/structure.h"
@@ -19,9 +20,12 @@ class Engine {
   qses_context *context() const { return context_.get(); }
   qses_backend backend() const { return backend_; }
   std::string device() const { return description_.device; }
-  std::string why_not_cuda() const { return description_.reason; }  // empty: it is CUDA, or the CPU was asked for
+  uint64_t free_memory() const { return description_.free_memory; }  // when it was made, before anybody used it
+  std::string why_not_cuda() const { return description_.reason; }   // empty: it is CUDA, or the CPU was asked for
 
   void set_atoms(const io::Structure &structure, const std::string &path);
+  // The next frame: atom i is at xyz[indices[i]]. xyz has three numbers for each of position_count atoms.
+  void set_frame(const float *xyz, size_t position_count, const std::vector<uint32_t> &indices);
   qses_mesh compute(const qses_settings &settings);
   qses_report report() const;
 
