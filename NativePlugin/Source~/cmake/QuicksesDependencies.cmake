@@ -142,6 +142,11 @@ if(QUICKSES_BUILD_CLI OR QUICKSES_BUILD_TESTS)
   endif()
 endif()
 
+# ---- MPI: frames of a trajectory shared among processes
+if(QUICKSES_MPI)
+  find_package(MPI REQUIRED COMPONENTS CXX)
+endif()
+
 if(QUICKSES_BUILD_TESTS)
   find_package(GTest CONFIG QUIET)
   if(NOT TARGET GTest::gtest_main)
