@@ -53,6 +53,8 @@ static void check_files(qses_context *context) {
   CHECK(info.atom_count == 1 && info.file_atom_count == 2 && info.model_count == 2);
   CHECK(strcmp(info.atoms[0].name, "CA") == 0 && info.atoms[0].element == 6);
 
+  CHECK(qses_trajectory_open_memory(text, size, (qses_trajectory_format)4, &trajectory) == QSES_INVALID_ARGUMENT);
+  CHECK(strstr(qses_last_error(), "format is 4") != NULL);
   CHECK(qses_trajectory_open_memory(text, size, QSES_TRAJECTORY_PDB, &trajectory) == QSES_OK);
   qses_trajectory_info_init(&trajectory_info);
   CHECK(qses_trajectory_get_info(trajectory, &trajectory_info) == QSES_OK);
