@@ -32,7 +32,8 @@ struct qses_trajectory {
 
 namespace {
 
-std::optional<io::TrajectoryFormat> format_of(qses_trajectory_format format) {
+// By reference: a number that names no format must not be looked at as one before it is checked.
+std::optional<io::TrajectoryFormat> format_of(const qses_trajectory_format &format) {
   check_choice("format", format, QSES_TRAJECTORY_PDB);
   switch (format) {
     case QSES_TRAJECTORY_DCD:
