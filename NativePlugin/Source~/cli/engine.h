@@ -20,8 +20,7 @@ class Engine {
   qses_context *context() const { return context_.get(); }
   qses_backend backend() const { return backend_; }
   std::string device() const { return description_.device; }
-  uint64_t free_memory() const { return description_.free_memory; }  // when it was made, before anybody used it
-  std::string why_not_cuda() const { return description_.reason; }   // empty: it is CUDA, or the CPU was asked for
+  std::string why_not_cuda() const { return description_.reason; }  // empty: it is CUDA, or the CPU was asked for
 
   void set_atoms(const io::Structure &structure, const std::string &path);
   // The next frame: atom i is at xyz[indices[i]]. xyz has three numbers for each of position_count atoms.

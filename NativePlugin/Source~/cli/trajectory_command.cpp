@@ -38,7 +38,7 @@ Share divide(const Options &options, const Processes &processes, size_t frame_co
   share.compute = choose_device(options.compute, processes);
   const unsigned threads = options.compute.threads ? options.compute.threads : processes.threads();
   share.compute.threads = threads;
-  const Engine whole(share.compute);  // tells what auto means here, and how much memory there is
+  const Engine whole(share.compute);  // tells what auto means here
   if (processes.is_first()) explain_fallback(whole, options.compute, options.quiet);
   share.compute.backend = whole.backend();
 
@@ -50,11 +50,7 @@ Share divide(const Options &options, const Processes &processes, size_t frame_co
   const size_t frames_here = (frame_count - 1) / static_cast<size_t>(processes.count()) + 1;
   share.workers = static_cast<unsigned>(std::min<size_t>(wanted, frames_here));
   share.compute.threads = std::max(1u, threads / share.workers);
-  if (options.compute.memory != 0)
-    share.compute.memory = std::max<uint64_t>(1, options.compute.memory / share.workers);
-  else if (share.workers > 1 || processes.local_count() > 1)
-    share.compute.memory =
-        std::max<uint64_t>(1, whole.free_memory() / share.workers / static_cast<unsigned>(processes.local_count()));
+  if (options.compute.memory != 0) share.compute.memory = std::max<uint64_t>(1, options.compute.memory / share.workers);
   return share;
 }
 
