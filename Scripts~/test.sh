@@ -1,17 +1,20 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Installs what is missing, builds everything, runs every test.
-#   bash Scripts~/test.sh [--with-cuda]
+#   bash Scripts~/test.sh [--with-cuda] [--with-mpi]
 # --with-cuda: the CUDA Toolkit and the CUDA back end as well. Its tests need a GPU and are skipped where there is none.
+# --with-mpi: Open MPI, and the program that shares frames among processes.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 presets=(cpu)
+with_mpi=no
 for argument in "$@"; do
   case "$argument" in
     --with-cuda) presets+=(cuda) ;;
-    -h | --help) sed -n '3,5s/^# //p' "$0"; exit 0 ;;
-    *) echo "test.sh: unknown option $argument (there is --with-cuda)" >&2; exit 2 ;;
+    --with-mpi) with_mpi=yes ;;
+    -h | --help) sed -n '3,6s/^# //p' "$0"; exit 0 ;;
+    *) echo "test.sh: unknown option $argument (there are --with-cuda and --with-mpi)" >&2; exit 2 ;;
   esac
 done
 
@@ -36,3 +39,13 @@ for preset in "${presets[@]}"; do
   fi
   ctest --preset "$preset" --parallel "$(nproc)"
 done
+
+# Of the build with MPI, the program alone: the library is the same.
+if [ "$with_mpi" = yes ]; then
+  echo "==== mpi: configure"
+  cmake --preset mpi
+  echo "==== mpi: build"
+  cmake --build --preset mpi --parallel "$(nproc)" --target quickses_cli
+  echo "==== mpi: test"
+  ctest --preset mpi --tests-regex '^cli_mpi_test$' --no-tests=error
+fi

@@ -22,6 +22,57 @@ static void note_progress(void *user_data, double fraction) {
   *last = fraction;
 }
 
+/* From text in memory to the surface of a frame. */
+static void check_files(qses_context *context) {
+  static const char text[] =
+      "MODEL        1\n"
+      "ATOM      1  N   ALA A   1       1.000   2.000   3.000  1.00  0.00           N\n"
+      "ATOM      2  CA  ALA A   1       2.400   2.000   3.000  1.00  0.00           C\n"
+      "ENDMDL\n"
+      "MODEL        2\n"
+      "ATOM      1  N   ALA A   1       1.000   2.500   3.000  1.00  0.00           N\n"
+      "ATOM      2  CA  ALA A   1       2.400   2.500   3.000  1.00  0.00           C\n"
+      "ENDMDL\n";
+  const size_t size = sizeof text - 1;
+  qses_read_options read;
+  qses_structure *structure = NULL;
+  qses_structure_info info;
+  qses_trajectory *trajectory = NULL;
+  qses_trajectory_info trajectory_info;
+  qses_frame frame;
+  float xyz[6];
+  uint32_t device_count = 0;
+
+  CHECK(qses_device_count(&device_count) == QSES_OK);
+  qses_read_options_init(&read);
+  read.format = QSES_STRUCTURE_PDB;
+  read.selection = "//A/1/CA";
+  CHECK(qses_structure_open_memory(text, size, &read, &structure) == QSES_OK);
+  qses_structure_info_init(&info);
+  CHECK(qses_structure_get_info(structure, &info) == QSES_OK);
+  CHECK(info.atom_count == 1 && info.file_atom_count == 2 && info.model_count == 2);
+  CHECK(strcmp(info.atoms[0].name, "CA") == 0 && info.atoms[0].element == 6);
+
+  CHECK(qses_trajectory_open_memory(text, size, (qses_trajectory_format)4, &trajectory) == QSES_INVALID_ARGUMENT);
+  CHECK(strstr(qses_last_error(), "format is 4") != NULL);
+  CHECK(qses_trajectory_open_memory(text, size, QSES_TRAJECTORY_PDB, &trajectory) == QSES_OK);
+  qses_trajectory_info_init(&trajectory_info);
+  CHECK(qses_trajectory_get_info(trajectory, &trajectory_info) == QSES_OK);
+  CHECK(trajectory_info.frame_count == 2 && trajectory_info.atom_count == 2);
+  CHECK(qses_trajectory_unwrap(trajectory, info.file_elements, info.file_atom_count) == QSES_NO_BOX);
+  qses_frame_init(&frame);
+  CHECK(qses_trajectory_read_frame(trajectory, 1, xyz, 0, 2, &frame) == QSES_OK);
+  CHECK(xyz[4] == 2.5f && frame.has_box == 0);
+
+  CHECK(qses_set_atoms(context, info.positions, 0, info.radii, info.atom_count) == QSES_OK);
+  CHECK(qses_set_positions_indexed(context, xyz, 0, 2, info.file_indices, info.atom_count) == QSES_OK);
+  CHECK(qses_compute(context, NULL, NULL) == QSES_OK);
+  qses_structure_close(structure);
+  CHECK(qses_structure_open("nowhere.pdb", NULL, &structure) == QSES_FILE_ERROR);
+  CHECK(structure == NULL);
+  qses_trajectory_close(trajectory);
+}
+
 int main(void) {
   const float xyz[] = {0.0f, 0.0f, 0.0f, 1.5f, 0.2f, 0.0f, 0.1f, 1.4f, 0.3f};
   const float radii[] = {1.7f, 1.55f, 1.52f};
@@ -85,6 +136,8 @@ int main(void) {
   CHECK(qses_get_mesh(context, &mesh) == QSES_OK);
   CHECK(mesh.frame == 12);
 
+  CHECK(qses_set_progress_callback(context, NULL, NULL) == QSES_OK); /* a second computation begins at 0 again */
+  check_files(context);
   qses_destroy(context);
   if (failures) fprintf(stderr, "%d failures\n", failures);
   return failures ? 1 : 0;

@@ -77,4 +77,12 @@ qses_backend_description describe_backend(qses_backend backend, int device) {
 #endif
 }
 
+uint32_t count_devices() {
+#if defined(QUICKSES_HAS_CUDA)
+  return static_cast<uint32_t>(count_cuda_devices());
+#else
+  return 0;
+#endif
+}
+
 }  // namespace quickses

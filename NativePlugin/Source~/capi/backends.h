@@ -9,4 +9,7 @@ namespace quickses {
 // What backend (not AUTO) is like. device: CUDA ordinal.
 qses_backend_description describe_backend(qses_backend backend, int device);
 
+// CUDA devices; 0 without CUDA.
+uint32_t count_devices();
+
 }  // namespace quickses

@@ -2,6 +2,7 @@
 // The exception barrier: what throws behind it becomes a status and a sentence for qses_last_error.
 #pragma once
 
+#include "io/error.h"
 #include "parallel/error.h"
 
 #include <new>
@@ -22,6 +23,8 @@ qses_status guarded(const Call &call) noexcept {
     return QSES_OK;
   } catch (const Error &e) {
     return fail(e.status(), e.what());
+  } catch (const io::Error &e) {
+    return fail(e.kind() == io::ErrorKind::kUsage ? QSES_INVALID_ARGUMENT : QSES_FILE_ERROR, e.what());
   } catch (const std::bad_alloc &) {
     return fail(QSES_OUT_OF_MEMORY, "the machine refused memory");
   } catch (const std::exception &e) {

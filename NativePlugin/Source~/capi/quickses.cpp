@@ -6,6 +6,7 @@
 #include "capi/backends.h"
 #include "capi/barrier.h"
 #include "capi/context.h"
+#include "capi/structs.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,56 +14,21 @@
 #include <cstring>
 
 using quickses::check_atom_count;
+using quickses::check_choice;
+using quickses::check_output;
 using quickses::guarded;
 using quickses::invalid;
+using quickses::read_struct;
 using quickses::require;
+using quickses::write_struct;
 
 namespace {
-
-// The caller's structure may be older, hence shorter, than ours: what it lacks keeps its default.
-template <class T>
-T read_struct(const T *given, void (*init)(T *), const char *name) {
-  T value;
-  init(&value);
-  if (!given) return value;
-  if (given->struct_size < sizeof(uint32_t) || given->struct_size > 65536)
-    invalid(std::string(name) + "->struct_size is " + std::to_string(given->struct_size) + ": use " + name +
-            "_init of the header first");
-  std::memcpy(static_cast<void *>(&value), given, std::min<size_t>(given->struct_size, sizeof(T)));
-  value.struct_size = sizeof(T);
-  return value;
-}
-
-template <class T>
-void check_output(const T *out, const char *name) {
-  if (out->struct_size < sizeof(uint32_t) || out->struct_size > 65536)
-    invalid(std::string(name) + "->struct_size is " + std::to_string(out->struct_size) + ": use qses_" + name +
-            "_init first");
-}
-
-template <class T>
-void write_struct(T *out, const T &value, const char *name) {
-  check_output(out, name);
-  const uint32_t size = out->struct_size;
-  std::memcpy(static_cast<void *>(out), &value, std::min<size_t>(size, sizeof(T)));
-  out->struct_size = size;
-}
 
 void check_range(const char *name, double value, double low, double high, const char *unit) {
   if (value >= low && value <= high) return;
   char text[160];
   std::snprintf(text, sizeof text, "%s is %g: it must lie between %g and %g%s", name, value, low, high, unit);
   invalid(text);
-}
-
-// A C caller may put any number into an enumeration: it is looked at as a number before it is used as one.
-template <class Choice>
-void check_choice(const char *name, const Choice &given, Choice last) {
-  int32_t value;
-  static_assert(sizeof value == sizeof given, "enumerations of the header have the size of an int");
-  std::memcpy(&value, &given, sizeof value);
-  if (value < 0 || value > static_cast<int32_t>(last))
-    invalid(std::string(name) + " is " + std::to_string(value) + ", which names nothing in the header");
 }
 
 void check_settings(const qses_settings &s) {
@@ -147,6 +113,13 @@ qses_status qses_backend_info(qses_backend backend, qses_backend_description *de
     qses_backend_description d{};
     choose_backend(backend, 0, &d);
     *description = d;
+  });
+}
+
+qses_status qses_device_count(uint32_t *count) {
+  return guarded([&] {
+    require(count, "count");
+    *count = quickses::count_devices();
   });
 }
 

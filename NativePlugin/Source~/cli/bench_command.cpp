@@ -8,6 +8,7 @@
 #include "cli/engine.h"
 #include "cli/exit_code.h"
 #include "cli/report.h"
+#include "cli/text_output.h"
 #include "io/atomic_file.h"
 
 namespace quickses::cli {

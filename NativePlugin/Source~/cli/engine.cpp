@@ -40,6 +40,10 @@ void Engine::set_atoms(const io::Structure &structure, const std::string &path) 
   check(status);
 }
 
+void Engine::set_frame(const float *xyz, size_t position_count, const std::vector<uint32_t> &indices) {
+  check(qses_set_positions_indexed(context(), xyz, 0, position_count, indices.data(), indices.size()));
+}
+
 qses_mesh Engine::compute(const qses_settings &settings) {
   qses_mesh mesh;
   qses_mesh_init(&mesh);
@@ -66,18 +70,12 @@ qses_settings settings_of(const ComputeOptions &options) {
   return settings;
 }
 
-bool has_own_radii(io::StructureFormat format) {
-  return format == io::StructureFormat::kPqr || format == io::StructureFormat::kXyzr;
-}
-
 io::StructureFile load(const std::string &path, const io::ReadOptions &read, const ComputeOptions &options,
                        bool quiet) {
-  const io::RadiusTable table = io::find_radii(options.radii);
   io::StructureFile file = io::read_structure(path, read);
-  const bool has_radii = has_own_radii(file.format);
-  if (has_radii && options.radii_given) throw Failure(kUsage, "--radii: '" + path + "' has radii of its own");
-  if (!has_radii)
-    for (io::Structure &structure : file.models) io::assign_radii(structure, table);
+  if (io::has_own_radii(file.format) && options.radii_given)
+    throw Failure(kUsage, "--radii: '" + path + "' has radii of its own");
+  io::assign_radii(file, options.radii_given ? options.radii : "");
   if (!quiet)
     for (const std::string &warning : file.warnings) std::fprintf(stderr, "quickses: warning: %s\n", warning.c_str());
   return file;

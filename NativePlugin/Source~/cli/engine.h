@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "cli/options.h"
 #include "io/structure.h"
@@ -22,6 +23,8 @@ class Engine {
   std::string why_not_cuda() const { return description_.reason; }  // empty: it is CUDA, or the CPU was asked for
 
   void set_atoms(const io::Structure &structure, const std::string &path);
+  // The next frame: atom i is at xyz[indices[i]]. xyz has three numbers for each of position_count atoms.
+  void set_frame(const float *xyz, size_t position_count, const std::vector<uint32_t> &indices);
   qses_mesh compute(const qses_settings &settings);
   qses_report report() const;
 
@@ -32,9 +35,6 @@ class Engine {
 };
 
 qses_settings settings_of(const ComputeOptions &options);
-
-// PQR and XYZR files say how large their atoms are.
-bool has_own_radii(io::StructureFormat format);
 
 // The structures of a file with their radii. Warnings go to standard error unless quiet.
 io::StructureFile load(const std::string &path, const io::ReadOptions &read, const ComputeOptions &options, bool quiet);

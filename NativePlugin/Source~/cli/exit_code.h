@@ -2,6 +2,7 @@
 // What the program tells the shell, and the exception that carries it to main.
 #pragma once
 
+#include <exception>
 #include <stdexcept>
 #include <string>
 
@@ -16,6 +17,7 @@ enum ExitCode {
   kOutputUnwritable = 3,    // an output file can't be written
   kComputingFailed = 4,     // memory, device, spacing too fine
   kBackendUnavailable = 5,  // the back end asked for can't be used here
+  kFramesFailed = 6,        // some frames of a trajectory failed; the others are done
 };
 
 class Failure : public std::runtime_error {
@@ -26,6 +28,9 @@ class Failure : public std::runtime_error {
  private:
   ExitCode code_;
 };
+
+// What an exception means to the user.
+Failure failure_of(std::exception_ptr exception);
 
 inline ExitCode exit_code_of(qses_status status) {
   switch (status) {

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <map>
 
 #include "cli/exit_code.h"
+#include "cli/output_pattern.h"
 #include "io/mesh_writer.h"
 #include "io/text.h"
 
@@ -29,6 +31,7 @@ const char kFooter[] =
     "  3  an output file can't be written\n"
     "  4  computing failed: memory, the device, a spacing too fine for either\n"
     "  5  the back end asked for can't be used here\n"
+    "  6  some frames of a trajectory failed; the others are done\n"
     "\n"
     "Owner atoms in PLY files are 0-based places among the atoms of the input's model, before any filter.\n"
     "Lengths are in angstrom, areas in A^2, volumes in A^3.\n";
@@ -163,6 +166,21 @@ void add_surface_options(CLI::App &app, Options &options) {
       ->type_name("N|all");
 }
 
+void add_trajectory_options(CLI::App &app, Options &options) {
+  app.add_option("--trajectory", options.trajectory,
+                 "Frames of the atoms of INPUT: .dcd .xtc, or .pdb with several models, each also as .gz")
+      ->type_name("FILE");
+  app.add_option_function<std::string>(
+         "--frames", [&options](const std::string &text) { options.frames = FrameRange(text); },
+         "Which frames, from 0: A:B:STEP as in Python (B is left out, negative numbers count from the end), or one")
+      ->type_name("A:B:STEP");
+  app.add_flag("--unwrap", options.unwrap, "Make molecules whole that the borders of the periodic box tear apart");
+  app.add_option("--csv", options.csv, "Table of the frames: area, volume, components, cavities; - for standard output")
+      ->type_name("FILE|-");
+  add_count(&app, "--workers", "--workers", options.workers, 1, 1024,
+            "Frames in flight at a time; default: one per thread, with CUDA at most 8");
+}
+
 void add_report_options(CLI::App *app, Options &options) {
   app->add_option("--json", options.json, "Report as JSON; - for standard output")->type_name("FILE|-");
   app->add_flag("--quiet", options.quiet, "Print nothing but errors");
@@ -173,8 +191,31 @@ bool is_same_file(const std::string &a, const std::string &b) {
   return a == b || std::filesystem::equivalent(a, b, error);
 }
 
-void check(const Options &options, bool has_device) {
-  if (has_device && options.compute.backend == QSES_BACKEND_CPU)
+// given: whether a flag was on the command line.
+void check_trajectory(const Options &options, const std::function<bool(const char *)> &given) {
+  if (options.trajectory.empty()) {
+    for (const char *flag : {"--frames", "--unwrap", "--csv", "--workers"})
+      if (given(flag))
+        throw Failure(kUsage, std::string(flag) +
+                                  " is for trajectories, and there is no --trajectory (a PDB file with " +
+                                  "several models is one: quickses FILE --trajectory FILE)");
+    return;
+  }
+  if (options.read.model == 0)
+    throw Failure(kUsage, "--model all: with --trajectory, the atoms are those of one model");
+  if (options.csv == "-" && options.json == "-")
+    throw Failure(kUsage, "--csv and --json can't both go to standard output");
+  if (!options.csv.empty() && is_same_file(options.csv, options.json) && options.csv != "-")
+    throw Failure(kUsage, "--csv: '" + options.csv + "' is the file of --json as well");
+  for (const auto &[flag, file] : {std::pair("--csv", options.csv), std::pair("--json", options.json)})
+    for (const std::string &input : {options.input, options.trajectory})
+      if (!file.empty() && is_same_file(file, input))
+        throw Failure(kUsage, std::string(flag) + ": '" + file + "' is one of the inputs");
+  if (!options.output.empty()) OutputPattern pattern(options.output);  // throws if it is none
+}
+
+void check(const Options &options, const std::function<bool(const char *)> &given) {
+  if (options.compute.device_given && options.compute.backend == QSES_BACKEND_CPU)
     throw Failure(kUsage, "--device: only CUDA has devices to choose from, and --backend is cpu");
   if (options.compute.method == QSES_METHOD_GRID && options.compute.surface != QSES_SURFACE_SES)
     throw Failure(kUsage, "--method grid makes the solvent-excluded surface only: leave --surface at ses");
@@ -188,6 +229,7 @@ void check(const Options &options, bool has_device) {
   if (options.input.empty()) throw Failure(kUsage, "no input file was given; see quickses --help");
   if (is_same_file(options.json, options.input))
     throw Failure(kUsage, "--json: '" + options.json + "' is the input itself");
+  check_trajectory(options, given);
   if (!options.json.empty() && is_same_file(options.json, options.output))
     throw Failure(kUsage, "--json: '" + options.json + "' is the output of --output (-o) as well");
   if (!options.output.empty()) {
@@ -223,18 +265,20 @@ const char *name_of(qses_surface surface) { return find_name(kSurfaces, surface)
 const char *name_of(qses_method method) { return find_name(kMethods, method); }
 const char *name_of(qses_backend backend) { return find_name(kBackends, backend); }
 
-Options parse_options(int argc, char **argv) {
+Options parse_options(int argc, char **argv, std::ostream &out) {
   Options options;
   int device = -1;
   CLI::App app(
       "Molecular surfaces as closed triangle meshes.\n\n"
       "  quickses INPUT [-o OUT.obj|OUT.ply|OUT.stl] [options]\n"
+      "  quickses INPUT --trajectory FILE [--frames A:B:STEP] [--csv FILE] [-o frame_%05d.ply] [options]\n"
       "  quickses bench FILE... [--repeat N] [options]\n",
       "quickses");
   app.footer(kFooter);
   app.set_version_flag("--version", std::string("quickses ") + qses_version(), "Print the version");
   add_surface_options(app, options);
   add_compute_options(&app, options.compute, device);
+  add_trajectory_options(app, options);
   add_report_options(&app, options);
 
   CLI::App *bench = app.add_subcommand("bench", "Time warm calls: median ms from atoms in memory to mesh in memory");
@@ -247,7 +291,7 @@ Options parse_options(int argc, char **argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success &success) {  // --help, --version
-    app.exit(success);
+    app.exit(success, out);
     options.command = Options::Command::kNone;
     return options;
   } catch (const CLI::ParseError &error) {
@@ -260,8 +304,9 @@ Options parse_options(int argc, char **argv) {
     if (app.count_all() > bench->count_all() + 1) throw Failure(kUsage, "bench: its options go behind the word bench");
     options.command = Options::Command::kBench;
   }
+  options.compute.device_given = device >= 0;
   if (device >= 0) options.compute.device = device;
-  check(options, device >= 0);
+  check(options, [&app](const char *flag) { return app.count(flag) != 0; });
   return options;
 }
 

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <iosfwd>
 #include <string>
 #include <vector>
 
+#include "cli/frame_range.h"
 #include "io/structure.h"
 #include "quickses/quickses.h"
 
@@ -15,6 +17,7 @@ namespace quickses::cli {
 struct ComputeOptions {
   qses_backend backend = QSES_BACKEND_AUTO;
   int device = 0;
+  bool device_given = false;
   unsigned threads = 0;  // 0 = one per hardware thread
   uint64_t memory = 0;   // bytes; 0 = no bound
   qses_surface surface = QSES_SURFACE_SES;
@@ -35,13 +38,18 @@ struct Options {
   std::string output;               // empty: no mesh file
   std::vector<std::string> inputs;  // of bench
   unsigned repeat = 20;             // of bench
+  std::string trajectory;           // empty: the input alone
+  FrameRange frames;                // of the trajectory
+  bool unwrap = false;              // molecules in one piece
+  unsigned workers = 0;             // frames in flight; 0 = chosen by the program
+  std::string csv;                  // a file, "-" for standard output, empty: no table
   std::string json;                 // a file, "-" for standard output, empty: no report
   bool quiet = false;
 };
 
-// Reads the command line. After --help or --version, which print, the command is kNone.
+// Reads the command line. After --help or --version, which print to out, the command is kNone.
 // Throws Failure (kUsage) with one sentence that names the flag.
-Options parse_options(int argc, char **argv);
+Options parse_options(int argc, char **argv, std::ostream &out);
 
 // "512M" and the like in bytes: K, M, G, T are powers of 1024. False where the text is no such size or none at all.
 bool parse_size(const std::string &text, uint64_t &bytes);

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// A bar on standard error while a surface is computed, where somebody can see it.
+// Bars on standard error while something is computed, where somebody can see them.
 #include "cli/progress.h"
 
 #include <algorithm>
 #include <cstdio>
-#include <string>
 
 #if defined(_WIN32)
 #include <io.h>
@@ -17,33 +16,76 @@
 namespace quickses::cli {
 namespace {
 
-constexpr int kWidth = 40;
+using Clock = std::chrono::steady_clock;
+
+constexpr size_t kBarWidth = 30;
 constexpr std::chrono::milliseconds kDelay(200);  // what is done sooner needs no bar
+
+std::string duration_text(double seconds) {
+  const long s = static_cast<long>(seconds + 0.5);
+  char text[48];
+  if (s < 60)
+    std::snprintf(text, sizeof text, "%ld s", s);
+  else if (s < 3600)
+    std::snprintf(text, sizeof text, "%ld:%02ld min", s / 60, s % 60);
+  else
+    std::snprintf(text, sizeof text, "%ld:%02ld h", s / 3600, s / 60 % 60);
+  return text;
+}
 
 }  // namespace
 
-ProgressBar::ProgressBar(qses_context *context, bool quiet) : context_(context) {
-  if (quiet || !QSES_STDERR_IS_TERMINAL) return;
-  active_ = qses_set_progress_callback(context_, &ProgressBar::on_progress, this) == QSES_OK;
+TerminalBar::TerminalBar(bool quiet) : active_(!quiet && QSES_STDERR_IS_TERMINAL) {}
+
+void TerminalBar::show(double fraction, const std::string &text) {
+  if (!active_ || Clock::now() - start_ < kDelay) return;
+  const size_t percent = static_cast<size_t>(100 * std::clamp(fraction, 0.0, 1.0));
+  const size_t done = percent * kBarWidth / 100;
+  std::string line = "[" + std::string(done, '#') + std::string(kBarWidth - done, '.') + "] " +
+                     std::string(percent < 10    ? 2
+                                 : percent < 100 ? 1
+                                                 : 0,
+                                 ' ') +
+                     std::to_string(percent) + " %" + text;
+  if (line == shown_) return;
+  shown_ = line;
+  const size_t length = line.size();
+  if (length < width_) line.append(width_ - length, ' ');
+  width_ = length;
+  std::fprintf(stderr, "\r%s", line.c_str());
+  std::fflush(stderr);
+}
+
+void TerminalBar::clear() {
+  if (width_ == 0) return;
+  std::fprintf(stderr, "\r%*s\r", static_cast<int>(width_), "");
+  std::fflush(stderr);
+  width_ = 0;
+  shown_.clear();
+}
+
+ProgressBar::ProgressBar(qses_context *context, bool quiet) : context_(context), bar_(quiet) {
+  if (bar_.is_active()) qses_set_progress_callback(context_, &ProgressBar::on_progress, this);
 }
 
 ProgressBar::~ProgressBar() {
-  if (!active_) return;
-  qses_set_progress_callback(context_, nullptr, nullptr);
-  if (percent_ >= 0) std::fprintf(stderr, "\r%*s\r", kWidth + 8, "");
+  if (bar_.is_active()) qses_set_progress_callback(context_, nullptr, nullptr);
 }
 
-void ProgressBar::on_progress(void *self, double fraction) { static_cast<ProgressBar *>(self)->show(fraction); }
+void ProgressBar::on_progress(void *self, double fraction) { static_cast<ProgressBar *>(self)->bar_.show(fraction); }
 
-void ProgressBar::show(double fraction) {
-  if (std::chrono::steady_clock::now() - start_ < kDelay) return;
-  const int percent = static_cast<int>(100 * std::min(1.0, std::max(0.0, fraction)));
-  if (percent == percent_) return;
-  percent_ = percent;
-  const size_t done = static_cast<size_t>(percent) * kWidth / 100;
-  const std::string bar = std::string(done, '#') + std::string(kWidth - done, '.');
-  std::fprintf(stderr, "\r[%s] %3d %%", bar.c_str(), percent);
-  std::fflush(stderr);
+void FrameProgress::advance() {
+  ++done_;
+  if (!bar_.is_active()) return;
+  const double rate = frames_per_second();
+  char text[128];
+  std::snprintf(text, sizeof text, "  %zu/%zu frames, %.*f frames/s, %s left", done_, frame_count_, rate < 10 ? 2 : 0,
+                rate, duration_text(static_cast<double>(frame_count_ - done_) / rate).c_str());
+  bar_.show(static_cast<double>(done_) / static_cast<double>(frame_count_), text);
+}
+
+double FrameProgress::seconds() const {
+  return std::max(1e-6, std::chrono::duration<double>(Clock::now() - start_).count());
 }
 
 }  // namespace quickses::cli

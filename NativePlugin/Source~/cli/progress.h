@@ -1,28 +1,61 @@
 // SPDX-License-Identifier: MIT
-// A bar on standard error while a surface is computed, where somebody can see it.
+// Bars on standard error while something is computed, where somebody can see them.
 #pragma once
 
 #include <chrono>
+#include <string>
 
 #include "quickses/quickses.h"
 
 namespace quickses::cli {
 
+// One line of a terminal that is written over and over. Nothing is shown if quiet or if standard error is no terminal,
+// nor before a moment has passed.
+class TerminalBar {
+ public:
+  explicit TerminalBar(bool quiet);
+  ~TerminalBar() { clear(); }
+  TerminalBar(const TerminalBar &) = delete;
+  TerminalBar &operator=(const TerminalBar &) = delete;
+
+  bool is_active() const { return active_; }
+  void show(double fraction, const std::string &text = "");
+  void clear();  // before something else is printed
+
+ private:
+  bool active_;
+  size_t width_ = 0;  // of what stands there
+  std::string shown_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+// While one surface is computed.
 class ProgressBar {
  public:
-  // Shows nothing if quiet or if standard error is no terminal, and nothing before a moment has passed.
   ProgressBar(qses_context *context, bool quiet);
   ~ProgressBar();
-  ProgressBar(const ProgressBar &) = delete;
-  ProgressBar &operator=(const ProgressBar &) = delete;
 
  private:
   static void on_progress(void *self, double fraction);
-  void show(double fraction);
 
   qses_context *context_;
-  bool active_ = false;
-  int percent_ = -1;
+  TerminalBar bar_;
+};
+
+// While the frames of a trajectory are computed: how many are done, how many per second, how long it will take.
+class FrameProgress {
+ public:
+  FrameProgress(size_t frame_count, bool quiet) : frame_count_(frame_count), bar_(quiet) {}
+
+  void advance();
+  void clear() { bar_.clear(); }
+  double seconds() const;
+  double frames_per_second() const { return static_cast<double>(done_) / seconds(); }
+
+ private:
+  const size_t frame_count_;
+  size_t done_ = 0;
+  TerminalBar bar_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 

@@ -2,21 +2,14 @@
 // The JSON reports of the program.
 #include "cli/report.h"
 
-#include <cerrno>
-#include <cmath>
-#include <cstdio>
-#include <cstring>
-
-#include "cli/exit_code.h"
 #include "cli/mesh_check.h"
-#include "io/atomic_file.h"
 
 namespace quickses::cli {
 namespace {
 
-Json components_json(const qses_mesh &mesh) {
+Json components_json(const std::vector<Component> &components) {
   Json list = Json::array();
-  for (const Component &component : find_components(mesh))
+  for (const Component &component : components)
     list.push_back({{"triangles", component.triangles},
                     {"area", component.area},
                     {"volume", component.volume},
@@ -40,7 +33,7 @@ Json settings_json(const ComputeOptions &options) {
 }
 
 Json surface_json(const Options &options, const io::Structure &structure, const Engine &engine, const qses_mesh &mesh,
-                  const qses_report &report, const Timings &timings) {
+                  const std::vector<Component> &components, const qses_report &report, const Timings &timings) {
   Json json;
   json["version"] = qses_version();
   json["input"] = options.input;
@@ -58,7 +51,7 @@ Json surface_json(const Options &options, const io::Structure &structure, const 
                   {"bounds", bounds}};
   json["area"] = report.area;
   json["volume"] = report.volume;
-  json["components"] = components_json(mesh);
+  json["components"] = components_json(components);
   Json stages = Json::object();
   for (uint32_t i = 0; i < report.stage_count && i < QSES_MAX_STAGES; ++i)
     stages[report.stages[i].name] = report.stages[i].milliseconds;
@@ -74,16 +67,6 @@ Json surface_json(const Options &options, const io::Structure &structure, const 
 
 std::string dump(const Json &json, bool one_line) {
   return json.dump(one_line ? -1 : 2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
-void write_text(const std::string &path, const std::string &text) {
-  if (path != "-") {
-    io::AtomicFile file(path);
-    file.write(text);
-    file.commit();
-  } else if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
-    throw Failure(kOutputUnwritable, std::string("standard output can't be written: ") + std::strerror(errno));
-  }
 }
 
 }  // namespace quickses::cli

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "cli/engine.h"
+#include "cli/mesh_check.h"
 #include "cli/options.h"
 
 namespace quickses::cli {
@@ -19,14 +20,11 @@ struct Timings {
 
 Json settings_json(const ComputeOptions &options);
 
-// The report of one surface.
+// The report of one surface. components: those of the mesh.
 Json surface_json(const Options &options, const io::Structure &structure, const Engine &engine, const qses_mesh &mesh,
-                  const qses_report &report, const Timings &timings);
+                  const std::vector<Component> &components, const qses_report &report, const Timings &timings);
 
 // Text of a report; names that are no UTF-8 are made so.
 std::string dump(const Json &json, bool one_line);
-
-// Writes text to a file or, for "-", to standard output. Throws Failure or io::Error (output).
-void write_text(const std::string &path, const std::string &text);
 
 }  // namespace quickses::cli

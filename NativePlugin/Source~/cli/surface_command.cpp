@@ -7,10 +7,13 @@
 #include "cli/commands.h"
 #include "cli/engine.h"
 #include "cli/exit_code.h"
+#include "cli/mesh_check.h"
+#include "cli/mesh_output.h"
 #include "cli/progress.h"
 #include "cli/report.h"
+#include "cli/text_output.h"
 #include "io/atomic_file.h"
-#include "io/mesh_writer.h"
+#include "io/radii.h"
 
 namespace quickses::cli {
 namespace {
@@ -28,19 +31,6 @@ std::string output_of_model(const Options &options, int model) {
   char number[16];
   std::snprintf(number, sizeof number, "_%04d", model);
   return (path.parent_path() / (path.stem().string() + number + path.extension().string())).string();
-}
-
-void write_surface(const std::string &path, const qses_mesh &mesh, const io::Structure &structure) {
-  std::vector<uint32_t> owners(mesh.vertex_count);  // in the file, not among the atoms that were kept
-  for (uint32_t i = 0; i < mesh.vertex_count; ++i) owners[i] = structure.atoms[mesh.owners[i]].file_index;
-  io::MeshView view;
-  view.vertex_count = mesh.vertex_count;
-  view.triangle_count = mesh.triangle_count;
-  view.positions = mesh.positions;
-  view.normals = mesh.normals;
-  view.owners = owners.data();
-  view.indices = mesh.indices;
-  io::write_mesh(path, view, io::mesh_format_of(path));
 }
 
 void print_summary(const Options &options, const io::Structure &structure, const Engine &engine, const qses_mesh &mesh,
@@ -72,7 +62,7 @@ void run_surface(const Options &options) {
   for (const io::Structure &structure : file.models) {
     Options model_options = options;
     model_options.output = output_of_model(options, structure.model);
-    if (has_own_radii(file.format)) model_options.compute.radii = "file";
+    if (io::has_own_radii(file.format)) model_options.compute.radii = "file";
     engine.set_atoms(structure, options.input);
     qses_mesh mesh;
     {
@@ -86,7 +76,7 @@ void run_surface(const Options &options) {
       timings.write = ms_since(write_start);
     }
     if (!options.json.empty()) {
-      const Json json = surface_json(model_options, structure, engine, mesh, report, timings);
+      const Json json = surface_json(model_options, structure, engine, mesh, find_components(mesh), report, timings);
       reports += dump(json, all_models);  // of several models: one line each
     }
     if (!options.quiet && options.json != "-") print_summary(model_options, structure, engine, mesh, report);

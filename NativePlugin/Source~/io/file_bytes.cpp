@@ -79,17 +79,21 @@ std::string gunzip(const std::string &packed, const std::string &path) {
 
 }  // namespace
 
+std::string unpack_gzip(std::string bytes, const std::string &name) {
+  if (bytes.empty()) fail_input("'" + name + "' is empty");
+  if (bytes.size() == 1 && bytes[0] == '\x1f') fail_input("'" + name + "' is cut off: its gzip data ends early");
+  if (!has_gzip_magic(bytes.data(), bytes.size())) return bytes;
+  std::string text = gunzip(bytes, name);
+  if (text.empty()) fail_input("'" + name + "' is empty");
+  return text;
+}
+
 std::string read_file_bytes(const std::string &path) {
   std::string bytes = read_raw_bytes(path);
-  if (has_gzip_magic(bytes.data(), bytes.size())) {
-    std::string text = gunzip(bytes, path);
-    if (text.empty()) fail_input("'" + path + "' is empty");
-    return text;
-  }
-  if (bytes.size() == 1 && bytes[0] == '\x1f') fail_input("'" + path + "' is cut off: its gzip data ends early");
-  std::string extension = fs::path(path).extension().string();
-  if (extension == ".gz" || extension == ".GZ") fail_input("'" + path + "' is named .gz but is no gzip file");
-  return bytes;
+  const std::string extension = fs::path(path).extension().string();
+  if ((extension == ".gz" || extension == ".GZ") && bytes.size() >= 2 && !has_gzip_magic(bytes.data(), bytes.size()))
+    fail_input("'" + path + "' is named .gz but is no gzip file");
+  return unpack_gzip(std::move(bytes), path);
 }
 
 }  // namespace quickses::io

@@ -11,4 +11,7 @@ namespace quickses::io {
 // damaged or cut off, even where the part before the cut would make sense.
 std::string read_file_bytes(const std::string &path);
 
+// What is compressed in gzip data; other bytes as they are. name: for messages. Throws as read_file_bytes.
+std::string unpack_gzip(std::string bytes, const std::string &name);
+
 }  // namespace quickses::io

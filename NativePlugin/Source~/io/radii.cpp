@@ -99,4 +99,17 @@ void assign_radii(Structure &structure, const RadiusTable &table) {
   for (const AtomInfo &atom : structure.atoms) structure.radii.push_back(table[atom.element]);
 }
 
+bool has_own_radii(StructureFormat format) {
+  return format == StructureFormat::kPqr || format == StructureFormat::kXyzr;
+}
+
+void assign_radii(StructureFile &file, const std::string &radius_set) {
+  if (has_own_radii(file.format)) {
+    if (!radius_set.empty()) fail_usage("radii: the file has radii of its own, so none can be chosen");
+    return;
+  }
+  const RadiusTable table = find_radii(radius_set.empty() ? "quickses" : radius_set);
+  for (Structure &structure : file.models) assign_radii(structure, table);
+}
+
 }  // namespace quickses::io

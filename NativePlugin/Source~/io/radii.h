@@ -27,4 +27,11 @@ RadiusTable find_radii(const std::string &name_or_path);
 // Fills structure.radii from the elements.
 void assign_radii(Structure &structure, const RadiusTable &table);
 
+// PQR and XYZR files say how large their atoms are.
+bool has_own_radii(StructureFormat format);
+
+// Fills the radii of all models from a set (see find_radii); empty: those of the file, or else the quickses set.
+// Throws Error: kUsage (a set was asked for, but the file has radii of its own), kInput (as find_radii).
+void assign_radii(StructureFile &file, const std::string &radius_set);
+
 }  // namespace quickses::io

@@ -105,6 +105,8 @@ std::vector<AtomRef> in_file_order(const gemmi::Model &model) {
   return refs;
 }
 
+uint8_t atomic_number(const gemmi::Atom &atom) { return static_cast<uint8_t>(atom.element.atomic_number()); }
+
 AtomInfo describe(const AtomRef &ref) {
   AtomInfo info;
   info.name = ref.atom->name;
@@ -112,7 +114,7 @@ AtomInfo describe(const AtomRef &ref) {
   info.chain = ref.chain->name;
   if (ref.residue->seqid.num.has_value()) info.residue_number = *ref.residue->seqid.num;
   info.insertion_code = ref.residue->seqid.icode;
-  info.element = static_cast<uint8_t>(ref.atom->element.atomic_number());
+  info.element = atomic_number(*ref.atom);
   info.hetero = ref.residue->het_flag == 'H';
   info.water = is_water_name(ref.residue->name);
   info.hydrogen = ref.atom->element.is_hydrogen();
@@ -147,9 +149,11 @@ Structure flatten(const RawModel &raw, const Filter &filter, const std::string &
   Structure structure;
   structure.model = raw.number;
   structure.file_atom_count = raw.atom_count;
+  structure.file_elements.resize(raw.atom_count);
   const bool chooses_location = filter.selection && !filter.selection->altlocs.all;
   AlternateLocations locations;
   for (const AtomRef &ref : in_file_order(raw.model)) {
+    structure.file_elements[static_cast<size_t>(ref.atom->serial - 1)] = atomic_number(*ref.atom);
     if (!chooses_location && !locations.keep(ref)) continue;
     AtomInfo info = describe(ref);
     if (!filter.keep(info, raw.model, ref)) continue;
@@ -193,11 +197,14 @@ bool is_water_name(const std::string &residue_name) {
   return std::any_of(std::begin(kNames), std::end(kNames), [&](const char *name) { return residue_name == name; });
 }
 
-StructureFile read_structure(const std::string &path, const ReadOptions &options) {
+namespace {
+
+// text: unpacked. path: as given, or any name for messages.
+StructureFile parse_text(const std::string &text, const std::string &path, std::optional<StructureFormat> format,
+                         const ReadOptions &options) {
   Filter filter{options, parse_selection(options.selection)};
-  const std::string text = read_file_bytes(path);
   StructureFile file;
-  file.format = find_format(path, text);
+  file.format = format ? *format : find_format(path, text);
   RawFile raw_file = read_raw(file.format, text, path, options.model);
   file.model_count = raw_file.model_count;
   if (file.model_count == 0) fail_input("'" + path + "' has no atoms");
@@ -225,6 +232,23 @@ StructureFile read_structure(const std::string &path, const ReadOptions &options
     file.warnings.push_back("'" + path + "': " + count_of(radius_zero_count, "atom", "atoms") +
                             " of radius 0 left out");
   return file;
+}
+
+}  // namespace
+
+StructureFile read_structure(const std::string &path, const ReadOptions &options) {
+  parse_selection(options.selection);  // before a large file is read
+  return parse_text(read_file_bytes(path), path, std::nullopt, options);
+}
+
+StructureFile read_structure(const std::string &path, StructureFormat format, const ReadOptions &options) {
+  parse_selection(options.selection);
+  return parse_text(read_file_bytes(path), path, format, options);
+}
+
+StructureFile parse_structure(const std::string &bytes, std::optional<StructureFormat> format,
+                              const ReadOptions &options, const std::string &name) {
+  return parse_text(unpack_gzip(bytes, name), name, format, options);
 }
 
 }  // namespace quickses::io

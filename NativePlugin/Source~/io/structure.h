@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,7 +31,9 @@ struct Structure {
   std::vector<AtomInfo> atoms;   // N
   std::vector<float> positions;  // N x 3, Å
   std::vector<float> radii;      // N, Å; filled for PQR and XYZR only, else see assign_radii
-  uint32_t file_atom_count = 0;  // atom records of this model in the file
+  uint32_t file_atom_count = 0;  // M, atom records of this model in the file
+  // M atomic numbers, those of atoms that were left out too; 0 = unknown. What a trajectory needs to find molecules.
+  std::vector<uint8_t> file_elements;
 };
 
 struct ReadOptions {
@@ -55,6 +58,11 @@ struct StructureFile {
 // Throws Error: kInput (file, syntax, no atoms; the message has file and line), kUsage (selection; no such model;
 // filters on a file without names).
 StructureFile read_structure(const std::string &path, const ReadOptions &options = ReadOptions());
+StructureFile read_structure(const std::string &path, StructureFormat format, const ReadOptions &options);
+
+// The same from bytes in memory, gzipped or not. Without a format, the name and the content tell. name: for messages.
+StructureFile parse_structure(const std::string &bytes, std::optional<StructureFormat> format,
+                              const ReadOptions &options = ReadOptions(), const std::string &name = "structure");
 
 // True for residue names of water in the PDB and in common molecular-dynamics packages.
 bool is_water_name(const std::string &residue_name);

@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "io/dcd_reader.h"
+#include "io/file_bytes.h"
 #include "io/pdb_frames.h"
 #include "io/text.h"
 #include "io/trajectory_reader.h"
@@ -69,8 +70,10 @@ Trajectory Trajectory::open(const std::string &path, TrajectoryFormat format) {
   return Trajectory(format, open_reader(format, ByteSource::open_file(path)));
 }
 
-Trajectory Trajectory::from_memory(std::string bytes, TrajectoryFormat format, const std::string &name) {
-  return Trajectory(format, open_reader(format, ByteSource::in_memory(std::move(bytes), name)));
+Trajectory Trajectory::from_memory(std::string bytes, std::optional<TrajectoryFormat> format, const std::string &name) {
+  std::unique_ptr<ByteSource> source = ByteSource::in_memory(unpack_gzip(std::move(bytes), name), name);
+  const TrajectoryFormat known = format ? *format : find_format(name, *source);
+  return Trajectory(known, open_reader(known, std::move(source)));
 }
 
 size_t Trajectory::frame_count() const { return reader_->frame_count; }

@@ -27,8 +27,9 @@ class Trajectory {
   static Trajectory open(const std::string &path);
   static Trajectory open(const std::string &path, TrajectoryFormat format);
 
-  // As open, from bytes that are not gzipped. name: for messages.
-  static Trajectory from_memory(std::string bytes, TrajectoryFormat format, const std::string &name = "trajectory");
+  // As open, from bytes, gzipped or not. Without a format, the content tells. name: for messages.
+  static Trajectory from_memory(std::string bytes, std::optional<TrajectoryFormat> format,
+                                const std::string &name = "trajectory");
 
   Trajectory(Trajectory &&) noexcept;
   Trajectory &operator=(Trajectory &&) noexcept;

@@ -89,6 +89,13 @@ CudaDevice describe_cuda_device(int ordinal) {
   return device;
 }
 
+int count_cuda_devices() {
+  int count = 0;
+  if (cudaGetDeviceCount(&count) == cudaSuccess) return count;
+  cudaGetLastError();
+  return 0;
+}
+
 DeviceGuard::DeviceGuard(int device) : before_(device), device_(device) {
   check_cuda(cudaGetDevice(&before_), "cudaGetDevice");
   // Selected even if it was before: on a thread that has not used CUDA yet this makes the device current.

@@ -25,6 +25,9 @@ struct CudaDevice {
 // Looks whether this library's kernels can run on a device. Never throws; leaves the selected device as it was.
 CudaDevice describe_cuda_device(int ordinal);
 
+// 0 where CUDA does not start. Never throws.
+int count_cuda_devices();
+
 // Selects a device for the calling thread, and the one selected before when it goes.
 class DeviceGuard {
  public:

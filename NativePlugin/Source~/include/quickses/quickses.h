@@ -38,7 +38,7 @@
  * Threads
  *   A context may be used by one thread at a time, but for qses_poll and qses_cancel, which may be called from any
  *   thread while another one uses the context. Different contexts are independent of each other. Functions without a
- *   context may be called from any thread at any time.
+ *   context may be called from any thread at any time; structures and trajectories have rules of their own, below.
  */
 #ifndef QUICKSES_QUICKSES_H
 #define QUICKSES_QUICKSES_H
@@ -75,7 +75,9 @@ typedef enum qses_status {
                                    than float32 can tell: atoms may lie 2^21 spacings from the middle of them all */
   QSES_NO_RESULT = 6,           /* nothing has been computed yet */
   QSES_INTERNAL_ERROR = 7,      /* a broken invariant of the library: please report it with the input */
-  QSES_CANCELLED = 8            /* qses_cancel was called meanwhile */
+  QSES_CANCELLED = 8,           /* qses_cancel was called meanwhile */
+  QSES_FILE_ERROR = 9,          /* a file or buffer can't be read, or what is in it can't be used */
+  QSES_NO_BOX = 10              /* the trajectory has no periodic box, so there is nothing to unwrap */
 } qses_status;
 
 typedef enum qses_backend {
@@ -396,6 +398,177 @@ QSES_API qses_status qses_cancel(qses_context *context);
 /* Waits until no job runs or waits, or for the given time (negative: without limit). OK either way; *finished, which may
  * be NULL, tells which: 1 or 0. Errors: INVALID_ARGUMENT. */
 QSES_API qses_status qses_wait(qses_context *context, double milliseconds, int32_t *finished);
+
+/* ---- structures and trajectories --------------------------------------------------------------------------------- */
+
+/* How many CUDA devices this library sees; their ordinals are 0 to *count - 1. 0 without CUDA, or where it does not
+ * start (qses_backend_info says why). Errors: INVALID_ARGUMENT. */
+QSES_API qses_status qses_device_count(uint32_t *count);
+
+/* The atoms of one model of a file, after filters, with radii. Opaque. It never changes: any number of threads may use
+ * it at a time. */
+typedef struct qses_structure qses_structure;
+
+/* Many frames of the same atoms, read in any order. Opaque. Any number of threads may read it at a time. */
+typedef struct qses_trajectory qses_trajectory;
+
+typedef enum qses_structure_format {
+  QSES_STRUCTURE_AUTO = 0, /* by the extension of the file's name, else by the content (PDB and mmCIF) */
+  QSES_STRUCTURE_PDB = 1,
+  QSES_STRUCTURE_MMCIF = 2,
+  QSES_STRUCTURE_PQR = 3,  /* with radii of its own */
+  QSES_STRUCTURE_XYZR = 4, /* x y z radius per line: no names, no elements */
+  QSES_STRUCTURE_GRO = 5   /* GROMACS */
+} qses_structure_format;
+
+typedef struct qses_read_options {
+  uint32_t struct_size; /* set by qses_read_options_init */
+  qses_structure_format format;
+  int32_t model;         /* place of the model in the file, from 1 (default) */
+  int32_t water;         /* 1 (default): waters are kept; 0: they are left out */
+  int32_t hetero;        /* the same for HETATM records, which waters mostly are too */
+  int32_t hydrogen;      /* the same for hydrogen and deuterium */
+  const char *selection; /* CID syntax of gemmi, such as "//A" or "/1/A/10-40/CA[C]"; NULL (default) = everything */
+  const char *radii;     /* "quickses", "bondi", or the name of a text file with lines `ELEMENT radius` (Å; `*` for all
+                            others). NULL (default) = those of the file (PQR, XYZR), else "quickses": O 1.52, C 1.70,
+                            N 1.55, H 1.20, S 1.80, P 1.80, others 1.40 Å */
+} qses_read_options;
+
+/* Fills in the defaults. Always use it: later versions append fields. NULL is ignored. */
+QSES_API void qses_read_options_init(qses_read_options *options);
+
+/* Reads a structure from a file, gzipped or not. path is UTF-8. options may be NULL (defaults). Of alternate locations,
+ * those without a label and the first label met in each residue are kept.
+ * On success *structure is the caller's, who ends it with qses_structure_close; on failure it is NULL.
+ * Errors: INVALID_ARGUMENT (options; a selection that can't be understood; no such model), FILE_ERROR (the message
+ * names file and line), OUT_OF_MEMORY. */
+QSES_API qses_status qses_structure_open(const char *path, const qses_read_options *options,
+                                         qses_structure **structure);
+
+/* The same from size bytes in memory, gzipped or not, which are only read during the call. options->format should name
+ * the format; AUTO tells PDB from mmCIF by the content and knows no other. */
+QSES_API qses_status qses_structure_open_memory(const void *bytes, size_t size, const qses_read_options *options,
+                                                qses_structure **structure);
+
+/* Frees a structure and everything it handed out. NULL is ignored. */
+QSES_API void qses_structure_close(qses_structure *structure);
+
+/* What the file says about one atom. Strings are never NULL; XYZR files have none, so they are empty there. */
+typedef struct qses_atom {
+  const char *name;         /* such as "CA" */
+  const char *residue_name; /* such as "ALA" */
+  const char *chain;
+  int32_t residue_number;
+  uint32_t file_index; /* 0-based place among the atom records of the model in the file, before any filter */
+  char insertion_code; /* ' ' if there is none */
+  uint8_t element;     /* atomic number; 0 = unknown; deuterium is 1 */
+  uint8_t is_hetero;   /* 1: HETATM */
+  uint8_t is_water;    /* 1: its residue is water */
+  uint8_t is_hydrogen; /* 1: H or D */
+  uint8_t reserved[3];
+} qses_atom;
+
+/* A view of a structure; the arrays are the structure's, valid until qses_structure_close. */
+typedef struct qses_structure_info {
+  uint32_t struct_size; /* set by qses_structure_info_init */
+  qses_structure_format format;
+  int32_t model;                /* as in the options */
+  int32_t model_count;          /* of the file */
+  uint32_t atom_count;          /* N, those kept, at least 1; in the order of the file */
+  uint32_t file_atom_count;     /* M, atom records of the model in the file */
+  const float *positions;       /* N x 3, Å: as qses_set_atoms takes them */
+  const float *radii;           /* N, Å */
+  const uint32_t *file_indices; /* N, rising; each below M. qses_set_positions_indexed takes them to pick the atoms of
+                                   this structure out of a frame of a trajectory that has all M atoms */
+  const qses_atom *atoms;       /* N */
+  const uint8_t *file_elements; /* M atomic numbers, also of atoms that were left out: for qses_trajectory_unwrap */
+  uint32_t warning_count;       /* see qses_structure_warning */
+} qses_structure_info;
+
+/* Empty view with struct_size set. NULL is ignored. */
+QSES_API void qses_structure_info_init(qses_structure_info *info);
+
+/* Errors: INVALID_ARGUMENT. */
+QSES_API qses_status qses_structure_get_info(const qses_structure *structure, qses_structure_info *info);
+
+/* A sentence for the user, such as one about elements that had to be inferred; k is below warning_count. Valid until
+ * qses_structure_close. Errors: INVALID_ARGUMENT. */
+QSES_API qses_status qses_structure_warning(const qses_structure *structure, uint32_t k, const char **sentence);
+
+typedef enum qses_trajectory_format {
+  QSES_TRAJECTORY_AUTO = 0, /* by the extension of the file's name, else by the content */
+  QSES_TRAJECTORY_DCD = 1,  /* CHARMM, NAMD, X-PLOR */
+  QSES_TRAJECTORY_XTC = 2,  /* GROMACS; nm become Å */
+  QSES_TRAJECTORY_PDB = 3   /* PDB with several models */
+} qses_trajectory_format;
+
+/* Opens a trajectory; path is UTF-8. Frames stay in the file and are read when they are asked for (a gzipped file is
+ * unpacked into memory). A file that ends within a frame, or makes no sense from some frame on, gives the frames
+ * before: see qses_trajectory_info.incomplete. On success *trajectory is the caller's, who ends it with
+ * qses_trajectory_close; on failure it is NULL. Errors: INVALID_ARGUMENT, FILE_ERROR (no such format, not one whole
+ * frame, frames of different numbers of atoms, DCD files with 64-bit record markers or velocities), OUT_OF_MEMORY. */
+QSES_API qses_status qses_trajectory_open(const char *path, qses_trajectory_format format,
+                                          qses_trajectory **trajectory);
+
+/* The same from size bytes in memory, gzipped or not; they are copied. */
+QSES_API qses_status qses_trajectory_open_memory(const void *bytes, size_t size, qses_trajectory_format format,
+                                                 qses_trajectory **trajectory);
+
+/* Frees a trajectory and everything it handed out. NULL is ignored. */
+QSES_API void qses_trajectory_close(qses_trajectory *trajectory);
+
+typedef struct qses_trajectory_info {
+  uint32_t struct_size; /* set by qses_trajectory_info_init */
+  qses_trajectory_format format;
+  uint64_t frame_count;   /* whole frames, at least 1 */
+  uint32_t atom_count;    /* per frame, at least 1; in PDB files all ATOM and HETATM records of a model */
+  int32_t has_box;        /* 1 if frame 0 has a periodic box */
+  int32_t is_unwrapped;   /* 1 after qses_trajectory_unwrap */
+  int32_t incomplete;     /* 1 if the file ends, or stops making sense, before it should; a warning says where */
+  uint32_t warning_count; /* see qses_trajectory_warning */
+} qses_trajectory_info;
+
+/* Empty structure with struct_size set. NULL is ignored. */
+QSES_API void qses_trajectory_info_init(qses_trajectory_info *info);
+
+/* Errors: INVALID_ARGUMENT. */
+QSES_API qses_status qses_trajectory_get_info(const qses_trajectory *trajectory, qses_trajectory_info *info);
+
+/* A sentence for the user; k is below warning_count. Valid until qses_trajectory_close. Errors: INVALID_ARGUMENT. */
+QSES_API qses_status qses_trajectory_warning(const qses_trajectory *trajectory, uint32_t k, const char **sentence);
+
+/* From now on frames come with every molecule in one piece, around its first atom, instead of torn by the borders of
+ * the periodic box. elements are the atomic numbers (0 = unknown) of all count atoms of the trajectory, such as
+ * qses_structure_info.file_elements; they are only read during the call. Atoms are bonded if they are in the first
+ * frame. No other thread may use the trajectory meanwhile.
+ * Errors: NO_BOX (the first frame has no box; frames come as before), INVALID_ARGUMENT (count is not the number of
+ * atoms), FILE_ERROR (the first frame is damaged, or its atoms lie on top of each other), OUT_OF_MEMORY. */
+QSES_API qses_status qses_trajectory_unwrap(qses_trajectory *trajectory, const uint8_t *elements, size_t count);
+
+/* What a file says about one frame, besides positions. */
+typedef struct qses_frame {
+  uint32_t struct_size; /* set by qses_frame_init */
+  int32_t has_time;
+  double time; /* ps; 0 if it is not known */
+  int32_t has_box;
+  int32_t is_unwrapped; /* 1: molecules are in one piece; 0: not asked for, or this frame has no box */
+  double box[9];        /* Å; the vectors a, b, c, three numbers each; 0 if there is no box */
+} qses_frame;
+
+/* Empty structure with struct_size set. NULL is ignored. */
+QSES_API void qses_frame_init(qses_frame *frame);
+
+/* Reads frame `index`, counted from 0, into the caller's memory.
+ *   positions  room for count positions of three floats x, y, z in Å, each stride bytes after the one before; what lies
+ *              between them is not touched
+ *   stride     as in qses_set_atoms
+ *   count      must be the number of atoms of the trajectory
+ *   frame      may be NULL
+ * All positions are finite and within 1e6 Å of the origin. May be called from several threads at a time.
+ * Errors: INVALID_ARGUMENT (no such frame, stride, count), FILE_ERROR (the frame is damaged; others may be whole),
+ * OUT_OF_MEMORY. After an error what positions holds is undefined. */
+QSES_API qses_status qses_trajectory_read_frame(const qses_trajectory *trajectory, uint64_t index, float *positions,
+                                                size_t stride, size_t count, qses_frame *frame);
 
 #ifdef __cplusplus
 }

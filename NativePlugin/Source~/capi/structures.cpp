@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT
+// The C API: structures from files and from memory.
+#include "capi/structs.h"
+#include "io/radii.h"
+#include "io/structure.h"
+#include "quickses/quickses.h"
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+using quickses::check_choice;
+using quickses::guarded;
+using quickses::invalid;
+using quickses::read_struct;
+using quickses::require;
+using quickses::write_struct;
+namespace io = quickses::io;
+
+struct qses_structure {
+  io::StructureFile file;  // with one model
+  std::vector<qses_atom> atoms;
+  std::vector<uint32_t> file_indices;
+
+  const io::Structure &model() const { return file.models.front(); }
+};
+
+namespace {
+
+std::optional<io::StructureFormat> format_of(qses_structure_format format) {
+  switch (format) {
+    case QSES_STRUCTURE_PDB:
+      return io::StructureFormat::kPdb;
+    case QSES_STRUCTURE_MMCIF:
+      return io::StructureFormat::kMmcif;
+    case QSES_STRUCTURE_PQR:
+      return io::StructureFormat::kPqr;
+    case QSES_STRUCTURE_XYZR:
+      return io::StructureFormat::kXyzr;
+    case QSES_STRUCTURE_GRO:
+      return io::StructureFormat::kGro;
+    default:
+      return std::nullopt;
+  }
+}
+
+qses_structure_format format_of(io::StructureFormat format) {
+  switch (format) {
+    case io::StructureFormat::kPdb:
+      return QSES_STRUCTURE_PDB;
+    case io::StructureFormat::kMmcif:
+      return QSES_STRUCTURE_MMCIF;
+    case io::StructureFormat::kPqr:
+      return QSES_STRUCTURE_PQR;
+    case io::StructureFormat::kXyzr:
+      return QSES_STRUCTURE_XYZR;
+    case io::StructureFormat::kGro:
+      return QSES_STRUCTURE_GRO;
+  }
+  return QSES_STRUCTURE_AUTO;
+}
+
+io::ReadOptions read_options_of(const qses_read_options &options) {
+  check_choice("options.format", options.format, QSES_STRUCTURE_GRO);
+  if (options.model < 1) invalid("options.model is " + std::to_string(options.model) + ": models count from 1");
+  io::ReadOptions read;
+  read.model = options.model;
+  read.water = options.water != 0;
+  read.hetero = options.hetero != 0;
+  read.hydrogen = options.hydrogen != 0;
+  if (options.selection) read.selection = options.selection;
+  return read;
+}
+
+std::vector<qses_atom> atom_table(const io::Structure &structure) {
+  std::vector<qses_atom> table(structure.atoms.size());
+  for (size_t i = 0; i < table.size(); ++i) {
+    const io::AtomInfo &from = structure.atoms[i];
+    qses_atom &to = table[i];
+    to.name = from.name.c_str();
+    to.residue_name = from.residue_name.c_str();
+    to.chain = from.chain.c_str();
+    to.residue_number = from.residue_number;
+    to.file_index = from.file_index;
+    to.insertion_code = from.insertion_code;
+    to.element = from.element;
+    to.is_hetero = from.hetero;
+    to.is_water = from.water;
+    to.is_hydrogen = from.hydrogen;
+  }
+  return table;
+}
+
+using Read = std::function<io::StructureFile(std::optional<io::StructureFormat>, const io::ReadOptions &)>;
+
+void open_structure(const Read &read, const qses_read_options *options, qses_structure **structure) {
+  const qses_read_options o = read_struct(options, qses_read_options_init, "qses_read_options");
+  auto opened = std::make_unique<qses_structure>();
+  const io::ReadOptions read_options = read_options_of(o);
+  opened->file = read(format_of(o.format), read_options);
+  io::assign_radii(opened->file, o.radii ? o.radii : "");
+  opened->atoms = atom_table(opened->model());
+  for (const io::AtomInfo &atom : opened->model().atoms) opened->file_indices.push_back(atom.file_index);
+  *structure = opened.release();
+}
+
+}  // namespace
+
+extern "C" {
+
+void qses_read_options_init(qses_read_options *options) {
+  if (!options) return;
+  *options = qses_read_options{};
+  options->struct_size = sizeof *options;
+  options->model = 1;
+  options->water = options->hetero = options->hydrogen = 1;
+}
+
+qses_status qses_structure_open(const char *path, const qses_read_options *options, qses_structure **structure) {
+  if (structure) *structure = nullptr;
+  return guarded([&] {
+    require(path, "path");
+    require(structure, "structure");
+    const Read read = [path](std::optional<io::StructureFormat> format, const io::ReadOptions &read_options) {
+      return format ? io::read_structure(path, *format, read_options) : io::read_structure(path, read_options);
+    };
+    open_structure(read, options, structure);
+  });
+}
+
+qses_status qses_structure_open_memory(const void *bytes, size_t size, const qses_read_options *options,
+                                       qses_structure **structure) {
+  if (structure) *structure = nullptr;
+  return guarded([&] {
+    require(bytes, "bytes");
+    require(structure, "structure");
+    const Read read = [&](std::optional<io::StructureFormat> format, const io::ReadOptions &read_options) {
+      return io::parse_structure(std::string(static_cast<const char *>(bytes), size), format, read_options);
+    };
+    open_structure(read, options, structure);
+  });
+}
+
+void qses_structure_close(qses_structure *structure) {
+  guarded([&] { delete structure; });
+}
+
+void qses_structure_info_init(qses_structure_info *info) {
+  if (!info) return;
+  *info = qses_structure_info{};
+  info->struct_size = sizeof *info;
+}
+
+qses_status qses_structure_get_info(const qses_structure *structure, qses_structure_info *info) {
+  return guarded([&] {
+    require(structure, "structure");
+    require(info, "info");
+    const io::Structure &model = structure->model();
+    qses_structure_info value;
+    qses_structure_info_init(&value);
+    value.format = format_of(structure->file.format);
+    value.model = model.model;
+    value.model_count = structure->file.model_count;
+    value.atom_count = static_cast<uint32_t>(model.atoms.size());
+    value.file_atom_count = model.file_atom_count;
+    value.positions = model.positions.data();
+    value.radii = model.radii.data();
+    value.file_indices = structure->file_indices.data();
+    value.atoms = structure->atoms.data();
+    value.file_elements = model.file_elements.data();
+    value.warning_count = static_cast<uint32_t>(structure->file.warnings.size());
+    write_struct(info, value, "structure_info");
+  });
+}
+
+qses_status qses_structure_warning(const qses_structure *structure, uint32_t k, const char **sentence) {
+  return guarded([&] {
+    require(structure, "structure");
+    require(sentence, "sentence");
+    *sentence = quickses::pick_warning(structure->file.warnings, k);
+  });
+}
+
+}  // extern "C"

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+// The C API: trajectories from files and from memory.
+#include "capi/atoms_in.h"
+#include "capi/structs.h"
+#include "io/trajectory.h"
+#include "io/unwrap.h"
+#include "quickses/quickses.h"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+using quickses::check_choice;
+using quickses::guarded;
+using quickses::invalid;
+using quickses::require;
+using quickses::write_struct;
+namespace io = quickses::io;
+
+struct qses_trajectory {
+  explicit qses_trajectory(io::Trajectory opened) : frames(std::move(opened)) {
+    try {
+      has_box = frames.box(0).has_value();
+    } catch (const io::Error &) {  // a damaged frame 0: the others can still be read
+    }
+  }
+
+  io::Trajectory frames;
+  std::optional<io::Unwrapper> unwrapper;
+  bool has_box = false;
+};
+
+namespace {
+
+// By reference: a number that names no format must not be looked at as one before it is checked.
+std::optional<io::TrajectoryFormat> format_of(const qses_trajectory_format &format) {
+  check_choice("format", format, QSES_TRAJECTORY_PDB);
+  switch (format) {
+    case QSES_TRAJECTORY_DCD:
+      return io::TrajectoryFormat::kDcd;
+    case QSES_TRAJECTORY_XTC:
+      return io::TrajectoryFormat::kXtc;
+    case QSES_TRAJECTORY_PDB:
+      return io::TrajectoryFormat::kPdb;
+    default:
+      return std::nullopt;
+  }
+}
+
+qses_trajectory_format format_of(io::TrajectoryFormat format) {
+  switch (format) {
+    case io::TrajectoryFormat::kDcd:
+      return QSES_TRAJECTORY_DCD;
+    case io::TrajectoryFormat::kXtc:
+      return QSES_TRAJECTORY_XTC;
+    case io::TrajectoryFormat::kPdb:
+      return QSES_TRAJECTORY_PDB;
+  }
+  return QSES_TRAJECTORY_AUTO;
+}
+
+void check_atom_count(const qses_trajectory &trajectory, size_t count) {
+  if (count != trajectory.frames.atom_count())
+    invalid("count is " + std::to_string(count) + " but the trajectory has " +
+            std::to_string(trajectory.frames.atom_count()) + " atoms");
+}
+
+// The positions of a frame, packed; true if molecules were made whole.
+bool read_positions(const qses_trajectory &trajectory, size_t index, const std::optional<io::Box> &box, float *xyz) {
+  trajectory.frames.read_frame(index, xyz);
+  return trajectory.unwrapper && trajectory.unwrapper->apply(box, xyz) == io::UnwrapStatus::kDone;
+}
+
+}  // namespace
+
+extern "C" {
+
+qses_status qses_trajectory_open(const char *path, qses_trajectory_format format, qses_trajectory **trajectory) {
+  if (trajectory) *trajectory = nullptr;
+  return guarded([&] {
+    require(path, "path");
+    require(trajectory, "trajectory");
+    const std::optional<io::TrajectoryFormat> known = format_of(format);
+    *trajectory = new qses_trajectory(known ? io::Trajectory::open(path, *known) : io::Trajectory::open(path));
+  });
+}
+
+qses_status qses_trajectory_open_memory(const void *bytes, size_t size, qses_trajectory_format format,
+                                        qses_trajectory **trajectory) {
+  if (trajectory) *trajectory = nullptr;
+  return guarded([&] {
+    require(bytes, "bytes");
+    require(trajectory, "trajectory");
+    std::string copy(static_cast<const char *>(bytes), size);
+    *trajectory = new qses_trajectory(io::Trajectory::from_memory(std::move(copy), format_of(format)));
+  });
+}
+
+void qses_trajectory_close(qses_trajectory *trajectory) {
+  guarded([&] { delete trajectory; });
+}
+
+void qses_trajectory_info_init(qses_trajectory_info *info) {
+  if (!info) return;
+  *info = qses_trajectory_info{};
+  info->struct_size = sizeof *info;
+}
+
+qses_status qses_trajectory_get_info(const qses_trajectory *trajectory, qses_trajectory_info *info) {
+  return guarded([&] {
+    require(trajectory, "trajectory");
+    require(info, "info");
+    qses_trajectory_info value;
+    qses_trajectory_info_init(&value);
+    value.format = format_of(trajectory->frames.format());
+    value.frame_count = trajectory->frames.frame_count();
+    value.atom_count = static_cast<uint32_t>(trajectory->frames.atom_count());
+    value.has_box = trajectory->has_box ? 1 : 0;
+    value.is_unwrapped = trajectory->unwrapper ? 1 : 0;
+    value.incomplete = trajectory->frames.incomplete() ? 1 : 0;
+    value.warning_count = static_cast<uint32_t>(trajectory->frames.warnings().size());
+    write_struct(info, value, "trajectory_info");
+  });
+}
+
+qses_status qses_trajectory_warning(const qses_trajectory *trajectory, uint32_t k, const char **sentence) {
+  return guarded([&] {
+    require(trajectory, "trajectory");
+    require(sentence, "sentence");
+    *sentence = quickses::pick_warning(trajectory->frames.warnings(), k);
+  });
+}
+
+qses_status qses_trajectory_unwrap(qses_trajectory *trajectory, const uint8_t *elements, size_t count) {
+  return guarded([&] {
+    require(trajectory, "trajectory");
+    require(elements, "elements");
+    check_atom_count(*trajectory, count);
+    const std::optional<io::Box> box = trajectory->frames.box(0);
+    if (!box) throw quickses::Error(QSES_NO_BOX, io::unwrap_sentence(io::UnwrapStatus::kNoBox));
+    std::vector<float> xyz(3 * count);
+    trajectory->frames.read_frame(0, xyz.data());
+    trajectory->unwrapper.emplace(elements, xyz.data(), count, box);
+  });
+}
+
+void qses_frame_init(qses_frame *frame) {
+  if (!frame) return;
+  *frame = qses_frame{};
+  frame->struct_size = sizeof *frame;
+}
+
+qses_status qses_trajectory_read_frame(const qses_trajectory *trajectory, uint64_t index, float *positions,
+                                       size_t stride, size_t count, qses_frame *frame) {
+  return guarded([&] {
+    require(trajectory, "trajectory");
+    quickses::check_layout(positions, stride, count);
+    check_atom_count(*trajectory, count);
+    if (frame) quickses::check_output(frame, "frame");
+    if (index >= trajectory->frames.frame_count())
+      invalid("index is " + std::to_string(index) + " but the trajectory has " +
+              std::to_string(trajectory->frames.frame_count()) + " frames");
+    const size_t k = static_cast<size_t>(index);
+    qses_frame value;
+    qses_frame_init(&value);
+    const std::optional<io::Box> box = trajectory->frames.box(k);
+    value.has_box = box ? 1 : 0;
+    for (size_t i = 0; box && i < 9; ++i) value.box[i] = box->vectors[i / 3][i % 3];
+    if (const std::optional<double> time = trajectory->frames.time(k)) {
+      value.has_time = 1;
+      value.time = *time;
+    }
+    if (stride == 0 || stride == 12) {
+      value.is_unwrapped = read_positions(*trajectory, k, box, positions) ? 1 : 0;
+    } else {
+      std::vector<float> packed(3 * count);
+      value.is_unwrapped = read_positions(*trajectory, k, box, packed.data()) ? 1 : 0;
+      for (size_t i = 0; i < count; ++i)
+        std::memcpy(reinterpret_cast<char *>(positions) + i * stride, &packed[3 * i], 12);
+    }
+    if (frame) write_struct(frame, value, "frame");
+  });
+}
+
+}  // extern "C"

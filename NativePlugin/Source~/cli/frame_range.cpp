@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// Which frames of a trajectory.
+#include "cli/frame_range.h"
+
+#include <algorithm>
+#include <charconv>
+#include <vector>
+
+#include "cli/exit_code.h"
+
+namespace quickses::cli {
+namespace {
+
+int64_t parse_part(const std::string &part, const std::string &text) {
+  int64_t value = 0;
+  const char *const end = part.data() + part.size();
+  const auto result = std::from_chars(part.data(), end, value);
+  if (result.ec != std::errc() || result.ptr != end)
+    throw Failure(kUsage, "--frames: '" + text + "' is no range of frames such as 10, 0:100, 0:100:5 or -20:");
+  return value;
+}
+
+std::vector<std::string> split_at_colons(const std::string &text) {
+  std::vector<std::string> parts(1);
+  for (char c : text) {
+    if (c == ':')
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  }
+  return parts;
+}
+
+}  // namespace
+
+FrameRange::FrameRange(const std::string &text) : text_(text) {
+  const std::vector<std::string> parts = split_at_colons(text);
+  if (parts.size() > 3) throw Failure(kUsage, "--frames: '" + text + "' has more than the three parts A:B:STEP");
+  is_single_ = parts.size() == 1;
+  if (is_single_ || !parts[0].empty()) begin_ = parse_part(parts[0], text);
+  if (parts.size() > 1 && !parts[1].empty()) end_ = parse_part(parts[1], text);
+  if (parts.size() > 2 && !parts[2].empty()) {
+    const int64_t step = parse_part(parts[2], text);
+    if (step < 1) throw Failure(kUsage, "--frames: the step of '" + text + "' must be 1 or more");
+    step_ = static_cast<size_t>(step);
+  }
+}
+
+FrameSelection FrameRange::select(size_t frame_count, const std::string &trajectory) const {
+  const int64_t count = static_cast<int64_t>(frame_count);
+  const std::string frames = std::to_string(frame_count) + (frame_count == 1 ? " frame" : " frames");
+  const auto from_start = [count](int64_t frame) { return frame < 0 ? frame + count : frame; };
+  if (is_single_) {
+    const int64_t frame = from_start(*begin_);
+    if (frame < 0 || frame >= count)
+      throw Failure(kUsage, "--frames: '" + trajectory + "' has no frame " + text_ + ": it has " + frames + ", 0 to " +
+                                std::to_string(count - 1));
+    return {static_cast<size_t>(frame), 1, 1};
+  }
+  const auto place = [&](int64_t frame) { return std::clamp<int64_t>(from_start(frame), 0, count); };
+  const int64_t begin = begin_ ? place(*begin_) : 0, end = end_ ? place(*end_) : count;
+  if (begin >= end)
+    throw Failure(kUsage, "--frames: " + text_ + " selects none of the " + frames + " of '" + trajectory + "'");
+  const size_t span = static_cast<size_t>(end - begin);
+  return {static_cast<size_t>(begin), step_, (span - 1) / step_ + 1};
+}
+
+}  // namespace quickses::cli

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// Text to a file or to standard output.
+#include "cli/text_output.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include "cli/exit_code.h"
+
+namespace quickses::cli {
+namespace {
+
+[[noreturn]] void fail_standard_output() {
+  throw Failure(kOutputUnwritable, std::string("standard output can't be written: ") + std::strerror(errno));
+}
+
+}  // namespace
+
+TextOutput::TextOutput(const std::string &path) : to_standard_output_(path == "-") {
+  if (!path.empty() && !to_standard_output_) file_ = std::make_unique<io::AtomicFile>(path);
+}
+
+void TextOutput::write(const std::string &text) {
+  if (file_) file_->write(text);
+  if (to_standard_output_ && std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) fail_standard_output();
+}
+
+void TextOutput::finish() {
+  if (file_) file_->commit();
+  if (to_standard_output_ && std::fflush(stdout) != 0) fail_standard_output();
+}
+
+}  // namespace quickses::cli

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+// quickses INPUT --trajectory FILE: the surfaces of many frames, several at a time.
+#include <algorithm>
+#include <cstdio>
+#include <thread>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/exit_code.h"
+#include "cli/frame_ledger.h"
+#include "cli/frame_worker.h"
+#include "cli/progress.h"
+#include "cli/text_output.h"
+
+namespace quickses::cli {
+namespace {
+
+constexpr unsigned kMostCudaWorkers = 8;  // keep a GPU busy while others read, measure and write
+constexpr size_t kMostMessages = 20;      // of failed frames; more are only counted
+
+ComputeOptions choose_device(const ComputeOptions &options, const Processes &processes) {
+  ComputeOptions chosen = options;
+  uint32_t device_count = 0;
+  qses_device_count(&device_count);
+  if (!options.device_given && device_count > 0)
+    chosen.device = processes.local_rank() % static_cast<int>(device_count);
+  return chosen;
+}
+
+// How many workers this process has, and each one's share of threads and memory.
+struct Share {
+  unsigned workers = 1;
+  ComputeOptions compute;
+};
+
+Share divide(const Options &options, const Processes &processes, size_t frame_count) {
+  Share share;
+  share.compute = choose_device(options.compute, processes);
+  const unsigned threads = options.compute.threads ? options.compute.threads : processes.threads();
+  share.compute.threads = threads;
+  const Engine whole(share.compute);  // tells what auto means here
+  if (processes.is_first()) explain_fallback(whole, options.compute, options.quiet);
+  share.compute.backend = whole.backend();
+
+  // On the CPU, frames side by side use threads better than threads within a frame.
+  const bool is_cuda = whole.backend() == QSES_BACKEND_CUDA;
+  const unsigned wanted = options.workers ? options.workers
+                          : is_cuda       ? std::clamp(threads, 2u, kMostCudaWorkers)
+                                          : threads;
+  const size_t frames_here = (frame_count - 1) / static_cast<size_t>(processes.count()) + 1;
+  share.workers = static_cast<unsigned>(std::min<size_t>(wanted, frames_here));
+  share.compute.threads = std::max(1u, threads / share.workers);
+  if (options.compute.memory != 0) share.compute.memory = std::max<uint64_t>(1, options.compute.memory / share.workers);
+  return share;
+}
+
+// Results in the order of the frames: table, report, messages, progress.
+class ResultWriter {
+ public:
+  ResultWriter(const Options &options, size_t frame_count)
+      : csv_(options.csv), json_(options.json), progress_(frame_count, options.quiet) {
+    if (!options.csv.empty()) csv_.write(kCsvHeader);
+  }
+
+  void write(const FrameResult &result) {
+    csv_.write(result.csv);
+    json_.write(result.json);
+    if (!result.error.empty() && ++failed_ <= kMostMessages) {
+      progress_.clear();
+      std::fprintf(stderr, "quickses: frame %llu failed: %s\n", static_cast<unsigned long long>(result.frame),
+                   result.error.c_str());
+    }
+    progress_.advance();
+  }
+
+  void finish() {
+    progress_.clear();
+    if (failed_ > kMostMessages)
+      std::fprintf(stderr, "quickses: %zu more messages of failed frames are not shown\n", failed_ - kMostMessages);
+    csv_.finish();
+    json_.finish();
+  }
+
+  const FrameProgress &progress() const { return progress_; }
+
+ private:
+  TextOutput csv_, json_;
+  FrameProgress progress_;
+  size_t failed_ = 0;
+};
+
+void work(FrameWorker &worker, FrameSupply &supply) {
+  try {
+    while (const std::optional<FrameTask> task = supply.next()) supply.deliver(worker.run(*task));
+  } catch (...) {
+    supply.give_up(std::current_exception());
+  }
+}
+
+class Run {
+ public:
+  Run(const Options &options, Processes &processes)
+      : processes_(processes),
+        inputs_(options, options.quiet || !processes.is_first()),
+        frames_(options.frames.select(inputs_.trajectory.frame_count(), options.trajectory)),
+        share_(divide(inputs_.options, processes, frames_.count)) {
+    if (processes.is_first()) {
+      if (inputs_.pattern) io::check_writable(inputs_.pattern->name(frames_.first));
+      writer_ = std::make_unique<ResultWriter>(inputs_.options, frames_.count);
+    }
+    for (unsigned k = 0; k < share_.workers; ++k)
+      workers_.push_back(std::make_unique<FrameWorker>(inputs_, share_.compute));
+  }
+
+  // Computes all frames, with the other processes.
+  void run() {
+    const uint64_t all_workers = processes_.sum(share_.workers);
+    const size_t window = 64 + 16 * static_cast<size_t>(all_workers);
+    FrameLedger ledger(frames_, window, [this](const FrameResult &result) { writer_->write(result); });
+    const std::unique_ptr<FrameSupply> remote = processes_.remote_supply();
+    FrameSupply &supply = remote ? *remote : ledger;
+    std::vector<std::thread> threads;
+    try {
+      for (const auto &worker : workers_) threads.emplace_back([&] { work(*worker, supply); });
+    } catch (...) {  // the system refuses threads; those that run have to be joined all the same
+      supply.give_up(std::current_exception());
+    }
+    if (!remote) processes_.serve(ledger);
+    for (std::thread &thread : threads) thread.join();
+    if (remote)
+      processes_.say_done();
+    else
+      finish(ledger, all_workers);
+  }
+
+ private:
+  void finish(FrameLedger &ledger, uint64_t all_workers) {
+    ledger.finish();
+    const double seconds = writer_->progress().seconds(), rate = writer_->progress().frames_per_second();
+    writer_->finish();
+    const Options &options = inputs_.options;
+    if (!options.quiet && options.csv != "-" && options.json != "-")
+      std::printf("%zu frames of %zu atoms, %s, %llu at a time, %.2f s, %.1f frames/s%s%s\n", frames_.count,
+                  inputs_.structure().atoms.size(), name_of(share_.compute.backend),
+                  static_cast<unsigned long long>(all_workers), seconds, rate, options.csv.empty() ? "" : ", ",
+                  options.csv.c_str());
+    if (const size_t failed = ledger.failed_count())
+      throw Failure(kFramesFailed, std::to_string(failed) + " of " + std::to_string(frames_.count) + " frames failed");
+  }
+
+  Processes &processes_;
+  const FrameInputs inputs_;
+  const FrameSelection frames_;
+  const Share share_;
+  std::unique_ptr<ResultWriter> writer_;  // of the first process
+  std::vector<std::unique_ptr<FrameWorker>> workers_;
+};
+
+// Runs something that must go well in all processes before they go on.
+template <class Action>
+void together(const Processes &processes, const Action &action) {
+  std::unique_ptr<Failure> failure;
+  try {
+    action();
+  } catch (...) {
+    failure = std::make_unique<Failure>(failure_of(std::current_exception()));
+  }
+  processes.agree(failure.get());
+}
+
+}  // namespace
+
+void run_trajectory(const Options &options, Processes &processes) {
+  std::unique_ptr<Run> run;
+  together(processes, [&] { run = std::make_unique<Run>(options, processes); });
+  together(processes, [&] { run->run(); });
+}
+
+}  // namespace quickses::cli

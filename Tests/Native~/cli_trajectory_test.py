@@ -1,0 +1,280 @@
+# SPDX-License-Identifier: MIT
+"""Tests of quickses --trajectory as its users and their scripts see it.
+
+usage: cli_trajectory_test.py PROGRAM [unittest options]      (or QUICKSES_PROGRAM in the environment)
+"""
+import csv
+import gzip
+import json
+import os
+import sys
+import unittest
+
+import cli_test
+from cli_test import CRAMBIN, INPUT, OK, OUTPUT, USAGE, ProgramTest, read_ply
+from trajectory_files import chain_of, dcd_bytes, moving, pdb_text, with_nan
+
+FRAMES_FAILED = 6
+COLUMNS = ["frame", "area", "volume", "components", "cavities", "cavity_volume", "time_ps", "error"]
+
+
+class TrajectoryTest(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.atoms, positions = chain_of(24)
+        self.frames = moving(positions, 7)
+        self.write("top.pdb", pdb_text(self.atoms, positions))
+        self.write("t.dcd", dcd_bytes(self.frames))
+
+    def run_frames(self, *arguments, code=OK, trajectory="t.dcd", top="top.pdb"):
+        return self.run_cpu(top, "--trajectory", trajectory, "-v", "0.8", *arguments, code=code)
+
+    def table(self, *arguments, **keywords):
+        """The rows of the table as dictionaries."""
+        result = self.run_frames("--csv", "-", "--quiet", *arguments, **keywords)
+        reader = csv.DictReader(result.stdout.splitlines())
+        rows = list(reader)
+        self.assertEqual(reader.fieldnames, COLUMNS)
+        return rows
+
+    def assert_frames_fail(self, code, parts, *arguments):
+        self.assert_fails(code, parts, "top.pdb", "--trajectory", "t.dcd", "--backend", "cpu", *arguments)
+
+
+class Results(TrajectoryTest):
+    def test_a_frame_is_what_its_structure_alone_would_be(self):
+        rows = self.table("-o", "f_%03d.ply")
+        self.assertEqual([row["frame"] for row in rows], [str(k) for k in range(7)])
+        for k, row in enumerate(rows):
+            alone = self.write("alone.pdb", pdb_text(self.atoms, self.frames[k]))
+            report = json.loads(self.run_cpu(alone, "-v", "0.8", "-o", "alone.ply", "--json", "-").stdout)
+            self.assertEqual((self.folder / f"f_{k:03d}.ply").read_bytes(), (self.folder / "alone.ply").read_bytes())
+            self.assertAlmostEqual(float(row["area"]), report["area"], delta=0.0001)
+            self.assertAlmostEqual(float(row["volume"]), report["volume"], delta=0.0001)
+            cavities = [piece["volume"] for piece in report["components"] if piece["cavity"]]
+            self.assertEqual(int(row["components"]), len(report["components"]))
+            self.assertEqual(int(row["cavities"]), len(cavities))
+            self.assertAlmostEqual(float(row["cavity_volume"]), -sum(cavities), delta=0.0001)
+            self.assertEqual(row["error"], "")
+        self.assertEqual(len({row["area"] for row in rows}), 7)
+
+    def test_a_cavity(self):
+        points = [(x, y, z) for x in range(-4, 5) for y in range(-4, 5) for z in range(-4, 5)
+                  if max(abs(x), abs(y), abs(z)) == 4]
+        shell = [(1.5 * x, 1.5 * y, 1.5 * z) for x, y, z in points]  # a closed box, hollow inside
+        atoms = [("ATOM", "C", "ALA", 1)] * len(shell)
+        self.write("shell.pdb", pdb_text(atoms, shell))
+        self.write("shell.dcd", dcd_bytes([shell]))
+        (row,) = self.table(top="shell.pdb", trajectory="shell.dcd")
+        self.assertEqual((row["components"], row["cavities"]), ("2", "1"))
+        # Inside, the atoms' surfaces face each other at 12 - 2 * 1.7 = 8.6 Å, less what the probe can't reach.
+        self.assertGreater(float(row["cavity_volume"]), 0.8 * 8.6 ** 3)
+        self.assertLess(float(row["cavity_volume"]), 1.5 * 8.6 ** 3)
+
+    def test_results_do_not_depend_on_the_number_of_workers(self):
+        def everything(workers, *more):
+            self.run_frames("--workers", workers, "--csv", "a.csv", "--json", "a.json", "-o", "f%d.ply", *more)
+            reports = [json.loads(line) for line in (self.folder / "a.json").read_text().splitlines()]
+            for report in reports:
+                del report["time_ms"], report["memory"]
+                report["settings"].pop("threads", None)
+                report["settings"].pop("memory", None)
+            meshes = [(self.folder / f"f{k}.ply").read_bytes() for k in range(7)]
+            return (self.folder / "a.csv").read_bytes(), reports, meshes
+
+        expected = everything(1)
+        self.assertEqual([report["frame"] for report in expected[1]], list(range(7)))
+        for workers in (2, 3, 20):
+            self.assertEqual(everything(workers), expected)
+        self.assertEqual(everything(3, "--memory", "48M"), expected)
+        self.assertEqual(everything(2, "--threads", "1"), expected)
+
+    def test_atoms_that_are_left_out_are_left_out_of_every_frame(self):
+        water = [("HETATM", "O", "HOH", 900 + i) for i in range(5)]
+        atoms = water + self.atoms
+        frames = [[(30.0 + 3 * i, k, k) for i in range(5)] + frame for k, frame in enumerate(self.frames)]
+        self.write("wet.pdb", pdb_text(atoms, frames[0]))
+        self.write("wet.dcd", dcd_bytes(frames))
+        dry = self.table("-o", "dry%d.ply")
+        self.assertEqual(self.table("--no-water", "-o", "wet%d.ply", top="wet.pdb", trajectory="wet.dcd"), dry)
+        for k in range(7):
+            vertices, normals, owners, faces = read_ply(self.folder / f"wet{k}.ply")
+            expected = read_ply(self.folder / f"dry{k}.ply")
+            self.assertEqual((vertices, normals, faces), (expected[0], expected[1], expected[3]))
+            self.assertEqual(owners, [owner + 5 for owner in expected[2]])  # places in the file
+
+    def test_models_of_a_pdb_file_are_frames(self):
+        text = "".join(f"MODEL     {k + 1:4d}\n" + pdb_text(self.atoms, frame).replace("END\n", "ENDMDL\n")
+                       for k, frame in enumerate(self.frames)) + "END\n"
+        self.write("models.pdb", text)
+        (self.folder / "models.pdb.gz").write_bytes(gzip.compress(text.encode()))
+        expected = [{**row, "time_ps": ""} for row in self.table()]
+        for name in ("models.pdb", "models.pdb.gz"):
+            rows = self.table(top=name, trajectory=name)
+            self.assertEqual([{**row, "time_ps": ""} for row in rows], expected)
+
+    def test_report_has_one_line_per_frame(self):
+        lines = self.run_frames("--json", "-", "--frames", "2:5").stdout.splitlines()
+        self.assertEqual(len(lines), 3)
+        for k, line in zip((2, 3, 4), lines):
+            report = json.loads(line)
+            self.assertEqual((report["frame"], report["trajectory"], report["input"]), (k, "t.dcd", "top.pdb"))
+            self.assertEqual(report["atoms"], 24)
+            self.assertIn("time_ps", report)
+            self.assertTrue(report["mesh"]["closed"])
+            self.assertEqual(sum(piece["triangles"] for piece in report["components"]), report["mesh"]["triangles"])
+
+    def test_summary(self):
+        self.assertIn("7 frames of 24 atoms", self.run_frames("--csv", "a.csv").stdout)
+        self.assertEqual(self.run_frames("--csv", "a.csv", "--quiet").stdout, "")
+
+
+class Frames(TrajectoryTest):
+    def test_ranges_are_those_of_python(self):
+        for text in (":", "::", "2:", ":3", "1:6:2", "::3", "-2:", ":-2", "-5:-1:2", "0:100:5", "-100:2", "6:7", "::100"):
+            parts = [int(part) if part else None for part in text.split(":")]
+            expected = list(range(7))[slice(*parts)]
+            with self.subTest(text):
+                self.assertEqual([int(row["frame"]) for row in self.table("--frames", text)], expected)
+        for text, expected in (("3", "3"), ("-1", "6"), ("0", "0")):
+            self.assertEqual([row["frame"] for row in self.table("--frames", text)], [expected])
+
+    def test_ranges_that_make_no_sense(self):
+        for text in ("a", "1:b", "1:2:x", "1:2:3:4", "1.5", "", " 1:2", "99999999999999999999:"):
+            self.assert_frames_fail(USAGE, ["--frames", f"'{text}'"], "--frames", text)
+        self.assert_frames_fail(USAGE, ["--frames", "step"], "--frames", "::0")
+        self.assert_frames_fail(USAGE, ["--frames", "step"], "--frames", "::-1")
+
+    def test_ranges_without_frames(self):
+        for text in ("7:", "3:3", "5:2", ":-7"):
+            self.assert_frames_fail(USAGE, ["--frames", text, "7 frames", "t.dcd"], "--frames", text)
+        for text in ("7", "-8"):
+            self.assert_frames_fail(USAGE, ["--frames", f"no frame {text}", "7 frames, 0 to 6"], "--frames", text)
+
+
+class Faults(TrajectoryTest):
+    def test_a_damaged_frame_does_not_lose_the_others(self):
+        expected = self.table("-o", "good%d.ply")
+        self.write("bad.dcd", dcd_bytes(with_nan(self.frames, 3, 10)))
+        for workers in (1, 3):
+            result = self.run_frames("--workers", workers, "--csv", "a.csv", "--json", "a.json", "-o", "bad%d.ply",
+                                     trajectory="bad.dcd", code=FRAMES_FAILED)
+            self.assertIn("frame 3 failed", result.stderr)
+            self.assertIn("atom 11", result.stderr)
+            self.assertIn("1 of 7 frames failed", result.stderr)
+            rows = list(csv.DictReader((self.folder / "a.csv").read_text().splitlines()))
+            self.assertEqual(rows[:3] + rows[4:], expected[:3] + expected[4:])
+            self.assertEqual(rows[3]["frame"], "3")
+            self.assertIn("atom 11", rows[3]["error"])
+            self.assertEqual([rows[3][column] for column in COLUMNS[1:7]], [""] * 6)
+            reports = [json.loads(line) for line in (self.folder / "a.json").read_text().splitlines()]
+            self.assertEqual([report["frame"] for report in reports], list(range(7)))
+            self.assertIn("atom 11", reports[3]["error"])
+            self.assertEqual([k for k in range(7) if (self.folder / f"bad{k}.ply").exists()], [0, 1, 2, 4, 5, 6])
+
+    def test_a_mesh_that_can_not_be_written_does_not_lose_the_others(self):
+        (self.folder / "f2.ply").mkdir()
+        result = self.run_frames("-o", "f%d.ply", code=FRAMES_FAILED)
+        self.assertIn("frame 2 failed", result.stderr)
+        self.assertIn("f2.ply", result.stderr)
+        for k in (0, 1, 3, 4, 5, 6):
+            self.assertTrue((self.folder / f"f{k}.ply").is_file())
+
+    def test_frames_that_need_too_much_memory_are_reported(self):
+        rows = self.table("--memory", "4K", code=FRAMES_FAILED)
+        self.assertEqual(len(rows), 7)
+        for row in rows:
+            self.assertNotEqual(row["error"], "")
+
+    def test_a_file_that_is_cut_off_gives_the_frames_that_are_whole(self):
+        expected = self.table()
+        whole = dcd_bytes(self.frames)
+        size_of_frame = (len(whole) - len(dcd_bytes(self.frames[:1]))) // 6
+        self.write("cut.dcd", whole[:-size_of_frame // 2])
+        result = self.run_frames("--csv", "-", trajectory="cut.dcd")
+        self.assertEqual(list(csv.DictReader(result.stdout.splitlines())), expected[:6])
+        self.assertIn("warning", result.stderr)
+        self.assertIn("cut.dcd", result.stderr)
+
+    def test_different_numbers_of_atoms(self):
+        self.write("other.dcd", dcd_bytes([frame[:20] for frame in self.frames]))
+        self.assert_fails(INPUT, ["top.pdb", "24 atoms", "other.dcd", "20"], "top.pdb", "--trajectory", "other.dcd",
+                          "--csv", "a.csv", "--backend", "cpu")
+
+    def test_inputs_that_can_not_be_read(self):
+        self.assert_fails(INPUT, ["nowhere.xtc", "no such file"], "top.pdb", "--trajectory", "nowhere.xtc")
+        self.write("empty.dcd", "")
+        self.assert_fails(INPUT, ["empty.dcd", "empty"], "top.pdb", "--trajectory", "empty.dcd")
+        self.assert_fails(INPUT, ["top.txt"], "top.txt", "--trajectory", "t.dcd")
+
+    def test_outputs_that_can_not_be_written(self):
+        for flag, name in (("-o", "none/f%d.ply"), ("--csv", "none/a.csv"), ("--json", "none/a.json")):
+            self.assert_frames_fail(OUTPUT, ["none"], flag, name)
+
+    def test_patterns_of_output(self):
+        self.run_frames("--frames", "5:", "-o", "50%%_%4d_x.obj")
+        self.assertTrue((self.folder / "50%_   5_x.obj").is_file())
+        self.assertTrue((self.folder / "50%_   6_x.obj").is_file())
+        for name in ("f.ply", "f%s.ply", "f%.ply", "f%d_%d.ply", "f%5.2d.ply", "f%-5d.ply", "f%0999d.ply", "f%n.ply",
+                     "f%ld.ply"):
+            self.assert_frames_fail(USAGE, ["--output (-o)", name], "-o", name)
+        self.assert_frames_fail(USAGE, ["--output (-o)", ".ply"], "-o", "f%d.png")
+
+    def test_flags_that_do_not_go_together(self):
+        for flags in (["--frames", "1:2"], ["--unwrap"], ["--csv", "a.csv"], ["--workers", "2"]):
+            self.assert_fails(USAGE, [flags[0], "--trajectory"], CRAMBIN, *flags)
+        self.assert_frames_fail(USAGE, ["--model"], "--model", "all")
+        self.assert_frames_fail(USAGE, ["--csv", "--json"], "--csv", "-", "--json", "-")
+        self.assert_frames_fail(USAGE, ["--csv", "--json"], "--csv", "a", "--json", "a")
+        for flag in ("--csv", "--json"):
+            for name in ("t.dcd", "top.pdb"):
+                self.assert_frames_fail(USAGE, [flag, name, "input"], flag, name)
+        self.assert_frames_fail(USAGE, ["--workers"], "--workers", "0")
+
+
+class Unwrap(TrajectoryTest):
+    EDGE = 20.0
+
+    def setUp(self):
+        super().setUp()
+        # A box around the chain whose border cuts it: what is beyond comes back on the other side.
+        self.whole = [[(x + 1, y + 1, z + 2) for x, y, z in frame] for frame in self.frames]
+        self.torn = [[tuple(value % self.EDGE for value in position) for position in frame] for frame in self.whole]
+        self.write("whole.dcd", dcd_bytes(self.whole, [self.EDGE] * 3))
+        self.write("torn.dcd", dcd_bytes(self.torn, [self.EDGE] * 3))
+
+    def sizes(self, rows):
+        return [(round(float(row["area"]), 1), round(float(row["volume"]), 1), row["components"]) for row in rows]
+
+    def test_molecules_become_whole(self):
+        self.assertNotEqual(self.whole, self.torn)
+        expected = self.table(trajectory="whole.dcd")
+        torn = self.table(trajectory="torn.dcd")
+        unwrapped = self.table("--unwrap", trajectory="torn.dcd")
+        for whole, broken, healed in zip(expected, torn, unwrapped):
+            self.assertEqual(whole["components"], "1")
+            self.assertNotEqual(broken["components"], "1")
+            self.assertEqual(healed["components"], "1")
+            # Moved by whole box vectors: the lattice lies elsewhere, so the mesh is another one of the same surface.
+            self.assertAlmostEqual(float(healed["area"]), float(whole["area"]), delta=0.01 * float(whole["area"]))
+            self.assertAlmostEqual(float(healed["volume"]), float(whole["volume"]), delta=0.01 * float(whole["volume"]))
+
+    def test_bonds_of_atoms_that_are_left_out_count(self):
+        rows = self.table("--unwrap", "--select", "//A//CA,C", trajectory="torn.dcd")
+        expected = self.table("--select", "//A//CA,C", trajectory="whole.dcd")
+        self.assertEqual([row["components"] for row in rows], [row["components"] for row in expected])
+
+    def test_without_a_box(self):
+        result = self.run_frames("--unwrap", "--csv", "-")
+        self.assertEqual(list(csv.DictReader(result.stdout.splitlines())), self.table())
+        self.assertIn("warning: --unwrap", result.stderr)
+        self.assertIn("box", result.stderr)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) > 1 and not sys.argv[1].startswith("-"):
+        cli_test.PROGRAM = sys.argv.pop(1)
+    if not cli_test.PROGRAM:
+        sys.exit(__doc__)
+    cli_test.PROGRAM = os.path.abspath(cli_test.PROGRAM)
+    unittest.main()
