@@ -49,11 +49,15 @@ inline double candidate_bytes(const SurfaceParameters &parameters) {
   return 9.0 * listed_candidates(parameters) + 56.0;
 }
 
-// Words of the row that a leaf with vertices has besides (vertex_rows_cuda.cuh); half of the leaves have one.
-constexpr int kRowWords = 64;
+// Words of the row that a leaf with vertices has besides (vertex_rows_cuda.cuh): with its volume, more can matter to
+// it.
+inline uint32_t row_words(const SurfaceParameters &parameters) {
+  constexpr double kUsual = 64, kUsualSpacing = 0.6, kMost = 2048;
+  const double scale = static_cast<double>(parameters.spacing) / kUsualSpacing;
+  return static_cast<uint32_t>(std::min(kMost, kUsual * std::max(1.0, std::ceil(scale * scale * scale))));
+}
 // Room that small structures are given beyond what is usual.
-constexpr size_t kSpareRows = 1024, kSpareCandidates = 1024;
-constexpr double kRowBytesPerBrick = kLeavesPerBrick / 2.0 * kRowWords * sizeof(uint32_t);
+constexpr size_t kSpareCandidates = 1024;
 
 // Rows of a brick: runs in the lists of atoms and arcs.
 struct BrickRow {

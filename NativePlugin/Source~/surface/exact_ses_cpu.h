@@ -14,7 +14,7 @@ struct CandidatesOf<CpuExecutor> {
   using type = NoCandidates;
   static constexpr double kSpareBytes = 0;
   static double sign_bytes(const SurfaceParameters &) { return 0; }
-  static double emission_bytes(const SurfaceParameters &, double) { return 0; }
+  static double emission_bytes(const SurfaceParameters &, double, double) { return 0; }
   static uint64_t whole_bytes(const SurfaceParameters &) { return 0; }
 };
 

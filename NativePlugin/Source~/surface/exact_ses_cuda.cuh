@@ -16,15 +16,15 @@ struct CudaCandidates {
 template <>
 struct CandidatesOf<CudaExecutor> {
   using type = CudaCandidates;
-  static constexpr double kSpareBytes = gpu::kSpareRows * gpu::kRowWords * 4.0 + gpu::kSpareCandidates * 9.0;
+  static constexpr double kSpareBytes = gpu::kSpareCandidates * 9.0;
   static double sign_bytes(const SurfaceParameters &parameters) { return gpu::candidate_bytes(parameters); }
-  static double emission_bytes(const SurfaceParameters &parameters, double vertices) {
-    return gpu::candidate_bytes(parameters) + gpu::kRowBytesPerBrick + 12.0 * vertices;
+  static double emission_bytes(const SurfaceParameters &parameters, double vertices, double leaves) {
+    return gpu::candidate_bytes(parameters) + 4.0 * gpu::row_words(parameters) * leaves + 12.0 * vertices;
   }
   // Signs and layout, and the mesh of a surface as dense as proteins have it.
   static uint64_t whole_bytes(const SurfaceParameters &parameters) {
-    constexpr double kVertices = 60, kVertexBytes = 28, kTriangleBytes = 12;
-    return static_cast<uint64_t>(352 + emission_bytes(parameters, kVertices) +
+    constexpr double kVertices = 60, kLeaves = 4, kVertexBytes = 28, kTriangleBytes = 12;
+    return static_cast<uint64_t>(352 + emission_bytes(parameters, kVertices, kLeaves) +
                                  kVertices * (kVertexBytes + 2 * kTriangleBytes));
   }
 };

@@ -69,13 +69,11 @@ FeatureView find_features(R &run) {
 // Bytes of work per brick while vertices are emitted: candidates, rows, and per vertex the lists of the kernels and,
 // where the mesh is not on the device, its slab.
 template <class R>
-uint64_t emission_bytes_per_brick(const R &run, const BrickSet &bricks, const MeshCounts &counts, bool slabs) {
+uint64_t emission_bytes_per_brick(const R &run, const SurfaceSize &size, bool slabs) {
   using Executor = std::remove_reference_t<decltype(run.executor)>;
-  const double n = std::max<uint32_t>(1, bricks.count);
-  const double vertices = static_cast<double>(counts.vertices) / n,
-               triangles = static_cast<double>(counts.triangles) / n;
+  const double n = std::max(1.0, size.bricks), vertices = size.vertices / n, triangles = size.triangles / n;
   const double vertex_bytes = static_cast<double>(MeshArrays(4096, 0, run.shape).bytes()) / 4096.0;
-  return static_cast<uint64_t>(CandidatesOf<Executor>::emission_bytes(run.parameters, vertices) +
+  return static_cast<uint64_t>(CandidatesOf<Executor>::emission_bytes(run.parameters, vertices, size.leaves / n) +
                                (slabs ? vertex_bytes * vertices + 12.0 * triangles : 0.0)) +
          1;
 }
@@ -133,16 +131,16 @@ MeshMemoryView make_exact_mesh(R &run, const BrickSet &bricks, bool together) {
   const MeshCounts counts = lay_out_mesh(executor, bricks, signs.data, run.table.triangle_count, &layout);
   check_mesh_size(counts);
   run.facts->size = {static_cast<double>(bricks.count), static_cast<double>(counts.vertices),
-                     static_cast<double>(counts.triangles)};
+                     static_cast<double>(counts.triangles), static_cast<double>(layout.leaf_total)};
 
-  const uint64_t work = emission_bytes_per_brick(run, bricks, counts, false);
+  const uint64_t work = emission_bytes_per_brick(run, run.facts->size, false);
   MeshMemoryView mesh =
       run.memory.allocate_mesh(executor, counts.vertices, counts.triangles, run.shape, run.purpose,
                                work * (together ? bricks.count : std::min(bricks.count, kRoomySlice)));
   if (mesh.on_host && together && bricks.count > 0) throw MemoryRefused("the mesh does not fit beside the work");
   VertexStarts starts{run.settings.relaxation_steps > 0, nullptr, run.table.ring};
   const auto emit = [&](double begin, double end, bool with_triangles) {
-    const Slicing slicing = per_slice(mesh.on_host ? emission_bytes_per_brick(run, bricks, counts, true) : work);
+    const Slicing slicing = per_slice(mesh.on_host ? emission_bytes_per_brick(run, run.facts->size, true) : work);
     run.report->slice_count = for_each_slice(run, bricks.count, slicing, begin, end, [&](BrickRange slice) {
       Candidates<Executor> own{};  // gathered again if there are several slices
       MeshPart part{mesh.view, 0, 0};
@@ -185,7 +183,8 @@ MeshMemoryView build_exact_surface(R &run) {
   run.timer.begin("bricks");
   const BrickSet bricks = find_bricks(executor, run.features, run.lattice);
   run.report->brick_count = bricks.count;
-  run.facts->size = {static_cast<double>(bricks.count), 0, 0};
+  run.facts->size = {};
+  run.facts->size.bricks = static_cast<double>(bricks.count);
   run.facts->brick_entries = bricks.table ? run.lattice.table_size() : 0;
   run.progress.report(0.1);
 

@@ -34,7 +34,7 @@ MeshMemoryView build_grid_surface(R &run) {
   check_mesh_size(counts);
   run.facts->brick_entries = bricks.table ? run.lattice.table_size() : 0;
   run.facts->size = {static_cast<double>(bricks.count), static_cast<double>(counts.vertices),
-                     static_cast<double>(counts.triangles)};
+                     static_cast<double>(counts.triangles), static_cast<double>(layout.leaf_total)};
   const MeshMemoryView mesh =
       run.memory.allocate_mesh(executor, counts.vertices, counts.triangles, run.shape, run.purpose,
                                counts.vertices * sizeof(RingSum) + executor.arena().available() / 64);

@@ -18,7 +18,9 @@ struct MeshLayout {
   uint16_t *triangle_rank;  // [brick][leaf]: triangles of the brick before that leaf
   uint32_t *vertex_base;    // [brick + 1]: vertices before the brick
   uint32_t *triangle_base;  // [brick + 1]
+  uint32_t *leaf_base;      // [brick + 1]: leaves that own vertices before the brick
   uint64_t vertex_total;    // of all bricks
+  uint64_t leaf_total;      // that own vertices
 };
 
 // Leaf words around a leaf: itself and its neighbours towards larger x, y, z (bit 0, 1, 2 of the place).
@@ -102,7 +104,7 @@ struct CountLeaf {
 // Turns the counts of a brick into ranks; its totals go to vertices and triangles.
 struct RankBrick {
   MeshLayout layout;
-  uint32_t *vertices, *triangles;
+  uint32_t *vertices, *triangles, *leaves;
   QSES_HOST_DEVICE void operator()(size_t brick) const {
     constexpr int kMasks = kLeavesPerBrick * kAxes;
     uint16_t *const vertex = layout.vertex_rank + brick * kMasks;
@@ -110,10 +112,11 @@ struct RankBrick {
     uint16_t vertex_counts[kMasks], triangle_counts[kLeavesPerBrick];  // all loads before the first store
     for (int k = 0; k < kMasks; ++k) vertex_counts[k] = vertex[k];
     for (int k = 0; k < kLeavesPerBrick; ++k) triangle_counts[k] = triangle[k];
-    uint32_t v = 0, t = 0;
+    uint32_t v = 0, t = 0, owning = 0;
     for (int k = 0; k < kMasks; ++k) {
       vertex[k] = static_cast<uint16_t>(v);
       v += vertex_counts[k];
+      if (k % kAxes == kAxes - 1 && v != vertex[k - kAxes + 1]) ++owning;
     }
     for (int k = 0; k < kLeavesPerBrick; ++k) {
       triangle[k] = static_cast<uint16_t>(t);
@@ -121,6 +124,7 @@ struct RankBrick {
     }
     vertices[brick] = v;
     triangles[brick] = t;
+    leaves[brick] = owning;
   }
 };
 
@@ -183,26 +187,33 @@ MeshCounts lay_out_mesh(Executor &executor, const BrickSet &bricks, const uint64
   Span<uint32_t> vertex_base = executor.template allocate<uint32_t>(n + 1);
   Span<uint32_t> triangle_base = executor.template allocate<uint32_t>(n + 1);
   layout->vertex_base = vertex_base.data;
+  Span<uint32_t> leaf_base = executor.template allocate<uint32_t>(n + 1);
   layout->triangle_base = triangle_base.data;
+  layout->leaf_base = leaf_base.data;
   const auto mark = executor.arena().mark();
   Span<uint32_t> vertices = executor.template allocate<uint32_t>(n);
   Span<uint32_t> triangles = executor.template allocate<uint32_t>(n);
+  Span<uint32_t> owning = executor.template allocate<uint32_t>(n);
   executor.for_each(leaves, CountLeaf{bricks, *layout, case_triangles});
-  executor.for_each(n, RankBrick{*layout, vertices.data, triangles.data});
+  executor.for_each(n, RankBrick{*layout, vertices.data, triangles.data, owning.data});
   executor.exclusive_scan(n, LoadCount<uint32_t>{vertices.data}, vertex_base);
   executor.exclusive_scan(n, LoadCount<uint32_t>{triangles.data}, triangle_base);
-  executor.arena().rewind(mark);
+  executor.exclusive_scan(n, LoadCount<uint32_t>{owning.data}, leaf_base);
   // The bases wrap if there are too many; then the true totals are summed up for the message.
   if (n * kBrickPoints * 5 > 0xffffffffull) {
     const double v = executor.reduce(n, LoadCount<uint32_t>{vertices.data});
     const double t = executor.reduce(n, LoadCount<uint32_t>{triangles.data});
     layout->vertex_total = static_cast<uint64_t>(v);
+    layout->leaf_total = static_cast<uint64_t>(executor.reduce(n, LoadCount<uint32_t>{owning.data}));
+    executor.arena().rewind(mark);
     return {static_cast<uint64_t>(v), static_cast<uint64_t>(t)};
   }
-  const uint32_t *const sources[2] = {vertex_base.data + n, triangle_base.data + n};
-  uint32_t totals[2];
-  executor.fetch_each(sources, totals, 2);
+  executor.arena().rewind(mark);
+  const uint32_t *const sources[3] = {vertex_base.data + n, triangle_base.data + n, leaf_base.data + n};
+  uint32_t totals[3];
+  executor.fetch_each(sources, totals, 3);
   layout->vertex_total = totals[0];
+  layout->leaf_total = totals[2];
   return {totals[0], totals[1]};
 }
 

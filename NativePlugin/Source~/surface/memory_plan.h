@@ -18,7 +18,8 @@ class MemoryPlan {
   double whole(double prepared, double peak) const {
     double level = brick_bytes() + (k_.exact ? 0 : 64 * f_.size.bricks);
     if (Executor::kIsCuda && k_.exact)
-      level += f_.size.bricks * CandidatesOf<Executor>::emission_bytes(k_.parameters, f_.size.vertices / bricks()) +
+      level += f_.size.bricks * CandidatesOf<Executor>::emission_bytes(k_.parameters, f_.size.vertices / bricks(),
+                                                                       f_.size.leaves / bricks()) +
                CandidatesOf<Executor>::kSpareBytes;
     if (Executor::kIsCuda) level += mesh_bytes();
     return std::max(peak, prepared + level + beside_mesh() + mask_bytes());
@@ -57,7 +58,7 @@ class MemoryPlan {
   double bricks() const { return std::max(1.0, f_.size.bricks); }
   // Table, list, signs and layout.
   double brick_bytes() const {
-    return 5 * static_cast<double>(f_.brick_entries) + (8 + 64 + 264 + 8 + 8) * f_.size.bricks;
+    return 5 * static_cast<double>(f_.brick_entries) + (8 + 64 + 268 + 8 + 12) * f_.size.bricks;
   }
   // Sums and starts of the steps after the first; of the grid method, sums.
   double beside_mesh() const {
@@ -71,7 +72,8 @@ class MemoryPlan {
     if (!k_.exact) return 65536;
     const double vertices = 3 * f_.size.vertices / bricks(), triangles = 3 * f_.size.triangles / bricks();
     const double slab = vertices * (28 + (k_.shape.texcoords ? 8 : 0) + 5) + triangles * 12;
-    return kLeastSlice * (CandidatesOf<Executor>::emission_bytes(k_.parameters, vertices) * 2 + slab) + 32768;
+    return kLeastSlice * (CandidatesOf<Executor>::emission_bytes(k_.parameters, vertices, kLeavesPerBrick) * 2 + slab) +
+           32768;
   }
 
   WorkFacts f_;

@@ -230,10 +230,11 @@ inline VertexJob prepare_vertices(CudaExecutor &executor, const FeatureView &fea
                                   const MeshLayout &layout, BrickRange slice, CudaCandidates &candidates,
                                   const VertexStarts &starts, const MeshView &mesh) {
   VertexJob job{};
-  uint32_t range[2] = {0, static_cast<uint32_t>(layout.vertex_total)};
+  uint32_t range[4] = {0, static_cast<uint32_t>(layout.vertex_total), 0, static_cast<uint32_t>(layout.leaf_total)};
   if (slice.size() < bricks.count) {
-    const uint32_t *const sources[2] = {layout.vertex_base + slice.first, layout.vertex_base + slice.last};
-    executor.fetch_each(sources, range, 2);
+    const uint32_t *const sources[4] = {layout.vertex_base + slice.first, layout.vertex_base + slice.last,
+                                        layout.leaf_base + slice.first, layout.leaf_base + slice.last};
+    executor.fetch_each(sources, range, 4);
   }
   job.first = range[0];
   job.count = range[1] - range[0];
@@ -250,15 +251,14 @@ inline VertexJob prepare_vertices(CudaExecutor &executor, const FeatureView &fea
   job.halved = !starts.moved && starts_by_halving(features.parameters);
   job.mesh = mesh;
   job.vertex_row = executor.allocate<uint32_t>(job.count).data;
-  // Half of the leaves own vertices at most, as a rule; those that get no row use their brick's.
-  job.row_room = static_cast<uint32_t>(std::min<size_t>({job.count, leaves, leaves / 2 + kSpareRows}));
-  job.rows = executor.allocate<uint32_t>(size_t(job.row_room) * kRowWords).data;
+  job.row_words = row_words(features.parameters);
+  job.first_row = range[2];
+  job.rows = executor.allocate<uint32_t>(size_t(range[3] - range[2]) * job.row_words).data;
   job.open = executor.allocate<uint32_t>(job.count).data;
   job.again = executor.allocate<uint32_t>(job.count).data;
-  Span<uint32_t> counts = executor.allocate<uint32_t>(3);
-  job.row_count = counts.data;
-  job.open_count = counts.data + 1;
-  job.again_count = counts.data + 2;
+  Span<uint32_t> counts = executor.allocate<uint32_t>(2);
+  job.open_count = counts.data;
+  job.again_count = counts.data + 1;
   executor.fill(counts, 0);
   const size_t blocks = (leaves + kLeafWarps - 1) / kLeafWarps;
   if (job.halved) executor.launch("halve_starts", halve_starts_kernel, blocks, kLeafWarps * kWarp, 0, job);

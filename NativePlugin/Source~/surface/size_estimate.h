@@ -29,7 +29,7 @@ SurfaceSize count_size(R &run, uint64_t *brick_entries) {
     const MeshCounts counts = lay_out_mesh(executor, bricks, signs.data, run.table.triangle_count, &layout);
     executor.arena().rewind(mark);
     return SurfaceSize{static_cast<double>(bricks.count), static_cast<double>(counts.vertices),
-                       static_cast<double>(counts.triangles)};
+                       static_cast<double>(counts.triangles), static_cast<double>(layout.leaf_total)};
   };
   const auto in_slices = [&](const BrickSet &bricks, double bytes_per_brick, const auto &work) {
     const uint32_t fitting = bricks_that_fit(run, bricks.count, static_cast<uint64_t>(bytes_per_brick) + 1);
@@ -65,7 +65,7 @@ inline SurfaceSize extrapolate(const SurfaceSize &fine, double fine_spacing, con
     return std::max(0.0, value) / (spacing * spacing);
   };
   return {at(fine.bricks, coarse.bricks, -1), at(fine.vertices, coarse.vertices, 1),
-          at(fine.triangles, coarse.triangles, 1)};
+          at(fine.triangles, coarse.triangles, 1), at(fine.leaves, coarse.leaves, 1)};
 }
 
 // Of the mesh at the spacing of the run.
@@ -113,6 +113,7 @@ double least_of_unfinished(WorkFacts facts, const WorkKind &kind) {
   if (facts.size.vertices == 0) {
     facts.size.vertices = kVerticesPerCell * kUsualArea * atoms / (h * h);
     facts.size.triangles = 2 * facts.size.vertices;
+    facts.size.leaves = facts.size.vertices / kVerticesPerLeaf;
   }
   return 1.1 * MemoryPlan<Executor>(facts, kind).least();
 }

@@ -43,8 +43,8 @@ struct TableView {
 };
 
 // CandidatesOf<E>::type, and bytes of arena that a brick takes, roughly: sign_bytes(parameters) while signs are
-// evaluated, emission_bytes(parameters, vertices of the brick) while vertices are emitted, whole_bytes(parameters) for
-// all until the mesh is done, if all bricks are worked on at once; kSpareBytes besides.
+// evaluated, emission_bytes(parameters, vertices and leaves with vertices of the brick) while vertices are emitted,
+// whole_bytes(parameters) for all until the mesh is done, if all bricks are worked on at once; kSpareBytes besides.
 template <class Executor>
 struct CandidatesOf;
 template <class Executor>

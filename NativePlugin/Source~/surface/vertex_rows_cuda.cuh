@@ -19,9 +19,8 @@ struct VertexJob {
   MeshView mesh;          // its positions hold the starts, in the centred frame, until they are projected
   uint32_t first, count;  // vertices of the slice
   uint32_t *vertex_row;   // per vertex: number of its leaf's row, or kBrickRow and the brick of the slice
-  uint32_t *rows;         // kRowWords each
-  uint32_t row_room;
-  uint32_t *row_count;
+  uint32_t *rows;         // row_words each
+  uint32_t row_words, first_row;
   uint32_t *open, *open_count;    // vertices that no contact patch has
   uint32_t *again, *again_count;  // those of them that must be checked against other probes
 };
@@ -51,7 +50,7 @@ __device__ __forceinline__ RowCandidates brick_candidates(const CandidateView &v
 
 __device__ __forceinline__ RowCandidates vertex_candidates(const VertexJob &job, uint32_t row_number) {
   if (row_number & kBrickRow) return brick_candidates(job.view, row_number & ~kBrickRow);
-  const uint32_t *row = job.rows + static_cast<size_t>(row_number) * kRowWords;
+  const uint32_t *row = job.rows + static_cast<size_t>(row_number) * job.row_words;
   const uint32_t head = __ldg(row);
   const int atoms = static_cast<int>(head & 0xffff);
   return {row + 1, row + 1 + atoms, atoms, static_cast<int>(head >> 16)};
@@ -217,11 +216,17 @@ static __global__ __launch_bounds__(kLeafWarps *kWarp) void prepare_vertices_ker
 
   const FeatureView &f = job.features;
   const RowCandidates all = brick_candidates(job.view, slot / kLeavesPerBrick);
-  uint32_t number = 0;
-  if (lane == 0) number = atomicAdd(job.row_count, 1u);
-  number = __shfl_sync(kFullWarp, number, 0);
-  const int room = number < job.row_room ? kRowWords : 0;
-  uint32_t *const row = job.rows + static_cast<size_t>(number) * kRowWords;
+  // Rows are numbered like the leaves that own vertices.
+  bool owns = false;
+  if (lane < kLeavesPerBrick) {
+    const uint64_t *const masks = job.layout.crossing + (size_t(leaf.brick) * kLeavesPerBrick + size_t(lane)) * kAxes;
+    owns = (masks[0] | masks[1] | masks[2]) != 0;
+  }
+  const unsigned owning = __ballot_sync(kFullWarp, owns);
+  const uint32_t number =
+      job.layout.leaf_base[leaf.brick] - job.first_row + static_cast<uint32_t>(place_in(owning, leaf.leaf));
+  const int room = static_cast<int>(job.row_words);
+  uint32_t *const row = job.rows + static_cast<size_t>(number) * job.row_words;
   int atoms = 0, arcs = 0;
   if (all.atom_total > 0) {
     // What can be deepest at a start, or at its projection.

@@ -10,6 +10,7 @@ namespace quickses {
 // Numbers of things, counted or predicted; 0: not known yet.
 struct SurfaceSize {
   double bricks = 0, vertices = 0, triangles = 0;
+  double leaves = 0;  // that own vertices
 };
 
 struct WorkFacts {
