@@ -218,6 +218,16 @@ TEST(Allocations, NoneWithTheGridMethodAndGatheredPositions) {
   });
 }
 
+TEST(Allocations, NoneWithAMemoryBudget) {
+  const Context context(2, uint64_t(16) << 20);
+  const Atoms atoms = crambin();
+  set_atoms(context, atoms);
+  expect_no_allocation(atoms, [&](const std::vector<float> &positions) {
+    set_positions(context, positions);
+    begin_and_collect(context, settings());
+  });
+}
+
 TEST(Allocations, NoneWithAFrameBudget) {
   const Context context;
   const Atoms atoms = crambin();
