@@ -464,6 +464,26 @@ class Bench(ProgramTest):
             self.assertGreater(entry["host"], 0)
             self.assertGreater(entry["triangles"], 0)
 
+    def test_small_surfaces(self):
+        self.write("two.xyzr", "0 0 0 1.5\n2 0 0 1.5\n")
+        result = self.run_cpu("bench", CRAMBIN, "two.xyzr", "--small", "100", "--repeat", "1", "--json", "-")
+        pieces, whole = (entry["small"] for entry in json.loads(result.stdout)["structures"])
+        self.assertEqual(pieces["surfaces"], 100)
+        self.assertEqual(pieces["fewest_atoms"], 100)
+        self.assertLess(pieces["most_atoms"], 100 + 14)  # the largest amino acid, without hydrogen
+        self.assertGreater(pieces["total"], 0)
+        self.assertEqual((whole["fewest_atoms"], whole["most_atoms"]), (2, 2))
+
+    def test_jobs(self):
+        result = self.run_cpu("bench", CRAMBIN, "--jobs", "--repeat", "2", "--json", "-")
+        jobs = json.loads(result.stdout)["structures"][0]["jobs"]
+        for name in ("begin", "begin_replacing", "cancel_to_idle", "destroy", "first_level", "finest_alone", "ladder"):
+            self.assertGreater(jobs[name]["median"], 0)
+            self.assertGreaterEqual(jobs[name]["max"], jobs[name]["median"])
+        self.assertGreater(jobs["ladder_to_finest"], 0)
+        self.assertIn("cancel to idle", self.run_cpu("bench", CRAMBIN, "--jobs", "--repeat", "1").stdout)
+        self.assert_fails(USAGE, ["--jobs", "--small"], "bench", CRAMBIN, "--jobs", "--small", "100")
+
     def test_summary_and_errors(self):
         self.assertIn("327 atoms", self.run_cpu("bench", CRAMBIN, "--repeat", "1").stdout)
         self.assert_fails(INPUT, ["nowhere.pdb"], "bench", CRAMBIN, "nowhere.pdb")

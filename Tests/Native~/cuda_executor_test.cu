@@ -219,8 +219,8 @@ TEST(CudaExecutor, StageTimes) {
     timer.end();
     const auto times = timer.collect();
     ASSERT_EQ(times.size(), 2u);
-    EXPECT_EQ(times[0].first, "first");
-    EXPECT_EQ(times[1].first, "second");
+    EXPECT_STREQ(times[0].first, "first");
+    EXPECT_STREQ(times[1].first, "second");
     EXPECT_GT(times[0].second, 0.0);
     EXPECT_GT(times[1].second, 0.0);
   }

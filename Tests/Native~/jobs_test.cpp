@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cstring>
+#include <limits>
 #include <thread>
 
 using namespace surface_fixture;
@@ -245,6 +246,47 @@ TEST(Jobs, ProgressNeverFalls) {
   EXPECT_EQ(last, 1.f);
 }
 
+TEST(Jobs, AFrameBudgetGivesOneLevel) {
+  const Context context;
+  const Atoms atoms = cluster(800, 3);
+  set_atoms(context, atoms);
+  qses_settings s = settings(0.5);  // levels 2, 1, 0.5
+  for (const float budget : {1e-3f, 60000.f}) {
+    s.frame_budget_ms = budget;
+    const Surface finest = compute(context, atoms, s);  // qses_compute knows no budget
+    EXPECT_EQ(mesh_checks::manifold_fault(finest.mesh), "");
+    for (uint32_t frame = 0; frame < 4; ++frame) {
+      begin(context, s, frame);
+      EXPECT_EQ(poll(context).level_count, 1u);
+      wait_for_all(context);
+      const qses_progress p = poll(context);
+      EXPECT_EQ(p.state, QSES_JOB_FINISHED);
+      EXPECT_EQ(p.levels_finished, 1u);
+      EXPECT_EQ(p.level_count, 1u);
+      EXPECT_EQ(p.fraction, 1.f);
+      qses_mesh m;
+      qses_mesh_init(&m);
+      expect_ok(qses_collect(context, &m));
+      EXPECT_EQ(m.frame, frame);
+      EXPECT_EQ(m.level_count, 3u);
+      // A budget that nothing keeps to, and one that everything does: what was learnt with the first still holds.
+      const uint32_t expected = budget < 1 ? 0 : 2;
+      EXPECT_EQ(m.level, expected);
+      EXPECT_EQ(m.spacing, expected == 2 ? 0.5f : 2.f);
+      EXPECT_EQ(copy(m).indices == finest.mesh.indices, expected == 2);
+      EXPECT_EQ(qses_collect(context, &m), QSES_NO_RESULT);
+    }
+  }
+  // Other atoms: nothing is known about them.
+  set_atoms(context, cluster(801, 3));
+  begin(context, s);
+  wait_for_all(context);
+  qses_mesh m;
+  qses_mesh_init(&m);
+  expect_ok(qses_collect(context, &m));
+  EXPECT_EQ(m.level, 0u);
+}
+
 TEST(Jobs, BadRequestsAreRefusedAtOnce) {
   const Context context;
   qses_settings s = settings();
@@ -256,6 +298,14 @@ TEST(Jobs, BadRequestsAreRefusedAtOnce) {
   EXPECT_EQ(qses_begin(context, &s), QSES_INVALID_ARGUMENT);
   s.level_count = QSES_MAX_LEVELS + 1;
   EXPECT_EQ(qses_begin(context, &s), QSES_INVALID_ARGUMENT);
+  for (const float budget :
+       {-1.f, 60001.f, std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {
+    s = settings();
+    s.frame_budget_ms = budget;
+    EXPECT_EQ(qses_begin(context, &s), QSES_INVALID_ARGUMENT);
+    EXPECT_NE(std::string(qses_last_error()).find("frame_budget_ms"), std::string::npos);
+    EXPECT_EQ(qses_compute(context, &s, nullptr), QSES_INVALID_ARGUMENT);
+  }
   qses_mesh m;
   qses_mesh_init(&m);
   EXPECT_EQ(qses_collect(context, &m), QSES_NO_RESULT);

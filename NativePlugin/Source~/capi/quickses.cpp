@@ -47,6 +47,7 @@ void check_settings(const qses_settings &s) {
     check_range("settings.levels", static_cast<double>(s.levels[k]), 0.001, 100, " Å");
     if (k > 0 && !(s.levels[k] < s.levels[k - 1])) invalid("settings.levels must fall from each one to the next");
   }
+  check_range("settings.frame_budget_ms", static_cast<double>(s.frame_budget_ms), 0, 60000, " ms");
   if (s.method == QSES_METHOD_GRID && s.surface != QSES_SURFACE_SES)
     invalid("settings.method GRID makes the solvent-excluded surface only: use EXACT for the others");
   if (s.method == QSES_METHOD_GRID && s.patch_types) invalid("settings.patch_types is not available with method GRID");
@@ -89,10 +90,14 @@ quickses::SurfaceRequest make_request(const qses_context &context, const qses_se
                                       const char *function) {
   check_settings(settings);
   if (!context.atoms) throw quickses::Error(QSES_NO_RESULT, std::string("qses_set_atoms must come before ") + function);
-  quickses::SurfaceRequest request{context.atoms, context.appearance, settings, {}};
+  quickses::SurfaceRequest request;
+  request.atoms = context.atoms;
+  request.appearance = context.appearance;
+  request.settings = settings;
   for (uint32_t k = 0; ladder && k < settings.level_count; ++k)
-    if (settings.levels[k] > settings.spacing) request.spacings.push_back(settings.levels[k]);
-  request.spacings.push_back(settings.spacing);
+    if (settings.levels[k] > settings.spacing) request.ladder.add(settings.levels[k]);
+  request.ladder.add(settings.spacing);
+  if (ladder) request.frame_budget_ms = static_cast<double>(settings.frame_budget_ms);
   return request;
 }
 
@@ -299,15 +304,19 @@ qses_status qses_poll(const qses_context *context, qses_progress *progress) {
 }
 
 qses_status qses_collect(qses_context *context, qses_mesh *mesh) {
-  return guarded([&] {
+  bool found = false;
+  const qses_status status = guarded([&] {
     require(context, "context");
     require(mesh, "mesh");
     check_output(mesh, "mesh");
     qses_mesh collected;
-    if (!context->job->collect(&collected, nullptr))
-      throw quickses::Error(QSES_NO_RESULT, "no level has been finished since the last qses_collect");
-    write_struct(mesh, collected, "mesh");
+    found = context->job->collect(&collected, nullptr);
+    if (found) write_struct(mesh, collected, "mesh");
   });
+  // Callers ask in every frame: an exception would be too dear an answer.
+  if (status == QSES_OK && !found)
+    return quickses::fail(QSES_NO_RESULT, "no level has been finished since the last qses_collect");
+  return status;
 }
 
 qses_status qses_cancel(qses_context *context) {

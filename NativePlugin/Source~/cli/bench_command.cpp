@@ -1,20 +1,53 @@
 // SPDX-License-Identifier: MIT
-// quickses bench: times of warm calls, from atoms in memory to the mesh in memory.
+// quickses bench: times of warm calls.
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 
+#include "cli/bench.h"
 #include "cli/commands.h"
-#include "cli/engine.h"
 #include "cli/exit_code.h"
-#include "cli/report.h"
 #include "cli/text_output.h"
 #include "io/atomic_file.h"
 
 namespace quickses::cli {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+constexpr size_t kSmallSurfaces = 100;
+
+// First atom of each residue, and the number of atoms. Files without residues: every atom by itself.
+std::vector<size_t> find_residues(const io::Structure &structure) {
+  std::vector<size_t> starts;
+  for (size_t i = 0; i < structure.atoms.size(); ++i) {
+    const io::AtomInfo &atom = structure.atoms[i], &before = structure.atoms[i > 0 ? i - 1 : 0];
+    if (i == 0 || atom.residue_name.empty() || atom.residue_number != before.residue_number ||
+        atom.insertion_code != before.insertion_code || atom.chain != before.chain ||
+        atom.residue_name != before.residue_name)
+      starts.push_back(i);
+  }
+  starts.push_back(structure.atoms.size());
+  return starts;
+}
+
+struct Window {
+  size_t first, count;  // atoms
+};
+
+// Runs of whole residues with at least `atoms` atoms, or the whole molecule if it has fewer. They start at one residue
+// after the other, and at the first one again where the rest is too short.
+std::vector<Window> cut_windows(const io::Structure &structure, size_t atoms) {
+  const std::vector<size_t> starts = find_residues(structure);
+  std::vector<Window> all;
+  for (size_t r = 0; r + 1 < starts.size(); ++r) {
+    size_t end = r;
+    while (end + 1 < starts.size() && starts[end] - starts[r] < atoms) ++end;
+    if (r == 0 || starts[end] - starts[r] >= atoms) all.push_back({starts[r], starts[end] - starts[r]});
+  }
+  std::vector<Window> windows;
+  for (size_t k = 0; k < kSmallSurfaces; ++k) windows.push_back(all[k % all.size()]);
+  return windows;
+}
+
+}  // namespace
 
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
@@ -22,7 +55,53 @@ double median(std::vector<double> values) {
   return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
-}  // namespace
+std::string bench_surface(Engine &engine, const io::Structure &structure, const Options &options, Json *entry) {
+  qses_settings settings = settings_of(options.compute);
+  settings.measure = 0;                       // area and volume are no part of the mesh
+  qses_mesh mesh = engine.compute(settings);  // warms up: memory is taken here
+  std::vector<double> times;
+  for (unsigned k = 0; k < options.repeat; ++k) {
+    const auto start = BenchClock::now();
+    engine.set_positions(structure);
+    mesh = engine.compute(settings);
+    times.push_back(ms_since(start));
+  }
+  const double host = median(times);
+  (*entry)["vertices"] = mesh.vertex_count;
+  (*entry)["triangles"] = mesh.triangle_count;
+  (*entry)["host"] = host;
+  char text[160];
+  std::snprintf(text, sizeof text, "%u triangles, %s, host %.3f ms (median of %u)", mesh.triangle_count,
+                name_of(engine.backend()), host, options.repeat);
+  return text;
+}
+
+std::string bench_small(Engine &engine, const io::Structure &structure, const Options &options, Json *entry) {
+  const std::vector<Window> windows = cut_windows(structure, options.small);
+  const qses_settings settings = settings_of(options.compute);
+  size_t fewest = windows.front().count, most = fewest;
+  for (const Window &w : windows) {
+    fewest = std::min(fewest, w.count);
+    most = std::max(most, w.count);
+  }
+  std::vector<double> times;
+  for (unsigned k = 0; k <= options.repeat; ++k) {
+    const auto start = BenchClock::now();
+    for (const Window &w : windows) {
+      if (qses_set_atoms(engine.context(), &structure.positions[3 * w.first], 0, &structure.radii[w.first], w.count) !=
+          QSES_OK)
+        throw Failure(kComputingFailed, qses_last_error());
+      engine.compute(settings);
+    }
+    if (k > 0) times.push_back(ms_since(start));  // the first round warms up
+  }
+  const double total = median(times);
+  (*entry)["small"] = {{"surfaces", windows.size()}, {"fewest_atoms", fewest}, {"most_atoms", most}, {"total", total}};
+  char text[200];
+  std::snprintf(text, sizeof text, "%zu surfaces of %zu to %zu atoms, %s, %.3f ms in all (median of %u)",
+                windows.size(), fewest, most, name_of(engine.backend()), total, options.repeat);
+  return text;
+}
 
 void run_bench(const Options &options) {
   if (!options.json.empty() && options.json != "-") io::check_writable(options.json);
@@ -32,32 +111,16 @@ void run_bench(const Options &options) {
 
   Engine engine(options.compute);
   explain_fallback(engine, options.compute, options.quiet);
-  qses_settings settings = settings_of(options.compute);
-  settings.measure = 0;  // area and volume are no part of the mesh
-
   Json structures = Json::array();
   for (size_t i = 0; i < files.size(); ++i) {
     const io::Structure &structure = files[i].models.front();
     engine.set_atoms(structure, options.inputs[i]);
-    qses_mesh mesh = engine.compute(settings);  // warms up: memory is taken here
-    std::vector<double> times;
-    for (unsigned k = 0; k < options.repeat; ++k) {
-      const auto start = Clock::now();
-      const qses_status status =
-          qses_set_positions(engine.context(), structure.positions.data(), 0, structure.atoms.size());
-      if (status != QSES_OK) throw Failure(exit_code_of(status), qses_last_error());
-      mesh = engine.compute(settings);
-      times.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
-    }
-    const double host = median(times);
-    structures.push_back({{"input", options.inputs[i]},
-                          {"atoms", structure.atoms.size()},
-                          {"vertices", mesh.vertex_count},
-                          {"triangles", mesh.triangle_count},
-                          {"host", host}});
+    Json entry = {{"input", options.inputs[i]}, {"atoms", structure.atoms.size()}};
+    const auto bench = options.jobs ? bench_jobs : options.small > 0 ? bench_small : bench_surface;
+    const std::string text = bench(engine, structure, options, &entry);
+    structures.push_back(entry);
     if (!options.quiet && options.json != "-") {
-      std::printf("%s: %zu atoms, %u triangles, %s, host %.3f ms (median of %u)\n", options.inputs[i].c_str(),
-                  structure.atoms.size(), mesh.triangle_count, name_of(engine.backend()), host, options.repeat);
+      std::printf("%s: %zu atoms, %s\n", options.inputs[i].c_str(), structure.atoms.size(), text.c_str());
       std::fflush(stdout);
     }
   }

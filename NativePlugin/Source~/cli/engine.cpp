@@ -44,6 +44,10 @@ void Engine::set_frame(const float *xyz, size_t position_count, const std::vecto
   check(qses_set_positions_indexed(context(), xyz, 0, position_count, indices.data(), indices.size()));
 }
 
+void Engine::set_positions(const io::Structure &structure) {
+  check(qses_set_positions(context(), structure.positions.data(), 0, structure.atoms.size()));
+}
+
 qses_mesh Engine::compute(const qses_settings &settings) {
   qses_mesh mesh;
   qses_mesh_init(&mesh);

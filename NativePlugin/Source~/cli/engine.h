@@ -23,6 +23,7 @@ class Engine {
   std::string why_not_cuda() const { return description_.reason; }  // empty: it is CUDA, or the CPU was asked for
 
   void set_atoms(const io::Structure &structure, const std::string &path);
+  void set_positions(const io::Structure &structure);  // of the same atoms
   // The next frame: atom i is at xyz[indices[i]]. xyz has three numbers for each of position_count atoms.
   void set_frame(const float *xyz, size_t position_count, const std::vector<uint32_t> &indices);
   qses_mesh compute(const qses_settings &settings);

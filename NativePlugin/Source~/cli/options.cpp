@@ -221,6 +221,7 @@ void check(const Options &options, const std::function<bool(const char *)> &give
     throw Failure(kUsage, "--method grid makes the solvent-excluded surface only: leave --surface at ses");
   if (options.command == Options::Command::kBench) {
     if (options.inputs.empty()) throw Failure(kUsage, "bench: no input file was given");
+    if (options.jobs && options.small > 0) throw Failure(kUsage, "--jobs and --small: one at a time");
     for (const std::string &input : options.inputs)
       if (!options.json.empty() && is_same_file(options.json, input))
         throw Failure(kUsage, "--json: '" + options.json + "' is one of the inputs");
@@ -272,7 +273,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
       "Molecular surfaces as closed triangle meshes.\n\n"
       "  quickses INPUT [-o OUT.obj|OUT.ply|OUT.stl] [options]\n"
       "  quickses INPUT --trajectory FILE [--frames A:B:STEP] [--csv FILE] [-o frame_%05d.ply] [options]\n"
-      "  quickses bench FILE... [--repeat N] [options]\n",
+      "  quickses bench FILE... [--repeat N] [--small N | --jobs] [options]\n",
       "quickses");
   app.footer(kFooter);
   app.set_version_flag("--version", std::string("quickses ") + qses_version(), "Print the version");
@@ -285,6 +286,11 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
   bench->footer(kFooter);
   bench->add_option("FILE", options.inputs, "Structures")->type_name("FILE");
   add_count(bench, "--repeat", "--repeat", options.repeat, 1, 1000000, "Timed calls per structure; default 20");
+  add_count(bench, "--small", "--small", options.small, 1, 1000000,
+            "Time 100 surfaces of at least N atoms each instead, cut between residues, one after the other");
+  bench->add_flag(
+      "--jobs", options.jobs,
+      "Time jobs instead: begin, cancel, destroy, the first level, and all levels against the finest alone");
   add_compute_options(bench, options.compute, device);
   add_report_options(bench, options);
 

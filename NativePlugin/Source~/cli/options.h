@@ -38,6 +38,8 @@ struct Options {
   std::string output;               // empty: no mesh file
   std::vector<std::string> inputs;  // of bench
   unsigned repeat = 20;             // of bench
+  unsigned small = 0;               // of bench: atoms per surface, 0 = the whole
+  bool jobs = false;                // of bench
   std::string trajectory;           // empty: the input alone
   FrameRange frames;                // of the trajectory
   bool unwrap = false;              // molecules in one piece

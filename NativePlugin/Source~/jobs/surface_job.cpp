@@ -47,13 +47,23 @@ void SurfaceJob::announce(const SurfaceRequest &request) {
   stop_now_ = false;
   fraction_ = 0.f;
   levels_finished_ = 0;
-  level_count_ = static_cast<uint32_t>(request.spacings.size());
+  level_count_ = request.frame_budget_ms > 0 ? 1 : request.ladder.count;
   state_.state = QSES_JOB_RUNNING;
   state_.frame = request.settings.frame;
   state_.levels_finished = 0;
   state_.level_count = level_count_;
   state_.status = QSES_OK;
   state_.message[0] = '\0';
+}
+
+void SurfaceJob::choose_levels(const SurfaceRequest &request) {
+  ladder_count_ = request.ladder.count;
+  first_level_ = 0;
+  if (request.frame_budget_ms <= 0) return;
+  const qses_settings &s = request.settings;
+  const LevelChooser::Subject subject = {request.atoms->count, s.surface,    s.method,      s.probe_radius,
+                                         s.relaxation_steps,   s.slice_size, request.ladder};
+  first_level_ = chooser_.choose(subject, request.frame_budget_ms);
 }
 
 void SurfaceJob::work() {
@@ -65,6 +75,7 @@ void SurfaceJob::work() {
     waiting_ = {};
     running_ = true;
     announce(request);
+    choose_levels(request);
     lock.unlock();
     qses_status status = QSES_OK;
     std::string message;
@@ -95,7 +106,19 @@ void SurfaceJob::work() {
 }
 
 void SurfaceJob::run(const SurfaceRequest &request) {
-  engine_->compute(*request.atoms, *request.appearance, request.settings, request.spacings, *this);
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  try {
+    engine_->compute(*request.atoms, *request.appearance, request.settings,
+                     {request.ladder.spacings + first_level_, level_count_}, *this);
+  } catch (const Cancelled &) {
+    throw;  // says nothing about the cost
+  } catch (...) {
+    if (request.frame_budget_ms > 0) chooser_.record_failure();
+    throw;
+  }
+  if (request.frame_budget_ms > 0)
+    chooser_.record(std::chrono::duration<double, std::milli>(Clock::now() - start).count(), shared_ms_);
 }
 
 void SurfaceJob::compute(SurfaceRequest request) {
@@ -104,6 +127,7 @@ void SurfaceJob::compute(SurfaceRequest request) {
     const std::lock_guard<std::mutex> lock(mutex_);
     // No worker runs and only this thread can begin one: it is safe to compute here.
     announce(request);
+    choose_levels(request);
     state_.frame_requested = request.settings.frame;
     running_ = true;
   }
@@ -151,8 +175,8 @@ void SurfaceJob::finished(const qses_mesh &mesh, const qses_report &report) {
     ready_.slot = writing_;
     ready_.mesh = mesh;
     ready_.report = report;
-    ready_.mesh.level = levels_finished_;
-    ready_.mesh.level_count = level_count_;
+    ready_.mesh.level = first_level_ + levels_finished_;
+    ready_.mesh.level_count = ladder_count_;
     writing_ = kNoSlot;
     state_.levels_finished = ++levels_finished_;
     if (superseded_ || cancelled_) stop_now_ = true;

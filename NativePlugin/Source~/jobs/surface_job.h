@@ -3,6 +3,7 @@
 // replacing older ones, and the finished meshes handed over without copying.
 #pragma once
 
+#include "jobs/level_chooser.h"
 #include "surface/engine.h"
 
 #include <atomic>
@@ -11,7 +12,6 @@
 #include <mutex>
 #include <string>
 #include <thread>
-#include <vector>
 
 namespace quickses {
 
@@ -20,7 +20,9 @@ struct SurfaceRequest {
   std::shared_ptr<const AtomSet> atoms;
   std::shared_ptr<const Appearance> appearance;
   qses_settings settings;
-  std::vector<float> spacings;  // of the levels, coarsest first
+  LevelLadder ladder;
+  // Of the ladder, only the finest level that is expected to cost no more than this, ms; 0: all levels.
+  double frame_budget_ms = 0;
 
   bool empty() const { return !atoms; }
 };
@@ -57,6 +59,7 @@ class SurfaceJob : private LevelSink {
   static constexpr int kNoSlot = -1;
 
   // LevelSink, called by the thread that computes.
+  void prepared(double milliseconds) override { shared_ms_ = milliseconds; }
   int slot() override;
   void finished(const qses_mesh &mesh, const qses_report &report) override;
   const std::atomic<bool> &stop_flag() const override { return stop_now_; }
@@ -64,6 +67,8 @@ class SurfaceJob : private LevelSink {
 
   // The state of a job that is about to run. The mutex is held.
   void announce(const SurfaceRequest &request);
+  // Which levels of the ladder will be computed. The mutex is held.
+  void choose_levels(const SurfaceRequest &request);
   void work();
   void run(const SurfaceRequest &request);
 
@@ -78,7 +83,10 @@ class SurfaceJob : private LevelSink {
   std::condition_variable changed_;
   SurfaceRequest waiting_;
   bool running_ = false, quit_ = false, cancelled_ = false, superseded_ = false;
-  uint32_t levels_finished_ = 0, level_count_ = 0;
+  uint32_t levels_finished_ = 0, level_count_ = 0;  // of the job
+  uint32_t first_level_ = 0, ladder_count_ = 0;     // where they are in the ladder
+  LevelChooser chooser_;                            // like the next: of the thread that computes
+  double shared_ms_ = 0;                            // of the job's cost, what all levels share
   Level held_, ready_;
   int writing_ = kNoSlot;
   qses_progress state_{};

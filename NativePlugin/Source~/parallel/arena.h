@@ -67,7 +67,7 @@ class Arena {
   // Everything allocated so far is given up; the blocks stay.
   void reset() {
     if (blocks_.size() > 1) {
-      const uint64_t merged = peak_ + peak_ / 16;
+      const uint64_t merged = peak_ + peak_ / 8;  // the next surface may be a little larger
       release();
       try {
         add_block(static_cast<size_t>(merged));

@@ -14,8 +14,10 @@
 #include <tbb/task_arena.h>
 #include <thrust/system/tbb/execution_policy.h>
 #endif
+#include <thrust/execution_policy.h>
 #include <thrust/for_each.h>
 #include <thrust/iterator/counting_iterator.h>
+#include <thrust/merge.h>
 #include <thrust/sort.h>
 
 #include <algorithm>
@@ -25,8 +27,10 @@
 #include <exception>
 #include <map>
 #include <memory>
+#include <new>
 #include <thread>
 #include <typeindex>
+#include <utility>
 #include <vector>
 
 namespace quickses {
@@ -50,6 +54,31 @@ struct HostMemory {
     std::free(p);
 #endif
   }
+};
+
+// Hands out memory that the caller has set aside, to Thrust, which takes a few pieces and gives them back. Where that
+// is not enough, the heap's.
+class RoomAllocator {
+ public:
+  using value_type = char;
+  static constexpr size_t kAlignment = 64;
+  // Of a room, for one piece.
+  static size_t room_for(size_t bytes) { return bytes / kAlignment * kAlignment + 2 * kAlignment; }
+
+  RoomAllocator(char *room, size_t bytes) : room_(room), end_(room + bytes), next_(room) {}
+  char *allocate(size_t bytes) {
+    bytes = (bytes + kAlignment - 1) / kAlignment * kAlignment;
+    if (static_cast<size_t>(end_ - next_) < bytes) return static_cast<char *>(::operator new(bytes));
+    char *const piece = next_;
+    next_ += bytes;
+    return piece;
+  }
+  void deallocate(char *piece, size_t) {
+    if (piece < room_ || piece >= end_) ::operator delete(piece);
+  }
+
+ private:
+  char *room_, *end_, *next_;
 };
 
 class CpuExecutor {
@@ -131,6 +160,15 @@ class CpuExecutor {
     return *static_cast<std::vector<std::unique_ptr<Scratch>> *>(pool.get());
   }
 
+  // Gives every thread as much room as any of them needed so far, by Scratch::match: once a trajectory has shown how
+  // much that is, no thread has to ask for memory.
+  template <class Scratch>
+  void match_scratches() {
+    auto &pool = scratches<Scratch>();
+    for (size_t k = 1; k < pool.size(); ++k) pool.front()->match(*pool[k]);
+    for (const auto &scratch : pool) scratch->match(*pool.front());
+  }
+
   // grain: items a thread takes at a time. Each thread that works has a scratch of its own.
   template <class Scratch, class F>
   void for_each_brick(size_t n, F f, size_t grain = 8) {
@@ -169,7 +207,9 @@ class CpuExecutor {
     // Two sweeps over chunks: sums, then the running values. One sweep where there is little to do.
     const size_t chunks = n < 65536 || threads_ == 1 ? 1 : size_t(threads_) * 4;
     const size_t chunk = (n + chunks - 1) / (chunks ? chunks : 1);
-    std::vector<T> begin(chunks + 1, T(0));
+    const auto mark = arena_.mark();
+    const Span<T> begin = allocate<T>(chunks + 1);
+    begin[0] = T(0);
     if (chunks > 1) {
       for_each_brick<char>(
           chunks,
@@ -195,33 +235,73 @@ class CpuExecutor {
         },
         1);
     if (n == 0) out[0] = T(0);
+    arena_.rewind(mark);
   }
 
   template <class T = double, class Load>
   T reduce(size_t n, Load load) {
     const size_t chunks = (n + kReduceChunk - 1) / kReduceChunk;
-    std::vector<T> sums(chunks);
+    const auto mark = arena_.mark();
+    const Span<T> sums = allocate<T>(chunks);
     for_each_brick<char>(
         chunks,
         [&](SoloTeam, char &, size_t chunk) {
-          SumChunk<T, Load>{load, n, sums.data()}(chunk);
+          SumChunk<T, Load>{load, n, sums.data}(chunk);
         },
-        4);
+        1);
     T sum{};
     for (const T &s : sums) sum += s;
+    arena_.rewind(mark);
     return sum;
   }
 
+  // Thrust's parallel sort takes its temporaries from the heap every time. Here its parts work in the arena: runs are
+  // sorted one by one, then merged pairwise, an even number of times so that the result is where the keys were.
   template <class Key, class Value>
   void sort_by_key(Span<Key> keys, Span<Value> values, int /*key_bits*/) {
-    run([&] { thrust::stable_sort_by_key(policy(), keys.begin(), keys.end(), values.begin()); });
+    const size_t n = keys.size;
+    if (n < 2) return;
+    size_t runs = 1;
+    while (threads_ > 1 && n / runs > kSortedRun) runs *= 4;
+    const size_t length = (n + runs - 1) / runs;
+    const auto mark = arena_.mark();
+    const size_t room = RoomAllocator::room_for(length * sizeof(Key)) + RoomAllocator::room_for(length * sizeof(Value));
+    const Span<char> rooms = allocate<char>(runs * room);
+    for_each_brick<char>(
+        runs,
+        [&](SoloTeam, char &, size_t k) {
+          const size_t first = std::min(n, k * length), last = std::min(n, first + length);
+          RoomAllocator allocator(rooms.data + k * room, room);
+          thrust::stable_sort_by_key(thrust::seq(allocator), keys.data + first, keys.data + last, values.data + first);
+        },
+        1);
+    arena_.rewind(mark);
+    if (runs > 1) {
+      Span<Key> other_keys = allocate<Key>(n);
+      Span<Value> other_values = allocate<Value>(n);
+      for (size_t merged = length; merged < length * runs; merged *= 2) {
+        run([&] {
+          for (size_t first = 0; first < n; first += 2 * merged) {
+            const size_t middle = std::min(n, first + merged), last = std::min(n, middle + merged);
+            thrust::merge_by_key(policy(), keys.data + first, keys.data + middle, keys.data + middle, keys.data + last,
+                                 values.data + first, values.data + middle, other_keys.data + first,
+                                 other_values.data + first);
+          }
+        });
+        std::swap(keys, other_keys);
+        std::swap(values, other_values);
+      }
+    }
+    arena_.rewind(mark);
   }
 
   template <class Keep, class T>
   size_t compact(size_t n, Keep keep, Span<T> out) {
     const size_t chunks = n < 65536 || threads_ == 1 ? 1 : size_t(threads_) * 4;
     const size_t chunk = (n + chunks - 1) / chunks;
-    std::vector<size_t> begin(chunks + 1, 0);
+    const auto mark = arena_.mark();
+    const Span<size_t> begin = allocate<size_t>(chunks + 1);
+    begin[0] = 0;
     for_each_brick<char>(
         chunks,
         [&](SoloTeam, char &, size_t c) {
@@ -239,7 +319,9 @@ class CpuExecutor {
             if (keep(i)) out[k++] = static_cast<T>(i);
         },
         1);
-    return begin[chunks];
+    const size_t kept = begin[chunks];
+    arena_.rewind(mark);
+    return kept;
   }
 
   template <class T>
@@ -267,6 +349,7 @@ class CpuExecutor {
 
  private:
   static constexpr size_t kSerialItems = 64;
+  static constexpr size_t kSortedRun = size_t(1) << 15;  // items that one thread sorts
 
   bool stopped() const { return stop_ && stop_->load(std::memory_order_relaxed); }
 

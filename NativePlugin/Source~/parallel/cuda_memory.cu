@@ -7,8 +7,12 @@
 
 #include <cuda_runtime.h>
 
+#include <atomic>
+
 namespace quickses {
 namespace {
+
+std::atomic<uint64_t> device_requests{0}, pinned_requests{0};
 
 // Tells whether the library carries code for a device.
 __global__ void probe_kernel() {}
@@ -106,7 +110,10 @@ DeviceGuard::~DeviceGuard() {
   if (before_ != device_ && cudaSetDevice(before_) != cudaSuccess) cudaGetLastError();
 }
 
+CudaMemoryRequests cuda_memory_requests() { return {device_requests, pinned_requests}; }
+
 void *DeviceMemory::acquire(size_t bytes) {
+  ++device_requests;
   void *memory = nullptr;
   if (cudaMalloc(&memory, bytes) == cudaSuccess) return memory;
   cudaGetLastError();
@@ -118,6 +125,7 @@ void DeviceMemory::release(void *memory) {
 }
 
 void *PinnedMemory::acquire(size_t bytes) {
+  ++pinned_requests;
   void *memory = nullptr;
   if (cudaHostAlloc(&memory, bytes, cudaHostAllocPortable) == cudaSuccess) return memory;
   cudaGetLastError();

@@ -52,6 +52,12 @@ struct PinnedMemory {
   static void release(void *memory);
 };
 
+// How often this process has asked for memory through the two sources so far.
+struct CudaMemoryRequests {
+  uint64_t device, pinned;
+};
+CudaMemoryRequests cuda_memory_requests();
+
 // Page-locked host memory, which the GPU reads and writes at the same address.
 using PinnedBuffer = GrowingBuffer<PinnedMemory>;
 

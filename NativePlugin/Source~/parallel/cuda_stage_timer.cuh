@@ -4,6 +4,7 @@
 
 #include "parallel/cuda_executor.cuh"
 
+#include <cstring>
 #include <utility>
 #include <vector>
 
@@ -26,20 +27,21 @@ class CudaStageTimer {
   void begin(const char *name) { mark(name); }
   void end() { mark(nullptr); }
 
-  // Waits for the last mark. Names and milliseconds in the order of first appearance.
-  std::vector<std::pair<std::string, double>> collect() {
-    std::vector<std::pair<std::string, double>> times;
-    if (marks_.empty()) return times;
+  // Waits for the last mark. Names and milliseconds in the order of first appearance; valid until the next call.
+  const std::vector<std::pair<const char *, double>> &collect() {
+    times_.clear();
+    if (marks_.empty()) return times_;
     check_cuda(cudaEventSynchronize(events_[marks_.size() - 1]), "cudaEventSynchronize");
     for (size_t k = 0; k + 1 < marks_.size(); ++k) {
       if (!marks_[k]) continue;
       float ms = 0;
       check_cuda(cudaEventElapsedTime(&ms, events_[k], events_[k + 1]), "cudaEventElapsedTime");
-      auto t = std::find_if(times.begin(), times.end(), [&](const auto &entry) { return entry.first == marks_[k]; });
-      if (t == times.end()) t = times.insert(t, {marks_[k], 0.0});
+      auto t = std::find_if(times_.begin(), times_.end(),
+                            [&](const auto &entry) { return std::strcmp(entry.first, marks_[k]) == 0; });
+      if (t == times_.end()) t = times_.insert(t, {marks_[k], 0.0});
       t->second += static_cast<double>(ms);
     }
-    return times;
+    return times_;
   }
 
  private:
@@ -57,6 +59,7 @@ class CudaStageTimer {
   CudaExecutor &executor_;
   bool enabled_ = false;
   std::vector<cudaEvent_t> events_;
+  std::vector<std::pair<const char *, double>> times_;
   std::vector<const char *> marks_;  // what begins at each event; nullptr: nothing
 };
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <chrono>
-#include <string>
+#include <cstring>
 #include <utility>
 #include <vector>
 
@@ -19,7 +19,7 @@ class CpuStageTimer {
     times_.clear();
     open_ = false;
   }
-  // Ends the stage before, and starts one. A name that has been there before goes on adding to it.
+  // Ends the stage before, and starts one. A name that has been there before goes on adding to it. Names are literals.
   void begin(const char *name) {
     if (!enabled_) return;
     end();
@@ -32,21 +32,21 @@ class CpuStageTimer {
     const double ms = std::chrono::duration<double, std::milli>(Clock::now() - start_).count();
     open_ = false;
     for (auto &t : times_)
-      if (t.first == name_) {
+      if (std::strcmp(t.first, name_) == 0) {
         t.second += ms;
         return;
       }
     times_.emplace_back(name_, ms);
   }
-  // Names and milliseconds in the order of first appearance.
-  std::vector<std::pair<std::string, double>> collect() { return times_; }
+  // Names and milliseconds in the order of first appearance; valid until the next reset.
+  const std::vector<std::pair<const char *, double>> &collect() { return times_; }
 
  private:
   using Clock = std::chrono::steady_clock;
   bool enabled_ = false, open_ = false;
-  std::string name_;
+  const char *name_ = nullptr;
   Clock::time_point start_;
-  std::vector<std::pair<std::string, double>> times_;
+  std::vector<std::pair<const char *, double>> times_;
 };
 
 }  // namespace quickses

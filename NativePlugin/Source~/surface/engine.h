@@ -10,7 +10,6 @@
 #include <atomic>
 #include <functional>
 #include <memory>
-#include <vector>
 
 namespace quickses {
 
@@ -41,7 +40,8 @@ constexpr int kMeshSlots = 3;
 class LevelSink {
  public:
   virtual ~LevelSink() = default;
-  virtual int slot() = 0;  // the buffer for the next level
+  virtual void prepared(double milliseconds) = 0;  // what all levels share is made; with CUDA: asked for
+  virtual int slot() = 0;                          // the buffer for the next level
   virtual void finished(const qses_mesh &mesh, const qses_report &report) = 0;
   virtual void advance(double fraction) = 0;  // of all levels; never falls
   virtual const std::atomic<bool> &stop_flag() const = 0;
@@ -58,7 +58,7 @@ class SurfaceEngine {
   // checked already; what the appearance has is there for all atoms. Throws Error, or Cancelled soon after the stop
   // flag is set; levels finished before stay as they are.
   virtual void compute(const AtomSet &atoms, const Appearance &appearance, const qses_settings &settings,
-                       const std::vector<float> &spacings, LevelSink &sink) = 0;
+                       Span<const float> spacings, LevelSink &sink) = 0;
 
   // What a computation at settings.spacing would need. Throws Error.
   virtual qses_size_estimate estimate(const AtomSet &atoms, const Appearance &appearance,

@@ -36,6 +36,12 @@ struct BrickColumns {
     if (needs.arcs > 0) arc_capacity = needs.arcs + needs.arcs / 2;
     return needs.atoms > 0 || needs.arcs > 0;
   }
+  // As much room as another thread needed: who meets the most crowded brick differs from surface to surface.
+  void match(const BrickColumns &other) {
+    atom_capacity = std::max(atom_capacity, other.atom_capacity);
+    arc_capacity = std::max(arc_capacity, other.arc_capacity);
+    scratch();
+  }
 };
 
 struct EvaluateBrick {
@@ -54,6 +60,7 @@ struct EvaluateBrick {
 
 inline void evaluate_signs(CpuExecutor &executor, const FeatureView &features, const BrickSet &bricks, BrickRange slice,
                            NoCandidates &, uint64_t *signs) {
+  executor.match_scratches<BrickColumns>();
   executor.for_each_brick<BrickColumns>(slice.size(),
                                         EvaluateBrick{&executor.kernels(), &features, &bricks, slice.first, signs});
 }
@@ -76,6 +83,7 @@ struct EmitBrickVertices {
 inline void emit_vertices(CpuExecutor &executor, const FeatureView &features, const BrickSet &bricks,
                           const MeshLayout &layout, BrickRange slice, NoCandidates &, const VertexStarts &starts,
                           const MeshView &mesh) {
+  executor.match_scratches<BrickColumns>();
   executor.for_each_brick<BrickColumns>(
       slice.size(), EmitBrickVertices{&executor.kernels(), &features, &bricks, &layout, &starts, &mesh, slice.first});
 }

@@ -80,8 +80,17 @@ class HostSide {
  public:
   std::shared_ptr<AtomSet> make_atoms(size_t count) { return atoms_.make(count); }
   void use_slot(int slot) { slot_ = slot; }
-  // Bytes of the mesh that is handed out, and of all.
-  void *reserve_mesh(size_t bytes) { return mesh_[slot_].reserve(bytes); }
+  // Room for the mesh that is handed out: as much as for any before, since which slot gets the finest level differs
+  // from frame to frame.
+  void *reserve_mesh(size_t bytes) {
+    largest_ = std::max(largest_, bytes);
+    try {
+      return mesh_[slot_].reserve(largest_);
+    } catch (const MemoryRefused &) {
+      return mesh_[slot_].reserve(largest_ = bytes);
+    }
+  }
+  // Bytes of all.
   uint64_t bytes() const {
     uint64_t sum = atoms_.bytes();
     for (const auto &slot : mesh_) sum += slot.size();
@@ -91,6 +100,7 @@ class HostSide {
  private:
   AtomPool<BufferedAtoms<GrowingBuffer<Source>>> atoms_;
   GrowingBuffer<Source> mesh_[kMeshSlots];
+  size_t largest_ = 0;  // bytes of a mesh
   int slot_ = 0;
 };
 

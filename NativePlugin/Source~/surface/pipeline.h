@@ -43,7 +43,7 @@ class SurfacePipeline : public SurfaceEngine {
   std::shared_ptr<AtomSet> make_atoms(size_t count) override { return memory_.make_atoms(count); }
 
   void compute(const AtomSet &atoms, const Appearance &appearance, const qses_settings &settings,
-               const std::vector<float> &spacings, LevelSink &sink) override {
+               Span<const float> spacings, LevelSink &sink) override {
     const typename Executor::CallScope scope(executor_);
     const typename Executor::StopScope stop(executor_, sink.stop_flag());
     executor_.arena().reset();
@@ -71,7 +71,7 @@ class SurfacePipeline : public SurfaceEngine {
     qses_size_estimate_init(&out);
     out.fits = 1;
     if (atoms.count == 0) return out;
-    const std::vector<float> spacings{settings.spacing};
+    const Span<const float> spacings{&settings.spacing, 1};
     try {
       Prepared p = prepare(atoms, appearance, settings, spacings);
       const double kept = static_cast<double>(executor_.arena().used());
@@ -113,13 +113,14 @@ class SurfacePipeline : public SurfaceEngine {
   };
 
   void compute_levels(const AtomSet &atoms, const Appearance &appearance, const qses_settings &settings,
-                      const std::vector<float> &spacings, LevelSink &sink) {
+                      Span<const float> spacings, LevelSink &sink) {
     double total = 0, begun = 0;
     for (float h : spacings) total += work_of(h);
     auto start = std::chrono::steady_clock::now();
     Prepared prepared;
     const auto start_mark = executor_.arena().mark();
     if (atoms.count > 0) prepared = prepare(atoms, appearance, settings, spacings);
+    sink.prepared(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
     auto mark = executor_.arena().mark();
     for (float h : spacings) {
       progress_.enter(begun / total, (begun + work_of(h)) / total);
@@ -163,12 +164,12 @@ class SurfacePipeline : public SurfaceEngine {
 
   // All levels have their lattices anchored to the global origin if their spacings are whole multiples of each other;
   // else only the finest has.
-  static float frame_spacing(const std::vector<float> &spacings) {
+  static float frame_spacing(Span<const float> spacings) {
     for (float h : spacings) {
-      const float ratio = spacings.front() / h;
-      if (std::fabs(ratio - std::round(ratio)) > 1e-6f * ratio) return spacings.back();
+      const float ratio = spacings[0] / h;
+      if (std::fabs(ratio - std::round(ratio)) > 1e-6f * ratio) return spacings[spacings.size - 1];
     }
-    return spacings.front();
+    return spacings[0];
   }
 
   Run<Executor, Timer> run_of(const Prepared &p, const qses_settings &settings, qses_report *report) {
@@ -202,7 +203,7 @@ class SurfacePipeline : public SurfaceEngine {
   }
 
   Prepared prepare(const AtomSet &set, const Appearance &appearance, const qses_settings &settings,
-                   const std::vector<float> &spacings) {
+                   Span<const float> spacings) {
     Prepared p;
     p.shape = shape_of(settings, !appearance.colors.empty());
     const bool vdw = settings.surface == QSES_SURFACE_VDW ||
@@ -210,7 +211,7 @@ class SurfacePipeline : public SurfaceEngine {
                       settings.probe_radius < kSmallestProbe);
     p.parameters.probe = vdw ? 0.f : settings.probe_radius;
     p.parameters.depth = settings.surface == QSES_SURFACE_SES && !vdw ? p.parameters.probe : 0.f;
-    p.parameters.spacing = spacings.back();
+    p.parameters.spacing = spacings[spacings.size - 1];
     p.parameters.max_radius = set.bounds.max_radius + p.parameters.probe;
 
     timer_.begin("neighbor_grid");
@@ -314,7 +315,7 @@ class SurfacePipeline : public SurfaceEngine {
     for (const auto &stage : timer_.collect()) {
       if (report->stage_count == QSES_MAX_STAGES) break;
       qses_stage_time &out = report->stages[report->stage_count++];
-      std::snprintf(out.name, sizeof out.name, "%s", stage.first.c_str());
+      std::snprintf(out.name, sizeof out.name, "%s", stage.first);
       out.milliseconds = stage.second;
     }
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// CPU driver of the solvent features: chunks of atoms per thread, results collected in order afterwards. With little
-// memory nothing is collected: a first pass only counts, a second one writes everything to its place.
+// CPU driver of the solvent features: chunks of atoms per thread, pooled as they come and put in order afterwards. With
+// little memory nothing is pooled: a first pass only counts, a second one writes everything to its place.
 #pragma once
 
 #include "parallel/cpu_executor.h"
@@ -8,30 +8,67 @@
 
 namespace quickses {
 
-constexpr size_t kAtomsPerChunk = 32;
+// Atoms of one chunk: few enough that all threads get some of a small molecule.
+constexpr size_t kMinAtomsPerChunk = 4, kMaxAtomsPerChunk = 32;
 
-// What one thread found, chunk after chunk. Kept between surfaces.
+// Caps and arcs an atom is given room for at first.
+constexpr size_t kRoomPerAtom = 256;
+
+// Room of one thread for the features of one chunk. Kept between surfaces.
 struct FeatureStaging {
   std::vector<float> memory;
   int capacity = 256;
   std::vector<Cap> caps;
   std::vector<Arc> arcs;
   size_t cap_count = 0, arc_count = 0;
+  size_t most_caps = 0, most_arcs = 0;  // of any chunk so far
 
-  void forget() {
-    std::vector<Cap>().swap(caps);
-    std::vector<Arc>().swap(arcs);
-  }
   AtomScratch scratch() {
     const size_t needed = AtomScratch::kColumns * (static_cast<size_t>(capacity) + 16) + 16;
     if (memory.size() < needed) memory.resize(needed);
     const uintptr_t start = reinterpret_cast<uintptr_t>(memory.data());
     return {memory.data() + (64 - start % 64) % 64 / sizeof(float), capacity};
   }
+  // As much room as another thread needed: who meets the largest atom differs from surface to surface.
+  void match(const FeatureStaging &other) {
+    capacity = std::max(capacity, other.capacity);
+    scratch();
+    most_caps = std::max(most_caps, other.most_caps);
+    most_arcs = std::max(most_arcs, other.most_arcs);
+    if (caps.size() < most_caps + most_caps / 4 + kRoomPerAtom) caps.resize(most_caps + most_caps / 2 + kRoomPerAtom);
+    if (arcs.size() < most_arcs + most_arcs / 4 + kRoomPerAtom) arcs.resize(most_arcs + most_arcs / 2 + kRoomPerAtom);
+  }
 };
 
+// What proteins have, generously. Where atoms have more, the first surface takes a second pass.
+constexpr size_t kUsualCapsPerAtom = 32, kUsualArcsPerAtom = 6;
+
+// What all threads found, chunk behind chunk in the order they were finished. What does not fit is only counted.
+struct FeaturePool {
+  Span<Cap> caps;
+  Span<Arc> arcs;
+  std::atomic<size_t> cap_count{0}, arc_count{0};
+  std::vector<Cap> own_caps;
+  std::vector<Arc> own_arcs;
+
+  void open(Span<Cap> cap_room, Span<Arc> arc_room) {
+    caps = cap_room;
+    arcs = arc_room;
+    cap_count = arc_count = 0;
+  }
+  // In memory of its own, kept between surfaces: at least as much, and somewhat more than was needed last time.
+  void open_own(size_t cap_room, size_t arc_room) {
+    cap_room = std::max(cap_room, cap_count + cap_count / 16);
+    arc_room = std::max(arc_room, arc_count + arc_count / 16);
+    if (own_caps.size() < cap_room) own_caps.resize(cap_room + cap_room / 4);
+    if (own_arcs.size() < arc_room) own_arcs.resize(arc_room + arc_room / 4);
+    open({own_caps.data(), own_caps.size()}, {own_arcs.data(), own_arcs.size()});
+  }
+  bool holds_all() const { return cap_count <= caps.size && arc_count <= arcs.size; }
+};
+
+// The places in the pool of what one chunk found.
 struct FeatureChunk {
-  FeatureStaging *staging;
   size_t first_cap, cap_count, first_arc, arc_count;
 };
 
@@ -48,9 +85,9 @@ AtomFeatures find_features_of(const CpuKernels &kernels, const NeighborGridView 
     if (found.neighbors_needed > 0)
       s.capacity = found.neighbors_needed + found.neighbors_needed / 2;
     else if (found.cap_count > room.cap_room(s))
-      s.caps.resize(s.cap_count + static_cast<size_t>(found.cap_count));
+      s.caps.resize(s.cap_count + 2 * static_cast<size_t>(found.cap_count));
     else if (found.arc_count > room.arc_room(s))
-      s.arcs.resize(s.arc_count + static_cast<size_t>(found.arc_count));
+      s.arcs.resize(s.arc_count + 2 * static_cast<size_t>(found.arc_count));
     else
       return found;
   }
@@ -58,10 +95,9 @@ AtomFeatures find_features_of(const CpuKernels &kernels, const NeighborGridView 
 
 // Behind what the thread has staged.
 struct StagedRoom {
-  static constexpr size_t kLeast = 256;
   static void open(FeatureStaging &s) {
-    if (s.caps.size() < s.cap_count + kLeast) s.caps.resize(std::max(2 * s.caps.size(), s.cap_count + 4 * kLeast));
-    if (s.arcs.size() < s.arc_count + kLeast) s.arcs.resize(std::max(2 * s.arcs.size(), s.arc_count + 4 * kLeast));
+    if (s.caps.size() < s.cap_count + kRoomPerAtom) s.caps.resize(2 * (s.cap_count + kRoomPerAtom));
+    if (s.arcs.size() < s.arc_count + kRoomPerAtom) s.arcs.resize(2 * (s.arc_count + kRoomPerAtom));
   }
   Cap *caps(FeatureStaging &s) const { return s.caps.data() + s.cap_count; }
   int cap_room(FeatureStaging &s) const {
@@ -71,28 +107,33 @@ struct StagedRoom {
   int64_t arc_room(FeatureStaging &s) const { return static_cast<int64_t>(s.arcs.size() - s.arc_count); }
 };
 
-// Features of the atoms of one chunk, appended to the thread's staging, or, if they are only counted, over each other.
+// Features of the atoms of one chunk.
 struct FindChunkFeatures {
   const CpuKernels *kernels;
   const NeighborGridView *atoms;
   const SurfaceParameters *parameters;
+  size_t atoms_per_chunk;
   CapRange *cap_ranges;
   uint8_t *exposed;
   FeatureChunk *chunks;
-  bool count_only;
+  FeaturePool *pool;
   void operator()(SoloTeam, FeatureStaging &s, size_t chunk) const {
-    FeatureChunk &c = chunks[chunk];
-    c = {&s, s.cap_count, 0, s.arc_count, 0};
-    const size_t end = std::min<size_t>(atoms->count, (chunk + 1) * kAtomsPerChunk);
-    for (size_t i = chunk * kAtomsPerChunk; i < end; ++i) {
+    s.cap_count = s.arc_count = 0;
+    const size_t end = std::min<size_t>(atoms->count, (chunk + 1) * atoms_per_chunk);
+    for (size_t i = chunk * atoms_per_chunk; i < end; ++i) {
       StagedRoom::open(s);
       const AtomFeatures found = find_features_of(*kernels, *atoms, *parameters, i, s, exposed, StagedRoom{});
-      cap_ranges[i] = {static_cast<uint32_t>(c.cap_count), found.cap_count};
-      c.cap_count += static_cast<size_t>(found.cap_count);
-      c.arc_count += static_cast<size_t>(found.arc_count);
-      if (count_only) continue;
+      cap_ranges[i] = {static_cast<uint32_t>(s.cap_count), found.cap_count};
       s.cap_count += static_cast<size_t>(found.cap_count);
       s.arc_count += static_cast<size_t>(found.arc_count);
+    }
+    s.most_caps = std::max(s.most_caps, s.cap_count);
+    s.most_arcs = std::max(s.most_arcs, s.arc_count);
+    FeatureChunk &c = chunks[chunk];
+    c = {pool->cap_count.fetch_add(s.cap_count), s.cap_count, pool->arc_count.fetch_add(s.arc_count), s.arc_count};
+    if (c.first_cap + c.cap_count <= pool->caps.size && c.first_arc + c.arc_count <= pool->arcs.size) {
+      std::copy_n(s.caps.data(), c.cap_count, pool->caps.data + c.first_cap);
+      std::copy_n(s.arcs.data(), c.arc_count, pool->arcs.data + c.first_arc);
     }
   }
 };
@@ -100,18 +141,19 @@ struct FindChunkFeatures {
 // Copies what a chunk found to its place.
 struct CollectChunk {
   const FeatureChunk *chunks;
+  const FeaturePool *pool;
   const uint64_t *cap_base, *arc_base;
-  size_t atoms;
+  size_t atoms, atoms_per_chunk;
   const uint8_t *exposed;
   CapRange *cap_ranges;
   Cap *caps;
   Arc *arcs;
   void operator()(size_t chunk) const {
     const FeatureChunk &c = chunks[chunk];
-    std::copy_n(c.staging->caps.data() + c.first_cap, c.cap_count, caps + cap_base[chunk]);
-    std::copy_n(c.staging->arcs.data() + c.first_arc, c.arc_count, arcs + arc_base[chunk]);
-    const size_t end = std::min(atoms, (chunk + 1) * kAtomsPerChunk);
-    for (size_t i = chunk * kAtomsPerChunk; i < end; ++i) {
+    std::copy_n(pool->caps.data + c.first_cap, c.cap_count, caps + cap_base[chunk]);
+    std::copy_n(pool->arcs.data + c.first_arc, c.arc_count, arcs + arc_base[chunk]);
+    const size_t end = std::min(atoms, (chunk + 1) * atoms_per_chunk);
+    for (size_t i = chunk * atoms_per_chunk; i < end; ++i) {
       cap_ranges[i].first += static_cast<uint32_t>(cap_base[chunk]);
       if (!exposed[i]) cap_ranges[i].count = kBuriedAtom;
     }
@@ -151,15 +193,17 @@ struct PlaceChunkFeatures {
   const CpuKernels *kernels;
   const NeighborGridView *atoms;
   const SurfaceParameters *parameters;
+  size_t atoms_per_chunk;
   const uint64_t *cap_first, *arc_base;  // per atom, per chunk
   CapRange *cap_ranges;
   uint8_t *exposed;
   Cap *caps;
   Arc *arcs;
   void operator()(SoloTeam, FeatureStaging &s, size_t chunk) const {
-    const size_t end = std::min<size_t>(atoms->count, (chunk + 1) * kAtomsPerChunk);
+    s.cap_count = s.arc_count = 0;
+    const size_t end = std::min<size_t>(atoms->count, (chunk + 1) * atoms_per_chunk);
     uint64_t arc = arc_base[chunk];
-    for (size_t i = chunk * kAtomsPerChunk; i < end; ++i) {
+    for (size_t i = chunk * atoms_per_chunk; i < end; ++i) {
       StagedRoom::open(s);
       const bool open = exposed[i] != 0;
       const FinalRoom room{open ? caps + cap_first[i] : nullptr, cap_ranges[i].count, arcs + arc,
@@ -171,33 +215,55 @@ struct PlaceChunkFeatures {
   }
 };
 
-// Bytes per atom that staged and collected features take together, on proteins with hydrogens.
-constexpr uint64_t kStagedAtomBytes = 2000;
+// Bytes per atom that the usual features take in the pool and in their places together, and somewhat more.
+constexpr uint64_t kPooledAtomBytes = 2000;
+static_assert(2 * (kUsualCapsPerAtom * sizeof(Cap) + kUsualArcsPerAtom * sizeof(Arc)) < kPooledAtomBytes, "both fit");
+
+// A pool for n atoms. It must not take more than the budget leaves, and nothing if that is little or to be spared.
+inline FeaturePool &open_pool(CpuExecutor &executor, size_t n, bool frugal) {
+  FeaturePool &pool = *executor.scratches<FeaturePool>().front();
+  const size_t caps = n * kUsualCapsPerAtom, arcs = n * kUsualArcsPerAtom;
+  auto &arena = executor.arena();
+  if (frugal || arena.available() < n * kPooledAtomBytes + 4 * arena.kAlignment) {
+    pool.open({}, {});
+  } else if (arena.has_budget()) {
+    // Behind the places that the features will have: those are taken after this memory was given up.
+    executor.allocate<char>(caps * sizeof(Cap) + arcs * sizeof(Arc) + 2 * arena.kAlignment);
+    const Span<Cap> cap_room = executor.allocate<Cap>(caps);
+    pool.open(cap_room, executor.allocate<Arc>(arcs));
+  } else {
+    pool.open_own(caps, arcs);
+  }
+  return pool;
+}
 
 inline void find_solvent_features(CpuExecutor &executor, const NeighborGridView &atoms,
                                   const SurfaceParameters &parameters, bool frugal, SolventFeatures *features) {
-  const size_t n = atoms.count, chunks = (n + kAtomsPerChunk - 1) / kAtomsPerChunk;
+  const size_t n = atoms.count;
+  const size_t per_chunk =
+      std::max(kMinAtomsPerChunk, std::min(kMaxAtomsPerChunk, n / (size_t(executor.threads()) * 8)));
+  const size_t chunks = (n + per_chunk - 1) / per_chunk;
   SolventFeatures &f = *features;
   f.cap_ranges = executor.allocate<CapRange>(n);
   f.exposed = executor.allocate<uint8_t>(n + 8);
   executor.fill(f.exposed, 0);
-  const bool twice = frugal || executor.arena().available() < n * kStagedAtomBytes;
   Span<FeatureChunk> table = executor.allocate<FeatureChunk>(chunks);
-  for (auto &s : executor.scratches<FeatureStaging>()) s->cap_count = s->arc_count = 0;
-  executor.for_each_brick<FeatureStaging>(
-      chunks,
-      FindChunkFeatures{&executor.kernels(), &atoms, &parameters, f.cap_ranges.data, f.exposed.data, table.data, twice},
-      1);
   Span<uint64_t> cap_base = executor.allocate<uint64_t>(chunks + 1), arc_base = executor.allocate<uint64_t>(chunks + 1);
+  const auto mark = executor.arena().mark();
+  FeaturePool &pool = open_pool(executor, n, frugal);
+  executor.match_scratches<FeatureStaging>();
+  executor.for_each_brick<FeatureStaging>(chunks,
+                                          FindChunkFeatures{&executor.kernels(), &atoms, &parameters, per_chunk,
+                                                            f.cap_ranges.data, f.exposed.data, table.data, &pool},
+                                          1);
   executor.exclusive_scan(chunks, LoadChunkCaps{table.data}, cap_base);
   executor.exclusive_scan(chunks, LoadChunkArcs{table.data}, arc_base);
-  if (!twice) {
+  executor.arena().rewind(mark);
+  if (pool.holds_all()) {
     f.caps = executor.allocate<Cap>(cap_base[chunks]);
     f.arcs = executor.allocate<Arc>(arc_base[chunks]);
-    executor.for_each(chunks, CollectChunk{table.data, cap_base.data, arc_base.data, n, f.exposed.data,
-                                           f.cap_ranges.data, f.caps.data, f.arcs.data});
-    if (executor.arena().has_budget())  // which does not see what threads stage
-      for (auto &s : executor.scratches<FeatureStaging>()) s->forget();
+    executor.for_each(chunks, CollectChunk{table.data, &pool, cap_base.data, arc_base.data, n, per_chunk,
+                                           f.exposed.data, f.cap_ranges.data, f.caps.data, f.arcs.data});
     return;
   }
   Span<uint64_t> cap_first = executor.allocate<uint64_t>(n + 1);
@@ -208,8 +274,8 @@ inline void find_solvent_features(CpuExecutor &executor, const NeighborGridView 
   f.arcs = executor.allocate<Arc>(arc_base[chunks]);
   executor.for_each_brick<FeatureStaging>(
       chunks,
-      PlaceChunkFeatures{&executor.kernels(), &atoms, &parameters, cap_first.data, arc_base.data, f.cap_ranges.data,
-                         f.exposed.data, f.caps.data, f.arcs.data},
+      PlaceChunkFeatures{&executor.kernels(), &atoms, &parameters, per_chunk, cap_first.data, arc_base.data,
+                         f.cap_ranges.data, f.exposed.data, f.caps.data, f.arcs.data},
       1);
 }
 

@@ -243,6 +243,15 @@ typedef struct qses_settings {
   uint32_t level_count; /* of levels; default 2 */
   qses_vertex_layout vertex_layout; /* default SEPARATE */
   uint32_t texcoords;               /* 1: vertices have texture coordinates (see qses_set_texcoords); default 0 */
+  float frame_budget_ms; /* for qses_begin: 0 (default): all levels one after the other. Above 0, at most 60000: one
+                            level only, the finest of them (`spacing` being the last) that is expected to take no longer
+                            than this, ms, or the coarsest if none is. Expected is what the last frames say: the time
+                            from the start of the work to the mesh in host memory. The first frame is the coarsest; what
+                            was learnt is forgotten when the number of atoms, surface, method, probe_radius,
+                            relaxation_steps, slice_size, spacing or levels change. Now and then a frame takes longer,
+                            when a finer level is tried: so a surface that became cheaper gets finer again. Which level
+                            it was is in qses_mesh.level and .spacing. Like everything that depends on time, the choice
+                            of the level is not the same in every run; the mesh of a level is */
 } qses_settings;
 
 /* Fills in the defaults. Always use it: later versions append fields. NULL is ignored. */
@@ -269,7 +278,7 @@ typedef struct qses_mesh {
   float bounds_max[3];
   float spacing;           /* Å, of the level */
   uint32_t level;          /* 0 is the coarsest */
-  uint32_t level_count;    /* of the computation it belongs to: level_count - 1 is the finest */
+  uint32_t level_count;    /* levels there are with the settings: level_count - 1 is the finest */
 } qses_mesh;
 
 /* Empty view with struct_size set. NULL is ignored. */
@@ -350,8 +359,8 @@ QSES_API qses_status qses_set_progress_callback(qses_context *context, qses_prog
 
 /* ---- jobs: a surface over time ----------------------------------------------------------------------------------- */
 
-/* Starts computing the surface of the context's atoms as they are now, level after level, and returns at once. Atoms and
- * positions may be set for the next job while this one runs.
+/* Starts computing the surface of the context's atoms as they are now, level after level (or one level chosen by
+ * settings.frame_budget_ms), and returns at once. Atoms and positions may be set for the next job while this one runs.
  * During a job, a new one replaces it: the coarsest level of the job that runs is still finished and can be collected,
  * then the newest request starts; requests in between are dropped. So frames that come faster than levels never starve
  * the picture. Errors: INVALID_ARGUMENT (settings), NO_RESULT (no atoms), OUT_OF_MEMORY (the worker thread). What goes
@@ -372,7 +381,7 @@ typedef struct qses_progress {
   uint32_t frame;           /* of the settings of the job that runs, or ran last */
   uint32_t frame_requested; /* of the newest qses_begin */
   uint32_t levels_finished; /* of this job */
-  uint32_t level_count;
+  uint32_t level_count; /* that this job computes: 1 with a frame budget */
   float fraction;     /* of this job's work: from 0 to 1, never falls */
   int32_t mesh_ready; /* 1 if qses_collect would succeed */
   qses_status status; /* OK unless FAILED */
@@ -386,7 +395,7 @@ QSES_API void qses_progress_init(qses_progress *progress);
 QSES_API qses_status qses_poll(const qses_context *context, qses_progress *progress);
 
 /* The finest level that was finished since the last call. Its memory stays valid until the next qses_collect or
- * qses_compute that succeeds, or qses_destroy, also while further levels and jobs are computed.
+ * qses_compute that succeeds, or qses_destroy, also while further levels and jobs are computed. Asking often is cheap.
  * Errors: NO_RESULT (nothing new: not an error in itself), INVALID_ARGUMENT. */
 QSES_API qses_status qses_collect(qses_context *context, qses_mesh *mesh);
 

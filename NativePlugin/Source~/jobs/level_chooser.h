@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// Which level of the ladder fits a budget of time per frame, from what the last frames cost. No clock in here: costs
+// come in, a level goes out.
+#pragma once
+
+#include "quickses/quickses.h"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace quickses {
+
+// The spacings of the levels of a job, Å, coarsest first.
+struct LevelLadder {
+  static constexpr uint32_t kMax = QSES_MAX_LEVELS + 1;
+  float spacings[kMax] = {};
+  uint32_t count = 0;
+
+  void add(float spacing) { spacings[count++] = spacing; }
+  bool operator==(const LevelLadder &other) const;
+};
+
+// The rules:
+//  - The first frame is the coarsest level; then the finest one that is expected to fit.
+//  - The cost of a level in use is the median of its last three frames, so that one slow frame changes nothing.
+//  - A finer level that was never computed costs at most (ratio of spacings)² of what a coarser one did, apart from
+//  what
+//    all levels share. Where this is too pessimistic (on a GPU, coarse levels cost as much as fine ones), the next
+//    finer level is tried when the present one leaves half of the budget unused.
+//  - Costs of levels not in use follow the one in use: when its frames become cheaper, so do theirs.
+//  - A level that turned out too expensive is left at once, and tried again after 8 frames, then 16, 32, ... 1024.
+//  - To move to a finer level it must fit with room to spare; to stay it must only fit.
+class LevelChooser {
+ public:
+  // What costs depend on. A change of it makes all that was learnt void.
+  struct Subject {
+    size_t atoms = 0;
+    qses_surface surface = QSES_SURFACE_SES;
+    qses_method method = QSES_METHOD_EXACT;
+    float probe_radius = 0;
+    uint32_t relaxation_steps = 0, slice_size = 0;
+    LevelLadder ladder;
+
+    bool operator==(const Subject &other) const;
+  };
+
+  // The level for the next frame: its place in the ladder, which must not be empty.
+  uint32_t choose(const Subject &subject, double budget_ms);
+
+  // What the frame of the level chosen last cost, and how much of that is the same for all levels.
+  void record(double cost_ms, double shared_ms);
+  // That level could not be computed.
+  void record_failure();
+
+ private:
+  struct Level {
+    double recent[3] = {};  // of this stay at the level, newest last
+    uint32_t frames = 0;    // of this stay
+    double cost = -1;       // what it is expected to cost; negative: unknown
+    double shared = 0;      // of that
+    uint32_t failures = 0;  // times it was too expensive
+    uint32_t wait = 0;      // frames until it may be tried again
+
+    bool known() const { return cost >= 0; }
+    void add(double cost_ms, double shared_ms);
+  };
+
+  double expected_cost(uint32_t level) const;
+  void retreat(Level &level);
+
+  Subject subject_;
+  double budget_ms_ = 0;
+  uint32_t current_ = 0;
+  Level levels_[LevelLadder::kMax];
+};
+
+}  // namespace quickses
