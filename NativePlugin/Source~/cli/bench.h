@@ -2,20 +2,14 @@
 // What quickses bench can measure of one structure. Times are wall-clock times in ms.
 #pragma once
 
-#include <chrono>
 #include <string>
 #include <vector>
 
+#include "cli/clock.h"
 #include "cli/engine.h"
 #include "cli/report.h"
 
 namespace quickses::cli {
-
-using BenchClock = std::chrono::steady_clock;
-
-inline double ms_since(BenchClock::time_point start) {
-  return std::chrono::duration<double, std::milli>(BenchClock::now() - start).count();
-}
 
 // Of at least one value.
 double median(std::vector<double> values);

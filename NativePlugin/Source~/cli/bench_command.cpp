@@ -61,7 +61,7 @@ std::string bench_surface(Engine &engine, const io::Structure &structure, const 
   qses_mesh mesh = engine.compute(settings);  // warms up: memory is taken here
   std::vector<double> times;
   for (unsigned k = 0; k < options.repeat; ++k) {
-    const auto start = BenchClock::now();
+    const auto start = Clock::now();
     engine.set_positions(structure);
     mesh = engine.compute(settings);
     times.push_back(ms_since(start));
@@ -86,7 +86,7 @@ std::string bench_small(Engine &engine, const io::Structure &structure, const Op
   }
   std::vector<double> times;
   for (unsigned k = 0; k <= options.repeat; ++k) {
-    const auto start = BenchClock::now();
+    const auto start = Clock::now();
     for (const Window &w : windows) {
       if (qses_set_atoms(engine.context(), &structure.positions[3 * w.first], 0, &structure.radii[w.first], w.count) !=
           QSES_OK)

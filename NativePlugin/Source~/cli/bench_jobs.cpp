@@ -39,7 +39,7 @@ bool collect(const Engine &engine) {
 // A job to its end; when its first level could be collected goes to first_level, if given.
 double run_job(const Engine &engine, const qses_settings &settings, std::vector<double> *first_level) {
   collect(engine);
-  const auto start = BenchClock::now();
+  const auto start = Clock::now();
   begin(engine, settings);
   for (int32_t ended = 0; first_level && !ended;) {
     check(qses_wait(engine.context(), 0, &ended));
@@ -82,18 +82,18 @@ std::string bench_jobs(Engine &engine, const io::Structure &structure, const Opt
   for (unsigned k = 0; k < options.repeat; ++k) {
     const double moment = length * k / options.repeat;  // all parts of a job have their turn
     engine.set_positions(structure);
-    auto start = BenchClock::now();
+    auto start = Clock::now();
     begin(engine, ladder);
     found.begin.push_back(ms_since(start));
     sleep_ms(moment);
-    start = BenchClock::now();
+    start = Clock::now();
     begin(engine, ladder);
     found.replace.push_back(ms_since(start));
     wait_for_all(engine);
 
     begin(engine, ladder);
     sleep_ms(moment);
-    start = BenchClock::now();
+    start = Clock::now();
     check(qses_cancel(engine.context()));
     wait_for_all(engine);
     found.cancel.push_back(ms_since(start));
@@ -103,7 +103,7 @@ std::string bench_jobs(Engine &engine, const io::Structure &structure, const Opt
     run_job(*other, ladder, nullptr);
     begin(*other, ladder);
     sleep_ms(moment);
-    start = BenchClock::now();
+    start = Clock::now();
     other.reset();
     found.destroy.push_back(ms_since(start));
   }

@@ -62,6 +62,13 @@ qses_report Engine::report() const {
   return report;
 }
 
+std::optional<qses_size_estimate> Engine::estimate(const qses_settings &settings) {
+  qses_size_estimate estimate;
+  qses_size_estimate_init(&estimate);
+  if (qses_estimate(context(), &settings, &estimate) != QSES_OK) return std::nullopt;
+  return estimate;
+}
+
 qses_settings settings_of(const ComputeOptions &options) {
   qses_settings settings;
   qses_settings_init(&settings);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,8 @@ class Engine {
   void set_frame(const float *xyz, size_t position_count, const std::vector<uint32_t> &indices);
   qses_mesh compute(const qses_settings &settings);
   qses_report report() const;
+  // What computing will take; nothing if it is going to fail.
+  std::optional<qses_size_estimate> estimate(const qses_settings &settings);
 
  private:
   std::unique_ptr<qses_context, void (*)(qses_context *)> context_;

@@ -2,9 +2,9 @@
 // The surface of one frame after the other, with a context of its own.
 #include "cli/frame_worker.h"
 
-#include <chrono>
 #include <cstdio>
 
+#include "cli/clock.h"
 #include "cli/exit_code.h"
 #include "cli/mesh_check.h"
 #include "cli/mesh_output.h"
@@ -16,12 +16,6 @@ namespace quickses::cli {
 const char kCsvHeader[] = "frame,area,volume,components,cavities,cavity_volume,time_ps,error\n";
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double ms_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 // A text as one field of a CSV file.
 std::string csv_field(const std::string &text) {
@@ -134,7 +128,7 @@ void FrameWorker::fill(const FrameTask &task, FrameResult &result) {
   if (options.json.empty()) return;
   Json json = {{"frame", task.frame}, {"trajectory", options.trajectory}};
   json["time_ps"] = time ? Json(*time) : Json();
-  json.update(surface_json(frame_options, inputs_.structure(), engine_, mesh, components, report, timings));
+  json.update(surface_json(frame_options, inputs_.structure(), engine_, mesh, components, report, timings, nullptr));
   result.json = dump(json, true);
 }
 

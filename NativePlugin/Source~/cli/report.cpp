@@ -33,7 +33,8 @@ Json settings_json(const ComputeOptions &options) {
 }
 
 Json surface_json(const Options &options, const io::Structure &structure, const Engine &engine, const qses_mesh &mesh,
-                  const std::vector<Component> &components, const qses_report &report, const Timings &timings) {
+                  const std::vector<Component> &components, const qses_report &report, const Timings &timings,
+                  const qses_size_estimate *predicted) {
   Json json;
   json["version"] = qses_version();
   json["input"] = options.input;
@@ -58,7 +59,12 @@ Json surface_json(const Options &options, const io::Structure &structure, const 
   json["time_ms"] = {
       {"read", timings.read}, {"compute", report.compute_ms}, {"write", timings.write}, {"stages", stages}};
   Json memory = Json::object();
-  if (engine.backend() == QSES_BACKEND_CUDA) memory["peak_device"] = report.work_bytes_peak;
+  const bool cuda = engine.backend() == QSES_BACKEND_CUDA;
+  if (predicted && cuda) memory["predicted_device"] = predicted->work_bytes;
+  if (cuda) memory["peak_device"] = report.work_bytes_peak;
+  // In host memory: the mesh with some room to grow, and on the CPU the work.
+  if (predicted)
+    memory["predicted_host"] = predicted->mesh_bytes + predicted->mesh_bytes / 8 + (cuda ? 0 : predicted->work_bytes);
   memory["peak_host"] = report.host_bytes_peak;
   memory["mesh"] = report.mesh_bytes;
   json["memory"] = memory;

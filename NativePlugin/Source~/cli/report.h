@@ -20,9 +20,10 @@ struct Timings {
 
 Json settings_json(const ComputeOptions &options);
 
-// The report of one surface. components: those of the mesh.
+// The report of one surface. predicted: before it was computed, or nullptr. components: those of the mesh.
 Json surface_json(const Options &options, const io::Structure &structure, const Engine &engine, const qses_mesh &mesh,
-                  const std::vector<Component> &components, const qses_report &report, const Timings &timings);
+                  const std::vector<Component> &components, const qses_report &report, const Timings &timings,
+                  const qses_size_estimate *predicted);
 
 // Text of a report; names that are no UTF-8 are made so.
 std::string dump(const Json &json, bool one_line);

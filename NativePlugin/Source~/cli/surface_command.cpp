@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // quickses INPUT: a structure in, a mesh and a report out.
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 
+#include "cli/clock.h"
 #include "cli/commands.h"
 #include "cli/engine.h"
 #include "cli/exit_code.h"
@@ -17,12 +18,6 @@
 
 namespace quickses::cli {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double ms_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 // out.ply for one model; out_0001.ply and so on with --model all.
 std::string output_of_model(const Options &options, int model) {
@@ -64,6 +59,8 @@ void run_surface(const Options &options) {
     model_options.output = output_of_model(options, structure.model);
     if (io::has_own_radii(file.format)) model_options.compute.radii = "file";
     engine.set_atoms(structure, options.input);
+    std::optional<qses_size_estimate> predicted;
+    if (!options.json.empty()) predicted = engine.estimate(settings);
     qses_mesh mesh;
     {
       ProgressBar bar(engine.context(), options.quiet);
@@ -76,7 +73,8 @@ void run_surface(const Options &options) {
       timings.write = ms_since(write_start);
     }
     if (!options.json.empty()) {
-      const Json json = surface_json(model_options, structure, engine, mesh, find_components(mesh), report, timings);
+      const Json json = surface_json(model_options, structure, engine, mesh, find_components(mesh), report, timings,
+                                     predicted ? &*predicted : nullptr);
       reports += dump(json, all_models);  // of several models: one line each
     }
     if (!options.quiet && options.json != "-") print_summary(model_options, structure, engine, mesh, report);
