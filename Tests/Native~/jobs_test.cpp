@@ -63,6 +63,38 @@ Atoms block(int edge) {
   return atoms;
 }
 
+TEST(Jobs, CancelEndsAComputeThatWaitsForAJob) {
+  const Context context;
+  set_atoms(context, block(20));
+  begin(context, settings(0.2));
+  std::atomic<bool> entered{false};
+  qses_status status = QSES_OK;
+  std::thread other([&] {
+    const qses_settings s = settings(0.2);
+    entered = true;
+    status = qses_compute(context, &s, nullptr);
+  });
+  while (!entered) std::this_thread::yield();
+  // The job is long: compute waits for it by then, or computes itself. Either is to be ended.
+  std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  expect_ok(qses_cancel(context));
+  other.join();
+  EXPECT_EQ(status, QSES_CANCELLED);
+  const qses_settings s = settings(2.0);
+  EXPECT_EQ(qses_compute(context, &s, nullptr), QSES_OK);
+}
+
+TEST(Jobs, WaitTakesAnyTime) {
+  const Context context;
+  set_atoms(context, crambin());
+  for (const double milliseconds : {1e9, 1e13, 1e300, static_cast<double>(INFINITY)}) {
+    begin(context, settings(0.4));
+    int32_t finished = 0;
+    expect_ok(qses_wait(context, milliseconds, &finished));
+    EXPECT_EQ(finished, 1) << milliseconds;
+  }
+}
+
 TEST(Jobs, LevelsComeFromCoarseToFine) {
   const Context context;
   const Atoms atoms = cluster(3000, 5);

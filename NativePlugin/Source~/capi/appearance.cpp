@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// What vertices take from their atoms. A job that runs keeps what it was begun with: the sets are changed only while
-// nobody else holds them, else replaced.
+// What vertices take from their atoms. A job that runs keeps what it was begun with: a change goes into another set,
+// one that nobody holds any more if there is one, so that colours of every frame soon need no new memory.
 #include "capi/context.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 
 using quickses::Appearance;
@@ -18,7 +19,18 @@ template <class Change>
 void change_appearance(qses_context *context, size_t count, const char *function, const Change &change) {
   require(context, "context");
   check_atom_count(*context, count, function);
-  auto next = std::make_shared<Appearance>(*context->appearance);
+  std::shared_ptr<Appearance> next;
+  for (const std::shared_ptr<Appearance> &set : context->appearance_pool)
+    if (set.use_count() == 1) {
+      std::atomic_thread_fence(std::memory_order_acquire);  // whoever held it has read its last
+      next = set;
+      break;
+    }
+  if (!next) {
+    next = std::make_shared<Appearance>();
+    context->appearance_pool.push_back(next);
+  }
+  *next = *context->appearance;
   change(*next);
   context->appearance = next;
 }

@@ -25,6 +25,8 @@ qses_status guarded(const Call &call) noexcept {
     return fail(e.status(), e.what());
   } catch (const io::Error &e) {
     return fail(e.kind() == io::ErrorKind::kUsage ? QSES_INVALID_ARGUMENT : QSES_FILE_ERROR, e.what());
+  } catch (const Cancelled &) {
+    return fail(QSES_CANCELLED, "the computation was cancelled");
   } catch (const std::bad_alloc &) {
     return fail(QSES_OUT_OF_MEMORY, "the machine refused memory");
   } catch (const std::exception &e) {

@@ -8,6 +8,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 struct qses_context {
   qses_backend backend = QSES_BACKEND_CPU;
@@ -15,6 +16,7 @@ struct qses_context {
   std::unique_ptr<quickses::SurfaceJob> job;
   std::shared_ptr<const quickses::AtomSet> atoms;  // of the next computation; null before qses_set_atoms
   std::shared_ptr<const quickses::Appearance> appearance = std::make_shared<quickses::Appearance>();
+  std::vector<std::shared_ptr<quickses::Appearance>> appearance_pool;
 };
 
 namespace quickses {

@@ -79,8 +79,12 @@ FrameInputs::FrameInputs(const Options &given, bool quiet)
                  io::unwrap_sentence(io::UnwrapStatus::kNoBox));
 }
 
-FrameWorker::FrameWorker(const FrameInputs &inputs, const ComputeOptions &compute)
-    : inputs_(inputs), engine_(compute), xyz_(3 * inputs.trajectory.atom_count()), settings_(settings_of(compute)) {
+FrameWorker::FrameWorker(const FrameInputs &inputs, const ComputeOptions &compute, unsigned shared_by)
+    : inputs_(inputs),
+      engine_(compute),
+      shared_by_(shared_by),
+      xyz_(3 * inputs.trajectory.atom_count()),
+      settings_(settings_of(compute)) {
   engine_.set_atoms(inputs.structure(), inputs.options.input);
   if (!inputs.options.json.empty()) qses_enable_stage_times(engine_.context(), 1);
 }
@@ -102,6 +106,16 @@ FrameResult FrameWorker::run(const FrameTask &task) {
   return result;
 }
 
+qses_mesh FrameWorker::compute() {
+  try {
+    return engine_.compute(settings_);
+  } catch (const Failure &failure) {
+    if (shared_by_ < 2 || inputs_.options.compute.memory == 0) throw;
+    throw Failure(failure.code(), std::string(failure.what()) + " (--memory is shared by " +
+                                      std::to_string(shared_by_) + " frames in flight: --workers 1 leaves all to one)");
+  }
+}
+
 void FrameWorker::fill(const FrameTask &task, FrameResult &result) {
   const Options &options = inputs_.options;
   const io::Trajectory &trajectory = inputs_.trajectory;
@@ -113,7 +127,7 @@ void FrameWorker::fill(const FrameTask &task, FrameResult &result) {
   timings.read = ms_since(read_start);
 
   engine_.set_frame(xyz_.data(), trajectory.atom_count(), inputs_.file_indices);
-  const qses_mesh mesh = engine_.compute(settings_);
+  const qses_mesh mesh = compute();
   const qses_report report = engine_.report();
   Options frame_options = options;
   if (inputs_.pattern) {

@@ -33,17 +33,20 @@ struct FrameInputs {
 
 class FrameWorker {
  public:
-  // compute: the worker's share of threads and memory. inputs must outlive the worker. Throws Failure.
-  FrameWorker(const FrameInputs &inputs, const ComputeOptions &compute);
+  // compute: the worker's share of threads and memory; shared_by: how many workers there are. inputs must outlive the
+  // worker. Throws Failure.
+  FrameWorker(const FrameInputs &inputs, const ComputeOptions &compute, unsigned shared_by);
 
   // Never fails: what goes wrong is part of the result.
   FrameResult run(const FrameTask &task);
 
  private:
   void fill(const FrameTask &task, FrameResult &result);
+  qses_mesh compute();
 
   const FrameInputs &inputs_;
   Engine engine_;
+  const unsigned shared_by_;
   std::vector<float> xyz_;
   qses_settings settings_;
 };

@@ -211,7 +211,15 @@ void check_trajectory(const Options &options, const std::function<bool(const cha
     for (const std::string &input : {options.input, options.trajectory})
       if (!file.empty() && is_same_file(file, input))
         throw Failure(kUsage, std::string(flag) + ": '" + file + "' is one of the inputs");
-  if (!options.output.empty()) OutputPattern pattern(options.output);  // throws if it is none
+  if (options.output.empty()) return;
+  OutputPattern check(options.output);  // throws if it is none
+  const auto whole = [](const std::string &path) {
+    return std::filesystem::absolute(path).lexically_normal().string();
+  };
+  const OutputPattern meshes(whole(options.output));
+  for (const auto &[flag, file] : {std::pair("--csv", options.csv), std::pair("--json", options.json)})
+    if (!file.empty() && file != "-" && meshes.matches(whole(file)))
+      throw Failure(kUsage, std::string(flag) + ": '" + file + "' is the name of a frame's mesh, by --output (-o)");
 }
 
 void check(const Options &options, const std::function<bool(const char *)> &given) {

@@ -2,6 +2,7 @@
 // quickses INPUT --trajectory FILE: the surfaces of many frames, several at a time.
 #include <algorithm>
 #include <cstdio>
+#include <exception>
 #include <thread>
 #include <vector>
 
@@ -109,7 +110,7 @@ class Run {
       writer_ = std::make_unique<ResultWriter>(inputs_.options, frames_.count);
     }
     for (unsigned k = 0; k < share_.workers; ++k)
-      workers_.push_back(std::make_unique<FrameWorker>(inputs_, share_.compute));
+      workers_.push_back(std::make_unique<FrameWorker>(inputs_, share_.compute, share_.workers));
   }
 
   // Computes all frames, with the other processes.
@@ -125,8 +126,15 @@ class Run {
     } catch (...) {  // the system refuses threads; those that run have to be joined all the same
       supply.give_up(std::current_exception());
     }
-    if (!remote) processes_.serve(ledger);
+    std::exception_ptr failed;
+    try {
+      if (!remote) processes_.serve(ledger);
+    } catch (...) {
+      failed = std::current_exception();
+      ledger.give_up(failed);
+    }
     for (std::thread &thread : threads) thread.join();
+    if (failed) std::rethrow_exception(failed);
     if (remote)
       processes_.say_done();
     else

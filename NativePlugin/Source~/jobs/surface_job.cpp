@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstring>
 #include <new>
+#include <system_error>
 
 namespace quickses {
 
@@ -28,7 +29,13 @@ SurfaceJob::~SurfaceJob() {
 void SurfaceJob::begin(SurfaceRequest request) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (!worker_.joinable()) worker_ = std::thread([this] { work(); });
+    if (!worker_.joinable()) {
+      try {
+        worker_ = std::thread([this] { work(); });
+      } catch (const std::system_error &e) {
+        throw Error(QSES_OUT_OF_MEMORY, std::string("the machine refused a thread: ") + e.what());
+      }
+    }
     state_.frame_requested = request.settings.frame;
     waiting_ = std::move(request);
     if (running_) {
@@ -122,9 +129,14 @@ void SurfaceJob::run(const SurfaceRequest &request) {
 }
 
 void SurfaceJob::compute(SurfaceRequest request) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    cancelled_compute_ = false;
+  }
   wait(-1.0);
   {
     const std::lock_guard<std::mutex> lock(mutex_);
+    if (cancelled_compute_) throw Error(QSES_CANCELLED, "the computation was cancelled");
     // No worker runs and only this thread can begin one: it is safe to compute here.
     announce(request);
     choose_levels(request);
@@ -147,8 +159,11 @@ void SurfaceJob::compute(SurfaceRequest request) {
   } catch (const Error &e) {
     end(QSES_JOB_FAILED, e.status(), e.what());
     throw;
-  } catch (...) {
+  } catch (const std::bad_alloc &) {
     end(QSES_JOB_FAILED, QSES_OUT_OF_MEMORY, "the machine refused memory");
+    throw;
+  } catch (const std::exception &e) {
+    end(QSES_JOB_FAILED, QSES_INTERNAL_ERROR, e.what());
     throw;
   }
   end(QSES_JOB_FINISHED, QSES_OK, "");
@@ -207,7 +222,8 @@ bool SurfaceJob::held(qses_mesh *mesh, qses_report *report) const {
 bool SurfaceJob::wait(double milliseconds) {
   std::unique_lock<std::mutex> lock(mutex_);
   const auto idle = [&] { return !running_ && waiting_.empty(); };
-  if (milliseconds < 0.0) {
+  constexpr double kForEver = 1e9;  // 11 days; much more overflows the clock
+  if (milliseconds < 0.0 || milliseconds > kForEver) {
     changed_.wait(lock, idle);
     return true;
   }
@@ -217,6 +233,7 @@ bool SurfaceJob::wait(double milliseconds) {
 void SurfaceJob::cancel() {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
+    cancelled_compute_ = true;
     if (running_) {
       cancelled_ = true;
       stop_now_ = true;

@@ -46,12 +46,15 @@ class Arena {
   // Without a budget: what the machine had free, beyond which everything is refused; 0: unknown.
   void set_limit(uint64_t bytes) { limit_ = bytes; }
   uint64_t limit() const { return budget_ ? budget_ : limit_; }
+  // Bytes of the budget that others have taken; they count as used.
+  void set_taken(uint64_t bytes) { taken_ = bytes; }
   // Bytes that can still be allocated, as far as is known.
-  uint64_t available() const { return limit() ? limit() - std::min(limit(), used_) : ~uint64_t(0) >> 1; }
+  uint64_t available() const { return limit() ? limit() - std::min(limit(), used_ + taken_) : ~uint64_t(0) >> 1; }
 
   void *allocate(size_t bytes) {
     bytes = (bytes + kAlignment - 1) / kAlignment * kAlignment;
     if (bytes == 0) bytes = kAlignment;
+    if (taken_ > 0 && bytes > available()) refuse(used_ + taken_ + bytes);
     while (current_ < blocks_.size() && blocks_[current_].size - offset_ < bytes) {
       ++current_;
       offset_ = 0;
@@ -66,6 +69,7 @@ class Arena {
 
   // Everything allocated so far is given up; the blocks stay.
   void reset() {
+    if (budget_ && held_ > own_budget()) release();
     if (blocks_.size() > 1) {
       const uint64_t merged = peak_ + peak_ / 8;  // the next surface may be a little larger
       release();
@@ -110,17 +114,22 @@ class Arena {
     size_t size;
   };
 
+  uint64_t own_budget() const { return budget_ - std::min(budget_, taken_); }
+
+  [[noreturn]] void refuse(uint64_t needed) const {
+    throw MemoryRefused("the work needs at least " + describe_bytes(needed) + " but " +
+                        (budget_ ? "the memory budget is " : "the machine had free ") + describe_bytes(limit()) +
+                        ": use a larger spacing" + (budget_ ? " or a larger budget" : ""));
+  }
+
   void add_block(size_t bytes) {
     constexpr size_t kSmallestBlock = size_t(1) << 20;
     size_t wanted = bytes > kSmallestBlock ? bytes : kSmallestBlock;
     // Grow by half of what is held: few blocks, little waste.
     if (wanted < held_ / 2) wanted = static_cast<size_t>(held_ / 2);
     if (limit()) {
-      if (held_ + bytes > limit())
-        throw MemoryRefused("the work needs at least " + describe_bytes(held_ + bytes) + " but " +
-                            (budget_ ? "the memory budget is " : "the machine had free ") + describe_bytes(limit()) +
-                            ": use a larger spacing" + (budget_ ? " or a larger budget" : ""));
-      if (budget_ && held_ == 0) wanted = static_cast<size_t>(budget_);
+      if (held_ + bytes > limit()) refuse(held_ + bytes);
+      if (budget_ && held_ == 0) wanted = std::max(bytes, static_cast<size_t>(own_budget()));
       wanted = static_cast<size_t>(std::min<uint64_t>(wanted, limit() - held_));
     }
     void *memory = Source::acquire(wanted);
@@ -137,7 +146,7 @@ class Arena {
 
   std::vector<Block> blocks_;
   size_t current_ = 0, offset_ = 0;
-  uint64_t used_ = 0, peak_ = 0, held_ = 0, budget_ = 0, limit_ = 0;
+  uint64_t used_ = 0, peak_ = 0, held_ = 0, budget_ = 0, limit_ = 0, taken_ = 0;
 };
 
 }  // namespace quickses

@@ -118,8 +118,13 @@ class CpuExecutor {
   void set_kernels(const CpuKernels &kernels) { kernels_ = &kernels; }
   Arena<HostMemory> &arena() { return arena_; }
 
-  // Scratch of the threads counts as this much.
-  uint64_t scratch_bytes() const { return threads_ * (uint64_t(192) << 10); }
+  // What the threads' scratch takes, and what is set aside for it in a budget: it is larger only where atoms crowd.
+  uint64_t scratch_bytes() const {
+    uint64_t sum = 0;
+    for (const auto &pool : scratch_pools_) sum += pool.second.bytes(pool.second.objects.get());
+    return sum;
+  }
+  uint64_t scratch_allowance() const { return threads_ * (uint64_t(192) << 10); }
 
   // Memory was refused: to know how much there is would not help, since all work is cut small already.
   void bound_arena() {}
@@ -151,13 +156,13 @@ class CpuExecutor {
   // results in them and collect those afterwards.
   template <class Scratch>
   std::vector<std::unique_ptr<Scratch>> &scratches() {
-    std::shared_ptr<void> &pool = scratch_pools_[std::type_index(typeid(Scratch))];
-    if (!pool) {
+    ScratchPool &pool = scratch_pools_[std::type_index(typeid(Scratch))];
+    if (!pool.objects) {
       auto made = std::make_shared<std::vector<std::unique_ptr<Scratch>>>();
       for (unsigned k = 0; k < threads_; ++k) made->emplace_back(new Scratch);
-      pool = made;
+      pool = {made, &pool_bytes<Scratch>};
     }
-    return *static_cast<std::vector<std::unique_ptr<Scratch>> *>(pool.get());
+    return *static_cast<std::vector<std::unique_ptr<Scratch>> *>(pool.objects.get());
   }
 
   // Gives every thread as much room as any of them needed so far, by Scratch::match: once a trajectory has shown how
@@ -197,6 +202,10 @@ class CpuExecutor {
         thrust::for_each(policy(), thrust::counting_iterator<size_t>(0), thrust::counting_iterator<size_t>(workers),
                          work);
       });
+    }
+    if (arena_.has_budget()) {
+      const uint64_t scratch = scratch_bytes(), allowed = scratch_allowance();
+      arena_.set_taken(scratch > allowed ? scratch - allowed : 0);
     }
     if (thrown) std::rethrow_exception(thrown);
     if (stopped()) throw Cancelled{};
@@ -351,6 +360,27 @@ class CpuExecutor {
   static constexpr size_t kSerialItems = 64;
   static constexpr size_t kSortedRun = size_t(1) << 15;  // items that one thread sorts
 
+  struct ScratchPool {
+    std::shared_ptr<void> objects;
+    uint64_t (*bytes)(const void *objects) = nullptr;
+  };
+  // Scratch may tell by bytes() what it holds besides itself.
+  template <class Scratch>
+  static auto held_bytes(const Scratch &scratch, int) -> decltype(scratch.bytes()) {
+    return scratch.bytes();
+  }
+  template <class Scratch>
+  static uint64_t held_bytes(const Scratch &, long) {
+    return 0;
+  }
+  template <class Scratch>
+  static uint64_t pool_bytes(const void *objects) {
+    uint64_t sum = 0;
+    for (const auto &scratch : *static_cast<const std::vector<std::unique_ptr<Scratch>> *>(objects))
+      sum += sizeof(Scratch) + held_bytes(*scratch, 0);
+    return sum;
+  }
+
   bool stopped() const { return stop_ && stop_->load(std::memory_order_relaxed); }
 
 #if defined(QSES_CPU_SYSTEM_OMP)
@@ -379,7 +409,7 @@ class CpuExecutor {
 #endif
   const CpuKernels *kernels_ = &cpu_kernels();
   Arena<HostMemory> arena_;
-  std::map<std::type_index, std::shared_ptr<void>> scratch_pools_;
+  std::map<std::type_index, ScratchPool> scratch_pools_;
 };
 
 }  // namespace quickses

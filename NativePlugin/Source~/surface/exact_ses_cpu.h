@@ -30,6 +30,7 @@ struct BrickColumns {
     if (arc_memory.size() < arcs) arc_memory.resize(arcs);
     return {atom_memory.data(), arc_memory.data(), atom_capacity, arc_capacity};
   }
+  uint64_t bytes() const { return sizeof(float) * (atom_memory.capacity() + arc_memory.capacity()); }
   // True if the brick must be done again.
   bool grow(const BrickNeeds &needs) {
     if (needs.atoms > 0) atom_capacity = needs.atoms + needs.atoms / 2;

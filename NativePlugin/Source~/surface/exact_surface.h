@@ -113,6 +113,7 @@ MeshMemoryView make_exact_mesh(R &run, const BrickSet &bricks, bool together) {
   auto &executor = run.executor;
   using Executor = std::remove_reference_t<decltype(executor)>;
   const FeatureView &features = run.features;
+  run.memory.forget_spills();
   const uint32_t asked = bricks_per_slice(run.settings, bricks.count, run.progress.wanted());
   const auto per_slice = [&](uint64_t bytes_per_brick) {
     return Slicing{together, std::min(asked, bricks_that_fit(run, bricks.count, bytes_per_brick))};

@@ -13,6 +13,7 @@ namespace quickses {
 template <class R>
 MeshMemoryView build_grid_surface(R &run) {
   auto &executor = run.executor;
+  run.memory.forget_spills();
   run.timer.begin("bricks");
   const GridParameters parameters =
       make_grid_parameters(run.parameters.probe, run.parameters.spacing, run.parameters.max_radius);

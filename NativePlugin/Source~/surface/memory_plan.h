@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Bytes that the work on a surface takes, from what is known of it: for estimates before the work, and for what to say
-// when a budget does not suffice. The stages allocate what is counted here; memory_plan_test compares the two.
+// when a budget does not suffice. The stages allocate what is counted here; memory_test.cpp compares the two.
 #pragma once
 
 #include "surface/exact_surface.h"
@@ -33,7 +33,7 @@ class MemoryPlan {
     double kept = atom_grid, most = atom_grid + 52 * atoms;
     if (k_.exact) {
       kept += 9 * atoms + 16 * static_cast<double>(f_.caps) + 48 * arcs;
-      if (!Executor::kIsCuda) kept += 8 * atoms + atoms / kMinAtomsPerPass * 64;
+      if (!Executor::kIsCuda) kept += (8 + kChunkBytes) * atoms;
       most = std::max(most, kept + (Executor::kIsCuda ? kRunBytes : 0.0));
       kept += 20 * arcs + 4 * static_cast<double>(f_.arc_cells);
       most = std::max(most, kept + 52 * arcs);
@@ -52,7 +52,7 @@ class MemoryPlan {
   }
 
  private:
-  static constexpr double kMinAtomsPerPass = 32;
+  static constexpr double kChunkBytes = 10;  // per atom, of chunks of four
   static constexpr double kRunBytes = 600000;
 
   double bricks() const { return std::max(1.0, f_.size.bricks); }

@@ -8,6 +8,7 @@
 #include "surface/mesh_arrays.h"
 #include "surface/run.h"
 
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -44,6 +45,7 @@ class AtomPool {
     const std::lock_guard<std::mutex> lock(mutex_);
     for (const std::shared_ptr<Set> &set : sets_)
       if (set.use_count() == 1) {
+        std::atomic_thread_fence(std::memory_order_acquire);  // whoever held it has read its last
         set->resize(count);
         return set;
       }
@@ -112,8 +114,11 @@ class MeshMemory<CpuExecutor> {
   std::shared_ptr<AtomSet> make_atoms(size_t count) { return host_.make_atoms(count); }
   void use_slot(int slot) { host_.use_slot(slot); }
   uint64_t host_bytes() const { return host_.bytes(); }
-  // Bytes of work that are not in the arena.
+  // Bytes of work that are not in the arena, and those that are taken off a budget for it.
   uint64_t beside_arena(const CpuExecutor &executor) const { return executor.scratch_bytes(); }
+  uint64_t allowed_beside(const CpuExecutor &executor) const { return executor.scratch_allowance(); }
+
+  void forget_spills() {}
 
   MeshMemoryView allocate_mesh(CpuExecutor &executor, size_t vertices, size_t triangles, const MeshShape &shape,
                                MeshPurpose purpose, uint64_t /*reserve*/) {

@@ -19,10 +19,9 @@ class MeshMemory<CudaExecutor> {
     const DeviceGuard guard(executor_.device());
     return host_.make_atoms(count);
   }
-  void use_slot(int slot) {
-    host_.use_slot(slot);
-    spilled_ = 0;
-  }
+  void use_slot(int slot) { host_.use_slot(slot); }
+  // What was allocated beside a mesh on the host, or as one to be made into another, is given up.
+  void forget_spills() { spilled_ = 0; }
   uint64_t host_bytes() const {
     uint64_t sum = host_.bytes();
     for (const PinnedBuffer &spill : spill_) sum += spill.size();
@@ -31,6 +30,7 @@ class MeshMemory<CudaExecutor> {
 
   // Bytes of the device that are not in the arena.
   uint64_t beside_arena(const CudaExecutor &) const { return sizeof(MarchingCubesTable); }
+  uint64_t allowed_beside(const CudaExecutor &executor) const { return beside_arena(executor); }
 
   MeshMemoryView allocate_mesh(CudaExecutor &executor, size_t vertices, size_t triangles, const MeshShape &shape,
                                MeshPurpose purpose, uint64_t reserve) {

@@ -36,7 +36,7 @@ class SurfacePipeline : public SurfaceEngine {
         budget_(memory_budget),
         limit_(memory_limit) {
     // What is held outside of the arena is taken off; the least budget is one that is surely too small.
-    const uint64_t beside = work_bytes(0);
+    const uint64_t beside = memory_.allowed_beside(executor_);
     if (memory_budget > 0) executor_.arena().set_budget(memory_budget > beside + 4096 ? memory_budget - beside : 4096);
   }
 
@@ -63,35 +63,25 @@ class SurfacePipeline : public SurfaceEngine {
   qses_size_estimate estimate(const AtomSet &atoms, const Appearance &appearance,
                               const qses_settings &settings) override {
     const typename Executor::CallScope scope(executor_);
-    executor_.arena().reset();
+    progress_.rest();
     executor_.arena().set_limit(limit_);
-    timer_.reset();
-    facts_ = {};
     qses_size_estimate out;
     qses_size_estimate_init(&out);
     out.fits = 1;
     if (atoms.count == 0) return out;
-    const Span<const float> spacings{&settings.spacing, 1};
-    try {
-      Prepared p = prepare(atoms, appearance, settings, spacings);
-      const double kept = static_cast<double>(executor_.arena().used());
-      const double peak = static_cast<double>(executor_.arena().peak());
-      p = at_spacing(p, settings.spacing);
-      auto run = run_of(p, settings, nullptr);
-      facts_.size = estimate_size(run);
-      if (settings.method == QSES_METHOD_EXACT) facts_.caps = count_kept_caps(run);
-      const MemoryPlan<Executor> plan(facts_, kind_of(p, settings));
-      const double whole = plan.whole(kept, peak), least = plan.least();
-      const double room = static_cast<double>(executor_.arena().budget());
-      out.vertices = static_cast<uint64_t>(facts_.size.vertices);
-      out.triangles = static_cast<uint64_t>(facts_.size.triangles);
-      out.mesh_bytes = static_cast<uint64_t>(plan.mesh_bytes());
-      out.fits = room == 0 || least <= room ? 1 : 0;
-      out.work_bytes = work_bytes(static_cast<uint64_t>(room > 0 && whole > room ? std::max(least, room) : whole));
-      out.smallest_budget = work_bytes(static_cast<uint64_t>(least));
-    } catch (const MemoryRefused &) {
-      name_smallest_budget(settings);
-      throw;
+    for (;;) {
+      executor_.arena().reset();
+      timer_.reset();
+      facts_ = {};
+      try {
+        estimate_with(atoms, appearance, settings, &out);
+        break;
+      } catch (const MemoryRefused &) {
+        if (!become_frugal(atoms, settings)) {
+          name_smallest_budget(settings);
+          throw;
+        }
+      }
     }
     executor_.arena().reset();
     return out;
@@ -112,6 +102,37 @@ class SurfacePipeline : public SurfaceEngine {
     MeshShape shape{};
   };
 
+  void estimate_with(const AtomSet &atoms, const Appearance &appearance, const qses_settings &settings,
+                     qses_size_estimate *out) {
+    const auto &arena = executor_.arena();
+    Prepared p = prepare(atoms, appearance, settings, Span<const float>{&settings.spacing, 1});
+    const double kept = static_cast<double>(arena.used()), peak = static_cast<double>(arena.peak());
+    p = at_spacing(p, settings.spacing);
+    auto run = run_of(p, settings, nullptr);
+    facts_.size = estimate_size(run);
+    if (settings.method == QSES_METHOD_EXACT) facts_.caps = count_kept_caps(run);
+    const MemoryPlan<Executor> plan(facts_, kind_of(p, settings));
+    const double whole = plan.whole(kept, peak), least = plan.least(), room = static_cast<double>(arena.budget());
+    out->vertices = static_cast<uint64_t>(facts_.size.vertices);
+    out->triangles = static_cast<uint64_t>(facts_.size.triangles);
+    out->mesh_bytes = static_cast<uint64_t>(plan.mesh_bytes());
+    out->work_bytes = work_bytes(static_cast<uint64_t>(room > 0 && whole > room ? std::max(least, room) : whole));
+    out->smallest_budget = smallest_budget(least);
+    out->fits = budget_ == 0 || out->smallest_budget <= budget_ ? 1 : 0;
+  }
+
+  // The arena's least bytes, and what is allowed beside it.
+  uint64_t smallest_budget(double least) const {
+    return static_cast<uint64_t>(least) + memory_.allowed_beside(executor_);
+  }
+
+  // Memory was refused: whether it can be tried again with less for the features. Later computations know.
+  bool become_frugal(const AtomSet &atoms, const qses_settings &settings) {
+    if (frugal(atoms.count) || settings.method == QSES_METHOD_GRID) return false;
+    frugal_from_ = atoms.count;
+    return true;
+  }
+
   void compute_levels(const AtomSet &atoms, const Appearance &appearance, const qses_settings &settings,
                       Span<const float> spacings, LevelSink &sink) {
     double total = 0, begun = 0;
@@ -119,7 +140,7 @@ class SurfacePipeline : public SurfaceEngine {
     auto start = std::chrono::steady_clock::now();
     Prepared prepared;
     const auto start_mark = executor_.arena().mark();
-    if (atoms.count > 0) prepared = prepare(atoms, appearance, settings, spacings);
+    if (atoms.count > 0) prepared = prepare_again(atoms, appearance, settings, spacings);
     sink.prepared(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
     auto mark = executor_.arena().mark();
     for (float h : spacings) {
@@ -134,9 +155,8 @@ class SurfacePipeline : public SurfaceEngine {
         try {
           built = build(prepared, settings, h, &report);
         } catch (const MemoryRefused &) {
-          // The features may have taken more than they must. Later frames know.
-          if (frugal(atoms.count) || settings.method == QSES_METHOD_GRID) throw;
-          frugal_from_ = atoms.count;
+          // The features may have taken more than they must.
+          if (!become_frugal(atoms, settings)) throw;
           executor_.arena().rewind(start_mark);
           prepared = prepare(atoms, appearance, settings, spacings);
           mark = executor_.arena().mark();
@@ -225,6 +245,7 @@ class SurfacePipeline : public SurfaceEngine {
     facts_.atoms = set.count;
     facts_.atom_cells = dense_table_pays(cells.cells(), set.count) ? cells.cells() : 0;
     prepared_ = p;
+    is_prepared_ = false;
     p.grid = build_neighbor_grid(executor_, set.count, cells, [&] {
       Span<Sphere> atoms = executor_.template allocate<Sphere>(set.count);
       const Sphere *const given = bring(set.atoms, set.count);
@@ -237,7 +258,23 @@ class SurfacePipeline : public SurfaceEngine {
       auto run = run_of(p, settings, nullptr);
       p.features = find_features(run);
     }
+    prepared_ = p;
+    is_prepared_ = true;
+    prepared_mark_ = executor_.arena().mark();
     return p;
+  }
+
+  // The same; once more with less memory if that was refused.
+  Prepared prepare_again(const AtomSet &set, const Appearance &appearance, const qses_settings &settings,
+                         Span<const float> spacings) {
+    const auto start = executor_.arena().mark();
+    try {
+      return prepare(set, appearance, settings, spacings);
+    } catch (const MemoryRefused &) {
+      if (!become_frugal(set, settings)) throw;
+    }
+    executor_.arena().rewind(start);
+    return prepare(set, appearance, settings, spacings);
   }
 
   // With so many atoms memory was too short for the fast way before.
@@ -278,8 +315,16 @@ class SurfacePipeline : public SurfaceEngine {
   // Memory was refused. With a budget the user is told which one would do, as far as that is known by now.
   void name_smallest_budget(const qses_settings &settings) {
     if (budget_ == 0) return;
-    const double least = least_of_unfinished<Executor>(facts_, kind_of(prepared_, settings));
-    const uint64_t budget = work_bytes(static_cast<uint64_t>(least));
+    if (is_prepared_ && facts_.size.vertices == 0) {
+      executor_.arena().rewind(prepared_mark_);
+      try {
+        auto run = run_of(at_spacing(prepared_, prepared_.parameters.spacing), settings, nullptr);
+        facts_.size = estimate_size(run);
+        if (settings.method == QSES_METHOD_EXACT) facts_.caps = count_kept_caps(run);
+      } catch (const MemoryRefused &) {  // then it is guessed
+      }
+    }
+    const uint64_t budget = smallest_budget(least_of_unfinished<Executor>(facts_, kind_of(prepared_, settings)));
     throw Error(QSES_OUT_OF_MEMORY,
                 "the memory budget of " + describe_bytes(budget_) + " does not suffice for this surface: about " +
                     describe_bytes(std::max(budget, budget_ + budget_ / 8)) + " would do, or a larger spacing");
@@ -326,7 +371,7 @@ class SurfacePipeline : public SurfaceEngine {
     return table_;
   }
 
-  // Bytes of the arena and of what lies beside it.
+  // Bytes of the arena and of the work that lies beside it.
   uint64_t work_bytes(uint64_t arena) const { return arena + memory_.beside_arena(executor_); }
 
   Executor executor_;
@@ -335,7 +380,10 @@ class SurfacePipeline : public SurfaceEngine {
   uint64_t budget_, limit_;
   WorkFacts facts_{};
   size_t frugal_from_ = ~size_t(0);
-  Prepared prepared_{};  // of the computation that runs, for messages
+  // Of the computation that runs, for messages.
+  Prepared prepared_{};
+  bool is_prepared_ = false;
+  typename std::decay_t<decltype(std::declval<Executor &>().arena())>::Mark prepared_mark_{};
   Progress progress_;
   TableView table_{};
 };

@@ -20,6 +20,7 @@ class Progress {
  public:
   void set(std::function<void(double)> callback) { callback_ = std::move(callback); }
   // Fractions reported from now on are those of the part from begin to end of the whole.
+  void rest() { sink_ = nullptr; }
   void restart(LevelSink &sink) {
     sink_ = &sink;
     last_ = -1;

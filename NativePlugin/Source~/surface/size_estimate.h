@@ -105,8 +105,10 @@ template <class Executor>
 double least_of_unfinished(WorkFacts facts, const WorkKind &kind) {
   const double atoms = static_cast<double>(facts.atoms), h = static_cast<double>(kind.parameters.spacing);
   if (facts.arcs == 0) {
-    facts.caps = 18 * facts.atoms;
-    facts.arcs = 4 * facts.atoms;
+    // Larger spheres have more neighbours.
+    const double wide = std::max(1.0, static_cast<double>(kind.parameters.max_radius) / 3.2);
+    facts.caps = static_cast<uint64_t>(18 * atoms * std::min(wide * wide, atoms / 18 + 1));
+    facts.arcs = static_cast<uint64_t>(4 * atoms * wide);
     facts.arc_cells = facts.atom_cells;
   }
   if (facts.size.bricks == 0) facts.size.bricks = 1.2 * guess_bricks(atoms, kUsualArea * atoms, h) + 64;

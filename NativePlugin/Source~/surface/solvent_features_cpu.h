@@ -29,6 +29,9 @@ struct FeatureStaging {
     const uintptr_t start = reinterpret_cast<uintptr_t>(memory.data());
     return {memory.data() + (64 - start % 64) % 64 / sizeof(float), capacity};
   }
+  uint64_t bytes() const {
+    return sizeof(float) * memory.capacity() + sizeof(Cap) * caps.capacity() + sizeof(Arc) * arcs.capacity();
+  }
   // As much room as another thread needed: who meets the largest atom differs from surface to surface.
   void match(const FeatureStaging &other) {
     capacity = std::max(capacity, other.capacity);
@@ -64,6 +67,7 @@ struct FeaturePool {
     if (own_arcs.size() < arc_room) own_arcs.resize(arc_room + arc_room / 4);
     open({own_caps.data(), own_caps.size()}, {own_arcs.data(), own_arcs.size()});
   }
+  uint64_t bytes() const { return sizeof(Cap) * own_caps.capacity() + sizeof(Arc) * own_arcs.capacity(); }
   bool holds_all() const { return cap_count <= caps.size && arc_count <= arcs.size; }
 };
 
@@ -138,11 +142,11 @@ struct FindChunkFeatures {
   }
 };
 
-// Copies what a chunk found to its place.
+// Copies what a chunk found to its place; of buried atoms nothing.
 struct CollectChunk {
   const FeatureChunk *chunks;
   const FeaturePool *pool;
-  const uint64_t *cap_base, *arc_base;
+  const uint64_t *cap_first, *arc_base;  // per atom, per chunk
   size_t atoms, atoms_per_chunk;
   const uint8_t *exposed;
   CapRange *cap_ranges;
@@ -150,20 +154,18 @@ struct CollectChunk {
   Arc *arcs;
   void operator()(size_t chunk) const {
     const FeatureChunk &c = chunks[chunk];
-    std::copy_n(pool->caps.data + c.first_cap, c.cap_count, caps + cap_base[chunk]);
     std::copy_n(pool->arcs.data + c.first_arc, c.arc_count, arcs + arc_base[chunk]);
     const size_t end = std::min(atoms, (chunk + 1) * atoms_per_chunk);
     for (size_t i = chunk * atoms_per_chunk; i < end; ++i) {
-      cap_ranges[i].first += static_cast<uint32_t>(cap_base[chunk]);
-      if (!exposed[i]) cap_ranges[i].count = kBuriedAtom;
+      if (exposed[i])
+        std::copy_n(pool->caps.data + c.first_cap + cap_ranges[i].first, cap_ranges[i].count, caps + cap_first[i]);
+      else
+        cap_ranges[i].count = kBuriedAtom;
+      cap_ranges[i].first = static_cast<uint32_t>(cap_first[i]);
     }
   }
 };
 
-struct LoadChunkCaps {
-  const FeatureChunk *chunks;
-  uint64_t operator()(size_t i) const { return chunks[i].cap_count; }
-};
 struct LoadChunkArcs {
   const FeatureChunk *chunks;
   uint64_t operator()(size_t i) const { return chunks[i].arc_count; }
@@ -209,7 +211,7 @@ struct PlaceChunkFeatures {
       const FinalRoom room{open ? caps + cap_first[i] : nullptr, cap_ranges[i].count, arcs + arc,
                            static_cast<int64_t>(arc_base[chunk + 1] - arc)};
       const AtomFeatures found = find_features_of(*kernels, *atoms, *parameters, i, s, exposed, room);
-      cap_ranges[i] = {static_cast<uint32_t>(open ? cap_first[i] : 0), open ? found.cap_count : kBuriedAtom};
+      cap_ranges[i] = {static_cast<uint32_t>(cap_first[i]), open ? found.cap_count : kBuriedAtom};
       arc += static_cast<uint64_t>(found.arc_count);
     }
   }
@@ -248,7 +250,7 @@ inline void find_solvent_features(CpuExecutor &executor, const NeighborGridView 
   f.exposed = executor.allocate<uint8_t>(n + 8);
   executor.fill(f.exposed, 0);
   Span<FeatureChunk> table = executor.allocate<FeatureChunk>(chunks);
-  Span<uint64_t> cap_base = executor.allocate<uint64_t>(chunks + 1), arc_base = executor.allocate<uint64_t>(chunks + 1);
+  Span<uint64_t> cap_first = executor.allocate<uint64_t>(n + 1), arc_base = executor.allocate<uint64_t>(chunks + 1);
   const auto mark = executor.arena().mark();
   FeaturePool &pool = open_pool(executor, n, frugal);
   executor.match_scratches<FeatureStaging>();
@@ -256,22 +258,20 @@ inline void find_solvent_features(CpuExecutor &executor, const NeighborGridView 
                                           FindChunkFeatures{&executor.kernels(), &atoms, &parameters, per_chunk,
                                                             f.cap_ranges.data, f.exposed.data, table.data, &pool},
                                           1);
-  executor.exclusive_scan(chunks, LoadChunkCaps{table.data}, cap_base);
+  executor.exclusive_scan(n, LoadExposedCaps{f.exposed.data, f.cap_ranges.data}, cap_first);
   executor.exclusive_scan(chunks, LoadChunkArcs{table.data}, arc_base);
   executor.arena().rewind(mark);
-  if (pool.holds_all()) {
-    f.caps = executor.allocate<Cap>(cap_base[chunks]);
-    f.arcs = executor.allocate<Arc>(arc_base[chunks]);
-    executor.for_each(chunks, CollectChunk{table.data, &pool, cap_base.data, arc_base.data, n, per_chunk,
-                                           f.exposed.data, f.cap_ranges.data, f.caps.data, f.arcs.data});
-    return;
-  }
-  Span<uint64_t> cap_first = executor.allocate<uint64_t>(n + 1);
-  executor.exclusive_scan(n, LoadExposedCaps{f.exposed.data, f.cap_ranges.data}, cap_first);
   f.caps.size = cap_first[n];
   f.arcs.size = arc_base[chunks];
   f.caps = executor.allocate<Cap>(cap_first[n]);
   f.arcs = executor.allocate<Arc>(arc_base[chunks]);
+  if (pool.holds_all()) {
+    executor.for_each(chunks, CollectChunk{table.data, &pool, cap_first.data, arc_base.data, n, per_chunk,
+                                           f.exposed.data, f.cap_ranges.data, f.caps.data, f.arcs.data});
+    return;
+  }
+  // Next time they will fit; the room is taken now, so that this computation tells what later ones take.
+  if (!frugal && !executor.arena().has_budget()) pool.open_own(pool.cap_count, pool.arc_count);
   executor.for_each_brick<FeatureStaging>(
       chunks,
       PlaceChunkFeatures{&executor.kernels(), &atoms, &parameters, per_chunk, cap_first.data, arc_base.data,

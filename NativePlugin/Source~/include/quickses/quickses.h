@@ -154,7 +154,8 @@ typedef struct qses_context_options {
   uint64_t memory_budget; /* bytes; 0 (default): what is free at the time. With CUDA it covers everything on the device:
                              where the mesh does not fit, it leaves the device piece by piece. On the CPU it covers
                              the work; the mesh that is handed out comes on top (qses_report.mesh_bytes). The mesh is
-                             the same byte for byte; only the time grows. qses_estimate tells what is needed */
+                             the same byte for byte; only the time grows. qses_estimate tells what is needed. The
+                             first computation takes the budget in one piece, however small the surface */
 } qses_context_options;
 
 /* Fills in the defaults. Always use it: later versions append fields. NULL is ignored. */
@@ -257,8 +258,8 @@ typedef struct qses_settings {
 /* Fills in the defaults. Always use it: later versions append fields. NULL is ignored. */
 QSES_API void qses_settings_init(qses_settings *settings);
 
-/* A view of a mesh in memory of the context: valid until the next qses_compute that succeeds on the same context, or
- * qses_destroy. (Page-locked memory with CUDA.) Nothing here may be written or freed by the caller. */
+/* A view of a mesh in memory of the context: valid until the next qses_compute or qses_collect that succeeds on the same
+ * context, or qses_destroy; also while jobs run. (Page-locked memory with CUDA.) Nothing here may be written or freed by the caller. */
 typedef struct qses_mesh {
   uint32_t struct_size;    /* set by qses_mesh_init */
   uint32_t vertex_count;   /* V */
@@ -330,7 +331,7 @@ typedef struct qses_size_estimate {
   uint32_t struct_size; /* set by qses_size_estimate_init */
   int32_t fits;         /* 1 if it can be done within the budget of the context; else 0 */
   uint64_t vertices, triangles;
-  uint64_t mesh_bytes;    /* of the mesh that is handed out, in host memory */
+  uint64_t mesh_bytes;    /* of the mesh, in host memory; of the whole one if atoms are hidden */
   uint64_t work_bytes;    /* what qses_report.work_bytes_peak would be: on the device with CUDA, else in host memory */
   uint64_t smallest_budget; /* the least qses_context_options.memory_budget that would do, with some reserve */
 } qses_size_estimate;
@@ -350,7 +351,7 @@ QSES_API qses_status qses_estimate(qses_context *context, const qses_settings *s
  * per surface. Errors: INVALID_ARGUMENT. */
 QSES_API qses_status qses_enable_stage_times(qses_context *context, int32_t enabled);
 
-/* Called from the computing thread during qses_compute with the fraction done, rising from 0 to 1; at most a few
+/* Called from the computing thread during qses_compute and during jobs with the fraction done, rising from 0 to 1; at most a few
  * hundred times. It must not call into the library. NULL (default) switches it off. It is meant for command line
  * programs; games should not hand managed code to it. Errors: INVALID_ARGUMENT. */
 typedef void (*qses_progress_callback)(void *user_data, double fraction);
