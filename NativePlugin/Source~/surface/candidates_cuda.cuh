@@ -6,6 +6,7 @@
 #include "parallel/cuda_executor.cuh"
 #include "parallel/cuda_warp.cuh"
 #include "surface/stages.h"
+#include "surface/work_facts.h"
 
 namespace quickses {
 namespace gpu {
@@ -45,8 +46,9 @@ inline double listed_candidates(const SurfaceParameters &parameters) {
 }
 
 // Bytes of a brick's candidates: atoms, arcs and their leaves, rows and lists of leaves.
-inline double candidate_bytes(const SurfaceParameters &parameters) {
-  return 9.0 * listed_candidates(parameters) + 56.0;
+inline double candidate_bytes(const SurfaceParameters &parameters, const CandidateCounts &all) {
+  const double listed = listed_candidates(parameters);
+  return 4.0 * std::min(listed, all.atoms) + 5.0 * std::min(listed, all.arcs) + 56.0;
 }
 
 // Words of the row that a leaf with vertices has besides (vertex_rows_cuda.cuh): with its volume, more can matter to

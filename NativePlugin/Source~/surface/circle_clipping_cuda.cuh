@@ -192,7 +192,8 @@ static __global__ __launch_bounds__(kClipThreads) void clip_circles_kernel(Circl
   const StridedIntervals storage{memory + threadIdx.x, kClipThreads};
   enum class State { kIdle, kActive, kDone };
   const int lane = lane_id();
-  const unsigned long long total = job.counters->circles;
+  // Those that are listed: atoms whose caps had no room are counted, but list none.
+  const unsigned long long total = job.circle_first[job.run.size()];
   if (total > job.room.circles) return;  // all will be done again
   const uint32_t warps = gridDim.x * kClipThreads / kWarp;
   for (unsigned long long base =
@@ -284,8 +285,7 @@ static __global__ __launch_bounds__(kWarp) void clip_long_circles_kernel(CircleJ
 
 // Writes the staged arcs, split, to their places in order.
 static __global__ __launch_bounds__(128) void write_arcs_kernel(CircleJob job, const uint32_t *arc_first) {
-  const unsigned long long circles = job.counters->circles;
-  if (circles > job.room.circles) return;
+  if (job.circle_first[job.run.size()] > job.room.circles) return;
   if (blockIdx.x == 0 && threadIdx.x == 0) job.counters->arcs = arc_first[job.room.circles];
   const unsigned long long staged = job.counters->staged;
   if ((staged >> 32) > job.room.staged_circles || (staged & 0xffffffffu) > job.room.staged_arcs) return;

@@ -4,6 +4,7 @@
 
 #include "parallel/cpu_executor.h"
 #include "surface/cpu_kernels.h"
+#include "surface/work_facts.h"
 
 namespace quickses {
 
@@ -13,9 +14,9 @@ template <>
 struct CandidatesOf<CpuExecutor> {
   using type = NoCandidates;
   static constexpr double kSpareBytes = 0;
-  static double sign_bytes(const SurfaceParameters &) { return 0; }
-  static double emission_bytes(const SurfaceParameters &, double, double) { return 0; }
-  static uint64_t whole_bytes(const SurfaceParameters &) { return 0; }
+  static double sign_bytes(const SurfaceParameters &, const CandidateCounts &) { return 0; }
+  static double emission_bytes(const SurfaceParameters &, const CandidateCounts &, double, double) { return 0; }
+  static uint64_t whole_bytes(const SurfaceParameters &, const CandidateCounts &) { return 0; }
 };
 
 // Columns of one thread for what is near a brick. Grows when a brick needs more; kept between surfaces.

@@ -17,14 +17,17 @@ template <>
 struct CandidatesOf<CudaExecutor> {
   using type = CudaCandidates;
   static constexpr double kSpareBytes = gpu::kSpareCandidates * 9.0;
-  static double sign_bytes(const SurfaceParameters &parameters) { return gpu::candidate_bytes(parameters); }
-  static double emission_bytes(const SurfaceParameters &parameters, double vertices, double leaves) {
-    return gpu::candidate_bytes(parameters) + 4.0 * gpu::row_words(parameters) * leaves + 12.0 * vertices;
+  static double sign_bytes(const SurfaceParameters &parameters, const CandidateCounts &all) {
+    return gpu::candidate_bytes(parameters, all);
+  }
+  static double emission_bytes(const SurfaceParameters &parameters, const CandidateCounts &all, double vertices,
+                               double leaves) {
+    return gpu::candidate_bytes(parameters, all) + 4.0 * gpu::row_words(parameters) * leaves + 12.0 * vertices;
   }
   // Signs and layout, and the mesh of a surface as dense as proteins have it.
-  static uint64_t whole_bytes(const SurfaceParameters &parameters) {
+  static uint64_t whole_bytes(const SurfaceParameters &parameters, const CandidateCounts &all) {
     constexpr double kVertices = 60, kLeaves = 4, kVertexBytes = 28, kTriangleBytes = 12;
-    return static_cast<uint64_t>(352 + emission_bytes(parameters, kVertices, kLeaves) +
+    return static_cast<uint64_t>(352 + emission_bytes(parameters, all, kVertices, kLeaves) +
                                  kVertices * (kVertexBytes + 2 * kTriangleBytes));
   }
 };

@@ -66,6 +66,11 @@ FeatureView find_features(R &run) {
   return f;
 }
 
+template <class R>
+CandidateCounts candidate_counts(const R &run) {
+  return {static_cast<double>(run.features.atoms.count), static_cast<double>(run.features.arc_bounds.count)};
+}
+
 // Bytes of work per brick while vertices are emitted: candidates, rows, and per vertex the lists of the kernels and,
 // where the mesh is not on the device, its slab.
 template <class R>
@@ -73,8 +78,9 @@ uint64_t emission_bytes_per_brick(const R &run, const SurfaceSize &size, bool sl
   using Executor = std::remove_reference_t<decltype(run.executor)>;
   const double n = std::max(1.0, size.bricks), vertices = size.vertices / n, triangles = size.triangles / n;
   const double vertex_bytes = static_cast<double>(MeshArrays(4096, 0, run.shape).bytes()) / 4096.0;
-  return static_cast<uint64_t>(CandidatesOf<Executor>::emission_bytes(run.parameters, vertices, size.leaves / n) +
-                               (slabs ? vertex_bytes * vertices + 12.0 * triangles : 0.0)) +
+  return static_cast<uint64_t>(
+             CandidatesOf<Executor>::emission_bytes(run.parameters, candidate_counts(run), vertices, size.leaves / n) +
+             (slabs ? vertex_bytes * vertices + 12.0 * triangles : 0.0)) +
          1;
 }
 
@@ -121,7 +127,8 @@ MeshMemoryView make_exact_mesh(R &run, const BrickSet &bricks, bool together) {
   run.timer.begin("exact_ses");
   Span<uint64_t> signs = executor.template allocate<uint64_t>(size_t(bricks.count) * kLeavesPerBrick);
   Candidates<Executor> shared{};
-  for_each_slice(run, bricks.count, per_slice(CandidatesOf<Executor>::sign_bytes(run.parameters)), 0.1, 0.45,
+  for_each_slice(run, bricks.count,
+                 per_slice(CandidatesOf<Executor>::sign_bytes(run.parameters, candidate_counts(run))), 0.1, 0.45,
                  [&](BrickRange slice) {
                    Candidates<Executor> own{};
                    evaluate_signs(executor, features, bricks, slice, together ? shared : own, signs.data);
@@ -192,7 +199,8 @@ MeshMemoryView build_exact_surface(R &run) {
   // All at once is faster. If that turns out to need more memory than there is, it is done again in slices.
   const bool together =
       bricks_per_slice(run.settings, bricks.count, run.progress.wanted()) >= bricks.count &&
-      bricks_that_fit(run, bricks.count, CandidatesOf<Executor>::whole_bytes(run.parameters)) >= bricks.count;
+      bricks_that_fit(run, bricks.count, CandidatesOf<Executor>::whole_bytes(run.parameters, candidate_counts(run))) >=
+          bricks.count;
   if (!together) return make_exact_mesh(run, bricks, false);
   const auto mark = executor.arena().mark();
   try {

@@ -18,9 +18,10 @@ class MemoryPlan {
   double whole(double prepared, double peak) const {
     double level = brick_bytes() + (k_.exact ? 0 : 64 * f_.size.bricks);
     if (Executor::kIsCuda && k_.exact)
-      level += f_.size.bricks * CandidatesOf<Executor>::emission_bytes(k_.parameters, f_.size.vertices / bricks(),
-                                                                       f_.size.leaves / bricks()) +
-               CandidatesOf<Executor>::kSpareBytes;
+      level +=
+          f_.size.bricks * CandidatesOf<Executor>::emission_bytes(
+                               k_.parameters, candidates(), f_.size.vertices / bricks(), f_.size.leaves / bricks()) +
+          CandidatesOf<Executor>::kSpareBytes;
     if (Executor::kIsCuda) level += mesh_bytes();
     return std::max(peak, prepared + level + beside_mesh() + mask_bytes());
   }
@@ -34,7 +35,7 @@ class MemoryPlan {
     if (k_.exact) {
       kept += 9 * atoms + 16 * static_cast<double>(f_.caps) + 48 * arcs;
       if (!Executor::kIsCuda) kept += (8 + kChunkBytes) * atoms;
-      most = std::max(most, kept + (Executor::kIsCuda ? kRunBytes : 0.0));
+      most = std::max(most, kept + (Executor::kIsCuda ? run_bytes() : 0.0));
       kept += 20 * arcs + 4 * static_cast<double>(f_.arc_cells);
       most = std::max(most, kept + 52 * arcs);
     } else {
@@ -53,8 +54,16 @@ class MemoryPlan {
 
  private:
   static constexpr double kChunkBytes = 10;  // per atom, of chunks of four
-  static constexpr double kRunBytes = 600000;
 
+  CandidateCounts candidates() const { return {static_cast<double>(f_.atoms), static_cast<double>(f_.arcs)}; }
+  // The smallest run of atoms (solvent_features_cuda.cuh). Larger spheres have more neighbours: rows of those that have
+  // more than shared memory holds.
+  double run_bytes() const {
+    const double wide = std::max(1.0, static_cast<double>(k_.parameters.max_radius) / 3.2);
+    const double neighbors = std::min(static_cast<double>(f_.atoms), 60.0 * wide * wide * wide);
+    const double caps = std::min(neighbors, 28.0 * wide * wide);
+    return 128 * 3 * (30 * caps + 300) + (neighbors > 100 ? 128 * 24 * 1.5 * neighbors : 0.0) + 150000;
+  }
   double bricks() const { return std::max(1.0, f_.size.bricks); }
   // Table, list, signs and layout.
   double brick_bytes() const {
@@ -72,7 +81,9 @@ class MemoryPlan {
     if (!k_.exact) return 65536;
     const double vertices = 3 * f_.size.vertices / bricks(), triangles = 3 * f_.size.triangles / bricks();
     const double slab = vertices * (28 + (k_.shape.texcoords ? 8 : 0) + 5) + triangles * 12;
-    return kLeastSlice * (CandidatesOf<Executor>::emission_bytes(k_.parameters, vertices, kLeavesPerBrick) * 2 + slab) +
+    return kLeastSlice *
+               (CandidatesOf<Executor>::emission_bytes(k_.parameters, candidates(), vertices, kLeavesPerBrick) * 2 +
+                slab) +
            32768;
   }
 

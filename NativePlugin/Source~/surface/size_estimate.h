@@ -47,7 +47,7 @@ SurfaceSize count_size(R &run, uint64_t *brick_entries) {
   }
   return count(find_bricks(executor, run.features, run.lattice), [&](const BrickSet &bricks, uint64_t *signs) {
     if (bricks.count == 0) return;
-    in_slices(bricks, CandidatesOf<Executor>::sign_bytes(run.parameters), [&](BrickRange slice) {
+    in_slices(bricks, CandidatesOf<Executor>::sign_bytes(run.parameters, candidate_counts(run)), [&](BrickRange slice) {
       Candidates<Executor> own{};
       evaluate_signs(executor, run.features, bricks, slice, own, signs);
     });

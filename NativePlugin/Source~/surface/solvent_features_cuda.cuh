@@ -241,10 +241,13 @@ inline void find_caps(CudaExecutor &executor, const CapJob &job) {
       std::min<size_t>((job.run.size() + kCapWarps - 1) / kCapWarps, size_t(executor.multiprocessors()) * 128);
   executor.launch("find_caps", find_caps_kernel, blocks, kCapWarps * kWarp, 0, job);
   if (job.room.neighbors == 0) return;
-  const size_t long_blocks = std::min<size_t>(blocks, size_t(executor.multiprocessors()) * 4);
+  // Rows for as many warps as there is memory for; the others' atoms take turns.
+  const size_t block_bytes = kCapWarps * job.room.neighbors * (sizeof(Cap) + sizeof(float) + sizeof(uint32_t));
+  const size_t long_blocks =
+      static_cast<size_t>(std::max<uint64_t>(1, std::min<uint64_t>({blocks, size_t(executor.multiprocessors()) * 4,
+                                                                    executor.arena().available() / 4 / block_bytes})));
   const auto mark = executor.arena().mark();
-  Span<unsigned char> memory = executor.allocate<unsigned char>(long_blocks * kCapWarps * job.room.neighbors *
-                                                                (sizeof(Cap) + sizeof(float) + sizeof(uint32_t)));
+  Span<unsigned char> memory = executor.allocate<unsigned char>(long_blocks * block_bytes);
   executor.launch("find_long_caps", find_long_caps_kernel, long_blocks, kCapWarps * kWarp, 0, job, memory.data);
   executor.arena().rewind(mark);
 }

@@ -13,6 +13,11 @@ struct SurfaceSize {
   double leaves = 0;  // that own vertices
 };
 
+// How many atoms and arcs there are for bricks to look at.
+struct CandidateCounts {
+  double atoms = 0, arcs = 0;
+};
+
 struct WorkFacts {
   uint64_t atoms = 0, atom_cells = 0, arc_cells = 0;  // cells: entries of the grids' tables, 0 if they are sparse
   uint64_t caps = 0, arcs = 0;                        // of exposed atoms
