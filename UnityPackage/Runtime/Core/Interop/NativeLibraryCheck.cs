@@ -26,7 +26,8 @@ namespace QuickSes.Interop
             catch (DllNotFoundException e)
             {
                 reason = $"The native library {NativeMethods.Library} can't be loaded on {Platform()}: it is missing, or " +
-                         "made for another system, or something that it needs is missing. " + e.Message;
+                         "made for another system, or something that it needs is missing. A checkout of the project has none " +
+                         "until it is built: see Documentation~/building.md. " + e.Message;
             }
             catch (BadImageFormatException e)
             {
