@@ -57,10 +57,11 @@ echo "==== dotnet: test"
 export DOTNET_CLI_TELEMETRY_OPTOUT=1 DOTNET_NOLOGO=1
 dotnet_tests=Tests/DotNet~/Core.Tests
 if [ -z "$(dotnet --list-sdks 2>/dev/null)" ]; then
-  echo "No .NET SDK here (8 or later, command dotnet): the C# tests are skipped."
+  echo "No .NET SDK here (command dotnet): the C# tests are skipped."
 elif ! dotnet restore "$dotnet_tests"; then
-  echo "The NuGet packages of the C# tests could not be had (is there a network?): these tests are skipped." >&2
+  echo "The NuGet packages of the C# tests could not be had (is there a network?)." >&2
   if [ "${CI:-}" = true ]; then exit 1; fi
+  echo "The C# tests are skipped."
 else
   QUICKSES_NATIVE="$PWD/.build/cpu/lib/libquickses.so" dotnet test --no-restore "$dotnet_tests"
 fi

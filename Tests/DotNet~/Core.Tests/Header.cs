@@ -7,7 +7,7 @@ using System.Linq;
 using System.Text;
 using System.Text.RegularExpressions;
 
-/// <summary>A field as the header declares it (type, length of an array or 1) and as the C compiler lays it out.</summary>
+/// <summary>A field as the header declares it and as the C compiler lays it out.</summary>
 internal sealed class HeaderField
 {
     public string Name, Type;
