@@ -23,7 +23,8 @@ namespace QuickSes.Tests
             {
                 using Structure structure = Meshes.Crambin();
                 Context = Meshes.ContextOf(structure);
-                Assert.That(Trajectory.TryOpen(File.ReadAllBytes(Repository.CrambinPath), TrajectoryFormat.Pdb, out _trajectory, out _), Is.True);
+                Assert.That(Trajectory.TryOpen(File.ReadAllBytes(Repository.CrambinPath), TrajectoryFormat.Pdb,
+                    out _trajectory, out _), Is.True);
                 _positions = new float[3 * _trajectory.AtomCount];
                 _indices = structure.FileIndices.ToArray();
                 _colors = new byte[4 * structure.AtomCount];

@@ -28,7 +28,8 @@ namespace QuickSes.Tests
             SurfaceMeshView mesh = Meshes.Compute(context, settings);
             Assert.That(mesh.VertexLayout, Is.EqualTo(SurfaceVertexLayout.Separate));
             Assert.That(() => mesh.Vertices.Length, Throws.InvalidOperationException);
-            float[] positions = mesh.Positions.ToArray(), normals = mesh.Normals.ToArray(), uv = mesh.Texcoords.ToArray();
+            float[] positions = mesh.Positions.ToArray(), normals = mesh.Normals.ToArray(),
+                uv = mesh.Texcoords.ToArray();
             byte[] rgba = mesh.Colors.ToArray();
             uint[] owners = mesh.Owners.ToArray(), indices = mesh.Indices.ToArray();
             for (int v = 0; v < owners.Length; ++v)
@@ -88,7 +89,8 @@ namespace QuickSes.Tests
                 if (triangle.Any(v => visible[mesh.Owners[(int)v]] == 0))
                     continue;
                 foreach (uint v in triangle)
-                    corners.Add((mesh.Positions[3 * (int)v], mesh.Positions[3 * (int)v + 1], mesh.Positions[3 * (int)v + 2]));
+                    corners.Add(
+                        (mesh.Positions[3 * (int)v], mesh.Positions[3 * (int)v + 1], mesh.Positions[3 * (int)v + 2]));
             }
             return corners;
         }

@@ -26,8 +26,10 @@ namespace QuickSes.Tests
             QuickSesException error = Thrown(() => context.SetPositions(new[] { 0, 0, 0, 3, float.NaN, 0 }));
             Assert.That(error.Status, Is.EqualTo(QuickSesStatus.InvalidArgument));
             Assert.That(error.Message, Does.Contain("atom 1").And.Contain("finite"));
-            Assert.That(Thrown(() => context.SetAtoms(TwoAtoms, new[] { -1f, 1 })).Message, Does.Contain("radius of atom 0"));
-            Assert.That(Thrown(() => context.SetPositions(TwoAtoms, new uint[] { 1, 2 })).Message, Does.Contain("indices[1]"));
+            Assert.That(Thrown(() => context.SetAtoms(TwoAtoms, new[] { -1f, 1 })).Message,
+                Does.Contain("radius of atom 0"));
+            Assert.That(Thrown(() => context.SetPositions(TwoAtoms, new uint[] { 1, 2 })).Message,
+                Does.Contain("indices[1]"));
             Assert.That(mesh.IsValid, Is.True);
             Assert.That(Meshes.Compute(context, SurfaceSettings.Default).VertexCount, Is.Positive);
         }
@@ -36,13 +38,20 @@ namespace QuickSes.Tests
         public void WrongLengthsAreNamed()
         {
             using SurfaceContext context = ContextOfTwo();
-            Assert.That(() => context.SetAtoms(new float[5], TwoRadii), Throws.ArgumentException.With.Property("ParamName").EqualTo("positions"));
-            Assert.That(() => context.SetPositions(new float[9]), Throws.ArgumentException.With.Property("ParamName").EqualTo("positions"));
-            Assert.That(() => context.SetPositions(TwoAtoms, new uint[3]), Throws.ArgumentException.With.Property("ParamName").EqualTo("indices"));
-            Assert.That(() => context.SetPositions(new float[7], new uint[2]), Throws.ArgumentException.With.Property("ParamName").EqualTo("positions"));
-            Assert.That(() => context.SetColors(new byte[7]), Throws.ArgumentException.With.Property("ParamName").EqualTo("rgba"));
-            Assert.That(() => context.SetVisible(new byte[3]), Throws.ArgumentException.With.Property("ParamName").EqualTo("visible"));
-            Assert.That(() => context.SetTexcoords(new float[3]), Throws.ArgumentException.With.Property("ParamName").EqualTo("uv"));
+            Assert.That(() => context.SetAtoms(new float[5], TwoRadii),
+                Throws.ArgumentException.With.Property("ParamName").EqualTo("positions"));
+            Assert.That(() => context.SetPositions(new float[9]),
+                Throws.ArgumentException.With.Property("ParamName").EqualTo("positions"));
+            Assert.That(() => context.SetPositions(TwoAtoms, new uint[3]),
+                Throws.ArgumentException.With.Property("ParamName").EqualTo("indices"));
+            Assert.That(() => context.SetPositions(new float[7], new uint[2]),
+                Throws.ArgumentException.With.Property("ParamName").EqualTo("positions"));
+            Assert.That(() => context.SetColors(new byte[7]),
+                Throws.ArgumentException.With.Property("ParamName").EqualTo("rgba"));
+            Assert.That(() => context.SetVisible(new byte[3]),
+                Throws.ArgumentException.With.Property("ParamName").EqualTo("visible"));
+            Assert.That(() => context.SetTexcoords(new float[3]),
+                Throws.ArgumentException.With.Property("ParamName").EqualTo("uv"));
         }
 
         [Test]
@@ -55,7 +64,8 @@ namespace QuickSes.Tests
             settings = SurfaceSettings.Default;
             settings.Surface = (SurfaceKind)17;
             Assert.That(Thrown(() => context.Compute(settings, out _)).Message, Does.Contain("surface is 17"));
-            Assert.That(() => context.Begin(default), Throws.ArgumentException.With.Message.Contains("SurfaceSettings.Default"));
+            Assert.That(() => context.Begin(default),
+                Throws.ArgumentException.With.Message.Contains("SurfaceSettings.Default"));
             Assert.That(() => settings.SetLevels(new float[9]), Throws.ArgumentException);
             Assert.That(() => settings.GetLevel(settings.LevelCount), Throws.TypeOf<ArgumentOutOfRangeException>());
         }
@@ -64,28 +74,35 @@ namespace QuickSes.Tests
         public void SettingsReachTheLibrary()
         {
             // Each is refused by its own name, so each lands in its own field.
-            (string Name, Action<SurfaceContext> Begin)[] cases =
-            {
-                ("probe_radius", c => { SurfaceSettings s = SurfaceSettings.Default; s.ProbeRadius = -1; c.Begin(s); }),
-                ("method", c => { SurfaceSettings s = SurfaceSettings.Default; s.Method = (SurfaceMethod)9; c.Begin(s); }),
-                ("winding", c => { SurfaceSettings s = SurfaceSettings.Default; s.Winding = (SurfaceWinding)9; c.Begin(s); }),
-                ("relaxation_steps", c => { SurfaceSettings s = SurfaceSettings.Default; s.RelaxationSteps = 1000; c.Begin(s); }),
-                ("slice_size", c => { SurfaceSettings s = SurfaceSettings.Default; s.SliceSize = 3; c.Begin(s); }),
-                ("vertex_layout", c => { SurfaceSettings s = SurfaceSettings.Default; s.VertexLayout = (SurfaceVertexLayout)9; c.Begin(s); }),
-                ("frame_budget_ms", c => { SurfaceSettings s = SurfaceSettings.Default; s.FrameBudget = -1; c.Begin(s); }),
-                ("levels", c => { SurfaceSettings s = SurfaceSettings.Default; s.SetLevels(new[] { 1f, 2f }); c.Begin(s); })
-            };
+            ExpectRefused("probe_radius", (ref SurfaceSettings settings) => settings.ProbeRadius = -1);
+            ExpectRefused("method", (ref SurfaceSettings settings) => settings.Method = (SurfaceMethod)9);
+            ExpectRefused("winding", (ref SurfaceSettings settings) => settings.Winding = (SurfaceWinding)9);
+            ExpectRefused("relaxation_steps", (ref SurfaceSettings settings) => settings.RelaxationSteps = 1000);
+            ExpectRefused("slice_size", (ref SurfaceSettings settings) => settings.SliceSize = 3);
+            ExpectRefused("vertex_layout",
+                (ref SurfaceSettings settings) => settings.VertexLayout = (SurfaceVertexLayout)9);
+            ExpectRefused("frame_budget_ms", (ref SurfaceSettings settings) => settings.FrameBudget = -1);
+            ExpectRefused("levels", (ref SurfaceSettings settings) => settings.SetLevels(new[] { 1f, 2f }));
+        }
+
+        private delegate void Change(ref SurfaceSettings settings);
+
+        private static void ExpectRefused(string name, Change change)
+        {
             using SurfaceContext context = ContextOfTwo();
-            foreach ((string name, Action<SurfaceContext> begin) in cases)
-                Assert.That(Thrown(() => begin(context)).Message, Does.Contain(name));
+            SurfaceSettings settings = SurfaceSettings.Default;
+            change(ref settings);
+            Assert.That(Thrown(() => context.Begin(settings)).Message, Does.Contain(name));
         }
 
         [Test]
         public void NoAtomsIsAProgrammingError()
         {
             using var context = new SurfaceContext();
-            Assert.That(Thrown(() => context.Begin(SurfaceSettings.Default)).Status, Is.EqualTo(QuickSesStatus.NoResult));
-            Assert.That(Thrown(() => context.Compute(SurfaceSettings.Default, out _)).Status, Is.EqualTo(QuickSesStatus.NoResult));
+            Assert.That(Thrown(() => context.Begin(SurfaceSettings.Default)).Status,
+                Is.EqualTo(QuickSesStatus.NoResult));
+            Assert.That(Thrown(() => context.Compute(SurfaceSettings.Default, out _)).Status,
+                Is.EqualTo(QuickSesStatus.NoResult));
             Assert.That(context.TryGetReport(out _), Is.False);
         }
 
@@ -106,7 +123,8 @@ namespace QuickSes.Tests
         public void MemoryThatDoesNotSufficeIsReturned()
         {
             using Structure structure = Meshes.Crambin();
-            using var context = new SurfaceContext(new SurfaceContextOptions { Backend = SurfaceBackend.Cpu, MemoryBudget = 1 << 20 });
+            using var context = new SurfaceContext(
+                new SurfaceContextOptions { Backend = SurfaceBackend.Cpu, MemoryBudget = 1 << 20 });
             context.SetAtoms(structure.Positions, structure.Radii);
             SurfaceSettings settings = SurfaceSettings.Default;
             settings.Spacing = 0.1f;
@@ -128,7 +146,8 @@ namespace QuickSes.Tests
             Assert.That(hasCuda, Is.EqualTo(SurfaceContext.DeviceCount > 0));
             Assert.That(reason == "", Is.EqualTo(hasCuda));
             var options = new SurfaceContextOptions { Backend = SurfaceBackend.Cuda };
-            Assert.That(SurfaceContext.TryCreate(options, out SurfaceContext cuda, out QuickSesError error), Is.EqualTo(hasCuda));
+            Assert.That(SurfaceContext.TryCreate(options, out SurfaceContext cuda, out QuickSesError error),
+                Is.EqualTo(hasCuda));
             cuda?.Dispose();
             if (!hasCuda)
             {
@@ -137,7 +156,8 @@ namespace QuickSes.Tests
                 Assert.That(Thrown(() => new SurfaceContext(options)).Message, Is.EqualTo(error.Message));
                 Assert.That(SurfaceContext.GetBackendDescription(SurfaceBackend.Auto).Reason, Does.Contain(reason));
             }
-            Assert.That(SurfaceContext.TryCreate(new SurfaceContextOptions { Backend = (SurfaceBackend)9 }, out cuda, out error), Is.False);
+            Assert.That(SurfaceContext.TryCreate(new SurfaceContextOptions { Backend = (SurfaceBackend)9 }, out cuda,
+                out error), Is.False);
             Assert.That(error.Status, Is.EqualTo(QuickSesStatus.InvalidArgument));
             Assert.That(cuda, Is.Null);
         }

@@ -23,13 +23,14 @@ internal sealed class HeaderStruct
 }
 
 /// <summary>
-/// What quickses.h declares. Names are read from its text; sizes, offsets and values come from a C program that is made of
-/// these names, compiled and run.
+/// What quickses.h declares. Names are read from its text; sizes, offsets and values come from a C program that is made
+/// of these names, compiled and run.
 /// </summary>
 internal sealed class Header
 {
     public readonly Dictionary<string, HeaderStruct> Structs = new Dictionary<string, HeaderStruct>();
-    public readonly Dictionary<string, Dictionary<string, int>> Enums = new Dictionary<string, Dictionary<string, int>>();
+    public readonly Dictionary<string, Dictionary<string, int>> Enums =
+        new Dictionary<string, Dictionary<string, int>>();
     public readonly Dictionary<string, int> EnumSizes = new Dictionary<string, int>();
     public readonly Dictionary<string, int> Constants = new Dictionary<string, int>();
 
@@ -50,7 +51,8 @@ internal sealed class Header
             Enums[match.Groups[1].Value] =
                 Regex.Matches(match.Groups[2].Value, @"QSES_\w+").ToDictionary(name => name.Value, _ => 0);
         foreach (Match match in Regex.Matches(text, @"QSES_API[^;]*?(qses_\w+)\(([^;]*?)\);", RegexOptions.Singleline))
-            Functions[match.Groups[1].Value] = match.Groups[2].Value.Trim() == "void" ? 0 : match.Groups[2].Value.Split(',').Length;
+            Functions[match.Groups[1].Value] =
+                match.Groups[2].Value.Trim() == "void" ? 0 : match.Groups[2].Value.Split(',').Length;
         AskCompiler();
     }
 
@@ -94,7 +96,8 @@ internal sealed class Header
 
         using var folder = new TemporaryFolder();
         Repository.CompileC(program.ToString(), folder.File("layout"));
-        var numbers = new Queue<int>(Repository.Run(folder.File("layout"), "").Split('\n', StringSplitOptions.RemoveEmptyEntries)
+        var numbers = new Queue<int>(
+            Repository.Run(folder.File("layout"), "").Split('\n', StringSplitOptions.RemoveEmptyEntries)
             .Select(line => int.Parse(line, CultureInfo.InvariantCulture)));
         foreach (HeaderStruct type in Structs.Values)
         {

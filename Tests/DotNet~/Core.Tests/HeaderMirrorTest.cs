@@ -13,7 +13,8 @@ namespace QuickSes.Tests
     /// <summary>What Runtime/Core declares is what the header declares.</summary>
     public sealed class HeaderMirrorTest
     {
-        private const BindingFlags InstanceFields = BindingFlags.Instance | BindingFlags.Public | BindingFlags.NonPublic;
+        private const BindingFlags InstanceFields =
+            BindingFlags.Instance | BindingFlags.Public | BindingFlags.NonPublic;
 
         // Name in C, prefix of the enumerators, type in C#.
         private static readonly (string C, string Prefix, Type Type)[] Enums =
@@ -65,7 +66,8 @@ namespace QuickSes.Tests
             Assert.That(mirror, Is.Not.Null, "no such structure in C#");
             Assert.That(mirror.IsLayoutSequential, Is.True);
             FieldInfo[] fields = mirror.GetFields(InstanceFields);
-            Assert.That(fields.Select(field => field.Name), Is.EquivalentTo(native.Fields.Select(field => Header.PascalCase(field.Name))));
+            Assert.That(fields.Select(field => field.Name),
+                Is.EquivalentTo(native.Fields.Select(field => Header.PascalCase(field.Name))));
             Assert.That(ManagedSize(mirror), Is.EqualTo(native.Size), "size as C# code sees it");
             Assert.That(Marshal.SizeOf(mirror), Is.EqualTo(native.Size), "size as P/Invoke sees it");
             foreach (HeaderField field in native.Fields)
@@ -133,8 +135,10 @@ namespace QuickSes.Tests
             foreach (MethodInfo method in methods)
             {
                 Assert.That(method.GetParameters().Length, Is.EqualTo(Header.Functions[method.Name]), method.Name);
-                Assert.That(method.GetCustomAttribute<DllImportAttribute>().CallingConvention, Is.EqualTo(CallingConvention.Cdecl));
-                Assert.That(NativeLibrary.TryGetExport(NativeLibrarySetup.Library, method.Name, out _), Is.True, method.Name);
+                Assert.That(method.GetCustomAttribute<DllImportAttribute>().CallingConvention,
+                    Is.EqualTo(CallingConvention.Cdecl));
+                Assert.That(NativeLibrary.TryGetExport(NativeLibrarySetup.Library, method.Name, out _), Is.True,
+                    method.Name);
             }
         }
     }

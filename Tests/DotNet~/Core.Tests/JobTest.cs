@@ -45,7 +45,8 @@ namespace QuickSes.Tests
                     Assert.That(mesh.Frame, Is.EqualTo(7));
                     Assert.That(mesh.LevelCount, Is.EqualTo(4));
                     Assert.That(mesh.Level, Is.GreaterThan(lastLevel));
-                    Assert.That(mesh.Spacing, Is.EqualTo(mesh.Level == 3 ? settings.Spacing : settings.GetLevel(mesh.Level)));
+                    Assert.That(mesh.Spacing,
+                        Is.EqualTo(mesh.Level == 3 ? settings.Spacing : settings.GetLevel(mesh.Level)));
                     Assert.That(Meshes.IsClosed(mesh.Indices), Is.True);
                     lastLevel = mesh.Level;
                 }
@@ -205,7 +206,8 @@ namespace QuickSes.Tests
         {
             SurfaceContext context = Meshes.CrambinContext();
             context.Begin(LongWork);
-            FieldInfo handle = typeof(SurfaceContext).GetField("_handle", BindingFlags.Instance | BindingFlags.NonPublic);
+            FieldInfo handle = typeof(SurfaceContext).GetField("_handle",
+                BindingFlags.Instance | BindingFlags.NonPublic);
             return new WeakReference(handle.GetValue(context), trackResurrection: true);
         }
     }

@@ -10,7 +10,8 @@ namespace QuickSes.Tests
     {
         public static Structure Crambin()
         {
-            Assert.That(Structure.TryOpen(Repository.CrambinPath, default, out Structure structure, out QuickSesError error),
+            Assert.That(
+                Structure.TryOpen(Repository.CrambinPath, default, out Structure structure, out QuickSesError error),
                 Is.True, error.ToString());
             return structure;
         }
@@ -35,7 +36,9 @@ namespace QuickSes.Tests
             return mesh;
         }
 
-        /// <summary>Every edge has one triangle on each of its sides, which run along it in opposite directions.</summary>
+        /// <summary>
+        /// Every edge has one triangle on each of its sides, which run along it in opposite directions.
+        /// </summary>
         public static bool IsClosed(ReadOnlySpan<uint> indices)
         {
             var edges = new HashSet<(uint, uint)>();

@@ -22,8 +22,8 @@ public sealed class NativeLibrarySetup
     {
         if (!File.Exists(LibraryPath))
             throw new FileNotFoundException(
-                $"No native library at {LibraryPath}: build it (cmake --preset cpu && cmake --build --preset cpu), or give its " +
-                "path in QUICKSES_NATIVE.");
+                $"No native library at {LibraryPath}: build it (cmake --preset cpu && cmake --build --preset cpu), " +
+                "or give its path in QUICKSES_NATIVE.");
         s_library = NativeLibrary.Load(LibraryPath);
         NativeLibrary.SetDllImportResolver(typeof(SurfaceContext).Assembly, Resolve);
     }

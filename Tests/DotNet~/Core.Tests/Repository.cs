@@ -18,8 +18,9 @@ internal static class Repository
     {
         string file = output + ".c";
         File.WriteAllText(file, source);
+        string include = Path.GetDirectoryName(Path.GetDirectoryName(Header));
         Run(Environment.GetEnvironmentVariable("CC") ?? "cc",
-            $"-std=c99 -Wall -Werror {options} -I \"{Path.GetDirectoryName(Path.GetDirectoryName(Header))}\" \"{file}\" -o \"{output}\"");
+            $"-std=c99 -Wall -Werror {options} -I \"{include}\" \"{file}\" -o \"{output}\"");
     }
 
     /// <summary>Runs a program and gives what it printed.</summary>
@@ -34,14 +35,16 @@ internal static class Repository
         string printed = process.StandardOutput.ReadToEnd();
         process.WaitForExit();
         if (process.ExitCode != 0)
-            throw new InvalidOperationException($"{program} {arguments}\nended with {process.ExitCode}:\n{errors.Result}");
+            throw new InvalidOperationException(
+                $"{program} {arguments}\nended with {process.ExitCode}:\n{errors.Result}");
         return printed;
     }
 
     private static string FindRoot()
     {
         for (string folder = AppContext.BaseDirectory; folder != null; folder = Path.GetDirectoryName(folder))
-            if (File.Exists(Path.Combine(folder, "package.json")) && Directory.Exists(Path.Combine(folder, "NativePlugin")))
+            if (File.Exists(Path.Combine(folder, "package.json")) &&
+                Directory.Exists(Path.Combine(folder, "NativePlugin")))
                 return folder;
         throw new DirectoryNotFoundException($"{AppContext.BaseDirectory} is not inside the project");
     }
@@ -51,7 +54,8 @@ internal static class Repository
 internal sealed class TemporaryFolder : IDisposable
 {
     public readonly string Path =
-        Directory.CreateDirectory(System.IO.Path.Combine(System.IO.Path.GetTempPath(), System.IO.Path.GetRandomFileName())).FullName;
+        Directory.CreateDirectory(
+            System.IO.Path.Combine(System.IO.Path.GetTempPath(), System.IO.Path.GetRandomFileName())).FullName;
 
     public string File(string name) => System.IO.Path.Combine(Path, name);
 

@@ -12,14 +12,16 @@ namespace QuickSes.Tests
     {
         // Columns of the PDB format.
         private static List<string> AtomLines() =>
-            File.ReadLines(Repository.CrambinPath).Where(line => line.StartsWith("ATOM  ") || line.StartsWith("HETATM")).ToList();
+            File.ReadLines(Repository.CrambinPath).Where(line =>
+                line.StartsWith("ATOM  ") || line.StartsWith("HETATM")).ToList();
 
         private static float Column(string line, int start, int length) =>
             float.Parse(line.Substring(start, length), CultureInfo.InvariantCulture);
 
         private static Structure Open(StructureOptions options)
         {
-            Assert.That(Structure.TryOpen(Repository.CrambinPath, options, out Structure structure, out QuickSesError error),
+            Assert.That(
+                Structure.TryOpen(Repository.CrambinPath, options, out Structure structure, out QuickSesError error),
                 Is.True, error.ToString());
             return structure;
         }
@@ -31,7 +33,8 @@ namespace QuickSes.Tests
             using Structure structure = Open(default);
             Assert.That(structure.AtomCount, Is.EqualTo(lines.Count));
             Assert.That(structure.FileAtomCount, Is.EqualTo(lines.Count));
-            Assert.That((structure.Format, structure.Model, structure.ModelCount), Is.EqualTo((StructureFormat.Pdb, 1, 1)));
+            Assert.That((structure.Format, structure.Model, structure.ModelCount),
+                Is.EqualTo((StructureFormat.Pdb, 1, 1)));
             for (int i = 0; i < lines.Count; ++i)
             {
                 for (int d = 0; d < 3; ++d)
@@ -45,10 +48,12 @@ namespace QuickSes.Tests
                 Assert.That(structure.FileIndices[i], Is.EqualTo((uint)i));
                 Assert.That(atom.InsertionCode, Is.EqualTo(' '));
                 Assert.That(atom.IsWater || atom.IsHetero || atom.IsHydrogen, Is.False);
-                int element = new Dictionary<string, int> { ["C"] = 6, ["N"] = 7, ["O"] = 8, ["S"] = 16 }[lines[i].Substring(76, 2).Trim()];
+                string symbol = lines[i].Substring(76, 2).Trim();
+                int element = new Dictionary<string, int> { ["C"] = 6, ["N"] = 7, ["O"] = 8, ["S"] = 16 }[symbol];
                 Assert.That((int)atom.Element, Is.EqualTo(element));
                 Assert.That((int)structure.FileElements[i], Is.EqualTo(element));
-                Assert.That(structure.Radii[i], Is.EqualTo(element switch { 6 => 1.70f, 7 => 1.55f, 8 => 1.52f, _ => 1.80f }));
+                Assert.That(structure.Radii[i],
+                    Is.EqualTo(element switch { 6 => 1.70f, 7 => 1.55f, 8 => 1.52f, _ => 1.80f }));
             }
             Assert.That(() => structure.GetAtom(lines.Count), Throws.TypeOf<ArgumentOutOfRangeException>());
         }
@@ -82,7 +87,8 @@ namespace QuickSes.Tests
             uint[] Kept(StructureOptions options)
             {
                 options.Format = StructureFormat.Pdb;
-                Assert.That(Structure.TryOpen(bytes, options, out Structure structure, out QuickSesError error), Is.True, error.ToString());
+                Assert.That(Structure.TryOpen(bytes, options, out Structure structure, out QuickSesError error),
+                    Is.True, error.ToString());
                 using (structure)
                     return structure.FileIndices.ToArray();
             }
@@ -108,7 +114,8 @@ namespace QuickSes.Tests
             using var folder = new TemporaryFolder();
             string path = folder.File("Krambin 溶媒 ü.pdb");
             File.Copy(Repository.CrambinPath, path);
-            Assert.That(Structure.TryOpen(path, default, out Structure structure, out QuickSesError error), Is.True, error.ToString());
+            Assert.That(Structure.TryOpen(path, default, out Structure structure, out QuickSesError error), Is.True,
+                error.ToString());
             structure.Dispose();
         }
 

@@ -9,7 +9,8 @@ using System.Runtime.Loader;
 namespace QuickSes.Tests
 {
     /// <summary>
-    /// What is said where the native library can't be used. Each case loads the assembly once more, with another library.
+    /// What is said where the native library can't be used. Each case loads the assembly once more, with another
+    /// library.
     /// </summary>
     public sealed class SupportTest
     {
@@ -30,7 +31,8 @@ namespace QuickSes.Tests
 
         [Test]
         public void OtherArchitectureIsTold() =>
-            ExpectUnsupported(() => throw new BadImageFormatException("wrong format"), "another processor architecture");
+            ExpectUnsupported(() => throw new BadImageFormatException("wrong format"),
+                "another processor architecture");
 
         [Test]
         public void OtherLibraryOfTheSameNameIsTold()
@@ -63,17 +65,20 @@ namespace QuickSes.Tests
                 Assert.That(arguments[0], Does.Contain(sentence));
 
                 // Nothing else lets the runtime's exception through either.
+                Type options = core.GetType("QuickSes.StructureOptions");
                 Type structure = core.GetType("QuickSes.Structure");
                 MethodInfo tryOpen = structure.GetMethod("TryOpen", new[]
                 {
-                    typeof(string), core.GetType("QuickSes.StructureOptions").MakeByRefType(), structure.MakeByRefType(),
+                    typeof(string), options.MakeByRefType(), structure.MakeByRefType(),
                     core.GetType("QuickSes.QuickSesError").MakeByRefType()
                 });
-                var opening = new[] { Repository.CrambinPath, Activator.CreateInstance(core.GetType("QuickSes.StructureOptions")), null, null };
+                var opening = new[] { Repository.CrambinPath, Activator.CreateInstance(options), null, null };
                 Assert.That(tryOpen.Invoke(null, opening), Is.False);
                 Assert.That(opening[3].ToString(), Does.Contain(sentence));
-                TargetInvocationException thrown = Assert.Throws<TargetInvocationException>(() => Activator.CreateInstance(
-                    core.GetType("QuickSes.SurfaceContext"), Activator.CreateInstance(core.GetType("QuickSes.SurfaceContextOptions"))));
+                Type context = core.GetType("QuickSes.SurfaceContext");
+                object defaults = Activator.CreateInstance(core.GetType("QuickSes.SurfaceContextOptions"));
+                TargetInvocationException thrown =
+                    Assert.Throws<TargetInvocationException>(() => Activator.CreateInstance(context, defaults));
                 Assert.That(thrown.InnerException.GetType().Name, Is.EqualTo(nameof(QuickSesException)));
                 Assert.That(thrown.InnerException.Message, Does.Contain(sentence));
             }

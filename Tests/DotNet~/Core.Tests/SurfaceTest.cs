@@ -56,7 +56,8 @@ namespace QuickSes.Tests
             Assert.That(report.Area, Is.EqualTo(area).Within(1e-5).Percent);
             Assert.That(report.Volume, Is.EqualTo(volume).Within(1e-4).Percent);
 
-            float[] low = { float.MaxValue, float.MaxValue, float.MaxValue }, high = { float.MinValue, float.MinValue, float.MinValue };
+            float[] low = { float.MaxValue, float.MaxValue, float.MaxValue },
+                high = { float.MinValue, float.MinValue, float.MinValue };
             for (int i = 0; i < mesh.Positions.Length; ++i)
             {
                 low[i % 3] = Math.Min(low[i % 3], mesh.Positions[i]);
@@ -77,7 +78,8 @@ namespace QuickSes.Tests
             double volume = Meshes.Measure(outward.Positions, outward.Indices).Volume;
             settings.Winding = SurfaceWinding.Reversed;
             SurfaceMeshView reversed = Meshes.Compute(context, settings);
-            Assert.That(Meshes.Measure(reversed.Positions, reversed.Indices).Volume, Is.EqualTo(-volume).Within(1e-9).Percent);
+            Assert.That(Meshes.Measure(reversed.Positions, reversed.Indices).Volume,
+                Is.EqualTo(-volume).Within(1e-9).Percent);
         }
 
         [Test]
@@ -89,7 +91,8 @@ namespace QuickSes.Tests
             settings.PatchTypes = true;
             SurfaceMeshView mesh = Meshes.Compute(context, settings);
             Assert.That(mesh.Patches.Length, Is.EqualTo(mesh.VertexCount));
-            Assert.That(mesh.Patches.ToArray(), Is.SupersetOf(new[] { SurfacePatch.Contact, SurfacePatch.Toroidal, SurfacePatch.Reentrant }));
+            Assert.That(mesh.Patches.ToArray(),
+                Is.SupersetOf(new[] { SurfacePatch.Contact, SurfacePatch.Toroidal, SurfacePatch.Reentrant }));
         }
 
         [Test]

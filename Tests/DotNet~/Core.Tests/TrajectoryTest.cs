@@ -25,7 +25,8 @@ namespace QuickSes.Tests
                 float[] p = Frame(k);
                 for (int i = 0; i < (k == shortFrame ? AtomCount - 1 : AtomCount); ++i)
                     text.Append(string.Format(CultureInfo.InvariantCulture,
-                        "ATOM  {0,5}  CA  GLY A{1,4}    {2,8:F3}{3,8:F3}{4,8:F3}  1.00  0.00           C  \n", i + 1, i + 1,
+                        "ATOM  {0,5}  CA  GLY A{1,4}    {2,8:F3}{3,8:F3}{4,8:F3}  1.00  0.00           C  \n",
+                        i + 1, i + 1,
                         p[3 * i], p[3 * i + 1], p[3 * i + 2]));
                 text.Append("ENDMDL\n");
             }
@@ -34,7 +35,8 @@ namespace QuickSes.Tests
 
         private static Trajectory Open(byte[] bytes)
         {
-            Assert.That(Trajectory.TryOpen(bytes, TrajectoryFormat.Pdb, out Trajectory trajectory, out QuickSesError error),
+            Assert.That(
+                Trajectory.TryOpen(bytes, TrajectoryFormat.Pdb, out Trajectory trajectory, out QuickSesError error),
                 Is.True, error.ToString());
             return trajectory;
         }
@@ -43,12 +45,14 @@ namespace QuickSes.Tests
         public void FramesComeInAnyOrder()
         {
             using Trajectory trajectory = Open(Ensemble());
-            Assert.That((trajectory.FrameCount, trajectory.AtomCount, trajectory.Format), Is.EqualTo(((long)FrameCount, AtomCount, TrajectoryFormat.Pdb)));
+            Assert.That((trajectory.FrameCount, trajectory.AtomCount, trajectory.Format),
+                Is.EqualTo(((long)FrameCount, AtomCount, TrajectoryFormat.Pdb)));
             Assert.That(trajectory.HasBox || trajectory.IsIncomplete || trajectory.IsUnwrapped, Is.False);
             var positions = new float[3 * AtomCount];
             foreach (int k in new[] { 2, 0, 1, 2 })
             {
-                Assert.That(trajectory.TryReadFrame(k, positions, out TrajectoryFrame frame, out QuickSesError error), Is.True, error.ToString());
+                Assert.That(trajectory.TryReadFrame(k, positions, out TrajectoryFrame frame, out QuickSesError error),
+                    Is.True, error.ToString());
                 Assert.That(positions, Is.EqualTo(Frame(k)));
                 Assert.That(frame.HasBox, Is.False);
                 Assert.That(frame.GetBoxVector(2), Is.EqualTo((0.0, 0.0, 0.0)));
@@ -60,7 +64,8 @@ namespace QuickSes.Tests
         {
             using var folder = new TemporaryFolder();
             File.WriteAllBytes(folder.File("ensemble.pdb"), Ensemble());
-            Assert.That(Trajectory.TryOpen(folder.File("ensemble.pdb"), TrajectoryFormat.Auto, out Trajectory trajectory, out _), Is.True);
+            Assert.That(Trajectory.TryOpen(folder.File("ensemble.pdb"), TrajectoryFormat.Auto,
+                out Trajectory trajectory, out _), Is.True);
             using (trajectory)
             {
                 var positions = new float[3 * AtomCount];
@@ -72,7 +77,8 @@ namespace QuickSes.Tests
         [Test]
         public void BoxIsThatOfTheFile()
         {
-            using Trajectory trajectory = Open(Ensemble("CRYST1   20.000   30.000   40.000  90.00  90.00  90.00 P 1           1\n"));
+            using Trajectory trajectory = Open(
+                Ensemble("CRYST1   20.000   30.000   40.000  90.00  90.00  90.00 P 1           1\n"));
             Assert.That(trajectory.HasBox, Is.True);
             var positions = new float[3 * AtomCount];
             Assert.That(trajectory.TryReadFrame(1, positions, out TrajectoryFrame frame, out _), Is.True);
@@ -84,7 +90,8 @@ namespace QuickSes.Tests
                 Assert.That(new[] { x, y, z }[k], Is.EqualTo(edges[k]).Within(1e-6));
                 Assert.That(Math.Abs(x) + Math.Abs(y) + Math.Abs(z), Is.EqualTo(edges[k]).Within(1e-6));
             }
-            Assert.That(trajectory.TryUnwrap(Enumerable.Repeat((byte)6, AtomCount).ToArray(), out QuickSesError error), Is.True, error.ToString());
+            Assert.That(trajectory.TryUnwrap(Enumerable.Repeat((byte)6, AtomCount).ToArray(), out QuickSesError error),
+                Is.True, error.ToString());
             Assert.That(trajectory.IsUnwrapped, Is.True);
         }
 
@@ -115,7 +122,8 @@ namespace QuickSes.Tests
         [Test]
         public void FaultsAreNamed()
         {
-            Assert.That(Trajectory.TryOpen("/no/such.dcd", TrajectoryFormat.Auto, out Trajectory trajectory, out QuickSesError error), Is.False);
+            Assert.That(Trajectory.TryOpen("/no/such.dcd", TrajectoryFormat.Auto, out Trajectory trajectory,
+                out QuickSesError error), Is.False);
             Assert.That(trajectory, Is.Null);
             Assert.That(error.Status, Is.EqualTo(QuickSesStatus.FileError));
             Assert.That(error.Message, Does.Contain("/no/such.dcd"));
@@ -128,11 +136,14 @@ namespace QuickSes.Tests
 
             trajectory = Open(Ensemble());
             var positions = new float[3 * AtomCount];
-            Assert.That(() => trajectory.TryReadFrame(FrameCount, positions, out _, out _), Throws.TypeOf<ArgumentOutOfRangeException>());
-            Assert.That(() => trajectory.TryReadFrame(-1, positions, out _, out _), Throws.TypeOf<ArgumentOutOfRangeException>());
+            Assert.That(() => trajectory.TryReadFrame(FrameCount, positions, out _, out _),
+                Throws.TypeOf<ArgumentOutOfRangeException>());
+            Assert.That(() => trajectory.TryReadFrame(-1, positions, out _, out _),
+                Throws.TypeOf<ArgumentOutOfRangeException>());
             Assert.That(() => trajectory.TryReadFrame(0, new float[3], out _, out _), Throws.ArgumentException);
             trajectory.Dispose();
-            Assert.That(() => trajectory.TryReadFrame(0, positions, out _, out _), Throws.TypeOf<ObjectDisposedException>());
+            Assert.That(() => trajectory.TryReadFrame(0, positions, out _, out _),
+                Throws.TypeOf<ObjectDisposedException>());
         }
     }
 }

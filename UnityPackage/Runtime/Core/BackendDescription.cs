@@ -24,7 +24,9 @@ namespace QuickSes
         /// <summary>The GPU's name, or the CPU's instruction set and thread count.</summary>
         public string Device { get; }
 
-        /// <summary>Why it is not available, or, for <see cref="SurfaceBackend.Auto"/>, why it is not CUDA; else "".</summary>
+        /// <summary>
+        /// Why it is not available, or, for <see cref="SurfaceBackend.Auto"/>, why it is not CUDA; else "".
+        /// </summary>
         public string Reason { get; }
 
         /// <summary>Bytes of the device, or of the machine.</summary>

@@ -15,7 +15,9 @@ namespace QuickSes
         BackendUnavailable = 3,
         /// <summary>The GPU or its driver reported an error.</summary>
         DeviceError = 4,
-        /// <summary>The spacing needs more vertices than 32-bit indices, or finer places than float32, can name.</summary>
+        /// <summary>
+        /// The spacing needs more vertices than 32-bit indices, or finer places than float32, can name.
+        /// </summary>
         TooFine = 5,
         /// <summary>Nothing has been computed yet.</summary>
         NoResult = 6,
@@ -63,7 +65,9 @@ namespace QuickSes
     /// <summary>The order of a triangle's vertices.</summary>
     public enum SurfaceWinding
     {
-        /// <summary>cross(b - a, c - a) points out of the molecule: Unity's front face, in Unity's coordinates.</summary>
+        /// <summary>
+        /// cross(b - a, c - a) points out of the molecule: Unity's front face, in Unity's coordinates.
+        /// </summary>
         Outward = 0,
         /// <summary>The opposite, for callers who mirror an axis afterwards.</summary>
         Reversed = 1
@@ -75,8 +79,8 @@ namespace QuickSes
         /// <summary>One tightly packed array per attribute.</summary>
         Separate = 0,
         /// <summary>
-        /// The attributes of a vertex behind each other: float position[3], float normal[3], byte color[4] and, if asked
-        /// for, float texcoord[2]; 28 or 36 bytes per vertex.
+        /// The attributes of a vertex behind each other: float position[3], float normal[3], byte color[4] and, if
+        /// asked for, float texcoord[2]; 28 or 36 bytes per vertex.
         /// </summary>
         Interleaved = 1
     }

@@ -5,9 +5,10 @@ using System;
 namespace QuickSes
 {
     /// <summary>
-    /// The atoms of one model of a file (PDB, mmCIF, PQR, XYZR, GRO; gzipped or not), after filters, with radii. It never
-    /// changes: any number of threads may use it at a time. Spans are views of its native memory, valid until Dispose; keep
-    /// the structure itself alive while they are used. Coordinates are those of the file, hence right-handed.
+    /// The atoms of one model of a file (PDB, mmCIF, PQR, XYZR, GRO; gzipped or not), after filters, with radii. It
+    /// never changes: any number of threads may use it at a time. Spans are views of its native memory, valid until
+    /// Dispose; keep the structure itself alive while they are used. Coordinates are those of the file, hence
+    /// right-handed.
     /// </summary>
     public sealed unsafe class Structure : IDisposable
     {
@@ -23,8 +24,11 @@ namespace QuickSes
             _info = info;
         }
 
-        /// <summary>Reads a file; false: <paramref name="error"/> says what is wrong with it or with the options.</summary>
-        public static bool TryOpen(string path, in StructureOptions options, out Structure structure, out QuickSesError error)
+        /// <summary>
+        /// Reads a file; false: <paramref name="error"/> says what is wrong with it or with the options.
+        /// </summary>
+        public static bool TryOpen(string path, in StructureOptions options, out Structure structure,
+            out QuickSesError error)
         {
             if (path == null)
                 throw new ArgumentNullException(nameof(path));
@@ -71,7 +75,9 @@ namespace QuickSes
         /// </summary>
         public ReadOnlySpan<uint> FileIndices => new ReadOnlySpan<uint>(Info.FileIndices, AtomCount);
 
-        /// <summary>M atomic numbers, also of atoms that were left out: for <see cref="Trajectory.TryUnwrap"/>.</summary>
+        /// <summary>
+        /// M atomic numbers, also of atoms that were left out: for <see cref="Trajectory.TryUnwrap"/>.
+        /// </summary>
         public ReadOnlySpan<byte> FileElements => new ReadOnlySpan<byte>(Info.FileElements, FileAtomCount);
 
         /// <summary>What the file says about atom i, from 0 to N - 1. Makes new strings.</summary>
@@ -84,7 +90,9 @@ namespace QuickSes
             return atom;
         }
 
-        /// <summary>How many sentences for the user there are, such as about elements that had to be inferred.</summary>
+        /// <summary>
+        /// How many sentences for the user there are, such as about elements that had to be inferred.
+        /// </summary>
         public int WarningCount => (int)Info.WarningCount;
 
         /// <summary>Sentence k, from 0 to <see cref="WarningCount"/> - 1.</summary>
@@ -113,8 +121,8 @@ namespace QuickSes
         private void ThrowIfDisposed() => _handle.ThrowIfClosed(nameof(Structure));
 
         // Of a file, or, where path is null, of bytes.
-        private static bool TryOpen(byte* path, byte* bytes, int size, in StructureOptions options, out Structure structure,
-            out QuickSesError error)
+        private static bool TryOpen(byte* path, byte* bytes, int size, in StructureOptions options,
+            out Structure structure, out QuickSesError error)
         {
             structure = null;
             if (!NativeLibraryCheck.IsUsable(out string reason))

@@ -3,7 +3,9 @@ using QuickSes.Interop;
 
 namespace QuickSes
 {
-    /// <summary>What the file says about one atom. Strings are never null; XYZR files have none, so they are "" there.</summary>
+    /// <summary>
+    /// What the file says about one atom. Strings are never null; XYZR files have none, so they are "" there.
+    /// </summary>
     public readonly struct StructureAtom
     {
         internal unsafe StructureAtom(in NativeAtom native)

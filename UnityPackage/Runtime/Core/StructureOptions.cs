@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 namespace QuickSes
 {
-    /// <summary>What is read of a file of atoms. <c>default</c> is the defaults: everything of the first model.</summary>
+    /// <summary>
+    /// What is read of a file of atoms. <c>default</c> is the defaults: everything of the first model.
+    /// </summary>
     public struct StructureOptions
     {
         /// <summary>The format; default: found out.</summary>

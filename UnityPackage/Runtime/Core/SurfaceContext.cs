@@ -6,14 +6,14 @@ using System.Threading;
 namespace QuickSes
 {
     /// <summary>
-    /// Atoms, the memory and threads (of CPU or GPU) that compute their surface, and the last mesh. Making one takes long
-    /// and it keeps its memory: use it again for the next frame.
-    /// <para>Threads: one at a time, but for <see cref="Poll"/> and <see cref="Cancel"/>, which any thread may call at any
-    /// time. Contexts are independent of each other.</para>
+    /// Atoms, the memory and threads (of CPU or GPU) that compute their surface, and the last mesh. Making one takes
+    /// long and it keeps its memory: use it again for the next frame.
+    /// <para>Threads: one at a time, but for <see cref="Poll"/> and <see cref="Cancel"/>, which any thread may call at
+    /// any time. Contexts are independent of each other.</para>
     /// <para>Errors: what the caller could have known to be wrong throws (<see cref="QuickSesException"/>,
-    /// <see cref="ArgumentException"/>, <see cref="ObjectDisposedException"/>); what depends on the machine or on the size
-    /// of the molecule is returned, with a sentence in <see cref="LastError"/>. After any of them the context is still
-    /// usable, the atoms are those set before, and the last mesh stays valid.</para>
+    /// <see cref="ArgumentException"/>, <see cref="ObjectDisposedException"/>); what depends on the machine or on the
+    /// size of the molecule is returned, with a sentence in <see cref="LastError"/>. After any of them the context is
+    /// still usable, the atoms are those set before, and the last mesh stays valid.</para>
     /// <para>Garbage: none in <see cref="SetPositions(ReadOnlySpan{float})"/>, <see cref="Begin"/>, <see cref="Poll"/>,
     /// <see cref="TryCollect"/> and their like, unless something goes wrong.</para>
     /// </summary>
@@ -23,8 +23,8 @@ namespace QuickSes
         private int _generation; // of the mesh: views of older ones have ended
 
         /// <summary>
-        /// Makes a context with what <paramref name="options"/> says, or throws <see cref="QuickSesException"/>. Where the
-        /// back end may be missing, use <see cref="TryCreate"/>.
+        /// Makes a context with what <paramref name="options"/> says, or throws <see cref="QuickSesException"/>. Where
+        /// the back end may be missing, use <see cref="TryCreate"/>.
         /// </summary>
         public SurfaceContext(SurfaceContextOptions options = default) : this(CreateOrThrow(options))
         {
@@ -38,7 +38,9 @@ namespace QuickSes
             Description = description;
         }
 
-        /// <summary>Makes a context; false: <paramref name="error"/> says why there is none (and context is null).</summary>
+        /// <summary>
+        /// Makes a context; false: <paramref name="error"/> says why there is none (and context is null).
+        /// </summary>
         public static bool TryCreate(SurfaceContextOptions options, out SurfaceContext context, out QuickSesError error)
         {
             var handle = new ContextHandle();
@@ -81,8 +83,8 @@ namespace QuickSes
         }
 
         /// <summary>
-        /// Whether surfaces can be computed here. Never throws: a native library that is missing, too old, too new or of
-        /// another architecture is told in <paramref name="reason"/> ("" if all is well). Any thread.
+        /// Whether surfaces can be computed here. Never throws: a native library that is missing, too old, too new or
+        /// of another architecture is told in <paramref name="reason"/> ("" if all is well). Any thread.
         /// </summary>
         public static bool IsSupported(out string reason) => IsSupported(SurfaceBackend.Auto, out reason);
 
@@ -111,8 +113,8 @@ namespace QuickSes
         }
 
         /// <summary>
-        /// Cancels and joins what still runs, then frees the context and everything it handed out. May be called twice. A
-        /// call that runs on another thread is cancelled, and the memory is freed when it returns.
+        /// Cancels and joins what still runs, then frees the context and everything it handed out. May be called twice.
+        /// A call that runs on another thread is cancelled, and the memory is freed when it returns.
         /// </summary>
         public void Dispose()
         {

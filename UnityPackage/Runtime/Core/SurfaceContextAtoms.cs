@@ -29,7 +29,9 @@ namespace QuickSes
             return Check(status);
         }
 
-        /// <summary>New positions for the same atoms, for instance the next frame of a trajectory; radii stay.</summary>
+        /// <summary>
+        /// New positions for the same atoms, for instance the next frame of a trajectory; radii stay.
+        /// </summary>
         /// <param name="positions">N x 3, Å.</param>
         /// <returns>Ok or OutOfMemory.</returns>
         public unsafe QuickSesStatus SetPositions(ReadOnlySpan<float> positions)
@@ -49,7 +51,8 @@ namespace QuickSes
             ThrowIfDisposed();
             ThrowUnlessPerAtom(indices.Length, 1, AtomCount, nameof(indices));
             if (positions.Length % 3 != 0)
-                throw new ArgumentException($"has {positions.Length} numbers, which is not three per atom", nameof(positions));
+                throw new ArgumentException($"has {positions.Length} numbers, which is not three per atom",
+                    nameof(positions));
             fixed (float* xyz = positions)
             fixed (uint* picked = indices)
                 return Check(NativeMethods.qses_set_positions_indexed(_handle, xyz, UIntPtr.Zero,
@@ -57,8 +60,8 @@ namespace QuickSes
         }
 
         /// <summary>
-        /// Which atoms are shown: N of 1 or 0; empty: all. The surface is that of all atoms; triangles with a vertex of a
-        /// hidden one are dropped.
+        /// Which atoms are shown: N of 1 or 0; empty: all. The surface is that of all atoms; triangles with a vertex of
+        /// a hidden one are dropped.
         /// </summary>
         /// <returns>Ok or OutOfMemory.</returns>
         public unsafe QuickSesStatus SetVisible(ReadOnlySpan<byte> visible)
@@ -82,8 +85,8 @@ namespace QuickSes
         }
 
         /// <summary>
-        /// Texture coordinates of the atoms, for their vertices (<see cref="SurfaceSettings.Texcoords"/>): N x 2; empty:
-        /// 1, 0 for all.
+        /// Texture coordinates of the atoms, for their vertices (<see cref="SurfaceSettings.Texcoords"/>): N x 2;
+        /// empty: 1, 0 for all.
         /// </summary>
         /// <returns>Ok or OutOfMemory.</returns>
         public unsafe QuickSesStatus SetTexcoords(ReadOnlySpan<float> uv)
@@ -98,7 +101,8 @@ namespace QuickSes
         private static void ThrowUnlessPerAtom(int length, int perAtom, int atomCount, string argument)
         {
             if (length != (long)perAtom * atomCount)
-                throw new ArgumentException($"has {length} numbers, but {atomCount} atoms need {perAtom} each", argument);
+                throw new ArgumentException($"has {length} numbers, but {atomCount} atoms need {perAtom} each",
+                    argument);
         }
     }
 }

@@ -8,7 +8,9 @@ namespace QuickSes
 {
     public sealed partial class SurfaceContext
     {
-        /// <summary>Computes the surface and waits for it: for tools and tests rather than for the main thread of a game.</summary>
+        /// <summary>
+        /// Computes the surface and waits for it: for tools and tests rather than for the main thread of a game.
+        /// </summary>
         /// <param name="settings">What is computed; levels and frame budget are for <see cref="Begin"/>.</param>
         /// <param name="mesh">The mesh; it ends views of older ones. Empty unless Ok.</param>
         /// <returns>Ok, OutOfMemory, TooFine, DeviceError, InternalError, or Cancelled.</returns>
@@ -26,9 +28,9 @@ namespace QuickSes
         }
 
         /// <summary>
-        /// Starts computing the surface of the atoms as they are now, level after level, and returns at once. Atoms may be
-        /// set for the next job meanwhile. A new job replaces the one that runs, whose coarsest level is still finished;
-        /// only the newest waits. What goes wrong later is told by <see cref="Poll"/>.
+        /// Starts computing the surface of the atoms as they are now, level after level, and returns at once. Atoms may
+        /// be set for the next job meanwhile. A new job replaces the one that runs, whose coarsest level is still
+        /// finished; only the newest waits. What goes wrong later is told by <see cref="Poll"/>.
         /// </summary>
         /// <returns>Ok or OutOfMemory.</returns>
         public unsafe QuickSesStatus Begin(in SurfaceSettings settings)
@@ -65,7 +67,9 @@ namespace QuickSes
             return status == QuickSesStatus.Ok;
         }
 
-        /// <summary>The mesh of the last <see cref="TryCollect"/> or <see cref="Compute"/> that succeeded, if any.</summary>
+        /// <summary>
+        /// The mesh of the last <see cref="TryCollect"/> or <see cref="Compute"/> that succeeded, if any.
+        /// </summary>
         public unsafe bool TryGetMesh(out SurfaceMeshView mesh)
         {
             ThrowIfDisposed();
@@ -79,8 +83,8 @@ namespace QuickSes
         }
 
         /// <summary>
-        /// Ends the job that runs as soon as it can and drops the one that waits; a <see cref="Compute"/> on another thread
-        /// returns Cancelled. Returns at once. Any thread, at any time before Dispose.
+        /// Ends the job that runs as soon as it can and drops the one that waits; a <see cref="Compute"/> on another
+        /// thread returns Cancelled. Returns at once. Any thread, at any time before Dispose.
         /// </summary>
         public void Cancel()
         {
@@ -89,7 +93,8 @@ namespace QuickSes
         }
 
         /// <summary>
-        /// Waits until no job runs or waits, at most for the given time; negative: without limit. False: the time was over.
+        /// Waits until no job runs or waits, at most for the given time; negative: without limit. False: the time was
+        /// over.
         /// </summary>
         public unsafe bool Wait(double milliseconds = -1)
         {
@@ -130,7 +135,9 @@ namespace QuickSes
             return status == QuickSesStatus.Ok;
         }
 
-        /// <summary>Switches the timing of single stages on or off (default): see <see cref="SurfaceReport.GetStage"/>.</summary>
+        /// <summary>
+        /// Switches the timing of single stages on or off (default): see <see cref="SurfaceReport.GetStage"/>.
+        /// </summary>
         public void EnableStageTimes(bool enabled)
         {
             ThrowIfDisposed();

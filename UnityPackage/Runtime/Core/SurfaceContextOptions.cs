@@ -14,8 +14,8 @@ namespace QuickSes
         public uint Threads { get; set; }
 
         /// <summary>
-        /// Bytes; 0 (default): what is free at the time. With CUDA it covers everything on the device, on the CPU the work
-        /// without the mesh that is handed out. The mesh is the same byte for byte; only the time grows.
+        /// Bytes; 0 (default): what is free at the time. With CUDA it covers everything on the device, on the CPU the
+        /// work without the mesh that is handed out. The mesh is the same byte for byte; only the time grows.
         /// </summary>
         public ulong MemoryBudget { get; set; }
     }

@@ -6,10 +6,11 @@ namespace QuickSes
 {
     /// <summary>
     /// A mesh in memory of a <see cref="SurfaceContext"/>; nothing is copied. It ends with the next
-    /// <see cref="SurfaceContext.TryCollect"/> or <see cref="SurfaceContext.Compute"/> that succeeds on that context, and
-    /// with its Dispose: asking an ended view for memory throws. Spans and pointers that were taken before can't tell, so
-    /// don't keep them; and keep the context itself alive while they are used. <c>default</c> is an empty mesh.
-    /// V is the number of vertices, T that of triangles; lengths are in Å, in the coordinates the atoms were given in.
+    /// <see cref="SurfaceContext.TryCollect"/> or <see cref="SurfaceContext.Compute"/> that succeeds on that context,
+    /// and with its Dispose: asking an ended view for memory throws. Spans and pointers that were taken before can't
+    /// tell, so don't keep them; and keep the context itself alive while they are used. <c>default</c> is an empty
+    /// mesh. V is the number of vertices, T that of triangles; lengths are in Å, in the coordinates the atoms were
+    /// given in.
     /// </summary>
     public readonly unsafe struct SurfaceMeshView
     {
@@ -69,14 +70,18 @@ namespace QuickSes
         /// <summary>Whether there are kinds of patch.</summary>
         public bool HasPatches => _native.Patches != null;
 
-        /// <summary>V x <see cref="VertexBytes"/> bytes: all there is of the vertices. Interleaved layout only.</summary>
+        /// <summary>
+        /// V x <see cref="VertexBytes"/> bytes: all there is of the vertices. Interleaved layout only.
+        /// </summary>
         public ReadOnlySpan<byte> Vertices
         {
             get
             {
                 if (_native.VertexBytes == 0 && _native.VertexCount != 0)
-                    throw new InvalidOperationException("The vertices are in separate arrays: use Positions, Normals, ...");
-                return new ReadOnlySpan<byte>(Valid(_native.Positions), Length(_native.VertexCount, _native.VertexBytes));
+                    throw new InvalidOperationException(
+                        "The vertices are in separate arrays: use Positions, Normals, ...");
+                return new ReadOnlySpan<byte>(Valid(_native.Positions),
+                    Length(_native.VertexCount, _native.VertexBytes));
             }
         }
 
@@ -96,16 +101,20 @@ namespace QuickSes
         /// V: the atom whose van der Waals surface is nearest, a 0-based index into the positions given to
         /// <see cref="SurfaceContext.SetAtoms"/>, always in range.
         /// </summary>
-        public ReadOnlySpan<uint> Owners => new ReadOnlySpan<uint>(Valid(_native.Owners), Length(_native.VertexCount, 1));
+        public ReadOnlySpan<uint> Owners =>
+            new ReadOnlySpan<uint>(Valid(_native.Owners), Length(_native.VertexCount, 1));
 
         /// <summary>V kinds of patch; empty if they were not asked for.</summary>
         public ReadOnlySpan<SurfacePatch> Patches =>
             new ReadOnlySpan<SurfacePatch>(Valid(_native.Patches), HasPatches ? Length(_native.VertexCount, 1) : 0);
 
         /// <summary>T x 3 vertex numbers.</summary>
-        public ReadOnlySpan<uint> Indices => new ReadOnlySpan<uint>(Valid(_native.Indices), Length(_native.TriangleCount, 3));
+        public ReadOnlySpan<uint> Indices =>
+            new ReadOnlySpan<uint>(Valid(_native.Indices), Length(_native.TriangleCount, 3));
 
-        /// <summary>The first vertex's position, for copies without spans. In both layouts; null for an empty mesh.</summary>
+        /// <summary>
+        /// The first vertex's position, for copies without spans. In both layouts; null for an empty mesh.
+        /// </summary>
         public float* PositionsPointer => (float*)Valid(_native.Positions);
 
         /// <summary>The first index; null for an empty mesh.</summary>

@@ -23,7 +23,9 @@ namespace QuickSes
         /// <summary>Milliseconds from atoms to mesh in host memory; for a later level: since the one before.</summary>
         public double ComputeMilliseconds => _native.ComputeMs;
 
-        /// <summary>Most bytes in use for the work, without the mesh: on the device with CUDA, else in host memory.</summary>
+        /// <summary>
+        /// Most bytes in use for the work, without the mesh: on the device with CUDA, else in host memory.
+        /// </summary>
         public ulong WorkBytesPeak => _native.WorkBytesPeak;
 
         /// <summary>Bytes of the mesh.</summary>
@@ -47,7 +49,9 @@ namespace QuickSes
         /// <summary>How many stages were timed; 0 unless <see cref="SurfaceContext.EnableStageTimes"/>.</summary>
         public int StageCount => (int)_native.StageCount;
 
-        /// <summary>Name and milliseconds of stage k, from 0 to <see cref="StageCount"/> - 1. Makes a new string.</summary>
+        /// <summary>
+        /// Name and milliseconds of stage k, from 0 to <see cref="StageCount"/> - 1. Makes a new string.
+        /// </summary>
         public unsafe (string Name, double Milliseconds) GetStage(int k)
         {
             if ((uint)k >= _native.StageCount)

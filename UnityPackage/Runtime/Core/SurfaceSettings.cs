@@ -5,8 +5,8 @@ using System;
 namespace QuickSes
 {
     /// <summary>
-    /// What is computed. Begin with <see cref="Default"/>; <c>default(SurfaceSettings)</c> is refused. Ranges are checked
-    /// when a computation starts.
+    /// What is computed. Begin with <see cref="Default"/>; <c>default(SurfaceSettings)</c> is refused. Ranges are
+    /// checked when a computation starts.
     /// </summary>
     public struct SurfaceSettings
     {
@@ -47,8 +47,8 @@ namespace QuickSes
         public uint RelaxationSteps { get => Native.RelaxationSteps; set => Native.RelaxationSteps = value; }
 
         /// <summary>
-        /// Work in slices of at most this many lattice points cubed (at least 8); 0: as large as memory allows. The mesh
-        /// is the same byte for byte.
+        /// Work in slices of at most this many lattice points cubed (at least 8); 0: as large as memory allows. The
+        /// mesh is the same byte for byte.
         /// </summary>
         public uint SliceSize { get => Native.SliceSize; set => Native.SliceSize = value; }
 
@@ -71,8 +71,8 @@ namespace QuickSes
         public bool Texcoords { get => Native.Texcoords != 0; set => Native.Texcoords = value ? 1u : 0; }
 
         /// <summary>
-        /// Milliseconds, for <see cref="SurfaceContext.Begin"/>: 0: all levels one after the other. Above 0, at most 60000:
-        /// only the finest level that is expected to take no longer than this, judging by the last frames.
+        /// Milliseconds, for <see cref="SurfaceContext.Begin"/>: 0: all levels one after the other. Above 0, at most
+        /// 60000: only the finest level that is expected to take no longer than this, judging by the last frames.
         /// </summary>
         public float FrameBudget { get => Native.FrameBudgetMs; set => Native.FrameBudgetMs = value; }
 
@@ -88,13 +88,14 @@ namespace QuickSes
         }
 
         /// <summary>
-        /// Sets the spacings, Å, of the coarser levels of a job: falling, at most <see cref="MaxLevels"/>; those not above
-        /// <see cref="Spacing"/> are left out. Empty: only <see cref="Spacing"/>.
+        /// Sets the spacings, Å, of the coarser levels of a job: falling, at most <see cref="MaxLevels"/>; those not
+        /// above <see cref="Spacing"/> are left out. Empty: only <see cref="Spacing"/>.
         /// </summary>
         public unsafe void SetLevels(ReadOnlySpan<float> spacings)
         {
             if (spacings.Length > MaxLevels)
-                throw new ArgumentException($"{spacings.Length} levels, but at most {MaxLevels} are possible", nameof(spacings));
+                throw new ArgumentException($"{spacings.Length} levels, but at most {MaxLevels} are possible",
+                    nameof(spacings));
             for (int k = 0; k < spacings.Length; ++k)
                 Native.Levels[k] = spacings[k];
             Native.LevelCount = (uint)spacings.Length;

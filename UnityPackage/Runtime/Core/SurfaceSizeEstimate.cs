@@ -28,7 +28,9 @@ namespace QuickSes
         /// <summary>Bytes for the work: on the device with CUDA, else in host memory.</summary>
         public ulong WorkBytes => _native.WorkBytes;
 
-        /// <summary>The least <see cref="SurfaceContextOptions.MemoryBudget"/> that would do, with some reserve.</summary>
+        /// <summary>
+        /// The least <see cref="SurfaceContextOptions.MemoryBudget"/> that would do, with some reserve.
+        /// </summary>
         public ulong SmallestBudget => _native.SmallestBudget;
     }
 }

@@ -5,8 +5,9 @@ using System;
 namespace QuickSes
 {
     /// <summary>
-    /// Many frames of the same atoms (DCD, XTC, PDB with several models; gzipped or not), read in any order. Any number of
-    /// threads may read it at a time, but for <see cref="TryUnwrap"/>. Coordinates are those of the file, in Å, right-handed.
+    /// Many frames of the same atoms (DCD, XTC, PDB with several models; gzipped or not), read in any order. Any number
+    /// of threads may read it at a time, but for <see cref="TryUnwrap"/>. Coordinates are those of the file, in Å,
+    /// right-handed.
     /// </summary>
     public sealed unsafe class Trajectory : IDisposable
     {
@@ -23,7 +24,8 @@ namespace QuickSes
         /// Opens a file, whose frames stay in it until they are asked for; false: <paramref name="error"/> says what is
         /// wrong with it. A file that ends early gives the frames before: see <see cref="IsIncomplete"/>.
         /// </summary>
-        public static bool TryOpen(string path, TrajectoryFormat format, out Trajectory trajectory, out QuickSesError error)
+        public static bool TryOpen(string path, TrajectoryFormat format, out Trajectory trajectory,
+            out QuickSesError error)
         {
             if (path == null)
                 throw new ArgumentNullException(nameof(path));
@@ -76,7 +78,9 @@ namespace QuickSes
         /// From now on frames come with every molecule in one piece instead of torn by the borders of the box. No other
         /// thread may use the trajectory meanwhile.
         /// </summary>
-        /// <param name="elements">Atomic numbers (0: unknown) of all atoms, such as <see cref="Structure.FileElements"/>.</param>
+        /// <param name="elements">
+        /// Atomic numbers (0: unknown) of all atoms, such as <see cref="Structure.FileElements"/>.
+        /// </param>
         /// <param name="error">Why frames come as before: NoBox, FileError or OutOfMemory.</param>
         public bool TryUnwrap(ReadOnlySpan<byte> elements, out QuickSesError error)
         {
@@ -102,7 +106,8 @@ namespace QuickSes
             if ((ulong)index >= Info.FrameCount)
                 throw new ArgumentOutOfRangeException(nameof(index), index, $"there are {_info.FrameCount} frames");
             if (positions.Length != 3L * AtomCount)
-                throw new ArgumentException($"has {positions.Length} numbers, but {AtomCount} atoms need 3 each", nameof(positions));
+                throw new ArgumentException($"has {positions.Length} numbers, but {AtomCount} atoms need 3 each",
+                    nameof(positions));
             NativeFrame native;
             NativeMethods.qses_frame_init(&native);
             QuickSesStatus status;
@@ -137,8 +142,8 @@ namespace QuickSes
         }
 
         // Of a file, or, where path is null, of bytes.
-        private static bool TryOpen(byte* path, byte* bytes, int size, TrajectoryFormat format, out Trajectory trajectory,
-            out QuickSesError error)
+        private static bool TryOpen(byte* path, byte* bytes, int size, TrajectoryFormat format,
+            out Trajectory trajectory, out QuickSesError error)
         {
             trajectory = null;
             if (!NativeLibraryCheck.IsUsable(out string reason))

@@ -5,8 +5,8 @@ using System;
 namespace QuickSes.Interop
 {
     /// <summary>
-    /// What the library handed out and takes back once: by Dispose, or by the finalizer of a forgotten one. A call that is
-    /// under way on another thread delays it.
+    /// What the library handed out and takes back once: by Dispose, or by the finalizer of a forgotten one. A call that
+    /// is under way on another thread delays it.
     /// </summary>
     internal abstract class NativeHandle : SafeHandleZeroOrMinusOneIsInvalid
     {

@@ -5,9 +5,9 @@ using System.Runtime.InteropServices;
 namespace QuickSes.Interop
 {
     /// <summary>
-    /// The functions of quickses.h under their own names. Everything that crosses is blittable, but for the handles, which
-    /// the runtime keeps open while a call uses them. Not here: qses_set_progress_callback, since native code never
-    /// calls managed code in this package.
+    /// The functions of quickses.h under their own names. Everything that crosses is blittable, but for the handles,
+    /// which the runtime keeps open while a call uses them. Not here: qses_set_progress_callback, since native code
+    /// never calls managed code in this package.
     /// </summary>
     internal static unsafe class NativeMethods
     {
@@ -25,7 +25,8 @@ namespace QuickSes.Interop
         public static extern uint qses_abi_version();
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
-        public static extern QuickSesStatus qses_backend_info(SurfaceBackend backend, NativeBackendDescription* description);
+        public static extern QuickSesStatus qses_backend_info(
+            SurfaceBackend backend, NativeBackendDescription* description);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
         public static extern byte* qses_last_error();
@@ -58,7 +59,8 @@ namespace QuickSes.Interop
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
         public static extern QuickSesStatus qses_set_positions_indexed(
-            ContextHandle context, float* positions, UIntPtr stride, UIntPtr positionCount, uint* indices, UIntPtr count);
+            ContextHandle context, float* positions, UIntPtr stride, UIntPtr positionCount, uint* indices,
+            UIntPtr count);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
         public static extern QuickSesStatus qses_set_visible(ContextHandle context, byte* visible, UIntPtr count);
@@ -77,7 +79,8 @@ namespace QuickSes.Interop
         public static extern void qses_mesh_init(NativeMesh* mesh);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
-        public static extern QuickSesStatus qses_compute(ContextHandle context, NativeSettings* settings, NativeMesh* mesh);
+        public static extern QuickSesStatus qses_compute(
+            ContextHandle context, NativeSettings* settings, NativeMesh* mesh);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
         public static extern QuickSesStatus qses_get_mesh(ContextHandle context, NativeMesh* mesh);
@@ -122,7 +125,8 @@ namespace QuickSes.Interop
         public static extern void qses_read_options_init(NativeReadOptions* options);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
-        public static extern QuickSesStatus qses_structure_open(byte* path, NativeReadOptions* options, IntPtr* structure);
+        public static extern QuickSesStatus qses_structure_open(
+            byte* path, NativeReadOptions* options, IntPtr* structure);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
         public static extern QuickSesStatus qses_structure_open_memory(
@@ -135,14 +139,16 @@ namespace QuickSes.Interop
         public static extern void qses_structure_info_init(NativeStructureInfo* info);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
-        public static extern QuickSesStatus qses_structure_get_info(StructureHandle structure, NativeStructureInfo* info);
+        public static extern QuickSesStatus qses_structure_get_info(
+            StructureHandle structure, NativeStructureInfo* info);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
         public static extern QuickSesStatus qses_structure_warning(StructureHandle structure, uint k, byte** sentence);
 
         // ---- trajectories
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
-        public static extern QuickSesStatus qses_trajectory_open(byte* path, TrajectoryFormat format, IntPtr* trajectory);
+        public static extern QuickSesStatus qses_trajectory_open(
+            byte* path, TrajectoryFormat format, IntPtr* trajectory);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
         public static extern QuickSesStatus qses_trajectory_open_memory(
@@ -155,10 +161,12 @@ namespace QuickSes.Interop
         public static extern void qses_trajectory_info_init(NativeTrajectoryInfo* info);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
-        public static extern QuickSesStatus qses_trajectory_get_info(TrajectoryHandle trajectory, NativeTrajectoryInfo* info);
+        public static extern QuickSesStatus qses_trajectory_get_info(
+            TrajectoryHandle trajectory, NativeTrajectoryInfo* info);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
-        public static extern QuickSesStatus qses_trajectory_warning(TrajectoryHandle trajectory, uint k, byte** sentence);
+        public static extern QuickSesStatus qses_trajectory_warning(
+            TrajectoryHandle trajectory, uint k, byte** sentence);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
         public static extern QuickSesStatus qses_trajectory_unwrap(
@@ -169,6 +177,7 @@ namespace QuickSes.Interop
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
         public static extern QuickSesStatus qses_trajectory_read_frame(
-            TrajectoryHandle trajectory, ulong index, float* positions, UIntPtr stride, UIntPtr count, NativeFrame* frame);
+            TrajectoryHandle trajectory, ulong index, float* positions, UIntPtr stride, UIntPtr count,
+            NativeFrame* frame);
     }
 }
