@@ -4,6 +4,8 @@
 #   bash Scripts~/test.sh [--with-cuda] [--with-mpi]
 # --with-cuda: the CUDA Toolkit and the CUDA back end as well. Its tests need a GPU and are skipped where there is none.
 # --with-mpi: Open MPI, and the program that shares frames among processes.
+# The C# tests need a .NET SDK, which is not installed, and NuGet packages; without them they are skipped, and that is
+# said. With CI=true in the environment, packages that can't be had are an error.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -13,7 +15,7 @@ for argument in "$@"; do
   case "$argument" in
     --with-cuda) presets+=(cuda) ;;
     --with-mpi) with_mpi=yes ;;
-    -h | --help) sed -n '3,6s/^# //p' "$0"; exit 0 ;;
+    -h | --help) sed -n '3,8s/^# //p' "$0"; exit 0 ;;
     *) echo "test.sh: unknown option $argument (there are --with-cuda and --with-mpi)" >&2; exit 2 ;;
   esac
 done
@@ -48,4 +50,18 @@ if [ "$with_mpi" = yes ]; then
   cmake --build --preset mpi --parallel "$(nproc)" --target quickses_cli
   echo "==== mpi: test"
   ctest --preset mpi --tests-regex '^cli_mpi_test$' --no-tests=error
+fi
+
+# The C# layer, with the CPU back end of the library that was built above.
+echo "==== dotnet: test"
+export DOTNET_CLI_TELEMETRY_OPTOUT=1 DOTNET_NOLOGO=1
+dotnet_tests=Tests/DotNet~/Core.Tests
+if [ -z "$(dotnet --list-sdks 2>/dev/null)" ]; then
+  echo "No .NET SDK here (command dotnet): the C# tests are skipped."
+elif ! dotnet restore "$dotnet_tests"; then
+  echo "The NuGet packages of the C# tests could not be had (is there a network?)." >&2
+  if [ "${CI:-}" = true ]; then exit 1; fi
+  echo "The C# tests are skipped."
+else
+  QUICKSES_NATIVE="$PWD/.build/cpu/lib/libquickses.so" dotnet test --no-restore "$dotnet_tests"
 fi

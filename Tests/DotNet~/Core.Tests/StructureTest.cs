@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+using NUnit.Framework;
+using System;
+using System.Collections.Generic;
+using System.Globalization;
+using System.IO;
+using System.Linq;
+
+namespace QuickSes.Tests
+{
+    public sealed class StructureTest
+    {
+        // Columns of the PDB format.
+        private static List<string> AtomLines() =>
+            File.ReadLines(Repository.CrambinPath).Where(line =>
+                line.StartsWith("ATOM  ") || line.StartsWith("HETATM")).ToList();
+
+        private static float Column(string line, int start, int length) =>
+            float.Parse(line.Substring(start, length), CultureInfo.InvariantCulture);
+
+        private static Structure Open(StructureOptions options)
+        {
+            Assert.That(
+                Structure.TryOpen(Repository.CrambinPath, options, out Structure structure, out QuickSesError error),
+                Is.True, error.ToString());
+            return structure;
+        }
+
+        [Test]
+        public void AtomsAreThoseOfTheFile()
+        {
+            List<string> lines = AtomLines();
+            using Structure structure = Open(default);
+            Assert.That(structure.AtomCount, Is.EqualTo(lines.Count));
+            Assert.That(structure.FileAtomCount, Is.EqualTo(lines.Count));
+            Assert.That((structure.Format, structure.Model, structure.ModelCount),
+                Is.EqualTo((StructureFormat.Pdb, 1, 1)));
+            for (int i = 0; i < lines.Count; ++i)
+            {
+                for (int d = 0; d < 3; ++d)
+                    Assert.That(structure.Positions[3 * i + d], Is.EqualTo(Column(lines[i], 30 + 8 * d, 8)));
+                StructureAtom atom = structure.GetAtom(i);
+                Assert.That(atom.Name, Is.EqualTo(lines[i].Substring(12, 4).Trim()));
+                Assert.That(atom.ResidueName, Is.EqualTo(lines[i].Substring(17, 3).Trim()));
+                Assert.That(atom.Chain, Is.EqualTo(lines[i].Substring(21, 1)));
+                Assert.That(atom.ResidueNumber, Is.EqualTo(int.Parse(lines[i].Substring(22, 4))));
+                Assert.That((int)atom.FileIndex, Is.EqualTo(i));
+                Assert.That(structure.FileIndices[i], Is.EqualTo((uint)i));
+                Assert.That(atom.InsertionCode, Is.EqualTo(' '));
+                Assert.That(atom.IsWater || atom.IsHetero || atom.IsHydrogen, Is.False);
+                string symbol = lines[i].Substring(76, 2).Trim();
+                int element = new Dictionary<string, int> { ["C"] = 6, ["N"] = 7, ["O"] = 8, ["S"] = 16 }[symbol];
+                Assert.That((int)atom.Element, Is.EqualTo(element));
+                Assert.That((int)structure.FileElements[i], Is.EqualTo(element));
+                Assert.That(structure.Radii[i],
+                    Is.EqualTo(element switch { 6 => 1.70f, 7 => 1.55f, 8 => 1.52f, _ => 1.80f }));
+            }
+            Assert.That(() => structure.GetAtom(lines.Count), Throws.TypeOf<ArgumentOutOfRangeException>());
+        }
+
+        [Test]
+        public void MemoryAndFileAreTheSame()
+        {
+            using Structure fromFile = Open(default);
+            Assert.That(Structure.TryOpen(File.ReadAllBytes(Repository.CrambinPath),
+                new StructureOptions { Format = StructureFormat.Pdb }, out Structure fromMemory, out _), Is.True);
+            using (fromMemory)
+            {
+                Assert.That(fromMemory.Positions.SequenceEqual(fromFile.Positions), Is.True);
+                Assert.That(fromMemory.Radii.SequenceEqual(fromFile.Radii), Is.True);
+            }
+        }
+
+        [Test]
+        public void OptionsReachTheReader()
+        {
+            using Structure few = Open(new StructureOptions { Selection = "//A/3-10" });
+            int[] expected = AtomLines().Select((line, i) => (Number: int.Parse(line.Substring(22, 4)), i))
+                .Where(pair => pair.Number >= 3 && pair.Number <= 10).Select(pair => pair.i).ToArray();
+            Assert.That(few.FileIndices.ToArray(), Is.EqualTo(expected));
+
+            string water = "HETATM    1  O   HOH A   1       0.000   0.000   0.000  1.00  0.00           O\n" +
+                           "ATOM      2  N   GLY A   2       9.000   0.000   0.000  1.00  0.00           N\n" +
+                           "ATOM      3  H   GLY A   2      10.000   0.000   0.000  1.00  0.00           H\n" +
+                           "HETATM    4 ZN    ZN A   3      20.000   0.000   0.000  1.00  0.00          ZN\nEND\n";
+            byte[] bytes = System.Text.Encoding.ASCII.GetBytes(water);
+            uint[] Kept(StructureOptions options)
+            {
+                options.Format = StructureFormat.Pdb;
+                Assert.That(Structure.TryOpen(bytes, options, out Structure structure, out QuickSesError error),
+                    Is.True, error.ToString());
+                using (structure)
+                    return structure.FileIndices.ToArray();
+            }
+            Assert.That(Kept(default), Is.EqualTo(new uint[] { 0, 1, 2, 3 }));
+            Assert.That(Kept(new StructureOptions { SkipWater = true }), Is.EqualTo(new uint[] { 1, 2, 3 }));
+            Assert.That(Kept(new StructureOptions { SkipHetero = true }), Is.EqualTo(new uint[] { 1, 2 }));
+            Assert.That(Kept(new StructureOptions { SkipHydrogen = true }), Is.EqualTo(new uint[] { 0, 1, 3 }));
+        }
+
+        [Test]
+        public void RadiiAreReadFromAFile()
+        {
+            using var folder = new TemporaryFolder();
+            File.WriteAllText(folder.File("rädii.txt"), "C 2.5\n* 1.25\n");
+            using Structure structure = Open(new StructureOptions { Radii = folder.File("rädii.txt") });
+            for (int i = 0; i < structure.AtomCount; ++i)
+                Assert.That(structure.Radii[i], Is.EqualTo(structure.GetAtom(i).Element == 6 ? 2.5f : 1.25f));
+        }
+
+        [Test]
+        public void PathsAreUtf8()
+        {
+            using var folder = new TemporaryFolder();
+            string path = folder.File("Krambin 溶媒 ü.pdb");
+            File.Copy(Repository.CrambinPath, path);
+            Assert.That(Structure.TryOpen(path, default, out Structure structure, out QuickSesError error), Is.True,
+                error.ToString());
+            structure.Dispose();
+        }
+
+        [Test]
+        public void FaultsAreNamed()
+        {
+            bool Opens(string path, StructureOptions options, out QuickSesError error)
+            {
+                bool opened = Structure.TryOpen(path, options, out Structure structure, out error);
+                structure?.Dispose();
+                return opened;
+            }
+            Assert.That(Opens("/no/such/file.pdb", default, out QuickSesError fault), Is.False);
+            Assert.That(fault.Status, Is.EqualTo(QuickSesStatus.FileError));
+            Assert.That(fault.Message, Does.Contain("/no/such/file.pdb"));
+            Assert.That(Opens(Repository.CrambinPath, new StructureOptions { Model = 2 }, out fault), Is.False);
+            Assert.That(fault.Status, Is.EqualTo(QuickSesStatus.InvalidArgument));
+            Assert.That(fault.Message, Does.Contain("model"));
+            Assert.That(Structure.TryOpen(ReadOnlySpan<byte>.Empty, default, out _, out fault), Is.False);
+            Assert.That(fault.Status, Is.EqualTo(QuickSesStatus.FileError));
+            Assert.That(() => Opens(null, default, out _), Throws.ArgumentNullException);
+            Assert.That(() => Opens("a\0b", default, out _), Throws.ArgumentException);
+
+            Structure closed = Open(default);
+            closed.Dispose();
+            closed.Dispose();
+            Assert.That(() => closed.Positions.Length, Throws.TypeOf<ObjectDisposedException>());
+            Assert.That(() => closed.GetAtom(0), Throws.TypeOf<ObjectDisposedException>());
+        }
+    }
+}

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+using NUnit.Framework;
+using System;
+using System.IO;
+using System.Reflection;
+using System.Runtime.InteropServices;
+using System.Runtime.Loader;
+
+namespace QuickSes.Tests
+{
+    /// <summary>
+    /// What is said where the native library can't be used. Each case loads the assembly once more, with another
+    /// library.
+    /// </summary>
+    public sealed class SupportTest
+    {
+        [Test]
+        public void ThisLibraryIsSupported()
+        {
+            Assert.That(SurfaceContext.IsSupported(out string reason), Is.True, reason);
+            Assert.That(reason, Is.Empty);
+        }
+
+        [Test]
+        public void MissingLibraryIsTold() =>
+            ExpectUnsupported(() => NativeLibrary.Load("/no/such/folder/libquickses.so"), "can't be loaded");
+
+        [Test]
+        public void FileThatIsNoLibraryIsTold() =>
+            ExpectUnsupported(() => NativeLibrary.Load(Repository.CrambinPath), "can't be loaded");
+
+        [Test]
+        public void OtherArchitectureIsTold() =>
+            ExpectUnsupported(() => throw new BadImageFormatException("wrong format"),
+                "another processor architecture");
+
+        [Test]
+        public void OtherLibraryOfTheSameNameIsTold()
+        {
+            using var folder = new TemporaryFolder();
+            Repository.CompileC("int something_else;\n", folder.File("libquickses.so"), "-shared -fPIC");
+            ExpectUnsupported(() => NativeLibrary.Load(folder.File("libquickses.so")), "too old");
+        }
+
+        [Test]
+        public void OtherAbiVersionIsTold()
+        {
+            using var folder = new TemporaryFolder();
+            Repository.CompileC("#include <stdint.h>\nuint32_t qses_abi_version(void) { return 999; }\n",
+                folder.File("libquickses.so"), "-shared -fPIC");
+            ExpectUnsupported(() => NativeLibrary.Load(folder.File("libquickses.so")), "ABI version 999");
+        }
+
+        private static void ExpectUnsupported(Func<IntPtr> load, string sentence)
+        {
+            var copy = new AssemblyLoadContext(null, isCollectible: true);
+            try
+            {
+                Assembly core = copy.LoadFromAssemblyPath(typeof(SurfaceContext).Assembly.Location);
+                NativeLibrary.SetDllImportResolver(core, (name, assembly, path) => load());
+                MethodInfo isSupported = core.GetType("QuickSes.SurfaceContext")
+                    .GetMethod("IsSupported", new[] { typeof(string).MakeByRefType() });
+                var arguments = new object[] { null };
+                Assert.That(isSupported.Invoke(null, arguments), Is.False);
+                Assert.That(arguments[0], Does.Contain(sentence));
+
+                // Nothing else lets the runtime's exception through either.
+                Type options = core.GetType("QuickSes.StructureOptions");
+                Type structure = core.GetType("QuickSes.Structure");
+                MethodInfo tryOpen = structure.GetMethod("TryOpen", new[]
+                {
+                    typeof(string), options.MakeByRefType(), structure.MakeByRefType(),
+                    core.GetType("QuickSes.QuickSesError").MakeByRefType()
+                });
+                var opening = new[] { Repository.CrambinPath, Activator.CreateInstance(options), null, null };
+                Assert.That(tryOpen.Invoke(null, opening), Is.False);
+                Assert.That(opening[3].ToString(), Does.Contain(sentence));
+                Type context = core.GetType("QuickSes.SurfaceContext");
+                object defaults = Activator.CreateInstance(core.GetType("QuickSes.SurfaceContextOptions"));
+                TargetInvocationException thrown =
+                    Assert.Throws<TargetInvocationException>(() => Activator.CreateInstance(context, defaults));
+                Assert.That(thrown.InnerException.GetType().Name, Is.EqualTo(nameof(QuickSesException)));
+                Assert.That(thrown.InnerException.Message, Does.Contain(sentence));
+            }
+            finally
+            {
+                copy.Unload();
+            }
+        }
+    }
+}

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: MIT
+using NUnit.Framework;
+using System;
+
+namespace QuickSes.Tests
+{
+    public sealed class SurfaceTest
+    {
+        [Test]
+        public void OneAtomIsASphere()
+        {
+            const float radius = 1.7f;
+            float[] centre = { 3, -4, 5 };
+            using var context = new SurfaceContext();
+            context.SetAtoms(centre, new[] { radius });
+            SurfaceSettings settings = SurfaceSettings.Default;
+            settings.Surface = SurfaceKind.Vdw;
+            settings.Spacing = 0.1f;
+            SurfaceMeshView mesh = Meshes.Compute(context, settings);
+
+            for (int v = 0; v < mesh.VertexCount; ++v)
+            {
+                double squared = 0, along = 0;
+                for (int d = 0; d < 3; ++d)
+                {
+                    double fromCentre = mesh.Positions[3 * v + d] - (double)centre[d];
+                    squared += fromCentre * fromCentre;
+                    along += fromCentre * mesh.Normals[3 * v + d];
+                }
+                Assert.That(Math.Sqrt(squared), Is.EqualTo(radius).Within(1e-5));
+                Assert.That(along, Is.EqualTo(radius).Within(1e-5), "normals point away from the centre");
+                Assert.That(mesh.Owners[v], Is.Zero);
+            }
+            // Corners on the sphere: the mesh lies inside it, by less than the sagitta of an edge.
+            (double area, double volume) = Meshes.Measure(mesh.Positions, mesh.Indices);
+            Assert.That(area / (4 * Math.PI * radius * radius), Is.InRange(0.995, 1.0));
+            Assert.That(volume / (4.0 / 3 * Math.PI * radius * radius * radius), Is.InRange(0.99, 1.0));
+            Assert.That(Meshes.IsClosed(mesh.Indices), Is.True);
+        }
+
+        [Test]
+        public void CrambinIsClosed([Values] SurfaceKind kind)
+        {
+            using Structure structure = Meshes.Crambin();
+            using SurfaceContext context = Meshes.ContextOf(structure);
+            SurfaceSettings settings = SurfaceSettings.Default;
+            settings.Surface = kind;
+            SurfaceMeshView mesh = Meshes.Compute(context, settings);
+            Assert.That(mesh.TriangleCount, Is.GreaterThan(1000));
+            Assert.That(Meshes.IsClosed(mesh.Indices), Is.True);
+            Assert.That(context.AtomCount, Is.EqualTo(structure.AtomCount));
+
+            Assert.That(context.TryGetReport(out SurfaceReport report), Is.True);
+            (double area, double volume) = Meshes.Measure(mesh.Positions, mesh.Indices);
+            Assert.That(volume, Is.Positive);
+            Assert.That(report.Area, Is.EqualTo(area).Within(1e-5).Percent);
+            Assert.That(report.Volume, Is.EqualTo(volume).Within(1e-4).Percent);
+
+            float[] low = { float.MaxValue, float.MaxValue, float.MaxValue },
+                high = { float.MinValue, float.MinValue, float.MinValue };
+            for (int i = 0; i < mesh.Positions.Length; ++i)
+            {
+                low[i % 3] = Math.Min(low[i % 3], mesh.Positions[i]);
+                high[i % 3] = Math.Max(high[i % 3], mesh.Positions[i]);
+            }
+            Assert.That(mesh.BoundsMin, Is.EqualTo((low[0], low[1], low[2])));
+            Assert.That(mesh.BoundsMax, Is.EqualTo((high[0], high[1], high[2])));
+            foreach (uint owner in mesh.Owners)
+                Assert.That(owner, Is.LessThan(context.AtomCount));
+        }
+
+        [Test]
+        public void ReversedWindingMirrorsTheTriangles()
+        {
+            using SurfaceContext context = Meshes.CrambinContext();
+            SurfaceSettings settings = SurfaceSettings.Default;
+            SurfaceMeshView outward = Meshes.Compute(context, settings);
+            double volume = Meshes.Measure(outward.Positions, outward.Indices).Volume;
+            settings.Winding = SurfaceWinding.Reversed;
+            SurfaceMeshView reversed = Meshes.Compute(context, settings);
+            Assert.That(Meshes.Measure(reversed.Positions, reversed.Indices).Volume,
+                Is.EqualTo(-volume).Within(1e-9).Percent);
+        }
+
+        [Test]
+        public void PatchTypesComeIfAskedFor()
+        {
+            using SurfaceContext context = Meshes.CrambinContext();
+            SurfaceSettings settings = SurfaceSettings.Default;
+            Assert.That(Meshes.Compute(context, settings).HasPatches, Is.False);
+            settings.PatchTypes = true;
+            SurfaceMeshView mesh = Meshes.Compute(context, settings);
+            Assert.That(mesh.Patches.Length, Is.EqualTo(mesh.VertexCount));
+            Assert.That(mesh.Patches.ToArray(),
+                Is.SupersetOf(new[] { SurfacePatch.Contact, SurfacePatch.Toroidal, SurfacePatch.Reentrant }));
+        }
+
+        [Test]
+        public void NoAtomsGiveAnEmptyMesh()
+        {
+            using var context = new SurfaceContext();
+            context.SetAtoms(default, default);
+            SurfaceMeshView mesh = Meshes.Compute(context, SurfaceSettings.Default);
+            Assert.That(mesh.VertexCount, Is.Zero);
+            Assert.That(mesh.Positions.IsEmpty && mesh.Indices.IsEmpty && mesh.Owners.IsEmpty, Is.True);
+            SurfaceMeshView nothing = default;
+            Assert.That(nothing.IsValid && nothing.Positions.IsEmpty && nothing.Vertices.IsEmpty, Is.True);
+        }
+
+        [Test]
+        public void IndexedPositionsAreThoseThatWerePicked()
+        {
+            using Structure structure = Meshes.Crambin();
+            using SurfaceContext context = Meshes.ContextOf(structure);
+            SurfaceMeshView direct = Meshes.Compute(context, SurfaceSettings.Default);
+            float[] expected = direct.Positions.ToArray();
+
+            // Every atom at twice its place in a larger array, between atoms that must not be looked at.
+            var wide = new float[6 * structure.AtomCount];
+            var indices = new uint[structure.AtomCount];
+            Array.Fill(wide, float.NaN);
+            for (int i = 0; i < indices.Length; ++i)
+            {
+                indices[i] = (uint)(2 * i);
+                structure.Positions.Slice(3 * i, 3).CopyTo(wide.AsSpan(6 * i));
+            }
+            context.SetAtoms(new float[3 * structure.AtomCount], structure.Radii);
+            Assert.That(context.SetPositions(wide, indices), Is.EqualTo(QuickSesStatus.Ok));
+            Assert.That(Meshes.Compute(context, SurfaceSettings.Default).Positions.SequenceEqual(expected), Is.True);
+        }
+
+        [Test]
+        public void EstimateIsNearTheMesh()
+        {
+            using SurfaceContext context = Meshes.CrambinContext();
+            SurfaceSettings settings = SurfaceSettings.Default;
+            Assert.That(context.Estimate(settings, out SurfaceSizeEstimate estimate), Is.EqualTo(QuickSesStatus.Ok));
+            SurfaceMeshView mesh = Meshes.Compute(context, settings);
+            Assert.That(estimate.Fits, Is.True);
+            Assert.That((double)estimate.Vertices, Is.EqualTo(mesh.VertexCount).Within(25).Percent);
+            Assert.That((double)estimate.Triangles, Is.EqualTo(mesh.TriangleCount).Within(25).Percent);
+        }
+
+        [Test]
+        public void MeasuringCanBeSwitchedOff()
+        {
+            using SurfaceContext context = Meshes.CrambinContext();
+            SurfaceSettings settings = SurfaceSettings.Default;
+            Assert.That(settings.Measure, Is.True);
+            settings.Measure = false;
+            Meshes.Compute(context, settings);
+            context.TryGetReport(out SurfaceReport report);
+            Assert.That((report.Area, report.Volume), Is.EqualTo((0.0, 0.0)));
+            Assert.That(report.MeshBytes, Is.Positive);
+        }
+
+        [Test]
+        public void StageTimesHaveNames()
+        {
+            using SurfaceContext context = Meshes.CrambinContext();
+            context.EnableStageTimes(true);
+            Meshes.Compute(context, SurfaceSettings.Default);
+            context.TryGetReport(out SurfaceReport report);
+            Assert.That(report.StageCount, Is.Positive);
+            for (int k = 0; k < report.StageCount; ++k)
+            {
+                Assert.That(report.GetStage(k).Name, Does.Match("^[a-z_]+$"));
+                Assert.That(report.GetStage(k).Milliseconds, Is.Not.Negative);
+            }
+            Assert.That(() => report.GetStage(report.StageCount), Throws.TypeOf<ArgumentOutOfRangeException>());
+        }
+
+        [Test]
+        public void ViewEndsWithTheNextMesh()
+        {
+            using SurfaceContext context = Meshes.CrambinContext();
+            Assert.That(context.TryGetMesh(out _), Is.False);
+            SurfaceSettings settings = SurfaceSettings.Default;
+            settings.Frame = 41;
+            SurfaceMeshView first = Meshes.Compute(context, settings);
+            float[] positions = first.Positions.ToArray();
+            Assert.That(first.Frame, Is.EqualTo(41));
+            Assert.That(context.TryGetMesh(out SurfaceMeshView again), Is.True);
+            Assert.That(again.Positions.SequenceEqual(positions), Is.True);
+
+            settings.Frame = 42;
+            SurfaceMeshView second = Meshes.Compute(context, settings);
+            Assert.That(first.IsValid, Is.False);
+            Assert.That(again.IsValid, Is.False);
+            Assert.That(() => first.Positions.Length, Throws.InvalidOperationException);
+            Assert.That(second.Frame, Is.EqualTo(42));
+            Assert.That(second.Positions.SequenceEqual(positions), Is.True, "same input, same bytes");
+        }
+    }
+}

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+using QuickSes.Interop;
+
+namespace QuickSes
+{
+    /// <summary>What computes, or why it can't.</summary>
+    public readonly struct BackendDescription
+    {
+        internal unsafe BackendDescription(in NativeBackendDescription native)
+        {
+            IsAvailable = native.Available != 0;
+            TotalMemory = native.TotalMemory;
+            FreeMemory = native.FreeMemory;
+            fixed (byte* device = native.Device, reason = native.Reason)
+            {
+                Device = NativeText.Read(device);
+                Reason = NativeText.Read(reason);
+            }
+        }
+
+        /// <summary>Whether a context with this back end can be made.</summary>
+        public bool IsAvailable { get; }
+
+        /// <summary>The GPU's name, or the CPU's instruction set and thread count.</summary>
+        public string Device { get; }
+
+        /// <summary>
+        /// Why it is not available, or, for <see cref="SurfaceBackend.Auto"/>, why it is not CUDA; else "".
+        /// </summary>
+        public string Reason { get; }
+
+        /// <summary>Bytes of the device, or of the machine.</summary>
+        public ulong TotalMemory { get; }
+
+        /// <summary>Bytes that were free when it was asked for.</summary>
+        public ulong FreeMemory { get; }
+    }
+}

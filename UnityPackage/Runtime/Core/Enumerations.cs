@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+// The enumerations of quickses.h. Names follow the header, so that one manual serves both.
+namespace QuickSes
+{
+    /// <summary>How a call into the native library ended.</summary>
+    public enum QuickSesStatus
+    {
+        /// <summary>Success.</summary>
+        Ok = 0,
+        /// <summary>An argument is wrong; the message names it.</summary>
+        InvalidArgument = 1,
+        /// <summary>The memory budget, the device or the machine refused memory.</summary>
+        OutOfMemory = 2,
+        /// <summary>The back end asked for, or the native library itself, can't be used here.</summary>
+        BackendUnavailable = 3,
+        /// <summary>The GPU or its driver reported an error.</summary>
+        DeviceError = 4,
+        /// <summary>
+        /// The spacing needs more vertices than 32-bit indices, or finer places than float32, can name.
+        /// </summary>
+        TooFine = 5,
+        /// <summary>Nothing has been computed yet.</summary>
+        NoResult = 6,
+        /// <summary>A broken invariant of the library: please report it with the input.</summary>
+        InternalError = 7,
+        /// <summary>Cancelled meanwhile.</summary>
+        Cancelled = 8,
+        /// <summary>A file or buffer can't be read, or what is in it can't be used.</summary>
+        FileError = 9,
+        /// <summary>The trajectory has no periodic box, so there is nothing to unwrap.</summary>
+        NoBox = 10
+    }
+
+    /// <summary>What computes.</summary>
+    public enum SurfaceBackend
+    {
+        /// <summary>CUDA if a usable device is present, else the CPU.</summary>
+        Auto = 0,
+        /// <summary>An NVIDIA GPU.</summary>
+        Cuda = 1,
+        /// <summary>The threads of the CPU.</summary>
+        Cpu = 2
+    }
+
+    /// <summary>Which surface of a molecule.</summary>
+    public enum SurfaceKind
+    {
+        /// <summary>Solvent-excluded: what a probe sphere rolling over the atoms can't reach.</summary>
+        Ses = 0,
+        /// <summary>Solvent-accessible: where the centre of the probe may be.</summary>
+        Sas = 1,
+        /// <summary>Van der Waals: the union of the atoms themselves.</summary>
+        Vdw = 2
+    }
+
+    /// <summary>How the surface is computed.</summary>
+    public enum SurfaceMethod
+    {
+        /// <summary>Vertices on the exact surface.</summary>
+        Exact = 0,
+        /// <summary>The voxel method of Martinez, Krone and Baaden 2019 (SES only): the published baseline.</summary>
+        Grid = 1
+    }
+
+    /// <summary>The order of a triangle's vertices.</summary>
+    public enum SurfaceWinding
+    {
+        /// <summary>
+        /// cross(b - a, c - a) points out of the molecule: Unity's front face, in Unity's coordinates.
+        /// </summary>
+        Outward = 0,
+        /// <summary>The opposite, for callers who mirror an axis afterwards.</summary>
+        Reversed = 1
+    }
+
+    /// <summary>How the vertices of a mesh lie in memory.</summary>
+    public enum SurfaceVertexLayout
+    {
+        /// <summary>One tightly packed array per attribute.</summary>
+        Separate = 0,
+        /// <summary>
+        /// The attributes of a vertex behind each other: float position[3], float normal[3], byte color[4] and, if
+        /// asked for, float texcoord[2]; 28 or 36 bytes per vertex.
+        /// </summary>
+        Interleaved = 1
+    }
+
+    /// <summary>What kind of surface a vertex lies on (Connolly's three).</summary>
+    public enum SurfacePatch : byte
+    {
+        /// <summary>Convex: on one atom.</summary>
+        Contact = 0,
+        /// <summary>Saddle: the probe touches two atoms.</summary>
+        Toroidal = 1,
+        /// <summary>Concave: the probe touches three or more atoms.</summary>
+        Reentrant = 2
+    }
+
+    /// <summary>How a job stands.</summary>
+    public enum SurfaceJobState
+    {
+        /// <summary>None was begun.</summary>
+        Idle = 0,
+        /// <summary>Running, or waiting to run.</summary>
+        Running = 1,
+        /// <summary>All levels are computed.</summary>
+        Finished = 2,
+        /// <summary>Ended by <see cref="SurfaceContext.Cancel"/>.</summary>
+        Cancelled = 3,
+        /// <summary>Status and message say why; levels finished before can be collected.</summary>
+        Failed = 4
+    }
+
+    /// <summary>The format of a file of atoms.</summary>
+    public enum StructureFormat
+    {
+        /// <summary>By the extension of the file's name, else by the content (PDB and mmCIF).</summary>
+        Auto = 0,
+        /// <summary>Protein Data Bank.</summary>
+        Pdb = 1,
+        /// <summary>Macromolecular crystallographic information file.</summary>
+        Mmcif = 2,
+        /// <summary>PDB with charges and radii of its own.</summary>
+        Pqr = 3,
+        /// <summary>x y z radius per line: no names, no elements.</summary>
+        Xyzr = 4,
+        /// <summary>GROMACS.</summary>
+        Gro = 5
+    }
+
+    /// <summary>The format of a trajectory.</summary>
+    public enum TrajectoryFormat
+    {
+        /// <summary>By the extension of the file's name, else by the content.</summary>
+        Auto = 0,
+        /// <summary>CHARMM, NAMD, X-PLOR.</summary>
+        Dcd = 1,
+        /// <summary>GROMACS; nm become Å.</summary>
+        Xtc = 2,
+        /// <summary>PDB with several models.</summary>
+        Pdb = 3
+    }
+}

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: MIT
+// The structures of quickses.h, field for field; Tests/DotNet~ compares sizes and offsets with those of the C compiler.
+using System.Runtime.InteropServices;
+
+namespace QuickSes.Interop
+{
+    [StructLayout(LayoutKind.Sequential)]
+    internal unsafe struct NativeBackendDescription
+    {
+        public int Available;
+        public fixed byte Device[128];
+        public fixed byte Reason[256];
+        public ulong TotalMemory;
+        public ulong FreeMemory;
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
+    internal struct NativeContextOptions
+    {
+        public uint StructSize;
+        public SurfaceBackend Backend;
+        public int Device;
+        public uint Threads;
+        public ulong MemoryBudget;
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
+    internal unsafe struct NativeSettings
+    {
+        public const int MaxLevels = 8;
+
+        public uint StructSize;
+        public SurfaceKind Surface;
+        public SurfaceMethod Method;
+        public float ProbeRadius;
+        public float Spacing;
+        public uint RelaxationSteps;
+        public uint SliceSize;
+        public SurfaceWinding Winding;
+        public uint PatchTypes;
+        public uint Measure;
+        public uint Frame;
+        public fixed float Levels[MaxLevels];
+        public uint LevelCount;
+        public SurfaceVertexLayout VertexLayout;
+        public uint Texcoords;
+        public float FrameBudgetMs;
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
+    internal unsafe struct NativeMesh
+    {
+        public uint StructSize;
+        public uint VertexCount;
+        public uint TriangleCount;
+        public uint Frame;
+        public float* Positions;
+        public float* Normals;
+        public byte* Colors;
+        public float* Texcoords;
+        public uint VertexBytes;
+        public uint Reserved;
+        public uint* Owners;
+        public byte* Patches;
+        public uint* Indices;
+        public fixed float BoundsMin[3];
+        public fixed float BoundsMax[3];
+        public float Spacing;
+        public uint Level;
+        public uint LevelCount;
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
+    internal unsafe struct NativeStageTime
+    {
+        public fixed byte Name[24];
+        public double Milliseconds;
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
+    internal unsafe struct NativeReport
+    {
+        public const int MaxStages = 16;
+        public const int StageTimeBytes = 32;
+
+        public uint StructSize;
+        public uint StageCount;
+        public double Area;
+        public double Volume;
+        public double ComputeMs;
+        public ulong WorkBytesPeak;
+        public ulong MeshBytes;
+        public ulong HostBytesPeak;
+        public ulong BrickCount;
+        public ulong SliceCount;
+        public uint HiddenVertices;
+        public uint HiddenTriangles;
+        // NativeStageTime[MaxStages]: C# has fixed buffers of numbers only.
+        public fixed ulong Stages[MaxStages * StageTimeBytes / sizeof(ulong)];
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
+    internal struct NativeSizeEstimate
+    {
+        public uint StructSize;
+        public int Fits;
+        public ulong Vertices;
+        public ulong Triangles;
+        public ulong MeshBytes;
+        public ulong WorkBytes;
+        public ulong SmallestBudget;
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
+    internal unsafe struct NativeProgress
+    {
+        public uint StructSize;
+        public SurfaceJobState State;
+        public uint Frame;
+        public uint FrameRequested;
+        public uint LevelsFinished;
+        public uint LevelCount;
+        public float Fraction;
+        public int MeshReady;
+        public QuickSesStatus Status;
+        public fixed byte Message[256];
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
+    internal unsafe struct NativeReadOptions
+    {
+        public uint StructSize;
+        public StructureFormat Format;
+        public int Model;
+        public int Water;
+        public int Hetero;
+        public int Hydrogen;
+        public byte* Selection;
+        public byte* Radii;
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
+    internal unsafe struct NativeAtom
+    {
+        public byte* Name;
+        public byte* ResidueName;
+        public byte* Chain;
+        public int ResidueNumber;
+        public uint FileIndex;
+        public byte InsertionCode;
+        public byte Element;
+        public byte IsHetero;
+        public byte IsWater;
+        public byte IsHydrogen;
+        public fixed byte Reserved[3];
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
+    internal unsafe struct NativeStructureInfo
+    {
+        public uint StructSize;
+        public StructureFormat Format;
+        public int Model;
+        public int ModelCount;
+        public uint AtomCount;
+        public uint FileAtomCount;
+        public float* Positions;
+        public float* Radii;
+        public uint* FileIndices;
+        public NativeAtom* Atoms;
+        public byte* FileElements;
+        public uint WarningCount;
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
+    internal struct NativeTrajectoryInfo
+    {
+        public uint StructSize;
+        public TrajectoryFormat Format;
+        public ulong FrameCount;
+        public uint AtomCount;
+        public int HasBox;
+        public int IsUnwrapped;
+        public int Incomplete;
+        public uint WarningCount;
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
+    internal unsafe struct NativeFrame
+    {
+        public uint StructSize;
+        public int HasTime;
+        public double Time;
+        public int HasBox;
+        public int IsUnwrapped;
+        public fixed double Box[9];
+    }
+}

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+namespace QuickSes
+{
+    /// <summary>
+    /// What is read of a file of atoms. <c>default</c> is the defaults: everything of the first model.
+    /// </summary>
+    public struct StructureOptions
+    {
+        /// <summary>The format; default: found out.</summary>
+        public StructureFormat Format { get; set; }
+
+        /// <summary>Place of the model in the file, from 1; 0 (default) is the first one too.</summary>
+        public int Model { get; set; }
+
+        /// <summary>Whether waters are left out.</summary>
+        public bool SkipWater { get; set; }
+
+        /// <summary>Whether HETATM records are left out; waters are mostly among them.</summary>
+        public bool SkipHetero { get; set; }
+
+        /// <summary>Whether hydrogen and deuterium are left out.</summary>
+        public bool SkipHydrogen { get; set; }
+
+        /// <summary>CID syntax of gemmi, such as "//A" or "/1/A/10-40/CA[C]"; null (default): everything.</summary>
+        public string Selection { get; set; }
+
+        /// <summary>
+        /// "quickses", "bondi", or the path of a text file with lines `ELEMENT radius` (Å; `*` for all others). null
+        /// (default): those of the file (PQR, XYZR), else "quickses".
+        /// </summary>
+        public string Radii { get; set; }
+    }
+}

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+namespace QuickSes
+{
+    /// <summary>With what a <see cref="SurfaceContext"/> computes. <c>default</c> is the defaults.</summary>
+    public struct SurfaceContextOptions
+    {
+        /// <summary>What computes; default: CUDA where it can be used, else the CPU.</summary>
+        public SurfaceBackend Backend { get; set; }
+
+        /// <summary>CUDA device, from 0 to <see cref="SurfaceContext.DeviceCount"/> - 1; default 0.</summary>
+        public int Device { get; set; }
+
+        /// <summary>CPU threads; 0 (default): one per hardware thread. Games leave some to themselves.</summary>
+        public uint Threads { get; set; }
+
+        /// <summary>
+        /// Bytes; 0 (default): what is free at the time. With CUDA it covers everything on the device, on the CPU the
+        /// work without the mesh that is handed out. The mesh is the same byte for byte; only the time grows.
+        /// </summary>
+        public ulong MemoryBudget { get; set; }
+    }
+}

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+using QuickSes.Interop;
+using System;
+
+namespace QuickSes
+{
+    /// <summary>
+    /// A mesh in memory of a <see cref="SurfaceContext"/>; nothing is copied. It ends with the next
+    /// <see cref="SurfaceContext.TryCollect"/> or <see cref="SurfaceContext.Compute"/> that succeeds on that context,
+    /// and with its Dispose: asking an ended view for memory throws. Spans and pointers that were taken before can't
+    /// tell, so don't keep them; and keep the context itself alive while they are used. <c>default</c> is an empty
+    /// mesh. V is the number of vertices, T that of triangles; lengths are in Å, in the coordinates the atoms were
+    /// given in.
+    /// </summary>
+    public readonly unsafe struct SurfaceMeshView
+    {
+        internal SurfaceMeshView(SurfaceContext context, int generation, in NativeMesh native)
+        {
+            _context = context;
+            _generation = generation;
+            _native = native;
+        }
+
+        private readonly SurfaceContext _context;
+        private readonly int _generation;
+        private readonly NativeMesh _native;
+
+        /// <summary>Whether the memory may still be looked at.</summary>
+        public bool IsValid => _context == null || _context.IsCurrent(_generation);
+
+        /// <summary>V.</summary>
+        public int VertexCount => checked((int)_native.VertexCount);
+
+        /// <summary>T.</summary>
+        public int TriangleCount => checked((int)_native.TriangleCount);
+
+        /// <summary><see cref="SurfaceSettings.Frame"/> of the job or computation.</summary>
+        public uint Frame => _native.Frame;
+
+        /// <summary>0 is the coarsest.</summary>
+        public int Level => (int)_native.Level;
+
+        /// <summary>Levels there are with the settings: the finest is LevelCount - 1.</summary>
+        public int LevelCount => (int)_native.LevelCount;
+
+        /// <summary>Å, of the level.</summary>
+        public float Spacing => _native.Spacing;
+
+        /// <summary>Box of the vertices, Å; all 0 for an empty mesh.</summary>
+        public (float X, float Y, float Z) BoundsMin =>
+            (_native.BoundsMin[0], _native.BoundsMin[1], _native.BoundsMin[2]);
+
+        /// <summary>The other corner of the box.</summary>
+        public (float X, float Y, float Z) BoundsMax =>
+            (_native.BoundsMax[0], _native.BoundsMax[1], _native.BoundsMax[2]);
+
+        /// <summary>How the vertices lie in memory.</summary>
+        public SurfaceVertexLayout VertexLayout =>
+            _native.VertexBytes == 0 ? SurfaceVertexLayout.Separate : SurfaceVertexLayout.Interleaved;
+
+        /// <summary>Bytes from one vertex to the next if they are interleaved (28 or 36); else 0.</summary>
+        public int VertexBytes => (int)_native.VertexBytes;
+
+        /// <summary>Whether there is a colour per vertex.</summary>
+        public bool HasColors => _native.Colors != null;
+
+        /// <summary>Whether there are texture coordinates.</summary>
+        public bool HasTexcoords => _native.Texcoords != null;
+
+        /// <summary>Whether there are kinds of patch.</summary>
+        public bool HasPatches => _native.Patches != null;
+
+        /// <summary>
+        /// V x <see cref="VertexBytes"/> bytes: all there is of the vertices. Interleaved layout only.
+        /// </summary>
+        public ReadOnlySpan<byte> Vertices
+        {
+            get
+            {
+                if (_native.VertexBytes == 0 && _native.VertexCount != 0)
+                    throw new InvalidOperationException(
+                        "The vertices are in separate arrays: use Positions, Normals, ...");
+                return new ReadOnlySpan<byte>(Valid(_native.Positions),
+                    Length(_native.VertexCount, _native.VertexBytes));
+            }
+        }
+
+        /// <summary>V x 3, Å. Separate layout only, as the next three.</summary>
+        public ReadOnlySpan<float> Positions => Attribute<float>(_native.Positions, 3);
+
+        /// <summary>V x 3, unit length, outward.</summary>
+        public ReadOnlySpan<float> Normals => Attribute<float>(_native.Normals, 3);
+
+        /// <summary>V x 4: red, green, blue, alpha; empty if there are none.</summary>
+        public ReadOnlySpan<byte> Colors => Attribute<byte>(_native.Colors, 4);
+
+        /// <summary>V x 2; empty if they were not asked for.</summary>
+        public ReadOnlySpan<float> Texcoords => Attribute<float>(_native.Texcoords, 2);
+
+        /// <summary>
+        /// V: the atom whose van der Waals surface is nearest, a 0-based index into the positions given to
+        /// <see cref="SurfaceContext.SetAtoms"/>, always in range.
+        /// </summary>
+        public ReadOnlySpan<uint> Owners =>
+            new ReadOnlySpan<uint>(Valid(_native.Owners), Length(_native.VertexCount, 1));
+
+        /// <summary>V kinds of patch; empty if they were not asked for.</summary>
+        public ReadOnlySpan<SurfacePatch> Patches =>
+            new ReadOnlySpan<SurfacePatch>(Valid(_native.Patches), HasPatches ? Length(_native.VertexCount, 1) : 0);
+
+        /// <summary>T x 3 vertex numbers.</summary>
+        public ReadOnlySpan<uint> Indices =>
+            new ReadOnlySpan<uint>(Valid(_native.Indices), Length(_native.TriangleCount, 3));
+
+        /// <summary>
+        /// The first vertex's position, for copies without spans. In both layouts; null for an empty mesh.
+        /// </summary>
+        public float* PositionsPointer => (float*)Valid(_native.Positions);
+
+        /// <summary>The first index; null for an empty mesh.</summary>
+        public uint* IndicesPointer => (uint*)Valid(_native.Indices);
+
+        private ReadOnlySpan<T> Attribute<T>(void* first, uint perVertex) where T : unmanaged
+        {
+            if (_native.VertexBytes != 0)
+                throw new InvalidOperationException("The vertices are interleaved: use Vertices and VertexBytes.");
+            return new ReadOnlySpan<T>(Valid(first), first == null ? 0 : Length(_native.VertexCount, perVertex));
+        }
+
+        private static int Length(uint count, uint each) => checked((int)((ulong)count * each));
+
+        private void* Valid(void* memory)
+        {
+            if (!IsValid)
+            {
+                _context.ThrowIfDisposed();
+                throw new InvalidOperationException("This view has ended: a newer mesh was collected or computed.");
+            }
+            return memory;
+        }
+    }
+}

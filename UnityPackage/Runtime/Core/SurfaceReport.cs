@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+using QuickSes.Interop;
+using System;
+
+namespace QuickSes
+{
+    /// <summary>What was done for one mesh.</summary>
+    public readonly struct SurfaceReport
+    {
+        internal SurfaceReport(in NativeReport native)
+        {
+            _native = native;
+        }
+
+        private readonly NativeReport _native;
+
+        /// <summary>Å², sum over the triangles; 0 if not asked for (<see cref="SurfaceSettings.Measure"/>).</summary>
+        public double Area => _native.Area;
+
+        /// <summary>Å³, enclosed; cavities count negative.</summary>
+        public double Volume => _native.Volume;
+
+        /// <summary>Milliseconds from atoms to mesh in host memory; for a later level: since the one before.</summary>
+        public double ComputeMilliseconds => _native.ComputeMs;
+
+        /// <summary>
+        /// Most bytes in use for the work, without the mesh: on the device with CUDA, else in host memory.
+        /// </summary>
+        public ulong WorkBytesPeak => _native.WorkBytesPeak;
+
+        /// <summary>Bytes of the mesh.</summary>
+        public ulong MeshBytes => _native.MeshBytes;
+
+        /// <summary>Bytes of host memory of the context, the mesh included.</summary>
+        public ulong HostBytesPeak => _native.HostBytesPeak;
+
+        /// <summary>Bricks of 8x8x8 lattice points that were evaluated.</summary>
+        public ulong BrickCount => _native.BrickCount;
+
+        /// <summary>Slices the work was done in.</summary>
+        public ulong SliceCount => _native.SliceCount;
+
+        /// <summary>Vertices that were dropped since their atoms are hidden.</summary>
+        public uint HiddenVertices => _native.HiddenVertices;
+
+        /// <summary>Triangles that were dropped since atoms are hidden.</summary>
+        public uint HiddenTriangles => _native.HiddenTriangles;
+
+        /// <summary>How many stages were timed; 0 unless <see cref="SurfaceContext.EnableStageTimes"/>.</summary>
+        public int StageCount => (int)_native.StageCount;
+
+        /// <summary>
+        /// Name and milliseconds of stage k, from 0 to <see cref="StageCount"/> - 1. Makes a new string.
+        /// </summary>
+        public unsafe (string Name, double Milliseconds) GetStage(int k)
+        {
+            if ((uint)k >= _native.StageCount)
+                throw new ArgumentOutOfRangeException(nameof(k), k, $"there are {_native.StageCount} stages");
+            fixed (ulong* stages = _native.Stages)
+            {
+                NativeStageTime* stage = (NativeStageTime*)stages + k;
+                return (NativeText.Read(stage->Name), stage->Milliseconds);
+            }
+        }
+    }
+}

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+using QuickSes.Interop;
+using System;
+
+namespace QuickSes
+{
+    /// <summary>
+    /// What is computed. Begin with <see cref="Default"/>; <c>default(SurfaceSettings)</c> is refused. Ranges are
+    /// checked when a computation starts.
+    /// </summary>
+    public struct SurfaceSettings
+    {
+        /// <summary>The most coarser levels there can be.</summary>
+        public const int MaxLevels = NativeSettings.MaxLevels;
+
+        internal NativeSettings Native;
+
+        /// <summary>
+        /// The native library's defaults: the solvent-excluded surface of a probe of 1.4 Å at a spacing of 0.5 Å, after
+        /// levels of 2 and 1 Å. Throws <see cref="QuickSesException"/> if the library can't be used: see
+        /// <see cref="SurfaceContext.IsSupported(out string)"/>.
+        /// </summary>
+        public static unsafe SurfaceSettings Default
+        {
+            get
+            {
+                NativeLibraryCheck.ThrowIfUnusable();
+                SurfaceSettings settings;
+                NativeMethods.qses_settings_init(&settings.Native);
+                return settings;
+            }
+        }
+
+        /// <summary>Which surface.</summary>
+        public SurfaceKind Surface { get => Native.Surface; set => Native.Surface = value; }
+
+        /// <summary>How it is computed.</summary>
+        public SurfaceMethod Method { get => Native.Method; set => Native.Method = value; }
+
+        /// <summary>Å, 0 to 100; 1.4 is water. Below 0.05 the SES is the VDW surface. Ignored by VDW.</summary>
+        public float ProbeRadius { get => Native.ProbeRadius; set => Native.ProbeRadius = value; }
+
+        /// <summary>Å between lattice points, 0.001 to 100: how fine the mesh is.</summary>
+        public float Spacing { get => Native.Spacing; set => Native.Spacing = value; }
+
+        /// <summary>Smoothing steps, at most 100. With the exact method vertices stay on the exact surface.</summary>
+        public uint RelaxationSteps { get => Native.RelaxationSteps; set => Native.RelaxationSteps = value; }
+
+        /// <summary>
+        /// Work in slices of at most this many lattice points cubed (at least 8); 0: as large as memory allows. The
+        /// mesh is the same byte for byte.
+        /// </summary>
+        public uint SliceSize { get => Native.SliceSize; set => Native.SliceSize = value; }
+
+        /// <summary>The order of a triangle's vertices.</summary>
+        public SurfaceWinding Winding { get => Native.Winding; set => Native.Winding = value; }
+
+        /// <summary>Whether <see cref="SurfaceMeshView.Patches"/> is filled. Not with the grid method.</summary>
+        public bool PatchTypes { get => Native.PatchTypes != 0; set => Native.PatchTypes = value ? 1u : 0; }
+
+        /// <summary>Whether area and volume are computed.</summary>
+        public bool Measure { get => Native.Measure != 0; set => Native.Measure = value ? 1u : 0; }
+
+        /// <summary>Any number; it comes back in <see cref="SurfaceMeshView.Frame"/>.</summary>
+        public uint Frame { get => Native.Frame; set => Native.Frame = value; }
+
+        /// <summary>How the vertices lie in memory.</summary>
+        public SurfaceVertexLayout VertexLayout { get => Native.VertexLayout; set => Native.VertexLayout = value; }
+
+        /// <summary>Whether vertices have texture coordinates: see <see cref="SurfaceContext.SetTexcoords"/>.</summary>
+        public bool Texcoords { get => Native.Texcoords != 0; set => Native.Texcoords = value ? 1u : 0; }
+
+        /// <summary>
+        /// Milliseconds, for <see cref="SurfaceContext.Begin"/>: 0: all levels one after the other. Above 0, at most
+        /// 60000: only the finest level that is expected to take no longer than this, judging by the last frames.
+        /// </summary>
+        public float FrameBudget { get => Native.FrameBudgetMs; set => Native.FrameBudgetMs = value; }
+
+        /// <summary>How many coarser levels come before <see cref="Spacing"/> in a job.</summary>
+        public int LevelCount => (int)Native.LevelCount;
+
+        /// <summary>The spacing of coarser level k, Å; k from 0 to <see cref="LevelCount"/> - 1.</summary>
+        public unsafe float GetLevel(int k)
+        {
+            if ((uint)k >= Native.LevelCount)
+                throw new ArgumentOutOfRangeException(nameof(k), k, $"there are {Native.LevelCount} levels");
+            return Native.Levels[k];
+        }
+
+        /// <summary>
+        /// Sets the spacings, Å, of the coarser levels of a job: falling, at most <see cref="MaxLevels"/>; those not
+        /// above <see cref="Spacing"/> are left out. Empty: only <see cref="Spacing"/>.
+        /// </summary>
+        public unsafe void SetLevels(ReadOnlySpan<float> spacings)
+        {
+            if (spacings.Length > MaxLevels)
+                throw new ArgumentException($"{spacings.Length} levels, but at most {MaxLevels} are possible",
+                    nameof(spacings));
+            for (int k = 0; k < spacings.Length; ++k)
+                Native.Levels[k] = spacings[k];
+            Native.LevelCount = (uint)spacings.Length;
+        }
+
+        internal void ThrowIfUninitialised()
+        {
+            if (Native.StructSize == 0)
+                throw new ArgumentException("is empty: begin with SurfaceSettings.Default", "settings");
+        }
+    }
+}
