@@ -43,13 +43,6 @@ Copy copy(const qses_mesh &m) {
   return c;
 }
 
-qses_mesh compute_view(qses_context *context, const qses_settings &s) {
-  qses_mesh mesh;
-  qses_mesh_init(&mesh);
-  expect_ok(qses_compute(context, &s, &mesh));
-  return mesh;
-}
-
 std::vector<uint32_t> some_colors(size_t n) {
   std::mt19937 random(7);
   std::vector<uint32_t> colors(n);
@@ -221,9 +214,7 @@ TEST(Visible, DropsTrianglesOfHiddenAtoms) {
     const Copy expected = filtered(whole, visible);
     ASSERT_LT(expected.triangles, whole.triangles);
     expect_equal(copy(mesh), expected);
-    qses_report report;
-    qses_report_init(&report);
-    expect_ok(qses_get_report(context, &report));
+    const qses_report report = report_of(context);
     EXPECT_EQ(report.hidden_vertices, whole.vertices - expected.vertices);
     EXPECT_EQ(report.hidden_triangles, whole.triangles - expected.triangles);
     EXPECT_EQ(report.area, whole_surface.report.area);

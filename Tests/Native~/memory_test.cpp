@@ -102,20 +102,6 @@ void expect_same_bytes(const qses_mesh &a, const qses_mesh &b, const std::string
   }
 }
 
-qses_mesh compute_view(qses_context *context, const qses_settings &s) {
-  qses_mesh mesh;
-  qses_mesh_init(&mesh);
-  expect_ok(qses_compute(context, &s, &mesh));
-  return mesh;
-}
-
-qses_report report_of(qses_context *context) {
-  qses_report report;
-  qses_report_init(&report);
-  expect_ok(qses_get_report(context, &report));
-  return report;
-}
-
 }  // namespace
 
 TEST(Estimate, IsNearTheTruth) {

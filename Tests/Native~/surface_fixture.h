@@ -157,6 +157,21 @@ inline void expect_ok(qses_status status) {
   if (status != QSES_OK) throw std::runtime_error("status " + std::to_string(status) + ": " + qses_last_error());
 }
 
+// The mesh where the context keeps it.
+inline qses_mesh compute_view(qses_context *context, const qses_settings &s) {
+  qses_mesh mesh;
+  qses_mesh_init(&mesh);
+  expect_ok(qses_compute(context, &s, &mesh));
+  return mesh;
+}
+
+inline qses_report report_of(qses_context *context) {
+  qses_report report;
+  qses_report_init(&report);
+  expect_ok(qses_get_report(context, &report));
+  return report;
+}
+
 inline Surface copy_surface(qses_context *context) {
   qses_mesh m;
   qses_mesh_init(&m);
@@ -170,8 +185,7 @@ inline Surface copy_surface(qses_context *context) {
     s.mesh.indices.assign(m.indices, m.indices + 3 * t);
     if (m.patches) s.patches.assign(m.patches, m.patches + v);
   }
-  qses_report_init(&s.report);
-  expect_ok(qses_get_report(context, &s.report));
+  s.report = report_of(context);
   return s;
 }
 
