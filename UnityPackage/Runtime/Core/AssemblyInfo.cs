@@ -2,3 +2,4 @@
 using System.Runtime.CompilerServices;
 
 [assembly: InternalsVisibleTo("QuickSes.Core.Tests")]
+[assembly: InternalsVisibleTo("QuickSes.Unity")]
