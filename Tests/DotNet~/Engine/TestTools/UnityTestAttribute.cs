@@ -22,6 +22,8 @@ namespace UnityEngine.TestTools
 
             public IEnumerable<ITestCaseData> GetTestCases(IEnumerable[] sources)
             {
+                if (sources.Length == 0)
+                    yield break; // The other BuildFrom makes the one test.
                 foreach (ITestCaseData data in _combinations.GetTestCases(sources))
                     yield return new TestCaseParameters(data.Arguments) { ExpectedResult = new object() };
             }
