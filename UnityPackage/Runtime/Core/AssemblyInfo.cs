@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 using System.Runtime.CompilerServices;
 
-[assembly: InternalsVisibleTo("QuickSes.Unity")]
 [assembly: InternalsVisibleTo("QuickSes.Core.Tests")]
 [assembly: InternalsVisibleTo("QuickSes.Unity")]
