@@ -31,6 +31,7 @@ namespace QuickSes.Tests
                 _visible = Enumerable.Repeat((byte)1, structure.AtomCount).ToArray();
                 _settings.Spacing = 1;
                 _settings.VertexLayout = SurfaceVertexLayout.Interleaved;
+                _settings.Components = true;
             }
 
             public void PlayFrame(uint frame)
@@ -57,7 +58,8 @@ namespace QuickSes.Tests
 
             private void Collect()
             {
-                if (Context.TryCollect(out SurfaceMeshView mesh) && mesh.Vertices.Length > 0 && mesh.Indices.Length > 0)
+                if (Context.TryCollect(out SurfaceMeshView mesh) && mesh.Vertices.Length > 0 &&
+                    mesh.Indices.Length > 0 && mesh.Components.Length > 0)
                     ++Collected;
             }
 

@@ -58,6 +58,10 @@ namespace QuickSes.Tests
             Assert.That(Header.Functions.Keys, Does.Contain("qses_compute"));
         }
 
+        [Test]
+        public void ComponentsAreLookedAtInNativeMemory() =>
+            Assert.That(Unsafe.SizeOf<SurfaceComponent>(), Is.EqualTo(Header.Structs["qses_component"].Size));
+
         [TestCaseSource(nameof(StructNames))]
         public void StructHasTheLayoutOfC(string name)
         {
@@ -121,6 +125,7 @@ namespace QuickSes.Tests
         {
             Assert.That(Header.Constants["QSES_ABI_VERSION"], Is.EqualTo((int)NativeMethods.AbiVersion));
             Assert.That(Header.Constants["QSES_MAX_LEVELS"], Is.EqualTo(NativeSettings.MaxLevels));
+            Assert.That(Header.Constants["QSES_REMEMBERED_SERIES"], Is.EqualTo(NativeSettings.RememberedSeries));
             Assert.That(Header.Constants["QSES_MAX_STAGES"], Is.EqualTo(NativeReport.MaxStages));
             Assert.That(Header.Structs["qses_stage_time"].Size, Is.EqualTo(NativeReport.StageTimeBytes));
         }

@@ -61,6 +61,25 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void SeriesOfOneContextKeepWhatTheyLearnt()
+        {
+            using Structure structure = Meshes.Crambin();
+            using SurfaceContext context = Meshes.ContextOf(structure);
+            SurfaceSettings settings = SurfaceSettings.Default;
+            settings.FrameBudget = 60000; // everything fits, but for what is not known yet
+            for (int frame = 0; frame < 6; ++frame)
+            {
+                int atoms = frame % 2 == 0 ? structure.AtomCount : structure.AtomCount / 2;
+                context.SetAtoms(structure.Positions.Slice(0, 3 * atoms), structure.Radii.Slice(0, atoms));
+                settings.Series = (uint)(frame % 2);
+                context.Begin(settings);
+                context.Wait();
+                Assert.That(context.TryCollect(out SurfaceMeshView mesh), Is.True);
+                Assert.That(mesh.Level, Is.EqualTo(frame < 2 ? 0 : mesh.LevelCount - 1));
+            }
+        }
+
+        [Test]
         public void CollectedMeshIsTheComputedOne()
         {
             using SurfaceContext context = Meshes.CrambinContext();

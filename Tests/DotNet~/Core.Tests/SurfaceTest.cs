@@ -155,6 +155,43 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void ComponentsAreTheSpheresAndTheWholeSurface()
+        {
+            float[] radii = { 1.5f, 2, 3 };
+            using var context = new SurfaceContext();
+            context.SetAtoms(new float[] { 0, 0, 0, 20, 0, 0, 0, 30, 0 }, radii);
+            SurfaceSettings settings = SurfaceSettings.Default;
+            settings.Spacing = 0.2f;
+            Assert.That(settings.Components, Is.False);
+            Assert.That(Meshes.Compute(context, settings).Components.IsEmpty, Is.True);
+            settings.Components = true;
+            SurfaceMeshView mesh = Meshes.Compute(context, settings);
+            Assert.That(mesh.Components.Length, Is.EqualTo(3));
+            double area = 0, volume = 0;
+            long triangles = 0;
+            var found = new double[3];
+            for (int k = 0; k < 3; ++k)
+            {
+                SurfaceComponent component = mesh.Components[k];
+                Assert.That(component.IsCavity, Is.False);
+                area += component.Area;
+                volume += component.Volume;
+                triangles += component.Triangles;
+                found[k] = component.Volume;
+            }
+            Array.Sort(found);
+            for (int k = 0; k < 3; ++k) // the mesh lies inside of the sphere
+                Assert.That(found[k] / (4.0 / 3 * Math.PI * Math.Pow(radii[k], 3)), Is.InRange(0.98, 1.0));
+            Assert.That(triangles, Is.EqualTo(mesh.TriangleCount));
+            context.TryGetReport(out SurfaceReport report);
+            Assert.That(area, Is.EqualTo(report.Area).Within(1e-9).Percent);
+            Assert.That(volume, Is.EqualTo(report.Volume).Within(1e-9).Percent);
+
+            Meshes.Compute(context, settings);
+            Assert.That(() => mesh.Components.Length, Throws.InvalidOperationException);
+        }
+
+        [Test]
         public void StageTimesHaveNames()
         {
             using SurfaceContext context = Meshes.CrambinContext();

@@ -113,6 +113,14 @@ namespace QuickSes
             new ReadOnlySpan<uint>(Valid(_native.Indices), Length(_native.TriangleCount, 3));
 
         /// <summary>
+        /// The connected pieces of the surface in the order of their first vertices; empty unless
+        /// <see cref="SurfaceSettings.Components"/>. Those of the whole surface where atoms are hidden. Areas and
+        /// volumes add up to those of <see cref="SurfaceReport"/>.
+        /// </summary>
+        public ReadOnlySpan<SurfaceComponent> Components =>
+            new ReadOnlySpan<SurfaceComponent>(Valid(_native.Components), Length(_native.ComponentCount, 1));
+
+        /// <summary>
         /// The first vertex's position, for copies without spans. In both layouts; null for an empty mesh.
         /// </summary>
         public float* PositionsPointer => (float*)Valid(_native.Positions);

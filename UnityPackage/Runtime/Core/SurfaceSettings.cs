@@ -13,6 +13,9 @@ namespace QuickSes
         /// <summary>The most coarser levels there can be.</summary>
         public const int MaxLevels = NativeSettings.MaxLevels;
 
+        /// <summary>How many <see cref="Series"/> a context remembers.</summary>
+        public const int RememberedSeries = NativeSettings.RememberedSeries;
+
         internal NativeSettings Native;
 
         /// <summary>
@@ -72,9 +75,20 @@ namespace QuickSes
 
         /// <summary>
         /// Milliseconds, for <see cref="SurfaceContext.Begin"/>: 0: all levels one after the other. Above 0, at most
-        /// 60000: only the finest level that is expected to take no longer than this, judging by the last frames.
+        /// 60000: only the finest level that is expected to take no longer than this, judging by the last frames of the
+        /// same <see cref="Series"/>.
         /// </summary>
         public float FrameBudget { get => Native.FrameBudgetMs; set => Native.FrameBudgetMs = value; }
+
+        /// <summary>Whether <see cref="SurfaceMeshView.Components"/> is filled; off costs nothing.</summary>
+        public bool Components { get => Native.Components != 0; set => Native.Components = value ? 1u : 0; }
+
+        /// <summary>
+        /// Any number: which series of frames a job belongs to, where one context computes several molecules in turn.
+        /// <see cref="FrameBudget"/> learns from each series apart; the context remembers the
+        /// <see cref="RememberedSeries"/> that were used last.
+        /// </summary>
+        public uint Series { get => Native.Series; set => Native.Series = value; }
 
         /// <summary>How many coarser levels come before <see cref="Spacing"/> in a job.</summary>
         public int LevelCount => (int)Native.LevelCount;

@@ -204,8 +204,8 @@ QSES_API qses_status qses_set_positions_indexed(qses_context *context, const flo
 
 /* Which atoms are shown: 1 or 0 per atom; visible may be NULL: all (default). The surface is that of all atoms; triangles
  * with a vertex whose owner is hidden are dropped, and vertices that no triangle uses, so the mesh is open along the
- * border of what is hidden. Owners keep the caller's numbers, vertices and triangles their order. Area and volume are
- * those of the whole surface. The whole mesh needs memory besides the one handed out. */
+ * border of what is hidden. Owners keep the caller's numbers, vertices and triangles their order. Area, volume and
+ * components are those of the whole surface. The whole mesh needs memory besides the one handed out. */
 QSES_API qses_status qses_set_visible(qses_context *context, const uint8_t *visible, size_t count);
 
 /* Colours per atom, red, green, blue, alpha, 8 bits each, which go to the vertices the atom owns. NULL: none (default);
@@ -220,6 +220,7 @@ QSES_API qses_status qses_set_texcoords(qses_context *context, const float *uv, 
 /* ---- computing ------------------------------------------------------------------------------------------------- */
 
 #define QSES_MAX_LEVELS 8
+#define QSES_REMEMBERED_SERIES 512
 
 typedef struct qses_settings {
   uint32_t struct_size; /* set by qses_settings_init */
@@ -246,17 +247,31 @@ typedef struct qses_settings {
   uint32_t texcoords;               /* 1: vertices have texture coordinates (see qses_set_texcoords); default 0 */
   float frame_budget_ms; /* for qses_begin: 0 (default): all levels one after the other. Above 0, at most 60000: one
                             level only, the finest of them (`spacing` being the last) that is expected to take no longer
-                            than this, ms, or the coarsest if none is. Expected is what the last frames say: the time
-                            from the start of the work to the mesh in host memory. The first frame is the coarsest; what
-                            was learnt is forgotten when the number of atoms, surface, method, probe_radius,
-                            relaxation_steps, slice_size, spacing or levels change. Now and then a frame takes longer,
-                            when a finer level is tried: so a surface that became cheaper gets finer again. Which level
-                            it was is in qses_mesh.level and .spacing. Like everything that depends on time, the choice
-                            of the level is not the same in every run; the mesh of a level is */
+                            than this, ms, or the coarsest if none is. Expected is what the last frames of the series
+                            (below) say: the time from the start of the work to the mesh in host memory. The first frame
+                            is the coarsest; what was learnt is forgotten when the number of atoms, surface, method,
+                            probe_radius, relaxation_steps, slice_size, spacing or levels change within a series. Now
+                            and then a frame takes longer, when a finer level is tried: so a surface that became cheaper
+                            gets finer again. Which level it was is in qses_mesh.level and .spacing. Like everything
+                            that depends on time, the choice of the level is not the same in every run; the mesh of a
+                            level is */
+  uint32_t components;   /* 1: qses_mesh.components is filled; default 0, which costs nothing */
+  uint32_t series;       /* which series of frames a job belongs to: any number; default 0. For callers who let one
+                            context compute several molecules in turn: frame_budget_ms learns from each series apart.
+                            The QSES_REMEMBERED_SERIES that were used last are remembered; an older one begins anew */
 } qses_settings;
 
 /* Fills in the defaults. Always use it: later versions append fields. NULL is ignored. */
 QSES_API void qses_settings_init(qses_settings *settings);
+
+/* One connected piece of the surface: an outer surface, or the wall of a cavity. */
+typedef struct qses_component {
+  uint64_t triangles;
+  double area;       /* Å², sum over its triangles */
+  double volume;     /* Å³, enclosed; negative for a cavity, whatever the winding */
+  int32_t is_cavity; /* 1 if volume is negative; else 0 */
+  uint32_t reserved;
+} qses_component;
 
 /* A view of a mesh in memory of the context: valid until the next qses_compute or qses_collect that succeeds on the same
  * context, or qses_destroy; also while jobs run. (Page-locked memory with CUDA.) Nothing here may be written or freed by the caller. */
@@ -280,6 +295,10 @@ typedef struct qses_mesh {
   float spacing;           /* Å, of the level */
   uint32_t level;          /* 0 is the coarsest */
   uint32_t level_count;    /* levels there are with the settings: level_count - 1 is the finest */
+  uint32_t component_count; /* 0 if not asked for, or if there is no surface */
+  const qses_component *components; /* NULL if there are none; in the order of their first vertices. Those of the whole
+                                       surface where atoms are hidden. Their areas and volumes add up to those of
+                                       qses_report */
 } qses_mesh;
 
 /* Empty view with struct_size set. NULL is ignored. */
@@ -310,7 +329,7 @@ typedef struct qses_report {
   double compute_ms;        /* atoms in host memory to mesh in host memory; for a later level: since the one before */
   uint64_t work_bytes_peak; /* most memory in use for the work: on the device with CUDA, else in host memory,
                                without the mesh */
-  uint64_t mesh_bytes;      /* of the mesh itself */
+  uint64_t mesh_bytes;      /* of the mesh itself, without its components */
   uint64_t host_bytes_peak; /* host memory of the context, the mesh included */
   uint64_t brick_count;     /* bricks of 8x8x8 lattice points that were evaluated */
   uint64_t slice_count;

@@ -28,6 +28,7 @@ namespace QuickSes.Interop
     internal unsafe struct NativeSettings
     {
         public const int MaxLevels = 8;
+        public const int RememberedSeries = 512;
 
         public uint StructSize;
         public SurfaceKind Surface;
@@ -45,6 +46,18 @@ namespace QuickSes.Interop
         public SurfaceVertexLayout VertexLayout;
         public uint Texcoords;
         public float FrameBudgetMs;
+        public uint Components;
+        public uint Series;
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
+    internal struct NativeComponent
+    {
+        public ulong Triangles;
+        public double Area;
+        public double Volume;
+        public int IsCavity;
+        public uint Reserved;
     }
 
     [StructLayout(LayoutKind.Sequential)]
@@ -68,6 +81,8 @@ namespace QuickSes.Interop
         public float Spacing;
         public uint Level;
         public uint LevelCount;
+        public uint ComponentCount;
+        public NativeComponent* Components;
     }
 
     [StructLayout(LayoutKind.Sequential)]
