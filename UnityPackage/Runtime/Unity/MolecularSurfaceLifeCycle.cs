@@ -63,10 +63,12 @@ namespace QuickSes
         }
 
 #if UNITY_EDITOR
+        private const string DemoMolecule = "887aaba082b543e99d77084bbddee6c8"; // GUID of Defaults/1crn.pdb.bytes
+
         // A component that is added shows something at once.
         private void Reset()
         {
-            string path = UnityEditor.AssetDatabase.GUIDToAssetPath(MoleculeSource.DemoGuid);
+            string path = UnityEditor.AssetDatabase.GUIDToAssetPath(DemoMolecule);
             _source.SetAsset(UnityEditor.AssetDatabase.LoadAssetAtPath<TextAsset>(path));
         }
 #endif
