@@ -466,9 +466,9 @@ Shader "QuickSES/Molecular Surface"
                 UnityGI gi = UnityGlobalIllumination(
                     input, i.colorAndOcclusion.a, material.normal, reflection);
 
-                half3 color = Shade(material, gi.light, gi.indirect);
+                half4 color = half4(Shade(material, gi.light, gi.indirect), 1);
                 UNITY_APPLY_FOG(i.fogCoord, color);
-                return half4(color, 1);
+                return color;
             }
             ENDCG
         }
@@ -503,9 +503,9 @@ Shader "QuickSES/Molecular Surface"
                 UnityIndirect none;
                 UNITY_INITIALIZE_OUTPUT(UnityIndirect, none);
 
-                half3 color = Shade(MaterialAt(i, facing), light, none);
-                UNITY_APPLY_FOG_COLOR(i.fogCoord, color, half3(0, 0, 0));
-                return half4(color, 0);
+                half4 color = half4(Shade(MaterialAt(i, facing), light, none), 0);
+                UNITY_APPLY_FOG_COLOR(i.fogCoord, color, half4(0, 0, 0, 0));
+                return color;
             }
             ENDCG
         }
