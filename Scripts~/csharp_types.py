@@ -9,6 +9,7 @@ import re
 TOKEN = re.compile(r"""//[^\n]*|/\*.*?\*/|@"(?:[^"]|"")*"|\$?"(?:[^"\\\n]|\\.)*"|'(?:[^'\\\n]|\\.)+'|^\s*\#[^\n]*""",
                    re.S | re.M)
 DECLARATION = re.compile(r"\b(class|struct|enum|interface)\s+(\w+)(?:\s*<[^>]*>)?\s*(?::\s*([^{]*))?$", re.S)
+FIELD = re.compile(r"\s*((?:\w+\s+)*?)([\w.]+(?:\s*<[^()]*>)?(?:\s*\[[\s,]*\])*\??)\s+(\w+)\s*", re.S)
 MODIFIERS = {"public", "private", "protected", "internal", "static", "readonly", "const", "volatile", "new", "unsafe"}
 
 
@@ -100,7 +101,8 @@ def _read_block(head, body, path, types):
     found = types.setdefault(name, CSharpType(kind, name))
     found.paths.add(path)
     found.attributes += attributes
-    found.bases += [base.strip().split(".")[-1] for base in re.sub(r"<[^>]*>", "", bases or "").split(",") if base.strip()]
+    bases = re.sub(r"<[^>]*>", "", bases or "").split(",")
+    found.bases += [base.strip().split(".")[-1] for base in bases if base.strip()]
     if kind == "enum":
         found.values.update(_enum_values(body))
     else:
@@ -121,13 +123,13 @@ def _split_attributes(text):
 def _add_field(statement, owner):
     attributes, rest = _split_attributes(statement)
     declaration = re.split(r"=(?!>)", rest, maxsplit=1)[0]
-    match = re.fullmatch(r"\s*((?:\w+\s+)*?)([\w.]+(?:\s*<[^()]*>)?(?:\s*\[[\s,]*\])*\??)\s+(\w+)\s*", declaration, re.S)
+    match = FIELD.fullmatch(declaration)
     if not match or "=>" in rest:
         return
     modifiers, type_name, name = set(match.group(1).split()), match.group(2), match.group(3)
     if not modifiers <= MODIFIERS or modifiers & {"static", "readonly", "const"} or type_name in ("event", "using"):
         return
-    if "public" in modifiers and "NonSerialized" in attributes or "public" not in modifiers and "SerializeField" not in attributes:
+    if "NonSerialized" in attributes if "public" in modifiers else "SerializeField" not in attributes:
         return
     former = re.findall(r"FormerlySerializedAs\(\s*\"(\w+)\"", attributes)
     owner.fields.append(CSharpField(name, type_name.replace(" ", ""), former))
