@@ -40,6 +40,7 @@ namespace QuickSes
 
         private readonly FrameReader _reader;
         private readonly int _slotLimit;
+        private readonly long _memoryLimit;
         private readonly object _gate = new object();
         private readonly AutoResetEvent _wake = new AutoResetEvent(false);
         private readonly Thread _thread;
@@ -56,8 +57,10 @@ namespace QuickSes
 
         /// <param name="reader">Taken over.</param>
         /// <param name="slots">How many frames are kept; fewer if they are large.</param>
-        public FramePrefetcher(FrameReader reader, int slots)
+        /// <param name="memoryLimit">Bytes.</param>
+        public FramePrefetcher(FrameReader reader, int slots, long memoryLimit = MemoryLimit)
         {
+            _memoryLimit = memoryLimit;
             _reader = reader;
             _slotLimit = Math.Max(LeastSlots, slots);
             _thread = new Thread(Run) { IsBackground = true, Name = "QuickSES frames" };
@@ -176,7 +179,7 @@ namespace QuickSes
             AtomCount = _reader.AtomCount;
             Warning = _reader.Warning;
             long frameBytes = (long)AtomCount * sizeof(Vector3);
-            int count = (int)Math.Max(LeastSlots, Math.Min(_slotLimit, MemoryLimit / frameBytes));
+            int count = (int)Math.Max(LeastSlots, Math.Min(_slotLimit, _memoryLimit / frameBytes));
             var slots = new Slot[count];
             for (int k = 0; k < count; ++k)
                 slots[k].Frame = -1;

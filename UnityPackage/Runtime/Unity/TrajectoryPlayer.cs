@@ -17,8 +17,8 @@ namespace QuickSes
         private MolecularSurface _surface;
         private FramePrefetcher _prefetcher;
         private PlayHead _head;
-        private UnmanagedPositions _between;
-        private bool _isPlaying, _isWaiting, _isLoadRequested, _areColorsRequested;
+        private readonly UnmanagedBuffer<Vector3> _between = new UnmanagedBuffer<Vector3>();
+        [NonSerialized] private bool _isPlaying, _isWaiting, _isLoadRequested, _areColorsRequested;
 
         // What the surface shows: _shown.From is -1 before the first frame, and where it has to be sent anew.
         private static readonly FrameBlend s_nothing = new FrameBlend(-1, -1, 0);
@@ -27,10 +27,11 @@ namespace QuickSes
         private int _damagedFrame = -1; // the one told last, so that it is told once each time it is reached
         private bool _isDamageLogged;
 
-        private MoleculeSource _loadedStructureSource;
-        private TrajectorySource _loadedTrajectorySource;
-        private bool _loadedUnwrap;
-        private int _loadedPrefetchFrames;
+        // What was loaded; null: nothing.
+        [NonSerialized] private MoleculeSource _loadedStructureSource;
+        [NonSerialized] private TrajectorySource _loadedTrajectorySource;
+        [NonSerialized] private bool _loadedUnwrap;
+        [NonSerialized] private int _loadedPrefetchFrames;
 
         /// <summary>Frames can be shown from now on.</summary>
         public event Action Loaded;
@@ -46,7 +47,8 @@ namespace QuickSes
 
         /// <summary>
         /// A frame is damaged: its number, counted from 0; what was shown before stays, and playing goes on. -1: nothing
-        /// can be shown of the trajectory, or of the structure.
+        /// can be shown of the trajectory, or of the structure. Without listeners it is logged, of damaged frames the
+        /// first.
         /// </summary>
         public event Action<int, QuickSesError> Failed;
 
@@ -152,7 +154,7 @@ namespace QuickSes
             _surface.AtomsRequested += SendAtoms;
             if (_playOnEnable && Application.isPlaying)
                 _isPlaying = true;
-            if (_structureSource.Kind != MoleculeSourceKind.None || _trajectorySource.Kind != MoleculeSourceKind.None)
+            if (HasSource)
                 Load();
         }
 
@@ -214,7 +216,7 @@ namespace QuickSes
             _head.MoveTo(_frame);
             if (_isPlaying && _head.IsAtEnd)
                 _head.Rewind();
-            _between = new UnmanagedPositions(_prefetcher.AtomCount);
+            _between.Resize(_prefetcher.AtomCount);
             IsReady = true;
             FramePrefetcher opened = _prefetcher;
             Loaded?.Invoke();
@@ -277,27 +279,31 @@ namespace QuickSes
                 return;
             _damagedFrame = frame;
             LastError = new QuickSesError(error.Status, $"frame {frame}: {error.Message}");
-            if (!_isDamageLogged)
-                Debug.LogWarning($"{name}: {LastError.Message} (other damaged frames are not logged)", this);
-            _isDamageLogged = true;
-            Failed?.Invoke(frame, LastError);
+            RaiseFailed(frame);
         }
 
         private bool Fail(string what, QuickSesError error)
         {
             CloseFrames();
             LastError = new QuickSesError(error.Status, $"{what}: {error.Message}");
-            Debug.LogWarning($"{name}: {LastError.Message}", this);
-            Failed?.Invoke(-1, LastError);
+            RaiseFailed(-1);
             return false;
+        }
+
+        private void RaiseFailed(int frame)
+        {
+            if (Failed != null)
+                Failed(frame, LastError);
+            else if (frame < 0 || !_isDamageLogged)
+                Debug.LogError($"{name}: {LastError.Message}", this);
+            _isDamageLogged |= frame >= 0;
         }
 
         private void CloseFrames()
         {
             _prefetcher?.Dispose();
             _prefetcher = null;
-            _between?.Dispose();
-            _between = null;
+            _between.Dispose();
             IsReady = _isWaiting = false;
             _shown = s_nothing;
             _damagedFrame = -1;

@@ -130,12 +130,15 @@ namespace QuickSes
             }
         }
 
+        private bool HasSource => _structureSource.Kind != MoleculeSourceKind.None ||
+            _trajectorySource.Kind != MoleculeSourceKind.None;
+
 #if UNITY_EDITOR
         private void OnValidate()
         {
             if (!isActiveAndEnabled)
                 return;
-            if (_loadedStructureSource != null && !IsLoadedAsSet())
+            if (_loadedStructureSource == null ? HasSource : !IsLoadedAsSet())
                 _isLoadRequested = true; // not here: a mesh must not change while values are validated
             else if (IsReady && _frame != _head.Position)
                 Frame = _frame;
