@@ -9,9 +9,9 @@ namespace QuickSes.Samples
     /// </summary>
     public sealed class TrajectoryPlaybackUI : MonoBehaviour
     {
-        private const float PanelWidth = 320;
         private const float LabelWidth = 110;
 
+        private static readonly Rect s_panel = new Rect(12, 12, 330, 370);
         private static readonly float[] s_spacings = { 2, 1, 0.5f };
         private static readonly string[] s_spacingNames = { "2 Å", "1 Å", "0.5 Å" };
         private static readonly string[] s_schemeNames =
@@ -22,7 +22,6 @@ namespace QuickSes.Samples
         [SerializeField] private OrbitCamera _orbit = null;
 
         private Camera _camera;
-        private Rect _panel = new Rect(12, 12, PanelWidth, 0);
         private string _problem = "";
         private bool _isInView;
 
@@ -64,25 +63,21 @@ namespace QuickSes.Samples
             // Readable on screens with many pixels as well.
             float scale = Mathf.Max(1, Screen.height / 900f);
             GUI.matrix = Matrix4x4.Scale(new Vector3(scale, scale, 1));
-            _panel = GUILayout.Window(0, _panel, DrawPanel, "Trajectory playback");
-
-            Event input = Event.current;
-            if (_panel.Contains(input.mousePosition) || GUIUtility.hotControl != 0)
-                return;
-            if (input.type == EventType.Repaint)
-                DrawAtomUnderMouse(input.mousePosition, scale);
-            else
-                _orbit.Handle(input);
-        }
-
-        private void DrawPanel(int window)
-        {
+            GUILayout.BeginArea(s_panel, GUI.skin.box);
             DrawPlayback();
             GUILayout.Space(8);
             DrawSurface();
             GUILayout.Space(8);
             DrawFigures();
-            GUI.DragWindow();
+            GUILayout.EndArea();
+
+            Event input = Event.current;
+            if (s_panel.Contains(input.mousePosition) || GUIUtility.hotControl != 0)
+                return;
+            if (input.type == EventType.Repaint)
+                DrawAtomUnderMouse(input.mousePosition, scale);
+            else
+                _orbit.Handle(input);
         }
 
         private void DrawPlayback()

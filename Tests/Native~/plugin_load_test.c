@@ -27,10 +27,11 @@ static void *find(Library library, const char *name) { return dlsym(library, nam
 static const char *load_error(void) { return dlerror(); }
 #endif
 
-#define FUNCTIONS(F)                                                                                            \
-  F(qses_abi_version)                                                                                           \
-  F(qses_last_error) F(qses_backend_info) F(qses_create) F(qses_destroy) F(qses_set_atoms) F(qses_mesh_init)    \
-      F(qses_compute) F(qses_report_init) F(qses_get_report) F(qses_structure_open) F(qses_structure_info_init) \
+#define FUNCTIONS(F)                                                                                      \
+  F(qses_abi_version)                                                                                     \
+  F(qses_last_error)                                                                                      \
+  F(qses_backend_info) F(qses_create) F(qses_destroy) F(qses_set_atoms) F(qses_mesh_init) F(qses_compute) \
+      F(qses_report_init) F(qses_get_report) F(qses_structure_open) F(qses_structure_info_init)           \
           F(qses_structure_get_info) F(qses_structure_close)
 
 /* A table of pointers, each of the type that the header declares the function with. */
