@@ -72,7 +72,7 @@ namespace QuickSes.Samples
             GUILayout.EndArea();
 
             Event input = Event.current;
-            if (s_panel.Contains(input.mousePosition) || GUIUtility.hotControl != 0)
+            if (s_panel.Contains(input.mousePosition))
                 return;
             if (input.type == EventType.Repaint)
                 DrawAtomUnderMouse(input.mousePosition, scale);
@@ -82,7 +82,6 @@ namespace QuickSes.Samples
 
         private void DrawPlayback()
         {
-            int last = Mathf.Max(0, _player.FrameCount - 1);
             GUILayout.BeginHorizontal();
             if (GUILayout.Button(_player.IsPlaying ? "Pause" : "Play", GUILayout.Width(LabelWidth)))
             {
@@ -95,7 +94,8 @@ namespace QuickSes.Samples
             GUILayout.EndHorizontal();
 
             float frame = (float)_player.Frame;
-            float wanted = Slider($"Frame {Mathf.FloorToInt(frame)} of {last}", frame, 0, last);
+            float last = Mathf.Max(1, _player.FrameCount - 1);
+            float wanted = Slider($"Model {Mathf.FloorToInt(frame) + 1} of {_player.FrameCount}", frame, 0, last);
             if (wanted != frame)
                 _player.Frame = wanted;
             _player.FramesPerSecond =
