@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+using System;
+using System.Runtime.InteropServices;
+using Unity.Collections;
+
+namespace QuickSes.EngineDouble
+{
+    /// <summary>
+    /// The memory behind native arrays and meshes: unmanaged, counted by allocator, filled with a pattern when it is
+    /// given out and when it is taken back. Any thread may call it.
+    /// </summary>
+    public static unsafe class NativeHeap
+    {
+        // In front of each block; 16 bytes of it right before the block hold what Free needs to know.
+        private struct Header
+        {
+            public Header* Previous, Next;
+            public byte* Start;
+            public long Size;
+            public long Mark;
+            public long Allocator;
+        }
+
+        /// <summary>The label of the buffers of meshes; an allocator that code under test can't name.</summary>
+        public const Allocator Meshes = (Allocator)6;
+
+        private const long Live = 0x6c6976656c697665;
+        private const byte NeverWritten = 0xff; // NaN, and an index beyond any mesh
+        private const byte Freed = 0xdd;
+        private const int MinimumAlignment = 16;
+
+        private static readonly object s_lock = new object();
+        private static readonly int[] s_liveCounts = new int[8];
+        private static readonly long[] s_liveBytes = new long[8];
+        private static Header* s_temporary;
+        private static long s_allocationCount;
+
+        /// <summary>Number of allocations since the process began.</summary>
+        public static long AllocationCount
+        {
+            get { lock (s_lock) return s_allocationCount; }
+        }
+
+        /// <summary>Blocks of an allocator that have not been freed.</summary>
+        public static int LiveCount(Allocator allocator)
+        {
+            lock (s_lock)
+                return s_liveCounts[(int)allocator];
+        }
+
+        /// <summary>Bytes of an allocator's blocks that have not been freed.</summary>
+        public static long LiveBytes(Allocator allocator)
+        {
+            lock (s_lock)
+                return s_liveBytes[(int)allocator];
+        }
+
+        internal static void* Allocate(long size, int alignment, Allocator allocator)
+        {
+            if (size < 0)
+                throw new ArgumentOutOfRangeException(nameof(size), "A block can't have a negative size.");
+            if (allocator <= Allocator.None || (int)allocator >= s_liveCounts.Length)
+                throw new ArgumentException("Allocator must be Temp, TempJob or Persistent", nameof(allocator));
+            alignment = Math.Max(alignment, MinimumAlignment);
+            var start = (byte*)Marshal.AllocHGlobal(new IntPtr(size + alignment + sizeof(Header)));
+            long address = ((long)(start + sizeof(Header)) + alignment - 1) / alignment * alignment;
+            var block = (byte*)address;
+            Header* header = (Header*)block - 1;
+            *header = new Header { Start = start, Size = size, Mark = Live, Allocator = (long)allocator };
+            Fill(block, NeverWritten, size);
+            lock (s_lock)
+            {
+                ++s_allocationCount;
+                ++s_liveCounts[(int)allocator];
+                s_liveBytes[(int)allocator] += size;
+                if (allocator == Allocator.Temp)
+                {
+                    header->Next = s_temporary;
+                    if (s_temporary != null)
+                        s_temporary->Previous = header;
+                    s_temporary = header;
+                }
+            }
+
+            return block;
+        }
+
+        internal static void Free(void* block, Allocator allocator)
+        {
+            if (block == null)
+                return;
+            Header* header = (Header*)block - 1;
+            lock (s_lock)
+            {
+                if (header->Mark != Live)
+                    throw new InvalidOperationException("This block of native memory was freed before.");
+                if (header->Allocator != (long)allocator)
+                    throw new InvalidOperationException(
+                        $"A block of allocator {(Allocator)header->Allocator} is freed as one of {allocator}.");
+                header->Mark = 0;
+                --s_liveCounts[(int)allocator];
+                s_liveBytes[(int)allocator] -= header->Size;
+                if (allocator == Allocator.Temp)
+                    Unlink(header);
+            }
+
+            Fill(block, Freed, header->Size);
+            Marshal.FreeHGlobal(new IntPtr(header->Start));
+        }
+
+        /// <summary>Takes back what was allocated for the frame, as the engine does at its end.</summary>
+        internal static void FreeTemporary()
+        {
+            while (true)
+            {
+                Header* header;
+                lock (s_lock)
+                    header = s_temporary;
+                if (header == null)
+                    return;
+                Free(header + 1, Allocator.Temp);
+            }
+        }
+
+        internal static void Fill(void* destination, byte value, long size)
+        {
+            for (var to = (byte*)destination; size > 0;)
+            {
+                int count = (int)Math.Min(size, 1 << 30);
+                new Span<byte>(to, count).Fill(value);
+                to += count;
+                size -= count;
+            }
+        }
+
+        private static void Unlink(Header* header)
+        {
+            if (header->Previous != null)
+                header->Previous->Next = header->Next;
+            else
+                s_temporary = header->Next;
+            if (header->Next != null)
+                header->Next->Previous = header->Previous;
+        }
+    }
+}

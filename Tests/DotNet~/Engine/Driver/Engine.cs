@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: MIT
+using System;
+using System.Collections.Generic;
+using System.Diagnostics;
+using System.Reflection;
+using System.Threading;
+using UnityEngine;
+using Object = UnityEngine.Object;
+
+namespace QuickSes.EngineDouble
+{
+    /// <summary>
+    /// What the engine does on its own, done when a test says so. All of it runs on the calling thread, which becomes
+    /// the main thread with <see cref="Reset"/>.
+    /// </summary>
+    public static class Engine
+    {
+        private static readonly Stopwatch s_clock = Stopwatch.StartNew();
+        private static double s_lastFrame;
+
+        /// <summary>Before the scripts are taken down for a reload of the domain.</summary>
+        public static event Action BeforeReload;
+
+        /// <summary>Whether each frame ends with <see cref="MeshCheck"/> on the meshes that changed.</summary>
+        public static bool ChecksMeshes { get; set; } = true;
+
+        /// <summary>Objects of a type, or of one derived from it, that have not been destroyed.</summary>
+        public static int LiveObjects<T>() where T : Object => ObjectRegistry.CountOf<T>();
+
+        /// <summary>
+        /// A new, empty scene in play mode, at time 0. What there was is destroyed as if the game had ended, meshes and
+        /// materials included; statics of the code under test stay as they are.
+        /// </summary>
+        public static void Reset()
+        {
+            EngineThread.Adopt();
+            DestroyScene();
+            for (int i = ObjectRegistry.Objects.Count; i-- > 0; i = Math.Min(i, ObjectRegistry.Objects.Count))
+                ObjectRegistry.Objects[i].DestroyNow();
+            DestructionQueue.Clear();
+            Coroutines.Clear();
+            NativeHeap.FreeTemporary();
+            Time.Reset();
+            Resources.Clear();
+            EngineLog.Clear();
+            BeforeReload = null;
+            Application.isPlaying = true;
+            ChecksMeshes = true;
+            s_lastFrame = s_clock.Elapsed.TotalSeconds;
+        }
+
+        /// <summary>A frame that takes what has passed since the last one, at least a millisecond.</summary>
+        public static void Frame()
+        {
+            Thread.Sleep(1);
+            double now = s_clock.Elapsed.TotalSeconds;
+            double passed = now - s_lastFrame;
+            s_lastFrame = now;
+            Frame(passed);
+        }
+
+        /// <summary>
+        /// A frame that takes this long, in seconds, as far as the scripts can tell. In edit mode: one of the frames
+        /// that the Editor makes when something changes.
+        /// </summary>
+        public static void Frame(double seconds)
+        {
+            EngineThread.Require("Engine.Frame");
+            Time.Advance(seconds);
+            Lifecycle.StartPending();
+            Lifecycle.Broadcast(Message.Update);
+            Coroutines.Run(false);
+            Lifecycle.Broadcast(Message.LateUpdate);
+            if (ChecksMeshes)
+                MeshCheck.RunOnChanged();
+            Coroutines.Run(true);
+            DestructionQueue.Run();
+            NativeHeap.FreeTemporary();
+        }
+
+        /// <summary>OnGUI of all scripts, for one event of each of the given types, or for Layout and Repaint.</summary>
+        public static void Gui(params EventType[] types)
+        {
+            foreach (EventType type in types.Length > 0 ? types : new[] { EventType.Layout, EventType.Repaint })
+            {
+                Event.current = new Event { type = type };
+                Lifecycle.Broadcast(Message.OnGUI);
+            }
+
+            Event.current = null;
+        }
+
+        /// <summary>
+        /// A reload of the domain, as scripts that run see it: OnDisable, fields that are not serialised lose their
+        /// values, OnEnable. Statics: whoever has some resets them at <see cref="BeforeReload"/>.
+        /// </summary>
+        public static void Reload()
+        {
+            BeforeReload?.Invoke();
+            var scripts = new List<MonoBehaviour>(Lifecycle.Enabled);
+            foreach (MonoBehaviour script in scripts)
+                Lifecycle.Disable(script);
+            foreach (Object item in new List<Object>(ObjectRegistry.Objects))
+            {
+                if (!(item is MonoBehaviour script))
+                    continue;
+                Coroutines.StopAll(script);
+                DomainReload.ForgetFields(script);
+                script.State.IsStarted = false;
+            }
+
+            Coroutines.Clear();
+            foreach (MonoBehaviour script in scripts)
+                if (script != null && script.isActiveAndEnabled)
+                    Lifecycle.Enable(script);
+        }
+
+        /// <summary>Edit mode with an empty scene.</summary>
+        public static void EnterEditMode()
+        {
+            DestroyScene();
+            Application.isPlaying = false;
+        }
+
+        /// <summary>
+        /// From edit mode to play mode without a reload of the domain: the scene is loaded anew (here: left empty), the
+        /// statics stay, methods with RuntimeInitializeOnLoadMethod are called.
+        /// </summary>
+        public static void EnterPlayModeWithoutReload(params Assembly[] assemblies)
+        {
+            DestroyScene();
+            Application.isPlaying = true;
+            Time.Reset();
+            var order = new[]
+            {
+                RuntimeInitializeLoadType.SubsystemRegistration, RuntimeInitializeLoadType.AfterAssembliesLoaded,
+                RuntimeInitializeLoadType.BeforeSplashScreen, RuntimeInitializeLoadType.BeforeSceneLoad,
+                RuntimeInitializeLoadType.AfterSceneLoad
+            };
+            foreach (RuntimeInitializeLoadType type in order)
+                foreach (Assembly assembly in assemblies)
+                    Initialize(assembly, type);
+        }
+
+        /// <summary>The end of the program, or of play mode in the Editor, where statics and what isn't in the scene stay.</summary>
+        public static void Quit()
+        {
+            Lifecycle.Broadcast(Message.OnApplicationQuit);
+            Application.RaiseQuitting();
+            DestroyScene();
+        }
+
+        private static void DestroyScene()
+        {
+            while (true)
+            {
+                GameObject root = null;
+                foreach (Object item in ObjectRegistry.Objects)
+                    if (root is null && item is GameObject gameObject && gameObject.transform.parent == null)
+                        root = gameObject;
+                if (root is null)
+                    return;
+                root.DestroyNow();
+            }
+        }
+
+        private static void Initialize(Assembly assembly, RuntimeInitializeLoadType type)
+        {
+            const BindingFlags Static =
+                BindingFlags.DeclaredOnly | BindingFlags.Static | BindingFlags.Public | BindingFlags.NonPublic;
+            foreach (Type candidate in assembly.GetTypes())
+            {
+                if (candidate.ContainsGenericParameters)
+                    continue;
+                foreach (MethodInfo method in candidate.GetMethods(Static))
+                    if (method.GetCustomAttribute<RuntimeInitializeOnLoadMethodAttribute>()?.loadType == type)
+                        ((Action)method.CreateDelegate(typeof(Action)))();
+            }
+        }
+    }
+}

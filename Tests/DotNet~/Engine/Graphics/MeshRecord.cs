@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+using UnityEngine;
+using UnityEngine.Rendering;
+
+namespace QuickSes.EngineDouble
+{
+    /// <summary>What was done to a mesh since it was made, or since <see cref="Clear"/>.</summary>
+    public sealed class MeshRecord
+    {
+        /// <summary>Of the mesh, alive or destroyed.</summary>
+        public static MeshRecord Of(Mesh mesh) => mesh.Record;
+
+        public int VertexParamsCalls { get; internal set; }
+
+        public int IndexParamsCalls { get; internal set; }
+
+        public int VertexUploads { get; internal set; }
+
+        public int IndexUploads { get; internal set; }
+
+        public int SubMeshCalls { get; internal set; }
+
+        public int MarkModifiedCalls { get; internal set; }
+
+        public int MarkDynamicCalls { get; internal set; }
+
+        public int UploadMeshDataCalls { get; internal set; }
+
+        public long BytesUploaded { get; internal set; }
+
+        /// <summary>Flags of all uploads and of SetSubMesh that at least one of them had.</summary>
+        public MeshUpdateFlags FlagsOfAny { get; private set; }
+
+        /// <summary>Flags of all uploads and of SetSubMesh that each of them had; all, before the first.</summary>
+        public MeshUpdateFlags FlagsOfEach { get; private set; } = ~MeshUpdateFlags.Default;
+
+        /// <summary>True from a change with DontNotifyMeshUsers to the next MarkModified, or change without it.</summary>
+        public bool AwaitsNotification { get; private set; }
+
+        internal bool IsChecked { get; set; } = true;
+
+        /// <summary>The bounds that those who use the mesh were told.</summary>
+        internal Bounds NotifiedBounds { get; private set; }
+
+        public void Clear()
+        {
+            VertexParamsCalls = IndexParamsCalls = VertexUploads = IndexUploads = SubMeshCalls = 0;
+            MarkModifiedCalls = MarkDynamicCalls = UploadMeshDataCalls = 0;
+            BytesUploaded = 0;
+            FlagsOfAny = MeshUpdateFlags.Default;
+            FlagsOfEach = ~MeshUpdateFlags.Default;
+        }
+
+        internal void NoteChange(Mesh mesh, MeshUpdateFlags flags)
+        {
+            FlagsOfAny |= flags;
+            FlagsOfEach &= flags;
+            Change(mesh);
+            if ((flags & MeshUpdateFlags.DontNotifyMeshUsers) != 0)
+                AwaitsNotification = true;
+            else
+                Notify(mesh);
+        }
+
+        internal void Change(Mesh mesh)
+        {
+            if (!IsChecked)
+                return;
+            IsChecked = false;
+            MeshCheck.NoteChange(mesh);
+        }
+
+        internal void Notify(Mesh mesh)
+        {
+            AwaitsNotification = false;
+            NotifiedBounds = mesh.Buffers.Bounds;
+        }
+    }
+}

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: MIT
+using QuickSes.EngineDouble;
+using System;
+using System.Collections.Generic;
+
+namespace UnityEngine
+{
+    public sealed class GameObject : Object
+    {
+        private readonly List<Component> _components = new List<Component>();
+        private readonly Transform _transform;
+        private bool _activeSelf = true;
+
+        public GameObject() : this("New Game Object")
+        {
+        }
+
+        public GameObject(string name) : this(name, Array.Empty<Type>())
+        {
+        }
+
+        public GameObject(string name, params Type[] components)
+        {
+            this.name = name;
+            _transform = (Transform)Append(new Transform());
+            foreach (Type component in components)
+                AddComponent(component);
+        }
+
+        internal IReadOnlyList<Component> Components => _components;
+
+        public Transform transform
+        {
+            get
+            {
+                RequireAlive("get_transform");
+                return _transform;
+            }
+        }
+
+        public GameObject gameObject => this;
+
+        public int layer { get; set; }
+
+        public string tag { get; set; } = "Untagged";
+
+        public bool isStatic { get; set; }
+
+        public bool activeSelf => _activeSelf;
+
+        public bool activeInHierarchy
+        {
+            get
+            {
+                RequireAlive("get_activeInHierarchy");
+                for (GameObject at = this; at != null; at = at._transform.ParentObject)
+                    if (!at._activeSelf)
+                        return false;
+                return true;
+            }
+        }
+
+        public void SetActive(bool value)
+        {
+            RequireAlive("SetActive");
+            if (_activeSelf == value)
+                return;
+            _activeSelf = value;
+            Lifecycle.RefreshHierarchy(this);
+        }
+
+        public bool CompareTag(string tag) => this.tag == tag;
+
+        public T AddComponent<T>() where T : Component => (T)AddComponent(typeof(T));
+
+        public Component AddComponent(Type componentType)
+        {
+            RequireAlive("AddComponent");
+            if (componentType.IsAbstract || !typeof(Component).IsAssignableFrom(componentType))
+                throw new ArgumentException($"{componentType} is no component that can be added.");
+            MessageTable table = MessageTable.Of(componentType);
+            Type single = table.SingleType;
+            if (single != null && GetComponent(single) != null)
+            {
+                Debug.LogError($"Can't add component '{componentType.Name}' to {name} because such a component is " +
+                    "already added to the game object!");
+                return null;
+            }
+
+            foreach (Type required in table.RequiredTypes)
+                if (GetComponent(required) == null)
+                    AddComponent(required);
+            Component component = Append((Component)Activator.CreateInstance(componentType, true));
+            if (component is MonoBehaviour script)
+                Lifecycle.Begin(script);
+            return component;
+        }
+
+        public T GetComponent<T>()
+        {
+            TryGetComponent(out T component);
+            return component;
+        }
+
+        public Component GetComponent(Type type)
+        {
+            TryGetComponent(type, out Component component);
+            return component;
+        }
+
+        public bool TryGetComponent<T>(out T component)
+        {
+            RequireAlive("TryGetComponent");
+            foreach (Component candidate in _components)
+            {
+                if (candidate is T match)
+                {
+                    component = match;
+                    return true;
+                }
+            }
+
+            component = default;
+            return false;
+        }
+
+        public bool TryGetComponent(Type type, out Component component)
+        {
+            RequireAlive("TryGetComponent");
+            component = _components.Find(type.IsInstanceOfType);
+            return component != null;
+        }
+
+        public T[] GetComponents<T>()
+        {
+            var found = new List<T>();
+            GetComponents(found);
+            return found.ToArray();
+        }
+
+        public void GetComponents<T>(List<T> results)
+        {
+            RequireAlive("GetComponents");
+            results.Clear();
+            foreach (Component candidate in _components)
+                if (candidate is T match)
+                    results.Add(match);
+        }
+
+        public T GetComponentInChildren<T>() => GetComponentInChildren<T>(false);
+
+        public T GetComponentInChildren<T>(bool includeInactive)
+        {
+            T[] found = GetComponentsInChildren<T>(includeInactive);
+            return found.Length > 0 ? found[0] : default;
+        }
+
+        public T[] GetComponentsInChildren<T>() => GetComponentsInChildren<T>(false);
+
+        public T[] GetComponentsInChildren<T>(bool includeInactive)
+        {
+            var found = new List<T>();
+            CollectFromChildren(includeInactive, found);
+            return found.ToArray();
+        }
+
+        public T GetComponentInParent<T>()
+        {
+            for (GameObject at = this; at != null; at = at._transform.ParentObject)
+                if (at.activeInHierarchy && at.TryGetComponent(out T component))
+                    return component;
+            return default;
+        }
+
+        public static GameObject Find(string name)
+        {
+            foreach (Object candidate in ObjectRegistry.Objects)
+                if (candidate is GameObject gameObject && gameObject.name == name && gameObject.activeInHierarchy)
+                    return gameObject;
+            return null;
+        }
+
+        internal Component ComponentThatRequires(Component required)
+        {
+            foreach (Component candidate in _components)
+            {
+                if (candidate.IsDestructionPending)
+                    continue;
+                foreach (Type type in MessageTable.Of(candidate.GetType()).RequiredTypes)
+                    if (type.IsInstanceOfType(required) && !HasAnother(type, required))
+                        return candidate;
+            }
+
+            return null;
+        }
+
+        internal void Remove(Component component) => _components.Remove(component);
+
+        // Scripts are told while the hierarchy and all components are still there.
+        internal override void OnDestroying()
+        {
+            Lifecycle.DestroyScripts(this);
+            while (_transform.childCount > 0)
+                _transform.GetChild(_transform.childCount - 1).Owner.DestroyNow();
+            _transform.Detach();
+            for (int i = _components.Count - 1; i >= 0; --i)
+                _components[i].DestroyNow();
+        }
+
+        private bool HasAnother(Type type, Component than)
+        {
+            foreach (Component candidate in _components)
+                if (!ReferenceEquals(candidate, than) && type.IsInstanceOfType(candidate))
+                    return true;
+            return false;
+        }
+
+        private Component Append(Component component)
+        {
+            component.AttachTo(this);
+            _components.Add(component);
+            return component;
+        }
+
+        private void CollectFromChildren<T>(bool includeInactive, List<T> found)
+        {
+            if (!includeInactive && !activeInHierarchy)
+                return;
+            foreach (Component candidate in _components)
+                if (candidate is T match)
+                    found.Add(match);
+            for (int i = 0; i < _transform.childCount; ++i)
+                _transform.GetChild(i).Owner.CollectFromChildren(includeInactive, found);
+        }
+    }
+}

@@ -1,0 +1,6 @@
+// SPDX-License-Identifier: MIT
+using System.Runtime.CompilerServices;
+
+[assembly: InternalsVisibleTo("QuickSes.Editor")]
+[assembly: InternalsVisibleTo("QuickSes.Unity.Tests")]
+[assembly: InternalsVisibleTo("QuickSes.Editor.Tests")]

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: MIT
+using System;
+using UnityEngine;
+
+namespace QuickSes
+{
+    /// <summary>
+    /// Shows the surface of a molecule as an ordinary mesh: coarse at once, then finer, computed in the background on
+    /// the GPU or the CPU. Feed it atoms with <see cref="SetAtoms(Vector3[], float[])"/> and, as they move,
+    /// <see cref="SetPositions(Vector3[])"/>; or let it read a file (<see cref="Source"/>).
+    /// <para>One unit of the transform's space is 1 Å: scale the transform for another size. Numbers are Unity's,
+    /// left-handed: who brings coordinates of a file negates x first, or shows the mirror image of a molecule
+    /// (<see cref="UnitySpace"/>).</para>
+    /// <para>Main thread only. A frame in which a surface arrives costs the copy into the mesh and makes no
+    /// garbage.</para>
+    /// </summary>
+    [ExecuteAlways]
+    [DisallowMultipleComponent]
+    [RequireComponent(typeof(MeshFilter), typeof(MeshRenderer))]
+    [AddComponentMenu("Molecular/Molecular Surface")]
+    public sealed partial class MolecularSurface : MonoBehaviour
+    {
+        [SerializeField] private MoleculeSource _source = new MoleculeSource();
+
+        [Header("Surface")]
+        [SerializeField, Tooltip("Solvent-excluded: what a probe rolling over the atoms can't reach. Solvent-" +
+            "accessible: where its centre may be. Van der Waals: the atoms themselves.")]
+        private SurfaceKind _surface = SurfaceKind.Ses;
+        [SerializeField, Range(0, 5), Tooltip("Radius of the probe in Å; 1.4 is water.")]
+        private float _probeRadius = 1.4f;
+        [SerializeField, Tooltip("Exact: vertices lie on the exact surface. Grid: the voxel method of the QuickSES " +
+            "paper, for comparison.")]
+        private SurfaceMethod _method = SurfaceMethod.Exact;
+
+        [Header("Quality")]
+        [SerializeField, Min(0.05f), Tooltip("How fine the mesh is in the end: Å between the points of the lattice it " +
+            "is made on. Half of it gives four times the triangles.")]
+        private float _spacing = 0.5f;
+        [SerializeField, Tooltip("Coarser surfaces (Å) that are shown until the finest is there.")]
+        private float[] _levels = { 2, 1 };
+        [SerializeField, Range(0, 10), Tooltip("Smoothing steps. They make better triangles; vertices stay on the " +
+            "exact surface.")]
+        private int _relaxationSteps = 1;
+
+        [Header("Playback")]
+        [SerializeField, Range(0, 200), Tooltip("Milliseconds per surface while atoms move: the finest level that " +
+            "fits is computed. 0: all levels of every frame.")]
+        private float _frameBudget = 33;
+        [SerializeField, Range(0, 5), Tooltip("Seconds without new positions until the finest level is computed.")]
+        private float _restDelay = 0.2f;
+
+        [Header("Look and extras")]
+        [SerializeField, Tooltip("Colour of the surface where atoms have none of their own.")]
+        private Color32 _baseColor = new Color32(200, 205, 215, 255);
+        [SerializeField, Tooltip("Area and volume of each closed piece and cavity of the surface, not only in all.")]
+        private bool _measureComponents;
+        [SerializeField, Tooltip("Let the mesh's buffers only grow, instead of fitting them to each surface. Spares " +
+            "the engine work in playback; the mesh then ends with unused vertices.")]
+        private bool _padBuffers;
+        [SerializeField, Tooltip("What computes. Auto: an NVIDIA GPU if the library was built for it and there is " +
+            "one, else the CPU.")]
+        private SurfaceBackend _backend = SurfaceBackend.Auto;
+
+        // Not serialised, so it is gone after a domain reload, like the native memory it stands for.
+        [NonSerialized] private SurfaceSession _session;
+        [NonSerialized] private bool _isScriptFed;
+        [NonSerialized] private bool _asksForAtoms;
+
+        /// <summary>A surface arrived and is shown.</summary>
+        public event Action<SurfaceLevel> SurfaceUpdated;
+
+        /// <summary>The finest surface of the newest atoms is shown; nothing is left to do.</summary>
+        public event Action RefinementFinished;
+
+        /// <summary>
+        /// There is no surface of the newest atoms; the last good one stays. Without listeners it is logged.
+        /// </summary>
+        public event Action<QuickSesError> Failed;
+
+        /// <summary>
+        /// The component is enabled and has neither atoms nor a source. That is so at first and, in the editor, after
+        /// scripts were compiled anew: who feeds it calls SetAtoms again then. Also raised for late listeners.
+        /// </summary>
+        public event Action AtomsRequested
+        {
+            add
+            {
+                _atomsRequested += value;
+                _asksForAtoms = true;
+                QueueEditorUpdate();
+            }
+            remove => _atomsRequested -= value;
+        }
+
+        private event Action _atomsRequested;
+
+        /// <summary>
+        /// Whether surfaces can be computed here, and if not, why. Never throws.
+        /// </summary>
+        public static bool IsSupported(out string reason) => SurfaceContext.IsSupported(out reason);
+
+        /// <summary>
+        /// The mesh that is shown. The component's: it changes with every surface and goes with the component, so copy
+        /// it (Instantiate) to keep it. Never saved with scenes.
+        /// </summary>
+        public Mesh Mesh => Session.Shown.Mesh;
+
+        /// <summary>What is shown; <see cref="SurfaceLevel.LevelCount"/> 0: nothing yet.</summary>
+        public SurfaceLevel Shown => Session.Shown.Level;
+
+        /// <summary>Whether something is being computed, or will be.</summary>
+        public bool IsBusy => !Session.IsSettled;
+
+        /// <summary>Of the job that runs: from 0 to 1.</summary>
+        public float Progress => Session.Progress;
+
+        /// <summary>The back end that computes or computed the surface; Auto: none has.</summary>
+        public SurfaceBackend UsedBackend => Session.UsedBackend;
+
+        /// <summary>The device, and for Auto why it is not CUDA. Empty before the first computation.</summary>
+        public BackendDescription UsedDevice => Session.UsedDevice;
+
+        /// <summary>Why there is no surface of the newest atoms; Ok if there is or will be one.</summary>
+        public QuickSesError LastError => Session.LastError;
+
+        private SurfaceSession Session
+        {
+            get
+            {
+                if (_session == null || _session.IsDisposed)
+                    _session = new SurfaceSession(this);
+                return _session;
+            }
+        }
+
+        /// <summary>Computes the surface again, for instance after a failure.</summary>
+        public void Recompute() => Changed(SurfaceChange.Shape);
+
+        /// <summary>Ends the computation; what is shown stays until something changes.</summary>
+        public void Cancel() => Session.Stop();
+
+        /// <summary>
+        /// Computes the finest surface and shows it before it returns. For tools: it blocks for as long as it takes.
+        /// </summary>
+        /// <returns>False: <see cref="LastError"/> says why.</returns>
+        public bool ComputeNow()
+        {
+            LoadSourceUnlessFed();
+            if (!Session.Atoms.IsSet)
+                throw new InvalidOperationException("There are no atoms: call SetAtoms or choose a source.");
+            bool isComputed = Session.ComputeNow();
+            Session.RaiseEvents();
+            return isComputed;
+        }
+
+        internal SurfaceSettings MakeSettings(float[] ladder, out int ladderCount)
+        {
+            SurfaceSettings settings = SurfaceSettings.Default;
+            settings.Surface = _surface;
+            settings.Method = _surface == SurfaceKind.Ses ? _method : SurfaceMethod.Exact;
+            settings.ProbeRadius = _probeRadius;
+            settings.Spacing = _spacing;
+            settings.RelaxationSteps = (uint)_relaxationSteps;
+            settings.VertexLayout = SurfaceVertexLayout.Interleaved;
+            settings.Components = _measureComponents;
+            settings.SetLevels(default);
+            ladderCount = SurfaceJobPlan.MakeLadder(_levels, _spacing, ladder);
+            return settings;
+        }
+
+        internal void RaiseUpdated(in SurfaceLevel level) => SurfaceUpdated?.Invoke(level);
+
+        internal void RaiseFinished() => RefinementFinished?.Invoke();
+
+        internal void RaiseFailed(in QuickSesError error)
+        {
+            if (Failed != null)
+                Failed(error);
+            else
+                Debug.LogError($"{name}: {error.Message}", this);
+        }
+
+        private void Changed(SurfaceChange change)
+        {
+            Session.Change(change, Time.realtimeSinceStartupAsDouble);
+            QueueEditorUpdate();
+        }
+
+        // In edit mode the engine only calls components when something is redrawn.
+        private static void QueueEditorUpdate()
+        {
+#if UNITY_EDITOR
+            if (!Application.isPlaying)
+                UnityEditor.EditorApplication.QueuePlayerLoopUpdate();
+#endif
+        }
+    }
+}

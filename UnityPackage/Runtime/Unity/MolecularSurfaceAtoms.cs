@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+// The atoms of a surface and their appearance. Everything is copied during the call; wrong lengths throw
+// ArgumentException and leave all as it was. What is wrong with single atoms (a position that is not a number, a radius
+// out of range) is told by Failed.
+using System;
+using System.Runtime.InteropServices;
+using Unity.Collections;
+using Unity.Collections.LowLevel.Unsafe;
+using UnityEngine;
+
+namespace QuickSes
+{
+    public sealed partial class MolecularSurface
+    {
+        /// <summary>Where atoms come from if no script gives them; after a change call <see cref="LoadSource"/>.</summary>
+        public MoleculeSource Source => _source;
+
+        /// <summary>How many atoms there are.</summary>
+        public int AtomCount => Session.Atoms.Count;
+
+        /// <summary>
+        /// Gives the surface its atoms. With the same radii as before it is <see cref="SetPositions(Vector3[])"/>; with
+        /// another number of atoms colours, visibility and texture coordinates go.
+        /// </summary>
+        /// <param name="positions">N, in Å, Unity's axes, within 1e6 Å of the origin. N may be 0.</param>
+        /// <param name="radii">N van der Waals radii in Å, above 0 and at most 100.</param>
+        public void SetAtoms(ReadOnlySpan<Vector3> positions, ReadOnlySpan<float> radii)
+        {
+            bool haveMoved = Session.Atoms.SetAtoms(positions, radii);
+            _isScriptFed = true;
+            Changed(haveMoved ? SurfaceChange.Positions : SurfaceChange.Shape);
+        }
+
+        /// <inheritdoc cref="SetAtoms(ReadOnlySpan{Vector3}, ReadOnlySpan{float})"/>
+        public void SetAtoms(Vector3[] positions, float[] radii) =>
+            SetAtoms(NotNull(positions, nameof(positions)), NotNull(radii, nameof(radii)));
+
+        /// <summary>The same from the first <paramref name="count"/> elements of longer arrays.</summary>
+        public void SetAtoms(Vector3[] positions, float[] radii, int count) => SetAtoms(
+            SurfaceArrays.First(positions, count, nameof(positions)), SurfaceArrays.First(radii, count, nameof(radii)));
+
+        /// <summary>The same from N x 3 numbers x, y, z.</summary>
+        public void SetAtoms(float[] xyz, float[] radii) =>
+            SetAtoms(Vectors(xyz, nameof(xyz)), NotNull(radii, nameof(radii)));
+
+        /// <summary>The same from native arrays, which are only read during the call.</summary>
+        public void SetAtoms(NativeArray<Vector3> positions, NativeArray<float> radii) =>
+            SetAtoms(Span(positions), Span(radii));
+
+        /// <summary>New positions for the atoms, for instance the next frame of a trajectory.</summary>
+        /// <param name="positions">N, in Å, Unity's axes.</param>
+        public void SetPositions(ReadOnlySpan<Vector3> positions)
+        {
+            Session.Atoms.SetPositions(positions);
+            Changed(SurfaceChange.Positions);
+        }
+
+        /// <inheritdoc cref="SetPositions(ReadOnlySpan{Vector3})"/>
+        public void SetPositions(Vector3[] positions) => SetPositions(NotNull(positions, nameof(positions)));
+
+        /// <summary>The same from N x 3 numbers x, y, z.</summary>
+        public void SetPositions(float[] xyz) => SetPositions(Vectors(xyz, nameof(xyz)));
+
+        /// <summary>The same from a native array, which is only read during the call.</summary>
+        public void SetPositions(NativeArray<Vector3> positions) => SetPositions(Span(positions));
+
+        /// <summary>New positions, picked out of a larger array: atom i is at frame[indices[i]].</summary>
+        /// <param name="frame">Such as the positions of all atoms of a simulation.</param>
+        /// <param name="indices">N.</param>
+        public void SetPositions(ReadOnlySpan<Vector3> frame, ReadOnlySpan<int> indices)
+        {
+            Session.Atoms.SetPositions(frame, indices);
+            Changed(SurfaceChange.Positions);
+        }
+
+        /// <inheritdoc cref="SetPositions(ReadOnlySpan{Vector3}, ReadOnlySpan{int})"/>
+        public void SetPositions(Vector3[] frame, int[] indices) =>
+            SetPositions(NotNull(frame, nameof(frame)), NotNull(indices, nameof(indices)));
+
+        /// <inheritdoc cref="SetPositions(ReadOnlySpan{Vector3}, ReadOnlySpan{int})"/>
+        public void SetPositions(NativeArray<Vector3> frame, NativeArray<int> indices) =>
+            SetPositions(Span(frame), Span(indices));
+
+        /// <summary>Colours of the atoms, which go to the vertices they own.</summary>
+        /// <param name="colors">N; empty: <see cref="BaseColor"/> for all.</param>
+        public void SetColors(ReadOnlySpan<Color32> colors)
+        {
+            Session.Atoms.SetColors(colors);
+            Changed(SurfaceChange.Appearance);
+        }
+
+        /// <inheritdoc cref="SetColors(ReadOnlySpan{Color32})"/>
+        public void SetColors(Color32[] colors) => SetColors(NotNull(colors, nameof(colors)));
+
+        /// <summary>Which atoms are shown. The surface is that of all atoms, cut open where they are hidden.</summary>
+        /// <param name="visible">N; empty: all.</param>
+        public void SetVisible(ReadOnlySpan<bool> visible)
+        {
+            Session.Atoms.SetVisible(visible);
+            Changed(SurfaceChange.Appearance);
+        }
+
+        /// <inheritdoc cref="SetVisible(ReadOnlySpan{bool})"/>
+        public void SetVisible(bool[] visible) => SetVisible(NotNull(visible, nameof(visible)));
+
+        /// <summary>Texture coordinate 1 of the atoms, for their vertices.</summary>
+        /// <param name="texcoords">N; empty: the mesh has none.</param>
+        public void SetTexcoords(ReadOnlySpan<Vector2> texcoords)
+        {
+            Session.Atoms.SetTexcoords(texcoords);
+            Changed(SurfaceChange.Appearance);
+        }
+
+        /// <inheritdoc cref="SetTexcoords(ReadOnlySpan{Vector2})"/>
+        public void SetTexcoords(Vector2[] texcoords) => SetTexcoords(NotNull(texcoords, nameof(texcoords)));
+
+        /// <summary>No atoms and no surface, until there are new ones.</summary>
+        public void ClearAtoms()
+        {
+            Session.Stop();
+            Session.Atoms.Clear();
+            Session.Shown.Clear();
+            _isScriptFed = true;
+        }
+
+        /// <summary>
+        /// Reads the <see cref="Source"/> and takes its atoms and colours. Blocks while it reads. What is wrong is told
+        /// by <see cref="Failed"/>.
+        /// </summary>
+        /// <returns>Whether there was a structure to read.</returns>
+        public bool LoadSource()
+        {
+            if (!_source.TryOpen(out Structure structure, out QuickSesError error))
+            {
+                Session.FailToBegin(error);
+                Session.RaiseEvents();
+                return false;
+            }
+            using (structure)
+            {
+                var positions = new Vector3[structure.AtomCount];
+                UnitySpace.FromFile(structure.Positions, positions);
+                SetAtoms(positions, structure.Radii);
+                var colors = new Color32[structure.AtomCount];
+                AtomColors.Fill(structure, _source.ColorScheme, _baseColor, colors);
+                SetColors(colors);
+            }
+            _isScriptFed = false;
+            return true;
+        }
+
+        private void LoadSourceUnlessFed()
+        {
+            if (!_isScriptFed && !Session.Atoms.IsSet && _source.IsSet)
+                LoadSource();
+        }
+
+        private static ReadOnlySpan<T> NotNull<T>(T[] array, string argument) =>
+            array ?? throw new ArgumentNullException(argument);
+
+        private static ReadOnlySpan<Vector3> Vectors(float[] xyz, string argument)
+        {
+            if (NotNull(xyz, argument).Length % 3 != 0)
+                throw new ArgumentException($"has {xyz.Length} numbers, which is not three per atom", argument);
+            return MemoryMarshal.Cast<float, Vector3>(xyz);
+        }
+
+        private static unsafe ReadOnlySpan<T> Span<T>(NativeArray<T> array) where T : unmanaged =>
+            new ReadOnlySpan<T>(array.Length == 0 ? null : array.GetUnsafeReadOnlyPtr(), array.Length);
+    }
+}

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+// What the engine calls.
+using UnityEngine;
+
+namespace QuickSes
+{
+    public sealed partial class MolecularSurface
+    {
+        private const string DefaultMaterial = "QuickSes/MolecularSurface"; // below a folder called Resources
+
+        private void OnEnable()
+        {
+            SurfaceScheduler.SurfaceEnabled();
+            _asksForAtoms = true;
+            GetComponent<MeshFilter>().sharedMesh = Session.Shown.Mesh;
+            var meshRenderer = GetComponent<MeshRenderer>();
+            if (meshRenderer.sharedMaterial == null)
+                meshRenderer.sharedMaterial = Resources.Load<Material>(DefaultMaterial);
+            Session.Atoms.SetBaseColor(_baseColor);
+            Session.Resume();
+            QueueEditorUpdate();
+        }
+
+        // The picture stays, as that of other components that are switched off.
+        private void OnDisable()
+        {
+            if (_session != null && !_session.IsDisposed)
+                _session.Drop();
+            SurfaceScheduler.SurfaceDisabled();
+        }
+
+        private void OnDestroy()
+        {
+            if (_session == null)
+                return;
+            _session.Dispose();
+            _session = null;
+        }
+
+        // After all Update calls, so that positions set in this frame are on their way in this frame.
+        private void LateUpdate()
+        {
+            if (_asksForAtoms)
+            {
+                _asksForAtoms = false;
+                LoadSourceUnlessFed();
+                if (!Session.Atoms.IsSet)
+                    _atomsRequested?.Invoke();
+            }
+            SurfaceSession session = Session;
+            session.Tick(Time.realtimeSinceStartupAsDouble);
+            if (!session.IsSettled)
+                QueueEditorUpdate();
+            session.RaiseEvents();
+        }
+
+        private void OnValidate()
+        {
+            if (_session == null || _session.IsDisposed)
+                return;
+            _session.Atoms.SetBaseColor(_baseColor);
+            Changed(SurfaceChange.Shape);
+        }
+
+#if UNITY_EDITOR
+        private const string DemoMolecule = "887aaba082b543e99d77084bbddee6c8"; // GUID of Defaults/1crn.pdb.bytes
+
+        // A component that is added shows something at once.
+        private void Reset()
+        {
+            string path = UnityEditor.AssetDatabase.GUIDToAssetPath(DemoMolecule);
+            _source.SetAsset(UnityEditor.AssetDatabase.LoadAssetAtPath<TextAsset>(path));
+        }
+#endif
+    }
+}

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+using System;
+using UnityEngine;
+
+namespace QuickSes
+{
+    /// <summary>
+    /// Where atoms come from, which of them are taken, and how they are coloured: PDB, mmCIF, PQR, XYZR or GRO, each
+    /// also gzipped. Serialised with the component it belongs to. Main thread only.
+    /// </summary>
+    [Serializable]
+    public sealed class MoleculeSource
+    {
+        [SerializeField, Tooltip("Where the file of atoms is.")]
+        private MoleculeSourceKind _kind = MoleculeSourceKind.None;
+        [SerializeField, Tooltip("A file that Unity imports as text, such as 1crn.pdb.txt or 2k39.pdb.gz.bytes.")]
+        private TextAsset _asset;
+        [SerializeField, Tooltip("Absolute, or relative to Assets/StreamingAssets.")]
+        private string _path = "";
+        [SerializeField, Tooltip("Auto: by the name, also before .gz, .bytes and .txt, else by the content.")]
+        private StructureFormat _format = StructureFormat.Auto;
+        [SerializeField, Min(1), Tooltip("Which model of a file with several, from 1.")]
+        private int _model = 1;
+        [SerializeField, Tooltip("Leaves out waters.")]
+        private bool _skipWater = true;
+        [SerializeField, Tooltip("Leaves out hydrogen and deuterium.")]
+        private bool _skipHydrogen;
+        [SerializeField, Tooltip("Leaves out HETATM records: ligands, ions, most waters.")]
+        private bool _skipHetero;
+        [SerializeField, Tooltip("Which atoms, in gemmi's CID syntax, such as //A or //A/10-40/CA[C]. Empty: all.")]
+        private string _selection = "";
+        [SerializeField, Tooltip(
+            "quickses, bondi, or the path of a text file with lines ELEMENT radius (Å). Empty: the file's own radii " +
+            "(PQR, XYZR), else quickses.")]
+        private string _radii = "";
+        [SerializeField, Tooltip("How atoms are coloured.")]
+        private AtomColorScheme _colorScheme = AtomColorScheme.Element;
+
+        /// <summary>Which of <see cref="Asset"/> and <see cref="Path"/> counts.</summary>
+        public MoleculeSourceKind Kind { get => _kind; set => _kind = value; }
+
+        /// <summary>For <see cref="MoleculeSourceKind.TextAsset"/>.</summary>
+        public TextAsset Asset { get => _asset; set => _asset = value; }
+
+        /// <summary>For the kinds File (absolute) and StreamingAssets (relative to that folder). Never null.</summary>
+        public string Path { get => _path ?? ""; set => _path = value; }
+
+        /// <summary>Auto (default): by the name, also before ".gz", ".bytes" and ".txt", else by the content.</summary>
+        public StructureFormat Format { get => _format; set => _format = value; }
+
+        /// <summary>Which model of a file with several, from 1.</summary>
+        public int Model { get => _model; set => _model = value; }
+
+        /// <summary>Leaves out waters; default true.</summary>
+        public bool SkipWater { get => _skipWater; set => _skipWater = value; }
+
+        /// <summary>Leaves out hydrogen and deuterium.</summary>
+        public bool SkipHydrogen { get => _skipHydrogen; set => _skipHydrogen = value; }
+
+        /// <summary>Leaves out HETATM records: ligands, ions, most waters.</summary>
+        public bool SkipHetero { get => _skipHetero; set => _skipHetero = value; }
+
+        /// <summary>Which atoms, in gemmi's CID syntax such as "//A"; "": all. Never null.</summary>
+        public string Selection { get => _selection ?? ""; set => _selection = value; }
+
+        /// <summary>As <see cref="StructureOptions.Radii"/>; "": the default. Never null.</summary>
+        public string Radii { get => _radii ?? ""; set => _radii = value; }
+
+        /// <summary>How atoms are coloured; default by element.</summary>
+        public AtomColorScheme ColorScheme { get => _colorScheme; set => _colorScheme = value; }
+
+        /// <summary>Whether a file is named; it need not be there.</summary>
+        public bool IsSet => _kind == MoleculeSourceKind.TextAsset
+            ? _asset != null
+            : _kind != MoleculeSourceKind.None && !string.IsNullOrWhiteSpace(_path);
+
+        /// <summary>Names a text asset, which is not read yet.</summary>
+        public void SetAsset(TextAsset asset)
+        {
+            _kind = MoleculeSourceKind.TextAsset;
+            _asset = asset;
+        }
+
+        /// <summary>Names a file by its absolute path, which is not read yet.</summary>
+        public void SetFile(string path)
+        {
+            _kind = MoleculeSourceKind.File;
+            _path = path;
+        }
+
+        /// <summary>
+        /// Reads the file, on the calling thread. false: <paramref name="error"/> says what is wrong with it or with
+        /// the options. The structure is the caller's to dispose of. Its coordinates are those of the file: see
+        /// <see cref="UnitySpace"/>.
+        /// </summary>
+        public bool TryOpen(out Structure structure, out QuickSesError error)
+        {
+            structure = null;
+            return TryFind(out MoleculeFile file, out error) && TryOpen(file, out structure, out error);
+        }
+
+        internal bool TryFind(out MoleculeFile file, out QuickSesError error) =>
+            MoleculeFile.TryFind(_kind, _asset, _path, out file, out error);
+
+        internal bool TryOpen(MoleculeFile file, out Structure structure, out QuickSesError error)
+        {
+            var options = new StructureOptions
+            {
+                Format = _format == StructureFormat.Auto ? MoleculeFile.StructureFormatOf(file.Name) : _format,
+                Model = _model,
+                SkipHydrogen = _skipHydrogen,
+                SkipHetero = _skipHetero,
+                Selection = string.IsNullOrWhiteSpace(_selection) ? null : _selection,
+                Radii = string.IsNullOrWhiteSpace(_radii) ? null : _radii
+            };
+            // XYZR has no residues, hence no waters, and its reader takes no filter; this one is on by default.
+            options.SkipWater = _skipWater && options.Format != StructureFormat.Xyzr;
+            if (file.Path != null)
+                return Structure.TryOpen(file.Path, options, out structure, out error);
+            if (Structure.TryOpen(file.Bytes, options, out structure, out error))
+                return true;
+            // The library does not know what bytes in memory are called.
+            error = new QuickSesError(error.Status, $"text asset '{file.Name}': {error.Message}");
+            return false;
+        }
+    }
+}

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+using System;
+using System.Runtime.InteropServices;
+using UnityEngine;
+
+namespace QuickSes
+{
+    /// <summary>
+    /// The engine's arrays in and out of <see cref="SurfaceContext"/>, for programs that use it without
+    /// <see cref="MolecularSurface"/>. Arrays may be longer than what is used of them: counts are given. No garbage.
+    /// Threads, errors and results are those of the methods of the same name that take spans.
+    /// </summary>
+    public static class SurfaceArrays
+    {
+        /// <summary>Gives the context its atoms: the first <paramref name="count"/> of the arrays, in Å.</summary>
+        public static QuickSesStatus SetAtoms(this SurfaceContext context, Vector3[] positions, float[] radii, int count) =>
+            context.SetAtoms(Floats(First(positions, count, nameof(positions))), First(radii, count, nameof(radii)));
+
+        /// <summary>New positions for the atoms: the first <paramref name="count"/> of the array, in Å.</summary>
+        public static QuickSesStatus SetPositions(this SurfaceContext context, Vector3[] positions, int count) =>
+            context.SetPositions(Floats(First(positions, count, nameof(positions))));
+
+        /// <summary>New positions, picked: atom i is at frame[indices[i]], for i below <paramref name="count"/>.</summary>
+        public static QuickSesStatus SetPositions(
+            this SurfaceContext context, Vector3[] frame, int[] indices, int count) =>
+            context.SetPositions(Floats(frame), MemoryMarshal.Cast<int, uint>(First(indices, count, nameof(indices))));
+
+        /// <summary>Colours of the atoms: the first <paramref name="count"/> of the array.</summary>
+        public static QuickSesStatus SetColors(this SurfaceContext context, Color32[] colors, int count) =>
+            context.SetColors(MemoryMarshal.AsBytes(First(colors, count, nameof(colors))));
+
+        /// <summary>Copies positions, V of them, in Å. Throws if the array is shorter.</summary>
+        public static void CopyPositions(this in SurfaceMeshView view, Vector3[] positions)
+        {
+            Span<Vector3> room = Room(positions, view.VertexCount, nameof(positions));
+            if (view.VertexLayout == SurfaceVertexLayout.Interleaved)
+                CopyStrided(view, 0, room);
+            else
+                MemoryMarshal.Cast<float, Vector3>(view.Positions).CopyTo(room);
+        }
+
+        /// <summary>Copies normals, V of them. Throws if the array is shorter.</summary>
+        public static unsafe void CopyNormals(this in SurfaceMeshView view, Vector3[] normals)
+        {
+            Span<Vector3> room = Room(normals, view.VertexCount, nameof(normals));
+            if (view.VertexLayout == SurfaceVertexLayout.Interleaved)
+                CopyStrided(view, sizeof(Vector3), room);
+            else
+                MemoryMarshal.Cast<float, Vector3>(view.Normals).CopyTo(room);
+        }
+
+        /// <summary>Copies colours, V of them; white if the atoms have none. Throws if the array is shorter.</summary>
+        public static unsafe void CopyColors(this in SurfaceMeshView view, Color32[] colors)
+        {
+            Span<Color32> room = Room(colors, view.VertexCount, nameof(colors));
+            if (view.VertexLayout == SurfaceVertexLayout.Interleaved)
+                CopyStrided(view, 2 * sizeof(Vector3), room);
+            else if (view.HasColors)
+                MemoryMarshal.Cast<byte, Color32>(view.Colors).CopyTo(room);
+            else
+                room.Fill(new Color32(255, 255, 255, 255));
+        }
+
+        /// <summary>Copies the vertex numbers of triangles, 3 T of them. Throws if the array is shorter.</summary>
+        public static void CopyTriangles(this in SurfaceMeshView view, int[] triangles) =>
+            MemoryMarshal.Cast<uint, int>(view.Indices)
+                .CopyTo(Room(triangles, checked(3 * view.TriangleCount), nameof(triangles)));
+
+        /// <summary>
+        /// Copies the atom of each vertex, V of them: 0-based, in the order the atoms were given, always in range.
+        /// Throws if the array is shorter.
+        /// </summary>
+        public static void CopyOwners(this in SurfaceMeshView view, int[] atoms) =>
+            MemoryMarshal.Cast<uint, int>(view.Owners).CopyTo(Room(atoms, view.VertexCount, nameof(atoms)));
+
+        internal static ReadOnlySpan<float> Floats(ReadOnlySpan<Vector3> vectors) =>
+            MemoryMarshal.Cast<Vector3, float>(vectors);
+
+        internal static ReadOnlySpan<T> First<T>(T[] array, int count, string argument)
+        {
+            if (array == null)
+                throw new ArgumentNullException(argument);
+            if (count < 0 || count > array.Length)
+                throw new ArgumentOutOfRangeException(nameof(count), count,
+                    $"{argument} has {array.Length} elements");
+            return new ReadOnlySpan<T>(array, 0, count);
+        }
+
+        private static Span<T> Room<T>(T[] array, int count, string argument)
+        {
+            if (array == null)
+                throw new ArgumentNullException(argument);
+            if (array.Length < count)
+                throw new ArgumentException($"has room for {array.Length} elements, but there are {count}", argument);
+            return new Span<T>(array, 0, count);
+        }
+
+        // One attribute of interleaved vertices, `offset` bytes from the beginning of each.
+        private static unsafe void CopyStrided<T>(in SurfaceMeshView view, int offset, Span<T> target)
+            where T : unmanaged
+        {
+            byte* vertex = (byte*)view.PositionsPointer + offset;
+            for (int v = 0; v < target.Length; ++v, vertex += view.VertexBytes)
+                target[v] = *(T*)vertex;
+        }
+    }
+}
