@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What .meta files must be like: for check-metas, check-package and make-package."""
 
-
+import json
 import os
 import re
 
@@ -38,7 +38,9 @@ def expected_importer(path, is_folder):
     if extension in TEXT:
         return "TextScriptImporter"
     return {".cs": "MonoImporter", ".asmdef": "AssemblyDefinitionImporter", ".shader": "ShaderImporter",
-            ".compute": "ComputeShaderImporter"}.get(extension)
+            ".compute": "ComputeShaderImporter", ".cginc": "ShaderIncludeImporter", ".hlsl": "ShaderIncludeImporter",
+            ".mat": "NativeFormatImporter", ".asset": "NativeFormatImporter", ".prefab": "PrefabImporter",
+            ".unity": "DefaultImporter"}.get(extension)
 
 
 def parse_plugin(text):
@@ -125,6 +127,24 @@ def check(root, guids=None):
             faults.append(f"{path}: needs one importer")
         elif expected and importers[0] != expected:
             faults.append(f"{path}: {importers[0]}, but {expected} was expected")
+        elif importers[0] == "NativeFormatImporter" and not re.search(r"(?m)^  mainObjectFileID: \d+$", text):
+            faults.append(f"{path}: needs a mainObjectFileID")
         elif importers[0] == "PluginImporter":
             faults += [f"{path}: {fault}" for fault in check_plugin(asset, text)]
     return len(assets), faults
+
+
+def check_package(root):
+    """As check, but with the samples that package.json lists: what is in their folders is copied into projects."""
+    guids = {}
+    count, faults = check(root, guids)
+    with open(os.path.join(root, "package.json"), encoding="utf-8") as file:
+        samples = [sample["path"].rstrip("/") for sample in json.load(file).get("samples", [])]
+    for sample in samples:
+        folder = os.path.join(root, sample)
+        if not os.path.isdir(folder):
+            faults.append(f"{sample}: package.json lists this sample, but there is no such folder")
+        more, found = check(folder, guids)
+        count += more
+        faults += [f"{sample}/{fault}" for fault in found]
+    return count, faults

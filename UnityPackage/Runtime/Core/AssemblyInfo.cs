@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 using System.Runtime.CompilerServices;
 
-[assembly: InternalsVisibleTo("QuickSes.Unity")]
 [assembly: InternalsVisibleTo("QuickSes.Core.Tests")]
 [assembly: InternalsVisibleTo("QuickSes.Unity")]
+[assembly: InternalsVisibleTo("QuickSes.Unity.Tests")]

@@ -18,6 +18,8 @@ namespace QuickSes
         /// <summary>How many atoms there are.</summary>
         public int AtomCount => Session.Atoms.Count;
 
+        internal ReadOnlySpan<Vector3> Positions => Session.Atoms.Positions;
+
         /// <summary>
         /// Gives the surface its atoms. With the same radii as before it is <see cref="SetPositions(Vector3[])"/>; with
         /// another number of atoms colours, visibility and texture coordinates go.

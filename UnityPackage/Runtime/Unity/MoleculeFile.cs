@@ -60,7 +60,7 @@ namespace QuickSes
                 return Fail(QuickSesStatus.FileError,
                     $"'{path}' can't be read: on this platform StreamingAssets is no folder but '{root}'; use a text " +
                     "asset", out error);
-            return TryFindOnDisk(System.IO.Path.GetFullPath(System.IO.Path.Combine(root, path)), out file, out error);
+            return TryFindOnDisk(System.IO.Path.Combine(root, path), out file, out error);
         }
 
         private static bool TryRead(TextAsset asset, out MoleculeFile file, out QuickSesError error)

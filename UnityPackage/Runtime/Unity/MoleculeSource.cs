@@ -99,6 +99,14 @@ namespace QuickSes
             return TryFind(out MoleculeFile file, out error) && TryOpen(file, out structure, out error);
         }
 
+        internal MoleculeSource Copy() => (MoleculeSource)MemberwiseClone();
+
+        /// <summary>Whether the other would read the same atoms; colours may differ.</summary>
+        internal bool IsSameAs(MoleculeSource other) => _kind == other._kind && _asset == other._asset &&
+            Path == other.Path && _format == other._format && _model == other._model &&
+            _skipWater == other._skipWater && _skipHydrogen == other._skipHydrogen &&
+            _skipHetero == other._skipHetero && Selection == other.Selection && Radii == other.Radii;
+
         internal bool TryFind(out MoleculeFile file, out QuickSesError error) =>
             MoleculeFile.TryFind(_kind, _asset, _path, out file, out error);
 

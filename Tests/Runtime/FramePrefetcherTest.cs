@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: MIT
+using NUnit.Framework;
+using System;
+using System.Collections.Generic;
+using System.Linq;
+using System.Threading;
+using UnityEngine;
+using UnityEngine.TestTools.Constraints;
+using Is = UnityEngine.TestTools.Constraints.Is;
+
+namespace QuickSes.Tests
+{
+    public sealed class FramePrefetcherTest
+    {
+        /// <summary>Frames in which x is the number of the frame, and y that of the atom.</summary>
+        private sealed class CountingReader : FrameReader
+        {
+            public readonly ManualResetEventSlim Gate = new ManualResetEventSlim(true); // closed: reads wait
+            public readonly List<int> Reads = new List<int>(100000); // locked
+            public int Damaged = -1, Throws = -1;
+            public bool CanOpen = true;
+            public volatile bool IsDisposed;
+            public long Garbage; // bytes the thread allocated since the second read
+
+            private readonly int _frames, _atoms;
+            private long _allocatedBefore = -1;
+
+            public CountingReader(int frames, int atoms = 4)
+            {
+                _frames = frames;
+                _atoms = atoms;
+            }
+
+            public override int FrameCount => _frames;
+            public override int AtomCount => _atoms;
+            public override string Warning => "a warning";
+
+            public override bool TryOpen(out QuickSesError error)
+            {
+                error = CanOpen ? default : new QuickSesError(QuickSesStatus.FileError, "can't be opened");
+                return CanOpen;
+            }
+
+            public override bool TryRead(int frame, Span<Vector3> positions, out TrajectoryFrame info,
+                out QuickSesError error)
+            {
+                if (_allocatedBefore >= 0)
+                    Volatile.Write(ref Garbage, GC.GetAllocatedBytesForCurrentThread() - _allocatedBefore);
+                lock (Reads)
+                    Reads.Add(frame);
+                Gate.Wait();
+                if (frame == Throws)
+                    throw new InvalidOperationException("thrown");
+                for (int i = 0; i < positions.Length; ++i)
+                    positions[i] = new Vector3(frame, i, 0);
+                info = default;
+                error = frame == Damaged ? new QuickSesError(QuickSesStatus.FileError, "damaged") : default;
+                if (_allocatedBefore < 0)
+                    _allocatedBefore = GC.GetAllocatedBytesForCurrentThread();
+                return frame != Damaged;
+            }
+
+            public override void Dispose() => IsDisposed = true;
+
+            public int[] ReadsSoFar()
+            {
+                lock (Reads)
+                    return Reads.ToArray();
+            }
+        }
+
+        private static FrameOrder Order(
+            int frames, int first, PlaybackMode mode = PlaybackMode.Loop, int direction = 1) =>
+            new FrameOrder(frames, mode, direction, first);
+
+        private static void WaitUntil(Func<bool> condition, string what)
+        {
+            if (!SpinWait.SpinUntil(condition, 20000))
+                Assert.Fail("waited in vain until " + what);
+        }
+
+        private static void WaitUntilOpen(FramePrefetcher prefetcher)
+        {
+            WaitUntil(() => prefetcher.GetOpening(out _) != FrameState.Pending, "it is open");
+            Assert.That(prefetcher.GetOpening(out QuickSesError error), Is.EqualTo(FrameState.Ready), error.ToString());
+        }
+
+        private static FrameState WaitFor(FramePrefetcher prefetcher, int frame)
+        {
+            WaitUntil(() => prefetcher.Get(frame, out _, out _, out _) != FrameState.Pending, "a frame is there");
+            return prefetcher.Get(frame, out _, out _, out _);
+        }
+
+        private static void AssertShows(FramePrefetcher prefetcher, int frame)
+        {
+            Assert.That(WaitFor(prefetcher, frame), Is.EqualTo(FrameState.Ready));
+            prefetcher.Get(frame, out ReadOnlySpan<Vector3> positions, out _, out _);
+            Assert.That(positions.Length, Is.EqualTo(prefetcher.AtomCount));
+            for (int i = 0; i < positions.Length; ++i)
+                Assert.That(positions[i], Is.EqualTo(new Vector3(frame, i, 0)));
+        }
+
+        [TestCase(PlaybackMode.Loop, 1, 5, new[] { 5, 6, 7, 8, 9, 0, 1, 2 })]
+        [TestCase(PlaybackMode.Loop, -1, 1, new[] { 1, 0, 9, 8, 7, 6, 5, 4 })]
+        [TestCase(PlaybackMode.PingPong, 1, 8, new[] { 8, 9, 7, 6, 5, 4, 3 })]
+        [TestCase(PlaybackMode.Once, 1, 7, new[] { 7, 8, 9 })]
+        [TestCase(PlaybackMode.Once, -1, 2, new[] { 2, 1, 0 })]
+        public void FramesAreReadInTheOrderOfShowing(PlaybackMode mode, int direction, int first, int[] expected)
+        {
+            var reader = new CountingReader(10);
+            using (var prefetcher = new FramePrefetcher(reader, 8))
+            {
+                WaitUntilOpen(prefetcher);
+                prefetcher.Request(Order(10, first, mode, direction));
+                WaitUntil(() => reader.ReadsSoFar().Length >= expected.Length, "all are read");
+                foreach (int frame in expected)
+                    AssertShows(prefetcher, frame);
+            }
+            Assert.That(reader.ReadsSoFar(), Is.EqualTo(expected)); // and no more
+        }
+
+        [Test]
+        public void FramesAreReadOnceWhilePlaying()
+        {
+            var reader = new CountingReader(1000);
+            using (var prefetcher = new FramePrefetcher(reader, 8))
+            {
+                for (int frame = 0; frame < 500; ++frame)
+                {
+                    prefetcher.Request(Order(1000, frame, PlaybackMode.Once));
+                    AssertShows(prefetcher, frame);
+                }
+            }
+            int[] reads = reader.ReadsSoFar();
+            Assert.That(reads, Is.EqualTo(Enumerable.Range(0, reads.Length)));
+            Assert.That(reads.Length, Is.InRange(500, 508));
+        }
+
+        [Test]
+        public void SeekingDropsWhatWasWantedBefore()
+        {
+            var reader = new CountingReader(100);
+            using (var prefetcher = new FramePrefetcher(reader, 4))
+            {
+                WaitUntilOpen(prefetcher);
+                reader.Gate.Reset();
+                prefetcher.Request(Order(100, 0));
+                WaitUntil(() => reader.ReadsSoFar().Length == 1, "the first is being read");
+                prefetcher.Request(Order(100, 20));
+                prefetcher.Request(Order(100, 50));
+                reader.Gate.Set();
+                AssertShows(prefetcher, 53);
+            }
+            Assert.That(reader.ReadsSoFar(), Is.EqualTo(new[] { 0, 50, 51, 52, 53 }));
+        }
+
+        [Test]
+        public void RandomSeeksShowWhatIsAskedFor()
+        {
+            const int frames = 60;
+            var random = new System.Random(1);
+            var reader = new CountingReader(frames);
+            var modes = new[] { PlaybackMode.Loop, PlaybackMode.PingPong, PlaybackMode.Once };
+            using (var prefetcher = new FramePrefetcher(reader, 6))
+            {
+                for (int seek = 0; seek < 2000; ++seek)
+                {
+                    FrameOrder order = Order(frames, random.Next(frames), modes[random.Next(3)],
+                        random.Next(2) == 0 ? 1 : -1);
+                    prefetcher.Request(order);
+                    if (random.Next(3) == 0) // others are overtaken
+                        for (int step = 0; step < 2; ++step)
+                            if (order[step] >= 0)
+                                AssertShows(prefetcher, order[step]);
+                }
+                Assert.That(prefetcher.SlotCount, Is.EqualTo(6));
+            }
+            Assert.That(reader.ReadsSoFar(), Is.All.InRange(0, frames - 1));
+        }
+
+        [TestCase(1000L, 1, 3)] // never fewer than playing needs
+        [TestCase(10 * 12 * 100L, 64, 10)]
+        [TestCase(FramePrefetcher.MemoryLimit, 64, 64)]
+        [TestCase(FramePrefetcher.MemoryLimit, 1, 3)]
+        public void MemoryIsBounded(long limit, int slots, int expected)
+        {
+            using (var prefetcher = new FramePrefetcher(new CountingReader(1000, 100), slots, limit))
+            {
+                WaitUntilOpen(prefetcher);
+                Assert.That(prefetcher.SlotCount, Is.EqualTo(expected));
+                Assert.That(prefetcher.FrameCount, Is.EqualTo(1000));
+                Assert.That(prefetcher.AtomCount, Is.EqualTo(100));
+                Assert.That(prefetcher.Warning, Is.EqualTo("a warning"));
+            }
+        }
+
+        [Test]
+        public void DamagedFramesAreToldAndOthersRead()
+        {
+            var reader = new CountingReader(10) { Damaged = 3 };
+            using (var prefetcher = new FramePrefetcher(reader, 5))
+            {
+                prefetcher.Request(Order(10, 2));
+                AssertShows(prefetcher, 2);
+                Assert.That(WaitFor(prefetcher, 3), Is.EqualTo(FrameState.Damaged));
+                prefetcher.Get(3, out ReadOnlySpan<Vector3> positions, out _, out QuickSesError error);
+                Assert.That(positions.Length, Is.EqualTo(0));
+                Assert.That(error.Message, Is.EqualTo("damaged"));
+                AssertShows(prefetcher, 4);
+            }
+        }
+
+        [Test]
+        public void WhatCannotBeOpenedIsTold()
+        {
+            var reader = new CountingReader(10) { CanOpen = false };
+            var prefetcher = new FramePrefetcher(reader, 5);
+            WaitUntil(() => prefetcher.GetOpening(out _) == FrameState.Damaged, "it failed");
+            prefetcher.GetOpening(out QuickSesError error);
+            Assert.That(error.Message, Is.EqualTo("can't be opened"));
+            prefetcher.Request(Order(10, 0));
+            Assert.That(prefetcher.Get(0, out _, out _, out _), Is.EqualTo(FrameState.Pending));
+            prefetcher.Dispose();
+            Assert.That(reader.IsDisposed && prefetcher.HasLeft, Is.True);
+        }
+
+        [Test]
+        public void ExceptionsDoNotLeaveTheThread()
+        {
+            var reader = new CountingReader(10) { Throws = 1 };
+            var prefetcher = new FramePrefetcher(reader, 5);
+            prefetcher.Request(Order(10, 0));
+            WaitUntil(() => prefetcher.GetOpening(out _) == FrameState.Damaged, "it failed");
+            prefetcher.GetOpening(out QuickSesError error);
+            Assert.That(error.Status, Is.EqualTo(QuickSesStatus.InternalError));
+            Assert.That(error.Message, Does.Contain("thrown"));
+            AssertShows(prefetcher, 0); // its memory is still there
+            prefetcher.Dispose();
+            Assert.That(reader.IsDisposed && prefetcher.HasLeft, Is.True);
+        }
+
+        [Test]
+        public void DisposeWaitsForTheRead()
+        {
+            var reader = new CountingReader(10);
+            var prefetcher = new FramePrefetcher(reader, 5);
+            reader.Gate.Reset();
+            prefetcher.Request(Order(10, 0));
+            WaitUntil(() => reader.ReadsSoFar().Length == 1, "a frame is being read");
+            using (new Timer(_ => reader.Gate.Set(), null, 50, Timeout.Infinite))
+                prefetcher.Dispose();
+            Assert.That(prefetcher.HasLeft, Is.True);
+            Assert.That(reader.IsDisposed, Is.True);
+            Assert.That(reader.ReadsSoFar(), Is.EqualTo(new[] { 0 }));
+            prefetcher.Dispose();
+        }
+
+        [Test]
+        public void NoThreadMakesGarbage()
+        {
+            var reader = new CountingReader(100000);
+            using (var prefetcher = new FramePrefetcher(reader, 8))
+            {
+                int frame = 0;
+                TestDelegate play = () =>
+                {
+                    for (int end = frame + 200; frame < end; ++frame)
+                    {
+                        prefetcher.Request(Order(100000, frame));
+                        while (prefetcher.Get(frame, out _, out _, out _) == FrameState.Pending)
+                            Thread.Yield();
+                    }
+                };
+                play();
+                Assert.That(play, Is.Not.AllocatingGCMemory());
+                Assert.That(Volatile.Read(ref reader.Garbage), Is.EqualTo(0));
+                Assert.That(reader.ReadsSoFar().Length, Is.GreaterThanOrEqualTo(400));
+            }
+        }
+    }
+}

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+using System;
+using UnityEngine;
+
+namespace QuickSes
+{
+    public sealed partial class TrajectoryPlayer
+    {
+        [SerializeField, Tooltip("Which atoms. None: the source of the Molecular Surface.")]
+        private MoleculeSource _structureSource = new MoleculeSource();
+        [SerializeField, Tooltip("Where they are in each frame. None: the models of the structure's own PDB file.")]
+        private TrajectorySource _trajectorySource = new TrajectorySource();
+        [SerializeField, Tooltip("Moves atoms by whole box vectors so that every molecule is in one piece.")]
+        private bool _unwrap;
+        [SerializeField, Tooltip("Frames of the trajectory per second. Negative: backwards.")]
+        private float _framesPerSecond = 10;
+        [SerializeField, Tooltip("What happens at the ends.")]
+        private PlaybackMode _mode = PlaybackMode.Loop;
+        [SerializeField, Tooltip("Moves atoms on straight lines between frames.")]
+        private bool _interpolate;
+        [SerializeField, Tooltip("Starts playing when it is enabled in play mode.")]
+        private bool _playOnEnable = true;
+        [SerializeField, Tooltip("Goes on at the same rate where the game's time is scaled or stopped.")]
+        private bool _useUnscaledTime;
+        [SerializeField, Range(FramePrefetcher.LeastSlots, MostPrefetchFrames), Tooltip(
+            "How many frames are read ahead and kept: 12 bytes per atom each, 256 MiB at most.")]
+        private int _prefetchFrames = 16;
+        [SerializeField, Min(0), Tooltip("The place shown, counted from 0; between two frames if they are interpolated.")]
+        private double _frame;
+
+        private const int MostPrefetchFrames = 256;
+
+        /// <summary>
+        /// Which atoms; of kind None (default): those of <see cref="MolecularSurface.Source"/>. Takes effect with
+        /// <see cref="Load"/>.
+        /// </summary>
+        public MoleculeSource StructureSource => _structureSource;
+
+        /// <summary>
+        /// Where the atoms are in each frame; of kind None (default): the structure's own file, which must then be a PDB
+        /// file with several models. It must have all atoms of the file of the structure, in the same order; filters of
+        /// the structure choose among them. Takes effect with <see cref="Load"/>.
+        /// </summary>
+        public TrajectorySource TrajectorySource => _trajectorySource;
+
+        /// <summary>
+        /// Moves atoms by whole box vectors so that every molecule is in one piece; default false. Without a periodic
+        /// box there is a warning, and frames stay as they are. Takes effect with <see cref="Load"/>.
+        /// </summary>
+        public bool Unwrap { get => _unwrap; set => _unwrap = value; }
+
+        /// <summary>
+        /// How many frames are read ahead and kept, from 3 to 256; default 16. 12 bytes per atom each; of large
+        /// molecules fewer, so that they take 256 MiB at most. Takes effect with <see cref="Load"/>.
+        /// </summary>
+        public int PrefetchFrames
+        {
+            get => _prefetchFrames;
+            set => _prefetchFrames = Mathf.Clamp(value, FramePrefetcher.LeastSlots, MostPrefetchFrames);
+        }
+
+        /// <summary>
+        /// Frames of the trajectory per second; default 10. Negative: backwards. A frame that is not read in time is
+        /// waited for, not left out.
+        /// </summary>
+        public float FramesPerSecond
+        {
+            get => _framesPerSecond;
+            set
+            {
+                if (float.IsNaN(value) || float.IsInfinity(value))
+                    throw new ArgumentOutOfRangeException(nameof(value), value, "must be a finite number");
+                _framesPerSecond = value;
+            }
+        }
+
+        /// <summary>What happens at the ends; default Loop.</summary>
+        public PlaybackMode Mode { get => _mode; set => _mode = value; }
+
+        /// <summary>
+        /// Moves atoms on straight lines between frames; default false. Nothing lies between the last frame and the
+        /// first. Atoms that left a periodic box on one side and came back on the other go on out of it, and are on the
+        /// other side with the next frame.
+        /// </summary>
+        public bool Interpolate { get => _interpolate; set => _interpolate = value; }
+
+        /// <summary>Starts playing when it is enabled in play mode; default true.</summary>
+        public bool PlayOnEnable { get => _playOnEnable; set => _playOnEnable = value; }
+
+        /// <summary>Goes on at the same rate where the game's time is scaled or stopped; default false.</summary>
+        public bool UseUnscaledTime { get => _useUnscaledTime; set => _useUnscaledTime = value; }
+
+        /// <summary>
+        /// The place in the trajectory, from 0 to <see cref="FrameCount"/> - 1; between two whole numbers while it plays
+        /// or where it was put. Setting it shows that place as soon as its frames are read, playing or not, in edit mode
+        /// too; what is out of range is clamped. Before frames are there it says where to begin.
+        /// </summary>
+        public double Frame
+        {
+            get => IsReady ? _head.Position : _frame;
+            set
+            {
+                _frame = double.IsNaN(value) ? 0 : Math.Max(0, value);
+                if (IsReady)
+                {
+                    _head.MoveTo(_frame);
+                    _frame = _head.Position;
+                    _isWaiting = false;
+                }
+                RequestUpdate();
+            }
+        }
+
+        /// <summary>The same from 0 (first frame) to 1 (last frame).</summary>
+        public double NormalizedTime
+        {
+            get => FrameCount > 1 ? Frame / (FrameCount - 1) : 0;
+            set => Frame = value * Math.Max(0, FrameCount - 1);
+        }
+
+        /// <summary>How atoms are coloured: that of the source in use. Takes effect at once.</summary>
+        public AtomColorScheme ColorScheme
+        {
+            get => ActiveStructureSource.ColorScheme;
+            set
+            {
+                ActiveStructureSource.ColorScheme = value;
+                if (Structure != null)
+                    SendColors();
+            }
+        }
+
+        private bool HasSource => _structureSource.Kind != MoleculeSourceKind.None ||
+            _trajectorySource.Kind != MoleculeSourceKind.None;
+
+#if UNITY_EDITOR
+        private void OnValidate()
+        {
+            if (!isActiveAndEnabled)
+                return;
+            if (_loadedStructureSource == null ? HasSource : !IsLoadedAsSet())
+                _isLoadRequested = true; // not here: a mesh must not change while values are validated
+            else if (IsReady && _frame != _head.Position)
+                Frame = _frame;
+            if (Structure != null && _loadedStructureSource.ColorScheme != ActiveStructureSource.ColorScheme)
+                _areColorsRequested = true;
+            RequestUpdate();
+        }
+#endif
+
+        private MoleculeSource ActiveStructureSource =>
+            _structureSource.Kind != MoleculeSourceKind.None || _surface == null ? _structureSource : _surface.Source;
+
+        private bool IsLoadedAsSet() => _loadedStructureSource.IsSameAs(ActiveStructureSource) &&
+            _loadedTrajectorySource.IsSameAs(_trajectorySource) && _loadedUnwrap == _unwrap &&
+            _loadedPrefetchFrames == _prefetchFrames;
+    }
+}
