@@ -13,7 +13,9 @@ namespace QuickSes.Editor
         private string _unsupportedReason;
         private bool _wasBusy;
 
-        /// <summary>Whether the component runs, so that asking it for its surface makes nothing that stays behind.</summary>
+        /// <summary>
+        /// Whether the component runs, so that asking it for its surface makes nothing that stays behind.
+        /// </summary>
         public static bool IsLive(MolecularSurface surface) =>
             surface != null && surface.isActiveAndEnabled && !EditorUtility.IsPersistent(surface);
 

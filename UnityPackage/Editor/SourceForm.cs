@@ -3,7 +3,9 @@ using System;
 
 namespace QuickSes.Editor
 {
-    /// <summary>The settings of a <see cref="MoleculeSource"/> or <see cref="TrajectorySource"/> besides its kind.</summary>
+    /// <summary>
+    /// The settings of a <see cref="MoleculeSource"/> or <see cref="TrajectorySource"/> besides its kind.
+    /// </summary>
     [Flags]
     internal enum SourceFields
     {
@@ -64,8 +66,8 @@ namespace QuickSes.Editor
 
         /// <summary>What the user should know about a kind; null: nothing.</summary>
         public static string HintOf(MoleculeSourceKind kind) => kind == MoleculeSourceKind.File
-            ? "Builds and other machines will not find an absolute path. Put the file into Assets/StreamingAssets, or " +
-              "into Assets under a name that Unity imports as text, such as 1crn.pdb.bytes."
+            ? "Builds and other machines will not find an absolute path. Put the file into Assets/StreamingAssets, " +
+              "or into Assets under a name that Unity imports as text, such as 1crn.pdb.bytes."
             : null;
 
         private static SourceFields PlaceOf(MoleculeSourceKind kind)

@@ -16,8 +16,8 @@ namespace QuickSes.Editor
 
         /// <summary>
         /// Computes the finest surface of a component, however long that takes, and saves a copy of it: exact buffers,
-        /// 32-bit indices, in Å of the component's space. A mesh asset that is there already keeps its GUID and gets the
-        /// new content, so what refers to it shows that; this can't be undone.
+        /// 32-bit indices, in Å of the component's space. A mesh asset that is there already keeps its GUID and gets
+        /// the new content, so what refers to it shows that; this can't be undone.
         /// </summary>
         /// <param name="surface">In an open scene or prefab stage, and active.</param>
         /// <param name="assetPath">Such as "Assets/Crambin.asset", in a folder that exists.</param>

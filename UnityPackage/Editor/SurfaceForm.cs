@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 namespace QuickSes.Editor
 {
-    /// <summary>How the inspector shows the serialised fields of a <see cref="MolecularSurface"/>. Decisions only.</summary>
+    /// <summary>
+    /// How the inspector shows the serialised fields of a <see cref="MolecularSurface"/>. Decisions only: no Editor in
+    /// here.
+    /// </summary>
     internal static class SurfaceForm
     {
         /// <summary>The unit of a field; null: none.</summary>

@@ -66,8 +66,9 @@ namespace QuickSes.Editor
             if (_preview == null)
             {
                 EditorGUILayout.HelpBox(
-                    "Choose a file: PDB, mmCIF, PQR, XYZR or GRO, each also gzipped. It is referred to as an asset if " +
-                    "Unity imported it as text, relative to StreamingAssets if it lies there, else by its absolute path.",
+                    "Choose a file: PDB, mmCIF, PQR, XYZR or GRO, each also gzipped. It is referred to as an asset " +
+                    "if Unity imported it as text, relative to StreamingAssets if it lies there, else by its " +
+                    "absolute path.",
                     MessageType.Info);
                 return;
             }
@@ -89,8 +90,8 @@ namespace QuickSes.Editor
         {
             using (new EditorGUILayout.HorizontalScope())
             {
-                _parent = (GameObject)EditorGUILayout.ObjectField(
-                    new GUIContent("Parent", "Where in the scene; none: at its root."), _parent, typeof(GameObject), true);
+                var label = new GUIContent("Parent", "Where in the scene; none: at its root.");
+                _parent = (GameObject)EditorGUILayout.ObjectField(label, _parent, typeof(GameObject), true);
                 if (_parent != null && EditorUtility.IsPersistent(_parent))
                     _parent = null; // an asset can't be one
                 bool canCreate = _preview != null && _preview.Error.Length == 0 &&

@@ -11,7 +11,8 @@ namespace QuickSes.Editor
         {
             SurfaceLevel shown = surface.Shown;
             bool hasFailed = surface.LastError.Status != QuickSesStatus.Ok;
-            string state = SurfaceStatus.State(surface.AtomCount > 0, surface.IsBusy, surface.Progress, shown, hasFailed);
+            bool hasAtoms = surface.AtomCount > 0;
+            string state = SurfaceStatus.State(hasAtoms, surface.IsBusy, surface.Progress, shown, hasFailed);
             if (surface.IsBusy)
                 EditorGUI.ProgressBar(EditorGUILayout.GetControlRect(), surface.Progress, state);
             else

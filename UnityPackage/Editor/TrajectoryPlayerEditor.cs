@@ -62,7 +62,8 @@ namespace QuickSes.Editor
             {
                 DrawSlider(player);
                 if (player.TryGetTime(out double picoseconds))
-                    EditorGUILayout.LabelField("Time", picoseconds.ToString("N3", CultureInfo.InvariantCulture) + " ps");
+                    EditorGUILayout.LabelField("Time",
+                        picoseconds.ToString("N3", CultureInfo.InvariantCulture) + " ps");
             }
             using (new EditorGUILayout.HorizontalScope())
             {
@@ -84,8 +85,8 @@ namespace QuickSes.Editor
             }
         }
 
-        // Edits the serialised place, which the player follows (OnValidate), so that Undo and prefabs know of it. In play
-        // mode it moves on by itself and is no matter of Undo.
+        // Edits the serialised place, which the player follows (OnValidate), so that Undo and prefabs know of it. In
+        // play mode it moves on by itself and is no matter of Undo.
         private void DrawSlider(TrajectoryPlayer player)
         {
             SerializedProperty frame = serializedObject.FindProperty("_frame");
