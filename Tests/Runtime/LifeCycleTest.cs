@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+using NUnit.Framework;
+using System.Collections;
+using UnityEngine;
+using UnityEngine.TestTools;
+using Object = UnityEngine.Object;
+
+namespace QuickSes.Tests
+{
+    /// <summary>What the engine does to a component while it computes.</summary>
+    internal sealed class LifeCycleTest
+    {
+        private SurfaceRig _rig;
+
+        [TearDown]
+        public void TearDown() => _rig?.Dispose();
+
+        [UnityTest]
+        public IEnumerator ADestroyedSurfaceTakesItsMeshAlong()
+        {
+            _rig = SurfaceRig.WithBlob(40, 1);
+            yield return _rig.Settle();
+            Mesh mesh = _rig.Surface.Mesh;
+            Object.Destroy(_rig.GameObject);
+            yield return SurfaceRig.Frames(2);
+            Assert.That(mesh == null);
+            Assert.That(SurfaceScheduler.WaitingCount, Is.EqualTo(0));
+        }
+
+        [UnityTest]
+        public IEnumerator DestroyingDuringAJobEndsIt()
+        {
+            for (int frames = 0; frames < 6; ++frames)
+            {
+                _rig = SurfaceRig.WithBlob(1500, 2);
+                yield return SurfaceRig.Frames(frames);
+                Object.Destroy(_rig.GameObject);
+                yield return null;
+            }
+            _rig = SurfaceRig.WithBlob(10, 3);
+            yield return _rig.Settle();
+            Assert.That(_rig.Surface.Shown.IsFinest, "and others go on");
+        }
+
+        [UnityTest]
+        public IEnumerator ADisabledSurfaceKeepsItsPictureAndGoesOnLater()
+        {
+            TestMolecules.Blob(300, 4, out Vector3[] positions, out float[] radii);
+            _rig = new SurfaceRig();
+            _rig.Surface.SetAtoms(positions, radii);
+            yield return SurfaceRig.Until(() => _rig.Levels.Count > 0);
+            _rig.GameObject.SetActive(false);
+            int levels = _rig.Levels.Count, vertices = _rig.Surface.Mesh.vertexCount;
+            yield return SurfaceRig.Frames(5);
+            Assert.That(_rig.Levels.Count, Is.EqualTo(levels));
+            Assert.That(_rig.Surface.Mesh.vertexCount, Is.EqualTo(vertices));
+            _rig.GameObject.SetActive(true);
+            yield return _rig.Settle();
+            SurfaceMeshes.AssertIsSurfaceOf(_rig.Surface.Mesh, positions, radii, 0.5f);
+        }
+
+        [UnityTest]
+        public IEnumerator AtomsMayComeWhileDisabled()
+        {
+            TestMolecules.Blob(30, 5, out Vector3[] positions, out float[] radii);
+            _rig = new SurfaceRig();
+            _rig.Surface.enabled = false;
+            _rig.Surface.SetAtoms(positions, radii);
+            yield return SurfaceRig.Frames(3);
+            Assert.That(_rig.Levels, Is.Empty);
+            _rig.Surface.enabled = true;
+            yield return _rig.Settle();
+            SurfaceMeshes.AssertIsSurfaceOf(_rig.Surface.Mesh, positions, radii, 0.5f);
+        }
+
+        [UnityTest]
+        public IEnumerator ListenersMayDestroyTheSurface()
+        {
+            _rig = SurfaceRig.WithBlob(100, 6);
+            GameObject doomed = _rig.GameObject;
+            _rig.Surface.SurfaceUpdated += level => Object.DestroyImmediate(doomed);
+            yield return SurfaceRig.Until(() => doomed == null);
+            yield return SurfaceRig.Frames(3);
+            Assert.That(_rig.Levels.Count, Is.EqualTo(1));
+        }
+
+        [UnityTest]
+        public IEnumerator ListenersMayFeedTheNextFrame()
+        {
+            TestMolecules.Blob(50, 7, out Vector3[] positions, out float[] radii);
+            _rig = new SurfaceRig();
+            int frame = 0;
+            _rig.Surface.SurfaceUpdated += level =>
+            {
+                if (++frame < 10)
+                    _rig.Surface.SetPositions(TestMolecules.Moved(positions, frame));
+            };
+            _rig.Surface.SetAtoms(positions, radii);
+            yield return SurfaceRig.Until(() => frame >= 10 && !_rig.Surface.IsBusy);
+            SurfaceMeshes.AssertIsSurfaceOf(_rig.Surface.Mesh, TestMolecules.Moved(positions, 9), radii, 0.5f);
+        }
+
+        [UnityTest]
+        public IEnumerator ParentAndChildHaveSurfacesOfTheirOwn()
+        {
+            TestMolecules.Blob(40, 8, out Vector3[] outer, out float[] outerRadii);
+            TestMolecules.Blob(60, 9, out Vector3[] inner, out float[] innerRadii);
+            _rig = new SurfaceRig("parent");
+            using (var child = new SurfaceRig("child", _rig.GameObject.transform))
+            {
+                _rig.Surface.SetAtoms(outer, outerRadii);
+                child.Surface.SetAtoms(inner, innerRadii);
+                yield return _rig.Settle();
+                yield return child.Settle();
+                SurfaceMeshes.AssertIsSurfaceOf(_rig.Surface.Mesh, outer, outerRadii, 0.5f);
+                SurfaceMeshes.AssertIsSurfaceOf(child.Surface.Mesh, inner, innerRadii, 0.5f);
+                Object.DestroyImmediate(child.GameObject);
+                yield return SurfaceRig.Frames(2);
+                Assert.That(_rig.Surface.Mesh.vertexCount, Is.GreaterThan(0));
+            }
+        }
+
+        [UnityTest]
+        public IEnumerator ContextsMayBeReleasedAtAnyTime()
+        {
+            TestMolecules.Blob(300, 10, out Vector3[] positions, out float[] radii);
+            _rig = new SurfaceRig();
+            _rig.Surface.SetAtoms(positions, radii);
+            for (int frame = 0; frame < 10; ++frame)
+            {
+                SurfaceScheduler.ReleaseContexts();
+                Assert.That(SurfaceScheduler.ContextCount, Is.EqualTo(0));
+                yield return SurfaceRig.Frames(frame);
+            }
+            yield return _rig.Settle();
+            SurfaceMeshes.AssertIsSurfaceOf(_rig.Surface.Mesh, positions, radii, 0.5f);
+            Assert.That(_rig.Failures, Is.Empty);
+        }
+
+        [UnityTest]
+        public IEnumerator CancelledIsCancelled()
+        {
+            _rig = SurfaceRig.WithBlob(800, 11);
+            yield return SurfaceRig.Until(() => _rig.Levels.Count > 0);
+            _rig.Surface.Cancel();
+            int levels = _rig.Levels.Count;
+            Assert.That(_rig.Surface.IsBusy, Is.False);
+            yield return SurfaceRig.Frames(30);
+            Assert.That(_rig.Levels.Count, Is.EqualTo(levels));
+            _rig.Surface.Recompute();
+            yield return _rig.Settle();
+            Assert.That(_rig.Surface.Shown.IsFinest);
+        }
+    }
+}

@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: MIT
+using NUnit.Framework;
+using System;
+using System.Collections;
+using UnityEngine;
+using UnityEngine.Rendering;
+using UnityEngine.TestTools;
+using Object = UnityEngine.Object;
+
+namespace QuickSes.Tests
+{
+    /// <summary>Atoms go in, the surface that is theirs comes out, level after level.</summary>
+    internal sealed class MolecularSurfaceTest
+    {
+        private SurfaceRig _rig;
+
+        [TearDown]
+        public void TearDown() => _rig?.Dispose();
+
+        [UnityTest]
+        public IEnumerator AtomsAreRequestedUntilThereAreSome()
+        {
+            _rig = new SurfaceRig();
+            yield return SurfaceRig.Frames(3);
+            Assert.That(_rig.Requests, Is.EqualTo(1));
+            Assert.That(_rig.Surface.IsBusy, Is.False);
+            Assert.That(_rig.Surface.Shown.LevelCount, Is.EqualTo(0));
+
+            int late = 0;
+            _rig.Surface.AtomsRequested += () => ++late;
+            yield return SurfaceRig.Frames(2);
+            Assert.That(late, Is.EqualTo(1), "late listeners hear it as well");
+
+            _rig.Surface.SetAtoms(new[] { Vector3.zero }, new[] { 1.5f });
+            _rig.Surface.AtomsRequested += () => ++late;
+            yield return SurfaceRig.Frames(2);
+            Assert.That(late, Is.EqualTo(1), "there are atoms now");
+        }
+
+        [UnityTest]
+        public IEnumerator TheSurfaceOfOneAtomIsItsSphere()
+        {
+            var centre = new Vector3(3, -4, 5);
+            _rig = new SurfaceRig();
+            _rig.Surface.SetAtoms(new[] { centre }, new[] { 1.7f });
+            yield return _rig.Settle();
+            Mesh mesh = _rig.Surface.Mesh;
+            Assert.That(SurfaceMeshes.IsClosed(mesh));
+            Vector3[] vertices = mesh.vertices, normals = mesh.normals;
+            for (int v = 0; v < vertices.Length; ++v)
+            {
+                Assert.That((vertices[v] - centre).magnitude, Is.EqualTo(1.7f).Within(1e-4));
+                Assert.That(Vector3.Dot(normals[v], (vertices[v] - centre).normalized), Is.GreaterThan(0.9999));
+                Assert.That(_rig.Surface.OwnerAtomAt(v), Is.EqualTo(0));
+            }
+            Assert.That((mesh.bounds.center - centre).magnitude, Is.LessThan(0.05));
+            Assert.That(mesh.bounds.extents.x, Is.EqualTo(1.7f).Within(0.05));
+            Assert.That(_rig.Surface.Area, Is.EqualTo(4 * Math.PI * 1.7 * 1.7).Within(5).Percent);
+            Assert.That(_rig.Surface.Volume, Is.EqualTo(4 / 3.0 * Math.PI * Math.Pow(1.7, 3)).Within(5).Percent);
+        }
+
+        [UnityTest]
+        public IEnumerator LevelsComeFromCoarseToFine()
+        {
+            _rig = SurfaceRig.WithBlob(60, 1);
+            yield return _rig.Settle();
+            Assert.That(_rig.Levels.Count, Is.InRange(1, 3), "some may be passed over");
+            for (int k = 1; k < _rig.Levels.Count; ++k)
+                Assert.That(_rig.Levels[k].Spacing, Is.LessThan(_rig.Levels[k - 1].Spacing));
+            SurfaceLevel last = _rig.Levels[_rig.Levels.Count - 1];
+            Assert.That(last.Spacing, Is.EqualTo(0.5f));
+            Assert.That(last.IsFinest && last.IsCurrent);
+            Assert.That(last.Level, Is.EqualTo(2));
+            Assert.That(last.LevelCount, Is.EqualTo(3));
+            Assert.That(last.VertexCount, Is.EqualTo(_rig.Surface.Mesh.vertexCount));
+            Assert.That(_rig.Finished, Is.EqualTo(1));
+            Assert.That(_rig.Failures, Is.Empty);
+        }
+
+        [UnityTest]
+        public IEnumerator TheMeshIsWhatTheLibraryComputes()
+        {
+            TestMolecules.Blob(80, 2, out Vector3[] positions, out float[] radii);
+            _rig = new SurfaceRig();
+            _rig.Surface.SetAtoms(positions, radii);
+            yield return _rig.Settle();
+            Mesh mesh = _rig.Surface.Mesh;
+            SurfaceMeshes.AssertIsSurfaceOf(mesh, positions, radii, 0.5f, _rig.Surface.OwnerAtomAt);
+            Assert.That(SurfaceMeshes.IsClosed(mesh));
+            Assert.That(SurfaceMeshes.SignedVolume(mesh), Is.EqualTo(_rig.Surface.Volume).Within(2).Percent,
+                "front faces are outside");
+            Assert.That(mesh.indexFormat, Is.EqualTo(IndexFormat.UInt32));
+            Assert.That(mesh.isReadable);
+            Assert.That(_rig.GameObject.GetComponent<MeshFilter>().sharedMesh, Is.SameAs(mesh));
+            Assert.That(mesh.hideFlags & HideFlags.DontSave, Is.EqualTo(HideFlags.DontSave), "scenes don't save it");
+        }
+
+        [UnityTest]
+        public IEnumerator FramesGoIntoTheSameMesh()
+        {
+            TestMolecules.Blob(50, 3, out Vector3[] positions, out float[] radii);
+            _rig = new SurfaceRig();
+            _rig.Surface.SetAtoms(positions, radii);
+            yield return _rig.Settle();
+            Mesh mesh = _rig.Surface.Mesh;
+            for (int frame = 0; frame < 20; ++frame)
+            {
+                positions = TestMolecules.Moved(positions, frame);
+                _rig.Surface.SetPositions(positions);
+                yield return null;
+            }
+            yield return _rig.Settle();
+            Assert.That(_rig.Surface.Mesh, Is.SameAs(mesh));
+            SurfaceMeshes.AssertIsSurfaceOf(mesh, positions, radii, 0.5f);
+            Assert.That(_rig.Failures, Is.Empty);
+        }
+
+        [UnityTest]
+        public IEnumerator PositionsArePickedByAnIndexList()
+        {
+            TestMolecules.Blob(40, 4, out Vector3[] all, out float[] allRadii);
+            var indices = new[] { 31, 2, 17, 39, 0, 8 };
+            var picked = new Vector3[indices.Length];
+            var radii = new float[indices.Length];
+            for (int i = 0; i < indices.Length; ++i)
+            {
+                picked[i] = all[indices[i]];
+                radii[i] = allRadii[indices[i]];
+            }
+            _rig = new SurfaceRig();
+            _rig.Surface.SetAtoms(new Vector3[indices.Length], radii);
+            _rig.Surface.SetPositions(all, indices);
+            yield return _rig.Settle();
+            SurfaceMeshes.AssertIsSurfaceOf(_rig.Surface.Mesh, picked, radii, 0.5f);
+        }
+
+        [UnityTest]
+        public IEnumerator ColoursGoToTheVerticesOfTheirAtoms()
+        {
+            _rig = SurfaceRig.WithBlob(30, 5);
+            var colors = new Color32[30];
+            for (int i = 0; i < colors.Length; ++i)
+                colors[i] = new Color32((byte)(8 * i), (byte)(255 - 8 * i), 40, 255);
+            _rig.Surface.SetColors(colors);
+            yield return _rig.Settle();
+            Color32[] shown = _rig.Surface.Mesh.colors32;
+            Assert.That(shown.Length, Is.EqualTo(_rig.Surface.Mesh.vertexCount));
+            for (int v = 0; v < shown.Length; ++v)
+                Assert.That(shown[v], Is.EqualTo(colors[_rig.Surface.OwnerAtomAt(v)]));
+
+            _rig.Surface.SetColors(ReadOnlySpan<Color32>.Empty);
+            _rig.Surface.BaseColor = new Color32(1, 2, 3, 255);
+            int levels = _rig.Levels.Count;
+            yield return _rig.Settle();
+            Assert.That(_rig.Surface.Mesh.colors32, Is.All.EqualTo(new Color32(1, 2, 3, 255)));
+            Assert.That(_rig.Levels.Count, Is.EqualTo(levels + 1), "colours don't make the surface coarse again");
+        }
+
+        [UnityTest]
+        public IEnumerator HiddenAtomsOwnNoVertex()
+        {
+            _rig = SurfaceRig.WithBlob(30, 6);
+            yield return _rig.Settle();
+            double volume = _rig.Surface.Volume;
+            var visible = new bool[30];
+            for (int i = 0; i < visible.Length; ++i)
+                visible[i] = i % 3 != 0;
+            _rig.Surface.SetVisible(visible);
+            yield return _rig.Settle();
+            Assert.That(_rig.Surface.Mesh.vertexCount, Is.GreaterThan(0));
+            for (int v = 0; v < _rig.Surface.Mesh.vertexCount; ++v)
+                Assert.That(visible[_rig.Surface.OwnerAtomAt(v)]);
+            Assert.That(_rig.Surface.Volume, Is.EqualTo(volume), "it is that of the whole");
+        }
+
+        [UnityTest]
+        public IEnumerator TextureCoordinatesAreThoseOfTheAtoms()
+        {
+            _rig = SurfaceRig.WithBlob(20, 7);
+            var texcoords = new Vector2[20];
+            for (int i = 0; i < texcoords.Length; ++i)
+                texcoords[i] = new Vector2(i, -i);
+            _rig.Surface.SetTexcoords(texcoords);
+            yield return _rig.Settle();
+            Mesh mesh = _rig.Surface.Mesh;
+            Assert.That(mesh.HasVertexAttribute(VertexAttribute.TexCoord1));
+            Vector2[] shown = mesh.uv2;
+            for (int v = 0; v < shown.Length; ++v)
+                Assert.That(shown[v], Is.EqualTo(texcoords[_rig.Surface.OwnerAtomAt(v)]));
+        }
+
+        [UnityTest]
+        public IEnumerator ComponentsOfTheSurfaceAreMeasured()
+        {
+            _rig = new SurfaceRig();
+            _rig.Surface.MeasureComponents = true;
+            _rig.Surface.SetAtoms(new[] { Vector3.zero, new Vector3(30, 0, 0) }, new[] { 1.5f, 3f });
+            yield return _rig.Settle();
+            Assert.That(_rig.Surface.Components.Length, Is.EqualTo(2));
+            SurfaceComponent a = _rig.Surface.Components[0], b = _rig.Surface.Components[1];
+            Assert.That(a.Area + b.Area, Is.EqualTo(_rig.Surface.Area).Within(1e-6).Percent);
+            Assert.That(a.Volume + b.Volume, Is.EqualTo(_rig.Surface.Volume).Within(1e-6).Percent);
+            Assert.That(Math.Max(a.Volume, b.Volume), Is.EqualTo(4 / 3.0 * Math.PI * 27).Within(2).Percent);
+        }
+
+        [UnityTest]
+        public IEnumerator NoAtomsAreAnEmptySurface()
+        {
+            _rig = SurfaceRig.WithBlob(20, 8);
+            yield return _rig.Settle();
+            _rig.Surface.SetAtoms(new Vector3[0], new float[0]);
+            yield return _rig.Settle();
+            Assert.That(_rig.Surface.Mesh.vertexCount, Is.EqualTo(0));
+            Assert.That(_rig.Surface.Mesh.GetIndexCount(0), Is.EqualTo(0));
+            Assert.That(_rig.Failures, Is.Empty);
+            _rig.Surface.ClearAtoms();
+            Assert.That(_rig.Surface.IsBusy, Is.False);
+        }
+
+        [UnityTest]
+        public IEnumerator ABadFrameIsToldAndTheLastGoodMeshStays()
+        {
+            TestMolecules.Blob(30, 9, out Vector3[] positions, out float[] radii);
+            _rig = new SurfaceRig();
+            _rig.Surface.SetAtoms(positions, radii);
+            yield return _rig.Settle();
+            var bad = (Vector3[])positions.Clone();
+            bad[7].y = float.NaN;
+            _rig.Surface.SetPositions(bad);
+            yield return _rig.Settle();
+            Assert.That(_rig.Failures.Count, Is.EqualTo(1));
+            Assert.That(_rig.Failures[0].Status, Is.EqualTo(QuickSesStatus.InvalidArgument));
+            Assert.That(_rig.Failures[0].Message, Does.Contain("7"));
+            Assert.That(_rig.Surface.LastError.Status, Is.EqualTo(QuickSesStatus.InvalidArgument));
+            SurfaceMeshes.AssertIsSurfaceOf(_rig.Surface.Mesh, positions, radii, 0.5f);
+
+            Vector3[] next = TestMolecules.Moved(positions, 1);
+            _rig.Surface.SetPositions(next);
+            yield return _rig.Settle();
+            Assert.That(_rig.Surface.LastError.Status, Is.EqualTo(QuickSesStatus.Ok));
+            SurfaceMeshes.AssertIsSurfaceOf(_rig.Surface.Mesh, next, radii, 0.5f);
+        }
+
+        [UnityTest]
+        public IEnumerator AFailureWithoutListenersIsLogged()
+        {
+            var lonely = new GameObject("lonely").AddComponent<MolecularSurface>();
+            lonely.SetAtoms(new[] { Vector3.zero }, new[] { -1f });
+            LogAssert.Expect(LogType.Error, new System.Text.RegularExpressions.Regex("lonely: .*radi"));
+            yield return SurfaceRig.Until(() => !lonely.IsBusy);
+            Object.Destroy(lonely.gameObject);
+        }
+
+        [Test]
+        public void WrongLengthsThrowAndChangeNothing()
+        {
+            _rig = SurfaceRig.WithBlob(10, 10);
+            MolecularSurface surface = _rig.Surface;
+            Assert.Throws<ArgumentException>(() => surface.SetAtoms(new Vector3[3], new float[2]));
+            Assert.Throws<ArgumentException>(() => surface.SetPositions(new Vector3[9]));
+            Assert.Throws<ArgumentException>(() => surface.SetPositions(new float[31]));
+            Assert.Throws<ArgumentException>(() => surface.SetPositions(new Vector3[20], new int[9]));
+            Assert.Throws<ArgumentOutOfRangeException>(() => surface.SetPositions(new Vector3[9],
+                new[] { 0, 1, 2, 3, 4, 5, 6, 7, 8, 9 }));
+            Assert.Throws<ArgumentException>(() => surface.SetColors(new Color32[11]));
+            Assert.Throws<ArgumentException>(() => surface.SetVisible(new bool[11]));
+            Assert.Throws<ArgumentException>(() => surface.SetTexcoords(new Vector2[11]));
+            Assert.Throws<ArgumentNullException>(() => surface.SetPositions((Vector3[])null));
+            Assert.Throws<ArgumentOutOfRangeException>(() => surface.SetAtoms(new Vector3[3], new float[3], 4));
+            Assert.Throws<ArgumentOutOfRangeException>(() => surface.OwnerAtomAt(-1));
+            Assert.That(surface.AtomCount, Is.EqualTo(10));
+            Assert.That(surface.ComputeNow());
+            Assert.That(_rig.Failures, Is.Empty);
+        }
+
+        [Test]
+        public void AtomsHaveToBeThereFirst()
+        {
+            _rig = new SurfaceRig();
+            Assert.Throws<InvalidOperationException>(() => _rig.Surface.SetPositions(new Vector3[1]));
+            Assert.Throws<InvalidOperationException>(() => _rig.Surface.ComputeNow());
+        }
+
+        [UnityTest]
+        public IEnumerator SettingsChangeTheSurface()
+        {
+            TestMolecules.Blob(40, 11, out Vector3[] positions, out float[] radii);
+            _rig = new SurfaceRig();
+            _rig.Surface.SetAtoms(positions, radii);
+            yield return _rig.Settle();
+            double ses = _rig.Surface.Volume;
+            _rig.Surface.Surface = SurfaceKind.Vdw;
+            yield return _rig.Settle();
+            double vdw = _rig.Surface.Volume;
+            _rig.Surface.Surface = SurfaceKind.Sas;
+            yield return _rig.Settle();
+            Assert.That(vdw, Is.LessThan(ses));
+            Assert.That(ses, Is.LessThan(_rig.Surface.Volume));
+            _rig.Surface.Surface = SurfaceKind.Ses;
+            _rig.Surface.Spacing = 0.8f;
+            yield return _rig.Settle();
+            SurfaceMeshes.AssertIsSurfaceOf(_rig.Surface.Mesh, positions, radii, 0.8f);
+
+            int levels = _rig.Levels.Count;
+            _rig.Surface.Spacing = 0.8f;
+            yield return SurfaceRig.Frames(3);
+            Assert.That(_rig.Levels.Count, Is.EqualTo(levels), "the same value is no change");
+        }
+
+        [UnityTest]
+        public IEnumerator BuffersMayOnlyGrow()
+        {
+            TestMolecules.Blob(60, 12, out Vector3[] positions, out float[] radii);
+            _rig = new SurfaceRig();
+            _rig.Surface.PadBuffers = true;
+            _rig.Surface.SetAtoms(positions, radii);
+            yield return _rig.Settle();
+            int capacity = _rig.Surface.Mesh.vertexCount;
+            Assert.That(capacity, Is.GreaterThanOrEqualTo(_rig.Surface.Shown.VertexCount));
+            _rig.Surface.SetAtoms(new[] { Vector3.zero }, new[] { 1.5f });
+            yield return _rig.Settle();
+            Assert.That(_rig.Surface.Mesh.vertexCount, Is.EqualTo(capacity));
+            Assert.That(_rig.Surface.Mesh.GetIndexCount(0), Is.EqualTo(3 * _rig.Surface.Shown.TriangleCount));
+            Assert.That(SurfaceMeshes.IsClosed(_rig.Surface.Mesh));
+        }
+
+        [Test]
+        public void ComputeNowShowsTheFinest()
+        {
+            TestMolecules.Blob(40, 13, out Vector3[] positions, out float[] radii);
+            _rig = new SurfaceRig();
+            _rig.Surface.SetAtoms(positions, radii);
+            Assert.That(_rig.Surface.ComputeNow());
+            SurfaceMeshes.AssertIsSurfaceOf(_rig.Surface.Mesh, positions, radii, 0.5f);
+            Assert.That(_rig.Surface.IsBusy, Is.False);
+            Assert.That(_rig.Finished, Is.EqualTo(1));
+        }
+    }
+}

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+using NUnit.Framework;
+using System.Collections;
+using System.Collections.Generic;
+using UnityEngine;
+using UnityEngine.TestTools;
+using UnityEngine.TestTools.Constraints;
+using Is = UnityEngine.TestTools.Constraints.Is;
+
+namespace QuickSes.Tests
+{
+    /// <summary>Positions that change in every frame.</summary>
+    internal sealed class PlaybackTest
+    {
+        private SurfaceRig _rig;
+
+        [TearDown]
+        public void TearDown() => _rig?.Dispose();
+
+        [UnityTest]
+        public IEnumerator ThePictureKeepsMovingHoweverFastFramesCome()
+        {
+            TestMolecules.Blob(1500, 1, out Vector3[] positions, out float[] radii);
+            _rig = new SurfaceRig();
+            _rig.Surface.FrameBudget = 5;
+            _rig.Surface.SetAtoms(positions, radii);
+            yield return _rig.Settle();
+            _rig.Levels.Clear();
+            int frames = 0;
+            yield return SurfaceRig.Until(() =>
+            {
+                _rig.Surface.SetPositions(TestMolecules.Moved(positions, ++frames % 7));
+                return _rig.Levels.Count >= 20;
+            });
+            Assert.That(frames, Is.GreaterThan(20 - 1));
+            yield return _rig.Settle();
+            Assert.That(_rig.Surface.Shown.IsFinest, "at rest");
+            SurfaceMeshes.AssertIsSurfaceOf(
+                _rig.Surface.Mesh, TestMolecules.Moved(positions, frames % 7), radii, 0.5f);
+        }
+
+        [UnityTest]
+        public IEnumerator OldFramesAreShownTooAndSaySo()
+        {
+            TestMolecules.Blob(800, 2, out Vector3[] positions, out float[] radii);
+            _rig = new SurfaceRig();
+            _rig.Surface.FrameBudget = 0;
+            _rig.Surface.SetAtoms(positions, radii);
+            int frames = 0;
+            yield return SurfaceRig.Until(() =>
+            {
+                _rig.Surface.SetPositions(TestMolecules.Moved(positions, ++frames % 7));
+                return _rig.Levels.Count >= 5;
+            });
+            Assert.That(_rig.Levels.Exists(level => !level.IsCurrent));
+            yield return _rig.Settle();
+            Assert.That(_rig.Surface.Shown.IsCurrent);
+        }
+
+        [UnityTest]
+        public IEnumerator TheSameRadiiMeanTheSameMolecule()
+        {
+            TestMolecules.Blob(50, 3, out Vector3[] positions, out float[] radii);
+            _rig = new SurfaceRig();
+            _rig.Surface.SetAtoms(positions, radii);
+            var colors = new Color32[50];
+            for (int i = 0; i < colors.Length; ++i)
+                colors[i] = new Color32((byte)i, 0, 0, 255);
+            _rig.Surface.SetColors(colors);
+            yield return _rig.Settle();
+            _rig.Surface.SetAtoms(TestMolecules.Moved(positions, 1), radii);
+            yield return _rig.Settle();
+            Color32[] shown = _rig.Surface.Mesh.colors32;
+            for (int v = 0; v < shown.Length; v += 17)
+                Assert.That(shown[v], Is.EqualTo(colors[_rig.Surface.OwnerAtomAt(v)]), "colours stay");
+        }
+
+        [UnityTest]
+        public IEnumerator FeedingAFrameMakesNoGarbage()
+        {
+            TestMolecules.Blob(200, 4, out Vector3[] positions, out float[] radii);
+            float[] xyz = TestMolecules.Floats(positions);
+            var indices = new int[200];
+            for (int i = 0; i < indices.Length; ++i)
+                indices[i] = 199 - i;
+            _rig = new SurfaceRig();
+            MolecularSurface surface = _rig.Surface;
+            surface.SetAtoms(positions, radii);
+            yield return _rig.Settle();
+            TestDelegate feed = () =>
+            {
+                surface.SetPositions(positions);
+                surface.SetPositions(xyz);
+                surface.SetPositions(positions, indices);
+                surface.SetAtoms(positions, radii);
+            };
+            feed();
+            Assert.That(feed, Is.Not.AllocatingGCMemory());
+            yield return _rig.Settle();
+        }
+    }
+}

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+using NUnit.Framework;
+using System;
+
+namespace QuickSes.Tests
+{
+    /// <summary>Which levels are computed when.</summary>
+    internal sealed class SurfaceJobPlanTest
+    {
+        [Test]
+        public void LaddersFallToTheFinest()
+        {
+            Assert.That(Ladder(0.5f, 2, 1), Is.EqualTo(new[] { 2, 1, 0.5f }));
+            Assert.That(Ladder(0.5f, 1, 4, 2), Is.EqualTo(new[] { 4, 2, 1, 0.5f }), "in any order");
+            Assert.That(Ladder(1, 2, 1, 0.5f), Is.EqualTo(new[] { 2, 1f }), "only coarser ones");
+            Assert.That(Ladder(1, 2, 2, 2), Is.EqualTo(new[] { 2, 1f }), "once each");
+            Assert.That(Ladder(0.5f), Is.EqualTo(new[] { 0.5f }));
+            Assert.That(Ladder(0.5f, float.NaN), Is.EqualTo(new[] { 0.5f }));
+            Assert.That(Ladder(0.1f, 9, 8, 7, 6, 5, 4, 3, 2, 1).Length, Is.EqualTo(SurfaceSettings.MaxLevels + 1));
+        }
+
+        [Test]
+        public void NewAtomsComeThroughAllLevels() =>
+            AssertPlan(SurfaceChange.Shape, float.PositiveInfinity, false, 33, false, 0, 2, 1, 0.5f);
+
+        [Test]
+        public void WhoIsNotAloneGetsTheCoarsestFirst() =>
+            AssertPlan(SurfaceChange.Shape, float.PositiveInfinity, false, 33, true, 0, 2);
+
+        [Test]
+        public void MovingAtomsHaveABudget()
+        {
+            AssertPlan(SurfaceChange.Positions, float.PositiveInfinity, true, 33, false, 33, 2, 1, 0.5f);
+            AssertPlan(SurfaceChange.Positions, float.PositiveInfinity, true, 33, true, 33, 2, 1, 0.5f);
+            AssertPlan(SurfaceChange.Positions, float.PositiveInfinity, true, 0, false, 0, 2, 1, 0.5f);
+        }
+
+        [Test]
+        public void ColoursDontMakeAFineSurfaceCoarse()
+        {
+            AssertPlan(SurfaceChange.Appearance, float.PositiveInfinity, true, 33, true, 0, 0.5f);
+            AssertPlan(SurfaceChange.Appearance, float.PositiveInfinity, false, 33, false, 0, 2, 1, 0.5f);
+        }
+
+        [Test]
+        public void RefinementGoesOnFromWhatIsShown()
+        {
+            AssertPlan(SurfaceChange.None, 2, false, 33, true, 0, 1, 0.5f);
+            AssertPlan(SurfaceChange.None, 1, false, 33, false, 0, 0.5f);
+            AssertPlan(SurfaceChange.None, float.PositiveInfinity, false, 33, false, 0, 2, 1, 0.5f);
+        }
+
+        private static float[] Ladder(float finest, params float[] levels)
+        {
+            var ladder = new float[SurfaceSettings.MaxLevels + 1];
+            int count = SurfaceJobPlan.MakeLadder(levels, finest, ladder);
+            return ladder.AsSpan(0, count).ToArray();
+        }
+
+        private static void AssertPlan(SurfaceChange change, float shown, bool isShownFinest, float frameBudget,
+            bool othersWait, float expectedBudget, params float[] expected)
+        {
+            SurfaceSettings settings = SurfaceSettings.Default;
+            SurfaceJobPlan.Choose(ref settings, new[] { 2, 1, 0.5f }, change, shown, isShownFinest, frameBudget,
+                othersWait);
+            var levels = new float[settings.LevelCount + 1];
+            for (int k = 0; k < settings.LevelCount; ++k)
+                levels[k] = settings.GetLevel(k);
+            levels[settings.LevelCount] = settings.Spacing;
+            Assert.That(levels, Is.EqualTo(expected));
+            Assert.That(settings.FrameBudget, Is.EqualTo(expectedBudget));
+        }
+    }
+}
