@@ -1,18 +1,20 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Installs what the build needs and this machine lacks, by apt-get (Debian 12 and later, Ubuntu).
-#   bash Scripts~/setup.sh [--with-cuda] [--with-mpi]
+#   bash Scripts~/setup.sh [--with-cuda] [--with-mpi] [--with-windows]
 # Does nothing, and needs no network and no rights, where everything is there. Uses sudo where it isn't root.
 set -euo pipefail
 
 with_cuda=no
 with_mpi=no
+with_windows=no
 for argument in "$@"; do
   case "$argument" in
     --with-cuda) with_cuda=yes ;;
     --with-mpi) with_mpi=yes ;;
+    --with-windows) with_windows=yes ;;
     -h | --help) sed -n '3,5s/^# //p' "$0"; exit 0 ;;
-    *) echo "setup.sh: unknown option $argument (there are --with-cuda and --with-mpi)" >&2; exit 2 ;;
+    *) echo "setup.sh: unknown option $argument (there are --with-cuda, --with-mpi and --with-windows)" >&2; exit 2 ;;
   esac
 done
 
@@ -35,9 +37,18 @@ needs=(
   "libcli11-dev CLI/CLI.hpp"
   "nlohmann-json3-dev nlohmann/json.hpp"
   "libgtest-dev gtest/gtest.h"
+  "patchelf patchelf"
 )
 
 if [ "$with_mpi" = yes ]; then needs+=("libopenmpi-dev mpicxx" "openmpi-bin mpirun"); fi
+if [ "$with_windows" = yes ]; then
+  needs+=(
+    "g++-mingw-w64-x86-64-posix x86_64-w64-mingw32-g++-posix"
+    "libz-mingw-w64-dev /usr/x86_64-w64-mingw32/include/zlib.h"
+    "googletest /usr/src/googletest/CMakeLists.txt"
+    "wine64 /usr/lib/wine/wine64"
+  )
+fi
 
 is_there() {
   case "$1" in
@@ -90,7 +101,7 @@ if ! command -v apt-get >/dev/null; then
   fail "can install on Debian and Ubuntu only, and $system has no apt-get.
 Missing here (Debian's package names): ${missing[*]}
 Needed in all: CMake 3.22, Ninja, a C++17 compiler, Python 3, zlib, Thrust 1.15, oneTBB, GLM, gemmi (and PEGTL with
-gemmi 0.5), CLI11, nlohmann-json, GoogleTest; for the GPU the CUDA Toolkit 11.8 or later; for many
+gemmi 0.5), CLI11, nlohmann-json, GoogleTest, patchelf; for the GPU the CUDA Toolkit 11.8 or later; for many
 processes an MPI library."
 fi
 as_root=()

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Installs what is missing, builds everything, runs every test.
-#   bash Scripts~/test.sh [--with-cuda] [--with-mpi]
+#   bash Scripts~/test.sh [--with-cuda] [--with-mpi] [--with-windows]
 # --with-cuda: the CUDA Toolkit and the CUDA back end as well. Its tests need a GPU and are skipped where there is none.
 # --with-mpi: Open MPI, and the program that shares frames among processes.
+# --with-windows: the library, the program and the tests for Windows by MinGW-w64, run by Wine.
 # The C# tests need a .NET SDK, which is not installed, and NuGet packages; without them they are skipped, and that is
 # said. With CI=true in the environment, packages that can't be had are an error.
 set -euo pipefail
@@ -11,12 +12,14 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 presets=(cpu)
 with_mpi=no
+with_windows=no
 for argument in "$@"; do
   case "$argument" in
     --with-cuda) presets+=(cuda) ;;
     --with-mpi) with_mpi=yes ;;
-    -h | --help) sed -n '3,8s/^# //p' "$0"; exit 0 ;;
-    *) echo "test.sh: unknown option $argument (there are --with-cuda and --with-mpi)" >&2; exit 2 ;;
+    --with-windows) with_windows=yes ;;
+    -h | --help) sed -n '3,9s/^# //p' "$0"; exit 0 ;;
+    *) echo "test.sh: unknown option $argument (there are --with-cuda, --with-mpi and --with-windows)" >&2; exit 2 ;;
   esac
 done
 
@@ -52,7 +55,29 @@ if [ "$with_mpi" = yes ]; then
   ctest --preset mpi --tests-regex '^cli_mpi_test$' --no-tests=error
 fi
 
-# The C# layer, with the CPU back end of the library that was built above.
+platforms=(--platform linux-x86_64)
+if [ "$with_windows" = yes ]; then
+  platforms+=(--platform windows-x86_64)
+  export WINEPREFIX="$PWD/.build/wine" WINEDEBUG=-all
+  echo "==== windows: configure"
+  cmake --preset windows
+  echo "==== windows: build"
+  cmake --build --preset windows --parallel "$(nproc)"
+  echo "==== windows: test"
+  ctest --preset windows --parallel "$(nproc)"
+  echo "==== windows: the same mesh"
+  .build/cpu/bin/quickses --quiet Tests/Data~/1CRN.pdb -o .build/cpu/1crn.ply
+  /usr/lib/wine/wine64 .build/windows/bin/quickses.exe --quiet Tests/Data~/1CRN.pdb -o .build/windows/1crn.ply
+  cmp .build/cpu/1crn.ply .build/windows/1crn.ply
+fi
+
+# The package as it is handed out, with the CPU back end.
+echo "==== package: make and check"
+rm -f .build/cpu/org.quickses.unity-*.tgz
+cmake --build --preset cpu --target upm
+python3 Scripts~/check-package .build/cpu/org.quickses.unity-*.tgz "${platforms[@]}"
+
+# The C# layer, with the plug-in of that package.
 echo "==== dotnet: test"
 export DOTNET_CLI_TELEMETRY_OPTOUT=1 DOTNET_NOLOGO=1
 dotnet_tests=Tests/DotNet~/Core.Tests
@@ -63,5 +88,5 @@ elif ! dotnet restore "$dotnet_tests"; then
   if [ "${CI:-}" = true ]; then exit 1; fi
   echo "The C# tests are skipped."
 else
-  QUICKSES_NATIVE="$PWD/.build/cpu/lib/libquickses.so" dotnet test --no-restore "$dotnet_tests"
+  QUICKSES_NATIVE="$PWD/UnityPackage/Plugins/linux-x86_64/libquickses.so" dotnet test --no-restore "$dotnet_tests"
 fi

@@ -43,8 +43,19 @@ def right_package():
         "Runtime/quickses.dll": "",
         "Runtime/quickses.dll.meta": meta(6, "PluginImporter", rest=plugin({"Editor", "Win64"}, "Windows")),
         "Runtime/shim.c": "", "Runtime/shim.c.meta": meta(7, "PluginImporter", rest=plugin(set(), "AnyOS")),
+        "Runtime/A.mat": "", "Runtime/A.mat.meta": meta(8, "NativeFormatImporter", rest="  mainObjectFileID: 2100000\n"),
+        "Runtime/A.shader": "", "Runtime/A.shader.meta": meta(9, "ShaderImporter"),
         "Native~/a.cpp": "", ".build/b.cpp": "", ".gitignore": "",
     }
+
+
+def package_with_sample():
+    """The same with a sample, whose folder itself needs no .meta."""
+    files = right_package()
+    files["package.json"] = '{"samples": [{"path": "Samples~/Play"}]}'
+    files["Samples~/Play/Play.unity"] = ""
+    files["Samples~/Play/Play.unity.meta"] = meta(10, "DefaultImporter")
+    return files
 
 
 class CheckMetasTest(unittest.TestCase):
@@ -66,7 +77,44 @@ class CheckMetasTest(unittest.TestCase):
 
     def test_right_package(self):
         status, text = self.run_on(right_package())
-        self.assertEqual((status, text), (0, "check-metas: 7 visible files and folders, 0 faults\n"))
+        self.assertEqual((status, text), (0, "check-metas: 9 visible files and folders, 0 faults\n"))
+
+    def test_right_sample(self):
+        status, text = self.run_on(package_with_sample())
+        self.assertEqual((status, text), (0, "check-metas: 10 visible files and folders, 0 faults\n"))
+
+    def test_missing_meta_in_a_sample(self):
+        files = package_with_sample()
+        del files["Samples~/Play/Play.unity.meta"]
+        self.assert_fault(files, "Samples~/Play/Play.unity: no .meta")
+
+    def test_guid_that_a_sample_shares_with_the_package(self):
+        files = package_with_sample()
+        files["Samples~/Play/Play.unity.meta"] = meta(4, "DefaultImporter")
+        self.assert_fault(files, "same guid as")
+
+    def test_sample_that_is_not_there(self):
+        files = right_package()
+        files["package.json"] = '{"samples": [{"path": "Samples~/Play"}]}'
+        self.assert_fault(files, "Samples~/Play: package.json lists this sample")
+
+    def test_sample_in_the_folder_that_is_left_out(self):
+        files = package_with_sample()
+        files["Samples~.meta"] = meta(11, "DefaultImporter", folder=True)
+        self.assert_fault(files, "Samples~.meta: Samples~ does not exist")
+
+    def test_importers_of_shaders_and_materials(self):
+        files = right_package()
+        files["Runtime/A.shader.meta"] = meta(9, "DefaultImporter")
+        self.assert_fault(files, "ShaderImporter was expected")
+        files = right_package()
+        files["Runtime/A.mat.meta"] = meta(8, "DefaultImporter")
+        self.assert_fault(files, "NativeFormatImporter was expected")
+
+    def test_material_without_main_object(self):
+        files = right_package()
+        files["Runtime/A.mat.meta"] = meta(8, "NativeFormatImporter")
+        self.assert_fault(files, "A.mat.meta: needs a mainObjectFileID")
 
     def test_missing_meta_of_a_file_and_of_a_folder(self):
         for path in ("README.md", "Runtime/A.cs", "Runtime"):
@@ -81,7 +129,7 @@ class CheckMetasTest(unittest.TestCase):
 
     def test_meta_of_a_hidden_folder(self):
         files = right_package()
-        files["Native~.meta"] = meta(9, "DefaultImporter", folder=True)
+        files["Native~.meta"] = meta(12, "DefaultImporter", folder=True)
         self.assert_fault(files, "Native~.meta: Native~ does not exist")
 
     def test_duplicate_guid(self):

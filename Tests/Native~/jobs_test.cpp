@@ -319,6 +319,32 @@ TEST(Jobs, AFrameBudgetGivesOneLevel) {
   EXPECT_EQ(m.level, 0u);
 }
 
+TEST(Jobs, SeriesThatShareAContextEachKeepTheirLevel) {
+  const Context context;
+  const Atoms molecules[2] = {cluster(300, 3), cluster(900, 4)};
+  qses_settings s = settings(0.5);
+  s.frame_budget_ms = 60000;  // everything fits, once a first frame has told so
+  const auto level_of = [&](const Atoms &atoms) {
+    set_atoms(context, atoms);
+    begin(context, s);
+    wait_for_all(context);
+    qses_mesh m;
+    qses_mesh_init(&m);
+    expect_ok(qses_collect(context, &m));
+    return m.level;
+  };
+  for (int frame = 0; frame < 4; ++frame)
+    for (uint32_t k : {0u, 1u}) {
+      s.series = 4000000000u * k;
+      EXPECT_EQ(level_of(molecules[k]), frame == 0 ? 0u : 2u);
+    }
+  // Within one series every change of the atoms begins anew.
+  s.series = 0;
+  EXPECT_EQ(level_of(molecules[0]), 2u);
+  EXPECT_EQ(level_of(molecules[1]), 0u);
+  EXPECT_EQ(level_of(molecules[0]), 0u);
+}
+
 TEST(Jobs, BadRequestsAreRefusedAtOnce) {
   const Context context;
   qses_settings s = settings();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Which level a frame budget gets, with made-up costs.
-#include "jobs/level_chooser.h"
+#include "jobs/series_choosers.h"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +9,7 @@
 
 using quickses::LevelChooser;
 using quickses::LevelLadder;
+using quickses::SeriesChoosers;
 
 namespace {
 
@@ -197,6 +198,48 @@ TEST(LevelChooser, ABudgetThatGrowsIsUsed) {
   EXPECT_EQ(run(chooser, s, 2.6, 10, costs_of(s, 1, 1)).back(), 1u);
   EXPECT_EQ(run(chooser, s, 30, 10, costs_of(s, 1, 1)).back(), 3u);
   EXPECT_EQ(run(chooser, s, 2.6, 10, costs_of(s, 1, 1)).back(), 1u);
+}
+
+// ---- series
+
+// A chooser that has found out that everything fits.
+void teach(LevelChooser &chooser) {
+  const auto s = subject();
+  ASSERT_EQ(run(chooser, s, 1000, 2, costs_of(s, 1, 1)).back(), 3u);
+}
+
+// Whether the chooser still knows.
+bool knows(LevelChooser &chooser) { return chooser.choose(subject(), 1000) == 3; }
+
+TEST(SeriesChoosers, EachSeriesLearnsForItself) {
+  SeriesChoosers choosers;
+  choosers.reserve();
+  const auto small = subject();
+  auto large = small;
+  large.atoms = 50000;
+  for (int frame = 0; frame < 50; ++frame) {
+    const auto first = run(choosers.of(7), small, 30, 1, costs_of(small, 1, 1));   // 17 ms at the finest
+    const auto second = run(choosers.of(8), large, 30, 1, costs_of(large, 2, 5));  // 22 ms at the third of four
+    if (frame == 0) continue;
+    EXPECT_EQ(first[0], 3u) << frame;
+    EXPECT_EQ(second[0], 2u) << frame;
+  }
+  // Other atoms in a series say nothing about the others.
+  EXPECT_EQ(choosers.of(7).choose(large, 30), 0u);
+  EXPECT_EQ(choosers.of(8).choose(large, 30), 2u);
+}
+
+TEST(SeriesChoosers, RemembersTheLastSeriesThatWereUsed) {
+  SeriesChoosers choosers;
+  choosers.reserve();
+  const LevelChooser *const first = &choosers.of(0);
+  for (uint32_t k = 0; k < QSES_REMEMBERED_SERIES; ++k) teach(choosers.of(1000003u * k));
+  EXPECT_EQ(&choosers.of(0), first) << "the memory is fixed";  // and 0 is the newest now
+  teach(choosers.of(5));                                       // one too many: 1000003 is the oldest
+  EXPECT_TRUE(knows(choosers.of(0)));
+  for (uint32_t k = 2; k < QSES_REMEMBERED_SERIES; ++k) EXPECT_TRUE(knows(choosers.of(1000003u * k))) << k;
+  EXPECT_TRUE(knows(choosers.of(5)));
+  EXPECT_FALSE(knows(choosers.of(1000003)));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "cli/exit_code.h"
 #include "cli/options.h"
 #include "cli/processes.h"
+#include "cli/utf8.h"
 
 namespace quickses::cli {
 namespace {
@@ -26,6 +27,7 @@ void run_command(const Options &options, Processes &processes) {
 int run(int argc, char **argv) {
   std::unique_ptr<Processes> processes;
   try {
+    use_utf8(&argc, &argv);
     processes = start_processes(&argc, &argv);
     std::ostream nowhere(nullptr);
     run_command(parse_options(argc, argv, processes->is_first() ? std::cout : nowhere), *processes);

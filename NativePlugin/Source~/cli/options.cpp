@@ -11,6 +11,7 @@
 
 #include "cli/exit_code.h"
 #include "cli/output_pattern.h"
+#include "io/file_path.h"
 #include "io/mesh_writer.h"
 #include "io/text.h"
 
@@ -188,7 +189,7 @@ void add_report_options(CLI::App *app, Options &options) {
 
 bool is_same_file(const std::string &a, const std::string &b) {
   std::error_code error;
-  return a == b || std::filesystem::equivalent(a, b, error);
+  return a == b || std::filesystem::equivalent(io::path_of(a), io::path_of(b), error);
 }
 
 // given: whether a flag was on the command line.
@@ -214,7 +215,7 @@ void check_trajectory(const Options &options, const std::function<bool(const cha
   if (options.output.empty()) return;
   OutputPattern check(options.output);  // throws if it is none
   const auto whole = [](const std::string &path) {
-    return std::filesystem::absolute(path).lexically_normal().string();
+    return io::utf8_of(std::filesystem::absolute(io::path_of(path)).lexically_normal());
   };
   const OutputPattern meshes(whole(options.output));
   for (const auto &[flag, file] : {std::pair("--csv", options.csv), std::pair("--json", options.json)})

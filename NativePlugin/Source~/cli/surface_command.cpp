@@ -14,6 +14,7 @@
 #include "cli/report.h"
 #include "cli/text_output.h"
 #include "io/atomic_file.h"
+#include "io/file_path.h"
 #include "io/radii.h"
 
 namespace quickses::cli {
@@ -22,10 +23,11 @@ namespace {
 // out.ply for one model; out_0001.ply and so on with --model all.
 std::string output_of_model(const Options &options, int model) {
   if (options.output.empty() || options.read.model != 0) return options.output;
-  const std::filesystem::path path(options.output);
+  const std::filesystem::path path = io::path_of(options.output);
   char number[16];
   std::snprintf(number, sizeof number, "_%04d", model);
-  return (path.parent_path() / (path.stem().string() + number + path.extension().string())).string();
+  const std::string name = io::utf8_of(path.stem()) + number + io::utf8_of(path.extension());
+  return io::utf8_of(path.parent_path() / io::path_of(name));
 }
 
 void print_summary(const Options &options, const io::Structure &structure, const Engine &engine, const qses_mesh &mesh,

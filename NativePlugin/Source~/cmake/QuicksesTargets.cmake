@@ -14,7 +14,10 @@ if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
       "$<$<COMPILE_LANGUAGE:CUDA>:-Werror=all-warnings>")
   endif()
 elseif(MSVC)
-  target_compile_options(quickses_options INTERFACE "$<$<COMPILE_LANGUAGE:C,CXX>:/W4;/permissive-;/utf-8>")
+  target_compile_options(quickses_options INTERFACE
+    "$<$<COMPILE_LANGUAGE:C,CXX>:/W4;/utf-8>"
+    "$<$<COMPILE_LANGUAGE:CXX>:/permissive-;/Zc:__cplusplus;/Zc:preprocessor>"
+    "$<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=/utf-8,/Zc:__cplusplus,/Zc:preprocessor>")
   target_compile_definitions(quickses_options INTERFACE _USE_MATH_DEFINES NOMINMAX)
 endif()
 target_compile_options(quickses_options INTERFACE

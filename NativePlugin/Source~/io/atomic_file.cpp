@@ -5,7 +5,6 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 #include <system_error>
 
 #if defined(_WIN32)
@@ -17,40 +16,41 @@
 #endif
 
 #include "io/error.h"
+#include "io/file_path.h"
 
 namespace quickses::io {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::string temporary_name(const fs::path &target) {
+fs::path temporary_name(const fs::path &target) {
   static std::atomic<unsigned> counter{0};
-  const std::string name = "." + target.filename().string() + "." + std::to_string(QSES_PROCESS_ID) + "." +
+  const std::string name = "." + utf8_of(target.filename()) + "." + std::to_string(QSES_PROCESS_ID) + "." +
                            std::to_string(counter++) + ".tmp";
-  return (target.parent_path() / name).string();
+  return target.parent_path() / path_of(name);
 }
 
 }  // namespace
 
-AtomicFile::AtomicFile(const std::string &path) : path_(path), target_(path), buffer_(kBufferSize) {
+AtomicFile::AtomicFile(const std::string &path) : path_(path), target_(path_of(path)), buffer_(kBufferSize) {
   std::error_code error;
   // A link stays a link: what it points to is replaced.
-  if (fs::is_symlink(path, error)) {
-    const fs::path resolved = fs::weakly_canonical(path, error);
-    if (!error) target_ = resolved.string();
+  if (fs::is_symlink(target_, error)) {
+    const fs::path resolved = fs::weakly_canonical(target_, error);
+    if (!error) target_ = resolved;
   }
   const fs::file_status status = fs::status(target_, error);
   if (fs::is_directory(status)) fail_output("'" + path_ + "' is a directory: it can't be written as a file");
-  const fs::path folder = fs::path(target_).parent_path();
+  const fs::path folder = target_.parent_path();
   if (!folder.empty() && !fs::is_directory(folder, error))
-    fail_output("'" + path_ + "' can't be written: there is no folder '" + folder.string() + "'");
+    fail_output("'" + path_ + "' can't be written: there is no folder '" + utf8_of(folder) + "'");
   const bool replace = !fs::exists(status) || fs::is_regular_file(status);
 #if !defined(_WIN32)
   // Renaming would replace a file that is write-protected: ask first, as writing to it would.
   if (replace && fs::exists(status) && access(target_.c_str(), W_OK) != 0) fail(errno);
 #endif
   if (replace) temporary_ = temporary_name(target_);
-  file_ = std::fopen(replace ? temporary_.c_str() : target_.c_str(), "wb");
+  file_ = open_stdio(replace ? temporary_ : target_, "wb");
   if (!file_) {
     temporary_.clear();
     fail(errno);
@@ -63,7 +63,8 @@ AtomicFile::~AtomicFile() { close_and_remove(); }
 void AtomicFile::close_and_remove() {
   if (file_) std::fclose(file_);
   file_ = nullptr;
-  if (!temporary_.empty()) std::remove(temporary_.c_str());
+  std::error_code error;
+  if (!temporary_.empty()) fs::remove(temporary_, error);
   temporary_.clear();
 }
 

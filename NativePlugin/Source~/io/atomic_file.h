@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdio>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -35,9 +36,9 @@ class AtomicFile {
   [[noreturn]] void fail(int error_number);
   void close_and_remove();
 
-  std::string path_;       // as given, for messages
-  std::string target_;     // with links resolved
-  std::string temporary_;  // empty: the target is written directly
+  std::string path_;                 // as given, for messages
+  std::filesystem::path target_;     // with links resolved
+  std::filesystem::path temporary_;  // empty: the target is written directly
   std::FILE *file_ = nullptr;
   std::vector<char> buffer_;
   size_t used_ = 0;

@@ -11,6 +11,7 @@
 
 #include "io/error.h"
 #include "io/file_bytes.h"
+#include "io/file_path.h"
 
 #ifdef _WIN32
 #ifndef NOMINMAX
@@ -122,11 +123,11 @@ void ByteSource::check_range(uint64_t offset, uint64_t count) const {
 
 std::unique_ptr<ByteSource> ByteSource::open_file(const std::string &path) {
   std::error_code error;
-  const std::string extension = fs::path(path).extension().string();
-  const bool is_named_gzip = extension == ".gz" || extension == ".GZ";
-  if (!is_named_gzip && fs::status(path, error).type() == fs::file_type::regular) {
-    const uint64_t size = fs::file_size(path, error);
-    FilePointer file(std::fopen(path.c_str(), "rb"));
+  const fs::path place = path_of(path);
+  const bool is_named_gzip = lower_extension(place) == ".gz";
+  if (!is_named_gzip && fs::status(place, error).type() == fs::file_type::regular) {
+    const uint64_t size = fs::file_size(place, error);
+    FilePointer file(open_stdio(place, "rb"));
     if (!file) fail_input("'" + path + "' can't be opened: " + std::strerror(errno));
     if (!error && size >= 2) {
       auto source = std::make_unique<FileSource>(path, std::move(file), size);

@@ -13,6 +13,7 @@
 #include <system_error>
 
 #include "io/error.h"
+#include "io/file_path.h"
 
 namespace quickses::io {
 namespace {
@@ -21,14 +22,15 @@ namespace fs = std::filesystem;
 
 std::string read_raw_bytes(const std::string &path) {
   std::error_code error;
-  const fs::file_status status = fs::status(path, error);
+  const fs::path place = path_of(path);
+  const fs::file_status status = fs::status(place, error);
   if (status.type() == fs::file_type::not_found) fail_input("'" + path + "': no such file");
   if (status.type() == fs::file_type::directory) fail_input("'" + path + "' is a directory, not a file");
-  std::unique_ptr<std::FILE, int (*)(std::FILE *)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
+  std::unique_ptr<std::FILE, int (*)(std::FILE *)> file(open_stdio(place, "rb"), &std::fclose);
   if (!file) fail_input("'" + path + "' can't be opened: " + std::strerror(errno));
 
   std::string bytes;
-  const auto size = fs::file_size(path, error);
+  const auto size = fs::file_size(place, error);
   if (!error) bytes.reserve(static_cast<size_t>(size));
   // Read to the end rather than trust the size: pipes and devices have none.
   char buffer[1 << 16];
@@ -90,8 +92,7 @@ std::string unpack_gzip(std::string bytes, const std::string &name) {
 
 std::string read_file_bytes(const std::string &path) {
   std::string bytes = read_raw_bytes(path);
-  const std::string extension = fs::path(path).extension().string();
-  if ((extension == ".gz" || extension == ".GZ") && bytes.size() >= 2 && !has_gzip_magic(bytes.data(), bytes.size()))
+  if (lower_extension(path_of(path)) == ".gz" && bytes.size() >= 2 && !has_gzip_magic(bytes.data(), bytes.size()))
     fail_input("'" + path + "' is named .gz but is no gzip file");
   return unpack_gzip(std::move(bytes), path);
 }

@@ -5,10 +5,10 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 
 #include "io/atomic_file.h"
 #include "io/error.h"
+#include "io/file_path.h"
 #include "io/text.h"
 
 namespace quickses::io {
@@ -132,8 +132,7 @@ void write_stl(AtomicFile &file, const MeshView &mesh) {
 }  // namespace
 
 MeshFormat mesh_format_of(const std::string &path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  for (char &c : extension) c = to_lower(c);
+  const std::string extension = lower_extension(path_of(path));
   if (extension == ".obj") return MeshFormat::kObj;
   if (extension == ".ply") return MeshFormat::kPly;
   if (extension == ".stl") return MeshFormat::kStl;

@@ -9,6 +9,7 @@
 #include "io/elements.h"
 #include "io/error.h"
 #include "io/file_bytes.h"
+#include "io/file_path.h"
 #include "io/readers.h"
 #include "io/text.h"
 
@@ -88,7 +89,7 @@ RadiusTable find_radii(const std::string &name_or_path) {
   if (name_or_path == "quickses") return quickses_radii();
   if (name_or_path == "bondi") return bondi_radii();
   std::error_code error;
-  if (!std::filesystem::exists(name_or_path, error))
+  if (!std::filesystem::exists(path_of(name_or_path), error))
     fail_input("'" + name_or_path + "' is neither a set of radii (quickses, bondi) nor a file");
   return read_radii(name_or_path);
 }

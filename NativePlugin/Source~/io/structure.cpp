@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <gemmi/select.hpp>
 #include <initializer_list>
 #include <memory>
@@ -14,6 +13,7 @@
 
 #include "io/error.h"
 #include "io/file_bytes.h"
+#include "io/file_path.h"
 #include "io/text.h"
 
 namespace quickses::io {
@@ -24,13 +24,6 @@ struct AtomRef {
   const gemmi::Residue *residue;
   const gemmi::Atom *atom;
 };
-
-std::string lower_extension(std::filesystem::path path) {
-  std::string extension = path.extension().string();
-  for (char &c : extension) c = to_lower(c);
-  if (extension == ".gz") return lower_extension(path.replace_extension());
-  return extension;
-}
 
 bool format_of_content(std::string_view text, StructureFormat &format) {
   std::string_view line;
@@ -52,7 +45,7 @@ bool format_of_content(std::string_view text, StructureFormat &format) {
 }
 
 StructureFormat find_format(const std::string &path, const std::string &text) {
-  const std::string extension = lower_extension(path);
+  const std::string extension = lower_extension_of_content(path_of(path));
   if (extension == ".pdb" || extension == ".ent" || extension == ".brk") return StructureFormat::kPdb;
   if (extension == ".cif" || extension == ".mmcif") return StructureFormat::kMmcif;
   if (extension == ".pqr") return StructureFormat::kPqr;

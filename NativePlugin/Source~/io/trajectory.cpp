@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 
 #include "io/dcd_reader.h"
 #include "io/file_bytes.h"
+#include "io/file_path.h"
 #include "io/pdb_frames.h"
 #include "io/text.h"
 #include "io/trajectory_reader.h"
@@ -19,14 +19,8 @@ namespace {
 
 constexpr float kMaxCoordinate = 1e6f;  // Å, what the surface library takes
 
-std::string lower_extension(std::filesystem::path path) {
-  std::string extension = path.extension().string();
-  for (char &c : extension) c = to_lower(c);
-  return extension == ".gz" ? lower_extension(path.replace_extension()) : extension;
-}
-
 TrajectoryFormat find_format(const std::string &path, const ByteSource &source) {
-  const std::string extension = lower_extension(path);
+  const std::string extension = lower_extension_of_content(path_of(path));
   if (extension == ".dcd") return TrajectoryFormat::kDcd;
   if (extension == ".xtc") return TrajectoryFormat::kXtc;
   if (extension == ".pdb" || extension == ".ent" || extension == ".brk") return TrajectoryFormat::kPdb;

@@ -36,6 +36,7 @@ void SurfaceJob::begin(SurfaceRequest request) {
         throw Error(QSES_OUT_OF_MEMORY, std::string("the machine refused a thread: ") + e.what());
       }
     }
+    if (request.frame_budget_ms > 0) choosers_.reserve();  // here it may fail
     state_.frame_requested = request.settings.frame;
     waiting_ = std::move(request);
     if (running_) {
@@ -66,11 +67,13 @@ void SurfaceJob::announce(const SurfaceRequest &request) {
 void SurfaceJob::choose_levels(const SurfaceRequest &request) {
   ladder_count_ = request.ladder.count;
   first_level_ = 0;
+  chooser_ = nullptr;
   if (request.frame_budget_ms <= 0) return;
   const qses_settings &s = request.settings;
   const LevelChooser::Subject subject = {request.atoms->count, s.surface,    s.method,      s.probe_radius,
                                          s.relaxation_steps,   s.slice_size, request.ladder};
-  first_level_ = chooser_.choose(subject, request.frame_budget_ms);
+  chooser_ = &choosers_.of(s.series);
+  first_level_ = chooser_->choose(subject, request.frame_budget_ms);
 }
 
 void SurfaceJob::work() {
@@ -121,11 +124,10 @@ void SurfaceJob::run(const SurfaceRequest &request) {
   } catch (const Cancelled &) {
     throw;  // says nothing about the cost
   } catch (...) {
-    if (request.frame_budget_ms > 0) chooser_.record_failure();
+    if (chooser_) chooser_->record_failure();
     throw;
   }
-  if (request.frame_budget_ms > 0)
-    chooser_.record(std::chrono::duration<double, std::milli>(Clock::now() - start).count(), shared_ms_);
+  if (chooser_) chooser_->record(std::chrono::duration<double, std::milli>(Clock::now() - start).count(), shared_ms_);
 }
 
 void SurfaceJob::compute(SurfaceRequest request) {

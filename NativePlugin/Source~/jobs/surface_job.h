@@ -3,7 +3,7 @@
 // replacing older ones, and the finished meshes handed over without copying.
 #pragma once
 
-#include "jobs/level_chooser.h"
+#include "jobs/series_choosers.h"
 #include "surface/engine.h"
 
 #include <atomic>
@@ -86,7 +86,8 @@ class SurfaceJob : private LevelSink {
   bool cancelled_compute_ = false;                  // while a compute waits for a job to end
   uint32_t levels_finished_ = 0, level_count_ = 0;  // of the job
   uint32_t first_level_ = 0, ladder_count_ = 0;     // where they are in the ladder
-  LevelChooser chooser_;                            // like the next: of the thread that computes
+  SeriesChoosers choosers_;                         // like the next two: of the thread that computes
+  LevelChooser *chooser_ = nullptr;                 // of the job's series; null without a frame budget
   double shared_ms_ = 0;                            // of the job's cost, what all levels share
   Level held_, ready_;
   int writing_ = kNoSlot;

@@ -101,8 +101,6 @@ class CudaExecutor {
 
   explicit CudaExecutor(int device) : device_(device) {
     const DeviceGuard guard(device);
-    size_t free = 0;
-    check_cuda(cudaMemGetInfo(&free, &device_bytes_), "cudaMemGetInfo");
     int value = 0;
     check_cuda(cudaDeviceGetAttribute(&value, cudaDevAttrMultiProcessorCount, device), "cudaDeviceGetAttribute");
     multiprocessors_ = static_cast<unsigned>(value);
@@ -124,7 +122,6 @@ class CudaExecutor {
 
   int device() const { return device_; }
   unsigned multiprocessors() const { return multiprocessors_; }
-  uint64_t device_bytes() const { return device_bytes_; }
   cudaStream_t stream() const { return stream_; }
   // Rewinding it is safe while kernels still use what was there: whoever gets the memory next runs after them.
   Arena<DeviceMemory> &arena() { return arena_; }
@@ -296,7 +293,6 @@ class CudaExecutor {
 
   int device_;
   unsigned multiprocessors_ = 0;
-  size_t device_bytes_ = 0;
   cudaStream_t stream_ = nullptr;
   PinnedBuffer staging_;
   Arena<DeviceMemory> arena_;

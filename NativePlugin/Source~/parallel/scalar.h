@@ -39,6 +39,15 @@ QSES_FN float quotient(float a, float b) {
   return a / b;
 #endif
 }
+// A product that is rounded before anything is added to it. Left alone, the GPU's compiler would make one operation of
+// the two, which rounds otherwise than those of the CPU do.
+QSES_FN double rounded_product(double a, double b) {
+#if defined(__CUDA_ARCH__)
+  return __dmul_rn(a, b);
+#else
+  return a * b;
+#endif
+}
 QSES_FN float absolute(float x) { return fabsf(x); }
 QSES_FN float maximum(float a, float b) { return a > b ? a : b; }
 QSES_FN float minimum(float a, float b) { return a < b ? a : b; }

@@ -146,6 +146,7 @@ MeshMemoryView make_exact_mesh(R &run, const BrickSet &bricks, bool together) {
       run.memory.allocate_mesh(executor, counts.vertices, counts.triangles, run.shape, run.purpose,
                                work * (together ? bricks.count : std::min(bricks.count, kRoomySlice)));
   if (mesh.on_host && together && bricks.count > 0) throw MemoryRefused("the mesh does not fit beside the work");
+  const auto end_of_mesh = executor.arena().mark();
   VertexStarts starts{run.settings.relaxation_steps > 0, nullptr, run.table.ring};
   const auto emit = [&](double begin, double end, bool with_triangles) {
     const Slicing slicing = per_slice(mesh.on_host ? emission_bytes_per_brick(run, run.facts->size, true) : work);
@@ -181,6 +182,7 @@ MeshMemoryView make_exact_mesh(R &run, const BrickSet &bricks, bool together) {
     }
   }
   if (!mesh.on_host) paint_vertices(executor, run.appearance, mesh.view, mesh.vertices);
+  executor.arena().rewind(end_of_mesh);
   return mesh;
 }
 

@@ -39,6 +39,7 @@ MeshMemoryView build_grid_surface(R &run) {
   const MeshMemoryView mesh =
       run.memory.allocate_mesh(executor, counts.vertices, counts.triangles, run.shape, run.purpose,
                                counts.vertices * sizeof(RingSum) + executor.arena().available() / 64);
+  const auto end_of_mesh = executor.arena().mark();
   run.timer.begin("projection");
   for_each_slice(run, bricks.count, per_slice, 0.5, 0.8,
                  [&](BrickRange slice) { emit_grid_vertices(executor, field, layout, slice, mesh.view); });
@@ -51,6 +52,7 @@ MeshMemoryView build_grid_surface(R &run) {
   smooth_laplacian(executor, mesh.view, counts, run.parameters.spacing, run.settings.relaxation_steps, sums);
   compute_normals(executor, mesh.view, counts, run.parameters.spacing, sums);
   paint_vertices(executor, run.appearance, mesh.view, mesh.vertices);
+  executor.arena().rewind(end_of_mesh);
   return mesh;
 }
 

@@ -16,14 +16,15 @@ class MemoryPlan {
 
   // All at once, as without a budget; prepared: bytes that the features keep, peak: most that they took.
   double whole(double prepared, double peak) const {
-    double level = brick_bytes() + (k_.exact ? 0 : 64 * f_.size.bricks);
+    double making = beside_mesh();
     if (Executor::kIsCuda && k_.exact)
-      level +=
+      making +=
           f_.size.bricks * CandidatesOf<Executor>::emission_bytes(
                                k_.parameters, candidates(), f_.size.vertices / bricks(), f_.size.leaves / bricks()) +
           CandidatesOf<Executor>::kSpareBytes;
+    double level = brick_bytes() + (k_.exact ? 0 : 64 * f_.size.bricks) + std::max(making, component_bytes());
     if (Executor::kIsCuda) level += mesh_bytes();
-    return std::max(peak, prepared + level + beside_mesh() + mask_bytes());
+    return std::max(peak, prepared + level + mask_bytes());
   }
 
   // With as little as possible, in pieces.
@@ -41,7 +42,7 @@ class MemoryPlan {
     } else {
       kept += 64 * f_.size.bricks;
     }
-    double level = brick_bytes() + beside_mesh() + (Executor::kIsCuda ? 0 : mask_bytes());
+    double level = brick_bytes() + std::max(beside_mesh(), component_bytes()) + mask_bytes();
     if (Executor::kIsCuda)
       level = brick_bytes() + (k_.masked ? (f_.size.vertices + f_.size.triangles) / 4 : 0) + slice_bytes();
     return std::max(most, kept + level) * 1.02 + 32768;
@@ -74,6 +75,8 @@ class MemoryPlan {
     if (!k_.exact) return sizeof(RingSum) * f_.size.vertices;
     return k_.relaxation_steps > 1 ? (sizeof(RingSum) + sizeof(glm::vec3)) * f_.size.vertices : 0.0;
   }
+  // Where there is no room for them, the GPU leaves the components to the CPU.
+  double component_bytes() const { return k_.components ? kComponentBytes * f_.size.vertices : 0.0; }
   // The mesh that is handed out besides the whole one; on the CPU it is the whole one that is work.
   double mask_bytes() const { return k_.masked ? mesh_bytes() + (f_.size.vertices + f_.size.triangles) / 4 : 0.0; }
   // The smallest slices, of bricks much fuller than the mean.

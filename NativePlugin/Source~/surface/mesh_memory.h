@@ -5,6 +5,7 @@
 
 #include "parallel/cpu_executor.h"
 #include "parallel/growing_buffer.h"
+#include "surface/components.h"
 #include "surface/mesh_arrays.h"
 #include "surface/run.h"
 
@@ -22,6 +23,8 @@ inline void describe_mesh(const MeshMemoryView &built, const MeshView &host, con
   mesh->frame = settings.frame;
   mesh->vertex_count = static_cast<uint32_t>(built.vertices);
   mesh->triangle_count = static_cast<uint32_t>(built.triangles);
+  mesh->component_count = static_cast<uint32_t>(built.components.size);
+  mesh->components = built.components.data;
   if (built.vertices == 0) return;
   mesh->positions = host.positions;
   mesh->normals = host.normals;
@@ -81,7 +84,10 @@ template <class Source>
 class HostSide {
  public:
   std::shared_ptr<AtomSet> make_atoms(size_t count) { return atoms_.make(count); }
-  void use_slot(int slot) { slot_ = slot; }
+  void use_slot(int slot) {
+    slot_ = slot;
+    components_.use_slot(slot);
+  }
   // Room for the mesh that is handed out: as much as for any before, since which slot gets the finest level differs
   // from frame to frame.
   void *reserve_mesh(size_t bytes) {
@@ -92,9 +98,10 @@ class HostSide {
       return mesh_[slot_].reserve(largest_ = bytes);
     }
   }
+  ComponentMemory &components() { return components_; }
   // Bytes of all.
   uint64_t bytes() const {
-    uint64_t sum = atoms_.bytes();
+    uint64_t sum = atoms_.bytes() + components_.bytes();
     for (const auto &slot : mesh_) sum += slot.size();
     return sum;
   }
@@ -102,6 +109,7 @@ class HostSide {
  private:
   AtomPool<BufferedAtoms<GrowingBuffer<Source>>> atoms_;
   GrowingBuffer<Source> mesh_[kMeshSlots];
+  ComponentMemory components_;
   size_t largest_ = 0;  // bytes of a mesh
   int slot_ = 0;
 };
@@ -141,6 +149,11 @@ class MeshMemory<CpuExecutor> {
   void save(CpuExecutor &, const MeshMemoryView &mesh, const MeshView &part, size_t vertices, size_t triangles) {
     for_each_array(mesh.view, part, vertices, triangles,
                    [](void *to, const void *from, size_t bytes) { std::memcpy(to, from, bytes); });
+  }
+
+  void find_components(CpuExecutor &executor, float spacing, MeshPurpose, MeshMemoryView *mesh) {
+    mesh->components = quickses::find_components(executor, mesh->view, MeshCounts{mesh->vertices, mesh->triangles},
+                                                 spacing, host_.components());
   }
 
   void finish(const MeshMemoryView &built, const qses_settings &settings, qses_mesh *mesh) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "parallel/cuda_executor.cuh"
+#include "surface/host_components.h"
 #include "surface/mesh_memory.h"
 
 namespace quickses {
@@ -23,7 +24,7 @@ class MeshMemory<CudaExecutor> {
   // What was allocated beside a mesh on the host, or as one to be made into another, is given up.
   void forget_spills() { spilled_ = 0; }
   uint64_t host_bytes() const {
-    uint64_t sum = host_.bytes();
+    uint64_t sum = host_.bytes() + host_components_.bytes();
     for (const PinnedBuffer &spill : spill_) sum += spill.size();
     return sum;
   }
@@ -50,8 +51,7 @@ class MeshMemory<CudaExecutor> {
         mesh.on_host = true;
       }
     }
-    if (mesh.on_host)
-      mesh.memory = purpose == MeshPurpose::kDelivered ? host_.reserve_mesh(arrays.bytes()) : spill(arrays.bytes());
+    if (mesh.on_host) mesh.memory = reserve_on_host(arrays.bytes(), purpose);
     mesh.view = arrays.view(mesh.memory);
     return mesh;
   }
@@ -69,6 +69,24 @@ class MeshMemory<CudaExecutor> {
     for_each_array(mesh.view, part, vertices, triangles, [&](void *to, const void *from, size_t bytes) {
       executor.download(static_cast<char *>(to), static_cast<const char *>(from), bytes);
     });
+  }
+
+  // On the device; where its memory does not suffice, by the CPU on the host, where the mesh then stays. The numbers
+  // are the same.
+  void find_components(CudaExecutor &executor, float spacing, MeshPurpose purpose, MeshMemoryView *mesh) {
+    const MeshCounts counts{mesh->vertices, mesh->triangles};
+    if (!mesh->on_host) {
+      const auto mark = executor.arena().mark();
+      try {
+        mesh->components = quickses::find_components(executor, mesh->view, counts, spacing, host_.components());
+        return;
+      } catch (const MemoryRefused &) {
+        executor.arena().rewind(mark);
+      }
+      move_to_host(executor, purpose, mesh);
+    }
+    executor.wait();
+    mesh->components = host_components_.find(mesh->view, counts, spacing, host_.components());
   }
 
   void finish(const MeshMemoryView &built, const qses_settings &settings, qses_mesh *mesh) {
@@ -95,6 +113,20 @@ class MeshMemory<CudaExecutor> {
   }
 
  private:
+  void *reserve_on_host(size_t bytes, MeshPurpose purpose) {
+    return purpose == MeshPurpose::kDelivered ? host_.reserve_mesh(bytes) : spill(bytes);
+  }
+
+  // The values are there after the next wait.
+  void move_to_host(CudaExecutor &executor, MeshPurpose purpose, MeshMemoryView *mesh) {
+    const MeshArrays arrays(mesh->vertices, mesh->triangles, mesh->shape);
+    void *const memory = reserve_on_host(arrays.bytes(), purpose);
+    executor.download(static_cast<char *>(memory), static_cast<const char *>(mesh->memory), arrays.bytes());
+    mesh->memory = memory;
+    mesh->view = arrays.view(memory);
+    mesh->on_host = true;
+  }
+
   // At most the unmasked mesh, sums and starts at a time.
   void *spill(size_t bytes) {
     constexpr size_t kSpills = sizeof spill_ / sizeof spill_[0];
@@ -106,6 +138,7 @@ class MeshMemory<CudaExecutor> {
   HostSide<PinnedMemory> host_;
   PinnedBuffer spill_[4];
   size_t spilled_ = 0;
+  HostComponents host_components_;
   void *table_ = nullptr;
 };
 

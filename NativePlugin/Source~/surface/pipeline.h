@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The whole order on one page: atoms -> neighbour grid -> solvent features -> bricks -> field -> marching cubes ->
-// projection -> relaxation -> measures. A template over the executor: cpu_engine.cpp and cuda_engine.cu make one of
-// each.
+// projection -> relaxation -> measures and components. A template over the executor: cpu_engine.cpp and cuda_engine.cu
+// make one of each.
 #pragma once
 
 #include "surface/atoms.h"
@@ -291,6 +291,7 @@ class SurfacePipeline : public SurfaceEngine {
     WorkKind kind;
     kind.exact = settings.method == QSES_METHOD_EXACT;
     kind.masked = p.appearance.visible != nullptr;
+    kind.components = settings.components != 0;
     kind.relaxation_steps = settings.relaxation_steps;
     kind.shape = p.shape;
     kind.parameters = p.parameters;
@@ -345,9 +346,15 @@ class SurfacePipeline : public SurfaceEngine {
     } else {
       mesh.bounds = find_bounds(executor_, mesh.view, counts);
     }
+    if (settings.components) {
+      timer_.begin("components");
+      memory_.find_components(executor_, spacing, run.purpose, &mesh);
+    }
     if (!p.appearance.visible || mesh.vertices == 0) return mesh;
     timer_.begin("visible_mask");
+    const Span<const qses_component> components = mesh.components;
     mesh = drop_hidden(run, mesh);
+    mesh.components = components;
     mesh.bounds = find_bounds(executor_, mesh.view, MeshCounts{mesh.vertices, mesh.triangles});
     return mesh;
   }

@@ -54,6 +54,7 @@ struct MeshMemoryView {
   void *memory = nullptr;
   bool on_host = false;  // CUDA: it did not fit on the device; it is filled slab by slab
   Bounds bounds{};
+  Span<const qses_component> components{};  // in host memory
 };
 
 // What a mesh is for: to be handed out, or to be made into another one.

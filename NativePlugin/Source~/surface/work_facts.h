@@ -27,7 +27,7 @@ struct WorkFacts {
 
 // What the plan depends on besides.
 struct WorkKind {
-  bool exact = true, masked = false;
+  bool exact = true, masked = false, components = false;
   uint32_t relaxation_steps = 1;
   MeshShape shape{};
   SurfaceParameters parameters{};

@@ -70,6 +70,9 @@ namespace QuickSes
         /// <summary>Whether it plays, or will as soon as it is loaded.</summary>
         public bool IsPlaying => _isPlaying;
 
+        /// <summary>Whether the clock stands since what it points at is not read yet.</summary>
+        internal bool IsWaiting => _isWaiting;
+
         /// <summary>0 until it is loaded.</summary>
         public int FrameCount => IsReady ? _head.FrameCount : 0;
 

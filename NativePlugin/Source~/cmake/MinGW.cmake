@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: MIT
+# Toolchain: Windows programs of x86-64 by MinGW-w64 (Debian: g++-mingw-w64-x86-64-posix), run by Wine where a test needs to.
+set(CMAKE_SYSTEM_NAME Windows)
+set(CMAKE_SYSTEM_PROCESSOR x86_64)
+
+set(CMAKE_C_COMPILER x86_64-w64-mingw32-gcc-posix)
+set(CMAKE_CXX_COMPILER x86_64-w64-mingw32-g++-posix)
+set(CMAKE_RC_COMPILER x86_64-w64-mingw32-windres)
+find_program(QUICKSES_WINE NAMES wine64 wine PATHS /usr/lib/wine DOC "Runs Windows programs")
+if(QUICKSES_WINE)
+  set(CMAKE_CROSSCOMPILING_EMULATOR "${QUICKSES_WINE}")
+endif()
+
+set(CMAKE_FIND_ROOT_PATH /usr/x86_64-w64-mingw32)
+set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
+set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
+
+# Everything goes into the one file, and the same sources give the same file.
+foreach(_kind IN ITEMS EXE SHARED MODULE)
+  set(CMAKE_${_kind}_LINKER_FLAGS_INIT "-static -Wl,--no-insert-timestamp")
+endforeach()

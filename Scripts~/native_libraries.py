@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: MIT
+"""What a native library of the package may need and must offer: for check-package. Reads with readelf and objdump."""
+
+import os
+import re
+import subprocess
+
+NEWEST_GLIBC = (2, 35)  # Ubuntu 22.04
+
+# Of the C library (with the names it had before 2.34), and the unwinder, which is in every process that has C++.
+LINUX_SYSTEM = {"libc.so.6", "libm.so.6", "libdl.so.2", "libpthread.so.0", "librt.so.1", "ld-linux-x86-64.so.2",
+                "libgcc_s.so.1"}
+LINUX_NEEDS = {
+    "libquickses.so": LINUX_SYSTEM | {"libquickses_tbb.so"},
+    "libquickses_tbb.so": LINUX_SYSTEM | {"libstdc++.so.6"},
+}
+# Parts of every Windows from 10 on. (Not those that come with compilers: libgcc_s, libstdc++, vcruntime, msvcp, vcomp.)
+WINDOWS_SYSTEM = re.compile(
+    r"(advapi32|bcrypt|kernel32|msvcrt|ntdll|ole32|shell32|ucrtbase|user32|ws2_32|api-ms-win-[a-z0-9-]+)\.dll")
+
+
+def declared_functions(header):
+    """The functions that quickses.h declares for export."""
+    with open(header, encoding="utf-8") as file:
+        return set(re.findall(r"QSES_API [^;(]*[ *](qses_[a-z0-9_]+)\(", file.read()))
+
+
+def output_of(*command):
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env={**os.environ, "LC_ALL": "C"})
+    return done.stdout if done.returncode == 0 else ""
+
+
+def check_exports(exported, header):
+    declared = declared_functions(header)
+    if not declared:
+        return [f"no declarations found in {header}"]
+    return ([f"exports {name}, which the header doesn't declare" for name in sorted(exported - declared)] +
+            [f"doesn't export {name}, which the header declares" for name in sorted(declared - exported)])
+
+
+def check_glibc(text):
+    faults = []
+    for version in sorted(set(re.findall(r"Name: GLIBC_(\S+)", text))):
+        numbers = tuple(int(word) for word in version.split(".")) if re.fullmatch(r"[0-9.]+", version) else (99,)
+        if numbers > NEWEST_GLIBC:
+            faults.append(f"needs GLIBC_{version}; {'.'.join(map(str, NEWEST_GLIBC))} is the newest allowed")
+    return faults
+
+
+def check_elf(path, name, beside, header):
+    """name: as in the package; beside: names of the files of its folder; header: of the C API, or None to skip exports."""
+    text = output_of("readelf", "-W", "-h", "-d", "-V", path)
+    if not re.search(r"Class: +ELF64\n(.*\n)*.*Type: +DYN(.*\n)+.*Machine: +Advanced Micro Devices X86-64", text):
+        return ["is no shared library of Linux on x86-64"]
+    faults = []
+    needed = re.findall(r"\(NEEDED\) +Shared library: \[(.*?)\]", text)
+    allowed = LINUX_NEEDS.get(name, LINUX_SYSTEM)
+    faults += [f"needs {library}" for library in needed if library not in allowed]
+    faults += [f"needs {library}, which isn't beside it" for library in needed
+               if library.startswith("libquickses") and library not in beside]
+    soname = re.findall(r"\(SONAME\) +Library soname: \[(.*?)\]", text)
+    if soname != [name]:
+        faults.append(f"has the soname {soname[0] if soname else '(none)'}, not its name")
+    for paths in re.findall(r"\((?:RPATH|RUNPATH)\).*\[(.*?)\]", text):
+        faults += [f"looks for libraries in {folder or 'the current folder'}" for folder in paths.split(":")
+                   if folder != "$ORIGIN"]
+    if any(library.startswith("libquickses") for library in needed) and "[$ORIGIN]" not in text:
+        faults.append("doesn't look for libraries in its own folder ($ORIGIN)")
+    faults += check_glibc(text)
+    if header:
+        symbols = output_of("readelf", "-W", "--dyn-syms", path)
+        exported = re.findall(r"(?m)^ +\d+: +\S+ +\S+ +\S+ +(?:GLOBAL|WEAK|UNIQUE) +\S+ +(?!UND)\S+ +([^\s@]+)", symbols)
+        faults += check_exports(set(exported), header)
+    return faults
+
+
+def check_pe(path, header):
+    text = output_of("objdump", "-p", path)
+    if "file format pei-x86-64" not in text:
+        return ["is no library of Windows on x86-64"]
+    faults = [f"needs {library}" for library in re.findall(r"DLL Name: (\S+)", text)
+              if not WINDOWS_SYSTEM.fullmatch(library.lower())]
+    table = re.search(r"\[Ordinal/Name Pointer\] Table.*\n((?:\s*\[ *\d+\].*\n)*)", text)
+    exported = re.findall(r"(?m)([^\s\]]+)$", table.group(1)) if table else []
+    return faults + check_exports(set(exported), header)

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+using NUnit.Framework;
+using QuickSes.EngineDouble;
+using System.Collections;
+using Unity.Collections;
+using UnityEngine;
+using UnityEngine.TestTools;
+
+namespace QuickSes.Tests
+{
+    /// <summary>Reloads of the domain, play mode without one, and the end of the program.</summary>
+    internal sealed class DomainTest
+    {
+        private Vector3[] _positions;
+        private float[] _radii;
+
+        [SetUp]
+        public void SetUp()
+        {
+            TestMolecules.Blob(300, 1, out _positions, out _radii);
+            Engine.BeforeReload += SurfaceScheduler.OnDomainUnloads; // as the Editor calls it
+        }
+
+        [UnityTest]
+        public IEnumerator AReloadDuringAJobAsksForTheAtomsAgain()
+        {
+            for (int frames = 0; frames < 5; ++frames)
+            {
+                var rig = new SurfaceRig();
+                rig.Surface.SetAtoms(_positions, _radii);
+                yield return SurfaceRig.Frames(frames);
+                Engine.Reload();
+                Assert.That(SurfaceScheduler.ContextCount, Is.EqualTo(0));
+                Assert.That(Engine.LiveObjects<Mesh>(), Is.EqualTo(1), "the new one; the old one was not left behind");
+                int requests = 0;
+                rig.Surface.AtomsRequested += () =>
+                {
+                    ++requests;
+                    rig.Surface.SetAtoms(_positions, _radii);
+                };
+                yield return SurfaceRig.Until(() => requests > 0 && !rig.Surface.IsBusy);
+                Assert.That(requests, Is.EqualTo(1));
+                SurfaceMeshes.AssertIsSurfaceOf(rig.Surface.Mesh, _positions, _radii, 0.5f);
+                rig.Dispose();
+                Assert.That(Engine.LiveObjects<Mesh>(), Is.EqualTo(0));
+            }
+        }
+
+        [UnityTest]
+        public IEnumerator AReloadKeepsTheSettings()
+        {
+            var rig = new SurfaceRig();
+            rig.Surface.ProbeRadius = 2;
+            rig.Surface.Levels = new[] { 3f };
+            Engine.Reload();
+            Assert.That(rig.Surface.ProbeRadius, Is.EqualTo(2));
+            Assert.That(rig.Surface.Levels, Is.EqualTo(new[] { 3f }));
+            yield return null;
+            rig.Dispose();
+        }
+
+        [UnityTest]
+        public IEnumerator EditModeShowsSurfacesToo()
+        {
+            Engine.EnterEditMode();
+            var rig = new SurfaceRig();
+            rig.Surface.SetAtoms(_positions, _radii);
+            yield return rig.Settle();
+            SurfaceMeshes.AssertIsSurfaceOf(rig.Surface.Mesh, _positions, _radii, 0.5f);
+            rig.Dispose();
+            Assert.That(Engine.LiveObjects<Mesh>(), Is.EqualTo(0));
+        }
+
+        [UnityTest]
+        public IEnumerator PlayModeWithoutReloadBeginsAfresh()
+        {
+            Engine.EnterEditMode();
+            var edited = new SurfaceRig();
+            edited.Surface.SetAtoms(_positions, _radii);
+            yield return SurfaceRig.Frames(3);
+            Engine.EnterPlayModeWithoutReload(typeof(MolecularSurface).Assembly);
+            Assert.That(SurfaceScheduler.ContextCount, Is.EqualTo(0));
+            Assert.That(SurfaceScheduler.WaitingCount, Is.EqualTo(0));
+            var played = new SurfaceRig();
+            played.Surface.SetAtoms(_positions, _radii);
+            yield return played.Settle();
+            SurfaceMeshes.AssertIsSurfaceOf(played.Surface.Mesh, _positions, _radii, 0.5f);
+            played.Dispose();
+        }
+
+        [UnityTest]
+        public IEnumerator PlayModeWithoutReloadOfTheSceneEither()
+        {
+            var rig = new SurfaceRig();
+            rig.Surface.SetAtoms(_positions, _radii);
+            yield return SurfaceRig.Frames(3);
+            SurfaceScheduler.ReleaseContexts(); // what SubsystemRegistration does; the components stay as they are
+            yield return rig.Settle();
+            SurfaceMeshes.AssertIsSurfaceOf(rig.Surface.Mesh, _positions, _radii, 0.5f);
+            rig.Dispose();
+        }
+
+        [UnityTest]
+        public IEnumerator QuittingFreesEverything()
+        {
+            Engine.EnterPlayModeWithoutReload(typeof(MolecularSurface).Assembly);
+            int blocks = NativeHeap.LiveCount(Allocator.Persistent);
+            var rig = new SurfaceRig();
+            rig.Surface.SetAtoms(_positions, _radii);
+            yield return SurfaceRig.Frames(4);
+            Engine.Quit();
+            Assert.That(SurfaceScheduler.ContextCount, Is.EqualTo(0));
+            Assert.That(Engine.LiveObjects<Mesh>(), Is.EqualTo(0));
+            Assert.That(NativeHeap.LiveCount(NativeHeap.Meshes), Is.EqualTo(0));
+            Assert.That(NativeHeap.LiveCount(Allocator.Persistent), Is.EqualTo(blocks));
+        }
+    }
+}

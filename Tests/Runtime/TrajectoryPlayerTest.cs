@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: MIT
+using NUnit.Framework;
+using System.Collections;
+using System.Linq;
+using UnityEngine;
+using UnityEngine.TestTools;
+using UnityEngine.TestTools.Constraints;
+using Is = UnityEngine.TestTools.Constraints.Is;
+
+namespace QuickSes.Tests
+{
+    /// <summary>Playing, by a clock that is the test's.</summary>
+    public sealed class TrajectoryPlayerTest
+    {
+        private PlayerFixture _playing;
+
+        private TrajectoryPlayer Player => _playing.Player;
+
+        [SetUp]
+        public void MakePlayer()
+        {
+            _playing = new PlayerFixture();
+            Player.FramesPerSecond = 10;
+        }
+
+        [TearDown]
+        public void DestroyPlayer() => _playing.Dispose();
+
+        private void LoadEnsemble(int frames)
+        {
+            _playing.UseEnsemble(frames);
+            _playing.Load();
+        }
+
+        [Test]
+        public void ModelsOfTheStructuresFileAreFrames()
+        {
+            LoadEnsemble(5);
+            Assert.That(Player.FrameCount, Is.EqualTo(5));
+            Assert.That(Player.IsReady, Is.True);
+            Assert.That(Player.IsLoading || Player.IsPlaying, Is.False);
+            Assert.That(_playing.Loads, Is.EqualTo(1));
+            _playing.AssertShows(0);
+            for (int frame = 4; frame >= 0; --frame)
+            {
+                Player.Frame = frame;
+                _playing.WaitUntilShown(frame);
+                _playing.AssertShows(frame);
+            }
+            Assert.That(_playing.Shown, Is.EqualTo(new[] { 0, 4, 3, 2, 1, 0 }));
+            Assert.That(_playing.Failures, Is.Empty);
+        }
+
+        [Test]
+        public void AtomsAreThereBeforeTheFirstFrame()
+        {
+            _playing.UseEnsemble(3);
+            Player.StructureSource.Model = 2;
+            Assert.That(Player.Load(), Is.True);
+            Assert.That(Player.ShownFrame, Is.EqualTo(-1));
+            Assert.That(Player.Structure.Model, Is.EqualTo(2));
+            _playing.AssertAt(TestFrames.Frame(1), 0);
+        }
+
+        [Test]
+        public void LoopGoesRound()
+        {
+            LoadEnsemble(3);
+            Player.Play();
+            Assert.That(Player.IsPlaying, Is.True);
+            for (int step = 0; step < 7; ++step)
+                _playing.Pass(0.1f);
+            Assert.That(_playing.Shown, Is.EqualTo(new[] { 0, 1, 2, 0, 1, 2, 0, 1 }));
+            Assert.That(_playing.Loops, Is.EqualTo(2));
+            Assert.That(_playing.Finishes, Is.EqualTo(0));
+            _playing.AssertShows(1);
+        }
+
+        [Test]
+        public void LoopGoesRoundBackwards()
+        {
+            LoadEnsemble(3);
+            Player.FramesPerSecond = -10;
+            Player.Play();
+            for (int step = 0; step < 5; ++step)
+                _playing.Pass(0.1f);
+            Assert.That(_playing.Shown, Is.EqualTo(new[] { 0, 2, 1, 0, 2, 1 }));
+            Assert.That(_playing.Loops, Is.EqualTo(2));
+        }
+
+        [Test]
+        public void PingPongGoesThereAndBack()
+        {
+            LoadEnsemble(3);
+            Player.Mode = PlaybackMode.PingPong;
+            Player.Play();
+            for (int step = 0; step < 5; ++step)
+                _playing.Pass(0.1f);
+            Assert.That(_playing.Shown, Is.EqualTo(new[] { 0, 1, 2, 1, 0, 1 }));
+            Assert.That(_playing.Loops, Is.EqualTo(2));
+        }
+
+        [Test]
+        public void OnceStopsAtTheEndAndPlaysAgain()
+        {
+            LoadEnsemble(3);
+            Player.Mode = PlaybackMode.Once;
+            Player.Play();
+            for (int step = 0; step < 5; ++step)
+                _playing.Pass(0.1f);
+            Assert.That(_playing.Shown, Is.EqualTo(new[] { 0, 1, 2 }));
+            Assert.That(_playing.Finishes, Is.EqualTo(1));
+            Assert.That(Player.IsPlaying, Is.False);
+            Player.Play();
+            _playing.Pass(0);
+            _playing.Pass(0.1f);
+            Assert.That(_playing.Shown, Is.EqualTo(new[] { 0, 1, 2, 0, 1 }));
+        }
+
+        [Test]
+        public void PauseStaysAndStopRewinds()
+        {
+            LoadEnsemble(5);
+            Player.Play();
+            _playing.Pass(0.2f);
+            Player.Pause();
+            _playing.Pass(10);
+            Assert.That(Player.Frame, Is.EqualTo(2).Within(1e-6));
+            Player.Play();
+            _playing.Pass(0.1f);
+            _playing.AssertShows(3);
+            Player.Stop();
+            Assert.That(Player.IsPlaying, Is.False);
+            _playing.WaitUntilShown(0);
+            _playing.AssertShows(0);
+        }
+
+        [Test]
+        public void PlacesOutOfRangeAreClamped()
+        {
+            LoadEnsemble(5);
+            Player.Frame = 100;
+            Assert.That(Player.Frame, Is.EqualTo(4));
+            Assert.That(Player.NormalizedTime, Is.EqualTo(1));
+            Player.Frame = -1;
+            Assert.That(Player.Frame, Is.EqualTo(0));
+            Player.NormalizedTime = 0.5;
+            _playing.WaitUntilShown(2);
+            _playing.AssertShows(2);
+            Assert.That(() => Player.FramesPerSecond = float.NaN, Throws.TypeOf<System.ArgumentOutOfRangeException>());
+        }
+
+        [Test]
+        public void PlaceIsKeptForWhatIsLoadedNext()
+        {
+            _playing.UseEnsemble(5);
+            Player.Frame = 3;
+            Assert.That(Player.Load(), Is.True);
+            _playing.WaitUntilShown(3);
+            Assert.That(_playing.Shown, Is.EqualTo(new[] { 3 }));
+            Player.enabled = false;
+            Assert.That(Player.IsReady, Is.False);
+            Assert.That(Player.Structure, Is.Null);
+            Player.enabled = true;
+            _playing.TickUntil(() => Player.ShownFrame >= 0, "it is back");
+            _playing.AssertShows(3);
+        }
+
+        [Test]
+        public void FramesInBetweenAreInterpolated()
+        {
+            LoadEnsemble(3);
+            Player.Interpolate = true;
+            Player.Frame = 1.25;
+            _playing.WaitUntilShown(1);
+            Vector3[] expected = TestFrames.Frame(1);
+            for (int i = 0; i < expected.Length; ++i)
+                expected[i] = 0.75f * expected[i] + 0.25f * TestFrames.Position(2, i);
+            _playing.AssertAt(expected, 1e-5f);
+            Player.Interpolate = false;
+            _playing.Pass(0);
+            _playing.AssertShows(1);
+        }
+
+        [Test]
+        public void NothingIsSentWhileNothingMoves()
+        {
+            LoadEnsemble(3);
+            Player.Play();
+            _playing.Pass(0.01f);
+            Vector3 elsewhere = new Vector3(100, 0, 0);
+            _playing.Surface.SetPositions(Enumerable.Repeat(elsewhere, _playing.Surface.AtomCount).ToArray());
+            _playing.Pass(0.01f);
+            Assert.That(_playing.Positions[0], Is.EqualTo(elsewhere));
+            _playing.Pass(0.09f);
+            _playing.AssertShows(1);
+        }
+
+        [Test]
+        public void AtomsComeAgainIfTheSurfaceWasGivenOthers()
+        {
+            LoadEnsemble(3);
+            _playing.Surface.SetAtoms(new Vector3[2], new float[] { 1, 1 });
+            _playing.Pass(0);
+            _playing.AssertShows(0);
+            Assert.That(_playing.Surface.AtomCount, Is.EqualTo(TestFrames.WithoutWater.Length));
+        }
+
+        [Test]
+        public void HandlersMayUnload()
+        {
+            LoadEnsemble(3);
+            Player.FrameShown += _ => Player.Unload();
+            Player.Frame = 1;
+            _playing.TickUntil(() => !Player.IsReady, "it is unloaded");
+            Assert.That(Player.FrameCount, Is.EqualTo(0));
+            Assert.That(Player.ShownFrame, Is.EqualTo(-1));
+            Player.Tick(1);
+        }
+
+        [Test]
+        public void PlayingMakesNoGarbage()
+        {
+            LoadEnsemble(40);
+            Player.Interpolate = true;
+            Player.PrefetchFrames = 8;
+            _playing.Load();
+            Player.Play();
+            TestDelegate play = () =>
+            {
+                for (int tick = 0; tick < 200; ++tick)
+                    Player.Tick(0.04f);
+            };
+            play();
+            int before = _playing.Shown.Count;
+            Assert.That(play, Is.Not.AllocatingGCMemory());
+            Assert.That(_playing.Shown.Count, Is.GreaterThan(before));
+        }
+
+        [UnityTest]
+        public IEnumerator TheEnginePlaysIt()
+        {
+            _playing.UseEnsemble(5);
+            _playing.Surface.Spacing = 1;
+            Player.FramesPerSecond = 1000;
+            Assert.That(Player.Load(), Is.True);
+            Player.Play();
+            for (int i = 0; i < 2000 && (_playing.Loops == 0 || _playing.Surface.Mesh.vertexCount == 0); ++i)
+                yield return null;
+            if (Application.isPlaying)
+                Assert.That(_playing.Loops, Is.GreaterThan(0));
+            Assert.That(_playing.Shown, Is.Not.Empty);
+            Assert.That(_playing.Surface.Mesh.vertexCount, Is.GreaterThan(0));
+            Assert.That(_playing.Failures, Is.Empty);
+        }
+    }
+}
