@@ -3,6 +3,7 @@ using NUnit.Framework;
 using System;
 using System.Collections;
 using System.Collections.Generic;
+using System.Text.RegularExpressions;
 using UnityEngine;
 using UnityEngine.TestTools;
 using UnityEngine.TestTools.Constraints;
@@ -197,9 +198,9 @@ namespace QuickSes.EngineDouble.Tests
             gameObject.AddComponent<Demanding>();
             Assert.That(gameObject.TryGetComponent(out MeshFilter filter), Is.True);
             Assert.That(gameObject.GetComponents<MeshRenderer>(), Has.Length.EqualTo(1));
-            LogAssert.Expect(LogType.Error, new System.Text.RegularExpressions.Regex("^Can't add component 'Demanding'"));
+            LogAssert.Expect(LogType.Error, new Regex("^Can't add component 'Demanding'"));
             Assert.That(gameObject.AddComponent<Demanding>(), Is.Null);
-            LogAssert.Expect(LogType.Error, new System.Text.RegularExpressions.Regex("^Can't remove MeshFilter"));
+            LogAssert.Expect(LogType.Error, new Regex("^Can't remove MeshFilter"));
             Object.DestroyImmediate(filter);
             Assert.That(filter != null, Is.True);
         }

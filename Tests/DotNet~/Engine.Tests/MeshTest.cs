@@ -103,7 +103,8 @@ namespace QuickSes.EngineDouble.Tests
             Mesh mesh = EmptyMesh();
             Assert.That(() => mesh.SetVertexBufferData(Corners, 0, 1, 3), Throws.TypeOf<ArgumentOutOfRangeException>());
             Assert.That(() => mesh.SetVertexBufferData(Corners, 1, 0, 3), Throws.TypeOf<ArgumentOutOfRangeException>());
-            Assert.That(() => mesh.SetVertexBufferData(Corners, 0, 0, 3, 1), Throws.TypeOf<ArgumentOutOfRangeException>());
+            Assert.That(() => mesh.SetVertexBufferData(Corners, 0, 0, 3, 1),
+                Throws.TypeOf<ArgumentOutOfRangeException>());
             Assert.That(() => mesh.SetVertexBufferData(new Vector4[3], 0, 0, 3), Throws.ArgumentException);
             Assert.That(() => mesh.SetIndexBufferData(Triangle, 0, 1, 3), Throws.TypeOf<ArgumentOutOfRangeException>());
             Assert.That(() => mesh.SetIndexBufferData(new ushort[3], 0, 0, 3), Throws.ArgumentException);

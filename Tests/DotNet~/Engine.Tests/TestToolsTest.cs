@@ -15,7 +15,9 @@ using Is = UnityEngine.TestTools.Constraints.Is;
 
 namespace QuickSes.EngineDouble.Tests
 {
-    /// <summary>Tests that should fail do fail: fixtures that only this one runs, and looks at the outcome of.</summary>
+    /// <summary>
+    /// Tests that should fail do fail: fixtures that only this one runs, and looks at the outcome of.
+    /// </summary>
     public sealed class TestToolsTest
     {
         // Of generic fixtures without arguments NUnit finds none by itself.
@@ -119,7 +121,8 @@ namespace QuickSes.EngineDouble.Tests
             }
 
             [Test]
-            public void FailsByAllocating() => Assert.That(() => { GC.KeepAlive(new int[1]); }, Is.Not.AllocatingGCMemory());
+            public void FailsByAllocating() =>
+                Assert.That(() => { GC.KeepAlive(new int[1]); }, Is.Not.AllocatingGCMemory());
 
             [Test]
             public void FailsByNotAllocating() => Assert.That(() => { }, Is.AllocatingGCMemory());
@@ -155,7 +158,8 @@ namespace QuickSes.EngineDouble.Tests
         public void OutcomesAreTheRightOnes()
         {
             Cases<int>.Calls.Clear();
-            TestSuite suite = new NUnitTestFixtureBuilder().BuildFrom(new TypeWrapper(typeof(Cases<int>)), new PreFilterStub());
+            TestSuite suite = new NUnitTestFixtureBuilder().BuildFrom(
+                new TypeWrapper(typeof(Cases<int>)), new PreFilterStub());
 #pragma warning disable CS0618 // The other overload takes what only NUnit has.
             WorkItem work = WorkItemBuilder.CreateWorkItem(suite, TestFilter.Empty, true);
 #pragma warning restore CS0618

@@ -49,6 +49,33 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void ASurfaceInPaddedBuffersIsCopiedExactly()
+        {
+            var surface = new GameObject("surface").AddComponent<MolecularSurface>();
+            surface.PadBuffers = true;
+            surface.SetAtoms(new[] { Vector3.zero, new Vector3(1.5f, 0, 0) }, new[] { 1.7f, 1.5f });
+            Assert.That(surface.ComputeNow(), Is.True, surface.LastError.Message);
+            int count = surface.Shown.VertexCount;
+            Assert.That(surface.Mesh.vertexCount, Is.GreaterThan(count));
+
+            MeshCopy.Copy(surface.Mesh, _target);
+
+            Assert.That(_target.vertexCount, Is.EqualTo(count));
+            Assert.That(_target.GetIndexCount(0), Is.EqualTo(3 * surface.Shown.TriangleCount));
+            Assert.That(_target.bounds, Is.EqualTo(surface.Mesh.bounds));
+            Assert.That(_target.vertices, Is.EqualTo(First(count, surface.Mesh.vertices)));
+            Assert.That(_target.normals, Is.EqualTo(First(count, surface.Mesh.normals)));
+            Assert.That(_target.colors32, Is.EqualTo(First(count, surface.Mesh.colors32)));
+            Object.DestroyImmediate(surface.gameObject);
+        }
+
+        private static T[] First<T>(int count, T[] array)
+        {
+            System.Array.Resize(ref array, count);
+            return array;
+        }
+
+        [Test]
         public void WhatTheTargetHeldIsGone()
         {
             _target.vertices = new Vector3[10];

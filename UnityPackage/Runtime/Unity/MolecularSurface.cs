@@ -68,6 +68,7 @@ namespace QuickSes
         [NonSerialized] private bool _isEdited; // in the inspector, by Undo, by a prefab
         [NonSerialized] private MoleculeSource _loadedSource; // as it was when it was read; null: it was not
         [NonSerialized] private Color32 _loadedBaseColor; // atoms that the scheme tells nothing of have it
+        [NonSerialized] private bool _isDestroyed;
 
         /// <summary>A surface arrived and is shown.</summary>
         public event Action<SurfaceLevel> SurfaceUpdated;
@@ -130,6 +131,8 @@ namespace QuickSes
         {
             get
             {
+                if (_isDestroyed)
+                    throw new MissingReferenceException("This MolecularSurface has been destroyed.");
                 if (_session == null || _session.IsDisposed)
                     _session = new SurfaceSession(this);
                 return _session;

@@ -8,7 +8,9 @@ using UnityEngine;
 
 namespace QuickSes.EngineDouble
 {
-    /// <summary>Runs what a test yields: each null is a frame. Errors in the log end it, unless it is a tear-down.</summary>
+    /// <summary>
+    /// Runs what a test yields: each null is a frame. Errors in the log end it, unless it is a tear-down.
+    /// </summary>
     internal static class EnumeratorRunner
     {
         private static readonly TimeSpan TimeLimit = TimeSpan.FromSeconds(180);

@@ -8,7 +8,9 @@ using UnityEngine;
 
 namespace QuickSes.EngineDouble
 {
-    /// <summary>What one test expects in the log, and what it got besides that. Any thread may write to the log.</summary>
+    /// <summary>
+    /// What one test expects in the log, and what it got besides that. Any thread may write to the log.
+    /// </summary>
     internal sealed class LogScope
     {
         private sealed class Expectation

@@ -29,8 +29,11 @@ namespace QuickSes.Interop
             catch (DllNotFoundException e)
             {
                 reason = $"The native library {Library} can't be loaded on {Platform()}: it is missing, or " +
-                         "made for another system, or something that it needs is missing. A checkout of the project " +
-                         "has none until it is built: see Documentation~/building.md. " + e.Message;
+                         "made for another system, or something that it needs is missing (Windows and Linux on " +
+                         "x86-64 are supported; on Linux, glibc 2.35 or later is needed, as in Ubuntu 22.04). A " +
+                         "checkout of the project has none until it is built: `bash Scripts~/setup.sh && cmake " +
+                         "--preset cpu && cmake --build --preset cpu` there; more in Documentation~/building.md. " +
+                         e.Message;
             }
             catch (BadImageFormatException e)
             {
