@@ -11,7 +11,7 @@ using UnityEngine.TestTools;
 internal sealed class UnityPageTest
 {
     [UnityTest]
-    public IEnumerator TheFirstScriptShowsTwoColouredAtomsThatMove()
+    public IEnumerator TheFirstScriptShowsTwoAtomsThatMove()
     {
         var owner = new GameObject();
         owner.AddComponent<TwoAtoms>();
@@ -20,8 +20,9 @@ internal sealed class UnityPageTest
         yield return Until(() => surface.Shown.VertexCount > 0);
         Mesh mesh = owner.GetComponent<MeshFilter>().sharedMesh;
         Assert.That(mesh, Is.SameAs(surface.Mesh));
-        Assert.That(mesh.colors32, Has.Some.EqualTo(new Color32(144, 144, 144, 255)));
-        Assert.That(mesh.colors32, Has.Some.EqualTo(new Color32(255, 13, 13, 255)));
+        Assert.That(surface.Owners.ToArray(), Has.Some.EqualTo(0u).And.Some.EqualTo(1u));
+        Assert.That(mesh.bounds.min.x, Is.EqualTo(-1.7f).Within(0.05), "1 unit is 1 Å");
+        Assert.That(mesh.colors32, Is.All.EqualTo(surface.BaseColor));
         float right = mesh.bounds.max.x;
         yield return Until(() => Mathf.Abs(mesh.bounds.max.x - right) > 0.1f);
     }
