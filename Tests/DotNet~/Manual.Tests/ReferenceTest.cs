@@ -68,7 +68,8 @@ internal sealed class ReferenceTest
 
     private static string Section(string title)
     {
-        Match match = Regex.Match(s_page, $"^## {title}\n.*?(?=^## |\\z)", RegexOptions.Multiline | RegexOptions.Singleline);
+        Match match = Regex.Match(s_page, $"^## {title}\n.*?(?=^## |\\z)",
+            RegexOptions.Multiline | RegexOptions.Singleline);
         Assert.That(match.Success, title);
         return match.Value;
     }

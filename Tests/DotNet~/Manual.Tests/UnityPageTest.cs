@@ -86,8 +86,9 @@ internal sealed class UnityPageTest
         Assert.That(surface.Shown.IsFinest);
     }
 
-    private static string Model(int number, float x) => FormattableString.Invariant(
-        $"MODEL     {number,4}\nATOM      1  C   GLY A   1    {x,8:0.000}   0.000   0.000  1.00  0.00           C\nENDMDL\n");
+    private static string Model(int number, float x) => FormattableString.Invariant($"MODEL     {number,4}\n") +
+        FormattableString.Invariant($"ATOM      1  C   GLY A   1    {x,8:0.000}   0.000   0.000  1.00  0.00") +
+        "           C\nENDMDL\n";
 
     private static IEnumerator Until(Func<bool> condition)
     {
