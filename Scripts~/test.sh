@@ -77,16 +77,26 @@ rm -f .build/cpu/org.quickses.unity-*.tgz
 cmake --build --preset cpu --target upm
 python3 Scripts~/check-package .build/cpu/org.quickses.unity-*.tgz "${platforms[@]}"
 
-# The C# layer, with the plug-in of that package.
+# The C# layers, with the plug-in of that package: what Unity compiles runs against a double of the engine, as in a player
+# and, with collections checks, as in the Editor.
 echo "==== dotnet: test"
 export DOTNET_CLI_TELEMETRY_OPTOUT=1 DOTNET_NOLOGO=1
-dotnet_tests=Tests/DotNet~/Core.Tests
+for_each_dotnet_test() {
+  for checks in false true; do
+    for tests in Core Engine Unity; do
+      # QuickSes.Core knows nothing of the engine.
+      if [ "$tests" = Core ] && [ "$checks" = true ]; then continue; fi
+      "$@" "Tests/DotNet~/$tests.Tests" -p:CollectionsChecks="$checks" || return
+    done
+  done
+}
 if [ -z "$(dotnet --list-sdks 2>/dev/null)" ]; then
   echo "No .NET SDK here (command dotnet): the C# tests are skipped."
-elif ! dotnet restore "$dotnet_tests"; then
+elif ! for_each_dotnet_test dotnet restore; then
   echo "The NuGet packages of the C# tests could not be had (is there a network?)." >&2
   if [ "${CI:-}" = true ]; then exit 1; fi
   echo "The C# tests are skipped."
 else
-  QUICKSES_NATIVE="$PWD/UnityPackage/Plugins/linux-x86_64/libquickses.so" dotnet test --no-restore "$dotnet_tests"
+  export QUICKSES_NATIVE="$PWD/UnityPackage/Plugins/linux-x86_64/libquickses.so"
+  for_each_dotnet_test dotnet test --no-restore
 fi

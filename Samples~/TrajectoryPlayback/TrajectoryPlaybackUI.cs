@@ -127,7 +127,7 @@ namespace QuickSes.Samples
                 $"{shown.UploadMilliseconds:0.00} ms of the main thread");
             GUILayout.Label($"{_surface.Area:N0} Å², {_surface.Volume:N0} Å³");
 #if ENABLE_INPUT_SYSTEM && !ENABLE_LEGACY_INPUT_MANAGER
-            GUILayout.Label("This panel gets no mouse events: set Active Input Handling to Both in the Player settings.");
+            GUILayout.Label("No mouse events here: in the Player settings, set Active Input Handling to Both.");
 #endif
             GUILayout.Label(_problem);
         }

@@ -257,7 +257,7 @@ class CheckReferencesTest(unittest.TestCase):
                                 "its father 101 does not name it among its children")
         self.assert_scene_fault("m_Father: {fileID: 101}\n  m_RootOrder: 0", "m_Father: {fileID: 0}\n  m_RootOrder: 1",
                                 "child 201 does not name it as its father")
-        self.assert_scene_fault("m_Father: {fileID: 101}\n  m_RootOrder: 0", "m_Father: {fileID: 101}\n  m_RootOrder: 4",
+        self.assert_scene_fault("fileID: 101}\n  m_RootOrder: 0", "fileID: 101}\n  m_RootOrder: 4",
                                 "m_RootOrder 4, but it is child 0")
 
     def test_required_component_that_is_missing(self):
@@ -277,10 +277,10 @@ class CheckReferencesTest(unittest.TestCase):
 
     def test_field_that_is_not_in_the_nested_class(self):
         for name in ("_hidden", "Count", "_speed"):
-            self.assert_scene_fault("    _axis: 2\n", f"    {name}: 2\n", f"_source.{name}: Source has no serialised field")
+            self.assert_scene_fault("    _axis: 2\n", f"    {name}: 2\n", f"_source.{name}: Source has no serialised")
 
     def test_field_that_was_renamed_without_its_former_name(self):
-        self.assert_fault("Runtime/Spinner.cs", 'FormerlySerializedAs("_on"), ', "", "_on: Spinner has no serialised field")
+        self.assert_fault("Runtime/Spinner.cs", 'FormerlySerializedAs("_on"), ', "", "_on: Spinner has no serialised")
 
     def test_value_that_does_not_suit_the_type(self):
         self.assert_scene_fault("_speed: 0.5", "_speed: fast", "_speed: fast is not a float")

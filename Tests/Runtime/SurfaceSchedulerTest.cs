@@ -91,6 +91,8 @@ namespace QuickSes.Tests
             yield return SurfaceRig.Until(AreSettled);
             Assert.That(SurfaceScheduler.ContextCount, Is.GreaterThan(0));
             _rigs[0].GameObject.SetActive(false);
+            Assert.That(SurfaceScheduler.ContextCount, Is.GreaterThan(0), "it may be shown again");
+            _rigs[0].Dispose();
             Assert.That(SurfaceScheduler.ContextCount, Is.EqualTo(0));
         }
 

@@ -5,11 +5,13 @@ namespace QuickSes
 {
     /// <summary>
     /// One of the few contexts of <see cref="SurfaceScheduler"/>, and who may use it. Main thread only, but for
-    /// <see cref="Create"/>, which may take a third of a second and therefore runs on a thread of its own.
+    /// <see cref="Create"/> and <see cref="Dispose"/>, which may take a third of a second with CUDA and therefore run on
+    /// threads of their own where nobody has to wait for them.
     /// </summary>
     internal sealed class ContextSlot
     {
         private static readonly WaitCallback s_create = slot => ((ContextSlot)slot).Create();
+        private static readonly WaitCallback s_dispose = slot => ((ContextSlot)slot).Dispose();
 
         private readonly SurfaceContextOptions _options;
         private volatile bool _isReady;
@@ -57,6 +59,8 @@ namespace QuickSes
             Context = context;
             _isReady = true;
         }
+
+        public void DisposeInBackground() => ThreadPool.UnsafeQueueUserWorkItem(s_dispose, this);
 
         /// <summary>Frees the context; waits for it to be made first.</summary>
         public void Dispose()

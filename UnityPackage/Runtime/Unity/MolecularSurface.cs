@@ -65,6 +65,7 @@ namespace QuickSes
         [NonSerialized] private SurfaceSession _session;
         [NonSerialized] private bool _isScriptFed;
         [NonSerialized] private bool _asksForAtoms;
+        [NonSerialized] private bool _isDestroyed;
 
         /// <summary>A surface arrived and is shown.</summary>
         public event Action<SurfaceLevel> SurfaceUpdated;
@@ -127,6 +128,8 @@ namespace QuickSes
         {
             get
             {
+                if (_isDestroyed)
+                    throw new MissingReferenceException("This MolecularSurface has been destroyed.");
                 if (_session == null || _session.IsDisposed)
                     _session = new SurfaceSession(this);
                 return _session;

@@ -10,7 +10,7 @@ namespace QuickSes
 
         private void OnEnable()
         {
-            SurfaceScheduler.SurfaceEnabled();
+            SurfaceScheduler.Add(Session);
             _asksForAtoms = true;
             GetComponent<MeshFilter>().sharedMesh = Session.Shown.Mesh;
             var meshRenderer = GetComponent<MeshRenderer>();
@@ -26,14 +26,12 @@ namespace QuickSes
         {
             if (_session != null && !_session.IsDisposed)
                 _session.Drop();
-            SurfaceScheduler.SurfaceDisabled();
         }
 
         private void OnDestroy()
         {
-            if (_session == null)
-                return;
-            _session.Dispose();
+            _isDestroyed = true;
+            _session?.Dispose();
             _session = null;
         }
 

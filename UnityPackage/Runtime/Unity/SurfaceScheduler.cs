@@ -21,7 +21,6 @@ namespace QuickSes
         private static readonly Queue<SurfaceSession> s_refining = new Queue<SurfaceSession>();
         private static readonly List<SurfaceSession> s_sessions = new List<SurfaceSession>();
         private static int s_maxContexts = 4;
-        private static int s_enabledSurfaces;
         private static int s_urgentInARow;
         private static uint s_uses;
         private static uint s_jobs;
@@ -80,19 +79,26 @@ namespace QuickSes
 
         internal static uint NextJob() => ++s_jobs;
 
-        internal static void Add(SurfaceSession session) => s_sessions.Add(session);
-
-        internal static void Remove(SurfaceSession session) => s_sessions.Remove(session);
-
-        internal static void SurfaceEnabled() => ++s_enabledSurfaces;
-
-        // Nobody is left who could use the contexts: their memory is given back, without waiting for it.
-        internal static void SurfaceDisabled()
+        /// <summary>A surface is there until <see cref="Remove"/>.</summary>
+        internal static void Add(SurfaceSession session)
         {
-            if (--s_enabledSurfaces > 0 || s_slots.Count == 0)
+            if (session.IsListed)
+                return;
+            session.IsListed = true;
+            s_sessions.Add(session);
+        }
+
+        // When nobody is left who could use the contexts, their memory is given back, without waiting for it.
+        internal static void Remove(SurfaceSession session)
+        {
+            if (!session.IsListed)
+                return;
+            session.IsListed = false;
+            s_sessions.Remove(session);
+            if (s_sessions.Count > 0)
                 return;
             foreach (ContextSlot slot in s_slots)
-                ThreadPool.UnsafeQueueUserWorkItem(unused => ((ContextSlot)unused).Dispose(), slot);
+                slot.DisposeInBackground();
             s_slots.Clear();
         }
 

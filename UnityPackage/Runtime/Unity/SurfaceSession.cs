@@ -31,7 +31,6 @@ namespace QuickSes
         public SurfaceSession(MolecularSurface owner)
         {
             _owner = owner;
-            SurfaceScheduler.Add(this);
         }
 
         public SurfaceAtomSet Atoms { get; } = new SurfaceAtomSet();
@@ -39,6 +38,9 @@ namespace QuickSes
         public ShownSurface Shown { get; } = new ShownSurface();
 
         public SurfaceBackend Backend => _owner.Backend;
+
+        /// <summary>Whether the scheduler knows it.</summary>
+        public bool IsListed { get; set; }
 
         /// <summary>In which queue of the scheduler it waits.</summary>
         public SurfaceNeed Queued { get; set; }

@@ -6,7 +6,9 @@ using Unity.Collections.LowLevel.Unsafe;
 
 namespace UnityEngine
 {
-    /// <summary>The bytes lie in unmanaged memory until the asset is destroyed; each <see cref="bytes"/> is a copy.</summary>
+    /// <summary>
+    /// The bytes lie in unmanaged memory until the asset is destroyed; each <see cref="bytes"/> is a copy.
+    /// </summary>
     public class TextAsset : Object
     {
         private NativeArray<byte> _data;

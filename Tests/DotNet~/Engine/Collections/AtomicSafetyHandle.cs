@@ -179,7 +179,7 @@ namespace Unity.Collections.LowLevel.Unsafe
         {
             if (_node == null)
                 throw new NullReferenceException(
-                    "A native array without an AtomicSafetyHandle is accessed; the Editor follows a null pointer here.");
+                    "A native array without an AtomicSafetyHandle is accessed; the Editor follows a null pointer.");
         }
 
         private void RequireExistence()

@@ -153,7 +153,8 @@ namespace Unity.Collections
                 throw new InvalidOperationException(
                     $"Type {typeof(T)} was expected to be {expectedTypeSize} but is {size} bytes");
             if (length * UnsafeUtility.SizeOf<U>() != bytes)
-                throw new InvalidOperationException($"{_length} elements of {typeof(T)} are no whole number of {typeof(U)}");
+                throw new InvalidOperationException(
+                    $"{_length} elements of {typeof(T)} are no whole number of {typeof(U)}");
             return Reinterpreted<U>((int)length);
         }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 using System;
+using System.Collections.Generic;
 using System.Runtime.InteropServices;
 using Unity.Collections;
 
@@ -11,25 +12,24 @@ namespace QuickSes.EngineDouble
     /// </summary>
     public static unsafe class NativeHeap
     {
-        // In front of each block; 16 bytes of it right before the block hold what Free needs to know.
+        // In front of each block.
         private struct Header
         {
             public Header* Previous, Next;
             public byte* Start;
             public long Size;
-            public long Mark;
             public long Allocator;
         }
 
         /// <summary>The label of the buffers of meshes; an allocator that code under test can't name.</summary>
         public const Allocator Meshes = (Allocator)6;
 
-        private const long Live = 0x6c6976656c697665;
         private const byte NeverWritten = 0xff; // NaN, and an index beyond any mesh
         private const byte Freed = 0xdd;
         private const int MinimumAlignment = 16;
 
         private static readonly object s_lock = new object();
+        private static readonly HashSet<IntPtr> s_live = new HashSet<IntPtr>();
         private static readonly int[] s_liveCounts = new int[8];
         private static readonly long[] s_liveBytes = new long[8];
         private static Header* s_temporary;
@@ -66,10 +66,11 @@ namespace QuickSes.EngineDouble
             long address = ((long)(start + sizeof(Header)) + alignment - 1) / alignment * alignment;
             var block = (byte*)address;
             Header* header = (Header*)block - 1;
-            *header = new Header { Start = start, Size = size, Mark = Live, Allocator = (long)allocator };
+            *header = new Header { Start = start, Size = size, Allocator = (long)allocator };
             Fill(block, NeverWritten, size);
             lock (s_lock)
             {
+                s_live.Add((IntPtr)block);
                 ++s_allocationCount;
                 ++s_liveCounts[(int)allocator];
                 s_liveBytes[(int)allocator] += size;
@@ -92,12 +93,12 @@ namespace QuickSes.EngineDouble
             Header* header = (Header*)block - 1;
             lock (s_lock)
             {
-                if (header->Mark != Live)
-                    throw new InvalidOperationException("This block of native memory was freed before.");
+                if (!s_live.Contains((IntPtr)block))
+                    throw new InvalidOperationException("This block of native memory was freed before, or never lent.");
                 if (header->Allocator != (long)allocator)
                     throw new InvalidOperationException(
                         $"A block of allocator {(Allocator)header->Allocator} is freed as one of {allocator}.");
-                header->Mark = 0;
+                s_live.Remove((IntPtr)block);
                 --s_liveCounts[(int)allocator];
                 s_liveBytes[(int)allocator] -= header->Size;
                 if (allocator == Allocator.Temp)

@@ -78,7 +78,9 @@ namespace QuickSes.EngineDouble
             NativeHeap.FreeTemporary();
         }
 
-        /// <summary>OnGUI of all scripts, for one event of each of the given types, or for Layout and Repaint.</summary>
+        /// <summary>
+        /// OnGUI of all scripts, for one event of each of the given types, or for Layout and Repaint.
+        /// </summary>
         public static void Gui(params EventType[] types)
         {
             foreach (EventType type in types.Length > 0 ? types : new[] { EventType.Layout, EventType.Repaint })
@@ -142,7 +144,9 @@ namespace QuickSes.EngineDouble
                     Initialize(assembly, type);
         }
 
-        /// <summary>The end of the program, or of play mode in the Editor, where statics and what isn't in the scene stay.</summary>
+        /// <summary>
+        /// The end of the program, or of play mode in the Editor, where statics and what isn't in the scene stay.
+        /// </summary>
         public static void Quit()
         {
             Lifecycle.Broadcast(Message.OnApplicationQuit);

@@ -207,7 +207,8 @@ namespace UnityEngine
                 fixed (byte* address = values)
                 {
                     VertexNumbers.Read(old, kept.attribute, VertexAttributeFormat.Float32, kept.dimension, address);
-                    VertexNumbers.Write(Buffers, kept.attribute, VertexAttributeFormat.Float32, kept.dimension, address);
+                    VertexNumbers.Write(Buffers, kept.attribute, VertexAttributeFormat.Float32, kept.dimension,
+                        address);
                 }
             }
 

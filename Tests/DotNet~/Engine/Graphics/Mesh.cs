@@ -325,8 +325,8 @@ namespace UnityEngine
         private void RequireSubMesh(int index)
         {
             if ((uint)index >= (uint)Buffers.SubMeshes.Count)
-                throw new IndexOutOfRangeException("Specified sub mesh is out of range. Must be greater or equal to 0 " +
-                    "and less than subMeshCount.");
+                throw new IndexOutOfRangeException("Specified sub mesh is out of range. Must be greater or equal to " +
+                    "0 and less than subMeshCount.");
         }
 
         private static void RequireRange(int length, int dataStart, int meshBufferStart, int count)

@@ -140,7 +140,8 @@ namespace UnityEngine
                 }
             }
 
-            public readonly bool HasVertexAttribute(VertexAttribute attr) => Readable.Layout.TryFind(attr, out _, out _);
+            public readonly bool HasVertexAttribute(VertexAttribute attr) =>
+                Readable.Layout.TryFind(attr, out _, out _);
 
             public readonly int GetVertexBufferStride(int stream) => Readable.Layout.StrideOf(stream);
 

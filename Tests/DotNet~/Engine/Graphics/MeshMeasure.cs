@@ -10,7 +10,8 @@ namespace QuickSes.EngineDouble
     {
         public static void Measure(MeshBuffers mesh, ref SubMeshDescriptor subMesh)
         {
-            if (subMesh.indexCount == 0 || !mesh.Layout.TryFind(VertexAttribute.Position, out var position, out int offset))
+            if (subMesh.indexCount == 0 ||
+                !mesh.Layout.TryFind(VertexAttribute.Position, out VertexAttributeDescriptor position, out int offset))
             {
                 subMesh.bounds = default;
                 subMesh.firstVertex = subMesh.vertexCount = 0;
@@ -60,7 +61,8 @@ namespace QuickSes.EngineDouble
         public static Bounds BoundsOfVertices(MeshBuffers mesh)
         {
             Bounds bounds = default;
-            if (mesh.VertexCount == 0 || !mesh.Layout.TryFind(VertexAttribute.Position, out var position, out int offset))
+            if (mesh.VertexCount == 0 ||
+                !mesh.Layout.TryFind(VertexAttribute.Position, out VertexAttributeDescriptor position, out int offset))
                 return bounds;
             Vector3 min = Vector3.positiveInfinity, max = Vector3.negativeInfinity;
             for (int v = 0; v < mesh.VertexCount; ++v)

@@ -34,7 +34,9 @@ namespace QuickSes.EngineDouble
         /// <summary>Flags of all uploads and of SetSubMesh that each of them had; all, before the first.</summary>
         public MeshUpdateFlags FlagsOfEach { get; private set; } = ~MeshUpdateFlags.Default;
 
-        /// <summary>True from a change with DontNotifyMeshUsers to the next MarkModified, or change without it.</summary>
+        /// <summary>
+        /// True from a change with DontNotifyMeshUsers to the next MarkModified, or change without it.
+        /// </summary>
         public bool AwaitsNotification { get; private set; }
 
         internal bool IsChecked { get; set; } = true;

@@ -33,8 +33,8 @@ namespace UnityEngine
                 if (_mesh == null)
                     _mesh = new Mesh { name = gameObject.name + " Instance" };
                 else if (!_isInstance && !Application.isPlaying)
-                    Debug.LogError("Instantiating mesh due to calling MeshFilter.mesh during edit mode. This will leak " +
-                        "meshes. Please use MeshFilter.sharedMesh instead.");
+                    Debug.LogError("Instantiating mesh due to calling MeshFilter.mesh during edit mode. This will " +
+                        "leak meshes. Please use MeshFilter.sharedMesh instead.");
                 _isInstance = true;
                 return _mesh;
             }

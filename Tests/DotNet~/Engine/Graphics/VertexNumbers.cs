@@ -32,7 +32,8 @@ namespace QuickSes.EngineDouble
                     Encode(i < dimension ? Decode(input, format, i) : 0, target.format, vertex + i * size);
         }
 
-        public static Vector3 ReadPosition(MeshBuffers mesh, VertexAttributeDescriptor position, int offset, long vertex)
+        public static Vector3 ReadPosition(MeshBuffers mesh, VertexAttributeDescriptor position, int offset,
+            long vertex)
         {
             byte* at = mesh.Stream(position.stream) + vertex * mesh.Layout.StrideOf(position.stream) + offset;
             return new Vector3((float)Decode(at, position.format, 0),
@@ -62,10 +63,10 @@ namespace QuickSes.EngineDouble
             switch (format)
             {
                 case VertexAttributeFormat.Float32: *(float*)output = (float)number; break;
-                case VertexAttributeFormat.UNorm8: *output = (byte)Math.Round(Clamp(number, 0, 1) * 255); break;
-                case VertexAttributeFormat.SNorm8: *(sbyte*)output = (sbyte)Math.Round(Clamp(number, -1, 1) * 127); break;
-                case VertexAttributeFormat.UNorm16: *(ushort*)output = (ushort)Math.Round(Clamp(number, 0, 1) * 65535); break;
-                case VertexAttributeFormat.SNorm16: *(short*)output = (short)Math.Round(Clamp(number, -1, 1) * 32767); break;
+                case VertexAttributeFormat.UNorm8: *output = (byte)Scale(number, 0, 255); break;
+                case VertexAttributeFormat.SNorm8: *(sbyte*)output = (sbyte)Scale(number, -1, 127); break;
+                case VertexAttributeFormat.UNorm16: *(ushort*)output = (ushort)Scale(number, 0, 65535); break;
+                case VertexAttributeFormat.SNorm16: *(short*)output = (short)Scale(number, -1, 32767); break;
                 case VertexAttributeFormat.UInt8: *output = (byte)number; break;
                 case VertexAttributeFormat.SInt8: *(sbyte*)output = (sbyte)number; break;
                 case VertexAttributeFormat.UInt16: *(ushort*)output = (ushort)number; break;
@@ -76,7 +77,8 @@ namespace QuickSes.EngineDouble
             }
         }
 
-        private static double Clamp(double value, double min, double max) => Math.Max(min, Math.Min(max, value));
+        private static double Scale(double value, double min, double one) =>
+            Math.Round(Math.Max(min, Math.Min(1, value)) * one);
 
         private static double HalfToDouble(ushort bits)
         {

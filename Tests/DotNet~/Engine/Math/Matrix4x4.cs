@@ -139,7 +139,8 @@ namespace UnityEngine
             HashCode.Combine(GetColumn(0), GetColumn(1), GetColumn(2), GetColumn(3));
 
         public override readonly string ToString() =>
-            string.Format(CultureInfo.InvariantCulture, "{0}\n{1}\n{2}\n{3}", GetRow(0), GetRow(1), GetRow(2), GetRow(3));
+            string.Format(CultureInfo.InvariantCulture, "{0}\n{1}\n{2}\n{3}", GetRow(0), GetRow(1), GetRow(2),
+                GetRow(3));
 
         // A matrix that can't be inverted gives zero, as in the engine.
         private static Matrix4x4 Invert(in Matrix4x4 matrix)

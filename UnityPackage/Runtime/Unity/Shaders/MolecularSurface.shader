@@ -388,15 +388,6 @@ Shader "QuickSES/Molecular Surface"
             #endif
             o.colorAndOcclusion = half4(color, lerp(1, saturate(v.occlusion.x), _OcclusionStrength));
 
-            #if defined(UNITY_PASS_FORWARDBASE)
-            #if defined(VERTEXLIGHT_ON)
-            o.ambient = Shade4PointLights(unity_4LightPosX0, unity_4LightPosY0, unity_4LightPosZ0,
-                unity_LightColor[0].rgb, unity_LightColor[1].rgb, unity_LightColor[2].rgb, unity_LightColor[3].rgb,
-                unity_4LightAtten0, o.worldPos, o.worldNormal);
-            #endif
-            o.ambient = ShadeSHPerVertex(o.worldNormal, o.ambient);
-            #endif
-
             UNITY_TRANSFER_LIGHTING(o, float2(0, 0));
             UNITY_TRANSFER_FOG(o, o.pos);
             return o;
@@ -428,11 +419,24 @@ Shader "QuickSES/Molecular Surface"
 
             CGPROGRAM
             #pragma target 3.0
-            #pragma vertex ForwardVertex
+            #pragma vertex Vertex
             #pragma fragment Fragment
             #pragma multi_compile_fwdbase nolightmap nodynlightmap nodirlightmap
             #pragma multi_compile_fog
             #pragma multi_compile_instancing
+
+            // With the light of probes and of lights that are not lit by pixel.
+            Varyings Vertex(Attributes v)
+            {
+                Varyings o = ForwardVertex(v);
+                #if defined(VERTEXLIGHT_ON)
+                o.ambient = Shade4PointLights(unity_4LightPosX0, unity_4LightPosY0, unity_4LightPosZ0,
+                    unity_LightColor[0].rgb, unity_LightColor[1].rgb, unity_LightColor[2].rgb, unity_LightColor[3].rgb,
+                    unity_4LightAtten0, o.worldPos, o.worldNormal);
+                #endif
+                o.ambient = ShadeSHPerVertex(o.worldNormal, o.ambient);
+                return o;
+            }
 
             half4 Fragment(Varyings i, fixed facing : VFACE) : SV_Target
             {

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: MIT
+using NUnit.Framework;
+using System;
+using System.Collections;
+using System.Collections.Generic;
+using System.Text.RegularExpressions;
+using UnityEngine;
+using UnityEngine.TestTools;
+using UnityEngine.TestTools.Constraints;
+using Is = UnityEngine.TestTools.Constraints.Is;
+using Object = UnityEngine.Object;
+
+namespace QuickSes.EngineDouble.Tests
+{
+    public sealed class LifecycleTest
+    {
+        private class Recorder : MonoBehaviour
+        {
+            public static readonly List<string> Calls = new List<string>();
+
+            private void Awake() => Note("Awake");
+            private void OnEnable() => Note("OnEnable");
+            private void Reset() => Note("Reset");
+            private void Start() => Note("Start");
+            private void Update() => Note("Update");
+            private void LateUpdate() => Note("LateUpdate");
+            private void OnDisable() => Note("OnDisable");
+            private void OnDestroy() => Note("OnDestroy");
+            private void OnApplicationQuit() => Note("OnApplicationQuit");
+
+            protected void Note(string message) => Calls.Add(Prefix + message);
+
+            protected virtual string Prefix => "";
+        }
+
+        [DefaultExecutionOrder(-10)]
+        private sealed class EarlyRecorder : Recorder
+        {
+            protected override string Prefix => "early ";
+        }
+
+        [ExecuteAlways]
+        private sealed class EditRecorder : Recorder
+        {
+        }
+
+        private sealed class Counter : MonoBehaviour
+        {
+            public int Updates;
+
+            private void Update() => ++Updates;
+        }
+
+        private sealed class Thrower : MonoBehaviour
+        {
+            private void Update() => throw new InvalidOperationException("thrown by Update");
+        }
+
+        [RequireComponent(typeof(MeshFilter), typeof(MeshRenderer))]
+        [DisallowMultipleComponent]
+        private sealed class Demanding : MonoBehaviour
+        {
+        }
+
+        private sealed class Waiter : MonoBehaviour
+        {
+            public string Steps = "";
+
+            private IEnumerator Start()
+            {
+                Steps += "a";
+                yield return null;
+                Steps += "b";
+                yield return new WaitForSeconds(1);
+                Steps += "c";
+            }
+        }
+
+        private static string[] Taken()
+        {
+            string[] calls = Recorder.Calls.ToArray();
+            Recorder.Calls.Clear();
+            return calls;
+        }
+
+        [SetUp]
+        public void Forget() => Recorder.Calls.Clear();
+
+        [Test]
+        public void MessagesComeInOrder()
+        {
+            var recorder = new GameObject().AddComponent<Recorder>();
+            Assert.That(Taken(), Is.EqualTo(new[] { "Awake", "OnEnable" }));
+            Engine.Frame(0.1);
+            Assert.That(Taken(), Is.EqualTo(new[] { "Start", "Update", "LateUpdate" }));
+            recorder.enabled = false;
+            Engine.Frame(0.1);
+            recorder.enabled = true;
+            Engine.Frame(0.1);
+            Assert.That(Taken(), Is.EqualTo(new[] { "OnDisable", "OnEnable", "Update", "LateUpdate" }));
+            recorder.gameObject.SetActive(false);
+            Object.Destroy(recorder);
+            Engine.Frame(0.1);
+            Assert.That(Taken(), Is.EqualTo(new[] { "OnDisable", "OnDestroy" }));
+        }
+
+        [Test]
+        public void WhatWasNeverActiveIsNeverTold()
+        {
+            var gameObject = new GameObject();
+            gameObject.SetActive(false);
+            gameObject.AddComponent<Recorder>();
+            Engine.Frame(0.1);
+            Object.DestroyImmediate(gameObject);
+            Assert.That(Taken(), Is.Empty);
+        }
+
+        [Test]
+        public void ParentsSwitchTheirChildren()
+        {
+            var parent = new GameObject();
+            var child = new GameObject();
+            child.transform.SetParent(parent.transform);
+            child.AddComponent<Recorder>();
+            Taken();
+            parent.SetActive(false);
+            Assert.That(child.activeSelf, Is.True);
+            Assert.That(child.activeInHierarchy, Is.False);
+            Assert.That(Taken(), Is.EqualTo(new[] { "OnDisable" }));
+            Object.DestroyImmediate(parent);
+            Assert.That(child == null, Is.True);
+            Assert.That(Taken(), Is.EqualTo(new[] { "OnDestroy" }));
+        }
+
+        [Test]
+        public void ExecutionOrderIsKept()
+        {
+            var gameObject = new GameObject();
+            gameObject.AddComponent<Recorder>();
+            gameObject.AddComponent<EarlyRecorder>();
+            Engine.Frame(0.1);
+            Taken();
+            Engine.Frame(0.1);
+            Assert.That(Taken(), Is.EqualTo(new[] { "early Update", "Update", "early LateUpdate", "LateUpdate" }));
+        }
+
+        [Test]
+        public void EditModeRunsWhatAsksForIt()
+        {
+            Engine.EnterEditMode();
+            var gameObject = new GameObject();
+            gameObject.AddComponent<Recorder>();
+            Engine.Frame(0.1);
+            Assert.That(Taken(), Is.EqualTo(new[] { "Reset" }));
+            gameObject.AddComponent<EditRecorder>();
+            Engine.Frame(0.1);
+            Assert.That(Taken(), Is.EqualTo(new[] { "Awake", "OnEnable", "Reset", "Start", "Update", "LateUpdate" }));
+            LogAssert.Expect(LogType.Error,
+                "Destroy may not be called from edit mode! Use DestroyImmediate instead.");
+            Object.Destroy(gameObject);
+            Engine.Frame(0.1);
+            Assert.That(gameObject == null, Is.False);
+        }
+
+        [Test]
+        public void QuittingTellsAll()
+        {
+            new GameObject().AddComponent<Recorder>();
+            Taken();
+            void Note() => Recorder.Calls.Add("quitting");
+            Application.quitting += Note;
+            Engine.Quit();
+            Application.quitting -= Note;
+            Assert.That(Taken(), Is.EqualTo(new[] { "OnApplicationQuit", "quitting", "OnDisable", "OnDestroy" }));
+        }
+
+        [Test]
+        public void DestroyedObjectsEqualNull()
+        {
+            var gameObject = new GameObject("one");
+            var counter = gameObject.AddComponent<Counter>();
+            Object.Destroy(counter);
+            Assert.That(counter == null, Is.False, "destroyed at the end of the frame only");
+            Engine.Frame(0.1);
+            Assert.That(counter == null, Is.True);
+            Assert.That((bool)counter, Is.False);
+            Assert.That(ReferenceEquals(counter, null), Is.False);
+            Assert.That(counter.Updates, Is.EqualTo(1));
+            Assert.That(() => counter.transform, Throws.TypeOf<MissingReferenceException>());
+            Assert.That(() => counter.enabled, Throws.TypeOf<MissingReferenceException>());
+            Assert.That(gameObject.GetComponent<Counter>(), Is.Null);
+        }
+
+        [Test]
+        public void RequirementsAreMet()
+        {
+            var gameObject = new GameObject();
+            gameObject.AddComponent<Demanding>();
+            Assert.That(gameObject.TryGetComponent(out MeshFilter filter), Is.True);
+            Assert.That(gameObject.GetComponents<MeshRenderer>(), Has.Length.EqualTo(1));
+            LogAssert.Expect(LogType.Error, new Regex("^Can't add component 'Demanding'"));
+            Assert.That(gameObject.AddComponent<Demanding>(), Is.Null);
+            LogAssert.Expect(LogType.Error, new Regex("^Can't remove MeshFilter"));
+            Object.DestroyImmediate(filter);
+            Assert.That(filter != null, Is.True);
+        }
+
+        [Test]
+        public void ExceptionsGoToTheLog()
+        {
+            var gameObject = new GameObject();
+            gameObject.AddComponent<Thrower>();
+            var counter = gameObject.AddComponent<Counter>();
+            LogAssert.Expect(LogType.Exception, "InvalidOperationException: thrown by Update");
+            Engine.Frame(0.1);
+            Assert.That(counter.Updates, Is.EqualTo(1));
+            Object.DestroyImmediate(gameObject);
+        }
+
+        [Test]
+        public void RoutinesWait()
+        {
+            var waiter = new GameObject().AddComponent<Waiter>();
+            Engine.Frame(0.4);
+            Assert.That(waiter.Steps, Is.EqualTo("ab"), "Start, and on after Update");
+            Engine.Frame(0.4);
+            Engine.Frame(0.4);
+            Assert.That(waiter.Steps, Is.EqualTo("ab"));
+            Engine.Frame(0.4);
+            Assert.That(waiter.Steps, Is.EqualTo("abc"));
+        }
+
+        [Test]
+        public void FramesAllocateNothing()
+        {
+            for (int i = 0; i < 10; ++i)
+                new GameObject().AddComponent<Counter>();
+            Engine.Frame(0.1);
+            Assert.That(() =>
+            {
+                for (int i = 0; i < 100; ++i)
+                    Engine.Frame(0.1);
+            }, Is.Not.AllocatingGCMemory());
+            Assert.That(Object.FindObjectOfType<Counter>().Updates, Is.EqualTo(101));
+        }
+
+        [Test]
+        public void OtherThreadsAreRefused()
+        {
+            var gameObject = new GameObject();
+            Exception error = null;
+            var thread = new System.Threading.Thread(() =>
+            {
+                try
+                {
+                    gameObject.SetActive(false);
+                }
+                catch (Exception exception)
+                {
+                    error = exception;
+                }
+            });
+            thread.Start();
+            thread.Join();
+            Assert.That(error, Is.TypeOf<UnityException>().With.Message.Contains("main thread"));
+        }
+    }
+}

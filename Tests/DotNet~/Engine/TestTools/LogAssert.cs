@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+using QuickSes.EngineDouble;
+using System.Text.RegularExpressions;
+
+namespace UnityEngine.TestTools
+{
+    public static class LogAssert
+    {
+        public static bool ignoreFailingMessages
+        {
+            get => LogScope.Current.IgnoresFailures;
+            set => LogScope.Current.IgnoresFailures = value;
+        }
+
+        public static void Expect(LogType type, string message) =>
+            LogScope.Current.Expect(type, message, null);
+
+        public static void Expect(LogType type, Regex message) => LogScope.Current.Expect(type, null, message);
+
+        public static void NoUnexpectedReceived() => LogScope.Current.RequireNothingElse();
+    }
+}
