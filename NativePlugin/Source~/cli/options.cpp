@@ -284,6 +284,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
       "  quickses INPUT --trajectory FILE [--frames A:B:STEP] [--csv FILE] [-o frame_%05d.ply] [options]\n"
       "  quickses bench FILE... [--repeat N] [--small N | --jobs] [options]\n",
       "quickses");
+  app.allow_windows_style_options(false);  // a path may begin with a slash there too
   app.footer(kFooter);
   app.set_version_flag("--version", std::string("quickses ") + qses_version(), "Print the version");
   add_surface_options(app, options);
