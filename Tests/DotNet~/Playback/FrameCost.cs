@@ -16,13 +16,10 @@ namespace QuickSes.Playback
     {
         private const int Surfaces = 30;
 
-        public static void Print(string file)
-        {
-            foreach (bool padBuffers in new[] { false, true })
-                Print(file, padBuffers);
-        }
+        /// <summary>false: the file can't be read; the log says why.</summary>
+        public static bool TryPrint(string file) => TryPrint(file, false) && TryPrint(file, true);
 
-        private static void Print(string file, bool padBuffers)
+        private static bool TryPrint(string file, bool padBuffers)
         {
             Engine.Reset();
             Engine.ChecksMeshes = false;
@@ -32,7 +29,10 @@ namespace QuickSes.Playback
             surface.PadBuffers = padBuffers;
             surface.Source.SetFile(file);
             if (!surface.LoadSource())
-                return;
+            {
+                Console.Error.WriteLine(surface.LastError.Message);
+                return false;
+            }
             var positions = new Vector3[surface.AtomCount];
             var start = new Vector3[surface.AtomCount];
             using (Structure structure = Open(surface))
@@ -73,6 +73,7 @@ namespace QuickSes.Playback
                 $"SetPositions {Summary(feed)}, frame that begins {Summary(begin)}, frame that shows {Summary(arrival)}, " +
                 $"of that upload {Summary(upload)}");
             Engine.Quit();
+            return true;
         }
 
         private static Structure Open(MolecularSurface surface) =>

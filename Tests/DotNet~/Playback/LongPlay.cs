@@ -29,7 +29,10 @@ namespace QuickSes.Playback
             surface.SurfaceUpdated += level => ++surfaces;
             surface.Failed += error => throw new InvalidOperationException(error.Message);
             if (!player.Load())
+            {
+                Console.Error.WriteLine(player.LastError.Message);
                 return 1;
+            }
             player.Play();
 
             PlayUntil(WarmUpSurfaces, ref surfaces);

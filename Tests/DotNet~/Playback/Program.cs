@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 using System;
 using System.Globalization;
+using System.IO;
 using System.Reflection;
 using System.Runtime.InteropServices;
 
@@ -25,9 +26,10 @@ namespace QuickSes.Playback
             NativeLibrary.SetDllImportResolver(typeof(SurfaceContext).Assembly,
                 (name, assembly, path) => name == "quickses" ? library : IntPtr.Zero);
             if (arguments[1] == "frames")
-                return LongPlay.Run(arguments[2], int.Parse(arguments[3]));
+                return LongPlay.Run(Path.GetFullPath(arguments[2]), int.Parse(arguments[3]));
             for (int k = 2; k < arguments.Length; ++k)
-                FrameCost.Print(arguments[k]);
+                if (!FrameCost.TryPrint(Path.GetFullPath(arguments[k])))
+                    return 1;
             return 0;
         }
     }
