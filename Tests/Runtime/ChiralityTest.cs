@@ -44,8 +44,8 @@ namespace QuickSes.Tests
             return structure;
         }
 
-        // Whether it is L to a viewer in Unity, where a camera's right is Cross(up, forward) in Unity's numbers: that is
-        // x for the up y and forward z of the world's axes.
+        // Whether it is L to a viewer in Unity, where a camera's right is Cross(up, forward) in Unity's numbers: that
+        // is x for the up y and forward z of the world's axes.
         private static bool IsSeenAsL(Vector3 n, Vector3 ca, Vector3 c, Vector3 cb)
         {
             Vector3 towardsH = -((n - ca).normalized + (c - ca).normalized + (cb - ca).normalized).normalized;

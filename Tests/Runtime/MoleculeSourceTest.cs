@@ -171,10 +171,12 @@ namespace QuickSes.Tests
             string path = _folder.Write("a.pdb", TestFrames.Pdb(1));
             Assert.That(MoleculeFile.TryFindStreamed(_folder.Root, "a.pdb", out MoleculeFile file, out _), Is.True);
             Assert.That(file.Path, Is.EqualTo(path));
-            Assert.That(MoleculeFile.TryFindStreamed(_folder.Root, "b.pdb", out file, out QuickSesError error), Is.False);
+            Assert.That(MoleculeFile.TryFindStreamed(_folder.Root, "b.pdb", out file, out QuickSesError error),
+                Is.False);
             Assert.That(file, Is.Null);
             Assert.That(error.Message, Does.Contain(Path.Combine(_folder.Root, "b.pdb")));
-            foreach (string root in new[] { "jar:file:///data/app/base.apk!/assets", "https://example.org/s", "", null })
+            foreach (string root in new[]
+                { "jar:file:///data/app/base.apk!/assets", "https://example.org/s", "", null })
             {
                 Assert.That(MoleculeFile.TryFindStreamed(root, "a.pdb", out file, out error), Is.False);
                 Assert.That(error.Message, Does.Contain("no folder").And.Contain("text asset"));

@@ -107,7 +107,8 @@ namespace QuickSes.Tests
             {
                 Vector3 a = vertices[triangles[i]] - ray.origin, b = vertices[triangles[i + 1]] - ray.origin,
                     c = vertices[triangles[i + 2]] - ray.origin;
-                double u = Volume(b, c, ray.direction), v = Volume(c, a, ray.direction), w = Volume(a, b, ray.direction);
+                double u = Volume(b, c, ray.direction), v = Volume(c, a, ray.direction),
+                    w = Volume(a, b, ray.direction);
                 bool isInside = (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
                 if (!isInside || u + v + w == 0)
                     continue;

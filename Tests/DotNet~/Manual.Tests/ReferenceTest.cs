@@ -13,7 +13,7 @@ using UnityEngine;
 internal sealed class ReferenceTest
 {
     private const BindingFlags Members =
-        BindingFlags.Public | BindingFlags.Instance | BindingFlags.Static | BindingFlags.DeclaredOnly;
+        BindingFlags.Public | BindingFlags.Instance | BindingFlags.Static;
 
     private static readonly string s_page =
         File.ReadAllText(Path.Combine(Repository.Root, "Documentation~", "unity-components.md"));
@@ -26,7 +26,8 @@ internal sealed class ReferenceTest
     {
         string section = Section(type.Name);
         foreach (MemberInfo member in type.GetMembers(Members))
-            if (!(member is MethodBase method && method.IsSpecialName) && member.Name != nameof(MoleculeSource.IsSet))
+            if (member.DeclaringType.Assembly == type.Assembly && member.Name != nameof(MoleculeSource.IsSet) &&
+                !(member is MethodBase method && method.IsSpecialName))
                 Assert.That(Regex.IsMatch(section, $"`{member.Name}\\b"), $"{type.Name}.{member.Name}");
     }
 

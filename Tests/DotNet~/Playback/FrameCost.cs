@@ -68,9 +68,10 @@ namespace QuickSes.Playback
                 arrival[k] = Milliseconds(t3, t4);
                 upload[k] = surface.Shown.UploadMilliseconds;
             }
-            Console.WriteLine($"{Path.GetFileName(file)}: {positions.Length} atoms, {surface.Shown.VertexCount} vertices, " +
-                $"buffers {(padBuffers ? "padded" : "exact")}, {surface.UsedBackend}: median/max ms of {Surfaces}: " +
-                $"SetPositions {Summary(feed)}, frame that begins {Summary(begin)}, frame that shows {Summary(arrival)}, " +
+            Console.WriteLine($"{Path.GetFileName(file)}: {positions.Length} atoms, " +
+                $"{surface.Shown.VertexCount} vertices, buffers {(padBuffers ? "padded" : "exact")}, " +
+                $"{surface.UsedBackend}: median/max ms of {Surfaces}: SetPositions {Summary(feed)}, " +
+                $"frame that begins {Summary(begin)}, frame that shows {Summary(arrival)}, " +
                 $"of that upload {Summary(upload)}");
             Engine.Quit();
             return true;

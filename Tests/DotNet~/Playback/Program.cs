@@ -8,9 +8,9 @@ using System.Runtime.InteropServices;
 namespace QuickSes.Playback
 {
     /// <summary>
-    /// playback LIBRARY frames FILE COUNT     plays a trajectory until COUNT surfaces were shown; prints what was allocated
-    /// playback LIBRARY cost FILE...          prints the milliseconds the main thread spends on a frame
-    /// A process of its own, since test hosts allocate as they please on other threads.
+    /// playback LIBRARY frames FILE COUNT     plays a trajectory until COUNT surfaces were shown; prints what was
+    /// allocated playback LIBRARY cost FILE...          prints the milliseconds the main thread spends on a frame A
+    /// process of its own, since test hosts allocate as they please on other threads.
     /// </summary>
     internal static class Program
     {

@@ -60,8 +60,9 @@ namespace QuickSes.Tests
             Assert.That(SourceForm.HintOf(MoleculeSourceKind.None), Is.Null);
         }
 
-        private static string[] SerialisedFields<T>() => typeof(T)
-            .GetFields(BindingFlags.Instance | BindingFlags.NonPublic)
+        private static string[] SerialisedFields<T>() where T : FileSource =>
+            new[] { typeof(T), typeof(FileSource) }.SelectMany(type => type
+                .GetFields(BindingFlags.Instance | BindingFlags.NonPublic | BindingFlags.DeclaredOnly))
             .Where(field => field.IsDefined(typeof(SerializeField)))
             .Select(field => field.Name).ToArray();
     }

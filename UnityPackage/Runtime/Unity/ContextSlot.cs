@@ -4,8 +4,8 @@ using System.Threading;
 namespace QuickSes
 {
     /// <summary>
-    /// One of the few contexts of <see cref="SurfaceScheduler"/>, and who may use it. Main thread only, but for
-    /// <see cref="Create"/> and <see cref="Dispose"/>, which may take a third of a second with CUDA and therefore run on
+    /// One of the few contexts of <see cref="SurfaceScheduler"/>, and who may use it. Main thread only, but for <see
+    /// cref="Create"/> and <see cref="Dispose"/>, which may take a third of a second with CUDA and therefore run on
     /// threads of their own where nobody has to wait for them.
     /// </summary>
     internal sealed class ContextSlot

@@ -33,8 +33,8 @@ namespace QuickSes
         private SurfaceMethod _method = SurfaceMethod.Exact;
 
         [Header("Quality")]
-        [SerializeField, Min(0.05f), Tooltip("How fine the mesh is in the end: Å between the points of the lattice it " +
-            "is made on. Half of it gives four times the triangles.")]
+        [SerializeField, Min(0.05f), Tooltip("How fine the mesh is in the end: Å between the points of the lattice " +
+            "it is made on. Half of it gives four times the triangles.")]
         private float _spacing = 0.5f;
         [SerializeField, Tooltip("Coarser surfaces (Å) that are shown until the finest is there.")]
         private float[] _levels = { 2, 1 };

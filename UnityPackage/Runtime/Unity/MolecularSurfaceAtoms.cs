@@ -12,7 +12,9 @@ namespace QuickSes
 {
     public sealed partial class MolecularSurface
     {
-        /// <summary>Where atoms come from if no script gives them; after a change call <see cref="LoadSource"/>.</summary>
+        /// <summary>
+        /// Where atoms come from if no script gives them; after a change call <see cref="LoadSource"/>.
+        /// </summary>
         public MoleculeSource Source => _source;
 
         /// <summary>How many atoms there are.</summary>

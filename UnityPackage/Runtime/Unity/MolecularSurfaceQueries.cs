@@ -23,8 +23,8 @@ namespace QuickSes
         public ReadOnlySpan<SurfaceComponent> Components => Session.Shown.Components;
 
         /// <summary>
-        /// The atom of each vertex of the mesh, as an index into the atoms that were given. Valid until the next surface
-        /// is shown.
+        /// The atom of each vertex of the mesh, as an index into the atoms that were given. Valid until the next
+        /// surface is shown.
         /// </summary>
         public ReadOnlySpan<uint> Owners => Session.Shown.Owners;
 
@@ -41,8 +41,8 @@ namespace QuickSes
         }
 
         /// <summary>
-        /// The first point of the surface that a ray meets. No collider is needed. The first question after a new surface
-        /// looks at all its triangles (some milliseconds for a million), later ones at few.
+        /// The first point of the surface that a ray meets. No collider is needed. The first question after a new
+        /// surface looks at all its triangles (some milliseconds for a million), later ones at few.
         /// </summary>
         /// <param name="ray">In world space, such as of Camera.ScreenPointToRay.</param>
         /// <param name="atom">The atom the point belongs to, an index into the atoms that were given; -1: none.</param>

@@ -9,14 +9,8 @@ namespace QuickSes
     /// also gzipped. Serialised with the component it belongs to. Main thread only.
     /// </summary>
     [Serializable]
-    public sealed class MoleculeSource
+    public sealed class MoleculeSource : FileSource
     {
-        [SerializeField, Tooltip("Where the file of atoms is.")]
-        private MoleculeSourceKind _kind = MoleculeSourceKind.None;
-        [SerializeField, Tooltip("A file that Unity imports as text, such as 1crn.pdb.txt or 2k39.pdb.gz.bytes.")]
-        private TextAsset _asset;
-        [SerializeField, Tooltip("Absolute, or relative to Assets/StreamingAssets.")]
-        private string _path = "";
         [SerializeField, Tooltip("Auto: by the name, also before .gz, .bytes and .txt, else by the content.")]
         private StructureFormat _format = StructureFormat.Auto;
         [SerializeField, Min(1), Tooltip("Which model of a file with several, from 1.")]
@@ -35,15 +29,6 @@ namespace QuickSes
         private string _radii = "";
         [SerializeField, Tooltip("How atoms are coloured.")]
         private AtomColorScheme _colorScheme = AtomColorScheme.Element;
-
-        /// <summary>Which of <see cref="Asset"/> and <see cref="Path"/> counts.</summary>
-        public MoleculeSourceKind Kind { get => _kind; set => _kind = value; }
-
-        /// <summary>For <see cref="MoleculeSourceKind.TextAsset"/>.</summary>
-        public TextAsset Asset { get => _asset; set => _asset = value; }
-
-        /// <summary>For the kinds File (absolute) and StreamingAssets (relative to that folder). Never null.</summary>
-        public string Path { get => _path ?? ""; set => _path = value; }
 
         /// <summary>Auto (default): by the name, also before ".gz", ".bytes" and ".txt", else by the content.</summary>
         public StructureFormat Format { get => _format; set => _format = value; }
@@ -69,25 +54,6 @@ namespace QuickSes
         /// <summary>How atoms are coloured; default by element.</summary>
         public AtomColorScheme ColorScheme { get => _colorScheme; set => _colorScheme = value; }
 
-        /// <summary>Whether a file is named; it need not be there.</summary>
-        public bool IsSet => _kind == MoleculeSourceKind.TextAsset
-            ? _asset != null
-            : _kind != MoleculeSourceKind.None && !string.IsNullOrWhiteSpace(_path);
-
-        /// <summary>Names a text asset, which is not read yet.</summary>
-        public void SetAsset(TextAsset asset)
-        {
-            _kind = MoleculeSourceKind.TextAsset;
-            _asset = asset;
-        }
-
-        /// <summary>Names a file by its absolute path, which is not read yet.</summary>
-        public void SetFile(string path)
-        {
-            _kind = MoleculeSourceKind.File;
-            _path = path;
-        }
-
         /// <summary>
         /// Reads the file, on the calling thread. false: <paramref name="error"/> says what is wrong with it or with
         /// the options. The structure is the caller's to dispose of. Its coordinates are those of the file: see
@@ -103,9 +69,7 @@ namespace QuickSes
 
         internal void CopyFrom(MoleculeSource other)
         {
-            _kind = other._kind;
-            _asset = other._asset;
-            _path = other._path;
+            CopyFileFrom(other);
             _format = other._format;
             _model = other._model;
             _skipWater = other._skipWater;
@@ -117,13 +81,9 @@ namespace QuickSes
         }
 
         /// <summary>Whether the other would read the same atoms; colours may differ.</summary>
-        internal bool IsSameAs(MoleculeSource other) => _kind == other._kind && _asset == other._asset &&
-            Path == other.Path && _format == other._format && _model == other._model &&
-            _skipWater == other._skipWater && _skipHydrogen == other._skipHydrogen &&
+        internal bool IsSameAs(MoleculeSource other) => HasSameFileAs(other) && _format == other._format &&
+            _model == other._model && _skipWater == other._skipWater && _skipHydrogen == other._skipHydrogen &&
             _skipHetero == other._skipHetero && Selection == other.Selection && Radii == other.Radii;
-
-        internal bool TryFind(out MoleculeFile file, out QuickSesError error) =>
-            MoleculeFile.TryFind(_kind, _asset, _path, out file, out error);
 
         internal bool TryOpen(MoleculeFile file, out Structure structure, out QuickSesError error)
         {

@@ -13,14 +13,17 @@ namespace QuickSes
     public static class SurfaceArrays
     {
         /// <summary>Gives the context its atoms: the first <paramref name="count"/> of the arrays, in Å.</summary>
-        public static QuickSesStatus SetAtoms(this SurfaceContext context, Vector3[] positions, float[] radii, int count) =>
+        public static QuickSesStatus SetAtoms(
+            this SurfaceContext context, Vector3[] positions, float[] radii, int count) =>
             context.SetAtoms(Floats(First(positions, count, nameof(positions))), First(radii, count, nameof(radii)));
 
         /// <summary>New positions for the atoms: the first <paramref name="count"/> of the array, in Å.</summary>
         public static QuickSesStatus SetPositions(this SurfaceContext context, Vector3[] positions, int count) =>
             context.SetPositions(Floats(First(positions, count, nameof(positions))));
 
-        /// <summary>New positions, picked: atom i is at frame[indices[i]], for i below <paramref name="count"/>.</summary>
+        /// <summary>
+        /// New positions, picked: atom i is at frame[indices[i]], for i below <paramref name="count"/>.
+        /// </summary>
         public static QuickSesStatus SetPositions(
             this SurfaceContext context, Vector3[] frame, int[] indices, int count) =>
             context.SetPositions(Floats(frame), MemoryMarshal.Cast<int, uint>(First(indices, count, nameof(indices))));

@@ -222,7 +222,8 @@ namespace QuickSes
             return idle;
         }
 
-        // Preferably the one that has the atoms of the session, then one that has none, then the one unused for longest.
+        // Preferably the one that has the atoms of the session, then one that has none, then the one unused for
+        // longest.
         private static ContextSlot FindIdle(SurfaceSession session)
         {
             ContextSlot best = null;

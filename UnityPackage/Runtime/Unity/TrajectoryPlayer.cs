@@ -6,9 +6,9 @@ namespace QuickSes
 {
     /// <summary>
     /// Plays a trajectory (DCD, XTC, PDB with several models) in the <see cref="MolecularSurface"/> beside it: reads
-    /// atoms of a structure, gives them to the surface, then their positions frame by frame, with x negated, since Unity
-    /// is left-handed. Frames are read ahead on a thread of its own; playing makes no garbage. In edit mode
-    /// <see cref="Frame"/> can be scrubbed, but nothing plays. Main thread only.
+    /// atoms of a structure, gives them to the surface, then their positions frame by frame, with x negated, since
+    /// Unity is left-handed. Frames are read ahead on a thread of its own; playing makes no garbage. In edit mode <see
+    /// cref="Frame"/> can be scrubbed, but nothing plays. Main thread only.
     /// </summary>
     [ExecuteAlways, DisallowMultipleComponent, RequireComponent(typeof(MolecularSurface))]
     [AddComponentMenu("Molecular/Trajectory Player")]
@@ -46,9 +46,9 @@ namespace QuickSes
         public event Action Finished;
 
         /// <summary>
-        /// A frame is damaged: its number, counted from 0; what was shown before stays, and playing goes on. -1: nothing
-        /// can be shown of the trajectory, or of the structure. Without listeners it is logged, of damaged frames the
-        /// first.
+        /// A frame is damaged: its number, counted from 0; what was shown before stays, and playing goes on. -1:
+        /// nothing can be shown of the trajectory, or of the structure. Without listeners it is logged, of damaged
+        /// frames the first.
         /// </summary>
         public event Action<int, QuickSesError> Failed;
 

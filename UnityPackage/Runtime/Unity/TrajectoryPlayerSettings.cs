@@ -25,7 +25,8 @@ namespace QuickSes
         [SerializeField, Range(FramePrefetcher.LeastSlots, MostPrefetchFrames), Tooltip(
             "How many frames are read ahead and kept: 12 bytes per atom each, 256 MiB at most.")]
         private int _prefetchFrames = 16;
-        [SerializeField, Min(0), Tooltip("The place shown, counted from 0; between two frames if they are interpolated.")]
+        [SerializeField, Min(0), Tooltip(
+            "The place shown, counted from 0; between two frames if they are interpolated.")]
         private double _frame;
 
         private const int MostPrefetchFrames = 256;
@@ -37,9 +38,9 @@ namespace QuickSes
         public MoleculeSource StructureSource => _structureSource;
 
         /// <summary>
-        /// Where the atoms are in each frame; of kind None (default): the structure's own file, which must then be a PDB
-        /// file with several models. It must have all atoms of the file of the structure, in the same order; filters of
-        /// the structure choose among them. Takes effect with <see cref="Load"/>.
+        /// Where the atoms are in each frame; of kind None (default): the structure's own file, which must then be a
+        /// PDB file with several models. It must have all atoms of the file of the structure, in the same order;
+        /// filters of the structure choose among them. Takes effect with <see cref="Load"/>.
         /// </summary>
         public TrajectorySource TrajectorySource => _trajectorySource;
 
@@ -91,9 +92,9 @@ namespace QuickSes
         public bool UseUnscaledTime { get => _useUnscaledTime; set => _useUnscaledTime = value; }
 
         /// <summary>
-        /// The place in the trajectory, from 0 to <see cref="FrameCount"/> - 1; between two whole numbers while it plays
-        /// or where it was put. Setting it shows that place as soon as its frames are read, playing or not, in edit mode
-        /// too; what is out of range is clamped. Before frames are there it says where to begin.
+        /// The place in the trajectory, from 0 to <see cref="FrameCount"/> - 1; between two whole numbers while it
+        /// plays or where it was put. Setting it shows that place as soon as its frames are read, playing or not, in
+        /// edit mode too; what is out of range is clamped. Before frames are there it says where to begin.
         /// </summary>
         public double Frame
         {

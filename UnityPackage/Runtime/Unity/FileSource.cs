@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+using System;
+using UnityEngine;
+
+namespace QuickSes
+{
+    /// <summary>
+    /// Where a file is: what <see cref="MoleculeSource"/> and <see cref="TrajectorySource"/> have in common. Serialised
+    /// with the component it belongs to. Main thread only.
+    /// </summary>
+    [Serializable]
+    public abstract class FileSource
+    {
+        [SerializeField, Tooltip("Where the file is.")]
+        private MoleculeSourceKind _kind = MoleculeSourceKind.None;
+        [SerializeField, Tooltip("A file that Unity imports as text, such as 1crn.pdb.txt or 2k39.pdb.gz.bytes.")]
+        private TextAsset _asset;
+        [SerializeField, Tooltip("Absolute, or relative to Assets/StreamingAssets.")]
+        private string _path = "";
+
+        private protected FileSource()
+        {
+        }
+
+        /// <summary>Which of <see cref="Asset"/> and <see cref="Path"/> counts.</summary>
+        public MoleculeSourceKind Kind { get => _kind; set => _kind = value; }
+
+        /// <summary>For <see cref="MoleculeSourceKind.TextAsset"/>.</summary>
+        public TextAsset Asset { get => _asset; set => _asset = value; }
+
+        /// <summary>For the kinds File (absolute) and StreamingAssets (relative to that folder). Never null.</summary>
+        public string Path { get => _path ?? ""; set => _path = value; }
+
+        /// <summary>Whether a file is named; it need not be there.</summary>
+        public bool IsSet => _kind == MoleculeSourceKind.TextAsset
+            ? _asset != null
+            : _kind != MoleculeSourceKind.None && !string.IsNullOrWhiteSpace(_path);
+
+        /// <summary>Names a text asset, which is not read yet.</summary>
+        public void SetAsset(TextAsset asset)
+        {
+            _kind = MoleculeSourceKind.TextAsset;
+            _asset = asset;
+        }
+
+        /// <summary>Names a file by its absolute path, which is not read yet.</summary>
+        public void SetFile(string path)
+        {
+            _kind = MoleculeSourceKind.File;
+            _path = path;
+        }
+
+        internal bool TryFind(out MoleculeFile file, out QuickSesError error) =>
+            MoleculeFile.TryFind(_kind, _asset, _path, out file, out error);
+
+        private protected void CopyFileFrom(FileSource other)
+        {
+            _kind = other._kind;
+            _asset = other._asset;
+            _path = other._path;
+        }
+
+        private protected bool HasSameFileAs(FileSource other) =>
+            _kind == other._kind && _asset == other._asset && Path == other.Path;
+    }
+}
