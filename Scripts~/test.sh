@@ -59,6 +59,10 @@ platforms=(--platform linux-x86_64)
 if [ "$with_windows" = yes ]; then
   platforms+=(--platform windows-x86_64)
   export WINEPREFIX="$PWD/.build/wine" WINEDEBUG=-all
+  mkdir -p "$WINEPREFIX"
+  # Wine's server stays until the end: to start it anew for each program takes seconds.
+  /usr/lib/wine/wineserver -p
+  trap '/usr/lib/wine/wineserver -k' EXIT
   echo "==== windows: configure"
   cmake --preset windows
   echo "==== windows: build"
