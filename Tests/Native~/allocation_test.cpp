@@ -218,6 +218,40 @@ TEST(Allocations, NoneWithTheGridMethodAndGatheredPositions) {
   });
 }
 
+// Atoms fly apart and meet again: the number of components changes from frame to frame.
+TEST(Allocations, NoneWithComponents) {
+  const Context context;
+  Atoms atoms = crambin();
+  for (int k = 0; k < 40; ++k) atoms.add(30 + 3 * k, 0, 0, 1.5);
+  set_atoms(context, atoms);
+  qses_settings s = settings(0.5, 1.4, QSES_SURFACE_VDW);
+  s.components = 1;
+  uint32_t fewest = ~0u, most = 0;
+  expect_no_allocation(atoms, [&](const std::vector<float> &positions) {
+    set_positions(context, positions);
+    const uint32_t count = begin_and_collect(context, s).component_count;
+    fewest = std::min(fewest, count);
+    most = std::max(most, count);
+  });
+  EXPECT_LT(fewest, most);
+}
+
+TEST(Allocations, NoneWhereSeriesTakeTurns) {
+  const Context context;
+  const Atoms atoms = crambin();
+  set_atoms(context, atoms);
+  qses_settings s = settings();
+  s.frame_budget_ms = 0.001f;  // none fits: always the coarsest
+  expect_no_allocation(
+      atoms,
+      [&](const std::vector<float> &positions) {
+        ++s.series;
+        set_positions(context, positions);
+        begin_and_collect(context, s);
+      },
+      QSES_REMEMBERED_SERIES + 100);
+}
+
 TEST(Allocations, NoneWithAMemoryBudget) {
   const Context context(2, uint64_t(16) << 20);
   const Atoms atoms = crambin();

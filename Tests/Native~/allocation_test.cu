@@ -47,6 +47,15 @@ TEST(CudaAllocations, NoneInComputeOverATrajectory) {
   });
 }
 
+TEST(CudaAllocations, NoneWithComponents) {
+  expect_no_request([](qses_context *context, const std::vector<float> &positions) {
+    set_positions(context, positions);
+    qses_settings s = settings();
+    s.components = 1;
+    begin_and_collect(context, s);
+  });
+}
+
 TEST(CudaAllocations, NoneWithTheGridMethod) {
   expect_no_request([](qses_context *context, const std::vector<float> &positions) {
     set_positions(context, positions);

@@ -67,6 +67,11 @@ std::vector<Case> cases() {
   s.texcoords = 1;
   s.patch_types = 1;
   add("all attributes", many, s);
+  s = settings(0.4);
+  s.components = 1;
+  add("components", many, s);
+  s.relaxation_steps = 3;
+  add("components, relaxed", one, s);
   s = settings(0.5);
   s.method = QSES_METHOD_GRID;
   add("grid", many, s);

@@ -139,6 +139,7 @@ namespace QuickSes.Tests
             for (int step = 0; step < 9; ++step)
             {
                 _playing.Pass(0.1f);
+                _playing.Pass(0); // still there
                 if (step == 1) // the damaged frame is due: the one before stays
                     _playing.AssertShows(1);
             }

@@ -65,6 +65,9 @@ namespace QuickSes
         [NonSerialized] private SurfaceSession _session;
         [NonSerialized] private bool _isScriptFed;
         [NonSerialized] private bool _asksForAtoms;
+        [NonSerialized] private bool _isEdited; // in the inspector, by Undo, by a prefab
+        [NonSerialized] private MoleculeSource _loadedSource; // as it was when it was read; null: it was not
+        [NonSerialized] private Color32 _loadedBaseColor; // atoms that the scheme tells nothing of have it
         [NonSerialized] private bool _isDestroyed;
 
         /// <summary>A surface arrived and is shown.</summary>

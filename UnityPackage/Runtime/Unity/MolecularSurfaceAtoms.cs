@@ -132,6 +132,8 @@ namespace QuickSes
         /// <returns>Whether there was a structure to read.</returns>
         public bool LoadSource()
         {
+            _loadedSource = _source.Copy();
+            _loadedBaseColor = _baseColor;
             if (!_source.TryOpen(out Structure structure, out QuickSesError error))
             {
                 Session.FailToBegin(error);

@@ -45,6 +45,11 @@ namespace QuickSes
                 if (!Session.Atoms.IsSet)
                     _atomsRequested?.Invoke();
             }
+            if (_isEdited)
+            {
+                _isEdited = false;
+                FollowEdits();
+            }
             SurfaceSession session = Session;
             session.Tick(Time.realtimeSinceStartupAsDouble);
             if (!session.IsSettled)
@@ -57,8 +62,31 @@ namespace QuickSes
             if (_session == null || _session.IsDisposed)
                 return;
             _session.Atoms.SetBaseColor(_baseColor);
+            _isEdited = true; // the rest later: files are not read and meshes not set while values are validated
             Changed(SurfaceChange.Shape);
         }
+
+        // The inspector, Undo and changed prefabs write serialised fields, also that of the filter beside this
+        // component, whose mesh is in no file.
+        private void FollowEdits()
+        {
+            GetComponent<MeshFilter>().sharedMesh = Session.Shown.Mesh;
+            if (_isScriptFed || IsSourceAsLoaded())
+                return;
+            if (_source.IsSet)
+            {
+                LoadSource();
+                return;
+            }
+            ClearAtoms();
+            _isScriptFed = false;
+            _loadedSource = null;
+        }
+
+        private bool IsSourceAsLoaded() => _loadedSource == null
+            ? !_source.IsSet
+            : _source.IsSameAs(_loadedSource) && _source.ColorScheme == _loadedSource.ColorScheme &&
+              _baseColor.Equals(_loadedBaseColor);
 
 #if UNITY_EDITOR
         private const string DemoMolecule = "887aaba082b543e99d77084bbddee6c8"; // GUID of Defaults/1crn.pdb.bytes

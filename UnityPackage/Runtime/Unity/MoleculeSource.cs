@@ -101,6 +101,21 @@ namespace QuickSes
 
         internal MoleculeSource Copy() => (MoleculeSource)MemberwiseClone();
 
+        internal void CopyFrom(MoleculeSource other)
+        {
+            _kind = other._kind;
+            _asset = other._asset;
+            _path = other._path;
+            _format = other._format;
+            _model = other._model;
+            _skipWater = other._skipWater;
+            _skipHydrogen = other._skipHydrogen;
+            _skipHetero = other._skipHetero;
+            _selection = other._selection;
+            _radii = other._radii;
+            _colorScheme = other._colorScheme;
+        }
+
         /// <summary>Whether the other would read the same atoms; colours may differ.</summary>
         internal bool IsSameAs(MoleculeSource other) => _kind == other._kind && _asset == other._asset &&
             Path == other.Path && _format == other._format && _model == other._model &&

@@ -89,12 +89,7 @@ namespace QuickSes
         public void Dispose()
         {
             if (_mesh != null)
-            {
-                if (Application.isPlaying)
-                    Object.Destroy(_mesh);
-                else
-                    Object.DestroyImmediate(_mesh);
-            }
+                Object.DestroyImmediate(_mesh); // at the end of play mode no later frame would destroy it
             _mesh = null;
             _uploader.Dispose();
             _owners.Dispose();

@@ -59,6 +59,14 @@ namespace QuickSes
 
         internal TrajectorySource Copy() => (TrajectorySource)MemberwiseClone();
 
+        internal void CopyFrom(TrajectorySource other)
+        {
+            _kind = other._kind;
+            _asset = other._asset;
+            _path = other._path;
+            _format = other._format;
+        }
+
         internal bool IsSameAs(TrajectorySource other) => _kind == other._kind && _asset == other._asset &&
             Path == other.Path && _format == other._format;
     }

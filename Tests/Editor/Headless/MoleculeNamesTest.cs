@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+using NUnit.Framework;
+using QuickSes.Editor;
+
+namespace QuickSes.Tests
+{
+    public sealed class MoleculeNamesTest
+    {
+        [TestCase("/data/1crn.pdb", "1crn")]
+        [TestCase("ensembles/2k39.PDB.gz.bytes", "2k39")]
+        [TestCase("2k39.pdb", "2k39")] // a text asset's name
+        [TestCase("my.protein.v2.cif", "my.protein.v2")]
+        [TestCase("protein", "protein")]
+        [TestCase("", "Molecular Surface")]
+        [TestCase(null, "Molecular Surface")]
+        [TestCase(".pdb", "Molecular Surface")]
+        public void ObjectsAreCalledAsTheirFile(string file, string name) =>
+            Assert.That(MoleculeNames.ObjectNameOf(file), Is.EqualTo(name));
+
+        [TestCase("1crn", "1crn")]
+        [TestCase(" chain A/B: \"x\"? ", "chain A_B_ _x__")]
+        [TestCase("", "Molecular Surface")]
+        [TestCase(null, "Molecular Surface")]
+        public void AssetsAreCalledAsTheirObjectWithoutWhatFileSystemsRefuse(string objectName, string name) =>
+            Assert.That(MoleculeNames.AssetNameOf(objectName), Is.EqualTo(name));
+    }
+}

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+using NUnit.Framework;
+using QuickSes.Editor;
+using System.IO;
+
+namespace QuickSes.Tests
+{
+    public sealed class StructurePreviewTest
+    {
+        // An alanine (with one hydrogen), a water, twice.
+        private const string Model =
+            "ATOM      1  N   ALA A   1      11.104   6.134  -6.504  1.00  0.00           N\n" +
+            "ATOM      2  CA  ALA A   1      11.639   6.071  -5.147  1.00  0.00           C\n" +
+            "ATOM      3  HA  ALA A   1      12.500   6.700  -5.000  1.00  0.00           H\n" +
+            "HETATM    4  O   HOH A   2      15.000   6.000  -5.000  1.00  0.00           O\n";
+        private const string TwoModels =
+            "MODEL        1\n" + Model + "ENDMDL\nMODEL        2\n" + Model + "ENDMDL\nEND\n";
+
+        private string _path;
+
+        [SetUp]
+        public void WriteFile()
+        {
+            _path = Path.Combine(Path.GetTempPath(), Path.GetRandomFileName() + ".pdb");
+            File.WriteAllText(_path, TwoModels);
+        }
+
+        [TearDown]
+        public void DeleteFile() => File.Delete(_path);
+
+        [Test]
+        public void AtomsAreCountedAfterFilters()
+        {
+            var source = new MoleculeSource { SkipWater = true, SkipHydrogen = true, Model = 2 };
+            source.SetFile(_path);
+            StructurePreview preview = StructurePreview.Read(source);
+            Assert.That(preview.Error, Is.Empty);
+            Assert.That(preview.AtomCount, Is.EqualTo(2));
+            Assert.That(preview.FileAtomCount, Is.EqualTo(4));
+            Assert.That(preview.Summary, Is.EqualTo("2 of 4 atoms, model 2 of 2 (PDB)"));
+            Assert.That(preview.HasPlayableModels, Is.True);
+            Assert.That(preview.Warnings, Is.Empty);
+        }
+
+        [Test]
+        public void WithoutFiltersAllAreThere()
+        {
+            File.WriteAllText(_path, Model + "END\n");
+            var source = new MoleculeSource { SkipWater = false };
+            source.SetFile(_path);
+            StructurePreview preview = StructurePreview.Read(source);
+            Assert.That(preview.Summary, Is.EqualTo("4 atoms (PDB)"));
+            Assert.That(preview.HasPlayableModels, Is.False);
+        }
+
+        [Test]
+        public void AFilterThatLeavesNothingIsAnError()
+        {
+            var source = new MoleculeSource { Selection = "//Z" };
+            source.SetFile(_path);
+            StructurePreview preview = StructurePreview.Read(source);
+            Assert.That(preview.Error, Is.Not.Empty);
+            Assert.That(preview.Summary, Is.Empty);
+        }
+
+        [Test]
+        public void AFileThatIsNotThereIsNamed()
+        {
+            var source = new MoleculeSource();
+            source.SetFile(_path + "x");
+            Assert.That(StructurePreview.Read(source).Error, Does.Contain(_path + "x"));
+        }
+    }
+}

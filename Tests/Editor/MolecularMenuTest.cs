@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+using NUnit.Framework;
+using QuickSes.Editor;
+using UnityEditor;
+using UnityEngine;
+
+namespace QuickSes.Tests
+{
+    public sealed class MolecularMenuTest
+    {
+        private readonly CreatedSurfaces _created = new CreatedSurfaces();
+
+        [SetUp]
+        public void BeginStepOfUndo() => Undo.IncrementCurrentGroup();
+
+        [TearDown]
+        public void Destroy() => _created.Destroy();
+
+        [Test]
+        public void TheMenuMakesASurfaceWithoutAtomsThatUndoTakesBack()
+        {
+            Assert.That(EditorApplication.ExecuteMenuItem(MolecularMenu.Empty), Is.True);
+            GameObject made = Selection.activeGameObject;
+            MolecularSurface surface = _created.Keep(made.GetComponent<MolecularSurface>());
+            Assert.That(made.GetComponent<MeshFilter>().sharedMesh, Is.SameAs(surface.Mesh));
+            Assert.That(made.GetComponent<MeshRenderer>().sharedMaterial != null, Is.True);
+            Assert.That(surface.Source.IsSet, Is.False);
+            Assert.That(surface.AtomCount, Is.EqualTo(0));
+            Undo.PerformUndo();
+            Assert.That(made == null, Is.True);
+        }
+
+        [Test]
+        public void TheWindowOpens()
+        {
+            Assert.That(EditorApplication.ExecuteMenuItem(MolecularMenu.FromFile), Is.True);
+            Assert.That(EditorWindow.HasOpenInstances<SurfaceFromFileWindow>(), Is.True);
+            EditorWindow.GetWindow<SurfaceFromFileWindow>().Close();
+        }
+
+        [Test]
+        public void ASurfaceOfAFileHasItsNameAndACopyOfTheSource()
+        {
+            var source = new MoleculeSource { SkipHydrogen = true, Selection = "//A" };
+            source.SetFile("/molecules/1crn.pdb.gz");
+            MolecularSurface surface = _created.Keep(SurfaceCreator.Create(source, null));
+            Assert.That(surface.name, Is.EqualTo("1crn"));
+            Assert.That(surface.Source, Is.Not.SameAs(source));
+            Assert.That(surface.Source.IsSameAs(source), Is.True);
+            Assert.That(Selection.activeGameObject, Is.SameAs(surface.gameObject));
+        }
+
+        [Test]
+        public void AParentGetsItAtItsOriginAndOnItsLayer()
+        {
+            var parent = new GameObject("Parent") { layer = 4 };
+            parent.transform.position = new Vector3(1, 2, 3);
+            _created.Keep(parent.transform);
+            MolecularSurface surface = SurfaceCreator.CreateEmpty(parent);
+            Assert.That(surface.transform.parent, Is.SameAs(parent.transform));
+            Assert.That(surface.transform.localPosition, Is.EqualTo(Vector3.zero));
+            Assert.That(surface.gameObject.layer, Is.EqualTo(4));
+            Assert.That(_created.Keep(SurfaceCreator.CreateEmpty(parent)).name, Is.Not.EqualTo(surface.name));
+        }
+
+        [Test]
+        public void ATrajectoryComesWithAPlayer()
+        {
+            var structure = new MoleculeSource();
+            structure.SetAsset(new TextAsset("none"));
+            var trajectory = new TrajectorySource { Kind = MoleculeSourceKind.StreamingAssets, Path = "md.xtc" };
+            UnityEngine.TestTools.LogAssert.ignoreFailingMessages = true; // neither can be read
+            TrajectoryPlayer player = _created.Keep(SurfaceCreator.Create(structure, trajectory, null));
+            Assert.That(player.StructureSource.IsSameAs(structure), Is.True);
+            Assert.That(player.TrajectorySource.IsSameAs(trajectory), Is.True);
+            Assert.That(player.GetComponent<MolecularSurface>().Source.IsSet, Is.False);
+            Assert.That(player.isActiveAndEnabled, Is.True);
+            Undo.PerformUndo();
+            Assert.That(player == null, Is.True);
+        }
+    }
+}

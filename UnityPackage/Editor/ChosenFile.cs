@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+using UnityEditor;
+using UnityEngine;
+
+namespace QuickSes.Editor
+{
+    /// <summary>
+    /// A file the user chose, in the form that travels best: as an asset, else relative to StreamingAssets, else by its
+    /// absolute path.
+    /// </summary>
+    internal readonly struct ChosenFile
+    {
+        private static readonly string[] s_structures =
+        {
+            "Structures", "pdb,ent,brk,cif,mmcif,pqr,xyzr,xyzrn,gro,gz,bytes,txt", "All files", "*"
+        };
+
+        private static readonly string[] s_trajectories =
+        {
+            "Trajectories", "dcd,xtc,pdb,ent,gz,bytes", "All files", "*"
+        };
+
+        private ChosenFile(MoleculeSourceKind kind, TextAsset asset, string path)
+        {
+            Kind = kind;
+            Asset = asset;
+            Path = path;
+        }
+
+        public MoleculeSourceKind Kind { get; }
+
+        /// <summary>For the kind TextAsset, else null.</summary>
+        public TextAsset Asset { get; }
+
+        /// <summary>For the other kinds, else "".</summary>
+        public string Path { get; }
+
+        /// <summary>Asks for a structure; false: the user cancelled.</summary>
+        public static bool AskForStructure(out ChosenFile chosen) => Ask("Structure", s_structures, out chosen);
+
+        /// <summary>Asks for a trajectory; false: the user cancelled.</summary>
+        public static bool AskForTrajectory(out ChosenFile chosen) => Ask("Trajectory", s_trajectories, out chosen);
+
+        /// <param name="file">Absolute.</param>
+        public static ChosenFile Of(string file)
+        {
+            bool ignoreCase = Application.platform != RuntimePlatform.LinuxEditor;
+            ProjectFile located = ProjectFile.Locate(file, Application.dataPath, ignoreCase);
+            if (located.Place == ProjectFilePlace.StreamingAssets)
+                return new ChosenFile(MoleculeSourceKind.StreamingAssets, null, located.Path);
+            if (located.Place == ProjectFilePlace.Assets)
+            {
+                var asset = AssetDatabase.LoadAssetAtPath<TextAsset>(located.Path);
+                if (asset != null)
+                    return new ChosenFile(MoleculeSourceKind.TextAsset, asset, "");
+            }
+            return new ChosenFile(MoleculeSourceKind.File, null, file);
+        }
+
+        /// <summary>Writes it into the fields _kind, _asset and _path below <paramref name="source"/>.</summary>
+        public void AssignTo(SerializedProperty source)
+        {
+            source.FindPropertyRelative("_kind").intValue = (int)Kind;
+            source.FindPropertyRelative("_asset").objectReferenceValue = Asset;
+            source.FindPropertyRelative("_path").stringValue = Path;
+        }
+
+        private static bool Ask(string title, string[] filters, out ChosenFile chosen)
+        {
+            string file = EditorUtility.OpenFilePanelWithFilters(title, "", filters);
+            bool isChosen = !string.IsNullOrEmpty(file);
+            chosen = isChosen ? Of(file) : default;
+            return isChosen;
+        }
+    }
+}

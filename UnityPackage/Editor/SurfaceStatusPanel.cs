@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+using UnityEditor;
+using UnityEngine;
+
+namespace QuickSes.Editor
+{
+    /// <summary>Draws what a surface shows, what it took, and what computes it.</summary>
+    internal static class SurfaceStatusPanel
+    {
+        public static void Draw(MolecularSurface surface)
+        {
+            SurfaceLevel shown = surface.Shown;
+            bool hasFailed = surface.LastError.Status != QuickSesStatus.Ok;
+            bool hasAtoms = surface.AtomCount > 0;
+            string state = SurfaceStatus.State(hasAtoms, surface.IsBusy, surface.Progress, shown, hasFailed);
+            if (surface.IsBusy)
+                EditorGUI.ProgressBar(EditorGUILayout.GetControlRect(), surface.Progress, state);
+            else
+                Row("State", state);
+            if (hasFailed)
+                EditorGUILayout.HelpBox(surface.LastError.Message, MessageType.Error);
+            Row("Atoms", SurfaceStatus.Count(surface.AtomCount));
+            if (shown.LevelCount > 0)
+                DrawShown(surface, shown);
+            DrawBackend(surface);
+        }
+
+        /// <summary>Sums over several surfaces.</summary>
+        public static void DrawSums(Object[] surfaces)
+        {
+            int busy = 0, count = 0;
+            long atoms = 0, vertices = 0, triangles = 0;
+            ulong meshBytes = 0;
+            foreach (Object target in surfaces)
+            {
+                var surface = (MolecularSurface)target;
+                if (!MolecularSurfaceEditor.IsLive(surface))
+                    continue;
+                SurfaceLevel shown = surface.Shown;
+                ++count;
+                busy += surface.IsBusy ? 1 : 0;
+                atoms += surface.AtomCount;
+                vertices += shown.VertexCount;
+                triangles += shown.TriangleCount;
+                meshBytes += shown.MeshBytes;
+            }
+            Row("Surfaces", $"{SurfaceStatus.Count(count)}, {SurfaceStatus.Count(busy)} computing");
+            Row("Atoms", SurfaceStatus.Count(atoms));
+            Row("Vertices", SurfaceStatus.Count(vertices));
+            Row("Triangles", SurfaceStatus.Count(triangles));
+            Row("Mesh memory", SurfaceStatus.Bytes(meshBytes));
+        }
+
+        private static void DrawShown(MolecularSurface surface, in SurfaceLevel shown)
+        {
+            Row("Level", SurfaceStatus.Level(shown.Level, shown.LevelCount, shown.Spacing));
+            Row("Vertices", SurfaceStatus.Count(shown.VertexCount));
+            Row("Triangles", SurfaceStatus.Count(shown.TriangleCount));
+            Row("Compute time", SurfaceStatus.Milliseconds(shown.ComputeMilliseconds));
+            Row("Upload time", SurfaceStatus.Milliseconds(shown.UploadMilliseconds));
+            string place = surface.UsedBackend == SurfaceBackend.Cuda ? " (GPU)" : "";
+            Row("Work memory", SurfaceStatus.Bytes(shown.WorkBytes) + place);
+            Row("Mesh memory", SurfaceStatus.Bytes(shown.MeshBytes));
+            Row("Host memory", SurfaceStatus.Bytes(shown.HostBytes));
+            Row("Area", SurfaceStatus.Measure(surface.Area, "Å²"));
+            Row("Volume", SurfaceStatus.Measure(surface.Volume, "Å³"));
+            if (surface.MeasureComponents && surface.Components.Length > 0)
+                Row("Components", SurfaceStatus.Components(surface.Components));
+        }
+
+        private static void DrawBackend(MolecularSurface surface)
+        {
+            if (surface.UsedBackend == SurfaceBackend.Auto)
+                return;
+            BackendDescription device = surface.UsedDevice;
+            Row("Computed by", SurfaceStatus.Backend(surface.UsedBackend, device.Device));
+            string note = SurfaceStatus.WhyNotCuda(surface.UsedBackend, device.Reason);
+            if (note != null)
+                EditorGUILayout.HelpBox(note, MessageType.Info);
+        }
+
+        private static void Row(string label, string text) => EditorGUILayout.LabelField(label, text);
+    }
+}
