@@ -59,6 +59,12 @@ platforms=(--platform linux-x86_64)
 if [ "$with_windows" = yes ]; then
   platforms+=(--platform windows-x86_64)
   export WINEPREFIX="$PWD/.build/wine" WINEDEBUG=-all
+  mkdir -p "$WINEPREFIX"
+  # Wine's server and services stay until the end: to start them anew for each program takes seconds. They keep the output
+  # of the program that starts them open, which therefore must be none that a test waits for.
+  /usr/lib/wine/wineserver -p
+  /usr/lib/wine/wine64 wineboot --init </dev/null >/dev/null 2>&1
+  trap '/usr/lib/wine/wineserver -k' EXIT
   echo "==== windows: configure"
   cmake --preset windows
   echo "==== windows: build"
