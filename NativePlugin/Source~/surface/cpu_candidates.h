@@ -6,6 +6,8 @@
 #include "parallel/pack.h"
 #include "surface/cpu_kernels.h"
 
+#include <cstring>
+
 namespace quickses {
 namespace QSES_CPU_ISA {
 
@@ -71,14 +73,13 @@ QSES_FN void end_balls(const BallColumns &c, int at) {
 // One bit per lane from eight bytes that are 0 or 1.
 QSES_FN uint32_t bits_of_bytes(const uint8_t *bytes) {
   uint64_t v;
-  __builtin_memcpy(&v, bytes, 8);
+  std::memcpy(&v, bytes, sizeof v);
   return static_cast<uint32_t>((v * 0x0102040810204080ull) >> 56);
 }
 
 // Gathers what can matter in the box: atoms whose ball, grown by atom_reach, meets it, and arcs within arc_reach.
-inline __attribute__((always_inline)) BrickCandidates gather_candidates(const FeatureView &f, const Vec3<float> &low,
-                                                                        float extent, float atom_reach, float arc_reach,
-                                                                        const BrickScratch &scratch) {
+QSES_FN BrickCandidates gather_candidates(const FeatureView &f, const Vec3<float> &low, float extent, float atom_reach,
+                                          float arc_reach, const BrickScratch &scratch) {
   BrickCandidates c = cut_columns(scratch);
   const PackBox box(low, extent);
   const Vec3<float> high(low.x + extent, low.y + extent, low.z + extent);
