@@ -137,7 +137,8 @@ namespace QuickSes.Samples
             // The GUI counts from the top of the screen, the camera from its bottom.
             var pixel = new Vector3(mouse.x * scale, Screen.height - mouse.y * scale, 0);
             if (_player.Structure == null ||
-                !_surface.TryPick(_camera.ScreenPointToRay(pixel), out int index, out Vector3 _))
+                !_surface.TryPick(_camera.ScreenPointToRay(pixel), out int index, out Vector3 _) ||
+                index >= _player.Structure.AtomCount) // the surface shown may be of what was loaded before
                 return;
             StructureAtom atom = _player.Structure.GetAtom(index);
             string name = $"{atom.Name} of {atom.ResidueName} {atom.ResidueNumber}, chain {atom.Chain}";

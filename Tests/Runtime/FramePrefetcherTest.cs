@@ -18,7 +18,7 @@ namespace QuickSes.Tests
             public readonly ManualResetEventSlim Gate = new ManualResetEventSlim(true); // closed: reads wait
             public readonly List<int> Reads = new List<int>(100000); // locked
             public int Damaged = -1, Throws = -1;
-            public bool CanOpen = true;
+            public bool CanOpen = true, ThrowsOnOpening, WaitsOnOpening;
             public volatile bool IsDisposed;
             public long Garbage; // bytes the thread allocated since the second read
 
@@ -37,6 +37,10 @@ namespace QuickSes.Tests
 
             public override bool TryOpen(out QuickSesError error)
             {
+                if (WaitsOnOpening)
+                    Gate.Wait();
+                if (ThrowsOnOpening)
+                    throw new InvalidOperationException("thrown");
                 error = CanOpen ? default : new QuickSesError(QuickSesStatus.FileError, "can't be opened");
                 return CanOpen;
             }
@@ -227,16 +231,62 @@ namespace QuickSes.Tests
         [Test]
         public void ExceptionsDoNotLeaveTheThread()
         {
-            var reader = new CountingReader(10) { Throws = 1 };
+            var reader = new CountingReader(10) { ThrowsOnOpening = true };
             var prefetcher = new FramePrefetcher(reader, 5);
-            prefetcher.Request(Order(10, 0));
             WaitUntil(() => prefetcher.GetOpening(out _) == FrameState.Damaged, "it failed");
             prefetcher.GetOpening(out QuickSesError error);
             Assert.That(error.Status, Is.EqualTo(QuickSesStatus.InternalError));
             Assert.That(error.Message, Does.Contain("thrown"));
-            AssertShows(prefetcher, 0); // its memory is still there
             prefetcher.Dispose();
             Assert.That(reader.IsDisposed && prefetcher.HasLeft, Is.True);
+        }
+
+        [Test]
+        public void ReadsThatThrowDamageTheirFrameOnly()
+        {
+            var reader = new CountingReader(10) { Throws = 1 };
+            using (var prefetcher = new FramePrefetcher(reader, 5))
+            {
+                prefetcher.Request(Order(10, 0));
+                Assert.That(WaitFor(prefetcher, 1), Is.EqualTo(FrameState.Damaged));
+                prefetcher.Get(1, out _, out _, out QuickSesError error);
+                Assert.That(error.Status, Is.EqualTo(QuickSesStatus.InternalError));
+                Assert.That(error.Message, Does.Contain("thrown"));
+                AssertShows(prefetcher, 0);
+                AssertShows(prefetcher, 2);
+            }
+            Assert.That(reader.IsDisposed, Is.True);
+        }
+
+        [Test]
+        public void DisposeDoesNotWaitForOpening()
+        {
+            var reader = new CountingReader(10) { WaitsOnOpening = true };
+            reader.Gate.Reset();
+            var prefetcher = new FramePrefetcher(reader, 5);
+            prefetcher.Dispose();
+            Assert.That(prefetcher.HasLeft || reader.IsDisposed, Is.False);
+            reader.Gate.Set();
+            WaitUntil(() => prefetcher.HasLeft, "it has left by itself");
+            Assert.That(reader.IsDisposed, Is.True);
+            Assert.That(reader.ReadsSoFar(), Is.Empty);
+        }
+
+        [Test]
+        public void DisposeAllWaitsForOpeningToo()
+        {
+            var disposed = new CountingReader(10) { WaitsOnOpening = true };
+            disposed.Gate.Reset();
+            var first = new FramePrefetcher(disposed, 5);
+            first.Dispose();
+            var inUse = new CountingReader(10);
+            var second = new FramePrefetcher(inUse, 5);
+            WaitUntilOpen(second);
+            using (new Timer(_ => disposed.Gate.Set(), null, 50, Timeout.Infinite))
+                FramePrefetcher.DisposeAll();
+            Assert.That(first.HasLeft && second.HasLeft, Is.True);
+            Assert.That(disposed.IsDisposed && inUse.IsDisposed, Is.True);
+            second.Dispose();
         }
 
         [Test]

@@ -230,9 +230,102 @@ namespace QuickSes.Tests
             Player.TrajectorySource.SetFile(_folder.Write("short.dcd", TestFrames.Dcd(TestFrames.Frames(2))));
             _playing.Load();
             Assert.That(Player.FrameCount, Is.EqualTo(2));
-            Assert.That(Player.Frame, Is.EqualTo(1)); // clamped
-            _playing.AssertShows(1);
+            Assert.That(Player.Frame, Is.EqualTo(0));
+            _playing.AssertShows(0);
             Assert.That(_playing.Loads, Is.EqualTo(2));
+        }
+
+        [Test]
+        public void AnotherFileBeginsWhereItWasToldTo()
+        {
+            LoadWith("md.dcd", TestFrames.Dcd(TestFrames.Frames(3)));
+            Seek(2);
+            Player.TrajectorySource.SetFile(_folder.Write("long.dcd", TestFrames.Dcd(TestFrames.Frames(8))));
+            Player.Frame = 6;
+            _playing.Load();
+            _playing.AssertShows(6);
+            Player.Unload();
+            Player.TrajectorySource.SetFile(_folder.Write("other.dcd", TestFrames.Dcd(TestFrames.Frames(9))));
+            _playing.Load();
+            _playing.AssertShows(0);
+            Player.Unload();
+            Player.Frame = 4;
+            Player.TrajectorySource.SetFile(_folder.Write("last.dcd", TestFrames.Dcd(TestFrames.Frames(9))));
+            _playing.Load();
+            _playing.AssertShows(4);
+        }
+
+        [Test]
+        public void TheSameFileGoesOnWhereItWas()
+        {
+            LoadWith("md.dcd", TestFrames.Dcd(TestFrames.Frames(5)));
+            Seek(3);
+            Player.StructureSource.SkipHydrogen = true;
+            _playing.Load();
+            _playing.AssertShows(3);
+        }
+
+        [Test]
+        public void AnotherEnsembleBeginsAtItsBeginning()
+        {
+            _playing.UseEnsemble(5);
+            _playing.Load();
+            Seek(4);
+            _playing.UseEnsemble(6);
+            _playing.Load();
+            _playing.AssertShows(0);
+        }
+
+        [Test]
+        public void ModelsOfTheSurfacesSourceArePlayedWithoutBeingAskedFor()
+        {
+            Player.enabled = false;
+            _playing.Surface.Source.SetAsset(new TextAsset(TestFrames.Pdb(5)) { name = "ensemble.pdb" });
+            Player.enabled = true;
+            _playing.TickUntil(() => Player.ShownFrame >= 0, "a frame is shown");
+            Assert.That(Player.FrameCount, Is.EqualTo(5));
+            Seek(4);
+            _playing.AssertShows(4);
+        }
+
+        [TestCase(null)]
+        [TestCase("HEADER")]
+        [TestCase("one model")]
+        public void WhatNobodyAskedForIsNoFailure(string text)
+        {
+            Player.enabled = false;
+            if (text != null)
+                _playing.Surface.Source.SetAsset(
+                    new TextAsset(text == "one model" ? TestFrames.Pdb(1) : text) { name = "structure.pdb" });
+            Player.enabled = true;
+            Player.Tick(0);
+            Assert.That(_playing.Failures, Is.Empty);
+            Assert.That(Player.LastError.Status, Is.EqualTo(QuickSesStatus.Ok));
+            Assert.That(Player.IsLoading || Player.IsReady || Player.Structure != null, Is.False);
+        }
+
+        [Test]
+        public void LoadingWaitsUntilItIsEnabled()
+        {
+            Player.enabled = false;
+            _playing.UseEnsemble(3);
+            Assert.That(Player.Load(), Is.True);
+            Assert.That(Player.Structure, Is.Null); // nothing that would be left behind if it were destroyed now
+            Assert.That(Player.IsLoading, Is.False);
+            Player.enabled = true;
+            _playing.TickUntil(() => Player.ShownFrame >= 0, "a frame is shown");
+            _playing.AssertShows(0);
+            Assert.That(_playing.Loads, Is.EqualTo(1));
+        }
+
+        [Test]
+        public void WhatWasPutOffFailsWhenItIsEnabled()
+        {
+            _playing.GameObject.SetActive(false);
+            Assert.That(Player.Load(), Is.True);
+            Assert.That(_playing.Failures, Is.Empty);
+            _playing.GameObject.SetActive(true);
+            Assert.That(_playing.FailedFrames, Is.EqualTo(new[] { -1 }));
         }
 
         [Test]

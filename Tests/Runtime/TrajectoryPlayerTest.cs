@@ -219,6 +219,59 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void HandlersThatThrowHoldUpNoOtherEvent()
+        {
+            LoadEnsemble(3);
+            Player.Mode = PlaybackMode.Once;
+            Player.FrameShown += frame =>
+            {
+                if (frame == 2)
+                    throw new System.InvalidOperationException("thrown");
+            };
+            Player.Play();
+            Assert.That(() =>
+            {
+                for (int step = 0; step < 3; ++step)
+                    _playing.Pass(0.1f);
+            }, Throws.InvalidOperationException);
+            Assert.That(_playing.Finishes, Is.EqualTo(0));
+            _playing.Pass(0.1f);
+            _playing.Pass(0.1f);
+            Assert.That(_playing.Finishes, Is.EqualTo(1));
+            Assert.That(_playing.Shown, Is.EqualTo(new[] { 0, 1, 2 }));
+        }
+
+        [Test]
+        public void WhatIsUnloadedHasNothingMoreToTell()
+        {
+            LoadEnsemble(2);
+            Player.Mode = PlaybackMode.Once;
+            Player.FrameShown += _ => Player.enabled = false;
+            Player.Play();
+            Player.Tick(0.1f);
+            _playing.TickUntil(() => !Player.enabled, "a frame is shown");
+            Player.Tick(0);
+            Assert.That(_playing.Finishes, Is.EqualTo(0));
+        }
+
+        [Test]
+        public void HandlersMayDestroyIt()
+        {
+            LoadEnsemble(2);
+            Player.Mode = PlaybackMode.Once;
+            Player.FrameShown += _ => Object.DestroyImmediate(_playing.GameObject);
+            Player.Play();
+            TrajectoryPlayer player = Player;
+            for (int tick = 0; tick < 2000 && player != null; ++tick)
+            {
+                player.Tick(0.1f);
+                System.Threading.Thread.Sleep(1);
+            }
+            Assert.That(player == null, Is.True);
+            Assert.That(_playing.Finishes, Is.EqualTo(0)); // of something that is gone
+        }
+
+        [Test]
         public void PlayingMakesNoGarbage()
         {
             LoadEnsemble(40);

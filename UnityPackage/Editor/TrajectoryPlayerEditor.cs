@@ -67,7 +67,7 @@ namespace QuickSes.Editor
             }
             using (new EditorGUILayout.HorizontalScope())
             {
-                using (new EditorGUI.DisabledScope(!Application.isPlaying || !player.IsReady))
+                using (new EditorGUI.DisabledScope(!Application.IsPlaying(player) || !player.IsReady))
                 {
                     var label = player.IsPlaying
                         ? new GUIContent("Pause", "Stays where it is.")
@@ -99,7 +99,7 @@ namespace QuickSes.Editor
             if (!EditorGUI.EndChangeCheck())
                 return;
             double place = player.Interpolate ? chosen : System.Math.Round(chosen);
-            if (Application.isPlaying)
+            if (Application.IsPlaying(player))
             {
                 player.Frame = place;
                 return;

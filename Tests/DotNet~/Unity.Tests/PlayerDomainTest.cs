@@ -11,7 +11,11 @@ namespace QuickSes.Tests
     internal sealed class PlayerDomainTest
     {
         [SetUp]
-        public void ReleaseContextsAsTheEditorDoes() => Engine.BeforeReload += SurfaceScheduler.OnDomainUnloads;
+        public void TidyUpAsTheEditorDoes()
+        {
+            Engine.BeforeReload += SurfaceScheduler.OnDomainUnloads;
+            Engine.BeforeReload += TrajectoryPlayer.OnDomainUnloads;
+        }
 
         [UnityTest]
         public IEnumerator AReloadGoesOnWhereItWas()
@@ -65,6 +69,36 @@ namespace QuickSes.Tests
                 playing.Player.Frame = 13;
                 yield return SurfaceRig.Until(() => playing.Player.ShownFrame == 13);
                 playing.AssertShows(13);
+            }
+        }
+
+        [UnityTest]
+        public IEnumerator APrefabThatIsEditedDoesNotPlay()
+        {
+            using (var playing = new PlayerFixture())
+            {
+                Engine.OpenAsPrefab(playing.GameObject);
+                playing.UseEnsemble(20);
+                playing.Player.FramesPerSecond = 1000;
+                Assert.That(playing.Player.Load(), Is.True);
+                playing.Player.Play();
+                yield return SurfaceRig.Until(() => playing.Player.ShownFrame >= 0);
+                yield return SurfaceRig.Frames(5);
+                Assert.That(playing.Shown, Is.EqualTo(new[] { 0 }));
+            }
+        }
+
+        [Test]
+        public void AReloadLeavesNoThreadOfADisabledPlayer()
+        {
+            using (var playing = new PlayerFixture())
+            {
+                playing.UseEnsemble(20);
+                playing.Player.enabled = false;
+                Assert.That(playing.Player.Load(), Is.True);
+                Assert.That(playing.Player.IsLoading || playing.Player.Structure != null, Is.False);
+                Engine.Reload();
+                Assert.That(playing.Player.IsLoading || playing.Player.Structure != null, Is.False);
             }
         }
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 using System;
+using System.Collections.Generic;
+using System.Diagnostics;
 using System.Runtime.InteropServices;
 using System.Threading;
 using UnityEngine;
@@ -38,6 +40,11 @@ namespace QuickSes
             public QuickSesError Error;
         }
 
+        private const int LongestWait = 5000; // ms
+
+        // Those whose threads have not left yet. Guarded by itself.
+        private static readonly List<FramePrefetcher> s_alive = new List<FramePrefetcher>();
+
         private readonly FrameReader _reader;
         private readonly int _slotLimit;
         private readonly long _memoryLimit;
@@ -49,11 +56,9 @@ namespace QuickSes
         private Slot[] _slots = Array.Empty<Slot>();
         private Vector3* _memory;
         private FrameOrder _order;
-        private bool _hasOrder, _isStopping;
+        private bool _hasOrder, _isStopping, _hasLeft;
         private FrameState _opening = FrameState.Pending;
         private QuickSesError _openingError;
-
-        private bool _isDisposed;
 
         /// <param name="reader">Taken over.</param>
         /// <param name="slots">How many frames are kept; fewer if they are large.</param>
@@ -64,7 +69,27 @@ namespace QuickSes
             _reader = reader;
             _slotLimit = Math.Max(LeastSlots, slots);
             _thread = new Thread(Run) { IsBackground = true, Name = "QuickSES frames" };
-            _thread.Start();
+            lock (s_alive)
+            {
+                _thread.Start();
+                s_alive.Add(this);
+            }
+        }
+
+        /// <summary>
+        /// Disposes of all there are and waits for their threads, for 5 s at most. After it none runs code of a domain
+        /// that is unloaded.
+        /// </summary>
+        public static void DisposeAll()
+        {
+            FramePrefetcher[] alive;
+            lock (s_alive)
+                alive = s_alive.ToArray();
+            foreach (FramePrefetcher each in alive)
+                each.SendAway();
+            Stopwatch waited = Stopwatch.StartNew();
+            foreach (FramePrefetcher each in alive)
+                each._thread.Join((int)Math.Max(0, LongestWait - waited.ElapsedMilliseconds));
         }
 
         /// <summary>Whether the reader is open; Damaged: it can't be opened.</summary>
@@ -130,41 +155,64 @@ namespace QuickSes
         }
 
         /// <summary>
-        /// Sends the thread away and waits until it has left, which takes as long as reading one frame. Opening a file
-        /// may take longer: then it leaves by itself later.
+        /// Sends the thread away and waits until it has left, which takes as long as reading one frame. While a file is
+        /// being opened, which may take long, it does not wait: the thread leaves by itself later.
         /// </summary>
         public void Dispose()
         {
-            if (_isDisposed)
-                return;
-            _isDisposed = true;
-            lock (_gate)
-                _isStopping = true;
-            _wake.Set();
-            if (_thread.Join(LongestWait))
-                _wake.Dispose();
+            if (SendAway() != FrameState.Pending)
+                _thread.Join(LongestWait);
         }
 
-        private const int LongestWait = 5000; // ms
+        // How opening stands.
+        private FrameState SendAway()
+        {
+            lock (_gate)
+            {
+                if (!_isStopping)
+                {
+                    _isStopping = true;
+                    if (_hasLeft)
+                        _wake.Dispose();
+                    else
+                        _wake.Set();
+                }
+                return _opening;
+            }
+        }
 
         private void Run()
         {
             try
             {
-                if (Open())
+                if (TryOpen())
                     ReadFrames();
-            }
-            catch (Exception exception)
-            {
-                SetOpening(FrameState.Damaged, new QuickSesError(
-                    exception is OutOfMemoryException ? QuickSesStatus.OutOfMemory : QuickSesStatus.InternalError,
-                    exception.Message));
-                WaitForEnd(); // the main thread may be looking at a frame
             }
             finally
             {
                 Marshal.FreeHGlobal((IntPtr)_memory);
                 _reader.Dispose();
+                lock (_gate)
+                {
+                    _hasLeft = true;
+                    if (_isStopping)
+                        _wake.Dispose();
+                }
+                lock (s_alive)
+                    s_alive.Remove(this);
+            }
+        }
+
+        private bool TryOpen()
+        {
+            try
+            {
+                return Open();
+            }
+            catch (Exception exception)
+            {
+                SetOpening(FrameState.Damaged, Describe(exception));
+                return false;
             }
         }
 
@@ -205,8 +253,7 @@ namespace QuickSes
         {
             while (TryWaitForWork(out int frame, out int slot))
             {
-                bool isRead = _reader.TryRead(
-                    frame, Positions(slot), out TrajectoryFrame info, out QuickSesError error);
+                bool isRead = TryRead(frame, Positions(slot), out TrajectoryFrame info, out QuickSesError error);
                 lock (_gate)
                 {
                     _slots[slot].Info = info;
@@ -216,18 +263,24 @@ namespace QuickSes
             }
         }
 
-        private void WaitForEnd()
+        // A reader that throws damages one frame, as a file does.
+        private bool TryRead(int frame, Span<Vector3> positions, out TrajectoryFrame info, out QuickSesError error)
         {
-            for (;;)
+            try
             {
-                lock (_gate)
-                {
-                    if (_isStopping)
-                        return;
-                }
-                _wake.WaitOne();
+                return _reader.TryRead(frame, positions, out info, out error);
+            }
+            catch (Exception exception)
+            {
+                info = default;
+                error = Describe(exception);
+                return false;
             }
         }
+
+        private static QuickSesError Describe(Exception exception) => new QuickSesError(
+            exception is OutOfMemoryException ? QuickSesStatus.OutOfMemory : QuickSesStatus.InternalError,
+            exception.Message);
 
         // The first frame in the order of showing that no slot has, and a slot with one that is not wanted.
         private bool TryWaitForWork(out int frame, out int slot)

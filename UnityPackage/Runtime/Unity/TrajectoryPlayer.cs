@@ -17,8 +17,14 @@ namespace QuickSes
         private MolecularSurface _surface;
         private FramePrefetcher _prefetcher;
         private PlayHead _head;
-        private readonly UnmanagedBuffer<Vector3> _between = new UnmanagedBuffer<Vector3>();
-        [NonSerialized] private bool _isPlaying, _isWaiting, _isLoadRequested, _areColorsRequested;
+        private UnmanagedBuffer<Vector3> _between; // while it is ready
+        [NonSerialized] private bool _isEnabled, _isPlaying, _isWaiting, _areColorsRequested;
+        [NonSerialized] private bool _isLoadRequested; // by the inspector
+        [NonSerialized] private bool _isLoadDeferred; // by Load, until it is enabled
+
+        // Told at the end of a tick, or of the next one if a handler throws.
+        [NonSerialized] private bool _isNewFrameUntold;
+        [NonSerialized] private PlayHeadEvents _untold;
 
         // What the surface shows: _shown.From is -1 before the first frame, and where it has to be sent anew.
         private static readonly FrameBlend s_nothing = new FrameBlend(-1, -1, 0);
@@ -26,12 +32,6 @@ namespace QuickSes
         private TrajectoryFrame _shownInfo;
         private int _damagedFrame = -1; // the one told last, so that it is told once each time it is reached
         private bool _isDamageLogged;
-
-        // What was loaded; null: nothing.
-        [NonSerialized] private MoleculeSource _loadedStructureSource;
-        [NonSerialized] private TrajectorySource _loadedTrajectorySource;
-        [NonSerialized] private bool _loadedUnwrap;
-        [NonSerialized] private int _loadedPrefetchFrames;
 
         /// <summary>Frames can be shown from now on.</summary>
         public event Action Loaded;
@@ -103,66 +103,28 @@ namespace QuickSes
             _isPlaying = false;
             _head.Rewind();
             _frame = IsReady ? _head.Position : 0;
+            _chosenFrame = -1;
             _isWaiting = false;
             RequestUpdate();
         }
 
-        /// <summary>
-        /// Reads the structure, gives it to the surface, and begins to open the trajectory on another thread; what was
-        /// loaded before is closed. Happens by itself when the component is enabled with a source. false, after Failed:
-        /// <see cref="LastError"/> says why not.
-        /// </summary>
-        public bool Load()
-        {
-            Unload();
-            if (_surface == null)
-                _surface = GetComponent<MolecularSurface>();
-            LastError = default;
-            _isDamageLogged = false;
-            MoleculeSource source = ActiveStructureSource;
-            _loadedStructureSource = source.Copy();
-            _loadedTrajectorySource = _trajectorySource.Copy();
-            _loadedUnwrap = _unwrap;
-            _loadedPrefetchFrames = _prefetchFrames;
-            if (!source.TryFind(out MoleculeFile file, out QuickSesError error) ||
-                !source.TryOpen(file, out Structure structure, out error))
-                return Fail("structure", error);
-            Structure = structure;
-            SendAtoms();
-            if (!TryFindFrames(ref file, out TrajectoryFormat format, out error))
-                return Fail("trajectory", error);
-            _prefetcher = new FramePrefetcher(
-                new TrajectoryFrameReader(file, format, structure, _unwrap), _prefetchFrames);
-            RequestUpdate();
-            return true;
-        }
-
-        /// <summary>
-        /// Closes structure and trajectory; the surface keeps what it shows. Waits for the frame that is being read.
-        /// </summary>
-        public void Unload()
-        {
-            if (IsReady)
-                _frame = _head.Position;
-            CloseFrames();
-            Structure?.Dispose();
-            Structure = null;
-            _loadedStructureSource = null;
-            _isLoadRequested = _areColorsRequested = false;
-        }
-
         private void OnEnable()
         {
+            _isEnabled = true;
             _surface = GetComponent<MolecularSurface>();
             _surface.AtomsRequested += SendAtoms;
-            if (_playOnEnable && Application.isPlaying)
+            if (_playOnEnable && Application.IsPlaying(this))
                 _isPlaying = true;
-            if (HasSource)
+            if (_isLoadDeferred)
                 Load();
+            else
+                LoadWhatIsSet();
         }
 
+        // Whatever is open, is open only while it is enabled: OnDestroy does not come to what never was active.
         private void OnDisable()
         {
+            _isEnabled = false;
             if (_surface != null)
                 _surface.AtomsRequested -= SendAtoms;
             Unload();
@@ -170,11 +132,12 @@ namespace QuickSes
 
         private void Update()
         {
+            bool passesTime = Application.IsPlaying(this); // first, since handlers may destroy it
             if (_isLoadRequested)
-                Load();
+                LoadWhatIsSet();
             if (_areColorsRequested && Structure != null)
                 SendColors();
-            Tick(!Application.isPlaying ? 0
+            Tick(!passesTime ? 0
                 : !_useUnscaledTime ? Time.deltaTime
                 : Mathf.Min(Time.unscaledDeltaTime, Time.maximumDeltaTime));
         }
@@ -182,23 +145,41 @@ namespace QuickSes
         /// <summary>What happens each frame of the game; seconds since the last one.</summary>
         internal void Tick(float seconds)
         {
+            TellAll();
             if (_prefetcher == null || (!IsReady && !TryGetReady()))
                 return;
             _head.SetMode(_mode);
             if (_framesPerSecond != 0)
                 _head.SetSign(_framesPerSecond > 0 ? 1 : -1);
-            PlayHeadEvents passed = PlayHeadEvents.None;
             if (_isPlaying && !_isWaiting)
-                passed = _head.Advance(seconds * Math.Abs((double)_framesPerSecond));
-            if ((passed & PlayHeadEvents.Finished) != 0)
+                _untold |= _head.Advance(seconds * Math.Abs((double)_framesPerSecond));
+            if ((_untold & PlayHeadEvents.Finished) != 0)
                 _isPlaying = false;
             _frame = _head.Position;
             Show();
-            // Last, since handlers may do anything.
-            if ((passed & PlayHeadEvents.Looped) != 0)
+            TellAll();
+        }
+
+        // Handlers may do anything: what they unload, disable or destroy has nothing left to tell (CloseFrames). Each
+        // event is taken before its handlers are called, so that those that throw do not hold up the others.
+        private void TellAll()
+        {
+            if (_isNewFrameUntold)
+            {
+                _isNewFrameUntold = false;
+                FrameShown?.Invoke(_shown.From);
+            }
+            if (TakeUntold(PlayHeadEvents.Looped))
                 Looped?.Invoke();
-            if ((passed & PlayHeadEvents.Finished) != 0)
+            if (TakeUntold(PlayHeadEvents.Finished))
                 Finished?.Invoke();
+        }
+
+        private bool TakeUntold(PlayHeadEvents which)
+        {
+            bool isThere = (_untold & which) != 0;
+            _untold &= ~which;
+            return isThere;
         }
 
         private bool TryGetReady()
@@ -219,6 +200,7 @@ namespace QuickSes
             _head.MoveTo(_frame);
             if (_isPlaying && _head.IsAtEnd)
                 _head.Rewind();
+            _between = new UnmanagedBuffer<Vector3>();
             _between.Resize(_prefetcher.AtomCount);
             IsReady = true;
             FramePrefetcher opened = _prefetcher;
@@ -268,12 +250,10 @@ namespace QuickSes
             if (_surface.AtomCount != from.Length) // somebody else gave it other atoms
                 SendAtoms();
             _surface.SetPositions(from);
-            bool isNewFrame = blend.From != _shown.From;
+            _isNewFrameUntold |= blend.From != _shown.From;
             _shown = blend;
             _shownInfo = info;
             _damagedFrame = -1;
-            if (isNewFrame)
-                FrameShown?.Invoke(blend.From);
         }
 
         private void TellDamage(int frame, QuickSesError error)
@@ -302,28 +282,6 @@ namespace QuickSes
             _isDamageLogged |= frame >= 0;
         }
 
-        private void CloseFrames()
-        {
-            _prefetcher?.Dispose();
-            _prefetcher = null;
-            _between.Dispose();
-            IsReady = _isWaiting = false;
-            _shown = s_nothing;
-            _damagedFrame = -1;
-        }
-
-        private bool TryFindFrames(ref MoleculeFile file, out TrajectoryFormat format, out QuickSesError error)
-        {
-            format = _trajectorySource.Format;
-            if (_trajectorySource.Kind != MoleculeSourceKind.None)
-                return _trajectorySource.TryFind(out file, out error);
-            format = TrajectoryFormat.Pdb;
-            bool hasFrames = Structure.Format == StructureFormat.Pdb && Structure.ModelCount > 1;
-            error = hasFrames ? default : new QuickSesError(QuickSesStatus.InvalidArgument,
-                $"none is chosen, and '{file.Name}' is not a PDB file with several models");
-            return hasFrames;
-        }
-
         private void SendAtoms()
         {
             if (Structure == null)
@@ -346,10 +304,10 @@ namespace QuickSes
         }
 
         // In edit mode Update comes only when something changed.
-        private static void RequestUpdate()
+        private void RequestUpdate()
         {
 #if UNITY_EDITOR
-            if (!Application.isPlaying)
+            if (this != null && !Application.IsPlaying(this))
                 UnityEditor.EditorApplication.QueuePlayerLoopUpdate();
 #endif
         }

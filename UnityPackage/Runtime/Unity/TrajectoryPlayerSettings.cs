@@ -102,6 +102,8 @@ namespace QuickSes
             set
             {
                 _frame = double.IsNaN(value) ? 0 : Math.Max(0, value);
+                if (_loadedStructureSource == null || !IsFrameOfSetFile)
+                    _chosenFrame = _frame;
                 if (IsReady)
                 {
                     _head.MoveTo(_frame);
@@ -131,15 +133,12 @@ namespace QuickSes
             }
         }
 
-        private bool HasSource => _structureSource.Kind != MoleculeSourceKind.None ||
-            _trajectorySource.Kind != MoleculeSourceKind.None;
-
 #if UNITY_EDITOR
         private void OnValidate()
         {
             if (!isActiveAndEnabled)
                 return;
-            if (_loadedStructureSource == null ? HasSource : !IsLoadedAsSet())
+            if (_loadedStructureSource == null || !IsLoadedAsSet())
                 _isLoadRequested = true; // not here: a mesh must not change while values are validated
             else if (IsReady && _frame != _head.Position)
                 Frame = _frame;
@@ -151,6 +150,11 @@ namespace QuickSes
 
         private MoleculeSource ActiveStructureSource =>
             _structureSource.Kind != MoleculeSourceKind.None || _surface == null ? _structureSource : _surface.Source;
+
+        private FileSource FrameSource =>
+            _trajectorySource.Kind != MoleculeSourceKind.None ? (FileSource)_trajectorySource : ActiveStructureSource;
+
+        private bool IsFrameOfSetFile => _frameFile == null || _frameFile.HasFileOf(FrameSource);
 
         private bool IsLoadedAsSet() => _loadedStructureSource.IsSameAs(ActiveStructureSource) &&
             _loadedTrajectorySource.IsSameAs(_trajectorySource) && _loadedUnwrap == _unwrap &&

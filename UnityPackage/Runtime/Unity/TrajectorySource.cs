@@ -18,6 +18,16 @@ namespace QuickSes
         /// <summary>Auto (default): by the name, also before ".gz", ".bytes" and ".txt", else by the content.</summary>
         public TrajectoryFormat Format { get => _format; set => _format = value; }
 
+        /// <summary>Only where a file is, to compare others with.</summary>
+        internal static TrajectorySource OfFile(FileSource source)
+        {
+            var copy = new TrajectorySource();
+            copy.CopyFileFrom(source);
+            return copy;
+        }
+
+        internal bool HasFileOf(FileSource source) => HasSameFileAs(source);
+
         internal TrajectorySource Copy() => (TrajectorySource)MemberwiseClone();
 
         internal void CopyFrom(TrajectorySource other)

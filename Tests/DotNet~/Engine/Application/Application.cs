@@ -48,7 +48,16 @@ namespace UnityEngine
         public static string persistentDataPath => Path.Combine(Path.GetTempPath(), "UnityEngine.Double");
         public static string temporaryCachePath => persistentDataPath;
 
-        public static bool IsPlaying(Object obj) => isPlaying;
+        public static bool IsPlaying(Object obj)
+        {
+            if (obj == null)
+                throw new NullReferenceException("IsPlaying of no object, or of a destroyed one");
+            GameObject at = obj is Component component ? component.gameObject : obj as GameObject;
+            for (; at != null; at = at.transform.parent?.gameObject)
+                if (at.IsInPrefabStage)
+                    return false;
+            return isPlaying;
+        }
 
         public static void Quit() => Quit(0);
 

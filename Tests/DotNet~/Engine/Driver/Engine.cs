@@ -117,6 +117,11 @@ namespace QuickSes.EngineDouble
                     Lifecycle.Enable(script);
         }
 
+        /// <summary>
+        /// Lets an object and those below it be a prefab that is open for editing, which does not play in play mode.
+        /// </summary>
+        public static void OpenAsPrefab(GameObject root) => root.IsInPrefabStage = true;
+
         /// <summary>Edit mode with an empty scene.</summary>
         public static void EnterEditMode()
         {

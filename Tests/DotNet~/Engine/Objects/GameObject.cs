@@ -27,6 +27,8 @@ namespace UnityEngine
                 AddComponent(component);
         }
 
+        internal bool IsInPrefabStage { get; set; }
+
         internal IReadOnlyList<Component> Components => _components;
 
         public Transform transform
