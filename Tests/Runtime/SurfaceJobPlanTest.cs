@@ -20,34 +20,39 @@ namespace QuickSes.Tests
         }
 
         [Test]
-        public void NewAtomsComeThroughAllLevels() =>
-            AssertPlan(SurfaceChange.Shape, float.PositiveInfinity, false, 33, false, 0, 2, 1, 0.5f);
+        public void NewAtomsComeThroughAllLevels()
+        {
+            AssertPlan(SurfaceChange.Shape, float.PositiveInfinity, 33, false, 0, 2, 1, 0.5f);
+            AssertPlan(SurfaceChange.Shape, 0.5f, 33, false, 0, 2, 1, 0.5f);
+        }
 
         [Test]
         public void WhoIsNotAloneGetsTheCoarsestFirst() =>
-            AssertPlan(SurfaceChange.Shape, float.PositiveInfinity, false, 33, true, 0, 2);
+            AssertPlan(SurfaceChange.Shape, float.PositiveInfinity, 33, true, 0, 2);
 
         [Test]
         public void MovingAtomsHaveABudget()
         {
-            AssertPlan(SurfaceChange.Positions, float.PositiveInfinity, true, 33, false, 33, 2, 1, 0.5f);
-            AssertPlan(SurfaceChange.Positions, float.PositiveInfinity, true, 33, true, 33, 2, 1, 0.5f);
-            AssertPlan(SurfaceChange.Positions, float.PositiveInfinity, true, 0, false, 0, 2, 1, 0.5f);
+            AssertPlan(SurfaceChange.Positions, 0.5f, 33, false, 33, 2, 1, 0.5f);
+            AssertPlan(SurfaceChange.Positions, float.PositiveInfinity, 33, true, 33, 2, 1, 0.5f);
+            AssertPlan(SurfaceChange.Positions, float.PositiveInfinity, 0, false, 0, 2, 1, 0.5f);
         }
 
         [Test]
-        public void ColoursDontMakeAFineSurfaceCoarse()
+        public void ColoursComeAtTheLevelThatIsShown()
         {
-            AssertPlan(SurfaceChange.Appearance, float.PositiveInfinity, true, 33, true, 0, 0.5f);
-            AssertPlan(SurfaceChange.Appearance, float.PositiveInfinity, false, 33, false, 0, 2, 1, 0.5f);
+            AssertPlan(SurfaceChange.Appearance, 0.5f, 33, false, 0, 0.5f);
+            AssertPlan(SurfaceChange.Appearance, 1, 33, false, 0, 1, 0.5f);
+            AssertPlan(SurfaceChange.Appearance, 1, 33, true, 0, 1);
+            AssertPlan(SurfaceChange.Appearance, float.PositiveInfinity, 33, false, 0, 2, 1, 0.5f);
         }
 
         [Test]
         public void RefinementGoesOnFromWhatIsShown()
         {
-            AssertPlan(SurfaceChange.None, 2, false, 33, true, 0, 1, 0.5f);
-            AssertPlan(SurfaceChange.None, 1, false, 33, false, 0, 0.5f);
-            AssertPlan(SurfaceChange.None, float.PositiveInfinity, false, 33, false, 0, 2, 1, 0.5f);
+            AssertPlan(SurfaceChange.None, 2, 33, true, 0, 1, 0.5f);
+            AssertPlan(SurfaceChange.None, 1, 33, false, 0, 0.5f);
+            AssertPlan(SurfaceChange.None, float.PositiveInfinity, 33, false, 0, 2, 1, 0.5f);
         }
 
         private static float[] Ladder(float finest, params float[] levels)
@@ -57,12 +62,11 @@ namespace QuickSes.Tests
             return ladder.AsSpan(0, count).ToArray();
         }
 
-        private static void AssertPlan(SurfaceChange change, float shown, bool isShownFinest, float frameBudget,
-            bool othersWait, float expectedBudget, params float[] expected)
+        private static void AssertPlan(SurfaceChange change, float shown, float frameBudget, bool othersWait,
+            float expectedBudget, params float[] expected)
         {
             SurfaceSettings settings = SurfaceSettings.Default;
-            SurfaceJobPlan.Choose(ref settings, new[] { 2, 1, 0.5f }, change, shown, isShownFinest, frameBudget,
-                othersWait);
+            SurfaceJobPlan.Choose(ref settings, new[] { 2, 1, 0.5f }, change, shown, frameBudget, othersWait);
             var levels = new float[settings.LevelCount + 1];
             for (int k = 0; k < settings.LevelCount; ++k)
                 levels[k] = settings.GetLevel(k);

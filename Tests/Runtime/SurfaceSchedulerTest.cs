@@ -5,6 +5,7 @@ using System.Collections;
 using System.Collections.Generic;
 using UnityEngine;
 using UnityEngine.TestTools;
+using Object = UnityEngine.Object;
 
 namespace QuickSes.Tests
 {
@@ -94,6 +95,43 @@ namespace QuickSes.Tests
             Assert.That(SurfaceScheduler.ContextCount, Is.GreaterThan(0), "it may be shown again");
             _rigs[0].Dispose();
             Assert.That(SurfaceScheduler.ContextCount, Is.EqualTo(0));
+            yield return SurfaceRig.Until(() => ContextSlot.NativeContexts == 0);
+        }
+
+        [UnityTest]
+        public IEnumerator FreeingTheLastContextIsWaitedForWhereItMust()
+        {
+            _rigs.Add(SurfaceRig.WithBlob(20000, 1));
+            yield return SurfaceRig.Until(() => _rigs[0].Levels.Count > 0);
+            _rigs[0].Dispose(); // in the background
+            SurfaceScheduler.ReleaseContexts();
+            Assert.That(ContextSlot.NativeContexts, Is.EqualTo(0), "native threads must not outlive the domain");
+        }
+
+        [UnityTest]
+        public IEnumerator ContextsOfTheDeadAreUsedAgain()
+        {
+            _rigs.Add(new SurfaceRig()); // has no atoms
+            for (int k = 0; k < 6; ++k)
+                using (SurfaceRig rig = SurfaceRig.WithBlob(30, k))
+                    yield return rig.Settle();
+            Assert.That(SurfaceScheduler.ContextCount, Is.EqualTo(1));
+        }
+
+        [Test]
+        public void ASurfaceThatWasNeverEnabledLeavesNothing()
+        {
+            TestMolecules.Blob(40, 1, out Vector3[] positions, out float[] radii);
+            var hidden = new GameObject("never enabled");
+            hidden.SetActive(false);
+            var surface = hidden.AddComponent<MolecularSurface>();
+            surface.SetAtoms(positions, radii);
+            Assert.That(surface.ComputeNow());
+            Mesh mesh = surface.Mesh;
+            Object.DestroyImmediate(hidden);
+            SurfaceScheduler.ReleaseContexts();
+            Assert.That(mesh == null);
+            Assert.That(ContextSlot.NativeContexts, Is.EqualTo(0));
         }
 
         [Test]

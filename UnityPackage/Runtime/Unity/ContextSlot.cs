@@ -1,20 +1,23 @@
 // SPDX-License-Identifier: MIT
+using System;
 using System.Threading;
 
 namespace QuickSes
 {
     /// <summary>
-    /// One of the few contexts of <see cref="SurfaceScheduler"/>, and who may use it. Main thread only, but for <see
-    /// cref="Create"/> and <see cref="Dispose"/>, which may take a third of a second with CUDA and therefore run on
+    /// One of the few contexts of a <see cref="ContextPool"/>, and who may use it. Main thread only, but for
+    /// <see cref="Create"/> and <see cref="Dispose"/>, which may take a third of a second with CUDA and therefore run on
     /// threads of their own where nobody has to wait for them.
     /// </summary>
     internal sealed class ContextSlot
     {
         private static readonly WaitCallback s_create = slot => ((ContextSlot)slot).Create();
         private static readonly WaitCallback s_dispose = slot => ((ContextSlot)slot).Dispose();
+        private static int s_nativeContexts;
 
         private readonly SurfaceContextOptions _options;
         private volatile bool _isReady;
+        private volatile bool _isDisposed;
         private QuickSesError _error;
 
         public ContextSlot(in SurfaceContextOptions options)
@@ -22,11 +25,15 @@ namespace QuickSes
             _options = options;
         }
 
-        /// <summary>What was asked for: Auto is a back end of its own here.</summary>
-        public SurfaceBackend Backend => _options.Backend;
+        /// <summary>Native contexts that there are in all, those on their way out included. Any thread.</summary>
+        public static int NativeContexts => Volatile.Read(ref s_nativeContexts);
 
         /// <summary>Whether the context is made, or could not be made (<see cref="Context"/> is null then).</summary>
         public bool IsReady => _isReady;
+
+        public bool HasFailed => _isReady && Context == null;
+
+        public bool IsDisposed => _isDisposed;
 
         public SurfaceContext Context { get; private set; }
 
@@ -55,8 +62,16 @@ namespace QuickSes
 
         public void Create()
         {
-            SurfaceContext.TryCreate(_options, out SurfaceContext context, out _error);
-            Context = context;
+            try
+            {
+                if (SurfaceContext.TryCreate(_options, out SurfaceContext context, out _error))
+                    Interlocked.Increment(ref s_nativeContexts);
+                Context = context;
+            }
+            catch (Exception e) // on a thread of the pool it would end the program
+            {
+                _error = new QuickSesError(QuickSesStatus.InternalError, e.Message);
+            }
             _isReady = true;
         }
 
@@ -65,10 +80,23 @@ namespace QuickSes
         /// <summary>Frees the context; waits for it to be made first.</summary>
         public void Dispose()
         {
+            WaitUntil(false);
+            if (Context != null)
+            {
+                Context.Dispose();
+                Interlocked.Decrement(ref s_nativeContexts);
+            }
+            _isDisposed = true;
+        }
+
+        /// <summary>After <see cref="DisposeInBackground"/>.</summary>
+        public void WaitUntilDisposed() => WaitUntil(true);
+
+        private void WaitUntil(bool disposed)
+        {
             var wait = new SpinWait();
-            while (!_isReady)
+            while (!(disposed ? _isDisposed : _isReady))
                 wait.SpinOnce();
-            Context?.Dispose();
         }
     }
 }

@@ -67,7 +67,7 @@ namespace QuickSes
         [NonSerialized] private bool _asksForAtoms;
         [NonSerialized] private bool _isEdited; // in the inspector, by Undo, by a prefab
         [NonSerialized] private MoleculeSource _loadedSource; // as it was when it was read; null: it was not
-        [NonSerialized] private Color32 _loadedBaseColor; // atoms that the scheme tells nothing of have it
+        [NonSerialized] private SurfaceShapeSettings _editedFrom; // the settings before they were edited
         [NonSerialized] private bool _isDestroyed;
 
         /// <summary>A surface arrived and is shown.</summary>
@@ -112,8 +112,8 @@ namespace QuickSes
         /// <summary>What is shown; <see cref="SurfaceLevel.LevelCount"/> 0: nothing yet.</summary>
         public SurfaceLevel Shown => Session.Shown.Level;
 
-        /// <summary>Whether something is being computed, or will be.</summary>
-        public bool IsBusy => !Session.IsSettled;
+        /// <summary>Whether something is being computed, or will be. Not while the component is disabled.</summary>
+        public bool IsBusy => isActiveAndEnabled && !Session.IsSettled;
 
         /// <summary>Of the job that runs: from 0 to 1.</summary>
         public float Progress => Session.Progress;
@@ -140,7 +140,11 @@ namespace QuickSes
         }
 
         /// <summary>Computes the surface again, for instance after a failure.</summary>
-        public void Recompute() => Changed(SurfaceChange.Shape);
+        public void Recompute()
+        {
+            SurfaceScheduler.PoolOf(_backend).ForgetFailures();
+            Changed(SurfaceChange.Shape);
+        }
 
         /// <summary>Ends the computation; what is shown stays until something changes.</summary>
         public void Cancel() => Session.Stop();
@@ -151,7 +155,8 @@ namespace QuickSes
         /// <returns>False: <see cref="LastError"/> says why.</returns>
         public bool ComputeNow()
         {
-            LoadSourceUnlessFed();
+            if (!LoadSourceUnlessFed())
+                return false;
             if (!Session.Atoms.IsSet)
                 throw new InvalidOperationException("There are no atoms: call SetAtoms or choose a source.");
             bool isComputed = Session.ComputeNow();
@@ -173,6 +178,9 @@ namespace QuickSes
             ladderCount = SurfaceJobPlan.MakeLadder(_levels, _spacing, ladder);
             return settings;
         }
+
+        // The mesh is a new one, since somebody destroyed the last.
+        internal void AttachMesh() => GetComponent<MeshFilter>().sharedMesh = Session.Shown.Mesh;
 
         internal void RaiseUpdated(in SurfaceLevel level) => SurfaceUpdated?.Invoke(level);
 

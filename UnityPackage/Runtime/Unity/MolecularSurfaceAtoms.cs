@@ -96,6 +96,13 @@ namespace QuickSes
         /// <inheritdoc cref="SetColors(ReadOnlySpan{Color32})"/>
         public void SetColors(Color32[] colors) => SetColors(NotNull(colors, nameof(colors)));
 
+        // Transparent black stands for BaseColor, also when that is another one later.
+        internal void SetSchemeColors(ReadOnlySpan<Color32> colors)
+        {
+            Session.Atoms.SetSchemeColors(colors);
+            Changed(SurfaceChange.Appearance);
+        }
+
         /// <summary>Which atoms are shown. The surface is that of all atoms, cut open where they are hidden.</summary>
         /// <param name="visible">N; empty: all.</param>
         public void SetVisible(ReadOnlySpan<bool> visible)
@@ -121,9 +128,7 @@ namespace QuickSes
         /// <summary>No atoms and no surface, until there are new ones.</summary>
         public void ClearAtoms()
         {
-            Session.Stop();
-            Session.Atoms.Clear();
-            Session.Shown.Clear();
+            Session.Clear();
             _isScriptFed = true;
         }
 
@@ -132,10 +137,12 @@ namespace QuickSes
         /// by <see cref="Failed"/>.
         /// </summary>
         /// <returns>Whether there was a structure to read.</returns>
-        public bool LoadSource()
+        public bool LoadSource() => TryRead(true);
+
+        private bool TryRead(bool withAtoms)
         {
             _loadedSource = _source.Copy();
-            _loadedBaseColor = _baseColor;
+            _isScriptFed = false;
             if (!_source.TryOpen(out Structure structure, out QuickSesError error))
             {
                 Session.FailToBegin(error);
@@ -144,22 +151,22 @@ namespace QuickSes
             }
             using (structure)
             {
-                var positions = new Vector3[structure.AtomCount];
-                UnitySpace.FromFile(structure.Positions, positions);
-                SetAtoms(positions, structure.Radii);
+                if (withAtoms)
+                {
+                    var positions = new Vector3[structure.AtomCount];
+                    UnitySpace.FromFile(structure.Positions, positions);
+                    SetAtoms(positions, structure.Radii);
+                }
                 var colors = new Color32[structure.AtomCount];
-                AtomColors.Fill(structure, _source.ColorScheme, _baseColor, colors);
-                SetColors(colors);
+                AtomColors.Fill(structure, _source.ColorScheme, default, colors);
+                SetSchemeColors(colors);
             }
             _isScriptFed = false;
             return true;
         }
 
-        private void LoadSourceUnlessFed()
-        {
-            if (!_isScriptFed && !Session.Atoms.IsSet && _source.IsSet)
-                LoadSource();
-        }
+        // false: there is a source, and it can't be read.
+        private bool LoadSourceUnlessFed() => _isScriptFed || Session.Atoms.IsSet || !_source.IsSet || LoadSource();
 
         private static ReadOnlySpan<T> NotNull<T>(T[] array, string argument) =>
             array ?? throw new ArgumentNullException(argument);

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 // What the engine calls.
 using UnityEngine;
+#if UNITY_EDITOR
+using UnityEditor;
+using UnityEngine.Rendering;
+#endif
 
 namespace QuickSes
 {
@@ -10,13 +14,14 @@ namespace QuickSes
 
         private void OnEnable()
         {
-            SurfaceScheduler.Add(Session);
             _asksForAtoms = true;
-            GetComponent<MeshFilter>().sharedMesh = Session.Shown.Mesh;
+            AttachMesh();
+            Session.Shown.TakeIsNewMesh();
             var meshRenderer = GetComponent<MeshRenderer>();
             if (meshRenderer.sharedMaterial == null)
                 meshRenderer.sharedMaterial = Resources.Load<Material>(DefaultMaterial);
             Session.Atoms.SetBaseColor(_baseColor);
+            _editedFrom = ShapeSettings();
             Session.Resume();
             QueueEditorUpdate();
         }
@@ -35,21 +40,24 @@ namespace QuickSes
             _session = null;
         }
 
-        // After all Update calls, so that positions set in this frame are on their way in this frame.
+        // After all Update calls, so that positions set in this frame are on their way in this frame. Each step may call
+        // handlers, which may do anything.
         private void LateUpdate()
         {
-            if (_asksForAtoms)
-            {
-                _asksForAtoms = false;
-                LoadSourceUnlessFed();
-                if (!Session.Atoms.IsSet)
-                    _atomsRequested?.Invoke();
-            }
             if (_isEdited)
             {
                 _isEdited = false;
                 FollowEdits();
             }
+            if (IsAlive && _asksForAtoms)
+            {
+                _asksForAtoms = false;
+                LoadSourceUnlessFed();
+                if (IsAlive && !Session.Atoms.IsSet && !_source.IsSet)
+                    _atomsRequested?.Invoke();
+            }
+            if (!IsAlive)
+                return;
             SurfaceSession session = Session;
             session.Tick(Time.realtimeSinceStartupAsDouble);
             if (!session.IsSettled)
@@ -57,45 +65,75 @@ namespace QuickSes
             session.RaiseEvents();
         }
 
+        private bool IsAlive => !_isDestroyed && isActiveAndEnabled;
+
         private void OnValidate()
         {
             if (_session == null || _session.IsDisposed)
                 return;
-            _session.Atoms.SetBaseColor(_baseColor);
             _isEdited = true; // the rest later: files are not read and meshes not set while values are validated
-            Changed(SurfaceChange.Shape);
+            if (_session.Atoms.SetBaseColor(_baseColor))
+                Changed(SurfaceChange.Appearance);
+            SurfaceShapeSettings edited = ShapeSettings();
+            if (!edited.Equals(_editedFrom))
+                Changed(SurfaceChange.Shape);
+            _editedFrom = edited;
+            QueueEditorUpdate();
         }
+
+        private SurfaceShapeSettings ShapeSettings() => new SurfaceShapeSettings(
+            _surface, _method, _probeRadius, _spacing, _levels, _relaxationSteps, _measureComponents, _backend);
 
         // The inspector, Undo and changed prefabs write serialised fields, also that of the filter beside this
         // component, whose mesh is in no file.
         private void FollowEdits()
         {
-            GetComponent<MeshFilter>().sharedMesh = Session.Shown.Mesh;
-            if (_isScriptFed || IsSourceAsLoaded())
+            AttachMesh();
+            if (_isScriptFed)
                 return;
             if (_source.IsSet)
             {
-                LoadSource();
-                return;
+                bool isSameFile = _loadedSource != null && _source.IsSameAs(_loadedSource);
+                if (!isSameFile || _source.ColorScheme != _loadedSource.ColorScheme)
+                    TryRead(!isSameFile || !Session.Atoms.IsSet);
             }
-            ClearAtoms();
-            _isScriptFed = false;
-            _loadedSource = null;
+            else if (_loadedSource != null)
+            {
+                Session.Clear();
+                _loadedSource = null;
+                _asksForAtoms = true;
+            }
         }
-
-        private bool IsSourceAsLoaded() => _loadedSource == null
-            ? !_source.IsSet
-            : _source.IsSameAs(_loadedSource) && _source.ColorScheme == _loadedSource.ColorScheme &&
-              _baseColor.Equals(_loadedBaseColor);
 
 #if UNITY_EDITOR
         private const string DemoMolecule = "887aaba082b543e99d77084bbddee6c8"; // GUID of Defaults/1crn.pdb.bytes
 
-        // A component that is added shows something at once.
+        // A component that is added shows something at once, unless it was added for a script that feeds it, which is
+        // there a moment later only.
         private void Reset()
         {
-            string path = UnityEditor.AssetDatabase.GUIDToAssetPath(DemoMolecule);
-            _source.SetAsset(UnityEditor.AssetDatabase.LoadAssetAtPath<TextAsset>(path));
+            var meshRenderer = GetComponent<MeshRenderer>();
+            if (IsDefault(meshRenderer.sharedMaterial))
+                meshRenderer.sharedMaterial = Resources.Load<Material>(DefaultMaterial);
+            EditorApplication.delayCall += ShowDemoUnlessFed;
+        }
+
+        private void ShowDemoUnlessFed()
+        {
+            if (this == null || _isScriptFed || _source.IsSet || _atomsRequested != null)
+                return;
+            _source.SetAsset(AssetDatabase.LoadAssetAtPath<TextAsset>(AssetDatabase.GUIDToAssetPath(DemoMolecule)));
+            EditorUtility.SetDirty(this);
+            _isEdited = true;
+            QueueEditorUpdate();
+        }
+
+        // What the Editor gives new renderers, which shows no colours of vertices.
+        private static bool IsDefault(Material material)
+        {
+            RenderPipelineAsset pipeline = GraphicsSettings.currentRenderPipeline;
+            return material == null || (pipeline != null && material == pipeline.defaultMaterial) ||
+                AssetDatabase.GetAssetPath(material) == "Resources/unity_builtin_extra";
         }
 #endif
     }

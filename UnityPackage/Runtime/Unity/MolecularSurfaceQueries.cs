@@ -23,13 +23,14 @@ namespace QuickSes
         public ReadOnlySpan<SurfaceComponent> Components => Session.Shown.Components;
 
         /// <summary>
-        /// The atom of each vertex of the mesh, as an index into the atoms that were given. Valid until the next
+        /// The atom of each vertex of the mesh, as an index into the atoms the shown surface is of. Valid until the next
         /// surface is shown.
         /// </summary>
         public ReadOnlySpan<uint> Owners => Session.Shown.Owners;
 
         /// <summary>
-        /// The atom whose surface is nearest to a vertex of <see cref="Mesh"/>: its index in the atoms that were given.
+        /// The atom whose surface is nearest to a vertex of <see cref="Mesh"/>: an index into the
+        /// atoms of the surface that is shown (if newer atoms are being computed: those before).
         /// </summary>
         /// <param name="vertex">From 0 to <see cref="SurfaceLevel.VertexCount"/> - 1.</param>
         public int OwnerAtomAt(int vertex)
@@ -45,7 +46,7 @@ namespace QuickSes
         /// surface looks at all its triangles (some milliseconds for a million), later ones at few.
         /// </summary>
         /// <param name="ray">In world space, such as of Camera.ScreenPointToRay.</param>
-        /// <param name="atom">The atom the point belongs to, an index into the atoms that were given; -1: none.</param>
+        /// <param name="atom">The atom the point belongs to, an index as of OwnerAtomAt; -1: none.</param>
         /// <param name="point">In world space.</param>
         /// <returns>Whether the ray meets the surface.</returns>
         public bool TryPick(Ray ray, out int atom, out Vector3 point)

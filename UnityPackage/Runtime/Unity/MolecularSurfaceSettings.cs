@@ -109,7 +109,6 @@ namespace QuickSes
             set
             {
                 _baseColor = value;
-                _isEdited = true; // a source's colours may hang on it
                 if (Session.Atoms.SetBaseColor(value))
                     Changed(SurfaceChange.Appearance);
             }

@@ -17,6 +17,7 @@ namespace QuickSes
         private readonly UnmanagedBuffer<SurfaceComponent> _components = new UnmanagedBuffer<SurfaceComponent>();
         private readonly SurfacePicker _picker = new SurfacePicker();
         private Mesh _mesh;
+        private bool _isNewMesh;
 
         /// <summary>Made when it is asked for; goes with this object and is not saved with scenes.</summary>
         public Mesh Mesh
@@ -27,9 +28,18 @@ namespace QuickSes
                 {
                     _mesh = new Mesh { name = "Molecular Surface", hideFlags = HideFlags.DontSave };
                     _mesh.MarkDynamic();
+                    _isNewMesh = true;
                 }
                 return _mesh;
             }
+        }
+
+        /// <summary>Whether the mesh was made since the last question: whoever shows it has to be told.</summary>
+        public bool TakeIsNewMesh()
+        {
+            bool isNew = _isNewMesh;
+            _isNewMesh = false;
+            return isNew;
         }
 
         public SurfaceLevel Level { get; private set; }

@@ -16,7 +16,7 @@ namespace QuickSes
         private readonly UnmanagedBuffer<Color32> _colors = new UnmanagedBuffer<Color32>();
         private readonly UnmanagedBuffer<byte> _visible = new UnmanagedBuffer<byte>();
         private readonly UnmanagedBuffer<Vector2> _texcoords = new UnmanagedBuffer<Vector2>();
-        private bool _hasColors;
+        private readonly UnmanagedBuffer<bool> _hasBaseColor = new UnmanagedBuffer<bool>(); // per atom
         private Color32 _baseColor = new Color32(255, 255, 255, 255);
         private uint _atomsVersion; // radii, and with them the number of atoms
         private uint _positionsVersion;
@@ -76,25 +76,36 @@ namespace QuickSes
         {
             if (!colors.IsEmpty)
                 ThrowUnlessPerAtom(colors.Length, nameof(colors));
-            _hasColors = !colors.IsEmpty;
-            if (_hasColors)
-                _colors.CopyFrom(colors);
-            else
+            _hasBaseColor.Resize(Count).Fill(colors.IsEmpty);
+            if (colors.IsEmpty)
                 _colors.Resize(Count).Fill(_baseColor);
+            else
+                _colors.CopyFrom(colors);
+            ++_appearanceVersion;
+        }
+
+        /// <summary>Transparent black stands for the base colour.</summary>
+        public void SetSchemeColors(ReadOnlySpan<Color32> colors)
+        {
+            ThrowUnlessPerAtom(colors.Length, nameof(colors));
+            _colors.CopyFrom(colors);
+            Span<bool> hasBaseColor = _hasBaseColor.Resize(Count);
+            for (int i = 0; i < hasBaseColor.Length; ++i)
+                hasBaseColor[i] = AreSame(colors[i], default);
+            FillBaseColor();
             ++_appearanceVersion;
         }
 
         /// <returns>Whether anything shown changes.</returns>
         public bool SetBaseColor(Color32 color)
         {
-            if (color.r == _baseColor.r && color.g == _baseColor.g && color.b == _baseColor.b &&
-                color.a == _baseColor.a)
+            if (AreSame(color, _baseColor))
                 return false;
             _baseColor = color;
-            if (_hasColors)
+            if (!FillBaseColor())
                 return false;
-            SetColors(default);
-            return Count > 0;
+            ++_appearanceVersion;
+            return true;
         }
 
         /// <summary>Empty: all.</summary>
@@ -153,9 +164,27 @@ namespace QuickSes
             _positions.Dispose();
             _radii.Dispose();
             _colors.Dispose();
+            _hasBaseColor.Dispose();
             _visible.Dispose();
             _texcoords.Dispose();
         }
+
+        // Whether there is an atom that has it.
+        private bool FillBaseColor()
+        {
+            Span<Color32> colors = _colors.Span;
+            Span<bool> hasBaseColor = _hasBaseColor.Span;
+            bool isAny = false;
+            for (int i = 0; i < colors.Length; ++i)
+                if (hasBaseColor[i])
+                {
+                    colors[i] = _baseColor;
+                    isAny = true;
+                }
+            return isAny;
+        }
+
+        private static bool AreSame(Color32 a, Color32 b) => a.r == b.r && a.g == b.g && a.b == b.b && a.a == b.a;
 
         private QuickSesStatus SendAppearance(SurfaceContext context)
         {

@@ -58,30 +58,30 @@ namespace QuickSes
 
         /// <summary>
         /// Chooses among the levels of a ladder. While atoms move, all of it and a budget of time, within which the
-        /// library chooses; colours alone don't make a fine surface coarse again; who is not alone gets the coarsest
-        /// level first; and a surface that rests gets what is finer than the one that is shown.
+        /// library chooses; who is not alone gets the coarsest level first; and a surface never gets coarser than it is
+        /// while its shape stays: what refines goes on with the next finer level, new colours come at the same level.
         /// </summary>
         /// <param name="settings">Gets spacing, levels and frame budget.</param>
         /// <param name="ladder">Of <see cref="MakeLadder"/>.</param>
         /// <param name="change">What is new.</param>
-        /// <param name="shownSpacing">Of the surface that is shown, if it is of these atoms; else infinite.</param>
-        /// <param name="isShownFinest">Whether the finest level of the last atoms is shown.</param>
+        /// <param name="shownSpacing">Of the surface that is shown, if it is of this shape; else infinite.</param>
         /// <param name="frameBudget">Milliseconds per surface while atoms move; 0: all levels.</param>
         /// <param name="othersWait">Whether other surfaces have nothing new yet.</param>
         public static void Choose(ref SurfaceSettings settings, ReadOnlySpan<float> ladder, SurfaceChange change,
-            float shownSpacing, bool isShownFinest, float frameBudget, bool othersWait)
+            float shownSpacing, float frameBudget, bool othersWait)
         {
             int first = 0, last = ladder.Length - 1;
             settings.FrameBudget = 0;
             if (change == SurfaceChange.None)
-                while (first < last && !(ladder[first] < shownSpacing))
+                while (first < last && ladder[first] >= shownSpacing)
                     ++first;
-            else if (change == SurfaceChange.Appearance && isShownFinest)
-                first = last;
+            else if (change == SurfaceChange.Appearance)
+                while (first < last && ladder[first] > shownSpacing)
+                    ++first;
             else if (change == SurfaceChange.Positions && frameBudget > 0)
                 settings.FrameBudget = frameBudget;
-            else if (othersWait)
-                last = 0;
+            if (othersWait && (change == SurfaceChange.Shape || change == SurfaceChange.Appearance))
+                last = first;
             settings.Spacing = ladder[last];
             settings.SetLevels(ladder.Slice(first, last - first));
         }

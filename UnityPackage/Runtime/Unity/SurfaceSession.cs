@@ -4,8 +4,8 @@ using System;
 namespace QuickSes
 {
     /// <summary>
-    /// One surface over time: which atoms it is of, what is shown, and the job in between. It borrows a context from
-    /// <see cref="SurfaceScheduler"/> for each job. Main thread only; no garbage while atoms move.
+    /// One surface over time: which atoms it is of, what is shown, and the job in between. It borrows a context from a
+    /// <see cref="ContextPool"/> for each job. Main thread only; no garbage while atoms move.
     /// </summary>
     internal sealed class SurfaceSession : IDisposable
     {
@@ -16,14 +16,21 @@ namespace QuickSes
         private readonly float[] _ladder = new float[SurfaceSettings.MaxLevels + 1]; // as the last job was begun with
         private int _ladderCount = 1;
         private ContextSlot _slot; // while a job runs
+
+        // Versions of atoms, colours and settings: each change makes a new one. Those of the shape leave out colours.
+        private uint _version = 1;
+        private uint _shape = 1;
+        private uint _triedVersion; // the last that a job was begun for, or could not be
+        private uint _stoppedVersion; // of this one nothing more will come: it failed, or was cancelled by the user
+        private uint _shownVersion;
+        private uint _shownShape;
+        private uint _job; // the last that was begun
+        private uint _jobVersion; // and what it is of
+        private uint _jobShape;
         private SurfaceChange _pending; // since the last job began
         private SurfaceChange _begunChange; // before it
-        private uint _version = 1; // of atoms and settings: rises with each change
-        private uint _begunVersion;
-        private uint _shownVersion;
-        private uint _stoppedVersion; // failed, or cancelled by the user: not tried again
-        private uint _job; // the last that was begun
         private double _lastChange;
+
         private bool _updated; // events to be raised
         private bool _finished;
         private bool _failed;
@@ -31,40 +38,47 @@ namespace QuickSes
         public SurfaceSession(MolecularSurface owner)
         {
             _owner = owner;
+            SurfaceScheduler.Add(this);
         }
 
         public SurfaceAtomSet Atoms { get; } = new SurfaceAtomSet();
 
         public ShownSurface Shown { get; } = new ShownSurface();
 
-        public SurfaceBackend Backend => _owner.Backend;
-
-        /// <summary>Whether the scheduler knows it.</summary>
-        public bool IsListed { get; set; }
-
-        /// <summary>In which queue of the scheduler it waits.</summary>
+        /// <summary>In which queue of its pool it waits.</summary>
         public SurfaceNeed Queued { get; set; }
+
+        /// <summary>Whose context it has, or waits for.</summary>
+        public ContextPool Pool { get; set; }
 
         /// <summary>The one that computed what is shown or is being computed; Auto: none yet.</summary>
         public SurfaceBackend UsedBackend { get; private set; }
 
         public BackendDescription UsedDevice { get; private set; }
 
-        /// <summary>Of the last job that failed; Ok after one that didn't.</summary>
+        /// <summary>Why there is no surface of the newest atoms; Ok if there is or will be one.</summary>
         public QuickSesError LastError { get; private set; }
 
         public float Progress { get; private set; }
 
         public bool IsDisposed { get; private set; }
 
+        /// <summary>Whether the component has been destroyed without being told.</summary>
+        public bool IsOrphan => _owner == null;
+
         /// <summary>Whether the newest atoms are shown as finely as asked for, or never will be.</summary>
-        public bool IsSettled => !Atoms.IsSet || _stoppedVersion == _version ||
-            (_slot == null && _shownVersion == _version && Shown.Level.IsFinest);
+        public bool IsSettled => !Atoms.IsSet || (_slot == null && (_stoppedVersion == _version || IsDone));
+
+        private bool IsDone => _shownVersion == _version && Shown.Level.IsFinest;
+
+        private ReadOnlySpan<float> Ladder => new ReadOnlySpan<float>(_ladder, 0, _ladderCount);
 
         /// <summary>Something is new: what is shown will be replaced.</summary>
         public void Change(SurfaceChange change, double now)
         {
             ++_version;
+            if (change >= SurfaceChange.Positions)
+                ++_shape;
             _lastChange = now;
             if (change > _pending)
                 _pending = change;
@@ -75,103 +89,90 @@ namespace QuickSes
         {
             if (_slot != null)
                 Advance();
+            ContextPool pool = SurfaceScheduler.PoolOf(_owner.Backend);
             if (_slot == null)
             {
                 SurfaceNeed need = FindNeed(now);
                 if (need != SurfaceNeed.None)
-                    SurfaceScheduler.Enqueue(this, need);
+                    pool.Enqueue(this, need);
                 else
                     Queued = SurfaceNeed.None;
             }
-            else if (_begunVersion != _version && !SurfaceScheduler.IsAnyUrgent)
+            else if (_triedVersion != _version && !Pool.IsAnyUrgent && Pool == pool)
             {
-                Start(_slot);
+                Start(_slot); // replaces the job; its coarsest level still comes
             }
-            SurfaceScheduler.Dispatch();
+            pool.Dispatch();
         }
 
-        /// <summary>Raises what happened since the last time. Callers of events may do anything, this last.</summary>
+        /// <summary>
+        /// Raises what happened since the last time and is still so. Handlers may do anything; what one that throws
+        /// leaves is raised the next time.
+        /// </summary>
         public void RaiseEvents()
         {
-            bool updated = _updated, finished = _finished, failed = _failed;
-            _updated = _finished = _failed = false;
-            if (updated)
+            if (_updated)
+            {
+                _updated = false;
                 _owner.RaiseUpdated(Shown.Level);
-            if (finished)
-                _owner.RaiseFinished();
-            if (failed)
-                _owner.RaiseFailed(LastError);
+            }
+            if (_finished && !IsDisposed)
+            {
+                _finished = false;
+                if (IsDone && Atoms.IsSet)
+                    _owner.RaiseFinished();
+            }
+            if (_failed && !IsDisposed)
+            {
+                _failed = false;
+                if (LastError.Status != QuickSesStatus.Ok)
+                    _owner.RaiseFailed(LastError);
+            }
         }
 
-        /// <summary>Begins a job with a context that is lent for it.</summary>
+        /// <summary>Begins a job with a context that is lent for it, or that it has.</summary>
         public void Start(ContextSlot slot)
         {
+            bool replaces = _slot == slot;
             Borrow(slot);
-            try
-            {
-                SurfaceContext context = slot.Context;
-                QuickSesStatus status = Atoms.Send(slot);
-                if (status == QuickSesStatus.Ok)
-                {
-                    SurfaceSettings settings = MakeSettings();
-                    bool isCurrent = _shownVersion == _version;
-                    SurfaceJobPlan.Choose(ref settings, Ladder, _pending,
-                        isCurrent ? Shown.Level.Spacing : float.PositiveInfinity, Shown.Level.IsFinest,
-                        _owner.FrameBudget, SurfaceScheduler.IsAnyUrgent);
-                    status = context.Begin(settings);
-                }
-                NoteBegun();
-                if (status != QuickSesStatus.Ok)
-                    EndWith(new QuickSesError(status, context.LastError));
-            }
-            catch (QuickSesException e) // an atom or a setting is wrong
-            {
-                NoteBegun();
-                EndWith(new QuickSesError(e.Status, e.Message));
-            }
+            QuickSesError error = TryBegin(slot.Context);
+            _triedVersion = _version;
+            _begunChange = _pending;
+            _pending = SurfaceChange.None;
+            if (error.Status == QuickSesStatus.Ok)
+                return;
+            Fail(_version, error);
+            if (!replaces) // else the job of the atoms before goes on
+                Release(error);
         }
 
         /// <summary>Computes the finest level and shows it before it returns.</summary>
         public bool ComputeNow()
         {
             Drop();
-            ContextSlot slot = SurfaceScheduler.LendNow(this, out QuickSesError error);
+            ContextSlot slot = SurfaceScheduler.PoolOf(_owner.Backend).LendNow(this, out QuickSesError error);
             if (slot == null)
             {
                 FailToBegin(error);
                 return false;
             }
             Borrow(slot);
-            try
-            {
-                QuickSesStatus status = Atoms.Send(slot);
-                SurfaceMeshView view = default;
-                if (status == QuickSesStatus.Ok)
-                    status = slot.Context.Compute(MakeSettings(), out view);
-                NoteBegun();
-                if (status == QuickSesStatus.Ok)
-                    Show(view);
-                else
-                    Fail(new QuickSesError(status, slot.Context.LastError));
-                return status == QuickSesStatus.Ok;
-            }
-            catch (QuickSesException e)
-            {
-                NoteBegun();
-                Fail(new QuickSesError(e.Status, e.Message));
-                return false;
-            }
-            finally
-            {
-                Release();
-            }
+            error = TryCompute(slot.Context);
+            _triedVersion = _version;
+            _pending = SurfaceChange.None;
+            if (error.Status != QuickSesStatus.Ok)
+                Fail(_version, error);
+            Release(error);
+            return error.Status == QuickSesStatus.Ok;
         }
 
-        /// <summary>There is no context, and none will come.</summary>
+        /// <summary>There is nothing to compute with, or no atoms to compute it of.</summary>
         public void FailToBegin(in QuickSesError error)
         {
-            NoteBegun();
-            Fail(error);
+            Drop();
+            _triedVersion = _version;
+            _pending = SurfaceChange.None;
+            Fail(_version, error);
         }
 
         /// <summary>Ends the job; what is new meanwhile begins again later.</summary>
@@ -181,18 +182,31 @@ namespace QuickSes
             if (_slot == null)
                 return;
             _slot.Context.Cancel();
-            Release();
+            Release(default);
         }
 
         /// <summary>Ends the job for good: nothing is computed until something changes.</summary>
         public void Stop()
         {
             Drop();
-            _stoppedVersion = _begunVersion = _version;
+            _stoppedVersion = _triedVersion = _version;
             _pending = SurfaceChange.None;
         }
 
-        /// <summary>The scheduler takes the context back, and frees it.</summary>
+        /// <summary>No atoms and no surface.</summary>
+        public void Clear()
+        {
+            Drop();
+            ++_version;
+            ++_shape;
+            _pending = SurfaceChange.None;
+            Atoms.Clear();
+            Shown.Clear();
+            LastError = default;
+            _updated = _finished = _failed = false;
+        }
+
+        /// <summary>The pool takes the context back, and frees it.</summary>
         public void LoseContext()
         {
             _slot = null;
@@ -217,16 +231,56 @@ namespace QuickSes
             Shown.Dispose();
         }
 
-        private ReadOnlySpan<float> Ladder => new ReadOnlySpan<float>(_ladder, 0, _ladderCount);
-
         private SurfaceNeed FindNeed(double now)
         {
             if (!Atoms.IsSet || _stoppedVersion == _version)
                 return SurfaceNeed.None;
-            if (_begunVersion != _version)
+            if (_triedVersion != _version)
                 return SurfaceNeed.Urgent;
-            bool isDone = _shownVersion == _version && Shown.Level.IsFinest;
-            return !isDone && now - _lastChange >= _owner.RestDelay ? SurfaceNeed.Refinement : SurfaceNeed.None;
+            return !IsDone && now - _lastChange >= _owner.RestDelay ? SurfaceNeed.Refinement : SurfaceNeed.None;
+        }
+
+        private QuickSesError TryBegin(SurfaceContext context)
+        {
+            try
+            {
+                QuickSesStatus status = Atoms.Send(_slot);
+                if (status == QuickSesStatus.Ok)
+                {
+                    SurfaceSettings settings = MakeSettings();
+                    SurfaceJobPlan.Choose(ref settings, Ladder, _pending,
+                        _shownShape == _shape ? Shown.Level.Spacing : float.PositiveInfinity, _owner.FrameBudget,
+                        Pool.IsAnyUrgent);
+                    status = context.Begin(settings);
+                    NoteJob(settings.Frame, status);
+                }
+                return status == QuickSesStatus.Ok ? default : new QuickSesError(status, context.LastError);
+            }
+            catch (QuickSesException e) // an atom or a setting is wrong
+            {
+                return new QuickSesError(e.Status, e.Message);
+            }
+        }
+
+        private QuickSesError TryCompute(SurfaceContext context)
+        {
+            try
+            {
+                SurfaceMeshView view = default;
+                QuickSesStatus status = Atoms.Send(_slot);
+                if (status == QuickSesStatus.Ok)
+                {
+                    SurfaceSettings settings = MakeSettings();
+                    status = context.Compute(settings, out view);
+                    NoteJob(settings.Frame, status);
+                }
+                return status == QuickSesStatus.Ok ? TryShow(view)
+                    : new QuickSesError(status, context.LastError);
+            }
+            catch (QuickSesException e)
+            {
+                return new QuickSesError(e.Status, e.Message);
+            }
         }
 
         // Shows what is ready, and gives the context back when the job is over.
@@ -239,7 +293,13 @@ namespace QuickSes
             {
                 if (context.TryCollect(out SurfaceMeshView view) && IsOurs(view))
                 {
-                    Show(view);
+                    QuickSesError error = TryShow(view);
+                    if (error.Status != QuickSesStatus.Ok)
+                    {
+                        context.Cancel();
+                        FailJob(error);
+                        return;
+                    }
                     hasShown = true;
                 }
                 context.Poll(out progress);
@@ -247,16 +307,16 @@ namespace QuickSes
             Progress = progress.Fraction;
             if (progress.State == SurfaceJobState.Running)
             {
-                if (hasShown && SurfaceScheduler.IsAnyUrgent)
+                if (hasShown && Pool.IsAnyUrgent)
                     Yield();
             }
             else if (progress.State == SurfaceJobState.Failed)
             {
-                EndWith(new QuickSesError(progress.Status, progress.Message));
+                FailJob(new QuickSesError(progress.Status, progress.Message));
             }
             else
             {
-                Release();
+                Release(default);
             }
         }
 
@@ -270,46 +330,54 @@ namespace QuickSes
 
         private void BeginAgain(SurfaceChange change)
         {
-            _begunVersion = _version - 1;
+            _triedVersion = _version - 1;
             if (change > _pending)
                 _pending = change;
-        }
-
-        private void Fail(in QuickSesError error)
-        {
-            _stoppedVersion = _begunVersion;
-            LastError = error;
-            _failed = true;
         }
 
         // Not what the context's last user left behind. Numbers of jobs may wrap.
         private bool IsOurs(in SurfaceMeshView view) => unchecked((int)(view.Frame - _slot.FirstJob)) >= 0;
 
-        private void Show(in SurfaceMeshView view)
+        private QuickSesError TryShow(in SurfaceMeshView view)
         {
-            bool isCurrent = view.Frame == _job && _begunVersion == _version;
+            bool isLast = view.Frame == _job;
+            bool isCurrent = isLast && _jobVersion == _version;
             _slot.Context.TryGetReport(out SurfaceReport report);
-            Shown.Show(view, report, Ladder, isCurrent, _owner.PadBuffers);
+            try
+            {
+                Shown.Show(view, report, Ladder, isCurrent, _owner.PadBuffers);
+                if (Shown.TakeIsNewMesh())
+                    _owner.AttachMesh();
+            }
+            catch (Exception e) // the engine refuses the mesh: it was made unreadable, say
+            {
+                return new QuickSesError(QuickSesStatus.InternalError, e.Message);
+            }
             _shownVersion = isCurrent ? _version : _version - 1;
+            _shownShape = isLast && _jobShape == _shape ? _shape : _shape - 1;
             _updated = true;
-            _finished = isCurrent && Shown.Level.IsFinest;
-            LastError = default;
+            _finished = IsDone;
+            if (_stoppedVersion != _version)
+                LastError = default;
+            return default;
         }
 
         private SurfaceSettings MakeSettings()
         {
             SurfaceSettings settings = _owner.MakeSettings(_ladder, out _ladderCount);
-            settings.Frame = _job = SurfaceScheduler.NextJob();
+            settings.Frame = SurfaceScheduler.NextJob();
             settings.Series = _series;
             settings.Texcoords = Atoms.HasTexcoords;
             return settings;
         }
 
-        private void NoteBegun()
+        private void NoteJob(uint job, QuickSesStatus status)
         {
-            _begunVersion = _version;
-            _begunChange = _pending;
-            _pending = SurfaceChange.None;
+            if (status != QuickSesStatus.Ok)
+                return;
+            _job = job;
+            _jobVersion = _version;
+            _jobShape = _shape;
             Progress = 0;
         }
 
@@ -320,15 +388,23 @@ namespace QuickSes
             UsedDevice = slot.Context.Description;
         }
 
-        private void EndWith(in QuickSesError error)
+        // Of a version nothing (more) will come. That there is nothing to compute with is told once.
+        private void Fail(uint version, in QuickSesError error)
         {
-            Fail(error);
-            Release();
+            _stoppedVersion = version;
+            _failed |= error.Status != QuickSesStatus.BackendUnavailable || LastError.Status != error.Status;
+            LastError = error;
         }
 
-        private void Release()
+        private void FailJob(in QuickSesError error)
         {
-            SurfaceScheduler.Release(_slot);
+            Fail(_jobVersion, error);
+            Release(error);
+        }
+
+        private void Release(in QuickSesError error)
+        {
+            Pool.Release(_slot, error.Status == QuickSesStatus.DeviceError);
             _slot = null;
             Progress = 1;
         }

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+using NUnit.Framework;
+using QuickSes.EngineDouble;
+using System;
+using System.Collections;
+using UnityEngine;
+using UnityEngine.TestTools;
+
+namespace QuickSes.Tests
+{
+    /// <summary>Whatever is done to some surfaces in whatever order: in the end each shows its own atoms, finest.</summary>
+    internal sealed class RandomUseTest
+    {
+        private const int Count = 8;
+        private const int Steps = 600;
+
+        private readonly SurfaceRig[] _rigs = new SurfaceRig[Count];
+        private readonly Vector3[][] _positions = new Vector3[Count][]; // null: no atoms
+        private readonly float[][] _radii = new float[Count][];
+
+        [UnityTest]
+        public IEnumerator EachShowsItsOwnInTheEnd([Values(1, 2, 3, 4, 5, 6)] int seed)
+        {
+            int most = SurfaceScheduler.MaxContexts;
+            SurfaceScheduler.ReleaseContexts();
+            SurfaceScheduler.MaxContexts = 1 + seed % 3;
+            var random = new System.Random(seed);
+            for (int k = 0; k < Count; ++k)
+            {
+                _rigs[k] = new SurfaceRig("surface " + k);
+                _positions[k] = null;
+            }
+            for (int step = 0; step < Steps; ++step)
+            {
+                DoSomething(random.Next(Count), random);
+                if (random.Next(2) > 0)
+                    yield return null;
+            }
+            foreach (SurfaceRig rig in _rigs)
+            {
+                rig.GameObject.SetActive(true);
+                rig.Surface.enabled = true;
+                rig.Surface.Recompute();
+            }
+            yield return SurfaceRig.Until(() => Array.TrueForAll(_rigs, rig => !rig.Surface.IsBusy));
+            for (int k = 0; k < Count; ++k)
+            {
+                MolecularSurface surface = _rigs[k].Surface;
+                if (_positions[k] == null)
+                    Assert.That(surface.Mesh.vertexCount, Is.EqualTo(0));
+                else
+                    SurfaceMeshes.AssertIsSurfaceOf(
+                        surface.Mesh, _positions[k], _radii[k], 0.5f, surface.OwnerAtomAt);
+            }
+            Assert.That(SurfaceScheduler.LentCount, Is.EqualTo(0));
+            Assert.That(SurfaceScheduler.WaitingCount, Is.EqualTo(0));
+            foreach (SurfaceRig rig in _rigs)
+                rig.Dispose();
+            SurfaceScheduler.MaxContexts = most;
+        }
+
+        private void DoSomething(int k, System.Random random)
+        {
+            MolecularSurface surface = _rigs[k].Surface;
+            switch (random.Next(14))
+            {
+                case 0:
+                case 1:
+                    TestMolecules.Blob(1 + random.Next(300), random.Next(), out _positions[k], out _radii[k]);
+                    surface.SetAtoms(_positions[k], _radii[k]);
+                    break;
+                case 2:
+                case 3:
+                    if (_positions[k] == null)
+                        break;
+                    _positions[k] = TestMolecules.Moved(_positions[k], random.Next());
+                    surface.SetPositions(_positions[k]);
+                    break;
+                case 4:
+                    if (_positions[k] != null)
+                        surface.SetColors(new Color32[_positions[k].Length]);
+                    break;
+                case 5:
+                    surface.Cancel();
+                    break;
+                case 6:
+                    surface.Recompute();
+                    break;
+                case 7:
+                    surface.ClearAtoms();
+                    _positions[k] = null;
+                    break;
+                case 8:
+                    if (_positions[k] != null)
+                        surface.ComputeNow();
+                    break;
+                case 9:
+                    surface.enabled = !surface.enabled;
+                    break;
+                case 10:
+                    _rigs[k].GameObject.SetActive(!_rigs[k].GameObject.activeSelf);
+                    break;
+                case 11:
+                    surface.Backend = surface.Backend == SurfaceBackend.Auto ? SurfaceBackend.Cpu : SurfaceBackend.Auto;
+                    if (random.Next(5) == 0)
+                        SurfaceScheduler.ReleaseContexts();
+                    break;
+                case 12:
+                    if (_positions[k] == null)
+                        break;
+                    var bad = (Vector3[])_positions[k].Clone();
+                    bad[0].x = float.NaN;
+                    surface.SetPositions(bad);
+                    Engine.Frame(0.01);
+                    surface.SetPositions(_positions[k]);
+                    break;
+                case 13:
+                    if (random.Next(4) > 0)
+                        break;
+                    _rigs[k].Dispose();
+                    _rigs[k] = new SurfaceRig("surface " + k);
+                    _positions[k] = null;
+                    break;
+            }
+        }
+    }
+}
