@@ -8,9 +8,10 @@ using System.Runtime.InteropServices;
 namespace QuickSes.Playback
 {
     /// <summary>
-    /// playback LIBRARY frames FILE COUNT     plays a trajectory until COUNT surfaces were shown; prints what was
-    /// allocated playback LIBRARY cost FILE...          prints the milliseconds the main thread spends on a frame A
-    /// process of its own, since test hosts allocate as they please on other threads.
+    /// playback LIBRARY frames FILE COUNT: plays a trajectory until COUNT surfaces were shown; prints what was allocated.
+    /// <para>playback LIBRARY many SURFACES COUNT: moves as many small surfaces at once; prints the same.</para>
+    /// <para>playback LIBRARY cost FILE...: prints the milliseconds the main thread spends on a frame.</para>
+    /// A process of its own, since test hosts allocate as they please on other threads.
     /// </summary>
     internal static class Program
     {
@@ -18,7 +19,8 @@ namespace QuickSes.Playback
         {
             if (arguments.Length < 3)
             {
-                Console.Error.WriteLine("usage: playback LIBRARY frames FILE COUNT | playback LIBRARY cost FILE...");
+                Console.Error.WriteLine("usage: playback LIBRARY frames FILE COUNT | playback LIBRARY many SURFACES " +
+                    "COUNT | playback LIBRARY cost FILE...");
                 return 2;
             }
             CultureInfo.DefaultThreadCurrentCulture = CultureInfo.CurrentCulture = CultureInfo.InvariantCulture;
@@ -27,6 +29,11 @@ namespace QuickSes.Playback
                 (name, assembly, path) => name == "quickses" ? library : IntPtr.Zero);
             if (arguments[1] == "frames")
                 return LongPlay.Run(Path.GetFullPath(arguments[2]), int.Parse(arguments[3]));
+            if (arguments[1] == "many")
+            {
+                ManySurfaces.Run(int.Parse(arguments[2]), int.Parse(arguments[3]));
+                return 0;
+            }
             for (int k = 2; k < arguments.Length; ++k)
                 if (!FrameCost.TryPrint(Path.GetFullPath(arguments[k])))
                     return 1;

@@ -31,6 +31,21 @@ namespace QuickSes.EngineDouble
             script.State.Messages.Send(script, Message.OnValidate);
         }
 
+        /// <summary>Scripts were copied, and so were all that they may ask for.</summary>
+        public static void BeginCopies(IReadOnlyList<MonoBehaviour> scripts)
+        {
+            foreach (MonoBehaviour script in scripts)
+            {
+                script.State.Messages = MessageTable.Of(script.GetType());
+                if (!Application.isPlaying)
+                    script.State.Messages.Send(script, Message.OnValidate); // the Editor's part
+            }
+
+            foreach (MonoBehaviour script in scripts)
+                if (script != null)
+                    Refresh(script);
+        }
+
         /// <summary>Brings what the script was told in line with what it is now.</summary>
         public static void Refresh(MonoBehaviour script)
         {

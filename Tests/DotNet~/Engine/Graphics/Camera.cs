@@ -27,6 +27,14 @@ namespace UnityEngine
 
         public Color backgroundColor { get; set; }
 
+        internal override void CopyStateOf(Component original)
+        {
+            base.CopyStateOf(original);
+            var other = (Camera)original;
+            (fieldOfView, nearClipPlane, farClipPlane) = (other.fieldOfView, other.nearClipPlane, other.farClipPlane);
+            (aspect, backgroundColor) = (other.aspect, other.backgroundColor);
+        }
+
         public Ray ScreenPointToRay(Vector3 pos)
         {
             float height = Mathf.Tan(fieldOfView / 2 * Mathf.Deg2Rad);

@@ -40,6 +40,9 @@ namespace UnityEngine
             }
             set => sharedMesh = value;
         }
+
+        // The same mesh, which therefore is nobody's instance.
+        internal override void CopyStateOf(Component original) => _mesh = ((MeshFilter)original)._mesh;
     }
 
     public class Renderer : Component
@@ -126,6 +129,16 @@ namespace UnityEngine
         public void GetPropertyBlock(MaterialPropertyBlock properties) => properties.CopyFrom(Properties);
 
         internal MaterialPropertyBlock Properties { get; private set; }
+
+        // Property blocks are not serialised.
+        internal override void CopyStateOf(Component original)
+        {
+            var other = (Renderer)original;
+            _enabled = other._enabled;
+            _materials = (Material[])other._materials.Clone();
+            shadowCastingMode = other.shadowCastingMode;
+            receiveShadows = other.receiveShadows;
+        }
     }
 
     public class MeshRenderer : Renderer

@@ -33,5 +33,7 @@ namespace UnityEngine
                 return _enabled && Owner.activeInHierarchy;
             }
         }
+
+        internal override void CopyStateOf(Component original) => _enabled = ((Behaviour)original)._enabled;
     }
 }

@@ -71,6 +71,11 @@ namespace UnityEngine
 
         internal void AttachTo(GameObject gameObject) => _gameObject = gameObject;
 
+        /// <summary>Takes what the engine itself serialises of a component of the same type.</summary>
+        internal virtual void CopyStateOf(Component original)
+        {
+        }
+
         internal override bool MayBeDestroyed()
         {
             if (_gameObject == null)

@@ -182,6 +182,19 @@ namespace UnityEngine
             return null;
         }
 
+        /// <summary>Components of the same types, still as new, of which none was told anything; no children.</summary>
+        internal static GameObject CopyOf(GameObject original)
+        {
+            var copy = new GameObject(original.name)
+            {
+                layer = original.layer, tag = original.tag, isStatic = original.isStatic, hideFlags = original.hideFlags
+            };
+            copy._activeSelf = original._activeSelf;
+            for (int i = 1; i < original._components.Count; ++i) // the first is the Transform
+                copy.Append((Component)Activator.CreateInstance(original._components[i].GetType(), true));
+            return copy;
+        }
+
         internal Component ComponentThatRequires(Component required)
         {
             foreach (Component candidate in _components)

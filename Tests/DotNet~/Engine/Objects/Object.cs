@@ -105,6 +105,15 @@ namespace UnityEngine
             return found.Length > 0 ? found[0] : null;
         }
 
+        /// <summary>Of GameObjects and components, the latter with their GameObject.</summary>
+        public static T Instantiate<T>(T original) where T : Object => Instantiate(original, null, false);
+
+        public static T Instantiate<T>(T original, Transform parent) where T : Object =>
+            Instantiate(original, parent, false);
+
+        public static T Instantiate<T>(T original, Transform parent, bool worldPositionStays) where T : Object =>
+            (T)Duplication.Run(original, parent, worldPositionStays);
+
         public static implicit operator bool(Object exists) => exists != null;
 
         public static bool operator ==(Object x, Object y) =>

@@ -227,6 +227,13 @@ namespace UnityEngine
             _parent = null;
         }
 
+        internal override void CopyStateOf(Component original)
+        {
+            var other = (Transform)original;
+            (_localPosition, _localRotation, _localScale) =
+                (other._localPosition, other._localRotation, other._localScale);
+        }
+
         internal override bool MayBeDestroyed()
         {
             Debug.LogError("Can't destroy Transform component of '" + name + "'. If you want to destroy the game " +
