@@ -264,7 +264,8 @@ namespace QuickSes.Tests
             var reader = new CountingReader(10) { WaitsOnOpening = true };
             reader.Gate.Reset();
             var prefetcher = new FramePrefetcher(reader, 5);
-            prefetcher.Dispose();
+            using (new Timer(_ => reader.Gate.Set(), null, 3000, Timeout.Infinite)) // ends a wait
+                prefetcher.Dispose();
             Assert.That(prefetcher.HasLeft || reader.IsDisposed, Is.False);
             reader.Gate.Set();
             WaitUntil(() => prefetcher.HasLeft, "it has left by itself");

@@ -291,6 +291,18 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
+        public IEnumerator BaseColorIsFollowed()
+        {
+            LoadEnsemble(3);
+            Player.ColorScheme = AtomColorScheme.Uniform;
+            yield return SurfaceRig.Until(() => !_playing.Surface.IsBusy);
+            var color = new Color32(1, 2, 3, 255);
+            _playing.Surface.BaseColor = color;
+            yield return SurfaceRig.Until(() => !_playing.Surface.IsBusy);
+            Assert.That(_playing.Surface.Mesh.colors32, Is.Not.Empty.And.All.EqualTo(color));
+        }
+
+        [UnityTest]
         public IEnumerator TheEnginePlaysIt()
         {
             _playing.UseEnsemble(5);

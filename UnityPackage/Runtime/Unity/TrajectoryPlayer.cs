@@ -299,8 +299,8 @@ namespace QuickSes
             _areColorsRequested = false;
             _loadedStructureSource.ColorScheme = ActiveStructureSource.ColorScheme;
             var colors = new Color32[Structure.AtomCount];
-            AtomColors.Fill(Structure, ActiveStructureSource.ColorScheme, _surface.BaseColor, colors);
-            _surface.SetColors(colors);
+            AtomColors.Fill(Structure, ActiveStructureSource.ColorScheme, default, colors);
+            _surface.SetSchemeColors(colors);
         }
 
         // In edit mode Update comes only when something changed.

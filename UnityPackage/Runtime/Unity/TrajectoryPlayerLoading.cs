@@ -91,8 +91,8 @@ namespace QuickSes
         }
 
         /// <summary>
-        /// Closes structure and trajectory; the surface keeps what it shows. Waits for the frame that is being read, but
-        /// not for a trajectory that is being opened. Disabling the component does the same.
+        /// Closes structure and trajectory; the surface keeps what it shows. Waits for the frame that is being read,
+        /// but not for a trajectory that is being opened. Disabling the component does the same.
         /// </summary>
         public void Unload()
         {
