@@ -8,7 +8,7 @@ using System.Runtime.InteropServices;
 namespace QuickSes.Playback
 {
     /// <summary>
-    /// playback LIBRARY frames FILE COUNT: plays a trajectory until COUNT surfaces were shown; prints what was allocated.
+    /// playback LIBRARY frames FILE COUNT: plays a trajectory until COUNT surfaces were shown; prints what that took.
     /// <para>playback LIBRARY many SURFACES COUNT: moves as many small surfaces at once; prints the same.</para>
     /// <para>playback LIBRARY cost FILE...: prints the milliseconds the main thread spends on a frame.</para>
     /// A process of its own, since test hosts allocate as they please on other threads.

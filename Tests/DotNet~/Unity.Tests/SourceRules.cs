@@ -23,15 +23,19 @@ namespace QuickSes.Tests
             @"|\bWarn\.(If|Unless)\b|\bMultipleAssertException\b" +
             @"|\b(Is|Not|And|Or|All|Some|None|With)\.(AnyOf|Default|IgnoreWhiteSpace)\b|\.IgnoreWhiteSpace\b" +
             @"|\b(Has|Not|And|Or|With)\.(ItemAt|One)\b|\bHas\.Exactly\([^)]*\)\.Items\b" +
-            @"|\b(Does|Not|And|Or)\.Contain(Key|Value)\b|\bContains\.Value\b|\.WithValue\(|\.UsingPropertiesComparer\b" +
+            @"|\b(Does|Not|And|Or)\.Contain(Key|Value)\b|\bContains\.Value\b|\.WithValue\(" +
+            @"|\.UsingPropertiesComparer\b" +
             @"|\bTestContext\.(AddTestAttachment|CurrentRepeatCount|CurrentContext\.AssertCount|AddFormatter)\b" +
             @"|\bCurrentContext\.(CurrentRepeatCount|AssertCount|Test\.(Arguments|AllCategories|Expression))\b" +
             @"|\bCurrentContext\.Result\.Assertions\b|\bTestContext\.Parameters\.Names\b" +
             @"|\bSetArgDisplayNames\(|\bIgnore\([^)]*\)\.Until\(|\b(Until|StopOnError|CancelAfter)\s*=" +
-            @"|\[\s*(assembly:\s*)?(NonParallelizable|FixtureLifeCycle|DefaultFloatingPointTolerance|NoTests|CancelAfter)\b|\bLifeCycle\.(InstancePerTestCase|SingleInstance)\b" +
+            @"|\[\s*(assembly:\s*)?(NonParallelizable|FixtureLifeCycle|DefaultFloatingPointTolerance" +
+            @"|NoTests|CancelAfter)\b" +
+            @"|\bLifeCycle\.(InstancePerTestCase|SingleInstance)\b" +
             @"|\bParallelScope\.All\b|\bDistinct\s*=\s*true");
 
-        // IL2CPP strips what only reflection finds; Input throws where only the Input System is there; uGUI is a package.
+        // IL2CPP strips what only reflection finds; Input throws where only the Input System is;
+        // uGUI is a package.
         private static readonly Regex s_unfitForPlayers = new Regex(
             @"\bSystem\.Reflection\b|\bType\.GetType\(|\bMakeGeneric(Type|Method)\b|\bActivator\.CreateInstance\b" +
             @"|\bGetDelegateForFunctionPointer\b|\bUnityEngine\.(Input|UI)\b|(?<![\w.])Input\s*\.\s*\w");
@@ -48,7 +52,7 @@ namespace QuickSes.Tests
         public static List<string> FindUnguardedSafetyHandles(string text) =>
             Find(text, s_safetyHandle, "ENABLE_UNITY_COLLECTIONS_CHECKS");
 
-        /// <summary>Lines of code, without comments and string literals, that are compiled without the symbol.</summary>
+        /// <summary>Lines of code, not comments or literals, that are compiled without the symbol.</summary>
         private static List<string> Find(string text, Regex unwanted, string symbol)
         {
             var found = new List<string>();

@@ -10,7 +10,8 @@ namespace QuickSes.Tests
     internal sealed class SourceRulesTest
     {
         [Test]
-        public void TestsOfUnityUseItsNUnit() => AssertNone(SourceRules.FindLaterNUnit, "Tests/Runtime", "Tests/Editor");
+        public void TestsOfUnityUseItsNUnit() =>
+            AssertNone(SourceRules.FindLaterNUnit, "Tests/Runtime", "Tests/Editor");
 
         [Test]
         public void SafetyHandlesAreWhereThereAreSome() =>
