@@ -9,13 +9,14 @@ namespace QuickSes
     /// </summary>
     internal sealed class ContextPool
     {
+        private const int InitialQueue = 64; // so that the first to wait in the middle of playback makes no garbage
         private const int RefinementTurn = 8; // every so many jobs one that refines may go first
 
         private readonly SurfaceBackend _backend;
         private readonly List<ContextSlot> _slots = new List<ContextSlot>();
         private readonly List<ContextSlot> _retired = new List<ContextSlot>(); // being freed by other threads
-        private readonly Queue<SurfaceSession> _urgent = new Queue<SurfaceSession>();
-        private readonly Queue<SurfaceSession> _refining = new Queue<SurfaceSession>();
+        private readonly Queue<SurfaceSession> _urgent = new Queue<SurfaceSession>(InitialQueue);
+        private readonly Queue<SurfaceSession> _refining = new Queue<SurfaceSession>(InitialQueue);
         private int _urgentInARow;
         private uint _uses;
 
