@@ -50,6 +50,15 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
+        public IEnumerator ACopyThatIsSwitchedOffDoesNotShowTheOriginalsMesh()
+        {
+            _rig = SurfaceRig.WithBlob(40, 6);
+            yield return _rig.Settle();
+            _rig.Surface.enabled = false;
+            AssertHasMeshOfItsOwn(Duplicate());
+        }
+
+        [UnityTest]
         public IEnumerator ACopyMadeDuringAJobLeavesItAlone()
         {
             TestMolecules.Blob(500, 3, out Vector3[] positions, out float[] radii);

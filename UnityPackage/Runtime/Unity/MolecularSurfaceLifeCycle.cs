@@ -12,6 +12,9 @@ namespace QuickSes
     {
         private const string DefaultMaterial = "QuickSes/MolecularSurface"; // below a folder called Resources
 
+        // The filter of a copy has the mesh of the original, also where the copy is not enabled.
+        private void Awake() => AttachMesh();
+
         private void OnEnable()
         {
             _asksForAtoms = true;
