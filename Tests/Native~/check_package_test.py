@@ -159,6 +159,29 @@ class CheckPackageTest(unittest.TestCase):
                                             "samples": [{"path": "Samples~/Player"}]}).encode()
         self.assert_fault(files, "sample Samples~/Player is not there")
 
+    def test_sample_that_is_not_listed(self):
+        files = self.right_package()
+        files["Samples~/Player/A.cs"] = b""
+        self.assert_fault(files, "Samples~/Player: is no sample of package.json")
+
+    def test_dead_links(self):
+        files = self.right_package()
+        files["Documentation~/index.md"] = (b"[a](index.md#manual) [b](../README.md) [c](https://example.org/no.md) "
+                                            b"`[d](no.md)`\n```\n[e](no.md)\n```\n[f](no.md#x) <img src=\"no.png\">\n")
+        self.assert_fault(files, "Documentation~/index.md: links to no.md, which is not there", count=2)
+
+    def test_data_outside_of_its_folder(self):
+        files = self.right_package()
+        files["UnityPackage/Runtime/junk.bytes"] = b"1"
+        files["UnityPackage/Runtime/junk.bytes.meta"] = meta(22, "TextScriptImporter")
+        self.assert_fault(files, "UnityPackage/Runtime/junk.bytes: doesn't belong in the package")
+
+    def test_other_guid_of_a_plugin(self):
+        for path in (LINUX + "libquickses.so.meta", "UnityPackage/Plugins/linux-x86_64.meta", "UnityPackage/Plugins.meta"):
+            files = self.right_package()
+            files[path] = re.sub(rb"guid: ....", b"guid: 0123", files[path])
+            self.assert_fault(files, f"{path}: differs from plugin_metas/")
+
     def test_archive_of_another_version(self):
         self.assert_fault(self.right_package(), "its archive is called org.quickses.unity-1.2.3.tgz",
                           name="org.quickses.unity-1.2.4.tgz")
@@ -218,7 +241,7 @@ class CheckPackageTest(unittest.TestCase):
         files = self.right_package()
         path = LINUX + "libquickses.so.meta"
         files[path] = files[path].replace(b"Exclude Win64: 1", b"Exclude Win64: 0")
-        self.assert_fault(files, "Exclude Win64 is 0 but Win64's enabled is 0")
+        self.assert_fault(files, "Exclude Win64 is 0 but Win64's enabled is 0", count=2)  # and it is not the template
 
     def test_stray_library(self):
         files = self.right_package()

@@ -56,7 +56,7 @@ else()
     list(APPEND _file_metas libquickses_tbb.so.meta)
   endif()
 
-  # The same objects as libquickses.so, linked so that nothing but the C library is asked of the machine.
+  # The same objects as libquickses.so, linked so that nothing but the C library and libgcc_s is asked of the machine (of TBB beside it also libstdc++).
   add_library(quickses_plugin SHARED ${_objects})
   quickses_link_library(quickses_plugin ${_system_library})
   set_target_properties(quickses_plugin PROPERTIES OUTPUT_NAME quickses LIBRARY_OUTPUT_DIRECTORY "${_folder}"
