@@ -96,9 +96,22 @@ namespace QuickSes
         /// <inheritdoc cref="SetColors(ReadOnlySpan{Color32})"/>
         public void SetColors(Color32[] colors) => SetColors(NotNull(colors, nameof(colors)));
 
-        // Transparent black stands for BaseColor, also when that is another one later.
-        internal void SetSchemeColors(ReadOnlySpan<Color32> colors)
+        /// <summary>The atoms of a file, brought into Unity's space.</summary>
+        internal void SetAtomsOf(Structure structure)
         {
+            var positions = new Vector3[structure.AtomCount];
+            UnitySpace.FromFile(structure.Positions, positions);
+            SetAtoms(positions, structure.Radii);
+        }
+
+        /// <summary>
+        /// Colours by what a file says of the same atoms; those of which it says nothing have <see cref="BaseColor"/>,
+        /// also when that is another one later.
+        /// </summary>
+        internal void ColorAtomsOf(Structure structure, AtomColorScheme scheme)
+        {
+            var colors = new Color32[structure.AtomCount];
+            AtomColors.Fill(structure, scheme, default, colors); // transparent black stands for it
             Session.Atoms.SetSchemeColors(colors);
             Changed(SurfaceChange.Appearance);
         }
@@ -152,14 +165,8 @@ namespace QuickSes
             using (structure)
             {
                 if (withAtoms)
-                {
-                    var positions = new Vector3[structure.AtomCount];
-                    UnitySpace.FromFile(structure.Positions, positions);
-                    SetAtoms(positions, structure.Radii);
-                }
-                var colors = new Color32[structure.AtomCount];
-                AtomColors.Fill(structure, _source.ColorScheme, default, colors);
-                SetSchemeColors(colors);
+                    SetAtomsOf(structure);
+                ColorAtomsOf(structure, _source.ColorScheme);
             }
             _isScriptFed = false;
             return true;

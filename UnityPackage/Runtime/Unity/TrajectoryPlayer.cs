@@ -286,9 +286,7 @@ namespace QuickSes
         {
             if (Structure == null)
                 return;
-            var positions = new Vector3[Structure.AtomCount];
-            UnitySpace.FromFile(Structure.Positions, positions);
-            _surface.SetAtoms(positions, Structure.Radii);
+            _surface.SetAtomsOf(Structure);
             SendColors();
             _shown = s_nothing; // the frame comes again
             RequestUpdate();
@@ -298,9 +296,7 @@ namespace QuickSes
         {
             _areColorsRequested = false;
             _loadedStructureSource.ColorScheme = ActiveStructureSource.ColorScheme;
-            var colors = new Color32[Structure.AtomCount];
-            AtomColors.Fill(Structure, ActiveStructureSource.ColorScheme, default, colors);
-            _surface.SetSchemeColors(colors);
+            _surface.ColorAtomsOf(Structure, ActiveStructureSource.ColorScheme);
         }
 
         // In edit mode Update comes only when something changed.
