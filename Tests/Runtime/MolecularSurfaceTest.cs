@@ -160,7 +160,7 @@ namespace QuickSes.Tests
         public IEnumerator ColoursDontMakeALevelCoarser()
         {
             _rig = SurfaceRig.WithBlob(3000, 15);
-            yield return SurfaceRig.Until(() => _rig.Levels.Count == 2);
+            yield return SurfaceRig.Until(() => _rig.Levels.Count >= 2 || !_rig.Surface.IsBusy);
             _rig.Surface.SetColors(new Color32[3000]);
             yield return _rig.Settle();
             for (int k = 1; k < _rig.Levels.Count; ++k)
@@ -172,11 +172,11 @@ namespace QuickSes.Tests
         {
             _rig = SurfaceRig.WithBlob(30, 16);
             yield return _rig.Settle();
-            TestMolecules.Blob(3000, 17, out Vector3[] positions, out float[] radii);
+            TestMolecules.Blob(12000, 17, out Vector3[] positions, out float[] radii);
             _rig.Surface.SetAtoms(positions, radii);
             _rig.Surface.Cancel();
             _rig.Levels.Clear();
-            _rig.Surface.SetColors(new Color32[3000]);
+            _rig.Surface.SetColors(new Color32[12000]);
             yield return _rig.Settle();
             Assert.That(_rig.Levels[0].IsFinest, Is.False);
         }

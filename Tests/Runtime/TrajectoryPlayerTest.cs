@@ -281,8 +281,12 @@ namespace QuickSes.Tests
             Player.Play();
             TestDelegate play = () =>
             {
-                for (int tick = 0; tick < 200; ++tick)
+                int goal = _playing.Shown.Count + 20;
+                for (int tick = 0; tick < 1000000 && _playing.Shown.Count < goal; ++tick)
+                {
                     Player.Tick(0.04f);
+                    System.Threading.Thread.Yield(); // frames are read meanwhile
+                }
             };
             play();
             int before = _playing.Shown.Count;
