@@ -9,8 +9,6 @@
 #include "surface/lattice.h"
 #include "surface/solvent_features.h"
 
-#include <string>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -30,9 +28,7 @@ struct BrickSet {
 
   // Number of the active brick at a place of the table of bricks; -1 if there is none.
   QSES_FN int find(const glm::ivec3 &b) const {
-    if (b.x < 0 || b.y < 0 || b.z < 0 || b.x >= lattice.brick_count.x || b.y >= lattice.brick_count.y ||
-        b.z >= lattice.brick_count.z)
-      return -1;
+    if (!lattice.has(b)) return -1;
     const uint64_t key = lattice.linear(b);
     if (table) return table[key];
     const uint32_t k = lower_bound(linear, count, key);

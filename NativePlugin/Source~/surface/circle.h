@@ -13,10 +13,11 @@ struct Circle {
   Vec3<float> e1, e2;  // right-handed in-plane axes: e1 x e2 = axis
   float cosine, sine;  // of the cap, without tolerance
   float inverse_sine;
+  float same2;  // another circle of the sphere within this is the same one: squared, in units of this one's radius
 };
 
 // The frame is branch-free and continuous but at the south pole (Duff et al. 2017).
-QSES_FN Circle make_circle(const glm::vec3 &axis, float cosine) {
+QSES_FN Circle make_circle(const glm::vec3 &axis, float cosine, float sphere_radius) {
   const float sign = axis.z < 0.f ? -1.f : 1.f;
   const float a = -1.f / (sign + axis.z), b = axis.x * axis.y * a;
   Circle c;
@@ -26,6 +27,8 @@ QSES_FN Circle make_circle(const glm::vec3 &axis, float cosine) {
   c.cosine = cosine;
   c.sine = square_root(maximum(1e-12f, 1.f - cosine * cosine));
   c.inverse_sine = 1.f / c.sine;
+  const float same = maximum(kExposureTolerance / sphere_radius, 2e-6f) * c.inverse_sine;
+  c.same2 = same * same;
   return c;
 }
 
@@ -42,16 +45,20 @@ QSES_FN HalfPlane<T> cut_circle(const Circle &circle, const Vec3<T> &axis, T cos
           (cosine - T(circle.cosine) * along) * T(circle.inverse_sine)};
 }
 
-// The whole circle is covered, or nothing of it, where the line a x + b y = c misses it. A circle that runs within
-// rounding of the ball's own surface (three balls through one circle) stays exposed; one that only touches it does not.
+// Do the ball's surface and the circle run along each other within rounding? Such a ball covers nothing: of several
+// balls through one circle each could hide it behind the others, and nothing would be left.
+template <class T>
+QSES_FN auto same_circle(const Circle &circle, const HalfPlane<T> &h) -> decltype(h.a <= h.b) {
+  return h.a * h.a + h.b * h.b + h.c * h.c <= T(circle.same2);
+}
+// The whole circle is covered, or nothing of it, where the line a x + b y = c misses it.
 template <class T>
 QSES_FN auto misses_circle(const HalfPlane<T> &h) -> decltype(h.a <= h.b) {
   return h.a * h.a + h.b * h.b <= h.c * h.c;
 }
 template <class T>
 QSES_FN auto covers_circle(const HalfPlane<T> &h) -> decltype(h.a <= h.b) {
-  const T length2 = h.a * h.a + h.b * h.b;
-  return (length2 <= h.c * h.c) & (h.c <= T(0.f)) & (T(4e-12f) < length2 + h.c * h.c);
+  return misses_circle(h) & (h.c <= T(0.f));
 }
 
 // The stretch of the circle that the half-plane covers, as pseudo-angles, for lines that meet the circle. begin == end

@@ -143,7 +143,7 @@ __device__ __forceinline__ ClippedCircle open_circle(const CircleJob &job, uint3
   c.other = job.neighbors[range.first + name.rank];
   c.shrink = stored_cap_cosine(0.f, radius);
   const Cap cap = load(job.caps + range.first + name.rank);
-  c.circle = make_circle(cap.axis, cap.cosine - c.shrink);
+  c.circle = make_circle(cap.axis, cap.cosine - c.shrink, radius);
   c.radius = radius * c.circle.sine;
   return c;
 }
@@ -154,6 +154,7 @@ __device__ __forceinline__ CutKind cut_by_cap(const CircleJob &job, const Clippe
                                               float *end) {
   const Cap cap = load(job.caps + c.first_cap + static_cast<uint32_t>(k));
   const HalfPlane<float> h = cut_circle(c.circle, Vec3<float>(cap.axis), cap.cosine - c.shrink);
+  if (same_circle(c.circle, h)) return CutKind::kNone;
   if (misses_circle(h)) return covers_circle(h) ? CutKind::kAll : CutKind::kNone;
   covered_stretch(h, begin, end);
   if (*begin == *end) return h.c < 0.f ? CutKind::kAll : CutKind::kNone;

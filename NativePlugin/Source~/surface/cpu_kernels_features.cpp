@@ -73,15 +73,15 @@ int gather_neighbors(const NeighborGridView &atoms, float max_radius, uint32_t i
   return n;
 }
 
-// Turns offsets and radii into unit directions and cap cosines; leaves out nearly tangent neighbours.
+// Turns offsets and radii into unit directions and cap cosines; leaves out neighbours that only touch.
 int make_caps(float radius, const Columns &c, int n) {
   int kept = 0;
   for (int q = 0; q < n; q += kPackSize) {
     const Vec3<Pack> d(load_pack(c.x + q), load_pack(c.y + q), load_pack(c.z + q));
     const Pack distance2 = maximum(length_squared(d), Pack(1e-20f));
     const Pack inverse = reciprocal_root(distance2);
-    const Pack cosine = cap_cosine(Pack(radius), load_pack(c.cosine + q), distance2, inverse);
-    uint32_t keep = lane_bits(cosine < Pack(kTangentCosine));
+    const Pack other = load_pack(c.cosine + q), cosine = cap_cosine(Pack(radius), other, distance2, inverse);
+    uint32_t keep = lane_bits(overlap(Pack(radius), other, distance2));
     if (n - q < kPackSize) keep &= (1u << (n - q)) - 1;
     int32_t index[kPackSize];
     for (int l = 0; l < kPackSize; ++l) index[l] = c.index[q + l];
@@ -144,6 +144,7 @@ bool cut_by_neighbors(const Circle &circle, const Columns &c, int n, int j, Expo
     const HalfPlane<Pack> h = cut_circle(circle, axis, load_pack(c.cosine + q));
     uint32_t lanes = n - q < kPackSize ? (1u << (n - q)) - 1 : kAllLanes;
     if (j >= q && j < q + kPackSize) lanes &= ~(1u << (j - q));
+    lanes &= ~lane_bits(same_circle(circle, h));
     if (lane_bits(covers_circle(h)) & lanes) return false;
     lanes &= ~lane_bits(misses_circle(h));
     if (!lanes) continue;
@@ -197,7 +198,7 @@ AtomFeatures find_atom_features(const NeighborGridView &atoms, const SurfacePara
   int64_t arc_count = 0;
   for (int j = 0; j < n; ++j) {
     if (static_cast<uint32_t>(c.index[j]) < i) continue;  // the circle belongs to the other atom
-    const Circle circle = make_circle(glm::vec3(c.x[j], c.y[j], c.z[j]), c.cosine[j]);
+    const Circle circle = make_circle(glm::vec3(c.x[j], c.y[j], c.z[j]), c.cosine[j], self.radius);
     ExposedIntervals<Interval *> intervals{c.intervals, scratch.capacity};
     if (!cut_by_neighbors(circle, c, n, j, &intervals)) continue;
     mark_exposed(exposed, i);

@@ -3,6 +3,11 @@
 // so that a triangle is three look-ups.
 #include "surface/cpu_kernels_isa.h"
 
+#include <cassert>
+#if !defined(NDEBUG)
+#include <cstring>
+#endif
+
 namespace quickses {
 namespace QSES_CPU_ISA {
 namespace {
@@ -65,6 +70,9 @@ void emit_brick_triangles(const BrickSet &bricks, const MeshLayout &layout, uint
   if (layout.triangle_base[brick + 1] == begin) return;
   const glm::ivec3 place = bricks.lattice.brick_at(bricks.linear[brick]);
   VertexNumbers numbers;
+#if !defined(NDEBUG)
+  std::memset(&numbers, 0xff, sizeof numbers);  // no signs change on the border of the set, so none of these is read
+#endif
   number_vertices(layout, brick, 0, &numbers);
   for (int towards = 1; towards < 8; ++towards) {
     const int k = bricks.find(place + glm::ivec3(towards & 1, towards >> 1 & 1, towards >> 2));
@@ -84,6 +92,7 @@ void emit_brick_triangles(const BrickSet &bricks, const MeshLayout &layout, uint
         out[0] = here[kEdgeOffsets.at[edges[0]]];
         out[1] = here[kEdgeOffsets.at[edges[second]]];
         out[2] = here[kEdgeOffsets.at[edges[third]]];
+        assert(out[0] < layout.vertex_total && out[1] < layout.vertex_total && out[2] < layout.vertex_total);
       }
     }
   }

@@ -116,6 +116,7 @@ struct Work {
   Points place, normal;
   int32_t owner[kMaxBrickVertices + kPackSize];  // place in the grid
   uint8_t patch[kMaxBrickVertices + kPackSize];
+  bool placed[kMaxBrickVertices + kPackSize];
   Points open;  // those whose radial projection is not exposed
   int32_t open_number[kMaxBrickVertices + kPackSize];
 };
@@ -149,7 +150,11 @@ int project_contact(const FeatureView &f, const BrickCandidates &c, float spacin
       const uint32_t exposed = exposed_lanes(f, atom, offset, length, same);
       if (!exposed) continue;
       done |= exposed;
-      const Vec3<Pack> outward = offset * reciprocal_root(maximum(length_squared(offset), Pack(1e-24f)));
+      const Pack length2 = length_squared(offset), inverse = reciprocal_root(maximum(length2, Pack(1e-12f)));
+      const PackMask off_center = Pack(1e-12f) < length2;  // as sphere_normal() has it
+      const Vec3<Pack> outward(select(off_center, offset.x * inverse, Pack(0.f)),
+                               select(off_center, offset.y * inverse, Pack(0.f)),
+                               select(off_center, offset.z * inverse, Pack(1.f)));
       const Vec3<Pack> on = center + outward * Pack(c.exposed.radius[k] - depth);
       place = {select(same_mask, on.x, place.x), select(same_mask, on.y, place.y), select(same_mask, on.z, place.z)};
       normal = {select(same_mask, outward.x, normal.x), select(same_mask, outward.y, normal.y),
@@ -157,6 +162,7 @@ int project_contact(const FeatureView &f, const BrickCandidates &c, float spacin
       for (uint32_t l = exposed; l; l &= l - 1) {
         w->owner[g + lowest_bit32(l)] = static_cast<int32_t>(atom);
         w->patch[g + lowest_bit32(l)] = QSES_PATCH_CONTACT;
+        w->placed[g + lowest_bit32(l)] = true;
       }
     }
     const uint32_t left = used & ~done;
@@ -206,10 +212,9 @@ void project_reentrant(const FeatureView &f, const BrickCandidates &c, float spa
         bool look_again = false;
         if (numbers[l] >= 0.f) {
           const int arc = c.arc_index[c.arc_list[static_cast<int>(numbers[l])]];
-          const ArcPoint y = nearest_on_arc(f.arcs[arc], x);
-          const float distance = square_root(length_squared(y.position - x));
-          s = place_on_surface(x, y.position, distance, depth, y.at_end ? QSES_PATCH_REENTRANT : QSES_PATCH_TOROIDAL);
-          look_again = needs_another_look(distance, square_root(seconds[l]), depth);
+          const BoundaryPoint y = boundary_on_arc(f.arcs[arc], seconds[l], x);
+          s = place_on_surface(f.parameters, x, y);
+          look_again = needs_another_look(y.distance, y.second, depth);
         } else {
           if (pass) continue;
           s = project_to_surface(f, AllCandidates{c}, x);
@@ -217,6 +222,7 @@ void project_reentrant(const FeatureView &f, const BrickCandidates &c, float spa
         w->place.x[v] = s.position.x, w->place.y[v] = s.position.y, w->place.z[v] = s.position.z;
         w->normal.x[v] = s.normal.x, w->normal.y[v] = s.normal.y, w->normal.z[v] = s.normal.z;
         w->patch[v] = static_cast<uint8_t>(s.patch);
+        w->placed[v] = s.placed;
         w->owner[v] = -1;
         if (look_again && pass + 1 < kMaxProjections) {
           w->open_number[again] = v;
@@ -230,7 +236,7 @@ void project_reentrant(const FeatureView &f, const BrickCandidates &c, float spa
 }
 
 // Owners of the vertices that lie on no single atom.
-void find_owners(const BrickCandidates &c, int n, Work *w) {
+void find_owners(const FeatureView &f, const BrickCandidates &c, int n, Work *w) {
   int open = 0;
   for (int v = 0; v < n; ++v)
     if (w->owner[v] < 0) {
@@ -246,25 +252,34 @@ void find_owners(const BrickCandidates &c, int n, Work *w) {
     const Deepest deepest = deepest_ball(c.atoms, c.near_list, near, p, -kFarAway);
     alignas(32) float number[kPackSize];
     store_pack(number, deepest.number);
-    for (int l = 0; l < kPackSize && g + l < open; ++l)
-      w->owner[w->open_number[g + l]] = number[l] < 0.f ? c.atom_index[0] : c.atom_index[static_cast<int>(number[l])];
+    for (int l = 0; l < kPackSize && g + l < open; ++l) {
+      const int v = w->open_number[g + l];
+      if (number[l] >= 0.f)
+        w->owner[v] = c.atom_index[static_cast<int>(number[l])];
+      else  // outside of all of them
+        w->owner[v] = static_cast<int32_t>(
+            nearest_atom(f, AllCandidates{c}, Vec3<float>(w->place.x[v], w->place.y[v], w->place.z[v])));
+    }
   }
 }
 
-void write_vertices(const FeatureView &f, const Lattice &lattice, const MeshView &mesh, uint32_t base, int n,
-                    const Work &w) {
+void write_vertices(const FeatureView &f, const Lattice &lattice, const VertexStarts &starts, const MeshView &mesh,
+                    uint32_t base, int n, const Work &w) {
+  uint32_t unplaced = 0;
   for (int v = 0; v < n; ++v) {
-    const Vec3<float> place(w.place.x[v], w.place.y[v], w.place.z[v]);
-    Vec3<float> normal(w.normal.x[v], w.normal.y[v], w.normal.z[v]);
-    const uint32_t owner = static_cast<uint32_t>(w.owner[v]);
-    if (f.parameters.depth == 0.f) normal = sphere_normal(f.atoms.items[owner], place);
-    const glm::vec3 p = lattice.to_caller(place);
-    const uint32_t vertex = base + static_cast<uint32_t>(v);
+    const SurfacePoint s = {{w.place.x[v], w.place.y[v], w.place.z[v]},
+                            {w.normal.x[v], w.normal.y[v], w.normal.z[v]},
+                            static_cast<qses_patch>(w.patch[v]),
+                            w.placed[v]};
+    unplaced += s.placed ? 0 : 1;
+    const uint32_t owner = static_cast<uint32_t>(w.owner[v]), vertex = base + static_cast<uint32_t>(v);
+    const glm::vec3 p = lattice.to_caller(s.position);
     store_vec3(mesh.position(vertex), Vec3<float>(p));
-    store_vec3(mesh.normal(vertex), normal);
+    store_vec3(mesh.normal(vertex), vertex_normal(f, s, owner));
     mesh.owner(vertex) = f.atoms.order[owner];
     if (mesh.patches) mesh.patch(vertex) = w.patch[v];
   }
+  if (unplaced > 0) atomic_add(starts.unplaced, unplaced);
 }
 
 }  // namespace
@@ -292,8 +307,8 @@ BrickNeeds emit_brick_vertices(const FeatureView &f, const BrickSet &bricks, con
   }
   const int open = project_contact(f, c, h, n, &w);
   project_reentrant(f, c, h, open, &w);
-  find_owners(c, n, &w);
-  write_vertices(f, lattice, mesh, base, n, w);
+  find_owners(f, c, n, &w);
+  write_vertices(f, lattice, starts, mesh, base, n, w);
   return {0, 0};
 }
 

@@ -2,6 +2,7 @@
 // The exact method from the neighbour grid to the mesh: features, bricks, signs, counts, vertices, triangles.
 #pragma once
 
+#include "surface/closed_layout.h"
 #include "surface/mesh_memory.h"
 #include "surface/relaxation.h"
 #include "surface/run.h"
@@ -115,31 +116,26 @@ MeshPart open_slab(R &run, const MeshLayout &layout, BrickRange slice) {
 // Signs of all bricks first, slice by slice: numbers are global before anything is emitted. `together`: all bricks at
 // once, and what signs and vertices share is kept.
 template <class R>
-MeshMemoryView make_exact_mesh(R &run, const BrickSet &bricks, bool together) {
+MeshMemoryView make_exact_mesh(R &run, BrickSet bricks, bool together) {
   auto &executor = run.executor;
   using Executor = std::remove_reference_t<decltype(executor)>;
   const FeatureView &features = run.features;
   run.memory.forget_spills();
-  const uint32_t asked = bricks_per_slice(run.settings, bricks.count, run.progress.wanted());
   const auto per_slice = [&](uint64_t bytes_per_brick) {
+    const uint32_t asked = bricks_per_slice(run.settings, bricks.count, run.progress.wanted());
     return Slicing{together, std::min(asked, bricks_that_fit(run, bricks.count, bytes_per_brick))};
   };
-  run.timer.begin("exact_ses");
-  Span<uint64_t> signs = executor.template allocate<uint64_t>(size_t(bricks.count) * kLeavesPerBrick);
   Candidates<Executor> shared{};
-  for_each_slice(run, bricks.count,
-                 per_slice(CandidatesOf<Executor>::sign_bytes(run.parameters, candidate_counts(run))), 0.1, 0.45,
-                 [&](BrickRange slice) {
-                   Candidates<Executor> own{};
-                   evaluate_signs(executor, features, bricks, slice, together ? shared : own, signs.data);
-                 });
-
-  run.timer.begin("marching_cubes");
   MeshLayout layout{};
-  const MeshCounts counts = lay_out_mesh(executor, bricks, signs.data, run.table.triangle_count, &layout);
-  check_mesh_size(counts);
-  run.facts->size = {static_cast<double>(bricks.count), static_cast<double>(counts.vertices),
-                     static_cast<double>(counts.triangles), static_cast<double>(layout.leaf_total)};
+  const MeshCounts counts = lay_out_closed_mesh(run, &bricks, &layout, [&](const BrickSet &set, uint64_t *signs) {
+    run.timer.begin("exact_ses");
+    shared = {};
+    for_each_slice(run, set.count, per_slice(CandidatesOf<Executor>::sign_bytes(run.parameters, candidate_counts(run))),
+                   0.1, 0.45, [&](BrickRange slice) {
+                     Candidates<Executor> own{};
+                     evaluate_signs(executor, features, set, slice, together ? shared : own, signs);
+                   });
+  });
 
   const uint64_t work = emission_bytes_per_brick(run, run.facts->size, false);
   MeshMemoryView mesh =
@@ -147,7 +143,7 @@ MeshMemoryView make_exact_mesh(R &run, const BrickSet &bricks, bool together) {
                                work * (together ? bricks.count : std::min(bricks.count, kRoomySlice)));
   if (mesh.on_host && together && bricks.count > 0) throw MemoryRefused("the mesh does not fit beside the work");
   const auto end_of_mesh = executor.arena().mark();
-  VertexStarts starts{run.settings.relaxation_steps > 0, nullptr, run.table.ring};
+  VertexStarts starts{run.settings.relaxation_steps > 0, nullptr, run.table.ring, &layout.totals->unplaced};
   const auto emit = [&](double begin, double end, bool with_triangles) {
     const Slicing slicing = per_slice(mesh.on_host ? emission_bytes_per_brick(run, run.facts->size, true) : work);
     run.report->slice_count = for_each_slice(run, bricks.count, slicing, begin, end, [&](BrickRange slice) {
@@ -177,12 +173,14 @@ MeshMemoryView make_exact_mesh(R &run, const BrickSet &bricks, bool together) {
     for (uint32_t step = 1; step < run.settings.relaxation_steps; ++step) {
       tangential_starts(executor, bricks, layout, mesh.view, counts, sums, moved.data);
       starts.moved = moved.data;
+      executor.fill(Span<uint32_t>{starts.unplaced, 1}, 0);
       const double share = 0.15 / run.settings.relaxation_steps;
       emit(0.85 + share * (step - 1), 0.85 + share * step, false);
     }
   }
   if (!mesh.on_host) paint_vertices(executor, run.appearance, mesh.view, mesh.vertices);
   executor.arena().rewind(end_of_mesh);
+  mesh.unplaced = starts.unplaced;
   return mesh;
 }
 
@@ -192,7 +190,6 @@ MeshMemoryView build_exact_surface(R &run) {
   using Executor = std::remove_reference_t<decltype(executor)>;
   run.timer.begin("bricks");
   const BrickSet bricks = find_bricks(executor, run.features, run.lattice);
-  run.report->brick_count = bricks.count;
   run.facts->size = {};
   run.facts->size.bricks = static_cast<double>(bricks.count);
   run.facts->brick_entries = bricks.table ? run.lattice.table_size() : 0;

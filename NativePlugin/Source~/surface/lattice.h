@@ -27,6 +27,10 @@ struct Lattice {
     return static_cast<uint64_t>(brick_count.x) * static_cast<uint64_t>(brick_count.y) *
            static_cast<uint64_t>(brick_count.z);
   }
+  QSES_FN bool has(const glm::ivec3 &brick) const {
+    return brick.x >= 0 && brick.y >= 0 && brick.z >= 0 && brick.x < brick_count.x && brick.y < brick_count.y &&
+           brick.z < brick_count.z;
+  }
   // Linear brick index: x fastest. It orders the output.
   QSES_FN uint64_t linear(const glm::ivec3 &brick) const {
     return static_cast<uint64_t>(brick.x) +

@@ -3,11 +3,20 @@
 // owns one vertex, named by counting bits, so the mesh is welded by construction and the same in every run.
 #pragma once
 
-#include "surface/bricks.h"
+#include "parallel/atomics.h"
+#include "surface/brick_border.h"
 #include "surface/marching_cubes_table.h"
 #include "surface/mesh_view.h"
 
 namespace quickses {
+
+// What is known of all bricks together, in the memory of the back end.
+struct MeshTotals {
+  uint32_t vertices, triangles;
+  uint32_t leaves;          // that own vertices
+  uint32_t border_changes;  // pairs of a brick and an inactive neighbour next to which signs differ
+  uint32_t unplaced;        // vertices for which no feature was found; counted while they are emitted
+};
 
 // What counting leaves behind, per active brick. Vertices are numbered by brick, leaf, axis of their edge, and bit;
 // triangles by brick, leaf, bit of their cell, and place in the table.
@@ -19,8 +28,11 @@ struct MeshLayout {
   uint32_t *vertex_base;    // [brick + 1]: vertices before the brick
   uint32_t *triangle_base;  // [brick + 1]
   uint32_t *leaf_base;      // [brick + 1]: leaves that own vertices before the brick
+  BorderSigns *border;      // [brick]
+  MeshTotals *totals;
   uint64_t vertex_total;    // of all bricks
   uint64_t leaf_total;      // that own vertices
+  uint64_t border_changes;  // 0, or the set of bricks must grow before anything is emitted
 };
 
 // Leaf words around a leaf: itself and its neighbours towards larger x, y, z (bit 0, 1, 2 of the place).
@@ -87,6 +99,7 @@ struct CountLeaf {
   MeshLayout layout;
   const uint8_t *case_triangles;
   QSES_HOST_DEVICE void operator()(size_t i) const {
+    if (i == 0) *layout.totals = {};
     const int brick = static_cast<int>(i >> 3), leaf = static_cast<int>(i & 7);
     const LeafWords c = cell_corners(leaf_words(bricks, layout.signs, brick, leaf));
     for (int axis = 0; axis < kAxes; ++axis) {
@@ -125,6 +138,21 @@ struct RankBrick {
     vertices[brick] = v;
     triangles[brick] = t;
     leaves[brick] = owning;
+    layout.border[brick] = border_signs(layout.signs + brick * kLeavesPerBrick);
+  }
+};
+
+// Runs when all bases are known.
+struct CountBorderChanges {
+  BrickSet bricks;
+  MeshLayout layout;
+  QSES_HOST_DEVICE void operator()(size_t brick) const {
+    const int changes = popcount64(border_changes(bricks, layout.border, brick));
+    if (changes > 0) atomic_add(&layout.totals->border_changes, static_cast<uint32_t>(changes));
+    if (brick > 0) return;
+    layout.totals->vertices = layout.vertex_base[bricks.count];
+    layout.totals->triangles = layout.triangle_base[bricks.count];
+    layout.totals->leaves = layout.leaf_base[bricks.count];
   }
 };
 
@@ -190,6 +218,8 @@ MeshCounts lay_out_mesh(Executor &executor, const BrickSet &bricks, const uint64
   Span<uint32_t> leaf_base = executor.template allocate<uint32_t>(n + 1);
   layout->triangle_base = triangle_base.data;
   layout->leaf_base = leaf_base.data;
+  layout->border = executor.template allocate<BorderSigns>(n).data;
+  layout->totals = executor.template allocate<MeshTotals>(1).data;
   const auto mark = executor.arena().mark();
   Span<uint32_t> vertices = executor.template allocate<uint32_t>(n);
   Span<uint32_t> triangles = executor.template allocate<uint32_t>(n);
@@ -199,6 +229,9 @@ MeshCounts lay_out_mesh(Executor &executor, const BrickSet &bricks, const uint64
   executor.exclusive_scan(n, LoadCount<uint32_t>{vertices.data}, vertex_base);
   executor.exclusive_scan(n, LoadCount<uint32_t>{triangles.data}, triangle_base);
   executor.exclusive_scan(n, LoadCount<uint32_t>{owning.data}, leaf_base);
+  executor.for_each(n, CountBorderChanges{bricks, *layout});
+  const MeshTotals totals = n > 0 ? executor.fetch(layout->totals) : MeshTotals{};
+  layout->border_changes = totals.border_changes;
   // The bases wrap if there are too many; then the true totals are summed up for the message.
   if (n * kBrickPoints * 5 > 0xffffffffull) {
     const double v = executor.reduce(n, LoadCount<uint32_t>{vertices.data});
@@ -209,12 +242,9 @@ MeshCounts lay_out_mesh(Executor &executor, const BrickSet &bricks, const uint64
     return {static_cast<uint64_t>(v), static_cast<uint64_t>(t)};
   }
   executor.arena().rewind(mark);
-  const uint32_t *const sources[3] = {vertex_base.data + n, triangle_base.data + n, leaf_base.data + n};
-  uint32_t totals[3];
-  executor.fetch_each(sources, totals, 3);
-  layout->vertex_total = totals[0];
-  layout->leaf_total = totals[2];
-  return {totals[0], totals[1]};
+  layout->vertex_total = totals.vertices;
+  layout->leaf_total = totals.leaves;
+  return {totals.vertices, totals.triangles};
 }
 
 }  // namespace quickses

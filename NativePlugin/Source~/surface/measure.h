@@ -44,6 +44,7 @@ struct FindBounds {
   static constexpr size_t kChunk = 8192;
   MeshView mesh;
   size_t vertices;
+  const uint32_t *extra;  // a number to be copied behind the six, or nullptr
   uint32_t *least;
   template <class Team>
   QSES_HOST_DEVICE void operator()(const Team &team, BoundsScratch &scratch, size_t chunk) const {
@@ -61,24 +62,29 @@ struct FindBounds {
     for (int d = 0; d < 6; ++d) atomic_min(scratch.least + d, own[d]);
     team.sync();
     for (int d = team.rank(); d < 6; d += team.size()) atomic_min(least + d, scratch.least[d]);
+    if (chunk == 0 && team.rank() == 0) least[6] = extra ? *extra : 0;
     team.sync();
   }
 };
 
-// Box of the vertices. Waits.
+// Box of the vertices. A number in the back end's memory, if there is one, comes along, so that nobody waits for it
+// alone. Waits.
 template <class Executor>
-Bounds find_bounds(Executor &executor, const MeshView &mesh, const MeshCounts &counts) {
+Bounds find_bounds(Executor &executor, const MeshView &mesh, const MeshCounts &counts, const uint32_t *extra = nullptr,
+                   uint64_t *extra_value = nullptr) {
   Bounds bounds = {};
   if (counts.vertices == 0) return bounds;
   const auto mark = executor.arena().mark();
-  Span<uint32_t> least = executor.template allocate<uint32_t>(6);
+  constexpr size_t kNumbers = 7;
+  Span<uint32_t> least = executor.template allocate<uint32_t>(kNumbers);
   executor.fill(least, 0xff);
   executor.template for_each_brick<BoundsScratch>((counts.vertices + FindBounds::kChunk - 1) / FindBounds::kChunk,
-                                                  FindBounds{mesh, counts.vertices, least.data});
-  uint32_t found[6];
-  executor.download(found, least.data, 6);
+                                                  FindBounds{mesh, counts.vertices, extra, least.data});
+  uint32_t found[kNumbers];
+  executor.download(found, least.data, kNumbers);
   executor.wait();
   executor.arena().rewind(mark);
+  if (extra_value) *extra_value = found[6];
   for (int d = 0; d < 3; ++d) {
     bounds.min[d] = from_ordered_bits(found[d]);
     bounds.max[d] = -from_ordered_bits(found[d + 3]);
@@ -128,10 +134,11 @@ struct TriangleMeasures {
   }
 };
 
-// Waits.
+// Brings an extra number along, too. Waits.
 template <class Executor>
-Measures measure(Executor &executor, const MeshView &mesh, const MeshCounts &counts) {
-  Measures m = {0.0, 0.0, find_bounds(executor, mesh, counts)};
+Measures measure(Executor &executor, const MeshView &mesh, const MeshCounts &counts, const uint32_t *extra = nullptr,
+                 uint64_t *extra_value = nullptr) {
+  Measures m = {0.0, 0.0, find_bounds(executor, mesh, counts, extra, extra_value)};
   if (counts.triangles == 0) return m;
   double c[3];
   for (int d = 0; d < 3; ++d)

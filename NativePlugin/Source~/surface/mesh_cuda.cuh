@@ -5,6 +5,8 @@
 
 #include "surface/vertex_rows_cuda.cuh"
 
+#include <cassert>
+
 namespace quickses {
 namespace gpu {
 
@@ -27,7 +29,8 @@ __device__ __forceinline__ void append(uint32_t *list, uint32_t *count, uint32_t
 __device__ __forceinline__ void finish_vertex(const VertexJob &job, uint32_t k, SurfacePoint s, uint32_t owner) {
   const FeatureView &f = job.features;
   const uint32_t vertex = job.first + k;
-  if (f.parameters.depth == 0.f) s.normal = sphere_normal(load(f.atoms.items + owner), s.position);
+  if (!s.placed) atomic_add(job.starts.unplaced, 1u);
+  s.normal = vertex_normal(f, s, owner);
   const glm::vec3 position = job.bricks.lattice.to_caller(s.position);
   store_vec3(job.mesh.position(vertex), Vec3<float>(position));
   store_vec3(job.mesh.normal(vertex), s.normal);
@@ -45,14 +48,14 @@ static __global__ __launch_bounds__(kVertexThreads) void project_on_atoms_kernel
   const DeepestAtom deepest = deepest_atom(f, candidates, x);
   __syncwarp();
   const Sphere ball = load(f.atoms.items + deepest.atom);
-  bool contact = candidates.atom_count() > 0 &&
-                 is_exposed(f, deepest.atom, x - Vec3<float>(ball.center), offset_length(ball, deepest.depth));
-  contact |= candidates.arc_count() == 0;
+  const bool contact = candidates.atom_count() > 0 &&
+                       is_exposed(f, deepest.atom, x - Vec3<float>(ball.center), offset_length(ball, deepest.depth));
+  const bool open = !contact && candidates.arc_count() > 0;
   __syncwarp();
-  append(job.open, job.open_count, k, on && !contact);
-  if (!on || !contact) return;
-  const BoundaryPoint y = boundary_on_atom(ball, deepest.depth, x);
-  finish_vertex(job, k, place_on_surface(x, y.position, y.distance, f.parameters.depth, y.patch), deepest.atom);
+  append(job.open, job.open_count, k, on && open);
+  if (!on || open) return;
+  const BoundaryPoint y = boundary_on_atom(ball, deepest.depth, x, contact);
+  finish_vertex(job, k, place_on_surface(f.parameters, x, y), deepest.atom);
 }
 
 // What comes of a look at the arcs: where the point moves, and whether it must look again.
@@ -63,9 +66,8 @@ struct Look {
 };
 __device__ __forceinline__ Look finish_look(const FeatureView &f, const NearestArc &nearest, const Vec3<float> &x) {
   const BoundaryPoint y = boundary_on_arc(load(f.arcs + nearest.arc), nearest.second2, x);
-  const float depth = f.parameters.depth;
-  return {place_on_surface(x, y.position, y.distance, depth, y.patch), y.distance,
-          needs_another_look(y.distance, y.second, depth)};
+  return {place_on_surface(f.parameters, x, y), y.distance,
+          needs_another_look(y.distance, y.second, f.parameters.depth)};
 }
 
 static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(VertexJob job) {
@@ -170,6 +172,9 @@ static __global__ __launch_bounds__(kTriangleWarps *kWarp) void emit_triangles_k
       int k = brick;
       if (x == 2 || y == 2 || z == 2)
         k = job.bricks.find(job.bricks.lattice.brick_at(job.bricks.linear[b]) + glm::ivec3(x >> 1, y >> 1, z >> 1));
+#if !defined(NDEBUG)
+      for (int axis = 0; axis < kAxes; ++axis) scratch.first[lane][axis] = scratch.crossing[lane][axis] = 0xffffffffu;
+#endif
       if (k >= 0) {
         const size_t leaf =
             static_cast<size_t>(k) * kLeavesPerBrick + static_cast<size_t>((x & 1) + 2 * (y & 1) + 4 * (z & 1));
@@ -210,6 +215,7 @@ static __global__ __launch_bounds__(kTriangleWarps *kWarp) void emit_triangles_k
           const int place27 = (ex >> 2) + 3 * (ey >> 2) + 9 * (ez >> 2);
           id[k] = vertex_number(scratch.first[place27][axis], scratch.crossing[place27][axis],
                                 leaf_bit(ex & 3, ey & 3, ez & 3));
+          assert(id[k] < layout.vertex_total);  // no signs change on the border of the set
         }
         uint32_t *out = job.mesh.triangle(size_t(base) + start + r);
         out[0] = id[0];

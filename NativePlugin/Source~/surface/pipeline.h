@@ -339,12 +339,12 @@ class SurfacePipeline : public SurfaceEngine {
     timer_.begin("measure");
     const MeshCounts counts{mesh.vertices, mesh.triangles};
     if (settings.measure) {
-      const Measures m = measure(executor_, mesh.view, counts);
+      const Measures m = measure(executor_, mesh.view, counts, mesh.unplaced, &report->unplaced_vertices);
       report->area = m.area;
       report->volume = m.volume;
       mesh.bounds = m.bounds;
     } else {
-      mesh.bounds = find_bounds(executor_, mesh.view, counts);
+      mesh.bounds = find_bounds(executor_, mesh.view, counts, mesh.unplaced, &report->unplaced_vertices);
     }
     if (settings.components) {
       timer_.begin("components");

@@ -18,6 +18,9 @@ constexpr float kStartReach = 0.9f;
 // edge and a relaxation step.
 constexpr float kStartOverhang = 1.2f;
 
+// What would move a vertex further than this, in units of the spacing, is no feature of the surface near it.
+constexpr float kLongestMove = 2.f;
+
 // Nothing that is deeper than this in the probe's way counts as a second hit.
 constexpr float kProjectionTolerance = 1e-4f;
 constexpr int kMaxProjections = 5;
@@ -89,21 +92,28 @@ struct BoundaryPoint {
   float distance;        // |x - y|; negative if x is outside the union of the inflated balls
   float second;          // distance to the second nearest arc: only of interest where the first one decided
   qses_patch patch;
+  bool found;  // false: nothing exposed is near, so that the rest means little
 };
 
 // The length of the offset of a point at some depth in a ball.
 QSES_FN float offset_length(const Sphere &ball, float depth) { return maximum(ball.radius - depth, 1e-12f); }
 
-QSES_FN BoundaryPoint boundary_on_atom(const Sphere &ball, float depth, const Vec3<float> &x) {
-  const Vec3<float> offset = x - Vec3<float>(ball.center);
-  return {Vec3<float>(ball.center) + offset * quotient(ball.radius, offset_length(ball, depth)), depth, kFarAway,
-          QSES_PATCH_CONTACT};
+// Outward from a ball's centre; a fixed direction at the centre itself.
+QSES_FN Vec3<float> sphere_normal(const Sphere &ball, const Vec3<float> &x) {
+  const Vec3<float> d = x - Vec3<float>(ball.center);
+  const float length2 = length_squared(d);
+  return length2 > 1e-12f ? d * reciprocal_root(length2) : Vec3<float>(0.f, 0.f, 1.f);
+}
+
+QSES_FN BoundaryPoint boundary_on_atom(const Sphere &ball, float depth, const Vec3<float> &x, bool exposed) {
+  return {Vec3<float>(ball.center) + sphere_normal(ball, x) * ball.radius, depth, kFarAway, QSES_PATCH_CONTACT,
+          exposed};
 }
 
 QSES_FN BoundaryPoint boundary_on_arc(const Arc &arc, float second2, const Vec3<float> &x) {
   const ArcPoint p = nearest_on_arc(arc, x);
   return {p.position, square_root(length_squared(p.position - x)), square_root(second2),
-          p.at_end ? QSES_PATCH_REENTRANT : QSES_PATCH_TOROIDAL};
+          p.at_end ? QSES_PATCH_REENTRANT : QSES_PATCH_TOROIDAL, true};
 }
 
 template <class Candidates>
@@ -114,26 +124,28 @@ QSES_FN BoundaryPoint nearest_boundary(const FeatureView &f, const Candidates &c
     deepest = deepest_atom(f, candidates, x);
     const Sphere ball = load(f.atoms.items + deepest.atom);
     if (is_exposed(f, deepest.atom, x - Vec3<float>(ball.center), offset_length(ball, deepest.depth)))
-      return boundary_on_atom(ball, deepest.depth, x);
+      return boundary_on_atom(ball, deepest.depth, x, true);
   }
   const NearestArc nearest = nearest_arc(f, candidates, x);
   if (nearest.arc >= 0) return boundary_on_arc(load(f.arcs + nearest.arc), nearest.second2, x);
-  // No candidate at all can only come from rounding: the radial projection is then within it.
-  return boundary_on_atom(load(f.atoms.items + deepest.atom), deepest.depth, x);
+  return boundary_on_atom(load(f.atoms.items + deepest.atom), deepest.depth, x, false);
 }
 
 struct SurfacePoint {
   Vec3<float> position, normal;
   qses_patch patch;
+  bool placed;  // false: there is no feature to be placed on; the position is the start, the normal is not known
 };
 
 // The point `depth` inside the boundary point y on the line through x, which lies `distance` (signed) inside it.
-QSES_FN SurfacePoint place_on_surface(const Vec3<float> &x, const Vec3<float> &y, float distance, float depth,
-                                      qses_patch patch) {
-  Vec3<float> outward = (y - x) * quotient(1.f, absolute(distance) > 1e-9f ? distance : 1e-9f);
+QSES_FN SurfacePoint place_on_surface(const SurfaceParameters &p, const Vec3<float> &x, const BoundaryPoint &y) {
+  Vec3<float> outward = (y.position - x) * quotient(1.f, absolute(y.distance) > 1e-9f ? y.distance : 1e-9f);
   const float length2 = length_squared(outward);
   outward = length2 > 0.25f ? outward * reciprocal_root(length2) : Vec3<float>(0.f, 0.f, 1.f);
-  return {y - outward * depth, outward, patch};
+  const Vec3<float> position = y.position - outward * p.depth;
+  const float longest = kLongestMove * p.spacing;
+  if (y.found && length_squared(position - x) <= longest * longest) return {position, outward, y.patch, true};
+  return {x, outward, QSES_PATCH_CONTACT, false};
 }
 
 // Does the projection from a start nearer to y than depth have to be checked against other probes?
@@ -143,14 +155,13 @@ QSES_FN bool needs_another_look(float distance, float second, float depth) {
 
 template <class Candidates>
 QSES_FN SurfacePoint project_to_surface(const FeatureView &f, const Candidates &candidates, Vec3<float> x) {
-  const float depth = f.parameters.depth;
   BoundaryPoint b = nearest_boundary(f, candidates, x);
-  SurfacePoint s = place_on_surface(x, b.position, b.distance, depth, b.patch);
+  SurfacePoint s = place_on_surface(f.parameters, x, b);
   for (int k = 1; k < kMaxProjections; ++k) {
-    if (b.patch == QSES_PATCH_CONTACT || !needs_another_look(b.distance, b.second, depth)) break;
+    if (b.patch == QSES_PATCH_CONTACT || !needs_another_look(b.distance, b.second, f.parameters.depth)) break;
     x = s.position;
     b = nearest_boundary(f, candidates, x, true);
-    s = place_on_surface(x, b.position, b.distance, depth, b.patch);
+    s = place_on_surface(f.parameters, x, b);
   }
   return s;
 }
@@ -161,12 +172,10 @@ QSES_FN uint32_t nearest_atom(const FeatureView &f, const Candidates &candidates
   return deepest_atom(f, candidates, x).atom;
 }
 
-// On the SAS and VDW surfaces vertices may sit on creases, where the line to y has no length: the normal is that of
-// the owner's sphere.
-QSES_FN Vec3<float> sphere_normal(const Sphere &owner, const Vec3<float> &x) {
-  const Vec3<float> d = x - Vec3<float>(owner.center);
-  const float length2 = length_squared(d);
-  return length2 > 1e-12f ? d * reciprocal_root(length2) : Vec3<float>(0.f, 0.f, 1.f);
+// On the SAS and VDW surfaces vertices may sit on creases, where the line to y has no length, and a vertex that was not
+// placed has no such line: the normal is that of the owner's sphere.
+QSES_FN Vec3<float> vertex_normal(const FeatureView &f, const SurfacePoint &s, uint32_t owner) {
+  return f.parameters.depth == 0.f || !s.placed ? sphere_normal(load(f.atoms.items + owner), s.position) : s.normal;
 }
 
 // A lattice edge longer than the probe is wide may hold more than its middle tells: halve it towards the sign change

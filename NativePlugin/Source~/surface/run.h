@@ -52,7 +52,8 @@ struct MeshMemoryView {
   MeshShape shape{};
   size_t vertices = 0, triangles = 0, bytes = 0;
   void *memory = nullptr;
-  bool on_host = false;  // CUDA: it did not fit on the device; it is filled slab by slab
+  bool on_host = false;                // CUDA: it did not fit on the device; it is filled slab by slab
+  const uint32_t *unplaced = nullptr;  // vertices without a feature, in the memory of the back end; nullptr: none
   Bounds bounds{};
   Span<const qses_component> components{};  // in host memory
 };

@@ -50,7 +50,7 @@ struct FindSwallowedAtoms {
   QSES_HOST_DEVICE void operator()(size_t i) const {
     const Sphere self = atoms.items[i];
     const Vec3<float> c(self.center);
-    const float reach = max_radius - self.radius + 2e-5f;
+    const float reach = swallowing_reach(self.radius, max_radius);
     const Vec3<float> r(reach, reach, reach);
     const CellBox box = cells_around(atoms.cells, c - r, c + r);
     bool found = false;

@@ -73,7 +73,7 @@ __device__ __forceinline__ int gather_caps(const NeighborGridView &atoms, float 
         const float inverse = reciprocal_root(distance2);
         axis = axis * inverse;
         cosine = cap_cosine(self.radius, other.radius, distance2, inverse);
-        meets = cosine < kTangentCosine;
+        meets = overlap(self.radius, other.radius, distance2);
       }
     }
     const unsigned ballot = __ballot_sync(kFullWarp, meets);

@@ -33,6 +33,7 @@ struct VertexStarts {
   bool relax;                          // move by the ring table first (relaxation step 1)
   const glm::vec3 *moved;              // if not null: [vertex], centred frame: starts of a further relaxation step
   const uint64_t (*ring)[kCellEdges];  // MarchingCubesTable::ring in the memory of the back end
+  uint32_t *unplaced;                  // counts the vertices for which no feature is found
 };
 
 // The table in the memory of the back end.

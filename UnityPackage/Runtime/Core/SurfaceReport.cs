@@ -46,6 +46,18 @@ namespace QuickSes
         /// <summary>Triangles that were dropped since atoms are hidden.</summary>
         public uint HiddenTriangles => _native.HiddenTriangles;
 
+        /// <summary>
+        /// Bricks that were added since the surface went on behind the border of those where it was expected: they keep
+        /// the mesh closed. 0 unless rounding hid a feature of the surface.
+        /// </summary>
+        public ulong BorderBricks => _native.BorderBricks;
+
+        /// <summary>
+        /// Vertices for which no feature of the surface was found: they stay where their lattice edge is cut. 0 unless
+        /// rounding hid a feature of the surface.
+        /// </summary>
+        public ulong UnplacedVertices => _native.UnplacedVertices;
+
         /// <summary>How many stages were timed; 0 unless <see cref="SurfaceContext.EnableStageTimes"/>.</summary>
         public int StageCount => (int)_native.StageCount;
 

@@ -337,6 +337,10 @@ typedef struct qses_report {
   uint32_t hidden_triangles;
   qses_stage_time stages[QSES_MAX_STAGES]; /* stage_count of them, in order; filled if asked for by
                                               qses_enable_stage_times */
+  uint64_t border_bricks;     /* bricks that were added since the surface went on behind the border of those where it was
+                                 expected: they keep the mesh closed. 0 unless rounding hid a feature of the surface */
+  uint64_t unplaced_vertices; /* vertices for which no feature of the surface was found: they stay where their lattice
+                                 edge is cut. 0 unless rounding hid a feature of the surface */
 } qses_report;
 
 /* Empty report with struct_size set. NULL is ignored. */

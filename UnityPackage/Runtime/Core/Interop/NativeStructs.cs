@@ -112,6 +112,8 @@ namespace QuickSes.Interop
         public uint HiddenTriangles;
         // NativeStageTime[MaxStages]: C# has fixed buffers of numbers only.
         public fixed ulong Stages[MaxStages * StageTimeBytes / sizeof(ulong)];
+        public ulong BorderBricks;
+        public ulong UnplacedVertices;
     }
 
     [StructLayout(LayoutKind.Sequential)]
