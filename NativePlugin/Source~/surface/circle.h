@@ -94,12 +94,10 @@ QSES_FN ExposedArc exposed_arc(const Interval *interval, float radius) {
       x = chord.y;
       y = -chord.x;
     } else {
-      x = a.x + b.x;
-      y = a.y + b.y;
-      if (a.x * b.y - a.y * b.x < 0.f) {  // nearly the full circle
-        x = -x;
-        y = -y;
-      }
+      // Of a very short arc, or nearly a full circle: the directions alone would not tell which.
+      const float sign = pseudo_way(interval->begin, interval->end) > 2.f ? -1.f : 1.f;
+      x = sign * (a.x + b.x);
+      y = sign * (a.y + b.y);
     }
     const float k = reciprocal_root(x * x + y * y);
     arc.middle_x = x * k;

@@ -84,9 +84,8 @@ int start_vertices(const FeatureView &f, const BrickSet &bricks, const MeshLayou
         const bool low_inside = rows.inside(x, y, z);
         Vec3<float> start = low;
         if (halve) {
-          const Vec3<float> high =
-              lattice.position(first.x + x + (axis == 0), first.y + y + (axis == 1), first.z + z + (axis == 2));
-          start = halve_edge(f, AllCandidates{c}, low_inside ? low : high, low_inside ? high : low);
+          start =
+              halve_edge(f, AllCandidates{c}, ends_of_edge(bricks, layout, brick, {leaf, axis, bit}), kStartHalvings);
         } else {
           const float along = vertex_start(low_inside) * h;
           start = {low.x + (axis == 0 ? along : 0.f), low.y + (axis == 1 ? along : 0.f),
@@ -207,24 +206,22 @@ void project_reentrant(const FeatureView &f, const BrickCandidates &c, float spa
       const int used = open - g < kPackSize ? open - g : kPackSize;
       for (int l = 0; l < used; ++l) {
         const int v = w->open_number[g + l];
-        const Vec3<float> x(w->open.x[g + l], w->open.y[g + l], w->open.z[g + l]);
-        SurfacePoint s;
-        bool look_again = false;
-        if (numbers[l] >= 0.f) {
-          const int arc = c.arc_index[c.arc_list[static_cast<int>(numbers[l])]];
-          const BoundaryPoint y = boundary_on_arc(f.arcs[arc], seconds[l], x);
-          s = place_on_surface(f.parameters, x, y);
-          look_again = needs_another_look(y.distance, y.second, depth);
-        } else {
-          if (pass) continue;
-          s = project_to_surface(f, AllCandidates{c}, x);
+        w->owner[v] = -1;
+        if (numbers[l] < 0.f) {
+          w->placed[v] = pass > 0;  // where it is nothing is near it any more
+          continue;
         }
+        const Vec3<float> x(w->open.x[g + l], w->open.y[g + l], w->open.z[g + l]);
+        const Arc &arc = f.arcs[c.arc_index[c.arc_list[static_cast<int>(numbers[l])]]];
+        const Look look =
+            pass == 0 ? look_at_arc(f.parameters, arc, seconds[l], x)
+                      : look_around(f.parameters, arc, seconds[l], x, {w->normal.x[v], w->normal.y[v], w->normal.z[v]});
+        const SurfacePoint &s = look.point;
         w->place.x[v] = s.position.x, w->place.y[v] = s.position.y, w->place.z[v] = s.position.z;
         w->normal.x[v] = s.normal.x, w->normal.y[v] = s.normal.y, w->normal.z[v] = s.normal.z;
         w->patch[v] = static_cast<uint8_t>(s.patch);
-        w->placed[v] = s.placed;
-        w->owner[v] = -1;
-        if (look_again && pass + 1 < kMaxProjections) {
+        w->placed[v] = s.placed && !(look.again && pass + 1 == kMaxProjections);
+        if (s.placed && look.again) {
           w->open_number[again] = v;
           w->open.x[again] = s.position.x, w->open.y[again] = s.position.y, w->open.z[again] = s.position.z;
           ++again;
@@ -232,6 +229,21 @@ void project_reentrant(const FeatureView &f, const BrickCandidates &c, float spa
       }
     }
     open = again;
+  }
+}
+
+// What is left: vertices near no feature, and those that probes on all sides push to and fro.
+void place_on_edges(const FeatureView &f, const BrickSet &bricks, const MeshLayout &layout, uint32_t brick,
+                    const BrickCandidates &c, int n, Work *w) {
+  for (int v = 0; v < n; ++v) {
+    if (w->placed[v]) continue;
+    const LatticeEdge edge = edge_of_vertex(layout, brick, layout.vertex_base[brick] + static_cast<uint32_t>(v));
+    const SurfacePoint s = place_on_edge(f, AllCandidates{c}, ends_of_edge(bricks, layout, brick, edge));
+    w->place.x[v] = s.position.x, w->place.y[v] = s.position.y, w->place.z[v] = s.position.z;
+    w->normal.x[v] = s.normal.x, w->normal.y[v] = s.normal.y, w->normal.z[v] = s.normal.z;
+    w->patch[v] = static_cast<uint8_t>(s.patch);
+    w->placed[v] = s.placed;
+    w->owner[v] = -1;
   }
 }
 
@@ -307,6 +319,7 @@ BrickNeeds emit_brick_vertices(const FeatureView &f, const BrickSet &bricks, con
   }
   const int open = project_contact(f, c, h, n, &w);
   project_reentrant(f, c, h, open, &w);
+  place_on_edges(f, bricks, layout, brick, c, n, &w);
   find_owners(f, c, n, &w);
   write_vertices(f, lattice, starts, mesh, base, n, w);
   return {0, 0};

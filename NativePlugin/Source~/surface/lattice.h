@@ -58,6 +58,12 @@ struct Lattice {
   }
 };
 
+// An edge of the lattice, or what is left of it, that the surface crosses.
+struct CutEdge {
+  Vec3<float> inside, outside;
+  QSES_FN Vec3<float> middle() const { return (inside + outside) * 0.5f; }
+};
+
 // Bits of a leaf word: lattice point (x, y, z) of the leaf is bit x + 4 y + 16 z. Bits of a set mean "inside".
 QSES_FN int leaf_bit(int x, int y, int z) { return x + 4 * y + 16 * z; }
 QSES_FN int leaf_of(int x, int y, int z) { return (x >> 2) + 2 * (y >> 2) + 4 * (z >> 2); }

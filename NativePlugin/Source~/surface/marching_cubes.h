@@ -170,6 +170,48 @@ QSES_FN uint32_t vertex_number(const MeshLayout &m, int brick, int leaf, int axi
   return vertex_number(m.vertex_base[brick] + m.vertex_rank[k], m.crossing[k], bit);
 }
 
+// A lattice edge, by its lower point: a bit of a leaf of a brick.
+struct LatticeEdge {
+  int leaf, axis, bit;
+};
+
+// The edge that owns a vertex of a brick.
+QSES_FN LatticeEdge edge_of_vertex(const MeshLayout &m, uint32_t brick, uint32_t vertex) {
+  constexpr int kMasks = kLeavesPerBrick * kAxes;
+  const size_t first = static_cast<size_t>(brick) * kMasks;
+  const uint32_t rank = vertex - m.vertex_base[brick];
+  int k = kMasks - 1;  // the last mask that begins no later
+  while (k > 0 && m.vertex_rank[first + static_cast<size_t>(k)] > rank) --k;
+  uint64_t mask = m.crossing[first + static_cast<size_t>(k)];
+  for (uint32_t n = rank - m.vertex_rank[first + static_cast<size_t>(k)]; n > 0; --n) mask &= mask - 1;
+  return {k / kAxes, k % kAxes, lowest_bit64(mask)};
+}
+
+// Its ends, in the centred frame.
+QSES_FN CutEdge ends_of_edge(const BrickSet &bricks, const MeshLayout &m, uint32_t brick, const LatticeEdge &edge) {
+  const glm::ivec3 p = bricks.lattice.first_point(bricks.lattice.brick_at(bricks.linear[brick])) +
+                       glm::ivec3(4 * (edge.leaf & 1) + (edge.bit & 3), 4 * (edge.leaf >> 1 & 1) + (edge.bit >> 2 & 3),
+                                  4 * (edge.leaf >> 2) + (edge.bit >> 4));
+  const Vec3<float> low = bricks.lattice.position(p.x, p.y, p.z);
+  const Vec3<float> high =
+      bricks.lattice.position(p.x + (edge.axis == 0), p.y + (edge.axis == 1), p.z + (edge.axis == 2));
+  const uint64_t word = m.signs[static_cast<size_t>(brick) * kLeavesPerBrick + static_cast<size_t>(edge.leaf)];
+  const bool low_inside = (word >> edge.bit & 1) != 0;
+  return low_inside ? CutEdge{low, high} : CutEdge{high, low};
+}
+
+// The brick that owns a vertex.
+QSES_FN uint32_t brick_of_vertex(const MeshLayout &m, uint32_t bricks, uint32_t vertex) {
+  uint32_t first = 0, n = bricks;  // the last one that begins no later
+  while (n > 1) {
+    const uint32_t half = n / 2;
+    const bool later = m.vertex_base[first + half] > vertex;
+    first = later ? first : first + half;
+    n = later ? half : n - half;
+  }
+  return first;
+}
+
 // Where the vertex of an edge starts: on the edge, from its lower point, in units of the spacing.
 QSES_FN float vertex_start(bool low_inside) { return low_inside ? kVertexStart : 1.f - kVertexStart; }
 

@@ -117,18 +117,15 @@ QSES_FN BoundaryPoint boundary_on_arc(const Arc &arc, float second2, const Vec3<
 }
 
 template <class Candidates>
-QSES_FN BoundaryPoint nearest_boundary(const FeatureView &f, const Candidates &candidates, const Vec3<float> &x,
-                                       bool arcs_only = false) {
-  DeepestAtom deepest{0, -kFarAway};
-  if (!arcs_only && candidates.atom_count() > 0) {
-    deepest = deepest_atom(f, candidates, x);
-    const Sphere ball = load(f.atoms.items + deepest.atom);
-    if (is_exposed(f, deepest.atom, x - Vec3<float>(ball.center), offset_length(ball, deepest.depth)))
-      return boundary_on_atom(ball, deepest.depth, x, true);
-  }
+QSES_FN BoundaryPoint nearest_boundary(const FeatureView &f, const Candidates &candidates, const Vec3<float> &x) {
+  const DeepestAtom deepest = deepest_atom(f, candidates, x);
+  const Sphere ball = load(f.atoms.items + deepest.atom);
+  const bool exposed = candidates.atom_count() > 0 &&
+                       is_exposed(f, deepest.atom, x - Vec3<float>(ball.center), offset_length(ball, deepest.depth));
+  if (exposed) return boundary_on_atom(ball, deepest.depth, x, true);
   const NearestArc nearest = nearest_arc(f, candidates, x);
   if (nearest.arc >= 0) return boundary_on_arc(load(f.arcs + nearest.arc), nearest.second2, x);
-  return boundary_on_atom(load(f.atoms.items + deepest.atom), deepest.depth, x, false);
+  return boundary_on_atom(ball, deepest.depth, x, false);
 }
 
 struct SurfacePoint {
@@ -148,22 +145,42 @@ QSES_FN SurfacePoint place_on_surface(const SurfaceParameters &p, const Vec3<flo
   return {x, outward, QSES_PATCH_CONTACT, false};
 }
 
-// Does the projection from a start nearer to y than depth have to be checked against other probes?
-QSES_FN bool needs_another_look(float distance, float second, float depth) {
-  return distance < depth - kProjectionTolerance && second < 2.f * depth - distance;
+// What comes of a look at the nearest arc: where the point moves, and whether a look from there must show that no other
+// probe covers it.
+struct Look {
+  SurfacePoint point;
+  float distance;
+  bool again;
+};
+
+// second2: squared distance to the second nearest arc.
+QSES_FN Look look_at_arc(const SurfaceParameters &p, const Arc &arc, float second2, const Vec3<float> &x) {
+  const BoundaryPoint y = boundary_on_arc(arc, second2, x);
+  const SurfacePoint s = place_on_surface(p, x, y);
+  // On its way outward from a start that is nearer to y than depth, the point may get to where another probe is, or one
+  // on the other side of the same circle.
+  const Vec3<float> center(arc.center);
+  const bool beyond_axis = dot(s.position - center, y.position - center) < 0.f;
+  const bool again =
+      y.distance < p.depth - kProjectionTolerance && (y.second < 2.f * p.depth - y.distance || beyond_axis);
+  return {s, y.distance, again};
 }
 
-template <class Candidates>
-QSES_FN SurfacePoint project_to_surface(const FeatureView &f, const Candidates &candidates, Vec3<float> x) {
-  BoundaryPoint b = nearest_boundary(f, candidates, x);
-  SurfacePoint s = place_on_surface(f.parameters, x, b);
-  for (int k = 1; k < kMaxProjections; ++k) {
-    if (b.patch == QSES_PATCH_CONTACT || !needs_another_look(b.distance, b.second, f.parameters.depth)) break;
-    x = s.position;
-    b = nearest_boundary(f, candidates, x, true);
-    s = place_on_surface(f.parameters, x, b);
-  }
-  return s;
+// The same for a point that lies on the sphere of a probe already, in direction `outward`. If another one covers it, it
+// moves away from both at once, onto the sphere of the other one. (From sphere to sphere it would come nearer to where
+// they meet in ever smaller steps.)
+QSES_FN Look look_around(const SurfaceParameters &p, const Arc &arc, float second2, const Vec3<float> &x,
+                         const Vec3<float> &outward) {
+  const BoundaryPoint y = boundary_on_arc(arc, second2, x);
+  const float d = y.distance;
+  if (!(d < p.depth - kProjectionTolerance)) return {place_on_surface(p, x, y), d, false};
+  const Vec3<float> other = (y.position - x) * quotient(1.f, maximum(d, 1e-9f)), between = outward + other;
+  const Vec3<float> towards = between * reciprocal_root(maximum(length_squared(between), 1e-12f));
+  const float along = d * dot(towards, other);
+  const float step = square_root(maximum(0.f, along * along + (p.depth - d) * (p.depth + d))) - along;
+  const Vec3<float> moved = x - towards * step, from = y.position - moved;
+  const bool near = step <= kLongestMove * p.spacing;
+  return {{moved, from * reciprocal_root(maximum(length_squared(from), 1e-12f)), y.patch, near}, d, near};
 }
 
 // The atom whose van der Waals surface is nearest to the point.
@@ -178,22 +195,43 @@ QSES_FN Vec3<float> vertex_normal(const FeatureView &f, const SurfacePoint &s, u
   return f.parameters.depth == 0.f || !s.placed ? sphere_normal(load(f.atoms.items + owner), s.position) : s.normal;
 }
 
-// A lattice edge longer than the probe is wide may hold more than its middle tells: halve it towards the sign change
-// first. inside and outside are its ends.
-constexpr int kEdgeHalvings = 8;
-QSES_FN bool starts_by_halving(const SurfaceParameters &p) { return p.depth > 0.f && p.spacing > 2.f * p.depth; }
+// ---- lattice edges ---------------------------------------------------------------------------------------------
+
+// Is the point inside the surface? What the signs say of lattice points, for any point.
+template <class Candidates>
+QSES_FN bool is_inside(const FeatureView &f, const Candidates &candidates, const Vec3<float> &x) {
+  if (candidates.atom_count() == 0) return false;
+  const float depth = f.parameters.depth;
+  const DeepestAtom deepest = deepest_atom(f, candidates, x);
+  if (deepest.depth <= 0.f || deepest.depth > depth) return deepest.depth > 0.f;
+  const Sphere ball = load(f.atoms.items + deepest.atom);
+  if (is_exposed(f, deepest.atom, x - Vec3<float>(ball.center), offset_length(ball, deepest.depth))) return false;
+  return nearest_arc(f, candidates, x).distance2 > depth * depth;
+}
 
 template <class Candidates>
-QSES_FN Vec3<float> halve_edge(const FeatureView &f, const Candidates &candidates, Vec3<float> inside,
-                               Vec3<float> outside) {
-  for (int k = 0; k < kEdgeHalvings; ++k) {
-    const Vec3<float> middle = (inside + outside) * 0.5f;
-    if (nearest_boundary(f, candidates, middle).distance > f.parameters.depth)
-      inside = middle;
-    else
-      outside = middle;
-  }
-  return (inside + outside) * 0.5f;
+QSES_FN Vec3<float> halve_edge(const FeatureView &f, const Candidates &candidates, CutEdge edge, int halvings) {
+  for (int k = 0; k < halvings; ++k)
+    (is_inside(f, candidates, edge.middle()) ? edge.inside : edge.outside) = edge.middle();
+  return edge.middle();
+}
+
+// A lattice edge longer than the probe is wide may hold more than its middle tells: halve it towards the sign change
+// first.
+constexpr int kStartHalvings = 8;
+QSES_FN bool starts_by_halving(const SurfaceParameters &p) { return p.depth > 0.f && p.spacing > 2.f * p.depth; }
+
+// A vertex that finds its place by no other way is where the sign changes on its edge.
+constexpr int kPlaceHalvings = 16;
+constexpr float kPlaceTolerance = 1e-3f;
+template <class Candidates>
+QSES_FN SurfacePoint place_on_edge(const FeatureView &f, const Candidates &candidates, const CutEdge &edge) {
+  const Vec3<float> x = halve_edge(f, candidates, edge, kPlaceHalvings);
+  SurfacePoint s = place_on_surface(f.parameters, x, nearest_boundary(f, candidates, x));
+  // Without a feature there the sign changes all the same, so that is where the vertex stays.
+  s.placed = s.placed && length_squared(s.position - x) <= kPlaceTolerance * kPlaceTolerance;
+  s.position = x;
+  return s;
 }
 
 }  // namespace quickses
