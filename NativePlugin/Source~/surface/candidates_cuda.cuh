@@ -21,6 +21,7 @@ struct CandidateReach {
   float start_reach;  // arcs this near to a start decide about it
   float sign_arcs2;   // squared: arcs this near to a leaf's centre can be within depth of one of its points
   float slack;
+  float least_depth;  // of a point that may be inside
 
   static CandidateReach of(const SurfaceParameters &p) {
     const float h = p.spacing, d = p.depth;
@@ -28,6 +29,7 @@ struct CandidateReach {
     r.depth = d;
     r.spacing = h;
     r.slack = 1e-3f + 0.01f * h;
+    r.least_depth = p.least_depth();
     r.overhang = kStartOverhang * h;
     r.grown = (kStartOverhang + kStartReach) * h;
     r.leaf_radius = 1.5f * kRoot3 * h;
@@ -142,7 +144,7 @@ __device__ __forceinline__ bool uniform_leaf_inside(const GatherJob &job, const 
       atom = other;
     }
   }
-  if (depth <= 0.f) return false;
+  if (depth <= job.reach.least_depth) return false;
   if (depth > job.reach.depth) return true;
   const Sphere ball = load(job.features.atoms.items + atom);
   return !is_exposed(job.features, atom, center - Vec3<float>(ball.center), offset_length(ball, depth));

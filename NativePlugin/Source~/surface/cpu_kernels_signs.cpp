@@ -132,7 +132,7 @@ BrickNeeds evaluate_brick_signs(const FeatureView &f, const BrickSet &bricks, ui
   }
   if (depth == 0.f || !full)
     for (int a = 0; a < c.atom_count; ++a) {
-      const float r = c.atoms.radius[a];
+      const float r = c.atoms.radius[a] - f.parameters.least_depth();
       fill_ball(reached, rows, c.atoms.x[a] - low.x, c.atoms.y[a] - low.y, c.atoms.z[a] - low.z, r * r);
     }
   for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {

@@ -136,6 +136,7 @@ int project_contact(const FeatureView &f, const BrickCandidates &c, float spacin
     store_pack(number, deepest.number);
     Vec3<Pack> place = p, normal = p;
     uint32_t done = 0;
+    const uint32_t trusted = lane_bits(Pack(depth) - deepest.depth <= Pack(kLongestWayIn * spacing));
     for (uint32_t todo = used & lane_bits(Pack(0.f) <= deepest.number); todo;) {
       const float a = number[lowest_bit32(todo)];
       const PackMask same_mask = deepest.number == Pack(a);
@@ -161,7 +162,7 @@ int project_contact(const FeatureView &f, const BrickCandidates &c, float spacin
       for (uint32_t l = exposed; l; l &= l - 1) {
         w->owner[g + lowest_bit32(l)] = static_cast<int32_t>(atom);
         w->patch[g + lowest_bit32(l)] = QSES_PATCH_CONTACT;
-        w->placed[g + lowest_bit32(l)] = true;
+        w->placed[g + lowest_bit32(l)] = (trusted >> lowest_bit32(l) & 1) != 0;
       }
     }
     const uint32_t left = used & ~done;

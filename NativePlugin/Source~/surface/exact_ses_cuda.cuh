@@ -185,7 +185,8 @@ static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_k
   __syncwarp();
 
   LeafKind kind = LeafKind::kMixed;
-  if (best.depth <= -reach.leaf_radius || (best.depth <= 0.f && depth > reach.leaf_radius + reach.slack))
+  if (best.depth <= -reach.leaf_radius - reach.slack ||
+      (best.depth <= reach.least_depth && depth > reach.leaf_radius + reach.slack))
     kind = LeafKind::kOutside;
   else if (best.depth - reach.leaf_radius - reach.slack > depth)
     kind = LeafKind::kInside;
@@ -204,7 +205,7 @@ static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_k
   if (kind == LeafKind::kMixed) {
     const int x = first.x + (lane & 3), y = first.y + (lane >> 2 & 3), z = first.z + (lane >> 4);
     const Vec3<float> p0 = lattice.position(x, y, z), p1 = lattice.position(x, y, z + 2);
-    float depth0 = 0.f, depth1 = 0.f;
+    float depth0 = reach.least_depth, depth1 = reach.least_depth;
     uint32_t atom0 = 0, atom1 = 0;
     const auto meet_ball = [&](const Sphere &ball, uint32_t number) {
       const float d0 = ball_depth(ball, p0), d1 = ball_depth(ball, p1);
@@ -215,8 +216,8 @@ static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_k
     };
     if (atom_count <= kLeafAtoms) {
       for (int k = 0; k < atom_count; ++k) meet_ball(scratch.atom[k], static_cast<uint32_t>(k));
-      if (depth0 > 0.f) atom0 = scratch.atom_number[atom0];
-      if (depth1 > 0.f) atom1 = scratch.atom_number[atom1];
+      if (depth0 > reach.least_depth) atom0 = scratch.atom_number[atom0];
+      if (depth1 > reach.least_depth) atom1 = scratch.atom_number[atom1];
     } else {
       for (uint32_t k = 0; k < brick_row.atom_count; ++k) {
         const uint32_t i = __ldg(atoms + k);
@@ -225,7 +226,7 @@ static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_k
     }
     inside0 = depth0 > depth;
     inside1 = depth1 > depth;
-    bool open0 = depth0 > 0.f && !inside0, open1 = depth1 > 0.f && !inside1;
+    bool open0 = depth0 > reach.least_depth && !inside0, open1 = depth1 > reach.least_depth && !inside1;
     __syncwarp();
     if (open0) open0 = !projection_exposed(f, atom0, p0, depth0);
     __syncwarp();

@@ -14,8 +14,9 @@ namespace gpu {
 
 constexpr int kVertexThreads = 128;
 
-// project_to_surface() in three kernels, so that lanes do not wait for each other: vertices on contact patches are done
-// with the first, nearly all others with the second; the third has those that turn from one probe to another.
+// Three kernels, so that lanes do not wait for each other: vertices on contact patches are done with the first, nearly
+// all others with the second; the third has those that turn from one probe to another, or find no place.
+constexpr uint32_t kOnEdge = 0x80000000u;  // flag of a vertex on the list of the third: it has no place
 
 // Adds a vertex to a list. A warp together.
 __device__ __forceinline__ void append(uint32_t *list, uint32_t *count, uint32_t k, bool on) {
@@ -51,23 +52,11 @@ static __global__ __launch_bounds__(kVertexThreads) void project_on_atoms_kernel
   const bool contact = candidates.atom_count() > 0 &&
                        is_exposed(f, deepest.atom, x - Vec3<float>(ball.center), offset_length(ball, deepest.depth));
   const bool open = !contact && candidates.arc_count() > 0;
+  const SurfacePoint s = place_on_surface(f.parameters, x, boundary_on_atom(ball, deepest.depth, x, contact));
   __syncwarp();
   append(job.open, job.open_count, k, on && open);
-  if (!on || open) return;
-  const BoundaryPoint y = boundary_on_atom(ball, deepest.depth, x, contact);
-  finish_vertex(job, k, place_on_surface(f.parameters, x, y), deepest.atom);
-}
-
-// What comes of a look at the arcs: where the point moves, and whether it must look again.
-struct Look {
-  SurfacePoint point;
-  float distance;
-  bool again;
-};
-__device__ __forceinline__ Look finish_look(const FeatureView &f, const NearestArc &nearest, const Vec3<float> &x) {
-  const BoundaryPoint y = boundary_on_arc(load(f.arcs + nearest.arc), nearest.second2, x);
-  return {place_on_surface(f.parameters, x, y), y.distance,
-          needs_another_look(y.distance, y.second, f.parameters.depth)};
+  append(job.again, job.again_count, k | kOnEdge, on && !open && !s.placed);
+  if (on && !open && s.placed) finish_vertex(job, k, s, deepest.atom);
 }
 
 static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(VertexJob job) {
@@ -92,41 +81,53 @@ static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(
     near_arcs |= static_cast<uint64_t>(d2 < near * near) << (q & (kMaskBits - 1));
   }
   __syncwarp();
-  Look look = finish_look(f, nearest, x);
+  const SurfaceParameters &p = f.parameters;
+  Look look = look_at_arc(p, load(f.arcs + nearest.arc), nearest.second2, x);
   const bool mask_tells = arcs <= kMaskBits && 2.f * depth - look.distance < near;
   __syncwarp();
-  if (look.again && mask_tells) {
+  if (look.point.placed && look.again && mask_tells) {
     const Vec3<float> from = look.point.position;
     nearest = NearestArc();
     for (uint64_t rest = near_arcs; rest; rest &= rest - 1) {
       const int a = static_cast<int>(candidates.arc(lowest_bit64(rest)));
       nearest.offer(a, arc_distance2(load(f.arcs + a), from));
     }
-    look = finish_look(f, nearest, from);
+    look = look_around(p, load(f.arcs + nearest.arc), nearest.second2, from, look.point.normal);
   }
   __syncwarp();
-  append(job.again, job.again_count, k, on && look.again);
+  append(job.again, job.again_count, look.point.placed ? k : k | kOnEdge, on && (look.again || !look.point.placed));
   if (!on) return;
-  if (look.again)
-    store_start(job, job.first + k, look.point.position);
-  else
+  if (!look.again && look.point.placed) {
     finish_vertex(job, k, look.point, nearest_atom(f, candidates, look.point.position));
+  } else {
+    store_start(job, job.first + k, look.point.position);
+    store_vec3(job.mesh.normal(job.first + k), look.point.normal);
+  }
 }
 
 static __global__ __launch_bounds__(kVertexThreads) void project_again_kernel(VertexJob job) {
   const uint32_t place = blockIdx.x * kVertexThreads + threadIdx.x, total = *job.again_count;
   if (place >= total) return;
-  const uint32_t k = job.again[place];
+  const uint32_t entry = job.again[place], k = entry & ~kOnEdge, vertex = job.first + k;
   const FeatureView &f = job.features;
+  Look look{{stored_start(job, vertex), load_vec3(job.mesh.normal(vertex)), QSES_PATCH_CONTACT, !(entry & kOnEdge)},
+            0.f,
+            true};
   const RowCandidates candidates = vertex_candidates(job, job.vertex_row[k]);
-  Look look{};
-  look.point.position = stored_start(job, job.first + k);
-  for (int round = 1; round < kMaxProjections; ++round) {
+  for (int round = 1; round < kMaxProjections && look.point.placed && look.again; ++round) {
     const Vec3<float> x = look.point.position;
-    look = finish_look(f, nearest_arc(f, candidates, x), x);
-    if (!look.again) break;
+    const NearestArc nearest = nearest_arc(f, candidates, x);
+    look = look_around(f.parameters, load(f.arcs + nearest.arc), nearest.second2, x, look.point.normal);
   }
-  finish_vertex(job, k, look.point, nearest_atom(f, candidates, look.point.position));
+  if (look.point.placed && !look.again) {
+    finish_vertex(job, k, look.point, nearest_atom(f, candidates, look.point.position));
+    return;
+  }
+  const uint32_t brick = brick_of_vertex(job.layout, job.bricks.count, vertex);
+  const RowCandidates all = brick_candidates(job.view, brick - job.view.first_brick);
+  const SurfacePoint s =
+      place_on_edge(f, all, ends_of_edge(job.bricks, job.layout, brick, edge_of_vertex(job.layout, brick, vertex)));
+  finish_vertex(job, k, s, nearest_atom(f, all, s.position));
 }
 
 // ---- triangles -------------------------------------------------------------------------------------------------

@@ -20,6 +20,8 @@ constexpr float kStartOverhang = 1.2f;
 
 // What would move a vertex further than this, in units of the spacing, is no feature of the surface near it.
 constexpr float kLongestMove = 2.f;
+// And what would move it further than this into the molecule might take it through a wall and out on its other side.
+constexpr float kLongestWayIn = 0.6f;
 
 // Nothing that is deeper than this in the probe's way counts as a second hit.
 constexpr float kProjectionTolerance = 1e-4f;
@@ -131,7 +133,7 @@ QSES_FN BoundaryPoint nearest_boundary(const FeatureView &f, const Candidates &c
 struct SurfacePoint {
   Vec3<float> position, normal;
   qses_patch patch;
-  bool placed;  // false: there is no feature to be placed on; the position is the start, the normal is not known
+  bool placed;  // false: no feature is near, or none can be trusted
 };
 
 // The point `depth` inside the boundary point y on the line through x, which lies `distance` (signed) inside it.
@@ -140,9 +142,9 @@ QSES_FN SurfacePoint place_on_surface(const SurfaceParameters &p, const Vec3<flo
   const float length2 = length_squared(outward);
   outward = length2 > 0.25f ? outward * reciprocal_root(length2) : Vec3<float>(0.f, 0.f, 1.f);
   const Vec3<float> position = y.position - outward * p.depth;
-  const float longest = kLongestMove * p.spacing;
-  if (y.found && length_squared(position - x) <= longest * longest) return {position, outward, y.patch, true};
-  return {x, outward, QSES_PATCH_CONTACT, false};
+  const float longest = kLongestMove * p.spacing, way_in = p.depth - y.distance;
+  const bool near = way_in <= kLongestWayIn * p.spacing && length_squared(position - x) <= longest * longest;
+  return {position, outward, y.patch, y.found && near};
 }
 
 // What comes of a look at the nearest arc: where the point moves, and whether a look from there must show that no other
@@ -179,7 +181,7 @@ QSES_FN Look look_around(const SurfaceParameters &p, const Arc &arc, float secon
   const float along = d * dot(towards, other);
   const float step = square_root(maximum(0.f, along * along + (p.depth - d) * (p.depth + d))) - along;
   const Vec3<float> moved = x - towards * step, from = y.position - moved;
-  const bool near = step <= kLongestMove * p.spacing;
+  const bool near = step <= kLongestMove * p.spacing;  // not a number: false
   return {{moved, from * reciprocal_root(maximum(length_squared(from), 1e-12f)), y.patch, near}, d, near};
 }
 
@@ -203,7 +205,8 @@ QSES_FN bool is_inside(const FeatureView &f, const Candidates &candidates, const
   if (candidates.atom_count() == 0) return false;
   const float depth = f.parameters.depth;
   const DeepestAtom deepest = deepest_atom(f, candidates, x);
-  if (deepest.depth <= 0.f || deepest.depth > depth) return deepest.depth > 0.f;
+  if (deepest.depth <= f.parameters.least_depth()) return false;
+  if (deepest.depth > depth) return true;
   const Sphere ball = load(f.atoms.items + deepest.atom);
   if (is_exposed(f, deepest.atom, x - Vec3<float>(ball.center), offset_length(ball, deepest.depth))) return false;
   return nearest_arc(f, candidates, x).distance2 > depth * depth;
@@ -223,13 +226,15 @@ QSES_FN bool starts_by_halving(const SurfaceParameters &p) { return p.depth > 0.
 
 // A vertex that finds its place by no other way is where the sign changes on its edge.
 constexpr int kPlaceHalvings = 16;
-constexpr float kPlaceTolerance = 1e-3f;
 template <class Candidates>
 QSES_FN SurfacePoint place_on_edge(const FeatureView &f, const Candidates &candidates, const CutEdge &edge) {
+  const SurfaceParameters &p = f.parameters;
   const Vec3<float> x = halve_edge(f, candidates, edge, kPlaceHalvings);
-  SurfacePoint s = place_on_surface(f.parameters, x, nearest_boundary(f, candidates, x));
+  SurfacePoint s = place_on_surface(p, x, nearest_boundary(f, candidates, x));
   // Without a feature there the sign changes all the same, so that is where the vertex stays.
-  s.placed = s.placed && length_squared(s.position - x) <= kPlaceTolerance * kPlaceTolerance;
+  const float far_out = maximum(maximum(absolute(x.x), absolute(x.y)), absolute(x.z));
+  const float tolerance = 1e-3f * p.spacing + 4e-7f * far_out;  // of the halving, and of float32 there
+  s.placed = s.placed && length_squared(s.position - x) <= tolerance * tolerance;
   s.position = x;
   return s;
 }

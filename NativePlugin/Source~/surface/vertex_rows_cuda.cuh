@@ -144,21 +144,12 @@ static __global__ __launch_bounds__(kLeafWarps *kWarp) void halve_starts_kernel(
   const uint32_t slot = blockIdx.x * kLeafWarps + static_cast<uint32_t>(warp);
   VertexLeaf leaf;
   if (slot >= job.view.bricks * kLeavesPerBrick || !open_leaf(job, slot, &leaf, edge_memory[warp])) return;
-  const Lattice &lattice = job.bricks.lattice;
-  const uint64_t word =
-      job.layout.signs[static_cast<size_t>(leaf.brick) * kLeavesPerBrick + static_cast<size_t>(leaf.leaf)];
   const RowCandidates candidates = brick_candidates(job.view, slot / kLeavesPerBrick);
   for (int k = lane_id(); k < leaf.count; k += kWarp) {
-    const int axis = edge_memory[warp][k] >> 6, bit = edge_memory[warp][k] & 63;
-    const glm::ivec3 p = lattice.first_point(leaf.place) + leaf.origin + glm::ivec3(bit & 3, bit >> 2 & 3, bit >> 4);
-    Vec3<float> inside = lattice.position(p.x, p.y, p.z);
-    Vec3<float> outside = lattice.position(p.x + (axis == 0), p.y + (axis == 1), p.z + (axis == 2));
-    if (!(word >> bit & 1)) {
-      const Vec3<float> swap = inside;
-      inside = outside;
-      outside = swap;
-    }
-    store_start(job, leaf.first + static_cast<uint32_t>(k), halve_edge(job.features, candidates, inside, outside));
+    const LatticeEdge edge{leaf.leaf, edge_memory[warp][k] >> 6, edge_memory[warp][k] & 63};
+    store_start(
+        job, leaf.first + static_cast<uint32_t>(k),
+        halve_edge(job.features, candidates, ends_of_edge(job.bricks, job.layout, leaf.brick, edge), kStartHalvings));
   }
 }
 
