@@ -16,7 +16,6 @@ constexpr int kVertexThreads = 128;
 
 // Three kernels, so that lanes do not wait for each other: vertices on contact patches are done with the first, nearly
 // all others with the second; the third has those that turn from one probe to another, or find no place.
-constexpr uint32_t kOnEdge = 0x80000000u;  // flag of a vertex on the list of the third: it has no place
 
 // Adds a vertex to a list. A warp together.
 __device__ __forceinline__ void append(uint32_t *list, uint32_t *count, uint32_t k, bool on) {
@@ -39,6 +38,20 @@ __device__ __forceinline__ void finish_vertex(const VertexJob &job, uint32_t k, 
   if (job.mesh.patches) job.mesh.patch(vertex) = static_cast<uint8_t>(s.patch);
 }
 
+// Between the kernels, the place of a vertex in the mesh holds where it is on its way; its owner tells whether that can
+// be trusted.
+__device__ __forceinline__ void leave_vertex(const VertexJob &job, uint32_t k, const SurfacePoint &s) {
+  const uint32_t vertex = job.first + k;
+  store_start(job, vertex, s.position);
+  store_vec3(job.mesh.normal(vertex), s.normal);
+  job.mesh.owner(vertex) = s.placed ? 1 : 0;
+}
+__device__ __forceinline__ SurfacePoint left_vertex(const VertexJob &job, uint32_t k) {
+  const uint32_t vertex = job.first + k;
+  return {stored_start(job, vertex), load_vec3(job.mesh.normal(vertex)), QSES_PATCH_CONTACT,
+          job.mesh.owner(vertex) != 0};
+}
+
 static __global__ __launch_bounds__(kVertexThreads) void project_on_atoms_kernel(VertexJob job) {
   const uint32_t k0 = blockIdx.x * kVertexThreads + threadIdx.x;
   const bool on = k0 < job.count;
@@ -55,8 +68,12 @@ static __global__ __launch_bounds__(kVertexThreads) void project_on_atoms_kernel
   const SurfacePoint s = place_on_surface(f.parameters, x, boundary_on_atom(ball, deepest.depth, x, contact));
   __syncwarp();
   append(job.open, job.open_count, k, on && open);
-  append(job.again, job.again_count, k | kOnEdge, on && !open && !s.placed);
-  if (on && !open && s.placed) finish_vertex(job, k, s, deepest.atom);
+  append(job.again, job.again_count, k, on && !open && !s.placed);
+  if (!on || open) return;
+  if (s.placed)
+    finish_vertex(job, k, s, deepest.atom);
+  else
+    leave_vertex(job, k, s);
 }
 
 static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(VertexJob job) {
@@ -95,24 +112,21 @@ static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(
     look = look_around(p, load(f.arcs + nearest.arc), nearest.second2, from, look.point.normal);
   }
   __syncwarp();
-  append(job.again, job.again_count, look.point.placed ? k : k | kOnEdge, on && (look.again || !look.point.placed));
+  const bool done = look.point.placed && !look.again;
+  append(job.again, job.again_count, k, on && !done);
   if (!on) return;
-  if (!look.again && look.point.placed) {
+  if (done)
     finish_vertex(job, k, look.point, nearest_atom(f, candidates, look.point.position));
-  } else {
-    store_start(job, job.first + k, look.point.position);
-    store_vec3(job.mesh.normal(job.first + k), look.point.normal);
-  }
+  else
+    leave_vertex(job, k, look.point);
 }
 
 static __global__ __launch_bounds__(kVertexThreads) void project_again_kernel(VertexJob job) {
   const uint32_t place = blockIdx.x * kVertexThreads + threadIdx.x, total = *job.again_count;
   if (place >= total) return;
-  const uint32_t entry = job.again[place], k = entry & ~kOnEdge, vertex = job.first + k;
+  const uint32_t k = job.again[place], vertex = job.first + k;
   const FeatureView &f = job.features;
-  Look look{{stored_start(job, vertex), load_vec3(job.mesh.normal(vertex)), QSES_PATCH_CONTACT, !(entry & kOnEdge)},
-            0.f,
-            true};
+  Look look{left_vertex(job, k), 0.f, true};
   const RowCandidates candidates = vertex_candidates(job, job.vertex_row[k]);
   for (int round = 1; round < kMaxProjections && look.point.placed && look.again; ++round) {
     const Vec3<float> x = look.point.position;
