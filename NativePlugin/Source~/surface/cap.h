@@ -55,8 +55,9 @@ QSES_FN auto cap_contains(T cosine_k, T sine_k, T cosine_j, T sine_j, T cosine_b
 
 QSES_FN float cap_sine(float cosine) { return square_root(maximum(0.f, 1.f - cosine * cosine)); }
 
-// What is stored for exposure tests: the cap shrunk by the tolerance.
-QSES_FN float stored_cap_cosine(float cosine, float radius) { return cosine + kExposureTolerance / radius; }
+// What is stored for exposure tests: the cap grown by the tolerance. So only what is exposed beyond doubt counts as
+// exposed; on the border of a cap the arcs there decide, and where rounding left no arc, no single point is open.
+QSES_FN float stored_cap_cosine(float cosine, float radius) { return cosine - kExposureTolerance / radius; }
 
 // Does ball j swallow ball i so that i owns no surface? order tells which of two equal ones stays.
 constexpr float kSwallowTolerance = 1e-5f;  // Å that i may stand out

@@ -221,8 +221,9 @@ void project_reentrant(const FeatureView &f, const BrickCandidates &c, float spa
         w->place.x[v] = s.position.x, w->place.y[v] = s.position.y, w->place.z[v] = s.position.z;
         w->normal.x[v] = s.normal.x, w->normal.y[v] = s.normal.y, w->normal.z[v] = s.normal.z;
         w->patch[v] = static_cast<uint8_t>(s.patch);
-        w->placed[v] = s.placed && !(look.again && pass + 1 == kMaxProjections);
-        if (s.placed && look.again) {
+        w->placed[v] = s.placed && !(look.again && pass + 1 == kMaxProjections) &&
+                       !(pass > 1 && is_over_contact(f, AllCandidates{c}, s.position));
+        if (w->placed[v] && look.again) {
           w->open_number[again] = v;
           w->open.x[again] = s.position.x, w->open.y[again] = s.position.y, w->open.z[again] = s.position.z;
           ++again;

@@ -133,7 +133,7 @@ static __global__ __launch_bounds__(kVertexThreads) void project_again_kernel(Ve
     const NearestArc nearest = nearest_arc(f, candidates, x);
     look = look_around(f.parameters, load(f.arcs + nearest.arc), nearest.second2, x, look.point.normal);
   }
-  if (look.point.placed && !look.again) {
+  if (look.point.placed && !look.again && !is_over_contact(f, candidates, look.point.position)) {
     finish_vertex(job, k, look.point, nearest_atom(f, candidates, look.point.position));
     return;
   }

@@ -197,6 +197,16 @@ QSES_FN Vec3<float> vertex_normal(const FeatureView &f, const SurfacePoint &s, u
   return f.parameters.depth == 0.f || !s.placed ? sphere_normal(load(f.atoms.items + owner), s.position) : s.normal;
 }
 
+// Of a point that moved round probes: does one that touches a single atom cover it?
+template <class Candidates>
+QSES_FN bool is_over_contact(const FeatureView &f, const Candidates &candidates, const Vec3<float> &x) {
+  if (candidates.atom_count() == 0) return false;
+  const DeepestAtom deepest = deepest_atom(f, candidates, x);
+  const Sphere ball = load(f.atoms.items + deepest.atom);
+  return deepest.depth < f.parameters.depth - kProjectionTolerance &&
+         is_exposed(f, deepest.atom, x - Vec3<float>(ball.center), offset_length(ball, deepest.depth));
+}
+
 // ---- lattice edges ---------------------------------------------------------------------------------------------
 
 // Is the point inside the surface? What the signs say of lattice points, for any point.

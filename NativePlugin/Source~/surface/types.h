@@ -78,8 +78,8 @@ struct Span {
   QSES_FN T *end() const { return data + size; }
 };
 
-// Tolerance of exposure tests: a point of a sphere buried less than this in a neighbour still counts as exposed. One
-// value on both back ends; a larger one opens necks that are closed, a smaller one loses points to rounding.
+// Tolerance of exposure tests, Å: within this of a ball's surface, rounding decides on which side a point is. One value
+// on both back ends.
 constexpr float kExposureTolerance = 2e-5f;
 
 }  // namespace quickses
