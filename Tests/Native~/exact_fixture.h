@@ -69,8 +69,9 @@ struct ExactRun {
     return words;
   }
 
-  // The whole method.
-  mesh_checks::Mesh mesh() {
+  // The whole method; with features of one's own, the rest of it.
+  mesh_checks::Mesh mesh() { return mesh(find_features(*this)); }
+  mesh_checks::Mesh mesh(const FeatureView &features) {
     const MarchingCubesTable &table = marching_cubes_table();
     const TableView view{table.triangle_count, table.edges, table.ring};
     Run<CpuExecutor, CpuStageTimer> run{executor,
@@ -84,7 +85,7 @@ struct ExactRun {
                                         low,
                                         high,
                                         atoms,
-                                        find_features(*this),
+                                        features,
                                         {},
                                         shape_of(settings, false),
                                         MeshPurpose::kDelivered,
@@ -97,6 +98,7 @@ struct ExactRun {
     m.normals.assign(built.view.normals, built.view.normals + 3 * built.vertices);
     m.owners.assign(built.view.owners, built.view.owners + built.vertices);
     m.indices.assign(built.view.indices, built.view.indices + 3 * built.triangles);
+    report.unplaced_vertices = built.unplaced ? *built.unplaced : 0;
     return m;
   }
 
