@@ -3,6 +3,7 @@
 // brick; the drivers (solvent_features_cpu.h, exact_ses_cpu.h) hand out the work and own all memory.
 #pragma once
 
+#include "parallel/working_thread.h"
 #include "surface/stages.h"
 
 namespace quickses {

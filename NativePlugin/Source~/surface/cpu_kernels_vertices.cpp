@@ -126,6 +126,7 @@ int project_contact(const FeatureView &f, const BrickCandidates &c, float spacin
   fill_up(&w->place, n);
   int open = 0;
   for (int g = 0; g < n; g += kPackSize) {
+    if (c.arc_count > kManyArcs) look_for_stop();
     const Vec3<Pack> p = load_points(w->place.x + g, w->place.y + g, w->place.z + g);
     const uint32_t used = n - g < kPackSize ? (1u << (n - g)) - 1 : kAllLanes;
     const PointBall ball = ball_around(p);
@@ -183,6 +184,7 @@ void project_reentrant(const FeatureView &f, const BrickCandidates &c, float spa
     fill_up(&w->open, open);
     int again = 0;
     for (int g = 0; g < open; g += kPackSize) {
+      if (c.arc_count > kManyArcs) look_for_stop();
       const Vec3<Pack> p = load_points(w->open.x + g, w->open.y + g, w->open.z + g);
       const PointBall ball = ball_around(p);
       const float reach = depth + (pass ? 1e-3f : kStartReach * spacing);

@@ -60,9 +60,9 @@ class SurfaceEngine {
   virtual void compute(const AtomSet &atoms, const Appearance &appearance, const qses_settings &settings,
                        Span<const float> spacings, LevelSink &sink) = 0;
 
-  // What a computation at settings.spacing would need. Throws Error.
-  virtual qses_size_estimate estimate(const AtomSet &atoms, const Appearance &appearance,
-                                      const qses_settings &settings) = 0;
+  // What a computation at settings.spacing would need. Throws Error, or Cancelled as above.
+  virtual qses_size_estimate estimate(const AtomSet &atoms, const Appearance &appearance, const qses_settings &settings,
+                                      const std::atomic<bool> &stop) = 0;
 
   virtual void enable_stage_times(bool enabled) = 0;
   // Called with the fraction done; empty: not at all.

@@ -60,9 +60,10 @@ class SurfacePipeline : public SurfaceEngine {
     }
   }
 
-  qses_size_estimate estimate(const AtomSet &atoms, const Appearance &appearance,
-                              const qses_settings &settings) override {
+  qses_size_estimate estimate(const AtomSet &atoms, const Appearance &appearance, const qses_settings &settings,
+                              const std::atomic<bool> &stop) override {
     const typename Executor::CallScope scope(executor_);
+    const typename Executor::StopScope stop_scope(executor_, stop);
     progress_.rest();
     executor_.arena().set_limit(limit_);
     qses_size_estimate out;
