@@ -33,8 +33,8 @@ std::string read_raw_bytes(const std::string &path) {
   const auto size = fs::file_size(place, error);
   if (!error) bytes.reserve(static_cast<size_t>(size));
   // Read to the end rather than trust the size: pipes and devices have none.
-  char buffer[1 << 16];
-  while (size_t count = std::fread(buffer, 1, sizeof buffer, file.get())) bytes.append(buffer, count);
+  std::string buffer(1 << 16, '\0');
+  while (size_t count = std::fread(&buffer[0], 1, buffer.size(), file.get())) bytes.append(buffer, 0, count);
   if (std::ferror(file.get())) fail_input("'" + path + "' can't be read: " + std::strerror(errno));
   if (bytes.empty()) fail_input("'" + path + "' is empty");
   return bytes;

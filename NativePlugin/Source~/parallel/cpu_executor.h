@@ -119,7 +119,7 @@ class CpuExecutor {
     for (const auto &pool : scratch_pools_) sum += pool.second.bytes(pool.second.objects.get());
     return sum;
   }
-  uint64_t scratch_allowance() const { return threads_ * (uint64_t(192) << 10); }
+  uint64_t scratch_allowance() const { return threads_ * (uint64_t(256) << 10); }
 
   // Memory was refused: to know how much there is would not help, since all work is cut small already.
   void bound_arena() {}

@@ -3,6 +3,8 @@
 #include "surface/cpu_candidates.h"
 #include "surface/cpu_kernels_isa.h"
 
+#include <new>
+
 namespace quickses {
 namespace QSES_CPU_ISA {
 namespace {
@@ -119,6 +121,7 @@ struct Work {
   Points open;  // those whose radial projection is not exposed
   int32_t open_number[kMaxBrickVertices + kPackSize];
 };
+static_assert(sizeof(Work) <= BrickScratch::kVertexBytes, "the scratch of a thread has room for it");
 
 // Vertices on the convex part: projected radially on their deepest atom. The others are packed into w->open.
 int project_contact(const FeatureView &f, const BrickCandidates &c, float spacing, int n, Work *w) {
@@ -283,7 +286,7 @@ BrickNeeds emit_brick_vertices(const FeatureView &f, const BrickSet &bricks, con
   const BrickCandidates c = gather_candidates(f, low, 7.f * h + 2.f * overhang, kStartReach * h,
                                               f.parameters.depth + kStartReach * h, scratch);
   if (c.needs.atoms || c.needs.arcs) return c.needs;
-  Work w;
+  Work &w = *new (scratch.vertex_memory) Work;
   if (starts.moved) {
     for (int v = 0; v < n; ++v) {
       const glm::vec3 p = starts.moved[base + static_cast<uint32_t>(v)];
