@@ -33,13 +33,14 @@ Atoms crowd(size_t count, double edge, double radius) {
 
 std::vector<Case> cases() {
   std::vector<Case> all = {
-      {"three atoms of which each visits a hundred million bricks", crowd(3, 3, 1.7), settings(0.05, 100)},
+      {"three atoms of which each visits a million bricks", crowd(3, 3, 1.7), settings(0.1, 100)},
       {"everybody is everybody's neighbour", crowd(60000, 60, 1.7), settings(0.5, 100)},
       {"many arcs at a brick", crowd(3000, 30, 1.7), settings(0.1, 40)},
       {"the grid method with a cube of 200 lattice points", crowd(3000, 60, 1.7), settings(0.1, 10)},
-      {"many vertices", crowd(20000, 62, 1.7), settings(0.03)},
+      {"many steps", crowd(20000, 62, 1.7), settings(0.2)},
   };
   all[3].settings.method = QSES_METHOD_GRID;
+  all[4].settings.relaxation_steps = 100;
   for (Case &c : all) c.settings.level_count = 0;
   return all;
 }

@@ -5,6 +5,7 @@
 // the surface passes lies in an active brick.
 #pragma once
 
+#include "parallel/arena.h"
 #include "parallel/error.h"
 #include "surface/lattice.h"
 #include "surface/solvent_features.h"
@@ -117,8 +118,15 @@ QSES_FN void visit_bricks_of_shell(const Lattice &lattice, const glm::vec3 &cent
   }
 }
 
+// At least so many bricks meet a ball about a place in the table: most of an octant of it lies in there.
+QSES_FN double fewest_bricks_of_ball(const Lattice &lattice, float radius) {
+  const double bricks = static_cast<double>(radius) / static_cast<double>(lattice.brick_size());
+  return bricks * bricks * bricks / 4;
+}
+
 // What the passes below go through: size() items, and visit(i, v), which calls v(linear index, number) for each run of
-// bricks that item i makes active. Of the features, an item is an atom (i < atom count) or an arc's ball.
+// bricks that item i makes active; at least fewest(i) of them. Of the features, an item is an atom (i < atom count) or
+// an arc's ball.
 struct FeatureBricks {
   FeatureView features;
   Lattice lattice;
@@ -136,6 +144,9 @@ struct FeatureBricks {
       const Sphere ball = features.arc_bounds.items[i - features.atoms.count];
       visit_bricks_of_shell(lattice, ball.center, 0.f, ball.radius + features.parameters.depth, visit_brick);
     }
+  }
+  QSES_FN double fewest(size_t i) const {
+    return i < features.atoms.count ? 0.0 : fewest_bricks_of_ball(lattice, features.parameters.depth);
   }
 };
 
@@ -170,6 +181,12 @@ struct CountBricks {
     items.visit(i, Visit{&count});
     return count;
   }
+};
+
+template <class Items>
+struct FewestBricks {
+  Items items;
+  QSES_HOST_DEVICE double operator()(size_t i) const { return items.fewest(i); }
 };
 
 template <class Items>
@@ -294,6 +311,14 @@ BrickSet collect_bricks(Executor &executor, const Items &items, const Lattice &l
   const size_t n = items.size();
   const uint64_t entries = lattice.table_size();
   if (entries <= kSmallTable) return flag_bricks(executor, items, lattice);
+  // To count the visits may take long. Often it is clear without that they are too many to be listed.
+  const double fewest = executor.reduce(n, FewestBricks<Items>{items}) * static_cast<double>(kVisitBytes);
+  if (entries <= kMaxDenseCells && static_cast<double>(entries * kDenseEntryBytes) <= fewest)
+    return flag_bricks(executor, items, lattice);
+  if (entries > kMaxDenseCells && fewest > static_cast<double>(executor.arena().available()))
+    throw MemoryRefused("the work needs at least " + describe_bytes(static_cast<uint64_t>(fewest)) +
+                        " for the bricks of the SES grid, but " + describe_bytes(executor.arena().available()) +
+                        " are available: use a larger spacing");
   Span<uint64_t> first = executor.template allocate<uint64_t>(n + 1);
   executor.exclusive_scan(n, CountBricks<Items>{items}, first);
   const uint64_t visits = executor.fetch(first.data + n);

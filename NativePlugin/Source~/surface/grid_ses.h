@@ -36,6 +36,10 @@ struct BallBricks {
     const Sphere atom = atoms.items[i];
     visit_bricks_of_shell(lattice, atom.center, 0.f, atom.radius, visit_brick);
   }
+  QSES_FN double fewest(size_t i) const {
+    const float radius = atoms.items[i].radius;
+    return atoms.items[i].center.x >= 0.5f * kFarAway ? 0.0 : fewest_bricks_of_ball(lattice, radius);
+  }
 };
 
 template <class Executor>
