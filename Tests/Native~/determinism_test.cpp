@@ -5,8 +5,13 @@
 #include "surface_checks.h"
 
 #include <algorithm>
+#include <cfenv>
 #include <cstring>
 #include <map>
+
+#if defined(__SSE2__)
+#include <xmmintrin.h>
+#endif
 
 namespace {
 
@@ -71,6 +76,101 @@ TEST(SameBytes, WithAnyNumberOfThreads) {
       SCOPED_TRACE(threads);
       const Context context(threads);
       for (int repeat = 0; repeat < 3; ++repeat) expect_same_bytes(one, compute(context, c.atoms, c.settings));
+    }
+  }
+}
+
+// The mesh a job ends with, as copy_surface gives it.
+Surface finest_of_job(qses_context *context, const Atoms &atoms, const qses_settings &s) {
+  set_atoms(context, atoms);
+  expect_ok(qses_begin(context, &s));
+  expect_ok(qses_wait(context, -1, nullptr));
+  qses_mesh m;
+  qses_mesh_init(&m);
+  expect_ok(qses_collect(context, &m));
+  return copy_surface(context);
+}
+
+TEST(SameBytes, OfJobs) {
+  const std::vector<std::vector<float>> ladders = {{}, {2, 1}, {1.5f, 0.7f}, {4, 2, 1, 0.6f}, {3}};
+  for (Case &c : cases()) {
+    // Away from the origin, where a frame of its own would show.
+    const Atoms atoms = shifted(c.atoms, 31.7, -103.3, 57.9);
+    for (const std::vector<float> &ladder : ladders) {
+      SCOPED_TRACE(testing::Message() << c.name << ", levels: " << ladder.size());
+      std::copy(ladder.begin(), ladder.end(), c.settings.levels);
+      c.settings.level_count = static_cast<uint32_t>(ladder.size());
+      const Context context;
+      const Surface alone = compute(context, atoms, c.settings);
+      ASSERT_GT(alone.vertex_count(), 200u);
+      expect_same_bytes(finest_of_job(context, atoms, c.settings), alone);
+    }
+  }
+}
+
+// A frame budget that nothing fits gives the coarsest level: that of the ladder, and of a computation of its own.
+TEST(SameBytes, OfLevelsThatAreChosen) {
+  const Atoms atoms = shifted(cluster(400, 21), 31.7, -103.3, 57.9);
+  const Context context;
+  qses_settings s = settings(0.5);
+  s.frame_budget_ms = 0.001f;
+  const Surface chosen = finest_of_job(context, atoms, s);
+  s.frame_budget_ms = 0;
+  s.spacing = 2;
+  ASSERT_GT(chosen.vertex_count(), 200u);
+  expect_same_bytes(chosen, compute(context, atoms, s));
+}
+
+// The environment of the calling thread, put back at the end.
+class CallersFloats {
+ public:
+  explicit CallersFloats(int rounding, bool flush) {
+    std::fegetenv(&before_);
+    std::fesetround(rounding);
+#if defined(__SSE2__)
+    if (flush) _mm_setcsr(_mm_getcsr() | 0x8040);  // denormals are taken for zero, and made zero
+#else
+    (void)flush;
+#endif
+  }
+  ~CallersFloats() { std::fesetenv(&before_); }
+  CallersFloats(const CallersFloats &) = delete;
+  CallersFloats &operator=(const CallersFloats &) = delete;
+
+ private:
+  std::fenv_t before_;
+};
+
+unsigned float_mode() {
+#if defined(__SSE2__)
+  return _mm_getcsr() & ~0x3fu;  // without the flags of what has happened
+#else
+  return 0;
+#endif
+}
+
+TEST(SameBytes, InAnyRoundingMode) {
+  for (Case &c : cases()) {
+    SCOPED_TRACE(c.name);
+    c.settings.components = 1;
+    const Surface usual = compute(c.atoms, c.settings);
+    const Surface alone = compute(c.atoms, c.settings, 1);
+    struct Mode {
+      int rounding;
+      bool flush;
+    };
+    for (const Mode &mode : {Mode{FE_UPWARD, false}, Mode{FE_DOWNWARD, true}, Mode{FE_TOWARDZERO, false},
+                             Mode{FE_TONEAREST, true}}) {
+      SCOPED_TRACE(mode.rounding);
+      const CallersFloats floats(mode.rounding, mode.flush);
+      const unsigned before = float_mode();
+      // Threads of the library that are started now take over what they find.
+      const Context context(4), one(1);
+      expect_same_bytes(compute(context, c.atoms, c.settings), usual);
+      expect_same_bytes(compute(one, c.atoms, c.settings), alone);
+      expect_same_bytes(finest_of_job(context, c.atoms, c.settings), usual);
+      EXPECT_EQ(std::fegetround(), mode.rounding);
+      EXPECT_EQ(float_mode(), before);
     }
   }
 }

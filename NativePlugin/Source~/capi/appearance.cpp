@@ -2,14 +2,15 @@
 // What vertices take from their atoms. A job that runs keeps what it was begun with: a change goes into another set,
 // one that nobody holds any more if there is one, so that colours of every frame soon need no new memory.
 #include "capi/context.h"
+#include "parallel/sole_holder.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cstring>
 
 using quickses::Appearance;
 using quickses::check_atom_count;
 using quickses::guarded;
+using quickses::is_sole_holder;
 using quickses::require;
 
 namespace {
@@ -21,8 +22,7 @@ void change_appearance(qses_context *context, size_t count, const char *function
   check_atom_count(*context, count, function);
   std::shared_ptr<Appearance> next;
   for (const std::shared_ptr<Appearance> &set : context->appearance_pool)
-    if (set.use_count() == 1) {
-      std::atomic_thread_fence(std::memory_order_acquire);  // whoever held it has read its last
+    if (is_sole_holder(set)) {
       next = set;
       break;
     }

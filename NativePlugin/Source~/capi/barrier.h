@@ -4,6 +4,7 @@
 
 #include "io/error.h"
 #include "parallel/error.h"
+#include "parallel/working_thread.h"
 
 #include <new>
 #include <string>
@@ -16,8 +17,10 @@ std::string &last_error_message() noexcept;
 // Remembers the sentence; when even that finds no memory, a shorter one that needs none.
 qses_status fail(qses_status status, const char *message) noexcept;
 
+// Calls compute in a floating-point environment of their own, and leave the caller's as it was.
 template <class Call>
 qses_status guarded(const Call &call) noexcept {
+  const FloatScope floats;
   try {
     call();
     return QSES_OK;

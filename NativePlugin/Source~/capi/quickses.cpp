@@ -94,10 +94,12 @@ quickses::SurfaceRequest make_request(const qses_context &context, const qses_se
   request.atoms = context.atoms;
   request.appearance = context.appearance;
   request.settings = settings;
-  for (uint32_t k = 0; ladder && k < settings.level_count; ++k)
-    if (settings.levels[k] > settings.spacing) request.ladder.add(settings.levels[k]);
-  request.ladder.add(settings.spacing);
-  if (ladder) request.frame_budget_ms = static_cast<double>(settings.frame_budget_ms);
+  if (ladder) {
+    request.ladder = quickses::ladder_of(settings);
+    request.frame_budget_ms = static_cast<double>(settings.frame_budget_ms);
+  } else {
+    request.ladder.add(settings.spacing);
+  }
   return request;
 }
 

@@ -31,10 +31,14 @@ std::string read_raw_bytes(const std::string &path) {
 
   std::string bytes;
   const auto size = fs::file_size(place, error);
-  if (!error) bytes.reserve(static_cast<size_t>(size));
+  constexpr size_t kPiece = size_t(1) << 16;
+  if (!error) bytes.reserve(static_cast<size_t>(size) + kPiece);
   // Read to the end rather than trust the size: pipes and devices have none.
-  char buffer[1 << 16];
-  while (size_t count = std::fread(buffer, 1, sizeof buffer, file.get())) bytes.append(buffer, count);
+  for (size_t count = kPiece, read = 0; count > 0;) {
+    bytes.resize(read + kPiece);
+    count = std::fread(&bytes[read], 1, kPiece, file.get());
+    bytes.resize(read += count);
+  }
   if (std::ferror(file.get())) fail_input("'" + path + "' can't be read: " + std::strerror(errno));
   if (bytes.empty()) fail_input("'" + path + "' is empty");
   return bytes;

@@ -20,10 +20,6 @@ double growth(qses_method method) { return method == QSES_METHOD_GRID ? 4 : 2; }
 
 }  // namespace
 
-bool LevelLadder::operator==(const LevelLadder &other) const {
-  return count == other.count && std::equal(spacings, spacings + count, other.spacings);
-}
-
 bool LevelChooser::Subject::operator==(const Subject &other) const {
   return atoms == other.atoms && surface == other.surface && method == other.method &&
          probe_radius == other.probe_radius && relaxation_steps == other.relaxation_steps &&

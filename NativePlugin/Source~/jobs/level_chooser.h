@@ -4,21 +4,12 @@
 #pragma once
 
 #include "quickses/quickses.h"
+#include "surface/level_ladder.h"
 
 #include <cstddef>
 #include <cstdint>
 
 namespace quickses {
-
-// The spacings of the levels of a job, Å, coarsest first.
-struct LevelLadder {
-  static constexpr uint32_t kMax = QSES_MAX_LEVELS + 1;
-  float spacings[kMax] = {};
-  uint32_t count = 0;
-
-  void add(float spacing) { spacings[count++] = spacing; }
-  bool operator==(const LevelLadder &other) const;
-};
 
 // The rules:
 //  - The first frame is the coarsest level; then the finest one that is expected to fit.

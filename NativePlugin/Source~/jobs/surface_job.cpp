@@ -2,6 +2,7 @@
 #include "jobs/surface_job.h"
 
 #include "parallel/error.h"
+#include "parallel/working_thread.h"
 
 #include <chrono>
 #include <cstdio>
@@ -77,6 +78,7 @@ void SurfaceJob::choose_levels(const SurfaceRequest &request) {
 }
 
 void SurfaceJob::work() {
+  const FloatScope floats;
   std::unique_lock<std::mutex> lock(mutex_);
   for (;;) {
     changed_.wait(lock, [&] { return quit_ || !waiting_.empty(); });
@@ -130,15 +132,17 @@ void SurfaceJob::run(const SurfaceRequest &request) {
   if (chooser_) chooser_->record(std::chrono::duration<double, std::milli>(Clock::now() - start).count(), shared_ms_);
 }
 
+std::unique_lock<std::mutex> SurfaceJob::wait_for_turn() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  cancelled_call_ = false;
+  changed_.wait(lock, [&] { return !running_ && waiting_.empty(); });
+  if (cancelled_call_) throw Cancelled{};
+  return lock;
+}
+
 void SurfaceJob::compute(SurfaceRequest request) {
   {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    cancelled_compute_ = false;
-  }
-  wait(-1.0);
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (cancelled_compute_) throw Error(QSES_CANCELLED, "the computation was cancelled");
+    const std::unique_lock<std::mutex> lock = wait_for_turn();
     // No worker runs and only this thread can begin one: it is safe to compute here.
     announce(request);
     choose_levels(request);
@@ -157,7 +161,7 @@ void SurfaceJob::compute(SurfaceRequest request) {
     run(request);
   } catch (const Cancelled &) {
     end(QSES_JOB_CANCELLED, QSES_OK, "");
-    throw Error(QSES_CANCELLED, "the computation was cancelled");
+    throw;
   } catch (const Error &e) {
     end(QSES_JOB_FAILED, e.status(), e.what());
     throw;
@@ -175,8 +179,19 @@ void SurfaceJob::compute(SurfaceRequest request) {
 }
 
 qses_size_estimate SurfaceJob::estimate(const SurfaceRequest &request) {
-  wait(-1.0);  // nothing runs, and only this thread can begin something
-  return engine_->estimate(*request.atoms, *request.appearance, request.settings);
+  {
+    const std::unique_lock<std::mutex> lock = wait_for_turn();
+    stop_now_ = false;
+    estimating_ = true;
+  }
+  const struct End {
+    SurfaceJob &job;
+    ~End() {
+      const std::lock_guard<std::mutex> lock(job.mutex_);
+      job.estimating_ = false;
+    }
+  } end{*this};
+  return engine_->estimate(*request.atoms, *request.appearance, request.settings, stop_now_);
 }
 
 int SurfaceJob::slot() {
@@ -235,7 +250,8 @@ bool SurfaceJob::wait(double milliseconds) {
 void SurfaceJob::cancel() {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    cancelled_compute_ = true;
+    cancelled_call_ = true;
+    if (estimating_) stop_now_ = true;
     if (running_) {
       cancelled_ = true;
       stop_now_ = true;

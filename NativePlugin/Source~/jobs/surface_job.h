@@ -41,7 +41,7 @@ class SurfaceJob : private LevelSink {
   void begin(SurfaceRequest request);
   // Computes on the calling thread once no job runs. Throws what went wrong.
   void compute(SurfaceRequest request);
-  // What a computation would need; once no job runs. Throws Error.
+  // What a computation would need; once no job runs. Throws what went wrong.
   qses_size_estimate estimate(const SurfaceRequest &request);
   // The finest level finished since the last call; false if there is none. Its memory stays until the next call that
   // returns true, or a compute.
@@ -65,6 +65,8 @@ class SurfaceJob : private LevelSink {
   const std::atomic<bool> &stop_flag() const override { return stop_now_; }
   void advance(double fraction) override;
 
+  // Waits until no job runs, with the mutex held again; throws if that was cancelled meanwhile.
+  std::unique_lock<std::mutex> wait_for_turn();
   // The state of a job that is about to run. The mutex is held.
   void announce(const SurfaceRequest &request);
   // Which levels of the ladder will be computed. The mutex is held.
@@ -83,7 +85,8 @@ class SurfaceJob : private LevelSink {
   std::condition_variable changed_;
   SurfaceRequest waiting_;
   bool running_ = false, quit_ = false, cancelled_ = false, superseded_ = false;
-  bool cancelled_compute_ = false;                  // while a compute waits for a job to end
+  bool cancelled_call_ = false;                     // while a compute or estimate waits for a job to end
+  bool estimating_ = false;
   uint32_t levels_finished_ = 0, level_count_ = 0;  // of the job
   uint32_t first_level_ = 0, ladder_count_ = 0;     // where they are in the ladder
   SeriesChoosers choosers_;                         // like the next two: of the thread that computes

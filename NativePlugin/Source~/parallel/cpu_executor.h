@@ -5,6 +5,8 @@
 
 #include "parallel/arena.h"
 #include "parallel/executor.h"
+#include "parallel/startable_threads.h"
+#include "parallel/working_thread.h"
 
 #if defined(QSES_CPU_SYSTEM_OMP)
 #include <omp.h>
@@ -90,7 +92,7 @@ class CpuExecutor {
     explicit CallScope(CpuExecutor &) {}
   };
 
-  // While it lives, loops over bricks give up once the flag is set, and throw Cancelled.
+  // While it lives, all work gives up soon after the flag is set, and throws Cancelled.
   class StopScope {
    public:
     StopScope(CpuExecutor &executor, const std::atomic<bool> &flag) : executor_(executor) { executor.stop_ = &flag; }
@@ -103,14 +105,7 @@ class CpuExecutor {
   };
 
   explicit CpuExecutor(unsigned threads)
-      : threads_(threads ? threads : std::max(1u, std::thread::hardware_concurrency()))
-#if !defined(QSES_CPU_SYSTEM_OMP)
-        ,
-        // More than the machine has are of no use, and TBB would complain on stderr.
-        arena_threads_(std::min(static_cast<int>(threads_), tbb::info::default_concurrency()))
-#endif
-  {
-  }
+      : threads_(threads ? threads : std::max(1u, std::thread::hardware_concurrency())) {}
 
   unsigned threads() const { return threads_; }
   // The instruction set's kernels that the hot stages use; tests set others.
@@ -124,7 +119,7 @@ class CpuExecutor {
     for (const auto &pool : scratch_pools_) sum += pool.second.bytes(pool.second.objects.get());
     return sum;
   }
-  uint64_t scratch_allowance() const { return threads_ * (uint64_t(192) << 10); }
+  uint64_t scratch_allowance() const { return threads_ * (uint64_t(256) << 10); }
 
   // Memory was refused: to know how much there is would not help, since all work is cut small already.
   void bound_arena() {}
@@ -136,20 +131,10 @@ class CpuExecutor {
 
   template <class F>
   void for_each(size_t n, F f) {
-    if (n == 0) return;
-    if (n < kSerialItems || threads_ == 1) {
-      for (size_t i = 0; i < n; ++i) f(i);
-      return;
-    }
     // Chunks keep the functor's loop tight and the scheduler out of it.
     const size_t chunk = std::max<size_t>(kSerialItems, n / (size_t(threads_) * 16));
-    run([&] {
-      thrust::for_each(policy(), thrust::counting_iterator<size_t>(0),
-                       thrust::counting_iterator<size_t>((n + chunk - 1) / chunk), [=](size_t c) {
-                         const size_t end = std::min(n, (c + 1) * chunk);
-                         for (size_t i = c * chunk; i < end; ++i) f(i);
-                       });
-    });
+    run_chunks((n + chunk - 1) / chunk,
+               [&](size_t, size_t c) { for_range(c * chunk, std::min(n, (c + 1) * chunk), f); });
   }
 
   // The scratch objects of a type that for_each_brick hands to its threads, kept from call to call. A driver may leave
@@ -177,38 +162,14 @@ class CpuExecutor {
   // grain: items a thread takes at a time. Each thread that works has a scratch of its own.
   template <class Scratch, class F>
   void for_each_brick(size_t n, F f, size_t grain = 8) {
-    if (n == 0) return;
-    const size_t chunks = (n + grain - 1) / grain;
-    const size_t workers = std::min<size_t>(threads_, chunks);
-    std::atomic<size_t> next{0};
     auto &pool = scratches<Scratch>();
-    // What one thread throws (memory that is refused) ends all of them and is thrown again here: not every parallel
-    // system lets exceptions out.
-    std::exception_ptr thrown;
-    std::atomic<bool> failed{false};
-    auto work = [&](size_t worker) {
-      try {
-        Scratch *const scratch = pool[worker].get();
-        for (size_t c; !stopped() && !failed && (c = next.fetch_add(1, std::memory_order_relaxed)) < chunks;)
-          for (size_t i = c * grain; i < std::min(n, (c + 1) * grain); ++i) f(SoloTeam{}, *scratch, i);
-      } catch (...) {
-        if (!failed.exchange(true)) thrown = std::current_exception();
-      }
-    };
-    if (workers == 1) {
-      work(0);
-    } else {
-      run([&] {
-        thrust::for_each(policy(), thrust::counting_iterator<size_t>(0), thrust::counting_iterator<size_t>(workers),
-                         work);
-      });
-    }
+    run_chunks((n + grain - 1) / grain, [&](size_t worker, size_t c) {
+      for (size_t i = c * grain; i < std::min(n, (c + 1) * grain); ++i) f(SoloTeam{}, *pool[worker], i);
+    });
     if (arena_.has_budget()) {
       const uint64_t scratch = scratch_bytes(), allowed = scratch_allowance();
       arena_.set_taken(scratch > allowed ? scratch - allowed : 0);
     }
-    if (thrown) std::rethrow_exception(thrown);
-    if (stopped()) throw Cancelled{};
   }
 
   template <class Load, class T>
@@ -220,29 +181,23 @@ class CpuExecutor {
     const Span<T> begin = allocate<T>(chunks + 1);
     begin[0] = T(0);
     if (chunks > 1) {
-      for_each_brick<char>(
-          chunks,
-          [&](SoloTeam, char &, size_t c) {
-            T sum = 0;
-            for (size_t i = c * chunk; i < std::min(n, (c + 1) * chunk); ++i) sum += static_cast<T>(load(i));
-            begin[c + 1] = sum;
-          },
-          1);
+      run_chunks(chunks, [&](size_t, size_t c) {
+        T sum = 0;
+        for_range(c * chunk, std::min(n, (c + 1) * chunk), [&](size_t i) { sum += static_cast<T>(load(i)); });
+        begin[c + 1] = sum;
+      });
       for (size_t c = 0; c < chunks; ++c) begin[c + 1] += begin[c];
     }
-    for_each_brick<char>(
-        chunks,
-        [&](SoloTeam, char &, size_t c) {
-          T sum = begin[c];
-          const size_t end = std::min(n, (c + 1) * chunk);
-          for (size_t i = c * chunk; i < end; ++i) {
-            const T value = static_cast<T>(load(i));
-            out[i] = sum;
-            sum += value;
-          }
-          if (end == n && (c + 1 == chunks || c * chunk < n)) out[n] = sum;
-        },
-        1);
+    run_chunks(chunks, [&](size_t, size_t c) {
+      T sum = begin[c];
+      const size_t end = std::min(n, (c + 1) * chunk);
+      for_range(c * chunk, end, [&](size_t i) {
+        const T value = static_cast<T>(load(i));
+        out[i] = sum;
+        sum += value;
+      });
+      if (end == n && (c + 1 == chunks || c * chunk < n)) out[n] = sum;
+    });
     if (n == 0) out[0] = T(0);
     arena_.rewind(mark);
   }
@@ -252,49 +207,50 @@ class CpuExecutor {
     const size_t chunks = (n + kReduceChunk - 1) / kReduceChunk;
     const auto mark = arena_.mark();
     const Span<T> sums = allocate<T>(chunks);
-    for_each_brick<char>(
-        chunks,
-        [&](SoloTeam, char &, size_t chunk) {
-          SumChunk<T, Load>{load, n, sums.data}(chunk);
-        },
-        1);
+    run_chunks(chunks, [&](size_t, size_t chunk) { SumChunk<T, Load>{load, n, sums.data}(chunk); });
     T sum{};
     for (const T &s : sums) sum += s;
     arena_.rewind(mark);
     return sum;
   }
 
-  // Thrust's parallel sort takes its temporaries from the heap every time. Here its parts work in the arena: runs are
-  // sorted one by one, then merged pairwise, an even number of times so that the result is where the keys were.
+  // Thrust's parallel sort takes its temporaries from the heap every time, and can't be stopped. Here its parts work in
+  // the arena: runs are sorted one by one, then merged pairwise, an even number of times so that the result is where
+  // the keys were.
   template <class Key, class Value>
   void sort_by_key(Span<Key> keys, Span<Value> values, int /*key_bits*/) {
     const size_t n = keys.size;
     if (n < 2) return;
     size_t runs = 1;
-    while (threads_ > 1 && n / runs > kSortedRun) runs *= 4;
+    while (n / runs > (threads_ > 1 ? kSortedRun : 4 * kSortedRun)) runs *= 4;
     const size_t length = (n + runs - 1) / runs;
     const auto mark = arena_.mark();
     const size_t room = RoomAllocator::room_for(length * sizeof(Key)) + RoomAllocator::room_for(length * sizeof(Value));
-    const Span<char> rooms = allocate<char>(runs * room);
-    for_each_brick<char>(
-        runs,
-        [&](SoloTeam, char &, size_t k) {
-          const size_t first = std::min(n, k * length), last = std::min(n, first + length);
-          RoomAllocator allocator(rooms.data + k * room, room);
-          thrust::stable_sort_by_key(thrust::seq(allocator), keys.data + first, keys.data + last, values.data + first);
-        },
-        1);
+    const Span<char> rooms = allocate<char>(std::min<size_t>(runs, threads_) * room);
+    run_chunks(runs, [&](size_t worker, size_t k) {
+      const size_t first = std::min(n, k * length), last = std::min(n, first + length);
+      RoomAllocator allocator(rooms.data + worker * room, room);
+      thrust::stable_sort_by_key(thrust::seq(allocator), keys.data + first, keys.data + last, values.data + first);
+    });
     arena_.rewind(mark);
     if (runs > 1) {
       Span<Key> other_keys = allocate<Key>(n);
       Span<Value> other_values = allocate<Value>(n);
       for (size_t merged = length; merged < length * runs; merged *= 2) {
-        run([&] {
-          for (size_t first = 0; first < n; first += 2 * merged) {
-            const size_t middle = std::min(n, first + merged), last = std::min(n, middle + merged);
-            thrust::merge_by_key(policy(), keys.data + first, keys.data + middle, keys.data + middle, keys.data + last,
-                                 values.data + first, values.data + middle, other_keys.data + first,
-                                 other_values.data + first);
+        // Each piece of the result knows where in the two runs it begins and ends.
+        run_chunks((n + kSortedRun - 1) / kSortedRun, [&](size_t, size_t piece) {
+          size_t begin = piece * kSortedRun;
+          const size_t end = std::min(n, begin + kSortedRun);
+          while (begin < end) {
+            const size_t first = begin / (2 * merged) * (2 * merged), middle = std::min(n, first + merged);
+            const size_t last = std::min(n, middle + merged), stop = std::min(end, last);
+            const size_t i = merge_split(keys.data + first, middle - first, last - middle, begin - first);
+            const size_t j = merge_split(keys.data + first, middle - first, last - middle, stop - first);
+            const size_t k = middle + (begin - first - i), l = middle + (stop - first - j);
+            thrust::merge_by_key(thrust::seq, keys.data + first + i, keys.data + first + j, keys.data + k,
+                                 keys.data + l, values.data + first + i, values.data + k, other_keys.data + begin,
+                                 other_values.data + begin);
+            begin = stop;
           }
         });
         std::swap(keys, other_keys);
@@ -311,23 +267,18 @@ class CpuExecutor {
     const auto mark = arena_.mark();
     const Span<size_t> begin = allocate<size_t>(chunks + 1);
     begin[0] = 0;
-    for_each_brick<char>(
-        chunks,
-        [&](SoloTeam, char &, size_t c) {
-          size_t count = 0;
-          for (size_t i = c * chunk; i < std::min(n, (c + 1) * chunk); ++i) count += keep(i) ? 1 : 0;
-          begin[c + 1] = count;
-        },
-        1);
+    run_chunks(chunks, [&](size_t, size_t c) {
+      size_t count = 0;
+      for_range(c * chunk, std::min(n, (c + 1) * chunk), [&](size_t i) { count += keep(i) ? 1 : 0; });
+      begin[c + 1] = count;
+    });
     for (size_t c = 0; c < chunks; ++c) begin[c + 1] += begin[c];
-    for_each_brick<char>(
-        chunks,
-        [&](SoloTeam, char &, size_t c) {
-          size_t k = begin[c];
-          for (size_t i = c * chunk; i < std::min(n, (c + 1) * chunk); ++i)
-            if (keep(i)) out[k++] = static_cast<T>(i);
-        },
-        1);
+    run_chunks(chunks, [&](size_t, size_t c) {
+      size_t k = begin[c];
+      for_range(c * chunk, std::min(n, (c + 1) * chunk), [&](size_t i) {
+        if (keep(i)) out[k++] = static_cast<T>(i);
+      });
+    });
     const size_t kept = begin[chunks];
     arena_.rewind(mark);
     return kept;
@@ -352,13 +303,18 @@ class CpuExecutor {
   }
   template <class T>
   void fill(Span<T> span, int byte) {
-    if (span.size) std::memset(static_cast<void *>(span.data), byte, span.size * sizeof(T));
+    const size_t bytes = span.size * sizeof(T);
+    char *const memory = reinterpret_cast<char *>(span.data);
+    run_chunks((bytes + kFilledPiece - 1) / kFilledPiece, [&](size_t, size_t c) {
+      std::memset(memory + c * kFilledPiece, byte, std::min(kFilledPiece, bytes - c * kFilledPiece));
+    });
   }
   void wait() {}
 
  private:
   static constexpr size_t kSerialItems = 64;
-  static constexpr size_t kSortedRun = size_t(1) << 15;  // items that one thread sorts
+  static constexpr size_t kSortedRun = size_t(1) << 15;  // items that one thread sorts, or merges, at a time
+  static constexpr size_t kFilledPiece = size_t(1) << 20;  // bytes
 
   struct ScratchPool {
     std::shared_ptr<void> objects;
@@ -381,28 +337,100 @@ class CpuExecutor {
     return sum;
   }
 
-  bool stopped() const { return stop_ && stop_->load(std::memory_order_relaxed); }
-
-#if defined(QSES_CPU_SYSTEM_OMP)
-  static auto policy() -> decltype((thrust::omp::par)) { return thrust::omp::par; }
+  // f(i) for the numbers from first to last - 1, with a look at the flag in between.
   template <class F>
-  void run(F f) {
+  static void for_range(size_t first, size_t last, const F &f) {
+    while (first < last) {
+      look_for_stop();
+      const size_t end = std::min(last, first + kSerialItems);
+      for (; first < end; ++first) f(first);
+    }
+  }
+
+  // How many of the first n items of two runs merged, the one behind the other, come from the first: keys that are
+  // equal are taken from it before.
+  template <class Key>
+  static size_t merge_split(const Key *keys, size_t first_run, size_t second_run, size_t n) {
+    size_t low = n > second_run ? n - second_run : 0, high = std::min(n, first_run);
+    while (low < high) {
+      const size_t i = low + (high - low) / 2;
+      if (keys[first_run + (n - i - 1)] < keys[i])
+        high = i;
+      else
+        low = i + 1;
+    }
+    return low;
+  }
+
+  // body(worker, chunk) for all chunks, each taken by the next thread that is free; workers count from 0. Everything
+  // that is done in parallel passes here.
+  template <class Body>
+  void run_chunks(size_t chunks, const Body &body) {
+    if (chunks == 0) return;
+    std::atomic<size_t> next{0};
+    // What one thread throws (memory that is refused) ends all of them and is thrown again here: not every parallel
+    // system lets exceptions out.
+    std::exception_ptr thrown;
+    std::atomic<bool> failed{false};
+    const auto work = [&](size_t worker) {
+      const WorkScope scope(stop_);
+      try {
+        for (size_t c; !failed && (c = next.fetch_add(1, std::memory_order_relaxed)) < chunks;) {
+          look_for_stop();
+          body(worker, c);
+        }
+      } catch (...) {
+        if (!failed.exchange(true)) thrown = std::current_exception();
+      }
+    };
+    const size_t workers = std::min<size_t>(usable_threads(chunks), chunks);
+    if (workers == 1 || !run(workers, work)) work(0);
+    if (thrown) std::rethrow_exception(thrown);
+  }
+
+  // Threads for so many chunks. Before the first time that it is more than one it is asked whether they can be had.
+  unsigned usable_threads(size_t chunks) {
+    if (chunks == 1 || threads_ == 1) return 1;
+    if (usable_ == 0) {
+#if !defined(QSES_CPU_SYSTEM_OMP)
+      // More than the machine has are of no use, and TBB would complain on stderr.
+      const unsigned wanted = std::min(threads_, static_cast<unsigned>(tbb::info::default_concurrency()));
+#else
+      const unsigned wanted = threads_;
+#endif
+      usable_ = 1 + count_startable_threads(wanted - 1);
+#if !defined(QSES_CPU_SYSTEM_OMP)
+      arena_threads_.initialize(static_cast<int>(usable_));
+#endif
+    }
+    return usable_ == 1 ? 1 : threads_;
+  }
+
+  // work(worker) for all workers, by the threads of the parallel system. False if that had none to give after all: what
+  // was left undone is then to be done by the caller.
+  template <class Work>
+  bool run(size_t workers, const Work &work) {
+    const thrust::counting_iterator<size_t> first(0), last(workers);
+#if defined(QSES_CPU_SYSTEM_OMP)
     const struct Restore {
       int threads = omp_get_max_threads();
       ~Restore() { omp_set_num_threads(threads); }
     } restore;
-    omp_set_num_threads(static_cast<int>(threads_));
-    f();
-  }
+    omp_set_num_threads(static_cast<int>(usable_));
+    thrust::for_each(thrust::omp::par, first, last, work);
 #else
-  static auto policy() -> decltype((thrust::tbb::par)) { return thrust::tbb::par; }
-  template <class F>
-  void run(F f) {
-    arena_threads_.execute(f);
-  }
+    try {
+      arena_threads_.execute([&] { thrust::for_each(thrust::tbb::par, first, last, work); });
+    } catch (const std::exception &) {
+      usable_ = 1;
+      return false;
+    }
 #endif
+    return true;
+  }
 
   unsigned threads_;
+  unsigned usable_ = 0;  // of them; 0: not known yet
   const std::atomic<bool> *stop_ = nullptr;
 #if !defined(QSES_CPU_SYSTEM_OMP)
   tbb::task_arena arena_threads_;

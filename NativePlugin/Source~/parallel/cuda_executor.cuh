@@ -89,11 +89,18 @@ class CudaExecutor {
  public:
   static constexpr bool kIsCuda = true;
 
-  // Held while a computation runs: keeps the device selected.
-  // A GPU's queue is not cut short: what asks for the flag are the stages, between their kernels.
-  struct StopScope {
-    StopScope(CudaExecutor &, const std::atomic<bool> &) {}
+  // While it lives, nothing more is asked of the device once the flag is set: Cancelled is thrown instead.
+  class StopScope {
+   public:
+    StopScope(CudaExecutor &executor, const std::atomic<bool> &flag) : executor_(executor) { executor.stop_ = &flag; }
+    ~StopScope() { executor_.stop_ = nullptr; }
+    StopScope(const StopScope &) = delete;
+    StopScope &operator=(const StopScope &) = delete;
+
+   private:
+    CudaExecutor &executor_;
   };
+  // Held while a computation runs: keeps the device selected.
   struct CallScope {
     explicit CallScope(const CudaExecutor &executor) : guard(executor.device_) {}
     DeviceGuard guard;
@@ -143,6 +150,7 @@ class CudaExecutor {
   void launch(const char *name, void (*kernel)(Parameters...), size_t blocks, int threads, size_t shared_bytes,
               Arguments... arguments) {
     if (blocks == 0) return;
+    stop_if_asked();
     if (blocks > static_cast<size_t>(std::numeric_limits<int>::max()))
       throw Error(QSES_OUT_OF_MEMORY, std::string(name) + ": too much work for one launch; use a smaller slice size");
     kernel<<<static_cast<unsigned>(blocks), static_cast<unsigned>(threads), shared_bytes, stream_>>>(arguments...);
@@ -272,9 +280,14 @@ class CudaExecutor {
                "cudaMemcpyAsync");
   }
 
+  void stop_if_asked() const {
+    if (stop_ && stop_->load(std::memory_order_relaxed)) throw Cancelled{};
+  }
+
   // CUB's two calls: how much memory, then the work.
   template <class Call>
   void with_temporary(const char *name, Call call) {
+    stop_if_asked();
     size_t bytes = 0;
     check_cuda(call(nullptr, bytes), name);
     const auto mark = arena_.mark();
@@ -294,6 +307,7 @@ class CudaExecutor {
   int device_;
   unsigned multiprocessors_ = 0;
   cudaStream_t stream_ = nullptr;
+  const std::atomic<bool> *stop_ = nullptr;
   PinnedBuffer staging_;
   Arena<DeviceMemory> arena_;
 };

@@ -20,6 +20,7 @@
 // A team has rank() in [0, size()), and sync(). On the CPU it is one thread, so its loops run straight through.
 #pragma once
 
+#include "parallel/working_thread.h"
 #include "surface/types.h"
 
 #include <cstddef>
@@ -62,7 +63,10 @@ struct SumChunk {
   QSES_HOST_DEVICE void operator()(size_t chunk) const {
     const size_t begin = chunk * kReduceChunk, end = begin + kReduceChunk < n ? begin + kReduceChunk : n;
     T sum{};
-    for (size_t i = begin; i < end; ++i) sum += load(i);
+    for (size_t i = begin; i < end; ++i) {
+      if (i % 64 == 0) look_for_stop();
+      sum += load(i);
+    }
     sums[chunk] = sum;
   }
 };

@@ -5,6 +5,7 @@
 // the surface passes lies in an active brick.
 #pragma once
 
+#include "parallel/arena.h"
 #include "parallel/error.h"
 #include "surface/lattice.h"
 #include "surface/solvent_features.h"
@@ -36,7 +37,21 @@ struct BrickSet {
   }
 };
 
-// Calls visit(linear index) for each brick whose grown box meets the shell between two radii about a centre.
+// The first of the numbers from first to last with a property that all behind it have too; last + 1 if none has.
+template <class Property>
+QSES_FN int first_with(int first, int last, const Property &has) {
+  while (first <= last) {
+    const int middle = first + (last - first) / 2;
+    if (has(middle))
+      last = middle - 1;
+    else
+      first = middle + 1;
+  }
+  return first;
+}
+
+// Calls visit(linear index of the first, number) for the runs along x of the bricks whose grown boxes meet the shell
+// between two radii about a centre.
 template <class Visit>
 QSES_FN void visit_bricks_of_shell(const Lattice &lattice, const glm::vec3 &center, float inner, float outer,
                                    const Visit &visit) {
@@ -56,7 +71,10 @@ QSES_FN void visit_bricks_of_shell(const Lattice &lattice, const glm::vec3 &cent
     first[d] = first[d] < 0 ? 0 : first[d];
     last[d] = last[d] >= lattice.brick_count[d] ? lattice.brick_count[d] - 1 : last[d];
   }
+  constexpr int kLongRow = 16;  // fewer bricks are tried one by one
+  const bool many = last[1] - first[1] > 64;
   for (int z = first[2]; z <= last[2]; ++z) {
+    if (many) look_for_stop();
     const float z0 = static_cast<float>(z + lattice.first_brick.z) * size + low_offset - c[2];
     const float nz = maximum(0.f, maximum(z0, -z0 - box)), fz = maximum(absolute(z0), absolute(z0 + box));
     for (int y = first[1]; y <= last[1]; ++y) {
@@ -65,17 +83,46 @@ QSES_FN void visit_bricks_of_shell(const Lattice &lattice, const glm::vec3 &cent
       const float near2 = nz * nz + ny * ny, far2 = fz * fz + fy * fy;
       if (near2 > outer2) continue;
       const uint64_t row = lattice.linear(glm::ivec3(0, y, z));
-      for (int x = first[0]; x <= last[0]; ++x) {
-        const float x0 = static_cast<float>(x + lattice.first_brick.x) * size + low_offset - c[0];
-        const float nx = maximum(0.f, maximum(x0, -x0 - box)), fx = maximum(absolute(x0), absolute(x0 + box));
-        if (near2 + nx * nx <= outer2 && far2 + fx * fx >= inner2) visit(row + static_cast<uint64_t>(x));
+      const auto start_of = [&](int x) {
+        return static_cast<float>(x + lattice.first_brick.x) * size + low_offset - c[0];
+      };
+      const auto is_near = [&](int x) {
+        const float x0 = start_of(x), nx = maximum(0.f, maximum(x0, -x0 - box));
+        return near2 + nx * nx <= outer2;
+      };
+      const auto is_far = [&](int x) {
+        const float x0 = start_of(x), fx = maximum(absolute(x0), absolute(x0 + box));
+        return far2 + fx * fx >= inner2;
+      };
+      if (last[0] - first[0] < kLongRow) {
+        for (int x = first[0]; x <= last[0]; ++x)
+          if (is_near(x) && is_far(x)) visit(row + static_cast<uint64_t>(x), uint64_t(1));
+        continue;
       }
+      // Along a row bricks come nearer and then go farther: the ends of the runs are looked for by halving.
+      const int turn = first_with(first[0], last[0], [&](int x) { return start_of(x) + 0.5f * box >= 0.f; });
+      const int begin = first_with(first[0], turn - 1, is_near);
+      const int end = first_with(turn, last[0], [&](int x) { return !is_near(x); });
+      const int hole = first_with(begin, turn - 1, [&](int x) { return !is_far(x); });
+      const int hole_end = first_with(turn, end - 1, is_far);
+      const auto visit_run = [&](int from, int to) {
+        if (from < to) visit(row + static_cast<uint64_t>(from), static_cast<uint64_t>(to - from));
+      };
+      visit_run(begin, hole);
+      visit_run(hole_end, end);
     }
   }
 }
 
-// What the passes below go through: size() items, and visit(i, v), which calls v(linear index) for each brick that item
-// i makes active. Of the features, an item is an atom (i < atom count) or an arc's ball.
+// At least so many bricks meet a ball about a place in the table: most of an octant of it lies in there.
+QSES_FN double fewest_bricks_of_ball(const Lattice &lattice, float radius) {
+  const double bricks = static_cast<double>(radius) / static_cast<double>(lattice.brick_size());
+  return bricks * bricks * bricks / 4;
+}
+
+// What the passes below go through: size() items, and visit(i, v), which calls v(linear index, number) for each run of
+// bricks that item i makes active; at least fewest(i) of them. Of the features, an item is an atom (i < atom count) or
+// an arc's ball.
 struct FeatureBricks {
   FeatureView features;
   Lattice lattice;
@@ -94,6 +141,9 @@ struct FeatureBricks {
       visit_bricks_of_shell(lattice, ball.center, 0.f, ball.radius + features.parameters.depth, visit_brick);
     }
   }
+  QSES_FN double fewest(size_t i) const {
+    return i < features.atoms.count ? 0.0 : fewest_bricks_of_ball(lattice, features.parameters.depth);
+  }
 };
 
 template <class Items>
@@ -102,12 +152,14 @@ struct FlagBricks {
   uint8_t *flags;
   struct Visit {
     uint8_t *flags;
-    QSES_FN void operator()(uint64_t linear) const {
+    QSES_FN void operator()(uint64_t linear, uint64_t count) const {
+      for (const uint64_t end = linear + count; linear < end; ++linear) {
 #if defined(__CUDA_ARCH__) || (defined(_MSC_VER) && !defined(__clang__))
-      flags[linear] = 1;
+        flags[linear] = 1;
 #else
-      __atomic_store_n(&flags[linear], uint8_t(1), __ATOMIC_RELAXED);
+        __atomic_store_n(&flags[linear], uint8_t(1), __ATOMIC_RELAXED);
 #endif
+      }
     }
   };
   QSES_HOST_DEVICE void operator()(size_t i) const { items.visit(i, Visit{flags}); }
@@ -118,7 +170,7 @@ struct CountBricks {
   Items items;
   struct Visit {
     uint64_t *count;
-    QSES_FN void operator()(uint64_t) const { ++*count; }
+    QSES_FN void operator()(uint64_t, uint64_t more) const { *count += more; }
   };
   QSES_HOST_DEVICE uint64_t operator()(size_t i) const {
     uint64_t count = 0;
@@ -128,13 +180,21 @@ struct CountBricks {
 };
 
 template <class Items>
+struct FewestBricks {
+  Items items;
+  QSES_HOST_DEVICE double operator()(size_t i) const { return items.fewest(i); }
+};
+
+template <class Items>
 struct ListBricks {
   Items items;
   const uint64_t *first;
   uint64_t *keys;
   struct Visit {
     uint64_t **next;
-    QSES_FN void operator()(uint64_t linear) const { *(*next)++ = linear; }
+    QSES_FN void operator()(uint64_t linear, uint64_t number) const {
+      for (const uint64_t end = linear + number; linear < end; ++linear) *(*next)++ = linear;
+    }
   };
   QSES_HOST_DEVICE void operator()(size_t i) const {
     uint64_t *next = keys + first[i];
@@ -247,6 +307,14 @@ BrickSet collect_bricks(Executor &executor, const Items &items, const Lattice &l
   const size_t n = items.size();
   const uint64_t entries = lattice.table_size();
   if (entries <= kSmallTable) return flag_bricks(executor, items, lattice);
+  // To count the visits may take long. Often it is clear without that they are too many to be listed.
+  const double fewest = executor.reduce(n, FewestBricks<Items>{items}) * static_cast<double>(kVisitBytes);
+  if (entries <= kMaxDenseCells && static_cast<double>(entries * kDenseEntryBytes) <= fewest)
+    return flag_bricks(executor, items, lattice);
+  if (entries > kMaxDenseCells && fewest > static_cast<double>(executor.arena().available()))
+    throw MemoryRefused("the work needs at least " + describe_bytes(static_cast<uint64_t>(fewest)) +
+                        " for the bricks of the SES grid, but " + describe_bytes(executor.arena().available()) +
+                        " are available: use a larger spacing");
   Span<uint64_t> first = executor.template allocate<uint64_t>(n + 1);
   executor.exclusive_scan(n, CountBricks<Items>{items}, first);
   const uint64_t visits = executor.fetch(first.data + n);

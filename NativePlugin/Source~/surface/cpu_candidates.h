@@ -11,6 +11,9 @@
 namespace quickses {
 namespace QSES_CPU_ISA {
 
+// With more arcs near a brick its points may take long: they look for the stop on their own.
+constexpr int kManyArcs = 1024;
+
 // Columns of balls: centre and radius.
 struct BallColumns {
   float *x, *y, *z, *radius;

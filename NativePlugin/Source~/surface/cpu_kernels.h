@@ -3,6 +3,7 @@
 // brick; the drivers (solvent_features_cpu.h, exact_ses_cpu.h) hand out the work and own all memory.
 #pragma once
 
+#include "parallel/working_thread.h"
 #include "surface/stages.h"
 
 namespace quickses {
@@ -23,9 +24,11 @@ struct AtomFeatures {
 // What is near one brick, in columns: atoms and arcs of the neighbour grids, by their places there.
 struct BrickScratch {
   static constexpr int kAtomColumns = 11, kArcColumns = 6;
+  static constexpr size_t kVertexBytes = size_t(68) << 10;  // more than the stack of a caller may have
   float *atom_memory;  // kAtomColumns columns of atom_capacity + 16 four-byte values
   float *arc_memory;   // kArcColumns columns of arc_capacity + 16
   int atom_capacity, arc_capacity;
+  void *vertex_memory;  // kVertexBytes for the vertices in the making, 64-byte aligned
 };
 
 // Numbers of candidates that did not fit; 0 when the kernel has done its work.

@@ -99,6 +99,7 @@ void sort_caps(const Columns &c, int n) {
   for (int w = 0; w <= n / 64; ++w) c.taken[w] = 0;
   for (int k = n; k < n + kPackSize; ++k) c.cosine[k] = 2.f;
   for (int j = 0; j < n; ++j) {
+    if (j % 64 == 0) look_for_stop();
     const Pack own(c.cosine[j]);
     int rank = 0;
     for (int q = 0; q < n; q += kPackSize) rank += popcount64(lane_bits(load_pack(c.cosine + q) < own));
@@ -118,6 +119,7 @@ void sort_caps(const Columns &c, int n) {
 int drop_contained_caps(const Columns &c, int n) {
   int kept = 0;
   for (int q = 0; q < n; q += kPackSize) {
+    if (q % 64 == 0) look_for_stop();
     const Vec3<Pack> axis(load_pack(c.sx + q), load_pack(c.sy + q), load_pack(c.sz + q));
     const Pack cosine = load_pack(c.scos + q), sine = load_pack(c.ssin + q);
     uint32_t keep = n - q < kPackSize ? (1u << (n - q)) - 1 : kAllLanes;
@@ -140,6 +142,7 @@ int drop_contained_caps(const Columns &c, int n) {
 bool cut_by_neighbors(const Circle &circle, const Columns &c, int n, int j, ExposedIntervals<Interval *> *intervals) {
   int cuts = 0;
   for (int q = 0; q < n; q += kPackSize) {
+    if (q % 64 == 0) look_for_stop();
     const Vec3<Pack> axis(load_pack(c.x + q), load_pack(c.y + q), load_pack(c.z + q));
     const HalfPlane<Pack> h = cut_circle(circle, axis, load_pack(c.cosine + q));
     uint32_t lanes = n - q < kPackSize ? (1u << (n - q)) - 1 : kAllLanes;
@@ -197,6 +200,7 @@ AtomFeatures find_atom_features(const NeighborGridView &atoms, const SurfacePara
 
   int64_t arc_count = 0;
   for (int j = 0; j < n; ++j) {
+    if (j % 16 == 0) look_for_stop();
     if (static_cast<uint32_t>(c.index[j]) < i) continue;  // the circle belongs to the other atom
     const Circle circle = make_circle(glm::vec3(c.x[j], c.y[j], c.z[j]), c.cosine[j], self.radius);
     ExposedIntervals<Interval *> intervals{c.intervals, scratch.capacity};

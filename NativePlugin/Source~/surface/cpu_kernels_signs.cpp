@@ -80,6 +80,7 @@ uint64_t leaf_inside(const FeatureView &f, const BrickCandidates &c, const Latti
   const Pack depth2(depth * depth);
   uint64_t result = 0;
   for (int g = 0; g < n; g += kPackSize) {
+    if (c.arc_count > kManyArcs) look_for_stop();
     const Vec3<Pack> p = load_points(px + g, py + g, pz + g);
     uint32_t lanes = n - g < kPackSize ? (1u << (n - g)) - 1 : kAllLanes;
     const PointBall ball = ball_around(p);

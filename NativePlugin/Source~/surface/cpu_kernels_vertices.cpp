@@ -3,6 +3,8 @@
 #include "surface/cpu_candidates.h"
 #include "surface/cpu_kernels_isa.h"
 
+#include <new>
+
 namespace quickses {
 namespace QSES_CPU_ISA {
 namespace {
@@ -119,6 +121,7 @@ struct Work {
   Points open;  // those whose radial projection is not exposed
   int32_t open_number[kMaxBrickVertices + kPackSize];
 };
+static_assert(sizeof(Work) <= BrickScratch::kVertexBytes, "the scratch of a thread has room for it");
 
 // Vertices on the convex part: projected radially on their deepest atom. The others are packed into w->open.
 int project_contact(const FeatureView &f, const BrickCandidates &c, float spacing, int n, Work *w) {
@@ -126,6 +129,7 @@ int project_contact(const FeatureView &f, const BrickCandidates &c, float spacin
   fill_up(&w->place, n);
   int open = 0;
   for (int g = 0; g < n; g += kPackSize) {
+    if (c.arc_count > kManyArcs) look_for_stop();
     const Vec3<Pack> p = load_points(w->place.x + g, w->place.y + g, w->place.z + g);
     const uint32_t used = n - g < kPackSize ? (1u << (n - g)) - 1 : kAllLanes;
     const PointBall ball = ball_around(p);
@@ -189,6 +193,7 @@ void project_reentrant(const FeatureView &f, const BrickCandidates &c, float spa
     fill_up(&w->open, open);
     int again = 0;
     for (int g = 0; g < open; g += kPackSize) {
+      if (c.arc_count > kManyArcs) look_for_stop();
       const Vec3<Pack> p = load_points(w->open.x + g, w->open.y + g, w->open.z + g);
       const PointBall ball = ball_around(p);
       const float reach = depth + (pass ? 1e-3f : kStartReach * spacing);
@@ -310,7 +315,7 @@ BrickNeeds emit_brick_vertices(const FeatureView &f, const BrickSet &bricks, con
   const BrickCandidates c = gather_candidates(f, low, 7.f * h + 2.f * overhang, kStartReach * h,
                                               f.parameters.depth + kStartReach * h, scratch);
   if (c.needs.atoms || c.needs.arcs) return c.needs;
-  Work w;
+  Work &w = *new (scratch.vertex_memory) Work;
   if (starts.moved) {
     for (int v = 0; v < n; ++v) {
       const glm::vec3 p = starts.moved[base + static_cast<uint32_t>(v)];

@@ -19,8 +19,9 @@ struct CandidatesOf<CpuExecutor> {
   static uint64_t whole_bytes(const SurfaceParameters &, const CandidateCounts &) { return 0; }
 };
 
-// Columns of one thread for what is near a brick. Grows when a brick needs more; kept between surfaces.
+// Memory of one thread for a brick: columns for what is near it, and its vertices. Grows when a brick needs more; kept between surfaces.
 struct BrickColumns {
+  alignas(64) unsigned char vertex_memory[BrickScratch::kVertexBytes];
   std::vector<float> atom_memory, arc_memory;
   int atom_capacity = 512, arc_capacity = 1024;
 
@@ -29,7 +30,7 @@ struct BrickColumns {
     const size_t arcs = BrickScratch::kArcColumns * (static_cast<size_t>(arc_capacity) + 16);
     if (atom_memory.size() < atoms) atom_memory.resize(atoms);
     if (arc_memory.size() < arcs) arc_memory.resize(arcs);
-    return {atom_memory.data(), arc_memory.data(), atom_capacity, arc_capacity};
+    return {atom_memory.data(), arc_memory.data(), atom_capacity, arc_capacity, vertex_memory};
   }
   uint64_t bytes() const { return sizeof(float) * (atom_memory.capacity() + arc_memory.capacity()); }
   // True if the brick must be done again.

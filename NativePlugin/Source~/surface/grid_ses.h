@@ -36,6 +36,10 @@ struct BallBricks {
     const Sphere atom = atoms.items[i];
     visit_bricks_of_shell(lattice, atom.center, 0.f, atom.radius, visit_brick);
   }
+  QSES_FN double fewest(size_t i) const {
+    const float radius = atoms.items[i].radius;
+    return atoms.items[i].center.x >= 0.5f * kFarAway ? 0.0 : fewest_bricks_of_ball(lattice, radius);
+  }
 };
 
 template <class Executor>
@@ -163,14 +167,22 @@ struct ClassifyBrick {
   }
 };
 
-// The classes of all bricks: 64 bytes per brick stay allocated. bricks and atoms must outlive the field.
+// Bytes per brick of a field.
+constexpr double kGridBrickBytes = kLeavesPerBrick * sizeof(uint64_t) + sizeof(uint16_t) + sizeof(BrickSide);
+
+// The classes of all bricks: kGridBrickBytes per brick stay allocated. bricks and atoms must outlive the field.
 template <class Executor>
 GridField classify_grid_points(Executor &executor, const NeighborGridView &atoms, const GridParameters &parameters,
                                const BrickSet &bricks) {
   Span<uint64_t> outside = executor.template allocate<uint64_t>(size_t(bricks.count) * kLeavesPerBrick);
   executor.template for_each_brick<ClassifyScratch>(bricks.count,
                                                     ClassifyBrick{atoms, bricks, parameters, outside.data, nullptr});
-  return {atoms, bricks, outside.data, parameters};
+  Span<uint16_t> along_x = executor.template allocate<uint16_t>(bricks.count);
+  Span<BrickSide> sides = executor.template allocate<BrickSide>(bricks.count);
+  const GridField field{atoms, bricks, outside.data, parameters, along_x.data, sides.data};
+  executor.for_each(bricks.count, FindOutsideAlongX{field, along_x.data});
+  executor.for_each(bricks.count, FindBrickSides{field, sides.data});
+  return field;
 }
 
 // ---- signs -----------------------------------------------------------------------------------------------------
@@ -182,15 +194,13 @@ struct EvaluateGridSigns {
   template <class Team>
   QSES_HOST_DEVICE void operator()(const Team &team, DistanceScratch<kBrickEdge> &scratch, size_t i) const {
     const uint32_t brick = first + static_cast<uint32_t>(i);
-    const uint64_t *outside = field.outside + static_cast<size_t>(brick) * kLeavesPerBrick;
     uint64_t *words = signs + static_cast<size_t>(brick) * kLeavesPerBrick;
-    uint64_t all_outside = ~uint64_t(0);
-    for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) all_outside &= outside[leaf];
-    const bool empty = all_outside == ~uint64_t(0);
-    if (!empty) find_distances<kBrickEdge>(field, brick, team, scratch);
+    const BrickSide side = field.sides[brick];
+    const bool open = side == BrickSide::kUndecided && !is_all_outside(brick);
+    if (open) find_distances<kBrickEdge>(field, brick, team, scratch, field.parameters.max_outside);
     for (int leaf = team.rank(); leaf < kLeavesPerBrick; leaf += team.size()) {
-      uint64_t word = 0;
-      for (int bit = 0; bit < 64 && !empty; ++bit) {
+      uint64_t word = side == BrickSide::kInside ? ~uint64_t(0) : 0;
+      for (int bit = 0; bit < 64 && open; ++bit) {
         const int x = (leaf & 1) * kLeafEdge + (bit & 3), y = (leaf >> 1 & 1) * kLeafEdge + (bit >> 2 & 3);
         const int z = (leaf >> 2) * kLeafEdge + (bit >> 4);
         const int32_t d2 = scratch.nearest[x + kBrickEdge * (y + kBrickEdge * z)];
@@ -199,6 +209,14 @@ struct EvaluateGridSigns {
       words[leaf] = word;
     }
     team.sync();
+  }
+
+ private:
+  QSES_FN bool is_all_outside(uint32_t brick) const {
+    uint64_t all = ~uint64_t(0);
+    for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf)
+      all &= field.outside[static_cast<size_t>(brick) * kLeavesPerBrick + static_cast<size_t>(leaf)];
+    return all == ~uint64_t(0);
   }
 };
 
@@ -244,7 +262,9 @@ struct EmitGridVertices {
   QSES_HOST_DEVICE void operator()(const Team &team, DistanceScratch<kCorners> &scratch, size_t i) const {
     const uint32_t brick = first + static_cast<uint32_t>(i);
     if (layout.vertex_base[brick] == layout.vertex_base[brick + 1]) return;
-    find_distances<kCorners>(field, brick, team, scratch);
+    // The inner end of an edge that changes sign is one step farther off at most.
+    const int32_t limit = field.parameters.max_outside + 2 * (field.parameters.reach + 1) + 1;
+    find_distances<kCorners>(field, brick, team, scratch, limit);
     const Lattice &lattice = field.bricks.lattice;
     const glm::ivec3 origin = lattice.first_point(lattice.brick_at(field.bricks.linear[brick]));
     for (int k = team.rank(); k < kAxes * kBrickPoints; k += team.size()) {

@@ -22,7 +22,7 @@ class MemoryPlan {
           f_.size.bricks * CandidatesOf<Executor>::emission_bytes(
                                k_.parameters, candidates(), f_.size.vertices / bricks(), f_.size.leaves / bricks()) +
           CandidatesOf<Executor>::kSpareBytes;
-    double level = brick_bytes() + (k_.exact ? 0 : 64 * f_.size.bricks) + std::max(making, component_bytes());
+    double level = brick_bytes() + (k_.exact ? 0 : kGridBrickBytes * f_.size.bricks) + std::max(making, component_bytes());
     if (Executor::kIsCuda) level += mesh_bytes();
     return std::max(peak, prepared + level + mask_bytes());
   }
@@ -40,7 +40,7 @@ class MemoryPlan {
       kept += 20 * arcs + 4 * static_cast<double>(f_.arc_cells);
       most = std::max(most, kept + 52 * arcs);
     } else {
-      kept += 64 * f_.size.bricks;
+      kept += kGridBrickBytes * f_.size.bricks;
     }
     double level = brick_bytes() + std::max(beside_mesh(), component_bytes()) + mask_bytes();
     if (Executor::kIsCuda)

@@ -5,11 +5,11 @@
 
 #include "parallel/cpu_executor.h"
 #include "parallel/growing_buffer.h"
+#include "parallel/sole_holder.h"
 #include "surface/components.h"
 #include "surface/mesh_arrays.h"
 #include "surface/run.h"
 
-#include <atomic>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -47,8 +47,7 @@ class AtomPool {
   std::shared_ptr<AtomSet> make(size_t count) {
     const std::lock_guard<std::mutex> lock(mutex_);
     for (const std::shared_ptr<Set> &set : sets_)
-      if (set.use_count() == 1) {
-        std::atomic_thread_fence(std::memory_order_acquire);  // whoever held it has read its last
+      if (is_sole_holder(set)) {
         set->resize(count);
         return set;
       }

@@ -7,6 +7,7 @@
 #include "surface/atoms.h"
 #include "surface/exact_surface.h"
 #include "surface/grid_surface.h"
+#include "surface/level_ladder.h"
 #include "surface/measure.h"
 #include "surface/memory_plan.h"
 #include "surface/mesh_memory.h"
@@ -60,9 +61,10 @@ class SurfacePipeline : public SurfaceEngine {
     }
   }
 
-  qses_size_estimate estimate(const AtomSet &atoms, const Appearance &appearance,
-                              const qses_settings &settings) override {
+  qses_size_estimate estimate(const AtomSet &atoms, const Appearance &appearance, const qses_settings &settings,
+                              const std::atomic<bool> &stop) override {
     const typename Executor::CallScope scope(executor_);
+    const typename Executor::StopScope stop_scope(executor_, stop);
     progress_.rest();
     executor_.arena().set_limit(limit_);
     qses_size_estimate out;
@@ -182,16 +184,6 @@ class SurfacePipeline : public SurfaceEngine {
   // The work of a level grows with the number of its lattice points at the surface.
   static double work_of(float spacing) { return 1.0 / (static_cast<double>(spacing) * static_cast<double>(spacing)); }
 
-  // All levels have their lattices anchored to the global origin if their spacings are whole multiples of each other;
-  // else only the finest has.
-  static float frame_spacing(Span<const float> spacings) {
-    for (float h : spacings) {
-      const float ratio = spacings[0] / h;
-      if (std::fabs(ratio - std::round(ratio)) > 1e-6f * ratio) return spacings[spacings.size - 1];
-    }
-    return spacings[0];
-  }
-
   Run<Executor, Timer> run_of(const Prepared &p, const qses_settings &settings, qses_report *report) {
     return {executor_,
             timer_,
@@ -235,7 +227,7 @@ class SurfacePipeline : public SurfaceEngine {
     p.parameters.max_radius = set.bounds.max_radius + p.parameters.probe;
 
     timer_.begin("neighbor_grid");
-    p.frame = center_lattice(set.bounds, frame_spacing(spacings));
+    p.frame = center_lattice(set.bounds, frame_spacing(ladder_of(settings)));
     p.low = to_centered(p.frame, set.bounds.low);
     p.high = to_centered(p.frame, set.bounds.high);
     p.appearance = {bring(appearance.visible.data(), appearance.visible.size()),

@@ -9,8 +9,8 @@
 
 namespace quickses {
 
-// Bricks that are counted without a thought.
-constexpr double kCheapBricks = 32768;
+// Bricks that are counted without a thought, and pairs of a brick and an arc that comes near it.
+constexpr double kCheapBricks = 32768, kCheapPairs = 64 * kCheapBricks;
 
 // Å² of surface per atom, if nothing else is known.
 constexpr double kUsualArea = 10;
@@ -68,6 +68,32 @@ inline SurfaceSize extrapolate(const SurfaceSize &fine, double fine_spacing, con
           at(fine.triangles, coarse.triangles, 1), at(fine.leaves, coarse.leaves, 1)};
 }
 
+// Bricks of one ball.
+inline double bricks_of_ball(double radius, double spacing) {
+  const double bricks = radius / (spacing * kBrickEdge);
+  return 4.0 / 3.0 * 3.14159265358979 * bricks * bricks * bricks;
+}
+
+// Pairs of a brick and an arc within whose reach it lies. The larger the probe, the more there are.
+template <class R>
+double guess_pairs(const R &run, double spacing) {
+  return static_cast<double>(run.facts->arcs) * bricks_of_ball(static_cast<double>(run.parameters.depth), spacing);
+}
+
+// Whether counting at a spacing takes next to no time. The grid method fills the inflated balls.
+template <class R>
+bool is_cheap_to_count(const R &run, double spacing) {
+  const double atoms = static_cast<double>(run.facts->atoms);
+  if (guess_bricks(atoms, kUsualArea * atoms, spacing) > kCheapBricks) return false;
+  if (run.settings.method != QSES_METHOD_GRID) return guess_pairs(run, spacing) <= kCheapPairs;
+  const double atoms_apart = atoms * bricks_of_ball(static_cast<double>(run.parameters.max_radius), spacing);
+  const double brick = spacing * kBrickEdge;
+  double box = 1;
+  for (int d = 0; d < 3; ++d)
+    box *= (static_cast<double>(run.high[d] - run.low[d]) + 2.0 * static_cast<double>(run.parameters.max_radius)) / brick;
+  return std::min(atoms_apart, box) <= kCheapBricks;
+}
+
 // Of the mesh at the spacing of the run.
 template <class R>
 SurfaceSize estimate_size(const R &wanted) {
@@ -80,13 +106,21 @@ SurfaceSize estimate_size(const R &wanted) {
     return count_size(run, entries);
   };
   double h = spacing;
-  const double atoms = static_cast<double>(wanted.facts->atoms);
-  while (guess_bricks(atoms, kUsualArea * atoms, h) > kCheapBricks && 2 * h < 2) h *= 2;
+  while (!is_cheap_to_count(wanted, h) && 2 * h < 2) h *= 2;
   if (h == spacing) return count_at(h, &wanted.facts->brick_entries);
   uint64_t unused = 0;
   const SurfaceSize fine = count_at(h, &unused), coarse = count_at(2 * h, &unused);
   wanted.facts->brick_entries = wanted.lattice.table_size() <= kMaxDenseCells ? wanted.lattice.table_size() : 0;
-  return extrapolate(fine, h, coarse, 2 * h, spacing);
+  SurfaceSize size = extrapolate(fine, h, coarse, 2 * h, spacing);
+  // Bricks of large probes fill space and follow no such line; to find them takes much less than their signs.
+  const uint64_t entries = wanted.lattice.table_size(), room = wanted.executor.arena().available();
+  if (wanted.settings.method != QSES_METHOD_GRID && guess_pairs(wanted, spacing) <= 64 * kCheapPairs &&
+      entries <= kMaxDenseCells && (kDenseEntryBytes + sizeof(uint64_t)) * entries <= room / 2) {
+    const auto mark = wanted.executor.arena().mark();
+    size.bricks = static_cast<double>(find_bricks(wanted.executor, wanted.features, wanted.lattice).count);
+    wanted.executor.arena().rewind(mark);
+  }
+  return size;
 }
 
 struct CountKeptCaps {

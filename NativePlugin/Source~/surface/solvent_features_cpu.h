@@ -4,6 +4,7 @@
 #pragma once
 
 #include "parallel/cpu_executor.h"
+#include "parallel/growing_buffer.h"
 #include "surface/cpu_kernels.h"
 
 namespace quickses {
@@ -51,8 +52,7 @@ struct FeaturePool {
   Span<Cap> caps;
   Span<Arc> arcs;
   std::atomic<size_t> cap_count{0}, arc_count{0};
-  std::vector<Cap> own_caps;
-  std::vector<Arc> own_arcs;
+  GrowingBuffer<HostMemory> own_caps, own_arcs;
 
   void open(Span<Cap> cap_room, Span<Arc> arc_room) {
     caps = cap_room;
@@ -63,11 +63,11 @@ struct FeaturePool {
   void open_own(size_t cap_room, size_t arc_room) {
     cap_room = std::max(cap_room, cap_count + cap_count / 16);
     arc_room = std::max(arc_room, arc_count + arc_count / 16);
-    if (own_caps.size() < cap_room) own_caps.resize(cap_room + cap_room / 4);
-    if (own_arcs.size() < arc_room) own_arcs.resize(arc_room + arc_room / 4);
-    open({own_caps.data(), own_caps.size()}, {own_arcs.data(), own_arcs.size()});
+    Cap *const cap_place = static_cast<Cap *>(own_caps.reserve(cap_room * sizeof(Cap)));
+    Arc *const arc_place = static_cast<Arc *>(own_arcs.reserve(arc_room * sizeof(Arc)));
+    open({cap_place, own_caps.size() / sizeof(Cap)}, {arc_place, own_arcs.size() / sizeof(Arc)});
   }
-  uint64_t bytes() const { return sizeof(Cap) * own_caps.capacity() + sizeof(Arc) * own_arcs.capacity(); }
+  uint64_t bytes() const { return own_caps.size() + own_arcs.size(); }
   bool holds_all() const { return cap_count <= caps.size && arc_count <= arcs.size; }
 };
 

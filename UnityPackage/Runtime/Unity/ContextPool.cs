@@ -134,6 +134,8 @@ namespace QuickSes
         public void ReleaseAll()
         {
             foreach (ContextSlot slot in _slots)
+                slot.Cancel(); // all at once, so that they end together
+            foreach (ContextSlot slot in _slots)
             {
                 slot.User?.LoseContext();
                 slot.Dispose();

@@ -75,6 +75,13 @@ namespace QuickSes
             _isReady = true;
         }
 
+        /// <summary>Ends its job, if there is one, as soon as it can; does not wait.</summary>
+        public void Cancel()
+        {
+            if (_isReady)
+                Context?.Cancel();
+        }
+
         public void DisposeInBackground() => ThreadPool.UnsafeQueueUserWorkItem(s_dispose, this);
 
         /// <summary>Frees the context; waits for it to be made first.</summary>

@@ -40,7 +40,8 @@ namespace QuickSes
             public QuickSesError Error;
         }
 
-        private const int LongestWait = 5000; // ms
+        private const int LongestWait = 5000; // ms, before a domain is unloaded
+        private const int LongestPause = 50; // ms, in the middle of a game
 
         // Those whose threads have not left yet. Guarded by itself.
         private static readonly List<FramePrefetcher> s_alive = new List<FramePrefetcher>();
@@ -155,13 +156,14 @@ namespace QuickSes
         }
 
         /// <summary>
-        /// Sends the thread away and waits until it has left, which takes as long as reading one frame. While a file is
-        /// being opened, which may take long, it does not wait: the thread leaves by itself later.
+        /// Sends the thread away and waits until it has left, which takes as long as reading one frame, but for 50 ms at
+        /// most. While a file is being opened, which may take long, it does not wait. A thread that was not waited for
+        /// leaves by itself later.
         /// </summary>
         public void Dispose()
         {
             if (SendAway() != FrameState.Pending)
-                _thread.Join(LongestWait);
+                _thread.Join(LongestPause);
         }
 
         // How opening stands.

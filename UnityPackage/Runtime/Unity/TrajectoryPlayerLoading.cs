@@ -92,7 +92,7 @@ namespace QuickSes
 
         /// <summary>
         /// Closes structure and trajectory; the surface keeps what it shows. Waits for the frame that is being read,
-        /// but not for a trajectory that is being opened. Disabling the component does the same.
+        /// for 50 ms at most, but not for a trajectory that is being opened. Disabling the component does the same.
         /// </summary>
         public void Unload()
         {

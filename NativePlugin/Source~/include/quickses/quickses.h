@@ -29,6 +29,8 @@
  *   The mesh is a closed, consistently oriented 2-manifold for every input; it has no NaN; every owner index is valid.
  *   The same input, back end and settings give the same bytes, also with a slice size or a memory budget. (The CPU back
  *   end rounds differently on processors without AVX2 and FMA; qses_backend_info names the instruction set in use.)
+ *   qses_compute gives the bytes that a job with the same settings ends with. The rounding mode of the calling thread,
+ *   and how it treats denormal numbers, change nothing, and are left as they are.
  *
  * Errors
  *   Every function that can fail returns a qses_status. qses_last_error() then holds a sentence that names what is
@@ -39,6 +41,9 @@
  *   A context may be used by one thread at a time, but for qses_poll and qses_cancel, which may be called from any
  *   thread while another one uses the context. Different contexts are independent of each other. Functions without a
  *   context may be called from any thread at any time; structures and trajectories have rules of their own, below.
+ *   Calls that compute look at least every 20 ms whether qses_cancel was called, as a rule; on a GPU, between kernels.
+ *   A stack of 64 KiB suffices for every call on the CPU. Where the machine refuses threads, a context makes do with
+ *   those there are, down to the calling thread.
  */
 #ifndef QUICKSES_QUICKSES_H
 #define QUICKSES_QUICKSES_H
@@ -241,7 +246,9 @@ typedef struct qses_settings {
   float levels[QSES_MAX_LEVELS]; /* Å; for qses_begin: coarser spacings whose surfaces come before that of `spacing`, each
                            a complete closed mesh on the true surface. Falling; those not above spacing are left out.
                            Default 2, 1. The lattices of all levels are anchored to the global origin if the spacings
-                           are whole multiples of each other (else only the finest is) */
+                           divide the coarsest one without rest (else only the finest is). The levels are part of the
+                           frame of reference, also for qses_compute, which computes none of them: with other levels
+                           the surface of `spacing` differs by what float32 rounds */
   uint32_t level_count; /* of levels; default 2 */
   qses_vertex_layout vertex_layout; /* default SEPARATE */
   uint32_t texcoords;               /* 1: vertices have texture coordinates (see qses_set_texcoords); default 0 */
@@ -307,7 +314,8 @@ QSES_API void qses_mesh_init(qses_mesh *mesh);
 /* Computes the surface of the context's atoms and waits for it. settings may be NULL (defaults); mesh may be NULL if
  * only qses_get_report is wanted, or the mesh later from qses_get_mesh.
  * Errors: INVALID_ARGUMENT (settings out of range: the message names the field), TOO_FINE, OUT_OF_MEMORY (the message
- * says how much was needed), DEVICE_ERROR, INTERNAL_ERROR, NO_RESULT (qses_set_atoms has not been called). */
+ * says how much was needed), DEVICE_ERROR, INTERNAL_ERROR, NO_RESULT (qses_set_atoms has not been called), CANCELLED (by
+ * qses_cancel from another thread). */
 QSES_API qses_status qses_compute(qses_context *context, const qses_settings *settings, qses_mesh *mesh);
 
 /* The mesh of the last qses_compute or qses_collect that succeeded. Errors: INVALID_ARGUMENT, NO_RESULT. */
@@ -424,8 +432,8 @@ QSES_API qses_status qses_poll(const qses_context *context, qses_progress *progr
 QSES_API qses_status qses_collect(qses_context *context, qses_mesh *mesh);
 
 /* Ends the job that runs as soon as it can (levels finished before stay collectable) and drops the one that waits.
- * Returns at once; from any thread at any time before qses_destroy. Also ends a qses_compute, which then returns
- * CANCELLED. Errors: INVALID_ARGUMENT. */
+ * Returns at once; from any thread at any time before qses_destroy. Also ends a qses_compute or qses_estimate, which
+ * then returns CANCELLED. Errors: INVALID_ARGUMENT. */
 QSES_API qses_status qses_cancel(qses_context *context);
 
 /* Waits until no job runs or waits, or for the given time (negative: without limit). OK either way; *finished, which may
