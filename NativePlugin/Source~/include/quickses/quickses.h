@@ -179,7 +179,7 @@ QSES_API qses_status qses_context_info(const qses_context *context, qses_backend
 /* Gives the context its atoms. Everything is copied before the call returns.
  *   positions  count positions of three floats x, y, z in Å, each stride bytes after the one before;
  *              stride 0 means tightly packed (12 bytes); else a multiple of 4, at least 12
- *   radii      count van der Waals radii in Å, from 0 (excluded) to 100
+ *   radii      count van der Waals radii in Å, above 0 and at most 100
  *   count      number of atoms; 0 is allowed and gives an empty mesh
  * Two atoms at the same place count as the larger of them (of equals, as the first). An atom inside another one owns
  * no vertex.
