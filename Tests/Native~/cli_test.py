@@ -146,6 +146,31 @@ class Errors(ProgramTest):
             self.write("cut.pdb.gz", packed[:size])
             self.assert_fails(INPUT, ["cut.pdb.gz", "cut off"], "cut.pdb.gz", "-o", "a.obj")
 
+    def test_input_is_larger_than_allowed(self):
+        text = CRAMBIN.read_bytes()
+        self.write("a.pdb", text)
+        self.write("a.pdb.gz", gzip.compress(text))
+        for name in ("a.pdb", "a.pdb.gz"):
+            self.run_cpu(name, "-v", "2", "--max-input", len(text))
+            self.assert_fails(INPUT, [name, "--max-input", f"{len(text) - 1} bytes"], name, "-o", "a.obj", "--max-input",
+                              len(text) - 1)
+        self.assert_fails(INPUT, ["a.pdb"], "bench", "a.pdb", "--max-input", "1K")
+        self.assert_fails(USAGE, ["--max-input", "much"], "a.pdb", "--max-input", "much")
+
+    def test_a_small_gzip_holds_very_much(self):
+        member = gzip.compress(bytes(64 << 20))
+        self.write("bomb.pdb.gz", 5 * member)
+        self.assert_fails(INPUT, ["bomb.pdb.gz", "256 MiB", "--max-input"], "bomb.pdb.gz", "-o", "a.obj")
+
+    @unittest.skipIf(os.environ.get("QUICKSES_TEST_SYSTEM") == "Windows" or os.name == "nt", "no such devices")
+    def test_devices_and_pipes(self):
+        self.assert_fails(INPUT, ["/dev/zero", "8 MiB"], "/dev/zero", "-o", "a.obj", "--max-input", "8M")
+        self.assert_fails(INPUT, ["/dev/null", "empty"], "/dev/null")
+        for text in (CRAMBIN.read_bytes(), gzip.compress(CRAMBIN.read_bytes())):
+            result = subprocess.run([PROGRAM, "/dev/stdin", "--backend", "cpu"], input=text, capture_output=True)
+            self.assertEqual(result.returncode, OK, result.stderr)
+            self.assertIn(b"327 atoms", result.stdout)
+
     def test_input_has_a_broken_record(self):
         text = CRAMBIN.read_text().splitlines()
         line = next(i for i, record in enumerate(text) if record.startswith("ATOM"))
@@ -366,7 +391,7 @@ class Output(ProgramTest):
         text = self.run_program("--help").stdout
         for part in ("-i,", "-o,", "-v,", "-l,", "-s,", "--probe", "--surface", "--method", "--backend", "--device",
                      "--threads", "--memory", "--radii", "--no-water", "--no-hetero", "--no-hydrogen", "--select",
-                     "--model", "--json", "--quiet", "--version", "bench", "Exit codes"):
+                     "--model", "--max-input", "--json", "--quiet", "--version", "bench", "Exit codes"):
             self.assertIn(part, text)
         self.assertRegex(self.run_program("--version").stdout, r"^quickses \d+\.\d+\.\d+\S*\n$")
 

@@ -9,11 +9,13 @@
 #include "cli/options.h"
 #include "cli/processes.h"
 #include "cli/utf8.h"
+#include "io/file_bytes.h"
 
 namespace quickses::cli {
 namespace {
 
 void run_command(const Options &options, Processes &processes) {
+  io::set_input_limit(options.max_input);
   if (options.command == Options::Command::kSurface && !options.trajectory.empty()) {
     run_trajectory(options, processes);
   } else if (processes.is_first()) {  // nothing to share

@@ -100,6 +100,17 @@ void add_count(CLI::App *app, const char *flags, const char *shown, unsigned &va
       ->type_name("N");
 }
 
+void add_size(CLI::App *app, const char *flag, uint64_t &value, const char *help) {
+  app->add_option_function<std::string>(
+         flag,
+         [&value, flag](const std::string &text) {
+           if (!parse_size(text, value))
+             throw Failure(kUsage, std::string(flag) + ": '" + text + "' is no size such as 512M or 2G");
+         },
+         help)
+      ->type_name("SIZE");
+}
+
 void add_compute_options(CLI::App *app, ComputeOptions &options, int &device) {
   add_number(app, "-v,--spacing", "--spacing (-v)", options.spacing, 0.001, 100,
              "Distance of lattice points (voxel size)");
@@ -121,14 +132,8 @@ void add_compute_options(CLI::App *app, ComputeOptions &options, int &device) {
          "CUDA device; default 0")
       ->type_name("N");
   add_count(app, "--threads", "--threads", options.threads, 1, 4096, "CPU threads; default: all there are");
-  app->add_option_function<std::string>(
-         "--memory",
-         [&options](const std::string &text) {
-           if (!parse_size(text, options.memory))
-             throw Failure(kUsage, "--memory: '" + text + "' is no size such as 512M or 2G");
-         },
-         "Bound of the memory for the work, on the device or in the machine: 512M, 2G (K, M, G: powers of 1024)")
-      ->type_name("SIZE");
+  add_size(app, "--memory", options.memory,
+           "Bound of the memory for the work, on the device or in the machine: 512M, 2G (K, M, G: powers of 1024)");
   app->add_option_function<std::string>(
          "--radii",
          [&options](const std::string &text) {
@@ -182,7 +187,9 @@ void add_trajectory_options(CLI::App &app, Options &options) {
             "Frames in flight at a time; default: one per thread, with CUDA at most 8");
 }
 
-void add_report_options(CLI::App *app, Options &options) {
+void add_file_options(CLI::App *app, Options &options) {
+  add_size(app, "--max-input", options.max_input,
+           "Bound of what is taken into memory of each input, unpacked; default 4G, of gzip data 100 times its size");
   app->add_option("--json", options.json, "Report as JSON; - for standard output")->type_name("FILE|-");
   app->add_flag("--quiet", options.quiet, "Print nothing but errors");
 }
@@ -290,7 +297,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
   add_surface_options(app, options);
   add_compute_options(&app, options.compute, device);
   add_trajectory_options(app, options);
-  add_report_options(&app, options);
+  add_file_options(&app, options);
 
   CLI::App *bench = app.add_subcommand("bench", "Time warm calls: median ms from atoms in memory to mesh in memory");
   bench->footer(kFooter);
@@ -302,7 +309,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
       "--jobs", options.jobs,
       "Time jobs instead: begin, cancel, destroy, the first level, and all levels against the finest alone");
   add_compute_options(bench, options.compute, device);
-  add_report_options(bench, options);
+  add_file_options(bench, options);
 
   try {
     app.parse(argc, argv);
