@@ -8,6 +8,8 @@
 #include "cli/exit_code.h"
 #include "cli/options.h"
 #include "cli/processes.h"
+#include "cli/stopping.h"
+#include "cli/text_output.h"
 #include "cli/utf8.h"
 #include "io/file_bytes.h"
 
@@ -22,13 +24,14 @@ void run_command(const Options &options, Processes &processes) {
     if (options.command == Options::Command::kSurface) run_surface(options);
     if (options.command == Options::Command::kBench) run_bench(options);
   }
-  if (std::fflush(stdout) != 0) throw Failure(kOutputUnwritable, "standard output can't be written");
+  flush_standard_output();
 }
 
 // What all processes say alike is said by the first.
 int run(int argc, char **argv) {
   std::unique_ptr<Processes> processes;
   try {
+    prepare_for_stopping();
     use_utf8(&argc, &argv);
     processes = start_processes(&argc, &argv);
     std::ostream nowhere(nullptr);
