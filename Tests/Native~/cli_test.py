@@ -146,31 +146,6 @@ class Errors(ProgramTest):
             self.write("cut.pdb.gz", packed[:size])
             self.assert_fails(INPUT, ["cut.pdb.gz", "cut off"], "cut.pdb.gz", "-o", "a.obj")
 
-    def test_input_is_larger_than_allowed(self):
-        text = CRAMBIN.read_bytes()
-        self.write("a.pdb", text)
-        self.write("a.pdb.gz", gzip.compress(text))
-        for name in ("a.pdb", "a.pdb.gz"):
-            self.run_cpu(name, "-v", "2", "--max-input", len(text))
-            self.assert_fails(INPUT, [name, "--max-input", f"{len(text) - 1} bytes"], name, "-o", "a.obj", "--max-input",
-                              len(text) - 1)
-        self.assert_fails(INPUT, ["a.pdb"], "bench", "a.pdb", "--max-input", "1K")
-        self.assert_fails(USAGE, ["--max-input", "much"], "a.pdb", "--max-input", "much")
-
-    def test_a_small_gzip_holds_very_much(self):
-        member = gzip.compress(bytes(64 << 20))
-        self.write("bomb.pdb.gz", 5 * member)
-        self.assert_fails(INPUT, ["bomb.pdb.gz", "256 MiB", "--max-input"], "bomb.pdb.gz", "-o", "a.obj")
-
-    @unittest.skipIf(os.environ.get("QUICKSES_TEST_SYSTEM") == "Windows" or os.name == "nt", "no such devices")
-    def test_devices_and_pipes(self):
-        self.assert_fails(INPUT, ["/dev/zero", "8 MiB"], "/dev/zero", "-o", "a.obj", "--max-input", "8M")
-        self.assert_fails(INPUT, ["/dev/null", "empty"], "/dev/null")
-        for text in (CRAMBIN.read_bytes(), gzip.compress(CRAMBIN.read_bytes())):
-            result = subprocess.run([PROGRAM, "/dev/stdin", "--backend", "cpu"], input=text, capture_output=True)
-            self.assertEqual(result.returncode, OK, result.stderr)
-            self.assertIn(b"327 atoms", result.stdout)
-
     def test_input_has_a_broken_record(self):
         text = CRAMBIN.read_text().splitlines()
         line = next(i for i, record in enumerate(text) if record.startswith("ATOM"))
@@ -205,15 +180,6 @@ class Errors(ProgramTest):
         self.addCleanup(folder.chmod, 0o700)
         self.assert_fails(OUTPUT, ["protected/a.obj"], CRAMBIN, "-o", "protected/a.obj")
 
-    @unittest.skipUnless(os.path.exists("/dev/full") and os.environ.get("QUICKSES_TEST_SYSTEM") != "Windows",
-                         "there is no device that is always full")
-    def test_disk_is_full(self):
-        (self.folder / "full.obj").symlink_to("/dev/full")
-        self.assert_fails(OUTPUT, ["full.obj", "space"], CRAMBIN, "-o", "full.obj", "--quiet")
-        with open("/dev/full", "w") as full:
-            result = subprocess.run([PROGRAM, str(CRAMBIN), "--json", "-"], stdout=full, stderr=subprocess.PIPE)
-        self.assertEqual(result.returncode, OUTPUT)
-
     def test_spacing_is_out_of_range(self):
         for value in ("0", "-1", "nan", "inf", "abc", "1e9"):
             self.assert_fails(USAGE, ["--spacing", value], CRAMBIN, "-v", value)
@@ -231,9 +197,6 @@ class Errors(ProgramTest):
         self.assert_fails(USAGE, ["input"])
         self.assert_fails(USAGE, ["-o"], CRAMBIN, "-o")
         self.assert_fails(USAGE, ["--device", "cpu"], CRAMBIN, "--device", "0", "--backend", "cpu")
-        self.assert_fails(USAGE, ["--json"], CRAMBIN, "-o", "a.obj", "--json", "a.obj")
-        self.write("bench.pdb", CRAMBIN.read_bytes())
-        self.assert_fails(USAGE, ["--json", "bench.pdb"], "bench.pdb", "--json", "bench.pdb")
         self.assert_fails(USAGE, ["bench"], "bench")
 
     def test_the_grid_method_has_one_surface(self):
@@ -257,12 +220,6 @@ class Errors(ProgramTest):
     def test_the_spacing_is_too_fine_for_the_budget(self):
         self.assert_fails(COMPUTE, ["memory", "spacing"], CRAMBIN, "-o", "a.obj", "--backend", "cpu", "-v", "0.02",
                           "--memory", "4M")
-
-    def test_bench_does_not_write_over_its_input(self):
-        shutil.copy(CRAMBIN, os.path.join(self.folder, "in.pdb"))
-        self.assert_fails(USAGE, ["--json", "inputs"], "bench", "in.pdb", "--repeat", "1", "--json", "in.pdb")
-        with open(CRAMBIN, "rb") as a, open(os.path.join(self.folder, "in.pdb"), "rb") as b:
-            self.assertEqual(a.read(), b.read())
 
     def test_grid_makes_the_ses_only(self):
         self.assert_fails(USAGE, ["--method grid", "--surface"], CRAMBIN, "--method", "grid", "--surface", "sas")

@@ -5,13 +5,12 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <functional>
 #include <map>
 
 #include "cli/exit_code.h"
 #include "cli/output_pattern.h"
-#include "io/file_path.h"
+#include "cli/used_files.h"
 #include "io/mesh_writer.h"
 #include "io/text.h"
 
@@ -194,11 +193,6 @@ void add_file_options(CLI::App *app, Options &options) {
   app->add_flag("--quiet", options.quiet, "Print nothing but errors");
 }
 
-bool is_same_file(const std::string &a, const std::string &b) {
-  std::error_code error;
-  return a == b || std::filesystem::equivalent(io::path_of(a), io::path_of(b), error);
-}
-
 // given: whether a flag was on the command line.
 void check_trajectory(const Options &options, const std::function<bool(const char *)> &given) {
   if (options.trajectory.empty()) {
@@ -213,21 +207,7 @@ void check_trajectory(const Options &options, const std::function<bool(const cha
     throw Failure(kUsage, "--model all: with --trajectory, the atoms are those of one model");
   if (options.csv == "-" && options.json == "-")
     throw Failure(kUsage, "--csv and --json can't both go to standard output");
-  if (!options.csv.empty() && is_same_file(options.csv, options.json) && options.csv != "-")
-    throw Failure(kUsage, "--csv: '" + options.csv + "' is the file of --json as well");
-  for (const auto &[flag, file] : {std::pair("--csv", options.csv), std::pair("--json", options.json)})
-    for (const std::string &input : {options.input, options.trajectory})
-      if (!file.empty() && is_same_file(file, input))
-        throw Failure(kUsage, std::string(flag) + ": '" + file + "' is one of the inputs");
-  if (options.output.empty()) return;
-  OutputPattern check(options.output);  // throws if it is none
-  const auto whole = [](const std::string &path) {
-    return io::utf8_of(std::filesystem::absolute(io::path_of(path)).lexically_normal());
-  };
-  const OutputPattern meshes(whole(options.output));
-  for (const auto &[flag, file] : {std::pair("--csv", options.csv), std::pair("--json", options.json)})
-    if (!file.empty() && file != "-" && meshes.matches(whole(file)))
-      throw Failure(kUsage, std::string(flag) + ": '" + file + "' is the name of a frame's mesh, by --output (-o)");
+  if (!options.output.empty()) OutputPattern check(options.output);  // throws if it is none
 }
 
 void check(const Options &options, const std::function<bool(const char *)> &given) {
@@ -238,17 +218,11 @@ void check(const Options &options, const std::function<bool(const char *)> &give
   if (options.command == Options::Command::kBench) {
     if (options.inputs.empty()) throw Failure(kUsage, "bench: no input file was given");
     if (options.jobs && options.small > 0) throw Failure(kUsage, "--jobs and --small: one at a time");
-    for (const std::string &input : options.inputs)
-      if (!options.json.empty() && is_same_file(options.json, input))
-        throw Failure(kUsage, "--json: '" + options.json + "' is one of the inputs");
+    UsedFiles check(options);
     return;
   }
   if (options.input.empty()) throw Failure(kUsage, "no input file was given; see quickses --help");
-  if (is_same_file(options.json, options.input))
-    throw Failure(kUsage, "--json: '" + options.json + "' is the input itself");
   check_trajectory(options, given);
-  if (!options.json.empty() && is_same_file(options.json, options.output))
-    throw Failure(kUsage, "--json: '" + options.json + "' is the output of --output (-o) as well");
   if (!options.output.empty()) {
     try {
       io::mesh_format_of(options.output);
@@ -256,6 +230,7 @@ void check(const Options &options, const std::function<bool(const char *)> &give
       throw Failure(kUsage, std::string("--output (-o): ") + error.what());
     }
   }
+  UsedFiles check(options);
 }
 
 }  // namespace

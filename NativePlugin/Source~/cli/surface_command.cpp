@@ -13,6 +13,7 @@
 #include "cli/progress.h"
 #include "cli/report.h"
 #include "cli/text_output.h"
+#include "cli/used_files.h"
 #include "io/atomic_file.h"
 #include "io/file_path.h"
 #include "io/radii.h"
@@ -55,6 +56,10 @@ void run_surface(const Options &options) {
   if (!options.json.empty()) qses_enable_stage_times(engine.context(), 1);
 
   const bool all_models = options.read.model == 0;
+  if (all_models && !options.output.empty()) {
+    const UsedFiles files(options);
+    for (const io::Structure &structure : file.models) files.check_mesh(output_of_model(options, structure.model));
+  }
   std::string reports;
   for (const io::Structure &structure : file.models) {
     Options model_options = options;
