@@ -29,7 +29,7 @@ const char kFooter[] =
     "  1  wrong usage: an unknown flag, a value out of range, an unknown extension of the output\n"
     "  2  an input file can't be read, or has no atoms (after the filters)\n"
     "  3  an output file can't be written\n"
-    "  4  computing failed: memory, the device, a spacing too fine for either\n"
+    "  4  computing failed: memory, the device, a spacing too fine for either, a mesh that is not closed\n"
     "  5  the back end asked for can't be used here\n"
     "  6  some frames of a trajectory failed; the others are done\n"
     "\n"

@@ -74,11 +74,9 @@ void run_surface(const Options &options) {
       mesh = engine.compute(settings);
     }
     const qses_report report = engine.report();
-    if (!options.output.empty()) {
-      const auto write_start = Clock::now();
-      write_surface(model_options.output, mesh, structure);
-      timings.write = ms_since(write_start);
-    }
+    const auto write_start = Clock::now();
+    accept_surface(model_options.output, mesh, structure);
+    timings.write = ms_since(write_start);
     if (!options.json.empty()) {
       const Json json = surface_json(model_options, structure, engine, mesh, find_components(mesh), report, timings,
                                      predicted ? &*predicted : nullptr);
