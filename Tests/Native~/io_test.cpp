@@ -317,6 +317,16 @@ TEST_F(IoTest, ResidueNumbersBelowZeroAndBeyondAllBounds) {
   EXPECT_HAS(input_error(write("b.cif", cif("9999999999", "1"))), "residue number");
 }
 
+TEST_F(IoTest, MessagesQuoteNothingThatSteersATerminal) {
+  const std::string message = input_error(write("a.xyzr", "1 2 \x1b[2J\x07\x7fx 1\n"));
+  EXPECT_HAS(message, "'?[2J??x'");
+  const std::string letters = input_error(write("b.xyzr", "1 2 \u00c5\u00c5 1\n"));
+  EXPECT_HAS(letters, "'\u00c5\u00c5'");
+  std::string many;
+  for (int i = 0; i < 100000; ++i) many += "\u00c5";
+  EXPECT_LE(input_error(write("c.xyzr", "1 2 " + many + " 1\n")).size(), 8000u);
+}
+
 TEST_F(IoTest, FormatIsFoundInTheContentWhereTheNameTellsNothing) {
   EXPECT_EQ(only_model(write("1abc.pdb1", pdb_atom(" N  ", ' ', "GLY", 'A', 1, 1, "N"))).atoms.size(), 1u);
   const std::string cif = std::string("# comment\n") + kCifHead + "ATOM 10 C CA . GLY A 1 1 1 2 3 1 10 27 X 1\n";
