@@ -111,8 +111,9 @@ struct ChosenBricks {
   size_t size() const { return chosen->size(); }
   template <class Visit>
   void visit(size_t i, const Visit &visit_brick) const {
-    visit_brick((*chosen)[i]);
+    visit_brick((*chosen)[i], uint64_t(1));
   }
+  double fewest(size_t) const { return 1; }
 };
 
 // box: bricks of the lattice along each axis; a large one makes the set sparse.

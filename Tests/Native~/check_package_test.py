@@ -76,7 +76,8 @@ class CheckPackageTest(unittest.TestCase):
                  "UnityPackage/Runtime/Core.meta": meta(4, "DefaultImporter", folder=True),
                  "UnityPackage/Runtime/Core/QuickSes.Core.asmdef": b"{}",
                  "UnityPackage/Runtime/Core/QuickSes.Core.asmdef.meta": meta(5, "AssemblyDefinitionImporter")}
-        for number, name in enumerate(("README.md", "CHANGELOG.md", "LICENSE.md", "Third Party Notices.md"), 6):
+        documents = ("README.md", "CHANGELOG.md", "LICENSE.md", "SECURITY.md", "Third Party Notices.md")
+        for number, name in enumerate(documents, 6):
             files[name] = b"text\n"
             files[name + ".meta"] = meta(number, "TextScriptImporter")
         if self.dll:

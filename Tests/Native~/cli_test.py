@@ -180,15 +180,6 @@ class Errors(ProgramTest):
         self.addCleanup(folder.chmod, 0o700)
         self.assert_fails(OUTPUT, ["protected/a.obj"], CRAMBIN, "-o", "protected/a.obj")
 
-    @unittest.skipUnless(os.path.exists("/dev/full") and os.environ.get("QUICKSES_TEST_SYSTEM") != "Windows",
-                         "there is no device that is always full")
-    def test_disk_is_full(self):
-        (self.folder / "full.obj").symlink_to("/dev/full")
-        self.assert_fails(OUTPUT, ["full.obj", "space"], CRAMBIN, "-o", "full.obj", "--quiet")
-        with open("/dev/full", "w") as full:
-            result = subprocess.run([PROGRAM, str(CRAMBIN), "--json", "-"], stdout=full, stderr=subprocess.PIPE)
-        self.assertEqual(result.returncode, OUTPUT)
-
     def test_spacing_is_out_of_range(self):
         for value in ("0", "-1", "nan", "inf", "abc", "1e9"):
             self.assert_fails(USAGE, ["--spacing", value], CRAMBIN, "-v", value)
@@ -206,9 +197,6 @@ class Errors(ProgramTest):
         self.assert_fails(USAGE, ["input"])
         self.assert_fails(USAGE, ["-o"], CRAMBIN, "-o")
         self.assert_fails(USAGE, ["--device", "cpu"], CRAMBIN, "--device", "0", "--backend", "cpu")
-        self.assert_fails(USAGE, ["--json"], CRAMBIN, "-o", "a.obj", "--json", "a.obj")
-        self.write("bench.pdb", CRAMBIN.read_bytes())
-        self.assert_fails(USAGE, ["--json", "bench.pdb"], "bench.pdb", "--json", "bench.pdb")
         self.assert_fails(USAGE, ["bench"], "bench")
 
     def test_the_grid_method_has_one_surface(self):
@@ -232,12 +220,6 @@ class Errors(ProgramTest):
     def test_the_spacing_is_too_fine_for_the_budget(self):
         self.assert_fails(COMPUTE, ["memory", "spacing"], CRAMBIN, "-o", "a.obj", "--backend", "cpu", "-v", "0.02",
                           "--memory", "4M")
-
-    def test_bench_does_not_write_over_its_input(self):
-        shutil.copy(CRAMBIN, os.path.join(self.folder, "in.pdb"))
-        self.assert_fails(USAGE, ["--json", "inputs"], "bench", "in.pdb", "--repeat", "1", "--json", "in.pdb")
-        with open(CRAMBIN, "rb") as a, open(os.path.join(self.folder, "in.pdb"), "rb") as b:
-            self.assertEqual(a.read(), b.read())
 
     def test_grid_makes_the_ses_only(self):
         self.assert_fails(USAGE, ["--method grid", "--surface"], CRAMBIN, "--method", "grid", "--surface", "sas")
@@ -366,7 +348,7 @@ class Output(ProgramTest):
         text = self.run_program("--help").stdout
         for part in ("-i,", "-o,", "-v,", "-l,", "-s,", "--probe", "--surface", "--method", "--backend", "--device",
                      "--threads", "--memory", "--radii", "--no-water", "--no-hetero", "--no-hydrogen", "--select",
-                     "--model", "--json", "--quiet", "--version", "bench", "Exit codes"):
+                     "--model", "--max-input", "--json", "--quiet", "--version", "bench", "Exit codes"):
             self.assertIn(part, text)
         self.assertRegex(self.run_program("--version").stdout, r"^quickses \d+\.\d+\.\d+\S*\n$")
 

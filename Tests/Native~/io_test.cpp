@@ -302,6 +302,31 @@ TEST_F(IoTest, BadMmcifIsRefused) {
              "no number");
 }
 
+TEST_F(IoTest, ResidueNumbersBelowZeroAndBeyondAllBounds) {
+  const std::string pdb =
+      pdb_atom(" N  ", ' ', "GLY", 'A', -7, 1, "N") + pdb_atom(" C  ", ' ', "GLY", 'A', -998, 2, "C");
+  EXPECT_EQ(only_model(write("a.pdb", pdb)).atoms.at(0).residue_number, -7);
+  EXPECT_EQ(only_model(write("a.pdb", pdb)).atoms.at(1).residue_number, -998);  // -999 is no number to gemmi
+  const auto cif = [](const std::string &label, const std::string &author) {
+    return std::string(kCifHead) + "ATOM 10 C CA . GLY A 1 " + label + " 1 2 3 1 10 " + author + " X 1\n";
+  };
+  EXPECT_EQ(only_model(write("a.cif", cif("1", "-999999999"))).atoms.at(0).residue_number, -999999999);
+  for (const char *number : {"9999999999", "-99999999999", "99999999999999999999A"})
+    EXPECT_HAS(input_error(write("b.cif", cif("1", number))),
+               "atom 1 of _atom_site: the residue number '" + std::string(number));
+  EXPECT_HAS(input_error(write("b.cif", cif("9999999999", "1"))), "residue number");
+}
+
+TEST_F(IoTest, MessagesQuoteNothingThatSteersATerminal) {
+  const std::string message = input_error(write("a.xyzr", "1 2 \x1b[2J\x07\x7fx 1\n"));
+  EXPECT_HAS(message, "'?[2J??x'");
+  const std::string letters = input_error(write("b.xyzr", "1 2 \u00c5\u00c5 1\n"));
+  EXPECT_HAS(letters, "'\u00c5\u00c5'");
+  std::string many;
+  for (int i = 0; i < 100000; ++i) many += "\u00c5";
+  EXPECT_LE(input_error(write("c.xyzr", "1 2 " + many + " 1\n")).size(), 8000u);
+}
+
 TEST_F(IoTest, FormatIsFoundInTheContentWhereTheNameTellsNothing) {
   EXPECT_EQ(only_model(write("1abc.pdb1", pdb_atom(" N  ", ' ', "GLY", 'A', 1, 1, "N"))).atoms.size(), 1u);
   const std::string cif = std::string("# comment\n") + kCifHead + "ATOM 10 C CA . GLY A 1 1 1 2 3 1 10 27 X 1\n";

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The C API: structures from files and from memory.
 #include "capi/structs.h"
+#include "io/file_bytes.h"
 #include "io/radii.h"
 #include "io/structure.h"
 #include "quickses/quickses.h"
@@ -107,6 +108,8 @@ void open_structure(const Read &read, const qses_read_options *options, qses_str
 }  // namespace
 
 extern "C" {
+
+void qses_set_input_limit(uint64_t bytes) { io::set_input_limit(bytes); }
 
 void qses_read_options_init(qses_read_options *options) {
   if (!options) return;

@@ -121,7 +121,7 @@ void run_bench(const Options &options) {
     structures.push_back(entry);
     if (!options.quiet && options.json != "-") {
       std::printf("%s: %zu atoms, %s\n", options.inputs[i].c_str(), structure.atoms.size(), text.c_str());
-      std::fflush(stdout);
+      flush_standard_output();
     }
   }
   if (options.json.empty()) return;

@@ -130,12 +130,10 @@ void FrameWorker::fill(const FrameTask &task, FrameResult &result) {
   const qses_mesh mesh = compute();
   const qses_report report = engine_.report();
   Options frame_options = options;
-  if (inputs_.pattern) {
-    frame_options.output = inputs_.pattern->name(task.frame);
-    const auto write_start = Clock::now();
-    write_surface(frame_options.output, mesh, inputs_.structure());
-    timings.write = ms_since(write_start);
-  }
+  if (inputs_.pattern) frame_options.output = inputs_.pattern->name(task.frame);
+  const auto write_start = Clock::now();
+  accept_surface(frame_options.output, mesh, inputs_.structure());
+  timings.write = ms_since(write_start);
   if (options.csv.empty() && options.json.empty()) return;
   const std::vector<Component> components = find_components(mesh);
   if (!options.csv.empty()) result.csv = csv_row(task.frame, time, report, components);

@@ -8,25 +8,30 @@
 #include "cli/exit_code.h"
 #include "cli/options.h"
 #include "cli/processes.h"
+#include "cli/stopping.h"
+#include "cli/text_output.h"
 #include "cli/utf8.h"
+#include "io/file_bytes.h"
 
 namespace quickses::cli {
 namespace {
 
 void run_command(const Options &options, Processes &processes) {
+  io::set_input_limit(options.max_input);
   if (options.command == Options::Command::kSurface && !options.trajectory.empty()) {
     run_trajectory(options, processes);
   } else if (processes.is_first()) {  // nothing to share
     if (options.command == Options::Command::kSurface) run_surface(options);
     if (options.command == Options::Command::kBench) run_bench(options);
   }
-  if (std::fflush(stdout) != 0) throw Failure(kOutputUnwritable, "standard output can't be written");
+  flush_standard_output();
 }
 
 // What all processes say alike is said by the first.
 int run(int argc, char **argv) {
   std::unique_ptr<Processes> processes;
   try {
+    prepare_for_stopping();
     use_utf8(&argc, &argv);
     processes = start_processes(&argc, &argv);
     std::ostream nowhere(nullptr);

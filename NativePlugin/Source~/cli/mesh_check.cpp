@@ -1,39 +1,83 @@
 // SPDX-License-Identifier: MIT
-// Facts about a mesh that the report states, found from its triangles alone.
+// Facts about a mesh, found from its triangles alone.
 #include "cli/mesh_check.h"
 
 #include "io/disjoint_sets.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
 #include <numeric>
 
 namespace quickses::cli {
-bool is_closed(const qses_mesh &mesh) {
-  const size_t edge_count = size_t(mesh.triangle_count) * 3;
-  for (size_t i = 0; i < edge_count; ++i)
-    if (mesh.indices[i] >= mesh.vertex_count) return false;
-  // The ends of the edges that leave each vertex, side by side.
-  std::vector<size_t> begin(size_t(mesh.vertex_count) + 1, 0);
-  for (size_t i = 0; i < edge_count; ++i) ++begin[mesh.indices[i] + 1];
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  std::vector<uint32_t> ends(edge_count);
-  std::vector<size_t> next(begin.begin(), begin.end() - 1);
-  for (size_t i = 0; i < edge_count; ++i) {
-    const uint32_t end = mesh.indices[i % 3 == 2 ? i - 2 : i + 1];
-    ends[next[mesh.indices[i]]++] = end;
+namespace {
+
+// Calls action(from, to) for each edge of each triangle.
+template <class Action>
+void for_each_edge(const qses_mesh &mesh, const Action &action) {
+  const uint32_t *corner = mesh.indices;
+  for (size_t t = 0; t < mesh.triangle_count; ++t, corner += 3) {
+    action(corner[0], corner[1]);
+    action(corner[1], corner[2]);
+    action(corner[2], corner[0]);
   }
-  for (uint32_t v = 0; v < mesh.vertex_count; ++v) {
-    const auto first = ends.begin() + begin[v], last = ends.begin() + begin[v + 1];
-    std::sort(first, last);
-    if (std::adjacent_find(first, last) != last) return false;
+}
+
+// True if two lists hold the same numbers, and none twice. Puts them in order where they are long.
+bool are_same_and_unique(uint32_t *a, uint32_t *b, size_t count) {
+  constexpr size_t kFew = 8;
+  if (count > kFew) {
+    std::sort(a, a + count);
+    std::sort(b, b + count);
+    return std::adjacent_find(a, a + count) == a + count && std::equal(a, a + count, b);
   }
-  for (uint32_t v = 0; v < mesh.vertex_count; ++v)
-    for (size_t i = begin[v]; i < begin[v + 1]; ++i) {
-      const uint32_t end = ends[i];
-      if (end == v || !std::binary_search(ends.begin() + begin[end], ends.begin() + begin[end + 1], v)) return false;
+  for (size_t i = 0; i < count; ++i) {
+    int in_a = 0, in_b = 0;
+    for (size_t j = 0; j < count; ++j) {
+      in_a += a[j] == a[i];
+      in_b += b[j] == a[i];
     }
+    if (in_a != 1 || in_b != 1) return false;
+  }
   return true;
+}
+
+// Offset: a type that can count the edges.
+template <class Offset>
+bool is_closed_with(const qses_mesh &mesh) {
+  const uint32_t vertex_count = mesh.vertex_count;
+  // Each edge goes to the lower one of its vertices. Of those of a vertex, the other ends of the edges that leave it
+  // fill its part of one array from the front, those of the edges that come in from the back.
+  std::vector<Offset> begin(size_t(vertex_count) + 1, 0);
+  bool has_edges = true;
+  for_each_edge(mesh, [&](uint32_t from, uint32_t to) {
+    has_edges = has_edges && from < vertex_count && to < vertex_count && from != to;
+    if (has_edges) ++begin[std::min(from, to)];
+  });
+  if (!has_edges) return false;
+  std::exclusive_scan(begin.begin(), begin.end(), begin.begin(), Offset{0});
+  std::vector<Offset> front(begin.begin(), begin.end() - 1), back(begin.begin() + 1, begin.end());
+  const std::unique_ptr<uint32_t[]> ends(new uint32_t[begin.back()]);
+  for_each_edge(mesh, [&](uint32_t from, uint32_t to) {
+    if (from < to)
+      ends[front[from]++] = to;
+    else
+      ends[--back[to]] = from;
+  });
+  for (size_t v = 0; v < vertex_count; ++v) {
+    const size_t leaving = front[v] - begin[v], coming = begin[v + 1] - front[v];
+    if (leaving != coming) return false;
+    if (!are_same_and_unique(ends.get() + begin[v], ends.get() + front[v], leaving)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+bool is_closed(const qses_mesh &mesh) {
+  const bool is_small = mesh.triangle_count <= std::numeric_limits<uint32_t>::max() / 3;
+  return is_small ? is_closed_with<uint32_t>(mesh) : is_closed_with<size_t>(mesh);
 }
 
 std::vector<Component> find_components(const qses_mesh &mesh) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Facts about a mesh that the report states, found from its triangles alone.
+// Facts about a mesh, found from its triangles alone.
 #pragma once
 
 #include <cstdint>

@@ -9,7 +9,9 @@
 
 namespace quickses::cli {
 
-// Owners are written as places in the structure's file. Throws io::Error (output).
-void write_surface(const std::string &path, const qses_mesh &mesh, const io::Structure &structure);
+// Takes the surface of all atoms of a structure for good, and writes it, with owners as places in the structure's file;
+// an empty path: writes nothing. Throws Failure (kComputingFailed) before anything is written if the mesh is not
+// closed, which that surface always should be; io::Error (output).
+void accept_surface(const std::string &path, const qses_mesh &mesh, const io::Structure &structure);
 
 }  // namespace quickses::cli

@@ -5,13 +5,12 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <functional>
 #include <map>
 
 #include "cli/exit_code.h"
 #include "cli/output_pattern.h"
-#include "io/file_path.h"
+#include "cli/used_files.h"
 #include "io/mesh_writer.h"
 #include "io/text.h"
 
@@ -30,7 +29,7 @@ const char kFooter[] =
     "  1  wrong usage: an unknown flag, a value out of range, an unknown extension of the output\n"
     "  2  an input file can't be read, or has no atoms (after the filters)\n"
     "  3  an output file can't be written\n"
-    "  4  computing failed: memory, the device, a spacing too fine for either\n"
+    "  4  computing failed: memory, the device, a spacing too fine for either, a mesh that is not closed\n"
     "  5  the back end asked for can't be used here\n"
     "  6  some frames of a trajectory failed; the others are done\n"
     "\n"
@@ -100,6 +99,17 @@ void add_count(CLI::App *app, const char *flags, const char *shown, unsigned &va
       ->type_name("N");
 }
 
+void add_size(CLI::App *app, const char *flag, uint64_t &value, const char *help) {
+  app->add_option_function<std::string>(
+         flag,
+         [&value, flag](const std::string &text) {
+           if (!parse_size(text, value))
+             throw Failure(kUsage, std::string(flag) + ": '" + text + "' is no size such as 512M or 2G");
+         },
+         help)
+      ->type_name("SIZE");
+}
+
 void add_compute_options(CLI::App *app, ComputeOptions &options, int &device) {
   add_number(app, "-v,--spacing", "--spacing (-v)", options.spacing, 0.001, 100,
              "Distance of lattice points (voxel size)");
@@ -121,14 +131,8 @@ void add_compute_options(CLI::App *app, ComputeOptions &options, int &device) {
          "CUDA device; default 0")
       ->type_name("N");
   add_count(app, "--threads", "--threads", options.threads, 1, 4096, "CPU threads; default: all there are");
-  app->add_option_function<std::string>(
-         "--memory",
-         [&options](const std::string &text) {
-           if (!parse_size(text, options.memory))
-             throw Failure(kUsage, "--memory: '" + text + "' is no size such as 512M or 2G");
-         },
-         "Bound of the memory for the work, on the device or in the machine: 512M, 2G (K, M, G: powers of 1024)")
-      ->type_name("SIZE");
+  add_size(app, "--memory", options.memory,
+           "Bound of the memory for the work, on the device or in the machine: 512M, 2G (K, M, G: powers of 1024)");
   app->add_option_function<std::string>(
          "--radii",
          [&options](const std::string &text) {
@@ -182,14 +186,11 @@ void add_trajectory_options(CLI::App &app, Options &options) {
             "Frames in flight at a time; default: one per thread, with CUDA at most 8");
 }
 
-void add_report_options(CLI::App *app, Options &options) {
+void add_file_options(CLI::App *app, Options &options) {
+  add_size(app, "--max-input", options.max_input,
+           "Bound of what is taken into memory of each input, unpacked; default 4G, of gzip data 100 times its size");
   app->add_option("--json", options.json, "Report as JSON; - for standard output")->type_name("FILE|-");
   app->add_flag("--quiet", options.quiet, "Print nothing but errors");
-}
-
-bool is_same_file(const std::string &a, const std::string &b) {
-  std::error_code error;
-  return a == b || std::filesystem::equivalent(io::path_of(a), io::path_of(b), error);
 }
 
 // given: whether a flag was on the command line.
@@ -206,21 +207,7 @@ void check_trajectory(const Options &options, const std::function<bool(const cha
     throw Failure(kUsage, "--model all: with --trajectory, the atoms are those of one model");
   if (options.csv == "-" && options.json == "-")
     throw Failure(kUsage, "--csv and --json can't both go to standard output");
-  if (!options.csv.empty() && is_same_file(options.csv, options.json) && options.csv != "-")
-    throw Failure(kUsage, "--csv: '" + options.csv + "' is the file of --json as well");
-  for (const auto &[flag, file] : {std::pair("--csv", options.csv), std::pair("--json", options.json)})
-    for (const std::string &input : {options.input, options.trajectory})
-      if (!file.empty() && is_same_file(file, input))
-        throw Failure(kUsage, std::string(flag) + ": '" + file + "' is one of the inputs");
-  if (options.output.empty()) return;
-  OutputPattern check(options.output);  // throws if it is none
-  const auto whole = [](const std::string &path) {
-    return io::utf8_of(std::filesystem::absolute(io::path_of(path)).lexically_normal());
-  };
-  const OutputPattern meshes(whole(options.output));
-  for (const auto &[flag, file] : {std::pair("--csv", options.csv), std::pair("--json", options.json)})
-    if (!file.empty() && file != "-" && meshes.matches(whole(file)))
-      throw Failure(kUsage, std::string(flag) + ": '" + file + "' is the name of a frame's mesh, by --output (-o)");
+  if (!options.output.empty()) OutputPattern check(options.output);  // throws if it is none
 }
 
 void check(const Options &options, const std::function<bool(const char *)> &given) {
@@ -231,17 +218,11 @@ void check(const Options &options, const std::function<bool(const char *)> &give
   if (options.command == Options::Command::kBench) {
     if (options.inputs.empty()) throw Failure(kUsage, "bench: no input file was given");
     if (options.jobs && options.small > 0) throw Failure(kUsage, "--jobs and --small: one at a time");
-    for (const std::string &input : options.inputs)
-      if (!options.json.empty() && is_same_file(options.json, input))
-        throw Failure(kUsage, "--json: '" + options.json + "' is one of the inputs");
+    UsedFiles check(options);
     return;
   }
   if (options.input.empty()) throw Failure(kUsage, "no input file was given; see quickses --help");
-  if (is_same_file(options.json, options.input))
-    throw Failure(kUsage, "--json: '" + options.json + "' is the input itself");
   check_trajectory(options, given);
-  if (!options.json.empty() && is_same_file(options.json, options.output))
-    throw Failure(kUsage, "--json: '" + options.json + "' is the output of --output (-o) as well");
   if (!options.output.empty()) {
     try {
       io::mesh_format_of(options.output);
@@ -249,6 +230,7 @@ void check(const Options &options, const std::function<bool(const char *)> &give
       throw Failure(kUsage, std::string("--output (-o): ") + error.what());
     }
   }
+  UsedFiles check(options);
 }
 
 }  // namespace
@@ -290,7 +272,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
   add_surface_options(app, options);
   add_compute_options(&app, options.compute, device);
   add_trajectory_options(app, options);
-  add_report_options(&app, options);
+  add_file_options(&app, options);
 
   CLI::App *bench = app.add_subcommand("bench", "Time warm calls: median ms from atoms in memory to mesh in memory");
   bench->footer(kFooter);
@@ -302,7 +284,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
       "--jobs", options.jobs,
       "Time jobs instead: begin, cancel, destroy, the first level, and all levels against the finest alone");
   add_compute_options(bench, options.compute, device);
-  add_report_options(bench, options);
+  add_file_options(bench, options);
 
   try {
     app.parse(argc, argv);

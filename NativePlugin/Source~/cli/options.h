@@ -44,6 +44,7 @@ struct Options {
   FrameRange frames;                // of the trajectory
   bool unwrap = false;              // molecules in one piece
   unsigned workers = 0;             // frames in flight; 0 = chosen by the program
+  uint64_t max_input = 0;           // bytes of an input in memory; 0 = the library's default
   std::string csv;                  // a file, "-" for standard output, empty: no table
   std::string json;                 // a file, "-" for standard output, empty: no report
   bool quiet = false;

@@ -50,17 +50,4 @@ std::string OutputPattern::name(size_t frame) const {
   return before_ + number + after_;
 }
 
-bool OutputPattern::matches(const std::string &text) const {
-  if (text.size() <= before_.size() + after_.size() || text.compare(0, before_.size(), before_) != 0) return false;
-  const std::string middle = text.substr(before_.size(), text.size() - before_.size() - after_.size());
-  const size_t digits = middle.find_first_not_of(' ');
-  if (digits == std::string::npos || middle.size() - digits > kMaxWidth) return false;
-  size_t frame = 0;
-  for (char c : middle.substr(digits)) {
-    if (!is_digit(c)) return false;
-    frame = 10 * frame + static_cast<size_t>(c - '0');
-  }
-  return name(frame) == text;
-}
-
 }  // namespace quickses::cli

@@ -14,8 +14,6 @@ class OutputPattern {
   explicit OutputPattern(const std::string &text);
 
   std::string name(size_t frame) const;
-  // True if it is the name of some frame.
-  bool matches(const std::string &name) const;
 
  private:
   std::string before_, after_;

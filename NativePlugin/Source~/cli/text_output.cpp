@@ -9,13 +9,13 @@
 #include "cli/exit_code.h"
 
 namespace quickses::cli {
-namespace {
 
-[[noreturn]] void fail_standard_output() {
-  throw Failure(kOutputUnwritable, std::string("standard output can't be written: ") + std::strerror(errno));
+void flush_standard_output() {
+  const bool was_written = std::ferror(stdout) == 0;  // an error is kept, its reason isn't
+  if (std::fflush(stdout) != 0)
+    throw Failure(kOutputUnwritable, std::string("standard output can't be written: ") + std::strerror(errno));
+  if (!was_written) throw Failure(kOutputUnwritable, "standard output can't be written");
 }
-
-}  // namespace
 
 TextOutput::TextOutput(const std::string &path) : to_standard_output_(path == "-") {
   if (!path.empty() && !to_standard_output_) file_ = std::make_unique<io::AtomicFile>(path);
@@ -23,12 +23,12 @@ TextOutput::TextOutput(const std::string &path) : to_standard_output_(path == "-
 
 void TextOutput::write(const std::string &text) {
   if (file_) file_->write(text);
-  if (to_standard_output_ && std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) fail_standard_output();
+  if (to_standard_output_ && std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) flush_standard_output();
 }
 
 void TextOutput::finish() {
   if (file_) file_->commit();
-  if (to_standard_output_ && std::fflush(stdout) != 0) fail_standard_output();
+  if (to_standard_output_) flush_standard_output();
 }
 
 }  // namespace quickses::cli

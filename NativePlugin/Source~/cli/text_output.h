@@ -23,6 +23,9 @@ class TextOutput {
   std::unique_ptr<io::AtomicFile> file_;
 };
 
+// Throws Failure (output) if something of what was printed so far could not be written.
+void flush_standard_output();
+
 inline void write_text(const std::string &path, const std::string &text) {
   TextOutput output(path);
   output.write(text);

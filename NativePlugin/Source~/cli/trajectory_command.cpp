@@ -12,6 +12,7 @@
 #include "cli/frame_worker.h"
 #include "cli/progress.h"
 #include "cli/text_output.h"
+#include "cli/used_files.h"
 
 namespace quickses::cli {
 namespace {
@@ -106,7 +107,7 @@ class Run {
         frames_(options.frames.select(inputs_.trajectory.frame_count(), options.trajectory)),
         share_(divide(inputs_.options, processes, frames_.count)) {
     if (processes.is_first()) {
-      if (inputs_.pattern) io::check_writable(inputs_.pattern->name(frames_.first));
+      if (inputs_.pattern) check_meshes();
       writer_ = std::make_unique<ResultWriter>(inputs_.options, frames_.count);
     }
     for (unsigned k = 0; k < share_.workers; ++k)
@@ -142,6 +143,13 @@ class Run {
   }
 
  private:
+  void check_meshes() const {
+    const UsedFiles files(inputs_.options);
+    for (size_t place = 0; place < frames_.count; ++place)
+      files.check_mesh(inputs_.pattern->name(frames_.frame(place)));
+    io::check_writable(inputs_.pattern->name(frames_.first));
+  }
+
   void finish(FrameLedger &ledger, uint64_t all_workers) {
     ledger.finish();
     const double seconds = writer_->progress().seconds(), rate = writer_->progress().frames_per_second();

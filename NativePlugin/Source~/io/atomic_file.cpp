@@ -2,15 +2,24 @@
 // Files that appear under their name only when they are complete.
 #include "io/atomic_file.h"
 
-#include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <mutex>
+#include <set>
 #include <system_error>
 
 #if defined(_WIN32)
+#ifndef NOMINMAX
+#define NOMINMAX
+#endif
+#include <fcntl.h>
+#include <io.h>
 #include <process.h>
+#include <windows.h>
 #define QSES_PROCESS_ID _getpid()
 #else
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #define QSES_PROCESS_ID getpid()
 #endif
@@ -23,39 +32,116 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path temporary_name(const fs::path &target) {
-  static std::atomic<unsigned> counter{0};
-  const std::string name = "." + utf8_of(target.filename()) + "." + std::to_string(QSES_PROCESS_ID) + "." +
-                           std::to_string(counter++) + ".tmp";
-  return target.parent_path() / path_of(name);
+// Temporary files that are neither renamed nor removed yet.
+struct Unfinished {
+  std::mutex mutex;
+  std::set<fs::path> names;
+  unsigned counter = 0;
+};
+
+Unfinished &unfinished() {
+  static Unfinished &all = *new Unfinished;  // never destroyed: a process may be stopped while it ends
+  return all;
 }
+
+#if defined(_WIN32)
+
+// Null with errno set if it can't be made, EEXIST if there is such a file. It may be removed while it is open.
+std::FILE *create_new(const fs::path &name, const fs::path &) {
+  const HANDLE handle = CreateFileW(name.c_str(), GENERIC_WRITE, FILE_SHARE_READ | FILE_SHARE_DELETE, nullptr,
+                                    CREATE_NEW, FILE_ATTRIBUTE_NORMAL, nullptr);
+  if (handle == INVALID_HANDLE_VALUE) {
+    const DWORD code = GetLastError();
+    errno = code == ERROR_FILE_EXISTS            ? EEXIST
+            : code == ERROR_PATH_NOT_FOUND       ? ENOENT
+            : code == ERROR_DISK_FULL            ? ENOSPC
+            : code == ERROR_FILENAME_EXCED_RANGE ? ENAMETOOLONG
+                                                 : EACCES;
+    return nullptr;
+  }
+  const int descriptor = _open_osfhandle(reinterpret_cast<intptr_t>(handle), _O_BINARY);
+  std::FILE *const file = descriptor < 0 ? nullptr : _fdopen(descriptor, "wb");
+  if (!file && descriptor < 0) CloseHandle(handle);
+  if (!file && descriptor >= 0) _close(descriptor);
+  return file;
+}
+
+#else
+
+// Null with errno set if it can't be made, EEXIST if there is such a file. It has the rights of `like` if that exists,
+// else those of new files, and from the beginning no others.
+std::FILE *create_new(const fs::path &name, const fs::path &like) {
+  struct stat old;
+  const bool replaces = ::stat(like.c_str(), &old) == 0;
+  const int descriptor = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, replaces ? 0600 : 0666);
+  if (descriptor < 0) return nullptr;
+  if (replaces) {
+    mode_t rights = old.st_mode & 0777;
+    // Only root may give files away; where not even the group can be kept, another one gets none of its rights.
+    if (::fchown(descriptor, old.st_uid, old.st_gid) != 0 &&
+        ::fchown(descriptor, static_cast<uid_t>(-1), old.st_gid) != 0)
+      rights &= 0707;
+    ::fchmod(descriptor, rights);  // file systems without rights refuse: nothing to fail for
+  }
+  std::FILE *const file = ::fdopen(descriptor, "wb");
+  if (!file) {
+    const int error_number = errno;
+    ::close(descriptor);
+    ::unlink(name.c_str());
+    errno = error_number;
+  }
+  return file;
+}
+
+#endif
 
 }  // namespace
 
 AtomicFile::AtomicFile(const std::string &path) : path_(path), target_(path_of(path)), buffer_(kBufferSize) {
   std::error_code error;
-  // A link stays a link: what it points to is replaced.
-  if (fs::is_symlink(target_, error)) {
-    const fs::path resolved = fs::weakly_canonical(target_, error);
-    if (!error) target_ = resolved;
-  }
   const fs::file_status status = fs::status(target_, error);
+  if (!fs::status_known(status)) fail_output("'" + path_ + "' can't be written: " + error.message());
   if (fs::is_directory(status)) fail_output("'" + path_ + "' is a directory: it can't be written as a file");
+  bool replace = !fs::exists(status) || fs::is_regular_file(status);
+  // A link stays a link: what it points to is replaced, if it has a name (what /dev/stdout points to may have none).
+  if (replace && fs::is_symlink(target_, error)) {
+    const fs::path place = place_of(target_);
+    replace = !fs::exists(status) || fs::equivalent(place, target_, error);
+    if (replace) target_ = place;
+  }
   const fs::path folder = target_.parent_path();
   if (!folder.empty() && !fs::is_directory(folder, error))
     fail_output("'" + path_ + "' can't be written: there is no folder '" + utf8_of(folder) + "'");
-  const bool replace = !fs::exists(status) || fs::is_regular_file(status);
 #if !defined(_WIN32)
   // Renaming would replace a file that is write-protected: ask first, as writing to it would.
   if (replace && fs::exists(status) && access(target_.c_str(), W_OK) != 0) fail(errno);
 #endif
-  if (replace) temporary_ = temporary_name(target_);
-  file_ = open_stdio(replace ? temporary_ : target_, "wb");
-  if (!file_) {
-    temporary_.clear();
-    fail(errno);
-  }
+  if (replace)
+    create_temporary();
+  else
+    file_ = open_stdio(target_, "wb");
+  if (!file_) fail(errno);
   std::setvbuf(file_, nullptr, _IONBF, 0);  // buffer_ is the buffer
+}
+
+// Its name has nothing of the target's, which may be as long as names can be.
+void AtomicFile::create_temporary() {
+  Unfinished &all = unfinished();
+  const std::lock_guard<std::mutex> lock(all.mutex);
+  constexpr int kMostTries = 1000;  // names are left of killed processes, or in use on another machine
+  for (int i = 0; i < kMostTries; ++i) {
+    const std::string name =
+        ".quickses-" + std::to_string(QSES_PROCESS_ID) + "-" + std::to_string(all.counter++) + ".tmp";
+    temporary_ = target_.parent_path() / path_of(name);
+    const auto entry = all.names.insert(temporary_).first;
+    file_ = create_new(temporary_, target_);
+    if (file_) return;
+    const int error_number = errno;
+    all.names.erase(entry);
+    temporary_.clear();
+    errno = error_number;
+    if (error_number != EEXIST) return;
+  }
 }
 
 AtomicFile::~AtomicFile() { close_and_remove(); }
@@ -63,8 +149,12 @@ AtomicFile::~AtomicFile() { close_and_remove(); }
 void AtomicFile::close_and_remove() {
   if (file_) std::fclose(file_);
   file_ = nullptr;
+  if (temporary_.empty()) return;
+  Unfinished &all = unfinished();
+  const std::lock_guard<std::mutex> lock(all.mutex);
   std::error_code error;
-  if (!temporary_.empty()) fs::remove(temporary_, error);
+  fs::remove(temporary_, error);
+  all.names.erase(temporary_);
   temporary_.clear();
 }
 
@@ -102,11 +192,21 @@ void AtomicFile::commit() {
     close_and_remove();
     fail_output("'" + path_ + "' can't be written: " + error.message());
   }
+  Unfinished &all = unfinished();
+  const std::lock_guard<std::mutex> lock(all.mutex);
+  all.names.erase(temporary_);
   temporary_.clear();
 }
 
 void check_writable(const std::string &path) {
   AtomicFile probe(path);  // never committed: its temporary file goes with it
+}
+
+void abandon_files() {
+  Unfinished &all = unfinished();
+  all.mutex.lock();  // for good
+  std::error_code error;
+  for (const fs::path &name : all.names) fs::remove(name, error);
 }
 
 }  // namespace quickses::io

@@ -9,9 +9,10 @@
 
 namespace quickses::io {
 
-// Buffered output that goes to a temporary name in the folder of the target. commit() renames it over the target;
-// without it the destructor removes it, and whatever the target was before stays as it was. Devices and pipes
-// (/dev/stdout) are written directly. All but the destructor throw Error (kOutput), naming the target.
+// Buffered output that goes to a temporary name in the folder of the target. commit() renames it over the target, with
+// the rights that the target had; without it the destructor removes it, and whatever the target was before stays as it
+// was. Devices and pipes (/dev/stdout) are written directly. All but the destructor throw Error (kOutput), naming the
+// target.
 class AtomicFile {
  public:
   explicit AtomicFile(const std::string &path);
@@ -32,6 +33,7 @@ class AtomicFile {
   static constexpr size_t kBufferSize = 1 << 20;
 
  private:
+  void create_temporary();
   void flush();
   [[noreturn]] void fail(int error_number);
   void close_and_remove();
@@ -46,5 +48,9 @@ class AtomicFile {
 
 // Throws Error (kOutput) if AtomicFile could not write there: asks the file system itself, leaves nothing behind.
 void check_writable(const std::string &path);
+
+// For a process that is about to be ended: removes the temporary files of all AtomicFiles. No more can be made, nor can
+// those there are fail or be destroyed: whoever tries, waits for the end.
+void abandon_files();
 
 }  // namespace quickses::io

@@ -84,6 +84,8 @@ class FileSource : public ByteSource {
   }
 
   std::string take_all() override {
+    const uint64_t limit = input_limit();
+    if (size() > limit) fail_too_large(name(), limit);
     std::string bytes(static_cast<size_t>(size()), '\0');
     read(0, &bytes[0], bytes.size());
     return bytes;

@@ -30,7 +30,7 @@ class ByteSource {
   // As read; the bytes where they lie, or a copy of them in scratch. Nothing is allocated for a range that isn't there.
   virtual const unsigned char *view(uint64_t offset, size_t count, std::vector<unsigned char> &scratch) const = 0;
 
-  // All the bytes; the source is of no use afterwards.
+  // All the bytes; the source is of no use afterwards. Throws Error (kInput) as read_file_bytes: more than the limit.
   virtual std::string take_all() = 0;
 
  protected:

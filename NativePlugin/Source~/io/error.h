@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace quickses::io {
 
@@ -13,9 +14,22 @@ enum class ErrorKind {
   kOutput,  // a file can't be written
 };
 
+// Text of a file may be part of a message: it must not steer a terminal, nor fill it.
+inline std::string printable(std::string message) {
+  constexpr size_t kMostBytes = 8000;  // two of the longest paths there are still fit in
+  if (message.size() > kMostBytes) {
+    message.resize(kMostBytes);
+    while ((static_cast<unsigned char>(message.back()) & 0xc0) == 0x80) message.pop_back();  // of a cut letter
+    message.back() = '?';
+  }
+  for (char &c : message)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  return message;
+}
+
 class Error : public std::runtime_error {
  public:
-  Error(ErrorKind kind, const std::string &message) : std::runtime_error(message), kind_(kind) {}
+  Error(ErrorKind kind, std::string message) : std::runtime_error(printable(std::move(message))), kind_(kind) {}
   ErrorKind kind() const { return kind_; }
 
  private:

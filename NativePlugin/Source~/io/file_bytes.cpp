@@ -5,11 +5,13 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <string_view>
 #include <system_error>
 
 #include "io/error.h"
@@ -20,6 +22,39 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr uint64_t kMiB = 1 << 20;
+constexpr uint64_t kDefaultLimit = 4096 * kMiB;
+constexpr uint64_t kUnpackedToPacked = 100;       // deflate gets to 1032; files of atoms to 20 or so
+constexpr uint64_t kAlwaysUnpacked = 256 * kMiB;  // what repeats itself packs better, but does little harm up to here
+
+std::atomic<uint64_t> chosen_limit{0};  // 0: the default
+
+uint64_t unpacking_limit(size_t packed_size) {
+  const uint64_t chosen = chosen_limit;
+  if (chosen != 0) return chosen;
+  return std::min(kDefaultLimit, std::max(kAlwaysUnpacked, kUnpackedToPacked * packed_size));
+}
+
+// False, and nothing done, beyond the limit. Room for more doubles as long as that stays within it.
+bool append_within(uint64_t limit, const char *data, size_t count, std::string &bytes) {
+  if (count > limit - bytes.size()) return false;
+  const size_t needed = bytes.size() + count;
+  if (needed > bytes.capacity())
+    bytes.reserve(std::max(needed, static_cast<size_t>(std::min<uint64_t>(2 * uint64_t{bytes.capacity()}, limit))));
+  bytes.append(data, count);
+  return true;
+}
+
+[[noreturn]] void fail_above_limit(const std::string &name, const char *verb, uint64_t limit) {
+  char size[32];
+  if (limit < kMiB)
+    std::snprintf(size, sizeof size, "%llu bytes", static_cast<unsigned long long>(limit));
+  else
+    std::snprintf(size, sizeof size, "%.6g MiB", static_cast<double>(limit) / kMiB);
+  fail_input("'" + name + "' " + verb + " more than " + size +
+             ", the most that is taken into memory; --max-input (in the library qses_set_input_limit) allows more");
+}
+
 std::string read_raw_bytes(const std::string &path) {
   std::error_code error;
   const fs::path place = path_of(path);
@@ -29,8 +64,10 @@ std::string read_raw_bytes(const std::string &path) {
   std::unique_ptr<std::FILE, int (*)(std::FILE *)> file(open_stdio(place, "rb"), &std::fclose);
   if (!file) fail_input("'" + path + "' can't be opened: " + std::strerror(errno));
 
+  const uint64_t limit = input_limit();
   std::string bytes;
   const auto size = fs::file_size(place, error);
+  if (!error && size > limit) fail_too_large(path, limit);
   constexpr size_t kPiece = size_t(1) << 16;
   if (!error) bytes.reserve(static_cast<size_t>(size) + kPiece);
   // Read to the end rather than trust the size: pipes and devices have none.
@@ -38,13 +75,14 @@ std::string read_raw_bytes(const std::string &path) {
     bytes.resize(read + kPiece);
     count = std::fread(&bytes[read], 1, kPiece, file.get());
     bytes.resize(read += count);
+    if (read > limit) fail_too_large(path, limit);
   }
   if (std::ferror(file.get())) fail_input("'" + path + "' can't be read: " + std::strerror(errno));
   if (bytes.empty()) fail_input("'" + path + "' is empty");
   return bytes;
 }
 
-bool has_gzip_magic(const char *bytes, size_t size) { return size >= 2 && bytes[0] == '\x1f' && bytes[1] == '\x8b'; }
+bool has_gzip_magic(std::string_view bytes) { return bytes.substr(0, 2) == "\x1f\x8b"; }
 
 // Inflates all members of a gzip file. Only the end status of zlib tells a whole member from one that was cut off.
 std::string gunzip(const std::string &packed, const std::string &path) {
@@ -52,8 +90,9 @@ std::string gunzip(const std::string &packed, const std::string &path) {
   if (inflateInit2(&stream, 15 + 16) != Z_OK) throw std::bad_alloc();
   std::unique_ptr<z_stream, int (*)(z_stream *)> guard(&stream, &inflateEnd);
 
+  const uint64_t limit = unpacking_limit(packed.size());
   std::string text;
-  text.reserve(packed.size() * 4);
+  text.reserve(static_cast<size_t>(std::min<uint64_t>(limit, uint64_t{packed.size()} * 4)));
   std::string buffer(1 << 18, '\0');
   size_t position = 0;  // zlib counts input in 32 bits: feed it in pieces
   for (;;) {
@@ -66,12 +105,13 @@ std::string gunzip(const std::string &packed, const std::string &path) {
     stream.next_out = reinterpret_cast<Bytef *>(&buffer[0]);
     stream.avail_out = static_cast<uInt>(buffer.size());
     const int status = inflate(&stream, Z_NO_FLUSH);
-    text.append(buffer.data(), buffer.size() - stream.avail_out);
+    if (!append_within(limit, buffer.data(), buffer.size() - stream.avail_out, text))
+      fail_above_limit(path, "unpacks to", limit);
     if (status == Z_STREAM_END) {
       const char *rest = packed.data() + (position - stream.avail_in);
       const size_t rest_size = packed.size() - (position - stream.avail_in);
       if (std::all_of(rest, rest + rest_size, [](char c) { return c == '\0'; })) return text;  // padding of tapes
-      if (!has_gzip_magic(rest, rest_size)) fail_input("'" + path + "' has something else after its gzip data");
+      if (!has_gzip_magic({rest, rest_size})) fail_input("'" + path + "' has something else after its gzip data");
       inflateReset(&stream);
     } else if (status == Z_MEM_ERROR) {
       throw std::bad_alloc();
@@ -85,10 +125,19 @@ std::string gunzip(const std::string &packed, const std::string &path) {
 
 }  // namespace
 
+void set_input_limit(uint64_t bytes) { chosen_limit = bytes; }
+
+uint64_t input_limit() {
+  const uint64_t chosen = chosen_limit;
+  return chosen != 0 ? chosen : kDefaultLimit;
+}
+
+void fail_too_large(const std::string &name, uint64_t limit) { fail_above_limit(name, "has", limit); }
+
 std::string unpack_gzip(std::string bytes, const std::string &name) {
   if (bytes.empty()) fail_input("'" + name + "' is empty");
   if (bytes.size() == 1 && bytes[0] == '\x1f') fail_input("'" + name + "' is cut off: its gzip data ends early");
-  if (!has_gzip_magic(bytes.data(), bytes.size())) return bytes;
+  if (!has_gzip_magic(bytes)) return bytes;
   std::string text = gunzip(bytes, name);
   if (text.empty()) fail_input("'" + name + "' is empty");
   return text;
@@ -96,7 +145,7 @@ std::string unpack_gzip(std::string bytes, const std::string &name) {
 
 std::string read_file_bytes(const std::string &path) {
   std::string bytes = read_raw_bytes(path);
-  if (lower_extension(path_of(path)) == ".gz" && bytes.size() >= 2 && !has_gzip_magic(bytes.data(), bytes.size()))
+  if (lower_extension(path_of(path)) == ".gz" && bytes.size() >= 2 && !has_gzip_magic(bytes))
     fail_input("'" + path + "' is named .gz but is no gzip file");
   return unpack_gzip(std::move(bytes), path);
 }

@@ -1,14 +1,26 @@
 // SPDX-License-Identifier: MIT
-// Whole files in memory, gunzipped where they are compressed.
+// Whole files in memory, gunzipped where they are compressed, and how much of them at most.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 namespace quickses::io {
 
-// The bytes of a file; of a gzip file (known by its first two bytes), what is compressed in it, all members.
-// Throws Error (kInput): missing, a directory, unreadable, empty, named .gz without being one, gzip data that is
-// damaged or cut off, even where the part before the cut would make sense.
+// How many bytes of a file, unpacked, are taken into memory, for the whole process. 0 (default): 4 GiB, and of gzip
+// data 100 times its size or 256 MiB, whichever is larger, but no more than 4 GiB either. Calls that have begun may
+// still go by the limit before.
+void set_input_limit(uint64_t bytes);
+
+// The limit of what is not compressed.
+uint64_t input_limit();
+
+// Throws Error (kInput) that names the limit and how to raise it.
+[[noreturn]] void fail_too_large(const std::string &name, uint64_t limit);
+
+// The bytes of a file, a pipe or a device; of gzip data (known by its first two bytes), what is compressed in it, all
+// members. Throws Error (kInput): missing, a directory, unreadable, empty, more than the limit, named .gz without being
+// one, gzip data that is damaged or cut off, even where the part before the cut would make sense.
 std::string read_file_bytes(const std::string &path);
 
 // What is compressed in gzip data; other bytes as they are. name: for messages. Throws as read_file_bytes.

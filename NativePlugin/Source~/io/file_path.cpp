@@ -36,6 +36,20 @@ std::FILE *open_stdio(const std::filesystem::path &path, const char *mode) { ret
 
 #endif
 
+std::filesystem::path place_of(const std::filesystem::path &path) {
+  namespace fs = std::filesystem;
+  constexpr int kMostLinks = 40;  // as many as Linux follows
+  std::error_code error;
+  fs::path place = path;
+  for (int links = 0; links <= kMostLinks && fs::is_symlink(place, error); ++links) {
+    place = place.parent_path() / fs::read_symlink(place, error);
+    if (error) return path;
+  }
+  if (fs::is_symlink(place, error)) return path;
+  const fs::path folder = fs::canonical(place.has_parent_path() ? place.parent_path() : ".", error);
+  return error ? path : folder / place.filename();
+}
+
 std::string lower_extension(const std::filesystem::path &path) {
   std::string extension = utf8_of(path.extension());
   for (char &c : extension) c = to_lower(c);

@@ -115,6 +115,9 @@ class TableReader {
       if (!cif::is_numb(row[axis]))
         fail_input("'" + path_ + "', atom " + std::to_string(row_number) + " of _atom_site: the " + "xyz"[axis - kX] +
                    " coordinate '" + row[axis] + "' is no number");
+    const std::string number = first_of(row, kAuthNumber, kLabelNumber, "?");
+    const std::string label_number = value_or(row, kLabelNumber, "?");
+    for (const std::string &text : {number, label_number}) check_residue_number(text, row_number);
     ModelBlock &model = models[current_];
     std::vector<std::string> &values = model.block.items.front().loop.values;
     std::string residue = first_of(row, kAuthResidue, kLabelResidue, "UNK");
@@ -129,13 +132,21 @@ class TableReader {
     values.push_back(residue);
     values.push_back(chain);
     values.push_back(value_or(row, kEntity, "?"));
-    values.push_back(value_or(row, kLabelNumber, "?"));
+    values.push_back(label_number);
     values.push_back(value_or(row, kInsertion, "?"));
     for (Column axis : {kX, kY, kZ}) values.push_back(row[axis]);
     values.push_back(value_or(row, kOccupancy, "1"));
     values.push_back(value_or(row, kBFactor, "0"));
-    values.push_back(first_of(row, kAuthNumber, kLabelNumber, "?"));
+    values.push_back(number);
     values.push_back(row.has2(kAuthChain) ? row[kAuthChain] : chain);
+  }
+
+  // gemmi finds what is no number, but not what an int can't hold.
+  void check_residue_number(const std::string &text, size_t row_number) const {
+    constexpr ptrdiff_t kMostDigits = 9;
+    if (std::count_if(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; }) > kMostDigits)
+      fail_input("'" + path_ + "', atom " + std::to_string(row_number) + " of _atom_site: the residue number '" + text +
+                 "' has more than 9 digits");
   }
 
   std::string element_symbol(cif::Table::Row &row, const std::string &residue, const std::string &atom) {

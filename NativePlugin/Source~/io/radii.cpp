@@ -85,6 +85,8 @@ RadiusTable bondi_radii() {
   return table;
 }
 
+bool is_radius_set(const std::string &name) { return name == "quickses" || name == "bondi"; }
+
 RadiusTable find_radii(const std::string &name_or_path) {
   if (name_or_path == "quickses") return quickses_radii();
   if (name_or_path == "bondi") return bondi_radii();

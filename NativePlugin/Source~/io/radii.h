@@ -19,6 +19,9 @@ RadiusTable quickses_radii();
 // Truhlar 2009 (J. Phys. Chem. A 113, 5806); others 2.00.
 RadiusTable bondi_radii();
 
+// "quickses" or "bondi": no file is read for it.
+bool is_radius_set(const std::string &name);
+
 // "quickses", "bondi", or the name of a text file with lines `ELEMENT radius` (Å, above 0 and up to 100), `#` starting
 // a comment. The element `*` stands for all that the file does not name; without it those keep the quickses radius.
 // Throws Error (kInput), naming the line.

@@ -92,13 +92,14 @@ struct GrownBricks {
   BrickSet bricks;
   const BorderSigns *signs;
   QSES_FN size_t size() const { return bricks.count; }
+  QSES_FN double fewest(size_t) const { return 1; }
   template <class Visit>
   QSES_FN void visit(size_t i, const Visit &visit_brick) const {
-    visit_brick(bricks.linear[i]);
+    visit_brick(bricks.linear[i], uint64_t(1));
     const glm::ivec3 place = bricks.lattice.brick_at(bricks.linear[i]);
     for (uint32_t rest = border_changes(bricks, signs, i); rest; rest &= rest - 1) {
       const glm::ivec3 p = place + neighbor_step(lowest_bit32(rest));
-      if (bricks.lattice.has(p)) visit_brick(bricks.lattice.linear(p));
+      if (bricks.lattice.has(p)) visit_brick(bricks.lattice.linear(p), uint64_t(1));
     }
   }
 };

@@ -27,6 +27,26 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void FilesAreReadUpToALimit()
+        {
+            long size = new FileInfo(Repository.CrambinPath).Length;
+            try
+            {
+                InputLimit.Set(size - 1);
+                Assert.That(
+                    Structure.TryOpen(Repository.CrambinPath, default, out _, out QuickSesError error), Is.False);
+                Assert.That(error.Status, Is.EqualTo(QuickSesStatus.FileError));
+                InputLimit.Set(size);
+                Open(default).Dispose();
+            }
+            finally
+            {
+                InputLimit.Set(0);
+            }
+            Assert.That(() => InputLimit.Set(-1), Throws.TypeOf<ArgumentOutOfRangeException>());
+        }
+
+        [Test]
         public void AtomsAreThoseOfTheFile()
         {
             List<string> lines = AtomLines();

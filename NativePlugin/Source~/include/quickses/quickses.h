@@ -184,7 +184,7 @@ QSES_API qses_status qses_context_info(const qses_context *context, qses_backend
 /* Gives the context its atoms. Everything is copied before the call returns.
  *   positions  count positions of three floats x, y, z in Å, each stride bytes after the one before;
  *              stride 0 means tightly packed (12 bytes); else a multiple of 4, at least 12
- *   radii      count van der Waals radii in Å, from 0 (excluded) to 100
+ *   radii      count van der Waals radii in Å, above 0 and at most 100
  *   count      number of atoms; 0 is allowed and gives an empty mesh
  * Two atoms at the same place count as the larger of them (of equals, as the first). An atom inside another one owns
  * no vertex.
@@ -475,6 +475,13 @@ typedef struct qses_read_options {
                             N 1.55, H 1.20, S 1.80, P 1.80, others 1.40 Å */
 } qses_read_options;
 
+/* How many bytes structures and trajectories may take into memory from one file, pipe, device or buffer, unpacked: a
+ * gzip file of 3 MB can hold 3 GB, and a device has no end. More is a FILE_ERROR. It holds for the whole process from now
+ * on. 0 (default): 4 GiB, but of gzip data at most 100 times its size or 256 MiB, whichever is larger. Any other number
+ * holds for all alike. Frames that stay in their file (DCD and XTC, not gzipped) and plain bytes of a buffer are not
+ * counted. What is made of the bytes, atoms above all, takes several times as much again. */
+QSES_API void qses_set_input_limit(uint64_t bytes);
+
 /* Fills in the defaults. Always use it: later versions append fields. NULL is ignored. */
 QSES_API void qses_read_options_init(qses_read_options *options);
 
@@ -482,7 +489,7 @@ QSES_API void qses_read_options_init(qses_read_options *options);
  * those without a label and the first label met in each residue are kept.
  * On success *structure is the caller's, who ends it with qses_structure_close; on failure it is NULL.
  * Errors: INVALID_ARGUMENT (options; a selection that can't be understood; no such model), FILE_ERROR (the message
- * names file and line), OUT_OF_MEMORY. */
+ * names file and line; also more than qses_set_input_limit allows), OUT_OF_MEMORY. */
 QSES_API qses_status qses_structure_open(const char *path, const qses_read_options *options,
                                          qses_structure **structure);
 
@@ -543,11 +550,12 @@ typedef enum qses_trajectory_format {
   QSES_TRAJECTORY_PDB = 3   /* PDB with several models */
 } qses_trajectory_format;
 
-/* Opens a trajectory; path is UTF-8. Frames stay in the file and are read when they are asked for (a gzipped file is
- * unpacked into memory). A file that ends within a frame, or makes no sense from some frame on, gives the frames
- * before: see qses_trajectory_info.incomplete. On success *trajectory is the caller's, who ends it with
+/* Opens a trajectory; path is UTF-8. Frames stay in the file and are read when they are asked for (gzipped files
+ * and PDB files are taken into memory). A file that ends within a frame, or makes no sense from some frame on, gives the
+ * frames before: see qses_trajectory_info.incomplete. On success *trajectory is the caller's, who ends it with
  * qses_trajectory_close; on failure it is NULL. Errors: INVALID_ARGUMENT, FILE_ERROR (no such format, not one whole
- * frame, frames of different numbers of atoms, DCD files with 64-bit record markers or velocities), OUT_OF_MEMORY. */
+ * frame, frames of different numbers of atoms, DCD files with 64-bit record markers or velocities, more in memory than
+ * qses_set_input_limit allows), OUT_OF_MEMORY. */
 QSES_API qses_status qses_trajectory_open(const char *path, qses_trajectory_format format,
                                           qses_trajectory **trajectory);
 

@@ -122,6 +122,9 @@ namespace QuickSes.Interop
 
         // ---- structures
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
+        public static extern void qses_set_input_limit(ulong bytes);
+
+        [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
         public static extern void qses_read_options_init(NativeReadOptions* options);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]

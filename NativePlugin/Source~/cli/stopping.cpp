@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+// What happens when the program is stopped from outside.
+#include "cli/stopping.h"
+
+#include "io/atomic_file.h"
+
+#if defined(_WIN32)
+#ifndef NOMINMAX
+#define NOMINMAX
+#endif
+#include <windows.h>
+#else
+#include <fcntl.h>
+#include <pthread.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <system_error>
+#include <thread>
+#endif
+
+namespace quickses::cli {
+namespace {
+
+#if defined(_WIN32)
+
+// Runs in a thread of its own. What comes next ends the process.
+BOOL WINAPI on_stop(DWORD) {
+  io::abandon_files();
+  return FALSE;
+}
+
+#else
+
+bool is_ignored(int signal_number) {  // as by nohup
+  struct sigaction action;
+  return sigaction(signal_number, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
+// Dies by the signal, as the shell expects it, but after cleaning up. A thread may do what a handler of signals may
+// not.
+void wait_for_stop(sigset_t signals) {
+  int signal_number = 0;
+  if (sigwait(&signals, &signal_number) != 0) return;
+  io::abandon_files();
+  signal(signal_number, SIG_DFL);
+  pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+  raise(signal_number);
+}
+
+// A file that is opened must not become what others of this process take for standard output.
+void occupy_standard_streams() {
+  int descriptor = 0;
+  do descriptor = open("/dev/null", O_RDONLY);
+  while (descriptor >= 0 && descriptor <= STDERR_FILENO);
+  if (descriptor > STDERR_FILENO) close(descriptor);
+}
+
+#endif
+
+}  // namespace
+
+#if defined(_WIN32)
+
+void prepare_for_stopping() { SetConsoleCtrlHandler(&on_stop, TRUE); }
+
+#else
+
+void prepare_for_stopping() {
+  occupy_standard_streams();
+  for (int signal_number : {SIGPIPE, SIGXFSZ}) signal(signal_number, SIG_IGN);
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (int signal_number : {SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU})
+    if (!is_ignored(signal_number)) sigaddset(&signals, signal_number);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // in all threads to come
+  try {
+    std::thread(wait_for_stop, signals).detach();
+  } catch (const std::system_error &) {  // no threads left: stopped without cleaning up
+    pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+  }
+}
+
+#endif
+
+}  // namespace quickses::cli

@@ -1,0 +1,273 @@
+# SPDX-License-Identifier: MIT
+"""Tests of what the quickses program does to files: what it reads of them at most, that it writes over none of its own,
+and what is left when it fails or is stopped.
+
+usage: cli_files_test.py PROGRAM [unittest options]      (or QUICKSES_PROGRAM in the environment)
+"""
+import gzip
+import os
+import shutil
+import signal
+import stat
+import subprocess
+import sys
+import time
+import unittest
+
+import cli_test
+from cli_test import CRAMBIN, INPUT, OK, OUTPUT, USAGE, ProgramTest, is_closed, read_obj
+
+IS_WINDOWS = os.name == "nt" or os.environ.get("QUICKSES_TEST_SYSTEM") == "Windows"
+MODELS = 3
+
+
+class FilesTest(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.write("p.pdb", CRAMBIN.read_bytes())
+        self.write("radii.txt", "C 1.7\n")
+        atoms = "".join(line for line in CRAMBIN.read_text().splitlines(True) if line.startswith("ATOM"))
+        self.write("many.pdb", "".join(f"MODEL     {i + 1:4d}\n{atoms}ENDMDL\n" for i in range(MODELS)))
+
+    def content(self):
+        return {path.name: path.read_bytes() for path in self.folder.iterdir() if path.is_file()}
+
+
+class Limits(FilesTest):
+    def test_input_is_larger_than_allowed(self):
+        text = CRAMBIN.read_bytes()
+        self.write("a.pdb", text)
+        self.write("a.pdb.gz", gzip.compress(text))
+        for name in ("a.pdb", "a.pdb.gz"):
+            self.run_cpu(name, "-v", "2", "--max-input", len(text))
+            self.assert_fails(INPUT, [name, "--max-input", f"{len(text) - 1} bytes"], name, "-o", "a.obj", "--max-input",
+                              len(text) - 1)
+        self.assert_fails(INPUT, ["a.pdb"], "bench", "a.pdb", "--max-input", "1K")
+        self.assert_fails(USAGE, ["--max-input", "much"], "a.pdb", "--max-input", "much")
+
+    def test_a_small_gzip_holds_very_much(self):
+        member = gzip.compress(bytes(64 << 20))
+        self.write("bomb.pdb.gz", 5 * member)
+        self.assert_fails(INPUT, ["bomb.pdb.gz", "256 MiB", "--max-input"], "bomb.pdb.gz", "-o", "a.obj")
+
+    @unittest.skipIf(IS_WINDOWS, "no such devices")
+    def test_devices_and_pipes(self):
+        self.assert_fails(INPUT, ["/dev/zero", "8 MiB"], "/dev/zero", "-o", "a.obj", "--max-input", "8M")
+        self.assert_fails(INPUT, ["/dev/null", "empty"], "/dev/null")
+        for text in (CRAMBIN.read_bytes(), gzip.compress(CRAMBIN.read_bytes())):
+            result = subprocess.run([cli_test.PROGRAM, "/dev/stdin", "--backend", "cpu"], input=text, capture_output=True)
+            self.assertEqual(result.returncode, OK, result.stderr)
+            self.assertIn(b"327 atoms", result.stdout)
+
+    def test_radii_and_trajectories_have_the_limit_too(self):
+        self.write("large.txt", "# comment\n" * 20000 + "C 1.7\n")
+        self.assert_fails(INPUT, ["large.txt", "--max-input"], "p.pdb", "--radii", "large.txt", "--max-input", "100K")
+        self.assert_fails(INPUT, ["many.pdb", "--max-input"], "p.pdb", "--trajectory", "many.pdb", "--max-input", "50K")
+
+
+class OneFileForTwoThings(FilesTest):
+    """Whatever is refused leaves all files as they were."""
+
+    def assert_refused(self, parts, *arguments):
+        before = self.content()
+        self.assert_fails(USAGE, parts, *arguments)
+        self.assertEqual(self.content(), before)
+
+    def ways_to(self, name):
+        """Other names of a file that is there, or of one that is not."""
+        yield name
+        yield f"./{name}"
+        yield self.folder / name
+        (self.folder / "folder").mkdir(exist_ok=True)
+        yield f"folder/../{name}"
+        if IS_WINDOWS:
+            yield name.upper()
+            return
+        (self.folder / "same").symlink_to(".")
+        yield f"same/{name}"
+        (self.folder / "same").unlink()
+        extension = os.path.splitext(name)[1]
+        (self.folder / f"second{extension}").symlink_to(name)
+        (self.folder / f"link{extension}").symlink_to(f"second{extension}")
+        yield f"link{extension}"
+        (self.folder / f"second{extension}").unlink()
+        (self.folder / f"link{extension}").unlink()
+        if (self.folder / name).exists():
+            os.link(self.folder / name, self.folder / f"hard{extension}")
+            yield f"hard{extension}"
+            (self.folder / f"hard{extension}").unlink()
+
+    def test_outputs_over_outputs(self):
+        for exists in (False, True):
+            if exists:
+                self.write("j.obj", "old")
+                self.write("t.csv", "old")
+            for name in self.ways_to("j.obj"):
+                self.assert_refused(["--json", name, "--output (-o)"], "p.pdb", "-o", "j.obj", "--json", name)
+            for name in self.ways_to("t.csv"):
+                self.assert_refused(["--json", name, "--csv"], "p.pdb", "--trajectory", "many.pdb", "--csv", "t.csv",
+                                    "--json", name)
+
+    def test_outputs_over_inputs(self):
+        shutil.copy(self.folder / "p.pdb", self.folder / "p.obj")  # known by its content
+        for name in self.ways_to("p.obj"):
+            self.assert_refused(["--output (-o)", name, "input"], "p.obj", "-o", name)
+        for name in self.ways_to("p.pdb"):
+            self.assert_refused(["--json", name, "input"], "p.pdb", "--json", name)
+            self.assert_refused(["--json", name, "input"], "bench", "many.pdb", "p.pdb", "--json", name)
+        for name in self.ways_to("radii.txt"):
+            self.assert_refused(["--json", name, "--radii"], "p.pdb", "--radii", "radii.txt", "--json", name)
+            self.assert_refused(["--json", name, "--radii"], "bench", "p.pdb", "--radii", "radii.txt", "--json", name)
+        for name in self.ways_to("many.pdb"):
+            self.assert_refused(["--csv", name, "--trajectory"], "p.pdb", "--trajectory", "many.pdb", "--csv", name)
+
+    def test_meshes_of_models_and_frames(self):
+        for flag, numbered, arguments in (("--model", "m_0002.ply", ["-o", "m.ply", "--model", "all"]),
+                                          ("--trajectory", "m_2.ply", ["-o", "m_%d.ply", "--trajectory", "many.pdb"])):
+            for name in self.ways_to(numbered):
+                self.assert_refused(["--output (-o)", numbered, "--json"], "many.pdb", *arguments, "--json", name)
+            shutil.copy(self.folder / "many.pdb", self.folder / numbered)
+            for name in self.ways_to(numbered):
+                self.assert_refused(["--output (-o)", numbered, "input"], name, *arguments)
+            (self.folder / numbered).unlink()
+        # A frame that is not asked for has no file.
+        self.run_cpu("p.pdb", "--trajectory", "many.pdb", "-v", "2", "-o", "m_%d.ply", "--frames", "0", "--csv", "m_2.ply")
+
+    def test_what_is_no_output_may_be_the_same(self):
+        (self.folder / "quickses").write_text("a file of this name is no set of radii")
+        self.run_cpu("p.pdb", "-v", "2", "--radii", "quickses", "--json", "quickses")
+        if not IS_WINDOWS:
+            self.run_cpu("many.pdb", "--trajectory", "many.pdb", "-v", "2", "--csv", "/dev/null", "--json", "/dev/null")
+
+    @unittest.skipIf(IS_WINDOWS, "standard output has no name")
+    def test_standard_output_is_a_file_too(self):
+        with open(self.folder / "a.obj", "w") as file:
+            result = subprocess.run([cli_test.PROGRAM, "p.pdb", "-o", "a.obj", "--json", "-"], cwd=self.folder,
+                                    stdout=file, stderr=subprocess.PIPE)
+        self.assertEqual(result.returncode, USAGE)
+        self.assertIn(b"--json", result.stderr)
+
+
+class Replacing(FilesTest):
+    def test_names_as_long_as_file_systems_allow(self):
+        for name in ("x" * 251 + ".obj", "y" * 242 + ".ply"):
+            self.run_cpu("p.pdb", "-v", "2", "-o", name)
+            self.assertGreater((self.folder / name).stat().st_size, 1000)
+        self.assert_fails(OUTPUT, ["z.obj"], "p.pdb", "-v", "2", "-o", "z" * 252 + ".obj")
+
+    @unittest.skipIf(IS_WINDOWS, "no rights as these")
+    def test_a_replaced_file_keeps_its_rights(self):
+        old = os.umask(0o027)
+        self.addCleanup(os.umask, old)
+        for rights in (0o600, 0o644, 0o666, 0o755):
+            path = self.write("a.obj", "old")
+            path.chmod(rights)
+            self.run_cpu("p.pdb", "-v", "2", "-o", "a.obj", "--json", "new.json")
+            self.assertEqual(stat.S_IMODE(path.stat().st_mode), rights)
+            self.assertTrue(is_closed(read_obj(path)[2]))
+        self.assertEqual(stat.S_IMODE((self.folder / "new.json").stat().st_mode), 0o640)
+
+    @unittest.skipIf(IS_WINDOWS, "no symbolic links")
+    def test_links(self):
+        (self.folder / "folder").mkdir()
+        (self.folder / "a.obj").symlink_to("folder/real.obj")  # leads to nothing yet
+        self.run_cpu("p.pdb", "-v", "2", "-o", "a.obj")
+        self.assertTrue((self.folder / "a.obj").is_symlink())
+        self.assertTrue(is_closed(read_obj(self.folder / "folder" / "real.obj")[2]))
+        (self.folder / "circle.obj").symlink_to("circle.obj")
+        self.assert_fails(OUTPUT, ["circle.obj"], "p.pdb", "-v", "2", "-o", "circle.obj")
+        self.assertTrue((self.folder / "circle.obj").is_symlink())
+        self.assert_fails(INPUT, ["circle.obj"], "circle.obj")
+
+
+@unittest.skipIf(IS_WINDOWS, "no such devices")
+class StandardOutput(FilesTest):
+    PRINTING = (["--version"], ["--help"], ["bench", "--help"], ["p.pdb"], ["p.pdb", "--json", "-"],
+                ["bench", "p.pdb", "--repeat", "1"], ["p.pdb", "--trajectory", "many.pdb"],
+                ["p.pdb", "--trajectory", "many.pdb", "--csv", "-"])
+
+    def assert_can_not_print(self, arguments, **keywords):
+        result = subprocess.run([cli_test.PROGRAM, *arguments], stderr=subprocess.PIPE, cwd=self.folder, **keywords)
+        self.assertEqual(result.returncode, OUTPUT, result.stderr)
+        self.assertIn(b"standard output can't be written", result.stderr)
+
+    @unittest.skipUnless(os.path.exists("/dev/full"), "there is no device that is always full")
+    def test_it_is_full(self):
+        for arguments in self.PRINTING:
+            with self.subTest(arguments=arguments), open("/dev/full", "w") as full:
+                self.assert_can_not_print(arguments, stdout=full)
+        (self.folder / "full.obj").symlink_to("/dev/full")
+        self.assert_fails(OUTPUT, ["full.obj", "space"], "p.pdb", "-o", "full.obj", "--quiet")
+
+    def test_it_is_closed(self):
+        for arguments in self.PRINTING:
+            with self.subTest(arguments=arguments):
+                self.assert_can_not_print(arguments, preexec_fn=lambda: os.close(1))
+        # No file takes its place.
+        self.assert_can_not_print(["p.pdb", "-v", "2", "-o", "a.obj"], preexec_fn=lambda: os.close(1))
+        self.assertTrue(is_closed(read_obj(self.folder / "a.obj")[2]))
+
+    def test_nobody_reads_it(self):
+        for arguments in self.PRINTING:
+            reader, writer = os.pipe()
+            os.close(reader)
+            with self.subTest(arguments=arguments):
+                self.assert_can_not_print(arguments, stdout=writer)
+            os.close(writer)
+        self.assertEqual(sorted(self.content()), ["many.pdb", "p.pdb", "radii.txt"])
+
+
+@unittest.skipIf(IS_WINDOWS, "no signals")
+class Stopped(FilesTest):
+    def start(self, **keywords):
+        """A run that takes long, and has files that are not finished."""
+        atoms = "".join(line for line in CRAMBIN.read_text().splitlines(True) if line.startswith("ATOM"))
+        self.write("long.pdb", 2000 * f"MODEL        1\n{atoms}ENDMDL\n")
+        self.write("t.csv", "old")
+        process = subprocess.Popen(
+            [cli_test.PROGRAM, "p.pdb", "--trajectory", "long.pdb", "-v", "0.2", "--backend", "cpu", "--quiet",
+             "--csv", "t.csv", "--json", "t.json", "-o", "f%d.obj"], cwd=self.folder, **keywords)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        while not any(self.folder.glob("f*.obj")):
+            self.assertIsNone(process.poll())
+            time.sleep(0.01)
+        self.assertTrue(any(self.folder.glob(".*.tmp")))
+        return process
+
+    def test_by_signals(self):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            with self.subTest(signal=number):
+                process = self.start(stderr=subprocess.PIPE)
+                process.send_signal(number)
+                self.assertEqual(process.communicate(), (None, b""))
+                self.assertEqual(process.returncode, -number)
+                self.assertEqual([path.name for path in self.folder.glob(".*")], [])
+                self.assertEqual((self.folder / "t.csv").read_text(), "old")
+                self.assertFalse((self.folder / "t.json").exists())
+                for mesh in self.folder.glob("f*.obj"):
+                    self.assertTrue(is_closed(read_obj(mesh)[2]))
+                    mesh.unlink()
+
+    def test_a_signal_that_is_ignored_does_not_stop_it(self):
+        process = self.start(preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
+        process.send_signal(signal.SIGHUP)
+        self.wait_for_another_mesh()
+        self.assertIsNone(process.poll())
+        process.send_signal(signal.SIGTERM)
+        self.assertEqual(process.wait(), -signal.SIGTERM)
+        self.assertEqual([path.name for path in self.folder.glob(".*")], [])
+
+    def wait_for_another_mesh(self):
+        count = len(list(self.folder.glob("f*.obj")))
+        while len(list(self.folder.glob("f*.obj"))) < count + 2:
+            time.sleep(0.01)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) > 1 and not sys.argv[1].startswith("-"):
+        cli_test.PROGRAM = sys.argv.pop(1)
+    if not cli_test.PROGRAM:
+        sys.exit(__doc__)
+    cli_test.PROGRAM = os.path.abspath(cli_test.PROGRAM)
+    unittest.main()
