@@ -19,6 +19,8 @@ struct Regression {
   std::vector<std::array<double, 4>> atoms;  // x, y, z, r
 };
 
+inline void PrintTo(const Regression &r, std::ostream *out) { *out << r.name; }
+
 inline std::vector<Regression> regressions() {
   return {
       {"HydrogenAndOxygenTouch", kSes, kExact, 1.4, 0.5, 1, 0, {{-8.516, 7.755, -44.339, 1.2}, {-8.516, 13.275, -44.339, 1.52}}},
