@@ -43,7 +43,7 @@ inline const char *name_of(Fault fault) {
 struct Verdict {
   Fault fault = Fault::kNone;
   char sentence[240] = "";
-  double error = 0;  // Å, the largest of the vertices measured
+  double error = 0;  // Å beyond the rounding of positions, the largest of the vertices measured
   bool coarse = false;  // the spacing is above two probe radii
   uint32_t vertices = 0;
   double milliseconds = 0;
@@ -203,6 +203,25 @@ inline void check_owners(const Case &c, const Result &r, Verdict &v) {
   }
 }
 
+// Some vertices from everywhere, and those that the probes of other vertices cover most.
+inline std::vector<size_t> worth_measuring(const Surface &surface, double probe, size_t wanted) {
+  const size_t count = surface.vertex_count(), step = 1 + 3 * count / (2 * wanted), every = 1 + count / 300;
+  std::vector<size_t> chosen;
+  for (size_t k = step / 2; k < count; k += step) chosen.push_back(k);
+  std::vector<Point> probes;
+  for (size_t k = every / 2; k < count; k += every)
+    probes.push_back(point(surface.mesh.position(k)) + probe * point(surface.normal(k)));
+  std::vector<std::pair<double, size_t>> nearest(count);
+  for (size_t k = 0; k < count; ++k) {
+    const double d = exact_reference::nearest_sample(probes, point(surface.mesh.position(k)));
+    nearest[k] = {std::isfinite(d) ? d : -1, k};
+  }
+  const size_t covered = std::min(count, wanted / 3);
+  std::partial_sort(nearest.begin(), nearest.begin() + static_cast<std::ptrdiff_t>(covered), nearest.end());
+  for (size_t k = 0; k < covered; ++k) chosen.push_back(nearest[k].second);
+  return chosen;
+}
+
 // Vertices and normals against the exact surface. A vertex of the SES is a probe radius away from where its normal says
 // that the probe is; the probe there overlaps no atom; and it is the nearest such place.
 inline void check_distances(const Case &c, const Result &r, const ExactSurface &exact, Verdict &v) {
@@ -210,8 +229,9 @@ inline void check_distances(const Case &c, const Result &r, const ExactSurface &
   const size_t count = mesh.vertex_count();
   const double p = exact.probe(), rounding = rounding_of_positions(c);
   v.coarse = exact.is_ses() && static_cast<double>(c.settings.spacing) > 2 * p;
-  const double bound = (v.coarse ? 0.5 * static_cast<double>(c.settings.spacing) : 0.02) + rounding;
+  const double bound = v.coarse ? 0.5 * static_cast<double>(c.settings.spacing) : 0.02;
   const auto judge = [&](size_t k, double error, const char *what) {
+    error -= rounding;
     if (!(error <= v.error)) v.error = error;
     if (!(error <= bound))
       blame(v, Fault::kOffSurface, "vertex %zu (%.9g %.9g %.9g) is %g Å off%s", k,
@@ -230,9 +250,8 @@ inline void check_distances(const Case &c, const Result &r, const ExactSurface &
     }
   }
   if (!exact.is_ses()) return;
-  const size_t wanted = exact.is_costly() ? 12 : 60, step = 1 + count / wanted;
-  for (size_t k = step / 2; k < count; k += step) {
-    const Range d = exact.distance(point(mesh.position(k)), p + 2 * bound);
+  for (size_t k : worth_measuring(r.surface, p, exact.is_costly() ? 12 : 60)) {
+    const Range d = exact.distance(point(mesh.position(k)), p + 2 * (bound + rounding));
     judge(k, d.least - p, ": no probe touches it");
     judge(k, p - d.most, ": a probe covers it");
   }
