@@ -26,6 +26,7 @@ enum class Fault : int {
   kComponents,
   kReport,
   kOffSurface,
+  kStretched,  // triangles that reach farther than the lattice allows
   kMisplaced,  // inside where it must be outside, or the reverse
   kClosedForm,
   kBytes,
@@ -34,9 +35,10 @@ enum class Fault : int {
 };
 
 inline const char *name_of(Fault fault) {
-  constexpr const char *names[] = {"none",   "crash",  "hang",       "status", "open",        "not finite",
-                                   "normals", "owners", "bounds",     "components", "report", "off surface",
-                                   "misplaced", "closed form", "bytes", "order"};
+  constexpr const char *names[] = {"none",   "crash",      "hang",   "status",      "open",      "not finite",
+                                   "normals", "owners",     "bounds", "components",  "report",    "off surface",
+                                   "stretched", "misplaced", "closed form", "bytes", "order"};
+  static_assert(sizeof names / sizeof *names == static_cast<size_t>(Fault::kCount), "one name for each");
   return names[static_cast<int>(fault)];
 }
 
@@ -44,6 +46,7 @@ struct Verdict {
   Fault fault = Fault::kNone;
   char sentence[240] = "";
   double error = 0;  // Å beyond the rounding of positions, the largest of the vertices measured
+  double edge = 0;   // spacings, the longest edge of a triangle
   bool coarse = false;  // the spacing is above two probe radii
   uint32_t vertices = 0;
   double milliseconds = 0;
@@ -79,6 +82,21 @@ inline Result result_of(const qses_mesh &m, const qses_report &report) {
   std::copy(m.bounds_max, m.bounds_max + 3, r.high.begin());
   r.components.assign(m.components, m.components + m.component_count);
   return r;
+}
+
+// Spacings. D is 1-Lipschitz, so a vertex is moved by at most a spacing from its lattice edge onto the surface; two of one
+// cell are then less than 4 apart. Longer edges are those of vertices that went elsewhere. 2 is usual.
+constexpr double kLongestEdge = 4;
+
+inline void check_edges(const Case &c, const Result &r, Verdict &v) {
+  const mesh_checks::Mesh &mesh = r.surface.mesh;
+  double longest = 0;
+  for (size_t t = 0; t < mesh.triangle_count(); ++t)
+    for (size_t k = 0; k < 3; ++k)
+      longest = std::max(longest, length(point(mesh.position(mesh.indices[3 * t + k])) -
+                                         point(mesh.position(mesh.indices[3 * t + (k + 1) % 3]))));
+  v.edge = (longest - 2 * rounding_of_positions(c)) / static_cast<double>(c.settings.spacing);
+  if (v.edge > kLongestEdge) blame(v, Fault::kStretched, "the longest edge has %.3g spacings", v.edge);
 }
 
 // Is x inside of the mesh? Signed crossings of rays in one direction, which must favour no axis; edges are passed by one
@@ -328,6 +346,7 @@ class Checker {
       if (v.good() && c.settings.method == QSES_METHOD_EXACT) {
         const ExactSurface exact(c);
         check_distances(c, r, exact, v);
+        if (v.good()) check_edges(c, r, v);
         if (v.good()) check_sides(c, r, exact, v);
         if (v.good()) check_closed_form(c, r, v);
       }
@@ -430,9 +449,10 @@ class Checker {
     qses_settings s = c.settings;
     s.level_count = 0;
     if (const char *what = difference(r, run_job(context_, c, s, v))) blame(v, Fault::kBytes, "other %s from a job", what);
+    if (s.spacing > 25) return;
     s.level_count = 2;
-    s.levels[0] = std::min(100.f, 4 * s.spacing);
-    s.levels[1] = std::min(100.f, 2 * s.spacing);
+    s.levels[0] = 4 * s.spacing;
+    s.levels[1] = 2 * s.spacing;
     const Result first = run_job(context_, c, s, v), second = run_job(one_thread_, c, s, v);
     if (const char *what = difference(first, second)) blame(v, Fault::kBytes, "other %s from a job with one thread", what);
   }

@@ -39,11 +39,15 @@ inline void add_cap(Measures &m, double r, double along, double spacing) {
   add_part(m, 2 * pi() * r * height, pi() * height * height * (3 * r - height) / 3, r, spacing);
 }
 
-// Two balls, one beside the other: where the space between them is thinner than the lattice can tell.
+// Two balls, one beside the other: where the space between them is thinner than the lattice can tell, the mesh lacks what
+// faces it, or has a bridge across.
 inline void add_gap(Measures &m, double a, double b, double gap, double spacing) {
-  const double thick = 2 * spacing - std::max(0.0, gap), ring = thick > 0 ? 2 * pi() * thick * a * b / (a + b) : 0;
-  m.chord_area += 2 * ring;
-  m.chord_volume += ring * std::max(0.0, thick);
+  gap = std::max(0.0, gap);
+  const double thick = 2 * spacing - gap, neck = std::min({a, b, spacing});
+  if (thick <= 0) return;
+  const double ring = 2 * pi() * thick * a * b / (a + b);
+  m.chord_area += 2 * ring + 2 * pi() * neck * gap;
+  m.chord_volume += ring * thick + pi() * neck * neck * gap;
 }
 
 inline Measures measures_of_union(double a, double b, double d, double spacing) {
@@ -82,7 +86,7 @@ inline void add_saddle(Measures &m, double around, double probe, double from, do
 // SES of two atoms.
 inline Measures measures_of_ses(double r1, double r2, double d, double probe, double spacing) {
   const double a = r1 + probe, b = r2 + probe;
-  if (d >= a + b || d <= std::abs(a - b)) return measures_of_union(r1, r2, d >= a + b ? 2 * d + r1 + r2 : d, spacing);
+  if (d >= a + b || d <= std::abs(a - b)) return measures_of_union(r1, r2, d, spacing);
   Measures m;
   const double along = (d * d + a * a - b * b) / (2 * d);
   const double around = std::sqrt(std::max(0.0, a * a - along * along));

@@ -50,7 +50,8 @@ class ExactSurface {
     return deepest;
   }
 
-  // Right as far as it is below reach; larger distances may come out too large.
+  // Right as far as it is below reach; larger distances may come out too large. Where too many atoms are in reach, what
+  // is known without looking.
   Range distance(const Point &x, double reach) const {
     if (centers_.size() > kWhole) {
       Atoms near;
@@ -59,6 +60,7 @@ class ExactSurface {
           near.positions.insert(near.positions.end(), &case_.atoms.positions[3 * i], &case_.atoms.positions[3 * i] + 3);
           near.radii.push_back(case_.atoms.radii[i]);
         }
+      if (near.size() > 100) return {0, kInfinity};
       return {Boundary(near, probe_ - play_).nearest(x).distance, Boundary(near, probe_ + play_).nearest(x).distance};
     }
     if (!smaller_) {

@@ -4,6 +4,7 @@
 //   QUICKSES_PROPERTY_SETS        number of sets; default 2000
 //   QUICKSES_PROPERTY_SEED        the first of their seeds; default 1. A seed gives the same set everywhere
 //   QUICKSES_PROPERTY_FAMILY      only sets of this family
+//   QUICKSES_PROPERTY_SHRUNK      how many faults are shrunk at most; default 20
 //   QUICKSES_PROPERTY_IN_PROCESS  1: not in processes of their own (for memory checkers)
 #include "property_regressions.h"
 #include "property_shrink.h"
@@ -27,7 +28,7 @@ Runner &runner() {
 // What came out per family.
 struct Tally {
   size_t sets = 0, vertices = 0, off = 0, coarse = 0, faults[static_cast<int>(Fault::kCount)] = {};
-  double worst = 0, worst_coarse = 0, milliseconds = 0, slowest = 0;
+  double worst = 0, worst_coarse = 0, longest_edge = 0, milliseconds = 0, slowest = 0;
   uint64_t worst_seed = 0, slowest_seed = 0;
 
   // Everything that is counted of one case.
@@ -37,6 +38,7 @@ struct Tally {
     milliseconds += v.milliseconds;
     if (v.milliseconds > slowest) slowest = v.milliseconds, slowest_seed = c.seed;
     ++faults[static_cast<int>(v.fault)];
+    longest_edge = std::max(longest_edge, v.edge);
     if (v.coarse) {
       ++coarse;
       worst_coarse = std::max(worst_coarse, v.error / static_cast<double>(c.settings.spacing));
@@ -48,9 +50,9 @@ struct Tally {
 
   std::string line() const {
     char text[320];
-    int used = std::snprintf(text, sizeof text, "%6zu sets %9zu vertices %6.1f ms each; worst %.2g Å (seed %llu), %zu above 0.02", sets,
+    int used = std::snprintf(text, sizeof text, "%6zu sets %9zu vertices %6.1f ms each; worst %.2g Å (seed %llu), %zu above 0.02; longest edge %.1f", sets,
                              vertices, sets ? milliseconds / static_cast<double>(sets) : 0, worst,
-                             static_cast<unsigned long long>(worst_seed), off);
+                             static_cast<unsigned long long>(worst_seed), off, longest_edge);
     if (coarse) used += std::snprintf(text + used, sizeof text - size_t(used), "; %zu coarse, worst %.2g spacings", coarse, worst_coarse);
     std::string out = std::string(text) + ";";
     for (int k = 1; k < static_cast<int>(Fault::kCount); ++k)
@@ -84,13 +86,13 @@ TEST(Properties, HoldForRandomSets) {
     done += cases.size();
   }
 
-  // The first two of each family and kind are shrunk, twenty in all.
+  // The first two of each family and kind are shrunk.
   std::map<std::pair<std::string, Fault>, int> seen;
-  int shrunk = 0;
+  uint64_t to_shrink = number_from_environment("QUICKSES_PROPERTY_SHRUNK", 20);
   for (Failed &f : failures) {
     std::string input = "";
-    if (++seen[{f.c.family, f.verdict.fault}] <= 2 && shrunk < 20) {
-      ++shrunk;
+    if (++seen[{f.c.family, f.verdict.fault}] <= 2 && to_shrink > 0) {
+      --to_shrink;
       input = "\n  " + row_of(Shrinker(runner()).shrink(f.c, f.verdict));
     }
     ADD_FAILURE() << f.c.family << ", seed " << f.c.seed << ": " << name_of(f.verdict.fault) << ": " << f.verdict.sentence << input;
