@@ -338,6 +338,7 @@ class Checker {
     Verdict v;
     Result r;
     if (compute(context_, c.atoms, c.settings, c, v, r)) {
+      // What the report says that Tally (property_test.cpp) counts goes into the verdict here.
       v.vertices = static_cast<uint32_t>(r.surface.vertex_count());
       check_connection(r, v);
       if (v.good()) check_bounds(r, v);

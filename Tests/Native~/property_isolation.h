@@ -7,6 +7,7 @@
 #include "property_checks.h"
 
 #ifndef _WIN32
+#include <csignal>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -27,20 +28,24 @@ inline Verdict checked(Checker &checker, const Case &c) {
 
 class Runner {
  public:
-  // In this process if asked for, for instance by tools that follow one process only.
-  explicit Runner(bool in_process) : in_process_(in_process || surface_fixture::tested_backend() == QSES_BACKEND_CUDA) {
-#ifdef _WIN32
-    in_process_ = true;
+  // processes: how many at a time; 0: all in this process, for tools that follow one process only.
+  explicit Runner(unsigned processes = 1) : processes_(processes) {
+    if (surface_fixture::tested_backend() == QSES_BACKEND_CUDA) processes_ = 0;
+#if defined(_WIN32) || defined(__SANITIZE_THREAD__)
+    processes_ = 0;
 #endif
   }
 
+  // How many cases keep all processes busy.
+  size_t batch() const { return 500 * std::max(1u, processes_); }
+
   std::vector<Verdict> run(const std::vector<Case> &cases, unsigned seconds_per_case = 60) {
     std::vector<Verdict> verdicts(cases.size());
-    if (in_process_) {
+    if (processes_ > 0) {
+      run_apart(cases, verdicts, seconds_per_case);
+    } else {
       if (!checker_) checker_ = std::make_unique<Checker>();
       for (size_t i = 0; i < cases.size(); ++i) verdicts[i] = checked(*checker_, cases[i]);
-    } else {
-      run_apart(cases, verdicts, seconds_per_case);
     }
     return verdicts;
   }
@@ -51,51 +56,75 @@ class Runner {
 #ifdef _WIN32
   void run_apart(const std::vector<Case> &, std::vector<Verdict> &, unsigned) {}
 #else
-  struct Board {
-    volatile size_t done;
-    Verdict verdicts[1];
+  // Cases from `next` to `end` are one process's. What it has found is in memory that is shared with it.
+  struct Share {
+    size_t next, end;
+    pid_t process;
   };
 
-  static void run_apart(const std::vector<Case> &cases, std::vector<Verdict> &verdicts, unsigned seconds_per_case) {
-    const size_t bytes = sizeof(Board) + cases.size() * sizeof(Verdict);
-    void *memory = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    if (memory == MAP_FAILED) throw std::runtime_error("no shared memory");
-    Board *board = static_cast<Board *>(memory);
-    for (size_t begin = 0; begin < cases.size();) {
-      board->done = begin;
-      const pid_t child = fork();
-      if (child < 0) throw std::runtime_error("no further process");
-      if (child == 0) {
-        const rlimit no_core{0, 0};
-        setrlimit(RLIMIT_CORE, &no_core);
-        Checker checker;
-        for (size_t i = begin; i < cases.size(); ++i) {
-          alarm(seconds_per_case);
-          board->verdicts[i] = checked(checker, cases[i]);
-          board->done = i + 1;
-        }
-        _exit(0);
+  template <class T>
+  struct Shared {
+    explicit Shared(size_t n) : bytes(n * sizeof(T)) {
+      void *memory = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+      if (memory == MAP_FAILED) throw std::runtime_error("no shared memory");
+      data = static_cast<T *>(memory);
+    }
+    Shared(const Shared &) = delete;
+    Shared &operator=(const Shared &) = delete;
+    ~Shared() { munmap(data, bytes); }
+    size_t bytes;
+    T *data;
+  };
+
+  void run_apart(const std::vector<Case> &cases, std::vector<Verdict> &verdicts, unsigned seconds_per_case) {
+    if (cases.empty()) return;
+    const Shared<Verdict> found(cases.size());
+    const Shared<volatile size_t> done(processes_);
+    const auto start = [&](Share &share, size_t k) {
+      done.data[k] = share.next;
+      if (share.next == share.end) return false;
+      share.process = fork();
+      if (share.process < 0) throw std::runtime_error("no further process");
+      if (share.process > 0) return true;
+      const rlimit no_core{0, 0};
+      setrlimit(RLIMIT_CORE, &no_core);
+      Checker checker;
+      for (size_t i = share.next; i < share.end; ++i) {
+        alarm(seconds_per_case);
+        found.data[i] = checked(checker, cases[i]);
+        done.data[k] = i + 1;
       }
+      _exit(0);
+    };
+    std::vector<Share> shares;
+    size_t running = 0;
+    for (size_t k = 0; k < processes_; ++k) {
+      shares.push_back({k * cases.size() / processes_, (k + 1) * cases.size() / processes_, 0});
+      running += start(shares[k], k) ? 1 : 0;
+    }
+    while (running > 0) {
       int status = 0;
-      waitpid(child, &status, 0);
-      const size_t done = board->done;
-      for (size_t i = begin; i < done; ++i) verdicts[i] = board->verdicts[i];
-      if (done < cases.size()) {
+      const pid_t ended = waitpid(-1, &status, 0);
+      for (size_t k = 0; k < shares.size(); ++k) {
+        Share &share = shares[k];
+        if (share.process != ended) continue;
+        --running;
+        for (; share.next < done.data[k]; ++share.next) verdicts[share.next] = found.data[share.next];
+        if (share.next == share.end) continue;
         const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
-        Verdict &v = verdicts[done];
+        Verdict &v = verdicts[share.next++];
         if (signal == SIGALRM)
           blame(v, Fault::kHang, "not finished after %u s", seconds_per_case);
         else
           blame(v, Fault::kCrash, "the process ended by signal %d, exit status %d", signal,
                 WIFEXITED(status) ? WEXITSTATUS(status) : 0);
+        running += start(share, k) ? 1 : 0;
       }
-      begin = done + 1;
     }
-    munmap(memory, bytes);
   }
 #endif
 
-  bool in_process_;
+  unsigned processes_;
   std::unique_ptr<Checker> checker_;
 };
 

@@ -18,7 +18,7 @@ inline Case without_atoms(const Case &c, size_t begin, size_t end) {
 
 inline float rounded(float value, int decimals) {
   const double scale = std::pow(10.0, decimals);
-  return static_cast<float>(std::round(static_cast<double>(value) * scale) / scale);
+  return static_cast<float>(std::round(static_cast<double>(value) * scale) / scale + 0.0);  // + 0: not -0
 }
 
 class Shrinker {

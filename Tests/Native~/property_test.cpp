@@ -5,7 +5,7 @@
 //   QUICKSES_PROPERTY_SEED        the first of their seeds; default 1. A seed gives the same set everywhere
 //   QUICKSES_PROPERTY_FAMILY      only sets of this family
 //   QUICKSES_PROPERTY_SHRUNK      how many faults are shrunk at most; default 20
-//   QUICKSES_PROPERTY_IN_PROCESS  1: not in processes of their own (for memory checkers)
+//   QUICKSES_PROPERTY_PROCESSES   how many processes compute at a time; default 1. 0: this one (for memory checkers)
 #include "property_regressions.h"
 #include "property_shrink.h"
 
@@ -15,13 +15,19 @@ namespace {
 
 using namespace properties;
 
+#ifdef QUICKSES_PROPERTY_DEFAULT_SETS  // of builds with sanitizers, which are slow
+constexpr uint64_t kDefaultSets = QUICKSES_PROPERTY_DEFAULT_SETS;
+#else
+constexpr uint64_t kDefaultSets = 2000;
+#endif
+
 uint64_t number_from_environment(const char *name, uint64_t otherwise) {
   const char *text = std::getenv(name);
   return text && *text ? std::strtoull(text, nullptr, 10) : otherwise;
 }
 
 Runner &runner() {
-  static Runner runner(number_from_environment("QUICKSES_PROPERTY_IN_PROCESS", 0) != 0);
+  static Runner runner(static_cast<unsigned>(number_from_environment("QUICKSES_PROPERTY_PROCESSES", 1)));
   return runner;
 }
 
@@ -63,7 +69,7 @@ struct Tally {
 };
 
 TEST(Properties, HoldForRandomSets) {
-  const uint64_t sets = number_from_environment("QUICKSES_PROPERTY_SETS", 2000);
+  const uint64_t sets = number_from_environment("QUICKSES_PROPERTY_SETS", kDefaultSets);
   const char *family = std::getenv("QUICKSES_PROPERTY_FAMILY");
   std::map<std::string, Tally> tallies;
   Tally all;
@@ -75,7 +81,7 @@ TEST(Properties, HoldForRandomSets) {
   uint64_t seed = number_from_environment("QUICKSES_PROPERTY_SEED", 1), done = 0;
   while (done < sets) {
     std::vector<Case> cases;
-    for (; cases.size() < 250 && done + cases.size() < sets; ++seed)
+    for (; cases.size() < runner().batch() && done + cases.size() < sets; ++seed)
       if (!family || !*family || std::string(family) == family_of(seed).name) cases.push_back(make_case(seed));
     const std::vector<Verdict> verdicts = runner().run(cases);
     for (size_t i = 0; i < cases.size(); ++i) {
