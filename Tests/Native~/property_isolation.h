@@ -71,7 +71,7 @@ class Runner {
     }
     Shared(const Shared &) = delete;
     Shared &operator=(const Shared &) = delete;
-    ~Shared() { munmap(data, bytes); }
+    ~Shared() { munmap(const_cast<std::remove_volatile_t<T> *>(data), bytes); }
     size_t bytes;
     T *data;
   };
