@@ -27,7 +27,8 @@ Measures revolved(double from, double to, Profile profile) {
 TEST(ClosedForms, AreThoseOfTheProfile) {
   const double p = 1.4;
   // Overlapping atoms, a waist, a spindle, one that only just is one, a small atom beside a large one.
-  const double pairs[][3] = {{1.7, 1.52, 2.1}, {1.7, 1.2, 4.5}, {1.7, 1.52, 5.8}, {1.7, 1.52, 5.555}, {3, 0.2, 4.1}, {3, 0.2, 3.05}};
+  const double pairs[][3] = {{1.7, 1.52, 2.1},   {1.7, 1.2, 4.5}, {1.7, 1.52, 5.8},
+                             {1.7, 1.52, 5.555}, {3, 0.2, 4.1},   {3, 0.2, 3.05}};
   for (const auto &[r1, r2, d] : pairs) {
     SCOPED_TRACE(testing::Message() << r1 << " " << r2 << " " << d);
     const double a = r1 + p, b = r2 + p, along = (d * d + a * a - b * b) / (2 * d);

@@ -39,8 +39,8 @@ inline void add_cap(Measures &m, double r, double along, double spacing) {
   add_part(m, 2 * pi() * r * height, pi() * height * height * (3 * r - height) / 3, r, spacing);
 }
 
-// Two balls, one beside the other: where the space between them is thinner than the lattice can tell, the mesh lacks what
-// faces it, or has a bridge across.
+// Two balls, one beside the other: where the space between them is thinner than the lattice can tell, the mesh lacks
+// what faces it, or has a bridge across.
 inline void add_gap(Measures &m, double a, double b, double gap, double spacing) {
   gap = std::max(0.0, gap);
   const double thick = 2 * spacing - gap, neck = std::min({a, b, spacing});

@@ -25,10 +25,11 @@ inline double play_of_radii(const Case &c) {
   return 3e-5 + std::ldexp(half_extent(c.atoms) + R, -22);
 }
 
-// The distance to the complement of the union of inflated balls lies between the two: that of balls a little smaller and
-// that of balls a little larger. They are far apart only where the surface is next to a discontinuity.
+// The distance to the complement of the union of inflated balls lies between the two: that of balls a little smaller
+// and that of balls a little larger. They are far apart only where the surface is next to a discontinuity.
 struct Range {
   double least, most;
+  Point probe;  // where a probe's centre may be, `most` away
 };
 
 class ExactSurface {
@@ -60,19 +61,24 @@ class ExactSurface {
           near.positions.insert(near.positions.end(), &case_.atoms.positions[3 * i], &case_.atoms.positions[3 * i] + 3);
           near.radii.push_back(case_.atoms.radii[i]);
         }
-      if (near.size() > 100) return {0, kInfinity};
-      return {Boundary(near, probe_ - play_).nearest(x).distance, Boundary(near, probe_ + play_).nearest(x).distance};
+      if (near.size() > 100) return {0, kInfinity, x};
+      return range(Boundary(near, probe_ - play_), Boundary(near, probe_ + play_), x);
     }
     if (!smaller_) {
       smaller_ = std::make_unique<Boundary>(case_.atoms, probe_ - play_);
       larger_ = std::make_unique<Boundary>(case_.atoms, probe_ + play_);
     }
-    return {smaller_->nearest(x).distance, larger_->nearest(x).distance};
+    return range(*smaller_, *larger_, x);
   }
 
   bool is_costly() const { return centers_.size() > kWhole; }
 
  private:
+  static Range range(const Boundary &smaller, const Boundary &larger, const Point &x) {
+    const exact_reference::Nearest far = larger.nearest(x);
+    return {smaller.nearest(x).distance, far.distance, far.position};
+  }
+
   static constexpr size_t kWhole = 64;  // with more atoms, those near a point are taken
 
   const Case &case_;

@@ -60,7 +60,8 @@ inline Draft gas(Random &random, double probe) {
   const size_t n = random.chance(0.05) ? random.count(60, 300) : random.count(2, 40);
   const double r = atom_radius(random),
                half = std::cbrt(static_cast<double>(n)) * (r + probe * random.unit()) * random.log_uniform(0.2, 3);
-  for (size_t i = 0; i < n; ++i) draft.balls.push_back({random.in_box(half), random.chance(0.5) ? r : atom_radius(random)});
+  for (size_t i = 0; i < n; ++i)
+    draft.balls.push_back({random.in_box(half), random.chance(0.5) ? r : atom_radius(random)});
   return draft;
 }
 
@@ -81,7 +82,8 @@ inline Draft cluster(Random &random, double) {
 // An edge at which something happens: spheres touch, meet in the middle of a face or of a cell, or none of that.
 inline double lattice_edge(Random &random, double inflated) {
   constexpr double kRound[] = {0.5, 1, 1.5, 2, 2.5, 3, 4};
-  const double special[] = {2 * inflated, std::sqrt(2.0) * inflated, std::sqrt(4.0 / 3) * inflated, std::sqrt(8.0) * inflated};
+  const double special[] = {2 * inflated, std::sqrt(2.0) * inflated, std::sqrt(4.0 / 3) * inflated,
+                            std::sqrt(8.0) * inflated};
   if (random.chance(0.4)) return random.any_of(kRound);
   return random.chance(0.5) ? special[random.below(4)] : inflated * random.uniform(0.3, 2.2);
 }
@@ -146,8 +148,8 @@ inline Draft fullerene(Random &random, double) {
 inline Draft icosahedron(Random &random, double probe) {
   Draft draft;
   const double g = 0.5 * (1 + std::sqrt(5.0)), r = random.any_of(kStandardRadii), R = r + probe;
-  // Vertices have a length of sqrt(1 + g²) and a distance of 2 before scaling: inflated spheres through the middle, just
-  // touching, through the middles of the faces, or none of it.
+  // Vertices have a length of sqrt(1 + g²) and a distance of 2 before scaling: inflated spheres through the middle,
+  // just touching, through the middles of the faces, or none of it.
   const double choices[] = {R / std::sqrt(1 + g * g), R, R * std::sqrt(3.0) / 2, R * random.uniform(0.3, 1.2)};
   const double scale = choices[random.below(4)];
   for (int turn = 0; turn < 3; ++turn)
@@ -231,7 +233,8 @@ inline Draft contained(Random &random, double) {
     const double r = random.uniform(0.3, 1.8), room = draft.balls[host].radius - r;
     const size_t at = draft.balls.size();
     const bool touching = random.chance(0.5);
-    draft.balls.push_back({draft.balls[host].center + ((touching ? 1.0 : random.unit()) * room) * random.direction(), r});
+    draft.balls.push_back(
+        {draft.balls[host].center + ((touching ? 1.0 : random.unit()) * room) * random.direction(), r});
     if (touching) draft.ties.push_back({Tie::kTangentInside, at, host, {}, random.ulps()});
   }
   return draft;
@@ -277,10 +280,12 @@ inline Draft through_a_circle(Random &random, double probe) {
   Draft draft;
   const size_t n = random.count(3, 7);
   const bool simple = random.chance(0.4);  // numbers that float holds exactly, so that the circle may be common, too
-  const double circle = simple ? 0.5 * static_cast<double>(random.count(4, 12)) : (probe + 1) * random.uniform(0.3, 1.5);
+  const double circle =
+      simple ? 0.5 * static_cast<double>(random.count(4, 12)) : (probe + 1) * random.uniform(0.3, 1.5);
   const bool exactly = random.chance(0.5);
   for (size_t k = 0; k < n; ++k) {
-    const double along = simple ? 0.25 * (static_cast<double>(random.below(25)) - 12) : circle * random.uniform(-1.5, 1.5);
+    const double along =
+        simple ? 0.25 * (static_cast<double>(random.below(25)) - 12) : circle * random.uniform(-1.5, 1.5);
     draft.balls.push_back({{along, 0, 0}, std::max(1e-4, std::hypot(circle, along) - probe)});
     draft.ties.push_back({Tie::kThroughPoint, k, k, {0, circle, 0}, exactly ? 0 : random.ulps()});
   }

@@ -127,8 +127,7 @@ inline Atoms place(Random &random, const Draft &draft, double probe) {
   Atoms placed;
   for (const Ball &b : draft.balls) {
     Point p = rotation(b.center) + shift;
-    if (decimals)
-      p = {std::round(p.x * 1000) / 1000, std::round(p.y * 1000) / 1000, std::round(p.z * 1000) / 1000};
+    if (decimals) p = {std::round(p.x * 1000) / 1000, std::round(p.y * 1000) / 1000, std::round(p.z * 1000) / 1000};
     const auto within = [](double x) { return std::min(1e6, std::max(-1e6, x)); };
     placed.add(within(p.x), within(p.y), within(p.z), std::min(100.0, std::max(1e-4, b.radius)));
   }

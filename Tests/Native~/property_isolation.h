@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-// Runs cases of the property tests one after the other in a process of their own, so that a crash or a hang is a fault of
-// one case and the next ones are still run. With CUDA, which does not live on in forked processes, and on Windows, they
-// run in this process.
+// Runs cases of the property tests one after the other in a process of their own, so that a crash or a hang is a fault
+// of one case and the next ones are still run. With CUDA, which does not live on in forked processes, and on Windows,
+// they run in this process.
 #pragma once
 
 #include "property_checks.h"
 
 #ifndef _WIN32
-#include <csignal>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <csignal>
 #endif
 
 namespace properties {

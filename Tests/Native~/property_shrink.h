@@ -123,9 +123,9 @@ inline std::string number(float value) {
 inline std::string row_of(const Case &c) {
   constexpr const char *surfaces[] = {"kSes", "kSas", "kVdw"};
   std::string row = "{\"" + c.family + "\", " + surfaces[c.settings.surface] + ", " +
-                    (c.settings.method == QSES_METHOD_GRID ? "kGrid" : "kExact") + ", " + number(c.settings.probe_radius) +
-                    ", " + number(c.settings.spacing) + ", " + std::to_string(c.settings.relaxation_steps) + ", " +
-                    std::to_string(c.comparisons) + ", {";
+                    (c.settings.method == QSES_METHOD_GRID ? "kGrid" : "kExact") + ", " +
+                    number(c.settings.probe_radius) + ", " + number(c.settings.spacing) + ", " +
+                    std::to_string(c.settings.relaxation_steps) + ", " + std::to_string(c.comparisons) + ", {";
   for (size_t i = 0; i < c.atoms.size(); ++i) {
     if (i >= 100) return row + " ... " + std::to_string(c.atoms.size()) + " atoms";
     row += i ? ", {" : "{";

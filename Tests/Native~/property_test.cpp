@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Random sets of atoms of every degenerate kind: no input may crash, every mesh must be closed and where the exact surface
-// is. Faults are shrunk and printed; keep them in property_regressions.h.
+// Random sets of atoms of every degenerate kind: no input may crash, every mesh must be closed and where the exact
+// surface is. Faults are shrunk and printed; keep them in property_regressions.h.
 //   QUICKSES_PROPERTY_SETS        number of sets; default 2000
 //   QUICKSES_PROPERTY_SEED        the first of their seeds; default 1. A seed gives the same set everywhere
 //   QUICKSES_PROPERTY_FAMILY      only sets of this family
@@ -56,10 +56,14 @@ struct Tally {
 
   std::string line() const {
     char text[320];
-    int used = std::snprintf(text, sizeof text, "%6zu sets %9zu vertices %6.1f ms each; worst %.2g Å (seed %llu), %zu above 0.02; longest edge %.1f", sets,
-                             vertices, sets ? milliseconds / static_cast<double>(sets) : 0, worst,
-                             static_cast<unsigned long long>(worst_seed), off, longest_edge);
-    if (coarse) used += std::snprintf(text + used, sizeof text - size_t(used), "; %zu coarse, worst %.2g spacings", coarse, worst_coarse);
+    int used = std::snprintf(
+        text, sizeof text,
+        "%6zu sets %9zu vertices %6.1f ms each; worst %.2g Å (seed %llu), %zu above 0.02; longest edge %.1f", sets,
+        vertices, sets ? milliseconds / static_cast<double>(sets) : 0, worst,
+        static_cast<unsigned long long>(worst_seed), off, longest_edge);
+    if (coarse)
+      used += std::snprintf(text + used, sizeof text - size_t(used), "; %zu coarse, worst %.2g spacings", coarse,
+                            worst_coarse);
     std::string out = std::string(text) + ";";
     for (int k = 1; k < static_cast<int>(Fault::kCount); ++k)
       if (faults[k]) out += " " + std::to_string(faults[k]) + " " + name_of(static_cast<Fault>(k)) + ",";
@@ -101,11 +105,36 @@ TEST(Properties, HoldForRandomSets) {
       --to_shrink;
       input = "\n  " + row_of(Shrinker(runner()).shrink(f.c, f.verdict));
     }
-    ADD_FAILURE() << f.c.family << ", seed " << f.c.seed << ": " << name_of(f.verdict.fault) << ": " << f.verdict.sentence << input;
+    ADD_FAILURE() << f.c.family << ", seed " << f.c.seed << ": " << name_of(f.verdict.fault) << ": "
+                  << f.verdict.sentence << input;
   }
   for (const auto &t : tallies) std::printf("property %-13s %s\n", t.first.c_str(), t.second.line().c_str());
   std::printf("property %-13s %s; slowest %.0f ms (seed %llu)\n", "all", all.line().c_str(), all.slowest,
               static_cast<unsigned long long>(all.slowest_seed));
+}
+
+// Atoms of the default radii as a file with three decimals has them, whose inflated spheres touch: two by two, along
+// axes and aside, also a step of float off. Area and volume are those of the closed form.
+TEST(Tangent, StandardRadiiWithThreeDecimals) {
+  std::vector<Case> cases;
+  for (qses_surface surface : {kSes, kSas, kVdw})
+    for (double a : kStandardRadii)
+      for (double b : kStandardRadii)
+        for (const Point &way : {Point{1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {0.6, -0.8, 0}, {0, 0.6, 0.8}}) {
+          Case c;
+          c.seed = cases.size() + 1;
+          c.settings = surface_fixture::settings(0.5, 1.4, surface);
+          c.settings.components = 1;
+          const double d = a + b + (surface == kVdw ? 0 : 2.8), x = -8.516, y = 7.755, z = -44.339;
+          const int steps[] = {0, 0, 0, 1, -1, 3, -40};
+          c.atoms.add(x, y, z, a).add(x + d * way.x, y + d * way.y, z + d * way.z, b);
+          c.atoms.radii[1] = stepped(c.atoms.radii[1], steps[cases.size() % 7]);
+          cases.push_back(c);
+        }
+  const std::vector<Verdict> verdicts = runner().run(cases);
+  for (size_t i = 0; i < cases.size(); ++i)
+    EXPECT_TRUE(verdicts[i].good()) << name_of(verdicts[i].fault) << ": " << verdicts[i].sentence << "\n  "
+                                    << row_of(cases[i]);
 }
 
 class Regressions : public testing::TestWithParam<Regression> {};
