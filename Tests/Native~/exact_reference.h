@@ -70,6 +70,11 @@ class Boundary {
       for (size_t j = 0; j < balls_.size(); ++j)
         if (i != j && length(balls_[i].center - balls_[j].center) < balls_[i].radius + balls_[j].radius)
           near_[i].push_back(j);
+    // Those first that hold most of the sphere.
+    for (size_t i = 0; i < balls_.size(); ++i) {
+      const auto room = [&](size_t j) { return length(balls_[i].center - balls_[j].center) - balls_[j].radius; };
+      std::sort(near_[i].begin(), near_[i].end(), [&](size_t a, size_t b) { return room(a) < room(b); });
+    }
     for (size_t i = 0; i < balls_.size(); ++i)
       for (size_t j : near_[i])
         if (i < j) add_circle(i, j);
@@ -90,12 +95,17 @@ class Boundary {
     return deepest;
   }
 
-  // Is a point of sphere i on the boundary?
-  bool exposed(size_t i, const Point &y) const {
-    for (size_t k : near_[i])
-      if (length(y - balls_[k].center) < balls_[k].radius - tolerance_) return false;
+  // Is a point of sphere i on the boundary? It may be one of the spheres j and k as well, whatever rounding says.
+  bool exposed(size_t i, const Point &y, size_t j, size_t k) const {
+    for (size_t other : near_[i]) {
+      if (other == j || other == k) continue;
+      const Point d = y - balls_[other].center;
+      const double free = balls_[other].radius - tolerance_;
+      if (free > 0 && dot(d, d) < free * free) return false;
+    }
     return true;
   }
+  bool exposed(size_t i, const Point &y) const { return exposed(i, y, i, i); }
 
   Nearest nearest(const Point &x) const {
     Nearest best{kInfinity, x, Kind::kNone};
@@ -120,7 +130,7 @@ class Boundary {
       if (distance >= best.distance) continue;
       in_plane = q > 1e-12 ? (1 / q) * in_plane : perpendicular(c.axis);
       const Point y = c.center + c.radius * in_plane;
-      if (exposed(c.i, y)) best = {distance, y, Kind::kCircle};
+      if (exposed(c.i, y, c.j, c.j)) best = {distance, y, Kind::kCircle};
     }
     return best;
   }
@@ -136,18 +146,25 @@ class Boundary {
     circles_.push_back({i, j, balls_[i].center + along * axis, axis, std::sqrt(radius2)});
   }
 
+  // In the plane of the three centres, with one axis from i to j: well-conditioned also where they are nearly collinear.
   void add_triple_points(size_t i, size_t j, size_t k) {
-    const Point u = balls_[j].center - balls_[i].center, v = balls_[k].center - balls_[i].center, n = cross(u, v);
-    const double uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), nn = dot(n, n);
-    if (nn <= 1e-12 * uu * vv) return;
-    const double a = balls_[i].radius, p = 0.5 * (uu + a * a - balls_[j].radius * balls_[j].radius),
-                 q = 0.5 * (vv + a * a - balls_[k].radius * balls_[k].radius);
-    const Point base = ((p * vv - q * uv) / nn) * u + ((q * uu - p * uv) / nn) * v;
-    const double height2 = (a * a - dot(base, base)) / nn;
-    if (height2 < 0) return;
+    const Point u = balls_[j].center - balls_[i].center, v = balls_[k].center - balls_[i].center;
+    const double d = length(u), a = balls_[i].radius;
+    if (d < 1e-9) return;
+    const Point e1 = (1 / d) * u;
+    const double v1 = dot(v, e1);
+    const Point across = v - v1 * e1;
+    const double v2 = length(across);
+    if (v2 <= 1e-9 * length(v)) return;
+    const Point e2 = (1 / v2) * across, e3 = cross(e1, e2);
+    const double x = (d * d + a * a - balls_[j].radius * balls_[j].radius) / (2 * d);
+    const double q = 0.5 * (v1 * v1 + v2 * v2 + a * a - balls_[k].radius * balls_[k].radius), y = (q - x * v1) / v2;
+    double height2 = a * a - x * x - y * y;
+    if (height2 < -1e-12 * a * a) return;
+    height2 = std::max(0.0, height2);
     for (double sign : {-1.0, 1.0}) {
-      const Point y = balls_[i].center + base + (sign * std::sqrt(height2)) * n;
-      if (exposed(i, y)) triples_.push_back({y, i, j, k});
+      const Point at = balls_[i].center + x * e1 + y * e2 + (sign * std::sqrt(height2)) * e3;
+      if (exposed(i, at, j, k)) triples_.push_back({at, i, j, k});
     }
   }
 

@@ -95,10 +95,9 @@ inline double signed_volume(const Mesh &mesh) {
   const std::array<double, 3> o = mesh.vertex_count() ? mesh.position(0) : std::array<double, 3>{};
   for (size_t t = 0; t < mesh.triangle_count(); ++t) {
     std::array<double, 3> p[3];
-    for (int k = 0; k < 3; ++k) {
-      p[k] = mesh.position(mesh.indices[3 * t + static_cast<size_t>(k)]);
-      for (int d = 0; d < 3; ++d) p[k][d] -= o[d];
-    }
+    for (size_t k = 0; k < 3; ++k) p[k] = mesh.position(mesh.indices[3 * t + k]);
+    // From a corner: of pieces far from o, products of large numbers would cancel.
+    for (size_t d = 0; d < 3; ++d) p[1][d] -= p[0][d], p[2][d] -= p[0][d], p[0][d] -= o[d];
     volume += p[0][0] * (p[1][1] * p[2][2] - p[1][2] * p[2][1]) + p[0][1] * (p[1][2] * p[2][0] - p[1][0] * p[2][2]) +
               p[0][2] * (p[1][0] * p[2][1] - p[1][1] * p[2][0]);
   }
