@@ -4,7 +4,7 @@
 // they run in this process.
 #pragma once
 
-#include "property_checks.h"
+#include "property_checker.h"
 
 #ifndef _WIN32
 #include <sys/mman.h>
