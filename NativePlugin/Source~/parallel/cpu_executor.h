@@ -367,7 +367,9 @@ class CpuExecutor {
   template <class Body>
   void run_chunks(size_t chunks, const Body &body) {
     if (chunks == 0) return;
-    std::atomic<size_t> next{0};
+    // That workers see what was done before them, and the caller what they did, is also said here: the thread sanitizer
+    // knows nothing of what a parallel system makes sure of.
+    std::atomic<size_t> next{0}, ended{0};
     // What one thread throws (memory that is refused) ends all of them and is thrown again here: not every parallel
     // system lets exceptions out.
     std::exception_ptr thrown;
@@ -375,17 +377,19 @@ class CpuExecutor {
     const auto work = [&](size_t worker) {
       const WorkScope scope(stop_);
       try {
-        for (size_t c; !failed && (c = next.fetch_add(1, std::memory_order_relaxed)) < chunks;) {
+        for (size_t c; !failed && (c = next.fetch_add(1, std::memory_order_acquire)) < chunks;) {
           look_for_stop();
           body(worker, c);
         }
       } catch (...) {
         if (!failed.exchange(true)) thrown = std::current_exception();
       }
+      ended.fetch_add(1, std::memory_order_release);
     };
+    next.store(0, std::memory_order_release);
     const size_t workers = std::min<size_t>(usable_threads(chunks), chunks);
     if (workers == 1 || !run(workers, work)) work(0);
-    if (thrown) std::rethrow_exception(thrown);
+    if (ended.load(std::memory_order_acquire) > 0 && thrown) std::rethrow_exception(thrown);
   }
 
   // Threads for so many chunks. Before the first time that it is more than one it is asked whether they can be had.
