@@ -180,7 +180,8 @@ TEST(Signs, OnASparseSetOfBricks) {
   EXPECT_EQ(bricks.find(run.lattice.brick_count), -1);
 }
 
-// Rows of bricks that a shell passes, whether they are short or long, hollow or not, and cut by the border of the table.
+// Rows of bricks that a shell passes, whether they are short or long, hollow or not, and cut by the border of the
+// table.
 TEST(BricksOfAShell, AreTheOnesWhoseBoxesMeetIt) {
   Lattice lattice{};
   lattice.spacing = 0.25f;

@@ -74,12 +74,11 @@ inline double bricks_of_ball(double radius, double spacing) {
   return 4.0 / 3.0 * 3.14159265358979 * bricks * bricks * bricks;
 }
 
-// Pairs of a brick and an arc within whose reach it lies, or an inflated ball that the grid method fills. The larger the
-// probe, the more there are.
+// Pairs of a brick and an arc within whose reach it lies, or an inflated ball that the grid method fills. The larger
+// the probe, the more there are.
 inline double guess_pairs(const WorkFacts &facts, const SurfaceParameters &parameters, bool exact, double spacing) {
   return exact ? static_cast<double>(facts.arcs) * bricks_of_ball(static_cast<double>(parameters.depth), spacing)
-               : static_cast<double>(facts.atoms) *
-                     bricks_of_ball(static_cast<double>(parameters.max_radius), spacing);
+               : static_cast<double>(facts.atoms) * bricks_of_ball(static_cast<double>(parameters.max_radius), spacing);
 }
 
 // Whether counting at a spacing takes next to no time.
@@ -92,7 +91,8 @@ bool is_cheap_to_count(const R &run, double spacing) {
   if (exact) return pairs <= kCheapPairs;
   double box = 1;
   for (int d = 0; d < 3; ++d)
-    box *= (static_cast<double>(run.high[d] - run.low[d]) + 2.0 * static_cast<double>(run.parameters.max_radius)) / brick;
+    box *=
+        (static_cast<double>(run.high[d] - run.low[d]) + 2.0 * static_cast<double>(run.parameters.max_radius)) / brick;
   return std::min(pairs, box) <= kCheapBricks;
 }
 
@@ -117,8 +117,8 @@ SurfaceSize estimate_size(const R &wanted) {
   // Bricks of large probes fill space and follow no such line; to find them takes much less than their signs.
   const uint64_t entries = wanted.lattice.table_size(), room = wanted.executor.arena().available();
   if (wanted.settings.method == QSES_METHOD_EXACT &&
-      guess_pairs(*wanted.facts, wanted.parameters, true, spacing) <= 64 * kCheapPairs &&
-      entries <= kMaxDenseCells && (kDenseEntryBytes + sizeof(uint64_t)) * entries <= room / 2) {
+      guess_pairs(*wanted.facts, wanted.parameters, true, spacing) <= 64 * kCheapPairs && entries <= kMaxDenseCells &&
+      (kDenseEntryBytes + sizeof(uint64_t)) * entries <= room / 2) {
     const auto mark = wanted.executor.arena().mark();
     size.bricks = static_cast<double>(find_bricks(wanted.executor, wanted.features, wanted.lattice).count);
     wanted.executor.arena().rewind(mark);
