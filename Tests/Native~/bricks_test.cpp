@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <random>
+
 namespace {
 
 using namespace exact_fixture;
@@ -175,6 +178,47 @@ TEST(Signs, OnASparseSetOfBricks) {
   EXPECT_GT(outside, 100u);
   EXPECT_EQ(bricks.find(glm::ivec3(-1, 0, 0)), -1);
   EXPECT_EQ(bricks.find(run.lattice.brick_count), -1);
+}
+
+// Rows of bricks that a shell passes, whether they are short or long, hollow or not, and cut by the border of the
+// table.
+TEST(BricksOfAShell, AreTheOnesWhoseBoxesMeetIt) {
+  Lattice lattice{};
+  lattice.spacing = 0.25f;
+  lattice.first_brick = glm::ivec3(-30, -25, -35);
+  lattice.brick_count = glm::ivec3(70, 45, 60);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> place(-45, 45), size(0, 40);
+  size_t visited_in_all = 0, hollow = 0;
+  for (int k = 0; k < 60; ++k) {
+    const glm::vec3 center(place(random), place(random), place(random));
+    const float outer = size(random), inner = k % 3 == 0 ? 0.f : k % 3 == 1 ? outer : outer * 0.7f;
+    std::vector<int> visits(lattice.table_size(), 0);
+    visit_bricks_of_shell(lattice, center, inner, outer, [&](uint64_t first, uint64_t count) {
+      for (uint64_t b = first; b < first + count; ++b) ++visits.at(b);
+    });
+    for (uint64_t b = 0; b < lattice.table_size(); ++b) {
+      const glm::ivec3 first = lattice.first_point(lattice.brick_at(b));
+      const double h = 0.25;
+      double near2 = 0, far2 = 0;
+      for (int d = 0; d < 3; ++d) {
+        const double low = (first[d] - 1) * h - center[d], high = low + 9 * h;
+        near2 += std::pow(std::max({0.0, low, -high}), 2);
+        far2 += std::pow(std::max(std::abs(low), std::abs(high)), 2);
+      }
+      ASSERT_LE(visits[b], 1);
+      // The boxes are a little larger, so as not to miss one by rounding.
+      constexpr double kSlack = 0.02;
+      const double near = std::sqrt(near2), far = std::sqrt(far2);
+      const bool meets = near <= outer && far >= inner;
+      const bool is_clear = near > outer + kSlack || far < inner - kSlack;
+      ASSERT_TRUE(meets ? visits[b] == 1 : !is_clear || visits[b] == 0) << b;
+      visited_in_all += static_cast<size_t>(visits[b]);
+      hollow += far < inner - kSlack ? 1 : 0;
+    }
+  }
+  EXPECT_GT(visited_in_all, 10000u);
+  EXPECT_GT(hollow, 10000u);
 }
 
 }  // namespace

@@ -48,9 +48,7 @@ void expect_same(const Surface &found, const Surface &expected) {
 // The finest level of a job.
 Surface compute_by_job(qses_context *context, const Task &task) {
   set_atoms(context, task.atoms);
-  qses_settings s = task.settings;
-  s.level_count = 0;
-  expect_ok(qses_begin(context, &s));
+  expect_ok(qses_begin(context, &task.settings));
   expect_ok(qses_wait(context, -1, nullptr));
   qses_mesh m;
   qses_mesh_init(&m);

@@ -159,8 +159,8 @@ TEST(SameBytes, InAnyRoundingMode) {
       int rounding;
       bool flush;
     };
-    for (const Mode &mode : {Mode{FE_UPWARD, false}, Mode{FE_DOWNWARD, true}, Mode{FE_TOWARDZERO, false},
-                             Mode{FE_TONEAREST, true}}) {
+    for (const Mode &mode :
+         {Mode{FE_UPWARD, false}, Mode{FE_DOWNWARD, true}, Mode{FE_TOWARDZERO, false}, Mode{FE_TONEAREST, true}}) {
       SCOPED_TRACE(mode.rounding);
       const CallersFloats floats(mode.rounding, mode.flush);
       const unsigned before = float_mode();

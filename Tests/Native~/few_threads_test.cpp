@@ -198,8 +198,8 @@ TEST(SmallStack, SufficesForStructuresAndTrajectories) {
     const char *name;
     std::string bytes;
   };
-  for (const File &file : {File{"a.pdb.gz", packed(pdb)}, File{"a.cif.gz", packed(cif())}, File{"a.cif", cif()},
-                           File{"a.pdb", pdb}}) {
+  for (const File &file :
+       {File{"a.pdb.gz", packed(pdb)}, File{"a.cif.gz", packed(cif())}, File{"a.cif", cif()}, File{"a.pdb", pdb}}) {
     SCOPED_TRACE(file.name);
     const std::string path = testing::TempDir() + "small_stack_" + file.name;
     std::ofstream(path, std::ios::binary) << file.bytes;
@@ -222,8 +222,8 @@ TEST(SmallStack, SufficesForStructuresAndTrajectories) {
   qses_status opened = QSES_INTERNAL_ERROR, read = QSES_INTERNAL_ERROR;
   on_small_stack([&] {
     qses_trajectory *trajectory = nullptr;
-    opened = qses_trajectory_open_memory(trajectory_bytes.data(), trajectory_bytes.size(), QSES_TRAJECTORY_PDB,
-                                         &trajectory);
+    opened =
+        qses_trajectory_open_memory(trajectory_bytes.data(), trajectory_bytes.size(), QSES_TRAJECTORY_PDB, &trajectory);
     std::vector<float> positions(3 * 327);
     read = qses_trajectory_read_frame(trajectory, 29, positions.data(), 0, 327, nullptr);
     qses_trajectory_close(trajectory);

@@ -75,6 +75,11 @@ std::vector<Case> cases() {
   s = settings(0.5);
   s.method = QSES_METHOD_GRID;
   add("grid", many, s);
+  const Atoms few = cluster(20, 1);
+  add("few atoms, huge probe", few, settings(0.25, 28));
+  s = settings(0.4, 28);
+  s.method = QSES_METHOD_GRID;
+  add("few atoms, huge probe, grid", few, s);
   return all;
 }
 

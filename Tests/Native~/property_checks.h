@@ -250,7 +250,8 @@ inline std::vector<size_t> worth_measuring(const Surface &surface, double probe,
 inline void check_distances(const Case &c, const Result &r, const ExactSurface &exact, Verdict &v) {
   const mesh_checks::Mesh &mesh = r.surface.mesh;
   const size_t count = mesh.vertex_count();
-  const double p = exact.probe(), rounding = rounding_of_positions(c);
+  const double p = exact.probe();
+  const double rounding = rounding_of_positions(c) + (exact.is_ses() ? rounding_of_circles(c) : 0);
   v.coarse = exact.is_ses() && static_cast<double>(c.settings.spacing) > 2 * p;
   const double bound = v.coarse ? 0.5 * static_cast<double>(c.settings.spacing) : 0.02;
   const auto judge = [&](size_t k, double error, const char *what) {

@@ -16,7 +16,14 @@ using exact_reference::point;
 // Å. Coordinates of the mesh are float32, computed in a frame around the middle of the atoms.
 inline double rounding_of_positions(const Case &c) {
   const double R = largest_radius(c.atoms) + static_cast<double>(c.settings.probe_radius);
-  return std::ldexp(largest_coordinate(c.atoms) + half_extent(c.atoms) + R, -21);
+  return std::ldexp(largest_coordinate(c.atoms) + half_extent(c.atoms) + R, -23);
+}
+
+// Å, of the SES. Coordinates beyond 1000 Å add what the rounding of spheres does to the circles in which they nearly
+// touch.
+inline double rounding_of_circles(const Case &c) {
+  if (std::max(largest_coordinate(c.atoms), half_extent(c.atoms)) <= 1000) return 0;
+  return std::sqrt(2 * (largest_radius(c.atoms) + inflation(c.settings)) * rounding_of_positions(c));
 }
 
 // By how much the radii of balls may seem changed: where the surface touches itself within 0.00002 Å, rounding decides.

@@ -6,12 +6,13 @@
 
 #include "property_checker.h"
 
+#include <csignal>
+
 #ifndef _WIN32
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
-#include <csignal>
 #endif
 
 namespace properties {
@@ -25,6 +26,33 @@ inline Verdict checked(Checker &checker, const Case &c) {
     return v;
   }
 }
+
+// What is printed if this process crashes.
+class LastWords {
+ public:
+  LastWords() {
+    for (int signal : {SIGSEGV, SIGABRT, SIGFPE, SIGILL}) std::signal(signal, print);
+  }
+  ~LastWords() {
+    for (int signal : {SIGSEGV, SIGABRT, SIGFPE, SIGILL}) std::signal(signal, SIG_DFL);
+  }
+  template <class... Values>
+  void say(const char *format, Values... values) const {
+    std::snprintf(words(), kSize, format, values...);
+  }
+
+ private:
+  static constexpr size_t kSize = 100;
+  static char *words() {
+    static char text[kSize] = "";
+    return text;
+  }
+  static void print(int signal) {
+    std::fputs(words(), stderr);
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);
+  }
+};
 
 class Runner {
  public:
@@ -45,7 +73,11 @@ class Runner {
       run_apart(cases, verdicts, seconds_per_case);
     } else {
       if (!checker_) checker_ = std::make_unique<Checker>();
-      for (size_t i = 0; i < cases.size(); ++i) verdicts[i] = checked(*checker_, cases[i]);
+      const LastWords last_words;
+      for (size_t i = 0; i < cases.size(); ++i) {
+        last_words.say("property test: ended within seed %llu\n", static_cast<unsigned long long>(cases[i].seed));
+        verdicts[i] = checked(*checker_, cases[i]);
+      }
     }
     return verdicts;
   }

@@ -85,7 +85,7 @@ class SurfaceJob : private LevelSink {
   std::condition_variable changed_;
   SurfaceRequest waiting_;
   bool running_ = false, quit_ = false, cancelled_ = false, superseded_ = false;
-  bool cancelled_call_ = false;                     // while a compute or estimate waits for a job to end
+  bool cancelled_call_ = false;  // while a compute or estimate waits for a job to end
   bool estimating_ = false;
   uint32_t levels_finished_ = 0, level_count_ = 0;  // of the job
   uint32_t first_level_ = 0, ladder_count_ = 0;     // where they are in the ladder

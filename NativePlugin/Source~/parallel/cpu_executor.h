@@ -1,36 +1,23 @@
 // SPDX-License-Identifier: MIT
-// The verbs of parallel/executor.h on the CPU, by one of Thrust's parallel systems: TBB, or OpenMP where there is no
-// TBB. Which one is a build option; nothing outside this file knows.
+// The verbs of parallel/executor.h on the CPU's threads, with the sequential algorithms of Thrust.
 #pragma once
 
 #include "parallel/arena.h"
+#include "parallel/cpu_threads.h"
 #include "parallel/executor.h"
-#include "parallel/startable_threads.h"
+#include "parallel/host_memory.h"
 #include "parallel/working_thread.h"
 
-#if defined(QSES_CPU_SYSTEM_OMP)
-#include <omp.h>
-#include <thrust/system/omp/execution_policy.h>
-#else
-#include <tbb/info.h>
-#include <tbb/task_arena.h>
-#include <thrust/system/tbb/execution_policy.h>
-#endif
 #include <thrust/execution_policy.h>
-#include <thrust/for_each.h>
-#include <thrust/iterator/counting_iterator.h>
 #include <thrust/merge.h>
 #include <thrust/sort.h>
 
 #include <algorithm>
 #include <atomic>
-#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <map>
 #include <memory>
-#include <new>
-#include <thread>
 #include <typeindex>
 #include <utility>
 #include <vector>
@@ -39,49 +26,6 @@ namespace quickses {
 
 struct CpuKernels;
 const CpuKernels &cpu_kernels();
-
-struct HostMemory {
-  static constexpr const char *kName = "the machine";
-  static void *acquire(size_t bytes) {
-#if defined(_WIN32)
-    return _aligned_malloc(bytes, 256);
-#else
-    return std::aligned_alloc(256, (bytes + 255) / 256 * 256);
-#endif
-  }
-  static void release(void *p) {
-#if defined(_WIN32)
-    _aligned_free(p);
-#else
-    std::free(p);
-#endif
-  }
-};
-
-// Hands out memory that the caller has set aside, to Thrust, which takes a few pieces and gives them back. Where that
-// is not enough, the heap's.
-class RoomAllocator {
- public:
-  using value_type = char;
-  static constexpr size_t kAlignment = 64;
-  // Of a room, for one piece.
-  static size_t room_for(size_t bytes) { return bytes / kAlignment * kAlignment + 2 * kAlignment; }
-
-  RoomAllocator(char *room, size_t bytes) : room_(room), end_(room + bytes), next_(room) {}
-  char *allocate(size_t bytes) {
-    bytes = (bytes + kAlignment - 1) / kAlignment * kAlignment;
-    if (static_cast<size_t>(end_ - next_) < bytes) return static_cast<char *>(::operator new(bytes));
-    char *const piece = next_;
-    next_ += bytes;
-    return piece;
-  }
-  void deallocate(char *piece, size_t) {
-    if (piece < room_ || piece >= end_) ::operator delete(piece);
-  }
-
- private:
-  char *room_, *end_, *next_;
-};
 
 class CpuExecutor {
  public:
@@ -104,10 +48,9 @@ class CpuExecutor {
     CpuExecutor &executor_;
   };
 
-  explicit CpuExecutor(unsigned threads)
-      : threads_(threads ? threads : std::max(1u, std::thread::hardware_concurrency())) {}
+  explicit CpuExecutor(unsigned threads) : threads_(threads) {}
 
-  unsigned threads() const { return threads_; }
+  unsigned threads() const { return threads_.count(); }
   // The instruction set's kernels that the hot stages use; tests set others.
   const CpuKernels &kernels() const { return *kernels_; }
   void set_kernels(const CpuKernels &kernels) { kernels_ = &kernels; }
@@ -119,7 +62,7 @@ class CpuExecutor {
     for (const auto &pool : scratch_pools_) sum += pool.second.bytes(pool.second.objects.get());
     return sum;
   }
-  uint64_t scratch_allowance() const { return threads_ * (uint64_t(256) << 10); }
+  uint64_t scratch_allowance() const { return threads() * (uint64_t(256) << 10); }
 
   // Memory was refused: to know how much there is would not help, since all work is cut small already.
   void bound_arena() {}
@@ -132,7 +75,7 @@ class CpuExecutor {
   template <class F>
   void for_each(size_t n, F f) {
     // Chunks keep the functor's loop tight and the scheduler out of it.
-    const size_t chunk = std::max<size_t>(kSerialItems, n / (size_t(threads_) * 16));
+    const size_t chunk = std::max<size_t>(kSerialItems, n / (size_t(threads()) * 16));
     run_chunks((n + chunk - 1) / chunk,
                [&](size_t, size_t c) { for_range(c * chunk, std::min(n, (c + 1) * chunk), f); });
   }
@@ -144,7 +87,7 @@ class CpuExecutor {
     ScratchPool &pool = scratch_pools_[std::type_index(typeid(Scratch))];
     if (!pool.objects) {
       auto made = std::make_shared<std::vector<std::unique_ptr<Scratch>>>();
-      for (unsigned k = 0; k < threads_; ++k) made->emplace_back(new Scratch);
+      for (unsigned k = 0; k < threads(); ++k) made->emplace_back(new Scratch);
       pool = {made, &pool_bytes<Scratch>};
     }
     return *static_cast<std::vector<std::unique_ptr<Scratch>> *>(pool.objects.get());
@@ -175,7 +118,7 @@ class CpuExecutor {
   template <class Load, class T>
   void exclusive_scan(size_t n, Load load, Span<T> out) {
     // Two sweeps over chunks: sums, then the running values. One sweep where there is little to do.
-    const size_t chunks = n < 65536 || threads_ == 1 ? 1 : size_t(threads_) * 4;
+    const size_t chunks = n < 65536 || threads() == 1 ? 1 : size_t(threads()) * 4;
     const size_t chunk = (n + chunks - 1) / (chunks ? chunks : 1);
     const auto mark = arena_.mark();
     const Span<T> begin = allocate<T>(chunks + 1);
@@ -222,11 +165,11 @@ class CpuExecutor {
     const size_t n = keys.size;
     if (n < 2) return;
     size_t runs = 1;
-    while (n / runs > (threads_ > 1 ? kSortedRun : 4 * kSortedRun)) runs *= 4;
+    while (n / runs > (threads() > 1 ? kSortedRun : 4 * kSortedRun)) runs *= 4;
     const size_t length = (n + runs - 1) / runs;
     const auto mark = arena_.mark();
     const size_t room = RoomAllocator::room_for(length * sizeof(Key)) + RoomAllocator::room_for(length * sizeof(Value));
-    const Span<char> rooms = allocate<char>(std::min<size_t>(runs, threads_) * room);
+    const Span<char> rooms = allocate<char>(std::min<size_t>(runs, threads()) * room);
     run_chunks(runs, [&](size_t worker, size_t k) {
       const size_t first = std::min(n, k * length), last = std::min(n, first + length);
       RoomAllocator allocator(rooms.data + worker * room, room);
@@ -262,7 +205,7 @@ class CpuExecutor {
 
   template <class Keep, class T>
   size_t compact(size_t n, Keep keep, Span<T> out) {
-    const size_t chunks = n < 65536 || threads_ == 1 ? 1 : size_t(threads_) * 4;
+    const size_t chunks = n < 65536 || threads() == 1 ? 1 : size_t(threads()) * 4;
     const size_t chunk = (n + chunks - 1) / chunks;
     const auto mark = arena_.mark();
     const Span<size_t> begin = allocate<size_t>(chunks + 1);
@@ -313,7 +256,7 @@ class CpuExecutor {
 
  private:
   static constexpr size_t kSerialItems = 64;
-  static constexpr size_t kSortedRun = size_t(1) << 15;  // items that one thread sorts, or merges, at a time
+  static constexpr size_t kSortedRun = size_t(1) << 15;    // items that one thread sorts, or merges, at a time
   static constexpr size_t kFilledPiece = size_t(1) << 20;  // bytes
 
   struct ScratchPool {
@@ -367,7 +310,9 @@ class CpuExecutor {
   template <class Body>
   void run_chunks(size_t chunks, const Body &body) {
     if (chunks == 0) return;
-    std::atomic<size_t> next{0};
+    // That workers see what was done before them, and the caller what they did, is also said here: the thread sanitizer
+    // knows nothing of what a parallel system makes sure of.
+    std::atomic<size_t> next{0}, ended{0};
     // What one thread throws (memory that is refused) ends all of them and is thrown again here: not every parallel
     // system lets exceptions out.
     std::exception_ptr thrown;
@@ -375,66 +320,23 @@ class CpuExecutor {
     const auto work = [&](size_t worker) {
       const WorkScope scope(stop_);
       try {
-        for (size_t c; !failed && (c = next.fetch_add(1, std::memory_order_relaxed)) < chunks;) {
+        for (size_t c; !failed && (c = next.fetch_add(1, std::memory_order_acquire)) < chunks;) {
           look_for_stop();
           body(worker, c);
         }
       } catch (...) {
         if (!failed.exchange(true)) thrown = std::current_exception();
       }
+      ended.fetch_add(1, std::memory_order_release);
     };
-    const size_t workers = std::min<size_t>(usable_threads(chunks), chunks);
-    if (workers == 1 || !run(workers, work)) work(0);
-    if (thrown) std::rethrow_exception(thrown);
+    next.store(0, std::memory_order_release);
+    const size_t workers = std::min<size_t>(chunks > 1 ? threads_.usable() : 1, chunks);
+    if (workers == 1 || !threads_.run(workers, work)) work(0);
+    if (ended.load(std::memory_order_acquire) > 0 && thrown) std::rethrow_exception(thrown);
   }
 
-  // Threads for so many chunks. Before the first time that it is more than one it is asked whether they can be had.
-  unsigned usable_threads(size_t chunks) {
-    if (chunks == 1 || threads_ == 1) return 1;
-    if (usable_ == 0) {
-#if !defined(QSES_CPU_SYSTEM_OMP)
-      // More than the machine has are of no use, and TBB would complain on stderr.
-      const unsigned wanted = std::min(threads_, static_cast<unsigned>(tbb::info::default_concurrency()));
-#else
-      const unsigned wanted = threads_;
-#endif
-      usable_ = 1 + count_startable_threads(wanted - 1);
-#if !defined(QSES_CPU_SYSTEM_OMP)
-      arena_threads_.initialize(static_cast<int>(usable_));
-#endif
-    }
-    return usable_ == 1 ? 1 : threads_;
-  }
-
-  // work(worker) for all workers, by the threads of the parallel system. False if that had none to give after all: what
-  // was left undone is then to be done by the caller.
-  template <class Work>
-  bool run(size_t workers, const Work &work) {
-    const thrust::counting_iterator<size_t> first(0), last(workers);
-#if defined(QSES_CPU_SYSTEM_OMP)
-    const struct Restore {
-      int threads = omp_get_max_threads();
-      ~Restore() { omp_set_num_threads(threads); }
-    } restore;
-    omp_set_num_threads(static_cast<int>(usable_));
-    thrust::for_each(thrust::omp::par, first, last, work);
-#else
-    try {
-      arena_threads_.execute([&] { thrust::for_each(thrust::tbb::par, first, last, work); });
-    } catch (const std::exception &) {
-      usable_ = 1;
-      return false;
-    }
-#endif
-    return true;
-  }
-
-  unsigned threads_;
-  unsigned usable_ = 0;  // of them; 0: not known yet
+  CpuThreads threads_;
   const std::atomic<bool> *stop_ = nullptr;
-#if !defined(QSES_CPU_SYSTEM_OMP)
-  tbb::task_arena arena_threads_;
-#endif
   const CpuKernels *kernels_ = &cpu_kernels();
   Arena<HostMemory> arena_;
   std::map<std::type_index, ScratchPool> scratch_pools_;

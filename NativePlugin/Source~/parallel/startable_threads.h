@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Parallel systems end the process, or half of their work, when the machine refuses them a thread. So it is asked first.
+// Parallel systems end the process, or half of their work, when the machine refuses them a thread. So it is asked
+// first.
 #pragma once
 
 namespace quickses {

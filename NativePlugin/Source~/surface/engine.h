@@ -54,9 +54,9 @@ class SurfaceEngine {
   // Room for the atoms of a frame. Memory of sets that nobody holds any more is used again. Throws Error.
   virtual std::shared_ptr<AtomSet> make_atoms(size_t count) = 0;
 
-  // Computes the surface at each spacing, all of them of the settings' ladder, in that order; atoms, neighbour grid and features are made once. Settings are
-  // checked already; what the appearance has is there for all atoms. Throws Error, or Cancelled soon after the stop
-  // flag is set; levels finished before stay as they are.
+  // Computes the surface at each spacing, all of them of the settings' ladder, in that order; atoms, neighbour grid and
+  // features are made once. Settings are checked already; what the appearance has is there for all atoms. Throws Error,
+  // or Cancelled soon after the stop flag is set; levels finished before stay as they are.
   virtual void compute(const AtomSet &atoms, const Appearance &appearance, const qses_settings &settings,
                        Span<const float> spacings, LevelSink &sink) = 0;
 

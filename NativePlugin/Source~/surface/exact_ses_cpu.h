@@ -19,7 +19,8 @@ struct CandidatesOf<CpuExecutor> {
   static uint64_t whole_bytes(const SurfaceParameters &, const CandidateCounts &) { return 0; }
 };
 
-// Memory of one thread for a brick: columns for what is near it, and its vertices. Grows when a brick needs more; kept between surfaces.
+// Memory of one thread for a brick: columns for what is near it, and its vertices. Grows when a brick needs more; kept
+// between surfaces.
 struct BrickColumns {
   alignas(64) unsigned char vertex_memory[BrickScratch::kVertexBytes];
   std::vector<float> atom_memory, arc_memory;

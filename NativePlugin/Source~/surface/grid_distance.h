@@ -9,8 +9,8 @@
 
 namespace quickses {
 
-// Where the cube is large most of its rows have nothing to tell. Bricks know from the beginning how far along x the next
-// outside point can be, and that alone settles which side of the surface most of them are on.
+// Where the cube is large most of its rows have nothing to tell. Bricks know from the beginning how far along x the
+// next outside point can be, and that alone settles which side of the surface most of them are on.
 
 // What the voxel method needs to know about a surface.
 struct GridParameters {
@@ -53,15 +53,16 @@ struct GridField {
 
   // No outside point beyond so many bricks along an axis is within reach of a brick or the next one.
   QSES_FN int bricks_in_reach() const { return parameters.reach / kBrickEdge + 2; }
-  // How many bricks on, in either direction along x, there may be one with outside points; one more than are in reach if
-  // there is none.
+  // How many bricks on, in either direction along x, there may be one with outside points; one more than are in reach
+  // if there is none.
   QSES_FN int bricks_to_outside(const glm::ivec3 &place) const {
     const int brick = bricks.find(place);
     return brick < 0 ? 0 : along_x[brick];
   }
 };
 
-// Lattice steps along an axis from the first N points of a brick to the points of the one so many bricks on: the fewest.
+// Lattice steps along an axis from the first N points of a brick to the points of the one so many bricks on: the
+// fewest.
 template <int N>
 QSES_FN int32_t fewest_steps(int bricks_on) {
   const int steps = bricks_on < 0 ? -kBrickEdge * (bricks_on + 1) + 1 : kBrickEdge * bricks_on - (N - 1);
@@ -198,8 +199,8 @@ QSES_FN RowShare row_share(const Team &team) {
   return {row, rows, row < rows ? team.rank() % N : N, N};
 }
 
-// Fills scratch.nearest for a brick. Squared distances above the limit may come out too large. All of the team must call
-// it; it ends with a sync.
+// Fills scratch.nearest for a brick. Squared distances above the limit may come out too large. All of the team must
+// call it; it ends with a sync.
 template <int N, class Team>
 QSES_HOST_DEVICE inline void find_distances(const GridField &f, uint32_t brick, const Team &team,
                                             DistanceScratch<N> &scratch, int32_t limit) {

@@ -22,7 +22,8 @@ class MemoryPlan {
           f_.size.bricks * CandidatesOf<Executor>::emission_bytes(
                                k_.parameters, candidates(), f_.size.vertices / bricks(), f_.size.leaves / bricks()) +
           CandidatesOf<Executor>::kSpareBytes;
-    double level = brick_bytes() + (k_.exact ? 0 : kGridBrickBytes * f_.size.bricks) + std::max(making, component_bytes());
+    double level =
+        brick_bytes() + (k_.exact ? 0 : kGridBrickBytes * f_.size.bricks) + std::max(making, component_bytes());
     if (Executor::kIsCuda) level += mesh_bytes();
     return std::max(peak, prepared + level + mask_bytes());
   }

@@ -317,7 +317,11 @@ class SurfacePipeline : public SurfaceEngine {
       } catch (const MemoryRefused &) {  // then it is guessed
       }
     }
-    const uint64_t budget = smallest_budget(least_of_unfinished<Executor>(facts_, kind_of(prepared_, settings)));
+    const uint64_t budget = smallest_budget(least_of_unfinished<Executor>(
+        facts_, kind_of(prepared_, settings),
+        prepared_.parameters.spacing > 0.f
+            ? static_cast<double>(at_spacing(prepared_, prepared_.parameters.spacing).frame.table_size())
+            : 0.0));
     throw Error(QSES_OUT_OF_MEMORY,
                 "the memory budget of " + describe_bytes(budget_) + " does not suffice for this surface: about " +
                     describe_bytes(std::max(budget, budget_ + budget_ / 8)) + " would do, or a larger spacing");

@@ -74,24 +74,26 @@ inline double bricks_of_ball(double radius, double spacing) {
   return 4.0 / 3.0 * 3.14159265358979 * bricks * bricks * bricks;
 }
 
-// Pairs of a brick and an arc within whose reach it lies. The larger the probe, the more there are.
-template <class R>
-double guess_pairs(const R &run, double spacing) {
-  return static_cast<double>(run.facts->arcs) * bricks_of_ball(static_cast<double>(run.parameters.depth), spacing);
+// Pairs of a brick and an arc within whose reach it lies, or an inflated ball that the grid method fills. The larger
+// the probe, the more there are.
+inline double guess_pairs(const WorkFacts &facts, const SurfaceParameters &parameters, bool exact, double spacing) {
+  return exact ? static_cast<double>(facts.arcs) * bricks_of_ball(static_cast<double>(parameters.depth), spacing)
+               : static_cast<double>(facts.atoms) * bricks_of_ball(static_cast<double>(parameters.max_radius), spacing);
 }
 
-// Whether counting at a spacing takes next to no time. The grid method fills the inflated balls.
+// Whether counting at a spacing takes next to no time.
 template <class R>
 bool is_cheap_to_count(const R &run, double spacing) {
   const double atoms = static_cast<double>(run.facts->atoms);
   if (guess_bricks(atoms, kUsualArea * atoms, spacing) > kCheapBricks) return false;
-  if (run.settings.method != QSES_METHOD_GRID) return guess_pairs(run, spacing) <= kCheapPairs;
-  const double atoms_apart = atoms * bricks_of_ball(static_cast<double>(run.parameters.max_radius), spacing);
-  const double brick = spacing * kBrickEdge;
+  const bool exact = run.settings.method == QSES_METHOD_EXACT;
+  const double pairs = guess_pairs(*run.facts, run.parameters, exact, spacing), brick = spacing * kBrickEdge;
+  if (exact) return pairs <= kCheapPairs;
   double box = 1;
   for (int d = 0; d < 3; ++d)
-    box *= (static_cast<double>(run.high[d] - run.low[d]) + 2.0 * static_cast<double>(run.parameters.max_radius)) / brick;
-  return std::min(atoms_apart, box) <= kCheapBricks;
+    box *=
+        (static_cast<double>(run.high[d] - run.low[d]) + 2.0 * static_cast<double>(run.parameters.max_radius)) / brick;
+  return std::min(pairs, box) <= kCheapBricks;
 }
 
 // Of the mesh at the spacing of the run.
@@ -114,8 +116,9 @@ SurfaceSize estimate_size(const R &wanted) {
   SurfaceSize size = extrapolate(fine, h, coarse, 2 * h, spacing);
   // Bricks of large probes fill space and follow no such line; to find them takes much less than their signs.
   const uint64_t entries = wanted.lattice.table_size(), room = wanted.executor.arena().available();
-  if (wanted.settings.method != QSES_METHOD_GRID && guess_pairs(wanted, spacing) <= 64 * kCheapPairs &&
-      entries <= kMaxDenseCells && (kDenseEntryBytes + sizeof(uint64_t)) * entries <= room / 2) {
+  if (wanted.settings.method == QSES_METHOD_EXACT &&
+      guess_pairs(*wanted.facts, wanted.parameters, true, spacing) <= 64 * kCheapPairs && entries <= kMaxDenseCells &&
+      (kDenseEntryBytes + sizeof(uint64_t)) * entries <= room / 2) {
     const auto mark = wanted.executor.arena().mark();
     size.bricks = static_cast<double>(find_bricks(wanted.executor, wanted.features, wanted.lattice).count);
     wanted.executor.arena().rewind(mark);
@@ -135,8 +138,9 @@ uint64_t count_kept_caps(const R &run) {
 }
 
 // The least that the work would have taken, where it ended before all was counted: the rest is guessed generously.
+// most_bricks: of the box.
 template <class Executor>
-double least_of_unfinished(WorkFacts facts, const WorkKind &kind) {
+double least_of_unfinished(WorkFacts facts, const WorkKind &kind, double most_bricks) {
   const double atoms = static_cast<double>(facts.atoms), h = static_cast<double>(kind.parameters.spacing);
   if (facts.arcs == 0) {
     // Larger spheres have more neighbours.
@@ -145,7 +149,10 @@ double least_of_unfinished(WorkFacts facts, const WorkKind &kind) {
     facts.arcs = static_cast<uint64_t>(4 * atoms * wide);
     facts.arc_cells = facts.atom_cells;
   }
-  if (facts.size.bricks == 0) facts.size.bricks = 1.2 * guess_bricks(atoms, kUsualArea * atoms, h) + 64;
+  if (facts.size.bricks == 0) {
+    const double pairs = guess_pairs(facts, kind.parameters, kind.exact, h);
+    facts.size.bricks = std::max(1.2 * guess_bricks(atoms, kUsualArea * atoms, h) + 64, std::min(pairs, most_bricks));
+  }
   if (facts.size.vertices == 0) {
     facts.size.vertices = kVerticesPerCell * kUsualArea * atoms / (h * h);
     facts.size.triangles = 2 * facts.size.vertices;

@@ -83,8 +83,8 @@ namespace QuickSes
         }
 
         /// <summary>
-        /// Ends the job that runs as soon as it can and drops the one that waits; a <see cref="Compute"/> on another
-        /// thread returns Cancelled. Returns at once. Any thread, at any time before Dispose.
+        /// Ends the job that runs as soon as it can and drops the one that waits; a <see cref="Compute"/> or
+        /// <see cref="Estimate"/> on another thread returns Cancelled. Returns at once. Any thread, at any time before Dispose.
         /// </summary>
         public void Cancel()
         {
