@@ -15,7 +15,7 @@ constexpr int kNeighborhood = 27, kOwnPlace = 13;
 QSES_FN glm::ivec3 neighbor_step(int place) { return glm::ivec3(place % 3 - 1, place / 3 % 3 - 1, place / 9 - 1); }
 
 // Which signs the points of a brick next to each neighbour have: the points of a face, an edge or a corner.
-struct BorderSigns {
+struct alignas(8) BorderSigns {
   uint32_t inside, outside;  // a bit per neighbour
 };
 
@@ -68,21 +68,24 @@ QSES_FN uint32_t shared_neighbors(uint32_t bits, const glm::ivec3 &step) {
 // The inactive neighbours of a brick next to which signs differ, among its own points and those of its neighbours.
 QSES_FN uint32_t border_changes(const BrickSet &bricks, const BorderSigns *signs, size_t brick) {
   const glm::ivec3 place = bricks.lattice.brick_at(bricks.linear[brick]);
-  BorderSigns near = signs[brick];
+  // All loads before what needs them: on the GPU they are waited for together.
+  int other[kNeighborhood];
+#if defined(__CUDA_ARCH__)
+#pragma unroll
+#endif
+  for (int k = 0; k < kNeighborhood; ++k)
+    other[k] = k == kOwnPlace ? static_cast<int>(brick) : bricks.find(place + neighbor_step(k));
+  BorderSigns near{0, 0};
   uint32_t inactive = 0;
 #if defined(__CUDA_ARCH__)
 #pragma unroll
 #endif
   for (int k = 0; k < kNeighborhood; ++k) {
-    if (k == kOwnPlace) continue;
-    const glm::ivec3 step = neighbor_step(k);
-    const int other = bricks.find(place + step);
-    if (other < 0) {
-      inactive |= 1u << k;
-      continue;
-    }
-    near.inside |= shared_neighbors(signs[other].inside, step);
-    near.outside |= shared_neighbors(signs[other].outside, step);
+    const BorderSigns there = signs[other[k] < 0 ? brick : static_cast<size_t>(other[k])];
+    const uint32_t mask = other[k] < 0 ? 0u : ~0u;
+    inactive |= static_cast<uint32_t>(other[k] < 0) << k;
+    near.inside |= shared_neighbors(there.inside & mask, neighbor_step(k));
+    near.outside |= shared_neighbors(there.outside & mask, neighbor_step(k));
   }
   return inactive & near.inside & near.outside;
 }

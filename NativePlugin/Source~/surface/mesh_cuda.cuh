@@ -38,18 +38,13 @@ __device__ __forceinline__ void finish_vertex(const VertexJob &job, uint32_t k, 
   if (job.mesh.patches) job.mesh.patch(vertex) = static_cast<uint8_t>(s.patch);
 }
 
-// Between the kernels, the place of a vertex in the mesh holds where it is on its way; its owner tells whether that can
-// be trusted.
-__device__ __forceinline__ void leave_vertex(const VertexJob &job, uint32_t k, const SurfacePoint &s) {
+// Between the kernels, the place of a vertex in the mesh holds where it is on its way; its owner tells what is known.
+enum Way : uint32_t { kNowhere, kProjected, kMovedAside };
+__device__ __forceinline__ void leave_vertex(const VertexJob &job, uint32_t k, const SurfacePoint &s, Way way) {
   const uint32_t vertex = job.first + k;
   store_start(job, vertex, s.position);
   store_vec3(job.mesh.normal(vertex), s.normal);
-  job.mesh.owner(vertex) = s.placed ? 1 : 0;
-}
-__device__ __forceinline__ SurfacePoint left_vertex(const VertexJob &job, uint32_t k) {
-  const uint32_t vertex = job.first + k;
-  return {stored_start(job, vertex), load_vec3(job.mesh.normal(vertex)), QSES_PATCH_CONTACT,
-          job.mesh.owner(vertex) != 0};
+  job.mesh.owner(vertex) = s.placed ? way : kNowhere;
 }
 
 static __global__ __launch_bounds__(kVertexThreads) void project_on_atoms_kernel(VertexJob job) {
@@ -73,7 +68,7 @@ static __global__ __launch_bounds__(kVertexThreads) void project_on_atoms_kernel
   if (s.placed)
     finish_vertex(job, k, s, deepest.atom);
   else
-    leave_vertex(job, k, s);
+    leave_vertex(job, k, s, kNowhere);
 }
 
 static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(VertexJob job) {
@@ -102,7 +97,9 @@ static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(
   Look look = look_at_arc(p, load(f.arcs + nearest.arc), nearest.second2, x);
   const bool mask_tells = arcs <= kMaskBits && 2.f * depth - look.distance < near;
   __syncwarp();
+  Way way = kProjected;
   if (look.point.placed && look.again && mask_tells) {
+    way = kMovedAside;
     const Vec3<float> from = look.point.position;
     nearest = NearestArc();
     for (uint64_t rest = near_arcs; rest; rest &= rest - 1) {
@@ -118,30 +115,92 @@ static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(
   if (done)
     finish_vertex(job, k, look.point, nearest_atom(f, candidates, look.point.position));
   else
-    leave_vertex(job, k, look.point);
+    leave_vertex(job, k, look.point, way);
+}
+
+// Candidates that a few lanes look at together for one vertex, with the same result in each. The two functions are
+// those of projection.h, to the last bit.
+constexpr int kVertexLanes = 8;
+struct SharedCandidates : RowCandidates {
+  static __device__ __forceinline__ int rank() { return lane_id() % kVertexLanes; }
+  static __device__ __forceinline__ unsigned lanes() {
+    return ((1u << kVertexLanes) - 1u) << (lane_id() / kVertexLanes * kVertexLanes);
+  }
+};
+
+__device__ __forceinline__ DeepestAtom deepest_atom(const FeatureView &f, const SharedCandidates &candidates,
+                                                    const Vec3<float> &x) {
+  DeepestAtom best{0, -2.f * kFarAway};
+  int place = 0x7fffffff;  // in the list: of several, the first
+  for (int k = candidates.rank(); k < candidates.atom_count(); k += kVertexLanes) {
+    const uint32_t i = candidates.atom(k);
+    const float d = ball_depth(load(f.atoms.items + i), x);
+    if (d > best.depth) {
+      best = {i, d};
+      place = k;
+    }
+  }
+  const unsigned lanes = candidates.lanes();
+#pragma unroll
+  for (int d = kVertexLanes / 2; d > 0; d >>= 1) {
+    const float depth = __shfl_xor_sync(lanes, best.depth, d);
+    const uint32_t atom = __shfl_xor_sync(lanes, best.atom, d);
+    const int other = __shfl_xor_sync(lanes, place, d);
+    if (depth > best.depth || (depth == best.depth && other < place)) {
+      best = {atom, depth};
+      place = other;
+    }
+  }
+  return best;
+}
+
+__device__ __forceinline__ NearestArc nearest_arc(const FeatureView &f, const SharedCandidates &candidates,
+                                                  const Vec3<float> &x) {
+  NearestArc best;
+  for (int k = candidates.rank(); k < candidates.arc_count(); k += kVertexLanes) {
+    const int a = static_cast<int>(candidates.arc(k));
+    best.offer(a, arc_distance2(load(f.arcs + a), x));
+  }
+  const unsigned lanes = candidates.lanes();
+#pragma unroll
+  for (int d = kVertexLanes / 2; d > 0; d >>= 1) {
+    const int arc = __shfl_xor_sync(lanes, best.arc, d);
+    const float distance2 = __shfl_xor_sync(lanes, best.distance2, d);
+    const float second2 = __shfl_xor_sync(lanes, best.second2, d);
+    if (arc >= 0) best.offer(arc, distance2);
+    best.second2 = minimum(best.second2, second2);
+  }
+  return best;
 }
 
 static __global__ __launch_bounds__(kVertexThreads) void project_again_kernel(VertexJob job) {
-  const uint32_t place = blockIdx.x * kVertexThreads + threadIdx.x, total = *job.again_count;
-  if (place >= total) return;
-  const uint32_t k = job.again[place], vertex = job.first + k;
   const FeatureView &f = job.features;
-  Look look{left_vertex(job, k), 0.f, true};
-  const RowCandidates candidates = vertex_candidates(job, job.vertex_row[k]);
-  for (int round = 1; round < kMaxProjections && look.point.placed && look.again; ++round) {
-    const Vec3<float> x = look.point.position;
-    const NearestArc nearest = nearest_arc(f, candidates, x);
-    look = look_around(f.parameters, load(f.arcs + nearest.arc), nearest.second2, x, look.point.normal);
+  const uint32_t teams = gridDim.x * (kVertexThreads / kVertexLanes), total = *job.again_count;
+  for (uint32_t place = (blockIdx.x * kVertexThreads + threadIdx.x) / kVertexLanes; place < total; place += teams) {
+    const uint32_t k = job.again[place], vertex = job.first + k;
+    const uint32_t way = job.mesh.owner(vertex);
+    Look look{{stored_start(job, vertex), load_vec3(job.mesh.normal(vertex)), QSES_PATCH_CONTACT, way != kNowhere},
+              0.f,
+              true};
+    SharedCandidates candidates{vertex_candidates(job, job.vertex_row[k])};
+    bool aside = way == kMovedAside;
+    for (int round = 1; round < kMaxProjections && look.point.placed && look.again; ++round) {
+      const Vec3<float> x = look.point.position;
+      const NearestArc nearest = nearest_arc(f, candidates, x);
+      look = look_around(f.parameters, load(f.arcs + nearest.arc), nearest.second2, x, look.point.normal);
+      aside |= look.again;
+    }
+    SurfacePoint s = look.point;
+    if (!s.placed || look.again || (aside && is_over_contact(f, candidates, s.position))) {
+      const uint32_t brick = brick_of_vertex(job.layout, job.bricks.count, vertex);
+      candidates = {brick_candidates(job.view, brick - job.view.first_brick)};
+      s = place_on_edge(f, candidates,
+                        ends_of_edge(job.bricks, job.layout, brick, edge_of_vertex(job.layout, brick, vertex)));
+    }
+    const uint32_t owner = nearest_atom(f, candidates, s.position);
+    __syncwarp(candidates.lanes());  // all of them have read what is written now
+    if (candidates.rank() == 0) finish_vertex(job, k, s, owner);
   }
-  if (look.point.placed && !look.again && !is_over_contact(f, candidates, look.point.position)) {
-    finish_vertex(job, k, look.point, nearest_atom(f, candidates, look.point.position));
-    return;
-  }
-  const uint32_t brick = brick_of_vertex(job.layout, job.bricks.count, vertex);
-  const RowCandidates all = brick_candidates(job.view, brick - job.view.first_brick);
-  const SurfacePoint s =
-      place_on_edge(f, all, ends_of_edge(job.bricks, job.layout, brick, edge_of_vertex(job.layout, brick, vertex)));
-  finish_vertex(job, k, s, nearest_atom(f, all, s.position));
 }
 
 // ---- triangles -------------------------------------------------------------------------------------------------
