@@ -12,6 +12,9 @@ namespace quickses {
 // Bricks that are counted without a thought, and pairs of a brick and an arc that comes near it.
 constexpr double kCheapBricks = 32768, kCheapPairs = 64 * kCheapBricks;
 
+// Part of the table of bricks that inflated balls fill at most: none reaches the bricks at its border.
+constexpr double kFilledBox = 0.8;
+
 // Å² of surface per atom, if nothing else is known.
 constexpr double kUsualArea = 10;
 
@@ -138,7 +141,7 @@ uint64_t count_kept_caps(const R &run) {
 }
 
 // The least that the work would have taken, where it ended before all was counted: the rest is guessed generously.
-// most_bricks: of the box.
+// most_bricks: of the table.
 template <class Executor>
 double least_of_unfinished(WorkFacts facts, const WorkKind &kind, double most_bricks) {
   const double atoms = static_cast<double>(facts.atoms), h = static_cast<double>(kind.parameters.spacing);
@@ -151,7 +154,8 @@ double least_of_unfinished(WorkFacts facts, const WorkKind &kind, double most_br
   }
   if (facts.size.bricks == 0) {
     const double pairs = guess_pairs(facts, kind.parameters, kind.exact, h);
-    facts.size.bricks = std::max(1.2 * guess_bricks(atoms, kUsualArea * atoms, h) + 64, std::min(pairs, most_bricks));
+    facts.size.bricks = std::max(1.2 * guess_bricks(atoms, kUsualArea * atoms, h) + 64,
+                                 std::min(pairs, (kind.exact ? 1.0 : kFilledBox) * most_bricks));
   }
   if (facts.size.vertices == 0) {
     facts.size.vertices = kVerticesPerCell * kUsualArea * atoms / (h * h);
