@@ -253,7 +253,7 @@ inline void check_distances(const Case &c, const Result &r, const ExactSurface &
   const double p = exact.probe();
   const double rounding = rounding_of_positions(c) + (exact.is_ses() ? rounding_of_circles(c) : 0);
   v.coarse = exact.is_ses() && static_cast<double>(c.settings.spacing) > 2 * p;
-  const double bound = v.coarse ? 0.5 * static_cast<double>(c.settings.spacing) : 0.02;
+  const double bound = v.coarse ? std::max(0.02, 0.1 * static_cast<double>(c.settings.spacing)) : 0.02;
   const auto judge = [&](size_t k, double error, const char *what) {
     error -= rounding;
     if (!(error <= v.error)) v.error = error;

@@ -19,11 +19,12 @@ inline double rounding_of_positions(const Case &c) {
   return std::ldexp(largest_coordinate(c.atoms) + half_extent(c.atoms) + R, -23);
 }
 
-// Å, of the SES. Coordinates beyond 1000 Å add what the rounding of spheres does to the circles in which they nearly
-// touch.
+// Å, of the SES. Where spheres nearly touch, rounding moves the circle in which they meet by so much. Of balls below 20
+// Å within 1000 Å it is little, and no excuse.
 inline double rounding_of_circles(const Case &c) {
-  if (std::max(largest_coordinate(c.atoms), half_extent(c.atoms)) <= 1000) return 0;
-  return std::sqrt(2 * (largest_radius(c.atoms) + inflation(c.settings)) * rounding_of_positions(c));
+  const double R = largest_radius(c.atoms) + inflation(c.settings);
+  if (R <= 20 && std::max(largest_coordinate(c.atoms), half_extent(c.atoms)) <= 1000) return 0;
+  return std::sqrt(2 * R * rounding_of_positions(c));
 }
 
 // By how much the radii of balls may seem changed: where the surface touches itself within 0.00002 Å, rounding decides.
