@@ -35,7 +35,8 @@ class Checker {
     Verdict v;
     Result r;
     if (compute(context_, c.atoms, c.settings, c, v, r)) {
-      // What the report says that Tally (property_test.cpp) counts goes into the verdict here.
+      v.border_bricks = r.surface.report.border_bricks;
+      v.unplaced = r.surface.report.unplaced_vertices;
       v.vertices = static_cast<uint32_t>(r.surface.vertex_count());
       check_connection(r, v);
       if (v.good()) check_bounds(r, v);
@@ -143,11 +144,9 @@ class Checker {
     return last;
   }
 
-  // Without coarser levels, the mesh of qses_compute; with them, whose lattices share an origin, the same one each
-  // time.
+  // The same settings give the same bytes, computed or as the last level of a job.
   void compare_with_job(const Case &c, const Result &r, Verdict &v) {
     qses_settings s = c.settings;
-    s.level_count = 0;
     if (const char *what = difference(r, run_job(context_, c, s, v)))
       blame(v, Fault::kBytes, "other %s from a job", what);
     if (s.spacing > 25) return;

@@ -46,6 +46,7 @@ struct Verdict {
   double edge = 0;      // spacings, the longest edge of a triangle
   bool coarse = false;  // the spacing is above two probe radii
   uint32_t vertices = 0;
+  uint64_t border_bricks = 0, unplaced = 0;  // as the report has them
   double milliseconds = 0;
 
   bool good() const { return fault == Fault::kNone; }

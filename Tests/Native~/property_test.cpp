@@ -34,6 +34,7 @@ Runner &runner() {
 // What came out per family.
 struct Tally {
   size_t sets = 0, vertices = 0, off = 0, coarse = 0, faults[static_cast<int>(Fault::kCount)] = {};
+  uint64_t grown = 0, unplaced = 0;
   double worst = 0, worst_coarse = 0, longest_edge = 0, milliseconds = 0, slowest = 0;
   uint64_t worst_seed = 0, slowest_seed = 0;
 
@@ -41,6 +42,8 @@ struct Tally {
   void add(const Case &c, const Verdict &v) {
     ++sets;
     vertices += v.vertices;
+    grown += v.border_bricks > 0 ? 1 : 0;
+    unplaced += v.unplaced;
     milliseconds += v.milliseconds;
     if (v.milliseconds > slowest) slowest = v.milliseconds, slowest_seed = c.seed;
     ++faults[static_cast<int>(v.fault)];
@@ -65,6 +68,8 @@ struct Tally {
       used += std::snprintf(text + used, sizeof text - size_t(used), "; %zu coarse, worst %.2g spacings", coarse,
                             worst_coarse);
     std::string out = std::string(text) + ";";
+    if (grown > 0) out += " bricks added in " + std::to_string(grown) + " sets;";
+    if (unplaced > 0) out += " " + std::to_string(unplaced) + " vertices without a feature;";
     for (int k = 1; k < static_cast<int>(Fault::kCount); ++k)
       if (faults[k]) out += " " + std::to_string(faults[k]) + " " + name_of(static_cast<Fault>(k)) + ",";
     if (sets == faults[0]) out += " no faults";
