@@ -266,12 +266,15 @@ inline void check_distances(const Case &c, const Result &r, const ExactSurface &
   const size_t stride = 1 + count * c.atoms.size() / 200000;
   for (size_t k = 0; k < count; k += stride) {
     const Point x = point(mesh.position(k)), n = point(r.surface.normal(k));
-    if (exact.is_ses()) {
+    // Which way a point lies from an atom that is smaller than the rounding there, nobody can tell.
+    const double own_radius = static_cast<double>(c.atoms.radii[mesh.owners[k]]);
+    const bool has_direction = own_radius > 4 * rounding_of_positions(c);
+    if (!exact.is_ses()) {
+      judge(k, std::abs(exact.depth(x)), "");
+    } else if (has_direction) {
       const double depth = exact.depth(x + p * n);
       judge(k, depth - play_of_radii(c), ": along its normal the probe overlaps an atom");
       judge(k, -depth, ": along its normal the probe touches no atom");
-    } else {
-      judge(k, std::abs(exact.depth(x)), "");
     }
   }
   if (!exact.is_ses()) return;

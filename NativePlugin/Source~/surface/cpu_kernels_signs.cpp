@@ -115,9 +115,9 @@ BrickNeeds evaluate_brick_signs(const FeatureView &f, const BrickSet &bricks, ui
   const float h = lattice.spacing, depth = f.parameters.depth;
   const glm::ivec3 first = lattice.first_point(lattice.brick_at(bricks.linear[brick]));
   const Vec3<float> low = lattice.position(first.x, first.y, first.z);
-  // Far more than rounding, far less than any probe radius.
+  // More than rounding.
   const float farthest = maximum(maximum(absolute(low.x), absolute(low.y)), absolute(low.z));
-  const float slack = minimum(1e-3f + 1e-6f * farthest, 0.02f);
+  const float slack = 1e-3f + 1e-6f * farthest;
   const BrickCandidates c = gather_candidates(f, low, 7.f * h, 1.1f * slack, depth + slack, scratch);
   if (c.needs.atoms || c.needs.arcs) return c.needs;
 

@@ -178,7 +178,7 @@ QSES_FN void row_distances(const GridField &f, glm::ivec3 place, int y, int z, i
 // The first N x N x N lattice points of a brick: 8 for its own, 9 for the corners of its cells too. The cube around
 // them is worked off in tiles, so that the scratch does not grow with p / h.
 template <int N>
-struct DistanceScratch {
+struct alignas(16) DistanceScratch {  // kernels read whole vectors of it
   static constexpr int kTilePlanes = kBrickEdge, kTileBricks = 3, kTileRows = kTileBricks * kBrickEdge;
   int32_t nearest[N * N * N];                 // the result, x fastest
   int32_t planes[kTilePlanes * N * N];        // nearest within one plane of constant z

@@ -69,7 +69,7 @@ class MemoryPlan {
   double bricks() const { return std::max(1.0, f_.size.bricks); }
   // Table, list, signs and layout.
   double brick_bytes() const {
-    return 5 * static_cast<double>(f_.brick_entries) + (8 + 64 + 268 + 8 + 12) * f_.size.bricks;
+    return 5 * static_cast<double>(f_.brick_entries) + (8 + 64 + 276 + 8 + 12) * f_.size.bricks;
   }
   // Sums and starts of the steps after the first; of the grid method, sums.
   double beside_mesh() const {

@@ -13,7 +13,7 @@ namespace quickses {
 constexpr double kCheapBricks = 32768, kCheapPairs = 64 * kCheapBricks;
 
 // Part of the table of bricks that inflated balls fill at most: none reaches the bricks at its border.
-constexpr double kFilledBox = 0.8;
+constexpr double kFilledBox = 0.77;
 
 // Å² of surface per atom, if nothing else is known.
 constexpr double kUsualArea = 10;
