@@ -146,7 +146,8 @@ class Boundary {
     circles_.push_back({i, j, balls_[i].center + along * axis, axis, std::sqrt(radius2)});
   }
 
-  // In the plane of the three centres, with one axis from i to j: well-conditioned also where they are nearly collinear.
+  // In the plane of the three centres, with one axis from i to j: well-conditioned also where they are nearly
+  // collinear.
   void add_triple_points(size_t i, size_t j, size_t k) {
     const Point u = balls_[j].center - balls_[i].center, v = balls_[k].center - balls_[i].center;
     const double d = length(u), a = balls_[i].radius;

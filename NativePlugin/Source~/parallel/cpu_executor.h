@@ -62,7 +62,7 @@ class CpuExecutor {
     for (const auto &pool : scratch_pools_) sum += pool.second.bytes(pool.second.objects.get());
     return sum;
   }
-  uint64_t scratch_allowance() const { return threads() * (uint64_t(256) << 10); }
+  uint64_t scratch_allowance() const { return threads() * (uint64_t(272) << 10); }
 
   // Memory was refused: to know how much there is would not help, since all work is cut small already.
   void bound_arena() {}

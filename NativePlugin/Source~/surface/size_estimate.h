@@ -13,7 +13,9 @@ namespace quickses {
 constexpr double kCheapBricks = 32768, kCheapPairs = 64 * kCheapBricks;
 
 // Part of the table of bricks that inflated balls fill at most: none reaches the bricks at its border.
-constexpr double kFilledBox = 0.77;
+constexpr double kFilledBox = 0.8;
+// Part of the sum of the balls that they fill together, where they overlap as atoms do.
+constexpr double kFilledBalls = 0.8;
 
 // Å² of surface per atom, if nothing else is known.
 constexpr double kUsualArea = 10;
@@ -154,8 +156,9 @@ double least_of_unfinished(WorkFacts facts, const WorkKind &kind, double most_br
   }
   if (facts.size.bricks == 0) {
     const double pairs = guess_pairs(facts, kind.parameters, kind.exact, h);
-    facts.size.bricks = std::max(1.2 * guess_bricks(atoms, kUsualArea * atoms, h) + 64,
-                                 std::min(pairs, (kind.exact ? 1.0 : kFilledBox) * most_bricks));
+    facts.size.bricks =
+        std::max(1.2 * guess_bricks(atoms, kUsualArea * atoms, h) + 64,
+                 kind.exact ? std::min(pairs, most_bricks) : std::min(kFilledBalls * pairs, kFilledBox * most_bricks));
   }
   if (facts.size.vertices == 0) {
     facts.size.vertices = kVerticesPerCell * kUsualArea * atoms / (h * h);
