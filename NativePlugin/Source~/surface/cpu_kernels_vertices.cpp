@@ -239,13 +239,27 @@ void project_reentrant(const FeatureView &f, const BrickCandidates &c, float spa
   }
 }
 
+// Those of the brick's candidates that decide about one edge.
+struct EdgeCandidates {
+  const BrickCandidates &c;
+  int atoms, arcs;
+  int atom_count() const { return atoms; }
+  uint32_t atom(int k) const { return static_cast<uint32_t>(c.atom_index[c.near_list[k]]); }
+  int arc_count() const { return arcs; }
+  uint32_t arc(int k) const { return static_cast<uint32_t>(c.arc_index[c.arc_list[k]]); }
+};
+
 // What is left: vertices near no feature, and those that probes on all sides push to and fro.
 void place_on_edges(const FeatureView &f, const BrickSet &bricks, const MeshLayout &layout, uint32_t brick,
                     const BrickCandidates &c, int n, Work *w) {
   for (int v = 0; v < n; ++v) {
     if (w->placed[v]) continue;
     const LatticeEdge edge = edge_of_vertex(layout, brick, layout.vertex_base[brick] + static_cast<uint32_t>(v));
-    const SurfacePoint s = place_on_edge(f, AllCandidates{c}, ends_of_edge(bricks, layout, brick, edge));
+    const CutEdge ends = ends_of_edge(bricks, layout, brick, edge);
+    const EdgeCandidates near{
+        c, choose_balls(c.atoms, c.atom_count, ends.middle(), edge_reach(f.parameters), c.near_list),
+        choose_balls(c.arcs, c.arc_count, ends.middle(), edge_arc_reach(f.parameters), c.arc_list)};
+    const SurfacePoint s = place_on_edge(f, near, ends);
     w->place.x[v] = s.position.x, w->place.y[v] = s.position.y, w->place.z[v] = s.position.z;
     w->normal.x[v] = s.normal.x, w->normal.y[v] = s.normal.y, w->normal.z[v] = s.normal.z;
     w->patch[v] = static_cast<uint8_t>(s.patch);

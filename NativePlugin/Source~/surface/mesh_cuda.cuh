@@ -122,6 +122,8 @@ static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(
 // those of projection.h, to the last bit.
 constexpr int kVertexLanes = 8;
 struct SharedCandidates : RowCandidates {
+  __device__ __forceinline__ uint32_t atom(int k) const { return atoms[k]; }  // in any memory
+  __device__ __forceinline__ uint32_t arc(int k) const { return arcs[k]; }
   static __device__ __forceinline__ int rank() { return lane_id() % kVertexLanes; }
   static __device__ __forceinline__ unsigned lanes() {
     return ((1u << kVertexLanes) - 1u) << (lane_id() / kVertexLanes * kVertexLanes);
@@ -173,7 +175,44 @@ __device__ __forceinline__ NearestArc nearest_arc(const FeatureView &f, const Sh
   return best;
 }
 
+// Those of a brick's candidates that decide about an edge; all of them where there is no room for the choice.
+constexpr int kEdgeRoom = 160;
+__device__ __forceinline__ SharedCandidates choose_for_edge(const FeatureView &f, const RowCandidates &all,
+                                                            const CutEdge &edge, uint32_t *room) {
+  const unsigned lanes = SharedCandidates::lanes();
+  const int rank = SharedCandidates::rank();
+  const Vec3<float> middle = edge.middle();
+  const auto choose = [&](const Sphere *balls, const uint32_t *items, int count, float reach, uint32_t *out, int left) {
+    int n = 0;
+    for (int k0 = 0; k0 < count; k0 += kVertexLanes) {
+      const int k = k0 + rank;
+      bool near = false;
+      uint32_t i = 0;
+      if (k < count) {
+        i = __ldg(items + k);
+        const Sphere ball = load(balls + i);
+        const float r = ball.radius + reach;
+        near = length_squared(Vec3<float>(ball.center) - middle) < r * r;
+      }
+      const unsigned ballot = __ballot_sync(lanes, near) & lanes;
+      const int place = n + place_in(ballot, lane_id());
+      if (near && place < left) out[place] = i;
+      n += __popc(ballot);
+    }
+    return n;
+  };
+  __syncwarp(lanes);  // the choice before is not looked at any more
+  const int atoms = choose(f.atoms.items, all.atoms, all.atom_total, edge_reach(f.parameters), room, kEdgeRoom);
+  const int left = atoms < kEdgeRoom ? kEdgeRoom - atoms : 0;
+  const int arcs = choose(f.arc_bounds.items, all.arcs, all.arc_total, edge_arc_reach(f.parameters),
+                          room + (kEdgeRoom - left), left);
+  __syncwarp(lanes);
+  if (atoms > kEdgeRoom || arcs > left) return {all};
+  return {{room, room + atoms, atoms, arcs}};
+}
+
 static __global__ __launch_bounds__(kVertexThreads) void project_again_kernel(VertexJob job) {
+  __shared__ uint32_t edge_memory[kVertexThreads / kVertexLanes][kEdgeRoom];
   const FeatureView &f = job.features;
   const uint32_t teams = gridDim.x * (kVertexThreads / kVertexLanes), total = *job.again_count;
   for (uint32_t place = (blockIdx.x * kVertexThreads + threadIdx.x) / kVertexLanes; place < total; place += teams) {
@@ -193,9 +232,9 @@ static __global__ __launch_bounds__(kVertexThreads) void project_again_kernel(Ve
     SurfacePoint s = look.point;
     if (!s.placed || look.again || (aside && is_over_contact(f, candidates, s.position))) {
       const uint32_t brick = brick_of_vertex(job.layout, job.bricks.count, vertex);
+      const CutEdge edge = ends_of_edge(job.bricks, job.layout, brick, edge_of_vertex(job.layout, brick, vertex));
       candidates = {brick_candidates(job.view, brick - job.view.first_brick)};
-      s = place_on_edge(f, candidates,
-                        ends_of_edge(job.bricks, job.layout, brick, edge_of_vertex(job.layout, brick, vertex)));
+      s = place_on_edge(f, choose_for_edge(f, candidates, edge, edge_memory[threadIdx.x / kVertexLanes]), edge);
     }
     const uint32_t owner = nearest_atom(f, candidates, s.position);
     __syncwarp(candidates.lanes());  // all of them have read what is written now
