@@ -291,7 +291,7 @@ namespace QuickSes.Tests
         }
 
         [Test]
-        public void DisposeWaitsForTheRead()
+        public void DisposeAllWaitsForTheRead()
         {
             var reader = new CountingReader(10);
             var prefetcher = new FramePrefetcher(reader, 5);
@@ -299,8 +299,26 @@ namespace QuickSes.Tests
             prefetcher.Request(Order(10, 0));
             WaitUntil(() => reader.ReadsSoFar().Length == 1, "a frame is being read");
             using (new Timer(_ => reader.Gate.Set(), null, 50, Timeout.Infinite))
-                prefetcher.Dispose();
+                FramePrefetcher.DisposeAll();
             Assert.That(prefetcher.HasLeft, Is.True);
+            Assert.That(reader.IsDisposed, Is.True);
+            Assert.That(reader.ReadsSoFar(), Is.EqualTo(new[] { 0 }));
+            prefetcher.Dispose();
+        }
+
+        [Test]
+        public void DisposeDoesNotWaitForAReadThatTakesLong()
+        {
+            var reader = new CountingReader(10);
+            var prefetcher = new FramePrefetcher(reader, 5);
+            reader.Gate.Reset();
+            prefetcher.Request(Order(10, 0));
+            WaitUntil(() => reader.ReadsSoFar().Length == 1, "a frame is being read");
+            prefetcher.Dispose(); // returns although the read never ends
+            Assert.That(prefetcher.HasLeft, Is.False);
+            Assert.That(reader.IsDisposed, Is.False);
+            reader.Gate.Set();
+            WaitUntil(() => prefetcher.HasLeft, "the thread leaves");
             Assert.That(reader.IsDisposed, Is.True);
             Assert.That(reader.ReadsSoFar(), Is.EqualTo(new[] { 0 }));
             prefetcher.Dispose();
