@@ -26,7 +26,8 @@
  *   Owner atoms are 0-based indices into the array the caller gave to qses_set_atoms.
  *
  * Guarantees
- *   The mesh is a closed, consistently oriented 2-manifold for every input; it has no NaN; every owner index is valid.
+ *   The mesh is a closed, consistently oriented 2-manifold for every input, by construction: no tolerance decides about it;
+ *   it has no NaN; every owner index is valid.
  *   The same input, back end and settings give the same bytes, also with a slice size or a memory budget. (The CPU back
  *   end rounds differently on processors without AVX2 and FMA; qses_backend_info names the instruction set in use.)
  *   qses_compute gives the bytes that a job with the same settings ends with. The rounding mode of the calling thread,
@@ -294,7 +295,8 @@ typedef struct qses_mesh {
   uint32_t vertex_bytes;   /* INTERLEAVED: bytes from one vertex to the next in the four arrays above, which begin with
                               positions, in V * vertex_bytes bytes of memory. SEPARATE: 0, each is tightly packed */
   uint32_t reserved;
-  const uint32_t *owners;  /* V, the atom whose van der Waals surface is nearest to the vertex */
+  const uint32_t *owners;  /* V, the atom whose van der Waals surface is nearest to the vertex; with GRID, to where it was
+                              before it was smoothed */
   const uint8_t *patches;  /* V of qses_patch, or NULL */
   const uint32_t *indices; /* T x 3 vertex numbers */
   float bounds_min[3];     /* box of the vertices, Å; all 0 for an empty mesh */
