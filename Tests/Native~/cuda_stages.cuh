@@ -141,7 +141,7 @@ inline DeviceStages run_device_stages(CudaExecutor &executor, const DeviceTable 
       executor.allocate<uint32_t>(s.counts.vertices).data,      executor.allocate<uint8_t>(s.counts.vertices).data,
       executor.allocate<uint32_t>(s.counts.triangles * 3).data, false};
   timer.begin("projection");
-  const VertexStarts starts{options.relax, nullptr, table.view.ring};
+  const VertexStarts starts{options.relax, nullptr, table.view.ring, &s.layout.totals->unplaced};
   for (uint32_t first = 0; first < count; first += per_slice) {
     const BrickRange slice{first, std::min(count, first + per_slice)};
     CudaCandidates own;

@@ -24,11 +24,12 @@ struct FeatureCounters {
 // How much of each there is room for.
 struct FeatureRoom {
   size_t caps, circles, staged_circles, staged_arcs, arcs;
-  size_t neighbors;  // per atom in global memory; 0: only what shared memory holds
-  size_t intervals;  // per circle in global memory; 0: only what a lane holds
+  size_t neighbors;   // per atom in global memory; 0: only what shared memory holds
+  size_t long_atoms;  // that need it; at least so many
+  size_t intervals;   // per circle in global memory; 0: only what a lane holds
 
   static FeatureRoom guess(size_t atoms) {
-    return {28 * atoms + 1024, 14 * atoms + 512, 3 * atoms + 512, 5 * atoms + 512, 7 * atoms + 1024, 0, 0};
+    return {28 * atoms + 1024, 14 * atoms + 512, 3 * atoms + 512, 5 * atoms + 512, 7 * atoms + 1024, 0, 0, 0};
   }
   bool holds(const FeatureCounters &c) const {
     return c.neighbors <= neighbors && c.caps <= caps && c.circles <= circles && (c.staged >> 32) <= staged_circles &&
@@ -37,6 +38,7 @@ struct FeatureRoom {
   }
   void grow(const FeatureCounters &c) {
     neighbors = std::max<size_t>(neighbors, (c.neighbors + size_t(31)) / 32 * 32);  // keeps the rows aligned
+    long_atoms = std::max<size_t>(long_atoms, c.long_atoms);
     caps = std::max<size_t>(caps, c.caps);
     circles = std::max<size_t>(circles, c.circles);
     staged_circles = std::max<size_t>(staged_circles, c.staged >> 32);

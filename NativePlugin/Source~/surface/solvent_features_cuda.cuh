@@ -209,14 +209,15 @@ static __global__ __launch_bounds__(kCapWarps *kWarp) void find_caps_kernel(CapJ
 }
 
 // The same for the atoms that have more neighbours, with rows of the needed length in global memory.
-static __global__ __launch_bounds__(kCapWarps *kWarp) void find_long_caps_kernel(CapJob job, unsigned char *memory) {
+static __global__ __launch_bounds__(kCapWarps *kWarp) void find_long_caps_kernel(CapJob job, unsigned char *memory,
+                                                                                 uint32_t first, uint32_t last) {
   const uint32_t warp = (blockIdx.x * blockDim.x + threadIdx.x) / kWarp, warps = gridDim.x * kCapWarps;
   const size_t room = job.room.neighbors;
   unsigned char *row = memory + warp * room * (sizeof(Cap) + sizeof(float) + sizeof(uint32_t));
   const CapRows rows{reinterpret_cast<Cap *>(row), reinterpret_cast<float *>(row + room * sizeof(Cap)),
                      reinterpret_cast<uint32_t *>(row + room * (sizeof(Cap) + sizeof(float)))};
-  const uint32_t count = job.counters->long_atoms;
-  for (uint32_t k = warp; k < count; k += warps) find_caps(job, job.long_atoms[k], rows, static_cast<int>(room));
+  const uint32_t count = job.counters->long_atoms, end = last < count ? last : count;
+  for (uint32_t k = first + warp; k < end; k += warps) find_caps(job, job.long_atoms[k], rows, static_cast<int>(room));
 }
 
 struct ExposeAtoms {
@@ -248,7 +249,18 @@ inline void find_caps(CudaExecutor &executor, const CapJob &job) {
                                                                     executor.arena().available() / 4 / block_bytes})));
   const auto mark = executor.arena().mark();
   Span<unsigned char> memory = executor.allocate<unsigned char>(long_blocks * block_bytes);
-  executor.launch("find_long_caps", find_long_caps_kernel, long_blocks, kCapWarps * kWarp, 0, job, memory.data);
+  // Caps are compared with each other, 32 pairs at a time in some 3 ns: where there are very many, the work is cut into
+  // launches of about 10 ms that are waited for, since what is queued can't be cancelled.
+  const double pairs = static_cast<double>(job.room.neighbors) * static_cast<double>(job.room.neighbors);
+  const double atoms_per_warp = std::max(1.0, 1e-2 / (pairs / kWarp * 3e-9));
+  const uint64_t step = static_cast<uint64_t>(static_cast<double>(long_blocks * kCapWarps) * atoms_per_warp);
+  for (uint64_t first = 0;; first += step) {
+    const bool is_last = first + step >= job.room.long_atoms;
+    executor.launch("find_long_caps", find_long_caps_kernel, long_blocks, kCapWarps * kWarp, 0, job, memory.data,
+                    static_cast<uint32_t>(first), is_last ? 0xffffffffu : static_cast<uint32_t>(first + step));
+    if (is_last) break;
+    executor.wait();
+  }
   executor.arena().rewind(mark);
 }
 
@@ -320,6 +332,7 @@ inline void find_features_in_runs(CudaExecutor &executor, const FeaturePass &pas
       for (;; arena.rewind(mark)) {
         room.arcs = arcs.size > arc_total ? static_cast<size_t>(arcs.size - arc_total) : 0;
         room.neighbors = std::max(room.neighbors, neighbors);
+        room.long_atoms = run.size();
         Cap *const caps = executor.allocate<Cap>(room.caps).data;
         FeatureCounters found = find_run_features(executor, pass, run, room, caps, arcs.data + arc_total);
         const unsigned long long run_arcs = found.arcs;
@@ -351,6 +364,7 @@ inline void find_features_in_runs(CudaExecutor &executor, const FeaturePass &pas
   FeatureRoom room{};
   room.caps = static_cast<size_t>(cap_total);
   room.neighbors = neighbors;
+  room.long_atoms = n;
   Span<FeatureCounters> counters = executor.allocate<FeatureCounters>(1);
   Span<uint32_t> long_atoms = executor.allocate<uint32_t>(n);
   executor.fill(counters, 0);
