@@ -10,7 +10,6 @@ import shutil
 import signal
 import stat
 import subprocess
-import sys
 import time
 import unittest
 
@@ -265,9 +264,5 @@ class Stopped(FilesTest):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) > 1 and not sys.argv[1].startswith("-"):
-        cli_test.PROGRAM = sys.argv.pop(1)
-    if not cli_test.PROGRAM:
-        sys.exit(__doc__)
-    cli_test.PROGRAM = os.path.abspath(cli_test.PROGRAM)
+    cli_test.PROGRAM = cli_test.program_to_test(cli_test.PROGRAM, __doc__)
     unittest.main()

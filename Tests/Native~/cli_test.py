@@ -86,6 +86,16 @@ def area_of(vertices, faces):
     return area
 
 
+
+def program_to_test(program, usage):
+    """The path of the program: the first argument, which is taken off, or the one known already."""
+    if len(sys.argv) > 1 and not sys.argv[1].startswith("-"):
+        program = sys.argv.pop(1)
+    if not program:
+        sys.exit(usage)
+    return os.path.abspath(program)
+
+
 class ProgramTest(unittest.TestCase):
     def setUp(self):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="quickses_cli_"))
@@ -474,9 +484,5 @@ class Bench(ProgramTest):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) > 1 and not sys.argv[1].startswith("-"):
-        PROGRAM = sys.argv.pop(1)
-    if not PROGRAM:
-        sys.exit(__doc__)
-    PROGRAM = os.path.abspath(PROGRAM)
+    PROGRAM = program_to_test(PROGRAM, __doc__)
     unittest.main()

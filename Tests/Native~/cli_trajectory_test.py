@@ -6,8 +6,6 @@ usage: cli_trajectory_test.py PROGRAM [unittest options]      (or QUICKSES_PROGR
 import csv
 import gzip
 import json
-import os
-import sys
 import unittest
 
 import cli_test
@@ -272,9 +270,5 @@ class Unwrap(TrajectoryTest):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) > 1 and not sys.argv[1].startswith("-"):
-        cli_test.PROGRAM = sys.argv.pop(1)
-    if not cli_test.PROGRAM:
-        sys.exit(__doc__)
-    cli_test.PROGRAM = os.path.abspath(cli_test.PROGRAM)
+    cli_test.PROGRAM = cli_test.program_to_test(cli_test.PROGRAM, __doc__)
     unittest.main()
