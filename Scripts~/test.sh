@@ -103,7 +103,7 @@ fi
 echo "==== package: make and check"
 rm -f .build/cpu/org.quickses.unity-*.tgz
 cmake --build --preset cpu --target upm
-python3 Scripts~/check-package .build/cpu/org.quickses.unity-*.tgz "${platforms[@]}"
+python3 Scripts~/package/check-package .build/cpu/org.quickses.unity-*.tgz "${platforms[@]}"
 
 # The C# layers, with the plug-in of that package: what Unity compiles runs against a double of the engine, as in a player
 # and, with collections checks, as in the Editor.

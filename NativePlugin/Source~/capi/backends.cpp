@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "capi/backends.h"
 
-#include "surface/cpu_kernels.h"
+#include "surface/cpu/cpu_kernels.h"
 #if defined(QUICKSES_HAS_CUDA)
 #include "parallel/cuda_memory.h"
 #endif

@@ -95,7 +95,7 @@ quickses::SurfaceRequest make_request(const qses_context &context, const qses_se
   request.appearance = context.appearance;
   request.settings = settings;
   if (ladder) {
-    request.ladder = quickses::ladder_of(settings);
+    request.ladder = quickses::levels_of(settings);
     request.frame_budget_ms = static_cast<double>(settings.frame_budget_ms);
   } else {
     request.ladder.add(settings.spacing);

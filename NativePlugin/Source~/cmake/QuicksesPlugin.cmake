@@ -82,6 +82,6 @@ find_program(QUICKSES_PYTHON python3 DOC "Packs the package; runs the tests of t
 mark_as_advanced(QUICKSES_PYTHON)
 if(QUICKSES_PYTHON)
   add_custom_target(upm
-    COMMAND "${QUICKSES_PYTHON}" -B "${PROJECT_SOURCE_DIR}/Scripts~/make-package" "${PROJECT_BINARY_DIR}"
+    COMMAND "${QUICKSES_PYTHON}" -B "${PROJECT_SOURCE_DIR}/Scripts~/package/make-package" "${PROJECT_BINARY_DIR}"
     DEPENDS plugin VERBATIM USES_TERMINAL)
 endif()

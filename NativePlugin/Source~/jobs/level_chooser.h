@@ -4,7 +4,7 @@
 #pragma once
 
 #include "quickses/quickses.h"
-#include "surface/level_ladder.h"
+#include "surface/levels.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -30,7 +30,7 @@ class LevelChooser {
     qses_method method = QSES_METHOD_EXACT;
     float probe_radius = 0;
     uint32_t relaxation_steps = 0, slice_size = 0;
-    LevelLadder ladder;
+    Levels ladder;
 
     bool operator==(const Subject &other) const;
   };
@@ -62,7 +62,7 @@ class LevelChooser {
   Subject subject_;
   double budget_ms_ = 0;
   uint32_t current_ = 0;
-  Level levels_[LevelLadder::kMax];
+  Level levels_[Levels::kMax];
 };
 
 }  // namespace quickses

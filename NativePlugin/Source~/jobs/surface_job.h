@@ -20,7 +20,7 @@ struct SurfaceRequest {
   std::shared_ptr<const AtomSet> atoms;
   std::shared_ptr<const Appearance> appearance;
   qses_settings settings;
-  LevelLadder ladder;
+  Levels ladder;
   // Of the ladder, only the finest level that is expected to cost no more than this, ms; 0: all levels.
   double frame_budget_ms = 0;
 

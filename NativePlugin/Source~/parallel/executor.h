@@ -21,7 +21,7 @@
 #pragma once
 
 #include "parallel/working_thread.h"
-#include "surface/types.h"
+#include "surface/geometry/types.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The pipeline on the CPU.
-#include "surface/exact_ses_cpu.h"
-#include "surface/solvent_features_cpu.h"
+#include "surface/cpu/exact_ses_cpu.h"
+#include "surface/cpu/solvent_features_cpu.h"
 
 #include "parallel/stage_timer.h"
 #include "surface/pipeline.h"

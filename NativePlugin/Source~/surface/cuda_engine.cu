@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The pipeline on the GPU.
-#include "surface/exact_ses_cuda.cuh"
-#include "surface/mesh_cuda.cuh"
-#include "surface/solvent_features_cuda.cuh"
+#include "surface/cuda/exact_ses_cuda.cuh"
+#include "surface/cuda/mesh_cuda.cuh"
+#include "surface/cuda/solvent_features_cuda.cuh"
 
 #include "parallel/cuda_stage_timer.cuh"
-#include "surface/mesh_memory_cuda.cuh"
+#include "surface/cuda/mesh_memory_cuda.cuh"
 #include "surface/pipeline.h"
 
 namespace quickses {

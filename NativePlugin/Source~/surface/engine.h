@@ -4,8 +4,8 @@
 #pragma once
 
 #include "quickses/quickses.h"
-#include "surface/appearance.h"
-#include "surface/types.h"
+#include "surface/stages/appearance.h"
+#include "surface/geometry/types.h"
 
 #include <atomic>
 #include <functional>

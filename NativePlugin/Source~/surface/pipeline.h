@@ -4,16 +4,16 @@
 // make one of each.
 #pragma once
 
-#include "surface/atoms.h"
-#include "surface/exact_surface.h"
-#include "surface/grid_surface.h"
-#include "surface/level_ladder.h"
-#include "surface/measure.h"
-#include "surface/memory_plan.h"
-#include "surface/mesh_memory.h"
-#include "surface/size_check.h"
-#include "surface/size_estimate.h"
-#include "surface/visible_mask.h"
+#include "surface/stages/atoms.h"
+#include "surface/methods/exact_surface.h"
+#include "surface/methods/grid_surface.h"
+#include "surface/levels.h"
+#include "surface/stages/measure.h"
+#include "surface/memory/memory_plan.h"
+#include "surface/memory/mesh_memory.h"
+#include "surface/memory/size_check.h"
+#include "surface/memory/size_estimate.h"
+#include "surface/stages/visible_mask.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -227,7 +227,7 @@ class SurfacePipeline : public SurfaceEngine {
     p.parameters.max_radius = set.bounds.max_radius + p.parameters.probe;
 
     timer_.begin("neighbor_grid");
-    p.frame = center_lattice(set.bounds, frame_spacing(ladder_of(settings)));
+    p.frame = center_lattice(set.bounds, frame_spacing(levels_of(settings)));
     p.low = to_centered(p.frame, set.bounds.low);
     p.high = to_centered(p.frame, set.bounds.high);
     p.appearance = {bring(appearance.visible.data(), appearance.visible.size()),

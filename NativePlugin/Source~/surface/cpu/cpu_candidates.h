@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: MIT
+// The atoms and arcs near one brick, gathered into columns so that eight of them are tested at once. Only for the CPU
+// kernels.
+#pragma once
+
+#include "parallel/pack.h"
+#include "surface/cpu/cpu_kernels.h"
+
+#include <cstring>
+
+namespace quickses {
+namespace QSES_CPU_ISA {
+
+// With more arcs near a brick its points may take long: they look for the stop on their own.
+constexpr int kManyArcs = 1024;
+
+// Columns of balls: centre and radius.
+struct BallColumns {
+  float *x, *y, *z, *radius;
+};
+
+struct BrickCandidates {
+  BallColumns atoms, exposed, arcs;                 // all atoms; those with exposed parts; balls around arcs
+  int32_t *atom_index, *exposed_index, *arc_index;  // places in the neighbour grids
+  int32_t *near_list, *arc_list;                    // room for a choice of them
+  int atom_count, exposed_count, arc_count;
+  BrickNeeds needs;
+};
+
+QSES_FN BrickCandidates cut_columns(const BrickScratch &s) {
+  BrickCandidates c{};
+  const size_t atoms = static_cast<size_t>(s.atom_capacity) + 16, arcs = static_cast<size_t>(s.arc_capacity) + 16;
+  float *p = s.atom_memory;
+  c.atoms = {p, p + atoms, p + 2 * atoms, p + 3 * atoms};
+  c.exposed = {p + 4 * atoms, p + 5 * atoms, p + 6 * atoms, p + 7 * atoms};
+  c.atom_index = reinterpret_cast<int32_t *>(p + 8 * atoms);
+  c.exposed_index = reinterpret_cast<int32_t *>(p + 9 * atoms);
+  c.near_list = reinterpret_cast<int32_t *>(p + 10 * atoms);
+  float *q = s.arc_memory;
+  c.arcs = {q, q + arcs, q + 2 * arcs, q + 3 * arcs};
+  c.arc_index = reinterpret_cast<int32_t *>(q + 4 * arcs);
+  c.arc_list = reinterpret_cast<int32_t *>(q + 5 * arcs);
+  return c;
+}
+
+// A box as centre and half extent, and squared distances to it.
+struct PackBox {
+  Vec3<Pack> center;
+  Pack half;
+  QSES_FN PackBox(const Vec3<float> &low, float extent)
+      : center(Pack(low.x + 0.5f * extent), Pack(low.y + 0.5f * extent), Pack(low.z + 0.5f * extent)),
+        half(0.5f * extent) {}
+  QSES_FN Pack distance2(Pack x, Pack y, Pack z) const {
+    const Pack zero(0.f);
+    const Pack dx = maximum(absolute(x - center.x) - half, zero), dy = maximum(absolute(y - center.y) - half, zero),
+               dz = maximum(absolute(z - center.z) - half, zero);
+    return dx * dx + dy * dy + dz * dz;
+  }
+};
+
+QSES_FN void store_balls(const BallColumns &c, int at, uint32_t set, Pack x, Pack y, Pack z, Pack radius) {
+  store_lanes(c.x + at, set, x);
+  store_lanes(c.y + at, set, y);
+  store_lanes(c.z + at, set, z);
+  store_lanes(c.radius + at, set, radius);
+}
+
+// Behind the last ball stand others that nothing meets, so that whole packs can be read.
+QSES_FN void end_balls(const BallColumns &c, int at) {
+  store_pack(c.x + at, Pack(kFarAway));
+  store_pack(c.y + at, Pack(kFarAway));
+  store_pack(c.z + at, Pack(kFarAway));
+  store_pack(c.radius + at, Pack(0.f));
+}
+
+// One bit per lane from eight bytes that are 0 or 1.
+QSES_FN uint32_t bits_of_bytes(const uint8_t *bytes) {
+  uint64_t v;
+  std::memcpy(&v, bytes, sizeof v);
+  return static_cast<uint32_t>((v * 0x0102040810204080ull) >> 56);
+}
+
+// Gathers what can matter in the box: atoms whose ball, grown by atom_reach, meets it, and arcs within arc_reach.
+QSES_FN BrickCandidates gather_candidates(const FeatureView &f, const Vec3<float> &low, float extent, float atom_reach,
+                                          float arc_reach, const BrickScratch &scratch) {
+  BrickCandidates c = cut_columns(scratch);
+  const PackBox box(low, extent);
+  const Vec3<float> high(low.x + extent, low.y + extent, low.z + extent);
+  const auto around = [&](const NeighborGridView &grid, float reach) {
+    const Vec3<float> r(reach, reach, reach);
+    return cells_around(grid.cells, low - r, high + r);
+  };
+  const CellBox cells = around(f.atoms, maximum(0.f, f.parameters.max_radius + atom_reach));
+  for (int z = cells.z0; z <= cells.z1; ++z)
+    for (int y = cells.y0; y <= cells.y1; ++y) {
+      const ItemRun run = f.atoms.run(cells.x0, cells.x1, y, z);
+      for (uint32_t q = run.begin; q < run.end; q += kPackSize) {
+        Pack ax, ay, az, radius;
+        load_columns(&f.atoms.items[q].center.x, &ax, &ay, &az, &radius);
+        const Pack reach = maximum(Pack(0.f), radius + Pack(atom_reach));
+        uint32_t near = lane_bits(box.distance2(ax, ay, az) < reach * reach);
+        if (run.end - q < kPackSize) near &= (1u << (run.end - q)) - 1;
+        if (!near) continue;
+        const uint32_t exposed = near & bits_of_bytes(f.exposed + q);
+        const int n = c.atom_count, e = c.exposed_count;
+        if (n + kPackSize <= scratch.atom_capacity) {
+          store_balls(c.atoms, n, near, ax, ay, az, radius);
+          store_lane_numbers(c.atom_index + n, near, static_cast<int32_t>(q));
+          store_balls(c.exposed, e, exposed, ax, ay, az, radius);
+          store_lane_numbers(c.exposed_index + e, exposed, static_cast<int32_t>(q));
+        }
+        c.atom_count += popcount64(near);
+        c.exposed_count += popcount64(exposed);
+      }
+    }
+  if (c.atom_count + kPackSize > scratch.atom_capacity) c.needs.atoms = c.atom_count + kPackSize;
+  if (f.arc_bounds.count > 0) {
+    const CellBox arc_cells = around(f.arc_bounds, arc_reach + f.max_arc_bound);
+    for (int z = arc_cells.z0; z <= arc_cells.z1; ++z)
+      for (int y = arc_cells.y0; y <= arc_cells.y1; ++y) {
+        const ItemRun run = f.arc_bounds.run(arc_cells.x0, arc_cells.x1, y, z);
+        for (uint32_t q = run.begin; q < run.end; q += kPackSize) {
+          Pack bx, by, bz, radius;
+          load_columns(&f.arc_bounds.items[q].center.x, &bx, &by, &bz, &radius);
+          const Pack reach = radius + Pack(arc_reach);
+          uint32_t near = lane_bits(box.distance2(bx, by, bz) < reach * reach);
+          if (run.end - q < kPackSize) near &= (1u << (run.end - q)) - 1;
+          if (!near) continue;
+          const int n = c.arc_count;
+          if (n + kPackSize <= scratch.arc_capacity) {
+            store_balls(c.arcs, n, near, bx, by, bz, radius);
+            store_lane_numbers(c.arc_index + n, near, static_cast<int32_t>(q));
+          }
+          c.arc_count += popcount64(near);
+        }
+      }
+    if (c.arc_count + kPackSize > scratch.arc_capacity) c.needs.arcs = c.arc_count + kPackSize;
+  }
+  if (c.needs.atoms == 0 && c.needs.arcs == 0) {
+    end_balls(c.atoms, c.atom_count);
+    end_balls(c.exposed, c.exposed_count);
+    end_balls(c.arcs, c.arc_count);
+  }
+  return c;
+}
+
+// Numbers of the balls that, grown by `reach` (which may be negative), meet the point. Room for eight more is needed.
+QSES_FN int choose_balls(const BallColumns &c, int n, const Vec3<float> &point, float reach, int32_t *out) {
+  const Pack x(point.x), y(point.y), z(point.z), grow(reach);
+  int k = 0;
+  for (int q = 0; q < n; q += kPackSize) {
+    const Pack dx = load_pack(c.x + q) - x, dy = load_pack(c.y + q) - y, dz = load_pack(c.z + q) - z;
+    const Pack r = maximum(Pack(0.f), load_pack(c.radius + q) + grow);
+    k += store_lane_numbers(out + k, lane_bits(dx * dx + dy * dy + dz * dz < r * r), q);
+  }
+  return k;
+}
+
+// Ball around eight points.
+struct PointBall {
+  Vec3<float> center;
+  float radius;
+};
+QSES_FN PointBall ball_around(const Vec3<Pack> &p) {
+  const float x0 = horizontal_minimum(p.x), x1 = horizontal_maximum(p.x);
+  const float y0 = horizontal_minimum(p.y), y1 = horizontal_maximum(p.y);
+  const float z0 = horizontal_minimum(p.z), z1 = horizontal_maximum(p.z);
+  const float dx = x1 - x0, dy = y1 - y0, dz = z1 - z0;
+  return {{0.5f * (x0 + x1), 0.5f * (y0 + y1), 0.5f * (z0 + z1)},
+          0.5f * square_root(dx * dx + dy * dy + dz * dz) + 1e-4f};
+}
+
+QSES_FN Vec3<Pack> load_points(const float *x, const float *y, const float *z) {
+  return {load_pack(x), load_pack(y), load_pack(z)};
+}
+
+// The deepest of the chosen balls for each of eight points: its number in the columns (as a float; -1: none deeper than
+// floor), and the depth.
+struct Deepest {
+  Pack number, depth;
+};
+QSES_FN Deepest deepest_ball(const BallColumns &c, const int32_t *list, int n, const Vec3<Pack> &p, float floor) {
+  Deepest best{Pack(-1.f), Pack(floor)};
+  for (int k = 0; k < n; ++k) {
+    const int a = list[k];
+    const Pack dx = p.x - Pack(c.x[a]), dy = p.y - Pack(c.y[a]), dz = p.z - Pack(c.z[a]);
+    const Pack depth = Pack(c.radius[a]) - square_root(dx * dx + dy * dy + dz * dz);
+    const PackMask deeper = depth > best.depth;
+    best.depth = select(deeper, depth, best.depth);
+    best.number = select(deeper, Pack(static_cast<float>(a)), best.number);
+  }
+  return best;
+}
+
+// Of the points in `lanes`, all nearest to one atom: which have their radial projection on it exposed?
+QSES_FN uint32_t exposed_lanes(const FeatureView &f, uint32_t atom, const Vec3<Pack> &offset, Pack length,
+                               uint32_t lanes) {
+  const CapRange range = f.cap_ranges[atom];
+  const Cap *caps = f.caps + range.first;
+  for (int32_t k = 0; k < range.count && lanes; ++k) lanes &= ~lane_bits(cap_covers(caps[k], offset, length));
+  return lanes;
+}
+
+}  // namespace QSES_CPU_ISA
+}  // namespace quickses

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// The CPU's inner loops, compiled once per instruction set and chosen at run time. A kernel works on one atom or one
+// brick; the drivers (solvent_features_cpu.h, exact_ses_cpu.h) hand out the work and own all memory.
+#pragma once
+
+#include "parallel/working_thread.h"
+#include "surface/stages/hot_stages.h"
+
+namespace quickses {
+
+// Scratch of one thread for the features of one atom. The kernel cuts the memory into its columns.
+struct AtomScratch {
+  static constexpr int kColumns = 24;
+  float *memory;  // kColumns * (capacity + 16) floats, 64-byte aligned
+  int capacity;   // neighbours
+};
+
+struct AtomFeatures {
+  int neighbors_needed;  // more than the scratch holds: nothing else is valid
+  int cap_count;         // may exceed the room: then nothing was written, and the atom is to be asked again
+  int64_t arc_count;     // the same
+};
+
+// What is near one brick, in columns: atoms and arcs of the neighbour grids, by their places there.
+struct BrickScratch {
+  static constexpr int kAtomColumns = 11, kArcColumns = 6;
+  static constexpr size_t kVertexBytes = size_t(70) << 10;  // more than the stack of a caller may have
+  float *atom_memory;  // kAtomColumns columns of atom_capacity + 16 four-byte values
+  float *arc_memory;   // kArcColumns columns of arc_capacity + 16
+  int atom_capacity, arc_capacity;
+  void *vertex_memory;  // kVertexBytes for the vertices in the making, 64-byte aligned
+};
+
+// Numbers of candidates that did not fit; 0 when the kernel has done its work.
+struct BrickNeeds {
+  int atoms, arcs;
+};
+
+struct CpuKernels {
+  const char *name;
+
+  // Caps and arcs of atom i, with room for cap_room caps and arc_room arcs. Sets exposed[] for i and for the other
+  // atoms of its exposed arcs.
+  AtomFeatures (*find_atom_features)(const NeighborGridView &atoms, const SurfaceParameters &parameters, uint32_t i,
+                                     const AtomScratch &scratch, Cap *caps, int cap_room, Arc *arcs, int64_t arc_room,
+                                     uint8_t *exposed);
+
+  // The eight leaf words of a brick.
+  BrickNeeds (*evaluate_brick_signs)(const FeatureView &features, const BrickSet &bricks, uint32_t brick,
+                                     const BrickScratch &scratch, uint64_t *words);
+
+  // The vertices a brick owns.
+  BrickNeeds (*emit_brick_vertices)(const FeatureView &features, const BrickSet &bricks, const MeshLayout &layout,
+                                    uint32_t brick, const VertexStarts &starts, const BrickScratch &scratch,
+                                    const MeshView &mesh);
+
+  // The triangles of a brick's cells.
+  void (*emit_brick_triangles)(const BrickSet &bricks, const MeshLayout &layout, uint32_t brick, const TableView &table,
+                               const MeshView &mesh);
+};
+
+// The best set of kernels this processor runs.
+const CpuKernels &cpu_kernels();
+
+// Those that every processor runs.
+const CpuKernels &base_cpu_kernels();
+
+}  // namespace quickses

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: MIT
+// CPU kernel: caps and exposed arcs of one atom, eight neighbours or eight cutting balls at a time.
+#include "parallel/pack.h"
+#include "surface/cpu/cpu_kernels.h"
+#include "surface/cpu/cpu_kernels_isa.h"
+
+namespace quickses {
+namespace QSES_CPU_ISA {
+namespace {
+
+// The columns of AtomScratch.
+struct Columns {
+  float *x, *y, *z, *cosine, *sine;   // neighbours: direction and cap
+  float *sx, *sy, *sz, *scos, *ssin;  // the same, sorted by cosine, then without contained caps
+  float *begin, *end;                 // covered stretches of one circle
+  int32_t *index, *sorted_index;      // places of the neighbours in the grid
+  float *tangent;                     // stretches that came out as a point: the half-plane's c
+  Interval *intervals;                // two columns
+  uint64_t *taken;
+};
+
+QSES_FN Columns cut_columns(const AtomScratch &s) {
+  const size_t stride = static_cast<size_t>(s.capacity) + 16;
+  float *p = s.memory;
+  auto next = [&] {
+    float *column = p;
+    p += stride;
+    return column;
+  };
+  Columns c;
+  c.intervals = reinterpret_cast<Interval *>(p);
+  p += 2 * stride;
+  c.taken = reinterpret_cast<uint64_t *>(next());
+  c.x = next(), c.y = next(), c.z = next(), c.cosine = next(), c.sine = next();
+  c.sx = next(), c.sy = next(), c.sz = next(), c.scos = next(), c.ssin = next();
+  c.begin = next(), c.end = next(), c.tangent = next();
+  c.index = reinterpret_cast<int32_t *>(next());
+  c.sorted_index = reinterpret_cast<int32_t *>(next());
+  return c;
+}
+
+// Offsets and radii of the atoms whose balls meet the ball of atom i: x, y, z, cosine (radius so far), index.
+int gather_neighbors(const NeighborGridView &atoms, float max_radius, uint32_t i, const Columns &c, int capacity) {
+  const Sphere self = atoms.items[i];
+  const Vec3<float> center(self.center);
+  const float reach = self.radius + max_radius;
+  const Vec3<float> r(reach, reach, reach);
+  const CellBox box = cells_around(atoms.cells, center - r, center + r);
+  const Pack x0(center.x), y0(center.y), z0(center.z), r0(self.radius);
+  int n = 0;
+  for (int z = box.z0; z <= box.z1; ++z)
+    for (int y = box.y0; y <= box.y1; ++y) {
+      const ItemRun run = atoms.run(box.x0, box.x1, y, z);
+      for (uint32_t q = run.begin; q < run.end; q += kPackSize) {
+        Pack x, yy, zz, radius;
+        load_columns(&atoms.items[q].center.x, &x, &yy, &zz, &radius);
+        x = x - x0, yy = yy - y0, zz = zz - z0;
+        const Pack sum = radius + r0;
+        uint32_t near = lane_bits(x * x + yy * yy + zz * zz < sum * sum);
+        if (run.end - q < kPackSize) near &= (1u << (run.end - q)) - 1;
+        if (i - q < kPackSize) near &= ~(1u << (i - q));
+        if (!near) continue;
+        if (n + kPackSize <= capacity) {
+          store_lanes(c.x + n, near, x);
+          store_lanes(c.y + n, near, yy);
+          store_lanes(c.z + n, near, zz);
+          store_lanes(c.cosine + n, near, radius);
+          store_lane_numbers(c.index + n, near, static_cast<int32_t>(q));
+        }
+        n += popcount64(near);
+      }
+    }
+  return n;
+}
+
+// Turns offsets and radii into unit directions and cap cosines; leaves out neighbours that only touch.
+int make_caps(float radius, const Columns &c, int n) {
+  int kept = 0;
+  for (int q = 0; q < n; q += kPackSize) {
+    const Vec3<Pack> d(load_pack(c.x + q), load_pack(c.y + q), load_pack(c.z + q));
+    const Pack distance2 = maximum(length_squared(d), Pack(1e-20f));
+    const Pack inverse = reciprocal_root(distance2);
+    const Pack other = load_pack(c.cosine + q), cosine = cap_cosine(Pack(radius), other, distance2, inverse);
+    uint32_t keep = lane_bits(overlap(Pack(radius), other, distance2));
+    if (n - q < kPackSize) keep &= (1u << (n - q)) - 1;
+    int32_t index[kPackSize];
+    for (int l = 0; l < kPackSize; ++l) index[l] = c.index[q + l];
+    store_lanes(c.x + kept, keep, d.x * inverse);
+    store_lanes(c.y + kept, keep, d.y * inverse);
+    store_lanes(c.z + kept, keep, d.z * inverse);
+    store_lanes(c.cosine + kept, keep, cosine);
+    for (uint32_t k = keep; k; k &= k - 1) c.index[kept++] = index[lowest_bit32(k)];
+  }
+  return kept;
+}
+
+// Largest cap first; of equal ones the earlier atom.
+void sort_caps(const Columns &c, int n) {
+  for (int w = 0; w <= n / 64; ++w) c.taken[w] = 0;
+  for (int k = n; k < n + kPackSize; ++k) c.cosine[k] = 2.f;
+  for (int j = 0; j < n; ++j) {
+    if (j % 64 == 0) look_for_stop();
+    const Pack own(c.cosine[j]);
+    int rank = 0;
+    for (int q = 0; q < n; q += kPackSize) rank += popcount64(lane_bits(load_pack(c.cosine + q) < own));
+    while (c.taken[rank >> 6] >> (rank & 63) & 1) ++rank;
+    c.taken[rank >> 6] |= uint64_t(1) << (rank & 63);
+    c.sx[rank] = c.x[j], c.sy[rank] = c.y[j], c.sz[rank] = c.z[j], c.scos[rank] = c.cosine[j];
+    c.sorted_index[rank] = c.index[j];
+  }
+  for (int k = n; k < n + kPackSize; ++k) c.sx[k] = c.sy[k] = c.sz[k] = 0.f, c.scos[k] = 2.f;
+  for (int q = 0; q < n; q += kPackSize) {
+    const Pack cosine = load_pack(c.scos + q);
+    store_pack(c.ssin + q, square_root(maximum(Pack(0.f), Pack(1.f) - cosine * cosine)));
+  }
+}
+
+// Drops caps that lie within a larger one; what is left goes to x, y, z, cosine, sine, index.
+int drop_contained_caps(const Columns &c, int n) {
+  int kept = 0;
+  for (int q = 0; q < n; q += kPackSize) {
+    if (q % 64 == 0) look_for_stop();
+    const Vec3<Pack> axis(load_pack(c.sx + q), load_pack(c.sy + q), load_pack(c.sz + q));
+    const Pack cosine = load_pack(c.scos + q), sine = load_pack(c.ssin + q);
+    uint32_t keep = n - q < kPackSize ? (1u << (n - q)) - 1 : kAllLanes;
+    const int last = q + kPackSize < n ? q + kPackSize : n;  // only larger caps contain: those sorted before
+    for (int k = 0; k < last && keep; ++k) {
+      const Pack between = dot(axis, Vec3<Pack>(Pack(c.sx[k]), Pack(c.sy[k]), Pack(c.sz[k])));
+      keep &= ~lane_bits(cap_contains(Pack(c.scos[k]), Pack(c.ssin[k]), cosine, sine, between));
+    }
+    store_lanes(c.x + kept, keep, axis.x);
+    store_lanes(c.y + kept, keep, axis.y);
+    store_lanes(c.z + kept, keep, axis.z);
+    store_lanes(c.cosine + kept, keep, cosine);
+    store_lanes(c.sine + kept, keep, sine);
+    for (; keep; keep &= keep - 1) c.index[kept++] = c.sorted_index[q + lowest_bit32(keep)];
+  }
+  return kept;
+}
+
+// The exposed intervals of circle j of the n caps; false if it is hidden.
+bool cut_by_neighbors(const Circle &circle, const Columns &c, int n, int j, ExposedIntervals<Interval *> *intervals) {
+  int cuts = 0;
+  for (int q = 0; q < n; q += kPackSize) {
+    if (q % 64 == 0) look_for_stop();
+    const Vec3<Pack> axis(load_pack(c.x + q), load_pack(c.y + q), load_pack(c.z + q));
+    const HalfPlane<Pack> h = cut_circle(circle, axis, load_pack(c.cosine + q));
+    uint32_t lanes = n - q < kPackSize ? (1u << (n - q)) - 1 : kAllLanes;
+    if (j >= q && j < q + kPackSize) lanes &= ~(1u << (j - q));
+    lanes &= ~lane_bits(same_circle(circle, h));
+    if (lane_bits(covers_circle(h)) & lanes) return false;
+    lanes &= ~lane_bits(misses_circle(h));
+    if (!lanes) continue;
+    Pack begin, end;
+    covered_stretch(h, &begin, &end);
+    const uint32_t points = lane_bits(begin == end) & lanes;
+    if (points) {
+      if (lane_bits(h.c < Pack(0.f)) & points) return false;
+      lanes &= ~points;
+    }
+    store_lanes(c.begin + cuts, lanes, begin);
+    store_lanes(c.end + cuts, lanes, end);
+    cuts += popcount64(lanes);
+  }
+  for (int k = 0; k < cuts; ++k) {
+    intervals->cover(c.begin[k], c.end[k]);
+    if (intervals->empty()) return false;
+  }
+  return true;
+}
+
+void mark_exposed(uint8_t *exposed, uint32_t atom) {
+#if defined(_MSC_VER) && !defined(__clang__)
+  exposed[atom] = 1;
+#else
+  __atomic_store_n(&exposed[atom], uint8_t(1), __ATOMIC_RELAXED);
+#endif
+}
+
+}  // namespace
+
+AtomFeatures find_atom_features(const NeighborGridView &atoms, const SurfaceParameters &parameters, uint32_t i,
+                                const AtomScratch &scratch, Cap *caps, int cap_room, Arc *arcs, int64_t arc_room,
+                                uint8_t *exposed) {
+  const Sphere self = atoms.items[i];
+  if (self.center.x >= 0.5f * kFarAway) return {0, 0, 0};  // swallowed
+  const Columns c = cut_columns(scratch);
+  const int near = gather_neighbors(atoms, parameters.max_radius, i, c, scratch.capacity);
+  if (near + kPackSize > scratch.capacity) return {near + kPackSize, 0, 0};
+  int n = make_caps(self.radius, c, near);
+  if (n == 0) {
+    mark_exposed(exposed, i);
+    return {0, 0, 0};
+  }
+  sort_caps(c, n);
+  n = drop_contained_caps(c, n);
+  if (n > cap_room) return {0, n, 0};
+  for (int k = 0; k < n; ++k)
+    caps[k] = {glm::vec3(c.x[k], c.y[k], c.z[k]), stored_cap_cosine(c.cosine[k], self.radius)};
+
+  int64_t arc_count = 0;
+  for (int j = 0; j < n; ++j) {
+    if (j % 16 == 0) look_for_stop();
+    if (static_cast<uint32_t>(c.index[j]) < i) continue;  // the circle belongs to the other atom
+    const Circle circle = make_circle(glm::vec3(c.x[j], c.y[j], c.z[j]), c.cosine[j], self.radius);
+    ExposedIntervals<Interval *> intervals{c.intervals, scratch.capacity};
+    if (!cut_by_neighbors(circle, c, n, j, &intervals)) continue;
+    mark_exposed(exposed, i);
+    mark_exposed(exposed, static_cast<uint32_t>(c.index[j]));
+    const float radius = self.radius * circle.sine;
+    for (int k = 0; k < (intervals.whole ? 1 : intervals.count); ++k) {
+      const ExposedArc arc = exposed_arc(intervals.whole ? nullptr : &intervals.interval[k], radius);
+      const int pieces = 1 << arc.halvings;
+      if (arc_count + pieces <= arc_room) write_arc_pieces(circle, self, arc, arcs + arc_count);
+      arc_count += pieces;
+    }
+  }
+  return {0, n, arc_count};
+}
+
+}  // namespace QSES_CPU_ISA
+}  // namespace quickses

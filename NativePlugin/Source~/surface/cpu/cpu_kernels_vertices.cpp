@@ -1,0 +1,350 @@
+// SPDX-License-Identifier: MIT
+// CPU kernel: the vertices that one brick owns, placed exactly on the surface eight at a time.
+#include "surface/cpu/cpu_candidates.h"
+#include "surface/cpu/cpu_kernels_isa.h"
+
+#include <new>
+
+namespace quickses {
+namespace QSES_CPU_ISA {
+namespace {
+
+constexpr int kMaxBrickVertices = kBrickPoints * kAxes;
+
+// Vertices of a brick on their way to the surface.
+struct Points {
+  alignas(32) float x[kMaxBrickVertices + kPackSize], y[kMaxBrickVertices + kPackSize],
+      z[kMaxBrickVertices + kPackSize];
+};
+
+// Signs of the lattice points of a brick and one more on every side: bit x + 1 of row [z + 1][y + 1].
+struct SignRows {
+  uint16_t row[10][10];
+  QSES_FN bool inside(int x, int y, int z) const { return (row[z + 1][y + 1] >> (x + 1) & 1) != 0; }
+};
+
+SignRows read_sign_rows(const BrickSet &bricks, const uint64_t *signs, uint32_t brick) {
+  const glm::ivec3 place = bricks.lattice.brick_at(bricks.linear[brick]);
+  const uint64_t *near[27];
+  for (int k = 0; k < 27; ++k) {
+    const int found =
+        k == 13 ? static_cast<int>(brick) : bricks.find(place + glm::ivec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1));
+    near[k] = found < 0 ? nullptr : signs + static_cast<size_t>(found) * kLeavesPerBrick;
+  }
+  const auto row_of = [](const uint64_t *words, int y, int z) {
+    const int leaf = (y >> 2) * 2 + (z >> 2) * 4, shift = 4 * (y & 3) + 16 * (z & 3);
+    return static_cast<uint32_t>((words[leaf] >> shift & 15) | (words[leaf + 1] >> shift & 15) << 4);
+  };
+  SignRows rows;
+  for (int z = -1; z <= kBrickEdge; ++z)
+    for (int y = -1; y <= kBrickEdge; ++y) {
+      const int side = (z < 0 ? 0 : z < kBrickEdge ? 9 : 18) + (y < 0 ? 0 : y < kBrickEdge ? 3 : 6);
+      // Where a brick is not active, no cell at it changes sign: its points are like the nearest ones here.
+      const int cy = y < 0 ? 0 : y < kBrickEdge ? y : 7, cz = z < 0 ? 0 : z < kBrickEdge ? z : 7;
+      const uint32_t own = near[side + 1] ? row_of(near[side + 1], y & 7, z & 7) : row_of(near[13], cy, cz);
+      const uint32_t left = near[side] ? row_of(near[side], y & 7, z & 7) >> 7 : row_of(near[13], cy, cz) & 1;
+      const uint32_t right = near[side + 2] ? row_of(near[side + 2], y & 7, z & 7) & 1 : row_of(near[13], cy, cz) >> 7;
+      rows.row[z + 1][y + 1] = static_cast<uint16_t>(left | own << 1 | right << 9);
+    }
+  return rows;
+}
+
+// The candidates of the brick for the functions that work on single points.
+struct AllCandidates {
+  const BrickCandidates &c;
+  int atom_count() const { return c.atom_count; }
+  uint32_t atom(int k) const { return static_cast<uint32_t>(c.atom_index[k]); }
+  int arc_count() const { return c.arc_count; }
+  uint32_t arc(int k) const { return static_cast<uint32_t>(c.arc_index[k]); }
+};
+
+// Case of a cell by its lower corner, -1 ... 7 in each axis.
+QSES_FN int cell_case(const SignRows &rows, int x, int y, int z) {
+  const int s = x + 1;
+  return (rows.row[z + 1][y + 1] >> s & 3) | (rows.row[z + 1][y + 2] >> s & 3) << 2 |
+         (rows.row[z + 2][y + 1] >> s & 3) << 4 | (rows.row[z + 2][y + 2] >> s & 3) << 6;
+}
+
+// Where the brick's vertices start, in the order of their numbers. Returns how many there are.
+int start_vertices(const FeatureView &f, const BrickSet &bricks, const MeshLayout &layout, uint32_t brick,
+                   const VertexStarts &starts, const BrickCandidates &c, Points *p) {
+  const Lattice &lattice = bricks.lattice;
+  const glm::ivec3 first = lattice.first_point(lattice.brick_at(bricks.linear[brick]));
+  const float h = lattice.spacing;
+  const bool halve = starts_by_halving(f.parameters);
+  const SignRows rows = read_sign_rows(bricks, layout.signs, brick);
+  int n = 0;
+  for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf)
+    for (int axis = 0; axis < kAxes; ++axis)
+      for (uint64_t w = layout.crossing[(static_cast<size_t>(brick) * kLeavesPerBrick + static_cast<size_t>(leaf)) * 3 +
+                                        static_cast<size_t>(axis)];
+           w; w &= w - 1, ++n) {
+        const int bit = lowest_bit64(w);
+        const int x = (leaf & 1) * 4 + (bit & 3), y = (leaf >> 1 & 1) * 4 + (bit >> 2 & 3),
+                  z = (leaf >> 2) * 4 + (bit >> 4);
+        const Vec3<float> low = lattice.position(first.x + x, first.y + y, first.z + z);
+        const bool low_inside = rows.inside(x, y, z);
+        Vec3<float> start = low;
+        if (halve) {
+          start =
+              halve_edge(f, AllCandidates{c}, ends_of_edge(bricks, layout, brick, {leaf, axis, bit}), kStartHalvings);
+        } else {
+          const float along = vertex_start(low_inside) * h;
+          start = {low.x + (axis == 0 ? along : 0.f), low.y + (axis == 1 ? along : 0.f),
+                   low.z + (axis == 2 ? along : 0.f)};
+          if (starts.relax) {
+            const auto case_near = [&](int second, int third) {
+              return axis == 0   ? cell_case(rows, x, y + second, z + third)
+                     : axis == 1 ? cell_case(rows, x + second, y, z + third)
+                                 : cell_case(rows, x + second, y + third, z);
+            };
+            float mx, my, mz;
+            ring_displacement(edge_ring_of_cells(case_near, axis, starts.ring), &mx, &my, &mz);
+            start = start + Vec3<float>(mx, my, mz) * h;
+          }
+        }
+        p->x[n] = start.x, p->y[n] = start.y, p->z[n] = start.z;
+      }
+  return n;
+}
+
+QSES_FN void fill_up(Points *p, int n) {
+  for (int k = n; k < n + kPackSize; ++k) p->x[k] = p->x[n - 1], p->y[k] = p->y[n - 1], p->z[k] = p->z[n - 1];
+}
+
+// One brick's vertices in the making: where each one is now, and what is known of it.
+struct Work {
+  Points place, normal;
+  int32_t owner[kMaxBrickVertices + kPackSize];  // place in the grid
+  uint8_t patch[kMaxBrickVertices + kPackSize];
+  bool placed[kMaxBrickVertices + kPackSize];
+  Points open;  // those whose radial projection is not exposed
+  int32_t open_number[kMaxBrickVertices + kPackSize];
+};
+static_assert(sizeof(Work) <= BrickScratch::kVertexBytes, "the scratch of a thread has room for it");
+
+// Vertices on the convex part: projected radially on their deepest atom. The others are packed into w->open.
+int project_contact(const FeatureView &f, const BrickCandidates &c, float spacing, int n, Work *w) {
+  const float depth = f.parameters.depth;
+  fill_up(&w->place, n);
+  int open = 0;
+  for (int g = 0; g < n; g += kPackSize) {
+    if (c.arc_count > kManyArcs) look_for_stop();
+    const Vec3<Pack> p = load_points(w->place.x + g, w->place.y + g, w->place.z + g);
+    const uint32_t used = n - g < kPackSize ? (1u << (n - g)) - 1 : kAllLanes;
+    const PointBall ball = ball_around(p);
+    const int near =
+        choose_balls(c.exposed, c.exposed_count, ball.center, ball.radius + kStartReach * spacing - depth, c.near_list);
+    const Deepest deepest = deepest_ball(c.exposed, c.near_list, near, p, -kFarAway);
+    alignas(32) float number[kPackSize];
+    store_pack(number, deepest.number);
+    Vec3<Pack> place = p, normal = p;
+    uint32_t done = 0;
+    const uint32_t trusted = lane_bits(Pack(depth) - deepest.depth <= Pack(kLongestWayIn * spacing));
+    for (uint32_t todo = used & lane_bits(Pack(0.f) <= deepest.number); todo;) {
+      const float a = number[lowest_bit32(todo)];
+      const PackMask same_mask = deepest.number == Pack(a);
+      const uint32_t same = todo & lane_bits(same_mask);
+      todo &= ~same;
+      const int k = static_cast<int>(a);
+      const uint32_t atom = static_cast<uint32_t>(c.exposed_index[k]);
+      const Vec3<Pack> center(Pack(c.exposed.x[k]), Pack(c.exposed.y[k]), Pack(c.exposed.z[k]));
+      const Vec3<Pack> offset = p - center;
+      const Pack length = maximum(Pack(c.exposed.radius[k]) - deepest.depth, Pack(1e-12f));
+      const uint32_t exposed = exposed_lanes(f, atom, offset, length, same);
+      if (!exposed) continue;
+      done |= exposed;
+      const Pack length2 = length_squared(offset), inverse = reciprocal_root(maximum(length2, Pack(1e-12f)));
+      const PackMask off_center = Pack(1e-12f) < length2;  // as sphere_normal() has it
+      const Vec3<Pack> outward(select(off_center, offset.x * inverse, Pack(0.f)),
+                               select(off_center, offset.y * inverse, Pack(0.f)),
+                               select(off_center, offset.z * inverse, Pack(1.f)));
+      const Vec3<Pack> on = center + outward * Pack(c.exposed.radius[k] - depth);
+      place = {select(same_mask, on.x, place.x), select(same_mask, on.y, place.y), select(same_mask, on.z, place.z)};
+      normal = {select(same_mask, outward.x, normal.x), select(same_mask, outward.y, normal.y),
+                select(same_mask, outward.z, normal.z)};
+      for (uint32_t l = exposed; l; l &= l - 1) {
+        w->owner[g + lowest_bit32(l)] = static_cast<int32_t>(atom);
+        w->patch[g + lowest_bit32(l)] = QSES_PATCH_CONTACT;
+        w->placed[g + lowest_bit32(l)] = (trusted >> lowest_bit32(l) & 1) != 0;
+      }
+    }
+    const uint32_t left = used & ~done;
+    const PackMask mask = lane_mask(done);
+    store_pack(w->place.x + g, select(mask, place.x, p.x));
+    store_pack(w->place.y + g, select(mask, place.y, p.y));
+    store_pack(w->place.z + g, select(mask, place.z, p.z));
+    store_pack(w->normal.x + g, normal.x);
+    store_pack(w->normal.y + g, normal.y);
+    store_pack(w->normal.z + g, normal.z);
+    store_lanes(w->open.x + open, left, p.x);
+    store_lanes(w->open.y + open, left, p.y);
+    store_lanes(w->open.z + open, left, p.z);
+    open += store_lane_numbers(w->open_number + open, left, g);
+  }
+  return open;
+}
+
+// Vertices on the saddle and concave parts: projected from the nearest exposed arc, again while another probe might
+// be in the way.
+void project_reentrant(const FeatureView &f, const BrickCandidates &c, float spacing, int open, Work *w) {
+  const float depth = f.parameters.depth;
+  for (int pass = 0; pass < kMaxProjections && open > 0; ++pass) {
+    fill_up(&w->open, open);
+    int again = 0;
+    for (int g = 0; g < open; g += kPackSize) {
+      if (c.arc_count > kManyArcs) look_for_stop();
+      const Vec3<Pack> p = load_points(w->open.x + g, w->open.y + g, w->open.z + g);
+      const PointBall ball = ball_around(p);
+      const float reach = depth + (pass ? 1e-3f : kStartReach * spacing);
+      const int arcs = choose_balls(c.arcs, c.arc_count, ball.center, ball.radius + reach, c.arc_list);
+      Pack best(kFarAway), second(kFarAway), number(-1.f);
+      for (int k = 0; k < arcs; ++k) {
+        const Pack d2 = arc_distance2(f.arcs[c.arc_index[c.arc_list[k]]], p);
+        const PackMask nearer = d2 < best;
+        second = minimum(second, maximum(d2, best));
+        best = select(nearer, d2, best);
+        number = select(nearer, Pack(static_cast<float>(k)), number);
+      }
+      alignas(32) float seconds[kPackSize], numbers[kPackSize];
+      store_pack(seconds, second);
+      store_pack(numbers, number);
+      const int used = open - g < kPackSize ? open - g : kPackSize;
+      for (int l = 0; l < used; ++l) {
+        const int v = w->open_number[g + l];
+        w->owner[v] = -1;
+        if (numbers[l] < 0.f) {
+          w->placed[v] = pass > 0;  // where it is nothing is near it any more
+          continue;
+        }
+        const Vec3<float> x(w->open.x[g + l], w->open.y[g + l], w->open.z[g + l]);
+        const Arc &arc = f.arcs[c.arc_index[c.arc_list[static_cast<int>(numbers[l])]]];
+        const Look look =
+            pass == 0 ? look_at_arc(f.parameters, arc, seconds[l], x)
+                      : look_around(f.parameters, arc, seconds[l], x, {w->normal.x[v], w->normal.y[v], w->normal.z[v]});
+        const SurfacePoint &s = look.point;
+        w->place.x[v] = s.position.x, w->place.y[v] = s.position.y, w->place.z[v] = s.position.z;
+        w->normal.x[v] = s.normal.x, w->normal.y[v] = s.normal.y, w->normal.z[v] = s.normal.z;
+        w->patch[v] = static_cast<uint8_t>(s.patch);
+        w->placed[v] = s.placed && !(look.again && pass + 1 == kMaxProjections) &&
+                       !(pass > 1 && is_over_contact(f, AllCandidates{c}, s.position));
+        if (w->placed[v] && look.again) {
+          w->open_number[again] = v;
+          w->open.x[again] = s.position.x, w->open.y[again] = s.position.y, w->open.z[again] = s.position.z;
+          ++again;
+        }
+      }
+    }
+    open = again;
+  }
+}
+
+// Those of the brick's candidates that decide about one edge.
+struct EdgeCandidates {
+  const BrickCandidates &c;
+  int atoms, arcs;
+  int atom_count() const { return atoms; }
+  uint32_t atom(int k) const { return static_cast<uint32_t>(c.atom_index[c.near_list[k]]); }
+  int arc_count() const { return arcs; }
+  uint32_t arc(int k) const { return static_cast<uint32_t>(c.arc_index[c.arc_list[k]]); }
+};
+
+// What is left: vertices near no feature, and those that probes on all sides push to and fro.
+void place_on_edges(const FeatureView &f, const BrickSet &bricks, const MeshLayout &layout, uint32_t brick,
+                    const BrickCandidates &c, int n, Work *w) {
+  for (int v = 0; v < n; ++v) {
+    if (w->placed[v]) continue;
+    const LatticeEdge edge = edge_of_vertex(layout, brick, layout.vertex_base[brick] + static_cast<uint32_t>(v));
+    const CutEdge ends = ends_of_edge(bricks, layout, brick, edge);
+    const EdgeCandidates near{
+        c, choose_balls(c.atoms, c.atom_count, ends.middle(), edge_reach(f.parameters), c.near_list),
+        choose_balls(c.arcs, c.arc_count, ends.middle(), edge_arc_reach(f.parameters), c.arc_list)};
+    const SurfacePoint s = place_on_edge(f, near, ends);
+    w->place.x[v] = s.position.x, w->place.y[v] = s.position.y, w->place.z[v] = s.position.z;
+    w->normal.x[v] = s.normal.x, w->normal.y[v] = s.normal.y, w->normal.z[v] = s.normal.z;
+    w->patch[v] = static_cast<uint8_t>(s.patch);
+    w->placed[v] = s.placed;
+    w->owner[v] = -1;
+  }
+}
+
+// Owners of the vertices that lie on no single atom.
+void find_owners(const FeatureView &f, const BrickCandidates &c, int n, Work *w) {
+  int open = 0;
+  for (int v = 0; v < n; ++v)
+    if (w->owner[v] < 0) {
+      w->open.x[open] = w->place.x[v], w->open.y[open] = w->place.y[v], w->open.z[open] = w->place.z[v];
+      w->open_number[open++] = v;
+    }
+  if (open == 0) return;
+  fill_up(&w->open, open);
+  for (int g = 0; g < open; g += kPackSize) {
+    const Vec3<Pack> p = load_points(w->open.x + g, w->open.y + g, w->open.z + g);
+    const PointBall ball = ball_around(p);
+    const int near = choose_balls(c.atoms, c.atom_count, ball.center, ball.radius + 1e-3f, c.near_list);
+    const Deepest deepest = deepest_ball(c.atoms, c.near_list, near, p, -kFarAway);
+    alignas(32) float number[kPackSize];
+    store_pack(number, deepest.number);
+    for (int l = 0; l < kPackSize && g + l < open; ++l) {
+      const int v = w->open_number[g + l];
+      if (number[l] >= 0.f)
+        w->owner[v] = c.atom_index[static_cast<int>(number[l])];
+      else  // outside of all of them
+        w->owner[v] = static_cast<int32_t>(
+            nearest_atom(f, AllCandidates{c}, Vec3<float>(w->place.x[v], w->place.y[v], w->place.z[v])));
+    }
+  }
+}
+
+void write_vertices(const FeatureView &f, const Lattice &lattice, const VertexStarts &starts, const MeshView &mesh,
+                    uint32_t base, int n, const Work &w) {
+  uint32_t unplaced = 0;
+  for (int v = 0; v < n; ++v) {
+    const SurfacePoint s = {{w.place.x[v], w.place.y[v], w.place.z[v]},
+                            {w.normal.x[v], w.normal.y[v], w.normal.z[v]},
+                            static_cast<qses_patch>(w.patch[v]),
+                            w.placed[v]};
+    unplaced += s.placed ? 0 : 1;
+    const uint32_t owner = static_cast<uint32_t>(w.owner[v]), vertex = base + static_cast<uint32_t>(v);
+    const glm::vec3 p = lattice.to_caller(s.position);
+    store_vec3(mesh.position(vertex), Vec3<float>(p));
+    store_vec3(mesh.normal(vertex), vertex_normal(f, s, owner));
+    mesh.owner(vertex) = f.atoms.order[owner];
+    if (mesh.patches) mesh.patch(vertex) = w.patch[v];
+  }
+  if (unplaced > 0) atomic_add(starts.unplaced, unplaced);
+}
+
+}  // namespace
+
+BrickNeeds emit_brick_vertices(const FeatureView &f, const BrickSet &bricks, const MeshLayout &layout, uint32_t brick,
+                               const VertexStarts &starts, const BrickScratch &scratch, const MeshView &mesh) {
+  const uint32_t base = layout.vertex_base[brick];
+  const int n = static_cast<int>(layout.vertex_base[brick + 1] - layout.vertex_base[brick]);
+  if (n == 0) return {0, 0};
+  const Lattice &lattice = bricks.lattice;
+  const float h = lattice.spacing, overhang = kStartOverhang * h;
+  const glm::ivec3 first = lattice.first_point(lattice.brick_at(bricks.linear[brick]));
+  const Vec3<float> low = lattice.position(first.x, first.y, first.z) - Vec3<float>(overhang, overhang, overhang);
+  const BrickCandidates c = gather_candidates(f, low, 7.f * h + 2.f * overhang, kStartReach * h,
+                                              f.parameters.depth + kStartReach * h, scratch);
+  if (c.needs.atoms || c.needs.arcs) return c.needs;
+  Work &w = *new (scratch.vertex_memory) Work;
+  if (starts.moved) {
+    for (int v = 0; v < n; ++v) {
+      const glm::vec3 p = starts.moved[base + static_cast<uint32_t>(v)];
+      w.place.x[v] = p.x, w.place.y[v] = p.y, w.place.z[v] = p.z;
+    }
+  } else {
+    start_vertices(f, bricks, layout, brick, starts, c, &w.place);
+  }
+  const int open = project_contact(f, c, h, n, &w);
+  project_reentrant(f, c, h, open, &w);
+  place_on_edges(f, bricks, layout, brick, c, n, &w);
+  find_owners(f, c, n, &w);
+  write_vertices(f, lattice, starts, mesh, base, n, w);
+  return {0, 0};
+}
+
+}  // namespace QSES_CPU_ISA
+}  // namespace quickses

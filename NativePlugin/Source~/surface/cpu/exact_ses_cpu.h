@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+// CPU driver of the exact field and of the mesh: one thread per brick.
+#pragma once
+
+#include "parallel/cpu_executor.h"
+#include "surface/cpu/cpu_kernels.h"
+#include "surface/memory/work_facts.h"
+
+namespace quickses {
+
+// The CPU gathers the candidates of a brick when it comes to it, so slices share nothing.
+struct NoCandidates {};
+template <>
+struct CandidatesOf<CpuExecutor> {
+  using type = NoCandidates;
+  static constexpr double kSpareBytes = 0;
+  static double sign_bytes(const SurfaceParameters &, const CandidateCounts &) { return 0; }
+  static double emission_bytes(const SurfaceParameters &, const CandidateCounts &, double, double) { return 0; }
+  static uint64_t whole_bytes(const SurfaceParameters &, const CandidateCounts &) { return 0; }
+};
+
+// Memory of one thread for a brick: columns for what is near it, and its vertices. Grows when a brick needs more; kept
+// between surfaces.
+struct BrickColumns {
+  alignas(64) unsigned char vertex_memory[BrickScratch::kVertexBytes];
+  std::vector<float> atom_memory, arc_memory;
+  int atom_capacity = 512, arc_capacity = 1024;
+
+  BrickScratch scratch() {
+    const size_t atoms = BrickScratch::kAtomColumns * (static_cast<size_t>(atom_capacity) + 16);
+    const size_t arcs = BrickScratch::kArcColumns * (static_cast<size_t>(arc_capacity) + 16);
+    if (atom_memory.size() < atoms) atom_memory.resize(atoms);
+    if (arc_memory.size() < arcs) arc_memory.resize(arcs);
+    return {atom_memory.data(), arc_memory.data(), atom_capacity, arc_capacity, vertex_memory};
+  }
+  uint64_t bytes() const { return sizeof(float) * (atom_memory.capacity() + arc_memory.capacity()); }
+  // True if the brick must be done again.
+  bool grow(const BrickNeeds &needs) {
+    if (needs.atoms > 0) atom_capacity = needs.atoms + needs.atoms / 2;
+    if (needs.arcs > 0) arc_capacity = needs.arcs + needs.arcs / 2;
+    return needs.atoms > 0 || needs.arcs > 0;
+  }
+  // As much room as another thread needed: who meets the most crowded brick differs from surface to surface.
+  void match(const BrickColumns &other) {
+    atom_capacity = std::max(atom_capacity, other.atom_capacity);
+    arc_capacity = std::max(arc_capacity, other.arc_capacity);
+    scratch();
+  }
+};
+
+struct EvaluateBrick {
+  const CpuKernels *kernels;
+  const FeatureView *features;
+  const BrickSet *bricks;
+  uint32_t first;
+  uint64_t *signs;
+  void operator()(SoloTeam, BrickColumns &columns, size_t i) const {
+    const uint32_t brick = first + static_cast<uint32_t>(i);
+    while (columns.grow(kernels->evaluate_brick_signs(*features, *bricks, brick, columns.scratch(),
+                                                      signs + size_t(brick) * kLeavesPerBrick))) {
+    }
+  }
+};
+
+inline void evaluate_signs(CpuExecutor &executor, const FeatureView &features, const BrickSet &bricks, BrickRange slice,
+                           NoCandidates &, uint64_t *signs) {
+  executor.match_scratches<BrickColumns>();
+  executor.for_each_brick<BrickColumns>(slice.size(),
+                                        EvaluateBrick{&executor.kernels(), &features, &bricks, slice.first, signs});
+}
+
+struct EmitBrickVertices {
+  const CpuKernels *kernels;
+  const FeatureView *features;
+  const BrickSet *bricks;
+  const MeshLayout *layout;
+  const VertexStarts *starts;
+  const MeshView *mesh;
+  uint32_t first;
+  void operator()(SoloTeam, BrickColumns &columns, size_t i) const {
+    while (columns.grow(kernels->emit_brick_vertices(*features, *bricks, *layout, first + static_cast<uint32_t>(i),
+                                                     *starts, columns.scratch(), *mesh))) {
+    }
+  }
+};
+
+inline void emit_vertices(CpuExecutor &executor, const FeatureView &features, const BrickSet &bricks,
+                          const MeshLayout &layout, BrickRange slice, NoCandidates &, const VertexStarts &starts,
+                          const MeshView &mesh) {
+  executor.match_scratches<BrickColumns>();
+  executor.for_each_brick<BrickColumns>(
+      slice.size(), EmitBrickVertices{&executor.kernels(), &features, &bricks, &layout, &starts, &mesh, slice.first});
+}
+
+struct EmitBrickTriangles {
+  const CpuKernels *kernels;
+  const BrickSet *bricks;
+  const MeshLayout *layout;
+  const TableView *table;
+  const MeshView *mesh;
+  uint32_t first;
+  void operator()(SoloTeam, char &, size_t i) const {
+    kernels->emit_brick_triangles(*bricks, *layout, first + static_cast<uint32_t>(i), *table, *mesh);
+  }
+};
+
+inline void emit_triangles(CpuExecutor &executor, const BrickSet &bricks, const MeshLayout &layout, BrickRange slice,
+                           const TableView &table, const MeshView &mesh) {
+  executor.for_each_brick<char>(slice.size(),
+                                EmitBrickTriangles{&executor.kernels(), &bricks, &layout, &table, &mesh, slice.first});
+}
+
+}  // namespace quickses

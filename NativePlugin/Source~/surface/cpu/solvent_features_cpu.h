@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: MIT
+// CPU driver of the solvent features: chunks of atoms per thread, pooled as they come and put in order afterwards. With
+// little memory nothing is pooled: a first pass only counts, a second one writes everything to its place.
+#pragma once
+
+#include "parallel/cpu_executor.h"
+#include "parallel/growing_buffer.h"
+#include "surface/cpu/cpu_kernels.h"
+
+namespace quickses {
+
+// Atoms of one chunk: few enough that all threads get some of a small molecule.
+constexpr size_t kMinAtomsPerChunk = 4, kMaxAtomsPerChunk = 32;
+
+// Caps and arcs an atom is given room for at first.
+constexpr size_t kRoomPerAtom = 256;
+
+// Room of one thread for the features of one chunk. Kept between surfaces.
+struct FeatureStaging {
+  std::vector<float> memory;
+  int capacity = 256;
+  std::vector<Cap> caps;
+  std::vector<Arc> arcs;
+  size_t cap_count = 0, arc_count = 0;
+  size_t most_caps = 0, most_arcs = 0;  // of any chunk so far
+
+  AtomScratch scratch() {
+    const size_t needed = AtomScratch::kColumns * (static_cast<size_t>(capacity) + 16) + 16;
+    if (memory.size() < needed) memory.resize(needed);
+    const uintptr_t start = reinterpret_cast<uintptr_t>(memory.data());
+    return {memory.data() + (64 - start % 64) % 64 / sizeof(float), capacity};
+  }
+  uint64_t bytes() const {
+    return sizeof(float) * memory.capacity() + sizeof(Cap) * caps.capacity() + sizeof(Arc) * arcs.capacity();
+  }
+  // As much room as another thread needed: who meets the largest atom differs from surface to surface.
+  void match(const FeatureStaging &other) {
+    capacity = std::max(capacity, other.capacity);
+    scratch();
+    most_caps = std::max(most_caps, other.most_caps);
+    most_arcs = std::max(most_arcs, other.most_arcs);
+    if (caps.size() < most_caps + most_caps / 4 + kRoomPerAtom) caps.resize(most_caps + most_caps / 2 + kRoomPerAtom);
+    if (arcs.size() < most_arcs + most_arcs / 4 + kRoomPerAtom) arcs.resize(most_arcs + most_arcs / 2 + kRoomPerAtom);
+  }
+};
+
+// What proteins have, generously. Where atoms have more, the first surface takes a second pass.
+constexpr size_t kUsualCapsPerAtom = 32, kUsualArcsPerAtom = 6;
+
+// What all threads found, chunk behind chunk in the order they were finished. What does not fit is only counted.
+struct FeaturePool {
+  Span<Cap> caps;
+  Span<Arc> arcs;
+  std::atomic<size_t> cap_count{0}, arc_count{0};
+  GrowingBuffer<HostMemory> own_caps, own_arcs;
+
+  void open(Span<Cap> cap_room, Span<Arc> arc_room) {
+    caps = cap_room;
+    arcs = arc_room;
+    cap_count = arc_count = 0;
+  }
+  // In memory of its own, kept between surfaces: at least as much, and somewhat more than was needed last time.
+  void open_own(size_t cap_room, size_t arc_room) {
+    cap_room = std::max(cap_room, cap_count + cap_count / 16);
+    arc_room = std::max(arc_room, arc_count + arc_count / 16);
+    Cap *const cap_place = static_cast<Cap *>(own_caps.reserve(cap_room * sizeof(Cap)));
+    Arc *const arc_place = static_cast<Arc *>(own_arcs.reserve(arc_room * sizeof(Arc)));
+    open({cap_place, own_caps.size() / sizeof(Cap)}, {arc_place, own_arcs.size() / sizeof(Arc)});
+  }
+  uint64_t bytes() const { return own_caps.size() + own_arcs.size(); }
+  bool holds_all() const { return cap_count <= caps.size && arc_count <= arcs.size; }
+};
+
+// The places in the pool of what one chunk found.
+struct FeatureChunk {
+  size_t first_cap, cap_count, first_arc, arc_count;
+};
+
+// Finds the features of atom i, with as much room as they need. place_caps() and place_arcs() tell where it is, and how
+// much, and are asked again after more room was made.
+template <class Room>
+AtomFeatures find_features_of(const CpuKernels &kernels, const NeighborGridView &atoms,
+                              const SurfaceParameters &parameters, size_t i, FeatureStaging &s, uint8_t *exposed,
+                              const Room &room) {
+  for (;;) {
+    const AtomFeatures found =
+        kernels.find_atom_features(atoms, parameters, static_cast<uint32_t>(i), s.scratch(), room.caps(s),
+                                   room.cap_room(s), room.arcs(s), room.arc_room(s), exposed);
+    if (found.neighbors_needed > 0)
+      s.capacity = found.neighbors_needed + found.neighbors_needed / 2;
+    else if (found.cap_count > room.cap_room(s))
+      s.caps.resize(s.cap_count + 2 * static_cast<size_t>(found.cap_count));
+    else if (found.arc_count > room.arc_room(s))
+      s.arcs.resize(s.arc_count + 2 * static_cast<size_t>(found.arc_count));
+    else
+      return found;
+  }
+}
+
+// Behind what the thread has staged.
+struct StagedRoom {
+  static void open(FeatureStaging &s) {
+    if (s.caps.size() < s.cap_count + kRoomPerAtom) s.caps.resize(2 * (s.cap_count + kRoomPerAtom));
+    if (s.arcs.size() < s.arc_count + kRoomPerAtom) s.arcs.resize(2 * (s.arc_count + kRoomPerAtom));
+  }
+  Cap *caps(FeatureStaging &s) const { return s.caps.data() + s.cap_count; }
+  int cap_room(FeatureStaging &s) const {
+    return static_cast<int>(std::min<size_t>(s.caps.size() - s.cap_count, 1u << 30));
+  }
+  Arc *arcs(FeatureStaging &s) const { return s.arcs.data() + s.arc_count; }
+  int64_t arc_room(FeatureStaging &s) const { return static_cast<int64_t>(s.arcs.size() - s.arc_count); }
+};
+
+// Features of the atoms of one chunk.
+struct FindChunkFeatures {
+  const CpuKernels *kernels;
+  const NeighborGridView *atoms;
+  const SurfaceParameters *parameters;
+  size_t atoms_per_chunk;
+  CapRange *cap_ranges;
+  uint8_t *exposed;
+  FeatureChunk *chunks;
+  FeaturePool *pool;
+  void operator()(SoloTeam, FeatureStaging &s, size_t chunk) const {
+    s.cap_count = s.arc_count = 0;
+    const size_t end = std::min<size_t>(atoms->count, (chunk + 1) * atoms_per_chunk);
+    for (size_t i = chunk * atoms_per_chunk; i < end; ++i) {
+      StagedRoom::open(s);
+      const AtomFeatures found = find_features_of(*kernels, *atoms, *parameters, i, s, exposed, StagedRoom{});
+      cap_ranges[i] = {static_cast<uint32_t>(s.cap_count), found.cap_count};
+      s.cap_count += static_cast<size_t>(found.cap_count);
+      s.arc_count += static_cast<size_t>(found.arc_count);
+    }
+    s.most_caps = std::max(s.most_caps, s.cap_count);
+    s.most_arcs = std::max(s.most_arcs, s.arc_count);
+    FeatureChunk &c = chunks[chunk];
+    c = {pool->cap_count.fetch_add(s.cap_count), s.cap_count, pool->arc_count.fetch_add(s.arc_count), s.arc_count};
+    if (c.first_cap + c.cap_count <= pool->caps.size && c.first_arc + c.arc_count <= pool->arcs.size) {
+      std::copy_n(s.caps.data(), c.cap_count, pool->caps.data + c.first_cap);
+      std::copy_n(s.arcs.data(), c.arc_count, pool->arcs.data + c.first_arc);
+    }
+  }
+};
+
+// Copies what a chunk found to its place; of buried atoms nothing.
+struct CollectChunk {
+  const FeatureChunk *chunks;
+  const FeaturePool *pool;
+  const uint64_t *cap_first, *arc_base;  // per atom, per chunk
+  size_t atoms, atoms_per_chunk;
+  const uint8_t *exposed;
+  CapRange *cap_ranges;
+  Cap *caps;
+  Arc *arcs;
+  void operator()(size_t chunk) const {
+    const FeatureChunk &c = chunks[chunk];
+    std::copy_n(pool->arcs.data + c.first_arc, c.arc_count, arcs + arc_base[chunk]);
+    const size_t end = std::min(atoms, (chunk + 1) * atoms_per_chunk);
+    for (size_t i = chunk * atoms_per_chunk; i < end; ++i) {
+      if (exposed[i])
+        std::copy_n(pool->caps.data + c.first_cap + cap_ranges[i].first, cap_ranges[i].count, caps + cap_first[i]);
+      else
+        cap_ranges[i].count = kBuriedAtom;
+      cap_ranges[i].first = static_cast<uint32_t>(cap_first[i]);
+    }
+  }
+};
+
+struct LoadChunkArcs {
+  const FeatureChunk *chunks;
+  uint64_t operator()(size_t i) const { return chunks[i].arc_count; }
+};
+
+// Places of the caps of exposed atoms; the others keep none.
+struct LoadExposedCaps {
+  const uint8_t *exposed;
+  const CapRange *cap_ranges;
+  uint64_t operator()(size_t i) const { return exposed[i] ? static_cast<uint64_t>(cap_ranges[i].count) : 0; }
+};
+
+// A place whose size is known; caps of buried atoms go where they are forgotten.
+struct FinalRoom {
+  Cap *cap_place;  // nullptr: buried
+  int cap_count;
+  Arc *arc_place;
+  int64_t arc_count;
+  Cap *caps(FeatureStaging &s) const { return cap_place ? cap_place : s.caps.data(); }
+  int cap_room(FeatureStaging &s) const { return cap_place ? cap_count : StagedRoom{}.cap_room(s); }
+  Arc *arcs(FeatureStaging &) const { return arc_place; }
+  int64_t arc_room(FeatureStaging &) const { return arc_count; }
+};
+
+// The second pass: features straight to their places.
+struct PlaceChunkFeatures {
+  const CpuKernels *kernels;
+  const NeighborGridView *atoms;
+  const SurfaceParameters *parameters;
+  size_t atoms_per_chunk;
+  const uint64_t *cap_first, *arc_base;  // per atom, per chunk
+  CapRange *cap_ranges;
+  uint8_t *exposed;
+  Cap *caps;
+  Arc *arcs;
+  void operator()(SoloTeam, FeatureStaging &s, size_t chunk) const {
+    s.cap_count = s.arc_count = 0;
+    const size_t end = std::min<size_t>(atoms->count, (chunk + 1) * atoms_per_chunk);
+    uint64_t arc = arc_base[chunk];
+    for (size_t i = chunk * atoms_per_chunk; i < end; ++i) {
+      StagedRoom::open(s);
+      const bool open = exposed[i] != 0;
+      const FinalRoom room{open ? caps + cap_first[i] : nullptr, cap_ranges[i].count, arcs + arc,
+                           static_cast<int64_t>(arc_base[chunk + 1] - arc)};
+      const AtomFeatures found = find_features_of(*kernels, *atoms, *parameters, i, s, exposed, room);
+      cap_ranges[i] = {static_cast<uint32_t>(cap_first[i]), open ? found.cap_count : kBuriedAtom};
+      arc += static_cast<uint64_t>(found.arc_count);
+    }
+  }
+};
+
+// Bytes per atom that the usual features take in the pool and in their places together, and somewhat more.
+constexpr uint64_t kPooledAtomBytes = 2000;
+static_assert(2 * (kUsualCapsPerAtom * sizeof(Cap) + kUsualArcsPerAtom * sizeof(Arc)) < kPooledAtomBytes, "both fit");
+
+// A pool for n atoms. It must not take more than the budget leaves, and nothing if that is little or to be spared.
+inline FeaturePool &open_pool(CpuExecutor &executor, size_t n, bool frugal) {
+  FeaturePool &pool = *executor.scratches<FeaturePool>().front();
+  const size_t caps = n * kUsualCapsPerAtom, arcs = n * kUsualArcsPerAtom;
+  auto &arena = executor.arena();
+  if (frugal || arena.available() < n * kPooledAtomBytes + 4 * arena.kAlignment) {
+    pool.open({}, {});
+  } else if (arena.has_budget()) {
+    // Behind the places that the features will have: those are taken after this memory was given up.
+    executor.allocate<char>(caps * sizeof(Cap) + arcs * sizeof(Arc) + 2 * arena.kAlignment);
+    const Span<Cap> cap_room = executor.allocate<Cap>(caps);
+    pool.open(cap_room, executor.allocate<Arc>(arcs));
+  } else {
+    pool.open_own(caps, arcs);
+  }
+  return pool;
+}
+
+inline void find_solvent_features(CpuExecutor &executor, const NeighborGridView &atoms,
+                                  const SurfaceParameters &parameters, bool frugal, SolventFeatures *features) {
+  const size_t n = atoms.count;
+  const size_t per_chunk =
+      std::max(kMinAtomsPerChunk, std::min(kMaxAtomsPerChunk, n / (size_t(executor.threads()) * 8)));
+  const size_t chunks = (n + per_chunk - 1) / per_chunk;
+  SolventFeatures &f = *features;
+  f.cap_ranges = executor.allocate<CapRange>(n);
+  f.exposed = executor.allocate<uint8_t>(n + 8);
+  executor.fill(f.exposed, 0);
+  Span<FeatureChunk> table = executor.allocate<FeatureChunk>(chunks);
+  Span<uint64_t> cap_first = executor.allocate<uint64_t>(n + 1), arc_base = executor.allocate<uint64_t>(chunks + 1);
+  const auto mark = executor.arena().mark();
+  FeaturePool &pool = open_pool(executor, n, frugal);
+  executor.match_scratches<FeatureStaging>();
+  executor.for_each_brick<FeatureStaging>(chunks,
+                                          FindChunkFeatures{&executor.kernels(), &atoms, &parameters, per_chunk,
+                                                            f.cap_ranges.data, f.exposed.data, table.data, &pool},
+                                          1);
+  executor.exclusive_scan(n, LoadExposedCaps{f.exposed.data, f.cap_ranges.data}, cap_first);
+  executor.exclusive_scan(chunks, LoadChunkArcs{table.data}, arc_base);
+  executor.arena().rewind(mark);
+  f.caps.size = cap_first[n];
+  f.arcs.size = arc_base[chunks];
+  f.caps = executor.allocate<Cap>(cap_first[n]);
+  f.arcs = executor.allocate<Arc>(arc_base[chunks]);
+  if (pool.holds_all()) {
+    executor.for_each(chunks, CollectChunk{table.data, &pool, cap_first.data, arc_base.data, n, per_chunk,
+                                           f.exposed.data, f.cap_ranges.data, f.caps.data, f.arcs.data});
+    return;
+  }
+  // Next time they will fit; the room is taken now, so that this computation tells what later ones take.
+  if (!frugal && !executor.arena().has_budget()) pool.open_own(pool.cap_count, pool.arc_count);
+  executor.for_each_brick<FeatureStaging>(
+      chunks,
+      PlaceChunkFeatures{&executor.kernels(), &atoms, &parameters, per_chunk, cap_first.data, arc_base.data,
+                         f.cap_ranges.data, f.exposed.data, f.caps.data, f.arcs.data},
+      1);
+}
+
+}  // namespace quickses

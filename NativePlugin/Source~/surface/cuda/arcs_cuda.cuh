@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: MIT
+// GPU driver of the arcs: each lane of a warp clips one circle; lanes that are done are given new circles together,
+// since most circles are covered after a few balls and some need many.
+#pragma once
+
+#include "parallel/cuda_executor.cuh"
+#include "parallel/cuda_warp.cuh"
+#include "surface/stages/solvent_features.h"
+
+namespace quickses {
+namespace gpu {
+
+// What was counted, whether there was room for it or not.
+struct FeatureCounters {
+  unsigned long long caps, circles;
+  unsigned long long staged;  // circles with exposed arcs in the upper half, arcs before they are split in the lower
+  unsigned long long arcs;
+  uint32_t neighbors;     // most of an atom for which the rows were too short
+  uint32_t long_atoms;    // number of those atoms
+  uint32_t longest_row;   // most caps of an atom
+  uint32_t long_circles;  // circles with more exposed intervals than a lane holds
+};
+
+// How much of each there is room for.
+struct FeatureRoom {
+  size_t caps, circles, staged_circles, staged_arcs, arcs;
+  size_t neighbors;   // per atom in global memory; 0: only what shared memory holds
+  size_t long_atoms;  // that need it; at least so many
+  size_t intervals;   // per circle in global memory; 0: only what a lane holds
+
+  static FeatureRoom guess(size_t atoms) {
+    return {28 * atoms + 1024, 14 * atoms + 512, 3 * atoms + 512, 5 * atoms + 512, 7 * atoms + 1024, 0, 0, 0};
+  }
+  bool holds(const FeatureCounters &c) const {
+    return c.neighbors <= neighbors && c.caps <= caps && c.circles <= circles && (c.staged >> 32) <= staged_circles &&
+           (c.staged & 0xffffffffu) <= staged_arcs && c.arcs <= arcs &&
+           (c.long_circles == 0 || c.longest_row + 1u <= intervals);
+  }
+  void grow(const FeatureCounters &c) {
+    neighbors = std::max<size_t>(neighbors, (c.neighbors + size_t(31)) / 32 * 32);  // keeps the rows aligned
+    long_atoms = std::max<size_t>(long_atoms, c.long_atoms);
+    caps = std::max<size_t>(caps, c.caps);
+    circles = std::max<size_t>(circles, c.circles);
+    staged_circles = std::max<size_t>(staged_circles, c.staged >> 32);
+    staged_arcs = std::max<size_t>(staged_arcs, c.staged & 0xffffffffu);
+    arcs = std::max<size_t>(arcs, c.arcs);
+    if (c.long_circles > 0) intervals = std::max<size_t>(intervals, c.longest_row + 1u);
+  }
+};
+
+QSES_FN bool is_far_away(const Sphere &s) { return s.center.x >= 0.5f * kFarAway; }
+
+// The atoms a pass is about.
+struct AtomRun {
+  uint32_t first, last;
+  QSES_FN uint32_t size() const { return last - first; }
+};
+
+struct LoadNumber {
+  const uint32_t *numbers;
+  QSES_HOST_DEVICE uint32_t operator()(size_t i) const { return numbers[i]; }
+};
+
+// A circle: its atom, and the rank of its cap among the atom's.
+struct CircleName {
+  uint32_t atom;
+  uint32_t rank;
+};
+
+struct StagedCircle {
+  uint32_t circle;
+  uint32_t first, count;  // of its arcs
+};
+
+struct CircleJob {
+  NeighborGridView atoms;
+  AtomRun run;
+  FeatureRoom room;
+  FeatureCounters *counters;
+  const CapRange *cap_ranges;
+  const Cap *caps;
+  const uint32_t *neighbors;
+  const uint32_t *circle_first;  // per atom of the run
+  uint8_t *exposed;
+  Arc *arcs;
+  // Made by clip_circles().
+  CircleName *names = nullptr;     // of the circles, by atom and rank
+  uint32_t *arc_count = nullptr;   // per circle: pieces of arcs
+  StagedCircle *staged = nullptr;  // circles with exposed arcs, in any order
+  ExposedArc *staged_arcs = nullptr;
+  uint32_t *long_circles = nullptr;  // circles that need more intervals than a lane holds
+};
+
+constexpr int kClipThreads = 128;
+constexpr int kLaneIntervals = 8;  // exposed intervals of a circle that a lane holds
+constexpr int kIdleLanes = 10;     // refill when so many have nothing to do
+
+// Intervals of one lane, one block's worth apart.
+struct StridedIntervals {
+  Interval *first;
+  int stride;
+  __device__ __forceinline__ Interval &operator[](int k) const { return first[k * stride]; }
+};
+
+// Lists the circles of each atom: caps behind which a later atom is. A warp per atom.
+static __global__ __launch_bounds__(128) void list_circles_kernel(CircleJob job) {
+  const int lane = lane_id();
+  for (uint32_t place = (blockIdx.x * blockDim.x + threadIdx.x) / kWarp; place < job.run.size();
+       place += gridDim.x * blockDim.x / kWarp) {
+    const uint32_t i = job.run.first + place;
+    const CapRange range = job.cap_ranges[i];
+    uint32_t next = job.circle_first[place];
+    if (job.circle_first[place + 1] > job.room.circles) return;  // all will be done again
+    for (int q0 = 0; q0 < range.count; q0 += kWarp) {
+      const int q = q0 + lane;
+      const bool owns = q < range.count && job.neighbors[range.first + static_cast<uint32_t>(q)] > i;
+      const unsigned ballot = __ballot_sync(kFullWarp, owns);
+      if (owns) job.names[next + static_cast<uint32_t>(place_in(ballot, lane))] = {i, static_cast<uint32_t>(q)};
+      next += static_cast<uint32_t>(__popc(ballot));
+    }
+  }
+}
+
+// A circle being clipped.
+struct ClippedCircle {
+  uint32_t number;  // of the circle
+  uint32_t atom, other;
+  uint32_t first_cap;
+  int rank, cap_count;
+  float shrink;  // by how much the caps are stored smaller
+  float radius;  // of the circle, Å
+  Circle circle;
+};
+
+__device__ __forceinline__ ClippedCircle open_circle(const CircleJob &job, uint32_t number) {
+  ClippedCircle c;
+  const CircleName name = job.names[number];
+  const CapRange range = job.cap_ranges[name.atom];
+  const float radius = load(job.atoms.items + name.atom).radius;
+  c.number = number;
+  c.atom = name.atom;
+  c.rank = static_cast<int>(name.rank);
+  c.first_cap = range.first;
+  c.cap_count = range.count;
+  c.other = job.neighbors[range.first + name.rank];
+  c.shrink = stored_cap_cosine(0.f, radius);
+  const Cap cap = load(job.caps + range.first + name.rank);
+  c.circle = make_circle(cap.axis, cap.cosine - c.shrink, radius);
+  c.radius = radius * c.circle.sine;
+  return c;
+}
+
+// What cap k covers of the circle: a stretch from begin to end, nothing, or all.
+enum class CutKind { kNone, kPart, kAll };
+__device__ __forceinline__ CutKind cut_by_cap(const CircleJob &job, const ClippedCircle &c, int k, float *begin,
+                                              float *end) {
+  const Cap cap = load(job.caps + c.first_cap + static_cast<uint32_t>(k));
+  const HalfPlane<float> h = cut_circle(c.circle, Vec3<float>(cap.axis), cap.cosine - c.shrink);
+  if (same_circle(c.circle, h)) return CutKind::kNone;
+  if (misses_circle(h)) return covers_circle(h) ? CutKind::kAll : CutKind::kNone;
+  covered_stretch(h, begin, end);
+  if (*begin == *end) return h.c < 0.f ? CutKind::kAll : CutKind::kNone;
+  return CutKind::kPart;
+}
+
+// Number of arcs, before they are split, of a circle with exposed intervals.
+template <class Storage>
+__device__ __forceinline__ uint32_t arcs_of(const ExposedIntervals<Storage> &intervals) {
+  return intervals.whole ? 1u : static_cast<uint32_t>(intervals.count);
+}
+
+// Stages a circle's arcs at a place in both lists, and marks its atoms as exposed.
+template <class Storage>
+__device__ __forceinline__ void stage_circle(const CircleJob &job, const ClippedCircle &c,
+                                             const ExposedIntervals<Storage> &intervals, unsigned long long place) {
+  job.exposed[c.atom] = 1;
+  job.exposed[c.other] = 1;
+  const uint32_t slot = static_cast<uint32_t>(place >> 32), first = static_cast<uint32_t>(place);
+  const uint32_t count = arcs_of(intervals);
+  if (slot >= job.room.staged_circles || first + size_t(count) > job.room.staged_arcs) return;
+  job.staged[slot] = {c.number, first, count};
+  uint32_t pieces = 0;
+  for (uint32_t k = 0; k < count; ++k) {
+    Interval interval{0.f, 0.f};
+    if (!intervals.whole) interval = intervals.interval[static_cast<int>(k)];
+    const ExposedArc arc = exposed_arc(intervals.whole ? nullptr : &interval, c.radius);
+    job.staged_arcs[first + k] = arc;
+    pieces += 1u << arc.halvings;
+  }
+  job.arc_count[c.number] = pieces;
+}
+
+static __global__ __launch_bounds__(kClipThreads) void clip_circles_kernel(CircleJob job, uint32_t chunk) {
+  __shared__ Interval memory[kLaneIntervals * kClipThreads];
+  const StridedIntervals storage{memory + threadIdx.x, kClipThreads};
+  enum class State { kIdle, kActive, kDone };
+  const int lane = lane_id();
+  // Those that are listed: atoms whose caps had no room are counted, but list none.
+  const unsigned long long total = job.circle_first[job.run.size()];
+  if (total > job.room.circles) return;  // all will be done again
+  const uint32_t warps = gridDim.x * kClipThreads / kWarp;
+  for (unsigned long long base =
+           (blockIdx.x * kClipThreads + threadIdx.x) / kWarp * static_cast<unsigned long long>(chunk);
+       base < total; base += static_cast<unsigned long long>(warps) * chunk) {
+    uint32_t next = static_cast<uint32_t>(base);
+    const uint32_t end = static_cast<uint32_t>(base + chunk < total ? base + chunk : total);
+    State state = State::kIdle;
+    ClippedCircle c{};
+    ExposedIntervals<StridedIntervals> intervals{storage, kLaneIntervals};
+    int k = 0;
+    for (;;) {
+      const unsigned idle = __ballot_sync(kFullWarp, state != State::kActive);
+      if (idle == kFullWarp || (next < end && __popc(idle) >= kIdleLanes)) {
+        const bool done = state == State::kDone;
+        if (__any_sync(kFullWarp, done)) {
+          const bool keep = done && !intervals.overflow;
+          if (done && intervals.overflow) job.long_circles[atomicAdd(&job.counters->long_circles, 1u)] = c.number;
+          const unsigned long long own = keep ? (1ull << 32) + arcs_of(intervals) : 0;
+          const unsigned long long sum = warp_inclusive_sum(own, lane);
+          unsigned long long place = 0;
+          if (lane == kWarp - 1 && sum > 0) place = atomicAdd(&job.counters->staged, sum);
+          place = __shfl_sync(kFullWarp, place, kWarp - 1) + sum - own;
+          if (keep) stage_circle(job, c, intervals, place);
+        }
+        __syncwarp();
+        if (idle == kFullWarp && next >= end) break;
+        if (state != State::kActive) {
+          const uint32_t number = next + static_cast<uint32_t>(place_in(idle, lane));
+          state = State::kIdle;
+          if (number < end) {
+            c = open_circle(job, number);
+            intervals.count = 0;
+            intervals.whole = true;
+            intervals.overflow = false;
+            k = 0;
+            state = State::kActive;
+          }
+        }
+        next += static_cast<uint32_t>(__popc(idle));
+        __syncwarp();
+      }
+      // One cap further.
+      CutKind cut = CutKind::kNone;
+      float begin = 0.f, end_of = 0.f;
+      if (state == State::kActive) {
+        if (k == c.rank) ++k;
+        if (k >= c.cap_count) {
+          state = State::kDone;
+        } else {
+          cut = cut_by_cap(job, c, k, &begin, &end_of);
+          ++k;
+          if (cut == CutKind::kAll) state = State::kIdle;
+        }
+      }
+      __syncwarp();
+      if (cut == CutKind::kPart) {
+        intervals.cover(begin, end_of);
+        if (intervals.overflow)
+          state = State::kDone;
+        else if (intervals.empty())
+          state = State::kIdle;
+      }
+      __syncwarp();
+    }
+  }
+}
+
+// The circles that have more exposed intervals, with room for as many as they can have: one more than there are caps.
+static __global__ __launch_bounds__(kWarp) void clip_long_circles_kernel(CircleJob job, Interval *memory) {
+  const uint32_t thread = blockIdx.x * kWarp + threadIdx.x, threads = gridDim.x * kWarp;
+  const uint32_t count = job.counters->long_circles;
+  for (uint32_t t = thread; t < count; t += threads) {
+    const ClippedCircle c = open_circle(job, job.long_circles[t]);
+    if (static_cast<size_t>(c.cap_count) + 1 > job.room.intervals) continue;  // all will be done again
+    ExposedIntervals<StridedIntervals> intervals{{memory + thread, static_cast<int>(threads)},
+                                                 static_cast<int>(job.room.intervals)};
+    bool hidden = false;
+    for (int k = 0; k < c.cap_count && !hidden; ++k) {
+      if (k == c.rank) continue;
+      float begin, end;
+      const CutKind cut = cut_by_cap(job, c, k, &begin, &end);
+      if (cut == CutKind::kPart) intervals.cover(begin, end);
+      hidden = cut == CutKind::kAll || intervals.empty();
+    }
+    if (!hidden) stage_circle(job, c, intervals, atomicAdd(&job.counters->staged, (1ull << 32) + arcs_of(intervals)));
+  }
+}
+
+// Writes the staged arcs, split, to their places in order.
+static __global__ __launch_bounds__(128) void write_arcs_kernel(CircleJob job, const uint32_t *arc_first) {
+  if (job.circle_first[job.run.size()] > job.room.circles) return;
+  if (blockIdx.x == 0 && threadIdx.x == 0) job.counters->arcs = arc_first[job.room.circles];
+  const unsigned long long staged = job.counters->staged;
+  if ((staged >> 32) > job.room.staged_circles || (staged & 0xffffffffu) > job.room.staged_arcs) return;
+  for (uint32_t s = blockIdx.x * blockDim.x + threadIdx.x; s < static_cast<uint32_t>(staged >> 32);
+       s += gridDim.x * blockDim.x) {
+    const StagedCircle staged_circle = job.staged[s];
+    const ClippedCircle c = open_circle(job, staged_circle.circle);
+    const Sphere atom = load(job.atoms.items + c.atom);
+    uint32_t place = arc_first[staged_circle.circle];
+    for (uint32_t k = 0; k < staged_circle.count; ++k) {
+      const ExposedArc arc = job.staged_arcs[staged_circle.first + k];
+      const uint32_t pieces = 1u << arc.halvings;
+      if (place + size_t(pieces) <= job.room.arcs) write_arc_pieces(c.circle, atom, arc, job.arcs + place);
+      place += pieces;
+    }
+  }
+}
+
+// All from the caps to the arcs.
+inline void clip_circles(CudaExecutor &executor, CircleJob job) {
+  const FeatureRoom &room = job.room;
+  const size_t processors = executor.multiprocessors(), n = job.run.size();
+  job.names = executor.allocate<CircleName>(room.circles).data;
+  Span<uint32_t> arc_count = executor.allocate<uint32_t>(room.circles);
+  Span<uint32_t> arc_first = executor.allocate<uint32_t>(room.circles + 1);
+  job.arc_count = arc_count.data;
+  job.staged = executor.allocate<StagedCircle>(room.staged_circles).data;
+  job.staged_arcs = executor.allocate<ExposedArc>(room.staged_arcs).data;
+  job.long_circles = executor.allocate<uint32_t>(room.circles).data;
+  executor.fill(arc_count, 0);
+
+  executor.launch("list_circles", list_circles_kernel, std::min((n + 3) / 4, processors * 32), 128, 0, job);
+  // Enough warps to fill the GPU, and enough circles per warp to refill its lanes.
+  const uint32_t chunk =
+      static_cast<uint32_t>(std::min<size_t>(256, std::max<size_t>(64, room.circles / (processors * 64))));
+  executor.launch("clip_circles", clip_circles_kernel, std::min(room.circles / (4 * chunk) + 1, processors * 64),
+                  kClipThreads, 0, job, chunk);
+  if (room.intervals > 0) {
+    const size_t blocks = 16;
+    Span<Interval> memory = executor.allocate<Interval>(blocks * kWarp * room.intervals);
+    executor.launch("clip_long_circles", clip_long_circles_kernel, blocks, kWarp, 0, job, memory.data);
+  }
+  executor.exclusive_scan(room.circles, LoadNumber{arc_count.data}, arc_first);
+  executor.launch("write_arcs", write_arcs_kernel, std::min(n / 64 + 1, processors * 16), 128, 0, job, arc_first.data);
+}
+
+}  // namespace gpu
+}  // namespace quickses

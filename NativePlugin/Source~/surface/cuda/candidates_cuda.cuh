@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: MIT
+// GPU: which atoms and arcs can matter in a brick, gathered once and kept as rows of numbers, and which of its leaves
+// can hold surface.
+#pragma once
+
+#include "parallel/cuda_executor.cuh"
+#include "parallel/cuda_warp.cuh"
+#include "surface/stages/hot_stages.h"
+#include "surface/memory/work_facts.h"
+
+namespace quickses {
+namespace gpu {
+
+// How far things can matter, from the spacing h and the depth d. A leaf's points are within 1.5 root(3) h of its
+// centre.
+struct CandidateReach {
+  float depth, spacing;
+  float overhang;     // of vertex starts around the points of a brick or leaf
+  float grown;        // of vertices around them: a start moves by up to kStartReach when it is projected
+  float leaf_radius;  // ball around the points of a leaf
+  float start_reach;  // arcs this near to a start decide about it
+  float sign_arcs2;   // squared: arcs this near to a leaf's centre can be within depth of one of its points
+  float slack;
+  float least_depth;  // of a point that may be inside
+
+  static CandidateReach of(const SurfaceParameters &p) {
+    const float h = p.spacing, d = p.depth;
+    CandidateReach r;
+    r.depth = d;
+    r.spacing = h;
+    r.slack = 1e-3f + 0.01f * h;
+    r.least_depth = p.least_depth();
+    r.overhang = kStartOverhang * h;
+    r.grown = (kStartOverhang + kStartReach) * h;
+    r.leaf_radius = 1.5f * kRoot3 * h;
+    r.start_reach = d + kStartReach * h + r.slack;
+    const float sign = d + r.leaf_radius + r.slack;
+    r.sign_arcs2 = sign * sign;
+    return r;
+  }
+};
+
+// How many atoms or arcs a brick lists, as a rule: half of its surroundings filled as densely as a protein.
+inline double listed_candidates(const SurfaceParameters &parameters) {
+  const CandidateReach reach = CandidateReach::of(parameters);
+  const double wide = static_cast<double>(8.f * reach.spacing + 2.f * reach.grown + 2.f * parameters.max_radius);
+  return 16.0 + 0.03 * std::min(1e6, wide * wide * wide);
+}
+
+// Bytes of a brick's candidates: atoms, arcs and their leaves, rows and lists of leaves.
+inline double candidate_bytes(const SurfaceParameters &parameters, const CandidateCounts &all) {
+  const double listed = listed_candidates(parameters);
+  return 4.0 * std::min(listed, all.atoms) + 5.0 * std::min(listed, all.arcs) + 56.0;
+}
+
+// Words of the row that a leaf with vertices has besides (vertex_rows_cuda.cuh): with its volume, more can matter to
+// it.
+inline uint32_t row_words(const SurfaceParameters &parameters) {
+  constexpr double kUsual = 64, kUsualSpacing = 0.6, kMost = 2048;
+  const double scale = static_cast<double>(parameters.spacing) / kUsualSpacing;
+  return static_cast<uint32_t>(std::min(kMost, kUsual * std::max(1.0, std::ceil(scale * scale * scale))));
+}
+// Room that small structures are given beyond what is usual.
+constexpr size_t kSpareCandidates = 1024;
+
+// Rows of a brick: runs in the lists of atoms and arcs.
+struct BrickRow {
+  unsigned long long first_atom, first_arc;
+  uint32_t atom_count, arc_count;
+};
+
+struct CandidateCounters {
+  unsigned long long atoms, arcs, leaves;
+};
+
+// The lists for a slice of bricks, as kernels see them.
+struct CandidateView {
+  uint32_t first_brick, bricks;
+  BrickRow *brick_rows;
+  uint32_t *atoms;
+  uint32_t *arcs;
+  uint8_t *arc_leaves;  // per entry of arcs: bit set = can be within depth of a point of that leaf
+  uint32_t *leaf_list;  // leaves between whose points the surface may pass: 8 * brick of the slice + leaf
+};
+
+__device__ __forceinline__ Vec3<float> leaf_center(const Vec3<float> &low, int leaf, float h) {
+  return {low.x + (static_cast<float>(4 * (leaf & 1)) + 1.5f) * h,
+          low.y + (static_cast<float>(4 * (leaf >> 1 & 1)) + 1.5f) * h,
+          low.z + (static_cast<float>(4 * (leaf >> 2)) + 1.5f) * h};
+}
+
+__device__ __forceinline__ float box_distance2(const Vec3<float> &low, float extent, const glm::vec3 &p) {
+  const float dx = fmaxf(0.f, fmaxf(low.x - p.x, p.x - low.x - extent));
+  const float dy = fmaxf(0.f, fmaxf(low.y - p.y, p.y - low.y - extent));
+  const float dz = fmaxf(0.f, fmaxf(low.z - p.z, p.z - low.z - extent));
+  return dx * dx + dy * dy + dz * dz;
+}
+
+// Calls visit(item, on) for the items of the cells around a box.
+template <class Visit>
+__device__ __forceinline__ void visit_cells(const NeighborGridView &grid, const Vec3<float> &low, float extent,
+                                            float reach, const Visit &visit) {
+  if (grid.count == 0) return;
+  const CellBox box = cells_around(grid.cells, {low.x - reach, low.y - reach, low.z - reach},
+                                   {low.x + extent + reach, low.y + extent + reach, low.z + extent + reach});
+  const int rows_y = box.y1 - box.y0 + 1;
+  visit_runs(
+      rows_y * (box.z1 - box.z0 + 1),
+      [&](int r) { return grid.run(box.x0, box.x1, box.y0 + r % rows_y, box.z0 + r / rows_y); }, visit);
+}
+
+constexpr int kGatherWarps = 4;
+constexpr int kGatherRoom = 192;  // of each kind, in shared memory; longer rows are gathered twice
+
+struct GatherJob {
+  FeatureView features;
+  BrickSet bricks;
+  CandidateReach reach;
+  CandidateView view;
+  CandidateCounters *counters;
+  unsigned long long atom_room, arc_room;
+  uint64_t *signs;  // of inactive leaves; nullptr: known already
+};
+
+// Sign of a leaf between whose points no surface passes: that of its centre. No arc is as near to it as depth.
+__device__ __forceinline__ bool uniform_leaf_inside(const GatherJob &job, const uint32_t *atoms, uint32_t count,
+                                                    const Vec3<float> &center) {
+  float depth = -kFarAway;
+  uint32_t atom = 0xffffffffu;
+  for (uint32_t k = static_cast<uint32_t>(lane_id()); k < count; k += kWarp) {
+    const uint32_t i = atoms[k];
+    const float d = ball_depth(load(job.features.atoms.items + i), center);
+    if (d > depth) {
+      depth = d;
+      atom = i;
+    }
+  }
+#pragma unroll
+  for (int d = kWarp / 2; d > 0; d >>= 1) {
+    const float other_depth = __shfl_xor_sync(kFullWarp, depth, d);
+    const uint32_t other = __shfl_xor_sync(kFullWarp, atom, d);
+    if (other_depth > depth || (other_depth == depth && other < atom)) {
+      depth = other_depth;
+      atom = other;
+    }
+  }
+  if (depth <= job.reach.least_depth) return false;
+  if (depth > job.reach.depth) return true;
+  const Sphere ball = load(job.features.atoms.items + atom);
+  return !is_exposed(job.features, atom, center - Vec3<float>(ball.center), offset_length(ball, depth));
+}
+
+// A list of one kind of things, and a warp's shared memory for the row it gathers.
+struct RowMemory {
+  uint32_t *near;
+  uint8_t *near_leaves;  // nullptr: this kind has none
+  uint32_t *items;
+  uint8_t *leaves;
+  unsigned long long *counter;
+  unsigned long long room;
+};
+struct GatheredRow {
+  unsigned long long first;
+  uint32_t count;
+  bool fits;
+};
+
+// Gathers the things around a box for which test(item, &leaves) holds. The first round counts, and keeps short rows in
+// shared memory; a second one writes long rows. One copy of the test for both, so that they never disagree.
+template <class Test>
+__device__ __forceinline__ GatheredRow gather_row(const NeighborGridView &grid, const Vec3<float> &low, float extent,
+                                                  float reach, const RowMemory &memory, const Test &test) {
+  const int lane = lane_id();
+  uint32_t *items = memory.near;
+  uint8_t *leaves = memory.near_leaves;
+  uint32_t room = kGatherRoom;
+  GatheredRow row{0, 0, false};
+  for (int round = 0;; ++round) {
+    uint32_t n = 0;
+    visit_cells(grid, low, extent, reach, [&](uint32_t k, bool on) {
+      uint32_t set = 0;
+      const bool near = on && test(k, &set);
+      const unsigned ballot = __ballot_sync(kFullWarp, near);
+      const uint32_t place = n + static_cast<uint32_t>(place_in(ballot, lane));
+      if (near && place < room) {
+        items[place] = k;
+        if (leaves) leaves[place] = static_cast<uint8_t>(set);
+      }
+      n += static_cast<uint32_t>(__popc(ballot));
+    });
+    if (round == 1) break;
+    row.count = n;
+    if (lane == 0) row.first = atomicAdd(memory.counter, static_cast<unsigned long long>(n));
+    row.first = __shfl_sync(kFullWarp, row.first, 0);
+    row.fits = row.first + n <= memory.room;
+    if (!row.fits) break;  // all will be done again
+    items = memory.items + row.first;
+    if (leaves) leaves = memory.leaves + row.first;
+    room = 0xffffffffu;
+    if (n > kGatherRoom) continue;
+    __syncwarp();
+    for (uint32_t k = static_cast<uint32_t>(lane); k < n; k += kWarp) {
+      items[k] = memory.near[k];
+      if (leaves) leaves[k] = memory.near_leaves[k];
+    }
+    break;
+  }
+  __syncwarp();
+  return row;
+}
+
+// The rows of one brick. A warp per brick.
+static __global__ __launch_bounds__(kGatherWarps *kWarp, 8) void gather_candidates_kernel(GatherJob job) {
+  __shared__ uint32_t near_memory[kGatherWarps][kGatherRoom];
+  __shared__ uint8_t near_leaves[kGatherWarps][kGatherRoom];
+  const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();
+  const uint32_t b = blockIdx.x * kGatherWarps + static_cast<uint32_t>(warp);
+  if (b >= job.view.bricks) return;
+  const FeatureView &f = job.features;
+  const CandidateReach &reach = job.reach;
+  const Lattice &lattice = job.bricks.lattice;
+  const float h = reach.spacing, extent = 7.f * h;
+  const glm::ivec3 first = lattice.first_point(lattice.brick_at(job.bricks.linear[job.view.first_brick + b]));
+  const Vec3<float> low = lattice.position(first.x, first.y, first.z);
+
+  // Atoms whose ball meets the box of the brick's vertices.
+  uint32_t active = 0;
+  const float grown = reach.grown, atom_extent = extent + 2.f * grown;
+  const Vec3<float> atom_low(low.x - grown, low.y - grown, low.z - grown);
+  const GatheredRow atoms =
+      gather_row(f.atoms, atom_low, atom_extent, f.parameters.max_radius + reach.slack,
+                 {near_memory[warp], nullptr, job.view.atoms, nullptr, &job.counters->atoms, job.atom_room},
+                 [&](uint32_t k, uint32_t *) {
+                   const Sphere atom = load(f.atoms.items + k);
+                   const float radius = atom.radius + reach.slack;
+                   if (!(box_distance2(atom_low, atom_extent, atom.center) < radius * radius)) return false;
+                   if (f.cap_ranges[k].count != kBuriedAtom) {
+                     const float surface = atom.radius - reach.depth, shell = reach.leaf_radius + reach.slack;
+                     const float inner = fmaxf(0.f, surface - shell), outer = surface + shell;
+#pragma unroll
+                     for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
+                       const float d2 = length_squared(leaf_center(low, leaf, h) - Vec3<float>(atom.center));
+                       if (d2 >= inner * inner && d2 <= outer * outer) active |= 1u << leaf;
+                     }
+                   }
+                   return true;
+                 });
+
+  // Arcs that can decide about a vertex start, and in which leaves about a lattice point.
+  const float overhang = reach.overhang, arc_extent = extent + 2.f * overhang;
+  const Vec3<float> arc_low(low.x - overhang, low.y - overhang, low.z - overhang);
+  const GatheredRow arcs = gather_row(
+      f.arc_bounds, arc_low, arc_extent, reach.start_reach + f.max_arc_bound,
+      {near_memory[warp], near_leaves[warp], job.view.arcs, job.view.arc_leaves, &job.counters->arcs, job.arc_room},
+      [&](uint32_t k, uint32_t *leaves) {
+        const Sphere ball = load(f.arc_bounds.items + k);
+        const float limit = ball.radius + reach.start_reach, sign_limit = ball.radius + reach.depth + reach.slack;
+        if (!(box_distance2(arc_low, arc_extent, ball.center) < limit * limit)) return false;
+        if (box_distance2(low, extent, ball.center) < sign_limit * sign_limit) {
+          const Arc arc = load(f.arcs + k);
+#pragma unroll 2
+          for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf)
+            if (arc_distance2(arc, leaf_center(low, leaf, h)) <= reach.sign_arcs2) *leaves |= 1u << leaf;
+          active |= *leaves;
+        }
+        return true;
+      });
+
+  active = warp_or(active);
+  unsigned long long first_leaf = 0;
+  if (lane == 0) {
+    first_leaf = atomicAdd(&job.counters->leaves, static_cast<unsigned long long>(__popc(active)));
+    job.view.brick_rows[b] = {atoms.first, arcs.first, atoms.count, arcs.count};
+  }
+  first_leaf = __shfl_sync(kFullWarp, first_leaf, 0);
+  if (!atoms.fits || !arcs.fits) return;
+
+  if (lane < kLeavesPerBrick) {
+    if (active >> lane & 1)
+      job.view.leaf_list[first_leaf + static_cast<unsigned>(place_in(active, lane))] =
+          b * kLeavesPerBrick + static_cast<uint32_t>(lane);
+  }
+  if (!job.signs) return;
+  for (uint32_t rest = ~active & 0xffu; rest; rest &= rest - 1) {
+    const int leaf = __ffs(static_cast<int>(rest)) - 1;
+    const bool inside = uniform_leaf_inside(job, job.view.atoms + atoms.first, atoms.count, leaf_center(low, leaf, h));
+    if (lane == 0)
+      job.signs[static_cast<size_t>(job.view.first_brick + b) * kLeavesPerBrick + static_cast<size_t>(leaf)] =
+          inside ? ~uint64_t(0) : 0;
+  }
+}
+
+}  // namespace gpu
+}  // namespace quickses

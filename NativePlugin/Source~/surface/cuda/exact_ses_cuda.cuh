@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: MIT
+// GPU driver of the exact field: only signs are found. A warp per active leaf, two lattice points per lane; the sphere
+// a point is deepest in decides about it by its caps, or else the nearest arc.
+#pragma once
+
+#include "surface/cuda/candidates_cuda.cuh"
+
+namespace quickses {
+
+// What the stages of a slice share: rows of atoms and arcs per brick, and its active leaves.
+struct CudaCandidates {
+  BrickRange slice{0, 0};  // the bricks they are for; empty: not gathered yet
+  gpu::CandidateView view{};
+  size_t leaves = 0;
+};
+template <>
+struct CandidatesOf<CudaExecutor> {
+  using type = CudaCandidates;
+  static constexpr double kSpareBytes = gpu::kSpareCandidates * 9.0;
+  static double sign_bytes(const SurfaceParameters &parameters, const CandidateCounts &all) {
+    return gpu::candidate_bytes(parameters, all);
+  }
+  static double emission_bytes(const SurfaceParameters &parameters, const CandidateCounts &all, double vertices,
+                               double leaves) {
+    return gpu::candidate_bytes(parameters, all) + 4.0 * gpu::row_words(parameters) * leaves + 12.0 * vertices;
+  }
+  // Signs and layout, and the mesh of a surface as dense as proteins have it.
+  static uint64_t whole_bytes(const SurfaceParameters &parameters, const CandidateCounts &all) {
+    constexpr double kVertices = 60, kLeaves = 4, kVertexBytes = 28, kTriangleBytes = 12;
+    return static_cast<uint64_t>(352 + emission_bytes(parameters, all, kVertices, kLeaves) +
+                                 kVertices * (kVertexBytes + 2 * kTriangleBytes));
+  }
+};
+
+namespace gpu {
+
+constexpr int kSignWarps = 4;
+constexpr int kLeafAtoms = 64;  // of a leaf in shared memory; more are read from the brick's row
+constexpr int kLeafArcs = 64;   // in shared memory; more are staged bit by bit
+
+struct SignJob {
+  FeatureView features;
+  BrickSet bricks;
+  CandidateReach reach;
+  CandidateView view;
+  uint32_t leaves;
+  uint64_t *signs;
+};
+
+// Shared memory of one warp.
+struct LeafScratch {
+  Sphere atom[kLeafAtoms];
+  Arc arc[kLeafArcs];
+  uint32_t atom_number[kLeafAtoms];
+};
+
+// A candidate is superfluous if another ball is deeper everywhere in a box. Its depth is at most that of its tangent
+// plane at the box's centre, and what exceeds the other's depth is then greatest at a corner.
+struct BoxCull {
+  Vec3<float> center, half;
+  float corner_depth[8];  // of the other ball
+
+  // Lane k < 8 works for corner k.
+  __device__ __forceinline__ void set(const Vec3<float> &box_center, const Vec3<float> &half_extents,
+                                      const Sphere &other, float slack) {
+    center = box_center;
+    half = half_extents;
+    const int lane = lane_id();
+    const Vec3<float> corner(center.x + (lane & 1 ? half.x : -half.x), center.y + (lane & 2 ? half.y : -half.y),
+                             center.z + (lane & 4 ? half.z : -half.z));
+    const float depth = ball_depth(other, corner) - slack;
+#pragma unroll
+    for (int k = 0; k < 8; ++k) corner_depth[k] = __shfl_sync(kFullWarp, depth, k);
+  }
+
+  // depth: of the box's centre in the ball.
+  __device__ __forceinline__ bool keeps(const Sphere &ball, float depth) const {
+    const float scale = quotient(1.f, fmaxf(ball.radius - depth, 1e-6f));
+    const float x = (ball.center.x - center.x) * half.x * scale, y = (ball.center.y - center.y) * half.y * scale,
+                z = (ball.center.z - center.z) * half.z * scale;
+    bool keep = false;
+#pragma unroll
+    for (int k = 0; k < 8; ++k)
+      keep |= depth + (k & 1 ? x : -x) + (k & 2 ? y : -y) + (k & 4 ? z : -z) > corner_depth[k];
+    return keep;
+  }
+};
+
+enum class LeafKind { kMixed, kInside, kOutside };
+
+// The deepest ball of a leaf's centre among a brick's atoms.
+struct LeafBest {
+  float depth;
+  uint32_t atom;
+};
+__device__ __forceinline__ LeafBest deepest_at(const FeatureView &f, const uint32_t *atoms, uint32_t count,
+                                               const Vec3<float> &center) {
+  LeafBest best{-2.f * kFarAway, 0xffffffffu};
+  for (uint32_t k = static_cast<uint32_t>(lane_id()); k < count; k += kWarp) {
+    const uint32_t i = __ldg(atoms + k);
+    const float d = ball_depth(load(f.atoms.items + i), center);
+    if (d > best.depth) best = {d, i};
+  }
+  const float depth = warp_maximum(best.depth);
+  uint32_t atom = best.depth == depth ? best.atom : 0xffffffffu;
+#pragma unroll
+  for (int d = kWarp / 2; d > 0; d >>= 1) {
+    const uint32_t other = __shfl_xor_sync(kFullWarp, atom, d);
+    atom = other < atom ? other : atom;
+  }
+  return {depth, atom};
+}
+
+// Whether a point is outside because its projection on the ball it is deepest in is exposed.
+__device__ __forceinline__ bool projection_exposed(const FeatureView &f, uint32_t atom, const Vec3<float> &x,
+                                                   float depth) {
+  const Sphere ball = load(f.atoms.items + atom);
+  return is_exposed(f, atom, x - Vec3<float>(ball.center), offset_length(ball, depth));
+}
+
+static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_kernel(SignJob job) {
+  __shared__ LeafScratch scratch_memory[kSignWarps];
+  const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();
+  LeafScratch &scratch = scratch_memory[warp];
+  const uint32_t leaf_place = blockIdx.x * kSignWarps + static_cast<uint32_t>(warp);
+  if (leaf_place >= job.leaves) return;
+  const FeatureView &f = job.features;
+  const CandidateReach &reach = job.reach;
+  const Lattice &lattice = job.bricks.lattice;
+  const float h = reach.spacing, depth = reach.depth;
+
+  const uint32_t slot = job.view.leaf_list[leaf_place], b = slot >> 3;
+  const int leaf = static_cast<int>(slot & 7);
+  const BrickRow brick_row = job.view.brick_rows[b];
+  const uint32_t *const atoms = job.view.atoms + brick_row.first_atom;
+  const uint32_t *const arcs = job.view.arcs + brick_row.first_arc;
+  const uint8_t *const arc_leaves = job.view.arc_leaves + brick_row.first_arc;
+  glm::ivec3 first = lattice.first_point(lattice.brick_at(job.bricks.linear[job.view.first_brick + b]));
+  const Vec3<float> center = leaf_center(lattice.position(first.x, first.y, first.z), leaf, h);
+  first += glm::ivec3(4 * (leaf & 1), 4 * (leaf >> 1 & 1), 4 * (leaf >> 2));
+
+  // Atoms that can be deepest at a point.
+  const LeafBest best = deepest_at(f, atoms, brick_row.atom_count, center);
+  int atom_count = 0;
+  if (brick_row.atom_count > 0) {
+    BoxCull cull;
+    const float half = 1.5f * h;
+    cull.set(center, {half, half, half}, load(f.atoms.items + best.atom), reach.slack);
+    for (uint32_t k0 = 0; k0 < brick_row.atom_count; k0 += kWarp) {
+      const uint32_t k = k0 + static_cast<uint32_t>(lane);
+      bool near = false;
+      uint32_t i = 0;
+      Sphere ball{glm::vec3(0.f), 0.f};
+      if (k < brick_row.atom_count) {
+        i = __ldg(atoms + k);
+        ball = load(f.atoms.items + i);
+        const float d = ball_depth(ball, center);
+        near = (d >= -reach.leaf_radius - reach.slack && cull.keeps(ball, d)) || i == best.atom;
+      }
+      const unsigned ballot = __ballot_sync(kFullWarp, near);
+      if (near) {
+        const int place = atom_count + place_in(ballot, lane);
+        if (place < kLeafAtoms) {
+          scratch.atom[place] = ball;
+          scratch.atom_number[place] = i;
+        }
+      }
+      atom_count += __popc(ballot);
+    }
+  }
+
+  // Arcs that can be within depth of a point.
+  int arc_count = 0;
+  const auto stage_arcs = [&](uint32_t k0) {
+    const uint32_t k = k0 + static_cast<uint32_t>(lane);
+    const bool near = k < brick_row.arc_count && (__ldg(arc_leaves + k) >> leaf & 1) != 0;
+    const unsigned ballot = __ballot_sync(kFullWarp, near);
+    if (near) {
+      const int place = arc_count + place_in(ballot, lane);
+      if (place < kLeafArcs) scratch.arc[place] = load(f.arcs + __ldg(arcs + k));
+    }
+    arc_count += __popc(ballot);
+  };
+  for (uint32_t k0 = 0; k0 < brick_row.arc_count; k0 += kWarp) stage_arcs(k0);
+  __syncwarp();
+
+  LeafKind kind = LeafKind::kMixed;
+  if (best.depth <= -reach.leaf_radius - reach.slack ||
+      (best.depth <= reach.least_depth && depth > reach.leaf_radius + reach.slack))
+    kind = LeafKind::kOutside;
+  else if (best.depth - reach.leaf_radius - reach.slack > depth)
+    kind = LeafKind::kInside;
+  else if (arc_count == 0 && best.depth > 0.f && best.depth < depth) {
+    // No arc is within depth of a point. If the centre is not on an exposed part, none of the points is.
+    const CapRange range = f.cap_ranges[best.atom];
+    bool covered = range.count == kBuriedAtom;
+    const Sphere ball = load(f.atoms.items + best.atom);
+    const Vec3<float> offset = center - Vec3<float>(ball.center);
+    const float length = offset_length(ball, best.depth);
+    for (int32_t k = lane; k < range.count; k += kWarp)
+      covered |= cap_covers(load(f.caps + range.first + k), offset, length);
+    if (__any_sync(kFullWarp, covered)) kind = LeafKind::kInside;
+  }
+  bool inside0 = kind == LeafKind::kInside, inside1 = inside0;
+  if (kind == LeafKind::kMixed) {
+    const int x = first.x + (lane & 3), y = first.y + (lane >> 2 & 3), z = first.z + (lane >> 4);
+    const Vec3<float> p0 = lattice.position(x, y, z), p1 = lattice.position(x, y, z + 2);
+    float depth0 = reach.least_depth, depth1 = reach.least_depth;
+    uint32_t atom0 = 0, atom1 = 0;
+    const auto meet_ball = [&](const Sphere &ball, uint32_t number) {
+      const float d0 = ball_depth(ball, p0), d1 = ball_depth(ball, p1);
+      atom0 = d0 > depth0 ? number : atom0;
+      depth0 = fmaxf(depth0, d0);
+      atom1 = d1 > depth1 ? number : atom1;
+      depth1 = fmaxf(depth1, d1);
+    };
+    if (atom_count <= kLeafAtoms) {
+      for (int k = 0; k < atom_count; ++k) meet_ball(scratch.atom[k], static_cast<uint32_t>(k));
+      if (depth0 > reach.least_depth) atom0 = scratch.atom_number[atom0];
+      if (depth1 > reach.least_depth) atom1 = scratch.atom_number[atom1];
+    } else {
+      for (uint32_t k = 0; k < brick_row.atom_count; ++k) {
+        const uint32_t i = __ldg(atoms + k);
+        meet_ball(load(f.atoms.items + i), i);
+      }
+    }
+    inside0 = depth0 > depth;
+    inside1 = depth1 > depth;
+    bool open0 = depth0 > reach.least_depth && !inside0, open1 = depth1 > reach.least_depth && !inside1;
+    __syncwarp();
+    if (open0) open0 = !projection_exposed(f, atom0, p0, depth0);
+    __syncwarp();
+    if (open1) open1 = !projection_exposed(f, atom1, p1, depth1);
+    __syncwarp();
+    if (__any_sync(kFullWarp, open0 || open1)) {
+      float nearest0 = kFarAway, nearest1 = kFarAway;
+      const auto meet_arcs = [&](int count) {
+#pragma unroll 2
+        for (int k = 0; k < count; ++k) {
+          const Arc arc = scratch.arc[k];
+          nearest0 = fminf(nearest0, arc_distance2(arc, p0));
+          nearest1 = fminf(nearest1, arc_distance2(arc, p1));
+        }
+      };
+      if (arc_count <= kLeafArcs) {
+        meet_arcs(arc_count);
+      } else {
+        for (uint32_t k0 = 0; k0 < brick_row.arc_count; k0 += kWarp) {
+          arc_count = 0;
+          stage_arcs(k0);
+          __syncwarp();
+          meet_arcs(arc_count);
+          __syncwarp();
+        }
+      }
+      if (open0) inside0 = nearest0 > depth * depth;
+      if (open1) inside1 = nearest1 > depth * depth;
+    }
+  }
+  const unsigned low = __ballot_sync(kFullWarp, inside0), high = __ballot_sync(kFullWarp, inside1);
+  if (lane == 0)
+    job.signs[static_cast<size_t>(job.view.first_brick + b) * kLeavesPerBrick + static_cast<size_t>(leaf)] =
+        static_cast<uint64_t>(high) << 32 | low;
+}
+
+// Gathers the candidates of a slice; evaluates its signs unless signs is nullptr. Waits once, or more often if the
+// guess of their number was too small.
+inline void gather_candidates(CudaExecutor &executor, const FeatureView &features, const BrickSet &bricks,
+                              BrickRange slice, CudaCandidates &candidates, uint64_t *signs) {
+  const uint32_t n = slice.size();
+  const CandidateReach reach = CandidateReach::of(features.parameters);
+  CandidateView view{};
+  view.first_brick = slice.first;
+  view.bricks = n;
+  view.brick_rows = executor.allocate<BrickRow>(n).data;
+  view.leaf_list = executor.allocate<uint32_t>(size_t(n) * kLeavesPerBrick).data;
+  Span<CandidateCounters> counters = executor.allocate<CandidateCounters>(1);
+  const double per_brick = listed_candidates(features.parameters);
+  size_t atom_room = static_cast<size_t>(std::min(per_brick, double(features.atoms.count)) * n) + kSpareCandidates;
+  size_t arc_room = static_cast<size_t>(std::min(per_brick, double(features.arc_bounds.count)) * n) + kSpareCandidates;
+  const auto mark = executor.arena().mark();
+  CandidateCounters found;
+  for (;;) {
+    view.atoms = executor.allocate<uint32_t>(atom_room).data;
+    view.arcs = executor.allocate<uint32_t>(arc_room).data;
+    view.arc_leaves = executor.allocate<uint8_t>(arc_room).data;
+    executor.fill(counters, 0);
+    executor.launch("gather_candidates", gather_candidates_kernel, (n + kGatherWarps - 1) / kGatherWarps,
+                    kGatherWarps * kWarp, 0,
+                    GatherJob{features, bricks, reach, view, counters.data, atom_room, arc_room, signs});
+    found = executor.fetch(counters.data);
+    if (found.atoms <= atom_room && found.arcs <= arc_room) break;
+    atom_room = std::max<size_t>(atom_room, found.atoms);
+    arc_room = std::max<size_t>(arc_room, found.arcs);
+    executor.arena().rewind(mark);
+  }
+  candidates.leaves = static_cast<size_t>(found.leaves);
+  if (signs)
+    executor.launch("evaluate_leaves", evaluate_leaves_kernel, (candidates.leaves + kSignWarps - 1) / kSignWarps,
+                    kSignWarps * kWarp, 0,
+                    SignJob{features, bricks, reach, view, static_cast<uint32_t>(candidates.leaves), signs});
+  candidates.view = view;
+  candidates.slice = slice;
+}
+
+}  // namespace gpu
+
+// The candidates live in the executor's arena: use them until it is rewound past here.
+inline void evaluate_signs(CudaExecutor &executor, const FeatureView &features, const BrickSet &bricks,
+                           BrickRange slice, CudaCandidates &candidates, uint64_t *signs) {
+  if (slice.size() > 0) gpu::gather_candidates(executor, features, bricks, slice, candidates, signs);
+}
+
+}  // namespace quickses

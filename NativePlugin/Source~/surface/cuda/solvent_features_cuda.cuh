@@ -1,0 +1,395 @@
+// SPDX-License-Identifier: MIT
+// GPU driver of the solvent features: a warp per atom for the caps, a lane per circle for the arcs. Results are staged
+// wherever there is room and then put in order; if a guess of their number was too small, all is done again with room
+// for what was counted. With little memory the atoms are worked on in runs, and only the caps that later stages look at
+// are kept.
+#pragma once
+
+#include "surface/cuda/arcs_cuda.cuh"
+
+namespace quickses {
+namespace gpu {
+
+struct CapJob {
+  NeighborGridView atoms;
+  float max_radius;
+  AtomRun run;
+  FeatureRoom room;
+  FeatureCounters *counters;
+  CapRange *cap_ranges;
+  Cap *caps;
+  uint32_t *neighbors;     // per cap: the atom behind it; nullptr: of the exposed atoms, only caps are wanted
+  uint32_t *circle_count;  // per atom of the run: circles it owns
+  uint8_t *exposed;        // per atom
+  uint32_t *long_atoms;    // those with more neighbours than a warp's rows hold
+};
+
+// What a warp knows of one atom's neighbours.
+struct CapRows {
+  Cap *cap;
+  float *sine;
+  uint32_t *neighbor;
+};
+constexpr uint32_t kContainedCap = 0x80000000u;  // flag of a neighbour whose cap lies within another
+constexpr int kRowNeighbors = 128;               // rows in shared memory
+constexpr int kCapWarps = 4;                     // per block
+
+// Caps of all neighbours of atom i, in grid order; returns their number, which may exceed the room.
+__device__ __forceinline__ int gather_caps(const NeighborGridView &atoms, float max_radius, uint32_t i,
+                                           const Sphere &self, const CapRows &rows, int room) {
+  const int lane = lane_id();
+  const Vec3<float> center(self.center);
+  const float reach = self.radius + max_radius;
+  const CellLayout &cells = atoms.cells;
+  const CellBox box =
+      cells_around(cells, center - Vec3<float>(reach, reach, reach), center + Vec3<float>(reach, reach, reach));
+  const float edge = 1.f / cells.inverse_edge;
+  // Cells are told apart by rounded arithmetic: coordinates are good to this much.
+  const float slack = 1e-3f + 1e-6f * edge * static_cast<float>(cells.count.x + cells.count.y + cells.count.z);
+  const int rows_y = box.y1 - box.y0 + 1, row_count = rows_y * (box.z1 - box.z0 + 1);
+  const auto run_of = [&](int r) {
+    const int y = box.y0 + r % rows_y, z = box.z0 + r / rows_y;
+    // Only the part of the row that the reach leaves beside the distance to it.
+    const float y_low = cells.origin.y + static_cast<float>(y) * edge - self.center.y;
+    const float z_low = cells.origin.z + static_cast<float>(z) * edge - self.center.z;
+    const float dy = fmaxf(0.f, fmaxf(y_low, -y_low - edge) - slack),
+                dz = fmaxf(0.f, fmaxf(z_low, -z_low - edge) - slack);
+    const float left2 = reach * reach - dy * dy - dz * dz;
+    if (left2 <= 0.f) return ItemRun{0, 0};
+    const float left = square_root(left2) + slack;
+    return atoms.run(cells.cell_along(self.center.x - left, cells.origin.x, cells.count.x),
+                     cells.cell_along(self.center.x + left, cells.origin.x, cells.count.x), y, z);
+  };
+  int n = 0;
+  visit_runs(row_count, run_of, [&](uint32_t k, bool on) {
+    bool meets = false;
+    Vec3<float> axis(0.f, 0.f, 0.f);
+    float cosine = 0.f;
+    if (on && k != i) {
+      const Sphere other = load(atoms.items + k);
+      axis = Vec3<float>(other.center) - center;
+      const float distance2 = maximum(length_squared(axis), 1e-20f), sum = self.radius + other.radius;
+      if (distance2 < sum * sum) {
+        const float inverse = reciprocal_root(distance2);
+        axis = axis * inverse;
+        cosine = cap_cosine(self.radius, other.radius, distance2, inverse);
+        meets = overlap(self.radius, other.radius, distance2);
+      }
+    }
+    const unsigned ballot = __ballot_sync(kFullWarp, meets);
+    if (meets) {
+      const int place = n + place_in(ballot, lane);
+      if (place < room) {
+        rows.cap[place] = {to_glm(axis), cosine};
+        rows.sine[place] = cap_sine(cosine);
+        rows.neighbor[place] = k;
+      }
+    }
+    n += __popc(ballot);
+  });
+  __syncwarp();
+  return n;
+}
+
+// Drops the caps that lie within another one; returns how many stay. Few caps are tested by several lanes each.
+__device__ __forceinline__ int drop_contained_caps(const CapRows &rows, int n) {
+  const int lane = lane_id();
+  for (int first = 0; first < n; first += kWarp) {
+    const int left = n - first;
+    const int parts = left > 16 ? 1 : left > 8 ? 2 : 4;
+    const int j = first + lane / parts;
+    bool stays = j < n;
+    if (stays) {
+      const Cap cap = rows.cap[j];
+      const float sine = rows.sine[j];
+      for (int k = lane % parts; k < n; k += parts) {
+        const Cap other = rows.cap[k];
+        if (cap_contains(other.cosine, rows.sine[k], cap.cosine, sine,
+                         dot(Vec3<float>(other.axis), Vec3<float>(cap.axis)))) {
+          stays = false;
+          break;
+        }
+      }
+    }
+    const unsigned ballot = __ballot_sync(kFullWarp, stays), all = (1u << parts) - 1u;
+    if (j < n && lane % parts == 0 && (ballot >> lane & all) != all) rows.neighbor[j] |= kContainedCap;
+    __syncwarp();
+  }
+  int kept = 0;
+  for (int first = 0; first < n; first += kWarp) {
+    const int j = first + lane;
+    Cap cap{};
+    uint32_t neighbor = kContainedCap;
+    if (j < n) {
+      cap = rows.cap[j];
+      neighbor = rows.neighbor[j];
+    }
+    const unsigned ballot = __ballot_sync(kFullWarp, !(neighbor & kContainedCap));
+    __syncwarp();
+    if (!(neighbor & kContainedCap)) {
+      const int place = kept + place_in(ballot, lane);
+      rows.cap[place] = cap;
+      rows.neighbor[place] = neighbor;
+    }
+    kept += __popc(ballot);
+    __syncwarp();
+  }
+  return kept;
+}
+
+// All about the caps of atom i. False if it has more neighbours than the rows hold.
+__device__ __forceinline__ bool find_caps(const CapJob &job, uint32_t i, const CapRows &rows, int room) {
+  const int lane = lane_id();
+  const Sphere self = load(job.atoms.items + i);
+  const bool with_circles = job.neighbors != nullptr;
+  if (is_far_away(self) || (!with_circles && !job.exposed[i])) {
+    if (lane == 0) {
+      job.cap_ranges[i] = {0, 0};
+      if (with_circles) job.circle_count[i - job.run.first] = 0;
+    }
+    return true;
+  }
+  int n = gather_caps(job.atoms, job.max_radius, i, self, rows, room);
+  if (n > room) {
+    if (lane == 0) atomicMax(&job.counters->neighbors, static_cast<uint32_t>(n));
+    return false;
+  }
+  const bool alone = n == 0;
+  n = drop_contained_caps(rows, n);
+  unsigned long long first = 0;
+  if (lane == 0 && n > 0) first = atomicAdd(&job.counters->caps, static_cast<unsigned long long>(n));
+  first = __shfl_sync(kFullWarp, first, 0);
+  const bool fits = first + static_cast<unsigned>(n) <= job.room.caps;
+  int circles = 0;
+  for (int q0 = 0; q0 < n; q0 += kWarp) {
+    const int q = q0 + lane;
+    bool owns = false;
+    if (q < n) {
+      const Cap cap = rows.cap[q];
+      const uint32_t neighbor = rows.neighbor[q];
+      int rank = 0;  // largest cap first; of equal ones the earlier atom
+      for (int k = 0; k < n; ++k) {
+        const float other = rows.cap[k].cosine;
+        rank += other < cap.cosine || (other == cap.cosine && rows.neighbor[k] < neighbor) ? 1 : 0;
+      }
+      if (fits) {
+        job.caps[first + rank] = {cap.axis, stored_cap_cosine(cap.cosine, self.radius)};
+        if (with_circles) job.neighbors[first + rank] = neighbor;
+      }
+      owns = neighbor > i;
+    }
+    circles += __popc(__ballot_sync(kFullWarp, owns));
+  }
+  if (lane == 0) {
+    job.cap_ranges[i] = {static_cast<uint32_t>(first), fits ? n : 0};
+    if (with_circles) job.circle_count[i - job.run.first] = fits ? static_cast<uint32_t>(circles) : 0;
+    if (alone) job.exposed[i] = 1;
+    if (circles > 0) atomicAdd(&job.counters->circles, static_cast<unsigned long long>(circles));
+    if (n > 0) atomicMax(&job.counters->longest_row, static_cast<uint32_t>(n));
+  }
+  __syncwarp();
+  return true;
+}
+
+static __global__ __launch_bounds__(kCapWarps *kWarp) void find_caps_kernel(CapJob job) {
+  __shared__ Cap cap[kCapWarps][kRowNeighbors];
+  __shared__ float sine[kCapWarps][kRowNeighbors];
+  __shared__ uint32_t neighbor[kCapWarps][kRowNeighbors];
+  const int warp = static_cast<int>(threadIdx.x) / kWarp;
+  const CapRows rows{cap[warp], sine[warp], neighbor[warp]};
+  for (uint32_t place = blockIdx.x * kCapWarps + static_cast<uint32_t>(warp); place < job.run.size();
+       place += gridDim.x * kCapWarps) {
+    const uint32_t i = job.run.first + place;
+    if (!find_caps(job, i, rows, kRowNeighbors) && lane_id() == 0) {
+      job.long_atoms[atomicAdd(&job.counters->long_atoms, 1u)] = i;
+      job.cap_ranges[i] = {0, 0};
+      if (job.neighbors) job.circle_count[place] = 0;
+    }
+  }
+}
+
+// The same for the atoms that have more neighbours, with rows of the needed length in global memory.
+static __global__ __launch_bounds__(kCapWarps *kWarp) void find_long_caps_kernel(CapJob job, unsigned char *memory,
+                                                                                 uint32_t first, uint32_t last) {
+  const uint32_t warp = (blockIdx.x * blockDim.x + threadIdx.x) / kWarp, warps = gridDim.x * kCapWarps;
+  const size_t room = job.room.neighbors;
+  unsigned char *row = memory + warp * room * (sizeof(Cap) + sizeof(float) + sizeof(uint32_t));
+  const CapRows rows{reinterpret_cast<Cap *>(row), reinterpret_cast<float *>(row + room * sizeof(Cap)),
+                     reinterpret_cast<uint32_t *>(row + room * (sizeof(Cap) + sizeof(float)))};
+  const uint32_t count = job.counters->long_atoms, end = last < count ? last : count;
+  for (uint32_t k = first + warp; k < end; k += warps) find_caps(job, job.long_atoms[k], rows, static_cast<int>(room));
+}
+
+struct ExposeAtoms {
+  const uint8_t *exposed;
+  CapRange *cap_ranges;
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    if (!exposed[i]) cap_ranges[i].count = kBuriedAtom;
+  }
+};
+
+// What one pass over a run of atoms reads and writes besides its results.
+struct FeaturePass {
+  NeighborGridView atoms;
+  float max_radius;
+  CapRange *cap_ranges;
+  uint8_t *exposed;
+};
+
+// The caps of a run of atoms.
+inline void find_caps(CudaExecutor &executor, const CapJob &job) {
+  const size_t blocks =
+      std::min<size_t>((job.run.size() + kCapWarps - 1) / kCapWarps, size_t(executor.multiprocessors()) * 128);
+  executor.launch("find_caps", find_caps_kernel, blocks, kCapWarps * kWarp, 0, job);
+  if (job.room.neighbors == 0) return;
+  // Rows for as many warps as there is memory for; the others' atoms take turns.
+  const size_t block_bytes = kCapWarps * job.room.neighbors * (sizeof(Cap) + sizeof(float) + sizeof(uint32_t));
+  const size_t long_blocks =
+      static_cast<size_t>(std::max<uint64_t>(1, std::min<uint64_t>({blocks, size_t(executor.multiprocessors()) * 4,
+                                                                    executor.arena().available() / 4 / block_bytes})));
+  const auto mark = executor.arena().mark();
+  Span<unsigned char> memory = executor.allocate<unsigned char>(long_blocks * block_bytes);
+  // Caps are compared with each other, 32 pairs at a time in some 3 ns: where there are very many, the work is cut into
+  // launches of about 10 ms that are waited for, since what is queued can't be cancelled.
+  const double pairs = static_cast<double>(job.room.neighbors) * static_cast<double>(job.room.neighbors);
+  const double atoms_per_warp = std::max(1.0, 1e-2 / (pairs / kWarp * 3e-9));
+  const uint64_t step = static_cast<uint64_t>(static_cast<double>(long_blocks * kCapWarps) * atoms_per_warp);
+  for (uint64_t first = 0;; first += step) {
+    const bool is_last = first + step >= job.room.long_atoms;
+    executor.launch("find_long_caps", find_long_caps_kernel, long_blocks, kCapWarps * kWarp, 0, job, memory.data,
+                    static_cast<uint32_t>(first), is_last ? 0xffffffffu : static_cast<uint32_t>(first + step));
+    if (is_last) break;
+    executor.wait();
+  }
+  executor.arena().rewind(mark);
+}
+
+// One attempt at the caps and arcs of a run of atoms; returns what was counted. Waits.
+inline FeatureCounters find_run_features(CudaExecutor &executor, const FeaturePass &pass, AtomRun run,
+                                         const FeatureRoom &room, Cap *caps, Arc *arcs) {
+  const auto mark = executor.arena().mark();
+  const size_t n = run.size();
+  Span<FeatureCounters> counters = executor.allocate<FeatureCounters>(1);
+  Span<uint32_t> neighbors = executor.allocate<uint32_t>(room.caps);
+  Span<uint32_t> circle_count = executor.allocate<uint32_t>(n), circle_first = executor.allocate<uint32_t>(n + 1);
+  Span<uint32_t> long_atoms = executor.allocate<uint32_t>(n);
+  executor.fill(counters, 0);
+  find_caps(executor, CapJob{pass.atoms, pass.max_radius, run, room, counters.data, pass.cap_ranges, caps,
+                             neighbors.data, circle_count.data, pass.exposed, long_atoms.data});
+  executor.exclusive_scan(n, LoadNumber{circle_count.data}, circle_first);
+  clip_circles(executor, CircleJob{pass.atoms, run, room, counters.data, pass.cap_ranges, caps, neighbors.data,
+                                   circle_first.data, pass.exposed, arcs});
+  const FeatureCounters found = executor.fetch(counters.data);
+  executor.arena().rewind(mark);
+  return found;
+}
+
+// All atoms at once.
+inline void find_all_features(CudaExecutor &executor, const FeaturePass &pass, SolventFeatures *features) {
+  const uint32_t n = pass.atoms.count;
+  FeatureRoom room = FeatureRoom::guess(n);
+  for (const auto start = executor.arena().mark();; executor.arena().rewind(start)) {
+    features->caps = executor.allocate<Cap>(room.caps);
+    features->arcs = executor.allocate<Arc>(room.arcs);
+    const FeatureCounters found =
+        find_run_features(executor, pass, AtomRun{0, n}, room, features->caps.data, features->arcs.data);
+    if (room.holds(found)) {
+      features->caps.size = static_cast<size_t>(found.caps);
+      features->arcs.size = static_cast<size_t>(found.arcs);
+      return;
+    }
+    room.grow(found);
+  }
+}
+
+struct CountExposedCaps {
+  const uint8_t *exposed;
+  const CapRange *cap_ranges;
+  QSES_HOST_DEVICE double operator()(size_t i) const { return exposed[i] ? cap_ranges[i].count : 0; }
+};
+
+// Bytes that the work on an atom takes, with the room that is guessed at first.
+constexpr size_t kAtomWorkBytes = 28 * 20 + 14 * 20 + 3 * sizeof(StagedCircle) + 5 * sizeof(ExposedArc) + 12;
+constexpr uint32_t kLeastRun = 128;
+
+// Run after run. The caps of a run serve its circles only; in the end those of the exposed atoms are found once more.
+inline void find_features_in_runs(CudaExecutor &executor, const FeaturePass &pass, SolventFeatures *features) {
+  const uint32_t n = pass.atoms.count;
+  auto &arena = executor.arena();
+  uint64_t atoms_per_run = std::min<uint64_t>(n, std::max<uint64_t>(kLeastRun, arena.available() / 8 / kAtomWorkBytes));
+  // The arcs get what the work leaves, and give back what they do not need.
+  const uint64_t reserve = 2 * atoms_per_run * kAtomWorkBytes + 65536;
+  const auto before_arcs = arena.mark();
+  const uint64_t free = arena.available();
+  Span<Arc> arcs = executor.allocate<Arc>(static_cast<size_t>((free > reserve ? free - reserve : 0) / sizeof(Arc)));
+  uint64_t arc_total = 0;
+  size_t neighbors = 0;
+  for (uint32_t first = 0; first < n;) {
+    const AtomRun run{first, static_cast<uint32_t>(std::min<uint64_t>(n, first + atoms_per_run))};
+    FeatureRoom room = FeatureRoom::guess(run.size());
+    const auto mark = arena.mark();
+    try {
+      for (;; arena.rewind(mark)) {
+        room.arcs = arcs.size > arc_total ? static_cast<size_t>(arcs.size - arc_total) : 0;
+        room.neighbors = std::max(room.neighbors, neighbors);
+        room.long_atoms = run.size();
+        Cap *const caps = executor.allocate<Cap>(room.caps).data;
+        FeatureCounters found = find_run_features(executor, pass, run, room, caps, arcs.data + arc_total);
+        const unsigned long long run_arcs = found.arcs;
+        found.arcs = 0;  // if they do not fit, no other attempt would help: they are only counted from then on
+        if (room.holds(found)) {
+          arc_total += run_arcs;
+          break;
+        }
+        room.grow(found);
+      }
+      neighbors = std::max(neighbors, room.neighbors);
+      first = run.last;
+      arena.rewind(mark);
+    } catch (const MemoryRefused &) {
+      arena.rewind(mark);
+      if (run.size() <= kLeastRun) throw;
+      atoms_per_run = std::max<uint64_t>(kLeastRun, run.size() / 2);
+    }
+  }
+  const uint64_t cap_total = static_cast<uint64_t>(executor.reduce(n, CountExposedCaps{pass.exposed, pass.cap_ranges}));
+  features->caps.size = static_cast<size_t>(cap_total);
+  features->arcs.size = static_cast<size_t>(arc_total);
+  arena.rewind(before_arcs);
+  if (arc_total > arcs.size) throw MemoryRefused("the arcs of the atoms do not fit into the memory budget");
+  features->arcs = executor.allocate<Arc>(static_cast<size_t>(arc_total));  // where they are already
+  features->caps = executor.allocate<Cap>(static_cast<size_t>(cap_total));
+
+  const auto mark = arena.mark();
+  FeatureRoom room{};
+  room.caps = static_cast<size_t>(cap_total);
+  room.neighbors = neighbors;
+  room.long_atoms = n;
+  Span<FeatureCounters> counters = executor.allocate<FeatureCounters>(1);
+  Span<uint32_t> long_atoms = executor.allocate<uint32_t>(n);
+  executor.fill(counters, 0);
+  find_caps(executor, CapJob{pass.atoms, pass.max_radius, AtomRun{0, n}, room, counters.data, pass.cap_ranges,
+                             features->caps.data, nullptr, nullptr, pass.exposed, long_atoms.data});
+  arena.rewind(mark);
+}
+
+}  // namespace gpu
+
+inline void find_solvent_features(CudaExecutor &executor, const NeighborGridView &atoms,
+                                  const SurfaceParameters &parameters, bool frugal, SolventFeatures *features) {
+  using namespace gpu;
+  features->cap_ranges = executor.allocate<CapRange>(atoms.count);
+  if (atoms.count == 0) return;
+  Span<uint8_t> exposed = executor.allocate<uint8_t>(atoms.count);
+  executor.fill(exposed, 0);
+  const FeaturePass pass{atoms, parameters.max_radius, features->cap_ranges.data, exposed.data};
+  // Work and results of all atoms, and half as much again for the arcs' grid.
+  const uint64_t all = atoms.count * uint64_t(kAtomWorkBytes + 7 * sizeof(Arc)) + 65536;
+  if (!frugal && executor.arena().available() / 3 * 2 > all)
+    find_all_features(executor, pass, features);
+  else
+    find_features_in_runs(executor, pass, features);
+  executor.for_each(atoms.count, ExposeAtoms{exposed.data, features->cap_ranges.data});
+}
+
+}  // namespace quickses

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: MIT
+// GPU: where the vertices of a leaf start, and which atoms and arcs can decide about them: a short row of numbers per
+// leaf, so that a thread per vertex has little to look at.
+#pragma once
+
+#include "surface/cuda/exact_ses_cuda.cuh"
+
+namespace quickses {
+namespace gpu {
+
+struct VertexJob {
+  FeatureView features;
+  BrickSet bricks;
+  MeshLayout layout;
+  CandidateReach reach;
+  CandidateView view;
+  VertexStarts starts;
+  bool halved;            // the starts are in the mesh already
+  MeshView mesh;          // its positions hold the starts, in the centred frame, until they are projected
+  uint32_t first, count;  // vertices of the slice
+  uint32_t *vertex_row;   // per vertex: number of its leaf's row, or kBrickRow and the brick of the slice
+  uint32_t *rows;         // row_words each
+  uint32_t row_words, first_row;
+  uint32_t *open, *open_count;    // vertices that no contact patch has
+  uint32_t *again, *again_count;  // those of them that must be checked against other probes
+};
+
+// Row of a leaf's vertices: word 0 has the number of atoms in its lower and of arcs in its upper half, then they
+// follow. If they are too many the brick's row is used.
+constexpr uint32_t kBrickRow = 0x80000000u;
+constexpr int kLeafWarps = 4;
+constexpr int kMostLeafVertices = kAxes * 64;
+
+// The candidates of one vertex.
+struct RowCandidates {
+  const uint32_t *atoms;
+  const uint32_t *arcs;
+  int atom_total, arc_total;
+  __device__ __forceinline__ int atom_count() const { return atom_total; }
+  __device__ __forceinline__ int arc_count() const { return arc_total; }
+  __device__ __forceinline__ uint32_t atom(int k) const { return __ldg(atoms + k); }
+  __device__ __forceinline__ uint32_t arc(int k) const { return __ldg(arcs + k); }
+};
+
+__device__ __forceinline__ RowCandidates brick_candidates(const CandidateView &view, uint32_t brick) {
+  const BrickRow row = view.brick_rows[brick];
+  return {view.atoms + row.first_atom, view.arcs + row.first_arc, static_cast<int>(row.atom_count),
+          static_cast<int>(row.arc_count)};
+}
+
+__device__ __forceinline__ RowCandidates vertex_candidates(const VertexJob &job, uint32_t row_number) {
+  if (row_number & kBrickRow) return brick_candidates(job.view, row_number & ~kBrickRow);
+  const uint32_t *row = job.rows + static_cast<size_t>(row_number) * job.row_words;
+  const uint32_t head = __ldg(row);
+  const int atoms = static_cast<int>(head & 0xffff);
+  return {row + 1, row + 1 + atoms, atoms, static_cast<int>(head >> 16)};
+}
+
+__device__ __forceinline__ Vec3<float> stored_start(const VertexJob &job, uint32_t vertex) {
+  return load_vec3(job.mesh.position(vertex));
+}
+__device__ __forceinline__ void store_start(const VertexJob &job, uint32_t vertex, const Vec3<float> &x) {
+  store_vec3(job.mesh.position(vertex), x);
+}
+
+// A leaf and the edges it owns vertices on.
+struct VertexLeaf {
+  uint32_t brick;  // of the set
+  int leaf;
+  glm::ivec3 place;   // of the brick
+  glm::ivec3 origin;  // first point of the leaf, counted from the brick's
+  uint32_t first;     // vertex
+  int count;
+};
+
+// False if it owns none. edges: 64 * axis + bit of the lower point, in the order of the vertices. A warp together.
+__device__ __forceinline__ bool open_leaf(const VertexJob &job, uint32_t slot, VertexLeaf *out, uint8_t *edges) {
+  const int lane = lane_id();
+  out->brick = job.view.first_brick + slot / kLeavesPerBrick;
+  out->leaf = static_cast<int>(slot % kLeavesPerBrick);
+  const size_t k = (static_cast<size_t>(out->brick) * kLeavesPerBrick + static_cast<size_t>(out->leaf)) * kAxes;
+  uint64_t masks[kAxes];
+  out->count = 0;
+#pragma unroll
+  for (int axis = 0; axis < kAxes; ++axis) {
+    masks[axis] = job.layout.crossing[k + static_cast<size_t>(axis)];
+#pragma unroll
+    for (int half = 0; half < 2; ++half) {
+      const int bit = lane + 32 * half;
+      if (masks[axis] >> bit & 1)
+        edges[out->count + popcount64(masks[axis] & ((uint64_t(1) << bit) - 1))] =
+            static_cast<uint8_t>(axis << 6 | bit);
+    }
+    out->count += popcount64(masks[axis]);
+  }
+  __syncwarp();
+  if (out->count == 0) return false;
+  out->first = job.layout.vertex_base[out->brick] + job.layout.vertex_rank[k];
+  out->place = job.bricks.lattice.brick_at(job.bricks.linear[out->brick]);
+  out->origin = glm::ivec3(4 * (out->leaf & 1), 4 * (out->leaf >> 1 & 1), 4 * (out->leaf >> 2));
+  return true;
+}
+
+// Signs of the points of a leaf and one further on every side: row (y + 1) + 6 (z + 1), bit x + 1.
+constexpr int kWindowRows = 36;
+struct SignWindow {
+  uint64_t words[27];  // of the leaf and its neighbours, x fastest
+  uint8_t rows[kWindowRows];
+};
+__device__ __forceinline__ void fill_window(const VertexJob &job, const VertexLeaf &leaf, SignWindow *window) {
+  const int lane = lane_id();
+  if (lane < 27) {
+    const int x = leaf.origin.x + 4 * (lane % 3 - 1), y = leaf.origin.y + 4 * (lane / 3 % 3 - 1),
+              z = leaf.origin.z + 4 * (lane / 9 - 1);
+    int b = static_cast<int>(leaf.brick);
+    if ((x | y | z) & ~7) {
+      b = job.bricks.find(leaf.place + glm::ivec3(x >> 3, y >> 3, z >> 3));
+      if (b < 0) b = static_cast<int>(leaf.brick);  // no cell with a sign change reaches there: any sign will do
+    }
+    window->words[lane] =
+        job.layout.signs[static_cast<size_t>(b) * kLeavesPerBrick + static_cast<size_t>(leaf_of(x & 7, y & 7, z & 7))];
+  }
+  __syncwarp();
+  for (int r = lane; r < kWindowRows; r += kWarp) {
+    const int y = r % 6 - 1, z = r / 6 - 1, row = leaf_bit(0, y & 3, z & 3);
+    const uint64_t *const words = window->words + 3 * ((y >> 2) + 1) + 9 * ((z >> 2) + 1);
+    window->rows[r] =
+        static_cast<uint8_t>((words[0] >> (row + 3) & 1) | (words[1] >> row & 15) << 1 | (words[2] >> row & 1) << 5);
+  }
+  __syncwarp();
+}
+
+// Case of the cell whose lower corner is point (x, y, z) of the leaf; -1 reaches back into the neighbours.
+__device__ __forceinline__ int window_case(const uint8_t *window, int x, int y, int z) {
+  const uint8_t *row = window + (y + 1) + 6 * (z + 1);
+  const int shift = x + 1;
+  return (row[0] >> shift & 3) | (row[1] >> shift & 3) << 2 | (row[6] >> shift & 3) << 4 | (row[7] >> shift & 3) << 6;
+}
+
+// Starts found by halving the edges, for spacings much wider than the probe. A warp per leaf.
+static __global__ __launch_bounds__(kLeafWarps *kWarp) void halve_starts_kernel(VertexJob job) {
+  __shared__ uint8_t edge_memory[kLeafWarps][kMostLeafVertices];
+  const int warp = static_cast<int>(threadIdx.x) / kWarp;
+  const uint32_t slot = blockIdx.x * kLeafWarps + static_cast<uint32_t>(warp);
+  VertexLeaf leaf;
+  if (slot >= job.view.bricks * kLeavesPerBrick || !open_leaf(job, slot, &leaf, edge_memory[warp])) return;
+  const RowCandidates candidates = brick_candidates(job.view, slot / kLeavesPerBrick);
+  for (int k = lane_id(); k < leaf.count; k += kWarp) {
+    const LatticeEdge edge{leaf.leaf, edge_memory[warp][k] >> 6, edge_memory[warp][k] & 63};
+    store_start(
+        job, leaf.first + static_cast<uint32_t>(k),
+        halve_edge(job.features, candidates, ends_of_edge(job.bricks, job.layout, leaf.brick, edge), kStartHalvings));
+  }
+}
+
+// Starts and rows of the leaves that own vertices. A warp per leaf.
+static __global__ __launch_bounds__(kLeafWarps *kWarp) void prepare_vertices_kernel(VertexJob job) {
+  __shared__ uint8_t edge_memory[kLeafWarps][kMostLeafVertices];
+  __shared__ SignWindow window_memory[kLeafWarps];
+  const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();
+  const uint32_t slot = blockIdx.x * kLeafWarps + static_cast<uint32_t>(warp);
+  const uint8_t *const edges = edge_memory[warp];
+  VertexLeaf leaf;
+  if (slot >= job.view.bricks * kLeavesPerBrick || !open_leaf(job, slot, &leaf, edge_memory[warp])) return;
+  const Lattice &lattice = job.bricks.lattice;
+  const bool ring = job.starts.relax && !job.halved && !job.starts.moved;
+  if (ring) fill_window(job, leaf, &window_memory[warp]);
+
+  Vec3<float> low(kFarAway, kFarAway, kFarAway), high(-kFarAway, -kFarAway, -kFarAway);
+  const uint64_t word =
+      job.layout.signs[static_cast<size_t>(leaf.brick) * kLeavesPerBrick + static_cast<size_t>(leaf.leaf)];
+  const glm::ivec3 origin = lattice.first_point(leaf.place) + leaf.origin;
+  for (int k = lane; k < leaf.count; k += kWarp) {
+    const uint32_t vertex = leaf.first + static_cast<uint32_t>(k);
+    Vec3<float> x(0.f, 0.f, 0.f);
+    if (job.starts.moved) {
+      x = Vec3<float>(job.starts.moved[vertex]);
+    } else if (job.halved) {
+      x = stored_start(job, vertex);
+    } else {
+      const int axis = edges[k] >> 6, bit = edges[k] & 63, px = bit & 3, py = bit >> 2 & 3, pz = bit >> 4;
+      Vec3<float> move(0.f, 0.f, 0.f);
+      if (ring) {
+        const uint8_t *const window = window_memory[warp].rows;
+        const auto cell_case = [&](int second, int third) {
+          return window_case(window, px + (axis == 0 ? 0 : second),
+                             py + (axis == 0   ? second
+                                   : axis == 1 ? 0
+                                               : third),
+                             pz + (axis == 2 ? 0 : third));
+        };
+        ring_displacement(edge_ring_of_cells(cell_case, axis, job.starts.ring), &move.x, &move.y, &move.z);
+      }
+      const float along = vertex_start(word >> bit & 1);
+      move.x += axis == 0 ? along : 0.f;
+      move.y += axis == 1 ? along : 0.f;
+      move.z += axis == 2 ? along : 0.f;
+      x = lattice.position(origin.x + px, origin.y + py, origin.z + pz) + move * lattice.spacing;
+    }
+    store_start(job, vertex, x);
+    low = {fminf(low.x, x.x), fminf(low.y, x.y), fminf(low.z, x.z)};
+    high = {fmaxf(high.x, x.x), fmaxf(high.y, x.y), fmaxf(high.z, x.z)};
+  }
+  low = {-warp_maximum(-low.x), -warp_maximum(-low.y), -warp_maximum(-low.z)};
+  high = {warp_maximum(high.x), warp_maximum(high.y), warp_maximum(high.z)};
+  const Vec3<float> center = (low + high) * 0.5f, half = (high - low) * 0.5f;
+
+  const FeatureView &f = job.features;
+  const RowCandidates all = brick_candidates(job.view, slot / kLeavesPerBrick);
+  // Rows are numbered like the leaves that own vertices.
+  bool owns = false;
+  if (lane < kLeavesPerBrick) {
+    const uint64_t *const masks = job.layout.crossing + (size_t(leaf.brick) * kLeavesPerBrick + size_t(lane)) * kAxes;
+    owns = (masks[0] | masks[1] | masks[2]) != 0;
+  }
+  const unsigned owning = __ballot_sync(kFullWarp, owns);
+  const uint32_t number =
+      job.layout.leaf_base[leaf.brick] - job.first_row + static_cast<uint32_t>(place_in(owning, leaf.leaf));
+  const int room = static_cast<int>(job.row_words);
+  uint32_t *const row = job.rows + static_cast<size_t>(number) * job.row_words;
+  int atoms = 0, arcs = 0;
+  if (all.atom_total > 0) {
+    // What can be deepest at a start, or at its projection.
+    const LeafBest best = deepest_at(f, all.atoms, static_cast<uint32_t>(all.atom_total), center);
+    const float move = kStartReach * job.reach.spacing;
+    BoxCull cull;
+    cull.set(center, {half.x + move, half.y + move, half.z + move}, load(f.atoms.items + best.atom), job.reach.slack);
+    for (int k0 = 0; k0 < all.atom_total; k0 += kWarp) {
+      const int k = k0 + lane;
+      bool keep = false;
+      uint32_t i = 0;
+      if (k < all.atom_total) {
+        i = all.atom(k);
+        const Sphere ball = load(f.atoms.items + i);
+        keep = cull.keeps(ball, ball_depth(ball, center)) || i == best.atom;
+      }
+      const unsigned ballot = __ballot_sync(kFullWarp, keep);
+      const int at = 1 + atoms + place_in(ballot, lane);
+      if (keep && at < room) row[at] = i;
+      atoms += __popc(ballot);
+    }
+  }
+  const float radius = square_root(length_squared(half)), limit = job.reach.start_reach;
+  for (int k0 = 0; k0 < all.arc_total; k0 += kWarp) {
+    const int k = k0 + lane;
+    bool keep = false;
+    uint32_t a = 0;
+    if (k < all.arc_total) {
+      a = all.arc(k);
+      const Sphere ball = load(f.arc_bounds.items + a);
+      const float near = ball.radius + limit;
+      const Vec3<float> d(fmaxf(0.f, absolute(ball.center.x - center.x) - half.x),
+                          fmaxf(0.f, absolute(ball.center.y - center.y) - half.y),
+                          fmaxf(0.f, absolute(ball.center.z - center.z) - half.z));
+      if (length_squared(d) <= near * near)
+        keep = arc_distance2(load(f.arcs + a), center) <= (limit + radius) * (limit + radius);
+    }
+    const unsigned ballot = __ballot_sync(kFullWarp, keep);
+    const int at = 1 + atoms + arcs + place_in(ballot, lane);
+    if (keep && at < room) row[at] = a;
+    arcs += __popc(ballot);
+  }
+  const bool fits = 1 + atoms + arcs <= room;
+  if (fits && lane == 0) row[0] = static_cast<uint32_t>(atoms) | static_cast<uint32_t>(arcs) << 16;
+  for (int k = lane; k < leaf.count; k += kWarp)
+    job.vertex_row[leaf.first - job.first + static_cast<uint32_t>(k)] =
+        fits ? number : kBrickRow | slot / kLeavesPerBrick;
+}
+
+}  // namespace gpu
+}  // namespace quickses

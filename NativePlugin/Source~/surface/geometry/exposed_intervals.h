@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+// Which parts of a circle stay exposed when its neighbours' balls cover stretches of it: directions in the circle's
+// plane as pseudo-angles, and a running list of exposed intervals that shrinks with every ball.
+#pragma once
+
+#include "surface/geometry/types.h"
+
+namespace quickses {
+
+// Pseudo-angle in [0, 4): the position on the square |x| + |y| = 1, counter-clockwise from (1, 0). It grows with the
+// angle, which is all that ordering needs, and costs one division.
+template <class T>
+QSES_FN T pseudo_angle(T x, T y) {
+  const T t = quotient(absolute(y), absolute(x) + absolute(y));
+  const T half = select(x < T(0.f), T(2.f) - t, t);
+  const T full = select(y < T(0.f), T(4.f) - half, half);
+  return select(full >= T(4.f), T(0.f), full);
+}
+
+// The unit direction of a pseudo-angle.
+QSES_FN glm::vec2 pseudo_direction(float p) {
+  const int quadrant = p < 1.f ? 0 : p < 2.f ? 1 : p < 3.f ? 2 : 3;
+  const float t = p - static_cast<float>(quadrant);
+  const float x = quadrant == 0 ? 1.f - t : quadrant == 1 ? -t : quadrant == 2 ? t - 1.f : t;
+  const float y = quadrant == 0 ? t : quadrant == 1 ? 1.f - t : quadrant == 2 ? -t : t - 1.f;
+  const float k = reciprocal_root(x * x + y * y);
+  return glm::vec2(x * k, y * k);
+}
+
+// Counter-clockwise way from one pseudo-angle to another, in [0, 4).
+QSES_FN float pseudo_way(float from, float to) {
+  const float way = to - from;
+  return way < 0.f ? way + 4.f : way;
+}
+
+struct Interval {
+  float begin, end;  // pseudo-angles, counter-clockwise
+};
+
+// The exposed intervals of one circle. Storage for the intervals is the caller's (registers, scratch or global memory).
+template <class Storage>
+struct ExposedIntervals {
+  Storage interval;
+  int capacity;
+  int count = 0;
+  bool whole = true;      // nothing covered yet: count is 0 then
+  bool overflow = false;  // more intervals than capacity: the result is useless, use a larger one
+
+  QSES_FN bool empty() const { return !whole && count == 0; }
+
+  // The stretch from begin counter-clockwise to end is covered.
+  QSES_FN void cover(float begin, float end) {
+    if (whole) {
+      whole = false;
+      count = 1;
+      interval[0] = {end, begin};
+      return;
+    }
+    for (int k = 0; k < count; ++k) {
+      const Interval v = interval[k];
+      const float length = pseudo_way(v.begin, v.end);
+      const float from = pseudo_way(v.begin, begin), to = pseudo_way(v.begin, end);
+      if (from <= to) {  // the stretch does not contain v.begin, unless it starts there
+        if (from >= length) continue;
+        const bool keep_left = from > 0.f, keep_right = to < length;
+        if (keep_left && keep_right) {
+          if (count == capacity) {
+            overflow = true;
+            return;
+          }
+          interval[k].end = begin;
+          interval[count++] = {end, v.end};  // disjoint from the stretch: looked at again without effect
+        } else if (keep_left) {
+          interval[k].end = begin;
+        } else if (keep_right) {
+          interval[k].begin = end;
+        } else {
+          interval[k--] = interval[--count];
+        }
+      } else if (to >= length) {
+        interval[k--] = interval[--count];
+      } else {
+        interval[k].begin = end;
+        if (from < length) interval[k].end = begin;
+      }
+    }
+  }
+};
+
+}  // namespace quickses

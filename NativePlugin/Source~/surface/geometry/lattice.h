@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// The SES grid: a lattice of spacing h anchored to the global origin, cut into bricks of 8x8x8 points and leaves of
+// 4x4x4 (eight to a brick). The centred frame has its origin at a brick corner near the middle of the molecule, so that
+// float32 is at its best there and the lattice does not swim from frame to frame.
+#pragma once
+
+#include "surface/geometry/types.h"
+
+namespace quickses {
+
+constexpr int kBrickEdge = 8;       // lattice points
+constexpr int kLeafEdge = 4;        // lattice points
+constexpr int kLeavesPerBrick = 8;  // leaf = x half + 2 * y half + 4 * z half
+constexpr int kBrickPoints = kBrickEdge * kBrickEdge * kBrickEdge;
+constexpr int kAxes = 3;
+
+constexpr float kRoot3 = 1.7320508f;
+
+struct Lattice {
+  float spacing;                        // h
+  double center_x, center_y, center_z;  // where the centred frame's origin is in the caller's coordinates
+  glm::ivec3 first_brick;               // of the table of bricks, in the centred frame
+  glm::ivec3 brick_count;               // size of the table of bricks
+
+  QSES_FN float brick_size() const { return spacing * static_cast<float>(kBrickEdge); }
+  QSES_FN uint64_t table_size() const {
+    return static_cast<uint64_t>(brick_count.x) * static_cast<uint64_t>(brick_count.y) *
+           static_cast<uint64_t>(brick_count.z);
+  }
+  QSES_FN bool has(const glm::ivec3 &brick) const {
+    return brick.x >= 0 && brick.y >= 0 && brick.z >= 0 && brick.x < brick_count.x && brick.y < brick_count.y &&
+           brick.z < brick_count.z;
+  }
+  // Linear brick index: x fastest. It orders the output.
+  QSES_FN uint64_t linear(const glm::ivec3 &brick) const {
+    return static_cast<uint64_t>(brick.x) +
+           static_cast<uint64_t>(brick_count.x) *
+               (static_cast<uint64_t>(brick.y) + static_cast<uint64_t>(brick_count.y) * static_cast<uint64_t>(brick.z));
+  }
+  QSES_FN glm::ivec3 brick_at(uint64_t linear) const {
+    const uint64_t nx = static_cast<uint64_t>(brick_count.x), ny = static_cast<uint64_t>(brick_count.y);
+    const uint64_t row = linear / nx;
+    return glm::ivec3(static_cast<int>(linear - row * nx), static_cast<int>(row % ny), static_cast<int>(row / ny));
+  }
+  // Number, in the centred frame, of a brick's first lattice point along each axis.
+  QSES_FN glm::ivec3 first_point(const glm::ivec3 &brick) const {
+    return glm::ivec3((brick.x + first_brick.x) * kBrickEdge, (brick.y + first_brick.y) * kBrickEdge,
+                      (brick.z + first_brick.z) * kBrickEdge);
+  }
+  // One rounding only, and the same on both back ends.
+  QSES_FN Vec3<float> position(int x, int y, int z) const {
+    return {static_cast<float>(x) * spacing, static_cast<float>(y) * spacing, static_cast<float>(z) * spacing};
+  }
+  QSES_FN glm::vec3 to_caller(const Vec3<float> &p) const {
+    return glm::vec3(static_cast<float>(static_cast<double>(p.x) + center_x),
+                     static_cast<float>(static_cast<double>(p.y) + center_y),
+                     static_cast<float>(static_cast<double>(p.z) + center_z));
+  }
+};
+
+// An edge of the lattice, or what is left of it, that the surface crosses.
+struct CutEdge {
+  Vec3<float> inside, outside;
+  QSES_FN Vec3<float> middle() const { return (inside + outside) * 0.5f; }
+};
+
+// Bits of a leaf word: lattice point (x, y, z) of the leaf is bit x + 4 y + 16 z. Bits of a set mean "inside".
+QSES_FN int leaf_bit(int x, int y, int z) { return x + 4 * y + 16 * z; }
+QSES_FN int leaf_of(int x, int y, int z) { return (x >> 2) + 2 * (y >> 2) + 4 * (z >> 2); }
+
+// The leaf word seen one lattice point further along an axis: w is the leaf, next its neighbour on that side.
+QSES_FN uint64_t shift_x(uint64_t w, uint64_t next) {
+  return (w >> 1 & 0x7777777777777777ull) | (next & 0x1111111111111111ull) << 3;
+}
+QSES_FN uint64_t shift_y(uint64_t w, uint64_t next) {
+  return (w >> 4 & 0x0fff0fff0fff0fffull) | (next & 0x000f000f000f000full) << 12;
+}
+QSES_FN uint64_t shift_z(uint64_t w, uint64_t next) { return w >> 16 | next << 48; }
+
+}  // namespace quickses

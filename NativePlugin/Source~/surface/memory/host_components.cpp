@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+// The components of a mesh in host memory, found by the CPU's threads.
+#include "surface/memory/host_components.h"
+
+namespace quickses {
+
+HostComponents::HostComponents() = default;
+HostComponents::~HostComponents() = default;
+
+Span<const qses_component> HostComponents::find(const MeshView &mesh, const MeshCounts &counts, float spacing,
+                                                ComponentMemory &memory) {
+  if (!executor_) executor_ = std::make_unique<CpuExecutor>(0);
+  executor_->arena().reset();
+  return find_components(*executor_, mesh, counts, spacing, memory);
+}
+
+uint64_t HostComponents::bytes() const { return executor_ ? executor_->arena().held() : 0; }
+
+}  // namespace quickses

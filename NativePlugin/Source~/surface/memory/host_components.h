@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// The components of a mesh in host memory, found by the CPU's threads: for meshes that did not fit on the GPU.
+#pragma once
+
+#include "surface/stages/components.h"
+
+#include <memory>
+
+namespace quickses {
+
+class HostComponents {
+ public:
+  HostComponents();
+  ~HostComponents();
+
+  // As find_components. Its threads and its work memory stay for the next call.
+  Span<const qses_component> find(const MeshView &mesh, const MeshCounts &counts, float spacing,
+                                  ComponentMemory &memory);
+  uint64_t bytes() const;  // of work memory
+
+ private:
+  std::unique_ptr<CpuExecutor> executor_;
+};
+
+}  // namespace quickses

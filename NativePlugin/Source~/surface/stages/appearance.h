@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// What vertices take from the atoms that own them: colours and texture coordinates.
+#pragma once
+
+#include "surface/mesh/mesh_view.h"
+
+#include <vector>
+
+namespace quickses {
+
+// Per atom, in the caller's order, on the host. Empty: not set.
+struct Appearance {
+  std::vector<uint8_t> visible;
+  std::vector<uint32_t> colors;  // bytes red, green, blue, alpha
+  std::vector<glm::vec2> texcoords;
+
+  bool empty() const { return visible.empty() && colors.empty() && texcoords.empty(); }
+};
+
+// The same in the memory of a back end; nullptr: not set.
+struct AppearanceView {
+  const uint8_t *visible;
+  const uint32_t *colors;
+  const glm::vec2 *texcoords;
+};
+
+// Writes colours and texture coordinates of a run of vertices, whose owners are known.
+struct PaintVertices {
+  AppearanceView appearance;
+  MeshView mesh;
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    const uint32_t vertex = mesh.first_vertex + static_cast<uint32_t>(i), atom = mesh.owner(vertex);
+    if (mesh.colors) *mesh.color(vertex) = appearance.colors ? appearance.colors[atom] : 0xffffffffu;
+    if (mesh.texcoords) {
+      const glm::vec2 uv = appearance.texcoords ? appearance.texcoords[atom] : glm::vec2(1.f, 0.f);
+      float *const out = mesh.texcoord(vertex);
+      out[0] = uv.x;
+      out[1] = uv.y;
+    }
+  }
+};
+
+template <class Executor>
+void paint_vertices(Executor &executor, const AppearanceView &appearance, const MeshView &mesh, size_t vertices) {
+  if (mesh.colors || mesh.texcoords) executor.for_each(vertices, PaintVertices{appearance, mesh});
+}
+
+}  // namespace quickses

@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: MIT
+// The sparse set of bricks that can hold surface (QuickSES 2019 section 2.2 narrows the voxels down to the border in
+// the same spirit). A brick is active if the box of its lattice points, grown by one spacing, meets the part of an
+// exposed atom's surface, or comes as near to an exposed arc as the surface does: then every corner of every cell that
+// the surface passes lies in an active brick.
+#pragma once
+
+#include "parallel/arena.h"
+#include "parallel/error.h"
+#include "surface/geometry/lattice.h"
+#include "surface/stages/solvent_features.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+namespace quickses {
+
+// Bricks are numbered by signed 32-bit integers.
+constexpr uint64_t kMaxBricks = 0x7fffffff;
+
+// Active bricks as kernels see them, sorted by linear index.
+struct BrickSet {
+  Lattice lattice;
+  const uint64_t *linear;  // of each active brick
+  const int32_t *table;    // linear -> number of the active brick, -1 if inactive; nullptr if the set is sparse
+  uint32_t count;
+
+  // Number of the active brick at a place of the table of bricks; -1 if there is none.
+  QSES_FN int find(const glm::ivec3 &b) const {
+    if (!lattice.has(b)) return -1;
+    const uint64_t key = lattice.linear(b);
+    if (table) return table[key];
+    const uint32_t k = lower_bound(linear, count, key);
+    return k < count && linear[k] == key ? static_cast<int>(k) : -1;
+  }
+};
+
+// The first of the numbers from first to last with a property that all behind it have too; last + 1 if none has.
+template <class Property>
+QSES_FN int first_with(int first, int last, const Property &has) {
+  while (first <= last) {
+    const int middle = first + (last - first) / 2;
+    if (has(middle))
+      last = middle - 1;
+    else
+      first = middle + 1;
+  }
+  return first;
+}
+
+// Calls visit(linear index of the first, number) for the runs along x of the bricks whose grown boxes meet the shell
+// between two radii about a centre.
+template <class Visit>
+QSES_FN void visit_bricks_of_shell(const Lattice &lattice, const glm::vec3 &center, float inner, float outer,
+                                   const Visit &visit) {
+  const float h = lattice.spacing, size = lattice.brick_size(), slack = 0.01f * h + 1e-4f;
+  const float box = size + h + 2.f * slack;  // grown box: from -h - slack to 8h + slack
+  const float low_offset = -h - slack;
+  outer += slack;
+  inner = maximum(0.f, inner - slack);
+  const float inner2 = inner * inner, outer2 = outer * outer;
+  const float inverse = 1.f / size;
+  int first[3], last[3];
+  const float c[3] = {center.x, center.y, center.z};
+  for (int d = 0; d < 3; ++d) {
+    const int origin = lattice.first_brick[d];
+    first[d] = static_cast<int>(floorf((c[d] - outer - low_offset - box) * inverse)) - origin;
+    last[d] = static_cast<int>(floorf((c[d] + outer - low_offset) * inverse)) - origin;
+    first[d] = first[d] < 0 ? 0 : first[d];
+    last[d] = last[d] >= lattice.brick_count[d] ? lattice.brick_count[d] - 1 : last[d];
+  }
+  constexpr int kLongRow = 16;  // fewer bricks are tried one by one
+  const bool many = last[1] - first[1] > 64;
+  for (int z = first[2]; z <= last[2]; ++z) {
+    if (many) look_for_stop();
+    const float z0 = static_cast<float>(z + lattice.first_brick.z) * size + low_offset - c[2];
+    const float nz = maximum(0.f, maximum(z0, -z0 - box)), fz = maximum(absolute(z0), absolute(z0 + box));
+    for (int y = first[1]; y <= last[1]; ++y) {
+      const float y0 = static_cast<float>(y + lattice.first_brick.y) * size + low_offset - c[1];
+      const float ny = maximum(0.f, maximum(y0, -y0 - box)), fy = maximum(absolute(y0), absolute(y0 + box));
+      const float near2 = nz * nz + ny * ny, far2 = fz * fz + fy * fy;
+      if (near2 > outer2) continue;
+      const uint64_t row = lattice.linear(glm::ivec3(0, y, z));
+      const auto start_of = [&](int x) {
+        return static_cast<float>(x + lattice.first_brick.x) * size + low_offset - c[0];
+      };
+      const auto is_near = [&](int x) {
+        const float x0 = start_of(x), nx = maximum(0.f, maximum(x0, -x0 - box));
+        return near2 + nx * nx <= outer2;
+      };
+      const auto is_far = [&](int x) {
+        const float x0 = start_of(x), fx = maximum(absolute(x0), absolute(x0 + box));
+        return far2 + fx * fx >= inner2;
+      };
+      if (last[0] - first[0] < kLongRow) {
+        for (int x = first[0]; x <= last[0]; ++x)
+          if (is_near(x) && is_far(x)) visit(row + static_cast<uint64_t>(x), uint64_t(1));
+        continue;
+      }
+      // Along a row bricks come nearer and then go farther: the ends of the runs are looked for by halving.
+      const int turn = first_with(first[0], last[0], [&](int x) { return start_of(x) + 0.5f * box >= 0.f; });
+      const int begin = first_with(first[0], turn - 1, is_near);
+      const int end = first_with(turn, last[0], [&](int x) { return !is_near(x); });
+      const int hole = first_with(begin, turn - 1, [&](int x) { return !is_far(x); });
+      const int hole_end = first_with(turn, end - 1, is_far);
+      const auto visit_run = [&](int from, int to) {
+        if (from < to) visit(row + static_cast<uint64_t>(from), static_cast<uint64_t>(to - from));
+      };
+      visit_run(begin, hole);
+      visit_run(hole_end, end);
+    }
+  }
+}
+
+// At least so many bricks meet a ball about a place in the table: most of an octant of it lies in there.
+QSES_FN double fewest_bricks_of_ball(const Lattice &lattice, float radius) {
+  const double bricks = static_cast<double>(radius) / static_cast<double>(lattice.brick_size());
+  return bricks * bricks * bricks / 4;
+}
+
+// What the passes below go through: size() items, and visit(i, v), which calls v(linear index, number) for each run of
+// bricks that item i makes active; at least fewest(i) of them. Of the features, an item is an atom (i < atom count) or
+// an arc's ball.
+struct FeatureBricks {
+  FeatureView features;
+  Lattice lattice;
+
+  QSES_FN size_t size() const { return size_t(features.atoms.count) + features.arc_bounds.count; }
+
+  template <class Visit>
+  QSES_FN void visit(size_t i, const Visit &visit_brick) const {
+    if (i < features.atoms.count) {
+      if (features.cap_ranges[i].count == kBuriedAtom) return;
+      const Sphere atom = features.atoms.items[i];
+      const float radius = maximum(0.f, atom.radius - features.parameters.depth);
+      visit_bricks_of_shell(lattice, atom.center, radius, radius, visit_brick);
+    } else {
+      const Sphere ball = features.arc_bounds.items[i - features.atoms.count];
+      visit_bricks_of_shell(lattice, ball.center, 0.f, ball.radius + features.parameters.depth, visit_brick);
+    }
+  }
+  QSES_FN double fewest(size_t i) const {
+    return i < features.atoms.count ? 0.0 : fewest_bricks_of_ball(lattice, features.parameters.depth);
+  }
+};
+
+template <class Items>
+struct FlagBricks {
+  Items items;
+  uint8_t *flags;
+  struct Visit {
+    uint8_t *flags;
+    QSES_FN void operator()(uint64_t linear, uint64_t count) const {
+      for (const uint64_t end = linear + count; linear < end; ++linear) {
+#if defined(__CUDA_ARCH__) || (defined(_MSC_VER) && !defined(__clang__))
+        flags[linear] = 1;
+#else
+        __atomic_store_n(&flags[linear], uint8_t(1), __ATOMIC_RELAXED);
+#endif
+      }
+    }
+  };
+  QSES_HOST_DEVICE void operator()(size_t i) const { items.visit(i, Visit{flags}); }
+};
+
+template <class Items>
+struct CountBricks {
+  Items items;
+  struct Visit {
+    uint64_t *count;
+    QSES_FN void operator()(uint64_t, uint64_t more) const { *count += more; }
+  };
+  QSES_HOST_DEVICE uint64_t operator()(size_t i) const {
+    uint64_t count = 0;
+    items.visit(i, Visit{&count});
+    return count;
+  }
+};
+
+template <class Items>
+struct FewestBricks {
+  Items items;
+  QSES_HOST_DEVICE double operator()(size_t i) const { return items.fewest(i); }
+};
+
+template <class Items>
+struct ListBricks {
+  Items items;
+  const uint64_t *first;
+  uint64_t *keys;
+  struct Visit {
+    uint64_t **next;
+    QSES_FN void operator()(uint64_t linear, uint64_t number) const {
+      for (const uint64_t end = linear + number; linear < end; ++linear) *(*next)++ = linear;
+    }
+  };
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    uint64_t *next = keys + first[i];
+    items.visit(i, Visit{&next});
+  }
+};
+
+struct IsFlagged {
+  const uint8_t *flags;
+  QSES_HOST_DEVICE bool operator()(size_t i) const { return flags[i] != 0; }
+};
+
+struct IsFirstOfEqual {
+  const uint64_t *keys;
+  QSES_HOST_DEVICE bool operator()(size_t i) const { return i == 0 || keys[i] != keys[i - 1]; }
+};
+
+struct GatherKeys {
+  const uint64_t *keys;
+  uint64_t *places;  // in: places of the first of equal keys; out: the keys
+  QSES_HOST_DEVICE void operator()(size_t i) const { places[i] = keys[places[i]]; }
+};
+
+struct FillBrickTable {
+  const uint64_t *linear;
+  int32_t *table;
+  QSES_HOST_DEVICE void operator()(size_t i) const { table[linear[i]] = static_cast<int32_t>(i); }
+};
+
+struct SortValue {
+  uint32_t *values;
+  QSES_HOST_DEVICE void operator()(size_t i) const { values[i] = static_cast<uint32_t>(i); }
+};
+
+// Atoms may lie this many spacings from the middle of them all: a float32 coordinate then still tells eight places
+// between two lattice points, and all numbers of bricks are far from overflowing.
+constexpr double kMaxLatticeReach = 2097152;  // 2^21
+
+// low and high bound the atoms' centres in the centred frame.
+inline Lattice layout_lattice(Lattice lattice, const glm::vec3 &low, const glm::vec3 &high, float max_radius) {
+  const double size = static_cast<double>(lattice.spacing) * kBrickEdge;
+  double farthest = 0;
+  for (int d = 0; d < 3; ++d)
+    farthest = std::max({farthest, std::fabs(static_cast<double>(low[d])), std::fabs(static_cast<double>(high[d]))});
+  if (farthest > kMaxLatticeReach * static_cast<double>(lattice.spacing)) {
+    char text[200];
+    std::snprintf(
+        text, sizeof text,
+        "spacing %g Å is too fine for atoms that lie %.3g Å from the middle of them all: float32 tells places "
+        "apart there for spacings from %.2g Å",
+        static_cast<double>(lattice.spacing), farthest, farthest / kMaxLatticeReach);
+    throw Error(QSES_TOO_FINE, text);
+  }
+  for (int d = 0; d < 3; ++d) {
+    const double reach = static_cast<double>(max_radius) + 2.0 * lattice.spacing;
+    const double first = std::floor((low[d] - reach) / size) - 1.0, last = std::floor((high[d] + reach) / size) + 1.0;
+    lattice.first_brick[d] = static_cast<int>(first);
+    lattice.brick_count[d] = static_cast<int>(last - first) + 1;
+  }
+  return lattice;
+}
+
+// Bytes per entry of a dense table of bricks, and per visit where the visits are listed and sorted instead.
+constexpr uint64_t kDenseEntryBytes = sizeof(int32_t) + sizeof(uint8_t);
+constexpr uint64_t kVisitBytes = 2 * sizeof(uint64_t) + sizeof(uint32_t);
+
+inline uint32_t checked_brick_count(size_t found) {
+  if (found > kMaxBricks)
+    throw Error(QSES_TOO_FINE, "the surface needs " + std::to_string(found) +
+                                   " bricks of the SES grid, more than 32-bit numbers can name: use a larger spacing");
+  return static_cast<uint32_t>(found);
+}
+
+template <class Executor, class Items>
+BrickSet flag_bricks(Executor &executor, const Items &items, const Lattice &lattice) {
+  const uint64_t entries = lattice.table_size();
+  Span<int32_t> table = executor.template allocate<int32_t>(entries);
+  Span<uint8_t> flags = executor.template allocate<uint8_t>(entries);
+  executor.fill(flags, 0);
+  executor.fill(table, 0xff);
+  executor.for_each(items.size(), FlagBricks<Items>{items, flags.data});
+  // Room for the list: for all entries while that is little, else counted first.
+  const uint64_t room = entries <= kSmallTable && !executor.arena().has_budget()
+                            ? entries
+                            : static_cast<uint64_t>(executor.reduce(entries, LoadCount<uint8_t>{flags.data}));
+  Span<uint64_t> linear = executor.template allocate<uint64_t>(room);
+  const uint32_t count = checked_brick_count(executor.compact(entries, IsFlagged{flags.data}, linear));
+  executor.for_each(count, FillBrickTable{linear.data, table.data});
+  return {lattice, linear.data, table.data, count};
+}
+
+template <class Executor, class Items>
+BrickSet sort_bricks(Executor &executor, const Items &items, const Lattice &lattice, Span<uint64_t> first,
+                     uint64_t visits) {
+  Span<uint64_t> keys = executor.template allocate<uint64_t>(visits);
+  Span<uint64_t> linear = executor.template allocate<uint64_t>(visits);
+  Span<uint32_t> unused = executor.template allocate<uint32_t>(visits);
+  executor.for_each(items.size(), ListBricks<Items>{items, first.data, keys.data});
+  executor.for_each(visits, SortValue{unused.data});
+  executor.sort_by_key(keys, unused, bits_for(lattice.table_size()));
+  const uint32_t count = checked_brick_count(executor.compact(visits, IsFirstOfEqual{keys.data}, linear));
+  executor.for_each(count, GatherKeys{keys.data, linear.data});
+  return {lattice, linear.data, nullptr, count};
+}
+
+// The set of all bricks that the items visit. A table with an entry per brick of the box while that is the smaller way:
+// a stray atom far away makes the box large, a fine spacing makes the visits many.
+template <class Executor, class Items>
+BrickSet collect_bricks(Executor &executor, const Items &items, const Lattice &lattice) {
+  const size_t n = items.size();
+  const uint64_t entries = lattice.table_size();
+  if (entries <= kSmallTable) return flag_bricks(executor, items, lattice);
+  // To count the visits may take long. Often it is clear without that they are too many to be listed.
+  const double fewest = executor.reduce(n, FewestBricks<Items>{items}) * static_cast<double>(kVisitBytes);
+  if (entries <= kMaxDenseCells && static_cast<double>(entries * kDenseEntryBytes) <= fewest)
+    return flag_bricks(executor, items, lattice);
+  if (entries > kMaxDenseCells && fewest > static_cast<double>(executor.arena().available()))
+    throw MemoryRefused("the work needs at least " + describe_bytes(static_cast<uint64_t>(fewest)) +
+                        " for the bricks of the SES grid, but " + describe_bytes(executor.arena().available()) +
+                        " are available: use a larger spacing");
+  Span<uint64_t> first = executor.template allocate<uint64_t>(n + 1);
+  executor.exclusive_scan(n, CountBricks<Items>{items}, first);
+  const uint64_t visits = executor.fetch(first.data + n);
+  if (entries <= kMaxDenseCells && entries * kDenseEntryBytes <= visits * kVisitBytes)
+    return flag_bricks(executor, items, lattice);
+  return sort_bricks(executor, items, lattice, first, visits);
+}
+
+template <class Executor>
+BrickSet find_bricks(Executor &executor, const FeatureView &features, const Lattice &lattice) {
+  return collect_bricks(executor, FeatureBricks{features, lattice}, lattice);
+}
+
+}  // namespace quickses

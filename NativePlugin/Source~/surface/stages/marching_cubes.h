@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: MIT
+// Marching cubes on sign masks (QuickSES 2019, section 2.4): count, scan, emit. Every lattice edge that changes sign
+// owns one vertex, named by counting bits, so the mesh is welded by construction and the same in every run.
+#pragma once
+
+#include "parallel/atomics.h"
+#include "surface/stages/brick_border.h"
+#include "surface/stages/marching_cubes_table.h"
+#include "surface/mesh/mesh_view.h"
+
+namespace quickses {
+
+// What is known of all bricks together, in the memory of the back end.
+struct MeshTotals {
+  uint32_t vertices, triangles;
+  uint32_t leaves;          // that own vertices
+  uint32_t border_changes;  // pairs of a brick and an inactive neighbour next to which signs differ
+  uint32_t unplaced;        // vertices for which no feature was found; counted while they are emitted
+};
+
+// What counting leaves behind, per active brick. Vertices are numbered by brick, leaf, axis of their edge, and bit;
+// triangles by brick, leaf, bit of their cell, and place in the table.
+struct MeshLayout {
+  const uint64_t *signs;    // [brick][leaf]: bit set = lattice point inside
+  uint64_t *crossing;       // [brick][leaf][axis]: bit set = the edge from that point along the axis changes sign
+  uint16_t *vertex_rank;    // [brick][leaf][axis]: vertices of the brick before that mask
+  uint16_t *triangle_rank;  // [brick][leaf]: triangles of the brick before that leaf
+  uint32_t *vertex_base;    // [brick + 1]: vertices before the brick
+  uint32_t *triangle_base;  // [brick + 1]
+  uint32_t *leaf_base;      // [brick + 1]: leaves that own vertices before the brick
+  BorderSigns *border;      // [brick]
+  MeshTotals *totals;
+  uint64_t vertex_total;    // of all bricks
+  uint64_t leaf_total;      // that own vertices
+  uint64_t border_changes;  // 0, or the set of bricks must grow before anything is emitted
+};
+
+// Leaf words around a leaf: itself and its neighbours towards larger x, y, z (bit 0, 1, 2 of the place).
+struct LeafWords {
+  uint64_t at[8];
+};
+
+// Word of the leaf at an offset (bits x, y, z) from a leaf of an active brick. No cell at an inactive brick has a sign
+// change, so there the word repeats the nearest point of the leaf itself.
+QSES_FN uint64_t neighbor_leaf_word(const BrickSet &bricks, const uint64_t *signs, int brick, const glm::ivec3 &place,
+                                    int leaf, int offset) {
+  const int carry = leaf & offset, other = leaf ^ offset;
+  if (carry == 0) return signs[static_cast<size_t>(brick) * kLeavesPerBrick + other];
+  const int k = bricks.find(place + glm::ivec3(carry & 1, carry >> 1 & 1, carry >> 2));
+  if (k >= 0) return signs[static_cast<size_t>(k) * kLeavesPerBrick + other];
+  const int bit = leaf_bit(offset & 1 ? 3 : 0, offset & 2 ? 3 : 0, offset & 4 ? 3 : 0);
+  return signs[static_cast<size_t>(brick) * kLeavesPerBrick + leaf] >> bit & 1 ? ~uint64_t(0) : 0;
+}
+
+QSES_FN LeafWords leaf_words(const BrickSet &bricks, const uint64_t *signs, int brick, int leaf) {
+  const glm::ivec3 place = bricks.lattice.brick_at(bricks.linear[brick]);
+  LeafWords w;
+  w.at[0] = signs[static_cast<size_t>(brick) * kLeavesPerBrick + leaf];
+  for (int d = 1; d < 8; ++d) w.at[d] = neighbor_leaf_word(bricks, signs, brick, place, leaf, d);
+  return w;
+}
+
+// The eight corner words: bit b of corner word c is the sign of corner c of the cell at point b.
+QSES_FN LeafWords cell_corners(const LeafWords &w) {
+  const uint64_t x0 = shift_x(w.at[0], w.at[1]), x2 = shift_x(w.at[2], w.at[3]);
+  const uint64_t x4 = shift_x(w.at[4], w.at[5]), x6 = shift_x(w.at[6], w.at[7]);
+  LeafWords c;
+  c.at[0] = w.at[0];
+  c.at[1] = x0;
+  c.at[2] = shift_y(w.at[0], w.at[2]);
+  c.at[3] = shift_y(x0, x2);
+  c.at[4] = shift_z(w.at[0], w.at[4]);
+  c.at[5] = shift_z(x0, x4);
+  c.at[6] = shift_z(c.at[2], shift_y(w.at[4], w.at[6]));
+  c.at[7] = shift_z(c.at[3], shift_y(x4, x6));
+  return c;
+}
+
+// Cells whose corners have both signs.
+QSES_FN uint64_t mixed_cells(const LeafWords &c) {
+  uint64_t any = c.at[0], all = c.at[0];
+  for (int d = 1; d < 8; ++d) {
+    any |= c.at[d];
+    all &= c.at[d];
+  }
+  return any & ~all;
+}
+
+QSES_FN int cell_case(const LeafWords &c, int bit) {
+  int code = 0;
+  for (int d = 0; d < 8; ++d) code |= static_cast<int>(c.at[d] >> bit & 1) << d;
+  return code;
+}
+
+// ---- count -----------------------------------------------------------------------------------------------------
+
+struct CountLeaf {
+  BrickSet bricks;
+  MeshLayout layout;
+  const uint8_t *case_triangles;
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    if (i == 0) *layout.totals = {};
+    const int brick = static_cast<int>(i >> 3), leaf = static_cast<int>(i & 7);
+    const LeafWords c = cell_corners(leaf_words(bricks, layout.signs, brick, leaf));
+    for (int axis = 0; axis < kAxes; ++axis) {
+      const uint64_t crossing = c.at[0] ^ c.at[1 << axis];
+      layout.crossing[3 * i + static_cast<size_t>(axis)] = crossing;
+      layout.vertex_rank[3 * i + static_cast<size_t>(axis)] = static_cast<uint16_t>(popcount64(crossing));
+    }
+    int triangles = 0;
+    for (uint64_t mixed = mixed_cells(c); mixed; mixed &= mixed - 1)
+      triangles += case_triangles[cell_case(c, lowest_bit64(mixed))];
+    layout.triangle_rank[i] = static_cast<uint16_t>(triangles);
+  }
+};
+
+// Turns the counts of a brick into ranks; its totals go to vertices and triangles.
+struct RankBrick {
+  MeshLayout layout;
+  uint32_t *vertices, *triangles, *leaves;
+  QSES_HOST_DEVICE void operator()(size_t brick) const {
+    constexpr int kMasks = kLeavesPerBrick * kAxes;
+    uint16_t *const vertex = layout.vertex_rank + brick * kMasks;
+    uint16_t *const triangle = layout.triangle_rank + brick * kLeavesPerBrick;
+    uint16_t vertex_counts[kMasks], triangle_counts[kLeavesPerBrick];  // all loads before the first store
+    for (int k = 0; k < kMasks; ++k) vertex_counts[k] = vertex[k];
+    for (int k = 0; k < kLeavesPerBrick; ++k) triangle_counts[k] = triangle[k];
+    uint32_t v = 0, t = 0, owning = 0;
+    for (int k = 0; k < kMasks; ++k) {
+      vertex[k] = static_cast<uint16_t>(v);
+      v += vertex_counts[k];
+      if (k % kAxes == kAxes - 1 && v != vertex[k - kAxes + 1]) ++owning;
+    }
+    for (int k = 0; k < kLeavesPerBrick; ++k) {
+      triangle[k] = static_cast<uint16_t>(t);
+      t += triangle_counts[k];
+    }
+    vertices[brick] = v;
+    triangles[brick] = t;
+    leaves[brick] = owning;
+    layout.border[brick] = border_signs(layout.signs + brick * kLeavesPerBrick);
+  }
+};
+
+// Runs when all bases are known.
+struct CountBorderChanges {
+  BrickSet bricks;
+  MeshLayout layout;
+  QSES_HOST_DEVICE void operator()(size_t brick) const {
+    const int changes = popcount64(border_changes(bricks, layout.border, brick));
+    if (changes > 0) atomic_add(&layout.totals->border_changes, static_cast<uint32_t>(changes));
+    if (brick > 0) return;
+    layout.totals->vertices = layout.vertex_base[bricks.count];
+    layout.totals->triangles = layout.triangle_base[bricks.count];
+    layout.totals->leaves = layout.leaf_base[bricks.count];
+  }
+};
+
+// ---- emit ------------------------------------------------------------------------------------------------------
+
+// Number of the vertex of a mask's set bit, if `first` is that of the lowest.
+QSES_FN uint32_t vertex_number(uint32_t first, uint64_t crossing, int bit) {
+  return first + static_cast<uint32_t>(popcount64(crossing & ((uint64_t(1) << bit) - 1)));
+}
+
+// Number of the vertex on the edge that starts at a lattice point of a brick.
+QSES_FN uint32_t vertex_number(const MeshLayout &m, int brick, int leaf, int axis, int bit) {
+  const size_t k =
+      (static_cast<size_t>(brick) * kLeavesPerBrick + static_cast<size_t>(leaf)) * 3 + static_cast<size_t>(axis);
+  return vertex_number(m.vertex_base[brick] + m.vertex_rank[k], m.crossing[k], bit);
+}
+
+// A lattice edge, by its lower point: a bit of a leaf of a brick.
+struct LatticeEdge {
+  int leaf, axis, bit;
+};
+
+// The edge that owns a vertex of a brick.
+QSES_FN LatticeEdge edge_of_vertex(const MeshLayout &m, uint32_t brick, uint32_t vertex) {
+  constexpr int kMasks = kLeavesPerBrick * kAxes;
+  const size_t first = static_cast<size_t>(brick) * kMasks;
+  const uint32_t rank = vertex - m.vertex_base[brick];
+  int k = kMasks - 1;  // the last mask that begins no later
+  while (k > 0 && m.vertex_rank[first + static_cast<size_t>(k)] > rank) --k;
+  uint64_t mask = m.crossing[first + static_cast<size_t>(k)];
+  for (uint32_t n = rank - m.vertex_rank[first + static_cast<size_t>(k)]; n > 0; --n) mask &= mask - 1;
+  return {k / kAxes, k % kAxes, lowest_bit64(mask)};
+}
+
+// Its ends, in the centred frame.
+QSES_FN CutEdge ends_of_edge(const BrickSet &bricks, const MeshLayout &m, uint32_t brick, const LatticeEdge &edge) {
+  const glm::ivec3 p = bricks.lattice.first_point(bricks.lattice.brick_at(bricks.linear[brick])) +
+                       glm::ivec3(4 * (edge.leaf & 1) + (edge.bit & 3), 4 * (edge.leaf >> 1 & 1) + (edge.bit >> 2 & 3),
+                                  4 * (edge.leaf >> 2) + (edge.bit >> 4));
+  const Vec3<float> low = bricks.lattice.position(p.x, p.y, p.z);
+  const Vec3<float> high =
+      bricks.lattice.position(p.x + (edge.axis == 0), p.y + (edge.axis == 1), p.z + (edge.axis == 2));
+  const uint64_t word = m.signs[static_cast<size_t>(brick) * kLeavesPerBrick + static_cast<size_t>(edge.leaf)];
+  const bool low_inside = (word >> edge.bit & 1) != 0;
+  return low_inside ? CutEdge{low, high} : CutEdge{high, low};
+}
+
+// The brick that owns a vertex.
+QSES_FN uint32_t brick_of_vertex(const MeshLayout &m, uint32_t bricks, uint32_t vertex) {
+  uint32_t first = 0, n = bricks;  // the last one that begins no later
+  while (n > 1) {
+    const uint32_t half = n / 2;
+    const bool later = m.vertex_base[first + half] > vertex;
+    first = later ? first : first + half;
+    n = later ? half : n - half;
+  }
+  return first;
+}
+
+// Where the vertex of an edge starts: on the edge, from its lower point, in units of the spacing.
+QSES_FN float vertex_start(bool low_inside) { return low_inside ? kVertexStart : 1.f - kVertexStart; }
+
+// Sum of the ring tables of the four cells around an edge. cell_case(second, third) is the case of the cell at the
+// edge's lower point moved by 0 or -1 along the other two axes, lower axis first.
+template <class CellCase>
+QSES_FN uint64_t edge_ring_of_cells(const CellCase &cell_case, int axis, const uint64_t (*ring)[kCellEdges]) {
+  uint64_t sum = 0;
+  for (int w = -1; w <= 0; ++w)
+    for (int v = -1; v <= 0; ++v) sum += ring[cell_case(v, w)][4 * axis - v - 2 * w];
+  return sum;
+}
+
+// The same from signs. inside(along, second, third) is the sign at a point near the edge: along the edge 0 or 1, in the
+// other two axes, lower axis first, -1 ... 1. Not for kernels: ptxas 11.8 was seen to lose one of the eight predicates.
+template <class Inside>
+QSES_FN uint64_t edge_ring(const Inside &inside, int axis, const uint64_t (*ring)[kCellEdges]) {
+  const int second = axis == 0 ? 1 : 0, third = axis == 2 ? 1 : 2;
+  return edge_ring_of_cells(
+      [&](int v, int w) {
+        int code = 0;
+        for (int corner = 0; corner < 8; ++corner)
+          code |= (inside(corner >> axis & 1, v + (corner >> second & 1), w + (corner >> third & 1)) ? 1 : 0) << corner;
+        return code;
+      },
+      axis, ring);
+}
+
+struct MeshCounts {
+  uint64_t vertices, triangles;
+};
+
+// Counts and scans; the signs of all bricks must be known. vertex_base and triangle_base of the layout are only valid
+// if both totals fit 32 bits.
+template <class Executor>
+MeshCounts lay_out_mesh(Executor &executor, const BrickSet &bricks, const uint64_t *signs,
+                        const uint8_t *case_triangles, MeshLayout *layout) {
+  const size_t n = bricks.count, leaves = n * kLeavesPerBrick;
+  layout->signs = signs;
+  layout->crossing = executor.template allocate<uint64_t>(leaves * 3).data;
+  layout->vertex_rank = executor.template allocate<uint16_t>(leaves * 3).data;
+  layout->triangle_rank = executor.template allocate<uint16_t>(leaves).data;
+  Span<uint32_t> vertex_base = executor.template allocate<uint32_t>(n + 1);
+  Span<uint32_t> triangle_base = executor.template allocate<uint32_t>(n + 1);
+  layout->vertex_base = vertex_base.data;
+  Span<uint32_t> leaf_base = executor.template allocate<uint32_t>(n + 1);
+  layout->triangle_base = triangle_base.data;
+  layout->leaf_base = leaf_base.data;
+  layout->border = executor.template allocate<BorderSigns>(n).data;
+  layout->totals = executor.template allocate<MeshTotals>(1).data;
+  const auto mark = executor.arena().mark();
+  Span<uint32_t> vertices = executor.template allocate<uint32_t>(n);
+  Span<uint32_t> triangles = executor.template allocate<uint32_t>(n);
+  Span<uint32_t> owning = executor.template allocate<uint32_t>(n);
+  executor.for_each(leaves, CountLeaf{bricks, *layout, case_triangles});
+  executor.for_each(n, RankBrick{*layout, vertices.data, triangles.data, owning.data});
+  executor.exclusive_scan(n, LoadCount<uint32_t>{vertices.data}, vertex_base);
+  executor.exclusive_scan(n, LoadCount<uint32_t>{triangles.data}, triangle_base);
+  executor.exclusive_scan(n, LoadCount<uint32_t>{owning.data}, leaf_base);
+  executor.for_each(n, CountBorderChanges{bricks, *layout});
+  const MeshTotals totals = n > 0 ? executor.fetch(layout->totals) : MeshTotals{};
+  layout->border_changes = totals.border_changes;
+  // The bases wrap if there are too many; then the true totals are summed up for the message.
+  if (n * kBrickPoints * 5 > 0xffffffffull) {
+    const double v = executor.reduce(n, LoadCount<uint32_t>{vertices.data});
+    const double t = executor.reduce(n, LoadCount<uint32_t>{triangles.data});
+    layout->vertex_total = static_cast<uint64_t>(v);
+    layout->leaf_total = static_cast<uint64_t>(executor.reduce(n, LoadCount<uint32_t>{owning.data}));
+    executor.arena().rewind(mark);
+    return {static_cast<uint64_t>(v), static_cast<uint64_t>(t)};
+  }
+  executor.arena().rewind(mark);
+  layout->vertex_total = totals.vertices;
+  layout->leaf_total = totals.leaves;
+  return {totals.vertices, totals.triangles};
+}
+
+}  // namespace quickses

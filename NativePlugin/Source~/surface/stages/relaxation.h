@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+// Steps that move or describe the vertices of a whole mesh through its triangles: the Laplacian smoothing of the voxel
+// method (QuickSES 2019, section 2.4), the tangential steps of the exact method, and area-weighted normals.
+#pragma once
+
+#include "parallel/atomics.h"
+#include "surface/stages/hot_stages.h"
+
+namespace quickses {
+
+// ---- sums over the triangles around each vertex ----------------------------------------------------------------
+
+// Sums are kept as integers, in 2^-19 of a unit: integers add up to the same in any order. A vertex of marching cubes
+// has at most 20 triangles, so with 40 terms of at most 64 units nothing overflows. Steps are given room for one sum
+// per vertex.
+constexpr float kRingUnits = 524288.f;
+constexpr float kMaxRingTerm = 64.f;
+
+struct alignas(16) RingSum {
+  int32_t x, y, z;
+  uint32_t count;
+};
+
+QSES_FN int32_t ring_term(float value, float scale) {
+  const float v = value * scale;
+  return static_cast<int32_t>(rintf(kRingUnits * minimum(kMaxRingTerm, maximum(-kMaxRingTerm, v))));
+}
+
+QSES_FN void add_to_ring(RingSum *sum, const Vec3<float> &v, float scale) {
+  atomic_add(&sum->x, ring_term(v.x, scale));
+  atomic_add(&sum->y, ring_term(v.y, scale));
+  atomic_add(&sum->z, ring_term(v.z, scale));
+}
+
+QSES_FN Vec3<float> ring_vector(const RingSum &sum, float unit) {
+  const float k = unit / kRingUnits;
+  return {static_cast<float>(sum.x) * k, static_cast<float>(sum.y) * k, static_cast<float>(sum.z) * k};
+}
+
+QSES_FN Vec3<float> cross(const Vec3<float> &a, const Vec3<float> &b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+// Adds to each corner of a triangle the ways to the other two, in units of the spacing. On a closed mesh every
+// neighbour is met twice, once in each triangle of their edge, so the mean of the ways is the plain mean over the
+// neighbours.
+struct AddNeighborOffsets {
+  MeshView mesh;
+  float inverse_spacing;
+  RingSum *sums;
+  QSES_HOST_DEVICE void operator()(size_t triangle) const {
+    const uint32_t *t = mesh.triangle(triangle);
+    const Vec3<float> a = load_vec3(mesh.position(t[0])), b = load_vec3(mesh.position(t[1])),
+                      c = load_vec3(mesh.position(t[2]));
+    const Vec3<float> ab = b - a, ac = c - a, bc = c - b;
+    add(t[0], ab, ac);
+    add(t[1], bc, ab * -1.f);
+    add(t[2], ac * -1.f, bc * -1.f);
+  }
+
+ private:
+  QSES_FN void add(uint32_t vertex, const Vec3<float> &u, const Vec3<float> &v) const {
+    RingSum *sum = sums + vertex;
+    atomic_add(&sum->x, ring_term(u.x, inverse_spacing) + ring_term(v.x, inverse_spacing));
+    atomic_add(&sum->y, ring_term(u.y, inverse_spacing) + ring_term(v.y, inverse_spacing));
+    atomic_add(&sum->z, ring_term(u.z, inverse_spacing) + ring_term(v.z, inverse_spacing));
+    atomic_add(&sum->count, uint32_t(2));
+  }
+};
+
+// From a vertex to the mean of its neighbours.
+QSES_FN Vec3<float> mean_offset(const RingSum &sum, float spacing) {
+  if (sum.count == 0) return {0.f, 0.f, 0.f};
+  return ring_vector(sum, spacing / static_cast<float>(sum.count));
+}
+
+// ---- Laplacian smoothing ---------------------------------------------------------------------------------------
+
+struct MoveToMean {
+  const RingSum *sums;
+  float spacing;
+  MeshView mesh;
+  QSES_HOST_DEVICE void operator()(size_t v) const {
+    float *const position = mesh.position(static_cast<uint32_t>(v));
+    store_vec3(position, load_vec3(position) + mean_offset(sums[v], spacing));
+  }
+};
+
+// Every step puts every vertex at the mean of its neighbours, all with the same weight and without the vertex itself:
+// the weights of the paper's program. That program moves the vertices one after the other, so that later ones see
+// earlier ones moved; here all move at once, and the result does not depend on their order.
+template <class Executor>
+void smooth_laplacian(Executor &executor, const MeshView &mesh, const MeshCounts &counts, float spacing, uint32_t steps,
+                      Span<RingSum> sums) {
+  if (steps == 0 || counts.vertices == 0) return;
+  for (uint32_t k = 0; k < steps; ++k) {
+    executor.fill(sums, 0);
+    executor.for_each(counts.triangles, AddNeighborOffsets{mesh, 1.f / spacing, sums.data});
+    executor.for_each(counts.vertices, MoveToMean{sums.data, spacing, mesh});
+  }
+}
+
+// ---- tangential steps of the exact method ----------------------------------------------------------------------
+
+// Longest tangential step, in units of the spacing. With the reach of a projection it keeps a start within kStartReach.
+constexpr float kMaxTangentialStep = 0.6f;
+
+struct NoScratch {};
+
+// Starts of the next projection for the vertices of a brick: towards the mean of the neighbours, but only along the
+// surface, and never further from the brick than the projection looks for atoms and arcs.
+struct TangentialStarts {
+  Lattice lattice;
+  const uint64_t *linear;
+  const uint32_t *vertex_base;
+  const RingSum *sums;
+  MeshView mesh;
+  glm::vec3 *starts;
+
+  template <class Team>
+  QSES_HOST_DEVICE void operator()(const Team &team, NoScratch &, size_t brick) const {
+    const float h = lattice.spacing, overhang = 0.999f * kStartOverhang * h, edge = 7.f * h;
+    const glm::ivec3 first = lattice.first_point(lattice.brick_at(linear[brick]));
+    const Vec3<float> low = lattice.position(first.x, first.y, first.z);
+    const uint32_t end = vertex_base[brick + 1];
+    for (uint32_t v = vertex_base[brick] + static_cast<uint32_t>(team.rank()); v < end;
+         v += static_cast<uint32_t>(team.size())) {
+      const Vec3<float> n = load_vec3(mesh.normal(v));
+      const float *const position = mesh.position(v);
+      const Vec3<float> x = {centred(position[0], lattice.center_x), centred(position[1], lattice.center_y),
+                             centred(position[2], lattice.center_z)};
+      const Vec3<float> d = mean_offset(sums[v], h);
+      Vec3<float> step = (d - n * dot(d, n)) * kRelaxationWeight;
+      const float length2 = length_squared(step), longest = kMaxTangentialStep * h;
+      if (length2 > longest * longest) step = step * (longest * reciprocal_root(length2));
+      const Vec3<float> p = x + step;
+      starts[v] = glm::vec3(limited(p.x, low.x - overhang, low.x + edge + overhang),
+                            limited(p.y, low.y - overhang, low.y + edge + overhang),
+                            limited(p.z, low.z - overhang, low.z + edge + overhang));
+    }
+  }
+
+ private:
+  QSES_FN static float centred(float caller, double center) {
+    return static_cast<float>(static_cast<double>(caller) - center);
+  }
+  QSES_FN static float limited(float v, float low, float high) { return minimum(high, maximum(low, v)); }
+};
+
+// Fills starts[vertex] (centred frame) from positions and normals of the mesh. starts is the caller's.
+template <class Executor>
+void tangential_starts(Executor &executor, const BrickSet &bricks, const MeshLayout &layout, const MeshView &mesh,
+                       const MeshCounts &counts, Span<RingSum> sums, glm::vec3 *starts) {
+  const float spacing = bricks.lattice.spacing;
+  executor.fill(sums, 0);
+  executor.for_each(counts.triangles, AddNeighborOffsets{mesh, 1.f / spacing, sums.data});
+  executor.template for_each_brick<NoScratch>(
+      bricks.count, TangentialStarts{bricks.lattice, bricks.linear, layout.vertex_base, sums.data, mesh, starts});
+}
+
+// ---- normals ---------------------------------------------------------------------------------------------------
+
+struct AddTriangleNormals {
+  MeshView mesh;
+  float scale;  // 1 / spacing², negative for reversed triangles
+  RingSum *sums;
+  QSES_HOST_DEVICE void operator()(size_t triangle) const {
+    const uint32_t *t = mesh.triangle(triangle);
+    const Vec3<float> a = load_vec3(mesh.position(t[0]));
+    const Vec3<float> n = cross(load_vec3(mesh.position(t[1])) - a, load_vec3(mesh.position(t[2])) - a);
+    for (int k = 0; k < 3; ++k) add_to_ring(sums + t[k], n, scale);
+  }
+};
+
+struct NormalizeSums {
+  const RingSum *sums;
+  MeshView mesh;
+  QSES_HOST_DEVICE void operator()(size_t v) const {
+    const Vec3<float> n = ring_vector(sums[v], 1.f);
+    const float length2 = length_squared(n);
+    // Triangles of no area, around vertices that coincide, say nothing: what stands there stays.
+    constexpr float kLeast = 8.f / kRingUnits;
+    if (length2 >= kLeast * kLeast) store_vec3(mesh.normal(static_cast<uint32_t>(v)), n * reciprocal_root(length2));
+  }
+};
+
+// Unit normals, outward whatever the winding: the mean of the triangles around a vertex, weighted by their areas. A
+// vertex that has only triangles without area keeps the normal it had.
+template <class Executor>
+void compute_normals(Executor &executor, const MeshView &mesh, const MeshCounts &counts, float spacing,
+                     Span<RingSum> sums) {
+  if (counts.vertices == 0) return;
+  executor.fill(sums, 0);
+  const float scale = (mesh.reversed ? -1.f : 1.f) / (spacing * spacing);
+  executor.for_each(counts.triangles, AddTriangleNormals{mesh, scale, sums.data});
+  executor.for_each(counts.vertices, NormalizeSums{sums.data, mesh});
+}
+
+}  // namespace quickses

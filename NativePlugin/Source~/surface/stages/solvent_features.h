@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+// The exact boundary of the solvent-accessible surface: per atom the caps its neighbours cover, and per circle of two
+// atoms the arcs that no third atom covers. Totrov & Abagyan 1996 (contour buildup) and Krone et al. 2011 compute the
+// same set; here an arc carries its ends (the exposed vertices), so nothing else is needed to measure distances.
+#pragma once
+
+#include "surface/geometry/arc.h"
+#include "surface/geometry/circle.h"
+#include "surface/stages/neighbor_grid.h"
+
+namespace quickses {
+
+// What is measured: everything below is the surface at `depth` inside the boundary of the union of balls of radius
+// r + probe. SES: depth = probe. SAS: depth = 0. VDW: probe = depth = 0.
+struct SurfaceParameters {
+  float probe;
+  float depth;
+  float spacing;
+  float max_radius;  // largest inflated radius
+
+  // A point that is no deeper than this in any ball is outside. Where a surface is looked for further inside, a point
+  // on the boundary within rounding is outside only if a feature says so: else it would be a hole of its own.
+  QSES_FN float least_depth() const { return depth > 0.f ? -kExposureTolerance : 0.f; }
+};
+
+// Output of the stage, in the memory of the back end. Arcs are ordered by atom (in grid order), then by cap, then by
+// interval: the same on every run.
+struct SolventFeatures {
+  Span<CapRange> cap_ranges;  // per atom, in grid order
+  Span<Cap> caps;             // cosine with the exposure tolerance, largest cap first
+  Span<Arc> arcs;
+  Span<uint8_t> exposed;  // CPU only: per atom 1 or 0, and 8 bytes more
+};
+
+// The features as the later stages see them: arcs sorted into a neighbour grid by their enclosing balls.
+struct FeatureView {
+  NeighborGridView atoms;  // inflated spheres; atoms that own no surface are far away
+  const CapRange *cap_ranges;
+  const Cap *caps;
+  const uint8_t *exposed;       // per atom 1 or 0, readable 8 beyond the last; only the CPU's kernels look at it
+  NeighborGridView arc_bounds;  // enclosing ball of each arc
+  const Arc *arcs;              // in the order of arc_bounds.items
+  float max_arc_bound;
+  SurfaceParameters parameters;
+};
+
+// ---- passes around the stage, the same on both back ends -------------------------------------------------------
+
+// Atoms within the reach of a contained sphere's centre: an atom that another one swallows goes far away.
+struct FindSwallowedAtoms {
+  NeighborGridView atoms;
+  float max_radius;
+  uint8_t *swallowed;
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    const Sphere self = atoms.items[i];
+    const Vec3<float> c(self.center);
+    const float reach = swallowing_reach(self.radius, max_radius);
+    const Vec3<float> r(reach, reach, reach);
+    const CellBox box = cells_around(atoms.cells, c - r, c + r);
+    bool found = false;
+    for (int z = box.z0; z <= box.z1 && !found; ++z)
+      for (int y = box.y0; y <= box.y1 && !found; ++y) {
+        const ItemRun run = atoms.run(box.x0, box.x1, y, z);
+        for (uint32_t k = run.begin; k < run.end && !found; ++k)
+          found = k != i && swallows(atoms.items[k], atoms.order[k], self, atoms.order[i]);
+      }
+    swallowed[i] = found ? 1 : 0;
+  }
+};
+
+struct RemoveSwallowedAtoms {
+  const uint8_t *swallowed;
+  Sphere *atoms;
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    if (swallowed[i]) atoms[i] = {glm::vec3(kFarAway), 0.f};
+  }
+};
+
+struct BoundArcs {
+  const Arc *arcs;
+  Sphere *bounds;
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    bounds[i] = arc_bound(arcs[i]);
+    bounds[i].radius += 1e-4f;
+  }
+};
+
+struct GatherArcs {
+  const Arc *arcs;
+  const uint32_t *order;
+  Arc *sorted;
+  QSES_HOST_DEVICE void operator()(size_t i) const { sorted[i] = arcs[order[i]]; }
+};
+
+struct CopyArcs {
+  const Arc *from;
+  Arc *to;
+  QSES_HOST_DEVICE void operator()(size_t i) const { to[i] = from[i]; }
+};
+
+// Edge of the grid of arcs: arcs are looked for in boxes of about a brick, whatever the atoms' radii.
+constexpr float kArcCellEdge = 4.f;
+
+}  // namespace quickses

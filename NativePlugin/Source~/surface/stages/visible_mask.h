@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+// Drops the triangles of hidden atoms and the vertices that no triangle uses any more. What stays keeps its order.
+#pragma once
+
+#include "parallel/atomics.h"
+#include "surface/memory/mesh_memory.h"
+
+namespace quickses {
+
+// A set of numbers as bits, with the count of those before each word: an eighth of the memory that a table of new
+// numbers would take.
+struct RankedSet {
+  uint32_t *words;
+  uint32_t *before;  // words + 1 of them
+
+  QSES_FN bool has(uint32_t i) const { return words[i / 32] >> (i % 32) & 1; }
+  QSES_FN uint32_t rank(uint32_t i) const {
+    return before[i / 32] + static_cast<uint32_t>(popcount64(words[i / 32] & ((uint32_t(1) << i % 32) - 1)));
+  }
+};
+
+struct CountWord {
+  const uint32_t *words;
+  QSES_HOST_DEVICE uint64_t operator()(size_t i) const { return static_cast<uint64_t>(popcount64(words[i])); }
+};
+
+// 32 triangles: which have only visible owners, and the vertices of those.
+struct MarkVisible {
+  MeshView mesh;
+  size_t triangles;
+  const uint8_t *visible;
+  RankedSet kept_triangles, kept_vertices;
+  QSES_HOST_DEVICE void operator()(size_t word) const {
+    uint32_t bits = 0;
+    for (uint32_t k = 0; k < 32 && 32 * word + k < triangles; ++k) {
+      const uint32_t *const t = mesh.triangle(32 * word + k);
+      if (!visible[mesh.owner(t[0])] || !visible[mesh.owner(t[1])] || !visible[mesh.owner(t[2])]) continue;
+      bits |= uint32_t(1) << k;
+      for (int corner = 0; corner < 3; ++corner) {
+        uint32_t *const at = kept_vertices.words + t[corner] / 32;
+        const uint32_t bit = uint32_t(1) << t[corner] % 32;
+        if (!(atomic_load(at) & bit)) atomic_or(at, bit);
+      }
+    }
+    kept_triangles.words[word] = bits;
+  }
+};
+
+struct MoveVertex {
+  MeshView from, to;
+  RankedSet kept;
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    const uint32_t vertex = static_cast<uint32_t>(i);
+    if (!kept.has(vertex)) return;
+    const uint32_t place = kept.rank(vertex);
+    store_vec3(to.position(place), load_vec3(from.position(vertex)));
+    store_vec3(to.normal(place), load_vec3(from.normal(vertex)));
+    if (from.colors) *to.color(place) = *from.color(vertex);
+    if (from.texcoords) {
+      to.texcoord(place)[0] = from.texcoord(vertex)[0];
+      to.texcoord(place)[1] = from.texcoord(vertex)[1];
+    }
+    to.owner(place) = from.owner(vertex);
+    if (from.patches) to.patch(place) = from.patch(vertex);
+  }
+};
+
+struct MoveTriangle {
+  MeshView from, to;
+  RankedSet kept_triangles, kept_vertices;
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    const uint32_t triangle = static_cast<uint32_t>(i);
+    if (!kept_triangles.has(triangle)) return;
+    const uint32_t *const t = from.triangle(triangle);
+    uint32_t *const out = to.triangle(kept_triangles.rank(triangle));
+    for (int corner = 0; corner < 3; ++corner) out[corner] = kept_vertices.rank(t[corner]);
+  }
+};
+
+template <class Executor>
+RankedSet allocate_set(Executor &executor, size_t n) {
+  const size_t words = (n + 31) / 32;
+  Span<uint32_t> bits = executor.template allocate<uint32_t>(words);
+  executor.fill(bits, 0);
+  return {bits.data, executor.template allocate<uint32_t>(words + 1).data};
+}
+
+// Returns how many there are. Waits.
+template <class Executor>
+uint32_t rank_set(Executor &executor, const RankedSet &set, size_t n) {
+  const size_t words = (n + 31) / 32;
+  executor.exclusive_scan(words, CountWord{set.words}, Span<uint32_t>{set.before, words + 1});
+  return executor.fetch(set.before + words);
+}
+
+template <class R>
+MeshMemoryView drop_hidden(R &run, const MeshMemoryView &whole) {
+  auto &executor = run.executor;
+  const RankedSet vertices = allocate_set(executor, whole.vertices),
+                  triangles = allocate_set(executor, whole.triangles);
+  executor.for_each((whole.triangles + 31) / 32,
+                    MarkVisible{whole.view, whole.triangles, run.appearance.visible, triangles, vertices});
+  const uint32_t vertex_count = rank_set(executor, vertices, whole.vertices);
+  const uint32_t triangle_count = rank_set(executor, triangles, whole.triangles);
+  MeshMemoryView shown =
+      run.memory.allocate_mesh(executor, vertex_count, triangle_count, run.shape, MeshPurpose::kDelivered, 0);
+  executor.for_each(whole.vertices, MoveVertex{whole.view, shown.view, vertices});
+  executor.for_each(whole.triangles, MoveTriangle{whole.view, shown.view, triangles, vertices});
+  run.report->hidden_vertices = static_cast<uint32_t>(whole.vertices) - vertex_count;
+  run.report->hidden_triangles = static_cast<uint32_t>(whole.triangles) - triangle_count;
+  return shown;
+}
+
+}  // namespace quickses

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+// GPU and CPU must make the same surface: signs may differ at lattice points within rounding of it only, so meshes of
+// one structure are the same up to a few vertices, and vertex by vertex where their connection is the same.
+#include "surface/surface_fixture.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+using namespace surface_fixture;
+
+namespace {
+
+class Backends : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    qses_backend_description d;
+    ASSERT_EQ(qses_backend_info(QSES_BACKEND_CUDA, &d), QSES_OK);
+    if (!d.available) GTEST_SKIP() << "skipped: no CUDA device (" << d.reason << ")";
+  }
+};
+
+void expect_same(const Atoms &atoms, const qses_settings &s, size_t other_vertices) {
+  const Context cpu(2, 0, QSES_BACKEND_CPU), gpu(2, 0, QSES_BACKEND_CUDA);
+  const Surface a = compute(cpu, atoms, s), b = compute(gpu, atoms, s);
+  EXPECT_EQ(mesh_checks::manifold_fault(a.mesh), "");
+  EXPECT_EQ(mesh_checks::manifold_fault(b.mesh), "");
+  const size_t n = a.vertex_count(), m = b.vertex_count();
+  ASSERT_GT(n, 0u);
+  ASSERT_LE(n > m ? n - m : m - n, other_vertices);
+  EXPECT_NEAR(a.report.volume, b.report.volume, 1e-4 * a.report.volume);
+  EXPECT_NEAR(a.report.area, b.report.area, 1e-4 * a.report.area);
+  if (a.mesh.indices != b.mesh.indices) {
+    EXPECT_GT(other_vertices, 0u) << "the meshes are connected differently";
+    return;
+  }
+  size_t far_apart = 0, other_owner = 0;
+  for (size_t v = 0; v < n; ++v) {
+    const auto p = a.mesh.position(v), q = b.mesh.position(v);
+    far_apart += std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]) > 1e-3 ? 1 : 0;
+    other_owner += a.mesh.owners[v] != b.mesh.owners[v] ? 1 : 0;
+  }
+  // A vertex that starts as far from one probe as from another may go either way.
+  EXPECT_LE(far_apart, n / 1000);
+  EXPECT_LE(other_owner, n / 500);
+}
+
+TEST_F(Backends, MakeTheSameExactSurfaces) {
+  const Atoms atoms = crambin();
+  for (qses_surface kind : {QSES_SURFACE_SES, QSES_SURFACE_SAS, QSES_SURFACE_VDW}) {
+    SCOPED_TRACE(kind);
+    expect_same(atoms, settings(0.5, 1.4, kind), 8);
+  }
+  for (double spacing : {0.3, 1.0, 2.0, 5.0}) {
+    SCOPED_TRACE(spacing);
+    expect_same(atoms, settings(spacing), 8);
+  }
+  qses_settings s = settings();
+  for (uint32_t steps : {0u, 3u}) {
+    s.relaxation_steps = steps;
+    expect_same(atoms, s, 8);
+  }
+}
+
+TEST_F(Backends, MakeTheSameGridSurfaces) {
+  qses_settings s = settings();
+  s.method = QSES_METHOD_GRID;
+  for (float spacing : {0.7f, 0.5f, 0.35f}) {
+    s.spacing = spacing;
+    expect_same(crambin(), s, 64);
+  }
+}
+
+TEST_F(Backends, GpuGivesTheSameBytesAlways) {
+  const Atoms atoms = cluster(3000, 7);
+  const Context gpu(2, 0, QSES_BACKEND_CUDA);
+  qses_settings s = settings();
+  s.patch_types = 1;
+  const Surface first = compute(gpu, atoms, s);
+  EXPECT_EQ(mesh_checks::manifold_fault(first.mesh), "");
+  for (uint32_t slice : {0u, 0u, 8u, 40u, 100u}) {
+    SCOPED_TRACE(slice);
+    s.slice_size = slice;
+    const Surface again = compute(gpu, atoms, s);
+    ASSERT_EQ(again.mesh.positions.size(), first.mesh.positions.size());
+    EXPECT_EQ(std::memcmp(again.mesh.positions.data(), first.mesh.positions.data(),
+                          first.mesh.positions.size() * sizeof(float)),
+              0);
+    EXPECT_EQ(
+        std::memcmp(again.mesh.normals.data(), first.mesh.normals.data(), first.mesh.normals.size() * sizeof(float)),
+        0);
+    EXPECT_EQ(again.mesh.owners, first.mesh.owners);
+    EXPECT_EQ(again.mesh.indices, first.mesh.indices);
+    EXPECT_EQ(again.patches, first.patches);
+    EXPECT_EQ(again.report.area, first.report.area);
+  }
+}
+
+TEST_F(Backends, GpuStaysUsableAfterRefusedMemory) {
+  const Atoms atoms = cluster(20000, 3);
+  const Context tight(2, 4 << 20, QSES_BACKEND_CUDA);
+  set_atoms(tight, atoms);
+  const qses_settings s = settings(0.3);
+  EXPECT_EQ(qses_compute(tight, &s, nullptr), QSES_OUT_OF_MEMORY);
+  EXPECT_NE(std::string(qses_last_error()), "");
+  const Atoms few = cluster(20, 3);
+  EXPECT_EQ(mesh_checks::manifold_fault(compute(tight, few, settings(1.0)).mesh), "");
+}
+
+}  // namespace

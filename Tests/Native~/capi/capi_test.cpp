@@ -1,0 +1,364 @@
+// SPDX-License-Identifier: MIT
+// The C API: back ends, contexts, errors, sizes of structures, atoms. What it promises, and what it says about every
+// bad argument.
+#include "capi/capi_fixture.h"
+
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <thread>
+
+namespace {
+
+using namespace capi_fixture;
+
+// ---- versions and back ends
+
+TEST(Version, IsThatOfTheHeader) {
+  EXPECT_EQ(qses_abi_version(), uint32_t(QSES_ABI_VERSION));
+  int major = -1, minor = -1, patch = -1;
+  EXPECT_EQ(std::sscanf(qses_version(), "%d.%d.%d", &major, &minor, &patch), 3);
+  EXPECT_EQ(qses_version(), qses_version());  // static storage
+}
+
+TEST(BackendInfo, OfTheCpu) {
+  qses_backend_description d;
+  std::memset(&d, 0xcc, sizeof d);
+  ASSERT_EQ(qses_backend_info(QSES_BACKEND_CPU, &d), QSES_OK);
+  EXPECT_EQ(d.available, 1);
+  EXPECT_STREQ(d.reason, "");
+  EXPECT_NE(std::string(d.device).find("CPU"), std::string::npos);
+  EXPECT_GT(d.total_memory, uint64_t(1) << 20);
+  EXPECT_GT(d.free_memory, 0u);
+  EXPECT_LE(d.free_memory, d.total_memory);
+}
+
+TEST(BackendInfo, AutoIsOneOfTheOthersAndSaysWhy) {
+  qses_backend_description cuda, chosen, cpu;
+  ASSERT_EQ(qses_backend_info(QSES_BACKEND_CUDA, &cuda), QSES_OK);
+  ASSERT_EQ(qses_backend_info(QSES_BACKEND_CPU, &cpu), QSES_OK);
+  ASSERT_EQ(qses_backend_info(QSES_BACKEND_AUTO, &chosen), QSES_OK);
+  EXPECT_EQ(chosen.available, 1);
+  if (cuda.available) {
+    EXPECT_STREQ(chosen.device, cuda.device);
+    EXPECT_STREQ(chosen.reason, "");
+  } else {
+    EXPECT_STREQ(chosen.device, cpu.device);
+    EXPECT_STREQ(chosen.reason, cuda.reason);
+    EXPECT_STRNE(chosen.reason, "");
+  }
+}
+
+TEST(BackendInfo, Errors) {
+  expect_error(qses_backend_info(QSES_BACKEND_CPU, nullptr), QSES_INVALID_ARGUMENT, {"description", "NULL"});
+  // (Numbers that name no back end: capi_c99_test.c.)
+}
+
+// ---- errors
+
+TEST(LastError, BelongsToTheThread) {
+  expect_error(qses_compute(nullptr, nullptr, nullptr), QSES_INVALID_ARGUMENT, {"context"});
+  const std::string mine = qses_last_error();
+  std::string fresh = "?", other;
+  std::thread([&] {
+    fresh = qses_last_error();
+    qses_backend_info(QSES_BACKEND_CPU, nullptr);
+    other = qses_last_error();
+  }).join();
+  EXPECT_EQ(fresh, "");
+  EXPECT_NE(other.find("description"), std::string::npos);
+  EXPECT_EQ(mine, qses_last_error());
+}
+
+// ---- contexts
+
+TEST(Create, DefaultsAreFilledIn) {
+  qses_context_options o;
+  std::memset(&o, 0xcc, sizeof o);
+  qses_context_options_init(&o);
+  EXPECT_EQ(o.struct_size, sizeof o);
+  EXPECT_EQ(o.backend, QSES_BACKEND_AUTO);
+  EXPECT_EQ(o.device, 0);
+  EXPECT_EQ(o.threads, 0u);
+  EXPECT_EQ(o.memory_budget, 0u);
+  qses_context_options_init(nullptr);
+
+  qses_context *context = nullptr;
+  ASSERT_EQ(qses_create(nullptr, &context), QSES_OK) << qses_last_error();
+  qses_backend backend = QSES_BACKEND_AUTO;
+  qses_backend_description d{}, chosen{};
+  ASSERT_EQ(qses_context_info(context, &backend, &d), QSES_OK);
+  ASSERT_EQ(qses_backend_info(QSES_BACKEND_AUTO, &chosen), QSES_OK);
+  EXPECT_NE(backend, QSES_BACKEND_AUTO);
+  EXPECT_STREQ(d.device, chosen.device);
+  EXPECT_STREQ(d.reason, chosen.reason);
+  EXPECT_EQ(qses_context_info(context, nullptr, nullptr), QSES_OK);
+  expect_error(qses_context_info(nullptr, &backend, &d), QSES_INVALID_ARGUMENT, {"context"});
+  qses_destroy(context);
+  qses_destroy(nullptr);
+}
+
+TEST(Create, CudaUnavailableSaysWhy) {
+  qses_backend_description d{};
+  ASSERT_EQ(qses_backend_info(QSES_BACKEND_CUDA, &d), QSES_OK);
+  if (d.available) GTEST_SKIP() << "there is a CUDA device";
+  EXPECT_STRNE(d.reason, "");
+  qses_context_options o;
+  qses_context_options_init(&o);
+  o.backend = QSES_BACKEND_CUDA;
+  qses_context *context = reinterpret_cast<qses_context *>(&o);
+  expect_error(qses_create(&o, &context), QSES_BACKEND_UNAVAILABLE, {d.reason});
+  EXPECT_EQ(context, nullptr);
+}
+
+TEST(Create, Errors) {
+  qses_context_options o;
+  qses_context_options_init(&o);
+  expect_error(qses_create(&o, nullptr), QSES_INVALID_ARGUMENT, {"context"});
+  const auto refused = [&](std::initializer_list<const char *> words) {
+    qses_context *context = reinterpret_cast<qses_context *>(&o);
+    expect_error(qses_create(&o, &context), QSES_INVALID_ARGUMENT, words);
+    EXPECT_EQ(context, nullptr);
+    qses_context_options_init(&o);
+  };
+  set_any(&o.backend, 17);
+  refused({"backend", "17"});
+  o.threads = 5000;
+  refused({"threads", "5000"});
+  o.struct_size = 0;
+  refused({"struct_size"});
+  o.struct_size = 3;
+  refused({"struct_size"});
+  o.struct_size = 0xffffffffu;
+  refused({"struct_size"});
+}
+
+// ---- sizes of structures: callers may be older than the library, or newer
+
+TEST(StructSize, ShorterStructuresKeepDefaults) {
+  const Context context;
+  set_atoms(context, water());
+  qses_settings s = settings(0.3, 0.9);
+  s.patch_types = 1;
+  s.frame = 77;
+  s.struct_size = offsetof(qses_settings, relaxation_steps);  // a caller who knows nothing of what follows
+  s.relaxation_steps = 4000000000u;
+  qses_mesh m = empty_mesh();
+  ASSERT_EQ(qses_compute(context, &s, &m), QSES_OK) << qses_last_error();
+  EXPECT_EQ(m.frame, 0u);
+  EXPECT_EQ(m.patches, nullptr);
+  const Surface given = copy_surface(context), expected = compute(water(), settings(0.3, 0.9));
+  EXPECT_EQ(given.mesh.positions, expected.mesh.positions);
+}
+
+TEST(StructSize, ShorterMeshesAreFilledSoFar) {
+  const Context context;
+  set_atoms(context, water());
+  qses_mesh m;
+  std::memset(&m, 0xcc, sizeof m);
+  const qses_mesh untouched = m;
+  m.struct_size = offsetof(qses_mesh, normals);
+  ASSERT_EQ(qses_compute(context, nullptr, &m), QSES_OK);
+  EXPECT_EQ(m.struct_size, offsetof(qses_mesh, normals));
+  EXPECT_GT(m.vertex_count, 0u);
+  EXPECT_NE(m.positions, untouched.positions);
+  EXPECT_EQ(m.normals, untouched.normals);
+  EXPECT_EQ(m.bounds_max[2], untouched.bounds_max[2]);
+  qses_report r;
+  std::memset(&r, 0xcc, sizeof r);
+  const uint64_t bricks = r.brick_count;
+  r.struct_size = offsetof(qses_report, compute_ms);
+  ASSERT_EQ(qses_get_report(context, &r), QSES_OK);
+  EXPECT_GT(r.volume, 10.0);
+  EXPECT_EQ(r.brick_count, bricks);
+}
+
+TEST(StructSize, LongerStructuresAreRead) {
+  struct Newer {
+    qses_settings known;
+    uint32_t more[16];
+  } newer;
+  std::memset(&newer, 0xcc, sizeof newer);
+  newer.known = settings(0.3);
+  newer.known.struct_size = sizeof newer;
+  struct NewerMesh {
+    qses_mesh known;
+    uint32_t more[16];
+  } mesh;
+  std::memset(&mesh, 0xcc, sizeof mesh);
+  const uint32_t tail = mesh.more[0];
+  mesh.known.struct_size = sizeof mesh;
+  const Context context;
+  set_atoms(context, water());
+  ASSERT_EQ(qses_compute(context, &newer.known, &mesh.known), QSES_OK) << qses_last_error();
+  EXPECT_EQ(mesh.known.vertex_count, compute(water(), settings(0.3)).vertex_count());
+  EXPECT_EQ(mesh.known.struct_size, sizeof mesh);
+  EXPECT_EQ(mesh.more[0], tail);
+}
+
+TEST_F(WithMesh, StructSizeErrors) {
+  for (uint32_t size : {0u, 1u, 3u, 1000000u}) {
+    qses_settings s = settings();
+    s.struct_size = size;
+    expect_error(qses_compute(context_, &s, nullptr), QSES_INVALID_ARGUMENT, {"settings", "struct_size"});
+    qses_mesh m = empty_mesh();
+    m.struct_size = size;
+    expect_error(qses_compute(context_, nullptr, &m), QSES_INVALID_ARGUMENT, {"mesh", "struct_size"});
+    expect_error(qses_get_mesh(context_, &m), QSES_INVALID_ARGUMENT, {"mesh", "struct_size"});
+    qses_report r;
+    qses_report_init(&r);
+    r.struct_size = size;
+    expect_error(qses_get_report(context_, &r), QSES_INVALID_ARGUMENT, {"report", "struct_size"});
+    expect_unharmed();
+  }
+  expect_usable();
+}
+
+TEST(Init, FillsInAndIgnoresNull) {
+  qses_settings s;
+  std::memset(&s, 0xcc, sizeof s);
+  qses_settings_init(&s);
+  EXPECT_EQ(s.struct_size, sizeof s);
+  EXPECT_EQ(s.surface, QSES_SURFACE_SES);
+  EXPECT_EQ(s.method, QSES_METHOD_EXACT);
+  EXPECT_EQ(s.probe_radius, 1.4f);
+  EXPECT_EQ(s.spacing, 0.5f);
+  EXPECT_EQ(s.relaxation_steps, 1u);
+  EXPECT_EQ(s.slice_size, 0u);
+  EXPECT_EQ(s.winding, QSES_WINDING_OUTWARD);
+  EXPECT_EQ(s.patch_types, 0u);
+  EXPECT_EQ(s.measure, 1u);
+  EXPECT_EQ(s.frame, 0u);
+  qses_mesh m;
+  std::memset(&m, 0xcc, sizeof m);
+  qses_mesh_init(&m);
+  EXPECT_EQ(m.struct_size, sizeof m);
+  EXPECT_EQ(m.vertex_count, 0u);
+  EXPECT_EQ(m.positions, nullptr);
+  qses_report r;
+  std::memset(&r, 0xcc, sizeof r);
+  qses_report_init(&r);
+  EXPECT_EQ(r.struct_size, sizeof r);
+  EXPECT_EQ(r.stage_count, 0u);
+  qses_settings_init(nullptr);
+  qses_mesh_init(nullptr);
+  qses_report_init(nullptr);
+}
+
+// ---- atoms
+
+TEST_F(WithMesh, SetAtomsErrors) {
+  const Atoms good = water();
+  const auto bad = [&](Atoms atoms, std::initializer_list<const char *> words) {
+    expect_error(qses_set_atoms(context_, atoms.positions.data(), 0, atoms.radii.data(), atoms.size()),
+                 QSES_INVALID_ARGUMENT, words);
+    expect_unharmed();
+    expect_usable();  // with the atoms from before
+    before_ = copy_surface(context_);
+    ASSERT_EQ(qses_get_mesh(context_, &mesh_), QSES_OK);
+  };
+  for (float value : {kNan, kInf, -kInf, 1.1e6f, -3e38f})
+    for (size_t component : {3u, 4u, 5u}) {
+      Atoms a = good;
+      a.positions[component] = value;
+      bad(a, {"position", "atom 1"});
+    }
+  for (float value : {kNan, kInf, -1.f, 0.f, -0.f, 100.5f}) {
+    Atoms a = good;
+    a.radii[2] = value;
+    bad(a, {"radius", "atom 2"});
+  }
+  const float *xyz = good.positions.data(), *r = good.radii.data();
+  expect_error(qses_set_atoms(nullptr, xyz, 0, r, 3), QSES_INVALID_ARGUMENT, {"context"});
+  expect_error(qses_set_atoms(context_, nullptr, 0, r, 3), QSES_INVALID_ARGUMENT, {"positions", "NULL"});
+  expect_error(qses_set_atoms(context_, xyz, 0, nullptr, 3), QSES_INVALID_ARGUMENT, {"radii", "NULL"});
+  for (size_t stride : {1u, 4u, 8u, 11u, 13u, 18u})
+    expect_error(qses_set_atoms(context_, xyz, stride, r, 1), QSES_INVALID_ARGUMENT,
+                 {"stride", std::to_string(stride).c_str()});
+  expect_error(qses_set_atoms(context_, xyz, 0, r, size_t(1) << 40), QSES_INVALID_ARGUMENT, {"count"});
+  expect_unharmed();
+  expect_usable();
+}
+
+TEST_F(WithMesh, SetPositionsErrors) {
+  Atoms a = water();
+  const float *xyz = a.positions.data();
+  expect_error(qses_set_positions(nullptr, xyz, 0, 3), QSES_INVALID_ARGUMENT, {"context"});
+  expect_error(qses_set_positions(context_, nullptr, 0, 3), QSES_INVALID_ARGUMENT, {"positions", "NULL"});
+  expect_error(qses_set_positions(context_, xyz, 0, 2), QSES_INVALID_ARGUMENT, {"count", "2", "3"});
+  expect_error(qses_set_positions(context_, xyz, 0, 4), QSES_INVALID_ARGUMENT, {"count", "4", "3"});
+  expect_error(qses_set_positions(context_, xyz, 10, 3), QSES_INVALID_ARGUMENT, {"stride", "10"});
+  for (float value : {kNan, kInf, 2e6f}) {
+    a.positions[7] = value;
+    expect_error(qses_set_positions(context_, xyz, 0, 3), QSES_INVALID_ARGUMENT, {"position", "atom 2"});
+  }
+  expect_unharmed();
+  expect_usable();
+}
+
+TEST(Atoms, AreCopied) {
+  const Context context;
+  auto atoms = std::make_unique<Atoms>(water());
+  set_atoms(context, *atoms);
+  for (float &p : atoms->positions) p = kNan;
+  atoms.reset();
+  ASSERT_EQ(qses_compute(context, nullptr, nullptr), QSES_OK);
+  EXPECT_EQ(copy_surface(context).mesh.positions, compute(water(), settings()).mesh.positions);
+}
+
+TEST(Atoms, WithAStride) {
+  const Atoms a = water();
+  const Surface expected = compute(a, settings());
+  for (size_t stride : {12u, 16u, 28u}) {
+    std::vector<float> spread(a.size() * stride / 4, kNan);
+    for (size_t i = 0; i < a.size(); ++i) std::copy_n(&a.positions[3 * i], 3, &spread[i * stride / 4]);
+    const Context context;
+    ASSERT_EQ(qses_set_atoms(context, spread.data(), stride, a.radii.data(), a.size()), QSES_OK);
+    ASSERT_EQ(qses_compute(context, nullptr, nullptr), QSES_OK);
+    EXPECT_EQ(copy_surface(context).mesh.positions, expected.mesh.positions);
+    ASSERT_EQ(qses_set_positions(context, spread.data(), stride, a.size()), QSES_OK);
+    ASSERT_EQ(qses_compute(context, nullptr, nullptr), QSES_OK);
+    EXPECT_EQ(copy_surface(context).mesh.positions, expected.mesh.positions);
+  }
+}
+
+TEST(Atoms, NewPositionsKeepTheRadii) {
+  const Context context;
+  const Atoms first = cluster(80, 3), moved = turned(first, 4, 5, 6);
+  set_atoms(context, first);
+  ASSERT_EQ(qses_compute(context, nullptr, nullptr), QSES_OK);
+  ASSERT_EQ(qses_set_positions(context, moved.positions.data(), 0, moved.size()), QSES_OK);
+  ASSERT_EQ(qses_compute(context, nullptr, nullptr), QSES_OK);
+  EXPECT_EQ(copy_surface(context).mesh.positions, compute(moved, settings()).mesh.positions);
+}
+
+TEST(Atoms, OfCountZero) {
+  const Context context;
+  ASSERT_EQ(qses_set_atoms(context, nullptr, 0, nullptr, 0), QSES_OK) << qses_last_error();
+  qses_mesh m;
+  std::memset(&m, 0xcc, sizeof m);
+  m.struct_size = sizeof m;
+  ASSERT_EQ(qses_compute(context, nullptr, &m), QSES_OK) << qses_last_error();
+  EXPECT_EQ(m.vertex_count, 0u);
+  EXPECT_EQ(m.triangle_count, 0u);
+  for (int d = 0; d < 3; ++d) EXPECT_TRUE(m.bounds_min[d] == 0 && m.bounds_max[d] == 0);
+  ASSERT_EQ(qses_set_positions(context, nullptr, 0, 0), QSES_OK) << qses_last_error();
+  EXPECT_GT(compute(context, water(), settings()).vertex_count(), 0u);
+}
+
+TEST(Atoms, OfNoneGiven) {
+  const Context context;
+  const Atoms a = water();
+  expect_error(qses_compute(context, nullptr, nullptr), QSES_NO_RESULT, {"qses_set_atoms"});
+  expect_error(qses_set_positions(context, a.positions.data(), 0, 3), QSES_NO_RESULT, {"qses_set_atoms"});
+  qses_mesh m = empty_mesh();
+  qses_report r;
+  qses_report_init(&r);
+  expect_error(qses_get_mesh(context, &m), QSES_NO_RESULT, {});
+  expect_error(qses_get_report(context, &r), QSES_NO_RESULT, {});
+  set_atoms(context, a);
+  expect_error(qses_get_mesh(context, &m), QSES_NO_RESULT, {});
+  EXPECT_EQ(qses_compute(context, nullptr, nullptr), QSES_OK);
+}
+
+}  // namespace

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+// Files whose names have letters of all kinds are found by their names in UTF-8, on every system. Names are made from
+// UTF-16 here, so that the system, and not the code under test, decides what they are.
+#include "io/file_path.h"
+
+#include <fstream>
+
+#include "io/atomic_file.h"
+#include "io/byte_source.h"
+#include "io/radii.h"
+#include "io/structure.h"
+#include "io/trajectory.h"
+#include "io/io_fixture.h"
+
+namespace quickses::io {
+namespace {
+
+constexpr const char16_t *kFolder = u"Molek\u00fcle \u5206\u5b50";
+constexpr const char16_t *kFile = u"\u00c5ngstr\u00f6m \U0001f9ec.pdb";
+constexpr const char *kUtf8 = u8"Molek\u00fcle \u5206\u5b50/\u00c5ngstr\u00f6m \U0001f9ec.pdb";
+constexpr const char *kAtom = "ATOM      1  N   ALA A   1       1.000   2.000   3.000  1.00  0.00           N\n";
+
+class FilePathTest : public IoTest {
+ protected:
+  void SetUp() override {
+    IoTest::SetUp();
+    folder_ /= std::filesystem::path(kFolder);
+    std::filesystem::create_directories(folder_);
+    file_ = folder_ / std::filesystem::path(kFile);
+    name_ = utf8_of(folder_.parent_path()) + "/" + kUtf8;
+  }
+  void TearDown() override {
+    folder_ = folder_.parent_path();
+    IoTest::TearDown();
+  }
+  void write_atom() const { std::ofstream(file_, std::ios::binary) << "MODEL        1\n" << kAtom << "ENDMDL\n"; }
+
+  std::filesystem::path file_;  // by UTF-16
+  std::string name_;            // by UTF-8
+};
+
+TEST_F(FilePathTest, StringsArePathsAndBack) {
+  EXPECT_EQ(path_of(kUtf8), std::filesystem::path(kFolder) / std::filesystem::path(kFile));
+  EXPECT_EQ(utf8_of(std::filesystem::path(kFile)), std::string(kUtf8).substr(std::string(kUtf8).find('/') + 1));
+}
+
+TEST_F(FilePathTest, Extensions) {
+  EXPECT_EQ(lower_extension(path_of("a.PDB.Gz")), ".gz");
+  EXPECT_EQ(lower_extension_of_content(path_of("a.PDB.Gz")), ".pdb");
+  EXPECT_EQ(lower_extension_of_content(path_of("a.pdb")), ".pdb");
+  EXPECT_EQ(lower_extension(path_of("pdb")), "");
+}
+
+TEST_F(FilePathTest, StructuresAndTrajectoriesAreFound) {
+  write_atom();
+  EXPECT_EQ(read_structure(name_, ReadOptions()).models.at(0).atoms.size(), 1u);
+  EXPECT_EQ(Trajectory::open(name_).atom_count(), 1u);
+}
+
+TEST_F(FilePathTest, RadiiAreFound) {
+  std::ofstream(file_) << "N 1.23\n";
+  EXPECT_FLOAT_EQ(find_radii(name_)[7], 1.23f);
+}
+
+TEST_F(FilePathTest, FilesAreWrittenUnderTheirName) {
+  AtomicFile file(name_);
+  file.write(kAtom);
+  EXPECT_FALSE(std::filesystem::exists(file_));
+  file.commit();
+  EXPECT_TRUE(std::filesystem::exists(file_));
+  EXPECT_EQ(file_count(), 1u);
+}
+
+TEST_F(FilePathTest, ErrorsNameTheFileAsItWasGiven) {
+  const std::string message = error_of(ErrorKind::kInput, [&] { read_structure(name_, ReadOptions()); });
+  EXPECT_EQ(message, "'" + name_ + "': no such file");
+}
+
+#if defined(_WIN32)
+TEST_F(FilePathTest, WhatIsNotUtf8IsRefused) {
+  EXPECT_EQ(error_of(ErrorKind::kInput, [] { read_structure("\xff.pdb", ReadOptions()); }),
+            "'\xff.pdb' is no path: it is not UTF-8");
+}
+#endif
+
+}  // namespace
+}  // namespace quickses::io

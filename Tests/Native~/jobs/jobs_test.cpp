@@ -1,0 +1,392 @@
+// SPDX-License-Identifier: MIT
+// Jobs through the C API: levels, replacing, cancelling, and memory that is handed over.
+#include "surface/surface_fixture.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstring>
+#include <limits>
+#include <thread>
+
+using namespace surface_fixture;
+
+namespace {
+
+qses_progress poll(qses_context *context) {
+  qses_progress p;
+  qses_progress_init(&p);
+  expect_ok(qses_poll(context, &p));
+  return p;
+}
+
+void begin(qses_context *context, qses_settings s, uint32_t frame = 0) {
+  s.frame = frame;
+  expect_ok(qses_begin(context, &s));
+}
+
+void wait_for_all(qses_context *context) {
+  int32_t finished = 0;
+  expect_ok(qses_wait(context, -1, &finished));
+  ASSERT_EQ(finished, 1);
+}
+
+// The next level that is finished; a view with level_count 0 if the job ends without one.
+qses_mesh next_level(qses_context *context) {
+  qses_mesh mesh;
+  for (;;) {
+    qses_mesh_init(&mesh);
+    if (qses_collect(context, &mesh) == QSES_OK) return mesh;
+    if (poll(context).state != QSES_JOB_RUNNING) {
+      if (qses_collect(context, &mesh) == QSES_OK) return mesh;
+      qses_mesh_init(&mesh);
+      return mesh;
+    }
+    std::this_thread::yield();
+  }
+}
+
+mesh_checks::Mesh copy(const qses_mesh &m) {
+  mesh_checks::Mesh mesh;
+  mesh.positions.assign(m.positions, m.positions + 3 * size_t(m.vertex_count));
+  mesh.normals.assign(m.normals, m.normals + 3 * size_t(m.vertex_count));
+  mesh.owners.assign(m.owners, m.owners + m.vertex_count);
+  mesh.indices.assign(m.indices, m.indices + 3 * size_t(m.triangle_count));
+  return mesh;
+}
+
+// Many atoms, quickly made: a cubic lattice of them.
+Atoms block(int edge) {
+  Atoms atoms;
+  for (int k = 0; k < edge * edge * edge; ++k)
+    atoms.add(2.1 * (k % edge), 2.2 * (k / edge % edge), 2.3 * (k / edge / edge), 1.5 + 0.1 * (k % 4));
+  return atoms;
+}
+
+TEST(Jobs, CancelEndsAComputeThatWaitsForAJob) {
+  const Context context;
+  set_atoms(context, block(20));
+  begin(context, settings(0.2));
+  std::atomic<bool> entered{false};
+  qses_status status = QSES_OK;
+  std::thread other([&] {
+    const qses_settings s = settings(0.2);
+    entered = true;
+    status = qses_compute(context, &s, nullptr);
+  });
+  while (!entered) std::this_thread::yield();
+  // The job is long: compute waits for it by then, or computes itself. Either is to be ended.
+  std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  expect_ok(qses_cancel(context));
+  other.join();
+  EXPECT_EQ(status, QSES_CANCELLED);
+  const qses_settings s = settings(2.0);
+  EXPECT_EQ(qses_compute(context, &s, nullptr), QSES_OK);
+}
+
+TEST(Jobs, WaitTakesAnyTime) {
+  const Context context;
+  set_atoms(context, crambin());
+  for (const double milliseconds : {1e9, 1e13, 1e300, static_cast<double>(INFINITY)}) {
+    begin(context, settings(0.4));
+    int32_t finished = 0;
+    expect_ok(qses_wait(context, milliseconds, &finished));
+    EXPECT_EQ(finished, 1) << milliseconds;
+  }
+}
+
+TEST(Jobs, LevelsComeFromCoarseToFine) {
+  const Context context;
+  const Atoms atoms = cluster(3000, 5);
+  set_atoms(context, atoms);
+  EXPECT_EQ(poll(context).state, QSES_JOB_IDLE);
+  begin(context, settings(0.5), 7);
+  int last = -1;
+  float spacing = 100;
+  while (last < 2) {
+    const qses_mesh m = next_level(context);
+    ASSERT_EQ(m.level_count, 3u);
+    ASSERT_GT(static_cast<int>(m.level), last);
+    EXPECT_LT(m.spacing, spacing);
+    EXPECT_EQ(m.frame, 7u);
+    EXPECT_EQ(mesh_checks::manifold_fault(copy(m)), "");
+    last = static_cast<int>(m.level);
+    spacing = m.spacing;
+  }
+  EXPECT_EQ(spacing, 0.5f);
+  wait_for_all(context);
+  const qses_progress p = poll(context);
+  EXPECT_EQ(p.state, QSES_JOB_FINISHED);
+  EXPECT_EQ(p.fraction, 1.f);
+  EXPECT_EQ(p.levels_finished, 3u);
+  EXPECT_EQ(p.mesh_ready, 0);
+}
+
+TEST(Jobs, EachLevelIsTheSurfaceComputedAtItsSpacing) {
+  const Context context;
+  const Atoms atoms = crambin();
+  qses_settings s = settings(0.5);
+  for (uint32_t count : {0u, 1u, 2u}) {
+    s.level_count = count;
+    s.levels[0] = count == 1 ? 1.f : 2.f;
+    set_atoms(context, atoms);
+    begin(context, s);
+    wait_for_all(context);
+    qses_mesh m;
+    qses_mesh_init(&m);
+    expect_ok(qses_collect(context, &m));
+    EXPECT_EQ(m.level, count);
+    const mesh_checks::Mesh finest = copy(m);
+    EXPECT_EQ(mesh_checks::manifold_fault(finest), "");
+    const Surface alone = compute(context, atoms, s);
+    EXPECT_EQ(finest.indices, alone.mesh.indices);
+    EXPECT_EQ(finest.positions, alone.mesh.positions);
+  }
+}
+
+TEST(Jobs, FramesFasterThanLevelsNeverStarveThePicture) {
+  const Context context;
+  Atoms atoms = cluster(4000, 11);
+  set_atoms(context, atoms);
+  uint32_t frame = 0, collected = 0, last_tag = 0;
+  qses_mesh m;
+  while (collected < 5) {
+    ++frame;
+    ASSERT_LT(frame, 100000000u);
+    expect_ok(qses_set_positions(context, atoms.positions.data(), 0, atoms.size()));
+    begin(context, settings(0.4), frame);
+    qses_mesh_init(&m);
+    if (qses_collect(context, &m) != QSES_OK) continue;
+    ++collected;
+    EXPECT_GT(m.frame, last_tag);
+    EXPECT_LE(m.frame, frame);
+    last_tag = m.frame;
+  }
+  wait_for_all(context);
+  qses_mesh_init(&m);
+  expect_ok(qses_collect(context, &m));
+  EXPECT_EQ(m.frame, frame);
+  EXPECT_EQ(m.level + 1, m.level_count);
+  EXPECT_EQ(poll(context).state, QSES_JOB_FINISHED);
+}
+
+TEST(Jobs, AJobComputesTheAtomsOfItsBegin) {
+  const Context context;
+  const Atoms here = cluster(500, 2), there = shifted(here, 64, 0, 0);
+  set_atoms(context, here);
+  begin(context, settings(0.5), 1);
+  expect_ok(qses_set_positions(context, there.positions.data(), 0, there.size()));
+  wait_for_all(context);
+  qses_mesh m;
+  qses_mesh_init(&m);
+  expect_ok(qses_collect(context, &m));
+  EXPECT_LT(m.bounds_max[0], 40.f);
+  begin(context, settings(0.5), 2);
+  wait_for_all(context);
+  expect_ok(qses_collect(context, &m));
+  EXPECT_GT(m.bounds_min[0], 30.f);
+}
+
+TEST(Jobs, CollectedMemoryStaysWhileOthersAreComputed) {
+  const Context context;
+  const Atoms atoms = cluster(1500, 9);
+  set_atoms(context, atoms);
+  begin(context, settings(0.5));
+  wait_for_all(context);
+  qses_mesh held;
+  qses_mesh_init(&held);
+  expect_ok(qses_collect(context, &held));
+  const mesh_checks::Mesh before = copy(held);
+  for (int k = 0; k < 3; ++k) {
+    const Atoms moved = shifted(atoms, 3 + k, 0, 0);
+    expect_ok(qses_set_positions(context, moved.positions.data(), 0, moved.size()));
+    begin(context, settings(0.5));
+    wait_for_all(context);
+  }
+  const mesh_checks::Mesh after = copy(held);
+  EXPECT_EQ(before.positions, after.positions);
+  EXPECT_EQ(before.indices, after.indices);
+}
+
+TEST(Jobs, CancelEndsTheJobAndTheContextGoesOn) {
+  const Context context;
+  set_atoms(context, block(31));
+  begin(context, settings(0.25), 1);
+  std::thread other([&] { qses_cancel(context); });
+  other.join();
+  wait_for_all(context);
+  const qses_progress p = poll(context);
+  EXPECT_EQ(p.state, QSES_JOB_CANCELLED);
+  EXPECT_LT(p.levels_finished, p.level_count);
+  const Surface small = compute(context, cluster(50, 1), settings(1.0));
+  EXPECT_EQ(mesh_checks::manifold_fault(small.mesh), "");
+}
+
+TEST(Jobs, CancelEndsACompute) {
+  const Context context;
+  set_atoms(context, block(31));
+  std::atomic<bool> done{false};
+  qses_status status = QSES_OK;
+  std::thread computing([&] {
+    const qses_settings s = settings(0.2);
+    status = qses_compute(context, &s, nullptr);
+    done = true;
+  });
+  while (poll(context).state != QSES_JOB_RUNNING && !done) std::this_thread::yield();
+  while (!done) {
+    qses_cancel(context);
+    std::this_thread::yield();
+  }
+  computing.join();
+  EXPECT_EQ(status, QSES_CANCELLED);
+}
+
+TEST(Jobs, DestroyDuringAJobJoinsIt) {
+  for (int k = 0; k < 5; ++k) {
+    const Context context;
+    set_atoms(context, block(27));
+    begin(context, settings(0.25));
+  }
+}
+
+TEST(Jobs, ErrorsOfAJobBelongToTheJob) {
+  const Context context(2, 2 << 20);
+  set_atoms(context, cluster(5000, 4));
+  begin(context, settings(0.3));
+  wait_for_all(context);
+  const qses_progress p = poll(context);
+  EXPECT_EQ(p.state, QSES_JOB_FAILED);
+  EXPECT_EQ(p.status, QSES_OUT_OF_MEMORY);
+  EXPECT_NE(std::string(p.message), "");
+}
+
+TEST(Jobs, ProgressNeverFalls) {
+  const Context context;
+  set_atoms(context, cluster(8000, 6));
+  begin(context, settings(0.3));
+  float last = 0;
+  for (;;) {
+    const qses_progress p = poll(context);
+    ASSERT_GE(p.fraction, last);
+    ASSERT_LE(p.fraction, 1.f);
+    last = p.fraction;
+    if (p.state != QSES_JOB_RUNNING) break;
+  }
+  EXPECT_EQ(last, 1.f);
+}
+
+TEST(Jobs, AFrameBudgetGivesOneLevel) {
+  const Context context;
+  const Atoms atoms = cluster(800, 3);
+  set_atoms(context, atoms);
+  qses_settings s = settings(0.5);  // levels 2, 1, 0.5
+  for (const float budget : {1e-3f, 60000.f}) {
+    s.frame_budget_ms = budget;
+    const Surface finest = compute(context, atoms, s);  // qses_compute knows no budget
+    EXPECT_EQ(mesh_checks::manifold_fault(finest.mesh), "");
+    for (uint32_t frame = 0; frame < 4; ++frame) {
+      begin(context, s, frame);
+      EXPECT_EQ(poll(context).level_count, 1u);
+      wait_for_all(context);
+      const qses_progress p = poll(context);
+      EXPECT_EQ(p.state, QSES_JOB_FINISHED);
+      EXPECT_EQ(p.levels_finished, 1u);
+      EXPECT_EQ(p.level_count, 1u);
+      EXPECT_EQ(p.fraction, 1.f);
+      qses_mesh m;
+      qses_mesh_init(&m);
+      expect_ok(qses_collect(context, &m));
+      EXPECT_EQ(m.frame, frame);
+      EXPECT_EQ(m.level_count, 3u);
+      // A budget that nothing keeps to, and one that everything does: what was learnt with the first still holds.
+      const uint32_t expected = budget < 1 ? 0 : 2;
+      EXPECT_EQ(m.level, expected);
+      EXPECT_EQ(m.spacing, expected == 2 ? 0.5f : 2.f);
+      EXPECT_EQ(copy(m).indices == finest.mesh.indices, expected == 2);
+      EXPECT_EQ(qses_collect(context, &m), QSES_NO_RESULT);
+    }
+  }
+  // Other atoms: nothing is known about them.
+  set_atoms(context, cluster(801, 3));
+  begin(context, s);
+  wait_for_all(context);
+  qses_mesh m;
+  qses_mesh_init(&m);
+  expect_ok(qses_collect(context, &m));
+  EXPECT_EQ(m.level, 0u);
+}
+
+TEST(Jobs, SeriesThatShareAContextEachKeepTheirLevel) {
+  const Context context;
+  const Atoms molecules[2] = {cluster(300, 3), cluster(900, 4)};
+  qses_settings s = settings(0.5);
+  s.frame_budget_ms = 60000;  // everything fits, once a first frame has told so
+  const auto level_of = [&](const Atoms &atoms) {
+    set_atoms(context, atoms);
+    begin(context, s);
+    wait_for_all(context);
+    qses_mesh m;
+    qses_mesh_init(&m);
+    expect_ok(qses_collect(context, &m));
+    return m.level;
+  };
+  for (int frame = 0; frame < 4; ++frame)
+    for (uint32_t k : {0u, 1u}) {
+      s.series = 4000000000u * k;
+      EXPECT_EQ(level_of(molecules[k]), frame == 0 ? 0u : 2u);
+    }
+  // Within one series every change of the atoms begins anew.
+  s.series = 0;
+  EXPECT_EQ(level_of(molecules[0]), 2u);
+  EXPECT_EQ(level_of(molecules[1]), 0u);
+  EXPECT_EQ(level_of(molecules[0]), 0u);
+}
+
+TEST(Jobs, BadRequestsAreRefusedAtOnce) {
+  const Context context;
+  qses_settings s = settings();
+  EXPECT_EQ(qses_begin(context, &s), QSES_NO_RESULT);
+  set_atoms(context, cluster(10, 1));
+  s.levels[0] = 1.f;
+  s.levels[1] = 2.f;
+  s.level_count = 2;
+  EXPECT_EQ(qses_begin(context, &s), QSES_INVALID_ARGUMENT);
+  s.level_count = QSES_MAX_LEVELS + 1;
+  EXPECT_EQ(qses_begin(context, &s), QSES_INVALID_ARGUMENT);
+  for (const float budget :
+       {-1.f, 60001.f, std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {
+    s = settings();
+    s.frame_budget_ms = budget;
+    EXPECT_EQ(qses_begin(context, &s), QSES_INVALID_ARGUMENT);
+    EXPECT_NE(std::string(qses_last_error()).find("frame_budget_ms"), std::string::npos);
+    EXPECT_EQ(qses_compute(context, &s, nullptr), QSES_INVALID_ARGUMENT);
+  }
+  qses_mesh m;
+  qses_mesh_init(&m);
+  EXPECT_EQ(qses_collect(context, &m), QSES_NO_RESULT);
+  EXPECT_EQ(qses_collect(context, nullptr), QSES_INVALID_ARGUMENT);
+  EXPECT_EQ(qses_poll(context, nullptr), QSES_INVALID_ARGUMENT);
+}
+
+TEST(Jobs, PositionsCanBeGathered) {
+  const Context context;
+  const Atoms atoms = cluster(300, 8);
+  std::vector<float> all(3 * 1000, 1e5f);
+  std::vector<uint32_t> indices(atoms.size());
+  for (size_t i = 0; i < atoms.size(); ++i) {
+    indices[i] = static_cast<uint32_t>(999 - 3 * i);
+    std::memcpy(&all[3 * indices[i]], &atoms.positions[3 * i], 12);
+  }
+  set_atoms(context, atoms);
+  const Surface direct = compute(context, atoms, settings());
+  expect_ok(qses_set_positions_indexed(context, all.data(), 0, 1000, indices.data(), indices.size()));
+  const qses_settings s = settings();
+  expect_ok(qses_compute(context, &s, nullptr));
+  EXPECT_EQ(copy_surface(context).mesh.positions, direct.mesh.positions);
+  indices[5] = 1000;
+  EXPECT_EQ(qses_set_positions_indexed(context, all.data(), 0, 1000, indices.data(), indices.size()),
+            QSES_INVALID_ARGUMENT);
+  EXPECT_NE(std::string(qses_last_error()).find("indices[5]"), std::string::npos);
+}
+
+}  // namespace

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: MIT
+// Which level a frame budget gets, with made-up costs.
+#include "jobs/series_choosers.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <vector>
+
+using quickses::LevelChooser;
+using quickses::Levels;
+using quickses::SeriesChoosers;
+
+namespace {
+
+LevelChooser::Subject subject(std::initializer_list<float> spacings = {2.f, 1.f, 0.5f, 0.25f}) {
+  LevelChooser::Subject s;
+  s.atoms = 1000;
+  s.probe_radius = 1.4f;
+  for (float h : spacings) s.ladder.add(h);
+  return s;
+}
+
+struct Cost {
+  double whole, shared;
+};
+
+// Runs frames whose cost depends on level and frame; returns the level of each.
+std::vector<uint32_t> run(LevelChooser &chooser, const LevelChooser::Subject &s, double budget, int frames,
+                          const std::function<Cost(uint32_t level, int frame)> &cost) {
+  std::vector<uint32_t> levels;
+  for (int k = 0; k < frames; ++k) {
+    levels.push_back(chooser.choose(s, budget));
+    const Cost c = cost(levels.back(), k);
+    chooser.record(c.whole, c.shared);
+  }
+  return levels;
+}
+
+// As the exact method's: so much for all levels alike, the rest by the number of lattice points at the surface.
+std::function<Cost(uint32_t, int)> costs_of(const LevelChooser::Subject &s, double shared, double at_one_angstrom) {
+  return [=](uint32_t level, int) {
+    const double h = static_cast<double>(s.ladder.spacings[level]);
+    return Cost{shared + at_one_angstrom / (h * h), shared};
+  };
+}
+
+int changes(const std::vector<uint32_t> &levels, size_t from = 0) {
+  int n = 0;
+  for (size_t k = from + 1; k < levels.size(); ++k) n += levels[k] != levels[k - 1] ? 1 : 0;
+  return n;
+}
+
+TEST(LevelChooser, StartsWithTheCoarsestThenTakesTheFinestThatFits) {
+  const auto s = subject();
+  // 1.25, 2, 5, 17 ms
+  for (const auto &expected : {std::pair<double, uint32_t>{0.5, 0}, {1.3, 0}, {2.6, 1}, {7, 2}, {16.5, 2}, {22, 3}}) {
+    LevelChooser chooser;
+    const auto levels = run(chooser, s, expected.first, 20, costs_of(s, 1, 1));
+    EXPECT_EQ(levels.front(), 0u);
+    EXPECT_EQ(levels.back(), expected.second) << "budget " << expected.first;
+  }
+}
+
+TEST(LevelChooser, TheBudgetIsExceededInTriesOnly) {
+  const auto s = subject();
+  const auto cost = costs_of(s, 0, 1);  // 0.25, 1, 4, 16
+  for (double budget : {0.3, 0.9, 1.3, 3.9, 5.5, 15.0, 21.0}) {
+    LevelChooser chooser;
+    int over = 0;
+    for (uint32_t level : run(chooser, s, budget, 1000, cost)) over += cost(level, 0).whole > budget ? 1 : 0;
+    // After 8, 16, 32, ... frames, where half of the budget is left; the law is exact here, so else never.
+    const bool half_left = budget == 0.9 || budget == 3.9 || budget == 15.0;
+    EXPECT_LE(over, half_left ? 8 : 0) << "budget " << budget;
+  }
+}
+
+TEST(LevelChooser, TriesWhereCoarseLevelsCostAsMuchAsFineOnes) {
+  const auto s = subject();
+  LevelChooser chooser;
+  // As on a GPU: by the law, 1 ms at 2 Å would mean 64 ms at 0.25 Å.
+  const auto levels = run(chooser, s, 2.5, 30, [](uint32_t level, int) { return Cost{1 + 0.05 * level, 0}; });
+  EXPECT_EQ(levels.back(), 3u);
+  for (size_t k = 1; k < levels.size(); ++k) EXPECT_LE(levels[k], levels[k - 1] + 1);  // one step at a time
+}
+
+TEST(LevelChooser, ALevelThatIsTooExpensiveIsTriedLessAndLess) {
+  const auto s = subject({1.f, 0.5f});
+  LevelChooser chooser;
+  const auto levels = run(chooser, s, 10, 4000, [](uint32_t level, int) { return Cost{level == 0 ? 4. : 12., 0}; });
+  std::vector<size_t> tries;
+  for (size_t k = 0; k < levels.size(); ++k)
+    if (levels[k] == 1) tries.push_back(k);
+  ASSERT_GE(tries.size(), 3u);
+  EXPECT_LE(tries.size(), 14u);
+  for (size_t k = 2; k < tries.size(); ++k) EXPECT_GE(tries[k] - tries[k - 1], tries[k - 1] - tries[k - 2]);
+}
+
+TEST(LevelChooser, NothingHopelessIsTried) {
+  const auto s = subject({1.f, 0.5f});
+  LevelChooser chooser;
+  const auto levels = run(chooser, s, 10, 4000, [](uint32_t level, int) { return Cost{level == 0 ? 6. : 24., 0}; });
+  for (uint32_t level : levels) EXPECT_EQ(level, 0u);
+}
+
+TEST(LevelChooser, OneSlowFrameChangesNothing) {
+  const auto s = subject();
+  LevelChooser chooser;
+  const auto usual = costs_of(s, 1, 1);
+  const auto levels = run(chooser, s, 7, 200, [&](uint32_t level, int frame) {
+    Cost c = usual(level, frame);
+    if (frame > 20 && frame % 10 == 0) c.whole *= 5;
+    return c;
+  });
+  EXPECT_EQ(changes(levels, 20), 0);
+  EXPECT_EQ(levels.back(), 2u);
+}
+
+TEST(LevelChooser, NoiseDoesNotMakeItOscillate) {
+  const auto s = subject();
+  const auto usual = costs_of(s, 1, 1);
+  for (double budget : {4.6, 5.0, 5.4, 6.0, 17.0}) {  // around the 5 and the 17 ms of two levels
+    LevelChooser chooser;
+    unsigned state = 1;
+    const auto levels = run(chooser, s, budget, 2000, [&](uint32_t level, int frame) {
+      state = state * 1664525u + 1013904223u;
+      Cost c = usual(level, frame);
+      c.whole *= 0.9 + 0.2 * static_cast<double>(state >> 8) / (1 << 24);
+      return c;
+    });
+    EXPECT_LE(changes(levels, 20), 2000 / 20) << "budget " << budget;
+  }
+}
+
+TEST(LevelChooser, FollowsCostsDownAndUp) {
+  const auto s = subject();
+  LevelChooser chooser;
+  const auto usual = costs_of(s, 1, 1);
+  const auto levels = run(chooser, s, 7, 300, [&](uint32_t level, int frame) {
+    Cost c = usual(level, frame);
+    const double factor = frame < 100 ? 1 : frame < 200 ? 3 : 1;  // 2 and 5 ms, then 6 and 15
+    return Cost{c.whole * factor, c.shared * factor};
+  });
+  EXPECT_EQ(levels[99], 2u);
+  for (size_t k = 105; k < 200; ++k) EXPECT_LE(levels[k], 1u);
+  for (size_t k = 230; k < 300; ++k) EXPECT_EQ(levels[k], 2u);
+}
+
+TEST(LevelChooser, ForgetsWhenTheSubjectChanges) {
+  const auto s = subject();
+  const std::vector<std::function<void(LevelChooser::Subject &)>> all = {
+      [](LevelChooser::Subject &c) { c.atoms = 1001; },
+      [](LevelChooser::Subject &c) { c.surface = QSES_SURFACE_SAS; },
+      [](LevelChooser::Subject &c) { c.method = QSES_METHOD_GRID; },
+      [](LevelChooser::Subject &c) { c.probe_radius = 1.5f; },
+      [](LevelChooser::Subject &c) { c.relaxation_steps = 3; },
+      [](LevelChooser::Subject &c) { c.slice_size = 64; },
+      [](LevelChooser::Subject &c) { c.ladder.spacings[1] = 1.1f; },
+      [](LevelChooser::Subject &c) { c.ladder.add(0.1f); }};
+  for (const auto &change : all) {
+    LevelChooser chooser;
+    ASSERT_EQ(run(chooser, s, 1000, 5, costs_of(s, 1, 1)).back(), 3u);
+    LevelChooser::Subject changed = s;
+    change(changed);
+    EXPECT_EQ(chooser.choose(changed, 1000), 0u);
+  }
+}
+
+TEST(LevelChooser, ALevelThatFailsIsLeft) {
+  const auto s = subject({1.f, 0.5f});
+  LevelChooser chooser;
+  int failures = 0;
+  for (int k = 0; k < 500; ++k) {
+    const uint32_t level = chooser.choose(s, 10);
+    if (level == 0) {
+      chooser.record(1, 0);
+    } else {
+      ++failures;
+      chooser.record_failure();
+    }
+  }
+  EXPECT_GE(failures, 1);
+  EXPECT_LE(failures, 10);
+}
+
+TEST(LevelChooser, AFailedFrameOfTheCoarsestLevelSaysNothingAboutOthers) {
+  const auto s = subject({1.f, 0.5f});
+  LevelChooser chooser;
+  EXPECT_EQ(chooser.choose(s, 10), 0u);
+  chooser.record_failure();
+  for (uint32_t level : run(chooser, s, 10, 100, [](uint32_t l, int) { return Cost{l == 0 ? 6. : 24., 0}; }))
+    EXPECT_EQ(level, 0u);
+}
+
+TEST(LevelChooser, ABudgetThatGrowsIsUsed) {
+  const auto s = subject();
+  LevelChooser chooser;
+  EXPECT_EQ(run(chooser, s, 2.6, 10, costs_of(s, 1, 1)).back(), 1u);
+  EXPECT_EQ(run(chooser, s, 30, 10, costs_of(s, 1, 1)).back(), 3u);
+  EXPECT_EQ(run(chooser, s, 2.6, 10, costs_of(s, 1, 1)).back(), 1u);
+}
+
+// ---- series
+
+// A chooser that has found out that everything fits.
+void teach(LevelChooser &chooser) {
+  const auto s = subject();
+  ASSERT_EQ(run(chooser, s, 1000, 2, costs_of(s, 1, 1)).back(), 3u);
+}
+
+// Whether the chooser still knows.
+bool knows(LevelChooser &chooser) { return chooser.choose(subject(), 1000) == 3; }
+
+TEST(SeriesChoosers, EachSeriesLearnsForItself) {
+  SeriesChoosers choosers;
+  choosers.reserve();
+  const auto small = subject();
+  auto large = small;
+  large.atoms = 50000;
+  for (int frame = 0; frame < 50; ++frame) {
+    const auto first = run(choosers.of(7), small, 30, 1, costs_of(small, 1, 1));   // 17 ms at the finest
+    const auto second = run(choosers.of(8), large, 30, 1, costs_of(large, 2, 5));  // 22 ms at the third of four
+    if (frame == 0) continue;
+    EXPECT_EQ(first[0], 3u) << frame;
+    EXPECT_EQ(second[0], 2u) << frame;
+  }
+  // Other atoms in a series say nothing about the others.
+  EXPECT_EQ(choosers.of(7).choose(large, 30), 0u);
+  EXPECT_EQ(choosers.of(8).choose(large, 30), 2u);
+}
+
+TEST(SeriesChoosers, RemembersTheLastSeriesThatWereUsed) {
+  SeriesChoosers choosers;
+  choosers.reserve();
+  const LevelChooser *const first = &choosers.of(0);
+  for (uint32_t k = 0; k < QSES_REMEMBERED_SERIES; ++k) teach(choosers.of(1000003u * k));
+  EXPECT_EQ(&choosers.of(0), first) << "the memory is fixed";  // and 0 is the newest now
+  teach(choosers.of(5));                                       // one too many: 1000003 is the oldest
+  EXPECT_TRUE(knows(choosers.of(0)));
+  for (uint32_t k = 2; k < QSES_REMEMBERED_SERIES; ++k) EXPECT_TRUE(knows(choosers.of(1000003u * k))) << k;
+  EXPECT_TRUE(knows(choosers.of(5)));
+  EXPECT_FALSE(knows(choosers.of(1000003)));
+}
+
+}  // namespace

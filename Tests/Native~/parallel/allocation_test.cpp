@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: MIT
+// From the fourth frame of a trajectory on nothing is allocated. Every allocation of the process is counted, in all
+// threads: this program has its own malloc and operator new, which count and hand on to the C library's.
+#include "io/trajectory_frames.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define CAN_COUNT_ALLOCATIONS 1
+#include <dlfcn.h>
+#include <sys/mman.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+#else
+#define CAN_COUNT_ALLOCATIONS 0
+#endif
+
+#include <atomic>
+#include <cerrno>
+#include <new>
+
+using namespace surface_fixture;
+
+namespace {
+
+constexpr size_t kRemembered = 256;
+std::atomic<bool> counting{false};
+std::atomic<size_t> counted{0};
+const void *callers[kRemembered];
+
+#if CAN_COUNT_ALLOCATIONS
+void note(const void *caller) {
+  if (!counting.load(std::memory_order_relaxed)) return;
+  const size_t k = counted.fetch_add(1);
+  if (k < kRemembered) callers[k] = caller;
+}
+#endif
+
+// Allocations while it lives, by who asked for them.
+class Count {
+ public:
+  Count() {
+    counted = 0;
+    counting = true;
+  }
+  ~Count() { counting = false; }
+
+  // oneTBB keeps the objects of its tasks in pools of its own. When one of those grows is up to which thread took which
+  // task, so its allocations are told apart, and reported.
+  struct Result {
+    size_t total = 0, by_tbb = 0;
+    std::string others;  // where they come from
+  };
+  Result end() {
+    counting = false;
+    Result result;
+    result.total = counted;
+#if CAN_COUNT_ALLOCATIONS
+    for (size_t k = 0; k < std::min(result.total, kRemembered); ++k) {
+      Dl_info info{};
+      const bool found = dladdr(callers[k], &info) != 0 && info.dli_fname;
+      if (found && std::strstr(info.dli_fname, "libtbb")) {
+        ++result.by_tbb;
+      } else {
+        char text[400];
+        std::snprintf(text, sizeof text, "%s+0x%zx (%s)\n", found ? info.dli_fname : "?",
+                      found ? static_cast<size_t>(static_cast<const char *>(callers[k]) -
+                                                  static_cast<const char *>(info.dli_fbase))
+                            : 0,
+                      found && info.dli_sname ? info.dli_sname : "");
+        result.others += text;
+      }
+    }
+#endif
+    return result;
+  }
+};
+
+}  // namespace
+
+#if CAN_COUNT_ALLOCATIONS
+#define CALLER __builtin_return_address(0)
+
+extern "C" {
+void *__libc_malloc(size_t);
+void *__libc_calloc(size_t, size_t);
+void *__libc_realloc(void *, size_t);
+void *__libc_memalign(size_t, size_t);
+
+void *malloc(size_t n) {
+  note(CALLER);
+  return __libc_malloc(n);
+}
+void *calloc(size_t n, size_t size) {
+  note(CALLER);
+  return __libc_calloc(n, size);
+}
+void *realloc(void *p, size_t n) {
+  note(CALLER);
+  return __libc_realloc(p, n);
+}
+void *memalign(size_t alignment, size_t n) {
+  note(CALLER);
+  return __libc_memalign(alignment, n);
+}
+void *aligned_alloc(size_t alignment, size_t n) {
+  note(CALLER);
+  return __libc_memalign(alignment, n);
+}
+int posix_memalign(void **p, size_t alignment, size_t n) {
+  note(CALLER);
+  *p = __libc_memalign(alignment, n);
+  return *p ? 0 : ENOMEM;
+}
+// What libraries map on their own account, such as oneTBB's allocator; the C library's own calls do not pass here.
+void *mmap(void *address, size_t n, int protection, int flags, int file, off_t offset) {
+  note(CALLER);
+  return reinterpret_cast<void *>(syscall(SYS_mmap, address, n, protection, flags, file, offset));
+}
+}
+
+namespace {
+void *counted_new(size_t n, size_t alignment, const void *caller) {
+  note(caller);
+  void *p = alignment > alignof(std::max_align_t) ? __libc_memalign(alignment, n) : __libc_malloc(n ? n : 1);
+  if (!p) throw std::bad_alloc();
+  return p;
+}
+}  // namespace
+
+void *operator new(size_t n) { return counted_new(n, 0, CALLER); }
+void *operator new[](size_t n) { return counted_new(n, 0, CALLER); }
+void *operator new(size_t n, std::align_val_t a) { return counted_new(n, static_cast<size_t>(a), CALLER); }
+void *operator new[](size_t n, std::align_val_t a) { return counted_new(n, static_cast<size_t>(a), CALLER); }
+void operator delete(void *p) noexcept { std::free(p); }
+void operator delete[](void *p) noexcept { std::free(p); }
+void operator delete(void *p, size_t) noexcept { std::free(p); }
+void operator delete[](void *p, size_t) noexcept { std::free(p); }
+void operator delete(void *p, std::align_val_t) noexcept { std::free(p); }
+void operator delete[](void *p, std::align_val_t) noexcept { std::free(p); }
+void operator delete(void *p, size_t, std::align_val_t) noexcept { std::free(p); }
+void operator delete[](void *p, size_t, std::align_val_t) noexcept { std::free(p); }
+#endif
+
+namespace {
+
+constexpr int kFramesBefore = 3;
+
+// Runs frames of a trajectory: the first three as they like, the others counted.
+template <class Frame>
+void expect_no_allocation(const Atoms &atoms, const Frame &frame, int frames = 30) {
+  if (!CAN_COUNT_ALLOCATIONS) GTEST_SKIP() << "allocations can't be counted in this build";
+  if (tested_backend() != QSES_BACKEND_CPU) GTEST_SKIP() << "the driver of the GPU allocates as it likes";
+  Trajectory trajectory(atoms);
+  for (int k = 0; k < kFramesBefore; ++k) frame(trajectory.next());
+  Count count;
+  for (int k = 0; k < frames; ++k) frame(trajectory.next());
+  const Count::Result found = count.end();
+  EXPECT_EQ(found.total - found.by_tbb, 0u) << found.others;
+  testing::Test::RecordProperty("allocations_by_tbb", static_cast<int>(found.by_tbb));
+  if (found.by_tbb > 0) std::printf("oneTBB allocated %zu times in %d frames\n", found.by_tbb, frames);
+}
+
+TEST(Allocations, AreCounted) {
+  if (!CAN_COUNT_ALLOCATIONS) GTEST_SKIP();
+  Count count;
+  std::free(std::malloc(10));
+  delete new int;
+  std::vector<float>(100).swap(*std::make_unique<std::vector<float>>());
+  EXPECT_GE(count.end().total, 4u);
+}
+
+TEST(Allocations, NoneInJobsOverATrajectory) {
+  const Context context;
+  const Atoms atoms = crambin();
+  set_atoms(context, atoms);
+  expect_no_allocation(atoms, [&](const std::vector<float> &positions) {
+    set_positions(context, positions);
+    begin_and_collect(context, settings());
+    qses_mesh m;
+    qses_mesh_init(&m);
+    EXPECT_EQ(qses_collect(context, &m), QSES_NO_RESULT);  // what an application hears in most of its frames
+  });
+}
+
+TEST(Allocations, NoneInComputeOverATrajectory) {
+  const Context context;
+  const Atoms atoms = crambin();
+  set_atoms(context, atoms);
+  expect_ok(qses_enable_stage_times(context, 1));
+  qses_settings s = settings();
+  s.relaxation_steps = 3;
+  s.patch_types = 1;
+  expect_no_allocation(atoms, [&](const std::vector<float> &positions) {
+    set_positions(context, positions);
+    qses_mesh m;
+    qses_mesh_init(&m);
+    expect_ok(qses_compute(context, &s, &m));
+    qses_report r;
+    qses_report_init(&r);
+    expect_ok(qses_get_report(context, &r));
+  });
+}
+
+TEST(Allocations, NoneWithTheGridMethodAndGatheredPositions) {
+  const Context context;
+  const Atoms atoms = crambin();
+  set_atoms(context, atoms);
+  qses_settings s = settings();
+  s.method = QSES_METHOD_GRID;
+  std::vector<uint32_t> indices(atoms.size());
+  for (size_t i = 0; i < indices.size(); ++i) indices[i] = static_cast<uint32_t>(i);
+  expect_no_allocation(atoms, [&](const std::vector<float> &positions) {
+    expect_ok(qses_set_positions_indexed(context, positions.data(), 0, atoms.size(), indices.data(), indices.size()));
+    begin_and_collect(context, s);
+  });
+}
+
+// Atoms fly apart and meet again: the number of components changes from frame to frame.
+TEST(Allocations, NoneWithComponents) {
+  const Context context;
+  Atoms atoms = crambin();
+  for (int k = 0; k < 40; ++k) atoms.add(30 + 3 * k, 0, 0, 1.5);
+  set_atoms(context, atoms);
+  qses_settings s = settings(0.5, 1.4, QSES_SURFACE_VDW);
+  s.components = 1;
+  uint32_t fewest = ~0u, most = 0;
+  expect_no_allocation(atoms, [&](const std::vector<float> &positions) {
+    set_positions(context, positions);
+    const uint32_t count = begin_and_collect(context, s).component_count;
+    fewest = std::min(fewest, count);
+    most = std::max(most, count);
+  });
+  EXPECT_LT(fewest, most);
+}
+
+TEST(Allocations, NoneWhereSeriesTakeTurns) {
+  const Context context;
+  const Atoms atoms = crambin();
+  set_atoms(context, atoms);
+  qses_settings s = settings();
+  s.frame_budget_ms = 0.001f;  // none fits: always the coarsest
+  expect_no_allocation(
+      atoms,
+      [&](const std::vector<float> &positions) {
+        ++s.series;
+        set_positions(context, positions);
+        begin_and_collect(context, s);
+      },
+      QSES_REMEMBERED_SERIES + 100);
+}
+
+TEST(Allocations, NoneWithAMemoryBudget) {
+  const Context context(2, uint64_t(16) << 20);
+  const Atoms atoms = crambin();
+  set_atoms(context, atoms);
+  expect_no_allocation(atoms, [&](const std::vector<float> &positions) {
+    set_positions(context, positions);
+    begin_and_collect(context, settings());
+  });
+}
+
+TEST(Allocations, NoneWithAFrameBudget) {
+  const Context context;
+  const Atoms atoms = crambin();
+  set_atoms(context, atoms);
+  qses_settings s = settings();
+  s.frame_budget_ms = 0.001f;  // none fits: always the coarsest
+  expect_no_allocation(atoms, [&](const std::vector<float> &positions) {
+    set_positions(context, positions);
+    begin_and_collect(context, s);
+  });
+}
+
+// So many atoms that sorting and scanning are done in parallel.
+TEST(Allocations, NoneWithManyAtoms) {
+  const Context context;
+  Atoms atoms;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> off(-0.5, 0.5);
+  for (int k = 0; k < 35000; ++k)
+    atoms.add(2 * (k % 33) + off(random), 2 * (k / 33 % 33) + off(random), 2 * (k / 33 / 33) + off(random), 1.5);
+  set_atoms(context, atoms);
+  qses_settings s = settings(2.0);
+  s.level_count = 0;
+  expect_no_allocation(
+      atoms,
+      [&](const std::vector<float> &positions) {
+        set_positions(context, positions);
+        begin_and_collect(context, s);
+      },
+      8);
+}
+
+TEST(Allocations, NoneOnOneThread) {
+  const Context context(1);
+  const Atoms atoms = cluster(1000, 3);
+  set_atoms(context, atoms);
+  expect_no_allocation(atoms, [&](const std::vector<float> &positions) {
+    set_positions(context, positions);
+    begin_and_collect(context, settings(0.7));
+  });
+}
+
+}  // namespace

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+// The pieces of meshes that were put together from known shapes.
+#include "surface/stages/components.h"
+
+#include "surface/mesh_shapes.h"
+#include "parallel/cpu_executor.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+namespace {
+
+using namespace quickses;
+using mesh_checks::Mesh;
+
+std::vector<qses_component> components_of(Mesh &m, unsigned threads = 2, bool reversed = false, float spacing = 0.5f) {
+  CpuExecutor executor(threads);
+  ComponentMemory memory;
+  const MeshView view = {m.positions.data(), nullptr, nullptr, nullptr, m.indices.data(), reversed};
+  const auto found = find_components(executor, view, MeshCounts{m.vertex_count(), m.triangle_count()}, spacing, memory);
+  return {found.begin(), found.end()};
+}
+
+void expect_same(const std::vector<qses_component> &a, const std::vector<qses_component> &b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (size_t k = 0; k < a.size(); ++k) {
+    EXPECT_EQ(a[k].triangles, b[k].triangles);
+    EXPECT_EQ(a[k].area, b[k].area);
+    EXPECT_EQ(a[k].volume, b[k].volume);
+    EXPECT_EQ(a[k].is_cavity, b[k].is_cavity);
+  }
+}
+
+TEST(Components, OfSeparateShapes) {
+  Mesh m = mesh_shapes::tetrahedron(), cube = mesh_shapes::cube(), hole = mesh_shapes::cube();
+  mesh_shapes::scale_and_move(cube, 2, 100, 200, 300);
+  mesh_shapes::scale_and_move(hole, 0.5, 100, 200, 300);
+  mesh_shapes::reverse(hole);
+  mesh_shapes::append(m, cube);
+  mesh_shapes::append(m, hole);
+  const std::vector<qses_component> outward = components_of(m);
+  for (bool reversed : {false, true}) {
+    if (reversed) mesh_shapes::reverse(m);
+    const std::vector<qses_component> found = components_of(m, 2, reversed);
+    expect_same(found, outward);
+    ASSERT_EQ(found.size(), 3u);
+    EXPECT_EQ(found[0].triangles, 4u);
+    EXPECT_NEAR(found[0].volume, 1.0 / 6.0, 1e-15);
+    EXPECT_NEAR(found[0].area, 1.5 + std::sqrt(3.0) / 2, 1e-14);
+    EXPECT_FALSE(found[0].is_cavity);
+    EXPECT_EQ(found[1].triangles, 12u);
+    EXPECT_NEAR(found[1].volume, 64.0, 1e-12);
+    EXPECT_NEAR(found[1].area, 96.0, 1e-12);
+    EXPECT_FALSE(found[1].is_cavity);
+    EXPECT_EQ(found[2].triangles, 12u);
+    EXPECT_NEAR(found[2].volume, -1.0, 1e-14);
+    EXPECT_NEAR(found[2].area, 6.0, 1e-14);
+    EXPECT_TRUE(found[2].is_cavity);
+  }
+}
+
+// Vertices and triangles in random order: long chains of hooks.
+TEST(Components, OfShuffledSpheres) {
+  Mesh m;
+  for (int k = 0; k < 20; ++k) {
+    Mesh s = mesh_shapes::sphere(k % 5);
+    mesh_shapes::scale_and_move(s, 1 + 0.1 * k, 5 * k, 0, 0);
+    mesh_shapes::append(m, s);
+  }
+  std::mt19937 random(7);
+  std::vector<uint32_t> new_number(m.vertex_count());
+  for (size_t v = 0; v < new_number.size(); ++v) new_number[v] = static_cast<uint32_t>(v);
+  std::shuffle(new_number.begin(), new_number.end(), random);
+  Mesh shuffled = m;
+  for (size_t v = 0; v < new_number.size(); ++v)
+    for (size_t d = 0; d < 3; ++d) shuffled.positions[3 * new_number[v] + d] = m.positions[3 * v + d];
+  std::vector<size_t> order(m.triangle_count());
+  for (size_t t = 0; t < order.size(); ++t) order[t] = t;
+  std::shuffle(order.begin(), order.end(), random);
+  for (size_t t = 0; t < order.size(); ++t)
+    for (size_t k = 0; k < 3; ++k) shuffled.indices[3 * t + k] = new_number[m.indices[3 * order[t] + k]];
+
+  const std::vector<qses_component> found = components_of(shuffled);
+  ASSERT_EQ(found.size(), 20u);
+  // In the order of their first vertices.
+  std::vector<size_t> sphere_of;
+  for (size_t k = 0; k < 20; ++k) sphere_of.insert(sphere_of.end(), mesh_shapes::sphere(int(k % 5)).vertex_count(), k);
+  std::vector<size_t> old_number(new_number.size()), order_of_spheres;
+  for (size_t v = 0; v < new_number.size(); ++v) old_number[new_number[v]] = v;
+  for (size_t v : old_number)
+    if (std::count(order_of_spheres.begin(), order_of_spheres.end(), sphere_of[v]) == 0)
+      order_of_spheres.push_back(sphere_of[v]);
+  for (size_t k = 0; k < 20; ++k) {
+    const double radius = 1 + 0.1 * static_cast<double>(order_of_spheres[k]);
+    EXPECT_EQ(found[k].triangles, size_t(8) << 2 * (order_of_spheres[k] % 5));
+    EXPECT_LT(found[k].volume, 4.1888 * radius * radius * radius);
+    EXPECT_GT(found[k].volume, 4 / 3.0 * radius * radius * radius * 0.999);  // an octahedron's
+  }
+  uint64_t triangles = 0;
+  double area = 0, volume = 0;
+  for (const qses_component &c : found) {
+    triangles += c.triangles;
+    area += c.area;
+    volume += c.volume;
+    EXPECT_FALSE(c.is_cavity);
+  }
+  EXPECT_EQ(triangles, m.triangle_count());
+  EXPECT_NEAR(area, mesh_checks::area(m), 1e-12 * area);
+  EXPECT_NEAR(volume, mesh_checks::signed_volume(m), 1e-12 * volume);
+  for (unsigned threads : {1u, 4u}) expect_same(components_of(shuffled, threads), found);
+}
+
+TEST(Components, LabelIsTheSmallestVertex) {
+  Mesh m = mesh_shapes::octahedron();
+  mesh_shapes::append(m, mesh_shapes::cube());
+  CpuExecutor executor(2);
+  std::vector<uint32_t> labels(m.vertex_count(), 99);
+  const MeshView view = {m.positions.data(), nullptr, nullptr, nullptr, m.indices.data(), false};
+  label_components(executor, view, MeshCounts{m.vertex_count(), m.triangle_count()}, labels.data());
+  for (size_t v = 0; v < labels.size(); ++v) EXPECT_EQ(labels[v], v < 6 ? 0u : 6u);
+}
+
+// Nothing is lost where coordinates, and the volumes under single triangles, are large against the piece itself.
+TEST(Components, KeepTheirDigits) {
+  Mesh m = mesh_shapes::sphere(6);
+  mesh_shapes::scale_and_move(m, 100, 1 << 16, -(1 << 15), 1 << 14);
+  Mesh small = mesh_shapes::cube();
+  mesh_shapes::scale_and_move(small, 0.0078125, -(1 << 16), 0, 0);
+  mesh_shapes::append(m, small);
+  for (float spacing : {0.01f, 0.1f, 0.5f}) {
+    const std::vector<qses_component> found = components_of(m, 2, false, spacing);
+    ASSERT_EQ(found.size(), 2u);
+    Mesh sphere = mesh_shapes::sphere(6);
+    mesh_shapes::scale_and_move(sphere, 100, 1 << 16, -(1 << 15), 1 << 14);
+    EXPECT_NEAR(found[0].area, mesh_checks::area(sphere), 1e-11 * found[0].area) << spacing;
+    EXPECT_NEAR(found[1].area, 24 * std::pow(0.0078125, 2), 1e-12) << spacing;
+    EXPECT_NEAR(found[1].volume, 8 * std::pow(0.0078125, 3), 1e-12) << spacing;
+  }
+}
+
+TEST(Components, OfNothing) {
+  Mesh m;
+  EXPECT_TRUE(components_of(m).empty());
+}
+
+}  // namespace

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+// Runs the exact method stage by stage on the CPU, for tests of its stages.
+#pragma once
+
+#include "surface/exact_reference.h"
+
+#include "surface/cpu/cpu_kernels.h"
+#include "surface/cpu/exact_ses_cpu.h"
+#include "surface/cpu/solvent_features_cpu.h"
+
+#include "parallel/stage_timer.h"
+#include "surface/stages/atoms.h"
+#include "surface/methods/exact_surface.h"
+
+namespace exact_fixture {
+
+using namespace quickses;
+using exact_reference::Point;
+
+struct ExactRun {
+  qses_settings settings;
+  CpuExecutor executor;
+  CpuStageTimer timer;
+  MeshMemory<CpuExecutor> memory;
+  Progress progress;
+  SurfaceParameters parameters{};
+  Lattice lattice{};
+  glm::vec3 low{}, high{};
+  NeighborGridView atoms{};
+  qses_report report{};
+  WorkFacts work{}, *facts = &work;
+  bool frugal = false;
+
+  // Up to the neighbour grid.
+  ExactRun(const surface_fixture::Atoms &given, const qses_settings &s, unsigned threads = 2,
+           const CpuKernels &kernels = cpu_kernels())
+      : settings(s), executor(threads), timer(executor), memory(executor) {
+    executor.set_kernels(kernels);
+    AtomBounds bounds{glm::vec3(1e9f), glm::vec3(-1e9f), 0.f};
+    Span<Sphere> raw = executor.allocate<Sphere>(given.size()), centered = executor.allocate<Sphere>(given.size());
+    for (size_t i = 0; i < given.size(); ++i) {
+      const float *p = &given.positions[3 * i];
+      raw[i] = {glm::vec3(p[0], p[1], p[2]), given.radii[i]};
+      bounds.low = glm::min(bounds.low, raw[i].center);
+      bounds.high = glm::max(bounds.high, raw[i].center);
+      bounds.max_radius = std::max(bounds.max_radius, raw[i].radius);
+    }
+    const bool vdw = s.surface == QSES_SURFACE_VDW;
+    parameters.probe = vdw ? 0.f : s.probe_radius;
+    parameters.depth = s.surface == QSES_SURFACE_SES ? s.probe_radius : 0.f;
+    parameters.spacing = s.spacing;
+    parameters.max_radius = bounds.max_radius + parameters.probe;
+    lattice = center_lattice(bounds, s.spacing);
+    low = to_centered(lattice, bounds.low);
+    high = to_centered(lattice, bounds.high);
+    lattice = layout_lattice(lattice, low, high, parameters.max_radius);
+    executor.for_each(given.size(), CenterAtoms{raw.data, lattice.center_x, lattice.center_y, lattice.center_z,
+                                                parameters.probe, centered.data});
+    atoms = build_neighbor_grid(executor, centered, layout_cells(low, high, parameters.max_radius));
+    remove_swallowed_atoms(executor, atoms, parameters.max_radius);
+  }
+
+  FeatureView features() { return find_features(*this); }
+
+  std::vector<uint64_t> signs(const FeatureView &f, const BrickSet &bricks) {
+    std::vector<uint64_t> words(size_t(bricks.count) * kLeavesPerBrick);
+    NoCandidates none;
+    evaluate_signs(executor, f, bricks, BrickRange{0, bricks.count}, none, words.data());
+    return words;
+  }
+
+  // The whole method; with features of one's own, the rest of it.
+  mesh_checks::Mesh mesh() { return mesh(find_features(*this)); }
+  mesh_checks::Mesh mesh(const FeatureView &features) {
+    const MarchingCubesTable &table = marching_cubes_table();
+    const TableView view{table.triangle_count, table.edges, table.ring};
+    Run<CpuExecutor, CpuStageTimer> run{executor,
+                                        timer,
+                                        memory,
+                                        progress,
+                                        view,
+                                        settings,
+                                        parameters,
+                                        lattice,
+                                        low,
+                                        high,
+                                        atoms,
+                                        features,
+                                        {},
+                                        shape_of(settings, false),
+                                        MeshPurpose::kDelivered,
+                                        frugal,
+                                        &report,
+                                        facts};
+    const MeshMemoryView built = build_exact_surface(run);
+    mesh_checks::Mesh m;
+    m.positions.assign(built.view.positions, built.view.positions + 3 * built.vertices);
+    m.normals.assign(built.view.normals, built.view.normals + 3 * built.vertices);
+    m.owners.assign(built.view.owners, built.view.owners + built.vertices);
+    m.indices.assign(built.view.indices, built.view.indices + 3 * built.triangles);
+    report.unplaced_vertices = built.unplaced ? *built.unplaced : 0;
+    return m;
+  }
+
+  Point to_caller(double x, double y, double z) const {
+    return {x + lattice.center_x, y + lattice.center_y, z + lattice.center_z};
+  }
+};
+
+inline Point point(const glm::vec3 &v) {
+  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+}
+
+}  // namespace exact_fixture

@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: MIT
+// Memory budgets and estimates through the C API.
+#include "surface/surface_fixture.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#if defined(__linux__)
+#include <malloc.h>
+#endif
+
+using namespace surface_fixture;
+
+namespace {
+
+// Copies of crambin side by side, some of them in contact.
+Atoms crambins(int count) {
+  const Atoms one = crambin();
+  Atoms all;
+  for (int k = 0; k < count; ++k) {
+    const Atoms copy = k % 2 ? turned(one) : one;
+    const Atoms at = shifted(copy, 24.0 * (k % 3), 22.0 * (k / 3 % 3), 31.0 * (k / 9));
+    for (size_t i = 0; i < at.size(); ++i) {
+      const auto c = at.center(i);
+      all.add(c[0], c[1], c[2], static_cast<double>(at.radii[i]));
+    }
+  }
+  return all;
+}
+
+qses_size_estimate estimate(qses_context *context, const qses_settings &s) {
+  qses_size_estimate e;
+  qses_size_estimate_init(&e);
+  expect_ok(qses_estimate(context, &s, &e));
+  return e;
+}
+
+void expect_close(uint64_t predicted, uint64_t actual, const std::string &what) {
+  EXPECT_GE(static_cast<double>(predicted), 0.9 * static_cast<double>(actual)) << what;
+  EXPECT_LE(static_cast<double>(predicted), 1.25 * static_cast<double>(actual)) << what;
+}
+
+struct Case {
+  const char *name;
+  Atoms atoms;
+  qses_settings settings;
+};
+
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  const Atoms one = crambin(), many = crambins(12);
+  const auto add = [&](const char *name, const Atoms &atoms, qses_settings s) { all.push_back({name, atoms, s}); };
+  add("one", one, settings(0.5));
+  add("fine", one, settings(0.15));
+  add("coarse", many, settings(2.0));
+  add("many", many, settings(0.5));
+  add("many, fine", many, settings(0.3));
+  add("sas", many, settings(0.4, 1.4, QSES_SURFACE_SAS));
+  add("wide probe", many, settings(0.5, 4.0));
+  add("very wide probe", one, settings(0.4, 12.0));
+  add("vdw", many, settings(0.4, 1.4, QSES_SURFACE_VDW));
+  qses_settings s = settings(0.4);
+  s.relaxation_steps = 3;
+  add("relaxed", many, s);
+  s = settings(0.4);
+  s.vertex_layout = QSES_VERTICES_INTERLEAVED;
+  s.texcoords = 1;
+  s.patch_types = 1;
+  add("all attributes", many, s);
+  s = settings(0.4);
+  s.components = 1;
+  add("components", many, s);
+  s.relaxation_steps = 3;
+  add("components, relaxed", one, s);
+  s = settings(0.5);
+  s.method = QSES_METHOD_GRID;
+  add("grid", many, s);
+  const Atoms few = cluster(20, 1);
+  add("few atoms, huge probe", few, settings(0.25, 28));
+  s = settings(0.4, 28);
+  s.method = QSES_METHOD_GRID;
+  add("few atoms, huge probe, grid", few, s);
+  return all;
+}
+
+// The views compare equal, byte for byte, in everything but where they are.
+void expect_same_bytes(const qses_mesh &a, const qses_mesh &b, const std::string &what) {
+  ASSERT_EQ(a.vertex_count, b.vertex_count) << what;
+  ASSERT_EQ(a.triangle_count, b.triangle_count) << what;
+  ASSERT_EQ(a.vertex_bytes, b.vertex_bytes) << what;
+  const size_t v = a.vertex_count, t = a.triangle_count;
+  const auto same = [&](const void *p, const void *q, size_t bytes) {
+    ASSERT_EQ(p == nullptr, q == nullptr) << what;
+    if (p) {
+      ASSERT_EQ(std::memcmp(p, q, bytes), 0) << what;
+    }
+  };
+  if (a.vertex_bytes) {
+    same(a.positions, b.positions, v * a.vertex_bytes);
+  } else {
+    same(a.positions, b.positions, 12 * v);
+    same(a.normals, b.normals, 12 * v);
+    same(a.colors, b.colors, 4 * v);
+    same(a.texcoords, b.texcoords, 8 * v);
+  }
+  same(a.owners, b.owners, 4 * v);
+  same(a.patches, b.patches, v);
+  same(a.indices, b.indices, 12 * t);
+  for (int d = 0; d < 3; ++d) {
+    EXPECT_EQ(a.bounds_min[d], b.bounds_min[d]) << what;
+    EXPECT_EQ(a.bounds_max[d], b.bounds_max[d]) << what;
+  }
+}
+
+}  // namespace
+
+TEST(Estimate, IsNearTheTruth) {
+  const Context context;
+  for (const Case &c : cases()) {
+    set_atoms(context, c.atoms);
+    const qses_size_estimate e = estimate(context, c.settings);
+    const qses_mesh mesh = compute_view(context, c.settings);
+    const qses_report report = report_of(context);
+    expect_close(e.vertices, mesh.vertex_count, std::string(c.name) + ": vertices");
+    expect_close(e.triangles, mesh.triangle_count, std::string(c.name) + ": triangles");
+    expect_close(e.mesh_bytes, report.mesh_bytes, std::string(c.name) + ": mesh");
+    expect_close(e.work_bytes, report.work_bytes_peak, std::string(c.name) + ": work");
+    EXPECT_EQ(e.fits, 1) << c.name;
+    // The same again now that memory is there.
+    EXPECT_EQ(estimate(context, c.settings).smallest_budget, e.smallest_budget) << c.name;
+    compute_view(context, c.settings);
+    expect_close(report_of(context).work_bytes_peak, report.work_bytes_peak, std::string(c.name) + ": work, again");
+  }
+}
+
+TEST(Estimate, AfterACancelledJob) {
+  const Context context;
+  set_atoms(context, crambins(12));
+  const qses_settings s = settings(0.2);
+  const qses_size_estimate before = estimate(context, s);
+  for (int trial = 0; trial < 3; ++trial) {
+    expect_ok(qses_begin(context, &s));
+    expect_ok(qses_cancel(context));
+    EXPECT_EQ(estimate(context, s).vertices, before.vertices);
+  }
+}
+
+TEST(Estimate, LeavesTheLastMeshInPlace) {
+  const Context context;
+  set_atoms(context, crambin());
+  const qses_mesh before = compute_view(context, settings(0.7));
+  const std::vector<float> positions(before.positions, before.positions + 3 * size_t(before.vertex_count));
+  estimate(context, settings(0.3));
+  qses_mesh after;
+  qses_mesh_init(&after);
+  expect_ok(qses_get_mesh(context, &after));
+  ASSERT_EQ(after.vertex_count, before.vertex_count);
+  EXPECT_EQ(std::memcmp(after.positions, positions.data(), 4 * positions.size()), 0);
+}
+
+TEST(Estimate, OfNothingIsNothing) {
+  const Context context;
+  qses_size_estimate e;
+  qses_size_estimate_init(&e);
+  EXPECT_EQ(qses_estimate(context, nullptr, &e), QSES_NO_RESULT);
+  expect_ok(qses_set_atoms(context, nullptr, 0, nullptr, 0));
+  expect_ok(qses_estimate(context, nullptr, &e));
+  EXPECT_EQ(e.vertices, 0u);
+  EXPECT_EQ(e.mesh_bytes, 0u);
+  EXPECT_EQ(e.fits, 1);
+}
+
+TEST(Budget, TheSmallestWorksAndGivesTheSameBytes) {
+  const Context unbounded;
+  for (const Case &c : cases()) {
+    set_atoms(unbounded, c.atoms);
+    const uint64_t smallest = estimate(unbounded, c.settings).smallest_budget;
+    const qses_mesh expected = compute_view(unbounded, c.settings);
+    const qses_report whole = report_of(unbounded);
+    for (const uint64_t budget : {smallest, smallest + smallest / 4, 3 * smallest}) {
+      const std::string what = std::string(c.name) + ": " + std::to_string(budget) + " bytes";
+      const Context context(2, budget);
+      set_atoms(context, c.atoms);
+      EXPECT_EQ(estimate(context, c.settings).fits, 1) << what;
+      // Twice: the second time all memory is there.
+      for (int round = 0; round < 2; ++round) {
+        qses_mesh mesh;
+        qses_mesh_init(&mesh);
+        ASSERT_EQ(qses_compute(context, &c.settings, &mesh), QSES_OK) << what << ": " << qses_last_error();
+        expect_same_bytes(mesh, expected, what);
+      }
+      const qses_report report = report_of(context);
+      EXPECT_LE(report.work_bytes_peak, budget) << what;
+      EXPECT_EQ(report.area, whole.area) << what;
+      EXPECT_EQ(report.volume, whole.volume) << what;
+    }
+  }
+}
+
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+// Bytes that the process has from malloc. Contexts keep what they took, so it tells their peak.
+uint64_t heap_bytes() {
+  const struct mallinfo2 info = mallinfo2();
+  return info.uordblks + info.hblkhd;
+}
+
+TEST(Budget, IsKeptByTheHeap) {
+  if (tested_backend() != QSES_BACKEND_CPU) GTEST_SKIP() << "the budget is of the device";
+  for (const Case &c : cases()) {
+    Context unbounded;
+    set_atoms(unbounded, c.atoms);
+    const uint64_t budget = estimate(unbounded, c.settings).smallest_budget * 5 / 4;
+    const uint64_t before = heap_bytes();
+    const Context context(2, budget);
+    set_atoms(context, c.atoms);
+    for (int round = 0; round < 2; ++round) compute_view(context, c.settings);
+    const qses_report report = report_of(context);
+    const uint64_t beside = report.host_bytes_peak - report.work_bytes_peak;  // atoms and mesh
+    constexpr uint64_t kHandles = 65536;
+    EXPECT_LE(heap_bytes() - before, budget + beside + kHandles) << c.name;
+  }
+}
+#endif
+
+TEST(Budget, TheEstimateKnowsIt) {
+  const Atoms atoms = crambins(12);
+  const Context unbounded;
+  set_atoms(unbounded, atoms);
+  const uint64_t smallest = estimate(unbounded, settings(0.4)).smallest_budget;
+  const Context context(2, smallest + smallest / 8);
+  set_atoms(context, atoms);
+  const qses_size_estimate e = estimate(context, settings(0.4));
+  EXPECT_EQ(e.fits, 1);
+  expect_close(e.smallest_budget, smallest, "smallest budget");
+  compute_view(context, settings(0.4));
+  expect_close(e.work_bytes, report_of(context).work_bytes_peak, "work");
+}
+
+TEST(Budget, TooSmallIsRefusedWithOneThatWouldDo) {
+  const Context unbounded;
+  for (const Case &c : cases()) {
+    set_atoms(unbounded, c.atoms);
+    const uint64_t smallest = estimate(unbounded, c.settings).smallest_budget;
+    for (const uint64_t budget : {uint64_t(1), smallest / 3, smallest / 3 * 2}) {
+      const std::string what =
+          std::string(c.name) + ": " + std::to_string(budget) + " bytes of " + std::to_string(smallest);
+      const Context context(2, budget);
+      set_atoms(context, c.atoms);
+      const qses_status status = qses_compute(context, &c.settings, nullptr);
+      if (budget > smallest / 2 && status == QSES_OK) continue;  // it is only promised that the smallest works
+      ASSERT_EQ(status, QSES_OUT_OF_MEMORY) << what;
+      const std::string message = qses_last_error();
+      const size_t about = message.find("about ");
+      ASSERT_NE(about, std::string::npos) << message;
+      char unit = 0;
+      double value = 0;
+      ASSERT_EQ(std::sscanf(message.c_str() + about, "about %lf %ciB", &value, &unit), 2) << message;
+      const double named = value * (unit == 'K' ? 1024.0 : unit == 'M' ? 1048576.0 : 1073741824.0);
+      const Context enough(2, static_cast<uint64_t>(named));
+      set_atoms(enough, c.atoms);
+      EXPECT_EQ(qses_compute(enough, &c.settings, nullptr), QSES_OK)
+          << what << ": " << message << " / " << qses_last_error();
+      // What is known by then tells more where the budget is nearly enough.
+      EXPECT_LE(named, (budget > smallest / 2 ? 2.0 : 3.0) * static_cast<double>(smallest) + 1e6)
+          << what << ": " << message;
+      // The context that refused still works on something smaller.
+      if (budget < 1000000) continue;
+      Atoms atom;
+      atom.add(0, 0, 0, 1.7);
+      set_atoms(context, atom);
+      EXPECT_EQ(qses_compute(context, nullptr, nullptr), QSES_OK) << what << ": " << qses_last_error();
+    }
+  }
+}
+
+TEST(Budget, LaddersAndFramesKeepIt) {
+  const Atoms atoms = crambins(6);
+  const Context unbounded;
+  set_atoms(unbounded, atoms);
+  const uint64_t budget = estimate(unbounded, settings(0.5)).smallest_budget * 5 / 4;
+  const Context context(2, budget);
+  set_atoms(context, atoms);
+  for (int frame = 0; frame < 3; ++frame) {
+    const Atoms moved = shifted(atoms, 0.1 * frame, 0, 0);
+    expect_ok(qses_set_positions(context, moved.positions.data(), 0, moved.size()));
+    const qses_settings s = settings(0.5);
+    expect_ok(qses_begin(context, &s));
+    expect_ok(qses_wait(context, -1, nullptr));
+    qses_mesh mesh;
+    qses_mesh_init(&mesh);
+    ASSERT_EQ(qses_collect(context, &mesh), QSES_OK);
+    EXPECT_EQ(mesh.level, 2u);
+    EXPECT_LE(report_of(context).work_bytes_peak, budget);
+    const Surface expected = compute(unbounded, moved, s);
+    ASSERT_EQ(mesh.vertex_count, expected.vertex_count());
+    EXPECT_EQ(std::memcmp(mesh.indices, expected.mesh.indices.data(), 12 * size_t(mesh.triangle_count)), 0);
+  }
+}
