@@ -245,7 +245,7 @@ class SurfacePipeline : public SurfaceEngine {
                                                 p.parameters.probe, atoms.data});
       return atoms;
     });
-    remove_swallowed_atoms(executor_, p.grid, p.parameters.max_radius);
+    remove_contained_atoms(executor_, p.grid, p.parameters.max_radius);
     if (settings.method == QSES_METHOD_EXACT) {
       auto run = run_of(p, settings, nullptr);
       p.features = find_features(run);
