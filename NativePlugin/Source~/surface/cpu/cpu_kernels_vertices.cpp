@@ -58,13 +58,6 @@ struct AllCandidates {
   uint32_t arc(int k) const { return static_cast<uint32_t>(c.arc_index[k]); }
 };
 
-// Case of a cell by its lower corner, -1 ... 7 in each axis.
-QSES_FN int cell_case(const SignRows &rows, int x, int y, int z) {
-  const int s = x + 1;
-  return (rows.row[z + 1][y + 1] >> s & 3) | (rows.row[z + 1][y + 2] >> s & 3) << 2 |
-         (rows.row[z + 2][y + 1] >> s & 3) << 4 | (rows.row[z + 2][y + 2] >> s & 3) << 6;
-}
-
 // Where the brick's vertices start, in the order of their numbers. Returns how many there are.
 int start_vertices(const FeatureView &f, const BrickSet &bricks, const MeshLayout &layout, uint32_t brick,
                    const VertexStarts &starts, const BrickCandidates &c, Points *p) {
@@ -93,13 +86,8 @@ int start_vertices(const FeatureView &f, const BrickSet &bricks, const MeshLayou
           start = {low.x + (axis == 0 ? along : 0.f), low.y + (axis == 1 ? along : 0.f),
                    low.z + (axis == 2 ? along : 0.f)};
           if (starts.relax) {
-            const auto case_near = [&](int second, int third) {
-              return axis == 0   ? cell_case(rows, x, y + second, z + third)
-                     : axis == 1 ? cell_case(rows, x + second, y, z + third)
-                                 : cell_case(rows, x + second, y + third, z);
-            };
             float mx, my, mz;
-            ring_displacement(edge_ring_of_cells(case_near, axis, starts.ring), &mx, &my, &mz);
+            ring_displacement(edge_ring_of_rows(&rows.row[z + 1][y + 1], 10, x + 1, axis, starts.ring), &mx, &my, &mz);
             start = start + Vec3<float>(mx, my, mz) * h;
           }
         }

@@ -114,9 +114,8 @@ static __global__ __launch_bounds__(128) void list_circles_kernel(CircleJob job)
     for (int q0 = 0; q0 < range.count; q0 += kWarp) {
       const int q = q0 + lane;
       const bool owns = q < range.count && job.neighbors[range.first + static_cast<uint32_t>(q)] > i;
-      const unsigned ballot = __ballot_sync(kFullWarp, owns);
-      if (owns) job.names[next + static_cast<uint32_t>(place_in(ballot, lane))] = {i, static_cast<uint32_t>(q)};
-      next += static_cast<uint32_t>(__popc(ballot));
+      const uint32_t slot = append_place(owns, &next);
+      if (owns) job.names[slot] = {i, static_cast<uint32_t>(q)};
     }
   }
 }
