@@ -2,7 +2,6 @@
 // CPU kernel: caps and exposed arcs of one atom, eight neighbours or eight cutting balls at a time.
 #include "parallel/pack.h"
 #include "surface/cpu/cpu_kernels.h"
-#include "surface/cpu/cpu_kernels_isa.h"
 
 namespace quickses {
 namespace QSES_CPU_ISA {

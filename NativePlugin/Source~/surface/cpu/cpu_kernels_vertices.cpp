@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // CPU kernel: the vertices that one brick owns, placed exactly on the surface eight at a time.
 #include "surface/cpu/cpu_candidates.h"
-#include "surface/cpu/cpu_kernels_isa.h"
 
 #include <new>
 

@@ -272,8 +272,8 @@ inline FeatureCounters find_run_features(CudaExecutor &executor, const FeaturePa
   find_caps(executor, CapJob{pass.atoms, pass.max_radius, run, room, counters.data, pass.cap_ranges, caps,
                              neighbors.data, circle_count.data, pass.exposed, long_atoms.data});
   executor.exclusive_scan(n, LoadNumber{circle_count.data}, circle_first);
-  clip_circles(executor, CircleJob{pass.atoms, run, room, counters.data, pass.cap_ranges, caps, neighbors.data,
-                                   circle_first.data, pass.exposed, arcs});
+  find_arcs(executor, CircleJob{pass.atoms, run, room, counters.data, pass.cap_ranges, caps, neighbors.data,
+                                circle_first.data, pass.exposed, arcs});
   const FeatureCounters found = executor.fetch(counters.data);
   executor.arena().rewind(mark);
   return found;
