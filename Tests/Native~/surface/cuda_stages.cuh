@@ -99,9 +99,9 @@ inline DeviceStages run_device_stages(CudaExecutor &executor, const DeviceTable 
   executor.for_each(n,
                     CenterAtoms{given.data, lattice.center_x, lattice.center_y, lattice.center_z, p.probe, atoms.data});
   s.grid = build_neighbor_grid(executor, atoms, layout_cells(low, high, p.max_radius));
-  Span<uint8_t> swallowed = executor.allocate<uint8_t>(n);
-  executor.for_each(n, FindSwallowedAtoms{s.grid, p.max_radius, swallowed.data});
-  executor.for_each(n, RemoveSwallowedAtoms{swallowed.data, const_cast<Sphere *>(s.grid.items)});
+  Span<uint8_t> contained = executor.allocate<uint8_t>(n);
+  executor.for_each(n, FindContainedAtoms{s.grid, p.max_radius, contained.data});
+  executor.for_each(n, RemoveContainedAtoms{contained.data, const_cast<Sphere *>(s.grid.items)});
   timer.begin("solvent_features");
   find_solvent_features(executor, s.grid, p, false, &s.found);
   timer.begin("arc_grid");

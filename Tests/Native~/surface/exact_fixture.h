@@ -57,7 +57,7 @@ struct ExactRun {
     executor.for_each(given.size(), CenterAtoms{raw.data, lattice.center_x, lattice.center_y, lattice.center_z,
                                                 parameters.probe, centered.data});
     atoms = build_neighbor_grid(executor, centered, layout_cells(low, high, parameters.max_radius));
-    remove_swallowed_atoms(executor, atoms, parameters.max_radius);
+    remove_contained_atoms(executor, atoms, parameters.max_radius);
   }
 
   FeatureView features() { return find_features(*this); }

@@ -22,7 +22,7 @@ struct CandidatesOf<CudaExecutor> {
   }
   static double emission_bytes(const SurfaceParameters &parameters, const CandidateCounts &all, double vertices,
                                double leaves) {
-    return gpu::candidate_bytes(parameters, all) + 4.0 * gpu::row_words(parameters) * leaves + 12.0 * vertices;
+    return gpu::candidate_bytes(parameters, all) + 4.0 * gpu::leaf_list_words(parameters) * leaves + 12.0 * vertices;
   }
   // Signs and layout, and the mesh of a surface as dense as proteins have it.
   static uint64_t whole_bytes(const SurfaceParameters &parameters, const CandidateCounts &all) {
@@ -88,36 +88,6 @@ struct BoxCull {
 
 enum class LeafKind { kMixed, kInside, kOutside };
 
-// The deepest ball of a leaf's centre among a brick's atoms.
-struct LeafBest {
-  float depth;
-  uint32_t atom;
-};
-__device__ __forceinline__ LeafBest deepest_at(const FeatureView &f, const uint32_t *atoms, uint32_t count,
-                                               const Vec3<float> &center) {
-  LeafBest best{-2.f * kFarAway, 0xffffffffu};
-  for (uint32_t k = static_cast<uint32_t>(lane_id()); k < count; k += kWarp) {
-    const uint32_t i = __ldg(atoms + k);
-    const float d = ball_depth(load(f.atoms.items + i), center);
-    if (d > best.depth) best = {d, i};
-  }
-  const float depth = warp_maximum(best.depth);
-  uint32_t atom = best.depth == depth ? best.atom : 0xffffffffu;
-#pragma unroll
-  for (int d = kWarp / 2; d > 0; d >>= 1) {
-    const uint32_t other = __shfl_xor_sync(kFullWarp, atom, d);
-    atom = other < atom ? other : atom;
-  }
-  return {depth, atom};
-}
-
-// Whether a point is outside because its projection on the ball it is deepest in is exposed.
-__device__ __forceinline__ bool projection_exposed(const FeatureView &f, uint32_t atom, const Vec3<float> &x,
-                                                   float depth) {
-  const Sphere ball = load(f.atoms.items + atom);
-  return is_exposed(f, atom, x - Vec3<float>(ball.center), offset_length(ball, depth));
-}
-
 static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_kernel(SignJob job) {
   __shared__ LeafScratch scratch_memory[kSignWarps];
   const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();
@@ -140,7 +110,8 @@ static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_k
   first += glm::ivec3(4 * (leaf & 1), 4 * (leaf >> 1 & 1), 4 * (leaf >> 2));
 
   // Atoms that can be deepest at a point.
-  const LeafBest best = deepest_at(f, atoms, brick_row.atom_count, center);
+  const auto atom_at = [&](uint32_t k) { return __ldg(atoms + k); };
+  const DeepestAtom best = warp_deepest_atom(f, brick_row.atom_count, atom_at, center);
   int atom_count = 0;
   if (brick_row.atom_count > 0) {
     BoxCull cull;
@@ -157,15 +128,11 @@ static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_k
         const float d = ball_depth(ball, center);
         near = (d >= -reach.leaf_radius - reach.slack && cull.keeps(ball, d)) || i == best.atom;
       }
-      const unsigned ballot = __ballot_sync(kFullWarp, near);
-      if (near) {
-        const int place = atom_count + place_in(ballot, lane);
-        if (place < kLeafAtoms) {
-          scratch.atom[place] = ball;
-          scratch.atom_number[place] = i;
-        }
+      const int place = append_place(near, &atom_count);
+      if (near && place < kLeafAtoms) {
+        scratch.atom[place] = ball;
+        scratch.atom_number[place] = i;
       }
-      atom_count += __popc(ballot);
     }
   }
 
@@ -174,12 +141,8 @@ static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_k
   const auto stage_arcs = [&](uint32_t k0) {
     const uint32_t k = k0 + static_cast<uint32_t>(lane);
     const bool near = k < brick_row.arc_count && (__ldg(arc_leaves + k) >> leaf & 1) != 0;
-    const unsigned ballot = __ballot_sync(kFullWarp, near);
-    if (near) {
-      const int place = arc_count + place_in(ballot, lane);
-      if (place < kLeafArcs) scratch.arc[place] = load(f.arcs + __ldg(arcs + k));
-    }
-    arc_count += __popc(ballot);
+    const int place = append_place(near, &arc_count);
+    if (near && place < kLeafArcs) scratch.arc[place] = load(f.arcs + __ldg(arcs + k));
   };
   for (uint32_t k0 = 0; k0 < brick_row.arc_count; k0 += kWarp) stage_arcs(k0);
   __syncwarp();

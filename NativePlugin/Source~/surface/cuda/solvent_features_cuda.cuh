@@ -76,16 +76,12 @@ __device__ __forceinline__ int gather_caps(const NeighborGridView &atoms, float 
         meets = overlap(self.radius, other.radius, distance2);
       }
     }
-    const unsigned ballot = __ballot_sync(kFullWarp, meets);
-    if (meets) {
-      const int place = n + place_in(ballot, lane);
-      if (place < room) {
-        rows.cap[place] = {to_glm(axis), cosine};
-        rows.sine[place] = cap_sine(cosine);
-        rows.neighbor[place] = k;
-      }
+    const int place = append_place(meets, &n);
+    if (meets && place < room) {
+      rows.cap[place] = {to_glm(axis), cosine};
+      rows.sine[place] = cap_sine(cosine);
+      rows.neighbor[place] = k;
     }
-    n += __popc(ballot);
   });
   __syncwarp();
   return n;
@@ -124,14 +120,13 @@ __device__ __forceinline__ int drop_contained_caps(const CapRows &rows, int n) {
       cap = rows.cap[j];
       neighbor = rows.neighbor[j];
     }
-    const unsigned ballot = __ballot_sync(kFullWarp, !(neighbor & kContainedCap));
+    const bool stays = !(neighbor & kContainedCap);
+    const int place = append_place(stays, &kept);
     __syncwarp();
-    if (!(neighbor & kContainedCap)) {
-      const int place = kept + place_in(ballot, lane);
+    if (stays) {
       rows.cap[place] = cap;
       rows.neighbor[place] = neighbor;
     }
-    kept += __popc(ballot);
     __syncwarp();
   }
   return kept;
@@ -277,8 +272,8 @@ inline FeatureCounters find_run_features(CudaExecutor &executor, const FeaturePa
   find_caps(executor, CapJob{pass.atoms, pass.max_radius, run, room, counters.data, pass.cap_ranges, caps,
                              neighbors.data, circle_count.data, pass.exposed, long_atoms.data});
   executor.exclusive_scan(n, LoadNumber{circle_count.data}, circle_first);
-  clip_circles(executor, CircleJob{pass.atoms, run, room, counters.data, pass.cap_ranges, caps, neighbors.data,
-                                   circle_first.data, pass.exposed, arcs});
+  find_arcs(executor, CircleJob{pass.atoms, run, room, counters.data, pass.cap_ranges, caps, neighbors.data,
+                                circle_first.data, pass.exposed, arcs});
   const FeatureCounters found = executor.fetch(counters.data);
   executor.arena().rewind(mark);
   return found;

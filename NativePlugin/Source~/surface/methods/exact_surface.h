@@ -22,8 +22,8 @@ template <class Executor>
 void remove_contained_atoms(Executor &executor, const NeighborGridView &atoms, float max_radius) {
   const auto mark = executor.arena().mark();
   Span<uint8_t> contained = executor.template allocate<uint8_t>(atoms.count);
-  executor.for_each(atoms.count, FindSwallowedAtoms{atoms, max_radius, contained.data});
-  executor.for_each(atoms.count, RemoveSwallowedAtoms{contained.data, const_cast<Sphere *>(atoms.items)});
+  executor.for_each(atoms.count, FindContainedAtoms{atoms, max_radius, contained.data});
+  executor.for_each(atoms.count, RemoveContainedAtoms{contained.data, const_cast<Sphere *>(atoms.items)});
   executor.arena().rewind(mark);
 }
 
