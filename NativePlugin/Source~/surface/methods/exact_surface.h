@@ -7,16 +7,6 @@
 
 namespace quickses {
 
-// The executor that counts for another one, or for itself.
-template <class Executor>
-CountingExecutor<Executor> counting(Executor &executor, const WorkFacts &facts) {
-  return {executor, facts, ~uint64_t(0) >> 1, executor.arena().has_budget()};
-}
-template <class Executor>
-CountingExecutor<Executor> counting(CountingExecutor<Executor> &executor, const WorkFacts &facts) {
-  return {executor.real(), facts, ~uint64_t(0) >> 1, executor.arena().has_budget()};
-}
-
 // What is found of the atoms serves every spacing.
 template <class Executor>
 void remove_contained_atoms(Executor &executor, const NeighborGridView &atoms, float max_radius) {
