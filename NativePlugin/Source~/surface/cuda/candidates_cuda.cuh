@@ -53,8 +53,8 @@ inline double candidate_bytes(const SurfaceParameters &parameters, const Candida
   return 4.0 * std::min(listed, all.atoms) + 5.0 * std::min(listed, all.arcs) + 56.0;
 }
 
-// Words of the list that a leaf with vertices has besides (vertex_candidates_cuda.cuh): with its volume, more can matter
-// to it.
+// Words of the list that a leaf with vertices has besides (vertex_candidates_cuda.cuh): with its volume, more can
+// matter to it.
 inline uint32_t leaf_list_words(const SurfaceParameters &parameters) {
   constexpr double kUsual = 64, kUsualSpacing = 0.6, kMost = 2048;
   const double scale = static_cast<double>(parameters.spacing) / kUsualSpacing;
