@@ -287,8 +287,8 @@ void find_arcs(E &executor, CircleJob job) {
   // Enough warps to fill the GPU, and enough circles per warp to refill its lanes.
   const uint32_t chunk =
       static_cast<uint32_t>(std::min<size_t>(256, std::max<size_t>(64, room.circles / (processors * 64))));
-  executor.launch("find_arcs", find_arcs_kernel, std::min(room.circles / (4 * chunk) + 1, processors * 64),
-                  kArcThreads, 0, job, chunk);
+  executor.launch("find_arcs", find_arcs_kernel, std::min(room.circles / (4 * chunk) + 1, processors * 64), kArcThreads,
+                  0, job, chunk);
   if (room.intervals > 0) {
     const size_t blocks = 16;
     Span<Interval> memory = executor.template allocate<Interval>(blocks * kWarp * room.intervals);

@@ -23,8 +23,8 @@ __device__ __forceinline__ void finish_vertex(const VertexJob &job, uint32_t k, 
   if (job.mesh.patches) job.mesh.patch(vertex) = static_cast<uint8_t>(s.patch);
 }
 
-// Between the kernels the mesh holds where a vertex is on its way, and for its owner the rounds it has had; 0 if its edge
-// decides.
+// Between the kernels the mesh holds where a vertex is on its way, and for its owner the rounds it has had; 0 if its
+// edge decides.
 __device__ __forceinline__ void leave_vertex(const VertexJob &job, uint32_t k, const Projection &v) {
   const uint32_t vertex = job.first + k;
   store_start(job, vertex, v.point.position);

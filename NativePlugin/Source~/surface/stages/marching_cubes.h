@@ -93,8 +93,8 @@ QSES_FN uint64_t mixed_cells(const LeafWords &c) {
   return any & ~all;
 }
 
-// Case of a cell: bit c = corner c is inside, corner = x + 2 y + 4 z. From corner words, by the cell's bit; or from rows
-// of signs along x, by the row and the bit of its lower corner.
+// Case of a cell: bit c = corner c is inside, corner = x + 2 y + 4 z. From corner words, by the cell's bit; or from
+// rows of signs along x, by the row and the bit of its lower corner.
 QSES_FN int cell_case(const LeafWords &c, int bit) {
   int code = 0;
   for (int d = 0; d < 8; ++d) code |= static_cast<int>(c.at[d] >> bit & 1) << d;
