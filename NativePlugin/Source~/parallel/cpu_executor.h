@@ -24,9 +24,6 @@
 
 namespace quickses {
 
-struct CpuKernels;
-const CpuKernels &cpu_kernels();
-
 class CpuExecutor {
  public:
   static constexpr bool kIsCuda = false;
@@ -51,9 +48,6 @@ class CpuExecutor {
   explicit CpuExecutor(unsigned threads) : threads_(threads) {}
 
   unsigned threads() const { return threads_.count(); }
-  // The instruction set's kernels that the hot stages use; tests set others.
-  const CpuKernels &kernels() const { return *kernels_; }
-  void set_kernels(const CpuKernels &kernels) { kernels_ = &kernels; }
   Arena<HostMemory> &arena() { return arena_; }
 
   // What the threads' scratch takes, and what is set aside for it in a budget: it is larger only where atoms crowd.
@@ -337,7 +331,6 @@ class CpuExecutor {
 
   CpuThreads threads_;
   const std::atomic<bool> *stop_ = nullptr;
-  const CpuKernels *kernels_ = &cpu_kernels();
   Arena<HostMemory> arena_;
   std::map<std::type_index, ScratchPool> scratch_pools_;
 };

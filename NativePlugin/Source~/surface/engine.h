@@ -4,37 +4,14 @@
 #pragma once
 
 #include "quickses/quickses.h"
+#include "surface/memory/atom_set.h"
 #include "surface/stages/appearance.h"
-#include "surface/geometry/types.h"
 
 #include <atomic>
 #include <functional>
 #include <memory>
 
 namespace quickses {
-
-// Everything about the atoms that the host knows before the back end sees them.
-struct AtomBounds {
-  glm::vec3 low, high;  // of the centres, caller's coordinates
-  float max_radius;     // without the probe
-};
-
-// The atoms of one frame in memory that the back end reads fast: centres in the caller's coordinates and van der Waals
-// radii. Filled once, then only read.
-struct AtomSet {
-  Sphere *atoms = nullptr;
-  size_t count = 0;
-  AtomBounds bounds{};
-
-  AtomSet() = default;
-  AtomSet(const AtomSet &) = delete;
-  AtomSet &operator=(const AtomSet &) = delete;
-  virtual ~AtomSet() = default;
-};
-
-// Meshes are made in buffers that the engine owns. With three of them one can be written while another one waits to be
-// collected and the caller still reads the third.
-constexpr int kMeshSlots = 3;
 
 // Who receives the levels. Called on the thread that computes.
 class LevelSink {

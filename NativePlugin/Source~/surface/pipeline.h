@@ -4,16 +4,16 @@
 // make one of each.
 #pragma once
 
-#include "surface/stages/atoms.h"
+#include "surface/engine.h"
+#include "surface/levels.h"
+#include "surface/memory/memory_plan.h"
 #include "surface/methods/exact_surface.h"
 #include "surface/methods/grid_surface.h"
-#include "surface/levels.h"
+#include "surface/methods/size_check.h"
+#include "surface/methods/size_estimate.h"
+#include "surface/methods/visible_mask.h"
+#include "surface/stages/atoms.h"
 #include "surface/stages/measure.h"
-#include "surface/memory/memory_plan.h"
-#include "surface/memory/mesh_memory.h"
-#include "surface/memory/size_check.h"
-#include "surface/memory/size_estimate.h"
-#include "surface/stages/visible_mask.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -49,8 +49,7 @@ class SurfacePipeline : public SurfaceEngine {
     const typename Executor::StopScope stop(executor_, sink.stop_flag());
     executor_.arena().reset();
     executor_.arena().set_limit(limit_);
-    progress_.restart(sink);
-    progress_.enter(0.0, 0.0);
+    progress_.restart(&sink.stop_flag(), [&](double fraction) { sink.advance(fraction); });
     timer_.reset();
     facts_ = {};
     try {
@@ -65,7 +64,7 @@ class SurfacePipeline : public SurfaceEngine {
                               const std::atomic<bool> &stop) override {
     const typename Executor::CallScope scope(executor_);
     const typename Executor::StopScope stop_scope(executor_, stop);
-    progress_.rest();
+    progress_.restart(nullptr, {});
     executor_.arena().set_limit(limit_);
     qses_size_estimate out;
     qses_size_estimate_init(&out);

@@ -2,8 +2,7 @@
 // CPU driver of the exact field and of the mesh: one thread per brick.
 #pragma once
 
-#include "parallel/cpu_executor.h"
-#include "surface/cpu/cpu_kernels.h"
+#include "surface/cpu/cpu_kernel_executor.h"
 #include "surface/memory/work_facts.h"
 
 namespace quickses {
@@ -11,7 +10,7 @@ namespace quickses {
 // The CPU gathers the candidates of a brick when it comes to it, so slices share nothing.
 struct NoCandidates {};
 template <>
-struct CandidatesOf<CpuExecutor> {
+struct CandidatesOf<CpuKernelExecutor> {
   using type = NoCandidates;
   static constexpr double kSpareBytes = 0;
   static double sign_bytes(const SurfaceParameters &, const CandidateCounts &) { return 0; }
@@ -62,8 +61,8 @@ struct EvaluateBrick {
   }
 };
 
-inline void evaluate_signs(CpuExecutor &executor, const FeatureView &features, const BrickSet &bricks, BrickRange slice,
-                           NoCandidates &, uint64_t *signs) {
+inline void evaluate_signs(CpuKernelExecutor &executor, const FeatureView &features, const BrickSet &bricks,
+                           BrickRange slice, NoCandidates &, uint64_t *signs) {
   executor.match_scratches<BrickColumns>();
   executor.for_each_brick<BrickColumns>(slice.size(),
                                         EvaluateBrick{&executor.kernels(), &features, &bricks, slice.first, signs});
@@ -84,7 +83,7 @@ struct EmitBrickVertices {
   }
 };
 
-inline void emit_vertices(CpuExecutor &executor, const FeatureView &features, const BrickSet &bricks,
+inline void emit_vertices(CpuKernelExecutor &executor, const FeatureView &features, const BrickSet &bricks,
                           const MeshLayout &layout, BrickRange slice, NoCandidates &, const VertexStarts &starts,
                           const MeshView &mesh) {
   executor.match_scratches<BrickColumns>();
@@ -104,8 +103,8 @@ struct EmitBrickTriangles {
   }
 };
 
-inline void emit_triangles(CpuExecutor &executor, const BrickSet &bricks, const MeshLayout &layout, BrickRange slice,
-                           const TableView &table, const MeshView &mesh) {
+inline void emit_triangles(CpuKernelExecutor &executor, const BrickSet &bricks, const MeshLayout &layout,
+                           BrickRange slice, const TableView &table, const MeshView &mesh) {
   executor.for_each_brick<char>(slice.size(),
                                 EmitBrickTriangles{&executor.kernels(), &bricks, &layout, &table, &mesh, slice.first});
 }

@@ -3,9 +3,8 @@
 // little memory nothing is pooled: a first pass only counts, a second one writes everything to its place.
 #pragma once
 
-#include "parallel/cpu_executor.h"
 #include "parallel/growing_buffer.h"
-#include "surface/cpu/cpu_kernels.h"
+#include "surface/cpu/cpu_kernel_executor.h"
 
 namespace quickses {
 
@@ -239,7 +238,7 @@ inline FeaturePool &open_pool(CpuExecutor &executor, size_t n, bool frugal) {
   return pool;
 }
 
-inline void find_solvent_features(CpuExecutor &executor, const NeighborGridView &atoms,
+inline void find_solvent_features(CpuKernelExecutor &executor, const NeighborGridView &atoms,
                                   const SurfaceParameters &parameters, bool frugal, SolventFeatures *features) {
   const size_t n = atoms.count;
   const size_t per_chunk =

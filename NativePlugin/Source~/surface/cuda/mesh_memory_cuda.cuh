@@ -5,8 +5,10 @@
 #pragma once
 
 #include "parallel/cuda_executor.cuh"
-#include "surface/memory/host_components.h"
-#include "surface/memory/mesh_memory.h"
+#include "surface/memory/atom_set.h"
+#include "surface/mesh/mesh_memory.h"
+#include "surface/stages/components.h"
+#include "surface/stages/host_components.h"
 
 namespace quickses {
 
@@ -18,13 +20,16 @@ class MeshMemory<CudaExecutor> {
 
   std::shared_ptr<AtomSet> make_atoms(size_t count) {
     const DeviceGuard guard(executor_.device());
-    return host_.make_atoms(count);
+    return atoms_.make(count);
   }
-  void use_slot(int slot) { host_.use_slot(slot); }
+  void use_slot(int slot) {
+    slots_.use_slot(slot);
+    components_.use_slot(slot);
+  }
   // What was allocated beside a mesh on the host, or as one to be made into another, is given up.
   void forget_spills() { spilled_ = 0; }
   uint64_t host_bytes() const {
-    uint64_t sum = host_.bytes() + host_components_.bytes();
+    uint64_t sum = atoms_.bytes() + slots_.bytes() + components_.bytes() + host_components_.bytes();
     for (const PinnedBuffer &spill : spill_) sum += spill.size();
     return sum;
   }
@@ -78,7 +83,7 @@ class MeshMemory<CudaExecutor> {
     if (!mesh->on_host) {
       const auto mark = executor.arena().mark();
       try {
-        mesh->components = quickses::find_components(executor, mesh->view, counts, spacing, host_.components());
+        mesh->components = quickses::find_components(executor, mesh->view, counts, spacing, components_);
         return;
       } catch (const MemoryRefused &) {
         executor.arena().rewind(mark);
@@ -86,7 +91,7 @@ class MeshMemory<CudaExecutor> {
       move_to_host(executor, purpose, mesh);
     }
     executor.wait();
-    mesh->components = host_components_.find(mesh->view, counts, spacing, host_.components());
+    mesh->components = host_components_.find(mesh->view, counts, spacing, components_);
   }
 
   void finish(const MeshMemoryView &built, const qses_settings &settings, qses_mesh *mesh) {
@@ -94,7 +99,7 @@ class MeshMemory<CudaExecutor> {
     MeshView host = built.view;
     if (built.vertices > 0) {
       if (!built.on_host) {
-        char *const memory = static_cast<char *>(host_.reserve_mesh(arrays.bytes()));
+        char *const memory = static_cast<char *>(slots_.reserve(arrays.bytes()));
         executor_.download(memory, static_cast<const char *>(built.memory), arrays.bytes());
         host = arrays.view(memory);
       }
@@ -114,7 +119,7 @@ class MeshMemory<CudaExecutor> {
 
  private:
   void *reserve_on_host(size_t bytes, MeshPurpose purpose) {
-    return purpose == MeshPurpose::kDelivered ? host_.reserve_mesh(bytes) : spill(bytes);
+    return purpose == MeshPurpose::kDelivered ? slots_.reserve(bytes) : spill(bytes);
   }
 
   // The values are there after the next wait.
@@ -135,7 +140,9 @@ class MeshMemory<CudaExecutor> {
   }
 
   CudaExecutor &executor_;
-  HostSide<PinnedMemory> host_;
+  AtomPool<PinnedMemory> atoms_;
+  MeshSlots<PinnedMemory> slots_;
+  ComponentMemory components_;
   PinnedBuffer spill_[4];
   size_t spilled_ = 0;
   HostComponents host_components_;

@@ -9,6 +9,14 @@
 
 namespace quickses {
 
+// What the plan depends on besides.
+struct WorkKind {
+  bool exact = true, masked = false, components = false;
+  uint32_t relaxation_steps = 1;
+  MeshShape shape{};
+  SurfaceParameters parameters{};
+};
+
 template <class Executor>
 class MemoryPlan {
  public:

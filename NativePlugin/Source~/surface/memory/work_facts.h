@@ -2,8 +2,7 @@
 // What is known of the size of a computation while it runs.
 #pragma once
 
-#include "surface/mesh/mesh_arrays.h"
-#include "surface/stages/solvent_features.h"
+#include <cstdint>
 
 namespace quickses {
 
@@ -23,14 +22,6 @@ struct WorkFacts {
   uint64_t caps = 0, arcs = 0;                        // of exposed atoms
   uint64_t brick_entries = 0;                         // of the table of bricks, 0 if the set is sparse
   SurfaceSize size{};
-};
-
-// What the plan depends on besides.
-struct WorkKind {
-  bool exact = true, masked = false, components = false;
-  uint32_t relaxation_steps = 1;
-  MeshShape shape{};
-  SurfaceParameters parameters{};
 };
 
 }  // namespace quickses

@@ -3,9 +3,8 @@
 #pragma once
 
 #include "surface/methods/closed_layout.h"
-#include "surface/memory/mesh_memory.h"
-#include "surface/stages/relaxation.h"
 #include "surface/methods/level_work.h"
+#include "surface/stages/relaxation.h"
 
 namespace quickses {
 

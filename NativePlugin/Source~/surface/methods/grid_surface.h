@@ -5,9 +5,8 @@
 
 #include "surface/methods/closed_layout.h"
 #include "surface/methods/grid_ses.h"
-#include "surface/memory/mesh_memory.h"
-#include "surface/stages/relaxation.h"
 #include "surface/methods/level_work.h"
+#include "surface/stages/relaxation.h"
 
 namespace quickses {
 

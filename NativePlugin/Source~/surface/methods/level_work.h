@@ -3,66 +3,16 @@
 #pragma once
 
 #include "parallel/error.h"
-#include "surface/stages/appearance.h"
-#include "surface/engine.h"
-#include "surface/stages/measure.h"
-#include "surface/mesh/mesh_arrays.h"
-#include "surface/stages/hot_stages.h"
 #include "surface/memory/work_facts.h"
+#include "surface/mesh/mesh_memory.h"
+#include "surface/methods/progress.h"
+#include "surface/stages/appearance.h"
+#include "surface/stages/hot_stages.h"
+#include "surface/stages/measure.h"
 
 #include <algorithm>
 
 namespace quickses {
-
-// Hands the fraction done to the caller, never falling, in steps of a few per mille; and ends the computation where it
-// was told to stop.
-class Progress {
- public:
-  void set(std::function<void(double)> callback) { callback_ = std::move(callback); }
-  // Fractions reported from now on are those of the part from begin to end of the whole.
-  void rest() { sink_ = nullptr; }
-  void restart(LevelSink &sink) {
-    sink_ = &sink;
-    last_ = -1;
-  }
-  void enter(double begin, double end) {
-    begin_ = begin;
-    end_ = end;
-  }
-  bool wanted() const { return static_cast<bool>(callback_); }
-  void report(double fraction) {
-    if (!sink_) return;
-    if (sink_->stop_flag().load(std::memory_order_relaxed)) throw Cancelled{};
-    const double whole = begin_ + (end_ - begin_) * fraction;
-    if (whole < last_ + 0.005 && !(whole >= 1.0 && last_ < 1.0)) return;
-    last_ = whole;
-    sink_->advance(whole);
-    if (callback_) callback_(whole);
-  }
-
- private:
-  std::function<void(double)> callback_;
-  LevelSink *sink_ = nullptr;
-  double begin_ = 0, end_ = 1, last_ = -1;
-};
-
-// A mesh being made, in the memory of the back end.
-struct MeshMemoryView {
-  MeshView view{};
-  MeshShape shape{};
-  size_t vertices = 0, triangles = 0, bytes = 0;
-  void *memory = nullptr;
-  bool on_host = false;                // CUDA: it did not fit on the device; it is filled slab by slab
-  const uint32_t *unplaced = nullptr;  // vertices without a feature, in the memory of the back end; nullptr: none
-  Bounds bounds{};
-  Span<const qses_component> components{};  // in host memory
-};
-
-// What a mesh is for: to be handed out, or to be made into another one.
-enum class MeshPurpose { kDelivered, kWork };
-
-template <class Executor>
-class MeshMemory;
 
 template <class Executor, class Timer>
 struct Run {

@@ -3,9 +3,9 @@
 // negative one. Vertices are joined along the edges of the triangles into trees whose roots are the smallest vertices.
 #pragma once
 
-#include "parallel/cpu_executor.h"
 #include "parallel/growing_buffer.h"
-#include "surface/engine.h"
+#include "parallel/host_memory.h"
+#include "surface/mesh/mesh_memory.h"
 #include "surface/stages/measure.h"
 
 namespace quickses {

@@ -4,15 +4,12 @@
 
 #include "parallel/atomics.h"
 #include "parallel/scalar.h"
+#include "surface/mesh/mesh_memory.h"
 #include "surface/stages/marching_cubes.h"
 
 #include <cstring>
 
 namespace quickses {
-
-struct Bounds {
-  float min[3], max[3];  // Å, caller's coordinates; all 0 for an empty mesh
-};
 
 struct Measures {
   double area;    // Å², sum over the triangles

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "parallel/atomics.h"
-#include "surface/memory/mesh_memory.h"
+#include "surface/methods/level_work.h"
 
 namespace quickses {
 

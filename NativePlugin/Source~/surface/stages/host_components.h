@@ -2,11 +2,17 @@
 // The components of a mesh in host memory, found by the CPU's threads: for meshes that did not fit on the GPU.
 #pragma once
 
-#include "surface/stages/components.h"
+#include "surface/mesh/mesh_view.h"
+
+#include "quickses/quickses.h"
 
 #include <memory>
 
 namespace quickses {
+
+class ComponentMemory;
+class CpuExecutor;
+struct MeshCounts;
 
 class HostComponents {
  public:

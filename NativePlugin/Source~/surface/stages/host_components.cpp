@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The components of a mesh in host memory, found by the CPU's threads.
-#include "surface/memory/host_components.h"
+#include "surface/stages/host_components.h"
+
+#include "parallel/cpu_executor.h"
+#include "surface/stages/components.h"
 
 namespace quickses {
 

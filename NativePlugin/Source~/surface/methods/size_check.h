@@ -3,9 +3,9 @@
 // exposed area of the inflated spheres, which the surface's own area is never far from.
 #pragma once
 
-#include "surface/stages/projection.h"
-#include "surface/methods/level_work.h"
 #include "surface/memory/work_facts.h"
+#include "surface/methods/level_work.h"
+#include "surface/stages/projection.h"
 
 #include <cmath>
 

@@ -3,9 +3,9 @@
 // that is cheap, else on two coarser ones. Vertices times spacing squared come near a straight line over the spacing.
 #pragma once
 
-#include "surface/methods/grid_surface.h"
 #include "surface/memory/memory_plan.h"
-#include "surface/memory/size_check.h"
+#include "surface/methods/grid_surface.h"
+#include "surface/methods/size_check.h"
 
 namespace quickses {
 
