@@ -132,6 +132,7 @@ class Arena {
       if (budget_ && held_ == 0) wanted = std::max(bytes, static_cast<size_t>(own_budget()));
       wanted = static_cast<size_t>(std::min<uint64_t>(wanted, limit() - held_));
     }
+    blocks_.reserve(blocks_.size() + 1);  // what is taken below is noted without fail
     void *memory = Source::acquire(wanted);
     while (!memory && wanted > bytes) {
       wanted = std::max(bytes, wanted / 2);

@@ -81,6 +81,7 @@ class CpuExecutor {
     ScratchPool &pool = scratch_pools_[std::type_index(typeid(Scratch))];
     if (!pool.objects) {
       auto made = std::make_shared<std::vector<std::unique_ptr<Scratch>>>();
+      made->reserve(threads());  // so that what is made below has an owner whatever fails
       for (unsigned k = 0; k < threads(); ++k) made->emplace_back(new Scratch);
       pool = {made, &pool_bytes<Scratch>};
     }
@@ -133,9 +134,8 @@ class CpuExecutor {
         out[i] = sum;
         sum += value;
       });
-      if (end == n && (c + 1 == chunks || c * chunk < n)) out[n] = sum;
+      if (c + 1 == chunks) out[n] = sum;
     });
-    if (n == 0) out[0] = T(0);
     arena_.rewind(mark);
   }
 
