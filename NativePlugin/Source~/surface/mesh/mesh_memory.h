@@ -113,7 +113,7 @@ class MeshMemory<CountingExecutor<Executor>> {
                                const MeshShape &shape, MeshPurpose purpose, bool in_pieces) {
     const MeshArrays arrays(vertices, triangles, shape);
     if (mesh_is_in_arena(Executor::kIsCuda, purpose, in_pieces)) executor.template allocate<char>(arrays.bytes());
-    return describe_memory(arrays, vertices, triangles, shape, in_pieces, nullptr);
+    return describe_memory(arrays, vertices, triangles, shape, Executor::kIsCuda && in_pieces, nullptr);
   }
   template <class T>
   Span<T> allocate_beside(CountingExecutor<Executor> &executor, const MeshMemoryView &mesh, size_t n) {
