@@ -24,12 +24,10 @@
 
 namespace quickses {
 
-struct CpuKernels;
-const CpuKernels &cpu_kernels();
-
 class CpuExecutor {
  public:
-  static constexpr bool kIsCuda = false;
+  static constexpr bool kIsCuda = false, kCounts = false;
+  using HostSource = HostMemory;  // of memory that the host shares with it
 
   // Held while a computation runs; on the CPU there is nothing to set up.
   struct CallScope {
@@ -51,9 +49,6 @@ class CpuExecutor {
   explicit CpuExecutor(unsigned threads) : threads_(threads) {}
 
   unsigned threads() const { return threads_.count(); }
-  // The instruction set's kernels that the hot stages use; tests set others.
-  const CpuKernels &kernels() const { return *kernels_; }
-  void set_kernels(const CpuKernels &kernels) { kernels_ = &kernels; }
   Arena<HostMemory> &arena() { return arena_; }
 
   // What the threads' scratch takes, and what is set aside for it in a budget: it is larger only where atoms crowd.
@@ -63,9 +58,6 @@ class CpuExecutor {
     return sum;
   }
   uint64_t scratch_allowance() const { return threads() * (uint64_t(272) << 10); }
-
-  // Memory was refused: to know how much there is would not help, since all work is cut small already.
-  void bound_arena() {}
 
   template <class T>
   Span<T> allocate(size_t n) {
@@ -87,6 +79,7 @@ class CpuExecutor {
     ScratchPool &pool = scratch_pools_[std::type_index(typeid(Scratch))];
     if (!pool.objects) {
       auto made = std::make_shared<std::vector<std::unique_ptr<Scratch>>>();
+      made->reserve(threads());  // so that what is made below has an owner whatever fails
       for (unsigned k = 0; k < threads(); ++k) made->emplace_back(new Scratch);
       pool = {made, &pool_bytes<Scratch>};
     }
@@ -115,11 +108,27 @@ class CpuExecutor {
     }
   }
 
+  // Bytes of the arena that the verbs take for as long as they work; T, Key and Value as there.
+  template <class T>
+  size_t scan_bytes(size_t n) const {
+    return (scan_chunks(n) + 1) * sizeof(T);
+  }
+  template <class Key, class Value>
+  size_t sort_bytes(size_t n) const {
+    const SortRuns runs(n, threads());
+    return std::max(runs.room_bytes<Key, Value>(threads()),
+                    runs.count > 1 ? n * (sizeof(Key) + sizeof(Value)) + 2 * Arena<HostMemory>::kAlignment : 0);
+  }
+  template <class T>
+  size_t reduce_bytes(size_t n) const {
+    return (n + kReduceChunk - 1) / kReduceChunk * sizeof(T);
+  }
+  size_t compact_bytes(size_t n) const { return (scan_chunks(n) + 1) * sizeof(size_t); }
+
   template <class Load, class T>
   void exclusive_scan(size_t n, Load load, Span<T> out) {
     // Two sweeps over chunks: sums, then the running values. One sweep where there is little to do.
-    const size_t chunks = n < 65536 || threads() == 1 ? 1 : size_t(threads()) * 4;
-    const size_t chunk = (n + chunks - 1) / (chunks ? chunks : 1);
+    const size_t chunks = scan_chunks(n), chunk = (n + chunks - 1) / chunks;
     const auto mark = arena_.mark();
     const Span<T> begin = allocate<T>(chunks + 1);
     begin[0] = T(0);
@@ -139,9 +148,8 @@ class CpuExecutor {
         out[i] = sum;
         sum += value;
       });
-      if (end == n && (c + 1 == chunks || c * chunk < n)) out[n] = sum;
+      if (c + 1 == chunks) out[n] = sum;
     });
-    if (n == 0) out[0] = T(0);
     arena_.rewind(mark);
   }
 
@@ -164,12 +172,10 @@ class CpuExecutor {
   void sort_by_key(Span<Key> keys, Span<Value> values, int /*key_bits*/) {
     const size_t n = keys.size;
     if (n < 2) return;
-    size_t runs = 1;
-    while (n / runs > (threads() > 1 ? kSortedRun : 4 * kSortedRun)) runs *= 4;
-    const size_t length = (n + runs - 1) / runs;
+    const SortRuns sorted(n, threads());
+    const size_t runs = sorted.count, length = sorted.length, room = sorted.room<Key, Value>();
     const auto mark = arena_.mark();
-    const size_t room = RoomAllocator::room_for(length * sizeof(Key)) + RoomAllocator::room_for(length * sizeof(Value));
-    const Span<char> rooms = allocate<char>(std::min<size_t>(runs, threads()) * room);
+    const Span<char> rooms = allocate<char>(sorted.room_bytes<Key, Value>(threads()));
     run_chunks(runs, [&](size_t worker, size_t k) {
       const size_t first = std::min(n, k * length), last = std::min(n, first + length);
       RoomAllocator allocator(rooms.data + worker * room, room);
@@ -205,8 +211,7 @@ class CpuExecutor {
 
   template <class Keep, class T>
   size_t compact(size_t n, Keep keep, Span<T> out) {
-    const size_t chunks = n < 65536 || threads() == 1 ? 1 : size_t(threads()) * 4;
-    const size_t chunk = (n + chunks - 1) / chunks;
+    const size_t chunks = scan_chunks(n), chunk = (n + chunks - 1) / chunks;
     const auto mark = arena_.mark();
     const Span<size_t> begin = allocate<size_t>(chunks + 1);
     begin[0] = 0;
@@ -258,6 +263,25 @@ class CpuExecutor {
   static constexpr size_t kSerialItems = 64;
   static constexpr size_t kSortedRun = size_t(1) << 15;    // items that one thread sorts, or merges, at a time
   static constexpr size_t kFilledPiece = size_t(1) << 20;  // bytes
+
+  size_t scan_chunks(size_t n) const { return n < 65536 || threads() == 1 ? 1 : size_t(threads()) * 4; }
+
+  // The parts that sort_by_key sorts one by one.
+  struct SortRuns {
+    size_t count = 1, length;
+    SortRuns(size_t n, unsigned threads) {
+      while (n / count > (threads > 1 ? kSortedRun : 4 * kSortedRun)) count *= 4;
+      length = (n + count - 1) / count;
+    }
+    template <class Key, class Value>
+    size_t room() const {
+      return RoomAllocator::room_for(length * sizeof(Key)) + RoomAllocator::room_for(length * sizeof(Value));
+    }
+    template <class Key, class Value>
+    size_t room_bytes(unsigned threads) const {
+      return std::min<size_t>(count, threads) * room<Key, Value>();
+    }
+  };
 
   struct ScratchPool {
     std::shared_ptr<void> objects;
@@ -337,7 +361,6 @@ class CpuExecutor {
 
   CpuThreads threads_;
   const std::atomic<bool> *stop_ = nullptr;
-  const CpuKernels *kernels_ = &cpu_kernels();
   Arena<HostMemory> arena_;
   std::map<std::type_index, ScratchPool> scratch_pools_;
 };

@@ -2,7 +2,7 @@
 // Work that the 32 threads of a warp do together. All of a warp's threads must call these.
 #pragma once
 
-#include "surface/stages/neighbor_grid.h"
+#include "parallel/span.h"
 
 namespace quickses {
 namespace gpu {

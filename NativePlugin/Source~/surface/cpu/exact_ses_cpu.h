@@ -2,22 +2,9 @@
 // CPU driver of the exact field and of the mesh: one thread per brick.
 #pragma once
 
-#include "parallel/cpu_executor.h"
-#include "surface/cpu/cpu_kernels.h"
-#include "surface/memory/work_facts.h"
+#include "surface/cpu/cpu_kernel_executor.h"
 
 namespace quickses {
-
-// The CPU gathers the candidates of a brick when it comes to it, so slices share nothing.
-struct NoCandidates {};
-template <>
-struct CandidatesOf<CpuExecutor> {
-  using type = NoCandidates;
-  static constexpr double kSpareBytes = 0;
-  static double sign_bytes(const SurfaceParameters &, const CandidateCounts &) { return 0; }
-  static double emission_bytes(const SurfaceParameters &, const CandidateCounts &, double, double) { return 0; }
-  static uint64_t whole_bytes(const SurfaceParameters &, const CandidateCounts &) { return 0; }
-};
 
 // Memory of one thread for a brick: columns for what is near it, and its vertices. Grows when a brick needs more; kept
 // between surfaces.
@@ -62,8 +49,8 @@ struct EvaluateBrick {
   }
 };
 
-inline void evaluate_signs(CpuExecutor &executor, const FeatureView &features, const BrickSet &bricks, BrickRange slice,
-                           NoCandidates &, uint64_t *signs) {
+inline void evaluate_signs(CpuKernelExecutor &executor, const FeatureView &features, const BrickSet &bricks, BrickRange slice,
+                           uint64_t *signs) {
   executor.match_scratches<BrickColumns>();
   executor.for_each_brick<BrickColumns>(slice.size(),
                                         EvaluateBrick{&executor.kernels(), &features, &bricks, slice.first, signs});
@@ -84,8 +71,8 @@ struct EmitBrickVertices {
   }
 };
 
-inline void emit_vertices(CpuExecutor &executor, const FeatureView &features, const BrickSet &bricks,
-                          const MeshLayout &layout, BrickRange slice, NoCandidates &, const VertexStarts &starts,
+inline void emit_vertices(CpuKernelExecutor &executor, const FeatureView &features, const BrickSet &bricks,
+                          const MeshLayout &layout, BrickRange slice, const VertexStarts &starts,
                           const MeshView &mesh) {
   executor.match_scratches<BrickColumns>();
   executor.for_each_brick<BrickColumns>(
@@ -104,7 +91,7 @@ struct EmitBrickTriangles {
   }
 };
 
-inline void emit_triangles(CpuExecutor &executor, const BrickSet &bricks, const MeshLayout &layout, BrickRange slice,
+inline void emit_triangles(CpuKernelExecutor &executor, const BrickSet &bricks, const MeshLayout &layout, BrickRange slice,
                            const TableView &table, const MeshView &mesh) {
   executor.for_each_brick<char>(slice.size(),
                                 EmitBrickTriangles{&executor.kernels(), &bricks, &layout, &table, &mesh, slice.first});

@@ -47,14 +47,8 @@ inline double listed_candidates(const SurfaceParameters &parameters) {
   return 16.0 + 0.03 * std::min(1e6, wide * wide * wide);
 }
 
-// Bytes of a brick's candidates: atoms, arcs and their leaves, rows and lists of leaves.
-inline double candidate_bytes(const SurfaceParameters &parameters, const CandidateCounts &all) {
-  const double listed = listed_candidates(parameters);
-  return 4.0 * std::min(listed, all.atoms) + 5.0 * std::min(listed, all.arcs) + 56.0;
-}
-
-// Words of the list that a leaf with vertices has besides (vertex_candidates_cuda.cuh): with its volume, more can
-// matter to it.
+// Words of the list that a leaf with vertices has besides (vertex_candidates_cuda.cuh): with its volume, more can matter
+// to it.
 inline uint32_t leaf_list_words(const SurfaceParameters &parameters) {
   constexpr double kUsual = 64, kUsualSpacing = 0.6, kMost = 2048;
   const double scale = static_cast<double>(parameters.spacing) / kUsualSpacing;

@@ -10,21 +10,17 @@ namespace quickses {
 namespace gpu {
 
 // Starts and candidates of the vertices of a slice; what they need is allocated here. No vertices: count is 0.
-inline VertexJob prepare_vertices(CudaExecutor &executor, const FeatureView &features, const BrickSet &bricks,
-                                  const MeshLayout &layout, BrickRange slice, CudaCandidates &candidates,
-                                  const VertexStarts &starts, const MeshView &mesh) {
+template <class E>
+VertexJob prepare_vertices(E &executor, const FeatureView &features, const BrickSet &bricks, const MeshLayout &layout,
+                           BrickRange slice, CudaRooms &rooms, CudaCandidates &candidates, const VertexStarts &starts,
+                           const MeshView &mesh) {
   VertexJob job{};
-  uint32_t range[4] = {0, static_cast<uint32_t>(layout.vertex_total), 0, static_cast<uint32_t>(layout.leaf_total)};
-  if (slice.size() < bricks.count) {
-    const uint32_t *const sources[4] = {layout.vertex_base + slice.first, layout.vertex_base + slice.last,
-                                        layout.leaf_base + slice.first, layout.leaf_base + slice.last};
-    executor.fetch_each(sources, range, 4);
-  }
-  job.first = range[0];
-  job.count = range[1] - range[0];
+  const SliceSizes sizes = slice_sizes(executor, bricks, layout, slice.first, slice.last);
+  job.first = sizes.first_vertex;
+  job.count = sizes.vertices;
   if (job.count == 0) return job;
   if (candidates.slice.first != slice.first || candidates.slice.last != slice.last)
-    gather_candidates(executor, features, bricks, slice, candidates, nullptr);
+    gather_candidates(executor, features, bricks, slice, rooms, candidates, nullptr);
   const size_t leaves = static_cast<size_t>(slice.size()) * kLeavesPerBrick;
   job.features = features;
   job.bricks = bricks;
@@ -34,13 +30,13 @@ inline VertexJob prepare_vertices(CudaExecutor &executor, const FeatureView &fea
   job.starts = starts;
   job.halved = !starts.moved && starts_by_halving(features.parameters);
   job.mesh = mesh;
-  job.list_of = executor.allocate<uint32_t>(job.count).data;
+  job.list_of = executor.template allocate<uint32_t>(job.count).data;
   job.list_words = leaf_list_words(features.parameters);
-  job.first_list = range[2];
-  job.lists = executor.allocate<uint32_t>(size_t(range[3] - range[2]) * job.list_words).data;
-  job.open = executor.allocate<uint32_t>(job.count).data;
-  job.unfinished = executor.allocate<uint32_t>(job.count).data;
-  Span<uint32_t> counts = executor.allocate<uint32_t>(2);
+  job.first_list = sizes.first_leaf;
+  job.lists = executor.template allocate<uint32_t>(size_t(sizes.leaves) * job.list_words).data;
+  job.open = executor.template allocate<uint32_t>(job.count).data;
+  job.unfinished = executor.template allocate<uint32_t>(job.count).data;
+  Span<uint32_t> counts = executor.template allocate<uint32_t>(2);
   job.open_count = counts.data;
   job.unfinished_count = counts.data + 1;
   executor.fill(counts, 0);
@@ -50,18 +46,16 @@ inline VertexJob prepare_vertices(CudaExecutor &executor, const FeatureView &fea
   return job;
 }
 
-}  // namespace gpu
-
 // Vertices are numbered over all slices: mesh.positions[0] is that of the very first. Waits once if there are several
 // slices.
-inline void emit_vertices(CudaExecutor &executor, const FeatureView &features, const BrickSet &bricks,
-                          const MeshLayout &layout, BrickRange slice, CudaCandidates &candidates,
-                          const VertexStarts &starts, const MeshView &mesh) {
-  using namespace gpu;
+template <class E>
+void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bricks, const MeshLayout &layout,
+                   BrickRange slice, CudaRooms &rooms, CudaCandidates &candidates, const VertexStarts &starts,
+                   const MeshView &mesh) {
   if (slice.size() == 0) return;
   const auto mark = executor.arena().mark();
   const bool gathered = candidates.slice.first == slice.first && candidates.slice.last == slice.last;
-  const VertexJob job = prepare_vertices(executor, features, bricks, layout, slice, candidates, starts, mesh);
+  const VertexJob job = prepare_vertices(executor, features, bricks, layout, slice, rooms, candidates, starts, mesh);
   const size_t blocks = (job.count + kVertexThreads - size_t(1)) / kVertexThreads;
   executor.launch("project_on_atoms", project_on_atoms_kernel, blocks, kVertexThreads, 0, job);
   executor.launch("project_on_arcs", project_on_arcs_kernel, blocks, kVertexThreads, 0, job);
@@ -69,13 +63,14 @@ inline void emit_vertices(CudaExecutor &executor, const FeatureView &features, c
   if (gathered) executor.arena().rewind(mark);
 }
 
-inline void emit_triangles(CudaExecutor &executor, const BrickSet &bricks, const MeshLayout &layout, BrickRange slice,
-                           const TableView &table, const MeshView &mesh) {
-  using namespace gpu;
+template <class E>
+void emit_triangles(E &executor, const BrickSet &bricks, const MeshLayout &layout, BrickRange slice,
+                    const TableView &table, const MeshView &mesh) {
   executor.launch("emit_triangles", emit_triangles_kernel,
                   std::min<size_t>((slice.size() + kTriangleWarps - size_t(1)) / kTriangleWarps,
                                    size_t(executor.multiprocessors()) * 16),
                   kTriangleWarps * kWarp, 0, TriangleJob{bricks, layout, table, mesh, slice});
 }
 
+}  // namespace gpu
 }  // namespace quickses

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+// How much room the GPU's stages take for what they count only while they work. Where a guess is too small, a stage
+// begins anew; what it learnt is kept, so that it does so once.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+namespace quickses {
+namespace gpu {
+
+// What was counted, whether there was room for it or not.
+struct FeatureCounters {
+  unsigned long long caps, circles;
+  unsigned long long staged;  // circles with exposed arcs in the upper half, arcs before they are split in the lower
+  unsigned long long arcs;
+  uint32_t neighbors;     // most of an atom for which the rows were too short
+  uint32_t long_atoms;    // number of those atoms
+  uint32_t longest_row;   // most caps of an atom
+  uint32_t long_circles;  // circles with more exposed intervals than a lane holds
+};
+
+// How much of each there is room for.
+struct FeatureRoom {
+  size_t caps, circles, staged_circles, staged_arcs, arcs;
+  size_t neighbors;   // per atom in global memory; 0: only what shared memory holds
+  size_t long_atoms;  // that need it; at least so many
+  size_t intervals;   // per circle in global memory; 0: only what a lane holds
+
+  static FeatureRoom guess(size_t atoms) {
+    return {28 * atoms + 1024, 14 * atoms + 512, 3 * atoms + 512, 5 * atoms + 512, 7 * atoms + 1024, 0, 0, 0};
+  }
+  bool holds(const FeatureCounters &c) const {
+    return c.neighbors <= neighbors && c.caps <= caps && c.circles <= circles && (c.staged >> 32) <= staged_circles &&
+           (c.staged & 0xffffffffu) <= staged_arcs && c.arcs <= arcs &&
+           (c.long_circles == 0 || c.longest_row + 1u <= intervals);
+  }
+  // For what was counted.
+  static FeatureRoom of(const FeatureCounters &c) {
+    return {static_cast<size_t>(c.caps),
+            static_cast<size_t>(c.circles),
+            static_cast<size_t>(c.staged >> 32),
+            static_cast<size_t>(c.staged & 0xffffffffu),
+            static_cast<size_t>(c.arcs),
+            (c.neighbors + size_t(31)) / 32 * 32,  // keeps the rows aligned
+            c.long_atoms,
+            c.long_circles > 0 ? c.longest_row + size_t(1) : 0};
+  }
+  FeatureRoom with_spare() const {
+    const auto more = [](size_t n) { return n + n / 8; };
+    return {more(caps),
+            more(circles),
+            more(staged_circles),
+            more(staged_arcs),
+            more(arcs),
+            (more(neighbors) + 31) / 32 * 32,
+            more(long_atoms),
+            more(intervals)};
+  }
+  void include(const FeatureRoom &r) {
+    *this = {std::max(caps, r.caps),
+             std::max(circles, r.circles),
+             std::max(staged_circles, r.staged_circles),
+             std::max(staged_arcs, r.staged_arcs),
+             std::max(arcs, r.arcs),
+             std::max(neighbors, r.neighbors),
+             std::max(long_atoms, r.long_atoms),
+             std::max(intervals, r.intervals)};
+  }
+};
+
+}  // namespace gpu
+
+// Of surfaces of the same number of atoms with the same reach.
+struct CudaRooms {
+  gpu::FeatureRoom features{};  // of all atoms; 0: the guess was enough
+  double listed_atoms = 1, listed_arcs = 1;  // candidates of bricks, in units of the guess
+  void forget() { *this = CudaRooms(); }
+};
+
+}  // namespace quickses
