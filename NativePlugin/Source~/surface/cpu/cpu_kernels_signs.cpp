@@ -149,8 +149,7 @@ BrickNeeds evaluate_brick_signs(const FeatureView &f, const BrickSet &bricks, ui
     const uint64_t open = in_reach & ~in_core;
     words[leaf] = in_core;
     if (open) {
-      const glm::ivec3 corner(first.x + (leaf & 1) * 4, first.y + (leaf >> 1 & 1) * 4, first.z + (leaf >> 2) * 4);
-      words[leaf] |= leaf_inside(f, c, lattice, corner, open, slack);
+      words[leaf] |= leaf_inside(f, c, lattice, first + brick_point(leaf, 0), open, slack);
     }
   }
   return {0, 0};

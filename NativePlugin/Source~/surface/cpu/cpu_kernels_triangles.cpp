@@ -43,6 +43,7 @@ QSES_FN uint64_t shared_points(int towards) {
 
 void number_vertices(const MeshLayout &layout, size_t brick, int towards, VertexNumbers *numbers) {
   const uint64_t mask = shared_points(towards);
+  const glm::ivec3 brick_step(towards & 1, towards >> 1 & 1, towards >> 2);
   for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
     if (leaf & towards) continue;
     const size_t k = brick * kLeavesPerBrick + static_cast<size_t>(leaf);
@@ -52,11 +53,8 @@ void number_vertices(const MeshLayout &layout, size_t brick, int towards, Vertex
       const uint32_t base = layout.vertex_base[brick] + layout.vertex_rank[3 * k + static_cast<size_t>(axis)];
       for (uint64_t w = crossing & mask; w; w &= w - 1) {
         const int bit = lowest_bit64(w);
-        const int x = (leaf & 1) * 4 + (bit & 3) + (towards & 1) * 8;
-        const int y = (leaf >> 1 & 1) * 4 + (bit >> 2 & 3) + (towards >> 1 & 1) * 8;
-        const int z = (leaf >> 2) * 4 + (bit >> 4) + (towards >> 2) * 8;
-        numbers->at[axis][x + kSide * (y + kSide * z)] =
-            base + static_cast<uint32_t>(popcount64(crossing & ((uint64_t(1) << bit) - 1)));
+        const glm::ivec3 p = brick_point(leaf, bit) + kBrickEdge * brick_step;
+        numbers->at[axis][p.x + kSide * (p.y + kSide * p.z)] = vertex_number(base, crossing, bit);
       }
     }
   }
@@ -84,9 +82,8 @@ void emit_brick_triangles(const BrickSet &bricks, const MeshLayout &layout, uint
     const LeafWords corners = cell_corners(leaf_words(bricks, layout.signs, static_cast<int>(brick), leaf));
     for (uint64_t mixed = mixed_cells(corners); mixed; mixed &= mixed - 1) {
       const int bit = lowest_bit64(mixed), code = cell_case(corners, bit);
-      const int x = (leaf & 1) * 4 + (bit & 3), y = (leaf >> 1 & 1) * 4 + (bit >> 2 & 3),
-                z = (leaf >> 2) * 4 + (bit >> 4);
-      const uint32_t *here = &numbers.at[0][x + kSide * (y + kSide * z)];
+      const glm::ivec3 p = brick_point(leaf, bit);
+      const uint32_t *here = &numbers.at[0][p.x + kSide * (p.y + kSide * p.z)];
       const uint8_t *edges = table.edges[code];
       for (int t = 0; t < table.triangle_count[code]; ++t, edges += 3, out += 3) {
         out[0] = here[kEdgeOffsets.at[edges[0]]];

@@ -16,10 +16,11 @@ struct Points {
       z[kMaxBrickVertices + kPackSize];
 };
 
-// Signs of the lattice points of a brick and one more on every side: bit x + 1 of row [z + 1][y + 1].
+// Signs of the lattice points of a brick and one more on every side: bit x + 1 of row_of(y, z).
 struct SignRows {
-  uint16_t row[10][10];
-  QSES_FN bool inside(int x, int y, int z) const { return (row[z + 1][y + 1] >> (x + 1) & 1) != 0; }
+  static constexpr int kSide = kBrickEdge + 2;
+  uint16_t row[kSide * kSide];
+  QSES_FN uint16_t *row_of(int y, int z) { return row + (z + 1) * kSide + (y + 1); }
 };
 
 SignRows read_sign_rows(const BrickSet &bricks, const uint64_t *signs, uint32_t brick) {
@@ -43,7 +44,7 @@ SignRows read_sign_rows(const BrickSet &bricks, const uint64_t *signs, uint32_t 
       const uint32_t own = near[side + 1] ? row_of(near[side + 1], y & 7, z & 7) : row_of(near[13], cy, cz);
       const uint32_t left = near[side] ? row_of(near[side], y & 7, z & 7) >> 7 : row_of(near[13], cy, cz) & 1;
       const uint32_t right = near[side + 2] ? row_of(near[side + 2], y & 7, z & 7) & 1 : row_of(near[13], cy, cz) >> 7;
-      rows.row[z + 1][y + 1] = static_cast<uint16_t>(left | own << 1 | right << 9);
+      *rows.row_of(y, z) = static_cast<uint16_t>(left | own << 1 | right << 9);
     }
   return rows;
 }
@@ -64,7 +65,7 @@ int start_vertices(const FeatureView &f, const BrickSet &bricks, const MeshLayou
   const glm::ivec3 first = lattice.first_point(lattice.brick_at(bricks.linear[brick]));
   const float h = lattice.spacing;
   const bool halve = starts_by_halving(f.parameters);
-  const SignRows rows = read_sign_rows(bricks, layout.signs, brick);
+  SignRows rows = read_sign_rows(bricks, layout.signs, brick);
   int n = 0;
   for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf)
     for (int axis = 0; axis < kAxes; ++axis)
@@ -72,21 +73,20 @@ int start_vertices(const FeatureView &f, const BrickSet &bricks, const MeshLayou
                                         static_cast<size_t>(axis)];
            w; w &= w - 1, ++n) {
         const int bit = lowest_bit64(w);
-        const int x = (leaf & 1) * 4 + (bit & 3), y = (leaf >> 1 & 1) * 4 + (bit >> 2 & 3),
-                  z = (leaf >> 2) * 4 + (bit >> 4);
-        const Vec3<float> low = lattice.position(first.x + x, first.y + y, first.z + z);
-        const bool low_inside = rows.inside(x, y, z);
+        const glm::ivec3 at = brick_point(leaf, bit);
+        const Vec3<float> low = lattice.position(first.x + at.x, first.y + at.y, first.z + at.z);
+        const uint16_t *const row = rows.row_of(at.y, at.z);
         Vec3<float> start = low;
         if (halve) {
           start =
               halve_edge(f, AllCandidates{c}, ends_of_edge(bricks, layout, brick, {leaf, axis, bit}), kStartHalvings);
         } else {
-          const float along = vertex_start(low_inside) * h;
+          const float along = vertex_start(*row >> (at.x + 1) & 1) * h;
           start = {low.x + (axis == 0 ? along : 0.f), low.y + (axis == 1 ? along : 0.f),
                    low.z + (axis == 2 ? along : 0.f)};
           if (starts.relax) {
             float mx, my, mz;
-            ring_displacement(edge_ring_of_rows(&rows.row[z + 1][y + 1], 10, x + 1, axis, starts.ring), &mx, &my, &mz);
+            ring_displacement(edge_ring_of_rows(row, SignRows::kSide, at.x + 1, axis, starts.ring), &mx, &my, &mz);
             start = start + Vec3<float>(mx, my, mz) * h;
           }
         }

@@ -89,7 +89,7 @@ static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_k
   const uint8_t *const arc_leaves = job.view.arc_leaves + brick_row.first_arc;
   glm::ivec3 first = lattice.first_point(lattice.brick_at(job.bricks.linear[job.view.first_brick + b]));
   const Vec3<float> center = leaf_center(lattice.position(first.x, first.y, first.z), leaf, h);
-  first += glm::ivec3(4 * (leaf & 1), 4 * (leaf >> 1 & 1), 4 * (leaf >> 2));
+  first += brick_point(leaf, 0);
 
   // Atoms that can be deepest at a point.
   const auto atom_at = [&](uint32_t k) { return __ldg(atoms + k); };

@@ -84,14 +84,13 @@ static __global__ __launch_bounds__(kTriangleWarps *kWarp) void emit_triangles_k
       for (uint32_t r = static_cast<uint32_t>(lane); r < listed; r += kWarp) {
         const uint32_t item = scratch.items[r];
         const int code = static_cast<int>(item >> 8 & 255), cell = static_cast<int>(item >> 16);
-        const int cell_leaf = cell >> 6, bit = cell & 63, t = static_cast<int>(item & 255);
-        const int x = 4 * (cell_leaf & 1) + (bit & 3), y = 4 * (cell_leaf >> 1 & 1) + (bit >> 2 & 3),
-                  z = 4 * (cell_leaf >> 2) + (bit >> 4);
+        const int t = static_cast<int>(item & 255);
+        const glm::ivec3 p = brick_point(cell >> 6, cell & 63);
         uint32_t id[3];
 #pragma unroll
         for (int k = 0; k < 3; ++k) {
           const int e = edges[code][3 * t + k], axis = edge_axis(e);
-          const int ex = x + edge_origin_x(e), ey = y + edge_origin_y(e), ez = z + edge_origin_z(e);
+          const int ex = p.x + edge_origin_x(e), ey = p.y + edge_origin_y(e), ez = p.z + edge_origin_z(e);
           const int place27 = (ex >> 2) + 3 * (ey >> 2) + 9 * (ez >> 2);
           id[k] = vertex_number(scratch.first[place27][axis], scratch.crossing[place27][axis],
                                 leaf_bit(ex & 3, ey & 3, ez & 3));

@@ -98,7 +98,7 @@ __device__ __forceinline__ bool open_leaf(const VertexJob &job, uint32_t slot, V
   if (out->count == 0) return false;
   out->first = job.layout.vertex_base[out->brick] + job.layout.vertex_rank[k];
   out->place = job.bricks.lattice.brick_at(job.bricks.linear[out->brick]);
-  out->origin = glm::ivec3(4 * (out->leaf & 1), 4 * (out->leaf >> 1 & 1), 4 * (out->leaf >> 2));
+  out->origin = brick_point(out->leaf, 0);
   return true;
 }
 

@@ -68,6 +68,11 @@ struct CutEdge {
 QSES_FN int leaf_bit(int x, int y, int z) { return x + 4 * y + 16 * z; }
 QSES_FN int leaf_of(int x, int y, int z) { return (x >> 2) + 2 * (y >> 2) + 4 * (z >> 2); }
 
+// The point of a leaf's bit, counted from the brick's first point.
+QSES_FN glm::ivec3 brick_point(int leaf, int bit) {
+  return glm::ivec3(4 * (leaf & 1) + (bit & 3), 4 * (leaf >> 1 & 1) + (bit >> 2 & 3), 4 * (leaf >> 2) + (bit >> 4));
+}
+
 // The leaf word seen one lattice point further along an axis: w is the leaf, next its neighbour on that side.
 QSES_FN uint64_t shift_x(uint64_t w, uint64_t next) {
   return (w >> 1 & 0x7777777777777777ull) | (next & 0x1111111111111111ull) << 3;

@@ -203,9 +203,8 @@ QSES_FN LatticeEdge edge_of_vertex(const MeshLayout &m, uint32_t brick, uint32_t
 
 // Its ends, in the centred frame.
 QSES_FN CutEdge ends_of_edge(const BrickSet &bricks, const MeshLayout &m, uint32_t brick, const LatticeEdge &edge) {
-  const glm::ivec3 p = bricks.lattice.first_point(bricks.lattice.brick_at(bricks.linear[brick])) +
-                       glm::ivec3(4 * (edge.leaf & 1) + (edge.bit & 3), 4 * (edge.leaf >> 1 & 1) + (edge.bit >> 2 & 3),
-                                  4 * (edge.leaf >> 2) + (edge.bit >> 4));
+  const glm::ivec3 p =
+      bricks.lattice.first_point(bricks.lattice.brick_at(bricks.linear[brick])) + brick_point(edge.leaf, edge.bit);
   const Vec3<float> low = bricks.lattice.position(p.x, p.y, p.z);
   const Vec3<float> high =
       bricks.lattice.position(p.x + (edge.axis == 0), p.y + (edge.axis == 1), p.z + (edge.axis == 2));
