@@ -86,13 +86,14 @@ class CpuExecutor {
     return *static_cast<std::vector<std::unique_ptr<Scratch>> *>(pool.objects.get());
   }
 
-  // Gives every thread as much room as any of them needed so far, by Scratch::match: once a trajectory has shown how
-  // much that is, no thread has to ask for memory.
+  // Gives every thread as much room as any of them needed so far, by Scratch::match: to do the same work once more,
+  // shared out among the threads in whatever way, none has to ask for memory.
   template <class Scratch>
   void match_scratches() {
     auto &pool = scratches<Scratch>();
     for (size_t k = 1; k < pool.size(); ++k) pool.front()->match(*pool[k]);
     for (const auto &scratch : pool) scratch->match(*pool.front());
+    take_off_budget();
   }
 
   // grain: items a thread takes at a time. Each thread that works has a scratch of its own.
@@ -102,10 +103,7 @@ class CpuExecutor {
     run_chunks((n + grain - 1) / grain, [&](size_t worker, size_t c) {
       for (size_t i = c * grain; i < std::min(n, (c + 1) * grain); ++i) f(SoloTeam{}, *pool[worker], i);
     });
-    if (arena_.has_budget()) {
-      const uint64_t scratch = scratch_bytes(), allowed = scratch_allowance();
-      arena_.set_taken(scratch > allowed ? scratch - allowed : 0);
-    }
+    take_off_budget();
   }
 
   // Bytes of the arena that the verbs take for as long as they work; T, Key and Value as there.
@@ -282,6 +280,12 @@ class CpuExecutor {
       return std::min<size_t>(count, threads) * room<Key, Value>();
     }
   };
+
+  // What scratch has grown beyond its allowance. The arena, which holds its whole budget, shrinks with its next reset.
+  void take_off_budget() {
+    const uint64_t scratch = scratch_bytes(), allowed = scratch_allowance();
+    arena_.set_taken(arena_.has_budget() && scratch > allowed ? scratch - allowed : 0);
+  }
 
   struct ScratchPool {
     std::shared_ptr<void> objects;

@@ -207,7 +207,7 @@ uint64_t heap_bytes() {
 TEST(Budget, IsKeptByTheHeap) {
   if (tested_backend() != QSES_BACKEND_CPU) GTEST_SKIP() << "the budget is of the device";
   for (const Case &c : cases()) {
-    Context unbounded;
+    const Context unbounded(2);
     set_atoms(unbounded, c.atoms);
     const uint64_t budget = estimate(unbounded, c.settings).smallest_budget * 5 / 4;
     const uint64_t before = heap_bytes();

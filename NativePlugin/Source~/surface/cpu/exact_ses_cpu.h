@@ -2,6 +2,7 @@
 // CPU driver of the exact field and of the mesh: one thread per brick.
 #pragma once
 
+#include "parallel/growing_buffer.h"
 #include "surface/cpu/cpu_kernel_executor.h"
 
 namespace quickses {
@@ -10,17 +11,16 @@ namespace quickses {
 // between surfaces.
 struct BrickColumns {
   alignas(64) unsigned char vertex_memory[BrickScratch::kVertexBytes];
-  std::vector<float> atom_memory, arc_memory;
+  GrowingBuffer<HostMemory> atom_memory, arc_memory;
   int atom_capacity = 512, arc_capacity = 1024;
 
   BrickScratch scratch() {
     const size_t atoms = BrickScratch::kAtomColumns * (static_cast<size_t>(atom_capacity) + 16);
     const size_t arcs = BrickScratch::kArcColumns * (static_cast<size_t>(arc_capacity) + 16);
-    if (atom_memory.size() < atoms) atom_memory.resize(atoms);
-    if (arc_memory.size() < arcs) arc_memory.resize(arcs);
-    return {atom_memory.data(), arc_memory.data(), atom_capacity, arc_capacity, vertex_memory};
+    return {static_cast<float *>(atom_memory.reserve(atoms * sizeof(float))),
+            static_cast<float *>(arc_memory.reserve(arcs * sizeof(float))), atom_capacity, arc_capacity, vertex_memory};
   }
-  uint64_t bytes() const { return sizeof(float) * (atom_memory.capacity() + arc_memory.capacity()); }
+  uint64_t bytes() const { return atom_memory.size() + arc_memory.size(); }
   // True if the brick must be done again.
   bool grow(const BrickNeeds &needs) {
     if (needs.atoms > 0) atom_capacity = needs.atoms + needs.atoms / 2;
@@ -51,9 +51,9 @@ struct EvaluateBrick {
 
 inline void evaluate_signs(CpuKernelExecutor &executor, const FeatureView &features, const BrickSet &bricks, BrickRange slice,
                            uint64_t *signs) {
-  executor.match_scratches<BrickColumns>();
   executor.for_each_brick<BrickColumns>(slice.size(),
                                         EvaluateBrick{&executor.kernels(), &features, &bricks, slice.first, signs});
+  executor.match_scratches<BrickColumns>();
 }
 
 struct EmitBrickVertices {
@@ -74,9 +74,9 @@ struct EmitBrickVertices {
 inline void emit_vertices(CpuKernelExecutor &executor, const FeatureView &features, const BrickSet &bricks,
                           const MeshLayout &layout, BrickRange slice, const VertexStarts &starts,
                           const MeshView &mesh) {
-  executor.match_scratches<BrickColumns>();
   executor.for_each_brick<BrickColumns>(
       slice.size(), EmitBrickVertices{&executor.kernels(), &features, &bricks, &layout, &starts, &mesh, slice.first});
+  executor.match_scratches<BrickColumns>();
 }
 
 struct EmitBrickTriangles {

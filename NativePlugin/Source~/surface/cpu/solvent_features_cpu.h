@@ -16,7 +16,7 @@ constexpr size_t kRoomPerAtom = 256;
 
 // Room of one thread for the features of one chunk. Kept between surfaces.
 struct FeatureStaging {
-  std::vector<float> memory;
+  GrowingBuffer<HostMemory> memory;
   int capacity = 256;
   std::vector<Cap> caps;
   std::vector<Arc> arcs;
@@ -24,22 +24,25 @@ struct FeatureStaging {
   size_t most_caps = 0, most_arcs = 0;  // of any chunk so far
 
   AtomScratch scratch() {
-    const size_t needed = AtomScratch::kColumns * (static_cast<size_t>(capacity) + 16) + 16;
-    if (memory.size() < needed) memory.resize(needed);
-    const uintptr_t start = reinterpret_cast<uintptr_t>(memory.data());
-    return {memory.data() + (64 - start % 64) % 64 / sizeof(float), capacity};
+    const size_t needed = AtomScratch::kColumns * (static_cast<size_t>(capacity) + 16);
+    return {static_cast<float *>(memory.reserve(needed * sizeof(float))), capacity};
   }
-  uint64_t bytes() const {
-    return sizeof(float) * memory.capacity() + sizeof(Cap) * caps.capacity() + sizeof(Arc) * arcs.capacity();
+  // At least n, and no more, which resize() alone would not keep to.
+  template <class T>
+  static void grow(std::vector<T> &items, size_t n) {
+    if (items.size() >= n) return;
+    items.reserve(n);
+    items.resize(n);
   }
+  uint64_t bytes() const { return memory.size() + sizeof(Cap) * caps.capacity() + sizeof(Arc) * arcs.capacity(); }
   // As much room as another thread needed: who meets the largest atom differs from surface to surface.
   void match(const FeatureStaging &other) {
     capacity = std::max(capacity, other.capacity);
     scratch();
     most_caps = std::max(most_caps, other.most_caps);
     most_arcs = std::max(most_arcs, other.most_arcs);
-    if (caps.size() < most_caps + most_caps / 4 + kRoomPerAtom) caps.resize(most_caps + most_caps / 2 + kRoomPerAtom);
-    if (arcs.size() < most_arcs + most_arcs / 4 + kRoomPerAtom) arcs.resize(most_arcs + most_arcs / 2 + kRoomPerAtom);
+    if (caps.size() < most_caps + most_caps / 4 + kRoomPerAtom) grow(caps, most_caps + most_caps / 2 + kRoomPerAtom);
+    if (arcs.size() < most_arcs + most_arcs / 4 + kRoomPerAtom) grow(arcs, most_arcs + most_arcs / 2 + kRoomPerAtom);
   }
 };
 
@@ -88,9 +91,9 @@ AtomFeatures find_features_of(const CpuKernels &kernels, const NeighborGridView 
     if (found.neighbors_needed > 0)
       s.capacity = found.neighbors_needed + found.neighbors_needed / 2;
     else if (found.cap_count > room.cap_room(s))
-      s.caps.resize(s.cap_count + 2 * static_cast<size_t>(found.cap_count));
+      FeatureStaging::grow(s.caps, s.cap_count + 2 * static_cast<size_t>(found.cap_count));
     else if (found.arc_count > room.arc_room(s))
-      s.arcs.resize(s.arc_count + 2 * static_cast<size_t>(found.arc_count));
+      FeatureStaging::grow(s.arcs, s.arc_count + 2 * static_cast<size_t>(found.arc_count));
     else
       return found;
   }
@@ -99,8 +102,8 @@ AtomFeatures find_features_of(const CpuKernels &kernels, const NeighborGridView 
 // Behind what the thread has staged.
 struct StagedRoom {
   static void open(FeatureStaging &s) {
-    if (s.caps.size() < s.cap_count + kRoomPerAtom) s.caps.resize(2 * (s.cap_count + kRoomPerAtom));
-    if (s.arcs.size() < s.arc_count + kRoomPerAtom) s.arcs.resize(2 * (s.arc_count + kRoomPerAtom));
+    if (s.caps.size() < s.cap_count + kRoomPerAtom) FeatureStaging::grow(s.caps, 2 * (s.cap_count + kRoomPerAtom));
+    if (s.arcs.size() < s.arc_count + kRoomPerAtom) FeatureStaging::grow(s.arcs, 2 * (s.arc_count + kRoomPerAtom));
   }
   Cap *caps(FeatureStaging &s) const { return s.caps.data() + s.cap_count; }
   int cap_room(FeatureStaging &s) const {
@@ -269,11 +272,11 @@ inline void find_solvent_features(CpuKernelExecutor &executor, const NeighborGri
   const auto mark = executor.arena().mark();
   FeaturePool &pool = open_pool(executor, a.atoms, low_memory);
   executor.fill(a.exposed, 0);
-  executor.match_scratches<FeatureStaging>();
   executor.for_each_brick<FeatureStaging>(a.chunks,
                                           FindChunkFeatures{&executor.kernels(), &atoms, &parameters, a.atoms_per_chunk,
                                                             a.cap_ranges.data, a.exposed.data, a.table.data, &pool},
                                           1);
+  executor.match_scratches<FeatureStaging>();
   executor.exclusive_scan(a.atoms, LoadExposedCaps{a.exposed.data, a.cap_ranges.data}, a.cap_first);
   executor.exclusive_scan(a.chunks, LoadChunkArcs{a.table.data}, a.arc_base);
   executor.arena().rewind(mark);
