@@ -101,7 +101,7 @@ namespace QuickSes.Tests
             Assert.That(_rig.Failures[0].Message, Does.Contain(reason));
             _rig.Surface.Backend = SurfaceBackend.Cpu;
             yield return _rig.Settle();
-            Assert.That(_rig.Surface.Shown.IsFinest);
+            Assert.That(_rig.Surface.CurrentLevel.IsFinest);
             Assert.That(_rig.Surface.LastError.Status, Is.EqualTo(QuickSesStatus.Ok));
         }
 

@@ -39,7 +39,7 @@ namespace QuickSes.Tests
             }
             _rig = SurfaceRig.WithBlob(10, 3);
             yield return _rig.Settle();
-            Assert.That(_rig.Surface.Shown.IsFinest, "and others go on");
+            Assert.That(_rig.Surface.CurrentLevel.IsFinest, "and others go on");
         }
 
         [UnityTest]
@@ -149,7 +149,7 @@ namespace QuickSes.Tests
             Assert.That(_rig.Levels.Count, Is.EqualTo(levels));
             _rig.Surface.Recompute();
             yield return _rig.Settle();
-            Assert.That(_rig.Surface.Shown.IsFinest);
+            Assert.That(_rig.Surface.CurrentLevel.IsFinest);
         }
     }
 }

@@ -34,7 +34,7 @@ namespace QuickSes.Tests
             });
             Assert.That(frames, Is.GreaterThan(20 - 1));
             yield return _rig.Settle();
-            Assert.That(_rig.Surface.Shown.IsFinest, "at rest");
+            Assert.That(_rig.Surface.CurrentLevel.IsFinest, "at rest");
             SurfaceMeshes.AssertIsSurfaceOf(
                 _rig.Surface.Mesh, TestMolecules.Moved(positions, frames % 7), radii, 0.5f);
         }
@@ -52,9 +52,9 @@ namespace QuickSes.Tests
                 _rig.Surface.SetPositions(TestMolecules.Moved(positions, ++frames % 7));
                 return _rig.Levels.Count >= 5;
             });
-            Assert.That(_rig.Levels.Exists(level => !level.IsCurrent));
+            Assert.That(_rig.Levels.Exists(level => !level.IsOfNewestAtoms));
             yield return _rig.Settle();
-            Assert.That(_rig.Surface.Shown.IsCurrent);
+            Assert.That(_rig.Surface.CurrentLevel.IsOfNewestAtoms);
         }
 
         [UnityTest]

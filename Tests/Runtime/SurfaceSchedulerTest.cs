@@ -40,7 +40,7 @@ namespace QuickSes.Tests
             yield return SurfaceRig.Until(() =>
             {
                 most = Math.Max(most, SurfaceScheduler.ContextCount);
-                return AreSettled();
+                return AreUpToDate();
             });
             AssertEachIsItsOwn(positions, radii);
 
@@ -59,7 +59,7 @@ namespace QuickSes.Tests
             }
             for (int k = 0; k < Surfaces; k += 10)
                 _rigs[k].GameObject.SetActive(true);
-            yield return SurfaceRig.Until(AreSettled);
+            yield return SurfaceRig.Until(AreUpToDate);
             AssertEachIsItsOwn(positions, radii);
             Assert.That(most, Is.InRange(1, SurfaceScheduler.MaxContexts));
         }
@@ -75,21 +75,21 @@ namespace QuickSes.Tests
                 shown = finest = 0;
                 foreach (SurfaceRig rig in _rigs)
                 {
-                    shown += rig.Surface.Shown.LevelCount > 0 ? 1 : 0;
-                    finest += rig.Surface.Shown.IsFinest && rig.Surface.Shown.LevelCount > 0 ? 1 : 0;
+                    shown += rig.Surface.CurrentLevel.LevelCount > 0 ? 1 : 0;
+                    finest += rig.Surface.CurrentLevel.IsFinest && rig.Surface.CurrentLevel.LevelCount > 0 ? 1 : 0;
                 }
                 return shown == _rigs.Count;
             });
             // The last few in the queue find nobody behind them, and rested ones have their turn now and then.
             Assert.That(finest, Is.LessThan(_rigs.Count / 2));
-            yield return SurfaceRig.Until(AreSettled);
+            yield return SurfaceRig.Until(AreUpToDate);
         }
 
         [UnityTest]
         public IEnumerator AContextIsFreedWithTheLastSurface()
         {
             _rigs.Add(SurfaceRig.WithBlob(20, 1));
-            yield return SurfaceRig.Until(AreSettled);
+            yield return SurfaceRig.Until(AreUpToDate);
             Assert.That(SurfaceScheduler.ContextCount, Is.GreaterThan(0));
             _rigs[0].GameObject.SetActive(false);
             Assert.That(SurfaceScheduler.ContextCount, Is.GreaterThan(0), "it may be shown again");
@@ -138,7 +138,7 @@ namespace QuickSes.Tests
         public void AtLeastOneContextIsNeeded() =>
             Assert.Throws<ArgumentOutOfRangeException>(() => SurfaceScheduler.MaxContexts = 0);
 
-        private bool AreSettled()
+        private bool AreUpToDate()
         {
             foreach (SurfaceRig rig in _rigs)
                 if (rig.Surface.IsBusy)

@@ -63,7 +63,7 @@ namespace QuickSes
                 return;
             SurfaceSession session = Session;
             session.Tick(Time.realtimeSinceStartupAsDouble);
-            if (!session.IsSettled)
+            if (!session.IsUpToDate)
                 QueueEditorUpdate();
             session.RaiseEvents();
         }

@@ -110,10 +110,10 @@ namespace QuickSes
         public Mesh Mesh => Session.Shown.Mesh;
 
         /// <summary>What is shown; <see cref="SurfaceLevel.LevelCount"/> 0: nothing yet.</summary>
-        public SurfaceLevel Shown => Session.Shown.Level;
+        public SurfaceLevel CurrentLevel => Session.Shown.Level;
 
         /// <summary>Whether something is being computed, or will be. Not while the component is disabled.</summary>
-        public bool IsBusy => isActiveAndEnabled && !Session.IsSettled;
+        public bool IsBusy => isActiveAndEnabled && !Session.IsUpToDate;
 
         /// <summary>Of the job that runs: from 0 to 1.</summary>
         public float Progress => Session.Progress;

@@ -4,7 +4,7 @@ using System;
 namespace QuickSes
 {
     /// <summary>Why a surface wants a context.</summary>
-    internal enum SurfaceNeed
+    internal enum QueuePriority
     {
         None,
         /// <summary>What is shown is not finest yet, but of the newest atoms.</summary>

@@ -46,7 +46,7 @@ namespace QuickSes
         public ShownSurface Shown { get; } = new ShownSurface();
 
         /// <summary>In which queue of its pool it waits.</summary>
-        public SurfaceNeed Queued { get; set; }
+        public QueuePriority Queued { get; set; }
 
         /// <summary>Whose context it has, or waits for.</summary>
         public ContextPool Pool { get; set; }
@@ -67,7 +67,7 @@ namespace QuickSes
         public bool IsOrphan => _owner == null;
 
         /// <summary>Whether the newest atoms are shown as finely as asked for, or never will be.</summary>
-        public bool IsSettled => !Atoms.IsSet || (_slot == null && (_stoppedVersion == _version || IsDone));
+        public bool IsUpToDate => !Atoms.IsSet || (_slot == null && (_stoppedVersion == _version || IsDone));
 
         private bool IsDone => _shownVersion == _version && Shown.Level.IsFinest;
 
@@ -92,11 +92,11 @@ namespace QuickSes
             ContextPool pool = SurfaceScheduler.PoolOf(_owner.Backend);
             if (_slot == null)
             {
-                SurfaceNeed need = FindNeed(now);
-                if (need != SurfaceNeed.None)
-                    pool.Enqueue(this, need);
+                QueuePriority priority = FindPriority(now);
+                if (priority != QueuePriority.None)
+                    pool.Enqueue(this, priority);
                 else
-                    Queued = SurfaceNeed.None;
+                    Queued = QueuePriority.None;
             }
             else if (_triedVersion != _version && !Pool.IsAnyUrgent && Pool == pool)
             {
@@ -178,7 +178,7 @@ namespace QuickSes
         /// <summary>Ends the job; what is new meanwhile begins again later.</summary>
         public void Drop()
         {
-            Queued = SurfaceNeed.None;
+            Queued = QueuePriority.None;
             if (_slot == null)
                 return;
             _slot.Context.Cancel();
@@ -216,7 +216,7 @@ namespace QuickSes
         /// <summary>After <see cref="Drop"/>: what was not finished begins again.</summary>
         public void Resume()
         {
-            if (!IsSettled)
+            if (!IsUpToDate)
                 BeginAgain(SurfaceChange.Shape);
         }
 
@@ -231,13 +231,13 @@ namespace QuickSes
             Shown.Dispose();
         }
 
-        private SurfaceNeed FindNeed(double now)
+        private QueuePriority FindPriority(double now)
         {
             if (!Atoms.IsSet || _stoppedVersion == _version)
-                return SurfaceNeed.None;
+                return QueuePriority.None;
             if (_triedVersion != _version)
-                return SurfaceNeed.Urgent;
-            return !IsDone && now - _lastChange >= _owner.RestDelay ? SurfaceNeed.Refinement : SurfaceNeed.None;
+                return QueuePriority.Urgent;
+            return !IsDone && now - _lastChange >= _owner.RestDelay ? QueuePriority.Refinement : QueuePriority.None;
         }
 
         private QuickSesError TryBegin(SurfaceContext context)
