@@ -3,6 +3,16 @@ using System.Collections.Generic;
 
 namespace QuickSes
 {
+    /// <summary>Why a surface wants a context.</summary>
+    internal enum QueuePriority
+    {
+        None,
+        /// <summary>What is shown is not finest yet, but of the newest atoms.</summary>
+        Refinement,
+        /// <summary>There are newer atoms, settings or colours than what is shown.</summary>
+        Urgent
+    }
+
     /// <summary>
     /// The contexts of one back end, and the surfaces that wait for one. Each is lent for one job at a time, and
     /// preferably to the surface that had it before, since it still holds its atoms. Main thread only.
@@ -47,9 +57,9 @@ namespace QuickSes
 
         public void Enqueue(SurfaceSession session, QueuePriority priority)
         {
-            if (session.Queued == priority && session.Pool == this)
+            if (session.QueuedAs == priority && session.Pool == this)
                 return;
-            session.Queued = priority; // entries in other queues are passed over
+            session.QueuedAs = priority; // entries in other queues are passed over
             session.Pool = this;
             (priority == QueuePriority.Urgent ? _urgent : _refining).Enqueue(session);
         }
@@ -63,7 +73,7 @@ namespace QuickSes
                 if (slot == null && !isHopeless)
                     return;
                 (isUrgent ? _urgent : _refining).Dequeue();
-                session.Queued = QueuePriority.None;
+                session.QueuedAs = QueuePriority.None;
                 _urgentInARow = isUrgent ? _urgentInARow + 1 : 0;
                 if (slot == null)
                     session.FailToBegin(error);
@@ -182,14 +192,14 @@ namespace QuickSes
         {
             while (queue.TryPeek(out session))
             {
-                if (session.Queued == priority && session.Pool == this)
+                if (session.QueuedAs == priority && session.Pool == this)
                     return true;
                 queue.Dequeue();
             }
             return false;
         }
 
-        // A context that may be used now, or null: one will be free or made later, unless there is no hope.
+        // A context that may be used now, or null. Then to wait for one is hopeless if none could be made; `error` says why.
         private ContextSlot FindFree(SurfaceSession session, out bool isHopeless, out QuickSesError error)
         {
             isHopeless = false;
@@ -243,7 +253,7 @@ namespace QuickSes
         {
             int count = 0;
             foreach (SurfaceSession session in queue)
-                if (session.Queued == priority && session.Pool == this)
+                if (session.QueuedAs == priority && session.Pool == this)
                     ++count;
             return count;
         }
@@ -252,7 +262,7 @@ namespace QuickSes
         {
             foreach (SurfaceSession session in queue)
                 if (session.Pool == this)
-                    session.Queued = QueuePriority.None;
+                    session.QueuedAs = QueuePriority.None;
             queue.Clear();
         }
     }

@@ -50,7 +50,7 @@ namespace QuickSes
         /// <summary>From atoms to mesh in memory; for a later level: since the one before.</summary>
         public double ComputeMilliseconds { get; }
 
-        /// <summary>Main thread, for the copy into the <see cref="UnityEngine.Mesh"/>.</summary>
+        /// <summary>Main thread, for the copy into the mesh.</summary>
         public double UploadMilliseconds { get; }
 
         /// <summary>Bytes of work memory: on the GPU with CUDA, else in the process.</summary>

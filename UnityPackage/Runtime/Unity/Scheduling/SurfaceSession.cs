@@ -7,46 +7,35 @@ namespace QuickSes
     /// One surface over time: which atoms it is of, what is shown, and the job in between. It borrows a context from a
     /// <see cref="ContextPool"/> for each job. Main thread only; no garbage while atoms move.
     /// </summary>
-    internal sealed class SurfaceSession : IDisposable
+    internal sealed partial class SurfaceSession : IDisposable
     {
-        private static uint s_sessions;
+        private readonly ISurfaceHost _host;
 
-        private readonly MolecularSurface _owner;
-        private readonly uint _series = ++s_sessions;
-        private readonly float[] _ladder = new float[SurfaceSettings.MaxLevels + 1]; // as the last job was begun with
-        private int _ladderCount = 1;
-        private ContextSlot _slot; // while a job runs
-
-        // Versions of atoms, colours and settings: each change makes a new one. Those of the shape leave out colours.
-        private uint _version = 1;
-        private uint _shape = 1;
-        private uint _triedVersion; // the last that a job was begun for, or could not be
-        private uint _stoppedVersion; // of this one nothing more will come: it failed, or was cancelled by the user
-        private uint _shownVersion;
-        private uint _shownShape;
-        private uint _job; // the last that was begun
-        private uint _jobVersion; // and what it is of
-        private uint _jobShape;
+        // Of the newest atoms, colours and settings.
+        private bool _isTried; // a job was begun, or could not be
+        private bool _isStopped; // nothing more will come: it failed, or was cancelled by the user
+        private bool _isShown;
+        private bool _isShapeShown; // maybe in other colours
         private SurfaceChange _pending; // since the last job began
-        private SurfaceChange _begunChange; // before it
         private double _lastChange;
 
         private bool _updated; // events to be raised
         private bool _finished;
         private bool _failed;
 
-        public SurfaceSession(MolecularSurface owner)
+        public SurfaceSession(ISurfaceHost host)
         {
-            _owner = owner;
+            _host = host;
             SurfaceScheduler.Add(this);
         }
 
         public SurfaceAtomSet Atoms { get; } = new SurfaceAtomSet();
 
-        public ShownSurface Shown { get; } = new ShownSurface();
+        /// <summary>What is shown.</summary>
+        public SurfaceLevel CurrentLevel { get; private set; }
 
         /// <summary>In which queue of its pool it waits.</summary>
-        public QueuePriority Queued { get; set; }
+        public QueuePriority QueuedAs { get; set; }
 
         /// <summary>Whose context it has, or waits for.</summary>
         public ContextPool Pool { get; set; }
@@ -63,22 +52,20 @@ namespace QuickSes
 
         public bool IsDisposed { get; private set; }
 
-        /// <summary>Whether the component has been destroyed without being told.</summary>
-        public bool IsOrphan => _owner == null;
+        public bool IsOrphan => _host.IsGone;
 
-        /// <summary>Whether the newest atoms are shown as finely as asked for, or never will be.</summary>
-        public bool IsUpToDate => !Atoms.IsSet || (_slot == null && (_stoppedVersion == _version || IsDone));
+        /// <summary>
+        /// Whether nothing is left to do: the finest surface of the newest atoms is shown, or failed, or was cancelled,
+        /// or there are no atoms.
+        /// </summary>
+        public bool IsUpToDate => !Atoms.IsSet || (_slot == null && (_isStopped || IsDone));
 
-        private bool IsDone => _shownVersion == _version && Shown.Level.IsFinest;
-
-        private ReadOnlySpan<float> Ladder => new ReadOnlySpan<float>(_ladder, 0, _ladderCount);
+        private bool IsDone => _isShown && CurrentLevel.IsFinest;
 
         /// <summary>Something is new: what is shown will be replaced.</summary>
         public void Change(SurfaceChange change, double now)
         {
-            ++_version;
-            if (change >= SurfaceChange.Positions)
-                ++_shape;
+            Outdate(change >= SurfaceChange.Positions);
             _lastChange = now;
             if (change > _pending)
                 _pending = change;
@@ -89,16 +76,16 @@ namespace QuickSes
         {
             if (_slot != null)
                 Advance();
-            ContextPool pool = SurfaceScheduler.PoolOf(_owner.Backend);
+            ContextPool pool = SurfaceScheduler.PoolOf(_host.Backend);
             if (_slot == null)
             {
                 QueuePriority priority = FindPriority(now);
                 if (priority != QueuePriority.None)
                     pool.Enqueue(this, priority);
                 else
-                    Queued = QueuePriority.None;
+                    QueuedAs = QueuePriority.None;
             }
-            else if (_triedVersion != _version && !Pool.IsAnyUrgent && Pool == pool)
+            else if (!_isTried && !Pool.IsAnyUrgent && Pool == pool)
             {
                 Start(_slot); // replaces the job; its coarsest level still comes
             }
@@ -114,71 +101,54 @@ namespace QuickSes
             if (_updated)
             {
                 _updated = false;
-                _owner.RaiseUpdated(Shown.Level);
+                _host.OnUpdated(CurrentLevel);
             }
             if (_finished && !IsDisposed)
             {
                 _finished = false;
                 if (IsDone && Atoms.IsSet)
-                    _owner.RaiseFinished();
+                    _host.OnFinished();
             }
             if (_failed && !IsDisposed)
             {
                 _failed = false;
                 if (LastError.Status != QuickSesStatus.Ok)
-                    _owner.RaiseFailed(LastError);
+                    _host.OnFailed(LastError);
             }
-        }
-
-        /// <summary>Begins a job with a context that is lent for it, or that it has.</summary>
-        public void Start(ContextSlot slot)
-        {
-            bool replaces = _slot == slot;
-            Borrow(slot);
-            QuickSesError error = TryBegin(slot.Context);
-            _triedVersion = _version;
-            _begunChange = _pending;
-            _pending = SurfaceChange.None;
-            if (error.Status == QuickSesStatus.Ok)
-                return;
-            Fail(_version, error);
-            if (!replaces) // else the job of the atoms before goes on
-                Release(error);
         }
 
         /// <summary>Computes the finest level and shows it before it returns.</summary>
         public bool ComputeNow()
         {
             Drop();
-            ContextSlot slot = SurfaceScheduler.PoolOf(_owner.Backend).LendNow(this, out QuickSesError error);
+            ContextSlot slot = SurfaceScheduler.PoolOf(_host.Backend).LendNow(this, out QuickSesError error);
             if (slot == null)
             {
                 FailToBegin(error);
                 return false;
             }
-            Borrow(slot);
-            error = TryCompute(slot.Context);
-            _triedVersion = _version;
-            _pending = SurfaceChange.None;
-            if (error.Status != QuickSesStatus.Ok)
-                Fail(_version, error);
-            Release(error);
-            return error.Status == QuickSesStatus.Ok;
+            _isStopped = false;
+            if (TryStart(slot, true))
+            {
+                slot.Context.Wait();
+                Advance();
+            }
+            return IsDone && !_isStopped;
         }
 
         /// <summary>There is nothing to compute with, or no atoms to compute it of.</summary>
         public void FailToBegin(in QuickSesError error)
         {
             Drop();
-            _triedVersion = _version;
+            _isTried = true;
             _pending = SurfaceChange.None;
-            Fail(_version, error);
+            Fail(true, error);
         }
 
         /// <summary>Ends the job; what is new meanwhile begins again later.</summary>
         public void Drop()
         {
-            Queued = QueuePriority.None;
+            QueuedAs = QueuePriority.None;
             if (_slot == null)
                 return;
             _slot.Context.Cancel();
@@ -189,28 +159,20 @@ namespace QuickSes
         public void Stop()
         {
             Drop();
-            _stoppedVersion = _triedVersion = _version;
+            _isStopped = _isTried = true;
             _pending = SurfaceChange.None;
         }
 
-        /// <summary>No atoms and no surface.</summary>
+        /// <summary>No atoms and no surface; who shows it clears that.</summary>
         public void Clear()
         {
             Drop();
-            ++_version;
-            ++_shape;
+            Outdate(true);
             _pending = SurfaceChange.None;
             Atoms.Clear();
-            Shown.Clear();
+            CurrentLevel = default;
             LastError = default;
             _updated = _finished = _failed = false;
-        }
-
-        /// <summary>The pool takes the context back, and frees it.</summary>
-        public void LoseContext()
-        {
-            _slot = null;
-            BeginAgain(SurfaceChange.Shape);
         }
 
         /// <summary>After <see cref="Drop"/>: what was not finished begins again.</summary>
@@ -228,185 +190,40 @@ namespace QuickSes
             Drop();
             SurfaceScheduler.Remove(this);
             Atoms.Dispose();
-            Shown.Dispose();
+            CurrentLevel = default;
+            _host.OnDisposed();
+        }
+
+        // What is known of the newest atoms is of older ones from now on.
+        private void Outdate(bool isShapeNew)
+        {
+            _isTried = _isStopped = _isShown = _isJobOfNewest = false;
+            if (isShapeNew)
+                _isShapeShown = _isJobOfShape = false;
         }
 
         private QueuePriority FindPriority(double now)
         {
-            if (!Atoms.IsSet || _stoppedVersion == _version)
+            if (!Atoms.IsSet || _isStopped)
                 return QueuePriority.None;
-            if (_triedVersion != _version)
+            if (!_isTried)
                 return QueuePriority.Urgent;
-            return !IsDone && now - _lastChange >= _owner.RestDelay ? QueuePriority.Refinement : QueuePriority.None;
-        }
-
-        private QuickSesError TryBegin(SurfaceContext context)
-        {
-            try
-            {
-                QuickSesStatus status = Atoms.Send(_slot);
-                if (status == QuickSesStatus.Ok)
-                {
-                    SurfaceSettings settings = MakeSettings();
-                    SurfaceJobPlan.Choose(ref settings, Ladder, _pending,
-                        _shownShape == _shape ? Shown.Level.Spacing : float.PositiveInfinity, _owner.FrameBudget,
-                        Pool.IsAnyUrgent);
-                    status = context.Begin(settings);
-                    NoteJob(settings.Frame, status);
-                }
-                return status == QuickSesStatus.Ok ? default : new QuickSesError(status, context.LastError);
-            }
-            catch (QuickSesException e) // an atom or a setting is wrong
-            {
-                return new QuickSesError(e.Status, e.Message);
-            }
-        }
-
-        private QuickSesError TryCompute(SurfaceContext context)
-        {
-            try
-            {
-                SurfaceMeshView view = default;
-                QuickSesStatus status = Atoms.Send(_slot);
-                if (status == QuickSesStatus.Ok)
-                {
-                    SurfaceSettings settings = MakeSettings();
-                    status = context.Compute(settings, out view);
-                    NoteJob(settings.Frame, status);
-                }
-                return status == QuickSesStatus.Ok ? TryShow(view)
-                    : new QuickSesError(status, context.LastError);
-            }
-            catch (QuickSesException e)
-            {
-                return new QuickSesError(e.Status, e.Message);
-            }
-        }
-
-        // Shows what is ready, and gives the context back when the job is over.
-        private void Advance()
-        {
-            SurfaceContext context = _slot.Context;
-            bool hasShown = false;
-            SurfaceProgress progress;
-            do
-            {
-                if (context.TryCollect(out SurfaceMeshView view) && IsOurs(view))
-                {
-                    QuickSesError error = TryShow(view);
-                    if (error.Status != QuickSesStatus.Ok)
-                    {
-                        context.Cancel();
-                        FailJob(error);
-                        return;
-                    }
-                    hasShown = true;
-                }
-                context.Poll(out progress);
-            } while (progress.IsMeshReady);
-            Progress = progress.Fraction;
-            if (progress.State == SurfaceJobState.Running)
-            {
-                if (hasShown && Pool.IsAnyUrgent)
-                    Yield();
-            }
-            else if (progress.State == SurfaceJobState.Failed)
-            {
-                FailJob(new QuickSesError(progress.Status, progress.Message));
-            }
-            else
-            {
-                Release(default);
-            }
-        }
-
-        // Others have nothing yet, so finer levels come later, or, if what was shown is old by now, all of it.
-        private void Yield()
-        {
-            Drop();
-            if (_shownVersion != _version)
-                BeginAgain(_begunChange);
+            return !IsDone && now - _lastChange >= _host.RestDelay ? QueuePriority.Refinement : QueuePriority.None;
         }
 
         private void BeginAgain(SurfaceChange change)
         {
-            _triedVersion = _version - 1;
+            _isTried = false;
             if (change > _pending)
                 _pending = change;
         }
 
-        // Not what the context's last user left behind. Numbers of jobs may wrap.
-        private bool IsOurs(in SurfaceMeshView view) => unchecked((int)(view.Frame - _slot.FirstJob)) >= 0;
-
-        private QuickSesError TryShow(in SurfaceMeshView view)
+        // That there is nothing to compute with is told once.
+        private void Fail(bool isOfNewest, in QuickSesError error)
         {
-            bool isLast = view.Frame == _job;
-            bool isCurrent = isLast && _jobVersion == _version;
-            _slot.Context.TryGetReport(out SurfaceReport report);
-            try
-            {
-                Shown.Show(view, report, Ladder, isCurrent, _owner.PadBuffers);
-                if (Shown.TakeIsNewMesh())
-                    _owner.AttachMesh();
-            }
-            catch (Exception e) // the engine refuses the mesh: it was made unreadable, say
-            {
-                return new QuickSesError(QuickSesStatus.InternalError, e.Message);
-            }
-            _shownVersion = isCurrent ? _version : _version - 1;
-            _shownShape = isLast && _jobShape == _shape ? _shape : _shape - 1;
-            _updated = true;
-            _finished = IsDone;
-            if (_stoppedVersion != _version)
-                LastError = default;
-            return default;
-        }
-
-        private SurfaceSettings MakeSettings()
-        {
-            SurfaceSettings settings = _owner.MakeSettings(_ladder, out _ladderCount);
-            settings.Frame = SurfaceScheduler.NextJob();
-            settings.Series = _series;
-            settings.Texcoords = Atoms.HasTexcoords;
-            return settings;
-        }
-
-        private void NoteJob(uint job, QuickSesStatus status)
-        {
-            if (status != QuickSesStatus.Ok)
-                return;
-            _job = job;
-            _jobVersion = _version;
-            _jobShape = _shape;
-            Progress = 0;
-        }
-
-        private void Borrow(ContextSlot slot)
-        {
-            _slot = slot;
-            UsedBackend = slot.Context.Backend;
-            UsedDevice = slot.Context.Description;
-        }
-
-        // Of a version nothing (more) will come. That there is nothing to compute with is told once.
-        private void Fail(uint version, in QuickSesError error)
-        {
-            _stoppedVersion = version;
+            _isStopped |= isOfNewest;
             _failed |= error.Status != QuickSesStatus.BackendUnavailable || LastError.Status != error.Status;
             LastError = error;
-        }
-
-        private void FailJob(in QuickSesError error)
-        {
-            Fail(_jobVersion, error);
-            Release(error);
-        }
-
-        private void Release(in QuickSesError error)
-        {
-            Pool.Release(_slot, error.Status == QuickSesStatus.DeviceError);
-            _slot = null;
-            Progress = 1;
         }
     }
 }
