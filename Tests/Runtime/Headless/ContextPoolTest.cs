@@ -80,12 +80,31 @@ namespace QuickSes.Tests
             ContextPool pool = SurfaceScheduler.PoolOf(SurfaceBackend.Cpu);
             foreach (TestHost host in _hosts)
                 host.Session.ComputeNow(); // now each has one, whoever was first before
+            Array.Reverse(_hosts); // else that which is unused for longest would be the right one
             foreach (TestHost host in _hosts)
             {
                 ContextSlot slot = pool.LendNow(host.Session, out _);
                 Assert.That(slot.SentBy, Is.SameAs(host.Session.Atoms));
                 pool.Release(slot, false);
             }
+        }
+
+        [Test]
+        public void NobodyShowsWhatTheLastUserLeftBehind()
+        {
+            SurfaceScheduler.ReleaseContexts();
+            SurfaceScheduler.MaxContexts = 1;
+            _hosts = Hosts(2, k => TestHost.WithAtom(Place(k, 0), Radius(k)));
+            ContextPool pool = SurfaceScheduler.PoolOf(SurfaceBackend.Cpu);
+            ContextSlot slot = pool.LendNow(_hosts[0].Session, out _);
+            _hosts[0].Session.Start(slot);
+            slot.Context.Wait();
+            _hosts[0].Session.Drop(); // nobody has collected what is ready
+            Assert.That(pool.LendNow(_hosts[1].Session, out _), Is.SameAs(slot));
+            _hosts[1].Updated = level => _hosts[1].AssertShowsAtom(Place(1, 0), Radius(1));
+            _hosts[1].Session.Start(slot);
+            _hosts[1].Settle();
+            Assert.That(_hosts[1].Levels, Is.Not.Empty);
         }
 
         [Test]
@@ -101,16 +120,29 @@ namespace QuickSes.Tests
         }
 
         [Test]
-        public void ContextsMayBeReleasedAtAnyTime()
+        public void WhoHasSomethingToShowMakesRoomForThoseWhoHaveNothing()
+        {
+            SurfaceScheduler.ReleaseContexts();
+            SurfaceScheduler.MaxContexts = 1;
+            _hosts = Hosts(2, k => TestHost.WithRow(20000));
+            ContextSlot slot = SurfaceScheduler.PoolOf(SurfaceBackend.Cpu).LendNow(_hosts[0].Session, out _);
+            _hosts[0].Session.Start(slot); // of all levels, since nobody waits yet
+            _hosts[1].Tick();
+            TestHost.Until(() => _hosts[0].Levels.Count > 0, _hosts[0]);
+            Assert.That(_hosts[0].Session.CurrentLevel.IsFinest, Is.False);
+            Assert.That(slot.User, Is.SameAs(_hosts[1].Session));
+            TestHost.Until(AreUpToDate, _hosts);
+        }
+
+        [Test]
+        public void AJobThatLosesItsContextBeginsAgain()
         {
             _hosts = Hosts(1, k => TestHost.WithAtom(Place(k, 0), Radius(k)));
-            for (int frames = 1; frames < 10; ++frames)
-            {
-                SurfaceScheduler.ReleaseContexts();
-                Assert.That(SurfaceScheduler.ContextCount, Is.EqualTo(0));
-                for (int frame = 0; frame < frames; ++frame)
-                    TestHost.Until(() => true, _hosts);
-            }
+            _hosts[0].RestDelay = 1000; // it does not wait for that
+            ContextSlot slot = SurfaceScheduler.PoolOf(SurfaceBackend.Cpu).LendNow(_hosts[0].Session, out _);
+            _hosts[0].Session.Start(slot);
+            SurfaceScheduler.ReleaseContexts();
+            Assert.That(SurfaceScheduler.ContextCount, Is.EqualTo(0));
             TestHost.Until(AreUpToDate, _hosts);
             _hosts[0].AssertShowsAtom(Place(0, 0), Radius(0));
             Assert.That(_hosts[0].Failures, Is.Empty);

@@ -98,6 +98,37 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void WhatMovedWhileItWasComputedIsShownButNotFinished()
+        {
+            _host = TestHost.WithAtom(Vector3.Zero, 1.5f);
+            ContextSlot slot = SurfaceScheduler.PoolOf(SurfaceBackend.Cpu).LendNow(_host.Session, out _);
+            _host.Session.Start(slot);
+            slot.Context.Wait();
+            _host.SetPositions(Vector3.One);
+            _host.Tick();
+            Assert.That(_host.Session.CurrentLevel.IsFinest);
+            Assert.That(_host.Session.CurrentLevel.IsOfNewestAtoms, Is.False);
+            Assert.That(_host.Session.IsUpToDate, Is.False);
+            Assert.That(_host.Finished, Is.EqualTo(0));
+            _host.Settle();
+            _host.AssertShowsAtom(Vector3.One, 1.5f);
+        }
+
+        [Test]
+        public void AFrameThatIsRefusedKeepsTheOneBefore()
+        {
+            _host = TestHost.WithAtom(Vector3.Zero, 1.5f);
+            ContextSlot slot = SurfaceScheduler.PoolOf(SurfaceBackend.Cpu).LendNow(_host.Session, out _);
+            _host.Session.Start(slot);
+            _host.SetPositions(new Vector3(float.NaN, 0, 0));
+            _host.Session.Start(slot);
+            _host.Settle();
+            _host.AssertShowsAtom(Vector3.Zero, 1.5f);
+            Assert.That(_host.Failures.Count, Is.EqualTo(1));
+            Assert.That(_host.Session.LastError.Status, Is.EqualTo(QuickSesStatus.InvalidArgument));
+        }
+
+        [Test]
         public void NewColoursNeverMakeItCoarser()
         {
             _host = TestHost.WithRow(Many);
