@@ -120,7 +120,7 @@ namespace QuickSes.Samples
 
         private void DrawFigures()
         {
-            SurfaceLevel shown = _surface.Shown;
+            SurfaceLevel shown = _surface.CurrentLevel;
             GUILayout.Label($"{_surface.AtomCount:N0} atoms on {_surface.UsedBackend}, {shown.Spacing:0.##} Å now");
             GUILayout.Label($"{shown.VertexCount:N0} vertices, {shown.TriangleCount:N0} triangles");
             GUILayout.Label($"{shown.ComputeMilliseconds:0.0} ms to compute, " +

@@ -37,7 +37,7 @@ namespace QuickSes.Tests
             Assert.That(_surface.Spacing, Is.EqualTo(2 * before));
             Assert.That(_surface.IsBusy, Is.True);
             Assert.That(_surface.ComputeNow(), Is.True);
-            Assert.That(_surface.Shown.Spacing, Is.EqualTo(2 * before));
+            Assert.That(_surface.CurrentLevel.Spacing, Is.EqualTo(2 * before));
 
             Undo.PerformUndo();
             Assert.That(_surface.Spacing, Is.EqualTo(before));
@@ -51,7 +51,7 @@ namespace QuickSes.Tests
             for (int frame = 0; frame < MostFrames && _surface.IsBusy; ++frame)
                 yield return null;
             Assert.That(_surface.IsBusy, Is.False);
-            Assert.That(_surface.Shown.IsFinest, Is.True);
+            Assert.That(_surface.CurrentLevel.IsFinest, Is.True);
         }
 
         [UnityTest]

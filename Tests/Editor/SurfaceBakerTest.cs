@@ -32,12 +32,12 @@ namespace QuickSes.Tests
             Bake(surface, "Two atoms.asset");
 
             var asset = AssetDatabase.LoadAssetAtPath<Mesh>(_folder + "/Two atoms.asset");
-            Assert.That(surface.Shown.IsFinest, Is.True);
-            Assert.That(asset.vertexCount, Is.EqualTo(surface.Shown.VertexCount));
+            Assert.That(surface.CurrentLevel.IsFinest, Is.True);
+            Assert.That(asset.vertexCount, Is.EqualTo(surface.CurrentLevel.VertexCount));
             Assert.That(asset.indexFormat, Is.EqualTo(IndexFormat.UInt32));
-            Assert.That(asset.GetIndexCount(0), Is.EqualTo(3 * surface.Shown.TriangleCount));
+            Assert.That(asset.GetIndexCount(0), Is.EqualTo(3 * surface.CurrentLevel.TriangleCount));
             Vector3[] shown = surface.Mesh.vertices;
-            System.Array.Resize(ref shown, surface.Shown.VertexCount);
+            System.Array.Resize(ref shown, surface.CurrentLevel.VertexCount);
             Assert.That(asset.vertices, Is.EqualTo(shown));
             Assert.That(asset.HasVertexAttribute(VertexAttribute.Normal), Is.True);
             Assert.That(asset.HasVertexAttribute(VertexAttribute.Color), Is.True);

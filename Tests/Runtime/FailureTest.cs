@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 using NUnit.Framework;
-using System;
 using System.Collections;
 using UnityEngine;
 using UnityEngine.TestTools;
@@ -79,30 +78,6 @@ namespace QuickSes.Tests
             Assert.That(_rig.Failures.Count, Is.EqualTo(1));
             Assert.That(_rig.Surface.LastError.Status, Is.EqualTo(QuickSesStatus.InternalError));
             Assert.That(SurfaceScheduler.LentCount, Is.EqualTo(0));
-        }
-
-        [UnityTest]
-        public IEnumerator ThatThereIsNothingToComputeWithIsToldOnce()
-        {
-            if (SurfaceContext.IsSupported(SurfaceBackend.Cuda, out string reason))
-                Assert.Ignore("there is a GPU here");
-            TestMolecules.Blob(20, 4, out Vector3[] positions, out float[] radii);
-            _rig = new SurfaceRig();
-            _rig.Surface.Backend = SurfaceBackend.Cuda;
-            _rig.Surface.SetAtoms(positions, radii);
-            for (int frame = 0; frame < 100; ++frame)
-            {
-                _rig.Surface.SetPositions(TestMolecules.Moved(positions, frame));
-                yield return null;
-            }
-            yield return _rig.Settle();
-            Assert.That(_rig.Failures.Count, Is.EqualTo(1));
-            Assert.That(_rig.Failures[0].Status, Is.EqualTo(QuickSesStatus.BackendUnavailable));
-            Assert.That(_rig.Failures[0].Message, Does.Contain(reason));
-            _rig.Surface.Backend = SurfaceBackend.Cpu;
-            yield return _rig.Settle();
-            Assert.That(_rig.Surface.Shown.IsFinest);
-            Assert.That(_rig.Surface.LastError.Status, Is.EqualTo(QuickSesStatus.Ok));
         }
 
         [UnityTest]

@@ -33,28 +33,6 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
-        public IEnumerator NothingIsFinishedThatHasNewAtoms()
-        {
-            TestMolecules.Blob(40, 2, out Vector3[] positions, out float[] radii);
-            _rig = new SurfaceRig();
-            MolecularSurface surface = _rig.Surface;
-            bool isFed = false, wasBusy = false;
-            surface.SurfaceUpdated += level =>
-            {
-                if (!level.IsFinest || isFed)
-                    return;
-                isFed = true;
-                surface.SetPositions(TestMolecules.Moved(positions, 3));
-            };
-            surface.RefinementFinished += () => wasBusy |= surface.IsBusy;
-            surface.SetAtoms(positions, radii);
-            yield return _rig.Settle();
-            Assert.That(isFed);
-            Assert.That(wasBusy, Is.False);
-            Assert.That(_rig.Finished, Is.EqualTo(1));
-        }
-
-        [UnityTest]
         public IEnumerator NothingIsFinishedThatWasClearedOrDestroyed()
         {
             _rig = SurfaceRig.WithBlob(40, 3);

@@ -39,7 +39,7 @@ namespace QuickSes.Tests
             }
             _rig = SurfaceRig.WithBlob(10, 3);
             yield return _rig.Settle();
-            Assert.That(_rig.Surface.Shown.IsFinest, "and others go on");
+            Assert.That(_rig.Surface.CurrentLevel.IsFinest, "and others go on");
         }
 
         [UnityTest]
@@ -118,38 +118,6 @@ namespace QuickSes.Tests
                 yield return SurfaceRig.Frames(2);
                 Assert.That(_rig.Surface.Mesh.vertexCount, Is.GreaterThan(0));
             }
-        }
-
-        [UnityTest]
-        public IEnumerator ContextsMayBeReleasedAtAnyTime()
-        {
-            TestMolecules.Blob(300, 10, out Vector3[] positions, out float[] radii);
-            _rig = new SurfaceRig();
-            _rig.Surface.SetAtoms(positions, radii);
-            for (int frame = 0; frame < 10; ++frame)
-            {
-                SurfaceScheduler.ReleaseContexts();
-                Assert.That(SurfaceScheduler.ContextCount, Is.EqualTo(0));
-                yield return SurfaceRig.Frames(frame);
-            }
-            yield return _rig.Settle();
-            SurfaceMeshes.AssertIsSurfaceOf(_rig.Surface.Mesh, positions, radii, 0.5f);
-            Assert.That(_rig.Failures, Is.Empty);
-        }
-
-        [UnityTest]
-        public IEnumerator CancelledIsCancelled()
-        {
-            _rig = SurfaceRig.WithBlob(800, 11);
-            yield return SurfaceRig.Until(() => _rig.Levels.Count > 0);
-            _rig.Surface.Cancel();
-            int levels = _rig.Levels.Count;
-            Assert.That(_rig.Surface.IsBusy, Is.False);
-            yield return SurfaceRig.Frames(30);
-            Assert.That(_rig.Levels.Count, Is.EqualTo(levels));
-            _rig.Surface.Recompute();
-            yield return _rig.Settle();
-            Assert.That(_rig.Surface.Shown.IsFinest);
         }
     }
 }

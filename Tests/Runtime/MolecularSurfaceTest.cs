@@ -24,7 +24,7 @@ namespace QuickSes.Tests
             yield return SurfaceRig.Frames(3);
             Assert.That(_rig.Requests, Is.EqualTo(1));
             Assert.That(_rig.Surface.IsBusy, Is.False);
-            Assert.That(_rig.Surface.Shown.LevelCount, Is.EqualTo(0));
+            Assert.That(_rig.Surface.CurrentLevel.LevelCount, Is.EqualTo(0));
 
             int late = 0;
             _rig.Surface.AtomsRequested += () => ++late;
@@ -69,7 +69,7 @@ namespace QuickSes.Tests
                 Assert.That(_rig.Levels[k].Spacing, Is.LessThan(_rig.Levels[k - 1].Spacing));
             SurfaceLevel last = _rig.Levels[_rig.Levels.Count - 1];
             Assert.That(last.Spacing, Is.EqualTo(0.5f));
-            Assert.That(last.IsFinest && last.IsCurrent);
+            Assert.That(last.IsFinest && last.IsOfNewestAtoms);
             Assert.That(last.Level, Is.EqualTo(2));
             Assert.That(last.LevelCount, Is.EqualTo(3));
             Assert.That(last.VertexCount, Is.EqualTo(_rig.Surface.Mesh.vertexCount));
@@ -341,11 +341,11 @@ namespace QuickSes.Tests
             _rig.Surface.SetAtoms(positions, radii);
             yield return _rig.Settle();
             int capacity = _rig.Surface.Mesh.vertexCount;
-            Assert.That(capacity, Is.GreaterThanOrEqualTo(_rig.Surface.Shown.VertexCount));
+            Assert.That(capacity, Is.GreaterThanOrEqualTo(_rig.Surface.CurrentLevel.VertexCount));
             _rig.Surface.SetAtoms(new[] { Vector3.zero }, new[] { 1.5f });
             yield return _rig.Settle();
             Assert.That(_rig.Surface.Mesh.vertexCount, Is.EqualTo(capacity));
-            Assert.That(_rig.Surface.Mesh.GetIndexCount(0), Is.EqualTo(3 * _rig.Surface.Shown.TriangleCount));
+            Assert.That(_rig.Surface.Mesh.GetIndexCount(0), Is.EqualTo(3 * _rig.Surface.CurrentLevel.TriangleCount));
             Assert.That(SurfaceMeshes.IsClosed(_rig.Surface.Mesh));
         }
 

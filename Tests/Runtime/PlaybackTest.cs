@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 using NUnit.Framework;
 using System.Collections;
-using System.Collections.Generic;
 using UnityEngine;
 using UnityEngine.TestTools;
 using UnityEngine.TestTools.Constraints;
@@ -16,46 +15,6 @@ namespace QuickSes.Tests
 
         [TearDown]
         public void TearDown() => _rig?.Dispose();
-
-        [UnityTest]
-        public IEnumerator ThePictureKeepsMovingHoweverFastFramesCome()
-        {
-            TestMolecules.Blob(1500, 1, out Vector3[] positions, out float[] radii);
-            _rig = new SurfaceRig();
-            _rig.Surface.FrameBudget = 5;
-            _rig.Surface.SetAtoms(positions, radii);
-            yield return _rig.Settle();
-            _rig.Levels.Clear();
-            int frames = 0;
-            yield return SurfaceRig.Until(() =>
-            {
-                _rig.Surface.SetPositions(TestMolecules.Moved(positions, ++frames % 7));
-                return _rig.Levels.Count >= 20;
-            });
-            Assert.That(frames, Is.GreaterThan(20 - 1));
-            yield return _rig.Settle();
-            Assert.That(_rig.Surface.Shown.IsFinest, "at rest");
-            SurfaceMeshes.AssertIsSurfaceOf(
-                _rig.Surface.Mesh, TestMolecules.Moved(positions, frames % 7), radii, 0.5f);
-        }
-
-        [UnityTest]
-        public IEnumerator OldFramesAreShownTooAndSaySo()
-        {
-            TestMolecules.Blob(800, 2, out Vector3[] positions, out float[] radii);
-            _rig = new SurfaceRig();
-            _rig.Surface.FrameBudget = 0;
-            _rig.Surface.SetAtoms(positions, radii);
-            int frames = 0;
-            yield return SurfaceRig.Until(() =>
-            {
-                _rig.Surface.SetPositions(TestMolecules.Moved(positions, ++frames % 7));
-                return _rig.Levels.Count >= 5;
-            });
-            Assert.That(_rig.Levels.Exists(level => !level.IsCurrent));
-            yield return _rig.Settle();
-            Assert.That(_rig.Surface.Shown.IsCurrent);
-        }
 
         [UnityTest]
         public IEnumerator TheSameRadiiMeanTheSameMolecule()

@@ -40,7 +40,7 @@ namespace QuickSes.Tests
             yield return SurfaceRig.Until(() =>
             {
                 most = Math.Max(most, SurfaceScheduler.ContextCount);
-                return AreSettled();
+                return AreUpToDate();
             });
             AssertEachIsItsOwn(positions, radii);
 
@@ -59,63 +59,9 @@ namespace QuickSes.Tests
             }
             for (int k = 0; k < Surfaces; k += 10)
                 _rigs[k].GameObject.SetActive(true);
-            yield return SurfaceRig.Until(AreSettled);
+            yield return SurfaceRig.Until(AreUpToDate);
             AssertEachIsItsOwn(positions, radii);
             Assert.That(most, Is.InRange(1, SurfaceScheduler.MaxContexts));
-        }
-
-        [UnityTest]
-        public IEnumerator EverybodySeesSomethingBeforeAnybodySeesTheFinest()
-        {
-            for (int k = 0; k < 40; ++k)
-                _rigs.Add(SurfaceRig.WithBlob(200, k));
-            int shown = 0, finest = 0;
-            yield return SurfaceRig.Until(() =>
-            {
-                shown = finest = 0;
-                foreach (SurfaceRig rig in _rigs)
-                {
-                    shown += rig.Surface.Shown.LevelCount > 0 ? 1 : 0;
-                    finest += rig.Surface.Shown.IsFinest && rig.Surface.Shown.LevelCount > 0 ? 1 : 0;
-                }
-                return shown == _rigs.Count;
-            });
-            // The last few in the queue find nobody behind them, and rested ones have their turn now and then.
-            Assert.That(finest, Is.LessThan(_rigs.Count / 2));
-            yield return SurfaceRig.Until(AreSettled);
-        }
-
-        [UnityTest]
-        public IEnumerator AContextIsFreedWithTheLastSurface()
-        {
-            _rigs.Add(SurfaceRig.WithBlob(20, 1));
-            yield return SurfaceRig.Until(AreSettled);
-            Assert.That(SurfaceScheduler.ContextCount, Is.GreaterThan(0));
-            _rigs[0].GameObject.SetActive(false);
-            Assert.That(SurfaceScheduler.ContextCount, Is.GreaterThan(0), "it may be shown again");
-            _rigs[0].Dispose();
-            Assert.That(SurfaceScheduler.ContextCount, Is.EqualTo(0));
-            yield return SurfaceRig.Until(() => ContextSlot.NativeContexts == 0);
-        }
-
-        [UnityTest]
-        public IEnumerator FreeingTheLastContextIsWaitedForWhereItMust()
-        {
-            _rigs.Add(SurfaceRig.WithBlob(20000, 1));
-            yield return SurfaceRig.Until(() => _rigs[0].Levels.Count > 0);
-            _rigs[0].Dispose(); // in the background
-            SurfaceScheduler.ReleaseContexts();
-            Assert.That(ContextSlot.NativeContexts, Is.EqualTo(0), "native threads must not outlive the domain");
-        }
-
-        [UnityTest]
-        public IEnumerator ContextsOfTheDeadAreUsedAgain()
-        {
-            _rigs.Add(new SurfaceRig()); // has no atoms
-            for (int k = 0; k < 6; ++k)
-                using (SurfaceRig rig = SurfaceRig.WithBlob(30, k))
-                    yield return rig.Settle();
-            Assert.That(SurfaceScheduler.ContextCount, Is.EqualTo(1));
         }
 
         [Test]
@@ -134,11 +80,7 @@ namespace QuickSes.Tests
             Assert.That(ContextSlot.NativeContexts, Is.EqualTo(0));
         }
 
-        [Test]
-        public void AtLeastOneContextIsNeeded() =>
-            Assert.Throws<ArgumentOutOfRangeException>(() => SurfaceScheduler.MaxContexts = 0);
-
-        private bool AreSettled()
+        private bool AreUpToDate()
         {
             foreach (SurfaceRig rig in _rigs)
                 if (rig.Surface.IsBusy)

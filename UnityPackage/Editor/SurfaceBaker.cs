@@ -31,7 +31,7 @@ namespace QuickSes.Editor
             error = ErrorOf(assetPath);
             if (error.Length > 0 || !TryCompute(surface, out error))
                 return false;
-            if (surface.Shown.TriangleCount == 0)
+            if (surface.CurrentLevel.TriangleCount == 0)
             {
                 error = $"The surface of '{surface.name}' is empty.";
                 return false;

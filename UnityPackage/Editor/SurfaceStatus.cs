@@ -11,7 +11,7 @@ namespace QuickSes.Editor
 
         /// <summary>How it stands, in words.</summary>
         public static string State(bool hasAtoms, bool isBusy, float progress, in SurfaceLevel shown, bool hasFailed) =>
-            State(hasAtoms, isBusy, progress, shown.LevelCount > 0, shown.IsFinest && shown.IsCurrent, hasFailed);
+            State(hasAtoms, isBusy, progress, shown.LevelCount > 0, shown.IsFinest && shown.IsOfNewestAtoms, hasFailed);
 
         internal static string State(bool hasAtoms, bool isBusy, float progress, bool isAnyShown, bool isFinest,
             bool hasFailed)

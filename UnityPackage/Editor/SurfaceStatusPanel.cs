@@ -9,7 +9,7 @@ namespace QuickSes.Editor
     {
         public static void Draw(MolecularSurface surface)
         {
-            SurfaceLevel shown = surface.Shown;
+            SurfaceLevel shown = surface.CurrentLevel;
             bool hasFailed = surface.LastError.Status != QuickSesStatus.Ok;
             bool hasAtoms = surface.AtomCount > 0;
             string state = SurfaceStatus.State(hasAtoms, surface.IsBusy, surface.Progress, shown, hasFailed);
@@ -36,7 +36,7 @@ namespace QuickSes.Editor
                 var surface = (MolecularSurface)target;
                 if (!MolecularSurfaceEditor.IsLive(surface))
                     continue;
-                SurfaceLevel shown = surface.Shown;
+                SurfaceLevel shown = surface.CurrentLevel;
                 ++count;
                 busy += surface.IsBusy ? 1 : 0;
                 atoms += surface.AtomCount;

@@ -48,7 +48,7 @@ namespace QuickSes.Tests
             Edit();
             Assert.That(_surface.AtomCount, Is.EqualTo(2));
             Settle();
-            Assert.That(_surface.Shown.IsFinest, Is.True);
+            Assert.That(_surface.CurrentLevel.IsFinest, Is.True);
         }
 
         [Test]

@@ -72,7 +72,8 @@ internal sealed class LevelsTest
         show.surface.Spacing = 1;
         show.SetColors(Alternating(40));
         yield return Settle(show.surface);
-        Assert.That(show.surface.Mesh.vertexCount, Is.EqualTo(show.surface.Shown.VertexCount).And.GreaterThan(100));
+        Assert.That(show.surface.Mesh.vertexCount,
+            Is.EqualTo(show.surface.CurrentLevel.VertexCount).And.GreaterThan(100));
         AssertColours(show.surface.Mesh, System.Array.ConvertAll(show.surface.Owners.ToArray(), atom => (int)atom),
             Alternating(40));
 
@@ -86,10 +87,10 @@ internal sealed class LevelsTest
         UnityMolAtom atom = show.AtomUnder(new Ray(center - Vector3.forward * 100, Vector3.forward));
         Assert.That(selection.atoms, Does.Contain(atom));
 
-        int triangles = show.surface.Shown.TriangleCount;
+        int triangles = show.surface.CurrentLevel.TriangleCount;
         show.Show(new HashSet<UnityMolAtom>(selection.atoms.GetRange(0, 20)));
         yield return Settle(show.surface);
-        Assert.That(show.surface.Shown.TriangleCount, Is.InRange(1, triangles - 1));
+        Assert.That(show.surface.CurrentLevel.TriangleCount, Is.InRange(1, triangles - 1));
     }
 
     private static Color32[] Alternating(int count)

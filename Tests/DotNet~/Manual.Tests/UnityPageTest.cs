@@ -17,7 +17,7 @@ internal sealed class UnityPageTest
         owner.AddComponent<TwoAtoms>();
         yield return null;
         var surface = owner.GetComponent<MolecularSurface>();
-        yield return Until(() => surface.Shown.VertexCount > 0);
+        yield return Until(() => surface.CurrentLevel.VertexCount > 0);
         Mesh mesh = owner.GetComponent<MeshFilter>().sharedMesh;
         Assert.That(mesh, Is.SameAs(surface.Mesh));
         Assert.That(surface.Owners.ToArray(), Has.Some.EqualTo(0u).And.Some.EqualTo(1u));
@@ -35,7 +35,7 @@ internal sealed class UnityPageTest
         yield return null;
         var surface = script.GetComponent<MolecularSurface>();
         Assert.That(surface.AtomCount, Is.EqualTo(327));
-        yield return Until(() => surface.Shown.VertexCount > 0);
+        yield return Until(() => surface.CurrentLevel.VertexCount > 0);
         Color32[] colors = surface.Mesh.colors32;
         Assert.That(colors, Is.All.EqualTo(colors[0]), "crambin has one chain");
         Assert.That(colors[0], Is.Not.EqualTo(surface.BaseColor));
@@ -83,7 +83,7 @@ internal sealed class UnityPageTest
         var surface = owner.GetComponent<MolecularSurface>();
         yield return LevelsTest.Settle(surface);
         Assert.That(surface.AtomCount, Is.EqualTo(40));
-        Assert.That(surface.Shown.IsFinest);
+        Assert.That(surface.CurrentLevel.IsFinest);
     }
 
     private static string Model(int number, float x) => FormattableString.Invariant($"MODEL     {number,4}\n") +

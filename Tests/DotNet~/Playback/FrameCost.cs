@@ -66,10 +66,10 @@ namespace QuickSes.Playback
                 feed[k] = Milliseconds(t0, t1);
                 begin[k] = Milliseconds(t1, t2);
                 arrival[k] = Milliseconds(t3, t4);
-                upload[k] = surface.Shown.UploadMilliseconds;
+                upload[k] = surface.CurrentLevel.UploadMilliseconds;
             }
             Console.WriteLine($"{Path.GetFileName(file)}: {positions.Length} atoms, " +
-                $"{surface.Shown.VertexCount} vertices, buffers {(padBuffers ? "padded" : "exact")}, " +
+                $"{surface.CurrentLevel.VertexCount} vertices, buffers {(padBuffers ? "padded" : "exact")}, " +
                 $"{surface.UsedBackend}: median/max ms of {Surfaces}: SetPositions {Summary(feed)}, " +
                 $"frame that begins {Summary(begin)}, frame that shows {Summary(arrival)}, " +
                 $"of that upload {Summary(upload)}");

@@ -18,7 +18,7 @@ namespace QuickSes.Tests
         public void SetUp()
         {
             TestMolecules.Blob(300, 1, out _positions, out _radii);
-            Engine.BeforeReload += SurfaceScheduler.OnDomainUnloads; // as the Editor calls it
+            Engine.BeforeReload += DomainLifeCycle.OnDomainUnloads; // as the Editor calls it
         }
 
         [UnityTest]

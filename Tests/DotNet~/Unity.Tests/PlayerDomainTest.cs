@@ -11,11 +11,7 @@ namespace QuickSes.Tests
     internal sealed class PlayerDomainTest
     {
         [SetUp]
-        public void TidyUpAsTheEditorDoes()
-        {
-            Engine.BeforeReload += SurfaceScheduler.OnDomainUnloads;
-            Engine.BeforeReload += TrajectoryPlayer.OnDomainUnloads;
-        }
+        public void TidyUpAsTheEditorDoes() => Engine.BeforeReload += DomainLifeCycle.OnDomainUnloads;
 
         [UnityTest]
         public IEnumerator AReloadGoesOnWhereItWas()

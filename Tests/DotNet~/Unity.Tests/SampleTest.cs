@@ -41,7 +41,7 @@ namespace QuickSes.Tests
         [UnityTest]
         public IEnumerator TheEnsemblePlaysInView()
         {
-            yield return SurfaceRig.Until(() => _player.IsReady && _surface.Shown.LevelCount > 0);
+            yield return SurfaceRig.Until(() => _player.IsReady && _surface.CurrentLevel.LevelCount > 0);
             Assert.That(_player.FrameCount, Is.EqualTo(116));
             int from = _player.ShownFrame;
             yield return SurfaceRig.Until(() => _player.ShownFrame > from + 1);
@@ -55,7 +55,7 @@ namespace QuickSes.Tests
         [UnityTest]
         public IEnumerator TheMouseTurnsTheCamera()
         {
-            yield return SurfaceRig.Until(() => _surface.Shown.LevelCount > 0);
+            yield return SurfaceRig.Until(() => _surface.CurrentLevel.LevelCount > 0);
             yield return null;
             Vector3 before = _camera.transform.position;
             float distance = (before - Centre()).magnitude;

@@ -55,13 +55,13 @@ namespace QuickSes.Tests
             surface.PadBuffers = true;
             surface.SetAtoms(new[] { Vector3.zero, new Vector3(1.5f, 0, 0) }, new[] { 1.7f, 1.5f });
             Assert.That(surface.ComputeNow(), Is.True, surface.LastError.Message);
-            int count = surface.Shown.VertexCount;
+            int count = surface.CurrentLevel.VertexCount;
             Assert.That(surface.Mesh.vertexCount, Is.GreaterThan(count));
 
             MeshCopy.Copy(surface.Mesh, _target);
 
             Assert.That(_target.vertexCount, Is.EqualTo(count));
-            Assert.That(_target.GetIndexCount(0), Is.EqualTo(3 * surface.Shown.TriangleCount));
+            Assert.That(_target.GetIndexCount(0), Is.EqualTo(3 * surface.CurrentLevel.TriangleCount));
             Assert.That(_target.bounds, Is.EqualTo(surface.Mesh.bounds));
             Assert.That(_target.vertices, Is.EqualTo(First(count, surface.Mesh.vertices)));
             Assert.That(_target.normals, Is.EqualTo(First(count, surface.Mesh.normals)));

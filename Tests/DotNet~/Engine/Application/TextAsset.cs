@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
-using System;
 using System.Text;
 using Unity.Collections;
-using Unity.Collections.LowLevel.Unsafe;
 
 namespace UnityEngine
 {
@@ -40,24 +38,6 @@ namespace UnityEngine
                 bool isMarked = all.Length >= 3 && all[0] == 0xef && all[1] == 0xbb && all[2] == 0xbf;
                 return isMarked ? Encoding.UTF8.GetString(all, 3, all.Length - 3) : Encoding.UTF8.GetString(all);
             }
-        }
-
-        public long dataSize
-        {
-            get
-            {
-                RequireAlive("get_dataSize");
-                return _data.Length;
-            }
-        }
-
-        public NativeArray<T> GetData<T>() where T : struct
-        {
-            RequireAlive("GetData");
-            if (_data.Length % UnsafeUtility.SizeOf<T>() != 0)
-                throw new ArgumentException($"Type passed to GetData can't capture the asset data. Data size is " +
-                    $"{_data.Length} which is not a multiple of type size {UnsafeUtility.SizeOf<T>()}");
-            return _data.GetSubArray(0, _data.Length).Reinterpret<T>(1);
         }
 
         public override string ToString() => text;

@@ -1,23 +1,10 @@
 // SPDX-License-Identifier: MIT
 using System;
-using Unity.Collections.LowLevel.Unsafe;
 
 namespace Unity.Collections
 {
     public unsafe partial struct NativeArray<T>
     {
-        public static void Copy(NativeArray<T> src, NativeArray<T> dst)
-        {
-            RequireEqualLengths(src._length, dst._length);
-            Copy(src, 0, dst, 0, src._length);
-        }
-
-        public static void Copy(ReadOnly src, NativeArray<T> dst)
-        {
-            RequireEqualLengths(src._length, dst._length);
-            Copy(src, 0, dst, 0, src._length);
-        }
-
         public static void Copy(T[] src, NativeArray<T> dst)
         {
             RequireEqualLengths(src.Length, dst._length);
@@ -30,40 +17,6 @@ namespace Unity.Collections
             Copy(src, 0, dst, 0, src._length);
         }
 
-        public static void Copy(ReadOnly src, T[] dst)
-        {
-            RequireEqualLengths(src._length, dst.Length);
-            Copy(src, 0, dst, 0, src._length);
-        }
-
-        public static void Copy(NativeArray<T> src, NativeArray<T> dst, int length) => Copy(src, 0, dst, 0, length);
-
-        public static void Copy(ReadOnly src, NativeArray<T> dst, int length) => Copy(src, 0, dst, 0, length);
-
-        public static void Copy(T[] src, NativeArray<T> dst, int length) => Copy(src, 0, dst, 0, length);
-
-        public static void Copy(NativeArray<T> src, T[] dst, int length) => Copy(src, 0, dst, 0, length);
-
-        public static void Copy(ReadOnly src, T[] dst, int length) => Copy(src, 0, dst, 0, length);
-
-        public static void Copy(NativeArray<T> src, int srcIndex, NativeArray<T> dst, int dstIndex, int length)
-        {
-            src.RequireReadable();
-            dst.RequireWritable();
-            RequireRanges(src._length, srcIndex, dst._length, dstIndex, length);
-            int size = UnsafeUtility.SizeOf<T>();
-            UnsafeUtility.MemCpy((byte*)dst._buffer + (long)dstIndex * size, (byte*)src._buffer + (long)srcIndex * size,
-                (long)length * size);
-        }
-
-        public static void Copy(ReadOnly src, int srcIndex, NativeArray<T> dst, int dstIndex, int length)
-        {
-            src.RequireReadable();
-            dst.RequireWritable();
-            RequireRanges(src._length, srcIndex, dst._length, dstIndex, length);
-            src.Span.Slice(srcIndex, length).CopyTo(dst.Span.Slice(dstIndex));
-        }
-
         public static void Copy(T[] src, int srcIndex, NativeArray<T> dst, int dstIndex, int length)
         {
             dst.RequireWritable();
@@ -74,15 +27,6 @@ namespace Unity.Collections
         }
 
         public static void Copy(NativeArray<T> src, int srcIndex, T[] dst, int dstIndex, int length)
-        {
-            src.RequireReadable();
-            if (dst == null)
-                throw new ArgumentNullException(nameof(dst));
-            RequireRanges(src._length, srcIndex, dst.Length, dstIndex, length);
-            src.Span.Slice(srcIndex, length).CopyTo(dst.AsSpan(dstIndex));
-        }
-
-        public static void Copy(ReadOnly src, int srcIndex, T[] dst, int dstIndex, int length)
         {
             src.RequireReadable();
             if (dst == null)

@@ -6,8 +6,6 @@ namespace Unity.Collections.LowLevel.Unsafe
     public static unsafe class NativeArrayUnsafeUtility
     {
 #if ENABLE_UNITY_COLLECTIONS_CHECKS
-        public static AtomicSafetyHandle GetAtomicSafetyHandle<T>(NativeArray<T> array) where T : struct =>
-            array._safety;
 
         public static void SetAtomicSafetyHandle<T>(ref NativeArray<T> array, AtomicSafetyHandle safety)
             where T : struct => array._safety = safety;
@@ -22,25 +20,10 @@ namespace Unity.Collections.LowLevel.Unsafe
             return new NativeArray<T>(dataPointer, length, allocator);
         }
 
-        public static void* GetUnsafePtr<T>(this NativeArray<T> nativeArray) where T : struct
-        {
-            nativeArray.RequireWritable();
-            return nativeArray._buffer;
-        }
-
         public static void* GetUnsafeReadOnlyPtr<T>(this NativeArray<T> nativeArray) where T : struct
         {
             nativeArray.RequireReadable();
             return nativeArray._buffer;
         }
-
-        public static void* GetUnsafeReadOnlyPtr<T>(this NativeArray<T>.ReadOnly nativeArray) where T : struct
-        {
-            nativeArray.RequireReadable();
-            return nativeArray._buffer;
-        }
-
-        public static void* GetUnsafeBufferPointerWithoutChecks<T>(NativeArray<T> nativeArray) where T : struct =>
-            nativeArray._buffer;
     }
 }

@@ -15,7 +15,6 @@ namespace QuickSes.EngineDouble
         // In front of each block.
         private struct Header
         {
-            public Header* Previous, Next;
             public byte* Start;
             public long Size;
             public long Allocator;
@@ -31,15 +30,6 @@ namespace QuickSes.EngineDouble
         private static readonly object s_lock = new object();
         private static readonly HashSet<IntPtr> s_live = new HashSet<IntPtr>();
         private static readonly int[] s_liveCounts = new int[8];
-        private static readonly long[] s_liveBytes = new long[8];
-        private static Header* s_temporary;
-        private static long s_allocationCount;
-
-        /// <summary>Number of allocations since the process began.</summary>
-        public static long AllocationCount
-        {
-            get { lock (s_lock) return s_allocationCount; }
-        }
 
         /// <summary>Blocks of an allocator that have not been freed.</summary>
         public static int LiveCount(Allocator allocator)
@@ -48,19 +38,12 @@ namespace QuickSes.EngineDouble
                 return s_liveCounts[(int)allocator];
         }
 
-        /// <summary>Bytes of an allocator's blocks that have not been freed.</summary>
-        public static long LiveBytes(Allocator allocator)
-        {
-            lock (s_lock)
-                return s_liveBytes[(int)allocator];
-        }
-
         internal static void* Allocate(long size, int alignment, Allocator allocator)
         {
             if (size < 0)
                 throw new ArgumentOutOfRangeException(nameof(size), "A block can't have a negative size.");
-            if (allocator <= Allocator.None || (int)allocator >= s_liveCounts.Length)
-                throw new ArgumentException("Allocator must be Temp, TempJob or Persistent", nameof(allocator));
+            if (allocator <= Allocator.Temp || (int)allocator >= s_liveCounts.Length)
+                throw new ArgumentException("Allocator must be TempJob or Persistent", nameof(allocator));
             alignment = Math.Max(alignment, MinimumAlignment);
             var start = (byte*)Marshal.AllocHGlobal(new IntPtr(size + alignment + sizeof(Header)));
             long address = ((long)(start + sizeof(Header)) + alignment - 1) / alignment * alignment;
@@ -71,16 +54,7 @@ namespace QuickSes.EngineDouble
             lock (s_lock)
             {
                 s_live.Add((IntPtr)block);
-                ++s_allocationCount;
                 ++s_liveCounts[(int)allocator];
-                s_liveBytes[(int)allocator] += size;
-                if (allocator == Allocator.Temp)
-                {
-                    header->Next = s_temporary;
-                    if (s_temporary != null)
-                        s_temporary->Previous = header;
-                    s_temporary = header;
-                }
             }
 
             return block;
@@ -100,27 +74,10 @@ namespace QuickSes.EngineDouble
                         $"A block of allocator {(Allocator)header->Allocator} is freed as one of {allocator}.");
                 s_live.Remove((IntPtr)block);
                 --s_liveCounts[(int)allocator];
-                s_liveBytes[(int)allocator] -= header->Size;
-                if (allocator == Allocator.Temp)
-                    Unlink(header);
             }
 
             Fill(block, Freed, header->Size);
             Marshal.FreeHGlobal(new IntPtr(header->Start));
-        }
-
-        /// <summary>Takes back what was allocated for the frame, as the engine does at its end.</summary>
-        internal static void FreeTemporary()
-        {
-            while (true)
-            {
-                Header* header;
-                lock (s_lock)
-                    header = s_temporary;
-                if (header == null)
-                    return;
-                Free(header + 1, Allocator.Temp);
-            }
         }
 
         internal static void Fill(void* destination, byte value, long size)
@@ -132,16 +89,6 @@ namespace QuickSes.EngineDouble
                 to += count;
                 size -= count;
             }
-        }
-
-        private static void Unlink(Header* header)
-        {
-            if (header->Previous != null)
-                header->Previous->Next = header->Next;
-            else
-                s_temporary = header->Next;
-            if (header->Next != null)
-                header->Next->Previous = header->Previous;
         }
     }
 }

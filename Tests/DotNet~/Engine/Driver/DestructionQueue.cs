@@ -4,15 +4,15 @@ using UnityEngine;
 
 namespace QuickSes.EngineDouble
 {
-    /// <summary>What Destroy was called for; destroyed at the end of the frame, or after a delay.</summary>
+    /// <summary>What Destroy was called for; destroyed at the end of the frame.</summary>
     internal static class DestructionQueue
     {
-        private static readonly List<(Object Item, double Time)> s_queue = new List<(Object, double)>();
+        private static readonly List<Object> s_queue = new List<Object>();
 
-        public static void Add(Object item, float delay)
+        public static void Add(Object item)
         {
-            item.IsDestructionPending = delay <= 0;
-            s_queue.Add((item, Time.timeAsDouble + delay));
+            item.IsDestructionPending = true;
+            s_queue.Add(item);
         }
 
         public static void Clear() => s_queue.Clear();
@@ -20,13 +20,8 @@ namespace QuickSes.EngineDouble
         public static void Run()
         {
             for (int i = 0; i < s_queue.Count; ++i)
-            {
-                (Object item, double time) = s_queue[i];
-                if (time > Time.timeAsDouble)
-                    continue;
-                s_queue.RemoveAt(i--);
-                item.DestroyNow();
-            }
+                s_queue[i].DestroyNow();
+            s_queue.Clear();
         }
     }
 }

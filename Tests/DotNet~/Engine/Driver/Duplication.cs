@@ -76,8 +76,6 @@ namespace QuickSes.EngineDouble
                     continue;
                 foreach (FieldInfo field in type.GetFields(Declared))
                 {
-                    if (field.IsDefined(typeof(SerializeReference), false))
-                        throw new NotSupportedException($"The double of the engine does not copy {field}.");
                     if (!field.IsInitOnly && !field.IsNotSerialized && Serialization.IsSerializable(field.FieldType) &&
                         (field.IsPublic || field.IsDefined(typeof(SerializeField), false)))
                         field.SetValue(to, CopyOf(field.GetValue(from), field.FieldType));

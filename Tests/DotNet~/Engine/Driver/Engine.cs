@@ -38,11 +38,7 @@ namespace QuickSes.EngineDouble
             for (int i = ObjectRegistry.Objects.Count; i-- > 0; i = Math.Min(i, ObjectRegistry.Objects.Count))
                 ObjectRegistry.Objects[i].DestroyNow();
             DestructionQueue.Clear();
-            Coroutines.Clear();
-            NativeHeap.FreeTemporary();
             Time.Reset();
-            Resources.Clear();
-            EngineLog.Clear();
             BeforeReload = null;
             Application.isPlaying = true;
             ChecksMeshes = true;
@@ -69,13 +65,10 @@ namespace QuickSes.EngineDouble
             Time.Advance(seconds);
             Lifecycle.StartPending();
             Lifecycle.Broadcast(Message.Update);
-            Coroutines.Run(false);
             Lifecycle.Broadcast(Message.LateUpdate);
             if (ChecksMeshes)
                 MeshCheck.RunOnChanged();
-            Coroutines.Run(true);
             DestructionQueue.Run();
-            NativeHeap.FreeTemporary();
         }
 
         /// <summary>
@@ -106,12 +99,10 @@ namespace QuickSes.EngineDouble
             {
                 if (!(item is MonoBehaviour script))
                     continue;
-                Coroutines.StopAll(script);
                 DomainReload.ForgetFields(script);
                 script.State.IsStarted = false;
             }
 
-            Coroutines.Clear();
             foreach (MonoBehaviour script in scripts)
                 if (script != null && script.isActiveAndEnabled)
                     Lifecycle.Enable(script);

@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: MIT
 using System;
-using System.Collections.Generic;
 using UnityEngine;
-using Object = UnityEngine.Object;
 
 namespace QuickSes.EngineDouble
 {
-    public readonly struct LogEntry
+    internal readonly struct LogEntry
     {
-        public LogEntry(LogType type, string message, string stackTrace, Object context)
+        public LogEntry(LogType type, string message, string stackTrace)
         {
             Type = type;
             Message = message;
             StackTrace = stackTrace;
-            Context = context;
         }
 
         public LogType Type { get; }
@@ -22,42 +19,18 @@ namespace QuickSes.EngineDouble
 
         public string StackTrace { get; }
 
-        public Object Context { get; }
-
         /// <summary>True for what fails a test that does not expect it.</summary>
         public bool IsFailure => Type == LogType.Error || Type == LogType.Assert || Type == LogType.Exception;
 
         public override string ToString() => $"[{Type}] {Message}";
     }
 
-    /// <summary>What was logged since <see cref="Engine.Reset"/>.</summary>
-    public static class EngineLog
+    /// <summary>Passes on what is logged, from any thread.</summary>
+    internal static class EngineLog
     {
-        private static readonly List<LogEntry> s_entries = new List<LogEntry>();
+        public static event Action<LogEntry> Written;
 
-        internal static event Action<LogEntry> Written;
-
-        public static LogEntry[] Entries
-        {
-            get { lock (s_entries) return s_entries.ToArray(); }
-        }
-
-        internal static void Clear()
-        {
-            lock (s_entries)
-                s_entries.Clear();
-        }
-
-        internal static void Write(LogType type, string message, string stackTrace, Object context)
-        {
-            var entry = new LogEntry(type, message, stackTrace, context);
-            lock (s_entries)
-            {
-                s_entries.Add(entry);
-                Written?.Invoke(entry);
-            }
-
-            Application.RaiseLogMessage(message, stackTrace, type, EngineThread.IsMain);
-        }
+        public static void Write(LogType type, string message, string stackTrace) =>
+            Written?.Invoke(new LogEntry(type, message, stackTrace));
     }
 }

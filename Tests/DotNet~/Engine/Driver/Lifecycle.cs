@@ -16,7 +16,7 @@ namespace QuickSes.EngineDouble
         private static readonly List<MonoBehaviour> s_enabled = new List<MonoBehaviour>();
         private static MonoBehaviour[] s_running = new MonoBehaviour[64];
 
-        /// <summary>Enabled scripts, by execution order and then by the time they were enabled.</summary>
+        /// <summary>Enabled scripts, by the time they were enabled.</summary>
         public static IReadOnlyList<MonoBehaviour> Enabled => s_enabled;
 
         /// <summary>A script was added.</summary>
@@ -52,7 +52,7 @@ namespace QuickSes.EngineDouble
             ScriptState state = script.State;
             if (state.Messages == null || state.IsGone)
                 return;
-            bool isRunning = (Application.isPlaying || state.Messages.RunsInEditMode || script.runInEditMode) &&
+            bool isRunning = (Application.isPlaying || state.Messages.RunsInEditMode) &&
                 script.Owner.activeInHierarchy;
             if (isRunning && !state.IsAwake)
             {
@@ -94,7 +94,6 @@ namespace QuickSes.EngineDouble
             if (state.IsEnabled)
                 Disable(script);
             state.IsGone = true;
-            Coroutines.StopAll(script);
             if (state.IsAwake)
                 state.Messages.Send(script, Message.OnDestroy);
         }
@@ -117,7 +116,7 @@ namespace QuickSes.EngineDouble
         public static void Enable(MonoBehaviour script)
         {
             script.State.IsEnabled = true;
-            s_enabled.Insert(PlaceOf(script.State), script);
+            s_enabled.Add(script);
             script.State.Messages.Send(script, Message.OnEnable);
         }
 
@@ -126,8 +125,6 @@ namespace QuickSes.EngineDouble
             script.State.IsEnabled = false;
             s_enabled.Remove(script);
             script.State.Messages.Send(script, Message.OnDisable);
-            if (!script.Owner.activeInHierarchy)
-                Coroutines.StopAll(script);
         }
 
         /// <summary>Sends to all that are enabled now, unless an earlier one's message disables them.</summary>
@@ -151,7 +148,7 @@ namespace QuickSes.EngineDouble
                 if (!script.State.IsEnabled || script.State.IsStarted)
                     continue;
                 script.State.IsStarted = true;
-                script.State.Messages.SendStart(script);
+                script.State.Messages.Send(script, Message.Start);
             }
         }
 
@@ -162,21 +159,6 @@ namespace QuickSes.EngineDouble
                 s_running = new MonoBehaviour[2 * count];
             s_enabled.CopyTo(s_running);
             return count;
-        }
-
-        private static int PlaceOf(ScriptState state)
-        {
-            int low = 0, high = s_enabled.Count;
-            while (low < high)
-            {
-                int middle = (low + high) / 2;
-                if (s_enabled[middle].State.Messages.Order <= state.Messages.Order)
-                    low = middle + 1;
-                else
-                    high = middle;
-            }
-
-            return low;
         }
     }
 }

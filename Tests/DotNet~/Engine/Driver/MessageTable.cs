@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 using System;
-using System.Collections;
 using System.Collections.Generic;
 using System.Reflection;
 using UnityEngine;
@@ -11,7 +10,7 @@ namespace QuickSes.EngineDouble
     internal enum Message
     {
         Awake, OnEnable, Reset, OnValidate, Start, Update, LateUpdate, OnGUI, OnApplicationQuit, OnDisable, OnDestroy,
-        OnBecameVisible, OnBecameInvisible, Count
+        Count
     }
 
     /// <summary>
@@ -39,37 +38,26 @@ namespace QuickSes.EngineDouble
         private static readonly Dictionary<Type, MessageTable> s_tables = new Dictionary<Type, MessageTable>();
 
         private readonly Receiver[] _receivers = new Receiver[(int)Message.Count];
-        private readonly MethodInfo _startRoutine;
 
         private MessageTable(Type type)
         {
             for (Message message = 0; message < Message.Count; ++message)
             {
                 MethodInfo method = FindMethod(type, message.ToString());
-                if (method == null)
-                    continue;
-                if (message == Message.Start && method.ReturnType == typeof(IEnumerator))
-                    _startRoutine = method;
-                else if (method.ReturnType == typeof(void))
+                if (method != null && method.ReturnType == typeof(void))
                     _receivers[(int)message] = (Receiver)Activator.CreateInstance(
                         typeof(Receiver<>).MakeGenericType(method.DeclaringType), method);
             }
 
-            RunsInEditMode = type.IsDefined(typeof(ExecuteAlways), true) ||
-                type.IsDefined(typeof(ExecuteInEditMode), true);
-            Order = type.GetCustomAttribute<DefaultExecutionOrder>(true)?.order ?? 0;
+            RunsInEditMode = type.IsDefined(typeof(ExecuteAlways), true);
             SingleType = FindSingleType(type);
             var required = new List<Type>();
             foreach (RequireComponent attribute in type.GetCustomAttributes(typeof(RequireComponent), true))
-                foreach (Type one in new[] { attribute.m_Type0, attribute.m_Type1, attribute.m_Type2 })
-                    if (one != null)
-                        required.Add(one);
+                required.AddRange(attribute.Types);
             RequiredTypes = required.ToArray();
         }
 
         public bool RunsInEditMode { get; }
-
-        public int Order { get; }
 
         /// <summary>The type of which one GameObject has one component at most, or null.</summary>
         public Type SingleType { get; }
@@ -82,8 +70,6 @@ namespace QuickSes.EngineDouble
                 s_tables[type] = table = new MessageTable(type);
             return table;
         }
-
-        public bool Has(Message message) => _receivers[(int)message] != null;
 
         /// <summary>What the method throws goes to the log, and the engine goes on.</summary>
         public void Send(Object target, Message message)
@@ -99,14 +85,6 @@ namespace QuickSes.EngineDouble
             {
                 Debug.LogException(exception, target);
             }
-        }
-
-        public void SendStart(MonoBehaviour script)
-        {
-            if (_startRoutine != null)
-                script.StartCoroutine((IEnumerator)_startRoutine.Invoke(script, null));
-            else
-                Send(script, Message.Start);
         }
 
         // The most derived one, private or not.

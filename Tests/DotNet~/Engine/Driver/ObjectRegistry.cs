@@ -25,12 +25,6 @@ namespace QuickSes.EngineDouble
             s_objects.RemoveAt(s_objects.Count - 1);
         }
 
-        public static bool IsInScene(Object item, bool includeInactive)
-        {
-            GameObject owner = item as GameObject ?? (item as Component)?.Owner;
-            return owner is null || includeInactive || owner.activeInHierarchy;
-        }
-
         public static int CountOf<T>() where T : Object
         {
             int count = 0;

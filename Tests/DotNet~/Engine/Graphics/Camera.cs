@@ -11,7 +11,7 @@ namespace UnityEngine
             get
             {
                 foreach (Object item in ObjectRegistry.Objects)
-                    if (item is Camera camera && camera.CompareTag("MainCamera") && camera.isActiveAndEnabled)
+                    if (item is Camera camera && camera.gameObject.tag == "MainCamera" && camera.isActiveAndEnabled)
                         return camera;
                 return null;
             }
@@ -48,7 +48,5 @@ namespace UnityEngine
         public static int width => 1280;
 
         public static int height => 720;
-
-        public static float dpi => 96;
     }
 }

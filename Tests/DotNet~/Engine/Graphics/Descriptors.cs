@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-using System;
 using System.Runtime.InteropServices;
 
 namespace UnityEngine.Rendering
 {
     [StructLayout(LayoutKind.Sequential)]
-    public struct VertexAttributeDescriptor : IEquatable<VertexAttributeDescriptor>
+    public struct VertexAttributeDescriptor
     {
         public VertexAttributeDescriptor(VertexAttribute attribute = VertexAttribute.Position,
             VertexAttributeFormat format = VertexAttributeFormat.Float32, int dimension = 3, int stream = 0)
@@ -24,21 +23,8 @@ namespace UnityEngine.Rendering
 
         public int stream { get; set; }
 
-        public readonly bool Equals(VertexAttributeDescriptor other) => attribute == other.attribute &&
-            format == other.format && dimension == other.dimension && stream == other.stream;
-
-        public override readonly bool Equals(object other) =>
-            other is VertexAttributeDescriptor descriptor && Equals(descriptor);
-
-        public override readonly int GetHashCode() => HashCode.Combine(attribute, format, dimension, stream);
-
         public override readonly string ToString() =>
             $"(attr={attribute} fmt={format} dim={dimension} stream={stream})";
-
-        public static bool operator ==(VertexAttributeDescriptor lhs, VertexAttributeDescriptor rhs) => lhs.Equals(rhs);
-
-        public static bool operator !=(VertexAttributeDescriptor lhs, VertexAttributeDescriptor rhs) =>
-            !lhs.Equals(rhs);
     }
 
     [StructLayout(LayoutKind.Sequential)]

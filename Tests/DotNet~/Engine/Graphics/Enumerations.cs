@@ -11,20 +11,6 @@ namespace UnityEngine
         LineStrip = 4,
         Points = 5
     }
-
-    public enum ColorSpace
-    {
-        Uninitialized = -1,
-        Gamma = 0,
-        Linear = 1
-    }
-
-    public static class QualitySettings
-    {
-        public static ColorSpace activeColorSpace { get; internal set; } = ColorSpace.Linear;
-
-        public static int vSyncCount { get; set; }
-    }
 }
 
 namespace UnityEngine.Rendering
@@ -77,13 +63,5 @@ namespace UnityEngine.Rendering
         TexCoord7,
         BlendWeight,
         BlendIndices
-    }
-
-    public enum ShadowCastingMode
-    {
-        Off = 0,
-        On = 1,
-        TwoSided = 2,
-        ShadowsOnly = 3
     }
 }

@@ -22,22 +22,10 @@ namespace UnityEngine
             set => Write(VertexAttribute.Normal, VertexAttributeFormat.Float32, 3, value);
         }
 
-        public Color[] colors
-        {
-            get => Read<Color>(VertexAttribute.Color, VertexAttributeFormat.Float32, 4);
-            set => Write(VertexAttribute.Color, VertexAttributeFormat.Float32, 4, value);
-        }
-
         public Color32[] colors32
         {
             get => Read<Color32>(VertexAttribute.Color, VertexAttributeFormat.UNorm8, 4);
             set => Write(VertexAttribute.Color, VertexAttributeFormat.UNorm8, 4, value);
-        }
-
-        public Vector2[] uv
-        {
-            get => Read<Vector2>(VertexAttribute.TexCoord0, VertexAttributeFormat.Float32, 2);
-            set => Write(VertexAttribute.TexCoord0, VertexAttributeFormat.Float32, 2, value);
         }
 
         public Vector2[] uv2
@@ -68,8 +56,6 @@ namespace UnityEngine
 
         public void SetVertices(Vector3[] inVertices) => vertices = inVertices;
 
-        public void SetVertices(List<Vector3> inVertices) => vertices = inVertices.ToArray();
-
         public void SetNormals(Vector3[] inNormals) => normals = inNormals;
 
         public void SetColors(Color32[] inColors) => colors32 = inColors;
@@ -98,8 +84,6 @@ namespace UnityEngine
             SetSubMesh(submesh, new SubMeshDescriptor(0, indices.Length, topology));
         }
 
-        public int[] GetTriangles(int submesh) => GetIndices(submesh);
-
         public int[] GetIndices(int submesh)
         {
             RequireAlive("GetIndices");
@@ -113,42 +97,11 @@ namespace UnityEngine
             return indices;
         }
 
-        public uint GetIndexStart(int submesh) => (uint)GetSubMesh(submesh).indexStart;
-
         public uint GetIndexCount(int submesh) => (uint)GetSubMesh(submesh).indexCount;
-
-        public uint GetBaseVertex(int submesh) => (uint)GetSubMesh(submesh).baseVertex;
-
-        public MeshTopology GetTopology(int submesh) => GetSubMesh(submesh).topology;
-
-        public void GetVertices(List<Vector3> vertices) => Fill(vertices, this.vertices);
-
-        public void GetNormals(List<Vector3> normals) => Fill(normals, this.normals);
-
-        public void GetColors(List<Color32> colors) => Fill(colors, colors32);
 
         public VertexAttributeDescriptor[] GetVertexAttributes() => Buffers.Layout.Attributes.ToArray();
 
-        public VertexAttributeDescriptor GetVertexAttribute(int index) => Buffers.Layout[index];
-
         public bool HasVertexAttribute(VertexAttribute attr) => Buffers.Layout.TryFind(attr, out _, out _);
-
-        public int GetVertexAttributeDimension(VertexAttribute attr) =>
-            Buffers.Layout.TryFind(attr, out VertexAttributeDescriptor found, out _) ? found.dimension : 0;
-
-        public VertexAttributeFormat GetVertexAttributeFormat(VertexAttribute attr) =>
-            Buffers.Layout.TryFind(attr, out VertexAttributeDescriptor found, out _)
-                ? found.format
-                : VertexAttributeFormat.Float32;
-
-        public int GetVertexAttributeStream(VertexAttribute attr) =>
-            Buffers.Layout.TryFind(attr, out VertexAttributeDescriptor found, out _) ? found.stream : -1;
-
-        public int GetVertexAttributeOffset(VertexAttribute attr)
-        {
-            Buffers.Layout.TryFind(attr, out _, out int offset);
-            return offset;
-        }
 
         public int GetVertexBufferStride(int stream) => Buffers.Layout.StrideOf(stream);
 
@@ -213,12 +166,6 @@ namespace UnityEngine
             }
 
             old.Release();
-        }
-
-        private static void Fill<T>(List<T> list, T[] values)
-        {
-            list.Clear();
-            list.AddRange(values);
         }
     }
 }

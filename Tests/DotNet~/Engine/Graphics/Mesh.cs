@@ -88,10 +88,6 @@ namespace UnityEngine
             }
         }
 
-        public int vertexBufferCount => Buffers.Layout.UsedStreams;
-
-        public int vertexAttributeCount => Buffers.Layout.Count;
-
         public void Clear() => Clear(true);
 
         public void Clear(bool keepVertexLayout)
@@ -101,48 +97,24 @@ namespace UnityEngine
             Record.NoteChange(this, MeshUpdateFlags.Default);
         }
 
-        public void MarkDynamic()
-        {
-            RequireAlive("MarkDynamic");
-            ++Record.MarkDynamicCalls;
-        }
+        public void MarkDynamic() => RequireAlive("MarkDynamic");
 
         public void MarkModified()
         {
             RequireAlive("MarkModified");
-            ++Record.MarkModifiedCalls;
             Record.Notify(this);
         }
 
         public void UploadMeshData(bool markNoLongerReadable)
         {
             RequireAlive("UploadMeshData");
-            if (!_isReadable)
-                return;
-            ++Record.UploadMeshDataCalls;
-            _isReadable = !markNoLongerReadable;
-        }
-
-        public void RecalculateBounds() => RecalculateBounds(MeshUpdateFlags.Default);
-
-        public void RecalculateBounds(MeshUpdateFlags flags)
-        {
-            RequireAlive("RecalculateBounds");
-            Writable().Bounds = MeshMeasure.BoundsOfVertices(Buffers);
-            Record.NoteChange(this, flags);
+            _isReadable &= !markNoLongerReadable;
         }
 
         public void SetVertexBufferParams(int vertexCount, params VertexAttributeDescriptor[] attributes)
         {
             RequireAlive("SetVertexBufferParams");
             SetVertexParams(vertexCount, attributes);
-        }
-
-        public void SetVertexBufferParams(int vertexCount, NativeArray<VertexAttributeDescriptor> attributes)
-        {
-            RequireAlive("SetVertexBufferParams");
-            SetVertexParams(vertexCount, new ReadOnlySpan<VertexAttributeDescriptor>(
-                attributes.GetUnsafeReadOnlyPtr(), attributes.Length));
         }
 
         public void SetIndexBufferParams(int indexCount, IndexFormat format)
@@ -234,25 +206,6 @@ namespace UnityEngine
         {
             Buffers.Release();
             Buffers = null;
-        }
-
-        /// <summary>Takes over the buffers and the caller's claim to them.</summary>
-        internal void Adopt(MeshBuffers buffers, MeshUpdateFlags flags)
-        {
-            RequireReadable("vertex");
-            Bounds bounds = Buffers.Bounds;
-            Buffers.Release();
-            Buffers = buffers;
-            Record.BytesUploaded += buffers.IndexBytes;
-            for (int stream = 0; stream < VertexLayout.StreamCount; ++stream)
-                Record.BytesUploaded += buffers.StreamBytes(stream);
-            ++Record.VertexUploads;
-            ++Record.IndexUploads;
-            bool measures = (flags & MeshUpdateFlags.DontRecalculateBounds) == 0;
-            buffers.Bounds = measures ? MeshMeasure.UnionOfSubMeshes(buffers) : bounds;
-            if ((flags & MeshUpdateFlags.DontValidateIndices) == 0)
-                LogIndicesOutOfBounds(0, buffers.IndexCount, 0);
-            Record.NoteChange(this, flags);
         }
 
         internal void RequireReadable(string what)

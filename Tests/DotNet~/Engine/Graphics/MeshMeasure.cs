@@ -57,23 +57,5 @@ namespace QuickSes.EngineDouble
 
             return bounds;
         }
-
-        public static Bounds BoundsOfVertices(MeshBuffers mesh)
-        {
-            Bounds bounds = default;
-            if (mesh.VertexCount == 0 ||
-                !mesh.Layout.TryFind(VertexAttribute.Position, out VertexAttributeDescriptor position, out int offset))
-                return bounds;
-            Vector3 min = Vector3.positiveInfinity, max = Vector3.negativeInfinity;
-            for (int v = 0; v < mesh.VertexCount; ++v)
-            {
-                Vector3 point = VertexNumbers.ReadPosition(mesh, position, offset, v);
-                min = Vector3.Min(min, point);
-                max = Vector3.Max(max, point);
-            }
-
-            bounds.SetMinMax(min, max);
-            return bounds;
-        }
     }
 }

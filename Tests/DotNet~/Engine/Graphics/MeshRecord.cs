@@ -20,16 +20,7 @@ namespace QuickSes.EngineDouble
 
         public int SubMeshCalls { get; internal set; }
 
-        public int MarkModifiedCalls { get; internal set; }
-
-        public int MarkDynamicCalls { get; internal set; }
-
-        public int UploadMeshDataCalls { get; internal set; }
-
         public long BytesUploaded { get; internal set; }
-
-        /// <summary>Flags of all uploads and of SetSubMesh that at least one of them had.</summary>
-        public MeshUpdateFlags FlagsOfAny { get; private set; }
 
         /// <summary>Flags of all uploads and of SetSubMesh that each of them had; all, before the first.</summary>
         public MeshUpdateFlags FlagsOfEach { get; private set; } = ~MeshUpdateFlags.Default;
@@ -47,15 +38,12 @@ namespace QuickSes.EngineDouble
         public void Clear()
         {
             VertexParamsCalls = IndexParamsCalls = VertexUploads = IndexUploads = SubMeshCalls = 0;
-            MarkModifiedCalls = MarkDynamicCalls = UploadMeshDataCalls = 0;
             BytesUploaded = 0;
-            FlagsOfAny = MeshUpdateFlags.Default;
             FlagsOfEach = ~MeshUpdateFlags.Default;
         }
 
         internal void NoteChange(Mesh mesh, MeshUpdateFlags flags)
         {
-            FlagsOfAny |= flags;
             FlagsOfEach &= flags;
             Change(mesh);
             if ((flags & MeshUpdateFlags.DontNotifyMeshUsers) != 0)

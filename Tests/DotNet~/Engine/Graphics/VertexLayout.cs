@@ -19,8 +19,6 @@ namespace QuickSes.EngineDouble
 
         public int Count { get; private set; }
 
-        public VertexAttributeDescriptor this[int index] => _attributes[index];
-
         /// <summary>Streams up to the last that has an attribute.</summary>
         public int UsedStreams
         {
@@ -50,8 +48,6 @@ namespace QuickSes.EngineDouble
                 _strides[_attributes[i].stream] += SizeOf(_attributes[i].format) * _attributes[i].dimension;
             }
         }
-
-        public void CopyFrom(VertexLayout other) => Set(other.Attributes);
 
         public ReadOnlySpan<VertexAttributeDescriptor> Attributes => _attributes.AsSpan(0, Count);
 

@@ -44,49 +44,18 @@ namespace QuickSes.EngineDouble
         private static double Decode(byte* numbers, VertexAttributeFormat format, int index) => format switch
         {
             VertexAttributeFormat.Float32 => ((float*)numbers)[index],
-            VertexAttributeFormat.Float16 => HalfToDouble(((ushort*)numbers)[index]),
             VertexAttributeFormat.UNorm8 => numbers[index] / 255.0,
-            VertexAttributeFormat.SNorm8 => Math.Max(((sbyte*)numbers)[index] / 127.0, -1),
-            VertexAttributeFormat.UNorm16 => ((ushort*)numbers)[index] / 65535.0,
-            VertexAttributeFormat.SNorm16 => Math.Max(((short*)numbers)[index] / 32767.0, -1),
-            VertexAttributeFormat.UInt8 => numbers[index],
-            VertexAttributeFormat.SInt8 => ((sbyte*)numbers)[index],
-            VertexAttributeFormat.UInt16 => ((ushort*)numbers)[index],
-            VertexAttributeFormat.SInt16 => ((short*)numbers)[index],
-            VertexAttributeFormat.UInt32 => ((uint*)numbers)[index],
-            VertexAttributeFormat.SInt32 => ((int*)numbers)[index],
-            _ => throw new ArgumentOutOfRangeException(nameof(format))
+            _ => throw new NotSupportedException($"The double does not read numbers of format {format}.")
         };
 
         private static void Encode(double number, VertexAttributeFormat format, byte* output)
         {
-            switch (format)
-            {
-                case VertexAttributeFormat.Float32: *(float*)output = (float)number; break;
-                case VertexAttributeFormat.UNorm8: *output = (byte)Scale(number, 0, 255); break;
-                case VertexAttributeFormat.SNorm8: *(sbyte*)output = (sbyte)Scale(number, -1, 127); break;
-                case VertexAttributeFormat.UNorm16: *(ushort*)output = (ushort)Scale(number, 0, 65535); break;
-                case VertexAttributeFormat.SNorm16: *(short*)output = (short)Scale(number, -1, 32767); break;
-                case VertexAttributeFormat.UInt8: *output = (byte)number; break;
-                case VertexAttributeFormat.SInt8: *(sbyte*)output = (sbyte)number; break;
-                case VertexAttributeFormat.UInt16: *(ushort*)output = (ushort)number; break;
-                case VertexAttributeFormat.SInt16: *(short*)output = (short)number; break;
-                case VertexAttributeFormat.UInt32: *(uint*)output = (uint)number; break;
-                case VertexAttributeFormat.SInt32: *(int*)output = (int)number; break;
-                default: throw new NotSupportedException($"The double does not write numbers of format {format}.");
-            }
-        }
-
-        private static double Scale(double value, double min, double one) =>
-            Math.Round(Math.Max(min, Math.Min(1, value)) * one);
-
-        private static double HalfToDouble(ushort bits)
-        {
-            int exponent = bits >> 10 & 31, fraction = bits & 1023;
-            double size = exponent == 0 ? Math.Pow(2, -14) * fraction / 1024
-                : exponent < 31 ? Math.Pow(2, exponent - 15) * (1 + fraction / 1024.0)
-                : fraction == 0 ? double.PositiveInfinity : double.NaN;
-            return bits >> 15 == 0 ? size : -size;
+            if (format == VertexAttributeFormat.Float32)
+                *(float*)output = (float)number;
+            else if (format == VertexAttributeFormat.UNorm8)
+                *output = (byte)Math.Round(Math.Max(0, Math.Min(1, number)) * 255);
+            else
+                throw new NotSupportedException($"The double does not write numbers of format {format}.");
         }
     }
 }

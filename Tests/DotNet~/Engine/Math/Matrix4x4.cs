@@ -6,7 +6,7 @@ namespace UnityEngine
 {
     /// <summary>mRC is row R, column C; vectors are columns.</summary>
     [Serializable]
-    public struct Matrix4x4 : IEquatable<Matrix4x4>
+    public struct Matrix4x4
     {
         public float m00, m10, m20, m30, m01, m11, m21, m31, m02, m12, m22, m32, m03, m13, m23, m33;
 
@@ -17,8 +17,6 @@ namespace UnityEngine
             (m02, m12, m22, m32) = (column2.x, column2.y, column2.z, column2.w);
             (m03, m13, m23, m33) = (column3.x, column3.y, column3.z, column3.w);
         }
-
-        public static Matrix4x4 zero => default;
 
         public static Matrix4x4 identity => Scale(Vector3.one);
 
@@ -34,8 +32,6 @@ namespace UnityEngine
                 return (float)value;
             }
         }
-
-        public readonly Matrix4x4 transpose => new Matrix4x4(GetRow(0), GetRow(1), GetRow(2), GetRow(3));
 
         public readonly Vector3 lossyScale
         {
@@ -77,24 +73,6 @@ namespace UnityEngine
         public readonly Vector4 GetRow(int index) =>
             new Vector4(this[index, 0], this[index, 1], this[index, 2], this[index, 3]);
 
-        public void SetColumn(int index, Vector4 column)
-        {
-            for (int row = 0; row < 4; ++row)
-                this[row, index] = column[row];
-        }
-
-        public void SetRow(int index, Vector4 row)
-        {
-            for (int column = 0; column < 4; ++column)
-                this[index, column] = row[column];
-        }
-
-        public readonly Vector3 MultiplyPoint(Vector3 point)
-        {
-            float w = m30 * point.x + m31 * point.y + m32 * point.z + m33;
-            return MultiplyPoint3x4(point) / w;
-        }
-
         public readonly Vector3 MultiplyPoint3x4(Vector3 point) =>
             MultiplyVector(point) + new Vector3(m03, m13, m23);
 
@@ -106,15 +84,9 @@ namespace UnityEngine
         public static Matrix4x4 Scale(Vector3 vector) =>
             new Matrix4x4 { m00 = vector.x, m11 = vector.y, m22 = vector.z, m33 = 1 };
 
-        public static Matrix4x4 Translate(Vector3 vector) => TRS(vector, Quaternion.identity, Vector3.one);
-
-        public static Matrix4x4 Rotate(Quaternion q) => TRS(Vector3.zero, q, Vector3.one);
-
         public static Matrix4x4 TRS(Vector3 pos, Quaternion q, Vector3 s) => new Matrix4x4(
             q * Vector3.right * s.x, q * Vector3.up * s.y, q * Vector3.forward * s.z,
             new Vector4(pos.x, pos.y, pos.z, 1));
-
-        public static Matrix4x4 Inverse(Matrix4x4 m) => Invert(m);
 
         public static Vector4 operator *(Matrix4x4 lhs, Vector4 vector) => new Vector4(
             Vector4.Dot(lhs.GetRow(0), vector), Vector4.Dot(lhs.GetRow(1), vector),
@@ -122,21 +94,6 @@ namespace UnityEngine
 
         public static Matrix4x4 operator *(Matrix4x4 lhs, Matrix4x4 rhs) => new Matrix4x4(
             lhs * rhs.GetColumn(0), lhs * rhs.GetColumn(1), lhs * rhs.GetColumn(2), lhs * rhs.GetColumn(3));
-
-        public static bool operator ==(Matrix4x4 lhs, Matrix4x4 rhs) =>
-            lhs.GetColumn(0) == rhs.GetColumn(0) && lhs.GetColumn(1) == rhs.GetColumn(1) &&
-            lhs.GetColumn(2) == rhs.GetColumn(2) && lhs.GetColumn(3) == rhs.GetColumn(3);
-
-        public static bool operator !=(Matrix4x4 lhs, Matrix4x4 rhs) => !(lhs == rhs);
-
-        public readonly bool Equals(Matrix4x4 other) =>
-            GetColumn(0).Equals(other.GetColumn(0)) && GetColumn(1).Equals(other.GetColumn(1)) &&
-            GetColumn(2).Equals(other.GetColumn(2)) && GetColumn(3).Equals(other.GetColumn(3));
-
-        public override readonly bool Equals(object other) => other is Matrix4x4 matrix && Equals(matrix);
-
-        public override readonly int GetHashCode() =>
-            HashCode.Combine(GetColumn(0), GetColumn(1), GetColumn(2), GetColumn(3));
 
         public override readonly string ToString() =>
             string.Format(CultureInfo.InvariantCulture, "{0}\n{1}\n{2}\n{3}", GetRow(0), GetRow(1), GetRow(2),

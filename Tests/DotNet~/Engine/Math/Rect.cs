@@ -4,7 +4,7 @@ using System;
 namespace UnityEngine
 {
     [Serializable]
-    public struct Rect : IEquatable<Rect>
+    public struct Rect
     {
         public Rect(float x, float y, float width, float height)
         {
@@ -14,12 +14,6 @@ namespace UnityEngine
             this.height = height;
         }
 
-        public Rect(Vector2 position, Vector2 size) : this(position.x, position.y, size.x, size.y)
-        {
-        }
-
-        public static Rect zero => default;
-
         public float x { get; set; }
         public float y { get; set; }
         public float width { get; set; }
@@ -28,21 +22,8 @@ namespace UnityEngine
         public readonly float yMin => y;
         public readonly float xMax => x + width;
         public readonly float yMax => y + height;
-        public readonly Vector2 position => new Vector2(x, y);
-        public readonly Vector2 size => new Vector2(width, height);
-        public readonly Vector2 center => new Vector2(x + width / 2, y + height / 2);
 
         public readonly bool Contains(Vector2 point) =>
             point.x >= xMin && point.x < xMax && point.y >= yMin && point.y < yMax;
-
-        public static bool operator ==(Rect lhs, Rect rhs) => lhs.Equals(rhs);
-        public static bool operator !=(Rect lhs, Rect rhs) => !lhs.Equals(rhs);
-
-        public readonly bool Equals(Rect other) =>
-            x == other.x && y == other.y && width == other.width && height == other.height;
-
-        public override readonly bool Equals(object other) => other is Rect rect && Equals(rect);
-
-        public override readonly int GetHashCode() => HashCode.Combine(x, y, width, height);
     }
 }

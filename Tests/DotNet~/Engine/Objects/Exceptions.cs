@@ -24,15 +24,4 @@ namespace UnityEngine
         {
         }
     }
-
-    public class MissingComponentException : SystemException
-    {
-        public MissingComponentException()
-        {
-        }
-
-        public MissingComponentException(string message) : base(message)
-        {
-        }
-    }
 }

@@ -40,13 +40,7 @@ namespace UnityEngine
             }
         }
 
-        public GameObject gameObject => this;
-
-        public int layer { get; set; }
-
         public string tag { get; set; } = "Untagged";
-
-        public bool isStatic { get; set; }
 
         public bool activeSelf => _activeSelf;
 
@@ -70,8 +64,6 @@ namespace UnityEngine
             _activeSelf = value;
             Lifecycle.RefreshHierarchy(this);
         }
-
-        public bool CompareTag(string tag) => this.tag == tag;
 
         public T AddComponent<T>() where T : Component => (T)AddComponent(typeof(T));
 
@@ -133,62 +125,10 @@ namespace UnityEngine
             return component != null;
         }
 
-        public T[] GetComponents<T>()
-        {
-            var found = new List<T>();
-            GetComponents(found);
-            return found.ToArray();
-        }
-
-        public void GetComponents<T>(List<T> results)
-        {
-            RequireAlive("GetComponents");
-            results.Clear();
-            foreach (Component candidate in _components)
-                if (candidate is T match)
-                    results.Add(match);
-        }
-
-        public T GetComponentInChildren<T>() => GetComponentInChildren<T>(false);
-
-        public T GetComponentInChildren<T>(bool includeInactive)
-        {
-            T[] found = GetComponentsInChildren<T>(includeInactive);
-            return found.Length > 0 ? found[0] : default;
-        }
-
-        public T[] GetComponentsInChildren<T>() => GetComponentsInChildren<T>(false);
-
-        public T[] GetComponentsInChildren<T>(bool includeInactive)
-        {
-            var found = new List<T>();
-            CollectFromChildren(includeInactive, found);
-            return found.ToArray();
-        }
-
-        public T GetComponentInParent<T>()
-        {
-            for (GameObject at = this; at != null; at = at._transform.ParentObject)
-                if (at.activeInHierarchy && at.TryGetComponent(out T component))
-                    return component;
-            return default;
-        }
-
-        public static GameObject Find(string name)
-        {
-            foreach (Object candidate in ObjectRegistry.Objects)
-                if (candidate is GameObject gameObject && gameObject.name == name && gameObject.activeInHierarchy)
-                    return gameObject;
-            return null;
-        }
-
         /// <summary>Components of the same types, still as new, of which none was told anything; no children.</summary>
         internal static GameObject CopyOf(GameObject original)
         {
-            var copy = new GameObject(original.name)
-            {
-                layer = original.layer, tag = original.tag, isStatic = original.isStatic, hideFlags = original.hideFlags
-            };
+            var copy = new GameObject(original.name) { tag = original.tag, hideFlags = original.hideFlags };
             copy._activeSelf = original._activeSelf;
             for (int i = 1; i < original._components.Count; ++i) // the first is the Transform
                 copy.Append((Component)Activator.CreateInstance(original._components[i].GetType(), true));
@@ -235,17 +175,6 @@ namespace UnityEngine
             component.AttachTo(this);
             _components.Add(component);
             return component;
-        }
-
-        private void CollectFromChildren<T>(bool includeInactive, List<T> found)
-        {
-            if (!includeInactive && !activeInHierarchy)
-                return;
-            foreach (Component candidate in _components)
-                if (candidate is T match)
-                    found.Add(match);
-            for (int i = 0; i < _transform.childCount; ++i)
-                _transform.GetChild(i).Owner.CollectFromChildren(includeInactive, found);
         }
     }
 }

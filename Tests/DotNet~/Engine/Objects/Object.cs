@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 using QuickSes.EngineDouble;
-using System;
-using System.Collections.Generic;
 
 namespace UnityEngine
 {
@@ -58,15 +56,7 @@ namespace UnityEngine
             }
         }
 
-        public int GetInstanceID()
-        {
-            EngineThread.Require("GetInstanceID");
-            return _instanceId;
-        }
-
-        public static void Destroy(Object obj) => Destroy(obj, 0);
-
-        public static void Destroy(Object obj, float t)
+        public static void Destroy(Object obj)
         {
             EngineThread.Require("Destroy");
             if (obj == null)
@@ -74,47 +64,21 @@ namespace UnityEngine
             if (!Application.isPlaying)
                 Debug.LogError("Destroy may not be called from edit mode! Use DestroyImmediate instead.");
             else if (obj.MayBeDestroyed())
-                DestructionQueue.Add(obj, t);
+                DestructionQueue.Add(obj);
         }
 
-        public static void DestroyImmediate(Object obj) => DestroyImmediate(obj, false);
-
-        public static void DestroyImmediate(Object obj, bool allowDestroyingAssets)
+        public static void DestroyImmediate(Object obj)
         {
             EngineThread.Require("DestroyImmediate");
             if (obj != null && obj.MayBeDestroyed())
                 obj.DestroyNow();
         }
 
-        public static void DontDestroyOnLoad(Object target) => target.RequireAlive("DontDestroyOnLoad");
-
-        public static T[] FindObjectsOfType<T>() where T : Object => FindObjectsOfType<T>(false);
-
-        public static T[] FindObjectsOfType<T>(bool includeInactive) where T : Object
-        {
-            var found = new List<T>();
-            foreach (Object candidate in ObjectRegistry.Objects)
-                if (candidate is T match && ObjectRegistry.IsInScene(candidate, includeInactive))
-                    found.Add(match);
-            return found.ToArray();
-        }
-
-        public static T FindObjectOfType<T>() where T : Object
-        {
-            T[] found = FindObjectsOfType<T>();
-            return found.Length > 0 ? found[0] : null;
-        }
-
         /// <summary>Of GameObjects and components, the latter with their GameObject.</summary>
         public static T Instantiate<T>(T original) where T : Object => Instantiate(original, null, false);
 
-        public static T Instantiate<T>(T original, Transform parent) where T : Object =>
-            Instantiate(original, parent, false);
-
         public static T Instantiate<T>(T original, Transform parent, bool worldPositionStays) where T : Object =>
             (T)Duplication.Run(original, parent, worldPositionStays);
-
-        public static implicit operator bool(Object exists) => exists != null;
 
         public static bool operator ==(Object x, Object y) =>
             x is null || x.IsDestroyed ? y is null || y.IsDestroyed : ReferenceEquals(x, y);

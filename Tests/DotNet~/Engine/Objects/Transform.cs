@@ -29,8 +29,6 @@ namespace UnityEngine
             set => SetParent(value);
         }
 
-        public Transform root => _parent == null ? this : _parent.root;
-
         public int childCount => _children.Count;
 
         public bool hasChanged { get; set; } = true;
@@ -92,23 +90,7 @@ namespace UnityEngine
             set => localRotation = _parent == null ? value : Quaternion.Inverse(_parent.rotation) * value;
         }
 
-        public Vector3 eulerAngles
-        {
-            get => rotation.eulerAngles;
-            set => rotation = Quaternion.Euler(value);
-        }
-
-        public Vector3 localEulerAngles
-        {
-            get => localRotation.eulerAngles;
-            set => localRotation = Quaternion.Euler(value);
-        }
-
         public Vector3 lossyScale => localToWorldMatrix.lossyScale;
-
-        public Vector3 right => rotation * Vector3.right;
-
-        public Vector3 up => rotation * Vector3.up;
 
         public Vector3 forward => rotation * Vector3.forward;
 
@@ -169,54 +151,19 @@ namespace UnityEngine
             return _children[index];
         }
 
-        public Transform Find(string n)
-        {
-            foreach (Transform child in _children)
-                if (child.name == n)
-                    return child;
-            return null;
-        }
-
         public void SetPositionAndRotation(Vector3 position, Quaternion rotation)
         {
             this.position = position;
             this.rotation = rotation;
         }
 
-        public void Translate(Vector3 translation) => position += rotation * translation;
-
-        public void Rotate(Vector3 eulers) => localRotation *= Quaternion.Euler(eulers);
-
-        public void Rotate(float xAngle, float yAngle, float zAngle) => Rotate(new Vector3(xAngle, yAngle, zAngle));
-
-        public void Rotate(Vector3 axis, float angle) => localRotation *= Quaternion.AngleAxis(angle, axis);
-
-        public void RotateAround(Vector3 point, Vector3 axis, float angle)
-        {
-            Quaternion turn = Quaternion.AngleAxis(angle, axis);
-            position = point + turn * (position - point);
-            rotation = turn * rotation;
-        }
-
-        public void LookAt(Transform target) => LookAt(target.position);
-
-        public void LookAt(Vector3 worldPosition) => rotation = Quaternion.LookRotation(worldPosition - position);
-
         public Vector3 TransformPoint(Vector3 position) => localToWorldMatrix.MultiplyPoint3x4(position);
-
-        public Vector3 TransformPoint(float x, float y, float z) => TransformPoint(new Vector3(x, y, z));
 
         public Vector3 InverseTransformPoint(Vector3 position) => worldToLocalMatrix.MultiplyPoint3x4(position);
 
-        public Vector3 InverseTransformPoint(float x, float y, float z) => InverseTransformPoint(new Vector3(x, y, z));
-
         public Vector3 TransformVector(Vector3 vector) => localToWorldMatrix.MultiplyVector(vector);
 
-        public Vector3 InverseTransformVector(Vector3 vector) => worldToLocalMatrix.MultiplyVector(vector);
-
         public Vector3 TransformDirection(Vector3 direction) => rotation * direction;
-
-        public Vector3 InverseTransformDirection(Vector3 direction) => Quaternion.Inverse(rotation) * direction;
 
         public IEnumerator GetEnumerator() => _children.GetEnumerator();
 

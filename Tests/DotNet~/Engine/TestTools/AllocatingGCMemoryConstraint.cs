@@ -54,6 +54,5 @@ namespace UnityEngine.TestTools.Constraints
 
     public class Is : NUnit.Framework.Is
     {
-        public static AllocatingGCMemoryConstraint AllocatingGCMemory() => new AllocatingGCMemoryConstraint();
     }
 }

@@ -4,18 +4,17 @@ using System;
 using System.Collections;
 using System.Collections.Generic;
 using System.Diagnostics;
-using UnityEngine;
 
 namespace QuickSes.EngineDouble
 {
     /// <summary>
-    /// Runs what a test yields: each null is a frame. Errors in the log end it, unless it is a tear-down.
+    /// Runs what a test yields: each null is a frame. Errors in the log end it.
     /// </summary>
     internal static class EnumeratorRunner
     {
         private static readonly TimeSpan TimeLimit = TimeSpan.FromSeconds(180);
 
-        public static void Run(IEnumerator test, bool isTearDown = false)
+        public static void Run(IEnumerator test)
         {
             Stopwatch clock = Stopwatch.StartNew();
             var routines = new Stack<IEnumerator>();
@@ -35,16 +34,11 @@ namespace QuickSes.EngineDouble
                     continue;
                 }
 
-                double end = Time.timeAsDouble + (step is WaitForSeconds wait ? wait.Seconds : 0);
-                do
-                {
-                    Engine.Frame();
-                    if (LogScope.IsOpen && !isTearDown)
-                        LogScope.Current.RequireNoFailure();
-                    if (clock.Elapsed > TimeLimit)
-                        throw new AssertionException($"The test took longer than {TimeLimit.TotalSeconds} s.");
-                }
-                while (Time.timeAsDouble < end || step is Coroutine coroutine && !coroutine.IsDone);
+                Engine.Frame();
+                if (LogScope.IsOpen)
+                    LogScope.Current.RequireNoFailure();
+                if (clock.Elapsed > TimeLimit)
+                    throw new AssertionException($"The test took longer than {TimeLimit.TotalSeconds} s.");
             }
         }
     }

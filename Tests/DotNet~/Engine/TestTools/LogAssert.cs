@@ -12,11 +12,6 @@ namespace UnityEngine.TestTools
             set => LogScope.Current.IgnoresFailures = value;
         }
 
-        public static void Expect(LogType type, string message) =>
-            LogScope.Current.Expect(type, message, null);
-
         public static void Expect(LogType type, Regex message) => LogScope.Current.Expect(type, null, message);
-
-        public static void NoUnexpectedReceived() => LogScope.Current.RequireNothingElse();
     }
 }

@@ -70,13 +70,6 @@ namespace QuickSes.EngineDouble
             }
         }
 
-        public void RequireNothingElse()
-        {
-            lock (_expected)
-                if (_unexpected.Count > 0)
-                    throw new AssertionException($"Unhandled log message: {_unexpected[0]}");
-        }
-
         public void RequireNoFailure()
         {
             if (IgnoresFailures)

@@ -60,33 +60,4 @@ namespace UnityEngine.TestTools
             return new Command(command.Test);
         }
     }
-
-    [AttributeUsage(AttributeTargets.Method)]
-    public class UnitySetUpAttribute : NUnitAttribute
-    {
-    }
-
-    [AttributeUsage(AttributeTargets.Method)]
-    public class UnityTearDownAttribute : NUnitAttribute
-    {
-    }
-
-    [AttributeUsage(AttributeTargets.Class | AttributeTargets.Method | AttributeTargets.Assembly)]
-    public class UnityPlatformAttribute : NUnitAttribute, IApplyToTest
-    {
-        public UnityPlatformAttribute(params RuntimePlatform[] include) => this.include = include;
-
-        public RuntimePlatform[] include { get; set; }
-
-        public RuntimePlatform[] exclude { get; set; } = Array.Empty<RuntimePlatform>();
-
-        public void ApplyToTest(Test test)
-        {
-            bool isIncluded = include.Length == 0 || Array.IndexOf(include, Application.platform) >= 0;
-            if (isIncluded && Array.IndexOf(exclude, Application.platform) < 0)
-                return;
-            test.RunState = RunState.Skipped;
-            test.Properties.Add(PropertyNames.SkipReason, $"Not for {Application.platform}");
-        }
-    }
 }

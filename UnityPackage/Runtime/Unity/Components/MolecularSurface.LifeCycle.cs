@@ -19,11 +19,11 @@ namespace QuickSes
         {
             _asksForAtoms = true;
             AttachMesh();
-            Session.Shown.TakeIsNewMesh();
+            Shown.TakeIsNewMesh();
             var meshRenderer = GetComponent<MeshRenderer>();
             if (meshRenderer.sharedMaterial == null)
                 meshRenderer.sharedMaterial = Resources.Load<Material>(DefaultMaterial);
-            Session.Atoms.SetBaseColor(_baseColor);
+            Session.Atoms.SetBaseColor(Number(_baseColor));
             _editedFrom = ShapeSettings();
             Session.Resume();
             QueueEditorUpdate();
@@ -63,10 +63,12 @@ namespace QuickSes
                 return;
             SurfaceSession session = Session;
             session.Tick(Time.realtimeSinceStartupAsDouble);
-            if (!session.IsSettled)
+            if (!session.IsUpToDate)
                 QueueEditorUpdate();
             session.RaiseEvents();
         }
+
+        private void AttachMesh() => GetComponent<MeshFilter>().sharedMesh = Shown.Mesh;
 
         private bool IsAlive => !_isDestroyed && isActiveAndEnabled;
 
@@ -75,7 +77,7 @@ namespace QuickSes
             if (_session == null || _session.IsDisposed)
                 return;
             _isEdited = true; // the rest later: files are not read and meshes not set while values are validated
-            if (_session.Atoms.SetBaseColor(_baseColor))
+            if (_session.Atoms.SetBaseColor(Number(_baseColor)))
                 Changed(SurfaceChange.Appearance);
             SurfaceShapeSettings edited = ShapeSettings();
             if (!edited.Equals(_editedFrom))
@@ -102,7 +104,7 @@ namespace QuickSes
             }
             else if (_loadedSource != null)
             {
-                Session.Clear();
+                Clear();
                 _loadedSource = null;
                 _asksForAtoms = true;
             }

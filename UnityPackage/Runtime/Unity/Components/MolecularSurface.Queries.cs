@@ -11,22 +11,22 @@ namespace QuickSes
         /// Å², of the whole surface that is shown, before the transform; cavities count as well, and what
         /// <see cref="SetVisible(bool[])"/> hides.
         /// </summary>
-        public double Area => Session.Shown.Area;
+        public double Area => Shown.Area;
 
         /// <summary>Å³, enclosed by the whole surface, before the transform; cavities count negative.</summary>
-        public double Volume => Session.Shown.Volume;
+        public double Volume => Shown.Volume;
 
         /// <summary>
         /// The closed pieces of the surface, cavities among them, if <see cref="MeasureComponents"/>. Valid until the
         /// next surface is shown.
         /// </summary>
-        public ReadOnlySpan<SurfaceComponent> Components => Session.Shown.Components;
+        public ReadOnlySpan<SurfaceComponent> Components => Shown.Components;
 
         /// <summary>
         /// The atom of each vertex of the mesh, as an index into the atoms the shown surface is of. Valid until the next
         /// surface is shown.
         /// </summary>
-        public ReadOnlySpan<uint> Owners => Session.Shown.Owners;
+        public ReadOnlySpan<uint> Owners => Shown.Owners;
 
         /// <summary>
         /// The atom whose surface is nearest to a vertex of <see cref="Mesh"/>: an index into the
@@ -35,7 +35,7 @@ namespace QuickSes
         /// <param name="vertex">From 0 to <see cref="SurfaceLevel.VertexCount"/> - 1.</param>
         public int OwnerAtomAt(int vertex)
         {
-            ReadOnlySpan<uint> owners = Session.Shown.Owners;
+            ReadOnlySpan<uint> owners = Shown.Owners;
             if ((uint)vertex >= (uint)owners.Length)
                 throw new ArgumentOutOfRangeException(nameof(vertex), vertex, $"there are {owners.Length} vertices");
             return (int)owners[vertex];
@@ -52,7 +52,7 @@ namespace QuickSes
         public bool TryPick(Ray ray, out int atom, out Vector3 point)
         {
             Matrix4x4 toLocal = transform.worldToLocalMatrix;
-            bool isHit = Session.Shown.TryPick(toLocal.MultiplyPoint3x4(ray.origin),
+            bool isHit = Shown.TryPick(toLocal.MultiplyPoint3x4(ray.origin),
                 toLocal.MultiplyVector(ray.direction), out atom, out float distance);
             point = isHit ? ray.origin + distance * ray.direction : default;
             return isHit;

@@ -1,23 +1,24 @@
 // SPDX-License-Identifier: MIT
 using System;
+using System.Numerics;
 using System.Runtime.InteropServices;
-using UnityEngine;
 
 namespace QuickSes
 {
     /// <summary>
     /// The atoms of one surface. Contexts are shared and forget, so this is the copy that is sent again. Versions rise
-    /// with every change, so that only what a context lacks is sent. Main thread only; no garbage once it has grown.
+    /// with every change, so that only what a context lacks is sent. Colours are four bytes: red, green, blue, alpha. Main
+    /// thread only; no garbage once it has grown.
     /// </summary>
     internal sealed class SurfaceAtomSet : IDisposable
     {
         private readonly UnmanagedBuffer<Vector3> _positions = new UnmanagedBuffer<Vector3>();
         private readonly UnmanagedBuffer<float> _radii = new UnmanagedBuffer<float>();
-        private readonly UnmanagedBuffer<Color32> _colors = new UnmanagedBuffer<Color32>();
+        private readonly UnmanagedBuffer<uint> _colors = new UnmanagedBuffer<uint>();
         private readonly UnmanagedBuffer<byte> _visible = new UnmanagedBuffer<byte>();
         private readonly UnmanagedBuffer<Vector2> _texcoords = new UnmanagedBuffer<Vector2>();
         private readonly UnmanagedBuffer<bool> _hasBaseColor = new UnmanagedBuffer<bool>(); // per atom
-        private Color32 _baseColor = new Color32(255, 255, 255, 255);
+        private uint _baseColor = uint.MaxValue; // white
         private uint _atomsVersion; // radii, and with them the number of atoms
         private uint _positionsVersion;
         private uint _appearanceVersion;
@@ -72,7 +73,7 @@ namespace QuickSes
         }
 
         /// <summary>Empty: all atoms in the base colour.</summary>
-        public void SetColors(ReadOnlySpan<Color32> colors)
+        public void SetColors(ReadOnlySpan<uint> colors)
         {
             if (!colors.IsEmpty)
                 ThrowUnlessPerAtom(colors.Length, nameof(colors));
@@ -85,21 +86,21 @@ namespace QuickSes
         }
 
         /// <summary>Transparent black stands for the base colour.</summary>
-        public void SetSchemeColors(ReadOnlySpan<Color32> colors)
+        public void SetSchemeColors(ReadOnlySpan<uint> colors)
         {
             ThrowUnlessPerAtom(colors.Length, nameof(colors));
             _colors.CopyFrom(colors);
             Span<bool> hasBaseColor = _hasBaseColor.Resize(Count);
             for (int i = 0; i < hasBaseColor.Length; ++i)
-                hasBaseColor[i] = AreSame(colors[i], default);
+                hasBaseColor[i] = colors[i] == 0;
             FillBaseColor();
             ++_appearanceVersion;
         }
 
         /// <returns>Whether anything shown changes.</returns>
-        public bool SetBaseColor(Color32 color)
+        public bool SetBaseColor(uint color)
         {
-            if (AreSame(color, _baseColor))
+            if (color == _baseColor)
                 return false;
             _baseColor = color;
             if (!FillBaseColor())
@@ -145,9 +146,9 @@ namespace QuickSes
             slot.SentBy = null; // should something fail half way
             var status = QuickSesStatus.Ok;
             if (isFresh)
-                status = context.SetAtoms(SurfaceArrays.Floats(_positions.Span), _radii.Span);
+                status = context.SetAtoms(Floats(_positions.Span), _radii.Span);
             else if (slot.SentPositions != _positionsVersion)
-                status = context.SetPositions(SurfaceArrays.Floats(_positions.Span));
+                status = context.SetPositions(Floats(_positions.Span));
             if (status == QuickSesStatus.Ok && (isFresh || slot.SentAppearance != _appearanceVersion))
                 status = SendAppearance(context);
             if (status != QuickSesStatus.Ok)
@@ -172,7 +173,7 @@ namespace QuickSes
         // Whether there is an atom that has it.
         private bool FillBaseColor()
         {
-            Span<Color32> colors = _colors.Span;
+            Span<uint> colors = _colors.Span;
             Span<bool> hasBaseColor = _hasBaseColor.Span;
             bool isAny = false;
             for (int i = 0; i < colors.Length; ++i)
@@ -184,17 +185,18 @@ namespace QuickSes
             return isAny;
         }
 
-        private static bool AreSame(Color32 a, Color32 b) => a.r == b.r && a.g == b.g && a.b == b.b && a.a == b.a;
-
         private QuickSesStatus SendAppearance(SurfaceContext context)
         {
-            QuickSesStatus status = context.SetColors(MemoryMarshal.AsBytes((ReadOnlySpan<Color32>)_colors.Span));
+            QuickSesStatus status = context.SetColors(MemoryMarshal.AsBytes(_colors.Span));
             if (status == QuickSesStatus.Ok)
                 status = context.SetVisible(_visible.Span);
             if (status == QuickSesStatus.Ok)
                 status = context.SetTexcoords(MemoryMarshal.Cast<Vector2, float>(_texcoords.Span));
             return status;
         }
+
+        private static ReadOnlySpan<float> Floats(ReadOnlySpan<Vector3> vectors) =>
+            MemoryMarshal.Cast<Vector3, float>(vectors);
 
         // Appearance belongs to atoms: it goes with them.
         private void ResetAppearance()

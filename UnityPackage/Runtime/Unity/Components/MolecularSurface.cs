@@ -63,6 +63,7 @@ namespace QuickSes
 
         // Not serialised, so it is gone after a domain reload, like the native memory it stands for.
         [NonSerialized] private SurfaceSession _session;
+        [NonSerialized] private ShownSurface _shown;
         [NonSerialized] private bool _isScriptFed;
         [NonSerialized] private bool _asksForAtoms;
         [NonSerialized] private bool _isEdited; // in the inspector, by Undo, by a prefab
@@ -107,13 +108,13 @@ namespace QuickSes
         /// The mesh that is shown. The component's: it changes with every surface and goes with the component, so copy
         /// it (Instantiate) to keep it. Never saved with scenes.
         /// </summary>
-        public Mesh Mesh => Session.Shown.Mesh;
+        public Mesh Mesh => Shown.Mesh;
 
         /// <summary>What is shown; <see cref="SurfaceLevel.LevelCount"/> 0: nothing yet.</summary>
-        public SurfaceLevel Shown => Session.Shown.Level;
+        public SurfaceLevel CurrentLevel => Session.CurrentLevel;
 
         /// <summary>Whether something is being computed, or will be. Not while the component is disabled.</summary>
-        public bool IsBusy => isActiveAndEnabled && !Session.IsSettled;
+        public bool IsBusy => isActiveAndEnabled && !Session.IsUpToDate;
 
         /// <summary>Of the job that runs: from 0 to 1.</summary>
         public float Progress => Session.Progress;
@@ -134,8 +135,20 @@ namespace QuickSes
                 if (_isDestroyed)
                     throw new MissingReferenceException("This MolecularSurface has been destroyed.");
                 if (_session == null || _session.IsDisposed)
+                {
+                    _shown = new ShownSurface();
                     _session = new SurfaceSession(this);
+                }
                 return _session;
+            }
+        }
+
+        private ShownSurface Shown // comes and goes with the session
+        {
+            get
+            {
+                _ = Session;
+                return _shown;
             }
         }
 
@@ -162,36 +175,6 @@ namespace QuickSes
             bool isComputed = Session.ComputeNow();
             Session.RaiseEvents();
             return isComputed;
-        }
-
-        internal SurfaceSettings MakeSettings(float[] ladder, out int ladderCount)
-        {
-            SurfaceSettings settings = SurfaceSettings.Default;
-            settings.Surface = _surface;
-            settings.Method = _surface == SurfaceKind.Ses ? _method : SurfaceMethod.Exact;
-            settings.ProbeRadius = _probeRadius;
-            settings.Spacing = _spacing;
-            settings.RelaxationSteps = (uint)_relaxationSteps;
-            settings.VertexLayout = SurfaceVertexLayout.Interleaved;
-            settings.Components = _measureComponents;
-            settings.SetLevels(default);
-            ladderCount = SurfaceJobPlan.MakeLadder(_levels, _spacing, ladder);
-            return settings;
-        }
-
-        // The mesh is a new one, since somebody destroyed the last.
-        internal void AttachMesh() => GetComponent<MeshFilter>().sharedMesh = Session.Shown.Mesh;
-
-        internal void RaiseUpdated(in SurfaceLevel level) => SurfaceUpdated?.Invoke(level);
-
-        internal void RaiseFinished() => RefinementFinished?.Invoke();
-
-        internal void RaiseFailed(in QuickSesError error)
-        {
-            if (Failed != null)
-                Failed(error);
-            else
-                Debug.LogError($"{name}: {error.Message}", this);
         }
 
         private void Changed(SurfaceChange change)

@@ -109,7 +109,7 @@ namespace QuickSes
             set
             {
                 _baseColor = value;
-                if (Session.Atoms.SetBaseColor(value))
+                if (Session.Atoms.SetBaseColor(Number(value)))
                     Changed(SurfaceChange.Appearance);
             }
         }

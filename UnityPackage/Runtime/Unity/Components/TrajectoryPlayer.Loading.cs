@@ -131,14 +131,5 @@ namespace QuickSes
 
         private static bool HasModels(Structure structure) =>
             structure.Format == StructureFormat.Pdb && structure.ModelCount > 1;
-
-        // Before a domain reload: threads must not outlive the domain. Structures are closed by OnDisable.
-        internal static void OnDomainUnloads() => FramePrefetcher.DisposeAll();
-
-#if UNITY_EDITOR
-        [UnityEditor.InitializeOnLoadMethod]
-        private static void OnEditorLoads() =>
-            UnityEditor.AssemblyReloadEvents.beforeAssemblyReload += OnDomainUnloads;
-#endif
     }
 }

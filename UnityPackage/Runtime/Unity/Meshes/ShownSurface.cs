@@ -42,8 +42,6 @@ namespace QuickSes
             return isNew;
         }
 
-        public SurfaceLevel Level { get; private set; }
-
         public double Area { get; private set; }
 
         public double Volume { get; private set; }
@@ -54,8 +52,8 @@ namespace QuickSes
         public ReadOnlySpan<uint> Owners => _owners.Span;
 
         /// <summary>Shows another surface.</summary>
-        public void Show(in SurfaceMeshView view, in SurfaceReport report, ReadOnlySpan<float> ladder, bool isCurrent,
-            bool padBuffers)
+        public SurfaceLevel Show(in SurfaceMeshView view, in SurfaceReport report, ReadOnlySpan<float> ladder,
+            bool isOfNewestAtoms, bool padBuffers)
         {
             long begin = Stopwatch.GetTimestamp();
             _uploader.Upload(view, Mesh, padBuffers);
@@ -65,7 +63,7 @@ namespace QuickSes
             double milliseconds = (Stopwatch.GetTimestamp() - begin) * 1000.0 / Stopwatch.Frequency;
             Area = report.Area;
             Volume = report.Volume;
-            Level = new SurfaceLevel(view, report, ladder, isCurrent, milliseconds);
+            return new SurfaceLevel(view, report, ladder, isOfNewestAtoms, milliseconds);
         }
 
         /// <summary>Shows nothing.</summary>
@@ -77,7 +75,6 @@ namespace QuickSes
             _components.Resize(0);
             _picker.Forget();
             Area = Volume = 0;
-            Level = default;
         }
 
         /// <summary>The first triangle that a ray meets; false: none.</summary>
@@ -105,7 +102,6 @@ namespace QuickSes
             _owners.Dispose();
             _components.Dispose();
             _picker.Dispose();
-            Level = default;
         }
     }
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 using System;
 using System.Collections.Generic;
-using UnityEngine;
 
 namespace QuickSes
 {
@@ -72,6 +71,14 @@ namespace QuickSes
                 pool.ReleaseAll();
         }
 
+        /// <summary>Ends all surfaces there are, and frees what they and the contexts hold.</summary>
+        internal static void DisposeAll()
+        {
+            for (int k = s_sessions.Count - 1; k >= 0; --k)
+                s_sessions[k].Dispose();
+            ReleaseContexts();
+        }
+
         internal static uint NextJob() => ++LastJob;
 
         internal static ContextPool PoolOf(SurfaceBackend backend) => s_pools[(int)backend];
@@ -107,31 +114,5 @@ namespace QuickSes
                 if (s_sessions[k].IsOrphan)
                     s_sessions[k].Dispose();
         }
-
-        // Statics outlive play mode if the domain is not reloaded, and native threads must not outlive the domain.
-        [RuntimeInitializeOnLoadMethod(RuntimeInitializeLoadType.SubsystemRegistration)]
-        private static void OnPlayModeBegins()
-        {
-            ReleaseContexts();
-            Application.quitting -= ReleaseContexts;
-            Application.quitting += ReleaseContexts;
-        }
-
-        // Before a domain reload: what managed objects hold outside of the managed heap would be lost with them.
-        internal static void OnDomainUnloads()
-        {
-            for (int k = s_sessions.Count - 1; k >= 0; --k)
-                s_sessions[k].Dispose();
-            ReleaseContexts();
-        }
-
-#if UNITY_EDITOR
-        [UnityEditor.InitializeOnLoadMethod]
-        private static void OnEditorLoads()
-        {
-            UnityEditor.AssemblyReloadEvents.beforeAssemblyReload += OnDomainUnloads;
-            UnityEditor.EditorApplication.quitting += ReleaseContexts;
-        }
-#endif
     }
 }

@@ -3,6 +3,16 @@ using System.Collections.Generic;
 
 namespace QuickSes
 {
+    /// <summary>Why a surface wants a context.</summary>
+    internal enum QueuePriority
+    {
+        None,
+        /// <summary>What is shown is not finest yet, but of the newest atoms.</summary>
+        Refinement,
+        /// <summary>There are newer atoms, settings or colours than what is shown.</summary>
+        Urgent
+    }
+
     /// <summary>
     /// The contexts of one back end, and the surfaces that wait for one. Each is lent for one job at a time, and
     /// preferably to the surface that had it before, since it still holds its atoms. Main thread only.
@@ -39,19 +49,19 @@ namespace QuickSes
             }
         }
 
-        public int WaitingCount => CountWaiting(_urgent, SurfaceNeed.Urgent) +
-            CountWaiting(_refining, SurfaceNeed.Refinement);
+        public int WaitingCount => CountWaiting(_urgent, QueuePriority.Urgent) +
+            CountWaiting(_refining, QueuePriority.Refinement);
 
         /// <summary>Whether a surface waits that has nothing new to show yet.</summary>
-        public bool IsAnyUrgent => TryPeek(_urgent, SurfaceNeed.Urgent, out _);
+        public bool IsAnyUrgent => TryPeek(_urgent, QueuePriority.Urgent, out _);
 
-        public void Enqueue(SurfaceSession session, SurfaceNeed need)
+        public void Enqueue(SurfaceSession session, QueuePriority priority)
         {
-            if (session.Queued == need && session.Pool == this)
+            if (session.QueuedAs == priority && session.Pool == this)
                 return;
-            session.Queued = need; // entries in other queues are passed over
+            session.QueuedAs = priority; // entries in other queues are passed over
             session.Pool = this;
-            (need == SurfaceNeed.Urgent ? _urgent : _refining).Enqueue(session);
+            (priority == QueuePriority.Urgent ? _urgent : _refining).Enqueue(session);
         }
 
         /// <summary>Lends what is free to those who wait.</summary>
@@ -63,7 +73,7 @@ namespace QuickSes
                 if (slot == null && !isHopeless)
                     return;
                 (isUrgent ? _urgent : _refining).Dequeue();
-                session.Queued = SurfaceNeed.None;
+                session.QueuedAs = QueuePriority.None;
                 _urgentInARow = isUrgent ? _urgentInARow + 1 : 0;
                 if (slot == null)
                     session.FailToBegin(error);
@@ -167,8 +177,8 @@ namespace QuickSes
 
         private bool TryChoose(out SurfaceSession session, out bool isUrgent)
         {
-            bool refines = TryPeek(_refining, SurfaceNeed.Refinement, out SurfaceSession refining);
-            isUrgent = TryPeek(_urgent, SurfaceNeed.Urgent, out session);
+            bool refines = TryPeek(_refining, QueuePriority.Refinement, out SurfaceSession refining);
+            isUrgent = TryPeek(_urgent, QueuePriority.Urgent, out session);
             if (refines && (!isUrgent || _urgentInARow >= RefinementTurn))
             {
                 session = refining;
@@ -178,18 +188,18 @@ namespace QuickSes
         }
 
         // The first in a queue who still waits in it.
-        private bool TryPeek(Queue<SurfaceSession> queue, SurfaceNeed need, out SurfaceSession session)
+        private bool TryPeek(Queue<SurfaceSession> queue, QueuePriority priority, out SurfaceSession session)
         {
             while (queue.TryPeek(out session))
             {
-                if (session.Queued == need && session.Pool == this)
+                if (session.QueuedAs == priority && session.Pool == this)
                     return true;
                 queue.Dequeue();
             }
             return false;
         }
 
-        // A context that may be used now, or null: one will be free or made later, unless there is no hope.
+        // A context that may be used now, or null. Then to wait for one is hopeless if none could be made; `error` says why.
         private ContextSlot FindFree(SurfaceSession session, out bool isHopeless, out QuickSesError error)
         {
             isHopeless = false;
@@ -239,11 +249,11 @@ namespace QuickSes
         private static bool IsBetter(ContextSlot slot, ContextSlot other) =>
             (slot.SentBy == null) != (other.SentBy == null) ? slot.SentBy == null : slot.LastUse < other.LastUse;
 
-        private int CountWaiting(Queue<SurfaceSession> queue, SurfaceNeed need)
+        private int CountWaiting(Queue<SurfaceSession> queue, QueuePriority priority)
         {
             int count = 0;
             foreach (SurfaceSession session in queue)
-                if (session.Queued == need && session.Pool == this)
+                if (session.QueuedAs == priority && session.Pool == this)
                     ++count;
             return count;
         }
@@ -252,7 +262,7 @@ namespace QuickSes
         {
             foreach (SurfaceSession session in queue)
                 if (session.Pool == this)
-                    session.Queued = SurfaceNeed.None;
+                    session.QueuedAs = QueuePriority.None;
             queue.Clear();
         }
     }

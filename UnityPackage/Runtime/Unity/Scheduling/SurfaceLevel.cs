@@ -8,7 +8,7 @@ namespace QuickSes
     {
         // A job may have computed a part of the ladder only, so the place in it is told by the spacing.
         internal SurfaceLevel(in SurfaceMeshView view, in SurfaceReport report, ReadOnlySpan<float> ladder,
-            bool isCurrent, double uploadMilliseconds)
+            bool isOfNewestAtoms, double uploadMilliseconds)
         {
             int level = 0;
             while (level < ladder.Length - 1 && ladder[level] > view.Spacing)
@@ -18,7 +18,7 @@ namespace QuickSes
             Spacing = view.Spacing;
             VertexCount = view.VertexCount;
             TriangleCount = view.TriangleCount;
-            IsCurrent = isCurrent;
+            IsOfNewestAtoms = isOfNewestAtoms;
             ComputeMilliseconds = report.ComputeMilliseconds;
             UploadMilliseconds = uploadMilliseconds;
             WorkBytes = report.WorkBytesPeak;
@@ -45,12 +45,12 @@ namespace QuickSes
         public int TriangleCount { get; }
 
         /// <summary>Whether it was of the newest atoms and settings when it was shown.</summary>
-        public bool IsCurrent { get; }
+        public bool IsOfNewestAtoms { get; }
 
         /// <summary>From atoms to mesh in memory; for a later level: since the one before.</summary>
         public double ComputeMilliseconds { get; }
 
-        /// <summary>Main thread, for the copy into the <see cref="UnityEngine.Mesh"/>.</summary>
+        /// <summary>Main thread, for the copy into the mesh.</summary>
         public double UploadMilliseconds { get; }
 
         /// <summary>Bytes of work memory: on the GPU with CUDA, else in the process.</summary>

@@ -20,7 +20,8 @@ namespace QuickSes
         /// <summary>How many atoms there are.</summary>
         public int AtomCount => Session.Atoms.Count;
 
-        internal ReadOnlySpan<Vector3> Positions => Session.Atoms.Positions;
+        internal ReadOnlySpan<Vector3> Positions =>
+            MemoryMarshal.Cast<System.Numerics.Vector3, Vector3>(Session.Atoms.Positions);
 
         /// <summary>
         /// Gives the surface its atoms. With the same radii as before it is <see cref="SetPositions(Vector3[])"/>; with
@@ -30,7 +31,7 @@ namespace QuickSes
         /// <param name="radii">N van der Waals radii in Å, above 0 and at most 100.</param>
         public void SetAtoms(ReadOnlySpan<Vector3> positions, ReadOnlySpan<float> radii)
         {
-            bool haveMoved = Session.Atoms.SetAtoms(positions, radii);
+            bool haveMoved = Session.Atoms.SetAtoms(Numbers(positions), radii);
             _isScriptFed = true;
             Changed(haveMoved ? SurfaceChange.Positions : SurfaceChange.Shape);
         }
@@ -55,7 +56,7 @@ namespace QuickSes
         /// <param name="positions">N, in Å, Unity's axes.</param>
         public void SetPositions(ReadOnlySpan<Vector3> positions)
         {
-            Session.Atoms.SetPositions(positions);
+            Session.Atoms.SetPositions(Numbers(positions));
             Changed(SurfaceChange.Positions);
         }
 
@@ -73,7 +74,7 @@ namespace QuickSes
         /// <param name="indices">N.</param>
         public void SetPositions(ReadOnlySpan<Vector3> frame, ReadOnlySpan<int> indices)
         {
-            Session.Atoms.SetPositions(frame, indices);
+            Session.Atoms.SetPositions(Numbers(frame), indices);
             Changed(SurfaceChange.Positions);
         }
 
@@ -89,7 +90,7 @@ namespace QuickSes
         /// <param name="colors">N; empty: <see cref="BaseColor"/> for all.</param>
         public void SetColors(ReadOnlySpan<Color32> colors)
         {
-            Session.Atoms.SetColors(colors);
+            Session.Atoms.SetColors(Numbers(colors));
             Changed(SurfaceChange.Appearance);
         }
 
@@ -112,7 +113,7 @@ namespace QuickSes
         {
             var colors = new Color32[structure.AtomCount];
             AtomColors.Fill(structure, scheme, default, colors); // transparent black stands for it
-            Session.Atoms.SetSchemeColors(colors);
+            Session.Atoms.SetSchemeColors(Numbers(colors));
             Changed(SurfaceChange.Appearance);
         }
 
@@ -131,7 +132,7 @@ namespace QuickSes
         /// <param name="texcoords">N; empty: the mesh has none.</param>
         public void SetTexcoords(ReadOnlySpan<Vector2> texcoords)
         {
-            Session.Atoms.SetTexcoords(texcoords);
+            Session.Atoms.SetTexcoords(MemoryMarshal.Cast<Vector2, System.Numerics.Vector2>(texcoords));
             Changed(SurfaceChange.Appearance);
         }
 
@@ -141,7 +142,7 @@ namespace QuickSes
         /// <summary>No atoms and no surface, until there are new ones.</summary>
         public void ClearAtoms()
         {
-            Session.Clear();
+            Clear();
             _isScriptFed = true;
         }
 
@@ -174,6 +175,21 @@ namespace QuickSes
 
         // false: there is a source, and it can't be read.
         private bool LoadSourceUnlessFed() => _isScriptFed || Session.Atoms.IsSet || !_source.IsSet || LoadSource();
+
+        private void Clear()
+        {
+            Session.Clear();
+            Shown.Clear();
+        }
+
+        // The session knows nothing of the engine; the numbers are the same.
+        private static ReadOnlySpan<System.Numerics.Vector3> Numbers(ReadOnlySpan<Vector3> vectors) =>
+            MemoryMarshal.Cast<Vector3, System.Numerics.Vector3>(vectors);
+
+        private static ReadOnlySpan<uint> Numbers(ReadOnlySpan<Color32> colors) =>
+            MemoryMarshal.Cast<Color32, uint>(colors);
+
+        private static unsafe uint Number(Color32 color) => *(uint*)&color;
 
         private static ReadOnlySpan<T> NotNull<T>(T[] array, string argument) =>
             array ?? throw new ArgumentNullException(argument);

@@ -3,16 +3,6 @@ using System;
 
 namespace QuickSes
 {
-    /// <summary>Why a surface wants a context.</summary>
-    internal enum SurfaceNeed
-    {
-        None,
-        /// <summary>What is shown is not finest yet, but of the newest atoms.</summary>
-        Refinement,
-        /// <summary>There are newer atoms, settings or colours than what is shown.</summary>
-        Urgent
-    }
-
     /// <summary>What is new since the last job began; later ones outweigh earlier ones.</summary>
     internal enum SurfaceChange
     {

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: MIT
+using NUnit.Framework;
+using System;
+using System.Numerics;
+
+namespace QuickSes.Tests
+{
+    /// <summary>Many surfaces, few contexts.</summary>
+    internal sealed class ContextPoolTest
+    {
+        private int _maxContexts;
+        private TestHost[] _hosts;
+
+        [SetUp]
+        public void SetUp()
+        {
+            _maxContexts = SurfaceScheduler.MaxContexts;
+            _hosts = Array.Empty<TestHost>();
+        }
+
+        [TearDown]
+        public void TearDown()
+        {
+            foreach (TestHost host in _hosts)
+                host.Dispose();
+            SurfaceScheduler.MaxContexts = _maxContexts;
+        }
+
+        [TestCase(1)]
+        [TestCase(3)]
+        public void EverybodyShowsTheirOwnAtoms(int contexts)
+        {
+            SurfaceScheduler.ReleaseContexts();
+            SurfaceScheduler.MaxContexts = contexts;
+            _hosts = Hosts(60, k => TestHost.WithAtom(Place(k, 0), Radius(k)));
+            int most = 0;
+            for (int round = 0; round < 3; ++round)
+            {
+                for (int k = 0; k < _hosts.Length; ++k)
+                    _hosts[k].SetPositions(Place(k, round));
+                TestHost.Until(() =>
+                {
+                    most = Math.Max(most, SurfaceScheduler.ContextCount);
+                    return AreUpToDate();
+                }, _hosts);
+                for (int k = 0; k < _hosts.Length; ++k)
+                    _hosts[k].AssertShowsAtom(Place(k, round), Radius(k));
+            }
+            Assert.That(most, Is.InRange(1, contexts));
+        }
+
+        [Test]
+        public void EverybodySeesSomethingBeforeAnybodySeesTheFinest()
+        {
+            _hosts = Hosts(40, k => TestHost.WithRow(200 + k));
+            int shown = 0, finest = 0;
+            TestHost.Until(() =>
+            {
+                shown = finest = 0;
+                foreach (TestHost host in _hosts)
+                {
+                    shown += host.Levels.Count > 0 ? 1 : 0;
+                    finest += host.Session.CurrentLevel.IsFinest ? 1 : 0;
+                }
+                return shown == _hosts.Length;
+            }, _hosts);
+            // The last few in the queue find nobody behind them, and rested ones have their turn now and then.
+            Assert.That(finest, Is.LessThan(_hosts.Length / 2));
+            TestHost.Until(AreUpToDate, _hosts);
+        }
+
+        [Test]
+        public void WhoeverHadAContextGetsItAgain()
+        {
+            SurfaceScheduler.ReleaseContexts();
+            SurfaceScheduler.MaxContexts = 2;
+            _hosts = Hosts(2, k => TestHost.WithAtom(Place(k, 0), Radius(k)));
+            TestHost.Until(() => AreUpToDate() && ContextSlot.NativeContexts == 2, _hosts);
+            TestHost.Until(() => true, _hosts);
+            ContextPool pool = SurfaceScheduler.PoolOf(SurfaceBackend.Cpu);
+            foreach (TestHost host in _hosts)
+                host.Session.ComputeNow(); // now each has one, whoever was first before
+            Array.Reverse(_hosts); // else that which is unused for longest would be the right one
+            foreach (TestHost host in _hosts)
+            {
+                ContextSlot slot = pool.LendNow(host.Session, out _);
+                Assert.That(slot.SentBy, Is.SameAs(host.Session.Atoms));
+                pool.Release(slot, false);
+            }
+        }
+
+        [Test]
+        public void NobodyShowsWhatTheLastUserLeftBehind()
+        {
+            SurfaceScheduler.ReleaseContexts();
+            SurfaceScheduler.MaxContexts = 1;
+            _hosts = Hosts(2, k => TestHost.WithAtom(Place(k, 0), Radius(k)));
+            ContextPool pool = SurfaceScheduler.PoolOf(SurfaceBackend.Cpu);
+            ContextSlot slot = pool.LendNow(_hosts[0].Session, out _);
+            _hosts[0].Session.Start(slot);
+            slot.Context.Wait();
+            _hosts[0].Session.Drop(); // nobody has collected what is ready
+            Assert.That(pool.LendNow(_hosts[1].Session, out _), Is.SameAs(slot));
+            _hosts[1].Updated = level => _hosts[1].AssertShowsAtom(Place(1, 0), Radius(1));
+            _hosts[1].Session.Start(slot);
+            _hosts[1].Settle();
+            Assert.That(_hosts[1].Levels, Is.Not.Empty);
+        }
+
+        [Test]
+        public void WhoCantWaitGetsOneMore()
+        {
+            SurfaceScheduler.ReleaseContexts();
+            SurfaceScheduler.MaxContexts = 1;
+            _hosts = Hosts(2, k => TestHost.WithRow(20000));
+            TestHost.Until(() => SurfaceScheduler.LentCount == 1, _hosts);
+            Assert.That(_hosts[1].Session.ComputeNow(), Is.True);
+            Assert.That(SurfaceScheduler.ContextCount, Is.InRange(1, 2));
+            Assert.That(_hosts[1].Session.CurrentLevel.IsFinest);
+        }
+
+        [Test]
+        public void WhoHasSomethingToShowMakesRoomForThoseWhoHaveNothing()
+        {
+            SurfaceScheduler.ReleaseContexts();
+            SurfaceScheduler.MaxContexts = 1;
+            _hosts = Hosts(2, k => TestHost.WithRow(20000));
+            ContextSlot slot = SurfaceScheduler.PoolOf(SurfaceBackend.Cpu).LendNow(_hosts[0].Session, out _);
+            _hosts[0].Session.Start(slot); // of all levels, since nobody waits yet
+            _hosts[1].Tick();
+            TestHost.Until(() => _hosts[0].Levels.Count > 0, _hosts[0]);
+            Assert.That(_hosts[0].Session.CurrentLevel.IsFinest, Is.False);
+            Assert.That(slot.User, Is.SameAs(_hosts[1].Session));
+            TestHost.Until(AreUpToDate, _hosts);
+        }
+
+        [Test]
+        public void AJobThatLosesItsContextBeginsAgain()
+        {
+            _hosts = Hosts(1, k => TestHost.WithAtom(Place(k, 0), Radius(k)));
+            _hosts[0].RestDelay = 1000; // it does not wait for that
+            ContextSlot slot = SurfaceScheduler.PoolOf(SurfaceBackend.Cpu).LendNow(_hosts[0].Session, out _);
+            _hosts[0].Session.Start(slot);
+            SurfaceScheduler.ReleaseContexts();
+            Assert.That(SurfaceScheduler.ContextCount, Is.EqualTo(0));
+            TestHost.Until(AreUpToDate, _hosts);
+            _hosts[0].AssertShowsAtom(Place(0, 0), Radius(0));
+            Assert.That(_hosts[0].Failures, Is.Empty);
+        }
+
+        [Test]
+        public void ContextsAreFreedWithTheLastSurface()
+        {
+            _hosts = Hosts(2, k => TestHost.WithRow(20000));
+            TestHost.Until(() => _hosts[0].Levels.Count > 0, _hosts);
+            _hosts[1].Dispose();
+            Assert.That(SurfaceScheduler.ContextCount, Is.GreaterThan(0));
+            _hosts[0].Dispose(); // in the background
+            Assert.That(SurfaceScheduler.ContextCount, Is.EqualTo(0));
+            SurfaceScheduler.ReleaseContexts();
+            Assert.That(ContextSlot.NativeContexts, Is.EqualTo(0), "native threads must not outlive the domain");
+        }
+
+        [Test]
+        public void ContextsOfTheDeadAreUsedAgain()
+        {
+            SurfaceScheduler.ReleaseContexts();
+            _hosts = Hosts(1, k => new TestHost()); // has no atoms
+            for (int k = 0; k < 6; ++k)
+                using (TestHost host = TestHost.WithAtom(Place(k, 0), Radius(k)))
+                    host.Settle();
+            Assert.That(SurfaceScheduler.ContextCount, Is.EqualTo(1));
+        }
+
+        [Test]
+        public void WhoIsGoneWithoutAWordLeavesNothing()
+        {
+            TestHost gone = TestHost.WithAtom(Place(0, 0), Radius(0));
+            Assert.That(gone.Session.ComputeNow());
+            gone.IsGone = true;
+            SurfaceScheduler.ReleaseContexts();
+            Assert.That(gone.Session.IsDisposed);
+            Assert.That(gone.Disposed, Is.EqualTo(1));
+            Assert.That(ContextSlot.NativeContexts, Is.EqualTo(0));
+        }
+
+        [Test]
+        public void WhenTheDomainUnloadsNothingIsLeft()
+        {
+            _hosts = Hosts(3, k => TestHost.WithRow(2000));
+            TestHost.Until(() => SurfaceScheduler.LentCount > 0, _hosts);
+            SurfaceScheduler.DisposeAll();
+            foreach (TestHost host in _hosts)
+                Assert.That(host.Session.IsDisposed);
+            Assert.That(ContextSlot.NativeContexts, Is.EqualTo(0));
+        }
+
+        [Test]
+        public void AtLeastOneContextIsNeeded() =>
+            Assert.Throws<ArgumentOutOfRangeException>(() => SurfaceScheduler.MaxContexts = 0);
+
+        private static TestHost[] Hosts(int count, Func<int, TestHost> make)
+        {
+            var hosts = new TestHost[count];
+            for (int k = 0; k < count; ++k)
+                hosts[k] = make(k);
+            return hosts;
+        }
+
+        private static Vector3 Place(int k, int round) => new Vector3(10 * k, 7 * round, -k);
+
+        private static float Radius(int k) => 1 + k % 4;
+
+        private bool AreUpToDate()
+        {
+            foreach (TestHost host in _hosts)
+                if (!host.Session.IsUpToDate)
+                    return false;
+            return true;
+        }
+    }
+}

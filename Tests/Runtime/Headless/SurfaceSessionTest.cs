@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: MIT
+using NUnit.Framework;
+using System;
+using System.Numerics;
+
+namespace QuickSes.Tests
+{
+    /// <summary>What becomes of the surface of atoms that come, move and go.</summary>
+    internal sealed class SurfaceSessionTest
+    {
+        private const int Many = 500; // atoms, which take some milliseconds
+
+        private TestHost _host;
+
+        [TearDown]
+        public void TearDown() => _host?.Dispose();
+
+        [Test]
+        public void NothingIsToDoWithoutAtoms()
+        {
+            _host = new TestHost();
+            Assert.That(_host.Session.IsUpToDate);
+            for (int frame = 0; frame < 5; ++frame)
+                _host.Tick();
+            Assert.That(_host.Levels, Is.Empty);
+            Assert.That(_host.Session.CurrentLevel.LevelCount, Is.EqualTo(0));
+        }
+
+        [Test]
+        public void SurfacesGetFinerUntilTheFinestIsThere()
+        {
+            _host = TestHost.WithRow(Many);
+            Assert.That(_host.Session.IsUpToDate, Is.False);
+            _host.Settle();
+            for (int k = 1; k < _host.Levels.Count; ++k)
+                Assert.That(_host.Levels[k].Spacing, Is.LessThan(_host.Levels[k - 1].Spacing));
+            SurfaceLevel level = _host.Session.CurrentLevel;
+            Assert.That(level.IsFinest && level.IsOfNewestAtoms);
+            Assert.That(level.Spacing, Is.EqualTo(0.5f));
+            Assert.That(level.LevelCount, Is.EqualTo(3));
+            Assert.That(_host.Finished, Is.EqualTo(1));
+            Assert.That(_host.Session.Progress, Is.EqualTo(1));
+            Assert.That(_host.Session.UsedBackend, Is.EqualTo(SurfaceBackend.Cpu));
+        }
+
+        [Test]
+        public void WhatIsShownFollowsTheAtoms()
+        {
+            _host = TestHost.WithAtom(Vector3.Zero, 1.5f);
+            _host.Settle();
+            _host.AssertShowsAtom(Vector3.Zero, 1.5f);
+            var place = new Vector3(3, -20, 100);
+            _host.SetPositions(place);
+            Assert.That(_host.Session.IsUpToDate, Is.False);
+            _host.Settle();
+            _host.AssertShowsAtom(place, 1.5f);
+            _host.SetAtoms(new[] { place }, new[] { 2f });
+            _host.Settle();
+            _host.AssertShowsAtom(place, 2);
+            Assert.That(_host.Finished, Is.EqualTo(3));
+        }
+
+        [Test]
+        public void WhatMovesIsRefinedWhenItRests()
+        {
+            _host = TestHost.WithRow(Many);
+            _host.FrameBudget = 1e-3f; // for the coarsest only
+            _host.RestDelay = 2;
+            _host.Settle();
+            _host.Levels.Clear();
+            _host.SetPositions(TestHost.Row(Many, 1));
+            TestHost.Until(() => _host.Levels.Count > 0 && SurfaceScheduler.LentCount == 0, _host);
+            _host.Now = 1.9;
+            for (int frame = 0; frame < 20; ++frame)
+                TestHost.Until(() => true, _host);
+            Assert.That(_host.Levels.Count, Is.EqualTo(1));
+            Assert.That(_host.Session.CurrentLevel.Level, Is.EqualTo(0));
+            Assert.That(_host.Session.IsUpToDate, Is.False);
+            _host.Now = 2;
+            _host.Settle();
+            Assert.That(_host.Session.CurrentLevel.IsFinest);
+        }
+
+        [Test]
+        public void ThePictureKeepsMovingHoweverFastFramesCome()
+        {
+            _host = TestHost.WithRow(Many);
+            int frames = 0;
+            TestHost.Until(() =>
+            {
+                _host.SetPositions(TestHost.Row(Many, ++frames % 7));
+                return _host.Levels.Count >= 20;
+            }, _host);
+            Assert.That(_host.Levels.Exists(level => !level.IsOfNewestAtoms), "old ones are shown, too, and say so");
+            Assert.That(_host.Finished, Is.EqualTo(0));
+            _host.Settle();
+            Assert.That(_host.Session.CurrentLevel.IsOfNewestAtoms && _host.Session.CurrentLevel.IsFinest);
+        }
+
+        [Test]
+        public void WhatMovedWhileItWasComputedIsShownButNotFinished()
+        {
+            _host = TestHost.WithAtom(Vector3.Zero, 1.5f);
+            ContextSlot slot = SurfaceScheduler.PoolOf(SurfaceBackend.Cpu).LendNow(_host.Session, out _);
+            _host.Session.Start(slot);
+            slot.Context.Wait();
+            _host.SetPositions(Vector3.One);
+            _host.Tick();
+            Assert.That(_host.Session.CurrentLevel.IsFinest);
+            Assert.That(_host.Session.CurrentLevel.IsOfNewestAtoms, Is.False);
+            Assert.That(_host.Session.IsUpToDate, Is.False);
+            Assert.That(_host.Finished, Is.EqualTo(0));
+            _host.Settle();
+            _host.AssertShowsAtom(Vector3.One, 1.5f);
+        }
+
+        [Test]
+        public void AFrameThatIsRefusedKeepsTheOneBefore()
+        {
+            _host = TestHost.WithAtom(Vector3.Zero, 1.5f);
+            ContextSlot slot = SurfaceScheduler.PoolOf(SurfaceBackend.Cpu).LendNow(_host.Session, out _);
+            _host.Session.Start(slot);
+            _host.SetPositions(new Vector3(float.NaN, 0, 0));
+            _host.Session.Start(slot);
+            _host.Settle();
+            _host.AssertShowsAtom(Vector3.Zero, 1.5f);
+            Assert.That(_host.Failures.Count, Is.EqualTo(1));
+            Assert.That(_host.Session.LastError.Status, Is.EqualTo(QuickSesStatus.InvalidArgument));
+        }
+
+        [Test]
+        public void NewColoursNeverMakeItCoarser()
+        {
+            _host = TestHost.WithRow(Many);
+            _host.Settle();
+            _host.Levels.Clear();
+            _host.Session.Atoms.SetBaseColor(0xff0000ff);
+            _host.Session.Change(SurfaceChange.Appearance, 0);
+            _host.Settle();
+            Assert.That(_host.Levels.Count, Is.EqualTo(1));
+            Assert.That(_host.Levels[0].IsFinest);
+        }
+
+        [Test]
+        public void CancelledIsCancelledUntilSomethingChanges()
+        {
+            _host = TestHost.WithRow(20 * Many);
+            TestHost.Until(() => _host.Levels.Count > 0, _host);
+            _host.Session.Stop();
+            Assert.That(_host.Session.IsUpToDate);
+            Assert.That(SurfaceScheduler.LentCount, Is.EqualTo(0));
+            int levels = _host.Levels.Count;
+            for (int frame = 0; frame < 30; ++frame)
+                TestHost.Until(() => true, _host);
+            Assert.That(_host.Levels.Count, Is.EqualTo(levels));
+            _host.Session.Change(SurfaceChange.Shape, 0);
+            _host.Settle();
+            Assert.That(_host.Session.CurrentLevel.IsFinest);
+        }
+
+        [Test]
+        public void WhatWasDroppedGoesOnLater()
+        {
+            _host = TestHost.WithRow(Many);
+            _host.Tick();
+            _host.Session.Drop();
+            Assert.That(SurfaceScheduler.LentCount, Is.EqualTo(0));
+            Assert.That(SurfaceScheduler.WaitingCount, Is.EqualTo(0));
+            _host.Session.Resume();
+            _host.Settle();
+            Assert.That(_host.Session.CurrentLevel.IsFinest);
+        }
+
+        [Test]
+        public void NothingIsLeftOfWhatWasCleared()
+        {
+            _host = TestHost.WithRow(Many);
+            TestHost.Until(() => _host.Levels.Count > 0, _host);
+            _host.Session.Clear();
+            Assert.That(_host.Session.IsUpToDate);
+            Assert.That(_host.Session.CurrentLevel.LevelCount, Is.EqualTo(0));
+            int levels = _host.Levels.Count, finished = _host.Finished;
+            for (int frame = 0; frame < 10; ++frame)
+                TestHost.Until(() => true, _host);
+            Assert.That(_host.Levels.Count, Is.EqualTo(levels));
+            Assert.That(_host.Finished, Is.EqualTo(finished));
+        }
+
+        [Test]
+        public void AWrongAtomIsToldOnceAndForgottenWithTheNextFrame()
+        {
+            _host = TestHost.WithAtom(Vector3.Zero, 1.5f);
+            _host.Settle();
+            _host.SetPositions(new Vector3(float.NaN, 0, 0));
+            _host.Settle();
+            for (int frame = 0; frame < 5; ++frame)
+                _host.Tick();
+            Assert.That(_host.Failures.Count, Is.EqualTo(1));
+            Assert.That(_host.Failures[0].Status, Is.EqualTo(QuickSesStatus.InvalidArgument));
+            Assert.That(_host.Session.LastError.Message, Is.EqualTo(_host.Failures[0].Message));
+            _host.AssertShowsAtom(Vector3.Zero, 1.5f);
+            _host.SetPositions(Vector3.One);
+            _host.Settle();
+            _host.AssertShowsAtom(Vector3.One, 1.5f);
+            Assert.That(_host.Session.LastError.Status, Is.EqualTo(QuickSesStatus.Ok));
+        }
+
+        [Test]
+        public void AMeshThatIsRefusedIsAFailure()
+        {
+            _host = TestHost.WithAtom(Vector3.Zero, 1.5f);
+            _host.Refusal = new InvalidOperationException("no room for it");
+            _host.Settle();
+            Assert.That(_host.Failures.Count, Is.EqualTo(1));
+            Assert.That(_host.Failures[0].Status, Is.EqualTo(QuickSesStatus.InternalError));
+            Assert.That(_host.Failures[0].Message, Does.Contain("no room for it"));
+            Assert.That(_host.Levels, Is.Empty);
+            Assert.That(SurfaceScheduler.LentCount, Is.EqualTo(0));
+        }
+
+        [Test]
+        public void ThatThereIsNothingToComputeWithIsToldOnce()
+        {
+            if (SurfaceContext.IsSupported(SurfaceBackend.Cuda, out string reason))
+                Assert.Ignore("there is a GPU here");
+            _host = TestHost.WithAtom(Vector3.Zero, 1.5f);
+            _host.Backend = SurfaceBackend.Cuda;
+            for (int frame = 0; frame < 20; ++frame)
+            {
+                _host.SetPositions(new Vector3(frame, 0, 0));
+                _host.Settle();
+            }
+            Assert.That(_host.Failures.Count, Is.EqualTo(1));
+            Assert.That(_host.Failures[0].Status, Is.EqualTo(QuickSesStatus.BackendUnavailable));
+            Assert.That(_host.Failures[0].Message, Does.Contain(reason));
+            _host.Backend = SurfaceBackend.Cpu;
+            _host.Session.Change(SurfaceChange.Shape, 0);
+            _host.Settle();
+            Assert.That(_host.Session.CurrentLevel.IsFinest);
+            Assert.That(_host.Session.LastError.Status, Is.EqualTo(QuickSesStatus.Ok));
+        }
+
+        [Test]
+        public void WhatIsComputedNowIsTheFinestAtOnce()
+        {
+            _host = TestHost.WithRow(Many);
+            Assert.That(_host.Session.ComputeNow(), Is.True);
+            Assert.That(_host.Session.CurrentLevel.IsFinest);
+            Assert.That(_host.Session.IsUpToDate);
+            _host.Session.RaiseEvents();
+            Assert.That(_host.Levels.Count, Is.EqualTo(1));
+            Assert.That(_host.Finished, Is.EqualTo(1));
+            Assert.That(SurfaceScheduler.LentCount, Is.EqualTo(0));
+        }
+
+        [Test]
+        public void WhatCantBeComputedNowLeavesAReasonUntilItCan()
+        {
+            _host = TestHost.WithAtom(Vector3.Zero, 1.5f);
+            _host.Spacing = -1;
+            Assert.That(_host.Session.ComputeNow(), Is.False);
+            Assert.That(_host.Session.LastError.Status, Is.EqualTo(QuickSesStatus.InvalidArgument));
+            Assert.That(SurfaceScheduler.LentCount, Is.EqualTo(0));
+            _host.Spacing = 1;
+            Assert.That(_host.Session.ComputeNow(), Is.True);
+            Assert.That(_host.Session.LastError.Status, Is.EqualTo(QuickSesStatus.Ok));
+            _host.Refusal = new InvalidOperationException("no room for it");
+            Assert.That(_host.Session.ComputeNow(), Is.False);
+            Assert.That(_host.Session.LastError.Message, Does.Contain("no room for it"));
+        }
+
+        [Test]
+        public void WhatAHandlerThrowsKeepsNoOtherEventBack()
+        {
+            _host = TestHost.WithAtom(Vector3.Zero, 1.5f);
+            Assert.That(_host.Session.ComputeNow());
+            _host.Updated = level => throw new InvalidOperationException("a handler's own fault");
+            Assert.Throws<InvalidOperationException>(() => _host.Session.RaiseEvents());
+            Assert.That(_host.Finished, Is.EqualTo(0));
+            _host.Session.RaiseEvents();
+            Assert.That(_host.Levels.Count, Is.EqualTo(1));
+            Assert.That(_host.Finished, Is.EqualTo(1));
+        }
+
+        [Test]
+        public void HandlersMayFeedTheNextFrame()
+        {
+            _host = TestHost.WithAtom(Vector3.Zero, 1.5f);
+            int frame = 0;
+            bool wasFinishedTooSoon = false;
+            _host.Updated = level =>
+            {
+                wasFinishedTooSoon |= _host.Finished > 0;
+                if (level.IsFinest && frame < 10)
+                    _host.SetPositions(new Vector3(++frame, 0, 0));
+            };
+            TestHost.Until(() => frame >= 10 && _host.Session.IsUpToDate, _host);
+            Assert.That(wasFinishedTooSoon, Is.False);
+            Assert.That(_host.Finished, Is.EqualTo(1));
+            _host.AssertShowsAtom(new Vector3(10, 0, 0), 1.5f);
+        }
+
+        [Test]
+        public void HandlersMayEndTheSession()
+        {
+            _host = TestHost.WithAtom(Vector3.Zero, 1.5f);
+            _host.Updated = level => _host.Session.Dispose();
+            TestHost.Until(() => _host.Session.IsDisposed, _host);
+            Assert.That(_host.Levels.Count, Is.EqualTo(1));
+            Assert.That(_host.Finished, Is.EqualTo(0));
+            Assert.That(_host.Disposed, Is.EqualTo(1));
+        }
+    }
+}

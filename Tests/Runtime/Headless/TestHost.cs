@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: MIT
+using NUnit.Framework;
+using System;
+using System.Collections.Generic;
+using System.Diagnostics;
+using System.Numerics;
+using System.Threading;
+
+namespace QuickSes.Tests
+{
+    /// <summary>A session without a component: a clock that stands unless it is moved, and what was shown and told.</summary>
+    internal sealed class TestHost : ISurfaceHost, IDisposable
+    {
+        private const double Patience = 60; // s
+
+        public readonly SurfaceSession Session;
+        public readonly List<SurfaceLevel> Levels = new List<SurfaceLevel>();
+        public readonly List<QuickSesError> Failures = new List<QuickSesError>();
+        public int Finished;
+        public int Disposed;
+        public double Now;
+        public float Spacing = 0.5f;
+        public float[] CoarserLevels = { 2, 1 };
+        public Exception Refusal; // what Show throws
+        public Action<SurfaceLevel> Updated;
+        private (float X, float Y, float Z) _low, _high; // of what is shown
+
+        public TestHost()
+        {
+            Session = new SurfaceSession(this);
+        }
+
+        public bool IsGone { get; set; }
+
+        public SurfaceBackend Backend { get; set; } = SurfaceBackend.Cpu;
+
+        public float FrameBudget { get; set; }
+
+        public float RestDelay { get; set; }
+
+        public static TestHost WithAtom(Vector3 position, float radius)
+        {
+            var host = new TestHost();
+            host.SetAtoms(new[] { position }, new[] { radius });
+            return host;
+        }
+
+        /// <summary>Of a row of atoms, which takes longer than a single one.</summary>
+        public static TestHost WithRow(int count)
+        {
+            var host = new TestHost();
+            host.SetAtoms(Row(count, 0), Radii(count));
+            return host;
+        }
+
+        public static Vector3[] Row(int count, float y)
+        {
+            var positions = new Vector3[count];
+            for (int i = 0; i < count; ++i)
+                positions[i] = new Vector3(2 * i, y, 0);
+            return positions;
+        }
+
+        public static float[] Radii(int count)
+        {
+            var radii = new float[count];
+            for (int i = 0; i < count; ++i)
+                radii[i] = 1.5f;
+            return radii;
+        }
+
+        public void SetAtoms(Vector3[] positions, float[] radii)
+        {
+            bool haveMoved = Session.Atoms.SetAtoms(positions, radii);
+            Session.Change(haveMoved ? SurfaceChange.Positions : SurfaceChange.Shape, Now);
+        }
+
+        public void SetPositions(params Vector3[] positions)
+        {
+            Session.Atoms.SetPositions(positions);
+            Session.Change(SurfaceChange.Positions, Now);
+        }
+
+        /// <summary>What a component does once per frame.</summary>
+        public void Tick()
+        {
+            Session.Tick(Now);
+            Session.RaiseEvents();
+        }
+
+        /// <summary>Frames until nothing is left to do.</summary>
+        public void Settle() => Until(() => Session.IsUpToDate, this);
+
+        public static void Until(Func<bool> condition, params TestHost[] hosts)
+        {
+            Stopwatch clock = Stopwatch.StartNew();
+            do
+            {
+                Assert.That(clock.Elapsed.TotalSeconds, Is.LessThan(Patience), "still waiting");
+                Thread.Sleep(1);
+                foreach (TestHost host in hosts)
+                    if (!host.Session.IsDisposed)
+                        host.Tick();
+            } while (!condition());
+        }
+
+        /// <summary>What is shown is a sphere: the surface of a single atom.</summary>
+        public void AssertShowsAtom(Vector3 position, float radius)
+        {
+            const float tolerance = 0.02f; // vertices lie on the sphere, but none at its poles
+            Assert.That(Session.CurrentLevel.VertexCount, Is.GreaterThan(0));
+            AssertSide(_low, position - new Vector3(radius), tolerance);
+            AssertSide(_high, position + new Vector3(radius), tolerance);
+        }
+
+        public void Dispose() => Session.Dispose();
+
+        SurfaceSettings ISurfaceHost.MakeSettings(out ReadOnlySpan<float> levels)
+        {
+            SurfaceSettings settings = SurfaceSettings.Default;
+            settings.Spacing = Spacing;
+            settings.VertexLayout = SurfaceVertexLayout.Interleaved;
+            levels = CoarserLevels;
+            return settings;
+        }
+
+        SurfaceLevel ISurfaceHost.Show(in SurfaceMeshView mesh, in SurfaceReport report, ReadOnlySpan<float> ladder,
+            bool isOfNewestAtoms)
+        {
+            Assert.That(mesh.IsValid);
+            if (Refusal != null)
+                throw Refusal;
+            _low = mesh.BoundsMin;
+            _high = mesh.BoundsMax;
+            return new SurfaceLevel(mesh, report, ladder, isOfNewestAtoms, 0);
+        }
+
+        void ISurfaceHost.OnUpdated(in SurfaceLevel level)
+        {
+            Levels.Add(level);
+            Updated?.Invoke(level);
+        }
+
+        void ISurfaceHost.OnFinished() => ++Finished;
+
+        void ISurfaceHost.OnFailed(in QuickSesError error) => Failures.Add(error);
+
+        void ISurfaceHost.OnDisposed() => ++Disposed;
+
+        private static void AssertSide((float X, float Y, float Z) side, Vector3 expected, float tolerance)
+        {
+            Assert.That(side.X, Is.EqualTo(expected.X).Within(tolerance));
+            Assert.That(side.Y, Is.EqualTo(expected.Y).Within(tolerance));
+            Assert.That(side.Z, Is.EqualTo(expected.Z).Within(tolerance));
+        }
+    }
+}

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+using UnityEngine;
+
+namespace QuickSes
+{
+    /// <summary>What ends with play mode, the domain and the program, since it is not the engine's.</summary>
+    internal static class DomainLifeCycle
+    {
+        // Statics outlive play mode if the domain is not reloaded.
+        [RuntimeInitializeOnLoadMethod(RuntimeInitializeLoadType.SubsystemRegistration)]
+        private static void OnPlayModeBegins()
+        {
+            SurfaceScheduler.ReleaseContexts();
+            Application.quitting -= SurfaceScheduler.ReleaseContexts;
+            Application.quitting += SurfaceScheduler.ReleaseContexts;
+        }
+
+        // Before a domain reload: what managed objects hold outside of the managed heap would be lost with them, and
+        // threads must not outlive the domain. Structures are closed by OnDisable.
+        internal static void OnDomainUnloads()
+        {
+            SurfaceScheduler.DisposeAll();
+            FramePrefetcher.DisposeAll();
+        }
+
+#if UNITY_EDITOR
+        [UnityEditor.InitializeOnLoadMethod]
+        private static void OnEditorLoads()
+        {
+            UnityEditor.AssemblyReloadEvents.beforeAssemblyReload += OnDomainUnloads;
+            UnityEditor.EditorApplication.quitting += SurfaceScheduler.ReleaseContexts;
+        }
+#endif
+    }
+}

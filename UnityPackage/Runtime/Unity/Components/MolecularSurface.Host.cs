@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// What the session asks and tells.
+using System;
+using UnityEngine;
+
+namespace QuickSes
+{
+    public sealed partial class MolecularSurface : ISurfaceHost
+    {
+        // The engine tells components that were never enabled nothing, not even that they are destroyed.
+        bool ISurfaceHost.IsGone => this == null;
+
+        SurfaceSettings ISurfaceHost.MakeSettings(out ReadOnlySpan<float> levels)
+        {
+            SurfaceSettings settings = SurfaceSettings.Default;
+            settings.Surface = _surface;
+            settings.Method = _surface == SurfaceKind.Ses ? _method : SurfaceMethod.Exact;
+            settings.ProbeRadius = _probeRadius;
+            settings.Spacing = _spacing;
+            settings.RelaxationSteps = (uint)_relaxationSteps;
+            settings.VertexLayout = SurfaceVertexLayout.Interleaved;
+            settings.Components = _measureComponents;
+            levels = _levels;
+            return settings;
+        }
+
+        SurfaceLevel ISurfaceHost.Show(in SurfaceMeshView mesh, in SurfaceReport report, ReadOnlySpan<float> ladder,
+            bool isOfNewestAtoms)
+        {
+            SurfaceLevel level = _shown.Show(mesh, report, ladder, isOfNewestAtoms, _padBuffers);
+            if (_shown.TakeIsNewMesh())
+                AttachMesh();
+            return level;
+        }
+
+        void ISurfaceHost.OnUpdated(in SurfaceLevel level) => SurfaceUpdated?.Invoke(level);
+
+        void ISurfaceHost.OnFinished() => RefinementFinished?.Invoke();
+
+        void ISurfaceHost.OnFailed(in QuickSesError error)
+        {
+            if (Failed != null)
+                Failed(error);
+            else
+                Debug.LogError($"{name}: {error.Message}", this);
+        }
+
+        void ISurfaceHost.OnDisposed() => _shown.Dispose();
+    }
+}

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: MIT
+using System;
+
+namespace QuickSes
+{
+    /// <summary>
+    /// One surface over time: which atoms it is of, what is shown, and the job in between. It borrows a context from a
+    /// <see cref="ContextPool"/> for each job. Main thread only; no garbage while atoms move.
+    /// </summary>
+    internal sealed partial class SurfaceSession : IDisposable
+    {
+        private readonly ISurfaceHost _host;
+
+        // Of the newest atoms, colours and settings.
+        private bool _isTried; // a job was begun, or could not be
+        private bool _isStopped; // nothing more will come: it failed, or was cancelled by the user
+        private bool _isShown;
+        private bool _isShapeShown; // maybe in other colours
+        private SurfaceChange _pending; // since the last job began
+        private double _lastChange;
+
+        private bool _updated; // events to be raised
+        private bool _finished;
+        private bool _failed;
+
+        public SurfaceSession(ISurfaceHost host)
+        {
+            _host = host;
+            SurfaceScheduler.Add(this);
+        }
+
+        public SurfaceAtomSet Atoms { get; } = new SurfaceAtomSet();
+
+        /// <summary>What is shown.</summary>
+        public SurfaceLevel CurrentLevel { get; private set; }
+
+        /// <summary>In which queue of its pool it waits.</summary>
+        public QueuePriority QueuedAs { get; set; }
+
+        /// <summary>Whose context it has, or waits for.</summary>
+        public ContextPool Pool { get; set; }
+
+        /// <summary>The one that computed what is shown or is being computed; Auto: none yet.</summary>
+        public SurfaceBackend UsedBackend { get; private set; }
+
+        public BackendDescription UsedDevice { get; private set; }
+
+        /// <summary>Why there is no surface of the newest atoms; Ok if there is or will be one.</summary>
+        public QuickSesError LastError { get; private set; }
+
+        public float Progress { get; private set; }
+
+        public bool IsDisposed { get; private set; }
+
+        public bool IsOrphan => _host.IsGone;
+
+        /// <summary>
+        /// Whether nothing is left to do: the finest surface of the newest atoms is shown, or failed, or was cancelled,
+        /// or there are no atoms.
+        /// </summary>
+        public bool IsUpToDate => !Atoms.IsSet || (_slot == null && (_isStopped || IsDone));
+
+        private bool IsDone => _isShown && CurrentLevel.IsFinest;
+
+        /// <summary>Something is new: what is shown will be replaced.</summary>
+        public void Change(SurfaceChange change, double now)
+        {
+            Outdate(change >= SurfaceChange.Positions);
+            _lastChange = now;
+            if (change > _pending)
+                _pending = change;
+        }
+
+        /// <summary>Once per frame: collects, shows, asks for a context.</summary>
+        public void Tick(double now)
+        {
+            if (_slot != null)
+                Advance();
+            ContextPool pool = SurfaceScheduler.PoolOf(_host.Backend);
+            if (_slot == null)
+            {
+                QueuePriority priority = FindPriority(now);
+                if (priority != QueuePriority.None)
+                    pool.Enqueue(this, priority);
+                else
+                    QueuedAs = QueuePriority.None;
+            }
+            else if (!_isTried && !Pool.IsAnyUrgent && Pool == pool)
+            {
+                Start(_slot); // replaces the job; its coarsest level still comes
+            }
+            pool.Dispatch();
+        }
+
+        /// <summary>
+        /// Raises what happened since the last time and is still so. Handlers may do anything; what one that throws
+        /// leaves is raised the next time.
+        /// </summary>
+        public void RaiseEvents()
+        {
+            if (_updated)
+            {
+                _updated = false;
+                _host.OnUpdated(CurrentLevel);
+            }
+            if (_finished && !IsDisposed)
+            {
+                _finished = false;
+                if (IsDone && Atoms.IsSet)
+                    _host.OnFinished();
+            }
+            if (_failed && !IsDisposed)
+            {
+                _failed = false;
+                if (LastError.Status != QuickSesStatus.Ok)
+                    _host.OnFailed(LastError);
+            }
+        }
+
+        /// <summary>Computes the finest level and shows it before it returns.</summary>
+        public bool ComputeNow()
+        {
+            Drop();
+            ContextSlot slot = SurfaceScheduler.PoolOf(_host.Backend).LendNow(this, out QuickSesError error);
+            if (slot == null)
+            {
+                FailToBegin(error);
+                return false;
+            }
+            _isStopped = false;
+            if (TryStart(slot, true))
+            {
+                slot.Context.Wait();
+                Advance();
+            }
+            return IsDone && !_isStopped;
+        }
+
+        /// <summary>There is nothing to compute with, or no atoms to compute it of.</summary>
+        public void FailToBegin(in QuickSesError error)
+        {
+            Drop();
+            _isTried = true;
+            _pending = SurfaceChange.None;
+            Fail(true, error);
+        }
+
+        /// <summary>Ends the job; what is new meanwhile begins again later.</summary>
+        public void Drop()
+        {
+            QueuedAs = QueuePriority.None;
+            if (_slot == null)
+                return;
+            _slot.Context.Cancel();
+            Release(default);
+        }
+
+        /// <summary>Ends the job for good: nothing is computed until something changes.</summary>
+        public void Stop()
+        {
+            Drop();
+            _isStopped = _isTried = true;
+            _pending = SurfaceChange.None;
+        }
+
+        /// <summary>No atoms and no surface; who shows it clears that.</summary>
+        public void Clear()
+        {
+            Drop();
+            Outdate(true);
+            _pending = SurfaceChange.None;
+            Atoms.Clear();
+            CurrentLevel = default;
+            LastError = default;
+            _updated = _finished = _failed = false;
+        }
+
+        /// <summary>After <see cref="Drop"/>: what was not finished begins again.</summary>
+        public void Resume()
+        {
+            if (!IsUpToDate)
+                BeginAgain(SurfaceChange.Shape);
+        }
+
+        public void Dispose()
+        {
+            if (IsDisposed)
+                return;
+            IsDisposed = true;
+            Drop();
+            SurfaceScheduler.Remove(this);
+            Atoms.Dispose();
+            CurrentLevel = default;
+            _host.OnDisposed();
+        }
+
+        // What is known of the newest atoms is of older ones from now on.
+        private void Outdate(bool isShapeNew)
+        {
+            _isTried = _isStopped = _isShown = _isJobOfNewest = false;
+            if (isShapeNew)
+                _isShapeShown = _isJobOfShape = false;
+        }
+
+        private QueuePriority FindPriority(double now)
+        {
+            if (!Atoms.IsSet || _isStopped)
+                return QueuePriority.None;
+            if (!_isTried)
+                return QueuePriority.Urgent;
+            return !IsDone && now - _lastChange >= _host.RestDelay ? QueuePriority.Refinement : QueuePriority.None;
+        }
+
+        private void BeginAgain(SurfaceChange change)
+        {
+            _isTried = false;
+            if (change > _pending)
+                _pending = change;
+        }
+
+        // That there is nothing to compute with is told once.
+        private void Fail(bool isOfNewest, in QuickSesError error)
+        {
+            _isStopped |= isOfNewest;
+            _failed |= error.Status != QuickSesStatus.BackendUnavailable || LastError.Status != error.Status;
+            LastError = error;
+        }
+    }
+}
