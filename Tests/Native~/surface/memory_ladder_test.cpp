@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT
+// The ladder of memory plans through the C API: what was learnt stays learnt, a refusal leaves nothing behind, and the
+// limit is that of the moment.
+#include "surface/surface_fixture.h"
+
+#include "parallel/arena.h"
+#include "parallel/host_memory.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+using namespace surface_fixture;
+
+namespace {
+
+Atoms row_of_crambins(int count) {
+  const Atoms one = crambin();
+  Atoms all;
+  for (int k = 0; k < count; ++k) {
+    const Atoms copy = shifted(k % 2 ? turned(one) : one, 24.0 * (k % 5), 22.0 * (k / 5 % 5), 31.0 * (k / 25));
+    for (size_t i = 0; i < copy.size(); ++i) {
+      const auto c = copy.center(i);
+      all.add(c[0], c[1], c[2], static_cast<double>(copy.radii[i]));
+    }
+  }
+  return all;
+}
+
+std::vector<qses_settings> many_settings() {
+  std::vector<qses_settings> all = {settings(0.5), settings(0.3), settings(0.5, 5.0),
+                                    settings(0.5, 1.4, QSES_SURFACE_SAS)};
+  qses_settings s = settings(0.5);
+  s.relaxation_steps = 3;
+  s.components = 1;
+  all.push_back(s);
+  s = settings(0.6);
+  s.method = QSES_METHOD_GRID;
+  all.push_back(s);
+  return all;
+}
+
+uint64_t smallest_budget(qses_context *context, const qses_settings &s) {
+  qses_size_estimate e;
+  qses_size_estimate_init(&e);
+  expect_ok(qses_estimate(context, &s, &e));
+  return e.smallest_budget;
+}
+
+// Made with several attempts at first, if at all; then always at the first one, sliced as before, and the same.
+TEST(MemoryLadder, TheSecondFrameDoesNoWorkTwice) {
+  const Atoms atoms = row_of_crambins(8);
+  const Context unbounded;
+  set_atoms(unbounded, atoms);
+  uint64_t most_attempts = 0;
+  for (const qses_settings &s : many_settings()) {
+    const uint64_t smallest = smallest_budget(unbounded, s);
+    const qses_mesh expected = compute_view(unbounded, s);
+    for (const uint64_t budget : {smallest, smallest + smallest / 8, smallest + smallest / 2, 2 * smallest}) {
+      const Context context(2, budget);
+      set_atoms(context, atoms);
+      uint64_t slices = 0;
+      for (int frame = 0; frame < 4; ++frame) {
+        expect_ok(qses_set_positions(context, atoms.positions.data(), 0, atoms.size()));
+        const qses_mesh mesh = compute_view(context, s);
+        const qses_report report = report_of(context);
+        if (frame == 0) {
+          most_attempts = std::max(most_attempts, report.attempts);
+          slices = report.slice_count;
+        } else {
+          EXPECT_EQ(report.attempts, 1u) << "frame " << frame << ", " << budget << " bytes";
+          EXPECT_EQ(report.slice_count, slices);
+        }
+        ASSERT_EQ(mesh.vertex_count, expected.vertex_count);
+        EXPECT_EQ(std::memcmp(mesh.positions, expected.positions, 12 * size_t(mesh.vertex_count)), 0);
+        EXPECT_EQ(std::memcmp(mesh.indices, expected.indices, 12 * size_t(mesh.triangle_count)), 0);
+      }
+    }
+  }
+  EXPECT_GT(most_attempts, 1u) << "no case was too large for its first plan: nothing was tested";
+}
+
+// The same atoms with other settings begin the ladder anew where they need less, and other atoms always.
+TEST(MemoryLadder, OtherAtomsBeginAtTheTop) {
+  const Atoms many = row_of_crambins(8), one = crambin();
+  const Context unbounded;
+  set_atoms(unbounded, many);
+  const uint64_t budget = smallest_budget(unbounded, settings(0.4));
+  const Context context(2, budget);
+  const Context fresh(2, budget);
+  set_atoms(context, many);
+  compute_view(context, settings(0.4));
+  set_atoms(context, one);
+  set_atoms(fresh, one);
+  compute_view(context, settings(0.5));
+  compute_view(fresh, settings(0.5));
+  EXPECT_EQ(report_of(context).work_bytes_peak, report_of(fresh).work_bytes_peak);
+  EXPECT_EQ(report_of(context).attempts, 1u);
+}
+
+// A refusal while the atoms are still brought over: the sentence is about these atoms, nothing of the last frame is
+// touched, and the context goes on.
+TEST(MemoryLadder, RefusedBeforeAnythingWasMade) {
+  const Context context(2, 8u << 20);
+  const Atoms one = crambin();
+  set_atoms(context, one);
+  const qses_mesh before = compute_view(context, settings(0.5));
+  const std::vector<float> positions(before.positions, before.positions + 3 * size_t(before.vertex_count));
+  Atoms huge;
+  for (int k = 0; k < 2000000; ++k) huge.add(3.0 * (k % 128), 3.0 * (k / 128 % 128), 3.0 * (k / 16384), 1.5);
+  set_atoms(context, huge);
+  const std::vector<uint8_t> mask(huge.size(), 1), rgba(4 * huge.size(), 77);
+  expect_ok(qses_set_visible(context, mask.data(), mask.size()));
+  expect_ok(qses_set_colors(context, rgba.data(), huge.size()));
+  ASSERT_EQ(qses_compute(context, nullptr, nullptr), QSES_OUT_OF_MEMORY);
+  const std::string message = qses_last_error();
+  double gib = 0;
+  const size_t about = message.find("about ");
+  ASSERT_NE(about, std::string::npos) << message;
+  ASSERT_EQ(std::sscanf(message.c_str() + about, "about %lf GiB", &gib), 1) << message;
+  EXPECT_GT(gib, 0.3) << message;  // 2 million atoms; crambin would do with less than a megabyte
+  EXPECT_LT(gib, 30.0) << message;
+  set_atoms(context, one);
+  const qses_mesh after = compute_view(context, settings(0.5));
+  ASSERT_EQ(after.vertex_count * size_t(3), positions.size());
+  EXPECT_EQ(std::memcmp(after.positions, positions.data(), 4 * positions.size()), 0);
+}
+
+// Estimates before anything was computed say what the computation then takes: the one is the other, only counted.
+TEST(MemoryLadder, ForecastsAreWhatIsTaken) {
+  if (tested_backend() != QSES_BACKEND_CPU) GTEST_SKIP() << "the GPU's rooms are guesses at first";
+  const Atoms atoms = row_of_crambins(4);
+  for (const qses_settings &s : many_settings())
+    for (const uint64_t budget : {uint64_t(0), uint64_t(1) << 30}) {
+      const Context context(1, budget);
+      set_atoms(context, atoms);
+      compute_view(context, s);  // the threads' scratch is there from now on
+      qses_size_estimate e;
+      qses_size_estimate_init(&e);
+      expect_ok(qses_estimate(context, &s, &e));
+      compute_view(context, s);
+      const double taken = static_cast<double>(report_of(context).work_bytes_peak);
+      EXPECT_NEAR(static_cast<double>(e.work_bytes) / taken, 1.0, 0.001)
+          << e.work_bytes << " " << taken << " spacing " << s.spacing << " probe " << s.probe_radius;
+    }
+}
+
+struct ChangingMemory {
+  static constexpr const char *kName = "the test";
+  static inline uint64_t free = 0;
+  static inline int questions = 0;
+  static uint64_t free_bytes() {
+    ++questions;
+    return free;
+  }
+  static void *acquire(size_t bytes) { return quickses::HostMemory::acquire(bytes); }
+  static void release(void *memory) { quickses::HostMemory::release(memory); }
+};
+
+TEST(ArenaLimit, IsWhatIsFreeWhenAComputationStarts) {
+  constexpr uint64_t kMiB = 1 << 20;
+  quickses::Arena<ChangingMemory> arena;
+  ChangingMemory::free = 2 * kMiB;
+  EXPECT_THROW(arena.allocate(3 * kMiB), quickses::MemoryRefused);
+  arena.reset();
+  ChangingMemory::free = 10 * kMiB;  // others gave some back
+  EXPECT_NO_THROW(arena.allocate(3 * kMiB));
+  EXPECT_EQ(arena.limit(), 10 * kMiB);
+  const uint64_t held = arena.held();
+  arena.reset();
+  ChangingMemory::free = kMiB;  // and took some again
+  EXPECT_EQ(arena.limit(), held + kMiB);
+  EXPECT_THROW(arena.allocate(held + 2 * kMiB), quickses::MemoryRefused);
+  EXPECT_NO_THROW(arena.allocate(held));
+}
+
+TEST(ArenaLimit, NobodyAsksWhereNothingGrows) {
+  quickses::Arena<ChangingMemory> arena;
+  ChangingMemory::free = uint64_t(1) << 30;
+  arena.allocate(1 << 20);
+  const int before = ChangingMemory::questions;
+  for (int k = 0; k < 10; ++k) {
+    arena.reset();
+    arena.allocate(1 << 20);
+  }
+  EXPECT_EQ(ChangingMemory::questions, before);
+}
+
+}  // namespace

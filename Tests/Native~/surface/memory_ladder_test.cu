@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+// The ladder of memory plans where the GPU has little to give, since others have taken it; and what the GPU's stages
+// learn.
+#include "surface/surface_fixture.h"
+
+#include "surface/cuda/cuda_backend.cuh"
+#include "surface/stages/atoms.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <map>
+
+using namespace surface_fixture;
+
+namespace {
+
+bool has_device() { return quickses::describe_cuda_device(0).available; }
+#define REQUIRE_DEVICE() \
+  if (!has_device()) GTEST_SKIP() << "no CUDA device"
+
+// Takes memory of the device until no more than so much is free.
+class OtherProcess {
+ public:
+  explicit OtherProcess(uint64_t left) {
+    size_t free = 0, total = 0;
+    for (uint64_t piece = uint64_t(1) << 36; piece >= uint64_t(1) << 21;) {
+      quickses::check_cuda(cudaMemGetInfo(&free, &total), "cudaMemGetInfo");
+      void *memory = nullptr;
+      if (free < left + piece || cudaMalloc(&memory, piece) != cudaSuccess) {
+        cudaGetLastError();
+        piece /= 2;
+        continue;
+      }
+      taken_.push_back(memory);
+    }
+  }
+  ~OtherProcess() {
+    for (void *memory : taken_) cudaFree(memory);
+  }
+
+ private:
+  std::vector<void *> taken_;
+};
+
+Atoms block_of_crambins(int edge) {
+  const Atoms one = crambin();
+  Atoms all;
+  for (int k = 0; k < edge * edge * edge; ++k) {
+    const Atoms copy = shifted(one, 30.0 * (k % edge), 28.0 * (k / edge % edge), 36.0 * (k / edge / edge));
+    for (size_t i = 0; i < copy.size(); ++i) {
+      const auto c = copy.center(i);
+      all.add(c[0], c[1], c[2], static_cast<double>(copy.radii[i]));
+    }
+  }
+  return all;
+}
+
+void expect_same(const qses_mesh &mesh, const Surface &expected, const std::string &what) {
+  ASSERT_EQ(mesh.vertex_count, expected.vertex_count()) << what;
+  EXPECT_EQ(std::memcmp(mesh.positions, expected.mesh.positions.data(), 12 * size_t(mesh.vertex_count)), 0) << what;
+  EXPECT_EQ(std::memcmp(mesh.indices, expected.mesh.indices.data(), 12 * size_t(mesh.triangle_count)), 0) << what;
+}
+
+// Without a budget: whatever the others leave, the surface is made, also in every later frame; and as fast as before
+// when they are gone.
+TEST(GpuMemoryLadder, MakesDoWithWhatOthersLeave) {
+  REQUIRE_DEVICE();
+  const Atoms atoms = block_of_crambins(8);  // 167,424 atoms; some 0.7 GiB at 0.5 Å
+  Surface expected;
+  uint64_t whole = 0;
+  {
+    const Context context(0, 0, QSES_BACKEND_CUDA);
+    expected = compute(context, atoms, settings(0.5));
+    whole = report_of(context).work_bytes_peak;
+  }
+  int sliced = 0;
+  for (const uint64_t percent : {130, 110, 100, 90, 70, 50, 40, 30}) {
+    const std::string what = std::to_string(percent) + " % of " + std::to_string(whole) + " bytes";
+    const Context context(0, 0, QSES_BACKEND_CUDA);
+    set_atoms(context, atoms);
+    {
+      const OtherProcess others(whole / 100 * percent + (uint64_t(64) << 20));
+      for (int frame = 0; frame < 3; ++frame) {
+        qses_mesh mesh;
+        qses_mesh_init(&mesh);
+        const qses_settings s = settings(0.5);
+        ASSERT_EQ(qses_compute(context, &s, &mesh), QSES_OK) << what << ": " << qses_last_error();
+        expect_same(mesh, expected, what);
+        if (frame > 0) {
+          EXPECT_EQ(report_of(context).attempts, 1u) << what;
+        }
+        if (report_of(context).slice_count > 1) ++sliced;
+      }
+    }
+    // They are gone: all at once again, soon.
+    for (int frame = 0; frame < 2; ++frame) compute_view(context, settings(0.5));
+    EXPECT_EQ(report_of(context).slice_count, 1u) << what;
+    EXPECT_EQ(report_of(context).attempts, 1u) << what;
+  }
+  EXPECT_GT(sliced, 0) << "there was always enough: nothing was tested";
+}
+
+// Counts launches by name.
+class LaunchCounter : public quickses::CudaExecutor {
+ public:
+  using CudaExecutor::CudaExecutor;
+  std::map<std::string, int> launches;
+  template <class... Arguments>
+  void launch(const char *name, const Arguments &...arguments) {
+    ++launches[name];
+    CudaExecutor::launch(name, arguments...);
+  }
+};
+
+// Atoms with more neighbours than a warp's rows hold, and circles with more intervals than a lane's: the stage begins
+// anew for the first frame only.
+TEST(GpuRooms, AreLearntOnce) {
+  REQUIRE_DEVICE();
+  using namespace quickses;
+  LaunchCounter executor(0);
+  const DeviceGuard guard(0);
+  CudaRooms rooms;
+  std::vector<Sphere> spheres;
+  for (int x = 0; x < 7; ++x)
+    for (int y = 0; y < 7; ++y)
+      for (int z = 0; z < 7; ++z) spheres.push_back({glm::vec3(0.9f * x, 0.91f * y, 0.89f * z), 2.9f});
+  spheres.push_back({glm::vec3(40.f, 0.f, -1.f), 3.2f});
+  spheres.push_back({glm::vec3(40.f, 0.f, 1.f), 3.2f});
+  for (int k = 0; k < 12; ++k)
+    spheres.push_back({glm::vec3(40.f + 3.f * std::cos(0.5236f * k), 3.f * std::sin(0.5236f * k), 0.f), 0.5f});
+  std::vector<size_t> arcs;
+  for (int frame = 0; frame < 4; ++frame) {
+    executor.arena().reset();
+    executor.launches.clear();
+    Span<Sphere> atoms = executor.allocate<Sphere>(spheres.size());
+    executor.upload(atoms.data, spheres.data(), spheres.size());
+    const NeighborGridView grid = build_neighbor_grid(
+        executor, atoms, layout_cells(glm::vec3(-1.f, -4.f, -4.f), glm::vec3(45.f, 8.f, 8.f), 3.2f));
+    SolventFeatures features;
+    const SurfaceParameters parameters{1.4f, 1.4f, 0.5f, 3.2f};
+    Backend<CudaExecutor>::find_solvent_features(executor, grid, parameters, kMemoryPlans[0], rooms, &features);
+    executor.wait();
+    arcs.push_back(features.arcs.size);
+    if (frame == 0) {
+      EXPECT_GT(executor.launches["find_caps"], 1) << "nothing had to be learnt";
+    } else {
+      EXPECT_EQ(executor.launches["find_caps"], 1) << "frame " << frame;
+    }
+    EXPECT_EQ(features.arcs.size, arcs.front());
+  }
+}
+
+}  // namespace
