@@ -165,7 +165,7 @@ class SurfacePipeline : public SurfaceEngine {
           built = build(prepared, settings, h, &report);
         }
       }
-      timer_.begin("download");
+      timer_.begin("mesh_memory");
       qses_mesh mesh;
       memory_.finish(built, settings, &mesh);
       timer_.end();

@@ -252,7 +252,7 @@ namespace QuickSes
                         _shownShape == _shape ? Shown.Level.Spacing : float.PositiveInfinity, _owner.FrameBudget,
                         Pool.IsAnyUrgent);
                     status = context.Begin(settings);
-                    NoteJob(settings.Frame, status);
+                    NoteJob(settings.Tag, status);
                 }
                 return status == QuickSesStatus.Ok ? default : new QuickSesError(status, context.LastError);
             }
@@ -272,7 +272,7 @@ namespace QuickSes
                 {
                     SurfaceSettings settings = MakeSettings();
                     status = context.Compute(settings, out view);
-                    NoteJob(settings.Frame, status);
+                    NoteJob(settings.Tag, status);
                 }
                 return status == QuickSesStatus.Ok ? TryShow(view)
                     : new QuickSesError(status, context.LastError);
@@ -336,11 +336,11 @@ namespace QuickSes
         }
 
         // Not what the context's last user left behind. Numbers of jobs may wrap.
-        private bool IsOurs(in SurfaceMeshView view) => unchecked((int)(view.Frame - _slot.FirstJob)) >= 0;
+        private bool IsOurs(in SurfaceMeshView view) => unchecked((int)(view.Tag - _slot.FirstJob)) >= 0;
 
         private QuickSesError TryShow(in SurfaceMeshView view)
         {
-            bool isLast = view.Frame == _job;
+            bool isLast = view.Tag == _job;
             bool isCurrent = isLast && _jobVersion == _version;
             _slot.Context.TryGetReport(out SurfaceReport report);
             try
@@ -365,7 +365,7 @@ namespace QuickSes
         private SurfaceSettings MakeSettings()
         {
             SurfaceSettings settings = _owner.MakeSettings(_ladder, out _ladderCount);
-            settings.Frame = SurfaceScheduler.NextJob();
+            settings.Tag = SurfaceScheduler.NextJob();
             settings.Series = _series;
             settings.Texcoords = Atoms.HasTexcoords;
             return settings;

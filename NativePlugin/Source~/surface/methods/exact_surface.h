@@ -35,7 +35,6 @@ FeatureView find_features(R &run) {
     throw;
   }
   note();
-  run.timer.begin("arc_grid");
   FeatureView f{};
   f.atoms = run.atoms;
   f.cap_ranges = found.cap_ranges.data;
@@ -160,7 +159,7 @@ MeshMemoryView make_exact_mesh(R &run, BrickSet bricks, bool together) {
   run.timer.begin("projection");
   emit(0.45, 0.8, true);
   if (!mesh.on_host) {
-    run.timer.begin("triangles");
+    run.timer.begin("marching_cubes");
     emit_triangles(executor, bricks, layout, BrickRange{0, bricks.count}, run.table, mesh.view);
   }
   run.progress.report(0.85);

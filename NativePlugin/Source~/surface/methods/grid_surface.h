@@ -40,7 +40,7 @@ MeshMemoryView build_grid_surface(R &run) {
   run.timer.begin("projection");
   for_each_slice(run, bricks.count, per_slice(), 0.5, 0.8,
                  [&](BrickRange slice) { emit_grid_vertices(executor, field, layout, slice, mesh.view); });
-  run.timer.begin("triangles");
+  run.timer.begin("marching_cubes");
   emit_triangles(executor, bricks, layout, BrickRange{0, bricks.count}, run.table, mesh.view);
   run.progress.report(0.85);
 
