@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A cancel that comes when the mesh is finished takes nothing back: the call succeeds, and so does the job.
 #include "jobs/surface_job.h"
+#include "parallel/error.h"
 #include "surface/surface_fixture.h"
 
 #include <gtest/gtest.h>
