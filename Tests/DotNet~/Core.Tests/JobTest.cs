@@ -66,7 +66,7 @@ namespace QuickSes.Tests
             using Structure structure = Meshes.Crambin();
             using SurfaceContext context = Meshes.ContextOf(structure);
             SurfaceSettings settings = SurfaceSettings.Default;
-            settings.TagBudget = 60000; // everything fits, but for what is not known yet
+            settings.FrameBudget = 60000; // everything fits, but for what is not known yet
             for (int frame = 0; frame < 6; ++frame)
             {
                 int atoms = frame % 2 == 0 ? structure.AtomCount : structure.AtomCount / 2;

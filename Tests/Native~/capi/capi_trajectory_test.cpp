@@ -272,7 +272,7 @@ TEST(Trajectory, Errors) {
                {"struct_size"});
   expect_error(qses_trajectory_unwrap(trajectory.get(), nullptr, 5), QSES_INVALID_ARGUMENT, {"elements", "NULL"});
   expect_error(qses_trajectory_unwrap(trajectory.get(), kCarbons, 4), QSES_INVALID_ARGUMENT, {"count is 4"});
-  expect_error(qses_trajectory_info(trajectory.get(), nullptr), QSES_INVALID_ARGUMENT, {"info", "NULL"});
+  expect_error(qses_trajectory_info(trajectory.get(), nullptr), QSES_INVALID_ARGUMENT, {"description", "NULL"});
   qses_trajectory_close(nullptr);
   qses_trajectory_description_init(nullptr);
   qses_frame_init(nullptr);
