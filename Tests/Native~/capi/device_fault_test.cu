@@ -105,15 +105,41 @@ void check_new_contexts() {
   std::exit(0);
 }
 
+// Also without a GPU: from the report of a fault on CUDA is not asked any more.
+[[noreturn]] void report_a_fault() {
+  const auto refused = [](auto call) {
+    try {
+      call();
+    } catch (const quickses::Error &e) {
+      return e.status() == QSES_DEVICE_ERROR && std::string(e.what()).find(kSentence) == 0;
+    }
+    return false;
+  };
+  DEMAND(refused([] { quickses::check_cuda(cudaErrorIllegalAddress, "cudaStreamSynchronize"); }));
+  DEMAND(refused([] { quickses::check_cuda(cudaErrorMemoryAllocation, "cudaMalloc"); }));  // whatever it says later
+  DEMAND(refused([] { const quickses::DeviceGuard guard(0); }));
+  check_new_contexts();
+  std::exit(0);
+}
+
 class DeviceFault : public testing::Test {
  protected:
-  void SetUp() override {
-    if (!quickses::describe_cuda_device(0).available) GTEST_SKIP() << "no CUDA device";
-    testing::FLAGS_gtest_death_test_style = "threadsafe";  // the other process begins anew, without this one's CUDA
-  }
+  // The other process begins anew, without this one's CUDA.
+  void SetUp() override { testing::FLAGS_gtest_death_test_style = "threadsafe"; }
 };
+#define REQUIRE_DEVICE() \
+  if (!quickses::describe_cuda_device(0).available) GTEST_SKIP() << "no CUDA device"
 
-TEST_F(DeviceFault, OfAWrongAddress) { EXPECT_EXIT(meet(wrong_address), testing::ExitedWithCode(0), ""); }
-TEST_F(DeviceFault, OfATrap) { EXPECT_EXIT(meet(trap), testing::ExitedWithCode(0), ""); }
+TEST_F(DeviceFault, OfAWrongAddress) {
+  REQUIRE_DEVICE();
+  EXPECT_EXIT(meet(wrong_address), testing::ExitedWithCode(0), "");
+}
+
+TEST_F(DeviceFault, OfATrap) {
+  REQUIRE_DEVICE();
+  EXPECT_EXIT(meet(trap), testing::ExitedWithCode(0), "");
+}
+
+TEST_F(DeviceFault, IsRemembered) { EXPECT_EXIT(report_a_fault(), testing::ExitedWithCode(0), ""); }
 
 }  // namespace
