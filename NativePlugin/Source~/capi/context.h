@@ -22,8 +22,12 @@ struct qses_context {
 namespace quickses {
 
 // function: the one that was called, for the message.
+inline void require_atoms(const qses_context &context, const char *function) {
+  if (!context.atoms) throw Error(QSES_NO_ATOMS, std::string("qses_set_atoms must come before ") + function);
+}
+
 inline void check_atom_count(const qses_context &context, size_t count, const char *function) {
-  if (!context.atoms) throw Error(QSES_NO_RESULT, std::string("qses_set_atoms must come before ") + function);
+  require_atoms(context, function);
   if (count != context.atoms->count)
     invalid("count is " + std::to_string(count) + " but the context has " + std::to_string(context.atoms->count) +
             " atoms");

@@ -15,7 +15,7 @@
 
 using quickses::check_atom_count;
 using quickses::check_choice;
-using quickses::check_output;
+using quickses::check_struct;
 using quickses::guarded;
 using quickses::invalid;
 using quickses::read_struct;
@@ -89,7 +89,7 @@ qses_mesh held_mesh(const qses_context &context) {
 quickses::SurfaceRequest make_request(const qses_context &context, const qses_settings &settings, bool ladder,
                                       const char *function) {
   check_settings(settings);
-  if (!context.atoms) throw quickses::Error(QSES_NO_RESULT, std::string("qses_set_atoms must come before ") + function);
+  quickses::require_atoms(context, function);
   quickses::SurfaceRequest request;
   request.atoms = context.atoms;
   request.appearance = context.appearance;
@@ -119,7 +119,7 @@ qses_status qses_backend_info(qses_backend backend, qses_backend_description *de
     check_backend(backend);
     qses_backend_description d{};
     choose_backend(backend, 0, &d);
-    *description = d;
+    write_struct(description, d, "qses_backend_description");
   });
 }
 
@@ -130,13 +130,7 @@ qses_status qses_device_count(uint32_t *count) {
   });
 }
 
-void qses_context_options_init(qses_context_options *options) {
-  if (!options) return;
-  *options = qses_context_options{};
-  options->struct_size = sizeof *options;
-}
-
-qses_status qses_create(const qses_context_options *options, qses_context **context) {
+qses_status qses_context_create(const qses_context_options *options, qses_context **context) {
   if (context) *context = nullptr;
   return guarded([&] {
     require(context, "context");
@@ -158,7 +152,7 @@ qses_status qses_create(const qses_context_options *options, qses_context **cont
   });
 }
 
-void qses_destroy(qses_context *context) {
+void qses_context_destroy(qses_context *context) {
   guarded([&] { delete context; });
 }
 
@@ -167,7 +161,7 @@ qses_status qses_context_info(const qses_context *context, qses_backend *backend
   return guarded([&] {
     require(context, "context");
     if (backend) *backend = context->backend;
-    if (description) *description = context->description;
+    if (description) write_struct(description, context->description, "qses_backend_description");
   });
 }
 
@@ -214,79 +208,43 @@ qses_status qses_set_positions_indexed(qses_context *context, const float *posit
   });
 }
 
-void qses_settings_init(qses_settings *settings) {
-  if (!settings) return;
-  *settings = qses_settings{};
-  settings->struct_size = sizeof *settings;
-  settings->probe_radius = 1.4f;
-  settings->spacing = 0.5f;
-  settings->relaxation_steps = 1;
-  settings->measure = 1;
-  settings->levels[0] = 2.f;
-  settings->levels[1] = 1.f;
-  settings->level_count = 2;
-}
-
-void qses_mesh_init(qses_mesh *mesh) {
-  if (!mesh) return;
-  *mesh = qses_mesh{};
-  mesh->struct_size = sizeof *mesh;
-}
-
-void qses_report_init(qses_report *report) {
-  if (!report) return;
-  *report = qses_report{};
-  report->struct_size = sizeof *report;
-}
-
 qses_status qses_compute(qses_context *context, const qses_settings *settings, qses_mesh *mesh) {
   return guarded([&] {
     require(context, "context");
-    if (mesh) check_output(mesh, "mesh");  // before the last mesh is replaced
+    if (mesh) check_struct(mesh, "qses_mesh");  // before the last mesh is replaced
     const qses_settings s = read_struct(settings, qses_settings_init, "qses_settings");
     context->job->compute(make_request(*context, s, false, "qses_compute"));
-    if (mesh) write_struct(mesh, held_mesh(*context), "mesh");
+    if (mesh) write_struct(mesh, held_mesh(*context), "qses_mesh");
   });
 }
 
-qses_status qses_get_mesh(const qses_context *context, qses_mesh *mesh) {
+qses_status qses_context_mesh(const qses_context *context, qses_mesh *mesh) {
   return guarded([&] {
     require(context, "context");
     require(mesh, "mesh");
-    write_struct(mesh, held_mesh(*context), "mesh");
+    write_struct(mesh, held_mesh(*context), "qses_mesh");
   });
 }
 
-qses_status qses_get_report(const qses_context *context, qses_report *report) {
+qses_status qses_context_report(const qses_context *context, qses_report *report) {
   return guarded([&] {
     require(context, "context");
     require(report, "report");
     qses_report held;
     if (!context->job->held(nullptr, &held)) throw quickses::Error(QSES_NO_RESULT, kNothingComputed);
-    write_struct(report, held, "report");
+    write_struct(report, held, "qses_report");
   });
-}
-
-void qses_size_estimate_init(qses_size_estimate *estimate) {
-  if (!estimate) return;
-  *estimate = qses_size_estimate{};
-  estimate->struct_size = sizeof *estimate;
 }
 
 qses_status qses_estimate(qses_context *context, const qses_settings *settings, qses_size_estimate *estimate) {
   return guarded([&] {
     require(context, "context");
     require(estimate, "estimate");
-    check_output(estimate, "size_estimate");
+    check_struct(estimate, "qses_size_estimate");
     const qses_settings s = read_struct(settings, qses_settings_init, "qses_settings");
-    write_struct(estimate, context->job->estimate(make_request(*context, s, false, "qses_estimate")), "size_estimate");
+    write_struct(estimate, context->job->estimate(make_request(*context, s, false, "qses_estimate")),
+                 "qses_size_estimate");
   });
-}
-
-void qses_progress_init(qses_progress *progress) {
-  if (!progress) return;
-  *progress = qses_progress{};
-  progress->struct_size = sizeof *progress;
 }
 
 qses_status qses_begin(qses_context *context, const qses_settings *settings) {
@@ -301,7 +259,7 @@ qses_status qses_poll(const qses_context *context, qses_progress *progress) {
   return guarded([&] {
     require(context, "context");
     require(progress, "progress");
-    write_struct(progress, context->job->progress(), "progress");
+    write_struct(progress, context->job->progress(), "qses_progress");
   });
 }
 
@@ -310,14 +268,14 @@ qses_status qses_collect(qses_context *context, qses_mesh *mesh) {
   const qses_status status = guarded([&] {
     require(context, "context");
     require(mesh, "mesh");
-    check_output(mesh, "mesh");
+    check_struct(mesh, "qses_mesh");
     qses_mesh collected;
     found = context->job->collect(&collected, nullptr);
-    if (found) write_struct(mesh, collected, "mesh");
+    if (found) write_struct(mesh, collected, "qses_mesh");
   });
   // Callers ask in every frame: an exception would be too dear an answer.
   if (status == QSES_OK && !found)
-    return quickses::fail(QSES_NO_RESULT, "no level has been finished since the last qses_collect");
+    return quickses::fail(QSES_NOTHING_NEW, "no level has been finished since the last qses_collect");
   return status;
 }
 
@@ -328,7 +286,7 @@ qses_status qses_cancel(qses_context *context) {
   });
 }
 
-qses_status qses_wait(qses_context *context, double milliseconds, int32_t *finished) {
+qses_status qses_wait(qses_context *context, double milliseconds, qses_bool *finished) {
   return guarded([&] {
     require(context, "context");
     if (std::isnan(milliseconds)) invalid("milliseconds is no number");
@@ -337,7 +295,7 @@ qses_status qses_wait(qses_context *context, double milliseconds, int32_t *finis
   });
 }
 
-qses_status qses_enable_stage_times(qses_context *context, int32_t enabled) {
+qses_status qses_set_stage_times(qses_context *context, qses_bool enabled) {
   return guarded([&] {
     require(context, "context");
     context->job->wait(-1.0);

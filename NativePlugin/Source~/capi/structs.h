@@ -12,33 +12,46 @@
 
 namespace quickses {
 
-// The caller's structure may be older, hence shorter, than ours: what it lacks keeps its default.
+// Structures with a struct_size: callers may have been compiled with an older header or a newer one, so what they hand
+// over may be shorter or longer than ours. No byte behind struct_size is looked at or touched.
+
+// A size that no header can have is that of a structure that was not prepared. name: its type.
+template <class T>
+void check_struct(const T *given, const char *name) {
+  constexpr uint32_t kSmallest = 8, kLargest = 4096;
+  const uint32_t size = given->struct_size;
+  if (size < kSmallest || size > kLargest || size % sizeof(uint32_t) != 0)
+    invalid(std::string(name) + ".struct_size is " + std::to_string(size) + ": use " + name +
+            "_init of the header first");
+}
+
+// What the caller gives; what an older caller's structure lacks keeps its default. What a newer caller's has in
+// addition must be 0: then it asks for nothing that would not be done here. (The rule of Linux for extensible system
+// calls, copy_struct_from_user.) NULL: the defaults.
 template <class T>
 T read_struct(const T *given, void (*init)(T *), const char *name) {
   T value;
   init(&value);
   if (!given) return value;
-  if (given->struct_size < sizeof(uint32_t) || given->struct_size > 65536)
-    invalid(std::string(name) + "->struct_size is " + std::to_string(given->struct_size) + ": use " + name +
-            "_init of the header first");
+  check_struct(given, name);
+  const char *const bytes = reinterpret_cast<const char *>(given);
+  for (size_t k = sizeof(T); k < given->struct_size; ++k)
+    if (bytes[k] != 0)
+      invalid(std::string(name) + " has something in byte " + std::to_string(k) +
+              ", but version " QUICKSES_VERSION " of the library knows the first " + std::to_string(sizeof(T)) +
+              " only");
   std::memcpy(static_cast<void *>(&value), given, std::min<size_t>(given->struct_size, sizeof(T)));
   value.struct_size = sizeof(T);
   return value;
 }
 
-template <class T>
-void check_output(const T *out, const char *name) {
-  if (out->struct_size < sizeof(uint32_t) || out->struct_size > 65536)
-    invalid(std::string(name) + "->struct_size is " + std::to_string(out->struct_size) + ": use qses_" + name +
-            "_init first");
-}
-
+// As much of the value as the caller's structure has room for; struct_size stays the caller's.
 template <class T>
 void write_struct(T *out, const T &value, const char *name) {
-  check_output(out, name);
-  const uint32_t size = out->struct_size;
-  std::memcpy(static_cast<void *>(out), &value, std::min<size_t>(size, sizeof(T)));
-  out->struct_size = size;
+  check_struct(out, name);
+  constexpr size_t kSize = sizeof out->struct_size;
+  std::memcpy(reinterpret_cast<char *>(out) + kSize, reinterpret_cast<const char *>(&value) + kSize,
+              std::min<size_t>(out->struct_size, sizeof(T)) - kSize);
 }
 
 // A C caller may put any number into an enumeration: it is looked at as a number before it is used as one.
@@ -51,11 +64,12 @@ void check_choice(const char *name, const Choice &given, Choice last) {
     invalid(std::string(name) + " is " + std::to_string(value) + ", which names nothing in the header");
 }
 
-// The k-th sentence for the user.
-inline const char *pick_warning(const std::vector<std::string> &warnings, uint32_t k) {
-  if (k >= warnings.size())
-    invalid("k is " + std::to_string(k) + " but there are " + std::to_string(warnings.size()) + " warnings");
-  return warnings[k].c_str();
+// The k-th of some things.
+template <class T>
+const T &pick(const std::vector<T> &things, uint32_t k, const char *name) {
+  if (k >= things.size())
+    invalid("k is " + std::to_string(k) + " but there are " + std::to_string(things.size()) + " " + name);
+  return things[k];
 }
 
 }  // namespace quickses

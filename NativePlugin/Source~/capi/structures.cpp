@@ -20,7 +20,6 @@ namespace io = quickses::io;
 
 struct qses_structure {
   io::StructureFile file;  // with one model
-  std::vector<qses_atom> atoms;
   std::vector<uint32_t> file_indices;
 
   const io::Structure &model() const { return file.models.front(); }
@@ -61,7 +60,7 @@ qses_structure_format format_of(io::StructureFormat format) {
   return QSES_STRUCTURE_AUTO;
 }
 
-io::ReadOptions read_options_of(const qses_read_options &options) {
+io::ReadOptions read_options_of(const qses_structure_options &options) {
   check_choice("options.format", options.format, QSES_STRUCTURE_GRO);
   if (options.model < 1) invalid("options.model is " + std::to_string(options.model) + ": models count from 1");
   io::ReadOptions read;
@@ -73,34 +72,14 @@ io::ReadOptions read_options_of(const qses_read_options &options) {
   return read;
 }
 
-std::vector<qses_atom> atom_table(const io::Structure &structure) {
-  std::vector<qses_atom> table(structure.atoms.size());
-  for (size_t i = 0; i < table.size(); ++i) {
-    const io::AtomInfo &from = structure.atoms[i];
-    qses_atom &to = table[i];
-    to.name = from.name.c_str();
-    to.residue_name = from.residue_name.c_str();
-    to.chain = from.chain.c_str();
-    to.residue_number = from.residue_number;
-    to.file_index = from.file_index;
-    to.insertion_code = from.insertion_code;
-    to.element = from.element;
-    to.is_hetero = from.hetero;
-    to.is_water = from.water;
-    to.is_hydrogen = from.hydrogen;
-  }
-  return table;
-}
-
 using Read = std::function<io::StructureFile(std::optional<io::StructureFormat>, const io::ReadOptions &)>;
 
-void open_structure(const Read &read, const qses_read_options *options, qses_structure **structure) {
-  const qses_read_options o = read_struct(options, qses_read_options_init, "qses_read_options");
+void open_structure(const Read &read, const qses_structure_options *options, qses_structure **structure) {
+  const qses_structure_options o = read_struct(options, qses_structure_options_init, "qses_structure_options");
   auto opened = std::make_unique<qses_structure>();
   const io::ReadOptions read_options = read_options_of(o);
   opened->file = read(format_of(o.format), read_options);
   io::assign_radii(opened->file, o.radii ? o.radii : "");
-  opened->atoms = atom_table(opened->model());
   for (const io::AtomInfo &atom : opened->model().atoms) opened->file_indices.push_back(atom.file_index);
   *structure = opened.release();
 }
@@ -109,17 +88,9 @@ void open_structure(const Read &read, const qses_read_options *options, qses_str
 
 extern "C" {
 
-void qses_set_input_limit(uint64_t bytes) { io::set_input_limit(bytes); }
+void qses_input_set_limit(uint64_t bytes) { io::set_input_limit(bytes); }
 
-void qses_read_options_init(qses_read_options *options) {
-  if (!options) return;
-  *options = qses_read_options{};
-  options->struct_size = sizeof *options;
-  options->model = 1;
-  options->water = options->hetero = options->hydrogen = 1;
-}
-
-qses_status qses_structure_open(const char *path, const qses_read_options *options, qses_structure **structure) {
+qses_status qses_structure_open(const char *path, const qses_structure_options *options, qses_structure **structure) {
   if (structure) *structure = nullptr;
   return guarded([&] {
     require(path, "path");
@@ -131,7 +102,7 @@ qses_status qses_structure_open(const char *path, const qses_read_options *optio
   });
 }
 
-qses_status qses_structure_open_memory(const void *bytes, size_t size, const qses_read_options *options,
+qses_status qses_structure_open_memory(const void *bytes, size_t size, const qses_structure_options *options,
                                        qses_structure **structure) {
   if (structure) *structure = nullptr;
   return guarded([&] {
@@ -148,19 +119,13 @@ void qses_structure_close(qses_structure *structure) {
   guarded([&] { delete structure; });
 }
 
-void qses_structure_info_init(qses_structure_info *info) {
-  if (!info) return;
-  *info = qses_structure_info{};
-  info->struct_size = sizeof *info;
-}
-
-qses_status qses_structure_get_info(const qses_structure *structure, qses_structure_info *info) {
+qses_status qses_structure_info(const qses_structure *structure, qses_structure_description *description) {
   return guarded([&] {
     require(structure, "structure");
-    require(info, "info");
+    require(description, "description");
     const io::Structure &model = structure->model();
-    qses_structure_info value;
-    qses_structure_info_init(&value);
+    qses_structure_description value;
+    qses_structure_description_init(&value);
     value.format = format_of(structure->file.format);
     value.model = model.model;
     value.model_count = structure->file.model_count;
@@ -169,10 +134,30 @@ qses_status qses_structure_get_info(const qses_structure *structure, qses_struct
     value.positions = model.positions.data();
     value.radii = model.radii.data();
     value.file_indices = structure->file_indices.data();
-    value.atoms = structure->atoms.data();
     value.file_elements = model.file_elements.data();
     value.warning_count = static_cast<uint32_t>(structure->file.warnings.size());
-    write_struct(info, value, "structure_info");
+    write_struct(description, value, "qses_structure_description");
+  });
+}
+
+qses_status qses_structure_atom(const qses_structure *structure, uint32_t k, qses_atom *atom) {
+  return guarded([&] {
+    require(structure, "structure");
+    require(atom, "atom");
+    const io::AtomInfo &from = quickses::pick(structure->model().atoms, k, "atoms");
+    qses_atom value;
+    qses_atom_init(&value);
+    value.file_index = from.file_index;
+    value.name = from.name.c_str();
+    value.residue_name = from.residue_name.c_str();
+    value.chain = from.chain.c_str();
+    value.residue_number = from.residue_number;
+    value.is_hetero = from.hetero;
+    value.is_water = from.water;
+    value.is_hydrogen = from.hydrogen;
+    value.element = from.element;
+    value.insertion_code = from.insertion_code;
+    write_struct(atom, value, "qses_atom");
   });
 }
 
@@ -180,7 +165,7 @@ qses_status qses_structure_warning(const qses_structure *structure, uint32_t k, 
   return guarded([&] {
     require(structure, "structure");
     require(sentence, "sentence");
-    *sentence = quickses::pick_warning(structure->file.warnings, k);
+    *sentence = quickses::pick(structure->file.warnings, k, "warnings").c_str();
   });
 }
 

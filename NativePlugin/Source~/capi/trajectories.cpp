@@ -100,18 +100,12 @@ void qses_trajectory_close(qses_trajectory *trajectory) {
   guarded([&] { delete trajectory; });
 }
 
-void qses_trajectory_info_init(qses_trajectory_info *info) {
-  if (!info) return;
-  *info = qses_trajectory_info{};
-  info->struct_size = sizeof *info;
-}
-
-qses_status qses_trajectory_get_info(const qses_trajectory *trajectory, qses_trajectory_info *info) {
+qses_status qses_trajectory_info(const qses_trajectory *trajectory, qses_trajectory_description *description) {
   return guarded([&] {
     require(trajectory, "trajectory");
-    require(info, "info");
-    qses_trajectory_info value;
-    qses_trajectory_info_init(&value);
+    require(description, "description");
+    qses_trajectory_description value;
+    qses_trajectory_description_init(&value);
     value.format = format_of(trajectory->frames.format());
     value.frame_count = trajectory->frames.frame_count();
     value.atom_count = static_cast<uint32_t>(trajectory->frames.atom_count());
@@ -119,7 +113,7 @@ qses_status qses_trajectory_get_info(const qses_trajectory *trajectory, qses_tra
     value.is_unwrapped = trajectory->unwrapper ? 1 : 0;
     value.incomplete = trajectory->frames.incomplete() ? 1 : 0;
     value.warning_count = static_cast<uint32_t>(trajectory->frames.warnings().size());
-    write_struct(info, value, "trajectory_info");
+    write_struct(description, value, "qses_trajectory_description");
   });
 }
 
@@ -127,7 +121,7 @@ qses_status qses_trajectory_warning(const qses_trajectory *trajectory, uint32_t 
   return guarded([&] {
     require(trajectory, "trajectory");
     require(sentence, "sentence");
-    *sentence = quickses::pick_warning(trajectory->frames.warnings(), k);
+    *sentence = quickses::pick(trajectory->frames.warnings(), k, "warnings").c_str();
   });
 }
 
@@ -144,19 +138,13 @@ qses_status qses_trajectory_unwrap(qses_trajectory *trajectory, const uint8_t *e
   });
 }
 
-void qses_frame_init(qses_frame *frame) {
-  if (!frame) return;
-  *frame = qses_frame{};
-  frame->struct_size = sizeof *frame;
-}
-
 qses_status qses_trajectory_read_frame(const qses_trajectory *trajectory, uint64_t index, float *positions,
                                        size_t stride, size_t count, qses_frame *frame) {
   return guarded([&] {
     require(trajectory, "trajectory");
     quickses::check_layout(positions, stride, count);
     check_atom_count(*trajectory, count);
-    if (frame) quickses::check_output(frame, "frame");
+    if (frame) quickses::check_struct(frame, "qses_frame");
     if (index >= trajectory->frames.frame_count())
       invalid("index is " + std::to_string(index) + " but the trajectory has " +
               std::to_string(trajectory->frames.frame_count()) + " frames");
@@ -178,7 +166,7 @@ qses_status qses_trajectory_read_frame(const qses_trajectory *trajectory, uint64
       for (size_t i = 0; i < count; ++i)
         std::memcpy(reinterpret_cast<char *>(positions) + i * stride, &packed[3 * i], 12);
     }
-    if (frame) write_struct(frame, value, "frame");
+    if (frame) write_struct(frame, value, "qses_frame");
   });
 }
 

@@ -16,7 +16,7 @@ void check(qses_status status) {
 
 }  // namespace
 
-Engine::Engine(const ComputeOptions &options) : context_(nullptr, &qses_destroy) {
+Engine::Engine(const ComputeOptions &options) : context_(nullptr, &qses_context_destroy) {
   qses_context_options context_options;
   qses_context_options_init(&context_options);
   context_options.backend = options.backend;
@@ -24,11 +24,12 @@ Engine::Engine(const ComputeOptions &options) : context_(nullptr, &qses_destroy)
   context_options.threads = options.threads;
   context_options.memory_budget = options.memory;
   qses_context *context = nullptr;
-  const qses_status status = qses_create(&context_options, &context);
+  const qses_status status = qses_context_create(&context_options, &context);
   if (status != QSES_OK)
     throw Failure(exit_code_of(status),
                   std::string("--backend ") + name_of(options.backend) + ": " + qses_last_error());
   context_.reset(context);
+  qses_backend_description_init(&description_);
   check(qses_context_info(context, &backend_, &description_));
 }
 
@@ -58,7 +59,7 @@ qses_mesh Engine::compute(const qses_settings &settings) {
 qses_report Engine::report() const {
   qses_report report;
   qses_report_init(&report);
-  check(qses_get_report(context(), &report));
+  check(qses_context_report(context(), &report));
   return report;
 }
 

@@ -6,7 +6,6 @@
 
 #include "cli/clock.h"
 #include "cli/exit_code.h"
-#include "cli/mesh_check.h"
 #include "cli/mesh_output.h"
 #include "cli/report.h"
 #include "io/radii.h"
@@ -27,18 +26,17 @@ std::string csv_field(const std::string &text) {
   return field + '"';
 }
 
-std::string csv_row(uint64_t frame, std::optional<double> time, const qses_report &report,
-                    const std::vector<Component> &components) {
-  size_t cavities = 0;
+std::string csv_row(uint64_t frame, std::optional<double> time, const qses_report &report, const qses_mesh &mesh) {
+  uint32_t cavities = 0;
   double cavity_volume = 0;
-  for (const Component &component : components)
-    if (component.volume < 0) {
+  for (uint32_t k = 0; k < mesh.component_count; ++k)
+    if (mesh.components[k].is_cavity) {
       ++cavities;
-      cavity_volume -= component.volume;
+      cavity_volume -= mesh.components[k].volume;
     }
   char row[256];
-  std::snprintf(row, sizeof row, "%llu,%.4f,%.4f,%zu,%zu,%.4f,", static_cast<unsigned long long>(frame), report.area,
-                report.volume, components.size(), cavities, cavity_volume);
+  std::snprintf(row, sizeof row, "%llu,%.4f,%.4f,%u,%u,%.4f,", static_cast<unsigned long long>(frame), report.area,
+                report.volume, mesh.component_count, cavities, cavity_volume);
   char time_text[32] = "";
   if (time) std::snprintf(time_text, sizeof time_text, "%.3f", *time);
   return std::string(row) + time_text + ",\n";
@@ -85,8 +83,9 @@ FrameWorker::FrameWorker(const FrameInputs &inputs, const ComputeOptions &comput
       shared_by_(shared_by),
       xyz_(3 * inputs.trajectory.atom_count()),
       settings_(settings_of(compute)) {
+  settings_.components = !inputs.options.csv.empty() || !inputs.options.json.empty();
   engine_.set_atoms(inputs.structure(), inputs.options.input);
-  if (!inputs.options.json.empty()) qses_enable_stage_times(engine_.context(), 1);
+  if (!inputs.options.json.empty()) qses_set_stage_times(engine_.context(), 1);
 }
 
 FrameResult FrameWorker::run(const FrameTask &task) {
@@ -135,12 +134,11 @@ void FrameWorker::fill(const FrameTask &task, FrameResult &result) {
   accept_surface(frame_options.output, mesh, inputs_.structure());
   timings.write = ms_since(write_start);
   if (options.csv.empty() && options.json.empty()) return;
-  const std::vector<Component> components = find_components(mesh);
-  if (!options.csv.empty()) result.csv = csv_row(task.frame, time, report, components);
+  if (!options.csv.empty()) result.csv = csv_row(task.frame, time, report, mesh);
   if (options.json.empty()) return;
   Json json = {{"frame", task.frame}, {"trajectory", options.trajectory}};
   json["time_ps"] = time ? Json(*time) : Json();
-  json.update(surface_json(frame_options, inputs_.structure(), engine_, mesh, components, report, timings, nullptr));
+  json.update(surface_json(frame_options, inputs_.structure(), engine_, mesh, report, timings, nullptr));
   result.json = dump(json, true);
 }
 

@@ -2,18 +2,23 @@
 // The JSON reports of the program.
 #include "cli/report.h"
 
-#include "cli/mesh_check.h"
+#include <algorithm>
+#include <vector>
 
 namespace quickses::cli {
 namespace {
 
-Json components_json(const std::vector<Component> &components) {
+// The largest area first.
+Json components_json(const qses_mesh &mesh) {
+  std::vector<qses_component> components(mesh.components, mesh.components + mesh.component_count);
+  std::stable_sort(components.begin(), components.end(),
+                   [](const qses_component &a, const qses_component &b) { return a.area > b.area; });
   Json list = Json::array();
-  for (const Component &component : components)
+  for (const qses_component &component : components)
     list.push_back({{"triangles", component.triangles},
                     {"area", component.area},
                     {"volume", component.volume},
-                    {"cavity", component.volume < 0}});
+                    {"cavity", component.is_cavity != 0}});
   return list;
 }
 
@@ -33,8 +38,7 @@ Json settings_json(const ComputeOptions &options) {
 }
 
 Json surface_json(const Options &options, const io::Structure &structure, const Engine &engine, const qses_mesh &mesh,
-                  const std::vector<Component> &components, const qses_report &report, const Timings &timings,
-                  const qses_size_estimate *predicted) {
+                  const qses_report &report, const Timings &timings, const qses_size_estimate *predicted) {
   Json json;
   json["version"] = qses_version();
   json["input"] = options.input;
@@ -50,7 +54,7 @@ Json surface_json(const Options &options, const io::Structure &structure, const 
       {"vertices", mesh.vertex_count}, {"triangles", mesh.triangle_count}, {"closed", true}, {"bounds", bounds}};
   json["area"] = report.area;
   json["volume"] = report.volume;
-  json["components"] = components_json(components);
+  json["components"] = components_json(mesh);
   Json stages = Json::object();
   for (uint32_t i = 0; i < report.stage_count && i < QSES_MAX_STAGES; ++i)
     stages[report.stages[i].name] = report.stages[i].milliseconds;

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "cli/engine.h"
-#include "cli/mesh_check.h"
 #include "cli/options.h"
 
 namespace quickses::cli {
@@ -21,10 +20,9 @@ struct Timings {
 Json settings_json(const ComputeOptions &options);
 
 // The report of one surface, which is closed (see accept_surface). predicted: before it was computed, or nullptr.
-// components: those of the mesh.
+// The mesh must have been computed with its components.
 Json surface_json(const Options &options, const io::Structure &structure, const Engine &engine, const qses_mesh &mesh,
-                  const std::vector<Component> &components, const qses_report &report, const Timings &timings,
-                  const qses_size_estimate *predicted);
+                  const qses_report &report, const Timings &timings, const qses_size_estimate *predicted);
 
 // Text of a report; names that are no UTF-8 are made so.
 std::string dump(const Json &json, bool one_line);

@@ -8,7 +8,6 @@
 #include "cli/commands.h"
 #include "cli/engine.h"
 #include "cli/exit_code.h"
-#include "cli/mesh_check.h"
 #include "cli/mesh_output.h"
 #include "cli/progress.h"
 #include "cli/report.h"
@@ -53,7 +52,8 @@ void run_surface(const Options &options) {
   Engine engine(options.compute);
   explain_fallback(engine, options.compute, options.quiet);
   qses_settings settings = settings_of(options.compute);
-  if (!options.json.empty()) qses_enable_stage_times(engine.context(), 1);
+  settings.components = !options.json.empty();
+  if (!options.json.empty()) qses_set_stage_times(engine.context(), 1);
 
   const bool all_models = options.read.model == 0;
   if (all_models && !options.output.empty()) {
@@ -78,8 +78,8 @@ void run_surface(const Options &options) {
     accept_surface(model_options.output, mesh, structure);
     timings.write = ms_since(write_start);
     if (!options.json.empty()) {
-      const Json json = surface_json(model_options, structure, engine, mesh, find_components(mesh), report, timings,
-                                     predicted ? &*predicted : nullptr);
+      const Json json =
+          surface_json(model_options, structure, engine, mesh, report, timings, predicted ? &*predicted : nullptr);
       reports += dump(json, all_models);  // of several models: one line each
     }
     if (!options.quiet && options.json != "-") print_summary(model_options, structure, engine, mesh, report);

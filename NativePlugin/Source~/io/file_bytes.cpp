@@ -52,7 +52,7 @@ bool append_within(uint64_t limit, const char *data, size_t count, std::string &
   else
     std::snprintf(size, sizeof size, "%.6g MiB", static_cast<double>(limit) / kMiB);
   fail_input("'" + name + "' " + verb + " more than " + size +
-             ", the most that is taken into memory; --max-input (in the library qses_set_input_limit) allows more");
+             ", the most that is taken into memory; --max-input (in the library qses_input_set_limit) allows more");
 }
 
 std::string read_raw_bytes(const std::string &path) {

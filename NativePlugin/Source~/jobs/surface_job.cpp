@@ -38,7 +38,7 @@ void SurfaceJob::begin(SurfaceRequest request) {
       }
     }
     if (request.frame_budget_ms > 0) choosers_.reserve();  // here it may fail
-    state_.frame_requested = request.settings.frame;
+    state_.tag_requested = request.settings.tag;
     waiting_ = std::move(request);
     if (running_) {
       // The picture must keep moving: the coarsest level is finished first.
@@ -58,7 +58,7 @@ void SurfaceJob::announce(const SurfaceRequest &request) {
   levels_finished_ = 0;
   level_count_ = request.frame_budget_ms > 0 ? 1 : request.ladder.count;
   state_.state = QSES_JOB_RUNNING;
-  state_.frame = request.settings.frame;
+  state_.tag = request.settings.tag;
   state_.levels_finished = 0;
   state_.level_count = level_count_;
   state_.status = QSES_OK;
@@ -124,7 +124,8 @@ void SurfaceJob::run(const SurfaceRequest &request) {
     engine_->compute(*request.atoms, *request.appearance, request.settings,
                      {request.ladder.spacings + first_level_, level_count_}, *this);
   } catch (const Cancelled &) {
-    throw;  // says nothing about the cost
+    // A cancel that came too late takes nothing back. Else the time says nothing about the cost.
+    if (levels_finished_ < level_count_) throw;
   } catch (...) {
     if (chooser_) chooser_->record_failure();
     throw;
@@ -146,7 +147,7 @@ void SurfaceJob::compute(SurfaceRequest request) {
     // No worker runs and only this thread can begin one: it is safe to compute here.
     announce(request);
     choose_levels(request);
-    state_.frame_requested = request.settings.frame;
+    state_.tag_requested = request.settings.tag;
     running_ = true;
   }
   const auto end = [&](qses_job_state state, qses_status status, const char *message) {

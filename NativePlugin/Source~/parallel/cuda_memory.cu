@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <mutex>
 
 namespace quickses {
 namespace {
@@ -20,6 +21,56 @@ __global__ void probe_kernel() {}
 
 std::string describe_error(cudaError_t error) {
   return std::string(cudaGetErrorString(error)) + " (" + cudaGetErrorName(error) + ")";
+}
+
+// The errors that CUDA does not recover from: memory or links that failed, and what a kernel did wrong. Of the latter
+// its manual says (cudaError_t) that they leave the process in an inconsistent state, in which any further work with
+// CUDA returns the same error until the process ends.
+bool is_sticky(cudaError_t error) {
+  switch (error) {
+    case cudaErrorECCUncorrectable:
+    case cudaErrorNvlinkUncorrectable:
+    case cudaErrorIllegalAddress:
+    case cudaErrorLaunchTimeout:
+    case cudaErrorAssert:
+    case cudaErrorHardwareStackError:
+    case cudaErrorIllegalInstruction:
+    case cudaErrorMisalignedAddress:
+    case cudaErrorInvalidAddressSpace:
+    case cudaErrorInvalidPc:
+    case cudaErrorLaunchFailure:
+      return true;
+    default:
+      return false;
+  }
+}
+
+// The first such error of the process. The sentence is written before the flag is set, and never again.
+struct Fault {
+  std::atomic<bool> is_there{false};
+  std::mutex mutex;
+  std::string sentence;
+
+  void remember(cudaError_t error, const char *call) {
+    const std::lock_guard<std::mutex> lock(mutex);
+    if (is_there) return;
+    sentence = std::string("the GPU met a fault that CUDA does not recover from before the process ends: ") +
+               describe_error(error) + ", reported by " + call;
+    is_there = true;
+  }
+};
+
+Fault &fault() {
+  static Fault &the_fault = *new Fault;  // never destroyed: contexts may be as late as the process ends
+  return the_fault;
+}
+
+// Whether memory was given. After a fault, which any call may be the first to report, less would not do either.
+bool was_granted(cudaError_t error, const char *call) {
+  if (error == cudaSuccess) return true;
+  if (is_sticky(error)) check_cuda(error, call);
+  cudaGetLastError();
+  return false;
 }
 
 std::string version_text(int version) {
@@ -44,13 +95,23 @@ void check_cuda(int error, const char *call) {
   const cudaError_t e = static_cast<cudaError_t>(error);
   if (e == cudaSuccess) return;
   cudaGetLastError();
+  if (is_sticky(e)) fault().remember(e, call);
+  refuse_after_fault();
   const std::string message = std::string(call) + " failed: " + describe_error(e);
   if (e == cudaErrorMemoryAllocation) throw MemoryRefused(message);
   throw Error(QSES_DEVICE_ERROR, message);
 }
 
+void refuse_after_fault() {
+  if (fault().is_there) throw Error(QSES_DEVICE_ERROR, fault().sentence);
+}
+
 CudaDevice describe_cuda_device(int ordinal) {
   CudaDevice device;
+  if (fault().is_there) {
+    device.reason = fault().sentence;
+    return device;
+  }
   int count = 0;
   cudaError_t error = cudaGetDeviceCount(&count);
   if (error != cudaSuccess || count == 0) {
@@ -86,6 +147,11 @@ CudaDevice describe_cuda_device(int ordinal) {
   device.available = error == cudaSuccess;
   if (device.available) return device;
   cudaGetLastError();
+  if (is_sticky(error)) {
+    fault().remember(error, "the look at the device");
+    device.reason = fault().sentence;
+    return device;
+  }
   if (error == cudaErrorNoKernelImageForDevice || error == cudaErrorInvalidDeviceFunction ||
       error == cudaErrorUnsupportedPtxVersion)
     device.reason = device.name + " (compute capability " + std::to_string(properties.major) + "." +
@@ -103,6 +169,7 @@ int count_cuda_devices() {
 }
 
 DeviceGuard::DeviceGuard(int device) : before_(device), device_(device) {
+  refuse_after_fault();
   check_cuda(cudaGetDevice(&before_), "cudaGetDevice");
   // Selected even if it was before: on a thread that has not used CUDA yet this makes the device current.
   check_cuda(cudaSetDevice(device_), "cudaSetDevice");
@@ -128,9 +195,7 @@ uint64_t DeviceMemory::free_bytes() {
 void *DeviceMemory::acquire(size_t bytes) {
   ++device_requests;
   void *memory = nullptr;
-  if (cudaMalloc(&memory, bytes) == cudaSuccess) return memory;
-  cudaGetLastError();
-  return nullptr;
+  return was_granted(cudaMalloc(&memory, bytes), "cudaMalloc") ? memory : nullptr;
 }
 
 void DeviceMemory::release(void *memory) {
@@ -140,9 +205,7 @@ void DeviceMemory::release(void *memory) {
 void *PinnedMemory::acquire(size_t bytes) {
   ++pinned_requests;
   void *memory = nullptr;
-  if (cudaHostAlloc(&memory, bytes, cudaHostAllocPortable) == cudaSuccess) return memory;
-  cudaGetLastError();
-  return nullptr;
+  return was_granted(cudaHostAlloc(&memory, bytes, cudaHostAllocPortable), "cudaHostAlloc") ? memory : nullptr;
 }
 
 void PinnedMemory::release(void *memory) {

@@ -11,8 +11,12 @@
 namespace quickses {
 
 // Throws if a CUDA call failed: MemoryRefused where memory was (a launch takes some for the kernel's stack), else Error
-// with QSES_DEVICE_ERROR and the call's name. error is a cudaError_t. The runtime's record of the failure is cleared.
+// with QSES_DEVICE_ERROR and the call's name. error is a cudaError_t. The runtime's record of the failure is cleared. A
+// fault that CUDA does not recover from is remembered for as long as the process lives.
 void check_cuda(int error, const char *call);
+
+// Throws Error (QSES_DEVICE_ERROR) from the first such fault on, with what it was: nothing more is asked of CUDA then.
+void refuse_after_fault();
 
 struct CudaDevice {
   bool available = false;
@@ -28,7 +32,7 @@ CudaDevice describe_cuda_device(int ordinal);
 // 0 where CUDA does not start. Never throws.
 int count_cuda_devices();
 
-// Selects a device for the calling thread, and the one selected before when it goes.
+// Selects a device for the calling thread, and the one selected before when it goes. Throws Error; after a fault always.
 class DeviceGuard {
  public:
   explicit DeviceGuard(int device);

@@ -164,7 +164,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
         check_spacing(work, in);
         built = build_level(work);
       }
-      timer_.begin("download");
+      timer_.begin("mesh_memory");
       qses_mesh mesh;
       memory_.finish(built, in.settings, &mesh);
       timer_.end();

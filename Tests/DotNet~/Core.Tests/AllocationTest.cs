@@ -46,13 +46,13 @@ namespace QuickSes.Tests
                     Context.SetPositions(_positions);
                 else
                     Context.SetPositions(_positions, _indices);
-                _settings.Frame = frame;
+                _settings.Tag = frame;
                 Context.Begin(_settings);
                 Context.Poll(out SurfaceProgress progress);
                 Collect();
                 Context.Wait();
                 Collect();
-                if (progress.FrameRequested != frame)
+                if (progress.TagRequested != frame)
                     throw new InvalidOperationException("the job was not begun");
             }
 

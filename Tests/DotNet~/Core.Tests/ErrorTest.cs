@@ -100,9 +100,9 @@ namespace QuickSes.Tests
         {
             using var context = new SurfaceContext();
             Assert.That(Thrown(() => context.Begin(SurfaceSettings.Default)).Status,
-                Is.EqualTo(QuickSesStatus.NoResult));
+                Is.EqualTo(QuickSesStatus.NoAtoms));
             Assert.That(Thrown(() => context.Compute(SurfaceSettings.Default, out _)).Status,
-                Is.EqualTo(QuickSesStatus.NoResult));
+                Is.EqualTo(QuickSesStatus.NoAtoms));
             Assert.That(context.TryGetReport(out _), Is.False);
         }
 

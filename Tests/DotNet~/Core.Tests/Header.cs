@@ -34,6 +34,9 @@ internal sealed class Header
     public readonly Dictionary<string, int> EnumSizes = new Dictionary<string, int>();
     public readonly Dictionary<string, int> Constants = new Dictionary<string, int>();
 
+    /// <summary>By the name of the structure: its bytes after its qses_..._init.</summary>
+    public readonly Dictionary<string, byte[]> Defaults = new Dictionary<string, byte[]>();
+
     /// <summary>Number of parameters by the name of the function.</summary>
     public readonly Dictionary<string, int> Functions = new Dictionary<string, int>();
 
@@ -53,6 +56,12 @@ internal sealed class Header
         foreach (Match match in Regex.Matches(text, @"QSES_API[^;]*?(qses_\w+)\(([^;]*?)\);", RegexOptions.Singleline))
             Functions[match.Groups[1].Value] =
                 match.Groups[2].Value.Trim() == "void" ? 0 : match.Groups[2].Value.Split(',').Length;
+        foreach (Match match in Regex.Matches(text, @"static inline void (\w+)_init\((\w+) \*"))
+        {
+            Defaults[match.Groups[2].Value] = null;
+            if (match.Groups[1].Value != match.Groups[2].Value)
+                throw new InvalidDataException($"{match.Groups[1].Value}_init is for {match.Groups[2].Value}");
+        }
         AskCompiler();
     }
 
@@ -92,6 +101,10 @@ internal sealed class Header
         }
         foreach (string name in Constants.Keys)
             program.Append($"  printf(\"%d\\n\", (int){name});\n");
+        foreach (string type in Defaults.Keys)
+            program.Append($"  {{\n    {type} made;\n    size_t k;\n    memset(&made, 0xcc, sizeof made);\n" +
+                           $"    {type}_init(&made);\n    for (k = 0; k < sizeof made; ++k)\n" +
+                           "      printf(\"%d\\n\", (int)((const unsigned char *)&made)[k]);\n  }\n");
         program.Append("  return 0;\n}\n");
 
         using var folder = new TemporaryFolder();
@@ -116,6 +129,8 @@ internal sealed class Header
         }
         foreach (string name in Constants.Keys.ToList())
             Constants[name] = numbers.Dequeue();
+        foreach (string type in Defaults.Keys.ToList())
+            Defaults[type] = Enumerable.Range(0, Structs[type].Size).Select(_ => (byte)numbers.Dequeue()).ToArray();
     }
 
     /// <summary>compute_ms and QSES_OUT_OF_MEMORY (after its prefix) as C# writes them.</summary>

@@ -34,7 +34,8 @@ namespace QuickSes.Tests
         private static readonly Dictionary<string, Type> Numbers = new Dictionary<string, Type>
         {
             ["char"] = typeof(byte), ["uint8_t"] = typeof(byte), ["int32_t"] = typeof(int), ["uint32_t"] = typeof(uint),
-            ["uint64_t"] = typeof(ulong), ["float"] = typeof(float), ["double"] = typeof(double)
+            ["uint64_t"] = typeof(ulong), ["float"] = typeof(float), ["double"] = typeof(double),
+            ["qses_bool"] = typeof(int)
         };
 
         private static Header Header => Header.Instance.Value;
@@ -44,16 +45,19 @@ namespace QuickSes.Tests
         [Test]
         public void HeaderIsUnderstood()
         {
-            // Fields that cover their structure but for alignment: then none was overlooked.
+            // Fields that cover their structure: then none was overlooked, and later ones have a place behind all bytes
+            // that older callers have.
             foreach (HeaderStruct type in Header.Structs.Values)
             {
                 int end = 0;
                 foreach (HeaderField field in type.Fields)
                 {
-                    Assert.That(field.Offset - end, Is.InRange(0, 7), $"{type.Name}.{field.Name}");
+                    Assert.That(field.Offset, Is.EqualTo(end), $"{type.Name}.{field.Name}");
                     end = field.Offset + field.Size;
                 }
-                Assert.That(type.Size - end, Is.InRange(0, 7), type.Name);
+                Assert.That(type.Size, Is.EqualTo(end), type.Name);
+                Assert.That(type.Fields[0].Name == "struct_size", Is.EqualTo(Header.Defaults.ContainsKey(type.Name)),
+                    type.Name);
             }
             Assert.That(Header.Functions.Keys, Does.Contain("qses_compute"));
         }
@@ -61,6 +65,26 @@ namespace QuickSes.Tests
         [Test]
         public void ComponentsAreLookedAtInNativeMemory() =>
             Assert.That(Unsafe.SizeOf<SurfaceComponent>(), Is.EqualTo(Header.Structs["qses_component"].Size));
+
+        private static IEnumerable<string> StructsWithDefaults() => Header.Defaults.Keys;
+
+        [Test]
+        public void NoOtherDefaultsAreWritten() => Assert.That(
+            typeof(NativeDefaults).GetMethods(BindingFlags.Static | BindingFlags.Public).Select(made => made.Name),
+            Is.EquivalentTo(Header.Defaults.Keys.Select(name => MirrorName(name).Substring("Native".Length))));
+
+        [TestCaseSource(nameof(StructsWithDefaults))]
+        public void DefaultsAreThoseOfC(string name)
+        {
+            object made = typeof(NativeDefaults).GetMethod(MirrorName(name).Substring("Native".Length))
+                .Invoke(null, null);
+            Assert.That(made.GetType().Name, Is.EqualTo(MirrorName(name)));
+            var bytes = new byte[Header.Structs[name].Size];
+            GCHandle pinned = GCHandle.Alloc(made, GCHandleType.Pinned);
+            Marshal.Copy(pinned.AddrOfPinnedObject(), bytes, 0, bytes.Length);
+            pinned.Free();
+            Assert.That(bytes, Is.EqualTo(Header.Defaults[name]));
+        }
 
         [TestCaseSource(nameof(StructNames))]
         public void StructHasTheLayoutOfC(string name)

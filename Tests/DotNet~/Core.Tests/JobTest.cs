@@ -31,7 +31,7 @@ namespace QuickSes.Tests
             Assert.That(mesh.VertexCount, Is.Zero);
 
             SurfaceSettings settings = SurfaceSettings.Default;
-            settings.Frame = 7;
+            settings.Tag = 7;
             settings.Spacing = 0.25f;
             settings.SetLevels(new[] { 2f, 1f, 0.5f });
             Assert.That(context.Begin(settings), Is.EqualTo(QuickSesStatus.Ok));
@@ -42,7 +42,7 @@ namespace QuickSes.Tests
                 finished = context.Wait(1);
                 while (context.TryCollect(out mesh))
                 {
-                    Assert.That(mesh.Frame, Is.EqualTo(7));
+                    Assert.That(mesh.Tag, Is.EqualTo(7));
                     Assert.That(mesh.LevelCount, Is.EqualTo(4));
                     Assert.That(mesh.Level, Is.GreaterThan(lastLevel));
                     Assert.That(mesh.Spacing,
@@ -105,19 +105,19 @@ namespace QuickSes.Tests
             uint lastFrame = 0;
             for (uint frame = 1; frame <= 50; ++frame)
             {
-                settings.Frame = frame;
+                settings.Tag = frame;
                 context.Begin(settings);
                 if (context.TryCollect(out SurfaceMeshView early))
                 {
-                    Assert.That(early.Frame, Is.InRange(lastFrame, frame), "frames never run backwards");
-                    lastFrame = early.Frame;
+                    Assert.That(early.Tag, Is.InRange(lastFrame, frame), "frames never run backwards");
+                    lastFrame = early.Tag;
                 }
             }
             context.Wait();
             Assert.That(context.TryCollect(out SurfaceMeshView mesh), Is.True);
-            Assert.That((mesh.Frame, mesh.Level), Is.EqualTo((50u, mesh.LevelCount - 1)));
+            Assert.That((mesh.Tag, mesh.Level), Is.EqualTo((50u, mesh.LevelCount - 1)));
             context.Poll(out SurfaceProgress progress);
-            Assert.That((progress.Frame, progress.FrameRequested), Is.EqualTo((50u, 50u)));
+            Assert.That((progress.Tag, progress.TagRequested), Is.EqualTo((50u, 50u)));
         }
 
         [Test]

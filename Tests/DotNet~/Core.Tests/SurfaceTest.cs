@@ -213,19 +213,19 @@ namespace QuickSes.Tests
             using SurfaceContext context = Meshes.CrambinContext();
             Assert.That(context.TryGetMesh(out _), Is.False);
             SurfaceSettings settings = SurfaceSettings.Default;
-            settings.Frame = 41;
+            settings.Tag = 41;
             SurfaceMeshView first = Meshes.Compute(context, settings);
             float[] positions = first.Positions.ToArray();
-            Assert.That(first.Frame, Is.EqualTo(41));
+            Assert.That(first.Tag, Is.EqualTo(41));
             Assert.That(context.TryGetMesh(out SurfaceMeshView again), Is.True);
             Assert.That(again.Positions.SequenceEqual(positions), Is.True);
 
-            settings.Frame = 42;
+            settings.Tag = 42;
             SurfaceMeshView second = Meshes.Compute(context, settings);
             Assert.That(first.IsValid, Is.False);
             Assert.That(again.IsValid, Is.False);
             Assert.That(() => first.Positions.Length, Throws.InvalidOperationException);
-            Assert.That(second.Frame, Is.EqualTo(42));
+            Assert.That(second.Tag, Is.EqualTo(42));
             Assert.That(second.Positions.SequenceEqual(positions), Is.True, "same input, same bytes");
         }
     }

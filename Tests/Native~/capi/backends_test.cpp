@@ -15,6 +15,7 @@ class Backends : public ::testing::Test {
  protected:
   void SetUp() override {
     qses_backend_description d;
+    qses_backend_description_init(&d);
     ASSERT_EQ(qses_backend_info(QSES_BACKEND_CUDA, &d), QSES_OK);
     if (!d.available) GTEST_SKIP() << "skipped: no CUDA device (" << d.reason << ")";
   }

@@ -34,30 +34,33 @@ static void check_files(qses_context *context) {
       "ATOM      2  CA  ALA A   1       2.400   2.500   3.000  1.00  0.00           C\n"
       "ENDMDL\n";
   const size_t size = sizeof text - 1;
-  qses_read_options read;
+  qses_structure_options read;
   qses_structure *structure = NULL;
-  qses_structure_info info;
+  qses_structure_description info;
+  qses_atom atom;
   qses_trajectory *trajectory = NULL;
-  qses_trajectory_info trajectory_info;
+  qses_trajectory_description trajectory_info;
   qses_frame frame;
   float xyz[6];
   uint32_t device_count = 0;
 
   CHECK(qses_device_count(&device_count) == QSES_OK);
-  qses_read_options_init(&read);
+  qses_structure_options_init(&read);
   read.format = QSES_STRUCTURE_PDB;
   read.selection = "//A/1/CA";
   CHECK(qses_structure_open_memory(text, size, &read, &structure) == QSES_OK);
-  qses_structure_info_init(&info);
-  CHECK(qses_structure_get_info(structure, &info) == QSES_OK);
+  qses_structure_description_init(&info);
+  CHECK(qses_structure_info(structure, &info) == QSES_OK);
   CHECK(info.atom_count == 1 && info.file_atom_count == 2 && info.model_count == 2);
-  CHECK(strcmp(info.atoms[0].name, "CA") == 0 && info.atoms[0].element == 6);
+  qses_atom_init(&atom);
+  CHECK(qses_structure_atom(structure, 0, &atom) == QSES_OK);
+  CHECK(strcmp(atom.name, "CA") == 0 && atom.element == 6);
 
   CHECK(qses_trajectory_open_memory(text, size, (qses_trajectory_format)4, &trajectory) == QSES_INVALID_ARGUMENT);
   CHECK(strstr(qses_last_error(), "format is 4") != NULL);
   CHECK(qses_trajectory_open_memory(text, size, QSES_TRAJECTORY_PDB, &trajectory) == QSES_OK);
-  qses_trajectory_info_init(&trajectory_info);
-  CHECK(qses_trajectory_get_info(trajectory, &trajectory_info) == QSES_OK);
+  qses_trajectory_description_init(&trajectory_info);
+  CHECK(qses_trajectory_info(trajectory, &trajectory_info) == QSES_OK);
   CHECK(trajectory_info.frame_count == 2 && trajectory_info.atom_count == 2);
   CHECK(qses_trajectory_unwrap(trajectory, info.file_elements, info.file_atom_count) == QSES_NO_BOX);
   qses_frame_init(&frame);
@@ -88,6 +91,7 @@ int main(void) {
 
   CHECK(qses_abi_version() == QSES_ABI_VERSION);
   CHECK(strlen(qses_version()) >= 5);
+  qses_backend_description_init(&description);
   CHECK(qses_backend_info(QSES_BACKEND_CPU, &description) == QSES_OK);
   CHECK(description.available == 1);
   CHECK(qses_backend_info((qses_backend)3, &description) == QSES_INVALID_ARGUMENT);
@@ -98,22 +102,22 @@ int main(void) {
   qses_context_options_init(&options);
   options.backend = QSES_BACKEND_CPU;
   options.threads = 1;
-  CHECK(qses_create(&options, &context) == QSES_OK);
+  CHECK(qses_context_create(&options, &context) == QSES_OK);
   if (!context) return 1;
   CHECK(qses_context_info(context, &backend, &description) == QSES_OK);
   CHECK(backend == QSES_BACKEND_CPU);
   CHECK(qses_set_progress_callback(context, note_progress, &progress) == QSES_OK);
-  CHECK(qses_enable_stage_times(context, 1) == QSES_OK);
+  CHECK(qses_set_stage_times(context, 1) == QSES_OK);
   CHECK(qses_set_atoms(context, xyz, 3 * sizeof(float), radii, 3) == QSES_OK);
 
   qses_settings_init(&settings);
   settings.spacing = 0.25f;
   settings.patch_types = 1;
-  settings.frame = 12;
+  settings.tag = 12;
   qses_mesh_init(&mesh);
   CHECK(qses_compute(context, &settings, &mesh) == QSES_OK);
   CHECK(progress == 1.0);
-  CHECK(mesh.frame == 12);
+  CHECK(mesh.tag == 12);
   CHECK(mesh.vertex_count > 100);
   CHECK(mesh.triangle_count == 2 * mesh.vertex_count - 4); /* a closed piece without holes */
   for (v = 0; v < mesh.vertex_count; ++v) {
@@ -125,7 +129,7 @@ int main(void) {
     if (mesh.indices[t] >= mesh.vertex_count) ++failures;
 
   qses_report_init(&report);
-  CHECK(qses_get_report(context, &report) == QSES_OK);
+  CHECK(qses_context_report(context, &report) == QSES_OK);
   CHECK(report.volume > 20.0 && report.volume < 100.0);
   CHECK(report.stage_count > 0 && strlen(report.stages[0].name) > 0);
 
@@ -133,12 +137,12 @@ int main(void) {
   settings.spacing = 0.0f;
   CHECK(qses_compute(context, &settings, NULL) == QSES_INVALID_ARGUMENT);
   CHECK(strstr(qses_last_error(), "spacing") != NULL);
-  CHECK(qses_get_mesh(context, &mesh) == QSES_OK);
-  CHECK(mesh.frame == 12);
+  CHECK(qses_context_mesh(context, &mesh) == QSES_OK);
+  CHECK(mesh.tag == 12);
 
   CHECK(qses_set_progress_callback(context, NULL, NULL) == QSES_OK); /* a second computation begins at 0 again */
   check_files(context);
-  qses_destroy(context);
+  qses_context_destroy(context);
   if (failures) fprintf(stderr, "%d failures\n", failures);
   return failures ? 1 : 0;
 }

@@ -4,6 +4,8 @@
 
 #include <atomic>
 #include <cmath>
+#include <filesystem>
+#include <set>
 #include <thread>
 
 namespace {
@@ -58,13 +60,13 @@ TEST_F(WithMesh, ComputeErrors) {
   s.patch_types = 1;
   bad(s, {"patch_types"});
   expect_error(qses_compute(nullptr, nullptr, nullptr), QSES_INVALID_ARGUMENT, {"context"});
-  expect_error(qses_get_mesh(nullptr, &mesh_), QSES_INVALID_ARGUMENT, {"context"});
-  expect_error(qses_get_mesh(context_, nullptr), QSES_INVALID_ARGUMENT, {"mesh"});
+  expect_error(qses_context_mesh(nullptr, &mesh_), QSES_INVALID_ARGUMENT, {"context"});
+  expect_error(qses_context_mesh(context_, nullptr), QSES_INVALID_ARGUMENT, {"mesh"});
   qses_report r;
   qses_report_init(&r);
-  expect_error(qses_get_report(nullptr, &r), QSES_INVALID_ARGUMENT, {"context"});
-  expect_error(qses_get_report(context_, nullptr), QSES_INVALID_ARGUMENT, {"report"});
-  expect_error(qses_enable_stage_times(nullptr, 1), QSES_INVALID_ARGUMENT, {"context"});
+  expect_error(qses_context_report(nullptr, &r), QSES_INVALID_ARGUMENT, {"context"});
+  expect_error(qses_context_report(context_, nullptr), QSES_INVALID_ARGUMENT, {"report"});
+  expect_error(qses_set_stage_times(nullptr, 1), QSES_INVALID_ARGUMENT, {"context"});
   expect_error(qses_set_progress_callback(nullptr, nullptr, nullptr), QSES_INVALID_ARGUMENT, {"context"});
   expect_unharmed();
   expect_usable();
@@ -82,7 +84,7 @@ TEST(Compute, EndsOfTheRanges) {
   s.relaxation_steps = 0;
   EXPECT_EQ(qses_compute(context, &s, nullptr), QSES_OK) << qses_last_error();
   s.slice_size = 0xffffffffu;
-  s.frame = 0xffffffffu;
+  s.tag = 0xffffffffu;
   EXPECT_EQ(qses_compute(context, &s, nullptr), QSES_OK) << qses_last_error();
 }
 
@@ -141,11 +143,11 @@ TEST(Mesh, HasTheFrameAndTheBounds) {
   for (uint32_t frame : {0u, 5u, 4294967295u})
     for (uint32_t measure : {0u, 1u}) {
       qses_settings s = settings();
-      s.frame = frame;
+      s.tag = frame;
       s.measure = measure;
       qses_mesh m = empty_mesh();
       ASSERT_EQ(qses_compute(context, &s, &m), QSES_OK);
-      EXPECT_EQ(m.frame, frame);
+      EXPECT_EQ(m.tag, frame);
       for (int d = 0; d < 3; ++d) {
         float low = kInf, high = -kInf;
         for (uint32_t v = 0; v < m.vertex_count; ++v) {
@@ -215,9 +217,45 @@ TEST(Report, SaysWhatWasDone) {
   EXPECT_EQ(s.report.stage_count, 0u);
 }
 
+// Whether there is surface/.../NAME.h, or NAME_cpu.h and NAME_cuda.cuh.
+bool is_file_of_the_surface(const std::string &name) {
+  const std::filesystem::path root(QUICKSES_TEST_DATA_DIR "/../../NativePlugin/Source~/surface");
+  for (const auto &entry : std::filesystem::recursive_directory_iterator(root)) {
+    const std::string stem = entry.path().stem().string();
+    if (stem == name || stem == name + "_cpu") return true;
+  }
+  return false;
+}
+
+TEST(Report, StagesAreCalledAsTheirFiles) {
+  const Context context;
+  const Atoms atoms = cluster(200, 5);
+  set_atoms(context, atoms);
+  std::vector<uint8_t> visible(atoms.size(), 1);
+  visible[0] = 0;
+  ASSERT_EQ(qses_set_visible(context, visible.data(), visible.size()), QSES_OK);
+  ASSERT_EQ(qses_set_stage_times(context, 1), QSES_OK);
+  for (qses_method method : {QSES_METHOD_EXACT, QSES_METHOD_GRID}) {
+    qses_settings s = settings();
+    s.method = method;
+    s.components = 1;
+    ASSERT_EQ(qses_compute(context, &s, nullptr), QSES_OK);
+    const qses_report report = report_of(context);
+    std::set<std::string> names;
+    for (uint32_t k = 0; k < report.stage_count; ++k) names.insert(report.stages[k].name);
+    EXPECT_EQ(names.size(), report.stage_count) << "a name twice";
+    std::set<std::string> expected = {"neighbor_grid", "bricks",     "marching_cubes", "projection",  "relaxation",
+                                      "measure",       "components", "visible_mask",   "mesh_memory"};
+    if (method == QSES_METHOD_EXACT) expected.insert({"solvent_features", "exact_ses"});
+    if (method == QSES_METHOD_GRID) expected.insert("grid_ses");
+    EXPECT_EQ(names, expected);
+    for (const std::string &name : names) EXPECT_TRUE(is_file_of_the_surface(name)) << name;
+  }
+}
+
 TEST(Report, StageTimes) {
   const Context context;
-  ASSERT_EQ(qses_enable_stage_times(context, 1), QSES_OK);
+  ASSERT_EQ(qses_set_stage_times(context, 1), QSES_OK);
   for (int repeat = 0; repeat < 2; ++repeat) {
     const Surface s = compute(context, cluster(200, 5), settings());
     ASSERT_GT(s.report.stage_count, 3u);
@@ -233,7 +271,7 @@ TEST(Report, StageTimes) {
     EXPECT_EQ(names.find("neighbor_grid "), 0u) << names;
     EXPECT_NE(names.find("solvent_features "), std::string::npos) << names;
   }
-  ASSERT_EQ(qses_enable_stage_times(context, 0), QSES_OK);
+  ASSERT_EQ(qses_set_stage_times(context, 0), QSES_OK);
   EXPECT_EQ(compute(context, water(), settings()).report.stage_count, 0u);
 }
 

@@ -43,6 +43,12 @@ inline qses_mesh empty_mesh() {
   return m;
 }
 
+inline qses_backend_description empty_description() {
+  qses_backend_description d;
+  qses_backend_description_init(&d);
+  return d;
+}
+
 // A context with a good mesh in it, to prove that errors do not touch it.
 class WithMesh : public testing::Test {
  protected:
@@ -56,7 +62,7 @@ class WithMesh : public testing::Test {
   // Everything handed out before is as it was, and the context computes again.
   void expect_unharmed() {
     qses_mesh now = empty_mesh();
-    ASSERT_EQ(qses_get_mesh(context_, &now), QSES_OK);
+    ASSERT_EQ(qses_context_mesh(context_, &now), QSES_OK);
     EXPECT_EQ(now.positions, mesh_.positions);
     EXPECT_EQ(now.indices, mesh_.indices);
     const Surface after = copy_surface(context_);

@@ -25,33 +25,40 @@ struct CloseStructure {
 };
 using StructurePointer = std::unique_ptr<qses_structure, CloseStructure>;
 
-qses_read_options read_options(qses_structure_format format = QSES_STRUCTURE_PDB) {
-  qses_read_options options;
-  qses_read_options_init(&options);
+qses_structure_options read_options(qses_structure_format format = QSES_STRUCTURE_PDB) {
+  qses_structure_options options;
+  qses_structure_options_init(&options);
   options.format = format;
   return options;
 }
 
-StructurePointer open_text(const std::string &text, const qses_read_options &options = read_options()) {
+StructurePointer open_text(const std::string &text, const qses_structure_options &options = read_options()) {
   qses_structure *structure = nullptr;
   expect_ok(qses_structure_open_memory(text.data(), text.size(), &options, &structure));
   return StructurePointer(structure);
 }
 
-qses_structure_info info_of(const StructurePointer &structure) {
-  qses_structure_info info;
-  qses_structure_info_init(&info);
-  expect_ok(qses_structure_get_info(structure.get(), &info));
+qses_structure_description info_of(const StructurePointer &structure) {
+  qses_structure_description info;
+  qses_structure_description_init(&info);
+  expect_ok(qses_structure_info(structure.get(), &info));
   return info;
 }
 
-std::vector<uint32_t> indices_of(const qses_structure_info &info) {
+qses_atom atom_of(const StructurePointer &structure, uint32_t k) {
+  qses_atom atom;
+  qses_atom_init(&atom);
+  expect_ok(qses_structure_atom(structure.get(), k, &atom));
+  return atom;
+}
+
+std::vector<uint32_t> indices_of(const qses_structure_description &info) {
   return {info.file_indices, info.file_indices + info.atom_count};
 }
 
 TEST(Structure, Atoms) {
   const StructurePointer structure = open_text(kPdb);
-  const qses_structure_info info = info_of(structure);
+  const qses_structure_description info = info_of(structure);
   EXPECT_EQ(info.format, QSES_STRUCTURE_PDB);
   EXPECT_EQ(info.model, 1);
   EXPECT_EQ(info.model_count, 1);
@@ -64,26 +71,27 @@ TEST(Structure, Atoms) {
   EXPECT_EQ(radii, (std::vector<float>{1.55f, 1.7f, 1.2f, 1.52f, 1.4f, 1.52f}));
   EXPECT_EQ(std::vector<float>(info.positions + 15, info.positions + 18), (std::vector<float>{11.f, 2.f, -3.5f}));
 
-  const qses_atom &oxygen = info.atoms[3], &zinc = info.atoms[4], &water = info.atoms[5];
+  const qses_atom oxygen = atom_of(structure, 3), zinc = atom_of(structure, 4), water = atom_of(structure, 5);
   EXPECT_STREQ(oxygen.name, "O");
   EXPECT_STREQ(oxygen.residue_name, "GLY");
   EXPECT_STREQ(oxygen.chain, "B");
   EXPECT_EQ(oxygen.residue_number, 12);
   EXPECT_EQ(oxygen.insertion_code, 'C');
-  EXPECT_EQ(info.atoms[0].insertion_code, ' ');
+  EXPECT_EQ(atom_of(structure, 0).insertion_code, ' ');
   EXPECT_EQ(zinc.element, 30);
   EXPECT_EQ(zinc.file_index, 5u);
   for (uint32_t i = 0; i < info.atom_count; ++i) {
-    EXPECT_EQ(info.atoms[i].file_index, info.file_indices[i]);
-    EXPECT_EQ(info.atoms[i].is_hetero, i >= 4);
-    EXPECT_EQ(info.atoms[i].is_water, i == 5);
-    EXPECT_EQ(info.atoms[i].is_hydrogen, i == 2);
+    const qses_atom atom = atom_of(structure, i);
+    EXPECT_EQ(atom.file_index, info.file_indices[i]);
+    EXPECT_EQ(atom.is_hetero, i >= 4);
+    EXPECT_EQ(atom.is_water, i == 5);
+    EXPECT_EQ(atom.is_hydrogen, i == 2);
   }
   EXPECT_STREQ(water.residue_name, "HOH");
 }
 
 TEST(Structure, Filters) {
-  qses_read_options options = read_options();
+  qses_structure_options options = read_options();
   options.water = 0;
   EXPECT_EQ(indices_of(info_of(open_text(kPdb, options))), (std::vector<uint32_t>{0, 1, 3, 4, 5}));
   options = read_options();
@@ -93,7 +101,7 @@ TEST(Structure, Filters) {
   EXPECT_EQ(indices_of(info_of(open_text(kPdb, options))), (std::vector<uint32_t>{0, 1, 4}));
   options.selection = "//B";
   const StructurePointer structure = open_text(kPdb, options);
-  const qses_structure_info info = info_of(structure);
+  const qses_structure_description info = info_of(structure);
   EXPECT_EQ(indices_of(info), (std::vector<uint32_t>{4}));
   EXPECT_EQ(info.file_atom_count, 7u);
   EXPECT_EQ(info.file_elements[5], 30);  // also of atoms that were left out
@@ -102,10 +110,10 @@ TEST(Structure, Filters) {
 TEST(Structure, Models) {
   const std::string atom = "ATOM      1  N   ALA A   1       1.000   2.000   3.000  1.00  0.00           N\n";
   const std::string text = "MODEL        1\n" + atom + "ENDMDL\nMODEL        2\n" + atom + atom + "ENDMDL\nEND\n";
-  qses_read_options options = read_options();
+  qses_structure_options options = read_options();
   options.model = 2;
   const StructurePointer structure = open_text(text, options);
-  const qses_structure_info info = info_of(structure);
+  const qses_structure_description info = info_of(structure);
   EXPECT_EQ(info.model, 2);
   EXPECT_EQ(info.model_count, 2);
   EXPECT_EQ(info.atom_count, 2u);
@@ -113,12 +121,12 @@ TEST(Structure, Models) {
 
 TEST(Structure, RadiiOfTheFileAndOfSets) {
   const StructurePointer own = open_text("0 0 0 1.25\n3 0 0 2.5\n", read_options(QSES_STRUCTURE_XYZR));
-  const qses_structure_info info = info_of(own);
+  const qses_structure_description info = info_of(own);
   EXPECT_EQ(std::vector<float>(info.radii, info.radii + 2), (std::vector<float>{1.25f, 2.5f}));
-  EXPECT_STREQ(info.atoms[0].name, "");
-  EXPECT_STREQ(info.atoms[0].chain, "");
+  EXPECT_STREQ(atom_of(own, 0).name, "");
+  EXPECT_STREQ(atom_of(own, 0).chain, "");
   EXPECT_EQ(info.file_elements[1], 0);
-  qses_read_options options = read_options();
+  qses_structure_options options = read_options();
   options.radii = "bondi";
   EXPECT_EQ(info_of(open_text(kPdb, options)).radii[4], 1.39f);  // zinc
 }
@@ -139,7 +147,7 @@ using StructureFiles = quickses::io::IoTest;
 TEST_F(StructureFiles, FilesAndMemoryGiveTheSame) {
   const std::string plain = write("a.pdb", kPdb), packed = write_gz("a.pdb.gz", kPdb), bare = write("a", kPdb);
   const std::string packed_bytes = quickses::io::slurp(packed);
-  const qses_structure_info expected = info_of(open_text(kPdb));
+  const qses_structure_description expected = info_of(open_text(kPdb));
   for (const std::string &path : {plain, packed, bare}) {
     qses_structure *opened = nullptr;
     ASSERT_EQ(qses_structure_open(path.c_str(), nullptr, &opened), QSES_OK) << qses_last_error();
@@ -152,7 +160,7 @@ TEST_F(StructureFiles, FilesAndMemoryGiveTheSame) {
   }
   // A format that is given goes before the name.
   qses_structure *opened = nullptr;
-  const qses_read_options xyzr = read_options(QSES_STRUCTURE_XYZR);
+  const qses_structure_options xyzr = read_options(QSES_STRUCTURE_XYZR);
   expect_error(qses_structure_open(plain.c_str(), &xyzr, &opened), QSES_FILE_ERROR, {"a.pdb", "line 1"});
 }
 
@@ -166,7 +174,7 @@ TEST_F(StructureFiles, Errors) {
   expect_error(qses_structure_open_memory(nullptr, 0, nullptr, &structure), QSES_INVALID_ARGUMENT, {"bytes", "NULL"});
 
   const auto error = [&](qses_status status, std::initializer_list<const char *> words,
-                         const qses_read_options &options, const std::string &text = kPdb) {
+                         const qses_structure_options &options, const std::string &text = kPdb) {
     structure = reinterpret_cast<qses_structure *>(this);
     expect_error(qses_structure_open_memory(text.data(), text.size(), &options, &structure), status, words);
     EXPECT_EQ(structure, nullptr);
@@ -174,7 +182,7 @@ TEST_F(StructureFiles, Errors) {
   error(QSES_FILE_ERROR, {"empty"}, read_options(), "");
   error(QSES_FILE_ERROR, {"no atoms"}, read_options(), "END\n");
   error(QSES_FILE_ERROR, {"format"}, read_options(QSES_STRUCTURE_AUTO), "what is this");
-  qses_read_options options = read_options();
+  qses_structure_options options = read_options();
   options.model = 2;
   error(QSES_INVALID_ARGUMENT, {"1 model", "no model 2"}, options);
   options.model = 0;
@@ -197,20 +205,26 @@ TEST_F(StructureFiles, Errors) {
   options.struct_size = 0;
   error(QSES_INVALID_ARGUMENT, {"struct_size"}, options);
 
-  qses_structure_info info;
-  qses_structure_info_init(&info);
-  expect_error(qses_structure_get_info(nullptr, &info), QSES_INVALID_ARGUMENT, {"structure", "NULL"});
+  qses_structure_description info;
+  qses_structure_description_init(&info);
+  expect_error(qses_structure_info(nullptr, &info), QSES_INVALID_ARGUMENT, {"structure", "NULL"});
   info.struct_size = 0;
-  expect_error(qses_structure_get_info(open_text(kPdb).get(), &info), QSES_INVALID_ARGUMENT, {"struct_size"});
+  expect_error(qses_structure_info(open_text(kPdb).get(), &info), QSES_INVALID_ARGUMENT, {"struct_size"});
+  const StructurePointer opened = open_text(kPdb);
+  qses_atom atom;
+  qses_atom_init(&atom);
+  expect_error(qses_structure_atom(opened.get(), 6, &atom), QSES_INVALID_ARGUMENT, {"k is 6", "6 atoms"});
+  expect_error(qses_structure_atom(opened.get(), 0, nullptr), QSES_INVALID_ARGUMENT, {"atom", "NULL"});
+  expect_error(qses_structure_atom(nullptr, 0, &atom), QSES_INVALID_ARGUMENT, {"structure", "NULL"});
   qses_structure_close(nullptr);
-  qses_structure_info_init(nullptr);
-  qses_read_options_init(nullptr);
+  qses_structure_description_init(nullptr);
+  qses_structure_options_init(nullptr);
 }
 
 TEST(Devices, AreCounted) {
   uint32_t count = 99;
   ASSERT_EQ(qses_device_count(&count), QSES_OK);
-  qses_backend_description cuda;
+  qses_backend_description cuda = empty_description();
   ASSERT_EQ(qses_backend_info(QSES_BACKEND_CUDA, &cuda), QSES_OK);
   if (cuda.available)
     EXPECT_GT(count, 0u);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The C API: back ends, contexts, errors, sizes of structures, atoms. What it promises, and what it says about every
+// The C API: back ends, contexts, errors, atoms (sizes of structures: struct_size_test.cpp). What it promises, and what it says about every
 // bad argument.
 #include "capi/capi_fixture.h"
 
@@ -22,8 +22,7 @@ TEST(Version, IsThatOfTheHeader) {
 }
 
 TEST(BackendInfo, OfTheCpu) {
-  qses_backend_description d;
-  std::memset(&d, 0xcc, sizeof d);
+  qses_backend_description d = empty_description();
   ASSERT_EQ(qses_backend_info(QSES_BACKEND_CPU, &d), QSES_OK);
   EXPECT_EQ(d.available, 1);
   EXPECT_STREQ(d.reason, "");
@@ -34,7 +33,7 @@ TEST(BackendInfo, OfTheCpu) {
 }
 
 TEST(BackendInfo, AutoIsOneOfTheOthersAndSaysWhy) {
-  qses_backend_description cuda, chosen, cpu;
+  qses_backend_description cuda = empty_description(), chosen = cuda, cpu = cuda;
   ASSERT_EQ(qses_backend_info(QSES_BACKEND_CUDA, &cuda), QSES_OK);
   ASSERT_EQ(qses_backend_info(QSES_BACKEND_CPU, &cpu), QSES_OK);
   ASSERT_EQ(qses_backend_info(QSES_BACKEND_AUTO, &chosen), QSES_OK);
@@ -84,22 +83,23 @@ TEST(Create, DefaultsAreFilledIn) {
   qses_context_options_init(nullptr);
 
   qses_context *context = nullptr;
-  ASSERT_EQ(qses_create(nullptr, &context), QSES_OK) << qses_last_error();
+  ASSERT_EQ(qses_context_create(nullptr, &context), QSES_OK) << qses_last_error();
   qses_backend backend = QSES_BACKEND_AUTO;
-  qses_backend_description d{}, chosen{};
+  qses_backend_description d = empty_description(), chosen = d;
   ASSERT_EQ(qses_context_info(context, &backend, &d), QSES_OK);
   ASSERT_EQ(qses_backend_info(QSES_BACKEND_AUTO, &chosen), QSES_OK);
   EXPECT_NE(backend, QSES_BACKEND_AUTO);
   EXPECT_STREQ(d.device, chosen.device);
   EXPECT_STREQ(d.reason, chosen.reason);
   EXPECT_EQ(qses_context_info(context, nullptr, nullptr), QSES_OK);
+  EXPECT_EQ(d.struct_size, sizeof d);
   expect_error(qses_context_info(nullptr, &backend, &d), QSES_INVALID_ARGUMENT, {"context"});
-  qses_destroy(context);
-  qses_destroy(nullptr);
+  qses_context_destroy(context);
+  qses_context_destroy(nullptr);
 }
 
 TEST(Create, CudaUnavailableSaysWhy) {
-  qses_backend_description d{};
+  qses_backend_description d = empty_description();
   ASSERT_EQ(qses_backend_info(QSES_BACKEND_CUDA, &d), QSES_OK);
   if (d.available) GTEST_SKIP() << "there is a CUDA device";
   EXPECT_STRNE(d.reason, "");
@@ -107,17 +107,17 @@ TEST(Create, CudaUnavailableSaysWhy) {
   qses_context_options_init(&o);
   o.backend = QSES_BACKEND_CUDA;
   qses_context *context = reinterpret_cast<qses_context *>(&o);
-  expect_error(qses_create(&o, &context), QSES_BACKEND_UNAVAILABLE, {d.reason});
+  expect_error(qses_context_create(&o, &context), QSES_BACKEND_UNAVAILABLE, {d.reason});
   EXPECT_EQ(context, nullptr);
 }
 
 TEST(Create, Errors) {
   qses_context_options o;
   qses_context_options_init(&o);
-  expect_error(qses_create(&o, nullptr), QSES_INVALID_ARGUMENT, {"context"});
+  expect_error(qses_context_create(&o, nullptr), QSES_INVALID_ARGUMENT, {"context"});
   const auto refused = [&](std::initializer_list<const char *> words) {
     qses_context *context = reinterpret_cast<qses_context *>(&o);
-    expect_error(qses_create(&o, &context), QSES_INVALID_ARGUMENT, words);
+    expect_error(qses_context_create(&o, &context), QSES_INVALID_ARGUMENT, words);
     EXPECT_EQ(context, nullptr);
     qses_context_options_init(&o);
   };
@@ -133,118 +133,6 @@ TEST(Create, Errors) {
   refused({"struct_size"});
 }
 
-// ---- sizes of structures: callers may be older than the library, or newer
-
-TEST(StructSize, ShorterStructuresKeepDefaults) {
-  const Context context;
-  set_atoms(context, water());
-  qses_settings s = settings(0.3, 0.9);
-  s.patch_types = 1;
-  s.frame = 77;
-  s.struct_size = offsetof(qses_settings, relaxation_steps);  // a caller who knows nothing of what follows
-  s.relaxation_steps = 4000000000u;
-  qses_mesh m = empty_mesh();
-  ASSERT_EQ(qses_compute(context, &s, &m), QSES_OK) << qses_last_error();
-  EXPECT_EQ(m.frame, 0u);
-  EXPECT_EQ(m.patches, nullptr);
-  const Surface given = copy_surface(context), expected = compute(water(), settings(0.3, 0.9));
-  EXPECT_EQ(given.mesh.positions, expected.mesh.positions);
-}
-
-TEST(StructSize, ShorterMeshesAreFilledSoFar) {
-  const Context context;
-  set_atoms(context, water());
-  qses_mesh m;
-  std::memset(&m, 0xcc, sizeof m);
-  const qses_mesh untouched = m;
-  m.struct_size = offsetof(qses_mesh, normals);
-  ASSERT_EQ(qses_compute(context, nullptr, &m), QSES_OK);
-  EXPECT_EQ(m.struct_size, offsetof(qses_mesh, normals));
-  EXPECT_GT(m.vertex_count, 0u);
-  EXPECT_NE(m.positions, untouched.positions);
-  EXPECT_EQ(m.normals, untouched.normals);
-  EXPECT_EQ(m.bounds_max[2], untouched.bounds_max[2]);
-  qses_report r;
-  std::memset(&r, 0xcc, sizeof r);
-  const uint64_t bricks = r.brick_count;
-  r.struct_size = offsetof(qses_report, compute_ms);
-  ASSERT_EQ(qses_get_report(context, &r), QSES_OK);
-  EXPECT_GT(r.volume, 10.0);
-  EXPECT_EQ(r.brick_count, bricks);
-}
-
-TEST(StructSize, LongerStructuresAreRead) {
-  struct Newer {
-    qses_settings known;
-    uint32_t more[16];
-  } newer;
-  std::memset(&newer, 0xcc, sizeof newer);
-  newer.known = settings(0.3);
-  newer.known.struct_size = sizeof newer;
-  struct NewerMesh {
-    qses_mesh known;
-    uint32_t more[16];
-  } mesh;
-  std::memset(&mesh, 0xcc, sizeof mesh);
-  const uint32_t tail = mesh.more[0];
-  mesh.known.struct_size = sizeof mesh;
-  const Context context;
-  set_atoms(context, water());
-  ASSERT_EQ(qses_compute(context, &newer.known, &mesh.known), QSES_OK) << qses_last_error();
-  EXPECT_EQ(mesh.known.vertex_count, compute(water(), settings(0.3)).vertex_count());
-  EXPECT_EQ(mesh.known.struct_size, sizeof mesh);
-  EXPECT_EQ(mesh.more[0], tail);
-}
-
-TEST_F(WithMesh, StructSizeErrors) {
-  for (uint32_t size : {0u, 1u, 3u, 1000000u}) {
-    qses_settings s = settings();
-    s.struct_size = size;
-    expect_error(qses_compute(context_, &s, nullptr), QSES_INVALID_ARGUMENT, {"settings", "struct_size"});
-    qses_mesh m = empty_mesh();
-    m.struct_size = size;
-    expect_error(qses_compute(context_, nullptr, &m), QSES_INVALID_ARGUMENT, {"mesh", "struct_size"});
-    expect_error(qses_get_mesh(context_, &m), QSES_INVALID_ARGUMENT, {"mesh", "struct_size"});
-    qses_report r;
-    qses_report_init(&r);
-    r.struct_size = size;
-    expect_error(qses_get_report(context_, &r), QSES_INVALID_ARGUMENT, {"report", "struct_size"});
-    expect_unharmed();
-  }
-  expect_usable();
-}
-
-TEST(Init, FillsInAndIgnoresNull) {
-  qses_settings s;
-  std::memset(&s, 0xcc, sizeof s);
-  qses_settings_init(&s);
-  EXPECT_EQ(s.struct_size, sizeof s);
-  EXPECT_EQ(s.surface, QSES_SURFACE_SES);
-  EXPECT_EQ(s.method, QSES_METHOD_EXACT);
-  EXPECT_EQ(s.probe_radius, 1.4f);
-  EXPECT_EQ(s.spacing, 0.5f);
-  EXPECT_EQ(s.relaxation_steps, 1u);
-  EXPECT_EQ(s.slice_size, 0u);
-  EXPECT_EQ(s.winding, QSES_WINDING_OUTWARD);
-  EXPECT_EQ(s.patch_types, 0u);
-  EXPECT_EQ(s.measure, 1u);
-  EXPECT_EQ(s.frame, 0u);
-  qses_mesh m;
-  std::memset(&m, 0xcc, sizeof m);
-  qses_mesh_init(&m);
-  EXPECT_EQ(m.struct_size, sizeof m);
-  EXPECT_EQ(m.vertex_count, 0u);
-  EXPECT_EQ(m.positions, nullptr);
-  qses_report r;
-  std::memset(&r, 0xcc, sizeof r);
-  qses_report_init(&r);
-  EXPECT_EQ(r.struct_size, sizeof r);
-  EXPECT_EQ(r.stage_count, 0u);
-  qses_settings_init(nullptr);
-  qses_mesh_init(nullptr);
-  qses_report_init(nullptr);
-}
-
 // ---- atoms
 
 TEST_F(WithMesh, SetAtomsErrors) {
@@ -255,7 +143,7 @@ TEST_F(WithMesh, SetAtomsErrors) {
     expect_unharmed();
     expect_usable();  // with the atoms from before
     before_ = copy_surface(context_);
-    ASSERT_EQ(qses_get_mesh(context_, &mesh_), QSES_OK);
+    ASSERT_EQ(qses_context_mesh(context_, &mesh_), QSES_OK);
   };
   for (float value : {kNan, kInf, -kInf, 1.1e6f, -3e38f})
     for (size_t component : {3u, 4u, 5u}) {
@@ -349,15 +237,15 @@ TEST(Atoms, OfCountZero) {
 TEST(Atoms, OfNoneGiven) {
   const Context context;
   const Atoms a = water();
-  expect_error(qses_compute(context, nullptr, nullptr), QSES_NO_RESULT, {"qses_set_atoms"});
-  expect_error(qses_set_positions(context, a.positions.data(), 0, 3), QSES_NO_RESULT, {"qses_set_atoms"});
+  expect_error(qses_compute(context, nullptr, nullptr), QSES_NO_ATOMS, {"qses_set_atoms"});
+  expect_error(qses_set_positions(context, a.positions.data(), 0, 3), QSES_NO_ATOMS, {"qses_set_atoms"});
   qses_mesh m = empty_mesh();
   qses_report r;
   qses_report_init(&r);
-  expect_error(qses_get_mesh(context, &m), QSES_NO_RESULT, {});
-  expect_error(qses_get_report(context, &r), QSES_NO_RESULT, {});
+  expect_error(qses_context_mesh(context, &m), QSES_NO_RESULT, {});
+  expect_error(qses_context_report(context, &r), QSES_NO_RESULT, {});
   set_atoms(context, a);
-  expect_error(qses_get_mesh(context, &m), QSES_NO_RESULT, {});
+  expect_error(qses_context_mesh(context, &m), QSES_NO_RESULT, {});
   EXPECT_EQ(qses_compute(context, nullptr, nullptr), QSES_OK);
 }
 

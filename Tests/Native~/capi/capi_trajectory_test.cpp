@@ -24,10 +24,10 @@ TrajectoryPointer open_bytes(const std::string &bytes, qses_trajectory_format fo
   return TrajectoryPointer(trajectory);
 }
 
-qses_trajectory_info info_of(const TrajectoryPointer &trajectory) {
-  qses_trajectory_info info;
-  qses_trajectory_info_init(&info);
-  expect_ok(qses_trajectory_get_info(trajectory.get(), &info));
+qses_trajectory_description info_of(const TrajectoryPointer &trajectory) {
+  qses_trajectory_description info;
+  qses_trajectory_description_init(&info);
+  expect_ok(qses_trajectory_info(trajectory.get(), &info));
   return info;
 }
 
@@ -58,7 +58,7 @@ std::vector<Positions> some_frames(size_t count, size_t atom_count = 5) {
 TEST(Trajectory, FramesInAnyOrder) {
   const std::vector<Positions> frames = some_frames(4);
   const TrajectoryPointer trajectory = open_bytes(dcd(frames));
-  const qses_trajectory_info info = info_of(trajectory);
+  const qses_trajectory_description info = info_of(trajectory);
   EXPECT_EQ(info.format, QSES_TRAJECTORY_DCD);
   EXPECT_EQ(info.frame_count, 4u);
   EXPECT_EQ(info.atom_count, 5u);
@@ -131,7 +131,7 @@ TEST(Trajectory, WholeFramesOfAFileThatIsCutOff) {
   const std::vector<Positions> frames = some_frames(3);
   const std::string bytes = dcd(frames);
   const TrajectoryPointer trajectory = open_bytes(bytes.substr(0, bytes.size() - 1));
-  const qses_trajectory_info info = info_of(trajectory);
+  const qses_trajectory_description info = info_of(trajectory);
   EXPECT_EQ(info.frame_count, 2u);
   EXPECT_EQ(info.incomplete, 1);
   ASSERT_GE(info.warning_count, 1u);
@@ -190,14 +190,14 @@ TEST(Trajectory, FramesOfAStructureThatWasFiltered) {
                   i % 2 ? "GLY" : "HOH", i + 1, 2.0 * i, 0.0, 0.0);
     pdb += line;
   }
-  qses_read_options options;
-  qses_read_options_init(&options);
+  qses_structure_options options;
+  qses_structure_options_init(&options);
   options.water = 0;
   qses_structure *structure = nullptr;
   ASSERT_EQ(qses_structure_open_memory(pdb.data(), pdb.size(), &options, &structure), QSES_OK) << qses_last_error();
-  qses_structure_info info;
-  qses_structure_info_init(&info);
-  ASSERT_EQ(qses_structure_get_info(structure, &info), QSES_OK);
+  qses_structure_description info;
+  qses_structure_description_init(&info);
+  ASSERT_EQ(qses_structure_info(structure, &info), QSES_OK);
   ASSERT_EQ(info.atom_count, 3u);
 
   const std::vector<Positions> frames = some_frames(2, 6);
@@ -272,9 +272,9 @@ TEST(Trajectory, Errors) {
                {"struct_size"});
   expect_error(qses_trajectory_unwrap(trajectory.get(), nullptr, 5), QSES_INVALID_ARGUMENT, {"elements", "NULL"});
   expect_error(qses_trajectory_unwrap(trajectory.get(), kCarbons, 4), QSES_INVALID_ARGUMENT, {"count is 4"});
-  expect_error(qses_trajectory_get_info(trajectory.get(), nullptr), QSES_INVALID_ARGUMENT, {"info", "NULL"});
+  expect_error(qses_trajectory_info(trajectory.get(), nullptr), QSES_INVALID_ARGUMENT, {"description", "NULL"});
   qses_trajectory_close(nullptr);
-  qses_trajectory_info_init(nullptr);
+  qses_trajectory_description_init(nullptr);
   qses_frame_init(nullptr);
 }
 

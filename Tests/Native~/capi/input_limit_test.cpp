@@ -77,7 +77,7 @@ TEST_F(InputLimitTest, ALimitHoldsForAllAlike) {
     const std::string message = error_of(ErrorKind::kInput, action);
     EXPECT_HAS(message, std::to_string(text.size() - 1) + " bytes");
     EXPECT_HAS(message, "--max-input");
-    EXPECT_HAS(message, "qses_set_input_limit");
+    EXPECT_HAS(message, "qses_input_set_limit");
   }
   parse_structure(text, StructureFormat::kPdb);  // is in memory already
 }
@@ -85,14 +85,14 @@ TEST_F(InputLimitTest, ALimitHoldsForAllAlike) {
 TEST_F(InputLimitTest, TheCApiHasIt) {
   const std::string plain = write("a.pdb", pdb_text(50));
   qses_structure *structure = nullptr;
-  qses_set_input_limit(100);
+  qses_input_set_limit(100);
   EXPECT_EQ(qses_structure_open(plain.c_str(), nullptr, &structure), QSES_FILE_ERROR);
   EXPECT_HAS(qses_last_error(), "a.pdb");
   EXPECT_EQ(structure, nullptr);
   qses_trajectory *trajectory = nullptr;
   EXPECT_EQ(qses_trajectory_open(plain.c_str(), QSES_TRAJECTORY_PDB, &trajectory), QSES_FILE_ERROR);
   EXPECT_EQ(trajectory, nullptr);
-  qses_set_input_limit(0);
+  qses_input_set_limit(0);
   EXPECT_EQ(qses_structure_open(plain.c_str(), nullptr, &structure), QSES_OK);
   qses_structure_close(structure);
 }

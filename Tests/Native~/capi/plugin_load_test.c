@@ -27,12 +27,9 @@ static void *find(Library library, const char *name) { return dlsym(library, nam
 static const char *load_error(void) { return dlerror(); }
 #endif
 
-#define FUNCTIONS(F)                                                                                      \
-  F(qses_abi_version)                                                                                     \
-  F(qses_last_error)                                                                                      \
-  F(qses_backend_info) F(qses_create) F(qses_destroy) F(qses_set_atoms) F(qses_mesh_init) F(qses_compute) \
-      F(qses_report_init) F(qses_get_report) F(qses_structure_open) F(qses_structure_info_init)           \
-          F(qses_structure_get_info) F(qses_structure_close)
+#define FUNCTIONS(F)                                                                                        \
+  F(qses_abi_version) F(qses_last_error) F(qses_context_create) F(qses_context_destroy) F(qses_set_atoms)   \
+  F(qses_compute) F(qses_context_report) F(qses_structure_open) F(qses_structure_info) F(qses_structure_close)
 
 /* A table of pointers, each of the type that the header declares the function with. */
 #define MEMBER(name) __typeof__(&name) name##_;
@@ -45,7 +42,7 @@ static int failed(const char *what) {
 
 static int compute(const char *path) {
   qses_structure *structure = NULL;
-  qses_structure_info info;
+  qses_structure_description info;
   qses_context *context = NULL;
   qses_mesh mesh;
   qses_report report;
@@ -53,15 +50,15 @@ static int compute(const char *path) {
 
   if (api.qses_abi_version_() != QSES_ABI_VERSION) return failed("another ABI version");
   if (api.qses_structure_open_(path, NULL, &structure) != QSES_OK) return failed("qses_structure_open");
-  api.qses_structure_info_init_(&info);
-  if (api.qses_structure_get_info_(structure, &info) != QSES_OK) return failed("qses_structure_get_info");
-  if (api.qses_create_(NULL, &context) != QSES_OK) return failed("qses_create");
+  qses_structure_description_init(&info);
+  if (api.qses_structure_info_(structure, &info) != QSES_OK) return failed("qses_structure_info");
+  if (api.qses_context_create_(NULL, &context) != QSES_OK) return failed("qses_context_create");
   if (api.qses_set_atoms_(context, info.positions, 0, info.radii, info.atom_count) != QSES_OK)
     return failed("qses_set_atoms");
-  api.qses_mesh_init_(&mesh);
+  qses_mesh_init(&mesh);
   if (api.qses_compute_(context, NULL, &mesh) != QSES_OK) return failed("qses_compute");
-  api.qses_report_init_(&report);
-  if (api.qses_get_report_(context, &report) != QSES_OK) return failed("qses_get_report");
+  qses_report_init(&report);
+  if (api.qses_context_report_(context, &report) != QSES_OK) return failed("qses_context_report");
   printf("%u atoms, %u vertices, %u triangles, volume %.2f cubic angstrom\n", (unsigned)info.atom_count,
          (unsigned)mesh.vertex_count, (unsigned)mesh.triangle_count, report.volume);
 
@@ -72,7 +69,7 @@ static int compute(const char *path) {
   for (i = 0; i < mesh.vertex_count; ++i)
     if (mesh.owners[i] >= info.atom_count) return failed("vertex without atom");
   api.qses_structure_close_(structure);
-  api.qses_destroy_(context);
+  api.qses_context_destroy_(context);
   return 0;
 }
 

@@ -21,7 +21,7 @@ qses_progress poll(qses_context *context) {
 }
 
 void begin(qses_context *context, qses_settings s, uint32_t frame = 0) {
-  s.frame = frame;
+  s.tag = frame;
   expect_ok(qses_begin(context, &s));
 }
 
@@ -108,7 +108,7 @@ TEST(Jobs, LevelsComeFromCoarseToFine) {
     ASSERT_EQ(m.level_count, 3u);
     ASSERT_GT(static_cast<int>(m.level), last);
     EXPECT_LT(m.spacing, spacing);
-    EXPECT_EQ(m.frame, 7u);
+    EXPECT_EQ(m.tag, 7u);
     EXPECT_EQ(mesh_checks::manifold_fault(copy(m)), "");
     last = static_cast<int>(m.level);
     spacing = m.spacing;
@@ -158,14 +158,14 @@ TEST(Jobs, FramesFasterThanLevelsNeverStarveThePicture) {
     qses_mesh_init(&m);
     if (qses_collect(context, &m) != QSES_OK) continue;
     ++collected;
-    EXPECT_GT(m.frame, last_tag);
-    EXPECT_LE(m.frame, frame);
-    last_tag = m.frame;
+    EXPECT_GT(m.tag, last_tag);
+    EXPECT_LE(m.tag, frame);
+    last_tag = m.tag;
   }
   wait_for_all(context);
   qses_mesh_init(&m);
   expect_ok(qses_collect(context, &m));
-  EXPECT_EQ(m.frame, frame);
+  EXPECT_EQ(m.tag, frame);
   EXPECT_EQ(m.level + 1, m.level_count);
   EXPECT_EQ(poll(context).state, QSES_JOB_FINISHED);
 }
@@ -296,14 +296,14 @@ TEST(Jobs, AFrameBudgetGivesOneLevel) {
       qses_mesh m;
       qses_mesh_init(&m);
       expect_ok(qses_collect(context, &m));
-      EXPECT_EQ(m.frame, frame);
+      EXPECT_EQ(m.tag, frame);
       EXPECT_EQ(m.level_count, 3u);
       // A budget that nothing keeps to, and one that everything does: what was learnt with the first still holds.
       const uint32_t expected = budget < 1 ? 0 : 2;
       EXPECT_EQ(m.level, expected);
       EXPECT_EQ(m.spacing, expected == 2 ? 0.5f : 2.f);
       EXPECT_EQ(copy(m).indices == finest.mesh.indices, expected == 2);
-      EXPECT_EQ(qses_collect(context, &m), QSES_NO_RESULT);
+      EXPECT_EQ(qses_collect(context, &m), QSES_NOTHING_NEW);
     }
   }
   // Other atoms: nothing is known about them.
@@ -345,7 +345,7 @@ TEST(Jobs, SeriesThatShareAContextEachKeepTheirLevel) {
 TEST(Jobs, BadRequestsAreRefusedAtOnce) {
   const Context context;
   qses_settings s = settings();
-  EXPECT_EQ(qses_begin(context, &s), QSES_NO_RESULT);
+  EXPECT_EQ(qses_begin(context, &s), QSES_NO_ATOMS);
   set_atoms(context, cluster(10, 1));
   s.levels[0] = 1.f;
   s.levels[1] = 2.f;
@@ -363,7 +363,7 @@ TEST(Jobs, BadRequestsAreRefusedAtOnce) {
   }
   qses_mesh m;
   qses_mesh_init(&m);
-  EXPECT_EQ(qses_collect(context, &m), QSES_NO_RESULT);
+  EXPECT_EQ(qses_collect(context, &m), QSES_NOTHING_NEW);
   EXPECT_EQ(qses_collect(context, nullptr), QSES_INVALID_ARGUMENT);
   EXPECT_EQ(qses_poll(context, nullptr), QSES_INVALID_ARGUMENT);
 }

@@ -181,7 +181,7 @@ TEST(Allocations, NoneInJobsOverATrajectory) {
     begin_and_collect(context, settings());
     qses_mesh m;
     qses_mesh_init(&m);
-    EXPECT_EQ(qses_collect(context, &m), QSES_NO_RESULT);  // what an application hears in most of its frames
+    EXPECT_EQ(qses_collect(context, &m), QSES_NOTHING_NEW);  // what an application hears in most of its frames
   });
 }
 
@@ -189,7 +189,7 @@ TEST(Allocations, NoneInComputeOverATrajectory) {
   const Context context;
   const Atoms atoms = crambin();
   set_atoms(context, atoms);
-  expect_ok(qses_enable_stage_times(context, 1));
+  expect_ok(qses_set_stage_times(context, 1));
   qses_settings s = settings();
   s.relaxation_steps = 3;
   s.patch_types = 1;
@@ -200,7 +200,7 @@ TEST(Allocations, NoneInComputeOverATrajectory) {
     expect_ok(qses_compute(context, &s, &m));
     qses_report r;
     qses_report_init(&r);
-    expect_ok(qses_get_report(context, &r));
+    expect_ok(qses_context_report(context, &r));
   });
 }
 

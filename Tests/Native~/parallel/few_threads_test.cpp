@@ -205,8 +205,8 @@ TEST(SmallStack, SufficesForStructuresAndTrajectories) {
     std::ofstream(path, std::ios::binary) << file.bytes;
     qses_status from_file = QSES_INTERNAL_ERROR, from_memory = QSES_INTERNAL_ERROR;
     on_small_stack([&] {
-      qses_read_options options;
-      qses_read_options_init(&options);
+      qses_structure_options options;
+      qses_structure_options_init(&options);
       options.selection = "//A";
       qses_structure *structure = nullptr;
       from_file = qses_structure_open(path.c_str(), &options, &structure);

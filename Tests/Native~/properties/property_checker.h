@@ -90,9 +90,9 @@ class Checker {
       expect_same(context_, c, s, r, "in slices", v);
     }
     if (c.comparisons & kStageTimes) {
-      qses_enable_stage_times(context_, 1);
+      qses_set_stage_times(context_, 1);
       expect_same(context_, c, c.settings, r, "with the times of stages", v);
-      qses_enable_stage_times(context_, 0);
+      qses_set_stage_times(context_, 0);
     }
     if (c.comparisons & kBudget) compare_with_budget(c, r, v);
     if (c.comparisons & kLevels) compare_with_job(c, r, v);

@@ -286,8 +286,8 @@ TEST(Appearance, OfAJobIsThatOfItsBeginning) {
 TEST(Appearance, IsTakenBackByOtherAtoms) {
   const Atoms atoms = crambin();
   const Context context;
-  EXPECT_EQ(qses_set_visible(context, nullptr, 3), QSES_NO_RESULT);
-  EXPECT_EQ(qses_set_colors(context, nullptr, 3), QSES_NO_RESULT);
+  EXPECT_EQ(qses_set_visible(context, nullptr, 3), QSES_NO_ATOMS);
+  EXPECT_EQ(qses_set_colors(context, nullptr, 3), QSES_NO_ATOMS);
   set_atoms(context, atoms);
   const std::vector<uint32_t> colors = some_colors(atoms.size());
   EXPECT_EQ(qses_set_colors(context, bytes(colors), atoms.size() - 1), QSES_INVALID_ARGUMENT);

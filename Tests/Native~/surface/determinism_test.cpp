@@ -210,7 +210,7 @@ TEST(SameBytes, WithStageTimesAndWithoutMeasures) {
   const Case c = cases()[0];
   const Surface plain = compute(c.atoms, c.settings);
   const Context context;
-  ASSERT_EQ(qses_enable_stage_times(context, 1), QSES_OK);
+  ASSERT_EQ(qses_set_stage_times(context, 1), QSES_OK);
   expect_same_bytes(plain, compute(context, c.atoms, c.settings));
   qses_settings s = c.settings;
   s.measure = 0;

@@ -153,7 +153,7 @@ TEST(Estimate, LeavesTheLastMeshInPlace) {
   estimate(context, settings(0.3));
   qses_mesh after;
   qses_mesh_init(&after);
-  expect_ok(qses_get_mesh(context, &after));
+  expect_ok(qses_context_mesh(context, &after));
   ASSERT_EQ(after.vertex_count, before.vertex_count);
   EXPECT_EQ(std::memcmp(after.positions, positions.data(), 4 * positions.size()), 0);
 }
@@ -162,7 +162,7 @@ TEST(Estimate, OfNothingIsNothing) {
   const Context context;
   qses_size_estimate e;
   qses_size_estimate_init(&e);
-  EXPECT_EQ(qses_estimate(context, nullptr, &e), QSES_NO_RESULT);
+  EXPECT_EQ(qses_estimate(context, nullptr, &e), QSES_NO_ATOMS);
   expect_ok(qses_set_atoms(context, nullptr, 0, nullptr, 0));
   expect_ok(qses_estimate(context, nullptr, &e));
   EXPECT_EQ(e.vertices, 0u);

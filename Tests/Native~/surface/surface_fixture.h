@@ -113,6 +113,7 @@ inline qses_backend tested_backend() {
     const char *wanted = std::getenv("QUICKSES_TEST_BACKEND");
     if (!wanted || std::string(wanted) != "cuda") return QSES_BACKEND_CPU;
     qses_backend_description description;
+    qses_backend_description_init(&description);
     if (qses_backend_info(QSES_BACKEND_CUDA, &description) != QSES_OK || !description.available) {
       std::printf("skipped: no CUDA device\n");
       std::exit(77);
@@ -131,11 +132,11 @@ class Context {
     options.backend = backend;
     options.threads = threads;
     options.memory_budget = memory_budget;
-    if (qses_create(&options, &context_) != QSES_OK) throw std::runtime_error(qses_last_error());
+    if (qses_context_create(&options, &context_) != QSES_OK) throw std::runtime_error(qses_last_error());
   }
   Context(const Context &) = delete;
   Context &operator=(const Context &) = delete;
-  ~Context() { qses_destroy(context_); }
+  ~Context() { qses_context_destroy(context_); }
   operator qses_context *() const { return context_; }
 
  private:
@@ -168,14 +169,14 @@ inline qses_mesh compute_view(qses_context *context, const qses_settings &s) {
 inline qses_report report_of(qses_context *context) {
   qses_report report;
   qses_report_init(&report);
-  expect_ok(qses_get_report(context, &report));
+  expect_ok(qses_context_report(context, &report));
   return report;
 }
 
 inline Surface copy_surface(qses_context *context) {
   qses_mesh m;
   qses_mesh_init(&m);
-  expect_ok(qses_get_mesh(context, &m));
+  expect_ok(qses_context_mesh(context, &m));
   Surface s;
   const size_t v = m.vertex_count, t = m.triangle_count;
   if (v > 0) {

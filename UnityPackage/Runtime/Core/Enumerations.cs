@@ -13,13 +13,13 @@ namespace QuickSes
         OutOfMemory = 2,
         /// <summary>The back end asked for, or the native library itself, can't be used here.</summary>
         BackendUnavailable = 3,
-        /// <summary>The GPU or its driver reported an error.</summary>
+        /// <summary>The GPU or its driver reported an error; the message says if it ends CUDA for the process.</summary>
         DeviceError = 4,
         /// <summary>
         /// The spacing needs more vertices than 32-bit indices, or finer places than float32, can name.
         /// </summary>
         TooFine = 5,
-        /// <summary>Nothing has been computed yet.</summary>
+        /// <summary>No mesh has been computed or collected yet.</summary>
         NoResult = 6,
         /// <summary>A broken invariant of the library: please report it with the input.</summary>
         InternalError = 7,
@@ -28,7 +28,11 @@ namespace QuickSes
         /// <summary>A file or buffer can't be read, or what is in it can't be used.</summary>
         FileError = 9,
         /// <summary>The trajectory has no periodic box, so there is nothing to unwrap.</summary>
-        NoBox = 10
+        NoBox = 10,
+        /// <summary>The context has no atoms yet.</summary>
+        NoAtoms = 11,
+        /// <summary>No level was finished since the last time: not an error in itself.</summary>
+        NothingNew = 12
     }
 
     /// <summary>What computes.</summary>
@@ -105,7 +109,7 @@ namespace QuickSes
         Running = 1,
         /// <summary>All levels are computed.</summary>
         Finished = 2,
-        /// <summary>Ended by <see cref="SurfaceContext.Cancel"/>.</summary>
+        /// <summary>Ended by <see cref="SurfaceContext.Cancel"/>, before the last level was finished.</summary>
         Cancelled = 3,
         /// <summary>Status and message say why; levels finished before can be collected.</summary>
         Failed = 4

@@ -20,7 +20,7 @@ namespace QuickSes
             if (bytes < 0)
                 throw new ArgumentOutOfRangeException(nameof(bytes), bytes, "it can't be negative");
             NativeLibraryCheck.ThrowIfUnusable();
-            NativeMethods.qses_set_input_limit((ulong)bytes);
+            NativeMethods.qses_input_set_limit((ulong)bytes);
         }
     }
 }

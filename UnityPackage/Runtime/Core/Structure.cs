@@ -13,14 +13,13 @@ namespace QuickSes
     public sealed unsafe class Structure : IDisposable
     {
         private readonly StructureHandle _handle;
-        private readonly NativeStructureInfo _info;
+        private readonly NativeStructureDescription _info;
 
         private Structure(StructureHandle handle)
         {
             _handle = handle;
-            NativeStructureInfo info;
-            NativeMethods.qses_structure_info_init(&info);
-            QuickSesException.ThrowUnlessOk(NativeMethods.qses_structure_get_info(handle, &info));
+            NativeStructureDescription info = NativeDefaults.StructureDescription();
+            QuickSesException.ThrowUnlessOk(NativeMethods.qses_structure_info(handle, &info));
             _info = info;
         }
 
@@ -85,7 +84,9 @@ namespace QuickSes
         {
             if ((uint)i >= Info.AtomCount)
                 throw new ArgumentOutOfRangeException(nameof(i), i, $"there are {Info.AtomCount} atoms");
-            var atom = new StructureAtom(_info.Atoms[i]);
+            NativeAtom native = NativeDefaults.Atom();
+            QuickSesException.ThrowUnlessOk(NativeMethods.qses_structure_atom(_handle, (uint)i, &native));
+            var atom = new StructureAtom(native);
             GC.KeepAlive(this);
             return atom;
         }
@@ -109,7 +110,7 @@ namespace QuickSes
         /// <summary>Frees the structure and everything it handed out. May be called twice.</summary>
         public void Dispose() => _handle.Dispose();
 
-        private ref readonly NativeStructureInfo Info
+        private ref readonly NativeStructureDescription Info
         {
             get
             {
@@ -130,8 +131,7 @@ namespace QuickSes
                 error = new QuickSesError(QuickSesStatus.BackendUnavailable, reason);
                 return false;
             }
-            NativeReadOptions native;
-            NativeMethods.qses_read_options_init(&native);
+            NativeStructureOptions native = NativeDefaults.StructureOptions();
             native.Format = options.Format;
             if (options.Model != 0)
                 native.Model = options.Model;

@@ -16,7 +16,7 @@ namespace QuickSes
         /// </summary>
         /// <param name="positions">N x 3: x, y, z in Å, within 1e6 Å of the origin. N may be 0: an empty mesh.</param>
         /// <param name="radii">N van der Waals radii in Å, above 0 and at most 100.</param>
-        /// <returns>Ok or OutOfMemory.</returns>
+        /// <returns>Ok, OutOfMemory or DeviceError.</returns>
         public unsafe QuickSesStatus SetAtoms(ReadOnlySpan<float> positions, ReadOnlySpan<float> radii)
         {
             ThrowIfDisposed();
@@ -33,7 +33,7 @@ namespace QuickSes
         /// New positions for the same atoms, for instance the next frame of a trajectory; radii stay.
         /// </summary>
         /// <param name="positions">N x 3, Å.</param>
-        /// <returns>Ok or OutOfMemory.</returns>
+        /// <returns>Ok, OutOfMemory or DeviceError.</returns>
         public unsafe QuickSesStatus SetPositions(ReadOnlySpan<float> positions)
         {
             ThrowIfDisposed();
@@ -45,7 +45,7 @@ namespace QuickSes
         /// <summary>New positions, picked out of a larger array: atom i is at position indices[i].</summary>
         /// <param name="positions">M x 3, Å, such as a whole frame of a trajectory.</param>
         /// <param name="indices">N, each below M, such as <see cref="Structure.FileIndices"/>.</param>
-        /// <returns>Ok or OutOfMemory.</returns>
+        /// <returns>Ok, OutOfMemory or DeviceError.</returns>
         public unsafe QuickSesStatus SetPositions(ReadOnlySpan<float> positions, ReadOnlySpan<uint> indices)
         {
             ThrowIfDisposed();

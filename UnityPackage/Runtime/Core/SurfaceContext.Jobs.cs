@@ -18,8 +18,7 @@ namespace QuickSes
         {
             ThrowIfDisposed();
             settings.ThrowIfUninitialised();
-            NativeMesh native;
-            NativeMethods.qses_mesh_init(&native);
+            NativeMesh native = NativeDefaults.Mesh();
             QuickSesStatus status;
             fixed (NativeSettings* given = &settings.Native)
                 status = NativeMethods.qses_compute(_handle, given, &native);
@@ -45,8 +44,7 @@ namespace QuickSes
         public unsafe void Poll(out SurfaceProgress progress)
         {
             ThrowIfDisposed();
-            NativeProgress native;
-            NativeMethods.qses_progress_init(&native);
+            NativeProgress native = NativeDefaults.Progress();
             QuickSesException.ThrowUnlessOk(NativeMethods.qses_poll(_handle, &native));
             progress = new SurfaceProgress(native);
         }
@@ -58,11 +56,10 @@ namespace QuickSes
         public unsafe bool TryCollect(out SurfaceMeshView mesh)
         {
             ThrowIfDisposed();
-            NativeMesh native;
-            NativeMethods.qses_mesh_init(&native);
+            NativeMesh native = NativeDefaults.Mesh();
             QuickSesStatus status = NativeMethods.qses_collect(_handle, &native);
             mesh = status == QuickSesStatus.Ok ? NewView(native) : default;
-            if (status != QuickSesStatus.NoResult)
+            if (status != QuickSesStatus.NothingNew)
                 QuickSesException.ThrowUnlessOk(status);
             return status == QuickSesStatus.Ok;
         }
@@ -73,9 +70,8 @@ namespace QuickSes
         public unsafe bool TryGetMesh(out SurfaceMeshView mesh)
         {
             ThrowIfDisposed();
-            NativeMesh native;
-            NativeMethods.qses_mesh_init(&native);
-            QuickSesStatus status = NativeMethods.qses_get_mesh(_handle, &native);
+            NativeMesh native = NativeDefaults.Mesh();
+            QuickSesStatus status = NativeMethods.qses_context_mesh(_handle, &native);
             mesh = status == QuickSesStatus.Ok ? new SurfaceMeshView(this, _generation, native) : default;
             if (status != QuickSesStatus.NoResult)
                 QuickSesException.ThrowUnlessOk(status);
@@ -108,13 +104,12 @@ namespace QuickSes
         /// Predicts the mesh of settings.Spacing and the memory for it, without making it. Waits for a running job. The
         /// last mesh stays valid.
         /// </summary>
-        /// <returns>Ok, OutOfMemory, TooFine, DeviceError or InternalError.</returns>
+        /// <returns>Ok, OutOfMemory, TooFine, DeviceError, InternalError, or Cancelled.</returns>
         public unsafe QuickSesStatus Estimate(in SurfaceSettings settings, out SurfaceSizeEstimate estimate)
         {
             ThrowIfDisposed();
             settings.ThrowIfUninitialised();
-            NativeSizeEstimate native;
-            NativeMethods.qses_size_estimate_init(&native);
+            NativeSizeEstimate native = NativeDefaults.SizeEstimate();
             QuickSesStatus status;
             fixed (NativeSettings* given = &settings.Native)
                 status = NativeMethods.qses_estimate(_handle, given, &native);
@@ -126,9 +121,8 @@ namespace QuickSes
         public unsafe bool TryGetReport(out SurfaceReport report)
         {
             ThrowIfDisposed();
-            NativeReport native;
-            NativeMethods.qses_report_init(&native);
-            QuickSesStatus status = NativeMethods.qses_get_report(_handle, &native);
+            NativeReport native = NativeDefaults.Report();
+            QuickSesStatus status = NativeMethods.qses_context_report(_handle, &native);
             report = new SurfaceReport(native);
             if (status != QuickSesStatus.NoResult)
                 QuickSesException.ThrowUnlessOk(status);
@@ -141,7 +135,7 @@ namespace QuickSes
         public void EnableStageTimes(bool enabled)
         {
             ThrowIfDisposed();
-            QuickSesException.ThrowUnlessOk(NativeMethods.qses_enable_stage_times(_handle, enabled ? 1 : 0));
+            QuickSesException.ThrowUnlessOk(NativeMethods.qses_set_stage_times(_handle, enabled ? 1 : 0));
         }
 
         private SurfaceMeshView NewView(in NativeMesh native) =>

@@ -13,7 +13,8 @@ namespace QuickSes
     /// <para>Errors: what the caller could have known to be wrong throws (<see cref="QuickSesException"/>,
     /// <see cref="ArgumentException"/>, <see cref="ObjectDisposedException"/>); what depends on the machine or on the
     /// size of the molecule is returned, with a sentence in <see cref="LastError"/>. After any of them the context is
-    /// still usable, the atoms are those set before, and the last mesh stays valid.</para>
+    /// still usable, the atoms are those set before, and the last mesh stays valid. Only a fault of the GPU ends CUDA for
+    /// the whole process: contexts with it return DeviceError from then on.</para>
     /// <para>Garbage: none in <see cref="SetPositions(ReadOnlySpan{float})"/>, <see cref="Begin"/>, <see cref="Poll"/>,
     /// <see cref="TryCollect"/> and their like, unless something goes wrong.</para>
     /// </summary>
@@ -146,14 +147,13 @@ namespace QuickSes
         {
             if (!NativeLibraryCheck.IsUsable(out string reason))
                 return new QuickSesError(QuickSesStatus.BackendUnavailable, reason);
-            NativeContextOptions native;
-            NativeMethods.qses_context_options_init(&native);
+            NativeContextOptions native = NativeDefaults.ContextOptions();
             native.Backend = options.Backend;
             native.Device = options.Device;
             native.Threads = options.Threads;
             native.MemoryBudget = options.MemoryBudget;
             IntPtr context;
-            QuickSesStatus status = NativeMethods.qses_create(&native, &context);
+            QuickSesStatus status = NativeMethods.qses_context_create(&native, &context);
             if (status == QuickSesStatus.Ok)
                 handle.Take(context);
             return QuickSesError.FromLastCall(status);
@@ -161,7 +161,7 @@ namespace QuickSes
 
         private static unsafe QuickSesStatus BackendInfo(SurfaceBackend backend, out BackendDescription description)
         {
-            NativeBackendDescription native = default;
+            NativeBackendDescription native = NativeDefaults.BackendDescription();
             QuickSesStatus status = NativeMethods.qses_backend_info(backend, &native);
             description = new BackendDescription(native);
             return status;
@@ -169,7 +169,7 @@ namespace QuickSes
 
         private unsafe void Describe(out SurfaceBackend backend, out BackendDescription description)
         {
-            NativeBackendDescription native = default;
+            NativeBackendDescription native = NativeDefaults.BackendDescription();
             fixed (SurfaceBackend* which = &backend)
                 QuickSesException.ThrowUnlessOk(NativeMethods.qses_context_info(_handle, which, &native));
             description = new BackendDescription(native);
@@ -183,7 +183,7 @@ namespace QuickSes
                 case QuickSesStatus.Ok:
                     return status;
                 case QuickSesStatus.InvalidArgument:
-                case QuickSesStatus.NoResult: // no atoms
+                case QuickSesStatus.NoAtoms:
                     throw QuickSesException.FromLastCall(status);
                 default:
                     LastError = NativeText.LastError();

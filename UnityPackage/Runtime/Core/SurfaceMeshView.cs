@@ -34,8 +34,8 @@ namespace QuickSes
         /// <summary>T.</summary>
         public int TriangleCount => checked((int)_native.TriangleCount);
 
-        /// <summary><see cref="SurfaceSettings.Frame"/> of the job or computation.</summary>
-        public uint Frame => _native.Frame;
+        /// <summary><see cref="SurfaceSettings.Tag"/> of the job or computation.</summary>
+        public uint Tag => _native.Tag;
 
         /// <summary>0 is the coarsest.</summary>
         public int Level => (int)_native.Level;

@@ -16,11 +16,11 @@ namespace QuickSes
         /// <summary>What the job does.</summary>
         public SurfaceJobState State => _native.State;
 
-        /// <summary><see cref="SurfaceSettings.Frame"/> of the job that runs, or ran last.</summary>
-        public uint Frame => _native.Frame;
+        /// <summary><see cref="SurfaceSettings.Tag"/> of the job that runs, or ran last.</summary>
+        public uint Tag => _native.Tag;
 
-        /// <summary><see cref="SurfaceSettings.Frame"/> of the newest job that was begun.</summary>
-        public uint FrameRequested => _native.FrameRequested;
+        /// <summary><see cref="SurfaceSettings.Tag"/> of the newest job that was begun.</summary>
+        public uint TagRequested => _native.TagRequested;
 
         /// <summary>Levels of this job that are finished.</summary>
         public int LevelsFinished => (int)_native.LevelsFinished;

@@ -20,19 +20,9 @@ namespace QuickSes
 
         /// <summary>
         /// The native library's defaults: the solvent-excluded surface of a probe of 1.4 Å at a spacing of 0.5 Å, after
-        /// levels of 2 and 1 Å. Throws <see cref="QuickSesException"/> if the library can't be used: see
-        /// <see cref="SurfaceContext.IsSupported(out string)"/>.
+        /// levels of 2 and 1 Å.
         /// </summary>
-        public static unsafe SurfaceSettings Default
-        {
-            get
-            {
-                NativeLibraryCheck.ThrowIfUnusable();
-                SurfaceSettings settings;
-                NativeMethods.qses_settings_init(&settings.Native);
-                return settings;
-            }
-        }
+        public static SurfaceSettings Default => new SurfaceSettings { Native = NativeDefaults.Settings() };
 
         /// <summary>Which surface.</summary>
         public SurfaceKind Surface { get => Native.Surface; set => Native.Surface = value; }
@@ -59,19 +49,19 @@ namespace QuickSes
         public SurfaceWinding Winding { get => Native.Winding; set => Native.Winding = value; }
 
         /// <summary>Whether <see cref="SurfaceMeshView.Patches"/> is filled. Not with the grid method.</summary>
-        public bool PatchTypes { get => Native.PatchTypes != 0; set => Native.PatchTypes = value ? 1u : 0; }
+        public bool PatchTypes { get => Native.PatchTypes != 0; set => Native.PatchTypes = value ? 1 : 0; }
 
         /// <summary>Whether area and volume are computed.</summary>
-        public bool Measure { get => Native.Measure != 0; set => Native.Measure = value ? 1u : 0; }
+        public bool Measure { get => Native.Measure != 0; set => Native.Measure = value ? 1 : 0; }
 
-        /// <summary>Any number; it comes back in <see cref="SurfaceMeshView.Frame"/>.</summary>
-        public uint Frame { get => Native.Frame; set => Native.Frame = value; }
+        /// <summary>Any number; it comes back in <see cref="SurfaceMeshView.Tag"/>.</summary>
+        public uint Tag { get => Native.Tag; set => Native.Tag = value; }
 
         /// <summary>How the vertices lie in memory.</summary>
         public SurfaceVertexLayout VertexLayout { get => Native.VertexLayout; set => Native.VertexLayout = value; }
 
         /// <summary>Whether vertices have texture coordinates: see <see cref="SurfaceContext.SetTexcoords"/>.</summary>
-        public bool Texcoords { get => Native.Texcoords != 0; set => Native.Texcoords = value ? 1u : 0; }
+        public bool Texcoords { get => Native.Texcoords != 0; set => Native.Texcoords = value ? 1 : 0; }
 
         /// <summary>
         /// Milliseconds, for <see cref="SurfaceContext.Begin"/>: 0: all levels one after the other. Above 0, at most
@@ -81,7 +71,7 @@ namespace QuickSes
         public float FrameBudget { get => Native.FrameBudgetMs; set => Native.FrameBudgetMs = value; }
 
         /// <summary>Whether <see cref="SurfaceMeshView.Components"/> is filled; off costs nothing.</summary>
-        public bool Components { get => Native.Components != 0; set => Native.Components = value ? 1u : 0; }
+        public bool Components { get => Native.Components != 0; set => Native.Components = value ? 1 : 0; }
 
         /// <summary>
         /// Any number: which series of frames a job belongs to, where one context computes several molecules in turn.

@@ -12,7 +12,7 @@ namespace QuickSes
     public sealed unsafe class Trajectory : IDisposable
     {
         private readonly TrajectoryHandle _handle;
-        private NativeTrajectoryInfo _info;
+        private NativeTrajectoryDescription _info;
 
         private Trajectory(TrajectoryHandle handle)
         {
@@ -108,8 +108,7 @@ namespace QuickSes
             if (positions.Length != 3L * AtomCount)
                 throw new ArgumentException($"has {positions.Length} numbers, but {AtomCount} atoms need 3 each",
                     nameof(positions));
-            NativeFrame native;
-            NativeMethods.qses_frame_init(&native);
+            NativeFrame native = NativeDefaults.Frame();
             QuickSesStatus status;
             fixed (float* xyz = positions)
                 status = NativeMethods.qses_trajectory_read_frame(
@@ -122,7 +121,7 @@ namespace QuickSes
         /// <summary>Frees the trajectory and everything it handed out. May be called twice.</summary>
         public void Dispose() => _handle.Dispose();
 
-        private ref readonly NativeTrajectoryInfo Info
+        private ref readonly NativeTrajectoryDescription Info
         {
             get
             {
@@ -135,9 +134,8 @@ namespace QuickSes
 
         private void ReadInfo()
         {
-            NativeTrajectoryInfo info;
-            NativeMethods.qses_trajectory_info_init(&info);
-            QuickSesException.ThrowUnlessOk(NativeMethods.qses_trajectory_get_info(_handle, &info));
+            NativeTrajectoryDescription info = NativeDefaults.TrajectoryDescription();
+            QuickSesException.ThrowUnlessOk(NativeMethods.qses_trajectory_info(_handle, &info));
             _info = info;
         }
 

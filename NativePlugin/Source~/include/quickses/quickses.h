@@ -2,19 +2,25 @@
  *
  * QuickSES for Unity: molecular surfaces as closed triangle meshes.
  *
- * This header is the manual of the library. It is C99, needs nothing but <stddef.h> and <stdint.h>, and is the only
- * header that is installed.
+ * This header is the manual of the library. It is C99, needs nothing but <stddef.h>, <stdint.h> and <string.h>, and is
+ * the only header that is installed. Documentation~/api.md has an example for each group of functions.
  *
  * In one page
  *   qses_context_options options;            qses_settings settings;            qses_mesh mesh;
  *   qses_context_options_init(&options);     qses_settings_init(&settings);     qses_mesh_init(&mesh);
  *   qses_context *context = NULL;
- *   if (qses_create(&options, &context) != QSES_OK) { puts(qses_last_error()); return 1; }
+ *   if (qses_context_create(&options, &context) != QSES_OK) { puts(qses_last_error()); return 1; }
  *   qses_set_atoms(context, xyz, 0, radii, atom_count);
  *   if (qses_compute(context, &settings, &mesh) != QSES_OK) puts(qses_last_error());
  *   ... mesh.positions, mesh.normals, mesh.owners, mesh.indices ...
  *   qses_set_positions(context, next_frame_xyz, 0, atom_count);      (and compute again: memory is reused)
- *   qses_destroy(context);
+ *   qses_context_destroy(context);
+ *
+ * Names
+ *   qses_<object>_<verb> acts on an object: qses_context_create, qses_structure_open, qses_trajectory_unwrap.
+ *   qses_<object>_<noun> tells something about one: qses_backend_info, qses_context_mesh, qses_structure_warning.
+ *   qses_<verb>, without an object, acts on a context, its first argument: qses_set_atoms, qses_compute, qses_poll.
+ *   qses_<structure>_init prepares a structure. Alone stand qses_version, qses_abi_version and qses_last_error.
  *
  * Units and conventions
  *   Lengths are in angstrom (Å), areas in Å², volumes in Å³, times in milliseconds, memory in bytes.
@@ -26,17 +32,35 @@
  *   Owner atoms are 0-based indices into the array the caller gave to qses_set_atoms.
  *
  * Guarantees
- *   The mesh is a closed, consistently oriented 2-manifold for every input, by construction: no tolerance decides about it;
- *   it has no NaN; every owner index is valid.
+ *   The mesh is a closed, consistently oriented 2-manifold for every input, by construction: no tolerance decides about
+ *   it. It has no NaN; every owner index is valid.
  *   The same input, back end and settings give the same bytes, also with a slice size or a memory budget. (The CPU back
  *   end rounds differently on processors without AVX2 and FMA; qses_backend_info names the instruction set in use.)
  *   qses_compute gives the bytes that a job with the same settings ends with. The rounding mode of the calling thread,
  *   and how it treats denormal numbers, change nothing, and are left as they are.
  *
+ * Structures
+ *   A structure that begins with struct_size is prepared by its qses_..._init before a function gets it. That function
+ *   is part of this header, so it writes the size and the defaults of the header that the caller was compiled with, and
+ *   the library reads and writes no byte behind that size. So callers and libraries of different releases work together
+ *   as long as QSES_ABI_VERSION is the same. Later releases append fields, for which 0 means what was before them:
+ *   - a structure shorter than the library's: what it lacks has its default, and is not filled in;
+ *   - one that is longer: what the library does not know is left as it is in what it fills in; in options and settings
+ *     it must be 0, else INVALID_ARGUMENT: what was asked for there would not be done.
+ *   A struct_size that no header can have (below 8, above 4096, no multiple of 4) is INVALID_ARGUMENT.
+ *   qses_component and qses_stage_time have no size since they are elements of arrays: they never grow.
+ *
  * Errors
  *   Every function that can fail returns a qses_status. qses_last_error() then holds a sentence that names what is
- *   wrong. Nothing here prints, exits, aborts or throws, and no call leaves another CUDA device selected than it found.
- *   After any error the context is still usable, and the last good mesh stays valid.
+ *   wrong. The comment of a function names every status but OK and INTERNAL_ERROR that it returns. Nothing here prints,
+ *   exits, aborts or throws, and no call leaves another CUDA device selected than it found.
+ *   After an error the context is still usable, and the last good mesh stays valid. The exception is a fault of the GPU
+ *   from which CUDA does not recover within the process (a kernel of this or another library that reads or writes a
+ *   wrong address, a failed assertion, an uncorrectable error of its memory ...). It ends all use of CUDA in the
+ *   process, also by other libraries. From then on all contexts with CUDA, on any GPU, give DEVICE_ERROR for whatever
+ *   needs a GPU, with a sentence that says so, until they are destroyed, which works as usual; their last meshes stay
+ *   valid. New contexts with CUDA are refused with BACKEND_UNAVAILABLE until the process ends; AUTO takes the CPU.
+ *   Contexts on the CPU live on.
  *
  * Threads
  *   A context may be used by one thread at a time, but for qses_poll and qses_cancel, which may be called from any
@@ -51,6 +75,7 @@
 
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #if defined(QSES_STATIC)
 #define QSES_API
@@ -68,8 +93,9 @@
 extern "C" {
 #endif
 
-/* Increases whenever a structure or a function below changes in a way that old callers would notice. */
-#define QSES_ABI_VERSION 1
+/* Increases whenever a structure or a function below changes in a way that old callers would notice, which appending a
+ * field to a structure with a struct_size is not. */
+#define QSES_ABI_VERSION 2
 
 typedef enum qses_status {
   QSES_OK = 0,
@@ -79,12 +105,17 @@ typedef enum qses_status {
   QSES_DEVICE_ERROR = 4,        /* the GPU or its driver reported an error */
   QSES_TOO_FINE = 5,            /* the spacing would need more vertices than 32-bit indices can name, or finer places
                                    than float32 can tell: atoms may lie 2^21 spacings from the middle of them all */
-  QSES_NO_RESULT = 6,           /* nothing has been computed yet */
+  QSES_NO_RESULT = 6,           /* no mesh has been computed or collected yet */
   QSES_INTERNAL_ERROR = 7,      /* a broken invariant of the library: please report it with the input */
   QSES_CANCELLED = 8,           /* qses_cancel was called meanwhile */
   QSES_FILE_ERROR = 9,          /* a file or buffer can't be read, or what is in it can't be used */
-  QSES_NO_BOX = 10              /* the trajectory has no periodic box, so there is nothing to unwrap */
+  QSES_NO_BOX = 10,             /* the trajectory has no periodic box, so there is nothing to unwrap */
+  QSES_NO_ATOMS = 11,           /* qses_set_atoms has not been called for this context */
+  QSES_NOTHING_NEW = 12         /* qses_collect: no level was finished since the last call. Not an error in itself */
 } qses_status;
+
+/* 1 (yes) or 0 (no); any other number that is given counts as 1. */
+typedef int32_t qses_bool;
 
 typedef enum qses_backend {
   QSES_BACKEND_AUTO = 0, /* CUDA if a usable device is present, else the CPU */
@@ -126,6 +157,13 @@ typedef enum qses_patch {
 /* Device memory and CPU or GPU threads that compute surfaces, and the atoms they are computed of. Opaque. */
 typedef struct qses_context qses_context;
 
+/* What each qses_..._init below begins with: a structure of zeros that knows its size. */
+static inline void qses_clear(void *structure, uint32_t struct_size) {
+  if (!structure) return;
+  memset(structure, 0, struct_size);
+  memcpy(structure, &struct_size, sizeof struct_size);
+}
+
 /* ---- versions and back ends ------------------------------------------------------------------------------------ */
 
 /* The version of the library, such as "0.1.0". Static storage. */
@@ -135,16 +173,26 @@ QSES_API const char *qses_version(void);
 QSES_API uint32_t qses_abi_version(void);
 
 typedef struct qses_backend_description {
-  int32_t available;     /* 1 if qses_create with this back end can succeed */
+  uint32_t struct_size;  /* set by qses_backend_description_init */
+  qses_bool available;   /* whether qses_context_create with this back end can succeed */
   char device[128];      /* what computes: the GPU's name, or the CPU's instruction set and thread count */
-  char reason[256];      /* if not available: why; else empty */
+  char reason[256];      /* if not available: why; with AUTO, why it is not CUDA; else empty */
   uint64_t total_memory; /* bytes of the device, or of the machine */
   uint64_t free_memory;  /* bytes free at the time of the call */
 } qses_backend_description;
 
+/* Empty description with struct_size set. NULL is ignored. */
+static inline void qses_backend_description_init(qses_backend_description *description) {
+  qses_clear(description, sizeof *description);
+}
+
 /* Tells whether a back end can be used here and, if not, why. AUTO describes the one that would be chosen; its reason
  * then says why CUDA was not. Errors: INVALID_ARGUMENT (NULL, unknown back end). */
 QSES_API qses_status qses_backend_info(qses_backend backend, qses_backend_description *description);
+
+/* How many CUDA devices this library sees; their ordinals are 0 to *count - 1. 0 without CUDA, or where it does not
+ * start (qses_backend_info says why). Errors: INVALID_ARGUMENT. */
+QSES_API qses_status qses_device_count(uint32_t *count);
 
 /* The sentence that belongs to the last call that failed on this thread; "" if none has. Valid until the next call
  * into the library from the same thread. Never NULL. */
@@ -164,19 +212,21 @@ typedef struct qses_context_options {
                              first computation takes the budget in one piece, however small the surface */
 } qses_context_options;
 
-/* Fills in the defaults. Always use it: later versions append fields. NULL is ignored. */
-QSES_API void qses_context_options_init(qses_context_options *options);
+/* The defaults, with struct_size set. NULL is ignored. */
+static inline void qses_context_options_init(qses_context_options *options) { qses_clear(options, sizeof *options); }
 
 /* Makes a context. options may be NULL (defaults). On success *context is owned by the caller, who ends it with
- * qses_destroy; on failure it is NULL.
+ * qses_context_destroy; on failure it is NULL.
  * Errors: INVALID_ARGUMENT, BACKEND_UNAVAILABLE, OUT_OF_MEMORY, DEVICE_ERROR. */
-QSES_API qses_status qses_create(const qses_context_options *options, qses_context **context);
+QSES_API qses_status qses_context_create(const qses_context_options *options, qses_context **context);
 
-/* Cancels and joins what still runs, then frees the context and everything it handed out. NULL is ignored. */
-QSES_API void qses_destroy(qses_context *context);
+/* Cancels what still runs and waits for its end, then frees the context and everything it handed out. No other thread
+ * may be in a call on the context. NULL is ignored. */
+QSES_API void qses_context_destroy(qses_context *context);
 
-/* Which back end the context uses (CUDA or CPU, never AUTO), with the device's name. reason says, for a context made
- * with AUTO, why it is not CUDA. Errors: INVALID_ARGUMENT. */
+/* Which back end the context uses (CUDA or CPU, never AUTO), with the device's name and the memory that was free when
+ * it was made. reason says, for a context made with AUTO, why it is not CUDA. Either pointer may be NULL. Errors:
+ * INVALID_ARGUMENT. */
 QSES_API qses_status qses_context_info(const qses_context *context, qses_backend *backend,
                                        qses_backend_description *description);
 
@@ -190,28 +240,32 @@ QSES_API qses_status qses_context_info(const qses_context *context, qses_backend
  * Two atoms at the same place count as the larger of them (of equals, as the first). An atom inside another one owns
  * no vertex.
  * Errors: INVALID_ARGUMENT (NULL, stride, a position that is NaN or infinite or beyond 1e6 Å, a radius out of range:
- * the message names the atom's index), OUT_OF_MEMORY. The atoms set before stay in place after an error. */
+ * the message names the atom's index), OUT_OF_MEMORY, DEVICE_ERROR. The atoms set before stay in place after an error.
+ */
 QSES_API qses_status qses_set_atoms(qses_context *context, const float *positions, size_t stride, const float *radii,
                                     size_t count);
 
 /* New positions for the atoms of qses_set_atoms, for instance the next frame of a trajectory; radii stay.
- * count must be the number of atoms. Errors as above. */
+ * count must be the number of atoms. Errors: NO_ATOMS; else as of qses_set_atoms. */
 QSES_API qses_status qses_set_positions(qses_context *context, const float *positions, size_t stride, size_t count);
 
-/* The same for atoms that are picked out of a larger array: atom i is at positions[indices[i]]. position_count is the
- * length of that array, count the number of indices and of atoms. Errors: also an index that is out of range. */
+/* The same for atoms that are picked out of a larger array, such as a frame that has solvent too: the new position of
+ * atom i is positions[indices[i]].
+ *   positions  position_count of them, as in qses_set_atoms; only those that are picked are looked at
+ *   indices    count of them, each below position_count; count must be the number of atoms
+ * Errors: as of qses_set_positions; INVALID_ARGUMENT also for an index that is out of range. */
 QSES_API qses_status qses_set_positions_indexed(qses_context *context, const float *positions, size_t stride,
                                                 size_t position_count, const uint32_t *indices, size_t count);
 
 /* ---- appearance --------------------------------------------------------------------------------------------------
- * Copied before the calls return. They hold for the computations begun afterwards, until they are set again or
- * qses_set_atoms changes the number of atoms, which takes them back. count must be the number of atoms.
- * Errors of all three: INVALID_ARGUMENT, NO_RESULT (qses_set_atoms has not been called), OUT_OF_MEMORY. */
+ * What vertices take from the atoms that own them. Copied before the calls return. It holds for computations that begin
+ * afterwards, until it is set again; a qses_set_atoms that changes the number of atoms brings the defaults back. count
+ * must be the number of atoms. Errors of all three: INVALID_ARGUMENT, NO_ATOMS, OUT_OF_MEMORY. */
 
-/* Which atoms are shown: 1 or 0 per atom; visible may be NULL: all (default). The surface is that of all atoms; triangles
- * with a vertex whose owner is hidden are dropped, and vertices that no triangle uses, so the mesh is open along the
- * border of what is hidden. Owners keep the caller's numbers, vertices and triangles their order. Area, volume and
- * components are those of the whole surface. The whole mesh needs memory besides the one handed out. */
+/* Which atoms are shown: one byte per atom, 0 for hidden; NULL: all are shown (default). The surface is that of all
+ * atoms; triangles with a vertex whose owner is hidden are dropped, and vertices that no triangle uses, so the mesh is
+ * open along the border of what is hidden. Owners keep the caller's numbers, vertices and triangles their order. Area,
+ * volume and components are those of the whole surface. The whole mesh needs memory besides the one handed out. */
 QSES_API qses_status qses_set_visible(qses_context *context, const uint8_t *visible, size_t count);
 
 /* Colours per atom, red, green, blue, alpha, 8 bits each, which go to the vertices the atom owns. NULL: none (default);
@@ -232,27 +286,29 @@ typedef struct qses_settings {
   uint32_t struct_size; /* set by qses_settings_init */
   qses_surface surface; /* default SES */
   qses_method method;   /* default EXACT */
-  float probe_radius;   /* Å, 0 to 100; default 1.4 (water). Below 0.05 the SES is the VDW surface. Ignored by VDW */
-  float spacing;        /* Å between lattice points ("voxel size"), 0.001 to 100; default 0.5 */
+  float probe_radius; /* Å, 0 to 100; default 1.4 (water). Ignored by VDW. With method EXACT, the SES of a probe below
+                         0.05 Å is computed as the VDW surface, from which it hardly differs */
+  float spacing;      /* Å between the points of the lattice on whose edges vertices begin (the paper's "voxel size"):
+                         how fine the mesh is. 0.001 to 100; default 0.5 */
   uint32_t relaxation_steps; /* default 1, at most 100. EXACT: tangential smoothing, each step projected back onto the
                                 exact surface. GRID: Laplacian smoothing as in the paper, which moves off it */
-  uint32_t slice_size;       /* work in slices of at most slice_size³ lattice points (at least 8); the mesh is the same
-                                byte for byte. It bounds what CUDA keeps of the neighbourhood of the bricks in work, the
-                                largest part there; the CPU keeps that of one brick per thread anyway, and all else is
-                                less than a byte per lattice point. 0 (default) = as large as memory allows */
-  qses_winding winding;      /* default OUTWARD */
-  uint32_t patch_types;      /* 1: qses_mesh.patches is filled; default 0. Not with GRID */
-  uint32_t measure;          /* 1 (default): qses_report.area and .volume are computed; 0: they are 0 */
-  uint32_t frame;            /* any number; comes back in qses_mesh.frame */
-  float levels[QSES_MAX_LEVELS]; /* Å; for qses_begin: coarser spacings whose surfaces come before that of `spacing`, each
-                           a complete closed mesh on the true surface. Falling; those not above spacing are left out.
-                           Default 2, 1. The lattices of all levels are anchored to the global origin if the spacings
-                           divide the coarsest one without rest (else only the finest is). The levels are part of the
-                           frame of reference, also for qses_compute, which computes none of them: with other levels
-                           the surface of `spacing` differs by what float32 rounds */
-  uint32_t level_count; /* of levels; default 2 */
+  uint32_t slice_size;   /* 0 (default): work on as much at a time as memory allows. Else at least 8: in slices of at
+                            most slice_size³ lattice points; the mesh is the same byte for byte. Smaller slices need
+                            less memory with CUDA; on the CPU they change little */
+  qses_winding winding;  /* default OUTWARD */
+  qses_bool patch_types; /* 1: qses_mesh.patches is filled; default 0. Not with GRID */
+  qses_bool measure;     /* 1 (default): qses_report.area and .volume are computed; 0: they are 0 */
+  uint32_t tag;          /* any number; comes back in qses_mesh.tag and qses_progress.tag */
+  uint32_t level_count;  /* of levels; default 2 */
+  float levels[QSES_MAX_LEVELS]; /* Å; for qses_begin: coarser spacings, falling, each below the one before. Their
+                                    surfaces come before that of `spacing`, each a complete closed mesh on the true
+                                    surface. Those that are not above `spacing` are left out. Default 2, 1. If each of
+                                    the spacings divides the coarsest one without rest, the lattices of all levels have
+                                    a point at the origin, else only the finest has. qses_compute computes no levels,
+                                    but they decide there too where the lattice lies: with other levels its mesh differs
+                                    by what float32 rounds */
   qses_vertex_layout vertex_layout; /* default SEPARATE */
-  uint32_t texcoords;               /* 1: vertices have texture coordinates (see qses_set_texcoords); default 0 */
+  qses_bool texcoords;              /* 1: vertices have texture coordinates (see qses_set_texcoords); default 0 */
   float frame_budget_ms; /* for qses_begin: 0 (default): all levels one after the other. Above 0, at most 60000: one
                             level only, the finest of them (`spacing` being the last) that is expected to take no longer
                             than this, ms, or the coarsest if none is. Expected is what the last frames of the series
@@ -263,70 +319,85 @@ typedef struct qses_settings {
                             gets finer again. Which level it was is in qses_mesh.level and .spacing. Like everything
                             that depends on time, the choice of the level is not the same in every run; the mesh of a
                             level is */
-  uint32_t components;   /* 1: qses_mesh.components is filled; default 0, which costs nothing */
+  qses_bool components;  /* 1: qses_mesh.components is filled; default 0, which costs nothing */
   uint32_t series;       /* which series of frames a job belongs to: any number; default 0. For callers who let one
                             context compute several molecules in turn: frame_budget_ms learns from each series apart.
                             The QSES_REMEMBERED_SERIES that were used last are remembered; an older one begins anew */
 } qses_settings;
 
-/* Fills in the defaults. Always use it: later versions append fields. NULL is ignored. */
-QSES_API void qses_settings_init(qses_settings *settings);
+/* The defaults, with struct_size set. NULL is ignored. */
+static inline void qses_settings_init(qses_settings *settings) {
+  if (!settings) return;
+  qses_clear(settings, sizeof *settings);
+  settings->probe_radius = 1.4f;
+  settings->spacing = 0.5f;
+  settings->relaxation_steps = 1;
+  settings->measure = 1;
+  settings->levels[0] = 2.0f;
+  settings->levels[1] = 1.0f;
+  settings->level_count = 2;
+}
 
-/* One connected piece of the surface: an outer surface, or the wall of a cavity. */
+/* One connected piece of the surface: an outer surface, or the wall of a cavity. An element of an array: it never
+ * grows; what else there will be to say comes in arrays beside it. */
 typedef struct qses_component {
   uint64_t triangles;
-  double area;       /* Å², sum over its triangles */
-  double volume;     /* Å³, enclosed; negative for a cavity, whatever the winding */
-  int32_t is_cavity; /* 1 if volume is negative; else 0 */
-  uint32_t reserved;
+  double area;         /* Å², sum over its triangles */
+  double volume;       /* Å³, enclosed; negative for a cavity, whatever the winding */
+  qses_bool is_cavity; /* whether volume is negative */
+  uint32_t reserved;   /* 0 */
 } qses_component;
 
-/* A view of a mesh in memory of the context: valid until the next qses_compute or qses_collect that succeeds on the same
- * context, or qses_destroy; also while jobs run. (Page-locked memory with CUDA.) Nothing here may be written or freed by the caller. */
+/* A view of a mesh in memory of the context: valid until the next qses_compute or qses_collect that succeeds on the
+ * same context, or qses_context_destroy; also while jobs run. (Page-locked memory with CUDA.) Nothing here may be
+ * written or freed by the caller. */
 typedef struct qses_mesh {
   uint32_t struct_size;    /* set by qses_mesh_init */
   uint32_t vertex_count;   /* V */
   uint32_t triangle_count; /* T */
-  uint32_t frame;          /* as in the settings */
+  uint32_t tag;            /* as in the settings */
   const float *positions;  /* V x 3, Å */
   const float *normals;    /* V x 3, unit length, outward; on a crease, that of one of its sides */
   const uint8_t *colors;   /* V x 4, or NULL if there are none */
   const float *texcoords;  /* V x 2, or NULL if not asked for */
   uint32_t vertex_bytes;   /* INTERLEAVED: bytes from one vertex to the next in the four arrays above, which begin with
                               positions, in V * vertex_bytes bytes of memory. SEPARATE: 0, each is tightly packed */
-  uint32_t reserved;
-  const uint32_t *owners;  /* V, the atom whose van der Waals surface is nearest to the vertex; with GRID, to where it was
-                              before it was smoothed */
+  uint32_t reserved;       /* 0 */
+  const uint32_t *owners;  /* V, the atom whose van der Waals surface is nearest to the vertex; with GRID, to where it
+                              was before it was smoothed */
   const uint8_t *patches;  /* V of qses_patch, or NULL */
   const uint32_t *indices; /* T x 3 vertex numbers */
   float bounds_min[3];     /* box of the vertices, Å; all 0 for an empty mesh */
   float bounds_max[3];
-  float spacing;           /* Å, of the level */
-  uint32_t level;          /* 0 is the coarsest */
-  uint32_t level_count;    /* levels there are with the settings: level_count - 1 is the finest */
-  uint32_t component_count; /* 0 if not asked for, or if there is no surface */
+  float spacing;                    /* Å, of the level */
+  uint32_t level;                   /* 0 is the coarsest */
+  uint32_t level_count;             /* levels there are with the settings: level_count - 1 is the finest */
+  uint32_t component_count;         /* 0 if not asked for, or if there is no surface */
   const qses_component *components; /* NULL if there are none; in the order of their first vertices. Those of the whole
                                        surface where atoms are hidden. Their areas and volumes add up to those of
                                        qses_report */
 } qses_mesh;
 
 /* Empty view with struct_size set. NULL is ignored. */
-QSES_API void qses_mesh_init(qses_mesh *mesh);
+static inline void qses_mesh_init(qses_mesh *mesh) { qses_clear(mesh, sizeof *mesh); }
 
 /* Computes the surface of the context's atoms and waits for it. settings may be NULL (defaults); mesh may be NULL if
- * only qses_get_report is wanted, or the mesh later from qses_get_mesh.
- * Errors: INVALID_ARGUMENT (settings out of range: the message names the field), TOO_FINE, OUT_OF_MEMORY (the message
- * says how much was needed), DEVICE_ERROR, INTERNAL_ERROR, NO_RESULT (qses_set_atoms has not been called), CANCELLED (by
- * qses_cancel from another thread). */
+ * only qses_context_report is wanted, or the mesh later from qses_context_mesh.
+ * Errors: INVALID_ARGUMENT (settings out of range: the message names the field), NO_ATOMS, TOO_FINE, OUT_OF_MEMORY (the
+ * message says how much was needed), DEVICE_ERROR, CANCELLED (by qses_cancel from another thread; not if the mesh was
+ * finished by then). */
 QSES_API qses_status qses_compute(qses_context *context, const qses_settings *settings, qses_mesh *mesh);
 
 /* The mesh of the last qses_compute or qses_collect that succeeded. Errors: INVALID_ARGUMENT, NO_RESULT. */
-QSES_API qses_status qses_get_mesh(const qses_context *context, qses_mesh *mesh);
+QSES_API qses_status qses_context_mesh(const qses_context *context, qses_mesh *mesh);
 
 #define QSES_MAX_STAGES 16
 
+/* An element of an array: it never grows. */
 typedef struct qses_stage_time {
-  char name[24];       /* name of the stage, as its file is called: "neighbor_grid", "solvent_features", ... */
+  char name[24];       /* of the file under surface/ that does the work (the method's own files end in _cpu or _cuda):
+                          "neighbor_grid", "solvent_features", "bricks", "exact_ses" or "grid_ses", "marching_cubes",
+                          "projection", "relaxation", "measure", "components", "visible_mask", "mesh_memory" */
   double milliseconds; /* with CUDA: between events on the stream */
 } qses_stage_time;
 
@@ -346,9 +417,9 @@ typedef struct qses_report {
   uint32_t hidden_vertices; /* dropped since their atoms are hidden (qses_set_visible); else 0 */
   uint32_t hidden_triangles;
   qses_stage_time stages[QSES_MAX_STAGES]; /* stage_count of them, in order; filled if asked for by
-                                              qses_enable_stage_times */
-  uint64_t border_bricks;     /* bricks that were added since the surface went on behind the border of those where it was
-                                 expected: they keep the mesh closed. 0 unless rounding hid a feature of the surface */
+                                              qses_set_stage_times */
+  uint64_t border_bricks; /* bricks that were added since the surface went on behind the border of those where it was
+                             expected: they keep the mesh closed. 0 unless rounding hid a feature of the surface */
   uint64_t unplaced_vertices; /* vertices for which no feature of the surface was found: they stay where their lattice
                                  edge is cut. 0 unless rounding hid a feature of the surface */
   uint64_t attempts; /* 1; more where memory was refused, and the work was done again in a way that takes less. What
@@ -356,39 +427,38 @@ typedef struct qses_report {
 } qses_report;
 
 /* Empty report with struct_size set. NULL is ignored. */
-QSES_API void qses_report_init(qses_report *report);
+static inline void qses_report_init(qses_report *report) { qses_clear(report, sizeof *report); }
 
 /* Report of the mesh that the last qses_compute or qses_collect gave. Errors: INVALID_ARGUMENT, NO_RESULT. */
-QSES_API qses_status qses_get_report(const qses_context *context, qses_report *report);
+QSES_API qses_status qses_context_report(const qses_context *context, qses_report *report);
 
 /* What a computation would give and need. */
 typedef struct qses_size_estimate {
   uint32_t struct_size; /* set by qses_size_estimate_init */
-  int32_t fits;         /* 1 if it can be done within the budget of the context; else 0 */
+  qses_bool fits;       /* whether it can be done within the budget of the context */
   uint64_t vertices, triangles;
-  uint64_t mesh_bytes;    /* of the mesh, in host memory; of the whole one if atoms are hidden */
-  uint64_t work_bytes;    /* what qses_report.work_bytes_peak would be: on the device with CUDA, else in host memory */
+  uint64_t mesh_bytes; /* of the mesh, in host memory; of the whole one if atoms are hidden */
+  uint64_t work_bytes; /* what qses_report.work_bytes_peak would be: on the device with CUDA, else in host memory */
   uint64_t smallest_budget; /* the least qses_context_options.memory_budget that would do, with some reserve */
 } qses_size_estimate;
 
 /* Empty estimate with struct_size set. NULL is ignored. */
-QSES_API void qses_size_estimate_init(qses_size_estimate *estimate);
+static inline void qses_size_estimate_init(qses_size_estimate *estimate) { qses_clear(estimate, sizeof *estimate); }
 
 /* Predicts the size of the mesh of settings.spacing (not of coarser levels), and the memory for it, without making it:
  * the features of the atoms are computed, and signs on lattices that are coarse enough to be cheap. All
- * numbers are within 25 % of the truth as a rule, and rarely more than 10 % below. Waits for a running job. The last mesh
- * stays valid. settings may be NULL (defaults). Errors: as of qses_compute; also OUT_OF_MEMORY if the budget does not
- * even suffice for the estimate (the message names one that would do). */
-QSES_API qses_status qses_estimate(qses_context *context, const qses_settings *settings,
-                                   qses_size_estimate *estimate);
+ * numbers are within 25 % of the truth as a rule, and rarely more than 10 % below. Waits for a running job. The last
+ * mesh stays valid. settings may be NULL (defaults). Errors: as of qses_compute; also OUT_OF_MEMORY if the budget does
+ * not even suffice for the estimate (the message names one that would do). */
+QSES_API qses_status qses_estimate(qses_context *context, const qses_settings *settings, qses_size_estimate *estimate);
 
 /* Switches the timing of the single stages on (1) or off (0, the default). With CUDA it costs some tens of microseconds
- * per surface. Errors: INVALID_ARGUMENT. */
-QSES_API qses_status qses_enable_stage_times(qses_context *context, int32_t enabled);
+ * per surface. Waits for a running job. Errors: INVALID_ARGUMENT. */
+QSES_API qses_status qses_set_stage_times(qses_context *context, qses_bool enabled);
 
-/* Called from the computing thread during qses_compute and during jobs with the fraction done, rising from 0 to 1; at most a few
- * hundred times. It must not call into the library. NULL (default) switches it off. It is meant for command line
- * programs; games should not hand managed code to it. Errors: INVALID_ARGUMENT. */
+/* Called from the computing thread during qses_compute and during jobs with the fraction done, rising from 0 to 1; at
+ * most a few hundred times. It must not call into the library. NULL (default) switches it off. It is meant for command
+ * line programs; games should not hand managed code to it. Waits for a running job. Errors: INVALID_ARGUMENT. */
 typedef void (*qses_progress_callback)(void *user_data, double fraction);
 QSES_API qses_status qses_set_progress_callback(qses_context *context, qses_progress_callback callback,
                                                 void *user_data);
@@ -399,56 +469,61 @@ QSES_API qses_status qses_set_progress_callback(qses_context *context, qses_prog
  * settings.frame_budget_ms), and returns at once. Atoms and positions may be set for the next job while this one runs.
  * During a job, a new one replaces it: the coarsest level of the job that runs is still finished and can be collected,
  * then the newest request starts; requests in between are dropped. So frames that come faster than levels never starve
- * the picture. Errors: INVALID_ARGUMENT (settings), NO_RESULT (no atoms), OUT_OF_MEMORY (the worker thread). What goes
- * wrong later belongs to the job: see qses_poll. */
+ * the picture. Errors: INVALID_ARGUMENT (settings), NO_ATOMS, OUT_OF_MEMORY (the worker thread). What goes wrong later
+ * belongs to the job: see qses_poll. */
 QSES_API qses_status qses_begin(qses_context *context, const qses_settings *settings);
 
 typedef enum qses_job_state {
   QSES_JOB_IDLE = 0,      /* none was begun */
   QSES_JOB_RUNNING = 1,   /* or waiting to run */
   QSES_JOB_FINISHED = 2,  /* all levels */
-  QSES_JOB_CANCELLED = 3, /* by qses_cancel */
+  QSES_JOB_CANCELLED = 3, /* by qses_cancel, before the last level was finished */
   QSES_JOB_FAILED = 4     /* status and message say why; levels finished before can be collected */
 } qses_job_state;
 
 typedef struct qses_progress {
   uint32_t struct_size; /* set by qses_progress_init */
   qses_job_state state;
-  uint32_t frame;           /* of the settings of the job that runs, or ran last */
-  uint32_t frame_requested; /* of the newest qses_begin */
+  uint32_t tag;             /* of the settings of the job that runs, or ran last */
+  uint32_t tag_requested;   /* of the newest qses_begin */
   uint32_t levels_finished; /* of this job */
-  uint32_t level_count; /* that this job computes: 1 with a frame budget */
-  float fraction;     /* of this job's work: from 0 to 1, never falls */
-  int32_t mesh_ready; /* 1 if qses_collect would succeed */
-  qses_status status; /* OK unless FAILED */
-  char message[256];  /* "" unless FAILED */
+  uint32_t level_count;     /* that this job computes: 1 with a frame budget */
+  float fraction;           /* of this job's work: from 0 to 1, never falls */
+  qses_bool mesh_ready;     /* whether qses_collect would succeed */
+  qses_status status;       /* OK unless FAILED; then one that qses_compute returns */
+  char message[256];        /* "" unless FAILED */
 } qses_progress;
 
 /* Empty progress with struct_size set. NULL is ignored. */
-QSES_API void qses_progress_init(qses_progress *progress);
+static inline void qses_progress_init(qses_progress *progress) { qses_clear(progress, sizeof *progress); }
 
-/* How the job stands. May be called from any thread at any time before qses_destroy. Errors: INVALID_ARGUMENT. */
+/* How the job stands. May be called from any thread at any time before qses_context_destroy. Errors: INVALID_ARGUMENT.
+ */
 QSES_API qses_status qses_poll(const qses_context *context, qses_progress *progress);
 
 /* The finest level that was finished since the last call. Its memory stays valid until the next qses_collect or
- * qses_compute that succeeds, or qses_destroy, also while further levels and jobs are computed. Asking often is cheap.
- * Errors: NO_RESULT (nothing new: not an error in itself), INVALID_ARGUMENT. */
+ * qses_compute that succeeds, or qses_context_destroy, also while further levels and jobs are computed. Asking often is
+ * cheap. Errors: NOTHING_NEW (not an error in itself), INVALID_ARGUMENT. */
 QSES_API qses_status qses_collect(qses_context *context, qses_mesh *mesh);
 
 /* Ends the job that runs as soon as it can (levels finished before stay collectable) and drops the one that waits.
- * Returns at once; from any thread at any time before qses_destroy. Also ends a qses_compute or qses_estimate, which
- * then returns CANCELLED. Errors: INVALID_ARGUMENT. */
+ * Returns at once; from any thread at any time before qses_context_destroy. Also ends a qses_compute or qses_estimate,
+ * which then returns CANCELLED. What is finished already is not taken back: then compute returns OK with the mesh, and
+ * the job is FINISHED. Errors: INVALID_ARGUMENT. */
 QSES_API qses_status qses_cancel(qses_context *context);
 
-/* Waits until no job runs or waits, or for the given time (negative: without limit). OK either way; *finished, which may
- * be NULL, tells which: 1 or 0. Errors: INVALID_ARGUMENT. */
-QSES_API qses_status qses_wait(qses_context *context, double milliseconds, int32_t *finished);
+/* Waits until no job runs or waits, or until the time is over (negative: without limit). OK either way; *finished,
+ * which may be NULL, tells whether no job runs or waits. Errors: INVALID_ARGUMENT (NULL, a time that is no number). */
+QSES_API qses_status qses_wait(qses_context *context, double milliseconds, qses_bool *finished);
 
 /* ---- structures and trajectories --------------------------------------------------------------------------------- */
 
-/* How many CUDA devices this library sees; their ordinals are 0 to *count - 1. 0 without CUDA, or where it does not
- * start (qses_backend_info says why). Errors: INVALID_ARGUMENT. */
-QSES_API qses_status qses_device_count(uint32_t *count);
+/* How many bytes structures and trajectories may take into memory from one file, pipe, device or buffer, unpacked: a
+ * gzip file of 3 MB can hold 3 GB, and a device has no end. More is a FILE_ERROR. It holds for the whole process from
+ * now on. 0 (default): 4 GiB, but of gzip data at most 100 times its size or 256 MiB, whichever is larger. Any other
+ * number holds for all alike. Frames that stay in their file (DCD and XTC, not gzipped) and plain bytes of a buffer are
+ * not counted. What is made of the bytes, atoms above all, takes several times as much again. */
+QSES_API void qses_input_set_limit(uint64_t bytes);
 
 /* The atoms of one model of a file, after filters, with radii. Opaque. It never changes: any number of threads may use
  * it at a time. */
@@ -466,63 +541,46 @@ typedef enum qses_structure_format {
   QSES_STRUCTURE_GRO = 5   /* GROMACS */
 } qses_structure_format;
 
-typedef struct qses_read_options {
-  uint32_t struct_size; /* set by qses_read_options_init */
+typedef struct qses_structure_options {
+  uint32_t struct_size; /* set by qses_structure_options_init */
   qses_structure_format format;
   int32_t model;         /* place of the model in the file, from 1 (default) */
-  int32_t water;         /* 1 (default): waters are kept; 0: they are left out */
-  int32_t hetero;        /* the same for HETATM records, which waters mostly are too */
-  int32_t hydrogen;      /* the same for hydrogen and deuterium */
+  qses_bool water;       /* 1 (default): waters are kept; 0: they are left out */
+  qses_bool hetero;      /* the same for HETATM records, which waters mostly are too */
+  qses_bool hydrogen;    /* the same for hydrogen and deuterium */
   const char *selection; /* CID syntax of gemmi, such as "//A" or "/1/A/10-40/CA[C]"; NULL (default) = everything */
   const char *radii;     /* "quickses", "bondi", or the name of a text file with lines `ELEMENT radius` (Å; `*` for all
                             others). NULL (default) = those of the file (PQR, XYZR), else "quickses": O 1.52, C 1.70,
                             N 1.55, H 1.20, S 1.80, P 1.80, others 1.40 Å */
-} qses_read_options;
+} qses_structure_options;
 
-/* How many bytes structures and trajectories may take into memory from one file, pipe, device or buffer, unpacked: a
- * gzip file of 3 MB can hold 3 GB, and a device has no end. More is a FILE_ERROR. It holds for the whole process from now
- * on. 0 (default): 4 GiB, but of gzip data at most 100 times its size or 256 MiB, whichever is larger. Any other number
- * holds for all alike. Frames that stay in their file (DCD and XTC, not gzipped) and plain bytes of a buffer are not
- * counted. What is made of the bytes, atoms above all, takes several times as much again. */
-QSES_API void qses_set_input_limit(uint64_t bytes);
-
-/* Fills in the defaults. Always use it: later versions append fields. NULL is ignored. */
-QSES_API void qses_read_options_init(qses_read_options *options);
+/* The defaults, with struct_size set. NULL is ignored. */
+static inline void qses_structure_options_init(qses_structure_options *options) {
+  if (!options) return;
+  qses_clear(options, sizeof *options);
+  options->model = 1;
+  options->water = options->hetero = options->hydrogen = 1;
+}
 
 /* Reads a structure from a file, gzipped or not. path is UTF-8. options may be NULL (defaults). Of alternate locations,
  * those without a label and the first label met in each residue are kept.
  * On success *structure is the caller's, who ends it with qses_structure_close; on failure it is NULL.
  * Errors: INVALID_ARGUMENT (options; a selection that can't be understood; no such model), FILE_ERROR (the message
- * names file and line; also more than qses_set_input_limit allows), OUT_OF_MEMORY. */
-QSES_API qses_status qses_structure_open(const char *path, const qses_read_options *options,
+ * names file and line; also more than qses_input_set_limit allows), OUT_OF_MEMORY. */
+QSES_API qses_status qses_structure_open(const char *path, const qses_structure_options *options,
                                          qses_structure **structure);
 
 /* The same from size bytes in memory, gzipped or not, which are only read during the call. options->format should name
- * the format; AUTO tells PDB from mmCIF by the content and knows no other. */
-QSES_API qses_status qses_structure_open_memory(const void *bytes, size_t size, const qses_read_options *options,
+ * the format; AUTO tells PDB from mmCIF by the content and knows no other. Errors: as of qses_structure_open. */
+QSES_API qses_status qses_structure_open_memory(const void *bytes, size_t size, const qses_structure_options *options,
                                                 qses_structure **structure);
 
 /* Frees a structure and everything it handed out. NULL is ignored. */
 QSES_API void qses_structure_close(qses_structure *structure);
 
-/* What the file says about one atom. Strings are never NULL; XYZR files have none, so they are empty there. */
-typedef struct qses_atom {
-  const char *name;         /* such as "CA" */
-  const char *residue_name; /* such as "ALA" */
-  const char *chain;
-  int32_t residue_number;
-  uint32_t file_index; /* 0-based place among the atom records of the model in the file, before any filter */
-  char insertion_code; /* ' ' if there is none */
-  uint8_t element;     /* atomic number; 0 = unknown; deuterium is 1 */
-  uint8_t is_hetero;   /* 1: HETATM */
-  uint8_t is_water;    /* 1: its residue is water */
-  uint8_t is_hydrogen; /* 1: H or D */
-  uint8_t reserved[3];
-} qses_atom;
-
 /* A view of a structure; the arrays are the structure's, valid until qses_structure_close. */
-typedef struct qses_structure_info {
-  uint32_t struct_size; /* set by qses_structure_info_init */
+typedef struct qses_structure_description {
+  uint32_t struct_size; /* set by qses_structure_description_init */
   qses_structure_format format;
   int32_t model;                /* as in the options */
   int32_t model_count;          /* of the file */
@@ -532,16 +590,43 @@ typedef struct qses_structure_info {
   const float *radii;           /* N, Å */
   const uint32_t *file_indices; /* N, rising; each below M. qses_set_positions_indexed takes them to pick the atoms of
                                    this structure out of a frame of a trajectory that has all M atoms */
-  const qses_atom *atoms;       /* N */
   const uint8_t *file_elements; /* M atomic numbers, also of atoms that were left out: for qses_trajectory_unwrap */
   uint32_t warning_count;       /* see qses_structure_warning */
-} qses_structure_info;
+  uint32_t reserved;            /* 0 */
+} qses_structure_description;
 
 /* Empty view with struct_size set. NULL is ignored. */
-QSES_API void qses_structure_info_init(qses_structure_info *info);
+static inline void qses_structure_description_init(qses_structure_description *description) {
+  qses_clear(description, sizeof *description);
+}
 
 /* Errors: INVALID_ARGUMENT. */
-QSES_API qses_status qses_structure_get_info(const qses_structure *structure, qses_structure_info *info);
+QSES_API qses_status qses_structure_info(const qses_structure *structure, qses_structure_description *description);
+
+/* What the file says about one atom. Strings are never NULL; XYZR files have none, so they are empty there. They are
+ * the structure's, valid until qses_structure_close. */
+typedef struct qses_atom {
+  uint32_t struct_size;     /* set by qses_atom_init */
+  uint32_t file_index;      /* 0-based place among the atom records of the model in the file, before any filter */
+  const char *name;         /* such as "CA" */
+  const char *residue_name; /* such as "ALA" */
+  const char *chain;
+  int32_t residue_number;
+  qses_bool is_hetero;   /* a HETATM record */
+  qses_bool is_water;    /* its residue is water */
+  qses_bool is_hydrogen; /* H or D */
+  uint8_t element;       /* atomic number; 0 = unknown; deuterium is 1 */
+  char insertion_code;   /* ' ' if there is none */
+  uint8_t reserved[6];   /* 0 */
+} qses_atom;
+
+/* Empty atom with struct_size set. NULL is ignored. */
+static inline void qses_atom_init(qses_atom *atom) { qses_clear(atom, sizeof *atom); }
+
+/* Atom k of the structure, below atom_count. One at a time rather than an array, so that what is known of an atom can
+ * grow as other structures do: in an array the library's size of an element would have to be the caller's. Errors:
+ * INVALID_ARGUMENT. */
+QSES_API qses_status qses_structure_atom(const qses_structure *structure, uint32_t k, qses_atom *atom);
 
 /* A sentence for the user, such as one about elements that had to be inferred; k is below warning_count. Valid until
  * qses_structure_close. Errors: INVALID_ARGUMENT. */
@@ -555,61 +640,64 @@ typedef enum qses_trajectory_format {
 } qses_trajectory_format;
 
 /* Opens a trajectory; path is UTF-8. Frames stay in the file and are read when they are asked for (gzipped files
- * and PDB files are taken into memory). A file that ends within a frame, or makes no sense from some frame on, gives the
- * frames before: see qses_trajectory_info.incomplete. On success *trajectory is the caller's, who ends it with
- * qses_trajectory_close; on failure it is NULL. Errors: INVALID_ARGUMENT, FILE_ERROR (no such format, not one whole
- * frame, frames of different numbers of atoms, DCD files with 64-bit record markers or velocities, more in memory than
- * qses_set_input_limit allows), OUT_OF_MEMORY. */
+ * and PDB files are taken into memory). A file that ends within a frame, or makes no sense from some frame on, gives
+ * the frames before: see qses_trajectory_description.incomplete. On success *trajectory is the caller's, who ends it
+ * with qses_trajectory_close; on failure it is NULL. Errors: INVALID_ARGUMENT, FILE_ERROR (no such format, not one
+ * whole frame, frames of different numbers of atoms, DCD files with 64-bit record markers or velocities, more in memory
+ * than qses_input_set_limit allows), OUT_OF_MEMORY. */
 QSES_API qses_status qses_trajectory_open(const char *path, qses_trajectory_format format,
                                           qses_trajectory **trajectory);
 
-/* The same from size bytes in memory, gzipped or not; they are copied. */
+/* The same from size bytes in memory, gzipped or not; they are copied. Errors: as of qses_trajectory_open. */
 QSES_API qses_status qses_trajectory_open_memory(const void *bytes, size_t size, qses_trajectory_format format,
                                                  qses_trajectory **trajectory);
 
 /* Frees a trajectory and everything it handed out. NULL is ignored. */
 QSES_API void qses_trajectory_close(qses_trajectory *trajectory);
 
-typedef struct qses_trajectory_info {
-  uint32_t struct_size; /* set by qses_trajectory_info_init */
+typedef struct qses_trajectory_description {
+  uint32_t struct_size; /* set by qses_trajectory_description_init */
   qses_trajectory_format format;
   uint64_t frame_count;   /* whole frames, at least 1 */
   uint32_t atom_count;    /* per frame, at least 1; in PDB files all ATOM and HETATM records of a model */
-  int32_t has_box;        /* 1 if frame 0 has a periodic box */
-  int32_t is_unwrapped;   /* 1 after qses_trajectory_unwrap */
-  int32_t incomplete;     /* 1 if the file ends, or stops making sense, before it should; a warning says where */
+  qses_bool has_box;      /* whether frame 0 has a periodic box */
+  qses_bool is_unwrapped; /* 1 after qses_trajectory_unwrap */
+  qses_bool incomplete;   /* 1 if the file ends, or stops making sense, before it should; a warning says where */
   uint32_t warning_count; /* see qses_trajectory_warning */
-} qses_trajectory_info;
+  uint32_t reserved;      /* 0 */
+} qses_trajectory_description;
 
-/* Empty structure with struct_size set. NULL is ignored. */
-QSES_API void qses_trajectory_info_init(qses_trajectory_info *info);
+/* Empty description with struct_size set. NULL is ignored. */
+static inline void qses_trajectory_description_init(qses_trajectory_description *description) {
+  qses_clear(description, sizeof *description);
+}
 
 /* Errors: INVALID_ARGUMENT. */
-QSES_API qses_status qses_trajectory_get_info(const qses_trajectory *trajectory, qses_trajectory_info *info);
+QSES_API qses_status qses_trajectory_info(const qses_trajectory *trajectory, qses_trajectory_description *description);
 
 /* A sentence for the user; k is below warning_count. Valid until qses_trajectory_close. Errors: INVALID_ARGUMENT. */
 QSES_API qses_status qses_trajectory_warning(const qses_trajectory *trajectory, uint32_t k, const char **sentence);
 
 /* From now on frames come with every molecule in one piece, around its first atom, instead of torn by the borders of
  * the periodic box. elements are the atomic numbers (0 = unknown) of all count atoms of the trajectory, such as
- * qses_structure_info.file_elements; they are only read during the call. Atoms are bonded if they are in the first
- * frame. No other thread may use the trajectory meanwhile.
- * Errors: NO_BOX (the first frame has no box; frames come as before), INVALID_ARGUMENT (count is not the number of
- * atoms), FILE_ERROR (the first frame is damaged, or its atoms lie on top of each other), OUT_OF_MEMORY. */
+ * qses_structure_description.file_elements; they are only read during the call. Atoms are bonded if they are in the
+ * first frame. No other thread may use the trajectory meanwhile. Errors: NO_BOX (the first frame has no box; frames
+ * come as before), INVALID_ARGUMENT (count is not the number of atoms), FILE_ERROR (the first frame is damaged, or its
+ * atoms lie on top of each other), OUT_OF_MEMORY. */
 QSES_API qses_status qses_trajectory_unwrap(qses_trajectory *trajectory, const uint8_t *elements, size_t count);
 
 /* What a file says about one frame, besides positions. */
 typedef struct qses_frame {
   uint32_t struct_size; /* set by qses_frame_init */
-  int32_t has_time;
+  qses_bool has_time;
   double time; /* ps; 0 if it is not known */
-  int32_t has_box;
-  int32_t is_unwrapped; /* 1: molecules are in one piece; 0: not asked for, or this frame has no box */
-  double box[9];        /* Å; the vectors a, b, c, three numbers each; 0 if there is no box */
+  qses_bool has_box;
+  qses_bool is_unwrapped; /* 1: molecules are in one piece; 0: not asked for, or this frame has no box */
+  double box[9];          /* Å; the vectors a, b, c, three numbers each; 0 if there is no box */
 } qses_frame;
 
-/* Empty structure with struct_size set. NULL is ignored. */
-QSES_API void qses_frame_init(qses_frame *frame);
+/* Empty frame with struct_size set. NULL is ignored. */
+static inline void qses_frame_init(qses_frame *frame) { qses_clear(frame, sizeof *frame); }
 
 /* Reads frame `index`, counted from 0, into the caller's memory.
  *   positions  room for count positions of three floats x, y, z in Å, each stride bytes after the one before; what lies

@@ -57,7 +57,7 @@ inline MeshMemoryView describe_memory(const MeshArrays &arrays, size_t vertices,
 inline void describe_mesh(const MeshMemoryView &built, const MeshView &host, const qses_settings &settings,
                           qses_mesh *mesh) {
   qses_mesh_init(mesh);
-  mesh->frame = settings.frame;
+  mesh->tag = settings.tag;
   mesh->vertex_count = static_cast<uint32_t>(built.vertices);
   mesh->triangle_count = static_cast<uint32_t>(built.triangles);
   mesh->component_count = static_cast<uint32_t>(built.components.size);

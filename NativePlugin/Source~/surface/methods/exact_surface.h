@@ -155,7 +155,7 @@ MeshMemoryView build_exact_surface(Work &work) {
   work.timer.begin("projection");
   emit(0.45, 0.8, true);
   if (!mesh.in_pieces) {
-    work.timer.begin("triangles");
+    work.timer.begin("marching_cubes");
     B::emit_triangles(executor, bricks, layout, BrickRange{0, bricks.count}, work.table, mesh.view);
   }
   work.progress.report(0.85);

@@ -24,7 +24,7 @@ int main(void) {
   qses_settings_init(&settings);
   qses_mesh_init(&mesh);
   options.backend = QSES_BACKEND_CPU;
-  if (qses_create(&options, &context) != QSES_OK) return fail("qses_create");
+  if (qses_context_create(&options, &context) != QSES_OK) return fail("qses_context_create");
   if (qses_set_atoms(context, position, 0, &radius, 1) != QSES_OK) return fail("qses_set_atoms");
   if (qses_compute(context, &settings, &mesh) != QSES_OK) return fail("qses_compute");
   if (mesh.vertex_count < 12 || mesh.triangle_count != 2 * mesh.vertex_count - 4) {
@@ -40,6 +40,6 @@ int main(void) {
     }
     if (squared < 1.69 * 1.69 || squared > 1.71 * 1.71) return fail("a vertex is off the sphere");
   }
-  qses_destroy(context);
+  qses_context_destroy(context);
   return 0;
 }

@@ -27,7 +27,7 @@ namespace QuickSes.Interop
     {
         protected override bool ReleaseHandle()
         {
-            NativeMethods.qses_destroy(handle);
+            NativeMethods.qses_context_destroy(handle);
             return true;
         }
     }

@@ -12,7 +12,7 @@ namespace QuickSes.Interop
     internal static unsafe class NativeMethods
     {
         /// <summary>QSES_ABI_VERSION of the header these declarations were written after.</summary>
-        public const uint AbiVersion = 1;
+        public const uint AbiVersion = 2;
 
         public const string Library = "quickses";
         private const CallingConvention Cdecl = CallingConvention.Cdecl;
@@ -36,13 +36,10 @@ namespace QuickSes.Interop
 
         // ---- contexts
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
-        public static extern void qses_context_options_init(NativeContextOptions* options);
+        public static extern QuickSesStatus qses_context_create(NativeContextOptions* options, IntPtr* context);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
-        public static extern QuickSesStatus qses_create(NativeContextOptions* options, IntPtr* context);
-
-        [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
-        public static extern void qses_destroy(IntPtr context);
+        public static extern void qses_context_destroy(IntPtr context);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
         public static extern QuickSesStatus qses_context_info(
@@ -73,40 +70,25 @@ namespace QuickSes.Interop
 
         // ---- computing
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
-        public static extern void qses_settings_init(NativeSettings* settings);
-
-        [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
-        public static extern void qses_mesh_init(NativeMesh* mesh);
-
-        [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
         public static extern QuickSesStatus qses_compute(
             ContextHandle context, NativeSettings* settings, NativeMesh* mesh);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
-        public static extern QuickSesStatus qses_get_mesh(ContextHandle context, NativeMesh* mesh);
+        public static extern QuickSesStatus qses_context_mesh(ContextHandle context, NativeMesh* mesh);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
-        public static extern void qses_report_init(NativeReport* report);
-
-        [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
-        public static extern QuickSesStatus qses_get_report(ContextHandle context, NativeReport* report);
-
-        [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
-        public static extern void qses_size_estimate_init(NativeSizeEstimate* estimate);
+        public static extern QuickSesStatus qses_context_report(ContextHandle context, NativeReport* report);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
         public static extern QuickSesStatus qses_estimate(
             ContextHandle context, NativeSettings* settings, NativeSizeEstimate* estimate);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
-        public static extern QuickSesStatus qses_enable_stage_times(ContextHandle context, int enabled);
+        public static extern QuickSesStatus qses_set_stage_times(ContextHandle context, int enabled);
 
         // ---- jobs
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
         public static extern QuickSesStatus qses_begin(ContextHandle context, NativeSettings* settings);
-
-        [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
-        public static extern void qses_progress_init(NativeProgress* progress);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
         public static extern QuickSesStatus qses_poll(ContextHandle context, NativeProgress* progress);
@@ -122,28 +104,25 @@ namespace QuickSes.Interop
 
         // ---- structures
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
-        public static extern void qses_set_input_limit(ulong bytes);
-
-        [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
-        public static extern void qses_read_options_init(NativeReadOptions* options);
+        public static extern void qses_input_set_limit(ulong bytes);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
         public static extern QuickSesStatus qses_structure_open(
-            byte* path, NativeReadOptions* options, IntPtr* structure);
+            byte* path, NativeStructureOptions* options, IntPtr* structure);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
         public static extern QuickSesStatus qses_structure_open_memory(
-            byte* bytes, UIntPtr size, NativeReadOptions* options, IntPtr* structure);
+            byte* bytes, UIntPtr size, NativeStructureOptions* options, IntPtr* structure);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
         public static extern void qses_structure_close(IntPtr structure);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
-        public static extern void qses_structure_info_init(NativeStructureInfo* info);
+        public static extern QuickSesStatus qses_structure_info(
+            StructureHandle structure, NativeStructureDescription* description);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
-        public static extern QuickSesStatus qses_structure_get_info(
-            StructureHandle structure, NativeStructureInfo* info);
+        public static extern QuickSesStatus qses_structure_atom(StructureHandle structure, uint k, NativeAtom* atom);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
         public static extern QuickSesStatus qses_structure_warning(StructureHandle structure, uint k, byte** sentence);
@@ -161,11 +140,8 @@ namespace QuickSes.Interop
         public static extern void qses_trajectory_close(IntPtr trajectory);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
-        public static extern void qses_trajectory_info_init(NativeTrajectoryInfo* info);
-
-        [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
-        public static extern QuickSesStatus qses_trajectory_get_info(
-            TrajectoryHandle trajectory, NativeTrajectoryInfo* info);
+        public static extern QuickSesStatus qses_trajectory_info(
+            TrajectoryHandle trajectory, NativeTrajectoryDescription* description);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
         public static extern QuickSesStatus qses_trajectory_warning(
@@ -174,9 +150,6 @@ namespace QuickSes.Interop
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
         public static extern QuickSesStatus qses_trajectory_unwrap(
             TrajectoryHandle trajectory, byte* elements, UIntPtr count);
-
-        [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
-        public static extern void qses_frame_init(NativeFrame* frame);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
         public static extern QuickSesStatus qses_trajectory_read_frame(

@@ -7,6 +7,7 @@ namespace QuickSes.Interop
     [StructLayout(LayoutKind.Sequential)]
     internal unsafe struct NativeBackendDescription
     {
+        public uint StructSize;
         public int Available;
         public fixed byte Device[128];
         public fixed byte Reason[256];
@@ -38,15 +39,15 @@ namespace QuickSes.Interop
         public uint RelaxationSteps;
         public uint SliceSize;
         public SurfaceWinding Winding;
-        public uint PatchTypes;
-        public uint Measure;
-        public uint Frame;
-        public fixed float Levels[MaxLevels];
+        public int PatchTypes;
+        public int Measure;
+        public uint Tag;
         public uint LevelCount;
+        public fixed float Levels[MaxLevels];
         public SurfaceVertexLayout VertexLayout;
-        public uint Texcoords;
+        public int Texcoords;
         public float FrameBudgetMs;
-        public uint Components;
+        public int Components;
         public uint Series;
     }
 
@@ -66,7 +67,7 @@ namespace QuickSes.Interop
         public uint StructSize;
         public uint VertexCount;
         public uint TriangleCount;
-        public uint Frame;
+        public uint Tag;
         public float* Positions;
         public float* Normals;
         public byte* Colors;
@@ -134,8 +135,8 @@ namespace QuickSes.Interop
     {
         public uint StructSize;
         public SurfaceJobState State;
-        public uint Frame;
-        public uint FrameRequested;
+        public uint Tag;
+        public uint TagRequested;
         public uint LevelsFinished;
         public uint LevelCount;
         public float Fraction;
@@ -145,7 +146,7 @@ namespace QuickSes.Interop
     }
 
     [StructLayout(LayoutKind.Sequential)]
-    internal unsafe struct NativeReadOptions
+    internal unsafe struct NativeStructureOptions
     {
         public uint StructSize;
         public StructureFormat Format;
@@ -160,21 +161,22 @@ namespace QuickSes.Interop
     [StructLayout(LayoutKind.Sequential)]
     internal unsafe struct NativeAtom
     {
+        public uint StructSize;
+        public uint FileIndex;
         public byte* Name;
         public byte* ResidueName;
         public byte* Chain;
         public int ResidueNumber;
-        public uint FileIndex;
-        public byte InsertionCode;
+        public int IsHetero;
+        public int IsWater;
+        public int IsHydrogen;
         public byte Element;
-        public byte IsHetero;
-        public byte IsWater;
-        public byte IsHydrogen;
-        public fixed byte Reserved[3];
+        public byte InsertionCode;
+        public fixed byte Reserved[6];
     }
 
     [StructLayout(LayoutKind.Sequential)]
-    internal unsafe struct NativeStructureInfo
+    internal unsafe struct NativeStructureDescription
     {
         public uint StructSize;
         public StructureFormat Format;
@@ -185,13 +187,13 @@ namespace QuickSes.Interop
         public float* Positions;
         public float* Radii;
         public uint* FileIndices;
-        public NativeAtom* Atoms;
         public byte* FileElements;
         public uint WarningCount;
+        public uint Reserved;
     }
 
     [StructLayout(LayoutKind.Sequential)]
-    internal struct NativeTrajectoryInfo
+    internal struct NativeTrajectoryDescription
     {
         public uint StructSize;
         public TrajectoryFormat Format;
@@ -201,6 +203,7 @@ namespace QuickSes.Interop
         public int IsUnwrapped;
         public int Incomplete;
         public uint WarningCount;
+        public uint Reserved;
     }
 
     [StructLayout(LayoutKind.Sequential)]

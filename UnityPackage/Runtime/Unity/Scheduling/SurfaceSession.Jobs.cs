@@ -57,7 +57,7 @@ namespace QuickSes
                     SurfaceSettings settings = MakeSettings(isFinestOnly);
                     status = context.Begin(settings);
                     if (status == QuickSesStatus.Ok)
-                        NoteJob(settings.Frame);
+                        NoteJob(settings.Tag);
                 }
                 return status == QuickSesStatus.Ok ? default : new QuickSesError(status, context.LastError);
             }
@@ -70,7 +70,7 @@ namespace QuickSes
         private SurfaceSettings MakeSettings(bool isFinestOnly)
         {
             SurfaceSettings settings = _host.MakeSettings(out ReadOnlySpan<float> levels);
-            settings.Frame = SurfaceScheduler.NextJob();
+            settings.Tag = SurfaceScheduler.NextJob();
             settings.Series = _series;
             settings.Texcoords = Atoms.HasTexcoords;
             _ladderCount = SurfaceJobPlan.MakeLadder(levels, settings.Spacing, _ladder);
@@ -140,7 +140,7 @@ namespace QuickSes
 
         private QuickSesError TryShow(in SurfaceMeshView mesh)
         {
-            bool isLast = mesh.Frame == _job;
+            bool isLast = mesh.Tag == _job;
             _slot.Context.TryGetReport(out SurfaceReport report);
             try
             {
