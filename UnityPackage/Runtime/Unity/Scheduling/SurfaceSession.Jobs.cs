@@ -136,7 +136,7 @@ namespace QuickSes
         }
 
         // Not what the context's last user left behind. Numbers of jobs may wrap.
-        private bool IsOurs(in SurfaceMeshView mesh) => unchecked((int)(mesh.Frame - _slot.FirstJob)) >= 0;
+        private bool IsOurs(in SurfaceMeshView mesh) => unchecked((int)(mesh.Tag - _slot.FirstJob)) >= 0;
 
         private QuickSesError TryShow(in SurfaceMeshView mesh)
         {
