@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The three hot stages that have one driver per back end. Both drivers use the same functions of geometry; they differ
+// The hot stages that have one driver per back end. Both drivers use the same functions of geometry; they differ
 // in the shape of their loops: packs of eight and one thread per brick on the CPU, warps on the GPU. The pipeline calls
 // them by overload on the executor:
 //
