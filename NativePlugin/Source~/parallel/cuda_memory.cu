@@ -129,7 +129,6 @@ CudaDevice describe_cuda_device(int ordinal) {
   if (error == cudaSuccess) {
     device.name = properties.name;
     device.total_memory = properties.totalGlobalMem;
-    device.multiprocessors = properties.multiProcessorCount;
     try {
       const DeviceGuard guard(ordinal);
       cudaFuncAttributes attributes{};

@@ -23,7 +23,6 @@ struct CudaDevice {
   std::string reason;                          // why not, if it is not available
   std::string name;                            // empty if there is no such device
   uint64_t total_memory = 0, free_memory = 0;  // bytes
-  int multiprocessors = 0;
 };
 
 // Looks whether this library's kernels can run on a device. Never throws; leaves the selected device as it was.

@@ -10,8 +10,6 @@
 #elif defined(__SSE2__) || defined(_M_X64)
 #include <emmintrin.h>
 #define QSES_PACK_SSE 1
-#else
-#define QSES_PACK_PLAIN 1
 #endif
 
 #ifndef QSES_CPU_ISA
@@ -28,7 +26,6 @@ using quickses::minimum;
 using quickses::reciprocal_root;
 using quickses::select;
 using quickses::square_root;
-using quickses::without;
 
 constexpr int kPackSize = 8;
 constexpr uint32_t kAllLanes = 0xffu;
@@ -79,8 +76,6 @@ QSES_FN PackMask operator<=(Pack a, Pack b) { return {_mm256_cmp_ps(a.v, b.v, _C
 QSES_FN PackMask operator==(Pack a, Pack b) { return {_mm256_cmp_ps(a.v, b.v, _CMP_EQ_OQ)}; }
 QSES_FN PackMask operator&(PackMask a, PackMask b) { return {_mm256_and_ps(a.v, b.v)}; }
 QSES_FN PackMask operator|(PackMask a, PackMask b) { return {_mm256_or_ps(a.v, b.v)}; }
-// a and not b
-QSES_FN PackMask without(PackMask a, PackMask b) { return {_mm256_andnot_ps(b.v, a.v)}; }
 QSES_FN Pack select(PackMask m, Pack yes, Pack no) { return _mm256_blendv_ps(no.v, yes.v, m.v); }
 QSES_FN uint32_t lane_bits(PackMask m) { return static_cast<uint32_t>(_mm256_movemask_ps(m.v)); }
 QSES_FN PackMask lane_mask(uint32_t bits) {
@@ -159,7 +154,6 @@ QSES_FN PackMask operator<=(Pack a, Pack b) { return {_mm_cmple_ps(a.l, b.l), _m
 QSES_FN PackMask operator==(Pack a, Pack b) { return {_mm_cmpeq_ps(a.l, b.l), _mm_cmpeq_ps(a.h, b.h)}; }
 QSES_FN PackMask operator&(PackMask a, PackMask b) { return {_mm_and_ps(a.l, b.l), _mm_and_ps(a.h, b.h)}; }
 QSES_FN PackMask operator|(PackMask a, PackMask b) { return {_mm_or_ps(a.l, b.l), _mm_or_ps(a.h, b.h)}; }
-QSES_FN PackMask without(PackMask a, PackMask b) { return {_mm_andnot_ps(b.l, a.l), _mm_andnot_ps(b.h, a.h)}; }
 QSES_FN Pack select(PackMask m, Pack yes, Pack no) {
   return {_mm_or_ps(_mm_and_ps(m.l, yes.l), _mm_andnot_ps(m.l, no.l)),
           _mm_or_ps(_mm_and_ps(m.h, yes.h), _mm_andnot_ps(m.h, no.h))};
@@ -228,7 +222,6 @@ QSES_FN PackMask operator<=(Pack a, Pack b) { PackMask m; QSES_EACH_LANE m.v[i] 
 QSES_FN PackMask operator==(Pack a, Pack b) { PackMask m; QSES_EACH_LANE m.v[i] = a.v[i] == b.v[i]; return m; }
 QSES_FN PackMask operator&(PackMask a, PackMask b) { QSES_EACH_LANE a.v[i] = a.v[i] && b.v[i]; return a; }
 QSES_FN PackMask operator|(PackMask a, PackMask b) { QSES_EACH_LANE a.v[i] = a.v[i] || b.v[i]; return a; }
-QSES_FN PackMask without(PackMask a, PackMask b) { QSES_EACH_LANE a.v[i] = a.v[i] && !b.v[i]; return a; }
 QSES_FN Pack select(PackMask m, Pack yes, Pack no) { QSES_EACH_LANE no.v[i] = m.v[i] ? yes.v[i] : no.v[i]; return no; }
 QSES_FN uint32_t lane_bits(PackMask m) { uint32_t b = 0; QSES_EACH_LANE b |= uint32_t(m.v[i]) << i; return b; }
 QSES_FN PackMask lane_mask(uint32_t bits) { PackMask m; QSES_EACH_LANE m.v[i] = bits >> i & 1; return m; }

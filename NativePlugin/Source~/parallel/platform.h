@@ -19,12 +19,6 @@
 #endif
 #endif
 
-#if defined(_MSC_VER) && !defined(__clang__)
-#define QSES_RESTRICT __restrict
-#else
-#define QSES_RESTRICT __restrict__
-#endif
-
 // GLM must know before its first inclusion that its functions run on both sides; its own inlining is forced for the
 // same reason as ours.
 #if defined(__CUDACC__)

@@ -52,6 +52,5 @@ QSES_FN float absolute(float x) { return fabsf(x); }
 QSES_FN float maximum(float a, float b) { return a > b ? a : b; }
 QSES_FN float minimum(float a, float b) { return a < b ? a : b; }
 QSES_FN float select(bool m, float yes, float no) { return m ? yes : no; }
-QSES_FN bool without(bool a, bool b) { return a && !b; }
 
 }  // namespace quickses

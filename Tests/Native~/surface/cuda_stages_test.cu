@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The stages of the exact surface on the GPU against a brute force over all atoms, on easy and on nasty inputs.
 #include "surface/cuda_stages.cuh"
+#include "surface/edge_ring.h"
 #include "surface/mesh_checks.h"
 
 #include <gtest/gtest.h>
@@ -302,7 +303,7 @@ TEST(CudaStages, StartsOfVertices) {
           const bool low = inside(0, 0, 0);
           if (low == inside(1, 0, 0) || !known) continue;
           float move[3];
-          ring_displacement(edge_ring(inside, axis, marching_cubes_table().ring), &move[0], &move[1], &move[2]);
+          ring_displacement(edge_ring(inside, axis), &move[0], &move[1], &move[2]);
           ASSERT_TRUE(known);
           move[axis] += vertex_start(low);
           const glm::ivec3 first = r.lattice.first_point(place) + p;

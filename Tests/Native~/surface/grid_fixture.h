@@ -26,6 +26,22 @@ Span<RingSum> ring_sums(Executor &executor, const MeshCounts &counts) {
   return executor.template allocate<RingSum>(counts.vertices);
 }
 
+// Stores the squared distances of the first N x N x N points of bricks first, first + 1, ...
+template <int N>
+struct StoreDistances {
+  GridField field;
+  uint32_t first;
+  int32_t *distances;
+  template <class Team>
+  QSES_HOST_DEVICE void operator()(const Team &team, DistanceScratch<N> &scratch, size_t i) const {
+    find_distances<N>(field, first + static_cast<uint32_t>(i), team, scratch, kNoneInReach);
+    constexpr int kPoints = N * N * N;
+    for (int k = team.rank(); k < kPoints; k += team.size())
+      distances[i * kPoints + static_cast<size_t>(k)] = scratch.nearest[k];
+    team.sync();
+  }
+};
+
 struct Atom {
   double x, y, z, r;
 };

@@ -32,16 +32,16 @@ class Reference {
     outside_.assign(static_cast<size_t>(size_[0]) * size_[1] * size_[2], 1);
     for (int z = low_[2]; z <= high_[2]; ++z)
       for (int y = low_[1]; y <= high_[1]; ++y)
-        for (int x = low_[0]; x <= high_[0]; ++x) outside_[at(x, y, z)] = depth(x, y, z, 0.0) <= 0;
+        for (int x = low_[0]; x <= high_[0]; ++x) outside_[at(x, y, z)] = depth(x, y, z) <= 0;
   }
 
-  // How deep a lattice point is in the deepest ball, when the radii are lessened.
-  double depth(int x, int y, int z, double less) const {
+  // How deep a lattice point is in the deepest ball.
+  double depth(int x, int y, int z) const {
     double deepest = -1e9;
     for (size_t i = 0; i < atom_count_; ++i) {
       const Sphere &s = run_.spheres[i];
       const double dx = x * h_ - s.center.x, dy = y * h_ - s.center.y, dz = z * h_ - s.center.z;
-      deepest = std::max(deepest, s.radius - less - std::sqrt(dx * dx + dy * dy + dz * dz));
+      deepest = std::max(deepest, s.radius - std::sqrt(dx * dx + dy * dy + dz * dz));
     }
     return deepest;
   }
@@ -232,23 +232,19 @@ TEST(GridClasses, FollowTheirDefinition) {
     GridRun run(*atoms, 1.4f, 0.5f);
     const Reference reference(run, atoms->size(), 0);
     const BrickSet &bricks = run.field.bricks;
-    std::vector<uint64_t> outside(size_t(bricks.count) * kLeavesPerBrick), inside(outside.size());
+    std::vector<uint64_t> outside(size_t(bricks.count) * kLeavesPerBrick);
     run.executor.for_each_brick<ClassifyScratch>(
-        bricks.count, ClassifyBrick{run.field.atoms, bricks, run.parameters, outside.data(), inside.data()});
-    size_t number[3] = {};
+        bricks.count, ClassifyBrick{run.field.atoms, bricks, run.parameters, outside.data()});
+    size_t number[2] = {};
     for (uint32_t b = 0; b < bricks.count; ++b) {
       const glm::ivec3 first = bricks.lattice.first_point(bricks.lattice.brick_at(bricks.linear[b]));
       for (int i = 0; i < kBrickPoints; ++i) {
         const int x = i % 8, y = i / 8 % 8, z = i / 64;
-        const GridClass expected =
-            reference.depth(first.x + x, first.y + y, first.z + z, 0.0) <= 0           ? GridClass::kOutside
-            : reference.depth(first.x + x, first.y + y, first.z + z, double(1.4f)) > 0 ? GridClass::kInside
-                                                                                       : GridClass::kBorder;
-        ++number[static_cast<int>(expected)];
+        const bool expected = reference.outside(first.x + x, first.y + y, first.z + z);
+        ++number[expected ? 1 : 0];
         const size_t word = size_t(b) * kLeavesPerBrick + static_cast<size_t>(leaf_of(x, y, z));
         const int bit = leaf_bit(x & 3, y & 3, z & 3);
-        ASSERT_EQ(outside[word] >> bit & 1, expected == GridClass::kOutside ? 1u : 0u);
-        ASSERT_EQ(inside[word] >> bit & 1, expected == GridClass::kInside ? 1u : 0u);
+        ASSERT_EQ(outside[word] >> bit & 1, expected ? 1u : 0u);
       }
     }
     for (size_t n : number) EXPECT_GT(n, 10u);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Marching cubes: the generated table, and meshes of random signs, which are the hardest input there is.
+#include "surface/edge_ring.h"
 #include "surface/mesh_checks.h"
 
 #include "surface/cpu/exact_ses_cpu.h"
@@ -315,7 +316,7 @@ TEST(Noise, RelaxationTableEqualsTheRing) {
         return block.inside(p[0], p[1], p[2]);
       };
       float moved[3];
-      ring_displacement(edge_ring(sign_near, axis, marching_cubes_table().ring), &moved[0], &moved[1], &moved[2]);
+      ring_displacement(edge_ring(sign_near, axis), &moved[0], &moved[1], &moved[2]);
       const std::array<double, 4> &s = sums[block.vertex(x, y, z, axis)];
       for (size_t d = 0; d < 3; ++d) {
         // Starts are rounded to 1/128 of the spacing.

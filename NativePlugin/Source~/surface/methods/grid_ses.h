@@ -55,29 +55,20 @@ BrickSet find_grid_bricks(Executor &executor, const NeighborGridView &atoms, con
 
 // ---- classes ---------------------------------------------------------------------------------------------------
 
-// The paper's text has the conditions of "inside" and "border" the other way round; its sentences about them agree with
-// these. (Its program starts "inside" one spacing deeper, which changes no vertex.)
-enum class GridClass : uint8_t {
-  kOutside,  // in no inflated ball: the probe's centre may be here
-  kBorder,   // in an inflated ball, but in no atom
-  kInside    // within the van der Waals radius of an atom
-};
-
 struct ClassifyScratch {
   static constexpr int kListed = 128, kBlock = 64;
   Sphere listed[kListed];
   uint32_t count;
   float beyond_ball[kBrickPoints];  // smallest |x - c|² - R², x fastest; >= 0 outside
-  float beyond_atom[kBrickPoints];  // smallest |x - c|² - r²
 };
 
-// Writes the outside bits of a brick and, if asked for, its inside bits.
+// Writes the outside bits of a brick: of the points in no inflated ball, where the probe's centre may be. The paper
+// tells the others apart as "inside" (in an atom) and "border"; refined at every point, both are treated alike.
 struct ClassifyBrick {
   NeighborGridView atoms;
   BrickSet bricks;
   GridParameters parameters;
   uint64_t *outside;  // [brick][leaf]
-  uint64_t *inside;   // [brick][leaf], or nullptr
 
   template <class Team>
   QSES_HOST_DEVICE void operator()(const Team &team, ClassifyScratch &scratch, size_t brick) const {
@@ -88,8 +79,7 @@ struct ClassifyBrick {
     const float slack = 1e-4f + 1e-3f * lattice.spacing, reach = parameters.max_radius + slack;
     const Vec3<float> margin(reach, reach, reach);
     const CellBox box = cells_around(atoms.cells, low - margin, high + margin);
-    for (int i = team.rank(); i < kBrickPoints; i += team.size())
-      scratch.beyond_ball[i] = scratch.beyond_atom[i] = kFarAway;
+    for (int i = team.rank(); i < kBrickPoints; i += team.size()) scratch.beyond_ball[i] = kFarAway;
     if (team.rank() == 0) scratch.count = 0;
     team.sync();
     for (int z = box.z0; z <= box.z1; ++z)
@@ -106,14 +96,10 @@ struct ClassifyBrick {
       }
     apply(team, scratch, scratch.count, first);
     for (int leaf = team.rank(); leaf < kLeavesPerBrick; leaf += team.size()) {
-      uint64_t out = 0, in = 0;
-      for (int bit = 0; bit < 64; ++bit) {
-        const int i = point_of(leaf, bit);
-        out |= static_cast<uint64_t>(scratch.beyond_ball[i] < 0.f ? 0 : 1) << bit;
-        in |= static_cast<uint64_t>(scratch.beyond_atom[i] < 0.f ? 1 : 0) << bit;
-      }
+      uint64_t out = 0;
+      for (int bit = 0; bit < 64; ++bit)
+        out |= static_cast<uint64_t>(scratch.beyond_ball[point_of(leaf, bit)] < 0.f ? 0 : 1) << bit;
       outside[brick * kLeavesPerBrick + static_cast<size_t>(leaf)] = out;
-      if (inside) inside[brick * kLeavesPerBrick + static_cast<size_t>(leaf)] = in;
     }
     team.sync();
   }
@@ -148,16 +134,15 @@ struct ClassifyBrick {
     for (int row = share.first_row; row < kBrickEdge * kBrickEdge; row += share.row_step) {
       const float py = static_cast<float>(first.y + row % kBrickEdge) * h;
       const float pz = static_cast<float>(first.z + row / kBrickEdge) * h;
-      float *ball = scratch.beyond_ball + row * kBrickEdge, *atom = scratch.beyond_atom + row * kBrickEdge;
+      float *ball = scratch.beyond_ball + row * kBrickEdge;
       for (uint32_t k = 0; k < count; ++k) {
         const Sphere s = scratch.listed[k];
         const float dy = py - s.center.y, dz = pz - s.center.z, across2 = dy * dy + dz * dz;
-        const float r = maximum(0.f, s.radius - parameters.probe), ball2 = s.radius * s.radius, atom2 = r * r;
+        const float ball2 = s.radius * s.radius;
         if (across2 >= ball2) continue;
         for (int x = share.first_x; x < kBrickEdge; x += share.x_step) {
           const float dx = static_cast<float>(first.x + x) * h - s.center.x, d2 = dx * dx + across2;
           ball[x] = minimum(ball[x], d2 - ball2);
-          atom[x] = minimum(atom[x], d2 - atom2);
         }
       }
     }
@@ -173,7 +158,7 @@ GridField classify_grid_points(Executor &executor, const NeighborGridView &atoms
                                const BrickSet &bricks) {
   Span<uint64_t> outside = executor.template allocate<uint64_t>(size_t(bricks.count) * kLeavesPerBrick);
   executor.template for_each_brick<ClassifyScratch>(bricks.count,
-                                                    ClassifyBrick{atoms, bricks, parameters, outside.data, nullptr});
+                                                    ClassifyBrick{atoms, bricks, parameters, outside.data});
   Span<uint16_t> along_x = executor.template allocate<uint16_t>(bricks.count);
   Span<BrickSide> sides = executor.template allocate<BrickSide>(bricks.count);
   const GridField field{atoms, bricks, outside.data, parameters, along_x.data, sides.data};

@@ -13,8 +13,6 @@ struct Appearance {
   std::vector<uint8_t> visible;
   std::vector<uint32_t> colors;  // bytes red, green, blue, alpha
   std::vector<glm::vec2> texcoords;
-
-  bool empty() const { return visible.empty() && colors.empty() && texcoords.empty(); }
 };
 
 // The same in the memory of a back end; nullptr: not set.

@@ -250,21 +250,6 @@ QSES_FN uint64_t edge_ring_of_rows(const Row *row, int rows_per_layer, int x, in
   return edge_ring_of_cells(case_near, axis, ring);
 }
 
-// The same from signs. inside(along, second, third) is the sign at a point near the edge: along the edge 0 or 1, in the
-// other two axes, lower axis first, -1 ... 1. Not for kernels: ptxas 11.8 was seen to lose one of the eight predicates.
-template <class Inside>
-QSES_FN uint64_t edge_ring(const Inside &inside, int axis, const uint64_t (*ring)[kCellEdges]) {
-  const int second = axis == 0 ? 1 : 0, third = axis == 2 ? 1 : 2;
-  return edge_ring_of_cells(
-      [&](int v, int w) {
-        int code = 0;
-        for (int corner = 0; corner < 8; ++corner)
-          code |= (inside(corner >> axis & 1, v + (corner >> second & 1), w + (corner >> third & 1)) ? 1 : 0) << corner;
-        return code;
-      },
-      axis, ring);
-}
-
 struct MeshCounts {
   uint64_t vertices, triangles;
 };
