@@ -3,7 +3,6 @@ using NUnit.Framework;
 using System;
 using System.Collections.Generic;
 using UnityEngine;
-using Object = UnityEngine.Object;
 
 namespace QuickSes.EngineDouble.Tests
 {
@@ -71,7 +70,7 @@ namespace QuickSes.EngineDouble.Tests
             Assert.That(keeper.Forgotten, Is.EqualTo(2));
             Assert.That(keeper.ReadOnly, Is.Empty);
             Assert.That(keeper.Hidden, Is.EqualTo((13, 15, IntPtr.Zero, true)));
-            Assert.That(Object.FindObjectsOfType<Keeper>(), Has.Length.EqualTo(1));
+            Assert.That(Engine.LiveObjects<Keeper>(), Is.EqualTo(1));
         }
 
         [Test]
