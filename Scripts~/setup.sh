@@ -21,13 +21,15 @@ done
 say() { echo "setup: $*"; }
 fail() { echo "setup: $*" >&2; exit 1; }
 
-# ---- what is needed: a package, and a command (word) or a header (path) that shows it is there, however it came
+# ---- what is needed: a package, and a command (word), a header (path) or a module of Python (python:name) that shows it
+# is there, however it came
 needs=(
   "cmake cmake"
   "ninja-build ninja"
   "g++ c++"
   "pkg-config pkg-config"
   "python3 python3"
+  "python3-yaml python:yaml"
   "zlib1g-dev zlib.h"
   "libthrust-dev thrust/version.h"
   "libtbb-dev tbb/parallel_for.h"
@@ -53,6 +55,7 @@ fi
 is_there() {
   case "$1" in
     /*) [ -e "$1" ] ;;
+    python:*) python3 -c "import ${1#python:}" 2>/dev/null ;;
     *.h | *.hpp) [ -e "/usr/local/include/$1" ] || [ -e "/usr/include/$1" ] ;;
     *) command -v "$1" >/dev/null ;;
   esac
@@ -101,7 +104,7 @@ if ! command -v apt-get >/dev/null; then
   fail "can install on Debian and Ubuntu only, and $system has no apt-get.
 Missing here (Debian's package names): ${missing[*]}
 Needed in all: CMake 3.22, Ninja, a C++17 compiler, Python 3, zlib, Thrust 1.15, oneTBB, GLM, gemmi (and PEGTL with
-gemmi 0.5), CLI11, nlohmann-json, GoogleTest, patchelf; for the GPU the CUDA Toolkit 11.8 or later; for many
+gemmi 0.5), CLI11, nlohmann-json, GoogleTest, PyYAML, patchelf; for the GPU the CUDA Toolkit 11.8 or later; for many
 processes an MPI library."
 fi
 as_root=()
