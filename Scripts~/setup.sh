@@ -78,10 +78,17 @@ lacks_gcc11() {
   [ "$(c++ -dumpversion | cut -d. -f1)" -gt 11 ]
 }
 
+has_candidate() { [[ $(apt-cache policy "$1" 2>/dev/null) == *"  Candidate: "[!\(]* ]]; }
+
+# Versions of clang-format differ in small things, so check-format asserts what 14 writes (Debian 12; Ubuntu 22.04, 24.04).
+# Where that can't be had, only this check is left out.
+wants_formatter() { ! is_there clang-format-14 && has_candidate clang-format-14; }
+
 missing=()
 for need in "${needs[@]}"; do
   is_there "${need#* }" || missing+=("${need%% *}")
 done
+if wants_formatter; then missing+=(clang-format-14); fi
 if [ "$with_cuda" = yes ]; then
   if ! find_nvcc >/dev/null; then
     missing+=(nvidia-cuda-toolkit)
@@ -113,7 +120,6 @@ if [ "$(id -u)" -ne 0 ]; then
   as_root=(sudo)
 fi
 apt_get() { "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -y -q "$@"; }
-has_candidate() { [[ $(apt-cache policy "$1" 2>/dev/null) == *"  Candidate: "[!\(]* ]]; }
 
 # The CUDA Toolkit is in Debian's non-free section. A new entry for it repeats the options of the entry that offers
 # "main", above all Signed-By: apt refuses two entries of one archive that differ in it.
@@ -154,6 +160,7 @@ add_debian_non_free() {
 
 say "$system lacks ${missing[*]}"
 apt_get update
+if [[ " ${missing[*]} " != *" clang-format-14 "* ]] && wants_formatter; then missing+=(clang-format-14); fi
 for package in "${missing[@]}"; do
   if [ "$package" = nvidia-cuda-toolkit ] && ! has_candidate "$package" && [ "$(. /etc/os-release && echo "$ID")" = debian ]; then
     add_debian_non_free || fail "found no entry of Debian $codename in apt's sources to add non-free to. Please add it, or install the CUDA Toolkit."
