@@ -27,7 +27,8 @@ inline std::string describe_bytes(uint64_t bytes) {
   return text;
 }
 
-// Source: two static functions, void *acquire(size_t) (nullptr when refused) and void release(void *).
+// Source: three static functions: void *acquire(size_t) (nullptr when refused), void release(void *), and uint64_t
+// free_bytes(), what could be acquired now, or 0 if that is not known.
 template <class Source>
 class Arena {
  public:
@@ -43,13 +44,21 @@ class Arena {
   uint64_t budget() const { return budget_; }
   // True if work should be cut into pieces that fit.
   bool has_budget() const { return budget_ > 0; }
-  // Without a budget: what the machine had free, beyond which everything is refused; 0: unknown.
-  void set_limit(uint64_t bytes) { limit_ = bytes; }
-  uint64_t limit() const { return budget_ ? budget_ : limit_; }
+  // Bytes beyond which everything is refused: the budget; or what is held and what is free besides, as it was when it
+  // was first asked for since the last reset.
+  uint64_t limit() {
+    constexpr uint64_t kNoLimit = ~uint64_t(0) >> 1;
+    if (budget_) return budget_;
+    if (limit_ == 0) {
+      const uint64_t free = Source::free_bytes();
+      limit_ = free ? held_ + free : kNoLimit;
+    }
+    return limit_;
+  }
   // Bytes of the budget that others have taken; they count as used.
   void set_taken(uint64_t bytes) { taken_ = bytes; }
   // Bytes that can still be allocated, as far as is known.
-  uint64_t available() const { return limit() ? limit() - std::min(limit(), used_ + taken_) : ~uint64_t(0) >> 1; }
+  uint64_t available() { return limit() - std::min(limit(), used_ + taken_); }
 
   void *allocate(size_t bytes) {
     bytes = (bytes + kAlignment - 1) / kAlignment * kAlignment;
@@ -73,15 +82,13 @@ class Arena {
     if (blocks_.size() > 1) {
       const uint64_t merged = peak_ + peak_ / 8;  // the next surface may be a little larger
       release();
-      try {
-        add_block(static_cast<size_t>(merged));
-      } catch (const MemoryRefused &) {  // not in one piece: it comes in pieces again
-      }
+      take_block(static_cast<size_t>(merged));  // where it is refused it comes in pieces again
     }
     current_ = 0;
     offset_ = 0;
     used_ = 0;
     peak_ = 0;
+    limit_ = 0;
   }
 
   // What is allocated after a mark is given up by rewinding to it.
@@ -106,6 +113,7 @@ class Arena {
     held_ = 0;
     current_ = 0;
     offset_ = 0;
+    limit_ = 0;
   }
 
  private:
@@ -116,32 +124,38 @@ class Arena {
 
   uint64_t own_budget() const { return budget_ - std::min(budget_, taken_); }
 
-  [[noreturn]] void refuse(uint64_t needed) const {
+  [[noreturn]] void refuse(uint64_t needed) {
     throw MemoryRefused("the work needs at least " + describe_bytes(needed) + " but " +
                         (budget_ ? "the memory budget is " : "the machine had free ") + describe_bytes(limit()) +
                         ": use a larger spacing" + (budget_ ? " or a larger budget" : ""));
   }
 
   void add_block(size_t bytes) {
+    if (held_ + bytes > limit()) refuse(held_ + bytes);
+    if (!take_block(bytes))
+      throw MemoryRefused(std::string(Source::kName) + " refused " + describe_bytes(bytes) + " on top of " +
+                          describe_bytes(held_) + ": use a larger spacing");
+  }
+
+  // A block of at least so many bytes; false if there is none to be had.
+  bool take_block(size_t bytes) {
     constexpr size_t kSmallestBlock = size_t(1) << 20;
+    if (held_ + bytes > limit()) return false;
     size_t wanted = bytes > kSmallestBlock ? bytes : kSmallestBlock;
     // Grow by half of what is held: few blocks, little waste.
     if (wanted < held_ / 2) wanted = static_cast<size_t>(held_ / 2);
-    if (limit()) {
-      if (held_ + bytes > limit()) refuse(held_ + bytes);
-      if (budget_ && held_ == 0) wanted = std::max(bytes, static_cast<size_t>(own_budget()));
-      wanted = static_cast<size_t>(std::min<uint64_t>(wanted, limit() - held_));
-    }
+    if (budget_ && held_ == 0) wanted = std::max(bytes, static_cast<size_t>(own_budget()));
+    wanted = static_cast<size_t>(std::min<uint64_t>(wanted, limit() - held_));
+    blocks_.reserve(blocks_.size() + 1);  // what is taken below is noted without fail
     void *memory = Source::acquire(wanted);
     while (!memory && wanted > bytes) {
       wanted = std::max(bytes, wanted / 2);
       memory = Source::acquire(wanted);
     }
-    if (!memory)
-      throw MemoryRefused(std::string(Source::kName) + " refused " + describe_bytes(wanted) + " on top of " +
-                          describe_bytes(held_) + ": use a larger spacing");
+    if (!memory) return false;
     blocks_.push_back({memory, wanted});
     held_ += wanted;
+    return true;
   }
 
   std::vector<Block> blocks_;

@@ -29,7 +29,8 @@ const CpuKernels &cpu_kernels();
 
 class CpuExecutor {
  public:
-  static constexpr bool kIsCuda = false;
+  static constexpr bool kIsCuda = false, kCounts = false;
+  using HostSource = HostMemory;  // of memory that the host shares with it
 
   // Held while a computation runs; on the CPU there is nothing to set up.
   struct CallScope {
@@ -63,9 +64,6 @@ class CpuExecutor {
     return sum;
   }
   uint64_t scratch_allowance() const { return threads() * (uint64_t(272) << 10); }
-
-  // Memory was refused: to know how much there is would not help, since all work is cut small already.
-  void bound_arena() {}
 
   template <class T>
   Span<T> allocate(size_t n) {
@@ -115,11 +113,27 @@ class CpuExecutor {
     }
   }
 
+  // Bytes of the arena that the verbs take for as long as they work; T, Key and Value as there.
+  template <class T>
+  size_t scan_bytes(size_t n) const {
+    return (scan_chunks(n) + 1) * sizeof(T);
+  }
+  template <class Key, class Value>
+  size_t sort_bytes(size_t n) const {
+    const SortRuns runs(n, threads());
+    return std::max(runs.room_bytes<Key, Value>(threads()),
+                    runs.count > 1 ? n * (sizeof(Key) + sizeof(Value)) + 2 * Arena<HostMemory>::kAlignment : 0);
+  }
+  template <class T>
+  size_t reduce_bytes(size_t n) const {
+    return (n + kReduceChunk - 1) / kReduceChunk * sizeof(T);
+  }
+  size_t compact_bytes(size_t n) const { return (scan_chunks(n) + 1) * sizeof(size_t); }
+
   template <class Load, class T>
   void exclusive_scan(size_t n, Load load, Span<T> out) {
     // Two sweeps over chunks: sums, then the running values. One sweep where there is little to do.
-    const size_t chunks = n < 65536 || threads() == 1 ? 1 : size_t(threads()) * 4;
-    const size_t chunk = (n + chunks - 1) / (chunks ? chunks : 1);
+    const size_t chunks = scan_chunks(n), chunk = (n + chunks - 1) / chunks;
     const auto mark = arena_.mark();
     const Span<T> begin = allocate<T>(chunks + 1);
     begin[0] = T(0);
@@ -164,12 +178,10 @@ class CpuExecutor {
   void sort_by_key(Span<Key> keys, Span<Value> values, int /*key_bits*/) {
     const size_t n = keys.size;
     if (n < 2) return;
-    size_t runs = 1;
-    while (n / runs > (threads() > 1 ? kSortedRun : 4 * kSortedRun)) runs *= 4;
-    const size_t length = (n + runs - 1) / runs;
+    const SortRuns sorted(n, threads());
+    const size_t runs = sorted.count, length = sorted.length, room = sorted.room<Key, Value>();
     const auto mark = arena_.mark();
-    const size_t room = RoomAllocator::room_for(length * sizeof(Key)) + RoomAllocator::room_for(length * sizeof(Value));
-    const Span<char> rooms = allocate<char>(std::min<size_t>(runs, threads()) * room);
+    const Span<char> rooms = allocate<char>(sorted.room_bytes<Key, Value>(threads()));
     run_chunks(runs, [&](size_t worker, size_t k) {
       const size_t first = std::min(n, k * length), last = std::min(n, first + length);
       RoomAllocator allocator(rooms.data + worker * room, room);
@@ -205,8 +217,7 @@ class CpuExecutor {
 
   template <class Keep, class T>
   size_t compact(size_t n, Keep keep, Span<T> out) {
-    const size_t chunks = n < 65536 || threads() == 1 ? 1 : size_t(threads()) * 4;
-    const size_t chunk = (n + chunks - 1) / chunks;
+    const size_t chunks = scan_chunks(n), chunk = (n + chunks - 1) / chunks;
     const auto mark = arena_.mark();
     const Span<size_t> begin = allocate<size_t>(chunks + 1);
     begin[0] = 0;
@@ -258,6 +269,25 @@ class CpuExecutor {
   static constexpr size_t kSerialItems = 64;
   static constexpr size_t kSortedRun = size_t(1) << 15;    // items that one thread sorts, or merges, at a time
   static constexpr size_t kFilledPiece = size_t(1) << 20;  // bytes
+
+  size_t scan_chunks(size_t n) const { return n < 65536 || threads() == 1 ? 1 : size_t(threads()) * 4; }
+
+  // The parts that sort_by_key sorts one by one.
+  struct SortRuns {
+    size_t count = 1, length;
+    SortRuns(size_t n, unsigned threads) {
+      while (n / count > (threads > 1 ? kSortedRun : 4 * kSortedRun)) count *= 4;
+      length = (n + count - 1) / count;
+    }
+    template <class Key, class Value>
+    size_t room() const {
+      return RoomAllocator::room_for(length * sizeof(Key)) + RoomAllocator::room_for(length * sizeof(Value));
+    }
+    template <class Key, class Value>
+    size_t room_bytes(unsigned threads) const {
+      return std::min<size_t>(count, threads) * room<Key, Value>();
+    }
+  };
 
   struct ScratchPool {
     std::shared_ptr<void> objects;

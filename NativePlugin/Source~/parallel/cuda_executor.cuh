@@ -87,7 +87,8 @@ struct KeepNumber {
 // Use from one thread at a time, with its device selected (DeviceGuard). Functions that fail throw Error.
 class CudaExecutor {
  public:
-  static constexpr bool kIsCuda = true;
+  static constexpr bool kIsCuda = true, kCounts = false;
+  using HostSource = PinnedMemory;  // of memory that the host shares with it
 
   // While it lives, nothing more is asked of the device once the flag is set: Cancelled is thrown instead.
   class StopScope {
@@ -133,13 +134,6 @@ class CudaExecutor {
   // Rewinding it is safe while kernels still use what was there: whoever gets the memory next runs after them.
   Arena<DeviceMemory> &arena() { return arena_; }
 
-  // Memory was refused: from now on the arena knows how much there is.
-  void bound_arena() {
-    size_t free = 0, total = 0;
-    check_cuda(cudaMemGetInfo(&free, &total), "cudaMemGetInfo");
-    arena_.set_limit(arena_.held() + free / 16 * 15);
-  }
-
   template <class T>
   Span<T> allocate(size_t n) {
     return {static_cast<T *>(arena_.allocate(n * sizeof(T))), n};
@@ -183,6 +177,30 @@ class CudaExecutor {
       return cub::DeviceScan::ExclusiveSum(temporary, bytes, in, out.data, static_cast<int>(n + 1), stream_);
     });
   }
+
+  // Bytes of the arena that the verbs take for as long as they work; T, Key and Value as there.
+  template <class T>
+  size_t scan_bytes(size_t n) const {
+    return cub_bytes([&](void *temporary, size_t &bytes) {
+      return cub::DeviceScan::ExclusiveSum(temporary, bytes, static_cast<const T *>(nullptr),
+                                           static_cast<T *>(nullptr), static_cast<int>(n + 1), stream_);
+    });
+  }
+  template <class Key, class Value>
+  size_t sort_bytes(size_t n) const {
+    cub::DoubleBuffer<Key> keys(nullptr, nullptr);
+    cub::DoubleBuffer<Value> values(nullptr, nullptr);
+    return n * (sizeof(Key) + sizeof(Value)) + 2 * Arena<DeviceMemory>::kAlignment +
+           cub_bytes([&](void *temporary, size_t &bytes) {
+             return cub::DeviceRadixSort::SortPairs(temporary, bytes, keys, values, static_cast<int>(n), 0,
+                                                    static_cast<int>(8 * sizeof(Key)), stream_);
+           });
+  }
+  template <class T>
+  size_t reduce_bytes(size_t n) const {
+    return (n + kReduceChunk - 1) / kReduceChunk * sizeof(T);
+  }
+  size_t compact_bytes(size_t n) const { return n / 128 + 4096; }  // CUB's states of its tiles, generously
 
   template <class T = double, class Load>
   T reduce(size_t n, Load load) {
@@ -282,6 +300,13 @@ class CudaExecutor {
 
   void stop_if_asked() const {
     if (stop_ && stop_->load(std::memory_order_relaxed)) throw Cancelled{};
+  }
+
+  template <class Call>
+  static size_t cub_bytes(Call call) {
+    size_t bytes = 0;
+    check_cuda(call(nullptr, bytes), "CUB");
+    return bytes;
   }
 
   // CUB's two calls: how much memory, then the work.

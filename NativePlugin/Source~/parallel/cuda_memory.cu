@@ -7,6 +7,7 @@
 
 #include <cuda_runtime.h>
 
+#include <algorithm>
 #include <atomic>
 
 namespace quickses {
@@ -43,8 +44,9 @@ void check_cuda(int error, const char *call) {
   const cudaError_t e = static_cast<cudaError_t>(error);
   if (e == cudaSuccess) return;
   cudaGetLastError();
-  throw Error(e == cudaErrorMemoryAllocation ? QSES_OUT_OF_MEMORY : QSES_DEVICE_ERROR,
-              std::string(call) + " failed: " + describe_error(e));
+  const std::string message = std::string(call) + " failed: " + describe_error(e);
+  if (e == cudaErrorMemoryAllocation) throw MemoryRefused(message);
+  throw Error(QSES_DEVICE_ERROR, message);
 }
 
 CudaDevice describe_cuda_device(int ordinal) {
@@ -111,6 +113,17 @@ DeviceGuard::~DeviceGuard() {
 }
 
 CudaMemoryRequests cuda_memory_requests() { return {device_requests, pinned_requests}; }
+
+uint64_t DeviceMemory::free_bytes() {
+  // Code is loaded when a kernel first runs, and kernels have stacks: some 10 MiB. The rest is left to others.
+  constexpr uint64_t kLeft = uint64_t(64) << 20;
+  size_t free = 0, total = 0;
+  if (cudaMemGetInfo(&free, &total) != cudaSuccess) {
+    cudaGetLastError();
+    return 0;
+  }
+  return std::max<uint64_t>(1, free - std::min<uint64_t>(free, std::max<uint64_t>(free / 16, kLeft)));
+}
 
 void *DeviceMemory::acquire(size_t bytes) {
   ++device_requests;

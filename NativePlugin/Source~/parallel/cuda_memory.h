@@ -10,8 +10,8 @@
 
 namespace quickses {
 
-// Throws Error if a CUDA call failed: QSES_OUT_OF_MEMORY where memory was refused, QSES_DEVICE_ERROR otherwise, with
-// the call's name. error is a cudaError_t. The runtime's record of the failure is cleared.
+// Throws if a CUDA call failed: MemoryRefused where memory was (a launch takes some for the kernel's stack), else Error
+// with QSES_DEVICE_ERROR and the call's name. error is a cudaError_t. The runtime's record of the failure is cleared.
 void check_cuda(int error, const char *call);
 
 struct CudaDevice {
@@ -43,11 +43,13 @@ class DeviceGuard {
 // Sources for Arena.
 struct DeviceMemory {
   static constexpr const char *kName = "the GPU";
+  static uint64_t free_bytes();  // of the selected device; what kernels need at their first launch is left to them
   static void *acquire(size_t bytes);
   static void release(void *memory);
 };
 struct PinnedMemory {
   static constexpr const char *kName = "the machine (page-locked memory)";
+  static uint64_t free_bytes() { return 0; }
   static void *acquire(size_t bytes);
   static void release(void *memory);
 };

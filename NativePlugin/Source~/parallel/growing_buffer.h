@@ -18,17 +18,20 @@ class GrowingBuffer {
   // At least this many bytes. Throws MemoryRefused; the buffer is empty then. Nothing may be in flight from or to the
   // old memory.
   void *reserve(size_t bytes) {
-    if (bytes <= size_) return memory_;
+    if (!try_reserve(bytes))
+      throw MemoryRefused(std::string(Source::kName) + " refused " + describe_bytes(bytes) + " for the mesh");
+    return memory_;
+  }
+  // False where it is refused.
+  bool try_reserve(size_t bytes) {
+    if (bytes <= size_) return true;
     release();
     // A little more than asked for, so that a trajectory soon stops growing.
     size_ = bytes + bytes / 8 + 4096;
     memory_ = Source::acquire(size_);
     if (!memory_) memory_ = Source::acquire(size_ = bytes);
-    if (!memory_) {
-      size_ = 0;
-      throw MemoryRefused(std::string(Source::kName) + " refused " + describe_bytes(bytes) + " for the mesh");
-    }
-    return memory_;
+    if (!memory_) size_ = 0;
+    return memory_ != nullptr;
   }
   void release() {
     if (memory_) Source::release(memory_);

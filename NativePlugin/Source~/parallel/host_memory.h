@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <new>
 
@@ -12,6 +13,13 @@
 
 namespace quickses {
 
+// Bytes of the machine; 0: not known. free: what it could still give, file caches given back.
+struct HostMemoryStatus {
+  uint64_t total, free;
+};
+HostMemoryStatus describe_host_memory();
+
+// Source for Arena.
 struct HostMemory {
   static constexpr const char *kName = "the machine";
   static void *acquire(size_t bytes) {
@@ -21,6 +29,7 @@ struct HostMemory {
     return std::aligned_alloc(256, (bytes + 255) / 256 * 256);
 #endif
   }
+  static uint64_t free_bytes() { return describe_host_memory().free; }
   static void release(void *p) {
 #if defined(_WIN32)
     _aligned_free(p);

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
-// The pipeline on the CPU.
-#include "surface/cpu/exact_ses_cpu.h"
-#include "surface/cpu/solvent_features_cpu.h"
+// The engine on the CPU.
+#include "surface/cpu/cpu_backend.h"
 
 #include "parallel/stage_timer.h"
-#include "surface/pipeline.h"
+#include "surface/memory_ladder.h"
 
 namespace quickses {
 
-std::unique_ptr<SurfaceEngine> make_cpu_engine(unsigned threads, uint64_t memory_budget, uint64_t memory_limit) {
-  return std::make_unique<SurfacePipeline<CpuExecutor, CpuStageTimer>>(memory_budget, memory_limit, threads);
+std::unique_ptr<SurfaceEngine> make_cpu_engine(unsigned threads, uint64_t memory_budget) {
+  return std::make_unique<LadderEngine<CpuExecutor, CpuStageTimer>>(memory_budget, threads, threads);
 }
 
 }  // namespace quickses

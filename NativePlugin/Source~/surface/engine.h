@@ -1,40 +1,17 @@
 // SPDX-License-Identifier: MIT
 // What the jobs see of a back end: atoms in, meshes out, one level after the other. One implementation per executor
-// (pipeline.h).
+// (memory_ladder.h).
 #pragma once
 
 #include "quickses/quickses.h"
 #include "surface/stages/appearance.h"
-#include "surface/geometry/types.h"
+#include "surface/memory/atom_set.h"
 
 #include <atomic>
 #include <functional>
 #include <memory>
 
 namespace quickses {
-
-// Everything about the atoms that the host knows before the back end sees them.
-struct AtomBounds {
-  glm::vec3 low, high;  // of the centres, caller's coordinates
-  float max_radius;     // without the probe
-};
-
-// The atoms of one frame in memory that the back end reads fast: centres in the caller's coordinates and van der Waals
-// radii. Filled once, then only read.
-struct AtomSet {
-  Sphere *atoms = nullptr;
-  size_t count = 0;
-  AtomBounds bounds{};
-
-  AtomSet() = default;
-  AtomSet(const AtomSet &) = delete;
-  AtomSet &operator=(const AtomSet &) = delete;
-  virtual ~AtomSet() = default;
-};
-
-// Meshes are made in buffers that the engine owns. With three of them one can be written while another one waits to be
-// collected and the caller still reads the third.
-constexpr int kMeshSlots = 3;
 
 // Who receives the levels. Called on the thread that computes.
 class LevelSink {
@@ -69,10 +46,11 @@ class SurfaceEngine {
   virtual void set_progress(std::function<void(double)> progress) = 0;
 };
 
-// Budgets in bytes, 0 for none; without one, work beyond the limit is refused.
-std::unique_ptr<SurfaceEngine> make_cpu_engine(unsigned threads, uint64_t memory_budget, uint64_t memory_limit);
+// Budgets in bytes, 0 for none; then work beyond what is free when a computation starts is refused. threads: of the
+// CPU, 0 for one per hardware thread.
+std::unique_ptr<SurfaceEngine> make_cpu_engine(unsigned threads, uint64_t memory_budget);
 #if defined(QUICKSES_HAS_CUDA)
-std::unique_ptr<SurfaceEngine> make_cuda_engine(int device, uint64_t memory_budget);
+std::unique_ptr<SurfaceEngine> make_cuda_engine(int device, unsigned threads, uint64_t memory_budget);
 #endif
 
 }  // namespace quickses

@@ -58,6 +58,11 @@ namespace QuickSes
         /// </summary>
         public ulong UnplacedVertices => _native.UnplacedVertices;
 
+        /// <summary>
+        /// How often the work was begun: more than once only where memory was refused, and less of it did.
+        /// </summary>
+        public ulong Attempts => _native.Attempts;
+
         /// <summary>How many stages were timed; 0 unless <see cref="SurfaceContext.EnableStageTimes"/>.</summary>
         public int StageCount => (int)_native.StageCount;
 

@@ -351,6 +351,8 @@ typedef struct qses_report {
                                  expected: they keep the mesh closed. 0 unless rounding hid a feature of the surface */
   uint64_t unplaced_vertices; /* vertices for which no feature of the surface was found: they stay where their lattice
                                  edge is cut. 0 unless rounding hid a feature of the surface */
+  uint64_t attempts; /* 1; more where memory was refused, and the work was done again in a way that takes less. What
+                        sufficed is remembered, so the next frame of as many atoms is made at the first attempt */
 } qses_report;
 
 /* Empty report with struct_size set. NULL is ignored. */

@@ -4,20 +4,8 @@
 
 #include "parallel/cpu_executor.h"
 #include "surface/cpu/cpu_kernels.h"
-#include "surface/memory/work_facts.h"
 
 namespace quickses {
-
-// The CPU gathers the candidates of a brick when it comes to it, so slices share nothing.
-struct NoCandidates {};
-template <>
-struct CandidatesOf<CpuExecutor> {
-  using type = NoCandidates;
-  static constexpr double kSpareBytes = 0;
-  static double sign_bytes(const SurfaceParameters &, const CandidateCounts &) { return 0; }
-  static double emission_bytes(const SurfaceParameters &, const CandidateCounts &, double, double) { return 0; }
-  static uint64_t whole_bytes(const SurfaceParameters &, const CandidateCounts &) { return 0; }
-};
 
 // Memory of one thread for a brick: columns for what is near it, and its vertices. Grows when a brick needs more; kept
 // between surfaces.
@@ -63,7 +51,7 @@ struct EvaluateBrick {
 };
 
 inline void evaluate_signs(CpuExecutor &executor, const FeatureView &features, const BrickSet &bricks, BrickRange slice,
-                           NoCandidates &, uint64_t *signs) {
+                           uint64_t *signs) {
   executor.match_scratches<BrickColumns>();
   executor.for_each_brick<BrickColumns>(slice.size(),
                                         EvaluateBrick{&executor.kernels(), &features, &bricks, slice.first, signs});
@@ -85,7 +73,7 @@ struct EmitBrickVertices {
 };
 
 inline void emit_vertices(CpuExecutor &executor, const FeatureView &features, const BrickSet &bricks,
-                          const MeshLayout &layout, BrickRange slice, NoCandidates &, const VertexStarts &starts,
+                          const MeshLayout &layout, BrickRange slice, const VertexStarts &starts,
                           const MeshView &mesh) {
   executor.match_scratches<BrickColumns>();
   executor.for_each_brick<BrickColumns>(

@@ -217,66 +217,97 @@ struct PlaceChunkFeatures {
   }
 };
 
-// Bytes per atom that the usual features take in the pool and in their places together, and somewhat more.
-constexpr uint64_t kPooledAtomBytes = 2000;
-static_assert(2 * (kUsualCapsPerAtom * sizeof(Cap) + kUsualArcsPerAtom * sizeof(Arc)) < kPooledAtomBytes, "both fit");
+// What the stage keeps until the features are in their places. Room: whoever gives memory.
+struct FeatureArrays {
+  size_t atoms, atoms_per_chunk, chunks;
+  Span<CapRange> cap_ranges;
+  Span<uint8_t> exposed;
+  Span<FeatureChunk> table;
+  Span<uint64_t> cap_first, arc_base;  // per atom, per chunk; and the totals
 
-// A pool for n atoms. It must not take more than the budget leaves, and nothing if that is little or to be spared.
-inline FeaturePool &open_pool(CpuExecutor &executor, size_t n, bool frugal) {
+  template <class Room>
+  FeatureArrays(Room &room, size_t n, unsigned threads)
+      : atoms(n),
+        atoms_per_chunk(std::max(kMinAtomsPerChunk, std::min(kMaxAtomsPerChunk, n / (size_t(threads) * 8)))),
+        chunks((n + atoms_per_chunk - 1) / atoms_per_chunk),
+        cap_ranges(room.template allocate<CapRange>(n)),
+        exposed(room.template allocate<uint8_t>(n + 8)),
+        table(room.template allocate<FeatureChunk>(chunks)),
+        cap_first(room.template allocate<uint64_t>(n + 1)),
+        arc_base(room.template allocate<uint64_t>(chunks + 1)) {}
+};
+
+// A pool in the arena: behind the places that the features will have, which are taken after it was given up.
+struct PooledFeatures {
+  Span<Cap> caps;
+  Span<Arc> arcs;
+  template <class Room>
+  PooledFeatures(Room &room, size_t atoms) {
+    const size_t cap_count = atoms * kUsualCapsPerAtom, arc_count = atoms * kUsualArcsPerAtom;
+    room.template allocate<char>(cap_count * sizeof(Cap) + arc_count * sizeof(Arc) + 512);
+    caps = room.template allocate<Cap>(cap_count);
+    arcs = room.template allocate<Arc>(arc_count);
+  }
+};
+
+// A pool for n atoms. With a budget it must not take more than that; with low memory nothing.
+inline FeaturePool &open_pool(CpuExecutor &executor, size_t n, bool low_memory) {
   FeaturePool &pool = *executor.scratches<FeaturePool>().front();
-  const size_t caps = n * kUsualCapsPerAtom, arcs = n * kUsualArcsPerAtom;
-  auto &arena = executor.arena();
-  if (frugal || arena.available() < n * kPooledAtomBytes + 4 * arena.kAlignment) {
+  if (low_memory) {
     pool.open({}, {});
-  } else if (arena.has_budget()) {
-    // Behind the places that the features will have: those are taken after this memory was given up.
-    executor.allocate<char>(caps * sizeof(Cap) + arcs * sizeof(Arc) + 2 * arena.kAlignment);
-    const Span<Cap> cap_room = executor.allocate<Cap>(caps);
-    pool.open(cap_room, executor.allocate<Arc>(arcs));
+  } else if (executor.arena().has_budget()) {
+    const PooledFeatures room(executor, n);
+    pool.open(room.caps, room.arcs);
   } else {
-    pool.open_own(caps, arcs);
+    pool.open_own(n * kUsualCapsPerAtom, n * kUsualArcsPerAtom);
   }
   return pool;
 }
 
 inline void find_solvent_features(CpuExecutor &executor, const NeighborGridView &atoms,
-                                  const SurfaceParameters &parameters, bool frugal, SolventFeatures *features) {
-  const size_t n = atoms.count;
-  const size_t per_chunk =
-      std::max(kMinAtomsPerChunk, std::min(kMaxAtomsPerChunk, n / (size_t(executor.threads()) * 8)));
-  const size_t chunks = (n + per_chunk - 1) / per_chunk;
-  SolventFeatures &f = *features;
-  f.cap_ranges = executor.allocate<CapRange>(n);
-  f.exposed = executor.allocate<uint8_t>(n + 8);
-  executor.fill(f.exposed, 0);
-  Span<FeatureChunk> table = executor.allocate<FeatureChunk>(chunks);
-  Span<uint64_t> cap_first = executor.allocate<uint64_t>(n + 1), arc_base = executor.allocate<uint64_t>(chunks + 1);
+                                  const SurfaceParameters &parameters, bool low_memory, SolventFeatures *features) {
+  const FeatureArrays a(executor, atoms.count, executor.threads());
   const auto mark = executor.arena().mark();
-  FeaturePool &pool = open_pool(executor, n, frugal);
+  FeaturePool &pool = open_pool(executor, a.atoms, low_memory);
+  executor.fill(a.exposed, 0);
   executor.match_scratches<FeatureStaging>();
-  executor.for_each_brick<FeatureStaging>(chunks,
-                                          FindChunkFeatures{&executor.kernels(), &atoms, &parameters, per_chunk,
-                                                            f.cap_ranges.data, f.exposed.data, table.data, &pool},
+  executor.for_each_brick<FeatureStaging>(a.chunks,
+                                          FindChunkFeatures{&executor.kernels(), &atoms, &parameters, a.atoms_per_chunk,
+                                                            a.cap_ranges.data, a.exposed.data, a.table.data, &pool},
                                           1);
-  executor.exclusive_scan(n, LoadExposedCaps{f.exposed.data, f.cap_ranges.data}, cap_first);
-  executor.exclusive_scan(chunks, LoadChunkArcs{table.data}, arc_base);
+  executor.exclusive_scan(a.atoms, LoadExposedCaps{a.exposed.data, a.cap_ranges.data}, a.cap_first);
+  executor.exclusive_scan(a.chunks, LoadChunkArcs{a.table.data}, a.arc_base);
   executor.arena().rewind(mark);
-  f.caps.size = cap_first[n];
-  f.arcs.size = arc_base[chunks];
-  f.caps = executor.allocate<Cap>(cap_first[n]);
-  f.arcs = executor.allocate<Arc>(arc_base[chunks]);
+  SolventFeatures &f = *features;
+  f.cap_ranges = a.cap_ranges;
+  f.exposed = a.exposed;
+  f.caps = executor.allocate<Cap>(a.cap_first[a.atoms]);
+  f.arcs = executor.allocate<Arc>(a.arc_base[a.chunks]);
   if (pool.holds_all()) {
-    executor.for_each(chunks, CollectChunk{table.data, &pool, cap_first.data, arc_base.data, n, per_chunk,
-                                           f.exposed.data, f.cap_ranges.data, f.caps.data, f.arcs.data});
+    executor.for_each(a.chunks, CollectChunk{a.table.data, &pool, a.cap_first.data, a.arc_base.data, a.atoms,
+                                             a.atoms_per_chunk, f.exposed.data, f.cap_ranges.data, f.caps.data,
+                                             f.arcs.data});
     return;
   }
   // Next time they will fit; the room is taken now, so that this computation tells what later ones take.
-  if (!frugal && !executor.arena().has_budget()) pool.open_own(pool.cap_count, pool.arc_count);
+  if (!low_memory && !executor.arena().has_budget()) pool.open_own(pool.cap_count, pool.arc_count);
   executor.for_each_brick<FeatureStaging>(
-      chunks,
-      PlaceChunkFeatures{&executor.kernels(), &atoms, &parameters, per_chunk, cap_first.data, arc_base.data,
+      a.chunks,
+      PlaceChunkFeatures{&executor.kernels(), &atoms, &parameters, a.atoms_per_chunk, a.cap_first.data, a.arc_base.data,
                          f.cap_ranges.data, f.exposed.data, f.caps.data, f.arcs.data},
       1);
+}
+
+// Only counted.
+inline void find_solvent_features(CountingExecutor<CpuExecutor> &executor, const NeighborGridView &atoms,
+                                  const SurfaceParameters &, bool low_memory, SolventFeatures *features) {
+  const FeatureArrays a(executor, atoms.count, executor.real().threads());
+  const auto mark = executor.arena().mark();
+  if (!low_memory && executor.arena().has_budget()) PooledFeatures(executor, a.atoms);
+  executor.exclusive_scan(a.atoms, 0, a.cap_first);
+  executor.arena().rewind(mark);
+  features->caps = executor.allocate<Cap>(executor.facts().caps);
+  features->arcs = executor.allocate<Arc>(executor.facts().arcs);
 }
 
 }  // namespace quickses

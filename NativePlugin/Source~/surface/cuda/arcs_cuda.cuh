@@ -5,48 +5,11 @@
 
 #include "parallel/cuda_executor.cuh"
 #include "parallel/cuda_warp.cuh"
+#include "surface/cuda/learnt_rooms_cuda.cuh"
 #include "surface/stages/solvent_features.h"
 
 namespace quickses {
 namespace gpu {
-
-// What was counted, whether there was room for it or not.
-struct FeatureCounters {
-  unsigned long long caps, circles;
-  unsigned long long staged;  // circles with exposed arcs in the upper half, arcs before they are split in the lower
-  unsigned long long arcs;
-  uint32_t neighbors;     // most of an atom for which the rows were too short
-  uint32_t long_atoms;    // number of those atoms
-  uint32_t longest_row;   // most caps of an atom
-  uint32_t long_circles;  // circles with more exposed intervals than a lane holds
-};
-
-// How much of each there is room for.
-struct FeatureRoom {
-  size_t caps, circles, staged_circles, staged_arcs, arcs;
-  size_t neighbors;   // per atom in global memory; 0: only what shared memory holds
-  size_t long_atoms;  // that need it; at least so many
-  size_t intervals;   // per circle in global memory; 0: only what a lane holds
-
-  static FeatureRoom guess(size_t atoms) {
-    return {28 * atoms + 1024, 14 * atoms + 512, 3 * atoms + 512, 5 * atoms + 512, 7 * atoms + 1024, 0, 0, 0};
-  }
-  bool holds(const FeatureCounters &c) const {
-    return c.neighbors <= neighbors && c.caps <= caps && c.circles <= circles && (c.staged >> 32) <= staged_circles &&
-           (c.staged & 0xffffffffu) <= staged_arcs && c.arcs <= arcs &&
-           (c.long_circles == 0 || c.longest_row + 1u <= intervals);
-  }
-  void grow(const FeatureCounters &c) {
-    neighbors = std::max<size_t>(neighbors, (c.neighbors + size_t(31)) / 32 * 32);  // keeps the rows aligned
-    long_atoms = std::max<size_t>(long_atoms, c.long_atoms);
-    caps = std::max<size_t>(caps, c.caps);
-    circles = std::max<size_t>(circles, c.circles);
-    staged_circles = std::max<size_t>(staged_circles, c.staged >> 32);
-    staged_arcs = std::max<size_t>(staged_arcs, c.staged & 0xffffffffu);
-    arcs = std::max<size_t>(arcs, c.arcs);
-    if (c.long_circles > 0) intervals = std::max<size_t>(intervals, c.longest_row + 1u);
-  }
-};
 
 QSES_FN bool is_far_away(const Sphere &s) { return s.center.x >= 0.5f * kFarAway; }
 
@@ -308,16 +271,17 @@ static __global__ __launch_bounds__(128) void write_arcs_kernel(CircleJob job, c
 }
 
 // All from the caps to the arcs.
-inline void clip_circles(CudaExecutor &executor, CircleJob job) {
+template <class E>
+void clip_circles(E &executor, CircleJob job) {
   const FeatureRoom &room = job.room;
   const size_t processors = executor.multiprocessors(), n = job.run.size();
-  job.names = executor.allocate<CircleName>(room.circles).data;
-  Span<uint32_t> arc_count = executor.allocate<uint32_t>(room.circles);
-  Span<uint32_t> arc_first = executor.allocate<uint32_t>(room.circles + 1);
+  job.names = executor.template allocate<CircleName>(room.circles).data;
+  Span<uint32_t> arc_count = executor.template allocate<uint32_t>(room.circles);
+  Span<uint32_t> arc_first = executor.template allocate<uint32_t>(room.circles + 1);
   job.arc_count = arc_count.data;
-  job.staged = executor.allocate<StagedCircle>(room.staged_circles).data;
-  job.staged_arcs = executor.allocate<ExposedArc>(room.staged_arcs).data;
-  job.long_circles = executor.allocate<uint32_t>(room.circles).data;
+  job.staged = executor.template allocate<StagedCircle>(room.staged_circles).data;
+  job.staged_arcs = executor.template allocate<ExposedArc>(room.staged_arcs).data;
+  job.long_circles = executor.template allocate<uint32_t>(room.circles).data;
   executor.fill(arc_count, 0);
 
   executor.launch("list_circles", list_circles_kernel, std::min((n + 3) / 4, processors * 32), 128, 0, job);
@@ -328,7 +292,7 @@ inline void clip_circles(CudaExecutor &executor, CircleJob job) {
                   kClipThreads, 0, job, chunk);
   if (room.intervals > 0) {
     const size_t blocks = 16;
-    Span<Interval> memory = executor.allocate<Interval>(blocks * kWarp * room.intervals);
+    Span<Interval> memory = executor.template allocate<Interval>(blocks * kWarp * room.intervals);
     executor.launch("clip_long_circles", clip_long_circles_kernel, blocks, kWarp, 0, job, memory.data);
   }
   executor.exclusive_scan(room.circles, LoadNumber{arc_count.data}, arc_first);

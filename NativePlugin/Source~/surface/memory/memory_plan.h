@@ -1,98 +1,44 @@
 // SPDX-License-Identifier: MIT
-// Bytes that the work on a surface takes, from what is known of it: for estimates before the work, and for what to say
-// when a budget does not suffice. The stages allocate what is counted here; memory_test.cpp compares the two.
+// The ladder of plans: ways to make the same surface, byte for byte, with less and less memory in more and more time.
 #pragma once
 
-#include "surface/methods/exact_surface.h"
-#include "surface/methods/grid_ses.h"
-#include "surface/memory/work_facts.h"
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
 
 namespace quickses {
 
-template <class Executor>
-class MemoryPlan {
- public:
-  MemoryPlan(const WorkFacts &facts, const WorkKind &kind) : f_(facts), k_(kind) {}
+// Slices are not cut smaller than this, in bricks.
+constexpr uint32_t kLeastSlice = 16;
+// Nor runs of atoms.
+constexpr uint32_t kLeastRun = 128;
+// With room for the work on so many bricks at a time, slices cost next to nothing.
+constexpr uint32_t kRoomySlice = 4096;
 
-  // All at once, as without a budget; prepared: bytes that the features keep, peak: most that they took.
-  double whole(double prepared, double peak) const {
-    double making = beside_mesh();
-    if (Executor::kIsCuda && k_.exact)
-      making +=
-          f_.size.bricks * CandidatesOf<Executor>::emission_bytes(
-                               k_.parameters, candidates(), f_.size.vertices / bricks(), f_.size.leaves / bricks()) +
-          CandidatesOf<Executor>::kSpareBytes;
-    double level =
-        brick_bytes() + (k_.exact ? 0 : kGridBrickBytes * f_.size.bricks) + std::max(making, component_bytes());
-    if (Executor::kIsCuda) level += mesh_bytes();
-    return std::max(peak, prepared + level + mask_bytes());
-  }
+struct MemoryPlan {
+  bool single_slice;     // all bricks at once; what signs and vertices share is kept
+  bool low_memory;       // features are found in runs of atoms, and only what later stages read is kept
+  bool mesh_in_pieces;   // the mesh leaves the device slice by slice; on the CPU it is where it is read anyway
+  uint32_t least_slice, most_slice;  // bricks that are worked on at a time, if they are not all
+  uint32_t most_atoms;               // whose features are looked for at a time, with low memory
 
-  // With as little as possible, in pieces.
-  double least() const {
-    const double atoms = static_cast<double>(f_.atoms), arcs = static_cast<double>(f_.arcs);
-    const double atom_grid = 21 * atoms + 4 * static_cast<double>(f_.atom_cells) + (k_.shape.colors ? 4 * atoms : 0) +
-                             (k_.shape.texcoords ? 8 * atoms : 0) + (k_.masked ? atoms : 0);
-    double kept = atom_grid, most = atom_grid + 52 * atoms;
-    if (k_.exact) {
-      kept += 9 * atoms + 16 * static_cast<double>(f_.caps) + 48 * arcs;
-      if (!Executor::kIsCuda) kept += (8 + kChunkBytes) * atoms;
-      most = std::max(most, kept + (Executor::kIsCuda ? run_bytes() : 0.0));
-      kept += 20 * arcs + 4 * static_cast<double>(f_.arc_cells);
-      most = std::max(most, kept + 52 * arcs);
-    } else {
-      kept += kGridBrickBytes * f_.size.bricks;
-    }
-    double level = brick_bytes() + std::max(beside_mesh(), component_bytes()) + mask_bytes();
-    if (Executor::kIsCuda)
-      level = brick_bytes() + (k_.masked ? (f_.size.vertices + f_.size.triangles) / 4 : 0) + slice_bytes();
-    return std::max(most, kept + level) * 1.02 + 32768;
+  // Bricks per slice, if there are several, where so many fit.
+  uint32_t slice(uint64_t fitting, uint32_t bricks) const {
+    const uint64_t wanted = std::min<uint64_t>(most_slice, std::max<uint64_t>(least_slice, fitting));
+    return static_cast<uint32_t>(std::min<uint64_t>(bricks, wanted));
   }
-
-  double mesh_bytes() const {
-    return static_cast<double>(
-        MeshArrays(static_cast<size_t>(f_.size.vertices), static_cast<size_t>(f_.size.triangles), k_.shape).bytes());
-  }
-
- private:
-  static constexpr double kChunkBytes = 10;  // per atom, of chunks of four
-
-  CandidateCounts candidates() const { return {static_cast<double>(f_.atoms), static_cast<double>(f_.arcs)}; }
-  // The smallest run of atoms (solvent_features_cuda.cuh). Larger spheres have more neighbours: rows of those that have
-  // more than shared memory holds.
-  double run_bytes() const {
-    const double wide = std::max(1.0, static_cast<double>(k_.parameters.max_radius) / 3.2);
-    const double neighbors = std::min(static_cast<double>(f_.atoms), 60.0 * wide * wide * wide);
-    const double caps = std::min(neighbors, 28.0 * wide * wide);
-    return 128 * 3 * (30 * caps + 300) + (neighbors > 100 ? 128 * 24 * 1.5 * neighbors : 0.0) + 150000;
-  }
-  double bricks() const { return std::max(1.0, f_.size.bricks); }
-  // Table, list, signs and layout.
-  double brick_bytes() const {
-    return 5 * static_cast<double>(f_.brick_entries) + (8 + 64 + 276 + 8 + 12) * f_.size.bricks;
-  }
-  // Sums and starts of the steps after the first; of the grid method, sums.
-  double beside_mesh() const {
-    if (!k_.exact) return sizeof(RingSum) * f_.size.vertices;
-    return k_.relaxation_steps > 1 ? (sizeof(RingSum) + sizeof(glm::vec3)) * f_.size.vertices : 0.0;
-  }
-  // Where there is no room for them, the GPU leaves the components to the CPU.
-  double component_bytes() const { return k_.components ? kComponentBytes * f_.size.vertices : 0.0; }
-  // The mesh that is handed out besides the whole one; on the CPU it is the whole one that is work.
-  double mask_bytes() const { return k_.masked ? mesh_bytes() + (f_.size.vertices + f_.size.triangles) / 4 : 0.0; }
-  // The smallest slices, of bricks much fuller than the mean.
-  double slice_bytes() const {
-    if (!k_.exact) return 65536;
-    const double vertices = 3 * f_.size.vertices / bricks(), triangles = 3 * f_.size.triangles / bricks();
-    const double slab = vertices * (28 + (k_.shape.texcoords ? 8 : 0) + 5) + triangles * 12;
-    return kLeastSlice *
-               (CandidatesOf<Executor>::emission_bytes(k_.parameters, candidates(), vertices, kLeavesPerBrick) * 2 +
-                slab) +
-           32768;
-  }
-
-  WorkFacts f_;
-  WorkKind k_;
 };
+
+constexpr uint32_t kAny = ~uint32_t(0);
+constexpr MemoryPlan kMemoryPlans[] = {
+    {true, false, false, kRoomySlice, kAny, kAny},
+    {false, false, false, kRoomySlice, kAny, kAny},
+    {false, true, false, kRoomySlice, kAny, kAny},
+    {false, true, true, kLeastSlice, kAny, kAny},
+    // Bricks and atoms differ: where pieces of the mean size do not fit, smaller ones may.
+    {false, true, true, kLeastSlice, 16 * kLeastSlice, 16 * kLeastRun},
+    {false, true, true, kLeastSlice, kLeastSlice, kLeastRun},
+};
+constexpr size_t kMemoryPlanCount = sizeof kMemoryPlans / sizeof kMemoryPlans[0];
 
 }  // namespace quickses

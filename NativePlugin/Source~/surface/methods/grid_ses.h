@@ -44,13 +44,13 @@ struct BallBricks {
 
 template <class Executor>
 BrickSet find_grid_bricks(Executor &executor, const NeighborGridView &atoms, const GridParameters &parameters,
-                          const Lattice &lattice) {
+                          const Lattice &lattice, uint64_t *listed = nullptr) {
   const double reach = static_cast<double>(parameters.max_radius) / static_cast<double>(lattice.brick_size());
   if (atoms.count > 0 && 4.0 / 3.0 * 3.14159265358979 * reach * reach * reach > static_cast<double>(kMaxBricks))
     throw Error(QSES_TOO_FINE,
                 "the largest inflated atom alone needs more bricks of the SES grid than 32-bit numbers can name: use a "
                 "larger spacing");
-  return collect_bricks(executor, BallBricks{atoms, lattice}, lattice);
+  return collect_bricks(executor, BallBricks{atoms, lattice}, lattice, listed);
 }
 
 // ---- classes ---------------------------------------------------------------------------------------------------
@@ -167,10 +167,7 @@ struct ClassifyBrick {
   }
 };
 
-// Bytes per brick of a field.
-constexpr double kGridBrickBytes = kLeavesPerBrick * sizeof(uint64_t) + sizeof(uint16_t) + sizeof(BrickSide);
-
-// The classes of all bricks: kGridBrickBytes per brick stay allocated. bricks and atoms must outlive the field.
+// The classes of all bricks, which stay allocated. bricks and atoms must outlive the field.
 template <class Executor>
 GridField classify_grid_points(Executor &executor, const NeighborGridView &atoms, const GridParameters &parameters,
                                const BrickSet &bricks) {

@@ -1,77 +1,30 @@
 // SPDX-License-Identifier: MIT
-// What the stages of one computation share.
+// The work on one level: what its stages share, and how it is cut into slices.
 #pragma once
 
 #include "parallel/error.h"
+#include "surface/memory/memory_plan.h"
+#include "surface/mesh/mesh_memory.h"
+#include "surface/methods/progress.h"
 #include "surface/stages/appearance.h"
-#include "surface/engine.h"
-#include "surface/stages/measure.h"
-#include "surface/mesh/mesh_arrays.h"
+#include "surface/stages/components.h"
 #include "surface/stages/hot_stages.h"
-#include "surface/memory/work_facts.h"
 
 #include <algorithm>
 
 namespace quickses {
 
-// Hands the fraction done to the caller, never falling, in steps of a few per mille; and ends the computation where it
-// was told to stop.
-class Progress {
- public:
-  void set(std::function<void(double)> callback) { callback_ = std::move(callback); }
-  // Fractions reported from now on are those of the part from begin to end of the whole.
-  void rest() { sink_ = nullptr; }
-  void restart(LevelSink &sink) {
-    sink_ = &sink;
-    last_ = -1;
-  }
-  void enter(double begin, double end) {
-    begin_ = begin;
-    end_ = end;
-  }
-  bool wanted() const { return static_cast<bool>(callback_); }
-  void report(double fraction) {
-    if (!sink_) return;
-    if (sink_->stop_flag().load(std::memory_order_relaxed)) throw Cancelled{};
-    const double whole = begin_ + (end_ - begin_) * fraction;
-    if (whole < last_ + 0.005 && !(whole >= 1.0 && last_ < 1.0)) return;
-    last_ = whole;
-    sink_->advance(whole);
-    if (callback_) callback_(whole);
-  }
-
- private:
-  std::function<void(double)> callback_;
-  LevelSink *sink_ = nullptr;
-  double begin_ = 0, end_ = 1, last_ = -1;
-};
-
-// A mesh being made, in the memory of the back end.
-struct MeshMemoryView {
-  MeshView view{};
-  MeshShape shape{};
-  size_t vertices = 0, triangles = 0, bytes = 0;
-  void *memory = nullptr;
-  bool on_host = false;                // CUDA: it did not fit on the device; it is filled slab by slab
-  const uint32_t *unplaced = nullptr;  // vertices without a feature, in the memory of the back end; nullptr: none
-  Bounds bounds{};
-  Span<const qses_component> components{};  // in host memory
-};
-
-// What a mesh is for: to be handed out, or to be made into another one.
-enum class MeshPurpose { kDelivered, kWork };
-
-template <class Executor>
-class MeshMemory;
-
 template <class Executor, class Timer>
-struct Run {
+struct LevelWork {
   Executor &executor;
   Timer &timer;
   MeshMemory<Executor> &memory;
+  ComponentFinder &components;
+  LearntRooms<Executor> &rooms;
   Progress &progress;
   TableView table;
   const qses_settings &settings;
+  MemoryPlan plan;
   SurfaceParameters parameters;
   Lattice lattice;
   glm::vec3 low, high;  // bounds of the atoms' centres, centred frame
@@ -80,53 +33,31 @@ struct Run {
   AppearanceView appearance;
   MeshShape shape;
   MeshPurpose purpose;
-  bool frugal;  // memory is short
-  qses_report *report;
   WorkFacts *facts;
+  qses_report *report;
 };
 
-// Slices are not cut smaller than this when memory is refused.
-constexpr uint32_t kLeastSlice = 16;
-// With room for the work on so many bricks at a time, slices cost next to nothing.
-constexpr uint32_t kRoomySlice = 4096;
-
-// How bricks are worked on: all in one slice, whose memory is kept; or in slices of at most so many, which shrink where
-// memory is refused, and give up what they took.
-struct Slicing {
-  bool together;
-  uint32_t bricks;
-};
-
-// Calls work(slice) for all bricks and reports progress from `begin` to `end`. Returns the number of slices.
-template <class R, class Work>
-uint64_t for_each_slice(R &run, uint32_t brick_count, Slicing slicing, double begin, double end, const Work &work) {
-  const bool one = slicing.together;
-  uint32_t bricks_per_slice = std::max<uint32_t>(1, slicing.bricks);
+// Calls work_on(slice) for runs of so many bricks, and reports progress from `begin` to `end`. The memory that a slice
+// takes is given up after it, unless it is the only one. Returns the number of slices.
+template <class Work, class WorkOn>
+uint64_t for_each_slice(Work &work, uint32_t brick_count, uint32_t bricks_per_slice, double begin, double end,
+                        const WorkOn &work_on) {
+  const bool single = bricks_per_slice >= brick_count && work.plan.single_slice;
   uint64_t slices = 0;
   for (uint32_t first = 0; first < brick_count; ++slices) {
-    uint32_t last = one ? brick_count : first + std::min(bricks_per_slice, brick_count - first);
-    const auto mark = run.executor.arena().mark();
-    for (;;) {
-      try {
-        work(BrickRange{first, last});
-        break;
-      } catch (const MemoryRefused &) {
-        if (one || last - first <= kLeastSlice) throw;
-        run.executor.arena().rewind(mark);
-        bricks_per_slice = std::max(kLeastSlice, (last - first) / 2);
-        last = first + bricks_per_slice;
-      }
-    }
-    if (!one) run.executor.arena().rewind(mark);
-    first = last;
-    run.progress.report(begin + (end - begin) * first / brick_count);
+    const uint32_t last = first + std::min(std::max<uint32_t>(1, bricks_per_slice), brick_count - first);
+    const auto mark = work.executor.arena().mark();
+    work_on(BrickRange{first, last});
+    if (!single) work.executor.arena().rewind(mark);
+    first = std::decay_t<decltype(work.executor)>::kCounts ? brick_count : last;  // the first is as large as any
+    work.progress.report(begin + (end - begin) * first / brick_count);
   }
   return slices;
 }
 
-// Bricks per slice from the settings: at most slice_size cubed lattice points. slice_size 0: all at once, or as many
-// as keep the caller informed if progress is asked for.
-inline uint32_t bricks_per_slice(const qses_settings &settings, uint32_t brick_count, bool want_progress) {
+// Bricks per slice that the caller asked for: at most slice_size cubed lattice points. slice_size 0: all at once, or as
+// many as keep the caller informed if progress is asked for.
+inline uint32_t asked_slice(const qses_settings &settings, uint32_t brick_count, bool want_progress) {
   uint64_t n = brick_count;
   if (settings.slice_size > 0) {
     const uint64_t edge = settings.slice_size;

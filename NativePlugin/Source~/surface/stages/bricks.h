@@ -8,6 +8,7 @@
 #include "parallel/arena.h"
 #include "parallel/error.h"
 #include "surface/geometry/lattice.h"
+#include "surface/memory/counting_executor.h"
 #include "surface/stages/solvent_features.h"
 
 #include <algorithm>
@@ -268,16 +269,38 @@ inline uint32_t checked_brick_count(size_t found) {
   return static_cast<uint32_t>(found);
 }
 
+// Memory of the two ways to make a set. Room: whoever gives memory.
+struct FlaggedBricks {
+  Span<int32_t> table;
+  Span<uint8_t> flags;
+  template <class Room>
+  FlaggedBricks(Room &room, uint64_t entries)
+      : table(room.template allocate<int32_t>(entries)), flags(room.template allocate<uint8_t>(entries)) {}
+};
+struct SortedBricks {
+  Span<uint64_t> keys, linear;
+  Span<uint32_t> unused;
+  template <class Room>
+  SortedBricks(Room &room, uint64_t visits)
+      : keys(room.template allocate<uint64_t>(visits)),
+        linear(room.template allocate<uint64_t>(visits)),
+        unused(room.template allocate<uint32_t>(visits)) {}
+};
+
+// Whether the list gets room for all entries: while that is little.
+inline bool lists_all_entries(uint64_t entries, bool has_budget) { return entries <= kSmallTable && !has_budget; }
+
 template <class Executor, class Items>
 BrickSet flag_bricks(Executor &executor, const Items &items, const Lattice &lattice) {
   const uint64_t entries = lattice.table_size();
-  Span<int32_t> table = executor.template allocate<int32_t>(entries);
-  Span<uint8_t> flags = executor.template allocate<uint8_t>(entries);
+  const FlaggedBricks memory(executor, entries);
+  const Span<int32_t> table = memory.table;
+  const Span<uint8_t> flags = memory.flags;
   executor.fill(flags, 0);
   executor.fill(table, 0xff);
   executor.for_each(items.size(), FlagBricks<Items>{items, flags.data});
-  // Room for the list: for all entries while that is little, else counted first.
-  const uint64_t room = entries <= kSmallTable && !executor.arena().has_budget()
+  // Room for the list: for all entries, or counted first.
+  const uint64_t room = lists_all_entries(entries, executor.arena().has_budget())
                             ? entries
                             : static_cast<uint64_t>(executor.reduce(entries, LoadCount<uint8_t>{flags.data}));
   Span<uint64_t> linear = executor.template allocate<uint64_t>(room);
@@ -289,9 +312,9 @@ BrickSet flag_bricks(Executor &executor, const Items &items, const Lattice &latt
 template <class Executor, class Items>
 BrickSet sort_bricks(Executor &executor, const Items &items, const Lattice &lattice, Span<uint64_t> first,
                      uint64_t visits) {
-  Span<uint64_t> keys = executor.template allocate<uint64_t>(visits);
-  Span<uint64_t> linear = executor.template allocate<uint64_t>(visits);
-  Span<uint32_t> unused = executor.template allocate<uint32_t>(visits);
+  const SortedBricks memory(executor, visits);
+  const Span<uint64_t> keys = memory.keys, linear = memory.linear;
+  const Span<uint32_t> unused = memory.unused;
   executor.for_each(items.size(), ListBricks<Items>{items, first.data, keys.data});
   executor.for_each(visits, SortValue{unused.data});
   executor.sort_by_key(keys, unused, bits_for(lattice.table_size()));
@@ -301,9 +324,10 @@ BrickSet sort_bricks(Executor &executor, const Items &items, const Lattice &latt
 }
 
 // The set of all bricks that the items visit. A table with an entry per brick of the box while that is the smaller way:
-// a stray atom far away makes the box large, a fine spacing makes the visits many.
+// a stray atom far away makes the box large, a fine spacing makes the visits many. listed: visits, if they were.
 template <class Executor, class Items>
-BrickSet collect_bricks(Executor &executor, const Items &items, const Lattice &lattice) {
+BrickSet collect_bricks(Executor &executor, const Items &items, const Lattice &lattice, uint64_t *listed = nullptr) {
+  if (listed) *listed = 0;
   const size_t n = items.size();
   const uint64_t entries = lattice.table_size();
   if (entries <= kSmallTable) return flag_bricks(executor, items, lattice);
@@ -320,12 +344,38 @@ BrickSet collect_bricks(Executor &executor, const Items &items, const Lattice &l
   const uint64_t visits = executor.fetch(first.data + n);
   if (entries <= kMaxDenseCells && entries * kDenseEntryBytes <= visits * kVisitBytes)
     return flag_bricks(executor, items, lattice);
+  if (listed) *listed = visits;
   return sort_bricks(executor, items, lattice, first, visits);
 }
 
+// As many as there are known to be; where it is not known whether their table is dense, what would be smaller.
+template <class Executor, class Items>
+BrickSet collect_bricks(CountingExecutor<Executor> &executor, const Items &items, const Lattice &lattice,
+                        uint64_t * = nullptr) {
+  const WorkFacts &facts = executor.facts();
+  const uint64_t count = static_cast<uint64_t>(facts.size.bricks), entries = lattice.table_size();
+  constexpr uint64_t kVisitsPerBrick = 4;
+  const uint64_t visits = facts.brick_visits ? facts.brick_visits : kVisitsPerBrick * count;
+  static const int32_t some_table = 0;
+  BrickSet set{lattice, nullptr, nullptr, static_cast<uint32_t>(std::min<uint64_t>(count, kMaxBricks))};
+  if (facts.brick_visits == 0 && entries <= kMaxDenseCells &&
+      (entries <= kSmallTable || entries * kDenseEntryBytes <= visits * kVisitBytes || facts.brick_entries > 0)) {
+    FlaggedBricks(executor, entries);
+    executor.template allocate<uint64_t>(lists_all_entries(entries, executor.arena().has_budget()) ? entries : count);
+    executor.compact(entries, 0, Span<uint64_t>{});
+    set.table = &some_table;
+  } else {
+    executor.template allocate<uint64_t>(items.size() + 1);
+    SortedBricks(executor, visits);
+    executor.sort_by_key(Span<uint64_t>{nullptr, visits}, Span<uint32_t>{nullptr, visits}, 64);
+  }
+  return set;
+}
+
 template <class Executor>
-BrickSet find_bricks(Executor &executor, const FeatureView &features, const Lattice &lattice) {
-  return collect_bricks(executor, FeatureBricks{features, lattice}, lattice);
+BrickSet find_bricks(Executor &executor, const FeatureView &features, const Lattice &lattice,
+                     uint64_t *listed = nullptr) {
+  return collect_bricks(executor, FeatureBricks{features, lattice}, lattice, listed);
 }
 
 }  // namespace quickses

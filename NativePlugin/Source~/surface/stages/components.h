@@ -3,9 +3,10 @@
 // negative one. Vertices are joined along the edges of the triangles into trees whose roots are the smallest vertices.
 #pragma once
 
-#include "parallel/cpu_executor.h"
 #include "parallel/growing_buffer.h"
-#include "surface/engine.h"
+#include "parallel/host_memory.h"
+#include "surface/mesh/mesh_memory.h"
+#include "surface/stages/host_components.h"
 #include "surface/stages/measure.h"
 
 namespace quickses {
@@ -190,9 +191,6 @@ class ComponentMemory {
   int slot_ = 0;
 };
 
-// Bytes of arena per vertex that find_components takes.
-constexpr double kComponentBytes = 8;
-
 // The components in the order of their first vertices; valid until the next call with the same slot. Waits.
 template <class Executor>
 Span<const qses_component> find_components(Executor &executor, const MeshView &mesh, const MeshCounts &counts,
@@ -221,5 +219,26 @@ Span<const qses_component> find_components(Executor &executor, const MeshView &m
   for (size_t k = 0; k < count; ++k) components[k] = describe_component(found[k], units, h);
   return {components.data, count};
 }
+
+// Finds them where the mesh is, with memory that is kept: on the device, or, for a mesh that left it in pieces, by the
+// CPU's threads. The numbers are the same.
+class ComponentFinder {
+ public:
+  // threads: of the CPU, 0 for all; used only for meshes that left the device.
+  explicit ComponentFinder(unsigned threads) : on_host_(threads) {}
+  void use_slot(int slot) { memory_.use_slot(slot); }
+  template <class Executor>
+  Span<const qses_component> find(Executor &executor, const MeshMemoryView &mesh, float spacing) {
+    const MeshCounts counts{mesh.vertices, mesh.triangles};
+    if (!mesh.in_pieces) return find_components(executor, mesh.view, counts, spacing, memory_);
+    executor.wait();
+    return Executor::kCounts ? Span<const qses_component>{} : on_host_.find(mesh.view, counts, spacing, memory_);
+  }
+  uint64_t bytes() const { return memory_.bytes() + on_host_.bytes(); }
+
+ private:
+  ComponentMemory memory_;
+  HostComponents on_host_;
+};
 
 }  // namespace quickses

@@ -1,24 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The three hot stages that have one driver per back end. Both drivers use the same functions of geometry; they differ
-// in the shape of their loops: packs of eight and one thread per brick on the CPU, warps on the GPU. The pipeline calls
-// them by overload on the executor:
-//
-//   void find_solvent_features(Executor &, const NeighborGridView &atoms, const SurfaceParameters &, bool frugal,
-//                              SolventFeatures *)
-//       frugal: with as little memory as possible, in more time. Throws MemoryRefused; the sizes of the features are
-//       set if they were counted before
-//   Candidates<Executor>   what the two stages below may share for a slice of bricks (CPU: nothing)
-//   void evaluate_signs(Executor &, const FeatureView &, const BrickSet &, BrickRange, Candidates<Executor> &,
-//                       uint64_t *signs)
-//       signs[8 * brick + leaf] for the bricks of the slice: bit set = farther than depth inside the boundary
-//   void emit_vertices(Executor &, const FeatureView &, const BrickSet &, const MeshLayout &, BrickRange,
-//                      Candidates<Executor> &, const VertexStarts &, const MeshView &)
-//   void emit_triangles(Executor &, const BrickSet &, const MeshLayout &, BrickRange, const TableView &,
-//                       const MeshView &)
+// The hot stages that have one driver per back end. Both drivers use the same functions of geometry; they differ in the
+// shape of their loops: packs of eight and one thread per brick on the CPU, warps on the GPU.
 #pragma once
 
+#include "surface/memory/memory_plan.h"
 #include "surface/stages/marching_cubes.h"
 #include "surface/stages/projection.h"
+
+#include <type_traits>
 
 namespace quickses {
 
@@ -43,12 +32,44 @@ struct TableView {
   const uint64_t (*ring)[kCellEdges];  // [256]
 };
 
-// CandidatesOf<E>::type, and bytes of arena that a brick takes, roughly: sign_bytes(parameters) while signs are
-// evaluated, emission_bytes(parameters, vertices and leaves with vertices of the brick) while vertices are emitted,
-// whole_bytes(parameters) for all until the mesh is done, if all bricks are worked on at once; kSpareBytes besides.
+// What a back end must offer, as static functions; BackendContract lets the compiler check it. Where E stands, they also
+// take a CountingExecutor of theirs, and then only ask for memory.
+//
+//   Candidates     what signs and vertices may share for a slice of bricks
+//   LearntRooms    how much room the last surface of so many atoms took, where that is not known beforehand
+//   find_solvent_features(E, atoms, parameters, plan, rooms, features)
+//   evaluate_signs(E, features, bricks, slice, rooms, candidates, signs)
+//       signs[8 * brick + leaf] for the bricks of the slice: bit set = farther than depth inside the boundary
+//   emit_vertices(E, features, bricks, layout, slice, rooms, candidates, starts, mesh)
+//   emit_triangles(E, bricks, layout, slice, table, mesh)
 template <class Executor>
-struct CandidatesOf;
+struct Backend;
 template <class Executor>
-using Candidates = typename CandidatesOf<Executor>::type;
+struct Backend<CountingExecutor<Executor>> : Backend<Executor> {};
+
+template <class Executor>
+using Candidates = typename Backend<Executor>::Candidates;
+template <class Executor>
+using LearntRooms = typename Backend<Executor>::LearntRooms;
+
+template <class Executor>
+struct BackendContract {
+  using B = Backend<Executor>;
+  template <class Function, class... Arguments>
+  static constexpr bool has = std::is_invocable_r<void, Function, Executor &, Arguments...>::value;
+  static_assert(has<decltype(&B::template find_solvent_features<Executor>), const NeighborGridView &,
+                    const SurfaceParameters &, const MemoryPlan &, typename B::LearntRooms &, SolventFeatures *>,
+                "find_solvent_features");
+  static_assert(has<decltype(&B::template evaluate_signs<Executor>), const FeatureView &, const BrickSet &, BrickRange,
+                    typename B::LearntRooms &, typename B::Candidates &, uint64_t *>,
+                "evaluate_signs");
+  static_assert(has<decltype(&B::template emit_vertices<Executor>), const FeatureView &, const BrickSet &,
+                    const MeshLayout &, BrickRange, typename B::LearntRooms &, typename B::Candidates &,
+                    const VertexStarts &, const MeshView &>,
+                "emit_vertices");
+  static_assert(has<decltype(&B::template emit_triangles<Executor>), const BrickSet &, const MeshLayout &, BrickRange,
+                    const TableView &, const MeshView &>,
+                "emit_triangles");
+};
 
 }  // namespace quickses

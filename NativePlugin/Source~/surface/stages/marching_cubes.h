@@ -4,6 +4,7 @@
 #pragma once
 
 #include "parallel/atomics.h"
+#include "surface/memory/counting_executor.h"
 #include "surface/stages/brick_border.h"
 #include "surface/stages/marching_cubes_table.h"
 #include "surface/mesh/mesh_view.h"
@@ -18,6 +19,12 @@ struct MeshTotals {
   uint32_t unplaced;        // vertices for which no feature was found; counted while they are emitted
 };
 
+// 32 bits: what is more does not become a mesh.
+inline MeshTotals expected_value(const WorkFacts &facts, const MeshTotals *) {
+  const auto number = [](double n) { return static_cast<uint32_t>(std::min(n, 4294967294.0)); };
+  return {number(facts.size.vertices), number(facts.size.triangles), number(facts.size.leaves), 0, 0};
+}
+
 // What counting leaves behind, per active brick. Vertices are numbered by brick, leaf, axis of their edge, and bit;
 // triangles by brick, leaf, bit of their cell, and place in the table.
 struct MeshLayout {
@@ -30,8 +37,8 @@ struct MeshLayout {
   uint32_t *leaf_base;      // [brick + 1]: leaves that own vertices before the brick
   BorderSigns *border;      // [brick]
   MeshTotals *totals;
-  uint64_t vertex_total;    // of all bricks
-  uint64_t leaf_total;      // that own vertices
+  uint64_t vertex_total, triangle_total;  // of all bricks
+  uint64_t leaf_total;                    // that own vertices
   uint64_t border_changes;  // 0, or the set of bricks must grow before anything is emitted
 };
 
@@ -275,18 +282,50 @@ MeshCounts lay_out_mesh(Executor &executor, const BrickSet &bricks, const uint64
   const MeshTotals totals = n > 0 ? executor.fetch(layout->totals) : MeshTotals{};
   layout->border_changes = totals.border_changes;
   // The bases wrap if there are too many; then the true totals are summed up for the message.
-  if (n * kBrickPoints * 5 > 0xffffffffull) {
+  if (!Executor::kCounts && n * kBrickPoints * 5 > 0xffffffffull) {
     const double v = executor.reduce(n, LoadCount<uint32_t>{vertices.data});
     const double t = executor.reduce(n, LoadCount<uint32_t>{triangles.data});
     layout->vertex_total = static_cast<uint64_t>(v);
+    layout->triangle_total = static_cast<uint64_t>(t);
     layout->leaf_total = static_cast<uint64_t>(executor.reduce(n, LoadCount<uint32_t>{owning.data}));
     executor.arena().rewind(mark);
     return {static_cast<uint64_t>(v), static_cast<uint64_t>(t)};
   }
   executor.arena().rewind(mark);
   layout->vertex_total = totals.vertices;
+  layout->triangle_total = totals.triangles;
   layout->leaf_total = totals.leaves;
   return {totals.vertices, totals.triangles};
+}
+
+// What a run of bricks owns.
+struct SliceSizes {
+  uint32_t first_vertex, vertices, first_triangle, triangles, first_leaf, leaves;
+};
+
+// Waits, unless the slice is all of the bricks.
+template <class Executor>
+SliceSizes slice_sizes(Executor &executor, const BrickSet &bricks, const MeshLayout &layout, uint32_t first,
+                       uint32_t last) {
+  if (last - first == bricks.count)
+    return {0, static_cast<uint32_t>(layout.vertex_total), 0, static_cast<uint32_t>(layout.triangle_total),
+            0, static_cast<uint32_t>(layout.leaf_total)};
+  const uint32_t *const sources[6] = {layout.vertex_base + first,   layout.vertex_base + last,
+                                      layout.triangle_base + first, layout.triangle_base + last,
+                                      layout.leaf_base + first,     layout.leaf_base + last};
+  uint32_t n[6];
+  executor.fetch_each(sources, n, 6);
+  return {n[0], n[1] - n[0], n[2], n[3] - n[2], n[4], n[5] - n[4]};
+}
+// The mean; but a few bricks may be three times as full.
+template <class Executor>
+SliceSizes slice_sizes(CountingExecutor<Executor> &, const BrickSet &bricks, const MeshLayout &layout, uint32_t first,
+                       uint32_t last) {
+  constexpr uint32_t kFew = 256;
+  const double part =
+      std::min(1.0, (last - first < kFew ? 3.0 : 1.0) * (last - first) / std::max<uint32_t>(1, bricks.count));
+  const auto of = [&](uint64_t all) { return static_cast<uint32_t>(std::ceil(part * static_cast<double>(all))); };
+  return {0, of(layout.vertex_total), 0, of(layout.triangle_total), 0, of(layout.leaf_total)};
 }
 
 }  // namespace quickses

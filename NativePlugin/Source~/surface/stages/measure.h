@@ -4,15 +4,12 @@
 
 #include "parallel/atomics.h"
 #include "parallel/scalar.h"
+#include "surface/mesh/mesh_memory.h"
 #include "surface/stages/marching_cubes.h"
 
 #include <cstring>
 
 namespace quickses {
-
-struct Bounds {
-  float min[3], max[3];  // Å, caller's coordinates; all 0 for an empty mesh
-};
 
 struct Measures {
   double area;    // Å², sum over the triangles
@@ -80,7 +77,7 @@ Bounds find_bounds(Executor &executor, const MeshView &mesh, const MeshCounts &c
   executor.fill(least, 0xff);
   executor.template for_each_brick<BoundsScratch>((counts.vertices + FindBounds::kChunk - 1) / FindBounds::kChunk,
                                                   FindBounds{mesh, counts.vertices, extra, least.data});
-  uint32_t found[kNumbers];
+  uint32_t found[kNumbers] = {};
   executor.download(found, least.data, kNumbers);
   executor.wait();
   executor.arena().rewind(mark);

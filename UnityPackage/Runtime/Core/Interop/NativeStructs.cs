@@ -114,6 +114,7 @@ namespace QuickSes.Interop
         public fixed ulong Stages[MaxStages * StageTimeBytes / sizeof(ulong)];
         public ulong BorderBricks;
         public ulong UnplacedVertices;
+        public ulong Attempts;
     }
 
     [StructLayout(LayoutKind.Sequential)]

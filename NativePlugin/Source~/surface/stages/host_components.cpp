@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: MIT
 // The components of a mesh in host memory, found by the CPU's threads.
-#include "surface/memory/host_components.h"
+#include "surface/stages/host_components.h"
+
+#include "parallel/cpu_executor.h"
+#include "surface/stages/components.h"
 
 namespace quickses {
 
-HostComponents::HostComponents() = default;
+HostComponents::HostComponents(unsigned threads) : threads_(threads) {}
 HostComponents::~HostComponents() = default;
 
 Span<const qses_component> HostComponents::find(const MeshView &mesh, const MeshCounts &counts, float spacing,
                                                 ComponentMemory &memory) {
-  if (!executor_) executor_ = std::make_unique<CpuExecutor>(0);
+  if (!executor_) executor_ = std::make_unique<CpuExecutor>(threads_);
   executor_->arena().reset();
   return find_components(*executor_, mesh, counts, spacing, memory);
 }

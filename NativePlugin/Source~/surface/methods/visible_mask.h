@@ -3,7 +3,7 @@
 #pragma once
 
 #include "parallel/atomics.h"
-#include "surface/memory/mesh_memory.h"
+#include "surface/methods/level_work.h"
 
 namespace quickses {
 
@@ -93,21 +93,25 @@ uint32_t rank_set(Executor &executor, const RankedSet &set, size_t n) {
   return executor.fetch(set.before + words);
 }
 
-template <class R>
-MeshMemoryView drop_hidden(R &run, const MeshMemoryView &whole) {
-  auto &executor = run.executor;
+template <class Work>
+MeshMemoryView drop_hidden(Work &work, const MeshMemoryView &whole) {
+  auto &executor = work.executor;
   const RankedSet vertices = allocate_set(executor, whole.vertices),
                   triangles = allocate_set(executor, whole.triangles);
   executor.for_each((whole.triangles + 31) / 32,
-                    MarkVisible{whole.view, whole.triangles, run.appearance.visible, triangles, vertices});
-  const uint32_t vertex_count = rank_set(executor, vertices, whole.vertices);
-  const uint32_t triangle_count = rank_set(executor, triangles, whole.triangles);
-  MeshMemoryView shown =
-      run.memory.allocate_mesh(executor, vertex_count, triangle_count, run.shape, MeshPurpose::kDelivered, 0);
+                    MarkVisible{whole.view, whole.triangles, work.appearance.visible, triangles, vertices});
+  uint32_t vertex_count = rank_set(executor, vertices, whole.vertices);
+  uint32_t triangle_count = rank_set(executor, triangles, whole.triangles);
+  if (std::decay_t<decltype(executor)>::kCounts) {  // how many stay is not known: at most all
+    vertex_count = static_cast<uint32_t>(whole.vertices);
+    triangle_count = static_cast<uint32_t>(whole.triangles);
+  }
+  MeshMemoryView shown = work.memory.allocate_mesh(executor, vertex_count, triangle_count, work.shape,
+                                                   MeshPurpose::kDelivered, work.plan.mesh_in_pieces);
   executor.for_each(whole.vertices, MoveVertex{whole.view, shown.view, vertices});
   executor.for_each(whole.triangles, MoveTriangle{whole.view, shown.view, triangles, vertices});
-  run.report->hidden_vertices = static_cast<uint32_t>(whole.vertices) - vertex_count;
-  run.report->hidden_triangles = static_cast<uint32_t>(whole.triangles) - triangle_count;
+  work.report->hidden_vertices = static_cast<uint32_t>(whole.vertices) - vertex_count;
+  work.report->hidden_triangles = static_cast<uint32_t>(whole.triangles) - triangle_count;
   return shown;
 }
 

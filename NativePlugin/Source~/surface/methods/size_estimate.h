@@ -3,9 +3,9 @@
 // that is cheap, else on two coarser ones. Vertices times spacing squared come near a straight line over the spacing.
 #pragma once
 
+#include "surface/methods/exact_surface.h"
 #include "surface/methods/grid_surface.h"
-#include "surface/memory/memory_plan.h"
-#include "surface/memory/size_check.h"
+#include "surface/methods/size_check.h"
 
 namespace quickses {
 
@@ -20,43 +20,40 @@ constexpr double kFilledBalls = 0.8;
 // Å² of surface per atom, if nothing else is known.
 constexpr double kUsualArea = 10;
 
-// Counts at the spacing of the run. Gives up all memory it takes.
-template <class R>
-SurfaceSize count_size(R &run, uint64_t *brick_entries) {
-  auto &executor = run.executor;
+// Counts at the spacing of the work. Gives up all memory it takes.
+template <class Work>
+SurfaceSize count_size(Work &work, WorkFacts *facts) {
+  auto &executor = work.executor;
   using Executor = std::remove_reference_t<decltype(executor)>;
   const auto mark = executor.arena().mark();
   const auto count = [&](const BrickSet &bricks, const auto &evaluate) {
-    *brick_entries = bricks.table ? bricks.lattice.table_size() : 0;
+    facts->brick_entries = bricks.table ? bricks.lattice.table_size() : 0;
     Span<uint64_t> signs = executor.template allocate<uint64_t>(size_t(bricks.count) * kLeavesPerBrick);
     evaluate(bricks, signs.data);
     MeshLayout layout{};
-    const MeshCounts counts = lay_out_mesh(executor, bricks, signs.data, run.table.triangle_count, &layout);
+    const MeshCounts counts = lay_out_mesh(executor, bricks, signs.data, work.table.triangle_count, &layout);
     executor.arena().rewind(mark);
     return SurfaceSize{static_cast<double>(bricks.count), static_cast<double>(counts.vertices),
                        static_cast<double>(counts.triangles), static_cast<double>(layout.leaf_total)};
   };
-  const auto in_slices = [&](const BrickSet &bricks, double bytes_per_brick, const auto &work) {
-    const uint32_t fitting = bricks_that_fit(run, bricks.count, static_cast<uint64_t>(bytes_per_brick) + 1);
-    for_each_slice(run, bricks.count, Slicing{false, fitting}, 0, 0, work);
-  };
-  if (run.settings.method == QSES_METHOD_GRID) {
+  if (work.settings.method == QSES_METHOD_GRID) {
     const GridParameters parameters =
-        make_grid_parameters(run.parameters.probe, run.parameters.spacing, run.parameters.max_radius);
-    return count(find_grid_bricks(executor, run.atoms, parameters, run.lattice),
+        make_grid_parameters(work.parameters.probe, work.parameters.spacing, work.parameters.max_radius);
+    return count(find_grid_bricks(executor, work.atoms, parameters, work.lattice, &facts->brick_visits),
                  [&](const BrickSet &bricks, uint64_t *signs) {
                    if (bricks.count == 0) return;
-                   const GridField field = classify_grid_points(executor, run.atoms, parameters, bricks);
-                   in_slices(bricks, 0, [&](BrickRange slice) { evaluate_grid_signs(executor, field, slice, signs); });
+                   const GridField field = classify_grid_points(executor, work.atoms, parameters, bricks);
+                   evaluate_grid_signs(executor, field, BrickRange{0, bricks.count}, signs);
                  });
   }
-  return count(find_bricks(executor, run.features, run.lattice), [&](const BrickSet &bricks, uint64_t *signs) {
-    if (bricks.count == 0) return;
-    in_slices(bricks, CandidatesOf<Executor>::sign_bytes(run.parameters, candidate_counts(run)), [&](BrickRange slice) {
-      Candidates<Executor> own{};
-      evaluate_signs(executor, run.features, bricks, slice, own, signs);
-    });
-  });
+  return count(find_bricks(executor, work.features, work.lattice, &facts->brick_visits),
+               [&](const BrickSet &bricks, uint64_t *signs) {
+                 if (bricks.count == 0) return;
+                 for_each_slice(work, bricks.count, sign_slice(work, bricks), 0, 0, [&](BrickRange slice) {
+                   Candidates<Executor> own{};
+                   Backend<Executor>::evaluate_signs(executor, work.features, bricks, slice, work.rooms, own, signs);
+                 });
+               });
 }
 
 // What the values at two spacings give at a finer one. In units of area, vertices follow a straight line over the
@@ -87,37 +84,37 @@ inline double guess_pairs(const WorkFacts &facts, const SurfaceParameters &param
 }
 
 // Whether counting at a spacing takes next to no time.
-template <class R>
-bool is_cheap_to_count(const R &run, double spacing) {
-  const double atoms = static_cast<double>(run.facts->atoms);
+template <class Work>
+bool is_cheap_to_count(const Work &work, double spacing) {
+  const double atoms = static_cast<double>(work.facts->atoms);
   if (guess_bricks(atoms, kUsualArea * atoms, spacing) > kCheapBricks) return false;
-  const bool exact = run.settings.method == QSES_METHOD_EXACT;
-  const double pairs = guess_pairs(*run.facts, run.parameters, exact, spacing), brick = spacing * kBrickEdge;
+  const bool exact = work.settings.method == QSES_METHOD_EXACT;
+  const double pairs = guess_pairs(*work.facts, work.parameters, exact, spacing), brick = spacing * kBrickEdge;
   if (exact) return pairs <= kCheapPairs;
   double box = 1;
   for (int d = 0; d < 3; ++d)
     box *=
-        (static_cast<double>(run.high[d] - run.low[d]) + 2.0 * static_cast<double>(run.parameters.max_radius)) / brick;
+        (static_cast<double>(work.high[d] - work.low[d]) + 2.0 * static_cast<double>(work.parameters.max_radius)) / brick;
   return std::min(pairs, box) <= kCheapBricks;
 }
 
-// Of the mesh at the spacing of the run.
-template <class R>
-SurfaceSize estimate_size(const R &wanted) {
+// Of the mesh at the spacing of the work.
+template <class Work>
+SurfaceSize estimate_size(const Work &wanted) {
   const double spacing = static_cast<double>(wanted.parameters.spacing);
-  const auto count_at = [&](double h, uint64_t *entries) {
-    R run = wanted;
-    run.parameters.spacing = run.lattice.spacing = static_cast<float>(h);
-    run.features.parameters = run.parameters;
-    run.lattice = layout_lattice(run.lattice, run.low, run.high, run.parameters.max_radius);
-    return count_size(run, entries);
+  const auto count_at = [&](double h, WorkFacts *facts) {
+    Work work = wanted;
+    work.parameters.spacing = work.lattice.spacing = static_cast<float>(h);
+    work.features.parameters = work.parameters;
+    work.lattice = layout_lattice(work.lattice, work.low, work.high, work.parameters.max_radius);
+    return count_size(work, facts);
   };
   double h = spacing;
   while (!is_cheap_to_count(wanted, h) && 2 * h < 2) h *= 2;
-  if (h == spacing) return count_at(h, &wanted.facts->brick_entries);
-  uint64_t unused = 0;
+  if (h == spacing) return count_at(h, wanted.facts);
+  WorkFacts unused;
   const SurfaceSize fine = count_at(h, &unused), coarse = count_at(2 * h, &unused);
-  wanted.facts->brick_entries = wanted.lattice.table_size() <= kMaxDenseCells ? wanted.lattice.table_size() : 0;
+  wanted.facts->brick_entries = wanted.facts->brick_visits = 0;
   SurfaceSize size = extrapolate(fine, h, coarse, 2 * h, spacing);
   // Bricks of large probes fill space and follow no such line; to find them takes much less than their signs.
   const uint64_t entries = wanted.lattice.table_size(), room = wanted.executor.arena().available();
@@ -137,35 +134,32 @@ struct CountKeptCaps {
 };
 
 // Caps of exposed atoms.
-template <class R>
-uint64_t count_kept_caps(const R &run) {
-  return static_cast<uint64_t>(run.executor.reduce(run.features.atoms.count, CountKeptCaps{run.features.cap_ranges}));
+template <class Work>
+uint64_t count_kept_caps(const Work &work) {
+  return static_cast<uint64_t>(
+      work.executor.reduce(work.features.atoms.count, CountKeptCaps{work.features.cap_ranges}));
 }
 
-// The least that the work would have taken, where it ended before all was counted: the rest is guessed generously.
-// most_bricks: of the table.
-template <class Executor>
-double least_of_unfinished(WorkFacts facts, const WorkKind &kind, double most_bricks) {
-  const double atoms = static_cast<double>(facts.atoms), h = static_cast<double>(kind.parameters.spacing);
-  if (facts.arcs == 0) {
+// What was not counted before the work ended, guessed generously. most_bricks: of the table.
+inline void guess_unknown(const SurfaceParameters &parameters, bool exact, double most_bricks, WorkFacts *facts) {
+  const double atoms = static_cast<double>(facts->atoms), h = static_cast<double>(parameters.spacing);
+  if (facts->arcs == 0) {
     // Larger spheres have more neighbours.
-    const double wide = std::max(1.0, static_cast<double>(kind.parameters.max_radius) / 3.2);
-    facts.caps = static_cast<uint64_t>(18 * atoms * std::min(wide * wide, atoms / 18 + 1));
-    facts.arcs = static_cast<uint64_t>(4 * atoms * wide);
-    facts.arc_cells = facts.atom_cells;
+    const double wide = std::max(1.0, static_cast<double>(parameters.max_radius) / 3.2);
+    facts->caps = static_cast<uint64_t>(18 * atoms * std::min(wide * wide, atoms / 18 + 1));
+    facts->arcs = static_cast<uint64_t>(4 * atoms * wide);
   }
-  if (facts.size.bricks == 0) {
-    const double pairs = guess_pairs(facts, kind.parameters, kind.exact, h);
-    facts.size.bricks =
+  if (facts->size.bricks == 0) {
+    const double pairs = guess_pairs(*facts, parameters, exact, h);
+    facts->size.bricks =
         std::max(1.2 * guess_bricks(atoms, kUsualArea * atoms, h) + 64,
-                 kind.exact ? std::min(pairs, most_bricks) : std::min(kFilledBalls * pairs, kFilledBox * most_bricks));
+                 exact ? std::min(pairs, most_bricks) : std::min(kFilledBalls * pairs, kFilledBox * most_bricks));
   }
-  if (facts.size.vertices == 0) {
-    facts.size.vertices = kVerticesPerCell * kUsualArea * atoms / (h * h);
-    facts.size.triangles = 2 * facts.size.vertices;
-    facts.size.leaves = facts.size.vertices / kVerticesPerLeaf;
+  if (facts->size.vertices == 0) {
+    facts->size.vertices = kVerticesPerCell * kUsualArea * atoms / (h * h);
+    facts->size.triangles = 2 * facts->size.vertices;
+    facts->size.leaves = facts->size.vertices / kVerticesPerLeaf;
   }
-  return 1.1 * MemoryPlan<Executor>(facts, kind).least();
 }
 
 }  // namespace quickses

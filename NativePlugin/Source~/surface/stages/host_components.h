@@ -2,15 +2,21 @@
 // The components of a mesh in host memory, found by the CPU's threads: for meshes that did not fit on the GPU.
 #pragma once
 
-#include "surface/stages/components.h"
+#include "surface/mesh/mesh_view.h"
+
+#include "quickses/quickses.h"
 
 #include <memory>
 
 namespace quickses {
 
+class ComponentMemory;
+class CpuExecutor;
+struct MeshCounts;
+
 class HostComponents {
  public:
-  HostComponents();
+  explicit HostComponents(unsigned threads);
   ~HostComponents();
 
   // As find_components. Its threads and its work memory stay for the next call.
@@ -19,6 +25,7 @@ class HostComponents {
   uint64_t bytes() const;  // of work memory
 
  private:
+  unsigned threads_;
   std::unique_ptr<CpuExecutor> executor_;
 };
 

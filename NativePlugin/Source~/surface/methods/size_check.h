@@ -3,9 +3,7 @@
 // exposed area of the inflated spheres, which the surface's own area is never far from.
 #pragma once
 
-#include "surface/stages/projection.h"
 #include "surface/methods/level_work.h"
-#include "surface/memory/work_facts.h"
 
 #include <cmath>
 
@@ -44,12 +42,12 @@ constexpr float kCheckedSpacing = 0.25f;
 constexpr double kCertainty = 1.5, kMemoryCertainty = 2;
 
 // From the features, before any brick is looked for.
-template <class R>
-SurfaceSize predict_size(R &run) {
-  const double h = static_cast<double>(run.parameters.spacing);
-  const double area = run.executor.reduce(run.features.atoms.count, ExposedArea{run.features}), cells = area / (h * h);
+template <class Work>
+SurfaceSize predict_size(Work &work) {
+  const double h = static_cast<double>(work.parameters.spacing);
+  const double area = work.executor.reduce(work.features.atoms.count, ExposedArea{work.features}), cells = area / (h * h);
   const double vertices = cells * kVerticesPerCell;
-  return {guess_bricks(static_cast<double>(run.features.atoms.count), area, h), vertices, 2.0 * vertices,
+  return {guess_bricks(static_cast<double>(work.features.atoms.count), area, h), vertices, 2.0 * vertices,
           vertices / kVerticesPerLeaf};
 }
 

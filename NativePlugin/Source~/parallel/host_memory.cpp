@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#include "parallel/host_memory.h"
+
+#if defined(_WIN32)
+#include <windows.h>
+#else
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cstring>
+#endif
+
+namespace quickses {
+namespace {
+
+#if !defined(_WIN32)
+// A line of /proc/meminfo, in bytes; 0 where there is none. Nothing is taken from the heap.
+uint64_t read_meminfo(const char *name) {
+  const int file = open("/proc/meminfo", O_RDONLY | O_CLOEXEC);
+  if (file < 0) return 0;
+  char text[4096];
+  const ssize_t length = read(file, text, sizeof text - 1);
+  close(file);
+  if (length <= 0) return 0;
+  text[length] = '\0';
+  const char *const line = std::strstr(text, name);
+  return line ? std::strtoull(line + std::strlen(name), nullptr, 10) * 1024 : 0;
+}
+
+uint64_t pages(int name) {
+  const long page = sysconf(_SC_PAGESIZE), count = sysconf(name);
+  return page > 0 && count > 0 ? static_cast<uint64_t>(page) * static_cast<uint64_t>(count) : 0;
+}
+#endif
+
+}  // namespace
+
+HostMemoryStatus describe_host_memory() {
+#if defined(_WIN32)
+  MEMORYSTATUSEX status;
+  status.dwLength = sizeof status;
+  if (!GlobalMemoryStatusEx(&status)) return {0, 0};
+  return {status.ullTotalPhys, status.ullAvailPhys};
+#else
+  HostMemoryStatus status{pages(_SC_PHYS_PAGES), read_meminfo("MemAvailable:")};
+#if defined(_SC_AVPHYS_PAGES)
+  if (status.free == 0) status.free = pages(_SC_AVPHYS_PAGES);
+#endif
+  return status;
+#endif
+}
+
+}  // namespace quickses

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// The hot stages on the CPU (stages/hot_stages.h).
+#pragma once
+
+#include "surface/cpu/exact_ses_cpu.h"
+#include "surface/cpu/mesh_memory_cpu.h"
+#include "surface/cpu/solvent_features_cpu.h"
+
+namespace quickses {
+
+template <>
+struct Backend<CpuExecutor> {
+  // A thread gathers the candidates of a brick when it comes to it, and its scratch remembers how much room they took.
+  struct Candidates {};
+  struct LearntRooms {
+    void forget() {}
+  };
+
+  template <class E>
+  static void find_solvent_features(E &executor, const NeighborGridView &atoms, const SurfaceParameters &parameters,
+                                    const MemoryPlan &plan, LearntRooms &, SolventFeatures *features) {
+    quickses::find_solvent_features(executor, atoms, parameters, plan.low_memory, features);
+  }
+  template <class E>
+  static void evaluate_signs(E &executor, const FeatureView &features, const BrickSet &bricks, BrickRange slice,
+                             LearntRooms &, Candidates &, uint64_t *signs) {
+    if constexpr (!E::kCounts) quickses::evaluate_signs(executor, features, bricks, slice, signs);
+  }
+  template <class E>
+  static void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bricks, const MeshLayout &layout,
+                            BrickRange slice, LearntRooms &, Candidates &, const VertexStarts &starts,
+                            const MeshView &mesh) {
+    if constexpr (!E::kCounts) quickses::emit_vertices(executor, features, bricks, layout, slice, starts, mesh);
+  }
+  template <class E>
+  static void emit_triangles(E &executor, const BrickSet &bricks, const MeshLayout &layout, BrickRange slice,
+                             const TableView &table, const MeshView &mesh) {
+    if constexpr (!E::kCounts) quickses::emit_triangles(executor, bricks, layout, slice, table, mesh);
+  }
+};
+
+}  // namespace quickses

@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: MIT
+// The engine: walks down the ladder of memory plans (memory/memory_plan.h) until the pipeline fits, and remembers where
+// that was. A template over the executor: cpu_engine.cpp and cuda_engine.cu make one of each.
+#pragma once
+
+#include "surface/engine.h"
+#include "surface/methods/size_estimate.h"
+#include "surface/pipeline.h"
+
+#include <chrono>
+#include <cstdio>
+
+namespace quickses {
+
+// Where the pipeline is only counted, nobody is told the time.
+struct NoTimer {
+  void begin(const char *) {}
+};
+
+template <class Executor, class Timer>
+class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
+ public:
+  // memory_budget: bytes, 0 for none. threads: of the CPU, for what is left to it.
+  template <class... Arguments>
+  LadderEngine(uint64_t memory_budget, unsigned threads, Arguments &&...arguments)
+      : executor_(std::forward<Arguments>(arguments)...),
+        timer_(executor_),
+        memory_(executor_),
+        components_(threads),
+        budget_(memory_budget) {
+    // What is held outside of the arena is taken off; the least budget is one that is surely too small.
+    const uint64_t outside = memory_.allowed_outside(executor_);
+    if (budget_ > 0) executor_.arena().set_budget(budget_ > outside + 4096 ? budget_ - outside : 4096);
+  }
+
+  std::shared_ptr<AtomSet> make_atoms(size_t count) override {
+    const typename Executor::CallScope scope(executor_);
+    return atoms_.make(count);
+  }
+
+  void compute(const AtomSet &atoms, const Appearance &appearance, const qses_settings &settings,
+               Span<const float> spacings, LevelSink &sink) override {
+    progress_.restart(&sink.stop_flag(), [&sink](double fraction) { sink.advance(fraction); });
+    const FrameInput in{atoms, appearance, settings};
+    size_t next = 0;  // levels before it are finished
+    uint32_t attempts = 0;
+    walk(in, sink.stop_flag(), [&](const MemoryPlan &plan) {
+      ++attempts;
+      compute_levels(in, plan, attempts, spacings, &next, sink);
+    });
+  }
+
+  qses_size_estimate estimate(const AtomSet &atoms, const Appearance &appearance, const qses_settings &settings,
+                              const std::atomic<bool> &stop) override {
+    progress_.restart(nullptr, {});
+    qses_size_estimate out;
+    qses_size_estimate_init(&out);
+    out.fits = 1;
+    if (atoms.count == 0) return out;
+    const FrameInput in{atoms, appearance, settings};
+    walk(in, stop, [&](const MemoryPlan &plan) {
+      qses_report report;
+      auto work = work_of(in, plan, &report);
+      prepare_frame(work, in);
+      enter_level(work, settings.spacing);
+      count_features(work);
+      facts_.size = estimate_size(work);
+      executor_.arena().reset();
+    });
+    const uint64_t limit = executor_.arena().limit(), least = least_bytes(in);
+    uint64_t whole = forecast(in, kMemoryPlans[0], limit);
+    if (whole > limit) whole = std::max(least, limit);
+    out.vertices = static_cast<uint64_t>(facts_.size.vertices);
+    out.triangles = static_cast<uint64_t>(facts_.size.triangles);
+    out.mesh_bytes = MeshArrays(out.vertices, out.triangles, shape_of(settings, !appearance.colors.empty())).bytes();
+    out.work_bytes = whole + memory_.outside_arena(executor_);
+    out.smallest_budget = least + memory_.allowed_outside(executor_);
+    out.fits = budget_ == 0 || out.smallest_budget <= budget_ ? 1 : 0;
+    return out;
+  }
+
+  void enable_stage_times(bool enabled) override { timer_.enable(enabled); }
+  void set_progress(std::function<void(double)> progress) override { progress_.set(std::move(progress)); }
+
+ private:
+  static constexpr uint64_t kUnlimited = ~uint64_t(0) >> 1;
+  // Of predictions that rest on a predicted size: sizes are known to some per cent.
+  static constexpr double kMargin = 1.02;
+  static constexpr uint64_t kSpareBytes = 32768;
+
+  // ---- the ladder ----------------------------------------------------------------------------------------------
+
+  // Calls attempt(plan) with one plan after the other, from the one that did last time, until none is refused memory.
+  template <class Attempt>
+  void walk(const FrameInput &in, const std::atomic<bool> &stop, const Attempt &attempt) {
+    const typename Executor::CallScope scope(executor_);
+    const typename Executor::StopScope stop_scope(executor_, stop);
+    for (size_t step = first_step(in);; ++step) {
+      executor_.arena().reset();
+      timer_.reset();
+      facts_ = {};
+      facts_.atoms = in.atoms.count;
+      try {
+        attempt(kMemoryPlans[step]);
+        return;
+      } catch (const MemoryRefused &refused) {
+        step = give_way(in, step);
+        if (step + 1 < kMemoryPlanCount) continue;
+        name_smallest_budget(in);
+        throw;
+      }
+    }
+  }
+
+  // Where the ladder begins: at the top, or where it ended for as many atoms of the same size with no more memory.
+  size_t first_step(const FrameInput &in) {
+    const float reach = parameters_of(in).max_radius;
+    if (in.atoms.count != learnt_.atoms || reach != learnt_.reach) {
+      learnt_ = {in.atoms.count, reach, 0, 0};
+      rooms_.forget();
+    }
+    if (learnt_.step > 0 && executor_.arena().limit() > learnt_.limit / 4 * 5) learnt_.step = 0;
+    return learnt_.step;
+  }
+
+  // Memory was refused. Whatever was taken is given back, so that it is known how much there is. Returns the step
+  // before the next one; plans that are forecast to take more are passed over.
+  size_t give_way(const FrameInput &in, size_t step) {
+    if (budget_ == 0) executor_.arena().release();
+    const uint64_t limit = executor_.arena().limit();
+    while (step + 2 < kMemoryPlanCount && knows_size() &&
+           forecast(in, kMemoryPlans[step + 1], limit) > limit)
+      ++step;
+    learnt_.step = std::min(step + 1, kMemoryPlanCount - 1);
+    learnt_.limit = limit;
+    return step;
+  }
+
+  // ---- one attempt ---------------------------------------------------------------------------------------------
+
+  void compute_levels(const FrameInput &in, const MemoryPlan &plan, uint32_t attempts, Span<const float> spacings,
+                      size_t *next, LevelSink &sink) {
+    double total = 0, begun = 0;
+    for (float h : spacings) total += work_of(h);
+    auto start = std::chrono::steady_clock::now();
+    qses_report report;
+    auto work = work_of(in, plan, &report);
+    if (in.atoms.count > 0) prepare_frame(work, in);
+    if (*next == 0 && attempts == 1) sink.prepared(milliseconds_since(start));
+    const auto mark = executor_.arena().mark();
+    for (size_t k = 0; k < spacings.size; ++k) {
+      const double before = begun;
+      begun += work_of(spacings[k]);
+      if (k < *next) continue;
+      progress_.enter(before / total, begun / total);
+      progress_.report(0.0);
+      qses_report_init(&report);
+      report.attempts = attempts;
+      memory_.use_slot(sink.slot());
+      components_.use_slot(sink.slot());
+      MeshMemoryView built{};
+      if (in.atoms.count > 0) {
+        enter_level(work, spacings[k]);
+        check_spacing(work, in);
+        built = build_level(work);
+      }
+      timer_.begin("download");
+      qses_mesh mesh;
+      memory_.finish(built, in.settings, &mesh);
+      timer_.end();
+      mesh.spacing = spacings[k];
+      report.compute_ms = milliseconds_since(start);
+      start = std::chrono::steady_clock::now();
+      complete(built, &report);
+      timer_.reset();
+      executor_.arena().rewind(mark);
+      progress_.report(1.0);
+      sink.finished(mesh, report);
+      *next = k + 1;
+      attempts = 1;
+    }
+  }
+
+  // The work of a level grows with the number of its lattice points at the surface.
+  static double work_of(float spacing) { return 1.0 / (static_cast<double>(spacing) * static_cast<double>(spacing)); }
+  static double milliseconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  }
+
+  LevelWork<Executor, Timer> work_of(const FrameInput &in, const MemoryPlan &plan, qses_report *report) {
+    return {executor_, timer_, memory_, components_, rooms_, progress_, table(), in.settings, plan, {},      {},     {},
+            {},        {},     {},      {},          {},     {},        &facts_, report};
+  }
+
+  // Before time is spent on a spacing that is hopelessly fine, or on a plan that won't do.
+  void check_spacing(LevelWork<Executor, Timer> &work, const FrameInput &in) {
+    auto &arena = executor_.arena();
+    if (work.parameters.spacing >= kCheckedSpacing || in.settings.method == QSES_METHOD_GRID) return;
+    facts_.size = predict_size(work);
+    if (arena.has_budget() && static_cast<double>(least_bytes(in)) > kMemoryCertainty * static_cast<double>(arena.budget()))
+      throw MemoryRefused("the spacing is too fine for the memory budget");
+    const double whole = static_cast<double>(forecast(in, kMemoryPlans[0], kUnlimited));
+    const double mesh = Executor::kIsCuda ? 0.0 : static_cast<double>(MeshArrays(static_cast<size_t>(facts_.size.vertices), static_cast<size_t>(facts_.size.triangles), work.shape).bytes());
+    refuse_hopeless_spacing(static_cast<double>(work.parameters.spacing), facts_.size, whole + mesh,
+                            arena.has_budget() ? 0.0 : static_cast<double>(arena.limit()));
+  }
+
+  // Memory and times of the level that is just finished.
+  void complete(const MeshMemoryView &mesh, qses_report *report) {
+    report->work_bytes_peak = executor_.arena().peak() + memory_.outside_arena(executor_);
+    report->mesh_bytes = mesh.bytes;
+    report->host_bytes_peak = atoms_.bytes() + components_.bytes() + memory_.host_bytes() +
+                              (Executor::kIsCuda ? 0 : report->work_bytes_peak);
+    for (const auto &stage : timer_.collect()) {
+      if (report->stage_count == QSES_MAX_STAGES) break;
+      qses_stage_time &out = report->stages[report->stage_count++];
+      std::snprintf(out.name, sizeof out.name, "%s", stage.first);
+      out.milliseconds = stage.second;
+    }
+  }
+
+  // The tables of marching cubes, uploaded once.
+  TableView table() {
+    if (!table_.triangle_count) table_ = memory_.upload_table(executor_, marching_cubes_table());
+    return table_;
+  }
+
+  // ---- forecasts -----------------------------------------------------------------------------------------------
+
+  bool knows_size() const { return facts_.size.vertices > 0; }
+
+  template <class Work>
+  void count_features(Work &work) {
+    if (work.settings.method == QSES_METHOD_EXACT) facts_.caps = count_kept_caps(work);
+  }
+
+  // Bytes of the arena that a plan takes, if the sizes are as the facts say: the pipeline, only counted.
+  uint64_t forecast(const FrameInput &in, const MemoryPlan &plan, uint64_t limit) {
+    using Counting = CountingExecutor<Executor>;
+    Counting counted(executor_, facts_, limit, executor_.arena().has_budget());
+    MeshMemory<Counting> memory;
+    ComponentFinder components(1);
+    NoTimer timer;
+    Progress progress;
+    WorkFacts facts;
+    qses_report report;
+    qses_report_init(&report);
+    LevelWork<Counting, NoTimer> work{counted, timer, memory, components, rooms_, progress, table_, in.settings, plan,
+                                      {},      {},    {},     {},         {},     {},       {},     {},          {},
+                                      &facts,  &report};
+    prepare_frame(work, in);
+    enter_level(work, in.settings.spacing);
+    build_level(work);
+    return counted.arena().peak();
+  }
+
+  uint64_t least_bytes(const FrameInput &in) {
+    const uint64_t bytes = forecast(in, kMemoryPlans[kMemoryPlanCount - 1], kUnlimited);
+    return static_cast<uint64_t>(kMargin * static_cast<double>(bytes)) + kSpareBytes;
+  }
+
+  // No plan was left. With a budget the user is told which one would do, as far as that is known by now.
+  void name_smallest_budget(const FrameInput &in) {
+    if (budget_ == 0) return;
+    SurfaceParameters parameters = parameters_of(in);
+    Lattice lattice = center_lattice(in.atoms.bounds, frame_spacing(levels_of(in.settings)));
+    const glm::vec3 low = to_centered(lattice, in.atoms.bounds.low), high = to_centered(lattice, in.atoms.bounds.high);
+    lattice.spacing = parameters.spacing;
+    lattice = layout_lattice(lattice, low, high, parameters.max_radius);
+    const bool is_counted = knows_size();
+    guess_unknown(parameters, in.settings.method == QSES_METHOD_EXACT, static_cast<double>(lattice.table_size()),
+                  &facts_);
+    const uint64_t least = least_bytes(in) / 10 * (is_counted ? 10 : 11) + memory_.allowed_outside(executor_);
+    throw Error(QSES_OUT_OF_MEMORY,
+                "the memory budget of " + describe_bytes(budget_) + " does not suffice for this surface: about " +
+                    describe_bytes(std::max(least, budget_ + budget_ / 8)) + " would do, or a larger spacing");
+  }
+
+  Executor executor_;
+  Timer timer_;
+  AtomPool<typename Executor::HostSource> atoms_;
+  MeshMemory<Executor> memory_;
+  ComponentFinder components_;
+  uint64_t budget_;
+  LearntRooms<Executor> rooms_;
+  // Of the last computation of so many atoms with this largest inflated radius: where the ladder ended, and with how
+  // much memory.
+  struct {
+    size_t atoms;
+    float reach;
+    size_t step;
+    uint64_t limit;
+  } learnt_{};
+  WorkFacts facts_{};  // of the computation that runs
+  Progress progress_;
+  TableView table_{};
+};
+
+}  // namespace quickses

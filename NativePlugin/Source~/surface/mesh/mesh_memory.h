@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+// Where a mesh is made and where it goes out. On the CPU the stages write straight into the memory the caller will
+// read; with CUDA the mesh is made on the device and copied to page-locked memory (cuda/mesh_memory_cuda.cuh).
+#pragma once
+
+#include "parallel/growing_buffer.h"
+#include "parallel/host_memory.h"
+#include "surface/memory/counting_executor.h"
+#include "surface/mesh/mesh_arrays.h"
+
+#include <cstring>
+
+namespace quickses {
+
+// Meshes are made in buffers that the engine owns. With three of them one can be written while another one waits to be
+// collected and the caller still reads the third.
+constexpr int kMeshSlots = 3;
+
+struct Bounds {
+  float min[3], max[3];  // Å, caller's coordinates; all 0 for an empty mesh
+};
+
+// A mesh being made, in the memory of the back end.
+struct MeshMemoryView {
+  MeshView view{};
+  MeshShape shape{};
+  size_t vertices = 0, triangles = 0, bytes = 0;
+  void *memory = nullptr;
+  bool in_pieces = false;              // CUDA: it is in host memory and filled slice by slice
+  const uint32_t *unplaced = nullptr;  // vertices without a feature, in the memory of the back end; nullptr: none
+  Bounds bounds{};
+  Span<const qses_component> components{};  // in host memory
+};
+
+// What a mesh is for: to be handed out, or to be made into another one.
+enum class MeshPurpose { kDelivered, kWork };
+
+// Whether a mesh takes memory of the arena.
+constexpr bool mesh_is_in_arena(bool is_cuda, MeshPurpose purpose, bool in_pieces) {
+  return is_cuda ? !in_pieces : purpose == MeshPurpose::kWork;
+}
+
+inline MeshMemoryView describe_memory(const MeshArrays &arrays, size_t vertices, size_t triangles,
+                                      const MeshShape &shape, bool in_pieces, void *memory) {
+  MeshMemoryView mesh;
+  mesh.shape = shape;
+  mesh.vertices = vertices;
+  mesh.triangles = triangles;
+  mesh.bytes = arrays.bytes();
+  mesh.in_pieces = in_pieces;
+  mesh.memory = memory;
+  mesh.view = arrays.view(memory);
+  return mesh;
+}
+
+// Points the caller's view at a finished mesh. host: the same arrays in host memory.
+inline void describe_mesh(const MeshMemoryView &built, const MeshView &host, const qses_settings &settings,
+                          qses_mesh *mesh) {
+  qses_mesh_init(mesh);
+  mesh->frame = settings.frame;
+  mesh->vertex_count = static_cast<uint32_t>(built.vertices);
+  mesh->triangle_count = static_cast<uint32_t>(built.triangles);
+  mesh->component_count = static_cast<uint32_t>(built.components.size);
+  mesh->components = built.components.data;
+  if (built.vertices == 0) return;
+  mesh->positions = host.positions;
+  mesh->normals = host.normals;
+  mesh->colors = reinterpret_cast<const uint8_t *>(host.colors);
+  mesh->texcoords = host.texcoords;
+  mesh->vertex_bytes = host.vertex_bytes;
+  mesh->owners = host.owners;
+  mesh->patches = host.patches;
+  mesh->indices = host.indices;
+  for (int d = 0; d < 3; ++d) {
+    mesh->bounds_min[d] = built.bounds.min[d];
+    mesh->bounds_max[d] = built.bounds.max[d];
+  }
+}
+
+// The memory of the meshes that are handed out, one per slot.
+template <class Source>
+class MeshSlots {
+ public:
+  void use_slot(int slot) { slot_ = slot; }
+  // Room for a mesh: as much as for any before, since which slot gets the finest level differs from frame to frame.
+  void *reserve(size_t bytes) {
+    largest_ = std::max(largest_, bytes);
+    if (mesh_[slot_].try_reserve(largest_)) return mesh_[slot_].data();
+    return mesh_[slot_].reserve(largest_ = bytes);
+  }
+  uint64_t bytes() const {
+    uint64_t sum = 0;
+    for (const auto &slot : mesh_) sum += slot.size();
+    return sum;
+  }
+
+ private:
+  GrowingBuffer<Source> mesh_[kMeshSlots];
+  size_t largest_ = 0;
+  int slot_ = 0;
+};
+
+// Executor: whose memory the stages write to.
+template <class Executor>
+class MeshMemory;
+
+// Only counted.
+template <class Executor>
+class MeshMemory<CountingExecutor<Executor>> {
+ public:
+  void forget_spills() {}
+  MeshMemoryView allocate_mesh(CountingExecutor<Executor> &executor, size_t vertices, size_t triangles,
+                               const MeshShape &shape, MeshPurpose purpose, bool in_pieces) {
+    const MeshArrays arrays(vertices, triangles, shape);
+    if (mesh_is_in_arena(Executor::kIsCuda, purpose, in_pieces)) executor.template allocate<char>(arrays.bytes());
+    return describe_memory(arrays, vertices, triangles, shape, in_pieces, nullptr);
+  }
+  template <class T>
+  Span<T> allocate_beside(CountingExecutor<Executor> &executor, const MeshMemoryView &mesh, size_t n) {
+    if (!mesh.in_pieces) executor.template allocate<T>(n);
+    return {nullptr, n};
+  }
+  void save(CountingExecutor<Executor> &, const MeshMemoryView &, const MeshView &, size_t, size_t) {}
+};
+
+}  // namespace quickses
