@@ -210,6 +210,8 @@ FAULTS = {
          "Transform: m_Father is 101, which m_Children of 101 contradicts")],
     "child that doesn't name its parent": [
         ("m_Father: {fileID: 101}", "m_Father: {fileID: 0}", "Transform: m_Father is 0, which m_Children of 101 contradicts")],
+    "child in another order": [
+        ("fileID: 101}\n  m_RootOrder: 0", "fileID: 101}\n  m_RootOrder: 4", "m_RootOrder 4, but it is child 0")],
     "required component that is missing": [
         (FILTER, "", "m_Component[1].component: no object 202"),
         (FILTER, FILTER.replace("33", "81").replace("MeshFilter", "AudioListener"), "Spinner requires a MeshFilter beside it")],
