@@ -115,15 +115,22 @@ class TestInUnityTest(unittest.TestCase):
         environment = dict(os.environ, STAND_IN=wanted, TMPDIR=os.path.join(self.folder, "temporary"),
                            **{"DISPLAY": ":9", **environment})
         done = subprocess.run(["bash", os.path.join(REPOSITORY, "Scripts~/test-in-unity.sh"), *options], env=environment,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False, timeout=120)
         return done.returncode, done.stdout
 
     def run_tests(self, wanted, *options, **environment):
         return self.run_script(self.editor, "--package", self.package, "--output", os.path.join(self.folder, "out"), *options,
                                wanted=wanted, **environment)
 
-    def assert_fails(self, wanted, *sentences, options=()):
-        status, text = self.run_tests(wanted, *options)
+    def without_display(self):
+        """The environment of a machine with xvfb-run, or what stands in for it."""
+        with open(os.path.join(self.folder, "xvfb-run"), "w", encoding="utf-8") as file:
+            file.write('#!/bin/sh\necho "a display for $2"\nshift\n"$@"\n')
+        os.chmod(file.name, stat.S_IRWXU)
+        return {"DISPLAY": "", "PATH": self.folder + ":" + os.environ["PATH"]}
+
+    def assert_fails(self, wanted, *sentences, options=(), **environment):
+        status, text = self.run_tests(wanted, *options, **environment)
         self.assertEqual(status, 1, text)
         for sentence in sentences:
             self.assertIn(sentence, text)
@@ -181,12 +188,14 @@ class TestInUnityTest(unittest.TestCase):
 
     @unittest.skipUnless(sys.platform.startswith("linux"), "X is for Linux")
     def test_no_display(self):
-        with open(os.path.join(self.folder, "xvfb-run"), "w", encoding="utf-8") as file:
-            file.write('#!/bin/sh\necho "a display for $2"\nshift\nexec "$@"\n')
-        os.chmod(file.name, stat.S_IRWXU)
-        status, text = self.run_tests("pass", DISPLAY="", PATH=self.folder + ":" + os.environ["PATH"])
+        status, text = self.run_tests("pass", **self.without_display())
         self.assertEqual(status, 0, text)
         self.assertEqual(text.count(f"a display for {self.editor}\n"), 2, text)
+
+    @unittest.skipUnless(sys.platform.startswith("linux"), "X is for Linux")
+    def test_what_hangs_ends_with_what_started_it(self):
+        # What goes on would keep this script's output open.
+        self.assert_fails("hang", "the Editor did not end within 1 s", options=("--timeout", "1"), **self.without_display())
 
     def test_the_project_is_kept_if_wanted(self):
         status, text = self.run_tests("pass", "--keep")
