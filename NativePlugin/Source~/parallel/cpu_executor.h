@@ -24,9 +24,6 @@
 
 namespace quickses {
 
-struct CpuKernels;
-const CpuKernels &cpu_kernels();
-
 class CpuExecutor {
  public:
   static constexpr bool kIsCuda = false, kCounts = false;
@@ -52,9 +49,6 @@ class CpuExecutor {
   explicit CpuExecutor(unsigned threads) : threads_(threads) {}
 
   unsigned threads() const { return threads_.count(); }
-  // The instruction set's kernels that the hot stages use; tests set others.
-  const CpuKernels &kernels() const { return *kernels_; }
-  void set_kernels(const CpuKernels &kernels) { kernels_ = &kernels; }
   Arena<HostMemory> &arena() { return arena_; }
 
   // What the threads' scratch takes, and what is set aside for it in a budget: it is larger only where atoms crowd.
@@ -85,6 +79,7 @@ class CpuExecutor {
     ScratchPool &pool = scratch_pools_[std::type_index(typeid(Scratch))];
     if (!pool.objects) {
       auto made = std::make_shared<std::vector<std::unique_ptr<Scratch>>>();
+      made->reserve(threads());  // so that what is made below has an owner whatever fails
       for (unsigned k = 0; k < threads(); ++k) made->emplace_back(new Scratch);
       pool = {made, &pool_bytes<Scratch>};
     }
@@ -153,9 +148,8 @@ class CpuExecutor {
         out[i] = sum;
         sum += value;
       });
-      if (end == n && (c + 1 == chunks || c * chunk < n)) out[n] = sum;
+      if (c + 1 == chunks) out[n] = sum;
     });
-    if (n == 0) out[0] = T(0);
     arena_.rewind(mark);
   }
 
@@ -367,7 +361,6 @@ class CpuExecutor {
 
   CpuThreads threads_;
   const std::atomic<bool> *stop_ = nullptr;
-  const CpuKernels *kernels_ = &cpu_kernels();
   Arena<HostMemory> arena_;
   std::map<std::type_index, ScratchPool> scratch_pools_;
 };

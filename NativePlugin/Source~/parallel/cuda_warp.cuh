@@ -2,7 +2,7 @@
 // Work that the 32 threads of a warp do together. All of a warp's threads must call these.
 #pragma once
 
-#include "surface/stages/neighbor_grid.h"
+#include "parallel/span.h"
 
 namespace quickses {
 namespace gpu {
@@ -14,6 +14,26 @@ __device__ __forceinline__ int lane_id() { return static_cast<int>(threadIdx.x &
 
 // How many of the lanes before this one are in a ballot: the place of this lane among them.
 __device__ __forceinline__ int place_in(unsigned ballot, int lane) { return __popc(ballot & ((1u << lane) - 1u)); }
+
+// Appends to a list that the lanes fill together: the place of this lane's item if it has one. count: of the list, the
+// same in all lanes.
+template <class Count>
+__device__ __forceinline__ Count append_place(bool has, Count *count, unsigned lanes = kFullWarp) {
+  const unsigned ballot = __ballot_sync(lanes, has);
+  const Count place = *count + static_cast<Count>(place_in(ballot, lane_id()));
+  *count += static_cast<Count>(__popc(ballot));
+  return place;
+}
+
+// The same for a list that all warps fill.
+__device__ __forceinline__ void append(uint32_t *list, uint32_t *count, uint32_t item, bool has) {
+  uint32_t own = 0;
+  const uint32_t place = append_place(has, &own);
+  uint32_t base = 0;
+  if (lane_id() == 0 && own > 0) base = atomicAdd(count, own);
+  base = __shfl_sync(kFullWarp, base, 0);
+  if (has) list[base + place] = item;
+}
 
 // Sum over the lanes up to and including this one.
 template <class T>
@@ -30,6 +50,22 @@ __device__ __forceinline__ float warp_maximum(float value) {
 #pragma unroll
   for (int d = kWarp / 2; d > 0; d >>= 1) value = fmaxf(value, __shfl_xor_sync(kFullWarp, value, d));
   return value;
+}
+
+// The largest value, and the smallest number that comes with it, of a warp or of each group of so many lanes.
+struct NumberedValue {
+  float value;
+  uint32_t number;
+};
+template <int Lanes = kWarp>
+__device__ __forceinline__ NumberedValue warp_largest(NumberedValue own, unsigned lanes = kFullWarp) {
+#pragma unroll
+  for (int d = Lanes / 2; d > 0; d >>= 1) {
+    const float value = __shfl_xor_sync(lanes, own.value, d);
+    const uint32_t number = __shfl_xor_sync(lanes, own.number, d);
+    if (value > own.value || (value == own.value && number < own.number)) own = {value, number};
+  }
+  return own;
 }
 
 __device__ __forceinline__ uint32_t warp_or(uint32_t value) {

@@ -20,8 +20,8 @@
 // A team has rank() in [0, size()), and sync(). On the CPU it is one thread, so its loops run straight through.
 #pragma once
 
+#include "parallel/span.h"
 #include "parallel/working_thread.h"
-#include "surface/geometry/types.h"
 
 #include <cstddef>
 #include <cstdint>

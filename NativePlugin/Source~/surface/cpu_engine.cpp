@@ -2,13 +2,13 @@
 // The engine on the CPU.
 #include "surface/cpu/cpu_backend.h"
 
-#include "parallel/stage_timer.h"
+#include "parallel/cpu_stage_timer.h"
 #include "surface/memory_ladder.h"
 
 namespace quickses {
 
 std::unique_ptr<SurfaceEngine> make_cpu_engine(unsigned threads, uint64_t memory_budget) {
-  return std::make_unique<LadderEngine<CpuExecutor, CpuStageTimer>>(memory_budget, threads, threads);
+  return std::make_unique<LadderEngine<CpuKernelExecutor, CpuStageTimer>>(memory_budget, threads, threads);
 }
 
 }  // namespace quickses

@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: MIT
-// The pipeline on the GPU.
-#include "surface/cuda/exact_ses_cuda.cuh"
-#include "surface/cuda/mesh_cuda.cuh"
-#include "surface/cuda/solvent_features_cuda.cuh"
+// The engine on the GPU.
+#include "surface/cuda/cuda_backend.cuh"
 
 #include "parallel/cuda_stage_timer.cuh"
-#include "surface/cuda/mesh_memory_cuda.cuh"
-#include "surface/pipeline.h"
+#include "surface/memory_ladder.h"
 
 namespace quickses {
 
-std::unique_ptr<SurfaceEngine> make_cuda_engine(int device, uint64_t memory_budget) {
-  return std::make_unique<SurfacePipeline<CudaExecutor, CudaStageTimer>>(memory_budget, uint64_t(0), device);
+std::unique_ptr<SurfaceEngine> make_cuda_engine(int device, unsigned threads, uint64_t memory_budget) {
+  return std::make_unique<LadderEngine<CudaExecutor, CudaStageTimer>>(memory_budget, threads, device);
 }
 
 }  // namespace quickses

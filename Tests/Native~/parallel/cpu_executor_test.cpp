@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The CPU's sort, which is put together from Thrust's parts.
+// The CPU's sort, which is put together from Thrust's parts, and its scan.
 #include "parallel/cpu_executor.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 #include <random>
 #include <vector>
@@ -41,6 +42,47 @@ TEST(CpuExecutor, SortsStably) {
     CpuExecutor executor(threads);
     for (size_t n : {0, 1, 2, 3, 100, 32768, 32769, 131072, 131073, 300001})
       for (uint64_t different : {uint64_t(1), uint64_t(50), ~uint64_t(0)}) check_sort(executor, n, different);
+  }
+}
+
+// A number that counts how often the last place of a result is written.
+struct WatchedSum {
+  static inline const WatchedSum *watched = nullptr;
+  static inline std::atomic<int> written{0};
+  uint64_t value;
+  WatchedSum(uint64_t v = 0) : value(v) {}
+  WatchedSum(const WatchedSum &) = default;
+  WatchedSum &operator=(const WatchedSum &other) {
+    if (this == watched) ++written;
+    value = other.value;
+    return *this;
+  }
+  WatchedSum &operator+=(const WatchedSum &other) {
+    value += other.value;
+    return *this;
+  }
+};
+
+struct LoadNumber {
+  uint64_t operator()(size_t i) const { return i % 7; }
+};
+
+// Also where there are more chunks than there is work for, so that the last ones are empty.
+TEST(CpuExecutor, ScansAndWritesTheTotalOnce) {
+  for (unsigned threads : {1u, 2u, 3u, 68u}) {
+    CpuExecutor executor(threads);
+    for (size_t n : {0, 1, 2, 100, 65535, 65536, 65560, 65800, 300001}) {
+      SCOPED_TRACE(testing::Message() << threads << " threads, " << n << " items");
+      executor.arena().reset();
+      const Span<WatchedSum> out = executor.allocate<WatchedSum>(n + 1);
+      WatchedSum::written = 0;
+      WatchedSum::watched = out.data + n;
+      executor.exclusive_scan(n, LoadNumber{}, out);
+      EXPECT_EQ(WatchedSum::written, 1);
+      uint64_t sum = 0;
+      for (size_t i = 0; i < n; sum += LoadNumber{}(i), ++i) ASSERT_EQ(out[i].value, sum) << i;
+      EXPECT_EQ(out[n].value, sum);
+    }
   }
 }
 

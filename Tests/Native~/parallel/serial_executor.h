@@ -14,13 +14,14 @@
 
 struct SerialMemory {
   static constexpr const char *kName = "the machine";
+  static uint64_t free_bytes() { return 0; }
   static void *acquire(size_t bytes) { return std::aligned_alloc(256, (bytes + 255) / 256 * 256); }
   static void release(void *p) { std::free(p); }
 };
 
 class SerialExecutor {
  public:
-  static constexpr bool kIsCuda = false;
+  static constexpr bool kIsCuda = false, kCounts = false;
   explicit SerialExecutor(unsigned = 1) {}
   quickses::Arena<SerialMemory> &arena() { return arena_; }
 

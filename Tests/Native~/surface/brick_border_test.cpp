@@ -118,7 +118,7 @@ struct ChosenBricks {
 
 // box: bricks of the lattice along each axis; a large one makes the set sparse.
 void grow_and_check(const SignField &field, const std::vector<glm::ivec3> &begin, int box) {
-  CpuExecutor executor(2);
+  CpuKernelExecutor executor(2);
   Lattice lattice{};
   lattice.spacing = 1.f;
   lattice.brick_count = glm::ivec3(box);

@@ -3,8 +3,7 @@
 // host. And a brute force that knows nothing of grids, rows or warps.
 #pragma once
 
-#include "surface/cuda/mesh_cuda.cuh"
-#include "surface/cuda/solvent_features_cuda.cuh"
+#include "surface/cuda/cuda_backend.cuh"
 
 #include "parallel/cuda_stage_timer.cuh"
 #include "surface/stages/atoms.h"
@@ -99,11 +98,13 @@ inline DeviceStages run_device_stages(CudaExecutor &executor, const DeviceTable 
   executor.for_each(n,
                     CenterAtoms{given.data, lattice.center_x, lattice.center_y, lattice.center_z, p.probe, atoms.data});
   s.grid = build_neighbor_grid(executor, atoms, layout_cells(low, high, p.max_radius));
-  Span<uint8_t> swallowed = executor.allocate<uint8_t>(n);
-  executor.for_each(n, FindSwallowedAtoms{s.grid, p.max_radius, swallowed.data});
-  executor.for_each(n, RemoveSwallowedAtoms{swallowed.data, const_cast<Sphere *>(s.grid.items)});
+  Span<uint8_t> contained = executor.allocate<uint8_t>(n);
+  executor.for_each(n, FindContainedAtoms{s.grid, p.max_radius, contained.data});
+  executor.for_each(n, RemoveContainedAtoms{contained.data, const_cast<Sphere *>(s.grid.items)});
   timer.begin("solvent_features");
-  find_solvent_features(executor, s.grid, p, false, &s.found);
+  using B = Backend<CudaExecutor>;
+  CudaRooms rooms;
+  B::find_solvent_features(executor, s.grid, p, kMemoryPlans[0], rooms, &s.found);
   timer.begin("arc_grid");
   FeatureView f{};
   f.atoms = s.grid;
@@ -132,7 +133,7 @@ inline DeviceStages run_device_stages(CudaExecutor &executor, const DeviceTable 
   for (uint32_t first = 0; first < count; first += per_slice) {
     const BrickRange slice{first, std::min(count, first + per_slice)};
     CudaCandidates own;
-    evaluate_signs(executor, f, s.bricks, slice, per_slice >= count ? shared : own, s.signs.data);
+    B::evaluate_signs(executor, f, s.bricks, slice, rooms, per_slice >= count ? shared : own, s.signs.data);
   }
   timer.begin("marching_cubes");
   s.counts = lay_out_mesh(executor, s.bricks, s.signs.data, table.view.triangle_count, &s.layout);
@@ -145,11 +146,11 @@ inline DeviceStages run_device_stages(CudaExecutor &executor, const DeviceTable 
   for (uint32_t first = 0; first < count; first += per_slice) {
     const BrickRange slice{first, std::min(count, first + per_slice)};
     CudaCandidates own;
-    emit_vertices(executor, f, s.bricks, s.layout, slice, per_slice >= count ? shared : own, starts, s.mesh);
+    B::emit_vertices(executor, f, s.bricks, s.layout, slice, rooms, per_slice >= count ? shared : own, starts, s.mesh);
   }
   timer.begin("triangles");
   for (uint32_t first = 0; first < count; first += per_slice)
-    emit_triangles(executor, s.bricks, s.layout, {first, std::min(count, first + per_slice)}, table.view, s.mesh);
+    B::emit_triangles(executor, s.bricks, s.layout, {first, std::min(count, first + per_slice)}, table.view, s.mesh);
   timer.end();
   return s;
 }

@@ -4,13 +4,11 @@
 
 #include "surface/exact_reference.h"
 
-#include "surface/cpu/cpu_kernels.h"
-#include "surface/cpu/exact_ses_cpu.h"
-#include "surface/cpu/solvent_features_cpu.h"
+#include "surface/cpu/cpu_backend.h"
 
-#include "parallel/stage_timer.h"
-#include "surface/stages/atoms.h"
+#include "parallel/cpu_stage_timer.h"
 #include "surface/methods/exact_surface.h"
+#include "surface/stages/atoms.h"
 
 namespace exact_fixture {
 
@@ -19,9 +17,11 @@ using exact_reference::Point;
 
 struct ExactRun {
   qses_settings settings;
-  CpuExecutor executor;
+  CpuKernelExecutor executor;
   CpuStageTimer timer;
-  MeshMemory<CpuExecutor> memory;
+  MeshMemory<CpuKernelExecutor> memory;
+  ComponentFinder components{1};
+  LearntRooms<CpuKernelExecutor> rooms;
   Progress progress;
   SurfaceParameters parameters{};
   Lattice lattice{};
@@ -29,13 +29,12 @@ struct ExactRun {
   NeighborGridView atoms{};
   qses_report report{};
   WorkFacts work{}, *facts = &work;
-  bool frugal = false;
+  MemoryPlan plan = kMemoryPlans[0];
 
   // Up to the neighbour grid.
   ExactRun(const surface_fixture::Atoms &given, const qses_settings &s, unsigned threads = 2,
            const CpuKernels &kernels = cpu_kernels())
-      : settings(s), executor(threads), timer(executor), memory(executor) {
-    executor.set_kernels(kernels);
+      : settings(s), executor(threads, kernels), timer(executor), memory(executor) {
     AtomBounds bounds{glm::vec3(1e9f), glm::vec3(-1e9f), 0.f};
     Span<Sphere> raw = executor.allocate<Sphere>(given.size()), centered = executor.allocate<Sphere>(given.size());
     for (size_t i = 0; i < given.size(); ++i) {
@@ -57,15 +56,14 @@ struct ExactRun {
     executor.for_each(given.size(), CenterAtoms{raw.data, lattice.center_x, lattice.center_y, lattice.center_z,
                                                 parameters.probe, centered.data});
     atoms = build_neighbor_grid(executor, centered, layout_cells(low, high, parameters.max_radius));
-    remove_swallowed_atoms(executor, atoms, parameters.max_radius);
+    remove_contained_atoms(executor, atoms, parameters.max_radius);
   }
 
   FeatureView features() { return find_features(*this); }
 
   std::vector<uint64_t> signs(const FeatureView &f, const BrickSet &bricks) {
     std::vector<uint64_t> words(size_t(bricks.count) * kLeavesPerBrick);
-    NoCandidates none;
-    evaluate_signs(executor, f, bricks, BrickRange{0, bricks.count}, none, words.data());
+    evaluate_signs(executor, f, bricks, BrickRange{0, bricks.count}, words.data());
     return words;
   }
 
@@ -74,25 +72,27 @@ struct ExactRun {
   mesh_checks::Mesh mesh(const FeatureView &features) {
     const MarchingCubesTable &table = marching_cubes_table();
     const TableView view{table.triangle_count, table.edges, table.ring};
-    Run<CpuExecutor, CpuStageTimer> run{executor,
-                                        timer,
-                                        memory,
-                                        progress,
-                                        view,
-                                        settings,
-                                        parameters,
-                                        lattice,
-                                        low,
-                                        high,
-                                        atoms,
-                                        features,
-                                        {},
-                                        shape_of(settings, false),
-                                        MeshPurpose::kDelivered,
-                                        frugal,
-                                        &report,
-                                        facts};
-    const MeshMemoryView built = build_exact_surface(run);
+    LevelWork<CpuKernelExecutor, CpuStageTimer> level{executor,
+                                                      timer,
+                                                      memory,
+                                                      components,
+                                                      rooms,
+                                                      progress,
+                                                      view,
+                                                      settings,
+                                                      plan,
+                                                      parameters,
+                                                      lattice,
+                                                      low,
+                                                      high,
+                                                      atoms,
+                                                      features,
+                                                      {},
+                                                      shape_of(settings, false),
+                                                      MeshPurpose::kDelivered,
+                                                      facts,
+                                                      &report};
+    const MeshMemoryView built = build_exact_surface(level);
     mesh_checks::Mesh m;
     m.positions.assign(built.view.positions, built.view.positions + 3 * built.vertices);
     m.normals.assign(built.view.normals, built.view.normals + 3 * built.vertices);

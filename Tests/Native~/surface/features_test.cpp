@@ -265,7 +265,7 @@ TEST(Caps, TellWhatIsExposed) {
     size_t exposed_points = 0, buried = 0;
     for (uint32_t i = 0; i < f.view.atoms.count; ++i) {
       const Sphere &self = f.view.atoms.items[i];
-      if (self.center.x > 0.5f * kFarAway) continue;  // swallowed
+      if (self.center.x > 0.5f * kFarAway) continue;  // contained
       bool any = false;
       for (const Point &d : directions) {
         const Point x = point(self.center) + static_cast<double>(self.radius) * d;

@@ -2,8 +2,6 @@
 // Marching cubes: the generated table, and meshes of random signs, which are the hardest input there is.
 #include "surface/mesh_checks.h"
 
-#include "parallel/cpu_executor.h"
-#include "surface/cpu/cpu_kernels.h"
 #include "surface/cpu/exact_ses_cpu.h"
 #include "surface/stages/marching_cubes.h"
 
@@ -192,12 +190,12 @@ class Block {
   }
 
   mesh_checks::Mesh mesh(const CpuKernels &kernels, bool reversed = false) {
-    executor_.set_kernels(kernels);
+    CpuKernelExecutor executor(2, kernels);
     mesh_checks::Mesh m;
     m.positions.assign(3 * counts_.vertices, NAN);
     m.indices.assign(3 * counts_.triangles, ~uint32_t(0));
     const MarchingCubesTable &t = marching_cubes_table();
-    emit_triangles(executor_, bricks_, layout_, BrickRange{0, bricks_.count}, {t.triangle_count, t.edges, t.ring},
+    emit_triangles(executor, bricks_, layout_, BrickRange{0, bricks_.count}, {t.triangle_count, t.edges, t.ring},
                    MeshView{m.positions.data(), nullptr, nullptr, nullptr, m.indices.data(), reversed});
     for_each_cut([&](int x, int y, int z, int axis) {
       float *p = &m.positions[3 * size_t(vertex(x, y, z, axis))];

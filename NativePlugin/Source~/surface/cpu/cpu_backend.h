@@ -9,7 +9,7 @@
 namespace quickses {
 
 template <>
-struct Backend<CpuExecutor> {
+struct Backend<CpuKernelExecutor> {
   // A thread gathers the candidates of a brick when it comes to it, and its scratch remembers how much room they took.
   struct Candidates {};
   struct LearntRooms {

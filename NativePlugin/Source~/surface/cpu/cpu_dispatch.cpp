@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Chooses the CPU kernels for the processor the program runs on.
-#define QSES_CPU_ISA base
-#include "surface/cpu/cpu_kernels_isa.h"
-#if defined(QUICKSES_HAS_CPU_V3)
-#undef QSES_CPU_ISA
-#define QSES_CPU_ISA v3
-#include "surface/cpu/cpu_kernels_isa.h"
-#endif
+#include "surface/cpu/cpu_kernels.h"
 
 namespace quickses {
 namespace {
@@ -17,11 +11,11 @@ constexpr const char *kBaseName = "SSE2";
 constexpr const char *kBaseName = "portable";
 #endif
 
-constexpr CpuKernels kBase = {kBaseName, base::find_atom_features, base::evaluate_brick_signs,
-                              base::emit_brick_vertices, base::emit_brick_triangles};
+#define QSES_BASE(result, kernel, ...) , base::kernel
+#define QSES_V3(result, kernel, ...) , v3::kernel
+constexpr CpuKernels kBase = {kBaseName QSES_CPU_KERNELS(QSES_BASE)};
 #if defined(QUICKSES_HAS_CPU_V3)
-constexpr CpuKernels kV3 = {"AVX2", v3::find_atom_features, v3::evaluate_brick_signs, v3::emit_brick_vertices,
-                            v3::emit_brick_triangles};
+constexpr CpuKernels kV3 = {"AVX2" QSES_CPU_KERNELS(QSES_V3)};
 #endif
 
 }  // namespace

@@ -36,28 +36,40 @@ struct BrickNeeds {
   int atoms, arcs;
 };
 
+// Every kernel, as KERNEL(result, name, arguments...): the one list of them.
+//   find_atom_features     caps and arcs of atom i, with room for cap_room caps and arc_room arcs. Sets exposed[] for i
+//                          and for the other atoms of its exposed arcs
+//   evaluate_brick_signs   the eight leaf words of a brick
+//   emit_brick_vertices    the vertices a brick owns
+//   emit_brick_triangles   the triangles of a brick's cells
+#define QSES_CPU_KERNELS(KERNEL)                                                                                \
+  KERNEL(AtomFeatures, find_atom_features, const NeighborGridView &atoms, const SurfaceParameters &parameters,  \
+         uint32_t i, const AtomScratch &scratch, Cap *caps, int cap_room, Arc *arcs, int64_t arc_room,          \
+         uint8_t *exposed)                                                                                      \
+  KERNEL(BrickNeeds, evaluate_brick_signs, const FeatureView &features, const BrickSet &bricks, uint32_t brick, \
+         const BrickScratch &scratch, uint64_t *words)                                                          \
+  KERNEL(BrickNeeds, emit_brick_vertices, const FeatureView &features, const BrickSet &bricks,                  \
+         const MeshLayout &layout, uint32_t brick, const VertexStarts &starts, const BrickScratch &scratch,     \
+         const MeshView &mesh)                                                                                  \
+  KERNEL(void, emit_brick_triangles, const BrickSet &bricks, const MeshLayout &layout, uint32_t brick,          \
+         const TableView &table, const MeshView &mesh)
+
 struct CpuKernels {
   const char *name;
-
-  // Caps and arcs of atom i, with room for cap_room caps and arc_room arcs. Sets exposed[] for i and for the other
-  // atoms of its exposed arcs.
-  AtomFeatures (*find_atom_features)(const NeighborGridView &atoms, const SurfaceParameters &parameters, uint32_t i,
-                                     const AtomScratch &scratch, Cap *caps, int cap_room, Arc *arcs, int64_t arc_room,
-                                     uint8_t *exposed);
-
-  // The eight leaf words of a brick.
-  BrickNeeds (*evaluate_brick_signs)(const FeatureView &features, const BrickSet &bricks, uint32_t brick,
-                                     const BrickScratch &scratch, uint64_t *words);
-
-  // The vertices a brick owns.
-  BrickNeeds (*emit_brick_vertices)(const FeatureView &features, const BrickSet &bricks, const MeshLayout &layout,
-                                    uint32_t brick, const VertexStarts &starts, const BrickScratch &scratch,
-                                    const MeshView &mesh);
-
-  // The triangles of a brick's cells.
-  void (*emit_brick_triangles)(const BrickSet &bricks, const MeshLayout &layout, uint32_t brick, const TableView &table,
-                               const MeshView &mesh);
+#define QSES_POINTER(result, kernel, ...) result (*kernel)(__VA_ARGS__);
+  QSES_CPU_KERNELS(QSES_POINTER)
+#undef QSES_POINTER
 };
+
+// Those of the instruction sets: files that are compiled with QSES_CPU_ISA defined as the name of one.
+#define QSES_DECLARE(result, kernel, ...) result kernel(__VA_ARGS__);
+namespace base {
+QSES_CPU_KERNELS(QSES_DECLARE)
+}  // namespace base
+namespace v3 {
+QSES_CPU_KERNELS(QSES_DECLARE)
+}  // namespace v3
+#undef QSES_DECLARE
 
 // The best set of kernels this processor runs.
 const CpuKernels &cpu_kernels();

@@ -2,7 +2,6 @@
 // CPU kernel: caps and exposed arcs of one atom, eight neighbours or eight cutting balls at a time.
 #include "parallel/pack.h"
 #include "surface/cpu/cpu_kernels.h"
-#include "surface/cpu/cpu_kernels_isa.h"
 
 namespace quickses {
 namespace QSES_CPU_ISA {
@@ -183,7 +182,7 @@ AtomFeatures find_atom_features(const NeighborGridView &atoms, const SurfacePara
                                 const AtomScratch &scratch, Cap *caps, int cap_room, Arc *arcs, int64_t arc_room,
                                 uint8_t *exposed) {
   const Sphere self = atoms.items[i];
-  if (self.center.x >= 0.5f * kFarAway) return {0, 0, 0};  // swallowed
+  if (self.center.x >= 0.5f * kFarAway) return {0, 0, 0};  // another atom contains it
   const Columns c = cut_columns(scratch);
   const int near = gather_neighbors(atoms, parameters.max_radius, i, c, scratch.capacity);
   if (near + kPackSize > scratch.capacity) return {near + kPackSize, 0, 0};

@@ -2,7 +2,6 @@
 // CPU kernel: which lattice points of one brick lie inside the exact surface. Only signs are computed, never the
 // distance itself: balls are filled in as bit rows, and the points that stay undecided are packed together.
 #include "surface/cpu/cpu_candidates.h"
-#include "surface/cpu/cpu_kernels_isa.h"
 
 #if defined(__BMI2__)
 #include <immintrin.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // CPU kernel: the triangles of one brick's cells. The numbers of all vertices in reach are written to an array first,
 // so that a triangle is three look-ups.
-#include "surface/cpu/cpu_kernels_isa.h"
+#include "surface/cpu/cpu_kernels.h"
 
 #include <cassert>
 #if !defined(NDEBUG)

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // CPU kernel: the vertices that one brick owns, placed exactly on the surface eight at a time.
 #include "surface/cpu/cpu_candidates.h"
-#include "surface/cpu/cpu_kernels_isa.h"
 
 #include <new>
 
@@ -58,13 +57,6 @@ struct AllCandidates {
   uint32_t arc(int k) const { return static_cast<uint32_t>(c.arc_index[k]); }
 };
 
-// Case of a cell by its lower corner, -1 ... 7 in each axis.
-QSES_FN int cell_case(const SignRows &rows, int x, int y, int z) {
-  const int s = x + 1;
-  return (rows.row[z + 1][y + 1] >> s & 3) | (rows.row[z + 1][y + 2] >> s & 3) << 2 |
-         (rows.row[z + 2][y + 1] >> s & 3) << 4 | (rows.row[z + 2][y + 2] >> s & 3) << 6;
-}
-
 // Where the brick's vertices start, in the order of their numbers. Returns how many there are.
 int start_vertices(const FeatureView &f, const BrickSet &bricks, const MeshLayout &layout, uint32_t brick,
                    const VertexStarts &starts, const BrickCandidates &c, Points *p) {
@@ -93,13 +85,8 @@ int start_vertices(const FeatureView &f, const BrickSet &bricks, const MeshLayou
           start = {low.x + (axis == 0 ? along : 0.f), low.y + (axis == 1 ? along : 0.f),
                    low.z + (axis == 2 ? along : 0.f)};
           if (starts.relax) {
-            const auto case_near = [&](int second, int third) {
-              return axis == 0   ? cell_case(rows, x, y + second, z + third)
-                     : axis == 1 ? cell_case(rows, x + second, y, z + third)
-                                 : cell_case(rows, x + second, y + third, z);
-            };
             float mx, my, mz;
-            ring_displacement(edge_ring_of_cells(case_near, axis, starts.ring), &mx, &my, &mz);
+            ring_displacement(edge_ring_of_rows(&rows.row[z + 1][y + 1], 10, x + 1, axis, starts.ring), &mx, &my, &mz);
             start = start + Vec3<float>(mx, my, mz) * h;
           }
         }
@@ -120,6 +107,19 @@ struct Work {
   bool placed[kMaxBrickVertices + kPackSize];
   Points open;  // those whose radial projection is not exposed
   int32_t open_number[kMaxBrickVertices + kPackSize];
+
+  SurfacePoint point(int v) const {
+    return {{place.x[v], place.y[v], place.z[v]},
+            {normal.x[v], normal.y[v], normal.z[v]},
+            static_cast<qses_patch>(patch[v]),
+            placed[v]};
+  }
+  void set_point(int v, const SurfacePoint &s) {
+    place.x[v] = s.position.x, place.y[v] = s.position.y, place.z[v] = s.position.z;
+    normal.x[v] = s.normal.x, normal.y[v] = s.normal.y, normal.z[v] = s.normal.z;
+    patch[v] = static_cast<uint8_t>(s.patch);
+    placed[v] = s.placed;
+  }
 };
 static_assert(sizeof(Work) <= BrickScratch::kVertexBytes, "the scratch of a thread has room for it");
 
@@ -140,7 +140,8 @@ int project_contact(const FeatureView &f, const BrickCandidates &c, float spacin
     store_pack(number, deepest.number);
     Vec3<Pack> place = p, normal = p;
     uint32_t done = 0;
-    const uint32_t trusted = lane_bits(Pack(depth) - deepest.depth <= Pack(kLongestWayIn * spacing));
+    const Pack way_in = Pack(depth) - deepest.depth;
+    const uint32_t trusted = lane_bits(is_short_move(f.parameters, way_in, way_in * way_in));
     for (uint32_t todo = used & lane_bits(Pack(0.f) <= deepest.number); todo;) {
       const float a = number[lowest_bit32(todo)];
       const PackMask same_mask = deepest.number == Pack(a);
@@ -185,18 +186,18 @@ int project_contact(const FeatureView &f, const BrickCandidates &c, float spacin
   return open;
 }
 
-// Vertices on the saddle and concave parts: projected from the nearest exposed arc, again while another probe might
-// be in the way.
+// Vertices on the saddle and concave parts: projected from the nearest arc, and again while another probe may cover
+// them.
 void project_reentrant(const FeatureView &f, const BrickCandidates &c, float spacing, int open, Work *w) {
   const float depth = f.parameters.depth;
-  for (int pass = 0; pass < kMaxProjections && open > 0; ++pass) {
+  for (int rounds = 0; open > 0; ++rounds) {
     fill_up(&w->open, open);
-    int again = 0;
+    int covered = 0;
     for (int g = 0; g < open; g += kPackSize) {
       if (c.arc_count > kManyArcs) look_for_stop();
       const Vec3<Pack> p = load_points(w->open.x + g, w->open.y + g, w->open.z + g);
       const PointBall ball = ball_around(p);
-      const float reach = depth + (pass ? 1e-3f : kStartReach * spacing);
+      const float reach = depth + (rounds > 0 ? 1e-3f : kStartReach * spacing);
       const int arcs = choose_balls(c.arcs, c.arc_count, ball.center, ball.radius + reach, c.arc_list);
       Pack best(kFarAway), second(kFarAway), number(-1.f);
       for (int k = 0; k < arcs; ++k) {
@@ -206,36 +207,28 @@ void project_reentrant(const FeatureView &f, const BrickCandidates &c, float spa
         best = select(nearer, d2, best);
         number = select(nearer, Pack(static_cast<float>(k)), number);
       }
-      alignas(32) float seconds[kPackSize], numbers[kPackSize];
-      store_pack(seconds, second);
+      alignas(32) float nearest2[kPackSize], seconds2[kPackSize], numbers[kPackSize];
+      store_pack(nearest2, best);
+      store_pack(seconds2, second);
       store_pack(numbers, number);
       const int used = open - g < kPackSize ? open - g : kPackSize;
       for (int l = 0; l < used; ++l) {
-        const int v = w->open_number[g + l];
+        const int v = w->open_number[g + l], k = static_cast<int>(numbers[l]);
+        const NearestArc nearest{k < 0 ? -1 : c.arc_index[c.arc_list[k]], nearest2[l], seconds2[l]};
+        const Projection projection =
+            rounds == 0 ? project_on_arc(f, nearest, {w->open.x[g + l], w->open.y[g + l], w->open.z[g + l]})
+                        : reproject(f, AllCandidates{c}, nearest, {w->point(v), ProjectionState::kReproject, rounds});
+        w->set_point(v, projection.point);
         w->owner[v] = -1;
-        if (numbers[l] < 0.f) {
-          w->placed[v] = pass > 0;  // where it is nothing is near it any more
-          continue;
-        }
-        const Vec3<float> x(w->open.x[g + l], w->open.y[g + l], w->open.z[g + l]);
-        const Arc &arc = f.arcs[c.arc_index[c.arc_list[static_cast<int>(numbers[l])]]];
-        const Look look =
-            pass == 0 ? look_at_arc(f.parameters, arc, seconds[l], x)
-                      : look_around(f.parameters, arc, seconds[l], x, {w->normal.x[v], w->normal.y[v], w->normal.z[v]});
-        const SurfacePoint &s = look.point;
-        w->place.x[v] = s.position.x, w->place.y[v] = s.position.y, w->place.z[v] = s.position.z;
-        w->normal.x[v] = s.normal.x, w->normal.y[v] = s.normal.y, w->normal.z[v] = s.normal.z;
-        w->patch[v] = static_cast<uint8_t>(s.patch);
-        w->placed[v] = s.placed && !(look.again && pass + 1 == kMaxProjections) &&
-                       !(pass > 1 && is_over_contact(f, AllCandidates{c}, s.position));
-        if (w->placed[v] && look.again) {
-          w->open_number[again] = v;
-          w->open.x[again] = s.position.x, w->open.y[again] = s.position.y, w->open.z[again] = s.position.z;
-          ++again;
-        }
+        w->placed[v] = projection.state != ProjectionState::kOnEdge;
+        if (projection.state != ProjectionState::kReproject) continue;
+        const Vec3<float> &x = projection.point.position;
+        w->open_number[covered] = v;
+        w->open.x[covered] = x.x, w->open.y[covered] = x.y, w->open.z[covered] = x.z;
+        ++covered;
       }
     }
-    open = again;
+    open = covered;
   }
 }
 
@@ -259,11 +252,7 @@ void place_on_edges(const FeatureView &f, const BrickSet &bricks, const MeshLayo
     const EdgeCandidates near{
         c, choose_balls(c.atoms, c.atom_count, ends.middle(), edge_reach(f.parameters), c.near_list),
         choose_balls(c.arcs, c.arc_count, ends.middle(), edge_arc_reach(f.parameters), c.arc_list)};
-    const SurfacePoint s = place_on_edge(f, near, ends);
-    w->place.x[v] = s.position.x, w->place.y[v] = s.position.y, w->place.z[v] = s.position.z;
-    w->normal.x[v] = s.normal.x, w->normal.y[v] = s.normal.y, w->normal.z[v] = s.normal.z;
-    w->patch[v] = static_cast<uint8_t>(s.patch);
-    w->placed[v] = s.placed;
+    w->set_point(v, place_on_edge(f, near, ends));
     w->owner[v] = -1;
   }
 }
@@ -300,10 +289,7 @@ void write_vertices(const FeatureView &f, const Lattice &lattice, const VertexSt
                     uint32_t base, int n, const Work &w) {
   uint32_t unplaced = 0;
   for (int v = 0; v < n; ++v) {
-    const SurfacePoint s = {{w.place.x[v], w.place.y[v], w.place.z[v]},
-                            {w.normal.x[v], w.normal.y[v], w.normal.z[v]},
-                            static_cast<qses_patch>(w.patch[v]),
-                            w.placed[v]};
+    const SurfacePoint s = w.point(v);
     unplaced += s.placed ? 0 : 1;
     const uint32_t owner = static_cast<uint32_t>(w.owner[v]), vertex = base + static_cast<uint32_t>(v);
     const glm::vec3 p = lattice.to_caller(s.position);

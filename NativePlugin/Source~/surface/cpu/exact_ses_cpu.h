@@ -2,8 +2,7 @@
 // CPU driver of the exact field and of the mesh: one thread per brick.
 #pragma once
 
-#include "parallel/cpu_executor.h"
-#include "surface/cpu/cpu_kernels.h"
+#include "surface/cpu/cpu_kernel_executor.h"
 
 namespace quickses {
 
@@ -50,7 +49,7 @@ struct EvaluateBrick {
   }
 };
 
-inline void evaluate_signs(CpuExecutor &executor, const FeatureView &features, const BrickSet &bricks, BrickRange slice,
+inline void evaluate_signs(CpuKernelExecutor &executor, const FeatureView &features, const BrickSet &bricks, BrickRange slice,
                            uint64_t *signs) {
   executor.match_scratches<BrickColumns>();
   executor.for_each_brick<BrickColumns>(slice.size(),
@@ -72,7 +71,7 @@ struct EmitBrickVertices {
   }
 };
 
-inline void emit_vertices(CpuExecutor &executor, const FeatureView &features, const BrickSet &bricks,
+inline void emit_vertices(CpuKernelExecutor &executor, const FeatureView &features, const BrickSet &bricks,
                           const MeshLayout &layout, BrickRange slice, const VertexStarts &starts,
                           const MeshView &mesh) {
   executor.match_scratches<BrickColumns>();
@@ -92,7 +91,7 @@ struct EmitBrickTriangles {
   }
 };
 
-inline void emit_triangles(CpuExecutor &executor, const BrickSet &bricks, const MeshLayout &layout, BrickRange slice,
+inline void emit_triangles(CpuKernelExecutor &executor, const BrickSet &bricks, const MeshLayout &layout, BrickRange slice,
                            const TableView &table, const MeshView &mesh) {
   executor.for_each_brick<char>(slice.size(),
                                 EmitBrickTriangles{&executor.kernels(), &bricks, &layout, &table, &mesh, slice.first});

@@ -2,26 +2,26 @@
 // The meshes of the CPU: made where the caller reads them.
 #pragma once
 
-#include "parallel/cpu_executor.h"
+#include "surface/cpu/cpu_kernel_executor.h"
 #include "surface/mesh/mesh_memory.h"
 #include "surface/stages/hot_stages.h"
 
 namespace quickses {
 
 template <>
-class MeshMemory<CpuExecutor> {
+class MeshMemory<CpuKernelExecutor> {
  public:
-  explicit MeshMemory(CpuExecutor &) {}
+  explicit MeshMemory(CpuKernelExecutor &) {}
 
   void use_slot(int slot) { slots_.use_slot(slot); }
   uint64_t host_bytes() const { return slots_.bytes(); }
   // Bytes of work that are not in the arena, and those that are taken off a budget for it.
-  uint64_t outside_arena(const CpuExecutor &executor) const { return executor.scratch_bytes(); }
-  uint64_t allowed_outside(const CpuExecutor &executor) const { return executor.scratch_allowance(); }
+  uint64_t outside_arena(const CpuKernelExecutor &executor) const { return executor.scratch_bytes(); }
+  uint64_t allowed_outside(const CpuKernelExecutor &executor) const { return executor.scratch_allowance(); }
 
   void forget_spills() {}
 
-  MeshMemoryView allocate_mesh(CpuExecutor &executor, size_t vertices, size_t triangles, const MeshShape &shape,
+  MeshMemoryView allocate_mesh(CpuKernelExecutor &executor, size_t vertices, size_t triangles, const MeshShape &shape,
                                MeshPurpose purpose, bool in_pieces) {
     const MeshArrays arrays(vertices, triangles, shape);
     void *const memory = mesh_is_in_arena(false, purpose, in_pieces) ? executor.allocate<char>(arrays.bytes()).data
@@ -30,17 +30,17 @@ class MeshMemory<CpuExecutor> {
   }
 
   template <class T>
-  Span<T> allocate_beside(CpuExecutor &executor, const MeshMemoryView &, size_t n) {
+  Span<T> allocate_beside(CpuKernelExecutor &executor, const MeshMemoryView &, size_t n) {
     return executor.allocate<T>(n);
   }
 
-  void save(CpuExecutor &, const MeshMemoryView &, const MeshView &, size_t, size_t) {}  // never in pieces
+  void save(CpuKernelExecutor &, const MeshMemoryView &, const MeshView &, size_t, size_t) {}  // never in pieces
 
   void finish(const MeshMemoryView &built, const qses_settings &settings, qses_mesh *mesh) {
     describe_mesh(built, built.view, settings, mesh);
   }
 
-  TableView upload_table(CpuExecutor &, const MarchingCubesTable &table) {
+  TableView upload_table(CpuKernelExecutor &, const MarchingCubesTable &table) {
     return {table.triangle_count, table.edges, table.ring};
   }
 

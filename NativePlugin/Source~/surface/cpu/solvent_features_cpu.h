@@ -3,9 +3,8 @@
 // little memory nothing is pooled: a first pass only counts, a second one writes everything to its place.
 #pragma once
 
-#include "parallel/cpu_executor.h"
+#include "surface/cpu/cpu_kernel_executor.h"
 #include "parallel/growing_buffer.h"
-#include "surface/cpu/cpu_kernels.h"
 
 namespace quickses {
 
@@ -251,7 +250,7 @@ struct PooledFeatures {
 };
 
 // A pool for n atoms. With a budget it must not take more than that; with low memory nothing.
-inline FeaturePool &open_pool(CpuExecutor &executor, size_t n, bool low_memory) {
+inline FeaturePool &open_pool(CpuKernelExecutor &executor, size_t n, bool low_memory) {
   FeaturePool &pool = *executor.scratches<FeaturePool>().front();
   if (low_memory) {
     pool.open({}, {});
@@ -264,7 +263,7 @@ inline FeaturePool &open_pool(CpuExecutor &executor, size_t n, bool low_memory) 
   return pool;
 }
 
-inline void find_solvent_features(CpuExecutor &executor, const NeighborGridView &atoms,
+inline void find_solvent_features(CpuKernelExecutor &executor, const NeighborGridView &atoms,
                                   const SurfaceParameters &parameters, bool low_memory, SolventFeatures *features) {
   const FeatureArrays a(executor, atoms.count, executor.threads());
   const auto mark = executor.arena().mark();
@@ -299,7 +298,7 @@ inline void find_solvent_features(CpuExecutor &executor, const NeighborGridView 
 }
 
 // Only counted.
-inline void find_solvent_features(CountingExecutor<CpuExecutor> &executor, const NeighborGridView &atoms,
+inline void find_solvent_features(CountingExecutor<CpuKernelExecutor> &executor, const NeighborGridView &atoms,
                                   const SurfaceParameters &, bool low_memory, SolventFeatures *features) {
   const FeatureArrays a(executor, atoms.count, executor.real().threads());
   const auto mark = executor.arena().mark();

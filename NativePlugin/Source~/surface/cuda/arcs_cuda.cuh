@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// GPU driver of the arcs: each lane of a warp clips one circle; lanes that are done are given new circles together,
-// since most circles are covered after a few balls and some need many.
+// GPU driver of the arcs: each lane of a warp finds those of one circle; lanes that are done are given new circles
+// together, since most circles are covered after a few balls and some need many.
 #pragma once
 
 #include "parallel/cuda_executor.cuh"
@@ -46,7 +46,7 @@ struct CircleJob {
   const uint32_t *circle_first;  // per atom of the run
   uint8_t *exposed;
   Arc *arcs;
-  // Made by clip_circles().
+  // Made by find_arcs().
   CircleName *names = nullptr;     // of the circles, by atom and rank
   uint32_t *arc_count = nullptr;   // per circle: pieces of arcs
   StagedCircle *staged = nullptr;  // circles with exposed arcs, in any order
@@ -54,7 +54,7 @@ struct CircleJob {
   uint32_t *long_circles = nullptr;  // circles that need more intervals than a lane holds
 };
 
-constexpr int kClipThreads = 128;
+constexpr int kArcThreads = 128;
 constexpr int kLaneIntervals = 8;  // exposed intervals of a circle that a lane holds
 constexpr int kIdleLanes = 10;     // refill when so many have nothing to do
 
@@ -77,15 +77,14 @@ static __global__ __launch_bounds__(128) void list_circles_kernel(CircleJob job)
     for (int q0 = 0; q0 < range.count; q0 += kWarp) {
       const int q = q0 + lane;
       const bool owns = q < range.count && job.neighbors[range.first + static_cast<uint32_t>(q)] > i;
-      const unsigned ballot = __ballot_sync(kFullWarp, owns);
-      if (owns) job.names[next + static_cast<uint32_t>(place_in(ballot, lane))] = {i, static_cast<uint32_t>(q)};
-      next += static_cast<uint32_t>(__popc(ballot));
+      const uint32_t slot = append_place(owns, &next);
+      if (owns) job.names[slot] = {i, static_cast<uint32_t>(q)};
     }
   }
 }
 
-// A circle being clipped.
-struct ClippedCircle {
+// A circle whose arcs are being found.
+struct OpenCircle {
   uint32_t number;  // of the circle
   uint32_t atom, other;
   uint32_t first_cap;
@@ -95,8 +94,8 @@ struct ClippedCircle {
   Circle circle;
 };
 
-__device__ __forceinline__ ClippedCircle open_circle(const CircleJob &job, uint32_t number) {
-  ClippedCircle c;
+__device__ __forceinline__ OpenCircle open_circle(const CircleJob &job, uint32_t number) {
+  OpenCircle c;
   const CircleName name = job.names[number];
   const CapRange range = job.cap_ranges[name.atom];
   const float radius = load(job.atoms.items + name.atom).radius;
@@ -115,7 +114,7 @@ __device__ __forceinline__ ClippedCircle open_circle(const CircleJob &job, uint3
 
 // What cap k covers of the circle: a stretch from begin to end, nothing, or all.
 enum class CutKind { kNone, kPart, kAll };
-__device__ __forceinline__ CutKind cut_by_cap(const CircleJob &job, const ClippedCircle &c, int k, float *begin,
+__device__ __forceinline__ CutKind cut_by_cap(const CircleJob &job, const OpenCircle &c, int k, float *begin,
                                               float *end) {
   const Cap cap = load(job.caps + c.first_cap + static_cast<uint32_t>(k));
   const HalfPlane<float> h = cut_circle(c.circle, Vec3<float>(cap.axis), cap.cosine - c.shrink);
@@ -134,7 +133,7 @@ __device__ __forceinline__ uint32_t arcs_of(const ExposedIntervals<Storage> &int
 
 // Stages a circle's arcs at a place in both lists, and marks its atoms as exposed.
 template <class Storage>
-__device__ __forceinline__ void stage_circle(const CircleJob &job, const ClippedCircle &c,
+__device__ __forceinline__ void stage_circle(const CircleJob &job, const OpenCircle &c,
                                              const ExposedIntervals<Storage> &intervals, unsigned long long place) {
   job.exposed[c.atom] = 1;
   job.exposed[c.other] = 1;
@@ -153,22 +152,22 @@ __device__ __forceinline__ void stage_circle(const CircleJob &job, const Clipped
   job.arc_count[c.number] = pieces;
 }
 
-static __global__ __launch_bounds__(kClipThreads) void clip_circles_kernel(CircleJob job, uint32_t chunk) {
-  __shared__ Interval memory[kLaneIntervals * kClipThreads];
-  const StridedIntervals storage{memory + threadIdx.x, kClipThreads};
+static __global__ __launch_bounds__(kArcThreads) void find_arcs_kernel(CircleJob job, uint32_t chunk) {
+  __shared__ Interval memory[kLaneIntervals * kArcThreads];
+  const StridedIntervals storage{memory + threadIdx.x, kArcThreads};
   enum class State { kIdle, kActive, kDone };
   const int lane = lane_id();
   // Those that are listed: atoms whose caps had no room are counted, but list none.
   const unsigned long long total = job.circle_first[job.run.size()];
   if (total > job.room.circles) return;  // all will be done again
-  const uint32_t warps = gridDim.x * kClipThreads / kWarp;
+  const uint32_t warps = gridDim.x * kArcThreads / kWarp;
   for (unsigned long long base =
-           (blockIdx.x * kClipThreads + threadIdx.x) / kWarp * static_cast<unsigned long long>(chunk);
+           (blockIdx.x * kArcThreads + threadIdx.x) / kWarp * static_cast<unsigned long long>(chunk);
        base < total; base += static_cast<unsigned long long>(warps) * chunk) {
     uint32_t next = static_cast<uint32_t>(base);
     const uint32_t end = static_cast<uint32_t>(base + chunk < total ? base + chunk : total);
     State state = State::kIdle;
-    ClippedCircle c{};
+    OpenCircle c{};
     ExposedIntervals<StridedIntervals> intervals{storage, kLaneIntervals};
     int k = 0;
     for (;;) {
@@ -229,11 +228,11 @@ static __global__ __launch_bounds__(kClipThreads) void clip_circles_kernel(Circl
 }
 
 // The circles that have more exposed intervals, with room for as many as they can have: one more than there are caps.
-static __global__ __launch_bounds__(kWarp) void clip_long_circles_kernel(CircleJob job, Interval *memory) {
+static __global__ __launch_bounds__(kWarp) void find_long_circle_arcs_kernel(CircleJob job, Interval *memory) {
   const uint32_t thread = blockIdx.x * kWarp + threadIdx.x, threads = gridDim.x * kWarp;
   const uint32_t count = job.counters->long_circles;
   for (uint32_t t = thread; t < count; t += threads) {
-    const ClippedCircle c = open_circle(job, job.long_circles[t]);
+    const OpenCircle c = open_circle(job, job.long_circles[t]);
     if (static_cast<size_t>(c.cap_count) + 1 > job.room.intervals) continue;  // all will be done again
     ExposedIntervals<StridedIntervals> intervals{{memory + thread, static_cast<int>(threads)},
                                                  static_cast<int>(job.room.intervals)};
@@ -258,7 +257,7 @@ static __global__ __launch_bounds__(128) void write_arcs_kernel(CircleJob job, c
   for (uint32_t s = blockIdx.x * blockDim.x + threadIdx.x; s < static_cast<uint32_t>(staged >> 32);
        s += gridDim.x * blockDim.x) {
     const StagedCircle staged_circle = job.staged[s];
-    const ClippedCircle c = open_circle(job, staged_circle.circle);
+    const OpenCircle c = open_circle(job, staged_circle.circle);
     const Sphere atom = load(job.atoms.items + c.atom);
     uint32_t place = arc_first[staged_circle.circle];
     for (uint32_t k = 0; k < staged_circle.count; ++k) {
@@ -270,9 +269,9 @@ static __global__ __launch_bounds__(128) void write_arcs_kernel(CircleJob job, c
   }
 }
 
-// All from the caps to the arcs.
+// The arcs of a run of atoms from their caps.
 template <class E>
-void clip_circles(E &executor, CircleJob job) {
+void find_arcs(E &executor, CircleJob job) {
   const FeatureRoom &room = job.room;
   const size_t processors = executor.multiprocessors(), n = job.run.size();
   job.names = executor.template allocate<CircleName>(room.circles).data;
@@ -288,12 +287,12 @@ void clip_circles(E &executor, CircleJob job) {
   // Enough warps to fill the GPU, and enough circles per warp to refill its lanes.
   const uint32_t chunk =
       static_cast<uint32_t>(std::min<size_t>(256, std::max<size_t>(64, room.circles / (processors * 64))));
-  executor.launch("clip_circles", clip_circles_kernel, std::min(room.circles / (4 * chunk) + 1, processors * 64),
-                  kClipThreads, 0, job, chunk);
+  executor.launch("find_arcs", find_arcs_kernel, std::min(room.circles / (4 * chunk) + 1, processors * 64), kArcThreads,
+                  0, job, chunk);
   if (room.intervals > 0) {
     const size_t blocks = 16;
     Span<Interval> memory = executor.template allocate<Interval>(blocks * kWarp * room.intervals);
-    executor.launch("clip_long_circles", clip_long_circles_kernel, blocks, kWarp, 0, job, memory.data);
+    executor.launch("find_long_circle_arcs", find_long_circle_arcs_kernel, blocks, kWarp, 0, job, memory.data);
   }
   executor.exclusive_scan(room.circles, LoadNumber{arc_count.data}, arc_first);
   executor.launch("write_arcs", write_arcs_kernel, std::min(n / 64 + 1, processors * 16), 128, 0, job, arc_first.data);

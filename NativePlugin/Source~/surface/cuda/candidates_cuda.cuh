@@ -47,15 +47,9 @@ inline double listed_candidates(const SurfaceParameters &parameters) {
   return 16.0 + 0.03 * std::min(1e6, wide * wide * wide);
 }
 
-// Bytes of a brick's candidates: atoms, arcs and their leaves, rows and lists of leaves.
-inline double candidate_bytes(const SurfaceParameters &parameters, const CandidateCounts &all) {
-  const double listed = listed_candidates(parameters);
-  return 4.0 * std::min(listed, all.atoms) + 5.0 * std::min(listed, all.arcs) + 56.0;
-}
-
-// Words of the row that a leaf with vertices has besides (vertex_rows_cuda.cuh): with its volume, more can matter to
-// it.
-inline uint32_t row_words(const SurfaceParameters &parameters) {
+// Words of the list that a leaf with vertices has besides (vertex_candidates_cuda.cuh): with its volume, more can matter
+// to it.
+inline uint32_t leaf_list_words(const SurfaceParameters &parameters) {
   constexpr double kUsual = 64, kUsualSpacing = 0.6, kMost = 2048;
   const double scale = static_cast<double>(parameters.spacing) / kUsualSpacing;
   return static_cast<uint32_t>(std::min(kMost, kUsual * std::max(1.0, std::ceil(scale * scale * scale))));
@@ -122,32 +116,36 @@ struct GatherJob {
   uint64_t *signs;  // of inactive leaves; nullptr: known already
 };
 
+// The ball that a point is deepest in, of `count` atoms: atom_at(k). No atoms: no ball, and a depth below all.
+constexpr uint32_t kNoAtom = 0xffffffffu;
+template <class AtomAt>
+__device__ __forceinline__ DeepestAtom warp_deepest_atom(const FeatureView &f, uint32_t count, const AtomAt &atom_at,
+                                                         const Vec3<float> &x) {
+  NumberedValue best{-2.f * kFarAway, kNoAtom};
+  for (uint32_t k = static_cast<uint32_t>(lane_id()); k < count; k += kWarp) {
+    const uint32_t i = atom_at(k);
+    const float depth = ball_depth(load(f.atoms.items + i), x);
+    if (depth > best.value) best = {depth, i};
+  }
+  best = warp_largest(best);
+  return {best.number, best.value};
+}
+
+// Whether the radial projection of a point on the ball it is deepest in is exposed.
+__device__ __forceinline__ bool projection_exposed(const FeatureView &f, uint32_t atom, const Vec3<float> &x,
+                                                   float depth) {
+  const Sphere ball = load(f.atoms.items + atom);
+  return is_exposed(f, atom, x - Vec3<float>(ball.center), offset_length(ball, depth));
+}
+
 // Sign of a leaf between whose points no surface passes: that of its centre. No arc is as near to it as depth.
 __device__ __forceinline__ bool uniform_leaf_inside(const GatherJob &job, const uint32_t *atoms, uint32_t count,
                                                     const Vec3<float> &center) {
-  float depth = -kFarAway;
-  uint32_t atom = 0xffffffffu;
-  for (uint32_t k = static_cast<uint32_t>(lane_id()); k < count; k += kWarp) {
-    const uint32_t i = atoms[k];
-    const float d = ball_depth(load(job.features.atoms.items + i), center);
-    if (d > depth) {
-      depth = d;
-      atom = i;
-    }
-  }
-#pragma unroll
-  for (int d = kWarp / 2; d > 0; d >>= 1) {
-    const float other_depth = __shfl_xor_sync(kFullWarp, depth, d);
-    const uint32_t other = __shfl_xor_sync(kFullWarp, atom, d);
-    if (other_depth > depth || (other_depth == depth && other < atom)) {
-      depth = other_depth;
-      atom = other;
-    }
-  }
-  if (depth <= job.reach.least_depth) return false;
-  if (depth > job.reach.depth) return true;
-  const Sphere ball = load(job.features.atoms.items + atom);
-  return !is_exposed(job.features, atom, center - Vec3<float>(ball.center), offset_length(ball, depth));
+  const auto atom_at = [&](uint32_t k) { return atoms[k]; };  // this kernel wrote them
+  const DeepestAtom deepest = warp_deepest_atom(job.features, count, atom_at, center);
+  if (deepest.depth <= job.reach.least_depth) return false;
+  if (deepest.depth > job.reach.depth) return true;
+  return !projection_exposed(job.features, deepest.atom, center, deepest.depth);
 }
 
 // A list of one kind of things, and a warp's shared memory for the row it gathers.
@@ -180,13 +178,11 @@ __device__ __forceinline__ GatheredRow gather_row(const NeighborGridView &grid, 
     visit_cells(grid, low, extent, reach, [&](uint32_t k, bool on) {
       uint32_t set = 0;
       const bool near = on && test(k, &set);
-      const unsigned ballot = __ballot_sync(kFullWarp, near);
-      const uint32_t place = n + static_cast<uint32_t>(place_in(ballot, lane));
+      const uint32_t place = append_place(near, &n);
       if (near && place < room) {
         items[place] = k;
         if (leaves) leaves[place] = static_cast<uint8_t>(set);
       }
-      n += static_cast<uint32_t>(__popc(ballot));
     });
     if (round == 1) break;
     row.count = n;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "surface/cuda/candidates_cuda.cuh"
+#include "surface/cuda/learnt_rooms_cuda.cuh"
 
 namespace quickses {
 
@@ -13,25 +14,6 @@ struct CudaCandidates {
   gpu::CandidateView view{};
   size_t leaves = 0;
 };
-template <>
-struct CandidatesOf<CudaExecutor> {
-  using type = CudaCandidates;
-  static constexpr double kSpareBytes = gpu::kSpareCandidates * 9.0;
-  static double sign_bytes(const SurfaceParameters &parameters, const CandidateCounts &all) {
-    return gpu::candidate_bytes(parameters, all);
-  }
-  static double emission_bytes(const SurfaceParameters &parameters, const CandidateCounts &all, double vertices,
-                               double leaves) {
-    return gpu::candidate_bytes(parameters, all) + 4.0 * gpu::row_words(parameters) * leaves + 12.0 * vertices;
-  }
-  // Signs and layout, and the mesh of a surface as dense as proteins have it.
-  static uint64_t whole_bytes(const SurfaceParameters &parameters, const CandidateCounts &all) {
-    constexpr double kVertices = 60, kLeaves = 4, kVertexBytes = 28, kTriangleBytes = 12;
-    return static_cast<uint64_t>(352 + emission_bytes(parameters, all, kVertices, kLeaves) +
-                                 kVertices * (kVertexBytes + 2 * kTriangleBytes));
-  }
-};
-
 namespace gpu {
 
 constexpr int kSignWarps = 4;
@@ -88,36 +70,6 @@ struct BoxCull {
 
 enum class LeafKind { kMixed, kInside, kOutside };
 
-// The deepest ball of a leaf's centre among a brick's atoms.
-struct LeafBest {
-  float depth;
-  uint32_t atom;
-};
-__device__ __forceinline__ LeafBest deepest_at(const FeatureView &f, const uint32_t *atoms, uint32_t count,
-                                               const Vec3<float> &center) {
-  LeafBest best{-2.f * kFarAway, 0xffffffffu};
-  for (uint32_t k = static_cast<uint32_t>(lane_id()); k < count; k += kWarp) {
-    const uint32_t i = __ldg(atoms + k);
-    const float d = ball_depth(load(f.atoms.items + i), center);
-    if (d > best.depth) best = {d, i};
-  }
-  const float depth = warp_maximum(best.depth);
-  uint32_t atom = best.depth == depth ? best.atom : 0xffffffffu;
-#pragma unroll
-  for (int d = kWarp / 2; d > 0; d >>= 1) {
-    const uint32_t other = __shfl_xor_sync(kFullWarp, atom, d);
-    atom = other < atom ? other : atom;
-  }
-  return {depth, atom};
-}
-
-// Whether a point is outside because its projection on the ball it is deepest in is exposed.
-__device__ __forceinline__ bool projection_exposed(const FeatureView &f, uint32_t atom, const Vec3<float> &x,
-                                                   float depth) {
-  const Sphere ball = load(f.atoms.items + atom);
-  return is_exposed(f, atom, x - Vec3<float>(ball.center), offset_length(ball, depth));
-}
-
 static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_kernel(SignJob job) {
   __shared__ LeafScratch scratch_memory[kSignWarps];
   const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();
@@ -140,7 +92,8 @@ static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_k
   first += glm::ivec3(4 * (leaf & 1), 4 * (leaf >> 1 & 1), 4 * (leaf >> 2));
 
   // Atoms that can be deepest at a point.
-  const LeafBest best = deepest_at(f, atoms, brick_row.atom_count, center);
+  const auto atom_at = [&](uint32_t k) { return __ldg(atoms + k); };
+  const DeepestAtom best = warp_deepest_atom(f, brick_row.atom_count, atom_at, center);
   int atom_count = 0;
   if (brick_row.atom_count > 0) {
     BoxCull cull;
@@ -157,15 +110,11 @@ static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_k
         const float d = ball_depth(ball, center);
         near = (d >= -reach.leaf_radius - reach.slack && cull.keeps(ball, d)) || i == best.atom;
       }
-      const unsigned ballot = __ballot_sync(kFullWarp, near);
-      if (near) {
-        const int place = atom_count + place_in(ballot, lane);
-        if (place < kLeafAtoms) {
-          scratch.atom[place] = ball;
-          scratch.atom_number[place] = i;
-        }
+      const int place = append_place(near, &atom_count);
+      if (near && place < kLeafAtoms) {
+        scratch.atom[place] = ball;
+        scratch.atom_number[place] = i;
       }
-      atom_count += __popc(ballot);
     }
   }
 
@@ -174,12 +123,8 @@ static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_k
   const auto stage_arcs = [&](uint32_t k0) {
     const uint32_t k = k0 + static_cast<uint32_t>(lane);
     const bool near = k < brick_row.arc_count && (__ldg(arc_leaves + k) >> leaf & 1) != 0;
-    const unsigned ballot = __ballot_sync(kFullWarp, near);
-    if (near) {
-      const int place = arc_count + place_in(ballot, lane);
-      if (place < kLeafArcs) scratch.arc[place] = load(f.arcs + __ldg(arcs + k));
-    }
-    arc_count += __popc(ballot);
+    const int place = append_place(near, &arc_count);
+    if (near && place < kLeafArcs) scratch.arc[place] = load(f.arcs + __ldg(arcs + k));
   };
   for (uint32_t k0 = 0; k0 < brick_row.arc_count; k0 += kWarp) stage_arcs(k0);
   __syncwarp();
@@ -265,33 +210,43 @@ static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_k
 
 // Gathers the candidates of a slice; evaluates its signs unless signs is nullptr. Waits once, or more often if the
 // guess of their number was too small.
-inline void gather_candidates(CudaExecutor &executor, const FeatureView &features, const BrickSet &bricks,
-                              BrickRange slice, CudaCandidates &candidates, uint64_t *signs) {
+template <class E>
+void gather_candidates(E &executor, const FeatureView &features, const BrickSet &bricks, BrickRange slice,
+                       CudaRooms &rooms, CudaCandidates &candidates, uint64_t *signs) {
   const uint32_t n = slice.size();
   const CandidateReach reach = CandidateReach::of(features.parameters);
   CandidateView view{};
   view.first_brick = slice.first;
   view.bricks = n;
-  view.brick_rows = executor.allocate<BrickRow>(n).data;
-  view.leaf_list = executor.allocate<uint32_t>(size_t(n) * kLeavesPerBrick).data;
-  Span<CandidateCounters> counters = executor.allocate<CandidateCounters>(1);
+  view.brick_rows = executor.template allocate<BrickRow>(n).data;
+  view.leaf_list = executor.template allocate<uint32_t>(size_t(n) * kLeavesPerBrick).data;
+  Span<CandidateCounters> counters = executor.template allocate<CandidateCounters>(1);
   const double per_brick = listed_candidates(features.parameters);
-  size_t atom_room = static_cast<size_t>(std::min(per_brick, double(features.atoms.count)) * n) + kSpareCandidates;
-  size_t arc_room = static_cast<size_t>(std::min(per_brick, double(features.arc_bounds.count)) * n) + kSpareCandidates;
+  const auto room_for = [&](double rate, uint32_t most) {
+    return static_cast<size_t>(std::min(rate * per_brick, static_cast<double>(most)) * n) + kSpareCandidates;
+  };
+  size_t atom_room = room_for(rooms.listed_atoms, features.atoms.count);
+  size_t arc_room = room_for(rooms.listed_arcs, features.arc_bounds.count);
   const auto mark = executor.arena().mark();
   CandidateCounters found;
   for (;;) {
-    view.atoms = executor.allocate<uint32_t>(atom_room).data;
-    view.arcs = executor.allocate<uint32_t>(arc_room).data;
-    view.arc_leaves = executor.allocate<uint8_t>(arc_room).data;
+    view.atoms = executor.template allocate<uint32_t>(atom_room).data;
+    view.arcs = executor.template allocate<uint32_t>(arc_room).data;
+    view.arc_leaves = executor.template allocate<uint8_t>(arc_room).data;
     executor.fill(counters, 0);
     executor.launch("gather_candidates", gather_candidates_kernel, (n + kGatherWarps - 1) / kGatherWarps,
                     kGatherWarps * kWarp, 0,
                     GatherJob{features, bricks, reach, view, counters.data, atom_room, arc_room, signs});
     found = executor.fetch(counters.data);
     if (found.atoms <= atom_room && found.arcs <= arc_room) break;
-    atom_room = std::max<size_t>(atom_room, found.atoms);
-    arc_room = std::max<size_t>(arc_room, found.arcs);
+    // The next surface may have a few more.
+    const auto learn = [&](double *rate, unsigned long long count, size_t *room) {
+      if (count <= *room) return;
+      *rate = std::max(*rate, 1.125 * static_cast<double>(count) / (per_brick * n));
+      *room = static_cast<size_t>(count);
+    };
+    learn(&rooms.listed_atoms, found.atoms, &atom_room);
+    learn(&rooms.listed_arcs, found.arcs, &arc_room);
     executor.arena().rewind(mark);
   }
   candidates.leaves = static_cast<size_t>(found.leaves);
@@ -304,11 +259,5 @@ inline void gather_candidates(CudaExecutor &executor, const FeatureView &feature
 }
 
 }  // namespace gpu
-
-// The candidates live in the executor's arena: use them until it is rewound past here.
-inline void evaluate_signs(CudaExecutor &executor, const FeatureView &features, const BrickSet &bricks,
-                           BrickRange slice, CudaCandidates &candidates, uint64_t *signs) {
-  if (slice.size() > 0) gpu::gather_candidates(executor, features, bricks, slice, candidates, signs);
-}
 
 }  // namespace quickses

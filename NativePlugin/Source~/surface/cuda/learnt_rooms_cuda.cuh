@@ -36,37 +36,37 @@ struct FeatureRoom {
            (c.staged & 0xffffffffu) <= staged_arcs && c.arcs <= arcs &&
            (c.long_circles == 0 || c.longest_row + 1u <= intervals);
   }
-  // With a bit more than was counted, for the next surface.
-  void learn(const FeatureRoom &r) {
-    const auto take = [](size_t &own, size_t other) { own = std::max(own, other + other / 8); };
-    take(caps, r.caps);
-    take(circles, r.circles);
-    take(staged_circles, r.staged_circles);
-    take(staged_arcs, r.staged_arcs);
-    take(arcs, r.arcs);
-    neighbors = std::max(neighbors, (r.neighbors + r.neighbors / 8 + 31) / 32 * 32);
-    long_atoms = std::max(long_atoms, r.long_atoms);
-    take(intervals, r.intervals);
+  // For what was counted.
+  static FeatureRoom of(const FeatureCounters &c) {
+    return {static_cast<size_t>(c.caps),
+            static_cast<size_t>(c.circles),
+            static_cast<size_t>(c.staged >> 32),
+            static_cast<size_t>(c.staged & 0xffffffffu),
+            static_cast<size_t>(c.arcs),
+            (c.neighbors + size_t(31)) / 32 * 32,  // keeps the rows aligned
+            c.long_atoms,
+            c.long_circles > 0 ? c.longest_row + size_t(1) : 0};
   }
-  void hold(const FeatureRoom &r) {
-    caps = std::max(caps, r.caps);
-    circles = std::max(circles, r.circles);
-    staged_circles = std::max(staged_circles, r.staged_circles);
-    staged_arcs = std::max(staged_arcs, r.staged_arcs);
-    arcs = std::max(arcs, r.arcs);
-    neighbors = std::max(neighbors, r.neighbors);
-    long_atoms = std::max(long_atoms, r.long_atoms);
-    intervals = std::max(intervals, r.intervals);
+  FeatureRoom with_spare() const {
+    const auto more = [](size_t n) { return n + n / 8; };
+    return {more(caps),
+            more(circles),
+            more(staged_circles),
+            more(staged_arcs),
+            more(arcs),
+            (more(neighbors) + 31) / 32 * 32,
+            more(long_atoms),
+            more(intervals)};
   }
-  void grow(const FeatureCounters &c) {
-    neighbors = std::max<size_t>(neighbors, (c.neighbors + size_t(31)) / 32 * 32);  // keeps the rows aligned
-    long_atoms = std::max<size_t>(long_atoms, c.long_atoms);
-    caps = std::max<size_t>(caps, c.caps);
-    circles = std::max<size_t>(circles, c.circles);
-    staged_circles = std::max<size_t>(staged_circles, c.staged >> 32);
-    staged_arcs = std::max<size_t>(staged_arcs, c.staged & 0xffffffffu);
-    arcs = std::max<size_t>(arcs, c.arcs);
-    if (c.long_circles > 0) intervals = std::max<size_t>(intervals, c.longest_row + 1u);
+  void include(const FeatureRoom &r) {
+    *this = {std::max(caps, r.caps),
+             std::max(circles, r.circles),
+             std::max(staged_circles, r.staged_circles),
+             std::max(staged_arcs, r.staged_arcs),
+             std::max(arcs, r.arcs),
+             std::max(neighbors, r.neighbors),
+             std::max(long_atoms, r.long_atoms),
+             std::max(intervals, r.intervals)};
   }
 };
 

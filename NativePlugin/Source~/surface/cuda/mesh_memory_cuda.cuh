@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Atoms and mesh with CUDA: both pass through page-locked memory. The mesh is made on the device, its arrays behind
-// each other so that one copy brings them over. Where it does not fit there, its place is page-locked memory, which
-// kernels reach as well, slowly: what makes most of it goes through slabs on the device.
+// The meshes of the GPU: made on the device, their arrays behind each other so that one copy brings them to page-locked
+// memory. In pieces: the mesh is in page-locked memory from the beginning, which kernels reach as well, slowly; what
+// makes most of it goes through parts on the device.
 #pragma once
 
 #include "parallel/cuda_executor.cuh"
-#include "surface/memory/host_components.h"
-#include "surface/memory/mesh_memory.h"
+#include "surface/mesh/mesh_memory.h"
+#include "surface/stages/hot_stages.h"
 
 namespace quickses {
 
@@ -16,54 +16,36 @@ class MeshMemory<CudaExecutor> {
   explicit MeshMemory(CudaExecutor &executor) : executor_(executor) {}
   ~MeshMemory() { DeviceMemory::release(table_); }
 
-  std::shared_ptr<AtomSet> make_atoms(size_t count) {
-    const DeviceGuard guard(executor_.device());
-    return host_.make_atoms(count);
-  }
-  void use_slot(int slot) { host_.use_slot(slot); }
-  // What was allocated beside a mesh on the host, or as one to be made into another, is given up.
+  void use_slot(int slot) { slots_.use_slot(slot); }
+  // What was allocated beside a mesh in pieces, or as one to be made into another, is given up.
   void forget_spills() { spilled_ = 0; }
   uint64_t host_bytes() const {
-    uint64_t sum = host_.bytes() + host_components_.bytes();
+    uint64_t sum = slots_.bytes();
     for (const PinnedBuffer &spill : spill_) sum += spill.size();
     return sum;
   }
 
   // Bytes of the device that are not in the arena.
-  uint64_t beside_arena(const CudaExecutor &) const { return sizeof(MarchingCubesTable); }
-  uint64_t allowed_beside(const CudaExecutor &executor) const { return beside_arena(executor); }
+  uint64_t outside_arena(const CudaExecutor &) const { return sizeof(MarchingCubesTable); }
+  uint64_t allowed_outside(const CudaExecutor &executor) const { return outside_arena(executor); }
 
   MeshMemoryView allocate_mesh(CudaExecutor &executor, size_t vertices, size_t triangles, const MeshShape &shape,
-                               MeshPurpose purpose, uint64_t reserve) {
+                               MeshPurpose purpose, bool in_pieces) {
     const MeshArrays arrays(vertices, triangles, shape);
-    MeshMemoryView mesh;
-    mesh.shape = shape;
-    mesh.vertices = vertices;
-    mesh.triangles = triangles;
-    mesh.bytes = arrays.bytes();
-    mesh.on_host = executor.arena().available() < arrays.bytes() + reserve;
-    if (!mesh.on_host) {
-      const auto mark = executor.arena().mark();
-      try {
-        mesh.memory = executor.template allocate<char>(arrays.bytes()).data;
-      } catch (const MemoryRefused &) {
-        executor.arena().rewind(mark);
-        mesh.on_host = true;
-      }
-    }
-    if (mesh.on_host) mesh.memory = reserve_on_host(arrays.bytes(), purpose);
-    mesh.view = arrays.view(mesh.memory);
-    return mesh;
+    void *const memory = mesh_is_in_arena(true, purpose, in_pieces) ? executor.allocate<char>(arrays.bytes()).data
+                         : purpose == MeshPurpose::kDelivered       ? slots_.reserve(arrays.bytes())
+                                                                    : spill(arrays.bytes());
+    return describe_memory(arrays, vertices, triangles, shape, in_pieces, memory);
   }
 
   // Room for something as large as the mesh, where the mesh is.
   template <class T>
   Span<T> allocate_beside(CudaExecutor &executor, const MeshMemoryView &mesh, size_t n) {
-    if (!mesh.on_host) return executor.template allocate<T>(n);
+    if (!mesh.in_pieces) return executor.allocate<T>(n);
     return {static_cast<T *>(spill(n * sizeof(T))), n};
   }
 
-  // Copies a part from the device to its place in a mesh on the host.
+  // Copies a part from the device to its place in a mesh in pieces.
   void save(CudaExecutor &executor, const MeshMemoryView &mesh, const MeshView &part, size_t vertices,
             size_t triangles) {
     for_each_array(mesh.view, part, vertices, triangles, [&](void *to, const void *from, size_t bytes) {
@@ -71,30 +53,12 @@ class MeshMemory<CudaExecutor> {
     });
   }
 
-  // On the device; where its memory does not suffice, by the CPU on the host, where the mesh then stays. The numbers
-  // are the same.
-  void find_components(CudaExecutor &executor, float spacing, MeshPurpose purpose, MeshMemoryView *mesh) {
-    const MeshCounts counts{mesh->vertices, mesh->triangles};
-    if (!mesh->on_host) {
-      const auto mark = executor.arena().mark();
-      try {
-        mesh->components = quickses::find_components(executor, mesh->view, counts, spacing, host_.components());
-        return;
-      } catch (const MemoryRefused &) {
-        executor.arena().rewind(mark);
-      }
-      move_to_host(executor, purpose, mesh);
-    }
-    executor.wait();
-    mesh->components = host_components_.find(mesh->view, counts, spacing, host_.components());
-  }
-
   void finish(const MeshMemoryView &built, const qses_settings &settings, qses_mesh *mesh) {
     const MeshArrays arrays(built.vertices, built.triangles, built.shape);
     MeshView host = built.view;
     if (built.vertices > 0) {
-      if (!built.on_host) {
-        char *const memory = static_cast<char *>(host_.reserve_mesh(arrays.bytes()));
+      if (!built.in_pieces) {
+        char *const memory = static_cast<char *>(slots_.reserve(arrays.bytes()));
         executor_.download(memory, static_cast<const char *>(built.memory), arrays.bytes());
         host = arrays.view(memory);
       }
@@ -113,20 +77,6 @@ class MeshMemory<CudaExecutor> {
   }
 
  private:
-  void *reserve_on_host(size_t bytes, MeshPurpose purpose) {
-    return purpose == MeshPurpose::kDelivered ? host_.reserve_mesh(bytes) : spill(bytes);
-  }
-
-  // The values are there after the next wait.
-  void move_to_host(CudaExecutor &executor, MeshPurpose purpose, MeshMemoryView *mesh) {
-    const MeshArrays arrays(mesh->vertices, mesh->triangles, mesh->shape);
-    void *const memory = reserve_on_host(arrays.bytes(), purpose);
-    executor.download(static_cast<char *>(memory), static_cast<const char *>(mesh->memory), arrays.bytes());
-    mesh->memory = memory;
-    mesh->view = arrays.view(memory);
-    mesh->on_host = true;
-  }
-
   // At most the unmasked mesh, sums and starts at a time.
   void *spill(size_t bytes) {
     constexpr size_t kSpills = sizeof spill_ / sizeof spill_[0];
@@ -135,10 +85,9 @@ class MeshMemory<CudaExecutor> {
   }
 
   CudaExecutor &executor_;
-  HostSide<PinnedMemory> host_;
+  MeshSlots<PinnedMemory> slots_;
   PinnedBuffer spill_[4];
   size_t spilled_ = 0;
-  HostComponents host_components_;
   void *table_ = nullptr;
 };
 

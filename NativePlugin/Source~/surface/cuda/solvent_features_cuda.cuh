@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // GPU driver of the solvent features: a warp per atom for the caps, a lane per circle for the arcs. Results are staged
 // wherever there is room and then put in order; if a guess of their number was too small, all is done again with room
-// for what was counted. With little memory the atoms are worked on in runs, and only the caps that later stages look at
-// are kept.
+// for what was counted, which is remembered. With low memory the atoms are worked on in runs, and only the caps that
+// later stages look at are kept.
 #pragma once
 
 #include "surface/cuda/arcs_cuda.cuh"
@@ -76,16 +76,12 @@ __device__ __forceinline__ int gather_caps(const NeighborGridView &atoms, float 
         meets = overlap(self.radius, other.radius, distance2);
       }
     }
-    const unsigned ballot = __ballot_sync(kFullWarp, meets);
-    if (meets) {
-      const int place = n + place_in(ballot, lane);
-      if (place < room) {
-        rows.cap[place] = {to_glm(axis), cosine};
-        rows.sine[place] = cap_sine(cosine);
-        rows.neighbor[place] = k;
-      }
+    const int place = append_place(meets, &n);
+    if (meets && place < room) {
+      rows.cap[place] = {to_glm(axis), cosine};
+      rows.sine[place] = cap_sine(cosine);
+      rows.neighbor[place] = k;
     }
-    n += __popc(ballot);
   });
   __syncwarp();
   return n;
@@ -124,14 +120,13 @@ __device__ __forceinline__ int drop_contained_caps(const CapRows &rows, int n) {
       cap = rows.cap[j];
       neighbor = rows.neighbor[j];
     }
-    const unsigned ballot = __ballot_sync(kFullWarp, !(neighbor & kContainedCap));
+    const bool stays = !(neighbor & kContainedCap);
+    const int place = append_place(stays, &kept);
     __syncwarp();
-    if (!(neighbor & kContainedCap)) {
-      const int place = kept + place_in(ballot, lane);
+    if (stays) {
       rows.cap[place] = cap;
       rows.neighbor[place] = neighbor;
     }
-    kept += __popc(ballot);
     __syncwarp();
   }
   return kept;
@@ -236,19 +231,22 @@ struct FeaturePass {
   uint8_t *exposed;
 };
 
-// The caps of a run of atoms.
-inline void find_caps(CudaExecutor &executor, const CapJob &job) {
+// The caps of a run of atoms. Rows of atoms with many neighbours get a quarter of what there is; is_rare: of what is
+// known to be free.
+template <class E>
+void find_caps(E &executor, const CapJob &job, bool is_rare) {
   const size_t blocks =
       std::min<size_t>((job.run.size() + kCapWarps - 1) / kCapWarps, size_t(executor.multiprocessors()) * 128);
   executor.launch("find_caps", find_caps_kernel, blocks, kCapWarps * kWarp, 0, job);
   if (job.room.neighbors == 0) return;
   // Rows for as many warps as there is memory for; the others' atoms take turns.
+  constexpr uint64_t kEnough = uint64_t(1) << 30;
   const size_t block_bytes = kCapWarps * job.room.neighbors * (sizeof(Cap) + sizeof(float) + sizeof(uint32_t));
-  const size_t long_blocks =
-      static_cast<size_t>(std::max<uint64_t>(1, std::min<uint64_t>({blocks, size_t(executor.multiprocessors()) * 4,
-                                                                    executor.arena().available() / 4 / block_bytes})));
+  const uint64_t free = is_rare ? std::min(kEnough, executor.arena().available()) : kEnough;
+  const size_t long_blocks = static_cast<size_t>(std::max<uint64_t>(
+      1, std::min<uint64_t>({blocks, size_t(executor.multiprocessors()) * 4, free / 4 / block_bytes})));
   const auto mark = executor.arena().mark();
-  Span<unsigned char> memory = executor.allocate<unsigned char>(long_blocks * block_bytes);
+  Span<unsigned char> memory = executor.template allocate<unsigned char>(long_blocks * block_bytes);
   // Caps are compared with each other, 32 pairs at a time in some 3 ns: where there are very many, the work is cut into
   // launches of about 10 ms that are waited for, since what is queued can't be cancelled.
   const double pairs = static_cast<double>(job.room.neighbors) * static_cast<double>(job.room.neighbors);
@@ -265,40 +263,47 @@ inline void find_caps(CudaExecutor &executor, const CapJob &job) {
 }
 
 // One attempt at the caps and arcs of a run of atoms; returns what was counted. Waits.
-inline FeatureCounters find_run_features(CudaExecutor &executor, const FeaturePass &pass, AtomRun run,
-                                         const FeatureRoom &room, Cap *caps, Arc *arcs) {
+template <class E>
+FeatureCounters find_run_features(E &executor, const FeaturePass &pass, AtomRun run, const FeatureRoom &room, Cap *caps,
+                                  Arc *arcs, bool is_rare) {
   const auto mark = executor.arena().mark();
   const size_t n = run.size();
-  Span<FeatureCounters> counters = executor.allocate<FeatureCounters>(1);
-  Span<uint32_t> neighbors = executor.allocate<uint32_t>(room.caps);
-  Span<uint32_t> circle_count = executor.allocate<uint32_t>(n), circle_first = executor.allocate<uint32_t>(n + 1);
-  Span<uint32_t> long_atoms = executor.allocate<uint32_t>(n);
+  Span<FeatureCounters> counters = executor.template allocate<FeatureCounters>(1);
+  Span<uint32_t> neighbors = executor.template allocate<uint32_t>(room.caps);
+  Span<uint32_t> circle_count = executor.template allocate<uint32_t>(n);
+  Span<uint32_t> circle_first = executor.template allocate<uint32_t>(n + 1);
+  Span<uint32_t> long_atoms = executor.template allocate<uint32_t>(n);
   executor.fill(counters, 0);
-  find_caps(executor, CapJob{pass.atoms, pass.max_radius, run, room, counters.data, pass.cap_ranges, caps,
-                             neighbors.data, circle_count.data, pass.exposed, long_atoms.data});
+  find_caps(executor,
+            CapJob{pass.atoms, pass.max_radius, run, room, counters.data, pass.cap_ranges, caps, neighbors.data,
+                   circle_count.data, pass.exposed, long_atoms.data},
+            is_rare);
   executor.exclusive_scan(n, LoadNumber{circle_count.data}, circle_first);
-  clip_circles(executor, CircleJob{pass.atoms, run, room, counters.data, pass.cap_ranges, caps, neighbors.data,
-                                   circle_first.data, pass.exposed, arcs});
+  find_arcs(executor, CircleJob{pass.atoms, run, room, counters.data, pass.cap_ranges, caps, neighbors.data,
+                                circle_first.data, pass.exposed, arcs});
   const FeatureCounters found = executor.fetch(counters.data);
   executor.arena().rewind(mark);
   return found;
 }
 
 // All atoms at once.
-inline void find_all_features(CudaExecutor &executor, const FeaturePass &pass, SolventFeatures *features) {
+template <class E>
+void find_all_features(E &executor, const FeaturePass &pass, FeatureRoom &learnt, SolventFeatures *features) {
   const uint32_t n = pass.atoms.count;
   FeatureRoom room = FeatureRoom::guess(n);
+  room.include(learnt);
   for (const auto start = executor.arena().mark();; executor.arena().rewind(start)) {
-    features->caps = executor.allocate<Cap>(room.caps);
-    features->arcs = executor.allocate<Arc>(room.arcs);
-    const FeatureCounters found =
-        find_run_features(executor, pass, AtomRun{0, n}, room, features->caps.data, features->arcs.data);
+    features->caps = executor.template allocate<Cap>(room.caps);
+    features->arcs = executor.template allocate<Arc>(room.arcs);
+    const FeatureCounters found = find_run_features(executor, pass, AtomRun{0, n}, room, features->caps.data,
+                                                    features->arcs.data, executor.arena().has_budget());
     if (room.holds(found)) {
       features->caps.size = static_cast<size_t>(found.caps);
       features->arcs.size = static_cast<size_t>(found.arcs);
       return;
     }
-    room.grow(found);
+    room.include(FeatureRoom::of(found));
+    learnt.include(FeatureRoom::of(found).with_spare());
   }
 }
 
@@ -308,88 +313,107 @@ struct CountExposedCaps {
   QSES_HOST_DEVICE double operator()(size_t i) const { return exposed[i] ? cap_ranges[i].count : 0; }
 };
 
-// Bytes that the work on an atom takes, with the room that is guessed at first.
-constexpr size_t kAtomWorkBytes = 28 * 20 + 14 * 20 + 3 * sizeof(StagedCircle) + 5 * sizeof(ExposedArc) + 12;
-constexpr uint32_t kLeastRun = 128;
+// Bytes that a run of atoms takes besides the arcs.
+template <class E>
+uint64_t run_bytes(E &executor, const FeaturePass &pass, uint32_t atoms, FeatureRoom room) {
+  const WorkFacts none{};
+  auto counted = counting(executor, none);
+  counted.template allocate<Cap>(room.caps);
+  find_run_features(counted, pass, AtomRun{0, atoms}, room, nullptr, nullptr, true);
+  return counted.arena().peak();
+}
 
 // Run after run. The caps of a run serve its circles only; in the end those of the exposed atoms are found once more.
-inline void find_features_in_runs(CudaExecutor &executor, const FeaturePass &pass, SolventFeatures *features) {
+template <class E>
+void find_features_in_runs(E &executor, const FeaturePass &pass, const MemoryPlan &plan, FeatureRoom &learnt,
+                           SolventFeatures *features) {
   const uint32_t n = pass.atoms.count;
   auto &arena = executor.arena();
-  uint64_t atoms_per_run = std::min<uint64_t>(n, std::max<uint64_t>(kLeastRun, arena.available() / 8 / kAtomWorkBytes));
-  // The arcs get what the work leaves, and give back what they do not need.
-  const uint64_t reserve = 2 * atoms_per_run * kAtomWorkBytes + 65536;
+  const auto room_of = [&](uint32_t atoms) {
+    FeatureRoom room = FeatureRoom::guess(atoms);
+    room.neighbors = learnt.neighbors;
+    room.intervals = learnt.intervals;
+    room.long_atoms = atoms;
+    room.arcs = 0;
+    return room;
+  };
+  // A run's work gets a quarter of what there is at most, and the arcs what they are expected to need.
+  uint32_t atoms_per_run = std::min(n, plan.most_atoms);
+  while (atoms_per_run > kLeastRun && run_bytes(executor, pass, atoms_per_run, room_of(atoms_per_run)) > arena.available() / 4)
+    atoms_per_run = std::max(kLeastRun, atoms_per_run / 2);
+  const uint64_t work = run_bytes(executor, pass, atoms_per_run, room_of(atoms_per_run));
+  const uint64_t left = arena.available() > work ? (arena.available() - work) / sizeof(Arc) : 0;
   const auto before_arcs = arena.mark();
-  const uint64_t free = arena.available();
-  Span<Arc> arcs = executor.allocate<Arc>(static_cast<size_t>((free > reserve ? free - reserve : 0) / sizeof(Arc)));
   uint64_t arc_total = 0;
-  size_t neighbors = 0;
-  for (uint32_t first = 0; first < n;) {
-    const AtomRun run{first, static_cast<uint32_t>(std::min<uint64_t>(n, first + atoms_per_run))};
-    FeatureRoom room = FeatureRoom::guess(run.size());
-    const auto mark = arena.mark();
-    try {
+  size_t arc_room = static_cast<size_t>(std::min<uint64_t>(left, std::max(learnt.arcs, FeatureRoom::guess(n).arcs)));
+  if (E::kCounts) arc_room = features->arcs.size;
+  for (;; arena.rewind(before_arcs)) {
+    Span<Arc> arcs = executor.template allocate<Arc>(arc_room);
+    arc_total = 0;
+    for (uint32_t first = 0; first < n;) {
+      const AtomRun run{first, first + std::min(atoms_per_run, n - first)};
+      FeatureRoom room = room_of(run.size());
+      const auto mark = arena.mark();
       for (;; arena.rewind(mark)) {
         room.arcs = arcs.size > arc_total ? static_cast<size_t>(arcs.size - arc_total) : 0;
-        room.neighbors = std::max(room.neighbors, neighbors);
-        room.long_atoms = run.size();
-        Cap *const caps = executor.allocate<Cap>(room.caps).data;
-        FeatureCounters found = find_run_features(executor, pass, run, room, caps, arcs.data + arc_total);
+        Cap *const caps = executor.template allocate<Cap>(room.caps).data;
+        FeatureCounters found = find_run_features(executor, pass, run, room, caps, arcs.data + arc_total, true);
         const unsigned long long run_arcs = found.arcs;
-        found.arcs = 0;  // if they do not fit, no other attempt would help: they are only counted from then on
+        found.arcs = 0;  // if they do not fit they are only counted from then on
         if (room.holds(found)) {
           arc_total += run_arcs;
           break;
         }
-        room.grow(found);
+        room.include(FeatureRoom::of(found));
+        learnt.neighbors = std::max(learnt.neighbors, room.neighbors);
+        learnt.intervals = std::max(learnt.intervals, room.intervals);
       }
-      neighbors = std::max(neighbors, room.neighbors);
-      first = run.last;
       arena.rewind(mark);
-    } catch (const MemoryRefused &) {
-      arena.rewind(mark);
-      if (run.size() <= kLeastRun) throw;
-      atoms_per_run = std::max<uint64_t>(kLeastRun, run.size() / 2);
+      first = E::kCounts ? n : run.last;  // the first is as large as any
     }
+    if (arc_total <= arcs.size) break;
+    learnt.arcs = static_cast<size_t>(arc_total + arc_total / 16);
+    if (arc_total > left) throw MemoryRefused("the arcs of the atoms do not fit beside the work");
+    arc_room = static_cast<size_t>(std::min<uint64_t>(left, learnt.arcs));
   }
   const uint64_t cap_total = static_cast<uint64_t>(executor.reduce(n, CountExposedCaps{pass.exposed, pass.cap_ranges}));
-  features->caps.size = static_cast<size_t>(cap_total);
-  features->arcs.size = static_cast<size_t>(arc_total);
+  if (!E::kCounts) {
+    features->caps.size = static_cast<size_t>(cap_total);
+    features->arcs.size = static_cast<size_t>(arc_total);
+  }
   arena.rewind(before_arcs);
-  if (arc_total > arcs.size) throw MemoryRefused("the arcs of the atoms do not fit into the memory budget");
-  features->arcs = executor.allocate<Arc>(static_cast<size_t>(arc_total));  // where they are already
-  features->caps = executor.allocate<Cap>(static_cast<size_t>(cap_total));
+  features->arcs = executor.template allocate<Arc>(features->arcs.size);  // where they are already
+  features->caps = executor.template allocate<Cap>(features->caps.size);
 
   const auto mark = arena.mark();
   FeatureRoom room{};
-  room.caps = static_cast<size_t>(cap_total);
-  room.neighbors = neighbors;
+  room.caps = features->caps.size;
+  room.neighbors = learnt.neighbors;
   room.long_atoms = n;
-  Span<FeatureCounters> counters = executor.allocate<FeatureCounters>(1);
-  Span<uint32_t> long_atoms = executor.allocate<uint32_t>(n);
+  Span<FeatureCounters> counters = executor.template allocate<FeatureCounters>(1);
+  Span<uint32_t> long_atoms = executor.template allocate<uint32_t>(n);
   executor.fill(counters, 0);
-  find_caps(executor, CapJob{pass.atoms, pass.max_radius, AtomRun{0, n}, room, counters.data, pass.cap_ranges,
-                             features->caps.data, nullptr, nullptr, pass.exposed, long_atoms.data});
+  find_caps(executor,
+            CapJob{pass.atoms, pass.max_radius, AtomRun{0, n}, room, counters.data, pass.cap_ranges,
+                   features->caps.data, nullptr, nullptr, pass.exposed, long_atoms.data},
+            true);
   arena.rewind(mark);
 }
 
-}  // namespace gpu
-
-inline void find_solvent_features(CudaExecutor &executor, const NeighborGridView &atoms,
-                                  const SurfaceParameters &parameters, bool frugal, SolventFeatures *features) {
-  using namespace gpu;
-  features->cap_ranges = executor.allocate<CapRange>(atoms.count);
+template <class E>
+void find_solvent_features(E &executor, const NeighborGridView &atoms, const SurfaceParameters &parameters,
+                           const MemoryPlan &plan, CudaRooms &rooms, SolventFeatures *features) {
+  features->cap_ranges = executor.template allocate<CapRange>(atoms.count);
   if (atoms.count == 0) return;
-  Span<uint8_t> exposed = executor.allocate<uint8_t>(atoms.count);
+  Span<uint8_t> exposed = executor.template allocate<uint8_t>(atoms.count);
   executor.fill(exposed, 0);
   const FeaturePass pass{atoms, parameters.max_radius, features->cap_ranges.data, exposed.data};
-  // Work and results of all atoms, and half as much again for the arcs' grid.
-  const uint64_t all = atoms.count * uint64_t(kAtomWorkBytes + 7 * sizeof(Arc)) + 65536;
-  if (!frugal && executor.arena().available() / 3 * 2 > all)
-    find_all_features(executor, pass, features);
+  if (plan.low_memory)
+    find_features_in_runs(executor, pass, plan, rooms.features, features);
   else
-    find_features_in_runs(executor, pass, features);
+    find_all_features(executor, pass, rooms.features, features);
   executor.for_each(atoms.count, ExposeAtoms{exposed.data, features->cap_ranges.data});
 }
 
+}  // namespace gpu
 }  // namespace quickses

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// GPU: where the vertices of a leaf start, and which atoms and arcs can decide about them: a short row of numbers per
-// leaf, so that a thread per vertex has little to look at.
+// GPU: where the vertices of a leaf start, and their candidates: the atoms and arcs that can decide about them, a short
+// list of numbers per leaf, so that a thread per vertex has little to look at.
 #pragma once
 
 #include "surface/cuda/exact_ses_cuda.cuh"
@@ -18,21 +18,21 @@ struct VertexJob {
   bool halved;            // the starts are in the mesh already
   MeshView mesh;          // its positions hold the starts, in the centred frame, until they are projected
   uint32_t first, count;  // vertices of the slice
-  uint32_t *vertex_row;   // per vertex: number of its leaf's row, or kBrickRow and the brick of the slice
-  uint32_t *rows;         // row_words each
-  uint32_t row_words, first_row;
-  uint32_t *open, *open_count;    // vertices that no contact patch has
-  uint32_t *again, *again_count;  // those of them that must be checked against other probes
+  uint32_t *list_of;      // per vertex: number of its leaf's list, or kBrickCandidates and the brick of the slice
+  uint32_t *lists;        // list_words each
+  uint32_t list_words, first_list;
+  uint32_t *open, *open_count;              // vertices that no contact patch has
+  uint32_t *unfinished, *unfinished_count;  // those to be reprojected, or placed on their edges
 };
 
-// Row of a leaf's vertices: word 0 has the number of atoms in its lower and of arcs in its upper half, then they
-// follow. If they are too many the brick's row is used.
-constexpr uint32_t kBrickRow = 0x80000000u;
+// The list of a leaf: word 0 has the number of atoms in its lower and of arcs in its upper half, then they follow. If
+// they are too many the brick's candidates are used.
+constexpr uint32_t kBrickCandidates = 0x80000000u;
 constexpr int kLeafWarps = 4;
 constexpr int kMostLeafVertices = kAxes * 64;
 
 // The candidates of one vertex.
-struct RowCandidates {
+struct ListedCandidates {
   const uint32_t *atoms;
   const uint32_t *arcs;
   int atom_total, arc_total;
@@ -42,18 +42,19 @@ struct RowCandidates {
   __device__ __forceinline__ uint32_t arc(int k) const { return __ldg(arcs + k); }
 };
 
-__device__ __forceinline__ RowCandidates brick_candidates(const CandidateView &view, uint32_t brick) {
+__device__ __forceinline__ ListedCandidates brick_candidates(const CandidateView &view, uint32_t brick) {
   const BrickRow row = view.brick_rows[brick];
   return {view.atoms + row.first_atom, view.arcs + row.first_arc, static_cast<int>(row.atom_count),
           static_cast<int>(row.arc_count)};
 }
 
-__device__ __forceinline__ RowCandidates vertex_candidates(const VertexJob &job, uint32_t row_number) {
-  if (row_number & kBrickRow) return brick_candidates(job.view, row_number & ~kBrickRow);
-  const uint32_t *row = job.rows + static_cast<size_t>(row_number) * job.row_words;
-  const uint32_t head = __ldg(row);
+__device__ __forceinline__ ListedCandidates vertex_candidates(const VertexJob &job, uint32_t k) {
+  const uint32_t number = job.list_of[k];
+  if (number & kBrickCandidates) return brick_candidates(job.view, number & ~kBrickCandidates);
+  const uint32_t *list = job.lists + static_cast<size_t>(number) * job.list_words;
+  const uint32_t head = __ldg(list);
   const int atoms = static_cast<int>(head & 0xffff);
-  return {row + 1, row + 1 + atoms, atoms, static_cast<int>(head >> 16)};
+  return {list + 1, list + 1 + atoms, atoms, static_cast<int>(head >> 16)};
 }
 
 __device__ __forceinline__ Vec3<float> stored_start(const VertexJob &job, uint32_t vertex) {
@@ -130,13 +131,6 @@ __device__ __forceinline__ void fill_window(const VertexJob &job, const VertexLe
   __syncwarp();
 }
 
-// Case of the cell whose lower corner is point (x, y, z) of the leaf; -1 reaches back into the neighbours.
-__device__ __forceinline__ int window_case(const uint8_t *window, int x, int y, int z) {
-  const uint8_t *row = window + (y + 1) + 6 * (z + 1);
-  const int shift = x + 1;
-  return (row[0] >> shift & 3) | (row[1] >> shift & 3) << 2 | (row[6] >> shift & 3) << 4 | (row[7] >> shift & 3) << 6;
-}
-
 // Starts found by halving the edges, for spacings much wider than the probe. A warp per leaf.
 static __global__ __launch_bounds__(kLeafWarps *kWarp) void halve_starts_kernel(VertexJob job) {
   __shared__ uint8_t edge_memory[kLeafWarps][kMostLeafVertices];
@@ -144,7 +138,7 @@ static __global__ __launch_bounds__(kLeafWarps *kWarp) void halve_starts_kernel(
   const uint32_t slot = blockIdx.x * kLeafWarps + static_cast<uint32_t>(warp);
   VertexLeaf leaf;
   if (slot >= job.view.bricks * kLeavesPerBrick || !open_leaf(job, slot, &leaf, edge_memory[warp])) return;
-  const RowCandidates candidates = brick_candidates(job.view, slot / kLeavesPerBrick);
+  const ListedCandidates candidates = brick_candidates(job.view, slot / kLeavesPerBrick);
   for (int k = lane_id(); k < leaf.count; k += kWarp) {
     const LatticeEdge edge{leaf.leaf, edge_memory[warp][k] >> 6, edge_memory[warp][k] & 63};
     store_start(
@@ -153,7 +147,7 @@ static __global__ __launch_bounds__(kLeafWarps *kWarp) void halve_starts_kernel(
   }
 }
 
-// Starts and rows of the leaves that own vertices. A warp per leaf.
+// Starts and candidates of the leaves that own vertices. A warp per leaf.
 static __global__ __launch_bounds__(kLeafWarps *kWarp) void prepare_vertices_kernel(VertexJob job) {
   __shared__ uint8_t edge_memory[kLeafWarps][kMostLeafVertices];
   __shared__ SignWindow window_memory[kLeafWarps];
@@ -181,15 +175,8 @@ static __global__ __launch_bounds__(kLeafWarps *kWarp) void prepare_vertices_ker
       const int axis = edges[k] >> 6, bit = edges[k] & 63, px = bit & 3, py = bit >> 2 & 3, pz = bit >> 4;
       Vec3<float> move(0.f, 0.f, 0.f);
       if (ring) {
-        const uint8_t *const window = window_memory[warp].rows;
-        const auto cell_case = [&](int second, int third) {
-          return window_case(window, px + (axis == 0 ? 0 : second),
-                             py + (axis == 0   ? second
-                                   : axis == 1 ? 0
-                                               : third),
-                             pz + (axis == 2 ? 0 : third));
-        };
-        ring_displacement(edge_ring_of_cells(cell_case, axis, job.starts.ring), &move.x, &move.y, &move.z);
+        const uint8_t *const row = window_memory[warp].rows + (py + 1) + 6 * (pz + 1);
+        ring_displacement(edge_ring_of_rows(row, 6, px + 1, axis, job.starts.ring), &move.x, &move.y, &move.z);
       }
       const float along = vertex_start(word >> bit & 1);
       move.x += axis == 0 ? along : 0.f;
@@ -206,8 +193,8 @@ static __global__ __launch_bounds__(kLeafWarps *kWarp) void prepare_vertices_ker
   const Vec3<float> center = (low + high) * 0.5f, half = (high - low) * 0.5f;
 
   const FeatureView &f = job.features;
-  const RowCandidates all = brick_candidates(job.view, slot / kLeavesPerBrick);
-  // Rows are numbered like the leaves that own vertices.
+  const ListedCandidates all = brick_candidates(job.view, slot / kLeavesPerBrick);
+  // Lists are numbered like the leaves that own vertices.
   bool owns = false;
   if (lane < kLeavesPerBrick) {
     const uint64_t *const masks = job.layout.crossing + (size_t(leaf.brick) * kLeavesPerBrick + size_t(lane)) * kAxes;
@@ -215,13 +202,14 @@ static __global__ __launch_bounds__(kLeafWarps *kWarp) void prepare_vertices_ker
   }
   const unsigned owning = __ballot_sync(kFullWarp, owns);
   const uint32_t number =
-      job.layout.leaf_base[leaf.brick] - job.first_row + static_cast<uint32_t>(place_in(owning, leaf.leaf));
-  const int room = static_cast<int>(job.row_words);
-  uint32_t *const row = job.rows + static_cast<size_t>(number) * job.row_words;
-  int atoms = 0, arcs = 0;
+      job.layout.leaf_base[leaf.brick] - job.first_list + static_cast<uint32_t>(place_in(owning, leaf.leaf));
+  const int room = static_cast<int>(job.list_words);
+  uint32_t *const list = job.lists + static_cast<size_t>(number) * job.list_words;
+  int listed = 1;  // word 0 is for the numbers
   if (all.atom_total > 0) {
     // What can be deepest at a start, or at its projection.
-    const LeafBest best = deepest_at(f, all.atoms, static_cast<uint32_t>(all.atom_total), center);
+    const auto atom_at = [&](uint32_t k) { return all.atom(static_cast<int>(k)); };
+    const DeepestAtom best = warp_deepest_atom(f, static_cast<uint32_t>(all.atom_total), atom_at, center);
     const float move = kStartReach * job.reach.spacing;
     BoxCull cull;
     cull.set(center, {half.x + move, half.y + move, half.z + move}, load(f.atoms.items + best.atom), job.reach.slack);
@@ -234,12 +222,11 @@ static __global__ __launch_bounds__(kLeafWarps *kWarp) void prepare_vertices_ker
         const Sphere ball = load(f.atoms.items + i);
         keep = cull.keeps(ball, ball_depth(ball, center)) || i == best.atom;
       }
-      const unsigned ballot = __ballot_sync(kFullWarp, keep);
-      const int at = 1 + atoms + place_in(ballot, lane);
-      if (keep && at < room) row[at] = i;
-      atoms += __popc(ballot);
+      const int at = append_place(keep, &listed);
+      if (keep && at < room) list[at] = i;
     }
   }
+  const int atoms = listed - 1;
   const float radius = square_root(length_squared(half)), limit = job.reach.start_reach;
   for (int k0 = 0; k0 < all.arc_total; k0 += kWarp) {
     const int k = k0 + lane;
@@ -255,16 +242,14 @@ static __global__ __launch_bounds__(kLeafWarps *kWarp) void prepare_vertices_ker
       if (length_squared(d) <= near * near)
         keep = arc_distance2(load(f.arcs + a), center) <= (limit + radius) * (limit + radius);
     }
-    const unsigned ballot = __ballot_sync(kFullWarp, keep);
-    const int at = 1 + atoms + arcs + place_in(ballot, lane);
-    if (keep && at < room) row[at] = a;
-    arcs += __popc(ballot);
+    const int at = append_place(keep, &listed);
+    if (keep && at < room) list[at] = a;
   }
-  const bool fits = 1 + atoms + arcs <= room;
-  if (fits && lane == 0) row[0] = static_cast<uint32_t>(atoms) | static_cast<uint32_t>(arcs) << 16;
+  const bool fits = listed <= room;
+  if (fits && lane == 0) list[0] = static_cast<uint32_t>(atoms) | static_cast<uint32_t>(listed - 1 - atoms) << 16;
   for (int k = lane; k < leaf.count; k += kWarp)
-    job.vertex_row[leaf.first - job.first + static_cast<uint32_t>(k)] =
-        fits ? number : kBrickRow | slot / kLeavesPerBrick;
+    job.list_of[leaf.first - job.first + static_cast<uint32_t>(k)] =
+        fits ? number : kBrickCandidates | slot / kLeavesPerBrick;
 }
 
 }  // namespace gpu

@@ -29,7 +29,7 @@ QSES_FN auto overlap(T a, T b, T distance2) -> decltype(a < b) {
   return share_circle(a, b, distance2) | meet_from_within(a, b, distance2);
 }
 
-// Cosine of the cap that a ball that overlaps covers on a sphere of the given radius: <= -1 where it swallows the
+// Cosine of the cap that a ball that overlaps covers on a sphere of the given radius: <= -1 where it contains the
 // sphere. inverse_distance: one over that of the centres.
 constexpr float kLargestCosine = 0.9999999f;
 template <class T>
@@ -59,19 +59,19 @@ QSES_FN float cap_sine(float cosine) { return square_root(maximum(0.f, 1.f - cos
 // exposed; on the border of a cap the arcs there decide, and where rounding left no arc, no single point is open.
 QSES_FN float stored_cap_cosine(float cosine, float radius) { return cosine - kExposureTolerance / radius; }
 
-// Does ball j swallow ball i so that i owns no surface? order tells which of two equal ones stays.
-constexpr float kSwallowTolerance = 1e-5f;  // Å that i may stand out
-QSES_FN bool swallows(const Sphere &j, uint32_t order_j, const Sphere &i, uint32_t order_i) {
+// Does ball j contain ball i so that i owns no surface? order tells which of two equal ones stays.
+constexpr float kContainmentTolerance = 1e-5f;  // Å that i may stand out
+QSES_FN bool contains(const Sphere &j, uint32_t order_j, const Sphere &i, uint32_t order_i) {
   if (j.radius < i.radius || (j.radius == i.radius && order_j >= order_i)) return false;
   const float distance2 = length_squared(Vec3<float>(j.center) - Vec3<float>(i.center));
-  const float reach = j.radius - i.radius + kSwallowTolerance;
+  const float reach = j.radius - i.radius + kContainmentTolerance;
   return distance2 <= reach * reach ||
          (meet_from_within(j.radius, i.radius, distance2) && !share_circle(j.radius, i.radius, distance2));
 }
-// How far away the centre of a ball of at most max_radius can be that swallows a ball of the given radius.
-QSES_FN float swallowing_reach(float radius, float max_radius) {
+// How far away the centre of a ball of at most max_radius can be that contains a ball of the given radius.
+QSES_FN float containing_reach(float radius, float max_radius) {
   const float stands_out = minimum(radius, kPointCircle2 * max_radius * quotient(max_radius, maximum(radius, 1e-12f)));
-  return max_radius - radius + 2.f * (stands_out + kSwallowTolerance);
+  return max_radius - radius + 2.f * (stands_out + kContainmentTolerance);
 }
 
 }  // namespace quickses

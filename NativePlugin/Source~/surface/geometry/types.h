@@ -3,6 +3,7 @@
 // frame (see lattice.h), atoms in the order of the neighbour grid.
 #pragma once
 
+#include "parallel/span.h"
 #include "surface/geometry/vec3.h"
 
 namespace quickses {
@@ -68,15 +69,6 @@ constexpr int32_t kBuriedAtom = -1;
 
 // What atoms look like that must not be found any more: contained in another one, or its duplicate.
 constexpr float kFarAway = 1e8f;
-
-template <class T>
-struct Span {
-  T *data = nullptr;
-  size_t size = 0;
-  QSES_FN T &operator[](size_t i) const { return data[i]; }
-  QSES_FN T *begin() const { return data; }
-  QSES_FN T *end() const { return data + size; }
-};
 
 // Tolerance of exposure tests, Å: within this of a ball's surface, rounding decides on which side a point is. One value
 // on both back ends.

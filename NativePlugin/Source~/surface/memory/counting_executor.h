@@ -107,4 +107,14 @@ class CountingExecutor {
   CountingArena arena_;
 };
 
+// The one that counts for an executor, without limit. facts must outlive it.
+template <class Executor>
+CountingExecutor<Executor> counting(Executor &executor, const WorkFacts &facts) {
+  return {executor, facts, ~uint64_t(0) >> 1, executor.arena().has_budget()};
+}
+template <class Executor>
+CountingExecutor<Executor> counting(CountingExecutor<Executor> &executor, const WorkFacts &facts) {
+  return counting(executor.real(), facts);
+}
+
 }  // namespace quickses

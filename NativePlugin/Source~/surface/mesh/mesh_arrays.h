@@ -24,7 +24,8 @@ inline MeshShape shape_of(const qses_settings &s, bool has_colors) {
   return shape;
 }
 
-// Places of the arrays behind each other, each on a 256-byte boundary.
+// Places of the arrays: behind each other without a gap, so that one copy moves the mesh and every byte it reads was
+// written. All values have four bytes but the patches, which come last.
 class MeshArrays {
  public:
   MeshArrays(size_t vertices, size_t triangles, const MeshShape &shape) : shape_(shape) {
@@ -40,8 +41,8 @@ class MeshArrays {
       if (shape.texcoords) texcoords_ = next(vertices * 8);
     }
     owners_ = next(vertices * 4);
-    if (shape.patches) patches_ = next(vertices);
     indices_ = next(triangles * 12);
+    if (shape.patches) patches_ = next(vertices);
   }
 
   size_t bytes() const { return bytes_; }
@@ -64,7 +65,7 @@ class MeshArrays {
  private:
   size_t next(size_t n) {
     const size_t here = bytes_;
-    bytes_ += (n + 255) / 256 * 256;
+    bytes_ += n;
     return here;
   }
 

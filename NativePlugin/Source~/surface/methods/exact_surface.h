@@ -7,23 +7,13 @@
 
 namespace quickses {
 
-// The executor that counts for another one, or for itself.
-template <class Executor>
-CountingExecutor<Executor> counting(Executor &executor, const WorkFacts &facts) {
-  return {executor, facts, ~uint64_t(0) >> 1, executor.arena().has_budget()};
-}
-template <class Executor>
-CountingExecutor<Executor> counting(CountingExecutor<Executor> &executor, const WorkFacts &facts) {
-  return {executor.real(), facts, ~uint64_t(0) >> 1, executor.arena().has_budget()};
-}
-
 // What is found of the atoms serves every spacing.
 template <class Executor>
 void remove_contained_atoms(Executor &executor, const NeighborGridView &atoms, float max_radius) {
   const auto mark = executor.arena().mark();
   Span<uint8_t> contained = executor.template allocate<uint8_t>(atoms.count);
-  executor.for_each(atoms.count, FindSwallowedAtoms{atoms, max_radius, contained.data});
-  executor.for_each(atoms.count, RemoveSwallowedAtoms{contained.data, const_cast<Sphere *>(atoms.items)});
+  executor.for_each(atoms.count, FindContainedAtoms{atoms, max_radius, contained.data});
+  executor.for_each(atoms.count, RemoveContainedAtoms{contained.data, const_cast<Sphere *>(atoms.items)});
   executor.arena().rewind(mark);
 }
 

@@ -2,8 +2,8 @@
 // First stage: the caller's atoms, moved into the centred frame and inflated by the probe.
 #pragma once
 
-#include "surface/engine.h"
 #include "surface/geometry/lattice.h"
+#include "surface/memory/atom_set.h"
 
 #include <cmath>
 

@@ -93,10 +93,17 @@ QSES_FN uint64_t mixed_cells(const LeafWords &c) {
   return any & ~all;
 }
 
+// Case of a cell: bit c = corner c is inside, corner = x + 2 y + 4 z. From corner words, by the cell's bit; or from
+// rows of signs along x, by the row and the bit of its lower corner.
 QSES_FN int cell_case(const LeafWords &c, int bit) {
   int code = 0;
   for (int d = 0; d < 8; ++d) code |= static_cast<int>(c.at[d] >> bit & 1) << d;
   return code;
+}
+template <class Row>
+QSES_FN int cell_case(const Row *row, int rows_per_layer, int x) {
+  const Row *const above = row + rows_per_layer;
+  return (row[0] >> x & 3) | (row[1] >> x & 3) << 2 | (above[0] >> x & 3) << 4 | (above[1] >> x & 3) << 6;
 }
 
 // ---- count -----------------------------------------------------------------------------------------------------
@@ -230,6 +237,18 @@ QSES_FN uint64_t edge_ring_of_cells(const CellCase &cell_case, int axis, const u
   for (int w = -1; w <= 0; ++w)
     for (int v = -1; v <= 0; ++v) sum += ring[cell_case(v, w)][4 * axis - v - 2 * w];
   return sum;
+}
+
+// The same from rows of signs along x: `row` is that of the edge's lower point, which is its bit x; the next in y is
+// behind it, the next in z by so many.
+template <class Row>
+QSES_FN uint64_t edge_ring_of_rows(const Row *row, int rows_per_layer, int x, int axis,
+                                   const uint64_t (*ring)[kCellEdges]) {
+  const auto case_near = [&](int second, int third) {
+    const int dx = axis == 0 ? 0 : second, dy = axis == 0 ? second : axis == 1 ? 0 : third, dz = axis == 2 ? 0 : third;
+    return cell_case(row + dy + rows_per_layer * dz, rows_per_layer, x + dx);
+  };
+  return edge_ring_of_cells(case_near, axis, ring);
 }
 
 // The same from signs. inside(along, second, third) is the sign at a point near the edge: along the edge 0 or 1, in the

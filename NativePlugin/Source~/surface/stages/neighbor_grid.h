@@ -4,6 +4,7 @@
 #pragma once
 
 #include "parallel/executor.h"
+#include "surface/geometry/types.h"
 
 namespace quickses {
 
@@ -39,10 +40,6 @@ QSES_FN uint32_t lower_bound(const uint64_t *keys, uint32_t n, uint64_t key) {
   }
   return first;
 }
-
-struct ItemRun {
-  uint32_t begin, end;
-};
 
 // The grid as kernels see it.
 struct NeighborGridView {

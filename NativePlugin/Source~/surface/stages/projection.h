@@ -23,8 +23,9 @@ constexpr float kLongestMove = 2.f;
 // And what would move it further than this into the molecule might take it through a wall and out on its other side.
 constexpr float kLongestWayIn = 0.6f;
 
-// Nothing that is deeper than this in the probe's way counts as a second hit.
+// A probe covers what is deeper in it than this.
 constexpr float kProjectionTolerance = 1e-4f;
+// Rounds after which the lattice edge decides.
 constexpr int kMaxProjections = 5;
 
 // Depth of a point in an inflated ball: R - |x - c|. The largest over the atoms is a lower bound of the distance to the
@@ -92,7 +93,6 @@ QSES_FN NearestArc nearest_arc(const FeatureView &f, const Candidates &candidate
 struct BoundaryPoint {
   Vec3<float> position;  // y: where the probe's centre is when it touches the surface at the vertex
   float distance;        // |x - y|; negative if x is outside the union of the inflated balls
-  float second;          // distance to the second nearest arc: only of interest where the first one decided
   qses_patch patch;
   bool found;  // false: nothing exposed is near, so that the rest means little
 };
@@ -108,13 +108,12 @@ QSES_FN Vec3<float> sphere_normal(const Sphere &ball, const Vec3<float> &x) {
 }
 
 QSES_FN BoundaryPoint boundary_on_atom(const Sphere &ball, float depth, const Vec3<float> &x, bool exposed) {
-  return {Vec3<float>(ball.center) + sphere_normal(ball, x) * ball.radius, depth, kFarAway, QSES_PATCH_CONTACT,
-          exposed};
+  return {Vec3<float>(ball.center) + sphere_normal(ball, x) * ball.radius, depth, QSES_PATCH_CONTACT, exposed};
 }
 
-QSES_FN BoundaryPoint boundary_on_arc(const Arc &arc, float second2, const Vec3<float> &x) {
+QSES_FN BoundaryPoint boundary_on_arc(const Arc &arc, const Vec3<float> &x) {
   const ArcPoint p = nearest_on_arc(arc, x);
-  return {p.position, square_root(length_squared(p.position - x)), square_root(second2),
+  return {p.position, square_root(length_squared(p.position - x)),
           p.at_end ? QSES_PATCH_REENTRANT : QSES_PATCH_TOROIDAL, true};
 }
 
@@ -126,7 +125,7 @@ QSES_FN BoundaryPoint nearest_boundary(const FeatureView &f, const Candidates &c
                        is_exposed(f, deepest.atom, x - Vec3<float>(ball.center), offset_length(ball, deepest.depth));
   if (exposed) return boundary_on_atom(ball, deepest.depth, x, true);
   const NearestArc nearest = nearest_arc(f, candidates, x);
-  if (nearest.arc >= 0) return boundary_on_arc(load(f.arcs + nearest.arc), nearest.second2, x);
+  if (nearest.arc >= 0) return boundary_on_arc(load(f.arcs + nearest.arc), x);
   return boundary_on_atom(ball, deepest.depth, x, false);
 }
 
@@ -136,53 +135,21 @@ struct SurfacePoint {
   bool placed;  // false: no feature is near, or none can be trusted
 };
 
+// Can a vertex be trusted that moved so far, `way_in` of it into the molecule?
+template <class T>
+QSES_FN auto is_short_move(const SurfaceParameters &p, T way_in, T moved2) -> decltype(way_in <= moved2) {
+  const float longest = kLongestMove * p.spacing;
+  return (way_in <= T(kLongestWayIn * p.spacing)) & (moved2 <= T(longest * longest));
+}
+
 // The point `depth` inside the boundary point y on the line through x, which lies `distance` (signed) inside it.
 QSES_FN SurfacePoint place_on_surface(const SurfaceParameters &p, const Vec3<float> &x, const BoundaryPoint &y) {
   Vec3<float> outward = (y.position - x) * quotient(1.f, absolute(y.distance) > 1e-9f ? y.distance : 1e-9f);
   const float length2 = length_squared(outward);
   outward = length2 > 0.25f ? outward * reciprocal_root(length2) : Vec3<float>(0.f, 0.f, 1.f);
   const Vec3<float> position = y.position - outward * p.depth;
-  const float longest = kLongestMove * p.spacing, way_in = p.depth - y.distance;
-  const bool near = way_in <= kLongestWayIn * p.spacing && length_squared(position - x) <= longest * longest;
+  const bool near = is_short_move(p, p.depth - y.distance, length_squared(position - x));
   return {position, outward, y.patch, y.found && near};
-}
-
-// What comes of a look at the nearest arc: where the point moves, and whether a look from there must show that no other
-// probe covers it.
-struct Look {
-  SurfacePoint point;
-  float distance;
-  bool again;
-};
-
-// second2: squared distance to the second nearest arc.
-QSES_FN Look look_at_arc(const SurfaceParameters &p, const Arc &arc, float second2, const Vec3<float> &x) {
-  const BoundaryPoint y = boundary_on_arc(arc, second2, x);
-  const SurfacePoint s = place_on_surface(p, x, y);
-  // On its way outward from a start that is nearer to y than depth, the point may get to where another probe is, or one
-  // on the other side of the same circle.
-  const Vec3<float> center(arc.center);
-  const bool beyond_axis = dot(s.position - center, y.position - center) < 0.f;
-  const bool again =
-      y.distance < p.depth - kProjectionTolerance && (y.second < 2.f * p.depth - y.distance || beyond_axis);
-  return {s, y.distance, again};
-}
-
-// The same for a point that lies on the sphere of a probe already, in direction `outward`. If another one covers it, it
-// moves away from both at once, onto the sphere of the other one. (From sphere to sphere it would come nearer to where
-// they meet in ever smaller steps.)
-QSES_FN Look look_around(const SurfaceParameters &p, const Arc &arc, float second2, const Vec3<float> &x,
-                         const Vec3<float> &outward) {
-  const BoundaryPoint y = boundary_on_arc(arc, second2, x);
-  const float d = y.distance;
-  if (!(d < p.depth - kProjectionTolerance)) return {place_on_surface(p, x, y), d, false};
-  const Vec3<float> other = (y.position - x) * quotient(1.f, maximum(d, 1e-9f)), between = outward + other;
-  const Vec3<float> towards = between * reciprocal_root(maximum(length_squared(between), 1e-12f));
-  const float along = d * dot(towards, other);
-  const float step = square_root(maximum(0.f, along * along + (p.depth - d) * (p.depth + d))) - along;
-  const Vec3<float> moved = x - towards * step, from = y.position - moved;
-  const bool near = step <= kLongestMove * p.spacing;  // not a number: false
-  return {{moved, from * reciprocal_root(maximum(length_squared(from), 1e-12f)), y.patch, near}, d, near};
 }
 
 // The atom whose van der Waals surface is nearest to the point.
@@ -197,7 +164,61 @@ QSES_FN Vec3<float> vertex_normal(const FeatureView &f, const SurfacePoint &s, u
   return f.parameters.depth == 0.f || !s.placed ? sphere_normal(load(f.atoms.items + owner), s.position) : s.normal;
 }
 
-// Of a point that moved round probes: does one that touches a single atom cover it?
+// ---- the rounds of a projection --------------------------------------------------------------------------------
+
+// The way of a vertex to the surface: one rule for all loops over vertices.
+//
+//   first     on the contact patch of the ball it is deepest in, if the radial projection on that is exposed:
+//             project_on_atom(). Else from the nearest arc: project_on_arc(), round 1
+//   then      while another probe may cover it, from the arc that is nearest to where it is now: reproject(), rounds 2
+//             to kMaxProjections. Where another probe does, it moves aside; where none does, it is placed
+//   at last   where the sign changes on its lattice edge: place_on_edge(), if it has no arc, moved further than can be
+//             trusted, came to lie over a contact patch when it moved aside, or is not placed after the last round
+enum class ProjectionState : uint32_t { kOnEdge, kReproject, kPlaced };
+
+struct Projection {
+  SurfacePoint point;  // where the vertex is now
+  ProjectionState state;
+  int rounds;  // of arcs so far
+};
+
+QSES_FN Projection project_on_atom(const SurfaceParameters &p, const Sphere &ball, float depth, const Vec3<float> &x) {
+  const SurfacePoint s = place_on_surface(p, x, boundary_on_atom(ball, depth, x, true));
+  return {s, s.placed ? ProjectionState::kPlaced : ProjectionState::kOnEdge, 0};
+}
+
+QSES_FN Projection project_on_arc(const FeatureView &f, const NearestArc &nearest, const Vec3<float> &x) {
+  if (nearest.arc < 0) return {{x, {0.f, 0.f, 1.f}, QSES_PATCH_REENTRANT, false}, ProjectionState::kOnEdge, 1};
+  const SurfaceParameters &p = f.parameters;
+  const Arc arc = load(f.arcs + nearest.arc);
+  const BoundaryPoint y = boundary_on_arc(arc, x);
+  const SurfacePoint s = place_on_surface(p, x, y);
+  // On its way outward from a start that is nearer to y than depth, the point may get to where another probe is, or one
+  // on the other side of the same circle.
+  const Vec3<float> center(arc.center);
+  const bool beyond_axis = dot(s.position - center, y.position - center) < 0.f;
+  const bool may_be_covered = y.distance < p.depth - kProjectionTolerance &&
+                              (square_root(nearest.second2) < 2.f * p.depth - y.distance || beyond_axis);
+  if (!s.placed) return {s, ProjectionState::kOnEdge, 1};
+  return {s, may_be_covered ? ProjectionState::kReproject : ProjectionState::kPlaced, 1};
+}
+
+// A point on the sphere of a probe, in direction `outward`, that another probe, at y, covers: away from both at once,
+// onto the sphere of the other one. (From sphere to sphere it would come nearer to where they meet in ever smaller
+// steps.)
+QSES_FN SurfacePoint move_aside(const SurfaceParameters &p, const Vec3<float> &x, const Vec3<float> &outward,
+                                const BoundaryPoint &y) {
+  const float d = y.distance;
+  const Vec3<float> other = (y.position - x) * quotient(1.f, maximum(d, 1e-9f)), between = outward + other;
+  const Vec3<float> towards = between * reciprocal_root(maximum(length_squared(between), 1e-12f));
+  const float along = d * dot(towards, other);
+  const float step = square_root(maximum(0.f, along * along + (p.depth - d) * (p.depth + d))) - along;
+  const Vec3<float> moved = x - towards * step, from = y.position - moved;
+  const bool near = step <= kLongestMove * p.spacing;  // not a number: false
+  return {moved, from * reciprocal_root(maximum(length_squared(from), 1e-12f)), y.patch, near};
+}
+
+// Of a point that moved aside: does a probe that touches a single atom cover it?
 template <class Candidates>
 QSES_FN bool is_over_contact(const FeatureView &f, const Candidates &candidates, const Vec3<float> &x) {
   if (candidates.atom_count() == 0) return false;
@@ -205,6 +226,24 @@ QSES_FN bool is_over_contact(const FeatureView &f, const Candidates &candidates,
   const Sphere ball = load(f.atoms.items + deepest.atom);
   return deepest.depth < f.parameters.depth - kProjectionTolerance &&
          is_exposed(f, deepest.atom, x - Vec3<float>(ball.center), offset_length(ball, deepest.depth));
+}
+
+// A further round for a vertex that lies on the sphere of a probe already.
+template <class Candidates>
+QSES_FN Projection reproject(const FeatureView &f, const Candidates &candidates, const NearestArc &nearest,
+                             const Projection &before) {
+  const SurfaceParameters &p = f.parameters;
+  const int round = before.rounds + 1;
+  if (nearest.arc < 0) return {before.point, ProjectionState::kPlaced, round};  // nothing is near it any more
+  const Vec3<float> &x = before.point.position;
+  const BoundaryPoint y = boundary_on_arc(load(f.arcs + nearest.arc), x);
+  const bool covered = y.distance < p.depth - kProjectionTolerance;
+  const SurfacePoint s = covered ? move_aside(p, x, before.point.normal, y) : place_on_surface(p, x, y);
+  const bool was_moved_aside = before.rounds > 1;
+  const bool given_up = !s.placed || (covered && round == kMaxProjections) ||
+                        (was_moved_aside && is_over_contact(f, candidates, s.position));
+  if (given_up) return {s, ProjectionState::kOnEdge, round};
+  return {s, covered ? ProjectionState::kReproject : ProjectionState::kPlaced, round};
 }
 
 // ---- lattice edges ---------------------------------------------------------------------------------------------

@@ -46,15 +46,15 @@ struct FeatureView {
 
 // ---- passes around the stage, the same on both back ends -------------------------------------------------------
 
-// Atoms within the reach of a contained sphere's centre: an atom that another one swallows goes far away.
-struct FindSwallowedAtoms {
+// Which atoms lie within another one, of those in reach.
+struct FindContainedAtoms {
   NeighborGridView atoms;
   float max_radius;
-  uint8_t *swallowed;
+  uint8_t *contained;
   QSES_HOST_DEVICE void operator()(size_t i) const {
     const Sphere self = atoms.items[i];
     const Vec3<float> c(self.center);
-    const float reach = swallowing_reach(self.radius, max_radius);
+    const float reach = containing_reach(self.radius, max_radius);
     const Vec3<float> r(reach, reach, reach);
     const CellBox box = cells_around(atoms.cells, c - r, c + r);
     bool found = false;
@@ -62,17 +62,17 @@ struct FindSwallowedAtoms {
       for (int y = box.y0; y <= box.y1 && !found; ++y) {
         const ItemRun run = atoms.run(box.x0, box.x1, y, z);
         for (uint32_t k = run.begin; k < run.end && !found; ++k)
-          found = k != i && swallows(atoms.items[k], atoms.order[k], self, atoms.order[i]);
+          found = k != i && contains(atoms.items[k], atoms.order[k], self, atoms.order[i]);
       }
-    swallowed[i] = found ? 1 : 0;
+    contained[i] = found ? 1 : 0;
   }
 };
 
-struct RemoveSwallowedAtoms {
-  const uint8_t *swallowed;
+struct RemoveContainedAtoms {
+  const uint8_t *contained;
   Sphere *atoms;
   QSES_HOST_DEVICE void operator()(size_t i) const {
-    if (swallowed[i]) atoms[i] = {glm::vec3(kFarAway), 0.f};
+    if (contained[i]) atoms[i] = {glm::vec3(kFarAway), 0.f};
   }
 };
 

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// The hot stages on the GPU (stages/hot_stages.h).
+#pragma once
+
+#include "surface/cuda/mesh_cuda.cuh"
+#include "surface/cuda/mesh_memory_cuda.cuh"
+#include "surface/cuda/solvent_features_cuda.cuh"
+
+namespace quickses {
+
+template <>
+struct Backend<CudaExecutor> {
+  using Candidates = CudaCandidates;
+  using LearntRooms = CudaRooms;
+
+  template <class E>
+  static void find_solvent_features(E &executor, const NeighborGridView &atoms, const SurfaceParameters &parameters,
+                                    const MemoryPlan &plan, LearntRooms &rooms, SolventFeatures *features) {
+    if (E::kCounts) expect_features(executor, features);
+    gpu::find_solvent_features(executor, atoms, parameters, plan, rooms, features);
+    if (E::kCounts) expect_features(executor, features);
+  }
+  // The candidates live in the executor's arena: they are there until it is rewound.
+  template <class E>
+  static void evaluate_signs(E &executor, const FeatureView &features, const BrickSet &bricks, BrickRange slice,
+                             LearntRooms &rooms, Candidates &candidates, uint64_t *signs) {
+    if (slice.size() > 0) gpu::gather_candidates(executor, features, bricks, slice, rooms, candidates, signs);
+  }
+  template <class E>
+  static void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bricks, const MeshLayout &layout,
+                            BrickRange slice, LearntRooms &rooms, Candidates &candidates, const VertexStarts &starts,
+                            const MeshView &mesh) {
+    gpu::emit_vertices(executor, features, bricks, layout, slice, rooms, candidates, starts, mesh);
+  }
+  template <class E>
+  static void emit_triangles(E &executor, const BrickSet &bricks, const MeshLayout &layout, BrickRange slice,
+                             const TableView &table, const MeshView &mesh) {
+    gpu::emit_triangles(executor, bricks, layout, slice, table, mesh);
+  }
+
+ private:
+  static void expect_features(CudaExecutor &, SolventFeatures *) {}
+  static void expect_features(CountingExecutor<CudaExecutor> &executor, SolventFeatures *features) {
+    features->caps.size = static_cast<size_t>(executor.facts().caps);
+    features->arcs.size = static_cast<size_t>(executor.facts().arcs);
+  }
+};
+
+}  // namespace quickses

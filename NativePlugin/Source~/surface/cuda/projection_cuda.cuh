@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: MIT
+// GPU: vertices from their starts to the exact surface, a thread per vertex. Three kernels step the rule of
+// projection.h, so that lanes do not wait for each other: vertices on contact patches are done with the first, nearly
+// all others with the second; the third has those that turn from one probe to another, or find no place.
+#pragma once
+
+#include "surface/cuda/vertex_candidates_cuda.cuh"
+
+namespace quickses {
+namespace gpu {
+
+constexpr int kVertexThreads = 128;
+
+__device__ __forceinline__ void finish_vertex(const VertexJob &job, uint32_t k, SurfacePoint s, uint32_t owner) {
+  const FeatureView &f = job.features;
+  const uint32_t vertex = job.first + k;
+  if (!s.placed) atomic_add(job.starts.unplaced, 1u);
+  s.normal = vertex_normal(f, s, owner);
+  const glm::vec3 position = job.bricks.lattice.to_caller(s.position);
+  store_vec3(job.mesh.position(vertex), Vec3<float>(position));
+  store_vec3(job.mesh.normal(vertex), s.normal);
+  job.mesh.owner(vertex) = f.atoms.order[owner];
+  if (job.mesh.patches) job.mesh.patch(vertex) = static_cast<uint8_t>(s.patch);
+}
+
+// Between the kernels the mesh holds where a vertex is on its way, and for its owner the rounds it has had; 0 if its
+// edge decides.
+__device__ __forceinline__ void leave_vertex(const VertexJob &job, uint32_t k, const Projection &v) {
+  const uint32_t vertex = job.first + k;
+  store_start(job, vertex, v.point.position);
+  store_vec3(job.mesh.normal(vertex), v.point.normal);
+  job.mesh.owner(vertex) = v.state == ProjectionState::kOnEdge ? 0u : static_cast<uint32_t>(v.rounds);
+}
+__device__ __forceinline__ Projection left_vertex(const VertexJob &job, uint32_t k) {
+  const uint32_t vertex = job.first + k, rounds = job.mesh.owner(vertex);
+  return {{stored_start(job, vertex), load_vec3(job.mesh.normal(vertex)), QSES_PATCH_CONTACT, rounds > 0},
+          rounds > 0 ? ProjectionState::kReproject : ProjectionState::kOnEdge,
+          static_cast<int>(rounds)};
+}
+
+static __global__ __launch_bounds__(kVertexThreads) void project_on_atoms_kernel(VertexJob job) {
+  const uint32_t k0 = blockIdx.x * kVertexThreads + threadIdx.x;
+  const bool on = k0 < job.count;
+  const uint32_t k = on ? k0 : job.count - 1;
+  const FeatureView &f = job.features;
+  const ListedCandidates candidates = vertex_candidates(job, k);
+  const Vec3<float> x = stored_start(job, job.first + k);
+  const DeepestAtom deepest = deepest_atom(f, candidates, x);
+  __syncwarp();
+  const Sphere ball = load(f.atoms.items + deepest.atom);
+  const bool contact = candidates.atom_count() > 0 &&
+                       is_exposed(f, deepest.atom, x - Vec3<float>(ball.center), offset_length(ball, deepest.depth));
+  const Projection v = project_on_atom(f.parameters, ball, deepest.depth, x);
+  const bool done = v.state == ProjectionState::kPlaced;
+  __syncwarp();
+  append(job.open, job.open_count, k, on && !contact);
+  append(job.unfinished, job.unfinished_count, k, on && contact && !done);
+  if (!on || !contact) return;
+  if (done)
+    finish_vertex(job, k, v.point, deepest.atom);
+  else
+    leave_vertex(job, k, v);
+}
+
+static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(VertexJob job) {
+  const uint32_t place = blockIdx.x * kVertexThreads + threadIdx.x, total = *job.open_count;
+  if (place - static_cast<uint32_t>(lane_id()) >= total) return;
+  const bool on = place < total;
+  const uint32_t k = job.open[on ? place : total - 1];
+  const FeatureView &f = job.features;
+  const ListedCandidates candidates = vertex_candidates(job, k);
+  const Vec3<float> x = stored_start(job, job.first + k);
+
+  // The nearest arc, and which are hardly farther than depth: of a vertex that has moved by no more than the difference
+  // no others can be nearer than depth.
+  constexpr int kMaskBits = 64;
+  const float margin = 0.3f * job.reach.spacing, near = f.parameters.depth + margin;
+  NearestArc nearest;
+  uint64_t near_arcs = 0;
+  const int arcs = candidates.arc_count();
+  for (int q = 0; q < arcs; ++q) {
+    const int a = static_cast<int>(candidates.arc(q));
+    const float d2 = arc_distance2(load(f.arcs + a), x);
+    nearest.offer(a, d2);
+    near_arcs |= static_cast<uint64_t>(d2 < near * near) << (q & (kMaskBits - 1));
+  }
+  __syncwarp();
+  Projection v = project_on_arc(f, nearest, x);
+  const bool mask_tells = arcs <= kMaskBits && f.parameters.depth - square_root(nearest.distance2) < margin;
+  __syncwarp();
+  if (v.state == ProjectionState::kReproject && mask_tells) {
+    nearest = NearestArc();
+    for (uint64_t rest = near_arcs; rest; rest &= rest - 1) {
+      const int a = static_cast<int>(candidates.arc(lowest_bit64(rest)));
+      nearest.offer(a, arc_distance2(load(f.arcs + a), v.point.position));
+    }
+    v = reproject(f, candidates, nearest, v);
+  }
+  __syncwarp();
+  const bool done = v.state == ProjectionState::kPlaced;
+  append(job.unfinished, job.unfinished_count, k, on && !done);
+  if (!on) return;
+  if (done)
+    finish_vertex(job, k, v.point, nearest_atom(f, candidates, v.point.position));
+  else
+    leave_vertex(job, k, v);
+}
+
+// Candidates that a few lanes look at together for one vertex, with the same result in each. The two functions are
+// those of projection.h, to the last bit.
+constexpr int kVertexLanes = 8;
+struct SharedCandidates : ListedCandidates {
+  __device__ __forceinline__ uint32_t atom(int k) const { return atoms[k]; }  // in any memory
+  __device__ __forceinline__ uint32_t arc(int k) const { return arcs[k]; }
+  static __device__ __forceinline__ int rank() { return lane_id() % kVertexLanes; }
+  static __device__ __forceinline__ unsigned lanes() {
+    return ((1u << kVertexLanes) - 1u) << (lane_id() / kVertexLanes * kVertexLanes);
+  }
+};
+
+__device__ __forceinline__ DeepestAtom deepest_atom(const FeatureView &f, const SharedCandidates &candidates,
+                                                    const Vec3<float> &x) {
+  NumberedValue best{-2.f * kFarAway, kNoAtom};  // its place in the list: of several, the first
+  for (int k = candidates.rank(); k < candidates.atom_count(); k += kVertexLanes) {
+    const float depth = ball_depth(load(f.atoms.items + candidates.atom(k)), x);
+    if (depth > best.value) best = {depth, static_cast<uint32_t>(k)};
+  }
+  best = warp_largest<kVertexLanes>(best, candidates.lanes());
+  return {best.number == kNoAtom ? 0u : candidates.atom(static_cast<int>(best.number)), best.value};
+}
+
+__device__ __forceinline__ NearestArc nearest_arc(const FeatureView &f, const SharedCandidates &candidates,
+                                                  const Vec3<float> &x) {
+  NearestArc best;
+  for (int k = candidates.rank(); k < candidates.arc_count(); k += kVertexLanes) {
+    const int a = static_cast<int>(candidates.arc(k));
+    best.offer(a, arc_distance2(load(f.arcs + a), x));
+  }
+  const unsigned lanes = candidates.lanes();
+#pragma unroll
+  for (int d = kVertexLanes / 2; d > 0; d >>= 1) {
+    const int arc = __shfl_xor_sync(lanes, best.arc, d);
+    const float distance2 = __shfl_xor_sync(lanes, best.distance2, d);
+    const float second2 = __shfl_xor_sync(lanes, best.second2, d);
+    if (arc >= 0) best.offer(arc, distance2);
+    best.second2 = minimum(best.second2, second2);
+  }
+  return best;
+}
+
+// Those of a brick's candidates that decide about an edge; all of them where there is no room for the choice.
+constexpr int kEdgeRoom = 160;
+__device__ __forceinline__ SharedCandidates choose_for_edge(const FeatureView &f, const ListedCandidates &all,
+                                                            const CutEdge &edge, uint32_t *room) {
+  const unsigned lanes = SharedCandidates::lanes();
+  const int rank = SharedCandidates::rank();
+  const Vec3<float> middle = edge.middle();
+  const auto choose = [&](const Sphere *balls, const uint32_t *items, int count, float reach, uint32_t *out, int left) {
+    int n = 0;
+    for (int k0 = 0; k0 < count; k0 += kVertexLanes) {
+      const int k = k0 + rank;
+      bool near = false;
+      uint32_t i = 0;
+      if (k < count) {
+        i = __ldg(items + k);
+        const Sphere ball = load(balls + i);
+        const float r = ball.radius + reach;
+        near = length_squared(Vec3<float>(ball.center) - middle) < r * r;
+      }
+      const int place = append_place(near, &n, lanes);
+      if (near && place < left) out[place] = i;
+    }
+    return n;
+  };
+  __syncwarp(lanes);  // the choice before is not looked at any more
+  const int atoms = choose(f.atoms.items, all.atoms, all.atom_total, edge_reach(f.parameters), room, kEdgeRoom);
+  const int left = atoms < kEdgeRoom ? kEdgeRoom - atoms : 0;
+  const int arcs = choose(f.arc_bounds.items, all.arcs, all.arc_total, edge_arc_reach(f.parameters),
+                          room + (kEdgeRoom - left), left);
+  __syncwarp(lanes);
+  if (atoms > kEdgeRoom || arcs > left) return {all};
+  return {{room, room + atoms, atoms, arcs}};
+}
+
+static __global__ __launch_bounds__(kVertexThreads) void reproject_kernel(VertexJob job) {
+  __shared__ uint32_t edge_memory[kVertexThreads / kVertexLanes][kEdgeRoom];
+  const FeatureView &f = job.features;
+  const uint32_t teams = gridDim.x * (kVertexThreads / kVertexLanes), total = *job.unfinished_count;
+  for (uint32_t place = (blockIdx.x * kVertexThreads + threadIdx.x) / kVertexLanes; place < total; place += teams) {
+    const uint32_t k = job.unfinished[place], vertex = job.first + k;
+    SharedCandidates candidates{vertex_candidates(job, k)};
+    Projection v = left_vertex(job, k);
+    while (v.state == ProjectionState::kReproject)
+      v = reproject(f, candidates, nearest_arc(f, candidates, v.point.position), v);
+    SurfacePoint s = v.point;
+    if (v.state == ProjectionState::kOnEdge) {
+      const uint32_t brick = brick_of_vertex(job.layout, job.bricks.count, vertex);
+      const CutEdge edge = ends_of_edge(job.bricks, job.layout, brick, edge_of_vertex(job.layout, brick, vertex));
+      candidates = {brick_candidates(job.view, brick - job.view.first_brick)};
+      s = place_on_edge(f, choose_for_edge(f, candidates, edge, edge_memory[threadIdx.x / kVertexLanes]), edge);
+    }
+    const uint32_t owner = nearest_atom(f, candidates, s.position);
+    __syncwarp(candidates.lanes());  // all of them have read what is written now
+    if (candidates.rank() == 0) finish_vertex(job, k, s, owner);
+  }
+}
+
+}  // namespace gpu
+}  // namespace quickses

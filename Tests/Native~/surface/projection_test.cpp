@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+// The rounds of a projection, stepped as the loops of both back ends do, among arcs at random.
+#include "surface/stages/projection.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace {
+
+using namespace quickses;
+
+constexpr float kProbe = 1.4f;
+
+struct Everything {
+  int atoms, arcs;
+  int atom_count() const { return atoms; }
+  uint32_t atom(int k) const { return static_cast<uint32_t>(k); }
+  int arc_count() const { return arcs; }
+  uint32_t arc(int k) const { return static_cast<uint32_t>(k); }
+};
+
+// Small full circles near the origin, and an atom whose sphere is exposed all over, or none.
+struct Scene {
+  std::vector<Arc> arcs;
+  Sphere atom{glm::vec3(0.f), 3.f};
+  CapRange no_caps{0, 0};
+  bool has_atom;
+  std::mt19937 random;
+
+  Scene(unsigned seed, bool with_atom) : has_atom(with_atom), random(seed) {
+    const int count = 1 + static_cast<int>(random() % 8);
+    for (int k = 0; k < count; ++k) {
+      const glm::vec3 middle = direction();
+      const glm::vec3 side = glm::normalize(glm::cross(middle, direction()));
+      arcs.push_back({point(1.8f), uniform(0.01f, 0.8f), middle, -1.f, side, 0.f});
+    }
+    atom.center = direction() * uniform(1.5f, 3.f);
+  }
+
+  float uniform(float low, float high) { return std::uniform_real_distribution<float>(low, high)(random); }
+  glm::vec3 point(float reach) {
+    const float x = uniform(-reach, reach), y = uniform(-reach, reach);
+    return {x, y, uniform(-reach, reach)};
+  }
+  glm::vec3 direction() { return glm::normalize(point(1.f) + glm::vec3(1e-3f)); }
+
+  FeatureView view() const {
+    FeatureView f{};
+    f.atoms.items = &atom;
+    f.atoms.count = has_atom ? 1u : 0u;
+    f.cap_ranges = &no_caps;
+    f.arcs = arcs.data();
+    f.parameters = {kProbe, kProbe, 1.5f, atom.radius};
+    return f;
+  }
+  Everything candidates() const { return {has_atom ? 1 : 0, static_cast<int>(arcs.size())}; }
+
+  // Of a point to the nearest place of the probe on an arc, in double precision.
+  double distance(const Vec3<float> &x) const {
+    double least = 1e30;
+    for (const Arc &arc : arcs) {
+      const Vec3<float> y = nearest_on_arc(arc, x).position;
+      least =
+          std::min(least, std::hypot(double(y.x) - double(x.x), double(y.y) - double(x.y), double(y.z) - double(x.z)));
+    }
+    return least;
+  }
+};
+
+struct Outcome {
+  Projection projection;
+  int steps = 1;
+};
+
+Outcome project(const Scene &scene, const Vec3<float> &start) {
+  const FeatureView f = scene.view();
+  const Everything all = scene.candidates();
+  Outcome o{project_on_arc(f, nearest_arc(f, all, start), start)};
+  while (o.projection.state == ProjectionState::kReproject) {
+    o.projection = reproject(f, all, nearest_arc(f, all, o.projection.point.position), o.projection);
+    if (++o.steps > 100) break;
+  }
+  return o;
+}
+
+TEST(Projection, EndsAfterFiveRoundsAndNoProbeCoversAPlacedVertex) {
+  std::array<int, kMaxProjections + 1> placed{}, given_up{};
+  for (unsigned seed = 0; seed < 20000; ++seed) {
+    Scene scene(seed, false);
+    const Outcome o = project(scene, Vec3<float>(scene.point(0.8f)));
+    ASSERT_NE(o.projection.state, ProjectionState::kReproject) << seed;
+    ASSERT_LE(o.steps, 5) << seed;
+    ASSERT_EQ(o.projection.rounds, o.steps) << seed;
+    const bool is_placed = o.projection.state == ProjectionState::kPlaced;
+    ++(is_placed ? placed : given_up)[static_cast<size_t>(o.steps)];
+    if (!is_placed) continue;
+    ASSERT_TRUE(o.projection.point.placed) << seed;
+    EXPECT_NEAR(scene.distance(o.projection.point.position), double(kProbe), 2e-4) << "seed " << seed;
+    EXPECT_NEAR(length_squared(o.projection.point.normal), 1.f, 1e-4f) << seed;
+  }
+  for (int rounds = 1; rounds <= 5; ++rounds) EXPECT_GT(placed[static_cast<size_t>(rounds)], 0) << rounds;
+  EXPECT_GT(given_up[1], 0);  // no arc near enough
+  EXPECT_GT(given_up[5], 0);  // probes on all sides
+}
+
+TEST(Projection, AVertexThatMovedAsideIsNotPlacedOverAContactPatch) {
+  int placed = 0, given_up = 0;
+  for (unsigned seed = 0; seed < 20000; ++seed) {
+    Scene scene(seed, true);
+    const Outcome o = project(scene, Vec3<float>(scene.point(0.8f)));
+    ASSERT_LE(o.steps, 5) << seed;
+    if (o.steps < 3) continue;  // it has not moved aside
+    const SurfacePoint &s = o.projection.point;
+    const double depth =
+        double(scene.atom.radius) - std::sqrt(double(length_squared(s.position - Vec3<float>(scene.atom.center))));
+    if (o.projection.state == ProjectionState::kPlaced) {
+      EXPECT_GE(depth, double(kProbe) - 2e-4) << seed;
+      ++placed;
+    } else if (s.placed && o.steps < 5) {
+      EXPECT_LT(depth, double(kProbe)) << seed;
+      ++given_up;
+    }
+  }
+  EXPECT_GT(placed, 0);
+  EXPECT_GT(given_up, 0);
+}
+
+TEST(Projection, WithoutAnArcTheEdgeDecides) {
+  Scene scene(1, false);
+  const FeatureView f = scene.view();
+  EXPECT_EQ(project_on_arc(f, NearestArc(), Vec3<float>(0.f, 0.f, 0.f)).state, ProjectionState::kOnEdge);
+}
+
+TEST(Projection, OntoAnAtomTheWayInIsShort) {
+  const SurfaceParameters p{kProbe, kProbe, 0.5f, 3.f};
+  const Sphere ball{glm::vec3(0.f), 3.f};
+  for (float out = -0.9f; out < 0.9f; out += 0.01f) {  // of the surface, which is at 1.6
+    const Vec3<float> x(0.f, 1.6f + out, 0.f);
+    const Projection v = project_on_atom(p, ball, ball_depth(ball, x), x);
+    if (std::abs(out - 0.3f) < 1e-3f) continue;  // 0.6 spacings
+    EXPECT_EQ(v.state, out < 0.3f ? ProjectionState::kPlaced : ProjectionState::kOnEdge) << out;
+    EXPECT_NEAR(v.point.position.y, 1.6f, 1e-5f) << out;
+  }
+}
+
+}  // namespace
