@@ -21,13 +21,15 @@ done
 say() { echo "setup: $*"; }
 fail() { echo "setup: $*" >&2; exit 1; }
 
-# ---- what is needed: a package, and a command (word) or a header (path) that shows it is there, however it came
+# ---- what is needed: a package, and a command (word), a header (path) or a module of Python (python:name) that shows it
+# is there, however it came
 needs=(
   "cmake cmake"
   "ninja-build ninja"
   "g++ c++"
   "pkg-config pkg-config"
   "python3 python3"
+  "python3-yaml python:yaml"
   "zlib1g-dev zlib.h"
   "libthrust-dev thrust/version.h"
   "libtbb-dev tbb/parallel_for.h"
@@ -53,6 +55,7 @@ fi
 is_there() {
   case "$1" in
     /*) [ -e "$1" ] ;;
+    python:*) python3 -c "import ${1#python:}" 2>/dev/null ;;
     *.h | *.hpp) [ -e "/usr/local/include/$1" ] || [ -e "/usr/include/$1" ] ;;
     *) command -v "$1" >/dev/null ;;
   esac
@@ -75,10 +78,17 @@ lacks_gcc11() {
   [ "$(c++ -dumpversion | cut -d. -f1)" -gt 11 ]
 }
 
+has_candidate() { [[ $(apt-cache policy "$1" 2>/dev/null) == *"  Candidate: "[!\(]* ]]; }
+
+# Versions of clang-format differ in small things, so check-format asserts what 14 writes (Debian 12; Ubuntu 22.04, 24.04).
+# Where that can't be had, only this check is left out.
+wants_formatter() { ! is_there clang-format-14 && has_candidate clang-format-14; }
+
 missing=()
 for need in "${needs[@]}"; do
   is_there "${need#* }" || missing+=("${need%% *}")
 done
+if wants_formatter; then missing+=(clang-format-14); fi
 if [ "$with_cuda" = yes ]; then
   if ! find_nvcc >/dev/null; then
     missing+=(nvidia-cuda-toolkit)
@@ -101,7 +111,7 @@ if ! command -v apt-get >/dev/null; then
   fail "can install on Debian and Ubuntu only, and $system has no apt-get.
 Missing here (Debian's package names): ${missing[*]}
 Needed in all: CMake 3.22, Ninja, a C++17 compiler, Python 3, zlib, Thrust 1.15, oneTBB, GLM, gemmi (and PEGTL with
-gemmi 0.5), CLI11, nlohmann-json, GoogleTest, patchelf; for the GPU the CUDA Toolkit 11.8 or later; for many
+gemmi 0.5), CLI11, nlohmann-json, GoogleTest, PyYAML, patchelf; for the GPU the CUDA Toolkit 11.8 or later; for many
 processes an MPI library."
 fi
 as_root=()
@@ -110,7 +120,6 @@ if [ "$(id -u)" -ne 0 ]; then
   as_root=(sudo)
 fi
 apt_get() { "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -y -q "$@"; }
-has_candidate() { [[ $(apt-cache policy "$1" 2>/dev/null) == *"  Candidate: "[!\(]* ]]; }
 
 # The CUDA Toolkit is in Debian's non-free section. A new entry for it repeats the options of the entry that offers
 # "main", above all Signed-By: apt refuses two entries of one archive that differ in it.
@@ -151,6 +160,7 @@ add_debian_non_free() {
 
 say "$system lacks ${missing[*]}"
 apt_get update
+if [[ " ${missing[*]} " != *" clang-format-14 "* ]] && wants_formatter; then missing+=(clang-format-14); fi
 for package in "${missing[@]}"; do
   if [ "$package" = nvidia-cuda-toolkit ] && ! has_candidate "$package" && [ "$(. /etc/os-release && echo "$ID")" = debian ]; then
     add_debian_non_free || fail "found no entry of Debian $codename in apt's sources to add non-free to. Please add it, or install the CUDA Toolkit."

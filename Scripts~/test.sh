@@ -6,7 +6,8 @@
 # --with-mpi: Open MPI, and the program that shares frames among processes.
 # --with-windows: the library, the program and the tests for Windows by MinGW-w64, run by Wine.
 # --long: 100,000 random sets of atoms instead of 2,000, on all cores, and 20,000 on the GPU if there is one
-# (Tests/Native~/property_test.cpp); QUICKSES_PROPERTY_SEED is the first set's.
+# (Tests/Native~/properties/property_test.cpp); QUICKSES_PROPERTY_SEED is the first set's.
+# That sources are written as clang-format 14 writes them is one of the tests; without that version it is skipped.
 # The C# tests need a .NET SDK, which is not installed, and NuGet packages; without them they are skipped, and that is
 # said. With CI=true in the environment, packages that can't be had are an error.
 set -euo pipefail
@@ -23,7 +24,7 @@ for argument in "$@"; do
     --with-mpi) with_mpi=yes setup+=("$argument") ;;
     --with-windows) with_windows=yes setup+=("$argument") ;;
     --long) long=yes ;;
-    -h | --help) sed -n '3,11s/^# //p' "$0"; exit 0 ;;
+    -h | --help) sed -n '3,12s/^# //p' "$0"; exit 0 ;;
     *) echo "test.sh: unknown option $argument (there are --with-cuda, --with-mpi, --with-windows and --long)" >&2; exit 2 ;;
   esac
 done

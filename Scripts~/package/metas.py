@@ -4,6 +4,7 @@
 import json
 import os
 import re
+import sys
 
 PLUGIN_BINARIES = {".so": "Linux64", ".dll": "Win64"}
 NATIVE_SOURCES = {".a", ".bc", ".c", ".cc", ".cpp", ".def", ".h", ".jslib", ".jspre", ".m", ".mm", ".swift"}
@@ -135,7 +136,7 @@ def check(root, guids=None):
 
 
 def check_package(root):
-    """As check, but with the samples that package.json lists: what is in their folders is copied into projects."""
+    """(what was looked at, list of faults), also of the samples in package.json: their folders are copied into projects."""
     guids = {}
     count, faults = check(root, guids)
     with open(os.path.join(root, "package.json"), encoding="utf-8") as file:
@@ -147,4 +148,22 @@ def check_package(root):
         more, found = check(folder, guids)
         count += more
         faults += [f"{sample}/{fault}" for fault in found]
-    return count, faults
+    return f"{count} visible files and folders", faults
+
+
+def main(arguments, description, check_root):
+    """The command of check-metas and check-references. check_root(folder) gives (what was looked at, list of faults)."""
+    name = os.path.basename(arguments[0])
+    if len(arguments) > 2 or any(argument.startswith("-") for argument in arguments[1:]):
+        print(description.strip(), file=sys.stderr)
+        return 2
+    here = os.path.dirname(os.path.realpath(__file__))
+    root = arguments[1] if len(arguments) > 1 else os.path.dirname(os.path.dirname(here))
+    if not os.path.isfile(os.path.join(root, "package.json")):
+        print(f"{name}: {root} has no package.json", file=sys.stderr)
+        return 2
+    looked_at, faults = check_root(root)
+    for fault in faults:
+        print(fault)
+    print(f"{name}: {looked_at}, {len(faults)} faults")
+    return 1 if faults else 0

@@ -1,13 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Scripts~/package/check-metas must pass a right package and name each kind of fault.   check_metas_test.py PATH_OF_CHECK_METAS"""
 
-import os
-import subprocess
-import sys
-import tempfile
-import unittest
-
-CHECK_METAS = ""
+import package_files
 
 
 def meta(number, importer, folder=False, rest=""):
@@ -58,23 +52,7 @@ def package_with_sample():
     return files
 
 
-class CheckMetasTest(unittest.TestCase):
-    def run_on(self, files):
-        with tempfile.TemporaryDirectory() as root:
-            for path, text in files.items():
-                full = os.path.join(root, path)
-                os.makedirs(os.path.dirname(full), exist_ok=True)
-                with open(full, "w", encoding="utf-8", newline="") as file:
-                    file.write(text)
-            done = subprocess.run([sys.executable, "-B", CHECK_METAS, root], capture_output=True, text=True, check=False)
-        return done.returncode, done.stdout
-
-    def assert_fault(self, files, sentence):
-        status, text = self.run_on(files)
-        self.assertEqual(status, 1, text)
-        self.assertIn(sentence, text)
-        self.assertIn(" 1 faults", text)  # this fault, and no other one
-
+class CheckMetasTest(package_files.ScriptTest):
     def test_right_package(self):
         status, text = self.run_on(right_package())
         self.assertEqual((status, text), (0, "check-metas: 9 visible files and folders, 0 faults\n"))
@@ -185,12 +163,10 @@ class CheckMetasTest(unittest.TestCase):
         self.assert_fault(files, "isPreloaded must be 0")
 
     def test_folder_without_package(self):
-        with tempfile.TemporaryDirectory() as root:
-            done = subprocess.run([sys.executable, "-B", CHECK_METAS, root], capture_output=True, text=True, check=False)
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("no package.json", done.stderr)
+        status, text = self.run_on({})
+        self.assertEqual(status, 2)
+        self.assertIn("no package.json", text)
 
 
 if __name__ == "__main__":
-    CHECK_METAS = os.path.abspath(sys.argv.pop(1))
-    unittest.main()
+    package_files.main(CheckMetasTest)

@@ -76,7 +76,8 @@ class CheckPackageTest(unittest.TestCase):
                  "UnityPackage/Runtime/Core.meta": meta(4, "DefaultImporter", folder=True),
                  "UnityPackage/Runtime/Core/QuickSes.Core.asmdef": b"{}",
                  "UnityPackage/Runtime/Core/QuickSes.Core.asmdef.meta": meta(5, "AssemblyDefinitionImporter")}
-        documents = ("README.md", "CHANGELOG.md", "LICENSE.md", "SECURITY.md", "Third Party Notices.md")
+        documents = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "LICENSE.md", "SECURITY.md",
+                     "Third Party Notices.md")
         for number, name in enumerate(documents, 6):
             files[name] = b"text\n"
             files[name + ".meta"] = meta(number, "TextScriptImporter")
