@@ -36,6 +36,7 @@ void check_settings(const qses_settings &s) {
   check_choice("settings.method", s.method, QSES_METHOD_GRID);
   check_choice("settings.winding", s.winding, QSES_WINDING_REVERSED);
   check_choice("settings.vertex_layout", s.vertex_layout, QSES_VERTICES_INTERLEAVED);
+  check_choice("settings.delivery", s.delivery, QSES_DELIVERY_BOTH);
   check_range("settings.spacing", static_cast<double>(s.spacing), 0.001, 100, " Å");
   check_range("settings.probe_radius", static_cast<double>(s.probe_radius), 0, 100, " Å");
   check_range("settings.relaxation_steps", s.relaxation_steps, 0, 100, "");
@@ -89,6 +90,8 @@ qses_mesh held_mesh(const qses_context &context) {
 quickses::SurfaceRequest make_request(const qses_context &context, const qses_settings &settings, bool ladder,
                                       const char *function) {
   check_settings(settings);
+  if (settings.delivery != QSES_DELIVERY_HOST && context.backend != QSES_BACKEND_CUDA)
+    invalid("settings.delivery asks for a mesh on the device, but this context computes on the CPU");
   quickses::require_atoms(context, function);
   quickses::SurfaceRequest request;
   request.atoms = context.atoms;
@@ -277,6 +280,20 @@ qses_status qses_collect(qses_context *context, qses_mesh *mesh) {
   if (status == QSES_OK && !found)
     return quickses::fail(QSES_NOTHING_NEW, "no level has been finished since the last qses_collect");
   return status;
+}
+
+qses_status qses_collect_device(qses_context *context, qses_device_mesh *mesh) {
+  return guarded([&] {
+    require(context, "context");
+    require(mesh, "mesh");
+    check_struct(mesh, "qses_device_mesh");
+    context->job->collect(nullptr, nullptr);
+    qses_device_mesh held;
+    if (!context->job->held_on_device(&held)) throw quickses::Error(QSES_NO_RESULT, kNothingComputed);
+    if (held.mesh.vertex_count > 0 && !held.mesh.positions)
+      invalid("the mesh was made with settings.delivery HOST: it is not on the device");
+    write_struct(mesh, held, "qses_device_mesh");
+  });
 }
 
 qses_status qses_cancel(qses_context *context) {

@@ -202,7 +202,7 @@ int SurfaceJob::slot() {
   return writing_;
 }
 
-void SurfaceJob::finished(const qses_mesh &mesh, const qses_report &report) {
+void SurfaceJob::finished(const qses_device_mesh &on_device, const qses_mesh &mesh, const qses_report &report) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     ready_.slot = writing_;
@@ -210,6 +210,9 @@ void SurfaceJob::finished(const qses_mesh &mesh, const qses_report &report) {
     ready_.report = report;
     ready_.mesh.level = first_level_ + levels_finished_;
     ready_.mesh.level_count = ladder_count_;
+    ready_.on_device = on_device;
+    ready_.on_device.mesh.level = ready_.mesh.level;
+    ready_.on_device.mesh.level_count = ladder_count_;
     writing_ = kNoSlot;
     state_.levels_finished = ++levels_finished_;
     if (superseded_ || cancelled_) stop_now_ = true;
@@ -234,6 +237,13 @@ bool SurfaceJob::held(qses_mesh *mesh, qses_report *report) const {
   if (held_.slot == kNoSlot) return false;
   if (mesh) *mesh = held_.mesh;
   if (report) *report = held_.report;
+  return true;
+}
+
+bool SurfaceJob::held_on_device(qses_device_mesh *mesh) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (held_.slot == kNoSlot) return false;
+  *mesh = held_.on_device;
   return true;
 }
 

@@ -48,6 +48,7 @@ class SurfaceJob : private LevelSink {
   bool collect(qses_mesh *mesh, qses_report *report);
   // The mesh collected or computed last; false if there is none.
   bool held(qses_mesh *mesh, qses_report *report) const;
+  bool held_on_device(qses_device_mesh *mesh) const;
   // Until no job runs or waits, or the time is over (negative: no limit). True if none runs or waits.
   bool wait(double milliseconds);
 
@@ -61,7 +62,7 @@ class SurfaceJob : private LevelSink {
   // LevelSink, called by the thread that computes.
   void prepared(double milliseconds) override { shared_ms_ = milliseconds; }
   int slot() override;
-  void finished(const qses_mesh &mesh, const qses_report &report) override;
+  void finished(const qses_device_mesh &on_device, const qses_mesh &mesh, const qses_report &report) override;
   const std::atomic<bool> &stop_flag() const override { return stop_now_; }
   void advance(double fraction) override;
 
@@ -77,6 +78,7 @@ class SurfaceJob : private LevelSink {
   struct Level {
     int slot = kNoSlot;
     qses_mesh mesh{};
+    qses_device_mesh on_device{};
     qses_report report{};
   };
 

@@ -19,7 +19,8 @@ class LevelSink {
   virtual ~LevelSink() = default;
   virtual void prepared(double milliseconds) = 0;  // what all levels share is made; with CUDA: asked for
   virtual int slot() = 0;                          // the buffer for the next level
-  virtual void finished(const qses_mesh &mesh, const qses_report &report) = 0;
+  // on_device: empty arrays unless settings.delivery asks for it.
+  virtual void finished(const qses_device_mesh &on_device, const qses_mesh &mesh, const qses_report &report) = 0;
   virtual void advance(double fraction) = 0;  // of all levels; never falls
   virtual const std::atomic<bool> &stop_flag() const = 0;
 };

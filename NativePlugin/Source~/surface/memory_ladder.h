@@ -166,16 +166,17 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
       }
       timer_.begin("mesh_memory");
       qses_mesh mesh;
-      memory_.finish(built, in.settings, &mesh);
+      qses_device_mesh on_device;
+      memory_.finish(built, in.settings, &mesh, &on_device);
       timer_.end();
-      mesh.spacing = spacings[k];
+      mesh.spacing = on_device.mesh.spacing = spacings[k];
       report.compute_ms = milliseconds_since(start);
       start = std::chrono::steady_clock::now();
       complete(built, &report);
       timer_.reset();
       executor_.arena().rewind(mark);
       progress_.report(1.0);
-      sink.finished(mesh, report);
+      sink.finished(on_device, mesh, report);
       *next = k + 1;
       attempts = 1;
     }

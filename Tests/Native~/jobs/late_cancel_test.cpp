@@ -73,7 +73,7 @@ class StoppingEngine : public quickses::SurfaceEngine {
       qses_report report;
       qses_mesh_init(&mesh);
       qses_report_init(&report);
-      sink.finished(mesh, report);
+      sink.finished(qses_device_mesh{}, mesh, report);
     }
     job->cancel();
     EXPECT_TRUE(sink.stop_flag());

@@ -279,6 +279,14 @@ QSES_API qses_status qses_set_texcoords(qses_context *context, const float *uv, 
 
 /* ---- computing ------------------------------------------------------------------------------------------------- */
 
+/* Where a mesh is handed out. */
+typedef enum qses_delivery {
+  QSES_DELIVERY_HOST = 0,   /* in host memory: qses_mesh has pointers */
+  QSES_DELIVERY_DEVICE = 1, /* on the CUDA device (qses_collect_device); nothing is downloaded, and the arrays of
+                               qses_mesh are NULL */
+  QSES_DELIVERY_BOTH = 2
+} qses_delivery;
+
 #define QSES_MAX_LEVELS 8
 #define QSES_REMEMBERED_SERIES 512
 
@@ -323,6 +331,8 @@ typedef struct qses_settings {
   uint32_t series;       /* which series of frames a job belongs to: any number; default 0. For callers who let one
                             context compute several molecules in turn: frame_budget_ms learns from each series apart.
                             The QSES_REMEMBERED_SERIES that were used last are remembered; an older one begins anew */
+  qses_delivery delivery; /* where the mesh is wanted; default HOST. Anything else needs CUDA. A mesh that is wanted on
+                             the device does not leave it in pieces where memory is short: that is OUT_OF_MEMORY */
 } qses_settings;
 
 /* The defaults, with struct_size set. NULL is ignored. */
@@ -356,7 +366,7 @@ typedef struct qses_mesh {
   uint32_t vertex_count;   /* V */
   uint32_t triangle_count; /* T */
   uint32_t tag;            /* as in the settings */
-  const float *positions;  /* V x 3, Å */
+  const float *positions;  /* V x 3, Å. With settings.delivery DEVICE all arrays of vertices and indices are NULL */
   const float *normals;    /* V x 3, unit length, outward; on a crease, that of one of its sides */
   const uint8_t *colors;   /* V x 4, or NULL if there are none */
   const float *texcoords;  /* V x 2, or NULL if not asked for */
@@ -505,6 +515,29 @@ QSES_API qses_status qses_poll(const qses_context *context, qses_progress *progr
  * qses_compute that succeeds, or qses_context_destroy, also while further levels and jobs are computed. Asking often is
  * cheap. Errors: NOTHING_NEW (not an error in itself), INVALID_ARGUMENT. */
 QSES_API qses_status qses_collect(qses_context *context, qses_mesh *mesh);
+
+/* A mesh on a CUDA device, made with settings.delivery DEVICE or BOTH. */
+typedef struct qses_device_mesh {
+  uint32_t struct_size; /* set by qses_device_mesh_init */
+  int32_t device;       /* CUDA ordinal */
+  void *stream;         /* the cudaStream_t of the context that writes the mesh. Let what reads it wait for it (an event
+                           recorded there, or cudaStreamSynchronize) */
+  qses_mesh mesh;       /* as qses_collect gives it, but positions, normals, colors, texcoords, owners, patches and
+                           indices point to memory of the device; components, if any, to host memory */
+} qses_device_mesh;
+
+/* Empty view with struct_size set, its own and that of its mesh. NULL is ignored. */
+static inline void qses_device_mesh_init(qses_device_mesh *mesh) {
+  if (!mesh) return;
+  qses_clear(mesh, sizeof *mesh);
+  qses_mesh_init(&mesh->mesh);
+}
+
+/* As qses_collect, but the mesh on the device. Where nothing is new it is the mesh of the last qses_compute,
+ * qses_collect or qses_collect_device that succeeded: with delivery BOTH, ask for the one and then for the other. Its
+ * memory stays valid as long as that of qses_collect. Nothing is copied, and nothing waits for the device.
+ * Errors: NO_RESULT (nothing was made yet), INVALID_ARGUMENT (also: the mesh was made for HOST only). */
+QSES_API qses_status qses_collect_device(qses_context *context, qses_device_mesh *mesh);
 
 /* Ends the job that runs as soon as it can (levels finished before stay collectable) and drops the one that waits.
  * Returns at once; from any thread at any time before qses_context_destroy. Also ends a qses_compute or qses_estimate,

@@ -36,8 +36,10 @@ class MeshMemory<CpuKernelExecutor> {
 
   void save(CpuKernelExecutor &, const MeshMemoryView &, const MeshView &, size_t, size_t) {}  // never in pieces
 
-  void finish(const MeshMemoryView &built, const qses_settings &settings, qses_mesh *mesh) {
-    describe_mesh(built, built.view, settings, mesh);
+  void keep_on_device(bool) {}
+  void finish(const MeshMemoryView &built, const qses_settings &settings, qses_mesh *mesh, qses_device_mesh *on_device) {
+    describe_mesh(built, &built.view, settings, mesh);
+    qses_device_mesh_init(on_device);
   }
 
   TableView upload_table(CpuKernelExecutor &, const MarchingCubesTable &table) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The meshes of the GPU: made on the device, their arrays behind each other so that one copy brings them to page-locked
 // memory. In pieces: the mesh is in page-locked memory from the beginning, which kernels reach as well, slowly; what
-// makes most of it goes through parts on the device.
+// makes most of it goes through parts on the device. A mesh that is wanted on the device has memory of its slot there.
 #pragma once
 
 #include "parallel/cuda_executor.cuh"
@@ -16,7 +16,12 @@ class MeshMemory<CudaExecutor> {
   explicit MeshMemory(CudaExecutor &executor) : executor_(executor) {}
   ~MeshMemory() { DeviceMemory::release(table_); }
 
-  void use_slot(int slot) { slots_.use_slot(slot); }
+  void use_slot(int slot) {
+    slots_.use_slot(slot);
+    device_slots_.use_slot(slot);
+  }
+  // Whether meshes that are handed out stay on the device.
+  void keep_on_device(bool keep) { keep_ = keep; }
   // What was allocated beside a mesh in pieces, or as one to be made into another, is given up.
   void forget_spills() { spilled_ = 0; }
   uint64_t host_bytes() const {
@@ -26,14 +31,16 @@ class MeshMemory<CudaExecutor> {
   }
 
   // Bytes of the device that are not in the arena.
-  uint64_t outside_arena(const CudaExecutor &) const { return sizeof(MarchingCubesTable); }
-  uint64_t allowed_outside(const CudaExecutor &executor) const { return outside_arena(executor); }
+  uint64_t outside_arena(const CudaExecutor &) const { return sizeof(MarchingCubesTable) + device_slots_.bytes(); }
+  uint64_t allowed_outside(const CudaExecutor &) const { return sizeof(MarchingCubesTable); }
 
   MeshMemoryView allocate_mesh(CudaExecutor &executor, size_t vertices, size_t triangles, const MeshShape &shape,
                                MeshPurpose purpose, bool in_pieces) {
     const MeshArrays arrays(vertices, triangles, shape);
+    const bool delivered = purpose == MeshPurpose::kDelivered;
+    if (delivered && keep_) return describe_memory(arrays, vertices, triangles, shape, false, keep(executor, arrays, in_pieces));
     void *const memory = mesh_is_in_arena(true, purpose, in_pieces) ? executor.allocate<char>(arrays.bytes()).data
-                         : purpose == MeshPurpose::kDelivered       ? slots_.reserve(arrays.bytes())
+                         : delivered                                ? slots_.reserve(arrays.bytes())
                                                                     : spill(arrays.bytes());
     return describe_memory(arrays, vertices, triangles, shape, in_pieces, memory);
   }
@@ -53,10 +60,11 @@ class MeshMemory<CudaExecutor> {
     });
   }
 
-  void finish(const MeshMemoryView &built, const qses_settings &settings, qses_mesh *mesh) {
+  void finish(const MeshMemoryView &built, const qses_settings &settings, qses_mesh *mesh, qses_device_mesh *on_device) {
     const MeshArrays arrays(built.vertices, built.triangles, built.shape);
+    const bool to_host = settings.delivery != QSES_DELIVERY_DEVICE;
     MeshView host = built.view;
-    if (built.vertices > 0) {
+    if (built.vertices > 0 && to_host) {
       if (!built.in_pieces) {
         char *const memory = static_cast<char *>(slots_.reserve(arrays.bytes()));
         executor_.download(memory, static_cast<const char *>(built.memory), arrays.bytes());
@@ -64,7 +72,11 @@ class MeshMemory<CudaExecutor> {
       }
       executor_.wait();
     }
-    describe_mesh(built, host, settings, mesh);
+    describe_mesh(built, to_host ? &host : nullptr, settings, mesh);
+    qses_device_mesh_init(on_device);
+    on_device->device = executor_.device();
+    on_device->stream = executor_.stream();
+    describe_mesh(built, keep_ ? &built.view : nullptr, settings, &on_device->mesh);
   }
 
   TableView upload_table(CudaExecutor &executor, const MarchingCubesTable &table) {
@@ -77,6 +89,20 @@ class MeshMemory<CudaExecutor> {
   }
 
  private:
+  // Room for a mesh that stays on the device. A budget covers it: the arena gives up as much when it is next reset.
+  void *keep(CudaExecutor &executor, const MeshArrays &arrays, bool in_pieces) {
+    if (in_pieces) throw MemoryRefused("the mesh does not fit on the device, where it is wanted");
+    auto &arena = executor.arena();
+    const uint64_t before = device_slots_.bytes();
+    if (arena.has_budget() && device_slots_.would_grow(arrays.bytes())) {
+      if (!arena.has_room_outside(before + device_slots_.growth(arrays.bytes())))
+        throw MemoryRefused("the mesh is to stay on the device, beside the work");
+    }
+    void *const memory = device_slots_.reserve(arrays.bytes());
+    arena.set_taken(device_slots_.bytes());
+    return memory;
+  }
+
   // At most the unmasked mesh, sums and starts at a time.
   void *spill(size_t bytes) {
     constexpr size_t kSpills = sizeof spill_ / sizeof spill_[0];
@@ -86,6 +112,8 @@ class MeshMemory<CudaExecutor> {
 
   CudaExecutor &executor_;
   MeshSlots<PinnedMemory> slots_;
+  MeshSlots<DeviceMemory> device_slots_;
+  bool keep_ = false;
   PinnedBuffer spill_[4];
   size_t spilled_ = 0;
   void *table_ = nullptr;

@@ -35,7 +35,7 @@ struct MeshMemoryView {
 // What a mesh is for: to be handed out, or to be made into another one.
 enum class MeshPurpose { kDelivered, kWork };
 
-// Whether a mesh takes memory of the arena.
+// Whether a mesh takes memory that counts as work: of the arena, or of the device.
 constexpr bool mesh_is_in_arena(bool is_cuda, MeshPurpose purpose, bool in_pieces) {
   return is_cuda ? !in_pieces : purpose == MeshPurpose::kWork;
 }
@@ -53,8 +53,8 @@ inline MeshMemoryView describe_memory(const MeshArrays &arrays, size_t vertices,
   return mesh;
 }
 
-// Points the caller's view at a finished mesh. host: the same arrays in host memory.
-inline void describe_mesh(const MeshMemoryView &built, const MeshView &host, const qses_settings &settings,
+// Points the caller's view at a finished mesh. arrays: where they are; nullptr: not here.
+inline void describe_mesh(const MeshMemoryView &built, const MeshView *arrays, const qses_settings &settings,
                           qses_mesh *mesh) {
   qses_mesh_init(mesh);
   mesh->tag = settings.tag;
@@ -63,18 +63,19 @@ inline void describe_mesh(const MeshMemoryView &built, const MeshView &host, con
   mesh->component_count = static_cast<uint32_t>(built.components.size);
   mesh->components = built.components.data;
   if (built.vertices == 0) return;
-  mesh->positions = host.positions;
-  mesh->normals = host.normals;
-  mesh->colors = reinterpret_cast<const uint8_t *>(host.colors);
-  mesh->texcoords = host.texcoords;
-  mesh->vertex_bytes = host.vertex_bytes;
-  mesh->owners = host.owners;
-  mesh->patches = host.patches;
-  mesh->indices = host.indices;
   for (int d = 0; d < 3; ++d) {
     mesh->bounds_min[d] = built.bounds.min[d];
     mesh->bounds_max[d] = built.bounds.max[d];
   }
+  if (!arrays) return;
+  mesh->positions = arrays->positions;
+  mesh->normals = arrays->normals;
+  mesh->colors = reinterpret_cast<const uint8_t *>(arrays->colors);
+  mesh->texcoords = arrays->texcoords;
+  mesh->vertex_bytes = arrays->vertex_bytes;
+  mesh->owners = arrays->owners;
+  mesh->patches = arrays->patches;
+  mesh->indices = arrays->indices;
 }
 
 // The memory of the meshes that are handed out, one per slot.
