@@ -55,8 +55,17 @@ class Arena {
     }
     return limit_;
   }
-  // Bytes of the budget that others have taken; they count as used.
-  void set_taken(uint64_t bytes) { taken_ = bytes; }
+  // Bytes of the budget that others have taken, or are about to; they count as used. Throws if what is held does not
+  // leave so much: the next reset gives it up.
+  void set_taken(uint64_t bytes) {
+    if (!budget_) return;
+    const bool more = bytes > taken_;
+    taken_ = bytes;
+    if (more && held_ > own_budget())
+      throw MemoryRefused("the work beside the arena needs " + describe_bytes(bytes) + " of the memory budget of " +
+                              describe_bytes(budget_),
+                          bytes < budget_);
+  }
   // Bytes that can still be allocated, as far as is known.
   uint64_t available() { return limit() - std::min(limit(), used_ + taken_); }
 

@@ -281,10 +281,10 @@ class CpuExecutor {
     }
   };
 
-  // What scratch has grown beyond its allowance. The arena, which holds its whole budget, shrinks with its next reset.
+  // What scratch has grown beyond its allowance.
   void take_off_budget() {
     const uint64_t scratch = scratch_bytes(), allowed = scratch_allowance();
-    arena_.set_taken(arena_.has_budget() && scratch > allowed ? scratch - allowed : 0);
+    arena_.set_taken(scratch > allowed ? scratch - allowed : 0);
   }
 
   struct ScratchPool {

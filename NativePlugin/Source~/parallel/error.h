@@ -18,10 +18,16 @@ class Error : public std::runtime_error {
   qses_status status_;
 };
 
-// Memory that the budget or the machine refused. Stages that can do with less catch it; else it is the caller's error.
+// Memory that the budget or the machine refused. The engine then tries with less (surface/memory_ladder.h); else it is
+// the caller's error. again: what was asked for is accounted for by now, and the same once more may do.
 class MemoryRefused : public Error {
  public:
-  explicit MemoryRefused(const std::string &message) : Error(QSES_OUT_OF_MEMORY, message) {}
+  explicit MemoryRefused(const std::string &message, bool again = false)
+      : Error(QSES_OUT_OF_MEMORY, message), again_(again) {}
+  bool again() const { return again_; }
+
+ private:
+  bool again_;
 };
 
 // A computation that was told to stop. Not an error: whoever asked for it knows.

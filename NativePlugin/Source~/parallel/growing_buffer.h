@@ -15,6 +15,9 @@ class GrowingBuffer {
   GrowingBuffer &operator=(const GrowingBuffer &) = delete;
   ~GrowingBuffer() { release(); }
 
+  // What is taken for so many bytes: a little more, so that a trajectory soon stops growing.
+  static size_t size_for(size_t bytes) { return bytes + bytes / 8 + 4096; }
+
   // At least this many bytes. Throws MemoryRefused; the buffer is empty then. Nothing may be in flight from or to the
   // old memory.
   void *reserve(size_t bytes) {
@@ -26,8 +29,7 @@ class GrowingBuffer {
   bool try_reserve(size_t bytes) {
     if (bytes <= size_) return true;
     release();
-    // A little more than asked for, so that a trajectory soon stops growing.
-    size_ = bytes + bytes / 8 + 4096;
+    size_ = size_for(bytes);
     memory_ = Source::acquire(size_);
     if (!memory_) memory_ = Source::acquire(size_ = bytes);
     if (!memory_) size_ = 0;

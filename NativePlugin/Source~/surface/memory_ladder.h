@@ -74,7 +74,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     out.triangles = static_cast<uint64_t>(facts_.size.triangles);
     out.mesh_bytes = MeshArrays(out.vertices, out.triangles, shape_of(settings, !appearance.colors.empty())).bytes();
     out.work_bytes = whole + memory_.outside_arena(executor_);
-    out.smallest_budget = least + memory_.allowed_outside(executor_);
+    out.smallest_budget = smallest_budget(least);
     out.fits = budget_ == 0 || out.smallest_budget <= budget_ ? 1 : 0;
     return out;
   }
@@ -95,7 +95,8 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   void walk(const FrameInput &in, const std::atomic<bool> &stop, const Attempt &attempt) {
     const typename Executor::CallScope scope(executor_);
     const typename Executor::StopScope stop_scope(executor_, stop);
-    for (size_t step = first_step(in);; ++step) {
+    memory_.keep_on_device(in.settings.delivery != QSES_DELIVERY_HOST);
+    for (size_t step = first_step(in);;) {
       executor_.arena().reset();
       timer_.reset();
       facts_ = {};
@@ -104,8 +105,8 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
         attempt(kMemoryPlans[step]);
         return;
       } catch (const MemoryRefused &refused) {
-        step = give_way(in, step);
-        if (step + 1 < kMemoryPlanCount) continue;
+        if (!refused.again()) step = next_step(in, step);
+        if (step < kMemoryPlanCount) continue;
         name_smallest_budget(in);
         throw;
       }
@@ -123,15 +124,14 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     return learnt_.step;
   }
 
-  // Memory was refused. Whatever was taken is given back, so that it is known how much there is. Returns the step
-  // before the next one; plans that are forecast to take more are passed over.
-  size_t give_way(const FrameInput &in, size_t step) {
+  // Memory was refused: whatever was taken is given back, so that it is known how much there is, and plans that are
+  // forecast to take more are passed over.
+  size_t next_step(const FrameInput &in, size_t step) {
     if (budget_ == 0) executor_.arena().release();
     const uint64_t limit = executor_.arena().limit();
-    while (step + 2 < kMemoryPlanCount && knows_size() &&
-           forecast(in, kMemoryPlans[step + 1], limit) > limit)
-      ++step;
-    learnt_.step = std::min(step + 1, kMemoryPlanCount - 1);
+    for (++step; step + 1 < kMemoryPlanCount && knows_size(); ++step)
+      if (forecast(in, kMemoryPlans[step], limit) <= limit) break;
+    learnt_.step = std::min(step, kMemoryPlanCount - 1);
     learnt_.limit = limit;
     return step;
   }
@@ -260,6 +260,11 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     return static_cast<uint64_t>(kMargin * static_cast<double>(bytes)) + kSpareBytes;
   }
 
+  // The arena's least bytes, and what is outside of it.
+  uint64_t smallest_budget(uint64_t least) const {
+    return least + std::max(memory_.allowed_outside(executor_), memory_.outside_arena(executor_));
+  }
+
   // No plan was left. With a budget the user is told which one would do, as far as that is known by now.
   void name_smallest_budget(const FrameInput &in) {
     if (budget_ == 0) return;
@@ -271,7 +276,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     const bool is_counted = knows_size();
     guess_unknown(parameters, in.settings.method == QSES_METHOD_EXACT, static_cast<double>(lattice.table_size()),
                   &facts_);
-    const uint64_t least = least_bytes(in) / 10 * (is_counted ? 10 : 11) + memory_.allowed_outside(executor_);
+    const uint64_t least = smallest_budget(least_bytes(in) / 10 * (is_counted ? 10 : 11));
     throw Error(QSES_OUT_OF_MEMORY,
                 "the memory budget of " + describe_bytes(budget_) + " does not suffice for this surface: about " +
                     describe_bytes(std::max(least, budget_ + budget_ / 8)) + " would do, or a larger spacing");

@@ -25,6 +25,7 @@ namespace QuickSes.Tests
             ("qses_method", "QSES_METHOD_", typeof(SurfaceMethod)),
             ("qses_winding", "QSES_WINDING_", typeof(SurfaceWinding)),
             ("qses_vertex_layout", "QSES_VERTICES_", typeof(SurfaceVertexLayout)),
+            ("qses_delivery", "QSES_DELIVERY_", typeof(MeshDelivery)),
             ("qses_patch", "QSES_PATCH_", typeof(SurfacePatch)),
             ("qses_job_state", "QSES_JOB_", typeof(SurfaceJobState)),
             ("qses_structure_format", "QSES_STRUCTURE_", typeof(StructureFormat)),

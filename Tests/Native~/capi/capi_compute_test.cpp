@@ -110,6 +110,23 @@ TEST_F(WithMesh, ATooFineSpacingOfTooManyVertices) {
   EXPECT_GT(compute(small, water(), settings()).vertex_count(), 0u);
 }
 
+TEST(Delivery, OfTheCpuIsHostMemory) {
+  const Context context(1);
+  set_atoms(context, crambin());
+  qses_settings s = settings();
+  for (const qses_delivery delivery : {QSES_DELIVERY_DEVICE, QSES_DELIVERY_BOTH, static_cast<qses_delivery>(3)}) {
+    s.delivery = delivery;
+    expect_error(qses_compute(context, &s, nullptr), QSES_INVALID_ARGUMENT, {"settings.delivery"});
+  }
+  qses_device_mesh mesh;
+  qses_device_mesh_init(&mesh);
+  expect_error(qses_collect_device(context, &mesh), QSES_NO_RESULT, {"computed"});
+  s.delivery = QSES_DELIVERY_HOST;
+  ASSERT_EQ(qses_compute(context, &s, nullptr), QSES_OK);
+  expect_error(qses_collect_device(context, &mesh), QSES_INVALID_ARGUMENT, {"HOST"});
+  expect_error(qses_collect_device(context, nullptr), QSES_INVALID_ARGUMENT, {"mesh"});
+}
+
 TEST(Memory, ATooSmallBudgetIsRefusedAndLeavesTheContextUsable) {
   const Context context(2, uint64_t(3) << 20);
   const Surface small = compute(context, water(), settings());

@@ -274,7 +274,8 @@ TEST(CudaStages, StartsOfVertices) {
   CudaStageTimer timer(executor);
   const DeviceStages s = run_device_stages(executor, table, timer, m.atoms.data(), m.atoms.size(), bounds_of(m), o);
   CudaCandidates candidates;
-  gpu::prepare_vertices(executor, s.features, s.bricks, s.layout, {0, s.bricks.count}, candidates,
+  CudaRooms rooms;
+  gpu::prepare_vertices(executor, s.features, s.bricks, s.layout, {0, s.bricks.count}, rooms, candidates,
                         {true, nullptr, table.view.ring, &s.layout.totals->unplaced}, s.mesh);
   const std::vector<float> starts = to_host(executor, s.mesh.positions, s.counts.vertices * 3);
 

@@ -89,6 +89,19 @@ namespace QuickSes
         Interleaved = 1
     }
 
+    /// <summary>Where a mesh is handed out.</summary>
+    public enum MeshDelivery
+    {
+        /// <summary>In host memory.</summary>
+        Host = 0,
+        /// <summary>
+        /// On the CUDA device (<see cref="SurfaceContext.TryCollectDevice"/>): nothing is downloaded.
+        /// </summary>
+        Device = 1,
+        /// <summary>In both.</summary>
+        Both = 2
+    }
+
     /// <summary>What kind of surface a vertex lies on (Connolly's three).</summary>
     public enum SurfacePatch : byte
     {

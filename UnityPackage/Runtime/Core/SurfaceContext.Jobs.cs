@@ -79,6 +79,24 @@ namespace QuickSes
         }
 
         /// <summary>
+        /// The finest level that was finished since the last call, where it is on the CUDA device; where nothing is new,
+        /// the mesh of the last collection or computation. Made with <see cref="SurfaceSettings.Delivery"/> Device or
+        /// Both, else an exception says so. False if nothing was made yet. It ends views of older meshes.
+        /// </summary>
+        public unsafe bool TryCollectDevice(out SurfaceDeviceMesh mesh)
+        {
+            ThrowIfDisposed();
+            NativeDeviceMesh native = NativeDefaults.DeviceMesh();
+            QuickSesStatus status = NativeMethods.qses_collect_device(_handle, &native);
+            mesh = status == QuickSesStatus.Ok ? new SurfaceDeviceMesh(native) : default;
+            if (status == QuickSesStatus.Ok)
+                NewView(native.Mesh);
+            else if (status != QuickSesStatus.NoResult)
+                QuickSesException.ThrowUnlessOk(status);
+            return status == QuickSesStatus.Ok;
+        }
+
+        /// <summary>
         /// Ends the job that runs as soon as it can and drops the one that waits; a <see cref="Compute"/> or
         /// <see cref="Estimate"/> on another thread returns Cancelled. Returns at once. Any thread, at any time before Dispose.
         /// </summary>

@@ -80,6 +80,12 @@ namespace QuickSes
         /// </summary>
         public uint Series { get => Native.Series; set => Native.Series = value; }
 
+        /// <summary>
+        /// Where the mesh is wanted. Anything but Host needs CUDA; arrays of a mesh that is on the device only are empty
+        /// in <see cref="SurfaceMeshView"/>.
+        /// </summary>
+        public MeshDelivery Delivery { get => Native.Delivery; set => Native.Delivery = value; }
+
         /// <summary>How many coarser levels come before <see cref="Spacing"/> in a job.</summary>
         public int LevelCount => (int)Native.LevelCount;
 

@@ -15,7 +15,7 @@ class MeshMemory<CpuKernelExecutor> {
 
   void use_slot(int slot) { slots_.use_slot(slot); }
   uint64_t host_bytes() const { return slots_.bytes(); }
-  // Bytes of work that are not in the arena, and those that are taken off a budget for it.
+  // Bytes of work that are not in the arena, and those that are taken off a budget for it at first.
   uint64_t outside_arena(const CpuKernelExecutor &executor) const { return executor.scratch_bytes(); }
   uint64_t allowed_outside(const CpuKernelExecutor &executor) const { return executor.scratch_allowance(); }
 

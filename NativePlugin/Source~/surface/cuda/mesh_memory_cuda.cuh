@@ -38,10 +38,10 @@ class MeshMemory<CudaExecutor> {
                                MeshPurpose purpose, bool in_pieces) {
     const MeshArrays arrays(vertices, triangles, shape);
     const bool delivered = purpose == MeshPurpose::kDelivered;
-    if (delivered && keep_) return describe_memory(arrays, vertices, triangles, shape, false, keep(executor, arrays, in_pieces));
-    void *const memory = mesh_is_in_arena(true, purpose, in_pieces) ? executor.allocate<char>(arrays.bytes()).data
-                         : delivered                                ? slots_.reserve(arrays.bytes())
-                                                                    : spill(arrays.bytes());
+    void *const memory = delivered && keep_                           ? keep(executor, arrays, in_pieces)
+                         : mesh_is_in_arena(true, purpose, in_pieces) ? executor.allocate<char>(arrays.bytes()).data
+                         : delivered                                  ? slots_.reserve(arrays.bytes())
+                                                                      : spill(arrays.bytes());
     return describe_memory(arrays, vertices, triangles, shape, in_pieces, memory);
   }
 
@@ -89,18 +89,11 @@ class MeshMemory<CudaExecutor> {
   }
 
  private:
-  // Room for a mesh that stays on the device. A budget covers it: the arena gives up as much when it is next reset.
+  // Room for a mesh that stays on the device. A budget covers it.
   void *keep(CudaExecutor &executor, const MeshArrays &arrays, bool in_pieces) {
     if (in_pieces) throw MemoryRefused("the mesh does not fit on the device, where it is wanted");
-    auto &arena = executor.arena();
-    const uint64_t before = device_slots_.bytes();
-    if (arena.has_budget() && device_slots_.would_grow(arrays.bytes())) {
-      if (!arena.has_room_outside(before + device_slots_.growth(arrays.bytes())))
-        throw MemoryRefused("the mesh is to stay on the device, beside the work");
-    }
-    void *const memory = device_slots_.reserve(arrays.bytes());
-    arena.set_taken(device_slots_.bytes());
-    return memory;
+    executor.arena().set_taken(device_slots_.bytes_with(arrays.bytes()));
+    return device_slots_.reserve(arrays.bytes());
   }
 
   // At most the unmasked mesh, sums and starts at a time.

@@ -94,6 +94,11 @@ class MeshSlots {
     for (const auto &slot : mesh_) sum += slot.size();
     return sum;
   }
+  // Bytes of all slots once there is room for such a mesh.
+  uint64_t bytes_with(size_t bytes) const {
+    const size_t wanted = std::max(largest_, bytes), now = mesh_[slot_].size();
+    return this->bytes() - now + (now < wanted ? GrowingBuffer<Source>::size_for(wanted) : now);
+  }
 
  private:
   GrowingBuffer<Source> mesh_[kMeshSlots];

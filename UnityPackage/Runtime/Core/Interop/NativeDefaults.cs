@@ -31,6 +31,9 @@ namespace QuickSes.Interop
 
         public static NativeMesh Mesh() => new NativeMesh { StructSize = (uint)sizeof(NativeMesh) };
 
+        public static NativeDeviceMesh DeviceMesh() =>
+            new NativeDeviceMesh { StructSize = (uint)sizeof(NativeDeviceMesh), Mesh = Mesh() };
+
         public static NativeReport Report() => new NativeReport { StructSize = (uint)sizeof(NativeReport) };
 
         public static NativeSizeEstimate SizeEstimate() =>

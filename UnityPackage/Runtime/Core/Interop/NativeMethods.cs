@@ -97,6 +97,9 @@ namespace QuickSes.Interop
         public static extern QuickSesStatus qses_collect(ContextHandle context, NativeMesh* mesh);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
+        public static extern QuickSesStatus qses_collect_device(ContextHandle context, NativeDeviceMesh* mesh);
+
+        [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
         public static extern QuickSesStatus qses_cancel(ContextHandle context);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]

@@ -49,6 +49,7 @@ namespace QuickSes.Interop
         public float FrameBudgetMs;
         public int Components;
         public uint Series;
+        public MeshDelivery Delivery;
     }
 
     [StructLayout(LayoutKind.Sequential)]
@@ -84,6 +85,15 @@ namespace QuickSes.Interop
         public uint LevelCount;
         public uint ComponentCount;
         public NativeComponent* Components;
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
+    internal unsafe struct NativeDeviceMesh
+    {
+        public uint StructSize;
+        public int Device;
+        public void* Stream;
+        public NativeMesh Mesh;
     }
 
     [StructLayout(LayoutKind.Sequential)]
