@@ -147,7 +147,6 @@ qses_status qses_structure_atom(const qses_structure *structure, uint32_t k, qse
     const io::AtomInfo &from = quickses::pick(structure->model().atoms, k, "atoms");
     qses_atom value;
     qses_atom_init(&value);
-    value.file_index = from.file_index;
     value.name = from.name.c_str();
     value.residue_name = from.residue_name.c_str();
     value.chain = from.chain.c_str();

@@ -31,7 +31,8 @@ CudaDevice describe_cuda_device(int ordinal);
 // 0 where CUDA does not start. Never throws.
 int count_cuda_devices();
 
-// Selects a device for the calling thread, and the one selected before when it goes. Throws Error; after a fault always.
+// Selects a device for the calling thread, and the one selected before when it goes. Throws Error; after a fault
+// always.
 class DeviceGuard {
  public:
   explicit DeviceGuard(int device);

@@ -64,7 +64,6 @@ namespace QuickSes.Tests
                 Assert.That(atom.ResidueName, Is.EqualTo(lines[i].Substring(17, 3).Trim()));
                 Assert.That(atom.Chain, Is.EqualTo(lines[i].Substring(21, 1)));
                 Assert.That(atom.ResidueNumber, Is.EqualTo(int.Parse(lines[i].Substring(22, 4))));
-                Assert.That((int)atom.FileIndex, Is.EqualTo(i));
                 Assert.That(structure.FileIndices[i], Is.EqualTo((uint)i));
                 Assert.That(atom.InsertionCode, Is.EqualTo(' '));
                 Assert.That(atom.IsWater || atom.IsHetero || atom.IsHydrogen, Is.False);

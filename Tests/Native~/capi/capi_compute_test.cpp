@@ -261,7 +261,7 @@ TEST(Report, StagesAreCalledAsTheirFiles) {
     std::set<std::string> names;
     for (uint32_t k = 0; k < report.stage_count; ++k) names.insert(report.stages[k].name);
     EXPECT_EQ(names.size(), report.stage_count) << "a name twice";
-    std::set<std::string> expected = {"neighbor_grid", "bricks",     "marching_cubes", "projection",  "relaxation",
+    std::set<std::string> expected = {"neighbor_grid", "bricks",     "marching_cubes", "projection", "relaxation",
                                       "measure",       "components", "visible_mask",   "mesh_memory"};
     if (method == QSES_METHOD_EXACT) expected.insert({"solvent_features", "exact_ses"});
     if (method == QSES_METHOD_GRID) expected.insert("grid_ses");

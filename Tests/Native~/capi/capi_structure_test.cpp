@@ -79,10 +79,8 @@ TEST(Structure, Atoms) {
   EXPECT_EQ(oxygen.insertion_code, 'C');
   EXPECT_EQ(atom_of(structure, 0).insertion_code, ' ');
   EXPECT_EQ(zinc.element, 30);
-  EXPECT_EQ(zinc.file_index, 5u);
   for (uint32_t i = 0; i < info.atom_count; ++i) {
     const qses_atom atom = atom_of(structure, i);
-    EXPECT_EQ(atom.file_index, info.file_indices[i]);
     EXPECT_EQ(atom.is_hetero, i >= 4);
     EXPECT_EQ(atom.is_water, i == 5);
     EXPECT_EQ(atom.is_hydrogen, i == 2);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The C API: back ends, contexts, errors, atoms (sizes of structures: struct_size_test.cpp). What it promises, and what it says about every
-// bad argument.
+// The C API: back ends, contexts, errors, atoms (sizes of structures: struct_size_test.cpp). What it promises, and what
+// it says about every bad argument.
 #include "capi/capi_fixture.h"
 
 #include <cstdio>

@@ -14,7 +14,6 @@ namespace QuickSes
             ResidueName = NativeText.Read(native.ResidueName);
             Chain = NativeText.Read(native.Chain);
             ResidueNumber = native.ResidueNumber;
-            FileIndex = native.FileIndex;
             InsertionCode = (char)native.InsertionCode;
             Element = native.Element;
             IsHetero = native.IsHetero != 0;
@@ -33,9 +32,6 @@ namespace QuickSes
 
         /// <summary>As in the file.</summary>
         public int ResidueNumber { get; }
-
-        /// <summary>0-based place among the atom records of the model in the file, before any filter.</summary>
-        public uint FileIndex { get; }
 
         /// <summary>' ' if there is none.</summary>
         public char InsertionCode { get; }

@@ -157,7 +157,7 @@ typedef enum qses_patch {
 /* Device memory and CPU or GPU threads that compute surfaces, and the atoms they are computed of. Opaque. */
 typedef struct qses_context qses_context;
 
-/* What each qses_..._init below begins with: a structure of zeros that knows its size. */
+/* For this header only: what each qses_..._init below begins with, a structure of zeros that knows its size. */
 static inline void qses_clear(void *structure, uint32_t struct_size) {
   if (!structure) return;
   memset(structure, 0, struct_size);
@@ -308,13 +308,13 @@ typedef struct qses_settings {
   qses_bool measure;     /* 1 (default): qses_report.area and .volume are computed; 0: they are 0 */
   uint32_t tag;          /* any number; comes back in qses_mesh.tag and qses_progress.tag */
   uint32_t level_count;  /* of levels; default 2 */
-  float levels[QSES_MAX_LEVELS]; /* Å; for qses_begin: coarser spacings, falling, each below the one before. Their
-                                    surfaces come before that of `spacing`, each a complete closed mesh on the true
-                                    surface. Those that are not above `spacing` are left out. Default 2, 1. If each of
-                                    the spacings divides the coarsest one without rest, the lattices of all levels have
-                                    a point at the origin, else only the finest has. qses_compute computes no levels,
-                                    but they decide there too where the lattice lies: with other levels its mesh differs
-                                    by what float32 rounds */
+  float levels[QSES_MAX_LEVELS];    /* Å; for qses_begin: coarser spacings, falling, each below the one before. Their
+                                       surfaces come before that of `spacing`, each a complete closed mesh on the true
+                                       surface. Those that are not above `spacing` are left out. Default 2, 1. If each
+                                       of the spacings divides the coarsest one without rest, the lattices of all
+                                       levels have a point at the origin, else only the finest has. qses_compute
+                                       computes no levels, but they decide there too where the lattice lies: with other
+                                       levels its mesh differs by what float32 rounds */
   qses_vertex_layout vertex_layout; /* default SEPARATE */
   qses_bool texcoords;              /* 1: vertices have texture coordinates (see qses_set_texcoords); default 0 */
   float frame_budget_ms; /* for qses_begin: 0 (default): all levels one after the other. Above 0, at most 60000: one
@@ -621,8 +621,9 @@ typedef struct qses_structure_description {
   uint32_t file_atom_count;     /* M, atom records of the model in the file */
   const float *positions;       /* N x 3, Å: as qses_set_atoms takes them */
   const float *radii;           /* N, Å */
-  const uint32_t *file_indices; /* N, rising; each below M. qses_set_positions_indexed takes them to pick the atoms of
-                                   this structure out of a frame of a trajectory that has all M atoms */
+  const uint32_t *file_indices; /* N, rising, each below M: the atoms' places among the records of the model, before any
+                                   filter. qses_set_positions_indexed takes them to pick these atoms out of a frame of a
+                                   trajectory that has all M */
   const uint8_t *file_elements; /* M atomic numbers, also of atoms that were left out: for qses_trajectory_unwrap */
   uint32_t warning_count;       /* see qses_structure_warning */
   uint32_t reserved;            /* 0 */
@@ -639,18 +640,17 @@ QSES_API qses_status qses_structure_info(const qses_structure *structure, qses_s
 /* What the file says about one atom. Strings are never NULL; XYZR files have none, so they are empty there. They are
  * the structure's, valid until qses_structure_close. */
 typedef struct qses_atom {
-  uint32_t struct_size;     /* set by qses_atom_init */
-  uint32_t file_index;      /* 0-based place among the atom records of the model in the file, before any filter */
+  uint32_t struct_size; /* set by qses_atom_init */
+  int32_t residue_number;
   const char *name;         /* such as "CA" */
   const char *residue_name; /* such as "ALA" */
   const char *chain;
-  int32_t residue_number;
   qses_bool is_hetero;   /* a HETATM record */
   qses_bool is_water;    /* its residue is water */
   qses_bool is_hydrogen; /* H or D */
   uint8_t element;       /* atomic number; 0 = unknown; deuterium is 1 */
   char insertion_code;   /* ' ' if there is none */
-  uint8_t reserved[6];   /* 0 */
+  uint8_t reserved[2];   /* 0 */
 } qses_atom;
 
 /* Empty atom with struct_size set. NULL is ignored. */

@@ -172,17 +172,16 @@ namespace QuickSes.Interop
     internal unsafe struct NativeAtom
     {
         public uint StructSize;
-        public uint FileIndex;
+        public int ResidueNumber;
         public byte* Name;
         public byte* ResidueName;
         public byte* Chain;
-        public int ResidueNumber;
         public int IsHetero;
         public int IsWater;
         public int IsHydrogen;
         public byte Element;
         public byte InsertionCode;
-        public fixed byte Reserved[6];
+        public fixed byte Reserved[2];
     }
 
     [StructLayout(LayoutKind.Sequential)]
