@@ -113,7 +113,7 @@ export DOTNET_CLI_TELEMETRY_OPTOUT=1 DOTNET_NOLOGO=1
 for_each_dotnet_test() {
   for checks in false true; do
     for tests in Core Engine Unity Editor Manual; do
-      # QuickSes.Core knows nothing of the engine.
+      # What these compile knows nothing of the engine.
       if [ "$tests" = Core ] && [ "$checks" = true ]; then continue; fi
       "$@" "Tests/DotNet~/$tests.Tests" -p:CollectionsChecks="$checks" || return
     done

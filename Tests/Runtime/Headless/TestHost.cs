@@ -8,7 +8,9 @@ using System.Threading;
 
 namespace QuickSes.Tests
 {
-    /// <summary>A session without a component: a clock that stands unless it is moved, and what was shown and told.</summary>
+    /// <summary>
+    /// A session without a component: a clock that stands unless it is moved, and what was shown and told.
+    /// </summary>
     internal sealed class TestHost : ISurfaceHost, IDisposable
     {
         private const double Patience = 60; // s

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-
 namespace UnityEngine
 {
     public class Material : Object

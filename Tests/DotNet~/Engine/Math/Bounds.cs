@@ -15,35 +15,15 @@ namespace UnityEngine
             _extents = size * 0.5f;
         }
 
-        public Vector3 center
-        {
-            readonly get => _center;
-            set => _center = value;
-        }
+        public readonly Vector3 center => _center;
 
-        public Vector3 extents
-        {
-            readonly get => _extents;
-            set => _extents = value;
-        }
+        public readonly Vector3 extents => _extents;
 
-        public Vector3 size
-        {
-            readonly get => _extents * 2;
-            set => _extents = value * 0.5f;
-        }
+        public readonly Vector3 size => _extents * 2;
 
-        public Vector3 min
-        {
-            readonly get => _center - _extents;
-            set => SetMinMax(value, max);
-        }
+        public readonly Vector3 min => _center - _extents;
 
-        public Vector3 max
-        {
-            readonly get => _center + _extents;
-            set => SetMinMax(min, value);
-        }
+        public readonly Vector3 max => _center + _extents;
 
         public void SetMinMax(Vector3 min, Vector3 max)
         {
@@ -61,22 +41,14 @@ namespace UnityEngine
 
     public struct Ray
     {
-        private Vector3 _direction;
-
         public Ray(Vector3 origin, Vector3 direction)
         {
             this.origin = origin;
-            _direction = direction.normalized;
+            this.direction = direction.normalized;
         }
 
-        public Vector3 origin { get; set; }
+        public Vector3 origin { get; }
 
-        public Vector3 direction
-        {
-            readonly get => _direction;
-            set => _direction = value.normalized;
-        }
-
-        public override readonly string ToString() => $"Origin: {origin}, Dir: {_direction}";
+        public Vector3 direction { get; }
     }
 }

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 using QuickSes.EngineDouble;
-using System.Collections;
 using System.Collections.Generic;
 
 namespace UnityEngine
 {
-    public class Transform : Component, IEnumerable
+    public class Transform : Component
     {
         private readonly List<Transform> _children = new List<Transform>();
         private Transform _parent;
@@ -31,8 +30,6 @@ namespace UnityEngine
 
         public int childCount => _children.Count;
 
-        public bool hasChanged { get; set; } = true;
-
         public Vector3 localPosition
         {
             get
@@ -44,7 +41,6 @@ namespace UnityEngine
             {
                 RequireAlive("set_localPosition");
                 _localPosition = value;
-                MarkChanged();
             }
         }
 
@@ -59,7 +55,6 @@ namespace UnityEngine
             {
                 RequireAlive("set_localRotation");
                 _localRotation = value;
-                MarkChanged();
             }
         }
 
@@ -74,7 +69,6 @@ namespace UnityEngine
             {
                 RequireAlive("set_localScale");
                 _localScale = value;
-                MarkChanged();
             }
         }
 
@@ -132,7 +126,6 @@ namespace UnityEngine
                 localScale = new Vector3(scale.x / outer.x, scale.y / outer.y, scale.z / outer.z);
             }
 
-            MarkChanged();
             Lifecycle.RefreshHierarchy(Owner);
         }
 
@@ -165,8 +158,6 @@ namespace UnityEngine
 
         public Vector3 TransformDirection(Vector3 direction) => rotation * direction;
 
-        public IEnumerator GetEnumerator() => _children.GetEnumerator();
-
         internal void Detach()
         {
             if (!(_parent is null))
@@ -186,13 +177,6 @@ namespace UnityEngine
             Debug.LogError("Can't destroy Transform component of '" + name + "'. If you want to destroy the game " +
                 "object, please call 'Destroy' on the game object instead.");
             return false;
-        }
-
-        private void MarkChanged()
-        {
-            hasChanged = true;
-            for (int i = 0; i < _children.Count; ++i)
-                _children[i].MarkChanged();
         }
     }
 }

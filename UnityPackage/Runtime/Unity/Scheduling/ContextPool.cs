@@ -199,7 +199,8 @@ namespace QuickSes
             return false;
         }
 
-        // A context that may be used now, or null. Then to wait for one is hopeless if none could be made; `error` says why.
+        // A context that may be used now. Null: the session has to wait for one, which is hopeless if none can be made;
+        // `error` says why.
         private ContextSlot FindFree(SurfaceSession session, out bool isHopeless, out QuickSesError error)
         {
             isHopeless = false;

@@ -7,8 +7,8 @@ namespace QuickSes
 {
     /// <summary>
     /// The atoms of one surface. Contexts are shared and forget, so this is the copy that is sent again. Versions rise
-    /// with every change, so that only what a context lacks is sent. Colours are four bytes: red, green, blue, alpha. Main
-    /// thread only; no garbage once it has grown.
+    /// with every change, so that only what a context lacks is sent. Colours are four bytes: red, green, blue, alpha.
+    /// Main thread only; no garbage once it has grown.
     /// </summary>
     internal sealed class SurfaceAtomSet : IDisposable
     {
