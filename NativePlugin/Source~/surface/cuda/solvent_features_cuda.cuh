@@ -231,8 +231,8 @@ struct FeaturePass {
   uint8_t *exposed;
 };
 
-// The caps of a run of atoms. Rows of atoms with many neighbours get a quarter of what there is; is_rare: of what is
-// known to be free.
+// The caps of a run of atoms. Rows of atoms with many neighbours get a quarter of what there is; is_rare: at least those
+// of one block, and no more than is free.
 template <class E>
 void find_caps(E &executor, const CapJob &job, bool is_rare) {
   const size_t blocks =
@@ -242,7 +242,7 @@ void find_caps(E &executor, const CapJob &job, bool is_rare) {
   // Rows for as many warps as there is memory for; the others' atoms take turns.
   constexpr uint64_t kEnough = uint64_t(1) << 30;
   const size_t block_bytes = kCapWarps * job.room.neighbors * (sizeof(Cap) + sizeof(float) + sizeof(uint32_t));
-  const uint64_t free = is_rare ? std::min(kEnough, executor.arena().available()) : kEnough;
+  const uint64_t free = !is_rare ? kEnough : E::kCounts ? 0 : std::min(kEnough, executor.arena().available());
   const size_t long_blocks = static_cast<size_t>(std::max<uint64_t>(
       1, std::min<uint64_t>({blocks, size_t(executor.multiprocessors()) * 4, free / 4 / block_bytes})));
   const auto mark = executor.arena().mark();
