@@ -42,12 +42,12 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
                Span<const float> spacings, LevelSink &sink) override {
     progress_.restart(&sink.stop_flag(), [&sink](double fraction) { sink.advance(fraction); });
     const FrameInput in{atoms, appearance, settings};
-    size_t next = 0;  // levels before it are finished
-    uint32_t attempts = 0;
+    Course course;
     walk(in, sink.stop_flag(), [&](const MemoryPlan &plan) {
-      ++attempts;
-      compute_levels(in, plan, attempts, spacings, &next, sink);
+      ++course.attempts;
+      compute_levels(in, plan, spacings, &course, sink);
     });
+    learnt_.is_proven = true;
   }
 
   qses_size_estimate estimate(const AtomSet &atoms, const Appearance &appearance, const qses_settings &settings,
@@ -58,6 +58,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     out.fits = 1;
     if (atoms.count == 0) return out;
     const FrameInput in{atoms, appearance, settings};
+    const typename Executor::CallScope scope(executor_);
     walk(in, stop, [&](const MemoryPlan &plan) {
       qses_report report;
       auto work = work_of(in, plan, &report);
@@ -101,6 +102,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
       timer_.reset();
       facts_ = {};
       facts_.atoms = in.atoms.count;
+      spacing_ = in.settings.spacing;
       try {
         attempt(kMemoryPlans[step]);
         return;
@@ -115,11 +117,10 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
 
   // Where the ladder begins: at the top, or where it ended for as many atoms of the same size with no more memory.
   size_t first_step(const FrameInput &in) {
-    const float reach = parameters_of(in).max_radius;
-    if (in.atoms.count != learnt_.atoms || reach != learnt_.reach) {
-      learnt_ = {in.atoms.count, reach, 0, 0};
-      rooms_.forget();
-    }
+    const SurfaceParameters p = parameters_of(in);
+    if (in.atoms.count != learnt_.atoms || p.max_radius != learnt_.reach) rooms_.forget();
+    if (in.atoms.count != learnt_.atoms || p.max_radius != learnt_.reach || p.spacing != learnt_.spacing)
+      learnt_ = {in.atoms.count, p.max_radius, p.spacing, 0, 0, false};
     if (learnt_.step > 0 && executor_.arena().limit() > learnt_.limit / 4 * 5) learnt_.step = 0;
     return learnt_.step;
   }
@@ -133,35 +134,45 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
       if (forecast(in, kMemoryPlans[step], limit) <= limit) break;
     learnt_.step = std::min(step, kMemoryPlanCount - 1);
     learnt_.limit = limit;
+    learnt_.is_proven = false;
     return step;
   }
 
   // ---- one attempt ---------------------------------------------------------------------------------------------
 
-  void compute_levels(const FrameInput &in, const MemoryPlan &plan, uint32_t attempts, Span<const float> spacings,
-                      size_t *next, LevelSink &sink) {
+  // How far a computation has come, over all attempts.
+  struct Course {
+    uint32_t attempts = 0;  // at the next level
+    size_t next = 0;        // levels before it are finished
+    bool is_prepared = false;
+  };
+
+  void compute_levels(const FrameInput &in, const MemoryPlan &plan, Span<const float> spacings, Course *course,
+                      LevelSink &sink) {
     double total = 0, begun = 0;
     for (float h : spacings) total += work_of(h);
     auto start = std::chrono::steady_clock::now();
     qses_report report;
     auto work = work_of(in, plan, &report);
     if (in.atoms.count > 0) prepare_frame(work, in);
-    if (*next == 0 && attempts == 1) sink.prepared(milliseconds_since(start));
+    if (!course->is_prepared) sink.prepared(milliseconds_since(start));
+    course->is_prepared = true;
     const auto mark = executor_.arena().mark();
     for (size_t k = 0; k < spacings.size; ++k) {
       const double before = begun;
       begun += work_of(spacings[k]);
-      if (k < *next) continue;
+      if (k < course->next) continue;
       progress_.enter(before / total, begun / total);
       progress_.report(0.0);
       qses_report_init(&report);
-      report.attempts = attempts;
+      report.attempts = course->attempts;
       memory_.use_slot(sink.slot());
       components_.use_slot(sink.slot());
       MeshMemoryView built{};
       if (in.atoms.count > 0) {
-        enter_level(work, spacings[k]);
-        check_spacing(work, in);
+        spacing_ = spacings[k];
+        enter_level(work, spacing_);
+        check_forecast(work, in);
         built = build_level(work);
       }
       timer_.begin("mesh_memory");
@@ -177,8 +188,8 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
       executor_.arena().rewind(mark);
       progress_.report(1.0);
       sink.finished(on_device, mesh, report);
-      *next = k + 1;
-      attempts = 1;
+      course->next = k + 1;
+      course->attempts = 1;
     }
   }
 
@@ -189,20 +200,23 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   }
 
   LevelWork<Executor, Timer> work_of(const FrameInput &in, const MemoryPlan &plan, qses_report *report) {
-    return {executor_, timer_, memory_, components_, rooms_, progress_, table(), in.settings, plan, {},      {},     {},
-            {},        {},     {},      {},          {},     {},        &facts_, report};
+    return {executor_, timer_, memory_, components_, rooms_, progress_, table(), in.settings, plan, &facts_, report};
   }
 
-  // Before time is spent on a spacing that is hopelessly fine, or on a plan that won't do.
-  void check_spacing(LevelWork<Executor, Timer> &work, const FrameInput &in) {
+  // Before time is spent on a plan that won't do, or on a spacing that is hopelessly fine. Where a plan did for such
+  // atoms before, nothing is predicted.
+  void check_forecast(LevelWork<Executor, Timer> &work, const FrameInput &in) {
     auto &arena = executor_.arena();
-    if (work.parameters.spacing >= kCheckedSpacing || in.settings.method == QSES_METHOD_GRID) return;
+    const bool is_fine = work.parameters.spacing < kCheckedSpacing, is_short = arena.has_budget() || learnt_.limit > 0;
+    if (learnt_.is_proven || in.settings.method == QSES_METHOD_GRID || !(is_fine || is_short)) return;
     facts_.size = predict_size(work);
-    if (arena.has_budget() && static_cast<double>(least_bytes(in)) > kMemoryCertainty * static_cast<double>(arena.budget()))
-      throw MemoryRefused("the spacing is too fine for the memory budget");
-    const double whole = static_cast<double>(forecast(in, kMemoryPlans[0], kUnlimited));
-    const double mesh = Executor::kIsCuda ? 0.0 : static_cast<double>(MeshArrays(static_cast<size_t>(facts_.size.vertices), static_cast<size_t>(facts_.size.triangles), work.shape).bytes());
-    refuse_hopeless_spacing(static_cast<double>(work.parameters.spacing), facts_.size, whole + mesh,
+    if (is_short && forecast(in, work.plan, arena.limit()) > kMemoryCertainty * static_cast<double>(arena.limit()))
+      throw MemoryRefused("the surface is forecast not to fit into what there is");
+    if (!is_fine) return;
+    const MeshArrays mesh(static_cast<size_t>(facts_.size.vertices), static_cast<size_t>(facts_.size.triangles),
+                          work.shape);
+    const uint64_t whole = forecast(in, kMemoryPlans[0], kUnlimited) + (Executor::kIsCuda ? 0 : mesh.bytes());
+    refuse_hopeless_spacing(static_cast<double>(work.parameters.spacing), facts_.size, static_cast<double>(whole),
                             arena.has_budget() ? 0.0 : static_cast<double>(arena.limit()));
   }
 
@@ -221,7 +235,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   }
 
   // The tables of marching cubes, uploaded once.
-  TableView table() {
+  const TableView &table() {
     if (!table_.triangle_count) table_ = memory_.upload_table(executor_, marching_cubes_table());
     return table_;
   }
@@ -246,11 +260,10 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     WorkFacts facts;
     qses_report report;
     qses_report_init(&report);
-    LevelWork<Counting, NoTimer> work{counted, timer, memory, components, rooms_, progress, table_, in.settings, plan,
-                                      {},      {},    {},     {},         {},     {},       {},     {},          {},
-                                      &facts,  &report};
+    LevelWork<Counting, NoTimer> work{counted, timer,       memory, components, rooms_, progress,
+                                      table_,  in.settings, plan,   &facts,     &report};
     prepare_frame(work, in);
-    enter_level(work, in.settings.spacing);
+    enter_level(work, spacing_);
     build_level(work);
     return counted.arena().peak();
   }
@@ -273,6 +286,8 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     const glm::vec3 low = to_centered(lattice, in.atoms.bounds.low), high = to_centered(lattice, in.atoms.bounds.high);
     lattice.spacing = parameters.spacing;
     lattice = layout_lattice(lattice, low, high, parameters.max_radius);
+    if (spacing_ != in.settings.spacing) facts_.size = {};  // those of a coarser level
+    spacing_ = in.settings.spacing;
     const bool is_counted = knows_size();
     guess_unknown(parameters, in.settings.method == QSES_METHOD_EXACT, static_cast<double>(lattice.table_size()),
                   &facts_);
@@ -289,15 +304,17 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   ComponentFinder components_;
   uint64_t budget_;
   LearntRooms<Executor> rooms_;
-  // Of the last computation of so many atoms with this largest inflated radius: where the ladder ended, and with how
-  // much memory.
+  // Of the last computation of so many atoms with this largest inflated radius and finest spacing: where the ladder
+  // ended, with how much memory, and whether that did.
   struct {
     size_t atoms;
-    float reach;
+    float reach, spacing;
     size_t step;
     uint64_t limit;
+    bool is_proven;
   } learnt_{};
-  WorkFacts facts_{};  // of the computation that runs
+  WorkFacts facts_{};  // of the level that is being made
+  float spacing_ = 0;  // of that level
   Progress progress_;
   TableView table_{};
 };

@@ -22,19 +22,21 @@ struct LevelWork {
   ComponentFinder &components;
   LearntRooms<Executor> &rooms;
   Progress &progress;
-  TableView table;
+  const TableView &table;
   const qses_settings &settings;
   MemoryPlan plan;
-  SurfaceParameters parameters;
-  Lattice lattice;
-  glm::vec3 low, high;  // bounds of the atoms' centres, centred frame
-  NeighborGridView atoms;
-  FeatureView features;  // exact method only
-  AppearanceView appearance;
-  MeshShape shape;
-  MeshPurpose purpose;
   WorkFacts *facts;
   qses_report *report;
+
+  // By prepare_frame and enter_level (pipeline.h):
+  SurfaceParameters parameters{};
+  Lattice lattice{};
+  glm::vec3 low{0.f}, high{0.f};  // bounds of the atoms' centres, centred frame
+  NeighborGridView atoms{};
+  FeatureView features{};  // exact method only
+  AppearanceView appearance{};
+  MeshShape shape{};
+  MeshPurpose purpose = MeshPurpose::kDelivered;
 };
 
 // Calls work_on(slice) for runs of so many bricks, and reports progress from `begin` to `end`. The memory that a slice
