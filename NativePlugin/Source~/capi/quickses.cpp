@@ -146,11 +146,11 @@ qses_status qses_context_create(const qses_context_options *options, qses_contex
       throw quickses::Error(QSES_BACKEND_UNAVAILABLE, std::string("CUDA can't be used: ") + made->description.reason);
 #if defined(QUICKSES_HAS_CUDA)
     if (made->backend == QSES_BACKEND_CUDA)
-      made->job = std::make_unique<quickses::SurfaceJob>(quickses::make_cuda_engine(o.device, o.threads, o.memory_budget));
+      made->job =
+          std::make_unique<quickses::SurfaceJob>(quickses::make_cuda_engine(o.device, o.threads, o.memory_budget));
 #endif
     if (!made->job)
-      made->job = std::make_unique<quickses::SurfaceJob>(
-          quickses::make_cpu_engine(o.threads, o.memory_budget));
+      made->job = std::make_unique<quickses::SurfaceJob>(quickses::make_cpu_engine(o.threads, o.memory_budget));
     *context = made.release();
   });
 }

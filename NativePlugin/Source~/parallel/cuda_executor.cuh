@@ -182,8 +182,8 @@ class CudaExecutor {
   template <class T>
   size_t scan_bytes(size_t n) const {
     return cub_bytes([&](void *temporary, size_t &bytes) {
-      return cub::DeviceScan::ExclusiveSum(temporary, bytes, static_cast<const T *>(nullptr),
-                                           static_cast<T *>(nullptr), static_cast<int>(n + 1), stream_);
+      return cub::DeviceScan::ExclusiveSum(temporary, bytes, static_cast<const T *>(nullptr), static_cast<T *>(nullptr),
+                                           static_cast<int>(n + 1), stream_);
     });
   }
   template <class Key, class Value>

@@ -4,8 +4,8 @@
 #pragma once
 
 #include "quickses/quickses.h"
-#include "surface/stages/appearance.h"
 #include "surface/memory/atom_set.h"
+#include "surface/stages/appearance.h"
 
 #include <atomic>
 #include <functional>

@@ -224,8 +224,8 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   void complete(const MeshMemoryView &mesh, qses_report *report) {
     report->work_bytes_peak = executor_.arena().peak() + memory_.outside_arena(executor_);
     report->mesh_bytes = mesh.bytes;
-    report->host_bytes_peak = atoms_.bytes() + components_.bytes() + memory_.host_bytes() +
-                              (Executor::kIsCuda ? 0 : report->work_bytes_peak);
+    report->host_bytes_peak =
+        atoms_.bytes() + components_.bytes() + memory_.host_bytes() + (Executor::kIsCuda ? 0 : report->work_bytes_peak);
     for (const auto &stage : timer_.collect()) {
       if (report->stage_count == QSES_MAX_STAGES) break;
       qses_stage_time &out = report->stages[report->stage_count++];

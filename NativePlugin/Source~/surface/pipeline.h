@@ -29,8 +29,8 @@ struct FrameInput {
 
 inline SurfaceParameters parameters_of(const FrameInput &in) {
   const qses_settings &s = in.settings;
-  const bool vdw = s.surface == QSES_SURFACE_VDW || (s.surface == QSES_SURFACE_SES && s.method == QSES_METHOD_EXACT &&
-                                                     s.probe_radius < kSmallestProbe);
+  const bool vdw = s.surface == QSES_SURFACE_VDW ||
+                   (s.surface == QSES_SURFACE_SES && s.method == QSES_METHOD_EXACT && s.probe_radius < kSmallestProbe);
   SurfaceParameters p{};
   p.probe = vdw ? 0.f : s.probe_radius;
   p.depth = s.surface == QSES_SURFACE_SES && !vdw ? p.probe : 0.f;
@@ -69,8 +69,8 @@ void prepare_frame(Work &work, const FrameInput &in) {
   work.atoms = build_neighbor_grid(executor, set.count, cells, [&] {
     Span<Sphere> centered = executor.template allocate<Sphere>(set.count);
     const Sphere *const given = bring(executor, set.atoms, set.count);
-    executor.for_each(set.count, CenterAtoms{given, work.lattice.center_x, work.lattice.center_y,
-                                             work.lattice.center_z, work.parameters.probe, centered.data});
+    executor.for_each(set.count, CenterAtoms{given, work.lattice.center_x, work.lattice.center_y, work.lattice.center_z,
+                                             work.parameters.probe, centered.data});
     return centered;
   });
   remove_contained_atoms(executor, work.atoms, work.parameters.max_radius);
@@ -89,8 +89,7 @@ void enter_level(Work &work, float spacing) {
 template <class Work>
 MeshMemoryView build_level(Work &work) {
   auto &executor = work.executor;
-  MeshMemoryView mesh =
-      work.settings.method == QSES_METHOD_GRID ? build_grid_surface(work) : build_exact_surface(work);
+  MeshMemoryView mesh = work.settings.method == QSES_METHOD_GRID ? build_grid_surface(work) : build_exact_surface(work);
   work.timer.begin("measure");
   const MeshCounts counts{mesh.vertices, mesh.triangles};
   if (work.settings.measure) {

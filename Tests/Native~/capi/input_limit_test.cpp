@@ -5,9 +5,9 @@
 #include <memory>
 #include <thread>
 
+#include "io/io_fixture.h"
 #include "io/structure.h"
 #include "io/trajectory.h"
-#include "io/io_fixture.h"
 #include "quickses/quickses.h"
 
 #if !defined(_WIN32)

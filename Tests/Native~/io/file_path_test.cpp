@@ -7,10 +7,10 @@
 
 #include "io/atomic_file.h"
 #include "io/byte_source.h"
+#include "io/io_fixture.h"
 #include "io/radii.h"
 #include "io/structure.h"
 #include "io/trajectory.h"
-#include "io/io_fixture.h"
 
 namespace quickses::io {
 namespace {

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "io/elements.h"
+#include "io/io_fixture.h"
 #include "io/radii.h"
 #include "io/structure.h"
-#include "io/io_fixture.h"
 
 namespace quickses::io {
 namespace {

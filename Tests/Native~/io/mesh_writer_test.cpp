@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "io/atomic_file.h"
-#include "io/mesh_writer.h"
 #include "io/io_fixture.h"
+#include "io/mesh_writer.h"
 
 namespace quickses::io {
 namespace {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "io/trajectory.h"
 #include "io/io_fixture.h"
+#include "io/trajectory.h"
 
 namespace quickses::io {
 

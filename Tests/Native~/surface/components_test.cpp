@@ -2,8 +2,8 @@
 // The pieces of meshes that were put together from known shapes.
 #include "surface/stages/components.h"
 
-#include "surface/mesh_shapes.h"
 #include "parallel/cpu_executor.h"
+#include "surface/mesh_shapes.h"
 
 #include <gtest/gtest.h>
 

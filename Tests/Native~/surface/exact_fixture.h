@@ -72,10 +72,25 @@ struct ExactRun {
   mesh_checks::Mesh mesh(const FeatureView &features) {
     const MarchingCubesTable &table = marching_cubes_table();
     const TableView view{table.triangle_count, table.edges, table.ring};
-    LevelWork<CpuKernelExecutor, CpuStageTimer> level{
-        executor, timer, memory,     components, rooms, progress, view, settings, plan,
-        facts,    &report, parameters, lattice,    low,   high,     atoms, features, {},
-        shape_of(settings, false)};
+    LevelWork<CpuKernelExecutor, CpuStageTimer> level{executor,
+                                                      timer,
+                                                      memory,
+                                                      components,
+                                                      rooms,
+                                                      progress,
+                                                      view,
+                                                      settings,
+                                                      plan,
+                                                      facts,
+                                                      &report,
+                                                      parameters,
+                                                      lattice,
+                                                      low,
+                                                      high,
+                                                      atoms,
+                                                      features,
+                                                      {},
+                                                      shape_of(settings, false)};
     const MeshMemoryView built = build_exact_surface(level);
     mesh_checks::Mesh m;
     m.positions.assign(built.view.positions, built.view.positions + 3 * built.vertices);

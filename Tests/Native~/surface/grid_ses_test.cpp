@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The voxel method against definitions written out once more, point by point.
-#include "surface/grid_fixture.h"
 #include "parallel/cpu_executor.h"
+#include "surface/grid_fixture.h"
 
 #include <gtest/gtest.h>
 

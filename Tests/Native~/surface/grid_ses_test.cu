@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The voxel method, relaxation and measures on the GPU against the same functions in plain loops.
-#include "surface/grid_fixture.h"
 #include "parallel/cuda_executor.cuh"
 #include "parallel/serial_executor.h"
+#include "surface/grid_fixture.h"
 #include "surface/stages/components.h"
 
 #include <gtest/gtest.h>

@@ -2,8 +2,8 @@
 // Area, volume and bounds of shapes that have them in closed form.
 #include "surface/stages/measure.h"
 
-#include "surface/mesh_shapes.h"
 #include "parallel/cpu_executor.h"
+#include "surface/mesh_shapes.h"
 
 #include <gtest/gtest.h>
 

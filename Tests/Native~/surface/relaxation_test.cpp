@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Smoothing and normals against plain adjacency lists in double precision.
+#include "parallel/cpu_executor.h"
 #include "surface/grid_fixture.h"
 #include "surface/mesh_shapes.h"
-#include "parallel/cpu_executor.h"
 
 #include <gtest/gtest.h>
 

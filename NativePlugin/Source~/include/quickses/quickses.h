@@ -317,20 +317,20 @@ typedef struct qses_settings {
                                        levels its mesh differs by what float32 rounds */
   qses_vertex_layout vertex_layout; /* default SEPARATE */
   qses_bool texcoords;              /* 1: vertices have texture coordinates (see qses_set_texcoords); default 0 */
-  float frame_budget_ms; /* for qses_begin: 0 (default): all levels one after the other. Above 0, at most 60000: one
-                            level only, the finest of them (`spacing` being the last) that is expected to take no longer
-                            than this, ms, or the coarsest if none is. Expected is what the last frames of the series
-                            (below) say: the time from the start of the work to the mesh in host memory. The first frame
-                            is the coarsest; what was learnt is forgotten when the number of atoms, surface, method,
-                            probe_radius, relaxation_steps, slice_size, spacing or levels change within a series. Now
-                            and then a frame takes longer, when a finer level is tried: so a surface that became cheaper
-                            gets finer again. Which level it was is in qses_mesh.level and .spacing. Like everything
-                            that depends on time, the choice of the level is not the same in every run; the mesh of a
-                            level is */
-  qses_bool components;  /* 1: qses_mesh.components is filled; default 0, which costs nothing */
-  uint32_t series;       /* which series of frames a job belongs to: any number; default 0. For callers who let one
-                            context compute several molecules in turn: frame_budget_ms learns from each series apart.
-                            The QSES_REMEMBERED_SERIES that were used last are remembered; an older one begins anew */
+  float frame_budget_ms;  /* for qses_begin: 0 (default): all levels one after the other. Above 0, at most 60000: one
+                             level only, the finest of them (`spacing` being the last) that is expected to take no longer
+                             than this, ms, or the coarsest if none is. Expected is what the last frames of the series
+                             (below) say: the time from the start of the work to the mesh in host memory. The first frame
+                             is the coarsest; what was learnt is forgotten when the number of atoms, surface, method,
+                             probe_radius, relaxation_steps, slice_size, spacing or levels change within a series. Now
+                             and then a frame takes longer, when a finer level is tried: so a surface that became cheaper
+                             gets finer again. Which level it was is in qses_mesh.level and .spacing. Like everything
+                             that depends on time, the choice of the level is not the same in every run; the mesh of a
+                             level is */
+  qses_bool components;   /* 1: qses_mesh.components is filled; default 0, which costs nothing */
+  uint32_t series;        /* which series of frames a job belongs to: any number; default 0. For callers who let one
+                             context compute several molecules in turn: frame_budget_ms learns from each series apart.
+                             The QSES_REMEMBERED_SERIES that were used last are remembered; an older one begins anew */
   qses_delivery delivery; /* where the mesh is wanted; default HOST. Anything else needs CUDA. A mesh that is wanted on
                              the device does not leave it in pieces where memory is short: that is OUT_OF_MEMORY */
 } qses_settings;

@@ -49,8 +49,8 @@ struct EvaluateBrick {
   }
 };
 
-inline void evaluate_signs(CpuKernelExecutor &executor, const FeatureView &features, const BrickSet &bricks, BrickRange slice,
-                           uint64_t *signs) {
+inline void evaluate_signs(CpuKernelExecutor &executor, const FeatureView &features, const BrickSet &bricks,
+                           BrickRange slice, uint64_t *signs) {
   executor.for_each_brick<BrickColumns>(slice.size(),
                                         EvaluateBrick{&executor.kernels(), &features, &bricks, slice.first, signs});
   executor.match_scratches<BrickColumns>();
@@ -91,8 +91,8 @@ struct EmitBrickTriangles {
   }
 };
 
-inline void emit_triangles(CpuKernelExecutor &executor, const BrickSet &bricks, const MeshLayout &layout, BrickRange slice,
-                           const TableView &table, const MeshView &mesh) {
+inline void emit_triangles(CpuKernelExecutor &executor, const BrickSet &bricks, const MeshLayout &layout,
+                           BrickRange slice, const TableView &table, const MeshView &mesh) {
   executor.for_each_brick<char>(slice.size(),
                                 EmitBrickTriangles{&executor.kernels(), &bricks, &layout, &table, &mesh, slice.first});
 }

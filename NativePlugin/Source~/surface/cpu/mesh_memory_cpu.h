@@ -37,7 +37,8 @@ class MeshMemory<CpuKernelExecutor> {
   void save(CpuKernelExecutor &, const MeshMemoryView &, const MeshView &, size_t, size_t) {}  // never in pieces
 
   void keep_on_device(bool) {}
-  void finish(const MeshMemoryView &built, const qses_settings &settings, qses_mesh *mesh, qses_device_mesh *on_device) {
+  void finish(const MeshMemoryView &built, const qses_settings &settings, qses_mesh *mesh,
+              qses_device_mesh *on_device) {
     describe_mesh(built, &built.view, settings, mesh);
     qses_device_mesh_init(on_device);
   }

@@ -3,8 +3,8 @@
 // little memory nothing is pooled: a first pass only counts, a second one writes everything to its place.
 #pragma once
 
-#include "surface/cpu/cpu_kernel_executor.h"
 #include "parallel/growing_buffer.h"
+#include "surface/cpu/cpu_kernel_executor.h"
 
 namespace quickses {
 
@@ -286,9 +286,9 @@ inline void find_solvent_features(CpuKernelExecutor &executor, const NeighborGri
   f.caps = executor.allocate<Cap>(a.cap_first[a.atoms]);
   f.arcs = executor.allocate<Arc>(a.arc_base[a.chunks]);
   if (pool.holds_all()) {
-    executor.for_each(a.chunks, CollectChunk{a.table.data, &pool, a.cap_first.data, a.arc_base.data, a.atoms,
-                                             a.atoms_per_chunk, f.exposed.data, f.cap_ranges.data, f.caps.data,
-                                             f.arcs.data});
+    executor.for_each(a.chunks,
+                      CollectChunk{a.table.data, &pool, a.cap_first.data, a.arc_base.data, a.atoms, a.atoms_per_chunk,
+                                   f.exposed.data, f.cap_ranges.data, f.caps.data, f.arcs.data});
     return;
   }
   // Next time they will fit; the room is taken now, so that this computation tells what later ones take.

@@ -5,8 +5,8 @@
 
 #include "parallel/cuda_executor.cuh"
 #include "parallel/cuda_warp.cuh"
-#include "surface/stages/hot_stages.h"
 #include "surface/memory/work_facts.h"
+#include "surface/stages/hot_stages.h"
 
 namespace quickses {
 namespace gpu {
@@ -47,8 +47,8 @@ inline double listed_candidates(const SurfaceParameters &parameters) {
   return 16.0 + 0.03 * std::min(1e6, wide * wide * wide);
 }
 
-// Words of the list that a leaf with vertices has besides (vertex_candidates_cuda.cuh): with its volume, more can matter
-// to it.
+// Words of the list that a leaf with vertices has besides (vertex_candidates_cuda.cuh): with its volume, more can
+// matter to it.
 inline uint32_t leaf_list_words(const SurfaceParameters &parameters) {
   constexpr double kUsual = 64, kUsualSpacing = 0.6, kMost = 2048;
   const double scale = static_cast<double>(parameters.spacing) / kUsualSpacing;

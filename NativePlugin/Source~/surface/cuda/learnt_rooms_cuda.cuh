@@ -49,14 +49,9 @@ struct FeatureRoom {
   }
   FeatureRoom with_spare() const {
     const auto more = [](size_t n) { return n + n / 8; };
-    return {more(caps),
-            more(circles),
-            more(staged_circles),
-            more(staged_arcs),
-            more(arcs),
-            (more(neighbors) + 31) / 32 * 32,
-            more(long_atoms),
-            more(intervals)};
+    return {more(caps),        more(circles),  more(staged_circles),
+            more(staged_arcs), more(arcs),     (more(neighbors) + 31) / 32 * 32,
+            more(long_atoms),  more(intervals)};
   }
   void include(const FeatureRoom &r) {
     *this = {std::max(caps, r.caps),
@@ -74,7 +69,7 @@ struct FeatureRoom {
 
 // Of surfaces of the same number of atoms with the same reach.
 struct CudaRooms {
-  gpu::FeatureRoom features{};  // of all atoms; 0: the guess was enough
+  gpu::FeatureRoom features{};               // of all atoms; 0: the guess was enough
   double listed_atoms = 1, listed_arcs = 1;  // candidates of bricks, in units of the guess
   void forget() { *this = CudaRooms(); }
 };

@@ -60,7 +60,8 @@ class MeshMemory<CudaExecutor> {
     });
   }
 
-  void finish(const MeshMemoryView &built, const qses_settings &settings, qses_mesh *mesh, qses_device_mesh *on_device) {
+  void finish(const MeshMemoryView &built, const qses_settings &settings, qses_mesh *mesh,
+              qses_device_mesh *on_device) {
     const MeshArrays arrays(built.vertices, built.triangles, built.shape);
     const bool to_host = settings.delivery != QSES_DELIVERY_DEVICE;
     MeshView host = built.view;

@@ -231,8 +231,8 @@ struct FeaturePass {
   uint8_t *exposed;
 };
 
-// The caps of a run of atoms. Rows of atoms with many neighbours get a quarter of what there is; is_rare: at least those
-// of one block, and no more than is free.
+// The caps of a run of atoms. Rows of atoms with many neighbours get a quarter of what there is; is_rare: at least
+// those of one block, and no more than is free.
 template <class E>
 void find_caps(E &executor, const CapJob &job, bool is_rare) {
   const size_t blocks =
@@ -339,7 +339,8 @@ void find_features_in_runs(E &executor, const FeaturePass &pass, const MemoryPla
   };
   // A run's work gets a quarter of what there is at most, and the arcs what they are expected to need.
   uint32_t atoms_per_run = std::min(n, plan.most_atoms);
-  while (atoms_per_run > kLeastRun && run_bytes(executor, pass, atoms_per_run, room_of(atoms_per_run)) > arena.available() / 4)
+  while (atoms_per_run > kLeastRun &&
+         run_bytes(executor, pass, atoms_per_run, room_of(atoms_per_run)) > arena.available() / 4)
     atoms_per_run = std::max(kLeastRun, atoms_per_run / 2);
   const uint64_t work = run_bytes(executor, pass, atoms_per_run, room_of(atoms_per_run));
   const uint64_t left = arena.available() > work ? (arena.available() - work) / sizeof(Arc) : 0;

@@ -16,9 +16,9 @@ constexpr uint32_t kLeastRun = 128;
 constexpr uint32_t kRoomySlice = 4096;
 
 struct MemoryPlan {
-  bool single_slice;     // all bricks at once; what signs and vertices share is kept
-  bool low_memory;       // features are found in runs of atoms, and only what later stages read is kept
-  bool mesh_in_pieces;   // the mesh leaves the device slice by slice; on the CPU it is where it is read anyway
+  bool single_slice;    // all bricks at once; what signs and vertices share is kept
+  bool low_memory;      // features are found in runs of atoms, and only what later stages read is kept
+  bool mesh_in_pieces;  // the mesh leaves the device slice by slice; on the CPU it is where it is read anyway
   uint32_t least_slice, most_slice;  // bricks that are worked on at a time, if they are not all
   uint32_t most_atoms;               // whose features are looked for at a time, with low memory
 

@@ -14,8 +14,8 @@ struct SurfaceSize {
 
 struct WorkFacts {
   uint64_t atoms = 0;
-  uint64_t caps = 0, arcs = 0;                     // of exposed atoms
-  uint64_t brick_entries = 0, brick_visits = 0;    // of the table of bricks, 0 if the set is sparse; listed visits
+  uint64_t caps = 0, arcs = 0;                   // of exposed atoms
+  uint64_t brick_entries = 0, brick_visits = 0;  // of the table of bricks, 0 if the set is sparse; listed visits
   SurfaceSize size{};
 };
 

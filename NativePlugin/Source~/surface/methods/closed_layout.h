@@ -20,7 +20,7 @@ MeshCounts lay_out_closed_mesh(Work &work, BrickSet *bricks, MeshLayout *layout,
       work.report->brick_count = bricks->count;
       work.facts->brick_entries = bricks->table ? work.lattice.table_size() : 0;
       work.facts->size = {static_cast<double>(bricks->count), static_cast<double>(counts.vertices),
-                         static_cast<double>(counts.triangles), static_cast<double>(layout->leaf_total)};
+                          static_cast<double>(counts.triangles), static_cast<double>(layout->leaf_total)};
       check_mesh_size(counts);
       return counts;
     }

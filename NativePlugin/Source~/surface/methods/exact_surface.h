@@ -136,16 +136,16 @@ MeshMemoryView build_exact_surface(Work &work) {
     Candidates<Executor> own{};
     MeshPart part{mesh.view, 0, 0};
     if (mesh.in_pieces) part = open_part(any_executor, bricks, layout, work.shape, slice);
-    B::emit_vertices(any_executor, features, bricks, layout, slice, work.rooms, share ? shared : own, starts, part.view);
+    B::emit_vertices(any_executor, features, bricks, layout, slice, work.rooms, share ? shared : own, starts,
+                     part.view);
     if (!mesh.in_pieces) return part;
     paint_vertices(any_executor, work.appearance, part.view, part.vertices);
     if (with_triangles) B::emit_triangles(any_executor, bricks, layout, slice, work.table, part.view);
     return part;
   };
   const auto emit = [&](double begin, double end, bool with_triangles) {
-    const uint32_t slice_size = slice_of(work, bricks.count, [&](auto &counted, BrickRange slice) {
-      emit_slice(counted, slice, with_triangles);
-    });
+    const uint32_t slice_size = slice_of(
+        work, bricks.count, [&](auto &counted, BrickRange slice) { emit_slice(counted, slice, with_triangles); });
     work.report->slice_count = for_each_slice(work, bricks.count, slice_size, begin, end, [&](BrickRange slice) {
       const MeshPart part = emit_slice(executor, slice, with_triangles);
       if (mesh.in_pieces)

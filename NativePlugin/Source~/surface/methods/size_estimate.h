@@ -93,8 +93,8 @@ bool is_cheap_to_count(const Work &work, double spacing) {
   if (exact) return pairs <= kCheapPairs;
   double box = 1;
   for (int d = 0; d < 3; ++d)
-    box *=
-        (static_cast<double>(work.high[d] - work.low[d]) + 2.0 * static_cast<double>(work.parameters.max_radius)) / brick;
+    box *= (static_cast<double>(work.high[d] - work.low[d]) + 2.0 * static_cast<double>(work.parameters.max_radius)) /
+           brick;
   return std::min(pairs, box) <= kCheapBricks;
 }
 

@@ -32,8 +32,8 @@ struct TableView {
   const uint64_t (*ring)[kCellEdges];  // [256]
 };
 
-// What a back end must offer, as static functions; BackendContract lets the compiler check it. Where E stands, they also
-// take a CountingExecutor of theirs, and then only ask for memory.
+// What a back end must offer, as static functions; BackendContract lets the compiler check it. Where E stands, they
+// also take a CountingExecutor of theirs, and then only ask for memory.
 //
 //   Candidates     what signs and vertices may share for a slice of bricks
 //   LearntRooms    how much room the last surface of so many atoms took, where that is not known beforehand
@@ -63,10 +63,10 @@ struct BackendContract {
   static_assert(has<decltype(&B::template evaluate_signs<Executor>), const FeatureView &, const BrickSet &, BrickRange,
                     typename B::LearntRooms &, typename B::Candidates &, uint64_t *>,
                 "evaluate_signs");
-  static_assert(has<decltype(&B::template emit_vertices<Executor>), const FeatureView &, const BrickSet &,
-                    const MeshLayout &, BrickRange, typename B::LearntRooms &, typename B::Candidates &,
-                    const VertexStarts &, const MeshView &>,
-                "emit_vertices");
+  static_assert(
+      has<decltype(&B::template emit_vertices<Executor>), const FeatureView &, const BrickSet &, const MeshLayout &,
+          BrickRange, typename B::LearntRooms &, typename B::Candidates &, const VertexStarts &, const MeshView &>,
+      "emit_vertices");
   static_assert(has<decltype(&B::template emit_triangles<Executor>), const BrickSet &, const MeshLayout &, BrickRange,
                     const TableView &, const MeshView &>,
                 "emit_triangles");

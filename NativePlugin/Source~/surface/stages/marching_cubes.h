@@ -5,9 +5,9 @@
 
 #include "parallel/atomics.h"
 #include "surface/memory/counting_executor.h"
+#include "surface/mesh/mesh_view.h"
 #include "surface/stages/brick_border.h"
 #include "surface/stages/marching_cubes_table.h"
-#include "surface/mesh/mesh_view.h"
 
 namespace quickses {
 
@@ -39,7 +39,7 @@ struct MeshLayout {
   MeshTotals *totals;
   uint64_t vertex_total, triangle_total;  // of all bricks
   uint64_t leaf_total;                    // that own vertices
-  uint64_t border_changes;  // 0, or the set of bricks must grow before anything is emitted
+  uint64_t border_changes;                // 0, or the set of bricks must grow before anything is emitted
 };
 
 // Leaf words around a leaf: itself and its neighbours towards larger x, y, z (bit 0, 1, 2 of the place).
