@@ -75,7 +75,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     out.triangles = static_cast<uint64_t>(facts_.size.triangles);
     out.mesh_bytes = MeshArrays(out.vertices, out.triangles, shape_of(settings, !appearance.colors.empty())).bytes();
     out.work_bytes = whole + memory_.outside_arena(executor_);
-    out.smallest_budget = smallest_budget(least);
+    out.smallest_budget = least + memory_.needed_outside(executor_);
     out.fits = budget_ == 0 || out.smallest_budget <= budget_ ? 1 : 0;
     return out;
   }
@@ -273,11 +273,6 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     return static_cast<uint64_t>(kMargin * static_cast<double>(bytes)) + kSpareBytes;
   }
 
-  // The arena's least bytes, and what is outside of it.
-  uint64_t smallest_budget(uint64_t least) const {
-    return least + std::max(memory_.allowed_outside(executor_), memory_.outside_arena(executor_));
-  }
-
   // No plan was left. With a budget the user is told which one would do, as far as that is known by now.
   void name_smallest_budget(const FrameInput &in) {
     if (budget_ == 0) return;
@@ -291,7 +286,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     const bool is_counted = knows_size();
     guess_unknown(parameters, in.settings.method == QSES_METHOD_EXACT, static_cast<double>(lattice.table_size()),
                   &facts_);
-    const uint64_t least = smallest_budget(least_bytes(in) / 10 * (is_counted ? 10 : 11));
+    const uint64_t least = least_bytes(in) / 10 * (is_counted ? 10 : 11) + memory_.needed_outside(executor_);
     throw Error(QSES_OUT_OF_MEMORY,
                 "the memory budget of " + describe_bytes(budget_) + " does not suffice for this surface: about " +
                     describe_bytes(std::max(least, budget_ + budget_ / 8)) + " would do, or a larger spacing");

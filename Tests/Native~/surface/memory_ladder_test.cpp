@@ -146,6 +146,34 @@ TEST(MemoryLadder, ForecastsAreWhatIsTaken) {
     }
 }
 
+// The threads' scratch grows where bricks are crowded: with the budget that the estimate names, and with somewhat more,
+// the surface is made, and no more than that is used.
+TEST(MemoryLadder, BudgetsHoldWhereScratchGrows) {
+  struct Case {
+    Atoms atoms;
+    qses_settings settings;
+    unsigned threads;
+  };
+  Atoms row, one;
+  for (int k = 0; k < 60; ++k) row.add(3.4 * k, 0, 0, 1.7);
+  one.add(0.1, -0.2, 0.3, 1.7);
+  for (const Case &c : {Case{row, settings(10, 100), 1}, Case{one, settings(0.083), 2}, Case{one, settings(0.083), 8},
+                        Case{cluster(600, 3), settings(1.0, 10), 8}, Case{crambin(), settings(0.4, 12), 16}}) {
+    const Context unbounded(c.threads);
+    set_atoms(unbounded, c.atoms);
+    compute_view(unbounded, c.settings);
+    const uint64_t smallest = smallest_budget(unbounded, c.settings);
+    for (const uint64_t budget : {smallest, smallest + smallest / 10, smallest + smallest / 2, 3 * smallest}) {
+      const Context context(c.threads, budget);
+      set_atoms(context, c.atoms);
+      for (int frame = 0; frame < 2; ++frame) {
+        ASSERT_EQ(qses_compute(context, &c.settings, nullptr), QSES_OK) << qses_last_error() << ", " << budget;
+        EXPECT_LE(report_of(context).work_bytes_peak, budget) << c.threads << " threads, " << c.atoms.size() << " atoms";
+      }
+    }
+  }
+}
+
 struct ChangingMemory {
   static constexpr const char *kName = "the test";
   static inline uint64_t free = 0;

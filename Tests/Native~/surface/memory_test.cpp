@@ -126,8 +126,8 @@ TEST(Estimate, IsNearTheTruth) {
     expect_close(e.mesh_bytes, report.mesh_bytes, std::string(c.name) + ": mesh");
     expect_close(e.work_bytes, report.work_bytes_peak, std::string(c.name) + ": work");
     EXPECT_EQ(e.fits, 1) << c.name;
-    // The same again now that memory is there.
-    EXPECT_EQ(estimate(context, c.settings).smallest_budget, e.smallest_budget) << c.name;
+    // The same again now that memory is there; only the scratch of crowded bricks is known better.
+    expect_close(e.smallest_budget, estimate(context, c.settings).smallest_budget, std::string(c.name) + ": budget");
     compute_view(context, c.settings);
     expect_close(report_of(context).work_bytes_peak, report.work_bytes_peak, std::string(c.name) + ": work, again");
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "surface/cpu/cpu_kernel_executor.h"
+#include "surface/cpu/solvent_features_cpu.h"
 #include "surface/mesh/mesh_memory.h"
 #include "surface/stages/hot_stages.h"
 
@@ -15,9 +16,14 @@ class MeshMemory<CpuKernelExecutor> {
 
   void use_slot(int slot) { slots_.use_slot(slot); }
   uint64_t host_bytes() const { return slots_.bytes(); }
-  // Bytes of work that are not in the arena, and those that are taken off a budget for it at first.
+  // Bytes of work that are not in the arena; those that are taken off a budget for it at first; and those that it would
+  // have to leave as far as is known, where the pool of features is in the arena.
   uint64_t outside_arena(const CpuKernelExecutor &executor) const { return executor.scratch_bytes(); }
   uint64_t allowed_outside(const CpuKernelExecutor &executor) const { return executor.scratch_allowance(); }
+  uint64_t needed_outside(CpuKernelExecutor &executor) const {
+    const uint64_t pool = executor.scratches<FeaturePool>().front()->bytes();
+    return std::max(allowed_outside(executor), outside_arena(executor) - pool);
+  }
 
   void forget_spills() {}
 
@@ -41,6 +47,7 @@ class MeshMemory<CpuKernelExecutor> {
               qses_device_mesh *on_device) {
     describe_mesh(built, &built.view, settings, mesh);
     qses_device_mesh_init(on_device);
+    describe_mesh(built, nullptr, settings, &on_device->mesh);
   }
 
   TableView upload_table(CpuKernelExecutor &, const MarchingCubesTable &table) {

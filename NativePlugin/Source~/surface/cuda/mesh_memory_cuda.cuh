@@ -33,6 +33,7 @@ class MeshMemory<CudaExecutor> {
   // Bytes of the device that are not in the arena.
   uint64_t outside_arena(const CudaExecutor &) const { return sizeof(MarchingCubesTable) + device_slots_.bytes(); }
   uint64_t allowed_outside(const CudaExecutor &) const { return sizeof(MarchingCubesTable); }
+  uint64_t needed_outside(const CudaExecutor &executor) const { return outside_arena(executor); }
 
   MeshMemoryView allocate_mesh(CudaExecutor &executor, size_t vertices, size_t triangles, const MeshShape &shape,
                                MeshPurpose purpose, bool in_pieces) {
