@@ -23,6 +23,7 @@ size_t count_triangles(const qses_context *context);
 int ask_for_surface(qses_context *context, uint32_t frame);
 int take_surface(qses_context *context, qses_mesh *mesh);
 int stop(qses_context *context);
+int compute_on_device(qses_context *context, qses_device_mesh *mesh);
 int load_atoms(qses_context *context, const char *path);
 int print_areas(qses_context *context, const void *bytes, size_t size, qses_trajectory_format format);
 
@@ -127,6 +128,14 @@ static void run_api_page(qses_context *context, const char *path) {
   CHECK(levels >= 1 && levels <= 3);
   CHECK(ask_for_surface(context, 8) == QSES_OK);
   CHECK(stop(context) == 0);
+  {
+    qses_backend backend;
+    qses_device_mesh on_device;
+    const int is_there = compute_on_device(context, &on_device);
+    CHECK(qses_context_info(context, &backend, NULL) == QSES_OK);
+    CHECK(is_there == (backend == QSES_BACKEND_CUDA));
+    CHECK(!is_there || on_device.mesh.positions);
+  }
 }
 
 int main(int argc, char **argv) {
