@@ -36,7 +36,7 @@ namespace QuickSes.Tests
         {
             ["char"] = typeof(byte), ["uint8_t"] = typeof(byte), ["int32_t"] = typeof(int), ["uint32_t"] = typeof(uint),
             ["uint64_t"] = typeof(ulong), ["float"] = typeof(float), ["double"] = typeof(double),
-            ["qses_bool"] = typeof(int)
+            ["qses_bool"] = typeof(int), ["void"] = typeof(void)
         };
 
         private static Header Header => Header.Instance.Value;

@@ -168,7 +168,8 @@ TEST(MemoryLadder, BudgetsHoldWhereScratchGrows) {
       set_atoms(context, c.atoms);
       for (int frame = 0; frame < 2; ++frame) {
         ASSERT_EQ(qses_compute(context, &c.settings, nullptr), QSES_OK) << qses_last_error() << ", " << budget;
-        EXPECT_LE(report_of(context).work_bytes_peak, budget) << c.threads << " threads, " << c.atoms.size() << " atoms";
+        EXPECT_LE(report_of(context).work_bytes_peak, budget)
+            << c.threads << " threads, " << c.atoms.size() << " atoms";
       }
     }
   }

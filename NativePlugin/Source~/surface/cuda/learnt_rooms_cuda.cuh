@@ -53,6 +53,11 @@ struct FeatureRoom {
             more(staged_arcs), more(arcs),     (more(neighbors) + 31) / 32 * 32,
             more(long_atoms),  more(intervals)};
   }
+  // For some atoms, as this is for others; rows and circles are as long.
+  FeatureRoom scaled(size_t atoms, size_t from) const {
+    const auto of = [&](size_t n) { return (n * atoms + from - 1) / from; };
+    return {of(caps), of(circles), of(staged_circles), of(staged_arcs), of(arcs), neighbors, of(long_atoms), intervals};
+  }
   void include(const FeatureRoom &r) {
     *this = {std::max(caps, r.caps),
              std::max(circles, r.circles),
@@ -70,6 +75,7 @@ struct FeatureRoom {
 // Of surfaces of the same number of atoms with the same reach.
 struct CudaRooms {
   gpu::FeatureRoom features{};               // of all atoms; 0: the guess was enough
+  gpu::FeatureRoom runs{};                   // of all atoms, if they were like the most crowded run of them
   double listed_atoms = 1, listed_arcs = 1;  // candidates of bricks, in units of the guess
   void forget() { *this = CudaRooms(); }
 };

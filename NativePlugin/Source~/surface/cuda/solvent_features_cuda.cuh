@@ -325,57 +325,54 @@ uint64_t run_bytes(E &executor, const FeaturePass &pass, uint32_t atoms, Feature
 
 // Run after run. The caps of a run serve its circles only; in the end those of the exposed atoms are found once more.
 template <class E>
-void find_features_in_runs(E &executor, const FeaturePass &pass, const MemoryPlan &plan, FeatureRoom &learnt,
+void find_features_in_runs(E &executor, const FeaturePass &pass, const MemoryPlan &plan, CudaRooms &rooms,
                            SolventFeatures *features) {
   const uint32_t n = pass.atoms.count;
   auto &arena = executor.arena();
   const auto room_of = [&](uint32_t atoms) {
     FeatureRoom room = FeatureRoom::guess(atoms);
-    room.neighbors = learnt.neighbors;
-    room.intervals = learnt.intervals;
+    room.include(rooms.features.scaled(atoms, n));
+    room.include(rooms.runs.scaled(atoms, n));
     room.long_atoms = atoms;
     room.arcs = 0;
     return room;
   };
-  // A run's work gets a quarter of what there is at most, and the arcs what they are expected to need.
-  uint32_t atoms_per_run = std::min(n, plan.most_atoms);
-  while (atoms_per_run > kLeastRun &&
-         run_bytes(executor, pass, atoms_per_run, room_of(atoms_per_run)) > arena.available() / 4)
-    atoms_per_run = std::max(kLeastRun, atoms_per_run / 2);
-  const uint64_t work = run_bytes(executor, pass, atoms_per_run, room_of(atoms_per_run));
-  const uint64_t left = arena.available() > work ? (arena.available() - work) / sizeof(Arc) : 0;
   const auto before_arcs = arena.mark();
   uint64_t arc_total = 0;
-  size_t arc_room = static_cast<size_t>(std::min<uint64_t>(left, std::max(learnt.arcs, FeatureRoom::guess(n).arcs)));
-  if (E::kCounts) arc_room = features->arcs.size;
-  for (;; arena.rewind(before_arcs)) {
+  for (bool is_done = false; !is_done;) {
+    arena.rewind(before_arcs);
+    // The work on a run gets a quarter of what there is at most, and the arcs what they are expected to need.
+    uint32_t atoms_per_run = std::min(n, plan.most_atoms);
+    const auto work_bytes = [&] { return run_bytes(executor, pass, atoms_per_run, room_of(atoms_per_run)); };
+    while (atoms_per_run > kLeastRun && work_bytes() > arena.available() / 4)
+      atoms_per_run = std::max(kLeastRun, atoms_per_run / 2);
+    const uint64_t work = work_bytes();
+    const uint64_t left = arena.available() > work ? (arena.available() - work) / sizeof(Arc) : 0;
+    const uint64_t expected = std::max({rooms.features.arcs, rooms.runs.arcs, FeatureRoom::guess(n).arcs});
+    const size_t arc_room = E::kCounts ? features->arcs.size : static_cast<size_t>(std::min(left, expected));
     Span<Arc> arcs = executor.template allocate<Arc>(arc_room);
     arc_total = 0;
-    for (uint32_t first = 0; first < n;) {
+    is_done = true;
+    for (uint32_t first = 0; first < n && is_done;) {
       const AtomRun run{first, first + std::min(atoms_per_run, n - first)};
       FeatureRoom room = room_of(run.size());
+      room.arcs = arcs.size > arc_total ? static_cast<size_t>(arcs.size - arc_total) : 0;
       const auto mark = arena.mark();
-      for (;; arena.rewind(mark)) {
-        room.arcs = arcs.size > arc_total ? static_cast<size_t>(arcs.size - arc_total) : 0;
-        Cap *const caps = executor.template allocate<Cap>(room.caps).data;
-        FeatureCounters found = find_run_features(executor, pass, run, room, caps, arcs.data + arc_total, true);
-        const unsigned long long run_arcs = found.arcs;
-        found.arcs = 0;  // if they do not fit they are only counted from then on
-        if (room.holds(found)) {
-          arc_total += run_arcs;
-          break;
-        }
-        room.include(FeatureRoom::of(found));
-        learnt.neighbors = std::max(learnt.neighbors, room.neighbors);
-        learnt.intervals = std::max(learnt.intervals, room.intervals);
-      }
+      Cap *const caps = executor.template allocate<Cap>(room.caps).data;
+      FeatureCounters found = find_run_features(executor, pass, run, room, caps, arcs.data + arc_total, true);
       arena.rewind(mark);
+      arc_total += found.arcs;
+      found.arcs = 0;  // if they do not fit they are only counted from then on
+      if (!room.holds(found)) {
+        rooms.runs.include(FeatureRoom::of(found).with_spare().scaled(n, run.size()));
+        is_done = false;
+      }
       first = E::kCounts ? n : run.last;  // the first is as large as any
     }
-    if (arc_total <= arcs.size) break;
-    learnt.arcs = static_cast<size_t>(arc_total + arc_total / 16);
+    if (!is_done || arc_total <= arcs.size) continue;
     if (arc_total > left) throw MemoryRefused("the arcs of the atoms do not fit beside the work");
-    arc_room = static_cast<size_t>(std::min<uint64_t>(left, learnt.arcs));
+    rooms.runs.arcs = static_cast<size_t>(arc_total + arc_total / 16);
+    is_done = false;
   }
   const uint64_t cap_total = static_cast<uint64_t>(executor.reduce(n, CountExposedCaps{pass.exposed, pass.cap_ranges}));
   if (!E::kCounts) {
@@ -389,7 +386,7 @@ void find_features_in_runs(E &executor, const FeaturePass &pass, const MemoryPla
   const auto mark = arena.mark();
   FeatureRoom room{};
   room.caps = features->caps.size;
-  room.neighbors = learnt.neighbors;
+  room.neighbors = std::max(rooms.features.neighbors, rooms.runs.neighbors);
   room.long_atoms = n;
   Span<FeatureCounters> counters = executor.template allocate<FeatureCounters>(1);
   Span<uint32_t> long_atoms = executor.template allocate<uint32_t>(n);
@@ -410,7 +407,7 @@ void find_solvent_features(E &executor, const NeighborGridView &atoms, const Sur
   executor.fill(exposed, 0);
   const FeaturePass pass{atoms, parameters.max_radius, features->cap_ranges.data, exposed.data};
   if (plan.low_memory)
-    find_features_in_runs(executor, pass, plan, rooms.features, features);
+    find_features_in_runs(executor, pass, plan, rooms, features);
   else
     find_all_features(executor, pass, rooms.features, features);
   executor.for_each(atoms.count, ExposeAtoms{exposed.data, features->cap_ranges.data});
