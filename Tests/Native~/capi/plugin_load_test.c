@@ -27,11 +27,12 @@ static void *find(Library library, const char *name) { return dlsym(library, nam
 static const char *load_error(void) { return dlerror(); }
 #endif
 
-#define FUNCTIONS(F)                                                                                      \
-  F(qses_abi_version)                                                                                     \
-  F(qses_last_error)                                                                                      \
-  F(qses_context_create) F(qses_context_destroy) F(qses_set_atoms) F(qses_compute) F(qses_context_report) \
-      F(qses_structure_open) F(qses_structure_info) F(qses_structure_close)
+/* clang-format off */
+#define FUNCTIONS(F)                                                                                   \
+  F(qses_abi_version) F(qses_last_error) F(qses_context_create) F(qses_context_destroy)                \
+  F(qses_set_atoms) F(qses_compute) F(qses_context_report)                                             \
+  F(qses_structure_open) F(qses_structure_info) F(qses_structure_close)
+/* clang-format on */
 
 /* A table of pointers, each of the type that the header declares the function with. */
 #define MEMBER(name) __typeof__(&name) name##_;
