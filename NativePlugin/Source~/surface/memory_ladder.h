@@ -97,6 +97,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     const typename Executor::CallScope scope(executor_);
     const typename Executor::StopScope stop_scope(executor_, stop);
     memory_.keep_on_device(in.settings.delivery != QSES_DELIVERY_HOST);
+    executor_.arena().reset();  // what is free is asked anew
     for (size_t step = first_step(in);;) {
       executor_.arena().reset();
       timer_.reset();
