@@ -12,6 +12,8 @@
 //   compact(n, keep, out)          the i with keep(i), in order; returns their number. Waits
 //   fetch(p), fetch_each(sources, values, n)  copies one value, or several, to the host. Waits
 //   upload, download, fill         copies between host and back end, and memset
+//   scan_bytes<T>(n), sort_bytes<Key, Value>(n), reduce_bytes<T>(n), compact_bytes(n)  of the arena, that these verbs
+//                                  take while they work: for forecasts (surface/memory/counting_executor.h)
 // clang-format on
 //
 // Functors are plain structs that hold views and have a QSES_HOST_DEVICE operator(). A verb may return before its work
