@@ -192,7 +192,7 @@ TEST(Components, AreThoseOfTheWholeSurfaceWhereAtomsAreHidden) {
   }
 }
 
-// Pieces of the work, and a mesh that leaves the GPU slab by slab and is looked at by the CPU: the same numbers.
+// Pieces of the work, and a mesh that leaves the GPU piece by piece and is looked at by the CPU: the same numbers.
 TEST(Components, AreTheSameWithSlicesAndBudgets) {
   const Atoms atoms = cluster(2500, 8);
   std::vector<uint8_t> visible(atoms.size(), 1);

@@ -36,7 +36,7 @@ class MeshMemory<CpuKernelExecutor> {
   }
 
   template <class T>
-  Span<T> allocate_beside(CpuKernelExecutor &executor, const MeshMemoryView &, size_t n) {
+  Span<T> allocate_where_mesh_is(CpuKernelExecutor &executor, const MeshMemoryView &, size_t n) {
     return executor.allocate<T>(n);
   }
 

@@ -48,7 +48,7 @@ class MeshMemory<CudaExecutor> {
 
   // Room for something as large as the mesh, where the mesh is.
   template <class T>
-  Span<T> allocate_beside(CudaExecutor &executor, const MeshMemoryView &mesh, size_t n) {
+  Span<T> allocate_where_mesh_is(CudaExecutor &executor, const MeshMemoryView &mesh, size_t n) {
     if (!mesh.in_pieces) return executor.allocate<T>(n);
     return {static_cast<T *>(spill(n * sizeof(T))), n};
   }

@@ -122,7 +122,7 @@ class MeshMemory<CountingExecutor<Executor>> {
     return describe_memory(arrays, vertices, triangles, shape, Executor::kIsCuda && in_pieces, nullptr);
   }
   template <class T>
-  Span<T> allocate_beside(CountingExecutor<Executor> &executor, const MeshMemoryView &mesh, size_t n) {
+  Span<T> allocate_where_mesh_is(CountingExecutor<Executor> &executor, const MeshMemoryView &mesh, size_t n) {
     if (!mesh.in_pieces) executor.template allocate<T>(n);
     return {nullptr, n};
   }

@@ -163,8 +163,8 @@ MeshMemoryView build_exact_surface(Work &work) {
   // Steps 2 and on: tangential, each projected again.
   work.timer.begin("relaxation");
   if (work.settings.relaxation_steps > 1) {
-    Span<RingSum> sums = work.memory.template allocate_beside<RingSum>(executor, mesh, counts.vertices);
-    Span<glm::vec3> moved = work.memory.template allocate_beside<glm::vec3>(executor, mesh, counts.vertices);
+    Span<RingSum> sums = work.memory.template allocate_where_mesh_is<RingSum>(executor, mesh, counts.vertices);
+    Span<glm::vec3> moved = work.memory.template allocate_where_mesh_is<glm::vec3>(executor, mesh, counts.vertices);
     for (uint32_t step = 1; step < work.settings.relaxation_steps; ++step) {
       tangential_starts(executor, bricks, layout, mesh.view, counts, sums, moved.data);
       starts.moved = moved.data;

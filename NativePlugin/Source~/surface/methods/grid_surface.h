@@ -45,7 +45,7 @@ MeshMemoryView build_grid_surface(Work &work) {
   work.progress.report(0.85);
 
   work.timer.begin("relaxation");
-  Span<RingSum> sums = work.memory.template allocate_beside<RingSum>(executor, mesh, counts.vertices);
+  Span<RingSum> sums = work.memory.template allocate_where_mesh_is<RingSum>(executor, mesh, counts.vertices);
   smooth_laplacian(executor, mesh.view, counts, work.parameters.spacing, work.settings.relaxation_steps, sums);
   compute_normals(executor, mesh.view, counts, work.parameters.spacing, sums);
   paint_vertices(executor, work.appearance, mesh.view, mesh.vertices);
