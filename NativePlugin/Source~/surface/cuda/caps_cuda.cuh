@@ -213,10 +213,10 @@ static __global__ __launch_bounds__(kCapWarps *kWarp) void find_long_caps_kernel
   for (uint32_t k = first + warp; k < end; k += warps) find_caps(job, job.long_atoms[k], rows, static_cast<int>(room));
 }
 
-// The caps of a run of atoms. Rows of atoms with many neighbours get a quarter of what there is; is_rare: at least
-// those of one block, and no more than is free.
+// The caps of a run of atoms. Rows of atoms with many neighbours get a quarter of what there is; memory_is_short: at
+// least those of one block, and no more than is free.
 template <class E>
-void find_caps(E &executor, const CapJob &job, bool is_rare) {
+void find_caps(E &executor, const CapJob &job, bool memory_is_short) {
   const size_t blocks =
       std::min<size_t>((job.run.size() + kCapWarps - 1) / kCapWarps, size_t(executor.multiprocessors()) * 128);
   executor.launch("find_caps", find_caps_kernel, blocks, kCapWarps * kWarp, 0, job);
@@ -224,7 +224,7 @@ void find_caps(E &executor, const CapJob &job, bool is_rare) {
   // Rows for as many warps as there is memory for; the others' atoms take turns.
   constexpr uint64_t kEnough = uint64_t(1) << 30;
   const size_t block_bytes = kCapWarps * job.room.neighbors * (sizeof(Cap) + sizeof(float) + sizeof(uint32_t));
-  const uint64_t free = !is_rare ? kEnough : E::kCounts ? 0 : std::min(kEnough, executor.arena().available());
+  const uint64_t free = !memory_is_short ? kEnough : E::kCounts ? 0 : std::min(kEnough, executor.arena().available());
   const size_t long_blocks = static_cast<size_t>(std::max<uint64_t>(
       1, std::min<uint64_t>({blocks, size_t(executor.multiprocessors()) * 4, free / 4 / block_bytes})));
   const auto mark = executor.arena().mark();

@@ -29,7 +29,7 @@ struct FeaturePass {
 // One attempt at the caps and arcs of a run of atoms; returns what was counted. Waits.
 template <class E>
 FeatureCounters find_run_features(E &executor, const FeaturePass &pass, AtomRun run, const FeatureRoom &room, Cap *caps,
-                                  Arc *arcs, bool is_rare) {
+                                  Arc *arcs, bool memory_is_short) {
   const auto mark = executor.arena().mark();
   const size_t n = run.size();
   Span<FeatureCounters> counters = executor.template allocate<FeatureCounters>(1);
@@ -41,7 +41,7 @@ FeatureCounters find_run_features(E &executor, const FeaturePass &pass, AtomRun 
   find_caps(executor,
             CapJob{pass.atoms, pass.max_radius, run, room, counters.data, pass.cap_ranges, caps, neighbors.data,
                    circle_count.data, pass.exposed, long_atoms.data},
-            is_rare);
+            memory_is_short);
   executor.exclusive_scan(n, LoadNumber{circle_count.data}, circle_first);
   find_arcs(executor, CircleJob{pass.atoms, run, room, counters.data, pass.cap_ranges, caps, neighbors.data,
                                 circle_first.data, pass.exposed, arcs});
