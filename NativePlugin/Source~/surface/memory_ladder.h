@@ -64,7 +64,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
       auto work = work_of(in, plan, &report);
       prepare_frame(work, in);
       enter_level(work, settings.spacing);
-      count_features(work);
+      if (settings.method == QSES_METHOD_EXACT) facts_.caps = count_kept_caps(work);
       facts_.size = estimate_size(work);
       executor_.arena().reset();
     });
@@ -98,8 +98,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     const typename Executor::StopScope stop_scope(executor_, stop);
     memory_.keep_on_device(in.settings.delivery != QSES_DELIVERY_HOST);
     executor_.arena().reset();  // what is free is asked anew
-    for (size_t step = first_step(in);;) {
-      executor_.arena().reset();
+    for (size_t step = first_step(in);; executor_.arena().reset()) {
       timer_.reset();
       facts_ = {};
       facts_.atoms = in.atoms.count;
@@ -151,7 +150,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   void compute_levels(const FrameInput &in, const MemoryPlan &plan, Span<const float> spacings, Course *course,
                       LevelSink &sink) {
     double total = 0, begun = 0;
-    for (float h : spacings) total += work_of(h);
+    for (float h : spacings) total += cost_of(h);
     auto start = std::chrono::steady_clock::now();
     qses_report report;
     auto work = work_of(in, plan, &report);
@@ -161,14 +160,15 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     const auto mark = executor_.arena().mark();
     for (size_t k = 0; k < spacings.size; ++k) {
       const double before = begun;
-      begun += work_of(spacings[k]);
+      begun += cost_of(spacings[k]);
       if (k < course->next) continue;
       progress_.enter(before / total, begun / total);
       progress_.report(0.0);
       qses_report_init(&report);
       report.attempts = course->attempts;
-      memory_.use_slot(sink.slot());
-      components_.use_slot(sink.slot());
+      const int slot = sink.slot();
+      memory_.use_slot(slot);
+      components_.use_slot(slot);
       MeshMemoryView built{};
       if (in.atoms.count > 0) {
         spacing_ = spacings[k];
@@ -195,7 +195,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   }
 
   // The work of a level grows with the number of its lattice points at the surface.
-  static double work_of(float spacing) { return 1.0 / (static_cast<double>(spacing) * static_cast<double>(spacing)); }
+  static double cost_of(float spacing) { return 1.0 / (static_cast<double>(spacing) * static_cast<double>(spacing)); }
   static double milliseconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   }
@@ -244,11 +244,6 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   // ---- forecasts -----------------------------------------------------------------------------------------------
 
   bool knows_size() const { return facts_.size.vertices > 0; }
-
-  template <class Work>
-  void count_features(Work &work) {
-    if (work.settings.method == QSES_METHOD_EXACT) facts_.caps = count_kept_caps(work);
-  }
 
   // Bytes of the arena that a plan takes, if the sizes are as the facts say: the pipeline, only counted.
   uint64_t forecast(const FrameInput &in, const MemoryPlan &plan, uint64_t limit) {
