@@ -42,6 +42,7 @@ needs=(
   "patchelf patchelf"
 )
 
+if [ "$with_cuda" = yes ]; then needs+=("clang-19 clang++-19"); fi
 if [ "$with_mpi" = yes ]; then needs+=("libopenmpi-dev mpicxx" "openmpi-bin mpirun"); fi
 if [ "$with_windows" = yes ]; then
   needs+=(
@@ -61,21 +62,12 @@ is_there() {
   esac
 }
 
-find_nvcc() {
-  local nvcc
-  for nvcc in "${CUDACXX:-}" "$(command -v nvcc || true)" "${CUDA_PATH:-}/bin/nvcc" /usr/local/cuda/bin/nvcc; do
-    if [ -n "$nvcc" ] && [ -x "$nvcc" ]; then echo "$nvcc"; return 0; fi
+has_cuda_toolkit() {
+  local folder
+  for folder in "${CUDA_PATH:-}" "${CUDA_HOME:-}" /usr/lib/cuda /usr/local/cuda /opt/cuda; do
+    if [ -e "$folder/nvvm/libdevice/libdevice.10.bc" ]; then return 0; fi
   done
   return 1
-}
-
-# CUDA 11 refuses GCC 12 and later.
-lacks_gcc11() {
-  local nvcc
-  nvcc=$(find_nvcc) && [[ $("$nvcc" --version) == *"release 11."* ]] || return 1
-  is_there g++-11 || is_there g++-10 && return 1
-  is_there c++ || return 0
-  [ "$(c++ -dumpversion | cut -d. -f1)" -gt 11 ]
 }
 
 has_candidate() { [[ $(apt-cache policy "$1" 2>/dev/null) == *"  Candidate: "[!\(]* ]]; }
@@ -89,13 +81,7 @@ for need in "${needs[@]}"; do
   is_there "${need#* }" || missing+=("${need%% *}")
 done
 if wants_formatter; then missing+=(clang-format-14); fi
-if [ "$with_cuda" = yes ]; then
-  if ! find_nvcc >/dev/null; then
-    missing+=(nvidia-cuda-toolkit)
-  elif lacks_gcc11; then
-    missing+=(g++-11)
-  fi
-fi
+if [ "$with_cuda" = yes ] && ! has_cuda_toolkit; then missing+=(nvidia-cuda-toolkit); fi
 if [ ${#missing[@]} -eq 0 ]; then
   say "everything is installed"
   exit 0
@@ -111,8 +97,8 @@ if ! command -v apt-get >/dev/null; then
   fail "can install on Debian and Ubuntu only, and $system has no apt-get.
 Missing here (Debian's package names): ${missing[*]}
 Needed in all: CMake 3.22, Ninja, a C++17 compiler, Python 3, zlib, Thrust 1.15, oneTBB, GLM, gemmi (and PEGTL with
-gemmi 0.5), CLI11, nlohmann-json, GoogleTest, PyYAML, patchelf; for the GPU the CUDA Toolkit 11.8 or later; for many
-processes an MPI library."
+gemmi 0.5), CLI11, nlohmann-json, GoogleTest, PyYAML, patchelf; for the GPU the CUDA Toolkit 11.8 or later and Clang 18
+or later; for many processes an MPI library."
 fi
 as_root=()
 if [ "$(id -u)" -ne 0 ]; then
@@ -170,8 +156,4 @@ for package in "${missing[@]}"; do
 done
 apt_get install --no-install-recommends "${missing[@]}"
 
-# Debian's toolkit is content with any of several compilers; only now it can be asked which CUDA it is.
-if [ "$with_cuda" = yes ] && lacks_gcc11; then
-  apt_get install --no-install-recommends g++-11
-fi
 say "done"

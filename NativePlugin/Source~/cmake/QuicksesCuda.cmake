@@ -1,65 +1,82 @@
 # SPDX-License-Identifier: MIT
-# Enables CUDA. The host compiler and the architectures have to be known before the language is enabled.
+# CUDA, for Linux and Windows alike: Clang compiles the .cu files, device and host side, with the toolkit's headers,
+# libdevice, ptxas and fatbinary; cudart/ takes the place of NVIDIA's runtime. So MinGW-w64, which nvcc does not know,
+# links them, and the same source gives the same device code on both platforms. (CMake's own CUDA language would do for
+# Linux, but refuses Clang for Windows.)
 
-if(NOT CMAKE_CUDA_COMPILER)
-  find_program(QUICKSES_NVCC nvcc
-    HINTS ENV CUDA_PATH ENV CUDA_HOME ${CUDAToolkit_ROOT}
-    PATHS /usr/local/cuda /opt/cuda
-    PATH_SUFFIXES bin
-    DOC "The CUDA compiler")
-  mark_as_advanced(QUICKSES_NVCC)
-  if(DEFINED ENV{CUDACXX})
-    set(_nvcc "$ENV{CUDACXX}")
-  elseif(QUICKSES_NVCC)
-    # Where /bin is a link to /usr/bin, the toolkit would be looked for in /include.
-    get_filename_component(_folder "${QUICKSES_NVCC}" DIRECTORY)
-    get_filename_component(_folder "${_folder}" REALPATH)
-    set(_nvcc "${_folder}/nvcc")
-  else()
-    message(FATAL_ERROR "QUICKSES_CUDA is ON but nvcc was not found. Install the CUDA Toolkit (11.8 or later; on Debian "
-      "bash Scripts~/setup.sh --with-cuda does it), or name it with -DCMAKE_CUDA_COMPILER=/path/to/nvcc.")
-  endif()
-  set(CMAKE_CUDA_COMPILER "${_nvcc}" CACHE FILEPATH "The CUDA compiler")
+if(NOT BUILD_SHARED_LIBS)
+  message(FATAL_ERROR "QUICKSES_CUDA takes BUILD_SHARED_LIBS=ON: the functions of cudart/ have the names of those of NVIDIA's "
+    "runtime, and only a shared library keeps them to itself.")
 endif()
 
-# Each nvcc refuses compilers newer than itself: where the default GCC is, the newest older one is taken.
-if(NOT CMAKE_CUDA_HOST_COMPILER AND NOT DEFINED ENV{CUDAHOSTCXX} AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  execute_process(COMMAND "${CMAKE_CUDA_COMPILER}" --version OUTPUT_VARIABLE _nvcc_text ERROR_QUIET)
-  string(REGEX MATCH "release ([0-9]+\\.[0-9]+)" _release "${_nvcc_text}")
-  set(_release "${CMAKE_MATCH_1}")
-  set(_newest 99)
-  foreach(_row IN ITEMS 13.0=15 12.8=14 12.4=13 12.0=12 11.0=11) # from this release on: GCC up to this version
-    string(REPLACE "=" ";" _row "${_row}")
-    list(POP_FRONT _row _since _gcc)
-    if(_release AND _release VERSION_GREATER_EQUAL _since)
-      set(_newest ${_gcc})
-      break()
-    endif()
+find_program(QUICKSES_CLANG NAMES clang++-19 clang++-20 clang++-21 clang++-18 clang++
+  DOC "The Clang that compiles CUDA, 18 or later")
+find_path(QUICKSES_CUDA_PATH nvvm/libdevice/libdevice.10.bc
+  HINTS ENV CUDA_PATH ENV CUDA_HOME ${CUDAToolkit_ROOT} PATHS /usr/lib/cuda /usr/local/cuda /opt/cuda
+  NO_DEFAULT_PATH NO_CMAKE_FIND_ROOT_PATH DOC "The CUDA Toolkit")
+find_path(QUICKSES_CUDA_HEADERS cuda_runtime.h HINTS "${QUICKSES_CUDA_PATH}/include" PATHS /usr/include
+  NO_DEFAULT_PATH NO_CMAKE_FIND_ROOT_PATH DOC "The CUDA Toolkit's headers") # Debian's are not below its folder
+mark_as_advanced(QUICKSES_CLANG QUICKSES_CUDA_PATH QUICKSES_CUDA_HEADERS)
+if(NOT QUICKSES_CLANG OR NOT QUICKSES_CUDA_PATH OR NOT QUICKSES_CUDA_HEADERS)
+  message(FATAL_ERROR "QUICKSES_CUDA is ON, which takes Clang 18 or later (found: ${QUICKSES_CLANG}) and the CUDA Toolkit "
+    "11.8 or later (found: ${QUICKSES_CUDA_PATH}). On Debian, bash Scripts~/setup.sh --with-cuda installs both; "
+    "elsewhere set QUICKSES_CLANG and QUICKSES_CUDA_PATH.")
+endif()
+
+file(STRINGS "${QUICKSES_CUDA_HEADERS}/cuda.h" _version REGEX "#define CUDA_VERSION +[0-9]+")
+string(REGEX MATCH "[0-9]+$" _version "${_version}")
+if(_version LESS 11080)
+  message(FATAL_ERROR "The CUDA Toolkit in ${QUICKSES_CUDA_PATH} is too old (CUDA_VERSION ${_version}): 11.8 or later is needed.")
+endif()
+execute_process(COMMAND "${QUICKSES_CLANG}" -dumpversion OUTPUT_VARIABLE _clang OUTPUT_STRIP_TRAILING_WHITESPACE)
+if(_clang VERSION_LESS 18)
+  message(FATAL_ERROR "${QUICKSES_CLANG} is Clang ${_clang}: 18 or later is needed to compile CUDA.")
+endif()
+message(STATUS "CUDA: toolkit ${QUICKSES_CUDA_PATH} (${_version}), Clang ${_clang}, architectures ${QUICKSES_CUDA_ARCHITECTURES}")
+
+# Searched last: where the toolkit lies in /usr/include, its neighbours are not for Windows.
+set(QUICKSES_CUDA_INCLUDE -idirafter "${QUICKSES_CUDA_HEADERS}")
+
+set(_flags "--cuda-path=${QUICKSES_CUDA_PATH}" --no-cuda-include-ptx=all)
+foreach(_architecture IN LISTS QUICKSES_CUDA_ARCHITECTURES)
+  string(REGEX MATCH "^[0-9]+" _number "${_architecture}")
+  list(APPEND _flags --offload-arch=sm_${_number})
+  if(_architecture STREQUAL _number)
+    list(APPEND _flags --cuda-include-ptx=sm_${_number})
+  endif()
+endforeach()
+string(TOUPPER "${CMAKE_BUILD_TYPE}" _config)
+separate_arguments(_config UNIX_COMMAND "${CMAKE_CXX_FLAGS_${_config}}")
+list(APPEND _flags -Xcuda-fatbinary --compress-all -std=c++17 ${_config}
+  # On the device a*b+c is one operation, as nvcc has it; on the host nothing is contracted (see QuicksesTargets.cmake).
+  -Xarch_host -ffp-contract=off -fvisibility=hidden -UTHRUST_DEVICE_SYSTEM
+  # Kernels in headers are for one source each; masks of the CPU's vectors, which are bool here, have no && and ||.
+  -Wall -Wextra -Wno-unneeded-internal-declaration -Wno-bitwise-instead-of-logical -Wno-pass-failed "$<$<BOOL:${QUICKSES_WERROR}>:-Werror>"
+  --system-header-prefix=cub/ --system-header-prefix=thrust/ --system-header-prefix=glm/)
+if(MINGW)
+  list(APPEND _flags --target=x86_64-w64-windows-gnu "-I${CMAKE_CURRENT_LIST_DIR}/mingw_cuda"
+    -Wno-ignored-attributes) # dllexport means nothing on the device
+  # Clang and GCC pad the names of types differently, of which the linker warns for each object, by the hundred.
+  add_link_options(-Wl,--no-warnings)
+else()
+  list(APPEND _flags -fPIC)
+endif()
+set(QUICKSES_CUDA_FLAGS ${_flags} ${QUICKSES_CUDA_INCLUDE})
+
+# quickses_compile_cuda(<variable> <target> <source.cu>...): objects of the sources, compiled with the target's
+# definitions and include folders.
+function(quickses_compile_cuda out target)
+  set(_objects "")
+  foreach(_source IN LISTS ARGN)
+    get_filename_component(_source "${_source}" ABSOLUTE)
+    get_filename_component(_name "${_source}" NAME)
+    set(_object "${CMAKE_CURRENT_BINARY_DIR}/CMakeFiles/${target}.dir/${_name}${CMAKE_CXX_OUTPUT_EXTENSION}")
+    add_custom_command(OUTPUT "${_object}" DEPFILE "${_object}.d" DEPENDS "${_source}" "${QUICKSES_CLANG}"
+      COMMAND "${QUICKSES_CLANG}" -x cuda "-I$<JOIN:$<TARGET_PROPERTY:${target},INCLUDE_DIRECTORIES>,;-I>"
+        "-D$<JOIN:$<TARGET_PROPERTY:${target},COMPILE_DEFINITIONS>,;-D>" ${QUICKSES_CUDA_FLAGS}
+        -MD -MF "${_object}.d" -MT "${_object}" -c "${_source}" -o "${_object}"
+      COMMAND_EXPAND_LISTS VERBATIM COMMENT "Compiling ${_name}")
+    list(APPEND _objects "${_object}")
   endforeach()
-  if(CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL "${_newest}.99")
-    set(_names "")
-    foreach(_version RANGE ${_newest} 9 -1)
-      list(APPEND _names g++-${_version})
-    endforeach()
-    find_program(QUICKSES_CUDA_GCC NAMES ${_names} DOC "A GCC that this nvcc accepts")
-    mark_as_advanced(QUICKSES_CUDA_GCC)
-    if(NOT QUICKSES_CUDA_GCC)
-      message(FATAL_ERROR "CUDA ${_release} needs GCC ${_newest} or earlier as its host compiler: install "
-        "g++-${_newest}, or name a compiler with -DCMAKE_CUDA_HOST_COMPILER=/path/to/g++.")
-    endif()
-    set(CMAKE_CUDA_HOST_COMPILER "${QUICKSES_CUDA_GCC}" CACHE FILEPATH "The host compiler of nvcc")
-  endif()
-endif()
-
-if(NOT DEFINED CMAKE_CUDA_ARCHITECTURES)
-  set(CMAKE_CUDA_ARCHITECTURES "${QUICKSES_CUDA_ARCHITECTURES}")
-endif()
-set(CMAKE_CUDA_RUNTIME_LIBRARY Static)
-enable_language(CUDA)
-
-if(CMAKE_CUDA_COMPILER_VERSION VERSION_LESS 11.8)
-  message(FATAL_ERROR "CUDA ${CMAKE_CUDA_COMPILER_VERSION} is too old: 11.8 or later is needed.")
-endif()
-find_package(CUDAToolkit REQUIRED)
-message(STATUS "CUDA ${CMAKE_CUDA_COMPILER_VERSION}, host compiler ${CMAKE_CUDA_HOST_COMPILER}, "
-  "architectures ${CMAKE_CUDA_ARCHITECTURES}")
+  set(${out} "${_objects}" PARENT_SCOPE)
+endfunction()

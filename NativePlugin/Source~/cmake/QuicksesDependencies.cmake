@@ -73,7 +73,7 @@ endif()
 # libthrust-dev, so there both are /usr/include. CUDA 13 keeps it in include/cccl.)
 if(QUICKSES_CUDA)
   find_path(QUICKSES_THRUST_INCLUDE_DIR thrust/version.h
-    HINTS ${CUDAToolkit_INCLUDE_DIRS} PATH_SUFFIXES cccl NO_DEFAULT_PATH
+    HINTS "${QUICKSES_CUDA_HEADERS}" PATH_SUFFIXES cccl NO_DEFAULT_PATH
     DOC "Folder that holds thrust/version.h")
 endif()
 find_path(QUICKSES_THRUST_INCLUDE_DIR thrust/version.h DOC "Folder that holds thrust/version.h")

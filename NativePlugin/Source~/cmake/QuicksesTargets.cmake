@@ -6,13 +6,7 @@ target_compile_features(quickses_options INTERFACE cxx_std_17)
 
 if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
   target_compile_options(quickses_options INTERFACE
-    "$<$<COMPILE_LANGUAGE:C,CXX>:-Wall;-Wextra>"
-    "$<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-Wall,-Wextra>")
-  if(QUICKSES_WERROR)
-    target_compile_options(quickses_options INTERFACE
-      "$<$<COMPILE_LANGUAGE:C,CXX>:-Werror>"
-      "$<$<COMPILE_LANGUAGE:CUDA>:-Werror=all-warnings>")
-  endif()
+    -Wall -Wextra "$<$<BOOL:${QUICKSES_WERROR}>:-Werror>")
 elseif(MSVC)
   target_compile_options(quickses_options INTERFACE
     "$<$<COMPILE_LANGUAGE:C,CXX>:/W4;/utf-8>"
@@ -20,9 +14,6 @@ elseif(MSVC)
     "$<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=/utf-8,/Zc:__cplusplus,/Zc:preprocessor>")
   target_compile_definitions(quickses_options INTERFACE _USE_MATH_DEFINES NOMINMAX)
 endif()
-target_compile_options(quickses_options INTERFACE
-  "$<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr;--extended-lambda>")
-
 if(QUICKSES_SANITIZE)
   set(_sanitize "-fsanitize=${QUICKSES_SANITIZE};-fno-omit-frame-pointer")
   if(QUICKSES_SANITIZE MATCHES "undefined")
@@ -40,7 +31,7 @@ set(QUICKSES_EXACT_OPTIONS "")
 set(QUICKSES_KERNEL_OPTIONS "")
 if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
   set(QUICKSES_EXACT_OPTIONS
-    "$<$<COMPILE_LANGUAGE:C,CXX>:-ffp-contract=off>" "$<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-ffp-contract=off>")
+    "$<$<COMPILE_LANGUAGE:C,CXX>:-ffp-contract=off>")
   set(QUICKSES_KERNEL_OPTIONS
     "$<$<NOT:$<CONFIG:Debug>>:-O3>" -fno-math-errno -fno-trapping-math -ffp-contract=fast)
 endif()

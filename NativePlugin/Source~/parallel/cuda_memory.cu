@@ -2,6 +2,7 @@
 // CUDA devices and their memory.
 #include "parallel/cuda_memory.h"
 
+#include "cudart/current_context.h"
 #include "parallel/arena.h"
 #include "parallel/error.h"
 
@@ -73,20 +74,26 @@ bool was_granted(cudaError_t error, const char *call) {
   return false;
 }
 
-std::string version_text(int version) {
-  return std::to_string(version / 1000) + "." + std::to_string(version % 1000 / 10);
-}
-
 std::string reason_for_none(cudaError_t error) {
   if (error == cudaErrorNoDevice) return "no CUDA device is present, or none is visible to this process";
-  int driver = 0, runtime = 0;
-  cudaDriverGetVersion(&driver);
-  cudaRuntimeGetVersion(&runtime);
-  if (driver == 0) return "no NVIDIA driver is installed";
-  if (error == cudaErrorInsufficientDriver)
-    return "the NVIDIA driver serves CUDA " + version_text(driver) + ", but this library needs " +
-           version_text(runtime) + ": update the driver";
-  return "the CUDA runtime does not start: " + describe_error(error);
+  if (error == cudaErrorInsufficientDriver) return cudaGetErrorString(error);
+  return "the NVIDIA driver does not start: " + describe_error(error);
+}
+
+// What is known of a device without a context on it.
+cudaError_t describe_hardware(int ordinal, CudaDevice *device, int *major, int *minor) {
+  const cudart::Driver &driver = cudart::driver();
+  CUdevice handle = 0;
+  char name[256] = "";
+  size_t total = 0;
+  CUresult result = driver.cuDeviceGet(&handle, ordinal);
+  if (result == CUDA_SUCCESS) result = driver.cuDeviceGetName(name, sizeof name, handle);
+  if (result == CUDA_SUCCESS) result = driver.cuDeviceTotalMem_v2(&total, handle);
+  if (result != CUDA_SUCCESS) return static_cast<cudaError_t>(result);
+  device->name = name;
+  device->total_memory = total;
+  const cudaError_t error = cudaDeviceGetAttribute(major, cudaDevAttrComputeCapabilityMajor, ordinal);
+  return error == cudaSuccess ? cudaDeviceGetAttribute(minor, cudaDevAttrComputeCapabilityMinor, ordinal) : error;
 }
 
 }  // namespace
@@ -124,11 +131,9 @@ CudaDevice describe_cuda_device(int ordinal) {
         "there is no CUDA device " + std::to_string(ordinal) + ": the last one is " + std::to_string(count - 1);
     return device;
   }
-  cudaDeviceProp properties{};
-  error = cudaGetDeviceProperties(&properties, ordinal);
+  int major = 0, minor = 0;
+  error = describe_hardware(ordinal, &device, &major, &minor);
   if (error == cudaSuccess) {
-    device.name = properties.name;
-    device.total_memory = properties.totalGlobalMem;
     try {
       const DeviceGuard guard(ordinal);
       cudaFuncAttributes attributes{};
@@ -153,8 +158,8 @@ CudaDevice describe_cuda_device(int ordinal) {
   }
   if (error == cudaErrorNoKernelImageForDevice || error == cudaErrorInvalidDeviceFunction ||
       error == cudaErrorUnsupportedPtxVersion)
-    device.reason = device.name + " (compute capability " + std::to_string(properties.major) + "." +
-                    std::to_string(properties.minor) + ") is not among the GPUs this library was built for";
+    device.reason = device.name + " (compute capability " + std::to_string(major) + "." + std::to_string(minor) +
+                    ") is not among the GPUs this library was built for";
   else
     device.reason = "the GPU does not answer: " + describe_error(error);
   return device;
@@ -167,16 +172,16 @@ int count_cuda_devices() {
   return 0;
 }
 
-DeviceGuard::DeviceGuard(int device) : before_(device), device_(device) {
+DeviceGuard::DeviceGuard(int device) {
   refuse_after_fault();
-  check_cuda(cudaGetDevice(&before_), "cudaGetDevice");
-  // Selected even if it was before: on a thread that has not used CUDA yet this makes the device current.
-  check_cuda(cudaSetDevice(device_), "cudaSetDevice");
+  CUcontext before = nullptr;
+  check_cuda(cudart::start(), "cuInit");
+  check_cuda(cudart::driver().cuCtxGetCurrent(&before), "cuCtxGetCurrent");
+  before_ = before;
+  check_cuda(cudaSetDevice(device), "cudaSetDevice");
 }
 
-DeviceGuard::~DeviceGuard() {
-  if (before_ != device_ && cudaSetDevice(before_) != cudaSuccess) cudaGetLastError();
-}
+DeviceGuard::~DeviceGuard() { cudart::driver().cuCtxSetCurrent(static_cast<CUcontext>(before_)); }
 
 CudaMemoryRequests cuda_memory_requests() { return {device_requests, pinned_requests}; }
 

@@ -31,8 +31,8 @@ CudaDevice describe_cuda_device(int ordinal);
 // 0 where CUDA does not start. Never throws.
 int count_cuda_devices();
 
-// Selects a device for the calling thread, and the one selected before when it goes. Throws Error; after a fault
-// always.
+// Selects a device for the calling thread, and when it goes the context that was current before: also one that is no
+// runtime's. Throws Error; after a fault always.
 class DeviceGuard {
  public:
   explicit DeviceGuard(int device);
@@ -41,7 +41,7 @@ class DeviceGuard {
   DeviceGuard &operator=(const DeviceGuard &) = delete;
 
  private:
-  int before_, device_;
+  void *before_ = nullptr;  // CUcontext
 };
 
 // Sources for Arena.

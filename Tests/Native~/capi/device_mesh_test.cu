@@ -20,10 +20,11 @@ bool has_device() { return quickses::describe_cuda_device(0).available; }
 template <class T>
 std::vector<T> fetched(const qses_device_mesh &m, const T *device, size_t n) {
   std::vector<T> host(device ? n : 0);
-  EXPECT_EQ(cudaStreamSynchronize(static_cast<cudaStream_t>(m.stream)), cudaSuccess);
+  const cudaStream_t stream = static_cast<cudaStream_t>(m.stream);
   if (device) {
-    EXPECT_EQ(cudaMemcpy(host.data(), device, n * sizeof(T), cudaMemcpyDeviceToHost), cudaSuccess);
+    EXPECT_EQ(cudaMemcpyAsync(host.data(), device, n * sizeof(T), cudaMemcpyDeviceToHost, stream), cudaSuccess);
   }
+  EXPECT_EQ(cudaStreamSynchronize(stream), cudaSuccess);
   return host;
 }
 

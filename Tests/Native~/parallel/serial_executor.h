@@ -4,6 +4,7 @@
 
 #include "parallel/arena.h"
 #include "parallel/executor.h"
+#include "parallel/host_memory.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -15,8 +16,8 @@
 struct SerialMemory {
   static constexpr const char *kName = "the machine";
   static uint64_t free_bytes() { return 0; }
-  static void *acquire(size_t bytes) { return std::aligned_alloc(256, (bytes + 255) / 256 * 256); }
-  static void release(void *p) { std::free(p); }
+  static void *acquire(size_t bytes) { return quickses::HostMemory::acquire(bytes); }
+  static void release(void *memory) { quickses::HostMemory::release(memory); }
 };
 
 class SerialExecutor {

@@ -15,7 +15,8 @@ TESTS = "Tests/Native~"
 # A room, and the others that its files may include: only rooms above it, so that there is no way back.
 ROOMS = {
     "include": "",
-    "parallel": "include",
+    "cudart": "",
+    "parallel": "include cudart",
     "surface/geometry": "parallel",
     "surface/memory": "parallel surface/geometry",
     "surface/mesh": "include parallel surface/geometry surface/memory",

@@ -68,6 +68,12 @@ Molecule beaded_ring() {
   return m;
 }
 
+struct FindBorderSigns {
+  const uint64_t *words;
+  BorderSigns *signs;
+  QSES_HOST_DEVICE void operator()(size_t b) const { signs[b] = border_signs(words + b * kLeavesPerBrick); }
+};
+
 double distance_to(const std::vector<Arc> &arcs, Point x) {
   double best = 1e30;
   for (const Arc &a : arcs) {
@@ -334,6 +340,34 @@ TEST(CudaStages, SameBytesEveryTimeAndInSlices) {
     EXPECT_EQ(first.owners, again.owners);
     EXPECT_EQ(first.patches, again.patches);
     EXPECT_EQ(first.indices, again.indices);
+  }
+}
+
+// Compilers have got this wrong: ptxas 11.8 took (~word & 0xffff) != 0 for (word & 0xffff) != 0.
+TEST(CudaStages, BorderSignsAreThoseOfTheHost) {
+  REQUIRE_DEVICE();
+  constexpr size_t kBricks = 4096;
+  std::mt19937_64 random(3);
+  std::vector<uint64_t> words(kBricks * kLeavesPerBrick);
+  for (size_t k = 0; k < words.size(); ++k) {
+    const uint64_t few = random() & random() & random() & random(), one = uint64_t(1) << random() % 64;
+    const uint64_t kinds[] = {few, ~few, one, ~one, 0, ~uint64_t(0), random()};
+    words[k] = kinds[k / kLeavesPerBrick % 3 == 0 ? k / kLeavesPerBrick % 7 : random() % 7];
+  }
+  CudaExecutor &executor = *device();
+  const auto mark = executor.arena().mark();
+  Span<uint64_t> on_device = executor.allocate<uint64_t>(words.size());
+  Span<BorderSigns> found = executor.allocate<BorderSigns>(kBricks);
+  executor.upload(on_device.data, words.data(), words.size());
+  executor.for_each(kBricks, FindBorderSigns{on_device.data, found.data});
+  std::vector<BorderSigns> signs(kBricks);
+  executor.download(signs.data(), found.data, kBricks);
+  executor.wait();
+  executor.arena().rewind(mark);
+  for (size_t b = 0; b < kBricks; ++b) {
+    const BorderSigns expected = border_signs(&words[b * kLeavesPerBrick]);
+    ASSERT_EQ(signs[b].inside, expected.inside) << b;
+    ASSERT_EQ(signs[b].outside, expected.outside) << b;
   }
 }
 

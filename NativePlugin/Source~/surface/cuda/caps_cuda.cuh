@@ -35,7 +35,6 @@ constexpr int kCapWarps = 4;                     // per block
 // Caps of all neighbours of atom i, in grid order; returns their number, which may exceed the room.
 __device__ __forceinline__ int gather_caps(const NeighborGridView &atoms, float max_radius, uint32_t i,
                                            const Sphere &self, const CapRows &rows, int room) {
-  const int lane = lane_id();
   const Vec3<float> center(self.center);
   const float reach = self.radius + max_radius;
   const CellLayout &cells = atoms.cells;

@@ -49,7 +49,7 @@ QSES_FN BorderSigns border_signs(const uint64_t *words) {
         place += step * stride;
       }
       signs.inside |= static_cast<uint32_t>((words[leaf] & mask) != 0) << place;
-      signs.outside |= static_cast<uint32_t>((~words[leaf] & mask) != 0) << place;
+      signs.outside |= static_cast<uint32_t>((words[leaf] & mask) != mask) << place;
     }
   return signs;
 }

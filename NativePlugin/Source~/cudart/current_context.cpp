@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#include "cudart/current_context.h"
+
+#include <array>
+#include <atomic>
+#include <mutex>
+
+namespace quickses {
+namespace cudart {
+namespace {
+
+thread_local cudaError_t last_error = cudaSuccess;
+
+struct PrimaryContext {
+  std::mutex mutex;
+  std::atomic<CUcontext> handle{nullptr};
+};
+// Never destroyed: threads may be in here as the process ends.
+std::array<PrimaryContext, kMostDevices> &primary_contexts() {
+  static auto &contexts = *new std::array<PrimaryContext, kMostDevices>;
+  return contexts;
+}
+
+CUresult primary_context(int device, CUcontext *context) {
+  if (device < 0 || device >= kMostDevices) return CUDA_ERROR_INVALID_DEVICE;
+  PrimaryContext &primary = primary_contexts()[static_cast<size_t>(device)];
+  *context = primary.handle.load(std::memory_order_acquire);
+  if (*context) return CUDA_SUCCESS;
+  const std::lock_guard<std::mutex> lock(primary.mutex);
+  *context = primary.handle.load(std::memory_order_relaxed);
+  if (*context) return CUDA_SUCCESS;
+  CUdevice handle = 0;
+  CUresult result = driver().cuDeviceGet(&handle, device);
+  // What fails is tried again by the next call: memory may be short now and not later.
+  if (result == CUDA_SUCCESS) result = driver().cuDevicePrimaryCtxRetain(context, handle);
+  if (result == CUDA_SUCCESS) primary.handle.store(*context, std::memory_order_release);
+  return result;
+}
+
+}  // namespace
+
+cudaError_t remember(cudaError_t error) {
+  if (error != cudaSuccess) last_error = error;
+  return error;
+}
+cudaError_t remember(CUresult result) {
+  return remember(result == CUDA_ERROR_STUB_LIBRARY ? cudaErrorInsufficientDriver : static_cast<cudaError_t>(result));
+}
+
+cudaError_t start() {
+  const CUresult state = driver().state;
+  return state == CUDA_ERROR_STUB_LIBRARY ? cudaErrorInsufficientDriver : static_cast<cudaError_t>(state);
+}
+
+CUresult make_current(int device) {
+  CUcontext context = nullptr;
+  const CUresult result = primary_context(device, &context);
+  return result == CUDA_SUCCESS ? driver().cuCtxSetCurrent(context) : result;
+}
+
+int current_device() {
+  CUcontext current = nullptr;
+  if (driver().cuCtxGetCurrent(&current) != CUDA_SUCCESS || !current) return -1;
+  for (int device = 0; device < kMostDevices; ++device)
+    if (primary_contexts()[static_cast<size_t>(device)].handle.load(std::memory_order_acquire) == current)
+      return device;
+  return -1;
+}
+
+cudaError_t enter() {
+  if (const cudaError_t error = start()) return error;
+  CUcontext current = nullptr;
+  CUresult result = driver().cuCtxGetCurrent(&current);
+  if (result == CUDA_SUCCESS && !current) result = make_current(0);
+  return static_cast<cudaError_t>(result);
+}
+
+}  // namespace cudart
+}  // namespace quickses
+
+using namespace quickses::cudart;
+
+extern "C" {
+
+// ---- CUDA Runtime API, "Error Handling" -----------------------------------------------------------------------------
+
+// The last error of the calling thread, which is reset.
+cudaError_t CUDARTAPI cudaGetLastError() {
+  const cudaError_t error = last_error;
+  last_error = cudaSuccess;
+  return error;
+}
+// The same, not reset.
+cudaError_t CUDARTAPI cudaPeekAtLastError() { return last_error; }
+
+// Strings that live as long as the process; never null. Without a driver, why there is none.
+const char *CUDARTAPI cudaGetErrorName(cudaError_t error) {
+  const char *name = nullptr;
+  if (error == cudaErrorInsufficientDriver) return "cudaErrorInsufficientDriver";  // the driver has no such number
+  if (driver().cuGetErrorName) driver().cuGetErrorName(static_cast<CUresult>(error), &name);
+  return name ? name : "unrecognized error code";
+}
+const char *CUDARTAPI cudaGetErrorString(cudaError_t error) {
+  const char *text = nullptr;
+  if (error == cudaErrorInsufficientDriver) return driver().refusal.c_str();
+  if (driver().cuGetErrorString) driver().cuGetErrorString(static_cast<CUresult>(error), &text);
+  return text ? text : "unrecognized error code";
+}
+
+}  // extern "C"

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// CUDA Runtime API, "Device Management".
+#include "cudart/current_context.h"
+
+using namespace quickses::cudart;
+
+extern "C" {
+
+cudaError_t CUDARTAPI cudaGetDeviceCount(int *count) {
+  *count = 0;
+  if (const cudaError_t error = start()) return remember(error);
+  return remember(driver().cuDeviceGetCount(count));
+}
+
+// The device of the thread's current context; 0, the default, on a thread that has none yet.
+cudaError_t CUDARTAPI cudaGetDevice(int *device) {
+  *device = 0;
+  if (const cudaError_t error = start()) return remember(error);
+  CUdevice current = 0;
+  const CUresult result = driver().cuCtxGetDevice(&current);
+  if (result == CUDA_ERROR_INVALID_CONTEXT) return cudaSuccess;
+  if (result != CUDA_SUCCESS) return remember(result);
+  int count = 0;
+  if (const cudaError_t error = cudaGetDeviceCount(&count)) return error;
+  for (int ordinal = 0; ordinal < count; ++ordinal) {
+    CUdevice handle = 0;
+    if (driver().cuDeviceGet(&handle, ordinal) != CUDA_SUCCESS || handle != current) continue;
+    *device = ordinal;
+    return cudaSuccess;
+  }
+  return remember(cudaErrorInvalidDevice);
+}
+
+// Makes the device's primary context the thread's, and starts the device if nobody has yet.
+cudaError_t CUDARTAPI cudaSetDevice(int device) {
+  if (const cudaError_t error = start()) return remember(error);
+  return remember(make_current(device));
+}
+
+// cudaDeviceAttr has the numbers of CUdevice_attribute (driver_types.h).
+cudaError_t CUDARTAPI cudaDeviceGetAttribute(int *value, cudaDeviceAttr attribute, int device) {
+  if (const cudaError_t error = start()) return remember(error);
+  CUdevice handle = 0;
+  CUresult result = driver().cuDeviceGet(&handle, device);
+  if (result == CUDA_SUCCESS)
+    result = driver().cuDeviceGetAttribute(value, static_cast<CUdevice_attribute>(attribute), handle);
+  return remember(result);
+}
+
+}  // extern "C"

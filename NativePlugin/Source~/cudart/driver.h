@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// NVIDIA's driver library, found when it is first asked for: a machine without one can load quickses all the same.
+#pragma once
+
+#include <cuda.h>
+
+#include <string>
+
+namespace quickses {
+namespace cudart {
+
+// Every function of the driver that is used. Names as the driver exports them: cuda.h has macros for those with _v2.
+#define QSES_DRIVER_FUNCTIONS(F)                                                                                \
+  F(cuInit, CUresult, unsigned)                                                                                 \
+  F(cuGetErrorName, CUresult, CUresult, const char **)                                                          \
+  F(cuGetErrorString, CUresult, CUresult, const char **)                                                        \
+  F(cuDeviceGet, CUresult, CUdevice *, int)                                                                     \
+  F(cuDeviceGetCount, CUresult, int *)                                                                          \
+  F(cuDeviceGetName, CUresult, char *, int, CUdevice)                                                           \
+  F(cuDeviceGetAttribute, CUresult, int *, CUdevice_attribute, CUdevice)                                        \
+  F(cuDeviceTotalMem_v2, CUresult, size_t *, CUdevice)                                                          \
+  F(cuDevicePrimaryCtxRetain, CUresult, CUcontext *, CUdevice)                                                  \
+  F(cuCtxGetCurrent, CUresult, CUcontext *)                                                                     \
+  F(cuCtxSetCurrent, CUresult, CUcontext)                                                                       \
+  F(cuCtxGetDevice, CUresult, CUdevice *)                                                                       \
+  F(cuModuleLoadData, CUresult, CUmodule *, const void *)                                                       \
+  F(cuModuleGetFunction, CUresult, CUfunction *, CUmodule, const char *)                                        \
+  F(cuFuncGetAttribute, CUresult, int *, CUfunction_attribute, CUfunction)                                      \
+  F(cuFuncSetAttribute, CUresult, CUfunction, CUfunction_attribute, int)                                        \
+  F(cuOccupancyMaxActiveBlocksPerMultiprocessorWithFlags, CUresult, int *, CUfunction, int, size_t, unsigned)   \
+  F(cuLaunchKernel, CUresult, CUfunction, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned, \
+    CUstream, void **, void **)                                                                                 \
+  F(cuMemAlloc_v2, CUresult, CUdeviceptr *, size_t)                                                             \
+  F(cuMemFree_v2, CUresult, CUdeviceptr)                                                                        \
+  F(cuMemHostAlloc, CUresult, void **, size_t, unsigned)                                                        \
+  F(cuMemFreeHost, CUresult, void *)                                                                            \
+  F(cuMemGetInfo_v2, CUresult, size_t *, size_t *)                                                              \
+  F(cuMemcpyHtoDAsync_v2, CUresult, CUdeviceptr, const void *, size_t, CUstream)                                \
+  F(cuMemcpyDtoHAsync_v2, CUresult, void *, CUdeviceptr, size_t, CUstream)                                      \
+  F(cuMemcpyDtoDAsync_v2, CUresult, CUdeviceptr, CUdeviceptr, size_t, CUstream)                                 \
+  F(cuMemsetD8Async, CUresult, CUdeviceptr, unsigned char, size_t, CUstream)                                    \
+  F(cuStreamCreate, CUresult, CUstream *, unsigned)                                                             \
+  F(cuStreamDestroy_v2, CUresult, CUstream)                                                                     \
+  F(cuStreamSynchronize, CUresult, CUstream)                                                                    \
+  F(cuEventCreate, CUresult, CUevent *, unsigned)                                                               \
+  F(cuEventDestroy_v2, CUresult, CUevent)                                                                       \
+  F(cuEventRecord, CUresult, CUevent, CUstream)                                                                 \
+  F(cuEventSynchronize, CUresult, CUevent)                                                                      \
+  F(cuEventElapsedTime, CUresult, float *, CUevent, CUevent)
+
+template <class Result, class... Arguments>
+using DriverFunction = Result(CUDAAPI *)(Arguments...);
+
+struct Driver {
+#define QSES_DRIVER_MEMBER(name, ...) DriverFunction<__VA_ARGS__> name = nullptr;
+  QSES_DRIVER_FUNCTIONS(QSES_DRIVER_MEMBER)
+#undef QSES_DRIVER_MEMBER
+  // Whether its functions can be called: CUDA_SUCCESS; CUDA_ERROR_STUB_LIBRARY where there is none, an older one, or
+  // one that lacks a function; else what cuInit returned.
+  CUresult state = CUDA_ERROR_STUB_LIBRARY;
+  std::string refusal;  // for CUDA_ERROR_STUB_LIBRARY: what is wrong and what to do, as the end of a sentence
+};
+
+// Loads and starts the driver when it is first called; may take a second then. Thread-safe, never throws.
+const Driver &driver();
+
+}  // namespace cudart
+}  // namespace quickses
