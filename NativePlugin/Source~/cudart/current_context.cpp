@@ -10,6 +10,7 @@ namespace cudart {
 namespace {
 
 thread_local cudaError_t last_error = cudaSuccess;
+thread_local int last_selected = 0;
 
 struct PrimaryContext {
   std::mutex mutex;
@@ -54,9 +55,13 @@ cudaError_t start() {
 
 CUresult make_current(int device) {
   CUcontext context = nullptr;
-  const CUresult result = primary_context(device, &context);
-  return result == CUDA_SUCCESS ? driver().cuCtxSetCurrent(context) : result;
+  CUresult result = primary_context(device, &context);
+  if (result == CUDA_SUCCESS) result = driver().cuCtxSetCurrent(context);
+  if (result == CUDA_SUCCESS) last_selected = device;
+  return result;
 }
+
+int selected_device() { return last_selected; }
 
 int current_device() {
   CUcontext current = nullptr;

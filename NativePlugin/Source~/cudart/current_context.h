@@ -2,7 +2,7 @@
 // The state behind the functions of CUDA's runtime: which device a thread has selected, and its last error.
 //
 // A thread's device is that of its current context, as in NVIDIA's runtime (CUDA Runtime API, "Interactions with the
-// CUDA Driver API"), and kept nowhere else: so code with another runtime, or with none, may share the thread.
+// CUDA Driver API"): so code with another runtime, or with none, may share the thread.
 #pragma once
 
 #include "cudart/driver.h"
@@ -27,6 +27,9 @@ cudaError_t start();
 // Makes the primary context of a device the thread's. It is retained for good when it is first asked for: other users
 // of CUDA in the process share it.
 CUresult make_current(int device);
+
+// The device that the thread made current last; 0 if it never did.
+int selected_device();
 
 // The device whose primary context is current; -1 if the current one is another's, which has none of our kernels.
 int current_device();

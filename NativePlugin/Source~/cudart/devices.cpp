@@ -12,23 +12,21 @@ cudaError_t CUDARTAPI cudaGetDeviceCount(int *count) {
   return remember(driver().cuDeviceGetCount(count));
 }
 
-// The device of the thread's current context; 0, the default, on a thread that has none yet.
+// The device of the thread's current context. Where there is none yet, or the driver can't tell any more: the one the
+// thread has selected last, or 0. So it fails only without a driver: CUB (1.17, util_device.cuh) does not look whether
+// it has, and would go on with entry -1 of an array.
 cudaError_t CUDARTAPI cudaGetDevice(int *device) {
-  *device = 0;
+  *device = selected_device();
   if (const cudaError_t error = start()) return remember(error);
   CUdevice current = 0;
-  const CUresult result = driver().cuCtxGetDevice(&current);
-  if (result == CUDA_ERROR_INVALID_CONTEXT) return cudaSuccess;
-  if (result != CUDA_SUCCESS) return remember(result);
   int count = 0;
-  if (const cudaError_t error = cudaGetDeviceCount(&count)) return error;
+  if (driver().cuCtxGetDevice(&current) != CUDA_SUCCESS || driver().cuDeviceGetCount(&count) != CUDA_SUCCESS)
+    return cudaSuccess;
   for (int ordinal = 0; ordinal < count; ++ordinal) {
     CUdevice handle = 0;
-    if (driver().cuDeviceGet(&handle, ordinal) != CUDA_SUCCESS || handle != current) continue;
-    *device = ordinal;
-    return cudaSuccess;
+    if (driver().cuDeviceGet(&handle, ordinal) == CUDA_SUCCESS && handle == current) *device = ordinal;
   }
-  return remember(cudaErrorInvalidDevice);
+  return cudaSuccess;
 }
 
 // Makes the device's primary context the thread's, and starts the device if nobody has yet.

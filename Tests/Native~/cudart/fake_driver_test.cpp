@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: MIT
+// The library with drivers that do not do (fake_driver.cpp): what is wrong is said, and the CPU takes over. CTest puts
+// one of them in the place of NVIDIA's and says in QUICKSES_FAKE_DRIVER which.
+#include "capi/capi_fixture.h"
+
+#include <cstdio>
+#include <cstdlib>
+
+#if defined(_WIN32)
+#define WIN32_LEAN_AND_MEAN
+#include <windows.h>
+#else
+#include <dlfcn.h>
+#endif
+
+namespace {
+
+using namespace capi_fixture;
+
+#define REQUIRE_DRIVER(name)                                                                         \
+  if (const char *given = std::getenv("QUICKSES_FAKE_DRIVER"); !given || std::string(given) != name) \
+  GTEST_SKIP() << "skipped: is for the fake driver " name
+
+qses_status create(qses_backend backend, qses_context **context) {
+  qses_context_options options;
+  qses_context_options_init(&options);
+  options.backend = backend;
+  options.threads = 2;
+  return qses_context_create(&options, context);
+}
+
+void expect_the_cpu_takes_over(const std::string &reason) {
+  qses_context *context = nullptr;
+  ASSERT_EQ(create(QSES_BACKEND_AUTO, &context), QSES_OK) << qses_last_error();
+  qses_backend backend{};
+  qses_backend_description description = empty_description();
+  ASSERT_EQ(qses_context_info(context, &backend, &description), QSES_OK);
+  EXPECT_EQ(backend, QSES_BACKEND_CPU);
+  EXPECT_NE(std::string(description.reason).find(reason), std::string::npos) << description.reason;
+  set_atoms(context, water());
+  EXPECT_EQ(qses_compute(context, nullptr, nullptr), QSES_OK) << qses_last_error();
+  const Surface surface = copy_surface(context);
+  EXPECT_EQ(mesh_checks::manifold_fault(surface.mesh), "");
+  EXPECT_GT(surface.report.area, 30);
+  qses_context_destroy(context);
+}
+
+void expect_refused(const std::string &reason) {
+  qses_backend_description description = empty_description();
+  ASSERT_EQ(qses_backend_info(QSES_BACKEND_CUDA, &description), QSES_OK);
+  EXPECT_FALSE(description.available);
+  EXPECT_EQ(std::string(description.reason), reason);
+  uint32_t count = 7;
+  EXPECT_EQ(qses_device_count(&count), QSES_OK);
+  EXPECT_EQ(count, 0u);
+  qses_context *context = nullptr;
+  expect_error(create(QSES_BACKEND_CUDA, &context), QSES_BACKEND_UNAVAILABLE, {reason.c_str()});
+  EXPECT_EQ(context, nullptr);
+  expect_the_cpu_takes_over(reason);
+}
+
+#if defined(_WIN32)
+constexpr const char *kLibrary = "nvcuda.dll";
+#else
+constexpr const char *kLibrary = "libcuda.so.1";
+#endif
+
+TEST(FakeDriver, NoneIsInstalled) {
+  REQUIRE_DRIVER("none");
+#if !defined(_WIN32)
+  if (dlopen(kLibrary, RTLD_NOW)) GTEST_SKIP() << "skipped: there is a driver on this machine";
+#endif
+  expect_refused(std::string("no NVIDIA driver is installed (") + kLibrary + " was not found)");
+}
+
+TEST(FakeDriver, NoDevice) {
+  REQUIRE_DRIVER("no_device");
+  expect_refused("no CUDA device is present, or none is visible to this process");
+}
+
+TEST(FakeDriver, TooOld) {
+  REQUIRE_DRIVER("too_old");
+  expect_refused("the NVIDIA driver serves CUDA 10.2, but this library needs 11.0: update the driver");
+}
+
+TEST(FakeDriver, LacksAFunction) {
+  REQUIRE_DRIVER("incomplete");
+  expect_refused(std::string("the NVIDIA driver (") + kLibrary +
+                 ") lacks the function cuEventElapsedTime: install the driver again");
+}
+
+// ---- a driver whose calls fail, from any one of them on -------------------------------------------------------------
+
+int fail_after(int good, int error) {
+  using Function = int (*)(int, int);
+#if defined(_WIN32)
+  static const auto function = reinterpret_cast<Function>(
+      reinterpret_cast<void *>(GetProcAddress(GetModuleHandleA(kLibrary), "fake_driver_fail_after")));
+#else
+  static const auto function = reinterpret_cast<Function>(dlsym(dlopen(kLibrary, RTLD_NOW), "fake_driver_fail_after"));
+#endif
+  return function(good, error);
+}
+
+// Allowed is success, or one of these errors with a sentence.
+void expect_said(qses_status status) {
+  if (status == QSES_OK) return;
+  EXPECT_TRUE(status == QSES_DEVICE_ERROR || status == QSES_OUT_OF_MEMORY || status == QSES_BACKEND_UNAVAILABLE)
+      << status;
+  EXPECT_NE(std::string(qses_last_error()), "");
+}
+
+// All that asks something of the driver. Kernels that do nothing find no surface.
+bool use_everything() {
+  qses_context *context = nullptr;
+  const qses_status created = create(QSES_BACKEND_CUDA, &context);
+  expect_said(created);
+  if (created != QSES_OK) {
+    EXPECT_EQ(context, nullptr);
+    return false;
+  }
+  const Atoms atoms = water();
+  qses_mesh mesh = empty_mesh();
+  qses_size_estimate estimate;
+  qses_size_estimate_init(&estimate);
+  qses_progress progress;
+  qses_progress_init(&progress);
+  const auto is_good_job = [](const qses_progress &p) {
+    if (p.state == QSES_JOB_FINISHED) return true;
+    EXPECT_EQ(p.state, QSES_JOB_FAILED);
+    EXPECT_TRUE(p.status == QSES_DEVICE_ERROR || p.status == QSES_OUT_OF_MEMORY) << p.status;
+    EXPECT_NE(std::string(p.message), "");
+    return false;
+  };
+  const auto is_good = [](qses_status status) {
+    expect_said(status);
+    return status == QSES_OK;
+  };
+  const bool good = is_good(qses_set_atoms(context, atoms.positions.data(), 0, atoms.radii.data(), atoms.size())) &&
+                    is_good(qses_compute(context, nullptr, nullptr)) &&
+                    is_good(qses_estimate(context, nullptr, &estimate)) && is_good(qses_begin(context, nullptr)) &&
+                    is_good(qses_wait(context, -1, nullptr)) && is_good(qses_poll(context, &progress)) &&
+                    is_good_job(progress) && is_good(qses_collect(context, &mesh));
+  qses_context_destroy(context);
+  return good;
+}
+
+class FailingDriver : public testing::TestWithParam<int> {
+ protected:
+  void SetUp() override {
+    REQUIRE_DRIVER("failing");
+    qses_backend_description description = empty_description();
+    ASSERT_EQ(qses_backend_info(QSES_BACKEND_CUDA, &description), QSES_OK);  // loads it
+    ASSERT_TRUE(description.available) << description.reason;
+    EXPECT_EQ(std::string(description.device), "Fake GPU");
+    is_loaded_ = true;
+  }
+  void TearDown() override {
+    if (is_loaded_) fail_after(-1, 0);
+  }
+
+ private:
+  bool is_loaded_ = false;
+};
+
+// Errors that a process may survive; negative: of one call only.
+TEST_P(FailingDriver, EveryCallMayFailAndTheNextMayNot) {
+  fail_after(-1, 0);
+  ASSERT_TRUE(use_everything());
+  const int calls = fail_after(-1, 0);
+  ASSERT_GT(calls, 100);
+  int failed = 0;
+  for (int good = 0; good < calls; ++good) {
+    SCOPED_TRACE(good);
+    fail_after(good, GetParam());
+    failed += use_everything() ? 0 : 1;
+    fail_after(-1, 0);
+    ASSERT_FALSE(HasFailure());
+  }
+  EXPECT_GT(failed,
+            calls / 8);  // an allocation that is refused once is tried again, and some calls end what is over
+  EXPECT_TRUE(use_everything());
+  if (GetParam() < 0) return;
+  fail_after(0, GetParam());
+  expect_the_cpu_takes_over("the fake driver was told to fail");
+}
+INSTANTIATE_TEST_SUITE_P(Errors, FailingDriver, testing::Values(-2, 2, 46, -201, 709, -999, 999));  // cudaError_t
+
+// The device is lost: Windows ended a kernel (702), or the driver was restarted under the process (719).
+class LostDevice : public FailingDriver {};
+
+TEST_P(LostDevice, IsSaidForGoodAndTheCpuTakesOver) {
+  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  fail_after(-1, 0);
+  ASSERT_TRUE(use_everything());
+  const int calls = fail_after(-1, 0);
+  for (int good = 1; good < calls; good += 1 + calls / 12) {
+    SCOPED_TRACE(good);
+    EXPECT_EXIT(
+        {
+          fail_after(good, GetParam());
+          const bool survived = use_everything();
+          qses_backend_description description = empty_description();
+          qses_backend_info(QSES_BACKEND_CUDA, &description);
+          EXPECT_FALSE(survived && description.available);
+          fail_after(-1, 0);  // nobody asks the device again
+          qses_context *context = nullptr;
+          expect_error(create(QSES_BACKEND_CUDA, &context), QSES_BACKEND_UNAVAILABLE, {"does not recover"});
+          expect_the_cpu_takes_over("does not recover");
+          std::_Exit(HasFailure() ? 1 : 0);
+        },
+        testing::ExitedWithCode(0), "");
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Errors, LostDevice, testing::Values(702, 719));
+
+}  // namespace
