@@ -19,7 +19,7 @@ elseif(NOT BUILD_SHARED_LIBS OR QUICKSES_SANITIZE)
 endif()
 
 if(WIN32)
-  # quickses.dll is the plug-in as it is. (With MinGW everything is in it; see Documentation~/building.md for MSVC.)
+  # quickses.dll is the plug-in as it is: MinGW puts everything into it.
   set(_platform windows-x86_64)
   set(_plugin quickses)
   set(_files "$<TARGET_FILE:quickses>")
