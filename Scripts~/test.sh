@@ -77,9 +77,7 @@ if [ "$with_mpi" = yes ]; then
   ctest --preset mpi --tests-regex '^cli_mpi_test$' --no-tests=error
 fi
 
-platforms=(--platform linux-x86_64)
 if [ "$with_windows" = yes ]; then
-  platforms+=(--platform windows-x86_64)
   export WINEPREFIX="$PWD/.build/wine" WINEDEBUG=-all
   mkdir -p "$WINEPREFIX"
   # Wine's server and services stay until the end: to start them anew for each program takes seconds. They keep the output
@@ -100,11 +98,19 @@ if [ "$with_windows" = yes ]; then
   cmp .build/cpu/1crn.ply .build/windows/1crn.ply
 fi
 
-# The package as it is handed out, with the CPU back end.
+# The package with all that was asked for; with --with-cuda --with-windows it is the one that is released.
 echo "==== package: make and check"
-rm -f .build/cpu/org.quickses.unity-*.tgz
-cmake --build --preset cpu --target upm
-python3 Scripts~/package/check-package .build/cpu/org.quickses.unity-*.tgz "${platforms[@]}"
+if [ "$with_windows" = yes ]; then
+  package_options=()
+  if [[ " ${presets[*]} " != *" cuda "* ]]; then package_options=(--cpu-only); fi
+  bash Scripts~/package.sh "${package_options[@]}"
+else
+  mkdir -p .build/package
+  rm -f .build/package/org.quickses.unity-*.tgz{,.sha256}
+  cmake --build --preset "${presets[-1]}" --target plugin
+  python3 -B Scripts~/package/make-package .build/package
+  python3 -B Scripts~/package/check-package .build/package/org.quickses.unity-*.tgz --platform linux-x86_64
+fi
 
 # The C# layers, with the plug-in of that package: what Unity compiles runs against a double of the engine, as in a player
 # and, with collections checks, as in the Editor.

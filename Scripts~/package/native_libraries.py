@@ -3,6 +3,7 @@
 
 import os
 import re
+import struct
 import subprocess
 
 NEWEST_GLIBC = (2, 35)  # Ubuntu 22.04
@@ -14,9 +15,8 @@ LINUX_NEEDS = {
     "libquickses.so": LINUX_SYSTEM | {"libquickses_tbb.so"},
     "libquickses_tbb.so": LINUX_SYSTEM | {"libstdc++.so.6"},
 }
-# Parts of every Windows from 10 on. (Not those that come with compilers: libgcc_s, libstdc++, vcruntime, msvcp, vcomp.)
-WINDOWS_SYSTEM = re.compile(
-    r"(advapi32|bcrypt|kernel32|msvcrt|ntdll|ole32|shell32|ucrtbase|user32|ws2_32|api-ms-win-[a-z0-9-]+)\.dll")
+WINDOWS_NEEDS = {"kernel32.dll", "msvcrt.dll"}  # Parts of every Windows.
+MACHINE_CODE, PTX = 2, 1  # kinds of entries in a fat binary
 
 
 def declared_functions(header):
@@ -45,6 +45,40 @@ def check_glibc(text):
         if numbers > NEWEST_GLIBC:
             faults.append(f"needs GLIBC_{version}; {'.'.join(map(str, NEWEST_GLIBC))} is the newest allowed")
     return faults
+
+
+def fat_binaries(data):
+    """Code for GPUs in a library: a set of (kind, architecture) for each fat binary that CUDA's fatbinary has made."""
+    found, at = [], data.find(b"\x50\xed\x55\xba\x01\x00\x10\x00")  # its mark, version 1, a header of 16 bytes
+    while at >= 0:
+        entry, end = at + 16, at + 16 + struct.unpack_from("<Q", data, at + 8)[0]
+        found.append(set())
+        while entry < end:
+            kind, _, header, size = struct.unpack_from("<HHIQ", data, entry)
+            found[-1].add((kind, struct.unpack_from("<I", data, entry + 28)[0]))
+            entry += max(1, header + size)
+        at = data.find(b"\x50\xed\x55\xba\x01\x00\x10\x00", end)
+    return found
+
+
+def released_architectures(cmake_lists):
+    """What every fat binary of a release must hold: a set as of fat_binaries."""
+    with open(cmake_lists, encoding="utf-8") as file:
+        words = re.search(r'QUICKSES_CUDA_ARCHITECTURES "(.*?)"', file.read()).group(1).split(";")
+    return ({(MACHINE_CODE, int(re.match(r"\d+", word).group())) for word in words} |
+            {(PTX, int(word)) for word in words if word.isdigit()})
+
+
+def check_gpu_code(path, cmake_lists):
+    with open(path, "rb") as file:
+        try:
+            found = fat_binaries(file.read())
+        except struct.error:
+            return ["has damaged code for GPUs"]
+    missing = released_architectures(cmake_lists) - set.intersection(*found) if found else set()
+    return ([] if found else ["has no code for GPUs"]) + [
+        f"has no {'machine code' if kind == MACHINE_CODE else 'PTX'} for compute capability {number / 10}"
+        for kind, number in sorted(missing)]
 
 
 def check_elf(path, name, beside, header):
@@ -79,7 +113,7 @@ def check_pe(path, header):
     if "file format pei-x86-64" not in text:
         return ["is no library of Windows on x86-64"]
     faults = [f"needs {library}" for library in re.findall(r"DLL Name: (\S+)", text)
-              if not WINDOWS_SYSTEM.fullmatch(library.lower())]
+              if library.lower() not in WINDOWS_NEEDS]
     table = re.search(r"\[Ordinal/Name Pointer\] Table.*\n((?:\s*\[ *\d+\].*\n)*)", text)
     exported = re.findall(r"(?m)([^\s\]]+)$", table.group(1)) if table else []
     return faults + check_exports(set(exported), header)

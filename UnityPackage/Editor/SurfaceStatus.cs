@@ -89,8 +89,8 @@ namespace QuickSes.Editor
             if (used != SurfaceBackend.Cpu || string.IsNullOrEmpty(reason))
                 return null;
             return IsCpuOnly(reason)
-                ? "The native library in use is CPU-only: it was built without CUDA, as the one for Windows in this " +
-                  "package is. To compute on an NVIDIA GPU build it with CUDA: see Documentation~/building.md."
+                ? "The native library in use is CPU-only: it was built without CUDA. Released packages compute on " +
+                  "NVIDIA GPUs; to build such a one see Documentation~/building.md."
                 : $"Not on the GPU: {reason}";
         }
 

@@ -19,7 +19,8 @@ elseif(NOT BUILD_SHARED_LIBS OR QUICKSES_SANITIZE)
 endif()
 
 if(WIN32)
-  # quickses.dll is the plug-in as it is. (With MinGW everything is in it; see Documentation~/building.md for MSVC.)
+  # quickses.dll is the plug-in as it is: MinGW puts everything into it. Its table of symbols would be a third of it.
+  target_link_options(quickses PRIVATE -Wl,-s)
   set(_platform windows-x86_64)
   set(_plugin quickses)
   set(_files "$<TARGET_FILE:quickses>")

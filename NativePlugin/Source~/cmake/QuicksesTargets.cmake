@@ -7,13 +7,8 @@ target_compile_features(quickses_options INTERFACE cxx_std_17)
 if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
   target_compile_options(quickses_options INTERFACE
     -Wall -Wextra "$<$<BOOL:${QUICKSES_WERROR}>:-Werror>")
-elseif(MSVC)
-  target_compile_options(quickses_options INTERFACE
-    "$<$<COMPILE_LANGUAGE:C,CXX>:/W4;/utf-8>"
-    "$<$<COMPILE_LANGUAGE:CXX>:/permissive-;/Zc:__cplusplus;/Zc:preprocessor>"
-    "$<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=/utf-8,/Zc:__cplusplus,/Zc:preprocessor>")
-  target_compile_definitions(quickses_options INTERFACE _USE_MATH_DEFINES NOMINMAX)
 endif()
+
 if(QUICKSES_SANITIZE)
   set(_sanitize "-fsanitize=${QUICKSES_SANITIZE};-fno-omit-frame-pointer")
   if(QUICKSES_SANITIZE MATCHES "undefined")

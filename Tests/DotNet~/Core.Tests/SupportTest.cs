@@ -5,6 +5,7 @@ using System.IO;
 using System.Reflection;
 using System.Runtime.InteropServices;
 using System.Runtime.Loader;
+using System.Text.Json;
 
 namespace QuickSes.Tests
 {
@@ -24,6 +25,17 @@ namespace QuickSes.Tests
         [Test]
         public void MissingLibraryIsTold() =>
             ExpectUnsupported(() => NativeLibrary.Load("/no/such/folder/libquickses.so"), "can't be loaded");
+
+        [Test]
+        public void MissingLibraryIsToldWithTheUrlOfThePackage()
+        {
+            string manifest = File.ReadAllText(Path.Combine(Repository.Root, "package.json"));
+            using JsonDocument document = JsonDocument.Parse(manifest);
+            string url = document.RootElement.GetProperty("repository").GetProperty("url").GetString();
+            Assert.That(url, Does.StartWith("https://").And.EndsWith(".git"));
+            ExpectUnsupported(() => NativeLibrary.Load("/no/such/folder/libquickses.so"),
+                $"Add package from git URL > {url}#upm .");
+        }
 
         [Test]
         public void FileThatIsNoLibraryIsTold() =>

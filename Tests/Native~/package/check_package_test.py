@@ -6,104 +6,53 @@
 The packages are small, with libraries of empty functions. Without MinGW, faults of quickses.dll are not tried.
 """
 
-import io
-import json
 import os
 import re
+import struct
 import subprocess
 import sys
 import tarfile
 import tempfile
 import unittest
 
+from small_package import LINUX, WINDOWS, SmallPackage, built, manifest, meta, write_archive, write_folder
+
 REPOSITORY = COMPILER = MINGW = ""
-LINUX = "UnityPackage/Plugins/linux-x86_64/"
-WINDOWS = "UnityPackage/Plugins/windows-x86_64/"
 
 
-def meta(number, importer, folder=False):
-    return (f"fileFormatVersion: 2\nguid: {number:032x}\n" + ("folderAsset: yes\n" if folder else "") +
-            f"{importer}:\n  externalObjects: {{}}\n  userData: \n  assetBundleName: \n  assetBundleVariant: \n").encode()
-
-
-def built(compiler, source, *options):
-    """The bytes of a shared library."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = os.path.join(folder, "library.bin")
-        subprocess.run([compiler, "-shared", "-o", path, "-x", "c", "-", "-x", "none", *options], input=source,
-                       text=True, check=True)
-        with open(path, "rb") as file:
-            return file.read()
-
-
-def built_beside(other, name, source, *options):
-    """The same, linked to a library of the given bytes and name."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = os.path.join(folder, name)
-        with open(path, "wb") as file:
-            file.write(other)
-        return built(COMPILER, source, *options, "-Wl,--no-as-needed", path)
+def fat_binary(*kinds_and_architectures):
+    """Code for GPUs, as far as check-package reads it: of each entry 2, machine code, or 1, PTX; and the architecture."""
+    entries = b"".join(struct.pack("<HHIQ12xI32x", kind, 0, 64, 8, architecture) + b"8 bytes "
+                       for kind, architecture in kinds_and_architectures)
+    return struct.pack("<IHHQ", 0xba55ed50, 1, 16, len(entries)) + entries
 
 
 class CheckPackageTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        with open(os.path.join(REPOSITORY, "NativePlugin/Source~/include/quickses/quickses.h"), encoding="utf-8") as file:
-            names = re.findall(r"QSES_API [^;(]*[ *](qses_[a-z0-9_]+)\(", file.read())
-        cls.source = "".join(f"void {name}(void) {{}}\n" for name in names)
-        cls.linux = ("-fPIC", "-nostartfiles", "-Wl,-soname,libquickses.so")
-        cls.tbb = built(COMPILER, "void tbb(void) {}", "-fPIC", "-Wl,-soname,libquickses_tbb.so")
-        cls.good = built_beside(cls.tbb, "libquickses_tbb.so", cls.source, *cls.linux, "-Wl,-rpath,$ORIGIN")
-        cls.dll = built(MINGW, cls.source) if MINGW else None
+        cls.small = SmallPackage(REPOSITORY, COMPILER, MINGW)
+        cls.source, cls.linux, cls.tbb = cls.small.source, cls.small.linux, cls.small.tbb
+        cls.good, cls.dll = cls.small.good, cls.small.dll
 
     def right_package(self):
-        """{path: bytes} of a small package without faults."""
-        templates = os.path.join(REPOSITORY, "NativePlugin/Source~/plugin_metas")
+        return self.small.files()
 
-        def template(name):
-            with open(os.path.join(templates, name), "rb") as file:
-                return file.read()
-
-        files = {"package.json": json.dumps({"name": "org.quickses.unity", "version": "1.2.3"}).encode(),
-                 "package.json.meta": meta(1, "PackageManifestImporter"), "Documentation~/index.md": b"# Manual\n",
-                 "UnityPackage.meta": meta(2, "DefaultImporter", folder=True),
-                 "UnityPackage/Plugins.meta": template("Plugins.meta"),
-                 "UnityPackage/Plugins/linux-x86_64.meta": template("linux-x86_64.meta"),
-                 LINUX + "libquickses.so": self.good, LINUX + "libquickses_tbb.so": self.tbb,
-                 LINUX + "libquickses.so.meta": template("linux-x86_64/libquickses.so.meta"),
-                 LINUX + "libquickses_tbb.so.meta": template("linux-x86_64/libquickses_tbb.so.meta"),
-                 "UnityPackage/Runtime.meta": meta(3, "DefaultImporter", folder=True),
-                 "UnityPackage/Runtime/Core.meta": meta(4, "DefaultImporter", folder=True),
-                 "UnityPackage/Runtime/Core/QuickSes.Core.asmdef": b"{}",
-                 "UnityPackage/Runtime/Core/QuickSes.Core.asmdef.meta": meta(5, "AssemblyDefinitionImporter")}
-        documents = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "LICENSE.md", "SECURITY.md",
-                     "Third Party Notices.md")
-        for number, name in enumerate(documents, 6):
-            files[name] = b"text\n"
-            files[name + ".meta"] = meta(number, "TextScriptImporter")
-        if self.dll:
-            files["UnityPackage/Plugins/windows-x86_64.meta"] = template("windows-x86_64.meta")
-            files[WINDOWS + "quickses.dll"] = self.dll
-            files[WINDOWS + "quickses.dll.meta"] = template("windows-x86_64/quickses.dll.meta")
-        return files
-
-    def run_on(self, files, *options, name="org.quickses.unity-1.2.3.tgz", change=lambda entries: entries):
-        entries = []
-        for path, data in sorted(files.items()):
-            entry = tarfile.TarInfo("package/" + path)
-            entry.size, entry.mtime = len(data), 499162500
-            entries.append((entry, data))
-        with tempfile.TemporaryDirectory() as folder:
-            archive_name = os.path.join(folder, name)
-            with tarfile.open(archive_name, "w:gz", format=tarfile.USTAR_FORMAT) as archive:
-                for entry, data in change(entries):
-                    archive.addfile(entry, io.BytesIO(data))
-            done = subprocess.run([sys.executable, "-B", os.path.join(REPOSITORY, "Scripts~/package/check-package"), archive_name,
-                                   *options], capture_output=True, text=True, check=False)
+    def check(self, package, *options):
+        done = subprocess.run([sys.executable, "-B", os.path.join(REPOSITORY, "Scripts~/package/check-package"), package,
+                               *options], capture_output=True, text=True, check=False)
         return done.returncode, done.stdout + done.stderr
 
-    def assert_fault(self, files, sentence, count=1, **how):
-        status, text = self.run_on(files, **how)
+    def run_on(self, files, *options, name="org.quickses.unity-1.2.3.tgz", change=lambda entries: entries, sums=None):
+        with tempfile.TemporaryDirectory() as folder:
+            archive = os.path.join(folder, name)
+            write_archive(archive, files, change)
+            if sums is not None:
+                with open(archive + ".sha256", "w", encoding="utf-8") as file:
+                    file.write(sums)
+            return self.check(archive, *options)
+
+    def assert_fault(self, files, sentence, *options, count=1, **how):
+        status, text = self.run_on(files, *options, **how)
         self.assertEqual(status, 1, text)
         self.assertIn(sentence, text)
         self.assertIn(f" {count} faults", text)  # this fault, and no other one
@@ -147,8 +96,7 @@ class CheckPackageTest(unittest.TestCase):
 
     def test_guid_of_the_package_in_a_sample(self):
         files = self.right_package()
-        files["package.json"] = json.dumps({"name": "org.quickses.unity", "version": "1.2.3",
-                                            "samples": [{"path": "Samples~/Player"}]}).encode()
+        files["package.json"] = manifest(samples=[{"path": "Samples~/Player"}])
         files["Samples~/Player/A.cs"] = b""
         files["Samples~/Player/A.cs.meta"] = meta(21, "MonoImporter")
         self.assertEqual(self.run_on(files)[0], 0)
@@ -157,8 +105,7 @@ class CheckPackageTest(unittest.TestCase):
 
     def test_sample_that_is_not_there(self):
         files = self.right_package()
-        files["package.json"] = json.dumps({"name": "org.quickses.unity", "version": "1.2.3",
-                                            "samples": [{"path": "Samples~/Player"}]}).encode()
+        files["package.json"] = manifest(samples=[{"path": "Samples~/Player"}])
         self.assert_fault(files, "sample Samples~/Player is not there")
 
     def test_sample_that_is_not_listed(self):
@@ -187,6 +134,17 @@ class CheckPackageTest(unittest.TestCase):
     def test_archive_of_another_version(self):
         self.assert_fault(self.right_package(), "its archive is called org.quickses.unity-1.2.3.tgz",
                           name="org.quickses.unity-1.2.4.tgz")
+
+    def test_repository(self):
+        for repository in (None, {"type": "git"}, {"url": "git@quickses.test:quickses.git"}, {"url": "https://quickses.test/"}):
+            files = self.right_package()
+            files["package.json"] = manifest(repository=repository)
+            self.assert_fault(files, "package.json: its repository has no url https://....git")
+        url = "https://quickses.test/quickses.git"
+        files["package.json"] = manifest(repository={"url": url, "revision": "0123456789abcdef" * 2 + "01234567"})
+        self.assertEqual(self.run_on(files)[0], 0)
+        files["package.json"] = manifest(repository={"url": url, "revision": "v1.2.3"})
+        self.assert_fault(files, "package.json: the revision of its repository is no commit")
 
     def test_manifest_that_is_no_json(self):
         files = self.right_package()
@@ -221,10 +179,42 @@ class CheckPackageTest(unittest.TestCase):
         with tempfile.NamedTemporaryFile(suffix=".tgz") as file:
             file.write(b"\x1f\x8b no archive")
             file.flush()
-            done = subprocess.run([sys.executable, "-B", os.path.join(REPOSITORY, "Scripts~/package/check-package"), file.name],
-                                  capture_output=True, text=True, check=False)
-        self.assertEqual(done.returncode, 1)
-        self.assertNotIn("Traceback", done.stderr)
+            status, text = self.check(file.name)
+        self.assertEqual(status, 1)
+        self.assertNotIn("Traceback", text)
+
+    def test_archive_that_is_too_large(self):
+        files = self.right_package()
+        files["Documentation~/noise.png"] = os.urandom(12_000_000)
+        self.assert_fault(files, " bytes; 12,000,000 are allowed")
+
+    def test_sums(self):
+        with tempfile.TemporaryDirectory() as folder:
+            archive = os.path.join(folder, "org.quickses.unity-1.2.3.tgz")
+            write_archive(archive, self.right_package())
+            lines = subprocess.run(["sha256sum", os.path.basename(archive)], cwd=folder, capture_output=True, text=True,
+                                   check=True).stdout
+            with tarfile.open(archive) as entries:
+                entries.extractall(folder)
+            libraries = [LINUX + "libquickses.so", LINUX + "libquickses_tbb.so"] + [WINDOWS + "quickses.dll"] * bool(self.dll)
+            lines += subprocess.run(["sha256sum", *("package/" + path for path in libraries)], cwd=folder, capture_output=True,
+                                    text=True, check=True).stdout
+            with open(archive + ".sha256", "w", encoding="utf-8") as file:
+                file.write(lines)
+            self.assertEqual(self.check(archive)[0], 0)
+        self.assert_fault(self.right_package(), "1.2.3.tgz.sha256: has other sums than the archive", sums="0" * 64 + lines[64:])
+
+    # ---- the unpacked package
+
+    def test_folder(self):
+        for more, sentence in (({}, ", 0 faults"), ({".git/config": b"", ".gitattributes": b""}, ", 0 faults"),
+                               ({".gitignore": b""}, ".gitignore: doesn't belong in the package"),
+                               ({"README.md.meta": b""}, "README.md.meta: must begin with fileFormatVersion")):
+            with self.subTest(more), tempfile.TemporaryDirectory() as folder:
+                write_folder(folder, {**self.right_package(), **more})
+                status, text = self.check(folder, "--platform", "linux-x86_64")
+                self.assertIn(sentence, text)
+                self.assertEqual(status, 0 if "0 faults" in sentence else 1)
 
     # ---- native libraries
 
@@ -260,9 +250,9 @@ class CheckPackageTest(unittest.TestCase):
         self.assert_library_fault(b"version https://git-lfs.github.com/spec/v1\n", "is no shared library of Linux")
 
     def test_needs_what_is_not_on_every_machine(self):
-        for name in ("libtbb.so.12", "libgomp.so.1", "libstdc++.so.6", "libcudart.so.12"):
+        for name in ("libtbb.so.12", "libgomp.so.1", "libstdc++.so.6", "libcudart.so.12", "libcuda.so.1"):
             other = built(COMPILER, "void other(void) {}", "-fPIC", f"-Wl,-soname,{name}")
-            self.assert_library_fault(built_beside(other, name, self.source, *self.linux), f"needs {name}")
+            self.assert_library_fault(self.small.built_beside(other, name, self.source, *self.linux), f"needs {name}")
 
     def test_symbol_that_the_header_does_not_declare(self):
         self.assert_library_fault(built(COMPILER, self.source + "void inflate(void) {}", *self.linux),
@@ -278,7 +268,7 @@ class CheckPackageTest(unittest.TestCase):
             self.assert_library_fault(library, "looks for libraries in /opt/lib")
 
     def test_no_rpath(self):
-        library = built_beside(self.tbb, "libquickses_tbb.so", self.source, *self.linux)
+        library = self.small.built_beside(self.tbb, "libquickses_tbb.so", self.source, *self.linux)
         self.assert_library_fault(library, "doesn't look for libraries in its own folder")
 
     def test_wrong_soname(self):
@@ -294,7 +284,7 @@ class CheckPackageTest(unittest.TestCase):
                           "-Wl,-soname,libc.so.6", f"-Wl,--version-script={script}")
         source = self.source.replace("void qses_compute(void) {}", "unsigned arc4random(void);"
                                      "unsigned qses_compute(void) { return arc4random(); }")
-        library = built_beside(other, "libc.so.6", source, *self.linux, "-nostdlib")
+        library = self.small.built_beside(other, "libc.so.6", source, *self.linux, "-nostdlib")
         self.assert_library_fault(library, "needs GLIBC_2.36; 2.35 is the newest allowed")
 
     def test_dll_that_is_none(self):
@@ -315,6 +305,28 @@ class CheckPackageTest(unittest.TestCase):
                            text=True, check=True)
             library = built(MINGW, source, "-Wl,--export-all-symbols", imports)
         self.assert_library_fault(library, "needs libgomp-1.dll", WINDOWS + "quickses.dll")
+
+    def test_dll_that_needs_more_of_windows(self):
+        if not self.dll:
+            self.skipTest("no MinGW")
+        source = self.source.replace("void qses_compute(void) {}", "__declspec(dllimport) int __stdcall MessageBeep(unsigned);"
+                                     "int qses_compute(void) { return MessageBeep(0); }")
+        self.assert_library_fault(built(MINGW, source, "-Wl,--export-all-symbols", "-luser32"), "needs USER32.dll",
+                                  WINDOWS + "quickses.dll")
+
+    def test_gpu_code(self):
+        everything = [(2, 75), (2, 80), (2, 86), (2, 89), (1, 90), (2, 90)]
+        files = {path: data for path, data in self.right_package().items() if "windows" not in path}
+        library = LINUX + "libquickses.so"
+        self.assert_fault(files, f"{library}: has no code for GPUs", "--cuda")
+        files[library] = self.good + fat_binary(*everything) + b"between" + fat_binary(*everything)
+        self.assertEqual(self.run_on(files, "--cuda")[0], 0)
+        files[library] = self.good + fat_binary(*everything) + fat_binary(*everything[1:])
+        self.assert_fault(files, f"{library}: has no machine code for compute capability 7.5", "--cuda")
+        files[library] = self.good + fat_binary(*everything[:4], (2, 90))
+        self.assert_fault(files, f"{library}: has no PTX for compute capability 9.0", "--cuda")
+        files[library] = self.good + fat_binary(*everything)[:-100]
+        self.assert_fault(files, f"{library}: has damaged code for GPUs", "--cuda")
 
     def test_dll_that_exports_something_else(self):
         if not self.dll:

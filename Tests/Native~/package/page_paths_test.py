@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""The files of the repository that its pages name are there.   page_paths_test.py REPOSITORY
+"""The files of the repository that its pages name are there, and so is the git URL.   page_paths_test.py REPOSITORY
 
 A name in backquotes is that of a file if it ends like a source: `arc.h`, `io/trajectory.h`, `Scripts~/setup.sh`. It may leave out
 folders in front. Names of users' files (1crn.pdb.txt) don't end so; unitymol.md names files of UnityMol.
 """
 
 import glob
+import json
 import os
 import re
 import sys
@@ -37,6 +38,13 @@ class PagePathsTest(unittest.TestCase):
         for page in pages:
             with self.subTest(page), open(page, encoding="utf-8") as file:
                 self.assertEqual(missing_names(file.read(), paths), [])
+
+    def test_git_url_is_the_repository_of_package_json(self):
+        with open(os.path.join(REPOSITORY, "package.json"), encoding="utf-8") as file:
+            expected = json.load(file)["repository"]["url"]
+        for page in ("README.md", "Documentation~/unity.md"):
+            with self.subTest(page), open(os.path.join(REPOSITORY, page), encoding="utf-8") as file:
+                self.assertEqual(set(re.findall(r"(https://[^\s`]+)#upm", file.read())), {expected})
 
     def test_missing_files_are_found(self):
         paths = {"/io/trajectory.h", "/Scripts~/setup.sh"}

@@ -7,6 +7,9 @@ namespace QuickSes.Interop
     /// <summary>Whether the native library is there and is the one these declarations were written after.</summary>
     internal static class NativeLibraryCheck
     {
+        /// <summary>What "Add package from git URL" takes: the repository of package.json, and its branch of releases.</summary>
+        private const string PackageUrl = "https://example.org/quickses-for-unity.git#upm";
+
         private const string Library = NativeMethods.Library;
         private static volatile bool s_isUsable;
 
@@ -31,9 +34,9 @@ namespace QuickSes.Interop
                 reason = $"The native library {Library} can't be loaded on {Platform()}: it is missing, or " +
                          "made for another system, or something that it needs is missing (Windows and Linux on " +
                          "x86-64 are supported; on Linux, glibc 2.35 or later is needed, as in Ubuntu 22.04). A " +
-                         "checkout of the project has none until it is built: `bash Scripts~/setup.sh && cmake " +
-                         "--preset cpu && cmake --build --preset cpu` there; more in Documentation~/building.md. " +
-                         e.Message;
+                         "checkout of the project has none until it is built (Documentation~/building.md). The " +
+                         "package with its libraries: Package Manager > + > Add package from git URL > " +
+                         $"{PackageUrl} . {e.Message}";
             }
             catch (BadImageFormatException e)
             {

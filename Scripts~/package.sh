@@ -1,0 +1,41 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Makes the package as it is released, org.quickses.unity-VERSION.tgz, with CUDA for Linux and Windows; checks it, and writes
+# the SHA-256 sums of it and of its native libraries beside it. Installs what is missing first. Needs no GPU.
+#   bash Scripts~/package.sh [--cpu-only] [FOLDER]
+# FOLDER: where it is left, default .build/package.
+# --cpu-only: without the CUDA back end, and without the need for the CUDA Toolkit.
+# The same commit gives the same bytes in any folder, with the same compilers; Scripts~/package/verify-package proves it.
+set -euo pipefail
+from=$PWD
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+presets=(cuda windows-cuda)
+setup=(--with-windows --with-cuda)
+check=(--cuda)
+folder=.build/package
+for argument in "$@"; do
+  case "$argument" in
+    --cpu-only) presets=(cpu windows) setup=(--with-windows) check=() ;;
+    -h | --help) sed -n '3,8s/^# //p' "$0"; exit 0 ;;
+    -*) echo "package.sh: unknown option $argument (there is --cpu-only)" >&2; exit 2 ;;
+    /*) folder=$argument ;;
+    *) folder=$from/$argument ;;
+  esac
+done
+bash Scripts~/setup.sh "${setup[@]}"
+
+# Build trees of its own: what somebody chose for another one, an architecture say, isn't in them.
+unset CFLAGS CXXFLAGS CUDAFLAGS LDFLAGS
+for preset in "${presets[@]}"; do
+  build=.build/package/$preset
+  cmake --preset "$preset" -B "$build" -DQUICKSES_BUILD_CLI=OFF -DQUICKSES_BUILD_TESTS=OFF
+  cmake --build "$build" --target plugin --parallel "$(nproc)"
+done
+
+mkdir -p "$folder"
+rm -f "$folder"/org.quickses.unity-*.tgz{,.sha256}
+python3 -B Scripts~/package/make-package "$folder"
+python3 -B Scripts~/package/check-package "$folder"/org.quickses.unity-*.tgz \
+  --platform linux-x86_64 --platform windows-x86_64 "${check[@]}"
+(cd "$folder" && sha256sum --check --ignore-missing org.quickses.unity-*.tgz.sha256)
