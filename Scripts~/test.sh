@@ -4,7 +4,8 @@
 #   bash Scripts~/test.sh [--with-cuda] [--with-mpi] [--with-windows] [--long]
 # --with-cuda: the CUDA Toolkit and the CUDA back end as well. Its tests need a GPU and are skipped where there is none.
 # --with-mpi: Open MPI, and the program that shares frames among processes.
-# --with-windows: the library, the program and the tests for Windows by MinGW-w64, run by Wine.
+# --with-windows: the library, the program and the tests for Windows by MinGW-w64, run by Wine; with CUDA if that is asked
+# for as well.
 # --long: 100,000 random sets of atoms instead of 2,000, on all cores, and 20,000 on the GPU if there is one
 # (Tests/Native~/properties/property_test.cpp); QUICKSES_PROPERTY_SEED is the first set's.
 # That sources are written as clang-format 14 writes them is one of the tests; without that version it is skipped.
@@ -24,7 +25,7 @@ for argument in "$@"; do
     --with-mpi) with_mpi=yes setup+=("$argument") ;;
     --with-windows) with_windows=yes setup+=("$argument") ;;
     --long) long=yes ;;
-    -h | --help) sed -n '3,12s/^# //p' "$0"; exit 0 ;;
+    -h | --help) sed -n '3,13s/^# //p' "$0"; exit 0 ;;
     *) echo "test.sh: unknown option $argument (there are --with-cuda, --with-mpi, --with-windows and --long)" >&2; exit 2 ;;
   esac
 done
@@ -85,24 +86,26 @@ if [ "$with_windows" = yes ]; then
   /usr/lib/wine/wineserver -p
   /usr/lib/wine/wine64 wineboot --init </dev/null >/dev/null 2>&1
   trap '/usr/lib/wine/wineserver -k' EXIT
-  echo "==== windows: configure"
-  cmake --preset windows
-  echo "==== windows: build"
-  cmake --build --preset windows --parallel "$(nproc)"
-  echo "==== windows: test"
+  windows=windows options=()
+  if [ "${presets[-1]}" = cuda ]; then windows=windows-cuda options=("-DQUICKSES_CUDA_ARCHITECTURES=$architecture"); fi
+  echo "==== $windows: configure"
+  cmake --preset "$windows" "${options[@]}"
+  echo "==== $windows: build"
+  cmake --build --preset "$windows" --parallel "$(nproc)"
+  echo "==== $windows: test"
   # Now and then Wine fails to start a program at all.
-  ctest --preset windows --parallel "$(nproc)" --repeat until-pass:3
-  echo "==== windows: the same mesh"
+  ctest --preset "$windows" --parallel "$(nproc)" --repeat until-pass:3
+  echo "==== $windows: the same mesh"
   .build/cpu/bin/quickses --quiet Tests/Data~/1CRN.pdb -o .build/cpu/1crn.ply
-  /usr/lib/wine/wine64 .build/windows/bin/quickses.exe --quiet Tests/Data~/1CRN.pdb -o .build/windows/1crn.ply
-  cmp .build/cpu/1crn.ply .build/windows/1crn.ply
+  /usr/lib/wine/wine64 ".build/$windows/bin/quickses.exe" --quiet Tests/Data~/1CRN.pdb -o ".build/$windows/1crn.ply"
+  cmp .build/cpu/1crn.ply ".build/$windows/1crn.ply"
 fi
 
 # The package with all that was asked for; with --with-cuda --with-windows it is the one that is released.
 echo "==== package: make and check"
 if [ "$with_windows" = yes ]; then
   package_options=()
-  if [[ " ${presets[*]} " != *" cuda "* ]]; then package_options=(--cpu-only); fi
+  if [ "${presets[-1]}" != cuda ]; then package_options=(--cpu-only); fi
   bash Scripts~/package.sh "${package_options[@]}"
 else
   mkdir -p .build/package
