@@ -106,6 +106,14 @@ rm -f .build/cpu/org.quickses.unity-*.tgz
 cmake --build --preset cpu --target upm
 python3 Scripts~/package/check-package .build/cpu/org.quickses.unity-*.tgz "${platforms[@]}"
 
+# What it takes to make these systems may be missing here, which is then said.
+echo "==== package: where nothing is installed"
+bare_systems=(bookworm)
+if [ "$with_windows" = yes ]; then bare_systems+=(wine); fi
+for system in "${bare_systems[@]}"; do
+  bash Scripts~/package/load-in-bare-system .build/cpu/org.quickses.unity-*.tgz "$system" || [ $? -eq 77 ]
+done
+
 # The C# layers, with the plug-in of that package: what Unity compiles runs against a double of the engine, as in a player
 # and, with collections checks, as in the Editor.
 echo "==== dotnet: test"

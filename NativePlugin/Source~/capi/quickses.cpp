@@ -7,6 +7,7 @@
 #include "capi/barrier.h"
 #include "capi/context.h"
 #include "capi/structs.h"
+#include "parallel/stay_loaded.h"
 
 #include <algorithm>
 #include <cmath>
@@ -140,6 +141,7 @@ qses_status qses_context_create(const qses_context_options *options, qses_contex
     const qses_context_options o = read_struct(options, qses_context_options_init, "qses_context_options");
     check_backend(o.backend);
     if (o.threads > 4096) invalid("options.threads is " + std::to_string(o.threads) + ": at most 4096");
+    quickses::stay_loaded();  // contexts leave threads behind
     auto made = std::make_unique<qses_context>();
     made->backend = choose_backend(o.backend, o.device, &made->description);
     if (!made->description.available)
