@@ -36,6 +36,7 @@ qses_backend_description describe_backend(qses_backend backend, int device) {
   const CudaDevice found = describe_cuda_device(device);
   qses_backend_description d{};
   d.available = found.available ? 1 : 0;
+  d.preparing = found.preparing ? 1 : 0;
   std::snprintf(d.device, sizeof d.device, "%s", found.name.c_str());
   std::snprintf(d.reason, sizeof d.reason, "%s", found.reason.c_str());
   d.total_memory = found.total_memory;

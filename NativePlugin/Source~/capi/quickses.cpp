@@ -147,9 +147,13 @@ qses_status qses_context_create(const qses_context_options *options, qses_contex
     if (!made->description.available)
       throw quickses::Error(QSES_BACKEND_UNAVAILABLE, std::string("CUDA can't be used: ") + made->description.reason);
 #if defined(QUICKSES_HAS_CUDA)
-    if (made->backend == QSES_BACKEND_CUDA)
+    if (made->backend == QSES_BACKEND_CUDA) {
       made->job =
           std::make_unique<quickses::SurfaceJob>(quickses::make_cuda_engine(o.device, o.threads, o.memory_budget));
+      // Another context may have been loading the kernels when this one looked.
+      made->description.preparing = 0;
+      made->description.reason[0] = 0;
+    }
 #endif
     if (!made->job)
       made->job = std::make_unique<quickses::SurfaceJob>(quickses::make_cpu_engine(o.threads, o.memory_budget));

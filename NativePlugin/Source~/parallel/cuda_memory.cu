@@ -4,6 +4,7 @@
 
 #include "cudart/current_context.h"
 #include "parallel/arena.h"
+#include "parallel/cuda_preparation.h"
 #include "parallel/error.h"
 
 #include <cuda_runtime.h>
@@ -66,6 +67,11 @@ Fault &fault() {
   return the_fault;
 }
 
+CudaPreparations &preparations() {
+  static CudaPreparations &all = *new CudaPreparations;  // never destroyed, as the fault
+  return all;
+}
+
 // Whether memory was given. After a fault, which any call may be the first to report, less would not do either.
 bool was_granted(cudaError_t error, const char *call) {
   if (error == cudaSuccess) return true;
@@ -119,6 +125,7 @@ CudaDevice describe_cuda_device(int ordinal) {
     device.reason = fault().sentence;
     return device;
   }
+  if (preparations().is_preparing(ordinal, &device)) return device;
   int count = 0;
   cudaError_t error = cudaGetDeviceCount(&count);
   if (error != cudaSuccess || count == 0) {
@@ -149,7 +156,10 @@ CudaDevice describe_cuda_device(int ordinal) {
     }
   }
   device.available = error == cudaSuccess;
-  if (device.available) return device;
+  if (device.available) {
+    preparations().remember(ordinal, device);
+    return device;
+  }
   cudaGetLastError();
   if (is_sticky(error)) {
     fault().remember(error, "the look at the device");
@@ -163,6 +173,14 @@ CudaDevice describe_cuda_device(int ordinal) {
   else
     device.reason = "the GPU does not answer: " + describe_error(error);
   return device;
+}
+
+void load_cuda_kernels(int device, const void *kernel) {
+  preparations().prepare(device, [&] {
+    const DeviceGuard guard(device);
+    cudaFuncAttributes attributes{};
+    check_cuda(cudaFuncGetAttributes(&attributes, kernel), "cudaFuncGetAttributes");
+  });
 }
 
 int count_cuda_devices() {
