@@ -72,10 +72,11 @@ CudaPreparations &preparations() {
   return all;
 }
 
-// Whether memory was given. After a fault, which any call may be the first to report, less would not do either.
+// Whether memory was given. After a fault, or a cudaDeviceReset by others, which any call may be the first to report,
+// less would not do either.
 bool was_granted(cudaError_t error, const char *call) {
   if (error == cudaSuccess) return true;
-  if (is_sticky(error)) check_cuda(error, call);
+  if (is_sticky(error) || error == cudaErrorContextIsDestroyed) check_cuda(error, call);
   cudaGetLastError();
   return false;
 }
@@ -207,10 +208,7 @@ uint64_t DeviceMemory::free_bytes() {
   // Code is loaded when a kernel first runs, and kernels have stacks: some 10 MiB. The rest is left to others.
   constexpr uint64_t kLeft = uint64_t(64) << 20;
   size_t free = 0, total = 0;
-  if (cudaMemGetInfo(&free, &total) != cudaSuccess) {
-    cudaGetLastError();
-    return 0;
-  }
+  if (!was_granted(cudaMemGetInfo(&free, &total), "cudaMemGetInfo")) return 0;
   return std::max<uint64_t>(1, free - std::min<uint64_t>(free, std::max<uint64_t>(free / 16, kLeft)));
 }
 

@@ -61,6 +61,8 @@
  *   needs a GPU, with a sentence that says so, until they are destroyed, which works as usual; their last meshes stay
  *   valid. New contexts with CUDA are refused with BACKEND_UNAVAILABLE until the process ends; AUTO takes the CPU.
  *   Contexts on the CPU live on.
+ *   A cudaDeviceReset by other code of the process takes away what all contexts on that GPU have there: then they give
+ *   errors, and can only be destroyed.
  *
  * Threads
  *   A context may be used by one thread at a time, but for qses_poll and qses_cancel, which may be called from any
