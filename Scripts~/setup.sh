@@ -76,11 +76,15 @@ has_candidate() { [[ $(apt-cache policy "$1" 2>/dev/null) == *"  Candidate: "[!\
 # Where that can't be had, only this check is left out.
 wants_formatter() { ! is_there clang-format-14 && has_candidate clang-format-14; }
 
+# For Scripts~/package/load-in-bare-system, which only root can use.
+wants_debootstrap() { [ "$(id -u)" -eq 0 ] && ! is_there /usr/sbin/debootstrap && has_candidate debootstrap; }
+
 missing=()
 for need in "${needs[@]}"; do
   is_there "${need#* }" || missing+=("${need%% *}")
 done
 if wants_formatter; then missing+=(clang-format-14); fi
+if wants_debootstrap; then missing+=(debootstrap); fi
 if [ "$with_cuda" = yes ] && ! has_cuda_toolkit; then missing+=(nvidia-cuda-toolkit); fi
 if [ ${#missing[@]} -eq 0 ]; then
   say "everything is installed"

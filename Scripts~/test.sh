@@ -115,6 +115,14 @@ else
   python3 -B Scripts~/package/check-package .build/package/org.quickses.unity-*.tgz --platform linux-x86_64
 fi
 
+# What it takes to make these systems may be missing here, which is then said.
+echo "==== package: where nothing is installed"
+bare_systems=(bookworm)
+if [ "$with_windows" = yes ]; then bare_systems+=(wine); fi
+for system in "${bare_systems[@]}"; do
+  bash Scripts~/package/load-in-bare-system .build/cpu/org.quickses.unity-*.tgz "$system" || [ $? -eq 77 ]
+done
+
 # The C# layers, with the plug-in of that package: what Unity compiles runs against a double of the engine, as in a player
 # and, with collections checks, as in the Editor.
 echo "==== dotnet: test"

@@ -23,13 +23,17 @@ namespace QuickSes.Editor
         /// <param name="assetPath">Such as "Assets/Crambin.asset", in a folder that exists.</param>
         /// <param name="asset">The asset, or null.</param>
         /// <param name="error">"", or a sentence that names what is wrong.</param>
-        public static bool TryBake(MolecularSurface surface, string assetPath, out Mesh asset, out string error)
+        public static bool TryBake(MolecularSurface surface, string assetPath, out Mesh asset, out string error) =>
+            TryBake(surface, assetPath, null, out asset, out error);
+
+        private static bool TryBake(MolecularSurface surface, string assetPath, Func<bool> goesOn, out Mesh asset,
+            out string error)
         {
             if (surface == null)
                 throw new ArgumentNullException(nameof(surface));
             asset = null;
             error = ErrorOf(assetPath);
-            if (error.Length > 0 || !TryCompute(surface, out error))
+            if (error.Length > 0 || !TryCompute(surface, goesOn, out error))
                 return false;
             if (surface.CurrentLevel.TriangleCount == 0)
             {
@@ -54,10 +58,9 @@ namespace QuickSes.Editor
             bool isBaked;
             Mesh asset;
             string error;
-            EditorUtility.DisplayProgressBar("Molecular Surface", "Computing the finest surface", 0.5f);
             try
             {
-                isBaked = TryBake(surface, path, out asset, out error);
+                isBaked = TryBake(surface, path, () => GoesOn(surface), out asset, out error);
             }
             finally
             {
@@ -69,6 +72,11 @@ namespace QuickSes.Editor
                 EditorUtility.DisplayDialog("The surface was not baked", error, "OK");
             return asset;
         }
+
+        // The Editor shows what is going on, and lets the user end it, while other threads start the GPU and compute.
+        private static bool GoesOn(MolecularSurface surface) => !EditorUtility.DisplayCancelableProgressBar(
+            "Molecular Surface", surface.Progress > 0 ? "Computing the finest surface" : SurfaceStatus.Starting,
+            surface.Progress);
 
         private static string ErrorOf(string assetPath)
         {
@@ -86,15 +94,15 @@ namespace QuickSes.Editor
                 : $"'{assetPath}' is there already and is no mesh but a {present.GetType().Name}.";
         }
 
-        private static bool TryCompute(MolecularSurface surface, out string error)
+        private static bool TryCompute(MolecularSurface surface, Func<bool> goesOn, out string error)
         {
             error = "";
             if (EditorUtility.IsPersistent(surface) || !surface.isActiveAndEnabled)
                 error = $"'{surface.name}' is not active in an open scene or prefab, so it has no surface.";
             else if (surface.AtomCount == 0 && !surface.Source.IsSet)
                 error = $"'{surface.name}' has no atoms: choose a source, or give it some by SetAtoms.";
-            else if ((surface.AtomCount == 0 && !surface.LoadSource()) || !surface.ComputeNow())
-                error = surface.LastError.Message;
+            else if ((surface.AtomCount == 0 && !surface.LoadSource()) || !surface.ComputeWhile(goesOn))
+                error = surface.LastError.Status != QuickSesStatus.Ok ? surface.LastError.Message : "It was cancelled.";
             return error.Length == 0;
         }
 

@@ -7,11 +7,17 @@ namespace QuickSes.Editor
     /// <summary>The sentences and figures of the status panel. No Editor in here.</summary>
     internal static class SurfaceStatus
     {
+        /// <summary>Before the first context is there.</summary>
+        public const string Starting = "Starting the back end";
+
         private static readonly CultureInfo s_culture = CultureInfo.InvariantCulture;
 
         /// <summary>How it stands, in words.</summary>
-        public static string State(bool hasAtoms, bool isBusy, float progress, in SurfaceLevel shown, bool hasFailed) =>
-            State(hasAtoms, isBusy, progress, shown.LevelCount > 0, shown.IsFinest && shown.IsOfNewestAtoms, hasFailed);
+        public static string State(bool hasAtoms, bool isBusy, bool isStarting, float progress, in SurfaceLevel shown,
+            bool hasFailed) => isStarting
+            ? Starting
+            : State(hasAtoms, isBusy, progress, shown.LevelCount > 0, shown.IsFinest && shown.IsOfNewestAtoms,
+                hasFailed);
 
         internal static string State(bool hasAtoms, bool isBusy, float progress, bool isAnyShown, bool isFinest,
             bool hasFailed)
@@ -93,6 +99,11 @@ namespace QuickSes.Editor
                   "NVIDIA GPUs; to build such a one see Documentation~/building.md."
                 : $"Not on the GPU: {reason}";
         }
+
+        /// <summary>What is done before the first surface on a GPU.</summary>
+        /// <param name="device">The GPU's name.</param>
+        /// <param name="reason">The library's, of its <see cref="BackendDescription"/>.</param>
+        public static string Preparing(string device, string reason) => $"{device} is being prepared: {reason}.";
 
         /// <summary>Whether the library's reason for not using CUDA is that it has no CUDA in it.</summary>
         public static bool IsCpuOnly(string reason) =>

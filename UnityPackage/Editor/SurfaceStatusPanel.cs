@@ -7,16 +7,21 @@ namespace QuickSes.Editor
     /// <summary>Draws what a surface shows, what it took, and what computes it.</summary>
     internal static class SurfaceStatusPanel
     {
+        private static readonly BackendInquiry s_cuda = new BackendInquiry(SurfaceBackend.Cuda);
+
         public static void Draw(MolecularSurface surface)
         {
             SurfaceLevel shown = surface.CurrentLevel;
             bool hasFailed = surface.LastError.Status != QuickSesStatus.Ok;
             bool hasAtoms = surface.AtomCount > 0;
-            string state = SurfaceStatus.State(hasAtoms, surface.IsBusy, surface.Progress, shown, hasFailed);
+            string state = SurfaceStatus.State(hasAtoms, surface.IsBusy, surface.IsStarting, surface.Progress, shown,
+                hasFailed);
             if (surface.IsBusy)
                 EditorGUI.ProgressBar(EditorGUILayout.GetControlRect(), surface.Progress, state);
             else
                 Row("State", state);
+            if (surface.IsStarting)
+                DrawStart(surface);
             if (hasFailed)
                 EditorGUILayout.HelpBox(surface.LastError.Message, MessageType.Error);
             Row("Atoms", SurfaceStatus.Count(surface.AtomCount));
@@ -66,6 +71,16 @@ namespace QuickSes.Editor
             Row("Volume", SurfaceStatus.Measure(surface.Volume, "Å³"));
             if (surface.MeasureComponents && surface.Components.Length > 0)
                 Row("Components", SurfaceStatus.Components(surface.Components));
+        }
+
+        // The driver may compile for a minute, which the user should know.
+        private static void DrawStart(MolecularSurface surface)
+        {
+            if (surface.Backend == SurfaceBackend.Cpu)
+                return;
+            s_cuda.Ask();
+            if (s_cuda.TryGetAnswer(out BackendDescription cuda) && cuda.IsPreparing)
+                EditorGUILayout.HelpBox(SurfaceStatus.Preparing(cuda.Device, cuda.Reason), MessageType.Info);
         }
 
         private static void DrawBackend(MolecularSurface surface)

@@ -5,6 +5,7 @@
 #include "surface/cpu/cpu_kernels.h"
 #if defined(QUICKSES_HAS_CUDA)
 #include "parallel/cuda_memory.h"
+#include "parallel/stay_loaded.h"
 #endif
 
 #include <algorithm>
@@ -31,9 +32,11 @@ qses_backend_description describe_cpu() {
 qses_backend_description describe_backend(qses_backend backend, int device) {
   if (backend == QSES_BACKEND_CPU) return describe_cpu();
 #if defined(QUICKSES_HAS_CUDA)
+  stay_loaded();
   const CudaDevice found = describe_cuda_device(device);
   qses_backend_description d{};
   d.available = found.available ? 1 : 0;
+  d.preparing = found.preparing ? 1 : 0;
   std::snprintf(d.device, sizeof d.device, "%s", found.name.c_str());
   std::snprintf(d.reason, sizeof d.reason, "%s", found.reason.c_str());
   d.total_memory = found.total_memory;
@@ -49,6 +52,7 @@ qses_backend_description describe_backend(qses_backend backend, int device) {
 
 uint32_t count_devices() {
 #if defined(QUICKSES_HAS_CUDA)
+  stay_loaded();
   return static_cast<uint32_t>(count_cuda_devices());
 #else
   return 0;

@@ -66,7 +66,25 @@ std::FILE *create_new(const fs::path &name, const fs::path &) {
   return file;
 }
 
+// Windows denies for a moment what another process is replacing, or looks into, as scanners for viruses do.
+template <class Action>
+void patiently(const fs::path &target, std::error_code &error, const Action &action) {
+  constexpr int kMostTries = 100, kPause = 20;  // 2 s in all
+  for (int i = 0; i < kMostTries; ++i) {
+    if (i > 0) Sleep(kPause);
+    action();
+    if (error != std::errc::permission_denied) return;
+    const DWORD attributes = GetFileAttributesW(target.c_str());
+    if (attributes != INVALID_FILE_ATTRIBUTES && (attributes & FILE_ATTRIBUTE_READONLY)) return;  // that will not pass
+  }
+}
+
 #else
+
+template <class Action>
+void patiently(const fs::path &, std::error_code &, const Action &action) {
+  action();
+}
 
 // Null with errno set if it can't be made, EEXIST if there is such a file. It has the rights of `like` if that exists,
 // else those of new files, and from the beginning no others.
@@ -99,7 +117,8 @@ std::FILE *create_new(const fs::path &name, const fs::path &like) {
 
 AtomicFile::AtomicFile(const std::string &path) : path_(path), target_(path_of(path)), buffer_(kBufferSize) {
   std::error_code error;
-  const fs::file_status status = fs::status(target_, error);
+  fs::file_status status;
+  patiently(target_, error, [&] { status = fs::status(target_, error); });
   if (!fs::status_known(status)) fail_output("'" + path_ + "' can't be written: " + error.message());
   if (fs::is_directory(status)) fail_output("'" + path_ + "' is a directory: it can't be written as a file");
   bool replace = !fs::exists(status) || fs::is_regular_file(status);
@@ -187,7 +206,7 @@ void AtomicFile::commit() {
   if (std::fclose(file) != 0) fail(errno);
   if (temporary_.empty()) return;
   std::error_code error;
-  fs::rename(temporary_, target_, error);
+  patiently(target_, error, [&] { fs::rename(temporary_, target_, error); });
   if (error) {
     close_and_remove();
     fail_output("'" + path_ + "' can't be written: " + error.message());

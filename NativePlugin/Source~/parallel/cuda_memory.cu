@@ -4,6 +4,7 @@
 
 #include "cudart/current_context.h"
 #include "parallel/arena.h"
+#include "parallel/cuda_preparation.h"
 #include "parallel/error.h"
 
 #include <cuda_runtime.h>
@@ -66,10 +67,16 @@ Fault &fault() {
   return the_fault;
 }
 
-// Whether memory was given. After a fault, which any call may be the first to report, less would not do either.
+CudaPreparations &preparations() {
+  static CudaPreparations &all = *new CudaPreparations;  // never destroyed, as the fault
+  return all;
+}
+
+// Whether memory was given. After a fault, or a cudaDeviceReset by others, which any call may be the first to report,
+// less would not do either.
 bool was_granted(cudaError_t error, const char *call) {
   if (error == cudaSuccess) return true;
-  if (is_sticky(error)) check_cuda(error, call);
+  if (is_sticky(error) || error == cudaErrorContextIsDestroyed) check_cuda(error, call);
   cudaGetLastError();
   return false;
 }
@@ -119,6 +126,7 @@ CudaDevice describe_cuda_device(int ordinal) {
     device.reason = fault().sentence;
     return device;
   }
+  if (preparations().is_preparing(ordinal, &device)) return device;
   int count = 0;
   cudaError_t error = cudaGetDeviceCount(&count);
   if (error != cudaSuccess || count == 0) {
@@ -149,7 +157,10 @@ CudaDevice describe_cuda_device(int ordinal) {
     }
   }
   device.available = error == cudaSuccess;
-  if (device.available) return device;
+  if (device.available) {
+    preparations().remember(ordinal, device);
+    return device;
+  }
   cudaGetLastError();
   if (is_sticky(error)) {
     fault().remember(error, "the look at the device");
@@ -163,6 +174,14 @@ CudaDevice describe_cuda_device(int ordinal) {
   else
     device.reason = "the GPU does not answer: " + describe_error(error);
   return device;
+}
+
+void load_cuda_kernels(int device, const void *kernel) {
+  preparations().prepare(device, [&] {
+    const DeviceGuard guard(device);
+    cudaFuncAttributes attributes{};
+    check_cuda(cudaFuncGetAttributes(&attributes, kernel), "cudaFuncGetAttributes");
+  });
 }
 
 int count_cuda_devices() {
@@ -189,10 +208,7 @@ uint64_t DeviceMemory::free_bytes() {
   // Code is loaded when a kernel first runs, and kernels have stacks: some 10 MiB. The rest is left to others.
   constexpr uint64_t kLeft = uint64_t(64) << 20;
   size_t free = 0, total = 0;
-  if (cudaMemGetInfo(&free, &total) != cudaSuccess) {
-    cudaGetLastError();
-    return 0;
-  }
+  if (!was_granted(cudaMemGetInfo(&free, &total), "cudaMemGetInfo")) return 0;
   return std::max<uint64_t>(1, free - std::min<uint64_t>(free, std::max<uint64_t>(free / 16, kLeft)));
 }
 

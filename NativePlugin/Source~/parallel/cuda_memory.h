@@ -19,14 +19,19 @@ void check_cuda(int error, const char *call);
 void refuse_after_fault();
 
 struct CudaDevice {
-  bool available = false;
-  std::string reason;                          // why not, if it is not available
+  bool available = false, preparing = false;   // preparing: its kernels are being loaded (cuda_preparation.h)
+  std::string reason;                          // why not, if it is not available; what is done while it is prepared
   std::string name;                            // empty if there is no such device
   uint64_t total_memory = 0, free_memory = 0;  // bytes
 };
 
-// Looks whether this library's kernels can run on a device. Never throws; leaves the selected device as it was.
+// Looks whether this library's kernels can run on a device. Never throws; leaves the selected device as it was. The
+// first call starts CUDA; none waits for load_cuda_kernels.
 CudaDevice describe_cuda_device(int ordinal);
+
+// Brings onto a device the kernels that were compiled together with this one, as far as that was not done before, which
+// may take a minute. Throws Error.
+void load_cuda_kernels(int device, const void *kernel);
 
 // 0 where CUDA does not start. Never throws.
 int count_cuda_devices();

@@ -21,7 +21,11 @@ namespace QuickSes.Tests
 
         [Test]
         public void NothingIsShownBeforeTheFirstSurface() =>
-            Assert.That(SurfaceStatus.State(true, false, 0, default, false), Is.EqualTo("Stopped"));
+            Assert.That(SurfaceStatus.State(true, false, false, 0, default, false), Is.EqualTo("Stopped"));
+
+        [Test]
+        public void StartingIsTold() =>
+            Assert.That(SurfaceStatus.State(true, true, true, 0, default, false), Is.EqualTo("Starting the back end"));
 
         [Test]
         public void LevelsAreCountedFromOne() =>

@@ -216,6 +216,61 @@ class StandardOutput(FilesTest):
         self.assertEqual(sorted(self.content()), ["many.pdb", "p.pdb", "radii.txt"])
 
 
+class Names(FilesTest):
+    """A user may be called anything, and the system's locale may know nothing of it."""
+    def test_they_have_letters_of_all_kinds(self):
+        folder = self.folder / "Jürgen Müller 李" / "Ångström 🧬"
+        folder.mkdir(parents=True)
+        shutil.copy(CRAMBIN, folder / "Krambin ü.pdb")
+        shutil.copy(self.folder / "many.pdb", folder / "Läufe.pdb")
+        (folder / "rädii.txt").write_text("C 1.7\n* 1.5\n")
+        plain = self.folder / "plain.ply"
+        self.run_cpu("p.pdb", "-o", plain, "-v", "1")
+        # Wine knows the names of files by the locale of its machine.
+        for locale in ("C.UTF-8",) if IS_WINDOWS else ("C.UTF-8", "C"):
+            with self.subTest(locale=locale):
+                environment = {**os.environ, "LC_ALL": locale}
+                def run(*arguments):
+                    result = subprocess.run([cli_test.PROGRAM, *arguments, "--backend", "cpu", "-v", "1"], cwd=folder,
+                                            env=environment, capture_output=True, encoding="utf-8", timeout=120)
+                    self.assertEqual(result.returncode, OK, result.stderr)
+                    return result
+                run("Krambin ü.pdb", "-o", "Fläche 溶媒.ply")
+                self.assertEqual((folder / "Fläche 溶媒.ply").read_bytes(), plain.read_bytes())
+                run("Krambin ü.pdb", "--radii", "rädii.txt", "--json", "Bericht ü.json", "-o", "Ü.obj")
+                self.assertIn("Krambin ü.pdb", (folder / "Bericht ü.json").read_text(encoding="utf-8"))
+                run("Krambin ü.pdb", "--trajectory", "Läufe.pdb", "-o", "ü%d.obj", "--csv", "Läufe.csv")
+                self.assertEqual(len(list(folder.glob("ü*.obj"))), MODELS)
+                result = subprocess.run([cli_test.PROGRAM, "nicht da ü.pdb"], cwd=folder, env=environment,
+                                        capture_output=True, encoding="utf-8", timeout=120)
+                self.assertEqual(result.returncode, INPUT)
+                self.assertIn("nicht da ü.pdb", result.stderr)
+                for made in folder.iterdir():
+                    if made.name not in ("Krambin ü.pdb", "Läufe.pdb", "rädii.txt"):
+                        made.unlink()
+
+
+class TwoAtATime(FilesTest):
+    def test_in_one_folder(self):
+        """Neither notices the other, even where both write the same files: one of the two is there in the end, whole."""
+        meshes = set()
+        for spacing in ("1", "1.5"):
+            self.run_cpu("many.pdb", "--model", "all", "-v", spacing, "-o", f"{spacing}.ply")
+            meshes |= {path.read_bytes() for path in self.folder.glob(f"{spacing}_*.ply")}
+        self.assertEqual(len(meshes), 2)
+        for _ in range(3):
+            running = [subprocess.Popen([cli_test.PROGRAM, "many.pdb", "--model", "all", "-v", spacing, "-o", "same.ply",
+                                         "--backend", "cpu", "--quiet"], cwd=self.folder, stderr=subprocess.PIPE)
+                       for spacing in ("1", "1.5", "1", "1.5")]
+            for process in running:
+                self.assertEqual((process.communicate()[1], process.returncode), (b"", OK))
+            made = sorted(self.folder.glob("same_*.ply"))
+            self.assertEqual(len(made), MODELS)
+            for mesh in made:
+                self.assertIn(mesh.read_bytes(), meshes)
+        self.assertEqual(list(self.folder.glob(".*")), [])
+
+
 @unittest.skipIf(IS_WINDOWS, "no signals")
 class Stopped(FilesTest):
     def start(self, **keywords):

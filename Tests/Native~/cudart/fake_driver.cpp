@@ -5,8 +5,11 @@
 #include "cudart/driver.h"
 
 #include <atomic>
+#include <chrono>
+#include <condition_variable>
 #include <cstdlib>
 #include <cstring>
+#include <mutex>
 
 #if defined(_WIN32)
 #define FAKE_API extern "C" __declspec(dllexport)
@@ -19,6 +22,11 @@ namespace {
 std::atomic<int> calls{0}, good_calls{-1}, failure{0};
 thread_local CUcontext current = nullptr;
 int the_context, the_module, the_function;
+
+// Of cuModuleLoadData.
+std::mutex mutex;
+std::condition_variable changed;
+bool is_held = false, is_compiling = false;
 
 // What any function returns: the failure from one call on, for all the calls after it or for that one.
 CUresult next(bool *fails = nullptr) {
@@ -40,6 +48,19 @@ FAKE_API int fake_driver_fail_after(int good, int error) {
   failure = error;
   good_calls = good;
   return count;
+}
+
+// From now on device code is compiled until this is called with 0.
+FAKE_API int fake_driver_hold(int hold) {
+  const std::lock_guard<std::mutex> lock(mutex);
+  is_held = hold != 0;
+  changed.notify_all();
+  return 0;
+}
+// Returns 1 while the driver compiles; 0 if it does not within ten seconds.
+FAKE_API int fake_driver_wait_for_compiling() {
+  std::unique_lock<std::mutex> lock(mutex);
+  return changed.wait_for(lock, std::chrono::seconds(10), [] { return is_compiling; }) ? 1 : 0;
 }
 
 FAKE_API CUresult CUDAAPI cuInit(unsigned) { return static_cast<CUresult>(FAKE_START); }
@@ -99,6 +120,11 @@ FAKE_API CUresult CUDAAPI cuCtxGetDevice(CUdevice *device) {
 
 // ---- kernels
 FAKE_API CUresult CUDAAPI cuModuleLoadData(CUmodule *module, const void *) {
+  std::unique_lock<std::mutex> lock(mutex);
+  is_compiling = is_held;
+  changed.notify_all();
+  changed.wait(lock, [] { return !is_held; });
+  is_compiling = false;
   *module = reinterpret_cast<CUmodule>(&the_module);
   return next();
 }

@@ -5,6 +5,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <thread>
 
 #if defined(_WIN32)
 #define WIN32_LEAN_AND_MEAN
@@ -91,16 +92,18 @@ TEST(FakeDriver, LacksAFunction) {
 
 // ---- a driver whose calls fail, from any one of them on -------------------------------------------------------------
 
-int fail_after(int good, int error) {
-  using Function = int (*)(int, int);
+// A function that only the fake has.
+template <class... Arguments>
+int tell_driver(const char *name, Arguments... arguments) {
+  using Function = int (*)(Arguments...);
 #if defined(_WIN32)
-  static const auto function = reinterpret_cast<Function>(
-      reinterpret_cast<void *>(GetProcAddress(GetModuleHandleA(kLibrary), "fake_driver_fail_after")));
+  void *const found = reinterpret_cast<void *>(GetProcAddress(GetModuleHandleA(kLibrary), name));
 #else
-  static const auto function = reinterpret_cast<Function>(dlsym(dlopen(kLibrary, RTLD_NOW), "fake_driver_fail_after"));
+  void *const found = dlsym(dlopen(kLibrary, RTLD_NOW), name);
 #endif
-  return function(good, error);
+  return reinterpret_cast<Function>(found)(arguments...);
 }
+int fail_after(int good, int error) { return tell_driver("fake_driver_fail_after", good, error); }
 
 // Allowed is success, or one of these errors with a sentence.
 void expect_said(qses_status status) {
@@ -162,6 +165,44 @@ class FailingDriver : public testing::TestWithParam<int> {
  private:
   bool is_loaded_ = false;
 };
+
+// On a GPU newer than the library the driver compiles the kernels: who makes the first context waits, nobody else does,
+// and qses_backend_info tells.
+class CompilingDriver : public FailingDriver {};
+
+TEST_P(CompilingDriver, IsToldAndWaitedForByOneOnly) {
+  const auto describe = [](qses_backend backend) {
+    qses_backend_description description = empty_description();
+    EXPECT_EQ(qses_backend_info(backend, &description), QSES_OK);
+    return description;
+  };
+  EXPECT_EQ(describe(QSES_BACKEND_CUDA).preparing, 0);
+  tell_driver("fake_driver_hold", 1);
+  qses_context *context = nullptr;
+  std::thread maker([&] { EXPECT_EQ(create(QSES_BACKEND_CUDA, &context), QSES_OK) << qses_last_error(); });
+  EXPECT_TRUE(tell_driver("fake_driver_wait_for_compiling")) << "the kernels were there already";
+  for (const qses_backend backend : {QSES_BACKEND_CUDA, QSES_BACKEND_AUTO}) {
+    const qses_backend_description meanwhile = describe(backend);
+    EXPECT_EQ(meanwhile.available, 1);
+    EXPECT_EQ(meanwhile.preparing, 1);
+    EXPECT_STREQ(meanwhile.device, "Fake GPU");
+    EXPECT_NE(std::string(meanwhile.reason).find("the driver compiles them"), std::string::npos) << meanwhile.reason;
+  }
+  EXPECT_EQ(describe(QSES_BACKEND_CPU).preparing, 0);
+  uint32_t devices = 0;
+  EXPECT_EQ(qses_device_count(&devices), QSES_OK);
+  EXPECT_EQ(devices, 1u);
+
+  tell_driver("fake_driver_hold", 0);
+  maker.join();
+  EXPECT_EQ(describe(QSES_BACKEND_CUDA).preparing, 0);
+  EXPECT_STREQ(describe(QSES_BACKEND_CUDA).reason, "");
+  qses_backend_description of_context = empty_description();
+  EXPECT_EQ(qses_context_info(context, nullptr, &of_context), QSES_OK);
+  EXPECT_EQ(of_context.preparing, 0);
+  qses_context_destroy(context);
+}
+INSTANTIATE_TEST_SUITE_P(First, CompilingDriver, testing::Values(0));  // before the kernels are there
 
 // Errors that a process may survive; negative: of one call only.
 TEST_P(FailingDriver, EveryCallMayFailAndTheNextMayNot) {

@@ -83,7 +83,7 @@ namespace QuickSes.Tests
             Array.Reverse(_hosts); // else that which is unused for longest would be the right one
             foreach (TestHost host in _hosts)
             {
-                ContextSlot slot = pool.LendNow(host.Session, out _);
+                ContextSlot slot = pool.LendNow(host.Session, null, out _);
                 Assert.That(slot.SentBy, Is.SameAs(host.Session.Atoms));
                 pool.Release(slot, false);
             }
@@ -96,11 +96,11 @@ namespace QuickSes.Tests
             SurfaceScheduler.MaxContexts = 1;
             _hosts = Hosts(2, k => TestHost.WithAtom(Place(k, 0), Radius(k)));
             ContextPool pool = SurfaceScheduler.PoolOf(SurfaceBackend.Cpu);
-            ContextSlot slot = pool.LendNow(_hosts[0].Session, out _);
+            ContextSlot slot = pool.LendNow(_hosts[0].Session, null, out _);
             _hosts[0].Session.Start(slot);
             slot.Context.Wait();
             _hosts[0].Session.Drop(); // nobody has collected what is ready
-            Assert.That(pool.LendNow(_hosts[1].Session, out _), Is.SameAs(slot));
+            Assert.That(pool.LendNow(_hosts[1].Session, null, out _), Is.SameAs(slot));
             _hosts[1].Updated = level => _hosts[1].AssertShowsAtom(Place(1, 0), Radius(1));
             _hosts[1].Session.Start(slot);
             _hosts[1].Settle();
@@ -125,7 +125,7 @@ namespace QuickSes.Tests
             SurfaceScheduler.ReleaseContexts();
             SurfaceScheduler.MaxContexts = 1;
             _hosts = Hosts(2, k => TestHost.WithRow(20000));
-            ContextSlot slot = SurfaceScheduler.PoolOf(SurfaceBackend.Cpu).LendNow(_hosts[0].Session, out _);
+            ContextSlot slot = SurfaceScheduler.PoolOf(SurfaceBackend.Cpu).LendNow(_hosts[0].Session, null, out _);
             _hosts[0].Session.Start(slot); // of all levels, since nobody waits yet
             _hosts[1].Tick();
             TestHost.Until(() => _hosts[0].Levels.Count > 0, _hosts[0]);
@@ -139,7 +139,7 @@ namespace QuickSes.Tests
         {
             _hosts = Hosts(1, k => TestHost.WithAtom(Place(k, 0), Radius(k)));
             _hosts[0].RestDelay = 1000; // it does not wait for that
-            ContextSlot slot = SurfaceScheduler.PoolOf(SurfaceBackend.Cpu).LendNow(_hosts[0].Session, out _);
+            ContextSlot slot = SurfaceScheduler.PoolOf(SurfaceBackend.Cpu).LendNow(_hosts[0].Session, null, out _);
             _hosts[0].Session.Start(slot);
             SurfaceScheduler.ReleaseContexts();
             Assert.That(SurfaceScheduler.ContextCount, Is.EqualTo(0));

@@ -101,7 +101,7 @@ namespace QuickSes.Tests
         public void WhatMovedWhileItWasComputedIsShownButNotFinished()
         {
             _host = TestHost.WithAtom(Vector3.Zero, 1.5f);
-            ContextSlot slot = SurfaceScheduler.PoolOf(SurfaceBackend.Cpu).LendNow(_host.Session, out _);
+            ContextSlot slot = SurfaceScheduler.PoolOf(SurfaceBackend.Cpu).LendNow(_host.Session, null, out _);
             _host.Session.Start(slot);
             slot.Context.Wait();
             _host.SetPositions(Vector3.One);
@@ -118,7 +118,7 @@ namespace QuickSes.Tests
         public void AFrameThatIsRefusedKeepsTheOneBefore()
         {
             _host = TestHost.WithAtom(Vector3.Zero, 1.5f);
-            ContextSlot slot = SurfaceScheduler.PoolOf(SurfaceBackend.Cpu).LendNow(_host.Session, out _);
+            ContextSlot slot = SurfaceScheduler.PoolOf(SurfaceBackend.Cpu).LendNow(_host.Session, null, out _);
             _host.Session.Start(slot);
             _host.SetPositions(new Vector3(float.NaN, 0, 0));
             _host.Session.Start(slot);

@@ -9,6 +9,7 @@ namespace QuickSes
         internal unsafe BackendDescription(in NativeBackendDescription native)
         {
             IsAvailable = native.Available != 0;
+            IsPreparing = native.Preparing != 0;
             TotalMemory = native.TotalMemory;
             FreeMemory = native.FreeMemory;
             fixed (byte* device = native.Device, reason = native.Reason)
@@ -25,7 +26,14 @@ namespace QuickSes
         public string Device { get; }
 
         /// <summary>
-        /// Why it is not available, or, for <see cref="SurfaceBackend.Auto"/>, why it is not CUDA; else "".
+        /// Whether the first context for this GPU is being made, on another thread, and the driver loads the kernels.
+        /// For a GPU newer than the library it compiles them then, for up to a minute, once per driver version.
+        /// </summary>
+        public bool IsPreparing { get; }
+
+        /// <summary>
+        /// Why it is not available, or, for <see cref="SurfaceBackend.Auto"/>, why it is not CUDA, or, while it is
+        /// prepared, what is done; else "".
         /// </summary>
         public string Reason { get; }
 

@@ -71,7 +71,10 @@ namespace QuickSes
             }
         }
 
-        /// <summary>How many CUDA devices there are; 0 without CUDA. Throws if the library can't be used.</summary>
+        /// <summary>
+        /// How many CUDA devices there are; 0 without CUDA. Throws if the library can't be used. Starts CUDA, as
+        /// <see cref="GetBackendDescription"/>.
+        /// </summary>
         public static unsafe int DeviceCount
         {
             get
@@ -85,16 +88,21 @@ namespace QuickSes
 
         /// <summary>
         /// Whether surfaces can be computed here. Never throws: a native library that is missing, too old, too new or
-        /// of another architecture is told in <paramref name="reason"/> ("" if all is well). Any thread.
+        /// of another architecture is told in <paramref name="reason"/> ("" if all is well). Does not start CUDA, so it
+        /// takes no time. Any thread.
         /// </summary>
         public static bool IsSupported(out string reason) => IsSupported(SurfaceBackend.Auto, out reason);
 
-        /// <summary>Whether one back end can be used here, and if not, why. Never throws. Any thread.</summary>
+        /// <summary>
+        /// Whether one back end can be used here, and if not, why; Auto always can where the library can. Never throws.
+        /// Any thread; the first question for CUDA in a process starts it, which takes up to a second.
+        /// </summary>
         public static bool IsSupported(SurfaceBackend backend, out string reason)
         {
             if (!NativeLibraryCheck.IsUsable(out reason))
                 return false;
-            QuickSesStatus status = BackendInfo(backend, out BackendDescription description);
+            SurfaceBackend needed = backend == SurfaceBackend.Auto ? SurfaceBackend.Cpu : backend;
+            QuickSesStatus status = BackendInfo(needed, out BackendDescription description);
             if (status != QuickSesStatus.Ok)
                 reason = NativeText.LastError();
             else if (!description.IsAvailable)
@@ -104,7 +112,8 @@ namespace QuickSes
 
         /// <summary>
         /// Describes a back end; Auto is the one that would be chosen. Throws <see cref="QuickSesException"/> if the
-        /// library can't be used or there is no such back end. Any thread.
+        /// library can't be used or there is no such back end. Any thread; the first question for CUDA or Auto in a
+        /// process starts CUDA, which takes up to a second, so a game's main thread better leaves it to another one.
         /// </summary>
         public static BackendDescription GetBackendDescription(SurfaceBackend backend)
         {

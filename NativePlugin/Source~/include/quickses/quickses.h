@@ -61,6 +61,8 @@
  *   needs a GPU, with a sentence that says so, until they are destroyed, which works as usual; their last meshes stay
  *   valid. New contexts with CUDA are refused with BACKEND_UNAVAILABLE until the process ends; AUTO takes the CPU.
  *   Contexts on the CPU live on.
+ *   A cudaDeviceReset by other code of the process takes away what all contexts on that GPU have there: then they give
+ *   errors, and can only be destroyed.
  *
  * Threads
  *   A context may be used by one thread at a time, but for qses_poll and qses_cancel, which may be called from any
@@ -173,12 +175,16 @@ QSES_API const char *qses_version(void);
 QSES_API uint32_t qses_abi_version(void);
 
 typedef struct qses_backend_description {
-  uint32_t struct_size;  /* set by qses_backend_description_init */
-  qses_bool available;   /* whether qses_context_create with this back end can succeed */
-  char device[128];      /* what computes: the GPU's name, or the CPU's instruction set and thread count */
-  char reason[256];      /* if not available: why; with AUTO, why it is not CUDA; else empty */
+  uint32_t struct_size; /* set by qses_backend_description_init */
+  qses_bool available;  /* whether qses_context_create with this back end can succeed */
+  char device[128];     /* what computes: the GPU's name, or the CPU's instruction set and thread count */
+  char reason[256]; /* if not available: why; with AUTO, why it is not CUDA; if preparing: what is done; else empty */
   uint64_t total_memory; /* bytes of the device, or of the machine */
-  uint64_t free_memory;  /* bytes free at the time of the call */
+  uint64_t free_memory;  /* bytes free at the time of the call; if preparing: before that */
+  qses_bool preparing; /* whether the first qses_context_create for this GPU is loading the kernels, on another thread.
+                          For a GPU newer than this library the driver compiles them then, for up to a minute, once
+                          per driver version. 0 from a library that does not know the field */
+  uint32_t reserved;   /* 0 */
 } qses_backend_description;
 
 /* Empty description with struct_size set. NULL is ignored. */
@@ -187,11 +193,12 @@ static inline void qses_backend_description_init(qses_backend_description *descr
 }
 
 /* Tells whether a back end can be used here and, if not, why. AUTO describes the one that would be chosen; its reason
- * then says why CUDA was not. Errors: INVALID_ARGUMENT (NULL, unknown back end). */
+ * then says why CUDA was not. The first call for CUDA or AUTO in a process starts CUDA, which takes up to a second;
+ * none waits while a GPU is preparing. Errors: INVALID_ARGUMENT (NULL, unknown back end). */
 QSES_API qses_status qses_backend_info(qses_backend backend, qses_backend_description *description);
 
 /* How many CUDA devices this library sees; their ordinals are 0 to *count - 1. 0 without CUDA, or where it does not
- * start (qses_backend_info says why). Errors: INVALID_ARGUMENT. */
+ * start (qses_backend_info says why). Starts CUDA, as qses_backend_info. Errors: INVALID_ARGUMENT. */
 QSES_API qses_status qses_device_count(uint32_t *count);
 
 /* The sentence that belongs to the last call that failed on this thread; "" if none has. Valid until the next call
@@ -217,6 +224,10 @@ static inline void qses_context_options_init(qses_context_options *options) { qs
 
 /* Makes a context. options may be NULL (defaults). On success *context is owned by the caller, who ends it with
  * qses_context_destroy; on failure it is NULL.
+ * With CUDA the first one of a process takes as long as CUDA needs to start, up to a second, and for a GPU newer than
+ * this library up to a minute more (qses_backend_description.preparing): make it on a thread that may wait. Later ones
+ * take milliseconds. From then on the library stays in the process: a host that unloads it gets the same one when it
+ * loads it again, since threads of TBB, OpenMP and the driver end later than contexts.
  * Errors: INVALID_ARGUMENT, BACKEND_UNAVAILABLE, OUT_OF_MEMORY, DEVICE_ERROR. */
 QSES_API qses_status qses_context_create(const qses_context_options *options, qses_context **context);
 

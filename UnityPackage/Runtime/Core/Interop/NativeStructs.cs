@@ -13,6 +13,8 @@ namespace QuickSes.Interop
         public fixed byte Reason[256];
         public ulong TotalMemory;
         public ulong FreeMemory;
+        public int Preparing;
+        public uint Reserved;
     }
 
     [StructLayout(LayoutKind.Sequential)]

@@ -10,7 +10,7 @@ namespace QuickSes
         [RuntimeInitializeOnLoadMethod(RuntimeInitializeLoadType.SubsystemRegistration)]
         private static void OnPlayModeBegins()
         {
-            SurfaceScheduler.ReleaseContexts();
+            SurfaceScheduler.ReleaseInBackground();
             Application.quitting -= SurfaceScheduler.ReleaseContexts;
             Application.quitting += SurfaceScheduler.ReleaseContexts;
         }

@@ -100,7 +100,7 @@ namespace QuickSes
         private event Action _atomsRequested;
 
         /// <summary>
-        /// Whether surfaces can be computed here, and if not, why. Never throws.
+        /// Whether surfaces can be computed here, and if not, why. Never throws, and takes no time.
         /// </summary>
         public static bool IsSupported(out string reason) => SurfaceContext.IsSupported(out reason);
 
@@ -115,6 +115,12 @@ namespace QuickSes
 
         /// <summary>Whether something is being computed, or will be. Not while the component is disabled.</summary>
         public bool IsBusy => isActiveAndEnabled && !Session.IsUpToDate;
+
+        /// <summary>
+        /// Whether it is busy because the back end is being started, by another thread. CUDA takes up to a second for
+        /// it once per program, and on a GPU newer than the library up to a minute, once per driver version.
+        /// </summary>
+        public bool IsStarting => isActiveAndEnabled && Session.IsStarting;
 
         /// <summary>Of the job that runs: from 0 to 1.</summary>
         public float Progress => Session.Progress;
@@ -166,13 +172,17 @@ namespace QuickSes
         /// Computes the finest surface and shows it before it returns. For tools: it blocks for as long as it takes.
         /// </summary>
         /// <returns>False: <see cref="LastError"/> says why.</returns>
-        public bool ComputeNow()
+        public bool ComputeNow() => ComputeWhile(null);
+
+        /// <summary>The same for tools that show how it goes on.</summary>
+        /// <param name="goesOn">If not null: called now and then; false ends it.</param>
+        internal bool ComputeWhile(Func<bool> goesOn)
         {
             if (!LoadSourceUnlessFed())
                 return false;
             if (!Session.Atoms.IsSet)
                 throw new InvalidOperationException("There are no atoms: call SetAtoms or choose a source.");
-            bool isComputed = Session.ComputeNow();
+            bool isComputed = Session.ComputeNow(goesOn);
             Session.RaiseEvents();
             return isComputed;
         }

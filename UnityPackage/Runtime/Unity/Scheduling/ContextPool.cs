@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
+using System;
 using System.Collections.Generic;
+using System.Threading;
 
 namespace QuickSes
 {
@@ -49,6 +51,22 @@ namespace QuickSes
             }
         }
 
+        /// <summary>Whether nothing can be computed yet, because the first context is being made.</summary>
+        public bool IsStarting
+        {
+            get
+            {
+                bool isOneMade = false;
+                foreach (ContextSlot slot in _slots)
+                {
+                    if (slot.IsReady && !slot.HasFailed)
+                        return false;
+                    isOneMade |= !slot.IsReady;
+                }
+                return isOneMade;
+            }
+        }
+
         public int WaitingCount => CountWaiting(_urgent, QueuePriority.Urgent) +
             CountWaiting(_refining, QueuePriority.Refinement);
 
@@ -84,16 +102,21 @@ namespace QuickSes
 
         /// <summary>
         /// A context at once, for work that waits, one more than there should be if all are lent; on failure null and
-        /// the reason.
+        /// the reason. With goesOn it is made by another thread, and goesOn called now and then until it is there; if
+        /// that returns false, nobody wants the context any more (Cancelled).
         /// </summary>
-        public ContextSlot LendNow(SurfaceSession session, out QuickSesError error)
+        public ContextSlot LendNow(SurfaceSession session, Func<bool> goesOn, out QuickSesError error)
         {
             ContextSlot slot = FindIdle(session);
             error = default;
             if (slot == null)
             {
                 slot = SurfaceScheduler.NewSlot(_backend);
-                slot.Create();
+                if (!TryMake(slot, goesOn))
+                {
+                    error = new QuickSesError(QuickSesStatus.Cancelled, "cancelled while the back end was started");
+                    return null;
+                }
                 error = slot.Error;
                 if (slot.HasFailed)
                     return null;
@@ -132,30 +155,46 @@ namespace QuickSes
                     _slots.RemoveAt(k);
         }
 
-        /// <summary>Frees all contexts without waiting for it; none must be lent.</summary>
+        /// <summary>Takes all contexts back and has them freed, without waiting for it.</summary>
         public void ReleaseInBackground()
         {
             foreach (ContextSlot slot in _slots)
-                Retire(slot);
-            _slots.Clear();
-        }
-
-        /// <summary>Takes all contexts back and frees them; waits for that.</summary>
-        public void ReleaseAll()
-        {
-            foreach (ContextSlot slot in _slots)
-                slot.Cancel(); // all at once, so that they end together
-            foreach (ContextSlot slot in _slots)
             {
+                slot.Cancel();
                 slot.User?.LoseContext();
-                slot.Dispose();
+                Retire(slot);
             }
             _slots.Clear();
+            Clear(_urgent);
+            Clear(_refining);
+        }
+
+        /// <summary>Waits until what was taken back is freed.</summary>
+        public void WaitUntilReleased()
+        {
             foreach (ContextSlot slot in _retired)
                 slot.WaitUntilDisposed();
             _retired.Clear();
-            Clear(_urgent);
-            Clear(_refining);
+        }
+
+        private bool TryMake(ContextSlot slot, Func<bool> goesOn)
+        {
+            if (goesOn == null)
+            {
+                slot.Create();
+                return true;
+            }
+            slot.CreateInBackground();
+            while (!slot.IsReady)
+            {
+                if (!goesOn())
+                {
+                    Retire(slot);
+                    return false;
+                }
+                Thread.Sleep(SurfaceSession.Pause);
+            }
+            return true;
         }
 
         private void Retire(ContextSlot slot)

@@ -6,8 +6,8 @@ namespace QuickSes
 {
     /// <summary>
     /// One of the few contexts of a <see cref="ContextPool"/>, and who may use it. Main thread only, but for
-    /// <see cref="Create"/> and <see cref="Dispose"/>, which may take a third of a second with CUDA and therefore run on
-    /// threads of their own where nobody has to wait for them.
+    /// <see cref="Create"/> and <see cref="Dispose"/>, which therefore run on threads of their own where nobody has to
+    /// wait for them: CUDA starts within a second, but on a GPU newer than the library its driver compiles for a minute.
     /// </summary>
     internal sealed class ContextSlot
     {

@@ -62,13 +62,22 @@ namespace QuickSes
 
         /// <summary>
         /// Frees all contexts, for instance after options were changed. What was being computed begins again with new
-        /// ones; what is shown stays. Waits for the jobs to end, which they do within milliseconds.
+        /// ones; what is shown stays. Waits for the jobs to end, which they do within milliseconds, and for contexts that
+        /// are being made.
         /// </summary>
         public static void ReleaseContexts()
         {
+            ReleaseInBackground();
+            foreach (ContextPool pool in s_pools)
+                pool.WaitUntilReleased();
+        }
+
+        /// <summary>The same without waiting, neither for jobs nor for a GPU that is being started.</summary>
+        internal static void ReleaseInBackground()
+        {
             RemoveOrphans();
             foreach (ContextPool pool in s_pools)
-                pool.ReleaseAll();
+                pool.ReleaseInBackground();
         }
 
         /// <summary>Ends all surfaces there are, and frees what they and the contexts hold.</summary>

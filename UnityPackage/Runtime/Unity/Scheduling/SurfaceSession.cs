@@ -9,6 +9,9 @@ namespace QuickSes
     /// </summary>
     internal sealed partial class SurfaceSession : IDisposable
     {
+        /// <summary>Milliseconds between two looks at work that a thread waits for.</summary>
+        internal const int Pause = 20;
+
         private readonly ISurfaceHost _host;
 
         // Of the newest atoms, colours and settings.
@@ -49,6 +52,9 @@ namespace QuickSes
         public QuickSesError LastError { get; private set; }
 
         public float Progress { get; private set; }
+
+        /// <summary>Whether it waits for the first context, which is being made: with CUDA, the GPU is started.</summary>
+        public bool IsStarting => _slot == null && QueuedAs != QueuePriority.None && Pool.IsStarting;
 
         public bool IsDisposed { get; private set; }
 
@@ -118,10 +124,12 @@ namespace QuickSes
         }
 
         /// <summary>Computes the finest level and shows it before it returns.</summary>
-        public bool ComputeNow()
+        /// <param name="goesOn">If not null: called now and then meanwhile; false ends it.</param>
+        public bool ComputeNow(Func<bool> goesOn = null)
         {
             Drop();
-            ContextSlot slot = SurfaceScheduler.PoolOf(_host.Backend).LendNow(this, out QuickSesError error);
+            Progress = 0;
+            ContextSlot slot = SurfaceScheduler.PoolOf(_host.Backend).LendNow(this, goesOn, out QuickSesError error);
             if (slot == null)
             {
                 FailToBegin(error);
@@ -130,7 +138,13 @@ namespace QuickSes
             _isStopped = false;
             if (TryStart(slot, true))
             {
-                slot.Context.Wait();
+                while (!slot.Context.Wait(goesOn == null ? -1 : Pause))
+                {
+                    slot.Context.Poll(out SurfaceProgress progress);
+                    Progress = progress.Fraction;
+                    if (!goesOn())
+                        slot.Context.Cancel();
+                }
                 Advance();
             }
             return IsDone && !_isStopped;
