@@ -130,17 +130,19 @@ qses_settings voxels(qses_settings s) {
 }
 
 std::vector<Input> crowded_inputs() {
-  return {{"crambin", crambin(), settings()},
-          {"crambin twice", twice(crambin()), settings()},
-          {"2,500 atoms within 1.5 A", in_a_box(2500, 1.5, 1.7), settings()},
-          {"2,500 atoms within 1.5 A, voxels", in_a_box(2500, 1.5, 1.7), voxels(settings())},
-          {"4,000 atoms within 0.01 A", in_a_box(4000, 0.01, 1.7), settings()},
-          {"radii of 0.1 to 100 A", of_all_sizes(400), settings(2)},
-          {"radii of 0.1 to 100 A, voxels", of_all_sizes(400), voxels(settings(2, 20))},
-          {"3,000 atoms on a line", on_a_line(3000), settings()},
-          {"a giant and 3,000 small ones", giant_with(3000), settings(2)},
-          {"a giant at a fine spacing", giant_with(0), settings(0.2)},
-          {"800 beads on a circle", beads_on_a_circle(800), settings(2, 0.1)}};
+  return {
+      {"crambin", crambin(), settings()},
+      {"crambin twice", twice(crambin()), settings()},
+      {"2,500 atoms within 1.5 A", in_a_box(2500, 1.5, 1.7), settings()},
+      {"2,500 atoms within 1.5 A, voxels", in_a_box(2500, 1.5, 1.7), voxels(settings())},
+      {"4,000 atoms within 0.01 A", in_a_box(4000, 0.01, 1.7), settings()},
+      {"radii of 0.1 to 100 A", of_all_sizes(400), settings(2)},
+      {"radii of 0.1 to 100 A, voxels", of_all_sizes(400), voxels(settings(2, 20))},
+      {"two atoms at a large p / h, voxels", Atoms().add(0, 0, 0, 1.7).add(2, 0, 0, 1.6), voxels(settings(0.05, 10))},
+      {"3,000 atoms on a line", on_a_line(3000), settings()},
+      {"a giant and 3,000 small ones", giant_with(3000), settings(2)},
+      {"a giant at a fine spacing", giant_with(0), settings(0.2)},
+      {"800 beads on a circle", beads_on_a_circle(800), settings(2, 0.1)}};
 }
 
 void expect_same(const Surface &a, const Surface &b, const std::string &name) {
