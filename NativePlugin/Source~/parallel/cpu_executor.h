@@ -65,7 +65,7 @@ class CpuExecutor {
   }
 
   template <class F>
-  void for_each(size_t n, F f) {
+  void for_each(size_t n, F f, uint64_t /*steps*/ = 0) {
     // Chunks keep the functor's loop tight and the scheduler out of it.
     const size_t chunk = std::max<size_t>(kSerialItems, n / (size_t(threads()) * 16));
     run_chunks((n + chunk - 1) / chunk,
@@ -98,7 +98,7 @@ class CpuExecutor {
 
   // grain: items a thread takes at a time. Each thread that works has a scratch of its own.
   template <class Scratch, class F>
-  void for_each_brick(size_t n, F f, size_t grain = 8) {
+  void for_each_brick(size_t n, F f, size_t grain = 8, uint64_t /*steps*/ = 0) {
     auto &pool = scratches<Scratch>();
     run_chunks((n + grain - 1) / grain, [&](size_t worker, size_t c) {
       for (size_t i = c * grain; i < std::min(n, (c + 1) * grain); ++i) f(SoloTeam{}, *pool[worker], i);
@@ -152,7 +152,7 @@ class CpuExecutor {
   }
 
   template <class T = double, class Load>
-  T reduce(size_t n, Load load) {
+  T reduce(size_t n, Load load, uint64_t /*steps*/ = 0) {
     const size_t chunks = (n + kReduceChunk - 1) / kReduceChunk;
     const auto mark = arena_.mark();
     const Span<T> sums = allocate<T>(chunks);

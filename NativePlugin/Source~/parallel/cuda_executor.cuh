@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The verbs of parallel/executor.h on one CUDA stream: plain kernels, and CUB for sorting, scanning and compaction.
+// Work is cut into launches that are short on the smallest GPU (cuda_launch.cuh).
 #pragma once
 
 #include "parallel/arena.h"
+#include "parallel/cuda_launch.cuh"
 #include "parallel/cuda_memory.h"
 #include "parallel/executor.h"
 
@@ -18,6 +20,7 @@
 #include <cstring>
 #include <limits>
 #include <string>
+#include <utility>
 
 namespace quickses {
 
@@ -34,17 +37,17 @@ namespace gpu {
 constexpr int kForEachThreads = 128;
 
 template <class F>
-__global__ __launch_bounds__(kForEachThreads) void for_each_kernel(size_t n, F f) {
-  const size_t i = static_cast<size_t>(blockIdx.x) * kForEachThreads + threadIdx.x;
-  if (i < n) f(i);
+__global__ __launch_bounds__(kForEachThreads) void for_each_kernel(LaunchItems items, F f) {
+  const size_t i = items.first + static_cast<size_t>(blockIdx.x) * kForEachThreads + threadIdx.x;
+  if (i < items.last) f(i);
 }
 
 // The scratch is in dynamic shared memory: one object per block, used by one item after the other.
 template <class Scratch, class F>
-__global__ __launch_bounds__(BlockTeam::kSize) void for_each_brick_kernel(size_t n, F f) {
+__global__ __launch_bounds__(BlockTeam::kSize) void for_each_brick_kernel(LaunchItems items, F f) {
   extern __shared__ __align__(16) unsigned char scratch_memory[];
   Scratch &scratch = *reinterpret_cast<Scratch *>(scratch_memory);
-  for (size_t i = blockIdx.x; i < n; i += gridDim.x) {
+  for (size_t i = items.first + blockIdx.x; i < items.last; i += gridDim.x) {
     f(BlockTeam{}, scratch, i);
     __syncthreads();
   }
@@ -53,10 +56,11 @@ __global__ __launch_bounds__(BlockTeam::kSize) void for_each_brick_kernel(size_t
 // Sum of each chunk of reduce(): a thread adds every 128th item, then the threads are added as a tree. Always the same
 // order, but not the one of a single thread.
 template <class T, class Load>
-__global__ __launch_bounds__(BlockTeam::kSize) void sum_chunks_kernel(size_t n, Load load, T *sums) {
+__global__ __launch_bounds__(BlockTeam::kSize) void sum_chunks_kernel(LaunchItems chunks, size_t n, Load load,
+                                                                      T *sums) {
   __shared__ __align__(16) unsigned char partial_memory[BlockTeam::kSize * sizeof(T)];
   T *partial = reinterpret_cast<T *>(partial_memory);
-  const size_t begin = static_cast<size_t>(blockIdx.x) * kReduceChunk;
+  const size_t chunk = chunks.first + blockIdx.x, begin = chunk * kReduceChunk;
   const size_t end = begin + kReduceChunk < n ? begin + kReduceChunk : n;
   T sum{};
   for (size_t i = begin + threadIdx.x; i < end; i += BlockTeam::kSize) sum += load(i);
@@ -65,7 +69,7 @@ __global__ __launch_bounds__(BlockTeam::kSize) void sum_chunks_kernel(size_t n, 
     __syncthreads();
     if (static_cast<int>(threadIdx.x) < half) partial[threadIdx.x] += partial[threadIdx.x + half];
   }
-  if (threadIdx.x == 0) sums[blockIdx.x] = partial[0];
+  if (threadIdx.x == 0) sums[chunk] = partial[0];
 }
 
 // load(i), and 0 for the one element behind the last.
@@ -112,6 +116,7 @@ class CudaExecutor {
     int value = 0;
     check_cuda(cudaDeviceGetAttribute(&value, cudaDevAttrMultiProcessorCount, device), "cudaDeviceGetAttribute");
     multiprocessors_ = static_cast<unsigned>(value);
+    if (LaunchObserver::current) multiprocessors_ = LaunchObserver::current->multiprocessors(multiprocessors_);
     staging_.reserve(kStagingBytes);
     check_cuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "cudaStreamCreateWithFlags");
   }
@@ -119,6 +124,8 @@ class CudaExecutor {
     try {
       const DeviceGuard guard(device_);
       cudaStreamSynchronize(stream_);
+      for (cudaEvent_t event : launched_)
+        if (event) cudaEventDestroy(event);
       arena_.release();
       cudaStreamDestroy(stream_);
       cudaGetLastError();
@@ -139,33 +146,57 @@ class CudaExecutor {
     return {static_cast<T *>(arena_.allocate(n * sizeof(T))), n};
   }
 
-  // A kernel on this stream. No blocks: nothing to do.
-  template <class... Parameters, class... Arguments>
-  void launch(const char *name, void (*kernel)(Parameters...), size_t blocks, int threads, size_t shared_bytes,
-              Arguments... arguments) {
-    if (blocks == 0) return;
-    stop_if_asked();
-    if (blocks > static_cast<size_t>(std::numeric_limits<int>::max()))
-      throw Error(QSES_OUT_OF_MEMORY, std::string(name) + ": too much work for one launch; use a smaller slice size");
-    kernel<<<static_cast<unsigned>(blocks), static_cast<unsigned>(threads), shared_bytes, stream_>>>(arguments...);
-    check_cuda(cudaGetLastError(), name);
+  // How many items a launch is given, and how many launches that makes. Known before anything is launched.
+  size_t items_per_launch(const LaunchShape &shape) const { return most_items_of_launch(shape, multiprocessors_); }
+  size_t launches_of(size_t items, const LaunchShape &shape) const {
+    const size_t most = items_per_launch(shape);
+    return items / most + (items % most > 0 ? 1 : 0);
   }
 
+  // So few that to know more about the items is not worth a wait.
+  bool is_few_launches(size_t items, const LaunchShape &shape) const { return launches_of(items, shape) <= 4; }
+  static LaunchShape for_each_shape(uint64_t steps) { return {gpu::kForEachThreads, gpu::kForEachThreads, steps}; }
+
+  LaunchShape team_shape(uint64_t steps) const { return {BlockTeam::kSize, 1, steps, size_t(multiprocessors_) * 32}; }
+
+  // A kernel on this stream, for all items, in as many launches as that takes: kernel(LaunchItems, arguments...). Of
+  // several, no more than two are queued at a time, since what is queued can't be cancelled. No items: nothing to do.
+  template <class... Parameters, class... Arguments>
+  void launch(const char *name, void (*kernel)(LaunchItems, Parameters...), size_t items, const LaunchShape &shape,
+              Arguments... arguments) {
+    if (items == 0) return;
+    const size_t launches = launches_of(items, shape);
+    const size_t even = (items + launches - 1) / launches;
+    const size_t length = (even + shape.items_per_block - 1) / shape.items_per_block * shape.items_per_block;
+    for (size_t first = 0; first < items; first += length) {
+      const LaunchItems part{first, std::min(items, first + length)};
+      const size_t wanted = (part.last - first + shape.items_per_block - 1) / shape.items_per_block;
+      const size_t blocks = shape.most_blocks ? std::min(shape.most_blocks, wanted) : wanted;
+      stop_if_asked();
+      const LaunchWatch watch(name, blocks, wanted, shape, multiprocessors_, stream_);
+      kernel<<<static_cast<unsigned>(blocks), static_cast<unsigned>(shape.threads), shape.shared_bytes, stream_>>>(
+          part, arguments...);
+      check_cuda(cudaGetLastError(), name);
+      if (launches > 1) wait_for_launch_before();
+    }
+  }
+
+  // steps: of one thread for one item, at most (cuda_launch.cuh). What is not told is a plain pass.
   template <class F>
-  void for_each(size_t n, F f) {
-    launch("for_each", gpu::for_each_kernel<F>, (n + gpu::kForEachThreads - 1) / gpu::kForEachThreads,
-           gpu::kForEachThreads, 0, n, f);
+  void for_each(size_t n, F f, uint64_t steps = kPlainSteps) {
+    launch("for_each", gpu::for_each_kernel<F>, n, for_each_shape(steps), f);
   }
 
   template <class Scratch, class F>
-  void for_each_brick(size_t n, F f, size_t /*grain*/ = 8) {
+  void for_each_brick(size_t n, F f, size_t /*grain*/ = 8, uint64_t steps = kPlainTeamSteps) {
     if (n == 0) return;
     const auto kernel = gpu::for_each_brick_kernel<Scratch, F>;
     if (sizeof(Scratch) > kDefaultSharedBytes)
       check_cuda(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, sizeof(Scratch)),
                  "cudaFuncSetAttribute");
-    launch("for_each_brick", kernel, std::min(n, size_t(multiprocessors_) * 32), BlockTeam::kSize, sizeof(Scratch), n,
-           f);
+    LaunchShape shape = team_shape(steps);
+    shape.shared_bytes = sizeof(Scratch);
+    launch("for_each_brick", kernel, n, shape, f);
   }
 
   template <class Load, class T>
@@ -203,12 +234,13 @@ class CudaExecutor {
   size_t compact_bytes(size_t n) const { return n / 128 + 4096; }  // CUB's states of its tiles, generously
 
   template <class T = double, class Load>
-  T reduce(size_t n, Load load) {
+  T reduce(size_t n, Load load, uint64_t steps = kPlainSumSteps) {
     if (n == 0) return T{};
     const size_t chunks = (n + kReduceChunk - 1) / kReduceChunk;
     const auto mark = arena_.mark();
     Span<T> sums = allocate<T>(chunks);
-    launch("reduce", gpu::sum_chunks_kernel<T, Load>, chunks, BlockTeam::kSize, 0, n, load, sums.data);
+    launch("reduce", gpu::sum_chunks_kernel<T, Load>, chunks,
+           {BlockTeam::kSize, 1, kReduceChunk / BlockTeam::kSize * steps}, n, load, sums.data);
     const T *host = static_cast<const T *>(to_staging(sums.data, chunks * sizeof(T)));
     arena_.rewind(mark);
     T sum{};
@@ -317,8 +349,17 @@ class CudaExecutor {
     check_cuda(call(nullptr, bytes), name);
     const auto mark = arena_.mark();
     void *temporary = arena_.allocate(bytes);
+    const LaunchWatch watch(name, stream_);
     check_cuda(call(temporary, bytes), name);
     arena_.rewind(mark);
+  }
+
+  void wait_for_launch_before() {
+    cudaEvent_t &event = launched_[0];
+    if (event) check_cuda(cudaEventSynchronize(event), "cudaEventSynchronize");
+    if (!event) check_cuda(cudaEventCreate(&event), "cudaEventCreate");
+    check_cuda(cudaEventRecord(event, stream_), "cudaEventRecord");
+    std::swap(launched_[0], launched_[1]);
   }
 
   // Waits; what it returns is valid until the next call that copies to the host.
@@ -333,6 +374,7 @@ class CudaExecutor {
   unsigned multiprocessors_ = 0;
   cudaStream_t stream_ = nullptr;
   const std::atomic<bool> *stop_ = nullptr;
+  cudaEvent_t launched_[2] = {};  // the next to be used: the launch before last
   PinnedBuffer staging_;
   Arena<DeviceMemory> arena_;
 };

@@ -19,6 +19,10 @@
 // Functors are plain structs that hold views and have a QSES_HOST_DEVICE operator(). A verb may return before its work
 // is done, but everything runs in the order it was asked for; only what "waits" blocks the calling thread.
 //
+// for_each, for_each_brick and reduce take a last argument, `steps`: of a thread of the GPU for an item, at most. A
+// pass over items that may need many of them must tell, since the launches of the GPU are cut by it; the CPU does not
+// look.
+//
 // A team has rank() in [0, size()), and sync(). On the CPU it is one thread, so its loops run straight through.
 #pragma once
 
@@ -32,6 +36,15 @@ namespace quickses {
 
 // Items per chunk of reduce(): part of the result's definition, since float sums depend on the order.
 constexpr size_t kReduceChunk = 2048;
+
+// Steps of a thread: rounds of its loops, of some 25 instructions each (cuda_launch.cuh). For one item no more than
+// this may be asked for: the work on it is cut.
+constexpr uint64_t kThreadSteps = uint64_t(1) << 19;
+// For an item of a pass without loops, whatever it reads and writes: also arrays in the host's memory, which come over
+// the bus. And where a team works on some thousand elements.
+constexpr uint64_t kPlainSteps = 512, kPlainTeamSteps = 4096;
+// For a sum's item: double precision, of which the smallest GPU does one thirty-second.
+constexpr uint64_t kPlainSumSteps = 64;
 
 // The usual thing to sum up or scan.
 template <class T>

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 #include <random>
 #include <thread>
@@ -224,6 +225,85 @@ TEST(CudaExecutor, StageTimes) {
     EXPECT_GT(times[0].second, 0.0);
     EXPECT_GT(times[1].second, 0.0);
   }
+}
+
+// Hears of the launches of an executor that takes the GPU to have a single multiprocessor.
+class SmallGpu : public LaunchObserver {
+ public:
+  SmallGpu() { current = this; }
+  ~SmallGpu() override { current = nullptr; }
+  unsigned multiprocessors(unsigned) override { return 1; }
+  void before(const Launch &launch) override {
+    ++launches;
+    most_steps = std::max(most_steps, launch.steps);
+  }
+  void after(const Launch &) override {
+    if (stop) *stop = true;
+  }
+  int launches = 0;
+  uint64_t most_steps = 0;
+  std::atomic<bool> *stop = nullptr;
+};
+
+TEST(CudaLaunches, AreCutBySteps) {
+  REQUIRE_DEVICE();
+  (void)executor;
+  SmallGpu gpu;
+  CudaExecutor small(0);
+  ASSERT_EQ(small.multiprocessors(), 1u);
+  const size_t n = 100003;
+  for (const uint64_t steps : {uint64_t(1), uint64_t(5000), kThreadSteps}) {
+    Span<uint64_t> out = small.allocate<uint64_t>(n);
+    small.fill(out, 0);
+    gpu.launches = 0;
+    gpu.most_steps = 0;
+    small.for_each(n, Square{out.data}, steps);
+    const size_t threads = static_cast<size_t>(kLaunchSteps / steps) * 32;
+    if (threads <= n)
+      EXPECT_GE(static_cast<size_t>(gpu.launches), n / threads) << steps;
+    else
+      EXPECT_EQ(gpu.launches, 1);
+    EXPECT_LE(gpu.most_steps, kLaunchSteps) << steps;
+    const auto host = to_host(small, out);
+    for (size_t i = 0; i < n; ++i) ASSERT_EQ(host[i], i * i) << steps;
+  }
+}
+
+TEST(CudaLaunches, OfTeamsAndSumsAreCutToo) {
+  REQUIRE_DEVICE();
+  const size_t n = 300;
+  const auto in = random_numbers(n * 1000, 256);
+  std::vector<std::vector<uint32_t>> digits;
+  std::vector<double> sums;
+  SmallGpu gpu;
+  CudaExecutor small(0);
+  for (CudaExecutor *e : {&executor, &small}) {
+    gpu.launches = 0;
+    Span<uint32_t> out = e->allocate<uint32_t>(n * 256);
+    e->for_each_brick<Histogram>(n, CountDigits{to_device(*e, in).data, out.data}, 8, kThreadSteps / 16);
+    digits.push_back(to_host(*e, out));
+    sums.push_back(e->reduce(1000003, Root{}, 60000));
+    if (e == &small) EXPECT_GT(gpu.launches, 20);
+    EXPECT_LE(gpu.most_steps, kLaunchSteps);
+  }
+  EXPECT_EQ(digits[0], digits[1]);
+  EXPECT_EQ(sums[0], sums[1]);
+}
+
+TEST(CudaLaunches, EndWhereTheyAreToldTo) {
+  REQUIRE_DEVICE();
+  (void)executor;
+  SmallGpu gpu;
+  CudaExecutor small(0);
+  std::atomic<bool> stop{false};
+  const CudaExecutor::StopScope scope(small, stop);
+  Span<uint64_t> out = small.allocate<uint64_t>(1000);
+  gpu.stop = &stop;
+  EXPECT_THROW(small.for_each(1000, Square{out.data}, kThreadSteps), Cancelled);
+  EXPECT_EQ(gpu.launches, 1);
+  gpu.stop = nullptr;
+  stop = false;
+  small.wait();
 }
 
 TEST(CudaDevices, DescriptionNamesWhatIsWrong) {

@@ -31,11 +31,11 @@ class SerialExecutor {
     return {static_cast<T *>(arena_.allocate(n * sizeof(T))), n};
   }
   template <class F>
-  void for_each(size_t n, F f) {
+  void for_each(size_t n, F f, uint64_t = 0) {
     for (size_t i = 0; i < n; ++i) f(i);
   }
   template <class Scratch, class F>
-  void for_each_brick(size_t n, F f, size_t = 8) {
+  void for_each_brick(size_t n, F f, size_t = 8, uint64_t = 0) {
     const std::unique_ptr<Scratch> scratch(new Scratch);
     for (size_t i = 0; i < n; ++i) f(quickses::SoloTeam{}, *scratch, i);
   }
@@ -49,7 +49,7 @@ class SerialExecutor {
     out[n] = sum;
   }
   template <class T = double, class Load>
-  T reduce(size_t n, Load load) {
+  T reduce(size_t n, Load load, uint64_t = 0) {
     T sum{};
     for (size_t i = 0; i < n; ++i) sum += load(i);
     return sum;

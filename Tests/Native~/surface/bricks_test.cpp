@@ -194,9 +194,18 @@ TEST(BricksOfAShell, AreTheOnesWhoseBoxesMeetIt) {
     const glm::vec3 center(place(random), place(random), place(random));
     const float outer = size(random), inner = k % 3 == 0 ? 0.f : k % 3 == 1 ? outer : outer * 0.7f;
     std::vector<int> visits(lattice.table_size(), 0);
-    visit_bricks_of_shell(lattice, center, inner, outer, [&](uint64_t first, uint64_t count) {
+    visit_bricks_of_shell(lattice, center, inner, outer, RowRange{}, [&](uint64_t first, uint64_t count) {
       for (uint64_t b = first; b < first + count; ++b) ++visits.at(b);
     });
+    std::vector<int> in_parts(lattice.table_size(), 0);
+    const uint64_t rows = most_bricks_across(lattice, outer) * most_bricks_across(lattice, outer);
+    const uint64_t most = 1 + static_cast<uint64_t>(k) * 7;  // rows in a part
+    for (uint64_t row = 0; row < rows; row += most)
+      visit_bricks_of_shell(lattice, center, inner, outer, RowRange{row, row + most},
+                            [&](uint64_t first, uint64_t count) {
+                              for (uint64_t b = first; b < first + count; ++b) ++in_parts.at(b);
+                            });
+    ASSERT_EQ(in_parts, visits);
     for (uint64_t b = 0; b < lattice.table_size(); ++b) {
       const glm::ivec3 first = lattice.first_point(lattice.brick_at(b));
       const double h = 0.25;

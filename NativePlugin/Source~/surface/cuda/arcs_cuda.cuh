@@ -66,11 +66,11 @@ struct StridedIntervals {
 };
 
 // Lists the circles of each atom: caps behind which a later atom is. A warp per atom.
-static __global__ __launch_bounds__(128) void list_circles_kernel(CircleJob job) {
+static __global__ __launch_bounds__(128) void list_circles_kernel(LaunchItems atoms, CircleJob job) {
   const int lane = lane_id();
-  for (uint32_t place = (blockIdx.x * blockDim.x + threadIdx.x) / kWarp; place < job.run.size();
+  for (size_t place = atoms.first + (blockIdx.x * blockDim.x + threadIdx.x) / kWarp; place < atoms.last;
        place += gridDim.x * blockDim.x / kWarp) {
-    const uint32_t i = job.run.first + place;
+    const uint32_t i = job.run.first + static_cast<uint32_t>(place);
     const CapRange range = job.cap_ranges[i];
     uint32_t next = job.circle_first[place];
     if (job.circle_first[place + 1] > job.room.circles) return;  // all will be done again
@@ -152,17 +152,19 @@ __device__ __forceinline__ void stage_circle(const CircleJob &job, const OpenCir
   job.arc_count[c.number] = pieces;
 }
 
-static __global__ __launch_bounds__(kArcThreads) void find_arcs_kernel(CircleJob job, uint32_t chunk) {
+static __global__ __launch_bounds__(kArcThreads) void find_arcs_kernel(LaunchItems circles, CircleJob job,
+                                                                       uint32_t chunk) {
   __shared__ Interval memory[kLaneIntervals * kArcThreads];
   const StridedIntervals storage{memory + threadIdx.x, kArcThreads};
   enum class State { kIdle, kActive, kDone };
   const int lane = lane_id();
   // Those that are listed: atoms whose caps had no room are counted, but list none.
-  const unsigned long long total = job.circle_first[job.run.size()];
-  if (total > job.room.circles) return;  // all will be done again
+  const unsigned long long listed = job.circle_first[job.run.size()];
+  if (listed > job.room.circles) return;  // all will be done again
+  const unsigned long long total = listed < circles.last ? listed : circles.last;
   const uint32_t warps = gridDim.x * kArcThreads / kWarp;
   for (unsigned long long base =
-           (blockIdx.x * kArcThreads + threadIdx.x) / kWarp * static_cast<unsigned long long>(chunk);
+           circles.first + (blockIdx.x * kArcThreads + threadIdx.x) / kWarp * static_cast<unsigned long long>(chunk);
        base < total; base += static_cast<unsigned long long>(warps) * chunk) {
     uint32_t next = static_cast<uint32_t>(base);
     const uint32_t end = static_cast<uint32_t>(base + chunk < total ? base + chunk : total);
@@ -227,35 +229,65 @@ static __global__ __launch_bounds__(kArcThreads) void find_arcs_kernel(CircleJob
   }
 }
 
+// How far a thread has come with the long circles that are its own.
+struct LongCircleState {
+  uint32_t done;       // circles
+  int32_t next_cap;    // of the circle at hand
+  int32_t count;       // of its intervals
+  uint32_t is_partly;  // covered already
+};
+constexpr uint32_t kLongCircleThreads = 512;
+// Each cap can cost as much as there are intervals: a thread that has taken so many steps leaves the rest to the next
+// launch.
+constexpr uint32_t kLongCircleSteps = 1u << 18;
+constexpr uint32_t kCutSteps = 4;  // of one cap of a circle
+
 // The circles that have more exposed intervals, with room for as many as they can have: one more than there are caps.
-static __global__ __launch_bounds__(kWarp) void find_long_circle_arcs_kernel(CircleJob job, Interval *memory) {
-  const uint32_t thread = blockIdx.x * kWarp + threadIdx.x, threads = gridDim.x * kWarp;
+static __global__ __launch_bounds__(kWarp) void find_long_circle_arcs_kernel(LaunchItems slots, CircleJob job,
+                                                                             Interval *memory,
+                                                                             LongCircleState *states) {
+  const uint32_t thread = static_cast<uint32_t>(slots.first) + blockIdx.x * kWarp + threadIdx.x;
   const uint32_t count = job.counters->long_circles;
-  for (uint32_t t = thread; t < count; t += threads) {
+  LongCircleState state = states[thread];
+  uint32_t steps = 0;
+  for (;; ++state.done, state.next_cap = 0, state.count = 0, state.is_partly = 0) {
+    const uint32_t t = thread + state.done * kLongCircleThreads;
+    if (t >= count) break;
     const OpenCircle c = open_circle(job, job.long_circles[t]);
     if (static_cast<size_t>(c.cap_count) + 1 > job.room.intervals) continue;  // all will be done again
-    ExposedIntervals<StridedIntervals> intervals{{memory + thread, static_cast<int>(threads)},
+    ExposedIntervals<StridedIntervals> intervals{{memory + thread, static_cast<int>(kLongCircleThreads)},
                                                  static_cast<int>(job.room.intervals)};
+    intervals.count = state.count;
+    intervals.whole = !state.is_partly;
     bool hidden = false;
-    for (int k = 0; k < c.cap_count && !hidden; ++k) {
+    int k = state.next_cap;
+    for (; k < c.cap_count && !hidden && steps < kLongCircleSteps; ++k) {
       if (k == c.rank) continue;
       float begin, end;
       const CutKind cut = cut_by_cap(job, c, k, &begin, &end);
       if (cut == CutKind::kPart) intervals.cover(begin, end);
       hidden = cut == CutKind::kAll || intervals.empty();
+      steps += kCutSteps + static_cast<uint32_t>(intervals.count);
+    }
+    if (k < c.cap_count && !hidden) {
+      state = {state.done, k, intervals.count, intervals.whole ? 0u : 1u};
+      atomicAdd(&job.counters->unfinished_circles, 1u);
+      break;
     }
     if (!hidden) stage_circle(job, c, intervals, atomicAdd(&job.counters->staged, (1ull << 32) + arcs_of(intervals)));
   }
+  states[thread] = state;
 }
 
 // Writes the staged arcs, split, to their places in order.
-static __global__ __launch_bounds__(128) void write_arcs_kernel(CircleJob job, const uint32_t *arc_first) {
+static __global__ __launch_bounds__(128) void write_arcs_kernel(LaunchItems items, CircleJob job,
+                                                                const uint32_t *arc_first) {
   if (job.circle_first[job.run.size()] > job.room.circles) return;
-  if (blockIdx.x == 0 && threadIdx.x == 0) job.counters->arcs = arc_first[job.room.circles];
+  if (items.first + blockIdx.x + threadIdx.x == 0) job.counters->arcs = arc_first[job.room.circles];
   const unsigned long long staged = job.counters->staged;
   if ((staged >> 32) > job.room.staged_circles || (staged & 0xffffffffu) > job.room.staged_arcs) return;
-  for (uint32_t s = blockIdx.x * blockDim.x + threadIdx.x; s < static_cast<uint32_t>(staged >> 32);
-       s += gridDim.x * blockDim.x) {
+  const size_t end = (staged >> 32) < items.last ? static_cast<size_t>(staged >> 32) : items.last;
+  for (size_t s = items.first + blockIdx.x * blockDim.x + threadIdx.x; s < end; s += gridDim.x * blockDim.x) {
     const StagedCircle staged_circle = job.staged[s];
     const OpenCircle c = open_circle(job, staged_circle.circle);
     const Sphere atom = load(job.atoms.items + c.atom);
@@ -269,11 +301,45 @@ static __global__ __launch_bounds__(128) void write_arcs_kernel(CircleJob job, c
   }
 }
 
-// The arcs of a run of atoms from their caps.
+// The circles of a run of atoms and their exposed arcs. All in memory of the arena; what is not done yet can go on.
+struct ArcSearch {
+  CircleJob job;
+  float max_radius;
+  Span<uint32_t> arc_count, arc_first;
+  Span<Interval> long_memory;
+  Span<LongCircleState> long_states;
+};
+
+// A further launch for the long circles.
 template <class E>
-void find_arcs(E &executor, CircleJob job) {
+void find_long_circle_arcs(E &executor, const ArcSearch &search) {
+  if (!E::kCounts) executor.fill(Span<uint32_t>{&search.job.counters->unfinished_circles, 1}, 0);
+  executor.launch("find_long_circle_arcs", find_long_circle_arcs_kernel, kLongCircleThreads,
+                  LaunchShape{kWarp, kWarp, kLongCircleSteps}, search.job, search.long_memory.data,
+                  search.long_states.data);
+}
+
+// Puts what is staged in order.
+template <class E>
+void write_arcs(E &executor, const ArcSearch &search) {
+  const CircleJob &job = search.job;
   const FeatureRoom &room = job.room;
-  const size_t processors = executor.multiprocessors(), n = job.run.size();
+  executor.exclusive_scan(room.circles, LoadNumber{search.arc_count.data}, search.arc_first);
+  // A circle's arcs are split into no more pieces than its length in Å, and one for each.
+  const uint64_t intervals = std::max<uint64_t>(kLaneIntervals, room.intervals);
+  const uint64_t pieces = static_cast<uint64_t>(6.3f * search.max_radius) + intervals;
+  executor.launch("write_arcs", write_arcs_kernel, room.staged_circles,
+                  LaunchShape{128, 128, 32 + 4 * pieces,
+                              std::min(job.run.size() / 64 + size_t(1), size_t(executor.multiprocessors()) * 16)},
+                  job, search.arc_first.data);
+}
+
+// The arcs of a run of atoms from their caps. The counters tell what was not finished.
+template <class E>
+ArcSearch find_arcs(E &executor, CircleJob job, float max_radius) {
+  const FeatureRoom &room = job.room;
+  const size_t processors = executor.multiprocessors();
+  const uint64_t caps = room.longest_row();
   job.names = executor.template allocate<CircleName>(room.circles).data;
   Span<uint32_t> arc_count = executor.template allocate<uint32_t>(room.circles);
   Span<uint32_t> arc_first = executor.template allocate<uint32_t>(room.circles + 1);
@@ -283,19 +349,25 @@ void find_arcs(E &executor, CircleJob job) {
   job.long_circles = executor.template allocate<uint32_t>(room.circles).data;
   executor.fill(arc_count, 0);
 
-  executor.launch("list_circles", list_circles_kernel, std::min((n + 3) / 4, processors * 32), 128, 0, job);
+  executor.launch("list_circles", list_circles_kernel, job.run.size(),
+                  LaunchShape{128, 4, 8 + caps / 8, processors * 32}, job);
   // Enough warps to fill the GPU, and enough circles per warp to refill its lanes.
   const uint32_t chunk =
       static_cast<uint32_t>(std::min<size_t>(256, std::max<size_t>(64, room.circles / (processors * 64))));
-  executor.launch("find_arcs", find_arcs_kernel, std::min(room.circles / (4 * chunk) + 1, processors * 64), kArcThreads,
-                  0, job, chunk);
+  const uint64_t rounds = chunk / (kWarp - kIdleLanes) + 1;
+  executor.launch(
+      "find_arcs", find_arcs_kernel, room.circles,
+      LaunchShape{kArcThreads, size_t(kArcThreads / kWarp) * chunk, kCutSteps * caps * rounds, processors * 64}, job,
+      chunk);
+  ArcSearch search{job, max_radius, arc_count, arc_first, {}, {}};
   if (room.intervals > 0) {
-    const size_t blocks = 16;
-    Span<Interval> memory = executor.template allocate<Interval>(blocks * kWarp * room.intervals);
-    executor.launch("find_long_circle_arcs", find_long_circle_arcs_kernel, blocks, kWarp, 0, job, memory.data);
+    search.long_memory = executor.template allocate<Interval>(kLongCircleThreads * room.intervals);
+    search.long_states = executor.template allocate<LongCircleState>(kLongCircleThreads);
+    executor.fill(search.long_states, 0);
+    find_long_circle_arcs(executor, search);
   }
-  executor.exclusive_scan(room.circles, LoadNumber{arc_count.data}, arc_first);
-  executor.launch("write_arcs", write_arcs_kernel, std::min(n / 64 + 1, processors * 16), 128, 0, job, arc_first.data);
+  write_arcs(executor, search);
+  return search;
 }
 
 }  // namespace gpu

@@ -63,8 +63,11 @@ struct BrickRow {
   uint32_t atom_count, arc_count;
 };
 
+// Rows that are longer than this are told of.
+constexpr uint32_t kUsualRow = 192;
 struct CandidateCounters {
   unsigned long long atoms, arcs, leaves;
+  uint32_t longest_row;  // of atoms or arcs; 0: none is longer than usual
 };
 
 // The lists for a slice of bricks, as kernels see them.
@@ -206,12 +209,13 @@ __device__ __forceinline__ GatheredRow gather_row(const NeighborGridView &grid, 
 }
 
 // The rows of one brick. A warp per brick.
-static __global__ __launch_bounds__(kGatherWarps *kWarp, 8) void gather_candidates_kernel(GatherJob job) {
+static __global__ __launch_bounds__(kGatherWarps *kWarp, 8) void gather_candidates_kernel(LaunchItems bricks,
+                                                                                          GatherJob job) {
   __shared__ uint32_t near_memory[kGatherWarps][kGatherRoom];
   __shared__ uint8_t near_leaves[kGatherWarps][kGatherRoom];
   const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();
-  const uint32_t b = blockIdx.x * kGatherWarps + static_cast<uint32_t>(warp);
-  if (b >= job.view.bricks) return;
+  const uint32_t b = static_cast<uint32_t>(bricks.first) + blockIdx.x * kGatherWarps + static_cast<uint32_t>(warp);
+  if (b >= bricks.last) return;
   const FeatureView &f = job.features;
   const CandidateReach &reach = job.reach;
   const Lattice &lattice = job.bricks.lattice;
@@ -267,6 +271,8 @@ static __global__ __launch_bounds__(kGatherWarps *kWarp, 8) void gather_candidat
   if (lane == 0) {
     first_leaf = atomicAdd(&job.counters->leaves, static_cast<unsigned long long>(__popc(active)));
     job.view.brick_rows[b] = {atoms.first, arcs.first, atoms.count, arcs.count};
+    const uint32_t longest = atoms.count > arcs.count ? atoms.count : arcs.count;
+    if (longest > kUsualRow) atomicMax(&job.counters->longest_row, longest);
   }
   first_leaf = __shfl_sync(kFullWarp, first_leaf, 0);
   if (!atoms.fits || !arcs.fits) return;

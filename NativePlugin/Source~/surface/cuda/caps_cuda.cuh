@@ -29,7 +29,6 @@ struct CapRows {
   uint32_t *neighbor;
 };
 constexpr uint32_t kContainedCap = 0x80000000u;  // flag of a neighbour whose cap lies within another
-constexpr int kRowNeighbors = 128;               // rows in shared memory
 constexpr int kCapWarps = 4;                     // per block
 
 // Caps of all neighbours of atom i, in grid order; returns their number, which may exceed the room.
@@ -84,30 +83,21 @@ __device__ __forceinline__ int gather_caps(const NeighborGridView &atoms, float 
   return n;
 }
 
-// Drops the caps that lie within another one; returns how many stay. Few caps are tested by several lanes each.
-__device__ __forceinline__ int drop_contained_caps(const CapRows &rows, int n) {
-  const int lane = lane_id();
-  for (int first = 0; first < n; first += kWarp) {
-    const int left = n - first;
-    const int parts = left > 16 ? 1 : left > 8 ? 2 : 4;
-    const int j = first + lane / parts;
-    bool stays = j < n;
-    if (stays) {
-      const Cap cap = rows.cap[j];
-      const float sine = rows.sine[j];
-      for (int k = lane % parts; k < n; k += parts) {
-        const Cap other = rows.cap[k];
-        if (cap_contains(other.cosine, rows.sine[k], cap.cosine, sine,
-                         dot(Vec3<float>(other.axis), Vec3<float>(cap.axis)))) {
-          stays = false;
-          break;
-        }
-      }
-    }
-    const unsigned ballot = __ballot_sync(kFullWarp, stays), all = (1u << parts) - 1u;
-    if (j < n && lane % parts == 0 && (ballot >> lane & all) != all) rows.neighbor[j] |= kContainedCap;
-    __syncwarp();
+// Does cap j lie within one of the caps k, k + step, ...?
+__device__ __forceinline__ bool lies_within_another(const CapRows &rows, int n, int j, int k, int step) {
+  const Cap cap = rows.cap[j];
+  const float sine = rows.sine[j];
+  for (; k < n; k += step) {
+    const Cap other = rows.cap[k];
+    if (cap_contains(other.cosine, rows.sine[k], cap.cosine, sine, dot(Vec3<float>(other.axis), Vec3<float>(cap.axis))))
+      return true;
   }
+  return false;
+}
+
+// Closes the gaps that contained caps leave; returns how many stay.
+__device__ __forceinline__ int keep_free_caps(const CapRows &rows, int n) {
+  const int lane = lane_id();
   int kept = 0;
   for (int first = 0; first < n; first += kWarp) {
     const int j = first + lane;
@@ -129,12 +119,71 @@ __device__ __forceinline__ int drop_contained_caps(const CapRows &rows, int n) {
   return kept;
 }
 
+// Drops the caps that lie within another one; returns how many stay. Few caps are tested by several lanes each.
+__device__ __forceinline__ int drop_contained_caps(const CapRows &rows, int n) {
+  const int lane = lane_id();
+  for (int first = 0; first < n; first += kWarp) {
+    const int left = n - first;
+    const int parts = left > 16 ? 1 : left > 8 ? 2 : 4;
+    const int j = first + lane / parts;
+    const bool stays = j < n && !lies_within_another(rows, n, j, lane % parts, parts);
+    const unsigned ballot = __ballot_sync(kFullWarp, stays), all = (1u << parts) - 1u;
+    if (j < n && lane % parts == 0 && (ballot >> lane & all) != all) rows.neighbor[j] |= kContainedCap;
+    __syncwarp();
+  }
+  return keep_free_caps(rows, n);
+}
+
+// Where the caps of an atom go.
+struct CapPlace {
+  unsigned long long first;
+  bool fits;
+};
+__device__ __forceinline__ CapPlace reserve_caps(const CapJob &job, int n) {
+  unsigned long long first = 0;
+  if (lane_id() == 0 && n > 0) first = atomicAdd(&job.counters->caps, static_cast<unsigned long long>(n));
+  first = __shfl_sync(kFullWarp, first, 0);
+  return {first, first + static_cast<unsigned>(n) <= job.room.caps};
+}
+
+// Writes cap q of atom i to its rank. Returns whether the atom owns the circle.
+__device__ __forceinline__ bool write_cap(const CapJob &job, uint32_t i, float radius, const CapRows &rows, int n,
+                                          int q, const CapPlace &place) {
+  const Cap cap = rows.cap[q];
+  const uint32_t neighbor = rows.neighbor[q];
+  int rank = 0;  // largest cap first; of equal ones the earlier atom
+  for (int k = 0; k < n; ++k) {
+    const float other = rows.cap[k].cosine;
+    rank += other < cap.cosine || (other == cap.cosine && rows.neighbor[k] < neighbor) ? 1 : 0;
+  }
+  if (place.fits) {
+    job.caps[place.first + rank] = {cap.axis, stored_cap_cosine(cap.cosine, radius)};
+    if (job.neighbors) job.neighbors[place.first + rank] = neighbor;
+  }
+  return neighbor > i;
+}
+
+// By lane 0 of a warp, of an atom with n caps.
+__device__ __forceinline__ void note_caps(const CapJob &job, uint32_t i, int n, const CapPlace &place, bool alone) {
+  job.cap_ranges[i] = {static_cast<uint32_t>(place.first), place.fits ? n : 0};
+  if (alone) job.exposed[i] = 1;
+  if (n > 0) atomicMax(&job.counters->longest_row, static_cast<uint32_t>(n));
+}
+__device__ __forceinline__ void count_circles(const CapJob &job, int circles) {
+  if (circles > 0) atomicAdd(&job.counters->circles, static_cast<unsigned long long>(circles));
+}
+
+// Atoms whose caps nobody asks for.
+__device__ __forceinline__ bool is_skipped(const CapJob &job, uint32_t i, const Sphere &self) {
+  return is_far_away(self) || (!job.neighbors && !job.exposed[i]);
+}
+
 // All about the caps of atom i. False if it has more neighbours than the rows hold.
 __device__ __forceinline__ bool find_caps(const CapJob &job, uint32_t i, const CapRows &rows, int room) {
   const int lane = lane_id();
   const Sphere self = load(job.atoms.items + i);
   const bool with_circles = job.neighbors != nullptr;
-  if (is_far_away(self) || (!with_circles && !job.exposed[i])) {
+  if (is_skipped(job, i, self)) {
     if (lane == 0) {
       job.cap_ranges[i] = {0, 0};
       if (with_circles) job.circle_count[i - job.run.first] = 0;
@@ -148,50 +197,31 @@ __device__ __forceinline__ bool find_caps(const CapJob &job, uint32_t i, const C
   }
   const bool alone = n == 0;
   n = drop_contained_caps(rows, n);
-  unsigned long long first = 0;
-  if (lane == 0 && n > 0) first = atomicAdd(&job.counters->caps, static_cast<unsigned long long>(n));
-  first = __shfl_sync(kFullWarp, first, 0);
-  const bool fits = first + static_cast<unsigned>(n) <= job.room.caps;
+  const CapPlace place = reserve_caps(job, n);
   int circles = 0;
   for (int q0 = 0; q0 < n; q0 += kWarp) {
     const int q = q0 + lane;
-    bool owns = false;
-    if (q < n) {
-      const Cap cap = rows.cap[q];
-      const uint32_t neighbor = rows.neighbor[q];
-      int rank = 0;  // largest cap first; of equal ones the earlier atom
-      for (int k = 0; k < n; ++k) {
-        const float other = rows.cap[k].cosine;
-        rank += other < cap.cosine || (other == cap.cosine && rows.neighbor[k] < neighbor) ? 1 : 0;
-      }
-      if (fits) {
-        job.caps[first + rank] = {cap.axis, stored_cap_cosine(cap.cosine, self.radius)};
-        if (with_circles) job.neighbors[first + rank] = neighbor;
-      }
-      owns = neighbor > i;
-    }
+    const bool owns = q < n && write_cap(job, i, self.radius, rows, n, q, place);
     circles += __popc(__ballot_sync(kFullWarp, owns));
   }
   if (lane == 0) {
-    job.cap_ranges[i] = {static_cast<uint32_t>(first), fits ? n : 0};
-    if (with_circles) job.circle_count[i - job.run.first] = fits ? static_cast<uint32_t>(circles) : 0;
-    if (alone) job.exposed[i] = 1;
-    if (circles > 0) atomicAdd(&job.counters->circles, static_cast<unsigned long long>(circles));
-    if (n > 0) atomicMax(&job.counters->longest_row, static_cast<uint32_t>(n));
+    note_caps(job, i, n, place, alone);
+    if (with_circles) job.circle_count[i - job.run.first] = place.fits ? static_cast<uint32_t>(circles) : 0;
+    count_circles(job, circles);
   }
   __syncwarp();
   return true;
 }
 
-static __global__ __launch_bounds__(kCapWarps *kWarp) void find_caps_kernel(CapJob job) {
+static __global__ __launch_bounds__(kCapWarps *kWarp) void find_caps_kernel(LaunchItems atoms, CapJob job) {
   __shared__ Cap cap[kCapWarps][kRowNeighbors];
   __shared__ float sine[kCapWarps][kRowNeighbors];
   __shared__ uint32_t neighbor[kCapWarps][kRowNeighbors];
   const int warp = static_cast<int>(threadIdx.x) / kWarp;
   const CapRows rows{cap[warp], sine[warp], neighbor[warp]};
-  for (uint32_t place = blockIdx.x * kCapWarps + static_cast<uint32_t>(warp); place < job.run.size();
+  for (size_t place = atoms.first + blockIdx.x * kCapWarps + static_cast<uint32_t>(warp); place < atoms.last;
        place += gridDim.x * kCapWarps) {
-    const uint32_t i = job.run.first + place;
+    const uint32_t i = job.run.first + static_cast<uint32_t>(place);
     if (!find_caps(job, i, rows, kRowNeighbors) && lane_id() == 0) {
       job.long_atoms[atomicAdd(&job.counters->long_atoms, 1u)] = i;
       job.cap_ranges[i] = {0, 0};
@@ -200,16 +230,120 @@ static __global__ __launch_bounds__(kCapWarps *kWarp) void find_caps_kernel(CapJ
   }
 }
 
-// The same for the atoms that have more neighbours, with rows of the needed length in global memory.
-static __global__ __launch_bounds__(kCapWarps *kWarp) void find_long_caps_kernel(CapJob job, unsigned char *memory,
-                                                                                 uint32_t first, uint32_t last) {
+// Atoms that have more neighbours, with rows of the needed length in global memory.
+struct LongRows {
+  unsigned char *memory;
+  size_t room;
+  static constexpr size_t kBytes = sizeof(Cap) + sizeof(float) + sizeof(uint32_t);  // per neighbour
+  __device__ __forceinline__ CapRows of(size_t number) const {
+    unsigned char *const row = memory + number * room * kBytes;
+    return {reinterpret_cast<Cap *>(row), reinterpret_cast<float *>(row + room * sizeof(Cap)),
+            reinterpret_cast<uint32_t *>(row + room * (sizeof(Cap) + sizeof(float)))};
+  }
+};
+
+// A warp per atom.
+static __global__ __launch_bounds__(kCapWarps *kWarp) void find_long_caps_kernel(LaunchItems atoms, CapJob job,
+                                                                                 LongRows long_rows) {
   const uint32_t warp = (blockIdx.x * blockDim.x + threadIdx.x) / kWarp, warps = gridDim.x * kCapWarps;
-  const size_t room = job.room.neighbors;
-  unsigned char *row = memory + warp * room * (sizeof(Cap) + sizeof(float) + sizeof(uint32_t));
-  const CapRows rows{reinterpret_cast<Cap *>(row), reinterpret_cast<float *>(row + room * sizeof(Cap)),
-                     reinterpret_cast<uint32_t *>(row + room * (sizeof(Cap) + sizeof(float)))};
-  const uint32_t count = job.counters->long_atoms, end = last < count ? last : count;
-  for (uint32_t k = first + warp; k < end; k += warps) find_caps(job, job.long_atoms[k], rows, static_cast<int>(room));
+  const CapRows rows = long_rows.of(warp);
+  const size_t count = job.counters->long_atoms, end = atoms.last < count ? atoms.last : count;
+  for (size_t k = atoms.first + warp; k < end; k += warps)
+    find_caps(job, job.long_atoms[k], rows, static_cast<int>(long_rows.room));
+}
+
+// Where an atom has very many neighbours, comparing its caps with each other takes too long for one warp: here all
+// warps share it, 32 caps each at a time, in one pass after the other.
+constexpr size_t kWarpNeighbors = 1024;
+
+struct CrowdedAtom {
+  CapPlace place;
+  int caps;
+};
+struct CrowdedJob {
+  CapJob caps;
+  LongRows rows;
+  CrowdedAtom *atoms;  // as many as there are rows
+  uint32_t first;      // of the long atoms
+  uint32_t groups;     // of 32 caps, per row
+
+  // Number of a long atom; false if there is none, or it is not asked for.
+  __device__ __forceinline__ bool atom(size_t row, uint32_t *i) const {
+    if (first + row >= caps.counters->long_atoms) return false;
+    *i = caps.long_atoms[first + row];
+    return !is_skipped(caps, *i, load(caps.atoms.items + *i));
+  }
+};
+
+static __global__ __launch_bounds__(kCapWarps *kWarp) void gather_crowded_kernel(LaunchItems rows, CrowdedJob job) {
+  const size_t row = rows.first + (blockIdx.x * blockDim.x + threadIdx.x) / kWarp;
+  uint32_t i;
+  if (row >= rows.last || !job.atom(row, &i)) return;
+  const int room = static_cast<int>(job.rows.room);
+  int n = gather_caps(job.caps.atoms, job.caps.max_radius, i, load(job.caps.atoms.items + i), job.rows.of(row), room);
+  if (lane_id() != 0) return;
+  if (n > room) {
+    atomicMax(&job.caps.counters->neighbors, static_cast<uint32_t>(n));
+    n = 0;  // all will be done again
+  }
+  job.atoms[row].caps = n;
+}
+
+static __global__ __launch_bounds__(kCapWarps *kWarp) void mark_crowded_kernel(LaunchItems groups, CrowdedJob job) {
+  const size_t item = groups.first + (blockIdx.x * blockDim.x + threadIdx.x) / kWarp, row = item / job.groups;
+  uint32_t i;
+  if (item >= groups.last || !job.atom(row, &i)) return;
+  const CapRows rows = job.rows.of(row);
+  const int n = job.atoms[row].caps, j = static_cast<int>(item % job.groups) * kWarp + lane_id();
+  if (j < n && lies_within_another(rows, n, j, 0, 1)) rows.neighbor[j] |= kContainedCap;
+}
+
+static __global__ __launch_bounds__(kCapWarps *kWarp) void keep_crowded_kernel(LaunchItems rows, CrowdedJob job) {
+  const size_t row = rows.first + (blockIdx.x * blockDim.x + threadIdx.x) / kWarp;
+  uint32_t i;
+  if (row >= rows.last || !job.atom(row, &i)) return;
+  const int n = keep_free_caps(job.rows.of(row), job.atoms[row].caps);
+  const CapPlace place = reserve_caps(job.caps, n);
+  if (lane_id() != 0) return;
+  job.atoms[row] = {place, n};
+  note_caps(job.caps, i, n, place, false);
+}
+
+static __global__ __launch_bounds__(kCapWarps *kWarp) void rank_crowded_kernel(LaunchItems groups, CrowdedJob job) {
+  const size_t item = groups.first + (blockIdx.x * blockDim.x + threadIdx.x) / kWarp, row = item / job.groups;
+  uint32_t i;
+  if (item >= groups.last || !job.atom(row, &i)) return;
+  const CrowdedAtom atom = job.atoms[row];
+  const int q = static_cast<int>(item % job.groups) * kWarp + lane_id();
+  const float radius = load(job.caps.atoms.items + i).radius;
+  const bool owns = q < atom.caps && write_cap(job.caps, i, radius, job.rows.of(row), atom.caps, q, atom.place);
+  const int circles = __popc(__ballot_sync(kFullWarp, owns));
+  if (lane_id() != 0) return;
+  count_circles(job.caps, circles);
+  if (job.caps.neighbors && atom.place.fits && circles > 0)
+    atomicAdd(job.caps.circle_count + (i - job.caps.run.first), static_cast<uint32_t>(circles));
+}
+
+// Some rows' worth of atoms after the other.
+template <class E>
+void find_crowded_caps(E &executor, const CapJob &job, const LongRows &rows, size_t row_count, uint64_t gather_steps) {
+  const size_t row_room = rows.room, groups = (row_room + kWarp - 1) / kWarp;
+  const Span<CrowdedAtom> atoms = executor.template allocate<CrowdedAtom>(row_count);
+  for (size_t first = 0; first < job.room.long_atoms; first += row_count) {
+    const size_t count = std::min(row_count, job.room.long_atoms - first);
+    const CrowdedJob crowded{job, rows, atoms.data, static_cast<uint32_t>(first), static_cast<uint32_t>(groups)};
+    constexpr int kThreads = kCapWarps * kWarp;
+    executor.launch("gather_crowded", gather_crowded_kernel, count, LaunchShape{kThreads, kCapWarps, gather_steps},
+                    crowded);
+    executor.launch("mark_crowded", mark_crowded_kernel, count * groups, LaunchShape{kThreads, kCapWarps, 2 * row_room},
+                    crowded);
+    executor.launch("keep_crowded", keep_crowded_kernel, count, LaunchShape{kThreads, kCapWarps, 64 + row_room / 8},
+                    crowded);
+    executor.launch("rank_crowded", rank_crowded_kernel, count * groups, LaunchShape{kThreads, kCapWarps, row_room},
+                    crowded);
+    executor.wait();  // what is queued can't be cancelled
+    if (E::kCounts) return;
+  }
 }
 
 // The caps of a run of atoms. Rows of atoms with many neighbours get a quarter of what there is; memory_is_short: at
@@ -218,27 +352,31 @@ template <class E>
 void find_caps(E &executor, const CapJob &job, bool memory_is_short) {
   const size_t blocks =
       std::min<size_t>((job.run.size() + kCapWarps - 1) / kCapWarps, size_t(executor.multiprocessors()) * 128);
-  executor.launch("find_caps", find_caps_kernel, blocks, kCapWarps * kWarp, 0, job);
+  // An atom is compared with those around it, 32 at a time; what may be its neighbours then with each other.
+  const auto gather_steps = [](uint64_t near) { return 64 + near / 8; };
+  const auto shape = [&](uint64_t near) {
+    return LaunchShape{kCapWarps * kWarp, kCapWarps, gather_steps(near) + 12 * kRowNeighbors, blocks};
+  };
+  const uint64_t near = most_items_near(executor, job.atoms, 4.f * job.max_radius, [&](uint64_t items) {
+    return executor.is_few_launches(job.run.size(), shape(items));
+  });
+  executor.launch("find_caps", find_caps_kernel, job.run.size(), shape(near), job);
   if (job.room.neighbors == 0) return;
   // Rows for as many warps as there is memory for; the others' atoms take turns.
   constexpr uint64_t kEnough = uint64_t(1) << 30;
-  const size_t block_bytes = kCapWarps * job.room.neighbors * (sizeof(Cap) + sizeof(float) + sizeof(uint32_t));
+  const size_t neighbors = job.room.neighbors, block_bytes = kCapWarps * neighbors * LongRows::kBytes;
   const uint64_t free = !memory_is_short ? kEnough : E::kCounts ? 0 : std::min(kEnough, executor.arena().available());
   const size_t long_blocks = static_cast<size_t>(std::max<uint64_t>(
       1, std::min<uint64_t>({blocks, size_t(executor.multiprocessors()) * 4, free / 4 / block_bytes})));
   const auto mark = executor.arena().mark();
-  Span<unsigned char> memory = executor.template allocate<unsigned char>(long_blocks * block_bytes);
-  // Caps are compared with each other, 32 pairs at a time in some 3 ns: where there are very many, the work is cut into
-  // launches of about 10 ms that are waited for, since what is queued can't be cancelled.
-  const double pairs = static_cast<double>(job.room.neighbors) * static_cast<double>(job.room.neighbors);
-  const double atoms_per_warp = std::max(1.0, 1e-2 / (pairs / kWarp * 3e-9));
-  const uint64_t step = static_cast<uint64_t>(static_cast<double>(long_blocks * kCapWarps) * atoms_per_warp);
-  for (uint64_t first = 0;; first += step) {
-    const bool is_last = first + step >= job.room.long_atoms;
-    executor.launch("find_long_caps", find_long_caps_kernel, long_blocks, kCapWarps * kWarp, 0, job, memory.data,
-                    static_cast<uint32_t>(first), is_last ? 0xffffffffu : static_cast<uint32_t>(first + step));
-    if (is_last) break;
-    executor.wait();
+  const LongRows rows{executor.template allocate<unsigned char>(long_blocks * block_bytes).data, neighbors};
+  if (neighbors > kWarpNeighbors) {
+    find_crowded_caps(executor, job, rows, long_blocks * kCapWarps, gather_steps(near));
+  } else {
+    const uint64_t pairs = uint64_t(neighbors) * neighbors;
+    executor.launch("find_long_caps", find_long_caps_kernel, job.room.long_atoms,
+                    LaunchShape{kCapWarps * kWarp, kCapWarps, gather_steps(near) + pairs / kWarp * 3, long_blocks}, job,
+                    rows);
   }
   executor.arena().rewind(mark);
 }

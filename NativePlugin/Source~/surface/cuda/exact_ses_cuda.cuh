@@ -13,6 +13,7 @@ struct CudaCandidates {
   BrickRange slice{0, 0};  // the bricks they are for; empty: not gathered yet
   gpu::CandidateView view{};
   size_t leaves = 0;
+  uint32_t longest_row = 0;  // of atoms or arcs, at most
 };
 namespace gpu {
 
@@ -25,7 +26,6 @@ struct SignJob {
   BrickSet bricks;
   CandidateReach reach;
   CandidateView view;
-  uint32_t leaves;
   uint64_t *signs;
 };
 
@@ -70,12 +70,12 @@ struct BoxCull {
 
 enum class LeafKind { kMixed, kInside, kOutside };
 
-static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_kernel(SignJob job) {
+static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_kernel(LaunchItems leaves, SignJob job) {
   __shared__ LeafScratch scratch_memory[kSignWarps];
   const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();
   LeafScratch &scratch = scratch_memory[warp];
-  const uint32_t leaf_place = blockIdx.x * kSignWarps + static_cast<uint32_t>(warp);
-  if (leaf_place >= job.leaves) return;
+  const size_t leaf_place = leaves.first + blockIdx.x * kSignWarps + static_cast<uint32_t>(warp);
+  if (leaf_place >= leaves.last) return;
   const FeatureView &f = job.features;
   const CandidateReach &reach = job.reach;
   const Lattice &lattice = job.bricks.lattice;
@@ -227,6 +227,15 @@ void gather_candidates(E &executor, const FeatureView &features, const BrickSet 
   };
   size_t atom_room = room_for(rooms.listed_atoms, features.atoms.count);
   size_t arc_room = room_for(rooms.listed_arcs, features.arc_bounds.count);
+  // All items in the cells around a brick are looked at, at most twice.
+  const float extent = 7.f * reach.spacing + 2.f * reach.grown;
+  const auto shape = [](uint64_t near) { return LaunchShape{kGatherWarps * kWarp, kGatherWarps, 256 + near / 16}; };
+  const auto near_of = [&](const NeighborGridView &grid, float look) {
+    return most_items_near(executor, grid, extent + 2.f * look,
+                           [&](uint64_t items) { return executor.is_few_launches(n, shape(items)); });
+  };
+  const LaunchShape gather = shape(near_of(features.atoms, features.parameters.max_radius + reach.slack) +
+                                   near_of(features.arc_bounds, reach.start_reach + features.max_arc_bound));
   const auto mark = executor.arena().mark();
   CandidateCounters found;
   for (;;) {
@@ -234,8 +243,7 @@ void gather_candidates(E &executor, const FeatureView &features, const BrickSet 
     view.arcs = executor.template allocate<uint32_t>(arc_room).data;
     view.arc_leaves = executor.template allocate<uint8_t>(arc_room).data;
     executor.fill(counters, 0);
-    executor.launch("gather_candidates", gather_candidates_kernel, (n + kGatherWarps - 1) / kGatherWarps,
-                    kGatherWarps * kWarp, 0,
+    executor.launch("gather_candidates", gather_candidates_kernel, n, gather,
                     GatherJob{features, bricks, reach, view, counters.data, atom_room, arc_room, signs});
     found = executor.fetch(counters.data);
     if (found.atoms <= atom_room && found.arcs <= arc_room) break;
@@ -250,10 +258,12 @@ void gather_candidates(E &executor, const FeatureView &features, const BrickSet 
     executor.arena().rewind(mark);
   }
   candidates.leaves = static_cast<size_t>(found.leaves);
-  if (signs)
-    executor.launch("evaluate_leaves", evaluate_leaves_kernel, (candidates.leaves + kSignWarps - 1) / kSignWarps,
-                    kSignWarps * kWarp, 0,
-                    SignJob{features, bricks, reach, view, static_cast<uint32_t>(candidates.leaves), signs});
+  candidates.longest_row = std::max(kUsualRow, found.longest_row);
+  if (signs)  // lanes look at all atoms and arcs of a row, and at an atom's caps
+    executor.launch(
+        "evaluate_leaves", evaluate_leaves_kernel, candidates.leaves,
+        LaunchShape{kSignWarps * kWarp, kSignWarps, 64 + 2 * uint64_t(candidates.longest_row) + features.most_caps},
+        SignJob{features, bricks, reach, view, signs});
   candidates.view = view;
   candidates.slice = slice;
 }

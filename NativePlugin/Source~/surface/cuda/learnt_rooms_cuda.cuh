@@ -10,32 +10,36 @@
 namespace quickses {
 namespace gpu {
 
+constexpr int kRowNeighbors = 128;  // of an atom: as many have room in shared memory
+
 // What was counted, whether there was room for it or not.
 struct FeatureCounters {
   unsigned long long caps, circles;
   unsigned long long staged;  // circles with exposed arcs in the upper half, arcs before they are split in the lower
   unsigned long long arcs;
-  uint32_t neighbors;     // most of an atom for which the rows were too short
-  uint32_t long_atoms;    // number of those atoms
-  uint32_t longest_row;   // most caps of an atom
-  uint32_t long_circles;  // circles with more exposed intervals than a lane holds
+  uint32_t neighbors;           // most of an atom for which the rows were too short
+  uint32_t long_atoms;          // number of those atoms
+  uint32_t longest_row;         // most caps of an atom
+  uint32_t long_circles;        // circles with more exposed intervals than a lane holds
+  uint32_t unfinished_circles;  // those of them that need another launch
 };
 
 // How much of each there is room for.
 struct FeatureRoom {
   size_t caps, circles, staged_circles, staged_arcs, arcs;
   size_t neighbors;   // per atom in global memory; 0: only what shared memory holds
-  size_t long_atoms;  // that need it; at least so many
+  size_t long_atoms;  // that need it
   size_t intervals;   // per circle in global memory; 0: only what a lane holds
 
   static FeatureRoom guess(size_t atoms) {
     return {28 * atoms + 1024, 14 * atoms + 512, 3 * atoms + 512, 5 * atoms + 512, 7 * atoms + 1024, 0, 0, 0};
   }
   bool holds(const FeatureCounters &c) const {
-    return c.neighbors <= neighbors && c.caps <= caps && c.circles <= circles && (c.staged >> 32) <= staged_circles &&
-           (c.staged & 0xffffffffu) <= staged_arcs && c.arcs <= arcs &&
+    return c.neighbors <= neighbors && c.long_atoms <= long_atoms && c.caps <= caps && c.circles <= circles &&
+           (c.staged >> 32) <= staged_circles && (c.staged & 0xffffffffu) <= staged_arcs && c.arcs <= arcs &&
            (c.long_circles == 0 || c.longest_row + 1u <= intervals);
   }
+  size_t longest_row() const { return std::max<size_t>(kRowNeighbors, neighbors); }  // caps of an atom, at most
   // For what was counted.
   static FeatureRoom of(const FeatureCounters &c) {
     return {static_cast<size_t>(c.caps),

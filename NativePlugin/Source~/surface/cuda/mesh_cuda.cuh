@@ -9,6 +9,9 @@
 namespace quickses {
 namespace gpu {
 
+// Steps of a thread that looks once at all that can decide about a vertex: atoms and arcs of a row, and an atom's caps.
+inline uint64_t vertex_steps(const FeatureView &features, uint64_t row) { return 64 + 3 * row + features.most_caps; }
+
 // Starts and candidates of the vertices of a slice; what they need is allocated here. No vertices: count is 0.
 template <class E>
 VertexJob prepare_vertices(E &executor, const FeatureView &features, const BrickSet &bricks, const MeshLayout &layout,
@@ -40,9 +43,17 @@ VertexJob prepare_vertices(E &executor, const FeatureView &features, const Brick
   job.open_count = counts.data;
   job.unfinished_count = counts.data + 1;
   executor.fill(counts, 0);
-  const size_t blocks = (leaves + kLeafWarps - 1) / kLeafWarps;
-  if (job.halved) executor.launch("halve_starts", halve_starts_kernel, blocks, kLeafWarps * kWarp, 0, job);
-  executor.launch("prepare_vertices", prepare_vertices_kernel, blocks, kLeafWarps * kWarp, 0, job);
+  const uint64_t row = candidates.longest_row, look = vertex_steps(features, row);
+  if (job.halved) {  // a lane's vertices one by one if each takes long
+    const uint64_t halve = kStartHalvings * look, rounds = kMostLeafVertices / kWarp;
+    const int most = halve * rounds > kThreadSteps ? kWarp : kMostLeafVertices;
+    for (int first = 0; first < kMostLeafVertices; first += most)
+      executor.launch("halve_starts", halve_starts_kernel, leaves,
+                      LaunchShape{kLeafWarps * kWarp, kLeafWarps, halve * static_cast<uint64_t>(most / kWarp)}, job,
+                      first, first + most);
+  }
+  executor.launch("prepare_vertices", prepare_vertices_kernel, leaves,
+                  LaunchShape{kLeafWarps * kWarp, kLeafWarps, 128 + row / 4}, job);
   return job;
 }
 
@@ -56,20 +67,27 @@ void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bri
   const auto mark = executor.arena().mark();
   const bool gathered = candidates.slice.first == slice.first && candidates.slice.last == slice.last;
   const VertexJob job = prepare_vertices(executor, features, bricks, layout, slice, rooms, candidates, starts, mesh);
-  const size_t blocks = (job.count + kVertexThreads - size_t(1)) / kVertexThreads;
-  executor.launch("project_on_atoms", project_on_atoms_kernel, blocks, kVertexThreads, 0, job);
-  executor.launch("project_on_arcs", project_on_arcs_kernel, blocks, kVertexThreads, 0, job);
-  executor.launch("reproject", reproject_kernel, blocks, kVertexThreads, 0, job);
+  const uint64_t look = vertex_steps(features, candidates.longest_row);
+  const LaunchShape once{kVertexThreads, kVertexThreads, 2 * look};
+  executor.launch("project_on_atoms", project_on_atoms_kernel, job.count, once, job);
+  executor.launch("project_on_arcs", project_on_arcs_kernel, job.count, once, job);
+  // Eight lanes for each: rounds of arcs, or halvings of an edge. As a rule few vertices are left.
+  constexpr uint64_t kLooks = 1 + kMaxProjections + kPlaceHalvings;
+  const LaunchShape few{kVertexThreads, kVertexThreads / kVertexLanes, kLooks * (64 + look / kVertexLanes),
+                        (job.count + kVertexThreads - size_t(1)) / kVertexThreads};
+  size_t left = job.count;
+  if (!E::kCounts && !executor.is_few_launches(left, few)) left = executor.fetch(job.unfinished_count);
+  executor.launch("reproject", reproject_kernel, left, few, job);
   if (gathered) executor.arena().rewind(mark);
 }
 
 template <class E>
 void emit_triangles(E &executor, const BrickSet &bricks, const MeshLayout &layout, BrickRange slice,
                     const TableView &table, const MeshView &mesh) {
-  executor.launch("emit_triangles", emit_triangles_kernel,
-                  std::min<size_t>((slice.size() + kTriangleWarps - size_t(1)) / kTriangleWarps,
-                                   size_t(executor.multiprocessors()) * 16),
-                  kTriangleWarps * kWarp, 0, TriangleJob{bricks, layout, table, mesh, slice});
+  constexpr uint64_t kSteps = 2048;  // of a brick that is full of triangles
+  executor.launch("emit_triangles", emit_triangles_kernel, slice.size(),
+                  LaunchShape{kTriangleWarps * kWarp, kTriangleWarps, kSteps, size_t(executor.multiprocessors()) * 16},
+                  TriangleJob{bricks, layout, table, mesh, slice});
 }
 
 }  // namespace gpu

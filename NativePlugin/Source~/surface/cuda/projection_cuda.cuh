@@ -38,9 +38,9 @@ __device__ __forceinline__ Projection left_vertex(const VertexJob &job, uint32_t
           static_cast<int>(rounds)};
 }
 
-static __global__ __launch_bounds__(kVertexThreads) void project_on_atoms_kernel(VertexJob job) {
-  const uint32_t k0 = blockIdx.x * kVertexThreads + threadIdx.x;
-  const bool on = k0 < job.count;
+static __global__ __launch_bounds__(kVertexThreads) void project_on_atoms_kernel(LaunchItems vertices, VertexJob job) {
+  const uint32_t k0 = static_cast<uint32_t>(vertices.first) + blockIdx.x * kVertexThreads + threadIdx.x;
+  const bool on = k0 < vertices.last;
   const uint32_t k = on ? k0 : job.count - 1;
   const FeatureView &f = job.features;
   const ListedCandidates candidates = vertex_candidates(job, k);
@@ -62,8 +62,9 @@ static __global__ __launch_bounds__(kVertexThreads) void project_on_atoms_kernel
     leave_vertex(job, k, v);
 }
 
-static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(VertexJob job) {
-  const uint32_t place = blockIdx.x * kVertexThreads + threadIdx.x, total = *job.open_count;
+static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(LaunchItems vertices, VertexJob job) {
+  const uint32_t place = static_cast<uint32_t>(vertices.first) + blockIdx.x * kVertexThreads + threadIdx.x,
+                 total = *job.open_count;
   if (place - static_cast<uint32_t>(lane_id()) >= total) return;
   const bool on = place < total;
   const uint32_t k = job.open[on ? place : total - 1];
@@ -182,11 +183,14 @@ __device__ __forceinline__ SharedCandidates choose_for_edge(const FeatureView &f
   return {{room, room + atoms, atoms, arcs}};
 }
 
-static __global__ __launch_bounds__(kVertexThreads) void reproject_kernel(VertexJob job) {
+static __global__ __launch_bounds__(kVertexThreads) void reproject_kernel(LaunchItems vertices, VertexJob job) {
   __shared__ uint32_t edge_memory[kVertexThreads / kVertexLanes][kEdgeRoom];
   const FeatureView &f = job.features;
-  const uint32_t teams = gridDim.x * (kVertexThreads / kVertexLanes), total = *job.unfinished_count;
-  for (uint32_t place = (blockIdx.x * kVertexThreads + threadIdx.x) / kVertexLanes; place < total; place += teams) {
+  const uint32_t teams = gridDim.x * (kVertexThreads / kVertexLanes), unfinished = *job.unfinished_count;
+  const uint32_t total = unfinished < vertices.last ? unfinished : static_cast<uint32_t>(vertices.last);
+  for (uint32_t place =
+           static_cast<uint32_t>(vertices.first) + (blockIdx.x * kVertexThreads + threadIdx.x) / kVertexLanes;
+       place < total; place += teams) {
     const uint32_t k = job.unfinished[place], vertex = job.first + k;
     SharedCandidates candidates{vertex_candidates(job, k)};
     Projection v = left_vertex(job, k);

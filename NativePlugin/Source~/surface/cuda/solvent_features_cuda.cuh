@@ -43,9 +43,18 @@ FeatureCounters find_run_features(E &executor, const FeaturePass &pass, AtomRun 
                    circle_count.data, pass.exposed, long_atoms.data},
             memory_is_short);
   executor.exclusive_scan(n, LoadNumber{circle_count.data}, circle_first);
-  find_arcs(executor, CircleJob{pass.atoms, run, room, counters.data, pass.cap_ranges, caps, neighbors.data,
-                                circle_first.data, pass.exposed, arcs});
-  const FeatureCounters found = executor.fetch(counters.data);
+  const ArcSearch search = find_arcs(executor,
+                                     CircleJob{pass.atoms, run, room, counters.data, pass.cap_ranges, caps,
+                                               neighbors.data, circle_first.data, pass.exposed, arcs},
+                                     pass.max_radius);
+  FeatureCounters found = executor.fetch(counters.data);
+  while (found.unfinished_circles > 0) {
+    find_long_circle_arcs(executor, search);
+    found = executor.fetch(counters.data);
+    if (found.unfinished_circles > 0) continue;
+    write_arcs(executor, search);
+    found = executor.fetch(counters.data);
+  }
   executor.arena().rewind(mark);
   return found;
 }
@@ -64,6 +73,7 @@ void find_all_features(E &executor, const FeaturePass &pass, CudaRooms &rooms, S
     if (room.holds(found)) {
       features->caps.size = static_cast<size_t>(found.caps);
       features->arcs.size = static_cast<size_t>(found.arcs);
+      features->most_caps = found.longest_row;
       rooms.runs.include(FeatureRoom::of(found).scaled(2 * n, n));  // circles are counted at the earlier of two atoms
       return;
     }
@@ -127,6 +137,7 @@ void find_features_in_runs(E &executor, const FeaturePass &pass, const MemoryPla
       FeatureCounters found = find_run_features(executor, pass, run, room, caps, arcs.data + arc_total, true);
       arena.rewind(mark);
       arc_total += found.arcs;
+      features->most_caps = std::max(features->most_caps, found.longest_row);
       found.arcs = 0;  // if they do not fit they are only counted from then on
       if (!room.holds(found)) {
         rooms.runs.include(FeatureRoom::of(found).with_spare().scaled(n, run.size()));

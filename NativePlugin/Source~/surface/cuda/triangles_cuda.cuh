@@ -29,7 +29,8 @@ struct TriangleScratch {
   uint32_t items[kTriangleItems];  // cell << 16 | case << 8 | triangle of the case
 };
 
-static __global__ __launch_bounds__(kTriangleWarps *kWarp) void emit_triangles_kernel(TriangleJob job) {
+static __global__ __launch_bounds__(kTriangleWarps *kWarp) void emit_triangles_kernel(LaunchItems items,
+                                                                                      TriangleJob job) {
   __shared__ TriangleScratch scratch_memory[kTriangleWarps];
   __shared__ __align__(16) uint8_t edges[kCellCases][16];
   __shared__ uint8_t triangle_count[kCellCases];
@@ -41,8 +42,10 @@ static __global__ __launch_bounds__(kTriangleWarps *kWarp) void emit_triangles_k
   const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();
   TriangleScratch &scratch = scratch_memory[warp];
   const MeshLayout &layout = job.layout;
-  for (uint32_t b = job.slice.first + blockIdx.x * kTriangleWarps + static_cast<uint32_t>(warp); b < job.slice.last;
-       b += gridDim.x * kTriangleWarps) {
+  const uint32_t last = job.slice.first + static_cast<uint32_t>(items.last);
+  for (uint32_t b = job.slice.first + static_cast<uint32_t>(items.first) + blockIdx.x * kTriangleWarps +
+                    static_cast<uint32_t>(warp);
+       b < last; b += gridDim.x * kTriangleWarps) {
     const uint32_t base = layout.triangle_base[b], total = layout.triangle_base[b + 1] - base;
     if (total == 0) continue;
     const int brick = static_cast<int>(b);

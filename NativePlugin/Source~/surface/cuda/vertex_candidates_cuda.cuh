@@ -131,15 +131,17 @@ __device__ __forceinline__ void fill_window(const VertexJob &job, const VertexLe
   __syncwarp();
 }
 
-// Starts found by halving the edges, for spacings much wider than the probe. A warp per leaf.
-static __global__ __launch_bounds__(kLeafWarps *kWarp) void halve_starts_kernel(VertexJob job) {
+// Starts found by halving the edges, for spacings much wider than the probe: of a leaf's vertices first to last - 1. A
+// warp per leaf.
+static __global__ __launch_bounds__(kLeafWarps *kWarp) void halve_starts_kernel(LaunchItems leaves, VertexJob job,
+                                                                                int first, int last) {
   __shared__ uint8_t edge_memory[kLeafWarps][kMostLeafVertices];
   const int warp = static_cast<int>(threadIdx.x) / kWarp;
-  const uint32_t slot = blockIdx.x * kLeafWarps + static_cast<uint32_t>(warp);
+  const uint32_t slot = static_cast<uint32_t>(leaves.first) + blockIdx.x * kLeafWarps + static_cast<uint32_t>(warp);
   VertexLeaf leaf;
-  if (slot >= job.view.bricks * kLeavesPerBrick || !open_leaf(job, slot, &leaf, edge_memory[warp])) return;
+  if (slot >= leaves.last || !open_leaf(job, slot, &leaf, edge_memory[warp])) return;
   const ListedCandidates candidates = brick_candidates(job.view, slot / kLeavesPerBrick);
-  for (int k = lane_id(); k < leaf.count; k += kWarp) {
+  for (int k = first + lane_id(); k < leaf.count && k < last; k += kWarp) {
     const LatticeEdge edge{leaf.leaf, edge_memory[warp][k] >> 6, edge_memory[warp][k] & 63};
     store_start(
         job, leaf.first + static_cast<uint32_t>(k),
@@ -148,14 +150,14 @@ static __global__ __launch_bounds__(kLeafWarps *kWarp) void halve_starts_kernel(
 }
 
 // Starts and candidates of the leaves that own vertices. A warp per leaf.
-static __global__ __launch_bounds__(kLeafWarps *kWarp) void prepare_vertices_kernel(VertexJob job) {
+static __global__ __launch_bounds__(kLeafWarps *kWarp) void prepare_vertices_kernel(LaunchItems leaves, VertexJob job) {
   __shared__ uint8_t edge_memory[kLeafWarps][kMostLeafVertices];
   __shared__ SignWindow window_memory[kLeafWarps];
   const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();
-  const uint32_t slot = blockIdx.x * kLeafWarps + static_cast<uint32_t>(warp);
+  const uint32_t slot = static_cast<uint32_t>(leaves.first) + blockIdx.x * kLeafWarps + static_cast<uint32_t>(warp);
   const uint8_t *const edges = edge_memory[warp];
   VertexLeaf leaf;
-  if (slot >= job.view.bricks * kLeavesPerBrick || !open_leaf(job, slot, &leaf, edge_memory[warp])) return;
+  if (slot >= leaves.last || !open_leaf(job, slot, &leaf, edge_memory[warp])) return;
   const Lattice &lattice = job.bricks.lattice;
   const bool ring = job.starts.relax && !job.halved && !job.starts.moved;
   if (ring) fill_window(job, leaf, &window_memory[warp]);

@@ -60,17 +60,23 @@ class CountingExecutor {
     return {nullptr, n};
   }
   template <class F>
-  void for_each(size_t, const F &) {}
+  void for_each(size_t, const F &, uint64_t = 0) {}
   template <class Scratch, class F>
-  void for_each_brick(size_t, const F &, size_t = 8) {}
+  void for_each_brick(size_t, const F &, size_t = 8, uint64_t = 0) {}
   template <class... Arguments>
   void launch(const Arguments &...) {}
+  template <class Shape>
+  bool is_few_launches(size_t items, const Shape &shape) const {
+    return executor_.is_few_launches(items, shape);
+  }
+  static auto for_each_shape(uint64_t steps) { return Executor::for_each_shape(steps); }
+  auto team_shape(uint64_t steps) const { return executor_.team_shape(steps); }
   template <class Load, class T>
   void exclusive_scan(size_t n, const Load &, Span<T>) {
     take_for_a_while(executor_.template scan_bytes<T>(n));
   }
   template <class T = double, class Load>
-  T reduce(size_t n, const Load &) {
+  T reduce(size_t n, const Load &, uint64_t = 0) {
     take_for_a_while(executor_.template reduce_bytes<T>(n));
     return T{};
   }

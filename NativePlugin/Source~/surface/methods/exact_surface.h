@@ -12,7 +12,15 @@ template <class Executor>
 void remove_contained_atoms(Executor &executor, const NeighborGridView &atoms, float max_radius) {
   const auto mark = executor.arena().mark();
   Span<uint8_t> contained = executor.template allocate<uint8_t>(atoms.count);
-  executor.for_each(atoms.count, FindContainedAtoms{atoms, max_radius, contained.data});
+  uint64_t near = atoms.count;
+  if constexpr (Executor::kIsCuda)
+    near = most_items_near(executor, atoms, 4.f * max_radius + 1.f, [&](uint64_t items) {
+      return items <= kThreadSteps && executor.is_few_launches(atoms.count, executor.for_each_shape(items));
+    });
+  for_parts_of_met_items(near, Executor::kIsCuda ? kThreadSteps : near, [&](const MetItems &part, bool) {
+    executor.for_each(atoms.count, FindContainedAtoms{atoms, max_radius, contained.data, part},
+                      std::max(kPlainSteps, std::min(near, kThreadSteps)));
+  });
   executor.for_each(atoms.count, RemoveContainedAtoms{contained.data, const_cast<Sphere *>(atoms.items)});
   executor.arena().rewind(mark);
 }
@@ -32,6 +40,7 @@ FeatureView find_features(Work &work) {
   f.cap_ranges = found.cap_ranges.data;
   f.caps = found.caps.data;
   f.exposed = found.exposed.data;
+  f.most_caps = found.most_caps;
   f.parameters = work.parameters;
   f.max_arc_bound = kMaxArcBound + 1e-3f;
   const size_t n = found.arcs.size;

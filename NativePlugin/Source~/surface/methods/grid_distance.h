@@ -95,22 +95,34 @@ struct FindOutsideAlongX {
   }
 };
 
+// Of work on a brick that goes through rows or tiles of a cube, numbered: those of this pass. The GPU takes several
+// passes where p / h is so large that one would take too long; they come in order.
+struct CubePart {
+  int64_t first = 0, last = int64_t(1) << 62;
+};
+
 struct FindBrickSides {
   GridField field;
   BrickSide *sides;
-  QSES_HOST_DEVICE void operator()(size_t i) const { sides[i] = side_of(i); }
+  CubePart part{};
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    const BrickSide before = part.first > 0 ? sides[i] : BrickSide::kInside;
+    if (before != BrickSide::kOutside) sides[i] = side_of(i, before == BrickSide::kUndecided);
+  }
 
  private:
-  QSES_FN BrickSide side_of(size_t i) const {
+  QSES_FN BrickSide side_of(size_t i, bool in_reach) const {
     const glm::ivec3 place = field.bricks.lattice.brick_at(field.bricks.linear[i]);
     const int rows = 2 * field.bricks_in_reach() + 1, limit = field.parameters.max_outside;
-    bool in_reach = false;
-    for (int k = 0; k < rows; ++k) {
+    int64_t left = part.last - part.first;
+    int first_l = static_cast<int>(part.first % rows);
+    for (int k = static_cast<int>(part.first / rows); k < rows && left > 0; ++k, first_l = 0) {
       const int dz = alternating(k);
       const int32_t least_z = squared(fewest_steps<kBrickEdge>(dz)), most_z = squared(most_steps(dz));
       if (least_z > limit) break;
       if (rows > 64) look_for_stop();
-      for (int l = 0; l < rows; ++l) {
+      const int64_t after_row = left - (rows - first_l);
+      for (int l = first_l; l < rows && left > 0; ++l, --left) {
         const int dy = alternating(l);
         const int32_t least = least_z + squared(fewest_steps<kBrickEdge>(dy));
         if (least > limit) break;
@@ -118,6 +130,7 @@ struct FindBrickSides {
         if (most_z + squared(most_steps(dy)) + squared(most_steps(dx)) <= limit) return BrickSide::kOutside;
         in_reach = in_reach || least + squared(fewest_steps<kBrickEdge>(dx)) <= limit;
       }
+      left = after_row;
     }
     return in_reach ? BrickSide::kUndecided : BrickSide::kInside;
   }
@@ -199,27 +212,50 @@ QSES_FN RowShare row_share(const Team &team) {
   return {row, rows, row < rows ? team.rank() % N : N, N};
 }
 
+// Planes of bricks that the cube around the first N x N x N lattice points of a brick passes, and tiles in each.
+struct CubeTiles {
+  int bricks_back, planes, tiles;
+  template <int N>
+  QSES_FN static CubeTiles of(int32_t reach) {
+    const int back = (reach + kBrickEdge - 1) / kBrickEdge, planes = back + (N + reach + kBrickEdge - 1) / kBrickEdge;
+    return {back, planes, (planes + DistanceScratch<N>::kTileBricks - 1) / DistanceScratch<N>::kTileBricks};
+  }
+  QSES_FN int64_t all() const { return int64_t(planes) * tiles; }
+  // Steps of a thread of a team of the GPU: what a row takes, whose bricks may have to be gone through.
+  uint64_t tile_steps() const { return 160 + 16 * static_cast<uint64_t>(bricks_back); }
+  uint64_t steps() const { return static_cast<uint64_t>(planes) * (16 + static_cast<uint64_t>(tiles) * tile_steps()); }
+};
+
 // Fills scratch.nearest for a brick. Squared distances above the limit may come out too large. All of the team must
-// call it; it ends with a sync.
+// call it; it ends with a sync. saved: where the passes leave the distances if there are several; nullptr: one does
+// all.
 template <int N, class Team>
 QSES_HOST_DEVICE inline void find_distances(const GridField &f, uint32_t brick, const Team &team,
-                                            DistanceScratch<N> &scratch, int32_t limit) {
+                                            DistanceScratch<N> &scratch, int32_t limit, const CubePart &part = {},
+                                            int32_t *saved = nullptr) {
   constexpr int kTileBricks = DistanceScratch<N>::kTileBricks;
-  const int reach = f.parameters.reach, bricks_back = (reach + kBrickEdge - 1) / kBrickEdge;
+  const int reach = f.parameters.reach;
+  const CubeTiles cube = CubeTiles::of<N>(reach);
   const glm::ivec3 place = f.bricks.lattice.brick_at(f.bricks.linear[brick]);
   const RowShare share = row_share<N>(team);
   for (int r = share.first_row; r < N * N; r += share.row_step)
-    for (int x = share.first_x; x < N; x += share.x_step) scratch.nearest[r * N + x] = kNoneInReach;
+    for (int x = share.first_x; x < N; x += share.x_step)
+      scratch.nearest[r * N + x] = part.first > 0 ? saved[r * N + x] : kNoneInReach;
 
   // Tiles end where bricks end, and where the cube does.
   const auto within = [&](int at) { return at < -reach ? -reach : at > N + reach ? N + reach : at; };
-  for (int dz = -bricks_back; kBrickEdge * dz < N + reach; ++dz) {
+  int first_tile = static_cast<int>(part.first % cube.tiles);
+  for (int plane = static_cast<int>(part.first / cube.tiles); plane < cube.planes; ++plane, first_tile = 0) {
+    const int64_t before = int64_t(plane) * cube.tiles;
+    if (before >= part.last) break;
+    const int dz = plane - cube.bricks_back;
     const int32_t least_z = squared(fewest_steps<N>(dz));
     if (least_z > limit) continue;
     const int z0 = within(kBrickEdge * dz), planes = within(kBrickEdge * (dz + 1)) - z0;
     bool any_in_plane = false;
     look_for_stop();
-    for (int tile = -bricks_back; kBrickEdge * tile < N + reach; tile += kTileBricks) {
+    for (int t = first_tile; t < cube.tiles && before + t < part.last; ++t) {
+      const int tile = kTileBricks * t - cube.bricks_back;
       const int y0 = within(kBrickEdge * tile), rows = within(kBrickEdge * (tile + kTileBricks)) - y0;
       team.sync();  // what was there has been read
       for (int b = team.rank(); b < kTileBricks; b += team.size()) {
@@ -272,7 +308,57 @@ QSES_HOST_DEVICE inline void find_distances(const GridField &f, uint32_t brick, 
       }
     }
   }
+  if (saved)
+    for (int r = share.first_row; r < N * N; r += share.row_step)
+      for (int x = share.first_x; x < N; x += share.x_step) saved[r * N + x] = scratch.nearest[r * N + x];
   team.sync();
+}
+
+// Distances that several passes find, of the bricks from `first` on for which wanted(brick) holds.
+template <int N, class Wanted>
+struct FindSavedDistances {
+  GridField field;
+  Wanted wanted;
+  uint32_t first;
+  int32_t limit;
+  CubePart part{};
+  int32_t *saved;  // N x N x N per brick
+  template <class Team>
+  QSES_HOST_DEVICE void operator()(const Team &team, DistanceScratch<N> &scratch, size_t i) const {
+    const uint32_t brick = first + static_cast<uint32_t>(i);
+    if (wanted(brick)) find_distances<N>(field, brick, team, scratch, limit, part, saved + i * (N * N * N));
+  }
+};
+
+// What finds the distances of brick i of a range for one of the steps below: at once, or they are there already.
+template <int N, class Team>
+QSES_HOST_DEVICE inline void bring_distances(const GridField &f, uint32_t brick, const Team &team,
+                                             DistanceScratch<N> &scratch, int32_t limit, int32_t *saved) {
+  if (!saved) return find_distances<N>(f, brick, team, scratch, limit);
+  find_distances<N>(f, brick, team, scratch, limit, CubePart{CubeTiles::of<N>(f.parameters.reach).all(), 0}, saved);
+}
+
+// Calls work(range, saved, steps) for all bricks of a range: at once, or with their distances found before, for some
+// bricks after the other, where that takes too long for one launch.
+template <int N, class Executor, class Wanted, class Work>
+void with_distances(Executor &executor, const GridField &field, BrickRange range, int32_t limit, const Wanted &wanted,
+                    const Work &work) {
+  const CubeTiles cube = CubeTiles::of<N>(field.parameters.reach);
+  if (!Executor::kIsCuda || cube.steps() <= kThreadSteps / 2) return work(range, nullptr, cube.steps());
+  constexpr uint32_t kBricks = 4096;
+  const auto mark = executor.arena().mark();
+  const Span<int32_t> saved = executor.template allocate<int32_t>(size_t(kBricks) * N * N * N);
+  const int64_t most = static_cast<int64_t>(kThreadSteps / cube.tile_steps());
+  for (uint32_t first = range.first; first < range.last; first += std::min(kBricks, range.last - first)) {
+    const BrickRange some{first, first + std::min(kBricks, range.last - first)};
+    for (int64_t tile = 0; tile < cube.all(); tile += most)
+      executor.template for_each_brick<DistanceScratch<N>>(
+          some.size(),
+          FindSavedDistances<N, Wanted>{field, wanted, first, limit, CubePart{tile, tile + most}, saved.data}, 8,
+          kThreadSteps);
+    work(some, saved.data, kPlainTeamSteps);
+  }
+  executor.arena().rewind(mark);
 }
 
 }  // namespace quickses

@@ -30,11 +30,13 @@ inline GridParameters make_grid_parameters(float probe, float spacing, float max
 struct BallBricks {
   NeighborGridView atoms;
   Lattice lattice;
+  float max_radius;
   QSES_FN size_t size() const { return atoms.count; }
+  uint64_t most_across() const { return most_bricks_across(lattice, max_radius); }
   template <class Visit>
-  QSES_FN void visit(size_t i, const Visit &visit_brick) const {
+  QSES_FN void visit(size_t i, const RowRange &rows, const Visit &visit_brick) const {
     const Sphere atom = atoms.items[i];
-    visit_bricks_of_shell(lattice, atom.center, 0.f, atom.radius, visit_brick);
+    visit_bricks_of_shell(lattice, atom.center, 0.f, atom.radius, rows, visit_brick);
   }
   QSES_FN double fewest(size_t i) const {
     const float radius = atoms.items[i].radius;
@@ -50,7 +52,7 @@ BrickSet find_grid_bricks(Executor &executor, const NeighborGridView &atoms, con
     throw Error(QSES_TOO_FINE,
                 "the largest inflated atom alone needs more bricks of the SES grid than 32-bit numbers can name: use a "
                 "larger spacing");
-  return collect_bricks(executor, BallBricks{atoms, lattice}, lattice, listed);
+  return collect_bricks(executor, BallBricks{atoms, lattice, parameters.max_radius}, lattice, listed);
 }
 
 // ---- classes ---------------------------------------------------------------------------------------------------
@@ -69,6 +71,7 @@ struct ClassifyBrick {
   BrickSet bricks;
   GridParameters parameters;
   uint64_t *outside;  // [brick][leaf]
+  MetItems part{};    // of the atoms around a brick; the first part comes first
 
   template <class Team>
   QSES_HOST_DEVICE void operator()(const Team &team, ClassifyScratch &scratch, size_t brick) const {
@@ -82,9 +85,10 @@ struct ClassifyBrick {
     for (int i = team.rank(); i < kBrickPoints; i += team.size()) scratch.beyond_ball[i] = kFarAway;
     if (team.rank() == 0) scratch.count = 0;
     team.sync();
+    MetItems met = part;
     for (int z = box.z0; z <= box.z1; ++z)
       for (int y = box.y0; y <= box.y1; ++y) {
-        const ItemRun run = atoms.run(box.x0, box.x1, y, z);
+        const ItemRun run = met.cut(atoms.run(box.x0, box.x1, y, z));
         for (uint32_t begin = run.begin; begin < run.end; begin += ClassifyScratch::kBlock) {
           const uint32_t end = run.end - begin < ClassifyScratch::kBlock ? run.end : begin + ClassifyScratch::kBlock;
           list(team, scratch, begin, end, low, high, slack);
@@ -99,7 +103,8 @@ struct ClassifyBrick {
       uint64_t out = 0;
       for (int bit = 0; bit < 64; ++bit)
         out |= static_cast<uint64_t>(scratch.beyond_ball[point_of(leaf, bit)] < 0.f ? 0 : 1) << bit;
-      outside[brick * kLeavesPerBrick + static_cast<size_t>(leaf)] = out;
+      uint64_t *const word = outside + brick * kLeavesPerBrick + static_cast<size_t>(leaf);
+      *word = part.first > 0 ? *word & out : out;
     }
     team.sync();
   }
@@ -152,34 +157,67 @@ struct ClassifyBrick {
   }
 };
 
+// How many atoms the look-ups of a brick meet, at most; steps_of(atoms): of a team's thread, for all bricks at once.
+// May wait.
+template <class Executor, class StepsOf>
+uint64_t most_grid_atoms_near(Executor &executor, const NeighborGridView &atoms, const GridParameters &parameters,
+                              size_t bricks, const StepsOf &steps_of) {
+  if constexpr (Executor::kIsCuda)
+    return most_items_near(
+        executor, atoms, 8.f * parameters.spacing + 2.f * (parameters.max_radius + 1.1f * parameters.spacing + 1e-3f),
+        [&](uint64_t near) { return executor.is_few_launches(bricks, executor.team_shape(steps_of(near))); });
+  else
+    return atoms.count;
+}
+
 // The classes of all bricks, which stay allocated. bricks and atoms must outlive the field.
 template <class Executor>
 GridField classify_grid_points(Executor &executor, const NeighborGridView &atoms, const GridParameters &parameters,
                                const BrickSet &bricks) {
   Span<uint64_t> outside = executor.template allocate<uint64_t>(size_t(bricks.count) * kLeavesPerBrick);
-  executor.template for_each_brick<ClassifyScratch>(bricks.count,
-                                                    ClassifyBrick{atoms, bricks, parameters, outside.data});
+  // Per atom that is listed, a thread looks at four rows of points.
+  constexpr uint64_t kAtomSteps = 4, kMost = kThreadSteps / (2 * kAtomSteps);
+  const auto steps_of = [&](uint64_t near) { return 512 + kAtomSteps * std::min(near, kMost); };
+  const uint64_t near = most_grid_atoms_near(executor, atoms, parameters, bricks.count, steps_of);
+  for_parts_of_met_items(near, Executor::kIsCuda ? kMost : near, [&](const MetItems &part, bool) {
+    executor.template for_each_brick<ClassifyScratch>(
+        bricks.count, ClassifyBrick{atoms, bricks, parameters, outside.data, part}, 8, steps_of(near));
+  });
   Span<uint16_t> along_x = executor.template allocate<uint16_t>(bricks.count);
   Span<BrickSide> sides = executor.template allocate<BrickSide>(bricks.count);
   const GridField field{atoms, bricks, outside.data, parameters, along_x.data, sides.data};
-  executor.for_each(bricks.count, FindOutsideAlongX{field, along_x.data});
-  executor.for_each(bricks.count, FindBrickSides{field, sides.data});
+  const uint64_t bricks_in_reach = static_cast<uint64_t>(field.bricks_in_reach()), rows = 2 * bricks_in_reach + 1;
+  executor.for_each(bricks.count, FindOutsideAlongX{field, along_x.data}, kPlainSteps + 8 * bricks_in_reach);
+  constexpr uint64_t kRowSteps = 4;
+  const uint64_t most = Executor::kIsCuda ? kThreadSteps / (2 * kRowSteps) : rows * rows;
+  for (uint64_t row = 0; row < rows * rows; row += most)
+    executor.for_each(bricks.count,
+                      FindBrickSides{field, sides.data, {static_cast<int64_t>(row), static_cast<int64_t>(row + most)}},
+                      kPlainSteps + kRowSteps * std::min(most, rows * rows));
   return field;
 }
 
 // ---- signs -----------------------------------------------------------------------------------------------------
 
+struct IsUndecided {
+  GridField field;
+  QSES_FN bool operator()(uint32_t brick) const { return field.sides[brick] == BrickSide::kUndecided; }
+};
+
 struct EvaluateGridSigns {
   GridField field;
   uint32_t first;
   uint64_t *signs;
+  int32_t *saved;  // distances, or nullptr
   template <class Team>
   QSES_HOST_DEVICE void operator()(const Team &team, DistanceScratch<kBrickEdge> &scratch, size_t i) const {
     const uint32_t brick = first + static_cast<uint32_t>(i);
     uint64_t *words = signs + static_cast<size_t>(brick) * kLeavesPerBrick;
     const BrickSide side = field.sides[brick];
     const bool open = side == BrickSide::kUndecided && !is_all_outside(brick);
-    if (open) find_distances<kBrickEdge>(field, brick, team, scratch, field.parameters.max_outside);
+    if (open)
+      bring_distances<kBrickEdge>(field, brick, team, scratch, field.parameters.max_outside,
+                                  saved ? saved + i * kBrickPoints : nullptr);
     for (int leaf = team.rank(); leaf < kLeavesPerBrick; leaf += team.size()) {
       uint64_t word = side == BrickSide::kInside ? ~uint64_t(0) : 0;
       for (int bit = 0; bit < 64 && open; ++bit) {
@@ -205,23 +243,28 @@ struct EvaluateGridSigns {
 // signs[8 * brick + leaf] for the bricks of the slice.
 template <class Executor>
 void evaluate_grid_signs(Executor &executor, const GridField &field, BrickRange range, uint64_t *signs) {
-  executor.template for_each_brick<DistanceScratch<kBrickEdge>>(range.size(),
-                                                                EvaluateGridSigns{field, range.first, signs});
+  with_distances<kBrickEdge>(executor, field, range, field.parameters.max_outside, IsUndecided{field},
+                             [&](BrickRange some, int32_t *saved, uint64_t steps) {
+                               executor.template for_each_brick<DistanceScratch<kBrickEdge>>(
+                                   some.size(), EvaluateGridSigns{field, some.first, signs, saved}, 8,
+                                   kPlainTeamSteps + steps);
+                             });
 }
 
 // ---- vertices --------------------------------------------------------------------------------------------------
 
 // Place in the grid of the atom whose van der Waals surface is nearest, among those whose inflated surface is at most
-// `margin` away; of several, the one with the smallest number.
-QSES_FN uint32_t nearest_grid_atom(const GridField &f, const Vec3<float> &x, float margin) {
+// `margin` away; of several, the one with the smallest number. met: which of them are looked at; best: the nearest of
+// those before.
+QSES_FN uint32_t nearest_grid_atom(const GridField &f, const Vec3<float> &x, float margin, MetItems met,
+                                   uint32_t best) {
   const float reach = f.parameters.max_radius + margin;
   const Vec3<float> r(reach, reach, reach);
   const CellBox box = cells_around(f.atoms.cells, x - r, x + r);
-  uint32_t best = 0;
-  float depth = -2.f * kFarAway;
+  float depth = met.first > 0 ? ball_depth(f.atoms.items[best], x) : -2.f * kFarAway;
   for (int z = box.z0; z <= box.z1; ++z)
     for (int y = box.y0; y <= box.y1; ++y) {
-      const ItemRun run = f.atoms.run(box.x0, box.x1, y, z);
+      const ItemRun run = met.cut(f.atoms.run(box.x0, box.x1, y, z));
       for (uint32_t k = run.begin; k < run.end; ++k) {
         const float d = ball_depth(f.atoms.items[k], x);
         if (d > depth || (d == depth && f.atoms.order[k] < f.atoms.order[best])) {
@@ -233,20 +276,30 @@ QSES_FN uint32_t nearest_grid_atom(const GridField &f, const Vec3<float> &x, flo
   return best;
 }
 
+struct OwnsVertices {
+  const uint32_t *vertex_base;
+  QSES_FN bool operator()(uint32_t brick) const { return vertex_base[brick] != vertex_base[brick + 1]; }
+};
+
 struct EmitGridVertices {
   static constexpr int kCorners = kBrickEdge + 1;
   GridField field;
   MeshLayout layout;
   uint32_t first;
   MeshView mesh;
+  MetItems part{};  // of the atoms around a vertex
+  bool is_last;     // of the parts
+  int32_t *saved;   // distances, or nullptr
+
+  // The inner end of an edge that changes sign is one step farther off at most.
+  QSES_FN static int32_t limit(const GridParameters &g) { return g.max_outside + 2 * (g.reach + 1) + 1; }
 
   template <class Team>
   QSES_HOST_DEVICE void operator()(const Team &team, DistanceScratch<kCorners> &scratch, size_t i) const {
     const uint32_t brick = first + static_cast<uint32_t>(i);
-    if (layout.vertex_base[brick] == layout.vertex_base[brick + 1]) return;
-    // The inner end of an edge that changes sign is one step farther off at most.
-    const int32_t limit = field.parameters.max_outside + 2 * (field.parameters.reach + 1) + 1;
-    find_distances<kCorners>(field, brick, team, scratch, limit);
+    if (!OwnsVertices{layout.vertex_base}(brick)) return;
+    bring_distances<kCorners>(field, brick, team, scratch, limit(field.parameters),
+                              saved ? saved + i * (kCorners * kCorners * kCorners) : nullptr);
     const Lattice &lattice = field.bricks.lattice;
     const glm::ivec3 origin = lattice.first_point(lattice.brick_at(field.bricks.linear[brick]));
     for (int k = team.rank(); k < kAxes * kBrickPoints; k += team.size()) {
@@ -272,7 +325,12 @@ struct EmitGridVertices {
   QSES_FN void write_vertex(uint32_t vertex, const Vec3<float> &p) const {
     const glm::vec3 position = field.bricks.lattice.to_caller(p);
     // The inner end of the edge is in an inflated ball, and at most a spacing away.
-    const uint32_t atom = nearest_grid_atom(field, p, 1.01f * field.parameters.spacing + 1e-4f);
+    const uint32_t before = part.first > 0 ? mesh.owner(vertex) : 0;
+    const uint32_t atom = nearest_grid_atom(field, p, 1.01f * field.parameters.spacing + 1e-4f, part, before);
+    if (!is_last) {
+      mesh.owner(vertex) = atom;
+      return;
+    }
     const Vec3<float> normal = sphere_normal(field.atoms.items[atom], p);
     store_vec3(mesh.position(vertex), Vec3<float>(position));
     store_vec3(mesh.normal(vertex), normal);
@@ -285,8 +343,20 @@ struct EmitGridVertices {
 template <class Executor>
 void emit_grid_vertices(Executor &executor, const GridField &field, const MeshLayout &layout, BrickRange range,
                         const MeshView &mesh) {
-  executor.template for_each_brick<DistanceScratch<EmitGridVertices::kCorners>>(
-      range.size(), EmitGridVertices{field, layout, range.first, mesh});
+  // A thread has so many of a brick's edges at most.
+  constexpr int kCorners = EmitGridVertices::kCorners;
+  constexpr uint64_t kEdges = kAxes * kBrickPoints / 128, kMost = kThreadSteps / (2 * kEdges);
+  const auto owner_steps = [&](uint64_t near) { return kEdges * (64 + std::min(near, kMost) / 2); };
+  const uint64_t near = most_grid_atoms_near(executor, field.atoms, field.parameters, range.size(), owner_steps);
+  with_distances<kCorners>(
+      executor, field, range, EmitGridVertices::limit(field.parameters), OwnsVertices{layout.vertex_base},
+      [&](BrickRange some, int32_t *saved, uint64_t steps) {
+        for_parts_of_met_items(near, Executor::kIsCuda ? kMost : near, [&](const MetItems &part, bool is_last) {
+          executor.template for_each_brick<DistanceScratch<kCorners>>(
+              some.size(), EmitGridVertices{field, layout, some.first, mesh, part, is_last, saved}, 8,
+              steps / 2 + owner_steps(near));
+        });
+      });
 }
 
 }  // namespace quickses

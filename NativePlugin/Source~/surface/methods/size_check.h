@@ -45,7 +45,8 @@ constexpr double kCertainty = 1.5, kMemoryCertainty = 2;
 template <class Work>
 SurfaceSize predict_size(Work &work) {
   const double h = static_cast<double>(work.parameters.spacing);
-  const double area = work.executor.reduce(work.features.atoms.count, ExposedArea{work.features}),
+  const double area = work.executor.reduce(work.features.atoms.count, ExposedArea{work.features},
+                                           64 + 6 * uint64_t(work.features.most_caps)),
                cells = area / (h * h);
   const double vertices = cells * kVerticesPerCell;
   return {guess_bricks(static_cast<double>(work.features.atoms.count), area, h), vertices, 2.0 * vertices,

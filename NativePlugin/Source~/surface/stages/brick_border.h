@@ -96,8 +96,9 @@ struct GrownBricks {
   const BorderSigns *signs;
   QSES_FN size_t size() const { return bricks.count; }
   QSES_FN double fewest(size_t) const { return 1; }
+  uint64_t most_across() const { return 1; }  // they are few: always all
   template <class Visit>
-  QSES_FN void visit(size_t i, const Visit &visit_brick) const {
+  QSES_FN void visit(size_t i, const RowRange &, const Visit &visit_brick) const {
     visit_brick(bricks.linear[i], uint64_t(1));
     const glm::ivec3 place = bricks.lattice.brick_at(bricks.linear[i]);
     for (uint32_t rest = border_changes(bricks, signs, i); rest; rest &= rest - 1) {

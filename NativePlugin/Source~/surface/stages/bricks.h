@@ -51,11 +51,16 @@ QSES_FN int first_with(int first, int last, const Property &has) {
   return first;
 }
 
+// Of the rows along x of the bricks around something: those to look at.
+struct RowRange {
+  uint64_t first = 0, last = ~uint64_t(0);
+};
+
 // Calls visit(linear index of the first, number) for the runs along x of the bricks whose grown boxes meet the shell
 // between two radii about a centre.
 template <class Visit>
 QSES_FN void visit_bricks_of_shell(const Lattice &lattice, const glm::vec3 &center, float inner, float outer,
-                                   const Visit &visit) {
+                                   const RowRange &rows, const Visit &visit) {
   const float h = lattice.spacing, size = lattice.brick_size(), slack = 0.01f * h + 1e-4f;
   const float box = size + h + 2.f * slack;  // grown box: from -h - slack to 8h + slack
   const float low_offset = -h - slack;
@@ -74,11 +79,18 @@ QSES_FN void visit_bricks_of_shell(const Lattice &lattice, const glm::vec3 &cent
   }
   constexpr int kLongRow = 16;  // fewer bricks are tried one by one
   const bool many = last[1] - first[1] > 64;
-  for (int z = first[2]; z <= last[2]; ++z) {
+  int z = first[2], y_begin = first[1];
+  if (rows.first > 0 && last[1] >= first[1]) {
+    const uint64_t rows_y = static_cast<uint64_t>(last[1] - first[1]) + 1;
+    z += static_cast<int>(rows.first / rows_y);
+    y_begin += static_cast<int>(rows.first % rows_y);
+  }
+  uint64_t left = rows.last - rows.first;
+  for (; z <= last[2] && left > 0; ++z, y_begin = first[1]) {
     if (many) look_for_stop();
     const float z0 = static_cast<float>(z + lattice.first_brick.z) * size + low_offset - c[2];
     const float nz = maximum(0.f, maximum(z0, -z0 - box)), fz = maximum(absolute(z0), absolute(z0 + box));
-    for (int y = first[1]; y <= last[1]; ++y) {
+    for (int y = y_begin; y <= last[1] && left > 0; ++y, --left) {
       const float y0 = static_cast<float>(y + lattice.first_brick.y) * size + low_offset - c[1];
       const float ny = maximum(0.f, maximum(y0, -y0 - box)), fy = maximum(absolute(y0), absolute(y0 + box));
       const float near2 = nz * nz + ny * ny, far2 = fz * fz + fy * fy;
@@ -115,31 +127,41 @@ QSES_FN void visit_bricks_of_shell(const Lattice &lattice, const glm::vec3 &cent
   }
 }
 
+// So many bricks along an axis meet a ball, at most.
+inline uint64_t most_bricks_across(const Lattice &lattice, float radius) {
+  return static_cast<uint64_t>(2.0 * static_cast<double>(radius) / static_cast<double>(lattice.brick_size())) + 4;
+}
+
 // At least so many bricks meet a ball about a place in the table: most of an octant of it lies in there.
 QSES_FN double fewest_bricks_of_ball(const Lattice &lattice, float radius) {
   const double bricks = static_cast<double>(radius) / static_cast<double>(lattice.brick_size());
   return bricks * bricks * bricks / 4;
 }
 
-// What the passes below go through: size() items, and visit(i, v), which calls v(linear index, number) for each run of
-// bricks that item i makes active; at least fewest(i) of them. Of the features, an item is an atom (i < atom count) or
-// an arc's ball.
+// What the passes below go through: size() items, and visit(i, rows, v), which calls v(linear index, number) for each
+// run of bricks that item i makes active; at least fewest(i) of them, in at most most_across() rows along y and z. Of
+// the features, an item is an atom (i < atom count) or an arc's ball.
 struct FeatureBricks {
   FeatureView features;
   Lattice lattice;
 
   QSES_FN size_t size() const { return size_t(features.atoms.count) + features.arc_bounds.count; }
 
+  uint64_t most_across() const {
+    const SurfaceParameters &p = features.parameters;
+    return most_bricks_across(lattice, std::max(p.max_radius - p.depth, features.max_arc_bound + p.depth));
+  }
+
   template <class Visit>
-  QSES_FN void visit(size_t i, const Visit &visit_brick) const {
+  QSES_FN void visit(size_t i, const RowRange &rows, const Visit &visit_brick) const {
     if (i < features.atoms.count) {
       if (features.cap_ranges[i].count == kBuriedAtom) return;
       const Sphere atom = features.atoms.items[i];
       const float radius = maximum(0.f, atom.radius - features.parameters.depth);
-      visit_bricks_of_shell(lattice, atom.center, radius, radius, visit_brick);
+      visit_bricks_of_shell(lattice, atom.center, radius, radius, rows, visit_brick);
     } else {
       const Sphere ball = features.arc_bounds.items[i - features.atoms.count];
-      visit_bricks_of_shell(lattice, ball.center, 0.f, ball.radius + features.parameters.depth, visit_brick);
+      visit_bricks_of_shell(lattice, ball.center, 0.f, ball.radius + features.parameters.depth, rows, visit_brick);
     }
   }
   QSES_FN double fewest(size_t i) const {
@@ -151,6 +173,7 @@ template <class Items>
 struct FlagBricks {
   Items items;
   uint8_t *flags;
+  RowRange rows{};
   struct Visit {
     uint8_t *flags;
     QSES_FN void operator()(uint64_t linear, uint64_t count) const {
@@ -163,20 +186,22 @@ struct FlagBricks {
       }
     }
   };
-  QSES_HOST_DEVICE void operator()(size_t i) const { items.visit(i, Visit{flags}); }
+  QSES_HOST_DEVICE void operator()(size_t i) const { items.visit(i, rows, Visit{flags}); }
 };
 
 template <class Items>
 struct CountBricks {
   Items items;
+  uint64_t *counts;
+  RowRange rows{};
   struct Visit {
     uint64_t *count;
     QSES_FN void operator()(uint64_t, uint64_t more) const { *count += more; }
   };
-  QSES_HOST_DEVICE uint64_t operator()(size_t i) const {
-    uint64_t count = 0;
-    items.visit(i, Visit{&count});
-    return count;
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    uint64_t count = rows.first > 0 ? counts[i] : 0;
+    items.visit(i, rows, Visit{&count});
+    counts[i] = count;
   }
 };
 
@@ -189,8 +214,9 @@ struct FewestBricks {
 template <class Items>
 struct ListBricks {
   Items items;
-  const uint64_t *first;
+  uint64_t *first;  // place of the item's next key
   uint64_t *keys;
+  RowRange rows{};
   struct Visit {
     uint64_t **next;
     QSES_FN void operator()(uint64_t linear, uint64_t number) const {
@@ -199,7 +225,8 @@ struct ListBricks {
   };
   QSES_HOST_DEVICE void operator()(size_t i) const {
     uint64_t *next = keys + first[i];
-    items.visit(i, Visit{&next});
+    items.visit(i, rows, Visit{&next});
+    first[i] = static_cast<uint64_t>(next - keys);
   }
 };
 
@@ -290,6 +317,19 @@ struct SortedBricks {
 // Whether the list gets room for all entries: while that is little.
 inline bool lists_all_entries(uint64_t entries, bool has_budget) { return entries <= kSmallTable && !has_budget; }
 
+// pass(rows, steps) for all rows of bricks of the items: on the GPU in several parts where an item, a giant atom at a
+// fine spacing, has too many of them for one launch.
+template <class Executor, class Items, class Pass>
+void for_rows_of_bricks(const Items &items, const Pass &pass) {
+  const uint64_t across = items.most_across(), row_steps = 24 + across, rows = across * across;
+  const uint64_t most = Executor::kIsCuda ? std::max<uint64_t>(1, kThreadSteps / row_steps) : rows;
+  for (uint64_t first = 0; first < rows; first += most) {
+    const bool is_last = first + most >= rows;
+    pass(RowRange{first, is_last ? ~uint64_t(0) : first + most},
+         std::max(kPlainSteps, std::min(most, rows) * row_steps));
+  }
+}
+
 template <class Executor, class Items>
 BrickSet flag_bricks(Executor &executor, const Items &items, const Lattice &lattice) {
   const uint64_t entries = lattice.table_size();
@@ -298,7 +338,9 @@ BrickSet flag_bricks(Executor &executor, const Items &items, const Lattice &latt
   const Span<uint8_t> flags = memory.flags;
   executor.fill(flags, 0);
   executor.fill(table, 0xff);
-  executor.for_each(items.size(), FlagBricks<Items>{items, flags.data});
+  for_rows_of_bricks<Executor>(items, [&](const RowRange &rows, uint64_t steps) {
+    executor.for_each(items.size(), FlagBricks<Items>{items, flags.data, rows}, steps);
+  });
   // Room for the list: for all entries, or counted first.
   const uint64_t room = lists_all_entries(entries, executor.arena().has_budget())
                             ? entries
@@ -315,7 +357,9 @@ BrickSet sort_bricks(Executor &executor, const Items &items, const Lattice &latt
   const SortedBricks memory(executor, visits);
   const Span<uint64_t> keys = memory.keys, linear = memory.linear;
   const Span<uint32_t> unused = memory.unused;
-  executor.for_each(items.size(), ListBricks<Items>{items, first.data, keys.data});
+  for_rows_of_bricks<Executor>(items, [&](const RowRange &rows, uint64_t steps) {
+    executor.for_each(items.size(), ListBricks<Items>{items, first.data, keys.data, rows}, steps);
+  });
   executor.for_each(visits, SortValue{unused.data});
   executor.sort_by_key(keys, unused, bits_for(lattice.table_size()));
   const uint32_t count = checked_brick_count(executor.compact(visits, IsFirstOfEqual{keys.data}, linear));
@@ -340,7 +384,13 @@ BrickSet collect_bricks(Executor &executor, const Items &items, const Lattice &l
                         " for the bricks of the SES grid, but " + describe_bytes(executor.arena().available()) +
                         " are available: use a larger spacing");
   Span<uint64_t> first = executor.template allocate<uint64_t>(n + 1);
-  executor.exclusive_scan(n, CountBricks<Items>{items}, first);
+  const auto mark = executor.arena().mark();
+  const Span<uint64_t> counts = executor.template allocate<uint64_t>(n);
+  for_rows_of_bricks<Executor>(items, [&](const RowRange &rows, uint64_t steps) {
+    executor.for_each(n, CountBricks<Items>{items, counts.data, rows}, steps);
+  });
+  executor.exclusive_scan(n, LoadCount<uint64_t>{counts.data}, first);
+  executor.arena().rewind(mark);
   const uint64_t visits = executor.fetch(first.data + n);
   if (entries <= kMaxDenseCells && entries * kDenseEntryBytes <= visits * kVisitBytes)
     return flag_bricks(executor, items, lattice);
@@ -366,6 +416,10 @@ BrickSet collect_bricks(CountingExecutor<Executor> &executor, const Items &items
     set.table = &some_table;
   } else {
     executor.template allocate<uint64_t>(items.size() + 1);
+    const auto mark = executor.arena().mark();
+    executor.template allocate<uint64_t>(items.size());
+    executor.exclusive_scan(items.size(), 0, Span<uint64_t>{});
+    executor.arena().rewind(mark);
     SortedBricks(executor, visits);
     executor.sort_by_key(Span<uint64_t>{nullptr, visits}, Span<uint32_t>{nullptr, visits}, 64);
   }

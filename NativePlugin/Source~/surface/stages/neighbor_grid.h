@@ -6,6 +6,9 @@
 #include "parallel/executor.h"
 #include "surface/geometry/types.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace quickses {
 
 // Where the cells of a grid lie. Cells are numbered x fastest.
@@ -126,6 +129,64 @@ inline int bits_for(uint64_t values) {
   int bits = 1;
   while (bits < 64 && (values >> bits) != 0) ++bits;
   return bits;
+}
+
+// Of items that a look-up meets run by run: those whose places among them are in a range. With very many of them the
+// GPU looks at some per launch.
+struct MetItems {
+  uint64_t first = 0, last = ~uint64_t(0);
+  uint64_t met = 0;
+  QSES_FN ItemRun cut(const ItemRun &run) {
+    const uint64_t begin = met, count = run.end - run.begin;
+    met += count;
+    return {run.begin + place(first, begin, count), run.begin + place(last, begin, count)};
+  }
+
+ private:
+  QSES_FN static uint32_t place(uint64_t at, uint64_t begin, uint64_t count) {
+    return static_cast<uint32_t>(at <= begin ? 0 : at - begin < count ? at - begin : count);
+  }
+};
+
+// Calls pass(part, is_last) for parts of so many items at most, of those that a look-up can meet.
+template <class Pass>
+void for_parts_of_met_items(uint64_t near, uint64_t most, const Pass &pass) {
+  for (uint64_t first = 0; first == 0 || first < near; first += most) {
+    const bool is_last = first + most >= near;
+    pass(MetItems{first, is_last ? ~uint64_t(0) : first + most}, is_last);
+  }
+}
+
+// Items in the cell of each item.
+struct LargestNumber {
+  uint32_t value = 0;
+  QSES_FN LargestNumber &operator+=(const LargestNumber &other) {
+    value = value > other.value ? value : other.value;
+    return *this;
+  }
+};
+struct CountCellOfItem {
+  NeighborGridView grid;
+  QSES_HOST_DEVICE LargestNumber operator()(size_t i) const {
+    const CellLayout &cells = grid.cells;
+    const glm::vec3 p = grid.items[i].center;
+    const int x = cells.cell_along(p.x, cells.origin.x, cells.count.x);
+    const ItemRun run = grid.run(x, x, cells.cell_along(p.y, cells.origin.y, cells.count.y),
+                                 cells.cell_along(p.z, cells.origin.z, cells.count.z));
+    LargestNumber number;
+    number.value = run.end - run.begin;
+    return number;
+  }
+};
+
+// How many items look-ups in boxes of this extent meet, at most: for the steps of launches on the GPU. Where it is not
+// enough to take all items there are, those in the fullest cell are counted. Waits then.
+template <class Executor, class IsEnough>
+uint64_t most_items_near(Executor &executor, const NeighborGridView &grid, float extent, const IsEnough &is_enough) {
+  if (grid.count == 0 || is_enough(uint64_t(grid.count))) return grid.count;
+  const double edges = std::floor(static_cast<double>(extent) * static_cast<double>(grid.cells.inverse_edge)) + 2;
+  const uint64_t fullest = executor.template reduce<LargestNumber>(grid.count, CountCellOfItem{grid}).value;
+  return static_cast<uint64_t>(std::min(static_cast<double>(grid.count), edges * edges * edges * double(fullest)));
 }
 
 // A grid of n items. make_items() returns them as a Span<Sphere>; what it allocates is given up again, as is all else

@@ -29,7 +29,8 @@ struct SolventFeatures {
   Span<CapRange> cap_ranges;  // per atom, in grid order
   Span<Cap> caps;             // cosine with the exposure tolerance, largest cap first
   Span<Arc> arcs;
-  Span<uint8_t> exposed;  // CPU only: per atom 1 or 0, and 8 bytes more
+  Span<uint8_t> exposed;   // CPU only: per atom 1 or 0, and 8 bytes more
+  uint32_t most_caps = 0;  // of an atom; GPU only
 };
 
 // The features as the later stages see them: arcs sorted into a neighbour grid by their enclosing balls.
@@ -41,6 +42,7 @@ struct FeatureView {
   NeighborGridView arc_bounds;  // enclosing ball of each arc
   const Arc *arcs;              // in the order of arc_bounds.items
   float max_arc_bound;
+  uint32_t most_caps;  // as in SolventFeatures
   SurfaceParameters parameters;
 };
 
@@ -51,16 +53,18 @@ struct FindContainedAtoms {
   NeighborGridView atoms;
   float max_radius;
   uint8_t *contained;
+  MetItems part{};
   QSES_HOST_DEVICE void operator()(size_t i) const {
     const Sphere self = atoms.items[i];
     const Vec3<float> c(self.center);
     const float reach = containing_reach(self.radius, max_radius);
     const Vec3<float> r(reach, reach, reach);
     const CellBox box = cells_around(atoms.cells, c - r, c + r);
-    bool found = false;
+    MetItems met = part;
+    bool found = met.first > 0 && contained[i] != 0;
     for (int z = box.z0; z <= box.z1 && !found; ++z)
       for (int y = box.y0; y <= box.y1 && !found; ++y) {
-        const ItemRun run = atoms.run(box.x0, box.x1, y, z);
+        const ItemRun run = met.cut(atoms.run(box.x0, box.x1, y, z));
         for (uint32_t k = run.begin; k < run.end && !found; ++k)
           found = k != i && contains(atoms.items[k], atoms.order[k], self, atoms.order[i]);
       }
