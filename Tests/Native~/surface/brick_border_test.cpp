@@ -110,10 +110,11 @@ struct ChosenBricks {
   const std::vector<uint64_t> *chosen;
   size_t size() const { return chosen->size(); }
   template <class Visit>
-  void visit(size_t i, const Visit &visit_brick) const {
+  void visit(size_t i, const RowRange &, const Visit &visit_brick) const {
     visit_brick((*chosen)[i], uint64_t(1));
   }
   double fewest(size_t) const { return 1; }
+  uint64_t most_across() const { return 1; }
 };
 
 // box: bricks of the lattice along each axis; a large one makes the set sparse.
