@@ -123,6 +123,7 @@ class CudaExecutor {
   ~CudaExecutor() {
     try {
       const DeviceGuard guard(device_);
+      if (!may_hand_back()) return;
       cudaStreamSynchronize(stream_);
       for (cudaEvent_t event : launched_)
         if (event) cudaEventDestroy(event);

@@ -27,7 +27,8 @@ std::string describe_error(cudaError_t error) {
 
 // The errors that CUDA does not recover from: memory or links that failed, and what a kernel did wrong. Of the latter
 // its manual says (cudaError_t) that they leave the process in an inconsistent state, in which any further work with
-// CUDA returns the same error until the process ends.
+// CUDA returns the same error until the process ends. After a cudaDeviceReset by others the process might go on, but
+// not with what we have there: to hand it back to the driver ends in a segmentation fault.
 bool is_sticky(cudaError_t error) {
   switch (error) {
     case cudaErrorECCUncorrectable:
@@ -41,6 +42,7 @@ bool is_sticky(cudaError_t error) {
     case cudaErrorInvalidAddressSpace:
     case cudaErrorInvalidPc:
     case cudaErrorLaunchFailure:
+    case cudaErrorContextIsDestroyed:
       return true;
     default:
       return false;
@@ -72,11 +74,10 @@ CudaPreparations &preparations() {
   return all;
 }
 
-// Whether memory was given. After a fault, or a cudaDeviceReset by others, which any call may be the first to report,
-// less would not do either.
+// Whether memory was given. After a fault, which any call may be the first to report, less would not do either.
 bool was_granted(cudaError_t error, const char *call) {
   if (error == cudaSuccess) return true;
-  if (is_sticky(error) || error == cudaErrorContextIsDestroyed) check_cuda(error, call);
+  if (is_sticky(error)) check_cuda(error, call);
   cudaGetLastError();
   return false;
 }
@@ -114,6 +115,16 @@ void check_cuda(int error, const char *call) {
   const std::string message = std::string(call) + " failed: " + describe_error(e);
   if (e == cudaErrorMemoryAllocation) throw MemoryRefused(message);
   throw Error(QSES_DEVICE_ERROR, message);
+}
+
+bool may_hand_back() {
+  if (fault().is_there) return false;
+  size_t free = 0, total = 0;
+  const cudaError_t error = cudaMemGetInfo(&free, &total);
+  if (error == cudaSuccess) return true;
+  cudaGetLastError();
+  if (is_sticky(error)) fault().remember(error, "cudaMemGetInfo");
+  return !is_sticky(error);
 }
 
 void refuse_after_fault() {
@@ -219,7 +230,7 @@ void *DeviceMemory::acquire(size_t bytes) {
 }
 
 void DeviceMemory::release(void *memory) {
-  if (cudaFree(memory) != cudaSuccess) cudaGetLastError();
+  if (may_hand_back() && cudaFree(memory) != cudaSuccess) cudaGetLastError();
 }
 
 void *PinnedMemory::acquire(size_t bytes) {
@@ -229,7 +240,7 @@ void *PinnedMemory::acquire(size_t bytes) {
 }
 
 void PinnedMemory::release(void *memory) {
-  if (cudaFreeHost(memory) != cudaSuccess) cudaGetLastError();
+  if (may_hand_back() && cudaFreeHost(memory) != cudaSuccess) cudaGetLastError();
 }
 
 }  // namespace quickses

@@ -18,6 +18,10 @@ void check_cuda(int error, const char *call);
 // Throws Error (QSES_DEVICE_ERROR) from the first such fault on, with what it was: nothing more is asked of CUDA then.
 void refuse_after_fault();
 
+// Whether what is on the thread's device may be handed back to the driver: after a fault it is lost, and the driver may
+// crash. Asks the driver, since destructors may be the first to meet one. Never throws.
+bool may_hand_back();
+
 struct CudaDevice {
   bool available = false, preparing = false;   // preparing: its kernels are being loaded (cuda_preparation.h)
   std::string reason;                          // why not, if it is not available; what is done while it is prepared

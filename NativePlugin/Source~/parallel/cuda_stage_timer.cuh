@@ -15,6 +15,7 @@ class CudaStageTimer {
  public:
   explicit CudaStageTimer(CudaExecutor &executor) : executor_(executor) {}
   ~CudaStageTimer() {
+    if (events_.empty() || !may_hand_back()) return;
     for (cudaEvent_t event : events_) cudaEventDestroy(event);
   }
   CudaStageTimer(const CudaStageTimer &) = delete;

@@ -225,9 +225,10 @@ TEST_P(FailingDriver, EveryCallMayFailAndTheNextMayNot) {
   fail_after(0, GetParam());
   expect_the_cpu_takes_over("the fake driver was told to fail");
 }
-INSTANTIATE_TEST_SUITE_P(Errors, FailingDriver, testing::Values(-2, 2, 46, -201, 709, -999, 999));  // cudaError_t
+INSTANTIATE_TEST_SUITE_P(Errors, FailingDriver, testing::Values(-2, 2, 46, -201, -999, 999));  // cudaError_t
 
-// The device is lost: Windows ended a kernel (702), or the driver was restarted under the process (719).
+// The device is lost: Windows ended a kernel (702), the driver was restarted under the process (719), or other code in
+// it has reset the device (709).
 class LostDevice : public FailingDriver {};
 
 TEST_P(LostDevice, IsSaidForGoodAndTheCpuTakesOver) {
@@ -253,6 +254,6 @@ TEST_P(LostDevice, IsSaidForGoodAndTheCpuTakesOver) {
         testing::ExitedWithCode(0), "");
   }
 }
-INSTANTIATE_TEST_SUITE_P(Errors, LostDevice, testing::Values(702, 719));
+INSTANTIATE_TEST_SUITE_P(Errors, LostDevice, testing::Values(702, 709, 719));
 
 }  // namespace

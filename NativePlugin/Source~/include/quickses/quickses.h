@@ -56,13 +56,11 @@
  *   exits, aborts or throws, and no call leaves another CUDA device selected than it found.
  *   After an error the context is still usable, and the last good mesh stays valid. The exception is a fault of the GPU
  *   from which CUDA does not recover within the process (a kernel of this or another library that reads or writes a
- *   wrong address, a failed assertion, an uncorrectable error of its memory ...). It ends all use of CUDA in the
- *   process, also by other libraries. From then on all contexts with CUDA, on any GPU, give DEVICE_ERROR for whatever
- *   needs a GPU, with a sentence that says so, until they are destroyed, which works as usual; their last meshes stay
- *   valid. New contexts with CUDA are refused with BACKEND_UNAVAILABLE until the process ends; AUTO takes the CPU.
- *   Contexts on the CPU live on.
- *   A cudaDeviceReset by other code of the process takes away what all contexts on that GPU have there: then they give
- *   errors, and can only be destroyed.
+ *   wrong address, a failed assertion, an uncorrectable error of its memory ...), or a cudaDeviceReset by other code of
+ *   the process. A fault ends all use of CUDA in the process, also by other libraries. From then on all contexts with
+ * CUDA, on any GPU, give DEVICE_ERROR for whatever needs a GPU, with a sentence that says so, until they are destroyed,
+ * which works as usual; their last meshes stay valid. New contexts with CUDA are refused with BACKEND_UNAVAILABLE until
+ * the process ends; AUTO takes the CPU. Contexts on the CPU live on.
  *
  * Threads
  *   A context may be used by one thread at a time, but for qses_poll and qses_cancel, which may be called from any
