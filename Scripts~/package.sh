@@ -34,12 +34,12 @@ for preset in "${presets[@]}"; do
 done
 
 # Checked first, then left where it was asked for.
+mkdir -p .build/package "$folder"
 new=$(mktemp -d .build/package/new.XXXXXX)
 trap 'rm -rf "$new"' EXIT
 python3 -B Scripts~/package/make-package "$new"
 python3 -B Scripts~/package/check-package "$new"/org.quickses.unity-*.tgz \
   --platform linux-x86_64 --platform windows-x86_64 "${check[@]}"
 (cd "$new" && sha256sum --check --ignore-missing org.quickses.unity-*.tgz.sha256)
-mkdir -p "$folder"
 mv "$new"/* "$folder"
 echo "package.sh: it is in $folder"
