@@ -3,7 +3,7 @@
 # Makes the package as it is released, org.quickses.unity-VERSION.tgz, with CUDA for Linux and Windows; checks it, and writes
 # the SHA-256 sums of it and of its native libraries beside it. Installs what is missing first. Needs no GPU.
 #   bash Scripts~/package.sh [--cpu-only] [FOLDER]
-# FOLDER: where it is left, default .build/package.
+# FOLDER: where it is left, default .build/package. Packages of other versions there stay; no unchecked one is left.
 # --cpu-only: without the CUDA back end, and without the need for the CUDA Toolkit.
 # The same commit gives the same bytes in any folder, with the same compilers; Scripts~/package/verify-package proves it.
 set -euo pipefail
@@ -17,7 +17,7 @@ folder=.build/package
 for argument in "$@"; do
   case "$argument" in
     --cpu-only) presets=(cpu windows) setup=(--with-windows) check=() ;;
-    -h | --help) sed -n '3,8s/^# //p' "$0"; exit 0 ;;
+    -h | --help) sed -n '3,8s/^# //p' Scripts~/package.sh; exit 0 ;;
     -*) echo "package.sh: unknown option $argument (there is --cpu-only)" >&2; exit 2 ;;
     /*) folder=$argument ;;
     *) folder=$from/$argument ;;
@@ -33,9 +33,13 @@ for preset in "${presets[@]}"; do
   cmake --build "$build" --target plugin --parallel "$(nproc)"
 done
 
-mkdir -p "$folder"
-rm -f "$folder"/org.quickses.unity-*.tgz{,.sha256}
-python3 -B Scripts~/package/make-package "$folder"
-python3 -B Scripts~/package/check-package "$folder"/org.quickses.unity-*.tgz \
+# Checked first, then left where it was asked for.
+mkdir -p .build/package "$folder"
+new=$(mktemp -d .build/package/new.XXXXXX)
+trap 'rm -rf "$new"' EXIT
+python3 -B Scripts~/package/make-package "$new"
+python3 -B Scripts~/package/check-package "$new"/org.quickses.unity-*.tgz \
   --platform linux-x86_64 --platform windows-x86_64 "${check[@]}"
-(cd "$folder" && sha256sum --check --ignore-missing org.quickses.unity-*.tgz.sha256)
+(cd "$new" && sha256sum --check --ignore-missing org.quickses.unity-*.tgz.sha256)
+mv "$new"/* "$folder"
+echo "package.sh: it is in $folder"

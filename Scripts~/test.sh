@@ -25,7 +25,7 @@ for argument in "$@"; do
     --with-mpi) with_mpi=yes setup+=("$argument") ;;
     --with-windows) with_windows=yes setup+=("$argument") ;;
     --long) long=yes ;;
-    -h | --help) sed -n '3,13s/^# //p' "$0"; exit 0 ;;
+    -h | --help) sed -n '3,13s/^# //p' Scripts~/test.sh; exit 0 ;;
     *) echo "test.sh: unknown option $argument (there are --with-cuda, --with-mpi, --with-windows and --long)" >&2; exit 2 ;;
   esac
 done
@@ -103,13 +103,13 @@ fi
 
 # The package with all that was asked for; with --with-cuda --with-windows it is the one that is released.
 echo "==== package: make and check"
+mkdir -p .build/package
+rm -f .build/package/org.quickses.unity-*.tgz{,.sha256}
 if [ "$with_windows" = yes ]; then
   package_options=()
   if [ "${presets[-1]}" != cuda ]; then package_options=(--cpu-only); fi
   bash Scripts~/package.sh "${package_options[@]}"
 else
-  mkdir -p .build/package
-  rm -f .build/package/org.quickses.unity-*.tgz{,.sha256}
   cmake --build --preset "${presets[-1]}" --target plugin
   python3 -B Scripts~/package/make-package .build/package
   python3 -B Scripts~/package/check-package .build/package/org.quickses.unity-*.tgz --platform linux-x86_64
@@ -120,7 +120,7 @@ echo "==== package: where nothing is installed"
 bare_systems=(bookworm)
 if [ "$with_windows" = yes ]; then bare_systems+=(wine); fi
 for system in "${bare_systems[@]}"; do
-  bash Scripts~/package/load-in-bare-system .build/cpu/org.quickses.unity-*.tgz "$system" || [ $? -eq 77 ]
+  bash Scripts~/package/load-in-bare-system .build/package/org.quickses.unity-*.tgz "$system" || [ $? -eq 77 ]
 done
 
 # The C# layers, with the plug-in of that package: what Unity compiles runs against a double of the engine, as in a player

@@ -5,6 +5,7 @@ import hashlib
 import json
 import os
 import tarfile
+import zlib
 
 PREFIX = "package/"
 PLUGINS = "UnityPackage/Plugins/"
@@ -19,7 +20,7 @@ def read(archive):
                 if not entry.isfile() or not entry.name.startswith(PREFIX):
                     raise ValueError(f"{archive}: {entry.name} is no file below {PREFIX}")
                 files[entry.name[len(PREFIX):]] = entries.extractfile(entry).read()
-    except (tarfile.TarError, EOFError) as error:
+    except (tarfile.TarError, EOFError, zlib.error) as error:
         raise ValueError(f"{archive}: {error}") from error
     return files
 

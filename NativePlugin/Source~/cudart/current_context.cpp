@@ -10,7 +10,7 @@ namespace cudart {
 namespace {
 
 thread_local cudaError_t last_error = cudaSuccess;
-thread_local int last_selected = 0;
+thread_local int last_selected = -1;
 
 struct PrimaryContext {
   std::mutex mutex;
@@ -61,7 +61,12 @@ CUresult make_current(int device) {
   return result;
 }
 
-int selected_device() { return last_selected; }
+int selected_device() {
+  if (last_selected >= 0) return last_selected;
+  for (int device = 0; device < kMostDevices; ++device)
+    if (primary_contexts()[static_cast<size_t>(device)].handle.load(std::memory_order_acquire)) return device;
+  return 0;
+}
 
 int current_device() {
   CUcontext current = nullptr;
@@ -76,7 +81,7 @@ cudaError_t enter() {
   if (const cudaError_t error = start()) return error;
   CUcontext current = nullptr;
   CUresult result = driver().cuCtxGetCurrent(&current);
-  if (result == CUDA_SUCCESS && !current) result = make_current(0);
+  if (result == CUDA_SUCCESS && !current) result = make_current(selected_device());
   return static_cast<cudaError_t>(result);
 }
 

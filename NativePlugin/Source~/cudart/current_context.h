@@ -28,13 +28,14 @@ cudaError_t start();
 // of CUDA in the process share it.
 CUresult make_current(int device);
 
-// The device that the thread made current last; 0 if it never did.
+// The device that the thread made current last. If it never did: one that is in use already, so that a thread which
+// only gives memory back starts no other; else 0.
 int selected_device();
 
 // The device whose primary context is current; -1 if the current one is another's, which has none of our kernels.
 int current_device();
 
-// Sees that the thread has a context: the one it has, else that of device 0.
+// Sees that the thread has a context: the one it has, else that of selected_device().
 cudaError_t enter();
 
 // Calls a function of the driver with a context.

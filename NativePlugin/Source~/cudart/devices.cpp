@@ -12,8 +12,8 @@ cudaError_t CUDARTAPI cudaGetDeviceCount(int *count) {
   return remember(driver().cuDeviceGetCount(count));
 }
 
-// The device of the thread's current context. Where there is none yet, or the driver can't tell any more: the one the
-// thread has selected last, or 0. So it fails only without a driver: CUB (1.17, util_device.cuh) does not look whether
+// The device of the thread's current context. Where there is none yet, or the driver can't tell any more: that of
+// selected_device(). So it fails only without a driver: CUB (1.17, util_device.cuh) does not look whether
 // it has, and would go on with entry -1 of an array.
 cudaError_t CUDARTAPI cudaGetDevice(int *device) {
   *device = selected_device();

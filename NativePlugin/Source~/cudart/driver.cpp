@@ -40,16 +40,17 @@ Driver load() {
     d.refusal = std::string("no NVIDIA driver is installed (") + kLibrary + " was not found)";
     return d;
   }
-  int version = 0;
-  const auto get_version = reinterpret_cast<DriverFunction<CUresult, int *>>(find(library, "cuDriverGetVersion"));
-  if (!get_version || get_version(&version) != CUDA_SUCCESS) version = 0;
   const char *missing = nullptr;
 #define QSES_FIND(name, ...)                                                    \
   d.name = reinterpret_cast<DriverFunction<__VA_ARGS__>>(find(library, #name)); \
   if (!d.name && !missing) missing = #name;
   QSES_DRIVER_FUNCTIONS(QSES_FIND)
 #undef QSES_FIND
-  if (version < kOldestDriver)
+  int version = 0;
+  const CUresult told = d.cuDriverGetVersion ? d.cuDriverGetVersion(&version) : CUDA_SUCCESS;
+  if (told != CUDA_SUCCESS)
+    d.state = told;
+  else if (d.cuDriverGetVersion && version < kOldestDriver)
     d.refusal = "the NVIDIA driver serves CUDA " + version_text(version) + ", but this library needs " +
                 version_text(kOldestDriver) + ": update the driver";
   else if (missing)
@@ -57,6 +58,9 @@ Driver load() {
                 ": install the driver again";
   else
     d.state = d.cuInit(0);
+  if (d.state == CUDA_ERROR_STUB_LIBRARY && d.refusal.empty())
+    d.refusal = std::string("the ") + kLibrary +
+                " that was found is the CUDA Toolkit's stub, not an NVIDIA driver: take it off the loader's path";
   return d;
 }
 

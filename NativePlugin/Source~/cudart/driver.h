@@ -11,6 +11,7 @@ namespace cudart {
 
 // Every function of the driver that is used. Names as the driver exports them: cuda.h has macros for those with _v2.
 #define QSES_DRIVER_FUNCTIONS(F)                                                                                \
+  F(cuDriverGetVersion, CUresult, int *)                                                                        \
   F(cuInit, CUresult, unsigned)                                                                                 \
   F(cuGetErrorName, CUresult, CUresult, const char **)                                                          \
   F(cuGetErrorString, CUresult, CUresult, const char **)                                                        \
@@ -55,8 +56,8 @@ struct Driver {
 #define QSES_DRIVER_MEMBER(name, ...) DriverFunction<__VA_ARGS__> name = nullptr;
   QSES_DRIVER_FUNCTIONS(QSES_DRIVER_MEMBER)
 #undef QSES_DRIVER_MEMBER
-  // Whether its functions can be called: CUDA_SUCCESS; CUDA_ERROR_STUB_LIBRARY where there is none, an older one, or
-  // one that lacks a function; else what cuInit returned.
+  // Whether its functions can be called: CUDA_SUCCESS; CUDA_ERROR_STUB_LIBRARY where there is none, an older one,
+  // one that lacks a function, or the toolkit's stub; else what cuInit or cuDriverGetVersion returned.
   CUresult state = CUDA_ERROR_STUB_LIBRARY;
   std::string refusal;  // for CUDA_ERROR_STUB_LIBRARY: what is wrong and what to do, as the end of a sentence
 };

@@ -25,7 +25,7 @@ struct FatBinary {
 
 struct Module {
   const void *image;
-  std::array<CUmodule, kMostDevices> loaded{};  // guarded by the registry's mutex
+  std::array<CUmodule, kMostDevices> loaded{};  // guarded by the device's mutex
 };
 
 struct Kernel {
@@ -35,7 +35,7 @@ struct Kernel {
 };
 
 struct Registry {
-  std::mutex mutex;
+  std::array<std::mutex, kMostDevices> loading;  // by device: the driver may compile for one of them for a minute
   std::vector<std::unique_ptr<Module>> modules;
   // By the address of the host's stub. Complete once the library is loaded, and only read from then on.
   std::unordered_map<const void *, Kernel> kernels;
@@ -59,7 +59,7 @@ CUresult find_function(const void *stub, CUfunction *function) {
   std::atomic<CUfunction> &slot = kernel.function[static_cast<size_t>(device)];
   *function = slot.load(std::memory_order_acquire);
   if (*function) return CUDA_SUCCESS;
-  const std::lock_guard<std::mutex> lock(r.mutex);
+  const std::lock_guard<std::mutex> lock(r.loading[static_cast<size_t>(device)]);
   CUmodule &module = kernel.module->loaded[static_cast<size_t>(device)];
   CUresult result = CUDA_SUCCESS;
   if (!module) result = driver().cuModuleLoadData(&module, kernel.module->image);
@@ -77,12 +77,13 @@ cudaError_t with_function(const void *stub, Call call) {
   });
 }
 
-struct LaunchShape {
+struct CallConfiguration {
   dim3 grid, block;
   size_t shared_bytes = 0;
   void *stream = nullptr;
 };
-thread_local LaunchShape launch_shape;  // from <<<...>>> to the stub it calls; nothing is launched in between
+// From <<<...>>> to the stub that it calls; nothing is launched in between.
+thread_local CallConfiguration call_configuration;
 
 }  // namespace
 }  // namespace cudart
@@ -116,14 +117,14 @@ void __cudaRegisterVar(void **, char *, char *, const char *, int, size_t, int, 
 // ---- called for kernel<<<grid, block, shared_bytes, stream>>>(...) --------------------------------------------------
 
 unsigned __cudaPushCallConfiguration(dim3 grid, dim3 block, size_t shared_bytes, struct CUstream_st *stream) {
-  launch_shape = {grid, block, shared_bytes, stream};
+  call_configuration = {grid, block, shared_bytes, stream};
   return 0;  // anything else: the kernel's stub is not called
 }
 cudaError_t __cudaPopCallConfiguration(dim3 *grid, dim3 *block, size_t *shared_bytes, void *stream) {
-  *grid = launch_shape.grid;
-  *block = launch_shape.block;
-  *shared_bytes = launch_shape.shared_bytes;
-  *static_cast<void **>(stream) = launch_shape.stream;
+  *grid = call_configuration.grid;
+  *block = call_configuration.block;
+  *shared_bytes = call_configuration.shared_bytes;
+  *static_cast<void **>(stream) = call_configuration.stream;
   return cudaSuccess;
 }
 

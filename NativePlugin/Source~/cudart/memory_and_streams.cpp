@@ -70,8 +70,7 @@ cudaError_t CUDARTAPI cudaMemsetAsync(void *memory, int byte, size_t bytes, cuda
   });
 }
 
-// ---- streams and events: the runtime's handles are the driver's
-// ------------------------------------------------------
+// ---- streams and events, whose handles are those of the driver ------------------------------------------------------
 
 cudaError_t CUDARTAPI cudaStreamCreateWithFlags(cudaStream_t *stream, unsigned flags) {
   return inside([&](const Driver &d) { return d.cuStreamCreate(stream, flags); });

@@ -82,6 +82,15 @@ bool was_granted(cudaError_t error, const char *call) {
   return false;
 }
 
+// Memory is also given back by threads that have no context. The one that CUDA gives them for it must not stay.
+void give_back(void *memory, cudaError_t(CUDARTAPI *free)(void *)) {
+  if (!memory) return;
+  CUcontext before = nullptr;
+  const bool has_none = cudart::driver().cuCtxGetCurrent(&before) == CUDA_SUCCESS && !before;
+  if (may_hand_back() && free(memory) != cudaSuccess) cudaGetLastError();
+  if (has_none) cudart::driver().cuCtxSetCurrent(nullptr);
+}
+
 std::string reason_for_none(cudaError_t error) {
   if (error == cudaErrorNoDevice) return "no CUDA device is present, or none is visible to this process";
   if (error == cudaErrorInsufficientDriver) return cudaGetErrorString(error);
@@ -229,9 +238,7 @@ void *DeviceMemory::acquire(size_t bytes) {
   return was_granted(cudaMalloc(&memory, bytes), "cudaMalloc") ? memory : nullptr;
 }
 
-void DeviceMemory::release(void *memory) {
-  if (may_hand_back() && cudaFree(memory) != cudaSuccess) cudaGetLastError();
-}
+void DeviceMemory::release(void *memory) { give_back(memory, cudaFree); }
 
 void *PinnedMemory::acquire(size_t bytes) {
   ++pinned_requests;
@@ -239,8 +246,6 @@ void *PinnedMemory::acquire(size_t bytes) {
   return was_granted(cudaHostAlloc(&memory, bytes, cudaHostAllocPortable), "cudaHostAlloc") ? memory : nullptr;
 }
 
-void PinnedMemory::release(void *memory) {
-  if (may_hand_back() && cudaFreeHost(memory) != cudaSuccess) cudaGetLastError();
-}
+void PinnedMemory::release(void *memory) { give_back(memory, cudaFreeHost); }
 
 }  // namespace quickses

@@ -29,10 +29,10 @@ class GrowingBuffer {
   bool try_reserve(size_t bytes) {
     if (bytes <= size_) return true;
     release();
-    size_ = size_for(bytes);
-    memory_ = Source::acquire(size_);
-    if (!memory_) memory_ = Source::acquire(size_ = bytes);
-    if (!memory_) size_ = 0;
+    size_t size = size_for(bytes);
+    memory_ = Source::acquire(size);  // which may throw: a size without memory must not stay behind
+    if (!memory_) memory_ = Source::acquire(size = bytes);
+    if (memory_) size_ = size;
     return memory_ != nullptr;
   }
   void release() {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A stand-in for NVIDIA's driver library, with every function that cudart/ asks for. Its GPU has host memory, and its
-// kernels do nothing. FAKE_VERSION: of CUDA, as cuDriverGetVersion counts. FAKE_START: what cuInit returns. To leave a
-// function out, rename it by a macro (-DcuMemAlloc_v2=left_out).
+// kernels do nothing. FAKE_VERSION: of CUDA, as cuDriverGetVersion counts; 0: it fails as cuInit. FAKE_START: what
+// cuInit returns. FAKE_DEVICES: how many GPUs, else one. To leave a function out, rename it by a macro
+// (-DcuMemAlloc_v2=left_out).
 #include "cudart/driver.h"
 
 #include <atomic>
@@ -10,6 +11,10 @@
 #include <cstdlib>
 #include <cstring>
 #include <mutex>
+
+#if !defined(FAKE_DEVICES)
+#define FAKE_DEVICES 1
+#endif
 
 #if defined(_WIN32)
 #define FAKE_API extern "C" __declspec(dllexport)
@@ -21,7 +26,8 @@ namespace {
 
 std::atomic<int> calls{0}, good_calls{-1}, failure{0};
 thread_local CUcontext current = nullptr;
-int the_context, the_module, the_function;
+int contexts[FAKE_DEVICES], the_module, the_function;
+std::atomic<int> retained[FAKE_DEVICES];
 
 // Of cuModuleLoadData.
 std::mutex mutex;
@@ -50,7 +56,12 @@ FAKE_API int fake_driver_fail_after(int good, int error) {
   return count;
 }
 
-// From now on device code is compiled until this is called with 0.
+// How often the context of a device was asked for.
+FAKE_API int fake_driver_retained(int device) { return retained[device]; }
+// Whether the calling thread has one.
+FAKE_API int fake_driver_has_context() { return current ? 1 : 0; }
+
+// From now on device code is compiled, for the first GPU, until this is called with 0.
 FAKE_API int fake_driver_hold(int hold) {
   const std::lock_guard<std::mutex> lock(mutex);
   is_held = hold != 0;
@@ -66,7 +77,7 @@ FAKE_API int fake_driver_wait_for_compiling() {
 FAKE_API CUresult CUDAAPI cuInit(unsigned) { return static_cast<CUresult>(FAKE_START); }
 FAKE_API CUresult CUDAAPI cuDriverGetVersion(int *version) {
   *version = FAKE_VERSION;
-  return CUDA_SUCCESS;
+  return static_cast<CUresult>(FAKE_VERSION > 0 ? 0 : FAKE_START);
 }
 FAKE_API CUresult CUDAAPI cuGetErrorName(CUresult, const char **name) {
   *name = "CUDA_ERROR_OF_THE_FAKE";
@@ -83,7 +94,7 @@ FAKE_API CUresult CUDAAPI cuDeviceGet(CUdevice *device, int ordinal) {
   return next();
 }
 FAKE_API CUresult CUDAAPI cuDeviceGetCount(int *count) {
-  *count = 1;
+  *count = FAKE_DEVICES;
   return next();
 }
 FAKE_API CUresult CUDAAPI cuDeviceGetName(char *name, int, CUdevice) {
@@ -98,8 +109,9 @@ FAKE_API CUresult CUDAAPI cuDeviceTotalMem_v2(size_t *bytes, CUdevice) {
   *bytes = size_t(128) << 20;
   return next();
 }
-FAKE_API CUresult CUDAAPI cuDevicePrimaryCtxRetain(CUcontext *context, CUdevice) {
-  *context = reinterpret_cast<CUcontext>(&the_context);
+FAKE_API CUresult CUDAAPI cuDevicePrimaryCtxRetain(CUcontext *context, CUdevice device) {
+  ++retained[device];
+  *context = reinterpret_cast<CUcontext>(&contexts[device]);
   return next();
 }
 FAKE_API CUresult CUDAAPI cuCtxGetCurrent(CUcontext *context) {
@@ -114,6 +126,8 @@ FAKE_API CUresult CUDAAPI cuCtxSetCurrent(CUcontext context) {
 }
 FAKE_API CUresult CUDAAPI cuCtxGetDevice(CUdevice *device) {
   *device = 0;
+  for (int k = 0; k < FAKE_DEVICES; ++k)
+    if (current == reinterpret_cast<CUcontext>(&contexts[k])) *device = k;
   const CUresult result = next();
   return result == CUDA_SUCCESS && !current ? CUDA_ERROR_INVALID_CONTEXT : result;
 }
@@ -121,10 +135,12 @@ FAKE_API CUresult CUDAAPI cuCtxGetDevice(CUdevice *device) {
 // ---- kernels
 FAKE_API CUresult CUDAAPI cuModuleLoadData(CUmodule *module, const void *) {
   std::unique_lock<std::mutex> lock(mutex);
-  is_compiling = is_held;
-  changed.notify_all();
-  changed.wait(lock, [] { return !is_held; });
-  is_compiling = false;
+  if (current == reinterpret_cast<CUcontext>(&contexts[0])) {
+    is_compiling = is_held;
+    changed.notify_all();
+    changed.wait(lock, [] { return !is_held; });
+    is_compiling = false;
+  }
   *module = reinterpret_cast<CUmodule>(&the_module);
   return next();
 }

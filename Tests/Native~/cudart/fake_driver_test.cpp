@@ -22,11 +22,12 @@ using namespace capi_fixture;
   if (const char *given = std::getenv("QUICKSES_FAKE_DRIVER"); !given || std::string(given) != name) \
   GTEST_SKIP() << "skipped: is for the fake driver " name
 
-qses_status create(qses_backend backend, qses_context **context) {
+qses_status create(qses_backend backend, qses_context **context, int device = 0) {
   qses_context_options options;
   qses_context_options_init(&options);
   options.backend = backend;
   options.threads = 2;
+  options.device = device;
   return qses_context_create(&options, context);
 }
 
@@ -90,6 +91,12 @@ TEST(FakeDriver, LacksAFunction) {
                  ") lacks the function cuEventElapsedTime: install the driver again");
 }
 
+TEST(FakeDriver, Stub) {
+  REQUIRE_DRIVER("stub");
+  expect_refused(std::string("the ") + kLibrary +
+                 " that was found is the CUDA Toolkit's stub, not an NVIDIA driver: take it off the loader's path");
+}
+
 // ---- a driver whose calls fail, from any one of them on -------------------------------------------------------------
 
 // A function that only the fake has.
@@ -146,6 +153,40 @@ bool use_everything() {
                     is_good_job(progress) && is_good(qses_collect(context, &mesh));
   qses_context_destroy(context);
   return good;
+}
+
+// Nor is any made a thread's for longer than a call.
+TEST(FakeDriver, DevicesThatAreNotAskedForAreLeftAlone) {
+  REQUIRE_DRIVER("three_devices");
+  qses_context *context = nullptr;
+  const auto on_a_new_thread = [&](const auto &call) {
+    std::thread([&] {
+      call();
+      EXPECT_EQ(tell_driver("fake_driver_has_context"), 0);
+    }).join();
+  };
+  on_a_new_thread([&] { EXPECT_EQ(create(QSES_BACKEND_CUDA, &context, 1), QSES_OK) << qses_last_error(); });
+  ASSERT_NE(context, nullptr);
+  on_a_new_thread([&] { set_atoms(context, water()); });
+  on_a_new_thread([&] { EXPECT_EQ(qses_compute(context, nullptr, nullptr), QSES_OK) << qses_last_error(); });
+  on_a_new_thread([&] { qses_context_destroy(context); });
+  EXPECT_EQ(tell_driver("fake_driver_retained", 1), 1);
+  EXPECT_EQ(tell_driver("fake_driver_retained", 0) + tell_driver("fake_driver_retained", 2), 0);
+}
+
+TEST(FakeDriver, NoDeviceWaitsForTheKernelsOfAnother) {
+  REQUIRE_DRIVER("three_devices");
+  tell_driver("fake_driver_hold", 1);
+  qses_context *slow = nullptr, *context = nullptr;
+  std::thread maker([&] { EXPECT_EQ(create(QSES_BACKEND_CUDA, &slow, 0), QSES_OK) << qses_last_error(); });
+  EXPECT_TRUE(tell_driver("fake_driver_wait_for_compiling"));
+  EXPECT_EQ(create(QSES_BACKEND_CUDA, &context, 2), QSES_OK) << qses_last_error();
+  set_atoms(context, water());
+  EXPECT_EQ(qses_compute(context, nullptr, nullptr), QSES_OK) << qses_last_error();
+  tell_driver("fake_driver_hold", 0);
+  maker.join();
+  qses_context_destroy(context);
+  qses_context_destroy(slow);
 }
 
 class FailingDriver : public testing::TestWithParam<int> {

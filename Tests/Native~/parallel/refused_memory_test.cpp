@@ -93,6 +93,26 @@ TEST(RefusedMemory, ArenasGoOnAfterwards) {
   EXPECT_NE(arena.allocate(100), nullptr);
 }
 
+// As the GPU's memory after a fault.
+struct FaultyMemory : CountingMemory {
+  static inline bool has_fault = false;
+  static void *acquire(size_t bytes) {
+    if (has_fault) throw Error(QSES_DEVICE_ERROR, "a fault");
+    return CountingMemory::acquire(bytes);
+  }
+};
+
+TEST(RefusedMemory, AFaultLeavesABufferEmpty) {
+  GrowingBuffer<FaultyMemory> buffer;
+  EXPECT_NE(buffer.reserve(100), nullptr);
+  FaultyMemory::has_fault = true;
+  EXPECT_THROW(buffer.reserve(100000), Error);
+  EXPECT_EQ(buffer.size(), 0u);
+  EXPECT_THROW(buffer.reserve(100), Error) << "there is no memory";
+  FaultyMemory::has_fault = false;
+  EXPECT_NE(buffer.reserve(100), nullptr);
+}
+
 struct CountedScratch {
   static inline int alive = 0;
   std::vector<int> room = std::vector<int>(10);
