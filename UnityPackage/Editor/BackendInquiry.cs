@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+using System;
 using System.Threading;
 
 namespace QuickSes.Editor
@@ -51,7 +52,7 @@ namespace QuickSes.Editor
             {
                 found = SurfaceContext.GetBackendDescription(_backend);
             }
-            catch (QuickSesException) // no library: nothing is known then
+            catch (Exception) // no library, or no memory: nothing is known; on a thread of the pool it would end the Editor
             {
             }
             lock (_lock)

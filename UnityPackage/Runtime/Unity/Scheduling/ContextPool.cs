@@ -185,16 +185,19 @@ namespace QuickSes
                 return true;
             }
             slot.CreateInBackground();
-            while (!slot.IsReady)
+            bool isMade = false;
+            try
             {
-                if (!goesOn())
-                {
-                    Retire(slot);
-                    return false;
-                }
-                Thread.Sleep(SurfaceSession.Pause);
+                while (!slot.IsReady && goesOn())
+                    Thread.Sleep(SurfaceSession.Pause);
+                isMade = slot.IsReady;
             }
-            return true;
+            finally
+            {
+                if (!isMade)
+                    Retire(slot); // goesOn is somebody else's, and may throw
+            }
+            return isMade;
         }
 
         private void Retire(ContextSlot slot)
