@@ -62,7 +62,7 @@ struct Driver {
   std::string refusal;  // for CUDA_ERROR_STUB_LIBRARY: what is wrong and what to do, as the end of a sentence
 };
 
-// Loads and starts the driver when it is first called; may take a second then. Thread-safe, never throws.
+// Loads and starts the driver when it is first called; may take a second then. Thread-safe.
 const Driver &driver();
 
 }  // namespace cudart

@@ -7,10 +7,6 @@
 
 #include <type_traits>
 
-#if defined(_MSC_VER) && !defined(__clang__)
-#include <atomic>
-#endif
-
 namespace quickses {
 
 // T is a 32-bit or 64-bit integer. Returns the value before.
@@ -23,8 +19,6 @@ QSES_FN T atomic_add(T *p, T value) {
     return static_cast<T>(atomicAdd(reinterpret_cast<unsigned int *>(p), static_cast<unsigned int>(value)));
   else
     return static_cast<T>(atomicAdd(reinterpret_cast<unsigned long long *>(p), static_cast<unsigned long long>(value)));
-#elif defined(_MSC_VER) && !defined(__clang__)
-  return reinterpret_cast<std::atomic<T> *>(p)->fetch_add(value, std::memory_order_relaxed);
 #else
   return __atomic_fetch_add(p, value, __ATOMIC_RELAXED);
 #endif
@@ -33,8 +27,6 @@ QSES_FN T atomic_add(T *p, T value) {
 QSES_FN uint32_t atomic_load(const uint32_t *p) {
 #if defined(__CUDA_ARCH__)
   return *reinterpret_cast<const volatile uint32_t *>(p);
-#elif defined(_MSC_VER) && !defined(__clang__)
-  return reinterpret_cast<const std::atomic<uint32_t> *>(p)->load(std::memory_order_relaxed);
 #else
   return __atomic_load_n(p, __ATOMIC_RELAXED);
 #endif
@@ -43,18 +35,23 @@ QSES_FN uint32_t atomic_load(const uint32_t *p) {
 QSES_FN void atomic_store(uint32_t *p, uint32_t value) {
 #if defined(__CUDA_ARCH__)
   *reinterpret_cast<volatile uint32_t *>(p) = value;
-#elif defined(_MSC_VER) && !defined(__clang__)
-  reinterpret_cast<std::atomic<uint32_t> *>(p)->store(value, std::memory_order_relaxed);
 #else
   __atomic_store_n(p, value, __ATOMIC_RELAXED);
+#endif
+}
+
+// Sets a flag of one byte.
+QSES_FN void atomic_set(uint8_t *flag) {
+#if defined(__CUDA_ARCH__)
+  *flag = 1;
+#else
+  __atomic_store_n(flag, uint8_t(1), __ATOMIC_RELAXED);
 #endif
 }
 
 QSES_FN void atomic_or(uint32_t *p, uint32_t bits) {
 #if defined(__CUDA_ARCH__)
   atomicOr(p, bits);
-#elif defined(_MSC_VER) && !defined(__clang__)
-  reinterpret_cast<std::atomic<uint32_t> *>(p)->fetch_or(bits, std::memory_order_relaxed);
 #else
   __atomic_fetch_or(p, bits, __ATOMIC_RELAXED);
 #endif
@@ -64,12 +61,6 @@ QSES_FN void atomic_or(uint32_t *p, uint32_t bits) {
 QSES_FN uint32_t atomic_min(uint32_t *p, uint32_t value) {
 #if defined(__CUDA_ARCH__)
   return atomicMin(p, value);
-#elif defined(_MSC_VER) && !defined(__clang__)
-  std::atomic<uint32_t> *a = reinterpret_cast<std::atomic<uint32_t> *>(p);
-  uint32_t before = a->load(std::memory_order_relaxed);
-  while (value < before && !a->compare_exchange_weak(before, value, std::memory_order_relaxed)) {
-  }
-  return before;
 #else
   uint32_t before = __atomic_load_n(p, __ATOMIC_RELAXED);
   while (value < before && !__atomic_compare_exchange_n(p, &before, value, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {

@@ -12,11 +12,7 @@
 #define QSES_FN __host__ __device__ __forceinline__
 #else
 #define QSES_HOST_DEVICE
-#if defined(_MSC_VER) && !defined(__clang__)
-#define QSES_FN __forceinline
-#else
 #define QSES_FN inline __attribute__((always_inline))
-#endif
 #endif
 
 // GLM must know before its first inclusion that its functions run on both sides; its own inlining is forced for the
@@ -31,17 +27,11 @@
 #define GLM_FORCE_INLINE
 #endif
 
-#if defined(_MSC_VER) && !defined(__clang__)
-#include <intrin.h>
-#endif
-
 namespace quickses {
 
 QSES_FN int popcount64(uint64_t v) {
 #if defined(__CUDA_ARCH__)
   return __popcll(v);
-#elif defined(_MSC_VER) && !defined(__clang__)
-  return static_cast<int>(__popcnt64(v));
 #else
   return __builtin_popcountll(v);
 #endif
@@ -51,10 +41,6 @@ QSES_FN int popcount64(uint64_t v) {
 QSES_FN int lowest_bit64(uint64_t v) {
 #if defined(__CUDA_ARCH__)
   return __ffsll(static_cast<long long>(v)) - 1;
-#elif defined(_MSC_VER) && !defined(__clang__)
-  unsigned long bit;
-  _BitScanForward64(&bit, v);
-  return static_cast<int>(bit);
 #else
   return __builtin_ctzll(v);
 #endif

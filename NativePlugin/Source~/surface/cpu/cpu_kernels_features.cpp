@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // CPU kernel: caps and exposed arcs of one atom, eight neighbours or eight cutting balls at a time.
+#include "parallel/atomics.h"
 #include "parallel/pack.h"
 #include "surface/cpu/cpu_kernels.h"
 
@@ -168,14 +169,6 @@ bool cut_by_neighbors(const Circle &circle, const Columns &c, int n, int j, Expo
   return true;
 }
 
-void mark_exposed(uint8_t *exposed, uint32_t atom) {
-#if defined(_MSC_VER) && !defined(__clang__)
-  exposed[atom] = 1;
-#else
-  __atomic_store_n(&exposed[atom], uint8_t(1), __ATOMIC_RELAXED);
-#endif
-}
-
 }  // namespace
 
 AtomFeatures find_atom_features(const NeighborGridView &atoms, const SurfaceParameters &parameters, uint32_t i,
@@ -188,7 +181,7 @@ AtomFeatures find_atom_features(const NeighborGridView &atoms, const SurfacePara
   if (near + kPackSize > scratch.capacity) return {near + kPackSize, 0, 0};
   int n = make_caps(self.radius, c, near);
   if (n == 0) {
-    mark_exposed(exposed, i);
+    atomic_set(&exposed[i]);
     return {0, 0, 0};
   }
   sort_caps(c, n);
@@ -204,8 +197,8 @@ AtomFeatures find_atom_features(const NeighborGridView &atoms, const SurfacePara
     const Circle circle = make_circle(glm::vec3(c.x[j], c.y[j], c.z[j]), c.cosine[j], self.radius);
     ExposedIntervals<Interval *> intervals{c.intervals, scratch.capacity};
     if (!cut_by_neighbors(circle, c, n, j, &intervals)) continue;
-    mark_exposed(exposed, i);
-    mark_exposed(exposed, static_cast<uint32_t>(c.index[j]));
+    atomic_set(&exposed[i]);
+    atomic_set(&exposed[c.index[j]]);
     const float radius = self.radius * circle.sine;
     for (int k = 0; k < (intervals.whole ? 1 : intervals.count); ++k) {
       const ExposedArc arc = exposed_arc(intervals.whole ? nullptr : &intervals.interval[k], radius);

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "parallel/arena.h"
+#include "parallel/atomics.h"
 #include "parallel/error.h"
 #include "surface/geometry/lattice.h"
 #include "surface/memory/counting_executor.h"
@@ -177,13 +178,7 @@ struct FlagBricks {
   struct Visit {
     uint8_t *flags;
     QSES_FN void operator()(uint64_t linear, uint64_t count) const {
-      for (const uint64_t end = linear + count; linear < end; ++linear) {
-#if defined(__CUDA_ARCH__) || (defined(_MSC_VER) && !defined(__clang__))
-        flags[linear] = 1;
-#else
-        __atomic_store_n(&flags[linear], uint8_t(1), __ATOMIC_RELAXED);
-#endif
-      }
+      for (const uint64_t end = linear + count; linear < end; ++linear) atomic_set(&flags[linear]);
     }
   };
   QSES_HOST_DEVICE void operator()(size_t i) const { items.visit(i, rows, Visit{flags}); }
