@@ -79,7 +79,8 @@ if [ "$with_mpi" = yes ]; then
 fi
 
 if [ "$with_windows" = yes ]; then
-  export WINEPREFIX="$PWD/.build/wine" WINEDEBUG=-all
+  # Names of files that are not ASCII are Wine's in a locale of UTF-8 only.
+  export WINEPREFIX="$PWD/.build/wine" WINEDEBUG=-all LC_ALL=C.UTF-8
   mkdir -p "$WINEPREFIX"
   # Wine's server and services stay until the end: to start them anew for each program takes seconds. They keep the output
   # of the program that starts them open, which therefore must be none that a test waits for.
