@@ -102,8 +102,8 @@ namespace QuickSes.Tests
         public void WhatTheLibraryRefusesIsTold()
         {
             MolecularSurface surface = MakeSurface();
-            surface.Spacing = -1;
-            AssertRefused(surface, _folder + "/a.asset", "spacing");
+            surface.SetPositions(new[] { Vector3.zero, new Vector3(float.NaN, 0, 0) });
+            AssertRefused(surface, _folder + "/a.asset", "position");
         }
 
         private MolecularSurface MakeSurface()

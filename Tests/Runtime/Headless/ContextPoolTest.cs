@@ -117,6 +117,42 @@ namespace QuickSes.Tests
             Assert.That(_hosts[1].Session.ComputeNow(), Is.True);
             Assert.That(SurfaceScheduler.ContextCount, Is.InRange(1, 2));
             Assert.That(_hosts[1].Session.CurrentLevel.IsFinest);
+            TestHost.Until(AreUpToDate, _hosts);
+            Assert.That(SurfaceScheduler.ContextCount, Is.EqualTo(1), "the one that was too many is gone");
+            SurfaceScheduler.ReleaseContexts();
+            Assert.That(ContextSlot.NativeContexts, Is.EqualTo(0));
+        }
+
+        [Test]
+        public void ManySurfacesAreNotManySquared()
+        {
+            const int count = 2000;
+            int asked = 0;
+            _hosts = Hosts(count, k => new TestHost { AskedWhetherGone = () => ++asked });
+            Assert.That(asked, Is.LessThan(4 * count));
+            for (int k = 0; k < count; k += 2) // in no order
+                _hosts[k].Dispose();
+            foreach (TestHost host in _hosts)
+                host.IsGone = true;
+            SurfaceScheduler.ReleaseContexts();
+            foreach (TestHost host in _hosts)
+                Assert.That((host.Session.IsDisposed, host.Disposed), Is.EqualTo((true, 1)));
+        }
+
+        [Test]
+        public void WhoIsGoneIsFoundByThoseWhoCome()
+        {
+            _hosts = Hosts(100, k => new TestHost());
+            foreach (TestHost host in _hosts)
+                host.IsGone = true;
+            TestHost[] later = Hosts(1000, k => new TestHost());
+            foreach (TestHost host in _hosts)
+                Assert.That(host.Session.IsDisposed);
+            foreach (TestHost host in later)
+            {
+                Assert.That(host.Session.IsDisposed, Is.False);
+                host.Dispose();
+            }
         }
 
         [Test]

@@ -25,6 +25,8 @@ namespace QuickSes.Tests
         public float[] CoarserLevels = { 2, 1 };
         public Exception Refusal; // what Show throws
         public Action<SurfaceLevel> Updated;
+        public Action AskedWhetherGone;
+        private bool _isGone;
         private (float X, float Y, float Z) _low, _high; // of what is shown
 
         public TestHost()
@@ -32,7 +34,15 @@ namespace QuickSes.Tests
             Session = new SurfaceSession(this);
         }
 
-        public bool IsGone { get; set; }
+        public bool IsGone
+        {
+            get
+            {
+                AskedWhetherGone?.Invoke();
+                return _isGone;
+            }
+            set => _isGone = value;
+        }
 
         public SurfaceBackend Backend { get; set; } = SurfaceBackend.Cpu;
 

@@ -16,6 +16,21 @@ namespace QuickSes
         /// <summary>How many <see cref="Series"/> a context remembers.</summary>
         public const int RememberedSeries = NativeSettings.RememberedSeries;
 
+        /// <summary>The largest <see cref="ProbeRadius"/>, Å; the smallest is 0.</summary>
+        public const float MaxProbeRadius = 100;
+
+        /// <summary>The smallest <see cref="Spacing"/>, Å, also of levels.</summary>
+        public const float MinSpacing = 0.001f;
+
+        /// <summary>The largest <see cref="Spacing"/>, Å, also of levels.</summary>
+        public const float MaxSpacing = 100;
+
+        /// <summary>The most <see cref="RelaxationSteps"/>.</summary>
+        public const int MaxRelaxationSteps = 100;
+
+        /// <summary>The largest <see cref="FrameBudget"/>, ms.</summary>
+        public const float MaxFrameBudget = 60000;
+
         internal NativeSettings Native;
 
         /// <summary>

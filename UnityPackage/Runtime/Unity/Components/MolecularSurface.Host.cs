@@ -28,7 +28,7 @@ namespace QuickSes
             bool isOfNewestAtoms)
         {
             SurfaceLevel level = _shown.Show(mesh, report, ladder, isOfNewestAtoms, _padBuffers);
-            if (_shown.TakeIsNewMesh())
+            if (_shown.TakeIsNewMesh() || !_isMeshAttached)
                 AttachMesh();
             return level;
         }

@@ -13,13 +13,17 @@ namespace QuickSes
         private const string DefaultMaterial = "QuickSes/MolecularSurface"; // below a folder called Resources
 
         // The filter of a copy has the mesh of the original, also where the copy is not enabled.
-        private void Awake() => AttachMesh();
+        private void Awake()
+        {
+            Mesh mesh = GetComponent<MeshFilter>().sharedMesh;
+            if (ShownSurface.IsMade(mesh))
+                AttachMesh();
+        }
 
         private void OnEnable()
         {
             _asksForAtoms = true;
-            AttachMesh();
-            Shown.TakeIsNewMesh();
+            AttachMeshUnlessBaked();
             var meshRenderer = GetComponent<MeshRenderer>();
             if (meshRenderer.sharedMaterial == null)
                 meshRenderer.sharedMaterial = Resources.Load<Material>(DefaultMaterial);
@@ -68,12 +72,28 @@ namespace QuickSes
             session.RaiseEvents();
         }
 
-        private void AttachMesh() => GetComponent<MeshFilter>().sharedMesh = Shown.Mesh;
+        private void AttachMesh()
+        {
+            GetComponent<MeshFilter>().sharedMesh = Shown.Mesh;
+            Shown.TakeIsNewMesh();
+            _isMeshAttached = true;
+        }
+
+        // A mesh of somebody else's, such as a baked one, stays until there is a surface to show in its place: where
+        // there is no library there never is.
+        private void AttachMeshUnlessBaked()
+        {
+            Mesh mesh = GetComponent<MeshFilter>().sharedMesh;
+            _isMeshAttached = false;
+            if (mesh == null || ShownSurface.IsMade(mesh) || Session.CurrentLevel.LevelCount > 0)
+                AttachMesh();
+        }
 
         private bool IsAlive => !_isDestroyed && isActiveAndEnabled;
 
         private void OnValidate()
         {
+            LimitSettings();
             if (_session == null || _session.IsDisposed)
                 return;
             _isEdited = true; // the rest later: files are not read and meshes not set while values are validated
@@ -93,7 +113,7 @@ namespace QuickSes
         // component, whose mesh is in no file.
         private void FollowEdits()
         {
-            AttachMesh();
+            AttachMeshUnlessBaked();
             if (_isScriptFed)
                 return;
             if (_source.IsSet)

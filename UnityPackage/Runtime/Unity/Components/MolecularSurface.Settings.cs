@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What is computed. Setting anything to another value begins a new computation.
+// What is computed. Setting anything to another value begins a new computation; what is out of its range throws
+// ArgumentOutOfRangeException and leaves all as it was.
 using System;
 using System.Collections.Generic;
 using UnityEngine;
@@ -12,39 +13,39 @@ namespace QuickSes
         public SurfaceKind Surface
         {
             get => _surface;
-            set => Set(ref _surface, value);
+            set => Set(ref _surface, Known(value, value <= SurfaceKind.Vdw && value >= 0));
         }
 
         /// <summary>How the solvent-excluded surface is computed; default: exactly.</summary>
         public SurfaceMethod Method
         {
             get => _method;
-            set => Set(ref _method, value);
+            set => Set(ref _method, Known(value, value <= SurfaceMethod.Grid && value >= 0));
         }
 
         /// <summary>Å, 0 to 100; default 1.4, water.</summary>
         public float ProbeRadius
         {
             get => _probeRadius;
-            set => Set(ref _probeRadius, value);
+            set => Set(ref _probeRadius, InRange(value, 0, SurfaceSettings.MaxProbeRadius, "Å"));
         }
 
         /// <summary>Å between lattice points of the finest level, 0.001 to 100; default 0.5.</summary>
         public float Spacing
         {
             get => _spacing;
-            set => Set(ref _spacing, value);
+            set => Set(ref _spacing, Spaced(value));
         }
 
         /// <summary>Smoothing steps, 0 to 100; default 1.</summary>
         public int RelaxationSteps
         {
             get => _relaxationSteps;
-            set => Set(ref _relaxationSteps, value);
+            set => Set(ref _relaxationSteps, (int)InRange(value, 0, SurfaceSettings.MaxRelaxationSteps, "steps"));
         }
 
         /// <summary>
-        /// Spacings of coarser levels, Å, in any order, at most <see cref="SurfaceSettings.MaxLevels"/>; those not
+        /// Spacings of coarser levels, 0.001 to 100 Å, in any order, at most <see cref="SurfaceSettings.MaxLevels"/>; those not
         /// above <see cref="Spacing"/> are left out. Default 2, 1. A copy.
         /// </summary>
         public float[] Levels
@@ -54,6 +55,11 @@ namespace QuickSes
             {
                 if (value == null)
                     throw new ArgumentNullException(nameof(value));
+                if (value.Length > SurfaceSettings.MaxLevels)
+                    throw new ArgumentOutOfRangeException(nameof(value), value.Length,
+                        $"at most {SurfaceSettings.MaxLevels} levels are possible");
+                foreach (float spacing in value)
+                    Spaced(spacing);
                 if (value.AsSpan().SequenceEqual(_levels))
                     return;
                 _levels = (float[])value.Clone();
@@ -68,14 +74,16 @@ namespace QuickSes
         public float FrameBudget
         {
             get => _frameBudget;
-            set => _frameBudget = value;
+            set => _frameBudget = InRange(value, 0, SurfaceSettings.MaxFrameBudget, "ms");
         }
 
-        /// <summary>Seconds without new positions until the finest level is computed; default 0.2.</summary>
+        /// <summary>
+        /// Seconds without new positions until the finest level is computed, 0 or more; default 0.2. Infinite: never.
+        /// </summary>
         public float RestDelay
         {
             get => _restDelay;
-            set => _restDelay = value;
+            set => _restDelay = InRange(value, 0, float.PositiveInfinity, "s");
         }
 
         /// <summary>Whether <see cref="Components"/> is filled; default no.</summary>
@@ -99,7 +107,7 @@ namespace QuickSes
         public SurfaceBackend Backend
         {
             get => _backend;
-            set => Set(ref _backend, value);
+            set => Set(ref _backend, Known(value, value <= SurfaceBackend.Cpu && value >= 0));
         }
 
         /// <summary>Colour of the surface where atoms have none of their own.</summary>
@@ -113,6 +121,32 @@ namespace QuickSes
                     Changed(SurfaceChange.Appearance);
             }
         }
+
+        private static float Spaced(float value) =>
+            InRange(value, SurfaceSettings.MinSpacing, SurfaceSettings.MaxSpacing, "Å");
+
+        // NaN is in no range.
+        private static float InRange(float value, float min, float max, string unit) => value >= min && value <= max
+            ? value
+            : throw new ArgumentOutOfRangeException(nameof(value), value, float.IsInfinity(max)
+                ? FormattableString.Invariant($"must be {min} {unit} or more")
+                : FormattableString.Invariant($"must be {min} to {max} {unit}"));
+
+        private static T Known<T>(T value, bool isKnown) where T : struct => isKnown
+            ? value
+            : throw new ArgumentOutOfRangeException(nameof(value), value, $"there is no such {typeof(T).Name}");
+
+        // What the inspector takes, and files may hold.
+        private void LimitSettings()
+        {
+            _probeRadius = Limited(_probeRadius, 0, SurfaceSettings.MaxProbeRadius);
+            _spacing = Limited(_spacing, SurfaceSettings.MinSpacing, SurfaceSettings.MaxSpacing);
+            _relaxationSteps = Math.Min(Math.Max(_relaxationSteps, 0), SurfaceSettings.MaxRelaxationSteps);
+            _frameBudget = Limited(_frameBudget, 0, SurfaceSettings.MaxFrameBudget);
+            _restDelay = Limited(_restDelay, 0, float.PositiveInfinity);
+        }
+
+        private static float Limited(float value, float min, float max) => value >= min ? Math.Min(value, max) : min;
 
         private void Set<T>(ref T field, T value) where T : struct
         {

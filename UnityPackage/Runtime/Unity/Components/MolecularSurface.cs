@@ -20,33 +20,36 @@ namespace QuickSes
     [AddComponentMenu("Molecular/Molecular Surface")]
     public sealed partial class MolecularSurface : MonoBehaviour
     {
+        // Who types 0.5 types 0 first, whose surface nobody could wait for.
+        private const float MinEditedSpacing = 0.05f;
+
         [SerializeField] private MoleculeSource _source = new MoleculeSource();
 
         [Header("Surface")]
         [SerializeField, Tooltip("Solvent-excluded: what a probe rolling over the atoms can't reach. Solvent-" +
             "accessible: where its centre may be. Van der Waals: the atoms themselves.")]
         private SurfaceKind _surface = SurfaceKind.Ses;
-        [SerializeField, Range(0, 5), Tooltip("Radius of the probe in Å; 1.4 is water.")]
+        [SerializeField, Min(0), Tooltip("Radius of the probe in Å; 1.4 is water.")]
         private float _probeRadius = 1.4f;
         [SerializeField, Tooltip("Exact: vertices lie on the exact surface. Grid: the voxel method of the QuickSES " +
             "paper, for comparison.")]
         private SurfaceMethod _method = SurfaceMethod.Exact;
 
         [Header("Quality")]
-        [SerializeField, Min(0.05f), Tooltip("How fine the mesh is in the end: Å between the points of the lattice " +
-            "it is made on. Half of it gives four times the triangles.")]
+        [SerializeField, Min(MinEditedSpacing), Tooltip("How fine the mesh is in the end: Å between the points of the " +
+            "lattice it is made on. Half of it gives four times the triangles. Not below 0.05 here; scripts may.")]
         private float _spacing = 0.5f;
         [SerializeField, Tooltip("Coarser surfaces (Å) that are shown until the finest is there.")]
         private float[] _levels = { 2, 1 };
-        [SerializeField, Range(0, 10), Tooltip("Smoothing steps. They make better triangles; vertices stay on the " +
+        [SerializeField, Min(0), Tooltip("Smoothing steps, up to 100. They make better triangles; vertices stay on the " +
             "exact surface.")]
         private int _relaxationSteps = 1;
 
         [Header("Playback")]
-        [SerializeField, Range(0, 200), Tooltip("Milliseconds per surface while atoms move: the finest level that " +
+        [SerializeField, Min(0), Tooltip("Milliseconds per surface while atoms move: the finest level that " +
             "fits is computed. 0: all levels of every frame.")]
         private float _frameBudget = 33;
-        [SerializeField, Range(0, 5), Tooltip("Seconds without new positions until the finest level is computed.")]
+        [SerializeField, Min(0), Tooltip("Seconds without new positions until the finest level is computed.")]
         private float _restDelay = 0.2f;
 
         [Header("Look and extras")]
@@ -64,6 +67,7 @@ namespace QuickSes
         // Not serialised, so it is gone after a domain reload, like the native memory it stands for.
         [NonSerialized] private SurfaceSession _session;
         [NonSerialized] private ShownSurface _shown;
+        [NonSerialized] private bool _isMeshAttached; // to the filter
         [NonSerialized] private bool _isScriptFed;
         [NonSerialized] private bool _asksForAtoms;
         [NonSerialized] private bool _isEdited; // in the inspector, by Undo, by a prefab

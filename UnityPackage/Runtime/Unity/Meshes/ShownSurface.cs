@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 using System;
+using System.Collections.Generic;
 using System.Diagnostics;
 using UnityEngine;
 using Object = UnityEngine.Object;
@@ -12,6 +13,8 @@ namespace QuickSes
     /// </summary>
     internal sealed class ShownSurface : IDisposable
     {
+        private static readonly HashSet<Mesh> s_made = new HashSet<Mesh>();
+
         private readonly SurfaceMeshUploader _uploader = new SurfaceMeshUploader();
         private readonly UnmanagedBuffer<uint> _owners = new UnmanagedBuffer<uint>();
         private readonly UnmanagedBuffer<SurfaceComponent> _components = new UnmanagedBuffer<SurfaceComponent>();
@@ -28,11 +31,15 @@ namespace QuickSes
                 {
                     _mesh = new Mesh { name = "Molecular Surface", hideFlags = HideFlags.DontSave };
                     _mesh.MarkDynamic();
+                    s_made.Add(_mesh);
                     _isNewMesh = true;
                 }
                 return _mesh;
             }
         }
+
+        /// <summary>Whether a mesh is that of a component, be it another one.</summary>
+        public static bool IsMade(Mesh mesh) => mesh != null && s_made.Contains(mesh);
 
         /// <summary>Whether the mesh was made since the last question: whoever shows it has to be told.</summary>
         public bool TakeIsNewMesh()
@@ -95,6 +102,8 @@ namespace QuickSes
 
         public void Dispose()
         {
+            if (!(_mesh is null))
+                s_made.Remove(_mesh);
             if (_mesh != null)
                 Object.DestroyImmediate(_mesh); // at the end of play mode no later frame would destroy it
             _mesh = null;

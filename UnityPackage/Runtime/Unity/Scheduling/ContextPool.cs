@@ -133,7 +133,7 @@ namespace QuickSes
         {
             slot.User = null;
             slot.LastUse = ++_uses;
-            if (!isBroken)
+            if (!isBroken && _slots.Count <= SurfaceScheduler.MaxContexts)
                 return;
             _slots.Remove(slot);
             Retire(slot);

@@ -18,12 +18,14 @@ namespace QuickSes
         };
 
         private static readonly List<SurfaceSession> s_sessions = new List<SurfaceSession>();
+        private const int MinOrphanCheck = 16;
+        private static int s_orphanCheck = MinOrphanCheck; // at so many surfaces
         private static int s_maxContexts = 4;
 
         /// <summary>
         /// The most contexts per back end, at least 1; default 4. Each keeps memory for its largest surface. More let
         /// more surfaces be computed at a time. <see cref="MolecularSurface.ComputeNow"/> makes one more if all are
-        /// lent. Holds for contexts made from now on: see <see cref="ReleaseContexts"/>.
+        /// lent, which is freed afterwards. Of fewer, those that are too many are freed as they are given back.
         /// </summary>
         public static int MaxContexts
         {
@@ -100,14 +102,24 @@ namespace QuickSes
         /// <summary>A surface is there, until <see cref="Remove"/>.</summary>
         internal static void Add(SurfaceSession session)
         {
-            RemoveOrphans();
+            // When there are twice as many as were left by the last check, so that many surfaces are not many squared.
+            if (s_sessions.Count >= s_orphanCheck)
+            {
+                RemoveOrphans();
+                s_orphanCheck = Math.Max(MinOrphanCheck, 2 * s_sessions.Count);
+            }
+            session.Place = s_sessions.Count;
             s_sessions.Add(session);
         }
 
         // When nobody is left who could use the contexts, their memory is given back, without waiting for it.
         internal static void Remove(SurfaceSession session)
         {
-            s_sessions.Remove(session);
+            SurfaceSession last = s_sessions[s_sessions.Count - 1];
+            s_sessions[session.Place] = last;
+            last.Place = session.Place;
+            s_sessions.RemoveAt(s_sessions.Count - 1);
+            s_orphanCheck = Math.Min(s_orphanCheck, Math.Max(MinOrphanCheck, 2 * s_sessions.Count));
             foreach (ContextPool pool in s_pools)
             {
                 pool.Forget(session.Atoms);

@@ -58,6 +58,9 @@ namespace QuickSes
 
         public bool IsDisposed { get; private set; }
 
+        /// <summary>The scheduler's: where it is in its list.</summary>
+        public int Place { get; set; }
+
         public bool IsOrphan => _host.IsGone;
 
         /// <summary>
