@@ -36,7 +36,7 @@ void check_settings(const qses_settings &s) {
   check_choice("settings.surface", s.surface, QSES_SURFACE_VDW);
   check_choice("settings.method", s.method, QSES_METHOD_GRID);
   check_choice("settings.winding", s.winding, QSES_WINDING_REVERSED);
-  check_choice("settings.vertex_layout", s.vertex_layout, QSES_VERTICES_INTERLEAVED);
+  check_choice("settings.vertex_layout", s.vertex_layout, QSES_VERTICES_COMPACT);
   check_choice("settings.delivery", s.delivery, QSES_DELIVERY_BOTH);
   check_range("settings.spacing", static_cast<double>(s.spacing), 0.001, 100, " Å");
   check_range("settings.probe_radius", static_cast<double>(s.probe_radius), 0, 100, " Å");
@@ -50,6 +50,7 @@ void check_settings(const qses_settings &s) {
     if (k > 0 && !(s.levels[k] < s.levels[k - 1])) invalid("settings.levels must fall from each one to the next");
   }
   check_range("settings.frame_budget_ms", static_cast<double>(s.frame_budget_ms), 0, 60000, " ms");
+  check_range("settings.show_ms_per_mb", static_cast<double>(s.show_ms_per_mb), 0, 60000, " ms");
   if (s.method == QSES_METHOD_GRID && s.surface != QSES_SURFACE_SES)
     invalid("settings.method GRID makes the solvent-excluded surface only: use EXACT for the others");
   if (s.method == QSES_METHOD_GRID && s.patch_types) invalid("settings.patch_types is not available with method GRID");

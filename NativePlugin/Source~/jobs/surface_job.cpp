@@ -57,6 +57,7 @@ void SurfaceJob::announce(const SurfaceRequest &request) {
   fraction_ = 0.f;
   levels_finished_ = 0;
   level_count_ = request.frame_budget_ms > 0 ? 1 : request.ladder.count;
+  atom_count_ = request.atoms->count;
   state_.state = QSES_JOB_RUNNING;
   state_.tag = request.settings.tag;
   state_.levels_finished = 0;
@@ -208,6 +209,7 @@ void SurfaceJob::finished(const qses_device_mesh &on_device, const qses_mesh &me
     ready_.slot = writing_;
     ready_.mesh = mesh;
     ready_.report = report;
+    ready_.atom_count = atom_count_;
     ready_.mesh.level = first_level_ + levels_finished_;
     ready_.mesh.level_count = ladder_count_;
     ready_.on_device = on_device;
@@ -245,6 +247,21 @@ bool SurfaceJob::held_on_device(qses_device_mesh *mesh) const {
   if (held_.slot == kNoSlot) return false;
   *mesh = held_.on_device;
   return true;
+}
+
+void SurfaceJob::keep(KeptMesh *kept) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (held_.slot == kNoSlot) throw Error(QSES_NO_RESULT, "nothing has been computed or collected that could be kept");
+  if (held_.mesh.vertex_count > 0 && !held_.mesh.positions)
+    throw Error(QSES_INVALID_ARGUMENT,
+                "the mesh was made with settings.delivery DEVICE: only a mesh in host memory can be kept");
+  kept->clear();
+  kept->mesh = held_.mesh;
+  kept->report = held_.report;
+  kept->atom_count = held_.atom_count;
+  kept->memory = engine_->keep(held_.slot);
+  kept->is_full = true;
+  held_ = {};
 }
 
 bool SurfaceJob::wait(double milliseconds) {

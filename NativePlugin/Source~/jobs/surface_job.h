@@ -4,6 +4,7 @@
 #pragma once
 
 #include "jobs/series_choosers.h"
+#include "kept/kept_mesh.h"
 #include "surface/engine.h"
 
 #include <atomic>
@@ -49,6 +50,8 @@ class SurfaceJob : private LevelSink {
   // The mesh collected or computed last; false if there is none.
   bool held(qses_mesh *mesh, qses_report *report) const;
   bool held_on_device(qses_device_mesh *mesh) const;
+  // Moves what is held out of here, with its memory. Throws Error; the other one is as it was then.
+  void keep(KeptMesh *kept);
   // Until no job runs or waits, or the time is over (negative: no limit). True if none runs or waits.
   bool wait(double milliseconds);
 
@@ -80,6 +83,7 @@ class SurfaceJob : private LevelSink {
     qses_mesh mesh{};
     qses_device_mesh on_device{};
     qses_report report{};
+    size_t atom_count = 0;
   };
 
   std::unique_ptr<SurfaceEngine> engine_;
@@ -93,6 +97,7 @@ class SurfaceJob : private LevelSink {
   uint32_t first_level_ = 0, ladder_count_ = 0;     // where they are in the ladder
   SeriesChoosers choosers_;                         // like the next two: of the thread that computes
   LevelChooser *chooser_ = nullptr;                 // of the job's series; null without a frame budget
+  size_t atom_count_ = 0;                           // of the job
   double shared_ms_ = 0;                            // of the job's cost, what all levels share
   Level held_, ready_;
   int writing_ = kNoSlot;

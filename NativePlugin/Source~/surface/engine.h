@@ -5,6 +5,7 @@
 
 #include "quickses/quickses.h"
 #include "surface/memory/atom_set.h"
+#include "surface/mesh/mesh_pool.h"
 #include "surface/stages/appearance.h"
 
 #include <atomic>
@@ -18,7 +19,7 @@ class LevelSink {
  public:
   virtual ~LevelSink() = default;
   virtual void prepared(double milliseconds) = 0;  // what all levels share is made; with CUDA: asked for
-  virtual int slot() = 0;                          // the buffer for the next level
+  virtual int slot() = 0;                          // of the next level
   // on_device: empty arrays unless settings.delivery asks for it.
   virtual void finished(const qses_device_mesh &on_device, const qses_mesh &mesh, const qses_report &report) = 0;
   virtual void advance(double fraction) = 0;  // of all levels; never falls
@@ -41,6 +42,9 @@ class SurfaceEngine {
   // What a computation at settings.spacing would need. Throws Error, or Cancelled as above.
   virtual qses_size_estimate estimate(const AtomSet &atoms, const Appearance &appearance, const qses_settings &settings,
                                       const std::atomic<bool> &stop) = 0;
+
+  // Takes the host memory of a finished mesh out of its slot. From any thread, also while other slots are computed.
+  virtual MeshLease keep(int slot) = 0;
 
   virtual void enable_stage_times(bool enabled) = 0;
   // Called with the fraction done; empty: not at all.

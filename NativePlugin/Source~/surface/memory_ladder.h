@@ -80,6 +80,8 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     return out;
   }
 
+  MeshLease keep(int slot) override { return memory_.keep(slot); }
+
   void enable_stage_times(bool enabled) override { timer_.enable(enabled); }
   void set_progress(std::function<void(double)> progress) override { progress_.set(std::move(progress)); }
 
@@ -166,9 +168,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
       progress_.report(0.0);
       qses_report_init(&report);
       report.attempts = course->attempts;
-      const int slot = sink.slot();
-      memory_.use_slot(slot);
-      components_.use_slot(slot);
+      memory_.use_slot(sink.slot());
       MeshMemoryView built{};
       if (in.atoms.count > 0) {
         spacing_ = spacings[k];

@@ -42,19 +42,33 @@ namespace QuickSes.Tests
             settings.VertexLayout = SurfaceVertexLayout.Interleaved;
             mesh = Meshes.Compute(context, settings);
             Assert.That(mesh.VertexLayout, Is.EqualTo(SurfaceVertexLayout.Interleaved));
-            Assert.That(mesh.VertexBytes, Is.EqualTo(36));
-            Assert.That(mesh.Vertices.Length, Is.EqualTo(36 * owners.Length));
+            Assert.That(mesh.VertexBytes, Is.EqualTo(24));
+            Assert.That(mesh.Vertices.Length, Is.EqualTo(24 * owners.Length));
+            Assert.That(mesh.Colors.SequenceEqual(rgba), Is.True);
+            Assert.That(mesh.Texcoords.SequenceEqual(uv), Is.True);
             Assert.That(() => mesh.Positions.Length, Throws.InvalidOperationException);
             Assert.That(mesh.Owners.SequenceEqual(owners), Is.True);
             Assert.That(mesh.Indices.SequenceEqual(indices), Is.True);
             for (int v = 0; v < owners.Length; ++v)
             {
-                ReadOnlySpan<byte> vertex = mesh.Vertices.Slice(36 * v, 36);
-                ReadOnlySpan<float> numbers = MemoryMarshal.Cast<byte, float>(vertex);
+                ReadOnlySpan<float> numbers = MemoryMarshal.Cast<byte, float>(mesh.Vertices.Slice(24 * v, 24));
                 Assert.That(numbers.Slice(0, 3).SequenceEqual(positions.AsSpan(3 * v, 3)), Is.True);
                 Assert.That(numbers.Slice(3, 3).SequenceEqual(normals.AsSpan(3 * v, 3)), Is.True);
-                Assert.That(vertex.Slice(24, 4).SequenceEqual(rgba.AsSpan(4 * v, 4)), Is.True);
-                Assert.That(numbers.Slice(7, 2).SequenceEqual(uv.AsSpan(2 * v, 2)), Is.True);
+            }
+
+            settings.VertexLayout = SurfaceVertexLayout.Compact;
+            mesh = Meshes.Compute(context, settings);
+            Assert.That(mesh.VertexLayout, Is.EqualTo(SurfaceVertexLayout.Compact));
+            Assert.That(mesh.VertexBytes, Is.EqualTo(16));
+            Assert.That(() => mesh.Normals.Length, Throws.InvalidOperationException);
+            Assert.That(mesh.Owners.SequenceEqual(owners), Is.True);
+            for (int v = 0; v < owners.Length; ++v)
+            {
+                ReadOnlySpan<byte> vertex = mesh.Vertices.Slice(16 * v, 16);
+                Assert.That(MemoryMarshal.Cast<byte, float>(vertex).Slice(0, 3)
+                    .SequenceEqual(positions.AsSpan(3 * v, 3)), Is.True);
+                for (int d = 0; d < 3; ++d)
+                    Assert.That((sbyte)vertex[12 + d] / 127f, Is.EqualTo(normals[3 * v + d]).Within(0.5f / 127 + 1e-5f));
             }
         }
 

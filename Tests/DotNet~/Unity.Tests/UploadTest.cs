@@ -37,12 +37,12 @@ namespace QuickSes.Tests
         }
 
         [Test]
-        public void OneCopyOfVerticesAndOneOfIndices()
+        public void OneCopyOfEachStreamAndOneOfIndices()
         {
             SurfaceMeshView view = Compute(50);
             _uploader.Upload(view, _mesh);
             MeshRecord record = MeshRecord.Of(_mesh);
-            Assert.That(record.VertexUploads, Is.EqualTo(1));
+            Assert.That(record.VertexUploads, Is.EqualTo(2));
             Assert.That(record.IndexUploads, Is.EqualTo(1));
             Assert.That(record.SubMeshCalls, Is.EqualTo(1));
             Assert.That(record.BytesUploaded, Is.EqualTo(28L * view.VertexCount + 12L * view.TriangleCount));

@@ -267,8 +267,8 @@ constexpr bool is_without_padding(size_t end_of_last_field) {
 }
 #define END(type, field) (offsetof(type, field) + sizeof(type::field))
 static_assert(is_without_padding<qses_backend_description>(END(qses_backend_description, reserved)), "");
-static_assert(is_without_padding<qses_context_options>(END(qses_context_options, memory_budget)), "");
-static_assert(is_without_padding<qses_settings>(END(qses_settings, delivery)), "");
+static_assert(is_without_padding<qses_context_options>(END(qses_context_options, reserved)), "");
+static_assert(is_without_padding<qses_settings>(END(qses_settings, pickable)), "");
 static_assert(is_without_padding<qses_component>(END(qses_component, reserved)), "");
 static_assert(is_without_padding<qses_mesh>(END(qses_mesh, components)), "");
 static_assert(is_without_padding<qses_device_mesh>(END(qses_device_mesh, mesh)), "");
@@ -276,6 +276,7 @@ static_assert(is_without_padding<qses_stage_time>(END(qses_stage_time, milliseco
 static_assert(is_without_padding<qses_report>(END(qses_report, attempts)), "");
 static_assert(is_without_padding<qses_size_estimate>(END(qses_size_estimate, smallest_budget)), "");
 static_assert(is_without_padding<qses_progress>(END(qses_progress, message)), "");
+static_assert(is_without_padding<qses_hit>(END(qses_hit, normal)), "");
 static_assert(is_without_padding<qses_structure_options>(END(qses_structure_options, radii)), "");
 static_assert(is_without_padding<qses_structure_description>(END(qses_structure_description, reserved)), "");
 static_assert(is_without_padding<qses_atom>(END(qses_atom, reserved)), "");

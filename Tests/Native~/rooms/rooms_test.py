@@ -24,10 +24,11 @@ ROOMS = {
     "surface/methods": "include parallel surface/geometry surface/memory surface/mesh surface/stages",
     "surface/cpu": "parallel surface/geometry surface/memory surface/mesh surface/stages",
     "surface/cuda": "parallel surface/geometry surface/memory surface/mesh surface/stages",
-    "surface": "include parallel surface/memory surface/stages surface/methods surface/cpu surface/cuda",
-    "jobs": "include parallel surface",
+    "surface": "include parallel surface/memory surface/mesh surface/stages surface/methods surface/cpu surface/cuda",
+    "kept": "include surface/mesh surface/stages",
+    "jobs": "include parallel surface kept",
     "io": "",
-    "capi": "include parallel surface/cpu surface jobs io",
+    "capi": "include parallel surface/cpu surface kept jobs io",
     "cli": "include io",
 }
 # What only the CPU's side may see.

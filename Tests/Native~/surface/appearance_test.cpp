@@ -29,14 +29,27 @@ std::vector<T> gather(const void *first, size_t count, size_t per_vertex, size_t
   return out;
 }
 
+// Those of the compact layout.
+std::vector<float> unpacked_normals(const qses_mesh &m) {
+  std::vector<float> normals;
+  for (uint32_t v = 0; v < m.vertex_count; ++v) {
+    int8_t packed[4];
+    std::memcpy(packed, reinterpret_cast<const char *>(m.positions) + size_t(m.vertex_bytes) * v + 12, sizeof packed);
+    EXPECT_EQ(packed[3], 0);
+    for (int d = 0; d < 3; ++d) normals.push_back(static_cast<float>(packed[d]) / 127.f);
+  }
+  return normals;
+}
+
 Copy copy(const qses_mesh &m) {
   Copy c;
   c.vertices = m.vertex_count;
   c.triangles = m.triangle_count;
   c.positions = gather<float>(m.positions, m.vertex_count, 3, m.vertex_bytes);
   c.normals = gather<float>(m.normals, m.vertex_count, 3, m.vertex_bytes);
-  c.texcoords = gather<float>(m.texcoords, m.vertex_count, 2, m.vertex_bytes);
-  c.colors = gather<uint32_t>(m.colors, m.vertex_count, 1, m.vertex_bytes);
+  if (m.positions && !m.normals) c.normals = unpacked_normals(m);
+  c.texcoords = gather<float>(m.texcoords, m.vertex_count, 2, 0);
+  c.colors = gather<uint32_t>(m.colors, m.vertex_count, 1, 0);
   c.owners = gather<uint32_t>(m.owners, m.vertex_count, 1, 0);
   c.patches = gather<uint8_t>(m.patches, m.vertex_count, 1, 0);
   c.indices = gather<uint32_t>(m.indices, m.triangle_count, 3, 0);
@@ -119,25 +132,31 @@ TEST(VertexLayout, InterleavedHasTheSameValues) {
         s.method = method;
         s.relaxation_steps = steps;
         const qses_mesh mesh = compute_view(context, s);
-        ASSERT_EQ(mesh.vertex_bytes, texcoords ? 36u : 28u);
-        // One piece of memory, in the order of the header.
-        const char *first = reinterpret_cast<const char *>(mesh.positions);
-        EXPECT_EQ(reinterpret_cast<const char *>(mesh.normals), first + 12);
-        EXPECT_EQ(reinterpret_cast<const char *>(mesh.colors), first + 24);
-        if (texcoords) {
-          EXPECT_EQ(reinterpret_cast<const char *>(mesh.texcoords), first + 28);
-        }
+        ASSERT_EQ(mesh.vertex_bytes, 24u);
+        EXPECT_EQ(mesh.normals, mesh.positions + 3);
+        EXPECT_EQ(mesh.colors, nullptr);
         Copy found = copy(mesh);
-        EXPECT_EQ(found.colors, std::vector<uint32_t>(mesh.vertex_count, 0xffffffffu));
+        ASSERT_EQ(found.texcoords.size(), texcoords ? 2 * size_t(mesh.vertex_count) : 0);
         if (texcoords)
           for (size_t v = 0; v < mesh.vertex_count; ++v) {
             ASSERT_EQ(found.texcoords[2 * v], 1.f);
             ASSERT_EQ(found.texcoords[2 * v + 1], 0.f);
           }
-        found.colors.clear();
         found.texcoords.clear();
         expect_equal(found, separate);
       }
+      // The compact one: the same but for what rounding does to the normals.
+      s.texcoords = 0;
+      s.vertex_layout = QSES_VERTICES_COMPACT;
+      const qses_mesh mesh = compute_view(context, s);
+      ASSERT_EQ(mesh.vertex_bytes, 16u);
+      EXPECT_EQ(mesh.normals, nullptr);
+      Copy compact = copy(mesh);
+      ASSERT_EQ(compact.normals.size(), separate.normals.size());
+      for (size_t k = 0; k < compact.normals.size(); ++k)
+        ASSERT_NEAR(compact.normals[k], separate.normals[k], 0.5 / 127 + 1e-6);
+      compact.normals = separate.normals;
+      expect_equal(compact, separate);
     }
 }
 
@@ -160,7 +179,7 @@ TEST(VertexLayout, UnknownIsRefused) {
   const Context context;
   set_atoms(context, crambin());
   qses_settings s = settings(0.8);
-  const int32_t unknown = 2;
+  const int32_t unknown = 3;
   std::memcpy(&s.vertex_layout, &unknown, sizeof unknown);
   EXPECT_EQ(qses_compute(context, &s, nullptr), QSES_INVALID_ARGUMENT);
   EXPECT_NE(std::string(qses_last_error()).find("vertex_layout"), std::string::npos);
@@ -200,6 +219,7 @@ TEST(Visible, DropsTrianglesOfHiddenAtoms) {
   std::mt19937 random(3);
   for (int trial = 0; trial < 12; ++trial) {
     qses_settings s = trial % 2 ? interleaved(trial % 4 == 1) : settings(0.6);
+    if (trial == 9) s.vertex_layout = QSES_VERTICES_COMPACT;
     s.patch_types = trial % 3 == 0 ? 1 : 0;
     s.winding = trial % 5 == 0 ? QSES_WINDING_REVERSED : QSES_WINDING_OUTWARD;
     if (trial == 7) s.method = QSES_METHOD_GRID, s.patch_types = 0;
@@ -208,7 +228,7 @@ TEST(Visible, DropsTrianglesOfHiddenAtoms) {
       visible[i] = trial < 6 ? random() % 4 != 0 : i < visible.size() / 2;  // holes, or the half of a molecule
     expect_ok(qses_set_visible(context, nullptr, atoms.size()));
     const Copy whole = copy(compute_view(context, s));
-    const Surface whole_surface = copy_surface(context);
+    const qses_report whole_report = report_of(context);
     expect_ok(qses_set_visible(context, visible.data(), atoms.size()));
     const qses_mesh mesh = compute_view(context, s);
     const Copy expected = filtered(whole, visible);
@@ -217,8 +237,8 @@ TEST(Visible, DropsTrianglesOfHiddenAtoms) {
     const qses_report report = report_of(context);
     EXPECT_EQ(report.hidden_vertices, whole.vertices - expected.vertices);
     EXPECT_EQ(report.hidden_triangles, whole.triangles - expected.triangles);
-    EXPECT_EQ(report.area, whole_surface.report.area);
-    EXPECT_EQ(report.volume, whole_surface.report.volume);
+    EXPECT_EQ(report.area, whole_report.area);
+    EXPECT_EQ(report.volume, whole_report.volume);
     for (int d = 0; d < 3; ++d) {
       float low = INFINITY, high = -INFINITY;
       for (size_t v = 0; v < expected.vertices; ++v) {

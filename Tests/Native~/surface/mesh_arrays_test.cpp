@@ -11,13 +11,13 @@ namespace {
 using namespace quickses;
 
 TEST(MeshArrays, EveryByteBelongsToOneAttribute) {
-  for (unsigned kind = 0; kind < 16; ++kind)
+  for (unsigned kind = 0; kind < 24; ++kind)
     for (const uint32_t vertices : {0u, 1u, 7u, 65u}) {
       MeshShape shape;
-      shape.interleaved = (kind & 1) != 0;
-      shape.colors = shape.interleaved || (kind & 2) != 0;
-      shape.texcoords = (kind & 4) != 0;
-      shape.patches = (kind & 8) != 0;
+      shape.layout = static_cast<qses_vertex_layout>(kind / 8);
+      shape.colors = (kind & 1) != 0;
+      shape.texcoords = (kind & 2) != 0;
+      shape.patches = (kind & 4) != 0;
       const uint32_t triangles = 2 * vertices + 1;
       const MeshArrays arrays(vertices, triangles, shape);
       std::vector<uint32_t> memory(arrays.bytes() / 4 + 1);
@@ -32,7 +32,10 @@ TEST(MeshArrays, EveryByteBelongsToOneAttribute) {
       };
       for (uint32_t v = 0; v < vertices; ++v) {
         write(view.position(v), 12, 4);
-        write(view.normal(v), 12, 4);
+        if (view.packed_normals)
+          write(view.packed_normal(v), 4, 4);
+        else
+          write(view.normal(v), 12, 4);
         if (view.colors) write(view.color(v), 4, 4);
         if (view.texcoords) write(view.texcoord(v), 8, 4);
         write(&view.owner(v), 4, 4);

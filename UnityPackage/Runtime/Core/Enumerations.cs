@@ -77,16 +77,20 @@ namespace QuickSes
         Reversed = 1
     }
 
-    /// <summary>How the vertices of a mesh lie in memory.</summary>
+    /// <summary>
+    /// How positions and normals of a mesh lie in memory. Colours, texture coordinates, owners and patches always have
+    /// arrays of their own.
+    /// </summary>
     public enum SurfaceVertexLayout
     {
-        /// <summary>One tightly packed array per attribute.</summary>
+        /// <summary>One tightly packed array each.</summary>
         Separate = 0,
+        /// <summary>Behind each other: float position[3], float normal[3]; 24 bytes per vertex.</summary>
+        Interleaved = 1,
         /// <summary>
-        /// The attributes of a vertex behind each other: float position[3], float normal[3], byte color[4] and, if
-        /// asked for, float texcoord[2]; 28 or 36 bytes per vertex.
+        /// float position[3], sbyte normal[4], in multiples of 1/127 (SNorm8); 16 bytes per vertex.
         /// </summary>
-        Interleaved = 1
+        Compact = 2
     }
 
     /// <summary>Where a mesh is handed out.</summary>

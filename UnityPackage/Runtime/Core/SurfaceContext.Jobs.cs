@@ -97,6 +97,25 @@ namespace QuickSes
         }
 
         /// <summary>
+        /// Moves the mesh of the last <see cref="TryCollect"/> or <see cref="Compute"/> that succeeded, and its report,
+        /// into <paramref name="kept"/>, without a copy; what that held before comes back to the context it was from.
+        /// The context has no mesh then, and views of it have ended. Throws if the mesh is on the device only.
+        /// </summary>
+        /// <returns>Whether there was a mesh; if not, nothing has changed.</returns>
+        public bool Keep(KeptMesh kept)
+        {
+            ThrowIfDisposed();
+            if (kept == null)
+                throw new ArgumentNullException(nameof(kept));
+            QuickSesStatus status = kept.TakeFrom(_handle);
+            if (status == QuickSesStatus.NoResult)
+                return false;
+            QuickSesException.ThrowUnlessOk(status);
+            Interlocked.Increment(ref _generation);
+            return true;
+        }
+
+        /// <summary>
         /// Ends the job that runs as soon as it can and drops the one that waits; a <see cref="Compute"/> or
         /// <see cref="Estimate"/> on another thread returns Cancelled. Returns at once. Any thread, at any time before Dispose.
         /// </summary>

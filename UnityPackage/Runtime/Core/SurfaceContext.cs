@@ -18,7 +18,7 @@ namespace QuickSes
     /// <para>Garbage: none in <see cref="SetPositions(ReadOnlySpan{float})"/>, <see cref="Begin"/>, <see cref="Poll"/>,
     /// <see cref="TryCollect"/> and their like, unless something goes wrong.</para>
     /// </summary>
-    public sealed partial class SurfaceContext : IDisposable
+    public sealed partial class SurfaceContext : IMeshHolder, IDisposable
     {
         private readonly ContextHandle _handle;
         private int _generation; // of the mesh: views of older ones have ended
@@ -143,7 +143,10 @@ namespace QuickSes
 
         internal void ThrowIfDisposed() => _handle.ThrowIfClosed(nameof(SurfaceContext));
 
-        internal bool IsCurrent(int generation) => !_handle.IsClosed && Volatile.Read(ref _generation) == generation;
+        void IMeshHolder.ThrowIfDisposed() => ThrowIfDisposed();
+
+        bool IMeshHolder.IsCurrent(int generation) =>
+            !_handle.IsClosed && Volatile.Read(ref _generation) == generation;
 
         private static ContextHandle CreateOrThrow(in SurfaceContextOptions options)
         {
@@ -161,6 +164,7 @@ namespace QuickSes
             native.Device = options.Device;
             native.Threads = options.Threads;
             native.MemoryBudget = options.MemoryBudget;
+            native.Background = options.Background ? 1 : 0;
             IntPtr context;
             QuickSesStatus status = NativeMethods.qses_context_create(&native, &context);
             if (status == QuickSesStatus.Ok)

@@ -18,5 +18,11 @@ namespace QuickSes
         /// work without the mesh that is handed out. The mesh is the same byte for byte; only the time grows.
         /// </summary>
         public ulong MemoryBudget { get; set; }
+
+        /// <summary>
+        /// Whether the threads that compute stand back behind others of normal priority, and so do kernels of the GPU.
+        /// A caller of <see cref="SurfaceContext.Compute"/> lends its thread as it is.
+        /// </summary>
+        public bool Background { get; set; }
     }
 }

@@ -5,28 +5,28 @@ using System;
 namespace QuickSes
 {
     /// <summary>
-    /// A mesh in memory of a <see cref="SurfaceContext"/>; nothing is copied. It ends with the next
-    /// <see cref="SurfaceContext.TryCollect"/> or <see cref="SurfaceContext.Compute"/> that succeeds on that context,
-    /// and with its Dispose: asking an ended view for memory throws. Spans and pointers that were taken before can't
-    /// tell, so don't keep them; and keep the context itself alive while they are used. <c>default</c> is an empty
-    /// mesh. V is the number of vertices, T that of triangles; lengths are in Å, in the coordinates the atoms were
+    /// A mesh in memory of a <see cref="SurfaceContext"/> or a <see cref="KeptMesh"/>; nothing is copied. It ends with
+    /// the next <see cref="SurfaceContext.TryCollect"/>, <see cref="SurfaceContext.Compute"/> or
+    /// <see cref="SurfaceContext.Keep"/> that succeeds there, and with Dispose: asking an ended view for memory throws.
+    /// Spans and pointers that were taken before can't tell, so don't keep them; and keep the context or kept mesh
+    /// itself alive while they are used. <c>default</c> is an empty mesh. V is the number of vertices, T that of triangles; lengths are in Å, in the coordinates the atoms were
     /// given in.
     /// </summary>
     public readonly unsafe struct SurfaceMeshView
     {
-        internal SurfaceMeshView(SurfaceContext context, int generation, in NativeMesh native)
+        internal SurfaceMeshView(IMeshHolder holder, int generation, in NativeMesh native)
         {
-            _context = context;
+            _holder = holder;
             _generation = generation;
             _native = native;
         }
 
-        private readonly SurfaceContext _context;
+        private readonly IMeshHolder _holder;
         private readonly int _generation;
         private readonly NativeMesh _native;
 
         /// <summary>Whether the memory may still be looked at.</summary>
-        public bool IsValid => _context == null || _context.IsCurrent(_generation);
+        public bool IsValid => _holder == null || _holder.IsCurrent(_generation);
 
         /// <summary>V.</summary>
         public int VertexCount => checked((int)_native.VertexCount);
@@ -56,9 +56,12 @@ namespace QuickSes
 
         /// <summary>How the vertices lie in memory.</summary>
         public SurfaceVertexLayout VertexLayout =>
-            _native.VertexBytes == 0 ? SurfaceVertexLayout.Separate : SurfaceVertexLayout.Interleaved;
+            _native.VertexBytes == 0 ? SurfaceVertexLayout.Separate :
+            _native.Normals != null ? SurfaceVertexLayout.Interleaved : SurfaceVertexLayout.Compact;
 
-        /// <summary>Bytes from one vertex to the next if they are interleaved (28 or 36); else 0.</summary>
+        /// <summary>
+        /// Bytes from one vertex to the next in <see cref="Vertices"/>: interleaved 24, compact 16; else 0.
+        /// </summary>
         public int VertexBytes => (int)_native.VertexBytes;
 
         /// <summary>Whether there is a colour per vertex.</summary>
@@ -71,7 +74,7 @@ namespace QuickSes
         public bool HasPatches => _native.Patches != null;
 
         /// <summary>
-        /// V x <see cref="VertexBytes"/> bytes: all there is of the vertices. Interleaved layout only.
+        /// V x <see cref="VertexBytes"/> bytes: positions and normals. Interleaved and compact layouts only.
         /// </summary>
         public ReadOnlySpan<byte> Vertices
         {
@@ -79,17 +82,17 @@ namespace QuickSes
             {
                 if (_native.VertexBytes == 0 && _native.VertexCount != 0)
                     throw new InvalidOperationException(
-                        "The vertices are in separate arrays: use Positions, Normals, ...");
+                        "The vertices are in separate arrays: use Positions and Normals.");
                 return new ReadOnlySpan<byte>(Valid(_native.Positions),
                     Length(_native.VertexCount, _native.VertexBytes));
             }
         }
 
-        /// <summary>V x 3, Å. Separate layout only, as the next three.</summary>
-        public ReadOnlySpan<float> Positions => Attribute<float>(_native.Positions, 3);
+        /// <summary>V x 3, Å. Separate layout only.</summary>
+        public ReadOnlySpan<float> Positions => Separate(_native.Positions);
 
-        /// <summary>V x 3, unit length, outward.</summary>
-        public ReadOnlySpan<float> Normals => Attribute<float>(_native.Normals, 3);
+        /// <summary>V x 3, unit length, outward. Separate layout only.</summary>
+        public ReadOnlySpan<float> Normals => Separate(_native.Normals);
 
         /// <summary>V x 4: red, green, blue, alpha; empty if there are none.</summary>
         public ReadOnlySpan<byte> Colors => Attribute<byte>(_native.Colors, 4);
@@ -121,19 +124,22 @@ namespace QuickSes
             new ReadOnlySpan<SurfaceComponent>(Valid(_native.Components), Length(_native.ComponentCount, 1));
 
         /// <summary>
-        /// The first vertex's position, for copies without spans. In both layouts; null for an empty mesh.
+        /// The first vertex's position, for copies without spans. In all layouts; null for an empty mesh.
         /// </summary>
         public float* PositionsPointer => (float*)Valid(_native.Positions);
 
         /// <summary>The first index; null for an empty mesh.</summary>
         public uint* IndicesPointer => (uint*)Valid(_native.Indices);
 
-        private ReadOnlySpan<T> Attribute<T>(void* first, uint perVertex) where T : unmanaged
+        private ReadOnlySpan<float> Separate(float* first)
         {
             if (_native.VertexBytes != 0)
                 throw new InvalidOperationException("The vertices are interleaved: use Vertices and VertexBytes.");
-            return new ReadOnlySpan<T>(Valid(first), first == null ? 0 : Length(_native.VertexCount, perVertex));
+            return Attribute<float>(first, 3);
         }
+
+        private ReadOnlySpan<T> Attribute<T>(void* first, uint perVertex) where T : unmanaged =>
+            new ReadOnlySpan<T>(Valid(first), first == null ? 0 : Length(_native.VertexCount, perVertex));
 
         private static int Length(uint count, uint each) => checked((int)((ulong)count * each));
 
@@ -141,7 +147,7 @@ namespace QuickSes
         {
             if (!IsValid)
             {
-                _context.ThrowIfDisposed();
+                _holder.ThrowIfDisposed();
                 throw new InvalidOperationException("This view has ended: a newer mesh was collected or computed.");
             }
             return memory;

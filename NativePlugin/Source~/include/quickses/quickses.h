@@ -17,9 +17,9 @@
  *   qses_context_destroy(context);
  *
  * Names
- *   qses_<object>_<verb> acts on an object: qses_context_create, qses_structure_open, qses_trajectory_unwrap.
+ *   qses_<object>_<verb> acts on an object: qses_context_create, qses_structure_open, qses_kept_mesh_pick.
  *   qses_<object>_<noun> tells something about one: qses_backend_info, qses_context_mesh, qses_structure_warning.
- *   qses_<verb>, without an object, acts on a context, its first argument: qses_set_atoms, qses_compute, qses_poll.
+ *   qses_<verb>, without an object, acts on a context, its first argument: qses_set_atoms, qses_compute, qses_keep.
  *   qses_<structure>_init prepares a structure. Alone stand qses_version, qses_abi_version and qses_last_error.
  *
  * Units and conventions
@@ -65,10 +65,10 @@
  * Threads
  *   A context may be used by one thread at a time, but for qses_poll and qses_cancel, which may be called from any
  *   thread while another one uses the context. Different contexts are independent of each other. Functions without a
- *   context may be called from any thread at any time; structures and trajectories have rules of their own, below.
- *   Calls that compute look at least every 20 ms whether qses_cancel was called, as a rule; on a GPU, between kernels.
- *   A stack of 64 KiB suffices for every call on the CPU. Where the machine refuses threads, a context makes do with
- *   those there are, down to the calling thread.
+ *   context may be called from any thread at any time; kept meshes, structures and trajectories have rules of their
+ * own, below. Calls that compute look at least every 20 ms whether qses_cancel was called, as a rule; on a GPU, between
+ * kernels. A stack of 64 KiB suffices for every call on the CPU. Where the machine refuses threads, a context makes do
+ * with those there are, down to the calling thread.
  */
 #ifndef QUICKSES_QUICKSES_H
 #define QUICKSES_QUICKSES_H
@@ -95,7 +95,7 @@ extern "C" {
 
 /* Increases whenever a structure or a function below changes in a way that old callers would notice, which appending a
  * field to a structure with a struct_size is not. */
-#define QSES_ABI_VERSION 2
+#define QSES_ABI_VERSION 3
 
 typedef enum qses_status {
   QSES_OK = 0,
@@ -139,12 +139,15 @@ typedef enum qses_winding {
   QSES_WINDING_REVERSED = 1 /* the opposite, for callers who mirror an axis afterwards */
 } qses_winding;
 
-/* How the vertices of a mesh lie in memory. */
+/* How positions and normals of a mesh lie in memory. All else (colours, texture coordinates, owners, patches) has a
+ * tightly packed array of its own: it may change where the surface does not. */
 typedef enum qses_vertex_layout {
-  QSES_VERTICES_SEPARATE = 0,   /* one tightly packed array per attribute */
-  QSES_VERTICES_INTERLEAVED = 1 /* the attributes of a vertex behind each other, as a graphics API takes them in one
-                                   copy: float position[3], float normal[3], uint8_t color[4] and, if asked for,
-                                   float texcoord[2]; 28 or 36 bytes per vertex */
+  QSES_VERTICES_SEPARATE = 0,    /* one tightly packed array each */
+  QSES_VERTICES_INTERLEAVED = 1, /* behind each other, as a graphics API takes them in one copy: float position[3],
+                                    float normal[3]; 24 bytes per vertex */
+  QSES_VERTICES_COMPACT = 2      /* float position[3], int8_t normal[4]; 16 bytes per vertex. The components of the
+                                    normal are rounded to multiples of 1/127 (SNorm8), which turns it by half a degree
+                                    at most; the fourth is 0. Positions are the same as in the other layouts */
 } qses_vertex_layout;
 
 /* What kind of surface a vertex lies on (Connolly's three). */
@@ -156,6 +159,9 @@ typedef enum qses_patch {
 
 /* Device memory and CPU or GPU threads that compute surfaces, and the atoms they are computed of. Opaque. */
 typedef struct qses_context qses_context;
+
+/* Holds a mesh for longer than the context that computed it would, to be looked at, painted and picked in. Opaque. */
+typedef struct qses_kept_mesh qses_kept_mesh;
 
 /* For this header only: what each qses_..._init below begins with, a structure of zeros that knows its size. */
 static inline void qses_clear(void *structure, uint32_t struct_size) {
@@ -215,6 +221,9 @@ typedef struct qses_context_options {
                              the work; the mesh that is handed out comes on top (qses_report.mesh_bytes). The mesh is
                              the same byte for byte; only the time grows. qses_estimate tells what is needed. The
                              first computation takes the budget in one piece, however small the surface */
+  qses_bool background;   /* 1: threads that compute stand back behind others of normal priority, and so do kernels of
+                             the GPU; a caller of qses_compute or qses_estimate lends its thread as it is. Default 0 */
+  uint32_t reserved;      /* 0 */
 } qses_context_options;
 
 /* The defaults, with struct_size set. NULL is ignored. */
@@ -277,8 +286,8 @@ QSES_API qses_status qses_set_positions_indexed(qses_context *context, const flo
  * volume and components are those of the whole surface. The whole mesh needs memory besides the one handed out. */
 QSES_API qses_status qses_set_visible(qses_context *context, const uint8_t *visible, size_t count);
 
-/* Colours per atom, red, green, blue, alpha, 8 bits each, which go to the vertices the atom owns. NULL: none (default);
- * QSES_VERTICES_INTERLEAVED then has white. */
+/* Colours per atom, red, green, blue, alpha, 8 bits each, which go to the vertices the atom owns. NULL: none (default).
+ * Colours that change while the surface stays need no computation: qses_kept_mesh_paint. */
 QSES_API qses_status qses_set_colors(qses_context *context, const uint8_t *rgba, size_t count);
 
 /* Two numbers per atom for the texture coordinates of its vertices (settings.texcoords), for instance values to be
@@ -329,7 +338,8 @@ typedef struct qses_settings {
   float frame_budget_ms;  /* for qses_begin: 0 (default): all levels one after the other. Above 0, at most 60000: one
                              level only, the finest of them (`spacing` being the last) that is expected to take no longer
                              than this, ms, or the coarsest if none is. Expected is what the last frames of the series
-                             (below) say: the time from the start of the work to the mesh in host memory. The first frame
+                             (below) say: the time from the start of the work to the mesh in host memory, and what
+                             show_ms_per_mb (below) adds. The first frame
                              is the coarsest; what was learnt is forgotten when the number of atoms, surface, method,
                              probe_radius, relaxation_steps, slice_size, spacing or levels change within a series. Now
                              and then a frame takes longer, when a finer level is tried: so a surface that became cheaper
@@ -342,6 +352,11 @@ typedef struct qses_settings {
                              The QSES_REMEMBERED_SERIES that were used last are remembered; an older one begins anew */
   qses_delivery delivery; /* where the mesh is wanted; default HOST. Anything else needs CUDA. A mesh that is wanted on
                              the device does not leave it in pieces where memory is short: that is OUT_OF_MEMORY */
+  float show_ms_per_mb;   /* 0 to 60000; default 0: ms that it takes the caller to show 10^6 bytes of the mesh (its
+                             copies to a graphics API, for instance). frame_budget_ms then covers computing and showing
+                             together */
+  qses_bool pickable;     /* 1: the mesh comes with what makes qses_kept_mesh_pick fast, below 1 % more of time and
+                             memory; default 0. Not with delivery DEVICE, where it is ignored */
 } qses_settings;
 
 /* The defaults, with struct_size set. NULL is ignored. */
@@ -367,8 +382,9 @@ typedef struct qses_component {
   uint32_t reserved;   /* 0 */
 } qses_component;
 
-/* A view of a mesh in memory of the context: valid until the next qses_compute or qses_collect that succeeds on the
- * same context, or qses_context_destroy; also while jobs run. (Page-locked memory with CUDA.) Nothing here may be
+/* A view of a mesh in memory of the context: valid until the next qses_compute, qses_collect or qses_keep that succeeds
+ * on the same context, or qses_context_destroy; also while jobs run. (Page-locked memory with CUDA.) That of a kept
+ * mesh is valid until something else is kept there, qses_kept_mesh_clear or qses_kept_mesh_destroy. Nothing here may be
  * written or freed by the caller. */
 typedef struct qses_mesh {
   uint32_t struct_size;    /* set by qses_mesh_init */
@@ -376,15 +392,17 @@ typedef struct qses_mesh {
   uint32_t triangle_count; /* T */
   uint32_t tag;            /* as in the settings */
   const float *positions;  /* V x 3, Å. With settings.delivery DEVICE all arrays of vertices and indices are NULL */
-  const float *normals;    /* V x 3, unit length, outward; on a crease, that of one of its sides */
-  const uint8_t *colors;   /* V x 4, or NULL if there are none */
-  const float *texcoords;  /* V x 2, or NULL if not asked for */
-  uint32_t vertex_bytes;   /* INTERLEAVED: bytes from one vertex to the next in the four arrays above, which begin with
-                              positions, in V * vertex_bytes bytes of memory. SEPARATE: 0, each is tightly packed */
-  uint32_t reserved;       /* 0 */
-  const uint32_t *owners;  /* V, the atom whose van der Waals surface is nearest to the vertex; with GRID, to where it
-                              was before it was smoothed */
-  const uint8_t *patches;  /* V of qses_patch, or NULL */
+  const float *normals;   /* V x 3, unit length, outward; on a crease, that of one of its sides. COMPACT: NULL, they are
+                             behind the positions */
+  const uint8_t *colors;  /* V x 4, tightly packed, or NULL if there are none */
+  const float *texcoords; /* V x 2, tightly packed, or NULL if not asked for */
+  uint32_t vertex_bytes;  /* INTERLEAVED (24) and COMPACT (16): bytes from one vertex to the next in the vertices that
+                             positions points to, V * vertex_bytes bytes of memory. SEPARATE: 0, positions and normals
+                             are tightly packed */
+  uint32_t reserved;      /* 0 */
+  const uint32_t *owners; /* V, the atom whose van der Waals surface is nearest to the vertex; with GRID, to where it
+                             was before it was smoothed */
+  const uint8_t *patches; /* V of qses_patch, or NULL */
   const uint32_t *indices; /* T x 3 vertex numbers */
   float bounds_min[3];     /* box of the vertices, Å; all 0 for an empty mesh */
   float bounds_max[3];
@@ -430,7 +448,7 @@ typedef struct qses_report {
   uint64_t work_bytes_peak; /* most memory in use for the work: on the device with CUDA, else in host memory,
                                without the mesh */
   uint64_t mesh_bytes;      /* of the mesh itself, without its components */
-  uint64_t host_bytes_peak; /* host memory of the context, the mesh included */
+  uint64_t host_bytes_peak; /* host memory of the context, the mesh included, and what is kept of its meshes */
   uint64_t brick_count;     /* bricks of 8x8x8 lattice points that were evaluated */
   uint64_t slice_count;
   uint32_t hidden_vertices; /* dropped since their atoms are hidden (qses_set_visible); else 0 */
@@ -520,9 +538,9 @@ static inline void qses_progress_init(qses_progress *progress) { qses_clear(prog
  */
 QSES_API qses_status qses_poll(const qses_context *context, qses_progress *progress);
 
-/* The finest level that was finished since the last call. Its memory stays valid until the next qses_collect or
- * qses_compute that succeeds, or qses_context_destroy, also while further levels and jobs are computed. Asking often is
- * cheap. Errors: NOTHING_NEW (not an error in itself), INVALID_ARGUMENT. */
+/* The finest level that was finished since the last call. Its memory stays valid until the next qses_collect,
+ * qses_compute or qses_keep that succeeds, or qses_context_destroy, also while further levels and jobs are computed.
+ * Asking often is cheap. Errors: NOTHING_NEW (not an error in itself), INVALID_ARGUMENT. */
 QSES_API qses_status qses_collect(qses_context *context, qses_mesh *mesh);
 
 /* A mesh on a CUDA device, made with settings.delivery DEVICE or BOTH. */
@@ -557,6 +575,81 @@ QSES_API qses_status qses_cancel(qses_context *context);
 /* Waits until no job runs or waits, or until the time is over (negative: without limit). OK either way; *finished,
  * which may be NULL, tells whether no job runs or waits. Errors: INVALID_ARGUMENT (NULL, a time that is no number). */
 QSES_API qses_status qses_wait(qses_context *context, double milliseconds, qses_bool *finished);
+
+/* ---- kept meshes -------------------------------------------------------------------------------------------------
+ * A mesh that shall be there for longer than until the next one is collected is kept: its memory moves from the context
+ * into a kept mesh, without a copy, and the context takes other memory for its next one. Meant to be filled again and
+ * again: memory goes back to the context it came from, so that frame after frame allocates nothing. A context holds
+ * back a few spare buffers, about as much as it needs for its next meshes; the rest goes back to the machine.
+ *
+ * Threads: one at a time may change a kept mesh (qses_keep, qses_kept_mesh_clear, qses_kept_mesh_destroy), and then no
+ * other may use it; any number may look (the other functions) at a time. All this may go on while the contexts compute,
+ * or after their end: a kept mesh outlives its context, without holding the context's threads, work memory or GPU. */
+
+/* Makes an empty one. On success *kept is the caller's, who ends it with qses_kept_mesh_destroy; on failure it is NULL.
+ * Errors: INVALID_ARGUMENT, OUT_OF_MEMORY. */
+QSES_API qses_status qses_kept_mesh_create(qses_kept_mesh **kept);
+
+/* As qses_kept_mesh_clear; and ends it. NULL is ignored. */
+QSES_API void qses_kept_mesh_destroy(qses_kept_mesh *kept);
+
+/* Gives the memory back to the context it came from, or to the machine if that has ended. NULL is ignored. */
+QSES_API void qses_kept_mesh_clear(qses_kept_mesh *kept);
+
+/* Moves the mesh of the last qses_compute or qses_collect that succeeded, and its report, out of the context; what kept
+ * held before is given back. The context has no mesh then (qses_context_mesh, qses_context_report: NO_RESULT) until the
+ * next one. Also while jobs run. Takes some hundred nanoseconds. What it held is still there after an error.
+ * Errors: INVALID_ARGUMENT (NULL; the mesh was made with settings.delivery DEVICE, so that there is none in host
+ * memory), NO_RESULT. */
+QSES_API qses_status qses_keep(qses_context *context, qses_kept_mesh *kept);
+
+/* A view of the mesh; an empty mesh (vertex_count 0) if nothing is kept. Errors: INVALID_ARGUMENT. */
+QSES_API qses_status qses_kept_mesh_view(const qses_kept_mesh *kept, qses_mesh *mesh);
+
+/* What qses_context_report said about it. Errors: INVALID_ARGUMENT, NO_RESULT (nothing is kept). */
+QSES_API qses_status qses_kept_mesh_report(const qses_kept_mesh *kept, qses_report *report);
+
+/* Values of vertices out of those of the atoms that own them: colours, texture coordinates, anything.
+ *   per_atom     atom_count values of value_bytes bytes; atom_count must be the number of atoms of the mesh
+ *   value_bytes  4, 8, 12 or 16; values are copied as they are
+ *   first, count which vertices; first + count at most vertex_count
+ *   per_vertex   room for count values: that of vertex `first` comes first
+ * Errors: INVALID_ARGUMENT. */
+QSES_API qses_status qses_kept_mesh_paint(const qses_kept_mesh *kept, const void *per_atom, size_t value_bytes,
+                                          size_t atom_count, uint32_t first, uint32_t count, void *per_vertex);
+
+/* Those of a run of triangles whose three vertices all have owners that are visible, in their order.
+ *   visible        one byte per atom, 0 for hidden; atom_count must be the number of atoms of the mesh
+ *   first, count   which triangles; first + count at most triangle_count
+ *   indices        room for 3 * count vertex numbers; what is behind those that are written may change too
+ *   kept_triangles how many were written
+ * Errors: INVALID_ARGUMENT. */
+QSES_API qses_status qses_kept_mesh_filter(const qses_kept_mesh *kept, const uint8_t *visible, size_t atom_count,
+                                           uint32_t first, uint32_t count, uint32_t *indices, uint32_t *kept_triangles);
+
+/* Where a ray meets a mesh. */
+typedef struct qses_hit {
+  uint32_t struct_size; /* set by qses_hit_init */
+  qses_bool found;      /* 0: the ray meets no triangle, and the rest is 0 */
+  uint32_t triangle;
+  uint32_t vertex;   /* the corner of the triangle that weighs most at the point */
+  uint32_t owner;    /* its atom */
+  float distance;    /* from the origin, in lengths of the direction */
+  float position[3]; /* Å */
+  float normal[3];   /* unit length, outward: between those of the corners */
+} qses_hit;
+
+/* Empty hit with struct_size set. NULL is ignored. */
+static inline void qses_hit_init(qses_hit *hit) { qses_clear(hit, sizeof *hit); }
+
+/* The first triangle that a ray meets, from either side. Borders of triangles count, so that no ray slips through
+ * between two of them. With settings.pickable it takes some tens of microseconds, else it looks at all triangles.
+ *   origin, direction  Å; direction of any length but 0
+ *   visible            NULL, or as of qses_kept_mesh_filter: triangles that are left out there let rays through
+ *   atom_count         of visible; with NULL it is ignored
+ * Errors: INVALID_ARGUMENT (also: NaN, infinite, a direction of no length). */
+QSES_API qses_status qses_kept_mesh_pick(const qses_kept_mesh *kept, const float origin[3], const float direction[3],
+                                         const uint8_t *visible, size_t atom_count, qses_hit *hit);
 
 /* ---- structures and trajectories --------------------------------------------------------------------------------- */
 

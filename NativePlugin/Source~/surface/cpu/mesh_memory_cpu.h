@@ -12,10 +12,11 @@ namespace quickses {
 template <>
 class MeshMemory<CpuKernelExecutor> {
  public:
-  explicit MeshMemory(CpuKernelExecutor &) {}
+  explicit MeshMemory(CpuKernelExecutor &) : meshes_(MeshPool::source<HostMemory>()) {}
 
-  void use_slot(int slot) { slots_.use_slot(slot); }
-  uint64_t host_bytes() const { return slots_.bytes(); }
+  void use_slot(int slot) { meshes_.use_slot(slot); }
+  MeshLease keep(int slot) { return meshes_.keep(slot); }
+  uint64_t host_bytes() const { return meshes_.bytes(); }
   // Bytes of work that are not in the arena; those that are taken off a budget for it at first; and those that it would
   // have to leave as far as is known, where the pool of features is in the arena.
   uint64_t outside_arena(const CpuKernelExecutor &executor) const { return executor.scratch_bytes(); }
@@ -31,7 +32,7 @@ class MeshMemory<CpuKernelExecutor> {
                                MeshPurpose purpose, bool in_pieces) {
     const MeshArrays arrays(vertices, triangles, shape);
     void *const memory = mesh_is_in_arena(false, purpose, in_pieces) ? executor.allocate<char>(arrays.bytes()).data
-                                                                     : slots_.reserve(arrays.bytes());
+                                                                     : meshes_.reserve(arrays.bytes());
     return describe_memory(arrays, vertices, triangles, shape, false, memory);
   }
 
@@ -48,6 +49,7 @@ class MeshMemory<CpuKernelExecutor> {
     describe_mesh(built, &built.view, settings, mesh);
     qses_device_mesh_init(on_device);
     describe_mesh(built, nullptr, settings, &on_device->mesh);
+    meshes_.own_components(mesh, &on_device->mesh);
   }
 
   TableView upload_table(CpuKernelExecutor &, const MarchingCubesTable &table) {
@@ -55,7 +57,7 @@ class MeshMemory<CpuKernelExecutor> {
   }
 
  private:
-  MeshSlots<HostMemory> slots_;
+  MeshLeases meshes_;
 };
 
 }  // namespace quickses

@@ -10,28 +10,56 @@
 
 namespace quickses {
 
+// The memory of the meshes that stay on the device, one per slot.
+class DeviceMeshes {
+ public:
+  void use_slot(int slot) { slot_ = slot; }
+  // Room for a mesh: as much as for any before, since which slot gets the finest level differs from frame to frame.
+  void *reserve(size_t bytes) {
+    largest_ = std::max(largest_, bytes);
+    if (mesh_[slot_].try_reserve(largest_)) return mesh_[slot_].data();
+    return mesh_[slot_].reserve(largest_ = bytes);
+  }
+  uint64_t bytes() const {
+    uint64_t sum = 0;
+    for (const auto &slot : mesh_) sum += slot.size();
+    return sum;
+  }
+  // Bytes of all slots once there is room for such a mesh.
+  uint64_t bytes_with(size_t bytes) const {
+    const size_t wanted = std::max(largest_, bytes), now = mesh_[slot_].size();
+    return this->bytes() - now + (now < wanted ? GrowingBuffer<DeviceMemory>::size_for(wanted) : now);
+  }
+
+ private:
+  GrowingBuffer<DeviceMemory> mesh_[kMeshSlots];
+  size_t largest_ = 0;
+  int slot_ = 0;
+};
+
 template <>
 class MeshMemory<CudaExecutor> {
  public:
-  explicit MeshMemory(CudaExecutor &executor) : executor_(executor) {}
+  explicit MeshMemory(CudaExecutor &executor) : executor_(executor), host_meshes_(MeshPool::source<PinnedMemory>()) {}
   ~MeshMemory() { DeviceMemory::release(table_); }
 
   void use_slot(int slot) {
-    slots_.use_slot(slot);
-    device_slots_.use_slot(slot);
+    host_meshes_.use_slot(slot);
+    device_meshes_.use_slot(slot);
   }
+  MeshLease keep(int slot) { return host_meshes_.keep(slot); }
   // Whether meshes that are handed out stay on the device.
   void keep_on_device(bool keep) { keep_ = keep; }
   // What was allocated beside a mesh in pieces, or as one to be made into another, is given up.
   void forget_spills() { spilled_ = 0; }
   uint64_t host_bytes() const {
-    uint64_t sum = slots_.bytes();
+    uint64_t sum = host_meshes_.bytes();
     for (const PinnedBuffer &spill : spill_) sum += spill.size();
     return sum;
   }
 
   // Bytes of the device that are not in the arena.
-  uint64_t outside_arena(const CudaExecutor &) const { return sizeof(MarchingCubesTable) + device_slots_.bytes(); }
+  uint64_t outside_arena(const CudaExecutor &) const { return sizeof(MarchingCubesTable) + device_meshes_.bytes(); }
   uint64_t allowed_outside(const CudaExecutor &) const { return sizeof(MarchingCubesTable); }
   uint64_t needed_outside(const CudaExecutor &executor) const { return outside_arena(executor); }
 
@@ -41,7 +69,7 @@ class MeshMemory<CudaExecutor> {
     const bool delivered = purpose == MeshPurpose::kDelivered;
     void *const memory = delivered && keep_                           ? keep(executor, arrays, in_pieces)
                          : mesh_is_in_arena(true, purpose, in_pieces) ? executor.allocate<char>(arrays.bytes()).data
-                         : delivered                                  ? slots_.reserve(arrays.bytes())
+                         : delivered                                  ? host_meshes_.reserve(arrays.bytes())
                                                                       : spill(arrays.bytes());
     return describe_memory(arrays, vertices, triangles, shape, in_pieces, memory);
   }
@@ -68,7 +96,7 @@ class MeshMemory<CudaExecutor> {
     MeshView host = built.view;
     if (built.vertices > 0 && to_host) {
       if (!built.in_pieces) {
-        char *const memory = static_cast<char *>(slots_.reserve(arrays.bytes()));
+        char *const memory = static_cast<char *>(host_meshes_.reserve(arrays.bytes()));
         executor_.download(memory, static_cast<const char *>(built.memory), arrays.bytes());
         host = arrays.view(memory);
       }
@@ -79,6 +107,7 @@ class MeshMemory<CudaExecutor> {
     on_device->device = executor_.device();
     on_device->stream = executor_.stream();
     describe_mesh(built, keep_ ? &built.view : nullptr, settings, &on_device->mesh);
+    host_meshes_.own_components(mesh, &on_device->mesh);
   }
 
   TableView upload_table(CudaExecutor &executor, const MarchingCubesTable &table) {
@@ -94,8 +123,8 @@ class MeshMemory<CudaExecutor> {
   // Room for a mesh that stays on the device. A budget covers it.
   void *keep(CudaExecutor &executor, const MeshArrays &arrays, bool in_pieces) {
     if (in_pieces) throw MemoryRefused("the mesh does not fit on the device, where it is wanted");
-    executor.arena().set_taken(device_slots_.bytes_with(arrays.bytes()));
-    return device_slots_.reserve(arrays.bytes());
+    executor.arena().set_taken(device_meshes_.bytes_with(arrays.bytes()));
+    return device_meshes_.reserve(arrays.bytes());
   }
 
   // At most the unmasked mesh, sums and starts at a time.
@@ -106,8 +135,8 @@ class MeshMemory<CudaExecutor> {
   }
 
   CudaExecutor &executor_;
-  MeshSlots<PinnedMemory> slots_;
-  MeshSlots<DeviceMemory> device_slots_;
+  MeshLeases host_meshes_;
+  DeviceMeshes device_meshes_;
   bool keep_ = false;
   PinnedBuffer spill_[4];
   size_t spilled_ = 0;

@@ -9,15 +9,14 @@ namespace quickses {
 
 // Which attributes vertices have, and how they lie.
 struct MeshShape {
-  bool interleaved = false, colors = false, texcoords = false, patches = false, reversed = false;
-
-  uint32_t vertex_bytes() const { return interleaved ? 28u + (texcoords ? 8u : 0u) : 0u; }
+  qses_vertex_layout layout = QSES_VERTICES_SEPARATE;
+  bool colors = false, texcoords = false, patches = false, reversed = false;
 };
 
 inline MeshShape shape_of(const qses_settings &s, bool has_colors) {
   MeshShape shape;
-  shape.interleaved = s.vertex_layout == QSES_VERTICES_INTERLEAVED;
-  shape.colors = shape.interleaved || has_colors;
+  shape.layout = s.vertex_layout;
+  shape.colors = has_colors;
   shape.texcoords = s.texcoords != 0;
   shape.patches = s.patch_types != 0 && s.method == QSES_METHOD_EXACT;
   shape.reversed = s.winding == QSES_WINDING_REVERSED;
@@ -29,17 +28,12 @@ inline MeshShape shape_of(const qses_settings &s, bool has_colors) {
 class MeshArrays {
  public:
   MeshArrays(size_t vertices, size_t triangles, const MeshShape &shape) : shape_(shape) {
-    if (shape.interleaved) {
-      positions_ = next(vertices * shape.vertex_bytes());
-      normals_ = positions_ + 12;
-      colors_ = positions_ + 24;
-      texcoords_ = positions_ + 28;
-    } else {
-      positions_ = next(vertices * 12);
-      normals_ = next(vertices * 12);
-      if (shape.colors) colors_ = next(vertices * 4);
-      if (shape.texcoords) texcoords_ = next(vertices * 8);
-    }
+    const bool is_separate = shape.layout == QSES_VERTICES_SEPARATE;
+    vertex_bytes_ = is_separate ? 12 : shape.layout == QSES_VERTICES_INTERLEAVED ? 24 : 16;
+    positions_ = next(vertices * vertex_bytes_);
+    normals_ = is_separate ? next(vertices * 12) : positions_ + 12;
+    if (shape.colors) colors_ = next(vertices * 4);
+    if (shape.texcoords) texcoords_ = next(vertices * 8);
     owners_ = next(vertices * 4);
     indices_ = next(triangles * 12);
     if (shape.patches) patches_ = next(vertices);
@@ -51,14 +45,16 @@ class MeshArrays {
     char *const base = static_cast<char *>(memory);
     MeshView v;
     v.positions = reinterpret_cast<float *>(base + positions_);
-    v.normals = reinterpret_cast<float *>(base + normals_);
+    v.vertex_bytes = vertex_bytes_;
+    v.packed_normals = shape_.layout == QSES_VERTICES_COMPACT;
+    if (!v.packed_normals) v.normals = reinterpret_cast<float *>(base + normals_);
+    v.normal_bytes = shape_.layout == QSES_VERTICES_INTERLEAVED ? vertex_bytes_ : 12;
     if (shape_.colors) v.colors = reinterpret_cast<uint32_t *>(base + colors_);
     if (shape_.texcoords) v.texcoords = reinterpret_cast<float *>(base + texcoords_);
     v.owners = reinterpret_cast<uint32_t *>(base + owners_);
     if (shape_.patches) v.patches = reinterpret_cast<uint8_t *>(base + patches_);
     v.indices = reinterpret_cast<uint32_t *>(base + indices_);
     v.reversed = shape_.reversed;
-    v.vertex_bytes = shape_.vertex_bytes();
     return v;
   }
 
@@ -70,6 +66,7 @@ class MeshArrays {
   }
 
   MeshShape shape_;
+  uint32_t vertex_bytes_;
   size_t positions_ = 0, normals_ = 0, colors_ = 0, texcoords_ = 0, owners_ = 0, patches_ = 0, indices_ = 0, bytes_ = 0;
 };
 
@@ -79,14 +76,10 @@ template <class Copy>
 void for_each_array(const MeshView &to, const MeshView &from, size_t vertices, size_t triangles, const Copy &copy) {
   const uint32_t v = from.first_vertex;
   if (vertices > 0) {
-    if (from.vertex_bytes) {
-      copy(to.position(v), from.positions, vertices * from.vertex_bytes);
-    } else {
-      copy(to.position(v), from.positions, vertices * 12);
-      copy(to.normal(v), from.normals, vertices * 12);
-      if (from.colors) copy(to.color(v), from.colors, vertices * 4);
-      if (from.texcoords) copy(to.texcoord(v), from.texcoords, vertices * 8);
-    }
+    copy(to.position(v), from.positions, vertices * from.vertex_bytes);
+    if (from.normals && from.normal_bytes == 12) copy(to.normal(v), from.normals, vertices * 12);
+    if (from.colors) copy(to.color(v), from.colors, vertices * 4);
+    if (from.texcoords) copy(to.texcoord(v), from.texcoords, vertices * 8);
     copy(&to.owner(v), from.owners, vertices * 4);
     if (from.patches) copy(&to.patch(v), from.patches, vertices);
   }

@@ -3,17 +3,14 @@
 // read; with CUDA the mesh is made on the device and copied to page-locked memory (cuda/mesh_memory_cuda.cuh).
 #pragma once
 
-#include "parallel/growing_buffer.h"
-#include "parallel/host_memory.h"
 #include "surface/memory/counting_executor.h"
 #include "surface/mesh/mesh_arrays.h"
-
-#include <cstring>
+#include "surface/mesh/mesh_pool.h"
 
 namespace quickses {
 
-// Meshes are made in buffers that the engine owns. With three of them one can be written while another one waits to be
-// collected and the caller still reads the third.
+// Meshes are made in numbered slots. With three of them one can be written while another one waits to be collected and
+// the caller still reads the third.
 constexpr int kMeshSlots = 3;
 
 struct Bounds {
@@ -72,37 +69,44 @@ inline void describe_mesh(const MeshMemoryView &built, const MeshView *arrays, c
   mesh->normals = arrays->normals;
   mesh->colors = reinterpret_cast<const uint8_t *>(arrays->colors);
   mesh->texcoords = arrays->texcoords;
-  mesh->vertex_bytes = arrays->vertex_bytes;
+  mesh->vertex_bytes = built.shape.layout == QSES_VERTICES_SEPARATE ? 0 : arrays->vertex_bytes;
   mesh->owners = arrays->owners;
   mesh->patches = arrays->patches;
   mesh->indices = arrays->indices;
 }
 
-// The memory of the meshes that are handed out, one per slot.
-template <class Source>
-class MeshSlots {
+// The host memory of the meshes in the slots, as the pool gives it.
+class MeshLeases {
  public:
-  void use_slot(int slot) { slot_ = slot; }
-  // Room for a mesh: as much as for any before, since which slot gets the finest level differs from frame to frame.
+  explicit MeshLeases(const MeshPool::Source &source) : pool_(std::make_shared<MeshPool>(source)) {}
+  ~MeshLeases() { pool_->close(); }
+  MeshLeases(const MeshLeases &) = delete;
+  MeshLeases &operator=(const MeshLeases &) = delete;
+
+  // A mesh will be made in it: what it held is given back.
+  void use_slot(int slot) {
+    slot_ = slot;
+    leases_[slot].give_back();
+  }
   void *reserve(size_t bytes) {
-    largest_ = std::max(largest_, bytes);
-    if (mesh_[slot_].try_reserve(largest_)) return mesh_[slot_].data();
-    return mesh_[slot_].reserve(largest_ = bytes);
+    leases_[slot_].give_back();
+    leases_[slot_] = MeshLease(pool_, bytes);
+    return leases_[slot_].memory();
   }
-  uint64_t bytes() const {
-    uint64_t sum = 0;
-    for (const auto &slot : mesh_) sum += slot.size();
-    return sum;
+  // The components, which come in memory of whoever found them, into that of the slot.
+  void own_components(qses_mesh *mesh, qses_mesh *on_device) {
+    if (mesh->component_count == 0) return;
+    if (leases_[slot_].is_empty()) leases_[slot_] = MeshLease(pool_, 0);
+    mesh->components = on_device->components = static_cast<const qses_component *>(
+        leases_[slot_].add_components(mesh->components, mesh->component_count * sizeof(qses_component)));
   }
-  // Bytes of all slots once there is room for such a mesh.
-  uint64_t bytes_with(size_t bytes) const {
-    const size_t wanted = std::max(largest_, bytes), now = mesh_[slot_].size();
-    return this->bytes() - now + (now < wanted ? GrowingBuffer<Source>::size_for(wanted) : now);
-  }
+  // Takes the mesh that is finished out of its slot. From any thread, while another slot is in use.
+  MeshLease keep(int slot) { return std::move(leases_[slot]); }
+  uint64_t bytes() const { return pool_->bytes(); }
 
  private:
-  GrowingBuffer<Source> mesh_[kMeshSlots];
-  size_t largest_ = 0;
+  std::shared_ptr<MeshPool> pool_;
+  MeshLease leases_[kMeshSlots];
   int slot_ = 0;
 };
 

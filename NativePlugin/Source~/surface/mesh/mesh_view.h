@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Where the stages write a mesh: separate arrays, or vertices as a graphics API wants them, all attributes of one
-// behind each other. Only the distances between the vertices differ, so that no kernel knows which it is.
+// Where the stages write a mesh: separate arrays, or position and normal of a vertex behind each other as a graphics
+// API wants them. Only the distances between the vertices differ, so that no kernel knows which it is.
 #pragma once
 
 #include "surface/geometry/types.h"
@@ -11,31 +11,32 @@ namespace quickses {
 // in the whole mesh.
 struct MeshView {
   float *positions = nullptr;   // caller's coordinates
-  float *normals = nullptr;     // unit length
+  float *normals = nullptr;     // unit length; nullptr: there are none but packed ones
   uint32_t *owners = nullptr;   // caller's atom numbers
   uint8_t *patches = nullptr;   // or nullptr
   uint32_t *indices = nullptr;  // three per triangle
   bool reversed = false;        // winding
   uint32_t *colors = nullptr;   // bytes red, green, blue, alpha; or nullptr
   float *texcoords = nullptr;   // two numbers, or nullptr
-  uint32_t vertex_bytes = 0;    // from one vertex to the next in all attributes; 0: each array is tightly packed
+  uint32_t vertex_bytes = 12;   // from one position to the next
+  uint32_t normal_bytes = 12;   // from one normal to the next
+  bool packed_normals = false;  // behind each position is the normal in four bytes (stages/packed_normals.h)
   uint32_t first_vertex = 0;    // what the arrays begin with
   uint32_t first_triangle = 0;
 
   QSES_FN size_t place(uint32_t vertex) const { return vertex - first_vertex; }
-  QSES_FN float *position(uint32_t vertex) const { return attribute(positions, 12, vertex); }
-  QSES_FN float *normal(uint32_t vertex) const { return attribute(normals, 12, vertex); }
-  QSES_FN uint32_t *color(uint32_t vertex) const { return attribute(colors, 4, vertex); }
-  QSES_FN float *texcoord(uint32_t vertex) const { return attribute(texcoords, 8, vertex); }
+  QSES_FN float *position(uint32_t vertex) const { return attribute(positions, vertex_bytes, vertex); }
+  QSES_FN float *normal(uint32_t vertex) const { return attribute(normals, normal_bytes, vertex); }
+  QSES_FN uint32_t *packed_normal(uint32_t vertex) const { return reinterpret_cast<uint32_t *>(position(vertex) + 3); }
+  QSES_FN uint32_t *color(uint32_t vertex) const { return colors + place(vertex); }
+  QSES_FN float *texcoord(uint32_t vertex) const { return texcoords + 2 * place(vertex); }
   QSES_FN uint32_t &owner(uint32_t vertex) const { return owners[place(vertex)]; }
   QSES_FN uint8_t &patch(uint32_t vertex) const { return patches[place(vertex)]; }
   QSES_FN uint32_t *triangle(size_t number) const { return indices + 3 * (number - first_triangle); }
 
  private:
-  template <class T>
-  QSES_FN T *attribute(T *first, uint32_t size, uint32_t vertex) const {
-    const size_t stride = vertex_bytes ? vertex_bytes : size;
-    return reinterpret_cast<T *>(reinterpret_cast<char *>(first) + stride * place(vertex));
+  QSES_FN float *attribute(float *first, uint32_t stride, uint32_t vertex) const {
+    return reinterpret_cast<float *>(reinterpret_cast<char *>(first) + size_t(stride) * place(vertex));
   }
 };
 

@@ -100,6 +100,8 @@ MeshPart open_part(Executor &executor, const BrickSet &bricks, const MeshLayout 
   MeshPart part{{}, sizes.vertices, sizes.triangles};
   const MeshArrays arrays(part.vertices, part.triangles, shape);
   part.view = arrays.view(executor.template allocate<char>(arrays.bytes()).data);
+  if (part.view.packed_normals)
+    part.view.normals = reinterpret_cast<float *>(executor.template allocate<glm::vec3>(part.vertices).data);
   part.view.first_vertex = sizes.first_vertex;
   part.view.first_triangle = sizes.first_triangle;
   return part;
@@ -139,6 +141,7 @@ MeshMemoryView build_exact_surface(Work &work) {
   MeshMemoryView mesh = work.memory.allocate_mesh(executor, counts.vertices, counts.triangles, work.shape, work.purpose,
                                                   work.plan.mesh_in_pieces);
   const auto end_of_mesh = executor.arena().mark();
+  add_normals(work, &mesh);
   VertexStarts starts{work.settings.relaxation_steps > 0, nullptr, work.table.ring, &layout.totals->unplaced};
   // Without pieces only the vertices: triangles and colours come for all bricks at once.
   const auto emit_slice = [&](auto &any_executor, BrickRange slice, bool with_triangles) {
@@ -148,7 +151,7 @@ MeshMemoryView build_exact_surface(Work &work) {
     B::emit_vertices(any_executor, features, bricks, layout, slice, work.rooms, share ? shared : own, starts,
                      part.view);
     if (!mesh.in_pieces) return part;
-    paint_vertices(any_executor, work.appearance, part.view, part.vertices);
+    complete_vertices(any_executor, work.appearance, part.view, part.vertices);
     if (with_triangles) B::emit_triangles(any_executor, bricks, layout, slice, work.table, part.view);
     return part;
   };
@@ -182,7 +185,8 @@ MeshMemoryView build_exact_surface(Work &work) {
       emit(0.85 + share_of_time * (step - 1), 0.85 + share_of_time * step, false);
     }
   }
-  if (!mesh.in_pieces) paint_vertices(executor, work.appearance, mesh.view, mesh.vertices);
+  if (!mesh.in_pieces) complete_vertices(executor, work.appearance, mesh.view, mesh.vertices);
+  if (mesh.view.packed_normals) mesh.view.normals = nullptr;
   executor.arena().rewind(end_of_mesh);
   mesh.unplaced = starts.unplaced;
   return mesh;

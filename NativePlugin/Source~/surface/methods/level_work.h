@@ -9,6 +9,7 @@
 #include "surface/stages/appearance.h"
 #include "surface/stages/components.h"
 #include "surface/stages/hot_stages.h"
+#include "surface/stages/packed_normals.h"
 
 #include <algorithm>
 
@@ -38,6 +39,21 @@ struct LevelWork {
   MeshShape shape{};
   MeshPurpose purpose = MeshPurpose::kDelivered;
 };
+
+// While a mesh with packed normals is made, it has others too, in memory that is given up afterwards.
+template <class Work>
+void add_normals(Work &work, MeshMemoryView *mesh) {
+  if (mesh->view.packed_normals)
+    mesh->view.normals = reinterpret_cast<float *>(
+        work.memory.template allocate_where_mesh_is<glm::vec3>(work.executor, *mesh, mesh->vertices).data);
+}
+
+// What is left to do for vertices whose places, normals and owners are known.
+template <class Executor>
+void complete_vertices(Executor &executor, const AppearanceView &appearance, const MeshView &mesh, size_t vertices) {
+  paint_vertices(executor, appearance, mesh, vertices);
+  pack_normals(executor, mesh, vertices);
+}
 
 // Calls work_on(slice) for runs of so many bricks, and reports progress from `begin` to `end`. The memory that a slice
 // takes is given up after it, unless it is the only one. Returns the number of slices.

@@ -54,7 +54,10 @@ struct MoveVertex {
     if (!kept.has(vertex)) return;
     const uint32_t place = kept.rank(vertex);
     store_vec3(to.position(place), load_vec3(from.position(vertex)));
-    store_vec3(to.normal(place), load_vec3(from.normal(vertex)));
+    if (from.packed_normals)
+      *to.packed_normal(place) = *from.packed_normal(vertex);
+    else
+      store_vec3(to.normal(place), load_vec3(from.normal(vertex)));
     if (from.colors) *to.color(place) = *from.color(vertex);
     if (from.texcoords) {
       to.texcoord(place)[0] = from.texcoord(vertex)[0];

@@ -28,7 +28,7 @@ struct PaintVertices {
   MeshView mesh;
   QSES_HOST_DEVICE void operator()(size_t i) const {
     const uint32_t vertex = mesh.first_vertex + static_cast<uint32_t>(i), atom = mesh.owner(vertex);
-    if (mesh.colors) *mesh.color(vertex) = appearance.colors ? appearance.colors[atom] : 0xffffffffu;
+    if (mesh.colors) *mesh.color(vertex) = appearance.colors[atom];
     if (mesh.texcoords) {
       const glm::vec2 uv = appearance.texcoords ? appearance.texcoords[atom] : glm::vec2(1.f, 0.f);
       float *const out = mesh.texcoord(vertex);

@@ -166,32 +166,23 @@ inline qses_component describe_component(const ComponentSums &s, double units, d
 
 // ---- the list --------------------------------------------------------------------------------------------------
 
-// Host memory for the components of the meshes that are handed out, one list per slot. It only grows.
+// Host memory for the components of one mesh. It only grows.
 class ComponentMemory {
  public:
-  void use_slot(int slot) { slot_ = slot; }
   // For n components, in memory of the next call of each.
   Span<ComponentSums> sums(size_t n) {
     return {static_cast<ComponentSums *>(sums_.reserve(n * sizeof(ComponentSums))), n};
   }
-  // In memory of the slot. All slots get as much: which one the finest level has differs from frame to frame.
   Span<qses_component> list(size_t n) {
-    largest_ = std::max(largest_, n);
-    return {static_cast<qses_component *>(lists_[slot_].reserve(largest_ * sizeof(qses_component))), n};
+    return {static_cast<qses_component *>(list_.reserve(n * sizeof(qses_component))), n};
   }
-  uint64_t bytes() const {
-    uint64_t sum = sums_.size();
-    for (const auto &list : lists_) sum += list.size();
-    return sum;
-  }
+  uint64_t bytes() const { return sums_.size() + list_.size(); }
 
  private:
-  GrowingBuffer<HostMemory> sums_, lists_[kMeshSlots];
-  size_t largest_ = 0;
-  int slot_ = 0;
+  GrowingBuffer<HostMemory> sums_, list_;
 };
 
-// The components in the order of their first vertices; valid until the next call with the same slot. Waits.
+// The components in the order of their first vertices; valid until the next call with the same memory. Waits.
 template <class Executor>
 Span<const qses_component> find_components(Executor &executor, const MeshView &mesh, const MeshCounts &counts,
                                            float spacing, ComponentMemory &memory) {
@@ -226,7 +217,6 @@ class ComponentFinder {
  public:
   // threads: of the CPU, 0 for all; used only for meshes that left the device.
   explicit ComponentFinder(unsigned threads) : on_host_(threads) {}
-  void use_slot(int slot) { memory_.use_slot(slot); }
   template <class Executor>
   Span<const qses_component> find(Executor &executor, const MeshMemoryView &mesh, float spacing) {
     const MeshCounts counts{mesh.vertices, mesh.triangles};

@@ -41,6 +41,8 @@ namespace QuickSes.Interop
 
         public static NativeProgress Progress() => new NativeProgress { StructSize = (uint)sizeof(NativeProgress) };
 
+        public static NativeHit Hit() => new NativeHit { StructSize = (uint)sizeof(NativeHit) };
+
         public static NativeStructureOptions StructureOptions() => new NativeStructureOptions
         {
             StructSize = (uint)sizeof(NativeStructureOptions), Model = 1, Water = 1, Hetero = 1, Hydrogen = 1

@@ -32,6 +32,15 @@ namespace QuickSes.Interop
         }
     }
 
+    internal sealed class KeptMeshHandle : NativeHandle
+    {
+        protected override bool ReleaseHandle()
+        {
+            NativeMethods.qses_kept_mesh_destroy(handle);
+            return true;
+        }
+    }
+
     internal sealed class StructureHandle : NativeHandle
     {
         protected override bool ReleaseHandle()

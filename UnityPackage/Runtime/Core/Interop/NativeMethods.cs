@@ -12,7 +12,7 @@ namespace QuickSes.Interop
     internal static unsafe class NativeMethods
     {
         /// <summary>QSES_ABI_VERSION of the header these declarations were written after.</summary>
-        public const uint AbiVersion = 2;
+        public const uint AbiVersion = 3;
 
         public const string Library = "quickses";
         private const CallingConvention Cdecl = CallingConvention.Cdecl;
@@ -104,6 +104,39 @@ namespace QuickSes.Interop
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
         public static extern QuickSesStatus qses_wait(ContextHandle context, double milliseconds, int* finished);
+
+        // ---- kept meshes
+        [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
+        public static extern QuickSesStatus qses_kept_mesh_create(IntPtr* kept);
+
+        [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
+        public static extern void qses_kept_mesh_destroy(IntPtr kept);
+
+        [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
+        public static extern void qses_kept_mesh_clear(KeptMeshHandle kept);
+
+        [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
+        public static extern QuickSesStatus qses_keep(ContextHandle context, KeptMeshHandle kept);
+
+        [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
+        public static extern QuickSesStatus qses_kept_mesh_view(KeptMeshHandle kept, NativeMesh* mesh);
+
+        [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
+        public static extern QuickSesStatus qses_kept_mesh_report(KeptMeshHandle kept, NativeReport* report);
+
+        [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
+        public static extern QuickSesStatus qses_kept_mesh_paint(
+            KeptMeshHandle kept, void* perAtom, UIntPtr valueBytes, UIntPtr atomCount, uint first, uint count,
+            void* perVertex);
+
+        [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
+        public static extern QuickSesStatus qses_kept_mesh_filter(
+            KeptMeshHandle kept, byte* visible, UIntPtr atomCount, uint first, uint count, uint* indices,
+            uint* keptTriangles);
+
+        [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
+        public static extern QuickSesStatus qses_kept_mesh_pick(
+            KeptMeshHandle kept, float* origin, float* direction, byte* visible, UIntPtr atomCount, NativeHit* hit);
 
         // ---- structures
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]

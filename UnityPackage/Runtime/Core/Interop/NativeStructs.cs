@@ -25,6 +25,8 @@ namespace QuickSes.Interop
         public int Device;
         public uint Threads;
         public ulong MemoryBudget;
+        public int Background;
+        public uint Reserved;
     }
 
     [StructLayout(LayoutKind.Sequential)]
@@ -52,6 +54,8 @@ namespace QuickSes.Interop
         public int Components;
         public uint Series;
         public MeshDelivery Delivery;
+        public float ShowMsPerMb;
+        public int Pickable;
     }
 
     [StructLayout(LayoutKind.Sequential)]
@@ -155,6 +159,19 @@ namespace QuickSes.Interop
         public int MeshReady;
         public QuickSesStatus Status;
         public fixed byte Message[256];
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
+    internal unsafe struct NativeHit
+    {
+        public uint StructSize;
+        public int Found;
+        public uint Triangle;
+        public uint Vertex;
+        public uint Owner;
+        public float Distance;
+        public fixed float Position[3];
+        public fixed float Normal[3];
     }
 
     [StructLayout(LayoutKind.Sequential)]

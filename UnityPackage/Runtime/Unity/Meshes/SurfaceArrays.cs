@@ -36,7 +36,7 @@ namespace QuickSes
         public static void CopyPositions(this in SurfaceMeshView view, Vector3[] positions)
         {
             Span<Vector3> room = Room(positions, view.VertexCount, nameof(positions));
-            if (view.VertexLayout == SurfaceVertexLayout.Interleaved)
+            if (view.VertexLayout != SurfaceVertexLayout.Separate)
                 CopyStrided(view, 0, room);
             else
                 MemoryMarshal.Cast<float, Vector3>(view.Positions).CopyTo(room);
@@ -48,17 +48,17 @@ namespace QuickSes
             Span<Vector3> room = Room(normals, view.VertexCount, nameof(normals));
             if (view.VertexLayout == SurfaceVertexLayout.Interleaved)
                 CopyStrided(view, sizeof(Vector3), room);
+            else if (view.VertexLayout == SurfaceVertexLayout.Compact)
+                CopyCompactNormals(view, room);
             else
                 MemoryMarshal.Cast<float, Vector3>(view.Normals).CopyTo(room);
         }
 
         /// <summary>Copies colours, V of them; white if the atoms have none. Throws if the array is shorter.</summary>
-        public static unsafe void CopyColors(this in SurfaceMeshView view, Color32[] colors)
+        public static void CopyColors(this in SurfaceMeshView view, Color32[] colors)
         {
             Span<Color32> room = Room(colors, view.VertexCount, nameof(colors));
-            if (view.VertexLayout == SurfaceVertexLayout.Interleaved)
-                CopyStrided(view, 2 * sizeof(Vector3), room);
-            else if (view.HasColors)
+            if (view.HasColors)
                 MemoryMarshal.Cast<byte, Color32>(view.Colors).CopyTo(room);
             else
                 room.Fill(new Color32(255, 255, 255, 255));
@@ -96,6 +96,13 @@ namespace QuickSes
             if (array.Length < count)
                 throw new ArgumentException($"has room for {array.Length} elements, but there are {count}", argument);
             return new Span<T>(array, 0, count);
+        }
+
+        private static unsafe void CopyCompactNormals(in SurfaceMeshView view, Span<Vector3> target)
+        {
+            sbyte* normal = (sbyte*)view.PositionsPointer + sizeof(Vector3);
+            for (int v = 0; v < target.Length; ++v, normal += view.VertexBytes)
+                target[v] = new Vector3(normal[0], normal[1], normal[2]) / 127;
         }
 
         // One attribute of interleaved vertices, `offset` bytes from the beginning of each.

@@ -14,8 +14,8 @@ namespace QuickSes
     /// the engine checking or measuring it again. Main thread only. Use one for one mesh, frame after frame.
     /// </summary>
     /// <remarks>
-    /// The mesh gets one stream of vertices (position, normal, colour, and texture coordinate 1 if the surface has
-    /// them), one submesh of triangles with 32-bit indices, and the surface's own bounds. Its numbers are those the
+    /// The mesh gets streams of vertices (0: position and normal; 1: colour, white if the surface has none; 2: texture
+    /// coordinate 1, if the surface has them), one submesh of triangles with 32-bit indices, and the surface's own bounds. Its numbers are those the
     /// atoms were given in: Unity's, if they were, with the front faces outside.
     /// </remarks>
     public sealed class SurfaceMeshUploader : IDisposable
@@ -30,15 +30,16 @@ namespace QuickSes
         {
             new VertexAttributeDescriptor(VertexAttribute.Position, VertexAttributeFormat.Float32, 3),
             new VertexAttributeDescriptor(VertexAttribute.Normal, VertexAttributeFormat.Float32, 3),
-            new VertexAttributeDescriptor(VertexAttribute.Color, VertexAttributeFormat.UNorm8, 4)
+            new VertexAttributeDescriptor(VertexAttribute.Color, VertexAttributeFormat.UNorm8, 4, 1)
         };
 
         private static readonly VertexAttributeDescriptor[] s_layoutWithTexcoord =
         {
             s_layout[0], s_layout[1], s_layout[2],
-            new VertexAttributeDescriptor(VertexAttribute.TexCoord1, VertexAttributeFormat.Float32, 2)
+            new VertexAttributeDescriptor(VertexAttribute.TexCoord1, VertexAttributeFormat.Float32, 2, 2)
         };
 
+        private readonly UnmanagedBuffer<uint> _white = new UnmanagedBuffer<uint>();
         private Mesh _mesh; // whose buffers the next four describe
         private VertexAttributeDescriptor[] _layout;
         private int _vertexCapacity;
@@ -52,6 +53,7 @@ namespace QuickSes
         public void Dispose()
         {
             _mesh = null;
+            _white.Dispose();
 #if ENABLE_UNITY_COLLECTIONS_CHECKS
             if (!_hasSafety)
                 return;
@@ -83,10 +85,11 @@ namespace QuickSes
                 Reserve(mesh, texcoords ? s_layoutWithTexcoord : s_layout, vertexCount, indexCount, padBuffers);
                 if (vertexCount > 0)
                 {
+                    SetVertices<VectorPair>(mesh, view.Vertices, 0);
+                    SetVertices<uint>(mesh,
+                        view.HasColors ? view.Colors : MemoryMarshal.AsBytes(White(vertexCount)), 1);
                     if (texcoords)
-                        SetVertices<VertexWithTexcoord>(mesh, view.PositionsPointer, vertexCount);
-                    else
-                        SetVertices<Vertex>(mesh, view.PositionsPointer, vertexCount);
+                        SetVertices<Vector2>(mesh, MemoryMarshal.AsBytes(view.Texcoords), 2);
                     mesh.SetIndexBufferData(View<uint>(view.IndicesPointer, indexCount), 0, 0, indexCount, Unchecked);
                 }
                 var bounds = new Bounds();
@@ -125,8 +128,25 @@ namespace QuickSes
 
         private static int Padded(int count) => (int)Math.Min(count + (long)count / 4, int.MaxValue);
 
-        private unsafe void SetVertices<T>(Mesh mesh, void* first, int count) where T : unmanaged =>
-            mesh.SetVertexBufferData(View<T>(first, count), 0, 0, count, 0, Unchecked);
+        private unsafe void SetVertices<T>(Mesh mesh, ReadOnlySpan<byte> bytes, int stream) where T : unmanaged
+        {
+            int count = bytes.Length / sizeof(T);
+            fixed (byte* first = bytes)
+                mesh.SetVertexBufferData(View<T>(first, count), 0, 0, count, stream, Unchecked);
+        }
+
+        private ReadOnlySpan<uint> White(int count)
+        {
+            if (_white.Length < count)
+                _white.Resize(count).Fill(uint.MaxValue);
+            return _white.Span.Slice(0, count);
+        }
+
+        private struct VectorPair
+        {
+            public Vector3 Position;
+            public Vector3 Normal;
+        }
 
         private unsafe NativeArray<T> View<T>(void* memory, int length) where T : unmanaged
         {
@@ -141,22 +161,6 @@ namespace QuickSes
             NativeArrayUnsafeUtility.SetAtomicSafetyHandle(ref view, _safety);
 #endif
             return view;
-        }
-
-        // The interleaved layouts of quickses.h.
-        [StructLayout(LayoutKind.Sequential)]
-        internal struct Vertex
-        {
-            public Vector3 Position;
-            public Vector3 Normal;
-            public Color32 Color;
-        }
-
-        [StructLayout(LayoutKind.Sequential)]
-        internal struct VertexWithTexcoord
-        {
-            public Vertex Vertex;
-            public Vector2 Texcoord;
         }
     }
 }

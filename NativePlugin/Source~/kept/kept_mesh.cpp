@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#include "kept/kept_mesh.h"
+
+#include <cstring>
+
+namespace quickses {
+namespace {
+
+template <size_t kWords>
+void paint_words(const qses_mesh &mesh, const void *per_atom, uint32_t first, uint32_t count, void *per_vertex) {
+  struct Value {
+    unsigned char bytes[4 * kWords];
+  };
+  const Value *const from = static_cast<const Value *>(per_atom);
+  Value *const to = static_cast<Value *>(per_vertex);
+  const uint32_t *const owners = mesh.owners + first;
+  for (uint32_t k = 0; k < count; ++k) to[k] = from[owners[k]];
+}
+
+}  // namespace
+
+void KeptMesh::clear() noexcept {
+  qses_mesh_init(&mesh);
+  qses_report_init(&report);
+  atom_count = 0;
+  is_full = false;
+  memory.give_back();
+}
+
+void paint(const qses_mesh &mesh, const void *per_atom, size_t value_bytes, uint32_t first, uint32_t count,
+           void *per_vertex) {
+  if (count == 0) return;
+  switch (value_bytes / 4) {
+    case 1:
+      return paint_words<1>(mesh, per_atom, first, count, per_vertex);
+    case 2:
+      return paint_words<2>(mesh, per_atom, first, count, per_vertex);
+    case 3:
+      return paint_words<3>(mesh, per_atom, first, count, per_vertex);
+    default:
+      return paint_words<4>(mesh, per_atom, first, count, per_vertex);
+  }
+}
+
+uint32_t filter(const qses_mesh &mesh, VisibleAtoms visible, uint32_t first, uint32_t count, uint32_t *indices) {
+  uint32_t kept = 0;
+  for (uint32_t triangle = first; triangle < first + count; ++triangle) {
+    // Written either way: which triangles stay is hard to foresee.
+    std::memcpy(indices + 3 * size_t(kept), mesh.indices + 3 * size_t(triangle), 3 * sizeof(uint32_t));
+    kept += is_shown(mesh, triangle, visible) ? 1 : 0;
+  }
+  return kept;
+}
+
+}  // namespace quickses

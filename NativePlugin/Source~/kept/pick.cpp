@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+// Where a ray meets a mesh. After Woop, Benthin, Wald, "Watertight ray/triangle intersection", 2013: corners are
+// sheared so that the ray is an axis, and what is computed for an edge is the same number, but for its sign, for both
+// of its triangles. So no ray slips through between them.
+#include "kept/kept_mesh.h"
+
+#include "surface/stages/packed_normals.h"
+
+#include <cmath>
+#include <limits>
+
+namespace quickses {
+namespace {
+
+struct Point {
+  double x, y, z;
+};
+
+// The ray's frame: z along the axis that is nearest to its direction.
+class Ray {
+ public:
+  Ray(const float origin[3], const float direction[3]) {
+    for (int d = 0; d < 3; ++d) {
+      origin_[d] = static_cast<double>(origin[d]);
+      if (std::abs(direction[d]) > std::abs(direction[z_])) z_ = d;
+    }
+    x_ = (z_ + 1) % 3;
+    y_ = (z_ + 2) % 3;
+    const double along = static_cast<double>(direction[z_]);
+    shear_x_ = static_cast<double>(direction[x_]) / along;
+    shear_y_ = static_cast<double>(direction[y_]) / along;
+    scale_ = 1.0 / along;
+  }
+  // z in lengths of the direction.
+  Point sheared(const float *p) const {
+    const double z = static_cast<double>(p[z_]) - origin_[z_];
+    return {static_cast<double>(p[x_]) - origin_[x_] - shear_x_ * z,
+            static_cast<double>(p[y_]) - origin_[y_] - shear_y_ * z, scale_ * z};
+  }
+
+ private:
+  double origin_[3], shear_x_, shear_y_, scale_;
+  int x_, y_, z_ = 0;
+};
+
+struct Meeting {
+  double distance = std::numeric_limits<double>::infinity();
+  double weights[3] = {};
+  uint32_t triangle = 0;
+  bool found = false;
+};
+
+const float *position_of(const qses_mesh &mesh, uint32_t vertex) {
+  const size_t bytes = mesh.vertex_bytes ? mesh.vertex_bytes : 12;
+  return reinterpret_cast<const float *>(reinterpret_cast<const char *>(mesh.positions) + bytes * vertex);
+}
+
+void read_normal(const qses_mesh &mesh, uint32_t vertex, double normal[3]) {
+  if (mesh.normals) {
+    const size_t bytes = mesh.vertex_bytes ? mesh.vertex_bytes : 12;
+    const float *const n =
+        reinterpret_cast<const float *>(reinterpret_cast<const char *>(mesh.normals) + bytes * vertex);
+    for (int d = 0; d < 3; ++d) normal[d] = static_cast<double>(n[d]);
+  } else {
+    const uint8_t *const n = reinterpret_cast<const uint8_t *>(position_of(mesh, vertex) + 3);
+    for (int d = 0; d < 3; ++d) normal[d] = static_cast<double>(unpack_component(n[d]));
+  }
+}
+
+// Of two triangles at the same distance, the first one counts.
+void look_at(const qses_mesh &mesh, uint32_t triangle, const Ray &ray, Meeting *nearest) {
+  const uint32_t *const corner = mesh.indices + 3 * size_t(triangle);
+  const Point a = ray.sheared(position_of(mesh, corner[0])), b = ray.sheared(position_of(mesh, corner[1])),
+              c = ray.sheared(position_of(mesh, corner[2]));
+  const double u = c.x * b.y - c.y * b.x, v = a.x * c.y - a.y * c.x, w = b.x * a.y - b.y * a.x, sum = u + v + w;
+  if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return;
+  if (sum == 0) return;
+  const double distance = (u * a.z + v * b.z + w * c.z) / sum;
+  if (!(distance >= 0) || distance > nearest->distance) return;
+  if (nearest->found && distance == nearest->distance && triangle > nearest->triangle) return;
+  *nearest = {distance, {u / sum, v / sum, w / sum}, triangle, true};
+}
+
+qses_hit describe(const qses_mesh &mesh, const Meeting &meeting) {
+  qses_hit hit;
+  qses_hit_init(&hit);
+  if (!meeting.found) return hit;
+  const uint32_t *const corner = mesh.indices + 3 * size_t(meeting.triangle);
+  int heaviest = 0;
+  double position[3] = {}, normal[3] = {}, corner_normal[3][3];
+  for (int k = 0; k < 3; ++k) {
+    if (meeting.weights[k] > meeting.weights[heaviest]) heaviest = k;
+    const float *const p = position_of(mesh, corner[k]);
+    read_normal(mesh, corner[k], corner_normal[k]);
+    for (int d = 0; d < 3; ++d) {
+      position[d] += meeting.weights[k] * static_cast<double>(p[d]);
+      normal[d] += meeting.weights[k] * corner_normal[k][d];
+    }
+  }
+  double length = std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+  if (length < 1e-6) {  // opposite ones: of the nearest corner
+    for (int d = 0; d < 3; ++d) normal[d] = corner_normal[heaviest][d];
+    length = std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+  }
+  hit.found = 1;
+  hit.triangle = meeting.triangle;
+  hit.vertex = corner[heaviest];
+  hit.owner = mesh.owners[hit.vertex];
+  hit.distance = static_cast<float>(meeting.distance);
+  for (int d = 0; d < 3; ++d) {
+    hit.position[d] = static_cast<float>(position[d]);
+    hit.normal[d] = static_cast<float>(normal[d] / length);
+  }
+  return hit;
+}
+
+}  // namespace
+
+qses_hit pick(const qses_mesh &mesh, const float origin[3], const float direction[3], VisibleAtoms visible) {
+  const Ray ray(origin, direction);
+  Meeting nearest;
+  for (uint32_t triangle = 0; triangle < mesh.triangle_count; ++triangle)
+    if (!visible || is_shown(mesh, triangle, visible)) look_at(mesh, triangle, ray, &nearest);
+  return describe(mesh, nearest);
+}
+
+}  // namespace quickses

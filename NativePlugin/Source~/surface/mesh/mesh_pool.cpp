@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+#include "surface/mesh/mesh_pool.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace quickses {
+namespace {
+
+// Spares that are held back: levels of a ladder take one of each size. Their bytes are bounded too, in multiples of the
+// largest: while one is shown and one is on its way to where it is shown, two are made in turn.
+constexpr size_t kMostSpares = 12, kMostOfTheLargest = 4;
+// A small mesh must not carry a large buffer away: how many times too large one may be, and what is small anyway.
+constexpr size_t kMostTooLarge = 8, kSmall = size_t(1) << 20;
+
+}  // namespace
+
+MeshPool::MeshPool(const Source &source) : source_(source) { spares_.reserve(kMostSpares + 1); }
+
+std::unique_ptr<MeshBuffer> MeshPool::take(size_t bytes) {
+  std::unique_ptr<MeshBuffer> buffer = take_spare(bytes);
+  if (buffer) return buffer;
+  buffer = std::make_unique<MeshBuffer>();
+  if (bytes == 0) return buffer;
+  // With head room, so that a trajectory soon stops growing; if that is refused without, then at the cost of spares.
+  buffer->size = GrowingBuffer<HostMemory>::size_for(bytes);
+  while (!(buffer->memory = source_.acquire(buffer->size))) {
+    const std::unique_ptr<MeshBuffer> spare = buffer->size == bytes ? oldest_spare() : nullptr;
+    if (spare)
+      release(*spare);
+    else if (buffer->size > bytes)
+      buffer->size = bytes;
+    else
+      throw MemoryRefused(std::string(source_.name) + " refused " + describe_bytes(bytes) + " for the mesh");
+  }
+  const std::lock_guard<std::mutex> lock(mutex_);
+  bytes_ += buffer->size;
+  return buffer;
+}
+
+std::unique_ptr<MeshBuffer> MeshPool::take_spare(size_t bytes) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  auto best = spares_.end();
+  for (auto spare = spares_.begin(); spare != spares_.end(); ++spare)
+    if ((*spare)->size >= bytes && (*spare)->size <= std::max(kSmall, kMostTooLarge * bytes) &&
+        (best == spares_.end() || (*spare)->size <= (*best)->size))
+      best = spare;
+  if (best == spares_.end()) return nullptr;
+  std::unique_ptr<MeshBuffer> buffer = std::move(*best);
+  spares_.erase(best);
+  return buffer;
+}
+
+std::unique_ptr<MeshBuffer> MeshPool::oldest_spare() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (spares_.empty()) return nullptr;
+  std::unique_ptr<MeshBuffer> buffer = std::move(spares_.front());
+  spares_.erase(spares_.begin());
+  return buffer;
+}
+
+void MeshPool::give_back(std::unique_ptr<MeshBuffer> buffer) noexcept {
+  std::unique_ptr<MeshBuffer> surplus[kMostSpares + 1];  // released outside of the lock: drivers take their time
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    spares_.push_back(std::move(buffer));
+    size_t k = 0;
+    while (has_surplus()) {
+      surplus[k++] = std::move(spares_.front());
+      spares_.erase(spares_.begin());
+    }
+  }
+  for (const auto &one : surplus)
+    if (one) release(*one);
+}
+
+bool MeshPool::has_surplus() const {
+  size_t sum = 0, largest = 0;
+  for (const auto &spare : spares_) {
+    sum += spare->size;
+    largest = std::max(largest, spare->size);
+  }
+  return is_closed_ ? !spares_.empty() : spares_.size() > kMostSpares || sum > kMostOfTheLargest * largest;
+}
+
+void MeshPool::close() noexcept {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    is_closed_ = true;
+  }
+  while (const std::unique_ptr<MeshBuffer> spare = oldest_spare()) release(*spare);
+}
+
+uint64_t MeshPool::bytes() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return bytes_;
+}
+
+void MeshPool::count_components(int64_t bytes) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  bytes_ += static_cast<uint64_t>(bytes);
+}
+
+void MeshPool::release(MeshBuffer &buffer) noexcept {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    bytes_ -= buffer.size + buffer.components.size();
+  }
+  if (buffer.memory) source_.release(buffer.memory);
+}
+
+MeshLease::MeshLease(std::shared_ptr<MeshPool> pool, size_t bytes) : buffer_(pool->take(bytes)) {
+  pool_ = std::move(pool);
+}
+
+MeshLease &MeshLease::operator=(MeshLease &&other) noexcept {
+  if (this == &other) return *this;
+  give_back();
+  pool_ = std::move(other.pool_);
+  buffer_ = std::move(other.buffer_);
+  return *this;
+}
+
+void MeshLease::give_back() noexcept {
+  if (buffer_) pool_->give_back(std::move(buffer_));
+  pool_.reset();
+}
+
+const void *MeshLease::add_components(const void *components, size_t bytes) {
+  GrowingBuffer<HostMemory> &room = buffer_->components;
+  const size_t before = room.size();
+  const bool is_there = room.try_reserve(bytes);
+  pool_->count_components(static_cast<int64_t>(room.size()) - static_cast<int64_t>(before));
+  if (!is_there) throw MemoryRefused("the machine refused memory for the components of the mesh");
+  if (bytes > 0) std::memcpy(room.data(), components, bytes);
+  return room.data();
+}
+
+}  // namespace quickses
