@@ -79,12 +79,19 @@ wants_formatter() { ! is_there clang-format-14 && has_candidate clang-format-14;
 # For Scripts~/package/load-in-bare-system, which only root can use.
 wants_debootstrap() { [ "$(id -u)" -eq 0 ] && ! is_there /usr/sbin/debootstrap && has_candidate debootstrap; }
 
+# For the C# tests, which a .NET SDK compiles. It brings 150 packages, of 120 MB.
+wants_mono() {
+  is_there dotnet && has_candidate mono-devel && has_candidate mono-runtime-boehm &&
+    ! { is_there mono-sgen && is_there mono-boehm && is_there /usr/lib/mono/4.5/Facades/netstandard.dll; }
+}
+
 missing=()
 for need in "${needs[@]}"; do
   is_there "${need#* }" || missing+=("${need%% *}")
 done
 if wants_formatter; then missing+=(clang-format-14); fi
 if wants_debootstrap; then missing+=(debootstrap); fi
+if wants_mono; then missing+=(mono-devel mono-runtime-boehm); fi
 if [ "$with_cuda" = yes ] && ! has_cuda_toolkit; then missing+=(nvidia-cuda-toolkit); fi
 if [ ${#missing[@]} -eq 0 ]; then
   say "everything is installed"

@@ -10,7 +10,7 @@
 # (Tests/Native~/properties/property_test.cpp); QUICKSES_PROPERTY_SEED is the first set's.
 # That sources are written as clang-format 14 writes them is one of the tests; without that version it is skipped.
 # The C# tests need a .NET SDK, which is not installed, and NuGet packages; without them they are skipped, and that is
-# said. With CI=true in the environment, packages that can't be had are an error.
+# said. With CI=true in the environment, packages that can't be had are an error. Where Mono is, they run there as well.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -146,4 +146,17 @@ elif ! for_each_dotnet_test dotnet restore; then
 else
   export QUICKSES_NATIVE="$PWD/UnityPackage/Plugins/linux-x86_64/libquickses.so"
   for_each_dotnet_test dotnet test --no-restore
+  # The runtime that Unity has is a Mono, with another collector; IL2CPP compiles everything beforehand.
+  echo "==== mono: test"
+  if ! command -v mono-sgen mono-boehm as ld >/dev/null || [ ! -e /usr/lib/mono/4.5/Facades/netstandard.dll ]; then
+    echo "No Mono here (Debian's packages mono-devel and mono-runtime-boehm)." >&2
+    if [ "${CI:-}" = true ]; then exit 1; fi
+    echo "The C# tests on Mono are skipped."
+  elif ! bash Tests/DotNet~/Mono/run-tests --restore; then
+    echo "The NuGet packages of the C# tests on Mono could not be had (is there a network?)." >&2
+    if [ "${CI:-}" = true ]; then exit 1; fi
+    echo "The C# tests on Mono are skipped."
+  else
+    bash Tests/DotNet~/Mono/run-tests
+  fi
 fi

@@ -28,6 +28,7 @@ internal static class Repository
     {
         using Process process = Process.Start(new ProcessStartInfo(program, arguments)
         {
+            UseShellExecute = false, // as by default, but on Mono
             RedirectStandardOutput = true,
             RedirectStandardError = true
         });

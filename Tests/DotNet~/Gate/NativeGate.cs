@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 using System;
-using System.Diagnostics;
 using System.IO;
 using System.Runtime.InteropServices;
 
@@ -14,17 +13,9 @@ public sealed partial class NativeLibrarySetup
         string gate = Path.Combine(Path.GetTempPath(), $"quickses-gate-{Guid.NewGuid():N}.so");
         string source = Path.Combine(Repository.Root, "Tests", "DotNet~", "Gate", "gate.c");
         string include = Path.Combine(Repository.Root, "NativePlugin", "Source~", "include");
-        var start = new ProcessStartInfo(Environment.GetEnvironmentVariable("CC") ?? "cc") { UseShellExecute = false };
-        foreach (string argument in new[]
-            { "-shared", "-fPIC", "-DQSES_STATIC", "-I" + include, source, "-Wl,--no-as-needed", LibraryPath, "-o", gate,
-                "-Wl,-rpath," + Path.GetDirectoryName(LibraryPath) })
-            start.ArgumentList.Add(argument);
-        using (Process compiler = Process.Start(start))
-        {
-            compiler.WaitForExit();
-            if (compiler.ExitCode != 0)
-                throw new InvalidOperationException("The gate before the native library can't be compiled.");
-        }
+        Repository.Run(Environment.GetEnvironmentVariable("CC") ?? "cc",
+            $"-shared -fPIC -DQSES_STATIC \"-I{include}\" \"{source}\" -Wl,--no-as-needed \"{LibraryPath}\" " +
+            $"-o \"{gate}\" \"-Wl,-rpath,{Path.GetDirectoryName(LibraryPath)}\"");
         library = NativeLibrary.Load(gate);
         File.Delete(gate);
         NativeGate.Library = library;
