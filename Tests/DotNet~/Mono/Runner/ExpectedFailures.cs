@@ -10,6 +10,7 @@ namespace QuickSes.MonoRunner
     {
         private readonly List<string> _failing = new List<string>();
         private readonly List<string> _fatal = new List<string>();
+        private readonly List<string> _causes = new List<string>();
 
         private ExpectedFailures()
         {
@@ -24,13 +25,26 @@ namespace QuickSes.MonoRunner
                 if (line.Length == 0 || line[0] == '#')
                     continue;
                 string[] words = line.Split(new[] { ' ' }, StringSplitOptions.RemoveEmptyEntries);
-                if (Array.IndexOf(conditions.Split(','), words[0].TrimEnd('!')) >= 0)
-                    (words[0].EndsWith("!", StringComparison.Ordinal) ? result._fatal : result._failing).Add(words[1]);
+                if (Array.IndexOf(conditions.Split(','), words[0].TrimEnd('!', '@')) < 0)
+                    continue;
+                char kind = words[0][words[0].Length - 1];
+                (kind == '!' ? result._fatal : kind == '@' ? result._causes : result._failing).Add(words[1]);
             }
             return result;
         }
 
         public bool Contains(string test) => Contains(_failing, test);
+
+        /// <summary>Whether it failed where, and because, there is no compiler at run time.</summary>
+        public bool HasCause(string message, string stack)
+        {
+            if (message.IndexOf("ExecutionEngineException : Attempting to JIT", StringComparison.Ordinal) < 0)
+                return false;
+            foreach (string cause in _causes)
+                if (stack.IndexOf(" " + cause, StringComparison.Ordinal) >= 0)
+                    return true;
+            return false;
+        }
 
         /// <summary>Whether it would end the program.</summary>
         public bool IsFatal(string test) => Contains(_fatal, test);
