@@ -75,9 +75,23 @@ namespace QuickSes.Editor
                 string unit = SurfaceForm.UnitOf(property.propertyPath);
                 string label = unit == null ? property.displayName : $"{property.displayName} ({unit})";
                 using (new EditorGUI.DisabledScope(!isUsed))
-                    EditorGUILayout.PropertyField(property, new GUIContent(label, property.tooltip), true);
+                    DrawField(property, new GUIContent(label, property.tooltip));
             }
             serializedObject.ApplyModifiedProperties();
+        }
+
+        // A selection counts when it is complete, or each letter of it would be looked at.
+        private void DrawField(SerializedProperty property, GUIContent label)
+        {
+            if (property.propertyPath != "_visible")
+            {
+                EditorGUILayout.PropertyField(property, label, true);
+                return;
+            }
+            EditorGUILayout.DelayedTextField(property, label);
+            var surface = (MolecularSurface)target;
+            if (targets.Length == 1 && surface.VisibleSelectionError.Length > 0)
+                EditorGUILayout.HelpBox(surface.VisibleSelectionError, MessageType.Error);
         }
 
         private static void DrawStatus(MolecularSurface surface)

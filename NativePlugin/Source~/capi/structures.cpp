@@ -21,6 +21,9 @@ namespace io = quickses::io;
 struct qses_structure {
   io::StructureFile file;  // with one model
   std::vector<uint32_t> file_indices;
+  std::vector<uint32_t> residues;  // of each atom
+
+  uint64_t memory = 0;  // bytes
 
   const io::Structure &model() const { return file.models.front(); }
 };
@@ -72,6 +75,20 @@ io::ReadOptions read_options_of(const qses_structure_options &options) {
   return read;
 }
 
+bool are_of_one_residue(const io::AtomInfo &a, const io::AtomInfo &b) {
+  return a.residue_number == b.residue_number && a.insertion_code == b.insertion_code &&
+         a.residue_name == b.residue_name && a.chain == b.chain;
+}
+
+std::vector<uint32_t> residues_of(const io::Structure &model) {
+  std::vector<uint32_t> residues(model.atoms.size());
+  for (size_t k = 1; k < residues.size(); ++k) {
+    const bool is_same = model.has_names && are_of_one_residue(model.atoms[k - 1], model.atoms[k]);
+    residues[k] = residues[k - 1] + (is_same ? 0 : 1);
+  }
+  return residues;
+}
+
 using Read = std::function<io::StructureFile(std::optional<io::StructureFormat>, const io::ReadOptions &)>;
 
 void open_structure(const Read &read, const qses_structure_options *options, qses_structure **structure) {
@@ -81,6 +98,9 @@ void open_structure(const Read &read, const qses_structure_options *options, qse
   opened->file = read(format_of(o.format), read_options);
   io::assign_radii(opened->file, o.radii ? o.radii : "");
   for (const io::AtomInfo &atom : opened->model().atoms) opened->file_indices.push_back(atom.file_index);
+  opened->residues = residues_of(opened->model());
+  opened->memory = sizeof *opened - sizeof opened->file + io::memory_of(opened->file) +
+                   (opened->file_indices.capacity() + opened->residues.capacity()) * sizeof(uint32_t);
   *structure = opened.release();
 }
 
@@ -136,6 +156,8 @@ qses_status qses_structure_info(const qses_structure *structure, qses_structure_
     value.file_indices = structure->file_indices.data();
     value.file_elements = model.file_elements.data();
     value.warning_count = static_cast<uint32_t>(structure->file.warnings.size());
+    value.memory = structure->memory;
+    value.residues = structure->residues.data();
     write_struct(description, value, "qses_structure_description");
   });
 }
@@ -157,6 +179,21 @@ qses_status qses_structure_atom(const qses_structure *structure, uint32_t k, qse
     value.element = from.element;
     value.insertion_code = from.insertion_code;
     write_struct(atom, value, "qses_atom");
+  });
+}
+
+qses_status qses_structure_select(const qses_structure *structure, const char *selection, uint8_t *mask, size_t count,
+                                  uint32_t *selected) {
+  return guarded([&] {
+    require(structure, "structure");
+    require(selection, "selection");
+    require(mask, "mask");
+    const io::Structure &model = structure->model();
+    if (count != model.atoms.size())
+      invalid("count is " + std::to_string(count) + " but the structure has " + std::to_string(model.atoms.size()) +
+              " atoms");
+    const uint32_t found = io::select_atoms(model, selection, mask);
+    if (selected) *selected = found;
   });
 }
 

@@ -2,11 +2,10 @@
 // Molecular structures from files: choice of the format, filters, alternate locations.
 #include "io/structure.h"
 
-#include "io/readers.h"  // before other gemmi headers: settles how gemmi formats numbers
+#include "io/selection.h"  // first: settles how gemmi formats numbers
 
 #include <algorithm>
 #include <cmath>
-#include <gemmi/select.hpp>
 #include <initializer_list>
 #include <memory>
 #include <unordered_map>
@@ -105,13 +104,19 @@ AtomInfo describe(const AtomRef &ref) {
   info.name = ref.atom->name;
   info.residue_name = ref.residue->name;
   info.chain = ref.chain->name;
-  if (ref.residue->seqid.num.has_value()) info.residue_number = *ref.residue->seqid.num;
+  info.has_residue_number = ref.residue->seqid.num.has_value();
+  if (info.has_residue_number) info.residue_number = *ref.residue->seqid.num;
   info.insertion_code = ref.residue->seqid.icode;
   info.element = atomic_number(*ref.atom);
   info.hetero = ref.residue->het_flag == 'H';
   info.water = is_water_name(ref.residue->name);
   info.hydrogen = ref.atom->element.is_hydrogen();
   info.file_index = static_cast<uint32_t>(ref.atom->serial - 1);
+  info.occupancy = ref.atom->occ;
+  info.b_factor = ref.atom->b_iso;
+  info.alternate_location = ref.atom->altloc;
+  info.entity = static_cast<uint8_t>(ref.residue->entity_type);
+  info.deuterium = ref.atom->element == gemmi::El::D;
   return info;
 }
 
@@ -141,6 +146,8 @@ constexpr double kMaxCoordinate = 1e6;  // Å, what the surface library takes
 Structure flatten(const RawModel &raw, const Filter &filter, const std::string &path, size_t &radius_zero_count) {
   Structure structure;
   structure.model = raw.number;
+  structure.model_name = raw.model.name;
+  structure.has_names = raw.has_names;
   structure.file_atom_count = raw.atom_count;
   structure.file_elements.resize(raw.atom_count);
   const bool chooses_location = filter.selection && !filter.selection->altlocs.all;
@@ -169,17 +176,6 @@ Structure flatten(const RawModel &raw, const Filter &filter, const std::string &
 
 std::string count_of(size_t count, const char *one, const char *many) {
   return std::to_string(count) + " " + (count == 1 ? one : many);
-}
-
-std::unique_ptr<gemmi::Selection> parse_selection(const std::string &cid) {
-  if (cid.empty()) return nullptr;
-  try {
-    return std::make_unique<gemmi::Selection>(cid);
-  } catch (const std::bad_alloc &) {
-    throw;
-  } catch (const std::exception &error) {
-    fail_usage("the selection '" + cid + "' can't be understood: " + error.what());
-  }
 }
 
 }  // namespace
@@ -228,6 +224,22 @@ StructureFile parse_text(const std::string &text, const std::string &path, std::
 }
 
 }  // namespace
+
+uint64_t memory_of(const StructureFile &file) {
+  // Short strings lie in the string itself.
+  const auto outside = [](const std::string &text) {
+    return text.capacity() <= std::string().capacity() ? 0 : text.capacity() + 1;
+  };
+  uint64_t bytes = sizeof file;
+  for (const Structure &model : file.models) {
+    bytes += sizeof model + model.atoms.capacity() * sizeof(AtomInfo) + model.file_elements.capacity() +
+             (model.positions.capacity() + model.radii.capacity()) * sizeof(float);
+    for (const AtomInfo &atom : model.atoms)
+      bytes += outside(atom.name) + outside(atom.residue_name) + outside(atom.chain);
+  }
+  for (const std::string &warning : file.warnings) bytes += sizeof warning + outside(warning);
+  return bytes;
+}
 
 StructureFile read_structure(const std::string &path, const ReadOptions &options) {
   parse_selection(options.selection);  // before a large file is read

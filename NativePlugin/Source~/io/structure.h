@@ -23,11 +23,21 @@ struct AtomInfo {
   bool water = false;       // residue of water
   bool hydrogen = false;    // H or D
   uint32_t file_index = 0;  // 0-based place among the atom records of its model, before any filter
+
+  // What selections ask for besides.
+  float occupancy = 1;
+  float b_factor = 0;
+  char alternate_location = '\0';  // '\0' = none
+  uint8_t entity = 0;              // gemmi's EntityType of the residue
+  bool deuterium = false;
+  bool has_residue_number = false;
 };
 
 // The atoms of one model that were kept, in the order of the file.
 struct Structure {
   int model = 1;                 // place of the model in the file, from 1
+  std::string model_name;        // the number that the file gives it
+  bool has_names = true;         // false: XYZR
   std::vector<AtomInfo> atoms;   // N
   std::vector<float> positions;  // N x 3, Å
   std::vector<float> radii;      // N, Å; filled for PQR and XYZR only, else see assign_radii
@@ -63,6 +73,14 @@ StructureFile read_structure(const std::string &path, StructureFormat format, co
 // The same from bytes in memory, gzipped or not. Without a format, the name and the content tell. name: for messages.
 StructureFile parse_structure(const std::string &bytes, std::optional<StructureFormat> format,
                               const ReadOptions &options = ReadOptions(), const std::string &name = "structure");
+
+// mask[i] becomes 1 for the atoms that a selection names, in the syntax of ReadOptions.selection, else 0; mask has room
+// for all atoms of the structure. Gives their number. Throws Error (kUsage): the selection can't be understood, or the
+// structure has no names.
+uint32_t select_atoms(const Structure &structure, const std::string &cid, uint8_t *mask);
+
+// Bytes of memory that it takes.
+uint64_t memory_of(const StructureFile &file);
 
 // True for residue names of water in the PDB and in common molecular-dynamics packages.
 bool is_water_name(const std::string &residue_name);

@@ -117,6 +117,68 @@ namespace QuickSes.Tests
             Assert.That(Kept(new StructureOptions { SkipHydrogen = true }), Is.EqualTo(new uint[] { 0, 1, 3 }));
         }
 
+        [TestCase("")]
+        [TestCase("//A/3-10")]
+        [TestCase("//A/3-10/CA[C]")]
+        [TestCase("(!ALA,GLY)")]
+        [TestCase("//Z")]
+        public void SelectionsNameWhatTheFilterKeeps(string selection)
+        {
+            using Structure all = Open(default);
+            int[] indices = all.Select(selection);
+            var mask = new bool[all.AtomCount];
+            Assert.That(all.TrySelect(selection, mask, out int count, out QuickSesError error), Is.True, error.ToString());
+            Assert.That(count, Is.EqualTo(indices.Length));
+            Assert.That(Enumerable.Range(0, mask.Length).Where(i => mask[i]), Is.EqualTo(indices));
+            if (Structure.TryOpen(Repository.CrambinPath, new StructureOptions { Selection = selection },
+                out Structure some, out _))
+                using (some)
+                    Assert.That(some.FileIndices.ToArray().Select(i => (int)i), Is.EqualTo(indices));
+            else
+                Assert.That(indices, Is.Empty);
+        }
+
+        [Test]
+        public void SelectingMakesNoGarbage()
+        {
+            using Structure all = Open(default);
+            var mask = new bool[all.AtomCount];
+            all.TrySelect("//A/3-10", mask, out _, out _);
+            long before = GC.GetAllocatedBytesForCurrentThread();
+            for (int k = 0; k < 100; ++k)
+                all.TrySelect("//A/3-10", mask, out _, out _);
+            Assert.That(GC.GetAllocatedBytesForCurrentThread() - before, Is.EqualTo(0));
+        }
+
+        [Test]
+        public void SelectionsThatAreWrongAreNamed()
+        {
+            using Structure all = Open(default);
+            var mask = new bool[all.AtomCount];
+            mask[5] = true;
+            string wrong = "//[[" + new string('x', 500); // longer than what fits on the stack
+            Assert.That(all.TrySelect(wrong, mask, out int count, out QuickSesError error), Is.False);
+            Assert.That((error.Status, count, mask[5]), Is.EqualTo((QuickSesStatus.InvalidArgument, 0, true)));
+            Assert.That(error.Message, Does.Contain(wrong));
+            QuickSesException thrown = Assert.Throws<QuickSesException>(() => all.Select("//[["));
+            Assert.That(thrown.Status, Is.EqualTo(QuickSesStatus.InvalidArgument));
+            Assert.That(() => all.Select(null), Throws.ArgumentNullException);
+            Assert.That(() => all.Select("a\0b"), Throws.ArgumentException);
+            Assert.That(() => all.TrySelect("", new bool[3], out _, out _), Throws.ArgumentException);
+            all.Dispose();
+            Assert.That(() => all.Select(""), Throws.TypeOf<ObjectDisposedException>());
+        }
+
+        [Test]
+        public void ResiduesAndMemory()
+        {
+            using Structure all = Open(default);
+            for (int i = 1; i < all.AtomCount; ++i)
+                Assert.That(all.Residues[i] - all.Residues[i - 1],
+                    Is.EqualTo(all.GetAtom(i).ResidueNumber - all.GetAtom(i - 1).ResidueNumber));
+            Assert.That(all.MemoryBytes, Is.InRange(50 * all.AtomCount, 1000 * all.AtomCount));
+        }
+
         [Test]
         public void RadiiAreReadFromAFile()
         {

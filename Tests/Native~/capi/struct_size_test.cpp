@@ -278,7 +278,7 @@ static_assert(is_without_padding<qses_size_estimate>(END(qses_size_estimate, sma
 static_assert(is_without_padding<qses_progress>(END(qses_progress, message)), "");
 static_assert(is_without_padding<qses_hit>(END(qses_hit, normal)), "");
 static_assert(is_without_padding<qses_structure_options>(END(qses_structure_options, radii)), "");
-static_assert(is_without_padding<qses_structure_description>(END(qses_structure_description, reserved)), "");
+static_assert(is_without_padding<qses_structure_description>(END(qses_structure_description, residues)), "");
 static_assert(is_without_padding<qses_atom>(END(qses_atom, reserved)), "");
 static_assert(is_without_padding<qses_trajectory_description>(END(qses_trajectory_description, reserved)), "");
 static_assert(is_without_padding<qses_frame>(END(qses_frame, box)), "");

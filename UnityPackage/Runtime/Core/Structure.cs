@@ -10,7 +10,7 @@ namespace QuickSes
     /// Dispose; keep the structure itself alive while they are used. Coordinates are those of the file, hence
     /// right-handed.
     /// </summary>
-    public sealed unsafe class Structure : IDisposable
+    public sealed unsafe partial class Structure : IDisposable
     {
         private readonly StructureHandle _handle;
         private readonly NativeStructureDescription _info;
@@ -79,6 +79,15 @@ namespace QuickSes
         /// </summary>
         public ReadOnlySpan<byte> FileElements => new ReadOnlySpan<byte>(Info.FileElements, FileAtomCount);
 
+        /// <summary>
+        /// N, rising from 0 by 1 at most: which residue an atom is of. Neighbours of the same chain, residue number,
+        /// insertion code and residue name are of one; in XYZR files each atom is one by itself.
+        /// </summary>
+        public ReadOnlySpan<uint> Residues => new ReadOnlySpan<uint>(Info.Residues, AtomCount);
+
+        /// <summary>Bytes of native memory that it takes until it is disposed of.</summary>
+        public long MemoryBytes => (long)Info.Memory;
+
         /// <summary>What the file says about atom i, from 0 to N - 1. Makes new strings.</summary>
         public StructureAtom GetAtom(int i)
         {
@@ -109,6 +118,8 @@ namespace QuickSes
 
         /// <summary>Frees the structure and everything it handed out. May be called twice.</summary>
         public void Dispose() => _handle.Dispose();
+
+        internal bool IsDisposed => _handle.IsClosed;
 
         private ref readonly NativeStructureDescription Info
         {

@@ -729,6 +729,10 @@ typedef struct qses_structure_description {
   const uint8_t *file_elements; /* M atomic numbers, also of atoms that were left out: for qses_trajectory_unwrap */
   uint32_t warning_count;       /* see qses_structure_warning */
   uint32_t reserved;            /* 0 */
+  uint64_t memory;              /* bytes that the structure takes until it is closed */
+  const uint32_t *residues; /* N, rising from 0 by 1 at most: which residue an atom is of. Neighbours of the same chain,
+                               residue number, insertion code and residue name are of one; in XYZR files each atom
+                               is one by itself */
 } qses_structure_description;
 
 /* Empty view with struct_size set. NULL is ignored. */
@@ -762,6 +766,18 @@ static inline void qses_atom_init(qses_atom *atom) { qses_clear(atom, sizeof *at
  * grow as other structures do: in an array the library's size of an element would have to be the caller's. Errors:
  * INVALID_ARGUMENT. */
 QSES_API qses_status qses_structure_atom(const qses_structure *structure, uint32_t k, qses_atom *atom);
+
+/* Which atoms of the structure a selection names: mask[k] becomes 1 for those, 0 for others, as qses_set_visible takes
+ * it.
+ *   selection  as in the options; of the atoms that were kept, so what filters left out is not found. "": everything.
+ *              "/2" names a model by the number that the file gives it: of another model it names nothing
+ *   mask       room for count bytes
+ *   count      must be atom_count
+ *   selected   how many atoms are named, maybe none; may be NULL
+ * Errors: INVALID_ARGUMENT (a selection that can't be understood; an XYZR file, which has no names; count), after which
+ * mask is as it was; OUT_OF_MEMORY. */
+QSES_API qses_status qses_structure_select(const qses_structure *structure, const char *selection, uint8_t *mask,
+                                           size_t count, uint32_t *selected);
 
 /* A sentence for the user, such as one about elements that had to be inferred; k is below warning_count. Valid until
  * qses_structure_close. Errors: INVALID_ARGUMENT. */

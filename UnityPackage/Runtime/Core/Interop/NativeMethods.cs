@@ -161,6 +161,10 @@ namespace QuickSes.Interop
         public static extern QuickSesStatus qses_structure_atom(StructureHandle structure, uint k, NativeAtom* atom);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
+        public static extern QuickSesStatus qses_structure_select(
+            StructureHandle structure, byte* selection, byte* mask, UIntPtr count, uint* selected);
+
+        [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
         public static extern QuickSesStatus qses_structure_warning(StructureHandle structure, uint k, byte** sentence);
 
         // ---- trajectories

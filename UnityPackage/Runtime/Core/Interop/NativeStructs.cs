@@ -218,6 +218,8 @@ namespace QuickSes.Interop
         public byte* FileElements;
         public uint WarningCount;
         public uint Reserved;
+        public ulong Memory;
+        public uint* Residues;
     }
 
     [StructLayout(LayoutKind.Sequential)]

@@ -20,7 +20,10 @@ namespace QuickSes
         /// <summary>How many atoms there are.</summary>
         public int AtomCount => Session.Atoms.Count;
 
-        internal ReadOnlySpan<Vector3> Positions =>
+        /// <summary>
+        /// Where they are, as they were set last, in Å and Unity's axes, before the transform. Valid until they change.
+        /// </summary>
+        public ReadOnlySpan<Vector3> Positions =>
             MemoryMarshal.Cast<System.Numerics.Vector3, Vector3>(Session.Atoms.Positions);
 
         /// <summary>
@@ -33,6 +36,8 @@ namespace QuickSes
         {
             bool haveMoved = Session.Atoms.SetAtoms(Numbers(positions), radii);
             _isScriptFed = true;
+            if (!haveMoved)
+                LoseStructure();
             Changed(haveMoved ? SurfaceChange.Positions : SurfaceChange.Shape);
         }
 
@@ -103,6 +108,8 @@ namespace QuickSes
             var positions = new Vector3[structure.AtomCount];
             UnitySpace.FromFile(structure.Positions, positions);
             SetAtoms(positions, structure.Radii);
+            BorrowStructure(structure);
+            ShowSelectionOfNew(structure);
         }
 
         /// <summary>
@@ -116,17 +123,6 @@ namespace QuickSes
             Session.Atoms.SetSchemeColors(Numbers(colors));
             Changed(SurfaceChange.Appearance);
         }
-
-        /// <summary>Which atoms are shown. The surface is that of all atoms, cut open where they are hidden.</summary>
-        /// <param name="visible">N; empty: all.</param>
-        public void SetVisible(ReadOnlySpan<bool> visible)
-        {
-            Session.Atoms.SetVisible(visible);
-            Changed(SurfaceChange.Appearance);
-        }
-
-        /// <inheritdoc cref="SetVisible(ReadOnlySpan{bool})"/>
-        public void SetVisible(bool[] visible) => SetVisible(NotNull(visible, nameof(visible)));
 
         /// <summary>Texture coordinate 1 of the atoms, for their vertices.</summary>
         /// <param name="texcoords">N; empty: the mesh has none.</param>
@@ -163,12 +159,10 @@ namespace QuickSes
                 Session.RaiseEvents();
                 return false;
             }
-            using (structure)
-            {
-                if (withAtoms)
-                    SetAtomsOf(structure);
-                ColorAtomsOf(structure, _source.ColorScheme);
-            }
+            if (withAtoms)
+                SetAtomsOf(structure);
+            ColorAtomsOf(structure, _source.ColorScheme);
+            TakeStructure(structure);
             _isScriptFed = false;
             return true;
         }
@@ -178,6 +172,7 @@ namespace QuickSes
 
         private void Clear()
         {
+            LoseStructure();
             Session.Clear();
             Shown.Clear();
         }

@@ -36,6 +36,7 @@ namespace QuickSes
         // The picture stays, as that of other components that are switched off.
         private void OnDisable()
         {
+            CloseStructure();
             if (_session != null && !_session.IsDisposed)
                 _session.Drop();
         }
@@ -43,6 +44,7 @@ namespace QuickSes
         private void OnDestroy()
         {
             _isDestroyed = true;
+            CloseStructure();
             _session?.Dispose();
             _session = null;
         }
@@ -114,6 +116,8 @@ namespace QuickSes
         private void FollowEdits()
         {
             AttachMeshUnlessBaked();
+            if (VisibleSelection != (_followedVisible ?? ""))
+                FollowVisible();
             if (_isScriptFed)
                 return;
             if (_source.IsSet)

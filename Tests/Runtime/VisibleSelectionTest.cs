@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT
+using NUnit.Framework;
+using System.Collections;
+using System.Text.RegularExpressions;
+using UnityEngine;
+using UnityEngine.TestTools;
+
+namespace QuickSes.Tests
+{
+    /// <summary>Which atoms are shown, by selections; and the structure that they are looked up in.</summary>
+    internal sealed class VisibleSelectionTest
+    {
+        private const string Chains =
+            "ATOM      1  N   ALA A   1       0.000   0.000   0.000  1.00  0.00           N\n" +
+            "ATOM      2  CA  ALA A   1       1.400   0.000   0.000  1.00  0.00           C\n" +
+            "ATOM      3  N   GLY A   2       5.000   0.000   0.000  1.00  0.00           N\n" +
+            "ATOM      4  N   GLY B   1      12.000   0.000   0.000  1.00  0.00           N\n" +
+            "HETATM    5 ZN    ZN B   9      15.000   0.000   0.000  1.00  0.00          ZN\nEND\n";
+
+        private SurfaceRig _rig;
+
+        private MolecularSurface Surface => _rig.Surface;
+
+        [SetUp]
+        public void SetUp() => _rig = new SurfaceRig();
+
+        [TearDown]
+        public void TearDown() => _rig.Dispose();
+
+        [UnityTest]
+        public IEnumerator ASelectionHidesTheOthers()
+        {
+            Load(Chains);
+            yield return _rig.Settle();
+            int all = Triangles();
+            Assert.That(Surface.SetVisible("//B"), Is.True);
+            yield return _rig.Settle();
+            int ofB = Triangles();
+            Assert.That(ofB, Is.InRange(1, all - 1));
+            Assert.That(Surface.SetVisible("//!B"), Is.True);
+            yield return _rig.Settle();
+            Assert.That(Triangles(), Is.EqualTo(all - ofB), "A and B don't touch");
+            Assert.That(Surface.SetVisible("//C"), Is.True);
+            yield return _rig.Settle();
+            Assert.That(Triangles(), Is.EqualTo(0));
+            Surface.VisibleSelection = "";
+            yield return _rig.Settle();
+            Assert.That(Triangles(), Is.EqualTo(all));
+            Assert.That(Surface.VisibleSelectionError, Is.Empty);
+        }
+
+        [UnityTest]
+        public IEnumerator WhatCantBeUnderstoodChangesNothing()
+        {
+            Load(Chains);
+            Surface.SetVisible("//B");
+            yield return _rig.Settle();
+            int ofB = Triangles();
+            Assert.That(Surface.SetVisible("//[["), Is.False);
+            Assert.That(Surface.VisibleSelectionError, Does.Contain("//[["));
+            yield return _rig.Settle();
+            Assert.That(Triangles(), Is.EqualTo(ofB));
+            Assert.That(() => Surface.SetVisible((string)null), Throws.ArgumentNullException);
+        }
+
+        [UnityTest]
+        public IEnumerator ItHoldsForFilesThatAreReadLater()
+        {
+            Assert.That(Surface.SetVisible("//B"), Is.True, "there are no atoms yet");
+            Load(Chains);
+            yield return _rig.Settle();
+            int ofB = Triangles();
+            Surface.SetVisible("");
+            yield return _rig.Settle();
+            Assert.That(Triangles(), Is.GreaterThan(ofB));
+
+            Surface.SetVisible("//B");
+            Load(Chains.Replace("END", "ATOM      6  N   GLY A   3      30.000   0.000   0.000  1.00  0.00           N\nEND"));
+            yield return _rig.Settle();
+            Assert.That(Surface.AtomCount, Is.EqualTo(6));
+            Assert.That(Triangles(), Is.EqualTo(ofB));
+        }
+
+        [UnityTest]
+        public IEnumerator AMaskAndASelectionReplaceEachOther()
+        {
+            Load(Chains);
+            Surface.SetVisible("//B");
+            Surface.SetVisible(new[] { true, false, false, false, false });
+            yield return _rig.Settle();
+            int ofOne = Triangles();
+            Surface.SetVisible("//A/1/N");
+            yield return _rig.Settle();
+            Assert.That(Triangles(), Is.EqualTo(ofOne));
+            Surface.SetVisible("//A");
+            yield return _rig.Settle();
+            Assert.That(Triangles(), Is.GreaterThan(ofOne));
+        }
+
+        [Test]
+        public void AtomsOfScriptsHaveNoNames()
+        {
+            Surface.SetAtoms(new[] { Vector3.zero }, new[] { 1.5f });
+            Assert.That(Surface.Structure, Is.Null);
+            Assert.That(Surface.SetVisible("//A"), Is.False);
+            Assert.That(Surface.VisibleSelectionError, Does.Contain("names"));
+            Assert.That(Surface.SetVisible(""), Is.True);
+            Assert.That(Surface.VisibleSelectionError, Is.Empty);
+        }
+
+        [Test]
+        public void ASelectionThatWasSavedAndIsWrongIsTold()
+        {
+            Surface.SetVisible("//[[");
+            LogAssert.Expect(LogType.Warning, new Regex("all atoms are shown.*//\\[\\["));
+            Load(Chains);
+            Assert.That(Surface.VisibleSelectionError, Does.Contain("//[["));
+        }
+
+        [Test]
+        public void TheStructureStaysOpenWhileSomebodyAsks()
+        {
+            Assert.That(Surface.Structure, Is.Null);
+            Load(Chains);
+            Structure first = Surface.Structure;
+            Assert.That(first.GetAtom(4).Name, Is.EqualTo("ZN"));
+            Assert.That(Surface.Structure, Is.SameAs(first), "it is not read anew for each question");
+            Assert.That(first.MemoryBytes, Is.InRange(5 * 50, 5 * 5000));
+
+            Load(Chains.Replace("ZN    ZN", "MG    MG"));
+            Assert.That(first.IsDisposed);
+            Structure second = Surface.Structure;
+            Assert.That(second.GetAtom(4).Name, Is.EqualTo("MG"));
+            Surface.CloseStructure();
+            Assert.That(second.IsDisposed);
+            Assert.That(Surface.Structure.GetAtom(4).Name, Is.EqualTo("MG"));
+
+            Structure third = Surface.Structure;
+            Surface.enabled = false;
+            Assert.That(third.IsDisposed);
+            Surface.enabled = true;
+            third = Surface.Structure;
+            Object.DestroyImmediate(_rig.GameObject);
+            Assert.That(third.IsDisposed);
+        }
+
+        [Test]
+        public void TheStructureGoesWithItsAtoms()
+        {
+            Load(Chains);
+            Structure structure = Surface.Structure;
+            var moved = new Vector3[5];
+            Surface.SetPositions(moved);
+            Surface.SetAtoms(moved, structure.Radii.ToArray());
+            Assert.That(Surface.Structure, Is.SameAs(structure), "the same atoms have moved");
+            Surface.SetAtoms(new Vector3[3], new[] { 1f, 1, 1 });
+            Assert.That(structure.IsDisposed);
+            Assert.That(Surface.Structure, Is.Null);
+            Load(Chains);
+            structure = Surface.Structure;
+            Surface.ClearAtoms();
+            Assert.That(structure.IsDisposed);
+            Assert.That(Surface.Structure, Is.Null);
+        }
+
+        [Test]
+        public void AFileThatBecameAnotherIsToldOnce()
+        {
+            string path = System.IO.Path.GetTempFileName();
+            try
+            {
+                System.IO.File.WriteAllText(path, Chains);
+                Surface.Source.SetFile(path);
+                Surface.Source.Format = StructureFormat.Pdb;
+                Assert.That(Surface.LoadSource(), Is.True, Surface.LastError.ToString());
+                System.IO.File.WriteAllText(path, Chains.Substring(Chains.IndexOf('\n') + 1));
+                LogAssert.Expect(LogType.Warning, new Regex("4 atoms now, not 5"));
+                Assert.That(Surface.Structure, Is.Null);
+                Assert.That(Surface.Structure, Is.Null);
+                Assert.That(Surface.SetVisible("//A"), Is.False);
+            }
+            finally
+            {
+                System.IO.File.Delete(path);
+            }
+        }
+
+        private void Load(string pdb)
+        {
+            Surface.Source.SetAsset(new TextAsset(pdb) { name = "chains.pdb" });
+            Assert.That(Surface.LoadSource(), Is.True, Surface.LastError.ToString());
+        }
+
+        private int Triangles() => Surface.CurrentLevel.TriangleCount;
+    }
+}

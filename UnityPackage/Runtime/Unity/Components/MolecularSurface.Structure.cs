@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+// The structure that the atoms are of: their names, for whoever asks. Here is decided how long it stays open.
+using System;
+using UnityEngine;
+
+namespace QuickSes
+{
+    public sealed partial class MolecularSurface
+    {
+        [NonSerialized] private Structure _structure; // of the atoms there are; null: not open
+        [NonSerialized] private bool _ownsStructure; // else it is a player's
+        [NonSerialized] private bool _keepsStructure; // somebody asked for it
+        [NonSerialized] private bool _areAtomsOfSource;
+
+        /// <summary>
+        /// What the file says about the atoms, in their order: names, residues, chains, selections. null if they are not of
+        /// a file, but given by a script. The surface's, not the caller's to dispose of; ask again rather than keep it.
+        /// <para>The first question reads the file again, which blocks; from then on the structure stays open, and is
+        /// exchanged when the source is read anew, until other atoms are set, the component is disabled or destroyed,
+        /// or <see cref="CloseStructure"/>. <see cref="Structure.MemoryBytes"/> tells what that costs: about 200 bytes
+        /// per atom. Of atoms that a <see cref="TrajectoryPlayer"/> brings, it is the player's, which is open
+        /// anyway.</para>
+        /// </summary>
+        public Structure Structure
+        {
+            get
+            {
+                if (_structure != null && _structure.IsDisposed)
+                    ForgetStructure();
+                if (_structure == null && _areAtomsOfSource)
+                    ReadStructureAgain();
+                return _structure;
+            }
+        }
+
+        /// <summary>Frees what <see cref="Structure"/> opened, until somebody asks again.</summary>
+        public void CloseStructure()
+        {
+            ForgetStructure();
+            _keepsStructure = false;
+        }
+
+        /// <summary>The atoms there are now are of that structure, which its owner closes.</summary>
+        private void BorrowStructure(Structure structure)
+        {
+            ForgetStructure();
+            _structure = structure;
+            _areAtomsOfSource = false;
+        }
+
+        /// <summary>The atoms there are now are of the source; nobody else closes its structure.</summary>
+        private void TakeStructure(Structure structure)
+        {
+            ForgetStructure();
+            _areAtomsOfSource = true;
+            _ownsStructure = _keepsStructure;
+            if (_keepsStructure)
+                _structure = structure;
+            else
+                structure.Dispose();
+        }
+
+        /// <summary>There are other atoms.</summary>
+        private void LoseStructure()
+        {
+            ForgetStructure();
+            _areAtomsOfSource = false;
+        }
+
+        private void ForgetStructure()
+        {
+            if (_ownsStructure)
+                _structure.Dispose();
+            _structure = null;
+            _ownsStructure = false;
+        }
+
+        // The file may be another one by now.
+        private void ReadStructureAgain()
+        {
+            string fault = null;
+            if (!_loadedSource.TryOpen(out Structure structure, out QuickSesError error))
+                fault = error.Message;
+            else if (structure.AtomCount != AtomCount)
+                fault = $"it has {structure.AtomCount} atoms now, not {AtomCount}";
+            if (fault == null)
+            {
+                _structure = structure;
+                _ownsStructure = _keepsStructure = true;
+                return;
+            }
+            structure?.Dispose();
+            _areAtomsOfSource = false; // told once
+            Debug.LogWarning($"{name}: the file of its atoms can't be read again: {fault}", this);
+        }
+    }
+}
