@@ -25,6 +25,7 @@ int take_surface(qses_context *context, qses_mesh *mesh);
 int stop(qses_context *context);
 int compute_on_device(qses_context *context, qses_device_mesh *mesh);
 int load_atoms(qses_context *context, const char *path);
+int show_chain(qses_context *context, const qses_structure *structure);
 int print_areas(qses_context *context, const void *bytes, size_t size, qses_trajectory_format format);
 
 static int failures = 0;
@@ -77,6 +78,7 @@ static void write_trajectory(void) {
 }
 
 static void run_api_page(qses_context *context, const char *path) {
+  qses_structure *structure;
   static const struct ball balls[] = {{0, 0, 0, 1.7f}, {1.5f, 0, 0, 1.55f}, {0, 1.4f, 0, 1.52f}};
   static const float radii[] = {1.7f, 1.55f, 1.52f};
   static const float frame[] = {9, 9, 9, 0, 0, 0, 1.5f, 0, 0, 9, 9, 9, 0, 1.4f, 0};
@@ -115,6 +117,9 @@ static void run_api_page(qses_context *context, const char *path) {
 
   CHECK(load_atoms(context, path) == 0);
   CHECK(load_atoms(context, "nowhere.pdb") == 1);
+  CHECK(qses_structure_open(path, NULL, &structure) == QSES_OK);
+  CHECK(show_chain(context, structure) == 0);
+  qses_structure_close(structure);
   CHECK(take_surface(context, &mesh) == 0);
   CHECK(ask_for_surface(context, 7) == QSES_OK);
   while (taken == 0 || mesh.level + 1 < mesh.level_count) {

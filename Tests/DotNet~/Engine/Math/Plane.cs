@@ -19,6 +19,8 @@ namespace UnityEngine
 
         public float distance { get; set; }
 
+        public readonly Plane flipped => new Plane(-normal, -distance);
+
         public readonly float GetDistanceToPoint(Vector3 point) => Vector3.Dot(normal, point) + distance;
 
         public readonly bool GetSide(Vector3 point) => GetDistanceToPoint(point) > 0;
