@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 using NUnit.Framework;
 using System.Collections;
+using System.Text.RegularExpressions;
 using UnityEngine;
 using UnityEngine.TestTools;
 
@@ -63,6 +64,34 @@ namespace QuickSes.Tests
             });
             Assert.That(_rig.Failures, Is.Not.Empty);
             Assert.That(_rig.Levels, Has.All.Matches<SurfaceLevel>(level => level.VertexCount > 0));
+        }
+
+        [UnityTest]
+        public IEnumerator BadFramesAreOneLineInTheLogUntilAGoodOneComes()
+        {
+            TestMolecules.Blob(40, 2, out Vector3[] positions, out float[] radii);
+            var scene = new GameObject("quiet");
+            var surface = scene.AddComponent<MolecularSurface>();
+            int shown = 0;
+            surface.SurfaceUpdated += level => ++shown;
+            surface.SetAtoms(positions, radii);
+            yield return SurfaceRig.Until(() => shown > 0 && !surface.IsBusy);
+            for (int series = 0; series < 2; ++series)
+            {
+                LogAssert.Expect(LogType.Error, new Regex("^quiet: .*position")); // one: another would fail the test
+                for (int frame = 0; frame < 60; ++frame)
+                {
+                    var bad = (Vector3[])positions.Clone();
+                    bad[frame % 40].x = float.NaN;
+                    surface.SetPositions(bad);
+                    yield return SurfaceRig.Until(() => !surface.IsBusy);
+                    Assert.That(surface.LastError.Message, Is.Not.Empty);
+                }
+                shown = 0;
+                surface.SetPositions(positions);
+                yield return SurfaceRig.Until(() => shown > 0 && !surface.IsBusy);
+            }
+            UnityEngine.Object.DestroyImmediate(scene);
         }
 
         [UnityTest]

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: MIT
 using System;
-using System.Runtime.InteropServices;
 
 namespace QuickSes.Interop
 {
     /// <summary>Whether the native library is there and is the one these declarations were written after.</summary>
     internal static class NativeLibraryCheck
     {
-        /// <summary>What "Add package from git URL" takes: the repository of package.json, and its branch of releases.</summary>
-        private const string PackageUrl = "https://example.org/quickses-for-unity.git#upm";
-
         private const string Library = NativeMethods.Library;
         private static volatile bool s_isUsable;
 
@@ -21,6 +17,9 @@ namespace QuickSes.Interop
             reason = "";
             if (s_isUsable)
                 return true;
+            reason = PlatformText.Refusal;
+            if (reason.Length > 0)
+                return false;
             try
             {
                 uint version = NativeMethods.qses_abi_version();
@@ -31,17 +30,12 @@ namespace QuickSes.Interop
             }
             catch (DllNotFoundException e)
             {
-                reason = $"The native library {Library} can't be loaded on {Platform()}: it is missing, or " +
-                         "made for another system, or something that it needs is missing (Windows and Linux on " +
-                         "x86-64 are supported; on Linux, glibc 2.35 or later is needed, as in Ubuntu 22.04). A " +
-                         "checkout of the project has none until it is built (Documentation~/building.md). The " +
-                         "package with its libraries: Package Manager > + > Add package from git URL > " +
-                         $"{PackageUrl} . {e.Message}";
+                reason = PlatformText.NotLoaded(Reason(e));
             }
             catch (BadImageFormatException e)
             {
                 reason = $"The native library {Library} is made for another processor architecture or " +
-                         $"system than {Platform()}. {e.Message}";
+                         $"system than {PlatformText.Name}. {e.Message}";
             }
             catch (EntryPointNotFoundException e)
             {
@@ -50,7 +44,7 @@ namespace QuickSes.Interop
             }
             catch (Exception e)
             {
-                reason = $"The native library {Library} can't be used on {Platform()}: {e.Message}";
+                reason = $"The native library {Library} can't be used on {PlatformText.Name}: {e.Message}";
             }
             return false;
         }
@@ -61,7 +55,11 @@ namespace QuickSes.Interop
                 throw new QuickSesException(QuickSesStatus.BackendUnavailable, reason);
         }
 
-        private static string Platform() =>
-            $"{RuntimeInformation.OSDescription.Trim()} ({RuntimeInformation.ProcessArchitecture})";
+        // Mono says "assembly:<unknown assembly>" instead of a reason.
+        private static string Reason(DllNotFoundException e)
+        {
+            string asked = e.Message.Contains("<unknown assembly>") ? LibraryProbe.Ask(Library) : "";
+            return asked.Length > 0 ? asked : e.Message;
+        }
     }
 }

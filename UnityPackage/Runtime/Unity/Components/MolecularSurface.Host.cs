@@ -7,6 +7,8 @@ namespace QuickSes
 {
     public sealed partial class MolecularSurface : ISurfaceHost
     {
+        private QuickSesError _loggedFailure; // since a surface came last
+
         // The engine tells components that were never enabled nothing, not even that they are destroyed.
         bool ISurfaceHost.IsGone => this == null;
 
@@ -33,7 +35,11 @@ namespace QuickSes
             return level;
         }
 
-        void ISurfaceHost.OnUpdated(in SurfaceLevel level) => SurfaceUpdated?.Invoke(level);
+        void ISurfaceHost.OnUpdated(in SurfaceLevel level)
+        {
+            _loggedFailure = default;
+            SurfaceUpdated?.Invoke(level);
+        }
 
         void ISurfaceHost.OnFinished() => RefinementFinished?.Invoke();
 
@@ -41,10 +47,20 @@ namespace QuickSes
         {
             if (Failed != null)
                 Failed(error);
-            else
+            else if (IsNewInTheLog(error))
                 Debug.LogError($"{name}: {error.Message}", this);
         }
 
         void ISurfaceHost.OnDisposed() => _shown.Dispose();
+
+        // Bad frames of a trajectory come at its rate, each with the number of another atom: one line for all of them, until
+        // a surface comes again. Files that can't be read are few, and each has its own line.
+        private bool IsNewInTheLog(in QuickSesError error)
+        {
+            bool isNew = error.Status != _loggedFailure.Status ||
+                (error.Status == QuickSesStatus.FileError && error.Message != _loggedFailure.Message);
+            _loggedFailure = error;
+            return isNew;
+        }
     }
 }

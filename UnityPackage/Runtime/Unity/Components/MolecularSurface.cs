@@ -85,7 +85,8 @@ namespace QuickSes
         public event Action RefinementFinished;
 
         /// <summary>
-        /// There is no surface of the newest atoms; the last good one stays. Without listeners it is logged.
+        /// There is no surface of the newest atoms; the last good one stays. Without listeners it is logged, once until a
+        /// surface comes again.
         /// </summary>
         public event Action<QuickSesError> Failed;
 

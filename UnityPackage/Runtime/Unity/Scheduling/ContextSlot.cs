@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+using QuickSes.Interop;
 using System;
 using System.Threading;
 
@@ -11,11 +12,12 @@ namespace QuickSes
     /// </summary>
     internal sealed class ContextSlot
     {
-        private static readonly WaitCallback s_create = slot => ((ContextSlot)slot).Create();
-        private static readonly WaitCallback s_dispose = slot => ((ContextSlot)slot).Dispose();
+        private static readonly ParameterizedThreadStart s_create = slot => ((ContextSlot)slot).Create();
+        private static readonly ParameterizedThreadStart s_dispose = slot => ((ContextSlot)slot).Dispose();
         private static int s_nativeContexts;
 
         private readonly SurfaceContextOptions _options;
+        private readonly object _change = new object(); // pulsed when it is ready, and when it is disposed
         private volatile bool _isReady;
         private volatile bool _isDisposed;
         private QuickSesError _error;
@@ -58,21 +60,32 @@ namespace QuickSes
 
         public uint SentAppearance { get; set; }
 
-        public void CreateInBackground() => ThreadPool.UnsafeQueueUserWorkItem(s_create, this);
+        /// <summary>
+        /// Where there is no library, that is found out at once: nobody waits for a thread then, and none is needed, which
+        /// players for the web do not have.
+        /// </summary>
+        public void CreateInBackground()
+        {
+            if (!NativeLibraryCheck.IsUsable(out string reason))
+                SetReady(null, new QuickSesError(QuickSesStatus.BackendUnavailable, reason));
+            else if (!TryStart(s_create))
+                SetReady(null, new QuickSesError(QuickSesStatus.InternalError, "no thread can be started"));
+        }
 
         public void Create()
         {
+            SurfaceContext context = null;
+            QuickSesError error;
             try
             {
-                if (SurfaceContext.TryCreate(_options, out SurfaceContext context, out _error))
+                if (SurfaceContext.TryCreate(_options, out context, out error))
                     Interlocked.Increment(ref s_nativeContexts);
-                Context = context;
             }
-            catch (Exception e) // on a thread of the pool it would end the program
+            catch (Exception e) // on a thread of its own it would end the program
             {
-                _error = new QuickSesError(QuickSesStatus.InternalError, e.Message);
+                error = new QuickSesError(QuickSesStatus.InternalError, e.Message);
             }
-            _isReady = true;
+            SetReady(context, error);
         }
 
         /// <summary>Ends its job, if there is one, as soon as it can; does not wait.</summary>
@@ -82,7 +95,11 @@ namespace QuickSes
                 Context?.Cancel();
         }
 
-        public void DisposeInBackground() => ThreadPool.UnsafeQueueUserWorkItem(s_dispose, this);
+        public void DisposeInBackground()
+        {
+            if ((_isReady && Context == null) || !TryStart(s_dispose))
+                Dispose();
+        }
 
         /// <summary>Frees the context; waits for it to be made first.</summary>
         public void Dispose()
@@ -93,17 +110,46 @@ namespace QuickSes
                 Context.Dispose();
                 Interlocked.Decrement(ref s_nativeContexts);
             }
-            _isDisposed = true;
+            lock (_change)
+            {
+                _isDisposed = true;
+                Monitor.PulseAll(_change);
+            }
         }
 
         /// <summary>After <see cref="DisposeInBackground"/>.</summary>
         public void WaitUntilDisposed() => WaitUntil(true);
 
+        private void SetReady(SurfaceContext context, in QuickSesError error)
+        {
+            lock (_change)
+            {
+                Context = context;
+                _error = error;
+                _isReady = true;
+                Monitor.PulseAll(_change);
+            }
+        }
+
         private void WaitUntil(bool disposed)
         {
-            var wait = new SpinWait();
-            while (!(disposed ? _isDisposed : _isReady))
-                wait.SpinOnce();
+            lock (_change)
+                while (!(disposed ? _isDisposed : _isReady))
+                    Monitor.Wait(_change);
+        }
+
+        // Not one of the shared pool: when a game has filled that with its own work, nothing else gets a thread for seconds.
+        private bool TryStart(ParameterizedThreadStart start)
+        {
+            try
+            {
+                new Thread(start) { IsBackground = true, Name = "QuickSES context" }.Start(this);
+                return true;
+            }
+            catch (Exception) // no memory, or no threads at all
+            {
+                return false;
+            }
         }
     }
 }
