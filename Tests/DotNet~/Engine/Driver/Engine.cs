@@ -38,6 +38,7 @@ namespace QuickSes.EngineDouble
             for (int i = ObjectRegistry.Objects.Count; i-- > 0; i = Math.Min(i, ObjectRegistry.Objects.Count))
                 ObjectRegistry.Objects[i].DestroyNow();
             DestructionQueue.Clear();
+            Resources.Assets.Clear();
             Time.Reset();
             BeforeReload = null;
             Application.isPlaying = true;
@@ -112,6 +113,11 @@ namespace QuickSes.EngineDouble
         /// Lets an object and those below it be a prefab that is open for editing, which does not play in play mode.
         /// </summary>
         public static void OpenAsPrefab(GameObject root) => root.IsInPrefabStage = true;
+
+        /// <summary>
+        /// Lets an object be an asset in a folder called Resources, until <see cref="Reset"/>; null: none.
+        /// </summary>
+        public static void PutIntoResources(string path, Object asset) => Resources.Assets[path] = asset;
 
         /// <summary>Edit mode with an empty scene.</summary>
         public static void EnterEditMode()

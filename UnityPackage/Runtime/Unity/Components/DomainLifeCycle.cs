@@ -11,6 +11,7 @@ namespace QuickSes
         private static void OnPlayModeBegins()
         {
             SurfaceScheduler.ReleaseInBackground();
+            SurfaceScheduler.ResetOptions();
             Application.quitting -= SurfaceScheduler.ReleaseContexts;
             Application.quitting += SurfaceScheduler.ReleaseContexts;
         }

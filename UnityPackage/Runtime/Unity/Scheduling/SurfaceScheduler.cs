@@ -9,7 +9,7 @@ namespace QuickSes
     /// First come, first served: surfaces that have something new before those that only get finer, and nobody is left
     /// waiting for ever. Main thread only.
     /// </summary>
-    public static class SurfaceScheduler
+    public static partial class SurfaceScheduler
     {
         private static readonly ContextPool[] s_pools = // by back end: Auto is one of its own
         {
@@ -20,35 +20,6 @@ namespace QuickSes
         private static readonly List<SurfaceSession> s_sessions = new List<SurfaceSession>();
         private const int MinOrphanCheck = 16;
         private static int s_orphanCheck = MinOrphanCheck; // at so many surfaces
-        private static int s_maxContexts = 4;
-
-        /// <summary>
-        /// The most contexts per back end, at least 1; default 4. Each keeps memory for its largest surface. More let
-        /// more surfaces be computed at a time. <see cref="MolecularSurface.ComputeNow"/> makes one more if all are
-        /// lent, which is freed afterwards. Of fewer, those that are too many are freed as they are given back.
-        /// </summary>
-        public static int MaxContexts
-        {
-            get => s_maxContexts;
-            set => s_maxContexts = value >= 1
-                ? value
-                : throw new ArgumentOutOfRangeException(nameof(value), value, "at least one context is needed");
-        }
-
-        /// <summary>
-        /// CPU threads of each context made from now on; default: one less than there are, so that the game keeps one,
-        /// but at least two. 0: all.
-        /// </summary>
-        public static uint Threads { get; set; } = (uint)Math.Max(2, Environment.ProcessorCount - 1);
-
-        /// <summary>
-        /// Bytes of work memory for each context made from now on (<see cref="SurfaceContextOptions.MemoryBudget"/>);
-        /// 0 (default): what is free.
-        /// </summary>
-        public static ulong MemoryBudget { get; set; }
-
-        /// <summary>CUDA device of contexts made from now on; default 0.</summary>
-        public static int Device { get; set; }
 
         /// <summary>Contexts that there are, or are being made.</summary>
         public static int ContextCount => s_pools[0].Count + s_pools[1].Count + s_pools[2].Count;

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+using UnityEngine;
+
+namespace QuickSes
+{
+    /// <summary>
+    /// The project's options of <see cref="SurfaceScheduler"/>: an asset of this name in a folder called Resources, so that
+    /// builds have it too. Edit > Project Settings > QuickSES makes and edits it; without it the defaults hold. What
+    /// scripts set at run time overrides it, until play mode begins again.
+    /// </summary>
+    public sealed class QuickSesSettings : ScriptableObject
+    {
+        /// <summary>The name of the asset, without extension, in any folder called Resources.</summary>
+        public const string AssetName = "QuickSesSettings";
+
+        private const ulong BytesPerMegabyte = 1000000;
+
+        [SerializeField, Min(1), Tooltip("The most contexts per back end. Each keeps memory for its largest surface; more " +
+            "let more surfaces be computed at a time.")]
+        private int _maxContexts = 4;
+        [SerializeField, Min(0), Tooltip("CPU threads of each context. 0: one less than there are processors, but at " +
+            "least two.")]
+        private int _threads;
+        [SerializeField, Min(0), Tooltip("Megabytes of work memory of each context. 0: what is free. Smaller budgets take " +
+            "longer and give the same mesh.")]
+        private int _memoryBudget;
+        [SerializeField, Min(0), Tooltip("Number of the CUDA device, from 0.")]
+        private int _device;
+
+        /// <summary>The project's; null: there is none, and the defaults hold. Main thread only.</summary>
+        public static QuickSesSettings Find() => Resources.Load<QuickSesSettings>(AssetName);
+
+        // What files hold may be out of range.
+        internal void CopyTo(ref SchedulerOptions options)
+        {
+            options.MaxContexts = Mathf.Max(_maxContexts, 1);
+            options.Threads = _threads > 0 ? (uint)_threads : SchedulerOptions.DefaultThreads;
+            options.MemoryBudget = (ulong)Mathf.Max(_memoryBudget, 0) * BytesPerMegabyte;
+            options.Device = Mathf.Max(_device, 0);
+        }
+    }
+
+    public static partial class SurfaceScheduler
+    {
+        static partial void ReadProjectOptions(ref SchedulerOptions options)
+        {
+            QuickSesSettings settings = QuickSesSettings.Find();
+            if (settings != null)
+                settings.CopyTo(ref options);
+        }
+    }
+}
