@@ -8,7 +8,7 @@ LITERAL = r"""@"(?:[^"]|"")*"|\$?"(?:[^"\\\n]|\\.)*"|'(?:[^'\\\n]|\\.)+'"""
 COMMENT = r"//[^\n]*|/\*.*?\*/|^\s*#[^\n]*"
 ATTRIBUTES = r"(?:\[[^\]]*\]\s*)*"
 TYPE = re.compile(rf"({ATTRIBUTES})(?:\b\w+\s+)*?\b(class|struct|enum)\s+(\w+)\s*(?::\s*([^{{]*))?\{{")
-FIELD = re.compile(rf"\[SerializeField\b[^\]]*\]\s*{ATTRIBUTES}(?:private|protected)\s+([\w.]+(?:\[\])?)\s+(\w+)")
+FIELD = re.compile(rf"\[SerializeField\b[^\]]*\]\s*{ATTRIBUTES}(?:private|protected)\s+([\w.]+(?:<[\w.]+>|\[\])?)\s+(\w+)")
 
 
 class CSharpType:

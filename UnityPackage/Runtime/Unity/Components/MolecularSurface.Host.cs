@@ -39,16 +39,24 @@ namespace QuickSes
         {
             _loggedFailure = default;
             SurfaceUpdated?.Invoke(level);
+            if (this != null) // handlers may destroy it
+                _events.SurfaceUpdated.Invoke();
         }
 
-        void ISurfaceHost.OnFinished() => RefinementFinished?.Invoke();
+        void ISurfaceHost.OnFinished()
+        {
+            RefinementFinished?.Invoke();
+            if (this != null)
+                _events.RefinementFinished.Invoke();
+        }
 
         void ISurfaceHost.OnFailed(in QuickSesError error)
         {
-            if (Failed != null)
-                Failed(error);
-            else if (IsNewInTheLog(error))
+            if (Failed == null && _events.Failed.GetPersistentEventCount() == 0 && IsNewInTheLog(error))
                 Debug.LogError($"{name}: {error.Message}", this);
+            Failed?.Invoke(error);
+            if (this != null)
+                _events.Failed.Invoke(error.Message);
         }
 
         void ISurfaceHost.OnDisposed() => _shown.Dispose();

@@ -63,7 +63,7 @@ namespace QuickSes
                 _asksForAtoms = false;
                 LoadSourceUnlessFed();
                 if (IsAlive && !Session.Atoms.IsSet && !_source.IsSet)
-                    _atomsRequested?.Invoke();
+                    RequestAtoms();
             }
             if (!IsAlive)
                 return;
@@ -72,6 +72,13 @@ namespace QuickSes
             if (!session.IsUpToDate)
                 QueueEditorUpdate();
             session.RaiseEvents();
+        }
+
+        private void RequestAtoms()
+        {
+            _atomsRequested?.Invoke();
+            if (IsAlive && !Session.Atoms.IsSet)
+                _events.AtomsRequested.Invoke();
         }
 
         private void AttachMesh()

@@ -67,6 +67,8 @@ namespace QuickSes
             "one, else the CPU.")]
         private SurfaceBackend _backend = SurfaceBackend.Auto;
 
+        [SerializeField] private SurfaceEvents _events = new SurfaceEvents();
+
         // Not serialised, so it is gone after a domain reload, like the native memory it stands for.
         [NonSerialized] private SurfaceSession _session;
         [NonSerialized] private ShownSurface _shown;
@@ -106,6 +108,9 @@ namespace QuickSes
         }
 
         private event Action _atomsRequested;
+
+        /// <summary>The same events as UnityEvents, which can be wired in the inspector.</summary>
+        public SurfaceEvents Events => _events;
 
         /// <summary>
         /// Whether surfaces can be computed here, and if not, why. Never throws, and takes no time.

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+using NUnit.Framework;
+using System.Collections;
+using UnityEngine;
+using UnityEngine.TestTools;
+using Object = UnityEngine.Object;
+
+namespace QuickSes.Tests
+{
+    /// <summary>UnityEvents tell what the C# events tell, right after them.</summary>
+    internal sealed class UnityEventsTest
+    {
+        private SurfaceRig _rig;
+        private int _updated, _finished, _requested;
+        private string _failed;
+
+        [SetUp]
+        public void SetUp()
+        {
+            _updated = _finished = _requested = 0;
+            _failed = null;
+            _rig = new SurfaceRig();
+            SurfaceEvents events = _rig.Surface.Events;
+            events.SurfaceUpdated.AddListener(() => Assert.That(++_updated, Is.EqualTo(_rig.Levels.Count)));
+            events.RefinementFinished.AddListener(() => Assert.That(++_finished, Is.EqualTo(_rig.Finished)));
+            events.Failed.AddListener(message => _failed = message);
+            events.AtomsRequested.AddListener(() => Assert.That(++_requested, Is.EqualTo(_rig.Requests)));
+        }
+
+        [TearDown]
+        public void TearDown() => _rig.Dispose();
+
+        [UnityTest]
+        public IEnumerator EachIsRaised()
+        {
+            yield return SurfaceRig.Frames(3);
+            Assert.That(_requested, Is.EqualTo(1));
+            TestMolecules.Blob(60, 1, out Vector3[] positions, out float[] radii);
+            _rig.Surface.SetAtoms(positions, radii);
+            yield return _rig.Settle();
+            Assert.That((_updated, _finished), Is.EqualTo((_rig.Levels.Count, 1)));
+            Assert.That(_updated, Is.GreaterThan(0));
+            Assert.That(_failed, Is.Null);
+            positions[3].x = float.NaN;
+            _rig.Surface.SetPositions(positions);
+            yield return SurfaceRig.Until(() => _rig.Failures.Count > 0);
+            Assert.That(_failed, Is.EqualTo(_rig.Failures[0].Message));
+        }
+
+        [UnityTest]
+        public IEnumerator HandlersMayDestroyTheSurface()
+        {
+            GameObject doomed = _rig.GameObject;
+            _rig.Surface.Events.SurfaceUpdated.AddListener(() => Object.DestroyImmediate(doomed));
+            TestMolecules.Blob(60, 1, out Vector3[] positions, out float[] radii);
+            _rig.Surface.SetAtoms(positions, radii);
+            yield return SurfaceRig.Until(() => doomed == null);
+            yield return SurfaceRig.Frames(3);
+            Assert.That((_updated, _finished), Is.EqualTo((1, 0)));
+        }
+
+        [UnityTest]
+        public IEnumerator WhoAnswersInCodeIsNotAskedAgain()
+        {
+            _rig.Surface.AtomsRequested += () => _rig.Surface.SetAtoms(new[] { Vector3.zero }, new[] { 1.5f });
+            yield return _rig.Settle();
+            Assert.That(_rig.Requests, Is.EqualTo(1));
+            Assert.That(_requested, Is.EqualTo(0));
+        }
+    }
+}
