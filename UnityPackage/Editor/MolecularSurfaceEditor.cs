@@ -118,11 +118,17 @@ namespace QuickSes.Editor
                 }
                 using (new EditorGUI.DisabledScope(!_isSupported || targets.Length > 1))
                 {
-                    if (GUILayout.Button(new GUIContent("Bake to Mesh asset...",
+                    if (GUILayout.Button(new GUIContent("Bake to mesh...",
                         "Computes the finest surface and saves a copy of it that needs no component.")))
                     {
                         SurfaceBaker.BakeWithDialog((MolecularSurface)target);
                         GUIUtility.ExitGUI(); // the dialog ran its own events: this one is over
+                    }
+                    if (GUILayout.Button(new GUIContent("Bake to prefab...",
+                        "Saves it with its material as a prefab, which needs no component.")))
+                    {
+                        PrefabBaker.BakeWithDialog((MolecularSurface)target);
+                        GUIUtility.ExitGUI();
                     }
                 }
             }

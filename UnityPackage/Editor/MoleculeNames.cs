@@ -33,5 +33,12 @@ namespace QuickSes.Editor
                 name = name.Replace(refused, '_');
             return name.Length == 0 ? Default : name;
         }
+
+        /// <summary>Of the mesh asset that a baked prefab shows.</summary>
+        public static string MeshBeside(string prefabPath) => Path.ChangeExtension(prefabPath, null) + " mesh.asset";
+
+        /// <summary>Of the material asset k, from 0, of a baked prefab.</summary>
+        public static string MaterialBeside(string prefabPath, int k) =>
+            Path.ChangeExtension(prefabPath, null) + " material" + (k == 0 ? "" : $" {k + 1}") + ".mat";
     }
 }

@@ -26,13 +26,14 @@ namespace QuickSes.Editor
         public static bool TryBake(MolecularSurface surface, string assetPath, out Mesh asset, out string error) =>
             TryBake(surface, assetPath, null, out asset, out error);
 
-        private static bool TryBake(MolecularSurface surface, string assetPath, Func<bool> goesOn, out Mesh asset,
+        /// <param name="goesOn">If not null: called now and then; false ends it.</param>
+        internal static bool TryBake(MolecularSurface surface, string assetPath, Func<bool> goesOn, out Mesh asset,
             out string error)
         {
             if (surface == null)
                 throw new ArgumentNullException(nameof(surface));
             asset = null;
-            error = ErrorOf(assetPath);
+            error = ErrorOf(assetPath, Extension, typeof(Mesh));
             if (error.Length > 0 || !TryCompute(surface, goesOn, out error))
                 return false;
             if (surface.CurrentLevel.TriangleCount == 0)
@@ -74,24 +75,25 @@ namespace QuickSes.Editor
         }
 
         // The Editor shows what is going on, and lets the user end it, while other threads start the GPU and compute.
-        private static bool GoesOn(MolecularSurface surface) => !EditorUtility.DisplayCancelableProgressBar(
+        internal static bool GoesOn(MolecularSurface surface) => !EditorUtility.DisplayCancelableProgressBar(
             "Molecular Surface", surface.Progress > 0 ? "Computing the finest surface" : SurfaceStatus.Starting,
             surface.Progress);
 
-        private static string ErrorOf(string assetPath)
+        /// <summary>Why an asset of that type can't be saved there; "": it can.</summary>
+        internal static string ErrorOf(string assetPath, string extension, Type type)
         {
             if (assetPath == null)
                 throw new ArgumentNullException(nameof(assetPath));
             if (!assetPath.StartsWith("Assets/", StringComparison.Ordinal) ||
-                !assetPath.EndsWith(Extension, StringComparison.OrdinalIgnoreCase))
-                return $"'{assetPath}' is no path of the form Assets/....asset.";
+                !assetPath.EndsWith(extension, StringComparison.OrdinalIgnoreCase))
+                return $"'{assetPath}' is no path of the form Assets/...{extension}.";
             string folder = Path.GetDirectoryName(assetPath).Replace('\\', '/');
             if (!AssetDatabase.IsValidFolder(folder))
                 return $"There is no folder '{folder}'.";
             UnityEngine.Object present = AssetDatabase.LoadMainAssetAtPath(assetPath);
-            return present == null || present is Mesh
+            return present == null || type.IsInstanceOfType(present)
                 ? ""
-                : $"'{assetPath}' is there already and is no mesh but a {present.GetType().Name}.";
+                : $"'{assetPath}' is there already and is no {type.Name} but a {present.GetType().Name}.";
         }
 
         private static bool TryCompute(MolecularSurface surface, Func<bool> goesOn, out string error)

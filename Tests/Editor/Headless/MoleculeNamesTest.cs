@@ -23,5 +23,14 @@ namespace QuickSes.Tests
         [TestCase(null, "Molecular Surface")]
         public void AssetsAreCalledAsTheirObjectWithoutWhatFileSystemsRefuse(string objectName, string name) =>
             Assert.That(MoleculeNames.AssetNameOf(objectName), Is.EqualTo(name));
+
+        [Test]
+        public void WhatAPrefabNeedsLiesBesideIt()
+        {
+            const string path = "Assets/My.folder/protein.v2.prefab";
+            Assert.That(MoleculeNames.MeshBeside(path), Is.EqualTo("Assets/My.folder/protein.v2 mesh.asset"));
+            Assert.That(MoleculeNames.MaterialBeside(path, 0), Is.EqualTo("Assets/My.folder/protein.v2 material.mat"));
+            Assert.That(MoleculeNames.MaterialBeside(path, 1), Is.EqualTo("Assets/My.folder/protein.v2 material 2.mat"));
+        }
     }
 }
