@@ -140,9 +140,7 @@ namespace QuickSes.Samples
                 !_surface.TryPick(_camera.ScreenPointToRay(pixel), out int index, out Vector3 _) ||
                 index >= _player.Structure.AtomCount) // the surface shown may be of what was loaded before
                 return;
-            StructureAtom atom = _player.Structure.GetAtom(index);
-            string name = $"{atom.Name} of {atom.ResidueName} {atom.ResidueNumber}, chain {atom.Chain}";
-            GUI.Box(new Rect(mouse.x + 16, mouse.y, 200, 24), name);
+            GUI.Box(new Rect(mouse.x + 16, mouse.y, 200, 24), _player.Structure.GetAtom(index).ToString());
         }
 
         private static float Slider(string label, float value, float least, float most)

@@ -9,6 +9,7 @@ namespace QuickSes.Editor
     [CanEditMultipleObjects]
     internal sealed class MolecularSurfaceEditor : UnityEditor.Editor
     {
+        private readonly AtomUnderMouse _atomUnderMouse = new AtomUnderMouse();
         private bool _isSupported;
         private string _unsupportedReason;
         private bool _wasBusy;
@@ -35,7 +36,10 @@ namespace QuickSes.Editor
             if (targets.Length > 1)
                 SurfaceStatusPanel.DrawSums(targets);
             else
+            {
                 DrawStatus((MolecularSurface)target);
+                _atomUnderMouse.DrawToggle((MolecularSurface)target);
+            }
             DrawButtons();
         }
 
@@ -46,6 +50,13 @@ namespace QuickSes.Editor
             bool repaints = isBusy || _wasBusy;
             _wasBusy = isBusy;
             return repaints;
+        }
+
+        // Once for each of the selected surfaces, which is `target` then.
+        private void OnSceneGUI()
+        {
+            if (targets.Length == 1 && IsLive((MolecularSurface)target))
+                _atomUnderMouse.OnSceneGUI((MolecularSurface)target);
         }
 
         private void OnEnable() => _isSupported = MolecularSurface.IsSupported(out _unsupportedReason);

@@ -170,6 +170,24 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void AtomsSayWhatTheyAre()
+        {
+            using Structure all = Open(default);
+            Assert.That(all.GetAtom(1).ToString(), Is.EqualTo("CA of THR 1, chain A"));
+            byte[] inserted = System.Text.Encoding.ASCII.GetBytes(
+                "ATOM      1  N   GLY    -2C      9.000   0.000   0.000  1.00  0.00           N\n");
+            Assert.That(Structure.TryOpen(inserted, new StructureOptions { Format = StructureFormat.Pdb },
+                out Structure structure, out _), Is.True);
+            using (structure)
+                Assert.That(structure.GetAtom(0).ToString(), Is.EqualTo("N of GLY -2C"));
+            byte[] nameless = System.Text.Encoding.ASCII.GetBytes("0 0 0 1.5\n");
+            Assert.That(Structure.TryOpen(nameless, new StructureOptions { Format = StructureFormat.Xyzr },
+                out structure, out _), Is.True);
+            using (structure)
+                Assert.That(structure.GetAtom(0).ToString(), Is.Empty);
+        }
+
+        [Test]
         public void ResiduesAndMemory()
         {
             using Structure all = Open(default);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 using QuickSes.Interop;
+using System;
 
 namespace QuickSes
 {
@@ -47,5 +48,16 @@ namespace QuickSes
 
         /// <summary>Hydrogen or deuterium.</summary>
         public bool IsHydrogen { get; }
+
+        /// <summary>Such as "CA of ALA 12, chain A"; of a file without names, "".</summary>
+        public override string ToString()
+        {
+            if (Name.Length == 0 && ResidueName.Length == 0)
+                return "";
+            string place = FormattableString.Invariant($"{Name} of {ResidueName} {ResidueNumber}");
+            if (InsertionCode != ' ' && InsertionCode != '\0')
+                place += InsertionCode;
+            return Chain.Length == 0 ? place : $"{place}, chain {Chain}";
+        }
     }
 }
