@@ -225,7 +225,7 @@ namespace QuickSes.Tests
             prefetcher.Request(Order(10, 0));
             Assert.That(prefetcher.Get(0, out _, out _, out _), Is.EqualTo(FrameState.Pending));
             prefetcher.Dispose();
-            Assert.That(reader.IsDisposed && prefetcher.HasLeft, Is.True);
+            AssertLeaves(prefetcher, reader);
         }
 
         [Test]
@@ -238,7 +238,7 @@ namespace QuickSes.Tests
             Assert.That(error.Status, Is.EqualTo(QuickSesStatus.InternalError));
             Assert.That(error.Message, Does.Contain("thrown"));
             prefetcher.Dispose();
-            Assert.That(reader.IsDisposed && prefetcher.HasLeft, Is.True);
+            AssertLeaves(prefetcher, reader);
         }
 
         [Test]
@@ -255,42 +255,31 @@ namespace QuickSes.Tests
                 AssertShows(prefetcher, 0);
                 AssertShows(prefetcher, 2);
             }
-            Assert.That(reader.IsDisposed, Is.True);
+            WaitUntil(() => reader.IsDisposed, "the reader is given back");
         }
 
-        [Test]
-        public void DisposeDoesNotWaitForOpening()
+        // Its reader waits at the gate, and a timer would open it if somebody waited for that.
+        private static void DisposeAtTheClosedGate(FramePrefetcher prefetcher, CountingReader reader)
         {
-            var reader = new CountingReader(10) { WaitsOnOpening = true };
-            reader.Gate.Reset();
-            var prefetcher = new FramePrefetcher(reader, 5);
-            using (new Timer(_ => reader.Gate.Set(), null, 3000, Timeout.Infinite)) // ends a wait
+            using (new Timer(_ => reader.Gate.Set(), null, 3000, Timeout.Infinite))
                 prefetcher.Dispose();
-            Assert.That(prefetcher.HasLeft || reader.IsDisposed, Is.False);
-            reader.Gate.Set();
-            WaitUntil(() => prefetcher.HasLeft, "it has left by itself");
-            Assert.That(reader.IsDisposed, Is.True);
-            Assert.That(reader.ReadsSoFar(), Is.Empty);
+            Assert.That(reader.Gate.IsSet || prefetcher.HasLeft || reader.IsDisposed, Is.False);
         }
 
-        [Test]
-        public void DisposeAllWaitsForOpeningToo()
+        private static void AssertLeaves(FramePrefetcher prefetcher, CountingReader reader, params int[] reads)
         {
-            var disposed = new CountingReader(10) { WaitsOnOpening = true };
-            disposed.Gate.Reset();
-            var first = new FramePrefetcher(disposed, 5);
-            first.Dispose();
-            var inUse = new CountingReader(10);
-            var second = new FramePrefetcher(inUse, 5);
-            WaitUntilOpen(second);
-            using (new Timer(_ => disposed.Gate.Set(), null, 50, Timeout.Infinite))
-                FramePrefetcher.DisposeAll();
-            Assert.That(first.HasLeft && second.HasLeft, Is.True);
-            Assert.That(disposed.IsDisposed && inUse.IsDisposed, Is.True);
-            second.Dispose();
+            WaitUntil(() => prefetcher.HasLeft, "the thread has left by itself");
+            Assert.That(reader.IsDisposed, Is.True);
+            Assert.That(reader.ReadsSoFar(), Is.EqualTo(reads));
+            prefetcher.Dispose(); // once more does no harm
         }
 
-        // It reads a frame, and goes on once the gate is open.
+        private static FramePrefetcher StuckInOpening(CountingReader reader)
+        {
+            reader.Gate.Reset();
+            return new FramePrefetcher(reader, 5);
+        }
+
         private static FramePrefetcher StuckInARead(CountingReader reader)
         {
             var prefetcher = new FramePrefetcher(reader, 5);
@@ -300,35 +289,86 @@ namespace QuickSes.Tests
             return prefetcher;
         }
 
-        private static void AssertLeftAfterTheRead(FramePrefetcher prefetcher, CountingReader reader)
-        {
-            Assert.That(prefetcher.HasLeft, Is.True);
-            Assert.That(reader.IsDisposed, Is.True);
-            Assert.That(reader.ReadsSoFar(), Is.EqualTo(new[] { 0 }));
-            prefetcher.Dispose();
-        }
-
         [Test]
-        public void DisposeAllWaitsForTheRead()
+        public void DisposeDoesNotWaitForOpening()
         {
-            var reader = new CountingReader(10);
-            FramePrefetcher prefetcher = StuckInARead(reader);
-            using (new Timer(_ => reader.Gate.Set(), null, 50, Timeout.Infinite))
-                FramePrefetcher.DisposeAll();
-            AssertLeftAfterTheRead(prefetcher, reader);
-        }
-
-        [Test]
-        public void DisposeDoesNotWaitForAReadThatTakesLong()
-        {
-            var reader = new CountingReader(10);
-            FramePrefetcher prefetcher = StuckInARead(reader);
-            prefetcher.Dispose(); // returns although the read never ends
-            Assert.That(prefetcher.HasLeft, Is.False);
-            Assert.That(reader.IsDisposed, Is.False);
+            var reader = new CountingReader(10) { WaitsOnOpening = true };
+            FramePrefetcher prefetcher = StuckInOpening(reader);
+            DisposeAtTheClosedGate(prefetcher, reader);
             reader.Gate.Set();
-            WaitUntil(() => prefetcher.HasLeft, "the thread leaves");
-            AssertLeftAfterTheRead(prefetcher, reader);
+            AssertLeaves(prefetcher, reader);
+        }
+
+        [Test]
+        public void DisposeDoesNotWaitForARead()
+        {
+            var reader = new CountingReader(10);
+            FramePrefetcher prefetcher = StuckInARead(reader);
+            DisposeAtTheClosedGate(prefetcher, reader);
+            prefetcher.Request(Order(10, 5)); // too late
+            Assert.That(prefetcher.Get(5, out _, out _, out _), Is.EqualTo(FrameState.Pending));
+            reader.Gate.Set();
+            AssertLeaves(prefetcher, reader, 0);
+            prefetcher.Request(Order(10, 6));
+            Assert.That(prefetcher.Get(0, out _, out _, out _), Is.EqualTo(FrameState.Pending));
+        }
+
+        [Test]
+        public void ADomainIsNotUnloadedBeforeTheyHaveLeft()
+        {
+            var opening = new CountingReader(10) { WaitsOnOpening = true };
+            FramePrefetcher first = StuckInOpening(opening);
+            first.Dispose();
+            var reading = new CountingReader(10);
+            FramePrefetcher second = StuckInARead(reading);
+            var idle = new CountingReader(10);
+            var third = new FramePrefetcher(idle, 5);
+            WaitUntilOpen(third);
+            using (new Timer(_ => { opening.Gate.Set(); reading.Gate.Set(); }, null, 50, Timeout.Infinite))
+                BackgroundThread.SendAllAway();
+            Assert.That(first.HasLeft && second.HasLeft && third.HasLeft, Is.True);
+            Assert.That(opening.IsDisposed && reading.IsDisposed && idle.IsDisposed, Is.True);
+            AssertLeaves(second, reading, 0);
+        }
+
+        [Test]
+        public void FramesAreFoundAmongAnyOthers()
+        {
+            const int count = 7, atoms = 2;
+            var random = new System.Random(1);
+            using (var slots = new FrameSlots(count, atoms))
+            {
+                var frameOf = new int[count]; // what each slot has
+                Array.Fill(frameOf, -1);
+                for (int change = 0; change < 3000; ++change)
+                {
+                    // Few numbers, many of which share a bucket.
+                    FrameOrder order = Order(200, 16 * random.Next(12) + random.Next(2), PlaybackMode.Once,
+                        random.Next(2) == 0 ? 1 : -1);
+                    var wanted = Enumerable.Range(0, count).Select(step => order[step]).Where(f => f >= 0).ToList();
+                    bool isWork = slots.TryPlan(order, out int frame, out int slot);
+                    Assert.That(isWork, Is.EqualTo(wanted.Except(frameOf).Any()));
+                    if (!isWork)
+                        continue;
+                    Assert.That(frame, Is.EqualTo(wanted.First(f => !frameOf.Contains(f))));
+                    Assert.That(wanted, Has.No.Member(frameOf[slot]));
+                    if (frameOf.Contains(-1))
+                        Assert.That(frameOf[slot], Is.EqualTo(-1), "what is there stays while there is room");
+                    int gone = frameOf[slot];
+                    slots.Assign(slot, frame);
+                    frameOf[slot] = frame;
+                    Assert.That(slots.Get(frame, out _, out _, out _), Is.EqualTo(FrameState.Pending));
+                    slots.Positions(slot).Fill(new Vector3(frame, 0, 0));
+                    slots.Finish(slot, FrameState.Ready, default, default);
+                    Assert.That(slots.Get(gone, out _, out _, out _), Is.EqualTo(FrameState.Pending));
+                    foreach (int there in frameOf.Where(f => f >= 0))
+                    {
+                        slots.Get(there, out ReadOnlySpan<Vector3> positions, out _, out _);
+                        Assert.That(positions.ToArray(), Is.EqualTo(new Vector3[atoms].Select(
+                            _ => new Vector3(there, 0, 0))));
+                    }
+                }
+            }
         }
 
         [Test]

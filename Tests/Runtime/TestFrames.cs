@@ -158,6 +158,10 @@ namespace QuickSes.Tests
 
         public string Write(string name, string text) => Write(name, Encoding.ASCII.GetBytes(text));
 
-        public void Dispose() => Directory.Delete(Root, true);
+        public void Dispose()
+        {
+            BackgroundThread.SendAllAway(); // some systems delete no open files
+            Directory.Delete(Root, true);
+        }
     }
 }

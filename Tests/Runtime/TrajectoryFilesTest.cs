@@ -335,6 +335,7 @@ namespace QuickSes.Tests
             Structure structure = Player.Structure;
             Object.DestroyImmediate(_playing.GameObject);
             Assert.That(() => structure.AtomCount, Throws.TypeOf<System.ObjectDisposedException>());
+            BackgroundThread.SendAllAway(); // which let go of theirs a little later
             Assert.That(() => System.IO.File.Delete(Player.TrajectorySource.Path), Throws.Nothing);
         }
     }

@@ -9,6 +9,9 @@ namespace UnityEngine
     {
         public static event Action quitting;
 
+        /// <summary>The double is a player, but for <see cref="isPlaying"/>.</summary>
+        public static bool isEditor => false;
+
         public static bool isPlaying { get; internal set; } = true;
 
         public static string dataPath { get; internal set; } = Path.Combine(AppContext.BaseDirectory, "Assets");

@@ -14,6 +14,10 @@ namespace QuickSes
             SurfaceScheduler.ResetOptions();
             Application.quitting -= SurfaceScheduler.ReleaseContexts;
             Application.quitting += SurfaceScheduler.ReleaseContexts;
+            if (Application.isEditor)
+                return; // the domain stays, and so does the native library
+            Application.quitting -= BackgroundThread.SendAllAway;
+            Application.quitting += BackgroundThread.SendAllAway;
         }
 
         // Before a domain reload: what managed objects hold outside of the managed heap would be lost with them, and
@@ -21,7 +25,7 @@ namespace QuickSes
         internal static void OnDomainUnloads()
         {
             SurfaceScheduler.DisposeAll();
-            FramePrefetcher.DisposeAll();
+            BackgroundThread.SendAllAway();
         }
 
 #if UNITY_EDITOR
@@ -29,7 +33,7 @@ namespace QuickSes
         private static void OnEditorLoads()
         {
             UnityEditor.AssemblyReloadEvents.beforeAssemblyReload += OnDomainUnloads;
-            UnityEditor.EditorApplication.quitting += SurfaceScheduler.ReleaseContexts;
+            UnityEditor.EditorApplication.quitting += OnDomainUnloads;
         }
 #endif
     }

@@ -91,8 +91,8 @@ namespace QuickSes
         }
 
         /// <summary>
-        /// Closes structure and trajectory; the surface keeps what it shows. Waits for the frame that is being read,
-        /// for 50 ms at most, but not for a trajectory that is being opened. Disabling the component does the same.
+        /// Lets go of structure and trajectory; the surface keeps what it shows. Does not wait: the thread that reads
+        /// closes the trajectory's file after what it is at. Disabling the component does the same.
         /// </summary>
         public void Unload()
         {

@@ -1,30 +1,16 @@
 // SPDX-License-Identifier: MIT
 using System;
-using System.Collections.Generic;
-using System.Diagnostics;
-using System.Runtime.InteropServices;
 using System.Threading;
 using UnityEngine;
 
 namespace QuickSes
 {
-    /// <summary>How a frame that was asked for stands.</summary>
-    internal enum FrameState
-    {
-        /// <summary>Not read yet.</summary>
-        Pending,
-        /// <summary>There.</summary>
-        Ready,
-        /// <summary>It can't be read.</summary>
-        Damaged
-    }
-
     /// <summary>
     /// Opens a reader and reads frames ahead on a thread of its own, in the order they will be shown, into a fixed
     /// number of slots of unmanaged memory. Apart from opening and errors neither thread makes garbage. The thread owns
     /// reader and memory and gives both back as it leaves, so that they never vanish under a read.
     /// </summary>
-    internal sealed unsafe class FramePrefetcher : IDisposable
+    internal sealed unsafe class FramePrefetcher : BackgroundThread, IDisposable
     {
         /// <summary>Two frames to blend, and one to read into.</summary>
         public const int LeastSlots = 3;
@@ -32,32 +18,18 @@ namespace QuickSes
         /// <summary>What slots of large molecules take together at most, unless that is less than LeastSlots.</summary>
         public const long MemoryLimit = 256L << 20;
 
-        private struct Slot
-        {
-            public int Frame; // -1: none yet
-            public FrameState State;
-            public TrajectoryFrame Info;
-            public QuickSesError Error;
-        }
-
-        private const int LongestWait = 5000; // ms, before a domain is unloaded
-        private const int LongestPause = 50; // ms, in the middle of a game
-
-        // Those whose threads have not left yet. Guarded by itself.
-        private static readonly List<FramePrefetcher> s_alive = new List<FramePrefetcher>();
-
         private readonly FrameReader _reader;
         private readonly int _slotLimit;
         private readonly long _memoryLimit;
-        private readonly object _gate = new object();
         private readonly AutoResetEvent _wake = new AutoResetEvent(false);
-        private readonly Thread _thread;
 
-        // Guarded by _gate.
-        private Slot[] _slots = Array.Empty<Slot>();
-        private Vector3* _memory;
+        // Guarded by _gate, which is never held for longer than it takes to look at one slot. The thread alone changes
+        // _slots, so it looks at them without.
+        private readonly object _gate = new object();
+        private FrameSlots _slots;
         private FrameOrder _order;
-        private bool _hasOrder, _isStopping, _hasLeft;
+        private uint _orderVersion; // 0: none yet
+        private bool _isStopping, _hasFreed;
         private FrameState _opening = FrameState.Pending;
         private QuickSesError _openingError;
 
@@ -65,32 +37,12 @@ namespace QuickSes
         /// <param name="slots">How many frames are kept; fewer if they are large.</param>
         /// <param name="memoryLimit">Bytes.</param>
         public FramePrefetcher(FrameReader reader, int slots, long memoryLimit = MemoryLimit)
+            : base("QuickSES frames")
         {
             _memoryLimit = memoryLimit;
             _reader = reader;
             _slotLimit = Math.Max(LeastSlots, slots);
-            _thread = new Thread(Run) { IsBackground = true, Name = "QuickSES frames" };
-            lock (s_alive)
-            {
-                _thread.Start();
-                s_alive.Add(this);
-            }
-        }
-
-        /// <summary>
-        /// Disposes of all there are and waits for their threads, for 5 s at most. After it none runs code of a domain
-        /// that is unloaded.
-        /// </summary>
-        public static void DisposeAll()
-        {
-            FramePrefetcher[] alive;
-            lock (s_alive)
-                alive = s_alive.ToArray();
-            foreach (FramePrefetcher each in alive)
-                each.SendAway();
-            Stopwatch waited = Stopwatch.StartNew();
-            foreach (FramePrefetcher each in alive)
-                each._thread.Join((int)Math.Max(0, LongestWait - waited.ElapsedMilliseconds));
+            Start();
         }
 
         /// <summary>Whether the reader is open; Damaged: it can't be opened.</summary>
@@ -113,22 +65,19 @@ namespace QuickSes
         public string Warning { get; private set; }
 
         /// <summary>How many frames are kept; once it is open.</summary>
-        public int SlotCount => _slots.Length;
-
-        /// <summary>Whether the thread has left, and everything is given back.</summary>
-        internal bool HasLeft => !_thread.IsAlive;
+        public int SlotCount { get; private set; }
 
         /// <summary>Which frames are wanted from now on; others make room for them.</summary>
         public void Request(in FrameOrder order)
         {
             lock (_gate)
             {
-                if (_hasOrder && order.Equals(_order))
+                if (_orderVersion != 0 && order.Equals(_order))
                     return;
                 _order = order;
-                _hasOrder = true;
+                _orderVersion = Math.Max(1, unchecked(_orderVersion + 1));
+                Wake();
             }
-            _wake.Set();
         }
 
         /// <summary>
@@ -138,52 +87,33 @@ namespace QuickSes
         public FrameState Get(int frame, out ReadOnlySpan<Vector3> positions, out TrajectoryFrame info,
             out QuickSesError error)
         {
+            lock (_gate)
+            {
+                if (_slots != null)
+                    return _slots.Get(frame, out positions, out info, out error);
+            }
             positions = default;
             info = default;
             error = default;
-            lock (_gate)
-            {
-                int slot = Find(frame);
-                if (slot < 0)
-                    return FrameState.Pending;
-                ref readonly Slot found = ref _slots[slot];
-                if (found.State == FrameState.Ready)
-                    positions = Positions(slot);
-                info = found.Info;
-                error = found.Error;
-                return found.State;
-            }
+            return FrameState.Pending;
         }
 
         /// <summary>
-        /// Sends the thread away and waits until it has left, which takes as long as reading one frame, but for 50 ms at
-        /// most. While a file is being opened, which may take long, it does not wait. A thread that was not waited for
-        /// leaves by itself later.
+        /// Tells the thread to leave, and does not wait: it does after the read or opening that it is at, and closes
+        /// the file then.
         /// </summary>
-        public void Dispose()
-        {
-            if (SendAway() != FrameState.Pending)
-                _thread.Join(LongestPause);
-        }
+        public void Dispose() => SendAway();
 
-        // How opening stands.
-        private FrameState SendAway()
+        public override void SendAway()
         {
             lock (_gate)
             {
-                if (!_isStopping)
-                {
-                    _isStopping = true;
-                    if (_hasLeft)
-                        _wake.Dispose();
-                    else
-                        _wake.Set();
-                }
-                return _opening;
+                _isStopping = true;
+                Wake();
             }
         }
 
-        private void Run()
+        protected override void Run()
         {
             try
             {
@@ -192,17 +122,22 @@ namespace QuickSes
             }
             finally
             {
-                Marshal.FreeHGlobal((IntPtr)_memory);
-                _reader.Dispose();
                 lock (_gate)
                 {
-                    _hasLeft = true;
-                    if (_isStopping)
-                        _wake.Dispose();
+                    _slots?.Dispose();
+                    _slots = null;
+                    _hasFreed = true;
+                    _wake.Dispose();
                 }
-                lock (s_alive)
-                    s_alive.Remove(this);
+                _reader.Dispose();
             }
+        }
+
+        // With the lock.
+        private void Wake()
+        {
+            if (!_hasFreed)
+                _wake.Set();
         }
 
         private bool TryOpen()
@@ -229,15 +164,10 @@ namespace QuickSes
             AtomCount = _reader.AtomCount;
             Warning = _reader.Warning;
             long frameBytes = (long)AtomCount * sizeof(Vector3);
-            int count = (int)Math.Max(LeastSlots, Math.Min(_slotLimit, _memoryLimit / frameBytes));
-            var slots = new Slot[count];
-            for (int k = 0; k < count; ++k)
-                slots[k].Frame = -1;
+            SlotCount = (int)Math.Max(LeastSlots, Math.Min(_slotLimit, _memoryLimit / frameBytes));
+            var slots = new FrameSlots(SlotCount, AtomCount);
             lock (_gate)
-            {
-                _memory = (Vector3*)Marshal.AllocHGlobal((IntPtr)(count * frameBytes));
                 _slots = slots;
-            }
             SetOpening(FrameState.Ready, default);
             return true;
         }
@@ -255,13 +185,10 @@ namespace QuickSes
         {
             while (TryWaitForWork(out int frame, out int slot))
             {
-                bool isRead = TryRead(frame, Positions(slot), out TrajectoryFrame info, out QuickSesError error);
+                bool isRead = TryRead(frame, _slots.Positions(slot), out TrajectoryFrame info,
+                    out QuickSesError error);
                 lock (_gate)
-                {
-                    _slots[slot].Info = info;
-                    _slots[slot].Error = error;
-                    _slots[slot].State = isRead ? FrameState.Ready : FrameState.Damaged;
-                }
+                    _slots.Finish(slot, isRead ? FrameState.Ready : FrameState.Damaged, info, error);
             }
         }
 
@@ -280,70 +207,32 @@ namespace QuickSes
             }
         }
 
-        private static QuickSesError Describe(Exception exception) => new QuickSesError(
-            exception is OutOfMemoryException ? QuickSesStatus.OutOfMemory : QuickSesStatus.InternalError,
-            exception.Message);
-
-        // The first frame in the order of showing that no slot has, and a slot with one that is not wanted.
+        // What to read, and into which slot. It is planned without the lock, hence anew if the order changed meanwhile:
+        // the slot may be wanted by now.
         private bool TryWaitForWork(out int frame, out int slot)
         {
+            uint planned = 0;
+            frame = slot = -1;
             for (;;)
             {
+                FrameOrder order;
+                uint version;
                 lock (_gate)
                 {
-                    frame = slot = -1;
                     if (_isStopping)
                         return false;
-                    if (_hasOrder && TryFindMissing(out frame) && TryFindUnwanted(out slot))
+                    if (slot >= 0 && planned == _orderVersion)
                     {
-                        _slots[slot].Frame = frame;
-                        _slots[slot].State = FrameState.Pending;
+                        _slots.Assign(slot, frame);
                         return true;
                     }
+                    order = _order;
+                    version = _orderVersion;
                 }
-                _wake.WaitOne();
+                planned = version;
+                if (version == 0 || !_slots.TryPlan(order, out frame, out slot))
+                    _wake.WaitOne();
             }
         }
-
-        private bool TryFindMissing(out int frame)
-        {
-            for (int step = 0; step < _slots.Length; ++step)
-            {
-                frame = _order[step];
-                if (frame < 0)
-                    return false;
-                if (Find(frame) < 0)
-                    return true;
-            }
-            frame = -1;
-            return false;
-        }
-
-        private bool TryFindUnwanted(out int slot)
-        {
-            slot = Find(-1);
-            for (int k = 0; slot < 0 && k < _slots.Length; ++k)
-                if (!IsWanted(_slots[k].Frame))
-                    slot = k;
-            return slot >= 0;
-        }
-
-        private bool IsWanted(int frame)
-        {
-            for (int step = 0; step < _slots.Length; ++step)
-                if (_order[step] == frame)
-                    return true;
-            return false;
-        }
-
-        private int Find(int frame)
-        {
-            for (int k = 0; k < _slots.Length; ++k)
-                if (_slots[k].Frame == frame)
-                    return k;
-            return -1;
-        }
-
-        private Span<Vector3> Positions(int slot) => new Span<Vector3>(_memory + (long)slot * AtomCount, AtomCount);
     }
 }
