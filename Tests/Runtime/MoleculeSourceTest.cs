@@ -80,6 +80,36 @@ namespace QuickSes.Tests
             Assert.That(Fail(source).Message, Does.Contain("model").And.Contain("small.pdb"));
         }
 
+        [Test]
+        public void MoleculeAssetsAreReadAsFilesAre()
+        {
+            var source = new MoleculeSource();
+            MoleculeAsset asset = MoleculeAsset.Create("folder/small.pdb.gz", Gzipped(TestFrames.Pdb(1)));
+            try
+            {
+                Assert.That(asset.name, Is.EqualTo("small.pdb"));
+                source.SetAsset(asset);
+                Assert.That(source.Kind, Is.EqualTo(MoleculeSourceKind.MoleculeAsset));
+                Assert.That(source.IsSet, Is.True);
+                using (Structure structure = Open(source))
+                    Assert.That(structure.FileIndices.ToArray(), Is.EqualTo(TestFrames.WithoutWater));
+                Assert.That(source.IsSameAs(source.Copy()), Is.True);
+                MoleculeSource other = source.Copy();
+                other.Molecule = null;
+                Assert.That(source.IsSameAs(other), Is.False);
+                Assert.That(Fail(other).Message, Does.Contain("molecule asset"));
+            }
+            finally
+            {
+                Object.DestroyImmediate(asset);
+            }
+            Assert.That(source.IsSet, Is.False);
+            Assert.That(Fail(source).Message, Does.Contain("molecule asset"));
+            source.SetAsset(MoleculeAsset.Create("nothing.cif", new byte[0]));
+            Assert.That(Fail(source).Message, Does.Contain("nothing.cif").And.Contain("empty"));
+            Object.DestroyImmediate(source.Molecule);
+        }
+
         [TestCase("a.pdb", StructureFormat.Pdb)]
         [TestCase("a.PDB.gz", StructureFormat.Pdb)]
         [TestCase("a.pdb.gz.bytes", StructureFormat.Pdb)]
@@ -179,7 +209,7 @@ namespace QuickSes.Tests
                 { "jar:file:///data/app/base.apk!/assets", "https://example.org/s", "", null })
             {
                 Assert.That(MoleculeFile.TryFindStreamed(root, "a.pdb", out file, out error), Is.False);
-                Assert.That(error.Message, Does.Contain("no folder").And.Contain("text asset"));
+                Assert.That(error.Message, Does.Contain("no folder").And.Contain("asset"));
             }
             Assert.That(MoleculeFile.TryFindStreamed(_folder.Root, " ", out file, out error), Is.False);
             Assert.That(MoleculeFile.TryFindStreamed(_folder.Root, path, out file, out error), Is.False);

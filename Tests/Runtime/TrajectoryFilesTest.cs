@@ -80,6 +80,21 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void FilesOfMoleculeAssetsArePlayed()
+        {
+            MoleculeAsset structure = MoleculeAsset.Create("structure.pdb",
+                System.Text.Encoding.ASCII.GetBytes(TestFrames.Pdb(1)));
+            MoleculeAsset frames = MoleculeAsset.Create("md.dcd", TestFrames.Dcd(TestFrames.Frames(3)));
+            Player.StructureSource.SetAsset(structure);
+            Player.TrajectorySource.SetAsset(frames);
+            Assert.That(Player.Load(), Is.True);
+            Object.DestroyImmediate(structure); // what they hold is still there
+            Object.DestroyImmediate(frames);
+            Seek(2);
+            _playing.AssertShows(2);
+        }
+
+        [Test]
         public void StructureOfTheSurfaceServesToo()
         {
             _playing.Surface.Source.SetAsset(new TextAsset(TestFrames.Pdb(1)) { name = "structure.pdb" });
@@ -298,7 +313,8 @@ namespace QuickSes.Tests
                 _playing.Surface.Source.SetAsset(
                     new TextAsset(text == "one model" ? TestFrames.Pdb(1) : text) { name = "structure.pdb" });
             Player.enabled = true;
-            Player.Tick(0);
+            _playing.TickUntil(() => !Player.IsLoading, "it knows");
+            Assert.That(_playing.Surface.IsPlayed, Is.False, "the surface reads its source, and tells what is wrong");
             Assert.That(_playing.Failures, Is.Empty);
             Assert.That(Player.LastError.Status, Is.EqualTo(QuickSesStatus.Ok));
             Assert.That(Player.IsLoading || Player.IsReady || Player.Structure != null, Is.False);

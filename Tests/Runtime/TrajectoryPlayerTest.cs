@@ -57,9 +57,44 @@ namespace QuickSes.Tests
             _playing.UseEnsemble(3);
             Player.StructureSource.Model = 2;
             Assert.That(Player.Load(), Is.True);
+            Assert.That(Player.IsLoading, Is.True);
+            Assert.That(Player.LoadProgress, Is.LessThan(1));
+            _playing.TickUntil(() => Player.Structure != null, "the structure is read");
             Assert.That(Player.ShownFrame, Is.EqualTo(-1));
+            Assert.That(Player.LoadProgress, Is.LessThan(1));
             Assert.That(Player.Structure.Model, Is.EqualTo(2));
             _playing.AssertAt(TestFrames.Frame(1), 0);
+        }
+
+        [Test]
+        public void NothingComesOfWhatIsCancelled()
+        {
+            for (int ticks = 0; ticks < 4; ++ticks)
+            {
+                _playing.UseEnsemble(3);
+                Assert.That(Player.Load(), Is.True);
+                for (int k = 0; k < ticks && !Player.IsReady; ++k)
+                {
+                    Player.Tick(0);
+                    System.Threading.Thread.Sleep(5);
+                }
+                if (Player.IsReady)
+                    continue;
+                Player.CancelLoading();
+                Assert.That(Player.IsLoading || _playing.Surface.IsPlayed || Player.Structure != null, Is.False);
+                Assert.That(Player.LoadProgress, Is.EqualTo(1));
+                for (int k = 0; k < 20; ++k)
+                {
+                    Player.Tick(0);
+                    System.Threading.Thread.Sleep(1);
+                }
+                Assert.That(_playing.Loads, Is.EqualTo(0));
+                Assert.That(_playing.Shown, Is.Empty);
+                Assert.That(_playing.Failures, Is.Empty);
+            }
+            LoadEnsemble(3);
+            Player.CancelLoading(); // what is loaded stays
+            Assert.That(Player.IsReady, Is.True);
         }
 
         [Test]

@@ -153,7 +153,7 @@ namespace QuickSes.Editor
                 if (!IsLive(surface))
                     continue;
                 if (surface.AtomCount == 0 && surface.Source.IsSet)
-                    surface.LoadSource();
+                    surface.BeginLoadSource();
                 else
                     surface.Recompute();
             }
@@ -164,8 +164,10 @@ namespace QuickSes.Editor
             foreach (Object each in targets)
             {
                 var surface = (MolecularSurface)each;
-                if (IsLive(surface))
-                    surface.Cancel();
+                if (!IsLive(surface))
+                    continue;
+                surface.CancelLoading();
+                surface.Cancel();
             }
         }
 

@@ -115,6 +115,13 @@ namespace QuickSes.Editor
 
         private static string NameOf(MoleculeSourceKind kind, SerializedProperty property)
         {
+            if (kind == MoleculeSourceKind.MoleculeAsset)
+            {
+                SerializedProperty molecule = property.FindPropertyRelative("_molecule");
+                return !molecule.hasMultipleDifferentValues && molecule.objectReferenceValue is MoleculeAsset chosen
+                    ? chosen.FileName
+                    : null;
+            }
             if (kind != MoleculeSourceKind.TextAsset)
             {
                 SerializedProperty path = property.FindPropertyRelative("_path");

@@ -20,6 +20,7 @@ namespace QuickSes.Editor
         Selection = 1 << 7,
         Radii = 1 << 8,
         ColorScheme = 1 << 9,
+        Molecule = 1 << 10,
         Filters = Model | SkipWater | SkipHydrogen | SkipHetero | Selection
     }
 
@@ -30,6 +31,7 @@ namespace QuickSes.Editor
         public static readonly (string Property, SourceFields Field)[] Rows =
         {
             ("_asset", SourceFields.Asset),
+            ("_molecule", SourceFields.Molecule),
             ("_path", SourceFields.Path),
             ("_format", SourceFields.Format),
             ("_model", SourceFields.Model),
@@ -66,8 +68,8 @@ namespace QuickSes.Editor
 
         /// <summary>What the user should know about a kind; null: nothing.</summary>
         public static string HintOf(MoleculeSourceKind kind) => kind == MoleculeSourceKind.File
-            ? "Builds and other machines will not find an absolute path. Put the file into Assets/StreamingAssets, " +
-              "or into Assets under a name that Unity imports as text, such as 1crn.pdb.bytes."
+            ? "Builds and other machines will not find an absolute path. Put the file into Assets and choose Molecule " +
+              "Asset, or, if it is large, into Assets/StreamingAssets."
             : null;
 
         private static SourceFields PlaceOf(MoleculeSourceKind kind)
@@ -76,6 +78,8 @@ namespace QuickSes.Editor
             {
                 case MoleculeSourceKind.TextAsset:
                     return SourceFields.Asset;
+                case MoleculeSourceKind.MoleculeAsset:
+                    return SourceFields.Molecule;
                 case MoleculeSourceKind.StreamingAssets:
                 case MoleculeSourceKind.File:
                     return SourceFields.Path;

@@ -72,6 +72,8 @@ namespace QuickSes.Editor
         }
 
         private static string NameOf(MoleculeSource source) => MoleculeNames.ObjectNameOf(
-            source.Kind == MoleculeSourceKind.TextAsset && source.Asset != null ? source.Asset.name : source.Path);
+            source.Kind == MoleculeSourceKind.TextAsset && source.Asset != null ? source.Asset.name
+            : source.Kind == MoleculeSourceKind.MoleculeAsset && source.Molecule != null ? source.Molecule.FileName
+            : source.Path);
     }
 }

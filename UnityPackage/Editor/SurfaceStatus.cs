@@ -10,6 +10,9 @@ namespace QuickSes.Editor
         /// <summary>Before the first context is there.</summary>
         public const string Starting = "Starting the back end";
 
+        /// <summary>While the source is read.</summary>
+        public const string Reading = "Reading the source";
+
         private static readonly CultureInfo s_culture = CultureInfo.InvariantCulture;
 
         /// <summary>How it stands, in words.</summary>

@@ -14,10 +14,11 @@ namespace QuickSes.Editor
             SurfaceLevel shown = surface.CurrentLevel;
             bool hasFailed = surface.LastError.Status != QuickSesStatus.Ok;
             bool hasAtoms = surface.AtomCount > 0;
-            string state = SurfaceStatus.State(hasAtoms, surface.IsBusy, surface.IsStarting, surface.Progress, shown,
+            string state = surface.IsLoading ? SurfaceStatus.Reading : SurfaceStatus.State(hasAtoms, surface.IsBusy, surface.IsStarting, surface.Progress, shown,
                 hasFailed);
             if (surface.IsBusy)
-                EditorGUI.ProgressBar(EditorGUILayout.GetControlRect(), surface.Progress, state);
+                EditorGUI.ProgressBar(EditorGUILayout.GetControlRect(),
+                    surface.IsLoading ? surface.LoadProgress : surface.Progress, state);
             else
                 Row("State", state);
             if (surface.IsStarting)

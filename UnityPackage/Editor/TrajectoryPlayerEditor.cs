@@ -57,7 +57,9 @@ namespace QuickSes.Editor
         {
             EditorGUILayout.LabelField("Frames", player.IsReady
                 ? SurfaceStatus.Count(player.FrameCount)
-                : player.IsLoading ? "Opening..." : "None");
+                : player.IsLoading ? "Reading..." : "None");
+            if (player.IsLoading)
+                EditorGUI.ProgressBar(EditorGUILayout.GetControlRect(), player.LoadProgress, "");
             using (new EditorGUI.DisabledScope(!player.IsReady))
             {
                 DrawSlider(player);
@@ -104,7 +106,7 @@ namespace QuickSes.Editor
                 player.Frame = place;
                 return;
             }
-            frame.doubleValue = place;
+            frame.floatValue = (float)place;
             serializedObject.ApplyModifiedProperties();
         }
 

@@ -40,12 +40,13 @@ namespace QuickSes.Tests
         }
 
         [Test]
-        public void AnEditedSourceIsReadInTheNextFrame()
+        public void AnEditedSourceIsRead()
         {
             ReadFile();
             Assert.That(_surface.AtomCount, Is.EqualTo(1));
             _surface.Source.SkipWater = false;
             Edit();
+            Settle();
             Assert.That(_surface.AtomCount, Is.EqualTo(2));
             Settle();
             Assert.That(_surface.CurrentLevel.IsFinest, Is.True);
@@ -117,6 +118,8 @@ namespace QuickSes.Tests
         {
             _surface.Source.SetFile(_path);
             Edit();
+            while (_surface.IsLoading)
+                Engine.Frame();
         }
 
         private void Edit()

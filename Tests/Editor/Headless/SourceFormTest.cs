@@ -26,6 +26,8 @@ namespace QuickSes.Tests
         }
 
         [TestCase(MoleculeSourceKind.TextAsset, SourceFields.Asset, SourceFields.Path)]
+        [TestCase(MoleculeSourceKind.TextAsset, SourceFields.Asset, SourceFields.Molecule)]
+        [TestCase(MoleculeSourceKind.MoleculeAsset, SourceFields.Molecule, SourceFields.Asset | SourceFields.Path)]
         [TestCase(MoleculeSourceKind.StreamingAssets, SourceFields.Path, SourceFields.Asset)]
         [TestCase(MoleculeSourceKind.File, SourceFields.Path, SourceFields.Asset)]
         public void AssetOrPathIsShownAsTheKindSays(MoleculeSourceKind kind, object shown, object hidden)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
+using System;
 using System.Text;
 using Unity.Collections;
+using Unity.Collections.LowLevel.Unsafe;
 
 namespace UnityEngine
 {
@@ -28,6 +30,31 @@ namespace UnityEngine
                 RequireAlive("get_bytes");
                 return _data.ToArray();
             }
+        }
+
+        public long dataSize
+        {
+            get
+            {
+                RequireAlive("get_dataSize");
+                return _data.Length;
+            }
+        }
+
+        /// <summary>The memory of the asset itself, which goes with it.</summary>
+        public unsafe NativeArray<T> GetData<T>() where T : struct
+        {
+            RequireAlive("GetData");
+            int size = UnsafeUtility.SizeOf<T>();
+            if (_data.Length % size != 0)
+                throw new ArgumentException($"Type passed to {nameof(GetData)} can't capture the asset data. Data " +
+                    $"size is {_data.Length} which is not a multiple of type size {size}");
+            NativeArray<T> view = NativeArrayUnsafeUtility.ConvertExistingDataToNativeArray<T>(
+                _data._buffer, _data.Length / size, Allocator.None);
+#if ENABLE_UNITY_COLLECTIONS_CHECKS
+            NativeArrayUnsafeUtility.SetAtomicSafetyHandle(ref view, _data._safety);
+#endif
+            return view;
         }
 
         public string text

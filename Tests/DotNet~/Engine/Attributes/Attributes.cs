@@ -26,6 +26,10 @@ namespace UnityEngine
         }
     }
 
+    public sealed class HideInInspector : Attribute
+    {
+    }
+
     [AttributeUsage(AttributeTargets.Field)]
     public sealed class RangeAttribute : Attribute
     {

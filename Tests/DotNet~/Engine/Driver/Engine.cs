@@ -21,6 +21,9 @@ namespace QuickSes.EngineDouble
         /// <summary>Before the scripts are taken down for a reload of the domain.</summary>
         public static event Action BeforeReload;
 
+        /// <summary>Where Animators and Timelines move things in a frame: after Update, before LateUpdate.</summary>
+        public static event Action Animating;
+
         /// <summary>Whether each frame ends with <see cref="MeshCheck"/> on the meshes that changed.</summary>
         public static bool ChecksMeshes { get; set; } = true;
 
@@ -41,6 +44,7 @@ namespace QuickSes.EngineDouble
             Resources.Assets.Clear();
             Time.Reset();
             BeforeReload = null;
+            Animating = null;
             Application.isPlaying = true;
             ChecksMeshes = true;
             s_lastFrame = s_clock.Elapsed.TotalSeconds;
@@ -66,10 +70,29 @@ namespace QuickSes.EngineDouble
             Time.Advance(seconds);
             Lifecycle.StartPending();
             Lifecycle.Broadcast(Message.Update);
+            Animating?.Invoke();
             Lifecycle.Broadcast(Message.LateUpdate);
             if (ChecksMeshes)
                 MeshCheck.RunOnChanged();
             DestructionQueue.Run();
+        }
+
+        /// <summary>
+        /// What an animation does to a script, in play mode or as a preview in edit mode: it writes a serialised field
+        /// and says so, but does not call OnValidate.
+        /// </summary>
+        public static void Animate(MonoBehaviour script, string field, float value)
+        {
+            const BindingFlags Declared =
+                BindingFlags.DeclaredOnly | BindingFlags.Instance | BindingFlags.Public | BindingFlags.NonPublic;
+            FieldInfo found = script.GetType().GetField(field, Declared);
+            if (found == null || !(found.IsPublic || found.IsDefined(typeof(SerializeField), false)))
+                throw new ArgumentException($"{script.GetType()} has no serialised field {field}");
+            if (found.FieldType != typeof(float))
+                throw new ArgumentException($"a curve gives floats, not {found.FieldType}");
+            found.SetValue(script, value);
+            if (script.State.IsEnabled)
+                script.State.Messages.Send(script, Message.OnDidApplyAnimationProperties);
         }
 
         /// <summary>

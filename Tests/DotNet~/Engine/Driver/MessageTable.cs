@@ -9,8 +9,8 @@ namespace QuickSes.EngineDouble
 {
     internal enum Message
     {
-        Awake, OnEnable, Reset, OnValidate, Start, Update, LateUpdate, OnGUI, OnApplicationQuit, OnDisable, OnDestroy,
-        Count
+        Awake, OnEnable, Reset, OnValidate, Start, Update, OnDidApplyAnimationProperties, LateUpdate, OnGUI,
+        OnApplicationQuit, OnDisable, OnDestroy, Count
     }
 
     /// <summary>

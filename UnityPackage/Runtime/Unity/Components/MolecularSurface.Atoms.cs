@@ -13,7 +13,8 @@ namespace QuickSes
     public sealed partial class MolecularSurface
     {
         /// <summary>
-        /// Where atoms come from if no script gives them; after a change call <see cref="LoadSource"/>.
+        /// Where atoms come from if no script gives them; after a change call <see
+        /// cref="BeginLoadSource"/>.
         /// </summary>
         public MoleculeSource Source => _source;
 
@@ -102,28 +103,6 @@ namespace QuickSes
         /// <inheritdoc cref="SetColors(ReadOnlySpan{Color32})"/>
         public void SetColors(Color32[] colors) => SetColors(NotNull(colors, nameof(colors)));
 
-        /// <summary>The atoms of a file, brought into Unity's space.</summary>
-        internal void SetAtomsOf(Structure structure)
-        {
-            var positions = new Vector3[structure.AtomCount];
-            UnitySpace.FromFile(structure.Positions, positions);
-            SetAtoms(positions, structure.Radii);
-            BorrowStructure(structure);
-            ShowSelectionOfNew(structure);
-        }
-
-        /// <summary>
-        /// Colours by what a file says of the same atoms; those of which it says nothing have <see cref="BaseColor"/>,
-        /// also when that is another one later.
-        /// </summary>
-        internal void ColorAtomsOf(Structure structure, AtomColorScheme scheme)
-        {
-            var colors = new Color32[structure.AtomCount];
-            AtomColors.Fill(structure, scheme, default, colors); // transparent black stands for it
-            Session.Atoms.SetSchemeColors(Numbers(colors));
-            Changed(SurfaceChange.Appearance);
-        }
-
         /// <summary>Texture coordinate 1 of the atoms, for their vertices.</summary>
         /// <param name="texcoords">N; empty: the mesh has none.</param>
         public void SetTexcoords(ReadOnlySpan<Vector2> texcoords)
@@ -141,34 +120,6 @@ namespace QuickSes
             Clear();
             _isScriptFed = true;
         }
-
-        /// <summary>
-        /// Reads the <see cref="Source"/> and takes its atoms and colours. Blocks while it reads. What is wrong is told
-        /// by <see cref="Failed"/>.
-        /// </summary>
-        /// <returns>Whether there was a structure to read.</returns>
-        public bool LoadSource() => TryRead(true);
-
-        private bool TryRead(bool withAtoms)
-        {
-            _loadedSource = _source.Copy();
-            _isScriptFed = false;
-            if (!_source.TryOpen(out Structure structure, out QuickSesError error))
-            {
-                Session.FailToBegin(error);
-                Session.RaiseEvents();
-                return false;
-            }
-            if (withAtoms)
-                SetAtomsOf(structure);
-            ColorAtomsOf(structure, _source.ColorScheme);
-            TakeStructure(structure);
-            _isScriptFed = false;
-            return true;
-        }
-
-        // false: there is a source, and it can't be read.
-        private bool LoadSourceUnlessFed() => _isScriptFed || Session.Atoms.IsSet || !_source.IsSet || LoadSource();
 
         private void Clear()
         {

@@ -37,6 +37,7 @@ namespace QuickSes
         private void OnDisable()
         {
             CloseStructure();
+            SuspendLoading();
             if (_session != null && !_session.IsDisposed)
                 _session.Drop();
         }
@@ -45,6 +46,7 @@ namespace QuickSes
         {
             _isDestroyed = true;
             CloseStructure();
+            CancelLoading();
             _session?.Dispose();
             _session = null;
         }
@@ -61,10 +63,12 @@ namespace QuickSes
             if (IsAlive && _asksForAtoms)
             {
                 _asksForAtoms = false;
-                LoadSourceUnlessFed();
+                BeginLoadSourceUnlessFed();
                 if (IsAlive && !Session.Atoms.IsSet && !_source.IsSet)
                     RequestAtoms();
             }
+            if (IsAlive)
+                TickLoading();
             if (!IsAlive)
                 return;
             SurfaceSession session = Session;
@@ -125,16 +129,15 @@ namespace QuickSes
             AttachMeshUnlessBaked();
             if (VisibleSelection != (_followedVisible ?? ""))
                 FollowVisible();
-            if (_isScriptFed)
+            if (_isScriptFed || IsPlayed)
                 return;
             if (_source.IsSet)
             {
-                bool isSameFile = _loadedSource != null && _source.IsSameAs(_loadedSource);
-                if (!isSameFile || _source.ColorScheme != _loadedSource.ColorScheme)
-                    TryRead(!isSameFile || !Session.Atoms.IsSet);
+                FollowSource();
             }
             else if (_loadedSource != null)
             {
+                CancelLoading();
                 Clear();
                 _loadedSource = null;
                 _asksForAtoms = true;

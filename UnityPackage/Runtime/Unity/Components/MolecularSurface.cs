@@ -76,7 +76,6 @@ namespace QuickSes
         [NonSerialized] private bool _isScriptFed;
         [NonSerialized] private bool _asksForAtoms;
         [NonSerialized] private bool _isEdited; // in the inspector, by Undo, by a prefab
-        [NonSerialized] private MoleculeSource _loadedSource; // as it was when it was read; null: it was not
         [NonSerialized] private SurfaceShapeSettings _editedFrom; // the settings before they were edited
         [NonSerialized] private bool _isDestroyed;
 
@@ -126,8 +125,8 @@ namespace QuickSes
         /// <summary>What is shown; <see cref="SurfaceLevel.LevelCount"/> 0: nothing yet.</summary>
         public SurfaceLevel CurrentLevel => Session.CurrentLevel;
 
-        /// <summary>Whether something is being computed, or will be. Not while the component is disabled.</summary>
-        public bool IsBusy => isActiveAndEnabled && !Session.IsUpToDate;
+        /// <summary>Whether something is being read or computed, or will be. Not while the component is disabled.</summary>
+        public bool IsBusy => isActiveAndEnabled && (IsLoading || !Session.IsUpToDate);
 
         /// <summary>
         /// Whether it is busy because the back end is being started, by another thread. CUDA takes up to a second for

@@ -1,28 +1,44 @@
 // SPDX-License-Identifier: MIT
 // How files are opened and closed.
 using System;
+using System.Collections.Generic;
 using UnityEngine;
 
 namespace QuickSes
 {
     public sealed partial class TrajectoryPlayer
     {
+        private const int MostBytesPerTick = 4 << 20; // a millisecond or less
+
+        private StructureLoad _load; // until the structure is read
+        private PlayedAtoms[] _played = Array.Empty<PlayedAtoms>(); // from then on: its own surface first, then Surfaces
+        private FramePrefetcher _prefetcher; // from when the frames' file may be opened
+        private readonly List<MolecularSurface> _claimed = new List<MolecularSurface>(); // read no source of their own
+
+        // Where frames are, from Load until they are opened; null, if there is no error: in the structure's file.
+        private MoleculeFile _framesFile;
+        private QuickSesError _framesError;
+
         // What was loaded; null: nothing.
         [NonSerialized] private MoleculeSource _loadedStructureSource;
         [NonSerialized] private TrajectorySource _loadedTrajectorySource;
         [NonSerialized] private bool _loadedUnwrap;
         [NonSerialized] private int _loadedPrefetchFrames;
+        private readonly List<PlayedSurface> _loadedSurfaces = new List<PlayedSurface>();
+
+        [NonSerialized] private bool _isWish; // nobody asked for it, so that it is no failure if there are no frames
 
         // Where _frame is a place in; null: not known, it comes from the scene.
         [NonSerialized] private TrajectorySource _frameFile;
         [NonSerialized] private double _chosenFrame = -1; // where to begin in what is loaded next; -1: not chosen
 
         /// <summary>
-        /// Reads the structure, gives it to the surface, and begins to open the trajectory on another thread; what was
-        /// loaded before is closed. Happens by itself when the component is enabled with a source. While it is not
-        /// active and enabled, nothing is read: that is put off until it is. The same file goes on at <see
-        /// cref="Frame"/>; another one begins at 0, or at the Frame that was set since the sources were changed. false,
-        /// after Failed: <see cref="LastError"/> says why not.
+        /// Begins to read the structure on another thread, then to open the trajectory; what was loaded before is let go
+        /// of. The surfaces get their atoms when the structure is read, frames from <see cref="Loaded"/> on. Happens by
+        /// itself when the component is enabled with a source. While it is not active and enabled, nothing is read: that
+        /// is put off until it is. The same file goes on at <see cref="Frame"/>; another one begins at 0, or at the
+        /// Frame that was set since the sources were changed. false, after Failed: there is no such structure; <see
+        /// cref="LastError"/> says why not. What is wrong inside of files is told later by Failed.
         /// </summary>
         public bool Load()
         {
@@ -33,32 +49,33 @@ namespace QuickSes
                 return true;
             }
             BeginLoading();
-            MoleculeSource source = ActiveStructureSource;
-            if (!source.TryFind(out MoleculeFile file, out QuickSesError error) ||
-                !source.TryOpen(file, out Structure structure, out error))
+            MoleculeSource source = _loadedStructureSource;
+            if (!source.TryFind(out MoleculeFile file, out QuickSesError error))
                 return Fail("structure", error);
-            return OpenFrames(structure, file);
+            if (!TryMakeSources(source, out MoleculeSource[] sources, out error))
+                return Fail("surfaces", error);
+            if (_trajectorySource.Kind != MoleculeSourceKind.None)
+                _trajectorySource.TryFind(out _framesFile, out _framesError);
+            _load = new StructureLoad(file, sources);
+            RequestUpdate();
+            return true;
         }
 
         // Of components without sources of their own only those beside a file with several models play anything; the
         // others are no failure.
         private void LoadWhatIsSet()
         {
-            if (_structureSource.Kind != MoleculeSourceKind.None || _trajectorySource.Kind != MoleculeSourceKind.None)
+            bool isAskedFor = _structureSource.Kind != MoleculeSourceKind.None ||
+                _trajectorySource.Kind != MoleculeSourceKind.None;
+            if (isAskedFor || (_surface.Source.IsSet && _surface.Source.TryFind(out _, out _)))
             {
                 Load();
+                _isWish = !isAskedFor;
                 return;
             }
             Unload();
             BeginLoading();
-            MoleculeSource source = _surface.Source;
-            if (!source.IsSet || !source.TryFind(out MoleculeFile file, out _) ||
-                !source.TryOpen(file, out Structure structure, out _))
-                return; // the surface tells
-            if (HasModels(structure))
-                OpenFrames(structure, file);
-            else
-                structure.Dispose();
+            ReleaseSurfaces(); // the surface tells
         }
 
         private void BeginLoading()
@@ -70,43 +87,170 @@ namespace QuickSes
             _loadedTrajectorySource = _trajectorySource.Copy();
             _loadedUnwrap = _unwrap;
             _loadedPrefetchFrames = _prefetchFrames;
+            foreach (PlayedSurface each in _surfaces)
+                _loadedSurfaces.Add(each.Copy());
+            Claim(_surface);
+            foreach (PlayedSurface each in _loadedSurfaces)
+                if (each.Surface != null)
+                    Claim(each.Surface);
             if (_chosenFrame >= 0)
-                _frame = _chosenFrame;
+                SetPlace(_chosenFrame);
             else if (!IsFrameOfSetFile)
-                _frame = 0;
+                SetPlace(0);
             _chosenFrame = -1;
             _frameFile = TrajectorySource.OfFile(FrameSource);
         }
 
-        private bool OpenFrames(Structure structure, MoleculeFile file)
+        private void Claim(MolecularSurface surface)
         {
-            Structure = structure;
-            SendAtoms();
-            if (!TryFindFrames(ref file, out TrajectoryFormat format, out QuickSesError error))
-                return Fail("trajectory", error);
-            _prefetcher = new FramePrefetcher(
-                new TrajectoryFrameReader(file, format, structure, _unwrap), _prefetchFrames);
+            surface.IsPlayed = true;
+            _claimed.Add(surface);
+        }
+
+        private void ReleaseSurfaces()
+        {
+            foreach (MolecularSurface each in _claimed)
+                if (each != null)
+                    each.IsPlayed = false;
+            _claimed.Clear();
+        }
+
+        // One per surface, its own first.
+        private bool TryMakeSources(MoleculeSource structure, out MoleculeSource[] sources, out QuickSesError error)
+        {
+            error = default;
+            var made = new List<MoleculeSource> { structure.Copy() };
+            _loadedSurfaces.RemoveAll(each => each.Surface == null);
+            foreach (PlayedSurface each in _loadedSurfaces)
+            {
+                bool isTwice = each.Surface == _surface ||
+                    _loadedSurfaces.Exists(other => other != each && other.Surface == each.Surface);
+                if (isTwice)
+                    error = new QuickSesError(QuickSesStatus.InvalidArgument,
+                        each.Surface == _surface
+                        ? $"'{each.Surface.name}' is the player's own"
+                        : $"'{each.Surface.name}' is there twice");
+                made.Add(each.SourceOf(structure));
+            }
+            sources = made.ToArray();
+            return error.Status == QuickSesStatus.Ok;
+        }
+
+        private void TickLoading()
+        {
+            if (_framesFile != null && !_framesFile.TryDetach(MostBytesPerTick, out QuickSesError error))
+            {
+                _framesFile = null;
+                _framesError = error;
+            }
+            if (!_load.Tick() || (_framesFile != null && !_framesFile.IsDetached))
+            {
+                RequestUpdate();
+                return;
+            }
+            StructureLoad load = _load;
+            _load = null;
+            if (load.TryTake(out LoadedStructure[] structures, out error))
+                TakeStructures(structures, load.File);
+            else if (_isWish)
+                ReleaseSurfaces(); // the surface tells
+            else
+                Fail(load.FailedSource > 0
+                    ? $"surface '{_loadedSurfaces[load.FailedSource - 1].Surface.name}'"
+                    : "structure", error);
+        }
+
+        private void TakeStructures(LoadedStructure[] structures, MoleculeFile file)
+        {
+            if (_isWish && !HasModels(structures[0].Structure))
+            {
+                foreach (LoadedStructure each in structures)
+                    each.Dispose();
+                file.Dispose();
+                ReleaseSurfaces();
+                return;
+            }
+            _played = new PlayedAtoms[structures.Length];
+            for (int k = 0; k < structures.Length; ++k)
+                _played[k] = new PlayedAtoms(
+                    k == 0 ? _surface : _loadedSurfaces[k - 1].Surface, structures[k], ShowAgain);
+            ShowAgain();
+            OpenFrames(file);
+        }
+
+        private void OpenFrames(MoleculeFile structureFile)
+        {
+            MoleculeFile file = _framesFile ?? structureFile;
+            TrajectoryFormat format = _framesFile != null ? _trajectorySource.Format : TrajectoryFormat.Pdb;
+            if (file != structureFile)
+                structureFile.Dispose();
+            _framesFile = null;
+            QuickSesError error = _framesError;
+            if (error.Status == QuickSesStatus.Ok && file == structureFile && !HasModels(Structure))
+                error = new QuickSesError(QuickSesStatus.InvalidArgument,
+                    $"none is chosen, and '{file.Name}' is not a PDB file with several models");
+            if (error.Status != QuickSesStatus.Ok)
+            {
+                file.Dispose();
+                Fail("trajectory", error);
+                return;
+            }
+            _prefetcher = new FramePrefetcher(new TrajectoryFrameReader(file, format, IndicesOfAll(),
+                Structure.FileElements.ToArray(), _unwrap), _prefetchFrames);
             RequestUpdate();
-            return true;
+        }
+
+        // Frames hold the atoms of one surface after those of the other, so that each is read and blended once.
+        private uint[] IndicesOfAll()
+        {
+            int count = 0;
+            foreach (PlayedAtoms each in _played)
+                count = checked(count + each.Count);
+            var indices = new uint[count];
+            Span<uint> rest = indices;
+            foreach (PlayedAtoms each in _played)
+            {
+                each.Structure.FileIndices.CopyTo(rest);
+                rest = rest.Slice(each.Count);
+            }
+            return indices;
         }
 
         /// <summary>
-        /// Lets go of structure and trajectory; the surface keeps what it shows. Does not wait: the thread that reads
-        /// closes the trajectory's file after what it is at. Disabling the component does the same.
+        /// Lets go of structure and trajectory; the surfaces keep what they show. Does not wait: the threads that read
+        /// close their files after what they are at. Disabling the component does the same.
         /// </summary>
         public void Unload()
         {
             if (IsReady)
-                _frame = _head.Position;
+                SetPlace(_head.Position);
             CloseFrames();
-            Structure?.Dispose();
-            Structure = null;
+            _load?.Dispose();
+            _load = null;
+            foreach (PlayedAtoms each in _played)
+                each.Dispose();
+            _played = Array.Empty<PlayedAtoms>();
+            ReleaseSurfaces();
             _loadedStructureSource = null;
-            _isLoadRequested = _isLoadDeferred = _areColorsRequested = false;
+            _loadedSurfaces.Clear();
+            _isLoadRequested = _isLoadDeferred = _areColorsRequested = _isWish = false;
+        }
+
+        /// <summary>
+        /// Nothing comes of what is being loaded any more, and no event tells so; what is loaded stays. The threads
+        /// can't be stopped in a file: they leave by themselves after at most as long as reading it takes.
+        /// </summary>
+        public void CancelLoading()
+        {
+            if (IsLoading || _isLoadDeferred)
+                Unload();
         }
 
         private void CloseFrames()
         {
+            _framesFile?.Dispose();
+            _framesFile = null;
+            _framesError = default;
             _prefetcher?.Dispose();
             _prefetcher = null;
             _between?.Dispose();
@@ -115,18 +259,6 @@ namespace QuickSes
             _untold = PlayHeadEvents.None;
             _shown = s_nothing;
             _damagedFrame = -1;
-        }
-
-        private bool TryFindFrames(ref MoleculeFile file, out TrajectoryFormat format, out QuickSesError error)
-        {
-            format = _trajectorySource.Format;
-            if (_trajectorySource.Kind != MoleculeSourceKind.None)
-                return _trajectorySource.TryFind(out file, out error);
-            format = TrajectoryFormat.Pdb;
-            bool hasFrames = HasModels(Structure);
-            error = hasFrames ? default : new QuickSesError(QuickSesStatus.InvalidArgument,
-                $"none is chosen, and '{file.Name}' is not a PDB file with several models");
-            return hasFrames;
         }
 
         private static bool HasModels(Structure structure) =>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 using System;
+using System.Collections.Generic;
 using UnityEngine;
 
 namespace QuickSes
@@ -10,6 +11,8 @@ namespace QuickSes
         private MoleculeSource _structureSource = new MoleculeSource();
         [SerializeField, Tooltip("Where they are in each frame. None: the models of the structure's own PDB file.")]
         private TrajectorySource _trajectorySource = new TrajectorySource();
+        [SerializeField, Tooltip("Other surfaces that are given the same frames, of other atoms of the same file.")]
+        private List<PlayedSurface> _surfaces = new List<PlayedSurface>();
         [SerializeField, Tooltip("Moves atoms by whole box vectors so that every molecule is in one piece.")]
         private bool _unwrap;
         [SerializeField, Tooltip("Frames of the trajectory per second. Negative: backwards.")]
@@ -25,9 +28,11 @@ namespace QuickSes
         [SerializeField, Range(FramePrefetcher.LeastSlots, MostPrefetchFrames), Tooltip(
             "How many frames are read ahead and kept: 12 bytes per atom each, 256 MiB at most.")]
         private int _prefetchFrames = 16;
+        // A float, since Unity animates no doubles; on a whole frame up to 16 million exactly.
         [SerializeField, Min(0), Tooltip(
-            "The place shown, counted from 0; between two frames if they are interpolated.")]
-        private double _frame;
+            "The place shown, counted from 0; between two frames if they are interpolated. Can be animated.")]
+        private float _frame;
+        [NonSerialized] private float _knownFrame; // unless _frame is it, somebody else wrote _frame
 
         private const int MostPrefetchFrames = 256;
 
@@ -43,6 +48,29 @@ namespace QuickSes
         /// filters of the structure choose among them. Takes effect with <see cref="Load"/>.
         /// </summary>
         public TrajectorySource TrajectorySource => _trajectorySource;
+
+        /// <summary>
+        /// Surfaces beside its own, such as those of a ligand or a membrane. All are given the same frame, which is read
+        /// once, in the same frame of the game; each computes its mesh by itself. Changes take effect with <see
+        /// cref="Load"/>.
+        /// </summary>
+        public IReadOnlyList<PlayedSurface> Surfaces => _surfaces;
+
+        /// <summary>Adds a surface. Takes effect with <see cref="Load"/>.</summary>
+        /// <param name="surface">Not the player's own, and not there yet.</param>
+        /// <param name="selection">Which atoms, as of <see cref="PlayedSurface.Selection"/>.</param>
+        /// <returns>For more filters, and colours.</returns>
+        public PlayedSurface AddSurface(MolecularSurface surface, string selection = "")
+        {
+            if (surface == null)
+                throw new ArgumentNullException(nameof(surface));
+            var added = new PlayedSurface(surface, selection);
+            _surfaces.Add(added);
+            return added;
+        }
+
+        /// <summary>Leaves a surface alone from the next <see cref="Load"/> on; false: it is not there.</summary>
+        public bool RemoveSurface(MolecularSurface surface) => _surfaces.RemoveAll(each => each.Surface == surface) > 0;
 
         /// <summary>
         /// Moves atoms by whole box vectors so that every molecule is in one piece; default false. Without a periodic
@@ -101,15 +129,16 @@ namespace QuickSes
             get => IsReady ? _head.Position : _frame;
             set
             {
-                _frame = double.IsNaN(value) ? 0 : Math.Max(0, value);
+                double place = double.IsNaN(value) ? 0 : Math.Max(0, value);
                 if (_loadedStructureSource == null || !IsFrameOfSetFile)
-                    _chosenFrame = _frame;
+                    _chosenFrame = place;
                 if (IsReady)
                 {
-                    _head.MoveTo(_frame);
-                    _frame = _head.Position;
+                    _head.MoveTo(place);
+                    place = _head.Position;
                     _isWaiting = false;
                 }
+                SetPlace(place);
                 RequestUpdate();
             }
         }
@@ -128,9 +157,21 @@ namespace QuickSes
             set
             {
                 ActiveStructureSource.ColorScheme = value;
-                if (Structure != null)
-                    SendColors();
+                SendColors();
             }
+        }
+
+        private void SetPlace(double place) => _frame = _knownFrame = (float)place;
+
+        /// <summary>
+        /// Goes where the inspector, Undo, an animation or Timeline put the serialised place. Whether that is elsewhere.
+        /// </summary>
+        private bool FollowFrame()
+        {
+            if (!IsReady || _frame == _knownFrame) // before, it says where to begin
+                return false;
+            Frame = _frame;
+            return true;
         }
 
 #if UNITY_EDITOR
@@ -140,9 +181,9 @@ namespace QuickSes
                 return;
             if (_loadedStructureSource == null || !IsLoadedAsSet())
                 _isLoadRequested = true; // not here: a mesh must not change while values are validated
-            else if (IsReady && _frame != _head.Position)
-                Frame = _frame;
-            if (Structure != null && _loadedStructureSource.ColorScheme != ActiveStructureSource.ColorScheme)
+            else
+                FollowFrame();
+            if (_played.Length > 0 && _loadedStructureSource.ColorScheme != ActiveStructureSource.ColorScheme)
                 _areColorsRequested = true;
             RequestUpdate();
         }
@@ -158,6 +199,16 @@ namespace QuickSes
 
         private bool IsLoadedAsSet() => _loadedStructureSource.IsSameAs(ActiveStructureSource) &&
             _loadedTrajectorySource.IsSameAs(_trajectorySource) && _loadedUnwrap == _unwrap &&
-            _loadedPrefetchFrames == _prefetchFrames;
+            _loadedPrefetchFrames == _prefetchFrames && AreSurfacesAsLoaded();
+
+        private bool AreSurfacesAsLoaded()
+        {
+            if (_surfaces.Count != _loadedSurfaces.Count)
+                return false;
+            for (int k = 0; k < _surfaces.Count; ++k)
+                if (!_surfaces[k].IsSameAs(_loadedSurfaces[k]))
+                    return false;
+            return true;
+        }
     }
 }

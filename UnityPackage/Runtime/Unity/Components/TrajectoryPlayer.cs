@@ -5,20 +5,21 @@ using UnityEngine;
 namespace QuickSes
 {
     /// <summary>
-    /// Plays a trajectory (DCD, XTC, PDB with several models) in the <see cref="MolecularSurface"/> beside it: reads
-    /// atoms of a structure, gives them to the surface, then their positions frame by frame, with x negated, since
-    /// Unity is left-handed. Frames are read ahead on a thread of its own; playing makes no garbage. In edit mode <see
-    /// cref="Frame"/> can be scrubbed, but nothing plays. Main thread only.
+    /// Plays a trajectory (DCD, XTC, PDB with several models) in the <see cref="MolecularSurface"/> beside it, and in
+    /// any number of others (<see cref="Surfaces"/>), which are all given the same frame at the same time: reads atoms
+    /// of a structure, gives them to the surfaces, then their positions frame by frame, with x negated, since Unity is
+    /// left-handed. Files are read, and frames read ahead, on threads of its own; playing makes no garbage. In edit
+    /// mode <see cref="Frame"/> can be scrubbed, but nothing plays. Main thread only.
     /// </summary>
     [ExecuteAlways, DisallowMultipleComponent, RequireComponent(typeof(MolecularSurface))]
     [AddComponentMenu("Molecular/Trajectory Player")]
     public sealed partial class TrajectoryPlayer : MonoBehaviour
     {
         private MolecularSurface _surface;
-        private FramePrefetcher _prefetcher;
         private PlayHead _head;
         private UnmanagedBuffer<Vector3> _between; // while it is ready
         [NonSerialized] private bool _isEnabled, _isPlaying, _isWaiting, _areColorsRequested;
+        [NonSerialized] private bool _isAnimated; // in this frame of the game
         [NonSerialized] private bool _isLoadRequested; // by the inspector
         [NonSerialized] private bool _isLoadDeferred; // by Load, until it is enabled
 
@@ -33,10 +34,10 @@ namespace QuickSes
         private int _damagedFrame = -1; // the one told last, so that it is told once each time it is reached
         private bool _isDamageLogged;
 
-        /// <summary>Frames can be shown from now on.</summary>
+        /// <summary>Atoms are there, and frames can be shown from now on.</summary>
         public event Action Loaded;
 
-        /// <summary>The surface was given this frame, counted from 0, or a place right behind it.</summary>
+        /// <summary>All surfaces were given this frame, counted from 0, or a place right behind it.</summary>
         public event Action<int> FrameShown;
 
         /// <summary>An end was passed: it goes on from the other end (Loop) or back (PingPong).</summary>
@@ -59,10 +60,15 @@ namespace QuickSes
         /// The atoms, open as long as they are shown; null if nothing is loaded. In the file's coordinates; not the
         /// caller's to dispose of.
         /// </summary>
-        public Structure Structure { get; private set; }
+        public Structure Structure => _played.Length > 0 ? _played[0].Structure : null;
 
-        /// <summary>Whether the trajectory is being opened.</summary>
-        public bool IsLoading => _prefetcher != null && !IsReady;
+        /// <summary>Whether the structure is being read, or the trajectory opened.</summary>
+        public bool IsLoading => _load != null || (_prefetcher != null && !IsReady);
+
+        /// <summary>
+        /// From 0 to 1; 1 if nothing is being loaded. It goes in steps: while the library is at a file, it stands still.
+        /// </summary>
+        public float LoadProgress => _load != null ? 0.9f * _load.Progress : IsLoading ? 0.9f : 1;
 
         /// <summary>Whether frames can be shown.</summary>
         public bool IsReady { get; private set; }
@@ -102,7 +108,7 @@ namespace QuickSes
         {
             _isPlaying = false;
             _head.Rewind();
-            _frame = IsReady ? _head.Position : 0;
+            SetPlace(IsReady ? _head.Position : 0);
             _chosenFrame = -1;
             _isWaiting = false;
             RequestUpdate();
@@ -112,7 +118,6 @@ namespace QuickSes
         {
             _isEnabled = true;
             _surface = GetComponent<MolecularSurface>();
-            _surface.AtomsRequested += SendAtoms;
             if (_playOnEnable && Application.IsPlaying(this))
                 _isPlaying = true;
             if (_isLoadDeferred)
@@ -125,8 +130,6 @@ namespace QuickSes
         private void OnDisable()
         {
             _isEnabled = false;
-            if (_surface != null)
-                _surface.AtomsRequested -= SendAtoms;
             Unload();
         }
 
@@ -135,19 +138,42 @@ namespace QuickSes
             bool passesTime = Application.IsPlaying(this); // first, since handlers may destroy it
             if (_isLoadRequested)
                 LoadWhatIsSet();
-            if (_areColorsRequested && Structure != null)
+            if (_areColorsRequested)
                 SendColors();
+            FollowFrame();
             Tick(!passesTime ? 0
                 : !_useUnscaledTime ? Time.deltaTime
                 : Mathf.Min(Time.unscaledDeltaTime, Time.maximumDeltaTime));
+        }
+
+        // The engine calls it after an animation, or its preview in the Editor, wrote serialised fields: after Update.
+        private void OnDidApplyAnimationProperties()
+        {
+            if (FollowFrame())
+                _isAnimated = true;
+        }
+
+        // Shows where an animation went in the same frame of the game.
+        private void LateUpdate()
+        {
+            if (!_isAnimated)
+                return;
+            _isAnimated = false;
+            Tick(0);
         }
 
         /// <summary>What happens each frame of the game; seconds since the last one.</summary>
         internal void Tick(float seconds)
         {
             TellAll();
-            if (_prefetcher == null || (!IsReady && !TryGetReady()))
-                return;
+            if (_load != null)
+                TickLoading();
+            else if (_prefetcher != null && (IsReady || TryGetReady()))
+                TickFrames(seconds);
+        }
+
+        private void TickFrames(float seconds)
+        {
             _head.SetMode(_mode);
             if (_framesPerSecond != 0)
                 _head.SetSign(_framesPerSecond > 0 ? 1 : -1);
@@ -155,7 +181,7 @@ namespace QuickSes
                 _untold |= _head.Advance(seconds * Math.Abs((double)_framesPerSecond));
             if ((_untold & PlayHeadEvents.Finished) != 0)
                 _isPlaying = false;
-            _frame = _head.Position;
+            SetPlace(_head.Position);
             Show();
             TellAll();
         }
@@ -216,7 +242,7 @@ namespace QuickSes
                 blend = new FrameBlend(blend.From, blend.From, 0);
             _prefetcher.Request(_head.Order);
             _isWaiting = false;
-            if (blend.Equals(_shown) && _surface.AtomCount == _prefetcher.AtomCount)
+            if (blend.Equals(_shown) && AreAtomsInPlace())
                 return;
             FrameState state = _prefetcher.Get(blend.From, out ReadOnlySpan<Vector3> from, out TrajectoryFrame info,
                 out QuickSesError error);
@@ -247,9 +273,11 @@ namespace QuickSes
                 FrameInterpolation.Blend(from, to, blend.Weight, PeriodicBox.Of(info), _between.Span);
                 from = _between.Span;
             }
-            if (_surface.AtomCount != from.Length) // somebody else gave it other atoms
-                SendAtoms();
-            _surface.SetPositions(from);
+            foreach (PlayedAtoms each in _played)
+            {
+                each.SendPositions(from.Slice(0, each.Count));
+                from = from.Slice(each.Count);
+            }
             _isNewFrameUntold |= blend.From != _shown.From;
             _shown = blend;
             _shownInfo = info;
@@ -268,6 +296,8 @@ namespace QuickSes
         private bool Fail(string what, QuickSesError error)
         {
             CloseFrames();
+            if (_played.Length == 0)
+                ReleaseSurfaces();
             LastError = new QuickSesError(error.Status, $"{what}: {error.Message}");
             RaiseFailed(-1);
             return false;
@@ -282,21 +312,28 @@ namespace QuickSes
             _isDamageLogged |= frame >= 0;
         }
 
-        private void SendAtoms()
+        private bool AreAtomsInPlace()
         {
-            if (Structure == null)
-                return;
-            _surface.SetAtomsOf(Structure);
-            SendColors();
-            _shown = s_nothing; // the frame comes again
-            RequestUpdate();
+            foreach (PlayedAtoms each in _played)
+                if (!each.IsInPlace)
+                    return false;
+            return true;
         }
 
         private void SendColors()
         {
             _areColorsRequested = false;
+            if (_played.Length == 0)
+                return;
             _loadedStructureSource.ColorScheme = ActiveStructureSource.ColorScheme;
-            _surface.ColorAtomsOf(Structure, ActiveStructureSource.ColorScheme);
+            _played[0].SendColors(ActiveStructureSource.ColorScheme);
+        }
+
+        // A surface got its atoms anew: the frame comes again.
+        private void ShowAgain()
+        {
+            _shown = s_nothing;
+            RequestUpdate();
         }
 
         // In edit mode Update comes only when something changed.

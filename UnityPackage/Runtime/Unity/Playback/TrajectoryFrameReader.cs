@@ -4,28 +4,30 @@ using UnityEngine;
 
 namespace QuickSes
 {
-    /// <summary>The atoms of a structure out of the frames of a trajectory.</summary>
+    /// <summary>Some atoms out of the frames of a trajectory.</summary>
     internal sealed class TrajectoryFrameReader : FrameReader
     {
         private readonly TrajectoryFormat _format;
         private readonly uint[] _indices;
         private readonly byte[] _elements;
         private readonly bool _unwrap;
-        private MoleculeFile _file;
+        private readonly MoleculeFile _file;
         private Trajectory _trajectory;
         private float[] _xyz;
         private string _warning;
 
-        /// <param name="file">What <paramref name="format"/> says it is.</param>
+        /// <param name="file">What <paramref name="format"/> says it is; detached. Taken over.</param>
         /// <param name="format">Auto: by the name, else by the content.</param>
-        /// <param name="structure">Which atoms; not used after the call.</param>
+        /// <param name="indices">Which atoms, in which order; an atom may come more than once. Taken over.</param>
+        /// <param name="elements">Atomic numbers of all that each frame has. Taken over.</param>
         /// <param name="unwrap">Whether molecules are put together if there is a periodic box.</param>
-        public TrajectoryFrameReader(MoleculeFile file, TrajectoryFormat format, Structure structure, bool unwrap)
+        public TrajectoryFrameReader(MoleculeFile file, TrajectoryFormat format, uint[] indices, byte[] elements,
+            bool unwrap)
         {
             _file = file;
             _format = format == TrajectoryFormat.Auto ? MoleculeFile.TrajectoryFormatOf(file.Name) : format;
-            _indices = structure.FileIndices.ToArray();
-            _elements = structure.FileElements.ToArray();
+            _indices = indices;
+            _elements = elements;
             _unwrap = unwrap;
         }
 
@@ -43,11 +45,11 @@ namespace QuickSes
             if (!isOpen)
             {
                 if (_file.Path == null) // the library does not know what bytes in memory are called
-                    error = new QuickSesError(error.Status, $"text asset '{_file.Name}': {error.Message}");
+                    error = new QuickSesError(error.Status, $"asset '{_file.Name}': {error.Message}");
                 return false;
             }
             string name = _file.Name;
-            _file = null; // bytes are copied
+            _file.Dispose(); // its bytes are copied
             if (_trajectory.AtomCount != _elements.Length)
                 return Fail($"'{name}' has {_trajectory.AtomCount} atoms per frame, but the file of the structure " +
                     $"has {_elements.Length}", out error);
@@ -75,7 +77,11 @@ namespace QuickSes
             return true;
         }
 
-        public override void Dispose() => _trajectory?.Dispose();
+        public override void Dispose()
+        {
+            _trajectory?.Dispose();
+            _file.Dispose();
+        }
 
         private void Warn(string sentence) => _warning = _warning == null ? sentence : $"{_warning}\n{sentence}";
 

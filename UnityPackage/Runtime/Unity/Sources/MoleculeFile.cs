@@ -1,21 +1,30 @@
 // SPDX-License-Identifier: MIT
 using System;
 using System.IO;
+using Unity.Collections;
+using Unity.Collections.LowLevel.Unsafe;
 using UnityEngine;
 
 namespace QuickSes
 {
     /// <summary>
     /// What a source leads to: bytes in memory, or the full path of a file that is there. Made on the main thread; may
-    /// be read on any.
+    /// be read on any once it is detached. One thread at a time.
     /// </summary>
-    internal sealed class MoleculeFile
+    internal sealed class MoleculeFile : IDisposable
     {
-        private MoleculeFile(string name, string path, byte[] bytes)
+        private TextAsset _asset; // while its own memory is looked at
+        private readonly byte[] _bytes; // of a molecule asset
+        private UnmanagedBuffer<byte> _copy; // of a text asset
+        private IntPtr _copiedFrom;
+        private int _copied;
+
+        private MoleculeFile(string name, string path, TextAsset asset, byte[] bytes)
         {
             Name = name;
             Path = path;
-            Bytes = bytes;
+            _asset = asset;
+            _bytes = bytes;
         }
 
         /// <summary>What the format is found out by, and messages call it.</summary>
@@ -24,12 +33,58 @@ namespace QuickSes
         /// <summary>Full path; null if it is in memory.</summary>
         public string Path { get; }
 
-        /// <summary>Its content; null if it is on disk.</summary>
-        public byte[] Bytes { get; }
+        /// <summary>
+        /// Its content, if it is in memory. Before it is detached: main thread, until anything may destroy assets.
+        /// </summary>
+        public ReadOnlySpan<byte> Bytes => _copy != null && IsDetached ? _copy.Span
+            : !IsDetached ? BytesOf(_asset)
+            : _bytes;
+
+        /// <summary>Whether nothing of it is the engine's, so that any thread may read it.</summary>
+        public bool IsDetached => _asset is null;
+
+        /// <summary>From 0 to 1: how much is detached.</summary>
+        public float DetachedPart => IsDetached ? 1 : _copy == null ? 0 : (float)_copied / Math.Max(1, _copy.Length);
+
+        /// <summary>
+        /// Copies some bytes of a text asset, whose memory the engine frees whenever the asset is destroyed, unloaded or
+        /// imported anew, which no thread could prevent. Main thread; again and again until it is detached.
+        /// </summary>
+        /// <param name="most">How many bytes.</param>
+        /// <param name="error">The asset is gone.</param>
+        public unsafe bool TryDetach(int most, out QuickSesError error)
+        {
+            error = default;
+            if (IsDetached)
+                return true;
+            if (_asset == null)
+                return Fail(QuickSesStatus.FileError, $"the text asset '{Name}' was destroyed before it was read",
+                    out error);
+            ReadOnlySpan<byte> bytes = BytesOf(_asset);
+            fixed (byte* first = bytes)
+            {
+                if (_copy == null || _copiedFrom != (IntPtr)first || _copy.Length != bytes.Length)
+                {
+                    _copy = _copy ?? new UnmanagedBuffer<byte>();
+                    _copy.Resize(bytes.Length);
+                    _copiedFrom = (IntPtr)first;
+                    _copied = 0;
+                }
+            }
+            int count = Math.Min(most, bytes.Length - _copied);
+            bytes.Slice(_copied, count).CopyTo(_copy.Span.Slice(_copied));
+            _copied += count;
+            if (_copied == bytes.Length)
+                _asset = null;
+            return true;
+        }
+
+        /// <summary>Frees the copy, if there is one.</summary>
+        public void Dispose() => _copy?.Dispose();
 
         /// <summary>false: <paramref name="error"/> names what is missing.</summary>
-        public static bool TryFind(MoleculeSourceKind kind, TextAsset asset, string path, out MoleculeFile file,
-            out QuickSesError error)
+        public static bool TryFind(MoleculeSourceKind kind, TextAsset asset, MoleculeAsset molecule, string path,
+            out MoleculeFile file, out QuickSesError error)
         {
             file = null;
             switch (kind)
@@ -37,7 +92,9 @@ namespace QuickSes
                 case MoleculeSourceKind.None:
                     return Fail(QuickSesStatus.InvalidArgument, "no file is chosen", out error);
                 case MoleculeSourceKind.TextAsset:
-                    return TryRead(asset, out file, out error);
+                    return TryFindText(asset, out file, out error);
+                case MoleculeSourceKind.MoleculeAsset:
+                    return TryFindMolecule(molecule, out file, out error);
                 case MoleculeSourceKind.StreamingAssets:
                     return TryFindStreamed(Application.streamingAssetsPath, path, out file, out error);
                 case MoleculeSourceKind.File:
@@ -58,22 +115,42 @@ namespace QuickSes
                     $"'{path}' is an absolute path, not one below StreamingAssets", out error);
             if (string.IsNullOrEmpty(root) || root.Contains("://"))
                 return Fail(QuickSesStatus.FileError,
-                    $"'{path}' can't be read: on this platform StreamingAssets is no folder but '{root}'; use a text " +
+                    $"'{path}' can't be read: on this platform StreamingAssets is no folder but '{root}'; use an " +
                     "asset", out error);
             return TryFindOnDisk(System.IO.Path.Combine(root, path), out file, out error);
         }
 
-        private static bool TryRead(TextAsset asset, out MoleculeFile file, out QuickSesError error)
+        private static bool TryFindText(TextAsset asset, out MoleculeFile file, out QuickSesError error)
         {
             file = null;
             if (asset == null)
                 return Fail(QuickSesStatus.InvalidArgument, "no text asset is chosen", out error);
-            byte[] bytes = asset.bytes;
-            if (bytes == null || bytes.Length == 0)
+            if (asset.dataSize == 0)
                 return Fail(QuickSesStatus.FileError, $"the text asset '{asset.name}' is empty", out error);
-            file = new MoleculeFile(asset.name, null, bytes);
+            if (asset.dataSize > int.MaxValue)
+                return Fail(QuickSesStatus.FileError,
+                    $"the text asset '{asset.name}' has more than {int.MaxValue} bytes", out error);
+            file = new MoleculeFile(asset.name, null, asset, null);
             error = default;
             return true;
+        }
+
+        private static bool TryFindMolecule(MoleculeAsset asset, out MoleculeFile file, out QuickSesError error)
+        {
+            file = null;
+            if (asset == null)
+                return Fail(QuickSesStatus.InvalidArgument, "no molecule asset is chosen", out error);
+            if (asset.Size == 0)
+                return Fail(QuickSesStatus.FileError, $"the molecule asset '{asset.FileName}' is empty", out error);
+            file = new MoleculeFile(asset.FileName, null, null, asset.Content);
+            error = default;
+            return true;
+        }
+
+        private static unsafe ReadOnlySpan<byte> BytesOf(TextAsset asset)
+        {
+            NativeArray<byte> data = asset.GetData<byte>();
+            return new ReadOnlySpan<byte>(data.GetUnsafeReadOnlyPtr(), data.Length);
         }
 
         private static bool TryFindFile(string path, out MoleculeFile file, out QuickSesError error)
@@ -93,7 +170,7 @@ namespace QuickSes
                 return Fail(QuickSesStatus.FileError, $"'{path}' is a folder", out error);
             if (!File.Exists(path))
                 return Fail(QuickSesStatus.FileError, $"there is no file '{path}'", out error);
-            file = new MoleculeFile(path, path, null);
+            file = new MoleculeFile(path, path, null, null);
             error = default;
             return true;
         }

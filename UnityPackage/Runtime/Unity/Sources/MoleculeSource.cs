@@ -65,6 +65,19 @@ namespace QuickSes
             return TryFind(out MoleculeFile file, out error) && TryOpen(file, out structure, out error);
         }
 
+        /// <summary>The same atoms' file with other filters and colours.</summary>
+        internal MoleculeSource With(string selection, bool skipWater, bool skipHydrogen, bool skipHetero,
+            AtomColorScheme colorScheme)
+        {
+            MoleculeSource source = Copy();
+            source._selection = selection;
+            source._skipWater = skipWater;
+            source._skipHydrogen = skipHydrogen;
+            source._skipHetero = skipHetero;
+            source._colorScheme = colorScheme;
+            return source;
+        }
+
         internal MoleculeSource Copy() => (MoleculeSource)MemberwiseClone();
 
         internal void CopyFrom(MoleculeSource other)
@@ -85,6 +98,7 @@ namespace QuickSes
             _model == other._model && _skipWater == other._skipWater && _skipHydrogen == other._skipHydrogen &&
             _skipHetero == other._skipHetero && Selection == other.Selection && Radii == other.Radii;
 
+        /// <summary>Of a copy that nobody changes: on any thread that may read the file.</summary>
         internal bool TryOpen(MoleculeFile file, out Structure structure, out QuickSesError error)
         {
             var options = new StructureOptions
@@ -103,7 +117,7 @@ namespace QuickSes
             if (Structure.TryOpen(file.Bytes, options, out structure, out error))
                 return true;
             // The library does not know what bytes in memory are called.
-            error = new QuickSesError(error.Status, $"text asset '{file.Name}': {error.Message}");
+            error = new QuickSesError(error.Status, $"asset '{file.Name}': {error.Message}");
             return false;
         }
     }

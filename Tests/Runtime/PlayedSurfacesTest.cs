@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: MIT
+using NUnit.Framework;
+using System.Collections;
+using System.Collections.Generic;
+using UnityEngine;
+using UnityEngine.TestTools;
+using UnityEngine.TestTools.Constraints;
+using Is = UnityEngine.TestTools.Constraints.Is;
+
+namespace QuickSes.Tests
+{
+    /// <summary>One player, several surfaces.</summary>
+    public sealed class PlayedSurfacesTest
+    {
+        private const int Frames = 600;
+
+        private static readonly int[] s_backbone = { 0, 1, 3 }; // N, CA, C
+        private static readonly int[] s_water = { TestFrames.WaterAtom };
+
+        private PlayerFixture _playing;
+        private TestFolder _folder;
+        private SurfaceRig _backbone, _water;
+
+        private TrajectoryPlayer Player => _playing.Player;
+
+        [SetUp]
+        public void MakePlayer()
+        {
+            _folder = new TestFolder();
+            _playing = new PlayerFixture();
+            _backbone = new SurfaceRig("backbone");
+            _water = new SurfaceRig("water");
+            Player.FramesPerSecond = 10;
+            _playing.UseStructure();
+            Player.TrajectorySource.SetFile(_folder.Write("md.dcd", TestFrames.Dcd(TestFrames.Frames(Frames))));
+            Player.AddSurface(_backbone.Surface, "//A/1/N,CA,C").ColorScheme = AtomColorScheme.Element;
+            PlayedSurface water = Player.AddSurface(_water.Surface, "(HOH)");
+            water.KeepWater = true;
+        }
+
+        [TearDown]
+        public void DestroyPlayer()
+        {
+            _playing.Dispose();
+            _backbone.Dispose();
+            _water.Dispose();
+            _folder.Dispose();
+        }
+
+        private static void AssertAt(MolecularSurface surface, int[] atoms, double place)
+        {
+            int frame = (int)place;
+            float weight = (float)(place - frame);
+            Assert.That(surface.AtomCount, Is.EqualTo(atoms.Length), surface.name);
+            for (int i = 0; i < atoms.Length; ++i)
+            {
+                Vector3 file = TestFrames.Position(frame, atoms[i]);
+                if (weight > 0)
+                    file = (1 - weight) * file + weight * TestFrames.Position(frame + 1, atoms[i]);
+                Vector3 there = new Vector3(-file.x, file.y, file.z);
+                Assert.That((surface.Positions[i] - there).magnitude, Is.LessThan(1e-4f * (1 + frame)),
+                    "atom {0} of {1} in frame {2}", i, surface.name, place);
+            }
+        }
+
+        private void AssertAllAt(double place)
+        {
+            AssertAt(_playing.Surface, TestFrames.WithoutWater, place);
+            AssertAt(_backbone.Surface, s_backbone, place);
+            AssertAt(_water.Surface, s_water, place);
+        }
+
+        [Test]
+        public void AllSurfacesAreAlwaysInTheSameFrame()
+        {
+            _playing.Load();
+            AssertAllAt(0);
+            Player.Play();
+            var seen = new HashSet<int>();
+            int compared = 0;
+            Player.FrameShown += _ => AssertAllAt(Player.ShownFrame); // in the very tick
+            while (seen.Count < Frames)
+            {
+                Player.Tick(0.03f);
+                seen.Add(Player.ShownFrame);
+                AssertAllAt(Player.ShownFrame);
+                ++compared;
+                System.Threading.Thread.Yield();
+                Assert.That(compared, Is.LessThan(10000000), "still waiting");
+            }
+            Assert.That(_playing.Failures, Is.Empty);
+        }
+
+        [Test]
+        public void AllSurfacesAreInTheSamePlaceBetweenFrames()
+        {
+            Player.Interpolate = true;
+            _playing.Load();
+            foreach (double place in new[] { 10.25, 3.5, 598.75, 0.5 })
+            {
+                Player.Frame = place;
+                _playing.WaitUntilShown((int)place);
+                AssertAllAt(place);
+            }
+        }
+
+        [Test]
+        public void JumpingAboutKeepsThemTogether()
+        {
+            _playing.Load();
+            var random = new System.Random(1);
+            for (int jump = 0; jump < 200; ++jump)
+            {
+                Player.Frame = random.Next(Frames);
+                for (int tick = random.Next(3); tick >= 0; --tick)
+                {
+                    Player.Tick(0);
+                    AssertAllAt(Player.ShownFrame);
+                }
+            }
+        }
+
+        [UnityTest]
+        public IEnumerator EachShowsASurfaceInItsColours()
+        {
+            _playing.Load();
+            yield return SurfaceRig.Until(() => !_playing.Surface.IsBusy && !_backbone.Surface.IsBusy &&
+                !_water.Surface.IsBusy);
+            var colors = new HashSet<Color32>(_backbone.Surface.Mesh.colors32);
+            Assert.That(colors.Count, Is.EqualTo(2), "nitrogen and carbon");
+            Assert.That(_water.Surface.Mesh.colors32, Is.Not.Empty.And.All.EqualTo(_water.Surface.BaseColor));
+            Assert.That(_water.Surface.Mesh.bounds.size.x, Is.LessThan(4));
+        }
+
+        [UnityTest]
+        public IEnumerator TheirOwnSourcesAreLeftAlone()
+        {
+            _backbone.Surface.Source.SetAsset(new TextAsset(TestFrames.Pdb(1)) { name = "other.pdb" });
+            int loaded = 0;
+            _backbone.Surface.Loaded += () => ++loaded;
+            _backbone.Surface.BeginLoadSource();
+            _playing.Load();
+            yield return SurfaceRig.Frames(10);
+            AssertAllAt(0);
+            Assert.That(loaded, Is.EqualTo(0));
+        }
+
+        [Test]
+        public void WhoIsGivenOtherAtomsGetsThemBack()
+        {
+            _playing.Load();
+            _water.Surface.SetAtoms(new Vector3[7], new float[] { 1, 1, 1, 1, 1, 1, 1 });
+            _playing.Pass(0);
+            AssertAllAt(0);
+        }
+
+        [UnityTest]
+        public IEnumerator WhoAsksForAtomsGetsThem()
+        {
+            _playing.Load();
+            Player.Frame = 5;
+            _playing.WaitUntilShown(5);
+            _water.Surface.ClearAtoms();
+            _water.Surface.enabled = false;
+            _water.Surface.enabled = true;
+            yield return SurfaceRig.Until(() => _water.Surface.AtomCount == 1);
+            _playing.Pass(0);
+            AssertAllAt(5);
+        }
+
+        [Test]
+        public void OthersGoOnWhereOneIsDestroyed()
+        {
+            _playing.Load();
+            _backbone.Dispose();
+            Player.Frame = 7;
+            _playing.WaitUntilShown(7);
+            AssertAt(_playing.Surface, TestFrames.WithoutWater, 7);
+            AssertAt(_water.Surface, s_water, 7);
+            Player.Unload();
+        }
+
+        [Test]
+        public void EntriesMayBeEmptyAndChange()
+        {
+            Player.AddSurface(_playing.Surface).Surface = null; // left out
+            Assert.That(Player.RemoveSurface(_water.Surface), Is.True);
+            Assert.That(Player.RemoveSurface(_water.Surface), Is.False);
+            Assert.That(Player.Surfaces.Count, Is.EqualTo(2));
+            _playing.Load();
+            AssertAt(_backbone.Surface, s_backbone, 0);
+            Assert.That(_water.Surface.AtomCount, Is.EqualTo(0));
+            Assert.That(() => Player.AddSurface(null), Throws.ArgumentNullException);
+        }
+
+        [Test]
+        public void NoSurfaceIsPlayedTwice([Values] bool isOwn)
+        {
+            Player.AddSurface(isOwn ? _playing.Surface : _water.Surface);
+            Assert.That(Player.Load(), Is.False);
+            Assert.That(_playing.Failures[0], Does.Contain(isOwn ? "'molecule'" : "'water'"));
+            Assert.That(_water.Surface.IsPlayed || _playing.Surface.IsPlayed, Is.False);
+        }
+
+        [Test]
+        public void SelectionsWithoutAtomsAreNamed()
+        {
+            Player.AddSurface(new GameObject("ligand").AddComponent<MolecularSurface>(), "(LIG)");
+            Assert.That(Player.Load(), Is.True);
+            _playing.TickUntil(() => _playing.Failures.Count > 0, "it fails");
+            Assert.That(_playing.Failures[0], Does.Contain("surface 'ligand'").And.Contain("filters"));
+            Object.DestroyImmediate(Player.Surfaces[2].Surface.gameObject);
+        }
+
+        [Test]
+        public void PlayingSeveralMakesNoGarbage()
+        {
+            Player.Interpolate = true;
+            _playing.Load();
+            Player.Play();
+            TestDelegate play = () =>
+            {
+                int goal = _playing.Shown.Count + 20;
+                for (int tick = 0; tick < 1000000 && _playing.Shown.Count < goal; ++tick)
+                {
+                    Player.Tick(0.04f);
+                    System.Threading.Thread.Yield();
+                }
+            };
+            play();
+            int before = _playing.Shown.Count;
+            Assert.That(play, Is.Not.AllocatingGCMemory());
+            Assert.That(_playing.Shown.Count, Is.GreaterThan(before));
+        }
+    }
+}

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+using System;
+using UnityEngine;
+
+namespace QuickSes
+{
+    /// <summary>
+    /// A surface and those atoms of a trajectory's structure that it is of, from when they are read until the player
+    /// lets go of them. Main thread only.
+    /// </summary>
+    internal sealed class PlayedAtoms : IDisposable
+    {
+        private readonly LoadedStructure _loaded;
+        private readonly Action _onAsked;
+
+        /// <param name="surface">Which gets the atoms, now and whenever it asks.</param>
+        /// <param name="loaded">Taken over.</param>
+        /// <param name="onAsked">The surface asked, and got the atoms where the structure has them.</param>
+        public PlayedAtoms(MolecularSurface surface, LoadedStructure loaded, Action onAsked)
+        {
+            Surface = surface;
+            _loaded = loaded;
+            _onAsked = onAsked;
+            SendAtoms();
+            Surface.AtomsRequested += Answer;
+        }
+
+        public MolecularSurface Surface { get; }
+
+        public Structure Structure => _loaded.Structure;
+
+        public int Count => _loaded.Positions.Length;
+
+        /// <summary>Whether the surface has these atoms, or is gone.</summary>
+        public bool IsInPlace => Surface == null || Surface.AtomCount == Count;
+
+        /// <summary>N positions; the atoms come first if somebody else gave the surface others.</summary>
+        public void SendPositions(ReadOnlySpan<Vector3> positions)
+        {
+            if (Surface == null) // was destroyed
+                return;
+            if (!IsInPlace)
+                SendAtoms();
+            Surface.SetPositions(positions);
+        }
+
+        public void SendColors(AtomColorScheme colorScheme)
+        {
+            _loaded.Color(colorScheme);
+            if (Surface == null)
+                return;
+            if (IsInPlace)
+                Surface.ColorAtomsOf(_loaded);
+            else
+                SendAtoms();
+        }
+
+        public void Dispose()
+        {
+            if (!ReferenceEquals(Surface, null))
+                Surface.AtomsRequested -= Answer;
+            _loaded.Dispose();
+        }
+
+        private void SendAtoms() => Surface.SetAtomsOf(_loaded);
+
+        private void Answer()
+        {
+            SendAtoms();
+            _onAsked();
+        }
+    }
+}

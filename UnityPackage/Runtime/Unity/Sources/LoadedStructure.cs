@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+using System;
+using UnityEngine;
+
+namespace QuickSes
+{
+    /// <summary>
+    /// A structure that was read, and what surfaces take of it: positions in Unity's space, and colours. One thread at
+    /// a time; makes garbage.
+    /// </summary>
+    internal sealed class LoadedStructure : IDisposable
+    {
+        private readonly UnmanagedBuffer<Vector3> _positions = new UnmanagedBuffer<Vector3>();
+        private readonly UnmanagedBuffer<Color32> _colors = new UnmanagedBuffer<Color32>();
+
+        /// <param name="structure">Taken over.</param>
+        /// <param name="colorScheme">How its atoms are coloured.</param>
+        public LoadedStructure(Structure structure, AtomColorScheme colorScheme)
+        {
+            Structure = structure;
+            UnitySpace.FromFile(structure.Positions, _positions.Resize(structure.AtomCount));
+            Color(colorScheme);
+        }
+
+        /// <summary>Open until Dispose.</summary>
+        public Structure Structure { get; }
+
+        /// <summary>What <see cref="Colors"/> tell.</summary>
+        public AtomColorScheme ColorScheme { get; private set; }
+
+        public ReadOnlySpan<Vector3> Positions => _positions.Span;
+
+        public ReadOnlySpan<float> Radii => Structure.Radii;
+
+        /// <summary>Transparent black stands for the base colour, whatever that is later.</summary>
+        public ReadOnlySpan<Color32> Colors => _colors.Span;
+
+        /// <summary>Colours anew, on the calling thread.</summary>
+        public void Color(AtomColorScheme colorScheme)
+        {
+            AtomColors.Fill(Structure, colorScheme, default, _colors.Resize(Structure.AtomCount));
+            ColorScheme = colorScheme;
+        }
+
+        public void Dispose()
+        {
+            _positions.Dispose();
+            _colors.Dispose();
+            Structure.Dispose();
+        }
+    }
+}
