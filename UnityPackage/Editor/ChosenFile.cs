@@ -20,7 +20,7 @@ namespace QuickSes.Editor
             "Trajectories", "dcd,xtc,pdb,ent,gz,bytes", "All files", "*"
         };
 
-        private ChosenFile(MoleculeSourceKind kind, TextAsset asset, string path)
+        private ChosenFile(MoleculeSourceKind kind, Object asset, string path)
         {
             Kind = kind;
             Asset = asset;
@@ -29,8 +29,8 @@ namespace QuickSes.Editor
 
         public MoleculeSourceKind Kind { get; }
 
-        /// <summary>For the kind TextAsset, else null.</summary>
-        public TextAsset Asset { get; }
+        /// <summary>For the kinds TextAsset and MoleculeAsset, else null.</summary>
+        public Object Asset { get; }
 
         /// <summary>For the other kinds, else "".</summary>
         public string Path { get; }
@@ -50,6 +50,9 @@ namespace QuickSes.Editor
                 return new ChosenFile(MoleculeSourceKind.StreamingAssets, null, located.Path);
             if (located.Place == ProjectFilePlace.Assets)
             {
+                var molecule = AssetDatabase.LoadAssetAtPath<MoleculeAsset>(located.Path);
+                if (molecule != null)
+                    return new ChosenFile(MoleculeSourceKind.MoleculeAsset, molecule, "");
                 var asset = AssetDatabase.LoadAssetAtPath<TextAsset>(located.Path);
                 if (asset != null)
                     return new ChosenFile(MoleculeSourceKind.TextAsset, asset, "");
@@ -57,11 +60,12 @@ namespace QuickSes.Editor
             return new ChosenFile(MoleculeSourceKind.File, null, file);
         }
 
-        /// <summary>Writes it into the fields _kind, _asset and _path below <paramref name="source"/>.</summary>
+        /// <summary>Writes it into the fields _kind, _asset, _molecule and _path below <paramref name="source"/>.</summary>
         public void AssignTo(SerializedProperty source)
         {
             source.FindPropertyRelative("_kind").intValue = (int)Kind;
-            source.FindPropertyRelative("_asset").objectReferenceValue = Asset;
+            source.FindPropertyRelative("_asset").objectReferenceValue = Asset as TextAsset;
+            source.FindPropertyRelative("_molecule").objectReferenceValue = Asset as MoleculeAsset;
             source.FindPropertyRelative("_path").stringValue = Path;
         }
 

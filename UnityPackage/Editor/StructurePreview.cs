@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 using System;
+using System.Collections.Generic;
 using System.Globalization;
 
 namespace QuickSes.Editor
@@ -24,6 +25,9 @@ namespace QuickSes.Editor
 
         public int ModelCount { get; private set; }
 
+        /// <summary>Chains of the atoms after filters; 0: the format has none.</summary>
+        public int ChainCount { get; private set; }
+
         public StructureFormat Format { get; private set; }
 
         /// <summary>Whether a <see cref="TrajectoryPlayer"/> can show one model after the other.</summary>
@@ -43,6 +47,8 @@ namespace QuickSes.Editor
                     ? $"{AtomCount:N0} atoms"
                     : (FormattableString)$"{AtomCount:N0} of {FileAtomCount:N0} atoms";
                 string summary = text.ToString(CultureInfo.InvariantCulture);
+                if (ChainCount > 0)
+                    summary += ChainCount == 1 ? ", 1 chain" : $", {ChainCount} chains";
                 if (ModelCount > 1)
                     summary += $", model {Model} of {ModelCount}";
                 return $"{summary} ({Format.ToString().ToUpperInvariant()})";
@@ -55,20 +61,36 @@ namespace QuickSes.Editor
             if (!source.TryOpen(out Structure structure, out QuickSesError error))
                 return new StructurePreview { Error = error.Message };
             using (structure)
+                return Of(structure);
+        }
+
+        private static StructurePreview Of(Structure structure)
+        {
+            var warnings = new string[structure.WarningCount];
+            for (int k = 0; k < warnings.Length; ++k)
+                warnings[k] = structure.GetWarning(k);
+            return new StructurePreview
             {
-                var warnings = new string[structure.WarningCount];
-                for (int k = 0; k < warnings.Length; ++k)
-                    warnings[k] = structure.GetWarning(k);
-                return new StructurePreview
-                {
-                    AtomCount = structure.AtomCount,
-                    FileAtomCount = structure.FileAtomCount,
-                    Model = structure.Model,
-                    ModelCount = structure.ModelCount,
-                    Format = structure.Format,
-                    Warnings = warnings
-                };
+                AtomCount = structure.AtomCount,
+                FileAtomCount = structure.FileAtomCount,
+                Model = structure.Model,
+                ModelCount = structure.ModelCount,
+                ChainCount = CountChains(structure),
+                Format = structure.Format,
+                Warnings = warnings
+            };
+        }
+
+        private static int CountChains(Structure structure)
+        {
+            var chains = new HashSet<string>();
+            for (int i = 0; i < structure.AtomCount; ++i)
+            {
+                string chain = structure.GetAtom(i).Chain;
+                if (chain.Length > 0)
+                    chains.Add(chain);
             }
+            return chains.Count;
         }
     }
 }

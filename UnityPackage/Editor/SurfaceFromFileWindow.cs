@@ -67,8 +67,7 @@ namespace QuickSes.Editor
             {
                 EditorGUILayout.HelpBox(
                     "Choose a file: PDB, mmCIF, PQR, XYZR or GRO, each also gzipped. It is referred to as an asset " +
-                    "if Unity imported it as text, relative to StreamingAssets if it lies there, else by its " +
-                    "absolute path.",
+                    "if it lies in Assets, relative to StreamingAssets if it lies there, else by its absolute path.",
                     MessageType.Info);
                 return;
             }

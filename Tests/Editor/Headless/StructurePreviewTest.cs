@@ -37,7 +37,7 @@ namespace QuickSes.Tests
             Assert.That(preview.Error, Is.Empty);
             Assert.That(preview.AtomCount, Is.EqualTo(2));
             Assert.That(preview.FileAtomCount, Is.EqualTo(4));
-            Assert.That(preview.Summary, Is.EqualTo("2 of 4 atoms, model 2 of 2 (PDB)"));
+            Assert.That(preview.Summary, Is.EqualTo("2 of 4 atoms, 1 chain, model 2 of 2 (PDB)"));
             Assert.That(preview.HasPlayableModels, Is.True);
             Assert.That(preview.Warnings, Is.Empty);
         }
@@ -49,7 +49,7 @@ namespace QuickSes.Tests
             var source = new MoleculeSource { SkipWater = false };
             source.SetFile(_path);
             StructurePreview preview = StructurePreview.Read(source);
-            Assert.That(preview.Summary, Is.EqualTo("4 atoms (PDB)"));
+            Assert.That(preview.Summary, Is.EqualTo("4 atoms, 1 chain (PDB)"));
             Assert.That(preview.HasPlayableModels, Is.False);
         }
 

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+using System.Collections.Generic;
+using UnityEditor;
+using UnityEngine;
+
+namespace QuickSes.Editor
+{
+    /// <summary>
+    /// Molecule assets that are dropped into the Scene view or the Hierarchy become surfaces; a structure together with
+    /// a trajectory becomes one with a player.
+    /// </summary>
+    internal static class MoleculeDrop
+    {
+        [InitializeOnLoadMethod]
+        private static void Register()
+        {
+            DragAndDrop.AddDropHandler((DragAndDrop.SceneDropHandler)DropIntoScene);
+            DragAndDrop.AddDropHandler((DragAndDrop.HierarchyDropHandler)DropIntoHierarchy);
+        }
+
+        private static DragAndDropVisualMode DropIntoScene(Object dropUpon, Vector3 worldPosition,
+            Vector2 viewportPosition, Transform parentForDraggedObjects, bool perform)
+        {
+            DragAndDropVisualMode mode = Drop(ParentOf(parentForDraggedObjects), perform, out List<GameObject> made);
+            foreach (GameObject each in made)
+                each.transform.position = worldPosition;
+            return mode;
+        }
+
+        private static DragAndDropVisualMode DropIntoHierarchy(int dropTargetInstanceID, HierarchyDropFlags dropMode,
+            Transform parentForDraggedObjects, bool perform)
+        {
+            GameObject parent = (dropMode & HierarchyDropFlags.DropUpon) != 0
+                ? EditorUtility.InstanceIDToObject(dropTargetInstanceID) as GameObject
+                : ParentOf(parentForDraggedObjects);
+            return Drop(parent, perform, out _);
+        }
+
+        private static GameObject ParentOf(Transform parent) => parent != null ? parent.gameObject : null;
+
+        // None: other handlers are asked.
+        private static DragAndDropVisualMode Drop(GameObject parent, bool perform, out List<GameObject> made)
+        {
+            made = new List<GameObject>();
+            var structures = new List<MoleculeAsset>();
+            var trajectories = new List<MoleculeAsset>();
+            foreach (Object dragged in DragAndDrop.objectReferences)
+            {
+                if (!(dragged is MoleculeAsset molecule))
+                    return DragAndDropVisualMode.None;
+                (MoleculeFiles.IsTrajectory(molecule.FileName) ? trajectories : structures).Add(molecule);
+            }
+            bool isPlayed = structures.Count == 1 && trajectories.Count == 1;
+            if (structures.Count == 0 || (trajectories.Count > 0 && !isPlayed))
+                return structures.Count + trajectories.Count == 0
+                    ? DragAndDropVisualMode.None
+                    : DragAndDropVisualMode.Rejected;
+            if (!perform)
+                return DragAndDropVisualMode.Copy;
+            foreach (MoleculeAsset each in structures)
+            {
+                var source = new MoleculeSource();
+                source.SetAsset(each);
+                if (!isPlayed)
+                {
+                    made.Add(SurfaceCreator.Create(source, parent).gameObject);
+                    continue;
+                }
+                var trajectory = new TrajectorySource();
+                trajectory.SetAsset(trajectories[0]);
+                made.Add(SurfaceCreator.Create(source, trajectory, parent).gameObject);
+            }
+            DragAndDrop.AcceptDrag();
+            return DragAndDropVisualMode.Copy;
+        }
+    }
+}
