@@ -129,7 +129,7 @@ namespace QuickSes.Samples
 #if ENABLE_INPUT_SYSTEM && !ENABLE_LEGACY_INPUT_MANAGER
             GUILayout.Label("No mouse events here: in the Player settings, set Active Input Handling to Both.");
 #endif
-            GUILayout.Label(_problem);
+            GUILayout.Label(_player.IsLoading ? $"Reading, {100 * _player.LoadProgress:0} %" : _problem);
         }
 
         private void DrawAtomUnderMouse(Vector2 mouse, float scale)

@@ -350,8 +350,8 @@ namespace QuickSes.Tests
             LoadWith("md.dcd", TestFrames.Dcd(TestFrames.Frames(3)));
             Structure structure = Player.Structure;
             Object.DestroyImmediate(_playing.GameObject);
+            BackgroundThread.SendAllAway(); // which let go of it a little later
             Assert.That(() => structure.AtomCount, Throws.TypeOf<System.ObjectDisposedException>());
-            BackgroundThread.SendAllAway(); // which let go of theirs a little later
             Assert.That(() => System.IO.File.Delete(Player.TrajectorySource.Path), Throws.Nothing);
         }
     }

@@ -22,6 +22,7 @@ namespace QuickSes.EngineDouble.Tests
             private void Reset() => Note("Reset");
             private void Start() => Note("Start");
             private void Update() => Note("Update");
+            private void OnDidApplyAnimationProperties() => Note("OnDidApplyAnimationProperties");
             private void LateUpdate() => Note("LateUpdate");
             private void OnDisable() => Note("OnDisable");
             private void OnDestroy() => Note("OnDestroy");
@@ -33,6 +34,18 @@ namespace QuickSes.EngineDouble.Tests
         [ExecuteAlways]
         private sealed class EditRecorder : Recorder
         {
+        }
+
+        private sealed class Animated : MonoBehaviour
+        {
+            public float Place = 0;
+            [SerializeField] private float _hidden = 0;
+            private float _notSerialised = 0;
+
+            public float Hidden => _hidden + _notSerialised;
+            public double Told { get; private set; } = -1;
+
+            private void OnDidApplyAnimationProperties() => Told = Place;
         }
 
         private sealed class Counter : MonoBehaviour
@@ -79,6 +92,28 @@ namespace QuickSes.EngineDouble.Tests
             Object.Destroy(recorder);
             Engine.Frame(0.1);
             Assert.That(Taken(), Is.EqualTo(new[] { "OnDisable", "OnDestroy" }));
+        }
+
+        [Test]
+        public void AnimationsWriteBetweenUpdateAndLateUpdate()
+        {
+            var recorder = new GameObject().AddComponent<Recorder>();
+            var animated = recorder.gameObject.AddComponent<Animated>();
+            Engine.Frame(0.1);
+            Taken();
+            Engine.Animating += () => Recorder.Calls.Add("animation");
+            Engine.Frame(0.1);
+            Assert.That(Taken(), Is.EqualTo(new[] { "Update", "animation", "LateUpdate" }));
+            Engine.Animate(animated, "Place", 3);
+            Assert.That(animated.Told, Is.EqualTo(3));
+            Engine.Animate(animated, "_hidden", 4);
+            Assert.That(animated.Hidden, Is.EqualTo(4));
+            animated.enabled = false;
+            Engine.Animate(animated, "Place", 5);
+            Assert.That(animated.Place, Is.EqualTo(5));
+            Assert.That(animated.Told, Is.EqualTo(3));
+            Assert.That(() => Engine.Animate(animated, "_notSerialised", 1), Throws.ArgumentException);
+            Assert.That(() => Engine.Animate(animated, "none", 1), Throws.ArgumentException);
         }
 
         [Test]

@@ -21,6 +21,24 @@ namespace QuickSes.EngineDouble.Tests
         }
 
         [Test]
+        public void TextAssetsLendTheirMemory()
+        {
+            var asset = new UnityEngine.TextAsset("abcd");
+            Assert.That(asset.dataSize, Is.EqualTo(4));
+            NativeArray<byte> bytes = asset.GetData<byte>();
+            Assert.That(bytes.ToArray(), Is.EqualTo(asset.bytes));
+            Assert.That((IntPtr)bytes.GetUnsafeReadOnlyPtr(),
+                Is.EqualTo((IntPtr)asset.GetData<byte>().GetUnsafeReadOnlyPtr()), "not a copy");
+            Assert.That(asset.GetData<int>().Length, Is.EqualTo(1));
+            Assert.That(() => asset.GetData<long>(), Throws.ArgumentException);
+            UnityEngine.Object.DestroyImmediate(asset);
+            Assert.That(() => asset.GetData<byte>(), Throws.Exception);
+#if ENABLE_UNITY_COLLECTIONS_CHECKS
+            Assert.That(() => (IntPtr)bytes.GetUnsafeReadOnlyPtr(), Throws.Exception, "it went with the asset");
+#endif
+        }
+
+        [Test]
         public void AllocationsAreChecked()
         {
             using (var array = new NativeArray<int>(4, Allocator.Persistent))

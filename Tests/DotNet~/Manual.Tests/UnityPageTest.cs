@@ -34,6 +34,7 @@ internal sealed class UnityPageTest
         script.path = Repository.CrambinPath;
         yield return null;
         var surface = script.GetComponent<MolecularSurface>();
+        yield return Until(() => !surface.IsLoading);
         Assert.That(surface.AtomCount, Is.EqualTo(327));
         yield return Until(() => surface.CurrentLevel.VertexCount > 0);
         Color32[] colors = surface.Mesh.colors32;
@@ -58,6 +59,24 @@ internal sealed class UnityPageTest
         var surface = script.GetComponent<MolecularSurface>();
         yield return Until(() => surface.Mesh.bounds.min.x < -5.5f); // x is negated
         UnityEngine.Object.DestroyImmediate(script.gameObject);
+    }
+
+    [UnityTest]
+    public IEnumerator OnePlayerMovesSeveralSurfaces()
+    {
+        using var folder = new TemporaryFolder();
+        string file = folder.File("complex.pdb");
+        string ligand = "HETATM    2  C   LIG B   2       9.000   0.000   0.000  1.00  0.00           C\nENDMDL\n";
+        File.WriteAllText(file, (Model(1, 0) + Model(2, 5)).Replace("ENDMDL\n", ligand) + "END\n");
+        var script = new GameObject().AddComponent<PlayComplex>();
+        script.ligand = new GameObject().AddComponent<MolecularSurface>();
+        script.player = new GameObject().AddComponent<TrajectoryPlayer>();
+        script.player.StructureSource.SetFile(file);
+        yield return Until(() => script.player.ShownFrame >= 0);
+        Assert.That(script.player.GetComponent<MolecularSurface>().AtomCount, Is.EqualTo(1));
+        yield return Until(() => script.ligand.CurrentLevel.VertexCount > 0);
+        Assert.That(script.ligand.Mesh.bounds.center.x, Is.EqualTo(-9).Within(0.2));
+        UnityEngine.Object.DestroyImmediate(script.player.gameObject);
     }
 
     [UnityTest]

@@ -106,6 +106,7 @@ namespace QuickSes.Tests
             playing.Load();
             Structure structure = playing.Player.Structure;
             Engine.Quit();
+            BackgroundThread.SendAllAway();
             Assert.That(() => structure.AtomCount, Throws.TypeOf<System.ObjectDisposedException>());
             Assert.That(playing.Player == null, Is.True);
         }

@@ -19,9 +19,19 @@ namespace QuickSes
 
         private readonly Thread _thread;
 
+        /// <summary>Whether no more threads should begin.</summary>
+        public static bool IsDomainEnding { get; private set; }
+
         protected BackgroundThread(string name)
         {
             _thread = new Thread(RunAndLeave) { IsBackground = true, Name = name };
+        }
+
+        /// <summary>Before the domain is unloaded, or the program ends: <see cref="SendAllAway"/>.</summary>
+        public static void EndAll()
+        {
+            IsDomainEnding = true;
+            SendAllAway();
         }
 
         /// <summary>

@@ -16,8 +16,8 @@ namespace QuickSes
             Application.quitting += SurfaceScheduler.ReleaseContexts;
             if (Application.isEditor)
                 return; // the domain stays, and so does the native library
-            Application.quitting -= BackgroundThread.SendAllAway;
-            Application.quitting += BackgroundThread.SendAllAway;
+            Application.quitting -= BackgroundThread.EndAll;
+            Application.quitting += BackgroundThread.EndAll;
         }
 
         // Before a domain reload: what managed objects hold outside of the managed heap would be lost with them, and
@@ -25,7 +25,7 @@ namespace QuickSes
         internal static void OnDomainUnloads()
         {
             SurfaceScheduler.DisposeAll();
-            BackgroundThread.SendAllAway();
+            BackgroundThread.EndAll();
         }
 
 #if UNITY_EDITOR

@@ -159,7 +159,8 @@ namespace QuickSes
 
         private void ShowDemoUnlessFed()
         {
-            if (this == null || _isScriptFed || _source.IsSet || _atomsRequested != null)
+            if (this == null || _isScriptFed || _source.IsSet || _atomsRequested != null || IsPlayed ||
+                GetComponent<TrajectoryPlayer>() != null)
                 return;
             _source.SetAsset(AssetDatabase.LoadAssetAtPath<TextAsset>(AssetDatabase.GUIDToAssetPath(DemoMolecule)));
             EditorUtility.SetDirty(this);

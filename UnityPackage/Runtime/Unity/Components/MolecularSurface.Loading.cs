@@ -149,13 +149,10 @@ namespace QuickSes
             else
                 ColorAtomsOf(loaded);
             _isScriptFed = false;
-            Release(loaded);
+            TakeStructure(loaded);
             Loaded?.Invoke();
             return true;
         }
-
-        // Where a structure that was read ends up, with its atoms in the surface.
-        private static void Release(LoadedStructure loaded) => loaded.Dispose();
 
         private bool FailToLoad(in QuickSesError error)
         {
@@ -164,10 +161,12 @@ namespace QuickSes
             return false;
         }
 
-        /// <summary>The atoms of a file, and their colours.</summary>
+        /// <summary>The atoms of a file, and their colours; its structure is borrowed.</summary>
         internal void SetAtomsOf(LoadedStructure loaded)
         {
             SetAtoms(loaded.Positions, loaded.Radii);
+            BorrowStructure(loaded.Structure);
+            ShowSelectionOfNew(loaded.Structure);
             ColorAtomsOf(loaded);
         }
 

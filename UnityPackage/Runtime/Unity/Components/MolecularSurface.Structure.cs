@@ -11,6 +11,7 @@ namespace QuickSes
         [NonSerialized] private bool _ownsStructure; // else it is a player's
         [NonSerialized] private bool _keepsStructure; // somebody asked for it
         [NonSerialized] private bool _areAtomsOfSource;
+        [NonSerialized] private MoleculeSource _atomsSource; // then: as it was when it was read
 
         /// <summary>
         /// What the file says about the atoms, in their order: names, residues, chains, selections. null if they are not of
@@ -48,16 +49,23 @@ namespace QuickSes
             _areAtomsOfSource = false;
         }
 
+        /// <summary>Its owner closes it.</summary>
+        internal void GiveBackStructure(Structure structure)
+        {
+            if (_structure == structure && !_ownsStructure)
+                _structure = null;
+        }
+
         /// <summary>The atoms there are now are of the source; nobody else closes its structure.</summary>
-        private void TakeStructure(Structure structure)
+        private void TakeStructure(LoadedStructure loaded)
         {
             ForgetStructure();
             _areAtomsOfSource = true;
+            _atomsSource = _loadedSource;
             _ownsStructure = _keepsStructure;
             if (_keepsStructure)
-                _structure = structure;
-            else
-                structure.Dispose();
+                _structure = loaded.TakeStructure();
+            loaded.DisposeInBackground();
         }
 
         /// <summary>There are other atoms.</summary>
@@ -79,7 +87,7 @@ namespace QuickSes
         private void ReadStructureAgain()
         {
             string fault = null;
-            if (!_loadedSource.TryOpen(out Structure structure, out QuickSesError error))
+            if (!_atomsSource.TryOpen(out Structure structure, out QuickSesError error))
                 fault = error.Message;
             else if (structure.AtomCount != AtomCount)
                 fault = $"it has {structure.AtomCount} atoms now, not {AtomCount}";

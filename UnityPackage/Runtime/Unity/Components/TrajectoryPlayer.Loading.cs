@@ -87,12 +87,13 @@ namespace QuickSes
             _loadedTrajectorySource = _trajectorySource.Copy();
             _loadedUnwrap = _unwrap;
             _loadedPrefetchFrames = _prefetchFrames;
-            foreach (PlayedSurface each in _surfaces)
-                _loadedSurfaces.Add(each.Copy());
             Claim(_surface);
-            foreach (PlayedSurface each in _loadedSurfaces)
+            foreach (PlayedSurface each in _surfaces)
                 if (each.Surface != null)
+                {
+                    _loadedSurfaces.Add(each.Copy());
                     Claim(each.Surface);
+                }
             if (_chosenFrame >= 0)
                 SetPlace(_chosenFrame);
             else if (!IsFrameOfSetFile)
@@ -120,7 +121,6 @@ namespace QuickSes
         {
             error = default;
             var made = new List<MoleculeSource> { structure.Copy() };
-            _loadedSurfaces.RemoveAll(each => each.Surface == null);
             foreach (PlayedSurface each in _loadedSurfaces)
             {
                 bool isTwice = each.Surface == _surface ||
@@ -165,7 +165,7 @@ namespace QuickSes
             if (_isWish && !HasModels(structures[0].Structure))
             {
                 foreach (LoadedStructure each in structures)
-                    each.Dispose();
+                    each.DisposeInBackground();
                 file.Dispose();
                 ReleaseSurfaces();
                 return;

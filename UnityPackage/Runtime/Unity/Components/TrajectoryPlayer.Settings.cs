@@ -203,12 +203,12 @@ namespace QuickSes
 
         private bool AreSurfacesAsLoaded()
         {
-            if (_surfaces.Count != _loadedSurfaces.Count)
-                return false;
-            for (int k = 0; k < _surfaces.Count; ++k)
-                if (!_surfaces[k].IsSameAs(_loadedSurfaces[k]))
+            int count = 0;
+            foreach (PlayedSurface each in _surfaces)
+                if (each.Surface != null && // empty entries are left out
+                    (count == _loadedSurfaces.Count || !each.IsSameAs(_loadedSurfaces[count++])))
                     return false;
-            return true;
+            return count == _loadedSurfaces.Count;
         }
     }
 }

@@ -57,9 +57,9 @@ namespace QuickSes
 
         public void Dispose()
         {
-            if (!ReferenceEquals(Surface, null))
-                Surface.AtomsRequested -= Answer;
-            _loaded.Dispose();
+            Surface.AtomsRequested -= Answer;
+            Surface.GiveBackStructure(Structure);
+            _loaded.DisposeInBackground();
         }
 
         private void SendAtoms() => Surface.SetAtomsOf(_loaded);

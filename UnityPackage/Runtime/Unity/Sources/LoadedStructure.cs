@@ -10,6 +10,24 @@ namespace QuickSes
     /// </summary>
     internal sealed class LoadedStructure : IDisposable
     {
+        private sealed class Disposal : BackgroundThread
+        {
+            private readonly LoadedStructure _loaded;
+
+            public Disposal(LoadedStructure loaded)
+                : base("QuickSES disposal")
+            {
+                _loaded = loaded;
+                Start();
+            }
+
+            public override void SendAway()
+            {
+            }
+
+            protected override void Run() => _loaded.Dispose();
+        }
+
         private readonly UnmanagedBuffer<Vector3> _positions = new UnmanagedBuffer<Vector3>();
         private readonly UnmanagedBuffer<Color32> _colors = new UnmanagedBuffer<Color32>();
 
@@ -22,8 +40,16 @@ namespace QuickSes
             Color(colorScheme);
         }
 
-        /// <summary>Open until Dispose.</summary>
-        public Structure Structure { get; }
+        /// <summary>Open until Dispose, unless somebody else took it: null then.</summary>
+        public Structure Structure { get; private set; }
+
+        /// <summary>From now on it is the caller's to dispose of.</summary>
+        public Structure TakeStructure()
+        {
+            Structure taken = Structure;
+            Structure = null;
+            return taken;
+        }
 
         /// <summary>What <see cref="Colors"/> tell.</summary>
         public AtomColorScheme ColorScheme { get; private set; }
@@ -42,11 +68,23 @@ namespace QuickSes
             ColorScheme = colorScheme;
         }
 
+        /// <summary>
+        /// Has it disposed of by a thread of its own, since freeing what the library holds of a large molecule takes some
+        /// milliseconds. Where the domain ends it happens at once.
+        /// </summary>
+        public void DisposeInBackground()
+        {
+            if (BackgroundThread.IsDomainEnding)
+                Dispose();
+            else
+                new Disposal(this);
+        }
+
         public void Dispose()
         {
             _positions.Dispose();
             _colors.Dispose();
-            Structure.Dispose();
+            Structure?.Dispose();
         }
     }
 }

@@ -96,7 +96,8 @@ namespace QuickSes
                 _file.Dispose();
             if (!TryTake(out LoadedStructure[] structures, out _))
                 return;
-            Dispose(structures);
+            foreach (LoadedStructure each in structures)
+                each.DisposeInBackground();
             _file.Dispose();
         }
 
