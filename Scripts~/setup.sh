@@ -85,12 +85,16 @@ wants_mono() {
     ! { is_there mono-sgen && is_there mono-boehm && is_there /usr/lib/mono/4.5/Facades/netstandard.dll; }
 }
 
+# Compiles the package's shaders in a test, which is left out without it.
+wants_shader_compiler() { ! is_there glslangValidator && has_candidate glslang-tools; }
+
 missing=()
 for need in "${needs[@]}"; do
   is_there "${need#* }" || missing+=("${need%% *}")
 done
 if wants_formatter; then missing+=(clang-format-14); fi
 if wants_debootstrap; then missing+=(debootstrap); fi
+if wants_shader_compiler; then missing+=(glslang-tools); fi
 if wants_mono; then missing+=(mono-devel mono-runtime-boehm); fi
 if [ "$with_cuda" = yes ] && ! has_cuda_toolkit; then missing+=(nvidia-cuda-toolkit); fi
 if [ ${#missing[@]} -eq 0 ]; then
