@@ -85,8 +85,9 @@ wants_mono() {
     ! { is_there mono-sgen && is_there mono-boehm && is_there /usr/lib/mono/4.5/Facades/netstandard.dll; }
 }
 
-# Compiles the package's shaders in a test, which is left out without it.
-wants_shader_compiler() { ! is_there glslangValidator && has_candidate glslang-tools; }
+# Compile the package's shaders and draw with them in tests, which are left out without them.
+shader_tools=("glslang-tools glslangValidator" "spirv-cross spirv-cross" "libosmesa6 /usr/lib/x86_64-linux-gnu/libOSMesa.so.8")
+wants_shader_tool() { ! is_there "${1#* }" && has_candidate "${1%% *}"; }
 
 missing=()
 for need in "${needs[@]}"; do
@@ -94,7 +95,9 @@ for need in "${needs[@]}"; do
 done
 if wants_formatter; then missing+=(clang-format-14); fi
 if wants_debootstrap; then missing+=(debootstrap); fi
-if wants_shader_compiler; then missing+=(glslang-tools); fi
+for tool in "${shader_tools[@]}"; do
+  if wants_shader_tool "$tool"; then missing+=("${tool%% *}"); fi
+done
 if wants_mono; then missing+=(mono-devel mono-runtime-boehm); fi
 if [ "$with_cuda" = yes ] && ! has_cuda_toolkit; then missing+=(nvidia-cuda-toolkit); fi
 if [ ${#missing[@]} -eq 0 ]; then
