@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 using NUnit.Framework;
 using System.Collections;
+using System.Collections.Generic;
 using UnityEngine;
 using UnityEngine.TestTools;
 using Object = UnityEngine.Object;
@@ -66,6 +67,39 @@ namespace QuickSes.Tests
             yield return _rig.Settle();
             Assert.That(_rig.Requests, Is.EqualTo(1));
             Assert.That(_requested, Is.EqualTo(0));
+        }
+
+        [Test]
+        public void ThoseOfAPlayer()
+        {
+            using (var playing = new PlayerFixture())
+            {
+                var shown = new List<int>();
+                int loads = 0, loops = 0, finishes = 0;
+                string failed = null;
+                PlayerEvents events = playing.Player.Events;
+                events.Loaded.AddListener(() => Assert.That(++loads, Is.EqualTo(playing.Loads)));
+                events.FrameShown.AddListener(frame => shown.Add(frame));
+                events.Looped.AddListener(() => ++loops);
+                events.Finished.AddListener(() => ++finishes);
+                events.Failed.AddListener(message => failed = message);
+                playing.UseEnsemble(3);
+                playing.Load();
+                playing.Player.FramesPerSecond = 10;
+                playing.Player.Play();
+                for (int step = 0; step < 4; ++step)
+                    playing.Pass(0.1f);
+                playing.Player.Mode = PlaybackMode.Once;
+                for (int step = 0; step < 3; ++step)
+                    playing.Pass(0.1f);
+                Assert.That(loads, Is.EqualTo(1));
+                Assert.That(shown, Is.EqualTo(playing.Shown).And.Not.Empty);
+                Assert.That((loops, finishes), Is.EqualTo((playing.Loops, playing.Finishes)).And.EqualTo((1, 1)));
+                Assert.That(failed, Is.Null);
+                playing.Player.StructureSource.SetFile("/no/such/folder/molecule.pdb");
+                Assert.That(playing.Player.Load(), Is.False);
+                Assert.That(failed, Is.EqualTo(playing.Failures[0]));
+            }
         }
     }
 }

@@ -193,12 +193,12 @@ namespace QuickSes
             if (_isNewFrameUntold)
             {
                 _isNewFrameUntold = false;
-                FrameShown?.Invoke(_shown.From);
+                RaiseFrameShown(_shown.From);
             }
             if (TakeUntold(PlayHeadEvents.Looped))
-                Looped?.Invoke();
+                RaiseLooped();
             if (TakeUntold(PlayHeadEvents.Finished))
-                Finished?.Invoke();
+                RaiseFinished();
         }
 
         private bool TakeUntold(PlayHeadEvents which)
@@ -230,7 +230,7 @@ namespace QuickSes
             _between.Resize(_prefetcher.AtomCount);
             IsReady = true;
             FramePrefetcher opened = _prefetcher;
-            Loaded?.Invoke();
+            RaiseLoaded();
             return _prefetcher == opened;
         }
 
@@ -301,15 +301,6 @@ namespace QuickSes
             LastError = new QuickSesError(error.Status, $"{what}: {error.Message}");
             RaiseFailed(-1);
             return false;
-        }
-
-        private void RaiseFailed(int frame)
-        {
-            if (Failed != null)
-                Failed(frame, LastError);
-            else if (frame < 0 || !_isDamageLogged)
-                Debug.LogError($"{name}: {LastError.Message}", this);
-            _isDamageLogged |= frame >= 0;
         }
 
         private bool AreAtomsInPlace()
