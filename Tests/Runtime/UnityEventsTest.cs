@@ -70,6 +70,19 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void ASourceThatIsReadIsTold()
+        {
+            int loaded = 0;
+            _rig.Surface.Events.Loaded.AddListener(() => ++loaded);
+            _rig.Surface.Source.SetAsset(new TextAsset(TestFrames.Pdb(1)) { name = "small.pdb" });
+            Assert.That(_rig.Surface.LoadSource(), Is.True);
+            Assert.That(loaded, Is.EqualTo(1));
+            _rig.Surface.Source.SetFile("/no/such/folder/molecule.pdb");
+            Assert.That(_rig.Surface.LoadSource(), Is.False);
+            Assert.That(loaded, Is.EqualTo(1));
+        }
+
+        [Test]
         public void ThoseOfAPlayer()
         {
             using (var playing = new PlayerFixture())

@@ -151,6 +151,8 @@ namespace QuickSes
             _isScriptFed = false;
             TakeStructure(loaded);
             Loaded?.Invoke();
+            if (this != null)
+                _events.Loaded.Invoke();
             return true;
         }
 

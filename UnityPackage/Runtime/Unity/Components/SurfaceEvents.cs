@@ -12,6 +12,8 @@ namespace QuickSes
     [Serializable]
     public sealed class SurfaceEvents
     {
+        [SerializeField, Tooltip("The atoms of the source are there.")]
+        private UnityEvent _loaded = new UnityEvent();
         [SerializeField, Tooltip("A surface arrived and is shown.")]
         private UnityEvent _surfaceUpdated = new UnityEvent();
         [SerializeField, Tooltip("The finest surface of the newest atoms is shown.")]
@@ -21,6 +23,9 @@ namespace QuickSes
         private UnityEvent<string> _failed = new UnityEvent<string>();
         [SerializeField, Tooltip("The component is enabled and has neither atoms nor a source.")]
         private UnityEvent _atomsRequested = new UnityEvent();
+
+        /// <summary>See <see cref="MolecularSurface.Loaded"/>.</summary>
+        public UnityEvent Loaded => _loaded;
 
         /// <summary>See <see cref="MolecularSurface.SurfaceUpdated"/>.</summary>
         public UnityEvent SurfaceUpdated => _surfaceUpdated;
