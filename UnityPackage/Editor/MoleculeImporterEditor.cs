@@ -9,14 +9,22 @@ namespace QuickSes.Editor
     [CustomEditor(typeof(MoleculeImporter))]
     internal sealed class MoleculeImporterEditor : ScriptedImporterEditor
     {
-        private const long MostReadUnasked = 16 << 20; // bytes: some 0.5 s
-
-        private StructurePreview _preview;
-        private MoleculeAsset _previewed;
+        private PreviewLoad _reading;
+        private MoleculeAsset _previewed; // what _reading is of
 
         public override bool showImportedObject => false; // it has nothing else to show
 
         protected override bool needsApplyRevert => false; // there are no settings
+
+        public override void OnDisable()
+        {
+            _reading?.Dispose();
+            _reading = null;
+            _previewed = null;
+            base.OnDisable();
+        }
+
+        public override bool RequiresConstantRepaint() => _reading != null && _reading.Preview == null;
 
         public override void OnInspectorGUI()
         {
@@ -39,20 +47,27 @@ namespace QuickSes.Editor
 
         private void DrawStructure(MoleculeAsset asset)
         {
-            if (_previewed != asset && (asset.Size <= MostReadUnasked || GUILayout.Button("Read")))
-            {
-                _previewed = asset;
-                _preview = StructurePreview.Read(SourceOf(asset, false));
-            }
             if (_previewed != asset)
-                return;
-            if (_preview.Error.Length > 0)
             {
-                EditorGUILayout.HelpBox(_preview.Error, MessageType.Error);
+                _reading?.Dispose();
+                _reading = new PreviewLoad(SourceOf(asset, false));
+                _previewed = asset;
+            }
+            if (Event.current.type == EventType.Layout) // all events of a frame must see the same controls
+                _reading.Tick();
+            if (_reading.Preview == null)
+            {
+                EditorGUI.ProgressBar(EditorGUILayout.GetControlRect(), _reading.Progress, SurfaceStatus.Reading);
                 return;
             }
-            EditorGUILayout.LabelField("Atoms", _preview.Summary);
-            foreach (string warning in _preview.Warnings)
+            StructurePreview preview = _reading.Preview;
+            if (preview.Error.Length > 0)
+            {
+                EditorGUILayout.HelpBox(preview.Error, MessageType.Error);
+                return;
+            }
+            EditorGUILayout.LabelField("Atoms", preview.Summary);
+            foreach (string warning in preview.Warnings)
                 EditorGUILayout.HelpBox(warning, MessageType.Warning);
             if (GUILayout.Button(new GUIContent("Create surface", "In the open scene, with the filters' defaults.")))
                 SurfaceCreator.Create(SourceOf(asset, true), null);

@@ -59,12 +59,17 @@ namespace QuickSes.Editor
         public static StructurePreview Read(MoleculeSource source)
         {
             if (!source.TryOpen(out Structure structure, out QuickSesError error))
-                return new StructurePreview { Error = error.Message };
+                return OfError(error);
             using (structure)
                 return Of(structure);
         }
 
-        private static StructurePreview Of(Structure structure)
+        /// <summary>There is nothing to preview.</summary>
+        public static StructurePreview OfError(in QuickSesError error) =>
+            new StructurePreview { Error = error.Message };
+
+        /// <summary>Of one that is open.</summary>
+        public static StructurePreview Of(Structure structure)
         {
             var warnings = new string[structure.WarningCount];
             for (int k = 0; k < warnings.Length; ++k)
@@ -84,8 +89,11 @@ namespace QuickSes.Editor
         private static int CountChains(Structure structure)
         {
             var chains = new HashSet<string>();
-            for (int i = 0; i < structure.AtomCount; ++i)
+            ReadOnlySpan<uint> residues = structure.Residues;
+            for (int i = 0; i < residues.Length; ++i)
             {
+                if (i > 0 && residues[i] == residues[i - 1])
+                    continue;
                 string chain = structure.GetAtom(i).Chain;
                 if (chain.Length > 0)
                     chains.Add(chain);

@@ -16,8 +16,8 @@ namespace QuickSes.Editor
         [SerializeField] private Vector2 _scroll;
 
         [NonSerialized] private SerializedObject _serialized;
-        [NonSerialized] private StructurePreview _preview;
-        [NonSerialized] private MoleculeSource _previewed; // what _preview is of
+        [NonSerialized] private PreviewLoad _reading; // null: nothing is chosen
+        [NonSerialized] private MoleculeSource _previewed; // what _reading is of
 
         public static void Open(GameObject parent)
         {
@@ -33,7 +33,22 @@ namespace QuickSes.Editor
         {
             _serialized?.Dispose();
             _serialized = null;
+            _reading?.Dispose();
+            _reading = null;
+            _previewed = null;
         }
+
+        // Several times per second, while it is open.
+        private void Update()
+        {
+            if (_reading == null || _reading.Preview != null)
+                return;
+            if (_reading.Tick() && !_reading.Preview.HasPlayableModels)
+                _playModels = false;
+            Repaint();
+        }
+
+        private StructurePreview Preview => _reading?.Preview;
 
         private void OnGUI()
         {
@@ -56,14 +71,15 @@ namespace QuickSes.Editor
             if (_previewed != null && _previewed.IsSameAs(_source))
                 return;
             _previewed = _source.Copy();
-            _preview = _source.IsSet ? StructurePreview.Read(_source) : null;
-            if (_preview == null || !_preview.HasPlayableModels)
+            _reading?.Dispose();
+            _reading = _source.IsSet ? new PreviewLoad(_source) : null;
+            if (_reading == null)
                 _playModels = false;
         }
 
         private void DrawPreview()
         {
-            if (_preview == null)
+            if (_reading == null)
             {
                 EditorGUILayout.HelpBox(
                     "Choose a file: PDB, mmCIF, PQR, XYZR or GRO, each also gzipped. It is referred to as an asset " +
@@ -71,15 +87,20 @@ namespace QuickSes.Editor
                     MessageType.Info);
                 return;
             }
-            if (_preview.Error.Length > 0)
+            if (Preview == null)
             {
-                EditorGUILayout.HelpBox(_preview.Error, MessageType.Error);
+                EditorGUI.ProgressBar(EditorGUILayout.GetControlRect(), _reading.Progress, SurfaceStatus.Reading);
                 return;
             }
-            EditorGUILayout.LabelField("Atoms", _preview.Summary);
-            foreach (string warning in _preview.Warnings)
+            if (Preview.Error.Length > 0)
+            {
+                EditorGUILayout.HelpBox(Preview.Error, MessageType.Error);
+                return;
+            }
+            EditorGUILayout.LabelField("Atoms", Preview.Summary);
+            foreach (string warning in Preview.Warnings)
                 EditorGUILayout.HelpBox(warning, MessageType.Warning);
-            if (_preview.HasPlayableModels && _trajectory.Kind == MoleculeSourceKind.None)
+            if (Preview.HasPlayableModels && _trajectory.Kind == MoleculeSourceKind.None)
                 _playModels = EditorGUILayout.Toggle(
                     new GUIContent("Play the models", "Adds a Trajectory Player that shows one model after the other."),
                     _playModels);
@@ -93,7 +114,7 @@ namespace QuickSes.Editor
                 _parent = (GameObject)EditorGUILayout.ObjectField(label, _parent, typeof(GameObject), true);
                 if (_parent != null && EditorUtility.IsPersistent(_parent))
                     _parent = null; // an asset can't be one
-                bool canCreate = _preview != null && _preview.Error.Length == 0 &&
+                bool canCreate = Preview != null && Preview.Error.Length == 0 &&
                     (_trajectory.Kind == MoleculeSourceKind.None || _trajectory.IsSet);
                 using (new EditorGUI.DisabledScope(!canCreate))
                 {

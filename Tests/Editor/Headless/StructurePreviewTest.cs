@@ -43,6 +43,30 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void TheSameIsReadInTheBackground()
+        {
+            var source = new MoleculeSource { SkipHydrogen = true };
+            source.SetFile(_path);
+            StructurePreview preview = InBackground(source);
+            Assert.That(preview.Summary, Is.EqualTo(StructurePreview.Read(source).Summary));
+            source.Selection = "//Z";
+            Assert.That(InBackground(source).Error, Is.EqualTo(StructurePreview.Read(source).Error));
+            source.SetFile(_path + "x");
+            Assert.That(InBackground(source).Error, Does.Contain(_path + "x"));
+        }
+
+        private static StructurePreview InBackground(MoleculeSource source)
+        {
+            using (var load = new PreviewLoad(source))
+            {
+                while (!load.Tick())
+                    System.Threading.Thread.Sleep(1);
+                Assert.That(load.Progress, Is.EqualTo(1));
+                return load.Preview;
+            }
+        }
+
+        [Test]
         public void WithoutFiltersAllAreThere()
         {
             File.WriteAllText(_path, Model + "END\n");
