@@ -76,6 +76,16 @@ namespace QuickSes.Tests
             ChosenFile chosen = ChosenFile.Of(Path.GetFullPath(Folder + "/b.pdb"));
             Assert.That(chosen.Kind, Is.EqualTo(MoleculeSourceKind.MoleculeAsset));
             Assert.That(chosen.Asset, Is.TypeOf<MoleculeAsset>());
+            Assert.That(ChosenFile.TryTake(chosen.Asset, out ChosenFile dragged), Is.True);
+            Assert.That(dragged.Kind, Is.EqualTo(MoleculeSourceKind.MoleculeAsset));
+            var script = new GameObject("drop").AddComponent<MolecularSurface>();
+            _created.Keep(script);
+            var serialized = new SerializedObject(script);
+            dragged.AssignTo(serialized.FindProperty("_source"));
+            serialized.ApplyModifiedProperties();
+            Assert.That(script.Source.Kind, Is.EqualTo(MoleculeSourceKind.MoleculeAsset));
+            Assert.That(script.Source.Molecule, Is.SameAs(chosen.Asset));
+            Assert.That(ChosenFile.TryTake(script.gameObject, out _), Is.False);
         }
     }
 }

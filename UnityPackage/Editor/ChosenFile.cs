@@ -41,6 +41,15 @@ namespace QuickSes.Editor
         /// <summary>Asks for a trajectory; false: the user cancelled.</summary>
         public static bool AskForTrajectory(out ChosenFile chosen) => Ask("Trajectory", s_trajectories, out chosen);
 
+        /// <summary>An asset the user dragged; false: it is none that a source takes.</summary>
+        public static bool TryTake(Object asset, out ChosenFile chosen)
+        {
+            bool isMolecule = asset is MoleculeAsset;
+            chosen = new ChosenFile(
+                isMolecule ? MoleculeSourceKind.MoleculeAsset : MoleculeSourceKind.TextAsset, asset, "");
+            return isMolecule || (asset is TextAsset && !(asset is MonoScript));
+        }
+
         /// <param name="file">Absolute.</param>
         public static ChosenFile Of(string file)
         {

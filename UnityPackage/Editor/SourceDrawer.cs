@@ -31,6 +31,7 @@ namespace QuickSes.Editor
 
         public override void OnGUI(Rect position, SerializedProperty property, GUIContent label)
         {
+            TakeDropped(position, property);
             SourceFields fields = FieldsOf(property, out string hint);
             label = EditorGUI.BeginProperty(position, label, property);
             var row = new Rect(position.x, position.y, position.width, Line);
@@ -69,6 +70,26 @@ namespace QuickSes.Editor
             var value = (MoleculeSourceKind)kind.intValue;
             hint = SourceForm.HintOf(value);
             return FieldsOf(property, value);
+        }
+
+        // An asset that is dropped anywhere on a source is its file from then on, whatever kind it had.
+        private static void TakeDropped(Rect position, SerializedProperty property)
+        {
+            Event current = Event.current;
+            bool isDropped = current.type == EventType.DragPerform;
+            if ((!isDropped && current.type != EventType.DragUpdated) || !GUI.enabled ||
+                !position.Contains(current.mousePosition) || DragAndDrop.objectReferences.Length != 1 ||
+                !ChosenFile.TryTake(DragAndDrop.objectReferences[0], out ChosenFile chosen))
+                return;
+            DragAndDrop.visualMode = DragAndDropVisualMode.Link;
+            if (isDropped)
+            {
+                DragAndDrop.AcceptDrag();
+                chosen.AssignTo(property);
+                property.serializedObject.ApplyModifiedProperties();
+                GUI.changed = true;
+            }
+            current.Use();
         }
 
         private void DrawKind(Rect row, SerializedProperty property, GUIContent label)
