@@ -63,6 +63,42 @@ namespace QuickSes.Tests
             ExpectUnsupported(() => NativeLibrary.Load(folder.File("libquickses.so")), "ABI version 999");
         }
 
+        [Test]
+        public void ContextsAreRefusedAtOnceAndWithoutAThread()
+        {
+            var copy = new Copy();
+            try
+            {
+                NativeLibrary.SetDllImportResolver(copy.Core,
+                    (name, assembly, path) => NativeLibrary.Load("/no/such/folder/libquickses.so"));
+                Type slot = copy.LoadFromAssemblyPath(typeof(SupportTest).Assembly.Location).GetType("QuickSes.ContextSlot");
+                object one = Activator.CreateInstance(slot,
+                    Activator.CreateInstance(copy.Core.GetType("QuickSes.SurfaceContextOptions")));
+                slot.GetMethod("CreateInBackground").Invoke(one, null);
+                Assert.That(slot.GetProperty("IsReady").GetValue(one), Is.True);
+                Assert.That(slot.GetProperty("HasFailed").GetValue(one), Is.True);
+                Assert.That(slot.GetProperty("Error").GetValue(one).ToString(), Does.Contain("can't be loaded"));
+                slot.GetMethod("DisposeInBackground").Invoke(one, null);
+                Assert.That(slot.GetProperty("IsDisposed").GetValue(one), Is.True);
+            }
+            finally
+            {
+                copy.Unload();
+            }
+        }
+
+        /// <summary>The assembly once more, also for those that are loaded beside it and need it.</summary>
+        private sealed class Copy : AssemblyLoadContext
+        {
+            public readonly Assembly Core;
+
+            public Copy() : base(null, isCollectible: true) =>
+                Core = LoadFromAssemblyPath(typeof(SurfaceContext).Assembly.Location);
+
+            protected override Assembly Load(AssemblyName name) =>
+                name.Name == Core.GetName().Name ? Core : null;
+        }
+
         private static void ExpectUnsupported(Func<IntPtr> load, string sentence)
         {
             var copy = new AssemblyLoadContext(null, isCollectible: true);
