@@ -127,7 +127,7 @@ static void run_api_page(qses_context *context, const char *path) {
     CHECK(taken >= 0);
     if (taken < 0) break;
     if (taken == 0) continue;
-    CHECK(mesh.tag == 7 && mesh.vertex_bytes == 28);
+    CHECK(mesh.tag == 7 && mesh.vertex_bytes == 24);
     ++levels;
   }
   CHECK(levels >= 1 && levels <= 3);

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+using NUnit.Framework;
+using QuickSes.EngineDouble;
+using System.Collections;
+using System.Reflection;
+using UnityEngine;
+using UnityEngine.TestTools;
+
+namespace QuickSes.Tests
+{
+    /// <summary>What the inspector, or a file, says out of range is brought into the range that setters take.</summary>
+    internal sealed class InspectorRangesTest
+    {
+        private const BindingFlags Own = BindingFlags.Instance | BindingFlags.NonPublic;
+
+        [UnityTest]
+        public IEnumerator WhatIsEditedIsLimited()
+        {
+            Engine.EnterEditMode();
+            var rig = new SurfaceRig();
+            MolecularSurface surface = rig.Surface;
+            Edit(surface, "_probeRadius", -3f);
+            Edit(surface, "_relaxationSteps", 500);
+            Edit(surface, "_frameBudget", float.NaN);
+            Edit(surface, "_restDelay", -1f);
+            Assert.That((surface.ProbeRadius, surface.RelaxationSteps, surface.FrameBudget, surface.RestDelay),
+                Is.EqualTo((0f, SurfaceSettings.MaxRelaxationSteps, 0f, 0f)));
+            Edit(surface, "_probeRadius", 1e9f);
+            Edit(surface, "_spacing", 0f);
+            Assert.That((surface.ProbeRadius, surface.Spacing),
+                Is.EqualTo((SurfaceSettings.MaxProbeRadius, SurfaceSettings.MinSpacing)));
+            surface.ProbeRadius = 10;
+            Edit(surface, "_spacing", 0.5f);
+            Assert.That((surface.ProbeRadius, surface.Spacing), Is.EqualTo((10f, 0.5f)));
+            rig.Dispose();
+            yield return null;
+        }
+
+        private static void Edit(MolecularSurface surface, string field, object value)
+        {
+            typeof(MolecularSurface).GetField(field, Own).SetValue(surface, value);
+            typeof(MolecularSurface).GetMethod("OnValidate", Own).Invoke(surface, null);
+        }
+    }
+}
