@@ -23,12 +23,12 @@ namespace QuickSes.Tests
             AssetDatabase.DeleteAsset(_folder);
         }
 
-        [TestCase(false)]
-        [TestCase(true)]
-        public void TheAssetHoldsTheFinestSurface(bool padBuffers)
+        [TestCase(AtomColoring.Vertices)]
+        [TestCase(AtomColoring.Texture)]
+        public void TheAssetHoldsTheFinestSurface(AtomColoring coloring)
         {
             MolecularSurface surface = MakeSurface();
-            surface.PadBuffers = padBuffers;
+            surface.Coloring = coloring;
             Bake(surface, "Two atoms.asset");
 
             var asset = AssetDatabase.LoadAssetAtPath<Mesh>(_folder + "/Two atoms.asset");

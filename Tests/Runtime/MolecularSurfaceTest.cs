@@ -96,13 +96,12 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
-        public IEnumerator FramesGoIntoTheSameMesh()
+        public IEnumerator FramesGoIntoTheMesh()
         {
             TestMolecules.Blob(50, 3, out Vector3[] positions, out float[] radii);
             _rig = new SurfaceRig();
             _rig.Surface.SetAtoms(positions, radii);
             yield return _rig.Settle();
-            Mesh mesh = _rig.Surface.Mesh;
             for (int frame = 0; frame < 20; ++frame)
             {
                 positions = TestMolecules.Moved(positions, frame);
@@ -110,8 +109,8 @@ namespace QuickSes.Tests
                 yield return null;
             }
             yield return _rig.Settle();
-            Assert.That(_rig.Surface.Mesh, Is.SameAs(mesh));
-            SurfaceMeshes.AssertIsSurfaceOf(mesh, positions, radii, 0.5f);
+            Assert.That(_rig.GameObject.GetComponent<MeshFilter>().sharedMesh, Is.SameAs(_rig.Surface.Mesh));
+            SurfaceMeshes.AssertIsSurfaceOf(_rig.Surface.Mesh, positions, radii, 0.5f);
             Assert.That(_rig.Failures, Is.Empty);
         }
 
@@ -135,28 +134,6 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
-        public IEnumerator ColoursGoToTheVerticesOfTheirAtoms()
-        {
-            _rig = SurfaceRig.WithBlob(30, 5);
-            var colors = new Color32[30];
-            for (int i = 0; i < colors.Length; ++i)
-                colors[i] = new Color32((byte)(8 * i), (byte)(255 - 8 * i), 40, 255);
-            _rig.Surface.SetColors(colors);
-            yield return _rig.Settle();
-            Color32[] shown = _rig.Surface.Mesh.colors32;
-            Assert.That(shown.Length, Is.EqualTo(_rig.Surface.Mesh.vertexCount));
-            for (int v = 0; v < shown.Length; ++v)
-                Assert.That(shown[v], Is.EqualTo(colors[_rig.Surface.OwnerAtomAt(v)]));
-
-            _rig.Surface.SetColors(ReadOnlySpan<Color32>.Empty);
-            _rig.Surface.BaseColor = new Color32(1, 2, 3, 255);
-            int levels = _rig.Levels.Count;
-            yield return _rig.Settle();
-            Assert.That(_rig.Surface.Mesh.colors32, Is.All.EqualTo(new Color32(1, 2, 3, 255)));
-            Assert.That(_rig.Levels.Count, Is.EqualTo(levels + 1), "colours don't make the surface coarse again");
-        }
-
-        [UnityTest]
         public IEnumerator ColoursDontMakeALevelCoarser()
         {
             _rig = SurfaceRig.WithBlob(3000, 15);
@@ -176,26 +153,9 @@ namespace QuickSes.Tests
             _rig.Surface.SetAtoms(positions, radii);
             _rig.Surface.Cancel();
             _rig.Levels.Clear();
-            _rig.Surface.SetColors(new Color32[12000]);
+            _rig.Surface.Recompute();
             yield return _rig.Settle();
             Assert.That(_rig.Levels[0].IsFinest, Is.False);
-        }
-
-        [UnityTest]
-        public IEnumerator HiddenAtomsOwnNoVertex()
-        {
-            _rig = SurfaceRig.WithBlob(30, 6);
-            yield return _rig.Settle();
-            double volume = _rig.Surface.Volume;
-            var visible = new bool[30];
-            for (int i = 0; i < visible.Length; ++i)
-                visible[i] = i % 3 != 0;
-            _rig.Surface.SetVisible(visible);
-            yield return _rig.Settle();
-            Assert.That(_rig.Surface.Mesh.vertexCount, Is.GreaterThan(0));
-            for (int v = 0; v < _rig.Surface.Mesh.vertexCount; ++v)
-                Assert.That(visible[_rig.Surface.OwnerAtomAt(v)]);
-            Assert.That(_rig.Surface.Volume, Is.EqualTo(volume), "it is that of the whole");
         }
 
         [UnityTest]
@@ -333,20 +293,29 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
-        public IEnumerator BuffersMayOnlyGrow()
+        public IEnumerator BuffersHaveRoomWhileAtomsMoveAndNoneAtRest()
         {
             TestMolecules.Blob(60, 12, out Vector3[] positions, out float[] radii);
             _rig = new SurfaceRig();
-            _rig.Surface.PadBuffers = true;
+            _rig.Surface.RestDelay = float.PositiveInfinity;
+            _rig.Surface.FrameBudget = 0;
             _rig.Surface.SetAtoms(positions, radii);
             yield return _rig.Settle();
-            int capacity = _rig.Surface.Mesh.vertexCount;
-            Assert.That(capacity, Is.GreaterThanOrEqualTo(_rig.Surface.CurrentLevel.VertexCount));
-            _rig.Surface.SetAtoms(new[] { Vector3.zero }, new[] { 1.5f });
+            Assert.That(_rig.Surface.Mesh.vertexCount, Is.EqualTo(_rig.Surface.CurrentLevel.VertexCount));
+            positions = TestMolecules.Moved(positions, 1);
+            _rig.Surface.SetPositions(positions);
             yield return _rig.Settle();
-            Assert.That(_rig.Surface.Mesh.vertexCount, Is.EqualTo(capacity));
+            yield return SurfaceRig.Frames(5);
+            Assert.That(_rig.Surface.Mesh.vertexCount, Is.GreaterThan(_rig.Surface.CurrentLevel.VertexCount));
             Assert.That(_rig.Surface.Mesh.GetIndexCount(0), Is.EqualTo(3 * _rig.Surface.CurrentLevel.TriangleCount));
-            Assert.That(SurfaceMeshes.IsClosed(_rig.Surface.Mesh));
+            SurfaceMeshes.AssertIsSurfaceOf(_rig.Surface.Mesh, positions, radii, 0.5f);
+            int updates = _rig.Levels.Count;
+            uint jobs = SurfaceScheduler.LastJob;
+            _rig.Surface.RestDelay = 0;
+            yield return SurfaceRig.Until(() => _rig.Levels.Count > updates);
+            Assert.That(_rig.Surface.Mesh.vertexCount, Is.EqualTo(_rig.Surface.CurrentLevel.VertexCount));
+            SurfaceMeshes.AssertIsSurfaceOf(_rig.Surface.Mesh, positions, radii, 0.5f, _rig.Surface.OwnerAtomAt);
+            Assert.That(SurfaceScheduler.LastJob, Is.EqualTo(jobs), "nothing was computed");
         }
 
         [Test]

@@ -123,6 +123,7 @@ namespace QuickSes.Tests
         [UnityTest]
         public IEnumerator EachShowsASurfaceInItsColours()
         {
+            _backbone.Surface.Coloring = _water.Surface.Coloring = AtomColoring.Vertices;
             _playing.Load();
             yield return SurfaceRig.Until(() => !_playing.Surface.IsBusy && !_backbone.Surface.IsBusy &&
                 !_water.Surface.IsBusy);

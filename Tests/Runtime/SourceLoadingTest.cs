@@ -84,6 +84,7 @@ namespace QuickSes.Tests
         [UnityTest]
         public IEnumerator TheResultIsThatOfReadingAtOnce()
         {
+            Surface.Coloring = AtomColoring.Vertices;
             foreach (AtomColorScheme scheme in Enum.GetValues(typeof(AtomColorScheme)))
             {
                 Surface.Source.SetAsset(Text(TestFrames.Pdb(1)));

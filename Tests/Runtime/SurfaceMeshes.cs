@@ -57,8 +57,8 @@ namespace QuickSes.Tests
                 view.CopyNormals(normals);
                 view.CopyTriangles(triangles);
                 Assert.That(mesh.triangles, Is.EqualTo(triangles));
-                AssertClose(mesh.vertices, vertices);
-                AssertClose(mesh.normals, normals);
+                AssertClose(First(mesh.vertices, vertices.Length), vertices);
+                AssertClose(First(mesh.normals, vertices.Length), normals);
                 if (ownerAt == null)
                     return;
                 var owners = new int[view.VertexCount];
@@ -66,6 +66,14 @@ namespace QuickSes.Tests
                 for (int v = 0; v < owners.Length; ++v)
                     Assert.That(ownerAt(v), Is.EqualTo(owners[v]));
             }
+        }
+
+        /// <summary>Without the unused ends that buffers have while atoms move.</summary>
+        public static T[] First<T>(T[] array, int count)
+        {
+            Assert.That(array.Length, Is.GreaterThanOrEqualTo(count));
+            Array.Resize(ref array, count);
+            return array;
         }
 
         // Near cusps of the surface rounding is felt more: a few vertices only.

@@ -334,6 +334,7 @@ namespace QuickSes.Tests
         {
             LoadEnsemble(3);
             Player.ColorScheme = AtomColorScheme.Uniform;
+            _playing.Surface.Coloring = AtomColoring.Vertices;
             yield return SurfaceRig.Until(() => !_playing.Surface.IsBusy);
             var color = new Color32(1, 2, 3, 255);
             _playing.Surface.BaseColor = color;

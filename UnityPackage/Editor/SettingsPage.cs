@@ -63,7 +63,8 @@ namespace QuickSes.Editor
             AssetDatabase.SaveAssets();
         }
 
-        private static string UnitOf(string property) => property == "_memoryBudget" ? "MB" : null;
+        private static string UnitOf(string property) =>
+            property == "_memoryBudget" ? "MB" : property == "_uploadBudget" ? "ms" : null;
     }
 
     /// <summary>The same in the inspector of the asset.</summary>

@@ -41,7 +41,7 @@ namespace QuickSes.Editor
                 error = $"The surface of '{surface.name}' is empty.";
                 return false;
             }
-            asset = Save(surface.Mesh, assetPath);
+            asset = Save(surface, assetPath);
             return true;
         }
 
@@ -108,11 +108,11 @@ namespace QuickSes.Editor
             return error.Length == 0;
         }
 
-        private static Mesh Save(Mesh mesh, string path)
+        private static Mesh Save(MolecularSurface surface, string path)
         {
             var present = AssetDatabase.LoadMainAssetAtPath(path) as Mesh;
             Mesh asset = present != null ? present : new Mesh();
-            MeshCopy.Copy(mesh, asset);
+            surface.CopyTo(asset);
             asset.name = Path.GetFileNameWithoutExtension(path);
             MeshUtility.SetMeshCompression(asset, ModelImporterMeshCompression.Off);
             if (present == null)

@@ -95,6 +95,7 @@ namespace QuickSes.Tests
         public void TheBaseColourReachesAtomsThatHaveNoOther()
         {
             _surface.Source.ColorScheme = AtomColorScheme.Uniform;
+            _surface.Coloring = AtomColoring.Vertices;
             ReadFile();
             Settle();
             var red = new Color32(255, 0, 0, 255);

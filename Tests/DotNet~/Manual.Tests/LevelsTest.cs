@@ -87,10 +87,10 @@ internal sealed class LevelsTest
         UnityMolAtom atom = show.AtomUnder(new Ray(center - Vector3.forward * 100, Vector3.forward));
         Assert.That(selection.atoms, Does.Contain(atom));
 
-        int triangles = show.surface.CurrentLevel.TriangleCount;
+        uint indices = show.surface.Mesh.GetIndexCount(0);
         show.Show(new HashSet<UnityMolAtom>(selection.atoms.GetRange(0, 20)));
         yield return Settle(show.surface);
-        Assert.That(show.surface.CurrentLevel.TriangleCount, Is.InRange(1, triangles - 1));
+        Assert.That(show.surface.Mesh.GetIndexCount(0), Is.InRange(1, indices - 1));
     }
 
     private static Color32[] Alternating(int count)

@@ -36,7 +36,8 @@ internal sealed class UnityPageTest
         var surface = script.GetComponent<MolecularSurface>();
         yield return Until(() => !surface.IsLoading);
         Assert.That(surface.AtomCount, Is.EqualTo(327));
-        yield return Until(() => surface.CurrentLevel.VertexCount > 0);
+        surface.Coloring = AtomColoring.Vertices;
+        yield return LevelsTest.Settle(surface);
         Color32[] colors = surface.Mesh.colors32;
         Assert.That(colors, Is.All.EqualTo(colors[0]), "crambin has one chain");
         Assert.That(colors[0], Is.Not.EqualTo(surface.BaseColor));

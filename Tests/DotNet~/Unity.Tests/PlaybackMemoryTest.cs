@@ -22,9 +22,10 @@ namespace QuickSes.Tests
         {
             string report = PlayWithoutGarbage("frames", Ensemble, Surfaces.ToString());
             Assert.That(Number(report, "surfaces"), Is.EqualTo(Surfaces));
-            Assert.That(Number(report, "live_meshes"), Is.EqualTo(1));
-            // Surfaces differ in size, and allocators keep some of what they are given back.
-            Assert.That(Number(report, "native_heap_growth"), Is.LessThan(2 << 20));
+            Assert.That(Number(report, "live_meshes"), Is.InRange(1, 2), "one, and one for what does not fit into a frame");
+            // Surfaces differ in size, some are kept while others are made, and allocators keep some of what they are
+            // given back.
+            Assert.That(Number(report, "native_heap_growth"), Is.LessThan(4 << 20));
             Assert.That(Number(report, "resident_growth"), Is.LessThan(16 << 20));
         }
 
@@ -34,7 +35,7 @@ namespace QuickSes.Tests
             const int Count = 12;
             string report = PlayWithoutGarbage("many", Count.ToString(), "3000");
             Assert.That(Number(report, "surfaces"), Is.GreaterThanOrEqualTo(3000));
-            Assert.That(Number(report, "live_meshes"), Is.EqualTo(Count));
+            Assert.That(Number(report, "live_meshes"), Is.InRange(Count, 2 * Count));
         }
 
         // Not one byte, which garbage per frame could not reach in any attempt. But in one run of several something makes

@@ -22,6 +22,7 @@ namespace QuickSes.Tests
         public IEnumerator EachShowsItsOwnInTheEnd([Values(1, 2, 3, 4, 5, 6)] int seed)
         {
             int most = SurfaceScheduler.MaxContexts;
+            double budget = SurfaceScheduler.UploadBudget;
             SurfaceScheduler.ReleaseContexts();
             SurfaceScheduler.MaxContexts = 1 + seed % 3;
             var random = new System.Random(seed);
@@ -36,12 +37,17 @@ namespace QuickSes.Tests
                 if (random.Next(2) > 0)
                     yield return null;
             }
+            SurfaceScheduler.UploadBudget = budget;
             foreach (SurfaceRig rig in _rigs)
             {
                 rig.GameObject.SetActive(true);
                 rig.Surface.enabled = true;
+                rig.Surface.SetVisible(Array.Empty<bool>());
                 rig.Surface.Recompute();
             }
+            for (int k = 0; k < Count; ++k)
+                if (_positions[k] != null)
+                    _rigs[k].Surface.SetColors(ColorsOf(k));
             yield return SurfaceRig.Until(() => Array.TrueForAll(_rigs, rig => !rig.Surface.IsBusy));
             for (int k = 0; k < Count; ++k)
             {
@@ -49,20 +55,35 @@ namespace QuickSes.Tests
                 if (_positions[k] == null)
                     Assert.That(surface.Mesh.vertexCount, Is.EqualTo(0));
                 else
-                    SurfaceMeshes.AssertIsSurfaceOf(
-                        surface.Mesh, _positions[k], _radii[k], 0.5f, surface.OwnerAtomAt);
+                    AssertShows(k);
             }
             Assert.That(SurfaceScheduler.LentCount, Is.EqualTo(0));
             Assert.That(SurfaceScheduler.WaitingCount, Is.EqualTo(0));
+            Assert.That(SurfaceScheduler.UploadingCount, Is.EqualTo(0));
             foreach (SurfaceRig rig in _rigs)
                 rig.Dispose();
             SurfaceScheduler.MaxContexts = most;
+            SurfaceScheduler.UploadBudget = budget;
+        }
+
+        private Color32[] ColorsOf(int k) =>
+            Array.ConvertAll(_radii[k], radius => new Color32((byte)(90 * radius), (byte)k, 3, 255));
+
+        private void AssertShows(int k)
+        {
+            MolecularSurface surface = _rigs[k].Surface;
+            SurfaceMeshes.AssertIsSurfaceOf(surface.Mesh, _positions[k], _radii[k], 0.5f, surface.OwnerAtomAt);
+            if (!surface.Mesh.HasVertexAttribute(UnityEngine.Rendering.VertexAttribute.Color))
+                return; // a texture, then
+            Color32[] expected = ColorsOf(k), painted = surface.Mesh.colors32;
+            for (int v = 0; v < surface.CurrentLevel.VertexCount; ++v)
+                Assert.That(painted[v], Is.EqualTo(expected[surface.OwnerAtomAt(v)]));
         }
 
         private void DoSomething(int k, System.Random random)
         {
             MolecularSurface surface = _rigs[k].Surface;
-            switch (random.Next(14))
+            switch (random.Next(20))
             {
                 case 0:
                 case 1:
@@ -115,6 +136,31 @@ namespace QuickSes.Tests
                     surface.SetPositions(_positions[k]);
                     break;
                 case 13:
+                    SurfaceScheduler.UploadBudget = random.Next(3) switch { 0 => 0, 1 => 1e-6, _ => 2 };
+                    break;
+                case 14:
+                    surface.Coloring = (AtomColoring)random.Next(3);
+                    break;
+                case 15:
+                    if (_positions[k] != null)
+                        surface.SetVisible(Array.ConvertAll(_positions[k], place => random.Next(3) > 0));
+                    break;
+                case 16:
+                    if (_positions[k] != null)
+                        surface.SetTexcoords(new Vector2[random.Next(2) * _positions[k].Length]);
+                    break;
+                case 17:
+                    surface.CompactVertices = false;
+                    surface.RestDelay = random.Next(2) * 0.05f;
+                    break;
+                case 18:
+                    if (random.Next(2) > 0)
+                        surface.Mesh.Clear();
+                    else
+                        surface.Mesh.uv2 = new Vector2[surface.Mesh.vertexCount];
+                    surface.TryPick(new Ray(Vector3.back * 99, Vector3.forward), out _, out _);
+                    break;
+                case 19:
                     if (random.Next(4) > 0)
                         break;
                     _rigs[k].Dispose();

@@ -44,7 +44,6 @@ namespace QuickSes.Tests
             MeshRecord record = MeshRecord.Of(_mesh);
             Assert.That(record.VertexUploads, Is.EqualTo(2));
             Assert.That(record.IndexUploads, Is.EqualTo(1));
-            Assert.That(record.SubMeshCalls, Is.EqualTo(1));
             Assert.That(record.BytesUploaded, Is.EqualTo(28L * view.VertexCount + 12L * view.TriangleCount));
             Assert.That(record.FlagsOfEach & AllFour, Is.EqualTo(AllFour));
             Assert.That(record.AwaitsNotification, Is.False, "renderers have been told");

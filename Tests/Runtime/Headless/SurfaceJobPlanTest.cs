@@ -39,15 +39,6 @@ namespace QuickSes.Tests
         }
 
         [Test]
-        public void ColoursComeAtTheLevelThatIsShown()
-        {
-            AssertPlan(SurfaceChange.Appearance, 0.5f, 33, false, 0, 0.5f);
-            AssertPlan(SurfaceChange.Appearance, 1, 33, false, 0, 1, 0.5f);
-            AssertPlan(SurfaceChange.Appearance, 1, 33, true, 0, 1);
-            AssertPlan(SurfaceChange.Appearance, float.PositiveInfinity, 33, false, 0, 2, 1, 0.5f);
-        }
-
-        [Test]
         public void RefinementGoesOnFromWhatIsShown()
         {
             AssertPlan(SurfaceChange.None, 2, 33, true, 0, 1, 0.5f);

@@ -129,16 +129,87 @@ namespace QuickSes.Tests
         }
 
         [Test]
-        public void NewColoursNeverMakeItCoarser()
+        public void NewColoursComputeNothing()
         {
             _host = TestHost.WithRow(Many);
             _host.Settle();
-            _host.Levels.Clear();
+            uint jobs = SurfaceScheduler.LastJob;
             _host.Session.Atoms.SetBaseColor(0xff0000ff);
-            _host.Session.Change(SurfaceChange.Appearance, 0);
+            _host.Session.Atoms.SetVisible(new bool[Many]);
+            for (int frame = 0; frame < 5; ++frame)
+                _host.Tick();
+            Assert.That(SurfaceScheduler.LastJob, Is.EqualTo(jobs));
+            Assert.That(_host.Session.Atoms.Look.ColorsVersion, Is.GreaterThan(0), "who shows it can tell");
+        }
+
+        [Test]
+        public void WhatIsBeingUploadedIsNotReplaced()
+        {
+            _host = TestHost.WithRow(Many);
+            _host.CoarserLevels = Array.Empty<float>();
+            _host.StepsPerUpload = 40;
+            double budget = SurfaceScheduler.UploadBudget;
+            SurfaceScheduler.UploadBudget = 1e-6; // a step per frame
+            int frames = 0;
+            TestHost.Until(() =>
+            {
+                if (_host.Levels.Count < 3)
+                    _host.SetPositions(TestHost.Row(Many, ++frames % 7));
+                return _host.Levels.Count >= 4;
+            }, _host);
+            Assert.That(_host.Taken, Is.GreaterThanOrEqualTo(4));
             _host.Settle();
-            Assert.That(_host.Levels.Count, Is.EqualTo(1));
-            Assert.That(_host.Levels[0].IsFinest);
+            Assert.That(_host.Session.CurrentLevel.IsOfNewestAtoms && _host.Session.CurrentLevel.IsFinest);
+            SurfaceScheduler.UploadBudget = budget;
+        }
+
+        [Test]
+        public void WhatArrivedBeforeItsUploadBeganIsReplaced()
+        {
+            _host = TestHost.WithRow(Many);
+            ContextSlot slot = SurfaceScheduler.PoolOf(SurfaceBackend.Cpu).LendNow(_host.Session, null, out _);
+            _host.Session.Start(slot);
+            slot.Context.Wait();
+            _host.Tick();
+            Assert.That(_host.Levels.Count, Is.EqualTo(1), "the finest of three levels, which were ready at once");
+            Assert.That(_host.Session.CurrentLevel.IsFinest);
+        }
+
+        [Test]
+        public void SurfacesOfAtomsThatWereReplacedHaveTheLookOfTheirs()
+        {
+            _host = new TestHost(); // which asserts it
+            int frames = 0;
+            TestHost.Until(() =>
+            {
+                ++frames;
+                int count = 100 + 37 * (frames % 11);
+                _host.SetAtoms(TestHost.Row(count, frames % 3), TestHost.Radii(count));
+                return _host.Levels.Count >= 30;
+            }, _host);
+            _host.Settle();
+            Assert.That(_host.Session.CurrentLevel.IsOfNewestAtoms);
+        }
+
+        [Test]
+        public void WhatMovesIsExpectedToGoOnSoAndRestsInTheEnd()
+        {
+            _host = TestHost.WithAtom(Vector3.Zero, 1.5f);
+            _host.RestDelay = 1;
+            _host.Settle();
+            Assert.That(_host.IsMoving, Is.False);
+            Assert.That(_host.Rests, Is.EqualTo(0));
+            _host.SetPositions(Vector3.One);
+            _host.Settle();
+            Assert.That(_host.IsMoving);
+            Assert.That(_host.Session.IsWaiting, "somebody has to tell it that it rests");
+            _host.Tick();
+            Assert.That(_host.Rests, Is.EqualTo(0));
+            _host.Now = 2;
+            _host.Tick();
+            _host.Tick();
+            Assert.That(_host.Rests, Is.EqualTo(1));
+            Assert.That(_host.Session.IsWaiting, Is.False);
         }
 
         [Test]

@@ -23,11 +23,19 @@ namespace QuickSes.Tests
         public double Now;
         public float Spacing = 0.5f;
         public float[] CoarserLevels = { 2, 1 };
-        public Exception Refusal; // what Show throws
+        public Exception Refusal; // what Upload throws
+        public int StepsPerUpload = 1;
+        public int Taken;
+        public int Rests;
+        public int ShownVertices;
+        public bool IsMoving; // what was taken last
         public Action<SurfaceLevel> Updated;
         public Action AskedWhetherGone;
         private bool _isGone;
         private (float X, float Y, float Z) _low, _high; // of what is shown
+        private KeptMesh _taken;
+        private bool _hasTaken;
+        private int _steps; // of what was taken
 
         public TestHost()
         {
@@ -136,15 +144,61 @@ namespace QuickSes.Tests
             return settings;
         }
 
-        SurfaceLevel ISurfaceHost.Show(in SurfaceMeshView mesh, in SurfaceReport report, ReadOnlySpan<float> ladder,
-            bool isOfNewestAtoms)
+        int ISurfaceHost.Frame => 0;
+
+        bool ISurfaceHost.IsUploading => _steps > 0;
+
+        bool ISurfaceHost.HasUpload => _hasTaken;
+
+        void ISurfaceHost.Take(SurfaceContext context, AtomLook look, bool isMoving)
         {
-            Assert.That(mesh.IsValid);
+            Assert.That(_steps, Is.EqualTo(0), "what is being uploaded must not be replaced");
+            Assert.That(look.Count, Is.EqualTo(AtomsOf(context)));
+            _taken ??= new KeptMesh();
+            Assert.That(context.Keep(_taken));
+            _hasTaken = true;
+            IsMoving = isMoving;
+            ++Taken;
+        }
+
+        UploadStep ISurfaceHost.Upload(in UploadShare share, out long bytes)
+        {
+            Assert.That(_hasTaken);
+            bytes = share.PieceBytes;
             if (Refusal != null)
                 throw Refusal;
+            if (++_steps < StepsPerUpload)
+                return UploadStep.Unfinished;
+            SurfaceMeshView mesh = _taken.View;
             _low = mesh.BoundsMin;
             _high = mesh.BoundsMax;
-            return new SurfaceLevel(mesh, report, ladder, isOfNewestAtoms, 0);
+            ShownVertices = mesh.VertexCount;
+            Forget();
+            return UploadStep.Shown;
+        }
+
+        void ISurfaceHost.DropUpload()
+        {
+            Forget();
+            _taken?.Clear();
+        }
+
+        void ISurfaceHost.Rest() => ++Rests;
+
+        private void Forget()
+        {
+            _steps = 0;
+            _hasTaken = false;
+        }
+
+        // Every atom owns a vertex in these tests, unless there is none at all.
+        private static int AtomsOf(SurfaceContext context)
+        {
+            int atoms = 0;
+            context.TryGetMesh(out SurfaceMeshView mesh);
+            foreach (uint owner in mesh.Owners)
+                atoms = Math.Max(atoms, (int)owner + 1);
+            return atoms;
         }
 
         void ISurfaceHost.OnUpdated(in SurfaceLevel level)
@@ -157,7 +211,11 @@ namespace QuickSes.Tests
 
         void ISurfaceHost.OnFailed(in QuickSesError error) => Failures.Add(error);
 
-        void ISurfaceHost.OnDisposed() => ++Disposed;
+        void ISurfaceHost.OnDisposed()
+        {
+            ++Disposed;
+            _taken?.Dispose();
+        }
 
         private static void AssertSide((float X, float Y, float Z) side, Vector3 expected, float tolerance)
         {

@@ -9,6 +9,8 @@ namespace UnityEngine
         private static double s_time;
         private static float s_deltaTime;
 
+        public static int frameCount { get; private set; }
+
         public static float time => (float)realtimeSinceStartupAsDouble;
 
         public static float deltaTime
@@ -44,6 +46,7 @@ namespace UnityEngine
         {
             s_deltaTime = (float)seconds;
             s_time += seconds;
+            ++frameCount;
         }
     }
 }

@@ -30,6 +30,16 @@ namespace QuickSes.EngineDouble
         /// <summary>Objects of a type, or of one derived from it, that have not been destroyed.</summary>
         public static int LiveObjects<T>() where T : Object => ObjectRegistry.CountOf<T>();
 
+        /// <summary>The same themselves.</summary>
+        public static List<T> AllObjects<T>() where T : Object
+        {
+            var found = new List<T>();
+            foreach (Object item in ObjectRegistry.Objects)
+                if (item is T one)
+                    found.Add(one);
+            return found;
+        }
+
         /// <summary>
         /// A new, empty scene in play mode, at time 0. What there was is destroyed as if the game had ended, meshes and
         /// materials included; statics of the code under test stay as they are.

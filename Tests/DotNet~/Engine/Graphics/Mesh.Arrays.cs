@@ -103,6 +103,18 @@ namespace UnityEngine
 
         public bool HasVertexAttribute(VertexAttribute attr) => Buffers.Layout.TryFind(attr, out _, out _);
 
+        public int vertexAttributeCount => Buffers.Layout.Count;
+
+        /// <summary>Stream, format and dimension of an attribute that there is not: -1, Float32, 0.</summary>
+        public int GetVertexAttributeStream(VertexAttribute attr) =>
+            Buffers.Layout.TryFind(attr, out VertexAttributeDescriptor found, out _) ? found.stream : -1;
+
+        public VertexAttributeFormat GetVertexAttributeFormat(VertexAttribute attr) =>
+            Buffers.Layout.TryFind(attr, out VertexAttributeDescriptor found, out _) ? found.format : default;
+
+        public int GetVertexAttributeDimension(VertexAttribute attr) =>
+            Buffers.Layout.TryFind(attr, out VertexAttributeDescriptor found, out _) ? found.dimension : 0;
+
         public int GetVertexBufferStride(int stream) => Buffers.Layout.StrideOf(stream);
 
         private T[] Read<T>(VertexAttribute attribute, VertexAttributeFormat format, int dimension) where T : struct

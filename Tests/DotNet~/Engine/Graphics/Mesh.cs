@@ -237,7 +237,7 @@ namespace UnityEngine
         {
             Writable().WriteVertices(stream, data, dataStart, start, count, UnsafeUtility.SizeOf<T>());
             ++Record.VertexUploads;
-            Record.BytesUploaded += (long)count * UnsafeUtility.SizeOf<T>();
+            Record.NoteBytes((long)count * UnsafeUtility.SizeOf<T>());
             Record.NoteChange(this, flags);
         }
 
@@ -247,7 +247,7 @@ namespace UnityEngine
             MeshBuffers buffers = Writable();
             buffers.WriteIndices(data, dataStart, start, count, UnsafeUtility.SizeOf<T>());
             ++Record.IndexUploads;
-            Record.BytesUploaded += (long)count * UnsafeUtility.SizeOf<T>();
+            Record.NoteBytes((long)count * UnsafeUtility.SizeOf<T>());
             if ((flags & MeshUpdateFlags.DontValidateIndices) == 0)
                 LogIndicesOutOfBounds(start * UnsafeUtility.SizeOf<T>() / buffers.IndexSize,
                     count * UnsafeUtility.SizeOf<T>() / buffers.IndexSize, 0);

@@ -7,6 +7,9 @@ namespace QuickSes.EngineDouble
     /// <summary>What was done to a mesh since it was made, or since <see cref="Clear"/>.</summary>
     public sealed class MeshRecord
     {
+        /// <summary>Of all meshes, since the program began.</summary>
+        public static long AllBytesUploaded { get; internal set; }
+
         /// <summary>Of the mesh, alive or destroyed.</summary>
         public static MeshRecord Of(Mesh mesh) => mesh.Record;
 
@@ -40,6 +43,12 @@ namespace QuickSes.EngineDouble
             VertexParamsCalls = IndexParamsCalls = VertexUploads = IndexUploads = SubMeshCalls = 0;
             BytesUploaded = 0;
             FlagsOfEach = ~MeshUpdateFlags.Default;
+        }
+
+        internal void NoteBytes(long bytes)
+        {
+            BytesUploaded += bytes;
+            AllBytesUploaded += bytes;
         }
 
         internal void NoteChange(Mesh mesh, MeshUpdateFlags flags)

@@ -27,6 +27,7 @@ namespace UnityEngine
 
     public class Renderer : Component
     {
+        private readonly MaterialPropertyBlock _block = new MaterialPropertyBlock();
         private Material[] _materials = Array.Empty<Material>();
 
         public Material sharedMaterial
@@ -45,6 +46,24 @@ namespace UnityEngine
             }
         }
 
+        public bool HasPropertyBlock() => !_block.isEmpty;
+
+        /// <summary>A copy; null: none.</summary>
+        public void SetPropertyBlock(MaterialPropertyBlock properties)
+        {
+            RequireAlive("SetPropertyBlock");
+            _block.CopyFrom(properties);
+        }
+
+        public void GetPropertyBlock(MaterialPropertyBlock properties)
+        {
+            RequireAlive("GetPropertyBlock");
+            if (properties == null)
+                throw new ArgumentNullException(nameof(properties));
+            properties.CopyFrom(_block);
+        }
+
+        // Property blocks are not copied along.
         internal override void CopyStateOf(Component original) =>
             _materials = (Material[])((Renderer)original)._materials.Clone();
     }

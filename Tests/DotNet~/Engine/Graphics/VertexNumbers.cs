@@ -45,6 +45,8 @@ namespace QuickSes.EngineDouble
         {
             VertexAttributeFormat.Float32 => ((float*)numbers)[index],
             VertexAttributeFormat.UNorm8 => numbers[index] / 255.0,
+            VertexAttributeFormat.SNorm8 => Math.Max(-1, ((sbyte*)numbers)[index] / 127.0),
+            VertexAttributeFormat.UInt32 => ((uint*)numbers)[index],
             _ => throw new NotSupportedException($"The double does not read numbers of format {format}.")
         };
 
@@ -54,6 +56,10 @@ namespace QuickSes.EngineDouble
                 *(float*)output = (float)number;
             else if (format == VertexAttributeFormat.UNorm8)
                 *output = (byte)Math.Round(Math.Max(0, Math.Min(1, number)) * 255);
+            else if (format == VertexAttributeFormat.SNorm8)
+                *(sbyte*)output = (sbyte)Math.Round(Math.Max(-1, Math.Min(1, number)) * 127);
+            else if (format == VertexAttributeFormat.UInt32)
+                *(uint*)output = (uint)number;
             else
                 throw new NotSupportedException($"The double does not write numbers of format {format}.");
         }

@@ -97,7 +97,7 @@ namespace QuickSes
         public void SetColors(ReadOnlySpan<Color32> colors)
         {
             Session.Atoms.SetColors(Numbers(colors));
-            Changed(SurfaceChange.Appearance);
+            LookChanged();
         }
 
         /// <inheritdoc cref="SetColors(ReadOnlySpan{Color32})"/>
@@ -108,7 +108,7 @@ namespace QuickSes
         public void SetTexcoords(ReadOnlySpan<Vector2> texcoords)
         {
             Session.Atoms.SetTexcoords(MemoryMarshal.Cast<Vector2, System.Numerics.Vector2>(texcoords));
-            Changed(SurfaceChange.Appearance);
+            LookChanged();
         }
 
         /// <inheritdoc cref="SetTexcoords(ReadOnlySpan{Vector2})"/>
@@ -126,6 +126,7 @@ namespace QuickSes
             LoseStructure();
             Session.Clear();
             Shown.Clear();
+            ForgetOwners();
         }
 
         // The session knows nothing of the engine; the numbers are the same.

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // What the session asks and tells.
 using System;
+using System.Diagnostics;
 using UnityEngine;
+using Debug = UnityEngine.Debug;
 
 namespace QuickSes
 {
@@ -12,6 +14,8 @@ namespace QuickSes
         // The engine tells components that were never enabled nothing, not even that they are destroyed.
         bool ISurfaceHost.IsGone => this == null;
 
+        int ISurfaceHost.Frame => Time.frameCount;
+
         SurfaceSettings ISurfaceHost.MakeSettings(out ReadOnlySpan<float> levels)
         {
             SurfaceSettings settings = SurfaceSettings.Default;
@@ -20,20 +24,37 @@ namespace QuickSes
             settings.ProbeRadius = _probeRadius;
             settings.Spacing = _spacing;
             settings.RelaxationSteps = (uint)_relaxationSteps;
-            settings.VertexLayout = SurfaceVertexLayout.Interleaved;
+            settings.VertexLayout =
+                _compactVertices ? SurfaceVertexLayout.Compact : SurfaceVertexLayout.Interleaved;
             settings.Components = _measureComponents;
             levels = _levels;
             return settings;
         }
 
-        SurfaceLevel ISurfaceHost.Show(in SurfaceMeshView mesh, in SurfaceReport report, ReadOnlySpan<float> ladder,
-            bool isOfNewestAtoms)
+        bool ISurfaceHost.IsUploading => _shown.IsUploading;
+
+        bool ISurfaceHost.HasUpload => _shown.HasUpload;
+
+        void ISurfaceHost.Take(SurfaceContext context, AtomLook look, bool isMoving) =>
+            _shown.Take(context, look, isMoving);
+
+        UploadStep ISurfaceHost.Upload(in UploadShare share, out long bytes)
         {
-            SurfaceLevel level = _shown.Show(mesh, report, ladder, isOfNewestAtoms, _padBuffers);
-            if (_shown.TakeIsNewMesh() || !_isMeshAttached)
-                AttachMesh();
-            return level;
+            _shown.UsesTexture = UsesTexture();
+            Mesh before = _shown.MeshIfMade;
+            UploadStep step = _shown.Upload(share, out bytes);
+            if (step == UploadStep.Shown || step == UploadStep.Moved)
+            {
+                FollowMesh(before);
+                CacheOwners();
+                ShowColors();
+            }
+            return step;
         }
+
+        void ISurfaceHost.DropUpload() => _shown.DropUpload();
+
+        void ISurfaceHost.Rest() => _shown.Rest();
 
         void ISurfaceHost.OnUpdated(in SurfaceLevel level)
         {
@@ -59,7 +80,50 @@ namespace QuickSes
                 _events.Failed.Invoke(error.Message);
         }
 
-        void ISurfaceHost.OnDisposed() => _shown.Dispose();
+        void ISurfaceHost.OnDisposed()
+        {
+            _texture?.Hide();
+            _texture?.Dispose();
+            _texture = null;
+            ForgetOwners();
+            _shown.Dispose();
+        }
+
+        private MeshRenderer OwnRenderer =>
+            _renderer != null ? _renderer : _renderer = GetComponent<MeshRenderer>();
+
+        private bool UsesTexture() => _coloring != AtomColoring.Vertices &&
+            (_coloring == AtomColoring.Texture || AtomColorTexture.IsUsedBy(OwnRenderer.sharedMaterial, AtomCount));
+
+        // The filter of a component that was never enabled may have somebody else's mesh, and scripts may have given it
+        // one on purpose.
+        private void FollowMesh(Mesh before)
+        {
+            var filter = GetComponent<MeshFilter>();
+            Mesh present = filter.sharedMesh;
+            if (!_isMeshAttached || present == null || present == before)
+                AttachMesh();
+        }
+
+        // What follows the look at once; the rest is uploaded in its turn.
+        private void ShowColors()
+        {
+            _shown.UsesTexture = UsesTexture();
+            if (_shown.HasAtoms)
+            {
+                long begin = Stopwatch.GetTimestamp();
+                _texture ??= new AtomColorTexture();
+                if (_texture.Show(OwnRenderer, _shown.Look))
+                    SurfaceScheduler.Uploads.Charge(
+                        (Stopwatch.GetTimestamp() - begin) * 1000.0 / Stopwatch.Frequency);
+            }
+            else if (_texture != null)
+            {
+                _texture.Hide();
+                _texture.Dispose();
+                _texture = null;
+            }
+        }
 
         // Bad frames of a trajectory come at its rate, each with the number of another atom: one line for all of them, until
         // a surface comes again. Files that can't be read are few, and each has its own line.

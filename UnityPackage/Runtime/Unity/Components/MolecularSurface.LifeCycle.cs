@@ -16,7 +16,7 @@ namespace QuickSes
         private void Awake()
         {
             Mesh mesh = GetComponent<MeshFilter>().sharedMesh;
-            if (ShownSurface.IsMade(mesh))
+            if (SurfaceMesh.IsMade(mesh))
                 AttachMesh();
         }
 
@@ -72,8 +72,9 @@ namespace QuickSes
             if (!IsAlive)
                 return;
             SurfaceSession session = Session;
+            ShowColors();
             session.Tick(Time.realtimeSinceStartupAsDouble);
-            if (!session.IsUpToDate)
+            if (session.IsWaiting)
                 QueueEditorUpdate();
             session.RaiseEvents();
         }
@@ -88,7 +89,6 @@ namespace QuickSes
         private void AttachMesh()
         {
             GetComponent<MeshFilter>().sharedMesh = Shown.Mesh;
-            Shown.TakeIsNewMesh();
             _isMeshAttached = true;
         }
 
@@ -98,7 +98,7 @@ namespace QuickSes
         {
             Mesh mesh = GetComponent<MeshFilter>().sharedMesh;
             _isMeshAttached = false;
-            if (mesh == null || ShownSurface.IsMade(mesh) || Session.CurrentLevel.LevelCount > 0)
+            if (mesh == null || SurfaceMesh.IsMade(mesh) || Session.CurrentLevel.LevelCount > 0)
                 AttachMesh();
         }
 
@@ -110,8 +110,7 @@ namespace QuickSes
             if (_session == null || _session.IsDisposed)
                 return;
             _isEdited = true; // the rest later: files are not read and meshes not set while values are validated
-            if (_session.Atoms.SetBaseColor(Number(_baseColor)))
-                Changed(SurfaceChange.Appearance);
+            _session.Atoms.SetBaseColor(Number(_baseColor));
             SurfaceShapeSettings edited = ShapeSettings();
             if (!edited.Equals(_editedFrom))
                 Changed(SurfaceChange.Shape);
@@ -120,7 +119,8 @@ namespace QuickSes
         }
 
         private SurfaceShapeSettings ShapeSettings() => new SurfaceShapeSettings(
-            _surface, _method, _probeRadius, _spacing, _levels, _relaxationSteps, _measureComponents, _backend);
+            _surface, _method, _probeRadius, _spacing, _levels, _relaxationSteps, _measureComponents,
+            _compactVertices, _backend);
 
         // The inspector, Undo and changed prefabs write serialised fields, also that of the filter beside this
         // component, whose mesh is in no file.

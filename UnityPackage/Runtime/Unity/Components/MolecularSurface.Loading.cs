@@ -179,7 +179,7 @@ namespace QuickSes
         internal void ColorAtomsOf(LoadedStructure loaded)
         {
             Session.Atoms.SetSchemeColors(Numbers(loaded.Colors));
-            Changed(SurfaceChange.Appearance);
+            LookChanged();
         }
 
         // If there are none by then.

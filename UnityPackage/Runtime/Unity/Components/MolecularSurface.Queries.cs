@@ -7,6 +7,9 @@ namespace QuickSes
 {
     public sealed partial class MolecularSurface
     {
+        [NonSerialized] private unsafe uint* _owners; // of what is shown
+        [NonSerialized] private int _ownerCount;
+
         /// <summary>
         /// Å², of the whole surface that is shown, before the transform; cavities count as well, and what
         /// <see cref="SetVisible(bool[])"/> hides.
@@ -20,30 +23,30 @@ namespace QuickSes
         /// The closed pieces of the surface, cavities among them, if <see cref="MeasureComponents"/>. Valid until the
         /// next surface is shown.
         /// </summary>
-        public ReadOnlySpan<SurfaceComponent> Components => Shown.Components;
+        public ReadOnlySpan<SurfaceComponent> Components => Shown.View.Components;
 
         /// <summary>
-        /// The atom of each vertex of the mesh, as an index into the atoms the shown surface is of. Valid until the next
-        /// surface is shown.
+        /// The atom of each vertex of the mesh, as an index into the atoms the shown surface is of. In native memory,
+        /// nothing is copied. Valid until the next surface is shown.
         /// </summary>
-        public ReadOnlySpan<uint> Owners => Shown.Owners;
+        public ReadOnlySpan<uint> Owners => Shown.View.Owners;
 
         /// <summary>
         /// The atom whose surface is nearest to a vertex of <see cref="Mesh"/>: an index into the
         /// atoms of the surface that is shown (if newer atoms are being computed: those before).
         /// </summary>
         /// <param name="vertex">From 0 to <see cref="SurfaceLevel.VertexCount"/> - 1.</param>
-        public int OwnerAtomAt(int vertex)
+        public unsafe int OwnerAtomAt(int vertex)
         {
-            ReadOnlySpan<uint> owners = Shown.Owners;
-            if ((uint)vertex >= (uint)owners.Length)
-                throw new ArgumentOutOfRangeException(nameof(vertex), vertex, $"there are {owners.Length} vertices");
-            return (int)owners[vertex];
+            if ((uint)vertex >= (uint)_ownerCount)
+                ThrowOutOfRange(vertex);
+            return (int)_owners[vertex];
         }
 
         /// <summary>
-        /// The first point of the surface that a ray meets. No collider is needed. The first question after a new
-        /// surface looks at all its triangles (some milliseconds for a million), later ones at few.
+        /// The first point of the surface that a ray meets, through what <see cref="SetVisible(bool[])"/> hides. No
+        /// collider is needed, and the first question after a new surface takes no longer than others: some tens of
+        /// microseconds.
         /// </summary>
         /// <param name="ray">In world space, such as of Camera.ScreenPointToRay.</param>
         /// <param name="atom">The atom the point belongs to, an index as of OwnerAtomAt; -1: none.</param>
@@ -53,9 +56,37 @@ namespace QuickSes
         {
             Matrix4x4 toLocal = transform.worldToLocalMatrix;
             bool isHit = Shown.TryPick(toLocal.MultiplyPoint3x4(ray.origin),
-                toLocal.MultiplyVector(ray.direction), out atom, out float distance);
-            point = isHit ? ray.origin + distance * ray.direction : default;
+                toLocal.MultiplyVector(ray.direction), out SurfaceHit hit);
+            atom = isHit ? hit.Owner : -1;
+            point = isHit ? ray.origin + hit.Distance * ray.direction : default;
             return isHit;
+        }
+
+        /// <summary>
+        /// Copies what is shown into a mesh of the caller's, with colours in the vertices however it is coloured here, and
+        /// buffers of just its size.
+        /// </summary>
+        internal void CopyTo(Mesh mesh) => Shown.CopyTo(mesh);
+
+        // Asked for every vertex of large surfaces, on Mono too: no question for the session or for the view.
+        private unsafe void CacheOwners()
+        {
+            ReadOnlySpan<uint> owners = _shown.View.Owners;
+            fixed (uint* first = owners)
+                _owners = first; // in native memory, which does not move
+            _ownerCount = owners.Length;
+        }
+
+        private unsafe void ForgetOwners()
+        {
+            _owners = null;
+            _ownerCount = 0;
+        }
+
+        private void ThrowOutOfRange(int vertex)
+        {
+            _ = Session; // throws if it has been destroyed
+            throw new ArgumentOutOfRangeException(nameof(vertex), vertex, $"there are {_ownerCount} vertices");
         }
     }
 }

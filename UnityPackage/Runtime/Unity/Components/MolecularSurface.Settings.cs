@@ -94,13 +94,26 @@ namespace QuickSes
         }
 
         /// <summary>
-        /// Whether the mesh's buffers only grow; default no. Then <see cref="UnityEngine.Mesh.vertexCount"/> counts
-        /// unused vertices at the end as well.
+        /// Where colours of atoms are: default <see cref="AtomColoring.Auto"/>. Changing it computes nothing.
         /// </summary>
-        public bool PadBuffers
+        public AtomColoring Coloring
         {
-            get => _padBuffers;
-            set => _padBuffers = value;
+            get => _coloring;
+            set
+            {
+                _coloring = Known(value, value <= AtomColoring.Texture && value >= 0);
+                LookChanged();
+            }
+        }
+
+        /// <summary>
+        /// Whether normals have 4 bytes (SNorm8) instead of 12: 20 bytes per vertex instead of 28. Default no: indices are
+        /// half of what is uploaded, so it saves a sixth, and smooth highlights show the rounding (half a degree).
+        /// </summary>
+        public bool CompactVertices
+        {
+            get => _compactVertices;
+            set => Set(ref _compactVertices, value);
         }
 
         /// <summary>What computes; default: the GPU if there is a suitable one, else the CPU.</summary>
@@ -117,8 +130,8 @@ namespace QuickSes
             set
             {
                 _baseColor = value;
-                if (Session.Atoms.SetBaseColor(Number(value)))
-                    Changed(SurfaceChange.Appearance);
+                Session.Atoms.SetBaseColor(Number(value));
+                LookChanged();
             }
         }
 

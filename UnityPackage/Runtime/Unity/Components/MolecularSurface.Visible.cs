@@ -32,7 +32,7 @@ namespace QuickSes
         public void SetVisible(ReadOnlySpan<bool> visible)
         {
             Session.Atoms.SetVisible(visible);
-            Changed(SurfaceChange.Appearance);
+            LookChanged();
         }
 
         /// <inheritdoc cref="SetVisible(ReadOnlySpan{bool})"/>

@@ -11,8 +11,8 @@ namespace QuickSes
     /// <para>One unit of the transform's space is 1 Å: scale the transform for another size. Numbers are Unity's,
     /// left-handed: who brings coordinates of a file negates x first, or shows the mirror image of a molecule
     /// (<see cref="UnitySpace"/>).</para>
-    /// <para>Main thread only. A frame in which a surface arrives costs the copy into the mesh and makes no
-    /// garbage.</para>
+    /// <para>Main thread only. Surfaces are copied into the mesh within the milliseconds per frame of
+    /// <see cref="SurfaceScheduler.UploadBudget"/>, without garbage.</para>
     /// </summary>
     [ExecuteAlways]
     [DisallowMultipleComponent]
@@ -60,9 +60,12 @@ namespace QuickSes
         private string _visible = "";
         [SerializeField, Tooltip("Area and volume of each closed piece and cavity of the surface, not only in all.")]
         private bool _measureComponents;
-        [SerializeField, Tooltip("Let the mesh's buffers only grow, instead of fitting them to each surface. Spares " +
-            "the engine work in playback; the mesh then ends with unused vertices.")]
-        private bool _padBuffers;
+        [SerializeField, Tooltip("Where the colours of atoms are. Auto: in a texture if the material's shader reads " +
+            "it, as the package's does; else in the vertices, which any shader with vertex colours reads.")]
+        private AtomColoring _coloring = AtomColoring.Auto;
+        [SerializeField, Tooltip("Normals of 4 bytes instead of 12: a sixth less to upload in playback, and directions " +
+            "to half a degree.")]
+        private bool _compactVertices;
         [SerializeField, Tooltip("What computes. Auto: an NVIDIA GPU if the library was built for it and there is " +
             "one, else the CPU.")]
         private SurfaceBackend _backend = SurfaceBackend.Auto;
@@ -72,6 +75,8 @@ namespace QuickSes
         // Not serialised, so it is gone after a domain reload, like the native memory it stands for.
         [NonSerialized] private SurfaceSession _session;
         [NonSerialized] private ShownSurface _shown;
+        [NonSerialized] private AtomColorTexture _texture;
+        [NonSerialized] private MeshRenderer _renderer;
         [NonSerialized] private bool _isMeshAttached; // to the filter
         [NonSerialized] private bool _isScriptFed;
         [NonSerialized] private bool _asksForAtoms;
@@ -79,7 +84,10 @@ namespace QuickSes
         [NonSerialized] private SurfaceShapeSettings _editedFrom; // the settings before they were edited
         [NonSerialized] private bool _isDestroyed;
 
-        /// <summary>A surface arrived and is shown.</summary>
+        /// <summary>
+        /// A surface arrived and is shown, or the one that is shown has come into another <see cref="Mesh"/> or other
+        /// buffers. Not for new colours.
+        /// </summary>
         public event Action<SurfaceLevel> SurfaceUpdated;
 
         /// <summary>The finest surface of the newest atoms is shown; nothing is left to do.</summary>
@@ -118,14 +126,18 @@ namespace QuickSes
 
         /// <summary>
         /// The mesh that is shown. The component's: it changes with every surface and goes with the component, so copy
-        /// it (Instantiate) to keep it. Never saved with scenes.
+        /// it (Instantiate) to keep it. Surfaces too large for one frame (<see cref="SurfaceScheduler.UploadBudget"/>) are
+        /// made ready in a second mesh, which takes its place in the MeshFilter beside the component: who holds the mesh
+        /// asks for it again in <see cref="SurfaceUpdated"/>. Never saved with scenes.
         /// </summary>
         public Mesh Mesh => Shown.Mesh;
 
         /// <summary>What is shown; <see cref="SurfaceLevel.LevelCount"/> 0: nothing yet.</summary>
         public SurfaceLevel CurrentLevel => Session.CurrentLevel;
 
-        /// <summary>Whether something is being read or computed, or will be. Not while the component is disabled.</summary>
+        /// <summary>
+        /// Whether something is being read, computed, uploaded or painted, or will be. Not while the component is disabled.
+        /// </summary>
         public bool IsBusy => isActiveAndEnabled && (IsLoading || !Session.IsUpToDate);
 
         /// <summary>
@@ -198,6 +210,9 @@ namespace QuickSes
             Session.RaiseEvents();
             return isComputed;
         }
+
+        // Colours, what is hidden, texture coordinates: nothing is computed, and the next frame sees it.
+        private void LookChanged() => QueueEditorUpdate();
 
         private void Changed(SurfaceChange change)
         {

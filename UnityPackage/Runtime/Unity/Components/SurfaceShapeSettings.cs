@@ -15,10 +15,12 @@ namespace QuickSes
         private readonly float[] _levels;
         private readonly int _relaxationSteps;
         private readonly bool _measureComponents;
+        private readonly bool _compactVertices;
         private readonly SurfaceBackend _backend;
 
         public SurfaceShapeSettings(SurfaceKind surface, SurfaceMethod method, float probeRadius, float spacing,
-            float[] levels, int relaxationSteps, bool measureComponents, SurfaceBackend backend)
+            float[] levels, int relaxationSteps, bool measureComponents, bool compactVertices,
+            SurfaceBackend backend)
         {
             _surface = surface;
             _method = method;
@@ -27,13 +29,14 @@ namespace QuickSes
             _levels = (float[])levels.Clone();
             _relaxationSteps = relaxationSteps;
             _measureComponents = measureComponents;
+            _compactVertices = compactVertices;
             _backend = backend;
         }
 
         public bool Equals(SurfaceShapeSettings other) => _surface == other._surface && _method == other._method &&
             _probeRadius.Equals(other._probeRadius) && _spacing.Equals(other._spacing) &&
             _relaxationSteps == other._relaxationSteps && _measureComponents == other._measureComponents &&
-            _backend == other._backend && _levels.AsSpan().SequenceEqual(other._levels);
+            _compactVertices == other._compactVertices && _backend == other._backend && _levels.AsSpan().SequenceEqual(other._levels);
 
         public override bool Equals(object other) => other is SurfaceShapeSettings settings && Equals(settings);
 

@@ -1,116 +1,260 @@
 // SPDX-License-Identifier: MIT
 using System;
-using System.Collections.Generic;
-using System.Diagnostics;
 using UnityEngine;
-using Object = UnityEngine.Object;
 
 namespace QuickSes
 {
     /// <summary>
-    /// The surface a component shows: its mesh, and copies of what the mesh does not hold, since the context that
-    /// computed it goes to others. Main thread only.
+    /// The surface a component shows, and the one on its way: both kept by the native library, of which the engine's
+    /// meshes are copies. What fits into a frame goes into the mesh that is shown; what does not, into a second one,
+    /// which takes its place when it is full. Main thread only; no garbage once both are there.
     /// </summary>
     internal sealed class ShownSurface : IDisposable
     {
-        private static readonly HashSet<Mesh> s_made = new HashSet<Mesh>();
+        private const int FreshCost = 6; // of bytes in new buffers, in bytes in warm ones
 
-        private readonly SurfaceMeshUploader _uploader = new SurfaceMeshUploader();
-        private readonly UnmanagedBuffer<uint> _owners = new UnmanagedBuffer<uint>();
-        private readonly UnmanagedBuffer<SurfaceComponent> _components = new UnmanagedBuffer<SurfaceComponent>();
-        private readonly SurfacePicker _picker = new SurfacePicker();
-        private Mesh _mesh;
-        private bool _isNewMesh;
+        private readonly SurfaceUpload _upload = new SurfaceUpload();
+        private readonly SurfacePainter _painter = new SurfacePainter();
+        private SurfaceMesh _front = new SurfaceMesh(); // what is shown
+        private SurfaceMesh _back = new SurfaceMesh(); // what is being filled
+        private KeptMesh _kept; // what is shown; null: nothing ever was
+        private KeptMesh _arriving; // what was taken, if any
+        private AtomLook _arrivingLook;
+        private bool _hasArrival;
+        private bool _isArrivalMoving;
+        private bool _isArrivalUploaded; // whether the upload under way is of the arrival
+        private bool _isResting; // buffers have to be made exact
 
-        /// <summary>Made when it is asked for; goes with this object and is not saved with scenes.</summary>
-        public Mesh Mesh
-        {
-            get
-            {
-                if (_mesh == null)
-                {
-                    _mesh = new Mesh { name = "Molecular Surface", hideFlags = HideFlags.DontSave };
-                    _mesh.MarkDynamic();
-                    s_made.Add(_mesh);
-                    _isNewMesh = true;
-                }
-                return _mesh;
-            }
-        }
+        /// <summary>What is shown. Another one after surfaces too large for one frame.</summary>
+        public Mesh Mesh => _front.Mesh;
 
-        /// <summary>Whether a mesh is that of a component, be it another one.</summary>
-        public static bool IsMade(Mesh mesh) => mesh != null && s_made.Contains(mesh);
+        /// <summary>The same; null if nobody has asked for it.</summary>
+        public Mesh MeshIfMade => _front.HasMesh ? _front.Mesh : null;
 
-        /// <summary>Whether the mesh was made since the last question: whoever shows it has to be told.</summary>
-        public bool TakeIsNewMesh()
-        {
-            bool isNew = _isNewMesh;
-            _isNewMesh = false;
-            return isNew;
-        }
+        /// <summary>How surfaces that can be coloured either way are uploaded from now on.</summary>
+        public bool UsesTexture { get; set; }
+
+        /// <summary>Whether vertices of what is shown have atoms instead of colours.</summary>
+        public bool HasAtoms => _front.IsFilled && _front.Style.HasAtoms;
+
+        public bool IsFilled => _front.IsFilled;
+
+        /// <summary>Of the atoms of what is shown; null: nothing is.</summary>
+        public AtomLook Look => _front.Look;
 
         public double Area { get; private set; }
 
         public double Volume { get; private set; }
 
-        public ReadOnlySpan<SurfaceComponent> Components => _components.Span;
+        /// <summary>The native mesh of what is shown.</summary>
+        public SurfaceMeshView View => IsFilled ? _kept.View : default;
 
-        /// <summary>The atom of each vertex.</summary>
-        public ReadOnlySpan<uint> Owners => _owners.Span;
+        public bool IsUploading => _upload.IsUnderWay && _isArrivalUploaded;
 
-        /// <summary>Shows another surface.</summary>
-        public SurfaceLevel Show(in SurfaceMeshView view, in SurfaceReport report, ReadOnlySpan<float> ladder,
-            bool isOfNewestAtoms, bool padBuffers)
+        public bool HasUpload =>
+            _hasArrival || _upload.IsUnderWay || _painter.IsUnderWay || MustMove || MustPaint;
+
+        // What is shown has to go into other buffers.
+        private bool MustMove => _front.IsFilled && (_isResting || !_front.Style.Equals(StyleOf(_kept.View, _front.Look)) ||
+            (!_front.Style.HasAtoms && _front.VisibleVersion != _front.Look.VisibleVersion));
+
+        private bool MustPaint => _front.IsFilled && SurfacePainter.IsNeeded(_front);
+
+        /// <summary>As of <see cref="ISurfaceHost.Take"/>.</summary>
+        public void Take(SurfaceContext context, AtomLook look, bool isMoving)
         {
-            long begin = Stopwatch.GetTimestamp();
-            _uploader.Upload(view, Mesh, padBuffers);
-            _owners.CopyFrom(view.Owners);
-            _components.CopyFrom(view.Components);
-            _picker.Forget();
-            double milliseconds = (Stopwatch.GetTimestamp() - begin) * 1000.0 / Stopwatch.Frequency;
-            Area = report.Area;
-            Volume = report.Volume;
-            return new SurfaceLevel(view, report, ladder, isOfNewestAtoms, milliseconds);
+            if (_upload.IsUnderWay)
+                AbandonUpload(); // of the surface before into other buffers
+            _arriving ??= new KeptMesh();
+            context.Keep(_arriving);
+            look.Hold();
+            _arrivingLook?.Release();
+            _arrivingLook = look;
+            _hasArrival = true;
+            _isArrivalMoving = isMoving;
+        }
+
+        /// <summary>As of <see cref="ISurfaceHost.Upload"/>.</summary>
+        public UploadStep Upload(in UploadShare share, out long bytes)
+        {
+            bytes = 0;
+            try
+            {
+                if (!_upload.IsUnderWay && (_hasArrival || MustMove))
+                    Begin(share);
+                if (_upload.IsUnderWay)
+                    return Fill(share, ref bytes);
+                if (!MustPaint && !_painter.IsUnderWay)
+                    return UploadStep.Painted;
+                if (_front.Writer.IsIntact(_front.Mesh))
+                    return _painter.Step(_kept, _front, share, out bytes) ? UploadStep.Unfinished : UploadStep.Painted;
+                _painter.Abandon(); // somebody else has changed the mesh
+                _isResting = true;
+                return UploadStep.Unfinished;
+            }
+            catch
+            {
+                AbandonUpload();
+                GiveUpLook();
+                throw;
+            }
+        }
+
+        /// <summary>What is on its way is not wanted any more.</summary>
+        public void DropUpload()
+        {
+            AbandonUpload();
+            _hasArrival = false;
+            _arrivingLook?.Release();
+            _arrivingLook = null;
+            _arriving?.Clear();
+        }
+
+        /// <summary>As of <see cref="ISurfaceHost.Rest"/>.</summary>
+        public void Rest()
+        {
+            _isResting = _front.IsFilled && _front.Writer.HasRoom;
+            if (!_isResting)
+                _back.FreeMesh();
         }
 
         /// <summary>Shows nothing.</summary>
         public void Clear()
         {
-            if (_mesh != null)
-                _uploader.Upload(default, _mesh);
-            _owners.Resize(0);
-            _components.Resize(0);
-            _picker.Forget();
+            DropUpload();
+            _front.Clear();
+            _back.FreeMesh();
+            _kept?.Clear();
             Area = Volume = 0;
+            _isResting = false;
         }
 
-        /// <summary>The first triangle that a ray meets; false: none.</summary>
+        /// <summary>The first triangle that a ray meets; false: none. Hidden atoms let rays through.</summary>
         /// <param name="origin">In the coordinates of the mesh.</param>
         /// <param name="direction">The same; of any length but 0.</param>
-        /// <param name="atom">Of the corner that is nearest to the point.</param>
-        /// <param name="distance">In lengths of the direction.</param>
-        public bool TryPick(Vector3 origin, Vector3 direction, out int atom, out float distance)
+        /// <param name="hit">Distance in lengths of the direction.</param>
+        public bool TryPick(Vector3 origin, Vector3 direction, out SurfaceHit hit)
         {
-            atom = -1;
-            distance = 0;
-            if (_mesh == null || _owners.Length == 0 ||
-                !_picker.TryPick(_mesh, origin, direction, out int vertex, out distance))
-                return false;
-            atom = (int)_owners.Span[vertex];
-            return true;
+            hit = default;
+            return IsFilled && IsRay(origin, direction) && _kept.TryPick((origin.x, origin.y, origin.z),
+                (direction.x, direction.y, direction.z), _front.Look.Visible, out hit);
+        }
+
+        /// <summary>
+        /// Copies what is shown into a mesh of the caller's, which needs no texture and nothing of this package: painted
+        /// vertices, exact buffers, no hidden triangles.
+        /// </summary>
+        public unsafe void CopyTo(Mesh mesh)
+        {
+            SurfaceMeshView view = View;
+            int vertices = view.VertexCount, triangles = view.TriangleCount;
+            mesh.Clear();
+            using (var writer = new MeshWriter())
+            using (var room = new UnmanagedBuffer<byte>())
+            using (var indices = new UnmanagedBuffer<uint>())
+            {
+                view.Indices.CopyTo(indices.Resize(3 * triangles));
+                if (IsFilled && !Look.Visible.IsEmpty)
+                    triangles = _kept.Filter(Look.Visible, 0, triangles, indices.Span);
+                MeshStyle style = IsFilled ? StyleOf(view, Look, false) : default;
+                writer.Reserve(mesh, style, vertices, 3 * triangles, false);
+                if (vertices > 0)
+                {
+                    writer.WriteVertices(
+                        MeshStyle.SurfaceStream, style.SurfaceBytes, view.PositionsPointer, 0, vertices);
+                    writer.Paint(_kept, Look.Colors, MeshStyle.AtomStream, 0, vertices, room);
+                    if (style.HasTexcoords)
+                        writer.Paint(_kept, Look.Texcoords, MeshStyle.TexcoordStream, 0, vertices, room);
+                }
+                if (triangles > 0)
+                    writer.WriteIndices(indices.Pointer, 0, 3 * triangles);
+                writer.Finish(SurfaceMeshUploader.BoundsOf(view), vertices, 3 * triangles);
+            }
         }
 
         public void Dispose()
         {
-            if (!(_mesh is null))
-                s_made.Remove(_mesh);
-            if (_mesh != null)
-                Object.DestroyImmediate(_mesh); // at the end of play mode no later frame would destroy it
-            _mesh = null;
-            _uploader.Dispose();
-            _owners.Dispose();
-            _components.Dispose();
-            _picker.Dispose();
+            DropUpload();
+            _front.Dispose();
+            _back.Dispose();
+            _upload.Dispose();
+            _painter.Dispose();
+            _kept?.Dispose();
+            _arriving?.Dispose();
+            _kept = _arriving = null;
         }
+
+        private void Begin(in UploadShare share)
+        {
+            _painter.Abandon();
+            KeptMesh source = _hasArrival ? _arriving : _kept;
+            AtomLook look = _hasArrival ? _arrivingLook : _front.Look;
+            bool withRoom = _hasArrival ? _isArrivalMoving : _front.Writer.HasRoom && !_isResting;
+            SurfaceMeshView view = source.View;
+            MeshStyle style = StyleOf(view, look);
+            long cost = SurfaceUpload.BytesOf(view, style);
+            if (cost > share.PieceBytes && !_front.Writer.Suffices(
+                _front.Mesh, style, view.VertexCount, 3 * view.TriangleCount, withRoom))
+                cost *= FreshCost;
+            SurfaceMesh target = cost <= share.RestBytes ? _front : _back;
+            _isArrivalUploaded = _hasArrival;
+            _upload.Begin(source, look, target, style, withRoom);
+        }
+
+        private UploadStep Fill(in UploadShare share, ref long bytes)
+        {
+            bool isDirect = _upload.Target == _front;
+            while (_upload.Step(share, out long piece))
+            {
+                bytes += piece;
+                if (!isDirect)
+                    return UploadStep.Unfinished;
+            }
+            if (!isDirect)
+                (_front, _back) = (_back, _front);
+            _back.IsFilled = false;
+            _isResting = false;
+            if (!_front.Writer.HasRoom)
+                _back.FreeMesh(); // at rest: a single mesh will do
+            if (!_isArrivalUploaded)
+                return UploadStep.Moved;
+            (_kept, _arriving) = (_arriving, _kept);
+            DropUpload();
+            _kept.TryGetReport(out SurfaceReport report);
+            Area = report.Area;
+            Volume = report.Volume;
+            return UploadStep.Shown;
+        }
+
+        private void AbandonUpload()
+        {
+            _upload.Abandon();
+            _painter.Abandon();
+        }
+
+        // What could not be shown is not tried again and again, but shown with the next surface or change.
+        private void GiveUpLook()
+        {
+            _isResting = false;
+            if (!_front.IsFilled)
+                return;
+            _front.Style = StyleOf(_kept.View, _front.Look);
+            _front.ColorsVersion = _front.Look.ColorsVersion;
+            _front.VisibleVersion = _front.Look.VisibleVersion;
+            _front.TexcoordsVersion = _front.Look.TexcoordsVersion;
+            _front.Writer.Forget();
+        }
+
+        // Transforms of scale 0 make none of what was one.
+        private static bool IsRay(Vector3 origin, Vector3 direction)
+        {
+            float sum = origin.x + origin.y + origin.z + direction.x + direction.y + direction.z;
+            return sum - sum == 0 && (direction.x != 0 || direction.y != 0 || direction.z != 0);
+        }
+
+        private MeshStyle StyleOf(in SurfaceMeshView view, AtomLook look) => StyleOf(view, look, UsesTexture);
+
+        private static MeshStyle StyleOf(in SurfaceMeshView view, AtomLook look, bool hasAtoms) => new MeshStyle(
+            view.VertexLayout == SurfaceVertexLayout.Compact, hasAtoms, look.Texcoords.Length > 0);
     }
 }

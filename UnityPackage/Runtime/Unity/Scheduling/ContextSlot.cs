@@ -58,8 +58,6 @@ namespace QuickSes
 
         public uint SentPositions { get; set; }
 
-        public uint SentAppearance { get; set; }
-
         /// <summary>
         /// Where there is no library, that is found out at once: nobody waits for a thread then, and none is needed, which
         /// players for the web do not have.

@@ -14,6 +14,9 @@ namespace QuickSes
 
         SurfaceBackend Backend { get; }
 
+        /// <summary>The number of the engine's frame.</summary>
+        int Frame { get; }
+
         /// <summary>Milliseconds per surface while atoms move; 0: all levels.</summary>
         float FrameBudget { get; }
 
@@ -24,13 +27,29 @@ namespace QuickSes
         /// <param name="levels">Coarser levels, Å, as the user gave them; those of the settings don't count.</param>
         SurfaceSettings MakeSettings(out ReadOnlySpan<float> levels);
 
-        /// <summary>Shows a surface; throws if it can't.</summary>
-        /// <param name="mesh">Valid during the call.</param>
-        /// <param name="report">Of this mesh.</param>
-        /// <param name="ladder">Of all levels.</param>
-        /// <param name="isOfNewestAtoms">And of the newest settings and colours.</param>
-        SurfaceLevel Show(in SurfaceMeshView mesh, in SurfaceReport report, ReadOnlySpan<float> ladder,
-            bool isOfNewestAtoms);
+        /// <summary>
+        /// Takes the mesh that a context has just collected (<see cref="SurfaceContext.Keep"/>) in the place of one it
+        /// took before and has not begun to upload; throws if it can't.
+        /// </summary>
+        /// <param name="context">Has no mesh afterwards.</param>
+        /// <param name="look">Of the atoms the mesh is of.</param>
+        /// <param name="isMoving">Whether another one of about the same size is to be expected soon.</param>
+        void Take(SurfaceContext context, AtomLook look, bool isMoving);
+
+        /// <summary>Whether an upload of what was taken is under way, so that nothing newer can be taken.</summary>
+        bool IsUploading { get; }
+
+        /// <summary>Whether there is something to upload: what was taken, or another look of what is shown.</summary>
+        bool HasUpload { get; }
+
+        /// <summary>A step of it; throws if it fails.</summary>
+        UploadStep Upload(in UploadShare share, out long bytes);
+
+        /// <summary>Forgets what is not uploaded yet; what is shown stays.</summary>
+        void DropUpload();
+
+        /// <summary>Atoms have not moved for a while and what is shown is final: nothing is held ready any more.</summary>
+        void Rest();
 
         void OnUpdated(in SurfaceLevel level);
 

@@ -7,21 +7,16 @@ namespace QuickSes
 {
     /// <summary>
     /// The atoms of one surface. Contexts are shared and forget, so this is the copy that is sent again. Versions rise
-    /// with every change, so that only what a context lacks is sent. Colours are four bytes: red, green, blue, alpha.
-    /// Main thread only; no garbage once it has grown.
+    /// with every change, so that only what a context lacks is sent. How atoms look is beside them: contexts need not
+    /// know. Main thread only; no garbage once it has grown.
     /// </summary>
     internal sealed class SurfaceAtomSet : IDisposable
     {
         private readonly UnmanagedBuffer<Vector3> _positions = new UnmanagedBuffer<Vector3>();
         private readonly UnmanagedBuffer<float> _radii = new UnmanagedBuffer<float>();
-        private readonly UnmanagedBuffer<uint> _colors = new UnmanagedBuffer<uint>();
-        private readonly UnmanagedBuffer<byte> _visible = new UnmanagedBuffer<byte>();
-        private readonly UnmanagedBuffer<Vector2> _texcoords = new UnmanagedBuffer<Vector2>();
-        private readonly UnmanagedBuffer<bool> _hasBaseColor = new UnmanagedBuffer<bool>(); // per atom
         private uint _baseColor = uint.MaxValue; // white
         private uint _atomsVersion; // radii, and with them the number of atoms
         private uint _positionsVersion;
-        private uint _appearanceVersion;
 
         /// <summary>Whether <see cref="SetAtoms"/> was called, be it with no atoms at all.</summary>
         public bool IsSet { get; private set; }
@@ -30,7 +25,8 @@ namespace QuickSes
 
         public ReadOnlySpan<Vector3> Positions => _positions.Span;
 
-        public bool HasTexcoords => _texcoords.Length > 0;
+        /// <summary>Another one with another number of atoms: it goes with them.</summary>
+        public AtomLook Look { get; private set; } = new AtomLook(0, uint.MaxValue);
 
         /// <returns>Whether only positions are new.</returns>
         public bool SetAtoms(ReadOnlySpan<Vector3> positions, ReadOnlySpan<float> radii)
@@ -43,12 +39,12 @@ namespace QuickSes
             ++_positionsVersion;
             if (isSameMolecule)
                 return true;
-            bool keepsAppearance = IsSet && radii.Length == Count;
+            bool keepsLook = IsSet && radii.Length == Count;
             _radii.CopyFrom(radii);
             ++_atomsVersion;
             IsSet = true;
-            if (!keepsAppearance)
-                ResetAppearance();
+            if (!keepsLook)
+                ResetLook();
             return false;
         }
 
@@ -77,36 +73,22 @@ namespace QuickSes
         {
             if (!colors.IsEmpty)
                 ThrowUnlessPerAtom(colors.Length, nameof(colors));
-            _hasBaseColor.Resize(Count).Fill(colors.IsEmpty);
-            if (colors.IsEmpty)
-                _colors.Resize(Count).Fill(_baseColor);
-            else
-                _colors.CopyFrom(colors);
-            ++_appearanceVersion;
+            Look.SetColors(colors, _baseColor);
         }
 
         /// <summary>Transparent black stands for the base colour.</summary>
         public void SetSchemeColors(ReadOnlySpan<uint> colors)
         {
             ThrowUnlessPerAtom(colors.Length, nameof(colors));
-            _colors.CopyFrom(colors);
-            Span<bool> hasBaseColor = _hasBaseColor.Resize(Count);
-            for (int i = 0; i < hasBaseColor.Length; ++i)
-                hasBaseColor[i] = colors[i] == 0;
-            FillBaseColor();
-            ++_appearanceVersion;
+            Look.SetSchemeColors(colors, _baseColor);
         }
 
-        /// <returns>Whether anything shown changes.</returns>
-        public bool SetBaseColor(uint color)
+        public void SetBaseColor(uint color)
         {
             if (color == _baseColor)
-                return false;
+                return;
             _baseColor = color;
-            if (!FillBaseColor())
-                return false;
-            ++_appearanceVersion;
-            return true;
+            Look.SetBaseColor(color);
         }
 
         /// <summary>Empty: all.</summary>
@@ -114,10 +96,7 @@ namespace QuickSes
         {
             if (!visible.IsEmpty)
                 ThrowUnlessPerAtom(visible.Length, nameof(visible));
-            Span<byte> mask = _visible.Resize(visible.Length);
-            for (int i = 0; i < mask.Length; ++i)
-                mask[i] = visible[i] ? (byte)1 : (byte)0;
-            ++_appearanceVersion;
+            Look.SetVisible(visible);
         }
 
         /// <summary>Empty: none.</summary>
@@ -125,8 +104,7 @@ namespace QuickSes
         {
             if (!texcoords.IsEmpty)
                 ThrowUnlessPerAtom(texcoords.Length, nameof(texcoords));
-            _texcoords.CopyFrom(texcoords);
-            ++_appearanceVersion;
+            Look.SetTexcoords(texcoords);
         }
 
         public void Clear()
@@ -134,7 +112,7 @@ namespace QuickSes
             IsSet = false;
             _positions.Resize(0);
             _radii.Resize(0);
-            ResetAppearance();
+            ResetLook();
             ++_atomsVersion;
         }
 
@@ -149,14 +127,11 @@ namespace QuickSes
                 status = context.SetAtoms(Floats(_positions.Span), _radii.Span);
             else if (slot.SentPositions != _positionsVersion)
                 status = context.SetPositions(Floats(_positions.Span));
-            if (status == QuickSesStatus.Ok && (isFresh || slot.SentAppearance != _appearanceVersion))
-                status = SendAppearance(context);
             if (status != QuickSesStatus.Ok)
                 return status;
             slot.SentBy = this;
             slot.SentAtoms = _atomsVersion;
             slot.SentPositions = _positionsVersion;
-            slot.SentAppearance = _appearanceVersion;
             return status;
         }
 
@@ -164,46 +139,16 @@ namespace QuickSes
         {
             _positions.Dispose();
             _radii.Dispose();
-            _colors.Dispose();
-            _hasBaseColor.Dispose();
-            _visible.Dispose();
-            _texcoords.Dispose();
-        }
-
-        // Whether there is an atom that has it.
-        private bool FillBaseColor()
-        {
-            Span<uint> colors = _colors.Span;
-            Span<bool> hasBaseColor = _hasBaseColor.Span;
-            bool isAny = false;
-            for (int i = 0; i < colors.Length; ++i)
-                if (hasBaseColor[i])
-                {
-                    colors[i] = _baseColor;
-                    isAny = true;
-                }
-            return isAny;
-        }
-
-        private QuickSesStatus SendAppearance(SurfaceContext context)
-        {
-            QuickSesStatus status = context.SetColors(MemoryMarshal.AsBytes(_colors.Span));
-            if (status == QuickSesStatus.Ok)
-                status = context.SetVisible(_visible.Span);
-            if (status == QuickSesStatus.Ok)
-                status = context.SetTexcoords(MemoryMarshal.Cast<Vector2, float>(_texcoords.Span));
-            return status;
+            Look.Release();
         }
 
         private static ReadOnlySpan<float> Floats(ReadOnlySpan<Vector3> vectors) =>
             MemoryMarshal.Cast<Vector3, float>(vectors);
 
-        // Appearance belongs to atoms: it goes with them.
-        private void ResetAppearance()
+        private void ResetLook()
         {
-            _visible.Resize(0);
-            _texcoords.Resize(0);
-            SetColors(default);
+            Look.Release();
+            Look = new AtomLook(Count, _baseColor);
         }
 
         private void ThrowUnlessPerAtom(int length, string argument)

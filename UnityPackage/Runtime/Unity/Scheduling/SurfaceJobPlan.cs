@@ -7,8 +7,6 @@ namespace QuickSes
     internal enum SurfaceChange
     {
         None,
-        /// <summary>Colours, visibility, texture coordinates.</summary>
-        Appearance,
         /// <summary>The same atoms have moved.</summary>
         Positions,
         /// <summary>Other atoms or other settings.</summary>
@@ -48,8 +46,8 @@ namespace QuickSes
 
         /// <summary>
         /// Chooses among the levels of a ladder. While atoms move, all of it and a budget of time, within which the
-        /// library chooses; who is not alone gets the coarsest level first; and a surface never gets coarser than it is
-        /// while its shape stays: what refines goes on with the next finer level, new colours come at the same level.
+        /// library chooses; who is not alone gets the coarsest level first; what refines goes on with the next finer
+        /// level.
         /// </summary>
         /// <param name="settings">Gets spacing, levels and frame budget.</param>
         /// <param name="ladder">Of <see cref="MakeLadder"/>.</param>
@@ -65,12 +63,9 @@ namespace QuickSes
             if (change == SurfaceChange.None)
                 while (first < last && ladder[first] >= shownSpacing)
                     ++first;
-            else if (change == SurfaceChange.Appearance)
-                while (first < last && ladder[first] > shownSpacing)
-                    ++first;
             else if (change == SurfaceChange.Positions && frameBudget > 0)
                 settings.FrameBudget = frameBudget;
-            if (othersWait && (change == SurfaceChange.Shape || change == SurfaceChange.Appearance))
+            if (othersWait && change == SurfaceChange.Shape)
                 last = first;
             settings.Spacing = ladder[last];
             settings.SetLevels(ladder.Slice(first, last - first));

@@ -7,8 +7,7 @@ namespace QuickSes
     public readonly struct SurfaceLevel
     {
         // A job may have computed a part of the ladder only, so the place in it is told by the spacing.
-        internal SurfaceLevel(in SurfaceMeshView view, in SurfaceReport report, ReadOnlySpan<float> ladder,
-            bool isOfNewestAtoms, double uploadMilliseconds)
+        internal SurfaceLevel(in SurfaceMeshView view, in SurfaceReport report, ReadOnlySpan<float> ladder) : this()
         {
             int level = 0;
             while (level < ladder.Length - 1 && ladder[level] > view.Spacing)
@@ -18,12 +17,20 @@ namespace QuickSes
             Spacing = view.Spacing;
             VertexCount = view.VertexCount;
             TriangleCount = view.TriangleCount;
-            IsOfNewestAtoms = isOfNewestAtoms;
             ComputeMilliseconds = report.ComputeMilliseconds;
-            UploadMilliseconds = uploadMilliseconds;
             WorkBytes = report.WorkBytesPeak;
             MeshBytes = report.MeshBytes;
             HostBytes = report.HostBytesPeak;
+        }
+
+        /// <summary>The same when it is shown.</summary>
+        internal SurfaceLevel(in SurfaceLevel level, bool isOfNewestAtoms, double uploadMilliseconds,
+            double latencyMilliseconds)
+        {
+            this = level;
+            IsOfNewestAtoms = isOfNewestAtoms;
+            UploadMilliseconds = uploadMilliseconds;
+            LatencyMilliseconds = latencyMilliseconds;
         }
 
         /// <summary>Its place among the levels; 0 is the coarsest.</summary>
@@ -38,10 +45,13 @@ namespace QuickSes
         /// <summary>Å between lattice points.</summary>
         public float Spacing { get; }
 
-        /// <summary>Vertices of the surface.</summary>
+        /// <summary>
+        /// Vertices of the surface, hidden parts too. While atoms move, the vertexCount of the mesh counts
+        /// unused ones behind them as well.
+        /// </summary>
         public int VertexCount { get; }
 
-        /// <summary>Triangles of the surface.</summary>
+        /// <summary>Triangles of the surface, hidden parts too.</summary>
         public int TriangleCount { get; }
 
         /// <summary>Whether it was of the newest atoms and settings when it was shown.</summary>
@@ -50,8 +60,14 @@ namespace QuickSes
         /// <summary>From atoms to mesh in memory; for a later level: since the one before.</summary>
         public double ComputeMilliseconds { get; }
 
-        /// <summary>Main thread, for the copy into the mesh.</summary>
+        /// <summary>Main thread, for the copy into the mesh, in all frames it took.</summary>
         public double UploadMilliseconds { get; }
+
+        /// <summary>
+        /// From the frame that found it computed until it was shown: 0 if it fitted into that frame, else see
+        /// <see cref="SurfaceScheduler.UploadBudget"/>.
+        /// </summary>
+        public double LatencyMilliseconds { get; }
 
         /// <summary>Bytes of work memory: on the GPU with CUDA, else in the process.</summary>
         public ulong WorkBytes { get; }

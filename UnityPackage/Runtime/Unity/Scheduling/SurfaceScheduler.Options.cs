@@ -11,12 +11,13 @@ namespace QuickSes
         public uint Threads;
         public ulong MemoryBudget;
         public int Device;
+        public double UploadBudget;
 
         /// <summary>So that the game keeps a processor.</summary>
         public static uint DefaultThreads => (uint)Math.Max(2, Environment.ProcessorCount - 1);
 
         public static SchedulerOptions Default =>
-            new SchedulerOptions { MaxContexts = 4, Threads = DefaultThreads };
+            new SchedulerOptions { MaxContexts = 4, Threads = DefaultThreads, UploadBudget = 2 };
     }
 
     public static partial class SurfaceScheduler

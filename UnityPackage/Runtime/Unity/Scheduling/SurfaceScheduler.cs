@@ -97,6 +97,8 @@ namespace QuickSes
                 if (s_sessions.Count == 0)
                     pool.ReleaseInBackground();
             }
+            if (s_sessions.Count == 0)
+                Uploads.FreeRoom();
         }
 
         // The engine tells components that were never enabled nothing, not even that they are destroyed.

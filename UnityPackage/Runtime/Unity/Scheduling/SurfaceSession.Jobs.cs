@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The job of a surface: how it is begun, followed, and ended.
 using System;
+using System.Collections.Generic;
 
 namespace QuickSes
 {
@@ -13,9 +14,24 @@ namespace QuickSes
         private int _ladderCount = 1;
         private ContextSlot _slot; // while a job runs
         private uint _job; // the last that was begun
-        private bool _isJobOfNewest; // whether it is of the newest atoms, colours and settings
-        private bool _isJobOfShape; // maybe in other colours
+        private bool _isJobOfNewest; // whether it is of the newest atoms and settings
+        private bool _isJobOfShape; // be it in other places
         private SurfaceChange _begunChange; // what was new when it was begun
+        private readonly List<JobLook> _looks = new List<JobLook>(4); // of the jobs whose meshes may still come
+
+        // The look of the atoms of a job and of those after it, up to the next entry.
+        private readonly struct JobLook
+        {
+            public JobLook(uint firstJob, AtomLook look)
+            {
+                FirstJob = firstJob;
+                Look = look;
+            }
+
+            public uint FirstJob { get; }
+
+            public AtomLook Look { get; }
+        }
 
         private ReadOnlySpan<float> Ladder => new ReadOnlySpan<float>(_ladder, 0, _ladderCount);
 
@@ -26,6 +42,7 @@ namespace QuickSes
         public void LoseContext()
         {
             _slot = null;
+            ForgetLooks();
             BeginAgain(SurfaceChange.Shape);
         }
 
@@ -72,12 +89,14 @@ namespace QuickSes
             SurfaceSettings settings = _host.MakeSettings(out ReadOnlySpan<float> levels);
             settings.Tag = SurfaceScheduler.NextJob();
             settings.Series = _series;
-            settings.Texcoords = Atoms.HasTexcoords;
+            settings.Pickable = true;
+            settings.ShowMillisecondsPerMegabyte = ShowMillisecondsPerMegabyte();
             _ladderCount = SurfaceJobPlan.MakeLadder(levels, settings.Spacing, _ladder);
             if (isFinestOnly)
                 settings.SetLevels(default);
             else
                 SurfaceJobPlan.Choose(ref settings, Ladder, _pending,
+                    _isArrivalOfShape ? _arrival.Spacing :
                     _isShapeShown ? CurrentLevel.Spacing : float.PositiveInfinity, _host.FrameBudget,
                     Pool.IsAnyUrgent);
             return settings;
@@ -86,36 +105,42 @@ namespace QuickSes
         private void NoteJob(uint job)
         {
             _job = job;
+            NoteLook(job);
             _isJobOfNewest = _isJobOfShape = true;
             Progress = 0;
         }
 
-        // Shows what is ready, and gives the context back when the job is over.
+        // Takes what is ready, and gives the context back when the job is over. What is ready while an upload is under way
+        // stays with the context, where newer ones replace it, and the context with the session.
         private void Advance()
         {
             SurfaceContext context = _slot.Context;
-            bool hasShown = false;
+            bool hasTaken = false;
             SurfaceProgress progress;
             do
             {
-                if (context.TryCollect(out SurfaceMeshView mesh) && IsOurs(mesh))
+                if (!_host.IsUploading && context.TryCollect(out SurfaceMeshView mesh) && IsOurs(mesh))
                 {
-                    QuickSesError error = TryShow(mesh);
+                    QuickSesError error = TryTake(mesh);
                     if (error.Status != QuickSesStatus.Ok)
                     {
                         context.Cancel();
                         FailJob(error);
                         return;
                     }
-                    hasShown = true;
+                    hasTaken = true;
                 }
                 context.Poll(out progress);
-            } while (progress.IsMeshReady);
+            } while (progress.IsMeshReady && !_host.IsUploading);
             Progress = progress.Fraction;
             if (progress.State == SurfaceJobState.Running)
             {
-                if (hasShown && Pool.IsAnyUrgent)
+                if (hasTaken && Pool.IsAnyUrgent)
                     Yield();
+            }
+            else if (progress.IsMeshReady)
+            {
+                return;
             }
             else if (progress.State == SurfaceJobState.Failed)
             {
@@ -130,33 +155,64 @@ namespace QuickSes
         // Others have nothing yet, so finer levels come later, or, if what was shown is old by now, all of it.
         private void Yield()
         {
-            Drop();
-            if (!_isShown)
+            EndJob();
+            if (!_isShown && !_isArrivalOfNewest)
                 BeginAgain(_begunChange);
         }
 
         // Not what the context's last user left behind. Numbers of jobs may wrap.
         private bool IsOurs(in SurfaceMeshView mesh) => unchecked((int)(mesh.Tag - _slot.FirstJob)) >= 0;
 
-        private QuickSesError TryShow(in SurfaceMeshView mesh)
+        private void NoteLook(uint job)
         {
-            bool isLast = mesh.Tag == _job;
-            _slot.Context.TryGetReport(out SurfaceReport report);
-            try
+            AtomLook look = Atoms.Look;
+            if (_looks.Count > 0 && _looks[_looks.Count - 1].Look == look)
+                return;
+            // Jobs between the one that runs and this one never began.
+            _slot.Context.Poll(out SurfaceProgress progress);
+            int running = LookOf(progress.Tag);
+            while (_looks.Count > Math.Max(1, running + 1))
             {
-                CurrentLevel = _host.Show(mesh, report, Ladder, isLast && _isJobOfNewest);
+                _looks[_looks.Count - 1].Look.Release();
+                _looks.RemoveAt(_looks.Count - 1);
             }
-            catch (Exception e) // the engine refuses the mesh: it was made unreadable, say
-            {
-                return new QuickSesError(QuickSesStatus.InternalError, e.Message);
-            }
-            _isShown = isLast && _isJobOfNewest;
-            _isShapeShown = isLast && _isJobOfShape;
-            _updated = true;
-            _finished = IsDone;
-            if (!_isStopped)
-                LastError = default;
-            return default;
+            _looks.Add(new JobLook(job, look.Hold()));
+        }
+
+        // Of a job whose mesh has come; those of older ones are not needed any more.
+        private AtomLook TakeLook(uint job)
+        {
+            int place = Math.Max(0, LookOf(job));
+            AtomLook look = _looks[place].Look;
+            for (int k = 0; k < place; ++k)
+                _looks[k].Look.Release();
+            _looks.RemoveRange(0, place);
+            return look;
+        }
+
+        // Numbers of jobs may wrap.
+        private int LookOf(uint job)
+        {
+            int place = _looks.Count - 1;
+            while (place >= 0 && unchecked((int)(job - _looks[place].FirstJob)) < 0)
+                --place;
+            return place;
+        }
+
+        private void ForgetLooks()
+        {
+            foreach (JobLook job in _looks)
+                job.Look.Release();
+            _looks.Clear();
+        }
+
+        private void EndJob()
+        {
+            QueuedAs = QueuePriority.None;
+            if (_slot == null)
+                return;
+            _slot.Context.Cancel();
+            Release(default);
         }
 
         private void FailJob(in QuickSesError error)
@@ -169,6 +225,7 @@ namespace QuickSes
         {
             Pool.Release(_slot, error.Status == QuickSesStatus.DeviceError);
             _slot = null;
+            ForgetLooks();
             Progress = 1;
         }
     }

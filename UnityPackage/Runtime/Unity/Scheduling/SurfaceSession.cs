@@ -7,18 +7,18 @@ namespace QuickSes
     /// One surface over time: which atoms it is of, what is shown, and the job in between. It borrows a context from a
     /// <see cref="ContextPool"/> for each job. Main thread only; no garbage while atoms move.
     /// </summary>
-    internal sealed partial class SurfaceSession : IDisposable
+    internal sealed partial class SurfaceSession : IUploader, IDisposable
     {
         /// <summary>Milliseconds between two looks at work that a thread waits for.</summary>
         internal const int Pause = 20;
 
         private readonly ISurfaceHost _host;
 
-        // Of the newest atoms, colours and settings.
+        // Of the newest atoms and settings.
         private bool _isTried; // a job was begun, or could not be
         private bool _isStopped; // nothing more will come: it failed, or was cancelled by the user
         private bool _isShown;
-        private bool _isShapeShown; // maybe in other colours
+        private bool _isShapeShown; // of these atoms and settings, be it in other places
         private SurfaceChange _pending; // since the last job began
         private double _lastChange;
 
@@ -64,10 +64,15 @@ namespace QuickSes
         public bool IsOrphan => _host.IsGone;
 
         /// <summary>
-        /// Whether nothing is left to do: the finest surface of the newest atoms is shown, or failed, or was cancelled,
-        /// or there are no atoms.
+        /// Whether nothing is left to do: the finest surface of the newest atoms is shown as they look now, or failed, or
+        /// was cancelled, or there are no atoms.
         /// </summary>
-        public bool IsUpToDate => !Atoms.IsSet || (_slot == null && (_isStopped || IsDone));
+        public bool IsUpToDate => IsComputed && !_host.HasUpload;
+
+        /// <summary>Whether <see cref="Tick"/> has something to wait for.</summary>
+        public bool IsWaiting => !IsUpToDate || (_isHeldReady && !double.IsInfinity(_host.RestDelay));
+
+        private bool IsComputed => !Atoms.IsSet || (_slot == null && !_hasArrival && (_isStopped || IsDone));
 
         private bool IsDone => _isShown && CurrentLevel.IsFinest;
 
@@ -83,6 +88,9 @@ namespace QuickSes
         /// <summary>Once per frame: collects, shows, asks for a context.</summary>
         public void Tick(double now)
         {
+            UploadQueue uploads = SurfaceScheduler.Uploads;
+            uploads.Note(_host.Frame, ref _lastTick);
+            uploads.Run(); // what has waited, also of others
             if (_slot != null)
                 Advance();
             ContextPool pool = SurfaceScheduler.PoolOf(_host.Backend);
@@ -99,6 +107,14 @@ namespace QuickSes
                 Start(_slot); // replaces the job; its coarsest level still comes
             }
             pool.Dispatch();
+            if (_isHeldReady && _slot == null && !_hasArrival && IsDone && now - _lastChange >= _host.RestDelay)
+            {
+                _isHeldReady = false;
+                _host.Rest();
+            }
+            if (_host.HasUpload)
+                uploads.Enqueue(this);
+            uploads.Run();
         }
 
         /// <summary>
@@ -148,7 +164,13 @@ namespace QuickSes
                     if (!goesOn())
                         slot.Context.Cancel();
                 }
+                _begunChange = SurfaceChange.None; // who waits for it wants it for itself
                 Advance();
+                if (_hasArrival)
+                {
+                    SurfaceScheduler.Uploads.Enqueue(this);
+                    SurfaceScheduler.Uploads.RunNow(this);
+                }
             }
             return IsDone && !_isStopped;
         }
@@ -162,14 +184,13 @@ namespace QuickSes
             Fail(true, error);
         }
 
-        /// <summary>Ends the job; what is new meanwhile begins again later.</summary>
+        /// <summary>
+        /// Ends the job, and forgets what it gave and is not shown yet; what is not finished begins again later.
+        /// </summary>
         public void Drop()
         {
-            QueuedAs = QueuePriority.None;
-            if (_slot == null)
-                return;
-            _slot.Context.Cancel();
-            Release(default);
+            EndJob();
+            DropArrival();
         }
 
         /// <summary>Ends the job for good: nothing is computed until something changes.</summary>
@@ -184,6 +205,7 @@ namespace QuickSes
         public void Clear()
         {
             Drop();
+            _isHeldReady = false;
             Outdate(true);
             _pending = SurfaceChange.None;
             Atoms.Clear();
@@ -195,7 +217,7 @@ namespace QuickSes
         /// <summary>After <see cref="Drop"/>: what was not finished begins again.</summary>
         public void Resume()
         {
-            if (!IsUpToDate)
+            if (!IsComputed)
                 BeginAgain(SurfaceChange.Shape);
         }
 
@@ -205,6 +227,7 @@ namespace QuickSes
                 return;
             IsDisposed = true;
             Drop();
+            SurfaceScheduler.Uploads.Remove(this);
             SurfaceScheduler.Remove(this);
             Atoms.Dispose();
             CurrentLevel = default;
@@ -214,9 +237,9 @@ namespace QuickSes
         // What is known of the newest atoms is of older ones from now on.
         private void Outdate(bool isShapeNew)
         {
-            _isTried = _isStopped = _isShown = _isJobOfNewest = false;
+            _isTried = _isStopped = _isShown = _isJobOfNewest = _isArrivalOfNewest = false;
             if (isShapeNew)
-                _isShapeShown = _isJobOfShape = false;
+                _isShapeShown = _isJobOfShape = _isArrivalOfShape = false;
         }
 
         private QueuePriority FindPriority(double now)
@@ -225,7 +248,8 @@ namespace QuickSes
                 return QueuePriority.None;
             if (!_isTried)
                 return QueuePriority.Urgent;
-            return !IsDone && now - _lastChange >= _host.RestDelay ? QueuePriority.Refinement : QueuePriority.None;
+            bool isDone = IsDone || (_isArrivalOfNewest && _arrival.IsFinest);
+            return !isDone && now - _lastChange >= _host.RestDelay ? QueuePriority.Refinement : QueuePriority.None;
         }
 
         private void BeginAgain(SurfaceChange change)

@@ -26,6 +26,9 @@ namespace QuickSes
         private int _memoryBudget;
         [SerializeField, Min(0), Tooltip("Number of the CUDA device, from 0.")]
         private int _device;
+        [SerializeField, Min(0), Tooltip("Milliseconds per frame that all surfaces together may take to be copied into " +
+            "meshes. 0: no limit. What does not fit comes in later frames.")]
+        private float _uploadBudget = 2;
 
         /// <summary>The project's; null: there is none, and the defaults hold. Main thread only.</summary>
         public static QuickSesSettings Find() => Resources.Load<QuickSesSettings>(AssetName);
@@ -37,6 +40,7 @@ namespace QuickSes
             options.Threads = _threads > 0 ? (uint)_threads : SchedulerOptions.DefaultThreads;
             options.MemoryBudget = (ulong)Mathf.Max(_memoryBudget, 0) * BytesPerMegabyte;
             options.Device = Mathf.Max(_device, 0);
+            options.UploadBudget = _uploadBudget >= 0 && !float.IsInfinity(_uploadBudget) ? _uploadBudget : 0;
         }
     }
 
