@@ -129,7 +129,8 @@ qses_status qses_kept_mesh_pick(const qses_kept_mesh *kept, const float origin[3
     check_struct(hit, "qses_hit");
     check_ray(origin, direction);
     if (visible) check_atoms(kept->held, atom_count);
-    write_struct(hit, quickses::pick(kept->held.mesh, origin, direction, visible), "qses_hit");
+    const KeptMesh &held = kept->held;
+    write_struct(hit, quickses::pick(held.mesh, held.boxes, origin, direction, visible), "qses_hit");
   });
 }
 

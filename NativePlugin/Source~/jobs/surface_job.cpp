@@ -203,18 +203,16 @@ int SurfaceJob::slot() {
   return writing_;
 }
 
-void SurfaceJob::finished(const qses_device_mesh &on_device, const qses_mesh &mesh, const qses_report &report) {
+void SurfaceJob::finished(const FinishedMesh &mesh) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     ready_.slot = writing_;
     ready_.mesh = mesh;
-    ready_.report = report;
     ready_.atom_count = atom_count_;
-    ready_.mesh.level = first_level_ + levels_finished_;
-    ready_.mesh.level_count = ladder_count_;
-    ready_.on_device = on_device;
-    ready_.on_device.mesh.level = ready_.mesh.level;
-    ready_.on_device.mesh.level_count = ladder_count_;
+    for (qses_mesh *view : {&ready_.mesh.on_host, &ready_.mesh.on_device.mesh}) {
+      view->level = first_level_ + levels_finished_;
+      view->level_count = ladder_count_;
+    }
     writing_ = kNoSlot;
     state_.levels_finished = ++levels_finished_;
     if (superseded_ || cancelled_) stop_now_ = true;
@@ -229,35 +227,37 @@ bool SurfaceJob::collect(qses_mesh *mesh, qses_report *report) {
   if (ready_.slot == kNoSlot) return false;
   held_ = ready_;
   ready_ = {};
-  if (mesh) *mesh = held_.mesh;
-  if (report) *report = held_.report;
+  if (mesh) *mesh = held_.mesh.on_host;
+  if (report) *report = held_.mesh.report;
   return true;
 }
 
 bool SurfaceJob::held(qses_mesh *mesh, qses_report *report) const {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (held_.slot == kNoSlot) return false;
-  if (mesh) *mesh = held_.mesh;
-  if (report) *report = held_.report;
+  if (mesh) *mesh = held_.mesh.on_host;
+  if (report) *report = held_.mesh.report;
   return true;
 }
 
 bool SurfaceJob::held_on_device(qses_device_mesh *mesh) const {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (held_.slot == kNoSlot) return false;
-  *mesh = held_.on_device;
+  *mesh = held_.mesh.on_device;
   return true;
 }
 
 void SurfaceJob::keep(KeptMesh *kept) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (held_.slot == kNoSlot) throw Error(QSES_NO_RESULT, "nothing has been computed or collected that could be kept");
-  if (held_.mesh.vertex_count > 0 && !held_.mesh.positions)
+  const FinishedMesh &mesh = held_.mesh;
+  if (mesh.on_host.vertex_count > 0 && !mesh.on_host.positions)
     throw Error(QSES_INVALID_ARGUMENT,
                 "the mesh was made with settings.delivery DEVICE: only a mesh in host memory can be kept");
   kept->clear();
-  kept->mesh = held_.mesh;
-  kept->report = held_.report;
+  kept->mesh = mesh.on_host;
+  kept->boxes = mesh.boxes;
+  kept->report = mesh.report;
   kept->atom_count = held_.atom_count;
   kept->memory = engine_->keep(held_.slot);
   kept->is_full = true;

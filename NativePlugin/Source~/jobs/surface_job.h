@@ -65,7 +65,7 @@ class SurfaceJob : private LevelSink {
   // LevelSink, called by the thread that computes.
   void prepared(double milliseconds) override { shared_ms_ = milliseconds; }
   int slot() override;
-  void finished(const qses_device_mesh &on_device, const qses_mesh &mesh, const qses_report &report) override;
+  void finished(const FinishedMesh &mesh) override;
   const std::atomic<bool> &stop_flag() const override { return stop_now_; }
   void advance(double fraction) override;
 
@@ -80,9 +80,7 @@ class SurfaceJob : private LevelSink {
 
   struct Level {
     int slot = kNoSlot;
-    qses_mesh mesh{};
-    qses_device_mesh on_device{};
-    qses_report report{};
+    FinishedMesh mesh{};
     size_t atom_count = 0;
   };
 

@@ -22,6 +22,7 @@ void paint_words(const qses_mesh &mesh, const void *per_atom, uint32_t first, ui
 void KeptMesh::clear() noexcept {
   qses_mesh_init(&mesh);
   qses_report_init(&report);
+  boxes = {};
   atom_count = 0;
   is_full = false;
   memory.give_back();

@@ -4,11 +4,13 @@
 
 #include "quickses/quickses.h"
 #include "surface/mesh/mesh_pool.h"
+#include "surface/mesh/pick_boxes.h"
 
 namespace quickses {
 
 struct KeptMesh {
-  qses_mesh mesh;  // in memory of the lease
+  qses_mesh mesh;  // like the boxes in memory of the lease
+  PickBoxes boxes;
   qses_report report;
   size_t atom_count = 0;
   MeshLease memory;
@@ -33,7 +35,9 @@ void paint(const qses_mesh &mesh, const void *per_atom, size_t value_bytes, uint
 // The triangles of a run that are shown. Returns how many.
 uint32_t filter(const qses_mesh &mesh, VisibleAtoms visible, uint32_t first, uint32_t count, uint32_t *indices);
 
-// The first triangle that a ray meets. The numbers are finite, the direction has a length.
-qses_hit pick(const qses_mesh &mesh, const float origin[3], const float direction[3], VisibleAtoms visible);
+// The first triangle that a ray meets. The numbers are finite, the direction has a length. Without boxes it looks at
+// all triangles.
+qses_hit pick(const qses_mesh &mesh, const PickBoxes &boxes, const float origin[3], const float direction[3],
+              VisibleAtoms visible);
 
 }  // namespace quickses

@@ -6,6 +6,7 @@
 
 #include "surface/stages/packed_normals.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -41,6 +42,37 @@ class Ray {
  private:
   double origin_[3], shear_x_, shear_y_, scale_;
   int x_, y_, z_ = 0;
+};
+
+// The ray against boxes. They are taken a bit larger than they are, by more than what rounding does to the triangles.
+class BoxRay {
+ public:
+  BoxRay(const float origin[3], const float direction[3], const qses_mesh &mesh) {
+    double largest = 0;
+    for (int d = 0; d < 3; ++d) {
+      origin_[d] = static_cast<double>(origin[d]);
+      inverse_[d] = 1.0 / static_cast<double>(direction[d]);
+      for (const float c : {origin[d], mesh.bounds_min[d], mesh.bounds_max[d]})
+        largest = std::max(largest, std::abs(static_cast<double>(c)));
+    }
+    slack_ = 1e-10 * largest;
+  }
+  // Whether the ray is within the box somewhere up to a distance. With a direction of 0 along an axis all is infinite,
+  // as it should be: nowhere is 0 * infinity, since the slack keeps what it would come from apart, or counts as inside.
+  bool meets(const Box &box, double limit) const {
+    double enter = 0, leave = limit * (1 + 1e-9);
+    for (int d = 0; d < 3; ++d) {
+      const double a = (static_cast<double>(box.low[d]) - slack_ - origin_[d]) * inverse_[d],
+                   b = (static_cast<double>(box.high[d]) + slack_ - origin_[d]) * inverse_[d];
+      const double near = a < b ? a : b, far = a < b ? b : a;
+      if (near > enter) enter = near;
+      if (far < leave) leave = far;
+    }
+    return enter <= leave;
+  }
+
+ private:
+  double origin_[3], inverse_[3], slack_;
 };
 
 struct Meeting {
@@ -116,11 +148,27 @@ qses_hit describe(const qses_mesh &mesh, const Meeting &meeting) {
 
 }  // namespace
 
-qses_hit pick(const qses_mesh &mesh, const float origin[3], const float direction[3], VisibleAtoms visible) {
+qses_hit pick(const qses_mesh &mesh, const PickBoxes &boxes, const float origin[3], const float direction[3],
+              VisibleAtoms visible) {
   const Ray ray(origin, direction);
   Meeting nearest;
-  for (uint32_t triangle = 0; triangle < mesh.triangle_count; ++triangle)
-    if (!visible || is_shown(mesh, triangle, visible)) look_at(mesh, triangle, ray, &nearest);
+  const auto look_at_run = [&](size_t first, size_t last) {
+    for (size_t triangle = first; triangle < std::min<size_t>(last, mesh.triangle_count); ++triangle) {
+      const uint32_t number = static_cast<uint32_t>(triangle);
+      if (!visible || is_shown(mesh, number, visible)) look_at(mesh, number, ray, &nearest);
+    }
+  };
+  if (!boxes.runs) {
+    look_at_run(0, mesh.triangle_count);
+    return describe(mesh, nearest);
+  }
+  const BoxRay box_ray(origin, direction, mesh);
+  const size_t runs = PickBoxes::run_count(mesh.triangle_count), groups = PickBoxes::group_count(mesh.triangle_count);
+  for (size_t group = 0; group < groups; ++group) {
+    if (!box_ray.meets(boxes.groups[group], nearest.distance)) continue;
+    for (size_t run = group * kGroupRuns; run < std::min(runs, (group + 1) * kGroupRuns); ++run)
+      if (box_ray.meets(boxes.runs[run], nearest.distance)) look_at_run(run * kRunTriangles, (run + 1) * kRunTriangles);
+  }
   return describe(mesh, nearest);
 }
 

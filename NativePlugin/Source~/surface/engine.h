@@ -6,6 +6,7 @@
 #include "quickses/quickses.h"
 #include "surface/memory/atom_set.h"
 #include "surface/mesh/mesh_pool.h"
+#include "surface/mesh/pick_boxes.h"
 #include "surface/stages/appearance.h"
 
 #include <atomic>
@@ -14,14 +15,21 @@
 
 namespace quickses {
 
+// A mesh as it goes out.
+struct FinishedMesh {
+  qses_mesh on_host;
+  PickBoxes boxes;             // beside it
+  qses_device_mesh on_device;  // empty arrays unless settings.delivery asks for it
+  qses_report report;
+};
+
 // Who receives the levels. Called on the thread that computes.
 class LevelSink {
  public:
   virtual ~LevelSink() = default;
   virtual void prepared(double milliseconds) = 0;  // what all levels share is made; with CUDA: asked for
   virtual int slot() = 0;                          // of the next level
-  // on_device: empty arrays unless settings.delivery asks for it.
-  virtual void finished(const qses_device_mesh &on_device, const qses_mesh &mesh, const qses_report &report) = 0;
+  virtual void finished(const FinishedMesh &mesh) = 0;
   virtual void advance(double fraction) = 0;  // of all levels; never falls
   virtual const std::atomic<bool> &stop_flag() const = 0;
 };

@@ -154,7 +154,8 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     double total = 0, begun = 0;
     for (float h : spacings) total += cost_of(h);
     auto start = std::chrono::steady_clock::now();
-    qses_report report;
+    FinishedMesh out;
+    qses_report &report = out.report;
     auto work = work_of(in, plan, &report);
     if (in.atoms.count > 0) prepare_frame(work, in);
     if (!course->is_prepared) sink.prepared(milliseconds_since(start));
@@ -177,18 +178,16 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
         built = build_level(work);
       }
       timer_.begin("mesh_memory");
-      qses_mesh mesh;
-      qses_device_mesh on_device;
-      memory_.finish(built, in.settings, &mesh, &on_device);
+      memory_.finish(built, in.settings, &out.on_host, &out.boxes, &out.on_device);
       timer_.end();
-      mesh.spacing = on_device.mesh.spacing = spacings[k];
+      out.on_host.spacing = out.on_device.mesh.spacing = spacings[k];
       report.compute_ms = milliseconds_since(start);
       start = std::chrono::steady_clock::now();
       complete(built, &report);
       timer_.reset();
       executor_.arena().rewind(mark);
       progress_.report(1.0);
-      sink.finished(on_device, mesh, report);
+      sink.finished(out);
       course->next = k + 1;
       course->attempts = 1;
     }

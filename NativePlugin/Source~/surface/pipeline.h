@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The whole order on one page: atoms -> neighbour grid -> solvent features, once for all levels; then for each level
-// bricks -> signs -> marching cubes -> projection -> relaxation (methods/), measures, components, visible atoms. Run on
-// a CountingExecutor, it tells what memory that takes.
+// bricks -> signs -> marching cubes -> projection -> relaxation (methods/), measures, components, visible atoms, boxes
+// for picking. Run on a CountingExecutor, it tells what memory that takes.
 #pragma once
 
 #include "surface/levels.h"
@@ -11,6 +11,7 @@
 #include "surface/methods/visible_mask.h"
 #include "surface/stages/atoms.h"
 #include "surface/stages/measure.h"
+#include "surface/stages/pick_boxes.h"
 
 namespace quickses {
 
@@ -85,9 +86,9 @@ void enter_level(Work &work, float spacing) {
   work.lattice = layout_lattice(work.lattice, work.low, work.high, work.parameters.max_radius);
 }
 
-// The mesh of the level, in memory of the arena and of the slots.
+// The mesh of all atoms, measured, and of those that are visible.
 template <class Work>
-MeshMemoryView build_level(Work &work) {
+MeshMemoryView build_surface(Work &work) {
   auto &executor = work.executor;
   MeshMemoryView mesh = work.settings.method == QSES_METHOD_GRID ? build_grid_surface(work) : build_exact_surface(work);
   work.timer.begin("measure");
@@ -110,6 +111,17 @@ MeshMemoryView build_level(Work &work) {
   mesh = drop_hidden(work, mesh);
   mesh.components = components;
   mesh.bounds = find_bounds(executor, mesh.view, MeshCounts{mesh.vertices, mesh.triangles});
+  return mesh;
+}
+
+// The mesh of the level, in memory of the arena and of the slots.
+template <class Work>
+MeshMemoryView build_level(Work &work) {
+  const MeshMemoryView mesh = build_surface(work);
+  if (work.shape.boxes) {
+    work.timer.begin("pick_boxes");
+    fill_pick_boxes(work.executor, mesh.view, mesh.triangles);
+  }
   return mesh;
 }
 

@@ -69,11 +69,10 @@ class StoppingEngine : public quickses::SurfaceEngine {
                quickses::Span<const float> spacings, quickses::LevelSink &sink) override {
     for (size_t k = 0; k < std::min(spacings.size, finish_first); ++k) {
       sink.slot();
-      qses_mesh mesh;
-      qses_report report;
-      qses_mesh_init(&mesh);
-      qses_report_init(&report);
-      sink.finished(qses_device_mesh{}, mesh, report);
+      quickses::FinishedMesh mesh{};
+      qses_mesh_init(&mesh.on_host);
+      qses_report_init(&mesh.report);
+      sink.finished(mesh);
     }
     job->cancel();
     EXPECT_TRUE(sink.stop_flag());

@@ -44,9 +44,11 @@ class MeshMemory<CpuKernelExecutor> {
   void save(CpuKernelExecutor &, const MeshMemoryView &, const MeshView &, size_t, size_t) {}  // never in pieces
 
   void keep_on_device(bool) {}
-  void finish(const MeshMemoryView &built, const qses_settings &settings, qses_mesh *mesh,
+  // Fills in both meshes and the boxes.
+  void finish(const MeshMemoryView &built, const qses_settings &settings, qses_mesh *mesh, PickBoxes *boxes,
               qses_device_mesh *on_device) {
     describe_mesh(built, &built.view, settings, mesh);
+    *boxes = built.view.boxes;
     qses_device_mesh_init(on_device);
     describe_mesh(built, nullptr, settings, &on_device->mesh);
     meshes_.own_components(mesh, &on_device->mesh);

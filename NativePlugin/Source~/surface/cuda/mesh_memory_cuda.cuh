@@ -89,7 +89,7 @@ class MeshMemory<CudaExecutor> {
     });
   }
 
-  void finish(const MeshMemoryView &built, const qses_settings &settings, qses_mesh *mesh,
+  void finish(const MeshMemoryView &built, const qses_settings &settings, qses_mesh *mesh, PickBoxes *boxes,
               qses_device_mesh *on_device) {
     const MeshArrays arrays(built.vertices, built.triangles, built.shape);
     const bool to_host = settings.delivery != QSES_DELIVERY_DEVICE;
@@ -103,6 +103,7 @@ class MeshMemory<CudaExecutor> {
       executor_.wait();
     }
     describe_mesh(built, to_host ? &host : nullptr, settings, mesh);
+    *boxes = host.boxes;
     qses_device_mesh_init(on_device);
     on_device->device = executor_.device();
     on_device->stream = executor_.stream();

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "surface/geometry/types.h"
+#include "surface/mesh/pick_boxes.h"
 
 namespace quickses {
 
@@ -15,6 +16,7 @@ struct MeshView {
   uint32_t *owners = nullptr;   // caller's atom numbers
   uint8_t *patches = nullptr;   // or nullptr
   uint32_t *indices = nullptr;  // three per triangle
+  PickBoxes boxes{};            // of whole meshes only
   bool reversed = false;        // winding
   uint32_t *colors = nullptr;   // bytes red, green, blue, alpha; or nullptr
   float *texcoords = nullptr;   // two numbers, or nullptr

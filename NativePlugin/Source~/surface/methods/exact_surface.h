@@ -94,8 +94,9 @@ struct MeshPart {
   size_t vertices, triangles;
 };
 template <class Executor>
-MeshPart open_part(Executor &executor, const BrickSet &bricks, const MeshLayout &layout, const MeshShape &shape,
+MeshPart open_part(Executor &executor, const BrickSet &bricks, const MeshLayout &layout, MeshShape shape,
                    BrickRange slice) {
+  shape.boxes = false;
   const SliceSizes sizes = slice_sizes(executor, bricks, layout, slice.first, slice.last);
   MeshPart part{{}, sizes.vertices, sizes.triangles};
   const MeshArrays arrays(part.vertices, part.triangles, shape);
