@@ -17,6 +17,7 @@ constexpr uint32_t kFramesOfTrust = 64;  // after so many frames that fit, failu
 // How fast the work grows with the number of lattice points along an edge. The exact method looks at points near the
 // surface; the grid method, from each of them, at those within a probe radius.
 double growth(qses_method method) { return method == QSES_METHOD_GRID ? 4 : 2; }
+constexpr double kGrowthOfMesh = 2;
 
 }  // namespace
 
@@ -37,11 +38,12 @@ void LevelChooser::Level::add(double cost_ms, double shared_ms) {
 
 double LevelChooser::expected_cost(uint32_t level) const {
   const Level &asked = levels_[level];
-  if (asked.known()) return asked.cost;
+  if (asked.known()) return asked.cost + show_cost(asked.bytes);
   const auto scaled = [&](uint32_t from) {
     const double ratio = static_cast<double>(subject_.ladder.spacings[from] / subject_.ladder.spacings[level]);
     return levels_[from].shared +
-           (levels_[from].cost - levels_[from].shared) * std::pow(ratio, growth(subject_.method));
+           (levels_[from].cost - levels_[from].shared) * std::pow(ratio, growth(subject_.method)) +
+           show_cost(levels_[from].bytes) * std::pow(ratio, kGrowthOfMesh);
   };
   for (uint32_t k = level; k-- > 0;)
     if (levels_[k].known()) return scaled(k);
@@ -50,7 +52,7 @@ double LevelChooser::expected_cost(uint32_t level) const {
   return std::numeric_limits<double>::infinity();
 }
 
-uint32_t LevelChooser::choose(const Subject &subject, double budget_ms) {
+uint32_t LevelChooser::choose(const Subject &subject, double budget_ms, double show_ms_per_mb) {
   if (!(subject == subject_)) {
     *this = LevelChooser();
     subject_ = subject;
@@ -59,6 +61,7 @@ uint32_t LevelChooser::choose(const Subject &subject, double budget_ms) {
     budget_ms_ = budget_ms;
     for (Level &level : levels_) level.failures = level.wait = 0;
   }
+  show_ms_per_mb_ = show_ms_per_mb;
   for (Level &level : levels_)
     if (level.wait > 0) --level.wait;
 
@@ -70,25 +73,27 @@ uint32_t LevelChooser::choose(const Subject &subject, double budget_ms) {
   const Level &present = levels_[current_];
   const uint32_t next = current_ + 1;
   if (chosen == current_ && next < subject_.ladder.count && present.frames >= 2 &&
-      present.cost <= kRoomToTry * budget_ms_ && levels_[next].wait == 0)
+      expected_cost(current_) <= kRoomToTry * budget_ms_ && levels_[next].wait == 0)
     chosen = next;
   if (chosen != current_) levels_[chosen].frames = 0;
   current_ = chosen;
   return chosen;
 }
 
-void LevelChooser::record(double cost_ms, double shared_ms) {
+void LevelChooser::record(double cost_ms, double shared_ms, double bytes) {
   Level &level = levels_[current_];
-  const double before = level.cost;
+  const double before = level.cost, bytes_before = level.bytes;
   const bool settled = level.frames >= 3;
   level.add(cost_ms, shared_ms);
+  level.bytes = bytes;
   if (settled && before > 0)
     for (Level &other : levels_)
       if (&other != &level && other.known()) {
         other.cost *= level.cost / before;
         other.shared *= level.cost / before;
+        if (bytes_before > 0) other.bytes *= bytes / bytes_before;
       }
-  if (level.cost > budget_ms_)
+  if (level.cost + show_cost(level.bytes) > budget_ms_)
     retreat(level);
   else if (level.frames >= kFramesOfTrust)
     level.failures = 0;
@@ -97,7 +102,7 @@ void LevelChooser::record(double cost_ms, double shared_ms) {
 void LevelChooser::record_failure() {
   Level &level = levels_[current_];
   level.cost = std::numeric_limits<double>::max();
-  level.shared = 0;
+  level.shared = level.bytes = 0;
   level.frames = 0;
   retreat(level);
 }

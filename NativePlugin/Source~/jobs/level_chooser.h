@@ -12,10 +12,12 @@
 namespace quickses {
 
 // The rules:
+//  - A cost is that of computing and that of showing: the latter by the bytes of the mesh, which the caller names.
 //  - The first frame is the coarsest level; then the finest one that is expected to fit.
 //  - The cost of a level in use is the median of its last three frames, so that one slow frame changes nothing.
 //  - A finer level that was never computed costs at most (ratio of spacings)² of what a coarser one did, or to the
-//    fourth power with the grid method, apart from what all levels share. Where this is too pessimistic (on a GPU,
+//    fourth power with the grid method, apart from what all levels share; its mesh has (ratio of spacings)² of the
+//    bytes. Where this is too pessimistic (on a GPU,
 //    coarse levels cost as much as fine ones), the next finer level is tried when the present one leaves half of the
 //    budget unused.
 //  - Costs of levels not in use follow the one in use: when its frames become cheaper, so do theirs.
@@ -36,10 +38,11 @@ class LevelChooser {
   };
 
   // The level for the next frame: its place in the ladder, which must not be empty.
-  uint32_t choose(const Subject &subject, double budget_ms);
+  uint32_t choose(const Subject &subject, double budget_ms, double show_ms_per_mb = 0);
 
-  // What the frame of the level chosen last cost, and how much of that is the same for all levels.
-  void record(double cost_ms, double shared_ms);
+  // What it cost to compute the frame of the level chosen last, how much of that is the same for all levels, and the
+  // bytes of its mesh.
+  void record(double cost_ms, double shared_ms, double bytes = 0);
   // That level could not be computed.
   void record_failure();
 
@@ -47,8 +50,9 @@ class LevelChooser {
   struct Level {
     double recent[3] = {};  // of this stay at the level, newest last
     uint32_t frames = 0;    // of this stay
-    double cost = -1;       // what it is expected to cost; negative: unknown
+    double cost = -1;       // what it is expected to cost to compute; negative: unknown
     double shared = 0;      // of that
+    double bytes = 0;       // of the mesh, where the cost is known
     uint32_t failures = 0;  // times it was too expensive
     uint32_t wait = 0;      // frames until it may be tried again
 
@@ -56,11 +60,12 @@ class LevelChooser {
     void add(double cost_ms, double shared_ms);
   };
 
+  double show_cost(double bytes) const { return show_ms_per_mb_ * 1e-6 * bytes; }
   double expected_cost(uint32_t level) const;
   void retreat(Level &level);
 
   Subject subject_;
-  double budget_ms_ = 0;
+  double budget_ms_ = 0, show_ms_per_mb_ = 0;
   uint32_t current_ = 0;
   Level levels_[Levels::kMax];
 };

@@ -75,7 +75,7 @@ void SurfaceJob::choose_levels(const SurfaceRequest &request) {
   const LevelChooser::Subject subject = {request.atoms->count, s.surface,    s.method,      s.probe_radius,
                                          s.relaxation_steps,   s.slice_size, request.ladder};
   chooser_ = &choosers_.of(s.series);
-  first_level_ = chooser_->choose(subject, request.frame_budget_ms);
+  first_level_ = chooser_->choose(subject, request.frame_budget_ms, static_cast<double>(s.show_ms_per_mb));
 }
 
 void SurfaceJob::work() {
@@ -131,7 +131,8 @@ void SurfaceJob::run(const SurfaceRequest &request) {
     if (chooser_) chooser_->record_failure();
     throw;
   }
-  if (chooser_) chooser_->record(std::chrono::duration<double, std::milli>(Clock::now() - start).count(), shared_ms_);
+  if (chooser_)
+    chooser_->record(std::chrono::duration<double, std::milli>(Clock::now() - start).count(), shared_ms_, mesh_bytes_);
 }
 
 std::unique_lock<std::mutex> SurfaceJob::wait_for_turn() {
@@ -198,7 +199,11 @@ qses_size_estimate SurfaceJob::estimate(const SurfaceRequest &request) {
 
 int SurfaceJob::slot() {
   const std::lock_guard<std::mutex> lock(mutex_);
-  for (writing_ = 0; writing_ == held_.slot || writing_ == ready_.slot; ++writing_) {
+  writing_ = kNoSlot;
+  for (int slot = kMeshSlots; slot-- > 0;) {
+    if (slot == held_.slot || slot == ready_.slot) continue;
+    engine_->keep(slot).give_back();  // nobody wants it any more: the next level may have its memory
+    writing_ = slot;
   }
   return writing_;
 }
@@ -209,6 +214,7 @@ void SurfaceJob::finished(const FinishedMesh &mesh) {
     ready_.slot = writing_;
     ready_.mesh = mesh;
     ready_.atom_count = atom_count_;
+    mesh_bytes_ = static_cast<double>(mesh.report.mesh_bytes);
     for (qses_mesh *view : {&ready_.mesh.on_host, &ready_.mesh.on_device.mesh}) {
       view->level = first_level_ + levels_finished_;
       view->level_count = ladder_count_;

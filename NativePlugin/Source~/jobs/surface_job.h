@@ -96,7 +96,7 @@ class SurfaceJob : private LevelSink {
   SeriesChoosers choosers_;                         // like the next two: of the thread that computes
   LevelChooser *chooser_ = nullptr;                 // of the job's series; null without a frame budget
   size_t atom_count_ = 0;                           // of the job
-  double shared_ms_ = 0;                            // of the job's cost, what all levels share
+  double shared_ms_ = 0, mesh_bytes_ = 0;           // of the job's cost, what all levels share; of its last mesh
   Level held_, ready_;
   int writing_ = kNoSlot;
   qses_progress state_{};

@@ -352,11 +352,12 @@ typedef struct qses_settings {
                              The QSES_REMEMBERED_SERIES that were used last are remembered; an older one begins anew */
   qses_delivery delivery; /* where the mesh is wanted; default HOST. Anything else needs CUDA. A mesh that is wanted on
                              the device does not leave it in pieces where memory is short: that is OUT_OF_MEMORY */
-  float show_ms_per_mb;   /* 0 to 60000; default 0: ms that it takes the caller to show 10^6 bytes of the mesh (its
-                             copies to a graphics API, for instance). frame_budget_ms then covers computing and showing
-                             together */
-  qses_bool pickable;     /* 1: the mesh comes with what makes qses_kept_mesh_pick fast, below 1 % more of time and
-                             memory; default 0. Not with delivery DEVICE, where it is ignored */
+  float show_ms_per_mb;   /* 0 to 60000; default 0: ms that it takes the caller to show 10^6 bytes of the mesh, as
+                             qses_report.mesh_bytes counts them (its copies to a graphics API, for instance).
+                             frame_budget_ms then covers computing and showing together. May change from frame to frame
+                             as it is measured */
+  qses_bool pickable;     /* 1: the mesh comes with what makes qses_kept_mesh_pick fast: 1 % more memory, and up to
+                             3 % more time on the CPU; default 0. Ignored with delivery DEVICE */
 } qses_settings;
 
 /* The defaults, with struct_size set. NULL is ignored. */

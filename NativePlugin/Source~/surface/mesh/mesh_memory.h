@@ -9,10 +9,6 @@
 
 namespace quickses {
 
-// Meshes are made in numbered slots. With three of them one can be written while another one waits to be collected and
-// the caller still reads the third.
-constexpr int kMeshSlots = 3;
-
 struct Bounds {
   float min[3], max[3];  // Å, caller's coordinates; all 0 for an empty mesh
 };
@@ -83,11 +79,7 @@ class MeshLeases {
   MeshLeases(const MeshLeases &) = delete;
   MeshLeases &operator=(const MeshLeases &) = delete;
 
-  // A mesh will be made in it: what it held is given back.
-  void use_slot(int slot) {
-    slot_ = slot;
-    leases_[slot].give_back();
-  }
+  void use_slot(int slot) { slot_ = slot; }
   void *reserve(size_t bytes) {
     leases_[slot_].give_back();
     leases_[slot_] = MeshLease(pool_, bytes);
