@@ -143,21 +143,24 @@ qses_status qses_context_create(const qses_context_options *options, qses_contex
     check_backend(o.backend);
     if (o.threads > 4096) invalid("options.threads is " + std::to_string(o.threads) + ": at most 4096");
     quickses::stay_loaded();  // contexts leave threads behind
+    const bool in_background = o.background != 0;
+    const quickses::WorkerThreads threads(o.threads, in_background);
     auto made = std::make_unique<qses_context>();
     made->backend = choose_backend(o.backend, o.device, &made->description);
     if (!made->description.available)
       throw quickses::Error(QSES_BACKEND_UNAVAILABLE, std::string("CUDA can't be used: ") + made->description.reason);
 #if defined(QUICKSES_HAS_CUDA)
     if (made->backend == QSES_BACKEND_CUDA) {
-      made->job =
-          std::make_unique<quickses::SurfaceJob>(quickses::make_cuda_engine(o.device, o.threads, o.memory_budget));
+      made->job = std::make_unique<quickses::SurfaceJob>(quickses::make_cuda_engine(o.device, threads, o.memory_budget),
+                                                         in_background);
       // Another context may have been loading the kernels when this one looked.
       made->description.preparing = 0;
       made->description.reason[0] = 0;
     }
 #endif
     if (!made->job)
-      made->job = std::make_unique<quickses::SurfaceJob>(quickses::make_cpu_engine(o.threads, o.memory_budget));
+      made->job =
+          std::make_unique<quickses::SurfaceJob>(quickses::make_cpu_engine(threads, o.memory_budget), in_background);
     *context = made.release();
   });
 }

@@ -12,7 +12,8 @@
 
 namespace quickses {
 
-SurfaceJob::SurfaceJob(std::unique_ptr<SurfaceEngine> engine) : engine_(std::move(engine)) {
+SurfaceJob::SurfaceJob(std::unique_ptr<SurfaceEngine> engine, bool in_background)
+    : engine_(std::move(engine)), in_background_(in_background) {
   qses_progress_init(&state_);
 }
 
@@ -80,6 +81,7 @@ void SurfaceJob::choose_levels(const SurfaceRequest &request) {
 
 void SurfaceJob::work() {
   const FloatScope floats;
+  stand_back(in_background_);
   std::unique_lock<std::mutex> lock(mutex_);
   for (;;) {
     changed_.wait(lock, [&] { return quit_ || !waiting_.empty(); });

@@ -30,7 +30,8 @@ struct SurfaceRequest {
 
 class SurfaceJob : private LevelSink {
  public:
-  explicit SurfaceJob(std::unique_ptr<SurfaceEngine> engine);
+  // in_background: its thread stands back behind others.
+  explicit SurfaceJob(std::unique_ptr<SurfaceEngine> engine, bool in_background = false);
   ~SurfaceJob() override;  // cancels and joins
   SurfaceJob(const SurfaceJob &) = delete;
   SurfaceJob &operator=(const SurfaceJob &) = delete;
@@ -85,6 +86,7 @@ class SurfaceJob : private LevelSink {
   };
 
   std::unique_ptr<SurfaceEngine> engine_;
+  const bool in_background_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   SurfaceRequest waiting_;

@@ -46,7 +46,7 @@ class CpuExecutor {
     CpuExecutor &executor_;
   };
 
-  explicit CpuExecutor(unsigned threads) : threads_(threads) {}
+  explicit CpuExecutor(const WorkerThreads &threads) : threads_(threads) {}
 
   unsigned threads() const { return threads_.count(); }
   Arena<HostMemory> &arena() { return arena_; }

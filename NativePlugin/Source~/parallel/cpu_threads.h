@@ -4,6 +4,7 @@
 #pragma once
 
 #include "parallel/startable_threads.h"
+#include "parallel/worker_threads.h"
 
 #if defined(QSES_CPU_SYSTEM_OMP)
 #include <omp.h>
@@ -25,8 +26,9 @@ namespace quickses {
 
 class CpuThreads {
  public:
-  // 0: one per hardware thread.
-  explicit CpuThreads(unsigned count) : count_(count ? count : std::max(1u, std::thread::hardware_concurrency())) {}
+  explicit CpuThreads(const WorkerThreads &threads)
+      : count_(threads.count ? threads.count : std::max(1u, std::thread::hardware_concurrency())),
+        in_background_(threads.in_background) {}
 
   unsigned count() const { return count_; }
 
@@ -48,21 +50,26 @@ class CpuThreads {
     return usable_ == 1 ? 1 : count_;
   }
 
-  // work(worker) for all workers, by the threads of the parallel system. False if that had none to give after all: what
-  // was left undone is then to be done by the caller.
+  // work(worker) for all workers, by the calling thread and those of the parallel system. False if that had none to
+  // give after all: what was left undone is then to be done by the caller.
   template <class Work>
   bool run(size_t workers, const Work &work) {
     const thrust::counting_iterator<size_t> first(0), last(workers);
+    const std::thread::id caller = std::this_thread::get_id();
+    const auto work_as_told = [&](size_t worker) {
+      if (std::this_thread::get_id() != caller) stand_back(in_background_);
+      work(worker);
+    };
 #if defined(QSES_CPU_SYSTEM_OMP)
     const struct Restore {
       int threads = omp_get_max_threads();
       ~Restore() { omp_set_num_threads(threads); }
     } restore;
     omp_set_num_threads(static_cast<int>(usable_));
-    thrust::for_each(thrust::omp::par, first, last, work);
+    thrust::for_each(thrust::omp::par, first, last, work_as_told);
 #else
     try {
-      arena_.execute([&] { thrust::for_each(thrust::tbb::par, first, last, work); });
+      arena_.execute([&] { thrust::for_each(thrust::tbb::par, first, last, work_as_told); });
     } catch (const std::exception &) {
       usable_ = 1;
       return false;
@@ -73,6 +80,7 @@ class CpuThreads {
 
  private:
   unsigned count_;
+  bool in_background_;
   unsigned usable_ = 0;  // of them; 0: not known yet
 #if !defined(QSES_CPU_SYSTEM_OMP)
   tbb::task_arena arena_;

@@ -7,7 +7,7 @@
 
 namespace quickses {
 
-std::unique_ptr<SurfaceEngine> make_cpu_engine(unsigned threads, uint64_t memory_budget) {
+std::unique_ptr<SurfaceEngine> make_cpu_engine(const WorkerThreads &threads, uint64_t memory_budget) {
   return std::make_unique<LadderEngine<CpuKernelExecutor, CpuStageTimer>>(memory_budget, threads, threads);
 }
 

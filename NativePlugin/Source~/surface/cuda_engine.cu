@@ -13,7 +13,7 @@ __global__ void engine_kernel() {}
 
 }  // namespace
 
-std::unique_ptr<SurfaceEngine> make_cuda_engine(int device, unsigned threads, uint64_t memory_budget) {
+std::unique_ptr<SurfaceEngine> make_cuda_engine(int device, const WorkerThreads &threads, uint64_t memory_budget) {
   load_cuda_kernels(device, reinterpret_cast<const void *>(&engine_kernel));
   return std::make_unique<LadderEngine<CudaExecutor, CudaStageTimer>>(memory_budget, threads, device);
 }

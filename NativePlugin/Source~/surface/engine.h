@@ -3,6 +3,7 @@
 // (memory_ladder.h).
 #pragma once
 
+#include "parallel/worker_threads.h"
 #include "quickses/quickses.h"
 #include "surface/memory/atom_set.h"
 #include "surface/mesh/mesh_pool.h"
@@ -59,11 +60,10 @@ class SurfaceEngine {
   virtual void set_progress(std::function<void(double)> progress) = 0;
 };
 
-// Budgets in bytes, 0 for none; then work beyond what is free when a computation starts is refused. threads: of the
-// CPU, 0 for one per hardware thread.
-std::unique_ptr<SurfaceEngine> make_cpu_engine(unsigned threads, uint64_t memory_budget);
+// Budgets in bytes, 0 for none; then work beyond what is free when a computation starts is refused.
+std::unique_ptr<SurfaceEngine> make_cpu_engine(const WorkerThreads &threads, uint64_t memory_budget);
 #if defined(QUICKSES_HAS_CUDA)
-std::unique_ptr<SurfaceEngine> make_cuda_engine(int device, unsigned threads, uint64_t memory_budget);
+std::unique_ptr<SurfaceEngine> make_cuda_engine(int device, const WorkerThreads &threads, uint64_t memory_budget);
 #endif
 
 }  // namespace quickses

@@ -20,9 +20,9 @@ struct NoTimer {
 template <class Executor, class Timer>
 class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
  public:
-  // memory_budget: bytes, 0 for none. threads: of the CPU, for what is left to it.
+  // memory_budget: bytes, 0 for none. threads: for what is left to the CPU.
   template <class... Arguments>
-  LadderEngine(uint64_t memory_budget, unsigned threads, Arguments &&...arguments)
+  LadderEngine(uint64_t memory_budget, const WorkerThreads &threads, Arguments &&...arguments)
       : executor_(std::forward<Arguments>(arguments)...),
         timer_(executor_),
         memory_(executor_),

@@ -221,8 +221,11 @@ typedef struct qses_context_options {
                              the work; the mesh that is handed out comes on top (qses_report.mesh_bytes). The mesh is
                              the same byte for byte; only the time grows. qses_estimate tells what is needed. The
                              first computation takes the budget in one piece, however small the surface */
-  qses_bool background;   /* 1: threads that compute stand back behind others of normal priority, and so do kernels of
-                             the GPU; a caller of qses_compute or qses_estimate lends its thread as it is. Default 0 */
+  qses_bool background;   /* 1: threads of the library that compute stand back behind those of normal priority (Windows:
+                             below normal; Linux: 10 nicer, so a busy thread beside them loses a tenth at most); a
+                             caller lends its thread as it is. Kernels of the GPU have the lowest priority in any case.
+                             Contexts on the CPU share threads: on Linux, where priorities can't be raised again, those
+                             of a process that have 0 (default) are slowed down by busy programs too once one has 1 */
   uint32_t reserved;      /* 0 */
 } qses_context_options;
 

@@ -9,7 +9,7 @@ namespace quickses {
 
 class CpuKernelExecutor : public CpuExecutor {
  public:
-  explicit CpuKernelExecutor(unsigned threads, const CpuKernels &kernels = cpu_kernels())
+  explicit CpuKernelExecutor(const WorkerThreads &threads, const CpuKernels &kernels = cpu_kernels())
       : CpuExecutor(threads), kernels_(&kernels) {}
 
   const CpuKernels &kernels() const { return *kernels_; }

@@ -215,8 +215,8 @@ Span<const qses_component> find_components(Executor &executor, const MeshView &m
 // CPU's threads. The numbers are the same.
 class ComponentFinder {
  public:
-  // threads: of the CPU, 0 for all; used only for meshes that left the device.
-  explicit ComponentFinder(unsigned threads) : on_host_(threads) {}
+  // threads: used only for meshes that left the device.
+  explicit ComponentFinder(const WorkerThreads &threads) : on_host_(threads) {}
   template <class Executor>
   Span<const qses_component> find(Executor &executor, const MeshMemoryView &mesh, float spacing) {
     const MeshCounts counts{mesh.vertices, mesh.triangles};

@@ -7,7 +7,7 @@
 
 namespace quickses {
 
-HostComponents::HostComponents(unsigned threads) : threads_(threads) {}
+HostComponents::HostComponents(const WorkerThreads &threads) : threads_(threads) {}
 HostComponents::~HostComponents() = default;
 
 Span<const qses_component> HostComponents::find(const MeshView &mesh, const MeshCounts &counts, float spacing,

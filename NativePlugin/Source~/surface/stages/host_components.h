@@ -2,6 +2,7 @@
 // The components of a mesh in host memory, found by the CPU's threads: for meshes that did not fit on the GPU.
 #pragma once
 
+#include "parallel/worker_threads.h"
 #include "surface/mesh/mesh_view.h"
 
 #include "quickses/quickses.h"
@@ -16,7 +17,7 @@ struct MeshCounts;
 
 class HostComponents {
  public:
-  explicit HostComponents(unsigned threads);
+  explicit HostComponents(const WorkerThreads &threads);
   ~HostComponents();
 
   // As find_components. Its threads and its work memory stay for the next call.
@@ -25,7 +26,7 @@ class HostComponents {
   uint64_t bytes() const;  // of work memory
 
  private:
-  unsigned threads_;
+  WorkerThreads threads_;
   std::unique_ptr<CpuExecutor> executor_;
 };
 

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+// Which threads compute, and how they stand to those of the program around the library.
+#pragma once
+
+namespace quickses {
+
+struct WorkerThreads {
+  WorkerThreads(unsigned count_, bool in_background_ = false) : count(count_), in_background(in_background_) {}
+  unsigned count;      // with the one that calls; 0: one per hardware thread
+  bool in_background;  // those that are the library's stand back behind threads of normal priority
+};
+
+// From now on the calling thread, one of the library's, stands back, or does not any more. Nearly free where nothing
+// changes. Linux lets nobody without the right to it raise a priority: there a thread that stood back once does so for
+// good. Never fails loudly.
+void stand_back(bool in_background) noexcept;
+
+}  // namespace quickses
