@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A fault of the GPU ends CUDA for the process. What the header promises then: contexts with CUDA say so again and
-// again, their last meshes stay, they can be destroyed, and contexts on the CPU live on. Each fault has a process of
-// its own.
+// again, their last meshes stay and can be kept, they can be destroyed, and contexts on the CPU live on. Each fault has
+// a process of its own.
 #include "capi/capi_fixture.h"
 
 #include "parallel/cuda_memory.h"
@@ -10,6 +10,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <thread>
 
 namespace {
 
@@ -89,6 +90,9 @@ void check_new_contexts() {
     DEMAND(qses_compute(*context, nullptr, nullptr) == QSES_OK);
   }
   const Surface before = copy_surface(first), on_cpu = copy_surface(cpu);
+  qses_kept_mesh *kept[2] = {};
+  for (qses_kept_mesh *&one : kept) DEMAND(qses_kept_mesh_create(&one) == QSES_OK);
+  DEMAND(qses_keep(second, kept[0]) == QSES_OK);
 
   cause();
   DEMAND(cudaStreamSynchronize(nullptr) != cudaSuccess);
@@ -101,7 +105,14 @@ void check_new_contexts() {
   DEMAND(after.mesh.positions == before.mesh.positions && after.mesh.indices == before.mesh.indices);
   DEMAND(qses_compute(cpu, nullptr, nullptr) == QSES_OK);
   DEMAND(copy_surface(cpu).mesh.positions == on_cpu.mesh.positions);
+  DEMAND(qses_keep(first, kept[1]) == QSES_OK);
   for (qses_context *context : {first, second, cpu}) qses_context_destroy(context);
+  for (qses_kept_mesh *one : kept) {
+    qses_mesh mesh = empty_mesh();
+    DEMAND(qses_kept_mesh_view(one, &mesh) == QSES_OK && mesh.vertex_count == before.vertex_count());
+    DEMAND(std::memcmp(mesh.positions, before.mesh.positions.data(), 12 * size_t(mesh.vertex_count)) == 0);
+    std::thread([one] { qses_kept_mesh_destroy(one); }).join();
+  }
   std::exit(0);
 }
 

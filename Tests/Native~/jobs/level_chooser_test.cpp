@@ -200,6 +200,71 @@ TEST(LevelChooser, ABudgetThatGrowsIsUsed) {
   EXPECT_EQ(run(chooser, s, 2.6, 10, costs_of(s, 1, 1)).back(), 1u);
 }
 
+// ---- what it costs to show a mesh
+
+constexpr double kBytesAtOneAngstrom = 1e6;
+
+// Frames with meshes of so many bytes as the spacing makes them.
+std::vector<uint32_t> run_and_show(LevelChooser &chooser, const LevelChooser::Subject &s, double budget,
+                                   const std::function<double(int frame)> &show_ms_per_mb, int frames,
+                                   double size = kBytesAtOneAngstrom) {
+  const auto cost = costs_of(s, 1, 1);
+  std::vector<uint32_t> levels;
+  for (int k = 0; k < frames; ++k) {
+    levels.push_back(chooser.choose(s, budget, show_ms_per_mb(k)));
+    const double h = static_cast<double>(s.ladder.spacings[levels.back()]);
+    const Cost c = cost(levels.back(), k);
+    chooser.record(c.whole, c.shared, size / (h * h));
+  }
+  return levels;
+}
+
+TEST(LevelChooser, ShowingCountsInTheBudget) {
+  const auto s = subject();
+  // 1.25, 2, 5, 17 ms to compute; 0.25, 1, 4, 16 MB to show.
+  struct Case {
+    double budget, show_ms_per_mb;
+    uint32_t level;
+  };
+  for (const Case &c : {Case{22, 0, 3}, {22, 1, 2}, {22, 4, 2}, {22, 10, 1}, {22, 60, 0}, {45, 1, 3}, {1, 1000, 0}}) {
+    LevelChooser chooser;
+    const auto levels = run_and_show(
+        chooser, s, c.budget, [&](int) { return c.show_ms_per_mb; }, 20);
+    EXPECT_EQ(levels.front(), 0u);
+    EXPECT_EQ(levels.back(), c.level) << c.budget << " ms with " << c.show_ms_per_mb << " ms per MB";
+  }
+}
+
+TEST(LevelChooser, ShowingIsForeseen) {
+  const auto s = subject();
+  // The law is exact here and no level leaves half of the budget unused: none is tried that can't be shown in time.
+  LevelChooser chooser;
+  for (uint32_t level : run_and_show(
+           chooser, s, 9.5, [](int) { return 1.0; }, 1000))
+    EXPECT_LE(level, 2u);
+}
+
+TEST(LevelChooser, FollowsWhatShowingTurnsOutToCost) {
+  const auto s = subject();
+  LevelChooser chooser;
+  const auto levels = run_and_show(
+      chooser, s, 22, [](int frame) { return frame < 50    ? 0.0
+                                             : frame < 100 ? 3.0
+                                                           : 0.1; }, 300);
+  EXPECT_EQ(levels[49], 3u);
+  for (size_t k = 51; k < 100; ++k) EXPECT_EQ(levels[k], 2u);
+  EXPECT_EQ(levels.back(), 3u);
+}
+
+TEST(LevelChooser, LargerMeshesMakeAllLevelsDearer) {
+  const auto s = subject();
+  LevelChooser chooser;
+  const auto rate = [](int) { return 1.0; };
+  EXPECT_EQ(run_and_show(chooser, s, 45, rate, 20).back(), 3u);
+  EXPECT_EQ(run_and_show(chooser, s, 45, rate, 20, 5 * kBytesAtOneAngstrom).back(), 2u);
+  EXPECT_EQ(run_and_show(chooser, s, 45, rate, 200).back(), 3u);
+}
+
 // ---- series
 
 // A chooser that has found out that everything fits.

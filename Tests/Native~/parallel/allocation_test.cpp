@@ -294,6 +294,40 @@ TEST(Allocations, NoneWithManyAtoms) {
       8);
 }
 
+// Meshes that are shown while the next ones are made, as a viewer keeps them: one that is shown, one that arrives.
+TEST(Allocations, NoneInAThousandFramesThatAreKept) {
+  const Context context;
+  const Atoms atoms = crambin();
+  set_atoms(context, atoms);
+  qses_kept_mesh *kept[2] = {};
+  for (qses_kept_mesh *&one : kept) expect_ok(qses_kept_mesh_create(&one));
+  qses_settings s = settings(1.0);
+  s.components = s.pickable = 1;
+  s.level_count = 1;
+  std::vector<uint32_t> values(atoms.size(), 1), painted;
+  int frame = 0;
+  uint64_t vertices = 0;
+  expect_no_allocation(
+      atoms,
+      [&](const std::vector<float> &positions) {
+        set_positions(context, positions);
+        const uint32_t count = begin_and_collect(context, s).vertex_count;
+        qses_kept_mesh *const next = kept[frame++ % 2];
+        expect_ok(qses_keep(context, next));
+        if (painted.empty()) painted.resize(2 * count);
+        expect_ok(qses_kept_mesh_paint(next, values.data(), 4, atoms.size(), 0, count, painted.data()));
+        const float origin[3] = {-100, 10, 6}, direction[3] = {1, 0, 0};
+        qses_hit hit;
+        qses_hit_init(&hit);
+        expect_ok(qses_kept_mesh_pick(next, origin, direction, nullptr, 0, &hit));
+        vertices += hit.found ? count : 0;
+        if (frame % 10 == 0) qses_kept_mesh_clear(next);
+      },
+      1000);
+  for (qses_kept_mesh *one : kept) qses_kept_mesh_destroy(one);
+  EXPECT_GT(vertices, 0u);
+}
+
 TEST(Allocations, NoneOnOneThread) {
   const Context context(1);
   const Atoms atoms = cluster(1000, 3);
