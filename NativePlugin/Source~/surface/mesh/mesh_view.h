@@ -16,7 +16,6 @@ struct MeshView {
   uint32_t *owners = nullptr;   // caller's atom numbers
   uint8_t *patches = nullptr;   // or nullptr
   uint32_t *indices = nullptr;  // three per triangle
-  PickBoxes boxes{};            // of whole meshes only
   bool reversed = false;        // winding
   uint32_t *colors = nullptr;   // bytes red, green, blue, alpha; or nullptr
   float *texcoords = nullptr;   // two numbers, or nullptr
@@ -25,6 +24,7 @@ struct MeshView {
   bool packed_normals = false;  // behind each position is the normal in four bytes (stages/packed_normals.h)
   uint32_t first_vertex = 0;    // what the arrays begin with
   uint32_t first_triangle = 0;
+  PickBoxes boxes{};  // of whole meshes only
 
   QSES_FN size_t place(uint32_t vertex) const { return vertex - first_vertex; }
   QSES_FN float *position(uint32_t vertex) const { return attribute(positions, vertex_bytes, vertex); }
