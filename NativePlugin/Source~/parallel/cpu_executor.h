@@ -18,6 +18,7 @@
 #include <exception>
 #include <map>
 #include <memory>
+#include <thread>
 #include <typeindex>
 #include <utility>
 #include <vector>
@@ -345,10 +346,12 @@ class CpuExecutor {
     // system lets exceptions out.
     std::exception_ptr thrown;
     std::atomic<bool> failed{false};
+    const std::thread::id caller = std::this_thread::get_id();
     const auto work = [&](size_t worker) {
       const WorkScope scope(stop_);
       try {
         for (size_t c; !failed && (c = next.fetch_add(1, std::memory_order_acquire)) < chunks;) {
+          if (std::this_thread::get_id() != caller) stand_back(threads_.in_background());
           look_for_stop();
           body(worker, c);
         }

@@ -31,6 +31,7 @@ class CpuThreads {
         in_background_(threads.in_background) {}
 
   unsigned count() const { return count_; }
+  bool in_background() const { return in_background_; }
 
   // How many there are to work. The first call finds out.
   unsigned usable() {
@@ -55,21 +56,16 @@ class CpuThreads {
   template <class Work>
   bool run(size_t workers, const Work &work) {
     const thrust::counting_iterator<size_t> first(0), last(workers);
-    const std::thread::id caller = std::this_thread::get_id();
-    const auto work_as_told = [&](size_t worker) {
-      if (std::this_thread::get_id() != caller) stand_back(in_background_);
-      work(worker);
-    };
 #if defined(QSES_CPU_SYSTEM_OMP)
     const struct Restore {
       int threads = omp_get_max_threads();
       ~Restore() { omp_set_num_threads(threads); }
     } restore;
     omp_set_num_threads(static_cast<int>(usable_));
-    thrust::for_each(thrust::omp::par, first, last, work_as_told);
+    thrust::for_each(thrust::omp::par, first, last, work);
 #else
     try {
-      arena_.execute([&] { thrust::for_each(thrust::tbb::par, first, last, work_as_told); });
+      arena_.execute([&] { thrust::for_each(thrust::tbb::par, first, last, work); });
     } catch (const std::exception &) {
       usable_ = 1;
       return false;
