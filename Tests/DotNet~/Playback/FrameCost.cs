@@ -207,7 +207,7 @@ namespace QuickSes.Playback
             Print($"OwnerAtomAt of all vertices (mean {(double)sum / Math.Max(1, count) / Repetitions:F0})", loops);
         }
 
-        // Until everything is shown.
+        // Until everything is shown, and buffers are those of a surface at rest.
         private void Settle()
         {
             Stopwatch clock = Stopwatch.StartNew();
@@ -217,6 +217,8 @@ namespace QuickSes.Playback
                     throw new InvalidOperationException("still waiting");
                 Rest(Frame());
             } while (_surface.IsBusy);
+            for (int k = 0; k < 40; ++k)
+                Rest(Frame());
             if (_surface.LastError.Status != QuickSesStatus.Ok)
                 throw new InvalidOperationException(_surface.LastError.Message);
         }

@@ -200,12 +200,13 @@ namespace QuickSes.Tests
             Assert.That(_host.IsMoving, Is.False);
             Assert.That(_host.Rests, Is.EqualTo(0));
             _host.SetPositions(Vector3.One);
+            _host.Now = 5; // it took longer than that to compute it
             _host.Settle();
             Assert.That(_host.IsMoving);
             Assert.That(_host.Session.IsWaiting, "somebody has to tell it that it rests");
             _host.Tick();
             Assert.That(_host.Rests, Is.EqualTo(0));
-            _host.Now = 2;
+            _host.Now = 6;
             _host.Tick();
             _host.Tick();
             Assert.That(_host.Rests, Is.EqualTo(1));

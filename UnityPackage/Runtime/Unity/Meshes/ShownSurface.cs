@@ -197,6 +197,8 @@ namespace QuickSes
                 _front.Mesh, style, view.VertexCount, 3 * view.TriangleCount, withRoom))
                 cost *= FreshCost;
             SurfaceMesh target = cost <= share.RestBytes ? _front : _back;
+            if (withRoom && cost > UploadQueue.MinPiece)
+                _ = _back.Mesh; // now, rather than in the one slow frame of an hour of playback
             _isArrivalUploaded = _hasArrival;
             _upload.Begin(source, look, target, style, withRoom);
         }

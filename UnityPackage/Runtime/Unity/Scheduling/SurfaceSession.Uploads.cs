@@ -19,6 +19,8 @@ namespace QuickSes
         private double _uploadMilliseconds; // what the arrival has taken so far
         private double _share = 1; // how many surfaces of this size are uploaded at a time
         private bool _isHeldReady; // buffers are held for more of its kind, until it rests
+        private bool _hasArrived; // since the last tick
+        private double _lastArrival;
         private uint _lastTick;
 
         bool IUploader.IsQueued { get; set; }
@@ -84,7 +86,7 @@ namespace QuickSes
             _isShown = _isArrivalOfNewest;
             _isShapeShown = _isArrivalOfShape;
             ForgetArrival();
-            _updated = true;
+            _hasArrived = _updated = true;
             _finished = IsDone;
             if (!_isStopped)
                 LastError = default;

@@ -107,7 +107,13 @@ namespace QuickSes
                 Start(_slot); // replaces the job; its coarsest level still comes
             }
             pool.Dispatch();
-            if (_isHeldReady && _slot == null && !_hasArrival && IsDone && now - _lastChange >= _host.RestDelay)
+            if (_hasArrived)
+            {
+                _hasArrived = false;
+                _lastArrival = now; // who answers it with new positions has not had the time to
+            }
+            else if (_isHeldReady && _slot == null && !_hasArrival && IsDone &&
+                now - Math.Max(_lastChange, _lastArrival) >= _host.RestDelay)
             {
                 _isHeldReady = false;
                 _host.Rest();

@@ -69,6 +69,7 @@ namespace QuickSes
         internal const long MinPiece = 32 << 10, MaxPiece = 512 << 10;
         private const int PiecesPerBudget = 8;
         private const double FirstGuess = 1e-6; // ms per byte: 1 GB/s, which any machine has
+        private const double Slack = 1.5; // for pieces that take longer than the mean
         private const double Memory = 0.9; // of averages, for the next piece
         private const double LongestFrame = 100, FirstInterval = 1000.0 / 60; // ms
 
@@ -174,7 +175,7 @@ namespace QuickSes
         public void FreeRoom() => _room.Dispose();
 
         private bool IsTimeLeft() =>
-            Budget <= 0 || !_hasUploaded || _spent + PieceBytes * _millisecondsPerByte <= Budget;
+            Budget <= 0 || !_hasUploaded || _spent + Slack * PieceBytes * _millisecondsPerByte <= Budget;
 
         private void BeginFrame()
         {
