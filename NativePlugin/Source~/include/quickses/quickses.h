@@ -359,9 +359,9 @@ typedef struct qses_settings {
                              qses_report.mesh_bytes counts them (its copies to a graphics API, for instance).
                              frame_budget_ms then covers computing and showing together. May change from frame to frame
                              as it is measured */
-  qses_bool
-      pickable; /* 1: the mesh comes with what makes qses_kept_mesh_pick fast: 1 % more memory, and up to
-                   3 % more time on the CPU, 0.04 to 0.2 ms more on a GPU; default 0. Ignored with delivery DEVICE */
+  qses_bool pickable;     /* 1: the mesh comes with what makes qses_kept_mesh_pick fast: 1 % more memory, and up to
+                             3 % more time on the CPU, 0.04 to 0.2 ms on a GPU; default 0. Ignored with delivery
+                             DEVICE */
 } qses_settings;
 
 /* The defaults, with struct_size set. NULL is ignored. */
