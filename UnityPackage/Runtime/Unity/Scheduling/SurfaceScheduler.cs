@@ -67,7 +67,8 @@ namespace QuickSes
 
         internal static ContextSlot NewSlot(SurfaceBackend backend) => new ContextSlot(new SurfaceContextOptions
         {
-            Backend = backend, Device = Device, Threads = Threads, MemoryBudget = MemoryBudget
+            Backend = backend, Device = Device, Threads = Threads, MemoryBudget = MemoryBudget,
+            Background = true // the game's own threads come first
         });
 
         /// <summary>A surface is there, until <see cref="Remove"/>.</summary>
