@@ -57,10 +57,10 @@ class BoxRay {
     }
     slack_ = 1e-10 * largest;
   }
-  // Whether the ray is within the box somewhere up to a distance. With a direction of 0 along an axis all is infinite,
-  // as it should be: nowhere is 0 * infinity, since the slack keeps what it would come from apart, or counts as inside.
-  bool meets(const Box &box, double limit) const {
-    double enter = 0, leave = limit * (1 + 1e-9);
+  // Where the ray enters the box; infinite: nowhere. With a direction of 0 along an axis all is infinite, as it should
+  // be: nowhere is 0 * infinity, since the slack keeps what it would come from apart, or counts as inside.
+  double entry(const Box &box) const {
+    double enter = 0, leave = std::numeric_limits<double>::max();
     for (int d = 0; d < 3; ++d) {
       const double a = (static_cast<double>(box.low[d]) - slack_ - origin_[d]) * inverse_[d],
                    b = (static_cast<double>(box.high[d]) + slack_ - origin_[d]) * inverse_[d];
@@ -68,7 +68,7 @@ class BoxRay {
       if (near > enter) enter = near;
       if (far < leave) leave = far;
     }
-    return enter <= leave;
+    return enter <= leave ? enter : std::numeric_limits<double>::infinity();
   }
 
  private:
@@ -81,6 +81,30 @@ struct Meeting {
   uint32_t triangle = 0;
   bool found = false;
 };
+
+// Visits boxes in the order in which the ray enters them, as far as the nearest meeting; if it goes through more than
+// there is room for, this holds for so many at a time.
+template <size_t kRoom, class Visit>
+void visit_in_order(const BoxRay &ray, const Box *boxes, size_t first, size_t last, const Meeting &nearest,
+                    const Visit &visit) {
+  struct Entry {
+    double distance;
+    size_t box;
+  };
+  Entry entries[kRoom];
+  // Distances of triangles are rounded otherwise than those of boxes.
+  const auto is_behind = [&](double distance) { return distance > nearest.distance * (1 + 1e-9); };
+  while (first < last) {
+    size_t count = 0;
+    for (; first < last && count < kRoom; ++first) {
+      const double distance = ray.entry(boxes[first]);
+      if (distance < std::numeric_limits<double>::infinity() && !is_behind(distance))
+        entries[count++] = {distance, first};
+    }
+    std::sort(entries, entries + count, [](const Entry &a, const Entry &b) { return a.distance < b.distance; });
+    for (size_t k = 0; k < count && !is_behind(entries[k].distance); ++k) visit(entries[k].box);
+  }
+}
 
 const float *position_of(const qses_mesh &mesh, uint32_t vertex) {
   const size_t bytes = mesh.vertex_bytes ? mesh.vertex_bytes : 12;
@@ -100,7 +124,7 @@ void read_normal(const qses_mesh &mesh, uint32_t vertex, double normal[3]) {
 }
 
 // Of two triangles at the same distance, the first one counts.
-void look_at(const qses_mesh &mesh, uint32_t triangle, const Ray &ray, Meeting *nearest) {
+void look_at(const qses_mesh &mesh, uint32_t triangle, const Ray &ray, VisibleAtoms visible, Meeting *nearest) {
   const uint32_t *const corner = mesh.indices + 3 * size_t(triangle);
   const Point a = ray.sheared(position_of(mesh, corner[0])), b = ray.sheared(position_of(mesh, corner[1])),
               c = ray.sheared(position_of(mesh, corner[2]));
@@ -110,6 +134,7 @@ void look_at(const qses_mesh &mesh, uint32_t triangle, const Ray &ray, Meeting *
   const double distance = (u * a.z + v * b.z + w * c.z) / sum;
   if (!(distance >= 0) || distance > nearest->distance) return;
   if (nearest->found && distance == nearest->distance && triangle > nearest->triangle) return;
+  if (visible && !is_shown(mesh, triangle, visible)) return;
   *nearest = {distance, {u / sum, v / sum, w / sum}, triangle, true};
 }
 
@@ -152,23 +177,21 @@ qses_hit pick(const qses_mesh &mesh, const PickBoxes &boxes, const float origin[
               VisibleAtoms visible) {
   const Ray ray(origin, direction);
   Meeting nearest;
-  const auto look_at_run = [&](size_t first, size_t last) {
-    for (size_t triangle = first; triangle < std::min<size_t>(last, mesh.triangle_count); ++triangle) {
-      const uint32_t number = static_cast<uint32_t>(triangle);
-      if (!visible || is_shown(mesh, number, visible)) look_at(mesh, number, ray, &nearest);
-    }
+  const auto look_at_all = [&](size_t first, size_t last) {
+    for (size_t triangle = first; triangle < std::min<size_t>(last, mesh.triangle_count); ++triangle)
+      look_at(mesh, static_cast<uint32_t>(triangle), ray, visible, &nearest);
   };
   if (!boxes.runs) {
-    look_at_run(0, mesh.triangle_count);
+    look_at_all(0, mesh.triangle_count);
     return describe(mesh, nearest);
   }
   const BoxRay box_ray(origin, direction, mesh);
   const size_t runs = PickBoxes::run_count(mesh.triangle_count), groups = PickBoxes::group_count(mesh.triangle_count);
-  for (size_t group = 0; group < groups; ++group) {
-    if (!box_ray.meets(boxes.groups[group], nearest.distance)) continue;
-    for (size_t run = group * kGroupRuns; run < std::min(runs, (group + 1) * kGroupRuns); ++run)
-      if (box_ray.meets(boxes.runs[run], nearest.distance)) look_at_run(run * kRunTriangles, (run + 1) * kRunTriangles);
-  }
+  visit_in_order<256>(box_ray, boxes.groups, 0, groups, nearest, [&](size_t group) {
+    const size_t first = group * kGroupRuns, last = std::min(runs, first + kGroupRuns);
+    visit_in_order<kGroupRuns>(box_ray, boxes.runs, first, last, nearest,
+                               [&](size_t run) { look_at_all(run * kRunTriangles, (run + 1) * kRunTriangles); });
+  });
   return describe(mesh, nearest);
 }
 
