@@ -111,37 +111,52 @@ void visit_in_order(const BoxRay &ray, const Box *boxes, size_t first, size_t la
   }
 }
 
-const float *position_of(const qses_mesh &mesh, uint32_t vertex) {
-  const size_t bytes = mesh.vertex_bytes ? mesh.vertex_bytes : 12;
-  return reinterpret_cast<const float *>(reinterpret_cast<const char *>(mesh.positions) + bytes * vertex);
-}
+// Float32 triples that lie so many bytes apart.
+class Triples {
+ public:
+  Triples(const float *first, size_t bytes) : first_(reinterpret_cast<const char *>(first)), bytes_(bytes) {}
+  const float *operator[](uint32_t k) const { return reinterpret_cast<const float *>(first_ + bytes_ * k); }
+
+ private:
+  const char *first_;
+  size_t bytes_;
+};
+
+size_t vertex_bytes(const qses_mesh &mesh) { return mesh.vertex_bytes ? mesh.vertex_bytes : 3 * sizeof(float); }
+
+Triples positions_of(const qses_mesh &mesh) { return {mesh.positions, vertex_bytes(mesh)}; }
 
 void read_normal(const qses_mesh &mesh, uint32_t vertex, double normal[3]) {
   if (mesh.normals) {
-    const size_t bytes = mesh.vertex_bytes ? mesh.vertex_bytes : 12;
-    const float *const n =
-        reinterpret_cast<const float *>(reinterpret_cast<const char *>(mesh.normals) + bytes * vertex);
+    const float *const n = Triples(mesh.normals, vertex_bytes(mesh))[vertex];
     for (int d = 0; d < 3; ++d) normal[d] = static_cast<double>(n[d]);
   } else {
-    const uint8_t *const n = reinterpret_cast<const uint8_t *>(position_of(mesh, vertex) + 3);
+    const uint8_t *const n = reinterpret_cast<const uint8_t *>(positions_of(mesh)[vertex] + 3);
     for (int d = 0; d < 3; ++d) normal[d] = static_cast<double>(unpack_component(n[d]));
   }
 }
 
-// Of two triangles at the same distance, the first one counts.
-void look_at(const qses_mesh &mesh, uint32_t triangle, const Ray &ray, VisibleAtoms visible, Meeting *nearest) {
-  const uint32_t *const corner = mesh.indices + 3 * size_t(triangle);
-  const Point a = ray.sheared(position_of(mesh, corner[0])), b = ray.sheared(position_of(mesh, corner[1])),
-              c = ray.sheared(position_of(mesh, corner[2]));
-  const double u = c.x * b.y - c.y * b.x, v = a.x * c.y - a.y * c.x, w = b.x * a.y - b.y * a.x, sum = u + v + w;
-  // One jump that is nearly always taken, rather than six that nobody can foresee.
-  if (std::min({u, v, w}) < 0 && std::max({u, v, w}) > 0) return;
-  if (sum == 0) return;
-  const double distance = (u * a.z + v * b.z + w * c.z) / sum;
-  if (!(distance >= 0) || distance > nearest->distance) return;
-  if (nearest->found && distance == nearest->distance && triangle > nearest->triangle) return;
-  if (visible && !is_shown(mesh, triangle, visible)) return;
-  *nearest = {distance, {u / sum, v / sum, w / sum}, triangle, true};
+// Looks at triangles first..last-1. Of two at the same distance, the one with the lower number counts.
+void look_at(const qses_mesh &mesh, size_t first, size_t last, const Ray &given_ray, VisibleAtoms visible,
+             Meeting *nearest) {
+  const Ray ray = given_ray;
+  const Triples positions = positions_of(mesh);
+  const uint32_t *corner = mesh.indices + 3 * first;
+  for (size_t number = first; number < last; ++number, corner += 3) {
+    const Point a = ray.sheared(positions[corner[0]]), b = ray.sheared(positions[corner[1]]),
+                c = ray.sheared(positions[corner[2]]);
+    const double u = c.x * b.y - c.y * b.x, v = a.x * c.y - a.y * c.x, w = b.x * a.y - b.y * a.x;
+    // One jump that is nearly always taken, rather than six that nobody can foresee.
+    if (std::min({u, v, w}) < 0 && std::max({u, v, w}) > 0) continue;
+    const double sum = u + v + w;
+    if (sum == 0) continue;
+    const uint32_t triangle = static_cast<uint32_t>(number);
+    const double distance = (u * a.z + v * b.z + w * c.z) / sum;
+    if (!(distance >= 0) || distance > nearest->distance) continue;
+    if (nearest->found && distance == nearest->distance && triangle > nearest->triangle) continue;
+    if (visible && !is_shown(mesh, triangle, visible)) continue;
+    *nearest = {distance, {u / sum, v / sum, w / sum}, triangle, true};
+  }
 }
 
 qses_hit describe(const qses_mesh &mesh, const Meeting &meeting) {
@@ -153,7 +168,7 @@ qses_hit describe(const qses_mesh &mesh, const Meeting &meeting) {
   double position[3] = {}, normal[3] = {}, corner_normal[3][3];
   for (int k = 0; k < 3; ++k) {
     if (meeting.weights[k] > meeting.weights[heaviest]) heaviest = k;
-    const float *const p = position_of(mesh, corner[k]);
+    const float *const p = positions_of(mesh)[corner[k]];
     read_normal(mesh, corner[k], corner_normal[k]);
     for (int d = 0; d < 3; ++d) {
       position[d] += meeting.weights[k] * static_cast<double>(p[d]);
@@ -183,20 +198,19 @@ qses_hit pick(const qses_mesh &mesh, const PickBoxes &boxes, const float origin[
               VisibleAtoms visible) {
   const Ray ray(origin, direction);
   Meeting nearest;
-  const auto look_at_all = [&](size_t first, size_t last) {
-    for (size_t triangle = first; triangle < std::min<size_t>(last, mesh.triangle_count); ++triangle)
-      look_at(mesh, static_cast<uint32_t>(triangle), ray, visible, &nearest);
-  };
+  const size_t triangles = mesh.triangle_count;
   if (!boxes.runs) {
-    look_at_all(0, mesh.triangle_count);
+    look_at(mesh, 0, triangles, ray, visible, &nearest);
     return describe(mesh, nearest);
   }
   const BoxRay box_ray(origin, direction, mesh);
-  const size_t runs = PickBoxes::run_count(mesh.triangle_count), groups = PickBoxes::group_count(mesh.triangle_count);
+  const size_t runs = PickBoxes::run_count(triangles), groups = PickBoxes::group_count(triangles);
   visit_in_order<256>(box_ray, boxes.groups, 0, groups, nearest, [&](size_t group) {
     const size_t first = group * kGroupRuns, last = std::min(runs, first + kGroupRuns);
-    visit_in_order<kGroupRuns>(box_ray, boxes.runs, first, last, nearest,
-                               [&](size_t run) { look_at_all(run * kRunTriangles, (run + 1) * kRunTriangles); });
+    visit_in_order<kGroupRuns>(box_ray, boxes.runs, first, last, nearest, [&](size_t run) {
+      const size_t begin = run * kRunTriangles;
+      look_at(mesh, begin, std::min(triangles, begin + kRunTriangles), ray, visible, &nearest);
+    });
   });
   return describe(mesh, nearest);
 }
