@@ -182,6 +182,24 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void OthersPlayWhereOneIsDestroyedWhileItIsLoaded([Values] bool isFailing)
+        {
+            if (isFailing)
+                Player.TrajectorySource.SetFile(_folder.Root + "/none.dcd");
+            Assert.That(Player.Load(), Is.True);
+            _backbone.Dispose();
+            _playing.TickUntil(() => !Player.IsLoading, "it is loaded");
+            if (!isFailing)
+                _playing.WaitUntilShown(0);
+            AssertAt(_playing.Surface, TestFrames.WithoutWater, 0);
+            AssertAt(_water.Surface, s_water, 0);
+            Player.ColorScheme = AtomColorScheme.Element;
+            Player.Unload();
+            Assert.That(Player.Structure, Is.Null);
+            Assert.That(_water.Surface.IsPlayed, Is.False);
+        }
+
+        [Test]
         public void EntriesMayBeEmptyAndChange()
         {
             Player.AddSurface(_playing.Surface).Surface = null; // left out

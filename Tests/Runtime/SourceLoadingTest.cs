@@ -139,6 +139,33 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
+        public IEnumerator AtomsThatScriptsGaveWhileItIsDisabledStay()
+        {
+            Surface.Source.SetAsset(LongText());
+            Surface.BeginLoadSource();
+            Surface.enabled = false;
+            Surface.SetAtoms(new[] { Vector3.zero }, new[] { 1f });
+            Assert.That(Surface.IsLoading, Is.False);
+            Surface.enabled = true;
+            yield return _rig.Settle();
+            Assert.That(Surface.AtomCount, Is.EqualTo(1));
+            Assert.That(_loaded, Is.EqualTo(0));
+        }
+
+        [Test]
+        public void AtomsOfScriptsAreComputedNow()
+        {
+            Surface.Source.SetAsset(LongText());
+            Surface.BeginLoadSource();
+            Surface.SetAtoms(new[] { Vector3.zero }, new[] { 1f });
+            Assert.That(Surface.ComputeNow(), Is.True);
+            Assert.That(Surface.AtomCount, Is.EqualTo(1));
+            Surface.BeginLoadSource();
+            Surface.ClearAtoms();
+            Assert.That(Surface.IsLoading, Is.False);
+        }
+
+        [UnityTest]
         public IEnumerator TheLastOneCounts()
         {
             Surface.Source.SetFile(_folder.Write("many.pdb", TestFrames.Pdb(8)));

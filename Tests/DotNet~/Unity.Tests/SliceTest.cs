@@ -34,6 +34,7 @@ namespace QuickSes.Tests
         public void TearDown()
         {
             SurfaceScheduler.UploadBudget = _budget;
+            SurfaceScheduler.MaxContexts = 4;
             _rig?.Dispose();
             Assert.That(SurfaceScheduler.UploadingCount, Is.EqualTo(0));
         }
@@ -122,8 +123,56 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
-        public IEnumerator NobodyStarves()
+        public IEnumerator TextureCoordinatesMayGoAndComeMeanwhile([Values] bool hasThemFirst)
         {
+            yield return ShowFirst();
+            Vector2[] texcoords = Array.ConvertAll(_positions, place => new Vector2(place.x, place.z));
+            _rig.Surface.SetTexcoords(hasThemFirst ? texcoords : Array.Empty<Vector2>());
+            for (int frames = 0; frames < 12; ++frames)
+            {
+                yield return _rig.Settle();
+                _rig.Surface.SetPositions(Moved(frames));
+                yield return UntilUploading();
+                yield return SurfaceRig.Frames(frames);
+                hasThemFirst = !hasThemFirst;
+                _rig.Surface.SetTexcoords(hasThemFirst ? texcoords : Array.Empty<Vector2>());
+            }
+            yield return _rig.Settle();
+            Assert.That(_rig.Failures, Is.Empty);
+            Assert.That(_rig.Surface.Mesh.HasVertexAttribute(VertexAttribute.TexCoord1), Is.EqualTo(hasThemFirst));
+            SurfaceMeshes.AssertIsSurfaceOf(_rig.Surface.Mesh, Moved(11), _radii, 0.5f, _rig.Surface.OwnerAtomAt);
+        }
+
+        [UnityTest]
+        public IEnumerator AfterAFailureItRestsToo([Values] bool isCancelled)
+        {
+            yield return ShowFirst();
+            _rig.Surface.RestDelay = 0;
+            for (int frame = 0; frame < 3; ++frame)
+            {
+                int updates = _rig.Levels.Count;
+                _rig.Surface.SetPositions(Moved(frame));
+                yield return SurfaceRig.Until(() => _rig.Levels.Count > updates);
+                _rig.Surface.RestDelay = 1e6f;
+            }
+            Vector3[] bad = Moved(9);
+            bad[3].x = float.NaN;
+            _rig.Surface.SetPositions(isCancelled ? Moved(9) : bad);
+            if (isCancelled)
+                _rig.Surface.Cancel();
+            yield return _rig.Settle();
+            Assert.That(_rig.Failures.Count, Is.EqualTo(isCancelled ? 0 : 1));
+            _rig.Surface.RestDelay = 0;
+            yield return SurfaceRig.Until(() => Engine.LiveObjects<Mesh>() == 1);
+            yield return _rig.Settle();
+            Assert.That(_rig.Surface.Mesh.vertexCount, Is.EqualTo(_rig.Surface.CurrentLevel.VertexCount));
+            SurfaceMeshes.AssertIsSurfaceOf(_rig.Surface.Mesh, Moved(2), _radii, 0.5f, _rig.Surface.OwnerAtomAt);
+        }
+
+        [UnityTest]
+        public IEnumerator NobodyStarves([Values(1, 4)] int contexts)
+        {
+            SurfaceScheduler.MaxContexts = contexts;
             SurfaceScheduler.UploadBudget = PiecePerFrame;
             var rigs = new SurfaceRig[30];
             var positions = new Vector3[rigs.Length][];

@@ -36,6 +36,7 @@ namespace QuickSes
         public void SetAtoms(ReadOnlySpan<Vector3> positions, ReadOnlySpan<float> radii)
         {
             bool haveMoved = Session.Atoms.SetAtoms(Numbers(positions), radii);
+            CancelLoading();
             _isScriptFed = true;
             if (!haveMoved)
                 LoseStructure();
@@ -118,6 +119,7 @@ namespace QuickSes
         public void ClearAtoms()
         {
             Clear();
+            CancelLoading();
             _isScriptFed = true;
         }
 

@@ -45,8 +45,8 @@ namespace QuickSes
             UploadStep step = _shown.Upload(share, out bytes);
             if (step == UploadStep.Shown || step == UploadStep.Moved)
             {
+                CacheOwners(); // first: those before have ended
                 FollowMesh(before);
-                CacheOwners();
                 ShowColors();
             }
             return step;

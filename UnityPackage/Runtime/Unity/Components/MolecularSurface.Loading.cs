@@ -113,11 +113,7 @@ namespace QuickSes
                 BeginLoad(true);
             if (_load == null)
                 return;
-            if (_isScriptFed)
-            {
-                CancelLoading();
-            }
-            else if (_load.Tick())
+            if (_load.Tick())
             {
                 StructureLoad load = _load;
                 _load = null;

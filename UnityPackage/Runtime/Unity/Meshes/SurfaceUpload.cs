@@ -111,6 +111,8 @@ namespace QuickSes
         {
             if (++_beginnings == MostBeginnings)
                 _target.FreeMesh();
+            else if (_beginnings > MostBeginnings)
+                throw new InvalidOperationException("The engine makes other buffers than it is asked for.");
             _target.Writer.Forget();
             return _stage = Stage.Buffers;
         }
@@ -143,7 +145,7 @@ namespace QuickSes
                 _target.Colors.CopyFrom(_look.Colors);
                 _target.ColorsVersion = _look.ColorsVersion;
             }
-            else if (stage == Stage.Texcoords && _target.Style.HasTexcoords)
+            else if (stage == Stage.Texcoords)
             {
                 _texcoords.CopyFrom(_look.Texcoords);
                 _target.TexcoordsVersion = _look.TexcoordsVersion;
@@ -175,7 +177,10 @@ namespace QuickSes
                     if (count > 0)
                         WriteAtoms(view, count, share.Room);
                     bytes = (long)MeshStyle.AtomBytes * count;
-                    Go(count, view.VertexCount, _target.Style.HasTexcoords ? Stage.Texcoords : Stage.None);
+                    // That there are none any more is another style, which comes next.
+                    Go(count, view.VertexCount, _target.Style.HasTexcoords && _look.Texcoords.Length > 0
+                        ? Stage.Texcoords
+                        : Stage.None);
                     break;
                 case Stage.Texcoords:
                     count = Count(view.VertexCount, MeshStyle.TexcoordBytes, share);

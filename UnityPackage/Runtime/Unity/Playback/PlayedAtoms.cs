@@ -13,7 +13,9 @@ namespace QuickSes
         private readonly LoadedStructure _loaded;
         private readonly Action _onAsked;
 
-        /// <param name="surface">Which gets the atoms, now and whenever it asks.</param>
+        /// <param name="surface">
+        /// Which gets the atoms, now and whenever it asks. It may be destroyed at any time, also before.
+        /// </param>
         /// <param name="loaded">Taken over.</param>
         /// <param name="onAsked">The surface asked, and got the atoms where the structure has them.</param>
         public PlayedAtoms(MolecularSurface surface, LoadedStructure loaded, Action onAsked)
@@ -37,22 +39,19 @@ namespace QuickSes
         /// <summary>N positions; the atoms come first if somebody else gave the surface others.</summary>
         public void SendPositions(ReadOnlySpan<Vector3> positions)
         {
-            if (Surface == null) // was destroyed
-                return;
             if (!IsInPlace)
                 SendAtoms();
-            Surface.SetPositions(positions);
+            if (Surface != null)
+                Surface.SetPositions(positions);
         }
 
         public void SendColors(AtomColorScheme colorScheme)
         {
             _loaded.Color(colorScheme);
-            if (Surface == null)
-                return;
-            if (IsInPlace)
-                Surface.ColorAtomsOf(_loaded);
-            else
+            if (!IsInPlace)
                 SendAtoms();
+            else if (Surface != null)
+                Surface.ColorAtomsOf(_loaded);
         }
 
         public void Dispose()
@@ -62,7 +61,11 @@ namespace QuickSes
             _loaded.DisposeInBackground();
         }
 
-        private void SendAtoms() => Surface.SetAtomsOf(_loaded);
+        private void SendAtoms()
+        {
+            if (Surface != null)
+                Surface.SetAtomsOf(_loaded);
+        }
 
         private void Answer()
         {

@@ -11,7 +11,7 @@ namespace QuickSes
         None,
         /// <summary>What is shown is not finest yet, but of the newest atoms.</summary>
         Refinement,
-        /// <summary>There are newer atoms, settings or colours than what is shown.</summary>
+        /// <summary>There are newer atoms or settings than what is shown.</summary>
         Urgent
     }
 

@@ -112,8 +112,7 @@ namespace QuickSes
                 _hasArrived = false;
                 _lastArrival = now; // who answers it with new positions has not had the time to
             }
-            else if (_isHeldReady && _slot == null && !_hasArrival && IsDone &&
-                now - Math.Max(_lastChange, _lastArrival) >= _host.RestDelay)
+            else if (_isHeldReady && IsComputed && now - Math.Max(_lastChange, _lastArrival) >= _host.RestDelay)
             {
                 _isHeldReady = false;
                 _host.Rest();
