@@ -8,8 +8,6 @@ namespace QuickSes
 {
     public sealed partial class TrajectoryPlayer
     {
-        private const int MostBytesPerTick = 4 << 20; // a millisecond or less
-
         private StructureLoad _load; // until the structure is read
         private PlayedAtoms[] _played = Array.Empty<PlayedAtoms>(); // from then on: its own surface first, then Surfaces
         private FramePrefetcher _prefetcher; // from when the frames' file may be opened
@@ -138,7 +136,7 @@ namespace QuickSes
 
         private void TickLoading()
         {
-            if (_framesFile != null && !_framesFile.TryDetach(MostBytesPerTick, out QuickSesError error))
+            if (_framesFile != null && !_framesFile.TryDetach(out QuickSesError error))
             {
                 _framesFile = null;
                 _framesError = error;

@@ -13,6 +13,8 @@ namespace QuickSes
     /// </summary>
     internal sealed class MoleculeFile : IDisposable
     {
+        private const int MostBytesAtOnce = 4 << 20; // a millisecond or less
+
         private TextAsset _asset; // while its own memory is looked at
         private readonly byte[] _bytes; // of a molecule asset
         private UnmanagedBuffer<byte> _copy; // of a text asset
@@ -50,9 +52,8 @@ namespace QuickSes
         /// Copies some bytes of a text asset, whose memory the engine frees whenever the asset is destroyed, unloaded or
         /// imported anew, which no thread could prevent. Main thread; again and again until it is detached.
         /// </summary>
-        /// <param name="most">How many bytes.</param>
         /// <param name="error">The asset is gone.</param>
-        public unsafe bool TryDetach(int most, out QuickSesError error)
+        public unsafe bool TryDetach(out QuickSesError error)
         {
             error = default;
             if (IsDetached)
@@ -71,7 +72,7 @@ namespace QuickSes
                     _copied = 0;
                 }
             }
-            int count = Math.Min(most, bytes.Length - _copied);
+            int count = Math.Min(MostBytesAtOnce, bytes.Length - _copied);
             bytes.Slice(_copied, count).CopyTo(_copy.Span.Slice(_copied));
             _copied += count;
             if (_copied == bytes.Length)

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+using QuickSes.Interop;
 using System;
 
 namespace QuickSes
@@ -9,9 +10,6 @@ namespace QuickSes
     /// </summary>
     internal sealed class StructureLoad : BackgroundThread, IDisposable
     {
-        // A millisecond or less of the main thread.
-        private const int MostBytesPerTick = 4 << 20;
-
         // How far it is once the file may be read by the thread, once a structure is read, and once it is coloured,
         // about as long as these take. The library reads a structure in one call, during which it does not tell.
         private const float DetachedAt = 0.1f, ReadAt = 0.8f;
@@ -56,16 +54,23 @@ namespace QuickSes
             }
             if (_isStarted)
                 return false;
-            if (!_file.TryDetach(MostBytesPerTick, out QuickSesError error))
-            {
-                Finish(null, error);
-                return true;
-            }
+            // Players for the web have no library, and no threads that could find that out.
+            if (!NativeLibraryCheck.IsUsable(out string reason))
+                return Fail(new QuickSesError(QuickSesStatus.BackendUnavailable, reason));
+            if (!_file.TryDetach(out QuickSesError error))
+                return Fail(error);
             _progress = DetachedAt * _file.DetachedPart;
             if (!_file.IsDetached)
                 return false;
             _isStarted = true;
-            Start();
+            try
+            {
+                Start();
+            }
+            catch (Exception exception) // there are no threads left, say
+            {
+                return Fail(Describe(exception));
+            }
             return false;
         }
 
@@ -144,6 +149,12 @@ namespace QuickSes
                 structure.Dispose();
                 throw;
             }
+        }
+
+        private bool Fail(in QuickSesError error)
+        {
+            Finish(null, error);
+            return true;
         }
 
         private void Finish(LoadedStructure[] structures, QuickSesError error)
