@@ -222,13 +222,18 @@ namespace QuickSes.Tests
         }
 
         [Test]
-        public void SelectionsWithoutAtomsAreNamed()
+        public void SelectionsWithoutAtomsAreNamed([Values] bool isDestroyed)
         {
-            Player.AddSurface(new GameObject("ligand").AddComponent<MolecularSurface>(), "(LIG)");
+            var ligand = new GameObject("ligand");
+            Player.AddSurface(ligand.AddComponent<MolecularSurface>(), "(LIG)");
             Assert.That(Player.Load(), Is.True);
+            if (isDestroyed)
+                Object.DestroyImmediate(ligand);
             _playing.TickUntil(() => _playing.Failures.Count > 0, "it fails");
-            Assert.That(_playing.Failures[0], Does.Contain("surface 'ligand'").And.Contain("filters"));
-            Object.DestroyImmediate(Player.Surfaces[2].Surface.gameObject);
+            Assert.That(_playing.Failures[0],
+                Does.Contain(isDestroyed ? "destroyed" : "surface 'ligand'").And.Contain("filters"));
+            Assert.That(_water.Surface.IsPlayed, Is.False);
+            Object.DestroyImmediate(ligand);
         }
 
         [Test]

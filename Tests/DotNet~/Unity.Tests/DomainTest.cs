@@ -47,6 +47,27 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
+        public IEnumerator AReloadWhileASourceIsReadReadsItAnew([Values] bool selects)
+        {
+            for (int frames = 0; frames < 5; ++frames)
+            {
+                var rig = new SurfaceRig();
+                rig.Surface.Source.SetAsset(new TextAsset(TestFrames.Pdb(1)) { name = "small.pdb" });
+                if (selects)
+                    rig.Surface.VisibleSelection = "//A/1/CA";
+                rig.Surface.BeginLoadSource();
+                yield return SurfaceRig.Frames(frames);
+                Engine.Reload();
+                yield return SurfaceRig.Until(() => !rig.Surface.IsBusy);
+                Assert.That(rig.Surface.AtomCount, Is.EqualTo(TestFrames.WithoutWater.Length));
+                Assert.That(rig.Surface.CurrentLevel.IsFinest);
+                Assert.That(rig.Surface.VisibleSelectionError, Is.Empty);
+                rig.Dispose();
+                Assert.That(Engine.LiveObjects<Mesh>(), Is.EqualTo(0));
+            }
+        }
+
+        [UnityTest]
         public IEnumerator AReloadKeepsTheSettings()
         {
             var rig = new SurfaceRig();

@@ -17,20 +17,19 @@ namespace QuickSes.Tests
         private readonly SurfaceRig[] _rigs = new SurfaceRig[Count];
         private readonly Vector3[][] _positions = new Vector3[Count][]; // null: no atoms
         private readonly float[][] _radii = new float[Count][];
+        private bool _isOver;
 
         [UnityTest]
         public IEnumerator EachShowsItsOwnInTheEnd([Values(1, 2, 3, 4, 5, 6)] int seed)
         {
+            _isOver = false;
             int most = SurfaceScheduler.MaxContexts;
             double budget = SurfaceScheduler.UploadBudget;
             SurfaceScheduler.ReleaseContexts();
             SurfaceScheduler.MaxContexts = 1 + seed % 3;
             var random = new System.Random(seed);
             for (int k = 0; k < Count; ++k)
-            {
-                _rigs[k] = new SurfaceRig("surface " + k);
-                _positions[k] = null;
-            }
+                Renew(k, random);
             for (int step = 0; step < Steps; ++step)
             {
                 DoSomething(random.Next(Count), random);
@@ -38,6 +37,7 @@ namespace QuickSes.Tests
                     yield return null;
             }
             SurfaceScheduler.UploadBudget = budget;
+            _isOver = true;
             foreach (SurfaceRig rig in _rigs)
             {
                 rig.GameObject.SetActive(true);
@@ -46,8 +46,16 @@ namespace QuickSes.Tests
                 rig.Surface.Recompute();
             }
             for (int k = 0; k < Count; ++k)
-                if (_positions[k] != null)
-                    _rigs[k].Surface.SetColors(ColorsOf(k));
+            {
+                if (!HasAtoms(k)) // those of its source, that is
+                {
+                    _rigs[k].Surface.ClearAtoms();
+                    _positions[k] = null;
+                    continue;
+                }
+                _rigs[k].Surface.SetAtoms(_positions[k], _radii[k]);
+                _rigs[k].Surface.SetColors(ColorsOf(k));
+            }
             yield return SurfaceRig.Until(() => Array.TrueForAll(_rigs, rig => !rig.Surface.IsBusy));
             for (int k = 0; k < Count; ++k)
             {
@@ -61,10 +69,34 @@ namespace QuickSes.Tests
             Assert.That(SurfaceScheduler.WaitingCount, Is.EqualTo(0));
             Assert.That(SurfaceScheduler.UploadingCount, Is.EqualTo(0));
             foreach (SurfaceRig rig in _rigs)
-                rig.Dispose();
+                Retire(rig);
             SurfaceScheduler.MaxContexts = most;
             SurfaceScheduler.UploadBudget = budget;
         }
+
+        private void Renew(int k, System.Random random)
+        {
+            var rig = new SurfaceRig("surface " + k);
+            _rigs[k] = rig;
+            _positions[k] = null;
+            rig.Surface.Source.SetAsset(new TextAsset(TestFrames.Pdb(1)) { name = "small.pdb" });
+            rig.Surface.ClearAtoms();
+            rig.Surface.SurfaceUpdated += level => // handlers may do anything, too
+            {
+                if (!_isOver && random.Next(6) == 0)
+                    DoSomething(k, random);
+            };
+        }
+
+        private static void Retire(SurfaceRig rig)
+        {
+            Assert.That(rig.Failures, Has.None.Matches<QuickSesError>(
+                error => error.Status != QuickSesStatus.InvalidArgument), "but positions that are no numbers");
+            rig.Dispose();
+        }
+
+        private bool HasAtoms(int k) =>
+            _positions[k] != null && _rigs[k].Surface.AtomCount == _positions[k].Length;
 
         private Color32[] ColorsOf(int k) =>
             Array.ConvertAll(_radii[k], radius => new Color32((byte)(90 * radius), (byte)k, 3, 255));
@@ -83,7 +115,7 @@ namespace QuickSes.Tests
         private void DoSomething(int k, System.Random random)
         {
             MolecularSurface surface = _rigs[k].Surface;
-            switch (random.Next(20))
+            switch (random.Next(22))
             {
                 case 0:
                 case 1:
@@ -92,13 +124,13 @@ namespace QuickSes.Tests
                     break;
                 case 2:
                 case 3:
-                    if (_positions[k] == null)
+                    if (!HasAtoms(k))
                         break;
                     _positions[k] = TestMolecules.Moved(_positions[k], random.Next());
                     surface.SetPositions(_positions[k]);
                     break;
                 case 4:
-                    if (_positions[k] != null)
+                    if (HasAtoms(k))
                         surface.SetColors(new Color32[_positions[k].Length]);
                     break;
                 case 5:
@@ -112,7 +144,7 @@ namespace QuickSes.Tests
                     _positions[k] = null;
                     break;
                 case 8:
-                    if (_positions[k] != null)
+                    if (HasAtoms(k))
                         surface.ComputeNow();
                     break;
                 case 9:
@@ -127,13 +159,14 @@ namespace QuickSes.Tests
                         SurfaceScheduler.ReleaseContexts();
                     break;
                 case 12:
-                    if (_positions[k] == null)
+                    if (!HasAtoms(k))
                         break;
                     var bad = (Vector3[])_positions[k].Clone();
                     bad[0].x = float.NaN;
                     surface.SetPositions(bad);
                     Engine.Frame(0.01);
-                    surface.SetPositions(_positions[k]);
+                    if (HasAtoms(k))
+                        _rigs[k].Surface.SetPositions(_positions[k]);
                     break;
                 case 13:
                     SurfaceScheduler.UploadBudget = random.Next(3) switch { 0 => 0, 1 => 1e-6, _ => 2 };
@@ -142,11 +175,11 @@ namespace QuickSes.Tests
                     surface.Coloring = (AtomColoring)random.Next(3);
                     break;
                 case 15:
-                    if (_positions[k] != null)
+                    if (HasAtoms(k))
                         surface.SetVisible(Array.ConvertAll(_positions[k], place => random.Next(3) > 0));
                     break;
                 case 16:
-                    if (_positions[k] != null)
+                    if (HasAtoms(k))
                         surface.SetTexcoords(new Vector2[random.Next(2) * _positions[k].Length]);
                     break;
                 case 17:
@@ -163,9 +196,16 @@ namespace QuickSes.Tests
                 case 19:
                     if (random.Next(4) > 0)
                         break;
-                    _rigs[k].Dispose();
-                    _rigs[k] = new SurfaceRig("surface " + k);
-                    _positions[k] = null;
+                    Retire(_rigs[k]);
+                    Renew(k, random);
+                    break;
+                case 20:
+                    surface.BeginLoadSource();
+                    surface.VisibleSelection = random.Next(2) > 0 ? "(!HOH)" : "";
+                    break;
+                case 21:
+                    if (random.Next(3) == 0)
+                        UnityEngine.Object.DestroyImmediate(surface.Mesh);
                     break;
             }
         }

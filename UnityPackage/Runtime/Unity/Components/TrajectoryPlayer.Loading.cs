@@ -153,10 +153,11 @@ namespace QuickSes
             else if (_isWish)
                 ReleaseSurfaces(); // the surface tells
             else
-                Fail(load.FailedSource > 0
-                    ? $"surface '{_loadedSurfaces[load.FailedSource - 1].Surface.name}'"
-                    : "structure", error);
+                Fail(load.FailedSource > 0 ? NameOf(_loadedSurfaces[load.FailedSource - 1].Surface) : "structure", error);
         }
+
+        private static string NameOf(MolecularSurface surface) =>
+            surface != null ? $"surface '{surface.name}'" : "a surface that was destroyed";
 
         private void TakeStructures(LoadedStructure[] structures, MoleculeFile file)
         {
@@ -235,7 +236,7 @@ namespace QuickSes
         }
 
         /// <summary>
-        /// Nothing comes of what is being loaded any more, and no event tells so; what is loaded stays. The threads
+        /// Lets go of what is being loaded, and no event tells so; once frames can be shown it does nothing. The threads
         /// can't be stopped in a file: they leave by themselves after at most as long as reading it takes.
         /// </summary>
         public void CancelLoading()
