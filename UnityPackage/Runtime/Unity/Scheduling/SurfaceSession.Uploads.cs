@@ -59,7 +59,7 @@ namespace QuickSes
             bool isLast = mesh.Tag == _job;
             bool isMoving = !isLast || _begunChange == SurfaceChange.Positions;
             _slot.Context.TryGetReport(out SurfaceReport report);
-            _arrival = new SurfaceLevel(mesh, report, Ladder);
+            var arrival = new SurfaceLevel(mesh, report, Ladder); // the view ends when the host takes the mesh
             try
             {
                 _host.Take(_slot.Context, TakeLook(mesh.Tag), isMoving);
@@ -70,6 +70,7 @@ namespace QuickSes
             }
             if (!_hasArrival)
                 _arrivalTime = Stopwatch.GetTimestamp();
+            _arrival = arrival;
             _hasArrival = true;
             _isArrivalOfNewest = isLast && _isJobOfNewest;
             _isArrivalOfShape = isLast && _isJobOfShape;
