@@ -7,7 +7,7 @@ namespace QuickSes
 {
     public sealed partial class MolecularSurface
     {
-        [NonSerialized] private unsafe uint* _owners; // of what is shown
+        [NonSerialized] private IntPtr _owners; // uint each, of what is shown
         [NonSerialized] private int _ownerCount;
 
         /// <summary>
@@ -40,7 +40,7 @@ namespace QuickSes
         {
             if ((uint)vertex >= (uint)_ownerCount)
                 ThrowOutOfRange(vertex);
-            return (int)_owners[vertex];
+            return (int)((uint*)_owners)[vertex];
         }
 
         /// <summary>
@@ -73,13 +73,13 @@ namespace QuickSes
         {
             ReadOnlySpan<uint> owners = _shown.View.Owners;
             fixed (uint* first = owners)
-                _owners = first; // in native memory, which does not move
+                _owners = (IntPtr)first; // in native memory, which does not move
             _ownerCount = owners.Length;
         }
 
-        private unsafe void ForgetOwners()
+        private void ForgetOwners()
         {
-            _owners = null;
+            _owners = IntPtr.Zero;
             _ownerCount = 0;
         }
 
