@@ -114,8 +114,7 @@ namespace QuickSes
                 long begin = Stopwatch.GetTimestamp();
                 _texture ??= new AtomColorTexture();
                 if (_texture.Show(OwnRenderer, _shown.Look))
-                    SurfaceScheduler.Uploads.Charge(
-                        (Stopwatch.GetTimestamp() - begin) * 1000.0 / Stopwatch.Frequency);
+                    SurfaceScheduler.Uploads.Charge(UploadQueue.Milliseconds(Stopwatch.GetTimestamp() - begin));
             }
             else if (_texture != null)
             {

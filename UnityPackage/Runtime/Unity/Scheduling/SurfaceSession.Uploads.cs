@@ -83,7 +83,7 @@ namespace QuickSes
         private void Arrive()
         {
             CurrentLevel = new SurfaceLevel(_arrival, _isArrivalOfNewest, _uploadMilliseconds,
-                (Stopwatch.GetTimestamp() - _arrivalTime) * 1000.0 / Stopwatch.Frequency);
+                UploadQueue.Milliseconds(Stopwatch.GetTimestamp() - _arrivalTime));
             _isShown = _isArrivalOfNewest;
             _isShapeShown = _isArrivalOfShape;
             ForgetArrival();

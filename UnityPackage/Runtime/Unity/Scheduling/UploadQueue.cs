@@ -207,6 +207,7 @@ namespace QuickSes
 
         private static double Mean(double mean, double value) => Memory * mean + (1 - Memory) * value;
 
-        private static double Milliseconds(long ticks) => ticks * 1000.0 / Stopwatch.Frequency;
+        /// <summary>Of ticks of Stopwatch.</summary>
+        public static double Milliseconds(long ticks) => ticks * 1000.0 / Stopwatch.Frequency;
     }
 }
