@@ -72,34 +72,36 @@ has_cuda_toolkit() {
 
 has_candidate() { [[ $(apt-cache policy "$1" 2>/dev/null) == *"  Candidate: "[!\(]* ]]; }
 
-# Versions of clang-format differ in small things, so check-format asserts what 14 writes (Debian 12; Ubuntu 22.04, 24.04).
-# Where that can't be had, only this check is left out.
-wants_formatter() { ! is_there clang-format-14 && has_candidate clang-format-14; }
-
+# ---- what more tests need, which are left out without it: where the system does not offer it, it is not missing
+optional=(
+  # Versions differ in small things, so check-format asserts what 14 writes (Debian 12; Ubuntu 22.04, 24.04).
+  "clang-format-14 clang-format-14"
+  # Compile the package's shaders and draw with them.
+  "glslang-tools glslangValidator"
+  "spirv-cross spirv-cross"
+  "libosmesa6 /usr/lib/x86_64-linux-gnu/libOSMesa.so.8"
+)
 # For Scripts~/package/load-in-bare-system, which only root can use.
-wants_debootstrap() { [ "$(id -u)" -eq 0 ] && ! is_there /usr/sbin/debootstrap && has_candidate debootstrap; }
+if [ "$(id -u)" -eq 0 ]; then optional+=("debootstrap /usr/sbin/debootstrap"); fi
+# For the C# tests, which a .NET SDK compiles. These bring 150 packages, of 120 MB.
+if is_there dotnet; then
+  optional+=("mono-devel /usr/lib/mono/4.5/Facades/netstandard.dll" "mono-devel mono-sgen" "mono-runtime-boehm mono-boehm")
+fi
 
-# For the C# tests, which a .NET SDK compiles. It brings 150 packages, of 120 MB.
-wants_mono() {
-  is_there dotnet && has_candidate mono-devel && has_candidate mono-runtime-boehm &&
-    ! { is_there mono-sgen && is_there mono-boehm && is_there /usr/lib/mono/4.5/Facades/netstandard.dll; }
+add_missing() { # NEED
+  if ! is_there "${1#* }" && [[ " ${missing[*]} " != *" ${1%% *} "* ]]; then missing+=("${1%% *}"); fi
+}
+add_missing_optional() {
+  local need
+  for need in "${optional[@]}"; do
+    if has_candidate "${need%% *}"; then add_missing "$need"; fi
+  done
 }
 
-# Compile the package's shaders and draw with them in tests, which are left out without them.
-shader_tools=("glslang-tools glslangValidator" "spirv-cross spirv-cross" "libosmesa6 /usr/lib/x86_64-linux-gnu/libOSMesa.so.8")
-wants_shader_tool() { ! is_there "${1#* }" && has_candidate "${1%% *}"; }
-
 missing=()
-for need in "${needs[@]}"; do
-  is_there "${need#* }" || missing+=("${need%% *}")
-done
-if wants_formatter; then missing+=(clang-format-14); fi
-if wants_debootstrap; then missing+=(debootstrap); fi
-for tool in "${shader_tools[@]}"; do
-  if wants_shader_tool "$tool"; then missing+=("${tool%% *}"); fi
-done
-if wants_mono; then missing+=(mono-devel mono-runtime-boehm); fi
+for need in "${needs[@]}"; do add_missing "$need"; done
 if [ "$with_cuda" = yes ] && ! has_cuda_toolkit; then missing+=(nvidia-cuda-toolkit); fi
+add_missing_optional
 if [ ${#missing[@]} -eq 0 ]; then
   say "everything is installed"
   exit 0
@@ -164,7 +166,7 @@ add_debian_non_free() {
 
 say "$system lacks ${missing[*]}"
 apt_get update
-if [[ " ${missing[*]} " != *" clang-format-14 "* ]] && wants_formatter; then missing+=(clang-format-14); fi
+add_missing_optional # what is offered was perhaps not known before
 for package in "${missing[@]}"; do
   if [ "$package" = nvidia-cuda-toolkit ] && ! has_candidate "$package" && [ "$(. /etc/os-release && echo "$ID")" = debian ]; then
     add_debian_non_free || fail "found no entry of Debian $codename in apt's sources to add non-free to. Please add it, or install the CUDA Toolkit."
