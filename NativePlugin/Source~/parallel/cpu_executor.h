@@ -58,7 +58,7 @@ class CpuExecutor {
     for (const auto &pool : scratch_pools_) sum += pool.second.bytes(pool.second.objects.get());
     return sum;
   }
-  uint64_t scratch_allowance() const { return threads() * (uint64_t(272) << 10); }
+  uint64_t scratch_allowance() const { return threads() * (uint64_t(304) << 10); }
 
   template <class T>
   Span<T> allocate(size_t n) {
