@@ -27,6 +27,17 @@ class Kept {
   qses_kept_mesh *kept_ = nullptr;
 };
 
+// The mesh of some atoms, kept; the context it was computed in has gone.
+class KeptSurface : public Kept {
+ public:
+  explicit KeptSurface(const Atoms &atoms) {
+    const Context context;
+    set_atoms(context, atoms);
+    compute_view(context, settings());
+    expect_ok(qses_keep(context, *this));
+  }
+};
+
 inline std::vector<uint8_t> some_visible(size_t atoms, unsigned seed) {
   std::mt19937 random(seed);
   std::vector<uint8_t> visible(atoms);

@@ -233,12 +233,8 @@ void expect_painted(const qses_kept_mesh *kept, const qses_mesh &mesh, size_t at
 }
 
 TEST(KeptMesh, PaintGivesVerticesWhatTheirAtomsHave) {
-  const Context context;
   const Atoms atoms = crambin();
-  set_atoms(context, atoms);
-  const Kept kept;
-  compute_view(context, settings());
-  expect_ok(qses_keep(context, kept));
+  const KeptSurface kept(atoms);
   const qses_mesh mesh = kept.view();
   expect_painted<1>(kept, mesh, atoms.size());
   expect_painted<2>(kept, mesh, atoms.size());
@@ -265,12 +261,8 @@ TEST(KeptMesh, PaintGivesTheColoursThatAComputationGives) {
 // ---- filtering
 
 TEST(KeptMesh, FilterLeavesTrianglesOfVisibleAtoms) {
-  const Context context;
   const Atoms atoms = crambin();
-  set_atoms(context, atoms);
-  const Kept kept;
-  compute_view(context, settings());
-  expect_ok(qses_keep(context, kept));
+  const KeptSurface kept(atoms);
   const qses_mesh mesh = kept.view();
   for (unsigned seed = 0; seed < 5; ++seed) {
     std::vector<uint8_t> visible = some_visible(atoms.size(), seed);
@@ -300,10 +292,7 @@ TEST(KeptMesh, FilterLeavesTrianglesOfVisibleAtoms) {
 TEST(KeptMesh, WrongArgumentsAreNamed) {
   const Context context;
   const Atoms atoms = water();
-  set_atoms(context, atoms);
-  const Kept kept;
-  compute_view(context, settings());
-  expect_ok(qses_keep(context, kept));
+  const KeptSurface kept(atoms);
   const qses_mesh mesh = kept.view();
   const uint32_t v = mesh.vertex_count, t = mesh.triangle_count;
   std::vector<uint32_t> values(4 * atoms.size()), room(3 * size_t(std::max(v, t)));

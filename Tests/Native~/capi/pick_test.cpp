@@ -296,11 +296,7 @@ TEST(Pick, EmptyMeshesAreMetNowhere) {
 }
 
 TEST(Pick, WrongArgumentsAreNamed) {
-  const Context context;
-  set_atoms(context, water());
-  const Kept kept;
-  compute_view(context, settings());
-  expect_ok(qses_keep(context, kept));
+  const KeptSurface kept(water());
   const float origin[3] = {0, 0, 0}, direction[3] = {1, 0, 0};
   const std::vector<uint8_t> visible(3, 1);
   qses_hit hit;

@@ -60,32 +60,31 @@ namespace QuickSes
 
         /// <param name="colors">Per atom; empty: all in the base colour.</param>
         /// <param name="baseColor">As it is now.</param>
-        /// <returns>Whether anything changes.</returns>
-        public bool SetColors(ReadOnlySpan<uint> colors, uint baseColor)
+        public void SetColors(ReadOnlySpan<uint> colors, uint baseColor)
         {
             _hasBaseColor.Span.Fill(colors.IsEmpty);
             if (colors.IsEmpty)
-                return SetBaseColor(baseColor);
-            if (colors.SequenceEqual(_colors.Span))
-                return false;
-            colors.CopyTo(_colors.Span);
-            ++ColorsVersion;
-            return true;
+            {
+                SetBaseColor(baseColor);
+            }
+            else if (!colors.SequenceEqual(_colors.Span))
+            {
+                colors.CopyTo(_colors.Span);
+                ++ColorsVersion;
+            }
         }
 
         /// <summary>The same; transparent black stands for the base colour.</summary>
-        public bool SetSchemeColors(ReadOnlySpan<uint> colors, uint baseColor)
+        public void SetSchemeColors(ReadOnlySpan<uint> colors, uint baseColor)
         {
             SetColors(colors, baseColor);
             Span<bool> hasBaseColor = _hasBaseColor.Span;
             for (int i = 0; i < hasBaseColor.Length; ++i)
                 hasBaseColor[i] = colors[i] == 0;
             SetBaseColor(baseColor);
-            return true;
         }
 
-        /// <returns>Whether there is an atom that has it, and had another.</returns>
-        public bool SetBaseColor(uint color)
+        public void SetBaseColor(uint color)
         {
             Span<uint> colors = _colors.Span;
             Span<bool> hasBaseColor = _hasBaseColor.Span;
@@ -98,11 +97,10 @@ namespace QuickSes
                 }
             if (isAny)
                 ++ColorsVersion;
-            return isAny;
         }
 
         /// <param name="visible">Per atom; empty: all.</param>
-        public bool SetVisible(ReadOnlySpan<bool> visible)
+        public void SetVisible(ReadOnlySpan<bool> visible)
         {
             int hidden = 0, changed = 0;
             Span<byte> mask = _visible.Span;
@@ -112,22 +110,20 @@ namespace QuickSes
                 changed += visible[i] == (mask.IsEmpty || mask[i] != 0) ? 0 : 1;
             }
             if (hidden == 0 ? mask.IsEmpty : changed == 0)
-                return false;
+                return;
             mask = _visible.Resize(hidden == 0 ? 0 : visible.Length);
             for (int i = 0; i < mask.Length; ++i)
                 mask[i] = visible[i] ? (byte)1 : (byte)0;
             ++VisibleVersion;
-            return true;
         }
 
         /// <param name="texcoords">Per atom; empty: none.</param>
-        public bool SetTexcoords(ReadOnlySpan<Vector2> texcoords)
+        public void SetTexcoords(ReadOnlySpan<Vector2> texcoords)
         {
             if (texcoords.IsEmpty && _texcoords.Length == 0)
-                return false;
+                return;
             _texcoords.CopyFrom(texcoords);
             ++TexcoordsVersion;
-            return true;
         }
     }
 }
