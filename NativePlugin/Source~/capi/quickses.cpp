@@ -37,7 +37,7 @@ void check_settings(const qses_settings &s) {
   check_choice("settings.method", s.method, QSES_METHOD_GRID);
   check_choice("settings.winding", s.winding, QSES_WINDING_REVERSED);
   check_choice("settings.vertex_layout", s.vertex_layout, QSES_VERTICES_COMPACT);
-  check_choice("settings.delivery", s.delivery, QSES_DELIVERY_BOTH);
+  check_choice("settings.delivery", s.delivery, QSES_DELIVERY_NONE);
   check_range("settings.spacing", static_cast<double>(s.spacing), 0.001, 100, " Å");
   check_range("settings.probe_radius", static_cast<double>(s.probe_radius), 0, 100, " Å");
   check_range("settings.relaxation_steps", s.relaxation_steps, 0, 100, "");

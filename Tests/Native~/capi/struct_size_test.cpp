@@ -268,12 +268,12 @@ constexpr bool is_without_padding(size_t end_of_last_field) {
 #define END(type, field) (offsetof(type, field) + sizeof(type::field))
 static_assert(is_without_padding<qses_backend_description>(END(qses_backend_description, reserved)), "");
 static_assert(is_without_padding<qses_context_options>(END(qses_context_options, reserved)), "");
-static_assert(is_without_padding<qses_settings>(END(qses_settings, pickable)), "");
-static_assert(is_without_padding<qses_component>(END(qses_component, reserved)), "");
-static_assert(is_without_padding<qses_mesh>(END(qses_mesh, components)), "");
+static_assert(is_without_padding<qses_settings>(END(qses_settings, atom_areas)), "");
+static_assert(is_without_padding<qses_component>(END(qses_component, bounds_max)), "");
+static_assert(is_without_padding<qses_mesh>(END(qses_mesh, atom_count)), "");
 static_assert(is_without_padding<qses_device_mesh>(END(qses_device_mesh, mesh)), "");
 static_assert(is_without_padding<qses_stage_time>(END(qses_stage_time, milliseconds)), "");
-static_assert(is_without_padding<qses_report>(END(qses_report, attempts)), "");
+static_assert(is_without_padding<qses_report>(END(qses_report, reserved)), "");
 static_assert(is_without_padding<qses_size_estimate>(END(qses_size_estimate, smallest_budget)), "");
 static_assert(is_without_padding<qses_progress>(END(qses_progress, message)), "");
 static_assert(is_without_padding<qses_hit>(END(qses_hit, normal)), "");

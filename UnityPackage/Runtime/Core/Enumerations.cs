@@ -103,7 +103,22 @@ namespace QuickSes
         /// </summary>
         Device = 1,
         /// <summary>In both.</summary>
-        Both = 2
+        Both = 2,
+        /// <summary>Nowhere: only the numbers are wanted (<see cref="SurfaceReport"/>).</summary>
+        None = 3
+    }
+
+    /// <summary>Where area and volume come from.</summary>
+    public enum SurfaceMeasuredBy
+    {
+        /// <summary>They were not asked for.</summary>
+        Nothing = 0,
+        /// <summary>Sums over flat triangles: the grid method.</summary>
+        Triangles = 1,
+        /// <summary>Triangles bent along the exact normals of their corners: SES.</summary>
+        Normals = 2,
+        /// <summary>Exact, from what each atom leaves free of the others: SAS and VDW.</summary>
+        Atoms = 3
     }
 
     /// <summary>What kind of surface a vertex lies on (Connolly's three).</summary>

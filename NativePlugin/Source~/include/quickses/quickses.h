@@ -95,7 +95,7 @@ extern "C" {
 
 /* Increases whenever a structure or a function below changes in a way that old callers would notice, which appending a
  * field to a structure with a struct_size is not. */
-#define QSES_ABI_VERSION 3
+#define QSES_ABI_VERSION 4
 
 typedef enum qses_status {
   QSES_OK = 0,
@@ -305,7 +305,9 @@ typedef enum qses_delivery {
   QSES_DELIVERY_HOST = 0,   /* in host memory: qses_mesh has pointers */
   QSES_DELIVERY_DEVICE = 1, /* on the CUDA device (qses_collect_device); nothing is downloaded, and the arrays of
                                qses_mesh are NULL */
-  QSES_DELIVERY_BOTH = 2
+  QSES_DELIVERY_BOTH = 2,
+  QSES_DELIVERY_NONE = 3 /* nowhere: only the numbers are wanted. Of SAS and VDW (method EXACT), area, volume and
+                            atom_areas come from the atoms, and no mesh is made, unless components are asked for */
 } qses_delivery;
 
 #define QSES_MAX_LEVELS 8
@@ -362,6 +364,15 @@ typedef struct qses_settings {
   qses_bool pickable;     /* 1: the mesh comes with what makes qses_kept_mesh_pick fast: 1 % more memory, and up to
                              3 % more time on the CPU, 0.04 to 0.2 ms on a GPU; default 0. Ignored with delivery
                              DEVICE */
+  qses_bool creases;       /* 1: the edges of triangles that cut across a crease, where sheets of the surface meet at an
+                              angle, are split on it: sharp rims, some more triangles. Default 0. Not with GRID */
+  qses_bool hard_edges;    /* 1: a vertex on a crease is there once per side, each time with the normal of that side, so
+                              that light breaks where the surface does. The mesh is then closed once vertices at the same
+                              place are taken for one. Default 0: one vertex, with the mean normal. Not with GRID */
+  qses_bool component_ids; /* 1: qses_mesh.component_ids is filled, and the components; default 0 */
+  qses_bool outer_only;    /* 1: the walls of cavities are left out of the mesh, not of area, volume and components;
+                              default 0 */
+  qses_bool atom_areas;    /* 1: qses_mesh.atom_areas is filled; default 0. Not with GRID */
 } qses_settings;
 
 /* The defaults, with struct_size set. NULL is ignored. */
@@ -381,10 +392,12 @@ static inline void qses_settings_init(qses_settings *settings) {
  * grows; what else there will be to say comes in arrays beside it. */
 typedef struct qses_component {
   uint64_t triangles;
-  double area;         /* Å², sum over its triangles */
+  double area;         /* Å², through the normals as qses_report.area of the SES */
   double volume;       /* Å³, enclosed; negative for a cavity, whatever the winding */
   qses_bool is_cavity; /* whether volume is negative */
-  uint32_t reserved;   /* 0 */
+  float center[3];     /* Å, centre of the volume that its triangles enclose */
+  float bounds_min[3]; /* box of its vertices, Å */
+  float bounds_max[3];
 } qses_component;
 
 /* A view of a mesh in memory of the context: valid until the next qses_compute, qses_collect or qses_keep that succeeds
@@ -417,7 +430,13 @@ typedef struct qses_mesh {
   uint32_t component_count;         /* 0 if not asked for, or if there is no surface */
   const qses_component *components; /* NULL if there are none; in the order of their first vertices. Those of the whole
                                        surface where atoms are hidden. Their areas and volumes add up to those of
-                                       qses_report */
+                                       qses_report, if that comes from the normals */
+  const uint32_t *component_ids;    /* V, the number of the vertex's component, or NULL if not asked for */
+  const double *atom_areas; /* atom_count, Å²: how much of the surface belongs to each of the caller's atoms; they add up
+                               to qses_report.area. SAS and VDW: exactly, from the atoms. SES: what of each triangle is
+                               nearest to the atom. Those of the whole surface where atoms are hidden. NULL if not asked
+                               for */
+  uint64_t atom_count;      /* 0 if atom_areas is NULL */
 } qses_mesh;
 
 /* Empty view with struct_size set. NULL is ignored. */
@@ -444,11 +463,19 @@ typedef struct qses_stage_time {
   double milliseconds; /* with CUDA: between events on the stream */
 } qses_stage_time;
 
+/* Where area and volume come from. */
+typedef enum qses_measured_by {
+  QSES_MEASURED_BY_NOTHING = 0,   /* not asked for */
+  QSES_MEASURED_BY_TRIANGLES = 1, /* sums over flat triangles (method GRID) */
+  QSES_MEASURED_BY_NORMALS = 2,   /* triangles bent along the exact normals of their corners: SES */
+  QSES_MEASURED_BY_ATOMS = 3      /* exact, from what each atom leaves free of the others: SAS and VDW */
+} qses_measured_by;
+
 /* What was done for one mesh. */
 typedef struct qses_report {
   uint32_t struct_size; /* set by qses_report_init */
   uint32_t stage_count;
-  double area;              /* Å², sum over the triangles */
+  double area;              /* Å², as measured_by says */
   double volume;            /* Å³, enclosed; cavities count negative */
   double compute_ms;        /* atoms in host memory to mesh in host memory; for a later level: since the one before */
   uint64_t work_bytes_peak; /* most memory in use for the work: on the device with CUDA, else in host memory,
@@ -467,6 +494,11 @@ typedef struct qses_report {
                                  edge is cut. 0 unless rounding hid a feature of the surface */
   uint64_t attempts; /* 1; more where memory was refused, and the work was done again in a way that takes less. What
                         sufficed is remembered, so the next frame of as many atoms is made at the first attempt */
+  double triangle_area;   /* Å² and Å³: sums over the triangles as they are; 0 if no mesh was made, or settings.measure
+                             is 0 */
+  double triangle_volume;
+  qses_measured_by measured_by;
+  uint32_t reserved; /* 0 */
 } qses_report;
 
 /* Empty report with struct_size set. NULL is ignored. */

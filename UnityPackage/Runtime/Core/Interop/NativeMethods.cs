@@ -12,7 +12,7 @@ namespace QuickSes.Interop
     internal static unsafe class NativeMethods
     {
         /// <summary>QSES_ABI_VERSION of the header these declarations were written after.</summary>
-        public const uint AbiVersion = 3;
+        public const uint AbiVersion = 4;
 
         public const string Library = "quickses";
         private const CallingConvention Cdecl = CallingConvention.Cdecl;

@@ -56,16 +56,23 @@ namespace QuickSes.Interop
         public MeshDelivery Delivery;
         public float ShowMsPerMb;
         public int Pickable;
+        public int Creases;
+        public int HardEdges;
+        public int ComponentIds;
+        public int OuterOnly;
+        public int AtomAreas;
     }
 
     [StructLayout(LayoutKind.Sequential)]
-    internal struct NativeComponent
+    internal unsafe struct NativeComponent
     {
         public ulong Triangles;
         public double Area;
         public double Volume;
         public int IsCavity;
-        public uint Reserved;
+        public fixed float Center[3];
+        public fixed float BoundsMin[3];
+        public fixed float BoundsMax[3];
     }
 
     [StructLayout(LayoutKind.Sequential)]
@@ -91,6 +98,9 @@ namespace QuickSes.Interop
         public uint LevelCount;
         public uint ComponentCount;
         public NativeComponent* Components;
+        public uint* ComponentIds;
+        public double* AtomAreas;
+        public ulong AtomCount;
     }
 
     [StructLayout(LayoutKind.Sequential)]
@@ -132,6 +142,10 @@ namespace QuickSes.Interop
         public ulong BorderBricks;
         public ulong UnplacedVertices;
         public ulong Attempts;
+        public double TriangleArea;
+        public double TriangleVolume;
+        public SurfaceMeasuredBy MeasuredBy;
+        public uint Reserved;
     }
 
     [StructLayout(LayoutKind.Sequential)]
