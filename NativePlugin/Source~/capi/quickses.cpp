@@ -54,6 +54,7 @@ void check_settings(const qses_settings &s) {
   if (s.method == QSES_METHOD_GRID && s.surface != QSES_SURFACE_SES)
     invalid("settings.method GRID makes the solvent-excluded surface only: use EXACT for the others");
   if (s.method == QSES_METHOD_GRID && s.patch_types) invalid("settings.patch_types is not available with method GRID");
+  if (s.method == QSES_METHOD_GRID && s.creases) invalid("settings.creases is not available with method GRID");
 }
 
 void check_backend(const qses_backend &backend) { check_choice("backend", backend, QSES_BACKEND_CPU); }

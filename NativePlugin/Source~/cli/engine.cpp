@@ -79,6 +79,7 @@ qses_settings settings_of(const ComputeOptions &options) {
   settings.spacing = static_cast<float>(options.spacing);
   settings.relaxation_steps = options.steps;
   settings.slice_size = options.slice;
+  settings.creases = options.creases == Creases::kOn;
   return settings;
 }
 

@@ -36,6 +36,9 @@ const char kFooter[] =
     "Owner atoms in PLY files are 0-based places among the atoms of the input's model, before any filter.\n"
     "Lengths are in angstrom, areas in A^2, volumes in A^3.\n";
 
+const std::map<std::string, Creases> kCreases = {
+    {"auto", Creases::kAuto}, {"on", Creases::kOn}, {"off", Creases::kOff}};
+
 template <typename Enum>
 const char *find_name(const std::map<std::string, Enum> &names, Enum value) {
   for (const auto &entry : names)
@@ -121,6 +124,9 @@ void add_compute_options(CLI::App *app, ComputeOptions &options, int &device) {
              "ses: solvent-excluded; sas: solvent-accessible; vdw: the atoms themselves");
   add_choice(app, "--method", options.method, kMethods,
              "exact: vertices on the exact surface; grid: the voxel method of Martinez, Krone and Baaden 2019");
+  add_choice(app, "--creases", options.creases, kCreases,
+             "Sharp creases: edges that cut across one are split there; default: on for a mesh that is written, off for "
+             "trajectories and bench");
   add_choice(app, "--backend", options.backend, kBackends, "What computes; auto: CUDA if it can be used, else the CPU");
   app->add_option_function<std::string>(
          "--device",
@@ -215,6 +221,8 @@ void check(const Options &options, const std::function<bool(const char *)> &give
     throw Failure(kUsage, "--device: only CUDA has devices to choose from, and --backend is cpu");
   if (options.compute.method == QSES_METHOD_GRID && options.compute.surface != QSES_SURFACE_SES)
     throw Failure(kUsage, "--method grid makes the solvent-excluded surface only: leave --surface at ses");
+  if (options.compute.method == QSES_METHOD_GRID && options.compute.creases == Creases::kOn)
+    throw Failure(kUsage, "--creases on: --method grid does not know where creases are");
   if (options.command == Options::Command::kBench) {
     if (options.inputs.empty()) throw Failure(kUsage, "bench: no input file was given");
     if (options.jobs && options.small > 0) throw Failure(kUsage, "--jobs and --small: one at a time");
@@ -304,6 +312,11 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
   }
   options.compute.device_given = device >= 0;
   if (device >= 0) options.compute.device = device;
+  if (options.compute.creases == Creases::kAuto) {
+    const bool is_picture = options.command == Options::Command::kSurface && !options.output.empty() &&
+                            options.trajectory.empty() && options.compute.method == QSES_METHOD_EXACT;
+    options.compute.creases = is_picture ? Creases::kOn : Creases::kOff;
+  }
   check(options, [&app](const char *flag) { return app.count(flag) != 0; });
   return options;
 }

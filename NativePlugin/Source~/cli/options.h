@@ -13,6 +13,9 @@
 
 namespace quickses::cli {
 
+// Whether creases are sharpened, as asked; AUTO: where a mesh is written, for its looks.
+enum class Creases { kAuto, kOn, kOff };
+
 // How to compute: flags that both commands share.
 struct ComputeOptions {
   qses_backend backend = QSES_BACKEND_AUTO;
@@ -26,6 +29,7 @@ struct ComputeOptions {
   double spacing = 0.5;  // Å
   unsigned steps = 1;
   unsigned slice = 0;  // 0 = sized by memory
+  Creases creases = Creases::kAuto;
   std::string radii = "quickses";
   bool radii_given = false;
 };

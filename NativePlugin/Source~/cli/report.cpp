@@ -29,7 +29,8 @@ Json settings_json(const ComputeOptions &options) {
                {"method", name_of(options.method)},
                {"probe", options.probe},
                {"spacing", options.spacing},
-               {"steps", options.steps}};
+               {"steps", options.steps},
+               {"creases", options.creases == Creases::kOn}};
   if (options.slice != 0) json["slice"] = options.slice;
   if (options.memory != 0) json["memory"] = options.memory;
   if (options.threads != 0) json["threads"] = options.threads;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "surface/methods/closed_layout.h"
+#include "surface/methods/crease_splits.h"
 #include "surface/stages/relaxation.h"
 
 namespace quickses {
@@ -139,8 +140,11 @@ MeshMemoryView build_exact_surface(Work &work) {
     });
   });
 
-  MeshMemoryView mesh = work.memory.allocate_mesh(executor, counts.vertices, counts.triangles, work.shape, work.purpose,
-                                                  work.plan.mesh_in_pieces);
+  const bool creases = splits_creases(work);
+  const MeshShape shape = creases ? shape_before_splits(work.shape) : work.shape;
+  MeshMemoryView mesh =
+      work.memory.allocate_mesh(executor, counts.vertices, counts.triangles, shape,
+                                creases ? MeshPurpose::kWork : work.purpose, work.plan.mesh_in_pieces);
   const auto end_of_mesh = executor.arena().mark();
   add_normals(work, &mesh);
   VertexStarts starts{work.settings.relaxation_steps > 0, nullptr, work.table.ring, &layout.totals->unplaced};
@@ -148,7 +152,7 @@ MeshMemoryView build_exact_surface(Work &work) {
   const auto emit_slice = [&](auto &any_executor, BrickRange slice, bool with_triangles) {
     Candidates<Executor> own{};
     MeshPart part{mesh.view, 0, 0};
-    if (mesh.in_pieces) part = open_part(any_executor, bricks, layout, work.shape, slice);
+    if (mesh.in_pieces) part = open_part(any_executor, bricks, layout, shape, slice);
     B::emit_vertices(any_executor, features, bricks, layout, slice, work.rooms, share ? shared : own, starts,
                      part.view);
     if (!mesh.in_pieces) return part;
@@ -190,7 +194,9 @@ MeshMemoryView build_exact_surface(Work &work) {
   if (mesh.view.packed_normals) mesh.view.normals = nullptr;
   executor.arena().rewind(end_of_mesh);
   mesh.unplaced = starts.unplaced;
-  return mesh;
+  if (!creases) return mesh;
+  work.timer.begin("creases");
+  return split_creases(work, mesh);
 }
 
 }  // namespace quickses

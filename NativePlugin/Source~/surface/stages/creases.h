@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: MIT
+// Creases: where two sheets of a surface meet at an angle. On the surfaces of balls (SAS and VDW) a sheet is the sphere
+// of an atom, a crease the circle of two of them, and a corner the point of three. Everything here is about one edge or
+// one triangle of a mesh whose vertices lie on the sheets; what is found is exact.
+#pragma once
+
+#include "surface/geometry/lattice.h"
+#include "surface/mesh/mesh_view.h"
+#include "surface/stages/neighbor_grid.h"
+#include "surface/stages/solvent_features.h"
+
+namespace quickses {
+
+// A vertex lies on a sheet that is nearer than this, Å, and besides what float32 leaves of its coordinates.
+constexpr float kSheetTolerance = 1e-4f;
+// Sheets whose normals have a larger cosine than this pass smoothly into each other: there is nothing to sharpen.
+constexpr float kSmoothCosine = 0.995f;
+
+// A crease nearer to an end of an edge than this part of its length takes the end instead of a new vertex,
+constexpr float kSnapPart = 0.3f;
+// and no edge is split nearer to its end than this.
+constexpr float kLeastPart = 0.08f;
+// How far a point of the crease may be from where the edge passes under it, in lengths of the edge.
+constexpr float kFarthestPart = 0.75f;
+// Of an edge along a crease: it is split where it is further from the crease than this, in units of the spacing.
+constexpr float kLeastSagitta = 0.03f;
+
+// A point of a crease, or of a corner where three meet.
+struct CreasePoint {
+  enum Kind : uint32_t { kNone, kCrossed, kAlong };  // the edge crosses the crease here, or runs along it
+  Vec3<float> position, normal, second_normal;       // centred frame; those of two of the sheets
+  uint32_t owner;                                    // caller's number of the atom whose normal is the first
+  Kind kind;
+  float to_first, to_second;     // distances to the ends of the edge
+  bool first_fits, second_fits;  // may the end be moved there? Not off a crease that it is on
+};
+
+// What an edge knows of its ends.
+struct CreaseEnd {
+  Vec3<float> position;  // centred frame
+  uint32_t owner;        // caller's number
+};
+
+// Of a vertex of the mesh, in the frame in which numbers are small.
+QSES_FN Vec3<float> centered_position(const Lattice &lattice, const float *position) {
+  return {static_cast<float>(static_cast<double>(position[0]) - lattice.center_x),
+          static_cast<float>(static_cast<double>(position[1]) - lattice.center_y),
+          static_cast<float>(static_cast<double>(position[2]) - lattice.center_z)};
+}
+
+// ---- circles and corners of spheres ----------------------------------------------------------------------------
+
+struct SphereCircle {
+  Vec3<float> center, axis;
+  float radius;  // 0: they do not meet
+};
+
+QSES_FN SphereCircle circle_of_spheres(const Sphere &a, const Sphere &b) {
+  const Vec3<float> between = Vec3<float>(b.center) - Vec3<float>(a.center);
+  const float distance2 = length_squared(between);
+  if (!share_circle(a.radius, b.radius, distance2)) return {Vec3<float>(a.center), {0.f, 0.f, 1.f}, 0.f};
+  const float inverse = reciprocal_root(distance2);
+  const float along = 0.5f * (distance2 + (a.radius - b.radius) * (a.radius + b.radius)) * inverse;
+  const Vec3<float> axis = between * inverse;
+  return {Vec3<float>(a.center) + axis * along, axis,
+          square_root(maximum(0.f, (a.radius - along) * (a.radius + along)))};
+}
+
+// The point of the circle that is nearest to x; false on its axis, where all are.
+QSES_FN bool nearest_on_circle(const SphereCircle &circle, const Vec3<float> &x, Vec3<float> *nearest) {
+  const Vec3<float> d = x - circle.center, in_plane = d - circle.axis * dot(d, circle.axis);
+  const float length2 = length_squared(in_plane);
+  if (circle.radius <= 0.f || length2 <= 1e-6f * circle.radius * circle.radius) return false;
+  *nearest = circle.center + in_plane * (circle.radius * reciprocal_root(length2));
+  return true;
+}
+
+QSES_FN Vec3<float> cross_product(const Vec3<float> &a, const Vec3<float> &b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+// The point of the circle on a third sphere that is nearest to x; false if they do not meet.
+QSES_FN bool nearest_corner(const SphereCircle &circle, const Sphere &third, const Vec3<float> &x,
+                            Vec3<float> *nearest) {
+  const Vec3<float> g = Vec3<float>(third.center) - circle.center, flat = g - circle.axis * dot(g, circle.axis);
+  const float flat2 = length_squared(flat);
+  if (circle.radius <= 0.f || flat2 <= 1e-8f) return false;
+  const float inverse = reciprocal_root(flat2);
+  const float cosine = (circle.radius * circle.radius + length_squared(g) - third.radius * third.radius) * 0.5f *
+                       quotient(inverse, circle.radius);
+  if (!(absolute(cosine) < 1.f)) return false;
+  const Vec3<float> towards = flat * inverse, aside = cross_product(circle.axis, towards);
+  const float sine = square_root((1.f - cosine) * (1.f + cosine));
+  const float side = dot(x - circle.center, aside) < 0.f ? -sine : sine;
+  *nearest = circle.center + (towards * cosine + aside * side) * circle.radius;
+  return true;
+}
+
+// ---- the sheets of SAS and VDW ---------------------------------------------------------------------------------
+
+// The atoms whose spheres come near an edge or a triangle. Few, but where atoms crowd: there nothing is sharpened.
+struct NearSpheres {
+  static constexpr int kMost = 24;
+  static constexpr uint32_t kMostMet = 1 << 14;
+  uint32_t place[kMost];
+  int count = 0;
+  bool crowded = false;
+};
+
+struct SphereSheets {
+  NeighborGridView atoms;
+  const uint32_t *places;  // caller's number of an atom -> its place in the grid
+  Lattice lattice;
+  float max_radius;
+  float tolerance;
+
+  QSES_FN CreaseEnd end(const MeshView &mesh, uint32_t vertex) const {
+    return {centered_position(lattice, mesh.position(vertex)), mesh.owner(vertex)};
+  }
+  QSES_FN Sphere sphere_of(uint32_t owner) const { return load(atoms.items + places[owner]); }
+
+  QSES_FN bool is_on(const Sphere &ball, const Vec3<float> &x) const {
+    return absolute(square_root(length_squared(x - Vec3<float>(ball.center))) - ball.radius) <= tolerance;
+  }
+
+  // May an edge cross a crease? At a glance; solve() decides.
+  QSES_FN bool may_cross(const CreaseEnd &u, const CreaseEnd &v) const {
+    return u.owner != v.owner && !is_on(sphere_of(v.owner), u.position) && !is_on(sphere_of(u.owner), v.position);
+  }
+
+  // May a triangle hold a corner: has it no sheet that all three vertices lie on?
+  QSES_FN bool may_have_corner(const CreaseEnd *ends) const {
+    for (int k = 0; k < 3; ++k) {
+      const Sphere ball = sphere_of(ends[k].owner);
+      if (is_on(ball, ends[(k + 1) % 3].position) && is_on(ball, ends[(k + 2) % 3].position)) return false;
+    }
+    return true;
+  }
+
+  QSES_FN NearSpheres near(const Vec3<float> &x, float reach) const {
+    NearSpheres near;
+    const Vec3<float> r(max_radius + reach, max_radius + reach, max_radius + reach);
+    const CellBox box = cells_around(atoms.cells, x - r, x + r);
+    uint32_t met = 0;
+    for (int z = box.z0; z <= box.z1; ++z)
+      for (int y = box.y0; y <= box.y1; ++y) {
+        const ItemRun run = atoms.run(box.x0, box.x1, y, z);
+        met += run.end - run.begin;
+        if (met > NearSpheres::kMostMet) {
+          near.crowded = true;
+          return near;
+        }
+        for (uint32_t k = run.begin; k < run.end; ++k) {
+          const Sphere ball = load(atoms.items + k);
+          const float d2 = length_squared(x - Vec3<float>(ball.center)), longest = ball.radius + reach;
+          const float shortest = maximum(0.f, ball.radius - reach);
+          if (d2 > longest * longest || d2 < shortest * shortest) {
+            if (d2 < shortest * shortest) near.crowded = true;  // all is covered: this is no place on the surface
+            continue;
+          }
+          if (near.count == NearSpheres::kMost) {
+            near.crowded = true;
+            return near;
+          }
+          near.place[near.count++] = k;
+        }
+      }
+    return near;
+  }
+
+  // Those of the near spheres that the point lies on, as bits.
+  QSES_FN uint32_t sheets_at(const NearSpheres &near, const Vec3<float> &x) const {
+    uint32_t bits = 0;
+    for (int k = 0; k < near.count; ++k)
+      if (is_on(load(atoms.items + near.place[k]), x)) bits |= uint32_t(1) << k;
+    return bits;
+  }
+  // The near ball that covers the point most; -1: none.
+  QSES_FN int covering(const NearSpheres &near, const Vec3<float> &x) const {
+    int deepest = -1;
+    float most = tolerance;
+    for (int k = 0; k < near.count; ++k) {
+      const Sphere ball = load(atoms.items + near.place[k]);
+      const float depth = ball.radius - square_root(length_squared(x - Vec3<float>(ball.center)));
+      if (depth > most) {
+        most = depth;
+        deepest = k;
+      }
+    }
+    return deepest;
+  }
+
+  // Describes a point on the spheres a and b (places).
+  QSES_FN CreasePoint point_on(uint32_t a, uint32_t b, const Vec3<float> &x, CreasePoint::Kind kind) const {
+    const uint32_t first = atoms.order[a] < atoms.order[b] ? a : b, second = first == a ? b : a;
+    CreasePoint p{};
+    p.position = x;
+    p.normal = normal_at(first, x);
+    p.second_normal = normal_at(second, x);
+    p.owner = atoms.order[first];
+    p.kind = dot(p.normal, p.second_normal) > kSmoothCosine ? CreasePoint::kNone : kind;
+    return p;
+  }
+
+  // Where the edge should have a vertex.
+  QSES_FN CreasePoint solve(const CreaseEnd &u, const CreaseEnd &v, bool along) const {
+    CreasePoint none{};
+    none.kind = CreasePoint::kNone;
+    const Vec3<float> edge = v.position - u.position, middle = u.position + edge * 0.5f;
+    const float length2 = length_squared(edge), longest = kFarthestPart * kFarthestPart * length2;
+    const NearSpheres list = near(middle, square_root(length2) + tolerance);
+    if (list.crowded || !(length2 > 0.f)) return none;
+    const uint32_t on_u = sheets_at(list, u.position), on_v = sheets_at(list, v.position), both = on_u & on_v;
+    if (both != 0) {
+      const uint32_t others = both & (both - 1);
+      if (!along || others == 0) return none;
+      const uint32_t a = list.place[lowest_bit32(both)], b = list.place[lowest_bit32(others)];
+      Vec3<float> x;
+      if (!nearest_on_circle(circle_of_spheres(load(atoms.items + a), load(atoms.items + b)), middle, &x)) return none;
+      const float off2 = length_squared(x - middle), least = kLeastSagitta * lattice.spacing;
+      if (off2 < least * least || off2 > 0.25f * length2 || covering(list, x) >= 0) return none;
+      return with_ends(point_on(a, b, x, CreasePoint::kAlong), u, v, false, false);
+    }
+    // The crease of two of the sheets that the ends lie on; where a third sphere covers it, the corner of the three.
+    CreasePoint best = none;
+    float nearest2 = longest;
+    for (uint32_t s = on_u; s; s &= s - 1)
+      for (uint32_t t = on_v; t; t &= t - 1) {
+        const int i = lowest_bit32(s), j = lowest_bit32(t);
+        const uint32_t a = list.place[i], b = list.place[j];
+        const Sphere ball_a = load(atoms.items + a), ball_b = load(atoms.items + b);
+        const SphereCircle circle = circle_of_spheres(ball_a, ball_b);
+        if (circle.radius <= 0.f) continue;
+        // Where the chord is as deep in the one as in the other ball: in the plane of the circle.
+        const float from = dot(circle.center - u.position, circle.axis), whole = dot(edge, circle.axis);
+        const float part = absolute(whole) > 1e-9f ? minimum(1.f, maximum(0.f, quotient(from, whole))) : 0.5f;
+        const Vec3<float> under = u.position + edge * part;
+        Vec3<float> x;
+        if (!nearest_on_circle(circle, under, &x)) continue;
+        const int third = covering(list, x);
+        uint32_t sheets = uint32_t(1) << i | uint32_t(1) << j;
+        if (third >= 0) {
+          if (!nearest_corner(circle, load(atoms.items + list.place[third]), x, &x) || covering(list, x) >= 0) continue;
+          sheets |= uint32_t(1) << third;
+        }
+        const float d2 = length_squared(x - under);
+        if (!(d2 < nearest2)) continue;
+        const CreasePoint p = point_on(a, b, x, CreasePoint::kCrossed);
+        if (p.kind == CreasePoint::kNone) continue;
+        nearest2 = d2;
+        best = with_ends(p, u, v, (on_u & ~sheets) == 0, (on_v & ~sheets) == 0);
+      }
+    return best;
+  }
+
+  // The corner in a triangle whose edges all have a sheet in common, but not the same.
+  QSES_FN CreasePoint solve_corner(const CreaseEnd *ends) const {
+    CreasePoint none{};
+    none.kind = CreasePoint::kNone;
+    const Vec3<float> middle = (ends[0].position + ends[1].position + ends[2].position) * (1.f / 3.f);
+    float reach2 = 0.f;
+    for (int k = 0; k < 3; ++k) reach2 = maximum(reach2, length_squared(ends[k].position - middle));
+    const NearSpheres list = near(middle, 1.5f * square_root(reach2) + tolerance);
+    if (list.crowded || !(reach2 > 0.f)) return none;
+    uint32_t on[3], pair[3];
+    for (int k = 0; k < 3; ++k) on[k] = sheets_at(list, ends[k].position);
+    for (int k = 0; k < 3; ++k) pair[k] = on[k] & on[(k + 1) % 3];
+    if ((on[0] & on[1] & on[2]) != 0 || pair[0] == 0 || pair[1] == 0 || pair[2] == 0) return none;
+    const uint32_t a = list.place[lowest_bit32(pair[0])], b = list.place[lowest_bit32(pair[1])],
+                   c = list.place[lowest_bit32(pair[2])];
+    Vec3<float> x;
+    if (!nearest_corner(circle_of_spheres(load(atoms.items + a), load(atoms.items + b)), load(atoms.items + c), middle,
+                        &x))
+      return none;
+    if (length_squared(x - middle) > reach2 || covering(list, x) >= 0) return none;
+    return point_on(a, b, x, CreasePoint::kCrossed);
+  }
+
+ private:
+  QSES_FN Vec3<float> normal_at(uint32_t place, const Vec3<float> &x) const {
+    const Vec3<float> d = x - Vec3<float>(load(atoms.items + place).center);
+    return d * reciprocal_root(maximum(length_squared(d), 1e-12f));
+  }
+  QSES_FN static CreasePoint with_ends(CreasePoint p, const CreaseEnd &u, const CreaseEnd &v, bool first_fits,
+                                       bool second_fits) {
+    p.to_first = square_root(length_squared(p.position - u.position));
+    p.to_second = square_root(length_squared(p.position - v.position));
+    p.first_fits = first_fits;
+    p.second_fits = second_fits;
+    return p;
+  }
+};
+
+struct PlaceAtoms {
+  const uint32_t *order;
+  uint32_t *places;
+  QSES_HOST_DEVICE void operator()(size_t i) const { places[order[i]] = static_cast<uint32_t>(i); }
+};
+
+}  // namespace quickses

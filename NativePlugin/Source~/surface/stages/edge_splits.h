@@ -1,0 +1,483 @@
+// SPDX-License-Identifier: MIT
+// Splits edges of a closed mesh: each edge at most once per round, and in both of its triangles, so that the mesh stays
+// closed whatever the places are. Sheets say what to split and where (creases.h).
+#pragma once
+
+#include "parallel/atomics.h"
+#include "surface/mesh/mesh_parts.h"
+#include "surface/stages/creases.h"
+
+namespace quickses {
+
+constexpr uint32_t kNoNumber = ~uint32_t(0);
+
+// Edges of the triangles of a list, each met once: a closed mesh has it from its smaller to its larger vertex in one of
+// its triangles. They are found again by the smaller vertex.
+struct EdgeTable {
+  uint32_t *starts;   // [vertex], and the total: edges of smaller vertices
+  uint32_t *seconds;  // [edge]: the larger vertex; in order for each smaller one
+  uint32_t *firsts;   // [edge]
+
+  QSES_FN uint32_t find(uint32_t u, uint32_t v) const {
+    const uint32_t low = u < v ? u : v, high = u < v ? v : u;
+    for (uint32_t k = starts[low]; k < starts[low + 1]; ++k)
+      if (seconds[k] == high) return k;
+    return kNoNumber;
+  }
+};
+
+// What a round may do.
+struct SplitRound {
+  bool snap;   // vertices may be moved to a crease that is near
+  bool along;  // edges along creases are split, too, and triangles over corners
+};
+
+// Triangles that have something to do with creases.
+template <class Sheets>
+struct NearCrease {
+  MeshParts mesh;
+  bool along;
+  QSES_HOST_DEVICE bool operator()(size_t i) const {
+    const uint32_t *const t = mesh.triangle(static_cast<uint32_t>(i));
+    const uint32_t owner = mesh.owner(t[0]);
+    if (owner != mesh.owner(t[1]) || owner != mesh.owner(t[2])) return true;
+    return along && int(mesh.on_crease(t[0])) + int(mesh.on_crease(t[1])) + int(mesh.on_crease(t[2])) > 1;
+  }
+};
+
+// Edges of a triangle that may have to be split, as bits: k is that from corner k to the next.
+template <class Sheets>
+struct ChooseEdges {
+  MeshParts mesh;
+  Sheets sheets;
+  SplitRound round;
+  const uint32_t *list;
+  uint8_t *chosen;  // [list]
+  uint32_t *count;  // [vertex]
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    const uint32_t *const t = mesh.triangle(list[i]);
+    uint8_t bits = 0;
+    for (int k = 0; k < 3; ++k) {
+      const uint32_t a = t[k], b = t[k == 2 ? 0 : k + 1], u = a < b ? a : b, v = a < b ? b : a;
+      const bool crest = round.along && mesh.on_crease(u) && mesh.on_crease(v);
+      if (!crest && !sheets.may_cross(sheets.end(mesh.with_vertex(u), u), sheets.end(mesh.with_vertex(v), v)))
+        continue;
+      bits |= uint8_t(1u << k);
+      if (a < b) atomic_add(count + a, uint32_t(1));
+    }
+    chosen[i] = bits;
+  }
+};
+
+struct ListEdges {
+  MeshParts mesh;
+  const uint32_t *list;
+  const uint8_t *chosen;
+  const uint32_t *starts;
+  uint32_t *taken;    // [vertex]
+  uint32_t *seconds;  // in any order for each first
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    const uint32_t *const t = mesh.triangle(list[i]);
+    for (int k = 0; k < 3; ++k) {
+      const uint32_t a = t[k], b = t[k == 2 ? 0 : k + 1];
+      if (!(chosen[i] >> k & 1) || a > b) continue;
+      seconds[starts[a] + atomic_add(taken + a, uint32_t(1))] = b;
+    }
+  }
+};
+
+// Orders the edges of each first vertex by the second.
+struct OrderEdges {
+  const uint32_t *unordered;
+  EdgeTable table;
+  QSES_HOST_DEVICE void operator()(size_t vertex) const {
+    const uint32_t begin = table.starts[vertex], end = table.starts[vertex + 1];
+    for (uint32_t k = begin; k < end; ++k) {
+      uint32_t place = begin;
+      for (uint32_t j = begin; j < end; ++j)
+        if (unordered[j] < unordered[k]) ++place;
+      table.seconds[place] = unordered[k];
+      table.firsts[place] = static_cast<uint32_t>(vertex);
+    }
+  }
+};
+
+template <class Sheets>
+struct SolveEdges {
+  MeshParts mesh;
+  Sheets sheets;
+  EdgeTable table;
+  bool along;
+  CreasePoint *points;  // [edge]
+  QSES_HOST_DEVICE void operator()(size_t edge) const {
+    const uint32_t u = table.firsts[edge], v = table.seconds[edge];
+    points[edge] = sheets.solve(sheets.end(mesh.with_vertex(u), u), sheets.end(mesh.with_vertex(v), v), along);
+  }
+};
+
+// ---- snapping --------------------------------------------------------------------------------------------------
+
+// The end that wants to be moved onto the crease: 0, 1, or -1 for neither.
+QSES_FN int end_to_snap(const CreasePoint &p, float length) {
+  if (p.kind != CreasePoint::kCrossed) return -1;
+  const bool first = p.first_fits && p.to_first < kSnapPart * length;
+  const bool second = p.second_fits && p.to_second < kSnapPart * length;
+  if (first && (!second || p.to_first <= p.to_second)) return 0;
+  return second ? 1 : -1;
+}
+
+QSES_FN uint32_t bits_of(float positive) {
+  uint32_t bits;
+  memcpy(&bits, &positive, sizeof bits);
+  return bits;
+}
+
+// Where vertices are to be moved: to the nearest of the points that want them; of two as near, to that of the first
+// edge.
+struct Snaps {
+  uint32_t *nearest;  // [vertex]: bits of the distance
+  uint32_t *edge;     // [vertex]: whose point it is, or kNoNumber
+};
+
+struct EdgeOfSnap {
+  EdgeTable table;
+  const CreasePoint *points;
+  Snaps snaps;
+  // Calls use(vertex, distance) if an end of the edge wants to be moved.
+  template <class Use>
+  QSES_FN void with_end(size_t edge, const Use &use) const {
+    const CreasePoint &p = points[edge];
+    const int end = end_to_snap(p, p.to_first + p.to_second);
+    if (end == 0) use(table.firsts[edge], p.to_first);
+    if (end == 1) use(table.seconds[edge], p.to_second);
+  }
+};
+struct FindNearestSnap : EdgeOfSnap {
+  QSES_HOST_DEVICE void operator()(size_t edge) const {
+    with_end(edge, [&](uint32_t v, float distance) { atomic_min(snaps.nearest + v, bits_of(distance)); });
+  }
+};
+struct ChooseSnap : EdgeOfSnap {
+  QSES_HOST_DEVICE void operator()(size_t edge) const {
+    with_end(edge, [&](uint32_t v, float distance) {
+      if (snaps.nearest[v] == bits_of(distance)) atomic_min(snaps.edge + v, static_cast<uint32_t>(edge));
+    });
+  }
+};
+
+QSES_FN float least_cosine_of_angles(const Vec3<float> &a, const Vec3<float> &b, const Vec3<float> &c) {
+  const Vec3<float> ab = b - a, bc = c - b, ca = a - c;
+  const float u = length_squared(ab), v = length_squared(bc), w = length_squared(ca);
+  const float at_a = -dot(ab, ca) * reciprocal_root(maximum(u * w, 1e-30f));
+  const float at_b = -dot(ab, bc) * reciprocal_root(maximum(u * v, 1e-30f));
+  const float at_c = -dot(bc, ca) * reciprocal_root(maximum(v * w, 1e-30f));
+  return maximum(at_a, maximum(at_b, at_c));  // of the smallest angle
+}
+
+// A triangle that a snap would fold, or press flat, keeps its corners.
+constexpr float kLeastSnapTurn = 0.3f;     // cosine between its normals before and after
+constexpr float kSnapAngleCosine = 0.97f;  // 14 degrees
+
+struct TouchedBySnap {
+  MeshParts mesh;
+  const uint32_t *edge;
+  QSES_HOST_DEVICE bool operator()(size_t i) const {
+    const uint32_t *const t = mesh.triangle(static_cast<uint32_t>(i));
+    return edge[t[0]] != kNoNumber || edge[t[1]] != kNoNumber || edge[t[2]] != kNoNumber;
+  }
+};
+
+struct RefuseSnaps {
+  MeshParts mesh;
+  Lattice lattice;
+  const uint32_t *list;
+  const CreasePoint *points;
+  const uint32_t *edge;  // of the snaps
+  uint8_t *refused;      // [vertex]
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    const uint32_t *const t = mesh.triangle(list[i]);
+    Vec3<float> before[3], after[3];
+    bool any = false;
+    for (int k = 0; k < 3; ++k) {
+      before[k] = after[k] = centered_position(lattice, mesh.with_vertex(t[k]).position(t[k]));
+      if (edge[t[k]] == kNoNumber || refused[t[k]]) continue;
+      after[k] = points[edge[t[k]]].position;
+      any = true;
+    }
+    if (!any) return;
+    const Vec3<float> old = cross_product(before[1] - before[0], before[2] - before[0]);
+    const Vec3<float> now = cross_product(after[1] - after[0], after[2] - after[0]);
+    const bool turned = !(dot(old, now) > kLeastSnapTurn * square_root(length_squared(old) * length_squared(now)));
+    const float was = least_cosine_of_angles(before[0], before[1], before[2]);
+    const float is = least_cosine_of_angles(after[0], after[1], after[2]);
+    if (!turned && is <= maximum(kSnapAngleCosine, was)) return;
+    for (int k = 0; k < 3; ++k)
+      if (edge[t[k]] != kNoNumber) atomic_set(refused + t[k]);
+  }
+};
+
+// Writes a vertex onto a crease. Positions of a mesh are the caller's.
+QSES_FN void put_on_crease(const MeshParts &mesh, const Lattice &lattice, uint32_t vertex, const CreasePoint &p) {
+  const MeshView &view = mesh.with_vertex(vertex);
+  store_vec3(view.position(vertex), Vec3<float>(lattice.to_caller(p.position)));
+  store_vec3(view.normal(vertex), p.normal);
+  store_vec3(mesh.second_normal(vertex), p.second_normal);
+  const int k = mesh.part_of_vertex(vertex);
+  mesh.marks[k].on_crease[view.place(vertex)] = 1;
+}
+
+struct SnapVertices {
+  MeshParts mesh;
+  Lattice lattice;
+  EdgeTable table;
+  CreasePoint *points;
+  const uint32_t *edge;
+  const uint8_t *refused;
+  QSES_HOST_DEVICE void operator()(size_t e) const {
+    for (const uint32_t v : {table.firsts[e], table.seconds[e]})
+      if (edge[v] == e && !refused[v]) put_on_crease(mesh, lattice, v, points[e]);
+  }
+};
+
+// ---- splitting -------------------------------------------------------------------------------------------------
+
+// An edge is not split too near to an end.
+QSES_FN bool is_split(const CreasePoint &p) {
+  if (p.kind == CreasePoint::kNone) return false;
+  return minimum(p.to_first, p.to_second) >= kLeastPart * (p.to_first + p.to_second);
+}
+struct CountSplit {
+  const CreasePoint *points;
+  QSES_HOST_DEVICE uint64_t operator()(size_t edge) const { return is_split(points[edge]) ? 1 : 0; }
+};
+
+// The triangles that one becomes: corners 0, 1, 2 are its own, 3 + k is on the edge from corner k, 6 is within.
+struct Pieces {
+  uint8_t corner[6][3];
+  int count;
+};
+
+template <class Position>  // position(corner)
+QSES_FN Pieces cut_triangle(bool on0, bool on1, bool on2, bool within, const Position &position) {
+  Pieces p{};
+  const bool on[3] = {on0, on1, on2};
+  const int splits = int(on0) + int(on1) + int(on2);
+  const auto add = [&](int a, int b, int c) {
+    p.corner[p.count][0] = static_cast<uint8_t>(a);
+    p.corner[p.count][1] = static_cast<uint8_t>(b);
+    p.corner[p.count++][2] = static_cast<uint8_t>(c);
+  };
+  if (within) {
+    for (int k = 0; k < 3; ++k) {
+      const int next = k == 2 ? 0 : k + 1;
+      if (on[k]) {
+        add(k, 3 + k, 6);
+        add(3 + k, next, 6);
+      } else {
+        add(k, next, 6);
+      }
+    }
+    return p;
+  }
+  if (splits == 0) {
+    add(0, 1, 2);
+  } else if (splits == 1) {
+    const int k = on0 ? 0 : on1 ? 1 : 2, b = (k + 1) % 3, c = (k + 2) % 3;
+    add(k, 3 + k, c);
+    add(3 + k, b, c);
+  } else if (splits == 2) {
+    // The corner between the two edges is cut off; of the diagonals of the rest, that with the larger angles.
+    const int k = !on0 ? 0 : !on1 ? 1 : 2, a = k, b = (k + 1) % 3, c = (k + 2) % 3, p1 = 3 + b, p2 = 3 + c;
+    add(p2, p1, c);
+    const Vec3<float> xa = position(a), xb = position(b), x1 = position(p1), x2 = position(p2);
+    const float first = maximum(least_cosine_of_angles(xa, xb, x1), least_cosine_of_angles(xa, x1, x2));
+    const float second = maximum(least_cosine_of_angles(xa, xb, x2), least_cosine_of_angles(xb, x1, x2));
+    if (first <= second) {
+      add(a, b, p1);
+      add(a, p1, p2);
+    } else {
+      add(a, b, p2);
+      add(b, p1, p2);
+    }
+  } else {
+    add(3, 4, 5);
+    add(0, 3, 5);
+    add(1, 4, 3);
+    add(2, 5, 4);
+  }
+  return p;
+}
+
+// The splits of a triangle of the list: edges that are split, and whether there is a vertex within.
+struct TriangleSplits {
+  uint32_t edge[3];  // kNoNumber: not split
+  bool within;
+  QSES_FN int edges() const { return int(edge[0] != kNoNumber) + int(edge[1] != kNoNumber) + int(edge[2] != kNoNumber); }
+  QSES_FN int new_triangles() const { return within ? 2 + edges() : edges(); }
+};
+
+struct FindSplits {
+  MeshParts mesh;
+  EdgeTable table;
+  const uint32_t *list;
+  const uint8_t *chosen;
+  const CreasePoint *points;   // [edge]
+  const CreasePoint *corners;  // [list], or nullptr
+  QSES_FN TriangleSplits operator()(size_t i) const {
+    const uint32_t *const t = mesh.triangle(list[i]);
+    TriangleSplits s{{kNoNumber, kNoNumber, kNoNumber}, false};
+    for (int k = 0; k < 3; ++k) {
+      if (!(chosen[i] >> k & 1)) continue;
+      const uint32_t e = table.find(t[k], t[k == 2 ? 0 : k + 1]);
+      if (e != kNoNumber && is_split(points[e])) s.edge[k] = e;
+    }
+    s.within = corners && corners[i].kind != CreasePoint::kNone;
+    return s;
+  }
+};
+struct CountNewTriangles {
+  FindSplits find;
+  QSES_HOST_DEVICE uint64_t operator()(size_t i) const { return static_cast<uint64_t>(find(i).new_triangles()); }
+};
+
+template <class Sheets>
+struct SolveCorners {
+  MeshParts mesh;
+  Sheets sheets;
+  const uint32_t *list;
+  CreasePoint *corners;  // [list]
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    const uint32_t *const t = mesh.triangle(list[i]);
+    CreaseEnd ends[3];
+    for (int k = 0; k < 3; ++k) ends[k] = sheets.end(mesh.with_vertex(t[k]), t[k]);
+    corners[i].kind = CreasePoint::kNone;
+    if (sheets.may_have_corner(ends)) corners[i] = sheets.solve_corner(ends);
+  }
+};
+struct CountCorner {
+  const CreasePoint *corners;
+  QSES_HOST_DEVICE uint64_t operator()(size_t i) const { return corners[i].kind != CreasePoint::kNone ? 1 : 0; }
+};
+
+// Where splits would fold a triangle, those along a crease are left out; those across stay.
+struct RefuseSplits {
+  FindSplits find;
+  Lattice lattice;
+  uint8_t *refused;  // [edge]
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    const TriangleSplits s = find(i);
+    if (s.edges() == 0) return;
+    bool any = false;
+    for (int k = 0; k < 3; ++k)
+      any |= s.edge[k] != kNoNumber && find.points[s.edge[k]].kind == CreasePoint::kAlong;
+    if (!any) return;
+    const uint32_t *const t = find.mesh.triangle(find.list[i]);
+    const auto position = [&](int corner) {
+      if (corner < 3) return centered_position(lattice, find.mesh.with_vertex(t[corner]).position(t[corner]));
+      return corner == 6 ? find.corners[i].position : find.points[s.edge[corner - 3]].position;
+    };
+    const Vec3<float> a = position(0);
+    const Vec3<float> whole = cross_product(position(1) - a, position(2) - a);
+    const Pieces pieces = cut_triangle(s.edge[0] != kNoNumber, s.edge[1] != kNoNumber, s.edge[2] != kNoNumber, s.within,
+                                       position);
+    bool bad = false;
+    for (int p = 0; p < pieces.count; ++p) {
+      const Vec3<float> x = position(pieces.corner[p][0]), y = position(pieces.corner[p][1]),
+                        z = position(pieces.corner[p][2]);
+      bad |= !(dot(cross_product(y - x, z - x), whole) > 0.f) || least_cosine_of_angles(x, y, z) > 0.99f;
+    }
+    if (!bad) return;
+    for (int k = 0; k < 3; ++k)
+      if (s.edge[k] != kNoNumber && find.points[s.edge[k]].kind == CreasePoint::kAlong) atomic_set(refused + s.edge[k]);
+  }
+};
+struct DropRefused {
+  const uint8_t *refused;
+  CreasePoint *points;
+  QSES_HOST_DEVICE void operator()(size_t edge) const {
+    if (refused[edge]) points[edge].kind = CreasePoint::kNone;
+  }
+};
+
+// New vertices: those of edges in the order of these, then those within triangles in the order of those.
+struct AddVertex {
+  MeshParts mesh;
+  Lattice lattice;
+  const CreasePoint *points;
+  const uint32_t *rank;
+  uint32_t first;
+  bool edges;
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    const CreasePoint &p = points[i];
+    if (edges ? !is_split(p) : p.kind == CreasePoint::kNone) return;
+    const uint32_t vertex = first + rank[i];
+    const MeshView &view = mesh.with_vertex(vertex);
+    view.owner(vertex) = p.owner;
+    if (view.patches) view.patch(vertex) = QSES_PATCH_REENTRANT;
+    put_on_crease(mesh, lattice, vertex, p);
+  }
+};
+
+// The first piece of a triangle takes its place, the others come behind all triangles.
+struct AddTriangles {
+  FindSplits find;
+  Lattice lattice;
+  const uint32_t *edge_rank, *corner_rank;
+  uint32_t first_of_edges, first_of_corners;
+  const uint32_t *triangles_before;  // [list]
+  uint32_t first_triangle;
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    const TriangleSplits s = find(i);
+    if (s.new_triangles() == 0) return;
+    uint32_t *const t = find.mesh.triangle(find.list[i]);
+    const uint32_t own[3] = {t[0], t[1], t[2]};
+    const auto position = [&](int corner) {
+      if (corner < 3) return centered_position(lattice, find.mesh.with_vertex(own[corner]).position(own[corner]));
+      return find.points[s.edge[corner - 3]].position;
+    };
+    const Pieces pieces = cut_triangle(s.edge[0] != kNoNumber, s.edge[1] != kNoNumber, s.edge[2] != kNoNumber, s.within,
+                                       position);
+    const auto number = [&](int corner) {
+      if (corner < 3) return own[corner];
+      return corner == 6 ? first_of_corners + corner_rank[i] : first_of_edges + edge_rank[s.edge[corner - 3]];
+    };
+    uint32_t next = first_triangle + triangles_before[i];
+    for (int p = 0; p < pieces.count; ++p) {
+      uint32_t *const out = p == 0 ? t : find.mesh.triangle(next++);
+      for (int k = 0; k < 3; ++k) out[k] = number(pieces.corner[p][k]);
+    }
+  }
+};
+
+// ---- the finished mesh -----------------------------------------------------------------------------------------
+
+// On a crease a vertex carries the mean of its sides.
+struct JoinVertex {
+  MeshParts from;
+  MeshView to;
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    const uint32_t v = static_cast<uint32_t>(i);
+    const MeshView &view = from.with_vertex(v);
+    store_vec3(to.position(v), load_vec3(view.position(v)));
+    Vec3<float> n = load_vec3(view.normal(v));
+    if (from.on_crease(v)) {
+      const Vec3<float> mean = n + load_vec3(from.second_normal(v));
+      const float length2 = length_squared(mean);
+      if (length2 > 1e-6f) n = mean * reciprocal_root(length2);
+    }
+    store_vec3(to.normal(v), n);
+    to.owner(v) = view.owner(v);
+    if (to.patches) to.patch(v) = view.patch(v);
+  }
+};
+struct JoinTriangle {
+  MeshParts from;
+  MeshView to;
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    const uint32_t *const t = from.triangle(static_cast<uint32_t>(i));
+    uint32_t *const out = to.triangle(i);
+    for (int k = 0; k < 3; ++k) out[k] = t[k];
+  }
+};
+
+}  // namespace quickses
