@@ -63,6 +63,8 @@ void prepare_frame(Work &work, const FrameInput &in) {
   work.lattice = center_lattice(set.bounds, frame_spacing(levels_of(in.settings)));
   work.low = to_centered(work.lattice, set.bounds.low);
   work.high = to_centered(work.lattice, set.bounds.high);
+  work.side_normals =
+      in.settings.method == QSES_METHOD_EXACT && (in.settings.creases || in.settings.hard_edges || in.settings.measure);
   work.appearance = {bring(executor, look.visible.data(), look.visible.size()),
                      bring(executor, look.colors.data(), look.colors.size()),
                      bring(executor, look.texcoords.data(), look.texcoords.size())};
@@ -117,7 +119,9 @@ MeshMemoryView build_surface(Work &work) {
 // The mesh of the level, in memory of the arena and of the slots.
 template <class Work>
 MeshMemoryView build_level(Work &work) {
-  const MeshMemoryView mesh = build_surface(work);
+  MeshMemoryView mesh = build_surface(work);
+  work.timer.begin("appearance");
+  complete_vertices(work, &mesh);
   if (work.shape.boxes) {
     work.timer.begin("pick_boxes");
     fill_pick_boxes(work.executor, mesh.view, mesh.triangles);
