@@ -5,6 +5,7 @@
 #pragma once
 
 #include "surface/levels.h"
+#include "surface/methods/crease_splits.h"
 #include "surface/methods/exact_surface.h"
 #include "surface/methods/grid_surface.h"
 #include "surface/methods/size_check.h"
@@ -63,6 +64,8 @@ void prepare_frame(Work &work, const FrameInput &in) {
   work.lattice = center_lattice(set.bounds, frame_spacing(levels_of(in.settings)));
   work.low = to_centered(work.lattice, set.bounds.low);
   work.high = to_centered(work.lattice, set.bounds.high);
+  work.side_normals =
+      in.settings.method == QSES_METHOD_EXACT && (in.settings.creases || in.settings.hard_edges || in.settings.measure);
   work.appearance = {bring(executor, look.visible.data(), look.visible.size()),
                      bring(executor, look.colors.data(), look.colors.size()),
                      bring(executor, look.texcoords.data(), look.texcoords.size())};
@@ -90,7 +93,9 @@ void enter_level(Work &work, float spacing) {
 template <class Work>
 MeshMemoryView build_surface(Work &work) {
   auto &executor = work.executor;
-  MeshMemoryView mesh = work.settings.method == QSES_METHOD_GRID ? build_grid_surface(work) : build_exact_surface(work);
+  MeshMemoryView mesh = work.settings.method == QSES_METHOD_GRID ? build_grid_surface(work)
+                        : splits_creases(work)                   ? build_creased_surface(work)
+                                                                 : build_exact_surface(work);
   work.timer.begin("measure");
   const MeshCounts counts{mesh.vertices, mesh.triangles};
   if (work.settings.measure) {
@@ -117,7 +122,9 @@ MeshMemoryView build_surface(Work &work) {
 // The mesh of the level, in memory of the arena and of the slots.
 template <class Work>
 MeshMemoryView build_level(Work &work) {
-  const MeshMemoryView mesh = build_surface(work);
+  MeshMemoryView mesh = build_surface(work);
+  work.timer.begin("appearance");
+  complete_vertices(work, &mesh);
   if (work.shape.boxes) {
     work.timer.begin("pick_boxes");
     fill_pick_boxes(work.executor, mesh.view, mesh.triangles);

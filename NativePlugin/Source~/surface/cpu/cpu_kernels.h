@@ -24,7 +24,7 @@ struct AtomFeatures {
 // What is near one brick, in columns: atoms and arcs of the neighbour grids, by their places there.
 struct BrickScratch {
   static constexpr int kAtomColumns = 11, kArcColumns = 6;
-  static constexpr size_t kVertexBytes = size_t(70) << 10;  // more than the stack of a caller may have
+  static constexpr size_t kVertexBytes = size_t(96) << 10;  // more than the stack of a caller may have
   float *atom_memory;  // kAtomColumns columns of atom_capacity + 16 four-byte values
   float *arc_memory;   // kArcColumns columns of arc_capacity + 16
   int atom_capacity, arc_capacity;

@@ -101,7 +101,7 @@ QSES_FN void fill_up(Points *p, int n) {
 
 // One brick's vertices in the making: where each one is now, and what is known of it.
 struct Work {
-  Points place, normal;
+  Points place, normal, second_normal;
   int32_t owner[kMaxBrickVertices + kPackSize];  // place in the grid
   uint8_t patch[kMaxBrickVertices + kPackSize];
   bool placed[kMaxBrickVertices + kPackSize];
@@ -111,12 +111,15 @@ struct Work {
   SurfacePoint point(int v) const {
     return {{place.x[v], place.y[v], place.z[v]},
             {normal.x[v], normal.y[v], normal.z[v]},
+            {second_normal.x[v], second_normal.y[v], second_normal.z[v]},
             static_cast<qses_patch>(patch[v]),
             placed[v]};
   }
   void set_point(int v, const SurfacePoint &s) {
     place.x[v] = s.position.x, place.y[v] = s.position.y, place.z[v] = s.position.z;
     normal.x[v] = s.normal.x, normal.y[v] = s.normal.y, normal.z[v] = s.normal.z;
+    second_normal.x[v] = s.second_normal.x, second_normal.y[v] = s.second_normal.y;
+    second_normal.z[v] = s.second_normal.z;
     patch[v] = static_cast<uint8_t>(s.patch);
     placed[v] = s.placed;
   }
@@ -178,6 +181,9 @@ int project_contact(const FeatureView &f, const BrickCandidates &c, float spacin
     store_pack(w->normal.x + g, normal.x);
     store_pack(w->normal.y + g, normal.y);
     store_pack(w->normal.z + g, normal.z);
+    store_pack(w->second_normal.x + g, normal.x);
+    store_pack(w->second_normal.y + g, normal.y);
+    store_pack(w->second_normal.z + g, normal.z);
     store_lanes(w->open.x + open, left, p.x);
     store_lanes(w->open.y + open, left, p.y);
     store_lanes(w->open.z + open, left, p.z);
@@ -289,12 +295,13 @@ void write_vertices(const FeatureView &f, const Lattice &lattice, const VertexSt
                     uint32_t base, int n, const Work &w) {
   uint32_t unplaced = 0;
   for (int v = 0; v < n; ++v) {
-    const SurfacePoint s = w.point(v);
+    SurfacePoint s = w.point(v);
     unplaced += s.placed ? 0 : 1;
     const uint32_t owner = static_cast<uint32_t>(w.owner[v]), vertex = base + static_cast<uint32_t>(v);
     const glm::vec3 p = lattice.to_caller(s.position);
     store_vec3(mesh.position(vertex), Vec3<float>(p));
-    store_vec3(mesh.normal(vertex), vertex_normal(f, s, owner));
+    settle_normals(f, owner, &s);
+    store_normals(mesh, vertex, s.normal, s.second_normal);
     mesh.owner(vertex) = f.atoms.order[owner];
     if (mesh.patches) mesh.patch(vertex) = w.patch[v];
   }

@@ -128,7 +128,7 @@ class MeshMemory<CudaExecutor> {
     return device_meshes_.reserve(arrays.bytes());
   }
 
-  // At most the unmasked mesh, sums and starts at a time.
+  // At most a mesh to be made into another one, its normals and those of the other one, sums and starts at a time.
   void *spill(size_t bytes) {
     constexpr size_t kSpills = sizeof spill_ / sizeof spill_[0];
     if (spilled_ == kSpills) throw Error(QSES_INTERNAL_ERROR, "too many arrays beside a mesh");
@@ -139,7 +139,7 @@ class MeshMemory<CudaExecutor> {
   MeshLeases host_meshes_;
   DeviceMeshes device_meshes_;
   bool keep_ = false;
-  PinnedBuffer spill_[4];
+  PinnedBuffer spill_[8];
   size_t spilled_ = 0;
   void *table_ = nullptr;
 };

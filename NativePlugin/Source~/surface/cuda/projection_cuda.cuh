@@ -15,16 +15,16 @@ __device__ __forceinline__ void finish_vertex(const VertexJob &job, uint32_t k, 
   const FeatureView &f = job.features;
   const uint32_t vertex = job.first + k;
   if (!s.placed) atomic_add(job.starts.unplaced, 1u);
-  s.normal = vertex_normal(f, s, owner);
+  settle_normals(f, owner, &s);
   const glm::vec3 position = job.bricks.lattice.to_caller(s.position);
   store_vec3(job.mesh.position(vertex), Vec3<float>(position));
-  store_vec3(job.mesh.normal(vertex), s.normal);
+  store_normals(job.mesh, vertex, s.normal, s.second_normal);
   job.mesh.owner(vertex) = f.atoms.order[owner];
   if (job.mesh.patches) job.mesh.patch(vertex) = static_cast<uint8_t>(s.patch);
 }
 
-// Between the kernels the mesh holds where a vertex is on its way, and for its owner the rounds it has had; 0 if its
-// edge decides.
+// Between the kernels the mesh holds where a vertex is on its way, on the sphere of one probe, and for its owner the
+// rounds it has had; 0 if its edge decides.
 __device__ __forceinline__ void leave_vertex(const VertexJob &job, uint32_t k, const Projection &v) {
   const uint32_t vertex = job.first + k;
   store_start(job, vertex, v.point.position);
@@ -33,7 +33,8 @@ __device__ __forceinline__ void leave_vertex(const VertexJob &job, uint32_t k, c
 }
 __device__ __forceinline__ Projection left_vertex(const VertexJob &job, uint32_t k) {
   const uint32_t vertex = job.first + k, rounds = job.mesh.owner(vertex);
-  return {{stored_start(job, vertex), load_vec3(job.mesh.normal(vertex)), QSES_PATCH_CONTACT, rounds > 0},
+  const Vec3<float> normal = load_vec3(job.mesh.normal(vertex));
+  return {{stored_start(job, vertex), normal, normal, QSES_PATCH_CONTACT, rounds > 0},
           rounds > 0 ? ProjectionState::kReproject : ProjectionState::kOnEdge,
           static_cast<int>(rounds)};
 }
@@ -48,8 +49,7 @@ static __global__ __launch_bounds__(kVertexThreads) void project_on_atoms_kernel
   const DeepestAtom deepest = deepest_atom(f, candidates, x);
   __syncwarp();
   const Sphere ball = load(f.atoms.items + deepest.atom);
-  const bool contact = candidates.atom_count() > 0 &&
-                       is_exposed(f, deepest.atom, x - Vec3<float>(ball.center), offset_length(ball, deepest.depth));
+  const bool contact = is_on_contact(f, deepest, x);
   const Projection v = project_on_atom(f.parameters, ball, deepest.depth, x);
   const bool done = v.state == ProjectionState::kPlaced;
   __syncwarp();
@@ -95,7 +95,8 @@ static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(
       const int a = static_cast<int>(candidates.arc(lowest_bit64(rest)));
       nearest.offer(a, arc_distance2(load(f.arcs + a), v.point.position));
     }
-    v = reproject(f, candidates, nearest, v);
+    const Projection next = reproject(f, candidates, nearest, v);
+    if (next.state != ProjectionState::kReproject) v = next;  // else that round is done again
   }
   __syncwarp();
   const bool done = v.state == ProjectionState::kPlaced;

@@ -85,6 +85,7 @@ void for_each_array(const MeshView &to, const MeshView &from, size_t vertices, s
   if (vertices > 0) {
     copy(to.position(v), from.positions, vertices * from.vertex_bytes);
     if (from.normals && from.normal_bytes == 12) copy(to.normal(v), from.normals, vertices * 12);
+    if (from.second_normals) copy(to.second_normal(v), from.second_normals, vertices * 12);
     if (from.colors) copy(to.color(v), from.colors, vertices * 4);
     if (from.texcoords) copy(to.texcoord(v), from.texcoords, vertices * 8);
     copy(&to.owner(v), from.owners, vertices * 4);

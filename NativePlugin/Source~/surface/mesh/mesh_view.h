@@ -11,8 +11,11 @@ namespace quickses {
 // A run of a mesh's vertices and triangles in memory of the back end. Vertices and triangles are named by their numbers
 // in the whole mesh.
 struct MeshView {
-  float *positions = nullptr;   // caller's coordinates
-  float *normals = nullptr;     // unit length; nullptr: there are none but packed ones
+  float *positions = nullptr;  // caller's coordinates
+  float *normals = nullptr;    // unit length; nullptr: there are none but packed ones
+  // While a mesh is made, where someone asks for them: of the other sheet at vertices where two meet, elsewhere equal
+  // to the normal. Of unit length, behind each other.
+  float *second_normals = nullptr;
   uint32_t *owners = nullptr;   // caller's atom numbers
   uint8_t *patches = nullptr;   // or nullptr
   uint32_t *indices = nullptr;  // three per triangle
@@ -29,6 +32,7 @@ struct MeshView {
   QSES_FN size_t place(uint32_t vertex) const { return vertex - first_vertex; }
   QSES_FN float *position(uint32_t vertex) const { return attribute(positions, vertex_bytes, vertex); }
   QSES_FN float *normal(uint32_t vertex) const { return attribute(normals, normal_bytes, vertex); }
+  QSES_FN float *second_normal(uint32_t vertex) const { return second_normals + 3 * place(vertex); }
   QSES_FN uint32_t *packed_normal(uint32_t vertex) const { return reinterpret_cast<uint32_t *>(position(vertex) + 3); }
   QSES_FN uint32_t *color(uint32_t vertex) const { return colors + place(vertex); }
   QSES_FN float *texcoord(uint32_t vertex) const { return texcoords + 2 * place(vertex); }

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "surface/methods/closed_layout.h"
-#include "surface/methods/crease_splits.h"
 #include "surface/stages/relaxation.h"
 
 namespace quickses {
@@ -94,16 +93,16 @@ struct MeshPart {
   MeshView view;
   size_t vertices, triangles;
 };
-template <class Executor>
-MeshPart open_part(Executor &executor, const BrickSet &bricks, const MeshLayout &layout, MeshShape shape,
+template <class Work, class Executor>
+MeshPart open_part(const Work &work, Executor &executor, const BrickSet &bricks, const MeshLayout &layout,
                    BrickRange slice) {
-  shape.boxes = false;
+  MeshShape shape = work.shape;
+  shape.boxes = shape.colors = shape.texcoords = false;
   const SliceSizes sizes = slice_sizes(executor, bricks, layout, slice.first, slice.last);
   MeshPart part{{}, sizes.vertices, sizes.triangles};
   const MeshArrays arrays(part.vertices, part.triangles, shape);
   part.view = arrays.view(executor.template allocate<char>(arrays.bytes()).data);
-  if (part.view.packed_normals)
-    part.view.normals = reinterpret_cast<float *>(executor.template allocate<glm::vec3>(part.vertices).data);
+  add_normals(work, &part.view, part.vertices, [&](size_t n) { return executor.template allocate<glm::vec3>(n).data; });
   part.view.first_vertex = sizes.first_vertex;
   part.view.first_triangle = sizes.first_triangle;
   return part;
@@ -140,23 +139,19 @@ MeshMemoryView build_exact_surface(Work &work) {
     });
   });
 
-  const bool creases = splits_creases(work);
-  const MeshShape shape = creases ? shape_before_splits(work.shape) : work.shape;
-  MeshMemoryView mesh =
-      work.memory.allocate_mesh(executor, counts.vertices, counts.triangles, shape,
-                                creases ? MeshPurpose::kWork : work.purpose, work.plan.mesh_in_pieces);
-  const auto end_of_mesh = executor.arena().mark();
+  MeshMemoryView mesh = work.memory.allocate_mesh(executor, counts.vertices, counts.triangles, work.shape, work.purpose,
+                                                  work.plan.mesh_in_pieces);
   add_normals(work, &mesh);
+  const auto end_of_mesh = executor.arena().mark();
   VertexStarts starts{work.settings.relaxation_steps > 0, nullptr, work.table.ring, &layout.totals->unplaced};
-  // Without pieces only the vertices: triangles and colours come for all bricks at once.
+  // Without pieces only the vertices: triangles come for all bricks at once.
   const auto emit_slice = [&](auto &any_executor, BrickRange slice, bool with_triangles) {
     Candidates<Executor> own{};
     MeshPart part{mesh.view, 0, 0};
-    if (mesh.in_pieces) part = open_part(any_executor, bricks, layout, shape, slice);
+    if (mesh.in_pieces) part = open_part(work, any_executor, bricks, layout, slice);
     B::emit_vertices(any_executor, features, bricks, layout, slice, work.rooms, share ? shared : own, starts,
                      part.view);
     if (!mesh.in_pieces) return part;
-    complete_vertices(any_executor, work.appearance, part.view, part.vertices);
     if (with_triangles) B::emit_triangles(any_executor, bricks, layout, slice, work.table, part.view);
     return part;
   };
@@ -190,13 +185,9 @@ MeshMemoryView build_exact_surface(Work &work) {
       emit(0.85 + share_of_time * (step - 1), 0.85 + share_of_time * step, false);
     }
   }
-  if (!mesh.in_pieces) complete_vertices(executor, work.appearance, mesh.view, mesh.vertices);
-  if (mesh.view.packed_normals) mesh.view.normals = nullptr;
   executor.arena().rewind(end_of_mesh);
   mesh.unplaced = starts.unplaced;
-  if (!creases) return mesh;
-  work.timer.begin("creases");
-  return split_creases(work, mesh);
+  return mesh;
 }
 
 }  // namespace quickses

@@ -36,8 +36,8 @@ MeshMemoryView build_grid_surface(Work &work) {
   });
   MeshMemoryView mesh = work.memory.allocate_mesh(executor, counts.vertices, counts.triangles, work.shape, work.purpose,
                                                   work.plan.mesh_in_pieces);
-  const auto end_of_mesh = executor.arena().mark();
   add_normals(work, &mesh);
+  const auto end_of_mesh = executor.arena().mark();
   work.timer.begin("projection");
   for_each_slice(work, bricks.count, slice_size(), 0.5, 0.8,
                  [&](BrickRange slice) { emit_grid_vertices(executor, field, layout, slice, mesh.view); });
@@ -49,8 +49,6 @@ MeshMemoryView build_grid_surface(Work &work) {
   Span<RingSum> sums = work.memory.template allocate_where_mesh_is<RingSum>(executor, mesh, counts.vertices);
   smooth_laplacian(executor, mesh.view, counts, work.parameters.spacing, work.settings.relaxation_steps, sums);
   compute_normals(executor, mesh.view, counts, work.parameters.spacing, sums);
-  complete_vertices(executor, work.appearance, mesh.view, mesh.vertices);
-  if (mesh.view.packed_normals) mesh.view.normals = nullptr;
   executor.arena().rewind(end_of_mesh);
   return mesh;
 }

@@ -10,6 +10,7 @@
 #include "surface/stages/components.h"
 #include "surface/stages/hot_stages.h"
 #include "surface/stages/packed_normals.h"
+#include "surface/stages/side_normals.h"
 
 #include <algorithm>
 
@@ -38,21 +39,31 @@ struct LevelWork {
   AppearanceView appearance{};
   MeshShape shape{};
   MeshPurpose purpose = MeshPurpose::kDelivered;
+  bool side_normals = false;  // whether a later stage asks for MeshView::second_normals
 };
 
-// While a mesh with packed normals is made, it has others too, in memory that is given up afterwards.
+// While a mesh is made it has the normals that later stages read, in memory that is given up with the level's: floats
+// where the layout has packed ones, and those of the second sheet. allocate(n) returns room for n vectors.
+template <class Work, class Allocate>
+void add_normals(const Work &work, MeshView *view, size_t vertices, const Allocate &allocate) {
+  if (view->packed_normals) view->normals = reinterpret_cast<float *>(allocate(vertices));
+  if (work.side_normals) view->second_normals = reinterpret_cast<float *>(allocate(vertices));
+}
 template <class Work>
 void add_normals(Work &work, MeshMemoryView *mesh) {
-  if (mesh->view.packed_normals)
-    mesh->view.normals = reinterpret_cast<float *>(
-        work.memory.template allocate_where_mesh_is<glm::vec3>(work.executor, *mesh, mesh->vertices).data);
+  add_normals(work, &mesh->view, mesh->vertices, [&](size_t n) {
+    return work.memory.template allocate_where_mesh_is<glm::vec3>(work.executor, *mesh, n).data;
+  });
 }
 
 // What is left to do for vertices whose places, normals and owners are known.
-template <class Executor>
-void complete_vertices(Executor &executor, const AppearanceView &appearance, const MeshView &mesh, size_t vertices) {
-  paint_vertices(executor, appearance, mesh, vertices);
-  pack_normals(executor, mesh, vertices);
+template <class Work>
+void complete_vertices(Work &work, MeshMemoryView *mesh) {
+  paint_vertices(work.executor, work.appearance, mesh->view, mesh->vertices);
+  share_normals(work.executor, mesh->view, mesh->vertices);
+  pack_normals(work.executor, mesh->view, mesh->vertices);
+  mesh->view.second_normals = nullptr;
+  if (mesh->view.packed_normals) mesh->view.normals = nullptr;
 }
 
 // Calls work_on(slice) for runs of so many bricks, and reports progress from `begin` to `end`. The memory that a slice

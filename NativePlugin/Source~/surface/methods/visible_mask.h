@@ -54,15 +54,8 @@ struct MoveVertex {
     if (!kept.has(vertex)) return;
     const uint32_t place = kept.rank(vertex);
     store_vec3(to.position(place), load_vec3(from.position(vertex)));
-    if (from.packed_normals)
-      *to.packed_normal(place) = *from.packed_normal(vertex);
-    else
-      store_vec3(to.normal(place), load_vec3(from.normal(vertex)));
-    if (from.colors) *to.color(place) = *from.color(vertex);
-    if (from.texcoords) {
-      to.texcoord(place)[0] = from.texcoord(vertex)[0];
-      to.texcoord(place)[1] = from.texcoord(vertex)[1];
-    }
+    store_vec3(to.normal(place), load_vec3(from.normal(vertex)));
+    if (from.second_normals) store_vec3(to.second_normal(place), load_vec3(from.second_normal(vertex)));
     to.owner(place) = from.owner(vertex);
     if (from.patches) to.patch(place) = from.patch(vertex);
   }
@@ -111,6 +104,7 @@ MeshMemoryView drop_hidden(Work &work, const MeshMemoryView &whole) {
   }
   MeshMemoryView shown = work.memory.allocate_mesh(executor, vertex_count, triangle_count, work.shape,
                                                    MeshPurpose::kDelivered, work.plan.mesh_in_pieces);
+  add_normals(work, &shown);
   executor.for_each(whole.vertices, MoveVertex{whole.view, shown.view, vertices});
   executor.for_each(whole.triangles, MoveTriangle{whole.view, shown.view, triangles, vertices});
   work.report->hidden_vertices = static_cast<uint32_t>(whole.vertices) - vertex_count;

@@ -4,12 +4,23 @@
 // one triangle of a mesh whose vertices lie on the sheets; what is found is exact.
 #pragma once
 
+#include "parallel/atomics.h"
+#include <cstdlib>
 #include "surface/geometry/lattice.h"
-#include "surface/mesh/mesh_view.h"
+#include "surface/mesh/mesh_parts.h"
 #include "surface/stages/neighbor_grid.h"
 #include "surface/stages/solvent_features.h"
 
 namespace quickses {
+#ifdef CREASE_DEBUG
+inline long gWhy[16];
+inline float knob(int k, float d) { static float v[16]; static bool set[16]; static bool init = [] { for (int i = 0; i < 16; ++i) { char n[8] = {'K', char('a' + i), 0}; const char *t = std::getenv(n); set[i] = t; v[i] = t ? std::atof(t) : 0; } return true; }(); (void)init; return set[k] ? v[k] : d; }
+#define KNOB(k, d) knob(k, d)
+#define WHY(k) (void)atomic_add((long *)&gWhy[k], 1L)
+#else
+#define WHY(k) ((void)0)
+#define KNOB(k, d) (d)
+#endif
 
 // A vertex lies on a sheet that is nearer than this, Å, and besides what float32 leaves of its coordinates.
 constexpr float kSheetTolerance = 1e-4f;
@@ -21,7 +32,7 @@ constexpr float kSnapPart = 0.3f;
 // and no edge is split nearer to its end than this.
 constexpr float kLeastPart = 0.08f;
 // How far a point of the crease may be from where the edge passes under it, in lengths of the edge.
-constexpr float kFarthestPart = 0.75f;
+constexpr float kFarthestPart = 1.5f;
 // Of an edge along a crease: it is split where it is further from the crease than this, in units of the spacing.
 constexpr float kLeastSagitta = 0.03f;
 
@@ -29,16 +40,21 @@ constexpr float kLeastSagitta = 0.03f;
 struct CreasePoint {
   enum Kind : uint32_t { kNone, kCrossed, kAlong };  // the edge crosses the crease here, or runs along it
   Vec3<float> position, normal, second_normal;       // centred frame; those of two of the sheets
-  uint32_t owner;                                    // caller's number of the atom whose normal is the first
+  uint32_t owner, second_owner;                      // caller's numbers of the atoms they belong to
+  qses_patch patch;
   Kind kind;
   float to_first, to_second;     // distances to the ends of the edge
   bool first_fits, second_fits;  // may the end be moved there? Not off a crease that it is on
 };
 
-// What an edge knows of its ends.
+// An end of an edge, or a corner of a piece of a triangle: its place and its sides.
 struct CreaseEnd {
-  Vec3<float> position;  // centred frame
-  uint32_t owner;        // caller's number
+  Vec3<float> position, normal, second_normal;  // centred frame; the normals are equal away from creases
+  uint32_t owner, second_owner;
+
+  QSES_FN bool on_crease() const {
+    return normal.x != second_normal.x || normal.y != second_normal.y || normal.z != second_normal.z;
+  }
 };
 
 // Of a vertex of the mesh, in the frame in which numbers are small.
@@ -46,6 +62,16 @@ QSES_FN Vec3<float> centered_position(const Lattice &lattice, const float *posit
   return {static_cast<float>(static_cast<double>(position[0]) - lattice.center_x),
           static_cast<float>(static_cast<double>(position[1]) - lattice.center_y),
           static_cast<float>(static_cast<double>(position[2]) - lattice.center_z)};
+}
+
+QSES_FN CreaseEnd end_of_vertex(const MeshParts &mesh, const Lattice &lattice, uint32_t v) {
+  const int k = mesh.part_with(v);
+  const MeshView &view = mesh.part[k];
+  return {centered_position(lattice, view.position(v)), load_vec3(view.normal(v)), load_vec3(view.second_normal(v)),
+          view.owner(v), mesh.marks[k].second_owners[view.place(v)]};
+}
+QSES_FN CreaseEnd end_of_point(const CreasePoint &p) {
+  return {p.position, p.normal, p.second_normal, p.owner, p.second_owner};
 }
 
 // ---- circles and corners of spheres ----------------------------------------------------------------------------
@@ -114,13 +140,17 @@ struct SphereSheets {
   float max_radius;
   float tolerance;
 
-  QSES_FN CreaseEnd end(const MeshView &mesh, uint32_t vertex) const {
-    return {centered_position(lattice, mesh.position(vertex)), mesh.owner(vertex)};
-  }
   QSES_FN Sphere sphere_of(uint32_t owner) const { return load(atoms.items + places[owner]); }
 
   QSES_FN bool is_on(const Sphere &ball, const Vec3<float> &x) const {
     return absolute(square_root(length_squared(x - Vec3<float>(ball.center))) - ball.radius) <= tolerance;
+  }
+
+  // Has a triangle to do with creases?
+  QSES_FN bool is_near_crease(const MeshParts &mesh, const uint32_t *t, bool along) const {
+    const uint32_t owner = mesh.with(t[0]).owner(t[0]);
+    if (owner != mesh.with(t[1]).owner(t[1]) || owner != mesh.with(t[2]).owner(t[2])) return true;
+    return along && int(mesh.on_crease(t[0])) + int(mesh.on_crease(t[1])) + int(mesh.on_crease(t[2])) > 1;
   }
 
   // May an edge cross a crease? At a glance; solve() decides.
@@ -128,15 +158,28 @@ struct SphereSheets {
     return u.owner != v.owner && !is_on(sphere_of(v.owner), u.position) && !is_on(sphere_of(u.owner), v.position);
   }
 
-  // May a triangle hold a corner: has it no sheet that all three vertices lie on?
-  QSES_FN bool may_have_corner(const CreaseEnd *ends) const {
-    for (int k = 0; k < 3; ++k) {
-      const Sphere ball = sphere_of(ends[k].owner);
-      if (is_on(ball, ends[(k + 1) % 3].position) && is_on(ball, ends[(k + 2) % 3].position)) return false;
-    }
-    return true;
+  // Is a piece of a triangle turned away from the sheet that its corners have in common, or has it no area? normal:
+  // outward, of any length. Where there is no such sheet, nothing is known.
+  QSES_FN bool is_folded(const CreaseEnd *corners, const Vec3<float> &normal) const {
+    const float length2 = length_squared(normal);
+    if (!(length2 > 0.f)) return true;
+    const Vec3<float> middle = (corners[0].position + corners[1].position + corners[2].position) * (1.f / 3.f);
+    bool shared = false, along = false;
+    for (int k = 0; k < 3; ++k)
+      for (const uint32_t owner : {corners[k].owner, corners[k].second_owner}) {
+        const Sphere ball = sphere_of(owner);
+        if (!is_on(ball, corners[0].position) || !is_on(ball, corners[1].position) || !is_on(ball, corners[2].position))
+          continue;
+        shared = true;
+        along |= dot(normal, middle - Vec3<float>(ball.center)) > KNOB(6, 0.3f) * square_root(length2) * ball.radius;
+      }
+    if (shared) return !along;
+    for (int k = 0; k < 3; ++k)
+      if (!(maximum(dot(normal, corners[k].normal), dot(normal, corners[k].second_normal)) > KNOB(11, 0.f))) return true;
+    return false;
   }
 
+  // crowded: where all is covered, too.
   QSES_FN NearSpheres near(const Vec3<float> &x, float reach) const {
     NearSpheres near;
     const Vec3<float> r(max_radius + reach, max_radius + reach, max_radius + reach);
@@ -198,6 +241,8 @@ struct SphereSheets {
     p.normal = normal_at(first, x);
     p.second_normal = normal_at(second, x);
     p.owner = atoms.order[first];
+    p.second_owner = atoms.order[second];
+    p.patch = QSES_PATCH_TOROIDAL;
     p.kind = dot(p.normal, p.second_normal) > kSmoothCosine ? CreasePoint::kNone : kind;
     return p;
   }
@@ -207,76 +252,82 @@ struct SphereSheets {
     CreasePoint none{};
     none.kind = CreasePoint::kNone;
     const Vec3<float> edge = v.position - u.position, middle = u.position + edge * 0.5f;
-    const float length2 = length_squared(edge), longest = kFarthestPart * kFarthestPart * length2;
-    const NearSpheres list = near(middle, square_root(length2) + tolerance);
-    if (list.crowded || !(length2 > 0.f)) return none;
+    const float length2 = length_squared(edge), longest = KNOB(0, kFarthestPart) * KNOB(0, kFarthestPart) * length2;
+    const NearSpheres list = near(middle, 2.f * square_root(length2) + tolerance);
+    if (list.crowded || !(length2 > 0.f)) { WHY(0); return none; }
     const uint32_t on_u = sheets_at(list, u.position), on_v = sheets_at(list, v.position), both = on_u & on_v;
     if (both != 0) {
       const uint32_t others = both & (both - 1);
-      if (!along || others == 0) return none;
+      if (!along || others == 0) { WHY(1); return none; }
       const uint32_t a = list.place[lowest_bit32(both)], b = list.place[lowest_bit32(others)];
       Vec3<float> x;
       if (!nearest_on_circle(circle_of_spheres(load(atoms.items + a), load(atoms.items + b)), middle, &x)) return none;
       const float off2 = length_squared(x - middle), least = kLeastSagitta * lattice.spacing;
-      if (off2 < least * least || off2 > 0.25f * length2 || covering(list, x) >= 0) return none;
+      if (off2 < least * least || off2 > 0.25f * length2 || covering(list, x) >= 0) { WHY(7); return none; }
       return with_ends(point_on(a, b, x, CreasePoint::kAlong), u, v, false, false);
     }
     // The crease of two of the sheets that the ends lie on; where a third sphere covers it, the corner of the three.
+    // Where there is none, another sheet comes between: then its crease with one of those of the ends.
     CreasePoint best = none;
     float nearest2 = longest;
     for (uint32_t s = on_u; s; s &= s - 1)
-      for (uint32_t t = on_v; t; t &= t - 1) {
-        const int i = lowest_bit32(s), j = lowest_bit32(t);
-        const uint32_t a = list.place[i], b = list.place[j];
-        const Sphere ball_a = load(atoms.items + a), ball_b = load(atoms.items + b);
-        const SphereCircle circle = circle_of_spheres(ball_a, ball_b);
-        if (circle.radius <= 0.f) continue;
-        // Where the chord is as deep in the one as in the other ball: in the plane of the circle.
-        const float from = dot(circle.center - u.position, circle.axis), whole = dot(edge, circle.axis);
-        const float part = absolute(whole) > 1e-9f ? minimum(1.f, maximum(0.f, quotient(from, whole))) : 0.5f;
-        const Vec3<float> under = u.position + edge * part;
-        Vec3<float> x;
-        if (!nearest_on_circle(circle, under, &x)) continue;
-        const int third = covering(list, x);
-        uint32_t sheets = uint32_t(1) << i | uint32_t(1) << j;
-        if (third >= 0) {
-          if (!nearest_corner(circle, load(atoms.items + list.place[third]), x, &x) || covering(list, x) >= 0) continue;
-          sheets |= uint32_t(1) << third;
-        }
-        const float d2 = length_squared(x - under);
-        if (!(d2 < nearest2)) continue;
-        const CreasePoint p = point_on(a, b, x, CreasePoint::kCrossed);
-        if (p.kind == CreasePoint::kNone) continue;
-        nearest2 = d2;
-        best = with_ends(p, u, v, (on_u & ~sheets) == 0, (on_v & ~sheets) == 0);
-      }
+      for (uint32_t t = on_v; t; t &= t - 1)
+        cross(list, u, v, on_u, on_v, lowest_bit32(s), lowest_bit32(t), true, &nearest2, &best);
+    if (best.kind != CreasePoint::kNone || KNOB(1, 0.f) > 0.f) return best;
+    for (uint32_t s = on_u | on_v; s; s &= s - 1)
+      for (int k = 0; k < list.count; ++k)
+        if (!((on_u | on_v) >> k & 1)) cross(list, u, v, on_u, on_v, lowest_bit32(s), k, false, &nearest2, &best);
+    if (best.kind == CreasePoint::kNone) WHY(9); else WHY(10);
     return best;
   }
 
-  // The corner in a triangle whose edges all have a sheet in common, but not the same.
-  QSES_FN CreasePoint solve_corner(const CreaseEnd *ends) const {
+  // The corner where the creases of sheets a b, b c and c a meet that three points lie on; size: of the triangle that it
+  // should be in.
+  QSES_FN CreasePoint solve_corner(const uint32_t *owners, const Vec3<float> &middle, float size) const {
     CreasePoint none{};
     none.kind = CreasePoint::kNone;
-    const Vec3<float> middle = (ends[0].position + ends[1].position + ends[2].position) * (1.f / 3.f);
-    float reach2 = 0.f;
-    for (int k = 0; k < 3; ++k) reach2 = maximum(reach2, length_squared(ends[k].position - middle));
-    const NearSpheres list = near(middle, 1.5f * square_root(reach2) + tolerance);
-    if (list.crowded || !(reach2 > 0.f)) return none;
-    uint32_t on[3], pair[3];
-    for (int k = 0; k < 3; ++k) on[k] = sheets_at(list, ends[k].position);
-    for (int k = 0; k < 3; ++k) pair[k] = on[k] & on[(k + 1) % 3];
-    if ((on[0] & on[1] & on[2]) != 0 || pair[0] == 0 || pair[1] == 0 || pair[2] == 0) return none;
-    const uint32_t a = list.place[lowest_bit32(pair[0])], b = list.place[lowest_bit32(pair[1])],
-                   c = list.place[lowest_bit32(pair[2])];
+    const uint32_t a = places[owners[0]], b = places[owners[1]], c = places[owners[2]];
     Vec3<float> x;
     if (!nearest_corner(circle_of_spheres(load(atoms.items + a), load(atoms.items + b)), load(atoms.items + c), middle,
                         &x))
       return none;
-    if (length_squared(x - middle) > reach2 || covering(list, x) >= 0) return none;
+    if (length_squared(x - middle) > KNOB(10, 1.f) * size * size) return none;
+    const NearSpheres list = near(x, tolerance);
+    if (list.crowded || covering(list, x) >= 0) return none;
     return point_on(a, b, x, CreasePoint::kCrossed);
   }
 
  private:
+  // Of spheres i and j of the list, the exposed place of their crease where the edge passes over it, if that is nearer
+  // than what there is.
+  QSES_FN void cross(const NearSpheres &list, const CreaseEnd &u, const CreaseEnd &v, uint32_t on_u, uint32_t on_v, int i,
+                     int j, bool corners, float *nearest2, CreasePoint *best) const {
+    const uint32_t a = list.place[i], b = list.place[j];
+    const SphereCircle circle = circle_of_spheres(load(atoms.items + a), load(atoms.items + b));
+    if (circle.radius <= 0.f) return WHY(2);
+    // In the plane of the circle the chord is as deep in the one as in the other ball.
+    const Vec3<float> edge = v.position - u.position;
+    const float from = dot(circle.center - u.position, circle.axis), whole = dot(edge, circle.axis);
+    const float part = quotient(from, absolute(whole) > 1e-9f ? whole : 1e-9f);
+    if (!(part > 0.f && part < 1.f)) return WHY(11);
+    const Vec3<float> under = u.position + edge * part;
+    Vec3<float> x;
+    if (!nearest_on_circle(circle, under, &x)) return WHY(3);
+    const int third = covering(list, x);
+    uint32_t sheets = uint32_t(1) << i | uint32_t(1) << j;
+    if (third >= 0) {
+      if (!corners || KNOB(5, 0.f) > 0.f || !nearest_corner(circle, load(atoms.items + list.place[third]), x, &x) || covering(list, x) >= 0)
+        return WHY(4);
+      sheets |= uint32_t(1) << third;
+    }
+    const float d2 = length_squared(x - under);
+    if (!(d2 < *nearest2)) return WHY(5);
+    const CreasePoint p = point_on(a, b, x, CreasePoint::kCrossed);
+    if (p.kind == CreasePoint::kNone) return WHY(6);
+    *nearest2 = d2;
+    *best = with_ends(p, u, v, (on_u & ~sheets) == 0, (on_v & ~sheets) == 0);
+  }
+
   QSES_FN Vec3<float> normal_at(uint32_t place, const Vec3<float> &x) const {
     const Vec3<float> d = x - Vec3<float>(load(atoms.items + place).center);
     return d * reciprocal_root(maximum(length_squared(d), 1e-12f));

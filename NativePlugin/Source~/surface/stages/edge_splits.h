@@ -36,12 +36,10 @@ struct SplitRound {
 template <class Sheets>
 struct NearCrease {
   MeshParts mesh;
+  Sheets sheets;
   bool along;
   QSES_HOST_DEVICE bool operator()(size_t i) const {
-    const uint32_t *const t = mesh.triangle(static_cast<uint32_t>(i));
-    const uint32_t owner = mesh.owner(t[0]);
-    if (owner != mesh.owner(t[1]) || owner != mesh.owner(t[2])) return true;
-    return along && int(mesh.on_crease(t[0])) + int(mesh.on_crease(t[1])) + int(mesh.on_crease(t[2])) > 1;
+    return sheets.is_near_crease(mesh, mesh.triangle(static_cast<uint32_t>(i)), along);
   }
 };
 
@@ -60,7 +58,7 @@ struct ChooseEdges {
     for (int k = 0; k < 3; ++k) {
       const uint32_t a = t[k], b = t[k == 2 ? 0 : k + 1], u = a < b ? a : b, v = a < b ? b : a;
       const bool crest = round.along && mesh.on_crease(u) && mesh.on_crease(v);
-      if (!crest && !sheets.may_cross(sheets.end(mesh.with_vertex(u), u), sheets.end(mesh.with_vertex(v), v)))
+      if (!crest && !sheets.may_cross(end_of_vertex(mesh, sheets.lattice, u), end_of_vertex(mesh, sheets.lattice, v)))
         continue;
       bits |= uint8_t(1u << k);
       if (a < b) atomic_add(count + a, uint32_t(1));
@@ -111,7 +109,7 @@ struct SolveEdges {
   CreasePoint *points;  // [edge]
   QSES_HOST_DEVICE void operator()(size_t edge) const {
     const uint32_t u = table.firsts[edge], v = table.seconds[edge];
-    points[edge] = sheets.solve(sheets.end(mesh.with_vertex(u), u), sheets.end(mesh.with_vertex(v), v), along);
+    points[edge] = sheets.solve(end_of_vertex(mesh, sheets.lattice, u), end_of_vertex(mesh, sheets.lattice, v), along);
   }
 };
 
@@ -120,8 +118,8 @@ struct SolveEdges {
 // The end that wants to be moved onto the crease: 0, 1, or -1 for neither.
 QSES_FN int end_to_snap(const CreasePoint &p, float length) {
   if (p.kind != CreasePoint::kCrossed) return -1;
-  const bool first = p.first_fits && p.to_first < kSnapPart * length;
-  const bool second = p.second_fits && p.to_second < kSnapPart * length;
+  const bool first = p.first_fits && p.to_first < KNOB(2, kSnapPart) * length;
+  const bool second = p.second_fits && p.to_second < KNOB(2, kSnapPart) * length;
   if (first && (!second || p.to_first <= p.to_second)) return 0;
   return second ? 1 : -1;
 }
@@ -199,8 +197,8 @@ struct RefuseSnaps {
     Vec3<float> before[3], after[3];
     bool any = false;
     for (int k = 0; k < 3; ++k) {
-      before[k] = after[k] = centered_position(lattice, mesh.with_vertex(t[k]).position(t[k]));
-      if (edge[t[k]] == kNoNumber || refused[t[k]]) continue;
+      before[k] = after[k] = centered_position(lattice, mesh.with(t[k]).position(t[k]));
+      if (edge[t[k]] == kNoNumber) continue;
       after[k] = points[edge[t[k]]].position;
       any = true;
     }
@@ -210,7 +208,7 @@ struct RefuseSnaps {
     const bool turned = !(dot(old, now) > kLeastSnapTurn * square_root(length_squared(old) * length_squared(now)));
     const float was = least_cosine_of_angles(before[0], before[1], before[2]);
     const float is = least_cosine_of_angles(after[0], after[1], after[2]);
-    if (!turned && is <= maximum(kSnapAngleCosine, was)) return;
+    if (KNOB(3, 0.f) > 0.f || (!turned && is <= maximum(kSnapAngleCosine, was))) return;
     for (int k = 0; k < 3; ++k)
       if (edge[t[k]] != kNoNumber) atomic_set(refused + t[k]);
   }
@@ -218,11 +216,14 @@ struct RefuseSnaps {
 
 // Writes a vertex onto a crease. Positions of a mesh are the caller's.
 QSES_FN void put_on_crease(const MeshParts &mesh, const Lattice &lattice, uint32_t vertex, const CreasePoint &p) {
-  const MeshView &view = mesh.with_vertex(vertex);
+  const int k = mesh.part_with(vertex);
+  const MeshView &view = mesh.part[k];
   store_vec3(view.position(vertex), Vec3<float>(lattice.to_caller(p.position)));
   store_vec3(view.normal(vertex), p.normal);
-  store_vec3(mesh.second_normal(vertex), p.second_normal);
-  const int k = mesh.part_of_vertex(vertex);
+  store_vec3(view.second_normal(vertex), p.second_normal);
+  view.owner(vertex) = p.owner;
+  if (view.patches) view.patch(vertex) = static_cast<uint8_t>(p.patch);
+  mesh.marks[k].second_owners[view.place(vertex)] = p.second_owner;
   mesh.marks[k].on_crease[view.place(vertex)] = 1;
 }
 
@@ -244,7 +245,7 @@ struct SnapVertices {
 // An edge is not split too near to an end.
 QSES_FN bool is_split(const CreasePoint &p) {
   if (p.kind == CreasePoint::kNone) return false;
-  return minimum(p.to_first, p.to_second) >= kLeastPart * (p.to_first + p.to_second);
+  return minimum(p.to_first, p.to_second) >= KNOB(4, kLeastPart) * (p.to_first + p.to_second);
 }
 struct CountSplit {
   const CreasePoint *points;
@@ -340,18 +341,61 @@ struct CountNewTriangles {
   QSES_HOST_DEVICE uint64_t operator()(size_t i) const { return static_cast<uint64_t>(find(i).new_triangles()); }
 };
 
+// A triangle over a place where three creases meet gets a vertex there: one that has points on all three of them.
 template <class Sheets>
 struct SolveCorners {
-  MeshParts mesh;
+  FindSplits find;
   Sheets sheets;
-  const uint32_t *list;
+  Lattice lattice;
   CreasePoint *corners;  // [list]
   QSES_HOST_DEVICE void operator()(size_t i) const {
-    const uint32_t *const t = mesh.triangle(list[i]);
-    CreaseEnd ends[3];
-    for (int k = 0; k < 3; ++k) ends[k] = sheets.end(mesh.with_vertex(t[k]), t[k]);
     corners[i].kind = CreasePoint::kNone;
-    if (sheets.may_have_corner(ends)) corners[i] = sheets.solve_corner(ends);
+    const TriangleSplits s = find(i);
+    const uint32_t *const t = find.mesh.triangle(find.list[i]);
+    uint32_t pair[6][2];
+    Vec3<float> place[6], ends[3];
+    int count = 0;
+    for (int k = 0; k < 6; ++k) {
+      CreaseEnd c;
+      if (k < 3) {
+        c = end_of_vertex(find.mesh, lattice, t[k]);
+        ends[k] = c.position;
+        if (c.owner == c.second_owner) continue;
+      } else {
+        if (s.edge[k - 3] == kNoNumber) continue;
+        c = end_of_point(find.points[s.edge[k - 3]]);
+      }
+      const uint32_t low = c.owner < c.second_owner ? c.owner : c.second_owner,
+                     high = c.owner < c.second_owner ? c.second_owner : c.owner;
+      bool known = false;
+      for (int j = 0; j < count; ++j) known |= pair[j][0] == low && pair[j][1] == high;
+      if (known) continue;
+      place[count] = c.position;
+      pair[count][0] = low;
+      pair[count++][1] = high;
+    }
+    for (int a = 0; a < count; ++a)
+      for (int b = a + 1; b < count; ++b) {
+        // The third pair of what two pairs with one sheet in common name.
+        const bool first = pair[a][0] == pair[b][0] || pair[a][0] == pair[b][1];
+        const bool second = pair[a][1] == pair[b][0] || pair[a][1] == pair[b][1];
+        if (first == second) continue;
+        const uint32_t common = pair[a][first ? 0 : 1], x = pair[a][first ? 1 : 0],
+                       y = pair[b][pair[b][0] == common ? 1 : 0];
+        for (int c = b + 1; c < count; ++c) {
+          if (!((pair[c][0] == x && pair[c][1] == y) || (pair[c][0] == y && pair[c][1] == x))) continue;
+          const uint32_t owners[3] = {common, x, y};
+          const float size2 = maximum(length_squared(ends[1] - ends[0]),
+                                      maximum(length_squared(ends[2] - ends[0]), length_squared(ends[2] - ends[1])));
+          const CreasePoint p =
+              sheets.solve_corner(owners, (place[a] + place[b] + place[c]) * (1.f / 3.f), square_root(size2));
+          const float least2 = kLeastPart * kLeastPart * size2;
+          for (int k = 0; k < count; ++k)
+            if (length_squared(place[k] - p.position) < least2) return;  // it has one there
+          corners[i] = p;
+          return;
+        }
+      }
   }
 };
 struct CountCorner {
@@ -359,36 +403,56 @@ struct CountCorner {
   QSES_HOST_DEVICE uint64_t operator()(size_t i) const { return corners[i].kind != CreasePoint::kNone ? 1 : 0; }
 };
 
-// Where splits would fold a triangle, those along a crease are left out; those across stay.
+// Where splits would fold a triangle, its edges are left as they are.
+template <class Sheets>
 struct RefuseSplits {
   FindSplits find;
+  Sheets sheets;
   Lattice lattice;
   uint8_t *refused;  // [edge]
   QSES_HOST_DEVICE void operator()(size_t i) const {
     const TriangleSplits s = find(i);
     if (s.edges() == 0) return;
-    bool any = false;
-    for (int k = 0; k < 3; ++k)
-      any |= s.edge[k] != kNoNumber && find.points[s.edge[k]].kind == CreasePoint::kAlong;
-    if (!any) return;
     const uint32_t *const t = find.mesh.triangle(find.list[i]);
-    const auto position = [&](int corner) {
-      if (corner < 3) return centered_position(lattice, find.mesh.with_vertex(t[corner]).position(t[corner]));
-      return corner == 6 ? find.corners[i].position : find.points[s.edge[corner - 3]].position;
+    const auto corner = [&](int k) {
+      if (k < 3) return end_of_vertex(find.mesh, lattice, t[k]);
+      return end_of_point(k == 6 ? find.corners[i] : find.points[s.edge[k - 3]]);
     };
-    const Vec3<float> a = position(0);
-    const Vec3<float> whole = cross_product(position(1) - a, position(2) - a);
     const Pieces pieces = cut_triangle(s.edge[0] != kNoNumber, s.edge[1] != kNoNumber, s.edge[2] != kNoNumber, s.within,
-                                       position);
+                                       [&](int k) { return corner(k).position; });
+    const float sign = find.mesh.part[0].reversed ? -1.f : 1.f;
     bool bad = false;
     for (int p = 0; p < pieces.count; ++p) {
-      const Vec3<float> x = position(pieces.corner[p][0]), y = position(pieces.corner[p][1]),
-                        z = position(pieces.corner[p][2]);
-      bad |= !(dot(cross_product(y - x, z - x), whole) > 0.f) || least_cosine_of_angles(x, y, z) > 0.99f;
+      const CreaseEnd c[3] = {corner(pieces.corner[p][0]), corner(pieces.corner[p][1]), corner(pieces.corner[p][2])};
+      const Vec3<float> normal = cross_product(c[1].position - c[0].position, c[2].position - c[0].position) * sign;
+      bad |= sheets.is_folded(c, normal) ||
+             least_cosine_of_angles(c[0].position, c[1].position, c[2].position) > KNOB(7, 0.999f);
     }
     if (!bad) return;
+#ifdef CREASE_DEBUG
+    static int shown = 0;
+    if (std::getenv("SHOWBAD") && shown++ < std::atoi(std::getenv("SHOWBAD"))) {
+      const CreaseEnd o = corner(0);
+      std::fprintf(stderr, "BAD splits %d%d%d tri %u\n", s.edge[0] != kNoNumber, s.edge[1] != kNoNumber, s.edge[2] != kNoNumber, find.list[i]);
+      for (int k = 0; k < 6; ++k) {
+        if (k >= 3 && s.edge[k - 3] == kNoNumber) continue;
+        const CreaseEnd c = corner(k);
+        const Vec3<float> d = c.position - o.position;
+        const uint32_t own = k < 3 ? find.mesh.with(t[k]).owner(t[k]) : find.points[s.edge[k - 3]].owner;
+        std::fprintf(stderr, "  %d at %.3f %.3f %.3f own %u cr %d n %.2f %.2f %.2f n2 %.2f %.2f %.2f", k, d.x, d.y, d.z, own, k < 3 ? find.mesh.on_crease(t[k]) : 2, c.normal.x, c.normal.y, c.normal.z, c.second_normal.x, c.second_normal.y, c.second_normal.z);
+        if (k >= 3) { const CreasePoint &p = find.points[s.edge[k - 3]]; const Vec3<float> e = corner((k - 3 + 1) % 3).position - corner(k - 3).position; std::fprintf(stderr, " L %.3f to %.3f %.3f", square_root(length_squared(e)), p.to_first, p.to_second); }
+        std::fprintf(stderr, "\n");
+      }
+      for (int p = 0; p < pieces.count; ++p) {
+        const CreaseEnd x = corner(pieces.corner[p][0]), y = corner(pieces.corner[p][1]), z = corner(pieces.corner[p][2]);
+        const CreaseEnd cc[3] = {x, y, z};
+        std::fprintf(stderr, "   piece %d%d%d folded %d ang %.1f\n", pieces.corner[p][0], pieces.corner[p][1], pieces.corner[p][2], sheets.is_folded(cc, cross_product(y.position - x.position, z.position - x.position) * sign), std::acos(least_cosine_of_angles(x.position, y.position, z.position)) * 57.3);
+      }
+    }
+#endif
     for (int k = 0; k < 3; ++k)
-      if (s.edge[k] != kNoNumber && find.points[s.edge[k]].kind == CreasePoint::kAlong) atomic_set(refused + s.edge[k]);
+      if (s.edge[k] != kNoNumber && (KNOB(8, 0.f) > 0.f || find.points[s.edge[k]].kind == CreasePoint::kAlong))
+        atomic_set(refused + s.edge[k]);
   }
 };
 struct DropRefused {
@@ -411,9 +475,6 @@ struct AddVertex {
     const CreasePoint &p = points[i];
     if (edges ? !is_split(p) : p.kind == CreasePoint::kNone) return;
     const uint32_t vertex = first + rank[i];
-    const MeshView &view = mesh.with_vertex(vertex);
-    view.owner(vertex) = p.owner;
-    if (view.patches) view.patch(vertex) = QSES_PATCH_REENTRANT;
     put_on_crease(mesh, lattice, vertex, p);
   }
 };
@@ -432,7 +493,7 @@ struct AddTriangles {
     uint32_t *const t = find.mesh.triangle(find.list[i]);
     const uint32_t own[3] = {t[0], t[1], t[2]};
     const auto position = [&](int corner) {
-      if (corner < 3) return centered_position(lattice, find.mesh.with_vertex(own[corner]).position(own[corner]));
+      if (corner < 3) return centered_position(lattice, find.mesh.with(own[corner]).position(own[corner]));
       return find.points[s.edge[corner - 3]].position;
     };
     const Pieces pieces = cut_triangle(s.edge[0] != kNoNumber, s.edge[1] != kNoNumber, s.edge[2] != kNoNumber, s.within,
@@ -449,23 +510,29 @@ struct AddTriangles {
   }
 };
 
+// What vertices begin with.
+struct MarkVertices {
+  MeshView mesh;
+  CreaseMarks marks;
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    const uint32_t v = mesh.first_vertex + static_cast<uint32_t>(i);
+    const float *const n = mesh.normal(v), *const second = mesh.second_normal(v);
+    marks.second_owners[i] = mesh.owner(v);
+    marks.on_crease[i] = n[0] != second[0] || n[1] != second[1] || n[2] != second[2];
+  }
+};
+
 // ---- the finished mesh -----------------------------------------------------------------------------------------
 
-// On a crease a vertex carries the mean of its sides.
 struct JoinVertex {
   MeshParts from;
   MeshView to;
   QSES_HOST_DEVICE void operator()(size_t i) const {
     const uint32_t v = static_cast<uint32_t>(i);
-    const MeshView &view = from.with_vertex(v);
+    const MeshView &view = from.with(v);
     store_vec3(to.position(v), load_vec3(view.position(v)));
-    Vec3<float> n = load_vec3(view.normal(v));
-    if (from.on_crease(v)) {
-      const Vec3<float> mean = n + load_vec3(from.second_normal(v));
-      const float length2 = length_squared(mean);
-      if (length2 > 1e-6f) n = mean * reciprocal_root(length2);
-    }
-    store_vec3(to.normal(v), n);
+    store_vec3(to.normal(v), load_vec3(view.normal(v)));
+    store_vec3(to.second_normal(v), load_vec3(view.second_normal(v)));
     to.owner(v) = view.owner(v);
     if (to.patches) to.patch(v) = view.patch(v);
   }

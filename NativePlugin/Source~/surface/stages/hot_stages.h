@@ -6,6 +6,7 @@
 #include "surface/memory/memory_plan.h"
 #include "surface/stages/marching_cubes.h"
 #include "surface/stages/projection.h"
+#include "surface/stages/side_normals.h"
 
 #include <type_traits>
 

@@ -26,7 +26,9 @@ constexpr float kLongestWayIn = 0.6f;
 // A probe covers what is deeper in it than this.
 constexpr float kProjectionTolerance = 1e-4f;
 // Rounds after which the lattice edge decides.
-constexpr int kMaxProjections = 5;
+constexpr int kMaxProjections = 10;
+// Probes whose centres are nearer to each other than this, in units of the probe, make one sheet of the surface.
+constexpr float kSameSheet = 0.07f;
 
 // Depth of a point in an inflated ball: R - |x - c|. The largest over the atoms is a lower bound of the distance to the
 // boundary, and the distance itself if the radial projection on that atom is exposed; no other atom's can be.
@@ -45,6 +47,9 @@ QSES_FN bool is_exposed(const FeatureView &f, uint32_t atom, const Vec3<float> &
   return true;
 }
 
+// The length of the offset of a point at some depth in a ball.
+QSES_FN float offset_length(const Sphere &ball, float depth) { return maximum(ball.radius - depth, 1e-12f); }
+
 // The atom whose ball the point is deepest in: also the one whose van der Waals surface is nearest. Candidates:
 // atom_count(), atom(k) -> atom number, arc_count(), arc(k) -> arc number.
 struct DeepestAtom {
@@ -61,6 +66,13 @@ QSES_FN DeepestAtom deepest_atom(const FeatureView &f, const Candidates &candida
     if (d > best.depth) best = {i, d};
   }
   return best;
+}
+
+// Is the point on the contact patch of that atom: is its radial projection exposed?
+QSES_FN bool is_on_contact(const FeatureView &f, const DeepestAtom &deepest, const Vec3<float> &x) {
+  if (deepest.depth <= -kFarAway) return false;  // there is no atom
+  const Sphere ball = load(f.atoms.items + deepest.atom);
+  return is_exposed(f, deepest.atom, x - Vec3<float>(ball.center), offset_length(ball, deepest.depth));
 }
 
 struct NearestArc {
@@ -97,8 +109,10 @@ struct BoundaryPoint {
   bool found;  // false: nothing exposed is near, so that the rest means little
 };
 
-// The length of the offset of a point at some depth in a ball.
-QSES_FN float offset_length(const Sphere &ball, float depth) { return maximum(ball.radius - depth, 1e-12f); }
+QSES_FN Vec3<float> direction(const Vec3<float> &from, const Vec3<float> &to) {
+  const Vec3<float> d = to - from;
+  return d * reciprocal_root(maximum(length_squared(d), 1e-12f));
+}
 
 // Outward from a ball's centre; a fixed direction at the centre itself.
 QSES_FN Vec3<float> sphere_normal(const Sphere &ball, const Vec3<float> &x) {
@@ -121,9 +135,7 @@ template <class Candidates>
 QSES_FN BoundaryPoint nearest_boundary(const FeatureView &f, const Candidates &candidates, const Vec3<float> &x) {
   const DeepestAtom deepest = deepest_atom(f, candidates, x);
   const Sphere ball = load(f.atoms.items + deepest.atom);
-  const bool exposed = candidates.atom_count() > 0 &&
-                       is_exposed(f, deepest.atom, x - Vec3<float>(ball.center), offset_length(ball, deepest.depth));
-  if (exposed) return boundary_on_atom(ball, deepest.depth, x, true);
+  if (is_on_contact(f, deepest, x)) return boundary_on_atom(ball, deepest.depth, x, true);
   const NearestArc nearest = nearest_arc(f, candidates, x);
   if (nearest.arc >= 0) return boundary_on_arc(load(f.arcs + nearest.arc), x);
   return boundary_on_atom(ball, deepest.depth, x, false);
@@ -131,8 +143,13 @@ QSES_FN BoundaryPoint nearest_boundary(const FeatureView &f, const Candidates &c
 
 struct SurfacePoint {
   Vec3<float> position, normal;
+  Vec3<float> second_normal;  // where two sheets meet, of the other one; elsewhere equal to the first
   qses_patch patch;
   bool placed;  // false: no feature is near, or none can be trusted
+
+  QSES_FN bool is_crest() const {
+    return normal.x != second_normal.x || normal.y != second_normal.y || normal.z != second_normal.z;
+  }
 };
 
 // Can a vertex be trusted that moved so far, `way_in` of it into the molecule?
@@ -149,7 +166,7 @@ QSES_FN SurfacePoint place_on_surface(const SurfaceParameters &p, const Vec3<flo
   outward = length2 > 0.25f ? outward * reciprocal_root(length2) : Vec3<float>(0.f, 0.f, 1.f);
   const Vec3<float> position = y.position - outward * p.depth;
   const bool near = is_short_move(p, p.depth - y.distance, length_squared(position - x));
-  return {position, outward, y.patch, y.found && near};
+  return {position, outward, outward, y.patch, y.found && near};
 }
 
 // The atom whose van der Waals surface is nearest to the point.
@@ -160,8 +177,9 @@ QSES_FN uint32_t nearest_atom(const FeatureView &f, const Candidates &candidates
 
 // On the SAS and VDW surfaces vertices may sit on creases, where the line to y has no length, and a vertex that was not
 // placed has no such line: the normal is that of the owner's sphere.
-QSES_FN Vec3<float> vertex_normal(const FeatureView &f, const SurfacePoint &s, uint32_t owner) {
-  return f.parameters.depth == 0.f || !s.placed ? sphere_normal(load(f.atoms.items + owner), s.position) : s.normal;
+QSES_FN void settle_normals(const FeatureView &f, uint32_t owner, SurfacePoint *s) {
+  if (f.parameters.depth > 0.f && s->placed) return;
+  s->normal = s->second_normal = sphere_normal(load(f.atoms.items + owner), s->position);
 }
 
 // ---- the rounds of a projection --------------------------------------------------------------------------------
@@ -171,13 +189,14 @@ QSES_FN Vec3<float> vertex_normal(const FeatureView &f, const SurfacePoint &s, u
 //   first     on the contact patch of the ball it is deepest in, if the radial projection on that is exposed:
 //             project_on_atom(). Else from the nearest arc: project_on_arc(), round 1
 //   then      while another probe may cover it, from the arc that is nearest to where it is now: reproject(), rounds 2
-//             to kMaxProjections. Where another probe does, it moves aside; where none does, it is placed
+//             to kMaxProjections. Where another probe does, it jumps to the crest, where the spheres of both probes
+//             meet; where none does, it is placed
 //   at last   where the sign changes on its lattice edge: place_on_edge(), if it has no arc, moved further than can be
-//             trusted, came to lie over a contact patch when it moved aside, or is not placed after the last round
+//             trusted, or is covered still after the last round
 enum class ProjectionState : uint32_t { kOnEdge, kReproject, kPlaced };
 
 struct Projection {
-  SurfacePoint point;  // where the vertex is now
+  SurfacePoint point;  // where the vertex is now: on the sphere of a probe, or on those of two
   ProjectionState state;
   int rounds;  // of arcs so far
 };
@@ -188,7 +207,8 @@ QSES_FN Projection project_on_atom(const SurfaceParameters &p, const Sphere &bal
 }
 
 QSES_FN Projection project_on_arc(const FeatureView &f, const NearestArc &nearest, const Vec3<float> &x) {
-  if (nearest.arc < 0) return {{x, {0.f, 0.f, 1.f}, QSES_PATCH_REENTRANT, false}, ProjectionState::kOnEdge, 1};
+  const Vec3<float> up(0.f, 0.f, 1.f);
+  if (nearest.arc < 0) return {{x, up, up, QSES_PATCH_REENTRANT, false}, ProjectionState::kOnEdge, 1};
   const SurfaceParameters &p = f.parameters;
   const Arc arc = load(f.arcs + nearest.arc);
   const BoundaryPoint y = boundary_on_arc(arc, x);
@@ -203,29 +223,27 @@ QSES_FN Projection project_on_arc(const FeatureView &f, const NearestArc &neares
   return {s, may_be_covered ? ProjectionState::kReproject : ProjectionState::kPlaced, 1};
 }
 
-// A point on the sphere of a probe, in direction `outward`, that another probe, at y, covers: away from both at once,
-// onto the sphere of the other one. (From sphere to sphere it would come nearer to where they meet in ever smaller
-// steps.)
-QSES_FN SurfacePoint move_aside(const SurfaceParameters &p, const Vec3<float> &x, const Vec3<float> &outward,
-                                const BoundaryPoint &y) {
-  const float d = y.distance;
-  const Vec3<float> other = (y.position - x) * quotient(1.f, maximum(d, 1e-9f)), between = outward + other;
-  const Vec3<float> towards = between * reciprocal_root(maximum(length_squared(between), 1e-12f));
-  const float along = d * dot(towards, other);
-  const float step = square_root(maximum(0.f, along * along + (p.depth - d) * (p.depth + d))) - along;
-  const Vec3<float> moved = x - towards * step, from = y.position - moved;
-  const bool near = step <= kLongestMove * p.spacing;  // not a number: false
-  return {moved, from * reciprocal_root(maximum(length_squared(from), 1e-12f)), y.patch, near};
-}
-
-// Of a point that moved aside: does a probe that touches a single atom cover it?
-template <class Candidates>
-QSES_FN bool is_over_contact(const FeatureView &f, const Candidates &candidates, const Vec3<float> &x) {
-  if (candidates.atom_count() == 0) return false;
-  const DeepestAtom deepest = deepest_atom(f, candidates, x);
-  const Sphere ball = load(f.atoms.items + deepest.atom);
-  return deepest.depth < f.parameters.depth - kProjectionTolerance &&
-         is_exposed(f, deepest.atom, x - Vec3<float>(ball.center), offset_length(ball, deepest.depth));
+// A point on the sphere of a probe, or on those of two, that another probe covers, at y: onto the crest, which is the
+// circle where the sphere of that one and of the farther one of the former meet. (From sphere to sphere it would come
+// nearer to the crest in ever smaller steps.)
+QSES_FN SurfacePoint leave_probe(const SurfaceParameters &p, const SurfacePoint &s, const BoundaryPoint &y) {
+  const Vec3<float> &x = s.position;
+  Vec3<float> first = x + s.normal * p.depth, second = x + s.second_normal * p.depth;
+  const float to_first2 = length_squared(y.position - first), to_second2 = length_squared(y.position - second);
+  if (s.is_crest() && to_first2 < to_second2)
+    first = y.position;
+  else
+    second = y.position;
+  const Vec3<float> between = second - first, middle = (first + second) * 0.5f;
+  const float between2 = length_squared(between), same = kSameSheet * p.depth;
+  if (between2 <= same * same) return place_on_surface(p, x, y);
+  const Vec3<float> from = x - middle, off = from - between * quotient(dot(from, between), between2);
+  const float height2 = p.depth * p.depth - 0.25f * between2, off2 = length_squared(off);
+  const Vec3<float> crest =
+      middle + off * (square_root(maximum(0.f, height2)) * reciprocal_root(maximum(off2, 1e-12f)));
+  const float longest = kLongestMove * p.spacing;
+  const bool near = off2 > 1e-12f && length_squared(crest - x) <= longest * longest;  // not a number: false
+  return {crest, direction(crest, first), direction(crest, second), y.patch, near};
 }
 
 // A further round for a vertex that lies on the sphere of a probe already.
@@ -233,17 +251,26 @@ template <class Candidates>
 QSES_FN Projection reproject(const FeatureView &f, const Candidates &candidates, const NearestArc &nearest,
                              const Projection &before) {
   const SurfaceParameters &p = f.parameters;
+  const SurfacePoint &s = before.point;
   const int round = before.rounds + 1;
-  if (nearest.arc < 0) return {before.point, ProjectionState::kPlaced, round};  // nothing is near it any more
-  const Vec3<float> &x = before.point.position;
-  const BoundaryPoint y = boundary_on_arc(load(f.arcs + nearest.arc), x);
-  const bool covered = y.distance < p.depth - kProjectionTolerance;
-  const SurfacePoint s = covered ? move_aside(p, x, before.point.normal, y) : place_on_surface(p, x, y);
-  const bool was_moved_aside = before.rounds > 1;
-  const bool given_up = !s.placed || (covered && round == kMaxProjections) ||
-                        (was_moved_aside && is_over_contact(f, candidates, s.position));
-  if (given_up) return {s, ProjectionState::kOnEdge, round};
-  return {s, covered ? ProjectionState::kReproject : ProjectionState::kPlaced, round};
+  const BoundaryPoint y = nearest.arc < 0 ? BoundaryPoint{s.position, p.depth, s.patch, false}
+                                          : boundary_on_arc(load(f.arcs + nearest.arc), s.position);
+  if (y.distance < p.depth - kProjectionTolerance) {
+    const SurfacePoint left = leave_probe(p, s, y);
+    const bool goes_on = left.placed && round < kMaxProjections;
+    return {left, goes_on ? ProjectionState::kReproject : ProjectionState::kOnEdge, round};
+  }
+  if (before.rounds > 1) {  // where it is now, a probe that touches a single atom may cover it
+    const DeepestAtom deepest = deepest_atom(f, candidates, s.position);
+    if (deepest.depth < p.depth - kProjectionTolerance && is_on_contact(f, deepest, s.position)) {
+      Projection on = project_on_atom(p, load(f.atoms.items + deepest.atom), deepest.depth, s.position);
+      on.rounds = round;
+      return on;
+    }
+  }
+  if (s.is_crest() || !y.found) return {s, ProjectionState::kPlaced, round};
+  const SurfacePoint on = place_on_surface(p, s.position, y);
+  return {on, on.placed ? ProjectionState::kPlaced : ProjectionState::kOnEdge, round};
 }
 
 // ---- lattice edges ---------------------------------------------------------------------------------------------
@@ -251,13 +278,11 @@ QSES_FN Projection reproject(const FeatureView &f, const Candidates &candidates,
 // Is the point inside the surface? What the signs say of lattice points, for any point.
 template <class Candidates>
 QSES_FN bool is_inside(const FeatureView &f, const Candidates &candidates, const Vec3<float> &x) {
-  if (candidates.atom_count() == 0) return false;
   const float depth = f.parameters.depth;
   const DeepestAtom deepest = deepest_atom(f, candidates, x);
   if (deepest.depth <= f.parameters.least_depth()) return false;
   if (deepest.depth > depth) return true;
-  const Sphere ball = load(f.atoms.items + deepest.atom);
-  if (is_exposed(f, deepest.atom, x - Vec3<float>(ball.center), offset_length(ball, deepest.depth))) return false;
+  if (is_on_contact(f, deepest, x)) return false;
   return nearest_arc(f, candidates, x).distance2 > depth * depth;
 }
 

@@ -5,6 +5,7 @@
 
 #include "parallel/atomics.h"
 #include "surface/stages/hot_stages.h"
+#include "surface/stages/side_normals.h"
 
 namespace quickses {
 
@@ -125,7 +126,7 @@ struct TangentialStarts {
     const uint32_t end = vertex_base[brick + 1];
     for (uint32_t v = vertex_base[brick] + static_cast<uint32_t>(team.rank()); v < end;
          v += static_cast<uint32_t>(team.size())) {
-      const Vec3<float> n = load_vec3(mesh.normal(v));
+      const Vec3<float> n = shared_normal(mesh, v);
       const float *const position = mesh.position(v);
       const Vec3<float> x = {centred(position[0], lattice.center_x), centred(position[1], lattice.center_y),
                              centred(position[2], lattice.center_z)};

@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: MIT
+// The sheets of the solvent-excluded surface, as creases see them (creases.h): the spheres of probes. A vertex knows
+// where the probes are that touch it: on its normals, a probe radius away. Creases are where two probes meet: edges that
+// cross one are found by how far they are from both spheres, and a point on it by projection.
+#pragma once
+
+#include "surface/stages/creases.h"
+#include "surface/stages/point_projection.h"
+
+namespace quickses {
+
+// Sheets whose normals have a smaller cosine than this meet in a crease, if the edge between them leaves both probes by
+// more than this, in spacings; where normals are opposed, always, if the probes are far enough apart (in probe radii).
+constexpr float kCreaseCosine = 0.7f;
+constexpr float kLeastDeviation = 0.06f;
+constexpr float kKnifeProbes = 0.5f;
+// A new vertex is at least this far from its edge, in spacings.
+constexpr float kLeastMove = 0.04f;
+// Projected again, a point of the surface stays where it is. Å.
+constexpr float kSteadyMove = 5e-4f;
+
+// The features that decide about points near an edge. Where there are more, nothing is sharpened.
+struct LocalFeatures {
+  static constexpr int kMostAtoms = 48, kMostArcs = 96;
+  uint32_t atoms[kMostAtoms], arcs[kMostArcs];
+  int atom_number = 0, arc_number = 0;
+  bool crowded = false;
+
+  QSES_FN int atom_count() const { return atom_number; }
+  QSES_FN uint32_t atom(int k) const { return atoms[k]; }
+  QSES_FN int arc_count() const { return arc_number; }
+  QSES_FN uint32_t arc(int k) const { return arcs[k]; }
+};
+
+// Those for points within `around` of x.
+QSES_FN void gather_features(const FeatureView &f, const Vec3<float> &x, float around, LocalFeatures *out) {
+  constexpr uint32_t kMostMet = 1 << 13;
+  uint32_t met = 0;
+  const float reach = f.parameters.max_radius + around;
+  const CellBox box = cells_around(f.atoms.cells, x - Vec3<float>(reach, reach, reach),
+                                   x + Vec3<float>(reach, reach, reach));
+  float deepest = -kFarAway;
+  for (int pass = 0; pass < 2; ++pass)
+    for (int z = box.z0; z <= box.z1; ++z)
+      for (int y = box.y0; y <= box.y1; ++y) {
+        const ItemRun run = f.atoms.run(box.x0, box.x1, y, z);
+        met += run.end - run.begin;
+        if (met > kMostMet) {
+          out->crowded = true;
+          return;
+        }
+        for (uint32_t i = run.begin; i < run.end; ++i) {
+          const float depth = ball_depth(load(f.atoms.items + i), x);
+          if (pass == 0) {
+            deepest = maximum(deepest, depth);
+          } else if (depth >= deepest - 2.f * around - 1e-3f) {
+            if (out->atom_number == LocalFeatures::kMostAtoms) {
+              out->crowded = true;
+              return;
+            }
+            out->atoms[out->atom_number++] = i;
+          }
+        }
+      }
+  if (f.arc_bounds.count == 0) return;
+  const float far = f.parameters.depth + around + 1e-2f, grown = far + f.max_arc_bound;
+  const CellBox arcs = cells_around(f.arc_bounds.cells, x - Vec3<float>(grown, grown, grown),
+                                    x + Vec3<float>(grown, grown, grown));
+  for (int z = arcs.z0; z <= arcs.z1; ++z)
+    for (int y = arcs.y0; y <= arcs.y1; ++y) {
+      const ItemRun run = f.arc_bounds.run(arcs.x0, arcs.x1, y, z);
+      met += run.end - run.begin;
+      if (met > kMostMet) {
+        out->crowded = true;
+        return;
+      }
+      for (uint32_t i = run.begin; i < run.end; ++i) {
+        const Sphere bound = load(f.arc_bounds.items + i);
+        const float near = bound.radius + far;
+        if (length_squared(Vec3<float>(bound.center) - x) > near * near) continue;
+        if (arc_distance2(load(f.arcs + i), x) > far * far) continue;
+        if (out->arc_number == LocalFeatures::kMostArcs) {
+          out->crowded = true;
+          return;
+        }
+        out->arcs[out->arc_number++] = i;
+      }
+    }
+}
+
+struct ProbeSheets {
+  FeatureView features;
+  Lattice lattice;
+
+  // Has a triangle to do with creases?
+  QSES_FN bool is_near_crease(const MeshParts &mesh, const uint32_t *t, bool along) const {
+    Vec3<float> n[3];
+    int creases = 0;
+    for (int k = 0; k < 3; ++k) {
+      n[k] = load_vec3(mesh.with(t[k]).normal(t[k]));
+      creases += mesh.on_crease(t[k]) ? 1 : 0;
+    }
+    if (creases > 1 && along) return true;
+    return creases > 0 || minimum(dot(n[0], n[1]), minimum(dot(n[1], n[2]), dot(n[2], n[0]))) <= kCreaseCosine;
+  }
+
+  QSES_FN bool may_cross(const CreaseEnd &u, const CreaseEnd &v) const {
+    Crossing c;
+    return find_crossing(u, v, &c);
+  }
+
+  QSES_FN CreasePoint solve(const CreaseEnd &u, const CreaseEnd &v, bool along) const {
+    Crossing c;
+    if (find_crossing(u, v, &c)) return solve_crossing(u, v, c);
+    if (along && u.on_crease() && v.on_crease()) return solve_along(u, v);
+    return none();
+  }
+
+  // Creases of probes end smoothly: there are no corners to be found.
+  QSES_FN CreasePoint solve_corner(const uint32_t *, const Vec3<float> &, float) const { return none(); }
+
+  // Is a piece of a triangle turned away from all sheets at a corner, or has it no area?
+  QSES_FN bool is_folded(const CreaseEnd *corners, const Vec3<float> &normal) const {
+    const float length2 = length_squared(normal);
+    if (!(length2 > 0.f)) return true;
+    for (int k = 0; k < 3; ++k) {
+      const float most = maximum(dot(normal, corners[k].normal), dot(normal, corners[k].second_normal));
+      if (!(most > KNOB(6, 0.f) * square_root(length2))) return true;
+    }
+    return false;
+  }
+
+ private:
+  // Two probes, one at each end of an edge, and where the edge is as far from one as from the other.
+  struct Crossing {
+    Vec3<float> first, second;  // their centres
+    Vec3<float> under;
+    bool knife;
+  };
+
+  QSES_FN static CreasePoint none() {
+    CreasePoint p{};
+    p.kind = CreasePoint::kNone;
+    return p;
+  }
+
+  QSES_FN Vec3<float> probe(const CreaseEnd &end, bool second) const {
+    return end.position + (second ? end.second_normal : end.normal) * features.parameters.depth;
+  }
+
+  QSES_FN bool find_crossing(const CreaseEnd &u, const CreaseEnd &v, Crossing *c) const {
+    // The pair of probes that are closest together: an edge that ends on a crease stays on one of its sheets.
+    float least2 = kFarAway, cosine = 1.f;
+    for (int k = 0; k < 4; ++k) {
+      if ((k & 1 && !u.on_crease()) || (k & 2 && !v.on_crease())) continue;
+      const Vec3<float> a = probe(u, (k & 1) != 0), b = probe(v, (k & 2) != 0);
+      const float d2 = length_squared(b - a);
+      if (d2 >= least2) continue;
+      least2 = d2;
+      c->first = a;
+      c->second = b;
+      cosine = dot(k & 1 ? u.second_normal : u.normal, k & 2 ? v.second_normal : v.normal);
+    }
+    if (cosine > kCreaseCosine) return false;
+    const float p = features.parameters.depth;
+    const Vec3<float> between = c->second - c->first, edge = v.position - u.position;
+    const float along = dot(edge, between);
+    if (!(along > 1e-6f)) return false;
+    const float part = quotient(dot((c->first + c->second) * 0.5f - u.position, between), along);
+    c->under = u.position + edge * minimum(1.f, maximum(0.f, part));
+    const float deviation = absolute(square_root(length_squared(c->under - c->first)) - p);
+    c->knife = cosine < 0.f && length_squared(between) > kKnifeProbes * kKnifeProbes * p * p;
+    return c->knife || deviation >= kLeastDeviation * lattice.spacing;
+  }
+
+  QSES_FN CreasePoint describe(const LocalFeatures &local, const SurfacePoint &s, const CreaseEnd &u, const CreaseEnd &v,
+                               CreasePoint::Kind kind) const {
+    CreasePoint p{};
+    p.position = s.position;
+    p.normal = s.normal;
+    p.second_normal = s.second_normal;
+    p.owner = p.second_owner = features.atoms.order[nearest_atom(features, local, s.position)];
+    p.patch = s.patch;
+    p.kind = kind;
+    p.to_first = square_root(length_squared(s.position - u.position));
+    p.to_second = square_root(length_squared(s.position - v.position));
+    p.first_fits = !u.on_crease();
+    p.second_fits = !v.on_crease();
+    return p;
+  }
+
+  QSES_FN bool is_steady(const LocalFeatures &local, const SurfacePoint &s) const {
+    const SurfacePoint again = project_point(features, local, s.position);
+    return again.placed && length_squared(again.position - s.position) <= kSteadyMove * kSteadyMove;
+  }
+
+  QSES_FN CreasePoint solve_crossing(const CreaseEnd &u, const CreaseEnd &v, const Crossing &c) const {
+    constexpr int kRounds = 3;
+    const float p = features.parameters.depth, length = square_root(length_squared(v.position - u.position));
+    const Vec3<float> between = c.second - c.first, middle = (c.first + c.second) * 0.5f, up = middle - c.under;
+    const float height2 = p * p - 0.25f * length_squared(between), up2 = length_squared(up);
+    const float longest = kFarthestPart * length;
+    LocalFeatures local;
+    gather_features(features, c.under, longest + 0.1f, &local);
+    if (local.crowded) return none();
+    const Vec3<float> way = up2 > 1e-6f ? up * reciprocal_root(up2) : Vec3<float>(0.f, 0.f, 0.f);
+    Vec3<float> x = c.under;
+    if (height2 > 0.f && up2 > 1e-6f) {
+      const Vec3<float> move = middle - way * square_root(height2) - c.under;
+      const float moved = square_root(length_squared(move));
+      x = c.under + move * minimum(1.f, quotient(longest, maximum(moved, 1e-9f)));
+    }
+    // Along the way from the middle between the probes until the point is its own projection.
+    SurfacePoint s{};
+    for (int round = 0;; ++round) {
+      s = project_point(features, local, x);
+      if (!s.placed) return none();
+      const float off = square_root(length_squared(s.position - x));
+      if (off < 2e-3f || s.is_crest()) break;
+      if (round == kRounds) {
+        if (off > 0.05f) return none();
+        break;
+      }
+      const float step = quotient(dot(s.position - x, s.normal), maximum(0.25f, absolute(dot(s.normal, way))));
+      x = x + way * minimum(0.4f, maximum(-0.4f, dot(s.normal, way) < 0.f ? -step : step));
+      if (length_squared(x - c.under) > longest * longest) return none();
+    }
+    const float least = kLeastMove * lattice.spacing;
+    if (!c.knife && length_squared(s.position - c.under) < least * least) return none();
+    if (!is_steady(local, s)) return none();
+    if (!s.is_crest()) {
+      const float to_first = square_root(length_squared(c.first - s.position)),
+                  to_second = square_root(length_squared(c.second - s.position));
+      if (absolute(to_first - p) < 0.02f && absolute(to_second - p) < 0.02f) {
+        s.normal = (c.first - s.position) * quotient(1.f, to_first);
+        s.second_normal = (c.second - s.position) * quotient(1.f, to_second);
+      } else {  // a ridge that bends sharply, or another probe in between
+        const SurfacePoint first = project_point(features, local, s.position + (u.position - s.position) * 0.1f),
+                           second = project_point(features, local, s.position + (v.position - s.position) * 0.1f);
+        if (first.placed && second.placed) {
+          s.normal = first.normal;
+          s.second_normal = second.normal;
+        }
+      }
+    }
+    const CreasePoint found = describe(local, s, u, v, CreasePoint::kCrossed);
+    return minimum(found.to_first, found.to_second) > longest ? none() : found;
+  }
+
+  QSES_FN CreasePoint solve_along(const CreaseEnd &u, const CreaseEnd &v) const {
+    const float p = features.parameters.depth, length = square_root(length_squared(v.position - u.position));
+    if (length < 0.3f * lattice.spacing) return none();
+    const Vec3<float> u1 = probe(u, false), u2 = probe(u, true), v1 = probe(v, false), v2 = probe(v, true);
+    const float straight = maximum(length_squared(v1 - u1), length_squared(v2 - u2)),
+                crossed = maximum(length_squared(v2 - u1), length_squared(v1 - u2));
+    const float widest = maximum(length, 0.3f);
+    if (minimum(straight, crossed) > widest * widest) return none();  // another crease
+    const Vec3<float> first = (u1 + (straight <= crossed ? v1 : v2)) * 0.5f,
+                      second = (u2 + (straight <= crossed ? v2 : v1)) * 0.5f;
+    const Vec3<float> between = second - first, middle = (u.position + v.position) * 0.5f;
+    const float between2 = length_squared(between);
+    Vec3<float> x = middle;
+    if (between2 > 0.01f && between2 < 4.f * p * p) {
+      const Vec3<float> center = (first + second) * 0.5f, from = middle - center;
+      const Vec3<float> off = from - between * quotient(dot(from, between), between2);
+      const float off2 = length_squared(off);
+      if (off2 > 1e-6f) x = center + off * (square_root(p * p - 0.25f * between2) * reciprocal_root(off2));
+      if (length_squared(x - middle) > 0.25f * length * length) x = middle;
+    }
+    LocalFeatures local;
+    gather_features(features, x, 0.7f * length + 0.1f, &local);
+    if (local.crowded) return none();
+    const SurfacePoint s = project_point(features, local, x);
+    const float off = square_root(length_squared(s.position - middle)), least = KNOB(12, kLeastSagitta) * lattice.spacing;
+    if (!s.placed || off < least || off > 0.6f * length || !is_steady(local, s)) return none();
+    SurfacePoint crest = s;
+    if (!s.is_crest()) {
+      crest.normal = direction(s.position, first);
+      crest.second_normal = direction(s.position, second);
+    }
+    const CreasePoint found = describe(local, crest, u, v, CreasePoint::kAlong);
+    return minimum(found.to_first, found.to_second) < 0.25f * length ? none() : found;
+  }
+};
+
+}  // namespace quickses
