@@ -124,9 +124,10 @@ void add_compute_options(CLI::App *app, ComputeOptions &options, int &device) {
              "ses: solvent-excluded; sas: solvent-accessible; vdw: the atoms themselves");
   add_choice(app, "--method", options.method, kMethods,
              "exact: vertices on the exact surface; grid: the voxel method of Martinez, Krone and Baaden 2019");
-  add_choice(app, "--creases", options.creases, kCreases,
-             "Sharp creases: edges that cut across one are split there; default: on for a mesh that is written, off for "
-             "trajectories and bench");
+  add_choice(
+      app, "--creases", options.creases, kCreases,
+      "Sharp creases: edges that cut across one are split there; default: on for a mesh that is written, off for "
+      "trajectories and bench");
   add_choice(app, "--backend", options.backend, kBackends, "What computes; auto: CUDA if it can be used, else the CPU");
   app->add_option_function<std::string>(
          "--device",

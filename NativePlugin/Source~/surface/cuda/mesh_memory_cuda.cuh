@@ -8,6 +8,8 @@
 #include "surface/mesh/mesh_memory.h"
 #include "surface/stages/hot_stages.h"
 
+#include <deque>
+
 namespace quickses {
 
 // The memory of the meshes that stay on the device, one per slot.
@@ -130,8 +132,7 @@ class MeshMemory<CudaExecutor> {
 
   // At most a mesh to be made into another one, its normals and those of the other one, sums and starts at a time.
   void *spill(size_t bytes) {
-    constexpr size_t kSpills = sizeof spill_ / sizeof spill_[0];
-    if (spilled_ == kSpills) throw Error(QSES_INTERNAL_ERROR, "too many arrays beside a mesh");
+    if (spilled_ == spill_.size()) spill_.emplace_back();
     return spill_[spilled_++].reserve(bytes);
   }
 
@@ -139,7 +140,7 @@ class MeshMemory<CudaExecutor> {
   MeshLeases host_meshes_;
   DeviceMeshes device_meshes_;
   bool keep_ = false;
-  PinnedBuffer spill_[8];
+  std::deque<PinnedBuffer> spill_;
   size_t spilled_ = 0;
   void *table_ = nullptr;
 };

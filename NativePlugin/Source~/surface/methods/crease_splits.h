@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Sharpens a finished mesh: edges that cut across creases get vertices on them, or have an end moved there, then edges
-// along creases are split where they leave them, and triangles over corners get a vertex in the corner. The mesh grows
-// in parts, which are joined at last.
+// Sharpens a finished mesh: edges that cut across creases get vertices on them, or have an end moved there; then edges
+// along creases are split where they leave them. The mesh grows in parts, which are joined at last.
 #pragma once
 
 #include "surface/methods/exact_surface.h"
@@ -10,139 +9,168 @@
 
 namespace quickses {
 
-// Splits are not known before they are made: of memory for this part of the vertices and triangles is thought.
-constexpr double kExpectedSplits = 0.25, kExpectedNear = 0.6;
-
-inline size_t expected_part(size_t n, double part) { return static_cast<size_t>(part * static_cast<double>(n)) + 64; }
-
-template <class Executor>
-CreaseMarks allocate_marks(Executor &executor, size_t vertices) {
-  return {executor.template allocate<uint32_t>(vertices).data, executor.template allocate<uint8_t>(vertices).data};
-}
-
 struct PartSizes {
   size_t vertices, triangles;
 };
 
-// One round over the triangles near creases. `all`: of the mesh so far; it grows.
-template <class Work, class Sheets>
-void split_round(Work &work, const Sheets &sheets, const SplitRound &round, int next_part, const MeshShape &shape,
-                 MeshParts *mesh, PartSizes *all) {
-  auto &executor = work.executor;
-  using Executor = std::remove_reference_t<decltype(executor)>;
-  constexpr bool kCounts = Executor::kCounts;
-  const Lattice &lattice = work.lattice;
-  const size_t vertices = all->vertices;
-  const uint64_t steps = std::min<uint64_t>(NearSpheres::kMostMet, work.atoms.count) + kPlainSteps;
+// The mesh while it grows, and how much there is of it.
+struct GrowingMesh {
+  MeshMemoryView plain;  // the first part
+  MeshShape shape;       // of all parts
+  MeshParts parts{};
+  PartSizes all{};
+};
 
-#ifdef CREASE_DEBUG
-  std::fprintf(stderr, "round along %d: ", round.along);
-#endif
-  // What is allocated here goes, but for the part that is added: that comes first.
-  // Sizes of the new part are only known at the end; the work arrays lie before it.
-  Span<uint32_t> list = executor.template allocate<uint32_t>(all->triangles);
-  size_t listed = executor.compact(all->triangles, NearCrease<Sheets>{*mesh, sheets, round.along}, list);
-  if (kCounts) listed = std::min(all->triangles, expected_part(all->triangles, kExpectedNear));
-  Span<uint8_t> chosen = executor.template allocate<uint8_t>(listed);
-  Span<uint32_t> count = executor.template allocate<uint32_t>(vertices);
-  Span<uint32_t> starts = executor.template allocate<uint32_t>(vertices + 1);
-  executor.fill(count, 0);
-  executor.for_each(listed, ChooseEdges<Sheets>{*mesh, sheets, round, list.data, chosen.data, count.data});
-  executor.exclusive_scan(vertices, LoadCount<uint32_t>{count.data}, starts);
-  size_t edges = executor.fetch(starts.data + vertices);
-  if (kCounts) edges = expected_part(vertices, kExpectedSplits);
-  Span<uint32_t> seconds = executor.template allocate<uint32_t>(edges), firsts = executor.template allocate<uint32_t>(edges),
-                 unordered = executor.template allocate<uint32_t>(edges);
-  const EdgeTable table{starts.data, seconds.data, firsts.data};
-  executor.fill(count, 0);
-  executor.for_each(listed, ListEdges{*mesh, list.data, chosen.data, starts.data, count.data, unordered.data});
-  executor.for_each(vertices, OrderEdges{unordered.data, table});
-  Span<CreasePoint> points = executor.template allocate<CreasePoint>(edges);
-  const SolveEdges<Sheets> solve{*mesh, sheets, table, round.along, points.data};
-  executor.for_each(edges, solve, steps);
-
-  if (round.snap) {
-    const auto mark = executor.arena().mark();
-    const Snaps snaps{executor.template allocate<uint32_t>(vertices).data,
-                      executor.template allocate<uint32_t>(vertices).data};
-    executor.fill(Span<uint32_t>{snaps.nearest, vertices}, 0xff);
-    executor.fill(Span<uint32_t>{snaps.edge, vertices}, 0xff);
-    executor.for_each(edges, FindNearestSnap{{table, points.data, snaps}});
-    executor.for_each(edges, ChooseSnap{{table, points.data, snaps}});
-    Span<uint8_t> refused = executor.template allocate<uint8_t>(vertices);
-    executor.fill(refused, 0);
-    Span<uint32_t> touched = executor.template allocate<uint32_t>(all->triangles);
-    const size_t touched_count = executor.compact(all->triangles, TouchedBySnap{*mesh, snaps.edge}, touched);
-    const RefuseSnaps refuse{*mesh, lattice, touched.data, points.data, snaps.edge, refused.data};
-    executor.for_each(touched_count, refuse);
-    executor.for_each(edges, SnapVertices{*mesh, lattice, table, points.data, snaps.edge, refused.data});
-    executor.arena().rewind(mark);
-    executor.for_each(edges, solve, steps);
-  }
-
-  Span<CreasePoint> corners = executor.template allocate<CreasePoint>(listed);
-  const FindSplits find{*mesh, table, list.data, chosen.data, points.data, corners.data};
-  const SolveCorners<Sheets> solve_corners{{*mesh, table, list.data, chosen.data, points.data, nullptr}, sheets, lattice,
-                                           corners.data};
-  {
-    Span<uint8_t> refused = executor.template allocate<uint8_t>(edges);
-    for (int pass = 0; pass < KNOB(9, 2.f); ++pass) {
-      executor.for_each(listed, solve_corners, steps);
-      executor.fill(refused, 0);
-      executor.for_each(listed, RefuseSplits<Sheets>{find, sheets, lattice, refused.data});
-      executor.for_each(edges, DropRefused{refused.data, points.data});
-    }
-  }
-  executor.for_each(listed, solve_corners, steps);
-#ifdef CREASE_DEBUG
-  if constexpr (!kCounts && !Executor::kIsCuda) {
-    size_t c[3] = {0, 0, 0}, near_end = 0, cc = 0;
-    for (size_t k = 0; k < edges; ++k) {
-      ++c[points[k].kind];
-      if (points[k].kind && !is_split(points[k])) ++near_end;
-    }
-      for (size_t k = 0; k < listed; ++k) cc += corners[k].kind != 0;
-    std::fprintf(stderr, "listed %zu edges %zu none %zu crossed %zu along %zu near end %zu corners %zu\n", listed, edges, c[0], c[1], c[2],
-                 near_end, cc);
-    for (int k = 0; k < 16; ++k) std::fprintf(stderr, "%ld ", gWhy[k]), gWhy[k] = 0;
-    std::fprintf(stderr, "\n");
-  }
-#endif
-  Span<uint32_t> edge_rank = executor.template allocate<uint32_t>(edges + 1),
-                 corner_rank = executor.template allocate<uint32_t>(listed + 1),
-                 before = executor.template allocate<uint32_t>(listed + 1);
-  executor.exclusive_scan(edges, CountSplit{points.data}, edge_rank);
-  executor.exclusive_scan(listed, CountCorner{corners.data}, corner_rank);
-  executor.exclusive_scan(listed, CountNewTriangles{find}, before);
-  uint32_t n[3] = {0, 0, 0};  // of edges, triangles, corners
-  const uint32_t *const sources[3] = {edge_rank.data + edges, before.data + listed, corner_rank.data + listed};
-  if constexpr (!kCounts) executor.fetch_each(sources, n, 3);
-  const uint32_t first_vertex = static_cast<uint32_t>(all->vertices),
-                 first_triangle = static_cast<uint32_t>(all->triangles);
-  PartSizes added{size_t(n[0]) + n[2], n[1]};
-  if (kCounts) added = {expected_part(all->vertices, kExpectedSplits), expected_part(all->triangles, kExpectedSplits)};
-  check_mesh_size({all->vertices + added.vertices, all->triangles + added.triangles});
-
-  const MeshArrays arrays(added.vertices, added.triangles, shape);
-  MeshView part = arrays.view(executor.template allocate<char>(arrays.bytes()).data);
-  add_normals(work, &part, added.vertices, [&](size_t count) { return executor.template allocate<glm::vec3>(count).data; });
-  part.first_vertex = first_vertex;
-  part.first_triangle = first_triangle;
-  mesh->part[next_part] = part;
-  mesh->marks[next_part] = allocate_marks(executor, added.vertices);
-  FindSplits grown = find;
-  grown.mesh = *mesh;
-  executor.for_each(edges, AddVertex{*mesh, lattice, points.data, edge_rank.data, first_vertex, true});
-  executor.for_each(listed, AddVertex{*mesh, lattice, corners.data, corner_rank.data, first_vertex + n[0], false});
-  executor.for_each(listed, AddTriangles{grown, lattice, edge_rank.data, corner_rank.data, first_vertex,
-                                         first_vertex + n[0], before.data, first_triangle});
-  all->vertices += added.vertices;
-  all->triangles += added.triangles;
+// Room for work on the mesh: where the mesh is, since most of it is as large.
+template <class T, class Work>
+Span<T> mesh_room(Work &work, const GrowingMesh &mesh, size_t n) {
+  return work.memory.template allocate_where_mesh_is<T>(work.executor, mesh.plain, n);
 }
 
 template <class Work>
-bool splits_creases(const Work &work) {
-  return work.settings.creases != 0 && work.settings.method == QSES_METHOD_EXACT && !work.plan.mesh_in_pieces;
+CreaseMarks marks_room(Work &work, const GrowingMesh &mesh, size_t vertices) {
+  return {mesh_room<uint32_t>(work, mesh, vertices).data, mesh_room<uint8_t>(work, mesh, vertices).data};
+}
+
+// Where the work is only counted nobody knows how much is near a crease, or split: generously, these parts.
+struct ExpectedParts {
+  double near, split;
+};
+template <class Work>
+ExpectedParts expected_parts(const Work &work) {
+  return work.parameters.depth > 0.f ? ExpectedParts{0.2, 0.1} : ExpectedParts{0.6, 0.3};
+}
+inline size_t expected_part(size_t n, double part) { return static_cast<size_t>(part * static_cast<double>(n)) + 64; }
+
+// Edges of the listed triangles that may have to be split, in the order of their vertices. Waits.
+template <class Work, class Sheets>
+size_t list_edges(Work &work, const Sheets &sheets, const SplitRound &round, const GrowingMesh &mesh,
+                  Span<const uint32_t> list, uint8_t *chosen, EdgeTable *table) {
+  auto &executor = work.executor;
+  const size_t vertices = mesh.all.vertices;
+  const Span<uint32_t> count = mesh_room<uint32_t>(work, mesh, vertices);
+  const Span<uint32_t> starts = mesh_room<uint32_t>(work, mesh, vertices + 1);
+  executor.fill(count, 0);
+  executor.for_each(list.size, ChooseEdges<Sheets>{mesh.parts, sheets, round, list.data, chosen, count.data});
+  executor.exclusive_scan(vertices, LoadCount<uint32_t>{count.data}, starts);
+  size_t edges = executor.fetch(starts.data + vertices);
+  if (std::decay_t<decltype(executor)>::kCounts) edges = expected_part(vertices, expected_parts(work).split);
+  table->starts = starts.data;
+  table->firsts = mesh_room<uint32_t>(work, mesh, edges).data;
+  table->seconds = mesh_room<uint32_t>(work, mesh, edges).data;
+  const Span<uint32_t> unordered = mesh_room<uint32_t>(work, mesh, edges);
+  executor.fill(count, 0);
+  executor.for_each(list.size, ListEdges{mesh.parts, list.data, chosen, starts.data, count.data, unordered.data});
+  executor.for_each(vertices, OrderEdges{unordered.data, *table});
+  return edges;
+}
+
+// Moves vertices onto creases that are near.
+template <class Work>
+void snap_vertices(Work &work, const GrowingMesh &mesh, const EdgeTable &table, Span<const CreasePoint> points) {
+  auto &executor = work.executor;
+  const size_t vertices = mesh.all.vertices;
+  const Span<uint32_t> nearest = mesh_room<uint32_t>(work, mesh, vertices),
+                       edge = mesh_room<uint32_t>(work, mesh, vertices);
+  const Span<uint8_t> refused = mesh_room<uint8_t>(work, mesh, vertices);
+  executor.fill(nearest, 0xff);
+  executor.fill(edge, 0xff);
+  executor.fill(refused, 0);
+  const EdgeOfSnap snap{table, points.data, {nearest.data, edge.data}};
+  executor.for_each(points.size, FindNearestSnap{snap});
+  executor.for_each(points.size, ChooseSnap{snap});
+  const Span<uint32_t> touched = mesh_room<uint32_t>(work, mesh, mesh.all.triangles);
+  const size_t count = executor.compact(mesh.all.triangles, TouchedBySnap{mesh.parts, edge.data}, touched);
+  executor.for_each(count, RefuseSnaps{mesh.parts, work.lattice, touched.data, points.data, edge.data, refused.data});
+  executor.for_each(points.size, SnapVertices{mesh.parts, work.lattice, table, points.data, edge.data, refused.data});
+}
+
+// Passes in which splits are refused that would fold triangles: what is left of one may fold another.
+constexpr int kRefusals = 2;
+
+// One round over the triangles near creases: the mesh grows by a part.
+template <class Work, class Sheets>
+void split_round(Work &work, const Sheets &sheets, const SplitRound &round, int next_part, GrowingMesh *mesh) {
+  auto &executor = work.executor;
+  constexpr bool kCounts = std::decay_t<decltype(executor)>::kCounts;
+  const Lattice &lattice = work.lattice;
+  const PartSizes all = mesh->all;
+
+  const Span<uint32_t> near = mesh_room<uint32_t>(work, *mesh, all.triangles);
+  size_t listed = executor.compact(all.triangles, NearCrease<Sheets>{mesh->parts, sheets, round.along}, near);
+  if (kCounts) listed = std::min(all.triangles, expected_part(all.triangles, expected_parts(work).near));
+  const Span<const uint32_t> list{near.data, listed};
+  const Span<uint8_t> chosen = mesh_room<uint8_t>(work, *mesh, listed);
+  EdgeTable table{};
+  const size_t edges = list_edges(work, sheets, round, *mesh, list, chosen.data, &table);
+  const Span<CreasePoint> points = mesh_room<CreasePoint>(work, *mesh, edges);
+  const SolveEdges<Sheets> solve{mesh->parts, sheets, table, round.along, points.data};
+  executor.for_each(edges, solve, kCreaseSteps);
+  if (round.snap) {
+    snap_vertices(work, *mesh, table, Span<const CreasePoint>{points.data, edges});
+    executor.for_each(edges, solve, kCreaseSteps);
+  }
+
+  const Span<CreasePoint> corners = mesh_room<CreasePoint>(work, *mesh, listed);
+  const Span<uint8_t> refused = mesh_room<uint8_t>(work, *mesh, edges);
+  FindSplits find{mesh->parts, table, list.data, chosen.data, points.data, nullptr};
+  const SolveCorners<Sheets> solve_corners{find, sheets, lattice, corners.data};
+  find.corners = corners.data;
+  for (int pass = 0; pass < kRefusals; ++pass) {
+    executor.for_each(listed, solve_corners, kCreaseSteps);
+    executor.fill(refused, 0);
+    executor.for_each(listed, RefuseSplits<Sheets>{find, sheets, lattice, refused.data});
+    executor.for_each(edges, DropRefused{refused.data, points.data});
+  }
+  executor.for_each(listed, solve_corners, kCreaseSteps);
+
+  const Span<uint32_t> edge_rank = mesh_room<uint32_t>(work, *mesh, edges + 1),
+                       corner_rank = mesh_room<uint32_t>(work, *mesh, listed + 1),
+                       before = mesh_room<uint32_t>(work, *mesh, listed + 1);
+  executor.exclusive_scan(edges, CountSplit{points.data}, edge_rank);
+  executor.exclusive_scan(listed, CountCorner{corners.data}, corner_rank);
+  executor.exclusive_scan(listed, CountNewTriangles{find}, before);
+  uint32_t n[3] = {0, 0, 0};  // new vertices on edges, and within triangles; new triangles
+  const uint32_t *const sources[3] = {edge_rank.data + edges, corner_rank.data + listed, before.data + listed};
+  if constexpr (!kCounts) executor.fetch_each(sources, n, 3);
+  PartSizes added{size_t(n[0]) + n[1], n[2]};
+  if (kCounts)
+    added = {expected_part(all.vertices, expected_parts(work).split),
+             expected_part(all.triangles, expected_parts(work).split)};
+  check_mesh_size({all.vertices + added.vertices, all.triangles + added.triangles});
+
+  const MeshArrays arrays(added.vertices, added.triangles, mesh->shape);
+  MeshView &part = mesh->parts.part[next_part];
+  part = arrays.view(mesh_room<char>(work, *mesh, arrays.bytes()).data);
+  add_normals(work, &part, added.vertices, [&](size_t m) { return mesh_room<glm::vec3>(work, *mesh, m).data; });
+  part.first_vertex = static_cast<uint32_t>(all.vertices);
+  part.first_triangle = static_cast<uint32_t>(all.triangles);
+  mesh->parts.marks[next_part] = marks_room(work, *mesh, added.vertices);
+  find.mesh = mesh->parts;
+  const uint32_t first_corner = part.first_vertex + n[0];
+  executor.for_each(edges, AddVertexOnEdge{{mesh->parts, lattice, points.data, edge_rank.data, part.first_vertex}});
+  executor.for_each(listed, AddCorner{{mesh->parts, lattice, corners.data, corner_rank.data, first_corner}});
+  executor.for_each(listed, AddTriangles{find, lattice, edge_rank.data, corner_rank.data, part.first_vertex,
+                                         first_corner, before.data, part.first_triangle});
+  mesh->all = {all.vertices + added.vertices, all.triangles + added.triangles};
+}
+
+template <class Work, class Sheets>
+void split_rounds(Work &work, const Sheets &sheets, GrowingMesh *mesh) {
+  split_round(work, sheets, SplitRound{true, false}, 1, mesh);
+  split_round(work, sheets, SplitRound{false, true}, 2, mesh);
+}
+
+// How far from the origin of the caller's coordinates the atoms are.
+template <class Work>
+float farthest_coordinate(const Work &work) {
+  const double centers[3] = {work.lattice.center_x, work.lattice.center_y, work.lattice.center_z};
+  double far = 0;
+  for (int d = 0; d < 3; ++d) {
+    const float half = std::max(std::abs(work.low[d]), std::abs(work.high[d]));
+    far = std::max(far, std::abs(centers[d]) + static_cast<double>(half));
+  }
+  return static_cast<float>(far);
 }
 
 // The shape of a mesh whose edges are to be split: what else there is to vertices comes when it is finished.
@@ -153,57 +181,38 @@ inline MeshShape shape_before_splits(const MeshShape &wanted) {
   return shape;
 }
 
-template <class Work, class Sheets>
-void split_rounds(Work &work, const Sheets &sheets, const MeshShape &shape, MeshParts *mesh, PartSizes *all) {
-#ifdef CREASE_DEBUG
-  const char *how = std::getenv("HOW") ? std::getenv("HOW") : "sa";
-  int next = 1;
-  for (const char *c = how; *c; ++c)
-    split_round(work, sheets, SplitRound{*c == 's', *c == 'a'}, next++, shape, mesh, all);
-#else
-  split_round(work, sheets, SplitRound{true, false}, 1, shape, mesh, all);
-  split_round(work, sheets, SplitRound{false, true}, 2, shape, mesh, all);
-#endif
-}
-
-// How far from the origin of the caller's coordinates the atoms are.
-template <class Work>
-float farthest_coordinate(const Work &work) {
-  const double centers[3] = {work.lattice.center_x, work.lattice.center_y, work.lattice.center_z};
-  double far = 0;
-  for (int d = 0; d < 3; ++d)
-    far = std::max(far, std::abs(centers[d]) + static_cast<double>(std::max(std::abs(work.low[d]), std::abs(work.high[d]))));
-  return static_cast<float>(far);
-}
-
 // The mesh `plain`, of that shape, with sharp creases. Waits.
 template <class Work>
 MeshMemoryView split_creases(Work &work, const MeshMemoryView &plain) {
   auto &executor = work.executor;
-  const MeshShape shape = shape_before_splits(work.shape);
-  MeshParts mesh{};
-  for (int k = 1; k < MeshParts::kMost; ++k) mesh.part[k].first_vertex = mesh.part[k].first_triangle = kNoNumber;
-  mesh.part[0] = plain.view;
-  PartSizes all{plain.vertices, plain.triangles};
-  mesh.marks[0] = allocate_marks(executor, plain.vertices);
-  executor.for_each(plain.vertices, MarkVertices{plain.view, mesh.marks[0]});
+  GrowingMesh mesh{plain, plain.shape};
+  mesh.all = {plain.vertices, plain.triangles};
+  for (int k = 1; k < MeshParts::kMost; ++k)
+    mesh.parts.part[k].first_vertex = mesh.parts.part[k].first_triangle = kNoNumber;
+  mesh.parts.part[0] = plain.view;
+  mesh.parts.marks[0] = marks_room(work, mesh, plain.vertices);
+  executor.for_each(plain.vertices, MarkVertices{plain.view, mesh.parts.marks[0]});
   if (work.parameters.depth > 0.f) {
-    split_rounds(work, ProbeSheets{work.features, work.lattice}, shape, &mesh, &all);
+    split_rounds(work, ProbeSheets{work.features, work.lattice}, &mesh);
   } else {
-    Span<uint32_t> places = executor.template allocate<uint32_t>(work.atoms.count);
+    const Span<uint32_t> places = executor.template allocate<uint32_t>(work.atoms.count);
     executor.for_each(work.atoms.count, PlaceAtoms{work.atoms.order, places.data});
-    split_rounds(work,
-                 SphereSheets{work.atoms, places.data, work.lattice, work.parameters.max_radius,
-                              kSheetTolerance + 4e-7f * farthest_coordinate(work)},
-                 shape, &mesh, &all);
+    const float tolerance = kSheetTolerance + 4e-7f * farthest_coordinate(work);
+    split_rounds(work, SphereSheets{work.atoms, places.data, work.lattice, work.parameters.max_radius, tolerance},
+                 &mesh);
   }
-  MeshMemoryView out = work.memory.allocate_mesh(executor, all.vertices, all.triangles, work.shape, work.purpose,
-                                                 work.plan.mesh_in_pieces);
+  MeshMemoryView out = work.memory.allocate_mesh(executor, mesh.all.vertices, mesh.all.triangles, work.shape,
+                                                 work.purpose, work.plan.mesh_in_pieces);
   add_normals(work, &out);
-  executor.for_each(all.vertices, JoinVertex{mesh, out.view});
-  executor.for_each(all.triangles, JoinTriangle{mesh, out.view});
+  executor.for_each(mesh.all.vertices, JoinVertex{mesh.parts, out.view});
+  executor.for_each(mesh.all.triangles, JoinTriangle{mesh.parts, out.view});
   out.unplaced = plain.unplaced;
   return out;
+}
+
+template <class Work>
+bool splits_creases(const Work &work) {
+  return work.settings.creases != 0 && work.settings.method == QSES_METHOD_EXACT;
 }
 
 template <class Work>

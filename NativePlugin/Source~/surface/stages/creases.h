@@ -4,23 +4,12 @@
 // one triangle of a mesh whose vertices lie on the sheets; what is found is exact.
 #pragma once
 
-#include "parallel/atomics.h"
-#include <cstdlib>
 #include "surface/geometry/lattice.h"
 #include "surface/mesh/mesh_parts.h"
 #include "surface/stages/neighbor_grid.h"
 #include "surface/stages/solvent_features.h"
 
 namespace quickses {
-#ifdef CREASE_DEBUG
-inline long gWhy[16];
-inline float knob(int k, float d) { static float v[16]; static bool set[16]; static bool init = [] { for (int i = 0; i < 16; ++i) { char n[8] = {'K', char('a' + i), 0}; const char *t = std::getenv(n); set[i] = t; v[i] = t ? std::atof(t) : 0; } return true; }(); (void)init; return set[k] ? v[k] : d; }
-#define KNOB(k, d) knob(k, d)
-#define WHY(k) (void)atomic_add((long *)&gWhy[k], 1L)
-#else
-#define WHY(k) ((void)0)
-#define KNOB(k, d) (d)
-#endif
 
 // A vertex lies on a sheet that is nearer than this, Å, and besides what float32 leaves of its coordinates.
 constexpr float kSheetTolerance = 1e-4f;
@@ -28,13 +17,15 @@ constexpr float kSheetTolerance = 1e-4f;
 constexpr float kSmoothCosine = 0.995f;
 
 // A crease nearer to an end of an edge than this part of its length takes the end instead of a new vertex,
-constexpr float kSnapPart = 0.3f;
+constexpr float kSnapPart = 0.4f;
 // and no edge is split nearer to its end than this.
 constexpr float kLeastPart = 0.08f;
 // How far a point of the crease may be from where the edge passes under it, in lengths of the edge.
 constexpr float kFarthestPart = 1.5f;
 // Of an edge along a crease: it is split where it is further from the crease than this, in units of the spacing.
 constexpr float kLeastSagitta = 0.03f;
+// No piece of a triangle may be turned away from its sheet further than to this cosine.
+constexpr float kLeastTurn = 0.3f;
 
 // A point of a crease, or of a corner where three meet.
 struct CreasePoint {
@@ -101,10 +92,6 @@ QSES_FN bool nearest_on_circle(const SphereCircle &circle, const Vec3<float> &x,
   return true;
 }
 
-QSES_FN Vec3<float> cross_product(const Vec3<float> &a, const Vec3<float> &b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
 // The point of the circle on a third sphere that is nearest to x; false if they do not meet.
 QSES_FN bool nearest_corner(const SphereCircle &circle, const Sphere &third, const Vec3<float> &x,
                             Vec3<float> *nearest) {
@@ -115,7 +102,7 @@ QSES_FN bool nearest_corner(const SphereCircle &circle, const Sphere &third, con
   const float cosine = (circle.radius * circle.radius + length_squared(g) - third.radius * third.radius) * 0.5f *
                        quotient(inverse, circle.radius);
   if (!(absolute(cosine) < 1.f)) return false;
-  const Vec3<float> towards = flat * inverse, aside = cross_product(circle.axis, towards);
+  const Vec3<float> towards = flat * inverse, aside = cross(circle.axis, towards);
   const float sine = square_root((1.f - cosine) * (1.f + cosine));
   const float side = dot(x - circle.center, aside) < 0.f ? -sine : sine;
   *nearest = circle.center + (towards * cosine + aside * side) * circle.radius;
@@ -165,17 +152,17 @@ struct SphereSheets {
     if (!(length2 > 0.f)) return true;
     const Vec3<float> middle = (corners[0].position + corners[1].position + corners[2].position) * (1.f / 3.f);
     bool shared = false, along = false;
-    for (int k = 0; k < 3; ++k)
-      for (const uint32_t owner : {corners[k].owner, corners[k].second_owner}) {
-        const Sphere ball = sphere_of(owner);
-        if (!is_on(ball, corners[0].position) || !is_on(ball, corners[1].position) || !is_on(ball, corners[2].position))
-          continue;
-        shared = true;
-        along |= dot(normal, middle - Vec3<float>(ball.center)) > KNOB(6, 0.3f) * square_root(length2) * ball.radius;
-      }
+    for (int k = 0; k < 6; ++k) {
+      const CreaseEnd &corner = corners[k / 2];
+      const Sphere ball = sphere_of(k % 2 ? corner.second_owner : corner.owner);
+      if (!is_on(ball, corners[0].position) || !is_on(ball, corners[1].position) || !is_on(ball, corners[2].position))
+        continue;
+      shared = true;
+      along |= dot(normal, middle - Vec3<float>(ball.center)) > kLeastTurn * square_root(length2) * ball.radius;
+    }
     if (shared) return !along;
     for (int k = 0; k < 3; ++k)
-      if (!(maximum(dot(normal, corners[k].normal), dot(normal, corners[k].second_normal)) > KNOB(11, 0.f))) return true;
+      if (!(maximum(dot(normal, corners[k].normal), dot(normal, corners[k].second_normal)) > 0.f)) return true;
     return false;
   }
 
@@ -252,37 +239,36 @@ struct SphereSheets {
     CreasePoint none{};
     none.kind = CreasePoint::kNone;
     const Vec3<float> edge = v.position - u.position, middle = u.position + edge * 0.5f;
-    const float length2 = length_squared(edge), longest = KNOB(0, kFarthestPart) * KNOB(0, kFarthestPart) * length2;
+    const float length2 = length_squared(edge), longest = kFarthestPart * kFarthestPart * length2;
     const NearSpheres list = near(middle, 2.f * square_root(length2) + tolerance);
-    if (list.crowded || !(length2 > 0.f)) { WHY(0); return none; }
+    if (list.crowded || !(length2 > 0.f)) return none;
     const uint32_t on_u = sheets_at(list, u.position), on_v = sheets_at(list, v.position), both = on_u & on_v;
     if (both != 0) {
       const uint32_t others = both & (both - 1);
-      if (!along || others == 0) { WHY(1); return none; }
+      if (!along || others == 0) return none;
       const uint32_t a = list.place[lowest_bit32(both)], b = list.place[lowest_bit32(others)];
       Vec3<float> x;
       if (!nearest_on_circle(circle_of_spheres(load(atoms.items + a), load(atoms.items + b)), middle, &x)) return none;
       const float off2 = length_squared(x - middle), least = kLeastSagitta * lattice.spacing;
-      if (off2 < least * least || off2 > 0.25f * length2 || covering(list, x) >= 0) { WHY(7); return none; }
+      if (off2 < least * least || off2 > 0.25f * length2 || covering(list, x) >= 0) return none;
       return with_ends(point_on(a, b, x, CreasePoint::kAlong), u, v, false, false);
     }
-    // The crease of two of the sheets that the ends lie on; where a third sphere covers it, the corner of the three.
-    // Where there is none, another sheet comes between: then its crease with one of those of the ends.
+    // The crease of two of the sheets that the ends lie on. Where a third sphere covers it, or there is none, another
+    // sheet comes between: then its crease with one of those of the ends.
     CreasePoint best = none;
     float nearest2 = longest;
     for (uint32_t s = on_u; s; s &= s - 1)
       for (uint32_t t = on_v; t; t &= t - 1)
-        cross(list, u, v, on_u, on_v, lowest_bit32(s), lowest_bit32(t), true, &nearest2, &best);
-    if (best.kind != CreasePoint::kNone || KNOB(1, 0.f) > 0.f) return best;
+        cross(list, u, v, on_u, on_v, lowest_bit32(s), lowest_bit32(t), &nearest2, &best);
+    if (best.kind != CreasePoint::kNone) return best;
     for (uint32_t s = on_u | on_v; s; s &= s - 1)
       for (int k = 0; k < list.count; ++k)
-        if (!((on_u | on_v) >> k & 1)) cross(list, u, v, on_u, on_v, lowest_bit32(s), k, false, &nearest2, &best);
-    if (best.kind == CreasePoint::kNone) WHY(9); else WHY(10);
+        if (!((on_u | on_v) >> k & 1)) cross(list, u, v, on_u, on_v, lowest_bit32(s), k, &nearest2, &best);
     return best;
   }
 
-  // The corner where the creases of sheets a b, b c and c a meet that three points lie on; size: of the triangle that it
-  // should be in.
+  // The corner where the creases of sheets a b, b c and c a meet that three points lie on; size: of the triangle that
+  // it should be in.
   QSES_FN CreasePoint solve_corner(const uint32_t *owners, const Vec3<float> &middle, float size) const {
     CreasePoint none{};
     none.kind = CreasePoint::kNone;
@@ -291,7 +277,7 @@ struct SphereSheets {
     if (!nearest_corner(circle_of_spheres(load(atoms.items + a), load(atoms.items + b)), load(atoms.items + c), middle,
                         &x))
       return none;
-    if (length_squared(x - middle) > KNOB(10, 1.f) * size * size) return none;
+    if (length_squared(x - middle) > size * size) return none;
     const NearSpheres list = near(x, tolerance);
     if (list.crowded || covering(list, x) >= 0) return none;
     return point_on(a, b, x, CreasePoint::kCrossed);
@@ -300,30 +286,25 @@ struct SphereSheets {
  private:
   // Of spheres i and j of the list, the exposed place of their crease where the edge passes over it, if that is nearer
   // than what there is.
-  QSES_FN void cross(const NearSpheres &list, const CreaseEnd &u, const CreaseEnd &v, uint32_t on_u, uint32_t on_v, int i,
-                     int j, bool corners, float *nearest2, CreasePoint *best) const {
+  QSES_FN void cross(const NearSpheres &list, const CreaseEnd &u, const CreaseEnd &v, uint32_t on_u, uint32_t on_v,
+                     int i, int j, float *nearest2, CreasePoint *best) const {
     const uint32_t a = list.place[i], b = list.place[j];
     const SphereCircle circle = circle_of_spheres(load(atoms.items + a), load(atoms.items + b));
-    if (circle.radius <= 0.f) return WHY(2);
+    if (circle.radius <= 0.f) return;
     // In the plane of the circle the chord is as deep in the one as in the other ball.
     const Vec3<float> edge = v.position - u.position;
     const float from = dot(circle.center - u.position, circle.axis), whole = dot(edge, circle.axis);
     const float part = quotient(from, absolute(whole) > 1e-9f ? whole : 1e-9f);
-    if (!(part > 0.f && part < 1.f)) return WHY(11);
+    if (!(part > 0.f && part < 1.f)) return;
     const Vec3<float> under = u.position + edge * part;
     Vec3<float> x;
-    if (!nearest_on_circle(circle, under, &x)) return WHY(3);
-    const int third = covering(list, x);
-    uint32_t sheets = uint32_t(1) << i | uint32_t(1) << j;
-    if (third >= 0) {
-      if (!corners || KNOB(5, 0.f) > 0.f || !nearest_corner(circle, load(atoms.items + list.place[third]), x, &x) || covering(list, x) >= 0)
-        return WHY(4);
-      sheets |= uint32_t(1) << third;
-    }
+    if (!nearest_on_circle(circle, under, &x)) return;
+    if (covering(list, x) >= 0) return;
+    const uint32_t sheets = uint32_t(1) << i | uint32_t(1) << j;
     const float d2 = length_squared(x - under);
-    if (!(d2 < *nearest2)) return WHY(5);
+    if (!(d2 < *nearest2)) return;
     const CreasePoint p = point_on(a, b, x, CreasePoint::kCrossed);
-    if (p.kind == CreasePoint::kNone) return WHY(6);
+    if (p.kind == CreasePoint::kNone) return;
     *nearest2 = d2;
     *best = with_ends(p, u, v, (on_u & ~sheets) == 0, (on_v & ~sheets) == 0);
   }

@@ -11,6 +11,9 @@ namespace quickses {
 
 constexpr uint32_t kNoNumber = ~uint32_t(0);
 
+// Steps of a thread for an edge: it looks at so many atoms and arcs at most, a few times.
+constexpr uint64_t kCreaseSteps = uint64_t(1) << 15;
+
 // Edges of the triangles of a list, each met once: a closed mesh has it from its smaller to its larger vertex in one of
 // its triangles. They are found again by the smaller vertex.
 struct EdgeTable {
@@ -118,8 +121,8 @@ struct SolveEdges {
 // The end that wants to be moved onto the crease: 0, 1, or -1 for neither.
 QSES_FN int end_to_snap(const CreasePoint &p, float length) {
   if (p.kind != CreasePoint::kCrossed) return -1;
-  const bool first = p.first_fits && p.to_first < KNOB(2, kSnapPart) * length;
-  const bool second = p.second_fits && p.to_second < KNOB(2, kSnapPart) * length;
+  const bool first = p.first_fits && p.to_first < kSnapPart * length;
+  const bool second = p.second_fits && p.to_second < kSnapPart * length;
   if (first && (!second || p.to_first <= p.to_second)) return 0;
   return second ? 1 : -1;
 }
@@ -203,12 +206,12 @@ struct RefuseSnaps {
       any = true;
     }
     if (!any) return;
-    const Vec3<float> old = cross_product(before[1] - before[0], before[2] - before[0]);
-    const Vec3<float> now = cross_product(after[1] - after[0], after[2] - after[0]);
+    const Vec3<float> old = cross(before[1] - before[0], before[2] - before[0]);
+    const Vec3<float> now = cross(after[1] - after[0], after[2] - after[0]);
     const bool turned = !(dot(old, now) > kLeastSnapTurn * square_root(length_squared(old) * length_squared(now)));
     const float was = least_cosine_of_angles(before[0], before[1], before[2]);
     const float is = least_cosine_of_angles(after[0], after[1], after[2]);
-    if (KNOB(3, 0.f) > 0.f || (!turned && is <= maximum(kSnapAngleCosine, was))) return;
+    if (!turned && is <= maximum(kSnapAngleCosine, was)) return;
     for (int k = 0; k < 3; ++k)
       if (edge[t[k]] != kNoNumber) atomic_set(refused + t[k]);
   }
@@ -231,12 +234,13 @@ struct SnapVertices {
   MeshParts mesh;
   Lattice lattice;
   EdgeTable table;
-  CreasePoint *points;
-  const uint32_t *edge;
+  const CreasePoint *points;
+  const uint32_t *edge;  // of the snaps
   const uint8_t *refused;
   QSES_HOST_DEVICE void operator()(size_t e) const {
-    for (const uint32_t v : {table.firsts[e], table.seconds[e]})
-      if (edge[v] == e && !refused[v]) put_on_crease(mesh, lattice, v, points[e]);
+    const uint32_t ends[2] = {table.firsts[e], table.seconds[e]};
+    for (int k = 0; k < 2; ++k)
+      if (edge[ends[k]] == e && !refused[ends[k]]) put_on_crease(mesh, lattice, ends[k], points[e]);
   }
 };
 
@@ -245,7 +249,7 @@ struct SnapVertices {
 // An edge is not split too near to an end.
 QSES_FN bool is_split(const CreasePoint &p) {
   if (p.kind == CreasePoint::kNone) return false;
-  return minimum(p.to_first, p.to_second) >= KNOB(4, kLeastPart) * (p.to_first + p.to_second);
+  return minimum(p.to_first, p.to_second) >= kLeastPart * (p.to_first + p.to_second);
 }
 struct CountSplit {
   const CreasePoint *points;
@@ -313,7 +317,9 @@ QSES_FN Pieces cut_triangle(bool on0, bool on1, bool on2, bool within, const Pos
 struct TriangleSplits {
   uint32_t edge[3];  // kNoNumber: not split
   bool within;
-  QSES_FN int edges() const { return int(edge[0] != kNoNumber) + int(edge[1] != kNoNumber) + int(edge[2] != kNoNumber); }
+  QSES_FN int edges() const {
+    return int(edge[0] != kNoNumber) + int(edge[1] != kNoNumber) + int(edge[2] != kNoNumber);
+  }
   QSES_FN int new_triangles() const { return within ? 2 + edges() : edges(); }
 };
 
@@ -403,6 +409,9 @@ struct CountCorner {
   QSES_HOST_DEVICE uint64_t operator()(size_t i) const { return corners[i].kind != CreasePoint::kNone ? 1 : 0; }
 };
 
+// A piece with a smaller angle than this cosine's is none: 2.6 degrees.
+constexpr float kFlatCosine = 0.999f;
+
 // Where splits would fold a triangle, its edges are left as they are.
 template <class Sheets>
 struct RefuseSplits {
@@ -424,35 +433,13 @@ struct RefuseSplits {
     bool bad = false;
     for (int p = 0; p < pieces.count; ++p) {
       const CreaseEnd c[3] = {corner(pieces.corner[p][0]), corner(pieces.corner[p][1]), corner(pieces.corner[p][2])};
-      const Vec3<float> normal = cross_product(c[1].position - c[0].position, c[2].position - c[0].position) * sign;
+      const Vec3<float> normal = cross(c[1].position - c[0].position, c[2].position - c[0].position) * sign;
       bad |= sheets.is_folded(c, normal) ||
-             least_cosine_of_angles(c[0].position, c[1].position, c[2].position) > KNOB(7, 0.999f);
+             least_cosine_of_angles(c[0].position, c[1].position, c[2].position) > kFlatCosine;
     }
     if (!bad) return;
-#ifdef CREASE_DEBUG
-    static int shown = 0;
-    if (std::getenv("SHOWBAD") && shown++ < std::atoi(std::getenv("SHOWBAD"))) {
-      const CreaseEnd o = corner(0);
-      std::fprintf(stderr, "BAD splits %d%d%d tri %u\n", s.edge[0] != kNoNumber, s.edge[1] != kNoNumber, s.edge[2] != kNoNumber, find.list[i]);
-      for (int k = 0; k < 6; ++k) {
-        if (k >= 3 && s.edge[k - 3] == kNoNumber) continue;
-        const CreaseEnd c = corner(k);
-        const Vec3<float> d = c.position - o.position;
-        const uint32_t own = k < 3 ? find.mesh.with(t[k]).owner(t[k]) : find.points[s.edge[k - 3]].owner;
-        std::fprintf(stderr, "  %d at %.3f %.3f %.3f own %u cr %d n %.2f %.2f %.2f n2 %.2f %.2f %.2f", k, d.x, d.y, d.z, own, k < 3 ? find.mesh.on_crease(t[k]) : 2, c.normal.x, c.normal.y, c.normal.z, c.second_normal.x, c.second_normal.y, c.second_normal.z);
-        if (k >= 3) { const CreasePoint &p = find.points[s.edge[k - 3]]; const Vec3<float> e = corner((k - 3 + 1) % 3).position - corner(k - 3).position; std::fprintf(stderr, " L %.3f to %.3f %.3f", square_root(length_squared(e)), p.to_first, p.to_second); }
-        std::fprintf(stderr, "\n");
-      }
-      for (int p = 0; p < pieces.count; ++p) {
-        const CreaseEnd x = corner(pieces.corner[p][0]), y = corner(pieces.corner[p][1]), z = corner(pieces.corner[p][2]);
-        const CreaseEnd cc[3] = {x, y, z};
-        std::fprintf(stderr, "   piece %d%d%d folded %d ang %.1f\n", pieces.corner[p][0], pieces.corner[p][1], pieces.corner[p][2], sheets.is_folded(cc, cross_product(y.position - x.position, z.position - x.position) * sign), std::acos(least_cosine_of_angles(x.position, y.position, z.position)) * 57.3);
-      }
-    }
-#endif
     for (int k = 0; k < 3; ++k)
-      if (s.edge[k] != kNoNumber && (KNOB(8, 0.f) > 0.f || find.points[s.edge[k]].kind == CreasePoint::kAlong))
-        atomic_set(refused + s.edge[k]);
+      if (s.edge[k] != kNoNumber) atomic_set(refused + s.edge[k]);
   }
 };
 struct DropRefused {
@@ -470,12 +457,15 @@ struct AddVertex {
   const CreasePoint *points;
   const uint32_t *rank;
   uint32_t first;
-  bool edges;
+};
+struct AddVertexOnEdge : AddVertex {
+  QSES_HOST_DEVICE void operator()(size_t edge) const {
+    if (is_split(points[edge])) put_on_crease(mesh, lattice, first + rank[edge], points[edge]);
+  }
+};
+struct AddCorner : AddVertex {
   QSES_HOST_DEVICE void operator()(size_t i) const {
-    const CreasePoint &p = points[i];
-    if (edges ? !is_split(p) : p.kind == CreasePoint::kNone) return;
-    const uint32_t vertex = first + rank[i];
-    put_on_crease(mesh, lattice, vertex, p);
+    if (points[i].kind != CreasePoint::kNone) put_on_crease(mesh, lattice, first + rank[i], points[i]);
   }
 };
 
@@ -496,8 +486,8 @@ struct AddTriangles {
       if (corner < 3) return centered_position(lattice, find.mesh.with(own[corner]).position(own[corner]));
       return find.points[s.edge[corner - 3]].position;
     };
-    const Pieces pieces = cut_triangle(s.edge[0] != kNoNumber, s.edge[1] != kNoNumber, s.edge[2] != kNoNumber, s.within,
-                                       position);
+    const Pieces pieces =
+        cut_triangle(s.edge[0] != kNoNumber, s.edge[1] != kNoNumber, s.edge[2] != kNoNumber, s.within, position);
     const auto number = [&](int corner) {
       if (corner < 3) return own[corner];
       return corner == 6 ? first_of_corners + corner_rank[i] : first_of_edges + edge_rank[s.edge[corner - 3]];

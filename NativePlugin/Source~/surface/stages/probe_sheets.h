@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The sheets of the solvent-excluded surface, as creases see them (creases.h): the spheres of probes. A vertex knows
-// where the probes are that touch it: on its normals, a probe radius away. Creases are where two probes meet: edges that
-// cross one are found by how far they are from both spheres, and a point on it by projection.
+// where the probes are that touch it: on its normals, a probe radius away. Creases are where two probes meet: edges
+// that cross one are found by how far they are from both spheres, and a point on it by projection.
 #pragma once
 
 #include "surface/stages/creases.h"
@@ -37,8 +37,8 @@ QSES_FN void gather_features(const FeatureView &f, const Vec3<float> &x, float a
   constexpr uint32_t kMostMet = 1 << 13;
   uint32_t met = 0;
   const float reach = f.parameters.max_radius + around;
-  const CellBox box = cells_around(f.atoms.cells, x - Vec3<float>(reach, reach, reach),
-                                   x + Vec3<float>(reach, reach, reach));
+  const CellBox box =
+      cells_around(f.atoms.cells, x - Vec3<float>(reach, reach, reach), x + Vec3<float>(reach, reach, reach));
   float deepest = -kFarAway;
   for (int pass = 0; pass < 2; ++pass)
     for (int z = box.z0; z <= box.z1; ++z)
@@ -64,8 +64,8 @@ QSES_FN void gather_features(const FeatureView &f, const Vec3<float> &x, float a
       }
   if (f.arc_bounds.count == 0) return;
   const float far = f.parameters.depth + around + 1e-2f, grown = far + f.max_arc_bound;
-  const CellBox arcs = cells_around(f.arc_bounds.cells, x - Vec3<float>(grown, grown, grown),
-                                    x + Vec3<float>(grown, grown, grown));
+  const CellBox arcs =
+      cells_around(f.arc_bounds.cells, x - Vec3<float>(grown, grown, grown), x + Vec3<float>(grown, grown, grown));
   for (int z = arcs.z0; z <= arcs.z1; ++z)
     for (int y = arcs.y0; y <= arcs.y1; ++y) {
       const ItemRun run = f.arc_bounds.run(arcs.x0, arcs.x1, y, z);
@@ -105,12 +105,12 @@ struct ProbeSheets {
   }
 
   QSES_FN bool may_cross(const CreaseEnd &u, const CreaseEnd &v) const {
-    Crossing c;
+    Crossing c{};
     return find_crossing(u, v, &c);
   }
 
   QSES_FN CreasePoint solve(const CreaseEnd &u, const CreaseEnd &v, bool along) const {
-    Crossing c;
+    Crossing c{};
     if (find_crossing(u, v, &c)) return solve_crossing(u, v, c);
     if (along && u.on_crease() && v.on_crease()) return solve_along(u, v);
     return none();
@@ -125,7 +125,7 @@ struct ProbeSheets {
     if (!(length2 > 0.f)) return true;
     for (int k = 0; k < 3; ++k) {
       const float most = maximum(dot(normal, corners[k].normal), dot(normal, corners[k].second_normal));
-      if (!(most > KNOB(6, 0.f) * square_root(length2))) return true;
+      if (!(most > 0.f)) return true;
     }
     return false;
   }
@@ -173,8 +173,8 @@ struct ProbeSheets {
     return c->knife || deviation >= kLeastDeviation * lattice.spacing;
   }
 
-  QSES_FN CreasePoint describe(const LocalFeatures &local, const SurfacePoint &s, const CreaseEnd &u, const CreaseEnd &v,
-                               CreasePoint::Kind kind) const {
+  QSES_FN CreasePoint describe(const LocalFeatures &local, const SurfacePoint &s, const CreaseEnd &u,
+                               const CreaseEnd &v, CreasePoint::Kind kind) const {
     CreasePoint p{};
     p.position = s.position;
     p.normal = s.normal;
@@ -271,7 +271,7 @@ struct ProbeSheets {
     gather_features(features, x, 0.7f * length + 0.1f, &local);
     if (local.crowded) return none();
     const SurfacePoint s = project_point(features, local, x);
-    const float off = square_root(length_squared(s.position - middle)), least = KNOB(12, kLeastSagitta) * lattice.spacing;
+    const float off = square_root(length_squared(s.position - middle)), least = kLeastSagitta * lattice.spacing;
     if (!s.placed || off < least || off > 0.6f * length || !is_steady(local, s)) return none();
     SurfacePoint crest = s;
     if (!s.is_crest()) {
