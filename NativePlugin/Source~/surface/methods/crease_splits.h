@@ -67,7 +67,7 @@ size_t list_edges(Work &work, const Sheets &sheets, const SplitRound &round, con
 
 // Moves vertices onto creases that are near.
 template <class Work>
-void snap_vertices(Work &work, const GrowingMesh &mesh, const EdgeTable &table, Span<const CreasePoint> points) {
+Snaps snap_vertices(Work &work, const GrowingMesh &mesh, const EdgeTable &table, Span<const CreasePoint> points) {
   auto &executor = work.executor;
   const size_t vertices = mesh.all.vertices;
   const Span<uint32_t> nearest = mesh_room<uint32_t>(work, mesh, vertices),
@@ -76,13 +76,15 @@ void snap_vertices(Work &work, const GrowingMesh &mesh, const EdgeTable &table, 
   executor.fill(nearest, 0xff);
   executor.fill(edge, 0xff);
   executor.fill(refused, 0);
-  const EdgeOfSnap snap{table, points.data, {nearest.data, edge.data}};
+  const Snaps snaps{nearest.data, edge.data, refused.data};
+  const EdgeOfSnap snap{table, points.data, snaps};
   executor.for_each(points.size, FindNearestSnap{snap});
   executor.for_each(points.size, ChooseSnap{snap});
   const Span<uint32_t> touched = mesh_room<uint32_t>(work, mesh, mesh.all.triangles);
   const size_t count = executor.compact(mesh.all.triangles, TouchedBySnap{mesh.parts, edge.data}, touched);
-  executor.for_each(count, RefuseSnaps{mesh.parts, work.lattice, touched.data, points.data, edge.data, refused.data});
-  executor.for_each(points.size, SnapVertices{mesh.parts, work.lattice, table, points.data, edge.data, refused.data});
+  executor.for_each(count, RefuseSnaps{mesh.parts, work.lattice, touched.data, points.data, snaps});
+  executor.for_each(points.size, SnapVertices{mesh.parts, work.lattice, table, points.data, snaps});
+  return snaps;
 }
 
 // Passes in which splits are refused that would fold triangles: what is left of one may fold another.
@@ -107,8 +109,8 @@ void split_round(Work &work, const Sheets &sheets, const SplitRound &round, int 
   const SolveEdges<Sheets> solve{mesh->parts, sheets, table, round.along, points.data};
   executor.for_each(edges, solve, kCreaseSteps);
   if (round.snap) {
-    snap_vertices(work, *mesh, table, Span<const CreasePoint>{points.data, edges});
-    executor.for_each(edges, solve, kCreaseSteps);
+    const Snaps snaps = snap_vertices(work, *mesh, table, Span<const CreasePoint>{points.data, edges});
+    executor.for_each(edges, SolveMovedEdges<Sheets>{solve, snaps}, kCreaseSteps);
   }
 
   const Span<CreasePoint> corners = mesh_room<CreasePoint>(work, *mesh, listed);
@@ -198,8 +200,7 @@ MeshMemoryView split_creases(Work &work, const MeshMemoryView &plain) {
     const Span<uint32_t> places = executor.template allocate<uint32_t>(work.atoms.count);
     executor.for_each(work.atoms.count, PlaceAtoms{work.atoms.order, places.data});
     const float tolerance = kSheetTolerance + 4e-7f * farthest_coordinate(work);
-    split_rounds(work, SphereSheets{work.atoms, places.data, work.lattice, work.parameters.max_radius, tolerance},
-                 &mesh);
+    split_rounds(work, SphereSheets{work.features, places.data, work.lattice, tolerance}, &mesh);
   }
   MeshMemoryView out = work.memory.allocate_mesh(executor, mesh.all.vertices, mesh.all.triangles, work.shape,
                                                  work.purpose, work.plan.mesh_in_pieces);

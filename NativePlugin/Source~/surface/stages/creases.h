@@ -35,6 +35,7 @@ struct CreasePoint {
   qses_patch patch;
   Kind kind;
   float to_first, to_second;     // distances to the ends of the edge
+  float off2;                    // from where the edge passes under it, squared
   bool first_fits, second_fits;  // may the end be moved there? Not off a crease that it is on
 };
 
@@ -121,13 +122,13 @@ struct NearSpheres {
 };
 
 struct SphereSheets {
-  NeighborGridView atoms;
+  FeatureView features;
   const uint32_t *places;  // caller's number of an atom -> its place in the grid
   Lattice lattice;
-  float max_radius;
   float tolerance;
 
-  QSES_FN Sphere sphere_of(uint32_t owner) const { return load(atoms.items + places[owner]); }
+  QSES_FN Sphere sphere_of(uint32_t owner) const { return sphere(places[owner]); }
+  QSES_FN Sphere sphere(uint32_t place) const { return load(features.atoms.items + place); }
 
   QSES_FN bool is_on(const Sphere &ball, const Vec3<float> &x) const {
     return absolute(square_root(length_squared(x - Vec3<float>(ball.center))) - ball.radius) <= tolerance;
@@ -166,22 +167,95 @@ struct SphereSheets {
     return false;
   }
 
+  // Describes a point on the spheres a and b (places).
+  QSES_FN CreasePoint point_on(uint32_t a, uint32_t b, const Vec3<float> &x, CreasePoint::Kind kind) const {
+    const uint32_t first = features.atoms.order[a] < features.atoms.order[b] ? a : b, second = first == a ? b : a;
+    CreasePoint p{};
+    p.position = x;
+    p.normal = normal_at(first, x);
+    p.second_normal = normal_at(second, x);
+    p.owner = features.atoms.order[first];
+    p.second_owner = features.atoms.order[second];
+    p.patch = QSES_PATCH_TOROIDAL;
+    p.kind = dot(p.normal, p.second_normal) > kSmoothCosine ? CreasePoint::kNone : kind;
+    return p;
+  }
+
+  // Where the edge should have a vertex.
+  QSES_FN CreasePoint solve(const CreaseEnd &u, const CreaseEnd &v, bool along) const {
+    const uint32_t on_u[2] = {places[u.owner], places[u.second_owner]},
+                   on_v[2] = {places[v.owner], places[v.second_owner]};
+    uint32_t shared[4];
+    int sharing = 0;
+    const auto share = [&](uint32_t place) {
+      for (int k = 0; k < sharing; ++k)
+        if (shared[k] == place) return;
+      shared[sharing++] = place;
+    };
+    for (int k = 0; k < 2; ++k)
+      if (is_on(sphere(on_u[k]), v.position)) share(on_u[k]);
+    for (int k = 0; k < 2; ++k)
+      if (is_on(sphere(on_v[k]), u.position)) share(on_v[k]);
+    if (sharing > 1 && along) return solve_along(u, v, shared[0], shared[1]);
+    if (sharing > 0) return none();
+
+    // The crease of two of the sheets that the ends lie on. Where another sphere covers it, or there is none, another
+    // sheet comes between: then its crease with one of those of the ends.
+    CreasePoint best = none();
+    for (int i = 0; i < 2; ++i)
+      for (int j = 0; j < 2; ++j) {
+        if ((i == 1 && on_u[1] == on_u[0]) || (j == 1 && on_v[1] == on_v[0])) continue;
+        const CreasePoint p = cross_over(u, v, on_u[i], on_v[j]);
+        if (is_nearer(p, best) && !is_covered(on_u[i], p.position)) best = p;
+      }
+    if (best.kind != CreasePoint::kNone) return best;
+    const float length = square_root(length_squared(v.position - u.position));
+    const NearSpheres list = near((u.position + v.position) * 0.5f, 2.f * length + tolerance);
+    if (list.crowded) return none();
+    for (int i = 0; i < 4; ++i) {
+      const uint32_t place = i < 2 ? on_u[i] : on_v[i - 2];
+      for (int k = 0; k < list.count; ++k) {
+        const CreasePoint p = cross_over(u, v, place, list.place[k]);
+        if (is_nearer(p, best) && !is_covered(list, p.position)) best = p;
+      }
+    }
+    return best;
+  }
+
+  // The corner where the creases of sheets a b, b c and c a meet that three points lie on; size: of the triangle that
+  // it should be in.
+  QSES_FN CreasePoint solve_corner(const uint32_t *owners, const Vec3<float> &middle, float size) const {
+    const uint32_t a = places[owners[0]], b = places[owners[1]], c = places[owners[2]];
+    Vec3<float> x;
+    if (!nearest_corner(circle_of_spheres(sphere(a), sphere(b)), sphere(c), middle, &x)) return none();
+    if (length_squared(x - middle) > size * size || is_covered(a, x)) return none();
+    return point_on(a, b, x, CreasePoint::kCrossed);
+  }
+
+ private:
+  QSES_FN static CreasePoint none() {
+    CreasePoint p{};
+    p.kind = CreasePoint::kNone;
+    return p;
+  }
+
   // crowded: where all is covered, too.
   QSES_FN NearSpheres near(const Vec3<float> &x, float reach) const {
     NearSpheres near;
-    const Vec3<float> r(max_radius + reach, max_radius + reach, max_radius + reach);
-    const CellBox box = cells_around(atoms.cells, x - r, x + r);
+    const float far = features.parameters.max_radius + reach;
+    const Vec3<float> r(far, far, far);
+    const CellBox box = cells_around(features.atoms.cells, x - r, x + r);
     uint32_t met = 0;
     for (int z = box.z0; z <= box.z1; ++z)
       for (int y = box.y0; y <= box.y1; ++y) {
-        const ItemRun run = atoms.run(box.x0, box.x1, y, z);
+        const ItemRun run = features.atoms.run(box.x0, box.x1, y, z);
         met += run.end - run.begin;
         if (met > NearSpheres::kMostMet) {
           near.crowded = true;
           return near;
         }
         for (uint32_t k = run.begin; k < run.end; ++k) {
-          const Sphere ball = load(atoms.items + k);
+          const Sphere ball = sphere(k);
           const float d2 = length_squared(x - Vec3<float>(ball.center)), longest = ball.radius + reach;
           const float shortest = maximum(0.f, ball.radius - reach);
           if (d2 > longest * longest || d2 < shortest * shortest) {
@@ -198,128 +272,74 @@ struct SphereSheets {
     return near;
   }
 
-  // Those of the near spheres that the point lies on, as bits.
-  QSES_FN uint32_t sheets_at(const NearSpheres &near, const Vec3<float> &x) const {
-    uint32_t bits = 0;
-    for (int k = 0; k < near.count; ++k)
-      if (is_on(load(atoms.items + near.place[k]), x)) bits |= uint32_t(1) << k;
-    return bits;
-  }
-  // The near ball that covers the point most; -1: none.
-  QSES_FN int covering(const NearSpheres &near, const Vec3<float> &x) const {
-    int deepest = -1;
-    float most = tolerance;
+  QSES_FN bool is_covered(const NearSpheres &near, const Vec3<float> &x) const {
     for (int k = 0; k < near.count; ++k) {
-      const Sphere ball = load(atoms.items + near.place[k]);
-      const float depth = ball.radius - square_root(length_squared(x - Vec3<float>(ball.center)));
-      if (depth > most) {
-        most = depth;
-        deepest = k;
-      }
+      const Sphere ball = sphere(near.place[k]);
+      if (ball.radius - square_root(length_squared(x - Vec3<float>(ball.center))) > tolerance) return true;
     }
-    return deepest;
+    return false;
   }
-
-  // Describes a point on the spheres a and b (places).
-  QSES_FN CreasePoint point_on(uint32_t a, uint32_t b, const Vec3<float> &x, CreasePoint::Kind kind) const {
-    const uint32_t first = atoms.order[a] < atoms.order[b] ? a : b, second = first == a ? b : a;
-    CreasePoint p{};
-    p.position = x;
-    p.normal = normal_at(first, x);
-    p.second_normal = normal_at(second, x);
-    p.owner = atoms.order[first];
-    p.second_owner = atoms.order[second];
-    p.patch = QSES_PATCH_TOROIDAL;
-    p.kind = dot(p.normal, p.second_normal) > kSmoothCosine ? CreasePoint::kNone : kind;
-    return p;
-  }
-
-  // Where the edge should have a vertex.
-  QSES_FN CreasePoint solve(const CreaseEnd &u, const CreaseEnd &v, bool along) const {
-    CreasePoint none{};
-    none.kind = CreasePoint::kNone;
-    const Vec3<float> edge = v.position - u.position, middle = u.position + edge * 0.5f;
-    const float length2 = length_squared(edge), longest = kFarthestPart * kFarthestPart * length2;
-    const NearSpheres list = near(middle, 2.f * square_root(length2) + tolerance);
-    if (list.crowded || !(length2 > 0.f)) return none;
-    const uint32_t on_u = sheets_at(list, u.position), on_v = sheets_at(list, v.position), both = on_u & on_v;
-    if (both != 0) {
-      const uint32_t others = both & (both - 1);
-      if (!along || others == 0) return none;
-      const uint32_t a = list.place[lowest_bit32(both)], b = list.place[lowest_bit32(others)];
-      Vec3<float> x;
-      if (!nearest_on_circle(circle_of_spheres(load(atoms.items + a), load(atoms.items + b)), middle, &x)) return none;
-      const float off2 = length_squared(x - middle), least = kLeastSagitta * lattice.spacing;
-      if (off2 < least * least || off2 > 0.25f * length2 || covering(list, x) >= 0) return none;
-      return with_ends(point_on(a, b, x, CreasePoint::kAlong), u, v, false, false);
+  // The same of a point on the sphere of an atom, from its caps.
+  QSES_FN bool is_covered(uint32_t place, const Vec3<float> &x) const {
+    const CapRange range = features.cap_ranges[place];
+    if (range.count == kBuriedAtom) return true;
+    const Sphere ball = sphere(place);
+    const Vec3<float> d = x - Vec3<float>(ball.center);
+    for (int32_t k = 0; k < range.count; ++k) {
+      const Cap cap = load(features.caps + range.first + k);
+      if (dot(d, Vec3<float>(cap.axis)) - cap.cosine * ball.radius > tolerance + kExposureTolerance) return true;
     }
-    // The crease of two of the sheets that the ends lie on. Where a third sphere covers it, or there is none, another
-    // sheet comes between: then its crease with one of those of the ends.
-    CreasePoint best = none;
-    float nearest2 = longest;
-    for (uint32_t s = on_u; s; s &= s - 1)
-      for (uint32_t t = on_v; t; t &= t - 1)
-        cross(list, u, v, on_u, on_v, lowest_bit32(s), lowest_bit32(t), &nearest2, &best);
-    if (best.kind != CreasePoint::kNone) return best;
-    for (uint32_t s = on_u | on_v; s; s &= s - 1)
-      for (int k = 0; k < list.count; ++k)
-        if (!((on_u | on_v) >> k & 1)) cross(list, u, v, on_u, on_v, lowest_bit32(s), k, &nearest2, &best);
-    return best;
+    return false;
   }
 
-  // The corner where the creases of sheets a b, b c and c a meet that three points lie on; size: of the triangle that
-  // it should be in.
-  QSES_FN CreasePoint solve_corner(const uint32_t *owners, const Vec3<float> &middle, float size) const {
-    CreasePoint none{};
-    none.kind = CreasePoint::kNone;
-    const uint32_t a = places[owners[0]], b = places[owners[1]], c = places[owners[2]];
-    Vec3<float> x;
-    if (!nearest_corner(circle_of_spheres(load(atoms.items + a), load(atoms.items + b)), load(atoms.items + c), middle,
-                        &x))
-      return none;
-    if (length_squared(x - middle) > size * size) return none;
-    const NearSpheres list = near(x, tolerance);
-    if (list.crowded || covering(list, x) >= 0) return none;
-    return point_on(a, b, x, CreasePoint::kCrossed);
-  }
-
- private:
-  // Of spheres i and j of the list, the exposed place of their crease where the edge passes over it, if that is nearer
-  // than what there is.
-  QSES_FN void cross(const NearSpheres &list, const CreaseEnd &u, const CreaseEnd &v, uint32_t on_u, uint32_t on_v,
-                     int i, int j, float *nearest2, CreasePoint *best) const {
-    const uint32_t a = list.place[i], b = list.place[j];
-    const SphereCircle circle = circle_of_spheres(load(atoms.items + a), load(atoms.items + b));
-    if (circle.radius <= 0.f) return;
+  // The place of the crease of two spheres where the edge passes over it, if it does.
+  QSES_FN CreasePoint cross_over(const CreaseEnd &u, const CreaseEnd &v, uint32_t a, uint32_t b) const {
+    const SphereCircle circle = circle_of_spheres(sphere(a), sphere(b));
+    if (a == b || circle.radius <= 0.f) return none();
     // In the plane of the circle the chord is as deep in the one as in the other ball.
     const Vec3<float> edge = v.position - u.position;
     const float from = dot(circle.center - u.position, circle.axis), whole = dot(edge, circle.axis);
     const float part = quotient(from, absolute(whole) > 1e-9f ? whole : 1e-9f);
-    if (!(part > 0.f && part < 1.f)) return;
+    if (!(part > 0.f && part < 1.f)) return none();
     const Vec3<float> under = u.position + edge * part;
     Vec3<float> x;
-    if (!nearest_on_circle(circle, under, &x)) return;
-    if (covering(list, x) >= 0) return;
-    const uint32_t sheets = uint32_t(1) << i | uint32_t(1) << j;
-    const float d2 = length_squared(x - under);
-    if (!(d2 < *nearest2)) return;
-    const CreasePoint p = point_on(a, b, x, CreasePoint::kCrossed);
-    if (p.kind == CreasePoint::kNone) return;
-    *nearest2 = d2;
-    *best = with_ends(p, u, v, (on_u & ~sheets) == 0, (on_v & ~sheets) == 0);
+    if (!nearest_on_circle(circle, under, &x)) return none();
+    CreasePoint p = point_on(a, b, x, CreasePoint::kCrossed);
+    p.off2 = length_squared(x - under);
+    if (!(p.off2 < kFarthestPart * kFarthestPart * length_squared(edge))) return none();
+    set_ends(u, v, &p);
+    p.first_fits = is_of(u, a, b);
+    p.second_fits = is_of(v, a, b);
+    return p;
+  }
+  QSES_FN static bool is_nearer(const CreasePoint &p, const CreasePoint &than) {
+    return p.kind != CreasePoint::kNone && (than.kind == CreasePoint::kNone || p.off2 < than.off2);
+  }
+  QSES_FN bool is_of(const CreaseEnd &end, uint32_t a, uint32_t b) const {
+    const uint32_t first = places[end.owner], second = places[end.second_owner];
+    return (first == a || first == b) && (second == a || second == b);
+  }
+
+  QSES_FN CreasePoint solve_along(const CreaseEnd &u, const CreaseEnd &v, uint32_t a, uint32_t b) const {
+    const Vec3<float> middle = (u.position + v.position) * 0.5f;
+    Vec3<float> x;
+    if (!nearest_on_circle(circle_of_spheres(sphere(a), sphere(b)), middle, &x)) return none();
+    const float off2 = length_squared(x - middle), least = kLeastSagitta * lattice.spacing;
+    if (off2 < least * least || off2 > 0.25f * length_squared(v.position - u.position) || is_covered(a, x))
+      return none();
+    CreasePoint p = point_on(a, b, x, CreasePoint::kAlong);
+    set_ends(u, v, &p);
+    return p;
+  }
+
+  QSES_FN static void set_ends(const CreaseEnd &u, const CreaseEnd &v, CreasePoint *p) {
+    p->to_first = square_root(length_squared(p->position - u.position));
+    p->to_second = square_root(length_squared(p->position - v.position));
   }
 
   QSES_FN Vec3<float> normal_at(uint32_t place, const Vec3<float> &x) const {
-    const Vec3<float> d = x - Vec3<float>(load(atoms.items + place).center);
+    const Vec3<float> d = x - Vec3<float>(sphere(place).center);
     return d * reciprocal_root(maximum(length_squared(d), 1e-12f));
-  }
-  QSES_FN static CreasePoint with_ends(CreasePoint p, const CreaseEnd &u, const CreaseEnd &v, bool first_fits,
-                                       bool second_fits) {
-    p.to_first = square_root(length_squared(p.position - u.position));
-    p.to_second = square_root(length_squared(p.position - v.position));
-    p.first_fits = first_fits;
-    p.second_fits = second_fits;
-    return p;
   }
 };
 

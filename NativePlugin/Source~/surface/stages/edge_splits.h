@@ -138,6 +138,9 @@ QSES_FN uint32_t bits_of(float positive) {
 struct Snaps {
   uint32_t *nearest;  // [vertex]: bits of the distance
   uint32_t *edge;     // [vertex]: whose point it is, or kNoNumber
+  uint8_t *refused;   // [vertex]: 1 if a triangle would suffer
+
+  QSES_FN bool moved(uint32_t v) const { return edge[v] != kNoNumber && !refused[v]; }
 };
 
 struct EdgeOfSnap {
@@ -193,16 +196,15 @@ struct RefuseSnaps {
   Lattice lattice;
   const uint32_t *list;
   const CreasePoint *points;
-  const uint32_t *edge;  // of the snaps
-  uint8_t *refused;      // [vertex]
+  Snaps snaps;
   QSES_HOST_DEVICE void operator()(size_t i) const {
     const uint32_t *const t = mesh.triangle(list[i]);
     Vec3<float> before[3], after[3];
     bool any = false;
     for (int k = 0; k < 3; ++k) {
       before[k] = after[k] = centered_position(lattice, mesh.with(t[k]).position(t[k]));
-      if (edge[t[k]] == kNoNumber) continue;
-      after[k] = points[edge[t[k]]].position;
+      if (snaps.edge[t[k]] == kNoNumber) continue;
+      after[k] = points[snaps.edge[t[k]]].position;
       any = true;
     }
     if (!any) return;
@@ -213,7 +215,7 @@ struct RefuseSnaps {
     const float is = least_cosine_of_angles(after[0], after[1], after[2]);
     if (!turned && is <= maximum(kSnapAngleCosine, was)) return;
     for (int k = 0; k < 3; ++k)
-      if (edge[t[k]] != kNoNumber) atomic_set(refused + t[k]);
+      if (snaps.edge[t[k]] != kNoNumber) atomic_set(snaps.refused + t[k]);
   }
 };
 
@@ -235,12 +237,21 @@ struct SnapVertices {
   Lattice lattice;
   EdgeTable table;
   const CreasePoint *points;
-  const uint32_t *edge;  // of the snaps
-  const uint8_t *refused;
+  Snaps snaps;
   QSES_HOST_DEVICE void operator()(size_t e) const {
     const uint32_t ends[2] = {table.firsts[e], table.seconds[e]};
     for (int k = 0; k < 2; ++k)
-      if (edge[ends[k]] == e && !refused[ends[k]]) put_on_crease(mesh, lattice, ends[k], points[e]);
+      if (snaps.edge[ends[k]] == e && snaps.moved(ends[k])) put_on_crease(mesh, lattice, ends[k], points[e]);
+  }
+};
+
+// Where ends were moved the edge is another one.
+template <class Sheets>
+struct SolveMovedEdges {
+  SolveEdges<Sheets> solve;
+  Snaps snaps;
+  QSES_HOST_DEVICE void operator()(size_t edge) const {
+    if (snaps.moved(solve.table.firsts[edge]) || snaps.moved(solve.table.seconds[edge])) solve(edge);
   }
 };
 

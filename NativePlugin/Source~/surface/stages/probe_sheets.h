@@ -16,6 +16,8 @@ constexpr float kLeastDeviation = 0.06f;
 constexpr float kKnifeProbes = 0.5f;
 // A new vertex is at least this far from its edge, in spacings.
 constexpr float kLeastMove = 0.04f;
+// And not farther from it than this, in lengths of the edge.
+constexpr float kFarthestProbePart = 1.f;
 // Projected again, a point of the surface stays where it is. Å.
 constexpr float kSteadyMove = 5e-4f;
 
@@ -199,7 +201,7 @@ struct ProbeSheets {
     const float p = features.parameters.depth, length = square_root(length_squared(v.position - u.position));
     const Vec3<float> between = c.second - c.first, middle = (c.first + c.second) * 0.5f, up = middle - c.under;
     const float height2 = p * p - 0.25f * length_squared(between), up2 = length_squared(up);
-    const float longest = kFarthestPart * length;
+    const float longest = kFarthestProbePart * length;
     LocalFeatures local;
     gather_features(features, c.under, longest + 0.1f, &local);
     if (local.crowded) return none();
@@ -265,7 +267,10 @@ struct ProbeSheets {
       const Vec3<float> off = from - between * quotient(dot(from, between), between2);
       const float off2 = length_squared(off);
       if (off2 > 1e-6f) x = center + off * (square_root(p * p - 0.25f * between2) * reciprocal_root(off2));
-      if (length_squared(x - middle) > 0.25f * length * length) x = middle;
+      // Where the edge is as good as on the crease of the two there is nothing to be found.
+      const float away = square_root(length_squared(x - middle));
+      if (away < 0.7f * kLeastSagitta * lattice.spacing) return none();
+      if (away > 0.5f * length) x = middle;
     }
     LocalFeatures local;
     gather_features(features, x, 0.7f * length + 0.1f, &local);
