@@ -19,6 +19,8 @@ struct GrowingMesh {
   MeshShape shape;       // of all parts
   MeshParts parts{};
   PartSizes all{};
+  uint8_t *is_near = nullptr;  // [triangle]: has to do with creases, of those that are `known`
+  size_t known = 0;
 };
 
 // Room for work on the mesh: where the mesh is, since most of it is as large.
@@ -82,7 +84,7 @@ Snaps snap_vertices(Work &work, const GrowingMesh &mesh, const EdgeTable &table,
   executor.for_each(points.size, ChooseSnap{snap});
   const Span<uint32_t> touched = mesh_room<uint32_t>(work, mesh, mesh.all.triangles);
   const size_t count = executor.compact(mesh.all.triangles, TouchedBySnap{mesh.parts, edge.data}, touched);
-  executor.for_each(count, RefuseSnaps{mesh.parts, work.lattice, touched.data, points.data, snaps});
+  executor.for_each(count, RefuseSnaps{mesh.parts, work.lattice, touched.data, points.data, snaps, mesh.is_near});
   executor.for_each(points.size, SnapVertices{mesh.parts, work.lattice, table, points.data, snaps});
   return snaps;
 }
@@ -99,7 +101,13 @@ void split_round(Work &work, const Sheets &sheets, const SplitRound &round, int 
   const PartSizes all = mesh->all;
 
   const Span<uint32_t> near = mesh_room<uint32_t>(work, *mesh, all.triangles);
-  size_t listed = executor.compact(all.triangles, NearCrease<Sheets>{mesh->parts, sheets, round.along}, near);
+  // Of the first part the round before knows what comes into question.
+  const Span<uint8_t> is_near = mesh_room<uint8_t>(work, *mesh, all.triangles);
+  if (mesh->is_near) executor.for_each(mesh->known, CopyMarks{mesh->is_near, is_near.data});
+  executor.for_each(all.triangles, FindNearCrease<Sheets>{mesh->parts, sheets, round.along, mesh->known, is_near.data});
+  mesh->is_near = is_near.data;
+  mesh->known = all.triangles;
+  size_t listed = executor.compact(all.triangles, IsMarked{is_near.data}, near);
   if (kCounts) listed = std::min(all.triangles, expected_part(all.triangles, expected_parts(work).near));
   const Span<const uint32_t> list{near.data, listed};
   const Span<uint8_t> chosen = mesh_room<uint8_t>(work, *mesh, listed);
@@ -114,17 +122,21 @@ void split_round(Work &work, const Sheets &sheets, const SplitRound &round, int 
   }
 
   const Span<CreasePoint> corners = mesh_room<CreasePoint>(work, *mesh, listed);
-  const Span<uint8_t> refused = mesh_room<uint8_t>(work, *mesh, edges);
   FindSplits find{mesh->parts, table, list.data, chosen.data, points.data, nullptr};
-  const SolveCorners<Sheets> solve_corners{find, sheets, lattice, corners.data};
+  SolveCorners<Sheets> solve_corners{find, sheets, lattice, corners.data, {}};
   find.corners = corners.data;
-  for (int pass = 0; pass < kRefusals; ++pass) {
-    executor.for_each(listed, solve_corners, kCreaseSteps);
-    executor.fill(refused, 0);
-    executor.for_each(listed, RefuseSplits<Sheets>{find, sheets, lattice, refused.data});
-    executor.for_each(edges, DropRefused{refused.data, points.data});
-  }
   executor.for_each(listed, solve_corners, kCreaseSteps);
+  Refusals refusals{};
+  for (int pass = 0; pass < kRefusals; ++pass) {
+    const Span<uint8_t> refused = mesh_room<uint8_t>(work, *mesh, edges);
+    refusals.now = refused.data;
+    executor.fill(refused, 0);
+    executor.for_each(listed, RefuseSplits<Sheets>{find, sheets, lattice, refusals});
+    executor.for_each(edges, DropRefused{refused.data, points.data});
+    refusals.before = refused.data;
+    solve_corners.refusals = refusals;
+    executor.for_each(listed, solve_corners, kCreaseSteps);
+  }
 
   const Span<uint32_t> edge_rank = mesh_room<uint32_t>(work, *mesh, edges + 1),
                        corner_rank = mesh_room<uint32_t>(work, *mesh, listed + 1),

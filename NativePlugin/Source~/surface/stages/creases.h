@@ -44,6 +44,7 @@ struct CreaseEnd {
   Vec3<float> position, normal, second_normal;  // centred frame; the normals are equal away from creases
   uint32_t owner, second_owner;
 
+  QSES_FN bool is_of(uint32_t atom) const { return owner == atom || second_owner == atom; }
   QSES_FN bool on_crease() const {
     return normal.x != second_normal.x || normal.y != second_normal.y || normal.z != second_normal.z;
   }
@@ -122,6 +123,7 @@ struct NearSpheres {
 };
 
 struct SphereSheets {
+  static constexpr bool kHasCorners = true;
   FeatureView features;
   const uint32_t *places;  // caller's number of an atom -> its place in the grid
   Lattice lattice;
@@ -142,28 +144,34 @@ struct SphereSheets {
   }
 
   // May an edge cross a crease? At a glance; solve() decides.
-  QSES_FN bool may_cross(const CreaseEnd &u, const CreaseEnd &v) const {
-    return u.owner != v.owner && !is_on(sphere_of(v.owner), u.position) && !is_on(sphere_of(u.owner), v.position);
+  QSES_FN bool may_cross(const MeshParts &mesh, uint32_t u, uint32_t v) const {
+    const MeshView &with_u = mesh.with(u), &with_v = mesh.with(v);
+    const uint32_t of_u = with_u.owner(u), of_v = with_v.owner(v);
+    return of_u != of_v && !is_on(sphere_of(of_v), centered_position(lattice, with_u.position(u))) &&
+           !is_on(sphere_of(of_u), centered_position(lattice, with_v.position(v)));
   }
 
   // Is a piece of a triangle turned away from the sheet that its corners have in common, or has it no area? normal:
   // outward, of any length. Where there is no such sheet, nothing is known.
-  QSES_FN bool is_folded(const CreaseEnd *corners, const Vec3<float> &normal) const {
+  QSES_FN bool is_folded(const CreaseEnd *const *corners, const Vec3<float> &normal) const {
     const float length2 = length_squared(normal);
     if (!(length2 > 0.f)) return true;
-    const Vec3<float> middle = (corners[0].position + corners[1].position + corners[2].position) * (1.f / 3.f);
-    bool shared = false, along = false;
+    const Vec3<float> middle = (corners[0]->position + corners[1]->position + corners[2]->position) * (1.f / 3.f);
+    bool shared = false;
     for (int k = 0; k < 6; ++k) {
-      const CreaseEnd &corner = corners[k / 2];
-      const Sphere ball = sphere_of(k % 2 ? corner.second_owner : corner.owner);
-      if (!is_on(ball, corners[0].position) || !is_on(ball, corners[1].position) || !is_on(ball, corners[2].position))
+      const CreaseEnd &corner = *corners[k / 2], &next = *corners[(k / 2 + 1) % 3], &last = *corners[(k / 2 + 2) % 3];
+      if (k % 2 == 1 && corner.second_owner == corner.owner) continue;
+      const uint32_t owner = k % 2 ? corner.second_owner : corner.owner;
+      const Sphere ball = sphere_of(owner);
+      if (!(next.is_of(owner) || is_on(ball, next.position)) || !(last.is_of(owner) || is_on(ball, last.position)))
         continue;
+      if (dot(normal, middle - Vec3<float>(ball.center)) > kLeastTurn * square_root(length2) * ball.radius)
+        return false;
       shared = true;
-      along |= dot(normal, middle - Vec3<float>(ball.center)) > kLeastTurn * square_root(length2) * ball.radius;
     }
-    if (shared) return !along;
+    if (shared) return true;
     for (int k = 0; k < 3; ++k)
-      if (!(maximum(dot(normal, corners[k].normal), dot(normal, corners[k].second_normal)) > 0.f)) return true;
+      if (!(maximum(dot(normal, corners[k]->normal), dot(normal, corners[k]->second_normal)) > 0.f)) return true;
     return false;
   }
 

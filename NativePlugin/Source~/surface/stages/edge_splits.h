@@ -37,13 +37,25 @@ struct SplitRound {
 
 // Triangles that have something to do with creases.
 template <class Sheets>
-struct NearCrease {
+struct FindNearCrease {
   MeshParts mesh;
   Sheets sheets;
   bool along;
-  QSES_HOST_DEVICE bool operator()(size_t i) const {
-    return sheets.is_near_crease(mesh, mesh.triangle(static_cast<uint32_t>(i)), along);
+  size_t known;   // triangles that another round looked at: no others of these come into question
+  uint8_t *near;  // [triangle]
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    if (i < known && !near[i]) return;
+    near[i] = sheets.is_near_crease(mesh, mesh.triangle(static_cast<uint32_t>(i)), along) ? 1 : 0;
   }
+};
+struct CopyMarks {
+  const uint8_t *from;
+  uint8_t *to;
+  QSES_HOST_DEVICE void operator()(size_t i) const { to[i] = from[i]; }
+};
+struct IsMarked {
+  const uint8_t *marks;
+  QSES_HOST_DEVICE bool operator()(size_t i) const { return marks[i] != 0; }
 };
 
 // Edges of a triangle that may have to be split, as bits: k is that from corner k to the next.
@@ -61,8 +73,7 @@ struct ChooseEdges {
     for (int k = 0; k < 3; ++k) {
       const uint32_t a = t[k], b = t[k == 2 ? 0 : k + 1], u = a < b ? a : b, v = a < b ? b : a;
       const bool crest = round.along && mesh.on_crease(u) && mesh.on_crease(v);
-      if (!crest && !sheets.may_cross(end_of_vertex(mesh, sheets.lattice, u), end_of_vertex(mesh, sheets.lattice, v)))
-        continue;
+      if (!crest && !sheets.may_cross(mesh, u, v)) continue;
       bits |= uint8_t(1u << k);
       if (a < b) atomic_add(count + a, uint32_t(1));
     }
@@ -197,8 +208,10 @@ struct RefuseSnaps {
   const uint32_t *list;
   const CreasePoint *points;
   Snaps snaps;
+  uint8_t *near;  // [triangle]: those at moved vertices are near creases now
   QSES_HOST_DEVICE void operator()(size_t i) const {
     const uint32_t *const t = mesh.triangle(list[i]);
+    near[list[i]] = 1;
     Vec3<float> before[3], after[3];
     bool any = false;
     for (int k = 0; k < 3; ++k) {
@@ -358,6 +371,22 @@ struct CountNewTriangles {
   QSES_HOST_DEVICE uint64_t operator()(size_t i) const { return static_cast<uint64_t>(find(i).new_triangles()); }
 };
 
+// What splits depend on: refusals come in passes, and only what another one left changed is looked at again.
+struct Refusals {
+  const uint8_t *before;  // [edge]: 1 where the pass before refused a split; nullptr: this is the first
+  uint8_t *now;
+
+  QSES_FN bool concern(const EdgeTable &table, const uint32_t *t, uint8_t chosen) const {
+    if (!before) return true;
+    for (int k = 0; k < 3; ++k) {
+      if (!(chosen >> k & 1)) continue;
+      const uint32_t e = table.find(t[k], t[k == 2 ? 0 : k + 1]);
+      if (e != kNoNumber && before[e]) return true;
+    }
+    return false;
+  }
+};
+
 // A triangle over a place where three creases meet gets a vertex there: one that has points on all three of them.
 template <class Sheets>
 struct SolveCorners {
@@ -365,10 +394,15 @@ struct SolveCorners {
   Sheets sheets;
   Lattice lattice;
   CreasePoint *corners;  // [list]
+  Refusals refusals;
   QSES_HOST_DEVICE void operator()(size_t i) const {
+    const uint32_t *const t = find.mesh.triangle(find.list[i]);
+    if (!refusals.before) corners[i].kind = CreasePoint::kNone;
+    int creases = popcount64(find.chosen[i]);
+    for (int k = 0; k < 3; ++k) creases += find.mesh.on_crease(t[k]) ? 1 : 0;
+    if (!Sheets::kHasCorners || creases < 3 || !refusals.concern(find.table, t, find.chosen[i])) return;
     corners[i].kind = CreasePoint::kNone;
     const TriangleSplits s = find(i);
-    const uint32_t *const t = find.mesh.triangle(find.list[i]);
     uint32_t pair[6][2];
     Vec3<float> place[6], ends[3];
     int count = 0;
@@ -429,28 +463,32 @@ struct RefuseSplits {
   FindSplits find;
   Sheets sheets;
   Lattice lattice;
-  uint8_t *refused;  // [edge]
+  Refusals refusals;
   QSES_HOST_DEVICE void operator()(size_t i) const {
+    const uint32_t *const t = find.mesh.triangle(find.list[i]);
+    if (find.chosen[i] == 0 || !refusals.concern(find.table, t, find.chosen[i])) return;
     const TriangleSplits s = find(i);
     if (s.edges() == 0) return;
-    const uint32_t *const t = find.mesh.triangle(find.list[i]);
-    const auto corner = [&](int k) {
-      if (k < 3) return end_of_vertex(find.mesh, lattice, t[k]);
-      return end_of_point(k == 6 ? find.corners[i] : find.points[s.edge[k - 3]]);
-    };
+    CreaseEnd corner[7];
+    for (int k = 0; k < 3; ++k) {
+      corner[k] = end_of_vertex(find.mesh, lattice, t[k]);
+      if (s.edge[k] != kNoNumber) corner[3 + k] = end_of_point(find.points[s.edge[k]]);
+    }
+    if (s.within) corner[6] = end_of_point(find.corners[i]);
     const Pieces pieces = cut_triangle(s.edge[0] != kNoNumber, s.edge[1] != kNoNumber, s.edge[2] != kNoNumber, s.within,
-                                       [&](int k) { return corner(k).position; });
+                                       [&](int k) { return corner[k].position; });
     const float sign = find.mesh.part[0].reversed ? -1.f : 1.f;
     bool bad = false;
-    for (int p = 0; p < pieces.count; ++p) {
-      const CreaseEnd c[3] = {corner(pieces.corner[p][0]), corner(pieces.corner[p][1]), corner(pieces.corner[p][2])};
-      const Vec3<float> normal = cross(c[1].position - c[0].position, c[2].position - c[0].position) * sign;
-      bad |= sheets.is_folded(c, normal) ||
-             least_cosine_of_angles(c[0].position, c[1].position, c[2].position) > kFlatCosine;
+    for (int p = 0; p < pieces.count && !bad; ++p) {
+      const CreaseEnd *const c[3] = {corner + pieces.corner[p][0], corner + pieces.corner[p][1],
+                                     corner + pieces.corner[p][2]};
+      const Vec3<float> normal = cross(c[1]->position - c[0]->position, c[2]->position - c[0]->position) * sign;
+      bad = least_cosine_of_angles(c[0]->position, c[1]->position, c[2]->position) > kFlatCosine ||
+            sheets.is_folded(c, normal);
     }
     if (!bad) return;
     for (int k = 0; k < 3; ++k)
-      if (s.edge[k] != kNoNumber) atomic_set(refused + s.edge[k]);
+      if (s.edge[k] != kNoNumber) atomic_set(refusals.now + s.edge[k]);
   }
 };
 struct DropRefused {

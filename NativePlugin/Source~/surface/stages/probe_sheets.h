@@ -23,7 +23,7 @@ constexpr float kSteadyMove = 5e-4f;
 
 // The features that decide about points near an edge. Where there are more, nothing is sharpened.
 struct LocalFeatures {
-  static constexpr int kMostAtoms = 48, kMostArcs = 96;
+  static constexpr int kMostAtoms = 64, kMostArcs = 96;
   uint32_t atoms[kMostAtoms], arcs[kMostArcs];
   int atom_number = 0, arc_number = 0;
   bool crowded = false;
@@ -38,32 +38,35 @@ struct LocalFeatures {
 QSES_FN void gather_features(const FeatureView &f, const Vec3<float> &x, float around, LocalFeatures *out) {
   constexpr uint32_t kMostMet = 1 << 13;
   uint32_t met = 0;
+  const float slack = 2.f * around + 1e-3f;  // what is deepest anywhere near lies no deeper here
   const float reach = f.parameters.max_radius + around;
   const CellBox box =
       cells_around(f.atoms.cells, x - Vec3<float>(reach, reach, reach), x + Vec3<float>(reach, reach, reach));
-  float deepest = -kFarAway;
-  for (int pass = 0; pass < 2; ++pass)
-    for (int z = box.z0; z <= box.z1; ++z)
-      for (int y = box.y0; y <= box.y1; ++y) {
-        const ItemRun run = f.atoms.run(box.x0, box.x1, y, z);
-        met += run.end - run.begin;
-        if (met > kMostMet) {
+  float deepest = -kFarAway, depths[LocalFeatures::kMostAtoms];
+  for (int z = box.z0; z <= box.z1; ++z)
+    for (int y = box.y0; y <= box.y1; ++y) {
+      const ItemRun run = f.atoms.run(box.x0, box.x1, y, z);
+      met += run.end - run.begin;
+      if (met > kMostMet) {
+        out->crowded = true;
+        return;
+      }
+      for (uint32_t i = run.begin; i < run.end; ++i) {
+        const float depth = ball_depth(load(f.atoms.items + i), x);
+        if (depth < deepest - slack) continue;
+        deepest = maximum(deepest, depth);
+        if (out->atom_number == LocalFeatures::kMostAtoms) {
           out->crowded = true;
           return;
         }
-        for (uint32_t i = run.begin; i < run.end; ++i) {
-          const float depth = ball_depth(load(f.atoms.items + i), x);
-          if (pass == 0) {
-            deepest = maximum(deepest, depth);
-          } else if (depth >= deepest - 2.f * around - 1e-3f) {
-            if (out->atom_number == LocalFeatures::kMostAtoms) {
-              out->crowded = true;
-              return;
-            }
-            out->atoms[out->atom_number++] = i;
-          }
-        }
+        depths[out->atom_number] = depth;
+        out->atoms[out->atom_number++] = i;
       }
+    }
+  int kept = 0;
+  for (int k = 0; k < out->atom_number; ++k)
+    if (depths[k] >= deepest - slack) out->atoms[kept++] = out->atoms[k];
+  out->atom_number = kept;
   if (f.arc_bounds.count == 0) return;
   const float far = f.parameters.depth + around + 1e-2f, grown = far + f.max_arc_bound;
   const CellBox arcs =
@@ -91,6 +94,7 @@ QSES_FN void gather_features(const FeatureView &f, const Vec3<float> &x, float a
 }
 
 struct ProbeSheets {
+  static constexpr bool kHasCorners = false;  // creases of probes end smoothly
   FeatureView features;
   Lattice lattice;
 
@@ -106,9 +110,9 @@ struct ProbeSheets {
     return creases > 0 || minimum(dot(n[0], n[1]), minimum(dot(n[1], n[2]), dot(n[2], n[0]))) <= kCreaseCosine;
   }
 
-  QSES_FN bool may_cross(const CreaseEnd &u, const CreaseEnd &v) const {
+  QSES_FN bool may_cross(const MeshParts &mesh, uint32_t u, uint32_t v) const {
     Crossing c{};
-    return find_crossing(u, v, &c);
+    return find_crossing(end_of_vertex(mesh, lattice, u), end_of_vertex(mesh, lattice, v), &c);
   }
 
   QSES_FN CreasePoint solve(const CreaseEnd &u, const CreaseEnd &v, bool along) const {
@@ -118,15 +122,14 @@ struct ProbeSheets {
     return none();
   }
 
-  // Creases of probes end smoothly: there are no corners to be found.
   QSES_FN CreasePoint solve_corner(const uint32_t *, const Vec3<float> &, float) const { return none(); }
 
   // Is a piece of a triangle turned away from all sheets at a corner, or has it no area?
-  QSES_FN bool is_folded(const CreaseEnd *corners, const Vec3<float> &normal) const {
+  QSES_FN bool is_folded(const CreaseEnd *const *corners, const Vec3<float> &normal) const {
     const float length2 = length_squared(normal);
     if (!(length2 > 0.f)) return true;
     for (int k = 0; k < 3; ++k) {
-      const float most = maximum(dot(normal, corners[k].normal), dot(normal, corners[k].second_normal));
+      const float most = maximum(dot(normal, corners[k]->normal), dot(normal, corners[k]->second_normal));
       if (!(most > 0.f)) return true;
     }
     return false;
@@ -229,8 +232,8 @@ struct ProbeSheets {
     }
     const float least = kLeastMove * lattice.spacing;
     if (!c.knife && length_squared(s.position - c.under) < least * least) return none();
-    if (!is_steady(local, s)) return none();
     if (!s.is_crest()) {
+      if (!is_steady(local, s)) return none();
       const float to_first = square_root(length_squared(c.first - s.position)),
                   to_second = square_root(length_squared(c.second - s.position));
       if (absolute(to_first - p) < 0.02f && absolute(to_second - p) < 0.02f) {
@@ -277,7 +280,8 @@ struct ProbeSheets {
     if (local.crowded) return none();
     const SurfacePoint s = project_point(features, local, x);
     const float off = square_root(length_squared(s.position - middle)), least = kLeastSagitta * lattice.spacing;
-    if (!s.placed || off < least || off > 0.6f * length || !is_steady(local, s)) return none();
+    if (!s.placed || off < least || off > 0.6f * length) return none();
+    if (!s.is_crest() && !is_steady(local, s)) return none();
     SurfacePoint crest = s;
     if (!s.is_crest()) {
       crest.normal = direction(s.position, first);
