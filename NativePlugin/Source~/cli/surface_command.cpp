@@ -53,6 +53,7 @@ void run_surface(const Options &options) {
   explain_fallback(engine, options.compute, options.quiet);
   qses_settings settings = settings_of(options.compute);
   settings.components = !options.json.empty();
+  settings.hard_edges = has_hard_edges(options);
   if (!options.json.empty()) qses_set_stage_times(engine.context(), 1);
 
   const bool all_models = options.read.model == 0;

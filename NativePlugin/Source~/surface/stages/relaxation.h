@@ -38,10 +38,6 @@ QSES_FN Vec3<float> ring_vector(const RingSum &sum, float unit) {
   return {static_cast<float>(sum.x) * k, static_cast<float>(sum.y) * k, static_cast<float>(sum.z) * k};
 }
 
-QSES_FN Vec3<float> cross(const Vec3<float> &a, const Vec3<float> &b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
 // Adds to each corner of a triangle the ways to the other two, in units of the spacing. On a closed mesh every
 // neighbour is met twice, once in each triangle of their edge, so the mean of the ways is the plain mean over the
 // neighbours.
