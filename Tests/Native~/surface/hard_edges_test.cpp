@@ -3,6 +3,7 @@
 #include "surface/surface_checks.h"
 
 #include <cstring>
+#include <iterator>
 
 namespace {
 
@@ -247,6 +248,30 @@ TEST(HardEdges, OfVisibleAtomsAreThoseOfTheirTriangles) {
   ASSERT_GT(h.repeated.size(), 0u);
   EXPECT_EQ(h.merged().positions, smooth.mesh.positions);
   EXPECT_EQ(h.merged().indices, smooth.mesh.indices);
+}
+
+// Rounding may decide whether another probe covers a vertex by 0.1 milliÅ.
+TEST(HardEdges, AreTheSameOnBothBackEnds) {
+  if (tested_backend() == QSES_BACKEND_CPU) GTEST_SKIP() << "the back end under test is the CPU";
+  const Context cpu(2, 0, QSES_BACKEND_CPU), gpu;
+  size_t crests = 0, different = 0, vertices = 0, moved = 0;
+  for (const Atoms &atoms : molecules()) {
+    set_atoms(cpu, atoms);
+    set_atoms(gpu, atoms);
+    const HardSurface a = compute_hard(cpu, hard(settings(0.3))), b = compute_hard(gpu, hard(settings(0.3)));
+    if (a.own != b.own || a.surface.mesh.indices.size() != b.surface.mesh.indices.size()) continue;
+    std::vector<uint32_t> difference;
+    std::set_symmetric_difference(a.repeated.begin(), a.repeated.end(), b.repeated.begin(), b.repeated.end(),
+                                  std::back_inserter(difference));
+    crests += a.repeated.size();
+    different += difference.size();
+    vertices += a.own;
+    for (size_t v = 0; v < a.own; ++v)
+      moved += length(point(a.surface.mesh.position(v)) - point(b.surface.mesh.position(v))) > 1e-3 ? 1 : 0;
+  }
+  EXPECT_GT(crests, 20u);  // so few signs differ that most meshes are alike
+  EXPECT_LE(different, crests / 20 + 1);
+  EXPECT_LE(moved, vertices / 1000);
 }
 
 TEST(HardEdges, AreNoneWhereThereAreNoCrests) {

@@ -11,23 +11,23 @@ namespace quickses {
 // A run of a mesh's vertices and triangles in memory of the back end. Vertices and triangles are named by their numbers
 // in the whole mesh.
 struct MeshView {
-  float *positions = nullptr;  // caller's coordinates
-  float *normals = nullptr;    // unit length; nullptr: there are none but packed ones
+  float *positions = nullptr;   // caller's coordinates
+  float *normals = nullptr;     // unit length; nullptr: there are none but packed ones
+  uint32_t *owners = nullptr;   // caller's atom numbers
+  uint8_t *patches = nullptr;   // or nullptr
+  uint32_t *indices = nullptr;  // three per triangle
+  bool reversed = false;        // winding
+  uint32_t *colors = nullptr;   // bytes red, green, blue, alpha; or nullptr
+  float *texcoords = nullptr;   // two numbers, or nullptr
+  uint32_t vertex_bytes = 12;   // from one position to the next
+  uint32_t normal_bytes = 12;   // from one normal to the next
+  bool packed_normals = false;  // behind each position is the normal in four bytes (stages/packed_normals.h)
+  uint32_t first_vertex = 0;    // what the arrays begin with
+  uint32_t first_triangle = 0;
+  uint32_t *repeated = nullptr;  // of the last vertices, for which others they stand; or nullptr
   // While a mesh is made, where someone asks for them: of the other sheet at vertices where two meet, elsewhere equal
   // to the normal. Of unit length, behind each other.
   float *second_normals = nullptr;
-  uint32_t *owners = nullptr;    // caller's atom numbers
-  uint8_t *patches = nullptr;    // or nullptr
-  uint32_t *indices = nullptr;   // three per triangle
-  uint32_t *repeated = nullptr;  // of the last vertices, for which others they stand; or nullptr
-  bool reversed = false;         // winding
-  uint32_t *colors = nullptr;    // bytes red, green, blue, alpha; or nullptr
-  float *texcoords = nullptr;    // two numbers, or nullptr
-  uint32_t vertex_bytes = 12;    // from one position to the next
-  uint32_t normal_bytes = 12;    // from one normal to the next
-  bool packed_normals = false;   // behind each position is the normal in four bytes (stages/packed_normals.h)
-  uint32_t first_vertex = 0;     // what the arrays begin with
-  uint32_t first_triangle = 0;
   PickBoxes boxes{};  // of whole meshes only
 
   QSES_FN size_t place(uint32_t vertex) const { return vertex - first_vertex; }
