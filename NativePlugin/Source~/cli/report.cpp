@@ -51,7 +51,7 @@ Json surface_json(const Options &options, const io::Structure &structure, const 
   json["device"] = engine.device();
   Json bounds = Json::array();
   for (const float *corner : {mesh.bounds_min, mesh.bounds_max}) bounds.push_back({corner[0], corner[1], corner[2]});
-  json["mesh"] = {{"vertices", mesh.vertex_count},
+  json["mesh"] = {{"vertices", mesh.vertex_count - mesh.repeated_count},
                   {"repeated", mesh.repeated_count},
                   {"triangles", mesh.triangle_count},
                   {"closed", true},
