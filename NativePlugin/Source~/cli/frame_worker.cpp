@@ -84,6 +84,7 @@ FrameWorker::FrameWorker(const FrameInputs &inputs, const ComputeOptions &comput
       xyz_(3 * inputs.trajectory.atom_count()),
       settings_(settings_of(compute)) {
   settings_.components = !inputs.options.csv.empty() || !inputs.options.json.empty();
+  settings_.hard_edges = has_hard_edges(inputs.options);
   engine_.set_atoms(inputs.structure(), inputs.options.input);
   if (!inputs.options.json.empty()) qses_set_stage_times(engine_.context(), 1);
 }

@@ -14,11 +14,13 @@ namespace {
 // Calls action(from, to) for each edge of each triangle.
 template <class Action>
 void for_each_edge(const qses_mesh &mesh, const Action &action) {
+  const size_t own = mesh.vertex_count - mesh.repeated_count;
   const uint32_t *corner = mesh.indices;
   for (size_t t = 0; t < mesh.triangle_count; ++t, corner += 3) {
-    action(corner[0], corner[1]);
-    action(corner[1], corner[2]);
-    action(corner[2], corner[0]);
+    uint32_t v[3];
+    for (int k = 0; k < 3; ++k)
+      v[k] = corner[k] < own || corner[k] >= mesh.vertex_count ? corner[k] : mesh.repeated[corner[k] - own];
+    for (int k = 0; k < 3; ++k) action(v[k], v[(k + 1) % 3]);
   }
 }
 

@@ -6,7 +6,8 @@
 
 namespace quickses::cli {
 
-// True if every directed edge occurs once and its reverse once: closed, with one orientation.
+// True if every directed edge occurs once and its reverse once: closed, with one orientation. Vertices that stand for
+// others are taken for those.
 bool is_closed(const qses_mesh &mesh);
 
 }  // namespace quickses::cli

@@ -25,6 +25,8 @@ void accept_surface(const std::string &path, const qses_mesh &mesh, const io::St
   view.normals = mesh.normals;
   view.owners = owners.data();
   view.indices = mesh.indices;
+  view.repeated = mesh.repeated;
+  view.repeated_count = static_cast<uint32_t>(mesh.repeated_count);
   io::write_mesh(path, view, io::mesh_format_of(path));
 }
 

@@ -22,6 +22,7 @@ const std::map<std::string, qses_surface> kSurfaces = {
 const std::map<std::string, qses_method> kMethods = {{"exact", QSES_METHOD_EXACT}, {"grid", QSES_METHOD_GRID}};
 const std::map<std::string, qses_backend> kBackends = {
     {"auto", QSES_BACKEND_AUTO}, {"cuda", QSES_BACKEND_CUDA}, {"cpu", QSES_BACKEND_CPU}};
+const std::map<std::string, Switch> kSwitches = {{"on", Switch::kOn}, {"off", Switch::kOff}};
 
 const char kFooter[] =
     "Exit codes:\n"
@@ -48,23 +49,26 @@ const char *find_name(const std::map<std::string, Enum> &names, Enum value) {
 
 // An option whose text is looked up; anything else is refused with the list of what there is.
 template <typename Enum>
+CLI::Option *add_option_of(CLI::App *app, const char *flag, Enum &value, const std::map<std::string, Enum> &names,
+                           const char *help) {
+  return app->add_option_function<std::string>(
+      flag,
+      [&value, &names, flag](const std::string &text) {
+        const auto found = names.find(text);
+        if (found != names.end()) {
+          value = found->second;
+          return;
+        }
+        std::string list;
+        for (const auto &entry : names) list += (list.empty() ? "" : ", ") + entry.first;
+        throw Failure(kUsage, std::string(flag) + ": '" + text + "' is not one of " + list);
+      },
+      help);
+}
+template <typename Enum>
 void add_choice(CLI::App *app, const char *flag, Enum &value, const std::map<std::string, Enum> &names,
                 const char *help) {
-  app->add_option_function<std::string>(
-         flag,
-         [&value, &names, flag](const std::string &text) {
-           const auto found = names.find(text);
-           if (found != names.end()) {
-             value = found->second;
-             return;
-           }
-           std::string list;
-           for (const auto &entry : names) list += (list.empty() ? "" : ", ") + entry.first;
-           throw Failure(kUsage, std::string(flag) + ": '" + text + "' is not one of " + list);
-         },
-         help)
-      ->type_name("NAME")
-      ->default_str(find_name(names, value));
+  add_option_of(app, flag, value, names, help)->type_name("NAME")->default_str(find_name(names, value));
 }
 
 void add_number(CLI::App *app, const char *flags, const char *shown, double &value, double low, double high,
@@ -157,6 +161,11 @@ void add_surface_options(CLI::App &app, Options &options) {
                  "Structure: .pdb .ent .cif .mmcif .pqr .xyzr .gro, each also as .gz");
   app.add_option("-o,--output", options.output, "Mesh: .obj, .ply (binary, with normals and owner atoms) or .stl")
       ->type_name("FILE");
+  add_option_of(
+      &app, "--hard-edges", options.hard_edges, kSwitches,
+      "on: a vertex on a crease has a normal for each side, so that light breaks there; PLY files then have it "
+      "once per side. Default: on for .obj and .ply")
+      ->type_name("on|off");
   app.add_flag_callback(
       "--no-water", [&options] { options.read.water = false; }, "Leave out water");
   app.add_flag_callback(
@@ -239,6 +248,8 @@ void check(const Options &options, const std::function<bool(const char *)> &give
       throw Failure(kUsage, std::string("--output (-o): ") + error.what());
     }
   }
+  if (options.hard_edges == Switch::kOn && !has_hard_edges(options))
+    throw Failure(kUsage, "--hard-edges on: is for the exact method and mesh files with normals, .obj or .ply");
   UsedFiles check(options);
 }
 
@@ -265,6 +276,11 @@ bool parse_size(const std::string &text, uint64_t &bytes) {
 const char *name_of(qses_surface surface) { return find_name(kSurfaces, surface); }
 const char *name_of(qses_method method) { return find_name(kMethods, method); }
 const char *name_of(qses_backend backend) { return find_name(kBackends, backend); }
+
+bool has_hard_edges(const Options &options) {
+  return options.hard_edges != Switch::kOff && options.compute.method == QSES_METHOD_EXACT && !options.output.empty() &&
+         io::mesh_format_of(options.output) != io::MeshFormat::kStl;
+}
 
 Options parse_options(int argc, char **argv, std::ostream &out) {
   Options options;

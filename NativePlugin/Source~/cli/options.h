@@ -34,12 +34,16 @@ struct ComputeOptions {
   bool radii_given = false;
 };
 
+// A flag with the values on and off, or not given.
+enum class Switch { kDefault, kOff, kOn };
+
 struct Options {
   enum class Command { kSurface, kBench, kNone } command = Command::kSurface;
   ComputeOptions compute;
   io::ReadOptions read;
   std::string input;
-  std::string output;               // empty: no mesh file
+  std::string output;  // empty: no mesh file
+  Switch hard_edges = Switch::kDefault;
   std::vector<std::string> inputs;  // of bench
   unsigned repeat = 20;             // of bench
   unsigned small = 0;               // of bench: atoms per surface, 0 = the whole
@@ -60,6 +64,9 @@ Options parse_options(int argc, char **argv, std::ostream &out);
 
 // "512M" and the like in bytes: K, M, G, T are powers of 1024. False where the text is no such size or none at all.
 bool parse_size(const std::string &text, uint64_t &bytes);
+
+// Whether the mesh has a vertex on a crease once per side. The output, if there is one, has a known extension.
+bool has_hard_edges(const Options &options);
 
 const char *name_of(qses_surface surface);
 const char *name_of(qses_method method);

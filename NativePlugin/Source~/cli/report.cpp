@@ -47,12 +47,16 @@ Json surface_json(const Options &options, const io::Structure &structure, const 
   json["model"] = structure.model;
   json["atoms"] = structure.atoms.size();
   json["settings"] = settings_json(options.compute);
+  json["settings"]["hard_edges"] = has_hard_edges(options);
   json["backend"] = name_of(engine.backend());
   json["device"] = engine.device();
   Json bounds = Json::array();
   for (const float *corner : {mesh.bounds_min, mesh.bounds_max}) bounds.push_back({corner[0], corner[1], corner[2]});
-  json["mesh"] = {
-      {"vertices", mesh.vertex_count}, {"triangles", mesh.triangle_count}, {"closed", true}, {"bounds", bounds}};
+  json["mesh"] = {{"vertices", mesh.vertex_count - mesh.repeated_count},
+                  {"repeated", mesh.repeated_count},
+                  {"triangles", mesh.triangle_count},
+                  {"closed", true},
+                  {"bounds", bounds}};
   json["area"] = report.area;
   json["volume"] = report.volume;
   json["components"] = components_json(mesh);

@@ -32,8 +32,9 @@ std::string output_of_model(const Options &options, int model) {
 
 void print_summary(const Options &options, const io::Structure &structure, const Engine &engine, const qses_mesh &mesh,
                    const qses_report &report) {
+  const auto vertices = static_cast<uint32_t>(mesh.vertex_count - mesh.repeated_count);
   std::printf("%zu atoms, %u vertices, %u triangles, area %.2f Å², volume %.2f Å³, %s, %.2f ms%s%s\n",
-              structure.atoms.size(), mesh.vertex_count, mesh.triangle_count, report.area, report.volume,
+              structure.atoms.size(), vertices, mesh.triangle_count, report.area, report.volume,
               name_of(engine.backend()), report.compute_ms, options.output.empty() ? "" : ", ", options.output.c_str());
 }
 
@@ -53,6 +54,7 @@ void run_surface(const Options &options) {
   explain_fallback(engine, options.compute, options.quiet);
   qses_settings settings = settings_of(options.compute);
   settings.components = !options.json.empty();
+  settings.hard_edges = has_hard_edges(options);
   if (!options.json.empty()) qses_set_stage_times(engine.context(), 1);
 
   const bool all_models = options.read.model == 0;

@@ -55,7 +55,8 @@ void put_obj_vectors(AtomicFile &file, const char *keyword, const float *vectors
 
 void write_obj(AtomicFile &file, const MeshView &mesh) {
   file.write("# QuickSES molecular surface, lengths in angstrom\n");
-  put_obj_vectors(file, "v", mesh.positions, mesh.vertex_count);
+  const uint32_t places = mesh.vertex_count - mesh.repeated_count;
+  put_obj_vectors(file, "v", mesh.positions, places);
   put_obj_vectors(file, "vn", mesh.normals, mesh.vertex_count);
   for (size_t t = 0; t < mesh.triangle_count; ++t) {
     char *const begin = file.reserve(6 * kMaxNumber);
@@ -63,13 +64,11 @@ void write_obj(AtomicFile &file, const MeshView &mesh) {
     *out++ = 'f';
     for (int corner = 0; corner < 3; ++corner) {
       *out++ = ' ';
-      char *const number = out;
-      out = put(out, mesh.indices[3 * t + corner] + 1);  // OBJ counts from 1
-      const size_t digits = out - number;
+      const uint32_t vertex = mesh.indices[3 * t + corner];
+      out = put(out, (vertex < places ? vertex : mesh.repeated[vertex - places]) + 1);  // OBJ counts from 1
       *out++ = '/';
       *out++ = '/';
-      std::memcpy(out, number, digits);
-      out += digits;
+      out = put(out, vertex + 1);
     }
     *out++ = '\n';
     file.advance(out - begin);

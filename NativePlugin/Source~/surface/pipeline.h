@@ -8,6 +8,7 @@
 #include "surface/methods/crease_splits.h"
 #include "surface/methods/exact_surface.h"
 #include "surface/methods/grid_surface.h"
+#include "surface/methods/hard_edges.h"
 #include "surface/methods/size_check.h"
 #include "surface/methods/visible_mask.h"
 #include "surface/stages/atoms.h"
@@ -60,7 +61,8 @@ void prepare_frame(Work &work, const FrameInput &in) {
   work.facts->atoms = set.count;
   work.parameters = parameters_of(in);
   work.shape = shape_of(in.settings, !look.colors.empty());
-  work.purpose = look.visible.empty() ? MeshPurpose::kDelivered : MeshPurpose::kWork;
+  work.hard_edges = in.settings.hard_edges && in.settings.method == QSES_METHOD_EXACT;
+  work.purpose = look.visible.empty() && !work.hard_edges ? MeshPurpose::kDelivered : MeshPurpose::kWork;
   work.lattice = center_lattice(set.bounds, frame_spacing(levels_of(in.settings)));
   work.low = to_centered(work.lattice, set.bounds.low);
   work.high = to_centered(work.lattice, set.bounds.high);
@@ -89,7 +91,7 @@ void enter_level(Work &work, float spacing) {
   work.lattice = layout_lattice(work.lattice, work.low, work.high, work.parameters.max_radius);
 }
 
-// The mesh of all atoms, measured, and of those that are visible.
+// The mesh of all atoms, measured; then of those that are visible, and with hard edges.
 template <class Work>
 MeshMemoryView build_surface(Work &work) {
   auto &executor = work.executor;
@@ -110,12 +112,17 @@ MeshMemoryView build_surface(Work &work) {
     work.timer.begin("components");
     mesh.components = work.components.find(executor, mesh, work.parameters.spacing);
   }
-  if (work.purpose == MeshPurpose::kDelivered || mesh.vertices == 0) return mesh;
-  work.timer.begin("visible_mask");
-  const Span<const qses_component> components = mesh.components;
-  mesh = drop_hidden(work, mesh);
-  mesh.components = components;
-  mesh.bounds = find_bounds(executor, mesh.view, MeshCounts{mesh.vertices, mesh.triangles});
+  if (work.appearance.visible && mesh.vertices > 0) {
+    work.timer.begin("visible_mask");
+    const Span<const qses_component> components = mesh.components;
+    mesh = drop_hidden(work, mesh, work.hard_edges ? MeshPurpose::kWork : MeshPurpose::kDelivered);
+    mesh.components = components;
+    mesh.bounds = find_bounds(executor, mesh.view, MeshCounts{mesh.vertices, mesh.triangles});
+  }
+  if (work.hard_edges && mesh.vertices > 0) {
+    work.timer.begin("hard_edges");
+    mesh = harden_edges(work, mesh);
+  }
   return mesh;
 }
 
@@ -123,7 +130,7 @@ MeshMemoryView build_surface(Work &work) {
 template <class Work>
 MeshMemoryView build_level(Work &work) {
   MeshMemoryView mesh = build_surface(work);
-  work.timer.begin("appearance");
+  work.timer.begin("vertices");
   complete_vertices(work, &mesh);
   if (work.shape.boxes) {
     work.timer.begin("pick_boxes");

@@ -270,7 +270,7 @@ static_assert(is_without_padding<qses_backend_description>(END(qses_backend_desc
 static_assert(is_without_padding<qses_context_options>(END(qses_context_options, reserved)), "");
 static_assert(is_without_padding<qses_settings>(END(qses_settings, atom_areas)), "");
 static_assert(is_without_padding<qses_component>(END(qses_component, bounds_max)), "");
-static_assert(is_without_padding<qses_mesh>(END(qses_mesh, atom_count)), "");
+static_assert(is_without_padding<qses_mesh>(END(qses_mesh, repeated_count)), "");
 static_assert(is_without_padding<qses_device_mesh>(END(qses_device_mesh, mesh)), "");
 static_assert(is_without_padding<qses_stage_time>(END(qses_stage_time, milliseconds)), "");
 static_assert(is_without_padding<qses_report>(END(qses_report, reserved)), "");

@@ -265,7 +265,7 @@ class Output(ProgramTest):
         result = self.run_cpu(CRAMBIN, "-o", "a.obj")
         vertices, normals, faces = read_obj(self.folder / "a.obj")
         self.assertTrue(is_closed(faces))
-        self.assertEqual(len(vertices), len(normals))
+        self.assertGreaterEqual(len(normals), len(vertices))  # on creases one per side
         self.assertAlmostEqual(volume_of(vertices, faces), CRAMBIN_VOLUME, delta=0.002 * CRAMBIN_VOLUME)
         self.assertAlmostEqual(area_of(vertices, faces), CRAMBIN_AREA, delta=0.012 * CRAMBIN_AREA)
         for normal in normals[::97]:
@@ -277,8 +277,8 @@ class Output(ProgramTest):
             self.assertIn(part, lines[0])
 
     def test_ply_is_the_same_mesh_with_owners(self):
-        self.run_cpu("-i", CRAMBIN, "-o", "a.ply")
-        self.run_cpu("-i", CRAMBIN, "-o", "a.obj")
+        for name in ("a.ply", "a.obj"):
+            self.run_cpu("-i", CRAMBIN, "-o", name, "--hard-edges", "off")
         vertices, normals, owners, faces = read_ply(self.folder / "a.ply")
         obj_vertices, obj_normals, obj_faces = read_obj(self.folder / "a.obj")
         as_float = struct.Struct("<f")
@@ -293,6 +293,38 @@ class Output(ProgramTest):
         for vertex, owner in zip(vertices, owners):
             self.assertLess(math.dist(vertex, atoms[owner]), 1.8 + 2 * 1.4)
         self.assertGreater(len(set(owners)), 100)
+
+    def test_hard_edges(self):
+        smooth = self.run_cpu(CRAMBIN, "-o", "smooth.ply", "-v", "0.3", "--hard-edges", "off", "--json", "-")
+        smooth = json.loads(smooth.stdout)
+        places, _, owners, faces = read_ply(self.folder / "smooth.ply")
+        self.assertEqual((smooth["mesh"]["repeated"], smooth["settings"]["hard_edges"]), (0, False))
+        self.assertTrue(is_closed(faces))
+        reports = {}
+        for name in ("hard.ply", "hard.obj"):
+            reports[name] = json.loads(self.run_cpu(CRAMBIN, "-o", name, "-v", "0.3", "--json", "-").stdout)
+            mesh = reports[name]["mesh"]
+            self.assertEqual(reports[name]["settings"]["hard_edges"], True)
+            self.assertEqual(mesh["vertices"], len(places))
+            self.assertGreater(mesh["repeated"], 0)
+        repeated = reports["hard.ply"]["mesh"]["repeated"]
+        vertices, normals, hard_owners, hard_faces = read_ply(self.folder / "hard.ply")
+        self.assertEqual(len(vertices), len(places) + repeated)
+        self.assertEqual((vertices[:len(places)], hard_owners[:len(places)]), (places, owners))
+        for face, hard in zip(faces, hard_faces):
+            self.assertEqual([places[v] for v in face], [vertices[v] for v in hard])
+        # An OBJ file has each place once, and is closed by the numbers of its places.
+        obj_places, obj_normals, obj_faces = read_obj(self.folder / "hard.obj")
+        self.assertEqual((len(obj_places), len(obj_normals)), (len(places), len(normals)))
+        self.assertEqual(obj_faces, faces)
+        numbers = [[int(part) - 1 for corner in line.split()[1:] for part in corner.split("//")]
+                   for line in (self.folder / "hard.obj").read_text().splitlines() if line.startswith("f ")]
+        self.assertEqual([tuple(row[1::2]) for row in numbers], [tuple(face) for face in hard_faces])
+        stl = json.loads(self.run_cpu(CRAMBIN, "-o", "a.stl", "-v", "0.3", "--json", "-").stdout)
+        self.assertEqual((stl["mesh"]["repeated"], stl["settings"]["hard_edges"]), (0, False))
+        for arguments in (["-o", "a.stl"], [], ["-o", "a.ply", "--method", "grid"]):
+            self.assert_fails(USAGE, ["--hard-edges on"], CRAMBIN, *arguments, "--hard-edges", "on")
+        self.assert_fails(USAGE, ["--hard-edges", "'maybe'"], CRAMBIN, "-o", "b.ply", "--hard-edges", "maybe")
 
     def test_stl_has_every_triangle(self):
         self.run_cpu(CRAMBIN, "-o", "a.stl", "--json", "a.json")
@@ -358,7 +390,7 @@ class Output(ProgramTest):
         text = self.run_program("--help").stdout
         for part in ("-i,", "-o,", "-v,", "-l,", "-s,", "--probe", "--surface", "--method", "--backend", "--device",
                      "--threads", "--memory", "--radii", "--no-water", "--no-hetero", "--no-hydrogen", "--select",
-                     "--model", "--max-input", "--json", "--quiet", "--version", "bench", "Exit codes"):
+                     "--model", "--hard-edges", "--max-input", "--json", "--quiet", "--version", "bench", "Exit codes"):
             self.assertIn(part, text)
         self.assertRegex(self.run_program("--version").stdout, r"^quickses \d+\.\d+\.\d+\S*\n$")
 

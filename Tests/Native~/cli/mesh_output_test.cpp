@@ -98,6 +98,24 @@ TEST(IsClosed, WholeMeshesTwiceAndEdgesOfFourTriangles) {
   EXPECT_FALSE(is_closed(mesh));
 }
 
+TEST(IsClosed, WithVerticesThatStandForOthers) {
+  Mesh mesh = mesh_shapes::tetrahedron();
+  mesh.positions.insert(mesh.positions.end(), mesh.positions.begin() + 3, mesh.positions.begin() + 9);
+  bool first = true;
+  for (uint32_t &v : mesh.indices) {  // a corner at vertex 1 and one at vertex 2
+    if (v == 1 && first) v = 4, first = false;
+    if (v == 2) v = 5;
+  }
+  Surface surface(mesh);
+  EXPECT_FALSE(cli::is_closed(surface.view));
+  const uint32_t repeated[] = {1, 2}, others[] = {2, 1};
+  surface.view.repeated = repeated;
+  surface.view.repeated_count = 2;
+  EXPECT_TRUE(cli::is_closed(surface.view));
+  surface.view.repeated = others;
+  EXPECT_FALSE(cli::is_closed(surface.view));
+}
+
 TEST(IsClosed, TrianglesThatAreNone) {
   Mesh mesh = mesh_shapes::tetrahedron();
   for (uint32_t v : {0u, 1u, 1u}) mesh.indices.push_back(v);  // its edges 0-1 and 1-0 would fit

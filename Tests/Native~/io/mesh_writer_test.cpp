@@ -79,6 +79,31 @@ TEST_F(MeshWriterTest, ObjKeepsEveryBit) {
   EXPECT_EQ(indices, mesh.indices);
 }
 
+TEST_F(MeshWriterTest, ObjHasThePlaceOfARepeatedVertexOnce) {
+  Tetrahedron mesh;
+  mesh.indices[11] = 4;  // for vertex 0
+  mesh.positions.insert(mesh.positions.end(), mesh.positions.begin(), mesh.positions.begin() + 3);
+  mesh.normals.insert(mesh.normals.end(), {0, 0, 1});
+  MeshView view = mesh.view();
+  const uint32_t repeated = 0;
+  view.vertex_count = 5;
+  view.repeated = &repeated;
+  view.repeated_count = 1;
+  write_mesh(path("a.obj"), view, MeshFormat::kObj);
+  const std::string text = slurp(path("a.obj"));
+  size_t positions = 0, normals = 0;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    positions += line.compare(0, 2, "v ") == 0;
+    normals += line.compare(0, 3, "vn ") == 0;
+  }
+  EXPECT_EQ(positions, 4u);
+  EXPECT_EQ(normals, 5u);
+  EXPECT_TRUE(contains(text, "vn 0 0 1\n"));
+  EXPECT_TRUE(contains(text, "f 1//1 2//2 3//3\n"));
+  EXPECT_TRUE(contains(text, "f 3//3 4//4 1//5\n"));
+}
+
 TEST_F(MeshWriterTest, PlyKeepsEveryBit) {
   const Tetrahedron mesh;
   for (const bool with_patches : {false, true}) {

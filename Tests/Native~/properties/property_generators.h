@@ -182,6 +182,7 @@ inline Case make_case(uint64_t seed) {
   double area = rough_area(c.atoms, inflation(c.settings));
   if (c.settings.method == QSES_METHOD_GRID) area *= 4;  // it fills the inside with bricks, too
   c.settings.spacing = static_cast<float>(choose_spacing(random, area));
+  c.settings.creases = c.settings.method == QSES_METHOD_EXACT && Random(seed + 9).chance(0.5) ? 1 : 0;
   if (random.chance(0.12)) c.comparisons |= kThreads;
   if (random.chance(0.1)) c.comparisons |= kSlices;
   if (random.chance(0.05)) c.comparisons |= kBudget;

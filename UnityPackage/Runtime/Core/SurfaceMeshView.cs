@@ -116,6 +116,13 @@ namespace QuickSes
             new ReadOnlySpan<uint>(Valid(_native.Indices), Length(_native.TriangleCount, 3));
 
         /// <summary>
+        /// With <see cref="SurfaceSettings.HardEdges"/>: of the last vertices, as many as there are numbers, which vertex
+        /// each of them stands for on the other side of its crease, in ascending order; else empty.
+        /// </summary>
+        public ReadOnlySpan<uint> Repeated =>
+            new ReadOnlySpan<uint>(Valid(_native.Repeated), Length((uint)_native.RepeatedCount, 1));
+
+        /// <summary>
         /// The connected pieces of the surface in the order of their first vertices; empty unless
         /// <see cref="SurfaceSettings.Components"/>. Those of the whole surface where atoms are hidden. Areas and
         /// volumes add up to those of <see cref="SurfaceReport"/>.

@@ -112,6 +112,18 @@ namespace QuickSes
         /// </summary>
         public bool Pickable { get => Native.Pickable != 0; set => Native.Pickable = value ? 1 : 0; }
 
+        /// <summary>
+        /// Whether edges of triangles that cut across a crease are split on it: sharp rims, some more triangles. Not with
+        /// the grid method.
+        /// </summary>
+        public bool Creases { get => Native.Creases != 0; set => Native.Creases = value ? 1 : 0; }
+
+        /// <summary>
+        /// Whether a vertex on a crease is there once per side, each time with the normal of that side; with
+        /// <see cref="SurfaceMeshView.Repeated"/> taken for one the mesh is closed. Not with the grid method.
+        /// </summary>
+        public bool HardEdges { get => Native.HardEdges != 0; set => Native.HardEdges = value ? 1 : 0; }
+
         /// <summary>How many coarser levels come before <see cref="Spacing"/> in a job.</summary>
         public int LevelCount => (int)Native.LevelCount;
 

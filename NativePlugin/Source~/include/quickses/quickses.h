@@ -437,6 +437,10 @@ typedef struct qses_mesh {
                                is nearest to the atom. Those of the whole surface where atoms are hidden. NULL if not
                                asked for */
   uint64_t atom_count;      /* 0 if atom_areas is NULL */
+  const uint32_t *repeated; /* with settings.hard_edges: of the last repeated_count vertices, which vertex each of them
+                               stands for on the other side of its crease, in ascending order. With these taken for one
+                               the mesh is closed. NULL if there are none */
+  uint64_t repeated_count;
 } qses_mesh;
 
 /* Empty view with struct_size set. NULL is ignored. */

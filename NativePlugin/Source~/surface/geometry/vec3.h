@@ -37,7 +37,8 @@ template <class T>
 QSES_FN T length_squared(const Vec3<T> &a) {
   return dot(a, a);
 }
-QSES_FN Vec3<float> cross(const Vec3<float> &a, const Vec3<float> &b) {
+template <class T>
+QSES_FN Vec3<T> cross(const Vec3<T> &a, const Vec3<T> &b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 QSES_FN Vec3<float> load_vec3(const float *p) { return {p[0], p[1], p[2]}; }

@@ -11,6 +11,7 @@ namespace quickses {
 struct MeshShape {
   qses_vertex_layout layout = QSES_VERTICES_SEPARATE;
   bool colors = false, texcoords = false, patches = false, reversed = false, boxes = false;
+  size_t repeated = 0;  // vertices that stand for others (methods/hard_edges.h)
 };
 
 inline MeshShape shape_of(const qses_settings &s, bool has_colors) {
@@ -37,6 +38,7 @@ class MeshArrays {
     if (shape.texcoords) texcoords_ = next(vertices * 8);
     owners_ = next(vertices * 4);
     indices_ = next(triangles * 12);
+    repeated_ = next(shape.repeated * 4);
     if (shape.boxes) {
       runs_ = next(PickBoxes::run_count(triangles) * sizeof(Box));
       groups_ = next(PickBoxes::group_count(triangles) * sizeof(Box));
@@ -59,6 +61,7 @@ class MeshArrays {
     v.owners = reinterpret_cast<uint32_t *>(base + owners_);
     if (shape_.patches) v.patches = reinterpret_cast<uint8_t *>(base + patches_);
     v.indices = reinterpret_cast<uint32_t *>(base + indices_);
+    if (shape_.repeated) v.repeated = reinterpret_cast<uint32_t *>(base + repeated_);
     if (shape_.boxes) v.boxes = {reinterpret_cast<Box *>(base + runs_), reinterpret_cast<Box *>(base + groups_)};
     v.reversed = shape_.reversed;
     return v;
@@ -73,8 +76,8 @@ class MeshArrays {
 
   MeshShape shape_;
   uint32_t vertex_bytes_;
-  size_t positions_ = 0, normals_ = 0, colors_ = 0, texcoords_ = 0, owners_ = 0, patches_ = 0, indices_ = 0, runs_ = 0,
-         groups_ = 0, bytes_ = 0;
+  size_t positions_ = 0, normals_ = 0, colors_ = 0, texcoords_ = 0, owners_ = 0, patches_ = 0, indices_ = 0,
+         repeated_ = 0, runs_ = 0, groups_ = 0, bytes_ = 0;
 };
 
 // Calls copy(to, from, bytes) for each array of a run of `vertices` vertices and `triangles` triangles that both views

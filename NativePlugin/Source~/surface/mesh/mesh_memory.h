@@ -69,6 +69,8 @@ inline void describe_mesh(const MeshMemoryView &built, const MeshView *arrays, c
   mesh->owners = arrays->owners;
   mesh->patches = arrays->patches;
   mesh->indices = arrays->indices;
+  mesh->repeated = arrays->repeated;
+  mesh->repeated_count = built.shape.repeated;
 }
 
 // The host memory of the meshes in the slots, as the pool gives it.

@@ -11,11 +11,8 @@ namespace quickses {
 // A run of a mesh's vertices and triangles in memory of the back end. Vertices and triangles are named by their numbers
 // in the whole mesh.
 struct MeshView {
-  float *positions = nullptr;  // caller's coordinates
-  float *normals = nullptr;    // unit length; nullptr: there are none but packed ones
-  // While a mesh is made, where someone asks for them: of the other sheet at vertices where two meet, elsewhere equal
-  // to the normal. Of unit length, behind each other.
-  float *second_normals = nullptr;
+  float *positions = nullptr;   // caller's coordinates
+  float *normals = nullptr;     // unit length; nullptr: there are none but packed ones
   uint32_t *owners = nullptr;   // caller's atom numbers
   uint8_t *patches = nullptr;   // or nullptr
   uint32_t *indices = nullptr;  // three per triangle
@@ -27,6 +24,10 @@ struct MeshView {
   bool packed_normals = false;  // behind each position is the normal in four bytes (stages/packed_normals.h)
   uint32_t first_vertex = 0;    // what the arrays begin with
   uint32_t first_triangle = 0;
+  uint32_t *repeated = nullptr;  // of the last vertices, for which others they stand; or nullptr
+  // While a mesh is made, where someone asks for them: of the other sheet at vertices where two meet, elsewhere equal
+  // to the normal. Of unit length, behind each other.
+  float *second_normals = nullptr;
   PickBoxes boxes{};  // of whole meshes only
 
   QSES_FN size_t place(uint32_t vertex) const { return vertex - first_vertex; }
@@ -45,5 +46,17 @@ struct MeshView {
     return reinterpret_cast<float *>(reinterpret_cast<char *>(first) + size_t(stride) * place(vertex));
   }
 };
+
+// One vertex of a mesh that is being made into another one, where colours and packed normals come last.
+QSES_FN void copy_vertex(const MeshView &from, uint32_t vertex, const MeshView &to, uint32_t place) {
+  const auto copy3 = [](float *out, const float *in) {
+    for (int d = 0; d < 3; ++d) out[d] = in[d];
+  };
+  copy3(to.position(place), from.position(vertex));
+  copy3(to.normal(place), from.normal(vertex));
+  if (from.second_normals && to.second_normals) copy3(to.second_normal(place), from.second_normal(vertex));
+  to.owner(place) = from.owner(vertex);
+  if (from.patches) to.patch(place) = from.patch(vertex);
+}
 
 }  // namespace quickses

@@ -102,7 +102,8 @@ MeshPart open_part(const Work &work, Executor &executor, const BrickSet &bricks,
   MeshPart part{{}, sizes.vertices, sizes.triangles};
   const MeshArrays arrays(part.vertices, part.triangles, shape);
   part.view = arrays.view(executor.template allocate<char>(arrays.bytes()).data);
-  add_normals(work, &part.view, part.vertices, [&](size_t n) { return executor.template allocate<glm::vec3>(n).data; });
+  add_normals(work.side_normals, &part.view, part.vertices,
+              [&](size_t n) { return executor.template allocate<glm::vec3>(n).data; });
   part.view.first_vertex = sizes.first_vertex;
   part.view.first_triangle = sizes.first_triangle;
   return part;

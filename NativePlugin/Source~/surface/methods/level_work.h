@@ -8,6 +8,7 @@
 #include "surface/methods/progress.h"
 #include "surface/stages/appearance.h"
 #include "surface/stages/components.h"
+#include "surface/stages/facing_normals.h"
 #include "surface/stages/hot_stages.h"
 #include "surface/stages/packed_normals.h"
 #include "surface/stages/side_normals.h"
@@ -40,27 +41,34 @@ struct LevelWork {
   MeshShape shape{};
   MeshPurpose purpose = MeshPurpose::kDelivered;
   bool side_normals = false;  // whether a later stage asks for MeshView::second_normals
+  bool hard_edges = false;    // whether a vertex on a crest is delivered once per side
 };
 
 // While a mesh is made it has the normals that later stages read, in memory that is given up with the level's: floats
 // where the layout has packed ones, and those of the second sheet. allocate(n) returns room for n vectors.
-template <class Work, class Allocate>
-void add_normals(const Work &work, MeshView *view, size_t vertices, const Allocate &allocate) {
+template <class Allocate>
+void add_normals(bool side_normals, MeshView *view, size_t vertices, const Allocate &allocate) {
   if (view->packed_normals) view->normals = reinterpret_cast<float *>(allocate(vertices));
-  if (work.side_normals) view->second_normals = reinterpret_cast<float *>(allocate(vertices));
+  if (side_normals) view->second_normals = reinterpret_cast<float *>(allocate(vertices));
 }
 template <class Work>
-void add_normals(Work &work, MeshMemoryView *mesh) {
-  add_normals(work, &mesh->view, mesh->vertices, [&](size_t n) {
+void add_normals(Work &work, bool side_normals, MeshMemoryView *mesh) {
+  add_normals(side_normals, &mesh->view, mesh->vertices, [&](size_t n) {
     return work.memory.template allocate_where_mesh_is<glm::vec3>(work.executor, *mesh, n).data;
   });
 }
+template <class Work>
+void add_normals(Work &work, MeshMemoryView *mesh) {
+  add_normals(work, work.side_normals, mesh);
+}
 
-// What is left to do for vertices whose places, normals and owners are known.
+// What is left to do for a mesh whose vertices have their places, owners, and normals of each side.
 template <class Work>
 void complete_vertices(Work &work, MeshMemoryView *mesh) {
   paint_vertices(work.executor, work.appearance, mesh->view, mesh->vertices);
   share_normals(work.executor, mesh->view, mesh->vertices);
+  if (work.settings.method == QSES_METHOD_EXACT)
+    face_triangles(work.executor, mesh->view, MeshCounts{mesh->vertices, mesh->triangles});
   pack_normals(work.executor, mesh->view, mesh->vertices);
   mesh->view.second_normals = nullptr;
   if (mesh->view.packed_normals) mesh->view.normals = nullptr;

@@ -4,25 +4,9 @@
 
 #include "parallel/atomics.h"
 #include "surface/methods/level_work.h"
+#include "surface/stages/ranked_set.h"
 
 namespace quickses {
-
-// A set of numbers as bits, with the count of those before each word: an eighth of the memory that a table of new
-// numbers would take.
-struct RankedSet {
-  uint32_t *words;
-  uint32_t *before;  // words + 1 of them
-
-  QSES_FN bool has(uint32_t i) const { return words[i / 32] >> (i % 32) & 1; }
-  QSES_FN uint32_t rank(uint32_t i) const {
-    return before[i / 32] + static_cast<uint32_t>(popcount64(words[i / 32] & ((uint32_t(1) << i % 32) - 1)));
-  }
-};
-
-struct CountWord {
-  const uint32_t *words;
-  QSES_HOST_DEVICE uint64_t operator()(size_t i) const { return static_cast<uint64_t>(popcount64(words[i])); }
-};
 
 // 32 triangles: which have only visible owners, and the vertices of those.
 struct MarkVisible {
@@ -51,13 +35,7 @@ struct MoveVertex {
   RankedSet kept;
   QSES_HOST_DEVICE void operator()(size_t i) const {
     const uint32_t vertex = static_cast<uint32_t>(i);
-    if (!kept.has(vertex)) return;
-    const uint32_t place = kept.rank(vertex);
-    store_vec3(to.position(place), load_vec3(from.position(vertex)));
-    store_vec3(to.normal(place), load_vec3(from.normal(vertex)));
-    if (from.second_normals) store_vec3(to.second_normal(place), load_vec3(from.second_normal(vertex)));
-    to.owner(place) = from.owner(vertex);
-    if (from.patches) to.patch(place) = from.patch(vertex);
+    if (kept.has(vertex)) copy_vertex(from, vertex, to, kept.rank(vertex));
   }
 };
 
@@ -73,24 +51,8 @@ struct MoveTriangle {
   }
 };
 
-template <class Executor>
-RankedSet allocate_set(Executor &executor, size_t n) {
-  const size_t words = (n + 31) / 32;
-  Span<uint32_t> bits = executor.template allocate<uint32_t>(words);
-  executor.fill(bits, 0);
-  return {bits.data, executor.template allocate<uint32_t>(words + 1).data};
-}
-
-// Returns how many there are. Waits.
-template <class Executor>
-uint32_t rank_set(Executor &executor, const RankedSet &set, size_t n) {
-  const size_t words = (n + 31) / 32;
-  executor.exclusive_scan(words, CountWord{set.words}, Span<uint32_t>{set.before, words + 1});
-  return executor.fetch(set.before + words);
-}
-
 template <class Work>
-MeshMemoryView drop_hidden(Work &work, const MeshMemoryView &whole) {
+MeshMemoryView drop_hidden(Work &work, const MeshMemoryView &whole, MeshPurpose purpose) {
   auto &executor = work.executor;
   const RankedSet vertices = allocate_set(executor, whole.vertices),
                   triangles = allocate_set(executor, whole.triangles);
@@ -102,8 +64,8 @@ MeshMemoryView drop_hidden(Work &work, const MeshMemoryView &whole) {
     vertex_count = static_cast<uint32_t>(whole.vertices);
     triangle_count = static_cast<uint32_t>(whole.triangles);
   }
-  MeshMemoryView shown = work.memory.allocate_mesh(executor, vertex_count, triangle_count, work.shape,
-                                                   MeshPurpose::kDelivered, work.plan.mesh_in_pieces);
+  MeshMemoryView shown =
+      work.memory.allocate_mesh(executor, vertex_count, triangle_count, work.shape, purpose, work.plan.mesh_in_pieces);
   add_normals(work, &shown);
   executor.for_each(whole.vertices, MoveVertex{whole.view, shown.view, vertices});
   executor.for_each(whole.triangles, MoveTriangle{whole.view, shown.view, triangles, vertices});

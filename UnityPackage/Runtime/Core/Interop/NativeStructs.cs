@@ -101,6 +101,8 @@ namespace QuickSes.Interop
         public uint* ComponentIds;
         public double* AtomAreas;
         public ulong AtomCount;
+        public uint* Repeated;
+        public ulong RepeatedCount;
     }
 
     [StructLayout(LayoutKind.Sequential)]

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+// Normals that face the triangles around them, as light needs it. Where a triangle cuts a crest off, the exact normal
+// of a corner may point against it.
+#pragma once
+
+#include "surface/stages/ranked_set.h"
+#include "surface/stages/relaxation.h"
+
+namespace quickses {
+
+// Vertices with a normal against a triangle of theirs.
+struct MarkTurnedAway {
+  MeshView mesh;
+  uint32_t *vertices;  // bits
+  QSES_HOST_DEVICE void operator()(size_t triangle) const {
+    const uint32_t *const t = mesh.triangle(triangle);
+    const Vec3<float> face = face_normal(mesh, t);
+    for (int k = 0; k < 3; ++k)
+      if (dot(face, load_vec3(mesh.normal(t[k]))) < 0.f) atomic_or(vertices + t[k] / 32, uint32_t(1) << t[k] % 32);
+  }
+};
+
+// The triangles of each marked vertex, in any order. Of a vertex with more than there is room for only the number.
+struct MarkedFans {
+  static constexpr uint32_t kRoom = 32;
+  RankedSet marked;
+  uint32_t *counts;
+  uint32_t *triangles;  // kRoom of each vertex
+};
+
+struct CollectFans {
+  MeshView mesh;
+  MarkedFans fans;
+  QSES_HOST_DEVICE void operator()(size_t triangle) const {
+    const uint32_t *const t = mesh.triangle(triangle);
+    for (int k = 0; k < 3; ++k) {
+      if (!fans.marked.has(t[k])) continue;
+      const uint32_t rank = fans.marked.rank(t[k]), place = atomic_add(fans.counts + rank, uint32_t(1));
+      if (place < fans.kRoom) fans.triangles[rank * fans.kRoom + place] = static_cast<uint32_t>(triangle);
+    }
+  }
+};
+
+// Turns a normal towards the triangle that it is most against, and again until it faces all of them: where there is
+// such a normal, Rosenblatt's rule finds one. Else the one that was the least against any is kept.
+struct TurnNormals {
+  static constexpr int kTurns = 64, kLongTurns = 8;
+  MeshView mesh;
+  MarkedFans fans;
+  QSES_HOST_DEVICE void operator()(size_t word) const {
+    for (uint32_t bits = fans.marked.words[word]; bits; bits &= bits - 1) {
+      const uint32_t vertex = 32 * static_cast<uint32_t>(word) + static_cast<uint32_t>(lowest_bit32(bits));
+      const uint32_t rank = fans.marked.rank(vertex), count = fans.counts[rank];
+      if (count <= fans.kRoom) turn(vertex, fans.triangles + rank * fans.kRoom, count);
+    }
+  }
+
+ private:
+  QSES_FN void turn(uint32_t vertex, const uint32_t *fan, uint32_t count) const {
+    constexpr float kEnough = 0.02f;
+    Vec3<float> n = load_vec3(mesh.normal(vertex)), best = n;
+    float best_facing = -2.f;
+    for (int k = 0; k < kTurns && best_facing < kEnough; ++k) {
+      Vec3<float> away = n;
+      float least = 2.f;
+      uint32_t number = 0;
+      for (uint32_t i = 0; i < count; ++i) {
+        const Vec3<float> face = face_normal(mesh, mesh.triangle(fan[i]));
+        const float length2 = length_squared(face);
+        if (length2 < 1e-20f) continue;
+        const Vec3<float> unit = face * reciprocal_root(length2);
+        const float facing = dot(unit, n);
+        if (facing > least || (facing == least && fan[i] > number)) continue;  // ties by number: any order will do
+        away = unit, least = facing, number = fan[i];
+      }
+      if (least > best_facing) best_facing = least, best = n;
+      n = n + away * (k < kLongTurns ? 1.f : 0.3f);
+      n = n * reciprocal_root(maximum(length_squared(n), 1e-12f));
+    }
+    store_vec3(mesh.normal(vertex), best);
+  }
+};
+
+// Turns the normals that point against a triangle of theirs. Waits.
+template <class Executor>
+void face_triangles(Executor &executor, const MeshView &mesh, const MeshCounts &counts) {
+  if (counts.vertices == 0) return;
+  const auto mark = executor.arena().mark();
+  const RankedSet marked = allocate_set(executor, counts.vertices);
+  executor.for_each(counts.triangles, MarkTurnedAway{mesh, marked.words});
+  size_t turned = rank_set(executor, marked, counts.vertices);
+  if (Executor::kCounts) turned = counts.vertices / 64;  // not known: rarely more
+  if (turned > 0) {
+    const Span<uint32_t> numbers = executor.template allocate<uint32_t>(turned);
+    const MarkedFans fans{marked, numbers.data, executor.template allocate<uint32_t>(turned * MarkedFans::kRoom).data};
+    executor.fill(numbers, 0);
+    executor.for_each(counts.triangles, CollectFans{mesh, fans});
+    executor.for_each((counts.vertices + 31) / 32, TurnNormals{mesh, fans},
+                      uint64_t(32) * TurnNormals::kTurns * MarkedFans::kRoom);
+  }
+  executor.arena().rewind(mark);
+}
+
+}  // namespace quickses
