@@ -264,6 +264,7 @@ inline void check_distances(const Case &c, const Result &r, const ExactSurface &
             static_cast<double>(mesh.positions[3 * k + 2]), error, what);
   };
   const size_t stride = 1 + count * c.atoms.size() / 200000;
+  std::vector<size_t> between;  // vertices whose normal is not that of a single sheet
   for (size_t k = 0; k < count; k += stride) {
     const Point x = point(mesh.position(k)), n = point(r.surface.normal(k));
     // Which way a point lies from an atom that is smaller than the rounding there, nobody can tell.
@@ -273,15 +274,22 @@ inline void check_distances(const Case &c, const Result &r, const ExactSurface &
       judge(k, std::abs(exact.depth(x)), "");
     } else if (has_direction) {
       const double depth = exact.depth(x + p * n);
-      judge(k, depth - play_of_radii(c), ": along its normal the probe overlaps an atom");
-      judge(k, -depth, ": along its normal the probe touches no atom");
+      if (std::max(depth - play_of_radii(c), -depth) - rounding > bound)
+        between.push_back(k);
+      else
+        judge(k, std::max(depth - play_of_radii(c), -depth), ": along its normal the probe overlaps an atom, or none");
     }
   }
   if (!exact.is_ses()) return;
-  for (size_t k : worth_measuring(r.surface, p, exact.is_costly() ? 12 : 60)) {
+  const size_t most = exact.is_costly() ? 12 : 60;
+  std::vector<size_t> chosen = worth_measuring(r.surface, p, most);
+  const size_t every = 1 + between.size() / most;
+  for (size_t k = 0; k < between.size(); k += every) chosen.push_back(between[k]);
+  for (size_t k : chosen) {
     const Range d = exact.distance(point(mesh.position(k)), p + 2 * (bound + rounding));
     // The probe is its own proof, whatever the reference may have missed.
     if (exact.depth(d.probe) <= 0) judge(k, p - d.most, ": a probe covers it");
+    judge(k, d.least - p, ": no probe touches it");
   }
 }
 
