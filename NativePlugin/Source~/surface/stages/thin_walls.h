@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+// Walls of solid thinner than the spacing: where two probes come close to each other from both sides, no lattice point
+// lies inside the wall between them, so that its signs have a hole. A lattice edge with both ends outside that passes
+// through such a wall gets one end, the one deeper in, marked inside. Edges are those along the axes and the diagonals
+// of faces: marching cubes separates points that only a diagonal of a face joins, so a wall one point thick would leak
+// without them.
+//
+// Whether an edge passes through solid is asked of probes alone. Where the probe may be, nothing is solid, and its ball
+// is convex: an edge that one probe covers, or two that overlap on it, is open. What is left is walked from ball to
+// ball, and is a wall if a point right behind a ball is farther than depth from all places where the probe may be.
+#pragma once
+
+#include "surface/stages/marching_cubes.h"
+#include "surface/stages/projection.h"
+
+namespace quickses {
+
+// Edges by their first end: its lattice point and the step to the second.
+constexpr int kWallSteps = 9;
+QSES_FN glm::ivec3 wall_step(int k) {
+  switch (k) {
+    case 0: return {1, 0, 0};
+    case 1: return {0, 1, 0};
+    case 2: return {0, 0, 1};
+    case 3: return {1, 1, 0};
+    case 4: return {1, -1, 0};
+    case 5: return {1, 0, 1};
+    case 6: return {1, 0, -1};
+    case 7: return {0, 1, 1};
+    default: return {0, 1, -1};
+  }
+}
+// Their length, in spacings.
+QSES_FN float wall_step_length(int k) { return k < 3 ? 1.f : 1.41421356f; }
+
+QSES_FN Vec3<float> wall_direction(int k) {
+  const glm::ivec3 s = wall_step(k);
+  const float scale = k < 3 ? 1.f : 0.70710678f;
+  return {static_cast<float>(s.x) * scale, static_cast<float>(s.y) * scale, static_cast<float>(s.z) * scale};
+}
+
+// The words of a leaf and its neighbours, numbered as neighbours of a brick are (brick_border.h). words_of(place): those
+// of the bricks around its own; nullptr, if that is not active: no wall is there, so all is outside.
+struct LeafNeighborhood {
+  uint64_t at[kNeighborhood];
+};
+template <class WordsOf>
+QSES_FN uint64_t word_near_leaf(int leaf, int place, const WordsOf &words_of) {
+  int brick = kOwnPlace, other = 0;
+  const glm::ivec3 step = neighbor_step(place);
+  for (int axis = 0, stride = 1; axis < kAxes; ++axis, stride *= 3) {
+    const int at = (leaf >> axis & 1) + step[axis];
+    brick += at < 0 ? -stride : at > 1 ? stride : 0;
+    other |= (at & 1) << axis;
+  }
+  const uint64_t *const words = words_of(brick);
+  return words ? words[other] : 0;
+}
+
+// Edges that may pass through a wall, by the bit of their first end in the leaf: both ends are outside, and a point next
+// to both is inside, since a wall does not begin farther from where it is thick enough to be seen. Is there any?
+QSES_FN bool find_wall_candidates(const LeafNeighborhood &n, uint64_t edges[kWallSteps]) {
+  uint64_t any = 0, all = n.at[kOwnPlace];
+  for (int k = 0; k < kNeighborhood; ++k) any |= n.at[k];
+  if (any == 0 || all == ~uint64_t(0)) return false;
+  // Inside within 0 to 1 or -1 to 1 along x; then within so much along y; the rows are those along x.
+  uint64_t own[9], next[9], x2[9], x3[9];
+  for (int r = 0; r < 9; ++r) {
+    own[r] = n.at[3 * r + 1];
+    next[r] = shift_x(own[r], n.at[3 * r + 2]);
+    x2[r] = own[r] | next[r];
+    x3[r] = x2[r] | shift_x_back(own[r], n.at[3 * r]);
+  }
+  uint64_t x2_up[3], x2_down[3], x2_all[3], x3_up[3], x3_all[3];
+  for (int z = 0; z < 3; ++z) {
+    const int r = 3 * z + 1;
+    x2_up[z] = x2[r] | shift_y(x2[r], x2[r + 1]);
+    x2_down[z] = x2[r] | shift_y_back(x2[r], x2[r - 1]);
+    x2_all[z] = x2_up[z] | x2_down[z];
+    x3_up[z] = x3[r] | shift_y(x3[r], x3[r + 1]);
+    x3_all[z] = x3_up[z] | shift_y_back(x3[r], x3[r - 1]);
+  }
+  const auto up = [](const uint64_t *w) { return w[1] | shift_z(w[1], w[2]); };
+  const auto down = [](const uint64_t *w) { return w[1] | shift_z_back(w[1], w[0]); };
+  constexpr int kOwnRow = 4;
+  const uint64_t first = own[kOwnRow], first_y = shift_y(own[4], own[5]);
+  edges[0] = (up(x2_all) | down(x2_all)) & ~next[kOwnRow];
+  edges[1] = (up(x3_up) | down(x3_up)) & ~first_y;
+  edges[2] = up(x3_all) & ~shift_z(own[4], own[7]);
+  edges[3] = (up(x2_up) | down(x2_up)) & ~shift_y(next[4], next[5]);
+  edges[4] = (up(x2_down) | down(x2_down)) & ~shift_y_back(next[4], next[3]);
+  edges[5] = up(x2_all) & ~shift_z(next[4], next[7]);
+  edges[6] = down(x2_all) & ~shift_z_back(next[4], next[1]);
+  edges[7] = up(x3_up) & ~shift_z(first_y, shift_y(own[7], own[8]));
+  edges[8] = down(x3_up) & ~shift_z_back(first_y, shift_y(own[1], own[2]));
+  uint64_t left = 0;
+  for (int k = 0; k < kWallSteps; ++k) left |= edges[k] &= ~first;
+  return left != 0;
+}
+
+// The nearest place where the probe's centre may be, as far as that matters: a point that is outside is so because of
+// it. distance: 0 outside all balls, kFarAway (or anything above depth) for a point in the solid.
+struct NearestProbe {
+  Vec3<float> center;
+  float distance;
+};
+
+template <class Candidates>
+QSES_FN NearestProbe nearest_probe(const FeatureView &f, const Candidates &candidates, const Vec3<float> &x) {
+  if (candidates.atom_count() == 0) return {x, 0.f};
+  const DeepestAtom deepest = deepest_atom(f, candidates, x);
+  if (deepest.depth <= f.parameters.least_depth()) return {x, 0.f};
+  if (deepest.depth > f.parameters.depth) return {x, kFarAway};
+  const BoundaryPoint y = nearest_boundary(f, candidates, x);
+  return {y.position, y.found ? y.distance : kFarAway};
+}
+
+// Is the other end of an edge in the ball of the probe of this one? Then so is all of the edge.
+template <class T>
+QSES_FN auto probe_covers(const SurfaceParameters &p, const Vec3<T> &center, const Vec3<T> &x) -> decltype(x.x < x.y) {
+  return length_squared(x - center) < T(p.depth * p.depth);
+}
+
+// How far from x, in a direction of length 1, the ball of a probe that covers x ends.
+template <class T>
+QSES_FN T way_out(const SurfaceParameters &p, const Vec3<T> &center, const Vec3<T> &x, const Vec3<T> &direction) {
+  const Vec3<T> from = x - center;
+  const T along = dot(from, direction), outside = length_squared(from) - T(p.depth * p.depth);
+  return square_root(maximum(T(0.f), along * along - outside)) - along;
+}
+
+// So far behind the end of a ball the next point is looked at, in Å.
+constexpr float kWallStep = 1e-3f;
+// An edge with more balls than this one behind the other is open.
+constexpr int kMostWallSteps = 12;
+
+struct AddMarks {
+  const uint64_t *marks;
+  uint64_t *signs;
+  QSES_HOST_DEVICE void operator()(size_t i) const { signs[i] |= marks[i]; }
+};
+
+}  // namespace quickses
