@@ -39,22 +39,17 @@ QSES_FN Vec3<float> wall_direction(int k) {
   return {static_cast<float>(s.x) * scale, static_cast<float>(s.y) * scale, static_cast<float>(s.z) * scale};
 }
 
-// The words of a leaf and its neighbours, numbered as neighbours of a brick are (brick_border.h). words_of(place): those
-// of the bricks around its own; nullptr, if that is not active: no wall is there, so all is outside.
+// The words of a leaf and its neighbours, numbered as neighbours of a brick are (brick_border.h).
 struct LeafNeighborhood {
   uint64_t at[kNeighborhood];
 };
+
+// The word of a leaf at a place counted from the first leaf of a brick, from -1 to 2 along each axis. words_of(place):
+// those of the brick itself and around it; nullptr if a brick is not active: no wall is there, so all is outside.
 template <class WordsOf>
-QSES_FN uint64_t word_near_leaf(int leaf, int place, const WordsOf &words_of) {
-  int brick = kOwnPlace, other = 0;
-  const glm::ivec3 step = neighbor_step(place);
-  for (int axis = 0, stride = 1; axis < kAxes; ++axis, stride *= 3) {
-    const int at = (leaf >> axis & 1) + step[axis];
-    brick += at < 0 ? -stride : at > 1 ? stride : 0;
-    other |= (at & 1) << axis;
-  }
-  const uint64_t *const words = words_of(brick);
-  return words ? words[other] : 0;
+QSES_FN uint64_t word_of_leaf(const glm::ivec3 &p, const WordsOf &words_of) {
+  const uint64_t *const words = words_of(kOwnPlace + (p.x >> 1) + 3 * (p.y >> 1) + 9 * (p.z >> 1));
+  return words ? words[(p.x & 1) + 2 * (p.y & 1) + 4 * (p.z & 1)] : 0;
 }
 
 // Edges that may pass through a wall, by the bit of their first end in the leaf: both ends are outside, and a point next
