@@ -30,17 +30,16 @@ struct ProbedPoints {
   alignas(32) float x[kRoom], y[kRoom], z[kRoom], center_x[kRoom], center_y[kRoom], center_z[kRoom], distance[kRoom];
   QSES_FN void set(int k, const Vec3<float> &v) { x[k] = v.x, y[k] = v.y, z[k] = v.z; }
   QSES_FN Vec3<float> point(int k) const { return {x[k], y[k], z[k]}; }
-  QSES_FN Vec3<float> center(int k) const { return {center_x[k], center_y[k], center_z[k]}; }
+  QSES_FN NearestProbe probe(int k) const { return {{center_x[k], center_y[k], center_z[k]}, distance[k]}; }
 };
 
 // An edge that may be a wall: by the step, and the number of its first end; later of both.
 struct Edge {
   uint16_t first, second, step;
 };
-// An edge on its way through balls of probes: how far, and where the ball of the second end's probe begins.
 struct Walk {
   Edge edge;
-  float at, end;
+  WallWalk state;
 };
 
 struct WallWork {
@@ -176,38 +175,27 @@ void find_all_probes(const WallField &field, ProbedPoints<kRoom> &points, int be
   for (; begin < end; begin += kGroup) find_probes(field, points, begin, begin + kGroup < end ? begin + kGroup : end);
 }
 
-// Marks a point of the brick or next to it.
-QSES_FN void mark_point(const BrickSet &bricks, uint32_t brick, const glm::ivec3 &p, uint64_t *marks) {
-  const glm::ivec3 away(p.x >> 3, p.y >> 3, p.z >> 3);
-  const int owner = away == glm::ivec3(0) ? static_cast<int>(brick)
-                                          : bricks.find(bricks.lattice.brick_at(bricks.linear[brick]) + away);
-  if (owner < 0) return;
-  const int x = p.x & 7, y = p.y & 7, z = p.z & 7;
-  atomic_or(marks + static_cast<size_t>(owner) * kLeavesPerBrick + leaf_of(x, y, z),
-            uint64_t(1) << leaf_bit(x & 3, y & 3, z & 3));
-}
-
 // Walks the edges, and marks an end of those that are walls.
 void walk_edges(const WallField &field, const BrickSet &bricks, uint32_t brick, int count, WallWork &w,
                 uint64_t *marks) {
   const SurfaceParameters &p = field.f.parameters;
   for (int round = 0; count > 0 && round < kMostWallSteps; ++round) {
     for (int q = 0; q < count; ++q) {
-      Walk &walk = w.walks[q];
-      walk.at += kWallStep;
-      w.walked.set(q, w.ends.point(walk.edge.first) + wall_direction(walk.edge.step) * walk.at);
+      const Walk &walk = w.walks[q];
+      w.walked.set(q, w.ends.point(walk.edge.first) + wall_direction(walk.edge.step) * (walk.state.at + kWallStep));
     }
     find_all_probes(field, w.walked, 0, count);
     int left = 0;
     for (int q = 0; q < count; ++q) {
       Walk walk = w.walks[q];
-      if (w.walked.distance[q] > p.depth) {
-        const bool first = w.ends.distance[walk.edge.first] >= w.ends.distance[walk.edge.second];
-        mark_point(bricks, brick, point_of(w.place[first ? walk.edge.first : walk.edge.second]), marks);
+      const NearestProbe probe = w.walked.probe(q);
+      if (probe.distance > p.depth) {
+        const bool first = marks_first_end(w.ends.probe(walk.edge.first), w.ends.probe(walk.edge.second));
+        mark_wall(bricks, brick, point_of(w.place[first ? walk.edge.first : walk.edge.second]), marks);
         continue;
       }
-      walk.at += way_out(p, w.walked.center(q), w.walked.point(q), wall_direction(walk.edge.step));
-      if (walk.at < walk.end) w.walks[left++] = walk;
+      walk.state.at += kWallStep + way_out(p, probe, w.walked.point(q), wall_direction(walk.edge.step));
+      if (!walk.state.is_open()) w.walks[left++] = walk;
     }
     count = left;
   }
@@ -317,13 +305,9 @@ BrickNeeds mark_brick_walls(const FeatureView &f, const BrickSet &bricks, uint32
   int walks = 0;
   for (int q = 0; q < w.edge_count; ++q) {
     const Edge &edge = w.edges[q];
-    const Vec3<float> a = w.ends.point(edge.first), b = w.ends.point(edge.second);
-    const Vec3<float> probe_a = w.ends.center(edge.first), probe_b = w.ends.center(edge.second);
-    if (w.ends.distance[edge.second] > p.depth || probe_covers(p, probe_b, a)) continue;
-    const Vec3<float> towards = wall_direction(edge.step);
-    const Walk walk{edge, way_out(p, probe_a, a, towards),
-                    wall_step_length(edge.step) * h - way_out(p, probe_b, b, towards * -1.f)};
-    if (walk.at >= walk.end) continue;
+    const Walk walk{edge, begin_wall_walk(p, edge.step, w.ends.point(edge.first), w.ends.probe(edge.first),
+                                          w.ends.point(edge.second), w.ends.probe(edge.second))};
+    if (walk.state.is_open()) continue;
     w.walks[walks++] = walk;
     if (walks < kMostWalks) continue;
     walk_edges(field, bricks, brick, walks, w, marks);

@@ -93,8 +93,8 @@ QSES_FN bool find_wall_candidates(const LeafNeighborhood &n, uint64_t edges[kWal
   return left != 0;
 }
 
-// The nearest place where the probe's centre may be, as far as that matters: a point that is outside is so because of
-// it. distance: 0 outside all balls, kFarAway (or anything above depth) for a point in the solid.
+// The nearest place where the probe's centre may be, as far as that matters: a point is outside because of it.
+// distance: 0 outside all balls, kFarAway in the solid.
 struct NearestProbe {
   Vec3<float> center;
   float distance;
@@ -103,31 +103,65 @@ struct NearestProbe {
 template <class Candidates>
 QSES_FN NearestProbe nearest_probe(const FeatureView &f, const Candidates &candidates, const Vec3<float> &x) {
   if (candidates.atom_count() == 0) return {x, 0.f};
+  const float depth = f.parameters.depth;
   const DeepestAtom deepest = deepest_atom(f, candidates, x);
   if (deepest.depth <= f.parameters.least_depth()) return {x, 0.f};
-  if (deepest.depth > f.parameters.depth) return {x, kFarAway};
-  const BoundaryPoint y = nearest_boundary(f, candidates, x);
-  return {y.position, y.found ? y.distance : kFarAway};
+  if (deepest.depth > depth) return {x, kFarAway};
+  const Sphere ball = load(f.atoms.items + deepest.atom);
+  if (is_exposed(f, deepest.atom, x - Vec3<float>(ball.center), offset_length(ball, deepest.depth)))
+    return {boundary_on_atom(ball, deepest.depth, x, true).position, deepest.depth};
+  const NearestArc nearest = nearest_arc(f, candidates, x);
+  if (nearest.distance2 > depth * depth) return {x, kFarAway};
+  const BoundaryPoint y = boundary_on_arc(load(f.arcs + nearest.arc), x);
+  return {y.position, y.distance};
 }
 
 // Is the other end of an edge in the ball of the probe of this one? Then so is all of the edge.
-template <class T>
-QSES_FN auto probe_covers(const SurfaceParameters &p, const Vec3<T> &center, const Vec3<T> &x) -> decltype(x.x < x.y) {
-  return length_squared(x - center) < T(p.depth * p.depth);
+QSES_FN bool probe_covers(const SurfaceParameters &p, const NearestProbe &probe, const Vec3<float> &x) {
+  return probe.distance > p.depth || length_squared(x - probe.center) < p.depth * p.depth;
 }
 
-// How far from x, in a direction of length 1, the ball of a probe that covers x ends.
-template <class T>
-QSES_FN T way_out(const SurfaceParameters &p, const Vec3<T> &center, const Vec3<T> &x, const Vec3<T> &direction) {
-  const Vec3<T> from = x - center;
-  const T along = dot(from, direction), outside = length_squared(from) - T(p.depth * p.depth);
-  return square_root(maximum(T(0.f), along * along - outside)) - along;
+// How far from x, which it covers, in a direction of length 1, the ball of a probe ends.
+QSES_FN float way_out(const SurfaceParameters &p, const NearestProbe &probe, const Vec3<float> &x,
+                      const Vec3<float> &direction) {
+  const Vec3<float> from = x - probe.center;
+  const float along = dot(from, direction), outside = length_squared(from) - p.depth * p.depth;
+  return square_root(maximum(0.f, along * along - outside)) - along;
 }
 
-// So far behind the end of a ball the next point is looked at, in Å.
+// An edge on its way through balls of probes: how far from the first end it is open, and from where on to the second.
+// So far behind a ball the next point is looked at, in Å; an edge with more balls than so many is open.
 constexpr float kWallStep = 1e-3f;
-// An edge with more balls than this one behind the other is open.
 constexpr int kMostWallSteps = 12;
+struct WallWalk {
+  float at, end;
+  QSES_FN bool is_open() const { return !(at < end); }
+};
+
+// By the probes of both ends, of which that of the first does not cover the second.
+QSES_FN WallWalk begin_wall_walk(const SurfaceParameters &p, int step, const Vec3<float> &a, const NearestProbe &probe_a,
+                                 const Vec3<float> &b, const NearestProbe &probe_b) {
+  if (probe_covers(p, probe_b, a)) return {0.f, 0.f};
+  const Vec3<float> direction = wall_direction(step);
+  return {way_out(p, probe_a, a, direction),
+          wall_step_length(step) * p.spacing - way_out(p, probe_b, b, direction * -1.f)};
+}
+
+// Which end of a wall is marked: the deeper one; of two that are as deep but for rounding, the first.
+QSES_FN bool marks_first_end(const NearestProbe &probe_a, const NearestProbe &probe_b) {
+  return probe_a.distance >= probe_b.distance - 1e-4f;
+}
+
+// Marks a point, counted from the first one of a brick, in the words of its brick.
+QSES_FN void mark_wall(const BrickSet &bricks, uint32_t brick, const glm::ivec3 &p, uint64_t *marks) {
+  const glm::ivec3 away(p.x >> 3, p.y >> 3, p.z >> 3);
+  const int owner = (p.x | p.y | p.z) & ~7 ? bricks.find(bricks.lattice.brick_at(bricks.linear[brick]) + away)
+                                           : static_cast<int>(brick);
+  if (owner < 0) return;
+  const int x = p.x & 7, y = p.y & 7, z = p.z & 7;
+  atomic_or(marks + static_cast<size_t>(owner) * kLeavesPerBrick + leaf_of(x, y, z),
+            uint64_t(1) << leaf_bit(x & 3, y & 3, z & 3));
+}
 
 struct AddMarks {
   const uint64_t *marks;
