@@ -9,6 +9,7 @@
 #include "surface/methods/grid_surface.h"
 #include "surface/methods/size_check.h"
 #include "surface/methods/visible_mask.h"
+#include "surface/stages/atom_measures.h"
 #include "surface/stages/atoms.h"
 #include "surface/stages/measure.h"
 #include "surface/stages/pick_boxes.h"
@@ -40,6 +41,21 @@ inline SurfaceParameters parameters_of(const FrameInput &in) {
   return p;
 }
 
+// Where area and volume come from.
+inline qses_measured_by measured_by(const FrameInput &in) {
+  const qses_settings &s = in.settings;
+  if (!s.measure) return QSES_MEASURED_BY_NOTHING;
+  if (s.method == QSES_METHOD_GRID) return QSES_MEASURED_BY_TRIANGLES;
+  return parameters_of(in).is_of_balls() ? QSES_MEASURED_BY_ATOMS : QSES_MEASURED_BY_NORMALS;
+}
+
+// Whether there is something to be made at each level, or only numbers of the atoms.
+inline bool makes_mesh(const FrameInput &in) {
+  const qses_settings &s = in.settings;
+  return s.delivery != QSES_DELIVERY_NONE || s.components || s.component_ids || s.method == QSES_METHOD_GRID ||
+         !parameters_of(in).is_of_balls();
+}
+
 // Something the host has per atom, where the back end reads it.
 template <class Executor, class T>
 const T *bring(Executor &executor, const T *host, size_t n) {
@@ -47,6 +63,26 @@ const T *bring(Executor &executor, const T *host, size_t n) {
   Span<T> copy = executor.template allocate<T>(n);
   executor.upload(copy.data, host, n);
   return copy.data;
+}
+
+// Area and volume from the atoms, and what each of them has.
+template <class Work>
+void measure_by_atoms(Work &work, const SolventFeatures &features) {
+  auto &executor = work.executor;
+  using Executor = std::remove_reference_t<decltype(executor)>;
+  work.timer.begin("measure");
+  const size_t n = work.settings.atom_areas ? work.atoms.count : 0;
+  const auto mark = executor.arena().mark();
+  double *on_host = nullptr;
+  if (n > 0 && !Executor::kCounts) on_host = static_cast<double *>(work.area_memory->reserve(n * sizeof(double)));
+  double *const areas = Executor::kIsCuda && n > 0 ? executor.template allocate<double>(n).data : on_host;
+  work.atom_measures = measure_atoms(executor, work.atoms, features, areas);
+  if (Executor::kIsCuda && n > 0) {
+    executor.download(on_host, areas, n);
+    executor.wait();
+  }
+  executor.arena().rewind(mark);
+  work.atom_areas = {on_host, n};
 }
 
 // What all levels of a frame share. It fills in the work: atoms, features, appearance, and where they are.
@@ -59,7 +95,9 @@ void prepare_frame(Work &work, const FrameInput &in) {
   work.facts->atoms = set.count;
   work.parameters = parameters_of(in);
   work.shape = shape_of(in.settings, !look.colors.empty());
-  work.purpose = look.visible.empty() ? MeshPurpose::kDelivered : MeshPurpose::kWork;
+  work.makes_mesh = makes_mesh(in);
+  work.purpose =
+      look.visible.empty() && in.settings.delivery != QSES_DELIVERY_NONE ? MeshPurpose::kDelivered : MeshPurpose::kWork;
   work.lattice = center_lattice(set.bounds, frame_spacing(levels_of(in.settings)));
   work.low = to_centered(work.lattice, set.bounds.low);
   work.high = to_centered(work.lattice, set.bounds.high);
@@ -77,7 +115,11 @@ void prepare_frame(Work &work, const FrameInput &in) {
     return centered;
   });
   remove_contained_atoms(executor, work.atoms, work.parameters.max_radius);
-  if (in.settings.method == QSES_METHOD_EXACT) work.features = find_features(work);
+  if (in.settings.method != QSES_METHOD_EXACT) return;
+  const SolventFeatures features = list_features(work);
+  if (work.parameters.is_of_balls() && (in.settings.measure || in.settings.atom_areas))
+    measure_by_atoms(work, features);
+  if (work.makes_mesh) work.features = arrange_features(work, features);
 }
 
 // The work turns to the level with this spacing.
@@ -97,8 +139,8 @@ MeshMemoryView build_surface(Work &work) {
   const MeshCounts counts{mesh.vertices, mesh.triangles};
   if (work.settings.measure) {
     const Measures m = measure(executor, mesh.view, counts, mesh.unplaced, &work.report->unplaced_vertices);
-    work.report->area = m.area;
-    work.report->volume = m.volume;
+    work.report->area = work.report->triangle_area = m.area;
+    work.report->volume = work.report->triangle_volume = m.volume;
     mesh.bounds = m.bounds;
   } else {
     mesh.bounds = find_bounds(executor, mesh.view, counts, mesh.unplaced, &work.report->unplaced_vertices);
@@ -107,7 +149,8 @@ MeshMemoryView build_surface(Work &work) {
     work.timer.begin("components");
     mesh.components = work.components.find(executor, mesh, work.parameters.spacing);
   }
-  if (work.purpose == MeshPurpose::kDelivered || mesh.vertices == 0) return mesh;
+  if (work.purpose == MeshPurpose::kDelivered || work.settings.delivery == QSES_DELIVERY_NONE || mesh.vertices == 0)
+    return mesh;
   work.timer.begin("visible_mask");
   const Span<const qses_component> components = mesh.components;
   mesh = drop_hidden(work, mesh);
@@ -119,13 +162,21 @@ MeshMemoryView build_surface(Work &work) {
 // The mesh of the level, in memory of the arena and of the slots.
 template <class Work>
 MeshMemoryView build_level(Work &work) {
-  MeshMemoryView mesh = build_surface(work);
-  work.timer.begin("appearance");
-  complete_vertices(work, &mesh);
+  MeshMemoryView mesh{};
+  if (work.makes_mesh) mesh = build_surface(work);
+  if (work.settings.delivery != QSES_DELIVERY_NONE) {
+    work.timer.begin("appearance");
+    complete_vertices(work, &mesh);
+  }
   if (work.shape.boxes) {
     work.timer.begin("pick_boxes");
     fill_pick_boxes(work.executor, mesh.view, mesh.triangles);
   }
+  if (work.report->measured_by == QSES_MEASURED_BY_ATOMS) {
+    work.report->area = work.atom_measures.area;
+    work.report->volume = work.atom_measures.volume;
+  }
+  if (work.atom_areas.size > 0) mesh.atom_areas = work.atom_areas;
   return mesh;
 }
 

@@ -15,6 +15,7 @@ struct MeshShape {
 
 inline MeshShape shape_of(const qses_settings &s, bool has_colors) {
   MeshShape shape;
+  if (s.delivery == QSES_DELIVERY_NONE) return shape;  // nobody will look at it
   shape.layout = s.vertex_layout;
   shape.colors = has_colors;
   shape.texcoords = s.texcoords != 0;

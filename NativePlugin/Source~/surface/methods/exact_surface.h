@@ -25,16 +25,23 @@ void remove_contained_atoms(Executor &executor, const NeighborGridView &atoms, f
   executor.arena().rewind(mark);
 }
 
-// Features of the atoms, with the arcs in a grid of their own.
+// Caps and arcs of the atoms.
 template <class Work>
-FeatureView find_features(Work &work) {
-  auto &executor = work.executor;
-  using Executor = std::remove_reference_t<decltype(executor)>;
+SolventFeatures list_features(Work &work) {
+  using Executor = std::remove_reference_t<decltype(work.executor)>;
   work.timer.begin("solvent_features");
   SolventFeatures found;
-  Backend<Executor>::find_solvent_features(executor, work.atoms, work.parameters, work.plan, work.rooms, &found);
+  Backend<Executor>::find_solvent_features(work.executor, work.atoms, work.parameters, work.plan, work.rooms, &found);
   work.facts->caps = found.caps.size;
   work.facts->arcs = found.arcs.size;
+  return found;
+}
+
+// The arcs in a grid of their own.
+template <class Work>
+FeatureView arrange_features(Work &work, const SolventFeatures &found) {
+  auto &executor = work.executor;
+  work.timer.begin("solvent_features");
   FeatureView f{};
   f.atoms = work.atoms;
   f.cap_ranges = found.cap_ranges.data;
@@ -64,6 +71,11 @@ FeatureView find_features(Work &work) {
     }
   }
   return f;
+}
+
+template <class Work>
+FeatureView find_features(Work &work) {
+  return arrange_features(work, list_features(work));
 }
 
 // Bricks per slice: those that are asked for, or, by a plan with several slices, as many as fit into what is left. What

@@ -7,6 +7,7 @@
 #include "surface/mesh/mesh_memory.h"
 #include "surface/methods/progress.h"
 #include "surface/stages/appearance.h"
+#include "surface/stages/atom_measures.h"
 #include "surface/stages/components.h"
 #include "surface/stages/hot_stages.h"
 #include "surface/stages/packed_normals.h"
@@ -40,6 +41,10 @@ struct LevelWork {
   MeshShape shape{};
   MeshPurpose purpose = MeshPurpose::kDelivered;
   bool side_normals = false;  // whether a later stage asks for MeshView::second_normals
+  GrowingBuffer<HostMemory> *area_memory = nullptr;  // of the areas of atoms
+  bool makes_mesh = true;
+  AtomMeasures atom_measures{};     // where the surface is that of the balls, and measured
+  Span<const double> atom_areas{};  // in host memory; of all levels
 };
 
 // While a mesh is made it has the normals that later stages read, in memory that is given up with the level's: floats

@@ -21,6 +21,9 @@ struct SurfaceParameters {
   // A point that is no deeper than this in any ball is outside. Where a surface is looked for further inside, a point
   // on the boundary within rounding is outside only if a feature says so: else it would be a hole of its own.
   QSES_FN float least_depth() const { return depth > 0.f ? -kExposureTolerance : 0.f; }
+
+  // Whether the surface is the boundary of the balls itself: then its arcs and caps measure it (atom_measures.h).
+  QSES_FN bool is_of_balls() const { return depth == 0.f; }
 };
 
 // Output of the stage, in the memory of the back end. Arcs are ordered by atom (in grid order), then by cap, then by
@@ -29,8 +32,9 @@ struct SolventFeatures {
   Span<CapRange> cap_ranges;  // per atom, in grid order
   Span<Cap> caps;             // cosine with the exposure tolerance, largest cap first
   Span<Arc> arcs;
-  Span<uint8_t> exposed;   // CPU only: per atom 1 or 0, and 8 bytes more
-  uint32_t most_caps = 0;  // of an atom; GPU only
+  Span<ArcAtoms> arc_atoms;  // of each arc, if the surface is that of the balls; else none
+  Span<uint8_t> exposed;     // CPU only: per atom 1 or 0, and 8 bytes more
+  uint32_t most_caps = 0;    // of an atom; GPU only
 };
 
 // The features as the later stages see them: arcs sorted into a neighbour grid by their enclosing balls.
