@@ -12,6 +12,7 @@
 #include "surface/stages/atom_measures.h"
 #include "surface/stages/atoms.h"
 #include "surface/stages/measure.h"
+#include "surface/stages/owner_areas.h"
 #include "surface/stages/pick_boxes.h"
 
 namespace quickses {
@@ -49,6 +50,13 @@ inline qses_measured_by measured_by(const FrameInput &in) {
   return parameters_of(in).is_of_balls() ? QSES_MEASURED_BY_ATOMS : QSES_MEASURED_BY_NORMALS;
 }
 
+// Whether vertices where sheets of the surface meet keep the normals of both.
+inline bool needs_side_normals(const FrameInput &in) {
+  const qses_settings &s = in.settings;
+  const bool is_measured = s.components || s.component_ids || s.atom_areas || s.measure;
+  return s.method == QSES_METHOD_EXACT && (s.creases || s.hard_edges || is_measured);
+}
+
 // Whether there is something to be made at each level, or only numbers of the atoms.
 inline bool makes_mesh(const FrameInput &in) {
   const qses_settings &s = in.settings;
@@ -65,24 +73,36 @@ const T *bring(Executor &executor, const T *host, size_t n) {
   return copy.data;
 }
 
-// Area and volume from the atoms, and what each of them has.
-template <class Work>
-void measure_by_atoms(Work &work, const SolventFeatures &features) {
+// Areas of all atoms on the host, by whoever fills them in where the back end can.
+template <class Work, class Fill>
+Span<const double> bring_areas(Work &work, const Fill &fill) {
   auto &executor = work.executor;
   using Executor = std::remove_reference_t<decltype(executor)>;
-  work.timer.begin("measure");
-  const size_t n = work.settings.atom_areas ? work.atoms.count : 0;
+  const size_t n = work.atoms.count;
   const auto mark = executor.arena().mark();
   double *on_host = nullptr;
-  if (n > 0 && !Executor::kCounts) on_host = static_cast<double *>(work.area_memory->reserve(n * sizeof(double)));
-  double *const areas = Executor::kIsCuda && n > 0 ? executor.template allocate<double>(n).data : on_host;
-  work.atom_measures = measure_atoms(executor, work.atoms, features, areas);
-  if (Executor::kIsCuda && n > 0) {
+  if (!Executor::kCounts) on_host = static_cast<double *>(work.area_memory->reserve(n * sizeof(double)));
+  double *const areas = Executor::kIsCuda ? executor.template allocate<double>(n).data : on_host;
+  fill(areas);
+  if (Executor::kIsCuda) {
     executor.download(on_host, areas, n);
     executor.wait();
   }
   executor.arena().rewind(mark);
-  work.atom_areas = {on_host, n};
+  return {on_host, n};
+}
+
+// Area and volume from the atoms, and what each of them has.
+template <class Work>
+void measure_by_atoms(Work &work, const SolventFeatures &features) {
+  work.timer.begin("measure");
+  const auto measure_into = [&](double *areas) {
+    work.atom_measures = measure_atoms(work.executor, work.atoms, features, areas);
+  };
+  if (work.settings.atom_areas)
+    work.atom_areas = bring_areas(work, measure_into);
+  else
+    measure_into(nullptr);
 }
 
 // What all levels of a frame share. It fills in the work: atoms, features, appearance, and where they are.
@@ -101,8 +121,7 @@ void prepare_frame(Work &work, const FrameInput &in) {
   work.lattice = center_lattice(set.bounds, frame_spacing(levels_of(in.settings)));
   work.low = to_centered(work.lattice, set.bounds.low);
   work.high = to_centered(work.lattice, set.bounds.high);
-  work.side_normals =
-      in.settings.method == QSES_METHOD_EXACT && (in.settings.creases || in.settings.hard_edges || in.settings.measure);
+  work.side_normals = needs_side_normals(in);
   work.appearance = {bring(executor, look.visible.data(), look.visible.size()),
                      bring(executor, look.colors.data(), look.colors.size()),
                      bring(executor, look.texcoords.data(), look.texcoords.size())};
@@ -138,23 +157,33 @@ MeshMemoryView build_surface(Work &work) {
   work.timer.begin("measure");
   const MeshCounts counts{mesh.vertices, mesh.triangles};
   if (work.settings.measure) {
-    const Measures m = measure(executor, mesh.view, counts, mesh.unplaced, &work.report->unplaced_vertices);
-    work.report->area = work.report->triangle_area = m.area;
-    work.report->volume = work.report->triangle_volume = m.volume;
+    // Only the solvent-excluded surface is measured along its normals: of balls the atoms know better.
+    const bool bent = work.report->measured_by == QSES_MEASURED_BY_NORMALS;
+    const Measures m = measure(executor, mesh.view, counts, bent, mesh.unplaced, &work.report->unplaced_vertices);
+    work.report->area = m.sums.area;
+    work.report->volume = m.sums.volume;
+    work.report->triangle_area = m.sums.flat_area;
+    work.report->triangle_volume = m.sums.flat_volume;
     mesh.bounds = m.bounds;
   } else {
     mesh.bounds = find_bounds(executor, mesh.view, counts, mesh.unplaced, &work.report->unplaced_vertices);
   }
+  if (work.settings.atom_areas && !work.parameters.is_of_balls())
+    mesh.atom_areas = bring_areas(work, [&](double *areas) {
+      measure_owners(executor, mesh.view, mesh.triangles, work.parameters.spacing, true, work.atoms.count, areas);
+    });
   if (work.settings.components) {
     work.timer.begin("components");
-    mesh.components = work.components.find(executor, mesh, work.parameters.spacing);
+    const bool bent = work.settings.method == QSES_METHOD_EXACT;
+    mesh.components = work.components.find(executor, mesh, work.parameters.spacing, bent);
   }
   if (work.purpose == MeshPurpose::kDelivered || work.settings.delivery == QSES_DELIVERY_NONE || mesh.vertices == 0)
     return mesh;
   work.timer.begin("visible_mask");
-  const Span<const qses_component> components = mesh.components;
-  mesh = drop_hidden(work, mesh);
-  mesh.components = components;
+  const MeshMemoryView whole = mesh;
+  mesh = drop_hidden(work, whole);
+  mesh.components = whole.components;
+  mesh.atom_areas = whole.atom_areas;
   mesh.bounds = find_bounds(executor, mesh.view, MeshCounts{mesh.vertices, mesh.triangles});
   return mesh;
 }

@@ -40,7 +40,7 @@ struct LevelWork {
   AppearanceView appearance{};
   MeshShape shape{};
   MeshPurpose purpose = MeshPurpose::kDelivered;
-  bool side_normals = false;  // whether a later stage asks for MeshView::second_normals
+  bool side_normals = false;                         // whether a later stage asks for MeshView::second_normals
   GrowingBuffer<HostMemory> *area_memory = nullptr;  // of the areas of atoms
   bool makes_mesh = true;
   AtomMeasures atom_measures{};     // where the surface is that of the balls, and measured

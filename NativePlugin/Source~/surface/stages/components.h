@@ -116,6 +116,7 @@ struct SumComponents {
   size_t triangles;
   const uint32_t *labels, *number_of_root;
   double inverse_spacing, units;
+  bool bent;  // along the normals of the vertices
   ComponentSums *sums;
 
   template <class Team>
@@ -143,12 +144,10 @@ struct SumComponents {
   QSES_FN void add_triangle(const uint32_t *triangle, uint32_t root, ComponentSums *own) const {
     const float *const tip = mesh.position(root);
     const double origin[3] = {static_cast<double>(tip[0]), static_cast<double>(tip[1]), static_cast<double>(tip[2])};
-    const DoubleTriangle d = load_triangle(mesh, triangle, origin);
-    const double area = triangle_area(d) * inverse_spacing * inverse_spacing;
-    const double volume = triangle_volume(d) * inverse_spacing * inverse_spacing * inverse_spacing;
+    const TriangleSums t = measure_triangle(mesh, triangle, origin, bent);
     ++own->triangles;
-    add_to_sum(area, units, &own->area, &own->area_rest);
-    add_to_sum(mesh.reversed ? -volume : volume, units, &own->volume, &own->volume_rest);
+    add_to_sum(t.area * inverse_spacing * inverse_spacing, units, &own->area, &own->area_rest);
+    add_to_sum(t.volume * inverse_spacing * inverse_spacing * inverse_spacing, units, &own->volume, &own->volume_rest);
   }
 };
 
@@ -185,7 +184,7 @@ class ComponentMemory {
 // The components in the order of their first vertices; valid until the next call with the same memory. Waits.
 template <class Executor>
 Span<const qses_component> find_components(Executor &executor, const MeshView &mesh, const MeshCounts &counts,
-                                           float spacing, ComponentMemory &memory) {
+                                           float spacing, bool bent, ComponentMemory &memory) {
   if (counts.triangles == 0) return {};
   const auto mark = executor.arena().mark();
   const size_t n = counts.vertices;
@@ -201,7 +200,7 @@ Span<const qses_component> find_components(Executor &executor, const MeshView &m
   const double h = static_cast<double>(spacing), units = rest_units(counts.triangles);
   executor.template for_each_brick<ChunkSums>(
       (counts.triangles + SumComponents::kChunk - 1) / SumComponents::kChunk,
-      SumComponents{mesh, counts.triangles, labels.data, number_of_root.data, 1.0 / h, units, sums.data}, 1);
+      SumComponents{mesh, counts.triangles, labels.data, number_of_root.data, 1.0 / h, units, bent, sums.data}, 1);
   if (Executor::kIsCuda) executor.download(found.data, sums.data, count);
   executor.wait();
   executor.arena().rewind(mark);
@@ -218,11 +217,11 @@ class ComponentFinder {
   // threads: used only for meshes that left the device.
   explicit ComponentFinder(const WorkerThreads &threads) : on_host_(threads) {}
   template <class Executor>
-  Span<const qses_component> find(Executor &executor, const MeshMemoryView &mesh, float spacing) {
+  Span<const qses_component> find(Executor &executor, const MeshMemoryView &mesh, float spacing, bool bent) {
     const MeshCounts counts{mesh.vertices, mesh.triangles};
-    if (!mesh.in_pieces) return find_components(executor, mesh.view, counts, spacing, memory_);
+    if (!mesh.in_pieces) return find_components(executor, mesh.view, counts, spacing, bent, memory_);
     executor.wait();
-    return Executor::kCounts ? Span<const qses_component>{} : on_host_.find(mesh.view, counts, spacing, memory_);
+    return Executor::kCounts ? Span<const qses_component>{} : on_host_.find(mesh.view, counts, spacing, bent, memory_);
   }
   uint64_t bytes() const { return memory_.bytes() + on_host_.bytes(); }
 
