@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The whole order on one page: atoms -> neighbour grid -> solvent features, once for all levels; then for each level
-// bricks -> signs -> marching cubes -> projection -> relaxation (methods/), measures, components, visible atoms, boxes
+// bricks -> signs -> marching cubes -> projection -> relaxation (methods/), measures, components, what is shown, boxes
 // for picking. Run on a CountingExecutor, it tells what memory that takes.
 #pragma once
 
@@ -53,14 +53,14 @@ inline qses_measured_by measured_by(const FrameInput &in) {
 // Whether vertices where sheets of the surface meet keep the normals of both.
 inline bool needs_side_normals(const FrameInput &in) {
   const qses_settings &s = in.settings;
-  const bool is_measured = s.components || s.component_ids || s.atom_areas || s.measure;
+  const bool is_measured = wants_components(s) || s.atom_areas || s.measure;
   return s.method == QSES_METHOD_EXACT && (s.creases || s.hard_edges || is_measured);
 }
 
 // Whether there is something to be made at each level, or only numbers of the atoms.
 inline bool makes_mesh(const FrameInput &in) {
   const qses_settings &s = in.settings;
-  return s.delivery != QSES_DELIVERY_NONE || s.components || s.component_ids || s.method == QSES_METHOD_GRID ||
+  return s.delivery != QSES_DELIVERY_NONE || wants_components(s) || s.method == QSES_METHOD_GRID ||
          !parameters_of(in).is_of_balls();
 }
 
@@ -116,8 +116,11 @@ void prepare_frame(Work &work, const FrameInput &in) {
   work.parameters = parameters_of(in);
   work.shape = shape_of(in.settings, !look.colors.empty());
   work.makes_mesh = makes_mesh(in);
-  work.purpose =
-      look.visible.empty() && in.settings.delivery != QSES_DELIVERY_NONE ? MeshPurpose::kDelivered : MeshPurpose::kWork;
+  const bool has_all = look.visible.empty() && !in.settings.outer_only;
+  const bool is_delivered = in.settings.delivery != QSES_DELIVERY_NONE;
+  work.purpose = has_all && is_delivered ? MeshPurpose::kDelivered : MeshPurpose::kWork;
+  work.made_shape = work.shape;
+  work.made_shape.component_ids |= in.settings.outer_only && is_delivered;
   work.lattice = center_lattice(set.bounds, frame_spacing(levels_of(in.settings)));
   work.low = to_centered(work.lattice, set.bounds.low);
   work.high = to_centered(work.lattice, set.bounds.high);
@@ -149,7 +152,7 @@ void enter_level(Work &work, float spacing) {
   work.lattice = layout_lattice(work.lattice, work.low, work.high, work.parameters.max_radius);
 }
 
-// The mesh of all atoms, measured, and of those that are visible.
+// The mesh of all atoms, measured, and what is shown of it.
 template <class Work>
 MeshMemoryView build_surface(Work &work) {
   auto &executor = work.executor;
@@ -172,7 +175,7 @@ MeshMemoryView build_surface(Work &work) {
     mesh.atom_areas = bring_areas(work, [&](double *areas) {
       measure_owners(executor, mesh.view, mesh.triangles, work.parameters.spacing, true, work.atoms.count, areas);
     });
-  if (work.settings.components) {
+  if (wants_components(work.settings)) {
     work.timer.begin("components");
     const bool bent = work.settings.method == QSES_METHOD_EXACT;
     mesh.components = work.components.find(executor, mesh, work.parameters.spacing, bent);
@@ -181,7 +184,12 @@ MeshMemoryView build_surface(Work &work) {
     return mesh;
   work.timer.begin("visible_mask");
   const MeshMemoryView whole = mesh;
-  mesh = drop_hidden(work, whole);
+  ShownParts shown{work.appearance.visible, nullptr};
+  if (work.settings.outer_only) {
+    const Span<const uint8_t> outer = work.components.outer(whole.components);
+    shown.components = bring(executor, outer.data, outer.size);
+  }
+  mesh = drop_hidden(work, whole, shown);
   mesh.components = whole.components;
   mesh.atom_areas = whole.atom_areas;
   mesh.bounds = find_bounds(executor, mesh.view, MeshCounts{mesh.vertices, mesh.triangles});

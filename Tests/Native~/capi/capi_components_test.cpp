@@ -34,6 +34,11 @@ void expect_same(const std::vector<qses_component> &a, const std::vector<qses_co
     EXPECT_EQ(a[k].area, b[k].area) << k;
     EXPECT_EQ(a[k].volume, b[k].volume) << k;
     EXPECT_EQ(a[k].is_cavity, b[k].is_cavity) << k;
+    for (int d = 0; d < 3; ++d) {
+      EXPECT_EQ(a[k].center[d], b[k].center[d]) << k;
+      EXPECT_EQ(a[k].bounds_min[d], b[k].bounds_min[d]) << k;
+      EXPECT_EQ(a[k].bounds_max[d], b[k].bounds_max[d]) << k;
+    }
   }
 }
 

@@ -72,6 +72,7 @@ inline void describe_mesh(const MeshMemoryView &built, const MeshView *arrays, c
   mesh->owners = arrays->owners;
   mesh->patches = arrays->patches;
   mesh->indices = arrays->indices;
+  mesh->component_ids = arrays->component_ids;
 }
 
 // The host memory of the meshes in the slots, as the pool gives it.

@@ -27,7 +27,8 @@ struct MeshView {
   bool packed_normals = false;  // behind each position is the normal in four bytes (stages/packed_normals.h)
   uint32_t first_vertex = 0;    // what the arrays begin with
   uint32_t first_triangle = 0;
-  PickBoxes boxes{};  // of whole meshes only
+  PickBoxes boxes{};                  // of whole meshes only
+  uint32_t *component_ids = nullptr;  // of whole meshes only, or nullptr
 
   QSES_FN size_t place(uint32_t vertex) const { return vertex - first_vertex; }
   QSES_FN float *position(uint32_t vertex) const { return attribute(positions, vertex_bytes, vertex); }
@@ -38,6 +39,7 @@ struct MeshView {
   QSES_FN float *texcoord(uint32_t vertex) const { return texcoords + 2 * place(vertex); }
   QSES_FN uint32_t &owner(uint32_t vertex) const { return owners[place(vertex)]; }
   QSES_FN uint8_t &patch(uint32_t vertex) const { return patches[place(vertex)]; }
+  QSES_FN uint32_t &component_id(uint32_t vertex) const { return component_ids[place(vertex)]; }
   QSES_FN uint32_t *triangle(size_t number) const { return indices + 3 * (number - first_triangle); }
 
  private:

@@ -109,7 +109,7 @@ template <class Work, class Executor>
 MeshPart open_part(const Work &work, Executor &executor, const BrickSet &bricks, const MeshLayout &layout,
                    BrickRange slice) {
   MeshShape shape = work.shape;
-  shape.boxes = shape.colors = shape.texcoords = false;
+  shape.boxes = shape.colors = shape.texcoords = shape.component_ids = false;
   const SliceSizes sizes = slice_sizes(executor, bricks, layout, slice.first, slice.last);
   MeshPart part{{}, sizes.vertices, sizes.triangles};
   const MeshArrays arrays(part.vertices, part.triangles, shape);
@@ -151,8 +151,8 @@ MeshMemoryView build_exact_surface(Work &work) {
     });
   });
 
-  MeshMemoryView mesh = work.memory.allocate_mesh(executor, counts.vertices, counts.triangles, work.shape, work.purpose,
-                                                  work.plan.mesh_in_pieces);
+  MeshMemoryView mesh = work.memory.allocate_mesh(executor, counts.vertices, counts.triangles, work.made_shape,
+                                                  work.purpose, work.plan.mesh_in_pieces);
   add_normals(work, &mesh);
   const auto end_of_mesh = executor.arena().mark();
   VertexStarts starts{work.settings.relaxation_steps > 0, nullptr, work.table.ring, &layout.totals->unplaced};

@@ -38,7 +38,8 @@ struct LevelWork {
   NeighborGridView atoms{};
   FeatureView features{};  // exact method only
   AppearanceView appearance{};
-  MeshShape shape{};
+  MeshShape shape{};       // of what is handed out
+  MeshShape made_shape{};  // of the whole mesh, before anything is left out of it
   MeshPurpose purpose = MeshPurpose::kDelivered;
   bool side_normals = false;                         // whether a later stage asks for MeshView::second_normals
   GrowingBuffer<HostMemory> *area_memory = nullptr;  // of the areas of atoms
