@@ -54,8 +54,9 @@ void expect_to_add_up(const std::vector<qses_component> &components, const qses_
     volume += c.volume;
   }
   EXPECT_EQ(triangles, uint64_t(mesh.triangle_count) + report.hidden_triangles);
-  EXPECT_NEAR(area, report.area, 1e-11 * report.area);
-  EXPECT_NEAR(volume, report.volume, 1e-11 * report.area * 100);  // of tetrahedra that are larger than the molecule
+  EXPECT_NEAR(area, report.triangle_area, 1e-11 * report.triangle_area);
+  EXPECT_NEAR(volume, report.triangle_volume,
+              1e-11 * report.triangle_area * 100);  // of tetrahedra that are larger than the molecule
 }
 
 // Atoms all over a sphere.

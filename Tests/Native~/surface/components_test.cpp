@@ -15,10 +15,18 @@ namespace {
 using namespace quickses;
 using mesh_checks::Mesh;
 
+MeshView view_of(Mesh &m, bool reversed = false) {
+  MeshView view;
+  view.positions = m.positions.data();
+  view.indices = m.indices.data();
+  view.reversed = reversed;
+  return view;
+}
+
 std::vector<qses_component> components_of(Mesh &m, unsigned threads = 2, bool reversed = false, float spacing = 0.5f) {
   CpuExecutor executor(threads);
   ComponentMemory memory;
-  const MeshView view = {m.positions.data(), nullptr, nullptr, nullptr, m.indices.data(), reversed};
+  const MeshView view = view_of(m, reversed);
   const auto found = find_components(executor, view, MeshCounts{m.vertex_count(), m.triangle_count()}, spacing, memory);
   return {found.begin(), found.end()};
 }
@@ -145,7 +153,7 @@ TEST(Components, LabelIsTheSmallestVertex) {
   mesh_shapes::append(m, mesh_shapes::cube());
   CpuExecutor executor(2);
   std::vector<uint32_t> labels(m.vertex_count(), 99);
-  const MeshView view = {m.positions.data(), nullptr, nullptr, nullptr, m.indices.data(), false};
+  const MeshView view = view_of(m);
   label_components(executor, view, MeshCounts{m.vertex_count(), m.triangle_count()}, labels.data());
   for (size_t v = 0; v < labels.size(); ++v) EXPECT_EQ(labels[v], v < 6 ? 0u : 6u);
 }
