@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // quickses cavities INPUT: a table of the cavities of a surface, the largest first.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -25,6 +26,9 @@ struct Cavity {
   std::vector<uint32_t> atoms;  // of the structure, that line it
 };
 
+// What a cavity holds, Å³.
+double volume_of(const Cavity &cavity) { return std::fabs(cavity.component.volume); }
+
 std::vector<Cavity> find_cavities(const Engine &engine, const qses_mesh &mesh) {
   std::vector<uint32_t> starts, atoms;
   engine.find_component_atoms(mesh, &starts, &atoms);
@@ -33,7 +37,7 @@ std::vector<Cavity> find_cavities(const Engine &engine, const qses_mesh &mesh) {
     if (mesh.components[k].is_cavity)
       cavities.push_back({k, mesh.components[k], {atoms.begin() + starts[k], atoms.begin() + starts[k + 1]}});
   std::stable_sort(cavities.begin(), cavities.end(),
-                   [](const Cavity &a, const Cavity &b) { return a.component.volume < b.component.volume; });
+                   [](const Cavity &a, const Cavity &b) { return volume_of(a) > volume_of(b); });
   return cavities;
 }
 
@@ -62,13 +66,12 @@ std::string lining_names(const Cavity &cavity, const io::Structure &structure, c
   return names;
 }
 
-// Volumes of cavities are told as what they hold.
 std::string csv_table(const std::vector<Cavity> &cavities, const io::Structure &structure,
                       const std::vector<uint32_t> &residues) {
   std::string table = "component,volume_A3,area_A2,center_x_A,center_y_A,center_z_A,lining_atoms,lining_residues\n";
   for (const Cavity &cavity : cavities) {
     const qses_component &c = cavity.component;
-    table += std::to_string(cavity.id) + "," + csv_number(-c.volume, 4) + "," + csv_number(c.area, 4);
+    table += std::to_string(cavity.id) + "," + csv_number(volume_of(cavity), 4) + "," + csv_number(c.area, 4);
     for (const float x : c.center) table += "," + csv_number(static_cast<double>(x), 3);
     table +=
         "," + std::to_string(cavity.atoms.size()) + "," + csv_field(lining_names(cavity, structure, residues)) + "\n";
@@ -83,7 +86,7 @@ Json cavities_json(const std::vector<Cavity> &cavities, const io::Structure &str
     Json entry = {{"component", cavity.id}};
     entry.update(component_json(cavity.component));
     entry.erase("cavity");
-    entry["volume"] = -cavity.component.volume;
+    entry["volume"] = volume_of(cavity);
     Json atoms = Json::array(), lining = Json::array();
     for (const uint32_t atom : cavity.atoms) atoms.push_back(structure.atoms[atom].file_index);
     for (const uint32_t first : lining_residues(cavity, residues)) {
@@ -104,7 +107,7 @@ Json cavities_json(const std::vector<Cavity> &cavities, const io::Structure &str
 void print_cavities(const Options &options, const std::vector<Cavity> &cavities, const io::Structure &structure,
                     const std::vector<uint32_t> &residues) {
   double volume = 0;
-  for (const Cavity &cavity : cavities) volume -= cavity.component.volume;
+  for (const Cavity &cavity : cavities) volume += volume_of(cavity);
   char surface[96];
   std::snprintf(surface, sizeof surface, "%s surface, probe %g Å, spacing %g Å", name_of(options.compute.surface),
                 options.compute.probe, options.compute.spacing);
@@ -117,7 +120,7 @@ void print_cavities(const Options &options, const std::vector<Cavity> &cavities,
   std::printf("component  volume Å³    area Å²   centre x, y, z Å             lining residues\n");
   for (const Cavity &cavity : cavities) {
     const qses_component &c = cavity.component;
-    std::printf("%9u %10.2f %10.2f  %9.2f %9.2f %9.2f  %s\n", cavity.id, -c.volume, c.area,
+    std::printf("%9u %10.2f %10.2f  %9.2f %9.2f %9.2f  %s\n", cavity.id, volume_of(cavity), c.area,
                 static_cast<double>(c.center[0]), static_cast<double>(c.center[1]), static_cast<double>(c.center[2]),
                 lining_names(cavity, structure, residues).c_str());
   }

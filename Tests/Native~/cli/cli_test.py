@@ -385,8 +385,15 @@ class Report(ProgramTest):
         for axis in range(3):
             for side, extreme in ((0, min), (1, max)):
                 self.assertAlmostEqual(mesh["bounds"][side][axis], extreme(v[axis] for v in vertices), delta=1e-4)
-        self.assertAlmostEqual(report["area"], area_of(vertices, faces), delta=1e-4 * report["area"])
-        self.assertAlmostEqual(report["volume"], volume_of(vertices, faces), delta=1e-4 * report["volume"])
+        self.assertAlmostEqual(report["triangle_area"], area_of(vertices, faces), delta=1e-4 * report["area"])
+        self.assertAlmostEqual(report["triangle_volume"], volume_of(vertices, faces), delta=1e-4 * report["volume"])
+        self.assertEqual(report["measured_by"], "normals")
+        self.assertAlmostEqual(report["area"], CRAMBIN_AREA, delta=1e-3 * CRAMBIN_AREA)
+        self.assertAlmostEqual(report["volume"], CRAMBIN_VOLUME, delta=5e-4 * CRAMBIN_VOLUME)
+        for surface, by in (("sas", "atoms"), ("vdw", "atoms")):
+            self.assertEqual(self.report_of(CRAMBIN, "--surface", surface)["measured_by"], by)
+        grid = self.report_of(CRAMBIN, "--method", "grid")
+        self.assertEqual((grid["measured_by"], grid["area"]), ("triangles", grid["triangle_area"]))
         for key in ("read", "compute", "write"):
             self.assertGreater(report["time_ms"][key], 0)
         self.assertTrue(report["time_ms"]["stages"])
@@ -400,6 +407,10 @@ class Report(ProgramTest):
         self.assertEqual(sum(piece["triangles"] for piece in pieces), report["mesh"]["triangles"])
         self.assertAlmostEqual(sum(piece["area"] for piece in pieces), report["area"], delta=1e-4 * report["area"])
         self.assertAlmostEqual(sum(piece["volume"] for piece in pieces), report["volume"], delta=1e-4 * report["volume"])
+        for piece in pieces:
+            for axis in range(3):
+                self.assertLessEqual(piece["bounds"][0][axis], piece["center"][axis])
+                self.assertLessEqual(piece["center"][axis], piece["bounds"][1][axis])
 
     def test_a_sphere_a_cavity_and_their_signs(self):
         self.write("one.xyzr", "0 0 0 2\n")

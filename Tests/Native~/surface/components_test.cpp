@@ -27,7 +27,8 @@ std::vector<qses_component> components_of(Mesh &m, unsigned threads = 2, bool re
   CpuExecutor executor(threads);
   ComponentMemory memory;
   const MeshView view = view_of(m, reversed);
-  const auto found = find_components(executor, view, MeshCounts{m.vertex_count(), m.triangle_count()}, spacing, memory);
+  const auto found =
+      find_components(executor, view, MeshCounts{m.vertex_count(), m.triangle_count()}, spacing, false, memory);
   return {found.begin(), found.end()};
 }
 

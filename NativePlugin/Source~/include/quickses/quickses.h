@@ -393,8 +393,9 @@ static inline void qses_settings_init(qses_settings *settings) {
 typedef struct qses_component {
   uint64_t triangles;
   double area;         /* Å², through the normals as qses_report.area of the SES */
-  double volume;       /* Å³, enclosed; negative for a cavity, whatever the winding */
-  qses_bool is_cavity; /* whether volume is negative */
+  double volume;       /* Å³, enclosed, through the normals as well; negative for a cavity, whatever the winding */
+  qses_bool is_cavity; /* whether its triangles enclose a negative volume; only of specks that enclose next to nothing
+                          may `volume` say otherwise */
   float center[3];     /* Å, centre of the volume that its triangles enclose; of its box if that is next to nothing */
   float bounds_min[3]; /* box of its vertices, Å */
   float bounds_max[3];

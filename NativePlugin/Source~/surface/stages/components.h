@@ -97,8 +97,8 @@ struct ComponentSums {
   uint64_t triangles;
   ExactSum area, volume;
   ExactSum flat_volume, moment[3];  // of the triangles as they are
-  uint32_t most[6];                  // greatest x, y, z and -x, -y, -z, as ordered bits
-  float first[3];                    // the first vertex
+  uint32_t most[6];                 // greatest x, y, z and -x, -y, -z, as ordered bits
+  float first[3];                   // the first vertex
 };
 
 // Rests are multiples of 1 / this.
@@ -212,7 +212,7 @@ inline qses_component describe_component(const ComponentSums &s, double units, d
   c.triangles = s.triangles;
   c.area = s.area.value(units) * spacing * spacing;
   c.volume = s.volume.value(units) * spacing * spacing * spacing;
-  c.is_cavity = c.volume < 0 ? 1 : 0;
+  c.is_cavity = s.flat_volume.value(units) < 0 ? 1 : 0;  // what bounds a hollow in the mesh, however small
   bool is_within = true;
   double center[3];
   for (int d = 0; d < 3; ++d) {
