@@ -358,8 +358,14 @@ class Output(ProgramTest):
         text = self.run_program("--help").stdout
         for part in ("-i,", "-o,", "-v,", "-l,", "-s,", "--probe", "--surface", "--method", "--backend", "--device",
                      "--threads", "--memory", "--radii", "--no-water", "--no-hetero", "--no-hydrogen", "--select",
-                     "--model", "--max-input", "--json", "--quiet", "--version", "bench", "Exit codes"):
+                     "--model", "--max-input", "--json", "--quiet", "--version", "bench", "Exit codes", "measure", "cavities",
+                     "--outer", "--component-ids", "--per-atom", "--per-residue"):
             self.assertIn(part, text)
+        for command, parts in (("measure", ["--surface", "--per-atom", "--per-residue", "--trajectory", "--csv"]),
+                               ("cavities", ["--csv", "--method", "--select"]), ("bench", ["--repeat"])):
+            text = self.run_program(command, "--help").stdout
+            for part in parts + ["INPUT" if command != "bench" else "FILE", "Exit codes"]:
+                self.assertIn(part, text)
         self.assertRegex(self.run_program("--version").stdout, r"^quickses \d+\.\d+\.\d+\S*\n$")
 
 

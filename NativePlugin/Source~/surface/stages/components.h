@@ -188,11 +188,12 @@ struct SumComponents {
     const double origin[3] = {static_cast<double>(tip[0]), static_cast<double>(tip[1]), static_cast<double>(tip[2])};
     const TriangleSums t = measure_triangle(mesh, triangle, origin, bent);
     const double per_area = inverse_spacing * inverse_spacing, per_volume = per_area * inverse_spacing;
-    const double flat_volume = t.flat_volume * per_volume;
+    // Rounded before their whole parts are taken off.
+    const double flat_volume = rounded_product(t.flat_volume, per_volume);
     ComponentSums &own_sums = own->sums;
     ++own_sums.triangles;
-    own_sums.area.add(t.area * per_area, units);
-    own_sums.volume.add(t.volume * per_volume, units);
+    own_sums.area.add(rounded_product(t.area, per_area), units);
+    own_sums.volume.add(rounded_product(t.volume, per_volume), units);
     own_sums.flat_volume.add(flat_volume, units);
     for (int k = 0; k < 3; ++k) {
       double sum = -3.0 * origin[k];
@@ -202,7 +203,7 @@ struct SumComponents {
         own->box.low[k] = x < own->box.low[k] ? x : own->box.low[k];
         own->box.high[k] = own->box.high[k] < x ? x : own->box.high[k];
       }
-      own_sums.moment[k].add(flat_volume * (0.25 * inverse_spacing * sum), units);
+      own_sums.moment[k].add(rounded_product(flat_volume, 0.25 * inverse_spacing * sum), units);
     }
   }
 };
