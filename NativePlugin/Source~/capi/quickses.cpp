@@ -55,6 +55,7 @@ void check_settings(const qses_settings &s) {
     invalid("settings.method GRID makes the solvent-excluded surface only: use EXACT for the others");
   if (s.method == QSES_METHOD_GRID && s.patch_types) invalid("settings.patch_types is not available with method GRID");
   if (s.method == QSES_METHOD_GRID && s.creases) invalid("settings.creases is not available with method GRID");
+  if (s.method == QSES_METHOD_GRID && s.atom_areas) invalid("settings.atom_areas is not available with method GRID");
 }
 
 void check_backend(const qses_backend &backend) { check_choice("backend", backend, QSES_BACKEND_CPU); }
@@ -93,7 +94,8 @@ qses_mesh held_mesh(const qses_context &context) {
 quickses::SurfaceRequest make_request(const qses_context &context, const qses_settings &settings, bool ladder,
                                       const char *function) {
   check_settings(settings);
-  if (settings.delivery != QSES_DELIVERY_HOST && context.backend != QSES_BACKEND_CUDA)
+  const bool on_device = settings.delivery == QSES_DELIVERY_DEVICE || settings.delivery == QSES_DELIVERY_BOTH;
+  if (on_device && context.backend != QSES_BACKEND_CUDA)
     invalid("settings.delivery asks for a mesh on the device, but this context computes on the CPU");
   quickses::require_atoms(context, function);
   quickses::SurfaceRequest request;
@@ -302,7 +304,7 @@ qses_status qses_collect_device(qses_context *context, qses_device_mesh *mesh) {
     qses_device_mesh held;
     if (!context->job->held_on_device(&held)) throw quickses::Error(QSES_NO_RESULT, kNothingComputed);
     if (held.mesh.vertex_count > 0 && !held.mesh.positions)
-      invalid("the mesh was made with settings.delivery HOST: it is not on the device");
+      invalid("the mesh was made with another settings.delivery than DEVICE or BOTH: it is not on the device");
     write_struct(mesh, held, "qses_device_mesh");
   });
 }

@@ -75,20 +75,6 @@ io::ReadOptions read_options_of(const qses_structure_options &options) {
   return read;
 }
 
-bool are_of_one_residue(const io::AtomInfo &a, const io::AtomInfo &b) {
-  return a.residue_number == b.residue_number && a.insertion_code == b.insertion_code &&
-         a.residue_name == b.residue_name && a.chain == b.chain;
-}
-
-std::vector<uint32_t> residues_of(const io::Structure &model) {
-  std::vector<uint32_t> residues(model.atoms.size());
-  for (size_t k = 1; k < residues.size(); ++k) {
-    const bool is_same = model.has_names && are_of_one_residue(model.atoms[k - 1], model.atoms[k]);
-    residues[k] = residues[k - 1] + (is_same ? 0 : 1);
-  }
-  return residues;
-}
-
 using Read = std::function<io::StructureFile(std::optional<io::StructureFormat>, const io::ReadOptions &)>;
 
 void open_structure(const Read &read, const qses_structure_options *options, qses_structure **structure) {
@@ -98,7 +84,7 @@ void open_structure(const Read &read, const qses_structure_options *options, qse
   opened->file = read(format_of(o.format), read_options);
   io::assign_radii(opened->file, o.radii ? o.radii : "");
   for (const io::AtomInfo &atom : opened->model().atoms) opened->file_indices.push_back(atom.file_index);
-  opened->residues = residues_of(opened->model());
+  opened->residues = io::residues_of(opened->model());
   opened->memory = sizeof *opened - sizeof opened->file + io::memory_of(opened->file) +
                    (opened->file_indices.capacity() + opened->residues.capacity()) * sizeof(uint32_t);
   *structure = opened.release();

@@ -14,17 +14,13 @@ namespace {
 
 constexpr size_t kSmallSurfaces = 100;
 
-// First atom of each residue, and the number of atoms. Files without residues: every atom by itself.
+// First atom of each residue, and the number of atoms.
 std::vector<size_t> find_residues(const io::Structure &structure) {
+  const std::vector<uint32_t> residues = io::residues_of(structure);
   std::vector<size_t> starts;
-  for (size_t i = 0; i < structure.atoms.size(); ++i) {
-    const io::AtomInfo &atom = structure.atoms[i], &before = structure.atoms[i > 0 ? i - 1 : 0];
-    if (i == 0 || atom.residue_name.empty() || atom.residue_number != before.residue_number ||
-        atom.insertion_code != before.insertion_code || atom.chain != before.chain ||
-        atom.residue_name != before.residue_name)
-      starts.push_back(i);
-  }
-  starts.push_back(structure.atoms.size());
+  for (size_t i = 0; i < residues.size(); ++i)
+    if (i == 0 || residues[i] != residues[i - 1]) starts.push_back(i);
+  starts.push_back(residues.size());
   return starts;
 }
 

@@ -63,6 +63,14 @@ qses_report Engine::report() const {
   return report;
 }
 
+void Engine::find_component_atoms(const qses_mesh &mesh, std::vector<uint32_t> *starts,
+                                  std::vector<uint32_t> *atoms) const {
+  starts->resize(size_t(mesh.component_count) + 1);
+  check(qses_component_atoms(&mesh, starts->data(), nullptr, 0));
+  atoms->resize(starts->back());
+  if (!atoms->empty()) check(qses_component_atoms(&mesh, starts->data(), atoms->data(), atoms->size()));
+}
+
 std::optional<qses_size_estimate> Engine::estimate(const qses_settings &settings) {
   qses_size_estimate estimate;
   qses_size_estimate_init(&estimate);
@@ -79,7 +87,17 @@ qses_settings settings_of(const ComputeOptions &options) {
   settings.spacing = static_cast<float>(options.spacing);
   settings.relaxation_steps = options.steps;
   settings.slice_size = options.slice;
-  settings.creases = options.creases == Creases::kOn;
+  settings.creases = options.creases == Switch::kOn;
+  return settings;
+}
+
+qses_settings mesh_settings_of(const Options &options) {
+  qses_settings settings = settings_of(options.compute);
+  settings.components = !options.csv.empty() || !options.json.empty();
+  settings.component_ids = options.component_ids;
+  settings.outer_only = options.outer;
+  settings.hard_edges = has_hard_edges(options);
+  settings.atom_areas = options.wants_areas();
   return settings;
 }
 

@@ -29,6 +29,8 @@ class Engine {
   void set_frame(const float *xyz, size_t position_count, const std::vector<uint32_t> &indices);
   qses_mesh compute(const qses_settings &settings);
   qses_report report() const;
+  // The atoms of component k of a mesh are those from (*starts)[k] to (*starts)[k + 1].
+  void find_component_atoms(const qses_mesh &mesh, std::vector<uint32_t> *starts, std::vector<uint32_t> *atoms) const;
   // What computing will take; nothing if it is going to fail.
   std::optional<qses_size_estimate> estimate(const qses_settings &settings);
 
@@ -39,6 +41,8 @@ class Engine {
 };
 
 qses_settings settings_of(const ComputeOptions &options);
+// Of the mesh that the options ask for, and of what is told about it.
+qses_settings mesh_settings_of(const Options &options);
 
 // The structures of a file with their radii. Warnings go to standard error unless quiet.
 io::StructureFile load(const std::string &path, const io::ReadOptions &read, const ComputeOptions &options, bool quiet);

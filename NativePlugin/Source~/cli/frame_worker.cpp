@@ -2,29 +2,20 @@
 // The surface of one frame after the other, with a context of its own.
 #include "cli/frame_worker.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "cli/clock.h"
+#include "cli/csv.h"
 #include "cli/exit_code.h"
+#include "cli/measuring.h"
 #include "cli/mesh_output.h"
 #include "cli/report.h"
 #include "io/radii.h"
 
 namespace quickses::cli {
 
-const char kCsvHeader[] = "frame,area,volume,components,cavities,cavity_volume,time_ps,error\n";
-
 namespace {
-
-// A text as one field of a CSV file.
-std::string csv_field(const std::string &text) {
-  std::string field = "\"";
-  for (char c : text) {
-    if (c == '"') field += '"';
-    field += c == '\n' || c == '\r' ? ' ' : c;
-  }
-  return field + '"';
-}
 
 std::string csv_row(uint64_t frame, std::optional<double> time, const qses_report &report, const qses_mesh &mesh) {
   uint32_t cavities = 0;
@@ -58,12 +49,18 @@ io::Unwrapper make_unwrapper(const io::Structure &structure, const io::Trajector
 
 }  // namespace
 
+std::string csv_header(const Options &options) {
+  if (options.command == Options::Command::kMeasure) return measurement_csv_header(options.measured);
+  return "frame,area,volume,components,cavities,cavity_volume,time_ps,error\n";
+}
+
 FrameInputs::FrameInputs(const Options &given, bool quiet)
     : options(given),
       file(load(options.input, options.read, options.compute, quiet)),
       trajectory(io::Trajectory::open(options.trajectory)) {
   if (io::has_own_radii(file.format)) options.compute.radii = "file";
   check_atom_counts(options, structure(), trajectory);
+  check_has_residues(options, structure());
   for (const io::AtomInfo &atom : structure().atoms) file_indices.push_back(atom.file_index);
   if (!options.output.empty()) pattern.emplace(options.output);
   if (!quiet)
@@ -82,9 +79,7 @@ FrameWorker::FrameWorker(const FrameInputs &inputs, const ComputeOptions &comput
       engine_(compute),
       shared_by_(shared_by),
       xyz_(3 * inputs.trajectory.atom_count()),
-      settings_(settings_of(compute)) {
-  settings_.components = !inputs.options.csv.empty() || !inputs.options.json.empty();
-  settings_.hard_edges = has_hard_edges(inputs.options);
+      settings_(mesh_settings_of(inputs.options)) {
   engine_.set_atoms(inputs.structure(), inputs.options.input);
   if (!inputs.options.json.empty()) qses_set_stage_times(engine_.context(), 1);
 }
@@ -98,7 +93,10 @@ FrameResult FrameWorker::run(const FrameTask &task) {
   } catch (...) {
     const Options &options = inputs_.options;
     result.error = failure_of(std::current_exception()).what();
-    result.csv = std::to_string(task.frame) + ",,,,,,," + csv_field(result.error) + "\n";
+    const std::string header = csv_header(options);
+    const auto commas = static_cast<size_t>(std::count(header.begin(), header.end(), ','));
+    result.csv = std::to_string(task.frame) + std::string(commas, ',') + csv_field(result.error) + "\n";
+    result.per_atom = result.per_residue = "";
     if (!options.json.empty())
       result.json =
           dump(Json{{"frame", task.frame}, {"trajectory", options.trajectory}, {"error", result.error}}, true);
@@ -106,9 +104,11 @@ FrameResult FrameWorker::run(const FrameTask &task) {
   return result;
 }
 
-qses_mesh FrameWorker::compute() {
+// Runs something that computes.
+template <class Action>
+auto FrameWorker::explain_share(const Action &action) {
   try {
-    return engine_.compute(settings_);
+    return action();
   } catch (const Failure &failure) {
     if (shared_by_ < 2 || inputs_.options.compute.memory == 0) throw;
     throw Failure(failure.code(), std::string(failure.what()) + " (--memory is shared by " +
@@ -117,7 +117,6 @@ qses_mesh FrameWorker::compute() {
 }
 
 void FrameWorker::fill(const FrameTask &task, FrameResult &result) {
-  const Options &options = inputs_.options;
   const io::Trajectory &trajectory = inputs_.trajectory;
   const auto read_start = Clock::now();
   trajectory.read_frame(task.frame, xyz_.data());
@@ -125,20 +124,50 @@ void FrameWorker::fill(const FrameTask &task, FrameResult &result) {
   if (inputs_.unwrapper) inputs_.unwrapper->apply(trajectory.box(task.frame), xyz_.data());
   Timings timings;
   timings.read = ms_since(read_start);
-
   engine_.set_frame(xyz_.data(), trajectory.atom_count(), inputs_.file_indices);
-  const qses_mesh mesh = compute();
+  if (inputs_.options.command == Options::Command::kMeasure)
+    fill_measurement(task, time, timings, result);
+  else
+    fill_mesh(task, time, timings, result);
+}
+
+Json FrameWorker::frame_json(const FrameTask &task, std::optional<double> time) const {
+  Json json = {{"frame", task.frame}, {"trajectory", inputs_.options.trajectory}};
+  json["time_ps"] = time ? Json(*time) : Json();
+  return json;
+}
+
+void FrameWorker::add_areas(const std::vector<AtomAreas> &areas, FrameResult &result) const {
+  AreaRows rows = make_area_rows(inputs_.options, std::to_string(result.frame), inputs_.structure(), areas);
+  result.per_atom = std::move(rows.per_atom);
+  result.per_residue = std::move(rows.per_residue);
+}
+
+void FrameWorker::fill_measurement(const FrameTask &task, std::optional<double> time, const Timings &timings,
+                                   FrameResult &result) {
+  const Options &options = inputs_.options;
+  const Measurement found = explain_share([&] { return measure_surfaces(engine_, options); });
+  if (!options.csv.empty()) result.csv = measurement_csv_row(task.frame, time, found);
+  add_areas(found.areas, result);
+  if (options.json.empty()) return;
+  Json json = frame_json(task, time);
+  json.update(measurement_json(options, inputs_.structure(), engine_, found, timings));
+  result.json = dump(json, true);
+}
+
+void FrameWorker::fill_mesh(const FrameTask &task, std::optional<double> time, Timings timings, FrameResult &result) {
+  const Options &options = inputs_.options;
+  const qses_mesh mesh = explain_share([&] { return engine_.compute(settings_); });
   const qses_report report = engine_.report();
   Options frame_options = options;
   if (inputs_.pattern) frame_options.output = inputs_.pattern->name(task.frame);
   const auto write_start = Clock::now();
   accept_surface(frame_options.output, mesh, inputs_.structure());
   timings.write = ms_since(write_start);
-  if (options.csv.empty() && options.json.empty()) return;
   if (!options.csv.empty()) result.csv = csv_row(task.frame, time, report, mesh);
+  add_areas(areas_of(options.compute.surface, mesh), result);
   if (options.json.empty()) return;
-  Json json = {{"frame", task.frame}, {"trajectory", options.trajectory}};
-  json["time_ps"] = time ? Json(*time) : Json();
+  Json json = frame_json(task, time);
   json.update(surface_json(frame_options, inputs_.structure(), engine_, mesh, report, timings, nullptr));
   result.json = dump(json, true);
 }

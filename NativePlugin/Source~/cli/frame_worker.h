@@ -6,10 +6,12 @@
 #include <optional>
 #include <vector>
 
+#include "cli/area_tables.h"
 #include "cli/engine.h"
 #include "cli/frame_supply.h"
 #include "cli/options.h"
 #include "cli/output_pattern.h"
+#include "cli/report.h"
 #include "io/trajectory.h"
 #include "io/unwrap.h"
 
@@ -42,7 +44,12 @@ class FrameWorker {
 
  private:
   void fill(const FrameTask &task, FrameResult &result);
-  qses_mesh compute();
+  void fill_mesh(const FrameTask &task, std::optional<double> time, Timings timings, FrameResult &result);
+  void fill_measurement(const FrameTask &task, std::optional<double> time, const Timings &timings, FrameResult &result);
+  Json frame_json(const FrameTask &task, std::optional<double> time) const;
+  void add_areas(const std::vector<AtomAreas> &areas, FrameResult &result) const;
+  template <class Action>
+  auto explain_share(const Action &action);
 
   const FrameInputs &inputs_;
   Engine engine_;
@@ -52,6 +59,6 @@ class FrameWorker {
 };
 
 // The first line of the table.
-extern const char kCsvHeader[];
+std::string csv_header(const Options &options);
 
 }  // namespace quickses::cli

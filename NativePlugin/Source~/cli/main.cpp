@@ -18,10 +18,12 @@ namespace {
 
 void run_command(const Options &options, Processes &processes) {
   io::set_input_limit(options.max_input);
-  if (options.command == Options::Command::kSurface && !options.trajectory.empty()) {
+  if (!options.trajectory.empty()) {
     run_trajectory(options, processes);
   } else if (processes.is_first()) {  // nothing to share
     if (options.command == Options::Command::kSurface) run_surface(options);
+    if (options.command == Options::Command::kMeasure) run_measure(options);
+    if (options.command == Options::Command::kCavities) run_cavities(options);
     if (options.command == Options::Command::kBench) run_bench(options);
   }
   flush_standard_output();

@@ -24,6 +24,7 @@ void accept_surface(const std::string &path, const qses_mesh &mesh, const io::St
   view.positions = mesh.positions;
   view.normals = mesh.normals;
   view.owners = owners.data();
+  view.component_ids = mesh.component_ids;
   view.indices = mesh.indices;
   view.repeated = mesh.repeated;
   view.repeated_count = static_cast<uint32_t>(mesh.repeated_count);

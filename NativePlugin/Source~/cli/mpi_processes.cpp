@@ -38,10 +38,10 @@ constexpr std::chrono::microseconds kPollingInterval(100);  // MPI has no wait t
 constexpr std::chrono::milliseconds kLater(2);
 
 std::vector<uint8_t> pack(const FrameResult &result) {
-  return nlohmann::json::to_msgpack({result.place, result.frame,
-                                     nlohmann::json::binary({result.csv.begin(), result.csv.end()}),
-                                     nlohmann::json::binary({result.json.begin(), result.json.end()}),
-                                     nlohmann::json::binary({result.error.begin(), result.error.end()})});
+  nlohmann::json packed = {result.place, result.frame};
+  for (const std::string *text : {&result.csv, &result.json, &result.per_atom, &result.per_residue, &result.error})
+    packed.push_back(nlohmann::json::binary({text->begin(), text->end()}));
+  return nlohmann::json::to_msgpack(packed);
 }
 
 FrameResult unpack(const std::vector<uint8_t> &bytes) {
@@ -50,7 +50,7 @@ FrameResult unpack(const std::vector<uint8_t> &bytes) {
     const auto &binary = packed.at(k).get_binary();
     return std::string(binary.begin(), binary.end());
   };
-  return {packed.at(0).get<uint64_t>(), packed.at(1).get<uint64_t>(), text(2), text(3), text(4)};
+  return {packed.at(0).get<uint64_t>(), packed.at(1).get<uint64_t>(), text(2), text(3), text(4), text(5), text(6)};
 }
 
 // Workers of this process take turns at talking to the first process.

@@ -3,12 +3,12 @@
 #include "cli/options.h"
 
 #include <CLI/CLI.hpp>
-#include <cmath>
-#include <cstdio>
+#include <algorithm>
 #include <functional>
 #include <map>
 
 #include "cli/exit_code.h"
+#include "cli/option_kinds.h"
 #include "cli/output_pattern.h"
 #include "cli/used_files.h"
 #include "io/mesh_writer.h"
@@ -22,7 +22,6 @@ const std::map<std::string, qses_surface> kSurfaces = {
 const std::map<std::string, qses_method> kMethods = {{"exact", QSES_METHOD_EXACT}, {"grid", QSES_METHOD_GRID}};
 const std::map<std::string, qses_backend> kBackends = {
     {"auto", QSES_BACKEND_AUTO}, {"cuda", QSES_BACKEND_CUDA}, {"cpu", QSES_BACKEND_CPU}};
-const std::map<std::string, Switch> kSwitches = {{"on", Switch::kOn}, {"off", Switch::kOff}};
 
 const char kFooter[] =
     "Exit codes:\n"
@@ -37,86 +36,6 @@ const char kFooter[] =
     "Owner atoms in PLY files are 0-based places among the atoms of the input's model, before any filter.\n"
     "Lengths are in angstrom, areas in A^2, volumes in A^3.\n";
 
-const std::map<std::string, Creases> kCreases = {
-    {"auto", Creases::kAuto}, {"on", Creases::kOn}, {"off", Creases::kOff}};
-
-template <typename Enum>
-const char *find_name(const std::map<std::string, Enum> &names, Enum value) {
-  for (const auto &entry : names)
-    if (entry.second == value) return entry.first.c_str();
-  return "unknown";
-}
-
-// An option whose text is looked up; anything else is refused with the list of what there is.
-template <typename Enum>
-CLI::Option *add_option_of(CLI::App *app, const char *flag, Enum &value, const std::map<std::string, Enum> &names,
-                           const char *help) {
-  return app->add_option_function<std::string>(
-      flag,
-      [&value, &names, flag](const std::string &text) {
-        const auto found = names.find(text);
-        if (found != names.end()) {
-          value = found->second;
-          return;
-        }
-        std::string list;
-        for (const auto &entry : names) list += (list.empty() ? "" : ", ") + entry.first;
-        throw Failure(kUsage, std::string(flag) + ": '" + text + "' is not one of " + list);
-      },
-      help);
-}
-template <typename Enum>
-void add_choice(CLI::App *app, const char *flag, Enum &value, const std::map<std::string, Enum> &names,
-                const char *help) {
-  add_option_of(app, flag, value, names, help)->type_name("NAME")->default_str(find_name(names, value));
-}
-
-void add_number(CLI::App *app, const char *flags, const char *shown, double &value, double low, double high,
-                const char *help) {
-  app->add_option_function<std::string>(
-         flags,
-         [&value, shown, low, high](const std::string &text) {
-           double number = 0;
-           if (!io::parse_number(text, number))
-             throw Failure(kUsage, std::string(shown) + ": '" + text + "' is no number");
-           if (number < low || number > high) {
-             char range[96];
-             std::snprintf(range, sizeof range, " is not between %g and %g angstrom", low, high);
-             throw Failure(kUsage, std::string(shown) + ": " + text + range);
-           }
-           value = number;
-         },
-         help)
-      ->type_name("A")
-      ->default_str(CLI::detail::to_string(value));
-}
-
-void add_count(CLI::App *app, const char *flags, const char *shown, unsigned &value, int low, int high,
-               const char *help) {
-  app->add_option_function<std::string>(
-         flags,
-         [&value, shown, low, high](const std::string &text) {
-           int number = 0;
-           if (!io::parse_integer(text, number) || number < low || number > high)
-             throw Failure(kUsage, std::string(shown) + ": '" + text + "' is no whole number between " +
-                                       std::to_string(low) + " and " + std::to_string(high));
-           value = static_cast<unsigned>(number);
-         },
-         help)
-      ->type_name("N");
-}
-
-void add_size(CLI::App *app, const char *flag, uint64_t &value, const char *help) {
-  app->add_option_function<std::string>(
-         flag,
-         [&value, flag](const std::string &text) {
-           if (!parse_size(text, value))
-             throw Failure(kUsage, std::string(flag) + ": '" + text + "' is no size such as 512M or 2G");
-         },
-         help)
-      ->type_name("SIZE");
-}
-
 void add_compute_options(CLI::App *app, ComputeOptions &options, int &device) {
   add_number(app, "-v,--spacing", "--spacing (-v)", options.spacing, 0.001, 100,
              "Distance of lattice points (voxel size)");
@@ -124,14 +43,6 @@ void add_compute_options(CLI::App *app, ComputeOptions &options, int &device) {
   add_count(app, "-s,--slice", "--slice (-s)", options.slice, 8, 1 << 20,
             "Work in slices of at most N^3 lattice points; the mesh is the same. Default: as memory allows");
   add_number(app, "--probe", "--probe", options.probe, 0, 100, "Radius of the probe (solvent molecule)");
-  add_choice(app, "--surface", options.surface, kSurfaces,
-             "ses: solvent-excluded; sas: solvent-accessible; vdw: the atoms themselves");
-  add_choice(app, "--method", options.method, kMethods,
-             "exact: vertices on the exact surface; grid: the voxel method of Martinez, Krone and Baaden 2019");
-  add_choice(
-      app, "--creases", options.creases, kCreases,
-      "Sharp creases: edges that cut across one are split there; default: on for a mesh that is written, off for "
-      "trajectories and bench");
   add_choice(app, "--backend", options.backend, kBackends, "What computes; auto: CUDA if it can be used, else the CPU");
   app->add_option_function<std::string>(
          "--device",
@@ -156,25 +67,51 @@ void add_compute_options(CLI::App *app, ComputeOptions &options, int &device) {
       ->default_str("quickses");
 }
 
-void add_surface_options(CLI::App &app, Options &options) {
-  app.add_option("-i,--input,INPUT", options.input,
-                 "Structure: .pdb .ent .cif .mmcif .pqr .xyzr .gro, each also as .gz");
-  app.add_option("-o,--output", options.output, "Mesh: .obj, .ply (binary, with normals and owner atoms) or .stl")
-      ->type_name("FILE");
-  add_option_of(
-      &app, "--hard-edges", options.hard_edges, kSwitches,
-      "on: a vertex on a crease has a normal for each side, so that light breaks there; PLY files then have it "
-      "once per side. Default: on for .obj and .ply")
-      ->type_name("on|off");
-  app.add_flag_callback(
+void add_creases(CLI::App *app, ComputeOptions &options) {
+  add_switch(app, "--creases", options.creases,
+             "on: edges of triangles that cut across a crease are split on it, for sharp rims and for numbers. Default: "
+             "on, but off for trajectories and bench");
+}
+
+void add_surface_choice(CLI::App *app, ComputeOptions &options) {
+  add_choice(app, "--surface", options.surface, kSurfaces,
+             "ses: solvent-excluded; sas: solvent-accessible; vdw: the atoms themselves");
+  add_choice(app, "--method", options.method, kMethods,
+             "exact: vertices on the exact surface; grid: the voxel method of Martinez, Krone and Baaden 2019");
+  add_creases(app, options);
+}
+
+void add_measured(CLI::App *app, std::vector<qses_surface> &measured) {
+  app->add_option_function<std::string>(
+         "--surface",
+         [&measured](const std::string &text) {
+           measured.clear();
+           for (size_t begin = 0; begin <= text.size();) {
+             const size_t end = std::min(text.find(',', begin), text.size());
+             const qses_surface surface = look_up("--surface", kSurfaces, text.substr(begin, end - begin));
+             if (std::find(measured.begin(), measured.end(), surface) != measured.end())
+               throw Failure(kUsage, "--surface: '" + text + "' names one of them twice");
+             measured.push_back(surface);
+             begin = end + 1;
+           }
+         },
+         "Which, in this order: sas, vdw, or ses (through a mesh that is not written), with commas between them")
+      ->type_name("LIST")
+      ->default_str("sas,vdw");
+}
+
+void add_input_options(CLI::App *app, Options &options, const char *model_help) {
+  app->add_option("-i,--input,INPUT", options.input,
+                  "Structure: .pdb .ent .cif .mmcif .pqr .xyzr .gro, each also as .gz");
+  app->add_flag_callback(
       "--no-water", [&options] { options.read.water = false; }, "Leave out water");
-  app.add_flag_callback(
+  app->add_flag_callback(
       "--no-hetero", [&options] { options.read.hetero = false; }, "Leave out HETATM records");
-  app.add_flag_callback(
+  app->add_flag_callback(
       "--no-hydrogen", [&options] { options.read.hydrogen = false; }, "Leave out hydrogen");
-  app.add_option("--select", options.read.selection, "Only these atoms, such as //A or //A/10-40 or (ALA)")
+  app->add_option("--select", options.read.selection, "Only these atoms, such as //A or //A/10-40 or (ALA)")
       ->type_name("CID");
-  app.add_option_function<std::string>(
+  app->add_option_function<std::string>(
          "--model",
          [&options](const std::string &text) {
            if (text == "all") {
@@ -183,22 +120,40 @@ void add_surface_options(CLI::App &app, Options &options) {
              throw Failure(kUsage, "--model: '" + text + "' is neither a number from 1 on nor 'all'");
            }
          },
-         "Which model of the file; all: one mesh each, as out_0001.ply for -o out.ply; default 1")
+         model_help)
       ->type_name("N|all");
 }
 
-void add_trajectory_options(CLI::App &app, Options &options) {
-  app.add_option("--trajectory", options.trajectory,
-                 "Frames of the atoms of INPUT: .dcd .xtc, or .pdb with several models, each also as .gz")
+void add_mesh_options(CLI::App *app, Options &options) {
+  app->add_option("-o,--output", options.output, "Mesh: .obj, .ply (binary, with normals and owner atoms) or .stl")
       ->type_name("FILE");
-  app.add_option_function<std::string>(
+  add_switch(app, "--hard-edges", options.hard_edges,
+             "on: a vertex on a crease has a normal for each side, so that light breaks there; PLY files then have it "
+             "once per side. Default: on for .obj and .ply");
+  app->add_flag("--outer", options.outer, "Leave the walls of cavities out of the mesh, not of the numbers");
+  app->add_flag("--component-ids", options.component_ids,
+                "The number of each vertex's connected piece in PLY files, as int component");
+}
+
+void add_area_options(CLI::App *app, Options &options) {
+  app->add_option("--per-atom", options.per_atom, "Table of the area of each atom (CSV); - for standard output")
+      ->type_name("FILE|-");
+  app->add_option("--per-residue", options.per_residue,
+                  "Table of the area of each residue (CSV); - for standard output")
+      ->type_name("FILE|-");
+}
+
+void add_trajectory_options(CLI::App *app, Options &options, const char *csv_help) {
+  app->add_option("--trajectory", options.trajectory,
+                  "Frames of the atoms of INPUT: .dcd .xtc, or .pdb with several models, each also as .gz")
+      ->type_name("FILE");
+  app->add_option_function<std::string>(
          "--frames", [&options](const std::string &text) { options.frames = FrameRange(text); },
          "Which frames, from 0: A:B:STEP as in Python (B is left out, negative numbers count from the end), or one")
       ->type_name("A:B:STEP");
-  app.add_flag("--unwrap", options.unwrap, "Make molecules whole that the borders of the periodic box tear apart");
-  app.add_option("--csv", options.csv, "Table of the frames: area, volume, components, cavities; - for standard output")
-      ->type_name("FILE|-");
-  add_count(&app, "--workers", "--workers", options.workers, 1, 1024,
+  app->add_flag("--unwrap", options.unwrap, "Make molecules whole that the borders of the periodic box tear apart");
+  app->add_option("--csv", options.csv, csv_help)->type_name("FILE|-");
+  add_count(app, "--workers", "--workers", options.workers, 1, 1024,
             "Frames in flight at a time; default: one per thread, with CUDA at most 8");
 }
 
@@ -221,9 +176,34 @@ void check_trajectory(const Options &options, const std::function<bool(const cha
   }
   if (options.read.model == 0)
     throw Failure(kUsage, "--model all: with --trajectory, the atoms are those of one model");
-  if (options.csv == "-" && options.json == "-")
-    throw Failure(kUsage, "--csv and --json can't both go to standard output");
   if (!options.output.empty()) OutputPattern check(options.output);  // throws if it is none
+}
+
+void check_standard_output(const Options &options) {
+  const std::pair<const char *, const std::string &> outputs[] = {{"--csv", options.csv},
+                                                                  {"--per-atom", options.per_atom},
+                                                                  {"--per-residue", options.per_residue},
+                                                                  {"--json", options.json}};
+  const char *first = nullptr;
+  for (const auto &[flag, name] : outputs) {
+    if (name != "-") continue;
+    if (first) throw Failure(kUsage, std::string(first) + " and " + flag + " can't both go to standard output");
+    first = flag;
+  }
+}
+
+void check_output(const Options &options) {
+  if (options.component_ids && options.output.empty())
+    throw Failure(kUsage, "--component-ids: they are part of a PLY file, and there is no --output (-o)");
+  if (options.output.empty()) return;
+  io::MeshFormat format = io::MeshFormat::kObj;
+  try {
+    format = io::mesh_format_of(options.output);
+  } catch (const std::exception &error) {
+    throw Failure(kUsage, std::string("--output (-o): ") + error.what());
+  }
+  if (options.component_ids && format != io::MeshFormat::kPly)
+    throw Failure(kUsage, "--component-ids: only PLY files have them, and --output (-o) is '" + options.output + "'");
 }
 
 void check(const Options &options, const std::function<bool(const char *)> &given) {
@@ -231,7 +211,7 @@ void check(const Options &options, const std::function<bool(const char *)> &give
     throw Failure(kUsage, "--device: only CUDA has devices to choose from, and --backend is cpu");
   if (options.compute.method == QSES_METHOD_GRID && options.compute.surface != QSES_SURFACE_SES)
     throw Failure(kUsage, "--method grid makes the solvent-excluded surface only: leave --surface at ses");
-  if (options.compute.method == QSES_METHOD_GRID && options.compute.creases == Creases::kOn)
+  if (options.compute.method == QSES_METHOD_GRID && options.compute.creases == Switch::kOn)
     throw Failure(kUsage, "--creases on: --method grid does not know where creases are");
   if (options.command == Options::Command::kBench) {
     if (options.inputs.empty()) throw Failure(kUsage, "bench: no input file was given");
@@ -240,38 +220,21 @@ void check(const Options &options, const std::function<bool(const char *)> &give
     return;
   }
   if (options.input.empty()) throw Failure(kUsage, "no input file was given; see quickses --help");
-  check_trajectory(options, given);
-  if (!options.output.empty()) {
-    try {
-      io::mesh_format_of(options.output);
-    } catch (const std::exception &error) {
-      throw Failure(kUsage, std::string("--output (-o): ") + error.what());
-    }
+  if (options.command == Options::Command::kCavities) {
+    if (options.read.model == 0) throw Failure(kUsage, "--model all: cavities lists those of one model");
+  } else {
+    check_trajectory(options, given);
   }
   if (options.hard_edges == Switch::kOn && !has_hard_edges(options))
     throw Failure(kUsage, "--hard-edges on: is for the exact method and mesh files with normals, .obj or .ply");
+  if (options.wants_areas() && options.compute.method == QSES_METHOD_GRID)
+    throw Failure(kUsage, "--per-atom and --per-residue: areas of atoms are there with --method exact only");
+  check_output(options);
+  check_standard_output(options);
   UsedFiles check(options);
 }
 
 }  // namespace
-
-bool parse_size(const std::string &text, uint64_t &bytes) {
-  size_t digits = 0;
-  while (digits < text.size() && ((text[digits] >= '0' && text[digits] <= '9') || text[digits] == '.')) ++digits;
-  double number = 0;
-  if (!io::parse_number(text.substr(0, digits), number)) return false;
-  std::string unit = text.substr(digits);
-  for (char &c : unit) c = io::to_upper(c);
-  if (unit.size() > 1 && unit.back() == 'B') unit.pop_back();
-  if (unit.size() > 1 && unit.back() == 'I') unit.pop_back();
-  if (unit == "B") unit.clear();
-  const size_t power = unit.empty() ? 0 : unit.size() > 1 ? std::string::npos : std::string("KMGT").find(unit[0]) + 1;
-  if (power > 4 || (!unit.empty() && power == 0)) return false;
-  const double size = std::ldexp(number, static_cast<int>(10 * power));
-  if (!(size >= 1) || size > 9e18) return false;
-  bytes = static_cast<uint64_t>(size);
-  return true;
-}
 
 const char *name_of(qses_surface surface) { return find_name(kSurfaces, surface); }
 const char *name_of(qses_method method) { return find_name(kMethods, method); }
@@ -289,15 +252,42 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
       "Molecular surfaces as closed triangle meshes.\n\n"
       "  quickses INPUT [-o OUT.obj|OUT.ply|OUT.stl] [options]\n"
       "  quickses INPUT --trajectory FILE [--frames A:B:STEP] [--csv FILE] [-o frame_%05d.ply] [options]\n"
+      "  quickses measure INPUT [--surface sas,vdw,ses] [--per-atom FILE] [--per-residue FILE] [options]\n"
+      "  quickses cavities INPUT [--csv FILE] [options]\n"
       "  quickses bench FILE... [--repeat N] [--small N | --jobs] [options]\n",
       "quickses");
   app.allow_windows_style_options(false);  // a path may begin with a slash there too
   app.footer(kFooter);
   app.set_version_flag("--version", std::string("quickses ") + qses_version(), "Print the version");
-  add_surface_options(app, options);
+  add_input_options(&app, options,
+                    "Which model of the file; all: one mesh each, as out_0001.ply for -o out.ply; default 1");
+  add_mesh_options(&app, options);
+  add_surface_choice(&app, options.compute);
   add_compute_options(&app, options.compute, device);
-  add_trajectory_options(app, options);
+  add_trajectory_options(&app, options,
+                         "Table of the frames: area, volume, components, cavities; - for standard output");
+  add_area_options(&app, options);
   add_file_options(&app, options);
+
+  CLI::App *measure = app.add_subcommand(
+      "measure", "Area and volume, those of SAS and VDW exactly and without a mesh, per atom and residue on request");
+  measure->footer(kFooter);
+  add_input_options(measure, options, "Which model of the file, or all of them; default 1");
+  add_measured(measure, options.measured);
+  add_creases(measure, options.compute);
+  add_compute_options(measure, options.compute, device);
+  add_trajectory_options(measure, options, "Table of the frames: area and volume; - for standard output");
+  add_area_options(measure, options);
+  add_file_options(measure, options);
+
+  CLI::App *cavities =
+      app.add_subcommand("cavities", "The cavities of a surface: volume, area, centre and the residues that line them");
+  cavities->footer(kFooter);
+  add_input_options(cavities, options, "Which model of the file; default 1");
+  add_surface_choice(cavities, options.compute);
+  add_compute_options(cavities, options.compute, device);
+  cavities->add_option("--csv", options.csv, "Table of the cavities; - for standard output")->type_name("FILE|-");
+  add_file_options(cavities, options);
 
   CLI::App *bench = app.add_subcommand("bench", "Time warm calls: median ms from atoms in memory to mesh in memory");
   bench->footer(kFooter);
@@ -308,6 +298,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
   bench->add_flag(
       "--jobs", options.jobs,
       "Time jobs instead: begin, cancel, destroy, the first level, and all levels against the finest alone");
+  add_surface_choice(bench, options.compute);
   add_compute_options(bench, options.compute, device);
   add_file_options(bench, options);
 
@@ -323,18 +314,24 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
       if (c == '\n') c = ' ';
     throw Failure(kUsage, message);
   }
-  if (bench->parsed()) {
-    if (app.count_all() > bench->count_all() + 1) throw Failure(kUsage, "bench: its options go behind the word bench");
-    options.command = Options::Command::kBench;
+  const CLI::App *used = &app;
+  const std::pair<const CLI::App *, Options::Command> commands[] = {{measure, Options::Command::kMeasure},
+                                                                    {cavities, Options::Command::kCavities},
+                                                                    {bench, Options::Command::kBench}};
+  for (const auto &[command, value] : commands) {
+    if (!command->parsed()) continue;
+    if (app.count_all() > command->count_all() + 1)
+      throw Failure(kUsage, command->get_name() + ": its options go behind the word " + command->get_name());
+    used = command;
+    options.command = value;
   }
   options.compute.device_given = device >= 0;
   if (device >= 0) options.compute.device = device;
-  if (options.compute.creases == Creases::kAuto) {
-    const bool is_picture = options.command == Options::Command::kSurface && !options.output.empty() &&
-                            options.trajectory.empty() && options.compute.method == QSES_METHOD_EXACT;
-    options.compute.creases = is_picture ? Creases::kOn : Creases::kOff;
+  if (options.compute.creases == Switch::kDefault) {
+    const bool is_many = options.command == Options::Command::kBench || !options.trajectory.empty();
+    options.compute.creases = is_many || options.compute.method == QSES_METHOD_GRID ? Switch::kOff : Switch::kOn;
   }
-  check(options, [&app](const char *flag) { return app.count(flag) != 0; });
+  check(options, [used](const char *flag) { return used->count(flag) != 0; });
   return options;
 }
 

@@ -13,8 +13,8 @@
 
 namespace quickses::cli {
 
-// Whether creases are sharpened, as asked; AUTO: where a mesh is written, for its looks.
-enum class Creases { kAuto, kOn, kOff };
+// A flag with the values on and off, or not given.
+enum class Switch { kDefault, kOff, kOn };
 
 // How to compute: flags that both commands share.
 struct ComputeOptions {
@@ -29,41 +29,44 @@ struct ComputeOptions {
   double spacing = 0.5;  // Å
   unsigned steps = 1;
   unsigned slice = 0;  // 0 = sized by memory
-  Creases creases = Creases::kAuto;
+  Switch creases = Switch::kDefault;  // when options are read: on or off
   std::string radii = "quickses";
   bool radii_given = false;
 };
 
-// A flag with the values on and off, or not given.
-enum class Switch { kDefault, kOff, kOn };
-
 struct Options {
-  enum class Command { kSurface, kBench, kNone } command = Command::kSurface;
+  enum class Command { kSurface, kMeasure, kCavities, kBench, kNone } command = Command::kSurface;
   ComputeOptions compute;
   io::ReadOptions read;
   std::string input;
-  std::string output;  // empty: no mesh file
+  std::string output;                                                         // empty: no mesh file
   Switch hard_edges = Switch::kDefault;
-  std::vector<std::string> inputs;  // of bench
-  unsigned repeat = 20;             // of bench
-  unsigned small = 0;               // of bench: atoms per surface, 0 = the whole
-  bool jobs = false;                // of bench
-  std::string trajectory;           // empty: the input alone
-  FrameRange frames;                // of the trajectory
-  bool unwrap = false;              // molecules in one piece
-  unsigned workers = 0;             // frames in flight; 0 = chosen by the program
-  uint64_t max_input = 0;           // bytes of an input in memory; 0 = the library's default
-  std::string csv;                  // a file, "-" for standard output, empty: no table
-  std::string json;                 // a file, "-" for standard output, empty: no report
+  bool component_ids = false;                                                 // in that file
+  bool outer = false;                                                         // without cavities
+  std::vector<qses_surface> measured = {QSES_SURFACE_SAS, QSES_SURFACE_VDW};  // of measure
+  std::vector<std::string> inputs;                                            // of bench
+  unsigned repeat = 20;                                                       // of bench
+  unsigned small = 0;       // of bench: atoms per surface, 0 = the whole
+  bool jobs = false;        // of bench
+  std::string trajectory;   // empty: the input alone
+  FrameRange frames;        // of the trajectory
+  bool unwrap = false;      // molecules in one piece
+  unsigned workers = 0;     // frames in flight; 0 = chosen by the program
+  uint64_t max_input = 0;   // bytes of an input in memory; 0 = the library's default
+  std::string csv;          // a file, "-" for standard output, empty: no table
+  std::string per_atom;     // a file, "-" for standard output, empty: no table
+  std::string per_residue;  // the same
+  std::string json;         // a file, "-" for standard output, empty: no report
   bool quiet = false;
+
+  bool wants_areas() const { return !per_atom.empty() || !per_residue.empty(); }
+  // Whether standard output is taken by something that other programs read.
+  bool prints_data() const { return csv == "-" || json == "-" || per_atom == "-" || per_residue == "-"; }
 };
 
 // Reads the command line. After --help or --version, which print to out, the command is kNone.
 // Throws Failure (kUsage) with one sentence that names the flag.
 Options parse_options(int argc, char **argv, std::ostream &out);
-
-// "512M" and the like in bytes: K, M, G, T are powers of 1024. False where the text is no such size or none at all.
-bool parse_size(const std::string &text, uint64_t &bytes);
 
 // Whether the mesh has a vertex on a crease once per side. The output, if there is one, has a known extension.
 bool has_hard_edges(const Options &options);

@@ -14,13 +14,12 @@ Json components_json(const qses_mesh &mesh) {
   std::stable_sort(components.begin(), components.end(),
                    [](const qses_component &a, const qses_component &b) { return a.area > b.area; });
   Json list = Json::array();
-  for (const qses_component &component : components)
-    list.push_back({{"triangles", component.triangles},
-                    {"area", component.area},
-                    {"volume", component.volume},
-                    {"cavity", component.is_cavity != 0}});
+  for (const qses_component &component : components) list.push_back(component_json(component));
   return list;
 }
+
+Json vector_json(const float *v) { return {v[0], v[1], v[2]}; }
+Json bounds_json(const float *min, const float *max) { return {vector_json(min), vector_json(max)}; }
 
 }  // namespace
 
@@ -30,7 +29,7 @@ Json settings_json(const ComputeOptions &options) {
                {"probe", options.probe},
                {"spacing", options.spacing},
                {"steps", options.steps},
-               {"creases", options.creases == Creases::kOn}};
+               {"creases", options.creases == Switch::kOn}};
   if (options.slice != 0) json["slice"] = options.slice;
   if (options.memory != 0) json["memory"] = options.memory;
   if (options.threads != 0) json["threads"] = options.threads;
@@ -38,8 +37,21 @@ Json settings_json(const ComputeOptions &options) {
   return json;
 }
 
-Json surface_json(const Options &options, const io::Structure &structure, const Engine &engine, const qses_mesh &mesh,
-                  const qses_report &report, const Timings &timings, const qses_size_estimate *predicted) {
+const char *name_of(qses_measured_by measured_by) {
+  switch (measured_by) {
+    case QSES_MEASURED_BY_ATOMS:
+      return "atoms";
+    case QSES_MEASURED_BY_NORMALS:
+      return "normals";
+    case QSES_MEASURED_BY_TRIANGLES:
+      return "triangles";
+    case QSES_MEASURED_BY_NOTHING:
+      break;
+  }
+  return "nothing";
+}
+
+Json report_head_json(const Options &options, const io::Structure &structure, const Engine &engine) {
   Json json;
   json["version"] = qses_version();
   json["input"] = options.input;
@@ -47,18 +59,40 @@ Json surface_json(const Options &options, const io::Structure &structure, const 
   json["model"] = structure.model;
   json["atoms"] = structure.atoms.size();
   json["settings"] = settings_json(options.compute);
-  json["settings"]["hard_edges"] = has_hard_edges(options);
+  if (options.outer) json["settings"]["outer"] = true;
   json["backend"] = name_of(engine.backend());
   json["device"] = engine.device();
-  Json bounds = Json::array();
-  for (const float *corner : {mesh.bounds_min, mesh.bounds_max}) bounds.push_back({corner[0], corner[1], corner[2]});
+  return json;
+}
+
+Json measures_json(const qses_report &report) {
+  Json json = {{"area", report.area}, {"volume", report.volume}, {"measured_by", name_of(report.measured_by)}};
+  if (report.triangle_area > 0) {
+    json["triangle_area"] = report.triangle_area;
+    json["triangle_volume"] = report.triangle_volume;
+  }
+  return json;
+}
+
+Json component_json(const qses_component &component) {
+  return {{"triangles", component.triangles},
+          {"area", component.area},
+          {"volume", component.volume},
+          {"cavity", component.is_cavity != 0},
+          {"center", vector_json(component.center)},
+          {"bounds", bounds_json(component.bounds_min, component.bounds_max)}};
+}
+
+Json surface_json(const Options &options, const io::Structure &structure, const Engine &engine, const qses_mesh &mesh,
+                  const qses_report &report, const Timings &timings, const qses_size_estimate *predicted) {
+  Json json = report_head_json(options, structure, engine);
+  json["settings"]["hard_edges"] = has_hard_edges(options);
   json["mesh"] = {{"vertices", mesh.vertex_count - mesh.repeated_count},
                   {"repeated", mesh.repeated_count},
                   {"triangles", mesh.triangle_count},
                   {"closed", true},
-                  {"bounds", bounds}};
-  json["area"] = report.area;
-  json["volume"] = report.volume;
+                  {"bounds", bounds_json(mesh.bounds_min, mesh.bounds_max)}};
+  json.update(measures_json(report));
   json["components"] = components_json(mesh);
   Json stages = Json::object();
   for (uint32_t i = 0; i < report.stage_count && i < QSES_MAX_STAGES; ++i)

@@ -19,6 +19,16 @@ struct Timings {
 
 Json settings_json(const ComputeOptions &options);
 
+// "atoms" and so on: where area and volume come from.
+const char *name_of(qses_measured_by measured_by);
+
+// What reports begin with: version, input, model, atoms, settings, backend, device.
+Json report_head_json(const Options &options, const io::Structure &structure, const Engine &engine);
+// area, volume, measured_by, and those of the triangles where there are any.
+Json measures_json(const qses_report &report);
+// Of a component: triangles, area, volume, cavity, center, bounds.
+Json component_json(const qses_component &component);
+
 // The report of one surface, which is closed (see accept_surface). predicted: before it was computed, or nullptr.
 // The mesh must have been computed with its components.
 Json surface_json(const Options &options, const io::Structure &structure, const Engine &engine, const qses_mesh &mesh,

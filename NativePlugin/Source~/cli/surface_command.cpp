@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "cli/area_tables.h"
 #include "cli/clock.h"
 #include "cli/commands.h"
 #include "cli/engine.h"
@@ -44,17 +45,17 @@ void run_surface(const Options &options) {
   // Before anything takes time: can the results be written?
   if (!options.output.empty()) io::check_writable(options.output);
   if (!options.json.empty() && options.json != "-") io::check_writable(options.json);
+  AreaTables tables(options, {options.compute.surface});
 
   const auto read_start = Clock::now();
   const io::StructureFile file = load(options.input, options.read, options.compute, options.quiet);
   Timings timings;
   timings.read = ms_since(read_start);
+  for (const io::Structure &structure : file.models) check_has_residues(options, structure);
 
   Engine engine(options.compute);
   explain_fallback(engine, options.compute, options.quiet);
-  qses_settings settings = settings_of(options.compute);
-  settings.components = !options.json.empty();
-  settings.hard_edges = has_hard_edges(options);
+  const qses_settings settings = mesh_settings_of(options);
   if (!options.json.empty()) qses_set_stage_times(engine.context(), 1);
 
   const bool all_models = options.read.model == 0;
@@ -78,14 +79,17 @@ void run_surface(const Options &options) {
     const qses_report report = engine.report();
     const auto write_start = Clock::now();
     accept_surface(model_options.output, mesh, structure);
+    tables.write(make_area_rows(options, all_models ? std::to_string(structure.model) : "", structure,
+                                areas_of(options.compute.surface, mesh)));
     timings.write = ms_since(write_start);
     if (!options.json.empty()) {
       const Json json =
           surface_json(model_options, structure, engine, mesh, report, timings, predicted ? &*predicted : nullptr);
       reports += dump(json, all_models);  // of several models: one line each
     }
-    if (!options.quiet && options.json != "-") print_summary(model_options, structure, engine, mesh, report);
+    if (!options.quiet && !options.prints_data()) print_summary(model_options, structure, engine, mesh, report);
   }
+  tables.finish();
   if (!options.json.empty()) write_text(options.json, reports);
 }
 

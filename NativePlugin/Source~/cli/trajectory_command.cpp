@@ -6,6 +6,7 @@
 #include <thread>
 #include <vector>
 
+#include "cli/area_tables.h"
 #include "cli/commands.h"
 #include "cli/exit_code.h"
 #include "cli/frame_ledger.h"
@@ -60,13 +61,17 @@ Share divide(const Options &options, const Processes &processes, size_t frame_co
 class ResultWriter {
  public:
   ResultWriter(const Options &options, size_t frame_count)
-      : csv_(options.csv), json_(options.json), progress_(frame_count, options.quiet) {
-    if (!options.csv.empty()) csv_.write(kCsvHeader);
+      : csv_(options.csv),
+        json_(options.json),
+        areas_(options, surfaces_of(options)),
+        progress_(frame_count, options.quiet) {
+    if (!options.csv.empty()) csv_.write(csv_header(options));
   }
 
   void write(const FrameResult &result) {
     csv_.write(result.csv);
     json_.write(result.json);
+    areas_.write({result.per_atom, result.per_residue});
     if (!result.error.empty() && ++failed_ <= kMostMessages) {
       progress_.clear();
       std::fprintf(stderr, "quickses: frame %llu failed: %s\n", static_cast<unsigned long long>(result.frame),
@@ -81,12 +86,19 @@ class ResultWriter {
       std::fprintf(stderr, "quickses: %zu more messages of failed frames are not shown\n", failed_ - kMostMessages);
     csv_.finish();
     json_.finish();
+    areas_.finish();
   }
 
   const FrameProgress &progress() const { return progress_; }
 
  private:
+  static std::vector<qses_surface> surfaces_of(const Options &options) {
+    if (options.command == Options::Command::kMeasure) return options.measured;
+    return {options.compute.surface};
+  }
+
   TextOutput csv_, json_;
+  AreaTables areas_;
   FrameProgress progress_;
   size_t failed_ = 0;
 };
@@ -155,7 +167,7 @@ class Run {
     const double seconds = writer_->progress().seconds(), rate = writer_->progress().frames_per_second();
     writer_->finish();
     const Options &options = inputs_.options;
-    if (!options.quiet && options.csv != "-" && options.json != "-")
+    if (!options.quiet && !options.prints_data())
       std::printf("%zu frames of %zu atoms, %s, %llu at a time, %.2f s, %.1f frames/s%s%s\n", frames_.count,
                   inputs_.structure().atoms.size(), name_of(share_.compute.backend),
                   static_cast<unsigned long long>(all_workers), seconds, rate, options.csv.empty() ? "" : ", ",

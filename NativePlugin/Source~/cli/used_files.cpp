@@ -73,6 +73,8 @@ UsedFiles::UsedFiles(const Options &options) {
   const bool is_one_mesh = options.trajectory.empty() && options.read.model != 0;
   if (is_one_mesh) add_output(kOutputFlag, options.output);
   add_output("--csv", options.csv);
+  add_output("--per-atom", options.per_atom);
+  add_output("--per-residue", options.per_residue);
   add_output("--json", options.json);
 }
 

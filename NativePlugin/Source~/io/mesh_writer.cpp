@@ -81,15 +81,17 @@ void write_ply(AtomicFile &file, const MeshView &mesh) {
   header += "element vertex " + std::to_string(mesh.vertex_count) + "\n";
   for (const char *name : {"x", "y", "z", "nx", "ny", "nz"}) header += std::string("property float ") + name + "\n";
   if (mesh.owners) header += "property int owner\n";
+  if (mesh.component_ids) header += "property int component\n";
   if (mesh.patches) header += "property uchar patch\n";
   header += "element face " + std::to_string(mesh.triangle_count) + "\n";
   header += "property list uchar uint vertex_indices\nend_header\n";
   file.write(header);
   for (size_t i = 0; i < mesh.vertex_count; ++i) {
-    char *const begin = file.reserve(32);
+    char *const begin = file.reserve(36);
     char *out = put_binary(begin, mesh.positions + 3 * i);
     out = put_binary(out, mesh.normals + 3 * i);
     if (mesh.owners) out = put_binary(out, mesh.owners[i]);
+    if (mesh.component_ids) out = put_binary(out, mesh.component_ids[i]);
     if (mesh.patches) *out++ = static_cast<char>(mesh.patches[i]);
     file.advance(out - begin);
   }

@@ -225,6 +225,19 @@ StructureFile parse_text(const std::string &text, const std::string &path, std::
 
 }  // namespace
 
+std::vector<uint32_t> residues_of(const Structure &structure) {
+  const auto are_of_one = [](const AtomInfo &a, const AtomInfo &b) {
+    return a.residue_number == b.residue_number && a.insertion_code == b.insertion_code &&
+           a.residue_name == b.residue_name && a.chain == b.chain;
+  };
+  std::vector<uint32_t> residues(structure.atoms.size());
+  for (size_t k = 1; k < residues.size(); ++k) {
+    const bool is_same = structure.has_names && are_of_one(structure.atoms[k - 1], structure.atoms[k]);
+    residues[k] = residues[k - 1] + (is_same ? 0 : 1);
+  }
+  return residues;
+}
+
 uint64_t memory_of(const StructureFile &file) {
   // Short strings lie in the string itself.
   const auto outside = [](const std::string &text) {

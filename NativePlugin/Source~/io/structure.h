@@ -79,6 +79,10 @@ StructureFile parse_structure(const std::string &bytes, std::optional<StructureF
 // structure has no names.
 uint32_t select_atoms(const Structure &structure, const std::string &cid, uint8_t *mask);
 
+// Which residue each atom is of, from 0. Neighbours of the same chain, residue number, insertion code and residue name
+// are of one; where there are no names each atom is one by itself.
+std::vector<uint32_t> residues_of(const Structure &structure);
+
 // Bytes of memory that it takes.
 uint64_t memory_of(const StructureFile &file);
 

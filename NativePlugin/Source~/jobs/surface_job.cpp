@@ -259,9 +259,10 @@ void SurfaceJob::keep(KeptMesh *kept) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (held_.slot == kNoSlot) throw Error(QSES_NO_RESULT, "nothing has been computed or collected that could be kept");
   const FinishedMesh &mesh = held_.mesh;
-  if (mesh.on_host.vertex_count > 0 && !mesh.on_host.positions)
-    throw Error(QSES_INVALID_ARGUMENT,
-                "the mesh was made with settings.delivery DEVICE: only a mesh in host memory can be kept");
+  if (mesh.delivery == QSES_DELIVERY_DEVICE || mesh.delivery == QSES_DELIVERY_NONE)
+    throw Error(QSES_INVALID_ARGUMENT, std::string("the mesh was made with settings.delivery ") +
+                                           (mesh.delivery == QSES_DELIVERY_NONE ? "NONE" : "DEVICE") +
+                                           ": only a mesh in host memory can be kept");
   kept->clear();
   kept->mesh = mesh.on_host;
   kept->boxes = mesh.boxes;

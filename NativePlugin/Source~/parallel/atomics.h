@@ -76,4 +76,16 @@ QSES_FN uint32_t atomic_min(uint32_t *p, uint32_t value) {
 #endif
 }
 
+// Returns the value before.
+QSES_FN uint32_t atomic_max(uint32_t *p, uint32_t value) {
+#if defined(__CUDA_ARCH__)
+  return atomicMax(p, value);
+#else
+  uint32_t before = __atomic_load_n(p, __ATOMIC_RELAXED);
+  while (value > before && !__atomic_compare_exchange_n(p, &before, value, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
+  }
+  return before;
+#endif
+}
+
 }  // namespace quickses

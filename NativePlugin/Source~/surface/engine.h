@@ -20,6 +20,7 @@ namespace quickses {
 struct FinishedMesh {
   qses_mesh on_host;
   PickBoxes boxes;             // beside it
+  qses_delivery delivery;      // where it was wanted
   qses_device_mesh on_device;  // empty arrays unless settings.delivery asks for it
   qses_report report;
 };

@@ -63,9 +63,11 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
       qses_report report;
       auto work = work_of(in, plan, &report);
       prepare_frame(work, in);
-      enter_level(work, settings.spacing);
-      if (settings.method == QSES_METHOD_EXACT) facts_.caps = count_kept_caps(work);
-      facts_.size = estimate_size(work);
+      if (work.makes_mesh) {
+        enter_level(work, settings.spacing);
+        if (settings.method == QSES_METHOD_EXACT) facts_.caps = count_kept_caps(work);
+        facts_.size = estimate_size(work);
+      }
       executor_.arena().reset();
     });
     const uint64_t limit = executor_.arena().limit(), least = least_bytes(in);
@@ -73,7 +75,8 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     if (whole > limit) whole = std::max(least, limit);
     out.vertices = static_cast<uint64_t>(facts_.size.vertices);
     out.triangles = static_cast<uint64_t>(facts_.size.triangles);
-    out.mesh_bytes = MeshArrays(out.vertices, out.triangles, shape_of(settings, !appearance.colors.empty())).bytes();
+    if (settings.delivery != QSES_DELIVERY_NONE)
+      out.mesh_bytes = MeshArrays(out.vertices, out.triangles, shape_of(settings, !appearance.colors.empty())).bytes();
     out.work_bytes = whole + memory_.outside_arena(executor_);
     out.smallest_budget = least + memory_.needed_outside(executor_);
     out.fits = budget_ == 0 || out.smallest_budget <= budget_ ? 1 : 0;
@@ -98,7 +101,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   void walk(const FrameInput &in, const std::atomic<bool> &stop, const Attempt &attempt) {
     const typename Executor::CallScope scope(executor_);
     const typename Executor::StopScope stop_scope(executor_, stop);
-    memory_.keep_on_device(in.settings.delivery != QSES_DELIVERY_HOST);
+    memory_.keep_on_device(in.settings.delivery == QSES_DELIVERY_DEVICE || in.settings.delivery == QSES_DELIVERY_BOTH);
     executor_.arena().reset();  // what is free is asked anew
     for (size_t step = first_step(in);; executor_.arena().reset()) {
       timer_.reset();
@@ -169,17 +172,21 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
       progress_.report(0.0);
       qses_report_init(&report);
       report.attempts = course->attempts;
+      report.measured_by = measured_by(in);
       memory_.use_slot(sink.slot());
       MeshMemoryView built{};
       if (in.atoms.count > 0) {
         spacing_ = spacings[k];
-        enter_level(work, spacing_);
-        check_forecast(work, in);
+        if (work.makes_mesh) {
+          enter_level(work, spacing_);
+          check_forecast(work, in);
+        }
         built = build_level(work);
       }
       timer_.begin("mesh_memory");
       memory_.finish(built, in.settings, &out.on_host, &out.boxes, &out.on_device);
       timer_.end();
+      out.delivery = in.settings.delivery;
       out.on_host.spacing = out.on_device.mesh.spacing = spacings[k];
       report.compute_ms = milliseconds_since(start);
       start = std::chrono::steady_clock::now();
@@ -200,7 +207,10 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   }
 
   LevelWork<Executor, Timer> work_of(const FrameInput &in, const MemoryPlan &plan, qses_report *report) {
-    return {executor_, timer_, memory_, components_, rooms_, progress_, table(), in.settings, plan, &facts_, report};
+    LevelWork<Executor, Timer> work{executor_, timer_,      memory_, components_, rooms_, progress_,
+                                    table(),   in.settings, plan,    &facts_,     report};
+    work.area_memory = &area_memory_;
+    return work;
   }
 
   // Before time is spent on a plan that won't do, or on a spacing that is hopelessly fine. Where a plan did for such
@@ -224,8 +234,8 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   void complete(const MeshMemoryView &mesh, qses_report *report) {
     report->work_bytes_peak = executor_.arena().peak() + memory_.outside_arena(executor_);
     report->mesh_bytes = mesh.bytes;
-    report->host_bytes_peak =
-        atoms_.bytes() + components_.bytes() + memory_.host_bytes() + (Executor::kIsCuda ? 0 : report->work_bytes_peak);
+    report->host_bytes_peak = atoms_.bytes() + components_.bytes() + area_memory_.size() + memory_.host_bytes() +
+                              (Executor::kIsCuda ? 0 : report->work_bytes_peak);
     for (const auto &stage : timer_.collect()) {
       if (report->stage_count == QSES_MAX_STAGES) break;
       qses_stage_time &out = report->stages[report->stage_count++];
@@ -258,7 +268,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     LevelWork<Counting, NoTimer> work{counted, timer,       memory, components, rooms_, progress,
                                       table_,  in.settings, plan,   &facts,     &report};
     prepare_frame(work, in);
-    enter_level(work, spacing_);
+    if (work.makes_mesh) enter_level(work, spacing_);
     build_level(work);
     return counted.arena().peak();
   }
@@ -292,6 +302,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   AtomPool<typename Executor::HostSource> atoms_;
   MeshMemory<Executor> memory_;
   ComponentFinder components_;
+  GrowingBuffer<HostMemory> area_memory_;
   uint64_t budget_;
   LearntRooms<Executor> rooms_;
   // Of the last computation of so many atoms with this largest inflated radius and finest spacing: where the ladder

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The whole order on one page: atoms -> neighbour grid -> solvent features, once for all levels; then for each level
-// bricks -> signs -> marching cubes -> projection -> relaxation (methods/), measures, components, visible atoms, boxes
+// bricks -> signs -> marching cubes -> projection -> relaxation (methods/), measures, components, what is shown, boxes
 // for picking. Run on a CountingExecutor, it tells what memory that takes.
 #pragma once
 
@@ -11,8 +11,10 @@
 #include "surface/methods/hard_edges.h"
 #include "surface/methods/size_check.h"
 #include "surface/methods/visible_mask.h"
+#include "surface/stages/atom_measures.h"
 #include "surface/stages/atoms.h"
 #include "surface/stages/measure.h"
+#include "surface/stages/owner_areas.h"
 #include "surface/stages/pick_boxes.h"
 
 namespace quickses {
@@ -42,6 +44,28 @@ inline SurfaceParameters parameters_of(const FrameInput &in) {
   return p;
 }
 
+// Where area and volume come from.
+inline qses_measured_by measured_by(const FrameInput &in) {
+  const qses_settings &s = in.settings;
+  if (!s.measure) return QSES_MEASURED_BY_NOTHING;
+  if (s.method == QSES_METHOD_GRID) return QSES_MEASURED_BY_TRIANGLES;
+  return parameters_of(in).is_of_balls() ? QSES_MEASURED_BY_ATOMS : QSES_MEASURED_BY_NORMALS;
+}
+
+// Whether vertices where sheets of the surface meet keep the normals of both.
+inline bool needs_side_normals(const FrameInput &in) {
+  const qses_settings &s = in.settings;
+  const bool is_measured = wants_components(s) || s.atom_areas || s.measure;
+  return s.method == QSES_METHOD_EXACT && (s.creases || s.hard_edges || is_measured);
+}
+
+// Whether there is something to be made at each level, or only numbers of the atoms.
+inline bool makes_mesh(const FrameInput &in) {
+  const qses_settings &s = in.settings;
+  return s.delivery != QSES_DELIVERY_NONE || wants_components(s) || s.method == QSES_METHOD_GRID ||
+         !parameters_of(in).is_of_balls();
+}
+
 // Something the host has per atom, where the back end reads it.
 template <class Executor, class T>
 const T *bring(Executor &executor, const T *host, size_t n) {
@@ -49,6 +73,38 @@ const T *bring(Executor &executor, const T *host, size_t n) {
   Span<T> copy = executor.template allocate<T>(n);
   executor.upload(copy.data, host, n);
   return copy.data;
+}
+
+// Areas of all atoms on the host, by whoever fills them in where the back end can.
+template <class Work, class Fill>
+Span<const double> bring_areas(Work &work, const Fill &fill) {
+  auto &executor = work.executor;
+  using Executor = std::remove_reference_t<decltype(executor)>;
+  const size_t n = work.atoms.count;
+  const auto mark = executor.arena().mark();
+  double *on_host = nullptr;
+  if (!Executor::kCounts) on_host = static_cast<double *>(work.area_memory->reserve(n * sizeof(double)));
+  double *const areas = Executor::kIsCuda ? executor.template allocate<double>(n).data : on_host;
+  fill(areas);
+  if (Executor::kIsCuda) {
+    executor.download(on_host, areas, n);
+    executor.wait();
+  }
+  executor.arena().rewind(mark);
+  return {on_host, n};
+}
+
+// Area and volume from the atoms, and what each of them has.
+template <class Work>
+void measure_by_atoms(Work &work, const SolventFeatures &features) {
+  work.timer.begin("measure");
+  const auto measure_into = [&](double *areas) {
+    work.atom_measures = measure_atoms(work.executor, work.atoms, features, areas);
+  };
+  if (work.settings.atom_areas)
+    work.atom_areas = bring_areas(work, measure_into);
+  else
+    measure_into(nullptr);
 }
 
 // What all levels of a frame share. It fills in the work: atoms, features, appearance, and where they are.
@@ -61,13 +117,17 @@ void prepare_frame(Work &work, const FrameInput &in) {
   work.facts->atoms = set.count;
   work.parameters = parameters_of(in);
   work.shape = shape_of(in.settings, !look.colors.empty());
-  work.hard_edges = in.settings.hard_edges && in.settings.method == QSES_METHOD_EXACT;
-  work.purpose = look.visible.empty() && !work.hard_edges ? MeshPurpose::kDelivered : MeshPurpose::kWork;
+  work.makes_mesh = makes_mesh(in);
+  const bool is_delivered = in.settings.delivery != QSES_DELIVERY_NONE;
+  work.is_cut = is_delivered && (!look.visible.empty() || in.settings.outer_only);
+  work.hard_edges = is_delivered && in.settings.hard_edges && in.settings.method == QSES_METHOD_EXACT;
+  work.purpose = is_delivered && !work.is_cut && !work.hard_edges ? MeshPurpose::kDelivered : MeshPurpose::kWork;
+  work.made_shape = work.shape;
+  work.made_shape.component_ids |= in.settings.outer_only && is_delivered;
   work.lattice = center_lattice(set.bounds, frame_spacing(levels_of(in.settings)));
   work.low = to_centered(work.lattice, set.bounds.low);
   work.high = to_centered(work.lattice, set.bounds.high);
-  work.side_normals =
-      in.settings.method == QSES_METHOD_EXACT && (in.settings.creases || in.settings.hard_edges || in.settings.measure);
+  work.side_normals = needs_side_normals(in);
   work.appearance = {bring(executor, look.visible.data(), look.visible.size()),
                      bring(executor, look.colors.data(), look.colors.size()),
                      bring(executor, look.texcoords.data(), look.texcoords.size())};
@@ -80,7 +140,11 @@ void prepare_frame(Work &work, const FrameInput &in) {
     return centered;
   });
   remove_contained_atoms(executor, work.atoms, work.parameters.max_radius);
-  if (in.settings.method == QSES_METHOD_EXACT) work.features = find_features(work);
+  if (in.settings.method != QSES_METHOD_EXACT) return;
+  const SolventFeatures features = list_features(work);
+  if (work.parameters.is_of_balls() && (in.settings.measure || in.settings.atom_areas))
+    measure_by_atoms(work, features);
+  if (work.makes_mesh) work.features = arrange_features(work, features);
 }
 
 // The work turns to the level with this spacing.
@@ -91,7 +155,22 @@ void enter_level(Work &work, float spacing) {
   work.lattice = layout_lattice(work.lattice, work.low, work.high, work.parameters.max_radius);
 }
 
-// The mesh of all atoms, measured; then of those that are visible, and with hard edges.
+// What is shown of the mesh of all atoms.
+template <class Work>
+MeshMemoryView cut_surface(Work &work, const MeshMemoryView &whole) {
+  ShownParts shown{work.appearance.visible, nullptr};
+  if (work.settings.outer_only) {
+    const Span<const uint8_t> outer = work.components.outer(whole.components);
+    shown.components = bring(work.executor, outer.data, outer.size);
+  }
+  MeshMemoryView mesh = drop_hidden(work, whole, shown, work.hard_edges ? MeshPurpose::kWork : MeshPurpose::kDelivered);
+  mesh.components = whole.components;
+  mesh.atom_areas = whole.atom_areas;
+  mesh.bounds = find_bounds(work.executor, mesh.view, MeshCounts{mesh.vertices, mesh.triangles});
+  return mesh;
+}
+
+// The mesh of all atoms, measured; then what is shown of it, with hard edges if they are asked for.
 template <class Work>
 MeshMemoryView build_surface(Work &work) {
   auto &executor = work.executor;
@@ -101,23 +180,29 @@ MeshMemoryView build_surface(Work &work) {
   work.timer.begin("measure");
   const MeshCounts counts{mesh.vertices, mesh.triangles};
   if (work.settings.measure) {
-    const Measures m = measure(executor, mesh.view, counts, mesh.unplaced, &work.report->unplaced_vertices);
-    work.report->area = m.area;
-    work.report->volume = m.volume;
+    // Only the solvent-excluded surface is measured along its normals: of balls the atoms know better.
+    const bool bent = work.report->measured_by == QSES_MEASURED_BY_NORMALS;
+    const Measures m = measure(executor, mesh.view, counts, bent, mesh.unplaced, &work.report->unplaced_vertices);
+    work.report->area = m.sums.area;
+    work.report->volume = m.sums.volume;
+    work.report->triangle_area = m.sums.flat_area;
+    work.report->triangle_volume = m.sums.flat_volume;
     mesh.bounds = m.bounds;
   } else {
     mesh.bounds = find_bounds(executor, mesh.view, counts, mesh.unplaced, &work.report->unplaced_vertices);
   }
-  if (work.settings.components) {
+  if (work.settings.atom_areas && !work.parameters.is_of_balls())
+    mesh.atom_areas = bring_areas(work, [&](double *areas) {
+      measure_owners(executor, mesh.view, mesh.triangles, work.parameters.spacing, true, work.atoms.count, areas);
+    });
+  if (wants_components(work.settings)) {
     work.timer.begin("components");
-    mesh.components = work.components.find(executor, mesh, work.parameters.spacing);
+    const bool bent = work.settings.method == QSES_METHOD_EXACT;
+    mesh.components = work.components.find(executor, mesh, work.parameters.spacing, bent);
   }
-  if (work.appearance.visible && mesh.vertices > 0) {
+  if (work.is_cut && mesh.vertices > 0) {
     work.timer.begin("visible_mask");
-    const Span<const qses_component> components = mesh.components;
-    mesh = drop_hidden(work, mesh, work.hard_edges ? MeshPurpose::kWork : MeshPurpose::kDelivered);
-    mesh.components = components;
-    mesh.bounds = find_bounds(executor, mesh.view, MeshCounts{mesh.vertices, mesh.triangles});
+    mesh = cut_surface(work, mesh);
   }
   if (work.hard_edges && mesh.vertices > 0) {
     work.timer.begin("hard_edges");
@@ -129,13 +214,21 @@ MeshMemoryView build_surface(Work &work) {
 // The mesh of the level, in memory of the arena and of the slots.
 template <class Work>
 MeshMemoryView build_level(Work &work) {
-  MeshMemoryView mesh = build_surface(work);
-  work.timer.begin("vertices");
-  complete_vertices(work, &mesh);
+  MeshMemoryView mesh{};
+  if (work.makes_mesh) mesh = build_surface(work);
+  if (work.settings.delivery != QSES_DELIVERY_NONE) {
+    work.timer.begin("vertices");
+    complete_vertices(work, &mesh);
+  }
   if (work.shape.boxes) {
     work.timer.begin("pick_boxes");
     fill_pick_boxes(work.executor, mesh.view, mesh.triangles);
   }
+  if (work.report->measured_by == QSES_MEASURED_BY_ATOMS) {
+    work.report->area = work.atom_measures.area;
+    work.report->volume = work.atom_measures.volume;
+  }
+  if (work.atom_areas.size > 0) mesh.atom_areas = work.atom_areas;
   return mesh;
 }
 

@@ -180,8 +180,8 @@ namespace QuickSes.Tests
                 found[k] = component.Volume;
             }
             Array.Sort(found);
-            for (int k = 0; k < 3; ++k) // the mesh lies inside of the sphere
-                Assert.That(found[k] / (4.0 / 3 * Math.PI * Math.Pow(radii[k], 3)), Is.InRange(0.98, 1.0));
+            for (int k = 0; k < 3; ++k)
+                Assert.That(found[k], Is.EqualTo(4.0 / 3 * Math.PI * Math.Pow(radii[k], 3)).Within(0.1).Percent);
             Assert.That(triangles, Is.EqualTo(mesh.TriangleCount));
             context.TryGetReport(out SurfaceReport report);
             Assert.That(area, Is.EqualTo(report.Area).Within(1e-9).Percent);
@@ -189,6 +189,75 @@ namespace QuickSes.Tests
 
             Meshes.Compute(context, settings);
             Assert.That(() => mesh.Components.Length, Throws.InvalidOperationException);
+        }
+
+        [Test]
+        public void ComponentsHavePlacesAndVerticesTheirNumbers()
+        {
+            using var context = new SurfaceContext();
+            context.SetAtoms(new float[] { 0, 0, 0, 20, 0, 0, 0, 30, 0, 1, 30, 0 }, new float[] { 1.5f, 2, 3, 3 });
+            SurfaceSettings settings = SurfaceSettings.Default;
+            settings.Components = true;
+            Assert.That(settings.ComponentIds, Is.False);
+            Assert.That(Meshes.Compute(context, settings).ComponentIds.IsEmpty, Is.True);
+            Assert.That(() => Meshes.Compute(context, settings).GetComponentAtoms(), Throws.TypeOf<QuickSesException>());
+            settings.Components = false;
+            settings.ComponentIds = true;
+            SurfaceMeshView mesh = Meshes.Compute(context, settings);
+            Assert.That(mesh.Components.Length, Is.EqualTo(3));
+            Assert.That(mesh.ComponentIds.Length, Is.EqualTo(mesh.VertexCount));
+            uint[][] atoms = mesh.GetComponentAtoms();
+            Assert.That(atoms.Length, Is.EqualTo(3));
+            var centers = new (float X, float Y, float Z)[] { (0, 0, 0), (20, 0, 0), (0.5f, 30, 0) };
+            for (int k = 0; k < 3; ++k)
+            {
+                SurfaceComponent component = mesh.Components[k];
+                int which = component.Center.Y > 10 ? 2 : component.Center.X > 10 ? 1 : 0;
+                Assert.That(component.Center.X, Is.EqualTo(centers[which].X).Within(0.01));
+                Assert.That(component.Center.Y, Is.EqualTo(centers[which].Y).Within(0.01));
+                Assert.That(component.Center.Z, Is.EqualTo(centers[which].Z).Within(0.01));
+                Assert.That(atoms[k], Is.EqualTo(which == 2 ? new uint[] { 2, 3 } : new[] { (uint)which }));
+                float low = float.PositiveInfinity, high = float.NegativeInfinity;
+                for (int v = 0; v < mesh.VertexCount; ++v)
+                {
+                    if (mesh.ComponentIds[v] != k) continue;
+                    low = Math.Min(low, mesh.Positions[3 * v]);
+                    high = Math.Max(high, mesh.Positions[3 * v]);
+                }
+                Assert.That((component.BoundsMin.X, component.BoundsMax.X), Is.EqualTo((low, high)));
+            }
+            Meshes.Compute(context, settings);
+            Assert.That(() => mesh.ComponentIds.Length, Throws.InvalidOperationException);
+            Assert.That(() => mesh.GetComponentAtoms(), Throws.InvalidOperationException);
+        }
+
+        [Test]
+        public void CavitiesCanBeLeftOut()
+        {
+            var positions = new float[3 * 500];
+            var radii = new float[500];
+            for (int i = 0; i < 500; ++i) // all over a sphere
+            {
+                double up = 1 - (2 * i + 1) / 500.0, turn = Math.PI * (3 - Math.Sqrt(5)) * i;
+                double across = 6 * Math.Sqrt(1 - up * up);
+                positions[3 * i] = (float)(across * Math.Cos(turn));
+                positions[3 * i + 1] = (float)(across * Math.Sin(turn));
+                positions[3 * i + 2] = (float)(6 * up);
+                radii[i] = 1.7f;
+            }
+            using var context = new SurfaceContext();
+            context.SetAtoms(positions, radii);
+            SurfaceSettings settings = SurfaceSettings.Default;
+            Assert.That(settings.OuterOnly, Is.False);
+            int whole = Meshes.Compute(context, settings).TriangleCount;
+            settings.OuterOnly = true;
+            SurfaceMeshView mesh = Meshes.Compute(context, settings);
+            Assert.That(mesh.Components.Length, Is.EqualTo(2));
+            SurfaceComponent outer = mesh.Components[0], cavity = mesh.Components[1];
+            Assert.That((outer.IsCavity, cavity.IsCavity), Is.EqualTo((false, true)));
+            Assert.That(mesh.TriangleCount, Is.EqualTo(outer.Triangles));
+            Assert.That(outer.Triangles + cavity.Triangles, Is.EqualTo(whole));
+            Assert.That(mesh.BoundsMax, Is.EqualTo(outer.BoundsMax));
         }
 
         [Test]

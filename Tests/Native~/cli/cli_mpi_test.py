@@ -73,6 +73,16 @@ class Sharing(MpiTest):
     def test_the_results_are_those_of_one_process(self):
         self.compare("t.dcd", OK)
 
+    def test_measurements_are_those_of_one_process(self):
+        arguments = ["measure", "top.pdb", "--trajectory", "bad.dcd", "--surface", "sas,ses"]
+        tables = ["--csv", "--per-residue", "--per-atom"]
+        self.run_cpu(*arguments, *(word for flag in tables for word in (flag, "one" + flag)), code=FRAMES_FAILED)
+        for count in (2, 4):
+            self.run_processes(count, *arguments, *(word for flag in tables for word in (flag, "all" + flag)),
+                               code=FRAMES_FAILED)
+            for flag in tables:
+                self.assertEqual(self.read("all" + flag), self.read("one" + flag))
+
     def test_damaged_frames_do_not_lose_the_others(self):
         self.compare("bad.dcd", FRAMES_FAILED)
 

@@ -390,8 +390,14 @@ class Output(ProgramTest):
         text = self.run_program("--help").stdout
         for part in ("-i,", "-o,", "-v,", "-l,", "-s,", "--probe", "--surface", "--method", "--backend", "--device",
                      "--threads", "--memory", "--radii", "--no-water", "--no-hetero", "--no-hydrogen", "--select",
-                     "--model", "--hard-edges", "--max-input", "--json", "--quiet", "--version", "bench", "Exit codes"):
+                     "--model", "--max-input", "--json", "--quiet", "--version", "bench", "Exit codes", "measure", "cavities",
+                     "--outer", "--component-ids", "--per-atom", "--per-residue", "--hard-edges", "--creases"):
             self.assertIn(part, text)
+        for command, parts in (("measure", ["--surface", "--per-atom", "--per-residue", "--trajectory", "--csv"]),
+                               ("cavities", ["--csv", "--method", "--select"]), ("bench", ["--repeat"])):
+            text = self.run_program(command, "--help").stdout
+            for part in parts + ["INPUT" if command != "bench" else "FILE", "Exit codes"]:
+                self.assertIn(part, text)
         self.assertRegex(self.run_program("--version").stdout, r"^quickses \d+\.\d+\.\d+\S*\n$")
 
 
@@ -417,8 +423,15 @@ class Report(ProgramTest):
         for axis in range(3):
             for side, extreme in ((0, min), (1, max)):
                 self.assertAlmostEqual(mesh["bounds"][side][axis], extreme(v[axis] for v in vertices), delta=1e-4)
-        self.assertAlmostEqual(report["area"], area_of(vertices, faces), delta=1e-4 * report["area"])
-        self.assertAlmostEqual(report["volume"], volume_of(vertices, faces), delta=1e-4 * report["volume"])
+        self.assertAlmostEqual(report["triangle_area"], area_of(vertices, faces), delta=1e-4 * report["area"])
+        self.assertAlmostEqual(report["triangle_volume"], volume_of(vertices, faces), delta=1e-4 * report["volume"])
+        self.assertEqual(report["measured_by"], "normals")
+        self.assertAlmostEqual(report["area"], CRAMBIN_AREA, delta=1e-3 * CRAMBIN_AREA)
+        self.assertAlmostEqual(report["volume"], CRAMBIN_VOLUME, delta=5e-4 * CRAMBIN_VOLUME)
+        for surface, by in (("sas", "atoms"), ("vdw", "atoms")):
+            self.assertEqual(self.report_of(CRAMBIN, "--surface", surface)["measured_by"], by)
+        grid = self.report_of(CRAMBIN, "--method", "grid")
+        self.assertEqual((grid["measured_by"], grid["area"]), ("triangles", grid["triangle_area"]))
         for key in ("read", "compute", "write"):
             self.assertGreater(report["time_ms"][key], 0)
         self.assertTrue(report["time_ms"]["stages"])
@@ -432,6 +445,10 @@ class Report(ProgramTest):
         self.assertEqual(sum(piece["triangles"] for piece in pieces), report["mesh"]["triangles"])
         self.assertAlmostEqual(sum(piece["area"] for piece in pieces), report["area"], delta=1e-4 * report["area"])
         self.assertAlmostEqual(sum(piece["volume"] for piece in pieces), report["volume"], delta=1e-4 * report["volume"])
+        for piece in pieces:
+            for axis in range(3):
+                self.assertLessEqual(piece["bounds"][0][axis], piece["center"][axis])
+                self.assertLessEqual(piece["center"][axis], piece["bounds"][1][axis])
 
     def test_a_sphere_a_cavity_and_their_signs(self):
         self.write("one.xyzr", "0 0 0 2\n")

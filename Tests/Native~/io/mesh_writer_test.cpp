@@ -25,6 +25,7 @@ struct Tetrahedron {
                                   3e-39f,      -98765.4321f, 5,         std::numeric_limits<float>::min()};
   std::vector<float> normals = {0.6f, 0.8f, 0, 0, 0.70710678f, 0.70710678f, -1, 0, 0, 0, -1.0f / 3, 0.94280905f};
   std::vector<uint32_t> owners = {0, 7, 100000, 3};
+  std::vector<uint32_t> component_ids = {0, 5, 1, 70000};
   std::vector<uint8_t> patches = {0, 1, 2, 1};
   std::vector<uint32_t> indices = {0, 1, 2, 0, 3, 1, 1, 3, 2, 2, 3, 0};
 
@@ -106,9 +107,11 @@ TEST_F(MeshWriterTest, ObjHasThePlaceOfARepeatedVertexOnce) {
 
 TEST_F(MeshWriterTest, PlyKeepsEveryBit) {
   const Tetrahedron mesh;
-  for (const bool with_patches : {false, true}) {
+  for (const int kind : {0, 1, 2, 3}) {
+    const bool with_patches = kind % 2 != 0, with_components = kind > 1;
     MeshView view = mesh.view();
     if (with_patches) view.patches = mesh.patches.data();
+    if (with_components) view.component_ids = mesh.component_ids.data();
     write_mesh(path("a.ply"), view, MeshFormat::kPly);
     const std::string bytes = slurp(path("a.ply"));
     const std::string end = "end_header\n";
@@ -119,6 +122,7 @@ TEST_F(MeshWriterTest, PlyKeepsEveryBit) {
     EXPECT_EQ(header, std::string("ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty float x\n"
                                   "property float y\nproperty float z\nproperty float nx\nproperty float ny\n"
                                   "property float nz\nproperty int owner\n") +
+                          (with_components ? "property int component\n" : "") +
                           (with_patches ? "property uchar patch\n" : "") +
                           "element face 4\nproperty list uchar uint vertex_indices\n");
     at += end.size();
@@ -128,6 +132,9 @@ TEST_F(MeshWriterTest, PlyKeepsEveryBit) {
       EXPECT_EQ(std::memcmp(vertex, &mesh.positions[3 * i], 12), 0);
       EXPECT_EQ(std::memcmp(vertex + 3, &mesh.normals[3 * i], 12), 0);
       EXPECT_EQ(take<uint32_t>(bytes, at), mesh.owners[i]);
+      if (with_components) {
+        EXPECT_EQ(take<uint32_t>(bytes, at), mesh.component_ids[i]);
+      }
       if (with_patches) {
         EXPECT_EQ(take<uint8_t>(bytes, at), mesh.patches[i]);
       }

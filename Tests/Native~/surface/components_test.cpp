@@ -15,11 +15,20 @@ namespace {
 using namespace quickses;
 using mesh_checks::Mesh;
 
+MeshView view_of(Mesh &m, bool reversed = false) {
+  MeshView view;
+  view.positions = m.positions.data();
+  view.indices = m.indices.data();
+  view.reversed = reversed;
+  return view;
+}
+
 std::vector<qses_component> components_of(Mesh &m, unsigned threads = 2, bool reversed = false, float spacing = 0.5f) {
   CpuExecutor executor(threads);
   ComponentMemory memory;
-  const MeshView view = {m.positions.data(), nullptr, nullptr, nullptr, m.indices.data(), reversed};
-  const auto found = find_components(executor, view, MeshCounts{m.vertex_count(), m.triangle_count()}, spacing, memory);
+  const MeshView view = view_of(m, reversed);
+  const auto found =
+      find_components(executor, view, MeshCounts{m.vertex_count(), m.triangle_count()}, spacing, false, memory);
   return {found.begin(), found.end()};
 }
 
@@ -30,6 +39,11 @@ void expect_same(const std::vector<qses_component> &a, const std::vector<qses_co
     EXPECT_EQ(a[k].area, b[k].area);
     EXPECT_EQ(a[k].volume, b[k].volume);
     EXPECT_EQ(a[k].is_cavity, b[k].is_cavity);
+    for (int d = 0; d < 3; ++d) {
+      EXPECT_EQ(a[k].center[d], b[k].center[d]);
+      EXPECT_EQ(a[k].bounds_min[d], b[k].bounds_min[d]);
+      EXPECT_EQ(a[k].bounds_max[d], b[k].bounds_max[d]);
+    }
   }
 }
 
@@ -58,7 +72,30 @@ TEST(Components, OfSeparateShapes) {
     EXPECT_NEAR(found[2].volume, -1.0, 1e-14);
     EXPECT_NEAR(found[2].area, 6.0, 1e-14);
     EXPECT_TRUE(found[2].is_cavity);
+    const float middle[3] = {100, 200, 300};
+    for (int d = 0; d < 3; ++d) {
+      EXPECT_NEAR(found[0].center[d], 0.25, 1e-7);
+      EXPECT_EQ(found[1].center[d], middle[d]);
+      EXPECT_EQ(found[1].bounds_min[d], middle[d] - 2);
+      EXPECT_EQ(found[1].bounds_max[d], middle[d] + 2);
+      EXPECT_EQ(found[2].center[d], middle[d]);
+      EXPECT_EQ(found[2].bounds_min[d], middle[d] - 0.5f);
+      EXPECT_EQ(found[2].bounds_max[d], middle[d] + 0.5f);
+    }
   }
+}
+
+// Two sides of the same triangle: there is no volume whose centre could be told.
+TEST(Components, WithoutAVolumeAreCentredInTheirBox) {
+  Mesh m;
+  m.positions = {1, 2, 3, 4, 2, 3, 1, 6, 3};
+  m.indices = {0, 1, 2, 0, 2, 1};
+  const std::vector<qses_component> found = components_of(m);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].volume, 0);
+  EXPECT_EQ(found[0].center[0], 2.5f);
+  EXPECT_EQ(found[0].center[1], 4.f);
+  EXPECT_EQ(found[0].center[2], 3.f);
 }
 
 // Vertices and triangles in random order: long chains of hooks.
@@ -117,7 +154,7 @@ TEST(Components, LabelIsTheSmallestVertex) {
   mesh_shapes::append(m, mesh_shapes::cube());
   CpuExecutor executor(2);
   std::vector<uint32_t> labels(m.vertex_count(), 99);
-  const MeshView view = {m.positions.data(), nullptr, nullptr, nullptr, m.indices.data(), false};
+  const MeshView view = view_of(m);
   label_components(executor, view, MeshCounts{m.vertex_count(), m.triangle_count()}, labels.data());
   for (size_t v = 0; v < labels.size(); ++v) EXPECT_EQ(labels[v], v < 6 ? 0u : 6u);
 }
@@ -135,6 +172,7 @@ TEST(Components, KeepTheirDigits) {
     Mesh sphere = mesh_shapes::sphere(6);
     mesh_shapes::scale_and_move(sphere, 100, 1 << 16, -(1 << 15), 1 << 14);
     EXPECT_NEAR(found[0].area, mesh_checks::area(sphere), 1e-11 * found[0].area) << spacing;
+    for (int d = 0; d < 3; ++d) EXPECT_NEAR(found[0].center[d], d == 0 ? 1 << 16 : d == 1 ? -(1 << 15) : 1 << 14, 1e-2);
     EXPECT_NEAR(found[1].area, 24 * std::pow(0.0078125, 2), 1e-12) << spacing;
     EXPECT_NEAR(found[1].volume, 8 * std::pow(0.0078125, 3), 1e-12) << spacing;
   }

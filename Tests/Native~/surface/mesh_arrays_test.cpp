@@ -11,13 +11,14 @@ namespace {
 using namespace quickses;
 
 TEST(MeshArrays, EveryByteBelongsToOneAttribute) {
-  for (unsigned kind = 0; kind < 24; ++kind)
+  for (unsigned kind = 0; kind < 48; ++kind)
     for (const uint32_t vertices : {0u, 1u, 7u, 65u}) {
       MeshShape shape;
-      shape.layout = static_cast<qses_vertex_layout>(kind / 8);
+      shape.layout = static_cast<qses_vertex_layout>(kind / 16);
       shape.colors = (kind & 1) != 0;
       shape.texcoords = (kind & 2) != 0;
       shape.patches = (kind & 4) != 0;
+      shape.component_ids = (kind & 8) != 0;
       const uint32_t triangles = 2 * vertices + 1;
       const MeshArrays arrays(vertices, triangles, shape);
       std::vector<uint32_t> memory(arrays.bytes() / 4 + 1);
@@ -39,6 +40,7 @@ TEST(MeshArrays, EveryByteBelongsToOneAttribute) {
         if (view.colors) write(view.color(v), 4, 4);
         if (view.texcoords) write(view.texcoord(v), 8, 4);
         write(&view.owner(v), 4, 4);
+        if (view.component_ids) write(&view.component_id(v), 4, 4);
         if (view.patches) write(&view.patch(v), 1, 1);
       }
       for (uint32_t t = 0; t < triangles; ++t) write(view.triangle(t), 12, 4);

@@ -124,11 +124,46 @@ namespace QuickSes
 
         /// <summary>
         /// The connected pieces of the surface in the order of their first vertices; empty unless
-        /// <see cref="SurfaceSettings.Components"/>. Those of the whole surface where atoms are hidden. Areas and
-        /// volumes add up to those of <see cref="SurfaceReport"/>.
+        /// <see cref="SurfaceSettings.Components"/>. Those of the whole surface where atoms or cavities are left out.
+        /// Areas and volumes add up to those of <see cref="SurfaceReport"/>, if those come from the normals.
         /// </summary>
         public ReadOnlySpan<SurfaceComponent> Components =>
             new ReadOnlySpan<SurfaceComponent>(Valid(_native.Components), Length(_native.ComponentCount, 1));
+
+        /// <summary>
+        /// V: the number of the vertex's component, a place in <see cref="Components"/>; empty unless
+        /// <see cref="SurfaceSettings.ComponentIds"/>.
+        /// </summary>
+        public ReadOnlySpan<uint> ComponentIds => Attribute<uint>(_native.ComponentIds, 1);
+
+        /// <summary>
+        /// The atoms that line each component, rising: those that own its vertices. Needs
+        /// <see cref="SurfaceSettings.ComponentIds"/>; it allocates. What is left out of the mesh has none.
+        /// </summary>
+        public uint[][] GetComponentAtoms()
+        {
+            Valid(null);
+            var starts = new uint[_native.ComponentCount + 1];
+            uint[] atoms;
+            fixed (NativeMesh* mesh = &_native)
+            fixed (uint* first = starts)
+            {
+                QuickSesException.ThrowUnlessOk(
+                    NativeMethods.qses_component_atoms(mesh, first, null, UIntPtr.Zero));
+                atoms = new uint[starts[starts.Length - 1]];
+                fixed (uint* all = atoms)
+                    if (atoms.Length > 0)
+                        QuickSesException.ThrowUnlessOk(
+                            NativeMethods.qses_component_atoms(mesh, first, all, (UIntPtr)atoms.Length));
+            }
+            var found = new uint[_native.ComponentCount][];
+            for (int k = 0; k < found.Length; ++k)
+            {
+                found[k] = new uint[starts[k + 1] - starts[k]];
+                Array.Copy(atoms, (int)starts[k], found[k], 0, found[k].Length);
+            }
+            return found;
+        }
 
         /// <summary>
         /// The first vertex's position, for copies without spans. In all layouts; null for an empty mesh.

@@ -89,6 +89,17 @@ namespace QuickSes
         public bool Components { get => Native.Components != 0; set => Native.Components = value ? 1 : 0; }
 
         /// <summary>
+        /// Whether <see cref="SurfaceMeshView.ComponentIds"/> is filled, and <see cref="SurfaceMeshView.Components"/>.
+        /// </summary>
+        public bool ComponentIds { get => Native.ComponentIds != 0; set => Native.ComponentIds = value ? 1 : 0; }
+
+        /// <summary>
+        /// Whether the walls of cavities are left out of the mesh; not of area, volume and
+        /// <see cref="SurfaceMeshView.Components"/>, which are filled.
+        /// </summary>
+        public bool OuterOnly { get => Native.OuterOnly != 0; set => Native.OuterOnly = value ? 1 : 0; }
+
+        /// <summary>
         /// Any number: which series of frames a job belongs to, where one context computes several molecules in turn.
         /// <see cref="FrameBudget"/> learns from each series apart; the context remembers the
         /// <see cref="RememberedSeries"/> that were used last.

@@ -370,8 +370,8 @@ typedef struct qses_settings {
                               that light breaks where the surface does. The mesh is then closed once vertices at the same
                               place are taken for one. Default 0: one vertex, with the mean normal. Not with GRID */
   qses_bool component_ids; /* 1: qses_mesh.component_ids is filled, and the components; default 0 */
-  qses_bool outer_only;    /* 1: the walls of cavities are left out of the mesh, not of area, volume and components;
-                              default 0 */
+  qses_bool outer_only;    /* 1: the walls of cavities are left out of the mesh, not of area, volume and components,
+                              which are filled; the outer surface of what lies within a cavity stays. Default 0 */
   qses_bool atom_areas;    /* 1: qses_mesh.atom_areas is filled; default 0. Not with GRID */
 } qses_settings;
 
@@ -393,9 +393,10 @@ static inline void qses_settings_init(qses_settings *settings) {
 typedef struct qses_component {
   uint64_t triangles;
   double area;         /* Å², through the normals as qses_report.area of the SES */
-  double volume;       /* Å³, enclosed; negative for a cavity, whatever the winding */
-  qses_bool is_cavity; /* whether volume is negative */
-  float center[3];     /* Å, centre of the volume that its triangles enclose */
+  double volume;       /* Å³, enclosed, through the normals as well; negative for a cavity, whatever the winding */
+  qses_bool is_cavity; /* whether its triangles enclose a negative volume; only of specks that enclose next to nothing
+                          may `volume` say otherwise */
+  float center[3];     /* Å, centre of the volume that its triangles enclose; of its box if that is next to nothing */
   float bounds_min[3]; /* box of its vertices, Å */
   float bounds_max[3];
 } qses_component;
@@ -453,6 +454,14 @@ static inline void qses_mesh_init(qses_mesh *mesh) { qses_clear(mesh, sizeof *me
  * finished by then). */
 QSES_API qses_status qses_compute(qses_context *context, const qses_settings *settings, qses_mesh *mesh);
 
+/* Which atoms line each component of a mesh: those that own its vertices. (With qses_structure_description.residues
+ * they tell the residues of a cavity.) What is left out of the mesh, hidden or by settings.outer_only, counts for
+ * nothing. mesh    made with settings.component_ids, in host memory starts  room for component_count + 1 numbers atoms
+ * the atoms of component k become atoms[starts[k]] to atoms[starts[k + 1] - 1], rising; NULL: only starts is written,
+ * whose last number tells how much room atoms needs room    of atoms; with NULL it is ignored Errors: INVALID_ARGUMENT
+ * (also: no component_ids; too little room, after which only starts is written), OUT_OF_MEMORY. */
+QSES_API qses_status qses_component_atoms(const qses_mesh *mesh, uint32_t *starts, uint32_t *atoms, size_t room);
+
 /* The mesh of the last qses_compute or qses_collect that succeeded. Errors: INVALID_ARGUMENT, NO_RESULT. */
 QSES_API qses_status qses_context_mesh(const qses_context *context, qses_mesh *mesh);
 
@@ -488,7 +497,8 @@ typedef struct qses_report {
   uint64_t host_bytes_peak; /* host memory of the context, the mesh included, and what is kept of its meshes */
   uint64_t brick_count;     /* bricks of 8x8x8 lattice points that were evaluated */
   uint64_t slice_count;
-  uint32_t hidden_vertices; /* dropped since their atoms are hidden (qses_set_visible); else 0 */
+  uint32_t hidden_vertices; /* what of the whole surface is left out of the mesh, since its atoms are hidden
+                               (qses_set_visible) or it is of a cavity (settings.outer_only); else 0 */
   uint32_t hidden_triangles;
   qses_stage_time stages[QSES_MAX_STAGES]; /* stage_count of them, in order; filled if asked for by
                                               qses_set_stage_times */

@@ -37,16 +37,16 @@ struct BrickNeeds {
 };
 
 // Every kernel, as KERNEL(result, name, arguments...): the one list of them.
-//   find_atom_features     caps and arcs of atom i, with room for cap_room caps and arc_room arcs. Sets exposed[] for i
-//                          and for the other atoms of its exposed arcs
+//   find_atom_features     caps and arcs of atom i, with room for cap_room caps and arc_room arcs; arc_atoms may be
+//                          nullptr. Sets exposed[] for i and for the other atoms of its exposed arcs
 //   evaluate_brick_signs   the eight leaf words of a brick
 //   mark_brick_walls       ORs the lattice points into marks that thin walls of its edges need (thin_walls.h)
 //   emit_brick_vertices    the vertices a brick owns
 //   emit_brick_triangles   the triangles of a brick's cells
 #define QSES_CPU_KERNELS(KERNEL)                                                                                \
   KERNEL(AtomFeatures, find_atom_features, const NeighborGridView &atoms, const SurfaceParameters &parameters,  \
-         uint32_t i, const AtomScratch &scratch, Cap *caps, int cap_room, Arc *arcs, int64_t arc_room,          \
-         uint8_t *exposed)                                                                                      \
+         uint32_t i, const AtomScratch &scratch, Cap *caps, int cap_room, Arc *arcs, ArcAtoms *arc_atoms,       \
+         int64_t arc_room, uint8_t *exposed)                                                                    \
   KERNEL(BrickNeeds, evaluate_brick_signs, const FeatureView &features, const BrickSet &bricks, uint32_t brick, \
          const BrickScratch &scratch, uint64_t *words)                                                          \
   KERNEL(BrickNeeds, mark_brick_walls, const FeatureView &features, const BrickSet &bricks, uint32_t brick,     \

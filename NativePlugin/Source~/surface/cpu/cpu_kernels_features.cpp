@@ -172,8 +172,8 @@ bool cut_by_neighbors(const Circle &circle, const Columns &c, int n, int j, Expo
 }  // namespace
 
 AtomFeatures find_atom_features(const NeighborGridView &atoms, const SurfaceParameters &parameters, uint32_t i,
-                                const AtomScratch &scratch, Cap *caps, int cap_room, Arc *arcs, int64_t arc_room,
-                                uint8_t *exposed) {
+                                const AtomScratch &scratch, Cap *caps, int cap_room, Arc *arcs, ArcAtoms *arc_atoms,
+                                int64_t arc_room, uint8_t *exposed) {
   const Sphere self = atoms.items[i];
   if (self.center.x >= 0.5f * kFarAway) return {0, 0, 0};  // another atom contains it
   const Columns c = cut_columns(scratch);
@@ -203,7 +203,10 @@ AtomFeatures find_atom_features(const NeighborGridView &atoms, const SurfacePara
     for (int k = 0; k < (intervals.whole ? 1 : intervals.count); ++k) {
       const ExposedArc arc = exposed_arc(intervals.whole ? nullptr : &intervals.interval[k], radius);
       const int pieces = 1 << arc.halvings;
-      if (arc_count + pieces <= arc_room) write_arc_pieces(circle, self, arc, arcs + arc_count);
+      if (arc_count + pieces <= arc_room) {
+        write_arc_pieces(circle, self, arc, arcs + arc_count);
+        for (int p = 0; arc_atoms && p < pieces; ++p) arc_atoms[arc_count + p] = {i, static_cast<uint32_t>(c.index[j])};
+      }
       arc_count += pieces;
     }
   }

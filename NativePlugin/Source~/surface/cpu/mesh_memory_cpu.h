@@ -47,11 +47,11 @@ class MeshMemory<CpuKernelExecutor> {
   // Fills in both meshes and the boxes.
   void finish(const MeshMemoryView &built, const qses_settings &settings, qses_mesh *mesh, PickBoxes *boxes,
               qses_device_mesh *on_device) {
-    describe_mesh(built, &built.view, settings, mesh);
+    describe_mesh(built, settings.delivery == QSES_DELIVERY_NONE ? nullptr : &built.view, settings, mesh);
     *boxes = built.view.boxes;
     qses_device_mesh_init(on_device);
     describe_mesh(built, nullptr, settings, &on_device->mesh);
-    meshes_.own_components(mesh, &on_device->mesh);
+    meshes_.own_numbers(mesh, &on_device->mesh);
   }
 
   TableView upload_table(CpuKernelExecutor &, const MarchingCubesTable &table) {

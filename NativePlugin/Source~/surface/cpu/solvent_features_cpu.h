@@ -20,6 +20,7 @@ struct FeatureStaging {
   int capacity = 256;
   std::vector<Cap> caps;
   std::vector<Arc> arcs;
+  std::vector<ArcAtoms> arc_atoms;  // as many, if they are wanted
   size_t cap_count = 0, arc_count = 0;
   size_t most_caps = 0, most_arcs = 0;  // of any chunk so far
 
@@ -34,7 +35,14 @@ struct FeatureStaging {
     items.reserve(n);
     items.resize(n);
   }
-  uint64_t bytes() const { return memory.size() + sizeof(Cap) * caps.capacity() + sizeof(Arc) * arcs.capacity(); }
+  void grow_arcs(size_t n, bool with_atoms) {
+    grow(arcs, n);
+    if (with_atoms) grow(arc_atoms, arcs.size());
+  }
+  uint64_t bytes() const {
+    return memory.size() + sizeof(Cap) * caps.capacity() + sizeof(Arc) * arcs.capacity() +
+           sizeof(ArcAtoms) * arc_atoms.capacity();
+  }
   // As much room as another thread needed: who meets the largest atom differs from surface to surface.
   void match(const FeatureStaging &other) {
     capacity = std::max(capacity, other.capacity);
@@ -42,7 +50,9 @@ struct FeatureStaging {
     most_caps = std::max(most_caps, other.most_caps);
     most_arcs = std::max(most_arcs, other.most_arcs);
     if (caps.size() < most_caps + most_caps / 4 + kRoomPerAtom) grow(caps, most_caps + most_caps / 2 + kRoomPerAtom);
-    if (arcs.size() < most_arcs + most_arcs / 4 + kRoomPerAtom) grow(arcs, most_arcs + most_arcs / 2 + kRoomPerAtom);
+    const bool with_atoms = !other.arc_atoms.empty() || !arc_atoms.empty();
+    if (arcs.size() < most_arcs + most_arcs / 4 + kRoomPerAtom || (with_atoms && arc_atoms.size() < arcs.size()))
+      grow_arcs(most_arcs + most_arcs / 2 + kRoomPerAtom, with_atoms);
   }
 };
 
@@ -53,23 +63,27 @@ constexpr size_t kUsualCapsPerAtom = 32, kUsualArcsPerAtom = 6;
 struct FeaturePool {
   Span<Cap> caps;
   Span<Arc> arcs;
+  Span<ArcAtoms> arc_atoms;  // as many as arcs, if they are wanted
   std::atomic<size_t> cap_count{0}, arc_count{0};
-  GrowingBuffer<HostMemory> own_caps, own_arcs;
+  GrowingBuffer<HostMemory> own_caps, own_arcs, own_arc_atoms;
 
-  void open(Span<Cap> cap_room, Span<Arc> arc_room) {
+  void open(Span<Cap> cap_room, Span<Arc> arc_room, Span<ArcAtoms> arc_atom_room) {
     caps = cap_room;
     arcs = arc_room;
+    arc_atoms = arc_atom_room;
     cap_count = arc_count = 0;
   }
   // In memory of its own, kept between surfaces: at least as much, and somewhat more than was needed last time.
-  void open_own(size_t cap_room, size_t arc_room) {
+  void open_own(size_t cap_room, size_t arc_room, bool with_arc_atoms) {
     cap_room = std::max(cap_room, cap_count + cap_count / 16);
     arc_room = std::max(arc_room, arc_count + arc_count / 16);
     Cap *const cap_place = static_cast<Cap *>(own_caps.reserve(cap_room * sizeof(Cap)));
     Arc *const arc_place = static_cast<Arc *>(own_arcs.reserve(arc_room * sizeof(Arc)));
-    open({cap_place, own_caps.size() / sizeof(Cap)}, {arc_place, own_arcs.size() / sizeof(Arc)});
+    Span<ArcAtoms> atoms{nullptr, own_arcs.size() / sizeof(Arc)};
+    if (with_arc_atoms) atoms.data = static_cast<ArcAtoms *>(own_arc_atoms.reserve(atoms.size * sizeof(ArcAtoms)));
+    open({cap_place, own_caps.size() / sizeof(Cap)}, {arc_place, atoms.size}, atoms);
   }
-  uint64_t bytes() const { return own_caps.size() + own_arcs.size(); }
+  uint64_t bytes() const { return own_caps.size() + own_arcs.size() + own_arc_atoms.size(); }
   bool holds_all() const { return cap_count <= caps.size && arc_count <= arcs.size; }
 };
 
@@ -87,13 +101,13 @@ AtomFeatures find_features_of(const CpuKernels &kernels, const NeighborGridView 
   for (;;) {
     const AtomFeatures found =
         kernels.find_atom_features(atoms, parameters, static_cast<uint32_t>(i), s.scratch(), room.caps(s),
-                                   room.cap_room(s), room.arcs(s), room.arc_room(s), exposed);
+                                   room.cap_room(s), room.arcs(s), room.arc_atoms(s), room.arc_room(s), exposed);
     if (found.neighbors_needed > 0)
       s.capacity = found.neighbors_needed + found.neighbors_needed / 2;
     else if (found.cap_count > room.cap_room(s))
       FeatureStaging::grow(s.caps, s.cap_count + 2 * static_cast<size_t>(found.cap_count));
     else if (found.arc_count > room.arc_room(s))
-      FeatureStaging::grow(s.arcs, s.arc_count + 2 * static_cast<size_t>(found.arc_count));
+      s.grow_arcs(s.arc_count + 2 * static_cast<size_t>(found.arc_count), parameters.is_of_balls());
     else
       return found;
   }
@@ -101,15 +115,18 @@ AtomFeatures find_features_of(const CpuKernels &kernels, const NeighborGridView 
 
 // Behind what the thread has staged.
 struct StagedRoom {
-  static void open(FeatureStaging &s) {
+  bool with_arc_atoms;
+  void open(FeatureStaging &s) const {
     if (s.caps.size() < s.cap_count + kRoomPerAtom) FeatureStaging::grow(s.caps, 2 * (s.cap_count + kRoomPerAtom));
-    if (s.arcs.size() < s.arc_count + kRoomPerAtom) FeatureStaging::grow(s.arcs, 2 * (s.arc_count + kRoomPerAtom));
+    const size_t arcs = std::min(s.arcs.size(), with_arc_atoms ? s.arc_atoms.size() : ~size_t(0));
+    if (arcs < s.arc_count + kRoomPerAtom) s.grow_arcs(2 * (s.arc_count + kRoomPerAtom), with_arc_atoms);
   }
   Cap *caps(FeatureStaging &s) const { return s.caps.data() + s.cap_count; }
   int cap_room(FeatureStaging &s) const {
     return static_cast<int>(std::min<size_t>(s.caps.size() - s.cap_count, 1u << 30));
   }
   Arc *arcs(FeatureStaging &s) const { return s.arcs.data() + s.arc_count; }
+  ArcAtoms *arc_atoms(FeatureStaging &s) const { return with_arc_atoms ? s.arc_atoms.data() + s.arc_count : nullptr; }
   int64_t arc_room(FeatureStaging &s) const { return static_cast<int64_t>(s.arcs.size() - s.arc_count); }
 };
 
@@ -126,9 +143,10 @@ struct FindChunkFeatures {
   void operator()(SoloTeam, FeatureStaging &s, size_t chunk) const {
     s.cap_count = s.arc_count = 0;
     const size_t end = std::min<size_t>(atoms->count, (chunk + 1) * atoms_per_chunk);
+    const StagedRoom room{parameters->is_of_balls()};
     for (size_t i = chunk * atoms_per_chunk; i < end; ++i) {
-      StagedRoom::open(s);
-      const AtomFeatures found = find_features_of(*kernels, *atoms, *parameters, i, s, exposed, StagedRoom{});
+      room.open(s);
+      const AtomFeatures found = find_features_of(*kernels, *atoms, *parameters, i, s, exposed, room);
       cap_ranges[i] = {static_cast<uint32_t>(s.cap_count), found.cap_count};
       s.cap_count += static_cast<size_t>(found.cap_count);
       s.arc_count += static_cast<size_t>(found.arc_count);
@@ -140,6 +158,7 @@ struct FindChunkFeatures {
     if (c.first_cap + c.cap_count <= pool->caps.size && c.first_arc + c.arc_count <= pool->arcs.size) {
       std::copy_n(s.caps.data(), c.cap_count, pool->caps.data + c.first_cap);
       std::copy_n(s.arcs.data(), c.arc_count, pool->arcs.data + c.first_arc);
+      if (room.with_arc_atoms) std::copy_n(s.arc_atoms.data(), c.arc_count, pool->arc_atoms.data + c.first_arc);
     }
   }
 };
@@ -154,9 +173,11 @@ struct CollectChunk {
   CapRange *cap_ranges;
   Cap *caps;
   Arc *arcs;
+  ArcAtoms *arc_atoms;  // nullptr: not wanted
   void operator()(size_t chunk) const {
     const FeatureChunk &c = chunks[chunk];
     std::copy_n(pool->arcs.data + c.first_arc, c.arc_count, arcs + arc_base[chunk]);
+    if (arc_atoms) std::copy_n(pool->arc_atoms.data + c.first_arc, c.arc_count, arc_atoms + arc_base[chunk]);
     const size_t end = std::min(atoms, (chunk + 1) * atoms_per_chunk);
     for (size_t i = chunk * atoms_per_chunk; i < end; ++i) {
       if (exposed[i])
@@ -185,10 +206,12 @@ struct FinalRoom {
   Cap *cap_place;  // nullptr: buried
   int cap_count;
   Arc *arc_place;
+  ArcAtoms *arc_atom_place;  // nullptr: not wanted
   int64_t arc_count;
   Cap *caps(FeatureStaging &s) const { return cap_place ? cap_place : s.caps.data(); }
-  int cap_room(FeatureStaging &s) const { return cap_place ? cap_count : StagedRoom{}.cap_room(s); }
+  int cap_room(FeatureStaging &s) const { return cap_place ? cap_count : StagedRoom{false}.cap_room(s); }
   Arc *arcs(FeatureStaging &) const { return arc_place; }
+  ArcAtoms *arc_atoms(FeatureStaging &) const { return arc_atom_place; }
   int64_t arc_room(FeatureStaging &) const { return arc_count; }
 };
 
@@ -203,15 +226,16 @@ struct PlaceChunkFeatures {
   uint8_t *exposed;
   Cap *caps;
   Arc *arcs;
+  ArcAtoms *arc_atoms;  // nullptr: not wanted
   void operator()(SoloTeam, FeatureStaging &s, size_t chunk) const {
     s.cap_count = s.arc_count = 0;
     const size_t end = std::min<size_t>(atoms->count, (chunk + 1) * atoms_per_chunk);
     uint64_t arc = arc_base[chunk];
     for (size_t i = chunk * atoms_per_chunk; i < end; ++i) {
-      StagedRoom::open(s);
+      StagedRoom{false}.open(s);
       const bool open = exposed[i] != 0;
       const FinalRoom room{open ? caps + cap_first[i] : nullptr, cap_ranges[i].count, arcs + arc,
-                           static_cast<int64_t>(arc_base[chunk + 1] - arc)};
+                           arc_atoms ? arc_atoms + arc : nullptr, static_cast<int64_t>(arc_base[chunk + 1] - arc)};
       const AtomFeatures found = find_features_of(*kernels, *atoms, *parameters, i, s, exposed, room);
       cap_ranges[i] = {static_cast<uint32_t>(cap_first[i]), open ? found.cap_count : kBuriedAtom};
       arc += static_cast<uint64_t>(found.arc_count);
@@ -243,25 +267,28 @@ struct FeatureArrays {
 struct PooledFeatures {
   Span<Cap> caps;
   Span<Arc> arcs;
+  Span<ArcAtoms> arc_atoms{};
   template <class Room>
-  PooledFeatures(Room &room, size_t atoms) {
+  PooledFeatures(Room &room, size_t atoms, bool with_arc_atoms) {
     const size_t cap_count = atoms * kUsualCapsPerAtom, arc_count = atoms * kUsualArcsPerAtom;
-    room.template allocate<char>(cap_count * sizeof(Cap) + arc_count * sizeof(Arc) + 512);
+    const size_t arc_bytes = sizeof(Arc) + (with_arc_atoms ? sizeof(ArcAtoms) : 0);
+    room.template allocate<char>(cap_count * sizeof(Cap) + arc_count * arc_bytes + 768);
     caps = room.template allocate<Cap>(cap_count);
     arcs = room.template allocate<Arc>(arc_count);
+    if (with_arc_atoms) arc_atoms = room.template allocate<ArcAtoms>(arc_count);
   }
 };
 
 // A pool for n atoms. With a budget it must not take more than that; with low memory nothing.
-inline FeaturePool &open_pool(CpuKernelExecutor &executor, size_t n, bool low_memory) {
+inline FeaturePool &open_pool(CpuKernelExecutor &executor, size_t n, bool with_arc_atoms, bool low_memory) {
   FeaturePool &pool = *executor.scratches<FeaturePool>().front();
   if (low_memory) {
-    pool.open({}, {});
+    pool.open({}, {}, {});
   } else if (executor.arena().has_budget()) {
-    const PooledFeatures room(executor, n);
-    pool.open(room.caps, room.arcs);
+    const PooledFeatures room(executor, n, with_arc_atoms);
+    pool.open(room.caps, room.arcs, room.arc_atoms);
   } else {
-    pool.open_own(n * kUsualCapsPerAtom, n * kUsualArcsPerAtom);
+    pool.open_own(n * kUsualCapsPerAtom, n * kUsualArcsPerAtom, with_arc_atoms);
   }
   return pool;
 }
@@ -270,7 +297,8 @@ inline void find_solvent_features(CpuKernelExecutor &executor, const NeighborGri
                                   const SurfaceParameters &parameters, bool low_memory, SolventFeatures *features) {
   const FeatureArrays a(executor, atoms.count, executor.threads());
   const auto mark = executor.arena().mark();
-  FeaturePool &pool = open_pool(executor, a.atoms, low_memory);
+  const bool with_arc_atoms = parameters.is_of_balls();
+  FeaturePool &pool = open_pool(executor, a.atoms, with_arc_atoms, low_memory);
   executor.fill(a.exposed, 0);
   executor.for_each_brick<FeatureStaging>(a.chunks,
                                           FindChunkFeatures{&executor.kernels(), &atoms, &parameters, a.atoms_per_chunk,
@@ -285,31 +313,33 @@ inline void find_solvent_features(CpuKernelExecutor &executor, const NeighborGri
   f.exposed = a.exposed;
   f.caps = executor.allocate<Cap>(a.cap_first[a.atoms]);
   f.arcs = executor.allocate<Arc>(a.arc_base[a.chunks]);
+  if (with_arc_atoms) f.arc_atoms = executor.allocate<ArcAtoms>(f.arcs.size);
   if (pool.holds_all()) {
     executor.for_each(a.chunks,
                       CollectChunk{a.table.data, &pool, a.cap_first.data, a.arc_base.data, a.atoms, a.atoms_per_chunk,
-                                   f.exposed.data, f.cap_ranges.data, f.caps.data, f.arcs.data});
+                                   f.exposed.data, f.cap_ranges.data, f.caps.data, f.arcs.data, f.arc_atoms.data});
     return;
   }
   // Next time they will fit; the room is taken now, so that this computation tells what later ones take.
-  if (!low_memory && !executor.arena().has_budget()) pool.open_own(pool.cap_count, pool.arc_count);
+  if (!low_memory && !executor.arena().has_budget()) pool.open_own(pool.cap_count, pool.arc_count, with_arc_atoms);
   executor.for_each_brick<FeatureStaging>(
       a.chunks,
       PlaceChunkFeatures{&executor.kernels(), &atoms, &parameters, a.atoms_per_chunk, a.cap_first.data, a.arc_base.data,
-                         f.cap_ranges.data, f.exposed.data, f.caps.data, f.arcs.data},
+                         f.cap_ranges.data, f.exposed.data, f.caps.data, f.arcs.data, f.arc_atoms.data},
       1);
 }
 
 // Only counted.
 inline void find_solvent_features(CountingExecutor<CpuKernelExecutor> &executor, const NeighborGridView &atoms,
-                                  const SurfaceParameters &, bool low_memory, SolventFeatures *features) {
+                                  const SurfaceParameters &parameters, bool low_memory, SolventFeatures *features) {
   const FeatureArrays a(executor, atoms.count, executor.real().threads());
   const auto mark = executor.arena().mark();
-  if (!low_memory && executor.arena().has_budget()) PooledFeatures(executor, a.atoms);
+  if (!low_memory && executor.arena().has_budget()) PooledFeatures(executor, a.atoms, parameters.is_of_balls());
   executor.exclusive_scan(a.atoms, 0, a.cap_first);
   executor.arena().rewind(mark);
   features->caps = executor.allocate<Cap>(executor.facts().caps);
   features->arcs = executor.allocate<Arc>(executor.facts().arcs);
+  if (parameters.is_of_balls()) features->arc_atoms = executor.allocate<ArcAtoms>(features->arcs.size);
 }
 
 }  // namespace quickses

@@ -46,6 +46,7 @@ struct CircleJob {
   const uint32_t *circle_first;  // per atom of the run
   uint8_t *exposed;
   Arc *arcs;
+  ArcAtoms *arc_atoms;  // of each arc; nullptr: not wanted
   // Made by find_arcs().
   CircleName *names = nullptr;     // of the circles, by atom and rank
   uint32_t *arc_count = nullptr;   // per circle: pieces of arcs
@@ -295,7 +296,10 @@ static __global__ __launch_bounds__(128) void write_arcs_kernel(LaunchItems item
     for (uint32_t k = 0; k < staged_circle.count; ++k) {
       const ExposedArc arc = job.staged_arcs[staged_circle.first + k];
       const uint32_t pieces = 1u << arc.halvings;
-      if (place + size_t(pieces) <= job.room.arcs) write_arc_pieces(c.circle, atom, arc, job.arcs + place);
+      if (place + size_t(pieces) <= job.room.arcs) {
+        write_arc_pieces(c.circle, atom, arc, job.arcs + place);
+        for (uint32_t p = 0; job.arc_atoms && p < pieces; ++p) job.arc_atoms[place + p] = {c.atom, c.other};
+      }
       place += pieces;
     }
   }

@@ -94,7 +94,7 @@ class MeshMemory<CudaExecutor> {
   void finish(const MeshMemoryView &built, const qses_settings &settings, qses_mesh *mesh, PickBoxes *boxes,
               qses_device_mesh *on_device) {
     const MeshArrays arrays(built.vertices, built.triangles, built.shape);
-    const bool to_host = settings.delivery != QSES_DELIVERY_DEVICE;
+    const bool to_host = settings.delivery == QSES_DELIVERY_HOST || settings.delivery == QSES_DELIVERY_BOTH;
     MeshView host = built.view;
     if (built.vertices > 0 && to_host) {
       if (!built.in_pieces) {
@@ -110,7 +110,7 @@ class MeshMemory<CudaExecutor> {
     on_device->device = executor_.device();
     on_device->stream = executor_.stream();
     describe_mesh(built, keep_ ? &built.view : nullptr, settings, &on_device->mesh);
-    host_meshes_.own_components(mesh, &on_device->mesh);
+    host_meshes_.own_numbers(mesh, &on_device->mesh);
   }
 
   TableView upload_table(CudaExecutor &executor, const MarchingCubesTable &table) {

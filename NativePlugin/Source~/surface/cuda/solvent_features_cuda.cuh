@@ -24,12 +24,13 @@ struct FeaturePass {
   float max_radius;
   CapRange *cap_ranges;
   uint8_t *exposed;
+  bool with_arc_atoms;
 };
 
 // One attempt at the caps and arcs of a run of atoms; returns what was counted. Waits.
 template <class E>
 FeatureCounters find_run_features(E &executor, const FeaturePass &pass, AtomRun run, const FeatureRoom &room, Cap *caps,
-                                  Arc *arcs, bool memory_is_short) {
+                                  Arc *arcs, ArcAtoms *arc_atoms, bool memory_is_short) {
   const auto mark = executor.arena().mark();
   const size_t n = run.size();
   Span<FeatureCounters> counters = executor.template allocate<FeatureCounters>(1);
@@ -45,7 +46,7 @@ FeatureCounters find_run_features(E &executor, const FeaturePass &pass, AtomRun 
   executor.exclusive_scan(n, LoadNumber{circle_count.data}, circle_first);
   const ArcSearch search = find_arcs(executor,
                                      CircleJob{pass.atoms, run, room, counters.data, pass.cap_ranges, caps,
-                                               neighbors.data, circle_first.data, pass.exposed, arcs},
+                                               neighbors.data, circle_first.data, pass.exposed, arcs, arc_atoms},
                                      pass.max_radius);
   FeatureCounters found = executor.fetch(counters.data);
   while (found.unfinished_circles > 0) {
@@ -68,11 +69,14 @@ void find_all_features(E &executor, const FeaturePass &pass, CudaRooms &rooms, S
   for (const auto start = executor.arena().mark();; executor.arena().rewind(start)) {
     features->caps = executor.template allocate<Cap>(room.caps);
     features->arcs = executor.template allocate<Arc>(room.arcs);
-    const FeatureCounters found = find_run_features(executor, pass, AtomRun{0, n}, room, features->caps.data,
-                                                    features->arcs.data, executor.arena().has_budget());
+    if (pass.with_arc_atoms) features->arc_atoms = executor.template allocate<ArcAtoms>(room.arcs);
+    const FeatureCounters found =
+        find_run_features(executor, pass, AtomRun{0, n}, room, features->caps.data, features->arcs.data,
+                          features->arc_atoms.data, executor.arena().has_budget());
     if (room.holds(found)) {
       features->caps.size = static_cast<size_t>(found.caps);
       features->arcs.size = static_cast<size_t>(found.arcs);
+      if (pass.with_arc_atoms) features->arc_atoms.size = features->arcs.size;
       features->most_caps = found.longest_row;
       rooms.runs.include(FeatureRoom::of(found).scaled(2 * n, n));  // circles are counted at the earlier of two atoms
       return;
@@ -94,7 +98,7 @@ uint64_t run_bytes(E &executor, const FeaturePass &pass, uint32_t atoms, Feature
   const WorkFacts none{};
   auto counted = counting(executor, none);
   counted.template allocate<Cap>(room.caps);
-  find_run_features(counted, pass, AtomRun{0, atoms}, room, nullptr, nullptr, true);
+  find_run_features(counted, pass, AtomRun{0, atoms}, room, nullptr, nullptr, nullptr, true);
   return counted.arena().peak();
 }
 
@@ -113,6 +117,10 @@ void find_features_in_runs(E &executor, const FeaturePass &pass, const MemoryPla
     return room;
   };
   const auto before_arcs = arena.mark();
+  const auto allocate_arc_atoms = [&](size_t room) {
+    if (pass.with_arc_atoms) features->arc_atoms = executor.template allocate<ArcAtoms>(room);
+  };
+  const uint64_t arc_bytes = sizeof(Arc) + (pass.with_arc_atoms ? sizeof(ArcAtoms) : 0);
   uint64_t arc_total = 0;
   for (bool is_done = false; !is_done;) {
     arena.rewind(before_arcs);
@@ -122,9 +130,10 @@ void find_features_in_runs(E &executor, const FeaturePass &pass, const MemoryPla
     while (atoms_per_run > kLeastRun && work_bytes() > arena.available() / 4)
       atoms_per_run = std::max(kLeastRun, atoms_per_run / 2);
     const uint64_t work = work_bytes();
-    const uint64_t left = arena.available() > work ? (arena.available() - work) / sizeof(Arc) : 0;
+    const uint64_t left = arena.available() > work ? (arena.available() - work) / arc_bytes : 0;
     const uint64_t expected = std::max({rooms.features.arcs, rooms.runs.arcs, FeatureRoom::guess(n).arcs});
     const size_t arc_room = E::kCounts ? features->arcs.size : static_cast<size_t>(std::min(left, expected));
+    allocate_arc_atoms(arc_room);
     Span<Arc> arcs = executor.template allocate<Arc>(arc_room);
     arc_total = 0;
     is_done = true;
@@ -134,7 +143,9 @@ void find_features_in_runs(E &executor, const FeaturePass &pass, const MemoryPla
       room.arcs = arcs.size > arc_total ? static_cast<size_t>(arcs.size - arc_total) : 0;
       const auto mark = arena.mark();
       Cap *const caps = executor.template allocate<Cap>(room.caps).data;
-      FeatureCounters found = find_run_features(executor, pass, run, room, caps, arcs.data + arc_total, true);
+      ArcAtoms *const arc_atoms = pass.with_arc_atoms ? features->arc_atoms.data + arc_total : nullptr;
+      FeatureCounters found =
+          find_run_features(executor, pass, run, room, caps, arcs.data + arc_total, arc_atoms, true);
       arena.rewind(mark);
       arc_total += found.arcs;
       features->most_caps = std::max(features->most_caps, found.longest_row);
@@ -156,6 +167,7 @@ void find_features_in_runs(E &executor, const FeaturePass &pass, const MemoryPla
     features->arcs.size = static_cast<size_t>(arc_total);
   }
   arena.rewind(before_arcs);
+  allocate_arc_atoms(features->arc_atoms.size);
   features->arcs = executor.template allocate<Arc>(features->arcs.size);  // where they are already
   features->caps = executor.template allocate<Cap>(features->caps.size);
 
@@ -181,7 +193,8 @@ void find_solvent_features(E &executor, const NeighborGridView &atoms, const Sur
   if (atoms.count == 0) return;
   Span<uint8_t> exposed = executor.template allocate<uint8_t>(atoms.count);
   executor.fill(exposed, 0);
-  const FeaturePass pass{atoms, parameters.max_radius, features->cap_ranges.data, exposed.data};
+  const FeaturePass pass{atoms, parameters.max_radius, features->cap_ranges.data, exposed.data,
+                         parameters.is_of_balls()};
   if (plan.low_memory)
     find_features_in_runs(executor, pass, plan, rooms, features);
   else

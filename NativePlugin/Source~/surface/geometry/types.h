@@ -32,6 +32,11 @@ struct alignas(16) Arc {
   float sin_half;
 };
 
+// The two atoms on whose circle an arc lies, the earlier one first.
+struct ArcAtoms {
+  uint32_t first, second;
+};
+
 // Loads of whole structures: on the GPU 16 bytes at a time, through the cache for what no running kernel writes.
 QSES_FN Sphere load(const Sphere *p) {
 #if defined(__CUDA_ARCH__)

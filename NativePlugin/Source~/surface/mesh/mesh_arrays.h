@@ -10,17 +10,19 @@ namespace quickses {
 // Which attributes vertices have, and how they lie.
 struct MeshShape {
   qses_vertex_layout layout = QSES_VERTICES_SEPARATE;
-  bool colors = false, texcoords = false, patches = false, reversed = false, boxes = false;
+  bool colors = false, texcoords = false, patches = false, reversed = false, boxes = false, component_ids = false;
   size_t repeated = 0;  // vertices that stand for others (methods/hard_edges.h)
 };
 
 inline MeshShape shape_of(const qses_settings &s, bool has_colors) {
   MeshShape shape;
+  if (s.delivery == QSES_DELIVERY_NONE) return shape;  // nobody will look at it
   shape.layout = s.vertex_layout;
   shape.colors = has_colors;
   shape.texcoords = s.texcoords != 0;
   shape.patches = s.patch_types != 0 && s.method == QSES_METHOD_EXACT;
   shape.reversed = s.winding == QSES_WINDING_REVERSED;
+  shape.component_ids = s.component_ids != 0;
   shape.boxes = s.pickable != 0 && s.delivery != QSES_DELIVERY_DEVICE;
   return shape;
 }
@@ -37,6 +39,7 @@ class MeshArrays {
     if (shape.colors) colors_ = next(vertices * 4);
     if (shape.texcoords) texcoords_ = next(vertices * 8);
     owners_ = next(vertices * 4);
+    if (shape.component_ids) component_ids_ = next(vertices * 4);
     indices_ = next(triangles * 12);
     repeated_ = next(shape.repeated * 4);
     if (shape.boxes) {
@@ -58,6 +61,7 @@ class MeshArrays {
     v.normal_bytes = shape_.layout == QSES_VERTICES_INTERLEAVED ? vertex_bytes_ : 12;
     if (shape_.colors) v.colors = reinterpret_cast<uint32_t *>(base + colors_);
     if (shape_.texcoords) v.texcoords = reinterpret_cast<float *>(base + texcoords_);
+    if (shape_.component_ids) v.component_ids = reinterpret_cast<uint32_t *>(base + component_ids_);
     v.owners = reinterpret_cast<uint32_t *>(base + owners_);
     if (shape_.patches) v.patches = reinterpret_cast<uint8_t *>(base + patches_);
     v.indices = reinterpret_cast<uint32_t *>(base + indices_);
@@ -76,12 +80,13 @@ class MeshArrays {
 
   MeshShape shape_;
   uint32_t vertex_bytes_;
-  size_t positions_ = 0, normals_ = 0, colors_ = 0, texcoords_ = 0, owners_ = 0, patches_ = 0, indices_ = 0,
-         repeated_ = 0, runs_ = 0, groups_ = 0, bytes_ = 0;
+  size_t positions_ = 0, normals_ = 0, colors_ = 0, texcoords_ = 0, owners_ = 0, component_ids_ = 0, patches_ = 0,
+         indices_ = 0, repeated_ = 0, runs_ = 0, groups_ = 0, bytes_ = 0;
 };
 
 // Calls copy(to, from, bytes) for each array of a run of `vertices` vertices and `triangles` triangles that both views
-// have; with triangles 0 for those of the vertices only. `from` begins with the run, `to` has it somewhere.
+// have, but what whole meshes only have; with triangles 0 for those of the vertices only. `from` begins with the run,
+// `to` has it somewhere.
 template <class Copy>
 void for_each_array(const MeshView &to, const MeshView &from, size_t vertices, size_t triangles, const Copy &copy) {
   const uint32_t v = from.first_vertex;

@@ -23,6 +23,7 @@ struct MeshMemoryView {
   const uint32_t *unplaced = nullptr;  // vertices without a feature, in the memory of the back end; nullptr: none
   Bounds bounds{};
   Span<const qses_component> components{};  // in host memory
+  Span<const double> atom_areas{};          // the same
 };
 
 // What a mesh is for: to be handed out, or to be made into another one.
@@ -55,6 +56,8 @@ inline void describe_mesh(const MeshMemoryView &built, const MeshView *arrays, c
   mesh->triangle_count = static_cast<uint32_t>(built.triangles);
   mesh->component_count = static_cast<uint32_t>(built.components.size);
   mesh->components = built.components.data;
+  mesh->atom_count = built.atom_areas.size;
+  mesh->atom_areas = built.atom_areas.data;
   if (built.vertices == 0) return;
   for (int d = 0; d < 3; ++d) {
     mesh->bounds_min[d] = built.bounds.min[d];
@@ -71,6 +74,7 @@ inline void describe_mesh(const MeshMemoryView &built, const MeshView *arrays, c
   mesh->indices = arrays->indices;
   mesh->repeated = arrays->repeated;
   mesh->repeated_count = built.shape.repeated;
+  mesh->component_ids = arrays->component_ids;
 }
 
 // The host memory of the meshes in the slots, as the pool gives it.
@@ -87,18 +91,23 @@ class MeshLeases {
     leases_[slot_] = MeshLease(pool_, bytes);
     return leases_[slot_].memory();
   }
-  // The components, which come in memory of whoever found them, into that of the slot.
-  void own_components(qses_mesh *mesh, qses_mesh *on_device) {
-    if (mesh->component_count == 0) return;
-    if (leases_[slot_].is_empty()) leases_[slot_] = MeshLease(pool_, 0);
-    mesh->components = on_device->components = static_cast<const qses_component *>(
-        leases_[slot_].add_components(mesh->components, mesh->component_count * sizeof(qses_component)));
+  // What comes in memory of whoever found it, into that of the slot.
+  void own_numbers(qses_mesh *mesh, qses_mesh *on_device) {
+    on_device->components = mesh->components = own(MeshLease::kComponents, mesh->components, mesh->component_count);
+    on_device->atom_areas = mesh->atom_areas = own(MeshLease::kAtomAreas, mesh->atom_areas, mesh->atom_count);
   }
   // Takes the mesh that is finished out of its slot. From any thread, while another slot is in use.
   MeshLease keep(int slot) { return std::move(leases_[slot]); }
   uint64_t bytes() const { return pool_->bytes(); }
 
  private:
+  template <class T>
+  const T *own(MeshLease::Numbers which, const T *numbers, size_t n) {
+    if (n == 0) return nullptr;
+    if (leases_[slot_].is_empty()) leases_[slot_] = MeshLease(pool_, 0);
+    return static_cast<const T *>(leases_[slot_].add(which, numbers, n * sizeof(T)));
+  }
+
   std::shared_ptr<MeshPool> pool_;
   MeshLease leases_[kMeshSlots];
   int slot_ = 0;

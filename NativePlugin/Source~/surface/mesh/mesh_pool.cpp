@@ -96,7 +96,7 @@ uint64_t MeshPool::bytes() const {
   return bytes_;
 }
 
-void MeshPool::count_components(int64_t bytes) {
+void MeshPool::count_numbers(int64_t bytes) {
   const std::lock_guard<std::mutex> lock(mutex_);
   bytes_ += static_cast<uint64_t>(bytes);
 }
@@ -104,7 +104,7 @@ void MeshPool::count_components(int64_t bytes) {
 void MeshPool::release(MeshBuffer &buffer) noexcept {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    bytes_ -= buffer.size + buffer.components.size();
+    bytes_ -= buffer.size + buffer.components.size() + buffer.atom_areas.size();
   }
   if (buffer.memory) source_.release(buffer.memory);
 }
@@ -126,13 +126,14 @@ void MeshLease::give_back() noexcept {
   pool_.reset();
 }
 
-const void *MeshLease::add_components(const void *components, size_t bytes) {
-  GrowingBuffer<HostMemory> &room = buffer_->components;
+const void *MeshLease::add(Numbers which, const void *numbers, size_t bytes) {
+  GrowingBuffer<HostMemory> &room = which == kComponents ? buffer_->components : buffer_->atom_areas;
   const size_t before = room.size();
   const bool is_there = room.try_reserve(bytes);
-  pool_->count_components(static_cast<int64_t>(room.size()) - static_cast<int64_t>(before));
-  if (!is_there) throw MemoryRefused("the machine refused memory for the components of the mesh");
-  if (bytes > 0) std::memcpy(room.data(), components, bytes);
+  pool_->count_numbers(static_cast<int64_t>(room.size()) - static_cast<int64_t>(before));
+  if (!is_there)
+    throw MemoryRefused("the machine refused memory for the components of the mesh or the areas of its atoms");
+  if (bytes > 0) std::memcpy(room.data(), numbers, bytes);
   return room.data();
 }
 

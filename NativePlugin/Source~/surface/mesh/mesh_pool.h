@@ -21,7 +21,7 @@ constexpr int kMeshSlots = 3;
 struct MeshBuffer {
   void *memory = nullptr;
   size_t size = 0;
-  GrowingBuffer<HostMemory> components;
+  GrowingBuffer<HostMemory> components, atom_areas;
 };
 
 // All functions may be called from any thread.
@@ -51,7 +51,7 @@ class MeshPool {
   void close() noexcept;
 
   uint64_t bytes() const;  // of spare buffers and of those that are out
-  void count_components(int64_t bytes);
+  void count_numbers(int64_t bytes);
 
  private:
   using Spares = std::vector<std::unique_ptr<MeshBuffer>>;
@@ -80,8 +80,10 @@ class MeshLease {
   bool is_empty() const { return !buffer_; }
   void *memory() const { return buffer_->memory; }
   size_t size() const { return buffer_ ? buffer_->size : 0; }
-  // Copies something small into memory of its own. Throws MemoryRefused.
-  const void *add_components(const void *components, size_t bytes);
+  // What there is to say about a mesh besides its arrays.
+  enum Numbers { kComponents, kAtomAreas };
+  // Copies it into memory of its own. Throws MemoryRefused.
+  const void *add(Numbers which, const void *numbers, size_t bytes);
 
  private:
   std::shared_ptr<MeshPool> pool_;

@@ -28,7 +28,8 @@ struct MeshView {
   // While a mesh is made, where someone asks for them: of the other sheet at vertices where two meet, elsewhere equal
   // to the normal. Of unit length, behind each other.
   float *second_normals = nullptr;
-  PickBoxes boxes{};  // of whole meshes only
+  PickBoxes boxes{};                  // of whole meshes only
+  uint32_t *component_ids = nullptr;  // of whole meshes only, or nullptr
 
   QSES_FN size_t place(uint32_t vertex) const { return vertex - first_vertex; }
   QSES_FN float *position(uint32_t vertex) const { return attribute(positions, vertex_bytes, vertex); }
@@ -39,6 +40,7 @@ struct MeshView {
   QSES_FN float *texcoord(uint32_t vertex) const { return texcoords + 2 * place(vertex); }
   QSES_FN uint32_t &owner(uint32_t vertex) const { return owners[place(vertex)]; }
   QSES_FN uint8_t &patch(uint32_t vertex) const { return patches[place(vertex)]; }
+  QSES_FN uint32_t &component_id(uint32_t vertex) const { return component_ids[place(vertex)]; }
   QSES_FN uint32_t *triangle(size_t number) const { return indices + 3 * (number - first_triangle); }
 
  private:
@@ -56,6 +58,7 @@ QSES_FN void copy_vertex(const MeshView &from, uint32_t vertex, const MeshView &
   copy3(to.normal(place), from.normal(vertex));
   if (from.second_normals && to.second_normals) copy3(to.second_normal(place), from.second_normal(vertex));
   to.owner(place) = from.owner(vertex);
+  if (from.component_ids && to.component_ids) to.component_id(place) = from.component_id(vertex);
   if (from.patches) to.patch(place) = from.patch(vertex);
 }
 

@@ -214,7 +214,7 @@ MeshMemoryView split_creases(Work &work, const MeshMemoryView &plain) {
     const float tolerance = kSheetTolerance + 4e-7f * farthest_coordinate(work);
     split_rounds(work, SphereSheets{work.features, places.data, work.lattice, tolerance}, &mesh);
   }
-  MeshMemoryView out = work.memory.allocate_mesh(executor, mesh.all.vertices, mesh.all.triangles, work.shape,
+  MeshMemoryView out = work.memory.allocate_mesh(executor, mesh.all.vertices, mesh.all.triangles, work.made_shape,
                                                  work.purpose, work.plan.mesh_in_pieces);
   add_normals(work, &out);
   executor.for_each(mesh.all.vertices, JoinVertex{mesh.parts, out.view});
@@ -225,13 +225,14 @@ MeshMemoryView split_creases(Work &work, const MeshMemoryView &plain) {
 
 template <class Work>
 bool splits_creases(const Work &work) {
-  return work.settings.creases != 0 && work.settings.method == QSES_METHOD_EXACT;
+  return work.settings.creases != 0 && work.settings.method == QSES_METHOD_EXACT &&
+         work.parameters.spacing <= work.settings.spacing;
 }
 
 template <class Work>
 MeshMemoryView build_creased_surface(Work &work) {
   Work plain = work;
-  plain.shape = shape_before_splits(work.shape);
+  plain.shape = plain.made_shape = shape_before_splits(work.shape);
   plain.purpose = MeshPurpose::kWork;
   const MeshMemoryView mesh = build_exact_surface(plain);
   if (mesh.vertices == 0) return mesh;

@@ -26,16 +26,23 @@ void remove_contained_atoms(Executor &executor, const NeighborGridView &atoms, f
   executor.arena().rewind(mark);
 }
 
-// Features of the atoms, with the arcs in a grid of their own.
+// Caps and arcs of the atoms.
 template <class Work>
-FeatureView find_features(Work &work) {
-  auto &executor = work.executor;
-  using Executor = std::remove_reference_t<decltype(executor)>;
+SolventFeatures list_features(Work &work) {
+  using Executor = std::remove_reference_t<decltype(work.executor)>;
   work.timer.begin("solvent_features");
   SolventFeatures found;
-  Backend<Executor>::find_solvent_features(executor, work.atoms, work.parameters, work.plan, work.rooms, &found);
+  Backend<Executor>::find_solvent_features(work.executor, work.atoms, work.parameters, work.plan, work.rooms, &found);
   work.facts->caps = found.caps.size;
   work.facts->arcs = found.arcs.size;
+  return found;
+}
+
+// The arcs in a grid of their own.
+template <class Work>
+FeatureView arrange_features(Work &work, const SolventFeatures &found) {
+  auto &executor = work.executor;
+  work.timer.begin("solvent_features");
   FeatureView f{};
   f.atoms = work.atoms;
   f.cap_ranges = found.cap_ranges.data;
@@ -65,6 +72,11 @@ FeatureView find_features(Work &work) {
     }
   }
   return f;
+}
+
+template <class Work>
+FeatureView find_features(Work &work) {
+  return arrange_features(work, list_features(work));
 }
 
 // Bricks per slice: those that are asked for, or, by a plan with several slices, as many as fit into what is left. What
@@ -118,7 +130,7 @@ template <class Work, class Executor>
 MeshPart open_part(const Work &work, Executor &executor, const BrickSet &bricks, const MeshLayout &layout,
                    BrickRange slice) {
   MeshShape shape = work.shape;
-  shape.boxes = shape.colors = shape.texcoords = false;
+  shape.boxes = shape.colors = shape.texcoords = shape.component_ids = false;
   const SliceSizes sizes = slice_sizes(executor, bricks, layout, slice.first, slice.last);
   MeshPart part{{}, sizes.vertices, sizes.triangles};
   const MeshArrays arrays(part.vertices, part.triangles, shape);
@@ -162,8 +174,8 @@ MeshMemoryView build_exact_surface(Work &work) {
     if (work.parameters.has_thin_walls()) mend_thin_walls(work, set, share ? &shared : nullptr, signs);
   });
 
-  MeshMemoryView mesh = work.memory.allocate_mesh(executor, counts.vertices, counts.triangles, work.shape, work.purpose,
-                                                  work.plan.mesh_in_pieces);
+  MeshMemoryView mesh = work.memory.allocate_mesh(executor, counts.vertices, counts.triangles, work.made_shape,
+                                                  work.purpose, work.plan.mesh_in_pieces);
   add_normals(work, &mesh);
   const auto end_of_mesh = executor.arena().mark();
   VertexStarts starts{work.settings.relaxation_steps > 0, nullptr, work.table.ring, &layout.totals->unplaced};

@@ -34,8 +34,8 @@ MeshMemoryView build_grid_surface(Work &work) {
       evaluate_grid_signs(executor, field, slice, signs);
     });
   });
-  MeshMemoryView mesh = work.memory.allocate_mesh(executor, counts.vertices, counts.triangles, work.shape, work.purpose,
-                                                  work.plan.mesh_in_pieces);
+  MeshMemoryView mesh = work.memory.allocate_mesh(executor, counts.vertices, counts.triangles, work.made_shape,
+                                                  work.purpose, work.plan.mesh_in_pieces);
   add_normals(work, &mesh);
   const auto end_of_mesh = executor.arena().mark();
   work.timer.begin("projection");

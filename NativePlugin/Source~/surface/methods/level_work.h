@@ -7,6 +7,7 @@
 #include "surface/mesh/mesh_memory.h"
 #include "surface/methods/progress.h"
 #include "surface/stages/appearance.h"
+#include "surface/stages/atom_measures.h"
 #include "surface/stages/components.h"
 #include "surface/stages/facing_normals.h"
 #include "surface/stages/hot_stages.h"
@@ -38,10 +39,16 @@ struct LevelWork {
   NeighborGridView atoms{};
   FeatureView features{};  // exact method only
   AppearanceView appearance{};
-  MeshShape shape{};
+  MeshShape shape{};       // of what is handed out
+  MeshShape made_shape{};  // of the whole mesh, before anything is left out of it
   MeshPurpose purpose = MeshPurpose::kDelivered;
   bool side_normals = false;  // whether a later stage asks for MeshView::second_normals
+  bool is_cut = false;        // whether parts of the whole mesh are left out
   bool hard_edges = false;    // whether a vertex on a crest is delivered once per side
+  GrowingBuffer<HostMemory> *area_memory = nullptr;  // of the areas of atoms
+  bool makes_mesh = true;
+  AtomMeasures atom_measures{};     // where the surface is that of the balls, and measured
+  Span<const double> atom_areas{};  // in host memory; of all levels
 };
 
 // While a mesh is made it has the normals that later stages read, in memory that is given up with the level's: floats

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Drops the triangles of hidden atoms and the vertices that no triangle uses any more. What stays keeps its order.
+// Drops the triangles of hidden atoms and of components that are left out, and the vertices that no triangle uses any
+// more. What stays keeps its order.
 #pragma once
 
 #include "parallel/atomics.h"
@@ -8,17 +9,26 @@
 
 namespace quickses {
 
-// 32 triangles: which have only visible owners, and the vertices of those.
-struct MarkVisible {
+// Which triangles stay: those whose owners are all visible and whose component is. nullptr: all are.
+struct ShownParts {
+  const uint8_t *atoms, *components;
+  QSES_FN bool has(const MeshView &mesh, const uint32_t *t) const {
+    if (components && !components[mesh.component_id(t[0])]) return false;
+    return !atoms || (atoms[mesh.owner(t[0])] && atoms[mesh.owner(t[1])] && atoms[mesh.owner(t[2])]);
+  }
+};
+
+// 32 triangles: which stay, and the vertices of those.
+struct MarkShown {
   MeshView mesh;
   size_t triangles;
-  const uint8_t *visible;
+  ShownParts shown;
   RankedSet kept_triangles, kept_vertices;
   QSES_HOST_DEVICE void operator()(size_t word) const {
     uint32_t bits = 0;
     for (uint32_t k = 0; k < 32 && 32 * word + k < triangles; ++k) {
       const uint32_t *const t = mesh.triangle(32 * word + k);
-      if (!visible[mesh.owner(t[0])] || !visible[mesh.owner(t[1])] || !visible[mesh.owner(t[2])]) continue;
+      if (!shown.has(mesh, t)) continue;
       bits |= uint32_t(1) << k;
       for (int corner = 0; corner < 3; ++corner) {
         uint32_t *const at = kept_vertices.words + t[corner] / 32;
@@ -52,26 +62,25 @@ struct MoveTriangle {
 };
 
 template <class Work>
-MeshMemoryView drop_hidden(Work &work, const MeshMemoryView &whole, MeshPurpose purpose) {
+MeshMemoryView drop_hidden(Work &work, const MeshMemoryView &whole, const ShownParts &shown, MeshPurpose purpose) {
   auto &executor = work.executor;
   const RankedSet vertices = allocate_set(executor, whole.vertices),
                   triangles = allocate_set(executor, whole.triangles);
-  executor.for_each((whole.triangles + 31) / 32,
-                    MarkVisible{whole.view, whole.triangles, work.appearance.visible, triangles, vertices});
+  executor.for_each((whole.triangles + 31) / 32, MarkShown{whole.view, whole.triangles, shown, triangles, vertices});
   uint32_t vertex_count = rank_set(executor, vertices, whole.vertices);
   uint32_t triangle_count = rank_set(executor, triangles, whole.triangles);
   if (std::decay_t<decltype(executor)>::kCounts) {  // how many stay is not known: at most all
     vertex_count = static_cast<uint32_t>(whole.vertices);
     triangle_count = static_cast<uint32_t>(whole.triangles);
   }
-  MeshMemoryView shown =
-      work.memory.allocate_mesh(executor, vertex_count, triangle_count, work.shape, purpose, work.plan.mesh_in_pieces);
-  add_normals(work, &shown);
-  executor.for_each(whole.vertices, MoveVertex{whole.view, shown.view, vertices});
-  executor.for_each(whole.triangles, MoveTriangle{whole.view, shown.view, triangles, vertices});
+  MeshMemoryView part = work.memory.allocate_mesh(executor, vertex_count, triangle_count, work.shape, purpose,
+                                                  work.plan.mesh_in_pieces);
+  add_normals(work, &part);
+  executor.for_each(whole.vertices, MoveVertex{whole.view, part.view, vertices});
+  executor.for_each(whole.triangles, MoveTriangle{whole.view, part.view, triangles, vertices});
   work.report->hidden_vertices = static_cast<uint32_t>(whole.vertices) - vertex_count;
   work.report->hidden_triangles = static_cast<uint32_t>(whole.triangles) - triangle_count;
-  return shown;
+  return part;
 }
 
 }  // namespace quickses

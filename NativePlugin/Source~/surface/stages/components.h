@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The connected pieces of a mesh, with area and signed volume: outer surfaces enclose a positive volume, cavities a
-// negative one. Vertices are joined along the edges of the triangles into trees whose roots are the smallest vertices.
+// The connected pieces of a mesh, with area, signed volume, centre and box: outer surfaces enclose a positive volume,
+// cavities a negative one. Vertices are joined along the edges of the triangles into trees whose roots are the smallest
+// vertices.
 #pragma once
 
 #include "parallel/growing_buffer.h"
@@ -75,11 +76,29 @@ struct IsRoot {
   QSES_HOST_DEVICE uint64_t operator()(size_t v) const { return labels[v] == v ? 1 : 0; }
 };
 
-// Sums as integers, so that they do not depend on the order: areas in squared spacings, volumes in cubed ones, rounded
-// down, and the rests in units so small that as many as there are triangles just fit.
+// A sum as integers, so that it does not depend on the order: whole parts, and the rests in units so small that as many
+// as there are triangles just fit.
+struct ExactSum {
+  int64_t whole, rest;
+  QSES_FN void add(double value, double units) {
+    const int64_t part = static_cast<int64_t>(value);
+    whole += part;
+    rest += static_cast<int64_t>((value - static_cast<double>(part)) * units);
+  }
+  double value(double units) const { return static_cast<double>(whole) + static_cast<double>(rest) / units; }
+};
+QSES_FN void atomic_add(ExactSum *sum, const ExactSum &more) {
+  atomic_add(&sum->whole, more.whole);
+  atomic_add(&sum->rest, more.rest);
+}
+
+// Lengths in spacings, from the first vertex of the component.
 struct ComponentSums {
   uint64_t triangles;
-  int64_t area, area_rest, volume, volume_rest;
+  ExactSum area, volume;
+  ExactSum flat_volume, moment[3];  // of the triangles as they are
+  uint32_t most[6];                 // greatest x, y, z and -x, -y, -z, as ordered bits
+  float first[3];                   // the first vertex
 };
 
 // Rests are multiples of 1 / this.
@@ -89,19 +108,29 @@ inline double rest_units(uint64_t triangles) {
   return std::ldexp(1.0, bits);
 }
 
-QSES_FN void add_to_sum(double value, double units, int64_t *sum, int64_t *rest) {
-  const double whole = floor(value);
-  *sum += static_cast<int64_t>(whole);
-  *rest += static_cast<int64_t>((value - whole) * units + 0.5);
-}
+// Of a run of triangles of one component, by one thread.
+struct RunSums {
+  ComponentSums sums{};
+  Box box{{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+
+  QSES_FN const ComponentSums &total() {
+    for (int d = 0; d < 3; ++d) {
+      // A zero has one sign, whichever came first.
+      sums.most[d] = ordered_bits(box.high[d] + 0.f);
+      sums.most[d + 3] = ordered_bits(-(box.low[d] + 0.f));
+    }
+    return sums;
+  }
+};
 
 QSES_FN void add_sums(const ComponentSums &from, ComponentSums *to) {
   if (from.triangles == 0) return;
   atomic_add(&to->triangles, from.triangles);
   atomic_add(&to->area, from.area);
-  atomic_add(&to->area_rest, from.area_rest);
   atomic_add(&to->volume, from.volume);
-  atomic_add(&to->volume_rest, from.volume_rest);
+  atomic_add(&to->flat_volume, from.flat_volume);
+  for (int d = 0; d < 3; ++d) atomic_add(to->moment + d, from.moment[d]);
+  for (int d = 0; d < 6; ++d) atomic_max(to->most + d, from.most[d]);
 }
 
 // Of the component that the first triangle of a chunk belongs to, as a rule that of them all.
@@ -110,12 +139,26 @@ struct ChunkSums {
   ComponentSums sums;
 };
 
+// Numbers the vertices' components, and tells each component its first vertex.
+struct NumberComponents {
+  MeshView mesh;
+  const uint32_t *labels, *number_of_root;
+  ComponentSums *sums;
+  QSES_HOST_DEVICE void operator()(size_t v) const {
+    const uint32_t vertex = static_cast<uint32_t>(v), number = number_of_root[labels[v]];
+    if (mesh.component_ids) mesh.component_id(vertex) = number;
+    if (labels[v] != vertex) return;
+    for (int d = 0; d < 3; ++d) sums[number].first[d] = mesh.position(vertex)[d];
+  }
+};
+
 struct SumComponents {
   static constexpr size_t kChunk = 2048;
   MeshView mesh;
   size_t triangles;
   const uint32_t *labels, *number_of_root;
   double inverse_spacing, units;
+  bool bent;  // along the normals of the vertices
   ComponentSums *sums;
 
   template <class Team>
@@ -124,43 +167,66 @@ struct SumComponents {
     if (team.rank() == 0) chunk = {number_of_root[labels[mesh.triangle(begin)[0]]], {}};
     team.sync();
     uint32_t number = chunk.number;
-    ComponentSums own = {};
+    RunSums own;
     for (size_t t = begin + static_cast<size_t>(team.rank()); t < end; t += static_cast<size_t>(team.size())) {
       const uint32_t root = labels[mesh.triangle(t)[0]];
       if (number_of_root[root] != number) {
-        add_sums(own, number == chunk.number ? &chunk.sums : sums + number);
-        own = {};
+        add_sums(own.total(), number == chunk.number ? &chunk.sums : sums + number);
+        own = RunSums{};
         number = number_of_root[root];
       }
       add_triangle(mesh.triangle(t), root, &own);
     }
-    add_sums(own, number == chunk.number ? &chunk.sums : sums + number);
+    add_sums(own.total(), number == chunk.number ? &chunk.sums : sums + number);
     team.sync();
     if (team.rank() == 0) add_sums(chunk.sums, sums + chunk.number);
   }
 
  private:
-  QSES_FN void add_triangle(const uint32_t *triangle, uint32_t root, ComponentSums *own) const {
+  QSES_FN void add_triangle(const uint32_t *triangle, uint32_t root, RunSums *own) const {
     const float *const tip = mesh.position(root);
     const double origin[3] = {static_cast<double>(tip[0]), static_cast<double>(tip[1]), static_cast<double>(tip[2])};
-    const DoubleTriangle d = load_triangle(mesh, triangle, origin);
-    const double area = triangle_area(d) * inverse_spacing * inverse_spacing;
-    const double volume = triangle_volume(d) * inverse_spacing * inverse_spacing * inverse_spacing;
-    ++own->triangles;
-    add_to_sum(area, units, &own->area, &own->area_rest);
-    add_to_sum(mesh.reversed ? -volume : volume, units, &own->volume, &own->volume_rest);
+    const TriangleSums t = measure_triangle(mesh, triangle, origin, bent);
+    const double per_area = inverse_spacing * inverse_spacing, per_volume = per_area * inverse_spacing;
+    // Rounded before their whole parts are taken off.
+    const double flat_volume = rounded_product(t.flat_volume, per_volume);
+    ComponentSums &own_sums = own->sums;
+    ++own_sums.triangles;
+    own_sums.area.add(rounded_product(t.area, per_area), units);
+    own_sums.volume.add(rounded_product(t.volume, per_volume), units);
+    own_sums.flat_volume.add(flat_volume, units);
+    for (int k = 0; k < 3; ++k) {
+      double sum = -3.0 * origin[k];
+      for (int corner = 0; corner < 3; ++corner) {
+        const float x = mesh.position(triangle[corner])[k];
+        sum += static_cast<double>(x);
+        own->box.low[k] = x < own->box.low[k] ? x : own->box.low[k];
+        own->box.high[k] = own->box.high[k] < x ? x : own->box.high[k];
+      }
+      own_sums.moment[k].add(rounded_product(flat_volume, 0.25 * inverse_spacing * sum), units);
+    }
   }
 };
 
 inline qses_component describe_component(const ComponentSums &s, double units, double spacing) {
-  const auto value = [&](int64_t whole, int64_t rest) {
-    return static_cast<double>(whole) + static_cast<double>(rest) / units;
-  };
   qses_component c{};
   c.triangles = s.triangles;
-  c.area = value(s.area, s.area_rest) * spacing * spacing;
-  c.volume = value(s.volume, s.volume_rest) * spacing * spacing * spacing;
-  c.is_cavity = c.volume < 0 ? 1 : 0;
+  c.area = s.area.value(units) * spacing * spacing;
+  c.volume = s.volume.value(units) * spacing * spacing * spacing;
+  c.is_cavity = s.flat_volume.value(units) < 0 ? 1 : 0;  // what bounds a hollow in the mesh, however small
+  bool is_within = true;
+  double center[3];
+  for (int d = 0; d < 3; ++d) {
+    c.bounds_min[d] = -from_ordered_bits(s.most[d + 3]);
+    c.bounds_max[d] = from_ordered_bits(s.most[d]);
+    center[d] = static_cast<double>(s.first[d]) + s.moment[d].value(units) / s.flat_volume.value(units) * spacing;
+    is_within = is_within && center[d] >= static_cast<double>(c.bounds_min[d]) &&
+                center[d] <= static_cast<double>(c.bounds_max[d]);
+  }
+  // What encloses next to nothing has no centre that can be told: then it is that of the box.
+  for (int d = 0; d < 3; ++d)
+    c.center[d] = static_cast<float>(
+        is_within ? center[d] : 0.5 * (static_cast<double>(c.bounds_min[d]) + static_cast<double>(c.bounds_max[d])));
   return c;
 }
 
@@ -176,16 +242,21 @@ class ComponentMemory {
   Span<qses_component> list(size_t n) {
     return {static_cast<qses_component *>(list_.reserve(n * sizeof(qses_component))), n};
   }
-  uint64_t bytes() const { return sums_.size() + list_.size(); }
+  Span<uint8_t> flags(size_t n) { return {static_cast<uint8_t *>(flags_.reserve(n)), n}; }
+  uint64_t bytes() const { return sums_.size() + list_.size() + flags_.size(); }
 
  private:
-  GrowingBuffer<HostMemory> sums_, list_;
+  GrowingBuffer<HostMemory> sums_, list_, flags_;
 };
 
-// The components in the order of their first vertices; valid until the next call with the same memory. Waits.
+// Whether anything asks for them.
+inline bool wants_components(const qses_settings &s) { return s.components || s.component_ids || s.outer_only; }
+
+// The components in the order of their first vertices; valid until the next call with the same memory. If the mesh has
+// room for their numbers, vertices get them. Waits.
 template <class Executor>
 Span<const qses_component> find_components(Executor &executor, const MeshView &mesh, const MeshCounts &counts,
-                                           float spacing, ComponentMemory &memory) {
+                                           float spacing, bool bent, ComponentMemory &memory) {
   if (counts.triangles == 0) return {};
   const auto mark = executor.arena().mark();
   const size_t n = counts.vertices;
@@ -198,10 +269,11 @@ Span<const qses_component> find_components(Executor &executor, const MeshView &m
   const Span<ComponentSums> found = memory.sums(count);
   const Span<ComponentSums> sums = Executor::kIsCuda ? executor.template allocate<ComponentSums>(count) : found;
   executor.fill(sums, 0);
+  executor.for_each(n, NumberComponents{mesh, labels.data, number_of_root.data, sums.data});
   const double h = static_cast<double>(spacing), units = rest_units(counts.triangles);
   executor.template for_each_brick<ChunkSums>(
       (counts.triangles + SumComponents::kChunk - 1) / SumComponents::kChunk,
-      SumComponents{mesh, counts.triangles, labels.data, number_of_root.data, 1.0 / h, units, sums.data}, 1);
+      SumComponents{mesh, counts.triangles, labels.data, number_of_root.data, 1.0 / h, units, bent, sums.data}, 1);
   if (Executor::kIsCuda) executor.download(found.data, sums.data, count);
   executor.wait();
   executor.arena().rewind(mark);
@@ -218,11 +290,17 @@ class ComponentFinder {
   // threads: used only for meshes that left the device.
   explicit ComponentFinder(const WorkerThreads &threads) : on_host_(threads) {}
   template <class Executor>
-  Span<const qses_component> find(Executor &executor, const MeshMemoryView &mesh, float spacing) {
+  Span<const qses_component> find(Executor &executor, const MeshMemoryView &mesh, float spacing, bool bent) {
     const MeshCounts counts{mesh.vertices, mesh.triangles};
-    if (!mesh.in_pieces) return find_components(executor, mesh.view, counts, spacing, memory_);
+    if (!mesh.in_pieces) return find_components(executor, mesh.view, counts, spacing, bent, memory_);
     executor.wait();
-    return Executor::kCounts ? Span<const qses_component>{} : on_host_.find(mesh.view, counts, spacing, memory_);
+    return Executor::kCounts ? Span<const qses_component>{} : on_host_.find(mesh.view, counts, spacing, bent, memory_);
+  }
+  // Of each component whether it is no cavity; valid until the next call.
+  Span<const uint8_t> outer(Span<const qses_component> components) {
+    const Span<uint8_t> flags = memory_.flags(components.size);
+    for (size_t k = 0; k < flags.size; ++k) flags[k] = components[k].is_cavity ? 0 : 1;
+    return {flags.data, flags.size};
   }
   uint64_t bytes() const { return memory_.bytes() + on_host_.bytes(); }
 

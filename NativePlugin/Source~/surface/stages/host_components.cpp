@@ -11,10 +11,10 @@ HostComponents::HostComponents(const WorkerThreads &threads) : threads_(threads)
 HostComponents::~HostComponents() = default;
 
 Span<const qses_component> HostComponents::find(const MeshView &mesh, const MeshCounts &counts, float spacing,
-                                                ComponentMemory &memory) {
+                                                bool bent, ComponentMemory &memory) {
   if (!executor_) executor_ = std::make_unique<CpuExecutor>(threads_);
   executor_->arena().reset();
-  return find_components(*executor_, mesh, counts, spacing, memory);
+  return find_components(*executor_, mesh, counts, spacing, bent, memory);
 }
 
 uint64_t HostComponents::bytes() const { return executor_ ? executor_->arena().held() : 0; }

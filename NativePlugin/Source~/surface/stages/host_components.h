@@ -21,7 +21,7 @@ class HostComponents {
   ~HostComponents();
 
   // As find_components. Its threads and its work memory stay for the next call.
-  Span<const qses_component> find(const MeshView &mesh, const MeshCounts &counts, float spacing,
+  Span<const qses_component> find(const MeshView &mesh, const MeshCounts &counts, float spacing, bool bent,
                                   ComponentMemory &memory);
   uint64_t bytes() const;  // of work memory
 

@@ -3,17 +3,16 @@
 #pragma once
 
 #include "parallel/atomics.h"
-#include "parallel/scalar.h"
 #include "surface/mesh/mesh_memory.h"
 #include "surface/stages/marching_cubes.h"
+#include "surface/stages/triangle_measures.h"
 
 #include <cstring>
 
 namespace quickses {
 
 struct Measures {
-  double area;    // Å², sum over the triangles
-  double volume;  // Å³, positive if the surface encloses it; cavities count negative
+  TriangleSums sums;  // Å², Å³; volume is positive if the surface encloses it; cavities count negative
   Bounds bounds;
 };
 
@@ -91,58 +90,16 @@ Bounds find_bounds(Executor &executor, const MeshView &mesh, const MeshCounts &c
 
 // ---- area and volume -------------------------------------------------------------------------------------------
 
-struct DoubleTriangle {
-  double a[3], u[3], n[3];  // a corner, the edge from it to the second one, and twice the area along the normal
-};
-
-// Coordinates are taken from an origin near the mesh, so that the volume keeps its digits far away from zero. GPU and
-// CPU find the same numbers to the last bit.
-QSES_FN DoubleTriangle load_triangle(const MeshView &mesh, const uint32_t *t, const double *origin) {
-  DoubleTriangle d;
-  double v[3];
-  for (int k = 0; k < 3; ++k) {
-    d.a[k] = static_cast<double>(mesh.position(t[0])[k]) - origin[k];
-    d.u[k] = static_cast<double>(mesh.position(t[1])[k]) - origin[k] - d.a[k];
-    v[k] = static_cast<double>(mesh.position(t[2])[k]) - origin[k] - d.a[k];
-  }
-  for (int k = 0; k < 3; ++k) {
-    const int p = (k + 1) % 3, q = (k + 2) % 3;
-    d.n[k] = rounded_product(d.u[p], v[q]) - rounded_product(d.u[q], v[p]);
-  }
-  return d;
-}
-QSES_FN double dot_product(const double *a, const double *b) {
-  return rounded_product(a[0], b[0]) + rounded_product(a[1], b[1]) + rounded_product(a[2], b[2]);
-}
-QSES_FN double triangle_area(const DoubleTriangle &d) { return 0.5 * sqrt(dot_product(d.n, d.n)); }
-// Signed volume of the tetrahedron over the triangle with its apex at the origin.
-QSES_FN double triangle_volume(const DoubleTriangle &d) { return dot_product(d.a, d.n) / 6.0; }
-
-// Area and volume of one triangle.
-struct TriangleMeasures {
-  MeshView mesh;
-  double origin[3];
-  QSES_HOST_DEVICE SumPair operator()(size_t t) const {
-    const DoubleTriangle d = load_triangle(mesh, mesh.triangle(t), origin);
-    SumPair pair;
-    pair.first = triangle_area(d);
-    pair.second = triangle_volume(d);
-    return pair;
-  }
-};
-
-// Brings an extra number along, too. Waits.
+// bent: along the exact normals that the vertices have. Brings an extra number along, too. Waits.
 template <class Executor>
-Measures measure(Executor &executor, const MeshView &mesh, const MeshCounts &counts, const uint32_t *extra = nullptr,
-                 uint64_t *extra_value = nullptr) {
-  Measures m = {0.0, 0.0, find_bounds(executor, mesh, counts, extra, extra_value)};
+Measures measure(Executor &executor, const MeshView &mesh, const MeshCounts &counts, bool bent,
+                 const uint32_t *extra = nullptr, uint64_t *extra_value = nullptr) {
+  Measures m = {{}, find_bounds(executor, mesh, counts, extra, extra_value)};
   if (counts.triangles == 0) return m;
   double c[3];
   for (int d = 0; d < 3; ++d)
     c[d] = 0.5 * (static_cast<double>(m.bounds.min[d]) + static_cast<double>(m.bounds.max[d]));
-  const SumPair sums = executor.template reduce<SumPair>(counts.triangles, TriangleMeasures{mesh, {c[0], c[1], c[2]}});
-  m.area = sums.first;
-  m.volume = mesh.reversed ? -sums.second : sums.second;
+  m.sums = executor.template reduce<TriangleSums>(counts.triangles, MeasureTriangle{mesh, {c[0], c[1], c[2]}, bent});
   return m;
 }
 

@@ -24,6 +24,8 @@ struct SurfaceParameters {
 
   // Only what a probe rolls on can have walls between two probes (thin_walls.h).
   QSES_FN bool has_thin_walls() const { return depth > 0.f; }
+  // Whether the surface is the boundary of the balls itself: then its arcs and caps measure it (atom_measures.h).
+  QSES_FN bool is_of_balls() const { return depth == 0.f; }
 };
 
 // Output of the stage, in the memory of the back end. Arcs are ordered by atom (in grid order), then by cap, then by
@@ -32,8 +34,9 @@ struct SolventFeatures {
   Span<CapRange> cap_ranges;  // per atom, in grid order
   Span<Cap> caps;             // cosine with the exposure tolerance, largest cap first
   Span<Arc> arcs;
-  Span<uint8_t> exposed;   // CPU only: per atom 1 or 0, and 8 bytes more
-  uint32_t most_caps = 0;  // of an atom; GPU only
+  Span<ArcAtoms> arc_atoms;  // of each arc, if the surface is that of the balls; else none
+  Span<uint8_t> exposed;     // CPU only: per atom 1 or 0, and 8 bytes more
+  uint32_t most_caps = 0;    // of an atom; GPU only
 };
 
 // The features as the later stages see them: arcs sorted into a neighbour grid by their enclosing balls.

@@ -130,6 +130,10 @@ namespace QuickSes.Interop
             void* perVertex);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
+        public static extern QuickSesStatus qses_component_atoms(
+            NativeMesh* mesh, uint* starts, uint* atoms, UIntPtr room);
+
+        [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
         public static extern QuickSesStatus qses_kept_mesh_filter(
             KeptMeshHandle kept, byte* visible, UIntPtr atomCount, uint first, uint count, uint* indices,
             uint* keptTriangles);

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: MIT
+// Area that each atom has of a surface that is the boundary of balls (SAS, VDW), and the volume within: exact, from
+// caps and exposed arcs, without a mesh.
+//
+// The part of a unit sphere that lies left of a closed border has the area of the integral of (1 - cos(theta)) dphi
+// along the border, about any pole whose opposite point the part does not contain (Stokes). The axis of the atom's
+// largest cap is such a point: it is covered, and no border comes near it. So it need not be known how arcs join to
+// borders, nor how many there are, as the formula of Gauss and Bonnet asks for. Volume by the divergence theorem.
+#pragma once
+
+#include "parallel/atomics.h"
+#include "surface/stages/solvent_features.h"
+
+namespace quickses {
+
+struct AtomMeasures {
+  double area = 0;    // Å²
+  double volume = 0;  // Å³, of the union of the balls
+};
+
+// Sums of solid angles are integers, so that they do not depend on the order: multiples of 1 / this. An atom's sum lies
+// between 0 and 4 pi whatever wraps around on the way.
+constexpr double kSolidAngleUnits = 17592186044416.0;   // 2^44
+constexpr double kWholeSphere = 12.566370614359172954;  // 4 pi
+
+// Of a thread of the GPU for one arc, besides the rounds over caps: double precision, some thousand operations.
+constexpr uint64_t kArcMeasureSteps = 4096;
+
+QSES_FN Vec3<double> to_double(const glm::vec3 &v) {
+  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+}
+QSES_FN Vec3<double> cross_product(const Vec3<double> &a, const Vec3<double> &b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+// Area of the triangle of great circles, positive if a, b, c come counter-clockwise seen from outside (van Oosterom &
+// Strackee 1983). All three of unit length.
+QSES_FN double spherical_triangle(const Vec3<double> &a, const Vec3<double> &b, const Vec3<double> &c) {
+  return 2.0 * atan2(dot(a, cross_product(b, c)), 1.0 + dot(a, b) + dot(b, c) + dot(c, a));
+}
+
+// An arc on the unit sphere, from -half to half about its middle, counter-clockwise about the axis of its circle.
+struct SphereArc {
+  Vec3<double> axis, middle, side;
+  double cosine, sine;  // of the circle's angular radius
+  double half, cos_half, sin_half;
+
+  QSES_FN Vec3<double> at(double cos_angle, double sin_angle) const {
+    return axis * cosine + (middle * cos_angle + side * sin_angle) * sine;
+  }
+};
+
+// Integral of (1 - cos(theta)) dphi along the arc. Piece by piece of at most a quarter of a turn: the triangle of the
+// pole and the chord, and what lies between chord and arc. The pole's opposite point is not in there, since it is no
+// nearer to any arc than the arc's own cap is wide.
+QSES_FN double integrate_about(const Vec3<double> &pole, const SphereArc &arc) {
+  int pieces = 1;
+  double c = arc.cos_half, s = arc.sin_half;  // of half a piece
+  for (double half = arc.half; half > 0.7854; half *= 0.5) {
+    s = sqrt(0.5 * (1.0 - c));
+    c = sqrt(0.5 * (1.0 + c));
+    pieces *= 2;
+  }
+  const double c2 = c * c - s * s, s2 = 2.0 * c * s;
+  const double chord = 2.0 * atan2((1.0 - arc.cosine) * s2, (1.0 + arc.cosine) + (1.0 - arc.cosine) * c2);
+  double sum = (1.0 - arc.cosine) * 2.0 * arc.half - pieces * chord;
+  double x = arc.cos_half, y = -arc.sin_half;
+  Vec3<double> a = arc.at(x, y);
+  for (int k = 0; k < pieces; ++k) {
+    const double t = x * c2 - y * s2;
+    y = y * c2 + x * s2;
+    x = t;
+    const Vec3<double> b = arc.at(x, y);
+    sum += spherical_triangle(pole, a, b);
+    a = b;
+  }
+  return sum;
+}
+
+// How many caps of an atom lie behind the circle of the arc, on the same side: where several balls pass through one
+// circle, none of them hides it, and each of them has its arcs there.
+QSES_FN int caps_of_circle(const CapRange &range, const Cap *caps, double radius, const SphereArc &arc) {
+  const double tolerance = static_cast<double>(kExposureTolerance), shrunk = tolerance / radius;
+  const double same = shrunk > 2e-6 ? shrunk : 2e-6;
+  int count = 0;
+  for (int k = 0; k < range.count; ++k) {
+    const Cap cap = load(caps + range.first + static_cast<uint32_t>(k));
+    const double cosine = static_cast<double>(cap.cosine) + shrunk;
+    if (fabs(cosine - arc.cosine) > 2.0 * same) continue;
+    const Vec3<double> axis = to_double(cap.axis);
+    const double along = dot(axis, arc.axis), apart = (cosine - arc.cosine * along) / arc.sine;
+    const Vec3<double> across = axis - arc.axis * along;
+    if (along > 0.0 && length_squared(across) + apart * apart <= same * same / (arc.sine * arc.sine)) ++count;
+  }
+  return count > 1 ? count : 1;
+}
+
+// Adds what the arcs bring to the areas of their two atoms, and notes what they bring to the volume.
+struct MeasureArc {
+  const Sphere *atoms;
+  const CapRange *cap_ranges;
+  const Cap *caps;
+  const Arc *arcs;
+  const ArcAtoms *arc_atoms;
+  int64_t *solid_angles;  // per atom
+  double *volumes;        // per arc, three times
+
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    const ArcAtoms two = arc_atoms[i];
+    const Arc stored = load(arcs + i);
+    const Sphere first = load(atoms + two.first), second = load(atoms + two.second);
+    const Vec3<double> low = to_double(first.center), apart = to_double(second.center) - low;
+    const double r = static_cast<double>(first.radius), q = static_cast<double>(second.radius);
+    const double distance2 = length_squared(apart), distance = sqrt(distance2);
+    // From the first centre to the plane of the circle.
+    const double along = 0.5 * (distance2 + (r - q) * (r + q)) / distance;
+    const double radius2 = r * r - along * along, radius = sqrt(radius2 > 0.0 ? radius2 : 0.0);
+    SphereArc arc;
+    arc.axis = apart * (1.0 / distance);
+    // The stored frame is good to single precision: turned into the plane.
+    Vec3<double> middle = to_double(stored.middle);
+    middle = middle - arc.axis * dot(middle, arc.axis);
+    arc.middle = middle * (1.0 / sqrt(length_squared(middle)));
+    arc.side = cross_product(arc.axis, arc.middle);
+    const double c = static_cast<double>(stored.cos_half), s = static_cast<double>(stored.sin_half);
+    const double scale = 1.0 / sqrt(c * c + s * s);
+    arc.half = atan2(s, c);
+    arc.cos_half = c * scale;
+    arc.sin_half = s * scale;
+    double volume = measure_side(two.first, low, r, along, radius, arc);
+    arc.axis = arc.axis * -1.0;
+    arc.side = arc.side * -1.0;
+    volume += measure_side(two.second, low + apart, q, distance - along, radius, arc);
+    volumes[i] = volume;
+  }
+
+ private:
+  // Of the atom whose neighbour is in the direction of the arc's axis. What is exposed lies right of the arc.
+  QSES_FN double measure_side(uint32_t atom, const Vec3<double> &center, double atom_radius, double along,
+                              double circle_radius, SphereArc &arc) const {
+    const CapRange range = cap_ranges[atom];
+    if (range.count <= 0) return 0.0;
+    arc.cosine = along / atom_radius;
+    arc.sine = circle_radius / atom_radius;
+    const Vec3<double> covered = to_double(load(caps + range.first).axis);
+    const Vec3<double> pole = covered * (-1.0 / sqrt(length_squared(covered)));
+    const double weight = 1.0 / caps_of_circle(range, caps, atom_radius, arc);
+    const double solid_angle = -weight * integrate_about(pole, arc);
+    atomic_add(solid_angles + atom, static_cast<int64_t>(floor(solid_angle * kSolidAngleUnits + 0.5)));
+    // Half the integral of x cross dx along the arc, from the atom's centre.
+    const Vec3<double> vector_area =
+        arc.middle * (circle_radius * along * arc.sin_half) - arc.axis * (circle_radius * circle_radius * arc.half);
+    return weight * dot(center, vector_area);
+  }
+};
+
+// What an atom has of the surface, Å².
+struct AreaOfAtom {
+  const Sphere *atoms;
+  const CapRange *cap_ranges;
+  const int64_t *solid_angles;
+  QSES_FN double operator()(size_t i) const {
+    const int32_t caps = cap_ranges[i].count;
+    if (caps == kBuriedAtom) return 0.0;
+    const double r = static_cast<double>(atoms[i].radius);
+    const double sum = static_cast<double>(solid_angles[i]) / kSolidAngleUnits;
+    const double solid_angle = caps == 0 || sum > kWholeSphere ? kWholeSphere : sum < 0.0 ? 0.0 : sum;
+    return rounded_product(rounded_product(r, r), solid_angle);
+  }
+};
+
+// Area, and three times the volume, of arc i and of atom i.
+struct SumAtomsAndArcs {
+  AreaOfAtom area;
+  size_t atoms, arcs;
+  const double *volumes;
+  QSES_HOST_DEVICE SumPair operator()(size_t i) const {
+    SumPair pair;
+    if (i < atoms) {
+      pair.first = area(i);
+      pair.second = rounded_product(static_cast<double>(area.atoms[i].radius), pair.first);
+    }
+    if (i < arcs) pair.second += volumes[i];
+    return pair;
+  }
+};
+
+// Areas in the caller's order.
+struct StoreAreas {
+  AreaOfAtom area;
+  const uint32_t *order;
+  double *areas;
+  QSES_HOST_DEVICE void operator()(size_t i) const { areas[order[i]] = area(i); }
+};
+
+// Of all atoms. areas: in the back end's memory, of each atom in the caller's order; nullptr: they are not asked for.
+// Waits.
+template <class Executor>
+AtomMeasures measure_atoms(Executor &executor, const NeighborGridView &atoms, const SolventFeatures &features,
+                           double *areas) {
+  const auto mark = executor.arena().mark();
+  const size_t n = atoms.count, arcs = features.arcs.size;
+  const Span<int64_t> solid_angles = executor.template allocate<int64_t>(n);
+  const Span<double> volumes = executor.template allocate<double>(arcs);
+  executor.fill(solid_angles, 0);
+  executor.for_each(arcs,
+                    MeasureArc{atoms.items, features.cap_ranges.data, features.caps.data, features.arcs.data,
+                               features.arc_atoms.data, solid_angles.data, volumes.data},
+                    kArcMeasureSteps + features.most_caps);
+  const AreaOfAtom area{atoms.items, features.cap_ranges.data, solid_angles.data};
+  if (areas) executor.for_each(n, StoreAreas{area, atoms.order, areas});
+  const SumPair sums =
+      executor.template reduce<SumPair>(n > arcs ? n : arcs, SumAtomsAndArcs{area, n, arcs, volumes.data});
+  executor.arena().rewind(mark);
+  return {sums.first, sums.second / 3.0};
+}
+
+}  // namespace quickses
