@@ -45,7 +45,7 @@ struct Walk {
 struct WallWork {
   ProbedPoints<kMostPoints + (kLeavesPerBrick + 1) * kPackSize> ends;
   ProbedPoints<kMostWalks + kPackSize> walked;
-  int16_t number[kPlaces];                           // of the points in ends, by place; -1: none
+  int16_t number[kPlaces];                                         // of the points in ends, by place; -1: none
   int16_t place[kMostPoints + (kLeavesPerBrick + 1) * kPackSize];  // and back
   Walk walks[kMostWalks];
   int edge_count;

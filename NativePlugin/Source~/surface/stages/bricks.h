@@ -166,7 +166,8 @@ struct FeatureBricks {
       visit_bricks_of_shell(lattice, atom.center, radius, radius, margin(), rows, visit_brick);
     } else {
       const Sphere ball = features.arc_bounds.items[i - features.atoms.count];
-      visit_bricks_of_shell(lattice, ball.center, 0.f, ball.radius + features.parameters.depth, margin(), rows, visit_brick);
+      visit_bricks_of_shell(lattice, ball.center, 0.f, ball.radius + features.parameters.depth, margin(), rows,
+                            visit_brick);
     }
   }
   QSES_FN double fewest(size_t i) const {

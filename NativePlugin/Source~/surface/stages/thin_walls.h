@@ -19,15 +19,24 @@ namespace quickses {
 constexpr int kWallSteps = 9;
 QSES_FN glm::ivec3 wall_step(int k) {
   switch (k) {
-    case 0: return {1, 0, 0};
-    case 1: return {0, 1, 0};
-    case 2: return {0, 0, 1};
-    case 3: return {1, 1, 0};
-    case 4: return {1, -1, 0};
-    case 5: return {1, 0, 1};
-    case 6: return {1, 0, -1};
-    case 7: return {0, 1, 1};
-    default: return {0, 1, -1};
+    case 0:
+      return {1, 0, 0};
+    case 1:
+      return {0, 1, 0};
+    case 2:
+      return {0, 0, 1};
+    case 3:
+      return {1, 1, 0};
+    case 4:
+      return {1, -1, 0};
+    case 5:
+      return {1, 0, 1};
+    case 6:
+      return {1, 0, -1};
+    case 7:
+      return {0, 1, 1};
+    default:
+      return {0, 1, -1};
   }
 }
 // Their length, in spacings.
@@ -52,8 +61,8 @@ QSES_FN uint64_t word_of_leaf(const glm::ivec3 &p, const WordsOf &words_of) {
   return words ? words[(p.x & 1) + 2 * (p.y & 1) + 4 * (p.z & 1)] : 0;
 }
 
-// Edges that may pass through a wall, by the bit of their first end in the leaf: both ends are outside, and a point next
-// to both is inside, since a wall does not begin farther from where it is thick enough to be seen. Is there any?
+// Edges that may pass through a wall, by the bit of their first end in the leaf: both ends are outside, and a point
+// next to both is inside, since a wall does not begin farther from where it is thick enough to be seen. Is there any?
 QSES_FN bool find_wall_candidates(const LeafNeighborhood &n, uint64_t edges[kWallSteps]) {
   uint64_t any = 0, all = n.at[kOwnPlace];
   for (int k = 0; k < kNeighborhood; ++k) any |= n.at[k];
@@ -139,8 +148,8 @@ struct WallWalk {
 };
 
 // By the probes of both ends, of which that of the first does not cover the second.
-QSES_FN WallWalk begin_wall_walk(const SurfaceParameters &p, int step, const Vec3<float> &a, const NearestProbe &probe_a,
-                                 const Vec3<float> &b, const NearestProbe &probe_b) {
+QSES_FN WallWalk begin_wall_walk(const SurfaceParameters &p, int step, const Vec3<float> &a,
+                                 const NearestProbe &probe_a, const Vec3<float> &b, const NearestProbe &probe_b) {
   if (probe_covers(p, probe_b, a)) return {0.f, 0.f};
   const Vec3<float> direction = wall_direction(step);
   return {way_out(p, probe_a, a, direction),
