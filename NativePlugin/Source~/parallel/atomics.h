@@ -56,6 +56,13 @@ QSES_FN void atomic_or(uint32_t *p, uint32_t bits) {
   __atomic_fetch_or(p, bits, __ATOMIC_RELAXED);
 #endif
 }
+QSES_FN void atomic_or(uint64_t *p, uint64_t bits) {
+#if defined(__CUDA_ARCH__)
+  atomicOr(reinterpret_cast<unsigned long long *>(p), static_cast<unsigned long long>(bits));
+#else
+  __atomic_fetch_or(p, bits, __ATOMIC_RELAXED);
+#endif
+}
 
 // Returns the value before.
 QSES_FN uint32_t atomic_min(uint32_t *p, uint32_t value) {

@@ -27,6 +27,11 @@ struct Backend<CpuKernelExecutor> {
     if constexpr (!E::kCounts) quickses::evaluate_signs(executor, features, bricks, slice, signs);
   }
   template <class E>
+  static void mark_thin_walls(E &executor, const FeatureView &features, const BrickSet &bricks, BrickRange slice,
+                              LearntRooms &, Candidates &, const uint64_t *signs, uint64_t *marks) {
+    if constexpr (!E::kCounts) quickses::mark_thin_walls(executor, features, bricks, slice, signs, marks);
+  }
+  template <class E>
   static void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bricks, const MeshLayout &layout,
                             BrickRange slice, LearntRooms &, Candidates &, const VertexStarts &starts,
                             const MeshView &mesh) {

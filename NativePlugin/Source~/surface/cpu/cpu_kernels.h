@@ -40,6 +40,7 @@ struct BrickNeeds {
 //   find_atom_features     caps and arcs of atom i, with room for cap_room caps and arc_room arcs. Sets exposed[] for i
 //                          and for the other atoms of its exposed arcs
 //   evaluate_brick_signs   the eight leaf words of a brick
+//   mark_brick_walls       ORs the lattice points into marks that thin walls of its edges need (thin_walls.h)
 //   emit_brick_vertices    the vertices a brick owns
 //   emit_brick_triangles   the triangles of a brick's cells
 #define QSES_CPU_KERNELS(KERNEL)                                                                                \
@@ -48,6 +49,8 @@ struct BrickNeeds {
          uint8_t *exposed)                                                                                      \
   KERNEL(BrickNeeds, evaluate_brick_signs, const FeatureView &features, const BrickSet &bricks, uint32_t brick, \
          const BrickScratch &scratch, uint64_t *words)                                                          \
+  KERNEL(BrickNeeds, mark_brick_walls, const FeatureView &features, const BrickSet &bricks, uint32_t brick,     \
+         const uint64_t *signs, const BrickScratch &scratch, uint64_t *marks)                                   \
   KERNEL(BrickNeeds, emit_brick_vertices, const FeatureView &features, const BrickSet &bricks,                  \
          const MeshLayout &layout, uint32_t brick, const VertexStarts &starts, const BrickScratch &scratch,     \
          const MeshView &mesh)                                                                                  \

@@ -2,26 +2,11 @@
 // CPU kernel: which lattice points of one brick lie inside the exact surface. Only signs are computed, never the
 // distance itself: balls are filled in as bit rows, and the points that stay undecided are packed together.
 #include "surface/cpu/cpu_candidates.h"
-
-#if defined(__BMI2__)
-#include <immintrin.h>
-#endif
+#include "surface/cpu/cpu_leaf_bits.h"
 
 namespace quickses {
 namespace QSES_CPU_ISA {
 namespace {
-
-// The bits of `bits`, spread over the set positions of mask.
-QSES_FN uint64_t deposit_bits(uint64_t bits, uint64_t mask) {
-#if defined(__BMI2__)
-  return _pdep_u64(bits, mask);
-#else
-  uint64_t result = 0;
-  for (; mask; mask &= mask - 1, bits >>= 1)
-    if (bits & 1) result |= mask & (~mask + 1);
-  return result;
-#endif
-}
 
 // A plane of the brick: bit x + 8 y. Its quarter as 16 bits x + 4 y.
 QSES_FN uint64_t quarter(uint64_t plane, int half_x, int half_y) {
@@ -69,9 +54,10 @@ uint64_t leaf_inside(const FeatureView &f, const BrickCandidates &c, const Latti
                      uint64_t open, float slack) {
   alignas(32) float px[64 + kPackSize], py[64 + kPackSize], pz[64 + kPackSize];
   int n = 0;
+  open = to_blocks(open);
   for (uint64_t w = open; w; w &= w - 1, ++n) {
-    const int bit = lowest_bit64(w);
-    const Vec3<float> p = lattice.position(first.x + (bit & 3), first.y + (bit >> 2 & 3), first.z + (bit >> 4));
+    const glm::ivec3 at = first + block_point(lowest_bit64(w));
+    const Vec3<float> p = lattice.position(at.x, at.y, at.z);
     px[n] = p.x, py[n] = p.y, pz[n] = p.z;
   }
   for (int k = n; k < n + kPackSize; ++k) px[k] = px[n - 1], py[k] = py[n - 1], pz[k] = pz[n - 1];
@@ -103,7 +89,7 @@ uint64_t leaf_inside(const FeatureView &f, const BrickCandidates &c, const Latti
     }
     result |= static_cast<uint64_t>(lanes) << g;
   }
-  return deposit_bits(result, open);
+  return from_blocks(deposit_bits(result, open));
 }
 
 }  // namespace

@@ -56,6 +56,27 @@ inline void evaluate_signs(CpuKernelExecutor &executor, const FeatureView &featu
   executor.match_scratches<BrickColumns>();
 }
 
+struct MarkBrickWalls {
+  const CpuKernels *kernels;
+  const FeatureView *features;
+  const BrickSet *bricks;
+  uint32_t first;
+  const uint64_t *signs;
+  uint64_t *marks;
+  void operator()(SoloTeam, BrickColumns &columns, size_t i) const {
+    while (columns.grow(kernels->mark_brick_walls(*features, *bricks, first + static_cast<uint32_t>(i), signs,
+                                                  columns.scratch(), marks))) {
+    }
+  }
+};
+
+inline void mark_thin_walls(CpuKernelExecutor &executor, const FeatureView &features, const BrickSet &bricks,
+                            BrickRange slice, const uint64_t *signs, uint64_t *marks) {
+  executor.for_each_brick<BrickColumns>(
+      slice.size(), MarkBrickWalls{&executor.kernels(), &features, &bricks, slice.first, signs, marks});
+  executor.match_scratches<BrickColumns>();
+}
+
 struct EmitBrickVertices {
   const CpuKernels *kernels;
   const FeatureView *features;

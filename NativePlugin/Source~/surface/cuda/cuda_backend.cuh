@@ -5,6 +5,7 @@
 #include "surface/cuda/mesh_cuda.cuh"
 #include "surface/cuda/mesh_memory_cuda.cuh"
 #include "surface/cuda/solvent_features_cuda.cuh"
+#include "surface/cuda/thin_walls_cuda.cuh"
 
 namespace quickses {
 
@@ -25,6 +26,11 @@ struct Backend<CudaExecutor> {
   static void evaluate_signs(E &executor, const FeatureView &features, const BrickSet &bricks, BrickRange slice,
                              LearntRooms &rooms, Candidates &candidates, uint64_t *signs) {
     if (slice.size() > 0) gpu::gather_candidates(executor, features, bricks, slice, rooms, candidates, signs);
+  }
+  template <class E>
+  static void mark_thin_walls(E &executor, const FeatureView &features, const BrickSet &bricks, BrickRange slice,
+                              LearntRooms &rooms, Candidates &candidates, const uint64_t *signs, uint64_t *marks) {
+    gpu::mark_thin_walls(executor, features, bricks, slice, rooms, candidates, signs, marks);
   }
   template <class E>
   static void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bricks, const MeshLayout &layout,

@@ -33,7 +33,7 @@ struct SignJob {
 struct LeafScratch {
   Sphere atom[kLeafAtoms];
   Arc arc[kLeafArcs];
-  uint32_t atom_number[kLeafAtoms];
+  uint32_t atom_number[kLeafAtoms], arc_number[kLeafArcs];
 };
 
 // A candidate is superfluous if another ball is deeper everywhere in a box. Its depth is at most that of its tangent
@@ -68,6 +68,38 @@ struct BoxCull {
   }
 };
 
+// Puts the atoms that can be deepest at a point of a leaf into the shared memory of its warp. Returns how many they
+// are; those that there is no room for are left out. best: the one that is deepest at the leaf's centre.
+__device__ __forceinline__ int stage_leaf_atoms(const FeatureView &f, const CandidateReach &reach, uint32_t row_count,
+                                                const uint32_t *atoms, const Vec3<float> &center, LeafScratch &scratch,
+                                                DeepestAtom *best) {
+  const auto atom_at = [&](uint32_t k) { return __ldg(atoms + k); };
+  *best = warp_deepest_atom(f, row_count, atom_at, center);
+  int atom_count = 0;
+  if (row_count == 0) return 0;
+  BoxCull cull;
+  const float half = 1.5f * reach.spacing;
+  cull.set(center, {half, half, half}, load(f.atoms.items + best->atom), reach.slack);
+  for (uint32_t k0 = 0; k0 < row_count; k0 += kWarp) {
+    const uint32_t k = k0 + static_cast<uint32_t>(lane_id());
+    bool near = false;
+    uint32_t i = 0;
+    Sphere ball{glm::vec3(0.f), 0.f};
+    if (k < row_count) {
+      i = __ldg(atoms + k);
+      ball = load(f.atoms.items + i);
+      const float d = ball_depth(ball, center);
+      near = (d >= -reach.leaf_radius - reach.slack && cull.keeps(ball, d)) || i == best->atom;
+    }
+    const int place = append_place(near, &atom_count);
+    if (near && place < kLeafAtoms) {
+      scratch.atom[place] = ball;
+      scratch.atom_number[place] = i;
+    }
+  }
+  return atom_count;
+}
+
 enum class LeafKind { kMixed, kInside, kOutside };
 
 static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_kernel(LaunchItems leaves, SignJob job) {
@@ -91,32 +123,8 @@ static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_k
   const Vec3<float> center = leaf_center(lattice.position(first.x, first.y, first.z), leaf, h);
   first += brick_point(leaf, 0);
 
-  // Atoms that can be deepest at a point.
-  const auto atom_at = [&](uint32_t k) { return __ldg(atoms + k); };
-  const DeepestAtom best = warp_deepest_atom(f, brick_row.atom_count, atom_at, center);
-  int atom_count = 0;
-  if (brick_row.atom_count > 0) {
-    BoxCull cull;
-    const float half = 1.5f * h;
-    cull.set(center, {half, half, half}, load(f.atoms.items + best.atom), reach.slack);
-    for (uint32_t k0 = 0; k0 < brick_row.atom_count; k0 += kWarp) {
-      const uint32_t k = k0 + static_cast<uint32_t>(lane);
-      bool near = false;
-      uint32_t i = 0;
-      Sphere ball{glm::vec3(0.f), 0.f};
-      if (k < brick_row.atom_count) {
-        i = __ldg(atoms + k);
-        ball = load(f.atoms.items + i);
-        const float d = ball_depth(ball, center);
-        near = (d >= -reach.leaf_radius - reach.slack && cull.keeps(ball, d)) || i == best.atom;
-      }
-      const int place = append_place(near, &atom_count);
-      if (near && place < kLeafAtoms) {
-        scratch.atom[place] = ball;
-        scratch.atom_number[place] = i;
-      }
-    }
-  }
+  DeepestAtom best;
+  const int atom_count = stage_leaf_atoms(f, reach, brick_row.atom_count, atoms, center, scratch, &best);
 
   // Arcs that can be within depth of a point.
   int arc_count = 0;

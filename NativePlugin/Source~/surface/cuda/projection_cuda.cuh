@@ -150,13 +150,13 @@ __device__ __forceinline__ NearestArc nearest_arc(const FeatureView &f, const Sh
   return best;
 }
 
-// Those of a brick's candidates that decide about an edge; all of them where there is no room for the choice.
+// Those of a brick's candidates that decide about points of an edge, which are within `reach` of its middle; all of
+// them where there is no room for the choice.
 constexpr int kEdgeRoom = 160;
 __device__ __forceinline__ SharedCandidates choose_for_edge(const FeatureView &f, const ListedCandidates &all,
-                                                            const CutEdge &edge, uint32_t *room) {
+                                                            const Vec3<float> &middle, float reach, uint32_t *room) {
   const unsigned lanes = SharedCandidates::lanes();
   const int rank = SharedCandidates::rank();
-  const Vec3<float> middle = edge.middle();
   const auto choose = [&](const Sphere *balls, const uint32_t *items, int count, float reach, uint32_t *out, int left) {
     int n = 0;
     for (int k0 = 0; k0 < count; k0 += kVertexLanes) {
@@ -175,10 +175,10 @@ __device__ __forceinline__ SharedCandidates choose_for_edge(const FeatureView &f
     return n;
   };
   __syncwarp(lanes);  // the choice before is not looked at any more
-  const int atoms = choose(f.atoms.items, all.atoms, all.atom_total, edge_reach(f.parameters), room, kEdgeRoom);
+  const int atoms = choose(f.atoms.items, all.atoms, all.atom_total, reach, room, kEdgeRoom);
   const int left = atoms < kEdgeRoom ? kEdgeRoom - atoms : 0;
-  const int arcs = choose(f.arc_bounds.items, all.arcs, all.arc_total, edge_arc_reach(f.parameters),
-                          room + (kEdgeRoom - left), left);
+  const int arcs =
+      choose(f.arc_bounds.items, all.arcs, all.arc_total, f.parameters.depth + reach, room + (kEdgeRoom - left), left);
   __syncwarp(lanes);
   if (atoms > kEdgeRoom || arcs > left) return {all};
   return {{room, room + atoms, atoms, arcs}};
@@ -202,7 +202,10 @@ static __global__ __launch_bounds__(kVertexThreads) void reproject_kernel(Launch
       const uint32_t brick = brick_of_vertex(job.layout, job.bricks.count, vertex);
       const CutEdge edge = ends_of_edge(job.bricks, job.layout, brick, edge_of_vertex(job.layout, brick, vertex));
       candidates = {brick_candidates(job.view, brick - job.view.first_brick)};
-      s = place_on_edge(f, choose_for_edge(f, candidates, edge, edge_memory[threadIdx.x / kVertexLanes]), edge);
+      s = place_on_edge(f,
+                        choose_for_edge(f, candidates, edge.middle(), edge_reach(f.parameters),
+                                        edge_memory[threadIdx.x / kVertexLanes]),
+                        edge);
     }
     const uint32_t owner = nearest_atom(f, candidates, s.position);
     __syncwarp(candidates.lanes());  // all of them have read what is written now

@@ -81,5 +81,13 @@ QSES_FN uint64_t shift_y(uint64_t w, uint64_t next) {
   return (w >> 4 & 0x0fff0fff0fff0fffull) | (next & 0x000f000f000f000full) << 12;
 }
 QSES_FN uint64_t shift_z(uint64_t w, uint64_t next) { return w >> 16 | next << 48; }
+// The same one point back.
+QSES_FN uint64_t shift_x_back(uint64_t w, uint64_t before) {
+  return (w & 0x7777777777777777ull) << 1 | (before >> 3 & 0x1111111111111111ull);
+}
+QSES_FN uint64_t shift_y_back(uint64_t w, uint64_t before) {
+  return (w & 0x0fff0fff0fff0fffull) << 4 | (before >> 12 & 0x000f000f000f000full);
+}
+QSES_FN uint64_t shift_z_back(uint64_t w, uint64_t before) { return w << 16 | before >> 48; }
 
 }  // namespace quickses

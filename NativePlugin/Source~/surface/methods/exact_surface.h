@@ -4,6 +4,7 @@
 
 #include "surface/methods/closed_layout.h"
 #include "surface/stages/relaxation.h"
+#include "surface/stages/thin_walls.h"
 
 namespace quickses {
 
@@ -88,6 +89,28 @@ uint32_t sign_slice(Work &work, const BrickSet &bricks) {
   });
 }
 
+// Marks what signs miss of walls thinner than the spacing. All marks are found before the first becomes a sign, so that
+// neither slices nor threads matter. shared: candidates of all bricks, if they are gathered.
+template <class Work>
+void mend_thin_walls(Work &work, const BrickSet &bricks,
+                     Candidates<std::remove_reference_t<decltype(work.executor)>> *shared, uint64_t *signs) {
+  auto &executor = work.executor;
+  using B = Backend<std::remove_reference_t<decltype(executor)>>;
+  work.timer.begin("thin_walls");
+  const auto mark = executor.arena().mark();
+  const Span<uint64_t> marks = executor.template allocate<uint64_t>(size_t(bricks.count) * kLeavesPerBrick);
+  executor.fill(marks, 0);
+  const auto mark_slice = [&](auto &any_executor, BrickRange slice) {
+    typename B::Candidates own{};
+    B::mark_thin_walls(any_executor, work.features, bricks, slice, work.rooms, shared ? *shared : own, signs,
+                       marks.data);
+  };
+  const uint32_t slice_size = shared ? bricks.count : slice_of(work, bricks.count, mark_slice);
+  for_each_slice(work, bricks.count, slice_size, 0.4, 0.45, [&](BrickRange slice) { mark_slice(executor, slice); });
+  executor.for_each(marks.size, AddMarks{marks.data, signs});
+  executor.arena().rewind(mark);
+}
+
 // The part of a mesh that a slice of bricks owns, in memory of the device. Waits.
 struct MeshPart {
   MeshView view;
@@ -138,6 +161,7 @@ MeshMemoryView build_exact_surface(Work &work) {
       Candidates<Executor> own{};
       B::evaluate_signs(executor, features, set, slice, work.rooms, share ? shared : own, signs);
     });
+    if (work.parameters.has_thin_walls()) mend_thin_walls(work, set, share ? &shared : nullptr, signs);
   });
 
   MeshMemoryView mesh = work.memory.allocate_mesh(executor, counts.vertices, counts.triangles, work.shape, work.purpose,

@@ -36,7 +36,7 @@ struct BallBricks {
   template <class Visit>
   QSES_FN void visit(size_t i, const RowRange &rows, const Visit &visit_brick) const {
     const Sphere atom = atoms.items[i];
-    visit_bricks_of_shell(lattice, atom.center, 0.f, atom.radius, rows, visit_brick);
+    visit_bricks_of_shell(lattice, atom.center, 0.f, atom.radius, 1.f, rows, visit_brick);
   }
   QSES_FN double fewest(size_t i) const {
     const float radius = atoms.items[i].radius;

@@ -57,14 +57,14 @@ struct RowRange {
   uint64_t first = 0, last = ~uint64_t(0);
 };
 
-// Calls visit(linear index of the first, number) for the runs along x of the bricks whose grown boxes meet the shell
-// between two radii about a centre.
+// Calls visit(linear index of the first, number) for the runs along x of the bricks whose boxes, grown by so many
+// spacings, meet the shell between two radii about a centre.
 template <class Visit>
 QSES_FN void visit_bricks_of_shell(const Lattice &lattice, const glm::vec3 &center, float inner, float outer,
-                                   const RowRange &rows, const Visit &visit) {
+                                   float margin, const RowRange &rows, const Visit &visit) {
   const float h = lattice.spacing, size = lattice.brick_size(), slack = 0.01f * h + 1e-4f;
-  const float box = size + h + 2.f * slack;  // grown box: from -h - slack to 8h + slack
-  const float low_offset = -h - slack;
+  const float grown = margin * h + slack, box = size - h + 2.f * grown;
+  const float low_offset = -grown;
   outer += slack;
   inner = maximum(0.f, inner - slack);
   const float inner2 = inner * inner, outer2 = outer * outer;
@@ -146,6 +146,10 @@ struct FeatureBricks {
   FeatureView features;
   Lattice lattice;
 
+  // Grown by one spacing, every corner of every cell that the surface passes lies in an active brick. By two, so do the
+  // points next to such corners, which matter where a corner's sign is mended (thin_walls.h).
+  QSES_FN float margin() const { return features.parameters.has_thin_walls() ? 2.f : 1.f; }
+
   QSES_FN size_t size() const { return size_t(features.atoms.count) + features.arc_bounds.count; }
 
   uint64_t most_across() const {
@@ -159,10 +163,11 @@ struct FeatureBricks {
       if (features.cap_ranges[i].count == kBuriedAtom) return;
       const Sphere atom = features.atoms.items[i];
       const float radius = maximum(0.f, atom.radius - features.parameters.depth);
-      visit_bricks_of_shell(lattice, atom.center, radius, radius, rows, visit_brick);
+      visit_bricks_of_shell(lattice, atom.center, radius, radius, margin(), rows, visit_brick);
     } else {
       const Sphere ball = features.arc_bounds.items[i - features.atoms.count];
-      visit_bricks_of_shell(lattice, ball.center, 0.f, ball.radius + features.parameters.depth, rows, visit_brick);
+      visit_bricks_of_shell(lattice, ball.center, 0.f, ball.radius + features.parameters.depth, margin(), rows,
+                            visit_brick);
     }
   }
   QSES_FN double fewest(size_t i) const {

@@ -41,6 +41,9 @@ struct TableView {
 //   find_solvent_features(E, atoms, parameters, plan, rooms, features)
 //   evaluate_signs(E, features, bricks, slice, rooms, candidates, signs)
 //       signs[8 * brick + leaf] for the bricks of the slice: bit set = farther than depth inside the boundary
+//   mark_thin_walls(E, features, bricks, slice, rooms, candidates, signs, marks)
+//       of the signs of all bricks: sets the bits in marks, which are numbered like signs, of the points that are to be
+//       inside because of edges of the slice's bricks (thin_walls.h)
 //   emit_vertices(E, features, bricks, layout, slice, rooms, candidates, starts, mesh)
 //   emit_triangles(E, bricks, layout, slice, table, mesh)
 template <class Executor>
@@ -64,6 +67,9 @@ struct BackendContract {
   static_assert(has<decltype(&B::template evaluate_signs<Executor>), const FeatureView &, const BrickSet &, BrickRange,
                     typename B::LearntRooms &, typename B::Candidates &, uint64_t *>,
                 "evaluate_signs");
+  static_assert(has<decltype(&B::template mark_thin_walls<Executor>), const FeatureView &, const BrickSet &, BrickRange,
+                    typename B::LearntRooms &, typename B::Candidates &, const uint64_t *, uint64_t *>,
+                "mark_thin_walls");
   static_assert(
       has<decltype(&B::template emit_vertices<Executor>), const FeatureView &, const BrickSet &, const MeshLayout &,
           BrickRange, typename B::LearntRooms &, typename B::Candidates &, const VertexStarts &, const MeshView &>,

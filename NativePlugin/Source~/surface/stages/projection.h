@@ -21,7 +21,7 @@ constexpr float kStartOverhang = 1.2f;
 // What would move a vertex further than this, in units of the spacing, is no feature of the surface near it.
 constexpr float kLongestMove = 2.f;
 // And what would move it further than this into the molecule might take it through a wall and out on its other side.
-constexpr float kLongestWayIn = 0.6f;
+constexpr float kLongestWayIn = 1.f;
 
 // A probe covers what is deeper in it than this.
 constexpr float kProjectionTolerance = 1e-4f;

@@ -21,6 +21,9 @@ struct SurfaceParameters {
   // A point that is no deeper than this in any ball is outside. Where a surface is looked for further inside, a point
   // on the boundary within rounding is outside only if a feature says so: else it would be a hole of its own.
   QSES_FN float least_depth() const { return depth > 0.f ? -kExposureTolerance : 0.f; }
+
+  // Only what a probe rolls on can have walls between two probes (thin_walls.h).
+  QSES_FN bool has_thin_walls() const { return depth > 0.f; }
 };
 
 // Output of the stage, in the memory of the back end. Arcs are ordered by atom (in grid order), then by cap, then by

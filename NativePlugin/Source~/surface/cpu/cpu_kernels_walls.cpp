@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: MIT
+// CPU kernel: the walls thinner than the spacing that edges of one brick pass through. Edges are sorted out in bulk: by
+// signs, whole leaves at once, then by the probes nearest to their ends, eight at a time; few are left to be walked.
+#include "surface/cpu/cpu_candidates.h"
+#include "surface/cpu/cpu_leaf_bits.h"
+#include "surface/stages/thin_walls.h"
+
+#include <cstring>
+#include <new>
+
+namespace quickses {
+namespace QSES_CPU_ISA {
+namespace {
+
+// Places of the points of a brick and one more on every side: x + 1, y + 1 and z + 1 in four bits each.
+constexpr int kPlaces = 16 * 16 * (kBrickEdge + 2), kMostPoints = 10 * 10 * 10;
+constexpr int kMostEdges = kBrickPoints * kWallSteps;
+constexpr int kMostWalks = 128;  // edges walked together
+
+QSES_FN int place_of(const glm::ivec3 &p) { return p.x + 1 + 16 * (p.y + 1) + 256 * (p.z + 1); }
+QSES_FN glm::ivec3 point_of(int place) { return glm::ivec3((place & 15) - 1, (place >> 4 & 15) - 1, (place >> 8) - 1); }
+QSES_FN int step_of_place(int k) {
+  const glm::ivec3 s = wall_step(k);
+  return s.x + 16 * s.y + 256 * s.z;
+}
+
+// Points and the probes nearest to them.
+template <int kRoom>
+struct ProbedPoints {
+  alignas(32) float x[kRoom], y[kRoom], z[kRoom], center_x[kRoom], center_y[kRoom], center_z[kRoom], distance[kRoom];
+  QSES_FN void set(int k, const Vec3<float> &v) { x[k] = v.x, y[k] = v.y, z[k] = v.z; }
+  QSES_FN Vec3<float> point(int k) const { return {x[k], y[k], z[k]}; }
+  QSES_FN NearestProbe probe(int k) const { return {{center_x[k], center_y[k], center_z[k]}, distance[k]}; }
+};
+
+// An edge that may be a wall: by the step, and the number of its first end; later of both.
+struct Edge {
+  uint16_t first, second, step;
+};
+struct Walk {
+  Edge edge;
+  WallWalk state;
+};
+
+struct WallWork {
+  ProbedPoints<kMostPoints + (kLeavesPerBrick + 1) * kPackSize> ends;
+  ProbedPoints<kMostWalks + kPackSize> walked;
+  int16_t number[kPlaces];                                         // of the points in ends, by place; -1: none
+  int16_t place[kMostPoints + (kLeavesPerBrick + 1) * kPackSize];  // and back
+  Walk walks[kMostWalks];
+  int edge_count;
+  Edge edges[1];  // more follow
+};
+constexpr size_t kWallBytes = sizeof(WallWork) + kMostEdges * sizeof(Edge);
+
+struct WallField {
+  const FeatureView &f;
+  const BrickCandidates &c;
+  float slack;     // as for signs
+  bool looks_out;  // points may lie outside all balls
+};
+
+// Those of eight arcs, one to each lane, as nearest_on_arc() has them.
+QSES_FN Vec3<Pack> nearest_on_arcs(const float *rows, const Vec3<Pack> &x) {
+  Vec3<Pack> center, middle, side;
+  Pack radius, cos_half, sin_half;
+  load_columns(rows, &center.x, &center.y, &center.z, &radius);
+  load_columns(rows + 4 * kPackSize, &middle.x, &middle.y, &middle.z, &cos_half);
+  load_columns(rows + 8 * kPackSize, &side.x, &side.y, &side.z, &sin_half);
+  const Vec3<Pack> t = x - center;
+  const Pack along_middle = dot(t, middle), along_side = dot(t, side);
+  const Pack in_plane = square_root(along_middle * along_middle + along_side * along_side);
+  const PackMask on_arc = along_middle >= cos_half * in_plane, off_axis = in_plane > Pack(1e-6f) * radius;
+  const Pack inverse = Pack(1.f) / maximum(in_plane, Pack(1e-30f));
+  const Pack end_sine = select(along_side < Pack(0.f), -sin_half, sin_half);
+  const Pack cosine = select(on_arc, select(off_axis, along_middle * inverse, Pack(1.f)), cos_half);
+  const Pack sine = select(on_arc, select(off_axis, along_side * inverse, Pack(0.f)), end_sine);
+  return center + middle * (radius * cosine) + side * (radius * sine);
+}
+
+constexpr int kGroup = 64;  // points whose probes are found together
+
+// The rule of nearest_probe(), for the points from begin to end, which are at most a group. There is room for eight
+// more.
+template <int kRoom>
+void find_probes(const WallField &field, ProbedPoints<kRoom> &points, int begin, int end) {
+  const FeatureView &f = field.f;
+  const BrickCandidates &c = field.c;
+  const float depth = f.parameters.depth;
+  alignas(32) float number[kPackSize], open_x[kGroup + kPackSize], open_y[kGroup + kPackSize],
+      open_z[kGroup + kPackSize];
+  int32_t open_number[kGroup + kPackSize];
+  int open = 0;
+  for (int k = end; k < end + ((begin - end) & 7); ++k) points.set(k, points.point(end - 1));
+  for (int g = begin; g < end; g += kPackSize) {
+    if (c.arc_count > kManyArcs) look_for_stop();
+    const Vec3<Pack> p = load_points(points.x + g, points.y + g, points.z + g);
+    uint32_t lanes = end - g < kPackSize ? (1u << (end - g)) - 1 : kAllLanes;
+    const PointBall ball = ball_around(p);
+    Vec3<Pack> center = p;
+    Pack distance(kFarAway);
+    if (field.looks_out) {
+      const int near = choose_balls(c.atoms, c.atom_count, ball.center, ball.radius + field.slack, c.near_list);
+      const PackMask outside =
+          deepest_ball(c.atoms, c.near_list, near, p, -kFarAway).depth <= Pack(f.parameters.least_depth());
+      distance = select(outside, Pack(0.f), distance);
+      lanes &= ~lane_bits(outside);
+    }
+    const int near = choose_balls(c.exposed, c.exposed_count, ball.center, ball.radius + field.slack, c.near_list);
+    const Deepest deepest = deepest_ball(c.exposed, c.near_list, near, p, -field.slack);
+    store_pack(number, deepest.number);
+    for (uint32_t todo = lanes & lane_bits(Pack(0.f) <= deepest.number); todo;) {
+      const float a = number[lowest_bit32(todo)];
+      const uint32_t same = todo & lane_bits(deepest.number == Pack(a));
+      todo &= ~same;
+      const int k = static_cast<int>(a);
+      const Vec3<Pack> atom(Pack(c.exposed.x[k]), Pack(c.exposed.y[k]), Pack(c.exposed.z[k]));
+      const Vec3<Pack> offset = p - atom;
+      const Pack length = maximum(Pack(c.exposed.radius[k]) - deepest.depth, Pack(1e-12f));
+      const uint32_t exposed = exposed_lanes(f, static_cast<uint32_t>(c.exposed_index[k]), offset, length, same);
+      if (!exposed) continue;
+      lanes &= ~exposed;
+      const PackMask here = lane_mask(exposed);
+      const Vec3<Pack> on = atom + offset * (Pack(c.exposed.radius[k]) / length);
+      center = {select(here, on.x, center.x), select(here, on.y, center.y), select(here, on.z, center.z)};
+      distance = select(here, deepest.depth, distance);
+    }
+    store_pack(points.center_x + g, center.x);
+    store_pack(points.center_y + g, center.y);
+    store_pack(points.center_z + g, center.z);
+    store_pack(points.distance + g, distance);
+    store_lanes(open_x + open, lanes, p.x);
+    store_lanes(open_y + open, lanes, p.y);
+    store_lanes(open_z + open, lanes, p.z);
+    open += store_lane_numbers(open_number + open, lanes, g);
+  }
+  for (int k = open; k < open + (-open & 7); ++k)
+    open_x[k] = open_x[open - 1], open_y[k] = open_y[open - 1], open_z[k] = open_z[open - 1];
+  for (int g = 0; g < open; g += kPackSize) {
+    const Vec3<Pack> p = load_points(open_x + g, open_y + g, open_z + g);
+    const PointBall ball = ball_around(p);
+    const int arcs = choose_balls(c.arcs, c.arc_count, ball.center, depth + ball.radius, c.arc_list);
+    if (arcs == 0) continue;
+    Pack nearest(kFarAway), place(0.f), k_pack(0.f);
+    for (int k = 0; k < arcs; ++k) {
+      const Pack d2 = arc_distance2(f.arcs[c.arc_index[c.arc_list[k]]], p);
+      const PackMask nearer = d2 < nearest;
+      nearest = select(nearer, d2, nearest);
+      place = select(nearer, k_pack, place);
+      k_pack = k_pack + Pack(1.f);
+    }
+    store_pack(number, place);
+    alignas(32) float rows[12 * kPackSize];
+    for (int l = 0; l < kPackSize; ++l) {
+      const Arc &arc = f.arcs[c.arc_index[c.arc_list[static_cast<int>(number[l])]]];
+      std::memcpy(rows + 4 * l, &arc.center, 16);
+      std::memcpy(rows + 4 * kPackSize + 4 * l, &arc.middle, 16);
+      std::memcpy(rows + 8 * kPackSize + 4 * l, &arc.side, 16);
+    }
+    const Vec3<Pack> on = nearest_on_arcs(rows, p);
+    alignas(32) float x[kPackSize], y[kPackSize], z[kPackSize], distance[kPackSize];
+    store_pack(x, on.x);
+    store_pack(y, on.y);
+    store_pack(z, on.z);
+    store_pack(distance, square_root(maximum(nearest, Pack(0.f))));
+    for (int l = 0; l < kPackSize && g + l < open; ++l) {
+      const int k = open_number[g + l];
+      points.center_x[k] = x[l], points.center_y[k] = y[l], points.center_z[k] = z[l];
+      points.distance[k] = distance[l];
+    }
+  }
+}
+template <int kRoom>
+void find_all_probes(const WallField &field, ProbedPoints<kRoom> &points, int begin, int end) {
+  for (; begin < end; begin += kGroup) find_probes(field, points, begin, begin + kGroup < end ? begin + kGroup : end);
+}
+
+// Walks the edges, and marks an end of those that are walls.
+void walk_edges(const WallField &field, const BrickSet &bricks, uint32_t brick, int count, WallWork &w,
+                uint64_t *marks) {
+  const SurfaceParameters &p = field.f.parameters;
+  for (int round = 0; count > 0 && round < kMostWallSteps; ++round) {
+    for (int q = 0; q < count; ++q) {
+      const Walk &walk = w.walks[q];
+      w.walked.set(q, w.ends.point(walk.edge.first) + wall_direction(walk.edge.step) * (walk.state.at + kWallStep));
+    }
+    find_all_probes(field, w.walked, 0, count);
+    int left = 0;
+    for (int q = 0; q < count; ++q) {
+      Walk walk = w.walks[q];
+      const NearestProbe probe = w.walked.probe(q);
+      if (probe.distance > p.depth) {
+        const bool first = marks_first_end(w.ends.probe(walk.edge.first), w.ends.probe(walk.edge.second));
+        mark_wall(bricks, brick, point_of(w.place[first ? walk.edge.first : walk.edge.second]), marks);
+        continue;
+      }
+      walk.state.at += kWallStep + way_out(p, probe, w.walked.point(q), wall_direction(walk.edge.step));
+      if (!walk.state.is_open()) w.walks[left++] = walk;
+    }
+    count = left;
+  }
+}
+
+// Finds the edges of a leaf that their first ends' probes do not cover. count: of points so far.
+void sort_out_edges(const WallField &field, const Lattice &lattice, const glm::ivec3 &first, int leaf,
+                    const uint64_t *candidates, WallWork &w, int *count) {
+  const SurfaceParameters &p = field.f.parameters;
+  uint64_t edges[kWallSteps], starts = 0;
+  for (int k = 0; k < kWallSteps; ++k) starts |= edges[k] = to_blocks(candidates[k]);
+  if (starts == 0) return;
+  for (int k = 0; k < kWallSteps; ++k) edges[k] = extract_bits(edges[k], starts);
+  const int begin = *count;
+  int n = begin;
+  for (uint64_t w_bits = starts; w_bits; w_bits &= w_bits - 1, ++n) {
+    const glm::ivec3 at = brick_point(leaf, 0) + block_point(lowest_bit64(w_bits));
+    w.place[n] = static_cast<int16_t>(place_of(at));
+    w.number[w.place[n]] = static_cast<int16_t>(n);
+    w.ends.set(n, lattice.position(first.x + at.x, first.y + at.y, first.z + at.z));
+  }
+  const float h = lattice.spacing;
+  const Pack depth2(p.depth * p.depth);
+  find_probes(field, w.ends, begin, n);
+  for (int g = begin; g < n; g += kPackSize) {
+    const Vec3<Pack> from = load_points(w.ends.x + g, w.ends.y + g, w.ends.z + g) -
+                            load_points(w.ends.center_x + g, w.ends.center_y + g, w.ends.center_z + g);
+    const uint32_t solid = lane_bits(load_pack(w.ends.distance + g) > Pack(p.depth));
+#pragma GCC unroll 9
+    for (int k = 0; k < kWallSteps; ++k) {
+      const glm::ivec3 s = wall_step(k);
+      const Vec3<Pack> other = from + Vec3<Pack>(Pack(static_cast<float>(s.x) * h), Pack(static_cast<float>(s.y) * h),
+                                                 Pack(static_cast<float>(s.z) * h));
+      const uint32_t open = solid | lane_bits(length_squared(other) < depth2);
+      edges[k] &= ~(static_cast<uint64_t>(open) << (g - begin));
+    }
+  }
+  for (int k = 0; k < kWallSteps; ++k)
+    for (uint64_t rest = edges[k]; rest; rest &= rest - 1)
+      w.edges[w.edge_count++] = {static_cast<uint16_t>(begin + lowest_bit64(rest)), 0, static_cast<uint16_t>(k)};
+  *count = begin + (n - begin + kPackSize - 1) / kPackSize * kPackSize;
+}
+
+}  // namespace
+
+BrickNeeds mark_brick_walls(const FeatureView &f, const BrickSet &bricks, uint32_t brick, const uint64_t *signs,
+                            const BrickScratch &scratch, uint64_t *marks) {
+  // Edges that signs leave.
+  const glm::ivec3 own = bricks.lattice.brick_at(bricks.linear[brick]);
+  const uint64_t *near[kNeighborhood];
+  for (int k = 0; k < kNeighborhood; ++k) {
+    const int found = k == kOwnPlace ? static_cast<int>(brick) : bricks.find(own + neighbor_step(k));
+    near[k] = found < 0 ? nullptr : signs + static_cast<size_t>(found) * kLeavesPerBrick;
+  }
+  uint64_t candidates[kLeavesPerBrick][kWallSteps];
+  uint32_t leaves = 0;
+  uint64_t around[4][4][4];  // words of the leaves of the brick and next to it
+  for (int z = 0; z < 4; ++z)
+    for (int y = 0; y < 4; ++y)
+      for (int x = 0; x < 4; ++x)
+        around[z][y][x] = word_of_leaf(glm::ivec3(x - 1, y - 1, z - 1), [&](int at) { return near[at]; });
+  for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
+    LeafNeighborhood words;
+    for (int z = 0; z < 3; ++z)
+      for (int y = 0; y < 3; ++y)
+        std::memcpy(words.at + 3 * y + 9 * z, &around[z + (leaf >> 2)][y + (leaf >> 1 & 1)][leaf & 1],
+                    3 * sizeof(uint64_t));
+    leaves |= static_cast<uint32_t>(find_wall_candidates(words, candidates[leaf])) << leaf;
+  }
+  if (!leaves) return {0, 0};
+
+  const SurfaceParameters &p = f.parameters;
+  const Lattice &lattice = bricks.lattice;
+  const float h = lattice.spacing;
+  const glm::ivec3 first = lattice.first_point(own);
+  const Vec3<float> low = lattice.position(first.x - 1, first.y - 1, first.z - 1);
+  const float farthest = maximum(maximum(absolute(low.x), absolute(low.y)), absolute(low.z));
+  const float slack = 1e-3f + 1e-6f * farthest;
+  const BrickCandidates c = gather_candidates(f, low, 9.f * h, 1.1f * slack, p.depth + slack, scratch);
+  if (c.needs.atoms || c.needs.arcs) return c.needs;
+  const WallField field{f, c, slack, p.depth - kRoot3 * h < 0.01f * p.depth};
+
+  static_assert(kWallBytes <= BrickScratch::kVertexBytes, "the scratch of a thread has room for it");
+  WallWork &w = *new (scratch.vertex_memory) WallWork;
+  std::memset(w.number, 0xff, sizeof w.number);
+  w.edge_count = 0;
+  int count = 0;
+  for (; leaves; leaves &= leaves - 1) {
+    const int leaf = lowest_bit32(leaves);
+    sort_out_edges(field, lattice, first, leaf, candidates[leaf], w, &count);
+  }
+
+  // Those that are left: by the probes of their second ends, and then by those between them.
+  const int firsts = count;
+  for (int q = 0; q < w.edge_count; ++q) {
+    Edge &edge = w.edges[q];
+    const int place = w.place[edge.first] + step_of_place(edge.step);
+    if (w.number[place] < 0) {
+      const glm::ivec3 at = first + point_of(place);
+      w.number[place] = static_cast<int16_t>(count);
+      w.place[count] = static_cast<int16_t>(place);
+      w.ends.set(count++, lattice.position(at.x, at.y, at.z));
+    }
+    edge.second = static_cast<uint16_t>(w.number[place]);
+  }
+  find_all_probes(field, w.ends, firsts, count);
+  int walks = 0;
+  for (int q = 0; q < w.edge_count; ++q) {
+    const Edge &edge = w.edges[q];
+    const Walk walk{edge, begin_wall_walk(p, edge.step, w.ends.point(edge.first), w.ends.probe(edge.first),
+                                          w.ends.point(edge.second), w.ends.probe(edge.second))};
+    if (walk.state.is_open()) continue;
+    w.walks[walks++] = walk;
+    if (walks < kMostWalks) continue;
+    walk_edges(field, bricks, brick, walks, w, marks);
+    walks = 0;
+  }
+  walk_edges(field, bricks, brick, walks, w, marks);
+  return {0, 0};
+}
+
+}  // namespace QSES_CPU_ISA
+}  // namespace quickses

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+// The points of a leaf that some bits choose, in an order in which neighbours in the order are neighbours in space: the
+// fewer balls meet eight of them. Only for the CPU kernels.
+#pragma once
+
+#include "surface/cpu/cpu_kernels.h"
+
+#if defined(__BMI2__)
+#include <immintrin.h>
+#endif
+
+namespace quickses {
+namespace QSES_CPU_ISA {
+
+// The lowest bits of `bits`, spread over the set positions of mask; and back.
+QSES_FN uint64_t deposit_bits(uint64_t bits, uint64_t mask) {
+#if defined(__BMI2__)
+  return _pdep_u64(bits, mask);
+#else
+  uint64_t result = 0;
+  for (; mask; mask &= mask - 1, bits >>= 1)
+    if (bits & 1) result |= mask & (~mask + 1);
+  return result;
+#endif
+}
+QSES_FN uint64_t extract_bits(uint64_t bits, uint64_t mask) {
+#if defined(__BMI2__)
+  return _pext_u64(bits, mask);
+#else
+  uint64_t result = 0;
+  for (int k = 0; mask; mask &= mask - 1, ++k)
+    if (bits & mask & (~mask + 1)) result |= uint64_t(1) << k;
+  return result;
+#endif
+}
+
+// Exchanges two bits of the numbers of a word's bits. first_only: the numbers with the first bit but not the second.
+template <int kFirst, int kSecond>
+QSES_FN uint64_t exchange_number_bits(uint64_t w, uint64_t first_only) {
+  constexpr int kShift = (1 << kSecond) - (1 << kFirst);
+  const uint64_t differs = (w ^ w >> kShift) & first_only;
+  return w ^ differs ^ differs << kShift;
+}
+// A leaf word as blocks of 2 x 2 x 2 points: bit x + 2 y + 4 z of byte x + 2 y + 4 z. And back.
+QSES_FN uint64_t to_blocks(uint64_t w) {
+  w = exchange_number_bits<1, 2>(w, 0x0c0c0c0c0c0c0c0cull);
+  w = exchange_number_bits<2, 4>(w, 0x0000f0f00000f0f0ull);
+  return exchange_number_bits<3, 4>(w, 0x0000ff000000ff00ull);
+}
+QSES_FN uint64_t from_blocks(uint64_t w) {
+  w = exchange_number_bits<3, 4>(w, 0x0000ff000000ff00ull);
+  w = exchange_number_bits<2, 4>(w, 0x0000f0f00000f0f0ull);
+  return exchange_number_bits<1, 2>(w, 0x0c0c0c0c0c0c0c0cull);
+}
+// The point of a bit of the blocks, counted from the leaf's first.
+QSES_FN glm::ivec3 block_point(int bit) {
+  const int block = bit >> 3;
+  return glm::ivec3((bit & 1) + 2 * (block & 1), (bit >> 1 & 1) + (block & 2), (bit >> 2 & 1) + (block >> 1 & 2));
+}
+
+}  // namespace QSES_CPU_ISA
+}  // namespace quickses

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: MIT
+// Walls of solid thinner than the spacing: where two probes come close to each other from both sides, no lattice point
+// lies inside the wall between them, so that its signs have a hole. A lattice edge with both ends outside that passes
+// through such a wall gets one end, the one deeper in, marked inside. Edges are those along the axes and the diagonals
+// of faces: marching cubes separates points that only a diagonal of a face joins, so a wall one point thick would leak
+// without them.
+//
+// Whether an edge passes through solid is asked of probes alone. Where the probe may be, nothing is solid, and its ball
+// is convex: an edge that one probe covers, or two that overlap on it, is open. What is left is walked from ball to
+// ball, and is a wall if a point right behind a ball is farther than depth from all places where the probe may be.
+#pragma once
+
+#include "surface/stages/marching_cubes.h"
+#include "surface/stages/projection.h"
+
+namespace quickses {
+
+// Edges by their first end: its lattice point and the step to the second.
+constexpr int kWallSteps = 9;
+QSES_FN glm::ivec3 wall_step(int k) {
+  switch (k) {
+    case 0:
+      return {1, 0, 0};
+    case 1:
+      return {0, 1, 0};
+    case 2:
+      return {0, 0, 1};
+    case 3:
+      return {1, 1, 0};
+    case 4:
+      return {1, -1, 0};
+    case 5:
+      return {1, 0, 1};
+    case 6:
+      return {1, 0, -1};
+    case 7:
+      return {0, 1, 1};
+    default:
+      return {0, 1, -1};
+  }
+}
+// Their length, in spacings.
+QSES_FN float wall_step_length(int k) { return k < 3 ? 1.f : 1.41421356f; }
+
+QSES_FN Vec3<float> wall_direction(int k) {
+  const glm::ivec3 s = wall_step(k);
+  const float scale = k < 3 ? 1.f : 0.70710678f;
+  return {static_cast<float>(s.x) * scale, static_cast<float>(s.y) * scale, static_cast<float>(s.z) * scale};
+}
+
+// The words of a leaf and its neighbours, numbered as neighbours of a brick are (brick_border.h).
+struct LeafNeighborhood {
+  uint64_t at[kNeighborhood];
+};
+
+// The word of a leaf at a place counted from the first leaf of a brick, from -1 to 2 along each axis. words_of(place):
+// those of the brick itself and around it; nullptr if a brick is not active: no wall is there, so all is outside.
+template <class WordsOf>
+QSES_FN uint64_t word_of_leaf(const glm::ivec3 &p, const WordsOf &words_of) {
+  const uint64_t *const words = words_of(kOwnPlace + (p.x >> 1) + 3 * (p.y >> 1) + 9 * (p.z >> 1));
+  return words ? words[(p.x & 1) + 2 * (p.y & 1) + 4 * (p.z & 1)] : 0;
+}
+
+// Edges that may pass through a wall, by the bit of their first end in the leaf: both ends are outside, and a point
+// next to both is inside, since a wall does not begin farther from where it is thick enough to be seen. Is there any?
+QSES_FN bool find_wall_candidates(const LeafNeighborhood &n, uint64_t edges[kWallSteps]) {
+  uint64_t any = 0, all = n.at[kOwnPlace];
+  for (int k = 0; k < kNeighborhood; ++k) any |= n.at[k];
+  if (any == 0 || all == ~uint64_t(0)) return false;
+  // Inside within 0 to 1 or -1 to 1 along x; then within so much along y; the rows are those along x.
+  uint64_t own[9], next[9], x2[9], x3[9];
+  for (int r = 0; r < 9; ++r) {
+    own[r] = n.at[3 * r + 1];
+    next[r] = shift_x(own[r], n.at[3 * r + 2]);
+    x2[r] = own[r] | next[r];
+    x3[r] = x2[r] | shift_x_back(own[r], n.at[3 * r]);
+  }
+  uint64_t x2_up[3], x2_down[3], x2_all[3], x3_up[3], x3_all[3];
+  for (int z = 0; z < 3; ++z) {
+    const int r = 3 * z + 1;
+    x2_up[z] = x2[r] | shift_y(x2[r], x2[r + 1]);
+    x2_down[z] = x2[r] | shift_y_back(x2[r], x2[r - 1]);
+    x2_all[z] = x2_up[z] | x2_down[z];
+    x3_up[z] = x3[r] | shift_y(x3[r], x3[r + 1]);
+    x3_all[z] = x3_up[z] | shift_y_back(x3[r], x3[r - 1]);
+  }
+  const auto up = [](const uint64_t *w) { return w[1] | shift_z(w[1], w[2]); };
+  const auto down = [](const uint64_t *w) { return w[1] | shift_z_back(w[1], w[0]); };
+  constexpr int kOwnRow = 4;
+  const uint64_t first = own[kOwnRow], first_y = shift_y(own[4], own[5]);
+  edges[0] = (up(x2_all) | down(x2_all)) & ~next[kOwnRow];
+  edges[1] = (up(x3_up) | down(x3_up)) & ~first_y;
+  edges[2] = up(x3_all) & ~shift_z(own[4], own[7]);
+  edges[3] = (up(x2_up) | down(x2_up)) & ~shift_y(next[4], next[5]);
+  edges[4] = (up(x2_down) | down(x2_down)) & ~shift_y_back(next[4], next[3]);
+  edges[5] = up(x2_all) & ~shift_z(next[4], next[7]);
+  edges[6] = down(x2_all) & ~shift_z_back(next[4], next[1]);
+  edges[7] = up(x3_up) & ~shift_z(first_y, shift_y(own[7], own[8]));
+  edges[8] = down(x3_up) & ~shift_z_back(first_y, shift_y(own[1], own[2]));
+  uint64_t left = 0;
+  for (int k = 0; k < kWallSteps; ++k) left |= edges[k] &= ~first;
+  return left != 0;
+}
+
+// The nearest place where the probe's centre may be, as far as that matters: a point is outside because of it.
+// distance: 0 outside all balls, kFarAway in the solid.
+struct NearestProbe {
+  Vec3<float> center;
+  float distance;
+};
+
+template <class Candidates>
+QSES_FN NearestProbe nearest_probe(const FeatureView &f, const Candidates &candidates, const Vec3<float> &x) {
+  if (candidates.atom_count() == 0) return {x, 0.f};
+  const float depth = f.parameters.depth;
+  const DeepestAtom deepest = deepest_atom(f, candidates, x);
+  if (deepest.depth <= f.parameters.least_depth()) return {x, 0.f};
+  if (deepest.depth > depth) return {x, kFarAway};
+  const Sphere ball = load(f.atoms.items + deepest.atom);
+  if (is_exposed(f, deepest.atom, x - Vec3<float>(ball.center), offset_length(ball, deepest.depth)))
+    return {boundary_on_atom(ball, deepest.depth, x, true).position, deepest.depth};
+  const NearestArc nearest = nearest_arc(f, candidates, x);
+  if (nearest.distance2 > depth * depth) return {x, kFarAway};
+  const BoundaryPoint y = boundary_on_arc(load(f.arcs + nearest.arc), x);
+  return {y.position, y.distance};
+}
+
+// Is the other end of an edge in the ball of the probe of this one? Then so is all of the edge.
+QSES_FN bool probe_covers(const SurfaceParameters &p, const NearestProbe &probe, const Vec3<float> &x) {
+  return probe.distance > p.depth || length_squared(x - probe.center) < p.depth * p.depth;
+}
+
+// How far from x, which it covers, in a direction of length 1, the ball of a probe ends.
+QSES_FN float way_out(const SurfaceParameters &p, const NearestProbe &probe, const Vec3<float> &x,
+                      const Vec3<float> &direction) {
+  const Vec3<float> from = x - probe.center;
+  const float along = dot(from, direction), outside = length_squared(from) - p.depth * p.depth;
+  return square_root(maximum(0.f, along * along - outside)) - along;
+}
+
+// An edge on its way through balls of probes: how far from the first end it is open, and from where on to the second.
+// So far behind a ball the next point is looked at, in Å; an edge with more balls than so many is open.
+constexpr float kWallStep = 1e-3f;
+constexpr int kMostWallSteps = 12;
+struct WallWalk {
+  float at, end;
+  QSES_FN bool is_open() const { return !(at < end); }
+};
+
+// By the probes of both ends, of which that of the first does not cover the second.
+QSES_FN WallWalk begin_wall_walk(const SurfaceParameters &p, int step, const Vec3<float> &a,
+                                 const NearestProbe &probe_a, const Vec3<float> &b, const NearestProbe &probe_b) {
+  if (probe_covers(p, probe_b, a)) return {0.f, 0.f};
+  const Vec3<float> direction = wall_direction(step);
+  return {way_out(p, probe_a, a, direction),
+          wall_step_length(step) * p.spacing - way_out(p, probe_b, b, direction * -1.f)};
+}
+
+// Which end of a wall is marked: the deeper one; of two that are as deep but for rounding, the first.
+QSES_FN bool marks_first_end(const NearestProbe &probe_a, const NearestProbe &probe_b) {
+  return probe_a.distance >= probe_b.distance - 1e-4f;
+}
+
+// Marks a point, counted from the first one of a brick, in the words of its brick.
+QSES_FN void mark_wall(const BrickSet &bricks, uint32_t brick, const glm::ivec3 &p, uint64_t *marks) {
+  const glm::ivec3 away(p.x >> 3, p.y >> 3, p.z >> 3);
+  const int owner = (p.x | p.y | p.z) & ~7 ? bricks.find(bricks.lattice.brick_at(bricks.linear[brick]) + away)
+                                           : static_cast<int>(brick);
+  if (owner < 0) return;
+  const int x = p.x & 7, y = p.y & 7, z = p.z & 7;
+  atomic_or(marks + static_cast<size_t>(owner) * kLeavesPerBrick + leaf_of(x, y, z),
+            uint64_t(1) << leaf_bit(x & 3, y & 3, z & 3));
+}
+
+struct AddMarks {
+  const uint64_t *marks;
+  uint64_t *signs;
+  QSES_HOST_DEVICE void operator()(size_t i) const { signs[i] |= marks[i]; }
+};
+
+}  // namespace quickses
