@@ -156,7 +156,8 @@ void split_round(Work &work, const Sheets &sheets, const SplitRound &round, int 
   const MeshArrays arrays(added.vertices, added.triangles, mesh->shape);
   MeshView &part = mesh->parts.part[next_part];
   part = arrays.view(mesh_room<char>(work, *mesh, arrays.bytes()).data);
-  add_normals(work.side_normals, &part, added.vertices, [&](size_t m) { return mesh_room<glm::vec3>(work, *mesh, m).data; });
+  add_normals(work.side_normals, &part, added.vertices,
+              [&](size_t m) { return mesh_room<glm::vec3>(work, *mesh, m).data; });
   part.first_vertex = static_cast<uint32_t>(all.vertices);
   part.first_triangle = static_cast<uint32_t>(all.triangles);
   mesh->parts.marks[next_part] = marks_room(work, *mesh, added.vertices);
