@@ -65,8 +65,7 @@ void prepare_frame(Work &work, const FrameInput &in) {
   work.lattice = center_lattice(set.bounds, frame_spacing(levels_of(in.settings)));
   work.low = to_centered(work.lattice, set.bounds.low);
   work.high = to_centered(work.lattice, set.bounds.high);
-  work.side_normals =
-      in.settings.method == QSES_METHOD_EXACT && (in.settings.creases || in.settings.hard_edges || in.settings.measure);
+  work.side_normals = in.settings.method == QSES_METHOD_EXACT && (in.settings.creases || in.settings.hard_edges);
   work.appearance = {bring(executor, look.visible.data(), look.visible.size()),
                      bring(executor, look.colors.data(), look.colors.size()),
                      bring(executor, look.texcoords.data(), look.texcoords.size())};
@@ -127,7 +126,7 @@ MeshMemoryView build_surface(Work &work) {
 template <class Work>
 MeshMemoryView build_level(Work &work) {
   MeshMemoryView mesh = build_surface(work);
-  work.timer.begin("vertices");
+  work.timer.begin("appearance");
   complete_vertices(work, &mesh);
   if (work.shape.boxes) {
     work.timer.begin("pick_boxes");
