@@ -54,9 +54,7 @@ inline qses_measured_by measured_by(const FrameInput &in) {
 
 // Whether vertices where sheets of the surface meet keep the normals of both.
 inline bool needs_side_normals(const FrameInput &in) {
-  const qses_settings &s = in.settings;
-  const bool is_measured = wants_components(s) || s.atom_areas || s.measure;
-  return s.method == QSES_METHOD_EXACT && (s.creases || s.hard_edges || is_measured);
+  return in.settings.method == QSES_METHOD_EXACT && (in.settings.creases || in.settings.hard_edges);
 }
 
 // Whether there is something to be made at each level, or only numbers of the atoms.

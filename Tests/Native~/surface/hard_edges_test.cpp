@@ -197,7 +197,7 @@ TEST(HardEdges, FaceTheirTriangles) {
     for (double spacing : {0.5, 0.3})
       for (uint32_t with : {0u, 1u}) {
         qses_settings s = settings(spacing);
-        s.hard_edges = with;
+        (with ? s.hard_edges : s.creases) = 1;
         const Surface surface = compute(atoms, s);
         EXPECT_LE(static_cast<double>(corners_turned_away(surface.mesh)),
                   1e-4 * static_cast<double>(surface.mesh.triangle_count()) + 2)
@@ -255,10 +255,12 @@ TEST(HardEdges, AreTheSameOnBothBackEnds) {
   if (tested_backend() == QSES_BACKEND_CPU) GTEST_SKIP() << "the back end under test is the CPU";
   const Context cpu(2, 0, QSES_BACKEND_CPU), gpu;
   size_t crests = 0, different = 0, vertices = 0, moved = 0;
-  for (const Atoms &atoms : molecules()) {
+  for (int k = 0; k < 16; ++k) {
+    const Atoms atoms = molecules()[static_cast<size_t>(k % 4)];
+    const qses_settings s = hard(settings(0.2 + 0.1 * (k / 4)));
     set_atoms(cpu, atoms);
     set_atoms(gpu, atoms);
-    const HardSurface a = compute_hard(cpu, hard(settings(0.3))), b = compute_hard(gpu, hard(settings(0.3)));
+    const HardSurface a = compute_hard(cpu, s), b = compute_hard(gpu, s);
     if (a.own != b.own || a.surface.mesh.indices.size() != b.surface.mesh.indices.size()) continue;
     std::vector<uint32_t> difference;
     std::set_symmetric_difference(a.repeated.begin(), a.repeated.end(), b.repeated.begin(), b.repeated.end(),
@@ -270,7 +272,7 @@ TEST(HardEdges, AreTheSameOnBothBackEnds) {
       moved += length(point(a.surface.mesh.position(v)) - point(b.surface.mesh.position(v))) > 1e-3 ? 1 : 0;
   }
   EXPECT_GT(crests, 20u);  // so few signs differ that most meshes are alike
-  EXPECT_LE(different, crests / 20 + 1);
+  EXPECT_LE(different, crests / 10 + 1);
   EXPECT_LE(moved, vertices / 1000);
 }
 

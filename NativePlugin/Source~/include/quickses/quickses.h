@@ -365,7 +365,9 @@ typedef struct qses_settings {
                               3 % more time on the CPU, 0.04 to 0.2 ms on a GPU; default 0. Ignored with delivery
                               DEVICE */
   qses_bool creases;       /* 1: the edges of triangles that cut across a crease, where sheets of the surface meet at an
-                              angle, are split on it: sharp rims, some more triangles. Default 0. Not with GRID */
+                              angle, are split on it: sharp rims, some more triangles. And normals that would point
+                              against a triangle of their vertex are turned, also by hard_edges. Default 0. Not with
+                              GRID */
   qses_bool hard_edges;    /* 1: a vertex on a crease is there once per side, each time with the normal of that side, so
                               that light breaks where the surface does. The mesh is then closed once vertices at the same
                               place are taken for one. Default 0: one vertex, with the mean normal. Not with GRID */
@@ -471,8 +473,8 @@ QSES_API qses_status qses_context_mesh(const qses_context *context, qses_mesh *m
 typedef struct qses_stage_time {
   char name[24];       /* of the file under surface/ that does the work (the method's own files end in _cpu or _cuda):
                           "neighbor_grid", "solvent_features", "bricks", "exact_ses" or "grid_ses", "marching_cubes",
-                          "projection", "relaxation", "measure", "components", "visible_mask", "pick_boxes",
-                          "mesh_memory" */
+                          "projection", "relaxation", "measure", "components", "visible_mask", "hard_edges",
+                          "appearance", "pick_boxes", "mesh_memory" */
   double milliseconds; /* with CUDA: between events on the stream */
 } qses_stage_time;
 

@@ -258,7 +258,7 @@ void place_on_edges(const FeatureView &f, const BrickSet &bricks, const MeshLayo
     const EdgeCandidates near{
         c, choose_balls(c.atoms, c.atom_count, ends.middle(), edge_reach(f.parameters), c.near_list),
         choose_balls(c.arcs, c.arc_count, ends.middle(), edge_arc_reach(f.parameters), c.arc_list)};
-    w->set_point(v, place_on_edge(f, near, ends));
+    w->set_point(v, place_at_last(f, near, ends, AllCandidates{c}, w->point(v)));
     w->owner[v] = -1;
   }
 }

@@ -96,7 +96,7 @@ static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(
       nearest.offer(a, arc_distance2(load(f.arcs + a), v.point.position));
     }
     const Projection next = reproject(f, candidates, nearest, v);
-    if (next.state != ProjectionState::kReproject) v = next;  // else that round is done again
+    if (next.state == ProjectionState::kPlaced) v = next;  // else that round is done again
   }
   __syncwarp();
   const bool done = v.state == ProjectionState::kPlaced;
@@ -202,10 +202,9 @@ static __global__ __launch_bounds__(kVertexThreads) void reproject_kernel(Launch
       const uint32_t brick = brick_of_vertex(job.layout, job.bricks.count, vertex);
       const CutEdge edge = ends_of_edge(job.bricks, job.layout, brick, edge_of_vertex(job.layout, brick, vertex));
       candidates = {brick_candidates(job.view, brick - job.view.first_brick)};
-      s = place_on_edge(f,
-                        choose_for_edge(f, candidates, edge.middle(), edge_reach(f.parameters),
-                                        edge_memory[threadIdx.x / kVertexLanes]),
-                        edge);
+      const SharedCandidates near = choose_for_edge(
+          f, candidates, edge.middle(), edge_reach(f.parameters), edge_memory[threadIdx.x / kVertexLanes]);
+      s = place_at_last(f, near, edge, candidates, s);
     }
     const uint32_t owner = nearest_atom(f, candidates, s.position);
     __syncwarp(candidates.lanes());  // all of them have read what is written now

@@ -6,6 +6,8 @@
 #include "surface/stages/ranked_set.h"
 #include "surface/stages/relaxation.h"
 
+#include <algorithm>
+
 namespace quickses {
 
 // Vertices with a normal against a triangle of theirs.
@@ -20,12 +22,18 @@ struct MarkTurnedAway {
   }
 };
 
-// The triangles of each marked vertex, in any order. Of a vertex with more than there is room for only the number.
+// The triangles of a run of the marked vertices, in any order. Of a vertex with more than there is room for, only the
+// number.
 struct MarkedFans {
   static constexpr uint32_t kRoom = 32;
   RankedSet marked;
+  uint32_t first, vertices;  // the run
+  uint32_t *numbers;         // of the vertices
   uint32_t *counts;
   uint32_t *triangles;  // kRoom of each vertex
+
+  // The place of a vertex in the run, or what is not in it.
+  QSES_FN uint32_t place(uint32_t vertex) const { return marked.rank(vertex) - first; }
 };
 
 struct CollectFans {
@@ -35,8 +43,11 @@ struct CollectFans {
     const uint32_t *const t = mesh.triangle(triangle);
     for (int k = 0; k < 3; ++k) {
       if (!fans.marked.has(t[k])) continue;
-      const uint32_t rank = fans.marked.rank(t[k]), place = atomic_add(fans.counts + rank, uint32_t(1));
-      if (place < fans.kRoom) fans.triangles[rank * fans.kRoom + place] = static_cast<uint32_t>(triangle);
+      const uint32_t vertex = fans.place(t[k]);
+      if (vertex >= fans.vertices) continue;
+      atomic_store(fans.numbers + vertex, t[k]);
+      const uint32_t place = atomic_add(fans.counts + vertex, uint32_t(1));
+      if (place < fans.kRoom) fans.triangles[vertex * fans.kRoom + place] = static_cast<uint32_t>(triangle);
     }
   }
 };
@@ -44,15 +55,11 @@ struct CollectFans {
 // Turns a normal towards the triangle that it is most against, and again until it faces all of them: where there is
 // such a normal, Rosenblatt's rule finds one. Else the one that was the least against any is kept.
 struct TurnNormals {
-  static constexpr int kTurns = 64, kLongTurns = 8;
+  static constexpr int kTurns = 32, kLongTurns = 8;
   MeshView mesh;
   MarkedFans fans;
-  QSES_HOST_DEVICE void operator()(size_t word) const {
-    for (uint32_t bits = fans.marked.words[word]; bits; bits &= bits - 1) {
-      const uint32_t vertex = 32 * static_cast<uint32_t>(word) + static_cast<uint32_t>(lowest_bit32(bits));
-      const uint32_t rank = fans.marked.rank(vertex), count = fans.counts[rank];
-      if (count <= fans.kRoom) turn(vertex, fans.triangles + rank * fans.kRoom, count);
-    }
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    if (fans.counts[i] <= fans.kRoom) turn(fans.numbers[i], fans.triangles + i * fans.kRoom, fans.counts[i]);
   }
 
  private:
@@ -81,22 +88,25 @@ struct TurnNormals {
   }
 };
 
-// Turns the normals that point against a triangle of theirs. Waits.
+// Turns the normals that point against a triangle of theirs: as a rule very few, for which there is room at once.
+// Waits.
 template <class Executor>
 void face_triangles(Executor &executor, const MeshView &mesh, const MeshCounts &counts) {
   if (counts.vertices == 0) return;
   const auto mark = executor.arena().mark();
   const RankedSet marked = allocate_set(executor, counts.vertices);
+  const size_t room = counts.vertices / 32 + 32;
+  const Span<uint32_t> sizes = executor.template allocate<uint32_t>(room);
+  MarkedFans fans{marked,     0,
+                  0,          executor.template allocate<uint32_t>(room).data,
+                  sizes.data, executor.template allocate<uint32_t>(room * MarkedFans::kRoom).data};
   executor.for_each(counts.triangles, MarkTurnedAway{mesh, marked.words});
-  size_t turned = rank_set(executor, marked, counts.vertices);
-  if (Executor::kCounts) turned = counts.vertices / 64;  // not known: rarely more
-  if (turned > 0) {
-    const Span<uint32_t> numbers = executor.template allocate<uint32_t>(turned);
-    const MarkedFans fans{marked, numbers.data, executor.template allocate<uint32_t>(turned * MarkedFans::kRoom).data};
-    executor.fill(numbers, 0);
+  const uint32_t total = rank_set(executor, marked, counts.vertices);
+  for (; fans.first < total; fans.first += fans.vertices) {
+    fans.vertices = static_cast<uint32_t>(std::min<size_t>(room, total - fans.first));
+    executor.fill(sizes, 0);
     executor.for_each(counts.triangles, CollectFans{mesh, fans});
-    executor.for_each((counts.vertices + 31) / 32, TurnNormals{mesh, fans},
-                      uint64_t(32) * TurnNormals::kTurns * MarkedFans::kRoom);
+    executor.for_each(fans.vertices, TurnNormals{mesh, fans}, uint64_t(TurnNormals::kTurns) * MarkedFans::kRoom);
   }
   executor.arena().rewind(mark);
 }
