@@ -215,7 +215,7 @@ MeshMemoryView build_level(Work &work) {
   MeshMemoryView mesh{};
   if (work.makes_mesh) mesh = build_surface(work);
   if (work.settings.delivery != QSES_DELIVERY_NONE) {
-    work.timer.begin("vertices");
+    work.timer.begin("appearance");
     complete_vertices(work, &mesh);
   }
   if (work.shape.boxes) {
