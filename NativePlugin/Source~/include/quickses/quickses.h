@@ -457,8 +457,8 @@ QSES_API qses_status qses_context_mesh(const qses_context *context, qses_mesh *m
 /* An element of an array: it never grows. */
 typedef struct qses_stage_time {
   char name[24];       /* of the file under surface/ that does the work (the method's own files end in _cpu or _cuda):
-                          "neighbor_grid", "solvent_features", "bricks", "exact_ses" or "grid_ses", "marching_cubes",
-                          "projection", "relaxation", "measure", "components", "visible_mask", "pick_boxes",
+                          "neighbor_grid", "solvent_features", "bricks", "exact_ses" or "grid_ses", "thin_walls",
+                          "marching_cubes", "projection", "relaxation", "measure", "components", "visible_mask", "pick_boxes",
                           "mesh_memory" */
   double milliseconds; /* with CUDA: between events on the stream */
 } qses_stage_time;
