@@ -21,7 +21,8 @@ constexpr float kStartOverhang = 1.2f;
 // What would move a vertex further than this, in units of the spacing, is no feature of the surface near it.
 constexpr float kLongestMove = 2.f;
 // And what would move it further than this into the molecule might take it through a wall and out on its other side.
-constexpr float kLongestWayIn = 1.f;
+// Where thin walls are mended (thin_walls.h), a start may have to go farther: its inside end only stands for the wall.
+constexpr float kLongestWayIn = 0.6f, kLongestWayToWall = 1.f;
 
 // A probe covers what is deeper in it than this.
 constexpr float kProjectionTolerance = 1e-4f;
@@ -156,7 +157,8 @@ struct SurfacePoint {
 template <class T>
 QSES_FN auto is_short_move(const SurfaceParameters &p, T way_in, T moved2) -> decltype(way_in <= moved2) {
   const float longest = kLongestMove * p.spacing;
-  return (way_in <= T(kLongestWayIn * p.spacing)) & (moved2 <= T(longest * longest));
+  return (way_in <= T((p.has_thin_walls() ? kLongestWayToWall : kLongestWayIn) * p.spacing)) &
+         (moved2 <= T(longest * longest));
 }
 
 // The point `depth` inside the boundary point y on the line through x, which lies `distance` (signed) inside it.
