@@ -190,7 +190,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
       out.on_host.spacing = out.on_device.mesh.spacing = spacings[k];
       report.compute_ms = milliseconds_since(start);
       start = std::chrono::steady_clock::now();
-      complete(built, &report);
+      complete(built, in.settings, &report);
       timer_.reset();
       executor_.arena().rewind(mark);
       progress_.report(1.0);
@@ -231,9 +231,9 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   }
 
   // Memory and times of the level that is just finished.
-  void complete(const MeshMemoryView &mesh, qses_report *report) {
+  void complete(const MeshMemoryView &mesh, const qses_settings &settings, qses_report *report) {
     report->work_bytes_peak = executor_.arena().peak() + memory_.outside_arena(executor_);
-    report->mesh_bytes = mesh.bytes;
+    report->mesh_bytes = settings.delivery == QSES_DELIVERY_NONE ? 0 : mesh.bytes;
     report->host_bytes_peak = atoms_.bytes() + components_.bytes() + area_memory_.size() + memory_.host_bytes() +
                               (Executor::kIsCuda ? 0 : report->work_bytes_peak);
     for (const auto &stage : timer_.collect()) {

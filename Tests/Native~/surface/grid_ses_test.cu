@@ -117,17 +117,19 @@ void compare(const std::vector<Atom> &atoms, float probe, float spacing) {
   for (size_t v = 0; v < host_starts.size(); ++v)
     for (int d = 0; d < 3; ++d) ASSERT_NEAR(device_starts[v][d], host_starts[v][d], 1e-5f) << v;
 
-  const Measures found = measure(executor, view, counts);
-  const Measures plain = measure(serial.executor, serial.view(expected), serial.counts);
-  EXPECT_NEAR(found.area, plain.area, 1e-9 * plain.area);
-  EXPECT_NEAR(found.volume, plain.volume, 1e-9 * plain.volume);
+  const Measures found = measure(executor, view, counts, true);
+  const Measures plain = measure(serial.executor, serial.view(expected), serial.counts, true);
+  EXPECT_NEAR(found.sums.area, plain.sums.area, 1e-9 * plain.sums.area);
+  EXPECT_NEAR(found.sums.volume, plain.sums.volume, 1e-9 * plain.sums.volume);
+  EXPECT_NEAR(found.sums.flat_area, plain.sums.flat_area, 1e-9 * plain.sums.area);
+  EXPECT_NEAR(found.sums.flat_volume, plain.sums.flat_volume, 1e-9 * plain.sums.volume);
   for (int d = 0; d < 3; ++d) {
     EXPECT_EQ(found.bounds.min[d], plain.bounds.min[d]);
     EXPECT_EQ(found.bounds.max[d], plain.bounds.max[d]);
   }
 
   ComponentMemory memory, serial_memory;
-  const Span<const qses_component> pieces = find_components(executor, view, counts, spacing, memory);
+  const Span<const qses_component> pieces = find_components(executor, view, counts, spacing, true, memory);
   ASSERT_EQ(pieces.size, mesh_checks::piece_count(expected));
   double area = 0, volume = 0;
   for (const qses_component &piece : pieces) {
@@ -135,11 +137,11 @@ void compare(const std::vector<Atom> &atoms, float probe, float spacing) {
     volume += piece.volume;
     EXPECT_EQ(piece.is_cavity != 0, piece.volume < 0);
   }
-  EXPECT_NEAR(area, plain.area, 1e-12 * plain.area);
-  EXPECT_NEAR(volume, plain.volume, 1e-12 * plain.volume);
+  EXPECT_NEAR(area, plain.sums.area, 1e-12 * plain.sums.area);
+  EXPECT_NEAR(volume, plain.sums.volume, 1e-12 * plain.sums.volume);
   // Of the same triangles the CPU finds the same numbers, to the last bit.
   const Span<const qses_component> on_host =
-      find_components(serial.executor, serial.view(expected), serial.counts, spacing, serial_memory);
+      find_components(serial.executor, serial.view(expected), serial.counts, spacing, true, serial_memory);
   ASSERT_EQ(on_host.size, pieces.size);
   for (size_t k = 0; k < pieces.size; ++k) {
     EXPECT_EQ(pieces[k].triangles, on_host[k].triangles);

@@ -16,15 +16,25 @@ using mesh_checks::Mesh;
 
 const double kPi = std::acos(-1.0);
 
-Measures measure_mesh(Mesh &mesh, unsigned threads = 2, bool reversed = false) {
+struct Flat {
+  double area, volume;
+  Bounds bounds;
+};
+Flat measure_mesh(Mesh &mesh, unsigned threads = 2, bool reversed = false) {
   CpuExecutor executor(threads);
-  const MeshView view = {mesh.positions.data(), nullptr, nullptr, nullptr, mesh.indices.data(), reversed};
-  return measure(executor, view, MeshCounts{mesh.vertex_count(), mesh.triangle_count()});
+  MeshView view;
+  view.positions = mesh.positions.data();
+  view.indices = mesh.indices.data();
+  view.reversed = reversed;
+  const Measures m = measure(executor, view, MeshCounts{mesh.vertex_count(), mesh.triangle_count()}, false);
+  EXPECT_EQ(m.sums.area, m.sums.flat_area);
+  EXPECT_EQ(m.sums.volume, m.sums.flat_volume);
+  return {m.sums.area, m.sums.volume, m.bounds};
 }
 
 TEST(Measure, Tetrahedron) {
   Mesh m = mesh_shapes::tetrahedron();
-  const Measures found = measure_mesh(m);
+  const Flat found = measure_mesh(m);
   EXPECT_NEAR(found.volume, 1.0 / 6.0, 1e-12);
   EXPECT_NEAR(found.area, 1.5 + std::sqrt(3.0) / 2, 1e-12);
   for (int d = 0; d < 3; ++d) {
@@ -36,7 +46,7 @@ TEST(Measure, Tetrahedron) {
 TEST(Measure, Cube) {
   Mesh m = mesh_shapes::cube();
   mesh_shapes::scale_and_move(m, 1.5, -10, 20, -30);
-  const Measures found = measure_mesh(m);
+  const Flat found = measure_mesh(m);
   EXPECT_NEAR(found.volume, 27.0, 1e-9);
   EXPECT_NEAR(found.area, 54.0, 1e-9);
   const float low[3] = {-11.5f, 18.5f, -31.5f}, high[3] = {-8.5f, 21.5f, -28.5f};
@@ -51,7 +61,7 @@ TEST(Measure, Sphere) {
   Mesh m = mesh_shapes::sphere(7);
   const double radius = 12.5;
   mesh_shapes::scale_and_move(m, radius, 100, 200, 300);
-  const Measures found = measure_mesh(m);
+  const Flat found = measure_mesh(m);
   const double area = 4 * kPi * radius * radius, volume = area * radius / 3;
   EXPECT_NEAR(found.area, area, 2e-4 * area);
   EXPECT_LT(found.area, area);
@@ -62,7 +72,7 @@ TEST(Measure, Sphere) {
   EXPECT_FLOAT_EQ(found.bounds.min[0], 87.5f);
   EXPECT_FLOAT_EQ(found.bounds.max[2], 312.5f);
   for (unsigned threads : {1u, 3u}) {
-    const Measures again = measure_mesh(m, threads);
+    const Flat again = measure_mesh(m, threads);
     EXPECT_EQ(again.area, found.area);
     EXPECT_EQ(again.volume, found.volume);
   }
@@ -71,7 +81,7 @@ TEST(Measure, Sphere) {
 TEST(Measure, KeepsItsDigitsFarAway) {
   Mesh m = mesh_shapes::cube();
   mesh_shapes::scale_and_move(m, 8, 1 << 19, -(1 << 19), 1 << 18);  // exact in float32
-  const Measures found = measure_mesh(m);
+  const Flat found = measure_mesh(m);
   EXPECT_NEAR(found.volume, 4096.0, 1e-6);
   EXPECT_NEAR(found.area, 1536.0, 1e-6);
 }
@@ -87,9 +97,92 @@ TEST(Measure, CavitiesCountNegativeWhateverTheWinding) {
   EXPECT_NEAR(measure_mesh(m, 2, true).volume, 64.0 - 8.0, 1e-9);
 }
 
+// ---- along the normals
+
+TriangleSums measure_bent(Mesh &mesh, const std::vector<float> &normals, const std::vector<float> &second = {},
+                          bool reversed = false) {
+  CpuExecutor executor(2);
+  MeshView view;
+  view.positions = mesh.positions.data();
+  view.normals = const_cast<float *>(normals.data());
+  if (!second.empty()) view.second_normals = const_cast<float *>(second.data());
+  view.indices = mesh.indices.data();
+  view.reversed = reversed;
+  return measure(executor, view, MeshCounts{mesh.vertex_count(), mesh.triangle_count()}, true).sums;
+}
+
+// What is left falls with the fourth power of the size of triangles, where that of flat ones falls with the second.
+TEST(Measure, AlongTheNormalsOfASphere) {
+  const double radius = 3, area = 4 * kPi * radius * radius, volume = area * radius / 3;
+  double flat_before = 0, bent_before = 0;
+  for (int halvings = 2; halvings <= 5; ++halvings) {
+    Mesh m = mesh_shapes::sphere(halvings);
+    const std::vector<float> normals = m.positions;
+    mesh_shapes::scale_and_move(m, radius, 5, -7, 11);
+    const TriangleSums sums = measure_bent(m, normals);
+    const double flat = area - sums.flat_area, bent = std::abs(area - sums.area);
+    EXPECT_NEAR(sums.flat_area, mesh_checks::area(m), 1e-9 * area);
+    EXPECT_LT(bent, 0.06 * flat);
+    EXPECT_LT(std::abs(volume - sums.volume), 0.06 * (volume - sums.flat_volume));
+    if (halvings > 2) {
+      EXPECT_NEAR(flat_before / flat, 4, 0.5);
+      EXPECT_GT(bent_before / bent, 10);
+    }
+    flat_before = flat;
+    bent_before = bent;
+    mesh_shapes::reverse(m);
+    const TriangleSums turned = measure_bent(m, normals, {}, true);
+    EXPECT_NEAR(turned.area, sums.area, 1e-9 * area);
+    EXPECT_NEAR(turned.volume, sums.volume, 1e-9 * volume);
+  }
+}
+
+// Two halves of balls on each other: at the crest each side goes by its own normal.
+TEST(Measure, AlongTheNormalsOfBothSidesOfACrest) {
+  // The sphere with all z mirrored up and lowered: a lens of two caps, its rim at the equator of neither.
+  const double low = 0.6;  // centres lie so far from the plane of the rim
+  Mesh m = mesh_shapes::sphere(5);
+  const size_t vertices = m.vertex_count();
+  std::vector<float> normals(3 * vertices), second(3 * vertices);
+  for (size_t v = 0; v < vertices; ++v) {
+    // From the half spheres to caps of as many rings: angles shrink, so that the equator comes to the rim.
+    float *const p = &m.positions[3 * v];
+    const double z = static_cast<double>(p[2]),
+                 polar = std::acos(std::min(1.0, std::abs(z))) / (kPi / 2) * std::acos(low);
+    const double turn = std::atan2(static_cast<double>(p[1]), static_cast<double>(p[0])), side = z < 0 ? -1 : 1;
+    const double n[3] = {std::sin(polar) * std::cos(turn), std::sin(polar) * std::sin(turn), side * std::cos(polar)};
+    const bool on_rim = std::abs(z) < 1e-6;
+    for (size_t d = 0; d < 3; ++d) {
+      p[d] = static_cast<float>(n[d] - (d == 2 ? side * low : 0));
+      normals[3 * v + d] = second[3 * v + d] = static_cast<float>(n[d]);
+      if (on_rim && d == 2) second[3 * v + d] = static_cast<float>(-n[d]);
+    }
+    if (on_rim) p[2] = 0.f;
+  }
+  const double area = 2 * 2 * kPi * (1 - low), volume = 2 * kPi / 3 * (1 - low) * (1 - low) * (2 + low);
+  const TriangleSums sums = measure_bent(m, normals, second), one_side = measure_bent(m, normals);
+  EXPECT_NEAR(sums.area, area, 2e-5 * area);
+  EXPECT_NEAR(sums.volume, volume, 2e-5 * volume);
+  EXPECT_LT(sums.flat_area, area * (1 - 1e-4));
+  EXPECT_GT(std::abs(one_side.area - area), 4 * std::abs(sums.area - area));
+}
+
+// A corner whose normal points elsewhere says nothing about the triangle.
+TEST(Measure, NormalsThatPointElsewhereAreLeftOut) {
+  Mesh m = mesh_shapes::cube();
+  const std::vector<float> normals = m.positions;  // of the corners, 55 degrees and more from those of the faces
+  const TriangleSums sums = measure_bent(m, normals);
+  std::vector<float> away(normals.size(), 0.f);
+  for (size_t v = 0; v < m.vertex_count(); ++v) away[3 * v] = 1.f;
+  const TriangleSums other = measure_bent(m, away);
+  EXPECT_TRUE(std::isfinite(sums.area) && std::isfinite(sums.volume));
+  EXPECT_NEAR(other.area, sums.flat_area, 1e-12);
+  EXPECT_NEAR(other.volume, sums.flat_volume, 1e-12);
+}
+
 TEST(Measure, EmptyMesh) {
   Mesh m;
-  const Measures found = measure_mesh(m);
+  const Flat found = measure_mesh(m);
   EXPECT_EQ(found.area, 0.0);
   EXPECT_EQ(found.volume, 0.0);
   for (int d = 0; d < 3; ++d) {

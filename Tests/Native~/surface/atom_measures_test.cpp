@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: MIT
+// Exact area per atom and volume of SAS and VDW: closed forms, slices by brute force, and what must stay the same.
+#include "surface/lee_richards.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+namespace {
+
+using namespace surface_fixture;
+
+const double kPi = std::acos(-1.0);
+
+struct Numbers {
+  qses_report report;
+  std::vector<double> areas;
+};
+
+qses_settings numbers_only(qses_surface surface, double probe = 1.4) {
+  qses_settings s = settings(0.5, probe, surface);
+  s.delivery = QSES_DELIVERY_NONE;
+  s.atom_areas = 1;
+  return s;
+}
+
+Numbers numbers(qses_context *context, const Atoms &atoms, const qses_settings &s) {
+  set_atoms(context, atoms);
+  const qses_mesh mesh = compute_view(context, s);
+  EXPECT_EQ(mesh.atom_count, atoms.size());
+  return {report_of(context), {mesh.atom_areas, mesh.atom_areas + mesh.atom_count}};
+}
+Numbers numbers(const Atoms &atoms, const qses_settings &s) {
+  const Context context;
+  return numbers(context, atoms, s);
+}
+
+// What holds of any atoms.
+void expect_sane(const Numbers &n, const Atoms &atoms, double probe) {
+  EXPECT_EQ(n.report.measured_by, QSES_MEASURED_BY_ATOMS);
+  double sum = 0, largest = 0;
+  for (size_t i = 0; i < atoms.size(); ++i) {
+    const double r = static_cast<double>(atoms.radii[i]) + probe, whole = 4 * kPi * r * r;
+    ASSERT_GE(n.areas[i], 0.0) << i;
+    ASSERT_LE(n.areas[i], whole * (1 + 1e-6)) << i;
+    sum += n.areas[i];
+    largest = std::max(largest, whole * r / 3);
+  }
+  EXPECT_NEAR(n.report.area, sum, 1e-9 * sum);
+  EXPECT_GE(n.report.volume, largest * (1 - 1e-5));  // at least that of the largest ball
+}
+
+void expect_slices(const Atoms &atoms, qses_surface surface, double probe, double tolerance) {
+  SCOPED_TRACE(testing::Message() << "surface " << surface << " probe " << probe);
+  const double p = surface == QSES_SURFACE_VDW ? 0.0 : static_cast<double>(static_cast<float>(probe));
+  const Numbers n = numbers(atoms, numbers_only(surface, probe));
+  expect_sane(n, atoms, p);
+  const std::vector<double> expected = lee_richards::exposed_areas(atoms, p);
+  for (size_t i = 0; i < atoms.size(); ++i) ASSERT_NEAR(n.areas[i], expected[i], tolerance) << "atom " << i;
+}
+
+double sphere_area(double r) { return 4 * kPi * r * r; }
+double sphere_volume(double r) { return 4 * kPi / 3 * r * r * r; }
+// Of the part of a ball beyond a plane at this distance from the centre.
+double cap_area(double r, double along) { return 2 * kPi * r * (r - along); }
+double cap_volume(double r, double along) { return kPi / 3 * (r - along) * (r - along) * (2 * r + along); }
+
+// ---- closed forms
+
+TEST(AtomMeasures, OneBall) {
+  for (double r : {0.5, 1.7, 98.0}) {
+    const Atoms atoms = Atoms().add(3, -2, 5, r);
+    const Numbers n = numbers(atoms, numbers_only(QSES_SURFACE_SAS));
+    const double radius = static_cast<double>(static_cast<float>(r) + 1.4f);
+    EXPECT_NEAR(n.report.area, sphere_area(radius), 1e-12 * n.report.area);
+    EXPECT_NEAR(n.report.volume, sphere_volume(radius), 1e-12 * n.report.volume);
+  }
+}
+
+TEST(AtomMeasures, TwoBalls) {
+  // From nearly within each other to nearly apart, of equal and unequal size.
+  for (double r : {1.25, 2.0, 5.0})
+    for (double part : {0.001, 0.02, 0.3, 0.7, 0.98, 0.9999}) {
+      const double q = 1.25, low = r - q, d = low + part * (r + q - low);
+      Atoms atoms = Atoms().add(0, 0, 0, r).add(d, 0, 0, q);
+      const double apart = static_cast<double>(atoms.positions[3]);
+      const double along = (apart * apart + r * r - q * q) / (2 * apart);
+      if (r * r - along * along < 1e-4) continue;  // a circle that is hardly more than a point
+      const double area[] = {sphere_area(r) - cap_area(r, along), sphere_area(q) - cap_area(q, apart - along)};
+      const double volume = sphere_volume(r) - cap_volume(r, along) + sphere_volume(q) - cap_volume(q, apart - along);
+      for (int turn = 0; turn < 3; ++turn) {
+        const Atoms set = turn == 0 ? atoms : turned(atoms, 10.0 * turn, -20.0 * turn, 30);
+        const Numbers n = numbers(set, numbers_only(QSES_SURFACE_VDW));
+        for (size_t i = 0; i < 2; ++i) EXPECT_NEAR(n.areas[i], area[i], 5e-5) << r << " " << d;
+        EXPECT_NEAR(n.report.volume, volume, 5e-5) << r << " " << d;
+      }
+    }
+}
+
+// In a row, so that the middle one loses two caps that do not meet.
+TEST(AtomMeasures, ThreeBallsInARow) {
+  const Atoms atoms = Atoms().add(-2, 0, 0, 1.5).add(0, 0, 0, 1.5).add(2, 0, 0, 1.5);
+  const Numbers n = numbers(turned(atoms, 5, 6, 7), numbers_only(QSES_SURFACE_VDW));
+  const double whole = sphere_area(1.5), cap = cap_area(1.5, 1);
+  EXPECT_NEAR(n.areas[0], whole - cap, 2e-5);
+  EXPECT_NEAR(n.areas[1], whole - 2 * cap, 2e-5);
+  EXPECT_NEAR(n.areas[2], whole - cap, 2e-5);
+  EXPECT_NEAR(n.report.volume, 3 * sphere_volume(1.5) - 4 * cap_volume(1.5, 1), 2e-5);
+}
+
+// Of three balls around an axis each has the same, and the volume grows by the area.
+TEST(AtomMeasures, VolumeGrowsByTheArea) {
+  Atoms sets[] = {cluster(40, 5), cluster(300, 6), crambin()};
+  const Context context;
+  for (const Atoms &atoms : sets) {
+    double integral = 0, first = 0, last = 0;
+    constexpr int kSteps = 16;  // of Simpson's rule
+    const double low = 0.5, high = 1.5;
+    for (int k = 0; k <= kSteps; ++k) {
+      const double probe = low + (high - low) * k / kSteps;
+      const Numbers n = numbers(context, atoms, numbers_only(QSES_SURFACE_SAS, probe));
+      integral += n.report.area * (k == 0 || k == kSteps ? 1 : k % 2 ? 4 : 2);
+      (k == 0 ? first : last) = n.report.volume;
+    }
+    integral *= (high - low) / kSteps / 3;
+    EXPECT_NEAR(last - first, integral, 2e-5 * last);
+  }
+}
+
+// ---- brute force
+
+TEST(AtomMeasures, OfClusters) {
+  for (unsigned seed : {1u, 2u, 3u}) {
+    expect_slices(cluster(100, seed), QSES_SURFACE_SAS, 1.4, 0.01);
+    expect_slices(cluster(100, seed), QSES_SURFACE_VDW, 0, 0.01);
+  }
+  expect_slices(cluster(60, 4), QSES_SURFACE_SAS, 5.0, 0.02);
+}
+TEST(AtomMeasures, OfCrambin) {
+  expect_slices(crambin(), QSES_SURFACE_SAS, 1.4, 0.01);
+  expect_slices(crambin(), QSES_SURFACE_VDW, 0, 0.01);
+}
+
+// ---- degenerate sets
+
+void expect_slices_everywhere(const Atoms &atoms) {
+  // Turned at least, so that no slice lies in a plane of symmetry.
+  for (qses_surface surface : {QSES_SURFACE_SAS, QSES_SURFACE_VDW}) {
+    expect_slices(turned(atoms), surface, 1.4, 0.02);
+    expect_slices(turned(atoms, 33.3, -87.1, 61.7), surface, 1.4, 0.02);
+  }
+}
+
+Atoms ring(size_t count, double radius, double r) {
+  Atoms atoms;
+  for (size_t k = 0; k < count; ++k) {
+    const double a = 2 * kPi * static_cast<double>(k) / static_cast<double>(count);
+    atoms.add(radius * std::cos(a), radius * std::sin(a), 0, r);
+  }
+  return atoms;
+}
+Atoms lattice(int n, double edge, double r) {
+  Atoms atoms;
+  for (int k = 0; k < n * n * n; ++k) atoms.add(edge * (k % n), edge * (k / n % n), edge * (k / n / n), r);
+  return atoms;
+}
+
+TEST(AtomMeasures, BallsThatTouch) {
+  expect_slices_everywhere(Atoms().add(0, 0, 0, 1.5).add(3, 0, 0, 1.5).add(0, 3.5, 0, 2));
+  expect_slices_everywhere(Atoms().add(0, 0, 0, 1.5).add(5.8, 0, 0, 1.5));
+}
+TEST(AtomMeasures, BallsWithinOthers) {
+  expect_slices_everywhere(Atoms().add(0, 0, 0, 2).add(0.5, 0, 0, 1.5).add(0.2, 0.1, 0, 0.5).add(0, 0, 0, 2));
+  expect_slices_everywhere(Atoms().add(0, 0, 0, 1.7).add(0, 0, 0, 1.7).add(0, 0, 0, 1.7));
+}
+TEST(AtomMeasures, BallsThatHardlyLookOut) {
+  for (double d : {0.5001, 0.501, 0.51}) expect_slices_everywhere(Atoms().add(0, 0, 0, 2).add(d, 0, 0, 1.5));
+}
+TEST(AtomMeasures, BallsThroughOneCircle) {
+  // Centres on a line, radii so that all spheres pass through a circle about it.
+  for (int count : {3, 4, 6}) {
+    Atoms vdw, sas;
+    for (int k = 0; k < count; ++k) {
+      const double x = 0.5 * k - 0.7, r = std::sqrt(4 + x * x);
+      vdw.add(x, 0, 0, r);
+      sas.add(x, 0, 0, r - 1.4);
+    }
+    expect_slices(turned(vdw), QSES_SURFACE_VDW, 0, 0.02);
+    expect_slices(turned(sas, 3, 4, 5), QSES_SURFACE_SAS, 1.4, 0.02);
+    const Numbers n = numbers(vdw, numbers_only(QSES_SURFACE_VDW));
+    const double first = std::sqrt(4 + 0.49), x = 0.5 * (count - 1) - 0.7, last = std::sqrt(4 + x * x);
+    EXPECT_NEAR(n.areas[0], sphere_area(first) - cap_area(first, 0.7), 1e-3);
+    EXPECT_NEAR(n.areas[size_t(count) - 1], sphere_area(last) - cap_area(last, x), 1e-3);
+  }
+}
+TEST(AtomMeasures, Rings) {
+  expect_slices_everywhere(ring(4, 1.8, 1.7));
+  expect_slices_everywhere(ring(6, 1.39, 1.7));
+  expect_slices_everywhere(ring(10, 3.6, 1.5));
+}
+TEST(AtomMeasures, Lattices) {
+  expect_slices_everywhere(lattice(2, 1.5, 1.7));
+  expect_slices_everywhere(lattice(3, 2.0, 1.7));
+  expect_slices_everywhere(lattice(4, 3.0, 1.5));
+}
+TEST(AtomMeasures, HugeAndTinyBalls) {
+  expect_slices(turned(Atoms().add(0, 0, 0, 60).add(61, 0, 0, 2).add(0, 60.5, 0, 1)), QSES_SURFACE_SAS, 1.4, 2.0);
+  expect_slices(turned(Atoms().add(0, 0, 0, 0.01).add(0.015, 0, 0, 0.01).add(0, 0.012, 0, 0.01)), QSES_SURFACE_VDW, 0,
+                1e-6);
+}
+
+// ---- invariance
+
+TEST(AtomMeasures, SameWhereverTheAtomsAre) {
+  const Context context;
+  for (qses_surface surface : {QSES_SURFACE_SAS, QSES_SURFACE_VDW}) {
+    const qses_settings s = numbers_only(surface);
+    const Numbers here = numbers(context, crambin(), s);
+    for (const Atoms &atoms :
+         {shifted(crambin(), 100, -200, 300), turned(crambin()), turned(crambin(), -512, 256, 64)}) {
+      const Numbers there = numbers(context, atoms, s);
+      EXPECT_NEAR(there.report.area, here.report.area, 1e-6 * here.report.area);
+      EXPECT_NEAR(there.report.volume, here.report.volume, 1e-6 * here.report.volume);
+      for (size_t i = 0; i < here.areas.size(); ++i) EXPECT_NEAR(there.areas[i], here.areas[i], 2e-3) << i;
+    }
+  }
+}
+
+TEST(AtomMeasures, SameWhateverTheSpacingAndTheMemory) {
+  const Context context;
+  const Atoms atoms = cluster(200, 9);
+  qses_settings s = numbers_only(QSES_SURFACE_SAS);
+  const Numbers first = numbers(context, atoms, s);
+  for (double spacing : {0.3, 1.0, 0.001, 100.0}) {
+    s.spacing = static_cast<float>(spacing);
+    const Numbers other = numbers(context, atoms, s);
+    EXPECT_NEAR(other.report.area, first.report.area, 5e-6 * first.report.area);  // the centre moves
+  }
+  s.spacing = 0.5f;
+  s.delivery = QSES_DELIVERY_HOST;
+  for (unsigned threads : {1u, 2u, 5u})
+    for (uint64_t budget : {uint64_t(0), uint64_t(5) << 20}) {
+      const Context one(threads, budget);
+      const Numbers other = numbers(one, atoms, s);
+      EXPECT_EQ(other.report.area, first.report.area);
+      EXPECT_EQ(other.report.volume, first.report.volume);
+      EXPECT_EQ(other.areas, first.areas);
+    }
+}
+
+}  // namespace
