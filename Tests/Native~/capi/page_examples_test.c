@@ -19,6 +19,7 @@ int move_picked_atoms(qses_context *context, const float *frame, size_t frame_co
                       size_t count);
 int paint(qses_context *context, size_t count);
 int compute_surface(qses_context *context, qses_mesh *mesh);
+int mark_lining(const qses_mesh *mesh, uint8_t *mask, size_t atom_count);
 size_t count_triangles(const qses_context *context);
 int ask_for_surface(qses_context *context, uint32_t frame);
 int take_surface(qses_context *context, qses_mesh *mesh);
@@ -90,6 +91,7 @@ static void run_api_page(qses_context *context, const char *path) {
       "ATOM      3  C   ALA A   1       1.000   3.000   3.000  1.00  0.00           C\n"
       "ENDMDL\n";
   qses_mesh mesh;
+  uint8_t lining[3] = {7, 7, 7};
   uint32_t v;
   int taken = 0, levels = 0, red = 0;
 
@@ -100,6 +102,7 @@ static void run_api_page(qses_context *context, const char *path) {
   CHECK(compute_surface(context, &mesh) == 0);
   CHECK(mesh.triangle_count == 2 * mesh.vertex_count - 4 && mesh.component_count == 1); /* closed, one piece */
   CHECK(count_triangles(context) == mesh.triangle_count);
+  CHECK(mark_lining(&mesh, lining, 3) && !lining[0] && !lining[1] && !lining[2]); /* there is no cavity */
   v = mesh.vertex_count;
   CHECK(move_picked_atoms(context, frame, 5, picked, 3) == QSES_OK);
   CHECK(compute_surface(context, &mesh) == 0);
