@@ -53,8 +53,12 @@ namespace QuickSes.Tests
             Assert.That(context.TryGetReport(out SurfaceReport report), Is.True);
             (double area, double volume) = Meshes.Measure(mesh.Positions, mesh.Indices);
             Assert.That(volume, Is.Positive);
-            Assert.That(report.Area, Is.EqualTo(area).Within(1e-5).Percent);
-            Assert.That(report.Volume, Is.EqualTo(volume).Within(1e-4).Percent);
+            Assert.That(report.TriangleArea, Is.EqualTo(area).Within(1e-5).Percent);
+            Assert.That(report.TriangleVolume, Is.EqualTo(volume).Within(1e-4).Percent);
+            Assert.That(report.Area, Is.InRange(area, 1.2 * area));
+            Assert.That(report.Volume, Is.EqualTo(volume).Within(2).Percent);
+            Assert.That(report.MeasuredBy,
+                Is.EqualTo(kind == SurfaceKind.Ses ? SurfaceMeasuredBy.Normals : SurfaceMeasuredBy.Atoms));
 
             float[] low = { float.MaxValue, float.MaxValue, float.MaxValue },
                 high = { float.MinValue, float.MinValue, float.MinValue };

@@ -104,8 +104,7 @@ namespace QuickSes
         /// V: the atom whose van der Waals surface is nearest, a 0-based index into the positions given to
         /// <see cref="SurfaceContext.SetAtoms"/>, always in range.
         /// </summary>
-        public ReadOnlySpan<uint> Owners =>
-            new ReadOnlySpan<uint>(Valid(_native.Owners), Length(_native.VertexCount, 1));
+        public ReadOnlySpan<uint> Owners => Attribute<uint>(_native.Owners, 1);
 
         /// <summary>V kinds of patch; empty if they were not asked for.</summary>
         public ReadOnlySpan<SurfacePatch> Patches =>
@@ -113,7 +112,7 @@ namespace QuickSes
 
         /// <summary>T x 3 vertex numbers.</summary>
         public ReadOnlySpan<uint> Indices =>
-            new ReadOnlySpan<uint>(Valid(_native.Indices), Length(_native.TriangleCount, 3));
+            new ReadOnlySpan<uint>(Valid(_native.Indices), _native.Indices == null ? 0 : Length(_native.TriangleCount, 3));
 
         /// <summary>
         /// With <see cref="SurfaceSettings.HardEdges"/>: of the last vertices, as many as there are numbers, which vertex
@@ -164,6 +163,15 @@ namespace QuickSes
             }
             return found;
         }
+
+        /// <summary>
+        /// Å² of the surface that belong to each of the atoms, in the order they were given in; empty unless
+        /// <see cref="SurfaceSettings.AtomAreas"/>. They add up to <see cref="SurfaceReport.Area"/>. Of SAS and VDW they
+        /// are exact; of SES, what of each triangle is nearest to the atom. Those of the whole surface where atoms are
+        /// hidden.
+        /// </summary>
+        public ReadOnlySpan<double> AtomAreas =>
+            new ReadOnlySpan<double>(Valid(_native.AtomAreas), checked((int)_native.AtomCount));
 
         /// <summary>
         /// The first vertex's position, for copies without spans. In all layouts; null for an empty mesh.

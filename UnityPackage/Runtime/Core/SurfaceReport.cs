@@ -14,11 +14,23 @@ namespace QuickSes
 
         private readonly NativeReport _native;
 
-        /// <summary>Å², sum over the triangles; 0 if not asked for (<see cref="SurfaceSettings.Measure"/>).</summary>
+        /// <summary>
+        /// Å²; 0 if not asked for (<see cref="SurfaceSettings.Measure"/>). Those of single atoms are in
+        /// <see cref="SurfaceMeshView.AtomAreas"/>.
+        /// </summary>
         public double Area => _native.Area;
 
         /// <summary>Å³, enclosed; cavities count negative.</summary>
         public double Volume => _native.Volume;
+
+        /// <summary>Where <see cref="Area"/> and <see cref="Volume"/> come from.</summary>
+        public SurfaceMeasuredBy MeasuredBy => _native.MeasuredBy;
+
+        /// <summary>Å², sum over the triangles as they are; 0 if no mesh was made.</summary>
+        public double TriangleArea => _native.TriangleArea;
+
+        /// <summary>Å³, within the triangles as they are; 0 if no mesh was made.</summary>
+        public double TriangleVolume => _native.TriangleVolume;
 
         /// <summary>Milliseconds from atoms to mesh in host memory; for a later level: since the one before.</summary>
         public double ComputeMilliseconds => _native.ComputeMs;

@@ -66,7 +66,7 @@ namespace QuickSes
         /// <summary>Whether <see cref="SurfaceMeshView.Patches"/> is filled. Not with the grid method.</summary>
         public bool PatchTypes { get => Native.PatchTypes != 0; set => Native.PatchTypes = value ? 1 : 0; }
 
-        /// <summary>Whether area and volume are computed.</summary>
+        /// <summary>Whether area and volume are computed: see <see cref="SurfaceReport.MeasuredBy"/>.</summary>
         public bool Measure { get => Native.Measure != 0; set => Native.Measure = value ? 1 : 0; }
 
         /// <summary>Any number; it comes back in <see cref="SurfaceMeshView.Tag"/>.</summary>
@@ -107,8 +107,9 @@ namespace QuickSes
         public uint Series { get => Native.Series; set => Native.Series = value; }
 
         /// <summary>
-        /// Where the mesh is wanted. Anything but Host needs CUDA; arrays of a mesh that is on the device only are empty
-        /// in <see cref="SurfaceMeshView"/>.
+        /// Where the mesh is wanted. Device and Both need CUDA. Arrays of a mesh that is not wanted on the host are empty
+        /// in <see cref="SurfaceMeshView"/>; numbers are there always. With None, area, volume and areas of atoms of SAS
+        /// and VDW are computed without a mesh.
         /// </summary>
         public MeshDelivery Delivery { get => Native.Delivery; set => Native.Delivery = value; }
 
@@ -134,6 +135,12 @@ namespace QuickSes
         /// <see cref="SurfaceMeshView.Repeated"/> taken for one the mesh is closed. Not with the grid method.
         /// </summary>
         public bool HardEdges { get => Native.HardEdges != 0; set => Native.HardEdges = value ? 1 : 0; }
+
+        /// <summary>
+        /// Whether <see cref="SurfaceMeshView.AtomAreas"/> is filled: of SAS and VDW that costs next to nothing. Not
+        /// with the grid method.
+        /// </summary>
+        public bool AtomAreas { get => Native.AtomAreas != 0; set => Native.AtomAreas = value ? 1 : 0; }
 
         /// <summary>How many coarser levels come before <see cref="Spacing"/> in a job.</summary>
         public int LevelCount => (int)Native.LevelCount;

@@ -306,8 +306,9 @@ typedef enum qses_delivery {
   QSES_DELIVERY_DEVICE = 1, /* on the CUDA device (qses_collect_device); nothing is downloaded, and the arrays of
                                qses_mesh are NULL */
   QSES_DELIVERY_BOTH = 2,
-  QSES_DELIVERY_NONE = 3 /* nowhere: only the numbers are wanted. Of SAS and VDW (method EXACT), area, volume and
-                            atom_areas come from the atoms, and no mesh is made, unless components are asked for */
+  QSES_DELIVERY_NONE = 3 /* nowhere: only the numbers are wanted, and the arrays of qses_mesh are NULL. Of SAS and VDW
+                            (method EXACT), area, volume and atom_areas come from the atoms: no mesh is made, unless
+                            components are asked for, and vertex_count is 0 */
 } qses_delivery;
 
 #define QSES_MAX_LEVELS 8
@@ -328,7 +329,8 @@ typedef struct qses_settings {
                             less memory with CUDA; on the CPU they change little */
   qses_winding winding;  /* default OUTWARD */
   qses_bool patch_types; /* 1: qses_mesh.patches is filled; default 0. Not with GRID */
-  qses_bool measure;     /* 1 (default): qses_report.area and .volume are computed; 0: they are 0 */
+  qses_bool measure;     /* 1 (default): qses_report.area and .volume are computed (see qses_measured_by); 0: they are
+                            0 */
   uint32_t tag;          /* any number; comes back in qses_mesh.tag and qses_progress.tag */
   uint32_t level_count;  /* of levels; default 2 */
   float levels[QSES_MAX_LEVELS];    /* Å; for qses_begin: coarser spacings, falling, each below the one before. Their
@@ -355,7 +357,7 @@ typedef struct qses_settings {
   uint32_t series;         /* which series of frames a job belongs to: any number; default 0. For callers who let one
                               context compute several molecules in turn: frame_budget_ms learns from each series apart.
                               The QSES_REMEMBERED_SERIES that were used last are remembered; an older one begins anew */
-  qses_delivery delivery;  /* where the mesh is wanted; default HOST. Anything else needs CUDA. A mesh that is wanted on
+  qses_delivery delivery;  /* where the mesh is wanted; default HOST. DEVICE and BOTH need CUDA. A mesh that is wanted on
                               the device does not leave it in pieces where memory is short: that is OUT_OF_MEMORY */
   float show_ms_per_mb;    /* 0 to 60000; default 0: ms that it takes the caller to show 10^6 bytes of the mesh, as
                               qses_report.mesh_bytes counts them (its copies to a graphics API, for instance).
@@ -374,7 +376,8 @@ typedef struct qses_settings {
   qses_bool component_ids; /* 1: qses_mesh.component_ids is filled, and the components; default 0 */
   qses_bool outer_only;    /* 1: the walls of cavities are left out of the mesh, not of area, volume and components,
                               which are filled; the outer surface of what lies within a cavity stays. Default 0 */
-  qses_bool atom_areas;    /* 1: qses_mesh.atom_areas is filled; default 0. Not with GRID */
+  qses_bool atom_areas;    /* 1: qses_mesh.atom_areas is filled; default 0. Of SAS and VDW it costs next to nothing, of
+                              SES as much as to measure it. Not with GRID */
 } qses_settings;
 
 /* The defaults, with struct_size set. NULL is ignored. */
@@ -412,7 +415,8 @@ typedef struct qses_mesh {
   uint32_t vertex_count;   /* V */
   uint32_t triangle_count; /* T */
   uint32_t tag;            /* as in the settings */
-  const float *positions;  /* V x 3, Å. With settings.delivery DEVICE all arrays of vertices and indices are NULL */
+  const float *positions;  /* V x 3, Å. With settings.delivery DEVICE or NONE all arrays of vertices and indices are
+                              NULL */
   const float *normals;   /* V x 3, unit length, outward; on a crease, that of one of its sides. COMPACT: NULL, they are
                              behind the positions */
   const uint8_t *colors;  /* V x 4, tightly packed, or NULL if there are none */
@@ -437,8 +441,8 @@ typedef struct qses_mesh {
   const uint32_t *component_ids;    /* V, the number of the vertex's component, or NULL if not asked for */
   const double *atom_areas; /* atom_count, Å²: how much of the surface belongs to each of the caller's atoms; they add
                                up to qses_report.area. SAS and VDW: exactly, from the atoms. SES: what of each triangle
-                               is nearest to the atom. Those of the whole surface where atoms are hidden. NULL if not
-                               asked for */
+                               is nearest to the atom, a third for each corner. In host memory with any delivery. Those
+                               of the whole surface where atoms are hidden. NULL if not asked for */
   uint64_t atom_count;      /* 0 if atom_areas is NULL */
   const uint32_t *repeated; /* with settings.hard_edges: of the last repeated_count vertices, which vertex each of them
                                stands for on the other side of its crease, in ascending order. With these taken for one
@@ -482,8 +486,12 @@ typedef struct qses_stage_time {
 typedef enum qses_measured_by {
   QSES_MEASURED_BY_NOTHING = 0,   /* not asked for */
   QSES_MEASURED_BY_TRIANGLES = 1, /* sums over flat triangles (method GRID) */
-  QSES_MEASURED_BY_NORMALS = 2,   /* triangles bent along the exact normals of their corners: SES */
-  QSES_MEASURED_BY_ATOMS = 3      /* exact, from what each atom leaves free of the others: SAS and VDW */
+  QSES_MEASURED_BY_NORMALS = 2,   /* triangles bent along the exact normals of their corners: SES. What is left falls
+                                       with the square of the spacing, but for creases that triangles cut across
+                                       (settings.creases) */
+  QSES_MEASURED_BY_ATOMS = 3 /* exact, from what the others leave free of each atom, the same at every spacing: SAS and
+                                VDW, and the SES of a probe below 0.05 Å. A molecule that is turned or moved has the
+                                same within 1e-6 */
 } qses_measured_by;
 
 /* What was done for one mesh. */
@@ -495,7 +503,7 @@ typedef struct qses_report {
   double compute_ms;        /* atoms in host memory to mesh in host memory; for a later level: since the one before */
   uint64_t work_bytes_peak; /* most memory in use for the work: on the device with CUDA, else in host memory,
                                without the mesh */
-  uint64_t mesh_bytes;      /* of the mesh itself, without its components */
+  uint64_t mesh_bytes;      /* of the mesh itself, without its components; with settings.delivery NONE 0 */
   uint64_t host_bytes_peak; /* host memory of the context, the mesh included, and what is kept of its meshes */
   uint64_t brick_count;     /* bricks of 8x8x8 lattice points that were evaluated */
   uint64_t slice_count;
@@ -528,7 +536,8 @@ typedef struct qses_size_estimate {
   uint32_t struct_size; /* set by qses_size_estimate_init */
   qses_bool fits;       /* whether it can be done within the budget of the context */
   uint64_t vertices, triangles;
-  uint64_t mesh_bytes; /* of the mesh, in host memory; of the whole one if atoms are hidden */
+  uint64_t mesh_bytes; /* of the mesh, in host memory; of the whole one if atoms are hidden; 0 with delivery NONE, as
+                          are vertices and triangles if no mesh is made */
   uint64_t work_bytes; /* what qses_report.work_bytes_peak would be: on the device with CUDA, else in host memory */
   uint64_t smallest_budget; /* the least qses_context_options.memory_budget that would do, with some reserve */
 } qses_size_estimate;
@@ -617,7 +626,7 @@ static inline void qses_device_mesh_init(qses_device_mesh *mesh) {
 /* As qses_collect, but the mesh on the device. Where nothing is new it is the mesh of the last qses_compute,
  * qses_collect or qses_collect_device that succeeded: with delivery BOTH, ask for the one and then for the other. Its
  * memory stays valid as long as that of qses_collect. Nothing is copied, and nothing waits for the device.
- * Errors: NO_RESULT (nothing was made yet), INVALID_ARGUMENT (also: the mesh was made for HOST only). */
+ * Errors: NO_RESULT (nothing was made yet), INVALID_ARGUMENT (also: the mesh was made for HOST or NONE). */
 QSES_API qses_status qses_collect_device(qses_context *context, qses_device_mesh *mesh);
 
 /* Ends the job that runs as soon as it can (levels finished before stay collectable) and drops the one that waits.
@@ -653,8 +662,8 @@ QSES_API void qses_kept_mesh_clear(qses_kept_mesh *kept);
 /* Moves the mesh of the last qses_compute or qses_collect that succeeded, and its report, out of the context; what kept
  * held before is given back. The context has no mesh then (qses_context_mesh, qses_context_report: NO_RESULT) until the
  * next one. Also while jobs run. Takes some hundred nanoseconds. What it held is still there after an error.
- * Errors: INVALID_ARGUMENT (NULL; the mesh was made with settings.delivery DEVICE, so that there is none in host
- * memory), NO_RESULT. */
+ * Errors: INVALID_ARGUMENT (NULL; the mesh was made with settings.delivery DEVICE or NONE, so that there is none in
+ * host memory), NO_RESULT. */
 QSES_API qses_status qses_keep(qses_context *context, qses_kept_mesh *kept);
 
 /* A view of the mesh; an empty mesh (vertex_count 0) if nothing is kept. Errors: INVALID_ARGUMENT. */
