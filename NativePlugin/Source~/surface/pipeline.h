@@ -163,7 +163,6 @@ MeshMemoryView cut_surface(Work &work, const MeshMemoryView &whole) {
   }
   MeshMemoryView mesh = drop_hidden(work, whole, shown, work.hard_edges ? MeshPurpose::kWork : MeshPurpose::kDelivered);
   mesh.components = whole.components;
-  mesh.atom_areas = whole.atom_areas;
   mesh.bounds = find_bounds(work.executor, mesh.view, MeshCounts{mesh.vertices, mesh.triangles});
   return mesh;
 }
@@ -190,7 +189,7 @@ MeshMemoryView build_surface(Work &work) {
     mesh.bounds = find_bounds(executor, mesh.view, counts, mesh.unplaced, &work.report->unplaced_vertices);
   }
   if (work.settings.atom_areas && !work.parameters.is_of_balls())
-    mesh.atom_areas = bring_areas(work, [&](double *areas) {
+    work.atom_areas = bring_areas(work, [&](double *areas) {
       measure_owners(executor, mesh.view, mesh.triangles, work.parameters.spacing, true, work.atoms.count, areas);
     });
   if (wants_components(work.settings)) {
@@ -226,7 +225,7 @@ MeshMemoryView build_level(Work &work) {
     work.report->area = work.atom_measures.area;
     work.report->volume = work.atom_measures.volume;
   }
-  if (work.atom_areas.size > 0) mesh.atom_areas = work.atom_areas;
+  mesh.atom_areas = work.atom_areas;
   return mesh;
 }
 

@@ -107,7 +107,6 @@ MeshMemoryView harden_edges(Work &work, const MeshMemoryView &smooth) {
   executor.for_each(smooth.triangles, SplitTriangle{smooth.view, hard.view, n, both});
   hard.bounds = smooth.bounds;
   hard.components = smooth.components;
-  hard.atom_areas = smooth.atom_areas;
   return hard;
 }
 
