@@ -340,30 +340,30 @@ typedef struct qses_settings {
                                        levels its mesh differs by what float32 rounds */
   qses_vertex_layout vertex_layout; /* default SEPARATE */
   qses_bool texcoords;              /* 1: vertices have texture coordinates (see qses_set_texcoords); default 0 */
-  float frame_budget_ms;  /* for qses_begin: 0 (default): all levels one after the other. Above 0, at most 60000: one
-                             level only, the finest of them (`spacing` being the last) that is expected to take no longer
-                             than this, ms, or the coarsest if none is. Expected is what the last frames of the series
-                             (below) say: the time from the start of the work to the mesh in host memory, and what
-                             show_ms_per_mb (below) adds. The first frame
-                             is the coarsest; what was learnt is forgotten when the number of atoms, surface, method,
-                             probe_radius, relaxation_steps, slice_size, spacing or levels change within a series. Now
-                             and then a frame takes longer, when a finer level is tried: so a surface that became cheaper
-                             gets finer again. Which level it was is in qses_mesh.level and .spacing. Like everything
-                             that depends on time, the choice of the level is not the same in every run; the mesh of a
-                             level is */
-  qses_bool components;   /* 1: qses_mesh.components is filled; default 0, which costs nothing */
-  uint32_t series;        /* which series of frames a job belongs to: any number; default 0. For callers who let one
-                             context compute several molecules in turn: frame_budget_ms learns from each series apart.
-                             The QSES_REMEMBERED_SERIES that were used last are remembered; an older one begins anew */
-  qses_delivery delivery; /* where the mesh is wanted; default HOST. Anything else needs CUDA. A mesh that is wanted on
-                             the device does not leave it in pieces where memory is short: that is OUT_OF_MEMORY */
-  float show_ms_per_mb;   /* 0 to 60000; default 0: ms that it takes the caller to show 10^6 bytes of the mesh, as
-                             qses_report.mesh_bytes counts them (its copies to a graphics API, for instance).
-                             frame_budget_ms then covers computing and showing together. May change from frame to frame
-                             as it is measured */
-  qses_bool pickable;     /* 1: the mesh comes with what makes qses_kept_mesh_pick fast: 1 % more memory, and up to
-                             3 % more time on the CPU, 0.04 to 0.2 ms on a GPU; default 0. Ignored with delivery
-                             DEVICE */
+  float frame_budget_ms;   /* for qses_begin: 0 (default): all levels one after the other. Above 0, at most 60000: one
+                              level only, the finest of them (`spacing` being the last) that is expected to take no longer
+                              than this, ms, or the coarsest if none is. Expected is what the last frames of the series
+                              (below) say: the time from the start of the work to the mesh in host memory, and what
+                              show_ms_per_mb (below) adds. The first frame
+                              is the coarsest; what was learnt is forgotten when the number of atoms, surface, method,
+                              probe_radius, relaxation_steps, slice_size, spacing or levels change within a series. Now
+                              and then a frame takes longer, when a finer level is tried: so a surface that became cheaper
+                              gets finer again. Which level it was is in qses_mesh.level and .spacing. Like everything
+                              that depends on time, the choice of the level is not the same in every run; the mesh of a
+                              level is */
+  qses_bool components;    /* 1: qses_mesh.components is filled; default 0, which costs nothing */
+  uint32_t series;         /* which series of frames a job belongs to: any number; default 0. For callers who let one
+                              context compute several molecules in turn: frame_budget_ms learns from each series apart.
+                              The QSES_REMEMBERED_SERIES that were used last are remembered; an older one begins anew */
+  qses_delivery delivery;  /* where the mesh is wanted; default HOST. Anything else needs CUDA. A mesh that is wanted on
+                              the device does not leave it in pieces where memory is short: that is OUT_OF_MEMORY */
+  float show_ms_per_mb;    /* 0 to 60000; default 0: ms that it takes the caller to show 10^6 bytes of the mesh, as
+                              qses_report.mesh_bytes counts them (its copies to a graphics API, for instance).
+                              frame_budget_ms then covers computing and showing together. May change from frame to frame
+                              as it is measured */
+  qses_bool pickable;      /* 1: the mesh comes with what makes qses_kept_mesh_pick fast: 1 % more memory, and up to
+                              3 % more time on the CPU, 0.04 to 0.2 ms on a GPU; default 0. Ignored with delivery
+                              DEVICE */
   qses_bool creases;       /* 1: the edges of triangles that cut across a crease, where sheets of the surface meet at an
                               angle, are split on it: sharp rims, some more triangles. Default 0. Not with GRID */
   qses_bool hard_edges;    /* 1: a vertex on a crease is there once per side, each time with the normal of that side, so
@@ -432,10 +432,10 @@ typedef struct qses_mesh {
                                        surface where atoms are hidden. Their areas and volumes add up to those of
                                        qses_report, if that comes from the normals */
   const uint32_t *component_ids;    /* V, the number of the vertex's component, or NULL if not asked for */
-  const double *atom_areas; /* atom_count, Å²: how much of the surface belongs to each of the caller's atoms; they add up
-                               to qses_report.area. SAS and VDW: exactly, from the atoms. SES: what of each triangle is
-                               nearest to the atom. Those of the whole surface where atoms are hidden. NULL if not asked
-                               for */
+  const double *atom_areas; /* atom_count, Å²: how much of the surface belongs to each of the caller's atoms; they add
+                               up to qses_report.area. SAS and VDW: exactly, from the atoms. SES: what of each triangle
+                               is nearest to the atom. Those of the whole surface where atoms are hidden. NULL if not
+                               asked for */
   uint64_t atom_count;      /* 0 if atom_areas is NULL */
 } qses_mesh;
 
@@ -492,10 +492,10 @@ typedef struct qses_report {
                              expected: they keep the mesh closed. 0 unless rounding hid a feature of the surface */
   uint64_t unplaced_vertices; /* vertices for which no feature of the surface was found: they stay where their lattice
                                  edge is cut. 0 unless rounding hid a feature of the surface */
-  uint64_t attempts; /* 1; more where memory was refused, and the work was done again in a way that takes less. What
-                        sufficed is remembered, so the next frame of as many atoms is made at the first attempt */
-  double triangle_area;   /* Å² and Å³: sums over the triangles as they are; 0 if no mesh was made, or settings.measure
-                             is 0 */
+  uint64_t attempts;    /* 1; more where memory was refused, and the work was done again in a way that takes less. What
+                           sufficed is remembered, so the next frame of as many atoms is made at the first attempt */
+  double triangle_area; /* Å² and Å³: sums over the triangles as they are; 0 if no mesh was made, or settings.measure
+                           is 0 */
   double triangle_volume;
   qses_measured_by measured_by;
   uint32_t reserved; /* 0 */
