@@ -82,6 +82,8 @@ optional=(
   "libosmesa6 /usr/lib/x86_64-linux-gnu/libOSMesa.so.8"
   # Another program's areas, to compare with.
   "freesasa freesasa"
+  # Finds triangles that pass through each other.
+  "libcgal-dev CGAL/Surface_mesh.h"
 )
 # For Scripts~/package/load-in-bare-system, which only root can use.
 if [ "$(id -u)" -eq 0 ]; then optional+=("debootstrap /usr/sbin/debootstrap"); fi

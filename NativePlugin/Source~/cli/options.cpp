@@ -68,9 +68,10 @@ void add_compute_options(CLI::App *app, ComputeOptions &options, int &device) {
 }
 
 void add_creases(CLI::App *app, ComputeOptions &options) {
-  add_switch(app, "--creases", options.creases,
-             "on: edges of triangles that cut across a crease are split on it, for sharp rims and for numbers. Default: "
-             "on, but off for trajectories and bench");
+  add_switch(
+      app, "--creases", options.creases,
+      "on: edges of triangles that cut across a crease are split on it, for sharp rims and for numbers. Default: "
+      "on, but off for trajectories and bench");
 }
 
 void add_surface_choice(CLI::App *app, ComputeOptions &options) {

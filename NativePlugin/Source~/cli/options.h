@@ -28,7 +28,7 @@ struct ComputeOptions {
   double probe = 1.4;    // Å
   double spacing = 0.5;  // Å
   unsigned steps = 1;
-  unsigned slice = 0;  // 0 = sized by memory
+  unsigned slice = 0;                 // 0 = sized by memory
   Switch creases = Switch::kDefault;  // when options are read: on or off
   std::string radii = "quickses";
   bool radii_given = false;
@@ -39,7 +39,7 @@ struct Options {
   ComputeOptions compute;
   io::ReadOptions read;
   std::string input;
-  std::string output;                                                         // empty: no mesh file
+  std::string output;  // empty: no mesh file
   Switch hard_edges = Switch::kDefault;
   bool component_ids = false;                                                 // in that file
   bool outer = false;                                                         // without cavities

@@ -342,37 +342,37 @@ typedef struct qses_settings {
                                        levels its mesh differs by what float32 rounds */
   qses_vertex_layout vertex_layout; /* default SEPARATE */
   qses_bool texcoords;              /* 1: vertices have texture coordinates (see qses_set_texcoords); default 0 */
-  float frame_budget_ms;   /* for qses_begin: 0 (default): all levels one after the other. Above 0, at most 60000: one
-                              level only, the finest of them (`spacing` being the last) that is expected to take no longer
-                              than this, ms, or the coarsest if none is. Expected is what the last frames of the series
-                              (below) say: the time from the start of the work to the mesh in host memory, and what
-                              show_ms_per_mb (below) adds. The first frame
-                              is the coarsest; what was learnt is forgotten when the number of atoms, surface, method,
-                              probe_radius, relaxation_steps, slice_size, spacing or levels change within a series. Now
-                              and then a frame takes longer, when a finer level is tried: so a surface that became cheaper
-                              gets finer again. Which level it was is in qses_mesh.level and .spacing. Like everything
-                              that depends on time, the choice of the level is not the same in every run; the mesh of a
-                              level is */
-  qses_bool components;    /* 1: qses_mesh.components is filled; default 0, which costs nothing */
-  uint32_t series;         /* which series of frames a job belongs to: any number; default 0. For callers who let one
-                              context compute several molecules in turn: frame_budget_ms learns from each series apart.
-                              The QSES_REMEMBERED_SERIES that were used last are remembered; an older one begins anew */
-  qses_delivery delivery;  /* where the mesh is wanted; default HOST. DEVICE and BOTH need CUDA. A mesh that is wanted on
-                              the device does not leave it in pieces where memory is short: that is OUT_OF_MEMORY */
-  float show_ms_per_mb;    /* 0 to 60000; default 0: ms that it takes the caller to show 10^6 bytes of the mesh, as
-                              qses_report.mesh_bytes counts them (its copies to a graphics API, for instance).
-                              frame_budget_ms then covers computing and showing together. May change from frame to frame
-                              as it is measured */
-  qses_bool pickable;      /* 1: the mesh comes with what makes qses_kept_mesh_pick fast: 1 % more memory, and up to
-                              3 % more time on the CPU, 0.04 to 0.2 ms on a GPU; default 0. Ignored with delivery
-                              DEVICE */
-  qses_bool creases;       /* 1: the edges of triangles that cut across a crease, where sheets of the surface meet at an
-                              angle, are split on it: sharp rims, some more triangles. And normals that would point
-                              against a triangle of their vertex are turned, also by hard_edges. Default 0. Not with
-                              GRID */
-  qses_bool hard_edges;    /* 1: a vertex on a crease is there once per side, each time with the normal of that side, so
-                              that light breaks where the surface does. The mesh is then closed once vertices at the same
-                              place are taken for one. Default 0: one vertex, with the mean normal. Not with GRID */
+  float frame_budget_ms;  /* for qses_begin: 0 (default): all levels one after the other. Above 0, at most 60000: one
+                             level only, the finest of them (`spacing` being the last) that is expected to take no longer
+                             than this, ms, or the coarsest if none is. Expected is what the last frames of the series
+                             (below) say: the time from the start of the work to the mesh in host memory, and what
+                             show_ms_per_mb (below) adds. The first frame
+                             is the coarsest; what was learnt is forgotten when the number of atoms, surface, method,
+                             probe_radius, relaxation_steps, slice_size, spacing or levels change within a series. Now
+                             and then a frame takes longer, when a finer level is tried: so a surface that became cheaper
+                             gets finer again. Which level it was is in qses_mesh.level and .spacing. Like everything
+                             that depends on time, the choice of the level is not the same in every run; the mesh of a
+                             level is */
+  qses_bool components;   /* 1: qses_mesh.components is filled; default 0, which costs nothing */
+  uint32_t series;        /* which series of frames a job belongs to: any number; default 0. For callers who let one
+                             context compute several molecules in turn: frame_budget_ms learns from each series apart.
+                             The QSES_REMEMBERED_SERIES that were used last are remembered; an older one begins anew */
+  qses_delivery delivery; /* where the mesh is wanted; default HOST. DEVICE and BOTH need CUDA. A mesh that is wanted on
+                             the device does not leave it in pieces where memory is short: that is OUT_OF_MEMORY */
+  float show_ms_per_mb;   /* 0 to 60000; default 0: ms that it takes the caller to show 10^6 bytes of the mesh, as
+                             qses_report.mesh_bytes counts them (its copies to a graphics API, for instance).
+                             frame_budget_ms then covers computing and showing together. May change from frame to frame
+                             as it is measured */
+  qses_bool pickable;     /* 1: the mesh comes with what makes qses_kept_mesh_pick fast: 1 % more memory, and up to
+                             3 % more time on the CPU, 0.04 to 0.2 ms on a GPU; default 0. Ignored with delivery
+                             DEVICE */
+  qses_bool creases;      /* 1: the edges of triangles that cut across a crease, where sheets of the surface meet at an
+                             angle, are split on it: sharp rims, some more triangles. And normals that would point
+                             against a triangle of their vertex are turned, also by hard_edges. Default 0. Not with
+                             GRID */
+  qses_bool hard_edges;   /* 1: a vertex on a crease is there once per side, each time with the normal of that side, so
+                             that light breaks where the surface does. The mesh is then closed once vertices at the same
+                             place are taken for one. Default 0: one vertex, with the mean normal. Not with GRID */
   qses_bool component_ids; /* 1: qses_mesh.component_ids is filled, and the components; default 0 */
   qses_bool outer_only;    /* 1: the walls of cavities are left out of the mesh, not of area, volume and components,
                               which are filled; the outer surface of what lies within a cavity stays. Default 0 */

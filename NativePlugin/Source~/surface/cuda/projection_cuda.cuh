@@ -202,8 +202,8 @@ static __global__ __launch_bounds__(kVertexThreads) void reproject_kernel(Launch
       const uint32_t brick = brick_of_vertex(job.layout, job.bricks.count, vertex);
       const CutEdge edge = ends_of_edge(job.bricks, job.layout, brick, edge_of_vertex(job.layout, brick, vertex));
       candidates = {brick_candidates(job.view, brick - job.view.first_brick)};
-      const SharedCandidates near = choose_for_edge(
-          f, candidates, edge.middle(), edge_reach(f.parameters), edge_memory[threadIdx.x / kVertexLanes]);
+      const SharedCandidates near = choose_for_edge(f, candidates, edge.middle(), edge_reach(f.parameters),
+                                                    edge_memory[threadIdx.x / kVertexLanes]);
       s = place_at_last(f, near, edge, candidates, s);
     }
     const uint32_t owner = nearest_atom(f, candidates, s.position);

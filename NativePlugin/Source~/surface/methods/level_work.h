@@ -42,9 +42,9 @@ struct LevelWork {
   MeshShape shape{};       // of what is handed out
   MeshShape made_shape{};  // of the whole mesh, before anything is left out of it
   MeshPurpose purpose = MeshPurpose::kDelivered;
-  bool side_normals = false;  // whether a later stage asks for MeshView::second_normals
-  bool is_cut = false;        // whether parts of the whole mesh are left out
-  bool hard_edges = false;    // whether a vertex on a crest is delivered once per side
+  bool side_normals = false;                         // whether a later stage asks for MeshView::second_normals
+  bool is_cut = false;                               // whether parts of the whole mesh are left out
+  bool hard_edges = false;                           // whether a vertex on a crest is delivered once per side
   GrowingBuffer<HostMemory> *area_memory = nullptr;  // of the areas of atoms
   bool makes_mesh = true;
   AtomMeasures atom_measures{};     // where the surface is that of the balls, and measured

@@ -73,8 +73,8 @@ MeshMemoryView drop_hidden(Work &work, const MeshMemoryView &whole, const ShownP
     vertex_count = static_cast<uint32_t>(whole.vertices);
     triangle_count = static_cast<uint32_t>(whole.triangles);
   }
-  MeshMemoryView part = work.memory.allocate_mesh(executor, vertex_count, triangle_count, work.shape, purpose,
-                                                  work.plan.mesh_in_pieces);
+  MeshMemoryView part =
+      work.memory.allocate_mesh(executor, vertex_count, triangle_count, work.shape, purpose, work.plan.mesh_in_pieces);
   add_normals(work, &part);
   executor.for_each(whole.vertices, MoveVertex{whole.view, part.view, vertices});
   executor.for_each(whole.triangles, MoveTriangle{whole.view, part.view, triangles, vertices});

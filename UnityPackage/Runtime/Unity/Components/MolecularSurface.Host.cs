@@ -26,6 +26,7 @@ namespace QuickSes
             settings.RelaxationSteps = (uint)_relaxationSteps;
             settings.VertexLayout =
                 _compactVertices ? SurfaceVertexLayout.Compact : SurfaceVertexLayout.Interleaved;
+            settings.Creases = settings.HardEdges = _sharpCreases && settings.Method == SurfaceMethod.Exact;
             settings.Components = _measureComponents;
             levels = _levels;
             return settings;

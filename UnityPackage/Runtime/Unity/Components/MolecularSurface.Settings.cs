@@ -45,6 +45,18 @@ namespace QuickSes
         }
 
         /// <summary>
+        /// Whether, when atoms rest, triangles of the finest level follow the creases where sheets of the surface meet,
+        /// with vertices for each side, so that light breaks there (<see cref="SurfaceSettings.Creases"/>,
+        /// <see cref="SurfaceSettings.HardEdges"/>); default yes. Surfaces that are computed within
+        /// <see cref="FrameBudget"/> do without. Not with the grid method.
+        /// </summary>
+        public bool SharpCreases
+        {
+            get => _sharpCreases;
+            set => Set(ref _sharpCreases, value);
+        }
+
+        /// <summary>
         /// Spacings of coarser levels, 0.001 to 100 Å, in any order, at most <see cref="SurfaceSettings.MaxLevels"/>; those not
         /// above <see cref="Spacing"/> are left out. Default 2, 1. A copy.
         /// </summary>

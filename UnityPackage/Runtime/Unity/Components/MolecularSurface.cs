@@ -44,6 +44,9 @@ namespace QuickSes
         [SerializeField, Min(0), Tooltip("Smoothing steps, up to 100. They make better triangles; vertices stay on the " +
             "exact surface.")]
         private int _relaxationSteps = 1;
+        [SerializeField, Tooltip("When atoms rest, triangles of the finest level follow the creases where sheets of the " +
+            "surface meet, and light breaks there.")]
+        private bool _sharpCreases = true;
 
         [Header("Playback")]
         [SerializeField, Min(0), Tooltip("Milliseconds per surface while atoms move: the finest level that " +

@@ -14,12 +14,13 @@ namespace QuickSes
         private readonly float _spacing;
         private readonly float[] _levels;
         private readonly int _relaxationSteps;
+        private readonly bool _sharpCreases;
         private readonly bool _measureComponents;
         private readonly bool _compactVertices;
         private readonly SurfaceBackend _backend;
 
         public SurfaceShapeSettings(SurfaceKind surface, SurfaceMethod method, float probeRadius, float spacing,
-            float[] levels, int relaxationSteps, bool measureComponents, bool compactVertices,
+            float[] levels, int relaxationSteps, bool sharpCreases, bool measureComponents, bool compactVertices,
             SurfaceBackend backend)
         {
             _surface = surface;
@@ -28,6 +29,7 @@ namespace QuickSes
             _spacing = spacing;
             _levels = (float[])levels.Clone();
             _relaxationSteps = relaxationSteps;
+            _sharpCreases = sharpCreases;
             _measureComponents = measureComponents;
             _compactVertices = compactVertices;
             _backend = backend;
@@ -35,8 +37,9 @@ namespace QuickSes
 
         public bool Equals(SurfaceShapeSettings other) => _surface == other._surface && _method == other._method &&
             _probeRadius.Equals(other._probeRadius) && _spacing.Equals(other._spacing) &&
-            _relaxationSteps == other._relaxationSteps && _measureComponents == other._measureComponents &&
-            _compactVertices == other._compactVertices && _backend == other._backend && _levels.AsSpan().SequenceEqual(other._levels);
+            _relaxationSteps == other._relaxationSteps && _sharpCreases == other._sharpCreases &&
+            _measureComponents == other._measureComponents && _compactVertices == other._compactVertices &&
+            _backend == other._backend && _levels.AsSpan().SequenceEqual(other._levels);
 
         public override bool Equals(object other) => other is SurfaceShapeSettings settings && Equals(settings);
 

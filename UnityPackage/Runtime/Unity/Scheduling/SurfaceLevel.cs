@@ -7,7 +7,8 @@ namespace QuickSes
     public readonly struct SurfaceLevel
     {
         // A job may have computed a part of the ladder only, so the place in it is told by the spacing.
-        internal SurfaceLevel(in SurfaceMeshView view, in SurfaceReport report, ReadOnlySpan<float> ladder) : this()
+        internal SurfaceLevel(in SurfaceMeshView view, in SurfaceReport report, ReadOnlySpan<float> ladder,
+            bool hasCreases) : this()
         {
             int level = 0;
             while (level < ladder.Length - 1 && ladder[level] > view.Spacing)
@@ -15,6 +16,7 @@ namespace QuickSes
             Level = level;
             LevelCount = ladder.Length;
             Spacing = view.Spacing;
+            HasCreases = hasCreases && IsFinest;
             VertexCount = view.VertexCount;
             TriangleCount = view.TriangleCount;
             ComputeMilliseconds = report.ComputeMilliseconds;
@@ -44,6 +46,9 @@ namespace QuickSes
 
         /// <summary>Å between lattice points.</summary>
         public float Spacing { get; }
+
+        /// <summary>Whether triangles follow its creases: see <see cref="MolecularSurface.SharpCreases"/>.</summary>
+        public bool HasCreases { get; }
 
         /// <summary>
         /// Vertices of the surface, hidden parts too. While atoms move, the vertexCount of the mesh counts

@@ -16,6 +16,8 @@ namespace QuickSes
         private uint _job; // the last that was begun
         private bool _isJobOfNewest; // whether it is of the newest atoms and settings
         private bool _isJobOfShape; // be it in other places
+        private bool _wantsCreases; // for the finest level, when atoms rest
+        private bool _jobHasCreases;
         private SurfaceChange _begunChange; // what was new when it was begun
         private readonly List<JobLook> _looks = new List<JobLook>(4); // of the jobs whose meshes may still come
 
@@ -99,6 +101,10 @@ namespace QuickSes
                     _isArrivalOfShape ? _arrival.Spacing :
                     _isShapeShown ? CurrentLevel.Spacing : float.PositiveInfinity, _host.FrameBudget,
                     Pool.IsAnyUrgent);
+            _wantsCreases = settings.Creases;
+            if (settings.FrameBudget > 0) // they cost time
+                settings.Creases = settings.HardEdges = false;
+            _jobHasCreases = settings.Creases;
             return settings;
         }
 

@@ -59,7 +59,7 @@ namespace QuickSes
             bool isLast = mesh.Tag == _job;
             bool isMoving = !isLast || _begunChange == SurfaceChange.Positions;
             _slot.Context.TryGetReport(out SurfaceReport report);
-            var arrival = new SurfaceLevel(mesh, report, Ladder); // the view ends when the host takes the mesh
+            var arrival = new SurfaceLevel(mesh, report, Ladder, isLast && _jobHasCreases); // the view ends when the host takes the mesh
             try
             {
                 _host.Take(_slot.Context, TakeLook(mesh.Tag), isMoving);

@@ -64,7 +64,7 @@ namespace QuickSes
         public bool IsOrphan => _host.IsGone;
 
         /// <summary>
-        /// Whether nothing is left to do: the finest surface of the newest atoms is shown as they look now, or failed, or
+        /// Whether nothing is left to do: the best surface of the newest atoms is shown as they look now, or failed, or
         /// was cancelled, or there are no atoms.
         /// </summary>
         public bool IsUpToDate => IsComputed && !_host.HasUpload;
@@ -74,7 +74,7 @@ namespace QuickSes
 
         private bool IsComputed => !Atoms.IsSet || (_slot == null && !_hasArrival && (_isStopped || IsDone));
 
-        private bool IsDone => _isShown && CurrentLevel.IsFinest;
+        private bool IsDone => _isShown && IsBest(CurrentLevel);
 
         /// <summary>Something is new: what is shown will be replaced.</summary>
         public void Change(SurfaceChange change, double now)
@@ -247,13 +247,15 @@ namespace QuickSes
                 _isShapeShown = _isJobOfShape = _isArrivalOfShape = false;
         }
 
+        private bool IsBest(in SurfaceLevel level) => level.IsFinest && (level.HasCreases || !_wantsCreases);
+
         private QueuePriority FindPriority(double now)
         {
             if (!Atoms.IsSet || _isStopped)
                 return QueuePriority.None;
             if (!_isTried)
                 return QueuePriority.Urgent;
-            bool isDone = IsDone || (_isArrivalOfNewest && _arrival.IsFinest);
+            bool isDone = IsDone || (_isArrivalOfNewest && IsBest(_arrival));
             return !isDone && now - _lastChange >= _host.RestDelay ? QueuePriority.Refinement : QueuePriority.None;
         }
 
