@@ -33,6 +33,7 @@ class LevelChooser {
     float probe_radius = 0;
     uint32_t relaxation_steps = 0, slice_size = 0;
     Levels ladder;
+    qses_bool creases = 0, hard_edges = 0;
 
     bool operator==(const Subject &other) const;
   };
