@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // CPU kernel: the vertices that one brick owns, placed exactly on the surface eight at a time.
 #include "surface/cpu/cpu_candidates.h"
+#include "surface/stages/edge_placement.h"
 
 #include <new>
 

@@ -275,22 +275,4 @@ QSES_FN Vec3<float> halve_edge(const FeatureView &f, const Candidates &candidate
 constexpr int kStartHalvings = 8;
 QSES_FN bool starts_by_halving(const SurfaceParameters &p) { return p.depth > 0.f && p.spacing > 2.f * p.depth; }
 
-// A vertex that finds its place by no other way is where the sign changes on its edge. What decides about the edge:
-// atoms whose balls, and arcs whose enclosing balls, grown by these lengths, meet its middle.
-constexpr int kPlaceHalvings = 12;
-QSES_FN float edge_reach(const SurfaceParameters &p) { return 0.51f * p.spacing + 1e-3f; }
-QSES_FN float edge_arc_reach(const SurfaceParameters &p) { return p.depth + edge_reach(p); }
-template <class Candidates>
-QSES_FN SurfacePoint place_on_edge(const FeatureView &f, const Candidates &candidates, const CutEdge &edge) {
-  const SurfaceParameters &p = f.parameters;
-  const Vec3<float> x = halve_edge(f, candidates, edge, kPlaceHalvings);
-  SurfacePoint s = place_on_surface(p, x, nearest_boundary(f, candidates, x));
-  const float far_out = maximum(maximum(absolute(x.x), absolute(x.y)), absolute(x.z));
-  const float tolerance = 1e-3f * p.spacing + 4e-7f * far_out;  // of the halving, and of float32 there
-  s.placed = s.placed && length_squared(s.position - x) <= tolerance * tolerance;
-  // Without a feature there the sign changes all the same, so that is where the vertex stays.
-  if (!s.placed) s.position = x;
-  return s;
-}
-
 }  // namespace quickses
