@@ -263,7 +263,7 @@ TEST(Report, StagesAreCalledAsTheirFiles) {
     EXPECT_EQ(names.size(), report.stage_count) << "a name twice";
     std::set<std::string> expected = {"neighbor_grid", "bricks",     "marching_cubes", "projection", "relaxation",
                                       "measure",       "components", "visible_mask",   "mesh_memory"};
-    if (method == QSES_METHOD_EXACT) expected.insert({"solvent_features", "exact_ses"});
+    if (method == QSES_METHOD_EXACT) expected.insert({"solvent_features", "exact_ses", "thin_walls"});
     if (method == QSES_METHOD_GRID) expected.insert("grid_ses");
     EXPECT_EQ(names, expected);
     for (const std::string &name : names) EXPECT_TRUE(is_file_of_the_surface(name)) << name;
