@@ -264,7 +264,7 @@ TEST(Report, StagesAreCalledAsTheirFiles) {
     std::set<std::string> expected = {"neighbor_grid", "bricks",     "marching_cubes", "projection", "relaxation",
                                       "measure",       "components", "visible_mask",   "appearance", "mesh_memory"};
     if (method == QSES_METHOD_EXACT) expected.insert("hard_edges");
-    if (method == QSES_METHOD_EXACT) expected.insert({"solvent_features", "exact_ses"});
+    if (method == QSES_METHOD_EXACT) expected.insert({"solvent_features", "exact_ses", "thin_walls"});
     if (method == QSES_METHOD_GRID) expected.insert("grid_ses");
     EXPECT_EQ(names, expected);
     for (const std::string &name : names) EXPECT_TRUE(is_file_of_the_surface(name)) << name;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // CPU kernel: the vertices that one brick owns, placed exactly on the surface eight at a time.
 #include "surface/cpu/cpu_candidates.h"
+#include "surface/stages/edge_placement.h"
 
 #include <new>
 
@@ -258,7 +259,7 @@ void place_on_edges(const FeatureView &f, const BrickSet &bricks, const MeshLayo
     const EdgeCandidates near{
         c, choose_balls(c.atoms, c.atom_count, ends.middle(), edge_reach(f.parameters), c.near_list),
         choose_balls(c.arcs, c.arc_count, ends.middle(), edge_arc_reach(f.parameters), c.arc_list)};
-    w->set_point(v, place_at_last(f, near, ends, AllCandidates{c}, w->point(v)));
+    w->set_point(v, place_on_edge(f, near, ends));
     w->owner[v] = -1;
   }
 }

@@ -72,7 +72,7 @@ void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bri
   executor.launch("project_on_atoms", project_on_atoms_kernel, job.count, once, job);
   executor.launch("project_on_arcs", project_on_arcs_kernel, job.count, once, job);
   // Eight lanes for each: rounds of arcs, or halvings of an edge. As a rule few vertices are left.
-  constexpr uint64_t kLooks = 1 + kMaxProjections + kPlaceHalvings;
+  constexpr uint64_t kLooks = 3 + kMaxProjections + kPlaceHalvings + 2 * kWallSteps * kSolidLooks;
   const LaunchShape few{kVertexThreads, kVertexThreads / kVertexLanes, kLooks * (64 + look / kVertexLanes),
                         (job.count + kVertexThreads - size_t(1)) / kVertexThreads};
   size_t left = job.count;

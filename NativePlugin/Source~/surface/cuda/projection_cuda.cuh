@@ -5,6 +5,7 @@
 #pragma once
 
 #include "surface/cuda/vertex_candidates_cuda.cuh"
+#include "surface/stages/edge_placement.h"
 
 namespace quickses {
 namespace gpu {
@@ -204,7 +205,7 @@ static __global__ __launch_bounds__(kVertexThreads) void reproject_kernel(Launch
       candidates = {brick_candidates(job.view, brick - job.view.first_brick)};
       const SharedCandidates near = choose_for_edge(f, candidates, edge.middle(), edge_reach(f.parameters),
                                                     edge_memory[threadIdx.x / kVertexLanes]);
-      s = place_at_last(f, near, edge, candidates, s);
+      s = place_on_edge(f, near, edge);
     }
     const uint32_t owner = nearest_atom(f, candidates, s.position);
     __syncwarp(candidates.lanes());  // all of them have read what is written now

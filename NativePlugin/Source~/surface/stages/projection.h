@@ -193,7 +193,7 @@ QSES_FN void settle_normals(const FeatureView &f, uint32_t owner, SurfacePoint *
 //   then      while another probe may cover it, from the arc that is nearest to where it is now: reproject(), rounds 2
 //             to kMaxProjections. Where another probe does, it jumps to the crest, where the spheres of both probes
 //             meet; where none does, it is placed
-//   at last   where the sign changes on its lattice edge: place_at_last(), if it has no arc, moved further than can be
+//   at last   where the sign changes on its lattice edge: place_on_edge(), if it has no arc, moved further than can be
 //             trusted, or is covered still after the last round
 enum class ProjectionState : uint32_t { kOnEdge, kReproject, kPlaced };
 
@@ -299,37 +299,5 @@ QSES_FN Vec3<float> halve_edge(const FeatureView &f, const Candidates &candidate
 // first.
 constexpr int kStartHalvings = 8;
 QSES_FN bool starts_by_halving(const SurfaceParameters &p) { return p.depth > 0.f && p.spacing > 2.f * p.depth; }
-
-// A vertex that finds its place by no other way is where the sign changes on its edge. What decides about the edge:
-// atoms whose balls, and arcs whose enclosing balls, grown by these lengths, meet its middle.
-constexpr int kPlaceHalvings = 12;
-QSES_FN float edge_reach(const SurfaceParameters &p) { return 0.51f * p.spacing + 1e-3f; }
-QSES_FN float edge_arc_reach(const SurfaceParameters &p) { return p.depth + edge_reach(p); }
-template <class Candidates>
-QSES_FN SurfacePoint place_on_edge(const FeatureView &f, const Candidates &near, const CutEdge &edge) {
-  const SurfaceParameters &p = f.parameters;
-  const Vec3<float> x = halve_edge(f, near, edge, kPlaceHalvings);
-  SurfacePoint s = place_on_surface(p, x, nearest_boundary(f, near, x));
-  const float far_out = maximum(maximum(absolute(x.x), absolute(x.y)), absolute(x.z));
-  const float tolerance = 1e-3f * p.spacing + 4e-7f * far_out;  // of the halving, and of float32 there
-  s.placed = s.placed && length_squared(s.position - x) <= tolerance * tolerance;
-  // Without a feature there the sign changes all the same, so that is where the vertex stays.
-  if (!s.placed) s.position = x;
-  return s;
-}
-
-// The sign of an edge's inner end may say that there is a wall beside it (thin_walls.h), and not that it is inside.
-// Then nothing changes on the edge, and a vertex is best off near where its rounds ended. all: of the vertex.
-template <class Near, class Candidates>
-QSES_FN SurfacePoint place_at_last(const FeatureView &f, const Near &near, const CutEdge &edge, const Candidates &all,
-                                   const SurfacePoint &last) {
-  if (!is_inside(f, near, edge.inside)) {
-    SurfacePoint s = last;
-    if (!s.is_crest()) s = place_on_surface(f.parameters, s.position, nearest_boundary(f, all, s.position));
-    const float longest = kLongestMove * f.parameters.spacing;
-    if (s.placed && length_squared(s.position - edge.middle()) <= longest * longest) return s;
-  }
-  return place_on_edge(f, near, edge);
-}
 
 }  // namespace quickses

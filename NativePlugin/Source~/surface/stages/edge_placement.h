@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// The place of a vertex that no projection finds: where the sign changes on its lattice edge.
+#pragma once
+
+#include "surface/stages/thin_walls.h"
+
+namespace quickses {
+
+// A vertex that finds its place by no other way is where the sign changes on its edge. What decides about the edge:
+// atoms whose balls, and arcs whose enclosing balls, grown by these lengths, meet its middle.
+constexpr int kPlaceHalvings = 12;
+// Where walls are mended, the solid next to one end may decide.
+QSES_FN float edge_reach(const SurfaceParameters &p) { return (p.has_thin_walls() ? 2.f : 0.51f) * p.spacing + 1e-3f; }
+QSES_FN float edge_arc_reach(const SurfaceParameters &p) { return p.depth + edge_reach(p); }
+
+// Solid next to a lattice point that is marked inside because a wall passes through an edge from it (thin_walls.h):
+// along the edges, from ball to ball. The point itself if none is found, which rounding may do.
+constexpr int kSolidLooks = 3;  // per edge
+template <class Candidates>
+QSES_FN Vec3<float> find_solid(const FeatureView &f, const Candidates &candidates, const Vec3<float> &x) {
+  const SurfaceParameters &p = f.parameters;
+  const NearestProbe probe = nearest_probe(f, candidates, x);
+  for (int k = 0; k < 2 * kWallSteps; ++k) {
+    const Vec3<float> direction = wall_direction(k / 2) * (k % 2 ? -1.f : 1.f);
+    const float length = wall_step_length(k / 2) * p.spacing;
+    float at = way_out(p, probe, x, direction) + kWallStep;
+    for (int looks = 0; looks < kSolidLooks && at < length; ++looks) {
+      const Vec3<float> point = x + direction * at;
+      const NearestProbe next = nearest_probe(f, candidates, point);
+      if (next.distance > p.depth) return point;
+      at += way_out(p, next, point, direction) + kWallStep;
+    }
+  }
+  return x;
+}
+
+template <class Candidates>
+QSES_FN SurfacePoint place_on_edge(const FeatureView &f, const Candidates &candidates, CutEdge edge) {
+  const SurfaceParameters &p = f.parameters;
+  if (p.has_thin_walls() && !is_inside(f, candidates, edge.inside))
+    edge.inside = find_solid(f, candidates, edge.inside);
+  const Vec3<float> x = halve_edge(f, candidates, edge, kPlaceHalvings);
+  SurfacePoint s = place_on_surface(p, x, nearest_boundary(f, candidates, x));
+  const float far_out = maximum(maximum(absolute(x.x), absolute(x.y)), absolute(x.z));
+  const float tolerance = 1e-3f * p.spacing + 4e-7f * far_out;  // of the halving, and of float32 there
+  s.placed = s.placed && length_squared(s.position - x) <= tolerance * tolerance;
+  // Without a feature there the sign changes all the same, so that is where the vertex stays.
+  if (!s.placed) s.position = x;
+  return s;
+}
+
+}  // namespace quickses
