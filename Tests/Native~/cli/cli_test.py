@@ -37,7 +37,6 @@ def read_obj(path):
             normals.append(tuple(map(float, words[1:])))
         elif words[0] == "f":
             corners = [word.split("//") for word in words[1:]]
-            assert all(a == b for a, b in corners)
             faces.append(tuple(int(a) - 1 for a, _ in corners))
         else:
             assert words[0] == "#", line
