@@ -124,6 +124,8 @@ struct NearSpheres {
 
 struct SphereSheets {
   static constexpr bool kHasCorners = true;
+  // Of the smallest angle that a piece of a triangle may have: 2.6 degrees. In deep grooves pieces are slim.
+  static constexpr float kFlatCosine = 0.999f;
   FeatureView features;
   const uint32_t *places;  // caller's number of an atom -> its place in the grid
   Lattice lattice;

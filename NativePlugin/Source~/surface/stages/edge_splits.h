@@ -454,9 +454,6 @@ struct CountCorner {
   QSES_HOST_DEVICE uint64_t operator()(size_t i) const { return corners[i].kind != CreasePoint::kNone ? 1 : 0; }
 };
 
-// A piece with a smaller angle than this cosine's is none: 2.6 degrees.
-constexpr float kFlatCosine = 0.999f;
-
 // Where splits would fold a triangle, its edges are left as they are.
 template <class Sheets>
 struct RefuseSplits {
@@ -483,7 +480,7 @@ struct RefuseSplits {
       const CreaseEnd *const c[3] = {corner + pieces.corner[p][0], corner + pieces.corner[p][1],
                                      corner + pieces.corner[p][2]};
       const Vec3<float> normal = cross(c[1]->position - c[0]->position, c[2]->position - c[0]->position) * sign;
-      bad = least_cosine_of_angles(c[0]->position, c[1]->position, c[2]->position) > kFlatCosine ||
+      bad = least_cosine_of_angles(c[0]->position, c[1]->position, c[2]->position) > Sheets::kFlatCosine ||
             sheets.is_folded(c, normal);
     }
     if (!bad) return;

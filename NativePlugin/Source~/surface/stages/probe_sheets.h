@@ -10,10 +10,9 @@
 namespace quickses {
 
 // Sheets whose normals have a smaller cosine than this meet in a crease, if the edge between them leaves both probes by
-// more than this, in spacings; where normals are opposed, always, if the probes are far enough apart (in probe radii).
+// more than this, in spacings.
 constexpr float kCreaseCosine = 0.7f;
 constexpr float kLeastDeviation = 0.06f;
-constexpr float kKnifeProbes = 0.5f;
 // A new vertex is at least this far from its edge, in spacings.
 constexpr float kLeastMove = 0.04f;
 // And not farther from it than this, in lengths of the edge.
@@ -94,7 +93,8 @@ QSES_FN void gather_features(const FeatureView &f, const Vec3<float> &x, float a
 }
 
 struct ProbeSheets {
-  static constexpr bool kHasCorners = false;  // creases of probes end smoothly
+  static constexpr bool kHasCorners = false;   // creases of probes end smoothly
+  static constexpr float kFlatCosine = 0.99f;  // 8 degrees
   FeatureView features;
   Lattice lattice;
 
@@ -140,7 +140,6 @@ struct ProbeSheets {
   struct Crossing {
     Vec3<float> first, second;  // their centres
     Vec3<float> under;
-    bool knife;
   };
 
   QSES_FN static CreasePoint none() {
@@ -174,8 +173,7 @@ struct ProbeSheets {
     const float part = quotient(dot((c->first + c->second) * 0.5f - u.position, between), along);
     c->under = u.position + edge * minimum(1.f, maximum(0.f, part));
     const float deviation = absolute(square_root(length_squared(c->under - c->first)) - p);
-    c->knife = cosine < 0.f && length_squared(between) > kKnifeProbes * kKnifeProbes * p * p;
-    return c->knife || deviation >= kLeastDeviation * lattice.spacing;
+    return deviation >= kLeastDeviation * lattice.spacing;
   }
 
   QSES_FN CreasePoint describe(const LocalFeatures &local, const SurfacePoint &s, const CreaseEnd &u,
@@ -231,7 +229,7 @@ struct ProbeSheets {
       if (length_squared(x - c.under) > longest * longest) return none();
     }
     const float least = kLeastMove * lattice.spacing;
-    if (!c.knife && length_squared(s.position - c.under) < least * least) return none();
+    if (length_squared(s.position - c.under) < least * least) return none();
     if (!s.is_crest()) {
       if (!is_steady(local, s)) return none();
       const float to_first = square_root(length_squared(c.first - s.position)),
