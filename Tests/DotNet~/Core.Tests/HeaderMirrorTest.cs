@@ -26,6 +26,7 @@ namespace QuickSes.Tests
             ("qses_winding", "QSES_WINDING_", typeof(SurfaceWinding)),
             ("qses_vertex_layout", "QSES_VERTICES_", typeof(SurfaceVertexLayout)),
             ("qses_delivery", "QSES_DELIVERY_", typeof(MeshDelivery)),
+            ("qses_measured_by", "QSES_MEASURED_BY_", typeof(SurfaceMeasuredBy)),
             ("qses_patch", "QSES_PATCH_", typeof(SurfacePatch)),
             ("qses_job_state", "QSES_JOB_", typeof(SurfaceJobState)),
             ("qses_structure_format", "QSES_STRUCTURE_", typeof(StructureFormat)),

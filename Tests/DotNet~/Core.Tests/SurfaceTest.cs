@@ -185,7 +185,7 @@ namespace QuickSes.Tests
             }
             Array.Sort(found);
             for (int k = 0; k < 3; ++k)
-                Assert.That(found[k], Is.EqualTo(4.0 / 3 * Math.PI * Math.Pow(radii[k], 3)).Within(0.1).Percent);
+                Assert.That(found[k] / (4.0 / 3 * Math.PI * Math.Pow(radii[k], 3)), Is.EqualTo(1).Within(0.1).Percent);
             Assert.That(triangles, Is.EqualTo(mesh.TriangleCount));
             context.TryGetReport(out SurfaceReport report);
             Assert.That(area, Is.EqualTo(report.Area).Within(1e-9).Percent);

@@ -177,7 +177,7 @@ TEST(AtomAreas, SameWhateverTheMemoryAndTheThreads) {
       qses_size_estimate estimate;
       qses_size_estimate_init(&estimate);
       expect_ok(qses_estimate(unbounded, &s, &estimate));
-      for (uint64_t budget : {uint64_t(0), estimate.smallest_budget, 2 * estimate.smallest_budget}) {
+      for (uint64_t budget : {uint64_t(0), estimate.smallest_budget / 4 * 5, 2 * estimate.smallest_budget}) {
         const Context other(threads, budget);
         set_atoms(other, atoms);
         EXPECT_EQ(areas_of(compute_view(other, s)), areas) << surface << " " << threads << " " << budget;
