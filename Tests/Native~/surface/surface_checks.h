@@ -118,8 +118,8 @@ inline void check_distances(const qses_settings &s, const mesh_checks::Mesh &mes
 // Measures of the report against those of the triangles it delivered.
 inline void check_report(const Surface &surface) {
   const double area = mesh_checks::area(surface.mesh), volume = mesh_checks::signed_volume(surface.mesh);
-  EXPECT_NEAR(surface.report.area, area, 1e-4 * area + 1e-9);
-  EXPECT_NEAR(surface.report.volume, volume, 1e-4 * std::abs(volume) + 2e-5 * area + 1e-9);
+  EXPECT_NEAR(surface.report.triangle_area, area, 1e-4 * area + 1e-9);
+  EXPECT_NEAR(surface.report.triangle_volume, volume, 1e-4 * std::abs(volume) + 2e-5 * area + 1e-9);
 }
 
 // All of the above. Returns the surface for what only one test asks.
