@@ -36,10 +36,10 @@ void check_sphere(const Surface &surface, const Point &center, double radius, do
   EXPECT_GT(innermost, radius - spacing * spacing / (2 * radius));
   const double area = 4 * kPi * radius * radius, volume = area * radius / 3;
   const double share = innermost / radius;
-  EXPECT_LE(surface.report.area, area * (1 + 1e-6));
-  EXPECT_GE(surface.report.area, area * share * share * (1 - 1e-6));
-  EXPECT_LE(surface.report.volume, volume * (1 + 1e-6));
-  EXPECT_GE(surface.report.volume, volume * share * share * share * (1 - 1e-6));
+  EXPECT_LE(surface.report.triangle_area, area * (1 + 1e-6));
+  EXPECT_GE(surface.report.triangle_area, area * share * share * (1 - 1e-6));
+  EXPECT_LE(surface.report.triangle_volume, volume * (1 + 1e-6));
+  EXPECT_GE(surface.report.triangle_volume, volume * share * share * share * (1 - 1e-6));
   check_report(surface);
   EXPECT_EQ(mesh_checks::piece_count(mesh), 1u);
 }
