@@ -113,7 +113,6 @@ TEST(Projection, EndsAfterTenRoundsAndNoProbeCoversAPlacedVertex) {
   }
   for (int rounds = 1; rounds <= 10; ++rounds) EXPECT_GT(placed[static_cast<size_t>(rounds)], 0) << rounds;
   EXPECT_GT(crests, 1000);
-  EXPECT_GT(given_up[1], 0);   // no arc near enough
   EXPECT_GT(given_up[10], 0);  // probes on all sides
 }
 
@@ -146,8 +145,8 @@ TEST(Projection, OntoAnAtomTheWayInIsShort) {
   for (float out = -0.9f; out < 0.9f; out += 0.01f) {  // of the surface, which is at 1.6
     const Vec3<float> x(0.f, 1.6f + out, 0.f);
     const Projection v = project_on_atom(p, ball, ball_depth(ball, x), x);
-    if (std::abs(out - 0.3f) < 1e-3f) continue;  // 0.6 spacings
-    EXPECT_EQ(v.state, out < 0.3f ? ProjectionState::kPlaced : ProjectionState::kOnEdge) << out;
+    if (std::abs(out - 0.5f) < 1e-3f) continue;  // a spacing
+    EXPECT_EQ(v.state, out < 0.5f ? ProjectionState::kPlaced : ProjectionState::kOnEdge) << out;
     EXPECT_NEAR(v.point.position.y, 1.6f, 1e-5f) << out;
   }
 }

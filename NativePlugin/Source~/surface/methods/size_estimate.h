@@ -53,6 +53,7 @@ SurfaceSize count_size(Work &work, WorkFacts *facts) {
                    Candidates<Executor> own{};
                    Backend<Executor>::evaluate_signs(executor, work.features, bricks, slice, work.rooms, own, signs);
                  });
+                 if (work.parameters.has_thin_walls()) mend_thin_walls(work, bricks, nullptr, signs);
                });
 }
 
