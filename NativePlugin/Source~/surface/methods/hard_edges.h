@@ -97,7 +97,7 @@ MeshMemoryView harden_edges(Work &work, const MeshMemoryView &smooth) {
   executor.for_each(words, SeparateSides{{both.words, second.data}});
   size_t repeated = rank_set(executor, both, n);
   if (std::decay_t<decltype(executor)>::kCounts) repeated = n / 4;  // not known: rarely more
-  check_mesh_size({n + repeated, smooth.triangles});
+  if (!std::decay_t<decltype(executor)>::kCounts) check_mesh_size({n + repeated, smooth.triangles});
   MeshShape shape = work.shape;
   shape.repeated = repeated;
   MeshMemoryView hard = work.memory.allocate_mesh(executor, n + repeated, smooth.triangles, shape,
