@@ -171,7 +171,8 @@ class Checker {
     Result s;
     if (!compute(context_, other.atoms, other.settings, other, v, s)) return;
     check_connection(s, v);
-    const double a = r.surface.report.area, b = s.surface.report.area, h = static_cast<double>(c.settings.spacing);
+    const double a = r.surface.report.triangle_area, b = s.surface.report.triangle_area,
+                 h = static_cast<double>(c.settings.spacing);
     const double play = 0.02 * a + 40 * h * h + 1e-9;
     if (std::abs(a - b) > play) blame(v, Fault::kOrder, "area %.9g; with atoms in another order %.9g", a, b);
   }

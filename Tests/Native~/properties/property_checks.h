@@ -168,8 +168,10 @@ inline void check_measures(const Case &c, const Result &r, Verdict &v) {
   const mesh_checks::Mesh &mesh = r.surface.mesh;
   const double area = mesh_checks::area(mesh), volume = mesh_checks::signed_volume(mesh),
                rounding = rounding_of_positions(c);
-  const double reported_area = r.surface.report.area, reported_volume = r.surface.report.volume;
-  if (!std::isfinite(reported_area) || !std::isfinite(reported_volume))
+  const qses_report &report = r.surface.report;
+  const double reported_area = report.triangle_area, reported_volume = report.triangle_volume;
+  if (!std::isfinite(report.area) || !std::isfinite(report.volume) || !std::isfinite(reported_area) ||
+      !std::isfinite(reported_volume))
     blame(v, Fault::kNotFinite, "area %g, volume %g", reported_area, reported_volume);
   // Triangles that are small against the rounding of their corners have any area.
   const double area_play =
@@ -185,8 +187,6 @@ inline void check_measures(const Case &c, const Result &r, Verdict &v) {
     areas += k.area;
     volumes += k.volume;
     size += std::abs(k.volume);
-    if (k.is_cavity != (k.volume < 0 ? 1 : 0))
-      blame(v, Fault::kComponents, "a component's is_cavity is not its volume's sign");
   }
   if (triangles != mesh.triangle_count())
     blame(v, Fault::kComponents, "components have %llu triangles of %zu", static_cast<unsigned long long>(triangles),
@@ -194,11 +194,12 @@ inline void check_measures(const Case &c, const Result &r, Verdict &v) {
   if (r.components.size() != mesh_checks::piece_count(mesh))
     blame(v, Fault::kComponents, "%zu components, but the mesh has %zu pieces", r.components.size(),
           mesh_checks::piece_count(mesh));
+  if (report.measured_by == QSES_MEASURED_BY_ATOMS) return;  // which know better than the components' normals
   // Sums of whole multiples of something tiny.
-  if (std::abs(areas - reported_area) > 1e-5 * areas + 1e-9 ||
-      std::abs(volumes - reported_volume) > 1e-5 * size + 1e-6 * areas + 1e-9)
+  if (std::abs(areas - report.area) > 1e-5 * areas + 1e-9 ||
+      std::abs(volumes - report.volume) > 1e-5 * size + 1e-6 * areas + 1e-9)
     blame(v, Fault::kComponents, "components have area %.9g, volume %.9g; the report %.9g, %.9g", areas, volumes,
-          reported_area, reported_volume);
+          report.area, report.volume);
 }
 
 // With GRID, vertices have their owners before they are smoothed.
@@ -291,6 +292,22 @@ inline void check_distances(const Case &c, const Result &r, const ExactSurface &
     if (exact.depth(d.probe) <= 0) judge(k, p - d.most, ": a probe covers it");
     judge(k, d.least - p, ": no probe touches it");
   }
+  // The normal of a vertex between sheets is no single one's, but not against all triangles around it either, if these
+  // are small enough to show the surface, and larger than rounding.
+  if (static_cast<double>(c.settings.spacing) > p || rounding > 1e-3) return;
+  std::vector<uint8_t> faces(count), touched(count);
+  for (size_t t = 0; t < mesh.indices.size(); t += 3) {
+    const Point a = point(mesh.position(mesh.indices[t]));
+    const Point face =
+        cross(point(mesh.position(mesh.indices[t + 1])) - a, point(mesh.position(mesh.indices[t + 2])) - a);
+    for (size_t k = t; k < t + 3; ++k) {
+      touched[mesh.indices[k]] = 1;
+      if (!(dot(face, point(r.surface.normal(mesh.indices[k]))) < 0)) faces[mesh.indices[k]] = 1;
+    }
+  }
+  for (size_t k : between)
+    if (touched[k] && !faces[k])
+      return blame(v, Fault::kOffSurface, "the normal of vertex %zu points against all triangles around it", k);
 }
 
 // Places that are deeper inside or farther outside than the mesh can be wrong by.
@@ -327,7 +344,8 @@ inline void check_sides(const Case &c, const Result &r, const ExactSurface &exac
 inline void check_closed_form(const Case &c, const Result &r, Verdict &v) {
   if (c.atoms.size() == 0 || c.atoms.size() > 2) return;
   const Measures m = closed_form(c);
-  const double rounding = rounding_of_positions(c), area = r.surface.report.area, volume = r.surface.report.volume;
+  const qses_report &report = r.surface.report;
+  const double rounding = rounding_of_positions(c), area = report.triangle_area, volume = report.triangle_volume;
   const double triangles = static_cast<double>(r.surface.mesh.triangle_count());
   const double area_play = m.chord_area + 1e-4 * m.area + 4 * rounding * std::sqrt(m.area * triangles);
   const double volume_play = m.chord_volume + 1e-4 * m.volume + (1e-4 + rounding) * m.area;
@@ -335,6 +353,10 @@ inline void check_closed_form(const Case &c, const Result &r, Verdict &v) {
     blame(v, Fault::kClosedForm, "area %.9g, exact %.9g, a mesh may be %g off", area, m.area, area_play);
   if (std::abs(volume - m.volume) > volume_play)
     blame(v, Fault::kClosedForm, "volume %.9g, exact %.9g, a mesh may be %g off", volume, m.volume, volume_play);
+  if (report.measured_by != QSES_MEASURED_BY_ATOMS) return;
+  if (std::abs(report.area - m.area) > 1e-4 * m.area || std::abs(report.volume - m.volume) > 1e-4 * m.volume)
+    blame(v, Fault::kClosedForm, "of the atoms: area %.9g, volume %.9g, exact %.9g, %.9g", report.area, report.volume,
+          m.area, m.volume);
 }
 
 }  // namespace properties

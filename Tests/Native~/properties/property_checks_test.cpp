@@ -97,9 +97,9 @@ class Faults : public testing::Test {
       r.low[k % 3] = std::min(r.low[k % 3], mesh.positions[k]);
       r.high[k % 3] = std::max(r.high[k % 3], mesh.positions[k]);
     }
-    r.surface.report.area = r.components[0].area = mesh_checks::area(mesh);
-    r.surface.report.volume = r.components[0].volume = mesh_checks::signed_volume(mesh);
-    r.components[0].is_cavity = r.components[0].volume < 0;
+    qses_report &report = r.surface.report;
+    report.triangle_area = report.area = r.components[0].area = mesh_checks::area(mesh);
+    report.triangle_volume = report.volume = r.components[0].volume = mesh_checks::signed_volume(mesh);
     return fault_of(r);
   }
 
@@ -129,7 +129,7 @@ TEST_F(Faults, OfNumbers) {
   r.low[1] -= 1e-3f;
   EXPECT_EQ(fault_of(r), Fault::kBounds);
   r = good_;
-  r.surface.report.volume *= 1.001;
+  r.surface.report.triangle_volume *= 1.001;
   EXPECT_EQ(fault_of(r), Fault::kReport);
   r = good_;
   r.surface.report.area = std::nan("");

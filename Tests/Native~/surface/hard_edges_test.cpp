@@ -182,7 +182,7 @@ TEST(HardEdges, RepeatVerticesOfTheSmoothMesh) {
         used[v] = 1;
       }
       for (uint8_t one : used) ASSERT_EQ(one, 1);
-      EXPECT_EQ(report_of(context).area, smooth.surface.report.area);
+      EXPECT_EQ(report_of(context).triangle_area, smooth.surface.report.triangle_area);
       if (layout != QSES_VERTICES_SEPARATE) continue;
       EXPECT_EQ(mesh_checks::manifold_fault(h.merged()), "");
       EXPECT_LT(mesh_checks::worst_normal_length(h.surface.mesh), 1e-5);

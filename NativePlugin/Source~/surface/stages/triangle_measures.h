@@ -173,6 +173,10 @@ QSES_FN TriangleSums measure_triangle(const MeshView &mesh, const uint32_t *tria
   };
   sums.area = rounded_product(kSixth, area_at(z01, uu) + area_at(z12, uu + vv - 2.0 * uv) + area_at(z20, vv)) +
               rounded_product(2.0 * kThird, out01 + out12 + out20) / length;
+  if (!(sums.area > rounded_product(kThird, sums.flat_area) && sums.area < 3.0 * sums.flat_area)) {
+    sums.area = sums.flat_area;  // the corners are so near to each other that rounding has turned the triangle
+    return sums;
+  }
   sums.volume += rounded_product(rounded_product(sums.flat_area, sum), kThird);
   return sums;
 }
