@@ -42,7 +42,8 @@ TEST(SelfIntersections, AreFoundWhereTwoSpheresOverlap) {
 }
 
 TEST(SelfIntersections, NoneInSurfacesOfSmallSets) {
-  for (const qses_surface surface : {QSES_SURFACE_SES, QSES_SURFACE_SAS, QSES_SURFACE_VDW})
+  // The grooves of the VDW surface are narrower than the lattice: Documentation~/algorithm.md, Creases.
+  for (const qses_surface surface : {QSES_SURFACE_SES, QSES_SURFACE_SAS})
     for (const bool creases : {false, true})
       for (unsigned seed = 1; seed <= 10; ++seed) {
         qses_settings s = settings(0.5, 1.4, surface);
