@@ -292,9 +292,9 @@ inline void check_distances(const Case &c, const Result &r, const ExactSurface &
     if (exact.depth(d.probe) <= 0) judge(k, p - d.most, ": a probe covers it");
     judge(k, d.least - p, ": no probe touches it");
   }
-  // The normal of a vertex between sheets is no single one's, but not against all triangles around it either, if these
-  // are small enough to show the surface, and larger than rounding.
-  if (static_cast<double>(c.settings.spacing) > p || rounding > 1e-3) return;
+  // The normal of a vertex between sheets is no single one's, but not against all triangles around it either, where
+  // these are small enough to show probe and atom, and larger than rounding.
+  if (rounding > 1e-3) return;
   std::vector<uint8_t> faces(count), touched(count);
   for (size_t t = 0; t < mesh.indices.size(); t += 3) {
     const Point a = point(mesh.position(mesh.indices[t]));
@@ -306,7 +306,9 @@ inline void check_distances(const Case &c, const Result &r, const ExactSurface &
     }
   }
   for (size_t k : between)
-    if (touched[k] && !faces[k])
+    if (touched[k] && !faces[k] &&
+        static_cast<double>(c.settings.spacing) <=
+            0.5 * std::min(p, static_cast<double>(c.atoms.radii[mesh.owners[k]])))
       return blame(v, Fault::kOffSurface, "the normal of vertex %zu points against all triangles around it", k);
 }
 

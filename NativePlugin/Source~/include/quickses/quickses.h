@@ -367,9 +367,10 @@ typedef struct qses_settings {
                              3 % more time on the CPU, 0.04 to 0.2 ms on a GPU; default 0. Ignored with delivery
                              DEVICE */
   qses_bool creases;      /* 1: the edges of triangles that cut across a crease, where sheets of the surface meet at an
-                             angle, are split on it: sharp rims, some more triangles. And normals that would point
-                             against a triangle of their vertex are turned, also by hard_edges. Default 0. Not with
-                             GRID */
+                             angle, are split on it: sharp rims, a few per cent more triangles, and area along the
+                             normals to a thousandth. At `spacing` only, not at the coarser levels. And normals that
+                             would point against a triangle of their vertex are turned, also by hard_edges. Default 0.
+                             Not with GRID */
   qses_bool hard_edges;   /* 1: a vertex on a crease is there once per side, each time with the normal of that side, so
                              that light breaks where the surface does. The mesh is then closed once vertices at the same
                              place are taken for one. Default 0: one vertex, with the mean normal. Not with GRID */
