@@ -47,7 +47,7 @@ namespace QuickSes
         /// <summary>
         /// Whether, when atoms rest, triangles of the finest level follow the creases where sheets of the surface meet,
         /// with vertices for each side, so that light breaks there (<see cref="SurfaceSettings.Creases"/>,
-        /// <see cref="SurfaceSettings.HardEdges"/>); default yes. Surfaces that are computed within
+        /// <see cref="SurfaceSettings.HardEdges"/>); default no. Surfaces that are computed within
         /// <see cref="FrameBudget"/> do without. Not with the grid method.
         /// </summary>
         public bool SharpCreases

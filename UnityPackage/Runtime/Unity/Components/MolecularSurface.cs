@@ -46,7 +46,7 @@ namespace QuickSes
         private int _relaxationSteps = 1;
         [SerializeField, Tooltip("When atoms rest, triangles of the finest level follow the creases where sheets of the " +
             "surface meet, and light breaks there.")]
-        private bool _sharpCreases = true;
+        private bool _sharpCreases;
 
         [Header("Playback")]
         [SerializeField, Min(0), Tooltip("Milliseconds per surface while atoms move: the finest level that " +
