@@ -22,12 +22,32 @@ class FloatScope {
 #if defined(__SSE2__) || defined(_M_X64)
   FloatScope() : before_(_mm_getcsr()) {
     if (before_ != kDefault) _mm_setcsr(kDefault);
+    x87_.begin();
   }
-  ~FloatScope() { _mm_setcsr(before_); }
+  ~FloatScope() {
+    x87_.end();
+    _mm_setcsr(before_);
+  }
 
  private:
   static constexpr unsigned kDefault = 0x1f80;
+  // MinGW's atan2 is an instruction of the x87, which rounds by a word of its own.
+  struct X87 {
+#if defined(_WIN32)
+    void begin() {
+      const uint16_t word = 0x37f;
+      __asm__ volatile("fnstcw %0" : "=m"(before));
+      __asm__ volatile("fldcw %0" : : "m"(word));
+    }
+    void end() { __asm__ volatile("fldcw %0" : : "m"(before)); }
+    uint16_t before = 0;
+#else
+    void begin() {}
+    void end() {}
+#endif
+  };
   unsigned before_;
+  X87 x87_;
 #else
   FloatScope() {
     std::fegetenv(&before_);
