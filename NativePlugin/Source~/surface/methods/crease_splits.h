@@ -4,8 +4,10 @@
 #pragma once
 
 #include "surface/methods/exact_surface.h"
+#include "surface/stages/crease_snaps.h"
 #include "surface/stages/edge_splits.h"
 #include "surface/stages/probe_sheets.h"
+#include "surface/stages/sphere_sheets.h"
 
 namespace quickses {
 
@@ -40,7 +42,7 @@ struct ExpectedParts {
 };
 template <class Work>
 ExpectedParts expected_parts(const Work &work) {
-  return work.parameters.depth > 0.f ? ExpectedParts{0.2, 0.1} : ExpectedParts{0.6, 0.3};
+  return work.parameters.is_of_balls() ? ExpectedParts{0.6, 0.3} : ExpectedParts{0.2, 0.1};
 }
 inline size_t expected_part(size_t n, double part) { return static_cast<size_t>(part * static_cast<double>(n)) + 64; }
 
@@ -207,7 +209,7 @@ MeshMemoryView split_creases(Work &work, const MeshMemoryView &plain) {
   mesh.parts.part[0] = plain.view;
   mesh.parts.marks[0] = marks_room(work, mesh, plain.vertices);
   executor.for_each(plain.vertices, MarkVertices{plain.view, mesh.parts.marks[0]});
-  if (work.parameters.depth > 0.f) {
+  if (!work.parameters.is_of_balls()) {
     split_rounds(work, ProbeSheets{work.features, work.lattice}, &mesh);
   } else {
     const Span<uint32_t> places = executor.template allocate<uint32_t>(work.atoms.count);

@@ -74,8 +74,7 @@ template <class Work>
 void complete_vertices(Work &work, MeshMemoryView *mesh) {
   paint_vertices(work.executor, work.appearance, mesh->view, mesh->vertices);
   share_normals(work.executor, mesh->view, mesh->vertices);
-  if (work.settings.method == QSES_METHOD_EXACT && (work.settings.creases || work.settings.hard_edges))
-    face_triangles(work.executor, mesh->view, MeshCounts{mesh->vertices, mesh->triangles});
+  if (work.side_normals) face_triangles(work.executor, mesh->view, MeshCounts{mesh->vertices, mesh->triangles});
   pack_normals(work.executor, mesh->view, mesh->vertices);
   mesh->view.second_normals = nullptr;
   if (mesh->view.packed_normals) mesh->view.normals = nullptr;

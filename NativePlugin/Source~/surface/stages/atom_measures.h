@@ -29,14 +29,11 @@ constexpr uint64_t kArcMeasureSteps = 4096;
 QSES_FN Vec3<double> to_double(const glm::vec3 &v) {
   return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
 }
-QSES_FN Vec3<double> cross_product(const Vec3<double> &a, const Vec3<double> &b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
 
 // Area of the triangle of great circles, positive if a, b, c come counter-clockwise seen from outside (van Oosterom &
 // Strackee 1983). All three of unit length.
 QSES_FN double spherical_triangle(const Vec3<double> &a, const Vec3<double> &b, const Vec3<double> &c) {
-  return 2.0 * atan2(dot(a, cross_product(b, c)), 1.0 + dot(a, b) + dot(b, c) + dot(c, a));
+  return 2.0 * atan2(dot(a, cross(b, c)), 1.0 + dot(a, b) + dot(b, c) + dot(c, a));
 }
 
 // An arc on the unit sphere, from -half to half about its middle, counter-clockwise about the axis of its circle.
@@ -121,7 +118,7 @@ struct MeasureArc {
     Vec3<double> middle = to_double(stored.middle);
     middle = middle - arc.axis * dot(middle, arc.axis);
     arc.middle = middle * (1.0 / sqrt(length_squared(middle)));
-    arc.side = cross_product(arc.axis, arc.middle);
+    arc.side = cross(arc.axis, arc.middle);
     const double c = static_cast<double>(stored.cos_half), s = static_cast<double>(stored.sin_half);
     const double scale = 1.0 / sqrt(c * c + s * s);
     arc.half = atan2(s, c);
