@@ -81,8 +81,9 @@ struct TurnNormals {
         away = unit, least = facing, number = fan[i];
       }
       if (least > best_facing) best_facing = least, best = n;
-      n = n + away * (k < kLongTurns ? 1.f : 0.3f);
-      n = n * reciprocal_root(maximum(length_squared(n), 1e-12f));
+      const Vec3<float> sum = n + away * (k < kLongTurns ? 1.f : 0.3f);
+      const float length2 = length_squared(sum);
+      n = length2 > 1e-6f ? sum * reciprocal_root(length2) : away;  // from the very opposite
     }
     store_vec3(mesh.normal(vertex), best);
   }
