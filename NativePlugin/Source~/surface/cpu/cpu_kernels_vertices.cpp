@@ -80,7 +80,7 @@ int start_vertices(const FeatureView &f, const BrickSet &bricks, const MeshLayou
         Vec3<float> start = low;
         if (halve) {
           start =
-              halve_edge(f, AllCandidates{c}, ends_of_edge(bricks, layout, brick, {leaf, axis, bit}), kStartHalvings);
+              find_sign_change(f, AllCandidates{c}, ends_of_edge(bricks, layout, brick, {leaf, axis, bit}), kStartHalvings);
         } else {
           const float along = vertex_start(*row >> (at.x + 1) & 1) * h;
           start = {low.x + (axis == 0 ? along : 0.f), low.y + (axis == 1 ? along : 0.f),

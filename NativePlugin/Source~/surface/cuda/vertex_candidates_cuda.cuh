@@ -4,6 +4,7 @@
 #pragma once
 
 #include "surface/cuda/exact_ses_cuda.cuh"
+#include "surface/stages/edge_placement.h"
 
 namespace quickses {
 namespace gpu {
@@ -145,7 +146,7 @@ static __global__ __launch_bounds__(kLeafWarps *kWarp) void halve_starts_kernel(
     const LatticeEdge edge{leaf.leaf, edge_memory[warp][k] >> 6, edge_memory[warp][k] & 63};
     store_start(
         job, leaf.first + static_cast<uint32_t>(k),
-        halve_edge(job.features, candidates, ends_of_edge(job.bricks, job.layout, leaf.brick, edge), kStartHalvings));
+        find_sign_change(job.features, candidates, ends_of_edge(job.bricks, job.layout, leaf.brick, edge), kStartHalvings));
   }
 }
 
