@@ -45,7 +45,8 @@ VertexJob prepare_vertices(E &executor, const FeatureView &features, const Brick
   executor.fill(counts, 0);
   const uint64_t row = candidates.longest_row, look = vertex_steps(features, row);
   if (job.halved) {  // a lane's vertices one by one if each takes long
-    const uint64_t halve = looks_for_sign_change(features.parameters, kStartHalvings) * look, rounds = kMostLeafVertices / kWarp;
+    const uint64_t halve = looks_for_sign_change(features.parameters, kStartHalvings) * look,
+                   rounds = kMostLeafVertices / kWarp;
     const int most = halve * rounds > kThreadSteps ? kWarp : kMostLeafVertices;
     for (int first = 0; first < kMostLeafVertices; first += most)
       executor.launch("halve_starts", halve_starts_kernel, leaves,
