@@ -193,6 +193,13 @@ void check_standard_output(const Options &options) {
   }
 }
 
+// As from a variable of a shell that is not set. Without a file to write to, a run would do nothing and say nothing.
+void check_values(const CLI::App &used) {
+  for (const CLI::Option *option : used.get_options())
+    for (const std::string &value : option->results())
+      if (value.empty()) throw Failure(kUsage, option->get_name() + ": '' is given, which is nothing");
+}
+
 void check_output(const Options &options) {
   if (options.component_ids && options.output.empty())
     throw Failure(kUsage, "--component-ids: they are part of a PLY file, and there is no --output (-o)");
@@ -332,6 +339,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
     const bool is_many = options.command == Options::Command::kBench || !options.trajectory.empty();
     options.compute.creases = is_many || options.compute.method == QSES_METHOD_GRID ? Switch::kOff : Switch::kOn;
   }
+  check_values(*used);
   check(options, [used](const char *flag) { return used->count(flag) != 0; });
   return options;
 }

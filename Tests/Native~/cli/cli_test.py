@@ -209,6 +209,13 @@ class Errors(ProgramTest):
         self.assert_fails(USAGE, ["--device", "cpu"], CRAMBIN, "--device", "0", "--backend", "cpu")
         self.assert_fails(USAGE, ["bench"], "bench")
 
+    def test_values_that_are_nothing(self):
+        for flag in ("--output", "--json", "--per-atom", "--per-residue", "--trajectory", "--select", "--radii"):
+            with self.subTest(flag=flag):
+                self.assert_fails(USAGE, [flag, "'' is given"], CRAMBIN, flag, "")
+        self.assert_fails(USAGE, ["--csv", "'' is given"], "cavities", CRAMBIN, "--csv", "")
+        self.assert_fails(USAGE, ["--per-atom", "'' is given"], "measure", CRAMBIN, "--per-atom", "")
+
     def test_the_grid_method_has_one_surface(self):
         self.assert_fails(USAGE, [], CRAMBIN, "--method", "grid", "--surface", "sas", "--backend", "cpu")
 

@@ -282,19 +282,30 @@ inline void check_distances(const Case &c, const Result &r, const ExactSurface &
     }
   }
   if (!exact.is_ses()) return;
+  // The normal of a vertex between sheets is no single one's. Asked where triangles are small enough to show probe and
+  // atom, and larger than rounding.
+  const auto shows_sheets = [&](size_t k) {
+    return rounding <= 1e-3 && static_cast<double>(c.settings.spacing) <=
+                                   0.5 * std::min(p, static_cast<double>(c.atoms.radii[mesh.owners[k]]));
+  };
   const size_t most = exact.is_costly() ? 12 : 60;
   std::vector<size_t> chosen = worth_measuring(r.surface, p, most);
-  const size_t every = 1 + between.size() / most;
+  const size_t every = 1 + between.size() / most, first_between = chosen.size();
   for (size_t k = 0; k < between.size(); k += every) chosen.push_back(between[k]);
-  for (size_t k : chosen) {
-    const Range d = exact.distance(point(mesh.position(k)), p + 2 * (bound + rounding));
+  for (size_t q = 0; q < chosen.size(); ++q) {
+    const size_t k = chosen[q];
+    const Point x = point(mesh.position(k));
+    const Range d = exact.distance(x, p + 2 * (bound + rounding));
     // The probe is its own proof, whatever the reference may have missed.
     if (exact.depth(d.probe) <= 0) judge(k, p - d.most, ": a probe covers it");
     judge(k, d.least - p, ": no probe touches it");
+    // A mean of sheets' normals points away from none of their probes.
+    if (q >= first_between && !c.settings.creases && shows_sheets(k) &&
+        dot(d.probe - x, point(r.surface.normal(k))) < -0.1 * p)
+      blame(v, Fault::kOffSurface, "the normal of vertex %zu points away from the probe that touches it", k);
   }
-  // The normal of a vertex between sheets is no single one's, but not against all triangles around it either, where
-  // these are small enough to show probe and atom, and larger than rounding.
-  if (rounding > 1e-3) return;
+  if (!c.settings.creases) return;
+  // With creases it may have been turned, but not against all triangles around it.
   std::vector<uint8_t> faces(count), touched(count);
   for (size_t t = 0; t < mesh.indices.size(); t += 3) {
     const Point a = point(mesh.position(mesh.indices[t]));
@@ -306,9 +317,7 @@ inline void check_distances(const Case &c, const Result &r, const ExactSurface &
     }
   }
   for (size_t k : between)
-    if (touched[k] && !faces[k] &&
-        static_cast<double>(c.settings.spacing) <=
-            0.5 * std::min(p, static_cast<double>(c.atoms.radii[mesh.owners[k]])))
+    if (touched[k] && !faces[k] && shows_sheets(k))
       return blame(v, Fault::kOffSurface, "the normal of vertex %zu points against all triangles around it", k);
 }
 

@@ -132,7 +132,7 @@ inline std::string row_of(const Case &c) {
     for (size_t d = 0; d < 3; ++d) row += number(c.atoms.positions[3 * i + d]) + ", ";
     row += number(c.atoms.radii[i]) + "}";
   }
-  return row + "}},";
+  return row + (c.settings.creases ? "}, 1}," : "}},");
 }
 
 }  // namespace properties

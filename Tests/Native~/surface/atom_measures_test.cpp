@@ -97,6 +97,17 @@ TEST(AtomMeasures, TwoBalls) {
     }
 }
 
+// Whose circle is cut into many short pieces.
+TEST(AtomMeasures, TwoLargeBalls) {
+  for (double r : {12.0, 97.0, 100.0})
+    for (double d : {1.0, 3.0, 20.0}) {
+      const Numbers n = numbers(Atoms().add(0, 0, 0, r).add(0, d, 0, r), numbers_only(QSES_SURFACE_VDW));
+      const double area = sphere_area(r) - cap_area(r, d / 2), volume = sphere_volume(r) - cap_volume(r, d / 2);
+      for (double found : n.areas) EXPECT_NEAR(found, area, 5e-7 * area) << r << " " << d;
+      EXPECT_NEAR(n.report.volume, 2 * volume, 5e-7 * volume) << r << " " << d;
+    }
+}
+
 // In a row, so that the middle one loses two caps that do not meet.
 TEST(AtomMeasures, ThreeBallsInARow) {
   const Atoms atoms = Atoms().add(-2, 0, 0, 1.5).add(0, 0, 0, 1.5).add(2, 0, 0, 1.5);
@@ -113,17 +124,20 @@ TEST(AtomMeasures, VolumeGrowsByTheArea) {
   Atoms sets[] = {cluster(40, 5), cluster(300, 6), crambin()};
   const Context context;
   for (const Atoms &atoms : sets) {
-    double integral = 0, first = 0, last = 0;
-    constexpr int kSteps = 16;  // of Simpson's rule
-    const double low = 0.5, high = 1.5;
-    for (int k = 0; k <= kSteps; ++k) {
-      const double probe = low + (high - low) * k / kSteps;
-      const Numbers n = numbers(context, atoms, numbers_only(QSES_SURFACE_SAS, probe));
-      integral += n.report.area * (k == 0 || k == kSteps ? 1 : k % 2 ? 4 : 2);
-      (k == 0 ? first : last) = n.report.volume;
+    for (const double low : {0.5, 60.0}) {
+      if (low > 1 && atoms.size() > 100) continue;
+      double integral = 0, first = 0, last = 0;
+      constexpr int kSteps = 16;  // of Simpson's rule
+      const double high = low + 1;
+      for (int k = 0; k <= kSteps; ++k) {
+        const double probe = low + (high - low) * k / kSteps;
+        const Numbers n = numbers(context, atoms, numbers_only(QSES_SURFACE_SAS, probe));
+        integral += n.report.area * (k == 0 || k == kSteps ? 1 : k % 2 ? 4 : 2);
+        (k == 0 ? first : last) = n.report.volume;
+      }
+      integral *= (high - low) / kSteps / 3;
+      EXPECT_NEAR(last - first, integral, 2e-5 * (last - first));
     }
-    integral *= (high - low) / kSteps / 3;
-    EXPECT_NEAR(last - first, integral, 2e-5 * last);
   }
 }
 

@@ -27,6 +27,17 @@ inline Point perpendicular(const Point &a) {
   return (1 / length(p)) * p;
 }
 
+// Evenly spread unit vectors.
+inline std::vector<Point> fibonacci_directions(size_t count) {
+  std::vector<Point> directions;
+  const double turn = 4 * std::atan(1.0) * (3 - std::sqrt(5.0));
+  for (size_t k = 0; k < count; ++k) {
+    const double z = 1 - (2 * static_cast<double>(k) + 1) / static_cast<double>(count), s = std::sqrt(1 - z * z);
+    directions.push_back({s * std::cos(turn * static_cast<double>(k)), s * std::sin(turn * static_cast<double>(k)), z});
+  }
+  return directions;
+}
+
 struct Ball {
   Point center;
   double radius;
@@ -114,8 +125,11 @@ class Boundary {
       const Point d = x - balls_[i].center;
       const double l = length(d), distance = std::abs(balls_[i].radius - l);
       if (distance >= best.distance) continue;
-      const Point y = balls_[i].center + (balls_[i].radius / std::max(l, 1e-300)) * d;
-      if (l > 0 && exposed(i, y)) best = {distance, y, Kind::kSphere};
+      // At the very centre all of the sphere is as near.
+      for (const Point &way : l > 0 ? std::vector<Point>{(1 / l) * d} : fibonacci_directions(200)) {
+        const Point y = balls_[i].center + balls_[i].radius * way;
+        if (exposed(i, y)) best = {distance, y, Kind::kSphere};
+      }
     }
     for (const TriplePoint &t : triples_) {
       const double distance = length(x - t.position);
@@ -175,17 +189,6 @@ class Boundary {
   std::vector<Circle> circles_;
   std::vector<TriplePoint> triples_;
 };
-
-// Evenly spread unit vectors.
-inline std::vector<Point> fibonacci_directions(size_t count) {
-  std::vector<Point> directions;
-  const double turn = 4 * std::atan(1.0) * (3 - std::sqrt(5.0));
-  for (size_t k = 0; k < count; ++k) {
-    const double z = 1 - (2 * static_cast<double>(k) + 1) / static_cast<double>(count), s = std::sqrt(1 - z * z);
-    directions.push_back({s * std::cos(turn * static_cast<double>(k)), s * std::sin(turn * static_cast<double>(k)), z});
-  }
-  return directions;
-}
 
 // Points of the boundary: samples of every ball's sphere that no other ball holds. Distances to them are never less
 // than those to the boundary, and hardly more.

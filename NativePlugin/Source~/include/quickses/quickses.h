@@ -418,8 +418,8 @@ typedef struct qses_mesh {
   uint32_t tag;            /* as in the settings */
   const float *positions;  /* V x 3, Å. With settings.delivery DEVICE or NONE all arrays of vertices and indices are
                               NULL */
-  const float *normals;   /* V x 3, unit length, outward; on a crease, that of one of its sides. COMPACT: NULL, they are
-                             behind the positions */
+  const float *normals;   /* V x 3, unit length, outward; on a crease the mean of its sides', or as settings.creases and
+                             hard_edges say. COMPACT: NULL, they are behind the positions */
   const uint8_t *colors;  /* V x 4, tightly packed, or NULL if there are none */
   const float *texcoords; /* V x 2, tightly packed, or NULL if not asked for */
   uint32_t vertex_bytes;  /* INTERLEAVED (24) and COMPACT (16): bytes from one vertex to the next in the vertices that

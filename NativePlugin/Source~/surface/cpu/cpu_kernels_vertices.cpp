@@ -79,8 +79,8 @@ int start_vertices(const FeatureView &f, const BrickSet &bricks, const MeshLayou
         const uint16_t *const row = rows.row_of(at.y, at.z);
         Vec3<float> start = low;
         if (halve) {
-          start =
-              halve_edge(f, AllCandidates{c}, ends_of_edge(bricks, layout, brick, {leaf, axis, bit}), kStartHalvings);
+          start = find_sign_change(f, AllCandidates{c}, ends_of_edge(bricks, layout, brick, {leaf, axis, bit}),
+                                   kStartHalvings);
         } else {
           const float along = vertex_start(*row >> (at.x + 1) & 1) * h;
           start = {low.x + (axis == 0 ? along : 0.f), low.y + (axis == 1 ? along : 0.f),
@@ -108,6 +108,7 @@ struct Work {
   bool placed[kMaxBrickVertices + kPackSize];
   Points open;  // those whose radial projection is not exposed
   int32_t open_number[kMaxBrickVertices + kPackSize];
+  uint8_t rounds[kMaxBrickVertices + kPackSize];  // of those that are reprojected
 
   SurfacePoint point(int v) const {
     return {{place.x[v], place.y[v], place.z[v]},
@@ -223,12 +224,14 @@ void project_reentrant(const FeatureView &f, const BrickCandidates &c, float spa
         const int v = w->open_number[g + l], k = static_cast<int>(numbers[l]);
         const NearestArc nearest{k < 0 ? -1 : c.arc_index[c.arc_list[k]], nearest2[l], seconds2[l]};
         const Projection projection =
-            rounds == 0 ? project_on_arc(f, nearest, {w->open.x[g + l], w->open.y[g + l], w->open.z[g + l]})
-                        : reproject(f, AllCandidates{c}, nearest, {w->point(v), ProjectionState::kReproject, rounds});
+            rounds == 0
+                ? project_on_arc(f, nearest, {w->open.x[g + l], w->open.y[g + l], w->open.z[g + l]})
+                : reproject(f, AllCandidates{c}, nearest, {w->point(v), ProjectionState::kReproject, w->rounds[v]});
         w->set_point(v, projection.point);
         w->owner[v] = -1;
         w->placed[v] = projection.state != ProjectionState::kOnEdge;
         if (projection.state != ProjectionState::kReproject) continue;
+        w->rounds[v] = static_cast<uint8_t>(projection.rounds);
         const Vec3<float> &x = projection.point.position;
         w->open_number[covered] = v;
         w->open.x[covered] = x.x, w->open.y[covered] = x.y, w->open.z[covered] = x.z;

@@ -45,7 +45,8 @@ VertexJob prepare_vertices(E &executor, const FeatureView &features, const Brick
   executor.fill(counts, 0);
   const uint64_t row = candidates.longest_row, look = vertex_steps(features, row);
   if (job.halved) {  // a lane's vertices one by one if each takes long
-    const uint64_t halve = kStartHalvings * look, rounds = kMostLeafVertices / kWarp;
+    const uint64_t halve = looks_for_sign_change(features.parameters, kStartHalvings) * look,
+                   rounds = kMostLeafVertices / kWarp;
     const int most = halve * rounds > kThreadSteps ? kWarp : kMostLeafVertices;
     for (int first = 0; first < kMostLeafVertices; first += most)
       executor.launch("halve_starts", halve_starts_kernel, leaves,
@@ -72,8 +73,8 @@ void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bri
   executor.launch("project_on_atoms", project_on_atoms_kernel, job.count, once, job);
   executor.launch("project_on_arcs", project_on_arcs_kernel, job.count, once, job);
   // Eight lanes for each: rounds of arcs, or halvings of an edge. As a rule few vertices are left.
-  constexpr uint64_t kLooks = 3 + kMaxProjections + kPlaceHalvings + 2 * kWallSteps * kSolidLooks;
-  const LaunchShape few{kVertexThreads, kVertexThreads / kVertexLanes, kLooks * (64 + look / kVertexLanes),
+  const uint64_t looks = 1 + kMaxProjections + looks_for_sign_change(features.parameters, kPlaceHalvings);
+  const LaunchShape few{kVertexThreads, kVertexThreads / kVertexLanes, looks * (64 + look / kVertexLanes),
                         (job.count + kVertexThreads - size_t(1)) / kVertexThreads};
   size_t left = job.count;
   if (!E::kCounts && !executor.is_few_launches(left, few)) left = executor.fetch(job.unfinished_count);

@@ -5,7 +5,6 @@
 #pragma once
 
 #include "surface/cuda/vertex_candidates_cuda.cuh"
-#include "surface/stages/edge_placement.h"
 
 namespace quickses {
 namespace gpu {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "surface/cuda/exact_ses_cuda.cuh"
+#include "surface/stages/edge_placement.h"
 
 namespace quickses {
 namespace gpu {
@@ -143,9 +144,9 @@ static __global__ __launch_bounds__(kLeafWarps *kWarp) void halve_starts_kernel(
   const ListedCandidates candidates = brick_candidates(job.view, slot / kLeavesPerBrick);
   for (int k = first + lane_id(); k < leaf.count && k < last; k += kWarp) {
     const LatticeEdge edge{leaf.leaf, edge_memory[warp][k] >> 6, edge_memory[warp][k] & 63};
-    store_start(
-        job, leaf.first + static_cast<uint32_t>(k),
-        halve_edge(job.features, candidates, ends_of_edge(job.bricks, job.layout, leaf.brick, edge), kStartHalvings));
+    store_start(job, leaf.first + static_cast<uint32_t>(k),
+                find_sign_change(job.features, candidates, ends_of_edge(job.bricks, job.layout, leaf.brick, edge),
+                                 kStartHalvings));
   }
 }
 

@@ -108,7 +108,9 @@ QSES_FN ExposedArc exposed_arc(const Interval *interval, float radius) {
   while (radius * (arc.cos_piece <= 0.f ? 1.f : arc.sin_piece) > kMaxArcBound && arc.halvings < 16) {
     const float c = arc.cos_piece;
     arc.cos_piece = square_root(maximum(0.f, 0.5f * (1.f + c)));
-    arc.sin_piece = square_root(maximum(0.f, 0.5f * (1.f - c)));
+    // Of a short piece 1 - c has hardly a digit left, and the sum of pieces would not be the arc.
+    arc.sin_piece =
+        c > 0.f ? quotient(arc.sin_piece, arc.cos_piece + arc.cos_piece) : square_root(maximum(0.f, 0.5f * (1.f - c)));
     ++arc.halvings;
   }
   return arc;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The place of a vertex that no projection finds: where the sign changes on its lattice edge.
+// Where the sign changes on a lattice edge: there vertices start if edges are long, and there those stay that no
+// projection finds a place for.
 #pragma once
 
 #include "surface/stages/thin_walls.h"
@@ -13,18 +14,27 @@ constexpr int kPlaceHalvings = 12;
 QSES_FN float edge_reach(const SurfaceParameters &p) { return (p.has_thin_walls() ? 2.f : 0.51f) * p.spacing + 1e-3f; }
 QSES_FN float edge_arc_reach(const SurfaceParameters &p) { return p.depth + edge_reach(p); }
 
+// A lattice edge longer than the probe is wide may hold more than its middle tells: a vertex starts near the sign
+// change.
+constexpr int kStartHalvings = 8;
+QSES_FN bool starts_by_halving(const SurfaceParameters &p) { return p.depth > 0.f && p.spacing > 2.f * p.depth; }
+
 // Solid next to a lattice point that is marked inside because a wall passes through an edge from it (thin_walls.h):
 // along the edges, from ball to ball. The point itself if none is found, which rounding may do.
-constexpr int kSolidLooks = 3;  // per edge
+// Points that are looked at: of one edge as many as a wall may be away, of all of them
+QSES_FN int most_solid_looks(const SurfaceParameters &p) {
+  return 2 * kWallSteps * (starts_by_halving(p) ? kMostWallSteps : 3);
+}
 template <class Candidates>
 QSES_FN Vec3<float> find_solid(const FeatureView &f, const Candidates &candidates, const Vec3<float> &x) {
   const SurfaceParameters &p = f.parameters;
   const NearestProbe probe = nearest_probe(f, candidates, x);
+  int left = most_solid_looks(p);
   for (int k = 0; k < 2 * kWallSteps; ++k) {
     const Vec3<float> direction = wall_direction(k / 2) * (k % 2 ? -1.f : 1.f);
     const float length = wall_step_length(k / 2) * p.spacing;
     float at = way_out(p, probe, x, direction) + kWallStep;
-    for (int looks = 0; looks < kSolidLooks && at < length; ++looks) {
+    for (int looks = 0; looks < kMostWallSteps && at < length && left > 0; ++looks, --left) {
       const Vec3<float> point = x + direction * at;
       const NearestProbe next = nearest_probe(f, candidates, point);
       if (next.distance > p.depth) return point;
@@ -34,12 +44,25 @@ QSES_FN Vec3<float> find_solid(const FeatureView &f, const Candidates &candidate
   return x;
 }
 
+// Where the sign changes between the ends of an edge, or between the solid that its inside end stands for and the
+// other one.
 template <class Candidates>
-QSES_FN SurfacePoint place_on_edge(const FeatureView &f, const Candidates &candidates, CutEdge edge) {
-  const SurfaceParameters &p = f.parameters;
-  if (p.has_thin_walls() && !is_inside(f, candidates, edge.inside))
+QSES_FN Vec3<float> find_sign_change(const FeatureView &f, const Candidates &candidates, CutEdge edge, int halvings) {
+  if (f.parameters.has_thin_walls() && !is_inside(f, candidates, edge.inside))
     edge.inside = find_solid(f, candidates, edge.inside);
-  const Vec3<float> x = halve_edge(f, candidates, edge, kPlaceHalvings);
+  for (int k = 0; k < halvings; ++k)
+    (is_inside(f, candidates, edge.middle()) ? edge.inside : edge.outside) = edge.middle();
+  return edge.middle();
+}
+// So many points are looked at for it.
+inline uint64_t looks_for_sign_change(const SurfaceParameters &p, int halvings) {
+  return static_cast<uint64_t>(halvings + 2 + most_solid_looks(p));
+}
+
+template <class Candidates>
+QSES_FN SurfacePoint place_on_edge(const FeatureView &f, const Candidates &candidates, const CutEdge &edge) {
+  const SurfaceParameters &p = f.parameters;
+  const Vec3<float> x = find_sign_change(f, candidates, edge, kPlaceHalvings);
   SurfacePoint s = place_on_surface(p, x, nearest_boundary(f, candidates, x));
   const float far_out = maximum(maximum(absolute(x.x), absolute(x.y)), absolute(x.z));
   const float tolerance = 1e-3f * p.spacing + 4e-7f * far_out;  // of the halving, and of float32 there

@@ -53,7 +53,8 @@ struct CollectFans {
 };
 
 // Turns a normal towards the triangle that it is most against, and again until it faces all of them: where there is
-// such a normal, Rosenblatt's rule finds one. Else the one that was the least against any is kept.
+// such a normal, Rosenblatt's rule finds one. Else, of those that face any, the one that was the least against another
+// is kept.
 struct TurnNormals {
   static constexpr int kTurns = 32, kLongTurns = 8;
   MeshView mesh;
@@ -64,12 +65,12 @@ struct TurnNormals {
 
  private:
   QSES_FN void turn(uint32_t vertex, const uint32_t *fan, uint32_t count) const {
-    constexpr float kEnough = 0.02f;
+    constexpr float kEnough = 0.02f, kClear = 1e-3f;
     Vec3<float> n = load_vec3(mesh.normal(vertex)), best = n;
     float best_facing = -2.f;
     for (int k = 0; k < kTurns && best_facing < kEnough; ++k) {
       Vec3<float> away = n;
-      float least = 2.f;
+      float least = 2.f, most = -2.f;
       uint32_t number = 0;
       for (uint32_t i = 0; i < count; ++i) {
         const Vec3<float> face = face_normal(mesh, mesh.triangle(fan[i]));
@@ -77,12 +78,14 @@ struct TurnNormals {
         if (length2 < 1e-20f) continue;
         const Vec3<float> unit = face * reciprocal_root(length2);
         const float facing = dot(unit, n);
+        most = maximum(most, facing);
         if (facing > least || (facing == least && fan[i] > number)) continue;  // ties by number: any order will do
         away = unit, least = facing, number = fan[i];
       }
-      if (least > best_facing) best_facing = least, best = n;
-      n = n + away * (k < kLongTurns ? 1.f : 0.3f);
-      n = n * reciprocal_root(maximum(length_squared(n), 1e-12f));
+      if (most > kClear && least > best_facing) best_facing = least, best = n;
+      const Vec3<float> sum = n + away * (k < kLongTurns ? 1.f : 0.3f);
+      const float length2 = length_squared(sum);
+      n = length2 > 1e-6f ? sum * reciprocal_root(length2) : away;  // from the very opposite
     }
     store_vec3(mesh.normal(vertex), best);
   }

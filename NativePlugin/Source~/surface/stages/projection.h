@@ -214,6 +214,9 @@ QSES_FN Projection project_on_arc(const FeatureView &f, const NearestArc &neares
   const SurfaceParameters &p = f.parameters;
   const Arc arc = load(f.arcs + nearest.arc);
   const BoundaryPoint y = boundary_on_arc(arc, x);
+  // Where the probe's centre may be itself, rounding would say which way the surface is.
+  if (p.depth > 0.f && y.distance < kProjectionTolerance)
+    return {{x, up, up, QSES_PATCH_REENTRANT, false}, ProjectionState::kOnEdge, 1};
   const SurfacePoint s = place_on_surface(p, x, y);
   // On its way outward from a start that is nearer to y than depth, the point may get to where another probe is, or one
   // on the other side of the same circle.
@@ -222,6 +225,8 @@ QSES_FN Projection project_on_arc(const FeatureView &f, const NearestArc &neares
   const bool may_be_covered = y.distance < p.depth - kProjectionTolerance &&
                               (square_root(nearest.second2) < 2.f * p.depth - y.distance || beyond_axis);
   if (!s.placed) return {s, ProjectionState::kOnEdge, 1};
+  // On its way to a wall it may also get to where a probe is that touches a single atom: looked at as from round 2 on.
+  if (p.depth - y.distance > kLongestWayIn * p.spacing) return {s, ProjectionState::kReproject, 2};
   return {s, may_be_covered ? ProjectionState::kReproject : ProjectionState::kPlaced, 1};
 }
 
@@ -287,17 +292,5 @@ QSES_FN bool is_inside(const FeatureView &f, const Candidates &candidates, const
   if (is_on_contact(f, deepest, x)) return false;
   return nearest_arc(f, candidates, x).distance2 > depth * depth;
 }
-
-template <class Candidates>
-QSES_FN Vec3<float> halve_edge(const FeatureView &f, const Candidates &candidates, CutEdge edge, int halvings) {
-  for (int k = 0; k < halvings; ++k)
-    (is_inside(f, candidates, edge.middle()) ? edge.inside : edge.outside) = edge.middle();
-  return edge.middle();
-}
-
-// A lattice edge longer than the probe is wide may hold more than its middle tells: halve it towards the sign change
-// first.
-constexpr int kStartHalvings = 8;
-QSES_FN bool starts_by_halving(const SurfaceParameters &p) { return p.depth > 0.f && p.spacing > 2.f * p.depth; }
 
 }  // namespace quickses

@@ -230,10 +230,15 @@ struct SphereSheets {
     return near;
   }
 
+  // What is found here was never rounded to the caller's coordinates, as vertices were.
+  QSES_FN static float cover_tolerance(const Vec3<float> &x) {
+    return kSheetTolerance + 1.2e-7f * maximum(absolute(x.x), maximum(absolute(x.y), absolute(x.z)));
+  }
   QSES_FN bool is_covered(const NearSpheres &near, const Vec3<float> &x) const {
+    const float most = cover_tolerance(x);
     for (int k = 0; k < near.count; ++k) {
       const Sphere ball = sphere(near.place[k]);
-      if (ball.radius - square_root(length_squared(x - Vec3<float>(ball.center))) > tolerance) return true;
+      if (ball.radius - square_root(length_squared(x - Vec3<float>(ball.center))) > most) return true;
     }
     return false;
   }
@@ -243,9 +248,10 @@ struct SphereSheets {
     if (range.count == kBuriedAtom) return true;
     const Sphere ball = sphere(place);
     const Vec3<float> d = x - Vec3<float>(ball.center);
+    const float most = cover_tolerance(x) + kExposureTolerance;
     for (int32_t k = 0; k < range.count; ++k) {
       const Cap cap = load(features.caps + range.first + k);
-      if (dot(d, Vec3<float>(cap.axis)) - cap.cosine * ball.radius > tolerance + kExposureTolerance) return true;
+      if (dot(d, Vec3<float>(cap.axis)) - cap.cosine * ball.radius > most) return true;
     }
     return false;
   }
