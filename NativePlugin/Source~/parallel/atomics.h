@@ -49,6 +49,31 @@ QSES_FN void atomic_set(uint8_t *flag) {
 #endif
 }
 
+// A byte that others may set meanwhile.
+QSES_FN uint8_t atomic_load(const uint8_t *p) {
+#if defined(__CUDA_ARCH__)
+  return *reinterpret_cast<const volatile uint8_t *>(p);
+#else
+  return __atomic_load_n(p, __ATOMIC_RELAXED);
+#endif
+}
+QSES_FN void atomic_store(uint8_t *p, uint8_t value) {
+#if defined(__CUDA_ARCH__)
+  *reinterpret_cast<volatile uint8_t *>(p) = value;
+#else
+  __atomic_store_n(p, value, __ATOMIC_RELAXED);
+#endif
+}
+
+// Returns the value before.
+QSES_FN uint32_t atomic_exchange(uint32_t *p, uint32_t value) {
+#if defined(__CUDA_ARCH__)
+  return atomicExch(p, value);
+#else
+  return __atomic_exchange_n(p, value, __ATOMIC_RELAXED);
+#endif
+}
+
 QSES_FN void atomic_or(uint32_t *p, uint32_t bits) {
 #if defined(__CUDA_ARCH__)
   atomicOr(p, bits);
@@ -70,6 +95,17 @@ QSES_FN uint32_t atomic_min(uint32_t *p, uint32_t value) {
   return atomicMin(p, value);
 #else
   uint32_t before = __atomic_load_n(p, __ATOMIC_RELAXED);
+  while (value < before && !__atomic_compare_exchange_n(p, &before, value, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
+  }
+  return before;
+#endif
+}
+
+QSES_FN uint64_t atomic_min(uint64_t *p, uint64_t value) {
+#if defined(__CUDA_ARCH__)
+  return atomicMin(reinterpret_cast<unsigned long long *>(p), static_cast<unsigned long long>(value));
+#else
+  uint64_t before = __atomic_load_n(p, __ATOMIC_RELAXED);
   while (value < before && !__atomic_compare_exchange_n(p, &before, value, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
   }
   return before;

@@ -231,6 +231,11 @@ class CpuExecutor {
     return kept;
   }
 
+  template <class Keep, class T>
+  void compact(size_t n, Keep keep, Span<T> out, uint64_t *count) {
+    *count = compact(n, keep, out);
+  }
+
   template <class T>
   T fetch(const T *p) {
     return *p;

@@ -269,16 +269,20 @@ class CudaExecutor {
   template <class Keep, class T>
   size_t compact(size_t n, Keep keep, Span<T> out) {
     if (n == 0) return 0;
-    check_count(n, "compact");
     const auto mark = arena_.mark();
-    Span<int> count = allocate<int>(1);
-    with_temporary("cub::DeviceSelect::If", [&](void *temporary, size_t &bytes) {
-      return cub::DeviceSelect::If(temporary, bytes, thrust::counting_iterator<T>(0), out.data, count.data,
-                                   static_cast<int>(n), gpu::KeepNumber<Keep, T>{keep}, stream_);
-    });
+    Span<uint64_t> count = allocate<uint64_t>(1);
+    compact(n, keep, out, count.data);
     const size_t result = static_cast<size_t>(fetch(count.data));
     arena_.rewind(mark);
     return result;
+  }
+  template <class Keep, class T>
+  void compact(size_t n, Keep keep, Span<T> out, uint64_t *count) {
+    check_count(n, "compact");
+    with_temporary("cub::DeviceSelect::If", [&](void *temporary, size_t &bytes) {
+      return cub::DeviceSelect::If(temporary, bytes, thrust::counting_iterator<T>(0), out.data, count,
+                                   static_cast<int>(n), gpu::KeepNumber<Keep, T>{keep}, stream_);
+    });
   }
 
   template <class T>

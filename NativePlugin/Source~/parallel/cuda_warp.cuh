@@ -35,20 +35,21 @@ __device__ __forceinline__ void append(uint32_t *list, uint32_t *count, uint32_t
   if (has) list[base + place] = item;
 }
 
-// Sum over the lanes up to and including this one.
-template <class T>
-__device__ __forceinline__ T warp_inclusive_sum(T value, int lane) {
+// Sum over the lanes up to and including this one: of a warp, or of each group of so many lanes.
+template <int Lanes = kWarp, class T>
+__device__ __forceinline__ T warp_inclusive_sum(T value, int lane, unsigned lanes = kFullWarp) {
 #pragma unroll
-  for (int d = 1; d < kWarp; d <<= 1) {
-    const T other = __shfl_up_sync(kFullWarp, value, d);
+  for (int d = 1; d < Lanes; d <<= 1) {
+    const T other = __shfl_up_sync(lanes, value, d, Lanes);
     if (lane >= d) value += other;
   }
   return value;
 }
 
-__device__ __forceinline__ float warp_maximum(float value) {
+template <int Lanes = kWarp>
+__device__ __forceinline__ float warp_maximum(float value, unsigned lanes = kFullWarp) {
 #pragma unroll
-  for (int d = kWarp / 2; d > 0; d >>= 1) value = fmaxf(value, __shfl_xor_sync(kFullWarp, value, d));
+  for (int d = Lanes / 2; d > 0; d >>= 1) value = fmaxf(value, __shfl_xor_sync(lanes, value, d));
   return value;
 }
 
@@ -74,27 +75,28 @@ __device__ __forceinline__ uint32_t warp_or(uint32_t value) {
   return value;
 }
 
-// Calls visit(item, on) for every item of the runs run_of(0), ..., run_of(rows - 1), in this order, with 32 items at a
-// time: on tells whether the lane has one.
-template <class RunOf, class Visit>
-__device__ __forceinline__ void visit_runs(int rows, const RunOf &run_of, const Visit &visit) {
-  const int lane = lane_id();
-  for (int r0 = 0; r0 < rows; r0 += kWarp) {
+// Calls visit(item, on) for every item of the runs run_of(0), ..., run_of(rows - 1), in this order, with as many items
+// at a time as a warp, or each group, has lanes: on tells whether the lane has one.
+template <int Lanes = kWarp, class RunOf, class Visit>
+__device__ __forceinline__ void visit_runs(int rows, const RunOf &run_of, const Visit &visit,
+                                           unsigned lanes = kFullWarp) {
+  const int lane = lane_id() % Lanes;
+  for (int r0 = 0; r0 < rows; r0 += Lanes) {
     ItemRun run{0, 0};
     if (r0 + lane < rows) run = run_of(r0 + lane);
     const int length = static_cast<int>(run.end - run.begin);
-    const int sum = warp_inclusive_sum(length, lane);
-    const int total = __shfl_sync(kFullWarp, sum, kWarp - 1);
+    const int sum = warp_inclusive_sum<Lanes>(length, lane, lanes);
+    const int total = __shfl_sync(lanes, sum, Lanes - 1, Lanes);
     const uint32_t shift = run.begin - static_cast<uint32_t>(sum - length);
-    for (int t0 = 0; t0 < total; t0 += kWarp) {
+    for (int t0 = 0; t0 < total; t0 += Lanes) {
       const int t = t0 + lane;
       int row = 0;  // the first whose sum exceeds t
 #pragma unroll
-      for (int d = kWarp / 2; d > 0; d >>= 1) {
-        const int before = __shfl_sync(kFullWarp, sum, row + d - 1);
+      for (int d = Lanes / 2; d > 0; d >>= 1) {
+        const int before = __shfl_sync(lanes, sum, row + d - 1, Lanes);
         if (before <= t) row += d;
       }
-      const uint32_t item = __shfl_sync(kFullWarp, shift, row) + static_cast<uint32_t>(t);
+      const uint32_t item = __shfl_sync(lanes, shift, row, Lanes) + static_cast<uint32_t>(t);
       visit(item, t < total);
     }
   }

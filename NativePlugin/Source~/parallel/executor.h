@@ -10,6 +10,7 @@
 //   reduce<T>(n, load)             sum of load(i), T a double or a few: fixed chunks, added in fixed order. Waits
 //   sort_by_key(keys, values, key_bits)  stable, by the low key_bits bits of the keys
 //   compact(n, keep, out)          the i with keep(i), in order; returns their number. Waits
+//   compact(n, keep, out, count)   the same; their number stays with the back end
 //   fetch(p), fetch_each(sources, values, n)  copies one value, or several, to the host. Waits
 //   upload, download, fill         copies between host and back end, and memset
 //   scan_bytes<T>(n), sort_bytes<Key, Value>(n), reduce_bytes<T>(n), compact_bytes(n)  of the arena, that these verbs

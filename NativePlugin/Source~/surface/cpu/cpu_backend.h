@@ -3,6 +3,7 @@
 #pragma once
 
 #include "surface/cpu/exact_ses_cpu.h"
+#include "surface/cpu/local_features_cpu.h"
 #include "surface/cpu/mesh_memory_cpu.h"
 #include "surface/cpu/solvent_features_cpu.h"
 
@@ -41,6 +42,18 @@ struct Backend<CpuKernelExecutor> {
   static void emit_triangles(E &executor, const BrickSet &bricks, const MeshLayout &layout, BrickRange slice,
                              const TableView &table, const MeshView &mesh) {
     if constexpr (!E::kCounts) quickses::emit_triangles(executor, bricks, layout, slice, table, mesh);
+  }
+  template <class E, class F>
+  static void for_each_gathering(E &executor, size_t n, const F &f) {
+    const CpuKernels *kernels = nullptr;
+    if constexpr (!E::kCounts) kernels = &executor.kernels();
+    executor.template for_each_brick<LocalColumns>(
+        n,
+        [f, kernels](SoloTeam, LocalColumns &columns, size_t i) {
+          GatheredFeatures near_by{columns, *kernels};
+          f(near_by, i);
+        },
+        64);
   }
 };
 

@@ -5,6 +5,7 @@
 
 #include "parallel/working_thread.h"
 #include "surface/stages/hot_stages.h"
+#include "surface/stages/local_features.h"
 
 namespace quickses {
 
@@ -36,6 +37,15 @@ struct BrickNeeds {
   int atoms, arcs;
 };
 
+// The features near a place (stages/local_features.h), the arcs also in columns. A thread has one.
+struct LocalColumns {
+  static constexpr int kArcRoom = LocalReach::kMostArcs + 8, kArcColumns = 12;
+  uint32_t atoms[LocalReach::kMostAtoms + 8], arcs[kArcRoom];
+  float depths[LocalReach::kMostAtoms + 8];  // of the place in the balls of the atoms
+  float arc_columns[kArcColumns][kArcRoom];
+  int atom_number, arc_number;
+};
+
 // Every kernel, as KERNEL(result, name, arguments...): the one list of them.
 //   find_atom_features     caps and arcs of atom i, with room for cap_room caps and arc_room arcs; arc_atoms may be
 //                          nullptr. Sets exposed[] for i and for the other atoms of its exposed arcs
@@ -43,6 +53,8 @@ struct BrickNeeds {
 //   mark_brick_walls       ORs the lattice points into marks that thin walls of its edges need (thin_walls.h)
 //   emit_brick_vertices    the vertices a brick owns
 //   emit_brick_triangles   the triangles of a brick's cells
+//   gather_local_features  those near a place; false if it is too crowded
+//   nearest_local_arc      of those that were gathered
 #define QSES_CPU_KERNELS(KERNEL)                                                                                \
   KERNEL(AtomFeatures, find_atom_features, const NeighborGridView &atoms, const SurfaceParameters &parameters,  \
          uint32_t i, const AtomScratch &scratch, Cap *caps, int cap_room, Arc *arcs, ArcAtoms *arc_atoms,       \
@@ -55,7 +67,10 @@ struct BrickNeeds {
          const MeshLayout &layout, uint32_t brick, const VertexStarts &starts, const BrickScratch &scratch,     \
          const MeshView &mesh)                                                                                  \
   KERNEL(void, emit_brick_triangles, const BrickSet &bricks, const MeshLayout &layout, uint32_t brick,          \
-         const TableView &table, const MeshView &mesh)
+         const TableView &table, const MeshView &mesh)                                                          \
+  KERNEL(bool, gather_local_features, const FeatureView &features, const Vec3<float> &x, float around,          \
+         LocalColumns *out)                                                                                     \
+  KERNEL(NearestArc, nearest_local_arc, const LocalColumns &local, const Vec3<float> &x)
 
 struct CpuKernels {
   const char *name;

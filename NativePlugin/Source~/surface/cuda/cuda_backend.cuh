@@ -2,6 +2,7 @@
 // The hot stages on the GPU (stages/hot_stages.h).
 #pragma once
 
+#include "surface/cuda/local_features_cuda.cuh"
 #include "surface/cuda/mesh_cuda.cuh"
 #include "surface/cuda/mesh_memory_cuda.cuh"
 #include "surface/cuda/solvent_features_cuda.cuh"
@@ -42,6 +43,11 @@ struct Backend<CudaExecutor> {
   static void emit_triangles(E &executor, const BrickSet &bricks, const MeshLayout &layout, BrickRange slice,
                              const TableView &table, const MeshView &mesh) {
     gpu::emit_triangles(executor, bricks, layout, slice, table, mesh);
+  }
+  template <class E, class F>
+  static void for_each_gathering(E &executor, size_t n, const F &f) {
+    constexpr int kThreads = gpu::kGatheringThreads, kItems = kThreads / gpu::kGatheringLanes;
+    executor.launch("gather", gpu::gathering_kernel<F>, n, LaunchShape{kThreads, kItems, gpu::kGatheringSteps}, f);
   }
 
  private:

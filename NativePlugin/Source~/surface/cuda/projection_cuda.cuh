@@ -4,6 +4,7 @@
 // all others with the second; the third has those that turn from one probe to another, or find no place.
 #pragma once
 
+#include "surface/cuda/lane_candidates_cuda.cuh"
 #include "surface/cuda/vertex_candidates_cuda.cuh"
 
 namespace quickses {
@@ -108,52 +109,18 @@ static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(
     leave_vertex(job, k, v);
 }
 
-// Candidates that a few lanes look at together for one vertex, with the same result in each. The two functions are
-// those of projection.h, to the last bit.
 constexpr int kVertexLanes = 8;
-struct SharedCandidates : ListedCandidates {
-  __device__ __forceinline__ uint32_t atom(int k) const { return atoms[k]; }  // in any memory
-  __device__ __forceinline__ uint32_t arc(int k) const { return arcs[k]; }
-  static __device__ __forceinline__ int rank() { return lane_id() % kVertexLanes; }
-  static __device__ __forceinline__ unsigned lanes() {
-    return ((1u << kVertexLanes) - 1u) << (lane_id() / kVertexLanes * kVertexLanes);
-  }
-};
-
-__device__ __forceinline__ DeepestAtom deepest_atom(const FeatureView &f, const SharedCandidates &candidates,
-                                                    const Vec3<float> &x) {
-  NumberedValue best{-2.f * kFarAway, kNoAtom};  // its place in the list: of several, the first
-  for (int k = candidates.rank(); k < candidates.atom_count(); k += kVertexLanes) {
-    const float depth = ball_depth(load(f.atoms.items + candidates.atom(k)), x);
-    if (depth > best.value) best = {depth, static_cast<uint32_t>(k)};
-  }
-  best = warp_largest<kVertexLanes>(best, candidates.lanes());
-  return {best.number == kNoAtom ? 0u : candidates.atom(static_cast<int>(best.number)), best.value};
-}
-
-__device__ __forceinline__ NearestArc nearest_arc(const FeatureView &f, const SharedCandidates &candidates,
-                                                  const Vec3<float> &x) {
-  NearestArc best;
-  for (int k = candidates.rank(); k < candidates.arc_count(); k += kVertexLanes) {
-    const int a = static_cast<int>(candidates.arc(k));
-    best.offer(a, arc_distance2(load(f.arcs + a), x));
-  }
-  const unsigned lanes = candidates.lanes();
-#pragma unroll
-  for (int d = kVertexLanes / 2; d > 0; d >>= 1) {
-    const int arc = __shfl_xor_sync(lanes, best.arc, d);
-    const float distance2 = __shfl_xor_sync(lanes, best.distance2, d);
-    const float second2 = __shfl_xor_sync(lanes, best.second2, d);
-    if (arc >= 0) best.offer(arc, distance2);
-    best.second2 = minimum(best.second2, second2);
-  }
-  return best;
+using SharedCandidates = LaneCandidates<kVertexLanes>;
+template <class Candidates>
+__device__ __forceinline__ SharedCandidates shared(const Candidates &all) {
+  return {all.atoms, all.arcs, all.atom_total, all.arc_total};
 }
 
 // Those of a brick's candidates that decide about points of an edge, which are within `reach` of its middle; all of
 // them where there is no room for the choice.
 constexpr int kEdgeRoom = 160;
-__device__ __forceinline__ SharedCandidates choose_for_edge(const FeatureView &f, const ListedCandidates &all,
+template <class Candidates>
+__device__ __forceinline__ SharedCandidates choose_for_edge(const FeatureView &f, const Candidates &all,
                                                             const Vec3<float> &middle, float reach, uint32_t *room) {
   const unsigned lanes = SharedCandidates::lanes();
   const int rank = SharedCandidates::rank();
@@ -180,8 +147,8 @@ __device__ __forceinline__ SharedCandidates choose_for_edge(const FeatureView &f
   const int arcs =
       choose(f.arc_bounds.items, all.arcs, all.arc_total, f.parameters.depth + reach, room + (kEdgeRoom - left), left);
   __syncwarp(lanes);
-  if (atoms > kEdgeRoom || arcs > left) return {all};
-  return {{room, room + atoms, atoms, arcs}};
+  if (atoms > kEdgeRoom || arcs > left) return shared(all);
+  return {room, room + atoms, atoms, arcs};
 }
 
 static __global__ __launch_bounds__(kVertexThreads) void reproject_kernel(LaunchItems vertices, VertexJob job) {
@@ -193,7 +160,7 @@ static __global__ __launch_bounds__(kVertexThreads) void reproject_kernel(Launch
            static_cast<uint32_t>(vertices.first) + (blockIdx.x * kVertexThreads + threadIdx.x) / kVertexLanes;
        place < total; place += teams) {
     const uint32_t k = job.unfinished[place], vertex = job.first + k;
-    SharedCandidates candidates{vertex_candidates(job, k)};
+    SharedCandidates candidates = shared(vertex_candidates(job, k));
     Projection v = left_vertex(job, k);
     while (v.state == ProjectionState::kReproject)
       v = reproject(f, candidates, nearest_arc(f, candidates, v.point.position), v);
@@ -201,7 +168,7 @@ static __global__ __launch_bounds__(kVertexThreads) void reproject_kernel(Launch
     if (v.state == ProjectionState::kOnEdge) {
       const uint32_t brick = brick_of_vertex(job.layout, job.bricks.count, vertex);
       const CutEdge edge = ends_of_edge(job.bricks, job.layout, brick, edge_of_vertex(job.layout, brick, vertex));
-      candidates = {brick_candidates(job.view, brick - job.view.first_brick)};
+      candidates = shared(brick_candidates(job.view, brick - job.view.first_brick));
       const SharedCandidates near = choose_for_edge(f, candidates, edge.middle(), edge_reach(f.parameters),
                                                     edge_memory[threadIdx.x / kVertexLanes]);
       s = place_on_edge(f, near, edge);

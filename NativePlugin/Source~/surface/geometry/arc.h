@@ -9,8 +9,9 @@ namespace quickses {
 // Squared distance from x to the arc. With t = x - center, the point of the full circle in the direction of t's
 // in-plane part is nearest if it lies on the arc, else the end on t's side is. On the axis of the circle every point is
 // at the same distance and the formula still gives it.
-template <class T>
-QSES_FN T arc_distance2(const Arc &arc, const Vec3<T> &x) {
+// AnyArc: one arc for all the points of x, or one for each.
+template <class AnyArc, class T>
+QSES_FN T arc_distance2(const AnyArc &arc, const Vec3<T> &x) {
   const Vec3<T> t = x - Vec3<T>(arc.center);
   const T along_middle = dot(t, Vec3<T>(arc.middle)), along_side = dot(t, Vec3<T>(arc.side));
   const T in_plane = square_root(along_middle * along_middle + along_side * along_side);

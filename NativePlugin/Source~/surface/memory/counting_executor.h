@@ -89,6 +89,10 @@ class CountingExecutor {
     take_for_a_while(executor_.compact_bytes(n));
     return 0;
   }
+  template <class Keep, class T>
+  void compact(size_t n, const Keep &keep, Span<T> out, uint64_t *) {
+    compact(n, keep, out);
+  }
   template <class T>
   T fetch(const T *p) {
     return expected_value(facts_, p);

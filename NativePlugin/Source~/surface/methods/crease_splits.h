@@ -11,171 +11,188 @@
 
 namespace quickses {
 
-struct PartSizes {
-  size_t vertices, triangles;
-};
-
-// The mesh while it grows, and how much there is of it.
+// The mesh while it grows.
 struct GrowingMesh {
-  MeshMemoryView plain;  // the first part
-  MeshShape shape;       // of all parts
-  MeshParts parts{};
-  PartSizes all{};
-  uint8_t *is_near = nullptr;  // [triangle]: has to do with creases, of those that are `known`
-  size_t known = 0;
+  MeshMemoryView whole;
+  CreasedMesh view;
+  size_t vertex_room, triangle_room;
 };
 
 // Room for work on the mesh: where the mesh is, since most of it is as large.
 template <class T, class Work>
 Span<T> mesh_room(Work &work, const GrowingMesh &mesh, size_t n) {
-  return work.memory.template allocate_where_mesh_is<T>(work.executor, mesh.plain, n);
+  return work.memory.template allocate_where_mesh_is<T>(work.executor, mesh.whole, n);
 }
 
-template <class Work>
-CreaseMarks marks_room(Work &work, const GrowingMesh &mesh, size_t vertices) {
-  return {mesh_room<uint32_t>(work, mesh, vertices).data, mesh_room<uint8_t>(work, mesh, vertices).data};
-}
-
-// Where the work is only counted nobody knows how much is near a crease, or split: generously, these parts.
+// Of the triangles nobody knows beforehand how many are near a crease, nor of these and the vertices how many there
+// will be more: generously, these parts.
 struct ExpectedParts {
-  double near, split;
+  double near, new_ones;
 };
 template <class Work>
 ExpectedParts expected_parts(const Work &work) {
-  return work.parameters.is_of_balls() ? ExpectedParts{0.6, 0.3} : ExpectedParts{0.2, 0.1};
+  return work.parameters.is_of_balls() ? ExpectedParts{0.6, 0.35} : ExpectedParts{0.2, 0.1};
 }
-inline size_t expected_part(size_t n, double part) { return static_cast<size_t>(part * static_cast<double>(n)) + 64; }
-
-// Edges of the listed triangles that may have to be split, in the order of their vertices. Waits.
-template <class Work, class Sheets>
-size_t list_edges(Work &work, const Sheets &sheets, const SplitRound &round, const GrowingMesh &mesh,
-                  Span<const uint32_t> list, uint8_t *chosen, EdgeTable *table) {
-  auto &executor = work.executor;
-  const size_t vertices = mesh.all.vertices;
-  const Span<uint32_t> count = mesh_room<uint32_t>(work, mesh, vertices);
-  const Span<uint32_t> starts = mesh_room<uint32_t>(work, mesh, vertices + 1);
-  executor.fill(count, 0);
-  executor.for_each(list.size, ChooseEdges<Sheets>{mesh.parts, sheets, round, list.data, chosen, count.data});
-  executor.exclusive_scan(vertices, LoadCount<uint32_t>{count.data}, starts);
-  size_t edges = executor.fetch(starts.data + vertices);
-  if (std::decay_t<decltype(executor)>::kCounts) edges = expected_part(vertices, expected_parts(work).split);
-  table->starts = starts.data;
-  table->firsts = mesh_room<uint32_t>(work, mesh, edges).data;
-  table->seconds = mesh_room<uint32_t>(work, mesh, edges).data;
-  const Span<uint32_t> unordered = mesh_room<uint32_t>(work, mesh, edges);
-  executor.fill(count, 0);
-  executor.for_each(list.size, ListEdges{mesh.parts, list.data, chosen, starts.data, count.data, unordered.data});
-  executor.for_each(vertices, OrderEdges{unordered.data, *table});
-  return edges;
-}
-
-// Moves vertices onto creases that are near.
 template <class Work>
-Snaps snap_vertices(Work &work, const GrowingMesh &mesh, const EdgeTable &table, Span<const CreasePoint> points) {
-  auto &executor = work.executor;
-  const size_t vertices = mesh.all.vertices;
-  const Span<uint32_t> nearest = mesh_room<uint32_t>(work, mesh, vertices),
-                       edge = mesh_room<uint32_t>(work, mesh, vertices);
-  const Span<uint8_t> refused = mesh_room<uint8_t>(work, mesh, vertices);
-  executor.fill(nearest, 0xff);
-  executor.fill(edge, 0xff);
-  executor.fill(refused, 0);
-  const Snaps snaps{nearest.data, edge.data, refused.data};
-  const EdgeOfSnap snap{table, points.data, snaps};
-  executor.for_each(points.size, FindNearestSnap{snap});
-  executor.for_each(points.size, ChooseSnap{snap});
-  const Span<uint32_t> touched = mesh_room<uint32_t>(work, mesh, mesh.all.triangles);
-  const size_t count = executor.compact(mesh.all.triangles, TouchedBySnap{mesh.parts, edge.data}, touched);
-  executor.for_each(count, RefuseSnaps{mesh.parts, work.lattice, touched.data, points.data, snaps, mesh.is_near});
-  executor.for_each(points.size, SnapVertices{mesh.parts, work.lattice, table, points.data, snaps});
-  return snaps;
+size_t expected_near(const Work &work, size_t triangles) {
+  return std::min(triangles, static_cast<size_t>(expected_parts(work).near * static_cast<double>(triangles)) + 64);
 }
 
-// Passes in which splits are refused that would fold triangles: what is left of one may fold another.
-constexpr int kRefusals = 2;
+// The mesh, of which there is room for so many vertices and triangles, with marks for as many.
+template <class Sheets, class Work>
+GrowingMesh begin_to_grow(Work &work, const MeshMemoryView &whole, size_t vertex_room, size_t triangle_room) {
+  GrowingMesh mesh{whole, {whole.view, nullptr, nullptr, nullptr}, vertex_room, triangle_room};
+  if (Sheets::kHasCorners) mesh.view.second_owners = mesh_room<uint32_t>(work, mesh, vertex_room).data;
+  mesh.view.crease_marks = mesh_room<uint8_t>(work, mesh, vertex_room).data;
+  mesh.view.near_marks = mesh_room<uint8_t>(work, mesh, triangle_room).data;
+  return mesh;
+}
 
-// One round over the triangles near creases: the mesh grows by a part.
+// Room for so many more. Where there is not enough behind the mesh it goes elsewhere.
+template <class Sheets, class Work>
+void make_room(Work &work, size_t vertices, size_t triangles, GrowingMesh *mesh) {
+  auto &executor = work.executor;
+  const size_t v = mesh->whole.vertices, t = mesh->whole.triangles;
+  check_mesh_size({v + vertices, t + triangles});
+  if (v + vertices <= mesh->vertex_room && t + triangles <= mesh->triangle_room) return;
+  const size_t vertex_room = v + vertices + v / 8, triangle_room = t + triangles + t / 8;
+  MeshMemoryView larger = work.memory.allocate_mesh(executor, vertex_room, triangle_room, mesh->whole.shape,
+                                                    MeshPurpose::kWork, work.plan.mesh_in_pieces);
+  add_normals(work, &larger);
+  larger.vertices = v;
+  larger.triangles = t;
+  larger.unplaced = mesh->whole.unplaced;
+  const CreasedMesh from = mesh->view;
+  *mesh = begin_to_grow<Sheets>(work, larger, vertex_room, triangle_room);
+  executor.for_each(v, GrowVertex{from, mesh->view});
+  executor.for_each(t, GrowTriangle{from, mesh->view});
+}
+
+// Calls f(near by, i), which may gather what is near a place if the sheets need it.
+struct NothingNearBy {};
+template <class F>
+struct WithNothingNearBy {
+  F f;
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    NothingNearBy nothing;
+    f(nothing, i);
+  }
+};
+template <class Sheets, class Executor, class F>
+void for_each_edge(Executor &executor, size_t n, const F &f) {
+  if constexpr (Sheets::kGathers)
+    Backend<Executor>::for_each_gathering(executor, n, f);
+  else
+    executor.for_each(n, WithNothingNearBy<F>{f}, kCreaseSteps);
+}
+
+// What a round leaves to the host.
+struct RoundCounts {
+  uint32_t triangles, vertices;  // new ones
+  uint64_t old_near;             // triangles of before that the next round looks at
+};
+
+// Passes in which splits are refused that would fold triangles.
+constexpr uint8_t kRefusals = 2;
+
+// One round over triangles near creases: the mesh grows by a part. The list becomes that of the next round. Waits once.
 template <class Work, class Sheets>
-void split_round(Work &work, const Sheets &sheets, const SplitRound &round, int next_part, GrowingMesh *mesh) {
+void split_round(Work &work, const Sheets &sheets, const SplitRound &round, GrowingMesh *mesh, NearTriangles *list,
+                 size_t *listed, bool is_last) {
   auto &executor = work.executor;
   constexpr bool kCounts = std::decay_t<decltype(executor)>::kCounts;
   const Lattice &lattice = work.lattice;
-  const PartSizes all = mesh->all;
+  const size_t n = *listed, most_edges = n + n / 2;  // each is an edge of two triangles of the list
+  const auto room = [&](auto kind, size_t m) { return mesh_room<decltype(kind)>(work, *mesh, m); };
 
-  const Span<uint32_t> near = mesh_room<uint32_t>(work, *mesh, all.triangles);
-  // Of the first part the round before knows what comes into question.
-  const Span<uint8_t> is_near = mesh_room<uint8_t>(work, *mesh, all.triangles);
-  if (mesh->is_near) executor.for_each(mesh->known, CopyMarks{mesh->is_near, is_near.data});
-  executor.for_each(all.triangles, FindNearCrease<Sheets>{mesh->parts, sheets, round.along, mesh->known, is_near.data});
-  mesh->is_near = is_near.data;
-  mesh->known = all.triangles;
-  size_t listed = executor.compact(all.triangles, IsMarked{is_near.data}, near);
-  if (kCounts) listed = std::min(all.triangles, expected_part(all.triangles, expected_parts(work).near));
-  const Span<const uint32_t> list{near.data, listed};
-  const Span<uint8_t> chosen = mesh_room<uint8_t>(work, *mesh, listed);
-  EdgeTable table{};
-  const size_t edges = list_edges(work, sheets, round, *mesh, list, chosen.data, &table);
-  const Span<CreasePoint> points = mesh_room<CreasePoint>(work, *mesh, edges);
-  const SolveEdges<Sheets> solve{mesh->parts, sheets, table, round.along, points.data};
-  executor.for_each(edges, solve, kCreaseSteps);
+  const Span<uint8_t> chosen = room(uint8_t{}, n);
+  const Span<uint32_t> starts = room(uint32_t{}, n + 1), heads = room(uint32_t{}, mesh->whole.vertices);
+  executor.fill(heads, 0xff);
+  executor.for_each(n, ChooseEdges<Sheets>{mesh->view, sheets, round, *list, chosen.data});
+  executor.exclusive_scan(n, CountChosen{chosen.data}, starts);
+  const CreaseEdges edges{starts.data,
+                          static_cast<uint32_t>(n),
+                          room(uint32_t{}, most_edges).data,
+                          room(uint32_t{}, most_edges).data,
+                          heads.data,
+                          room(uint32_t{}, most_edges).data,
+                          room(CreasePoint{}, most_edges).data,
+                          room(uint8_t{}, most_edges).data,
+                          room(uint8_t{}, most_edges).data};
+  executor.for_each(n, ListEdges{mesh->view, *list, chosen.data, edges});
+  Snaps snaps{nullptr, edges};
   if (round.snap) {
-    const Snaps snaps = snap_vertices(work, *mesh, table, Span<const CreasePoint>{points.data, edges});
-    executor.for_each(edges, SolveMovedEdges<Sheets>{solve, snaps}, kCreaseSteps);
+    const Span<uint64_t> nearest = room(uint64_t{}, mesh->whole.vertices);
+    executor.fill(nearest, 0xff);
+    snaps.nearest = nearest.data;
+  }
+  const SolveEdges<Sheets> solve{mesh->view, sheets, round, edges, snaps};
+  for_each_edge<Sheets>(executor, most_edges, solve);
+  if (round.snap) {
+    executor.for_each(mesh->whole.triangles, RefuseSnaps{mesh->view, lattice, snaps});
+    executor.for_each(most_edges, SnapVertices{mesh->view, lattice, snaps});
+    for_each_edge<Sheets>(executor, most_edges, SolveMovedEdges<Sheets>{solve});
   }
 
-  const Span<CreasePoint> corners = mesh_room<CreasePoint>(work, *mesh, listed);
-  FindSplits find{mesh->parts, table, list.data, chosen.data, points.data, nullptr};
-  SolveCorners<Sheets> solve_corners{find, sheets, lattice, corners.data, {}};
-  find.corners = corners.data;
-  executor.for_each(listed, solve_corners, kCreaseSteps);
-  Refusals refusals{};
-  for (int pass = 0; pass < kRefusals; ++pass) {
-    const Span<uint8_t> refused = mesh_room<uint8_t>(work, *mesh, edges);
-    refusals.now = refused.data;
-    executor.fill(refused, 0);
-    executor.for_each(listed, RefuseSplits<Sheets>{find, sheets, lattice, refusals});
-    executor.for_each(edges, DropRefused{refused.data, points.data});
-    refusals.before = refused.data;
-    solve_corners.refusals = refusals;
-    executor.for_each(listed, solve_corners, kCreaseSteps);
+  const Span<uint32_t> edges_of = room(uint32_t{}, 3 * n);
+  executor.for_each(n, FindEdges{mesh->view, *list, chosen.data, edges, edges_of.data});
+  FindSplits find{mesh->view, *list, edges, chosen.data, edges_of.data, nullptr, 0};
+  CreasePoint *const corners = Sheets::kHasCorners ? room(CreasePoint{}, n).data : nullptr;
+  find.corners = corners;
+  const auto solve_corners = [&](uint8_t after) {
+    if constexpr (Sheets::kHasCorners)
+      executor.for_each(n, SolveCorners<Sheets>{find, sheets, lattice, corners, after}, kCreaseSteps);
+  };
+  solve_corners(0);
+  for (uint8_t pass = 1; pass <= kRefusals; ++pass) {
+    FindSplits find_now = find;
+    find_now.pass = pass;
+    executor.for_each(n, RefuseSplits<Sheets>{find_now, sheets, lattice});
+    solve_corners(pass);
   }
 
-  const Span<uint32_t> edge_rank = mesh_room<uint32_t>(work, *mesh, edges + 1),
-                       corner_rank = mesh_room<uint32_t>(work, *mesh, listed + 1),
-                       before = mesh_room<uint32_t>(work, *mesh, listed + 1);
-  executor.exclusive_scan(edges, CountSplit{points.data}, edge_rank);
-  executor.exclusive_scan(listed, CountCorner{corners.data}, corner_rank);
-  executor.exclusive_scan(listed, CountNewTriangles{find}, before);
-  uint32_t n[3] = {0, 0, 0};  // new vertices on edges, and within triangles; new triangles
-  const uint32_t *const sources[3] = {edge_rank.data + edges, corner_rank.data + listed, before.data + listed};
-  if constexpr (!kCounts) executor.fetch_each(sources, n, 3);
-  PartSizes added{size_t(n[0]) + n[1], n[2]};
-  if (kCounts)
-    added = {expected_part(all.vertices, expected_parts(work).split),
-             expected_part(all.triangles, expected_parts(work).split)};
-  if (!kCounts) check_mesh_size({all.vertices + added.vertices, all.triangles + added.triangles});
-
-  const MeshArrays arrays(added.vertices, added.triangles, mesh->shape);
-  MeshView &part = mesh->parts.part[next_part];
-  part = arrays.view(mesh_room<char>(work, *mesh, arrays.bytes()).data);
-  add_normals(work.side_normals, &part, added.vertices,
-              [&](size_t m) { return mesh_room<glm::vec3>(work, *mesh, m).data; });
-  part.first_vertex = static_cast<uint32_t>(all.vertices);
-  part.first_triangle = static_cast<uint32_t>(all.triangles);
-  mesh->parts.marks[next_part] = marks_room(work, *mesh, added.vertices);
-  find.mesh = mesh->parts;
-  const uint32_t first_corner = part.first_vertex + n[0];
-  executor.for_each(edges, AddVertexOnEdge{{mesh->parts, lattice, points.data, edge_rank.data, part.first_vertex}});
-  executor.for_each(listed, AddCorner{{mesh->parts, lattice, corners.data, corner_rank.data, first_corner}});
-  executor.for_each(listed, AddTriangles{find, lattice, edge_rank.data, corner_rank.data, part.first_vertex,
-                                         first_corner, before.data, part.first_triangle});
-  mesh->all = {all.vertices + added.vertices, all.triangles + added.triangles};
+  // Behind the sums the number of old triangles for the next round, so that both come to the host together.
+  const Span<uint64_t> counts_of = room(uint64_t{}, n), before = room(uint64_t{}, n + 2);
+  const Span<uint32_t> old_near = room(uint32_t{}, is_last ? 0 : mesh->whole.triangles);
+  executor.for_each(n, CountNew{find, counts_of.data});
+  executor.exclusive_scan(n, LoadCount<uint64_t>{counts_of.data}, Span<uint64_t>{before.data, n + 1});
+  if (!is_last) executor.compact(mesh->whole.triangles, IsMarked{mesh->view.near_marks}, old_near, before.data + n + 1);
+  RoundCounts counts = executor.fetch(reinterpret_cast<const RoundCounts *>(before.data + n));
+  size_t vertices = counts.vertices, triangles = counts.triangles;
+  if (kCounts) {
+    vertices = mesh->vertex_room - mesh->whole.vertices;
+    triangles = mesh->triangle_room - mesh->whole.triangles;
+  }
+  make_room<Sheets>(work, vertices, triangles, mesh);
+  find.mesh = mesh->view;
+  const uint32_t first_vertex = static_cast<uint32_t>(mesh->whole.vertices),
+                 first_triangle = static_cast<uint32_t>(mesh->whole.triangles);
+  uint32_t *const vertex_of = edges.nexts;  // which nobody follows any more
+  executor.for_each(n, AddVertices{find, lattice, before.data, first_vertex, vertex_of});
+  executor.for_each(n, AddTriangles{find, lattice, before.data, first_vertex, first_triangle, vertex_of});
+  if (!is_last) executor.fill(Span<uint8_t>{mesh->view.near_marks + first_triangle, triangles}, 1);
+  mesh->whole.vertices += vertices;
+  mesh->whole.triangles += triangles;
+  *list = {old_near.data, static_cast<uint32_t>(counts.old_near), first_triangle};
+  *listed = kCounts ? expected_near(work, mesh->whole.triangles) : static_cast<size_t>(counts.old_near) + triangles;
 }
 
+// The mesh, with room behind it, with sharp creases. Waits.
 template <class Work, class Sheets>
-void split_rounds(Work &work, const Sheets &sheets, GrowingMesh *mesh) {
-  split_round(work, sheets, SplitRound{true, false}, 1, mesh);
-  split_round(work, sheets, SplitRound{false, true}, 2, mesh);
+MeshMemoryView split_at(Work &work, const Sheets &sheets, const MeshMemoryView &plain, size_t vertex_room,
+                        size_t triangle_room) {
+  auto &executor = work.executor;
+  GrowingMesh mesh = begin_to_grow<Sheets>(work, plain, vertex_room, triangle_room);
+  const size_t triangles = plain.triangles;
+  executor.for_each(plain.vertices, MarkVertices{mesh.view});
+  executor.for_each(triangles, MarkNearTriangles<Sheets>{mesh.view, sheets, false});
+  const Span<uint32_t> near = mesh_room<uint32_t>(work, mesh, triangles);
+  size_t listed = executor.compact(triangles, IsMarked{mesh.view.near_marks}, near);
+  if (std::decay_t<decltype(executor)>::kCounts) listed = expected_near(work, triangles);
+  NearTriangles list{near.data, static_cast<uint32_t>(listed), 0};
+  split_round(work, sheets, SplitRound{true, false}, &mesh, &list, &listed, false);
+  split_round(work, sheets, SplitRound{false, true}, &mesh, &list, &listed, true);
+  return mesh.whole;
 }
 
 // How far from the origin of the caller's coordinates the atoms are.
@@ -198,32 +215,15 @@ inline MeshShape shape_before_splits(const MeshShape &wanted) {
   return shape;
 }
 
-// The mesh `plain`, of that shape, with sharp creases. Waits.
 template <class Work>
-MeshMemoryView split_creases(Work &work, const MeshMemoryView &plain) {
-  auto &executor = work.executor;
-  GrowingMesh mesh{plain, plain.shape};
-  mesh.all = {plain.vertices, plain.triangles};
-  for (int k = 1; k < MeshParts::kMost; ++k)
-    mesh.parts.part[k].first_vertex = mesh.parts.part[k].first_triangle = kNoNumber;
-  mesh.parts.part[0] = plain.view;
-  mesh.parts.marks[0] = marks_room(work, mesh, plain.vertices);
-  executor.for_each(plain.vertices, MarkVertices{plain.view, mesh.parts.marks[0]});
-  if (!work.parameters.is_of_balls()) {
-    split_rounds(work, ProbeSheets{work.features, work.lattice}, &mesh);
-  } else {
-    const Span<uint32_t> places = executor.template allocate<uint32_t>(work.atoms.count);
-    executor.for_each(work.atoms.count, PlaceAtoms{work.atoms.order, places.data});
-    const float tolerance = kSheetTolerance + 1.2e-7f * farthest_coordinate(work);
-    split_rounds(work, SphereSheets{work.features, places.data, work.lattice, tolerance}, &mesh);
-  }
-  MeshMemoryView out = work.memory.allocate_mesh(executor, mesh.all.vertices, mesh.all.triangles, work.made_shape,
-                                                 work.purpose, work.plan.mesh_in_pieces);
-  add_normals(work, &out);
-  executor.for_each(mesh.all.vertices, JoinVertex{mesh.parts, out.view});
-  executor.for_each(mesh.all.triangles, JoinTriangle{mesh.parts, out.view});
-  out.unplaced = plain.unplaced;
-  return out;
+MeshMemoryView split_creases(Work &work, const MeshMemoryView &plain, size_t vertex_room, size_t triangle_room) {
+  if (!work.parameters.is_of_balls())
+    return split_at(work, ProbeSheets{work.features, work.lattice}, plain, vertex_room, triangle_room);
+  const Span<uint32_t> places = work.executor.template allocate<uint32_t>(work.atoms.count);
+  work.executor.for_each(work.atoms.count, PlaceAtoms{work.atoms.order, places.data});
+  const float tolerance = kSheetTolerance + 1.2e-7f * farthest_coordinate(work);
+  return split_at(work, SphereSheets{work.features, places.data, work.lattice, tolerance}, plain, vertex_room,
+                  triangle_room);
 }
 
 template <class Work>
@@ -237,10 +237,19 @@ MeshMemoryView build_creased_surface(Work &work) {
   Work plain = work;
   plain.shape = plain.made_shape = shape_before_splits(work.shape);
   plain.purpose = MeshPurpose::kWork;
+  plain.spare_room = expected_parts(work).new_ones;
   const MeshMemoryView mesh = build_exact_surface(plain);
   if (mesh.vertices == 0) return mesh;
   work.timer.begin("creases");
-  return split_creases(work, mesh);
+  const MeshMemoryView sharp =
+      split_creases(work, mesh, with_spare_room(plain, mesh.vertices), with_spare_room(plain, mesh.triangles));
+  MeshMemoryView out = work.memory.allocate_mesh(work.executor, sharp.vertices, sharp.triangles, work.made_shape,
+                                                 work.purpose, work.plan.mesh_in_pieces);
+  add_normals(work, &out);
+  work.executor.for_each(sharp.vertices, CopyVertex{sharp.view, out.view});
+  work.executor.for_each(sharp.triangles, CopyTriangle{sharp.view, out.view});
+  out.unplaced = mesh.unplaced;
+  return out;
 }
 
 }  // namespace quickses

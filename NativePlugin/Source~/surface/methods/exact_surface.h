@@ -176,9 +176,12 @@ MeshMemoryView build_exact_surface(Work &work) {
     if (work.parameters.has_thin_walls()) mend_thin_walls(work, set, share ? &shared : nullptr, signs);
   });
 
-  MeshMemoryView mesh = work.memory.allocate_mesh(executor, counts.vertices, counts.triangles, work.made_shape,
+  MeshMemoryView mesh = work.memory.allocate_mesh(executor, with_spare_room(work, counts.vertices),
+                                                  with_spare_room(work, counts.triangles), work.made_shape,
                                                   work.purpose, work.plan.mesh_in_pieces);
   add_normals(work, &mesh);
+  mesh.vertices = counts.vertices;
+  mesh.triangles = counts.triangles;
   const auto end_of_mesh = executor.arena().mark();
   VertexStarts starts{work.settings.relaxation_steps > 0, nullptr, work.table.ring, &layout.totals->unplaced};
   // Without pieces only the vertices: triangles come for all bricks at once.

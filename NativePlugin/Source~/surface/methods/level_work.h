@@ -42,14 +42,20 @@ struct LevelWork {
   MeshShape shape{};       // of what is handed out
   MeshShape made_shape{};  // of the whole mesh, before anything is left out of it
   MeshPurpose purpose = MeshPurpose::kDelivered;
-  bool side_normals = false;                         // whether a later stage asks for MeshView::second_normals
-  bool is_cut = false;                               // whether parts of the whole mesh are left out
-  bool hard_edges = false;                           // whether a vertex on a crest is delivered once per side
+  double spare_room = 0;      // of the mesh, behind its vertices and triangles: so many of each that is made at first
+  bool side_normals = false;  // whether a later stage asks for MeshView::second_normals
+  bool is_cut = false;        // whether parts of the whole mesh are left out
+  bool hard_edges = false;    // whether a vertex on a crest is delivered once per side
   GrowingBuffer<HostMemory> *area_memory = nullptr;  // of the areas of atoms
   bool makes_mesh = true;
   AtomMeasures atom_measures{};     // where the surface is that of the balls, and measured
   Span<const double> atom_areas{};  // in host memory; of all levels
 };
+
+template <class Work>
+size_t with_spare_room(const Work &work, size_t n) {
+  return n + static_cast<size_t>(work.spare_room * static_cast<double>(n));
+}
 
 // While a mesh is made it has the normals that later stages read, in memory that is given up with the level's: floats
 // where the layout has packed ones, and those of the second sheet. allocate(n) returns room for n vectors.

@@ -13,116 +13,127 @@ constexpr uint32_t kNoNumber = ~uint32_t(0);
 // Steps of a thread for an edge: it looks at so many atoms and arcs at most, a few times.
 constexpr uint64_t kCreaseSteps = uint64_t(1) << 15;
 
-// Edges of the triangles of a list, each met once: a closed mesh has it from its smaller to its larger vertex in one of
-// its triangles. They are found again by the smaller vertex.
-struct EdgeTable {
-  uint32_t *starts;   // [vertex], and the total: edges of smaller vertices
-  uint32_t *seconds;  // [edge]: the larger vertex; in order for each smaller one
-  uint32_t *firsts;   // [edge]
-
-  QSES_FN uint32_t find(uint32_t u, uint32_t v) const {
-    const uint32_t low = u < v ? u : v, high = u < v ? v : u;
-    for (uint32_t k = starts[low]; k < starts[low + 1]; ++k)
-      if (seconds[k] == high) return k;
-    return kNoNumber;
-  }
-};
-
 // What a round may do.
 struct SplitRound {
   bool snap;   // vertices may be moved to a crease that is near
   bool along;  // edges along creases are split, too, and triangles over corners
 };
 
-// Triangles that have something to do with creases.
-template <class Sheets>
-struct FindNearCrease {
-  MeshParts mesh;
-  Sheets sheets;
-  bool along;
-  size_t known;   // triangles that another round looked at: no others of these come into question
-  uint8_t *near;  // [triangle]
-  QSES_HOST_DEVICE void operator()(size_t i) const {
-    if (i < known && !near[i]) return;
-    near[i] = sheets.is_near_crease(mesh, mesh.triangle(static_cast<uint32_t>(i)), along) ? 1 : 0;
+// The triangles that a round looks at: some of those that were there before the last one, and all that this one made.
+struct NearTriangles {
+  const uint32_t *old_ones;
+  uint32_t old_count, first_new;
+  QSES_FN uint32_t operator()(size_t i) const {
+    return i < old_count ? old_ones[i] : first_new + static_cast<uint32_t>(i - old_count);
   }
 };
-struct CopyMarks {
-  const uint8_t *from;
-  uint8_t *to;
-  QSES_HOST_DEVICE void operator()(size_t i) const { to[i] = from[i]; }
+
+// Marks the triangles that have something to do with creases.
+template <class Sheets>
+struct MarkNearTriangles {
+  CreasedMesh mesh;
+  Sheets sheets;
+  bool along;
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    const uint32_t t = static_cast<uint32_t>(i);
+    mesh.near_marks[t] = sheets.is_near_crease(mesh, mesh.triangle(t), along) ? 1 : 0;
+  }
 };
 struct IsMarked {
   const uint8_t *marks;
   QSES_HOST_DEVICE bool operator()(size_t i) const { return marks[i] != 0; }
 };
 
-// Edges of a triangle that may have to be split, as bits: k is that from corner k to the next.
+// An edge belongs to the triangle in which it goes from its smaller to its larger vertex: of a closed mesh that is one.
+QSES_FN bool owns_edge(const uint32_t *t, int k) { return t[k] < t[k == 2 ? 0 : k + 1]; }
+
+// The edges of the listed triangles that may have to be split, in the order of the triangles that they belong to.
+struct CreaseEdges {
+  const uint32_t *starts;  // [list], and the total: edges of the triangles before
+  uint32_t listed;
+  uint32_t *firsts, *seconds;  // [edge]: the vertices, the smaller one first
+  uint32_t *heads, *nexts;     // [vertex], [edge]: the edges of a first vertex, in any order; kNoNumber: no more
+  CreasePoint *points;         // [edge]
+  uint8_t *snap_refused;       // [edge]: 1 if a triangle would suffer
+  uint8_t *refused;            // [edge]: the pass in which it was found that splits would fold a triangle; else 0
+
+  QSES_FN uint32_t count() const { return starts[listed]; }  // there is room for half as many again as triangles
+  QSES_FN uint32_t find(uint32_t u, uint32_t v) const {
+    const uint32_t low = u < v ? u : v, high = u < v ? v : u;
+    uint32_t e = heads[low];
+    while (e != kNoNumber && seconds[e] != high) e = nexts[e];
+    return e;
+  }
+};
+
+// What is looked for in a triangle of the list: bit k for the edge from corner k to the next, if it belongs to it, and
+// whether it is near a crease still.
+constexpr uint8_t kStillNear = 8;
 template <class Sheets>
 struct ChooseEdges {
-  MeshParts mesh;
+  CreasedMesh mesh;
   Sheets sheets;
   SplitRound round;
-  const uint32_t *list;
+  NearTriangles list;
   uint8_t *chosen;  // [list]
-  uint32_t *count;  // [vertex]
   QSES_HOST_DEVICE void operator()(size_t i) const {
-    const uint32_t *const t = mesh.triangle(list[i]);
+    const uint32_t *const t = mesh.triangle(list(i));
     uint8_t bits = 0;
-    for (int k = 0; k < 3; ++k) {
-      const uint32_t a = t[k], b = t[k == 2 ? 0 : k + 1], u = a < b ? a : b, v = a < b ? b : a;
-      const bool crest = round.along && mesh.on_crease(u) && mesh.on_crease(v);
-      if (!crest && !sheets.may_cross(mesh, u, v)) continue;
-      bits |= uint8_t(1u << k);
-      if (a < b) atomic_add(count + a, uint32_t(1));
+    if (sheets.is_near_crease(mesh, t, round.along)) {
+      bits = kStillNear;
+      for (int k = 0; k < 3; ++k) {
+        if (!owns_edge(t, k)) continue;
+        const uint32_t u = t[k], v = t[k == 2 ? 0 : k + 1];
+        const bool crest = round.along && mesh.on_crease(u) && mesh.on_crease(v);
+        if (crest || sheets.may_cross(mesh, u, v)) bits |= uint8_t(1u << k);
+      }
     }
     chosen[i] = bits;
   }
 };
+struct CountChosen {
+  const uint8_t *chosen;
+  QSES_HOST_DEVICE uint64_t operator()(size_t i) const { return static_cast<uint64_t>(popcount64(chosen[i] & 7)); }
+};
 
 struct ListEdges {
-  MeshParts mesh;
-  const uint32_t *list;
+  CreasedMesh mesh;
+  NearTriangles list;
   const uint8_t *chosen;
-  const uint32_t *starts;
-  uint32_t *taken;    // [vertex]
-  uint32_t *seconds;  // in any order for each first
+  CreaseEdges edges;
   QSES_HOST_DEVICE void operator()(size_t i) const {
-    const uint32_t *const t = mesh.triangle(list[i]);
+    if (!(chosen[i] & 7)) return;
+    const uint32_t *const t = mesh.triangle(list(i));
+    uint32_t e = edges.starts[i];
     for (int k = 0; k < 3; ++k) {
-      const uint32_t a = t[k], b = t[k == 2 ? 0 : k + 1];
-      if (!(chosen[i] >> k & 1) || a > b) continue;
-      seconds[starts[a] + atomic_add(taken + a, uint32_t(1))] = b;
+      if (!(chosen[i] >> k & 1)) continue;
+      edges.firsts[e] = t[k];
+      edges.seconds[e] = t[k == 2 ? 0 : k + 1];
+      edges.nexts[e] = atomic_exchange(edges.heads + t[k], e);
+      edges.snap_refused[e] = edges.refused[e] = 0;
+      ++e;
     }
   }
 };
 
-// Orders the edges of each first vertex by the second.
-struct OrderEdges {
-  const uint32_t *unordered;
-  EdgeTable table;
-  QSES_HOST_DEVICE void operator()(size_t vertex) const {
-    const uint32_t begin = table.starts[vertex], end = table.starts[vertex + 1];
-    for (uint32_t k = begin; k < end; ++k) {
-      uint32_t place = begin;
-      for (uint32_t j = begin; j < end; ++j)
-        if (unordered[j] < unordered[k]) ++place;
-      table.seconds[place] = unordered[k];
-      table.firsts[place] = static_cast<uint32_t>(vertex);
+// The listed edges of each triangle of the list.
+struct FindEdges {
+  CreasedMesh mesh;
+  NearTriangles list;
+  const uint8_t *chosen;
+  CreaseEdges edges;
+  uint32_t *edges_of;  // [list]: three of each, or kNoNumber
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    const uint32_t *const t = mesh.triangle(list(i));
+    uint32_t own = edges.starts[i];
+    for (int k = 0; k < 3; ++k) {
+      uint32_t e = kNoNumber;
+      if (!owns_edge(t, k))
+        e = edges.find(t[k], t[k == 2 ? 0 : k + 1]);
+      else if (chosen[i] >> k & 1)
+        e = own++;
+      edges_of[3 * i + static_cast<size_t>(k)] = e;
     }
-  }
-};
-
-template <class Sheets>
-struct SolveEdges {
-  MeshParts mesh;
-  Sheets sheets;
-  EdgeTable table;
-  bool along;
-  CreasePoint *points;  // [edge]
-  QSES_HOST_DEVICE void operator()(size_t edge) const {
-    const uint32_t u = table.firsts[edge], v = table.seconds[edge];
-    points[edge] = sheets.solve(end_of_vertex(mesh, sheets.lattice, u), end_of_vertex(mesh, sheets.lattice, v), along);
   }
 };
 

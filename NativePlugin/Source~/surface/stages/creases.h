@@ -4,7 +4,7 @@
 #pragma once
 
 #include "surface/geometry/lattice.h"
-#include "surface/mesh/mesh_parts.h"
+#include "surface/mesh/creased_mesh.h"
 
 namespace quickses {
 
@@ -50,38 +50,35 @@ QSES_FN Vec3<float> centered_position(const Lattice &lattice, const float *posit
           static_cast<float>(static_cast<double>(position[2]) - lattice.center_z)};
 }
 
-QSES_FN CreaseEnd end_of_vertex(const MeshParts &mesh, const Lattice &lattice, uint32_t v) {
-  const int k = mesh.part_with(v);
-  const MeshView &view = mesh.part[k];
-  return {centered_position(lattice, view.position(v)), load_vec3(view.normal(v)), load_vec3(view.second_normal(v)),
-          view.owner(v), mesh.marks[k].second_owners[view.place(v)]};
+QSES_FN CreaseEnd end_of_vertex(const CreasedMesh &mesh, const Lattice &lattice, uint32_t v) {
+  const bool has_second = mesh.second_owners && mesh.on_crease(v);
+  return {centered_position(lattice, mesh.position(v)), load_vec3(mesh.normal(v)), load_vec3(mesh.second_normal(v)),
+          mesh.owner(v), has_second ? mesh.second_owners[v] : mesh.owner(v)};
 }
 QSES_FN CreaseEnd end_of_point(const CreasePoint &p) {
   return {p.position, p.normal, p.second_normal, p.owner, p.second_owner};
 }
 
 // Writes a vertex onto a crease. Positions of a mesh are the caller's.
-QSES_FN void put_on_crease(const MeshParts &mesh, const Lattice &lattice, uint32_t vertex, const CreasePoint &p) {
-  const int k = mesh.part_with(vertex);
-  const MeshView &view = mesh.part[k];
-  store_vec3(view.position(vertex), Vec3<float>(lattice.to_caller(p.position)));
-  store_vec3(view.normal(vertex), p.normal);
-  store_vec3(view.second_normal(vertex), p.second_normal);
-  view.owner(vertex) = p.owner;
-  if (view.patches) view.patch(vertex) = static_cast<uint8_t>(p.patch);
-  mesh.marks[k].second_owners[view.place(vertex)] = p.second_owner;
-  mesh.marks[k].on_crease[view.place(vertex)] = 1;
+QSES_FN void put_on_crease(const CreasedMesh &mesh, const Lattice &lattice, uint32_t vertex, const CreasePoint &p) {
+  store_vec3(mesh.position(vertex), Vec3<float>(lattice.to_caller(p.position)));
+  store_vec3(mesh.normal(vertex), p.normal);
+  store_vec3(mesh.second_normal(vertex), p.second_normal);
+  mesh.owner(vertex) = p.owner;
+  if (mesh.patches) mesh.patch(vertex) = static_cast<uint8_t>(p.patch);
+  if (mesh.second_owners) mesh.second_owners[vertex] = p.second_owner;
+  mesh.crease_marks[vertex] = 1;
 }
 
 // What vertices begin with.
 struct MarkVertices {
-  MeshView mesh;
-  CreaseMarks marks;
+  CreasedMesh mesh;
   QSES_HOST_DEVICE void operator()(size_t i) const {
-    const uint32_t v = mesh.first_vertex + static_cast<uint32_t>(i);
+    const uint32_t v = static_cast<uint32_t>(i);
     const float *const n = mesh.normal(v), *const second = mesh.second_normal(v);
-    marks.second_owners[i] = mesh.owner(v);
-    marks.on_crease[i] = n[0] != second[0] || n[1] != second[1] || n[2] != second[2];
+    const bool on = n[0] != second[0] || n[1] != second[1] || n[2] != second[2];
+    mesh.crease_marks[v] = on ? 1 : 0;
+    if (on && mesh.second_owners) mesh.second_owners[v] = mesh.owner(v);
   }
 };
 

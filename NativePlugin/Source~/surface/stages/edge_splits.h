@@ -13,10 +13,6 @@ QSES_FN bool is_split(const CreasePoint &p) {
   if (p.kind == CreasePoint::kNone) return false;
   return minimum(p.to_first, p.to_second) >= kLeastPart * (p.to_first + p.to_second);
 }
-struct CountSplit {
-  const CreasePoint *points;
-  QSES_HOST_DEVICE uint64_t operator()(size_t edge) const { return is_split(points[edge]) ? 1 : 0; }
-};
 
 // The triangles that one becomes: corners 0, 1, 2 are its own, 3 + k is on the edge from corner k, 6 is within.
 struct Pieces {
@@ -85,43 +81,49 @@ struct TriangleSplits {
   QSES_FN int new_triangles() const { return within ? 2 + edges() : edges(); }
 };
 
+// Refusals come in passes, since what is left of the splits of one triangle may fold another one. While a pass goes on,
+// what it has refused so far is there still.
 struct FindSplits {
-  MeshParts mesh;
-  EdgeTable table;
-  const uint32_t *list;
+  CreasedMesh mesh;
+  NearTriangles list;
+  CreaseEdges edges;
   const uint8_t *chosen;
-  const CreasePoint *points;   // [edge]
-  const CreasePoint *corners;  // [list], or nullptr
+  const uint32_t *edges_of;    // [list]: three of each
+  const CreasePoint *corners;  // [list]; or nullptr: there are none
+  uint8_t pass;                // that goes on; 0: all are over
+
+  QSES_FN uint32_t edge_of(size_t i, int k) const { return edges_of[3 * i + static_cast<size_t>(k)]; }
   QSES_FN TriangleSplits operator()(size_t i) const {
-    const uint32_t *const t = mesh.triangle(list[i]);
     TriangleSplits s{{kNoNumber, kNoNumber, kNoNumber}, false};
     for (int k = 0; k < 3; ++k) {
-      if (!(chosen[i] >> k & 1)) continue;
-      const uint32_t e = table.find(t[k], t[k == 2 ? 0 : k + 1]);
-      if (e != kNoNumber && is_split(points[e])) s.edge[k] = e;
+      const uint32_t e = edge_of(i, k);
+      if (e == kNoNumber || !is_split(edges.points[e])) continue;
+      const uint8_t refused = atomic_load(edges.refused + e);
+      if (refused == 0 || refused == pass) s.edge[k] = e;
     }
     s.within = corners && corners[i].kind != CreasePoint::kNone;
     return s;
   }
-};
-struct CountNewTriangles {
-  FindSplits find;
-  QSES_HOST_DEVICE uint64_t operator()(size_t i) const { return static_cast<uint64_t>(find(i).new_triangles()); }
-};
-
-// What splits depend on: refusals come in passes, and only what another one left changed is looked at again.
-struct Refusals {
-  const uint8_t *before;  // [edge]: 1 where the pass before refused a split; nullptr: this is the first
-  uint8_t *now;
-
-  QSES_FN bool concern(const EdgeTable &table, const uint32_t *t, uint8_t chosen) const {
-    if (!before) return true;
+  // Did that pass refuse a split of the triangle?
+  QSES_FN bool had_refusal(size_t i, uint8_t in_pass) const {
     for (int k = 0; k < 3; ++k) {
-      if (!(chosen >> k & 1)) continue;
-      const uint32_t e = table.find(t[k], t[k == 2 ? 0 : k + 1]);
-      if (e != kNoNumber && before[e]) return true;
+      const uint32_t e = edge_of(i, k);
+      if (e != kNoNumber && atomic_load(edges.refused + e) == in_pass) return true;
     }
     return false;
+  }
+};
+
+// New vertices, in the upper half, and triangles of a triangle: those of the edges that belong to it.
+struct CountNew {
+  FindSplits find;
+  uint64_t *counts;  // [list]
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    const TriangleSplits s = find(i);
+    uint64_t vertices = s.within ? 1 : 0;
+    const uint32_t *const t = find.mesh.triangle(find.list(i));
+    for (int k = 0; k < 3; ++k) vertices += s.edge[k] != kNoNumber && owns_edge(t, k) ? 1 : 0;
+    counts[i] = vertices << 32 | static_cast<uint64_t>(s.new_triangles());
   }
 };
 
@@ -132,14 +134,15 @@ struct SolveCorners {
   Sheets sheets;
   Lattice lattice;
   CreasePoint *corners;  // [list]
-  Refusals refusals;
+  uint8_t after;         // the pass whose refusals are looked at again; 0: it is the first time
   QSES_HOST_DEVICE void operator()(size_t i) const {
-    const uint32_t *const t = find.mesh.triangle(find.list[i]);
-    if (!refusals.before) corners[i].kind = CreasePoint::kNone;
-    int creases = popcount64(find.chosen[i]);
-    for (int k = 0; k < 3; ++k) creases += find.mesh.on_crease(t[k]) ? 1 : 0;
-    if (!Sheets::kHasCorners || creases < 3 || !refusals.concern(find.table, t, find.chosen[i])) return;
+    const uint32_t *const t = find.mesh.triangle(find.list(i));
+    if (after > 0 && !find.had_refusal(i, after)) return;
     corners[i].kind = CreasePoint::kNone;
+    if (!(find.chosen[i] & kStillNear)) return;
+    int creases = 0;
+    for (int k = 0; k < 3; ++k) creases += int(find.edge_of(i, k) != kNoNumber) + int(find.mesh.on_crease(t[k]));
+    if (creases < 3) return;
     const TriangleSplits s = find(i);
     uint32_t pair[6][2];
     Vec3<float> place[6], ends[3];
@@ -152,7 +155,7 @@ struct SolveCorners {
         if (c.owner == c.second_owner) continue;
       } else {
         if (s.edge[k - 3] == kNoNumber) continue;
-        c = end_of_point(find.points[s.edge[k - 3]]);
+        c = end_of_point(find.edges.points[s.edge[k - 3]]);
       }
       const uint32_t low = c.owner < c.second_owner ? c.owner : c.second_owner,
                      high = c.owner < c.second_owner ? c.second_owner : c.owner;
@@ -187,10 +190,6 @@ struct SolveCorners {
       }
   }
 };
-struct CountCorner {
-  const CreasePoint *corners;
-  QSES_HOST_DEVICE uint64_t operator()(size_t i) const { return corners[i].kind != CreasePoint::kNone ? 1 : 0; }
-};
 
 // Where splits would fold a triangle, its edges are left as they are.
 template <class Sheets>
@@ -198,21 +197,20 @@ struct RefuseSplits {
   FindSplits find;
   Sheets sheets;
   Lattice lattice;
-  Refusals refusals;
   QSES_HOST_DEVICE void operator()(size_t i) const {
-    const uint32_t *const t = find.mesh.triangle(find.list[i]);
-    if (find.chosen[i] == 0 || !refusals.concern(find.table, t, find.chosen[i])) return;
+    if (find.pass > 1 && !find.had_refusal(i, find.pass - 1)) return;
     const TriangleSplits s = find(i);
     if (s.edges() == 0) return;
+    const uint32_t *const t = find.mesh.triangle(find.list(i));
     CreaseEnd corner[7];
     for (int k = 0; k < 3; ++k) {
       corner[k] = end_of_vertex(find.mesh, lattice, t[k]);
-      if (s.edge[k] != kNoNumber) corner[3 + k] = end_of_point(find.points[s.edge[k]]);
+      if (s.edge[k] != kNoNumber) corner[3 + k] = end_of_point(find.edges.points[s.edge[k]]);
     }
     if (s.within) corner[6] = end_of_point(find.corners[i]);
     const Pieces pieces = cut_triangle(s.edge[0] != kNoNumber, s.edge[1] != kNoNumber, s.edge[2] != kNoNumber, s.within,
                                        [&](int k) { return corner[k].position; });
-    const float sign = find.mesh.part[0].reversed ? -1.f : 1.f;
+    const float sign = find.mesh.reversed ? -1.f : 1.f;
     bool bad = false;
     for (int p = 0; p < pieces.count && !bad; ++p) {
       const CreaseEnd *const c[3] = {corner + pieces.corner[p][0], corner + pieces.corner[p][1],
@@ -223,33 +221,28 @@ struct RefuseSplits {
     }
     if (!bad) return;
     for (int k = 0; k < 3; ++k)
-      if (s.edge[k] != kNoNumber) atomic_set(refusals.now + s.edge[k]);
-  }
-};
-struct DropRefused {
-  const uint8_t *refused;
-  CreasePoint *points;
-  QSES_HOST_DEVICE void operator()(size_t edge) const {
-    if (refused[edge]) points[edge].kind = CreasePoint::kNone;
+      if (s.edge[k] != kNoNumber) atomic_store(find.edges.refused + s.edge[k], find.pass);
   }
 };
 
-// New vertices: those of edges in the order of these, then those within triangles in the order of those.
-struct AddVertex {
-  MeshParts mesh;
+// New vertices, each with the triangle that its edge belongs to.
+struct AddVertices {
+  FindSplits find;
   Lattice lattice;
-  const CreasePoint *points;
-  const uint32_t *rank;
-  uint32_t first;
-};
-struct AddVertexOnEdge : AddVertex {
-  QSES_HOST_DEVICE void operator()(size_t edge) const {
-    if (is_split(points[edge])) put_on_crease(mesh, lattice, first + rank[edge], points[edge]);
-  }
-};
-struct AddCorner : AddVertex {
+  const uint64_t *before;  // [list]: new ones of the triangles before
+  uint32_t first_vertex;
+  uint32_t *vertex_of;  // [edge]
   QSES_HOST_DEVICE void operator()(size_t i) const {
-    if (points[i].kind != CreasePoint::kNone) put_on_crease(mesh, lattice, first + rank[i], points[i]);
+    if (before[i] == before[i + 1]) return;
+    const TriangleSplits s = find(i);
+    const uint32_t *const t = find.mesh.triangle(find.list(i));
+    uint32_t v = first_vertex + static_cast<uint32_t>(before[i] >> 32);
+    if (s.within) put_on_crease(find.mesh, lattice, v++, find.corners[i]);
+    for (int k = 0; k < 3; ++k) {
+      if (s.edge[k] == kNoNumber || !owns_edge(t, k)) continue;
+      vertex_of[s.edge[k]] = v;
+      put_on_crease(find.mesh, lattice, v++, find.edges.points[s.edge[k]]);
+    }
   }
 };
 
@@ -257,26 +250,25 @@ struct AddCorner : AddVertex {
 struct AddTriangles {
   FindSplits find;
   Lattice lattice;
-  const uint32_t *edge_rank, *corner_rank;
-  uint32_t first_of_edges, first_of_corners;
-  const uint32_t *triangles_before;  // [list]
-  uint32_t first_triangle;
+  const uint64_t *before;  // [list]: new ones of the triangles before
+  uint32_t first_vertex, first_triangle;
+  const uint32_t *vertex_of;  // [edge]
   QSES_HOST_DEVICE void operator()(size_t i) const {
+    if (before[i] == before[i + 1]) return;
     const TriangleSplits s = find(i);
-    if (s.new_triangles() == 0) return;
-    uint32_t *const t = find.mesh.triangle(find.list[i]);
+    uint32_t *const t = find.mesh.triangle(find.list(i));
     const uint32_t own[3] = {t[0], t[1], t[2]};
     const auto position = [&](int corner) {
-      if (corner < 3) return centered_position(lattice, find.mesh.with(own[corner]).position(own[corner]));
-      return find.points[s.edge[corner - 3]].position;
+      if (corner < 3) return centered_position(lattice, find.mesh.position(own[corner]));
+      return find.edges.points[s.edge[corner - 3]].position;
     };
     const Pieces pieces =
         cut_triangle(s.edge[0] != kNoNumber, s.edge[1] != kNoNumber, s.edge[2] != kNoNumber, s.within, position);
     const auto number = [&](int corner) {
       if (corner < 3) return own[corner];
-      return corner == 6 ? first_of_corners + corner_rank[i] : first_of_edges + edge_rank[s.edge[corner - 3]];
+      return corner == 6 ? first_vertex + static_cast<uint32_t>(before[i] >> 32) : vertex_of[s.edge[corner - 3]];
     };
-    uint32_t next = first_triangle + triangles_before[i];
+    uint32_t next = first_triangle + static_cast<uint32_t>(before[i]);
     for (int p = 0; p < pieces.count; ++p) {
       uint32_t *const out = p == 0 ? t : find.mesh.triangle(next++);
       for (int k = 0; k < 3; ++k) out[k] = number(pieces.corner[p][k]);
@@ -284,28 +276,34 @@ struct AddTriangles {
   }
 };
 
-// ---- the finished mesh -----------------------------------------------------------------------------------------
+// ---- from one memory to another
+// ---------------------------------------------------------------------------------------
 
-struct JoinVertex {
-  MeshParts from;
-  MeshView to;
+struct GrowVertex {
+  CreasedMesh from, to;
   QSES_HOST_DEVICE void operator()(size_t i) const {
-    const uint32_t v = static_cast<uint32_t>(i);
-    const MeshView &view = from.with(v);
-    store_vec3(to.position(v), load_vec3(view.position(v)));
-    store_vec3(to.normal(v), load_vec3(view.normal(v)));
-    store_vec3(to.second_normal(v), load_vec3(view.second_normal(v)));
-    to.owner(v) = view.owner(v);
-    if (to.patches) to.patch(v) = view.patch(v);
+    copy_vertex(from, static_cast<uint32_t>(i), to, static_cast<uint32_t>(i));
+    if (from.second_owners) to.second_owners[i] = from.second_owners[i];
+    to.crease_marks[i] = from.crease_marks[i];
   }
 };
-struct JoinTriangle {
-  MeshParts from;
-  MeshView to;
+struct GrowTriangle {
+  CreasedMesh from, to;
   QSES_HOST_DEVICE void operator()(size_t i) const {
-    const uint32_t *const t = from.triangle(static_cast<uint32_t>(i));
-    uint32_t *const out = to.triangle(i);
-    for (int k = 0; k < 3; ++k) out[k] = t[k];
+    for (int k = 0; k < 3; ++k) to.triangle(i)[k] = from.triangle(i)[k];
+    to.near_marks[i] = from.near_marks[i];
+  }
+};
+struct CopyVertex {
+  MeshView from, to;
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    copy_vertex(from, static_cast<uint32_t>(i), to, static_cast<uint32_t>(i));
+  }
+};
+struct CopyTriangle {
+  MeshView from, to;
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    for (int k = 0; k < 3; ++k) to.triangle(i)[k] = from.triangle(i)[k];
   }
 };
 

@@ -66,6 +66,12 @@ struct TurnNormals {
  private:
   QSES_FN void turn(uint32_t vertex, const uint32_t *fan, uint32_t count) const {
     constexpr float kEnough = 0.02f, kClear = 1e-3f;
+    Vec3<float> units[MarkedFans::kRoom];  // of no length: of a triangle without area
+    for (uint32_t i = 0; i < count; ++i) {
+      const Vec3<float> face = face_normal(mesh, mesh.triangle(fan[i]));
+      const float length2 = length_squared(face);
+      units[i] = face * (length2 < 1e-20f ? 0.f : reciprocal_root(length2));
+    }
     Vec3<float> n = load_vec3(mesh.normal(vertex)), best = n;
     float best_facing = -2.f;
     for (int k = 0; k < kTurns && best_facing < kEnough; ++k) {
@@ -73,10 +79,8 @@ struct TurnNormals {
       float least = 2.f, most = -2.f;
       uint32_t number = 0;
       for (uint32_t i = 0; i < count; ++i) {
-        const Vec3<float> face = face_normal(mesh, mesh.triangle(fan[i]));
-        const float length2 = length_squared(face);
-        if (length2 < 1e-20f) continue;
-        const Vec3<float> unit = face * reciprocal_root(length2);
+        const Vec3<float> unit = units[i];
+        if (unit.x == 0.f && unit.y == 0.f && unit.z == 0.f) continue;
         const float facing = dot(unit, n);
         most = maximum(most, facing);
         if (facing > least || (facing == least && fan[i] > number)) continue;  // ties by number: any order will do

@@ -46,6 +46,8 @@ struct TableView {
 //       inside because of edges of the slice's bricks (thin_walls.h)
 //   emit_vertices(E, features, bricks, layout, slice, rooms, candidates, starts, mesh)
 //   emit_triangles(E, bricks, layout, slice, table, mesh)
+//   for_each_gathering(E, n, f)
+//       f(near by, i), where near by gathers the features around a place, as LocalFeatures do (local_features.h)
 template <class Executor>
 struct Backend;
 template <class Executor>

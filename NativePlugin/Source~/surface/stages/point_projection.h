@@ -10,7 +10,7 @@ namespace quickses {
 template <class Candidates>
 QSES_FN SurfacePoint project_point(const FeatureView &f, const Candidates &candidates, const Vec3<float> &x) {
   const DeepestAtom deepest = deepest_atom(f, candidates, x);
-  Projection v = is_on_contact(f, deepest, x)
+  Projection v = is_on_contact(f, candidates, deepest, x)
                      ? project_on_atom(f.parameters, load(f.atoms.items + deepest.atom), deepest.depth, x)
                      : project_on_arc(f, nearest_arc(f, candidates, x), x);
   while (v.state == ProjectionState::kReproject)

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "surface/stages/creases.h"
+#include "surface/stages/local_features.h"
 #include "surface/stages/point_projection.h"
 
 namespace quickses {
@@ -20,105 +21,35 @@ constexpr float kFarthestProbePart = 1.f;
 // Projected again, a point of the surface stays where it is. Å.
 constexpr float kSteadyMove = 5e-4f;
 
-// The features that decide about points near an edge. Where there are more, nothing is sharpened.
-struct LocalFeatures {
-  static constexpr int kMostAtoms = 64, kMostArcs = 96;
-  uint32_t atoms[kMostAtoms], arcs[kMostArcs];
-  int atom_number = 0, arc_number = 0;
-  bool crowded = false;
-
-  QSES_FN int atom_count() const { return atom_number; }
-  QSES_FN uint32_t atom(int k) const { return atoms[k]; }
-  QSES_FN int arc_count() const { return arc_number; }
-  QSES_FN uint32_t arc(int k) const { return arcs[k]; }
-};
-
-// Those for points within `around` of x.
-QSES_FN void gather_features(const FeatureView &f, const Vec3<float> &x, float around, LocalFeatures *out) {
-  constexpr uint32_t kMostMet = 1 << 13;
-  uint32_t met = 0;
-  const float slack = 2.f * around + 1e-3f;  // what is deepest anywhere near lies no deeper here
-  const float reach = f.parameters.max_radius + around;
-  const CellBox box =
-      cells_around(f.atoms.cells, x - Vec3<float>(reach, reach, reach), x + Vec3<float>(reach, reach, reach));
-  float deepest = -kFarAway, depths[LocalFeatures::kMostAtoms];
-  for (int z = box.z0; z <= box.z1; ++z)
-    for (int y = box.y0; y <= box.y1; ++y) {
-      const ItemRun run = f.atoms.run(box.x0, box.x1, y, z);
-      met += run.end - run.begin;
-      if (met > kMostMet) {
-        out->crowded = true;
-        return;
-      }
-      for (uint32_t i = run.begin; i < run.end; ++i) {
-        const float depth = ball_depth(load(f.atoms.items + i), x);
-        if (depth < deepest - slack) continue;
-        deepest = maximum(deepest, depth);
-        if (out->atom_number == LocalFeatures::kMostAtoms) {
-          out->crowded = true;
-          return;
-        }
-        depths[out->atom_number] = depth;
-        out->atoms[out->atom_number++] = i;
-      }
-    }
-  int kept = 0;
-  for (int k = 0; k < out->atom_number; ++k)
-    if (depths[k] >= deepest - slack) out->atoms[kept++] = out->atoms[k];
-  out->atom_number = kept;
-  if (f.arc_bounds.count == 0) return;
-  const float far = f.parameters.depth + around + 1e-2f, grown = far + f.max_arc_bound;
-  const CellBox arcs =
-      cells_around(f.arc_bounds.cells, x - Vec3<float>(grown, grown, grown), x + Vec3<float>(grown, grown, grown));
-  for (int z = arcs.z0; z <= arcs.z1; ++z)
-    for (int y = arcs.y0; y <= arcs.y1; ++y) {
-      const ItemRun run = f.arc_bounds.run(arcs.x0, arcs.x1, y, z);
-      met += run.end - run.begin;
-      if (met > kMostMet) {
-        out->crowded = true;
-        return;
-      }
-      for (uint32_t i = run.begin; i < run.end; ++i) {
-        const Sphere bound = load(f.arc_bounds.items + i);
-        const float near = bound.radius + far;
-        if (length_squared(Vec3<float>(bound.center) - x) > near * near) continue;
-        if (arc_distance2(load(f.arcs + i), x) > far * far) continue;
-        if (out->arc_number == LocalFeatures::kMostArcs) {
-          out->crowded = true;
-          return;
-        }
-        out->arcs[out->arc_number++] = i;
-      }
-    }
-}
-
 struct ProbeSheets {
+  static constexpr bool kGathers = true;       // needs the features near a place
   static constexpr bool kHasCorners = false;   // creases of probes end smoothly
   static constexpr float kFlatCosine = 0.99f;  // 8 degrees
   FeatureView features;
   Lattice lattice;
 
   // Has a triangle to do with creases?
-  QSES_FN bool is_near_crease(const MeshParts &mesh, const uint32_t *t, bool along) const {
+  QSES_FN bool is_near_crease(const CreasedMesh &mesh, const uint32_t *t, bool along) const {
     Vec3<float> n[3];
     int creases = 0;
     for (int k = 0; k < 3; ++k) {
-      n[k] = load_vec3(mesh.with(t[k]).normal(t[k]));
+      n[k] = load_vec3(mesh.normal(t[k]));
       creases += mesh.on_crease(t[k]) ? 1 : 0;
     }
     if (creases > 1 && along) return true;
     return creases > 0 || minimum(dot(n[0], n[1]), minimum(dot(n[1], n[2]), dot(n[2], n[0]))) <= kCreaseCosine;
   }
 
-  QSES_FN bool may_cross(const MeshParts &mesh, uint32_t u, uint32_t v) const {
+  QSES_FN bool may_cross(const CreasedMesh &mesh, uint32_t u, uint32_t v) const {
     Crossing c{};
     return find_crossing(end_of_vertex(mesh, lattice, u), end_of_vertex(mesh, lattice, v), &c);
   }
 
-  QSES_FN CreasePoint solve(const CreaseEnd &u, const CreaseEnd &v, bool along) const {
+  template <class Local>
+  QSES_FN CreasePoint solve(Local &local, const CreaseEnd &u, const CreaseEnd &v, bool along) const {
     Crossing c{};
-    if (find_crossing(u, v, &c)) return solve_crossing(u, v, c);
-    if (along && u.on_crease() && v.on_crease()) return solve_along(u, v);
+    if (find_crossing(u, v, &c)) return solve_crossing(local, u, v, c);
+    if (along && u.on_crease() && v.on_crease()) return solve_along(local, u, v);
     return none();
   }
 
@@ -176,8 +107,9 @@ struct ProbeSheets {
     return deviation >= kLeastDeviation * lattice.spacing;
   }
 
-  QSES_FN CreasePoint describe(const LocalFeatures &local, const SurfacePoint &s, const CreaseEnd &u,
-                               const CreaseEnd &v, CreasePoint::Kind kind) const {
+  template <class Local>
+  QSES_FN CreasePoint describe(const Local &local, const SurfacePoint &s, const CreaseEnd &u, const CreaseEnd &v,
+                               CreasePoint::Kind kind) const {
     CreasePoint p{};
     p.position = s.position;
     p.normal = s.normal;
@@ -192,20 +124,20 @@ struct ProbeSheets {
     return p;
   }
 
-  QSES_FN bool is_steady(const LocalFeatures &local, const SurfacePoint &s) const {
+  template <class Local>
+  QSES_FN bool is_steady(const Local &local, const SurfacePoint &s) const {
     const SurfacePoint again = project_point(features, local, s.position);
     return again.placed && length_squared(again.position - s.position) <= kSteadyMove * kSteadyMove;
   }
 
-  QSES_FN CreasePoint solve_crossing(const CreaseEnd &u, const CreaseEnd &v, const Crossing &c) const {
+  template <class Local>
+  QSES_FN CreasePoint solve_crossing(Local &local, const CreaseEnd &u, const CreaseEnd &v, const Crossing &c) const {
     constexpr int kRounds = 3;
     const float p = features.parameters.depth, length = square_root(length_squared(v.position - u.position));
     const Vec3<float> between = c.second - c.first, middle = (c.first + c.second) * 0.5f, up = middle - c.under;
     const float height2 = p * p - 0.25f * length_squared(between), up2 = length_squared(up);
     const float longest = kFarthestProbePart * length;
-    LocalFeatures local;
-    gather_features(features, c.under, longest + 0.1f, &local);
-    if (local.crowded) return none();
+    if (!local.gather(features, c.under, longest + 0.1f)) return none();
     const Vec3<float> way = up2 > 1e-6f ? up * reciprocal_root(up2) : Vec3<float>(0.f, 0.f, 0.f);
     Vec3<float> x = c.under;
     if (height2 > 0.f && up2 > 1e-6f) {
@@ -250,7 +182,8 @@ struct ProbeSheets {
     return minimum(found.to_first, found.to_second) > longest ? none() : found;
   }
 
-  QSES_FN CreasePoint solve_along(const CreaseEnd &u, const CreaseEnd &v) const {
+  template <class Local>
+  QSES_FN CreasePoint solve_along(Local &local, const CreaseEnd &u, const CreaseEnd &v) const {
     const float p = features.parameters.depth, length = square_root(length_squared(v.position - u.position));
     if (length < 0.3f * lattice.spacing) return none();
     const Vec3<float> u1 = probe(u, false), u2 = probe(u, true), v1 = probe(v, false), v2 = probe(v, true);
@@ -273,9 +206,7 @@ struct ProbeSheets {
       if (away < 0.7f * kLeastSagitta * lattice.spacing) return none();
       if (away > 0.5f * length) x = middle;
     }
-    LocalFeatures local;
-    gather_features(features, x, 0.7f * length + 0.1f, &local);
-    if (local.crowded) return none();
+    if (!local.gather(features, x, 0.7f * length + 0.1f)) return none();
     const SurfacePoint s = project_point(features, local, x);
     const float off = square_root(length_squared(s.position - middle)), least = kLeastSagitta * lattice.spacing;
     if (!s.placed || off < least || off > 0.6f * length) return none();

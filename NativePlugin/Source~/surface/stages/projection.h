@@ -33,8 +33,8 @@ constexpr float kSameSheet = 0.07f;
 
 // Depth of a point in an inflated ball: R - |x - c|. The largest over the atoms is a lower bound of the distance to the
 // boundary, and the distance itself if the radial projection on that atom is exposed; no other atom's can be.
-template <class T>
-QSES_FN T ball_depth(const Sphere &atom, const Vec3<T> &x) {
+template <class Ball, class T>
+QSES_FN T ball_depth(const Ball &atom, const Vec3<T> &x) {
   return T(atom.radius) - square_root(length_squared(x - Vec3<T>(atom.center)));
 }
 
@@ -74,6 +74,11 @@ QSES_FN bool is_on_contact(const FeatureView &f, const DeepestAtom &deepest, con
   if (deepest.depth <= -kFarAway) return false;  // there is no atom
   const Sphere ball = load(f.atoms.items + deepest.atom);
   return is_exposed(f, deepest.atom, x - Vec3<float>(ball.center), offset_length(ball, deepest.depth));
+}
+// By whoever looks at the candidates.
+template <class Candidates>
+QSES_FN bool is_on_contact(const FeatureView &f, const Candidates &, const DeepestAtom &deepest, const Vec3<float> &x) {
+  return is_on_contact(f, deepest, x);
 }
 
 struct NearestArc {
@@ -269,7 +274,7 @@ QSES_FN Projection reproject(const FeatureView &f, const Candidates &candidates,
   }
   if (before.rounds > 1) {  // where it is now, a probe that touches a single atom may cover it
     const DeepestAtom deepest = deepest_atom(f, candidates, s.position);
-    if (deepest.depth < p.depth - kProjectionTolerance && is_on_contact(f, deepest, s.position)) {
+    if (deepest.depth < p.depth - kProjectionTolerance && is_on_contact(f, candidates, deepest, s.position)) {
       Projection on = project_on_atom(p, load(f.atoms.items + deepest.atom), deepest.depth, s.position);
       on.rounds = round;
       return on;

@@ -71,6 +71,7 @@ struct NearSpheres {
 };
 
 struct SphereSheets {
+  static constexpr bool kGathers = false;  // needs the features near a place
   static constexpr bool kHasCorners = true;
   // Of the smallest angle that a piece of a triangle may have: 2.6 degrees. In deep grooves pieces are slim.
   static constexpr float kFlatCosine = 0.999f;
@@ -87,18 +88,17 @@ struct SphereSheets {
   }
 
   // Has a triangle to do with creases?
-  QSES_FN bool is_near_crease(const MeshParts &mesh, const uint32_t *t, bool along) const {
-    const uint32_t owner = mesh.with(t[0]).owner(t[0]);
-    if (owner != mesh.with(t[1]).owner(t[1]) || owner != mesh.with(t[2]).owner(t[2])) return true;
+  QSES_FN bool is_near_crease(const CreasedMesh &mesh, const uint32_t *t, bool along) const {
+    const uint32_t owner = mesh.owner(t[0]);
+    if (owner != mesh.owner(t[1]) || owner != mesh.owner(t[2])) return true;
     return along && int(mesh.on_crease(t[0])) + int(mesh.on_crease(t[1])) + int(mesh.on_crease(t[2])) > 1;
   }
 
   // May an edge cross a crease? At a glance; solve() decides.
-  QSES_FN bool may_cross(const MeshParts &mesh, uint32_t u, uint32_t v) const {
-    const MeshView &with_u = mesh.with(u), &with_v = mesh.with(v);
-    const uint32_t of_u = with_u.owner(u), of_v = with_v.owner(v);
-    return of_u != of_v && !is_on(sphere_of(of_v), centered_position(lattice, with_u.position(u))) &&
-           !is_on(sphere_of(of_u), centered_position(lattice, with_v.position(v)));
+  QSES_FN bool may_cross(const CreasedMesh &mesh, uint32_t u, uint32_t v) const {
+    const uint32_t of_u = mesh.owner(u), of_v = mesh.owner(v);
+    return of_u != of_v && !is_on(sphere_of(of_v), centered_position(lattice, mesh.position(u))) &&
+           !is_on(sphere_of(of_u), centered_position(lattice, mesh.position(v)));
   }
 
   // Is a piece of a triangle turned away from the sheet that its corners have in common, or has it no area? normal:
@@ -140,7 +140,8 @@ struct SphereSheets {
   }
 
   // Where the edge should have a vertex.
-  QSES_FN CreasePoint solve(const CreaseEnd &u, const CreaseEnd &v, bool along) const {
+  template <class Local>
+  QSES_FN CreasePoint solve(Local &, const CreaseEnd &u, const CreaseEnd &v, bool along) const {
     const uint32_t on_u[2] = {places[u.owner], places[u.second_owner]},
                    on_v[2] = {places[v.owner], places[v.second_owner]};
     uint32_t shared[4];

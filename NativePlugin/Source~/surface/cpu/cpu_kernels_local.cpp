@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+// CPU kernel: the features near a place, eight at a time.
+#include "parallel/pack.h"
+#include "surface/cpu/cpu_kernels.h"
+
+namespace quickses {
+namespace QSES_CPU_ISA {
+namespace {
+
+struct PackedBall {
+  Vec3<Pack> center;
+  Pack radius;
+};
+// One arc for each lane.
+struct PackedArc {
+  Vec3<Pack> center;
+  Pack radius;
+  Vec3<Pack> middle;
+  Pack cos_half;
+  Vec3<Pack> side;
+  Pack sin_half;
+};
+
+PackedArc load_arcs(const LocalColumns &c, int k) {
+  const auto column = [&](int n) { return load_pack(c.arc_columns[n] + k); };
+  return {{column(0), column(1), column(2)},  column(3), {column(4), column(5), column(6)}, column(7),
+          {column(8), column(9), column(10)}, column(11)};
+}
+void store_arc(LocalColumns *c, int k, const Arc &arc) {
+  const float values[LocalColumns::kArcColumns] = {arc.center.x, arc.center.y, arc.center.z, arc.radius,
+                                                   arc.middle.x, arc.middle.y, arc.middle.z, arc.cos_half,
+                                                   arc.side.x,   arc.side.y,   arc.side.z,   arc.sin_half};
+  for (int n = 0; n < LocalColumns::kArcColumns; ++n) c->arc_columns[n][k] = values[n];
+}
+
+// Calls use(first, ball of each lane, lanes) for all items in the box, until one returns false, or there are too many.
+template <class Use>
+QSES_FN bool for_each_met(const NeighborGridView &grid, const CellBox &box, uint32_t *met, const Use &use) {
+  for (int z = box.z0; z <= box.z1; ++z)
+    for (int y = box.y0; y <= box.y1; ++y) {
+      const ItemRun run = grid.run(box.x0, box.x1, y, z);
+      *met += run.end - run.begin;
+      if (*met > LocalReach::kMostMet) return false;
+      for (uint32_t i = run.begin; i < run.end; i += kPackSize) {
+        PackedBall balls;
+        load_columns(&grid.items[i].center.x, &balls.center.x, &balls.center.y, &balls.center.z, &balls.radius);
+        const uint32_t lanes = run.end - i < kPackSize ? (1u << (run.end - i)) - 1 : kAllLanes;
+        if (!use(i, balls, lanes)) return false;
+      }
+    }
+  return true;
+}
+
+void forget_shallow(LocalColumns *c, float least) {
+  int kept = 0;
+  for (int k = 0; k < c->atom_number; ++k) {
+    if (c->depths[k] < least) continue;
+    c->depths[kept] = c->depths[k];
+    c->atoms[kept++] = c->atoms[k];
+  }
+  c->atom_number = kept;
+}
+
+}  // namespace
+
+bool gather_local_features(const FeatureView &f, const Vec3<float> &place, float around, LocalColumns *out) {
+  const LocalReach reach(f, place, around);
+  const Vec3<Pack> x{Pack(place.x), Pack(place.y), Pack(place.z)};
+  uint32_t met = 0;
+  out->atom_number = out->arc_number = 0;
+  float deepest = -kFarAway;
+  const bool atoms_fit = for_each_met(
+      f.atoms, reach.box(f.atoms, reach.atom_reach), &met, [&](uint32_t i, const PackedBall &balls, uint32_t lanes) {
+        const Pack depth = ball_depth(balls, x);
+        uint32_t near = lanes & lane_bits(depth >= Pack(deepest - reach.slack));
+        if (!near) return true;
+        deepest = maximum(deepest, horizontal_maximum(select(lane_mask(near), depth, Pack(-kFarAway))));
+        near &= lane_bits(depth >= Pack(deepest - reach.slack));
+        if (out->atom_number + popcount64(near) > LocalReach::kMostAtoms) forget_shallow(out, deepest - reach.slack);
+        if (out->atom_number + popcount64(near) > LocalReach::kMostAtoms) return false;
+        store_lanes(out->depths + out->atom_number, near, depth);
+        out->atom_number += store_lane_numbers(reinterpret_cast<int32_t *>(out->atoms) + out->atom_number, near,
+                                               static_cast<int32_t>(i));
+        return true;
+      });
+  if (!atoms_fit) return false;
+  forget_shallow(out, deepest - reach.slack);
+  const bool arcs_fit =
+      f.arc_bounds.count == 0 || for_each_met(f.arc_bounds, reach.box(f.arc_bounds, reach.arc_reach), &met,
+                                              [&](uint32_t i, const PackedBall &bounds, uint32_t lanes) {
+                                                uint32_t near = lanes & lane_bits(reach.meets(bounds, x));
+                                                for (; near; near &= near - 1) {
+                                                  const uint32_t a = i + static_cast<uint32_t>(lowest_bit32(near));
+                                                  const Arc arc = load(f.arcs + a);
+                                                  if (!reach.is_near(arc)) continue;
+                                                  if (out->arc_number == LocalReach::kMostArcs) return false;
+                                                  store_arc(out, out->arc_number, arc);
+                                                  out->arcs[out->arc_number++] = a;
+                                                }
+                                                return true;
+                                              });
+  if (!arcs_fit) return false;
+  const glm::vec3 zero(0.f);
+  for (int k = 0; k < kPackSize; ++k)
+    store_arc(out, out->arc_number + k, {glm::vec3(1e6f), 0.f, zero, 0.f, zero, 0.f});  // farther than all others
+  return true;
+}
+
+NearestArc nearest_local_arc(const LocalColumns &c, const Vec3<float> &place) {
+  const Vec3<Pack> x{Pack(place.x), Pack(place.y), Pack(place.z)};
+  Pack best(kFarAway), second(kFarAway), number(0.f);
+  for (int k = 0; k < c.arc_number; k += kPackSize) {
+    const Pack distance2 = arc_distance2(load_arcs(c, k), x);
+    const PackMask nearer = distance2 < best;
+    second = minimum(second, select(nearer, best, distance2));
+    number = select(nearer, Pack(static_cast<float>(k)), number);
+    best = select(nearer, distance2, best);
+  }
+  float lane_best[kPackSize], lane_second[kPackSize], lane_number[kPackSize];
+  store_pack(lane_best, best);
+  store_pack(lane_second, second);
+  store_pack(lane_number, number);
+  NearestArc nearest;
+  for (int lane = 0; lane < kPackSize; ++lane) {
+    if (!(lane_best[lane] < kFarAway)) continue;
+    nearest.offer(static_cast<int>(c.arcs[static_cast<int>(lane_number[lane]) + lane]), lane_best[lane]);
+    nearest.second2 = minimum(nearest.second2, lane_second[lane]);
+  }
+  return nearest;
+}
+
+}  // namespace QSES_CPU_ISA
+}  // namespace quickses

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+// GPU: candidates that the lanes of a warp, or a few of them, look at together for one point, with the same result in
+// each. The functions are those of projection.h, to the last bit.
+#pragma once
+
+#include "parallel/cuda_warp.cuh"
+#include "surface/cuda/exact_ses_cuda.cuh"
+
+namespace quickses {
+namespace gpu {
+
+template <int kLanes>
+struct LaneCandidates {
+  const uint32_t *atoms;  // in any memory
+  const uint32_t *arcs;
+  int atom_total, arc_total;
+  __device__ __forceinline__ int atom_count() const { return atom_total; }
+  __device__ __forceinline__ int arc_count() const { return arc_total; }
+  __device__ __forceinline__ uint32_t atom(int k) const { return atoms[k]; }
+  __device__ __forceinline__ uint32_t arc(int k) const { return arcs[k]; }
+  static __device__ __forceinline__ int rank() { return lane_id() % kLanes; }
+  static __device__ __forceinline__ unsigned lanes() {
+    return (kFullWarp >> (kWarp - kLanes)) << (lane_id() / kLanes * kLanes);
+  }
+};
+
+template <int kLanes>
+__device__ __forceinline__ DeepestAtom deepest_atom(const FeatureView &f, const LaneCandidates<kLanes> &candidates,
+                                                    const Vec3<float> &x) {
+  NumberedValue best{-2.f * kFarAway, kNoAtom};  // its place in the list: of several, the first
+  for (int k = candidates.rank(); k < candidates.atom_count(); k += kLanes) {
+    const float depth = ball_depth(load(f.atoms.items + candidates.atom(k)), x);
+    if (depth > best.value) best = {depth, static_cast<uint32_t>(k)};
+  }
+  best = warp_largest<kLanes>(best, candidates.lanes());
+  return {best.number == kNoAtom ? 0u : candidates.atom(static_cast<int>(best.number)), best.value};
+}
+
+template <int kLanes>
+__device__ __forceinline__ NearestArc nearest_arc(const FeatureView &f, const LaneCandidates<kLanes> &candidates,
+                                                  const Vec3<float> &x) {
+  NearestArc best;
+  for (int k = candidates.rank(); k < candidates.arc_count(); k += kLanes) {
+    const int a = static_cast<int>(candidates.arc(k));
+    best.offer(a, arc_distance2(load(f.arcs + a), x));
+  }
+  const unsigned lanes = candidates.lanes();
+#pragma unroll
+  for (int d = kLanes / 2; d > 0; d >>= 1) {
+    const int arc = __shfl_xor_sync(lanes, best.arc, d);
+    const float distance2 = __shfl_xor_sync(lanes, best.distance2, d);
+    const float second2 = __shfl_xor_sync(lanes, best.second2, d);
+    if (arc >= 0) best.offer(arc, distance2);
+    best.second2 = minimum(best.second2, second2);
+  }
+  return best;
+}
+
+template <int kLanes>
+__device__ __forceinline__ bool is_on_contact(const FeatureView &f, const LaneCandidates<kLanes> &candidates,
+                                              const DeepestAtom &deepest, const Vec3<float> &x) {
+  if (deepest.depth <= -kFarAway) return false;
+  const CapRange range = f.cap_ranges[deepest.atom];
+  if (range.count == kBuriedAtom) return false;
+  const Sphere ball = load(f.atoms.items + deepest.atom);
+  const Vec3<float> offset = x - Vec3<float>(ball.center);
+  const float length = offset_length(ball, deepest.depth);
+  bool covered = false;
+  for (int32_t k = candidates.rank(); k < range.count && !covered; k += kLanes)
+    covered = cap_covers(load(f.caps + range.first + k), offset, length);
+  return !__any_sync(candidates.lanes(), covered);
+}
+
+}  // namespace gpu
+}  // namespace quickses
