@@ -14,6 +14,7 @@ struct CudaCandidates {
   gpu::CandidateView view{};
   size_t leaves = 0;
   uint32_t longest_row = 0;  // of atoms or arcs, at most
+  bool are_of(BrickRange r) const { return slice.first == r.first && slice.last == r.last; }
 };
 namespace gpu {
 
@@ -26,7 +27,7 @@ struct SignJob {
   BrickSet bricks;
   CandidateReach reach;
   CandidateView view;
-  uint64_t *signs;
+  uint64_t *signs;  // nullptr: known already
 };
 
 // Shared memory of one warp.
@@ -132,14 +133,17 @@ static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_k
     const uint32_t k = k0 + static_cast<uint32_t>(lane);
     const bool near = k < brick_row.arc_count && (__ldg(arc_leaves + k) >> leaf & 1) != 0;
     const int place = append_place(near, &arc_count);
-    if (near && place < kLeafArcs) scratch.arc[place] = load(f.arcs + __ldg(arcs + k));
+    if (near && place < kLeafArcs) {
+      scratch.arc_number[place] = __ldg(arcs + k);
+      scratch.arc[place] = load(f.arcs + scratch.arc_number[place]);
+    }
   };
   for (uint32_t k0 = 0; k0 < brick_row.arc_count; k0 += kWarp) stage_arcs(k0);
   __syncwarp();
 
   LeafKind kind = LeafKind::kMixed;
-  if (best.depth <= -reach.leaf_radius - reach.slack ||
-      (best.depth <= reach.least_depth && depth > reach.leaf_radius + reach.slack))
+  const bool far_out = best.depth <= -reach.leaf_radius - reach.slack;
+  if (far_out || (best.depth <= reach.least_depth && depth > reach.leaf_radius + reach.slack))
     kind = LeafKind::kOutside;
   else if (best.depth - reach.leaf_radius - reach.slack > depth)
     kind = LeafKind::kInside;
@@ -155,6 +159,7 @@ static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_k
     if (__any_sync(kFullWarp, covered)) kind = LeafKind::kInside;
   }
   bool inside0 = kind == LeafKind::kInside, inside1 = inside0;
+  uint32_t decider0 = far_out ? kOutsideBalls : kNotLookedAt, decider1 = decider0;
   if (kind == LeafKind::kMixed) {
     const int x = first.x + (lane & 3), y = first.y + (lane >> 2 & 3), z = first.z + (lane >> 4);
     const Vec3<float> p0 = lattice.position(x, y, z), p1 = lattice.position(x, y, z + 2);
@@ -180,6 +185,8 @@ static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_k
     inside0 = depth0 > depth;
     inside1 = depth1 > depth;
     bool open0 = depth0 > reach.least_depth && !inside0, open1 = depth1 > reach.least_depth && !inside1;
+    decider0 = depth0 > reach.least_depth ? kOnContact | atom0 : kOutsideBalls;
+    decider1 = depth1 > reach.least_depth ? kOnContact | atom1 : kOutsideBalls;
     __syncwarp();
     if (open0) open0 = !projection_exposed(f, atom0, p0, depth0);
     __syncwarp();
@@ -191,8 +198,12 @@ static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_k
 #pragma unroll 2
         for (int k = 0; k < count; ++k) {
           const Arc arc = scratch.arc[k];
-          nearest0 = fminf(nearest0, arc_distance2(arc, p0));
-          nearest1 = fminf(nearest1, arc_distance2(arc, p1));
+          const uint32_t number = scratch.arc_number[k];  // the lowest come first
+          const float d0 = arc_distance2(arc, p0), d1 = arc_distance2(arc, p1);
+          if (open0 && d0 < nearest0) decider0 = number;
+          if (open1 && d1 < nearest1) decider1 = number;
+          nearest0 = fminf(nearest0, d0);
+          nearest1 = fminf(nearest1, d1);
         }
       };
       if (arc_count <= kLeafArcs) {
@@ -210,14 +221,19 @@ static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_k
       if (open1) inside1 = nearest1 > depth * depth;
     }
   }
+  if (job.view.deciders) {
+    uint32_t *const deciders = job.view.deciders + size_t(slot) * 64;
+    deciders[lane] = decider0;
+    deciders[lane + kWarp] = decider1;
+  }
   const unsigned low = __ballot_sync(kFullWarp, inside0), high = __ballot_sync(kFullWarp, inside1);
-  if (lane == 0)
+  if (lane == 0 && job.signs)
     job.signs[static_cast<size_t>(job.view.first_brick + b) * kLeavesPerBrick + static_cast<size_t>(leaf)] =
         static_cast<uint64_t>(high) << 32 | low;
 }
 
-// Gathers the candidates of a slice; evaluates its signs unless signs is nullptr. Waits once, or more often if the
-// guess of their number was too small.
+// Gathers the candidates of a slice, and finds the signs of its inactive leaves unless signs is nullptr. Waits once, or
+// more often if the guess of their number was too small.
 template <class E>
 void gather_candidates(E &executor, const FeatureView &features, const BrickSet &bricks, BrickRange slice,
                        CudaRooms &rooms, CudaCandidates &candidates, uint64_t *signs) {
@@ -228,6 +244,7 @@ void gather_candidates(E &executor, const FeatureView &features, const BrickSet 
   view.bricks = n;
   view.brick_rows = executor.template allocate<BrickRow>(n).data;
   view.leaf_list = executor.template allocate<uint32_t>(size_t(n) * kLeavesPerBrick).data;
+  view.brick_leaves = executor.template allocate<uint8_t>(n).data;
   Span<CandidateCounters> counters = executor.template allocate<CandidateCounters>(1);
   const double per_brick = listed_candidates(features.parameters);
   const auto room_for = [&](double rate, uint32_t most) {
@@ -267,13 +284,22 @@ void gather_candidates(E &executor, const FeatureView &features, const BrickSet 
   }
   candidates.leaves = static_cast<size_t>(found.leaves);
   candidates.longest_row = std::max(kUsualRow, found.longest_row);
-  if (signs)  // lanes look at all atoms and arcs of a row, and at an atom's caps
-    executor.launch(
-        "evaluate_leaves", evaluate_leaves_kernel, candidates.leaves,
-        LaunchShape{kSignWarps * kWarp, kSignWarps, 64 + 2 * uint64_t(candidates.longest_row) + features.most_caps},
-        SignJob{features, bricks, reach, view, signs});
   candidates.view = view;
   candidates.slice = slice;
+}
+
+// Evaluates the active leaves of a slice. deciders: whether what decides about their points is kept for thin walls.
+template <class E>
+void evaluate_leaves(E &executor, const FeatureView &features, const BrickSet &bricks, CudaCandidates &candidates,
+                     bool deciders, uint64_t *signs) {
+  if (deciders)
+    candidates.view.deciders =
+        executor.template allocate<uint32_t>(size_t(candidates.slice.size()) * kBrickPoints).data;
+  // Lanes look at all atoms and arcs of a row, and at an atom's caps.
+  executor.launch(
+      "evaluate_leaves", evaluate_leaves_kernel, candidates.leaves,
+      LaunchShape{kSignWarps * kWarp, kSignWarps, 64 + 2 * uint64_t(candidates.longest_row) + features.most_caps},
+      SignJob{features, bricks, CandidateReach::of(features.parameters), candidates.view, signs});
 }
 
 }  // namespace gpu
