@@ -27,7 +27,9 @@ struct SignJob {
   BrickSet bricks;
   CandidateReach reach;
   CandidateView view;
-  uint64_t *signs;  // nullptr: known already
+  const uint32_t *leaves;      // as in view.leaf_list
+  const uint32_t *leaf_count;  // nullptr: as many as there are items
+  uint64_t *signs;             // nullptr: known already, and what decides about each point is asked for
 };
 
 // Shared memory of one warp.
@@ -108,13 +110,13 @@ static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_k
   const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();
   LeafScratch &scratch = scratch_memory[warp];
   const size_t leaf_place = leaves.first + blockIdx.x * kSignWarps + static_cast<uint32_t>(warp);
-  if (leaf_place >= leaves.last) return;
+  if (leaf_place >= leaves.last || (job.leaf_count && leaf_place >= *job.leaf_count)) return;
   const FeatureView &f = job.features;
   const CandidateReach &reach = job.reach;
   const Lattice &lattice = job.bricks.lattice;
   const float h = reach.spacing, depth = reach.depth;
 
-  const uint32_t slot = job.view.leaf_list[leaf_place], b = slot >> 3;
+  const uint32_t slot = job.leaves[leaf_place], b = slot >> 3;
   const int leaf = static_cast<int>(slot & 7);
   const BrickRow brick_row = job.view.brick_rows[b];
   const uint32_t *const atoms = job.view.atoms + brick_row.first_atom;
@@ -160,7 +162,7 @@ static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_k
   }
   bool inside0 = kind == LeafKind::kInside, inside1 = inside0;
   uint32_t decider0 = far_out ? kOutsideBalls : kNotLookedAt, decider1 = decider0;
-  if (kind == LeafKind::kMixed) {
+  if (kind == LeafKind::kMixed || !job.signs) {
     const int x = first.x + (lane & 3), y = first.y + (lane >> 2 & 3), z = first.z + (lane >> 4);
     const Vec3<float> p0 = lattice.position(x, y, z), p1 = lattice.position(x, y, z + 2);
     float depth0 = reach.least_depth, depth1 = reach.least_depth;
@@ -195,16 +197,18 @@ static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_k
     if (__any_sync(kFullWarp, open0 || open1)) {
       float nearest0 = kFarAway, nearest1 = kFarAway;
       const auto meet_arcs = [&](int count) {
+        int arc0 = -1, arc1 = -1;
 #pragma unroll 2
         for (int k = 0; k < count; ++k) {
           const Arc arc = scratch.arc[k];
-          const uint32_t number = scratch.arc_number[k];  // the lowest come first
           const float d0 = arc_distance2(arc, p0), d1 = arc_distance2(arc, p1);
-          if (open0 && d0 < nearest0) decider0 = number;
-          if (open1 && d1 < nearest1) decider1 = number;
+          arc0 = d0 < nearest0 ? k : arc0;  // of several, the first, which has the lowest number
+          arc1 = d1 < nearest1 ? k : arc1;
           nearest0 = fminf(nearest0, d0);
           nearest1 = fminf(nearest1, d1);
         }
+        if (open0 && arc0 >= 0) decider0 = scratch.arc_number[arc0];
+        if (open1 && arc1 >= 0) decider1 = scratch.arc_number[arc1];
       };
       if (arc_count <= kLeafArcs) {
         meet_arcs(arc_count);
@@ -288,6 +292,11 @@ void gather_candidates(E &executor, const FeatureView &features, const BrickSet 
   candidates.slice = slice;
 }
 
+// Lanes look at all atoms and arcs of a row, and at an atom's caps.
+inline LaunchShape leaf_shape(const FeatureView &features, const CudaCandidates &candidates) {
+  return {kSignWarps * kWarp, kSignWarps, 64 + 2 * uint64_t(candidates.longest_row) + features.most_caps};
+}
+
 // Evaluates the active leaves of a slice. deciders: whether what decides about their points is kept for thin walls.
 template <class E>
 void evaluate_leaves(E &executor, const FeatureView &features, const BrickSet &bricks, CudaCandidates &candidates,
@@ -295,11 +304,10 @@ void evaluate_leaves(E &executor, const FeatureView &features, const BrickSet &b
   if (deciders)
     candidates.view.deciders =
         executor.template allocate<uint32_t>(size_t(candidates.slice.size()) * kBrickPoints).data;
-  // Lanes look at all atoms and arcs of a row, and at an atom's caps.
+  const gpu::CandidateView &view = candidates.view;
   executor.launch(
-      "evaluate_leaves", evaluate_leaves_kernel, candidates.leaves,
-      LaunchShape{kSignWarps * kWarp, kSignWarps, 64 + 2 * uint64_t(candidates.longest_row) + features.most_caps},
-      SignJob{features, bricks, CandidateReach::of(features.parameters), candidates.view, signs});
+      "evaluate_leaves", evaluate_leaves_kernel, candidates.leaves, leaf_shape(features, candidates),
+      SignJob{features, bricks, CandidateReach::of(features.parameters), view, view.leaf_list, nullptr, signs});
 }
 
 }  // namespace gpu
