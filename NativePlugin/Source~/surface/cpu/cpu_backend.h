@@ -23,6 +23,9 @@ struct Backend<CpuKernelExecutor> {
     quickses::find_solvent_features(executor, atoms, parameters, plan.low_memory, features);
   }
   template <class E>
+  static void gather_candidates(E &, const FeatureView &, const BrickSet &, BrickRange, LearntRooms &, Candidates &,
+                                uint64_t *) {}
+  template <class E>
   static void evaluate_signs(E &executor, const FeatureView &features, const BrickSet &bricks, BrickRange slice,
                              LearntRooms &, Candidates &, uint64_t *signs) {
     if constexpr (!E::kCounts) quickses::evaluate_signs(executor, features, bricks, slice, signs);

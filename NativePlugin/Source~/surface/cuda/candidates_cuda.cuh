@@ -76,9 +76,15 @@ struct CandidateView {
   BrickRow *brick_rows;
   uint32_t *atoms;
   uint32_t *arcs;
-  uint8_t *arc_leaves;  // per entry of arcs: bit set = can be within depth of a point of that leaf
-  uint32_t *leaf_list;  // leaves between whose points the surface may pass: 8 * brick of the slice + leaf
+  uint8_t *arc_leaves;    // per entry of arcs: bit set = can be within depth of a point of that leaf
+  uint32_t *leaf_list;    // leaves between whose points the surface may pass: 8 * brick of the slice + leaf
+  uint8_t *brick_leaves;  // the same per brick: a bit per leaf
+  uint32_t *deciders;     // of all points of those leaves, 64 per leaf: what their signs are from (Decider); or nullptr
 };
+
+// What decides about a point that is outside, for thin walls, which ask for the nearest probe: the number of the
+// nearest arc; that of the atom on whose exposed part the point is projected, with kOnContact; or one of the others.
+constexpr uint32_t kOnContact = 0x80000000u, kOutsideBalls = 0xffffffffu, kNotLookedAt = 0xfffffffeu;
 
 __device__ __forceinline__ Vec3<float> leaf_center(const Vec3<float> &low, int leaf, float h) {
   return {low.x + (static_cast<float>(4 * (leaf & 1)) + 1.5f) * h,
@@ -277,6 +283,7 @@ static __global__ __launch_bounds__(kGatherWarps *kWarp, 8) void gather_candidat
   first_leaf = __shfl_sync(kFullWarp, first_leaf, 0);
   if (!atoms.fits || !arcs.fits) return;
 
+  if (lane == 0) job.view.brick_leaves[b] = static_cast<uint8_t>(active);
   if (lane < kLeavesPerBrick) {
     if (active >> lane & 1)
       job.view.leaf_list[first_leaf + static_cast<unsigned>(place_in(active, lane))] =

@@ -24,9 +24,18 @@ struct Backend<CudaExecutor> {
   }
   // The candidates live in the executor's arena: they are there until it is rewound.
   template <class E>
+  static void gather_candidates(E &executor, const FeatureView &features, const BrickSet &bricks, BrickRange slice,
+                                LearntRooms &rooms, Candidates &candidates, uint64_t *signs) {
+    if (slice.size() > 0) gpu::gather_candidates(executor, features, bricks, slice, rooms, candidates, signs);
+  }
+  template <class E>
   static void evaluate_signs(E &executor, const FeatureView &features, const BrickSet &bricks, BrickRange slice,
                              LearntRooms &rooms, Candidates &candidates, uint64_t *signs) {
-    if (slice.size() > 0) gpu::gather_candidates(executor, features, bricks, slice, rooms, candidates, signs);
+    if (slice.size() == 0) return;
+    const bool are_shared = candidates.are_of(slice);
+    if (!are_shared) gpu::gather_candidates(executor, features, bricks, slice, rooms, candidates, signs);
+    gpu::evaluate_leaves(executor, features, bricks, candidates, are_shared && features.parameters.has_thin_walls(),
+                         signs);
   }
   template <class E>
   static void mark_thin_walls(E &executor, const FeatureView &features, const BrickSet &bricks, BrickRange slice,

@@ -14,6 +14,7 @@ struct CudaCandidates {
   gpu::CandidateView view{};
   size_t leaves = 0;
   uint32_t longest_row = 0;  // of atoms or arcs, at most
+  bool are_of(BrickRange r) const { return slice.first == r.first && slice.last == r.last; }
 };
 namespace gpu {
 
@@ -26,7 +27,9 @@ struct SignJob {
   BrickSet bricks;
   CandidateReach reach;
   CandidateView view;
-  uint64_t *signs;
+  const uint32_t *leaves;      // as in view.leaf_list
+  const uint32_t *leaf_count;  // nullptr: as many as there are items
+  uint64_t *signs;             // nullptr: known already, and what decides about each point is asked for
 };
 
 // Shared memory of one warp.
@@ -107,13 +110,13 @@ static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_k
   const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();
   LeafScratch &scratch = scratch_memory[warp];
   const size_t leaf_place = leaves.first + blockIdx.x * kSignWarps + static_cast<uint32_t>(warp);
-  if (leaf_place >= leaves.last) return;
+  if (leaf_place >= leaves.last || (job.leaf_count && leaf_place >= *job.leaf_count)) return;
   const FeatureView &f = job.features;
   const CandidateReach &reach = job.reach;
   const Lattice &lattice = job.bricks.lattice;
   const float h = reach.spacing, depth = reach.depth;
 
-  const uint32_t slot = job.view.leaf_list[leaf_place], b = slot >> 3;
+  const uint32_t slot = job.leaves[leaf_place], b = slot >> 3;
   const int leaf = static_cast<int>(slot & 7);
   const BrickRow brick_row = job.view.brick_rows[b];
   const uint32_t *const atoms = job.view.atoms + brick_row.first_atom;
@@ -132,14 +135,17 @@ static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_k
     const uint32_t k = k0 + static_cast<uint32_t>(lane);
     const bool near = k < brick_row.arc_count && (__ldg(arc_leaves + k) >> leaf & 1) != 0;
     const int place = append_place(near, &arc_count);
-    if (near && place < kLeafArcs) scratch.arc[place] = load(f.arcs + __ldg(arcs + k));
+    if (near && place < kLeafArcs) {
+      scratch.arc_number[place] = __ldg(arcs + k);
+      scratch.arc[place] = load(f.arcs + scratch.arc_number[place]);
+    }
   };
   for (uint32_t k0 = 0; k0 < brick_row.arc_count; k0 += kWarp) stage_arcs(k0);
   __syncwarp();
 
   LeafKind kind = LeafKind::kMixed;
-  if (best.depth <= -reach.leaf_radius - reach.slack ||
-      (best.depth <= reach.least_depth && depth > reach.leaf_radius + reach.slack))
+  const bool far_out = best.depth <= -reach.leaf_radius - reach.slack;
+  if (far_out || (best.depth <= reach.least_depth && depth > reach.leaf_radius + reach.slack))
     kind = LeafKind::kOutside;
   else if (best.depth - reach.leaf_radius - reach.slack > depth)
     kind = LeafKind::kInside;
@@ -155,7 +161,8 @@ static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_k
     if (__any_sync(kFullWarp, covered)) kind = LeafKind::kInside;
   }
   bool inside0 = kind == LeafKind::kInside, inside1 = inside0;
-  if (kind == LeafKind::kMixed) {
+  uint32_t decider0 = far_out ? kOutsideBalls : kNotLookedAt, decider1 = decider0;
+  if (kind == LeafKind::kMixed || !job.signs) {
     const int x = first.x + (lane & 3), y = first.y + (lane >> 2 & 3), z = first.z + (lane >> 4);
     const Vec3<float> p0 = lattice.position(x, y, z), p1 = lattice.position(x, y, z + 2);
     float depth0 = reach.least_depth, depth1 = reach.least_depth;
@@ -180,6 +187,8 @@ static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_k
     inside0 = depth0 > depth;
     inside1 = depth1 > depth;
     bool open0 = depth0 > reach.least_depth && !inside0, open1 = depth1 > reach.least_depth && !inside1;
+    decider0 = depth0 > reach.least_depth ? kOnContact | atom0 : kOutsideBalls;
+    decider1 = depth1 > reach.least_depth ? kOnContact | atom1 : kOutsideBalls;
     __syncwarp();
     if (open0) open0 = !projection_exposed(f, atom0, p0, depth0);
     __syncwarp();
@@ -188,12 +197,18 @@ static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_k
     if (__any_sync(kFullWarp, open0 || open1)) {
       float nearest0 = kFarAway, nearest1 = kFarAway;
       const auto meet_arcs = [&](int count) {
+        int arc0 = -1, arc1 = -1;
 #pragma unroll 2
         for (int k = 0; k < count; ++k) {
           const Arc arc = scratch.arc[k];
-          nearest0 = fminf(nearest0, arc_distance2(arc, p0));
-          nearest1 = fminf(nearest1, arc_distance2(arc, p1));
+          const float d0 = arc_distance2(arc, p0), d1 = arc_distance2(arc, p1);
+          arc0 = d0 < nearest0 ? k : arc0;  // of several, the first, which has the lowest number
+          arc1 = d1 < nearest1 ? k : arc1;
+          nearest0 = fminf(nearest0, d0);
+          nearest1 = fminf(nearest1, d1);
         }
+        if (open0 && arc0 >= 0) decider0 = scratch.arc_number[arc0];
+        if (open1 && arc1 >= 0) decider1 = scratch.arc_number[arc1];
       };
       if (arc_count <= kLeafArcs) {
         meet_arcs(arc_count);
@@ -210,14 +225,19 @@ static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_k
       if (open1) inside1 = nearest1 > depth * depth;
     }
   }
+  if (job.view.deciders) {
+    uint32_t *const deciders = job.view.deciders + size_t(slot) * 64;
+    deciders[lane] = decider0;
+    deciders[lane + kWarp] = decider1;
+  }
   const unsigned low = __ballot_sync(kFullWarp, inside0), high = __ballot_sync(kFullWarp, inside1);
-  if (lane == 0)
+  if (lane == 0 && job.signs)
     job.signs[static_cast<size_t>(job.view.first_brick + b) * kLeavesPerBrick + static_cast<size_t>(leaf)] =
         static_cast<uint64_t>(high) << 32 | low;
 }
 
-// Gathers the candidates of a slice; evaluates its signs unless signs is nullptr. Waits once, or more often if the
-// guess of their number was too small.
+// Gathers the candidates of a slice, and finds the signs of its inactive leaves unless signs is nullptr. Waits once, or
+// more often if the guess of their number was too small.
 template <class E>
 void gather_candidates(E &executor, const FeatureView &features, const BrickSet &bricks, BrickRange slice,
                        CudaRooms &rooms, CudaCandidates &candidates, uint64_t *signs) {
@@ -228,6 +248,7 @@ void gather_candidates(E &executor, const FeatureView &features, const BrickSet 
   view.bricks = n;
   view.brick_rows = executor.template allocate<BrickRow>(n).data;
   view.leaf_list = executor.template allocate<uint32_t>(size_t(n) * kLeavesPerBrick).data;
+  view.brick_leaves = executor.template allocate<uint8_t>(n).data;
   Span<CandidateCounters> counters = executor.template allocate<CandidateCounters>(1);
   const double per_brick = listed_candidates(features.parameters);
   const auto room_for = [&](double rate, uint32_t most) {
@@ -267,13 +288,26 @@ void gather_candidates(E &executor, const FeatureView &features, const BrickSet 
   }
   candidates.leaves = static_cast<size_t>(found.leaves);
   candidates.longest_row = std::max(kUsualRow, found.longest_row);
-  if (signs)  // lanes look at all atoms and arcs of a row, and at an atom's caps
-    executor.launch(
-        "evaluate_leaves", evaluate_leaves_kernel, candidates.leaves,
-        LaunchShape{kSignWarps * kWarp, kSignWarps, 64 + 2 * uint64_t(candidates.longest_row) + features.most_caps},
-        SignJob{features, bricks, reach, view, signs});
   candidates.view = view;
   candidates.slice = slice;
+}
+
+// Lanes look at all atoms and arcs of a row, and at an atom's caps.
+inline LaunchShape leaf_shape(const FeatureView &features, const CudaCandidates &candidates) {
+  return {kSignWarps * kWarp, kSignWarps, 64 + 2 * uint64_t(candidates.longest_row) + features.most_caps};
+}
+
+// Evaluates the active leaves of a slice. deciders: whether what decides about their points is kept for thin walls.
+template <class E>
+void evaluate_leaves(E &executor, const FeatureView &features, const BrickSet &bricks, CudaCandidates &candidates,
+                     bool deciders, uint64_t *signs) {
+  if (deciders)
+    candidates.view.deciders =
+        executor.template allocate<uint32_t>(size_t(candidates.slice.size()) * kBrickPoints).data;
+  const gpu::CandidateView &view = candidates.view;
+  executor.launch(
+      "evaluate_leaves", evaluate_leaves_kernel, candidates.leaves, leaf_shape(features, candidates),
+      SignJob{features, bricks, CandidateReach::of(features.parameters), view, view.leaf_list, nullptr, signs});
 }
 
 }  // namespace gpu

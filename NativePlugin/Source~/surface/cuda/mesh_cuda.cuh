@@ -22,8 +22,7 @@ VertexJob prepare_vertices(E &executor, const FeatureView &features, const Brick
   job.first = sizes.first_vertex;
   job.count = sizes.vertices;
   if (job.count == 0) return job;
-  if (candidates.slice.first != slice.first || candidates.slice.last != slice.last)
-    gather_candidates(executor, features, bricks, slice, rooms, candidates, nullptr);
+  if (!candidates.are_of(slice)) gather_candidates(executor, features, bricks, slice, rooms, candidates, nullptr);
   const size_t leaves = static_cast<size_t>(slice.size()) * kLeavesPerBrick;
   job.features = features;
   job.bricks = bricks;

@@ -125,19 +125,25 @@ __device__ __forceinline__ SharedCandidates choose_for_edge(const FeatureView &f
   const unsigned lanes = SharedCandidates::lanes();
   const int rank = SharedCandidates::rank();
   const auto choose = [&](const Sphere *balls, const uint32_t *items, int count, float reach, uint32_t *out, int left) {
+    constexpr int kAhead = 4;  // loads that are under way together
     int n = 0;
-    for (int k0 = 0; k0 < count; k0 += kVertexLanes) {
-      const int k = k0 + rank;
-      bool near = false;
-      uint32_t i = 0;
-      if (k < count) {
-        i = __ldg(items + k);
-        const Sphere ball = load(balls + i);
+    for (int k0 = rank; k0 - rank < count; k0 += kAhead * kVertexLanes) {
+      uint32_t item[kAhead];
+      bool near[kAhead];
+#pragma unroll
+      for (int j = 0; j < kAhead; ++j)
+        item[j] = __ldg(items + (k0 + j * kVertexLanes < count ? k0 + j * kVertexLanes : 0));
+#pragma unroll
+      for (int j = 0; j < kAhead; ++j) {
+        const Sphere ball = load(balls + item[j]);
         const float r = ball.radius + reach;
-        near = length_squared(Vec3<float>(ball.center) - middle) < r * r;
+        near[j] = k0 + j * kVertexLanes < count && length_squared(Vec3<float>(ball.center) - middle) < r * r;
       }
-      const int place = append_place(near, &n, lanes);
-      if (near && place < left) out[place] = i;
+#pragma unroll
+      for (int j = 0; j < kAhead; ++j) {
+        const int place = append_place(near[j], &n, lanes);
+        if (near[j] && place < left) out[place] = item[j];
+      }
     }
     return n;
   };

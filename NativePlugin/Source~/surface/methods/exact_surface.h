@@ -169,11 +169,14 @@ MeshMemoryView build_exact_surface(Work &work) {
     const uint32_t slice_size = sign_slice(work, set);
     share = slice_size >= set.count && work.plan.single_slice;
     shared = {};
+    if (share) B::gather_candidates(executor, features, set, {0, set.count}, work.rooms, shared, signs);
+    const auto mark = executor.arena().mark();
     for_each_slice(work, set.count, slice_size, 0.1, 0.45, [&](BrickRange slice) {
       Candidates<Executor> own{};
       B::evaluate_signs(executor, features, set, slice, work.rooms, share ? shared : own, signs);
     });
     if (work.parameters.has_thin_walls()) mend_thin_walls(work, set, share ? &shared : nullptr, signs);
+    executor.arena().rewind(mark);
   });
 
   MeshMemoryView mesh = work.memory.allocate_mesh(executor, with_spare_room(work, counts.vertices),

@@ -36,9 +36,11 @@ struct TableView {
 // What a back end must offer, as static functions; BackendContract lets the compiler check it. Where E stands, they
 // also take a CountingExecutor of theirs, and then only ask for memory.
 //
-//   Candidates     what signs and vertices may share for a slice of bricks
+//   Candidates     what signs, walls and vertices may share for a slice of bricks
 //   LearntRooms    how much room the last surface of so many atoms took, where that is not known beforehand
 //   find_solvent_features(E, atoms, parameters, plan, rooms, features)
+//   gather_candidates(E, features, bricks, slice, rooms, candidates, signs)
+//       for stages that share them, to be called first then; some signs may be known with that
 //   evaluate_signs(E, features, bricks, slice, rooms, candidates, signs)
 //       signs[8 * brick + leaf] for the bricks of the slice: bit set = farther than depth inside the boundary
 //   mark_thin_walls(E, features, bricks, slice, rooms, candidates, signs, marks)
@@ -66,6 +68,9 @@ struct BackendContract {
   static_assert(has<decltype(&B::template find_solvent_features<Executor>), const NeighborGridView &,
                     const SurfaceParameters &, const MemoryPlan &, typename B::LearntRooms &, SolventFeatures *>,
                 "find_solvent_features");
+  static_assert(has<decltype(&B::template gather_candidates<Executor>), const FeatureView &, const BrickSet &,
+                    BrickRange, typename B::LearntRooms &, typename B::Candidates &, uint64_t *>,
+                "gather_candidates");
   static_assert(has<decltype(&B::template evaluate_signs<Executor>), const FeatureView &, const BrickSet &, BrickRange,
                     typename B::LearntRooms &, typename B::Candidates &, uint64_t *>,
                 "evaluate_signs");
