@@ -45,8 +45,8 @@ namespace QuickSes
             "exact surface.")]
         private int _relaxationSteps = 1;
         [SerializeField, Tooltip("When atoms rest, triangles of the finest level follow the creases where sheets of the " +
-            "surface meet, and light breaks there.")]
-        private bool _sharpCreases;
+            "surface meet, and light breaks there. Not while atoms move, nor with the grid method.")]
+        private bool _sharpCreases = true;
 
         [Header("Playback")]
         [SerializeField, Min(0), Tooltip("Milliseconds per surface while atoms move: the finest level that " +
@@ -93,7 +93,10 @@ namespace QuickSes
         /// </summary>
         public event Action<SurfaceLevel> SurfaceUpdated;
 
-        /// <summary>The finest surface of the newest atoms is shown; nothing is left to do.</summary>
+        /// <summary>
+        /// The finest surface of the newest atoms is shown, with its creases (<see cref="SharpCreases"/>); nothing is left to
+        /// do. After new positions that is not before <see cref="RestDelay"/>.
+        /// </summary>
         public event Action RefinementFinished;
 
         /// <summary>
