@@ -9,7 +9,7 @@ namespace QuickSes
     {
         [NonSerialized] private StructureLoad _load; // null: nothing is being read
         [NonSerialized] private bool _loadsAtoms; // not only their colours
-        [NonSerialized] private bool _isPlayed;
+        [NonSerialized] private TrajectoryPlayer _player;
         [NonSerialized] private bool _isLoadDeferred; // until it is enabled
         [NonSerialized] private MoleculeSource _loadedSource; // as it was when it was read; null: it was not
 
@@ -25,19 +25,21 @@ namespace QuickSes
         /// </summary>
         public float LoadProgress => _load != null ? _load.Progress : _isLoadDeferred ? 0 : 1;
 
-        /// <summary>A <see cref="TrajectoryPlayer"/> brings the atoms, so that the source is left alone.</summary>
-        internal bool IsPlayed
+        /// <summary>Who brings the atoms, so that the source is left alone; null: nobody.</summary>
+        internal TrajectoryPlayer Player
         {
-            get => _isPlayed;
+            get => _player;
             set
             {
-                _isPlayed = value;
-                if (value)
+                _player = value;
+                if (IsPlayed)
                     CancelLoading();
                 else
                     AskForAtoms();
             }
         }
+
+        internal bool IsPlayed => _player != null;
 
         /// <summary>
         /// Begins to read the <see cref="Source"/> on a thread of its own, in place of what is being read. What is shown
