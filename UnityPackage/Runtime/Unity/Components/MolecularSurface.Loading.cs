@@ -14,7 +14,11 @@ namespace QuickSes
         [NonSerialized] private MoleculeSource _loadedSource; // as it was when it was read; null: it was not
 
         /// <summary>The atoms of the source are there, and their colours. Not raised for atoms of scripts.</summary>
-        public event Action Loaded;
+        public event Action Loaded
+        {
+            add => _loaded.Add(value);
+            remove => _loaded.Remove(value);
+        }
 
         /// <summary>Whether the source is being read, or will be when the component is enabled.</summary>
         public bool IsLoading => _load != null || _isLoadDeferred;
@@ -148,7 +152,7 @@ namespace QuickSes
                 ColorAtomsOf(loaded);
             _isScriptFed = false;
             TakeStructure(loaded);
-            Loaded?.Invoke();
+            _loaded.Tell(this);
             if (this != null)
                 _events.Loaded.Invoke();
             return true;
