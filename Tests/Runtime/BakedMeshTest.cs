@@ -54,7 +54,7 @@ namespace QuickSes.Tests
                 return !surface.IsBusy;
             });
             Assert.That(Filter(surface).sharedMesh, Is.SameAs(surface.Mesh));
-            SurfaceMeshes.AssertIsSurfaceOf(surface.Mesh, positions, radii, 0.5f);
+            SurfaceMeshes.AssertShows(surface, positions, radii);
             Assert.That(_baked.vertexCount, Is.EqualTo(3));
 
             // What is put there while the surface is off gives way to it again.

@@ -45,8 +45,8 @@ namespace QuickSes.Tests
             yield return SurfaceRig.Until(() => !copy.IsBusy);
             Assert.That(_rig.Levels.Count, Is.EqualTo(levels), "listeners are not copied");
             AssertHasMeshOfItsOwn(copy);
-            SurfaceMeshes.AssertIsSurfaceOf(copy.Mesh, otherPositions, otherRadii, 0.5f, copy.OwnerAtomAt);
-            SurfaceMeshes.AssertIsSurfaceOf(_rig.Surface.Mesh, positions, radii, 0.5f, _rig.Surface.OwnerAtomAt);
+            SurfaceMeshes.AssertShows(copy, otherPositions, otherRadii);
+            SurfaceMeshes.AssertShows(_rig.Surface, positions, radii);
         }
 
         [UnityTest]
@@ -72,8 +72,8 @@ namespace QuickSes.Tests
                 yield return _rig.Settle();
                 yield return SurfaceRig.Until(() => !copy.IsBusy);
                 AssertHasMeshOfItsOwn(copy);
-                SurfaceMeshes.AssertIsSurfaceOf(_rig.Surface.Mesh, positions, radii, 0.5f);
-                SurfaceMeshes.AssertIsSurfaceOf(copy.Mesh, positions, radii, 0.5f);
+                SurfaceMeshes.AssertShows(_rig.Surface, positions, radii);
+                SurfaceMeshes.AssertShows(copy, positions, radii);
                 TearDown();
             }
         }

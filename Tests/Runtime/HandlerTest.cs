@@ -2,6 +2,7 @@
 using NUnit.Framework;
 using System;
 using System.Collections;
+using System.Collections.Generic;
 using System.Text.RegularExpressions;
 using UnityEngine;
 using UnityEngine.TestTools;
@@ -30,6 +31,58 @@ namespace QuickSes.Tests
             yield return _rig.Settle();
             yield return SurfaceRig.Frames(3);
             Assert.That(_rig.Finished, Is.EqualTo(1));
+        }
+
+        [Test]
+        public void WhatOneListenerThrowsIsLoggedAndTheOthersAreTold()
+        {
+            TestMolecules.Blob(40, 1, out Vector3[] positions, out float[] radii);
+            _rig = new SurfaceRig();
+            MolecularSurface surface = _rig.Surface;
+            var told = new List<string>();
+            Action<SurfaceLevel> removed = level => told.Add("removed");
+            surface.SurfaceUpdated += removed;
+            surface.SurfaceUpdated += level => throw new InvalidOperationException("first fault");
+            surface.SurfaceUpdated += level => told.Add("updated");
+            surface.SurfaceUpdated -= removed;
+            surface.Events.SurfaceUpdated.AddListener(() => told.Add("updated, wired"));
+            surface.RefinementFinished += () => throw new InvalidOperationException("second fault");
+            surface.RefinementFinished += () => told.Add("finished");
+            surface.Events.RefinementFinished.AddListener(() => told.Add("finished, wired"));
+            surface.Failed += error => throw new InvalidOperationException("third fault");
+            surface.Failed += error => told.Add("failed");
+            surface.Events.Failed.AddListener(message => told.Add("failed, wired"));
+            LogAssert.Expect(LogType.Exception, new Regex("first fault"));
+            LogAssert.Expect(LogType.Exception, new Regex("second fault"));
+            surface.SetAtoms(positions, radii);
+            Assert.That(surface.ComputeNow());
+            Assert.That(told, Is.EqualTo(new[] { "updated", "updated, wired", "finished", "finished, wired" }));
+            told.Clear();
+            LogAssert.Expect(LogType.Exception, new Regex("third fault"));
+            positions[0].x = float.NaN;
+            surface.SetPositions(positions);
+            Assert.That(surface.ComputeNow(), Is.False);
+            Assert.That(told, Is.EqualTo(new[] { "failed", "failed, wired" }));
+        }
+
+        [Test]
+        public void WhatAListenerOfAPlayerThrowsIsLoggedAsWell()
+        {
+            using (var playing = new PlayerFixture())
+            {
+                var told = new List<string>();
+                playing.Player.Loaded += () => throw new InvalidOperationException("first fault");
+                playing.Player.Loaded += () => told.Add("loaded");
+                playing.Player.Events.Loaded.AddListener(() => told.Add("loaded, wired"));
+                playing.Player.FrameShown += frame => throw new InvalidOperationException("second fault");
+                playing.Player.FrameShown += frame => told.Add("frame " + frame);
+                playing.Player.Events.FrameShown.AddListener(frame => told.Add($"frame {frame}, wired"));
+                LogAssert.Expect(LogType.Exception, new Regex("first fault"));
+                LogAssert.Expect(LogType.Exception, new Regex("second fault"));
+                playing.UseEnsemble(3);
+                playing.Load();
+                Assert.That(told, Is.EqualTo(new[] { "loaded", "loaded, wired", "frame 0", "frame 0, wired" }));
+            }
         }
 
         [UnityTest]

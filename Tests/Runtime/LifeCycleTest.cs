@@ -56,7 +56,7 @@ namespace QuickSes.Tests
             Assert.That(_rig.Surface.Mesh.vertexCount, Is.EqualTo(vertices));
             _rig.GameObject.SetActive(true);
             yield return _rig.Settle();
-            SurfaceMeshes.AssertIsSurfaceOf(_rig.Surface.Mesh, positions, radii, 0.5f);
+            SurfaceMeshes.AssertShows(_rig.Surface, positions, radii);
         }
 
         [UnityTest]
@@ -70,7 +70,7 @@ namespace QuickSes.Tests
             Assert.That(_rig.Levels, Is.Empty);
             _rig.Surface.enabled = true;
             yield return _rig.Settle();
-            SurfaceMeshes.AssertIsSurfaceOf(_rig.Surface.Mesh, positions, radii, 0.5f);
+            SurfaceMeshes.AssertShows(_rig.Surface, positions, radii);
         }
 
         [UnityTest]
@@ -97,7 +97,7 @@ namespace QuickSes.Tests
             };
             _rig.Surface.SetAtoms(positions, radii);
             yield return SurfaceRig.Until(() => frame >= 10 && !_rig.Surface.IsBusy);
-            SurfaceMeshes.AssertIsSurfaceOf(_rig.Surface.Mesh, TestMolecules.Moved(positions, 9), radii, 0.5f);
+            SurfaceMeshes.AssertShows(_rig.Surface, TestMolecules.Moved(positions, 9), radii);
         }
 
         [UnityTest]
@@ -112,8 +112,8 @@ namespace QuickSes.Tests
                 child.Surface.SetAtoms(inner, innerRadii);
                 yield return _rig.Settle();
                 yield return child.Settle();
-                SurfaceMeshes.AssertIsSurfaceOf(_rig.Surface.Mesh, outer, outerRadii, 0.5f);
-                SurfaceMeshes.AssertIsSurfaceOf(child.Surface.Mesh, inner, innerRadii, 0.5f);
+                SurfaceMeshes.AssertShows(_rig.Surface, outer, outerRadii);
+                SurfaceMeshes.AssertShows(child.Surface, inner, innerRadii);
                 Object.DestroyImmediate(child.GameObject);
                 yield return SurfaceRig.Frames(2);
                 Assert.That(_rig.Surface.Mesh.vertexCount, Is.GreaterThan(0));

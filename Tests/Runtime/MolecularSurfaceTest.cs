@@ -45,7 +45,7 @@ namespace QuickSes.Tests
             _rig.Surface.SetAtoms(new[] { centre }, new[] { 1.7f });
             yield return _rig.Settle();
             Mesh mesh = _rig.Surface.Mesh;
-            Assert.That(SurfaceMeshes.IsClosed(mesh));
+            Assert.That(SurfaceMeshes.IsClosed(mesh, _rig.Surface));
             Vector3[] vertices = mesh.vertices, normals = mesh.normals;
             for (int v = 0; v < vertices.Length; ++v)
             {
@@ -85,8 +85,8 @@ namespace QuickSes.Tests
             _rig.Surface.SetAtoms(positions, radii);
             yield return _rig.Settle();
             Mesh mesh = _rig.Surface.Mesh;
-            SurfaceMeshes.AssertIsSurfaceOf(mesh, positions, radii, 0.5f, _rig.Surface.OwnerAtomAt);
-            Assert.That(SurfaceMeshes.IsClosed(mesh));
+            SurfaceMeshes.AssertShows(_rig.Surface, positions, radii);
+            Assert.That(SurfaceMeshes.IsClosed(mesh, _rig.Surface));
             Assert.That(SurfaceMeshes.SignedVolume(mesh), Is.EqualTo(_rig.Surface.Volume).Within(2).Percent,
                 "front faces are outside");
             Assert.That(mesh.indexFormat, Is.EqualTo(IndexFormat.UInt32));
@@ -110,7 +110,7 @@ namespace QuickSes.Tests
             }
             yield return _rig.Settle();
             Assert.That(_rig.GameObject.GetComponent<MeshFilter>().sharedMesh, Is.SameAs(_rig.Surface.Mesh));
-            SurfaceMeshes.AssertIsSurfaceOf(_rig.Surface.Mesh, positions, radii, 0.5f);
+            SurfaceMeshes.AssertShows(_rig.Surface, positions, radii);
             Assert.That(_rig.Failures, Is.Empty);
         }
 
@@ -130,7 +130,7 @@ namespace QuickSes.Tests
             _rig.Surface.SetAtoms(new Vector3[indices.Length], radii);
             _rig.Surface.SetPositions(all, indices);
             yield return _rig.Settle();
-            SurfaceMeshes.AssertIsSurfaceOf(_rig.Surface.Mesh, picked, radii, 0.5f);
+            SurfaceMeshes.AssertShows(_rig.Surface, picked, radii);
         }
 
         [UnityTest]
@@ -217,13 +217,13 @@ namespace QuickSes.Tests
             Assert.That(_rig.Failures[0].Status, Is.EqualTo(QuickSesStatus.InvalidArgument));
             Assert.That(_rig.Failures[0].Message, Does.Contain("7"));
             Assert.That(_rig.Surface.LastError.Status, Is.EqualTo(QuickSesStatus.InvalidArgument));
-            SurfaceMeshes.AssertIsSurfaceOf(_rig.Surface.Mesh, positions, radii, 0.5f);
+            SurfaceMeshes.AssertShows(_rig.Surface, positions, radii);
 
             Vector3[] next = TestMolecules.Moved(positions, 1);
             _rig.Surface.SetPositions(next);
             yield return _rig.Settle();
             Assert.That(_rig.Surface.LastError.Status, Is.EqualTo(QuickSesStatus.Ok));
-            SurfaceMeshes.AssertIsSurfaceOf(_rig.Surface.Mesh, next, radii, 0.5f);
+            SurfaceMeshes.AssertShows(_rig.Surface, next, radii);
         }
 
         [UnityTest]
@@ -284,7 +284,7 @@ namespace QuickSes.Tests
             _rig.Surface.Surface = SurfaceKind.Ses;
             _rig.Surface.Spacing = 0.8f;
             yield return _rig.Settle();
-            SurfaceMeshes.AssertIsSurfaceOf(_rig.Surface.Mesh, positions, radii, 0.8f);
+            SurfaceMeshes.AssertShows(_rig.Surface, positions, radii);
 
             int levels = _rig.Levels.Count;
             _rig.Surface.Spacing = 0.8f;
@@ -293,10 +293,11 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
-        public IEnumerator BuffersHaveRoomWhileAtomsMoveAndNoneAtRest()
+        public IEnumerator BuffersHaveRoomWhileAtomsMoveAndNoneAtRest([Values] bool isSharp)
         {
             TestMolecules.Blob(60, 12, out Vector3[] positions, out float[] radii);
             _rig = new SurfaceRig();
+            _rig.Surface.SharpCreases = isSharp;
             _rig.Surface.RestDelay = float.PositiveInfinity;
             _rig.Surface.FrameBudget = 0;
             _rig.Surface.SetAtoms(positions, radii);
@@ -308,14 +309,14 @@ namespace QuickSes.Tests
             yield return SurfaceRig.Frames(5);
             Assert.That(_rig.Surface.Mesh.vertexCount, Is.GreaterThan(_rig.Surface.CurrentLevel.VertexCount));
             Assert.That(_rig.Surface.Mesh.GetIndexCount(0), Is.EqualTo(3 * _rig.Surface.CurrentLevel.TriangleCount));
-            SurfaceMeshes.AssertIsSurfaceOf(_rig.Surface.Mesh, positions, radii, 0.5f);
+            SurfaceMeshes.AssertShows(_rig.Surface, positions, radii, true);
             int updates = _rig.Levels.Count;
             uint jobs = SurfaceScheduler.LastJob;
             _rig.Surface.RestDelay = 0;
             yield return SurfaceRig.Until(() => _rig.Levels.Count > updates);
             Assert.That(_rig.Surface.Mesh.vertexCount, Is.EqualTo(_rig.Surface.CurrentLevel.VertexCount));
-            SurfaceMeshes.AssertIsSurfaceOf(_rig.Surface.Mesh, positions, radii, 0.5f, _rig.Surface.OwnerAtomAt);
-            Assert.That(SurfaceScheduler.LastJob, Is.EqualTo(jobs), "nothing was computed");
+            SurfaceMeshes.AssertShows(_rig.Surface, positions, radii);
+            Assert.That(SurfaceScheduler.LastJob - jobs, Is.EqualTo(isSharp ? 1 : 0), "nothing but creases was computed");
         }
 
         [Test]
@@ -325,7 +326,7 @@ namespace QuickSes.Tests
             _rig = new SurfaceRig();
             _rig.Surface.SetAtoms(positions, radii);
             Assert.That(_rig.Surface.ComputeNow());
-            SurfaceMeshes.AssertIsSurfaceOf(_rig.Surface.Mesh, positions, radii, 0.5f);
+            SurfaceMeshes.AssertShows(_rig.Surface, positions, radii);
             Assert.That(_rig.Surface.IsBusy, Is.False);
             Assert.That(_rig.Finished, Is.EqualTo(1));
         }

@@ -70,13 +70,15 @@ namespace QuickSes.Tests
                 if (k % 10 == 0)
                     to = from + Vector3.right; // a direction with zeros
                 var ray = new Ray(from, to - from);
-                bool expected = Nearest(vertices, triangles, ray, out double distance);
+                bool expected = Nearest(vertices, triangles, ray, out double distance, out int corner);
                 Assert.That(_rig.Surface.TryPick(ray, out int atom, out Vector3 point), Is.EqualTo(expected));
                 if (!expected)
                     continue;
                 ++hits;
                 Assert.That((point - ray.origin).magnitude, Is.EqualTo(distance).Within(1e-3));
-                Assert.That(atom, Is.InRange(0, 149));
+                Assert.That(atom, Is.EqualTo(_rig.Surface.OwnerAtomAt(triangles[corner]))
+                    .Or.EqualTo(_rig.Surface.OwnerAtomAt(triangles[corner + 1]))
+                    .Or.EqualTo(_rig.Surface.OwnerAtomAt(triangles[corner + 2])));
             }
             Assert.That(hits, Is.GreaterThan(80));
         }
@@ -100,9 +102,11 @@ namespace QuickSes.Tests
         private static float Signed(System.Random random) => 2 * (float)random.NextDouble() - 1;
 
         // In double precision, by the signs of volumes.
-        private static bool Nearest(Vector3[] vertices, int[] triangles, Ray ray, out double distance)
+        private static bool Nearest(
+            Vector3[] vertices, int[] triangles, Ray ray, out double distance, out int firstCorner)
         {
             distance = double.PositiveInfinity;
+            firstCorner = -1;
             for (int i = 0; i < triangles.Length; i += 3)
             {
                 Vector3 a = vertices[triangles[i]] - ray.origin, b = vertices[triangles[i + 1]] - ray.origin,
@@ -113,8 +117,10 @@ namespace QuickSes.Tests
                 if (!isInside || u + v + w == 0)
                     continue;
                 double t = Volume(a, b, c) / (u + v + w);
-                if (t >= 0 && t < distance)
-                    distance = t;
+                if (t < 0 || t >= distance)
+                    continue;
+                distance = t;
+                firstCorner = i;
             }
             return !double.IsPositiveInfinity(distance);
         }

@@ -222,6 +222,63 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void TwoPlayersDontHaveOneSurface()
+        {
+            _playing.GameObject.name = "first";
+            _playing.Load();
+            using (var other = new PlayerFixture())
+            {
+                other.GameObject.name = "second";
+                other.UseEnsemble(3);
+                PlayedSurface water = other.Player.AddSurface(_water.Surface, "(HOH)");
+                water.KeepWater = true;
+                Assert.That(other.Player.Load(), Is.False);
+                Assert.That(other.Failures[0], Does.Contain("'first'").And.Contain("'second'").And.Contain("'water'"));
+                Assert.That(other.Surface.IsPlayed || other.Player.IsLoading, Is.False);
+                Player.Frame = 7;
+                _playing.WaitUntilShown(7);
+                AssertAllAt(7);
+
+                other.Player.RemoveSurface(_water.Surface);
+                other.Load();
+                Assert.That(Player.RemoveSurface(_water.Surface));
+                PlayedSurface own = Player.AddSurface(other.Surface, "(HOH)");
+                Assert.That(Player.Load(), Is.False, "the own surface of a player that plays");
+                Assert.That(_playing.Failures[0], Does.Contain("'second'"));
+                Assert.That(other.Surface.AtomCount, Is.EqualTo(TestFrames.WithoutWater.Length));
+
+                other.Player.Unload();
+                own.KeepWater = true;
+                Player.Frame = 0;
+                _playing.Load();
+                AssertAt(other.Surface, s_water, 0);
+                Assert.That(other.Surface.Player, Is.SameAs(Player));
+            }
+        }
+
+        [Test]
+        public void WhoWasAskedToPlayComesBeforeWhoMayHaveNothingToPlay([Values(1, 3)] int models)
+        {
+            using (var other = new PlayerFixture())
+            {
+                other.GameObject.name = "wishful";
+                other.Player.enabled = false;
+                other.Surface.Source.SetAsset(new TextAsset(TestFrames.Pdb(models)) { name = "ensemble.pdb" });
+                other.Player.enabled = true; // looks whether there are frames beside it
+                Assert.That(other.Surface.Player, Is.SameAs(other.Player));
+                Player.AddSurface(other.Surface, "(HOH)").KeepWater = true;
+                _playing.Load();
+                AssertAt(other.Surface, s_water, 0);
+                other.TickUntil(() => !other.Player.IsLoading, "it knows");
+                Assert.That(other.Surface.Player, Is.SameAs(Player));
+                AssertAt(other.Surface, s_water, 0);
+                Assert.That(other.Failures.Count, Is.EqualTo(models > 1 ? 1 : 0), "there are frames that it can't show");
+                if (models > 1)
+                    Assert.That(other.Failures[0], Does.Contain("'molecule'").And.Contain("'wishful'"));
+            }
+        }
+
+        [Test]
         public void SelectionsWithoutAtomsAreNamed([Values] bool isDestroyed)
         {
             var ligand = new GameObject("ligand");

@@ -93,7 +93,7 @@ namespace QuickSes.Tests
             for (int k = 0; k < _rigs.Count; ++k)
             {
                 MolecularSurface surface = _rigs[k].Surface;
-                SurfaceMeshes.AssertIsSurfaceOf(surface.Mesh, positions[k], radii[k], 0.5f, surface.OwnerAtomAt);
+                SurfaceMeshes.AssertShows(surface, positions[k], radii[k]);
                 Assert.That(_rigs[k].Failures, Is.Empty);
             }
         }

@@ -2,6 +2,7 @@
 using NUnit.Framework;
 using System.Collections;
 using System.Linq;
+using System.Text.RegularExpressions;
 using UnityEngine;
 using UnityEngine.TestTools;
 using UnityEngine.TestTools.Constraints;
@@ -254,26 +255,37 @@ namespace QuickSes.Tests
         }
 
         [Test]
-        public void HandlersThatThrowHoldUpNoOtherEvent()
+        public void HandlersThatThrowHoldUpNoOtherEvent([Values] bool isWired)
         {
             LoadEnsemble(3);
             Player.Mode = PlaybackMode.Once;
-            Player.FrameShown += frame =>
-            {
-                if (frame == 2)
-                    throw new System.InvalidOperationException("thrown");
-            };
+            if (isWired)
+                Player.Events.FrameShown.AddListener(ThrowAtTwo); // the engine's, and what it throws too
+            else
+                Player.FrameShown += ThrowAtTwo;
+            if (!isWired)
+                LogAssert.Expect(LogType.Exception, new Regex("thrown"));
             Player.Play();
-            Assert.That(() =>
+            TestDelegate play = () =>
             {
                 for (int step = 0; step < 3; ++step)
                     _playing.Pass(0.1f);
-            }, Throws.InvalidOperationException);
-            Assert.That(_playing.Finishes, Is.EqualTo(0));
+            };
+            if (isWired)
+                Assert.That(play, Throws.InvalidOperationException);
+            else
+                play();
+            Assert.That(_playing.Finishes, Is.EqualTo(isWired ? 0 : 1));
             _playing.Pass(0.1f);
             _playing.Pass(0.1f);
             Assert.That(_playing.Finishes, Is.EqualTo(1));
             Assert.That(_playing.Shown, Is.EqualTo(new[] { 0, 1, 2 }));
+        }
+
+        private static void ThrowAtTwo(int frame)
+        {
+            if (frame == 2)
+                throw new System.InvalidOperationException("thrown");
         }
 
         [Test]

@@ -76,13 +76,15 @@ namespace QuickSes.Editor
         {
             serializedObject.Update();
             SerializedProperty kind = serializedObject.FindProperty("_surface");
+            SerializedProperty method = serializedObject.FindProperty("_method");
             SerializedProperty property = serializedObject.GetIterator();
             for (bool isFirst = true; property.NextVisible(isFirst); isFirst = false)
             {
                 if (property.propertyPath == "m_Script")
                     continue;
-                bool isUsed = kind.hasMultipleDifferentValues ||
-                    SurfaceForm.IsUsed(property.propertyPath, (SurfaceKind)kind.intValue);
+                bool isUsed = kind.hasMultipleDifferentValues || method.hasMultipleDifferentValues ||
+                    SurfaceForm.IsUsed(
+                        property.propertyPath, (SurfaceKind)kind.intValue, (SurfaceMethod)method.intValue);
                 string unit = SurfaceForm.UnitOf(property.propertyPath);
                 string label = unit == null ? property.displayName : $"{property.displayName} ({unit})";
                 using (new EditorGUI.DisabledScope(!isUsed))

@@ -25,8 +25,8 @@ namespace QuickSes.Editor
             }
         }
 
-        /// <summary>Whether a field of a surface of that kind changes anything.</summary>
-        public static bool IsUsed(string property, SurfaceKind surface)
+        /// <summary>Whether a field of a surface of that kind, made by that method, changes anything.</summary>
+        public static bool IsUsed(string property, SurfaceKind surface, SurfaceMethod method)
         {
             switch (property)
             {
@@ -34,6 +34,8 @@ namespace QuickSes.Editor
                     return surface != SurfaceKind.Vdw;
                 case "_method":
                     return surface == SurfaceKind.Ses;
+                case "_sharpCreases":
+                    return surface != SurfaceKind.Ses || method != SurfaceMethod.Grid;
                 default:
                     return true;
             }

@@ -6,11 +6,19 @@ using System.Linq;
 namespace QuickSes.Tests
 {
     /// <summary>Meshes that are kept for longer than their contexts keep them.</summary>
+    [TestFixture(false)]
+    [TestFixture(true)]
     public sealed class KeptMeshTest
     {
+        private readonly bool _isSharp;
         private SurfaceContext _context;
         private KeptMesh _kept;
         private SurfaceSettings _settings;
+
+        public KeptMeshTest(bool isSharp)
+        {
+            _isSharp = isSharp;
+        }
 
         [SetUp]
         public void SetUp()
@@ -19,6 +27,7 @@ namespace QuickSes.Tests
             _kept = new KeptMesh();
             _settings = SurfaceSettings.Default;
             _settings.Pickable = true;
+            _settings.Creases = _settings.HardEdges = _isSharp;
         }
 
         [TearDown]
@@ -33,7 +42,8 @@ namespace QuickSes.Tests
         {
             SurfaceMeshView computed = Meshes.Compute(_context, _settings);
             float[] positions = computed.Positions.ToArray();
-            uint[] indices = computed.Indices.ToArray();
+            uint[] indices = computed.Indices.ToArray(), repeated = computed.Repeated.ToArray();
+            Assert.That(repeated.Length > 0, Is.EqualTo(_isSharp));
             _context.TryGetReport(out SurfaceReport report);
             Assert.That(_context.Keep(_kept), Is.True);
             Assert.That(computed.IsValid, Is.False, "it went to the kept mesh");
@@ -45,6 +55,7 @@ namespace QuickSes.Tests
             Assert.That(view.IsValid, Is.True);
             Assert.That(view.Positions.SequenceEqual(positions), Is.True);
             Assert.That(view.Indices.SequenceEqual(indices), Is.True);
+            Assert.That(view.Repeated.SequenceEqual(repeated), Is.True);
             Assert.That(_kept.TryGetReport(out SurfaceReport kept), Is.True);
             Assert.That(kept.Area, Is.EqualTo(report.Area));
         }

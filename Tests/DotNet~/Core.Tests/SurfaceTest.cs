@@ -39,6 +39,33 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void HardEdgesAreClosedByTheirNumbers([Values] SurfaceKind kind)
+        {
+            using SurfaceContext context = Meshes.CrambinContext();
+            SurfaceSettings settings = SurfaceSettings.Default;
+            settings.Surface = kind;
+            settings.Creases = settings.HardEdges = true;
+            SurfaceMeshView mesh = Meshes.Compute(context, settings);
+            ReadOnlySpan<uint> repeated = mesh.Repeated;
+            Assert.That(repeated.Length, Is.Positive);
+            uint single = (uint)(mesh.VertexCount - repeated.Length);
+            uint[] indices = mesh.Indices.ToArray();
+            Assert.That(Meshes.IsClosed(indices), Is.False, "each side has vertices of its own");
+            for (int i = 0; i < indices.Length; ++i)
+                if (indices[i] >= single)
+                    indices[i] = repeated[(int)(indices[i] - single)];
+            Assert.That(Meshes.IsClosed(indices), Is.True);
+            for (int k = 0; k < repeated.Length; ++k)
+            {
+                Assert.That(k == 0 || repeated[k - 1] < repeated[k], "in ascending order");
+                int vertex = 3 * (int)(single + k), other = 3 * (int)repeated[k];
+                Assert.That(mesh.Positions.Slice(vertex, 3).SequenceEqual(mesh.Positions.Slice(other, 3)), Is.True);
+            }
+            settings.HardEdges = false;
+            Assert.That(Meshes.Compute(context, settings).Repeated.IsEmpty, Is.True);
+        }
+
+        [Test]
         public void CrambinIsClosed([Values] SurfaceKind kind)
         {
             using Structure structure = Meshes.Crambin();

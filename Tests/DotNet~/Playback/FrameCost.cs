@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 using QuickSes.EngineDouble;
 using System;
+using System.Collections.Generic;
 using System.Diagnostics;
 using System.IO;
 using System.Threading;
@@ -55,7 +56,7 @@ namespace QuickSes.Playback
                 cost._name = $"{Path.GetFileName(file)}, {coloring}";
                 cost.Settle();
                 cost.Play();
-                cost.Settle();
+                cost.ComeToRest();
                 cost.Recolour();
             }
             cost.Pick();
@@ -127,6 +128,35 @@ namespace QuickSes.Playback
             return milliseconds;
         }
 
+        // The surface with creases, which is shown when atoms have not moved for a while, in exact buffers.
+        private void ComeToRest()
+        {
+            var sums = new double[Repetitions];
+            var longest = new double[Repetitions];
+            for (int k = 0; k < Repetitions; ++k)
+            {
+                if (k > 0)
+                    MoveOnce();
+                foreach (double frame in Settle())
+                {
+                    sums[k] += frame;
+                    longest[k] = Math.Max(longest[k], frame);
+                }
+            }
+            Print("coming to rest, in all", sums);
+            Print("  its longest frame", longest);
+            Console.WriteLine($"{_name}: {_surface.CurrentLevel.VertexCount} vertices, " +
+                $"{_surface.CurrentLevel.TriangleCount} triangles, {_surface.Repeated.Length} repeated, computed in " +
+                $"{_surface.CurrentLevel.ComputeMilliseconds:F0} ms; {_surface.CurrentLevel.MeshBytes / 1e6:F1} MB");
+        }
+
+        private void MoveOnce()
+        {
+            int shown = _shown;
+            while (_shown == shown)
+                PlayFrame(out _);
+        }
+
         // One atom after the other, as the mouse moves over them; what it costs in all, and the longest frame of it.
         private void Recolour()
         {
@@ -172,7 +202,7 @@ namespace QuickSes.Playback
                 _surface.SetPositions(_start);
                 int shown = _shown;
                 while (_shown == shown)
-                    Rest(Frame());
+                    RestedFrame();
                 Settle();
                 first[k] = PickOnce(bounds);
             }
@@ -208,26 +238,30 @@ namespace QuickSes.Playback
         }
 
         // Until everything is shown, and buffers are those of a surface at rest.
-        private void Settle()
+        private List<double> Settle()
         {
             Stopwatch clock = Stopwatch.StartNew();
+            var frames = new List<double>();
             do
             {
                 if (clock.ElapsedMilliseconds > Patience)
                     throw new InvalidOperationException("still waiting");
-                Rest(Frame());
+                frames.Add(RestedFrame());
             } while (_surface.IsBusy);
             for (int k = 0; k < 40; ++k)
-                Rest(Frame());
+                frames.Add(RestedFrame());
             if (_surface.LastError.Status != QuickSesStatus.Ok)
                 throw new InvalidOperationException(_surface.LastError.Message);
+            return frames;
         }
 
-        private static double Frame()
+        private static double RestedFrame()
         {
             long begin = Stopwatch.GetTimestamp();
             Engine.Frame(Interval / 1000);
-            return Milliseconds(begin);
+            double milliseconds = Milliseconds(begin);
+            Rest(milliseconds);
+            return milliseconds;
         }
 
         private static void Rest(double spent) => Thread.Sleep((int)Math.Max(1, Interval - spent));

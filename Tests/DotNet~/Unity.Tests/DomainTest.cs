@@ -40,7 +40,7 @@ namespace QuickSes.Tests
                 };
                 yield return SurfaceRig.Until(() => requests > 0 && !rig.Surface.IsBusy);
                 Assert.That(requests, Is.EqualTo(1));
-                SurfaceMeshes.AssertIsSurfaceOf(rig.Surface.Mesh, _positions, _radii, 0.5f);
+                SurfaceMeshes.AssertShows(rig.Surface, _positions, _radii);
                 rig.Dispose();
                 Assert.That(Engine.LiveObjects<Mesh>(), Is.EqualTo(0));
             }
@@ -87,7 +87,7 @@ namespace QuickSes.Tests
             var rig = new SurfaceRig();
             rig.Surface.SetAtoms(_positions, _radii);
             yield return rig.Settle();
-            SurfaceMeshes.AssertIsSurfaceOf(rig.Surface.Mesh, _positions, _radii, 0.5f);
+            SurfaceMeshes.AssertShows(rig.Surface, _positions, _radii);
             rig.Dispose();
             Assert.That(Engine.LiveObjects<Mesh>(), Is.EqualTo(0));
         }
@@ -105,7 +105,7 @@ namespace QuickSes.Tests
             var played = new SurfaceRig();
             played.Surface.SetAtoms(_positions, _radii);
             yield return played.Settle();
-            SurfaceMeshes.AssertIsSurfaceOf(played.Surface.Mesh, _positions, _radii, 0.5f);
+            SurfaceMeshes.AssertShows(played.Surface, _positions, _radii);
             played.Dispose();
         }
 
@@ -117,7 +117,7 @@ namespace QuickSes.Tests
             yield return SurfaceRig.Frames(3);
             SurfaceScheduler.ReleaseContexts(); // what SubsystemRegistration does; the components stay as they are
             yield return rig.Settle();
-            SurfaceMeshes.AssertIsSurfaceOf(rig.Surface.Mesh, _positions, _radii, 0.5f);
+            SurfaceMeshes.AssertShows(rig.Surface, _positions, _radii);
             rig.Dispose();
         }
 

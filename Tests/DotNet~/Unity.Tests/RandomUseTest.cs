@@ -104,7 +104,7 @@ namespace QuickSes.Tests
         private void AssertShows(int k)
         {
             MolecularSurface surface = _rigs[k].Surface;
-            SurfaceMeshes.AssertIsSurfaceOf(surface.Mesh, _positions[k], _radii[k], 0.5f, surface.OwnerAtomAt);
+            SurfaceMeshes.AssertShows(surface, _positions[k], _radii[k]);
             if (!surface.Mesh.HasVertexAttribute(UnityEngine.Rendering.VertexAttribute.Color))
                 return; // a texture, then
             Color32[] expected = ColorsOf(k), painted = surface.Mesh.colors32;

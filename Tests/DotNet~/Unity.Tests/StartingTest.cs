@@ -43,7 +43,7 @@ namespace QuickSes.Tests
             Assert.That(NativeGate.Open(), Is.EqualTo(0), "calls that the main thread would have waited for");
             yield return rig.Settle();
             Assert.That(rig.Surface.IsStarting, Is.False);
-            SurfaceMeshes.AssertIsSurfaceOf(rig.Surface.Mesh, positions, radii, 0.5f);
+            SurfaceMeshes.AssertShows(rig.Surface, positions, radii);
             rig.Dispose();
         }
 

@@ -27,9 +27,18 @@ namespace QuickSes.Tests
         [TestCase(SurfaceKind.Vdw, false, false)]
         public void ProbeAndMethodCountForTheSurfacesThatHaveThem(SurfaceKind kind, bool probe, bool method)
         {
-            Assert.That(SurfaceForm.IsUsed("_probeRadius", kind), Is.EqualTo(probe));
-            Assert.That(SurfaceForm.IsUsed("_method", kind), Is.EqualTo(method));
-            Assert.That(SurfaceForm.IsUsed("_spacing", kind), Is.True);
+            Assert.That(IsUsed("_probeRadius", kind), Is.EqualTo(probe));
+            Assert.That(IsUsed("_method", kind), Is.EqualTo(method));
+            Assert.That(IsUsed("_spacing", kind), Is.True);
         }
+
+        [TestCase(SurfaceKind.Ses, SurfaceMethod.Exact, true)]
+        [TestCase(SurfaceKind.Ses, SurfaceMethod.Grid, false)]
+        [TestCase(SurfaceKind.Sas, SurfaceMethod.Grid, true)]
+        public void CreasesAreOfExactSurfaces(SurfaceKind kind, SurfaceMethod method, bool expected) =>
+            Assert.That(SurfaceForm.IsUsed("_sharpCreases", kind, method), Is.EqualTo(expected));
+
+        private static bool IsUsed(string field, SurfaceKind kind) =>
+            SurfaceForm.IsUsed(field, kind, SurfaceMethod.Exact);
     }
 }

@@ -46,6 +46,24 @@ namespace QuickSes.Tests
             AssertPlan(SurfaceChange.None, float.PositiveInfinity, 33, false, 0, 2, 1, 0.5f);
         }
 
+        [Test]
+        public void TheFinestLevelHasCreasesUnlessAtomsMove()
+        {
+            Assert.That(HasCreases(SurfaceChange.Shape, false));
+            Assert.That(HasCreases(SurfaceChange.None, true));
+            Assert.That(HasCreases(SurfaceChange.Positions, false), Is.False);
+            Assert.That(HasCreases(SurfaceChange.Shape, true), Is.False, "the coarsest is computed, and nothing else");
+        }
+
+        private static bool HasCreases(SurfaceChange change, bool othersWait)
+        {
+            SurfaceSettings settings = SurfaceSettings.Default;
+            settings.Creases = settings.HardEdges = true;
+            SurfaceJobPlan.Choose(ref settings, new[] { 2, 1, 0.5f }, change, float.PositiveInfinity, 0, othersWait);
+            Assert.That(settings.HardEdges, Is.EqualTo(settings.Creases));
+            return settings.Creases;
+        }
+
         private static float[] Ladder(float finest, params float[] levels)
         {
             var ladder = new float[SurfaceSettings.MaxLevels + 1];

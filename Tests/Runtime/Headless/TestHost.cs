@@ -23,6 +23,7 @@ namespace QuickSes.Tests
         public double Now;
         public float Spacing = 0.5f;
         public float[] CoarserLevels = { 2, 1 };
+        public bool SharpCreases;
         public Exception Refusal; // what Upload throws
         public int StepsPerUpload = 1;
         public int Taken;
@@ -140,6 +141,7 @@ namespace QuickSes.Tests
             SurfaceSettings settings = SurfaceSettings.Default;
             settings.Spacing = Spacing;
             settings.VertexLayout = SurfaceVertexLayout.Interleaved;
+            settings.Creases = settings.HardEdges = SharpCreases;
             levels = CoarserLevels;
             return settings;
         }

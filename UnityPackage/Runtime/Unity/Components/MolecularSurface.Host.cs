@@ -60,23 +60,23 @@ namespace QuickSes
         void ISurfaceHost.OnUpdated(in SurfaceLevel level)
         {
             _loggedFailure = default;
-            SurfaceUpdated?.Invoke(level);
+            _updated.Tell(level, this);
             if (this != null) // handlers may destroy it
                 _events.SurfaceUpdated.Invoke();
         }
 
         void ISurfaceHost.OnFinished()
         {
-            RefinementFinished?.Invoke();
+            _finished.Tell(this);
             if (this != null)
                 _events.RefinementFinished.Invoke();
         }
 
         void ISurfaceHost.OnFailed(in QuickSesError error)
         {
-            if (Failed == null && _events.Failed.GetPersistentEventCount() == 0 && IsNewInTheLog(error))
+            if (!_failed.IsAny && _events.Failed.GetPersistentEventCount() == 0 && IsNewInTheLog(error))
                 Debug.LogError($"{name}: {error.Message}", this);
-            Failed?.Invoke(error);
+            _failed.Tell(error, this);
             if (this != null)
                 _events.Failed.Invoke(error.Message);
         }

@@ -81,7 +81,7 @@ namespace QuickSes
 
         private void RequestAtoms()
         {
-            _atomsRequested?.Invoke();
+            _atomsRequested.Tell(this);
             if (IsAlive && !Session.Atoms.IsSet)
                 _events.AtomsRequested.Invoke();
         }
@@ -159,7 +159,7 @@ namespace QuickSes
 
         private void ShowDemoUnlessFed()
         {
-            if (this == null || _isScriptFed || _source.IsSet || _atomsRequested != null || IsPlayed ||
+            if (this == null || _isScriptFed || _source.IsSet || _atomsRequested.IsAny || IsPlayed ||
                 GetComponent<TrajectoryPlayer>() != null)
                 return;
             _source.SetAsset(AssetDatabase.LoadAssetAtPath<TextAsset>(AssetDatabase.GUIDToAssetPath(DemoMolecule)));

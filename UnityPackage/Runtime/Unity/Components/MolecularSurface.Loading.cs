@@ -9,12 +9,16 @@ namespace QuickSes
     {
         [NonSerialized] private StructureLoad _load; // null: nothing is being read
         [NonSerialized] private bool _loadsAtoms; // not only their colours
-        [NonSerialized] private bool _isPlayed;
+        [NonSerialized] private TrajectoryPlayer _player;
         [NonSerialized] private bool _isLoadDeferred; // until it is enabled
         [NonSerialized] private MoleculeSource _loadedSource; // as it was when it was read; null: it was not
 
         /// <summary>The atoms of the source are there, and their colours. Not raised for atoms of scripts.</summary>
-        public event Action Loaded;
+        public event Action Loaded
+        {
+            add => _loaded.Add(value);
+            remove => _loaded.Remove(value);
+        }
 
         /// <summary>Whether the source is being read, or will be when the component is enabled.</summary>
         public bool IsLoading => _load != null || _isLoadDeferred;
@@ -25,19 +29,21 @@ namespace QuickSes
         /// </summary>
         public float LoadProgress => _load != null ? _load.Progress : _isLoadDeferred ? 0 : 1;
 
-        /// <summary>A <see cref="TrajectoryPlayer"/> brings the atoms, so that the source is left alone.</summary>
-        internal bool IsPlayed
+        /// <summary>Who brings the atoms, so that the source is left alone; null: nobody.</summary>
+        internal TrajectoryPlayer Player
         {
-            get => _isPlayed;
+            get => _player;
             set
             {
-                _isPlayed = value;
-                if (value)
+                _player = value;
+                if (IsPlayed)
                     CancelLoading();
                 else
                     AskForAtoms();
             }
         }
+
+        internal bool IsPlayed => _player != null;
 
         /// <summary>
         /// Begins to read the <see cref="Source"/> on a thread of its own, in place of what is being read. What is shown
@@ -146,7 +152,7 @@ namespace QuickSes
                 ColorAtomsOf(loaded);
             _isScriptFed = false;
             TakeStructure(loaded);
-            Loaded?.Invoke();
+            _loaded.Tell(this);
             if (this != null)
                 _events.Loaded.Invoke();
             return true;

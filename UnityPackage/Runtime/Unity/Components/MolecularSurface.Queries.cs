@@ -32,6 +32,13 @@ namespace QuickSes
         public ReadOnlySpan<uint> Owners => Shown.View.Owners;
 
         /// <summary>
+        /// With <see cref="SharpCreases"/> the mesh has vertices on creases once per side: of its last ones, as many as there
+        /// are numbers, which vertex each of them stands for, in ascending order. Taken for one the mesh is closed. Valid
+        /// until the next surface is shown.
+        /// </summary>
+        public ReadOnlySpan<uint> Repeated => Shown.View.Repeated;
+
+        /// <summary>
         /// The atom whose surface is nearest to a vertex of <see cref="Mesh"/>: an index into the
         /// atoms of the surface that is shown (if newer atoms are being computed: those before).
         /// </summary>

@@ -47,8 +47,9 @@ namespace QuickSes
         /// <summary>
         /// Whether, when atoms rest, triangles of the finest level follow the creases where sheets of the surface meet,
         /// with vertices for each side, so that light breaks there (<see cref="SurfaceSettings.Creases"/>,
-        /// <see cref="SurfaceSettings.HardEdges"/>); default no. Surfaces that are computed within
-        /// <see cref="FrameBudget"/> do without. Not with the grid method.
+        /// <see cref="SurfaceSettings.HardEdges"/>); default yes. New atoms and settings count as rest, new positions
+        /// do not until <see cref="RestDelay"/> is over. Which vertex each of the others stands for: <see
+        /// cref="Repeated"/>. Not with the grid method.
         /// </summary>
         public bool SharpCreases
         {

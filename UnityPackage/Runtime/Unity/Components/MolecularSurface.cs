@@ -45,8 +45,8 @@ namespace QuickSes
             "exact surface.")]
         private int _relaxationSteps = 1;
         [SerializeField, Tooltip("When atoms rest, triangles of the finest level follow the creases where sheets of the " +
-            "surface meet, and light breaks there.")]
-        private bool _sharpCreases;
+            "surface meet, and light breaks there. Not while atoms move, nor with the grid method.")]
+        private bool _sharpCreases = true;
 
         [Header("Playback")]
         [SerializeField, Min(0), Tooltip("Milliseconds per surface while atoms move: the finest level that " +
@@ -87,20 +87,41 @@ namespace QuickSes
         [NonSerialized] private SurfaceShapeSettings _editedFrom; // the settings before they were edited
         [NonSerialized] private bool _isDestroyed;
 
+        private readonly Listeners<Action<SurfaceLevel>> _updated = new Listeners<Action<SurfaceLevel>>();
+        private readonly Listeners<Action> _finished = new Listeners<Action>();
+        private readonly Listeners<Action<QuickSesError>> _failed = new Listeners<Action<QuickSesError>>();
+        private readonly Listeners<Action> _atomsRequested = new Listeners<Action>();
+        private readonly Listeners<Action> _loaded = new Listeners<Action>();
+
         /// <summary>
         /// A surface arrived and is shown, or the one that is shown has come into another <see cref="Mesh"/> or other
         /// buffers. Not for new colours.
         /// </summary>
-        public event Action<SurfaceLevel> SurfaceUpdated;
+        public event Action<SurfaceLevel> SurfaceUpdated
+        {
+            add => _updated.Add(value);
+            remove => _updated.Remove(value);
+        }
 
-        /// <summary>The finest surface of the newest atoms is shown; nothing is left to do.</summary>
-        public event Action RefinementFinished;
+        /// <summary>
+        /// The finest surface of the newest atoms is shown, with its creases (<see cref="SharpCreases"/>); nothing is left to
+        /// do. After new positions that is not before <see cref="RestDelay"/>.
+        /// </summary>
+        public event Action RefinementFinished
+        {
+            add => _finished.Add(value);
+            remove => _finished.Remove(value);
+        }
 
         /// <summary>
         /// There is no surface of the newest atoms; the last good one stays. Without listeners it is logged, once until a
         /// surface comes again.
         /// </summary>
-        public event Action<QuickSesError> Failed;
+        public event Action<QuickSesError> Failed
+        {
+            add => _failed.Add(value);
+            remove => _failed.Remove(value);
+        }
 
         /// <summary>
         /// The component is enabled and has neither atoms nor a source. That is so at first and, in the editor, after
@@ -110,14 +131,12 @@ namespace QuickSes
         {
             add
             {
-                _atomsRequested += value;
+                _atomsRequested.Add(value);
                 _asksForAtoms = true;
                 QueueEditorUpdate();
             }
-            remove => _atomsRequested -= value;
+            remove => _atomsRequested.Remove(value);
         }
-
-        private event Action _atomsRequested;
 
         /// <summary>The same events as UnityEvents, which can be wired in the inspector.</summary>
         public SurfaceEvents Events => _events;

@@ -35,10 +35,13 @@ namespace QuickSes
         /// of. The surfaces get their atoms when the structure is read, frames from <see cref="Loaded"/> on. Happens by
         /// itself when the component is enabled with a source. While it is not active and enabled, nothing is read: that
         /// is put off until it is. The same file goes on at <see cref="Frame"/>; another one begins at 0, or at the
-        /// Frame that was set since the sources were changed. false, after Failed: there is no such structure; <see
-        /// cref="LastError"/> says why not. What is wrong inside of files is told later by Failed.
+        /// Frame that was set since the sources were changed. false, after Failed: there is no such structure, or another
+        /// player has one of the surfaces; <see cref="LastError"/> says which. What is wrong inside of files is told later
+        /// by Failed.
         /// </summary>
-        public bool Load()
+        public bool Load() => TryLoad(false);
+
+        private bool TryLoad(bool isWish)
         {
             Unload();
             if (!_isEnabled)
@@ -46,9 +49,12 @@ namespace QuickSes
                 _isLoadDeferred = true;
                 return true;
             }
+            _isWish = isWish;
             BeginLoading();
+            if (!TryClaimSurfaces(out QuickSesError error) && !isWish)
+                return Fail("surfaces", error);
             MoleculeSource source = _loadedStructureSource;
-            if (!source.TryFind(out MoleculeFile file, out QuickSesError error))
+            if (!source.TryFind(out MoleculeFile file, out error))
                 return Fail("structure", error);
             if (!TryMakeSources(source, out MoleculeSource[] sources, out error))
                 return Fail("surfaces", error);
@@ -67,13 +73,11 @@ namespace QuickSes
                 _trajectorySource.Kind != MoleculeSourceKind.None;
             if (isAskedFor || (_surface.Source.IsSet && _surface.Source.TryFind(out _, out _)))
             {
-                Load();
-                _isWish = !isAskedFor;
+                TryLoad(!isAskedFor);
                 return;
             }
             Unload();
-            BeginLoading();
-            ReleaseSurfaces(); // the surface tells
+            BeginLoading(); // nothing: the surface tells
         }
 
         private void BeginLoading()
@@ -85,13 +89,9 @@ namespace QuickSes
             _loadedTrajectorySource = _trajectorySource.Copy();
             _loadedUnwrap = _unwrap;
             _loadedPrefetchFrames = _prefetchFrames;
-            Claim(_surface);
             foreach (PlayedSurface each in _surfaces)
                 if (each.Surface != null)
-                {
                     _loadedSurfaces.Add(each.Copy());
-                    Claim(each.Surface);
-                }
             if (_chosenFrame >= 0)
                 SetPlace(_chosenFrame);
             else if (!IsFrameOfSetFile)
@@ -100,17 +100,40 @@ namespace QuickSes
             _frameFile = TrajectorySource.OfFile(FrameSource);
         }
 
-        private void Claim(MolecularSurface surface)
+        // All that nobody else has. false: another player has the one that is named.
+        private bool TryClaimSurfaces(out QuickSesError error)
         {
-            surface.IsPlayed = true;
+            error = default;
+            Claim(_surface, ref error);
+            foreach (PlayedSurface each in _loadedSurfaces)
+                if (each.Surface != null)
+                    Claim(each.Surface, ref error);
+            return error.Status == QuickSesStatus.Ok;
+        }
+
+        private void Claim(MolecularSurface surface, ref QuickSesError error)
+        {
+            TrajectoryPlayer other = surface.Player;
+            if (other == this)
+                return;
+            if (other != null && (_isWish || !other.IsUndecided))
+            {
+                error = new QuickSesError(QuickSesStatus.InvalidArgument,
+                    $"the player '{other.name}' has '{surface.name}', so the player '{name}' can't have it");
+                return;
+            }
+            surface.Player = this;
             _claimed.Add(surface);
         }
+
+        // It may have nothing to play, so that who was asked to play comes first.
+        private bool IsUndecided => _isWish && _played.Length == 0;
 
         private void ReleaseSurfaces()
         {
             foreach (MolecularSurface each in _claimed)
-                if (each != null)
-                    each.IsPlayed = false;
+                if (each != null && each.Player == this)
+                    each.Player = null;
             _claimed.Clear();
         }
 
@@ -161,12 +184,17 @@ namespace QuickSes
 
         private void TakeStructures(LoadedStructure[] structures, MoleculeFile file)
         {
-            if (_isWish && !HasModels(structures[0].Structure))
+            bool isNothing = _isWish && !HasModels(structures[0].Structure);
+            QuickSesError error = default;
+            if (isNothing || !TryClaimSurfaces(out error))
             {
                 foreach (LoadedStructure each in structures)
                     each.DisposeInBackground();
                 file.Dispose();
-                ReleaseSurfaces();
+                if (isNothing)
+                    ReleaseSurfaces(); // the surface tells
+                else
+                    Fail("surfaces", error);
                 return;
             }
             _played = new PlayedAtoms[structures.Length];

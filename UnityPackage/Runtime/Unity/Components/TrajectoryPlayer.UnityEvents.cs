@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Each event in C#, and right after it in what is wired in the inspector. Handlers may destroy the player.
+using System;
 using UnityEngine;
 
 namespace QuickSes
@@ -8,45 +9,51 @@ namespace QuickSes
     {
         [SerializeField] private PlayerEvents _events = new PlayerEvents();
 
+        private readonly Listeners<Action> _loaded = new Listeners<Action>();
+        private readonly Listeners<Action<int>> _frameShown = new Listeners<Action<int>>();
+        private readonly Listeners<Action> _looped = new Listeners<Action>();
+        private readonly Listeners<Action> _finished = new Listeners<Action>();
+        private readonly Listeners<Action<int, QuickSesError>> _failed = new Listeners<Action<int, QuickSesError>>();
+
         /// <summary>The same events as UnityEvents, which can be wired in the inspector.</summary>
         public PlayerEvents Events => _events;
 
         private void RaiseLoaded()
         {
-            Loaded?.Invoke();
+            _loaded.Tell(this);
             if (this != null)
                 _events.Loaded.Invoke();
         }
 
         private void RaiseFrameShown(int frame)
         {
-            FrameShown?.Invoke(frame);
+            _frameShown.Tell(frame, this);
             if (this != null)
                 _events.FrameShown.Invoke(frame);
         }
 
         private void RaiseLooped()
         {
-            Looped?.Invoke();
+            _looped.Tell(this);
             if (this != null)
                 _events.Looped.Invoke();
         }
 
         private void RaiseFinished()
         {
-            Finished?.Invoke();
+            _finished.Tell(this);
             if (this != null)
                 _events.Finished.Invoke();
         }
 
         private void RaiseFailed(int frame)
         {
-            bool isHeard = Failed != null || _events.Failed.GetPersistentEventCount() > 0;
+            bool isHeard = _failed.IsAny || _events.Failed.GetPersistentEventCount() > 0;
             if (!isHeard && (frame < 0 || !_isDamageLogged))
                 Debug.LogError($"{name}: {LastError.Message}", this);
             _isDamageLogged |= frame >= 0;
             QuickSesError error = LastError;
-            Failed?.Invoke(frame, error);
+            _failed.Tell((frame, error), (handler, what) => handler(what.frame, what.error), this);
             if (this != null)
                 _events.Failed.Invoke(error.Message);
         }

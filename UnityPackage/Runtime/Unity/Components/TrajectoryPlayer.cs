@@ -35,23 +35,43 @@ namespace QuickSes
         private bool _isDamageLogged;
 
         /// <summary>Atoms are there, and frames can be shown from now on.</summary>
-        public event Action Loaded;
+        public event Action Loaded
+        {
+            add => _loaded.Add(value);
+            remove => _loaded.Remove(value);
+        }
 
         /// <summary>All surfaces were given this frame, counted from 0, or a place right behind it.</summary>
-        public event Action<int> FrameShown;
+        public event Action<int> FrameShown
+        {
+            add => _frameShown.Add(value);
+            remove => _frameShown.Remove(value);
+        }
 
         /// <summary>An end was passed: it goes on from the other end (Loop) or back (PingPong).</summary>
-        public event Action Looped;
+        public event Action Looped
+        {
+            add => _looped.Add(value);
+            remove => _looped.Remove(value);
+        }
 
         /// <summary>It was played once, and is paused on the last frame.</summary>
-        public event Action Finished;
+        public event Action Finished
+        {
+            add => _finished.Add(value);
+            remove => _finished.Remove(value);
+        }
 
         /// <summary>
         /// A frame is damaged: its number, counted from 0; what was shown before stays, and playing goes on. -1:
         /// nothing can be shown of the trajectory, or of the structure. Without listeners it is logged, of damaged
         /// frames the first.
         /// </summary>
-        public event Action<int, QuickSesError> Failed;
+        public event Action<int, QuickSesError> Failed
+        {
+            add => _failed.Add(value);
+            remove => _failed.Remove(value);
+        }
 
         /// <summary>What Failed told last since loading; Ok if nothing.</summary>
         public QuickSesError LastError { get; private set; }

@@ -46,7 +46,7 @@ namespace QuickSes
                 return false;
             int each = _stage == Stage.Colors ? MeshStyle.AtomBytes : MeshStyle.TexcoordBytes;
             SurfaceMeshView view = surface.View;
-            int count = (int)Math.Min(view.VertexCount - _next, Math.Max(1, share.PieceBytes / each));
+            int count = (int)Math.Min(EndOfRun(view) - _next, Math.Max(1, share.PieceBytes / each));
             bytes = (long)each * count;
             int first = _next, last = _next + count - 1;
             if (_stage == Stage.Colors && !_isEverywhere)
@@ -98,6 +98,13 @@ namespace QuickSes
                 count += isChanged[atom] ? 1 : 0;
             }
             _isEverywhere = count > after.Length / 2;
+        }
+
+        // Vertices that stand for others on the other side of a crease come last, in the same order once more.
+        private int EndOfRun(in SurfaceMeshView view)
+        {
+            int single = view.VertexCount - view.Repeated.Length;
+            return _next < single ? single : view.VertexCount;
         }
 
         // To the first and the last vertex whose atom has changed; none: first > last.

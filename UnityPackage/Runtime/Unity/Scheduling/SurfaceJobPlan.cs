@@ -47,9 +47,9 @@ namespace QuickSes
         /// <summary>
         /// Chooses among the levels of a ladder. While atoms move, all of it and a budget of time, within which the
         /// library chooses; who is not alone gets the coarsest level first; what refines goes on with the next finer
-        /// level.
+        /// level. Creases cost time, and only what stays is looked at closely: the finest level, unless atoms move.
         /// </summary>
-        /// <param name="settings">Gets spacing, levels and frame budget.</param>
+        /// <param name="settings">Gets spacing, levels and frame budget, and keeps creases or loses them.</param>
         /// <param name="ladder">Of <see cref="MakeLadder"/>.</param>
         /// <param name="change">What is new.</param>
         /// <param name="shownSpacing">Of the surface that is shown, if it is of this shape; else infinite.</param>
@@ -69,6 +69,8 @@ namespace QuickSes
                 last = first;
             settings.Spacing = ladder[last];
             settings.SetLevels(ladder.Slice(first, last - first));
+            if (change == SurfaceChange.Positions || last < ladder.Length - 1)
+                settings.Creases = settings.HardEdges = false;
         }
     }
 }

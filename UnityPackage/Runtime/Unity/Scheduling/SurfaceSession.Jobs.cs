@@ -17,22 +17,24 @@ namespace QuickSes
         private bool _isJobOfNewest; // whether it is of the newest atoms and settings
         private bool _isJobOfShape; // be it in other places
         private bool _wantsCreases; // for the finest level, when atoms rest
-        private bool _jobHasCreases;
         private SurfaceChange _begunChange; // what was new when it was begun
         private readonly List<JobLook> _looks = new List<JobLook>(4); // of the jobs whose meshes may still come
 
         // The look of the atoms of a job and of those after it, up to the next entry.
         private readonly struct JobLook
         {
-            public JobLook(uint firstJob, AtomLook look)
+            public JobLook(uint firstJob, AtomLook look, bool hasCreases)
             {
                 FirstJob = firstJob;
                 Look = look;
+                HasCreases = hasCreases;
             }
 
             public uint FirstJob { get; }
 
             public AtomLook Look { get; }
+
+            public bool HasCreases { get; } // at the finest level
         }
 
         private ReadOnlySpan<float> Ladder => new ReadOnlySpan<float>(_ladder, 0, _ladderCount);
@@ -76,7 +78,7 @@ namespace QuickSes
                     SurfaceSettings settings = MakeSettings(isFinestOnly);
                     status = context.Begin(settings);
                     if (status == QuickSesStatus.Ok)
-                        NoteJob(settings.Tag);
+                        NoteJob(settings.Tag, settings.Creases);
                 }
                 return status == QuickSesStatus.Ok ? default : new QuickSesError(status, context.LastError);
             }
@@ -94,6 +96,7 @@ namespace QuickSes
             settings.Pickable = true;
             settings.ShowMillisecondsPerMegabyte = ShowMillisecondsPerMegabyte();
             _ladderCount = SurfaceJobPlan.MakeLadder(levels, settings.Spacing, _ladder);
+            _wantsCreases = settings.Creases;
             if (isFinestOnly)
                 settings.SetLevels(default);
             else
@@ -101,17 +104,13 @@ namespace QuickSes
                     _isArrivalOfShape ? _arrival.Spacing :
                     _isShapeShown ? CurrentLevel.Spacing : float.PositiveInfinity, _host.FrameBudget,
                     Pool.IsAnyUrgent);
-            _wantsCreases = settings.Creases;
-            if (settings.FrameBudget > 0) // they cost time
-                settings.Creases = settings.HardEdges = false;
-            _jobHasCreases = settings.Creases;
             return settings;
         }
 
-        private void NoteJob(uint job)
+        private void NoteJob(uint job, bool hasCreases)
         {
             _job = job;
-            NoteLook(job);
+            NoteLook(job, hasCreases);
             _isJobOfNewest = _isJobOfShape = true;
             Progress = 0;
         }
@@ -169,10 +168,11 @@ namespace QuickSes
         // Not what the context's last user left behind. Numbers of jobs may wrap.
         private bool IsOurs(in SurfaceMeshView mesh) => unchecked((int)(mesh.Tag - _slot.FirstJob)) >= 0;
 
-        private void NoteLook(uint job)
+        private void NoteLook(uint job, bool hasCreases)
         {
             AtomLook look = Atoms.Look;
-            if (_looks.Count > 0 && _looks[_looks.Count - 1].Look == look)
+            if (_looks.Count > 0 && _looks[_looks.Count - 1].Look == look &&
+                _looks[_looks.Count - 1].HasCreases == hasCreases)
                 return;
             // Jobs between the one that runs and this one never began.
             _slot.Context.Poll(out SurfaceProgress progress);
@@ -182,14 +182,14 @@ namespace QuickSes
                 _looks[_looks.Count - 1].Look.Release();
                 _looks.RemoveAt(_looks.Count - 1);
             }
-            _looks.Add(new JobLook(job, look.Hold()));
+            _looks.Add(new JobLook(job, look.Hold(), hasCreases));
         }
 
         // Of a job whose mesh has come; those of older ones are not needed any more.
-        private AtomLook TakeLook(uint job)
+        private JobLook TakeLook(uint job)
         {
             int place = Math.Max(0, LookOf(job));
-            AtomLook look = _looks[place].Look;
+            JobLook look = _looks[place];
             for (int k = 0; k < place; ++k)
                 _looks[k].Look.Release();
             _looks.RemoveRange(0, place);

@@ -59,10 +59,11 @@ namespace QuickSes
             bool isLast = mesh.Tag == _job;
             bool isMoving = !isLast || _begunChange == SurfaceChange.Positions;
             _slot.Context.TryGetReport(out SurfaceReport report);
-            var arrival = new SurfaceLevel(mesh, report, Ladder, isLast && _jobHasCreases); // the view ends when the host takes the mesh
+            JobLook look = TakeLook(mesh.Tag);
+            var arrival = new SurfaceLevel(mesh, report, Ladder, look.HasCreases); // the view ends when the host takes the mesh
             try
             {
-                _host.Take(_slot.Context, TakeLook(mesh.Tag), isMoving);
+                _host.Take(_slot.Context, look.Look, isMoving);
             }
             catch (Exception e) // there is no memory, say
             {

@@ -247,7 +247,9 @@ namespace QuickSes
                 _isShapeShown = _isJobOfShape = _isArrivalOfShape = false;
         }
 
-        private bool IsBest(in SurfaceLevel level) => level.IsFinest && (level.HasCreases || !_wantsCreases);
+        // What never rests never gets creases.
+        private bool IsBest(in SurfaceLevel level) => level.IsFinest &&
+            (level.HasCreases || !_wantsCreases || double.IsInfinity(_host.RestDelay));
 
         private QueuePriority FindPriority(double now)
         {
