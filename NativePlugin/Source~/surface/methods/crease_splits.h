@@ -237,6 +237,7 @@ MeshMemoryView build_creased_surface(Work &work) {
   Work plain = work;
   plain.shape = plain.made_shape = shape_before_splits(work.shape);
   plain.purpose = MeshPurpose::kWork;
+  plain.will_be_split = true;
   const MeshMemoryView mesh = build_exact_surface(plain);
   if (mesh.vertices == 0) return mesh;
   work.timer.begin("creases");

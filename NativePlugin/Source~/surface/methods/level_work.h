@@ -43,6 +43,7 @@ struct LevelWork {
   MeshShape made_shape{};  // of the whole mesh, before anything is left out of it
   MeshPurpose purpose = MeshPurpose::kDelivered;
   bool side_normals = false;                         // whether a later stage asks for MeshView::second_normals
+  bool will_be_split = false;                        // whether creases of the mesh are split when it is made
   bool is_cut = false;                               // whether parts of the whole mesh are left out
   bool hard_edges = false;                           // whether a vertex on a crest is delivered once per side
   GrowingBuffer<HostMemory> *area_memory = nullptr;  // of the areas of atoms
