@@ -52,13 +52,7 @@ struct MarkChannelVertices {
     const uint64_t word = layout.signs[size_t(brick) * kLeavesPerBrick + size_t(edge.leaf)];
     glm::ivec3 p = brick_point(edge.leaf, edge.bit);
     if (word >> edge.bit & 1) p += glm::ivec3(edge.axis == 0, edge.axis == 1, edge.axis == 2);  // the end outside
-    const glm::ivec3 away(p.x >> 3, p.y >> 3, p.z >> 3);
-    int owner = static_cast<int>(brick);
-    if (away.x | away.y | away.z) owner = bricks.find(bricks.lattice.brick_at(bricks.linear[brick]) + away);
-    if (owner < 0) return;
-    const int x = p.x & 7, y = p.y & 7, z = p.z & 7;
-    const uint64_t marks = channels[size_t(owner) * kLeavesPerBrick + size_t(leaf_of(x, y, z))];
-    if (marks >> leaf_bit(x & 3, y & 3, z & 3) & 1) marked[i] = 1;
+    marked[i] = sign_at(bricks, brick, p, channels, false) ? 1 : 0;
   }
 };
 
@@ -79,6 +73,7 @@ struct FindEdgeExits {
   FeatureView features;
   BrickSet bricks;
   MeshLayout layout;
+  const uint32_t *places;     // caller's number of an atom -> its place in the grid
   const uint8_t *in_channel;  // [vertex]
   MeshView mesh;
   HeldVertices vertices;
@@ -87,7 +82,8 @@ struct FindEdgeExits {
     const uint32_t vertex = static_cast<uint32_t>(i), brick = brick_of_vertex(layout, bricks.count, vertex);
     CutEdge edge = ends_of_edge(bricks, layout, brick, edge_of_vertex(layout, brick, vertex));
     if (in_channel[i]) edge.outside = find_gap(features, edge.outside, bricks.lattice.spacing);
-    const EdgeExit exit = find_exit(edge);
+    EdgeExit exit = exit_of(places[mesh.owner(vertex)], edge);
+    if (!exit.found) exit = find_exit(edge);
     if (exit.found && (in_channel[i] || exit.owner != mesh.owner(vertex))) vertices.held[i] = 1;
     vertices.exits[i] = exit;
   }
@@ -103,14 +99,24 @@ struct FindEdgeExits {
       if (meet_ball(ball, edge.inside, way, &entry, &exit) && exit <= 1.f && exit > last) last = exit, place = at;
       return true;
     });
-    EdgeExit found{};
-    if (!few || last < 0.f) return found;
+    if (!few || last < 0.f) return {};
+    return describe(place, load(features.atoms.items + place), edge.inside + way * last);
+  }
+
+  // Where it leaves the ball of an atom, if that is on the surface: as a rule the one that the vertex is on.
+  QSES_FN EdgeExit exit_of(uint32_t place, const CutEdge &edge) const {
     const Sphere ball = load(features.atoms.items + place);
-    found.normal = sphere_normal(ball, edge.inside + way * last);
-    found.position = Vec3<float>(ball.center) + found.normal * ball.radius;
-    found.owner = features.atoms.order[place];
-    found.found = 1;
-    return found;
+    const Vec3<float> way = edge.outside - edge.inside;
+    float entry, exit;
+    if (!meet_ball(ball, edge.inside, way, &entry, &exit) || !(entry <= 0.f && exit >= 0.f && exit <= 1.f)) return {};
+    const Vec3<float> x = edge.inside + way * exit;
+    if (!is_exposed(features, place, x - Vec3<float>(ball.center), ball.radius)) return {};
+    return describe(place, ball, x);
+  }
+
+  QSES_FN EdgeExit describe(uint32_t place, const Sphere &ball, const Vec3<float> &x) const {
+    const Vec3<float> normal = sphere_normal(ball, x);
+    return {Vec3<float>(ball.center) + normal * ball.radius, normal, features.atoms.order[place], 1};
   }
 };
 

@@ -46,19 +46,16 @@ QSES_FN float depth_in(const Sphere &ball, const Vec3<float> &x) {
   return ball.radius - square_root(length_squared(x - Vec3<float>(ball.center)));
 }
 
-// Those within `reach` of a point that is nowhere deeper than `deepest`; else false.
-QSES_FN bool find_near_balls(const FeatureView &f, const Vec3<float> &x, float reach, float deepest, NearBalls *near) {
-  // Most points lie deep in an atom of their own cell.
-  const CellBox own = cells_around(f.atoms.cells, x, x);
-  const ItemRun run = f.atoms.run(own.x0, own.x1, own.y0, own.z0);
-  for (uint32_t k = run.begin; k < run.end && k - run.begin < NearBalls::kMostMet; ++k)
-    if (depth_in(load(f.atoms.items + k), x) > deepest) return false;
+// Those within `reach` of a point, as long as take(ball) of those that cover it says that more matter; else false.
+template <class Take>
+QSES_FN bool find_near_balls(const FeatureView &f, const Vec3<float> &x, float reach, NearBalls *near,
+                             const Take &take) {
   return for_balls_near(f, x, x, reach, [&](uint32_t place, const Sphere &ball) {
+    const float longest = ball.radius + reach;
+    if (length_squared(x - Vec3<float>(ball.center)) > longest * longest) return true;
     const float depth = depth_in(ball, x);
     near->depth = maximum(near->depth, depth);
-    if (depth > deepest) return false;
-    if (depth <= -reach) return true;
-    if (near->count == NearBalls::kMost) return false;
+    if (near->count == NearBalls::kMost || (depth > 0.f && !take(ball))) return false;
     near->place[near->count++] = place;
     return true;
   });
@@ -106,7 +103,18 @@ QSES_FN Vec3<float> axis_way(int k, float h) {
   return {k >> 1 == 0 ? s : 0.f, k >> 1 == 1 ? s : 0.f, k >> 1 == 2 ? s : 0.f};
 }
 
-// Finds the lattice points that are to be outside: of one edge with a gap the end that is shallower, of two that are as
+// The sign of a point counted from the first one of a brick; `missing` where there is no brick.
+QSES_FN bool sign_at(const BrickSet &bricks, uint32_t brick, const glm::ivec3 &p, const uint64_t *signs, bool missing) {
+  const glm::ivec3 away(p.x >> 3, p.y >> 3, p.z >> 3);
+  const int owner = (p.x | p.y | p.z) & ~7 ? bricks.find(bricks.lattice.brick_at(bricks.linear[brick]) + away)
+                                           : static_cast<int>(brick);
+  if (owner < 0) return missing;
+  const int x = p.x & 7, y = p.y & 7, z = p.z & 7;
+  const uint64_t word = signs[static_cast<size_t>(owner) * kLeavesPerBrick + static_cast<size_t>(leaf_of(x, y, z))];
+  return (word >> leaf_bit(x & 3, y & 3, z & 3) & 1) != 0;
+}
+
+// Finds the lattice points that are to be outside: of an edge with a gap the end that is shallower, of two that are as
 // deep but for rounding the lower one.
 struct MarkThinChannels {
   FeatureView features;
@@ -117,17 +125,45 @@ struct MarkThinChannels {
     const size_t word = i / 64;
     const int bit = static_cast<int>(i % 64);
     if (!(signs[word] >> bit & 1)) return;
+    const uint32_t brick = static_cast<uint32_t>(word / kLeavesPerBrick);
     const Lattice &lattice = bricks.lattice;
-    const glm::ivec3 p = lattice.first_point(lattice.brick_at(bricks.linear[word / kLeavesPerBrick])) +
-                         brick_point(static_cast<int>(word % kLeavesPerBrick), bit);
-    const Vec3<float> x = lattice.position(p.x, p.y, p.z);
     const float h = lattice.spacing;
+    const glm::ivec3 in_brick = brick_point(static_cast<int>(word % kLeavesPerBrick), bit);
+    const glm::ivec3 p = lattice.first_point(lattice.brick_at(bricks.linear[brick])) + in_brick;
+    const Vec3<float> x = lattice.position(p.x, p.y, p.z);
+    // A ball with both ends covers an edge. Of most points one that is near has all of them.
+    const float r = features.parameters.max_radius;
+    const CellBox row = cells_around(features.atoms.cells, x - Vec3<float>(r, 0.f, 0.f), x + Vec3<float>(r, 0.f, 0.f));
+    const ItemRun run = features.atoms.run(row.x0, row.x1, row.y0, row.z0);
+    if (run.end - run.begin > NearBalls::kMostMet) return;
+    for (uint32_t k = run.begin; k < run.end; ++k) {
+      const Sphere ball = load(features.atoms.items + k);
+      const float deep = ball.radius - h;
+      if (deep > 0.f && length_squared(x - Vec3<float>(ball.center)) < deep * deep) return;
+    }
+    uint32_t open = 0;  // edges whose other end is inside, too
+    for (int k = 0; k < 6; ++k) {
+      const int s = k & 1 ? -1 : 1;
+      const glm::ivec3 step(k >> 1 == 0 ? s : 0, k >> 1 == 1 ? s : 0, k >> 1 == 2 ? s : 0);
+      open |= static_cast<uint32_t>(sign_at(bricks, brick, in_brick + step, signs, false)) << k;
+    }
+    const auto close = [&](const Sphere &ball) {
+      for (int k = 0; k < 6; ++k)
+        if (open >> k & 1 && length_squared(x + axis_way(k, h) - Vec3<float>(ball.center)) < ball.radius * ball.radius)
+          open &= ~(1u << k);
+      return open != 0;
+    };
+    for (uint32_t k = run.begin; k < run.end && open; ++k) {
+      const Sphere ball = load(features.atoms.items + k);
+      if (length_squared(x - Vec3<float>(ball.center)) < ball.radius * ball.radius) close(ball);
+    }
     NearBalls near;
-    if (!find_near_balls(features, x, h, 0.5f * h, &near)) return;
+    if (!open || !find_near_balls(features, x, h, &near, close)) return;
     for (int k = 0; k < 6; ++k) {
       const Vec3<float> way = axis_way(k, h);
+      if (!(open >> k & 1)) continue;
       const Gap gap = first_gap(features, near, x, way);
-      if (!gap.is_open() || gap.end >= 1.f) continue;  // covered, or the other end is outside
+      if (!gap.is_open() || gap.end >= 1.f) continue;
       float other = -kFarAway;
       for (int j = 0; j < near.count; ++j)
         other = maximum(other, depth_in(load(features.atoms.items + near.place[j]), x + way));
@@ -149,7 +185,7 @@ struct RemoveMarks {
 // none is found, which rounding may do.
 QSES_FN Vec3<float> find_gap(const FeatureView &f, const Vec3<float> &x, float h) {
   NearBalls near;
-  if (!find_near_balls(f, x, h, h, &near)) return x;
+  if (!find_near_balls(f, x, h, &near, [](const Sphere &) { return true; })) return x;
   float nearest = 1.f;
   Vec3<float> found = x;
   for (int k = 0; k < 6; ++k) {
