@@ -53,4 +53,11 @@ TEST(SelfIntersections, NoneInSurfacesOfSmallSets) {
       }
 }
 
+// Vertices of narrow grooves and channels are where marching cubes has them, which does not intersect itself.
+TEST(SelfIntersections, NoneInTheSasOfAProteinWithCreases) {
+  qses_settings s = settings(0.5, 1.4, QSES_SURFACE_SAS);
+  s.creases = 1;
+  EXPECT_EQ(self_intersecting_pairs(compute(crambin(), s)), 0u);
+}
+
 }  // namespace

@@ -238,6 +238,7 @@ MeshMemoryView build_creased_surface(Work &work) {
   plain.shape = plain.made_shape = shape_before_splits(work.shape);
   plain.purpose = MeshPurpose::kWork;
   plain.spare_room = expected_parts(work).new_ones;
+  plain.will_be_split = true;
   const MeshMemoryView mesh = build_exact_surface(plain);
   if (mesh.vertices == 0) return mesh;
   work.timer.begin("creases");

@@ -2,6 +2,7 @@
 // The exact method from the neighbour grid to the mesh: features, bricks, signs, counts, vertices, triangles.
 #pragma once
 
+#include "surface/methods/ball_edges.h"
 #include "surface/methods/closed_layout.h"
 #include "surface/stages/relaxation.h"
 #include "surface/stages/thin_walls.h"
@@ -163,6 +164,8 @@ MeshMemoryView build_exact_surface(Work &work) {
   // What signs and vertices share, if all bricks are worked on at once; gathered again for each of several slices.
   Candidates<Executor> shared{};
   bool share = false;
+  const bool holds = work.will_be_split && work.parameters.is_of_balls();
+  const uint64_t *channels = nullptr;
   MeshLayout layout{};
   const MeshCounts counts = lay_out_closed_mesh(work, &bricks, &layout, [&](const BrickSet &set, uint64_t *signs) {
     work.timer.begin("exact_ses");
@@ -175,6 +178,7 @@ MeshMemoryView build_exact_surface(Work &work) {
       Candidates<Executor> own{};
       B::evaluate_signs(executor, features, set, slice, work.rooms, share ? shared : own, signs);
     });
+    if (holds) channels = open_thin_channels(work, set, signs);
     if (work.parameters.has_thin_walls()) mend_thin_walls(work, set, share ? &shared : nullptr, signs);
     executor.arena().rewind(mark);
   });
@@ -228,6 +232,7 @@ MeshMemoryView build_exact_surface(Work &work) {
       emit(0.85 + share_of_time * (step - 1), 0.85 + share_of_time * step, false);
     }
   }
+  if (holds && mesh.vertices > 0) hold_to_edges(work, bricks, layout, channels, mesh);
   executor.arena().rewind(end_of_mesh);
   mesh.unplaced = starts.unplaced;
   return mesh;

@@ -42,10 +42,11 @@ struct LevelWork {
   MeshShape shape{};       // of what is handed out
   MeshShape made_shape{};  // of the whole mesh, before anything is left out of it
   MeshPurpose purpose = MeshPurpose::kDelivered;
-  double spare_room = 0;      // of the mesh, behind its vertices and triangles: so many of each that is made at first
-  bool side_normals = false;  // whether a later stage asks for MeshView::second_normals
-  bool is_cut = false;        // whether parts of the whole mesh are left out
-  bool hard_edges = false;    // whether a vertex on a crest is delivered once per side
+  double spare_room = 0;       // of the mesh, behind its vertices and triangles: so many of each that is made at first
+  bool side_normals = false;   // whether a later stage asks for MeshView::second_normals
+  bool will_be_split = false;  // whether creases of the mesh are split when it is made
+  bool is_cut = false;         // whether parts of the whole mesh are left out
+  bool hard_edges = false;     // whether a vertex on a crest is delivered once per side
   GrowingBuffer<HostMemory> *area_memory = nullptr;  // of the areas of atoms
   bool makes_mesh = true;
   AtomMeasures atom_measures{};     // where the surface is that of the balls, and measured

@@ -102,7 +102,8 @@ struct SphereSheets {
   }
 
   // Is a piece of a triangle turned away from the sheet that its corners have in common, or has it no area? normal:
-  // outward, of any length. Where there is no such sheet, nothing is known.
+  // outward, of any length. Where there is no such sheet, another one comes between, and only a piece that is turned
+  // away from all three corners together is folded.
   QSES_FN bool is_folded(const CreaseEnd *const *corners, const Vec3<float> &normal) const {
     const float length2 = length_squared(normal);
     if (!(length2 > 0.f)) return true;
@@ -120,9 +121,9 @@ struct SphereSheets {
       shared = true;
     }
     if (shared) return true;
-    for (int k = 0; k < 3; ++k)
-      if (!(maximum(dot(normal, corners[k]->normal), dot(normal, corners[k]->second_normal)) > 0.f)) return true;
-    return false;
+    Vec3<float> outward(0.f, 0.f, 0.f);
+    for (int k = 0; k < 3; ++k) outward = outward + corners[k]->normal + corners[k]->second_normal;
+    return !(dot(normal, outward) > 0.f);
   }
 
   // Describes a point on the spheres a and b (places).
