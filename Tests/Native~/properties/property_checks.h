@@ -299,10 +299,12 @@ inline void check_distances(const Case &c, const Result &r, const ExactSurface &
     // The probe is its own proof, whatever the reference may have missed.
     if (exact.depth(d.probe) <= 0) judge(k, p - d.most, ": a probe covers it");
     judge(k, d.least - p, ": no probe touches it");
-    // A mean of sheets' normals points away from none of their probes.
-    if (q >= first_between && !c.settings.creases && shows_sheets(k) &&
-        dot(d.probe - x, point(r.surface.normal(k))) < -0.1 * p)
-      blame(v, Fault::kOffSurface, "the normal of vertex %zu points away from the probe that touches it", k);
+    if (q < first_between || c.settings.creases || !shows_sheets(k)) continue;
+    // A mean of two sheets' normals does not point away from their probes: of those that touch the vertex the one that
+    // is nearest to a place a little along the normal lies on that side.
+    const Point n = point(r.surface.normal(k));
+    if (dot(exact.distance(x + 0.1 * p * n, 1.1 * p + 2 * (bound + rounding)).probe - x, n) < -0.3 * p)
+      blame(v, Fault::kOffSurface, "the normal of vertex %zu points away from all probes that touch it", k);
   }
   if (!c.settings.creases) return;
   // With creases it may have been turned, but not against all triangles around it.

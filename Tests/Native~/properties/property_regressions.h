@@ -442,6 +442,7 @@ inline std::vector<Regression> regressions() {
         {-17229, -498274.219, 628616.688, 1.52},
         {-17231.5996, -498274.375, 628612.312, 1.8}},
        1},
+      {"TwoLargeBallsNearlyTheSame", kSes, kExact, 1, 1, 0, 0, {{0, 0, 0, 23}, {-1.52587891e-05, 0, 0, 23}}, 1},
       // Area and volume of the atoms.
       {"LargeProbe", kSas, kExact, 95, 2, 0, 0, {{0, 0, 0, 2}, {0, 1, 0, 2}}},
   };

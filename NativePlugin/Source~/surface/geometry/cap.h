@@ -60,18 +60,20 @@ QSES_FN float cap_sine(float cosine) { return square_root(maximum(0.f, 1.f - cos
 QSES_FN float stored_cap_cosine(float cosine, float radius) { return cosine - kExposureTolerance / radius; }
 
 // Does ball j contain ball i so that i owns no surface? order tells which of two equal ones stays.
-constexpr float kContainmentTolerance = 1e-5f;  // Å that i may stand out
+// i may stand out by so much: of two balls that are nearer to each other float32 can't tell in which one a point is
+// deeper, and it might be covered in that one.
+QSES_FN float containment_tolerance(float larger_radius) { return maximum(1e-5f, 4e-6f * larger_radius); }  // Å
 QSES_FN bool contains(const Sphere &j, uint32_t order_j, const Sphere &i, uint32_t order_i) {
   if (j.radius < i.radius || (j.radius == i.radius && order_j >= order_i)) return false;
   const float distance2 = length_squared(Vec3<float>(j.center) - Vec3<float>(i.center));
-  const float reach = j.radius - i.radius + kContainmentTolerance;
+  const float reach = j.radius - i.radius + containment_tolerance(j.radius);
   return distance2 <= reach * reach ||
          (meet_from_within(j.radius, i.radius, distance2) && !share_circle(j.radius, i.radius, distance2));
 }
 // How far away the centre of a ball of at most max_radius can be that contains a ball of the given radius.
 QSES_FN float containing_reach(float radius, float max_radius) {
   const float stands_out = minimum(radius, kPointCircle2 * max_radius * quotient(max_radius, maximum(radius, 1e-12f)));
-  return max_radius - radius + 2.f * (stands_out + kContainmentTolerance);
+  return max_radius - radius + 2.f * (stands_out + containment_tolerance(max_radius));
 }
 
 }  // namespace quickses
