@@ -79,7 +79,7 @@ struct CandidateView {
   uint8_t *arc_leaves;    // per entry of arcs: bit set = can be within depth of a point of that leaf
   uint32_t *leaf_list;    // leaves between whose points the surface may pass: 8 * brick of the slice + leaf
   uint8_t *brick_leaves;  // the same per brick: a bit per leaf
-  uint32_t *deciders;     // of all points of those leaves, 64 per leaf: what their signs are from (Decider); or nullptr
+  uint32_t *deciders;     // by 64 * (8 * brick + leaf) + bit, of those leaves: what a sign is from; nullptr: not kept
 };
 
 // What decides about a point that is outside, for thin walls, which ask for the nearest probe: the number of the

@@ -27,9 +27,7 @@ struct SignJob {
   BrickSet bricks;
   CandidateReach reach;
   CandidateView view;
-  const uint32_t *leaves;      // as in view.leaf_list
-  const uint32_t *leaf_count;  // nullptr: as many as there are items
-  uint64_t *signs;             // nullptr: known already, and what decides about each point is asked for
+  uint64_t *signs;  // nullptr: known already
 };
 
 // Shared memory of one warp.
@@ -110,13 +108,13 @@ static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_k
   const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();
   LeafScratch &scratch = scratch_memory[warp];
   const size_t leaf_place = leaves.first + blockIdx.x * kSignWarps + static_cast<uint32_t>(warp);
-  if (leaf_place >= leaves.last || (job.leaf_count && leaf_place >= *job.leaf_count)) return;
+  if (leaf_place >= leaves.last) return;
   const FeatureView &f = job.features;
   const CandidateReach &reach = job.reach;
   const Lattice &lattice = job.bricks.lattice;
   const float h = reach.spacing, depth = reach.depth;
 
-  const uint32_t slot = job.leaves[leaf_place], b = slot >> 3;
+  const uint32_t slot = job.view.leaf_list[leaf_place], b = slot >> 3;
   const int leaf = static_cast<int>(slot & 7);
   const BrickRow brick_row = job.view.brick_rows[b];
   const uint32_t *const atoms = job.view.atoms + brick_row.first_atom;
@@ -145,7 +143,9 @@ static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_k
 
   LeafKind kind = LeafKind::kMixed;
   const bool far_out = best.depth <= -reach.leaf_radius - reach.slack;
-  if (far_out || (best.depth <= reach.least_depth && depth > reach.leaf_radius + reach.slack))
+  // Where points may be next to one that is inside, what decides about them is asked for.
+  const bool is_asked = job.view.deciders && best.depth > depth - kRoot3 * h - reach.leaf_radius - reach.slack;
+  if (far_out || (best.depth <= reach.least_depth && depth > reach.leaf_radius + reach.slack && !is_asked))
     kind = LeafKind::kOutside;
   else if (best.depth - reach.leaf_radius - reach.slack > depth)
     kind = LeafKind::kInside;
@@ -162,7 +162,7 @@ static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_k
   }
   bool inside0 = kind == LeafKind::kInside, inside1 = inside0;
   uint32_t decider0 = far_out ? kOutsideBalls : kNotLookedAt, decider1 = decider0;
-  if (kind == LeafKind::kMixed || !job.signs) {
+  if (kind == LeafKind::kMixed) {
     const int x = first.x + (lane & 3), y = first.y + (lane >> 2 & 3), z = first.z + (lane >> 4);
     const Vec3<float> p0 = lattice.position(x, y, z), p1 = lattice.position(x, y, z + 2);
     float depth0 = reach.least_depth, depth1 = reach.least_depth;
@@ -292,11 +292,6 @@ void gather_candidates(E &executor, const FeatureView &features, const BrickSet 
   candidates.slice = slice;
 }
 
-// Lanes look at all atoms and arcs of a row, and at an atom's caps.
-inline LaunchShape leaf_shape(const FeatureView &features, const CudaCandidates &candidates) {
-  return {kSignWarps * kWarp, kSignWarps, 64 + 2 * uint64_t(candidates.longest_row) + features.most_caps};
-}
-
 // Evaluates the active leaves of a slice. deciders: whether what decides about their points is kept for thin walls.
 template <class E>
 void evaluate_leaves(E &executor, const FeatureView &features, const BrickSet &bricks, CudaCandidates &candidates,
@@ -304,10 +299,11 @@ void evaluate_leaves(E &executor, const FeatureView &features, const BrickSet &b
   if (deciders)
     candidates.view.deciders =
         executor.template allocate<uint32_t>(size_t(candidates.slice.size()) * kBrickPoints).data;
-  const gpu::CandidateView &view = candidates.view;
+  // Lanes look at all atoms and arcs of a row, and at an atom's caps.
   executor.launch(
-      "evaluate_leaves", evaluate_leaves_kernel, candidates.leaves, leaf_shape(features, candidates),
-      SignJob{features, bricks, CandidateReach::of(features.parameters), view, view.leaf_list, nullptr, signs});
+      "evaluate_leaves", evaluate_leaves_kernel, candidates.leaves,
+      LaunchShape{kSignWarps * kWarp, kSignWarps, 64 + 2 * uint64_t(candidates.longest_row) + features.most_caps},
+      SignJob{features, bricks, CandidateReach::of(features.parameters), candidates.view, signs});
 }
 
 }  // namespace gpu

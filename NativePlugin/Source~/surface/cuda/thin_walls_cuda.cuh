@@ -10,10 +10,9 @@
 namespace quickses {
 namespace gpu {
 
-// Leaves that have edges which may be walls; those of them where it is not known what decides about points; and edges
-// that are left to be walked.
+// Leaves that have edges which may be walls, and edges that are left to be walked.
 struct WallCounters {
-  uint32_t leaves, unknown;
+  uint32_t leaves;
   unsigned long long walks;
 };
 
@@ -26,9 +25,8 @@ struct WallJob {
   uint64_t *marks;
   WallCounters *counters;
   uint32_t *leaves;  // that have edges: 8 * brick of the slice + leaf
-  uint32_t *unknown;
-  uint64_t *edges;  // by that number, kWallSteps words each: those that may be walls
-  uint64_t *walks;  // 64 * kWallSteps * number of the leaf + 64 * step + bit
+  uint64_t *edges;   // by that number, kWallSteps words each: those that may be walls
+  uint64_t *walks;   // 64 * kWallSteps * number of the leaf + 64 * step + bit
   unsigned long long walk_room;
 };
 
@@ -57,12 +55,6 @@ static __global__ __launch_bounds__(kWallThreads) void find_wall_candidates_kern
     for (int s = 0; s < kWallSteps; ++s) job.edges[size_t(slot) * kWallSteps + size_t(s)] = edges[s];
   }
   append(job.leaves, &job.counters->leaves, slot, any);
-  // Leaves whose points were not looked at one by one for their signs.
-  const uint8_t active = job.view.brick_leaves[slot / kLeavesPerBrick];
-  const bool unknown = any && (!(active >> leaf & 1) || job.view.deciders[size_t(slot) * 64] == kNotLookedAt);
-  append(job.unknown, &job.counters->unknown, slot, unknown);
-  const unsigned known_now = __ballot_sync(kFullWarp, unknown) >> (lane_id() & ~7) & 0xffu;
-  if (leaf == 0 && on) job.view.brick_leaves[slot / kLeavesPerBrick] = static_cast<uint8_t>(active | known_now);
 }
 
 // An edge of a slice, by the number in the list.
@@ -98,6 +90,15 @@ __device__ __forceinline__ uint32_t decider_at(const WallJob &job, uint32_t bric
   const int x = p.x & 7, y = p.y & 7, z = p.z & 7;
   return decider_at(job, brick * kLeavesPerBrick + static_cast<uint32_t>(leaf_of(x, y, z)),
                     leaf_bit(x & 3, y & 3, z & 3));
+}
+
+// That of a first end. It is not known in leaves that no feature's part of the surface may pass: to be outside there is
+// to be on the contact side of the ball the point is deepest in.
+__device__ __forceinline__ uint32_t first_decider(const WallJob &job, uint32_t slot, int bit, const Vec3<float> &x) {
+  const uint32_t decider = decider_at(job, slot, bit);
+  if (decider != kNotLookedAt) return decider;
+  const DeepestAtom deepest = deepest_atom(job.features, brick_candidates(job.view, slot / kLeavesPerBrick), x);
+  return deepest.depth > job.reach.least_depth ? kOnContact | deepest.atom : kOutsideBalls;
 }
 
 // nearest_probe() of a point, by what decides about it.
@@ -154,7 +155,7 @@ static __global__ __launch_bounds__(kWallThreads, 8) void drop_open_edges_kernel
       const bool on = n0 + lane < starts;
       const int bit = scratch.bit[on ? n0 + lane : starts - 1];
       const Vec3<float> x = position(bit, glm::ivec3(0));
-      const NearestProbe probe = decided_probe(f, decider_at(job, slot, bit), x);
+      const NearestProbe probe = decided_probe(f, first_decider(job, slot, bit, x), x);
       __syncwarp();
       if (on) scratch.probe[bit] = make_float4(probe.center.x, probe.center.y, probe.center.z, probe.distance);
 #pragma unroll
@@ -212,7 +213,7 @@ static __global__ __launch_bounds__(kWallThreads) void walk_edges_kernel(LaunchI
     const float half = 0.5f * wall_step_length(e.step) * p.spacing + 2.f * job.reach.slack;
     const ListedCandidates all = brick_candidates(job.view, e.slot / kLeavesPerBrick);
     const SharedCandidates near = choose_for_edge(f, all, (a + b) * 0.5f, half, edge_memory[team]);
-    const NearestProbe probe_a = decided_probe(f, decider_at(job, e.slot, e.bit), a);
+    const NearestProbe probe_a = decided_probe(f, first_decider(job, e.slot, e.bit, a), a);
     const uint32_t decider_b = decider_at(job, e.brick, e.second);
     const NearestProbe probe_b = decider_b == kNotLookedAt ? nearest_probe(f, near, b) : decided_probe(f, decider_b, b);
     WallWalk walk = begin_wall_walk(p, e.step, a, probe_a, b, probe_b);
@@ -249,13 +250,10 @@ void mark_thin_walls(E &executor, const FeatureView &features, const BrickSet &b
   Span<WallCounters> counters = executor.template allocate<WallCounters>(1);
   job.counters = counters.data;
   job.leaves = executor.template allocate<uint32_t>(leaves).data;
-  job.unknown = executor.template allocate<uint32_t>(leaves).data;
   job.edges = executor.template allocate<uint64_t>(leaves * kWallSteps).data;
   executor.fill(counters, 0);
   executor.launch("find_wall_candidates", find_wall_candidates_kernel, leaves,
                   LaunchShape{kWallThreads, kWallThreads, 96}, job);
-  executor.launch("evaluate_leaves", evaluate_leaves_kernel, leaves, leaf_shape(features, candidates),
-                  SignJob{features, bricks, job.reach, job.view, job.unknown, &counters.data->unknown, nullptr});
   const uint64_t look = 64 + 2 * uint64_t(candidates.longest_row) + features.most_caps;
   const size_t most_blocks = executor.multiprocessors() * size_t(16);
   WallCounters found{};
@@ -264,7 +262,7 @@ void mark_thin_walls(E &executor, const FeatureView &features, const BrickSet &b
     const auto before_walks = executor.arena().mark();
     job.walks = executor.template allocate<uint64_t>(static_cast<size_t>(job.walk_room)).data;
     executor.launch("drop_open_edges", drop_open_edges_kernel, leaves,
-                    LaunchShape{kWallThreads, kWallWarps, 36 * 48, most_blocks}, job);
+                    LaunchShape{kWallThreads, kWallWarps, 36 * 48 + 2 * look, most_blocks}, job);
     found = executor.fetch(counters.data);
     if (found.walks <= job.walk_room) break;
     executor.arena().rewind(before_walks);
