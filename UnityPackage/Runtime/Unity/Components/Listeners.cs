@@ -7,12 +7,19 @@ namespace QuickSes
 {
     /// <summary>
     /// Who listens to an event. What one of them throws is logged, as the engine does it with its own calls, and keeps
-    /// nobody else from being told. Telling makes no garbage. Main thread only.
+    /// nobody else from being told. Telling makes no garbage, the first time either. Main thread only.
     /// </summary>
-    internal sealed class Listeners<THandler> where THandler : Delegate
+    internal class Listeners<THandler, TTold> where THandler : Delegate
     {
+        private readonly Action<THandler, TTold> _tell;
         private Delegate _all;
         private Delegate[] _each = Array.Empty<Delegate>();
+
+        /// <param name="tell">Calls one of them.</param>
+        public Listeners(Action<THandler, TTold> tell)
+        {
+            _tell = tell;
+        }
 
         public bool IsAny => _each.Length > 0;
 
@@ -20,16 +27,15 @@ namespace QuickSes
 
         public void Remove(THandler handler) => Set(Delegate.Remove(_all, handler));
 
-        /// <param name="told">Of each.</param>
-        /// <param name="tell">Calls one of them; must not capture anything, or it would be garbage.</param>
-        /// <param name="owner">Whose event it is.</param>
-        public void Tell<TTold>(TTold told, Action<THandler, TTold> tell, Object owner)
+        /// <param name="told">What has happened.</param>
+        /// <param name="owner">To whom.</param>
+        public void Tell(TTold told, Object owner)
         {
             foreach (Delegate handler in _each) // those that there are now
             {
                 try
                 {
-                    tell((THandler)handler, told);
+                    _tell((THandler)handler, told);
                 }
                 catch (Exception e)
                 {
@@ -45,14 +51,21 @@ namespace QuickSes
         }
     }
 
-    internal static class Listeners
+    /// <summary>Of an event that tells one thing.</summary>
+    internal sealed class Listeners<TTold> : Listeners<Action<TTold>, TTold>
     {
-        private static readonly Action<Action, bool> s_tell = (handler, told) => handler();
+        public Listeners() : base((handler, told) => handler(told))
+        {
+        }
+    }
 
-        /// <summary>Of an event that tells nothing else than that it happened.</summary>
-        public static void Tell(this Listeners<Action> listeners, Object owner) => listeners.Tell(false, s_tell, owner);
+    /// <summary>Of an event that tells nothing else than that it happened.</summary>
+    internal sealed class Listeners : Listeners<Action, bool>
+    {
+        public Listeners() : base((handler, told) => handler())
+        {
+        }
 
-        public static void Tell<TTold>(this Listeners<Action<TTold>> listeners, TTold told, Object owner) =>
-            listeners.Tell(told, (handler, what) => handler(what), owner);
+        public void Tell(Object owner) => Tell(true, owner);
     }
 }

@@ -87,11 +87,11 @@ namespace QuickSes
         [NonSerialized] private SurfaceShapeSettings _editedFrom; // the settings before they were edited
         [NonSerialized] private bool _isDestroyed;
 
-        private readonly Listeners<Action<SurfaceLevel>> _updated = new Listeners<Action<SurfaceLevel>>();
-        private readonly Listeners<Action> _finished = new Listeners<Action>();
-        private readonly Listeners<Action<QuickSesError>> _failed = new Listeners<Action<QuickSesError>>();
-        private readonly Listeners<Action> _atomsRequested = new Listeners<Action>();
-        private readonly Listeners<Action> _loaded = new Listeners<Action>();
+        private readonly Listeners<SurfaceLevel> _updated = new Listeners<SurfaceLevel>();
+        private readonly Listeners _finished = new Listeners();
+        private readonly Listeners<QuickSesError> _failed = new Listeners<QuickSesError>();
+        private readonly Listeners _atomsRequested = new Listeners();
+        private readonly Listeners _loaded = new Listeners();
 
         /// <summary>
         /// A surface arrived and is shown, or the one that is shown has come into another <see cref="Mesh"/> or other

@@ -9,11 +9,13 @@ namespace QuickSes
     {
         [SerializeField] private PlayerEvents _events = new PlayerEvents();
 
-        private readonly Listeners<Action> _loaded = new Listeners<Action>();
-        private readonly Listeners<Action<int>> _frameShown = new Listeners<Action<int>>();
-        private readonly Listeners<Action> _looped = new Listeners<Action>();
-        private readonly Listeners<Action> _finished = new Listeners<Action>();
-        private readonly Listeners<Action<int, QuickSesError>> _failed = new Listeners<Action<int, QuickSesError>>();
+        private readonly Listeners _loaded = new Listeners();
+        private readonly Listeners<int> _frameShown = new Listeners<int>();
+        private readonly Listeners _looped = new Listeners();
+        private readonly Listeners _finished = new Listeners();
+        private readonly Listeners<Action<int, QuickSesError>, (int Frame, QuickSesError Error)> _failed =
+            new Listeners<Action<int, QuickSesError>, (int Frame, QuickSesError Error)>(
+                (handler, what) => handler(what.Frame, what.Error));
 
         /// <summary>The same events as UnityEvents, which can be wired in the inspector.</summary>
         public PlayerEvents Events => _events;
@@ -53,7 +55,7 @@ namespace QuickSes
                 Debug.LogError($"{name}: {LastError.Message}", this);
             _isDamageLogged |= frame >= 0;
             QuickSesError error = LastError;
-            _failed.Tell((frame, error), (handler, what) => handler(what.frame, what.error), this);
+            _failed.Tell((frame, error), this);
             if (this != null)
                 _events.Failed.Invoke(error.Message);
         }
