@@ -73,7 +73,7 @@ struct NothingNearBy {};
 template <class F>
 struct WithNothingNearBy {
   F f;
-  QSES_HOST_DEVICE void operator()(size_t i) const {
+  QSES_FN void operator()(size_t i) const {
     NothingNearBy nothing;
     f(nothing, i);
   }

@@ -13,6 +13,9 @@ constexpr uint32_t kNoNumber = ~uint32_t(0);
 // Steps of a thread for an edge: it looks at so many atoms and arcs at most, a few times.
 constexpr uint64_t kCreaseSteps = uint64_t(1) << 15;
 
+// The passes of creases are inlined into their kernels (QSES_FN), since they are large: a function that is called would
+// get them by way of memory, a copy for each thread.
+
 // What a round may do.
 struct SplitRound {
   bool snap;   // vertices may be moved to a crease that is near
@@ -34,14 +37,14 @@ struct MarkNearTriangles {
   CreasedMesh mesh;
   Sheets sheets;
   bool along;
-  QSES_HOST_DEVICE void operator()(size_t i) const {
+  QSES_FN void operator()(size_t i) const {
     const uint32_t t = static_cast<uint32_t>(i);
     mesh.near_marks[t] = sheets.is_near_crease(mesh, mesh.triangle(t), along) ? 1 : 0;
   }
 };
 struct IsMarked {
   const uint8_t *marks;
-  QSES_HOST_DEVICE bool operator()(size_t i) const { return marks[i] != 0; }
+  QSES_FN bool operator()(size_t i) const { return marks[i] != 0; }
 };
 
 // An edge belongs to the triangle in which it goes from its smaller to its larger vertex: of a closed mesh that is one.
@@ -76,7 +79,7 @@ struct ChooseEdges {
   SplitRound round;
   NearTriangles list;
   uint8_t *chosen;  // [list]
-  QSES_HOST_DEVICE void operator()(size_t i) const {
+  QSES_FN void operator()(size_t i) const {
     const uint32_t *const t = mesh.triangle(list(i));
     uint8_t bits = 0;
     if (sheets.is_near_crease(mesh, t, round.along)) {
@@ -93,7 +96,7 @@ struct ChooseEdges {
 };
 struct CountChosen {
   const uint8_t *chosen;
-  QSES_HOST_DEVICE uint64_t operator()(size_t i) const { return static_cast<uint64_t>(popcount64(chosen[i] & 7)); }
+  QSES_FN uint64_t operator()(size_t i) const { return static_cast<uint64_t>(popcount64(chosen[i] & 7)); }
 };
 
 struct ListEdges {
@@ -101,7 +104,7 @@ struct ListEdges {
   NearTriangles list;
   const uint8_t *chosen;
   CreaseEdges edges;
-  QSES_HOST_DEVICE void operator()(size_t i) const {
+  QSES_FN void operator()(size_t i) const {
     if (!(chosen[i] & 7)) return;
     const uint32_t *const t = mesh.triangle(list(i));
     uint32_t e = edges.starts[i];
@@ -123,7 +126,7 @@ struct FindEdges {
   const uint8_t *chosen;
   CreaseEdges edges;
   uint32_t *edges_of;  // [list]: three of each, or kNoNumber
-  QSES_HOST_DEVICE void operator()(size_t i) const {
+  QSES_FN void operator()(size_t i) const {
     const uint32_t *const t = mesh.triangle(list(i));
     uint32_t own = edges.starts[i];
     for (int k = 0; k < 3; ++k) {

@@ -70,7 +70,7 @@ struct RefuseSnaps {
   CreasedMesh mesh;
   Lattice lattice;
   Snaps snaps;
-  QSES_HOST_DEVICE void operator()(size_t i) const {
+  QSES_FN void operator()(size_t i) const {
     const uint32_t triangle = static_cast<uint32_t>(i), *const t = mesh.triangle(triangle);
     const bool wanted[3] = {snaps.is_wanted(t[0]), snaps.is_wanted(t[1]), snaps.is_wanted(t[2])};
     if (!wanted[0] && !wanted[1] && !wanted[2]) return;
@@ -95,7 +95,7 @@ struct SnapVertices {
   CreasedMesh mesh;
   Lattice lattice;
   Snaps snaps;
-  QSES_HOST_DEVICE void operator()(size_t i) const {
+  QSES_FN void operator()(size_t i) const {
     const CreaseEdges &edges = snaps.edges;
     if (i >= edges.count() || edges.snap_refused[i]) return;
     const int end = end_to_snap(edges.points[i]);

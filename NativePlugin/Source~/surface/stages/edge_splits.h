@@ -118,7 +118,7 @@ struct FindSplits {
 struct CountNew {
   FindSplits find;
   uint64_t *counts;  // [list]
-  QSES_HOST_DEVICE void operator()(size_t i) const {
+  QSES_FN void operator()(size_t i) const {
     const TriangleSplits s = find(i);
     uint64_t vertices = s.within ? 1 : 0;
     const uint32_t *const t = find.mesh.triangle(find.list(i));
@@ -135,7 +135,7 @@ struct SolveCorners {
   Lattice lattice;
   CreasePoint *corners;  // [list]
   uint8_t after;         // the pass whose refusals are looked at again; 0: it is the first time
-  QSES_HOST_DEVICE void operator()(size_t i) const {
+  QSES_FN void operator()(size_t i) const {
     const uint32_t *const t = find.mesh.triangle(find.list(i));
     if (after > 0 && !find.had_refusal(i, after)) return;
     corners[i].kind = CreasePoint::kNone;
@@ -197,7 +197,7 @@ struct RefuseSplits {
   FindSplits find;
   Sheets sheets;
   Lattice lattice;
-  QSES_HOST_DEVICE void operator()(size_t i) const {
+  QSES_FN void operator()(size_t i) const {
     if (find.pass > 1 && !find.had_refusal(i, find.pass - 1)) return;
     const TriangleSplits s = find(i);
     if (s.edges() == 0) return;
@@ -232,7 +232,7 @@ struct AddVertices {
   const uint64_t *before;  // [list]: new ones of the triangles before
   uint32_t first_vertex;
   uint32_t *vertex_of;  // [edge]
-  QSES_HOST_DEVICE void operator()(size_t i) const {
+  QSES_FN void operator()(size_t i) const {
     if (before[i] == before[i + 1]) return;
     const TriangleSplits s = find(i);
     const uint32_t *const t = find.mesh.triangle(find.list(i));
@@ -253,7 +253,7 @@ struct AddTriangles {
   const uint64_t *before;  // [list]: new ones of the triangles before
   uint32_t first_vertex, first_triangle;
   const uint32_t *vertex_of;  // [edge]
-  QSES_HOST_DEVICE void operator()(size_t i) const {
+  QSES_FN void operator()(size_t i) const {
     if (before[i] == before[i + 1]) return;
     const TriangleSplits s = find(i);
     uint32_t *const t = find.mesh.triangle(find.list(i));
@@ -281,7 +281,7 @@ struct AddTriangles {
 
 struct GrowVertex {
   CreasedMesh from, to;
-  QSES_HOST_DEVICE void operator()(size_t i) const {
+  QSES_FN void operator()(size_t i) const {
     copy_vertex(from, static_cast<uint32_t>(i), to, static_cast<uint32_t>(i));
     if (from.second_owners) to.second_owners[i] = from.second_owners[i];
     to.crease_marks[i] = from.crease_marks[i];
@@ -289,20 +289,18 @@ struct GrowVertex {
 };
 struct GrowTriangle {
   CreasedMesh from, to;
-  QSES_HOST_DEVICE void operator()(size_t i) const {
+  QSES_FN void operator()(size_t i) const {
     for (int k = 0; k < 3; ++k) to.triangle(i)[k] = from.triangle(i)[k];
     to.near_marks[i] = from.near_marks[i];
   }
 };
 struct CopyVertex {
   MeshView from, to;
-  QSES_HOST_DEVICE void operator()(size_t i) const {
-    copy_vertex(from, static_cast<uint32_t>(i), to, static_cast<uint32_t>(i));
-  }
+  QSES_FN void operator()(size_t i) const { copy_vertex(from, static_cast<uint32_t>(i), to, static_cast<uint32_t>(i)); }
 };
 struct CopyTriangle {
   MeshView from, to;
-  QSES_HOST_DEVICE void operator()(size_t i) const {
+  QSES_FN void operator()(size_t i) const {
     for (int k = 0; k < 3; ++k) to.triangle(i)[k] = from.triangle(i)[k];
   }
 };
