@@ -9,16 +9,14 @@
 
 namespace quickses {
 
-// Opens thin channels in the signs of all bricks. Returns the points that were opened, numbered like signs.
+// Opens thin channels in the signs of all bricks. opened: the points that were, numbered like signs.
 template <class Work>
-const uint64_t *open_thin_channels(Work &work, const BrickSet &bricks, uint64_t *signs) {
+void open_thin_channels(Work &work, const BrickSet &bricks, uint64_t *signs, Span<uint64_t> opened) {
   auto &executor = work.executor;
   work.timer.begin("thin_walls");
-  const Span<uint64_t> marks = executor.template allocate<uint64_t>(size_t(bricks.count) * kLeavesPerBrick);
-  executor.fill(marks, 0);
-  executor.for_each(marks.size * 64, MarkThinChannels{work.features, bricks, signs, marks.data}, NearBalls::kMostMet);
-  executor.for_each(marks.size, RemoveMarks{marks.data, signs});
-  return marks.data;
+  executor.fill(opened, 0);
+  executor.for_each(opened.size * 64, MarkThinChannels{work.features, bricks, signs, opened.data}, NearBalls::kMostMet);
+  executor.for_each(opened.size, RemoveMarks{opened.data, signs});
 }
 
 // Holds vertices of grooves and channels to their lattice edges.

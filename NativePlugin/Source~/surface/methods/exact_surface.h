@@ -165,7 +165,7 @@ MeshMemoryView build_exact_surface(Work &work) {
   Candidates<Executor> shared{};
   bool share = false;
   const bool holds = work.will_be_split && work.parameters.is_of_balls();
-  const uint64_t *channels = nullptr;
+  Span<uint64_t> channels{};
   MeshLayout layout{};
   const MeshCounts counts = lay_out_closed_mesh(work, &bricks, &layout, [&](const BrickSet &set, uint64_t *signs) {
     work.timer.begin("exact_ses");
@@ -173,12 +173,13 @@ MeshMemoryView build_exact_surface(Work &work) {
     share = slice_size >= set.count && work.plan.single_slice;
     shared = {};
     if (share) B::gather_candidates(executor, features, set, {0, set.count}, work.rooms, shared, signs);
+    if (holds) channels = executor.template allocate<uint64_t>(size_t(set.count) * kLeavesPerBrick);
     const auto mark = executor.arena().mark();
     for_each_slice(work, set.count, slice_size, 0.1, 0.45, [&](BrickRange slice) {
       Candidates<Executor> own{};
       B::evaluate_signs(executor, features, set, slice, work.rooms, share ? shared : own, signs);
     });
-    if (holds) channels = open_thin_channels(work, set, signs);
+    if (holds) open_thin_channels(work, set, signs, channels);
     if (work.parameters.has_thin_walls()) mend_thin_walls(work, set, share ? &shared : nullptr, signs);
     executor.arena().rewind(mark);
   });
@@ -232,7 +233,7 @@ MeshMemoryView build_exact_surface(Work &work) {
       emit(0.85 + share_of_time * (step - 1), 0.85 + share_of_time * step, false);
     }
   }
-  if (holds && mesh.vertices > 0) hold_to_edges(work, bricks, layout, channels, mesh);
+  if (holds && mesh.vertices > 0) hold_to_edges(work, bricks, layout, channels.data, mesh);
   executor.arena().rewind(end_of_mesh);
   mesh.unplaced = starts.unplaced;
   return mesh;
