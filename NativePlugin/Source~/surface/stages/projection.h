@@ -205,7 +205,7 @@ enum class ProjectionState : uint32_t { kOnEdge, kReproject, kPlaced };
 struct Projection {
   SurfacePoint point;  // where the vertex is now: on the sphere of a probe, or on those of two
   ProjectionState state;
-  int rounds;  // of arcs so far
+  int rounds;  // of arcs so far; one more for a long way in the first
 };
 
 QSES_FN Projection project_on_atom(const SurfaceParameters &p, const Sphere &ball, float depth, const Vec3<float> &x) {
