@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <random>
 #include <set>
 
 namespace {
@@ -81,14 +82,45 @@ TEST_P(BallCreases, VerticesLieOnTheSpheresAndInNone) {
             0.25 * static_cast<double>(before.bridges) / static_cast<double>(before.edges));
 }
 
-TEST_P(BallCreases, NoEdgeBridgesTheCreaseOfTwoBalls) {
-  Atoms atoms;
-  atoms.add(0, 0, 0, 1.7).add(1.9, 0.4, 0.3, 1.5);
-  for (double h : {0.7, 0.5, 0.3}) {
-    const qses_settings s = creased(settings(h, 1.4, GetParam()));
-    const Surface sharp = compute(atoms, s);
-    EXPECT_EQ(mesh_checks::manifold_fault(sharp.mesh), "");
-    EXPECT_EQ(examine(atoms, s, sharp).bridges, 0u) << "spacing " << h;
+// How far under the circle where the spheres of two atoms meet the edges pass that no vertex splits there. At most.
+double deepest_bridge(const Atoms &atoms, double inflation, const Surface &surface) {
+  const std::array<double, 3> a = atoms.center(0), b = atoms.center(1);
+  const double r = static_cast<double>(atoms.radii[0]) + inflation, q = static_cast<double>(atoms.radii[1]) + inflation;
+  std::array<double, 3> axis{b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+  const double distance = std::hypot(axis[0], axis[1], axis[2]);
+  const double along = (distance * distance + r * r - q * q) / (2 * distance),
+               radius = std::sqrt(r * r - along * along);
+  for (double &x : axis) x /= distance;
+  double deepest = 0;
+  for (size_t i = 0; i < surface.mesh.indices.size(); ++i) {
+    const std::array<double, 3> u = surface.mesh.position(surface.mesh.indices[i]),
+                                v = surface.mesh.position(surface.mesh.indices[i - i % 3 + (i + 1) % 3]);
+    double from = -along, to = -along, off = 0;
+    for (size_t d = 0; d < 3; ++d) from += (u[d] - a[d]) * axis[d], to += (v[d] - a[d]) * axis[d];
+    if (!(from < 0 && to > 0)) continue;
+    for (size_t d = 0; d < 3; ++d) {
+      const double x = u[d] + (v[d] - u[d]) * from / (from - to) - a[d] - along * axis[d];
+      off += x * x;
+    }
+    deepest = std::max(deepest, radius - std::sqrt(off));
+  }
+  return deepest;
+}
+
+TEST_P(BallCreases, NoEdgeCutsOffTheCreaseOfTwoBalls) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> number(-1, 1);
+  for (int k = 0; k < 30; ++k) {
+    Atoms atoms;
+    const double x = 1.9 + 0.2 * number(random), y = number(random), z = number(random);
+    atoms.add(0, 0, 0, 1.7).add(x, y, z, 1.5);
+    for (double h : {0.7, 0.5, 0.3}) {
+      const qses_settings s = creased(settings(h, 1.4, GetParam()));
+      const Surface sharp = compute(atoms, s);
+      EXPECT_EQ(mesh_checks::manifold_fault(sharp.mesh), "");
+      examine(atoms, s, sharp);
+      EXPECT_LT(deepest_bridge(atoms, inflation(s), sharp), 0.08 * h) << x << " " << y << " " << z << ", spacing " << h;
+    }
   }
 }
 

@@ -12,6 +12,7 @@ namespace quickses {
 struct CudaCandidates {
   BrickRange slice{0, 0};  // the bricks they are for; empty: not gathered yet
   gpu::CandidateView view{};
+  bool have_deciders = false;
   size_t leaves = 0;
   uint32_t longest_row = 0;  // of atoms or arcs, at most
   bool are_of(BrickRange r) const { return slice.first == r.first && slice.last == r.last; }
@@ -289,6 +290,7 @@ void gather_candidates(E &executor, const FeatureView &features, const BrickSet 
   candidates.leaves = static_cast<size_t>(found.leaves);
   candidates.longest_row = std::max(kUsualRow, found.longest_row);
   candidates.view = view;
+  candidates.have_deciders = false;
   candidates.slice = slice;
 }
 
@@ -296,9 +298,11 @@ void gather_candidates(E &executor, const FeatureView &features, const BrickSet 
 template <class E>
 void evaluate_leaves(E &executor, const FeatureView &features, const BrickSet &bricks, CudaCandidates &candidates,
                      bool deciders, uint64_t *signs) {
-  if (deciders)
+  if (deciders) {
     candidates.view.deciders =
         executor.template allocate<uint32_t>(size_t(candidates.slice.size()) * kBrickPoints).data;
+    candidates.have_deciders = true;
+  }
   // Lanes look at all atoms and arcs of a row, and at an atom's caps.
   executor.launch(
       "evaluate_leaves", evaluate_leaves_kernel, candidates.leaves,

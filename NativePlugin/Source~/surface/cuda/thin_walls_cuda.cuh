@@ -238,7 +238,7 @@ void mark_thin_walls(E &executor, const FeatureView &features, const BrickSet &b
   if (slice.size() == 0) return;
   const size_t leaves = static_cast<size_t>(slice.size()) * kLeavesPerBrick;
   if (!candidates.are_of(slice)) gather_candidates(executor, features, bricks, slice, rooms, candidates, nullptr);
-  if (!candidates.view.deciders) evaluate_leaves(executor, features, bricks, candidates, true, nullptr);
+  if (!candidates.have_deciders) evaluate_leaves(executor, features, bricks, candidates, true, nullptr);
   const auto mark = executor.arena().mark();
   WallJob job{};
   job.features = features;
