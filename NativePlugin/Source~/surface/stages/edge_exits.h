@@ -89,17 +89,21 @@ struct FindEdgeExits {
   }
 
  private:
-  // Where the edge leaves the last ball on its way out.
+  // Where the edge leaves the last ball on its way out. Unknown if the outside end is in one, as in a channel that was
+  // not found again; but one on a sphere is outside.
   QSES_FN EdgeExit find_exit(const CutEdge &edge) const {
+    constexpr float kEnd = 1.f + 1e-3f;
     const Vec3<float> way = edge.outside - edge.inside;
     float last = -1.f;
     uint32_t place = 0;
-    const bool few = for_balls_near(features, edge.inside, edge.outside, 0.f, [&](uint32_t at, const Sphere &ball) {
-      float entry, exit;
-      if (meet_ball(ball, edge.inside, way, &entry, &exit) && exit <= 1.f && exit > last) last = exit, place = at;
-      return true;
-    });
-    if (!few || last < 0.f) return {};
+    const bool is_clear =
+        for_balls_near(features, edge.inside, edge.outside, 0.f, [&](uint32_t at, const Sphere &ball) {
+          float entry, exit;
+          if (!meet_ball(ball, edge.inside, way, &entry, &exit) || entry >= 1.f) return true;
+          if (exit > last) last = exit, place = at;
+          return exit <= kEnd;
+        });
+    if (!is_clear || last < 0.f) return {};
     return describe(place, load(features.atoms.items + place), edge.inside + way * last);
   }
 
