@@ -443,6 +443,18 @@ inline std::vector<Regression> regressions() {
         {-17231.5996, -498274.375, 628612.312, 1.8}},
        1},
       {"TwoLargeBallsNearlyTheSame", kSes, kExact, 1, 1, 0, 0, {{0, 0, 0, 23}, {-1.52587891e-05, 0, 0, 23}}, 1},
+      // Lattice points on spheres: vertices held to their edges, with creases.
+      {"EdgesEndOnASphere", kVdw, kExact, 1, 0.2, 0, 0, {{0, 0, 0, 1.8}, {2, 0, -0.03, 2}}, 1},
+      {"AnEdgeEndsOnTwoSpheres", kSas, kExact, 1.4, 0.7, 0, 0, {{0, 0, 0, 1.4}, {0, 1, 1, 1.4}}, 1},
+      {"EdgesEndBesideASphere",
+       kSas,
+       kExact,
+       93.6844482,
+       19.2000008,
+       0,
+       0,
+       {{-76.763, 55.8, 0, 1.2}, {-94.8844452, 0, 0, 1.2}, {76.763, -55.772, 0, 1.2}},
+       1},
       // Area and volume of the atoms.
       {"LargeProbe", kSas, kExact, 95, 2, 0, 0, {{0, 0, 0, 2}, {0, 1, 0, 2}}},
   };

@@ -92,8 +92,9 @@ struct FindEdgeExits {
   // Where the edge leaves the last ball on its way out. Unknown if the outside end is in one, as in a channel that was
   // not found again; but one on a sphere is outside.
   QSES_FN EdgeExit find_exit(const CutEdge &edge) const {
-    constexpr float kEnd = 1.f + 1e-3f;
+    constexpr float kOnSphere = 1e-4f;  // Å
     const Vec3<float> way = edge.outside - edge.inside;
+    const float end = 1.f + kOnSphere * reciprocal_root(length_squared(way));
     float last = -1.f;
     uint32_t place = 0;
     const bool is_clear =
@@ -101,7 +102,7 @@ struct FindEdgeExits {
           float entry, exit;
           if (!meet_ball(ball, edge.inside, way, &entry, &exit) || entry >= 1.f) return true;
           if (exit > last) last = exit, place = at;
-          return exit <= kEnd;
+          return exit <= end;
         });
     if (!is_clear || last < 0.f) return {};
     return describe(place, load(features.atoms.items + place), edge.inside + way * last);
