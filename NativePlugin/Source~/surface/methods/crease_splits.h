@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Sharpens a finished mesh: edges that cut across creases get vertices on them, or have an end moved there; then edges
-// along creases are split where they leave them. The mesh grows in parts, which are joined at last.
+// along creases are split where they leave them. The mesh grows into room that was left behind it.
 #pragma once
 
 #include "surface/methods/exact_surface.h"

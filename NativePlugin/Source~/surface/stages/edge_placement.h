@@ -19,12 +19,13 @@ QSES_FN float edge_arc_reach(const SurfaceParameters &p) { return p.depth + edge
 constexpr int kStartHalvings = 8;
 QSES_FN bool starts_by_halving(const SurfaceParameters &p) { return p.depth > 0.f && p.spacing > 2.f * p.depth; }
 
-// Solid next to a lattice point that is marked inside because a wall passes through an edge from it (thin_walls.h):
-// along the edges, from ball to ball. The point itself if none is found, which rounding may do.
-// Points that are looked at: of one edge as many as a wall may be away, of all of them
+// So many points are looked at on all edges of a lattice point together, to find solid next to it.
 QSES_FN int most_solid_looks(const SurfaceParameters &p) {
   return 2 * kWallSteps * (starts_by_halving(p) ? kMostWallSteps : 3);
 }
+// Solid next to a lattice point that is marked inside because a wall passes through an edge from it (thin_walls.h):
+// along the edges, from ball to ball, of one edge at as many points as a wall may be away. The point itself if none is
+// found, which rounding may do.
 template <class Candidates>
 QSES_FN Vec3<float> find_solid(const FeatureView &f, const Candidates &candidates, const Vec3<float> &x) {
   const SurfaceParameters &p = f.parameters;
