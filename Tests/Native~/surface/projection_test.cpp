@@ -151,4 +151,20 @@ TEST(Projection, OntoAnAtomTheWayInIsShort) {
   }
 }
 
+// Where the probe may be itself, the place there tells nothing of the direction.
+TEST(Projection, OntoAnAtomFromItsInflatedSphere) {
+  const SurfaceParameters p{kProbe, kProbe, 2.f, 3.f};
+  const Sphere ball{glm::vec3(16.f, -3.f, 0.5f), 3.f};
+  const Vec3<float> center(ball.center);
+  for (const Vec3<float> &way : {Vec3<float>(0.f, -1.f, 0.f), {0.6f, 0.8f, 0.f}, {-0.48f, 0.64f, 0.6f}})
+    for (float off : {0.f, 1e-6f, -1e-6f, 1e-5f, -1e-4f}) {
+      const Vec3<float> x = center + way * (ball.radius + off);
+      const Projection v = project_on_atom(p, ball, ball_depth(ball, x), x);
+      ASSERT_EQ(v.state, ProjectionState::kPlaced) << off;
+      const Vec3<float> aside = v.point.position - (center + way * (ball.radius - kProbe));
+      EXPECT_LT(length_squared(aside), 1e-10f) << off;
+      EXPECT_LT(length_squared(v.point.normal - way), 1e-10f) << off;
+    }
+}
+
 }  // namespace

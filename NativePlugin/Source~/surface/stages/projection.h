@@ -208,9 +208,14 @@ struct Projection {
   int rounds;  // of arcs so far; one more for a long way in the first
 };
 
+// From the centre outward: from where the probe may be, which may be x itself, the way would be lost in rounding.
 QSES_FN Projection project_on_atom(const SurfaceParameters &p, const Sphere &ball, float depth, const Vec3<float> &x) {
-  const SurfacePoint s = place_on_surface(p, x, boundary_on_atom(ball, depth, x, true));
-  return {s, s.placed ? ProjectionState::kPlaced : ProjectionState::kOnEdge, 0};
+  const Vec3<float> outward = sphere_normal(ball, x),
+                    position = Vec3<float>(ball.center) + outward * (ball.radius - p.depth);
+  const bool near = is_short_move(p, p.depth - depth, length_squared(position - x));
+  return {{position, outward, outward, QSES_PATCH_CONTACT, near},
+          near ? ProjectionState::kPlaced : ProjectionState::kOnEdge,
+          0};
 }
 
 QSES_FN Projection project_on_arc(const FeatureView &f, const NearestArc &nearest, const Vec3<float> &x) {
