@@ -75,17 +75,9 @@ uint64_t leaf_inside(const FeatureView &f, const BrickCandidates &c, const Latti
     if (lanes) {
       const int near = choose_balls(c.exposed, c.exposed_count, ball.center, ball.radius + slack, c.near_list);
       const Deepest deepest = deepest_ball(c.exposed, c.near_list, near, p, -slack);
-      alignas(32) float number[kPackSize];
-      store_pack(number, deepest.number);
-      for (uint32_t todo = lanes & lane_bits(Pack(0.f) <= deepest.number); todo;) {
-        const float a = number[lowest_bit32(todo)];
-        const uint32_t same = todo & lane_bits(deepest.number == Pack(a));
-        todo &= ~same;
-        const int k = static_cast<int>(a);
-        const Vec3<Pack> offset(p.x - Pack(c.exposed.x[k]), p.y - Pack(c.exposed.y[k]), p.z - Pack(c.exposed.z[k]));
-        lanes &= ~exposed_lanes(f, static_cast<uint32_t>(c.exposed_index[k]), offset,
-                                Pack(c.exposed.radius[k]) - deepest.depth, same);
-      }
+      for_exposed_projections(
+          f, c, p, deepest, lanes,
+          [&](int, uint32_t exposed, const Vec3<Pack> &, const Vec3<Pack> &, const Pack &) { lanes &= ~exposed; });
     }
     result |= static_cast<uint64_t>(lanes) << g;
   }

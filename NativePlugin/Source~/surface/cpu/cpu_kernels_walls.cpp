@@ -108,23 +108,15 @@ void find_probes(const WallField &field, ProbedPoints<kRoom> &points, int begin,
     }
     const int near = choose_balls(c.exposed, c.exposed_count, ball.center, ball.radius + field.slack, c.near_list);
     const Deepest deepest = deepest_ball(c.exposed, c.near_list, near, p, -field.slack);
-    store_pack(number, deepest.number);
-    for (uint32_t todo = lanes & lane_bits(Pack(0.f) <= deepest.number); todo;) {
-      const float a = number[lowest_bit32(todo)];
-      const uint32_t same = todo & lane_bits(deepest.number == Pack(a));
-      todo &= ~same;
-      const int k = static_cast<int>(a);
-      const Vec3<Pack> atom(Pack(c.exposed.x[k]), Pack(c.exposed.y[k]), Pack(c.exposed.z[k]));
-      const Vec3<Pack> offset = p - atom;
-      const Pack length = maximum(Pack(c.exposed.radius[k]) - deepest.depth, Pack(1e-12f));
-      const uint32_t exposed = exposed_lanes(f, static_cast<uint32_t>(c.exposed_index[k]), offset, length, same);
-      if (!exposed) continue;
-      lanes &= ~exposed;
-      const PackMask here = lane_mask(exposed);
-      const Vec3<Pack> on = atom + offset * (Pack(c.exposed.radius[k]) / length);
-      center = {select(here, on.x, center.x), select(here, on.y, center.y), select(here, on.z, center.z)};
-      distance = select(here, deepest.depth, distance);
-    }
+    for_exposed_projections(
+        f, c, p, deepest, lanes,
+        [&](int k, uint32_t exposed, const Vec3<Pack> &atom, const Vec3<Pack> &offset, const Pack &length) {
+          lanes &= ~exposed;
+          const PackMask here = lane_mask(exposed);
+          const Vec3<Pack> on = atom + offset * (Pack(c.exposed.radius[k]) / length);
+          center = {select(here, on.x, center.x), select(here, on.y, center.y), select(here, on.z, center.z)};
+          distance = select(here, deepest.depth, distance);
+        });
     store_pack(points.center_x + g, center.x);
     store_pack(points.center_y + g, center.y);
     store_pack(points.center_z + g, center.z);
