@@ -9,61 +9,49 @@
 
 namespace quickses {
 
+#if defined(__CUDA_ARCH__)
+// The name that CUDA's functions have for integers of 32 or 64 bits. Two's complement: it serves signed ones, too.
+template <class T>
+using CudaWord = typename std::conditional<sizeof(T) == 4, unsigned int, unsigned long long>::type;
+template <class T>
+QSES_FN CudaWord<T> *cuda_word(T *p) {
+  return reinterpret_cast<CudaWord<T> *>(p);
+}
+#endif
+
 // T is a 32-bit or 64-bit integer. Returns the value before.
 template <class T>
 QSES_FN T atomic_add(T *p, T value) {
   static_assert(std::is_integral<T>::value && (sizeof(T) == 4 || sizeof(T) == 8), "32-bit and 64-bit integers only");
 #if defined(__CUDA_ARCH__)
-  // Two's complement: one addition serves signed and unsigned.
-  if constexpr (sizeof(T) == 4)
-    return static_cast<T>(atomicAdd(reinterpret_cast<unsigned int *>(p), static_cast<unsigned int>(value)));
-  else
-    return static_cast<T>(atomicAdd(reinterpret_cast<unsigned long long *>(p), static_cast<unsigned long long>(value)));
+  return static_cast<T>(atomicAdd(cuda_word(p), static_cast<CudaWord<T>>(value)));
 #else
   return __atomic_fetch_add(p, value, __ATOMIC_RELAXED);
 #endif
 }
 
-QSES_FN uint32_t atomic_load(const uint32_t *p) {
+// T is an unsigned integer of 8 or 32 bits. What is loaded others may change meanwhile.
+template <class T>
+QSES_FN T atomic_load(const T *p) {
+  static_assert(std::is_unsigned<T>::value && (sizeof(T) == 1 || sizeof(T) == 4), "bytes and 32-bit words only");
 #if defined(__CUDA_ARCH__)
-  return *reinterpret_cast<const volatile uint32_t *>(p);
+  return *static_cast<const volatile T *>(p);
 #else
   return __atomic_load_n(p, __ATOMIC_RELAXED);
 #endif
 }
-
-QSES_FN void atomic_store(uint32_t *p, uint32_t value) {
+template <class T>
+QSES_FN void atomic_store(T *p, T value) {
+  static_assert(std::is_unsigned<T>::value && (sizeof(T) == 1 || sizeof(T) == 4), "bytes and 32-bit words only");
 #if defined(__CUDA_ARCH__)
-  *reinterpret_cast<volatile uint32_t *>(p) = value;
+  *static_cast<volatile T *>(p) = value;
 #else
   __atomic_store_n(p, value, __ATOMIC_RELAXED);
 #endif
 }
 
 // Sets a flag of one byte.
-QSES_FN void atomic_set(uint8_t *flag) {
-#if defined(__CUDA_ARCH__)
-  *flag = 1;
-#else
-  __atomic_store_n(flag, uint8_t(1), __ATOMIC_RELAXED);
-#endif
-}
-
-// A byte that others may set meanwhile.
-QSES_FN uint8_t atomic_load(const uint8_t *p) {
-#if defined(__CUDA_ARCH__)
-  return *reinterpret_cast<const volatile uint8_t *>(p);
-#else
-  return __atomic_load_n(p, __ATOMIC_RELAXED);
-#endif
-}
-QSES_FN void atomic_store(uint8_t *p, uint8_t value) {
-#if defined(__CUDA_ARCH__)
-  *reinterpret_cast<volatile uint8_t *>(p) = value;
-#else
-  __atomic_store_n(p, value, __ATOMIC_RELAXED);
-#endif
-}
+QSES_FN void atomic_set(uint8_t *flag) { atomic_store(flag, uint8_t(1)); }
 
 // Returns the value before.
 QSES_FN uint32_t atomic_exchange(uint32_t *p, uint32_t value) {
@@ -74,38 +62,25 @@ QSES_FN uint32_t atomic_exchange(uint32_t *p, uint32_t value) {
 #endif
 }
 
-QSES_FN void atomic_or(uint32_t *p, uint32_t bits) {
+// T is an unsigned integer of 32 or 64 bits.
+template <class T>
+QSES_FN void atomic_or(T *p, T bits) {
+  static_assert(std::is_unsigned<T>::value && (sizeof(T) == 4 || sizeof(T) == 8), "32-bit and 64-bit words only");
 #if defined(__CUDA_ARCH__)
-  atomicOr(p, bits);
-#else
-  __atomic_fetch_or(p, bits, __ATOMIC_RELAXED);
-#endif
-}
-QSES_FN void atomic_or(uint64_t *p, uint64_t bits) {
-#if defined(__CUDA_ARCH__)
-  atomicOr(reinterpret_cast<unsigned long long *>(p), static_cast<unsigned long long>(bits));
+  atomicOr(cuda_word(p), static_cast<CudaWord<T>>(bits));
 #else
   __atomic_fetch_or(p, bits, __ATOMIC_RELAXED);
 #endif
 }
 
-// Returns the value before.
-QSES_FN uint32_t atomic_min(uint32_t *p, uint32_t value) {
+// The same. Returns the value before.
+template <class T>
+QSES_FN T atomic_min(T *p, T value) {
+  static_assert(std::is_unsigned<T>::value && (sizeof(T) == 4 || sizeof(T) == 8), "32-bit and 64-bit words only");
 #if defined(__CUDA_ARCH__)
-  return atomicMin(p, value);
+  return static_cast<T>(atomicMin(cuda_word(p), static_cast<CudaWord<T>>(value)));
 #else
-  uint32_t before = __atomic_load_n(p, __ATOMIC_RELAXED);
-  while (value < before && !__atomic_compare_exchange_n(p, &before, value, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
-  }
-  return before;
-#endif
-}
-
-QSES_FN uint64_t atomic_min(uint64_t *p, uint64_t value) {
-#if defined(__CUDA_ARCH__)
-  return atomicMin(reinterpret_cast<unsigned long long *>(p), static_cast<unsigned long long>(value));
-#else
-  uint64_t before = __atomic_load_n(p, __ATOMIC_RELAXED);
+  T before = __atomic_load_n(p, __ATOMIC_RELAXED);
   while (value < before && !__atomic_compare_exchange_n(p, &before, value, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
   }
   return before;
