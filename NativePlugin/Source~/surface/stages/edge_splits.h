@@ -276,24 +276,8 @@ struct AddTriangles {
   }
 };
 
-// ---- from one memory to another
-// ---------------------------------------------------------------------------------------
+// ---- from one memory to another --------------------------------------------------------------------------------
 
-struct GrowVertex {
-  CreasedMesh from, to;
-  QSES_FN void operator()(size_t i) const {
-    copy_vertex(from, static_cast<uint32_t>(i), to, static_cast<uint32_t>(i));
-    if (from.second_owners) to.second_owners[i] = from.second_owners[i];
-    to.crease_marks[i] = from.crease_marks[i];
-  }
-};
-struct GrowTriangle {
-  CreasedMesh from, to;
-  QSES_FN void operator()(size_t i) const {
-    for (int k = 0; k < 3; ++k) to.triangle(i)[k] = from.triangle(i)[k];
-    to.near_marks[i] = from.near_marks[i];
-  }
-};
 struct CopyVertex {
   MeshView from, to;
   QSES_FN void operator()(size_t i) const { copy_vertex(from, static_cast<uint32_t>(i), to, static_cast<uint32_t>(i)); }
@@ -302,6 +286,23 @@ struct CopyTriangle {
   MeshView from, to;
   QSES_FN void operator()(size_t i) const {
     for (int k = 0; k < 3; ++k) to.triangle(i)[k] = from.triangle(i)[k];
+  }
+};
+
+// With what is known of creases.
+struct GrowVertex {
+  CreasedMesh from, to;
+  QSES_FN void operator()(size_t i) const {
+    CopyVertex{from, to}(i);
+    if (from.second_owners) to.second_owners[i] = from.second_owners[i];
+    to.crease_marks[i] = from.crease_marks[i];
+  }
+};
+struct GrowTriangle {
+  CreasedMesh from, to;
+  QSES_FN void operator()(size_t i) const {
+    CopyTriangle{from, to}(i);
+    to.near_marks[i] = from.near_marks[i];
   }
 };
 
