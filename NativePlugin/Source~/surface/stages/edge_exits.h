@@ -97,13 +97,14 @@ struct FindEdgeExits {
     const float end = 1.f + kOnSphere * reciprocal_root(length_squared(way));
     float last = -1.f;
     uint32_t place = 0;
-    const bool is_clear =
-        for_balls_near(features, edge.inside, edge.outside, 0.f, [&](uint32_t at, const Sphere &ball) {
-          float entry, exit;
-          if (!meet_ball(ball, edge.inside, way, &entry, &exit) || entry >= 1.f) return true;
-          if (exit > last) last = exit, place = at;
-          return exit <= end;
-        });
+    const bool is_clear = for_balls_near(features, edge.inside, edge.outside, 0.f, NearBalls::kMostMet,
+                                         [&](uint32_t at, const Sphere &ball) {
+                                           float entry, exit;
+                                           if (!meet_ball(ball, edge.inside, way, &entry, &exit) || entry >= 1.f)
+                                             return true;
+                                           if (exit > last) last = exit, place = at;
+                                           return exit <= end;
+                                         });
     if (!is_clear || last < 0.f) return {};
     return describe(place, load(features.atoms.items + place), edge.inside + way * last);
   }

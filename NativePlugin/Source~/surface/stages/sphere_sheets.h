@@ -5,8 +5,8 @@
 #pragma once
 
 #include "surface/stages/creases.h"
-#include "surface/stages/neighbor_grid.h"
-#include "surface/stages/solvent_features.h"
+#include "surface/stages/near_balls.h"
+#include "surface/stages/projection.h"
 
 namespace quickses {
 
@@ -84,7 +84,7 @@ struct SphereSheets {
   QSES_FN Sphere sphere(uint32_t place) const { return load(features.atoms.items + place); }
 
   QSES_FN bool is_on(const Sphere &ball, const Vec3<float> &x) const {
-    return absolute(square_root(length_squared(x - Vec3<float>(ball.center))) - ball.radius) <= tolerance;
+    return absolute(ball_depth(ball, x)) <= tolerance;
   }
 
   // Has a triangle to do with creases?
@@ -131,8 +131,8 @@ struct SphereSheets {
     const uint32_t first = features.atoms.order[a] < features.atoms.order[b] ? a : b, second = first == a ? b : a;
     CreasePoint p{};
     p.position = x;
-    p.normal = normal_at(first, x);
-    p.second_normal = normal_at(second, x);
+    p.normal = sphere_normal(sphere(first), x);
+    p.second_normal = sphere_normal(sphere(second), x);
     p.owner = features.atoms.order[first];
     p.second_owner = features.atoms.order[second];
     p.patch = QSES_PATCH_TOROIDAL;
@@ -199,36 +199,18 @@ struct SphereSheets {
     return p;
   }
 
-  // crowded: where all is covered, too.
+  // crowded: where all is covered, too, which is no place on the surface.
   QSES_FN NearSpheres near(const Vec3<float> &x, float reach) const {
     NearSpheres near;
-    const float far = features.parameters.max_radius + reach;
-    const Vec3<float> r(far, far, far);
-    const CellBox box = cells_around(features.atoms.cells, x - r, x + r);
-    uint32_t met = 0;
-    for (int z = box.z0; z <= box.z1; ++z)
-      for (int y = box.y0; y <= box.y1; ++y) {
-        const ItemRun run = features.atoms.run(box.x0, box.x1, y, z);
-        met += run.end - run.begin;
-        if (met > NearSpheres::kMostMet) {
-          near.crowded = true;
-          return near;
-        }
-        for (uint32_t k = run.begin; k < run.end; ++k) {
-          const Sphere ball = sphere(k);
+    near.crowded =
+        !for_balls_near(features, x, x, reach, NearSpheres::kMostMet, [&](uint32_t place, const Sphere &ball) {
           const float d2 = length_squared(x - Vec3<float>(ball.center)), longest = ball.radius + reach;
           const float shortest = maximum(0.f, ball.radius - reach);
-          if (d2 > longest * longest || d2 < shortest * shortest) {
-            if (d2 < shortest * shortest) near.crowded = true;  // all is covered: this is no place on the surface
-            continue;
-          }
-          if (near.count == NearSpheres::kMost) {
-            near.crowded = true;
-            return near;
-          }
-          near.place[near.count++] = k;
-        }
-      }
+          if (d2 > longest * longest) return true;
+          if (d2 < shortest * shortest || near.count == NearSpheres::kMost) return false;
+          near.place[near.count++] = place;
+          return true;
+        });
     return near;
   }
 
@@ -238,10 +220,8 @@ struct SphereSheets {
   }
   QSES_FN bool is_covered(const NearSpheres &near, const Vec3<float> &x) const {
     const float most = cover_tolerance(x);
-    for (int k = 0; k < near.count; ++k) {
-      const Sphere ball = sphere(near.place[k]);
-      if (ball.radius - square_root(length_squared(x - Vec3<float>(ball.center))) > most) return true;
-    }
+    for (int k = 0; k < near.count; ++k)
+      if (ball_depth(sphere(near.place[k]), x) > most) return true;
     return false;
   }
   // The same of a point on the sphere of an atom, from its caps.
@@ -301,11 +281,6 @@ struct SphereSheets {
   QSES_FN static void set_ends(const CreaseEnd &u, const CreaseEnd &v, CreasePoint *p) {
     p->to_first = square_root(length_squared(p->position - u.position));
     p->to_second = square_root(length_squared(p->position - v.position));
-  }
-
-  QSES_FN Vec3<float> normal_at(uint32_t place, const Vec3<float> &x) const {
-    const Vec3<float> d = x - Vec3<float>(sphere(place).center);
-    return d * reciprocal_root(maximum(length_squared(d), 1e-12f));
   }
 };
 

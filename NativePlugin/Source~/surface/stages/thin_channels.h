@@ -5,7 +5,8 @@
 #pragma once
 
 #include "surface/stages/marching_cubes.h"
-#include "surface/stages/solvent_features.h"
+#include "surface/stages/near_balls.h"
+#include "surface/stages/projection.h"
 
 namespace quickses {
 
@@ -21,39 +22,14 @@ struct NearBalls {
   float depth = -kFarAway;  // of the point, in the deepest
 };
 
-// Calls use(place, ball) for the atoms that may come near a segment; false if they are too many, or once use() says so.
-template <class Use>
-QSES_FN bool for_balls_near(const FeatureView &f, const Vec3<float> &a, const Vec3<float> &b, float reach,
-                            const Use &use) {
-  const float far = f.parameters.max_radius + reach;
-  const Vec3<float> around(far, far, far);
-  const Vec3<float> low(minimum(a.x, b.x), minimum(a.y, b.y), minimum(a.z, b.z)),
-      high(maximum(a.x, b.x), maximum(a.y, b.y), maximum(a.z, b.z));
-  const CellBox box = cells_around(f.atoms.cells, low - around, high + around);
-  uint32_t met = 0;
-  for (int z = box.z0; z <= box.z1; ++z)
-    for (int y = box.y0; y <= box.y1; ++y) {
-      const ItemRun run = f.atoms.run(box.x0, box.x1, y, z);
-      met += run.end - run.begin;
-      if (met > NearBalls::kMostMet) return false;
-      for (uint32_t k = run.begin; k < run.end; ++k)
-        if (!use(k, load(f.atoms.items + k))) return false;
-    }
-  return true;
-}
-
-QSES_FN float depth_in(const Sphere &ball, const Vec3<float> &x) {
-  return ball.radius - square_root(length_squared(x - Vec3<float>(ball.center)));
-}
-
 // Those within `reach` of a point, as long as take(ball) of those that cover it says that more matter; else false.
 template <class Take>
 QSES_FN bool find_near_balls(const FeatureView &f, const Vec3<float> &x, float reach, NearBalls *near,
                              const Take &take) {
-  return for_balls_near(f, x, x, reach, [&](uint32_t place, const Sphere &ball) {
+  return for_balls_near(f, x, x, reach, NearBalls::kMostMet, [&](uint32_t place, const Sphere &ball) {
     const float longest = ball.radius + reach;
     if (length_squared(x - Vec3<float>(ball.center)) > longest * longest) return true;
-    const float depth = depth_in(ball, x);
+    const float depth = ball_depth(ball, x);
     near->depth = maximum(near->depth, depth);
     if (near->count == NearBalls::kMost || (depth > 0.f && !take(ball))) return false;
     near->place[near->count++] = place;
@@ -166,7 +142,7 @@ struct MarkThinChannels {
       if (!gap.is_open() || gap.end >= 1.f) continue;
       float other = -kFarAway;
       for (int j = 0; j < near.count; ++j)
-        other = maximum(other, depth_in(load(features.atoms.items + near.place[j]), x + way));
+        other = maximum(other, ball_depth(load(features.atoms.items + near.place[j]), x + way));
       constexpr float kAsDeep = 1e-4f;
       if (other < near.depth - kAsDeep || (k & 1 && other < near.depth + kAsDeep)) continue;
       atomic_or(marks + word, uint64_t(1) << bit);
