@@ -5,7 +5,6 @@
 
 #include "surface/methods/level_work.h"
 #include "surface/stages/edge_exits.h"
-#include "surface/stages/sphere_sheets.h"
 
 namespace quickses {
 
@@ -34,13 +33,11 @@ void hold_to_edges(Work &work, const BrickSet &bricks, const MeshLayout &layout,
   uint8_t *const mixed = flags[0].data, *const in_channel = flags[1].data, *const turned = flags[2].data;
   const HeldVertices vertices{flags[3].data, flags[4].data,
                               work.memory.template allocate_where_mesh_is<EdgeExit>(executor, mesh, n).data};
-  const Span<uint32_t> places = executor.template allocate<uint32_t>(work.atoms.count);
-  executor.for_each(work.atoms.count, PlaceAtoms{work.atoms.order, places.data});
   const Lattice &lattice = bricks.lattice;
   executor.for_each(mesh.triangles, MarkMixedVertices{mesh.view, mixed});
   executor.for_each(n, MarkChannelVertices{bricks, layout, channels, in_channel});
   executor.for_each(mesh.triangles, MarkNearVertices{mesh.view, mixed, in_channel, vertices.near});
-  executor.for_each(n, FindEdgeExits{work.features, bricks, layout, places.data, in_channel, mesh.view, vertices},
+  executor.for_each(n, FindEdgeExits{work.features, bricks, layout, work.atom_places, in_channel, mesh.view, vertices},
                     NearBalls::kMostMet);
   executor.for_each(n, HoldVertices{lattice, mesh.view, vertices, vertices.held});
   executor.for_each(mesh.triangles, MarkTurnedVertices{lattice, mesh.view, vertices, turned});

@@ -219,10 +219,8 @@ template <class Work>
 MeshMemoryView split_creases(Work &work, const MeshMemoryView &plain, size_t vertex_room, size_t triangle_room) {
   if (!work.parameters.is_of_balls())
     return split_at(work, ProbeSheets{work.features, work.lattice}, plain, vertex_room, triangle_room);
-  const Span<uint32_t> places = work.executor.template allocate<uint32_t>(work.atoms.count);
-  work.executor.for_each(work.atoms.count, PlaceAtoms{work.atoms.order, places.data});
   const float tolerance = kSheetTolerance + 1.2e-7f * farthest_coordinate(work);
-  return split_at(work, SphereSheets{work.features, places.data, work.lattice, tolerance}, plain, vertex_room,
+  return split_at(work, SphereSheets{work.features, work.atom_places, work.lattice, tolerance}, plain, vertex_room,
                   triangle_room);
 }
 
@@ -239,11 +237,16 @@ MeshMemoryView build_creased_surface(Work &work) {
   plain.purpose = MeshPurpose::kWork;
   plain.spare_room = expected_parts(work).new_ones;
   plain.will_be_split = true;
+  if (work.parameters.is_of_balls()) {
+    const Span<uint32_t> places = work.executor.template allocate<uint32_t>(work.atoms.count);
+    work.executor.for_each(work.atoms.count, PlaceAtoms{work.atoms.order, places.data});
+    plain.atom_places = places.data;
+  }
   const MeshMemoryView mesh = build_exact_surface(plain);
   if (mesh.vertices == 0) return mesh;
   work.timer.begin("creases");
   const MeshMemoryView sharp =
-      split_creases(work, mesh, with_spare_room(plain, mesh.vertices), with_spare_room(plain, mesh.triangles));
+      split_creases(plain, mesh, with_spare_room(plain, mesh.vertices), with_spare_room(plain, mesh.triangles));
   MeshMemoryView out = work.memory.allocate_mesh(work.executor, sharp.vertices, sharp.triangles, work.made_shape,
                                                  work.purpose, work.plan.mesh_in_pieces);
   add_normals(work, &out);

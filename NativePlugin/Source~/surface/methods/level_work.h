@@ -47,6 +47,7 @@ struct LevelWork {
   bool will_be_split = false;  // whether creases of the mesh are split when it is made
   bool is_cut = false;         // whether parts of the whole mesh are left out
   bool hard_edges = false;     // whether a vertex on a crest is delivered once per side
+  const uint32_t *atom_places = nullptr;  // caller's number of an atom -> its place in the grid; of creases of balls
   GrowingBuffer<HostMemory> *area_memory = nullptr;  // of the areas of atoms
   bool makes_mesh = true;
   AtomMeasures atom_measures{};     // where the surface is that of the balls, and measured
