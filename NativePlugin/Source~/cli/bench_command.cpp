@@ -6,8 +6,8 @@
 #include "cli/bench.h"
 #include "cli/commands.h"
 #include "cli/exit_code.h"
+#include "cli/input.h"
 #include "cli/text_output.h"
-#include "io/atomic_file.h"
 
 namespace quickses::cli {
 namespace {
@@ -100,13 +100,12 @@ std::string bench_small(Engine &engine, const io::Structure &structure, const Op
 }
 
 void run_bench(const Options &options) {
-  if (!options.json.empty() && options.json != "-") io::check_writable(options.json);
+  check_text_output(options.json);
   std::vector<io::StructureFile> files;  // all of them first: a bad name should not cost a run
   for (const std::string &input : options.inputs)
     files.push_back(load(input, options.read, options.compute, options.quiet));
 
-  Engine engine(options.compute);
-  explain_fallback(engine, options.compute, options.quiet);
+  Engine engine = start_engine(options.compute, options.quiet);
   Json structures = Json::array();
   for (size_t i = 0; i < files.size(); ++i) {
     const io::Structure &structure = files[i].models.front();

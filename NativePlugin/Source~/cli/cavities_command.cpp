@@ -6,16 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "cli/clock.h"
 #include "cli/commands.h"
 #include "cli/csv.h"
 #include "cli/engine.h"
+#include "cli/input.h"
 #include "cli/mesh_output.h"
 #include "cli/progress.h"
 #include "cli/report.h"
 #include "cli/text_output.h"
-#include "io/atomic_file.h"
-#include "io/radii.h"
 
 namespace quickses::cli {
 namespace {
@@ -129,18 +127,13 @@ void print_cavities(const Options &options, const std::vector<Cavity> &cavities,
 }  // namespace
 
 void run_cavities(const Options &options) {
-  for (const std::string *output : {&options.csv, &options.json})
-    if (!output->empty() && *output != "-") io::check_writable(*output);
-  const auto read_start = Clock::now();
-  const io::StructureFile file = load(options.input, options.read, options.compute, options.quiet);
-  const double read_ms = ms_since(read_start);
-  const io::Structure &structure = file.models.front();
+  check_text_output(options.csv);
+  check_text_output(options.json);
+  const Input input(options, options.quiet);
+  const io::Structure &structure = input.file.models.front();
 
-  Engine engine(options.compute);
-  explain_fallback(engine, options.compute, options.quiet);
-  Options used = options;
-  if (io::has_own_radii(file.format)) used.compute.radii = "file";
-  qses_settings settings = settings_of(used.compute);
+  Engine engine = start_engine(options.compute, options.quiet);
+  qses_settings settings = settings_of(options.compute);
   settings.component_ids = 1;
   engine.set_atoms(structure, options.input);
   qses_mesh mesh;
@@ -153,12 +146,12 @@ void run_cavities(const Options &options) {
   const std::vector<uint32_t> residues = io::residues_of(structure);
   if (!options.csv.empty()) write_text(options.csv, csv_table(cavities, structure, residues));
   if (!options.json.empty()) {
-    Json json = report_head_json(used, structure, engine);
+    Json json = report_head_json(input.options, structure, engine);
     json["cavities"] = cavities_json(cavities, structure, residues);
-    json["time_ms"] = {{"read", read_ms}, {"compute", engine.report().compute_ms}};
+    json["time_ms"] = {{"read", input.read_ms}, {"compute", engine.report().compute_ms}};
     write_text(options.json, dump(json, false));
   }
-  if (!options.quiet && !options.prints_data()) print_cavities(used, cavities, structure, residues);
+  if (!options.quiet && !options.prints_data()) print_cavities(options, cavities, structure, residues);
 }
 
 }  // namespace quickses::cli

@@ -5,7 +5,6 @@
 #include <cstdio>
 
 #include "cli/exit_code.h"
-#include "io/radii.h"
 
 namespace quickses::cli {
 namespace {
@@ -101,20 +100,11 @@ qses_settings mesh_settings_of(const Options &options) {
   return settings;
 }
 
-io::StructureFile load(const std::string &path, const io::ReadOptions &read, const ComputeOptions &options,
-                       bool quiet) {
-  io::StructureFile file = io::read_structure(path, read);
-  if (io::has_own_radii(file.format) && options.radii_given)
-    throw Failure(kUsage, "--radii: '" + path + "' has radii of its own");
-  io::assign_radii(file, options.radii_given ? options.radii : "");
-  if (!quiet)
-    for (const std::string &warning : file.warnings) std::fprintf(stderr, "quickses: warning: %s\n", warning.c_str());
-  return file;
-}
-
-void explain_fallback(const Engine &engine, const ComputeOptions &options, bool quiet) {
-  if (quiet || options.backend != QSES_BACKEND_AUTO || engine.backend() != QSES_BACKEND_CPU) return;
-  std::fprintf(stderr, "quickses: the CPU computes: %s\n", engine.why_not_cuda().c_str());
+Engine start_engine(const ComputeOptions &options, bool quiet) {
+  Engine engine(options);
+  if (!quiet && options.backend == QSES_BACKEND_AUTO && engine.backend() == QSES_BACKEND_CPU)
+    std::fprintf(stderr, "quickses: the CPU computes: %s\n", engine.why_not_cuda().c_str());
+  return engine;
 }
 
 }  // namespace quickses::cli

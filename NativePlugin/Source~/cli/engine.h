@@ -44,10 +44,7 @@ qses_settings settings_of(const ComputeOptions &options);
 // Of the mesh that the options ask for, and of what is told about it.
 qses_settings mesh_settings_of(const Options &options);
 
-// The structures of a file with their radii. Warnings go to standard error unless quiet.
-io::StructureFile load(const std::string &path, const io::ReadOptions &read, const ComputeOptions &options, bool quiet);
-
-// Says on standard error why the CPU computes although CUDA was preferred.
-void explain_fallback(const Engine &engine, const ComputeOptions &options, bool quiet);
+// Says on standard error, unless quiet, why the CPU computes although CUDA was preferred. Throws as Engine does.
+Engine start_engine(const ComputeOptions &options, bool quiet);
 
 }  // namespace quickses::cli

@@ -11,7 +11,6 @@
 #include "cli/measuring.h"
 #include "cli/mesh_output.h"
 #include "cli/report.h"
-#include "io/radii.h"
 
 namespace quickses::cli {
 
@@ -55,12 +54,8 @@ std::string csv_header(const Options &options) {
 }
 
 FrameInputs::FrameInputs(const Options &given, bool quiet)
-    : options(given),
-      file(load(options.input, options.read, options.compute, quiet)),
-      trajectory(io::Trajectory::open(options.trajectory)) {
-  if (io::has_own_radii(file.format)) options.compute.radii = "file";
+    : Input(given, quiet), trajectory(io::Trajectory::open(options.trajectory)) {
   check_atom_counts(options, structure(), trajectory);
-  check_has_residues(options, structure());
   for (const io::AtomInfo &atom : structure().atoms) file_indices.push_back(atom.file_index);
   if (!options.output.empty()) pattern.emplace(options.output);
   if (!quiet)

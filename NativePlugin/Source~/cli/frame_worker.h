@@ -9,6 +9,7 @@
 #include "cli/area_tables.h"
 #include "cli/engine.h"
 #include "cli/frame_supply.h"
+#include "cli/input.h"
 #include "cli/options.h"
 #include "cli/output_pattern.h"
 #include "cli/report.h"
@@ -18,18 +19,17 @@
 namespace quickses::cli {
 
 // What the workers of a process share and only read.
-struct FrameInputs {
+struct FrameInputs : Input {
   // Reads both files. Warnings go to standard error unless quiet.
   // Throws Failure, io::Error.
   FrameInputs(const Options &options, bool quiet);
 
-  Options options;
-  io::StructureFile file;  // with one model
   io::Trajectory trajectory;
   std::vector<uint32_t> file_indices;  // of the atoms of the structure
   std::optional<io::Unwrapper> unwrapper;
   std::optional<OutputPattern> pattern;
 
+  // The only one.
   const io::Structure &structure() const { return file.models.front(); }
 };
 

@@ -4,12 +4,10 @@
 #include <string>
 
 #include "cli/area_tables.h"
-#include "cli/clock.h"
 #include "cli/commands.h"
+#include "cli/input.h"
 #include "cli/measuring.h"
 #include "cli/text_output.h"
-#include "io/atomic_file.h"
-#include "io/radii.h"
 
 namespace quickses::cli {
 namespace {
@@ -32,27 +30,23 @@ void print_table(const Options &options, const io::Structure &structure, const E
 }  // namespace
 
 void run_measure(const Options &options) {
-  if (!options.json.empty() && options.json != "-") io::check_writable(options.json);
+  check_text_output(options.json);
   AreaTables tables(options, options.measured);
-  const auto read_start = Clock::now();
-  const io::StructureFile file = load(options.input, options.read, options.compute, options.quiet);
+  const Input input(options, options.quiet);
   Timings timings;
-  timings.read = ms_since(read_start);
-  for (const io::Structure &structure : file.models) check_has_residues(options, structure);
+  timings.read = input.read_ms;
 
-  Engine engine(options.compute);
-  explain_fallback(engine, options.compute, options.quiet);
-  Options used = options;
-  if (io::has_own_radii(file.format)) used.compute.radii = "file";
+  Engine engine = start_engine(options.compute, options.quiet);
   const bool all_models = options.read.model == 0;
   std::string reports;
-  for (const io::Structure &structure : file.models) {
+  for (const io::Structure &structure : input.file.models) {
     engine.set_atoms(structure, options.input);
-    const Measurement measurement = measure_surfaces(engine, used);
-    tables.write(make_area_rows(used, all_models ? std::to_string(structure.model) : "", structure, measurement.areas));
+    const Measurement measurement = measure_surfaces(engine, options);
+    tables.write(
+        make_area_rows(options, all_models ? std::to_string(structure.model) : "", structure, measurement.areas));
     if (!options.json.empty())
-      reports += dump(measurement_json(used, structure, engine, measurement, timings), all_models);
-    if (!options.quiet && !options.prints_data()) print_table(used, structure, engine, measurement);
+      reports += dump(measurement_json(input.options, structure, engine, measurement, timings), all_models);
+    if (!options.quiet && !options.prints_data()) print_table(options, structure, engine, measurement);
   }
   tables.finish();
   if (!options.json.empty()) write_text(options.json, reports);

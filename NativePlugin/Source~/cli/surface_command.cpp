@@ -9,6 +9,7 @@
 #include "cli/commands.h"
 #include "cli/engine.h"
 #include "cli/exit_code.h"
+#include "cli/input.h"
 #include "cli/mesh_output.h"
 #include "cli/progress.h"
 #include "cli/report.h"
@@ -16,7 +17,6 @@
 #include "cli/used_files.h"
 #include "io/atomic_file.h"
 #include "io/file_path.h"
-#include "io/radii.h"
 
 namespace quickses::cli {
 namespace {
@@ -44,30 +44,27 @@ void print_summary(const Options &options, const io::Structure &structure, const
 void run_surface(const Options &options) {
   // Before anything takes time: can the results be written?
   if (!options.output.empty()) io::check_writable(options.output);
-  if (!options.json.empty() && options.json != "-") io::check_writable(options.json);
+  check_text_output(options.json);
   AreaTables tables(options, {options.compute.surface});
 
-  const auto read_start = Clock::now();
-  const io::StructureFile file = load(options.input, options.read, options.compute, options.quiet);
+  const Input input(options, options.quiet);
   Timings timings;
-  timings.read = ms_since(read_start);
-  for (const io::Structure &structure : file.models) check_has_residues(options, structure);
+  timings.read = input.read_ms;
 
-  Engine engine(options.compute);
-  explain_fallback(engine, options.compute, options.quiet);
+  Engine engine = start_engine(options.compute, options.quiet);
   const qses_settings settings = mesh_settings_of(options);
   if (!options.json.empty()) qses_set_stage_times(engine.context(), 1);
 
   const bool all_models = options.read.model == 0;
   if (all_models && !options.output.empty()) {
     const UsedFiles files(options);
-    for (const io::Structure &structure : file.models) files.check_mesh(output_of_model(options, structure.model));
+    for (const io::Structure &structure : input.file.models)
+      files.check_mesh(output_of_model(options, structure.model));
   }
   std::string reports;
-  for (const io::Structure &structure : file.models) {
-    Options model_options = options;
+  for (const io::Structure &structure : input.file.models) {
+    Options model_options = input.options;
     model_options.output = output_of_model(options, structure.model);
-    if (io::has_own_radii(file.format)) model_options.compute.radii = "file";
     engine.set_atoms(structure, options.input);
     std::optional<qses_size_estimate> predicted;
     if (!options.json.empty()) predicted = engine.estimate(settings);

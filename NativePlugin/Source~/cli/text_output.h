@@ -26,6 +26,10 @@ class TextOutput {
 // Throws Failure (output) if something of what was printed so far could not be written.
 void flush_standard_output();
 
+// Before anything takes time: throws if the text could not be written.
+inline void check_text_output(const std::string &path) {
+  if (!path.empty() && path != "-") io::check_writable(path);
+}
 inline void write_text(const std::string &path, const std::string &text) {
   TextOutput output(path);
   output.write(text);

@@ -41,8 +41,8 @@ Share divide(const Options &options, const Processes &processes, size_t frame_co
   share.compute = choose_device(options.compute, processes);
   const unsigned threads = options.compute.threads ? options.compute.threads : processes.threads();
   share.compute.threads = threads;
-  const Engine whole(share.compute);  // tells what auto means here
-  if (processes.is_first()) explain_fallback(whole, options.compute, options.quiet);
+  // Tells what auto means here.
+  const Engine whole = start_engine(share.compute, options.quiet || !processes.is_first());
   share.compute.backend = whole.backend();
 
   // On the CPU, frames side by side use threads better than threads within a frame.
