@@ -58,6 +58,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     out.fits = 1;
     if (atoms.count == 0) return out;
     const FrameInput in{atoms, appearance, settings};
+    double growth = 1;
     const typename Executor::CallScope scope(executor_);
     walk(in, stop, [&](const MemoryPlan &plan) {
       qses_report report;
@@ -67,14 +68,15 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
         enter_level(work, settings.spacing);
         if (settings.method == QSES_METHOD_EXACT) facts_.caps = count_kept_caps(work);
         facts_.size = estimate_size(work);
+        if (splits_creases(work)) growth += expected_splits(work).new_part();
       }
       executor_.arena().reset();
     });
     const uint64_t limit = executor_.arena().limit(), least = least_bytes(in);
     uint64_t whole = forecast(in, kMemoryPlans[0], limit);
     if (whole > limit) whole = std::max(least, limit);
-    out.vertices = static_cast<uint64_t>(facts_.size.vertices);
-    out.triangles = static_cast<uint64_t>(facts_.size.triangles);
+    out.vertices = static_cast<uint64_t>(growth * facts_.size.vertices);
+    out.triangles = static_cast<uint64_t>(growth * facts_.size.triangles);
     if (settings.delivery != QSES_DELIVERY_NONE)
       out.mesh_bytes = MeshArrays(out.vertices, out.triangles, shape_of(settings, !appearance.colors.empty())).bytes();
     out.work_bytes = whole + memory_.outside_arena(executor_);

@@ -41,7 +41,7 @@ void expect_close(uint64_t predicted, uint64_t actual, const std::string &what) 
 }
 
 struct Case {
-  const char *name;
+  std::string name;
   Atoms atoms;
   qses_settings settings;
 };
@@ -49,7 +49,9 @@ struct Case {
 std::vector<Case> cases() {
   std::vector<Case> all;
   const Atoms one = crambin(), many = crambins(12);
-  const auto add = [&](const char *name, const Atoms &atoms, qses_settings s) { all.push_back({name, atoms, s}); };
+  const auto add = [&](const std::string &name, const Atoms &atoms, qses_settings s) {
+    all.push_back({name, atoms, s});
+  };
   add("one", one, settings(0.5));
   add("fine", one, settings(0.15));
   add("coarse", many, settings(2.0));
@@ -75,6 +77,13 @@ std::vector<Case> cases() {
   add("components", many, s);
   s.relaxation_steps = 3;
   add("components, relaxed", one, s);
+  for (const qses_surface surface : {QSES_SURFACE_SES, QSES_SURFACE_SAS, QSES_SURFACE_VDW})
+    for (const double spacing : {0.3, 0.5, 1.0, 2.0}) {
+      s = settings(spacing, 1.4, surface);
+      s.creases = 1;
+      add("creases of surface " + std::to_string(surface) + " at " + std::to_string(spacing), spacing < 1 ? one : many,
+          s);
+    }
   s = settings(0.5);
   s.method = QSES_METHOD_GRID;
   add("grid", many, s);
@@ -124,15 +133,15 @@ TEST(Estimate, IsNearTheTruth) {
     const qses_size_estimate e = estimate(context, c.settings);
     const qses_mesh mesh = compute_view(context, c.settings);
     const qses_report report = report_of(context);
-    expect_close(e.vertices, mesh.vertex_count, std::string(c.name) + ": vertices");
-    expect_close(e.triangles, mesh.triangle_count, std::string(c.name) + ": triangles");
-    expect_close(e.mesh_bytes, report.mesh_bytes, std::string(c.name) + ": mesh");
-    expect_close(e.work_bytes, report.work_bytes_peak, std::string(c.name) + ": work");
+    expect_close(e.vertices, mesh.vertex_count, c.name + ": vertices");
+    expect_close(e.triangles, mesh.triangle_count, c.name + ": triangles");
+    expect_close(e.mesh_bytes, report.mesh_bytes, c.name + ": mesh");
+    expect_close(e.work_bytes, report.work_bytes_peak, c.name + ": work");
     EXPECT_EQ(e.fits, 1) << c.name;
     // The same again now that memory is there; only the scratch of crowded bricks is known better.
-    expect_close(e.smallest_budget, estimate(context, c.settings).smallest_budget, std::string(c.name) + ": budget");
+    expect_close(e.smallest_budget, estimate(context, c.settings).smallest_budget, c.name + ": budget");
     compute_view(context, c.settings);
-    expect_close(report_of(context).work_bytes_peak, report.work_bytes_peak, std::string(c.name) + ": work, again");
+    expect_close(report_of(context).work_bytes_peak, report.work_bytes_peak, c.name + ": work, again");
   }
 }
 
@@ -181,7 +190,7 @@ TEST(Budget, TheSmallestWorksAndGivesTheSameBytes) {
     const qses_mesh expected = compute_view(unbounded, c.settings);
     const qses_report whole = report_of(unbounded);
     for (const uint64_t budget : {smallest, smallest + smallest / 4, 3 * smallest}) {
-      const std::string what = std::string(c.name) + ": " + std::to_string(budget) + " bytes";
+      const std::string what = c.name + ": " + std::to_string(budget) + " bytes";
       const Context context(2, budget);
       set_atoms(context, c.atoms);
       EXPECT_EQ(estimate(context, c.settings).fits, 1) << what;
@@ -245,8 +254,7 @@ TEST(Budget, TooSmallIsRefusedWithOneThatWouldDo) {
     set_atoms(unbounded, c.atoms);
     const uint64_t smallest = estimate(unbounded, c.settings).smallest_budget;
     for (const uint64_t budget : {uint64_t(1), smallest / 3, smallest / 3 * 2}) {
-      const std::string what =
-          std::string(c.name) + ": " + std::to_string(budget) + " bytes of " + std::to_string(smallest);
+      const std::string what = c.name + ": " + std::to_string(budget) + " bytes of " + std::to_string(smallest);
       const Context context(2, budget);
       set_atoms(context, c.atoms);
       const qses_status status = qses_compute(context, &c.settings, nullptr);

@@ -24,18 +24,11 @@ Span<T> mesh_room(Work &work, const GrowingMesh &mesh, size_t n) {
   return work.memory.template allocate_where_mesh_is<T>(work.executor, mesh.whole, n);
 }
 
-// Of the triangles nobody knows beforehand how many are near a crease, nor of these and the vertices how many there
-// will be more: generously, these parts.
-struct ExpectedParts {
-  double near, new_ones;
-};
+// Of so many triangles, those that a round is expected to look at.
 template <class Work>
-ExpectedParts expected_parts(const Work &work) {
-  return work.parameters.is_of_balls() ? ExpectedParts{0.6, 0.35} : ExpectedParts{0.2, 0.1};
-}
-template <class Work>
-size_t expected_near(const Work &work, size_t triangles) {
-  return std::min(triangles, static_cast<size_t>(expected_parts(work).near * static_cast<double>(triangles)) + 64);
+size_t expected_near(const Work &work, int round, size_t triangles) {
+  const double near = expected_splits(work).near_part(round) * static_cast<double>(triangles);
+  return std::min(triangles, static_cast<size_t>(near) + 64);
 }
 
 // The mesh, of which there is room for so many vertices and triangles, with marks for as many.
@@ -174,7 +167,7 @@ void split_round(Work &work, const Sheets &sheets, const SplitRound &round, Grow
   mesh->whole.vertices += vertices;
   mesh->whole.triangles += triangles;
   *list = {old_near.data, static_cast<uint32_t>(counts.old_near), first_triangle};
-  *listed = kCounts ? expected_near(work, mesh->whole.triangles) : static_cast<size_t>(counts.old_near) + triangles;
+  *listed = kCounts ? expected_near(work, 2, mesh->whole.triangles) : static_cast<size_t>(counts.old_near) + triangles;
 }
 
 // The mesh, with room behind it, with sharp creases. Waits.
@@ -188,7 +181,7 @@ MeshMemoryView split_at(Work &work, const Sheets &sheets, const MeshMemoryView &
   executor.for_each(triangles, MarkNearTriangles<Sheets>{mesh.view, sheets, false});
   const Span<uint32_t> near = mesh_room<uint32_t>(work, mesh, triangles);
   size_t listed = executor.compact(triangles, IsMarked{mesh.view.near_marks}, near);
-  if (std::decay_t<decltype(executor)>::kCounts) listed = expected_near(work, triangles);
+  if (std::decay_t<decltype(executor)>::kCounts) listed = expected_near(work, 1, triangles);
   NearTriangles list{near.data, static_cast<uint32_t>(listed), 0};
   split_round(work, sheets, SplitRound{true, false}, &mesh, &list, &listed, false);
   split_round(work, sheets, SplitRound{false, true}, &mesh, &list, &listed, true);
@@ -235,7 +228,6 @@ MeshMemoryView build_creased_surface(Work &work) {
   Work plain = work;
   plain.shape = plain.made_shape = shape_before_splits(work.shape);
   plain.purpose = MeshPurpose::kWork;
-  plain.spare_room = expected_parts(work).new_ones;
   plain.will_be_split = true;
   if (work.parameters.is_of_balls()) {
     const Span<uint32_t> places = work.executor.template allocate<uint32_t>(work.atoms.count);

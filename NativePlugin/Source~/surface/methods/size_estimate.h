@@ -17,8 +17,9 @@ constexpr double kFilledBox = 0.8;
 // Part of the sum of the balls that they fill together, where they overlap as atoms do.
 constexpr double kFilledBalls = 0.8;
 
-// Å² of surface per atom, if nothing else is known.
-constexpr double kUsualArea = 10;
+// Å² of surface and arcs per atom, if nothing else is known. Without a probe hardly an atom is buried.
+inline double usual_area(const SurfaceParameters &parameters) { return parameters.probe > 0 ? 10 : 15; }
+inline double usual_arcs(const SurfaceParameters &parameters) { return parameters.probe > 0 ? 4 : 6; }
 
 // Counts at the spacing of the work. Gives up all memory it takes.
 template <class Work>
@@ -88,7 +89,7 @@ inline double guess_pairs(const WorkFacts &facts, const SurfaceParameters &param
 template <class Work>
 bool is_cheap_to_count(const Work &work, double spacing) {
   const double atoms = static_cast<double>(work.facts->atoms);
-  if (guess_bricks(atoms, kUsualArea * atoms, spacing) > kCheapBricks) return false;
+  if (guess_bricks(atoms, usual_area(work.parameters) * atoms, spacing) > kCheapBricks) return false;
   const bool exact = work.settings.method == QSES_METHOD_EXACT;
   const double pairs = guess_pairs(*work.facts, work.parameters, exact, spacing), brick = spacing * kBrickEdge;
   if (exact) return pairs <= kCheapPairs;
@@ -143,21 +144,22 @@ uint64_t count_kept_caps(const Work &work) {
 
 // What was not counted before the work ended, guessed generously. most_bricks: of the table.
 inline void guess_unknown(const SurfaceParameters &parameters, bool exact, double most_bricks, WorkFacts *facts) {
-  const double atoms = static_cast<double>(facts->atoms), h = static_cast<double>(parameters.spacing);
+  const double atoms = static_cast<double>(facts->atoms), h = static_cast<double>(parameters.spacing),
+               area = usual_area(parameters) * atoms;
   if (facts->arcs == 0) {
     // Larger spheres have more neighbours.
     const double wide = std::max(1.0, static_cast<double>(parameters.max_radius) / 3.2);
     facts->caps = static_cast<uint64_t>(18 * atoms * std::min(wide * wide, atoms / 18 + 1));
-    facts->arcs = static_cast<uint64_t>(4 * atoms * wide);
+    facts->arcs = static_cast<uint64_t>(usual_arcs(parameters) * atoms * wide);
   }
   if (facts->size.bricks == 0) {
     const double pairs = guess_pairs(*facts, parameters, exact, h);
     facts->size.bricks =
-        std::max(1.2 * guess_bricks(atoms, kUsualArea * atoms, h) + 64,
+        std::max(1.2 * guess_bricks(atoms, area, h) + 64,
                  exact ? std::min(pairs, most_bricks) : std::min(kFilledBalls * pairs, kFilledBox * most_bricks));
   }
   if (facts->size.vertices == 0) {
-    facts->size.vertices = kVerticesPerCell * kUsualArea * atoms / (h * h);
+    facts->size.vertices = kVerticesPerCell * area / (h * h);
     facts->size.triangles = 2 * facts->size.vertices;
     facts->size.leaves = facts->size.vertices / kVerticesPerLeaf;
   }
