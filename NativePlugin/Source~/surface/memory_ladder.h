@@ -58,7 +58,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     out.fits = 1;
     if (atoms.count == 0) return out;
     const FrameInput in{atoms, appearance, settings};
-    double growth = 1;
+    double growth = 1, hard_part = 0;
     const typename Executor::CallScope scope(executor_);
     walk(in, stop, [&](const MemoryPlan &plan) {
       qses_report report;
@@ -69,16 +69,19 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
         if (settings.method == QSES_METHOD_EXACT) facts_.caps = count_kept_caps(work);
         facts_.size = estimate_size(work);
         if (splits_creases(work)) growth += expected_splits(work).new_part();
+        if (work.hard_edges) hard_part = expected_hard_part(work);
       }
       executor_.arena().reset();
     });
     const uint64_t limit = executor_.arena().limit(), least = least_bytes(in);
     uint64_t whole = forecast(in, kMemoryPlans[0], limit);
     if (whole > limit) whole = std::max(least, limit);
-    out.vertices = static_cast<uint64_t>(growth * facts_.size.vertices);
+    MeshShape shape = shape_of(settings, !appearance.colors.empty());
+    shape.repeated = static_cast<size_t>(hard_part * growth * facts_.size.vertices);
+    out.vertices = static_cast<uint64_t>(growth * facts_.size.vertices) + shape.repeated;
     out.triangles = static_cast<uint64_t>(growth * facts_.size.triangles);
     if (settings.delivery != QSES_DELIVERY_NONE)
-      out.mesh_bytes = MeshArrays(out.vertices, out.triangles, shape_of(settings, !appearance.colors.empty())).bytes();
+      out.mesh_bytes = MeshArrays(out.vertices, out.triangles, shape).bytes();
     out.work_bytes = whole + memory_.outside_arena(executor_);
     out.smallest_budget = least + memory_.needed_outside(executor_);
     out.fits = budget_ == 0 || out.smallest_budget <= budget_ ? 1 : 0;

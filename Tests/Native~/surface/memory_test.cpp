@@ -81,8 +81,10 @@ std::vector<Case> cases() {
     for (const double spacing : {0.3, 0.5, 1.0, 2.0}) {
       s = settings(spacing, 1.4, surface);
       s.creases = 1;
-      add("creases of surface " + std::to_string(surface) + " at " + std::to_string(spacing), spacing < 1 ? one : many,
-          s);
+      const std::string name = " of surface " + std::to_string(surface) + " at " + std::to_string(spacing);
+      add("creases" + name, spacing < 1 ? one : many, s);
+      s.hard_edges = 1;
+      add("hard edges" + name, one, s);
     }
   s = settings(0.5);
   s.method = QSES_METHOD_GRID;

@@ -218,12 +218,6 @@ MeshMemoryView split_creases(Work &work, const MeshMemoryView &plain, size_t ver
 }
 
 template <class Work>
-bool splits_creases(const Work &work) {
-  return work.settings.creases != 0 && work.settings.method == QSES_METHOD_EXACT &&
-         work.parameters.spacing <= work.settings.spacing;
-}
-
-template <class Work>
 MeshMemoryView build_creased_surface(Work &work) {
   Work plain = work;
   plain.shape = plain.made_shape = shape_before_splits(work.shape);

@@ -83,6 +83,12 @@ struct SplitTriangle {
   }
 };
 
+// Which part of the vertices is on crests, where that is not known.
+template <class Work>
+double expected_hard_part(const Work &work) {
+  return splits_creases(work) ? expected_splits(work).hard_part() : 0.02;
+}
+
 // The same surface, with its crests hard. Waits.
 template <class Work>
 MeshMemoryView harden_edges(Work &work, const MeshMemoryView &smooth) {
@@ -97,7 +103,7 @@ MeshMemoryView harden_edges(Work &work, const MeshMemoryView &smooth) {
   executor.for_each(words, SeparateSides{{both.words, second.data}});
   size_t repeated = rank_set(executor, both, n);
   if (std::decay_t<decltype(executor)>::kCounts)
-    repeated = n / 4;  // not known: rarely more
+    repeated = static_cast<size_t>(expected_hard_part(work) * static_cast<double>(n));
   else
     check_mesh_size({n + repeated, smooth.triangles});
   MeshShape shape = work.shape;

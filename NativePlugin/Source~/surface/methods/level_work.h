@@ -43,16 +43,24 @@ struct LevelWork {
   MeshShape shape{};       // of what is handed out
   MeshShape made_shape{};  // of the whole mesh, before anything is left out of it
   MeshPurpose purpose = MeshPurpose::kDelivered;
-  bool side_normals = false;              // whether a later stage asks for MeshView::second_normals
-  bool will_be_split = false;             // whether creases of the mesh are split when it is made
-  bool is_cut = false;                    // whether parts of the whole mesh are left out
-  bool hard_edges = false;                // whether a vertex on a crest is delivered once per side
-  const uint32_t *atom_places = nullptr;  // caller's number of an atom -> its place in the grid; of creases of balls
+  bool side_normals = false;   // whether a later stage asks for MeshView::second_normals
+  bool will_be_split = false;  // whether creases of the mesh are split when it is made
+  bool is_cut = false;         // whether parts of the whole mesh are left out
+  bool hard_edges = false;     // whether a vertex on a crest is delivered once per side
+  // Of creases of balls: the caller's number of an atom -> its place in the grid.
+  const uint32_t *atom_places = nullptr;
   GrowingBuffer<HostMemory> *area_memory = nullptr;  // of the areas of atoms
   bool makes_mesh = true;
   AtomMeasures atom_measures{};     // where the surface is that of the balls, and measured
   Span<const double> atom_areas{};  // in host memory; of all levels
 };
+
+// Are creases of the mesh of this level split? Not of coarser ones.
+template <class Work>
+bool splits_creases(const Work &work) {
+  return work.settings.creases != 0 && work.settings.method == QSES_METHOD_EXACT &&
+         work.parameters.spacing <= work.settings.spacing;
+}
 
 // What splits of creases will find of a mesh, before anybody knows: how many arcs there are for a vertex tells how many
 // edges lie between creases. As measured on proteins at spacings from .25 to 2 Å, generously.
@@ -60,6 +68,7 @@ struct ExpectedSplits {
   double creases;                                                               // for an edge
   double near_part(int round) const { return 1 - std::exp(-round * creases); }  // of the triangles, from round 1 on
   double new_part() const { return std::min(1.0, creases); }                    // so many more of all
+  double hard_part() const { return 1 - std::exp(-new_part()); }                // of the vertices, once per side
 };
 template <class Work>
 ExpectedSplits expected_splits(const Work &work) {
