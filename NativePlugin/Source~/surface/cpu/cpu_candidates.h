@@ -201,9 +201,8 @@ QSES_FN uint32_t exposed_lanes(const FeatureView &f, uint32_t atom, const Vec3<P
   return lanes;
 }
 
-// Eight points on the exposed balls that they are deepest in: for each such ball use(k, exposed, center, offset,
-// length) is called with its column, those of the points in `lanes` whose radial projection on it is exposed, its
-// centre, and the points from there with their lengths.
+// Eight points on the exposed balls that they are deepest in: use(ball, atom, exposed) is called for each such ball
+// with its place in the grid, and those of the points in `lanes` whose radial projection on it is exposed.
 template <class Use>
 QSES_FN void for_exposed_projections(const FeatureView &f, const BrickCandidates &c, const Vec3<Pack> &p,
                                      const Deepest &deepest, uint32_t lanes, const Use &use) {
@@ -214,10 +213,11 @@ QSES_FN void for_exposed_projections(const FeatureView &f, const BrickCandidates
     const uint32_t same = todo & lane_bits(deepest.number == Pack(a));
     todo &= ~same;
     const int k = static_cast<int>(a);
-    const Vec3<Pack> center(Pack(c.exposed.x[k]), Pack(c.exposed.y[k]), Pack(c.exposed.z[k])), offset = p - center;
-    const Pack length = maximum(Pack(c.exposed.radius[k]) - deepest.depth, Pack(1e-12f));
-    const uint32_t exposed = exposed_lanes(f, static_cast<uint32_t>(c.exposed_index[k]), offset, length, same);
-    if (exposed) use(k, exposed, center, offset, length);
+    const Sphere ball{glm::vec3(c.exposed.x[k], c.exposed.y[k], c.exposed.z[k]), c.exposed.radius[k]};
+    const uint32_t atom = static_cast<uint32_t>(c.exposed_index[k]);
+    const uint32_t exposed =
+        exposed_lanes(f, atom, p - Vec3<Pack>(ball.center), offset_length(ball, deepest.depth), same);
+    if (exposed) use(ball, atom, exposed);
   }
 }
 

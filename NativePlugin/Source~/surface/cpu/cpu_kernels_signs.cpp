@@ -75,9 +75,8 @@ uint64_t leaf_inside(const FeatureView &f, const BrickCandidates &c, const Latti
     if (lanes) {
       const int near = choose_balls(c.exposed, c.exposed_count, ball.center, ball.radius + slack, c.near_list);
       const Deepest deepest = deepest_ball(c.exposed, c.near_list, near, p, -slack);
-      for_exposed_projections(
-          f, c, p, deepest, lanes,
-          [&](int, uint32_t exposed, const Vec3<Pack> &, const Vec3<Pack> &, const Pack &) { lanes &= ~exposed; });
+      for_exposed_projections(f, c, p, deepest, lanes,
+                              [&](const Sphere &, uint32_t, uint32_t exposed) { lanes &= ~exposed; });
     }
     result |= static_cast<uint64_t>(lanes) << g;
   }

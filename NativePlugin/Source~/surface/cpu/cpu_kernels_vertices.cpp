@@ -145,26 +145,20 @@ int project_contact(const FeatureView &f, const BrickCandidates &c, float spacin
     uint32_t done = 0;
     const Pack way_in = Pack(depth) - deepest.depth;
     const uint32_t trusted = lane_bits(is_short_move(f.parameters, way_in, way_in * way_in));
-    for_exposed_projections(
-        f, c, p, deepest, used,
-        [&](int k, uint32_t exposed, const Vec3<Pack> &center, const Vec3<Pack> &offset, const Pack &) {
-          done |= exposed;
-          const PackMask here = lane_mask(exposed);
-          const Pack length2 = length_squared(offset), inverse = reciprocal_root(maximum(length2, Pack(1e-12f)));
-          const PackMask off_center = Pack(1e-12f) < length2;  // as sphere_normal() has it
-          const Vec3<Pack> outward(select(off_center, offset.x * inverse, Pack(0.f)),
-                                   select(off_center, offset.y * inverse, Pack(0.f)),
-                                   select(off_center, offset.z * inverse, Pack(1.f)));
-          const Vec3<Pack> on = center + outward * Pack(c.exposed.radius[k] - depth);
-          place = {select(here, on.x, place.x), select(here, on.y, place.y), select(here, on.z, place.z)};
-          normal = {select(here, outward.x, normal.x), select(here, outward.y, normal.y),
-                    select(here, outward.z, normal.z)};
-          for (uint32_t l = exposed; l; l &= l - 1) {
-            w->owner[g + lowest_bit32(l)] = c.exposed_index[k];
-            w->patch[g + lowest_bit32(l)] = QSES_PATCH_CONTACT;
-            w->placed[g + lowest_bit32(l)] = (trusted >> lowest_bit32(l) & 1) != 0;
-          }
-        });
+    for_exposed_projections(f, c, p, deepest, used, [&](const Sphere &atom_ball, uint32_t atom, uint32_t exposed) {
+      done |= exposed;
+      const PackMask here = lane_mask(exposed);
+      const Vec3<Pack> outward = sphere_normal(atom_ball, p);
+      const Vec3<Pack> on = Vec3<Pack>(atom_ball.center) + outward * Pack(atom_ball.radius - depth);
+      place = {select(here, on.x, place.x), select(here, on.y, place.y), select(here, on.z, place.z)};
+      normal = {select(here, outward.x, normal.x), select(here, outward.y, normal.y),
+                select(here, outward.z, normal.z)};
+      for (uint32_t l = exposed; l; l &= l - 1) {
+        w->owner[g + lowest_bit32(l)] = static_cast<int32_t>(atom);
+        w->patch[g + lowest_bit32(l)] = QSES_PATCH_CONTACT;
+        w->placed[g + lowest_bit32(l)] = (trusted >> lowest_bit32(l) & 1) != 0;
+      }
+    });
     const uint32_t left = used & ~done;
     const PackMask mask = lane_mask(done);
     store_pack(w->place.x + g, select(mask, place.x, p.x));

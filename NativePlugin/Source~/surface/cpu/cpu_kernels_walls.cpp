@@ -108,15 +108,14 @@ void find_probes(const WallField &field, ProbedPoints<kRoom> &points, int begin,
     }
     const int near = choose_balls(c.exposed, c.exposed_count, ball.center, ball.radius + field.slack, c.near_list);
     const Deepest deepest = deepest_ball(c.exposed, c.near_list, near, p, -field.slack);
-    for_exposed_projections(
-        f, c, p, deepest, lanes,
-        [&](int k, uint32_t exposed, const Vec3<Pack> &atom, const Vec3<Pack> &offset, const Pack &length) {
-          lanes &= ~exposed;
-          const PackMask here = lane_mask(exposed);
-          const Vec3<Pack> on = atom + offset * (Pack(c.exposed.radius[k]) / length);
-          center = {select(here, on.x, center.x), select(here, on.y, center.y), select(here, on.z, center.z)};
-          distance = select(here, deepest.depth, distance);
-        });
+    for_exposed_projections(f, c, p, deepest, lanes, [&](const Sphere &atom_ball, uint32_t, uint32_t exposed) {
+      lanes &= ~exposed;
+      const PackMask here = lane_mask(exposed);
+      const Vec3<Pack> atom(atom_ball.center);
+      const Vec3<Pack> on = atom + (p - atom) * (Pack(atom_ball.radius) / offset_length(atom_ball, deepest.depth));
+      center = {select(here, on.x, center.x), select(here, on.y, center.y), select(here, on.z, center.z)};
+      distance = select(here, deepest.depth, distance);
+    });
     store_pack(points.center_x + g, center.x);
     store_pack(points.center_y + g, center.y);
     store_pack(points.center_z + g, center.z);

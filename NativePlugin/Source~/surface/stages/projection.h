@@ -48,8 +48,11 @@ QSES_FN bool is_exposed(const FeatureView &f, uint32_t atom, const Vec3<float> &
   return true;
 }
 
-// The length of the offset of a point at some depth in a ball.
-QSES_FN float offset_length(const Sphere &ball, float depth) { return maximum(ball.radius - depth, 1e-12f); }
+// How far a point at some depth in a ball is from its centre.
+template <class T>
+QSES_FN T offset_length(const Sphere &ball, T depth) {
+  return maximum(T(ball.radius) - depth, T(1e-12f));
+}
 
 // The atom whose ball the point is deepest in: also the one whose van der Waals surface is nearest. Candidates:
 // atom_count(), atom(k) -> atom number, arc_count(), arc(k) -> arc number.
@@ -121,10 +124,13 @@ QSES_FN Vec3<float> direction(const Vec3<float> &from, const Vec3<float> &to) {
 }
 
 // Outward from a ball's centre; a fixed direction at the centre itself.
-QSES_FN Vec3<float> sphere_normal(const Sphere &ball, const Vec3<float> &x) {
-  const Vec3<float> d = x - Vec3<float>(ball.center);
-  const float length2 = length_squared(d);
-  return length2 > 1e-12f ? d * reciprocal_root(length2) : Vec3<float>(0.f, 0.f, 1.f);
+template <class T>
+QSES_FN Vec3<T> sphere_normal(const Sphere &ball, const Vec3<T> &x) {
+  const Vec3<T> d = x - Vec3<T>(ball.center);
+  const T length2 = length_squared(d), inverse = reciprocal_root(maximum(length2, T(1e-12f)));
+  const auto off_center = T(1e-12f) < length2;
+  return {select(off_center, d.x * inverse, T(0.f)), select(off_center, d.y * inverse, T(0.f)),
+          select(off_center, d.z * inverse, T(1.f))};
 }
 
 QSES_FN BoundaryPoint boundary_on_atom(const Sphere &ball, float depth, const Vec3<float> &x, bool exposed) {
