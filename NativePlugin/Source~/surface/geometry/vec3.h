@@ -41,6 +41,8 @@ template <class T>
 QSES_FN Vec3<T> cross(const Vec3<T> &a, const Vec3<T> &b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
+QSES_FN bool operator==(const Vec3<float> &a, const Vec3<float> &b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+QSES_FN bool operator!=(const Vec3<float> &a, const Vec3<float> &b) { return !(a == b); }
 QSES_FN Vec3<float> load_vec3(const float *p) { return {p[0], p[1], p[2]}; }
 QSES_FN void store_vec3(float *p, const Vec3<float> &v) {
   p[0] = v.x;

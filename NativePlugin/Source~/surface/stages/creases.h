@@ -5,6 +5,7 @@
 
 #include "surface/geometry/lattice.h"
 #include "surface/mesh/creased_mesh.h"
+#include "surface/stages/side_normals.h"
 
 namespace quickses {
 
@@ -38,9 +39,7 @@ struct CreaseEnd {
   uint32_t owner, second_owner;
 
   QSES_FN bool is_of(uint32_t atom) const { return owner == atom || second_owner == atom; }
-  QSES_FN bool on_crease() const {
-    return normal.x != second_normal.x || normal.y != second_normal.y || normal.z != second_normal.z;
-  }
+  QSES_FN bool on_crease() const { return normal != second_normal; }
 };
 
 // Of a vertex of the mesh, in the frame in which numbers are small.
@@ -75,8 +74,7 @@ struct MarkVertices {
   CreasedMesh mesh;
   QSES_HOST_DEVICE void operator()(size_t i) const {
     const uint32_t v = static_cast<uint32_t>(i);
-    const float *const n = mesh.normal(v), *const second = mesh.second_normal(v);
-    const bool on = n[0] != second[0] || n[1] != second[1] || n[2] != second[2];
+    const bool on = is_crest_vertex(mesh, v);
     mesh.crease_marks[v] = on ? 1 : 0;
     if (on && mesh.second_owners) mesh.second_owners[v] = mesh.owner(v);
   }

@@ -159,9 +159,7 @@ struct SurfacePoint {
   qses_patch patch;
   bool placed;  // false: no feature is near, or none can be trusted
 
-  QSES_FN bool is_crest() const {
-    return normal.x != second_normal.x || normal.y != second_normal.y || normal.z != second_normal.z;
-  }
+  QSES_FN bool is_crest() const { return normal != second_normal; }
 };
 
 // Can a vertex be trusted that moved so far, `way_in` of it into the molecule?

@@ -10,7 +10,7 @@ namespace quickses {
 
 // Between two normals of unit length: their mean, or the first one where they are opposite.
 QSES_FN Vec3<float> mean_normal(const Vec3<float> &a, const Vec3<float> &b) {
-  if (a.x == b.x && a.y == b.y && a.z == b.z) return a;
+  if (a == b) return a;
   const Vec3<float> sum = a + b;
   const float length2 = length_squared(sum);
   return length2 > 1e-8f ? sum * reciprocal_root(length2) : a;
@@ -39,8 +39,7 @@ QSES_FN Vec3<float> face_normal(const MeshView &mesh, const uint32_t *triangle) 
 }
 
 QSES_FN bool is_crest_vertex(const MeshView &mesh, uint32_t vertex) {
-  const float *const a = mesh.normal(vertex), *const b = mesh.second_normal(vertex);
-  return a[0] != b[0] || a[1] != b[1] || a[2] != b[2];
+  return load_vec3(mesh.normal(vertex)) != load_vec3(mesh.second_normal(vertex));
 }
 
 // How well a vertex fits on a sphere through another one, whatever the radius: 1 where it does. On a sphere the normals

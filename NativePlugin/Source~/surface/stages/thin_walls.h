@@ -116,9 +116,10 @@ QSES_FN NearestProbe nearest_probe(const FeatureView &f, const Candidates &candi
   const DeepestAtom deepest = deepest_atom(f, candidates, x);
   if (deepest.depth <= f.parameters.least_depth()) return {x, 0.f};
   if (deepest.depth > depth) return {x, kFarAway};
-  const Sphere ball = load(f.atoms.items + deepest.atom);
-  if (is_exposed(f, deepest.atom, x - Vec3<float>(ball.center), offset_length(ball, deepest.depth)))
+  if (is_on_contact(f, candidates, deepest, x)) {
+    const Sphere ball = load(f.atoms.items + deepest.atom);
     return {boundary_on_atom(ball, deepest.depth, x, true).position, deepest.depth};
+  }
   const NearestArc nearest = nearest_arc(f, candidates, x);
   if (nearest.distance2 > depth * depth) return {x, kFarAway};
   const BoundaryPoint y = boundary_on_arc(load(f.arcs + nearest.arc), x);
