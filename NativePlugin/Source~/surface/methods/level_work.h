@@ -62,8 +62,8 @@ bool splits_creases(const Work &work) {
          work.parameters.spacing <= work.settings.spacing;
 }
 
-// What splits of creases will find of a mesh, before anybody knows: how many arcs there are for a vertex tells how many
-// edges lie between creases. As measured on proteins at spacings from .25 to 2 Å, generously.
+// What splits of creases will find of a mesh, before anybody knows: how many arcs there are for a vertex tells how
+// close creases are, in edges. As measured on proteins at spacings from .25 to 2 Å, generously.
 struct ExpectedSplits {
   double creases;                                                               // for an edge
   double near_part(int round) const { return 1 - std::exp(-round * creases); }  // of the triangles, from round 1 on
@@ -73,9 +73,9 @@ struct ExpectedSplits {
 template <class Work>
 ExpectedSplits expected_splits(const Work &work) {
   const double arcs = static_cast<double>(work.facts->arcs),
-               between = std::sqrt(arcs / std::max(1.0, work.facts->size.vertices));
+               per_edge = std::sqrt(arcs / std::max(1.0, work.facts->size.vertices));
   // Of probes' creases, fine meshes show the sharp ones only.
-  return {work.parameters.is_of_balls() ? 1.2 * between : 1.3 * between * between * between};
+  return {work.parameters.is_of_balls() ? 1.2 * per_edge : 1.3 * per_edge * per_edge * per_edge};
 }
 
 // Room for so many vertices or triangles, and for those that splits of creases add behind them.
