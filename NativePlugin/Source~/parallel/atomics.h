@@ -73,6 +73,16 @@ QSES_FN void atomic_or(T *p, T bits) {
 #endif
 }
 
+template <class T>
+QSES_FN void atomic_and(T *p, T bits) {
+  static_assert(std::is_unsigned<T>::value && (sizeof(T) == 4 || sizeof(T) == 8), "32-bit and 64-bit words only");
+#if defined(__CUDA_ARCH__)
+  atomicAnd(cuda_word(p), static_cast<CudaWord<T>>(bits));
+#else
+  __atomic_fetch_and(p, bits, __ATOMIC_RELAXED);
+#endif
+}
+
 // The same. Returns the value before.
 template <class T>
 QSES_FN T atomic_min(T *p, T value) {

@@ -3,26 +3,13 @@
 // along creases are split where they leave them. The mesh grows into room that was left behind it.
 #pragma once
 
-#include "surface/methods/exact_surface.h"
+#include "surface/methods/crease_merges.h"
 #include "surface/stages/crease_snaps.h"
 #include "surface/stages/edge_splits.h"
 #include "surface/stages/probe_sheets.h"
 #include "surface/stages/sphere_sheets.h"
 
 namespace quickses {
-
-// The mesh while it grows.
-struct GrowingMesh {
-  MeshMemoryView whole;
-  CreasedMesh view;
-  size_t vertex_room, triangle_room;
-};
-
-// Room for work on the mesh: where the mesh is, since most of it is as large.
-template <class T, class Work>
-Span<T> mesh_room(Work &work, const GrowingMesh &mesh, size_t n) {
-  return work.memory.template allocate_where_mesh_is<T>(work.executor, mesh.whole, n);
-}
 
 // Of so many triangles, those that a round is expected to look at.
 template <class Work>
@@ -172,8 +159,8 @@ void split_round(Work &work, const Sheets &sheets, const SplitRound &round, Grow
 
 // The mesh, with room behind it, with sharp creases. Waits.
 template <class Work, class Sheets>
-MeshMemoryView split_at(Work &work, const Sheets &sheets, const MeshMemoryView &plain, size_t vertex_room,
-                        size_t triangle_room) {
+GrowingMesh split_at(Work &work, const Sheets &sheets, const MeshMemoryView &plain, size_t vertex_room,
+                     size_t triangle_room) {
   auto &executor = work.executor;
   GrowingMesh mesh = begin_to_grow<Sheets>(work, plain, vertex_room, triangle_room);
   const size_t triangles = plain.triangles;
@@ -185,7 +172,7 @@ MeshMemoryView split_at(Work &work, const Sheets &sheets, const MeshMemoryView &
   NearTriangles list{near.data, static_cast<uint32_t>(listed), 0};
   split_round(work, sheets, SplitRound{true, false}, &mesh, &list, &listed, false);
   split_round(work, sheets, SplitRound{false, true}, &mesh, &list, &listed, true);
-  return mesh.whole;
+  return mesh;
 }
 
 // How far from the origin of the caller's coordinates the atoms are.
@@ -209,7 +196,7 @@ inline MeshShape shape_before_splits(const MeshShape &wanted) {
 }
 
 template <class Work>
-MeshMemoryView split_creases(Work &work, const MeshMemoryView &plain, size_t vertex_room, size_t triangle_room) {
+GrowingMesh split_creases(Work &work, const MeshMemoryView &plain, size_t vertex_room, size_t triangle_room) {
   if (!work.parameters.is_of_balls())
     return split_at(work, ProbeSheets{work.features, work.lattice}, plain, vertex_room, triangle_room);
   const float tolerance = kSheetTolerance + 1.2e-7f * farthest_coordinate(work);
@@ -231,13 +218,16 @@ MeshMemoryView build_creased_surface(Work &work) {
   const MeshMemoryView mesh = build_exact_surface(plain);
   if (mesh.vertices == 0) return mesh;
   work.timer.begin("creases");
-  const MeshMemoryView sharp =
+  const GrowingMesh sharp =
       split_creases(plain, mesh, with_spare_room(plain, mesh.vertices), with_spare_room(plain, mesh.triangles));
-  MeshMemoryView out = work.memory.allocate_mesh(work.executor, sharp.vertices, sharp.triangles, work.made_shape,
-                                                 work.purpose, work.plan.mesh_in_pieces);
+  const size_t vertices = sharp.whole.vertices, triangles = sharp.whole.triangles;
+  size_t merged = 0;
+  const KeptParts kept = merge_at_creases(work, sharp, &merged);
+  MeshMemoryView out = work.memory.allocate_mesh(work.executor, vertices - merged, triangles - 2 * merged,
+                                                 work.made_shape, work.purpose, work.plan.mesh_in_pieces);
   add_normals(work, &out);
-  work.executor.for_each(sharp.vertices, CopyVertex{sharp.view, out.view});
-  work.executor.for_each(sharp.triangles, CopyTriangle{sharp.view, out.view});
+  work.executor.for_each(vertices, KeepVertex{sharp.whole.view, out.view, kept});
+  work.executor.for_each(triangles, KeepTriangle{sharp.whole.view, out.view, kept});
   out.unplaced = mesh.unplaced;
   return out;
 }

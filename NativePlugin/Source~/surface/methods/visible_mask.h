@@ -3,9 +3,8 @@
 // more. What stays keeps its order.
 #pragma once
 
-#include "parallel/atomics.h"
 #include "surface/methods/level_work.h"
-#include "surface/stages/ranked_set.h"
+#include "surface/stages/kept_parts.h"
 
 namespace quickses {
 
@@ -23,7 +22,7 @@ struct MarkShown {
   MeshView mesh;
   size_t triangles;
   ShownParts shown;
-  RankedSet kept_triangles, kept_vertices;
+  KeptParts kept;
   QSES_HOST_DEVICE void operator()(size_t word) const {
     uint32_t bits = 0;
     for (uint32_t k = 0; k < 32 && 32 * word + k < triangles; ++k) {
@@ -31,44 +30,22 @@ struct MarkShown {
       if (!shown.has(mesh, t)) continue;
       bits |= uint32_t(1) << k;
       for (int corner = 0; corner < 3; ++corner) {
-        uint32_t *const at = kept_vertices.words + t[corner] / 32;
+        uint32_t *const at = kept.vertices.words + t[corner] / 32;
         const uint32_t bit = uint32_t(1) << t[corner] % 32;
         if (!(atomic_load(at) & bit)) atomic_or(at, bit);
       }
     }
-    kept_triangles.words[word] = bits;
-  }
-};
-
-struct MoveVertex {
-  MeshView from, to;
-  RankedSet kept;
-  QSES_HOST_DEVICE void operator()(size_t i) const {
-    const uint32_t vertex = static_cast<uint32_t>(i);
-    if (kept.has(vertex)) copy_vertex(from, vertex, to, kept.rank(vertex));
-  }
-};
-
-struct MoveTriangle {
-  MeshView from, to;
-  RankedSet kept_triangles, kept_vertices;
-  QSES_HOST_DEVICE void operator()(size_t i) const {
-    const uint32_t triangle = static_cast<uint32_t>(i);
-    if (!kept_triangles.has(triangle)) return;
-    const uint32_t *const t = from.triangle(triangle);
-    uint32_t *const out = to.triangle(kept_triangles.rank(triangle));
-    for (int corner = 0; corner < 3; ++corner) out[corner] = kept_vertices.rank(t[corner]);
+    kept.triangles.words[word] = bits;
   }
 };
 
 template <class Work>
 MeshMemoryView drop_hidden(Work &work, const MeshMemoryView &whole, const ShownParts &shown, MeshPurpose purpose) {
   auto &executor = work.executor;
-  const RankedSet vertices = allocate_set(executor, whole.vertices),
-                  triangles = allocate_set(executor, whole.triangles);
-  executor.for_each((whole.triangles + 31) / 32, MarkShown{whole.view, whole.triangles, shown, triangles, vertices});
-  uint32_t vertex_count = rank_set(executor, vertices, whole.vertices);
-  uint32_t triangle_count = rank_set(executor, triangles, whole.triangles);
+  const KeptParts kept{allocate_set(executor, whole.vertices), allocate_set(executor, whole.triangles)};
+  executor.for_each((whole.triangles + 31) / 32, MarkShown{whole.view, whole.triangles, shown, kept});
+  uint32_t vertex_count = rank_set(executor, kept.vertices, whole.vertices);
+  uint32_t triangle_count = rank_set(executor, kept.triangles, whole.triangles);
   if (std::decay_t<decltype(executor)>::kCounts) {  // how many stay is not known: at most all
     vertex_count = static_cast<uint32_t>(whole.vertices);
     triangle_count = static_cast<uint32_t>(whole.triangles);
@@ -76,8 +53,8 @@ MeshMemoryView drop_hidden(Work &work, const MeshMemoryView &whole, const ShownP
   MeshMemoryView part =
       work.memory.allocate_mesh(executor, vertex_count, triangle_count, work.shape, purpose, work.plan.mesh_in_pieces);
   add_normals(work, &part);
-  executor.for_each(whole.vertices, MoveVertex{whole.view, part.view, vertices});
-  executor.for_each(whole.triangles, MoveTriangle{whole.view, part.view, triangles, vertices});
+  executor.for_each(whole.vertices, KeepVertex{whole.view, part.view, kept});
+  executor.for_each(whole.triangles, KeepTriangle{whole.view, part.view, kept});
   work.report->hidden_vertices = static_cast<uint32_t>(whole.vertices) - vertex_count;
   work.report->hidden_triangles = static_cast<uint32_t>(whole.triangles) - triangle_count;
   return part;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "surface/stages/crease_edges.h"
+#include "surface/stages/kept_parts.h"
 #include "surface/stages/triangle_angles.h"
 
 namespace quickses {
@@ -276,24 +277,11 @@ struct AddTriangles {
   }
 };
 
-// ---- from one memory to another --------------------------------------------------------------------------------
-
-struct CopyVertex {
-  MeshView from, to;
-  QSES_FN void operator()(size_t i) const { copy_vertex(from, static_cast<uint32_t>(i), to, static_cast<uint32_t>(i)); }
-};
-struct CopyTriangle {
-  MeshView from, to;
-  QSES_FN void operator()(size_t i) const {
-    for (int k = 0; k < 3; ++k) to.triangle(i)[k] = from.triangle(i)[k];
-  }
-};
-
-// With what is known of creases.
+// A mesh in larger memory, with what is known of creases.
 struct GrowVertex {
   CreasedMesh from, to;
   QSES_FN void operator()(size_t i) const {
-    CopyVertex{from, to}(i);
+    KeepVertex{from, to, {}}(i);
     if (from.second_owners) to.second_owners[i] = from.second_owners[i];
     to.crease_marks[i] = from.crease_marks[i];
   }
@@ -301,7 +289,7 @@ struct GrowVertex {
 struct GrowTriangle {
   CreasedMesh from, to;
   QSES_FN void operator()(size_t i) const {
-    CopyTriangle{from, to}(i);
+    KeepTriangle{from, to, {}}(i);
     to.near_marks[i] = from.near_marks[i];
   }
 };
