@@ -8,8 +8,7 @@
 
 namespace quickses {
 
-constexpr int kMergeRounds = 3;
-// Of the triangles at most this part is looked at: a hundredth is poor.
+// Of the triangles at most this part is looked at; a hundredth is poor.
 constexpr size_t kPoorPart = 32;
 
 // What stays, and how many edges merged: each took a vertex and two triangles along. Waits once.
@@ -22,7 +21,7 @@ KeptParts merge_at_creases(Work &work, const GrowingMesh &mesh, size_t *merged) 
   const KeptParts kept{allocate_full_set(executor, vertices), allocate_full_set(executor, triangles)};
   const Span<uint32_t> poor = room(uint32_t{}, triangles), slots = room(uint32_t{}, vertices),
                        around_counts = room(uint32_t{}, 2 * listed);
-  const Span<uint64_t> poor_count = room(uint64_t{}, 1);
+  const Span<uint64_t> poor_count = room(uint64_t{}, 1), claims = room(uint64_t{}, triangles);
   const EdgeMerges merges{mesh.view,
                           work.lattice,
                           poor.data,
@@ -31,19 +30,21 @@ KeptParts merge_at_creases(Work &work, const GrowingMesh &mesh, size_t *merged) 
                           slots.data,
                           around_counts.data,
                           room(uint32_t{}, 2 * listed * kMostAround).data,
-                          room(uint64_t{}, triangles).data,
+                          claims.data,
                           room(uint64_t{}, listed).data,
-                          room(EdgeMerges::Choice{}, listed).data,
+                          room(uint32_t{}, listed).data,
+                          room(uint32_t{}, listed).data,
                           kept};
   executor.for_each(triangles, MarkPoorTriangles{merges});
   executor.compact(triangles, IsMarked{mesh.view.near_marks}, poor, poor_count.data);
   executor.fill(slots, 0xff);
   executor.fill(around_counts, 0);
+  executor.fill(claims, 0xff);
   executor.for_each(listed, ChooseSlots{merges});
   executor.for_each(triangles, CollectAround{merges});
   for (int round = 0; round < kMergeRounds; ++round) {
-    executor.for_each(listed, ClearClaims{merges});
-    executor.for_each(listed, ProposeMerges{merges}, kMergeSteps);
+    const size_t groups = (listed + MergedEdges::kCount - 1) / MergedEdges::kCount;
+    executor.template for_each_brick<MergedEdges>(groups, ProposeMerges{merges, round}, 8, kMergeSteps);
     executor.for_each(listed, ChooseMerges{merges});
     executor.for_each(listed, MergeEdges{merges});
   }

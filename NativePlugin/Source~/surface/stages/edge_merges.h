@@ -26,7 +26,9 @@ constexpr float kLongestMerge = 0.5f;
 constexpr float kMergeSagitta = 0.06f;
 // Vertices with more triangles are left alone.
 constexpr uint32_t kMostAround = 16;
-// Steps of a thread for an edge: the triangles around both ends, and for each of them those around one.
+// Merges that are next to each other are done in so many rounds.
+constexpr int kMergeRounds = 3;
+// Steps of a thread for the edges of a team.
 constexpr uint64_t kMergeSteps = uint64_t(1) << 12;
 
 // How far the middle of an edge is from a surface that bends evenly from one end to the other, in Å: on the sides that
@@ -41,7 +43,6 @@ QSES_FN float edge_sagitta(const CreaseEnd &a, const CreaseEnd &b) {
 // The mesh while its edges merge. Of each poor triangle the shortest edge is looked at.
 struct EdgeMerges {
   static constexpr uint32_t kNone = ~uint32_t(0);
-  enum Choice : uint8_t { kNeither, kFirstGoes, kSecondGoes };
 
   CreasedMesh mesh;  // all corners of triangles that are gone: kNone
   Lattice lattice;
@@ -49,15 +50,17 @@ struct EdgeMerges {
   const uint64_t *poor_count;  // of those listed at most `room`
   uint32_t room;
   uint32_t *slots;          // [vertex]: of the ends of such edges, of which each triangle has two; else kNone
-  uint32_t *around_counts;  // [slot]: triangles around the end, more than kMostAround if they are too many to be known,
-  uint32_t *around;         // and kMostAround of them, in any order; some may be gone
-  uint64_t *claims;         // [triangle]: the best merge that concerns it, of those around known ends
-  uint64_t *keys;           // [poor]: of its merge, in the order from the best to the worst
-  Choice *choices;          // [poor]
-  KeptParts kept_parts;
+  uint32_t *around_counts;  // [slot]: triangles around the end; more than kMostAround: they are too many to be known
+  uint32_t *around;         // kMostAround of each slot, in any order; some may be gone
+  uint64_t *claims;         // [triangle]: the best merge that concerns it
+  uint64_t *keys;           // [poor]: of its merge, in the order from the best to the worst,
+  uint32_t *leaving;        // the end that goes, or kNone: it wants no merge,
+  uint32_t *staying;        // and the other one
+  KeptParts kept;
 
   QSES_FN uint32_t listed() const { return *poor_count < room ? static_cast<uint32_t>(*poor_count) : room; }
   QSES_FN bool is_gone(const uint32_t *t) const { return t[0] == kNone; }
+  QSES_FN CreaseEnd end(uint32_t v) const { return end_of_vertex(mesh, lattice, v); }
 
   QSES_FN float quality(const CreaseEnd &a, const CreaseEnd &b, const CreaseEnd &c) const {
     const Vec3<float> normal = cross(b.position - a.position, c.position - a.position) * (mesh.reversed ? -1.f : 1.f);
@@ -70,21 +73,21 @@ struct EdgeMerges {
     const float slim = least_cosine_of_angles(a.position, b.position, c.position) - kSlimCosine;
     return minimum(least, kEnoughFacing) - kSlimWeight * maximum(0.f, slim);
   }
-  QSES_FN CreaseEnd end(uint32_t v) const { return end_of_vertex(mesh, lattice, v); }
-  QSES_FN float quality(const uint32_t *t) const { return quality(end(t[0]), end(t[1]), end(t[2])); }
 
   // The shortest edge of a triangle: from the corner of that number to the next one.
   QSES_FN int shortest_edge(const uint32_t *t) const {
     int shortest = 0;
     float least2 = kFarAway;
     for (int k = 0; k < 3; ++k) {
-      const float length2 = length_squared(end(t[k == 2 ? 0 : k + 1]).position - end(t[k]).position);
+      const float length2 = length_squared(centered_position(lattice, mesh.position(t[k == 2 ? 0 : k + 1])) -
+                                           centered_position(lattice, mesh.position(t[k])));
       if (length2 < least2) least2 = length2, shortest = k;
     }
     return shortest;
   }
 
-  // Calls use(triangle) for all triangles around a vertex that has a slot.
+  QSES_FN bool is_known(uint32_t v) const { return slots[v] != kNone && around_counts[slots[v]] <= kMostAround; }
+  // Calls use(triangle) for all triangles around a known vertex.
   template <class Use>
   QSES_FN void for_around(uint32_t v, const Use &use) const {
     const uint32_t slot = slots[v];
@@ -93,76 +96,16 @@ struct EdgeMerges {
       if (!is_gone(mesh.triangle(triangle))) use(triangle);
     }
   }
-  QSES_FN bool is_known(uint32_t v) const { return slots[v] != kNone && around_counts[slots[v]] <= kMostAround; }
-
-  // By how much the least quality grows if `kept` takes the place of `leaving`; 0: that must not be. Both are known.
-  QSES_FN float gain_of(uint32_t leaving, uint32_t kept) const {
-    const CreaseEnd from = end(leaving), to = end(kept);
-    if (from.on_crease() && !to.on_crease()) return 0.f;
-    const float longest = kLongestMerge * lattice.spacing, sagitta = kMergeSagitta * lattice.spacing;
-    if (length_squared(to.position - from.position) > longest * longest) return 0.f;
-    float before = kEnoughFacing, after = kEnoughFacing;
-    bool is_near = true;
-    int around_leaving = 0, around_kept = 0, common = 0;
-    for_around(leaving, [&](uint32_t triangle) {
-      const uint32_t *const t = mesh.triangle(triangle);
-      CreaseEnd c[3] = {end(t[0]), end(t[1]), end(t[2])};
-      ++around_leaving;
-      before = minimum(before, quality(c[0], c[1], c[2]));
-      if (t[0] == kept || t[1] == kept || t[2] == kept) return;
-      for (int k = 0; k < 3; ++k) {
-        if (t[k] == leaving)
-          c[k] = to;
-        else
-          is_near &= edge_sagitta(to, c[k]) <= maximum(edge_sagitta(from, c[k]), sagitta);
-      }
-      after = minimum(after, quality(c[0], c[1], c[2]));
-    });
-    if (!is_near) return 0.f;
-    for_around(kept, [&](uint32_t triangle) {
-      const uint32_t *const t = mesh.triangle(triangle);
-      const float here = quality(t);
-      ++around_kept;
-      before = minimum(before, here);
-      if (t[0] != leaving && t[1] != leaving && t[2] != leaving) after = minimum(after, here);
-      // Each neighbour follows in one triangle.
-      const uint32_t next = t[0] == kept ? t[1] : t[1] == kept ? t[2] : t[0];
-      bool is_common = false;
-      for_around(leaving, [&](uint32_t other) {
-        const uint32_t *const o = mesh.triangle(other);
-        is_common |= next != leaving && (o[0] == next || o[1] == next || o[2] == next);
-      });
-      common += int(is_common);
-    });
-    if (common != 2 || (around_leaving <= 3 && around_kept <= 3)) return 0.f;  // of a tetrahedron
-    return maximum(0.f, after - before);
-  }
-
-  // Calls use(first end, second end) for the edge that a poor triangle wants to be merged, if it is there still and
-  // all triangles around it are known.
-  template <class Use>
-  QSES_FN void for_edge(size_t i, const Use &use) const {
-    const uint32_t *const t = mesh.triangle(poor[i]);
-    if (is_gone(t)) return;
-    const int k = shortest_edge(t);
-    const uint32_t first = t[k], second = t[k == 2 ? 0 : k + 1];
-    if (is_known(first) && is_known(second)) use(first, second);
-  }
-  // Calls use(triangle) for all around both ends.
-  template <class Use>
-  QSES_FN void for_both(uint32_t first, uint32_t second, const Use &use) const {
-    for_around(first, use);
-    for_around(second, use);
-  }
 };
 
 // Of triangles with a corner on a crease.
 struct MarkPoorTriangles {
   EdgeMerges merges;
   QSES_FN void operator()(size_t i) const {
-    const uint32_t *const t = merges.mesh.triangle(i);
-    const bool near = merges.mesh.on_crease(t[0]) || merges.mesh.on_crease(t[1]) || merges.mesh.on_crease(t[2]);
-    merges.mesh.near_marks[i] = near && merges.quality(t) < kEnoughFacing ? 1 : 0;
+    const EdgeMerges &m = merges;
+    const uint32_t *const t = m.mesh.triangle(i);
+    const bool near = m.mesh.on_crease(t[0]) || m.mesh.on_crease(t[1]) || m.mesh.on_crease(t[2]);
+    m.mesh.near_marks[i] = near && m.quality(m.end(t[0]), m.end(t[1]), m.end(t[2])) < kEnoughFacing ? 1 : 0;
   }
 };
 
@@ -193,33 +136,149 @@ struct CollectAround {
 
 // ---- a round ---------------------------------------------------------------------------------------------------
 
-struct ClearClaims {
-  EdgeMerges merges;
-  QSES_FN void operator()(size_t i) const {
-    if (i >= merges.listed()) return;
-    merges.for_edge(i, [&](uint32_t first, uint32_t second) {
-      merges.for_both(first, second, [&](uint32_t triangle) { merges.claims[triangle] = ~uint64_t(0); });
-    });
+// An edge, and what a merge of its ends would make of the triangles around them.
+struct MergedEdge {
+  struct Around {
+    uint32_t triangle;
+    uint32_t corners[3];
+    float quality, merged;  // as it is, and with the end that it is around in the place of the other one
+    bool at_edge;           // it has both ends, and goes with them
+    bool moves_too_far;
+    bool has_common_neighbor;
+  };
+  uint32_t ends[2];
+  bool may_go[2];            // not off a crease
+  uint32_t count, of_first;  // triangles, those around the first end before those around the second
+  uint64_t key;
+  Around around[2 * kMostAround];
+
+  QSES_FN void find(const EdgeMerges &m, size_t i) {
+    count = of_first = 0;
+    if (i >= m.listed()) return;
+    const uint32_t *const t = m.mesh.triangle(m.poor[i]);
+    if (m.is_gone(t)) return;
+    const int k = m.shortest_edge(t);
+    ends[0] = t[k], ends[1] = t[k == 2 ? 0 : k + 1];
+    if (!m.is_known(ends[0]) || !m.is_known(ends[1])) return;
+    const float longest = kLongestMerge * m.lattice.spacing;
+    if (length_squared(m.end(ends[1]).position - m.end(ends[0]).position) > longest * longest) return;
+    bool is_another_s = false;
+    for (int e = 0; e < 2; ++e) {
+      may_go[e] = m.mesh.on_crease(ends[1 - e]) || !m.mesh.on_crease(ends[e]);
+      m.for_around(ends[e], [&](uint32_t triangle) {
+        around[count++].triangle = triangle;
+        is_another_s |= e == 0 && triangle < m.poor[i] && wants(m, triangle);
+      });
+      if (e == 0) of_first = count;
+    }
+    if (is_another_s) count = 0;
+  }
+  // Is it a poor triangle with that edge, too?
+  QSES_FN bool wants(const EdgeMerges &m, uint32_t triangle) const {
+    const uint32_t *const t = m.mesh.triangle(triangle);
+    if (!m.mesh.near_marks[triangle] || (t[0] != ends[1] && t[1] != ends[1] && t[2] != ends[1])) return false;
+    const int k = m.shortest_edge(t);
+    return t[k] == ends[1] && t[k == 2 ? 0 : k + 1] == ends[0];
+  }
+
+  QSES_FN void judge(const EdgeMerges &m, uint32_t k) {
+    Around &a = around[k];
+    const uint32_t leaving = ends[k < of_first ? 0 : 1], staying = ends[k < of_first ? 1 : 0];
+    const uint32_t *const t = m.mesh.triangle(a.triangle);
+    CreaseEnd c[3];
+    for (int j = 0; j < 3; ++j) {
+      a.corners[j] = t[j];
+      c[j] = m.end(t[j]);
+    }
+    a.quality = m.quality(c[0], c[1], c[2]);
+    a.at_edge = t[0] == staying || t[1] == staying || t[2] == staying;
+    a.moves_too_far = false;
+    if (a.at_edge || !may_go[k < of_first ? 0 : 1]) return;
+    const CreaseEnd from = m.end(leaving), to = m.end(staying);
+    for (int j = 0; j < 3; ++j) {
+      if (t[j] == leaving)
+        c[j] = to;
+      else
+        a.moves_too_far |=
+            edge_sagitta(to, c[j]) > maximum(edge_sagitta(from, c[j]), kMergeSagitta * m.lattice.spacing);
+    }
+    a.merged = m.quality(c[0], c[1], c[2]);
+  }
+
+  // Of the second end the neighbour that follows in a triangle: is it one of the first end, too?
+  QSES_FN void find_common_neighbor(uint32_t k) {
+    const uint32_t *const t = around[k].corners;
+    const uint32_t next = t[0] == ends[1] ? t[1] : t[1] == ends[1] ? t[2] : t[0];
+    bool has = false;
+    for (uint32_t j = 0; j < of_first && next != ends[0]; ++j)
+      has |= around[j].corners[0] == next || around[j].corners[1] == next || around[j].corners[2] == next;
+    around[k].has_common_neighbor = has;
+  }
+
+  // By how much the least quality grows if that end goes; 0: that must not be.
+  QSES_FN float gain(int leaving) const {
+    if (!may_go[leaving]) return 0.f;
+    float before = kEnoughFacing, after = kEnoughFacing;
+    uint32_t common = 0;
+    for (uint32_t k = 0; k < count; ++k) {
+      const bool goes_along = (k < of_first) == (leaving == 0);
+      before = minimum(before, around[k].quality);
+      if (k >= of_first) common += around[k].has_common_neighbor ? 1 : 0;
+      if (around[k].at_edge) continue;
+      if (goes_along && around[k].moves_too_far) return 0.f;
+      after = minimum(after, goes_along ? around[k].merged : around[k].quality);
+    }
+    const bool is_tetrahedron = of_first <= 3 && count - of_first <= 3;
+    return common == 2 && !is_tetrahedron ? maximum(0.f, after - before) : 0.f;
   }
 };
+struct MergedEdges {
+  static constexpr int kCount = 8;
+  MergedEdge edges[kCount];
+};
 
-// What each poor triangle wants.
+// What the poor triangles want. The best claims are kept; later rounds come before earlier ones.
 struct ProposeMerges {
   EdgeMerges merges;
-  QSES_FN void operator()(size_t i) const {
-    if (i >= merges.listed()) return;
-    merges.choices[i] = EdgeMerges::kNeither;
-    merges.for_edge(i, [&](uint32_t first, uint32_t second) {
-      const float of_first = merges.gain_of(first, second), of_second = merges.gain_of(second, first);
-      const float gain = maximum(of_first, of_second);
-      if (!(gain > kLeastMergeGain)) return;
-      merges.choices[i] = of_first >= of_second ? EdgeMerges::kFirstGoes : EdgeMerges::kSecondGoes;
-      uint32_t bits;  // in the order of the gains, which are positive
-      memcpy(&bits, &gain, sizeof bits);
-      const uint64_t key = uint64_t(~bits) << 32 | i;
-      merges.keys[i] = key;
-      merges.for_both(first, second, [&](uint32_t triangle) { atomic_min(merges.claims + triangle, key); });
+  int round;
+  template <class Team>
+  QSES_HOST_DEVICE void operator()(const Team &team, MergedEdges &near, size_t group) const {
+    constexpr int kEdges = MergedEdges::kCount, kRoom = 2 * int(kMostAround);
+    const size_t first = group * kEdges;
+    if (first >= merges.listed()) return;
+    for (int e = team.rank(); e < kEdges; e += team.size()) near.edges[e].find(merges, first + static_cast<size_t>(e));
+    team.sync();
+    const auto for_all = [&](const auto &use) {
+      for (int k = team.rank(); k < kEdges * kRoom; k += team.size()) {
+        MergedEdge &edge = near.edges[k / kRoom];
+        if (k % kRoom < static_cast<int>(edge.count)) use(edge, static_cast<uint32_t>(k % kRoom));
+      }
+      team.sync();
+    };
+    for_all([&](MergedEdge &edge, uint32_t k) { edge.judge(merges, k); });
+    for_all([&](MergedEdge &edge, uint32_t k) {
+      if (k >= edge.of_first) edge.find_common_neighbor(k);
     });
+    for (int e = team.rank(); e < kEdges; e += team.size()) choose(&near.edges[e], first + static_cast<size_t>(e));
+    team.sync();
+    for_all([&](MergedEdge &edge, uint32_t k) { atomic_min(merges.claims + edge.around[k].triangle, edge.key); });
+  }
+
+ private:
+  QSES_FN void choose(MergedEdge *edge, size_t i) const {
+    if (i >= merges.listed()) return;
+    merges.leaving[i] = EdgeMerges::kNone;
+    if (edge->count == 0) return;
+    const float of_first = edge->gain(0), of_second = edge->gain(1);
+    const float gain = maximum(of_first, of_second);
+    const int leaving = of_first >= of_second ? 0 : 1;
+    edge->key = ~uint64_t(0);
+    if (!(gain > kLeastMergeGain)) return;
+    merges.leaving[i] = edge->ends[leaving];
+    merges.staying[i] = edge->ends[1 - leaving];
+    uint32_t bits;  // in the order of the gains, which are positive
+    memcpy(&bits, &gain, sizeof bits);
+    merges.keys[i] = edge->key = uint64_t(kMergeRounds - round) << 61 | uint64_t(~bits & 0x7fffffffu) << 30 | i;
   }
 };
 // Those are done that are the best for all triangles around: so no two have a triangle in common, and each finds around
@@ -227,39 +286,34 @@ struct ProposeMerges {
 struct ChooseMerges {
   EdgeMerges merges;
   QSES_FN void operator()(size_t i) const {
-    if (i >= merges.listed() || merges.choices[i] == EdgeMerges::kNeither) return;
+    if (i >= merges.listed() || merges.leaving[i] == EdgeMerges::kNone) return;
     bool wins = true;
-    merges.for_edge(i, [&](uint32_t first, uint32_t second) {
-      merges.for_both(first, second, [&](uint32_t triangle) { wins &= merges.claims[triangle] == merges.keys[i]; });
-    });
-    if (!wins) merges.choices[i] = EdgeMerges::kNeither;
+    for (const uint32_t end : {merges.leaving[i], merges.staying[i]})
+      merges.for_around(end, [&](uint32_t triangle) { wins &= merges.claims[triangle] == merges.keys[i]; });
+    if (!wins) merges.leaving[i] = EdgeMerges::kNone;
   }
 };
 struct MergeEdges {
   EdgeMerges merges;
   QSES_FN void operator()(size_t i) const {
     const EdgeMerges &m = merges;
-    if (i >= m.listed() || m.choices[i] == EdgeMerges::kNeither) return;
-    uint32_t leaving = 0, kept = 0;
-    m.for_edge(i, [&](uint32_t first, uint32_t second) {
-      leaving = m.choices[i] == EdgeMerges::kFirstGoes ? first : second;
-      kept = first + second - leaving;
-    });
-    uint32_t count = m.around_counts[m.slots[kept]];
+    if (i >= m.listed() || m.leaving[i] == EdgeMerges::kNone) return;
+    const uint32_t leaving = m.leaving[i], staying = m.staying[i], slot = m.slots[staying];
+    uint32_t count = m.around_counts[slot];
     m.for_around(leaving, [&](uint32_t triangle) {
       uint32_t *const t = m.mesh.triangle(triangle);
-      if (t[0] == kept || t[1] == kept || t[2] == kept) {
+      if (t[0] == staying || t[1] == staying || t[2] == staying) {
         t[0] = t[1] = t[2] = EdgeMerges::kNone;
-        m.kept_parts.triangles.drop(triangle);
+        m.kept.triangles.drop(triangle);
         return;
       }
       for (int k = 0; k < 3; ++k)
-        if (t[k] == leaving) t[k] = kept;
-      if (count < kMostAround) m.around[m.slots[kept] * kMostAround + count] = triangle;
+        if (t[k] == leaving) t[k] = staying;
+      if (count < kMostAround) m.around[slot * kMostAround + count] = triangle;
       ++count;
     });
-    m.around_counts[m.slots[kept]] = count;
-    m.kept_parts.vertices.drop(leaving);
+    m.around_counts[slot] = count;
+    m.kept.vertices.drop(leaving);
   }
 };
 
