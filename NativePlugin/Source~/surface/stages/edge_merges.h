@@ -19,6 +19,8 @@ namespace quickses {
 constexpr float kEnoughFacing = 0.5f;
 constexpr float kSlimCosine = 0.94f;
 constexpr float kSlimWeight = 8.f;
+// Triangles of less are poor: folded, slim, or both to some extent. Theirs are the edges that merge.
+constexpr float kPoorQuality = 0.3f;
 // The least quality of the triangles around an edge has to grow so much by a merge.
 constexpr float kLeastMergeGain = 0.05f;
 // No longer edges are merged, and none comes to be farther from the surface than this or than before. In spacings.
@@ -105,7 +107,7 @@ struct MarkPoorTriangles {
     const EdgeMerges &m = merges;
     const uint32_t *const t = m.mesh.triangle(i);
     const bool near = m.mesh.on_crease(t[0]) || m.mesh.on_crease(t[1]) || m.mesh.on_crease(t[2]);
-    m.mesh.near_marks[i] = near && m.quality(m.end(t[0]), m.end(t[1]), m.end(t[2])) < kEnoughFacing ? 1 : 0;
+    m.mesh.near_marks[i] = near && m.quality(m.end(t[0]), m.end(t[1]), m.end(t[2])) < kPoorQuality ? 1 : 0;
   }
 };
 
@@ -138,62 +140,68 @@ struct CollectAround {
 
 // An edge, and what a merge of its ends would make of the triangles around them.
 struct MergedEdge {
+  static constexpr int kRoom = 2 * int(kMostAround);
   struct Around {
-    uint32_t triangle;
     uint32_t corners[3];
     float quality, merged;  // as it is, and with the end that it is around in the place of the other one
-    bool at_edge;           // it has both ends, and goes with them
+    bool is_there;
+    bool at_edge;      // it has both ends, and goes with them,
+    bool wants_merge;  // and it is a poor triangle before this one, with that edge as the shortest
     bool moves_too_far;
     bool has_common_neighbor;
   };
   uint32_t ends[2];
-  bool may_go[2];            // not off a crease
-  uint32_t count, of_first;  // triangles, those around the first end before those around the second
+  bool may_go[2];      // not off a crease
+  uint32_t counts[2];  // around the ends; 0 where no merge can be
+  uint32_t poor;
   uint64_t key;
-  Around around[2 * kMostAround];
+  Around around[kRoom];  // the first half around the first end
 
   QSES_FN void find(const EdgeMerges &m, size_t i) {
-    count = of_first = 0;
+    counts[0] = counts[1] = 0;
     if (i >= m.listed()) return;
-    const uint32_t *const t = m.mesh.triangle(m.poor[i]);
+    poor = m.poor[i];
+    const uint32_t *const t = m.mesh.triangle(poor);
     if (m.is_gone(t)) return;
     const int k = m.shortest_edge(t);
     ends[0] = t[k], ends[1] = t[k == 2 ? 0 : k + 1];
     if (!m.is_known(ends[0]) || !m.is_known(ends[1])) return;
     const float longest = kLongestMerge * m.lattice.spacing;
     if (length_squared(m.end(ends[1]).position - m.end(ends[0]).position) > longest * longest) return;
-    bool is_another_s = false;
     for (int e = 0; e < 2; ++e) {
       may_go[e] = m.mesh.on_crease(ends[1 - e]) || !m.mesh.on_crease(ends[e]);
-      m.for_around(ends[e], [&](uint32_t triangle) {
-        around[count++].triangle = triangle;
-        is_another_s |= e == 0 && triangle < m.poor[i] && wants(m, triangle);
-      });
-      if (e == 0) of_first = count;
+      counts[e] = m.around_counts[m.slots[ends[e]]];
     }
-    if (is_another_s) count = 0;
   }
-  // Is it a poor triangle with that edge, too?
-  QSES_FN bool wants(const EdgeMerges &m, uint32_t triangle) const {
-    const uint32_t *const t = m.mesh.triangle(triangle);
-    if (!m.mesh.near_marks[triangle] || (t[0] != ends[1] && t[1] != ends[1] && t[2] != ends[1])) return false;
-    const int k = m.shortest_edge(t);
-    return t[k] == ends[1] && t[k == 2 ? 0 : k + 1] == ends[0];
+  QSES_FN uint32_t triangle(const EdgeMerges &m, int k) const {
+    const int e = k < int(kMostAround) ? 0 : 1;
+    return m.around[m.slots[ends[e]] * kMostAround + static_cast<uint32_t>(k - e * int(kMostAround))];
   }
 
-  QSES_FN void judge(const EdgeMerges &m, uint32_t k) {
+  QSES_FN void judge(const EdgeMerges &m, int k) {
     Around &a = around[k];
-    const uint32_t leaving = ends[k < of_first ? 0 : 1], staying = ends[k < of_first ? 1 : 0];
-    const uint32_t *const t = m.mesh.triangle(a.triangle);
+    const int e = k < int(kMostAround) ? 0 : 1;
+    a.is_there = false;
+    if (static_cast<uint32_t>(k - e * int(kMostAround)) >= counts[e]) return;
+    const uint32_t number = triangle(m, k), leaving = ends[e],
+                   staying = ends[1 - e], *const t = m.mesh.triangle(number);
+    if (m.is_gone(t)) return;
     CreaseEnd c[3];
     for (int j = 0; j < 3; ++j) {
       a.corners[j] = t[j];
       c[j] = m.end(t[j]);
     }
+    a.is_there = true;
     a.quality = m.quality(c[0], c[1], c[2]);
     a.at_edge = t[0] == staying || t[1] == staying || t[2] == staying;
-    a.moves_too_far = false;
-    if (a.at_edge || !may_go[k < of_first ? 0 : 1]) return;
+    a.wants_merge = a.moves_too_far = false;
+    if (a.at_edge) {
+      if (number >= poor || !m.mesh.near_marks[number]) return;
+      const int shortest = m.shortest_edge(t);
+      a.wants_merge = t[shortest] == ends[1] && t[shortest == 2 ? 0 : shortest + 1] == ends[0];
+      return;
+    }
+    if (!may_go[e]) return;
     const CreaseEnd from = m.end(leaving), to = m.end(staying);
     for (int j = 0; j < 3; ++j) {
       if (t[j] == leaving)
@@ -206,29 +214,36 @@ struct MergedEdge {
   }
 
   // Of the second end the neighbour that follows in a triangle: is it one of the first end, too?
-  QSES_FN void find_common_neighbor(uint32_t k) {
+  QSES_FN void find_common_neighbor(int k) {
+    if (k < int(kMostAround) || !around[k].is_there) return;
     const uint32_t *const t = around[k].corners;
     const uint32_t next = t[0] == ends[1] ? t[1] : t[1] == ends[1] ? t[2] : t[0];
     bool has = false;
-    for (uint32_t j = 0; j < of_first && next != ends[0]; ++j)
-      has |= around[j].corners[0] == next || around[j].corners[1] == next || around[j].corners[2] == next;
+    for (uint32_t j = 0; j < counts[0] && next != ends[0]; ++j) {
+      const uint32_t *const o = around[j].corners;
+      has |= around[j].is_there && (o[0] == next || o[1] == next || o[2] == next);
+    }
     around[k].has_common_neighbor = has;
   }
 
-  // By how much the least quality grows if that end goes; 0: that must not be.
+  // By how much the least quality grows if that end goes; 0: that must not be, or another triangle sees to it.
   QSES_FN float gain(int leaving) const {
-    if (!may_go[leaving]) return 0.f;
+    if (counts[0] == 0 || !may_go[leaving]) return 0.f;
     float before = kEnoughFacing, after = kEnoughFacing;
-    uint32_t common = 0;
-    for (uint32_t k = 0; k < count; ++k) {
-      const bool goes_along = (k < of_first) == (leaving == 0);
-      before = minimum(before, around[k].quality);
-      if (k >= of_first) common += around[k].has_common_neighbor ? 1 : 0;
-      if (around[k].at_edge) continue;
-      if (goes_along && around[k].moves_too_far) return 0.f;
-      after = minimum(after, goes_along ? around[k].merged : around[k].quality);
+    uint32_t common = 0, triangles[2] = {0, 0};
+    for (int k = 0; k < kRoom; ++k) {
+      const Around &a = around[k];
+      if (!a.is_there) continue;
+      const int e = k < int(kMostAround) ? 0 : 1;
+      ++triangles[e];
+      before = minimum(before, a.quality);
+      if (e == 1) common += a.has_common_neighbor ? 1 : 0;
+      if (a.wants_merge) return 0.f;
+      if (a.at_edge) continue;
+      if (e == leaving && a.moves_too_far) return 0.f;
+      after = minimum(after, e == leaving ? a.merged : a.quality);
     }
-    const bool is_tetrahedron = of_first <= 3 && count - of_first <= 3;
+    const bool is_tetrahedron = triangles[0] <= 3 && triangles[1] <= 3;
     return common == 2 && !is_tetrahedron ? maximum(0.f, after - before) : 0.f;
   }
 };
@@ -237,43 +252,43 @@ struct MergedEdges {
   MergedEdge edges[kCount];
 };
 
-// What the poor triangles want. The best claims are kept; later rounds come before earlier ones.
+// What the poor triangles want. Claims of later rounds come before those of earlier ones.
 struct ProposeMerges {
   EdgeMerges merges;
   int round;
   template <class Team>
   QSES_HOST_DEVICE void operator()(const Team &team, MergedEdges &near, size_t group) const {
-    constexpr int kEdges = MergedEdges::kCount, kRoom = 2 * int(kMostAround);
+    constexpr int kEdges = MergedEdges::kCount, kRoom = MergedEdge::kRoom;
     const size_t first = group * kEdges;
     if (first >= merges.listed()) return;
-    for (int e = team.rank(); e < kEdges; e += team.size()) near.edges[e].find(merges, first + static_cast<size_t>(e));
-    team.sync();
-    const auto for_all = [&](const auto &use) {
-      for (int k = team.rank(); k < kEdges * kRoom; k += team.size()) {
-        MergedEdge &edge = near.edges[k / kRoom];
-        if (k % kRoom < static_cast<int>(edge.count)) use(edge, static_cast<uint32_t>(k % kRoom));
-      }
+    const auto for_edges = [&](const auto &use) {
+      for (int e = team.rank(); e < kEdges; e += team.size()) use(near.edges[e], first + static_cast<size_t>(e));
       team.sync();
     };
-    for_all([&](MergedEdge &edge, uint32_t k) { edge.judge(merges, k); });
-    for_all([&](MergedEdge &edge, uint32_t k) {
-      if (k >= edge.of_first) edge.find_common_neighbor(k);
+    const auto for_all_around = [&](const auto &use) {
+      for (int k = team.rank(); k < kEdges * kRoom; k += team.size())
+        if (near.edges[k / kRoom].counts[0] > 0) use(near.edges[k / kRoom], k % kRoom);
+      team.sync();
+    };
+    for_edges([&](MergedEdge &edge, size_t i) { edge.find(merges, i); });
+    for_all_around([&](MergedEdge &edge, int k) { edge.judge(merges, k); });
+    for_all_around([&](MergedEdge &edge, int k) { edge.find_common_neighbor(k); });
+    for_edges([&](MergedEdge &edge, size_t i) { choose(&edge, i); });
+    for_all_around([&](MergedEdge &edge, int k) {
+      if (edge.around[k].is_there) atomic_min(merges.claims + edge.triangle(merges, k), edge.key);
     });
-    for (int e = team.rank(); e < kEdges; e += team.size()) choose(&near.edges[e], first + static_cast<size_t>(e));
-    team.sync();
-    for_all([&](MergedEdge &edge, uint32_t k) { atomic_min(merges.claims + edge.around[k].triangle, edge.key); });
   }
 
  private:
   QSES_FN void choose(MergedEdge *edge, size_t i) const {
     if (i >= merges.listed()) return;
-    merges.leaving[i] = EdgeMerges::kNone;
-    if (edge->count == 0) return;
-    const float of_first = edge->gain(0), of_second = edge->gain(1);
-    const float gain = maximum(of_first, of_second);
+    const float of_first = edge->gain(0), of_second = edge->gain(1), gain = maximum(of_first, of_second);
     const int leaving = of_first >= of_second ? 0 : 1;
-    edge->key = ~uint64_t(0);
-    if (!(gain > kLeastMergeGain)) return;
+    if (!(gain > kLeastMergeGain)) {
+      merges.leaving[i] = EdgeMerges::kNone;
+      edge->counts[0] = 0;
+      return;
+    }
     merges.leaving[i] = edge->ends[leaving];
     merges.staying[i] = edge->ends[1 - leaving];
     uint32_t bits;  // in the order of the gains, which are positive
