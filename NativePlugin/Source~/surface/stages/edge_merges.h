@@ -25,7 +25,7 @@ constexpr float kPoorQuality = 0.3f;
 constexpr float kLeastMergeGain = 0.05f;
 // No longer edges are merged, and none comes to be farther from the surface than this or than before. In spacings.
 constexpr float kLongestMerge = 0.5f;
-constexpr float kMergeSagitta = 0.06f;
+constexpr float kMergeSagitta = 0.1f;
 // Vertices with more triangles are left alone.
 constexpr uint32_t kMostAround = 16;
 // Merges that are next to each other are done in so many rounds.
