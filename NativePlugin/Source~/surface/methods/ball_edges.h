@@ -14,7 +14,8 @@ void open_thin_channels(Work &work, const BrickSet &bricks, uint64_t *signs, Spa
   auto &executor = work.executor;
   work.timer.begin("thin_walls");
   executor.fill(opened, 0);
-  executor.for_each(opened.size * 64, MarkThinChannels{work.features, bricks, signs, opened.data}, NearBalls::kMostMet);
+  executor.template for_each_brick<ChannelScratch>(
+      bricks.count, MarkThinChannels{work.features, bricks, signs, opened.data}, 8, 8 * BrickBalls::kMostMet);
   executor.for_each(opened.size, RemoveMarks{opened.data, signs});
 }
 

@@ -4,6 +4,7 @@
 // surfaces of balls themselves, where the gaps of an edge are known exactly.
 #pragma once
 
+#include "parallel/atomics.h"
 #include "surface/stages/marching_cubes.h"
 #include "surface/stages/near_balls.h"
 #include "surface/stages/projection.h"
@@ -22,16 +23,14 @@ struct NearBalls {
   float depth = -kFarAway;  // of the point, in the deepest
 };
 
-// Those within `reach` of a point, as long as take(ball) of those that cover it says that more matter; else false.
-template <class Take>
-QSES_FN bool find_near_balls(const FeatureView &f, const Vec3<float> &x, float reach, NearBalls *near,
-                             const Take &take) {
-  return for_balls_near(f, x, x, reach, NearBalls::kMostMet, [&](uint32_t place, const Sphere &ball) {
+// Of what for_each(use) goes through, the balls within `reach` of a point; false if they are too many.
+template <class ForEach>
+QSES_FN bool find_near_balls(const ForEach &for_each, const Vec3<float> &x, float reach, NearBalls *near) {
+  return for_each([&](uint32_t place, const Sphere &ball) {
     const float longest = ball.radius + reach;
     if (length_squared(x - Vec3<float>(ball.center)) > longest * longest) return true;
-    const float depth = ball_depth(ball, x);
-    near->depth = maximum(near->depth, depth);
-    if (near->count == NearBalls::kMost || (depth > 0.f && !take(ball))) return false;
+    if (near->count == NearBalls::kMost) return false;
+    near->depth = maximum(near->depth, ball_depth(ball, x));
     near->place[near->count++] = place;
     return true;
   });
@@ -90,54 +89,178 @@ QSES_FN bool sign_at(const BrickSet &bricks, uint32_t brick, const glm::ivec3 &p
   return (word >> leaf_bit(x & 3, y & 3, z & 3) & 1) != 0;
 }
 
-// Finds the lattice points that are to be outside: of an edge with a gap the end that is shallower, of two that are as
-// deep but for rounding the lower one.
+// The balls that come near the lattice points of a brick, in any order.
+struct BrickBalls {
+  static constexpr uint32_t kRoom = 512, kMostMet = 4096;
+  uint32_t met, count;  // where they are too many, each point looks for its own
+  uint32_t place[kRoom];
+  Sphere ball[kRoom];
+
+  QSES_FN bool are_listed() const { return met <= kMostMet && count <= kRoom; }
+  // A team together.
+  template <class Team>
+  QSES_FN void list(const Team &team, const FeatureView &f, const Vec3<float> &low, const Vec3<float> &high,
+                    float reach) {
+    if (team.rank() == 0) met = count = 0;
+    team.sync();
+    const float far = f.parameters.max_radius + reach;
+    const Vec3<float> around(far, far, far);
+    const CellBox box = cells_around(f.atoms.cells, low - around, high + around);
+    const int width = box.y1 - box.y0 + 1, rows = width * (box.z1 - box.z0 + 1);
+    const int share = team.size() % 8 == 0 ? 8 : 1, own = team.rank() % share;  // so many take turns in a row
+    for (int row = team.rank() / share; row < rows; row += team.size() / share) {
+      const ItemRun run = f.atoms.run(box.x0, box.x1, box.y0 + row % width, box.z0 + row / width);
+      if (run.end == run.begin || (own == 0 && atomic_add(&met, run.end - run.begin) > kMostMet)) continue;
+      for (uint32_t k = run.begin + static_cast<uint32_t>(own); k < run.end && k - run.begin <= kMostMet;
+           k += static_cast<uint32_t>(share)) {
+        const Sphere b = load(f.atoms.items + k);
+        const Vec3<float> off(maximum(0.f, maximum(low.x - b.center.x, b.center.x - high.x)),
+                              maximum(0.f, maximum(low.y - b.center.y, b.center.y - high.y)),
+                              maximum(0.f, maximum(low.z - b.center.z, b.center.z - high.z)));
+        if (length_squared(off) > (b.radius + reach) * (b.radius + reach)) continue;
+        const uint32_t at = atomic_add(&count, uint32_t(1));
+        if (at >= kRoom) break;
+        place[at] = k;
+        ball[at] = b;
+      }
+    }
+    team.sync();
+  }
+  // Begins with the one that ended the last search: of points that are next to each other it is often the same.
+  template <class Use>
+  QSES_FN bool for_each(uint32_t *last, const Use &use) const {
+    for (uint32_t n = 0, k = *last; n < count; ++n, ++k) {
+      if (k >= count) k = 0;
+      if (use(place[k], ball[k])) continue;
+      *last = k;
+      return false;
+    }
+    return true;
+  }
+};
+
+// What is looked at for a brick: the balls near it, and its points that have edges which no single ball covers.
+struct ChannelScratch {
+  BrickBalls balls;
+  uint32_t covered;  // leaves of which a single ball covers all points and edges: a bit for each
+  uint32_t count;
+  uint16_t points[kBrickPoints];  // 64 * leaf + bit, and behind them the edges: a bit for each
+};
+
+// Finds the lattice points of each brick that are to be outside: of an edge with a gap the end that is shallower, of
+// two that are as deep but for rounding the lower one.
 struct MarkThinChannels {
   FeatureView features;
   BrickSet bricks;
   const uint64_t *signs;
   uint64_t *marks;  // numbered like signs
-  QSES_HOST_DEVICE void operator()(size_t i) const {
-    const size_t word = i / 64;
-    const int bit = static_cast<int>(i % 64);
-    if (!(signs[word] >> bit & 1)) return;
-    const uint32_t brick = static_cast<uint32_t>(word / kLeavesPerBrick);
+
+  template <class Team>
+  QSES_FN void operator()(const Team &team, ChannelScratch &scratch, size_t number) const {
+    const uint32_t brick = static_cast<uint32_t>(number);
+    const uint64_t *const words = signs + number * kLeavesPerBrick;
+    uint64_t inside = 0;
+    for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) inside |= words[leaf];
+    if (inside == 0) return;
     const Lattice &lattice = bricks.lattice;
-    const float h = lattice.spacing;
-    const glm::ivec3 in_brick = brick_point(static_cast<int>(word % kLeavesPerBrick), bit);
-    const glm::ivec3 p = lattice.first_point(lattice.brick_at(bricks.linear[brick])) + in_brick;
-    const Vec3<float> x = lattice.position(p.x, p.y, p.z);
-    // A ball with both ends covers an edge. Of most points one that is near has all of them.
-    const float r = features.parameters.max_radius;
-    const CellBox row = cells_around(features.atoms.cells, x - Vec3<float>(r, 0.f, 0.f), x + Vec3<float>(r, 0.f, 0.f));
-    const ItemRun run = features.atoms.run(row.x0, row.x1, row.y0, row.z0);
-    if (run.end - run.begin > NearBalls::kMostMet) return;
-    for (uint32_t k = run.begin; k < run.end; ++k) {
-      const Sphere ball = load(features.atoms.items + k);
-      const float deep = ball.radius - h;
-      if (deep > 0.f && length_squared(x - Vec3<float>(ball.center)) < deep * deep) return;
+    const glm::ivec3 first = lattice.first_point(lattice.brick_at(bricks.linear[brick]));
+    const auto position = [&](int point) {
+      const glm::ivec3 p = first + brick_point(point / 64, point % 64);
+      return lattice.position(p.x, p.y, p.z);
+    };
+    if (team.rank() == 0) scratch.count = scratch.covered = 0;
+    scratch.balls.list(team, features, position(0), position(kBrickPoints - 1), lattice.spacing);
+    if (scratch.balls.are_listed()) find_covered(team, position(0), scratch);
+    team.sync();
+    uint32_t last = 0;
+    for (int i = team.rank(); i < kBrickPoints; i += team.size()) {
+      if (!(words[i / 64] >> i % 64 & 1) || scratch.covered >> i / 64 & 1) continue;
+      const Vec3<float> x = position(i);
+      uint32_t edges = 0;
+      for_balls(scratch.balls, x, &last, [&](const auto &for_each) { edges = uncovered_edges(x, for_each); });
+      if (edges) edges &= inner_edges(brick, brick_point(i / 64, i % 64));
+      if (!edges) continue;
+      scratch.points[atomic_add(&scratch.count, uint32_t(1))] = static_cast<uint16_t>(i | edges << 9);
     }
-    uint32_t open = 0;  // edges whose other end is inside, too
+    team.sync();
+    for (uint32_t q = static_cast<uint32_t>(team.rank()); q < scratch.count; q += static_cast<uint32_t>(team.size())) {
+      const int i = scratch.points[q] & (kBrickPoints - 1);
+      const Vec3<float> x = position(i);
+      bool marked = false;
+      for_balls(scratch.balls, x, &last,
+                [&](const auto &for_each) { marked = is_at_gap(x, scratch.points[q] >> 9, for_each); });
+      if (marked) atomic_or(marks + number * kLeavesPerBrick + i / 64, uint64_t(1) << i % 64);
+    }
+  }
+
+ private:
+  template <class Team>
+  QSES_FN void find_covered(const Team &team, const Vec3<float> &low, ChannelScratch &scratch) const {
+    const float h = bricks.lattice.spacing,
+                radius = (1.5f * kRoot3 + 1.f) * h + 1e-3f;  // of leaves and edges from them
+    for (uint32_t k = static_cast<uint32_t>(team.rank()); k < scratch.balls.count;
+         k += static_cast<uint32_t>(team.size())) {
+      const Sphere ball = scratch.balls.ball[k];
+      const float least = ball.radius - radius;
+      if (!(least > 0.f)) continue;
+      uint32_t leaves = 0;
+      for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
+        const glm::ivec3 first = brick_point(leaf, 0);
+        const Vec3<float> middle =
+            low + Vec3<float>(static_cast<float>(first.x) + 1.5f, static_cast<float>(first.y) + 1.5f,
+                              static_cast<float>(first.z) + 1.5f) *
+                      h;
+        leaves |= static_cast<uint32_t>(length_squared(middle - Vec3<float>(ball.center)) < least * least) << leaf;
+      }
+      if (leaves) atomic_or(&scratch.covered, leaves);
+    }
+  }
+
+  // Calls use(for_each), where for_each(use) goes through the balls near a point.
+  template <class Use>
+  QSES_FN void for_balls(const BrickBalls &balls, const Vec3<float> &x, uint32_t *last, const Use &use) const {
+    if (balls.are_listed())
+      use([&](const auto &each) { return balls.for_each(last, each); });
+    else
+      use([&](const auto &each) { return for_balls_near(features, x, x, bricks.lattice.spacing, NearBalls::kMostMet, each); });
+  }
+
+  // Edges from a point that no ball has both ends of: bits in the order of axis_way(). Where atoms crowd, none.
+  template <class ForEach>
+  QSES_FN uint32_t uncovered_edges(const Vec3<float> &x, const ForEach &for_each) const {
+    constexpr uint32_t kAll = 63;
+    const float h = bricks.lattice.spacing;
+    uint32_t covered = 0;
+    const bool all_met = for_each([&](uint32_t, const Sphere &ball) {
+      const float r2 = ball.radius * ball.radius;
+      const Vec3<float> d = x - Vec3<float>(ball.center);
+      if (!(length_squared(d) < r2)) return true;
+      for (int k = 0; k < 6; ++k)
+        covered |= static_cast<uint32_t>(length_squared(x + axis_way(k, h) - Vec3<float>(ball.center)) < r2) << k;
+      return covered != kAll;
+    });
+    return all_met ? kAll & ~covered : 0;
+  }
+
+  // Those whose other end is inside, too.
+  QSES_FN uint32_t inner_edges(uint32_t brick, const glm::ivec3 &in_brick) const {
+    uint32_t edges = 0;
     for (int k = 0; k < 6; ++k) {
       const int s = k & 1 ? -1 : 1;
       const glm::ivec3 step(k >> 1 == 0 ? s : 0, k >> 1 == 1 ? s : 0, k >> 1 == 2 ? s : 0);
-      open |= static_cast<uint32_t>(sign_at(bricks, brick, in_brick + step, signs, false)) << k;
+      edges |= static_cast<uint32_t>(sign_at(bricks, brick, in_brick + step, signs, false)) << k;
     }
-    const auto close = [&](const Sphere &ball) {
-      for (int k = 0; k < 6; ++k)
-        if (open >> k & 1 && length_squared(x + axis_way(k, h) - Vec3<float>(ball.center)) < ball.radius * ball.radius)
-          open &= ~(1u << k);
-      return open != 0;
-    };
-    for (uint32_t k = run.begin; k < run.end && open; ++k) {
-      const Sphere ball = load(features.atoms.items + k);
-      if (length_squared(x - Vec3<float>(ball.center)) < ball.radius * ball.radius) close(ball);
-    }
+    return edges;
+  }
+
+  template <class ForEach>
+  QSES_FN bool is_at_gap(const Vec3<float> &x, uint32_t edges, const ForEach &for_each) const {
+    const float h = bricks.lattice.spacing;
     NearBalls near;
-    if (!open || !find_near_balls(features, x, h, &near, close)) return;
+    if (!find_near_balls(for_each, x, h, &near)) return false;
     for (int k = 0; k < 6; ++k) {
+      if (!(edges >> k & 1)) continue;
       const Vec3<float> way = axis_way(k, h);
-      if (!(open >> k & 1)) continue;
       const Gap gap = first_gap(features, near, x, way);
       if (!gap.is_open() || gap.end >= 1.f) continue;
       float other = -kFarAway;
@@ -145,9 +268,9 @@ struct MarkThinChannels {
         other = maximum(other, ball_depth(load(features.atoms.items + near.place[j]), x + way));
       constexpr float kAsDeep = 1e-4f;
       if (other < near.depth - kAsDeep || (k & 1 && other < near.depth + kAsDeep)) continue;
-      atomic_or(marks + word, uint64_t(1) << bit);
-      return;
+      return true;
     }
+    return false;
   }
 };
 
@@ -161,7 +284,8 @@ struct RemoveMarks {
 // none is found, which rounding may do.
 QSES_FN Vec3<float> find_gap(const FeatureView &f, const Vec3<float> &x, float h) {
   NearBalls near;
-  if (!find_near_balls(f, x, h, &near, [](const Sphere &) { return true; })) return x;
+  const auto for_each = [&](const auto &use) { return for_balls_near(f, x, x, h, NearBalls::kMostMet, use); };
+  if (!find_near_balls(for_each, x, h, &near)) return x;
   float nearest = 1.f;
   Vec3<float> found = x;
   for (int k = 0; k < 6; ++k) {
