@@ -52,6 +52,13 @@ struct CollectFans {
   }
 };
 
+// One of them, where it is near: of the triangles with area.
+struct Fan {
+  uint32_t size;
+  uint32_t triangles[MarkedFans::kRoom];
+  Vec3<float> normals[MarkedFans::kRoom];
+};
+
 // Turns a normal towards the triangle that it is most against, and again until it faces all of them: where there is
 // such a normal, Rosenblatt's rule finds one. Else, of those that face any, the one that was the least against another
 // is kept.
@@ -59,32 +66,46 @@ struct TurnNormals {
   static constexpr int kTurns = 32, kLongTurns = 8;
   MeshView mesh;
   MarkedFans fans;
-  QSES_HOST_DEVICE void operator()(size_t i) const {
-    if (fans.counts[i] <= fans.kRoom) turn(fans.numbers[i], fans.triangles + i * fans.kRoom, fans.counts[i]);
+  template <class Team>
+  QSES_FN void operator()(const Team &team, Fan &fan, size_t i) const {
+    const uint32_t count = fans.counts[i];
+    if (count > fans.kRoom) return;
+    if (team.rank() == 0) fan.size = 0;
+    team.sync();
+    for (uint32_t k = static_cast<uint32_t>(team.rank()); k < count; k += static_cast<uint32_t>(team.size())) {
+      const uint32_t triangle = fans.triangles[i * fans.kRoom + k];
+      const Vec3<float> face = face_normal(mesh, mesh.triangle(triangle));
+      const float length2 = length_squared(face);
+      if (length2 < 1e-20f) continue;
+      const uint32_t place = atomic_add(&fan.size, uint32_t(1));
+      fan.triangles[place] = triangle;
+      fan.normals[place] = face * reciprocal_root(length2);
+    }
+    team.sync();
+    if (team.rank() == 0) turn(fans.numbers[i], fan);
   }
 
  private:
-  QSES_FN void turn(uint32_t vertex, const uint32_t *fan, uint32_t count) const {
+  QSES_FN void turn(uint32_t vertex, const Fan &fan) const {
     constexpr float kEnough = 0.02f, kClear = 1e-3f;
-    Vec3<float> units[MarkedFans::kRoom];  // of no length: of a triangle without area
-    for (uint32_t i = 0; i < count; ++i) {
-      const Vec3<float> face = face_normal(mesh, mesh.triangle(fan[i]));
-      const float length2 = length_squared(face);
-      units[i] = face * (length2 < 1e-20f ? 0.f : reciprocal_root(length2));
-    }
     Vec3<float> n = load_vec3(mesh.normal(vertex)), best = n;
     float best_facing = -2.f;
     for (int k = 0; k < kTurns && best_facing < kEnough; ++k) {
       Vec3<float> away = n;
       float least = 2.f, most = -2.f;
       uint32_t number = 0;
-      for (uint32_t i = 0; i < count; ++i) {
-        const Vec3<float> unit = units[i];
-        if (unit.x == 0.f && unit.y == 0.f && unit.z == 0.f) continue;
-        const float facing = dot(unit, n);
+#if defined(__CUDA_ARCH__)
+#pragma unroll 4
+#endif
+      for (uint32_t i = 0; i < fan.size; ++i) {
+        const Vec3<float> normal = fan.normals[i];
+        const uint32_t triangle = fan.triangles[i];
+        const float facing = dot(normal, n);
         most = maximum(most, facing);
-        if (facing > least || (facing == least && fan[i] > number)) continue;  // ties by number: any order will do
-        away = unit, least = facing, number = fan[i];
+        const bool is_less = !(facing > least || (facing == least && triangle > number));  // ties by number: any order
+        away = {is_less ? normal.x : away.x, is_less ? normal.y : away.y, is_less ? normal.z : away.z};
+        least = is_less ? facing : least;
+        number = is_less ? triangle : number;
       }
       if (most > kClear && least > best_facing) best_facing = least, best = n;
       const Vec3<float> sum = n + away * (k < kLongTurns ? 1.f : 0.3f);
@@ -113,7 +134,8 @@ void face_triangles(Executor &executor, const MeshView &mesh, const MeshCounts &
     fans.vertices = static_cast<uint32_t>(std::min<size_t>(room, total - fans.first));
     executor.fill(sizes, 0);
     executor.for_each(counts.triangles, CollectFans{mesh, fans});
-    executor.for_each(fans.vertices, TurnNormals{mesh, fans}, uint64_t(TurnNormals::kTurns) * MarkedFans::kRoom);
+    executor.template for_each_brick<Fan>(fans.vertices, TurnNormals{mesh, fans}, 8,
+                                          uint64_t(TurnNormals::kTurns) * MarkedFans::kRoom);
   }
   executor.arena().rewind(mark);
 }
