@@ -41,6 +41,9 @@ struct ProbeSheets {
   }
 
   QSES_FN bool may_cross(const CreasedMesh &mesh, uint32_t u, uint32_t v) const {
+    if (!mesh.on_crease(u) && !mesh.on_crease(v) &&
+        dot(load_vec3(mesh.normal(u)), load_vec3(mesh.normal(v))) > kCreaseCosine)
+      return false;  // as find_crossing() says, without the places
     Crossing c{};
     return find_crossing(end_of_vertex(mesh, lattice, u), end_of_vertex(mesh, lattice, v), &c);
   }
