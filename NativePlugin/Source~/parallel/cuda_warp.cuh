@@ -76,17 +76,21 @@ __device__ __forceinline__ uint32_t warp_or(uint32_t value) {
 }
 
 // Calls visit(item, on) for every item of the runs run_of(0), ..., run_of(rows - 1), in this order, with as many items
-// at a time as a warp, or each group, has lanes: on tells whether the lane has one.
+// at a time as a warp, or each group, has lanes: on tells whether the lane has one. Returns how many there are; once
+// they turn out to be more than `most`, no more are visited.
 template <int Lanes = kWarp, class RunOf, class Visit>
-__device__ __forceinline__ void visit_runs(int rows, const RunOf &run_of, const Visit &visit,
-                                           unsigned lanes = kFullWarp) {
+__device__ __forceinline__ uint32_t visit_runs(int rows, const RunOf &run_of, const Visit &visit,
+                                               unsigned lanes = kFullWarp, uint32_t most = ~uint32_t(0)) {
   const int lane = lane_id() % Lanes;
+  uint32_t met = 0;
   for (int r0 = 0; r0 < rows; r0 += Lanes) {
     ItemRun run{0, 0};
     if (r0 + lane < rows) run = run_of(r0 + lane);
     const int length = static_cast<int>(run.end - run.begin);
     const int sum = warp_inclusive_sum<Lanes>(length, lane, lanes);
     const int total = __shfl_sync(lanes, sum, Lanes - 1, Lanes);
+    met += static_cast<uint32_t>(total);
+    if (met > most) break;
     const uint32_t shift = run.begin - static_cast<uint32_t>(sum - length);
     for (int t0 = 0; t0 < total; t0 += Lanes) {
       const int t = t0 + lane;
@@ -100,6 +104,7 @@ __device__ __forceinline__ void visit_runs(int rows, const RunOf &run_of, const 
       visit(item, t < total);
     }
   }
+  return met;
 }
 
 }  // namespace gpu

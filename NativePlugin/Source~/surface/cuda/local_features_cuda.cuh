@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// GPU: a few lanes of a warp for each place around which features are gathered (stages/local_features.h). They go the
-// same way and have the same results.
+// GPU: a warp for each place around which features are gathered (stages/local_features.h): its lanes go the same way
+// and have the same results. Fewer lanes per place would do with fewer instructions, but places go different ways, and
+// then wait for each other.
 #pragma once
 
 #include "parallel/cuda_executor.cuh"
@@ -10,9 +11,9 @@
 namespace quickses {
 namespace gpu {
 
-constexpr int kGatheringThreads = 128, kGatheringLanes = 8;
+constexpr int kGatheringThreads = 128, kGatheringLanes = kWarp;
 // The items that are met, then what is kept, for every point that is tried.
-constexpr uint64_t kGatheringSteps = 8192;
+constexpr uint64_t kGatheringSteps = 4096;
 
 struct LocalLists {
   uint32_t atoms[LocalReach::kMostAtoms], arcs[LocalReach::kMostArcs];
@@ -27,25 +28,25 @@ class GatheredFeatures : public LaneCandidates<kGatheringLanes> {
     const LocalReach reach(f, x, around);
     __syncwarp(lanes());  // nobody looks at the lists any more
     const CellBox atom_box = reach.box(f.atoms, reach.atom_reach);
-    uint32_t met = count_met(f.atoms, atom_box);
-    if (met > LocalReach::kMostMet) return false;
     float deepest = -kFarAway;
-    visit(f.atoms, atom_box, [&](uint32_t i, bool on) {
+    uint32_t met = visit(f.atoms, atom_box, LocalReach::kMostMet, [&](uint32_t i, bool on) {
       if (on) deepest = maximum(deepest, ball_depth(load(f.atoms.items + i), x));
     });
+    if (met > LocalReach::kMostMet) return false;
     const float least = warp_maximum<kGatheringLanes>(deepest, lanes()) - reach.slack;
-    atom_total = keep(f.atoms, atom_box, lists_.atoms, LocalReach::kMostAtoms,
-                      [&](uint32_t i) { return ball_depth(load(f.atoms.items + i), x) >= least; });
+    atom_total = 0;
+    visit(f.atoms, atom_box, met, [&](uint32_t i, bool on) {
+      keep(i, on && ball_depth(load(f.atoms.items + i), x) >= least, lists_.atoms, LocalReach::kMostAtoms, &atom_total);
+    });
     if (atom_total > LocalReach::kMostAtoms) return false;
     arc_total = 0;
     if (f.arc_bounds.count > 0) {
       const CellBox arc_box = reach.box(f.arc_bounds, reach.arc_reach);
-      met += count_met(f.arc_bounds, arc_box);
-      if (met > LocalReach::kMostMet) return false;
-      arc_total = keep(f.arc_bounds, arc_box, lists_.arcs, LocalReach::kMostArcs, [&](uint32_t i) {
-        return reach.meets(load(f.arc_bounds.items + i), x) && reach.is_near(load(f.arcs + i));
+      met += visit(f.arc_bounds, arc_box, LocalReach::kMostMet - met, [&](uint32_t i, bool on) {
+        keep(i, on && reach.meets(load(f.arc_bounds.items + i), x) && reach.is_near(load(f.arcs + i)), lists_.arcs,
+             LocalReach::kMostArcs, &arc_total);
       });
-      if (arc_total > LocalReach::kMostArcs) return false;
+      if (met > LocalReach::kMostMet || arc_total > LocalReach::kMostArcs) return false;
     }
     __syncwarp(lanes());  // the lists are written
     return true;
@@ -57,31 +58,17 @@ class GatheredFeatures : public LaneCandidates<kGatheringLanes> {
     const int width = b.y1 - b.y0 + 1;
     return grid.run(b.x0, b.x1, b.y0 + row % width, b.z0 + row / width);
   }
-  static __device__ __forceinline__ uint32_t count_met(const NeighborGridView &grid, const CellBox &box) {
-    uint32_t own = 0;
-    for (int row = rank(); row < rows(box); row += kGatheringLanes) {
-      const ItemRun r = run(grid, box, row);
-      own += r.end - r.begin;
-    }
-    const uint32_t sum = warp_inclusive_sum<kGatheringLanes>(own, rank(), lanes());
-    return __shfl_sync(lanes(), sum, kGatheringLanes - 1, kGatheringLanes);
-  }
+  // Returns how many are met, of which no more than so many are visited.
   template <class Visit>
-  static __device__ __forceinline__ void visit(const NeighborGridView &grid, const CellBox &box, const Visit &visit) {
-    visit_runs<kGatheringLanes>(
-        rows(box), [&](int row) { return run(grid, box, row); }, visit, lanes());
+  static __device__ __forceinline__ uint32_t visit(const NeighborGridView &grid, const CellBox &box, uint32_t most,
+                                                   const Visit &visit) {
+    return visit_runs<kGatheringLanes>(
+        rows(box), [&](int row) { return run(grid, box, row); }, visit, lanes(), most);
   }
-  // Returns how many are to be kept, which may be more than there is room for.
-  template <class Keep>
-  static __device__ __forceinline__ int keep(const NeighborGridView &grid, const CellBox &box, uint32_t *out, int room,
-                                             const Keep &is_kept) {
-    int n = 0;
-    visit(grid, box, [&](uint32_t i, bool on) {
-      const bool kept = on && is_kept(i);
-      const int place = append_place(kept, &n, lanes());
-      if (kept && place < room) out[place] = i;
-    });
-    return n;
+  // count: of those kept, which may be more than there is room for.
+  static __device__ __forceinline__ void keep(uint32_t item, bool is_kept, uint32_t *out, int room, int *count) {
+    const int place = append_place(is_kept, count, lanes());
+    if (is_kept && place < room) out[place] = item;
   }
 
   LocalLists &lists_;
@@ -102,9 +89,9 @@ __device__ __forceinline__ bool is_on_contact(const FeatureView &f, const Gather
   return is_on_contact(f, static_cast<const LaneCandidates<kGatheringLanes> &>(near_by), deepest, x);
 }
 
-// Seven blocks per multiprocessor: the work waits for memory, so more of it at a time is worth a few registers.
+// Ten blocks per multiprocessor: the work waits for memory, so more of it at a time is worth registers.
 template <class F>
-__global__ __launch_bounds__(kGatheringThreads, 7) void gathering_kernel(LaunchItems items, F f) {
+__global__ __launch_bounds__(kGatheringThreads, 10) void gathering_kernel(LaunchItems items, F f) {
   constexpr unsigned kTeams = kGatheringThreads / kGatheringLanes;
   __shared__ LocalLists lists[kTeams];
   const unsigned team = threadIdx.x / kGatheringLanes;
