@@ -70,8 +70,8 @@ mesh_checks::Mesh merged(CreasedSurface from, size_t *merges, unsigned threads =
   to.normals = out.normals.data();
   to.owners = out.owners.data();
   to.indices = out.indices.data();
-  work.executor.for_each(mesh.vertex_count(), KeepVertex{view, to, kept});
-  work.executor.for_each(mesh.triangle_count(), KeepTriangle{view, to, kept});
+  work.executor.for_each(std::max(mesh.vertex_count(), mesh.triangle_count()),
+                         KeepMesh{view, to, kept, mesh.vertex_count(), mesh.triangle_count()});
   return out;
 }
 

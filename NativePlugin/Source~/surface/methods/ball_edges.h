@@ -3,6 +3,7 @@
 // vertices that are on the right wall of narrow grooves.
 #pragma once
 
+#include "parallel/two_step_pass.h"
 #include "surface/methods/level_work.h"
 #include "surface/stages/edge_exits.h"
 
@@ -38,8 +39,9 @@ void hold_to_edges(Work &work, const BrickSet &bricks, const MeshLayout &layout,
   executor.for_each(mesh.triangles, MarkMixedVertices{mesh.view, mixed});
   executor.for_each(n, MarkChannelVertices{bricks, layout, channels, in_channel});
   executor.for_each(mesh.triangles, MarkNearVertices{mesh.view, mixed, in_channel, vertices.near});
-  executor.for_each(n, FindEdgeExits{work.features, bricks, layout, work.atom_places, in_channel, mesh.view, vertices},
-                    NearBalls::kMostMet);
+  for_each_in_two_steps(executor, n,
+                        FindEdgeExits{work.features, bricks, layout, work.atom_places, in_channel, mesh.view, vertices},
+                        NearBalls::kMostMet);
   executor.for_each(n, HoldVertices{lattice, mesh.view, vertices, vertices.held});
   executor.for_each(mesh.triangles, MarkTurnedVertices{lattice, mesh.view, vertices, turned});
   executor.for_each(n, HoldVertices{lattice, mesh.view, vertices, turned});

@@ -3,6 +3,7 @@
 // along creases are split where they leave them. The mesh grows into room that was left behind it.
 #pragma once
 
+#include "parallel/two_step_pass.h"
 #include "surface/methods/crease_merges.h"
 #include "surface/stages/crease_snaps.h"
 #include "surface/stages/edge_splits.h"
@@ -44,8 +45,7 @@ void make_room(Work &work, size_t vertices, size_t triangles, GrowingMesh *mesh)
   larger.unplaced = mesh->whole.unplaced;
   const CreasedMesh from = mesh->view;
   *mesh = begin_to_grow<Sheets>(work, larger, vertex_room, triangle_room);
-  executor.for_each(v, GrowVertex{from, mesh->view});
-  executor.for_each(t, GrowTriangle{from, mesh->view});
+  executor.for_each(std::max(v, t), GrowMesh{from, mesh->view, v, t});
 }
 
 // Calls f(near by, i), which may gather what is near a place if the sheets need it.
@@ -71,9 +71,6 @@ struct RoundCounts {
   uint32_t triangles, vertices;  // new ones
   uint64_t old_near;             // triangles of before that the next round looks at
 };
-
-// Passes in which splits are refused that would fold triangles.
-constexpr uint8_t kRefusals = 2;
 
 // One round over triangles near creases: the mesh grows by a part. The list becomes that of the next round. Waits once.
 template <class Work, class Sheets>
@@ -106,35 +103,27 @@ void split_round(Work &work, const Sheets &sheets, const SplitRound &round, Grow
     executor.fill(nearest, 0xff);
     snaps.nearest = nearest.data;
   }
-  const SolveEdges<Sheets> solve{mesh->view, sheets, round, edges, snaps};
+  SolveEdges<Sheets> solve{mesh->view, sheets, round, edges, snaps, false};
   for_each_edge<Sheets>(executor, most_edges, solve);
   if (round.snap) {
     executor.for_each(mesh->whole.triangles, RefuseSnaps{mesh->view, lattice, snaps});
     executor.for_each(most_edges, SnapVertices{mesh->view, lattice, snaps});
-    for_each_edge<Sheets>(executor, most_edges, SolveMovedEdges<Sheets>{solve});
+    solve.ends_were_moved = true;
+    for_each_edge<Sheets>(executor, most_edges, solve);
   }
 
   const Span<uint32_t> edges_of = room(uint32_t{}, 3 * n);
-  executor.for_each(n, FindEdges{mesh->view, *list, chosen.data, edges, edges_of.data});
-  FindSplits find{mesh->view, *list, edges, chosen.data, edges_of.data, nullptr, 0};
   CreasePoint *const corners = Sheets::kHasCorners ? room(CreasePoint{}, n).data : nullptr;
-  find.corners = corners;
-  const auto solve_corners = [&](uint8_t after) {
-    if constexpr (Sheets::kHasCorners)
-      executor.for_each(n, SolveCorners<Sheets>{find, sheets, lattice, corners, after}, kCreaseSteps);
-  };
-  solve_corners(0);
-  for (uint8_t pass = 1; pass <= kRefusals; ++pass) {
-    FindSplits find_now = find;
-    find_now.pass = pass;
-    executor.for_each(n, RefuseSplits<Sheets>{find_now, sheets, lattice});
-    solve_corners(pass);
-  }
+  constexpr uint64_t kSteps = Sheets::kHasCorners ? kCreaseSteps : kPlainSteps;
+  FindSplits find{mesh->view, *list, edges, chosen.data, edges_of.data, corners, 1};
+  for_each_in_two_steps(executor, n, RefuseSplits<Sheets>{find, sheets, lattice}, kSteps);
+  while (++find.pass <= kRefusals) executor.for_each(n, RefuseSplits<Sheets>{find, sheets, lattice}, kSteps);
+  find.pass = 0;
 
   // Behind the sums the number of old triangles for the next round, so that both come to the host together.
   const Span<uint64_t> counts_of = room(uint64_t{}, n), before = room(uint64_t{}, n + 2);
   const Span<uint32_t> old_near = room(uint32_t{}, is_last ? 0 : mesh->whole.triangles);
-  executor.for_each(n, CountNew{find, counts_of.data});
+  executor.for_each(n, CountNew<Sheets>{find, sheets, lattice, counts_of.data}, kSteps);
   executor.exclusive_scan(n, LoadCount<uint64_t>{counts_of.data}, Span<uint64_t>{before.data, n + 1});
   if (!is_last) executor.compact(mesh->whole.triangles, IsMarked{mesh->view.near_marks}, old_near, before.data + n + 1);
   RoundCounts counts = executor.fetch(reinterpret_cast<const RoundCounts *>(before.data + n));
@@ -150,7 +139,6 @@ void split_round(Work &work, const Sheets &sheets, const SplitRound &round, Grow
   uint32_t *const vertex_of = edges.nexts;  // which nobody follows any more
   executor.for_each(n, AddVertices{find, lattice, before.data, first_vertex, vertex_of});
   executor.for_each(n, AddTriangles{find, lattice, before.data, first_vertex, first_triangle, vertex_of});
-  if (!is_last) executor.fill(Span<uint8_t>{mesh->view.near_marks + first_triangle, triangles}, 1);
   mesh->whole.vertices += vertices;
   mesh->whole.triangles += triangles;
   *list = {old_near.data, static_cast<uint32_t>(counts.old_near), first_triangle};
@@ -226,8 +214,8 @@ MeshMemoryView build_creased_surface(Work &work) {
   MeshMemoryView out = work.memory.allocate_mesh(work.executor, vertices - merged, triangles - 2 * merged,
                                                  work.made_shape, work.purpose, work.plan.mesh_in_pieces);
   add_normals(work, &out);
-  work.executor.for_each(vertices, KeepVertex{sharp.whole.view, out.view, kept});
-  work.executor.for_each(triangles, KeepTriangle{sharp.whole.view, out.view, kept});
+  work.executor.for_each(std::max(vertices, triangles),
+                         KeepMesh{sharp.whole.view, out.view, kept, vertices, triangles});
   out.unplaced = mesh.unplaced;
   return out;
 }

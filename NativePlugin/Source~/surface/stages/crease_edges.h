@@ -50,6 +50,12 @@ struct IsMarked {
 // An edge belongs to the triangle in which it goes from its smaller to its larger vertex: of a closed mesh that is one.
 QSES_FN bool owns_edge(const uint32_t *t, int k) { return t[k] < t[k == 2 ? 0 : k + 1]; }
 
+// An edge is not split too near to an end.
+QSES_FN bool is_split(const CreasePoint &p) {
+  if (p.kind == CreasePoint::kNone) return false;
+  return minimum(p.to_first, p.to_second) >= kLeastPart * (p.to_first + p.to_second);
+}
+
 // The edges of the listed triangles that may have to be split, in the order of the triangles that they belong to.
 struct CreaseEdges {
   const uint32_t *starts;  // [list], and the total: edges of the triangles before
@@ -58,7 +64,8 @@ struct CreaseEdges {
   uint32_t *heads, *nexts;     // [vertex], [edge]: the edges of a first vertex, in any order; kNoNumber: no more
   CreasePoint *points;         // [edge]
   uint8_t *snap_refused;       // [edge]: 1 if a triangle would suffer
-  uint8_t *refused;            // [edge]: the pass in which it was found that splits would fold a triangle; else 0
+  uint8_t *refused;            // [edge]: 0: is split; or the pass that found that this would fold a triangle
+  static constexpr uint8_t kNeverSplit = 255;
 
   QSES_FN uint32_t count() const { return starts[listed]; }  // there is room for half as many again as triangles
   QSES_FN uint32_t find(uint32_t u, uint32_t v) const {
@@ -69,9 +76,9 @@ struct CreaseEdges {
   }
 };
 
-// What is looked for in a triangle of the list: bit k for the edge from corner k to the next, if it belongs to it, and
-// whether it is near a crease still.
-constexpr uint8_t kStillNear = 8;
+// What is looked for in a triangle of the list: bit k for the edge from corner k to the next, if it belongs to it,
+// whether it is near a crease still, and whether it gets a vertex within.
+constexpr uint8_t kStillNear = 8, kHasCorner = 16;
 template <class Sheets>
 struct ChooseEdges {
   CreasedMesh mesh;
@@ -113,29 +120,8 @@ struct ListEdges {
       edges.firsts[e] = t[k];
       edges.seconds[e] = t[k == 2 ? 0 : k + 1];
       edges.nexts[e] = atomic_exchange(edges.heads + t[k], e);
-      edges.snap_refused[e] = edges.refused[e] = 0;
+      edges.snap_refused[e] = 0;
       ++e;
-    }
-  }
-};
-
-// The listed edges of each triangle of the list.
-struct FindEdges {
-  CreasedMesh mesh;
-  NearTriangles list;
-  const uint8_t *chosen;
-  CreaseEdges edges;
-  uint32_t *edges_of;  // [list]: three of each, or kNoNumber
-  QSES_FN void operator()(size_t i) const {
-    const uint32_t *const t = mesh.triangle(list(i));
-    uint32_t own = edges.starts[i];
-    for (int k = 0; k < 3; ++k) {
-      uint32_t e = kNoNumber;
-      if (!owns_edge(t, k))
-        e = edges.find(t[k], t[k == 2 ? 0 : k + 1]);
-      else if (chosen[i] >> k & 1)
-        e = own++;
-      edges_of[3 * i + static_cast<size_t>(k)] = e;
     }
   }
 };

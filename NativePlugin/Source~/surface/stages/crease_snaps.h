@@ -34,7 +34,8 @@ struct Snaps {
   QSES_FN bool is_moved(uint32_t v) const { return is_wanted(v) && !edges.snap_refused[edge(v)]; }
 };
 
-// The points of the edges; and what is near one of them wants to be moved there.
+// The points of the edges; and what is near one of them wants to be moved there. Once ends were moved, those of the
+// edges from them again.
 template <class Sheets>
 struct SolveEdges {
   CreasedMesh mesh;
@@ -42,23 +43,22 @@ struct SolveEdges {
   SplitRound round;
   CreaseEdges edges;
   Snaps snaps;
+  bool ends_were_moved;
+
   // near_by: gathers what is near a point (stages/local_features.h).
   template <class NearBy>
   QSES_FN void operator()(NearBy &near_by, size_t i) const {
     if (i >= edges.count()) return;
-    const CreasePoint p = solve(near_by, i);
-    if (!round.snap) return;
+    if (ends_were_moved && !snaps.is_moved(edges.firsts[i]) && !snaps.is_moved(edges.seconds[i])) return;
+    const CreasePoint p = sheets.solve(near_by, end_of_vertex(mesh, sheets.lattice, edges.firsts[i]),
+                                       end_of_vertex(mesh, sheets.lattice, edges.seconds[i]), round.along);
+    edges.points[i] = p;
+    edges.refused[i] = is_split(p) ? 0 : CreaseEdges::kNeverSplit;
+    if (!round.snap || ends_were_moved) return;
     const int end = end_to_snap(p);
     const uint32_t e = static_cast<uint32_t>(i);
     if (end == 0) atomic_min(snaps.nearest + edges.firsts[e], Snaps::key(p.to_first, e));
     if (end == 1) atomic_min(snaps.nearest + edges.seconds[e], Snaps::key(p.to_second, e));
-  }
-  template <class NearBy>
-  QSES_FN CreasePoint solve(NearBy &near_by, size_t i) const {
-    const CreasePoint p = sheets.solve(near_by, end_of_vertex(mesh, sheets.lattice, edges.firsts[i]),
-                                       end_of_vertex(mesh, sheets.lattice, edges.seconds[i]), round.along);
-    edges.points[i] = p;
-    return p;
   }
 };
 
@@ -102,18 +102,6 @@ struct SnapVertices {
     if (end < 0) return;
     const uint32_t v = end == 0 ? edges.firsts[i] : edges.seconds[i];
     if (snaps.edge(v) == i) put_on_crease(mesh, lattice, v, edges.points[i]);
-  }
-};
-
-// Where ends were moved the edge is another one.
-template <class Sheets>
-struct SolveMovedEdges {
-  SolveEdges<Sheets> edge;
-  template <class NearBy>
-  QSES_FN void operator()(NearBy &near_by, size_t i) const {
-    const CreaseEdges &edges = edge.edges;
-    if (i >= edges.count()) return;
-    if (edge.snaps.is_moved(edges.firsts[i]) || edge.snaps.is_moved(edges.seconds[i])) edge.solve(near_by, i);
   }
 };
 

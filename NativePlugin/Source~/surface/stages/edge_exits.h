@@ -69,6 +69,7 @@ struct MarkNearVertices {
   }
 };
 
+// At a glance, where the vertex's own ball is left; else of all that are near.
 struct FindEdgeExits {
   FeatureView features;
   BrickSet bricks;
@@ -77,18 +78,31 @@ struct FindEdgeExits {
   const uint8_t *in_channel;  // [vertex]
   MeshView mesh;
   HeldVertices vertices;
-  QSES_HOST_DEVICE void operator()(size_t i) const {
-    if (!vertices.near[i]) return;
-    const uint32_t vertex = static_cast<uint32_t>(i), brick = brick_of_vertex(layout, bricks.count, vertex);
-    CutEdge edge = ends_of_edge(bricks, layout, brick, edge_of_vertex(layout, brick, vertex));
-    if (in_channel[i]) edge.outside = find_gap(features, edge.outside, bricks.lattice.spacing);
-    EdgeExit exit = exit_of(places[mesh.owner(vertex)], edge);
+  QSES_FN bool is_done_at_a_glance(size_t i) const {
+    if (!vertices.near[i]) return true;
+    if (in_channel[i]) return false;
+    const EdgeExit exit = exit_of(i, edge_of(i));
+    if (exit.found) vertices.exits[i] = exit;
+    return exit.found;
+  }
+  QSES_FN void finish(size_t i) const {
+    CutEdge edge = edge_of(i);
+    EdgeExit exit{};
+    if (in_channel[i]) {
+      edge.outside = find_gap(features, edge.outside, bricks.lattice.spacing);
+      exit = exit_of(i, edge);
+    }
     if (!exit.found) exit = find_exit(edge);
-    if (exit.found && (in_channel[i] || exit.owner != mesh.owner(vertex))) vertices.held[i] = 1;
+    if (exit.found && (in_channel[i] || exit.owner != mesh.owner(static_cast<uint32_t>(i)))) vertices.held[i] = 1;
     vertices.exits[i] = exit;
   }
 
  private:
+  QSES_FN CutEdge edge_of(size_t i) const {
+    const uint32_t vertex = static_cast<uint32_t>(i), brick = brick_of_vertex(layout, bricks.count, vertex);
+    return ends_of_edge(bricks, layout, brick, edge_of_vertex(layout, brick, vertex));
+  }
+
   // Where the edge leaves the last ball on its way out. Unknown if the outside end is in one, as in a channel that was
   // not found again; but one on a sphere is outside.
   QSES_FN EdgeExit find_exit(const CutEdge &edge) const {
@@ -109,8 +123,9 @@ struct FindEdgeExits {
     return describe(place, load(features.atoms.items + place), edge.inside + way * last);
   }
 
-  // Where it leaves the ball of an atom, if that is on the surface: as a rule the one that the vertex is on.
-  QSES_FN EdgeExit exit_of(uint32_t place, const CutEdge &edge) const {
+  // Where it leaves the ball that the vertex is on, if it is there on the surface, as it is as a rule.
+  QSES_FN EdgeExit exit_of(size_t i, const CutEdge &edge) const {
+    const uint32_t place = places[mesh.owner(static_cast<uint32_t>(i))];
     const Sphere ball = load(features.atoms.items + place);
     const Vec3<float> way = edge.outside - edge.inside;
     float entry, exit;

@@ -9,12 +9,6 @@
 
 namespace quickses {
 
-// An edge is not split too near to an end.
-QSES_FN bool is_split(const CreasePoint &p) {
-  if (p.kind == CreasePoint::kNone) return false;
-  return minimum(p.to_first, p.to_second) >= kLeastPart * (p.to_first + p.to_second);
-}
-
 // The triangles that one becomes: corners 0, 1, 2 are its own, 3 + k is on the edge from corner k, 6 is within.
 struct Pieces {
   uint8_t corner[6][3];
@@ -82,27 +76,28 @@ struct TriangleSplits {
   QSES_FN int new_triangles() const { return within ? 2 + edges() : edges(); }
 };
 
-// Refusals come in passes, since what is left of the splits of one triangle may fold another one. While a pass goes on,
-// what it has refused so far is there still.
+// Passes in which splits are refused that would fold triangles: what is left of the splits of one triangle may fold
+// another one. While a pass goes on, what it has refused so far is there still.
+constexpr uint8_t kRefusals = 2;
+
 struct FindSplits {
   CreasedMesh mesh;
   NearTriangles list;
   CreaseEdges edges;
-  const uint8_t *chosen;
-  const uint32_t *edges_of;    // [list]: three of each
-  const CreasePoint *corners;  // [list]; or nullptr: there are none
-  uint8_t pass;                // that goes on; 0: all are over
+  uint8_t *chosen;       // [list]
+  uint32_t *edges_of;    // [list]: three of each, or kNoNumber
+  CreasePoint *corners;  // [list]: where a triangle has one
+  uint8_t pass;          // that goes on; 0: all are over
 
   QSES_FN uint32_t edge_of(size_t i, int k) const { return edges_of[3 * i + static_cast<size_t>(k)]; }
   QSES_FN TriangleSplits operator()(size_t i) const {
-    TriangleSplits s{{kNoNumber, kNoNumber, kNoNumber}, false};
+    TriangleSplits s{{kNoNumber, kNoNumber, kNoNumber}, (chosen[i] & kHasCorner) != 0};
     for (int k = 0; k < 3; ++k) {
       const uint32_t e = edge_of(i, k);
-      if (e == kNoNumber || !is_split(edges.points[e])) continue;
+      if (e == kNoNumber) continue;
       const uint8_t refused = atomic_load(edges.refused + e);
       if (refused == 0 || refused == pass) s.edge[k] = e;
     }
-    s.within = corners && corners[i].kind != CreasePoint::kNone;
     return s;
   }
   // Did that pass refuse a split of the triangle?
@@ -113,95 +108,112 @@ struct FindSplits {
     }
     return false;
   }
-};
-
-// New vertices, in the upper half, and triangles of a triangle: those of the edges that belong to it.
-struct CountNew {
-  FindSplits find;
-  uint64_t *counts;  // [list]
-  QSES_FN void operator()(size_t i) const {
-    const TriangleSplits s = find(i);
-    uint64_t vertices = s.within ? 1 : 0;
-    const uint32_t *const t = find.mesh.triangle(find.list(i));
-    for (int k = 0; k < 3; ++k) vertices += s.edge[k] != kNoNumber && owns_edge(t, k) ? 1 : 0;
-    counts[i] = vertices << 32 | static_cast<uint64_t>(s.new_triangles());
+  // The listed edges of a triangle.
+  QSES_FN void find_edges(size_t i) const {
+    const uint32_t *const t = mesh.triangle(list(i));
+    uint32_t own = edges.starts[i];
+    for (int k = 0; k < 3; ++k) {
+      uint32_t e = kNoNumber;
+      if (!owns_edge(t, k))
+        e = edges.find(t[k], t[k == 2 ? 0 : k + 1]);
+      else if (chosen[i] >> k & 1)
+        e = own++;
+      edges_of[3 * i + static_cast<size_t>(k)] = e;
+    }
   }
 };
 
 // A triangle over a place where three creases meet gets a vertex there: one that has points on all three of them.
 template <class Sheets>
-struct SolveCorners {
-  FindSplits find;
-  Sheets sheets;
-  Lattice lattice;
-  CreasePoint *corners;  // [list]
-  uint8_t after;         // the pass whose refusals are looked at again; 0: it is the first time
-  QSES_FN void operator()(size_t i) const {
-    const uint32_t *const t = find.mesh.triangle(find.list(i));
-    if (after > 0 && !find.had_refusal(i, after)) return;
-    corners[i].kind = CreasePoint::kNone;
-    if (!(find.chosen[i] & kStillNear)) return;
-    int creases = 0;
-    for (int k = 0; k < 3; ++k) creases += int(find.edge_of(i, k) != kNoNumber) + int(find.mesh.on_crease(t[k]));
-    if (creases < 3) return;
-    const TriangleSplits s = find(i);
-    uint32_t pair[6][2];
-    Vec3<float> place[6], ends[3];
-    int count = 0;
-    for (int k = 0; k < 6; ++k) {
-      CreaseEnd c;
-      if (k < 3) {
-        c = end_of_vertex(find.mesh, lattice, t[k]);
-        ends[k] = c.position;
-        if (c.owner == c.second_owner) continue;
-      } else {
-        if (s.edge[k - 3] == kNoNumber) continue;
-        c = end_of_point(find.edges.points[s.edge[k - 3]]);
-      }
-      const uint32_t low = c.owner < c.second_owner ? c.owner : c.second_owner,
-                     high = c.owner < c.second_owner ? c.second_owner : c.owner;
-      bool known = false;
-      for (int j = 0; j < count; ++j) known |= pair[j][0] == low && pair[j][1] == high;
-      if (known) continue;
-      place[count] = c.position;
-      pair[count][0] = low;
-      pair[count++][1] = high;
-    }
-    for (int a = 0; a < count; ++a)
-      for (int b = a + 1; b < count; ++b) {
-        // The third pair of what two pairs with one sheet in common name.
-        const bool first = pair[a][0] == pair[b][0] || pair[a][0] == pair[b][1];
-        const bool second = pair[a][1] == pair[b][0] || pair[a][1] == pair[b][1];
-        if (first == second) continue;
-        const uint32_t common = pair[a][first ? 0 : 1], x = pair[a][first ? 1 : 0],
-                       y = pair[b][pair[b][0] == common ? 1 : 0];
-        for (int c = b + 1; c < count; ++c) {
-          if (!((pair[c][0] == x && pair[c][1] == y) || (pair[c][0] == y && pair[c][1] == x))) continue;
-          const uint32_t owners[3] = {common, x, y};
-          const float size2 = maximum(length_squared(ends[1] - ends[0]),
-                                      maximum(length_squared(ends[2] - ends[0]), length_squared(ends[2] - ends[1])));
-          const CreasePoint p =
-              sheets.solve_corner(owners, (place[a] + place[b] + place[c]) * (1.f / 3.f), square_root(size2));
-          const float least2 = kLeastPart * kLeastPart * size2;
-          for (int k = 0; k < count; ++k)
-            if (length_squared(place[k] - p.position) < least2) return;  // it has one there
-          corners[i] = p;
-          return;
-        }
-      }
-  }
-};
+QSES_FN void find_corner(const FindSplits &find, const Sheets &sheets, const Lattice &lattice, size_t i) {
+  const uint8_t chosen = find.chosen[i] & static_cast<uint8_t>(~kHasCorner);
+  find.chosen[i] = chosen;
+  if (!(chosen & kStillNear)) return;
+  const uint32_t *const t = find.mesh.triangle(find.list(i));
+  int creases = 0;
+  for (int k = 0; k < 3; ++k) creases += int(find.edge_of(i, k) != kNoNumber) + int(find.mesh.on_crease(t[k]));
+  if (creases < 3) return;
+  const TriangleSplits s = find(i);
 
-// Where splits would fold a triangle, its edges are left as they are.
+  // The pairs of sheets, the smaller number first, of the corners and the points on the edges. Most have fewer than
+  // three: their places are not looked at.
+  constexpr int kPoints = 6;
+  constexpr uint64_t kNoPair = ~uint64_t(0);
+  uint64_t pairs[kPoints];
+  int count = 0;
+  for (int k = 0; k < kPoints; ++k) {
+    uint32_t first = 0, second = 0;
+    if (k < 3) {
+      first = find.mesh.owner(t[k]);
+      second = find.mesh.on_crease(t[k]) ? find.mesh.second_owners[t[k]] : first;
+    } else if (s.edge[k - 3] != kNoNumber) {
+      const CreasePoint &p = find.edges.points[s.edge[k - 3]];
+      first = p.owner;
+      second = p.second_owner;
+    }
+    pairs[k] = first == second  ? kNoPair
+               : first < second ? uint64_t(first) << 32 | second
+                                : uint64_t(second) << 32 | first;
+    for (int j = 0; j < k; ++j)
+      if (pairs[j] == pairs[k]) pairs[k] = kNoPair;
+    count += pairs[k] != kNoPair ? 1 : 0;
+  }
+  if (count < 3) return;
+
+  uint32_t pair[kPoints][2];
+  Vec3<float> place[kPoints], ends[3];
+  count = 0;
+  for (int k = 0; k < kPoints; ++k) {
+    if (k < 3) ends[k] = centered_position(lattice, find.mesh.position(t[k]));
+    if (pairs[k] == kNoPair) continue;
+    place[count] = k < 3 ? ends[k] : find.edges.points[s.edge[k - 3]].position;
+    pair[count][0] = static_cast<uint32_t>(pairs[k] >> 32);
+    pair[count++][1] = static_cast<uint32_t>(pairs[k]);
+  }
+  for (int a = 0; a < count; ++a)
+    for (int b = a + 1; b < count; ++b) {
+      // The third pair of what two pairs with one sheet in common name.
+      const bool first = pair[a][0] == pair[b][0] || pair[a][0] == pair[b][1];
+      const bool second = pair[a][1] == pair[b][0] || pair[a][1] == pair[b][1];
+      if (first == second) continue;
+      const uint32_t common = pair[a][first ? 0 : 1], x = pair[a][first ? 1 : 0],
+                     y = pair[b][pair[b][0] == common ? 1 : 0];
+      for (int c = b + 1; c < count; ++c) {
+        if (!((pair[c][0] == x && pair[c][1] == y) || (pair[c][0] == y && pair[c][1] == x))) continue;
+        const uint32_t owners[3] = {common, x, y};
+        const float size2 = maximum(length_squared(ends[1] - ends[0]),
+                                    maximum(length_squared(ends[2] - ends[0]), length_squared(ends[2] - ends[1])));
+        const CreasePoint p =
+            sheets.solve_corner(owners, (place[a] + place[b] + place[c]) * (1.f / 3.f), square_root(size2));
+        const float least2 = kLeastPart * kLeastPart * size2;
+        for (int k = 0; k < count; ++k)
+          if (length_squared(place[k] - p.position) < least2) return;  // it has one there
+        if (p.kind == CreasePoint::kNone) return;
+        find.corners[i] = p;
+        find.chosen[i] = chosen | kHasCorner;
+        return;
+      }
+    }
+}
+
+// Where splits would fold a triangle, its edges are left as they are. The first pass looks at all triangles, the others
+// at those that the one before has refused something, which are few.
 template <class Sheets>
 struct RefuseSplits {
   FindSplits find;
   Sheets sheets;
   Lattice lattice;
+  QSES_FN bool is_done_at_a_glance(size_t i) const {
+    if (find.pass == 1) find.find_edges(i);
+    if (find.pass > 1 && !find.had_refusal(i, find.pass - 1)) return true;
+    if constexpr (Sheets::kHasCorners) find_corner(find, sheets, lattice, i);
+    return find(i).edges() == 0;
+  }
   QSES_FN void operator()(size_t i) const {
-    if (find.pass > 1 && !find.had_refusal(i, find.pass - 1)) return;
+    if (!is_done_at_a_glance(i)) finish(i);
+  }
+  QSES_FN void finish(size_t i) const {
     const TriangleSplits s = find(i);
-    if (s.edges() == 0) return;
     const uint32_t *const t = find.mesh.triangle(find.list(i));
     CreaseEnd corner[7];
     for (int k = 0; k < 3; ++k) {
@@ -223,6 +235,23 @@ struct RefuseSplits {
     if (!bad) return;
     for (int k = 0; k < 3; ++k)
       if (s.edge[k] != kNoNumber) atomic_store(find.edges.refused + s.edge[k], find.pass);
+  }
+};
+
+// New vertices, in the upper half, and triangles of a triangle: those of the edges that belong to it.
+template <class Sheets>
+struct CountNew {
+  FindSplits find;
+  Sheets sheets;
+  Lattice lattice;
+  uint64_t *counts;  // [list]
+  QSES_FN void operator()(size_t i) const {
+    if (Sheets::kHasCorners && find.had_refusal(i, kRefusals)) find_corner(find, sheets, lattice, i);
+    const TriangleSplits s = find(i);
+    uint64_t vertices = s.within ? 1 : 0;
+    const uint32_t *const t = find.mesh.triangle(find.list(i));
+    for (int k = 0; k < 3; ++k) vertices += s.edge[k] != kNoNumber && owns_edge(t, k) ? 1 : 0;
+    counts[i] = vertices << 32 | static_cast<uint64_t>(s.new_triangles());
   }
 };
 
@@ -271,26 +300,24 @@ struct AddTriangles {
     };
     uint32_t next = first_triangle + static_cast<uint32_t>(before[i]);
     for (int p = 0; p < pieces.count; ++p) {
-      uint32_t *const out = p == 0 ? t : find.mesh.triangle(next++);
+      uint32_t *const out = p == 0 ? t : find.mesh.triangle(next);
+      if (p > 0) find.mesh.near_marks[next++] = 1;
       for (int k = 0; k < 3; ++k) out[k] = number(pieces.corner[p][k]);
     }
   }
 };
 
 // A mesh in larger memory, with what is known of creases.
-struct GrowVertex {
+struct GrowMesh {
   CreasedMesh from, to;
+  size_t vertices, triangles;
   QSES_FN void operator()(size_t i) const {
-    KeepVertex{from, to, {}}(i);
-    if (from.second_owners) to.second_owners[i] = from.second_owners[i];
-    to.crease_marks[i] = from.crease_marks[i];
-  }
-};
-struct GrowTriangle {
-  CreasedMesh from, to;
-  QSES_FN void operator()(size_t i) const {
-    KeepTriangle{from, to, {}}(i);
-    to.near_marks[i] = from.near_marks[i];
+    KeepMesh{from, to, {}, vertices, triangles}(i);
+    if (i < vertices) {
+      if (from.second_owners) to.second_owners[i] = from.second_owners[i];
+      to.crease_marks[i] = from.crease_marks[i];
+    }
+    if (i < triangles) to.near_marks[i] = from.near_marks[i];
   }
 };
 

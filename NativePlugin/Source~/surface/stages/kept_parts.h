@@ -11,23 +11,17 @@ struct KeptParts {
   RankedSet vertices, triangles;  // no triangle without its vertices
 };
 
-struct KeepVertex {
+// Of the mesh that they are taken from there are so many.
+struct KeepMesh {
   MeshView from, to;
   KeptParts kept;
+  size_t vertices, triangles;
   QSES_HOST_DEVICE void operator()(size_t i) const {
-    const uint32_t vertex = static_cast<uint32_t>(i);
-    if (kept.vertices.has(vertex)) copy_vertex(from, vertex, to, kept.vertices.rank(vertex));
-  }
-};
-
-struct KeepTriangle {
-  MeshView from, to;
-  KeptParts kept;
-  QSES_HOST_DEVICE void operator()(size_t i) const {
-    const uint32_t triangle = static_cast<uint32_t>(i);
-    if (!kept.triangles.has(triangle)) return;
-    const uint32_t *const t = from.triangle(triangle);
-    uint32_t *const out = to.triangle(kept.triangles.rank(triangle));
+    const uint32_t number = static_cast<uint32_t>(i);
+    if (i < vertices && kept.vertices.has(number)) copy_vertex(from, number, to, kept.vertices.rank(number));
+    if (i >= triangles || !kept.triangles.has(number)) return;
+    const uint32_t *const t = from.triangle(number);
+    uint32_t *const out = to.triangle(kept.triangles.rank(number));
     for (int corner = 0; corner < 3; ++corner) out[corner] = kept.vertices.rank(t[corner]);
   }
 };
