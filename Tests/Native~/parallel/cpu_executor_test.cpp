@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The CPU's sort, which is put together from Thrust's parts, and its scan.
+// The CPU's sort, which is put together from Thrust's parts, its scan, and passes in two steps.
 #include "parallel/cpu_executor.h"
+#include "parallel/two_step_pass.h"
 
 #include <gtest/gtest.h>
 
@@ -82,6 +83,30 @@ TEST(CpuExecutor, ScansAndWritesTheTotalOnce) {
       uint64_t sum = 0;
       for (size_t i = 0; i < n; sum += LoadNumber{}(i), ++i) ASSERT_EQ(out[i].value, sum) << i;
       EXPECT_EQ(out[n].value, sum);
+    }
+  }
+}
+
+// Counts looks at each item; every third is left for the second step.
+struct EveryThird {
+  uint32_t *looks, *second;
+  bool is_done_at_a_glance(size_t i) const {
+    ++looks[i];
+    return i % 3 != 0;
+  }
+  void finish(size_t i) const { ++second[i]; }
+};
+
+TEST(CpuExecutor, FinishesInASecondStepWhatIsLeft) {
+  for (unsigned threads : {1u, 3u}) {
+    CpuExecutor executor(threads);
+    for (size_t n : {0, 1, 127, 128, 129, 10007}) {
+      std::vector<uint32_t> looks(n, 0), second(n, 0);
+      for_each_in_two_steps(executor, n, EveryThird{looks.data(), second.data()});
+      for (size_t i = 0; i < n; ++i) {
+        ASSERT_EQ(looks[i], 1u);
+        ASSERT_EQ(second[i], i % 3 == 0 ? 1u : 0u);
+      }
     }
   }
 }

@@ -2,6 +2,7 @@
 // The verbs of the CUDA executor against plain loops, and how it fails.
 #include "parallel/cuda_executor.cuh"
 #include "parallel/cuda_stage_timer.cuh"
+#include "parallel/two_step_pass.h"
 
 #include <gtest/gtest.h>
 
@@ -105,6 +106,29 @@ TEST(CudaExecutor, ForEachBrick) {
   std::vector<uint32_t> expected(n * 256, 0);
   for (size_t k = 0; k < in.size(); ++k) ++expected[k / 1000 * 256 + 255 - in[k]];
   EXPECT_EQ(host, expected);
+}
+
+// Every third item is left for the second step.
+struct EveryThird {
+  uint32_t *looks, *second;
+  QSES_FN bool is_done_at_a_glance(size_t i) const {
+    ++looks[i];
+    return i % 3 != 0;
+  }
+  QSES_FN void finish(size_t i) const { ++second[i]; }
+};
+TEST(CudaExecutor, FinishesInASecondStepWhatIsLeft) {
+  REQUIRE_DEVICE();
+  for (size_t n : {size_t(1), size_t(127), size_t(128), size_t(129), size_t(3000001)}) {
+    Span<uint32_t> looks = executor.allocate<uint32_t>(n), second = executor.allocate<uint32_t>(n);
+    executor.fill(looks, 0);
+    executor.fill(second, 0);
+    for_each_in_two_steps(executor, n, EveryThird{looks.data, second.data});
+    std::vector<uint32_t> expected(n, 1);
+    EXPECT_EQ(to_host(executor, looks), expected);
+    for (size_t i = 0; i < n; ++i) expected[i] = i % 3 == 0 ? 1 : 0;
+    EXPECT_EQ(to_host(executor, second), expected);
+  }
 }
 
 TEST(CudaExecutor, ExclusiveScan) {
