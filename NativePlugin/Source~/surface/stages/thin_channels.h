@@ -222,7 +222,9 @@ struct MarkThinChannels {
     if (balls.are_listed())
       use([&](const auto &each) { return balls.for_each(last, each); });
     else
-      use([&](const auto &each) { return for_balls_near(features, x, x, bricks.lattice.spacing, NearBalls::kMostMet, each); });
+      use([&](const auto &each) {
+        return for_balls_near(features, x, x, bricks.lattice.spacing, NearBalls::kMostMet, each);
+      });
   }
 
   // Edges from a point that no ball has both ends of: bits in the order of axis_way(). Where atoms crowd, none.
