@@ -89,9 +89,9 @@ __device__ __forceinline__ bool is_on_contact(const FeatureView &f, const Gather
   return is_on_contact(f, static_cast<const LaneCandidates<kGatheringLanes> &>(near_by), deepest, x);
 }
 
-// Ten blocks per multiprocessor: the work waits for memory, so more of it at a time is worth registers.
+// Seven blocks per multiprocessor: the work waits for memory, so more of it at a time is worth a few registers.
 template <class F>
-__global__ __launch_bounds__(kGatheringThreads, 10) void gathering_kernel(LaunchItems items, F f) {
+__global__ __launch_bounds__(kGatheringThreads, 7) void gathering_kernel(LaunchItems items, F f) {
   constexpr unsigned kTeams = kGatheringThreads / kGatheringLanes;
   __shared__ LocalLists lists[kTeams];
   const unsigned team = threadIdx.x / kGatheringLanes;

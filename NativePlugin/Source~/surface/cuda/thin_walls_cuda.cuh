@@ -196,8 +196,8 @@ static __global__ __launch_bounds__(kWallThreads, 8) void drop_open_edges_kernel
   }
 }
 
-// Eight lanes for each edge that is left.
-static __global__ __launch_bounds__(kWallThreads) void walk_edges_kernel(LaunchItems items, WallJob job) {
+// Eight lanes for each edge that is left. They wait for memory: more blocks at a time are worth registers.
+static __global__ __launch_bounds__(kWallThreads, 10) void walk_edges_kernel(LaunchItems items, WallJob job) {
   __shared__ uint32_t edge_memory[kWallThreads / kVertexLanes][kEdgeRoom];
   const FeatureView &f = job.features;
   const SurfaceParameters &p = f.parameters;
