@@ -470,6 +470,21 @@ inline std::vector<Regression> regressions() {
         {-5, 4, -4, 1.70000005},
         {-2.77945352, -0.0910772458, -2.34678388, 2.60453033}},
        1},
+      // A vertex next to a lattice point that stands for a wall starts outside of all balls.
+      {"AStartOutside", kSes, kExact, 2, 3.5999999, 0, 0, {{6, 2, 1, 2}, {8, -4, 2.5999999, 1.5}}, 1},
+      {"AStartOutsideOfFive",
+       kSes,
+       kExact,
+       2,
+       3.47000003,
+       0,
+       0,
+       {{-289.299988, 331, 241, 1},
+        {-293, 335, 241, 1},
+        {-293, 331, 244, 1.20000005},
+        {-292.799988, 334.700012, 244.300003, 1.20000005},
+        {-289, 335, 244, 1.20000005}},
+       1},
       // Area and volume of the atoms.
       {"LargeProbe", kSas, kExact, 95, 2, 0, 0, {{0, 0, 0, 2}, {0, 1, 0, 2}}},
   };

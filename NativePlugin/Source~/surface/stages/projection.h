@@ -239,8 +239,11 @@ QSES_FN Projection project_on_arc(const FeatureView &f, const NearestArc &neares
   const bool may_be_covered = y.distance < p.depth - kProjectionTolerance &&
                               (square_root(nearest.second2) < 2.f * p.depth - y.distance || beyond_axis);
   if (!s.placed) return {s, ProjectionState::kOnEdge, 1};
-  // On its way to a wall it may also get to where a probe is that touches a single atom: looked at as from round 2 on.
-  if (p.depth - y.distance > kLongestWayIn * p.spacing) return {s, ProjectionState::kReproject, 2};
+  // On its way to a wall it may also get to where a probe is that touches a single atom. And next to a lattice point
+  // that stands for a wall, a start may be outside of all balls, from where the way would lead off: of those in a ball
+  // that y is on, none is farther from the axis than y. Both are looked at as from round 2 on.
+  const bool may_be_outside = dot(x - y.position, center - y.position) <= 0.f;
+  if (p.depth - y.distance > kLongestWayIn * p.spacing || may_be_outside) return {s, ProjectionState::kReproject, 2};
   return {s, may_be_covered ? ProjectionState::kReproject : ProjectionState::kPlaced, 1};
 }
 
@@ -288,6 +291,7 @@ QSES_FN Projection reproject(const FeatureView &f, const Candidates &candidates,
       on.rounds = round;
       return on;
     }
+    if (deepest.depth < 0.f) return {s, ProjectionState::kOnEdge, round};
   }
   if (s.is_crest() || !y.found) return {s, ProjectionState::kPlaced, round};
   const SurfacePoint on = place_on_surface(p, s.position, y);
