@@ -152,6 +152,43 @@ TEST(EdgeMerges, WhatIsFineStays) {
   EXPECT_EQ(mesh.indices, fine.mesh.indices);
 }
 
+// Two cones, on one of which a vertex is next to one of the crease: three slim triangles instead of one.
+CreasedSurface with_vertex_beside(size_t k, double height) {
+  const std::vector<double> angles = even_angles(12);
+  CreasedSurface s = two_cones(angles, height);
+  const double a = angles[k] + 0.1, length = std::hypot(1.0, height), rim = 0.97;
+  for (double d : {rim * std::cos(a), rim * std::sin(a), (1 - rim) * height})
+    s.mesh.positions.push_back(static_cast<float>(d));
+  for (double d : {height / length * std::cos(a), height / length * std::sin(a), 1 / length}) {
+    s.mesh.normals.push_back(static_cast<float>(d));
+    s.second_normals.push_back(static_cast<float>(d));
+  }
+  s.on_crease.push_back(0);
+  const uint32_t first = static_cast<uint32_t>(k), next = (first + 1) % 12, top = 12, inner = 14;
+  s.mesh.indices[6 * k + 2] = inner;
+  for (const uint32_t corner : {next, top, inner, top, first, inner}) s.mesh.indices.push_back(corner);
+  return s;
+}
+
+TEST(EdgeMerges, CreasesKeepTheirVertices) {
+  for (size_t k = 0; k < 12; ++k) {
+    SCOPED_TRACE(k);
+    const CreasedSurface s = with_vertex_beside(k, 0.3);
+    ASSERT_EQ(mesh_checks::manifold_fault(s.mesh), "");
+    size_t merges = 0;
+    const mesh_checks::Mesh mesh = merged(s, &merges);
+    EXPECT_EQ(merges, 1u);
+    EXPECT_TRUE(std::equal(s.mesh.positions.begin(), s.mesh.positions.begin() + 36, mesh.positions.begin()));
+  }
+}
+
+// The edge to the tip would be farther from what bends between them, by its normals, than a tenth of the spacing.
+TEST(EdgeMerges, NoEdgeLeavesTheSurface) {
+  size_t merges = 1;
+  merged(with_vertex_beside(3, 0.5), &merges);
+  EXPECT_EQ(merges, 0u);
+}
+
 // The ends of its edges have three neighbours in common: a merge would leave two triangles on each other.
 TEST(EdgeMerges, NoEdgeOfATriangularBipyramid) {
   size_t merges = 1;

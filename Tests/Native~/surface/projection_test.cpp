@@ -23,22 +23,21 @@ struct Everything {
   uint32_t arc(int k) const { return static_cast<uint32_t>(k); }
 };
 
-// Small full circles near the origin, and an atom whose sphere is exposed all over, or none.
+// Small full circles near the origin, and an atom whose sphere is exposed all over, or one that all of this is deep in.
 struct Scene {
   std::vector<Arc> arcs;
-  Sphere atom{glm::vec3(0.f), 3.f};
+  Sphere atom{glm::vec3(0.f), 50.f};
   CapRange no_caps{0, 0};
-  bool has_atom;
   std::mt19937 random;
 
-  Scene(unsigned seed, bool with_atom) : has_atom(with_atom), random(seed) {
+  Scene(unsigned seed, bool with_exposed_atom) : random(seed) {
     const int count = 1 + static_cast<int>(random() % 8);
     for (int k = 0; k < count; ++k) {
       const glm::vec3 middle = direction();
       const glm::vec3 side = glm::normalize(glm::cross(middle, direction()));
       arcs.push_back({point(1.8f), uniform(0.01f, 0.8f), middle, -1.f, side, 0.f});
     }
-    atom.center = direction() * uniform(1.5f, 3.f);
+    if (with_exposed_atom) atom = {direction() * uniform(1.5f, 3.f), 3.f};
   }
 
   float uniform(float low, float high) { return std::uniform_real_distribution<float>(low, high)(random); }
@@ -51,13 +50,13 @@ struct Scene {
   FeatureView view() const {
     FeatureView f{};
     f.atoms.items = &atom;
-    f.atoms.count = has_atom ? 1u : 0u;
+    f.atoms.count = 1;
     f.cap_ranges = &no_caps;
     f.arcs = arcs.data();
     f.parameters = {kProbe, kProbe, 1.5f, atom.radius};
     return f;
   }
-  Everything candidates() const { return {has_atom ? 1 : 0, static_cast<int>(arcs.size())}; }
+  Everything candidates() const { return {1, static_cast<int>(arcs.size())}; }
 
   // Of a point to the nearest place of the probe on an arc, in double precision; arcs are full circles here.
   double distance(const Vec3<float> &x) const {
@@ -131,6 +130,16 @@ TEST(Projection, AVertexThatLeftAProbeIsNotPlacedOverAContactPatch) {
   }
   EXPECT_GT(beside, 0);
   EXPECT_GT(on_patch, 0);
+}
+
+// Where no ball is, a probe may be anywhere: a vertex that looked away from the circle's axis is not where it seems.
+TEST(Projection, OutsideOfAllBallsTheEdgeDecides) {
+  Scene scene(1, true);
+  scene.arcs.assign(1, {glm::vec3(0.f), 1.f, glm::vec3(1, 0, 0), -1.f, glm::vec3(0, 1, 0), 0.f});
+  scene.atom = {glm::vec3(0.f, 0.f, 20.f), 3.f};
+  EXPECT_EQ(project(scene, Vec3<float>(1.8f, 0.f, 0.f)).projection.state, ProjectionState::kOnEdge);
+  scene.atom = {glm::vec3(0.f), 50.f};
+  EXPECT_EQ(project(scene, Vec3<float>(0.6f, 0.f, 0.8f)).projection.state, ProjectionState::kPlaced);
 }
 
 TEST(Projection, WithoutAnArcTheEdgeDecides) {
