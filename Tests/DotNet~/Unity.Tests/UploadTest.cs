@@ -92,6 +92,19 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void BuffersWithoutPaddingAreReplacedAtOnceRatherThanLater()
+        {
+            _uploader.Upload(Compute(60), _mesh);
+            _uploader.Upload(Compute(50), _mesh, true);
+            Assert.That(MeshRecord.Of(_mesh).VertexParamsCalls, Is.EqualTo(2));
+            Assert.That(MeshRecord.Of(_mesh).IndexParamsCalls, Is.EqualTo(2));
+            MeshRecord.Of(_mesh).Clear();
+            _uploader.Upload(Compute(55), _mesh, true);
+            Assert.That(MeshRecord.Of(_mesh).VertexParamsCalls, Is.EqualTo(0));
+            Assert.That(MeshRecord.Of(_mesh).IndexParamsCalls, Is.EqualTo(0));
+        }
+
+        [Test]
         public void AnotherMeshGetsBuffersOfItsOwn()
         {
             SurfaceMeshView view = Compute(30);

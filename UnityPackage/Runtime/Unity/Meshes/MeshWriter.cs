@@ -27,7 +27,7 @@ namespace QuickSes
         private int _indexCapacity;
         private int _indexCount; // of the submesh
 
-        /// <summary>Whether buffers are larger than what is in them.</summary>
+        /// <summary>Whether buffers were made larger than what was to go into them.</summary>
         public bool HasRoom { get; private set; }
 
         /// <summary>The mesh is the caller's.</summary>
@@ -96,7 +96,7 @@ namespace QuickSes
                     mesh.SetIndexBufferParams(_indexCapacity, IndexFormat.UInt32);
                     ShowNothing(mesh); // what submeshes there are then is the engine's to say
                 }
-                HasRoom = _vertexCapacity > vertices || _indexCapacity > indices;
+                HasRoom = withRoom;
                 _mesh = mesh;
             }
         }
@@ -174,8 +174,9 @@ namespace QuickSes
             mesh.MarkModified();
         }
 
-        private static bool Suffices(int capacity, int needed, bool withRoom) =>
-            withRoom ? capacity >= needed : capacity == needed;
+        // One without room would do for some time, and be replaced in the middle of playback.
+        private bool Suffices(int capacity, int needed, bool withRoom) =>
+            withRoom ? HasRoom && capacity >= needed : capacity == needed;
 
         private static int WithRoom(int count) => (int)Math.Min(count + (long)count / 4, int.MaxValue);
 
