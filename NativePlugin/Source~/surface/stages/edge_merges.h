@@ -5,8 +5,7 @@
 // neighbours in common (Dey, Edelsbrunner, Guha and Nekhayev 1999, Topology preserving edge contraction).
 #pragma once
 
-#include "parallel/atomics.h"
-#include "surface/stages/creases.h"
+#include "surface/stages/crease_edges.h"
 #include "surface/stages/kept_parts.h"
 #include "surface/stages/triangle_angles.h"
 
@@ -42,26 +41,27 @@ QSES_FN float edge_sagitta(const CreaseEnd &a, const CreaseEnd &b) {
   return 0.125f * minimum(minimum(absolute(a1 - b1), absolute(a1 - b2)), minimum(absolute(a2 - b1), absolute(a2 - b2)));
 }
 
+QSES_FN bool has_corner(const uint32_t *t, uint32_t v) { return t[0] == v || t[1] == v || t[2] == v; }
+
 // The mesh while its edges merge. Of each poor triangle the shortest edge is looked at.
 struct EdgeMerges {
-  static constexpr uint32_t kNone = ~uint32_t(0);
-
-  CreasedMesh mesh;  // all corners of triangles that are gone: kNone
+  CreasedMesh mesh;  // all corners of triangles that are gone: kNoNumber
   Lattice lattice;
   const uint32_t *poor;        // triangles
   const uint64_t *poor_count;  // of those listed at most `room`
   uint32_t room;
-  uint32_t *slots;          // [vertex]: of the ends of such edges, of which each triangle has two; else kNone
+  uint32_t *slots;          // [vertex]: of the ends of such edges, of which each triangle has two; else kNoNumber
   uint32_t *around_counts;  // [slot]: triangles around the end; more than kMostAround: they are too many to be known
   uint32_t *around;         // kMostAround of each slot, in any order; some may be gone
   uint64_t *claims;         // [triangle]: the best merge that concerns it
   uint64_t *keys;           // [poor]: of its merge, in the order from the best to the worst,
-  uint32_t *leaving;        // the end that goes, or kNone: it wants no merge,
+  uint32_t *leaving;        // the end that goes, or kNoNumber: it wants no merge,
   uint32_t *staying;        // and the other one
   KeptParts kept;
 
   QSES_FN uint32_t listed() const { return *poor_count < room ? static_cast<uint32_t>(*poor_count) : room; }
-  QSES_FN bool is_gone(const uint32_t *t) const { return t[0] == kNone; }
+  QSES_FN bool is_gone(const uint32_t *t) const { return t[0] == kNoNumber; }
+  QSES_FN Vec3<float> position(uint32_t v) const { return centered_position(lattice, mesh.position(v)); }
   QSES_FN CreaseEnd end(uint32_t v) const { return end_of_vertex(mesh, lattice, v); }
 
   QSES_FN float quality(const CreaseEnd &a, const CreaseEnd &b, const CreaseEnd &c) const {
@@ -81,14 +81,13 @@ struct EdgeMerges {
     int shortest = 0;
     float least2 = kFarAway;
     for (int k = 0; k < 3; ++k) {
-      const float length2 = length_squared(centered_position(lattice, mesh.position(t[k == 2 ? 0 : k + 1])) -
-                                           centered_position(lattice, mesh.position(t[k])));
+      const float length2 = length_squared(position(t[k == 2 ? 0 : k + 1]) - position(t[k]));
       if (length2 < least2) least2 = length2, shortest = k;
     }
     return shortest;
   }
 
-  QSES_FN bool is_known(uint32_t v) const { return slots[v] != kNone && around_counts[slots[v]] <= kMostAround; }
+  QSES_FN bool is_known(uint32_t v) const { return slots[v] != kNoNumber && around_counts[slots[v]] <= kMostAround; }
   // Calls use(triangle) for all triangles around a known vertex.
   template <class Use>
   QSES_FN void for_around(uint32_t v, const Use &use) const {
@@ -129,7 +128,7 @@ struct CollectAround {
     const uint32_t *const t = merges.mesh.triangle(i);
     for (int k = 0; k < 3; ++k) {
       const uint32_t slot = merges.slots[t[k]];
-      if (slot == EdgeMerges::kNone) continue;
+      if (slot == kNoNumber) continue;
       const uint32_t place = atomic_add(merges.around_counts + slot, uint32_t(1));
       if (place < kMostAround) merges.around[slot * kMostAround + place] = static_cast<uint32_t>(i);
     }
@@ -157,6 +156,8 @@ struct MergedEdge {
   uint64_t key;
   Around around[kRoom];  // the first half around the first end
 
+  QSES_FN static int end_of(int k) { return k < int(kMostAround) ? 0 : 1; }
+
   QSES_FN void find(const EdgeMerges &m, size_t i) {
     counts[0] = counts[1] = 0;
     if (i >= m.listed()) return;
@@ -167,20 +168,20 @@ struct MergedEdge {
     ends[0] = t[k], ends[1] = t[k == 2 ? 0 : k + 1];
     if (!m.is_known(ends[0]) || !m.is_known(ends[1])) return;
     const float longest = kLongestMerge * m.lattice.spacing;
-    if (length_squared(m.end(ends[1]).position - m.end(ends[0]).position) > longest * longest) return;
+    if (length_squared(m.position(ends[1]) - m.position(ends[0])) > longest * longest) return;
     for (int e = 0; e < 2; ++e) {
       may_go[e] = m.mesh.on_crease(ends[1 - e]) || !m.mesh.on_crease(ends[e]);
       counts[e] = m.around_counts[m.slots[ends[e]]];
     }
   }
   QSES_FN uint32_t triangle(const EdgeMerges &m, int k) const {
-    const int e = k < int(kMostAround) ? 0 : 1;
+    const int e = end_of(k);
     return m.around[m.slots[ends[e]] * kMostAround + static_cast<uint32_t>(k - e * int(kMostAround))];
   }
 
   QSES_FN void judge(const EdgeMerges &m, int k) {
     Around &a = around[k];
-    const int e = k < int(kMostAround) ? 0 : 1;
+    const int e = end_of(k);
     a.is_there = false;
     if (static_cast<uint32_t>(k - e * int(kMostAround)) >= counts[e]) return;
     const uint32_t number = triangle(m, k), leaving = ends[e],
@@ -193,7 +194,7 @@ struct MergedEdge {
     }
     a.is_there = true;
     a.quality = m.quality(c[0], c[1], c[2]);
-    a.at_edge = t[0] == staying || t[1] == staying || t[2] == staying;
+    a.at_edge = has_corner(t, staying);
     a.wants_merge = a.moves_too_far = false;
     if (a.at_edge) {
       if (number >= poor || !m.mesh.near_marks[number]) return;
@@ -215,13 +216,12 @@ struct MergedEdge {
 
   // Of the second end the neighbour that follows in a triangle: is it one of the first end, too?
   QSES_FN void find_common_neighbor(int k) {
-    if (k < int(kMostAround) || !around[k].is_there) return;
+    if (end_of(k) == 0 || !around[k].is_there) return;
     const uint32_t *const t = around[k].corners;
     const uint32_t next = t[0] == ends[1] ? t[1] : t[1] == ends[1] ? t[2] : t[0];
     bool has = false;
     for (uint32_t j = 0; j < counts[0] && next != ends[0]; ++j) {
-      const uint32_t *const o = around[j].corners;
-      has |= around[j].is_there && (o[0] == next || o[1] == next || o[2] == next);
+      has |= around[j].is_there && has_corner(around[j].corners, next);
     }
     around[k].has_common_neighbor = has;
   }
@@ -234,7 +234,7 @@ struct MergedEdge {
     for (int k = 0; k < kRoom; ++k) {
       const Around &a = around[k];
       if (!a.is_there) continue;
-      const int e = k < int(kMostAround) ? 0 : 1;
+      const int e = end_of(k);
       ++triangles[e];
       before = minimum(before, a.quality);
       if (e == 1) common += a.has_common_neighbor ? 1 : 0;
@@ -285,7 +285,7 @@ struct ProposeMerges {
     const float of_first = edge->gain(0), of_second = edge->gain(1), gain = maximum(of_first, of_second);
     const int leaving = of_first >= of_second ? 0 : 1;
     if (!(gain > kLeastMergeGain)) {
-      merges.leaving[i] = EdgeMerges::kNone;
+      merges.leaving[i] = kNoNumber;
       edge->counts[0] = 0;
       return;
     }
@@ -301,24 +301,24 @@ struct ProposeMerges {
 struct ChooseMerges {
   EdgeMerges merges;
   QSES_FN void operator()(size_t i) const {
-    if (i >= merges.listed() || merges.leaving[i] == EdgeMerges::kNone) return;
+    if (i >= merges.listed() || merges.leaving[i] == kNoNumber) return;
     bool wins = true;
     for (const uint32_t end : {merges.leaving[i], merges.staying[i]})
       merges.for_around(end, [&](uint32_t triangle) { wins &= merges.claims[triangle] == merges.keys[i]; });
-    if (!wins) merges.leaving[i] = EdgeMerges::kNone;
+    if (!wins) merges.leaving[i] = kNoNumber;
   }
 };
 struct MergeEdges {
   EdgeMerges merges;
   QSES_FN void operator()(size_t i) const {
     const EdgeMerges &m = merges;
-    if (i >= m.listed() || m.leaving[i] == EdgeMerges::kNone) return;
+    if (i >= m.listed() || m.leaving[i] == kNoNumber) return;
     const uint32_t leaving = m.leaving[i], staying = m.staying[i], slot = m.slots[staying];
     uint32_t count = m.around_counts[slot];
     m.for_around(leaving, [&](uint32_t triangle) {
       uint32_t *const t = m.mesh.triangle(triangle);
-      if (t[0] == staying || t[1] == staying || t[2] == staying) {
-        t[0] = t[1] = t[2] = EdgeMerges::kNone;
+      if (has_corner(t, staying)) {
+        t[0] = t[1] = t[2] = kNoNumber;
         m.kept.triangles.drop(triangle);
         return;
       }
