@@ -70,8 +70,7 @@ mesh_checks::Mesh merged(CreasedSurface from, size_t *merges, unsigned threads =
   to.normals = out.normals.data();
   to.owners = out.owners.data();
   to.indices = out.indices.data();
-  work.executor.for_each(std::max(mesh.vertex_count(), mesh.triangle_count()),
-                         KeepMesh{view, to, kept, mesh.vertex_count(), mesh.triangle_count()});
+  keep_parts(work.executor, view, mesh.vertex_count(), mesh.triangle_count(), kept, to);
   return out;
 }
 

@@ -41,6 +41,12 @@ template <class T>
 QSES_FN Vec3<T> cross(const Vec3<T> &a, const Vec3<T> &b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
+// From a point to the nearest one of a box.
+QSES_FN float distance_to_box_squared(const Vec3<float> &x, const Vec3<float> &low, const Vec3<float> &high) {
+  return length_squared(Vec3<float>(maximum(0.f, maximum(low.x - x.x, x.x - high.x)),
+                                    maximum(0.f, maximum(low.y - x.y, x.y - high.y)),
+                                    maximum(0.f, maximum(low.z - x.z, x.z - high.z))));
+}
 QSES_FN bool operator==(const Vec3<float> &a, const Vec3<float> &b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 QSES_FN bool operator!=(const Vec3<float> &a, const Vec3<float> &b) { return !(a == b); }
 QSES_FN Vec3<float> load_vec3(const float *p) { return {p[0], p[1], p[2]}; }

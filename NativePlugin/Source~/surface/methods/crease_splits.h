@@ -214,8 +214,7 @@ MeshMemoryView build_creased_surface(Work &work) {
   MeshMemoryView out = work.memory.allocate_mesh(work.executor, vertices - merged, triangles - 2 * merged,
                                                  work.made_shape, work.purpose, work.plan.mesh_in_pieces);
   add_normals(work, &out);
-  work.executor.for_each(std::max(vertices, triangles),
-                         KeepMesh{sharp.whole.view, out.view, kept, vertices, triangles});
+  keep_parts(work.executor, sharp.whole.view, vertices, triangles, kept, out.view);
   out.unplaced = mesh.unplaced;
   return out;
 }

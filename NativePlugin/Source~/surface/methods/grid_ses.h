@@ -122,11 +122,9 @@ struct ClassifyBrick {
                              const Vec3<float> &low, const Vec3<float> &high, float slack) const {
     for (uint32_t k = begin + static_cast<uint32_t>(team.rank()); k < end; k += static_cast<uint32_t>(team.size())) {
       const Sphere s = atoms.items[k];
-      const float dx = maximum(0.f, maximum(low.x - s.center.x, s.center.x - high.x));
-      const float dy = maximum(0.f, maximum(low.y - s.center.y, s.center.y - high.y));
-      const float dz = maximum(0.f, maximum(low.z - s.center.z, s.center.z - high.z));
       const float r = s.radius + slack;
-      if (dx * dx + dy * dy + dz * dz <= r * r) scratch.listed[atomic_add(&scratch.count, uint32_t(1))] = s;
+      if (distance_to_box_squared(Vec3<float>(s.center), low, high) <= r * r)
+        scratch.listed[atomic_add(&scratch.count, uint32_t(1))] = s;
     }
   }
 

@@ -53,8 +53,7 @@ MeshMemoryView drop_hidden(Work &work, const MeshMemoryView &whole, const ShownP
   MeshMemoryView part =
       work.memory.allocate_mesh(executor, vertex_count, triangle_count, work.shape, purpose, work.plan.mesh_in_pieces);
   add_normals(work, &part);
-  executor.for_each(std::max(whole.vertices, whole.triangles),
-                    KeepMesh{whole.view, part.view, kept, whole.vertices, whole.triangles});
+  keep_parts(executor, whole.view, whole.vertices, whole.triangles, kept, part.view);
   work.report->hidden_vertices = static_cast<uint32_t>(whole.vertices) - vertex_count;
   work.report->hidden_triangles = static_cast<uint32_t>(whole.triangles) - triangle_count;
   return part;

@@ -5,13 +5,14 @@
 #include "surface/mesh/mesh_view.h"
 #include "surface/stages/ranked_set.h"
 
+#include <algorithm>
+
 namespace quickses {
 
 struct KeptParts {
   RankedSet vertices, triangles;  // no triangle without its vertices
 };
 
-// Of the mesh that they are taken from there are so many.
 struct KeepMesh {
   MeshView from, to;
   KeptParts kept;
@@ -25,5 +26,12 @@ struct KeepMesh {
     for (int corner = 0; corner < 3; ++corner) out[corner] = kept.vertices.rank(t[corner]);
   }
 };
+
+// from: of so many vertices and triangles. to: has room for those that are kept.
+template <class Executor>
+void keep_parts(Executor &executor, const MeshView &from, size_t vertices, size_t triangles, const KeptParts &kept,
+                const MeshView &to) {
+  executor.for_each(std::max(vertices, triangles), KeepMesh{from, to, kept, vertices, triangles});
+}
 
 }  // namespace quickses

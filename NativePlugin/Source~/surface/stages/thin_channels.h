@@ -114,10 +114,8 @@ struct BrickBalls {
       for (uint32_t k = run.begin + static_cast<uint32_t>(own); k < run.end && k - run.begin <= kMostMet;
            k += static_cast<uint32_t>(share)) {
         const Sphere b = load(f.atoms.items + k);
-        const Vec3<float> off(maximum(0.f, maximum(low.x - b.center.x, b.center.x - high.x)),
-                              maximum(0.f, maximum(low.y - b.center.y, b.center.y - high.y)),
-                              maximum(0.f, maximum(low.z - b.center.z, b.center.z - high.z)));
-        if (length_squared(off) > (b.radius + reach) * (b.radius + reach)) continue;
+        const float longest = b.radius + reach;
+        if (distance_to_box_squared(Vec3<float>(b.center), low, high) > longest * longest) continue;
         const uint32_t at = atomic_add(&count, uint32_t(1));
         if (at >= kRoom) break;
         place[at] = k;
