@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-# Install rules: the library, its one header, the program, and what find_package and pkg-config read.
+# Install rules: the library, its headers, the program, and what find_package and pkg-config read.
 include(CMakePackageConfigHelpers)
 
 install(TARGETS quickses EXPORT quicksesTargets
   LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}"
   ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}"
   RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
-install(FILES include/quickses/quickses.h DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/quickses")
+install(FILES include/quickses/quickses.h include/quickses/quickses_gpu.h DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/quickses")
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE.md" "${PROJECT_SOURCE_DIR}/Third Party Notices.md"
   DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 if(TARGET quickses_cli)

@@ -2,8 +2,9 @@
  *
  * QuickSES for Unity: molecular surfaces as closed triangle meshes.
  *
- * This header is the manual of the library. It is C99, needs nothing but <stddef.h>, <stdint.h> and <string.h>, and is
- * the only header that is installed. Documentation~/api.md has an example for each group of functions.
+ * This header is the manual of the library. It is C99 and needs nothing but <stddef.h>, <stdint.h> and <string.h>.
+ * quickses_gpu.h beside it, which is experimental, is for meshes that go from CUDA to a graphics API without leaving the
+ * GPU. Documentation~/api.md has an example for each group of functions.
  *
  * In one page
  *   qses_context_options options;            qses_settings settings;            qses_mesh mesh;
@@ -111,7 +112,8 @@ typedef enum qses_status {
   QSES_FILE_ERROR = 9,          /* a file or buffer can't be read, or what is in it can't be used */
   QSES_NO_BOX = 10,             /* the trajectory has no periodic box, so there is nothing to unwrap */
   QSES_NO_ATOMS = 11,           /* qses_set_atoms has not been called for this context */
-  QSES_NOTHING_NEW = 12         /* qses_collect: no level was finished since the last call. Not an error in itself */
+  QSES_NOTHING_NEW = 12,        /* qses_collect: no level was finished since the last call. Not an error in itself */
+  QSES_BUSY = 13                /* what is there already has to be done first: try again later. Not an error in itself */
 } qses_status;
 
 /* 1 (yes) or 0 (no); any other number that is given counts as 1. */
@@ -364,8 +366,7 @@ typedef struct qses_settings {
                              frame_budget_ms then covers computing and showing together. May change from frame to frame
                              as it is measured */
   qses_bool pickable;     /* 1: the mesh comes with what makes qses_kept_mesh_pick fast: 1 % more memory, and up to
-                             3 % more time on the CPU, 0.04 to 0.2 ms on a GPU; default 0. Ignored with delivery
-                             DEVICE */
+                             3 % more time on the CPU, 0.04 to 0.2 ms on a GPU; default 0 */
   qses_bool creases;      /* 1: the edges of triangles that cut across a crease, where sheets of the surface meet at an
                              angle, are split on it: sharp rims, a few per cent more triangles, and area along the
                              normals to a thousandth. At `spacing` only, not at the coarser levels. And normals that
@@ -607,12 +608,11 @@ QSES_API qses_status qses_poll(const qses_context *context, qses_progress *progr
  * Asking often is cheap. Errors: NOTHING_NEW (not an error in itself), INVALID_ARGUMENT. */
 QSES_API qses_status qses_collect(qses_context *context, qses_mesh *mesh);
 
-/* A mesh on a CUDA device, made with settings.delivery DEVICE or BOTH. */
+/* A mesh on a CUDA device, made with settings.delivery DEVICE or BOTH. It is finished: who reads it waits for nothing. */
 typedef struct qses_device_mesh {
   uint32_t struct_size; /* set by qses_device_mesh_init */
   int32_t device;       /* CUDA ordinal */
-  void *stream;         /* the cudaStream_t of the context that writes the mesh. Let what reads it wait for it (an event
-                           recorded there, or cudaStreamSynchronize) */
+  void *stream;         /* the cudaStream_t of the context that wrote the mesh */
   qses_mesh mesh;       /* as qses_collect gives it, but positions, normals, colors, texcoords, owners, patches and
                            indices point to memory of the device; components, if any, to host memory */
 } qses_device_mesh;
@@ -662,12 +662,19 @@ QSES_API void qses_kept_mesh_clear(qses_kept_mesh *kept);
 
 /* Moves the mesh of the last qses_compute or qses_collect that succeeded, and its report, out of the context; what kept
  * held before is given back. The context has no mesh then (qses_context_mesh, qses_context_report: NO_RESULT) until the
- * next one. Also while jobs run. Takes some hundred nanoseconds. What it held is still there after an error.
- * Errors: INVALID_ARGUMENT (NULL; the mesh was made with settings.delivery DEVICE or NONE, so that there is none in
- * host memory), NO_RESULT. */
+ * next one. Also while jobs run. Takes some hundred nanoseconds. What it held is still there after an error. With
+ * settings.delivery DEVICE or BOTH it keeps the mesh on the device, which counts as the context's until it is given
+ * back, for a memory budget too.
+ * Errors: INVALID_ARGUMENT (NULL; the mesh was made with settings.delivery NONE, so that there is none), NO_RESULT. */
 QSES_API qses_status qses_keep(qses_context *context, qses_kept_mesh *kept);
 
-/* A view of the mesh; an empty mesh (vertex_count 0) if nothing is kept. Errors: INVALID_ARGUMENT. */
+/* Copies a mesh that is on the device only (settings.delivery DEVICE) into host memory, and waits for that: from then on
+ * it has all that one of delivery BOTH has, the same bytes. Does nothing if it is there already, or empty. Changes the
+ * kept mesh. Errors: INVALID_ARGUMENT, NO_RESULT (nothing is kept), OUT_OF_MEMORY, DEVICE_ERROR. */
+QSES_API qses_status qses_kept_mesh_download(qses_kept_mesh *kept);
+
+/* A view of the mesh; an empty mesh (vertex_count 0) if nothing is kept. While it is on the device only, counts and
+ * bounds are there, but no arrays, and the three functions below give INVALID_ARGUMENT. Errors: INVALID_ARGUMENT. */
 QSES_API qses_status qses_kept_mesh_view(const qses_kept_mesh *kept, qses_mesh *mesh);
 
 /* What qses_context_report said about it. Errors: INVALID_ARGUMENT, NO_RESULT (nothing is kept). */
