@@ -88,7 +88,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     return out;
   }
 
-  MeshLease keep(int slot) override { return memory_.keep(slot); }
+  MeshHold keep(int slot) override { return memory_.keep(slot); }
 
   void enable_stage_times(bool enabled) override { timer_.enable(enabled); }
   void set_progress(std::function<void(double)> progress) override { progress_.set(std::move(progress)); }
@@ -192,6 +192,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
       memory_.finish(built, in.settings, &out.on_host, &out.boxes, &out.on_device);
       timer_.end();
       out.delivery = in.settings.delivery;
+      out.shape = built.shape;
       out.on_host.spacing = out.on_device.mesh.spacing = spacings[k];
       report.compute_ms = milliseconds_since(start);
       start = std::chrono::steady_clock::now();
