@@ -102,6 +102,23 @@ inline void keep_on_device(qses_context *context, const Atoms &atoms, const qses
   keep_on_device(context, s, kept);
 }
 
+// How many meshes of the device can be kept until memory is refused.
+inline size_t keep_until_refused(qses_context *context, const qses_settings &s,
+                                 std::vector<std::unique_ptr<Kept>> *kept) {
+  constexpr size_t kMost = 2000;
+  for (size_t count = 0; count < kMost; ++count) {
+    const qses_status status = qses_compute(context, &s, nullptr);
+    if (status != QSES_OK) {
+      expect_error(status, QSES_OUT_OF_MEMORY, {});
+      return count;
+    }
+    kept->push_back(std::make_unique<Kept>());
+    expect_ok(qses_keep(context, *kept->back()));
+  }
+  ADD_FAILURE() << "so many meshes can't be within the budget";
+  return kMost;
+}
+
 // The atoms of a frame: each one is moved by a tenth of an ångström at most, other ways in each frame.
 inline Atoms frame_of(const Atoms &atoms, unsigned frame) {
   std::mt19937 random(frame);

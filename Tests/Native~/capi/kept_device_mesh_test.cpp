@@ -240,22 +240,6 @@ TEST(KeptDeviceMesh, OfTheHostHaveNothingToDownload) {
 
 // ---- memory
 
-// How many meshes of the device can be kept until memory is refused.
-size_t keep_until_refused(qses_context *context, const qses_settings &s, std::vector<std::unique_ptr<Kept>> *kept) {
-  constexpr size_t kMost = 2000;
-  for (size_t count = 0; count < kMost; ++count) {
-    const qses_status status = qses_compute(context, &s, nullptr);
-    if (status != QSES_OK) {
-      expect_error(status, QSES_OUT_OF_MEMORY, {});
-      return count;
-    }
-    kept->push_back(std::make_unique<Kept>());
-    expect_ok(qses_keep(context, *kept->back()));
-  }
-  ADD_FAILURE() << "so many meshes can't be within the budget";
-  return kMost;
-}
-
 TEST(KeptDeviceMesh, CountsForTheBudget) {
   REQUIRE_CUDA_DEVICE();
   const Atoms atoms = cluster(300, 8);

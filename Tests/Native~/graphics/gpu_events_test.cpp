@@ -131,6 +131,23 @@ TEST_F(GpuEvents, MeshesAreLetGoWhenNoneComes) {
   expect_works(2);
 }
 
+TEST_F(GpuEvents, MemoryThatWaitedInVainIsTakenAgain) {
+  const CudaContext context(uint64_t(48) << 20);
+  const qses_settings s = on_device(interleaved(0.5));
+  set_atoms(context, frames_[0]);
+  std::vector<std::unique_ptr<Kept>> kept;
+  const size_t room = keep_until_refused(context, s, &kept);
+  ASSERT_GT(room, kMostMeshes);
+  kept.resize(kMostMeshes);
+  for (const auto &mesh : kept) target_->submit(*mesh, buffers_);
+  kept.clear();
+  EXPECT_LT(keep_until_refused(context, s, &kept), room);
+  kept.clear();
+  std::this_thread::sleep_for(std::chrono::milliseconds(QSES_GPU_PATIENCE_MS + 100));
+  EXPECT_TRUE(target_->status().stopped);
+  EXPECT_EQ(keep_until_refused(context, s, &kept), room);
+}
+
 TEST_F(GpuEvents, ThereAreSomeToTryWith) {
   submit(0);
   next_event();
