@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "graphics/registered_buffers.h"
 
+#include "cudart/driver.h"
 #include "graphics/graphics_api.h"
 #include "parallel/cuda_memory.h"
 #include "parallel/error.h"
@@ -39,7 +40,10 @@ const GraphicsApi &graphics_api(qses_graphics graphics) {
 
 void require_graphics(qses_graphics graphics) {
   const GraphicsApi &api = graphics_api(graphics);
-  const std::string refusal = api.refusal();
+  const cudart::Driver &driver = cudart::driver();
+  const std::string refusal = driver.state == CUDA_SUCCESS ? api.refusal()
+                              : driver.refusal.empty()     ? "CUDA does not start"
+                                                           : driver.refusal;
   if (!refusal.empty())
     throw Error(QSES_BACKEND_UNAVAILABLE, std::string("buffers of ") + api.name + " can't be written: " + refusal);
 }
