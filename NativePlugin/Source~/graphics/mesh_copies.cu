@@ -63,8 +63,8 @@ AppearanceView DeviceLook::use(const std::shared_ptr<const Appearance> &look, vo
   there_ = nullptr;
   view_ = {};
   if (!look) return view_;
-  if (copied_) copied_->wait();
-  copied_ = nullptr;
+  if (!copied_) copied_ = std::make_unique<StreamMark>(device_);
+  copied_->wait();
   const size_t colors = 4 * look->colors.size(), texcoords = 8 * look->texcoords.size(), visible = look->visible.size(),
                bytes = colors + texcoords + visible;
   if (bytes > memory_.size())
@@ -76,7 +76,7 @@ AppearanceView DeviceLook::use(const std::shared_ptr<const Appearance> &look, vo
   if (visible) std::memcpy(staging + colors + texcoords, look->visible.data(), visible);
   check_cuda(cudaMemcpyAsync(memory, staging, bytes, cudaMemcpyHostToDevice, static_cast<cudaStream_t>(stream)),
              "cudaMemcpyAsync");
-  copied_ = std::make_unique<StreamMark>(device_, stream);
+  copied_->set(stream);
   if (colors) view_.colors = reinterpret_cast<const uint32_t *>(memory);
   if (texcoords) view_.texcoords = reinterpret_cast<const glm::vec2 *>(memory + colors);
   if (visible) view_.visible = reinterpret_cast<const uint8_t *>(memory + colors + texcoords);

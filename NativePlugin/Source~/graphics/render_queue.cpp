@@ -2,13 +2,13 @@
 #include "graphics/render_queue.h"
 
 #include "parallel/error.h"
+#include "parallel/sole_holder.h"
 
 #include <cuda_runtime_api.h>
 
 #include <algorithm>
 #include <chrono>
 #include <limits>
-#include <set>
 
 namespace quickses {
 namespace {
@@ -89,7 +89,7 @@ void RenderQueue::run(int32_t event) noexcept try {
     arrivals.push_back(std::move(arrival));
   }
   for (Arrival &arrival : arrivals) by_device[arrival.submission.mesh->view.device].push_back(&arrival);
-  for (const auto &[device, those] : by_device) copy(device, those);
+  for (const auto &[device, those] : by_device) serve(device, those);
   for (const std::shared_ptr<GpuTarget> &target : ended) forget_buffers(*target);
   const float event_ms = std::chrono::duration<float, std::milli>(Clock::now() - start).count();
   for (const Arrival &arrival : arrivals) {
@@ -113,112 +113,108 @@ RenderQueue::Lane &RenderQueue::lane_of(int device) {
   return lane;
 }
 
-// Nothing here waits for the GPU.
-void RenderQueue::copy(int device, const Arrivals &arrivals) {
-  const auto fails = [](Arrival &arrival, const auto &call) {
-    try {
-      call();
-      return false;
-    } catch (const Error &e) {
-      arrival.outcome = e.status();
-      arrival.message = e.what();
-    } catch (const std::bad_alloc &) {
-      arrival.outcome = QSES_OUT_OF_MEMORY;
-      arrival.message = "the machine refused memory";
-    }
+template <class Call>
+bool RenderQueue::attempt(Arrival &arrival, const Call &call) {
+  try {
+    call();
     return true;
-  };
-  const auto all_fail = [&](const auto &call) {
-    Arrival outcome;
-    if (!fails(outcome, call)) return false;
-    for (Arrival *const arrival : arrivals) {
-      if (arrival->outcome != QSES_OK) continue;
-      arrival->outcome = outcome.outcome;
-      arrival->message = outcome.message;
-    }
-    return true;
-  };
-  all_fail([&] {
-    const DeviceGuard guard(device);
-    Lane &lane = lane_of(device);
-    const auto stream = static_cast<cudaStream_t>(lane.stream);
-    const auto begin = static_cast<cudaEvent_t>(lane.begin), end = static_cast<cudaEvent_t>(lane.end);
-    if (lane.is_timed && cudaEventQuery(end) == cudaSuccess) cudaEventElapsedTime(&lane.copy_ms, begin, end);
-    lane.is_timed = false;
-    Arrivals ready;
-    std::vector<AppearanceView> looks;
-    for (Arrival *const arrival : arrivals) {
-      GpuTarget &target = *arrival->target;
-      const Submission &s = arrival->submission;
-      if (target.device != device) {
-        forget_buffers(target);
-        target.device = device;
-      }
-      AppearanceView look{};
-      const bool failed = fails(*arrival, [&] {
-        if (!target.look_there) target.look_there = std::make_unique<DeviceLook>(device);
-        look = target.look_there->use(s.look, stream);
-        target.registered.use(s.buffers, device);
-      });
-      if (failed) continue;
-      ready.push_back(arrival);
-      looks.push_back(look);
-    }
-    const Arrivals mapped = map(ready, lane);
-    if (mapped.empty()) return;
-    std::vector<cudaGraphicsResource *> resources;
-    for (const Arrival *const arrival : mapped) {
-      const RegisteredBuffers &r = arrival->target->registered;
-      resources.insert(resources.end(), r.resources(), r.resources() + r.count());
-    }
-    cudaEventRecord(begin, stream);
-    for (Arrival *const arrival : mapped) {
-      const size_t k = static_cast<size_t>(std::find(ready.begin(), ready.end(), arrival) - ready.begin());
-      fails(*arrival, [&] { fill_buffers(*arrival->target, arrival->submission, looks[k], lane.stream); });
-    }
-    lane.is_timed = cudaEventRecord(end, stream) == cudaSuccess;
-    const cudaError_t unmapped =
-        cudaGraphicsUnmapResources(static_cast<int>(resources.size()), resources.data(), stream);
-    // Whoever writes into this memory next is held back until it has been read.
-    std::shared_ptr<const StreamMark> readers;
-    try {
-      readers = std::make_shared<StreamMark>(device, stream);
-    } catch (...) {
-      cudaStreamSynchronize(stream);
-    }
-    for (const Arrival *const arrival : mapped)
-      if (!arrival->submission.mesh->memory.is_empty()) arrival->submission.mesh->memory.note_readers(readers);
-    check_cuda(unmapped, "cudaGraphicsUnmapResources");
-  });
+  } catch (const Error &e) {
+    arrival.outcome = e.status();
+    arrival.message = e.what();
+  } catch (const std::bad_alloc &) {
+    arrival.outcome = QSES_OUT_OF_MEMORY;
+    arrival.message = "the machine refused memory";
+  }
+  return false;
 }
 
-// Those whose buffers are mapped now: all in one call, as a rule; one by one if one of them can't be.
-RenderQueue::Arrivals RenderQueue::map(const Arrivals &arrivals, Lane &lane) {
-  const auto stream = static_cast<cudaStream_t>(lane.stream);
-  std::vector<cudaGraphicsResource *> resources;
+// Nothing here waits for the GPU.
+void RenderQueue::serve(int device, const Arrivals &arrivals) {
+  Arrival all;
+  const bool is_done = attempt(all, [&] {
+    const DeviceGuard guard(device);
+    Lane &lane = lane_of(device);
+    Arrivals ready;
+    for (Arrival *const arrival : arrivals)
+      if (attempt(*arrival, [&] { prepare(device, lane, *arrival); })) ready.push_back(arrival);
+    const Arrivals mapped = map(ready, lane);
+    if (!mapped.empty()) copy_and_unmap(device, lane, mapped);
+  });
+  if (is_done) return;
+  for (Arrival *const arrival : arrivals) {
+    if (arrival->outcome != QSES_OK) continue;
+    arrival->outcome = all.outcome;
+    arrival->message = all.message;
+  }
+}
+
+// What comes before buffers are mapped, so that they are for a short time only.
+void RenderQueue::prepare(int device, Lane &lane, Arrival &arrival) {
+  GpuTarget &target = *arrival.target;
+  if (target.device != device) forget_buffers(target);
+  target.device = device;
+  if (!target.look_there) target.look_there = std::make_unique<DeviceLook>(device);
+  arrival.look = target.look_there->use(arrival.submission.look, lane.stream);
+  target.registered.use(arrival.submission.buffers, device);
+}
+
+RenderQueue::Resources RenderQueue::resources_of(const Arrivals &arrivals) {
+  Resources resources;
   for (const Arrival *const arrival : arrivals) {
     const RegisteredBuffers &r = arrival->target->registered;
     resources.insert(resources.end(), r.resources(), r.resources() + r.count());
   }
-  if (resources.empty() ||
-      cudaGraphicsMapResources(static_cast<int>(resources.size()), resources.data(), stream) == cudaSuccess)
-    return arrivals;
+  return resources;
+}
+
+// Those whose buffers are mapped now: all in one call, as a rule; one by one if one of them can't be.
+RenderQueue::Arrivals RenderQueue::map(const Arrivals &arrivals, Lane &lane) {
+  const auto try_map = [&](const Arrivals &those) {
+    Resources resources = resources_of(those);
+    return cudaGraphicsMapResources(static_cast<int>(resources.size()), resources.data(),
+                                    static_cast<cudaStream_t>(lane.stream));
+  };
+  if (arrivals.empty() || try_map(arrivals) == cudaSuccess) return arrivals;
   cudaGetLastError();
   Arrivals mapped;
-  for (Arrival *const arrival : arrivals) {
-    RegisteredBuffers &r = arrival->target->registered;
-    std::vector<cudaGraphicsResource *> own(r.resources(), r.resources() + r.count());
-    try {
-      check_cuda(cudaGraphicsMapResources(static_cast<int>(own.size()), own.data(), stream),
-                 "cudaGraphicsMapResources");
+  for (Arrival *const arrival : arrivals)
+    if (attempt(*arrival, [&] { check_cuda(try_map({arrival}), "cudaGraphicsMapResources"); }))
       mapped.push_back(arrival);
-    } catch (const Error &e) {
-      arrival->outcome = e.status();
-      arrival->message = e.what();
-      r.forget();  // should there be a next time, they are made known anew
-    }
-  }
+    else
+      arrival->target->registered.forget();  // should there be a next time, they are made known anew
   return mapped;
+}
+
+void RenderQueue::copy_and_unmap(int device, Lane &lane, const Arrivals &arrivals) {
+  const auto stream = static_cast<cudaStream_t>(lane.stream);
+  const auto begin = static_cast<cudaEvent_t>(lane.begin), end = static_cast<cudaEvent_t>(lane.end);
+  Resources resources = resources_of(arrivals);
+  if (lane.is_timed && cudaEventQuery(end) == cudaSuccess) cudaEventElapsedTime(&lane.copy_ms, begin, end);
+  lane.is_timed = cudaEventRecord(begin, stream) == cudaSuccess;
+  for (Arrival *const arrival : arrivals)
+    attempt(*arrival, [&] { fill_buffers(*arrival->target, arrival->submission, arrival->look, stream); });
+  lane.is_timed = cudaEventRecord(end, stream) == cudaSuccess && lane.is_timed;
+  const cudaError_t unmapped = cudaGraphicsUnmapResources(static_cast<int>(resources.size()), resources.data(), stream);
+  // Whoever writes into the meshes' memory next is held back until it has been read.
+  const std::shared_ptr<const StreamMark> readers = mark(device, lane);
+  for (const Arrival *const arrival : arrivals)
+    if (!arrival->submission.mesh->memory.is_empty()) arrival->submission.mesh->memory.note_readers(readers);
+  check_cuda(unmapped, "cudaGraphicsUnmapResources");
+}
+
+// Null: nothing has to be waited for any more.
+std::shared_ptr<const StreamMark> RenderQueue::mark(int device, Lane &lane) {
+  try {
+    for (const std::shared_ptr<StreamMark> &one : lane.marks)
+      if (is_sole_holder(one)) return one->set(lane.stream), one;
+    lane.marks.push_back(std::make_shared<StreamMark>(device));
+    lane.marks.back()->set(lane.stream);
+    return lane.marks.back();
+  } catch (...) {
+    cudaStreamSynchronize(static_cast<cudaStream_t>(lane.stream));
+    cudaGetLastError();
+    return nullptr;
+  }
 }
 
 void RenderQueue::forget_buffers(GpuTarget &target) noexcept {

@@ -30,22 +30,32 @@ class RenderQueue {
   struct Arrival {
     std::shared_ptr<GpuTarget> target;
     Submission submission;
+    AppearanceView look{};
     qses_status outcome = QSES_OK;
     std::string message;
   };
+  using Arrivals = std::vector<Arrival *>;
+  using Resources = std::vector<cudaGraphicsResource *>;
   // What is copied on one device, and how long that took the last time.
   struct Lane {
     void *stream = nullptr;                 // cudaStream_t
     void *begin = nullptr, *end = nullptr;  // cudaEvent_t
     bool is_timed = false;
     float copy_ms = 0;
+    std::vector<std::shared_ptr<StreamMark>> marks;  // behind copies; those that nobody holds are used again
   };
-  using Arrivals = std::vector<Arrival *>;
 
   RenderQueue() = default;
+  // An error becomes that of the arrival. False: there was one.
+  template <class Call>
+  static bool attempt(Arrival &arrival, const Call &call);
+  static Resources resources_of(const Arrivals &arrivals);
   Lane &lane_of(int device);
-  void copy(int device, const Arrivals &arrivals);
+  void serve(int device, const Arrivals &arrivals);
+  void prepare(int device, Lane &lane, Arrival &arrival);
   Arrivals map(const Arrivals &arrivals, Lane &lane);
+  void copy_and_unmap(int device, Lane &lane, const Arrivals &arrivals);
+  std::shared_ptr<const StreamMark> mark(int device, Lane &lane);
   void forget_buffers(GpuTarget &target) noexcept;
 
   std::mutex mutex_;

@@ -222,15 +222,11 @@ DeviceGuard::DeviceGuard(int device) {
 
 DeviceGuard::~DeviceGuard() { cudart::driver().cuCtxSetCurrent(static_cast<CUcontext>(before_)); }
 
-StreamMark::StreamMark(int device, void *stream) : device_(device) {
+StreamMark::StreamMark(int device) : device_(device) {
   const DeviceGuard guard(device);
   cudaEvent_t event = nullptr;
   check_cuda(cudaEventCreateWithFlags(&event, cudaEventDisableTiming), "cudaEventCreateWithFlags");
   event_ = event;
-  const cudaError_t error = cudaEventRecord(event, static_cast<cudaStream_t>(stream));
-  if (error == cudaSuccess) return;
-  cudaEventDestroy(event);
-  check_cuda(error, "cudaEventRecord");
 }
 
 StreamMark::~StreamMark() {
@@ -239,6 +235,10 @@ StreamMark::~StreamMark() {
     if (may_hand_back()) cudaEventDestroy(static_cast<cudaEvent_t>(event_));
   } catch (...) {  // the device is lost
   }
+}
+
+void StreamMark::set(void *stream) {
+  check_cuda(cudaEventRecord(static_cast<cudaEvent_t>(event_), static_cast<cudaStream_t>(stream)), "cudaEventRecord");
 }
 
 void StreamMark::hold_back(void *stream) const {

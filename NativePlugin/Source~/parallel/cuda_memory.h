@@ -53,14 +53,15 @@ class DeviceGuard {
   void *before_ = nullptr;  // CUcontext
 };
 
-// What a stream had been given when the mark was made.
+// What a stream had been given when the mark was set. Streams are cudaStream_t. What may fail throws Error.
 class StreamMark {
  public:
-  StreamMark(int device, void *stream);  // a cudaStream_t. Throws Error
+  explicit StreamMark(int device);
   ~StreamMark();
   StreamMark(const StreamMark &) = delete;
   StreamMark &operator=(const StreamMark &) = delete;
 
+  void set(void *stream);
   // What the stream is given from now on is done after that. Nobody waits on the CPU.
   void hold_back(void *stream) const;
   // Until it is done, or the device is lost.
