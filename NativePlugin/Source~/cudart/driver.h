@@ -64,15 +64,19 @@ namespace cudart {
 #else
 #define QSES_DRIVER_D3D11_FUNCTIONS(F)
 #endif
-#define QSES_DRIVER_GRAPHICS_FUNCTIONS(F)                                                         \
-  F(cuGLGetDevices_v2, CUresult, unsigned *, CUdevice *, unsigned, unsigned)                      \
-  F(cuGraphicsGLRegisterBuffer, CUresult, CUgraphicsResource *, unsigned, unsigned)               \
+#define QSES_DRIVER_OPENGL_FUNCTIONS(F)                                      \
+  F(cuGLGetDevices_v2, CUresult, unsigned *, CUdevice *, unsigned, unsigned) \
+  F(cuGraphicsGLRegisterBuffer, CUresult, CUgraphicsResource *, unsigned, unsigned)
+#define QSES_DRIVER_MAPPING_FUNCTIONS(F)                                                          \
   F(cuGraphicsResourceSetMapFlags_v2, CUresult, CUgraphicsResource, unsigned)                     \
   F(cuGraphicsMapResources, CUresult, unsigned, CUgraphicsResource *, CUstream)                   \
   F(cuGraphicsResourceGetMappedPointer_v2, CUresult, CUdeviceptr *, size_t *, CUgraphicsResource) \
   F(cuGraphicsUnmapResources, CUresult, unsigned, CUgraphicsResource *, CUstream)                 \
-  F(cuGraphicsUnregisterResource, CUresult, CUgraphicsResource)                                   \
-  QSES_DRIVER_D3D11_FUNCTIONS(F)
+  F(cuGraphicsUnregisterResource, CUresult, CUgraphicsResource)
+#define QSES_DRIVER_GRAPHICS_FUNCTIONS(F) \
+  QSES_DRIVER_OPENGL_FUNCTIONS(F)         \
+  QSES_DRIVER_D3D11_FUNCTIONS(F)          \
+  QSES_DRIVER_MAPPING_FUNCTIONS(F)
 
 template <class Result, class... Arguments>
 using DriverFunction = Result(CUDAAPI *)(Arguments...);
@@ -82,6 +86,15 @@ struct Driver {
   QSES_DRIVER_FUNCTIONS(QSES_DRIVER_MEMBER)
   QSES_DRIVER_GRAPHICS_FUNCTIONS(QSES_DRIVER_MEMBER)
 #undef QSES_DRIVER_MEMBER
+  // Whether it has all that is asked of it for buffers of a graphics API.
+#define QSES_DRIVER_HAS(name, ...) &&name
+  bool has_opengl() const {
+    return true QSES_DRIVER_OPENGL_FUNCTIONS(QSES_DRIVER_HAS) QSES_DRIVER_MAPPING_FUNCTIONS(QSES_DRIVER_HAS);
+  }
+  bool has_direct3d11() const {
+    return true QSES_DRIVER_D3D11_FUNCTIONS(QSES_DRIVER_HAS) QSES_DRIVER_MAPPING_FUNCTIONS(QSES_DRIVER_HAS);
+  }
+#undef QSES_DRIVER_HAS
   // Whether its functions can be called: CUDA_SUCCESS; CUDA_ERROR_STUB_LIBRARY where there is none, an older one,
   // one that lacks a function, or the toolkit's stub; else what cuInit or cuDriverGetVersion returned.
   CUresult state = CUDA_ERROR_STUB_LIBRARY;

@@ -20,6 +20,19 @@ CUgraphicsResource *handles(cudaGraphicsResource_t *resources) {
   return reinterpret_cast<CUgraphicsResource *>(resources);
 }
 
+// The driver names devices by handles. One that CUDA does not show to this process is left out.
+cudaError_t to_ordinals(cudaError_t error, unsigned *count, int *devices, unsigned room) {
+  if (error != cudaSuccess) return error;
+  const unsigned written = *count < room ? *count : room;
+  *count = 0;
+  for (unsigned k = 0; k < written; ++k) {
+    int ordinal = -1;
+    if (const CUresult result = find_ordinal(devices[k], &ordinal)) return remember(result);
+    if (ordinal >= 0) devices[(*count)++] = ordinal;
+  }
+  return cudaSuccess;
+}
+
 }  // namespace
 
 extern "C" {
@@ -53,8 +66,9 @@ cudaError_t CUDARTAPI cudaGraphicsUnregisterResource(cudaGraphicsResource_t reso
 
 // The lists have the numbers of CU_GL_DEVICE_LIST_* and CU_D3D11_DEVICE_LIST_*.
 cudaError_t CUDARTAPI cudaGLGetDevices(unsigned *count, int *devices, unsigned room, unsigned list) {
-  return inside_graphics(&Driver::cuGLGetDevices_v2,
-                         [&](auto function) { return function(count, devices, room, list); });
+  const cudaError_t error =
+      inside_graphics(&Driver::cuGLGetDevices_v2, [&](auto function) { return function(count, devices, room, list); });
+  return to_ordinals(error, count, devices, room);
 }
 cudaError_t CUDARTAPI cudaGraphicsGLRegisterBuffer(cudaGraphicsResource **resource, unsigned buffer, unsigned flags) {
   return inside_graphics(&Driver::cuGraphicsGLRegisterBuffer,
@@ -63,8 +77,9 @@ cudaError_t CUDARTAPI cudaGraphicsGLRegisterBuffer(cudaGraphicsResource **resour
 #if defined(_WIN32)
 cudaError_t CUDARTAPI cudaD3D11GetDevices(unsigned *count, int *devices, unsigned room, ID3D11Device *d3d,
                                           unsigned list) {
-  return inside_graphics(&Driver::cuD3D11GetDevices,
-                         [&](auto function) { return function(count, devices, room, d3d, list); });
+  const cudaError_t error = inside_graphics(&Driver::cuD3D11GetDevices,
+                                            [&](auto function) { return function(count, devices, room, d3d, list); });
+  return to_ordinals(error, count, devices, room);
 }
 cudaError_t CUDARTAPI cudaGraphicsD3D11RegisterResource(cudaGraphicsResource **resource, ID3D11Resource *buffer,
                                                         unsigned flags) {

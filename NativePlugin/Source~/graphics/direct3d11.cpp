@@ -24,8 +24,7 @@ namespace {
 ID3D11Buffer *buffer_of(uint64_t pointer) { return reinterpret_cast<ID3D11Buffer *>(static_cast<uintptr_t>(pointer)); }
 
 std::string refusal() {
-  return cudart::driver().cuGraphicsD3D11RegisterResource ? ""
-                                                          : "the NVIDIA driver can't share buffers with Direct3D 11";
+  return cudart::driver().has_direct3d11() ? "" : "the NVIDIA driver can't share buffers with Direct3D 11";
 }
 
 std::vector<int> drawing_devices(uint64_t any_buffer) {

@@ -23,9 +23,11 @@ struct Submission {
   std::chrono::steady_clock::time_point since;
 };
 
-// Events are numbered in turn; numbers wrap.
+// Events are numbered in turn, and 1 follows the last number. Of two that are near each other.
 inline bool is_later(int32_t event, int32_t than) {
-  return static_cast<int32_t>(static_cast<uint32_t>(event) - static_cast<uint32_t>(than)) > 0;
+  constexpr uint32_t kNumbers = uint32_t(1) << 31;
+  const uint32_t steps = (static_cast<uint32_t>(event) - static_cast<uint32_t>(than)) % kNumbers;
+  return steps > 0 && steps < kNumbers / 2;
 }
 
 class GpuTarget {

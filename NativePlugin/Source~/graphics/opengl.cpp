@@ -16,7 +16,7 @@ namespace quickses {
 namespace {
 
 std::string refusal() {
-  return cudart::driver().cuGraphicsGLRegisterBuffer ? "" : "the NVIDIA driver can't share buffers with OpenGL";
+  return cudart::driver().has_opengl() ? "" : "the NVIDIA driver can't share buffers with OpenGL";
 }
 
 std::vector<int> drawing_devices(uint64_t) {
