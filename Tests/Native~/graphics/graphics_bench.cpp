@@ -429,6 +429,7 @@ int main(int argc, char **argv) try {
   context.make_current();
   std::printf("%s, medians of %d frames, ms\n",
               reinterpret_cast<const char *>(gl.GetString(gl_without_window::kRenderer)), frames);
+  std::fflush(stdout);
   std::vector<Molecule> molecules;
   for (int k = 2; k < argc; ++k) molecules.push_back(load(argv[k]));
   std::printf(
