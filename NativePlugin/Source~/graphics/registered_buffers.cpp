@@ -71,8 +71,13 @@ void RegisteredBuffers::use(const qses_gpu_buffers &buffers, int device) {
 }
 
 void RegisteredBuffers::forget() noexcept {
-  while (count_ > 0)
-    if (cudaGraphicsUnregisterResource(resources_[--count_]) != cudaSuccess) cudaGetLastError();
+  bool may = count_ > 0 && may_hand_back();
+  while (count_ > 0) {
+    --count_;
+    if (!may || cudaGraphicsUnregisterResource(resources_[count_]) == cudaSuccess) continue;
+    cudaGetLastError();
+    may = may_hand_back();
+  }
 }
 
 void *RegisteredBuffers::address(Which which, size_t bytes) const {
