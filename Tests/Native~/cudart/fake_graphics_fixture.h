@@ -353,6 +353,9 @@ class GraphicsTest : public testing::TestWithParam<Parameter> {
     draw();
     EXPECT_EQ(tell_driver("fake_graphics_registered"), 0);
     EXPECT_EQ(tell_driver("fake_driver_has_context"), 0) << "the thread was left with a context of CUDA";
+#if defined(_WIN32)
+    EXPECT_EQ(direct3d11_device().held_by(), 1u);
+#endif
   }
   virtual qses_graphics api() const = 0;
 
