@@ -40,10 +40,8 @@ const GraphicsApi &graphics_api(qses_graphics graphics) {
 
 void require_graphics(qses_graphics graphics) {
   const GraphicsApi &api = graphics_api(graphics);
-  const cudart::Driver &driver = cudart::driver();
-  const std::string refusal = driver.state == CUDA_SUCCESS ? api.refusal()
-                              : driver.refusal.empty()     ? "CUDA does not start"
-                                                           : driver.refusal;
+  const bool has_started = cudart::driver().state == CUDA_SUCCESS;
+  const std::string refusal = has_started ? api.refusal() : describe_cuda_device(0).reason;
   if (!refusal.empty())
     throw Error(QSES_BACKEND_UNAVAILABLE, std::string("buffers of ") + api.name + " can't be written: " + refusal);
 }
@@ -71,8 +69,13 @@ void RegisteredBuffers::use(const qses_gpu_buffers &buffers, int device) {
 }
 
 void RegisteredBuffers::forget() noexcept {
-  while (count_ > 0)
-    if (cudaGraphicsUnregisterResource(resources_[--count_]) != cudaSuccess) cudaGetLastError();
+  bool may = count_ > 0 && may_hand_back();
+  while (count_ > 0) {
+    --count_;
+    if (!may || cudaGraphicsUnregisterResource(resources_[count_]) == cudaSuccess) continue;
+    cudaGetLastError();
+    may = may_hand_back();
+  }
 }
 
 void *RegisteredBuffers::address(Which which, size_t bytes) const {

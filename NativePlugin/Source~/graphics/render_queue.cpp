@@ -90,7 +90,7 @@ void RenderQueue::run(int32_t event) noexcept try {
   }
   for (Arrival &arrival : arrivals) by_device[arrival.submission.mesh->view.device].push_back(&arrival);
   for (const auto &[device, those] : by_device) serve(device, those);
-  for (const std::shared_ptr<GpuTarget> &target : ended) forget_buffers(*target);
+  forget_ended(ended);
   const float event_ms = std::chrono::duration<float, std::milli>(Clock::now() - start).count();
   for (const Arrival &arrival : arrivals) {
     arrival.target->note_times(event_ms, lanes_[arrival.submission.mesh->view.device].copy_ms);
@@ -102,13 +102,14 @@ void RenderQueue::run(int32_t event) noexcept try {
 RenderQueue::Lane &RenderQueue::lane_of(int device) {
   Lane &lane = lanes_[device];
   if (lane.stream) return lane;
+  for (void **const event : {&lane.begin, &lane.end}) {
+    cudaEvent_t made = nullptr;
+    if (*event) continue;  // the next one could not be made the last time
+    check_cuda(cudaEventCreate(&made), "cudaEventCreate");
+    *event = made;
+  }
   cudaStream_t stream = nullptr;
-  cudaEvent_t begin = nullptr, end = nullptr;
-  check_cuda(cudaEventCreate(&begin), "cudaEventCreate");
-  check_cuda(cudaEventCreate(&end), "cudaEventCreate");
   check_cuda(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "cudaStreamCreateWithFlags");
-  lane.begin = begin;
-  lane.end = end;
   lane.stream = stream;
   return lane;
 }
@@ -199,6 +200,8 @@ void RenderQueue::copy_and_unmap(int device, Lane &lane, const Arrivals &arrival
   const std::shared_ptr<const StreamMark> readers = mark(device, lane);
   for (const Arrival *const arrival : arrivals)
     if (!arrival->submission.mesh->memory.is_empty()) arrival->submission.mesh->memory.note_readers(readers);
+  if (unmapped != cudaSuccess)
+    for (const Arrival *const arrival : arrivals) arrival->target->registered.forget();  // else they stay mapped
   check_cuda(unmapped, "cudaGraphicsUnmapResources");
 }
 
@@ -217,15 +220,24 @@ std::shared_ptr<const StreamMark> RenderQueue::mark(int device, Lane &lane) {
   }
 }
 
-void RenderQueue::forget_buffers(GpuTarget &target) noexcept {
+// Throws Error, and then changes nothing.
+void RenderQueue::forget_buffers(GpuTarget &target) {
   if (target.device < 0) return;
-  try {
-    const DeviceGuard guard(target.device);
-    target.registered.forget();
-    target.look_there = nullptr;
-  } catch (...) {  // the device is lost, and what it knew with it
-  }
+  const DeviceGuard guard(target.device);
+  target.registered.forget();
+  target.look_there = nullptr;
   target.device = -1;
+}
+
+// What does not go now is left to the next event, unless the device is lost, and what it knew with it.
+void RenderQueue::forget_ended(const std::vector<std::shared_ptr<GpuTarget>> &ended) {
+  for (const std::shared_ptr<GpuTarget> &target : ended) {
+    Arrival outcome;
+    if (attempt(outcome, [&] { forget_buffers(*target); }) || !may_hand_back()) continue;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ended_.push_back(target);
+    has_work_ = true;
+  }
 }
 
 }  // namespace quickses

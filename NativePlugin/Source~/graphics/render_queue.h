@@ -56,7 +56,8 @@ class RenderQueue {
   Arrivals map(const Arrivals &arrivals, Lane &lane);
   void copy_and_unmap(int device, Lane &lane, const Arrivals &arrivals);
   std::shared_ptr<const StreamMark> mark(int device, Lane &lane);
-  void forget_buffers(GpuTarget &target) noexcept;
+  void forget_buffers(GpuTarget &target);
+  void forget_ended(const std::vector<std::shared_ptr<GpuTarget>> &ended);
 
   std::mutex mutex_;
   std::vector<std::shared_ptr<GpuTarget>> targets_, ended_;

@@ -19,6 +19,8 @@ class Counted {
     return --count_;
   }
 
+  ULONG held_by() const { return count_; }
+
  private:
   ULONG count_ = 1;
 };
@@ -29,6 +31,7 @@ class FakeDirect3D11Device final : public IUnknown {
   HRESULT STDMETHODCALLTYPE QueryInterface(REFIID, void **) override { return E_NOINTERFACE; }
   ULONG STDMETHODCALLTYPE AddRef() override { return held_.add(); }
   ULONG STDMETHODCALLTYPE Release() override { return held_.release(); }
+  ULONG held_by() const { return held_.held_by(); }
   ID3D11Device *as_device() { return reinterpret_cast<ID3D11Device *>(static_cast<IUnknown *>(this)); }
 
  private:

@@ -104,12 +104,19 @@ FAKE_API int fake_driver_fail_after(int good, int error) {
   return count;
 }
 
+// How many there were so far.
+FAKE_API int fake_driver_calls() { return calls; }
+
 // How often the context of a device was asked for.
 FAKE_API int fake_driver_retained(int device) { return retained[device]; }
 // How many streams and events there are.
 FAKE_API int fake_driver_streams_and_events() { return streams_and_events; }
 // Whether the calling thread has one.
 FAKE_API int fake_driver_has_context() { return current ? 1 : 0; }
+FAKE_API int fake_driver_drop_context() {
+  current = nullptr;
+  return 0;
+}
 
 // From now on device code is compiled, for the first GPU, until this is called with 0.
 FAKE_API int fake_driver_hold(int hold) {

@@ -3,6 +3,7 @@
 // one of them in the place of NVIDIA's and says in QUICKSES_FAKE_DRIVER which.
 #include "capi/capi_fixture.h"
 #include "cudart/fake_driver_functions.h"
+#include "quickses/quickses_gpu.h"
 
 #include <cstdio>
 #include <cstdlib>
@@ -49,6 +50,7 @@ void expect_refused(const std::string &reason) {
   qses_context *context = nullptr;
   expect_error(create(QSES_BACKEND_CUDA, &context), QSES_BACKEND_UNAVAILABLE, {reason.c_str()});
   EXPECT_EQ(context, nullptr);
+  expect_error(qses_gpu_check_graphics(QSES_GRAPHICS_OPENGL), QSES_BACKEND_UNAVAILABLE, {"OpenGL", reason.c_str()});
   expect_the_cpu_takes_over(reason);
 }
 

@@ -162,6 +162,13 @@ FAKE_API int fake_graphics_registered() {
   const Lock lock(mutex);
   return static_cast<int>(resources.size());
 }
+// Forgets them. Returns how many there were.
+FAKE_API int fake_graphics_drop_registered() {
+  const Lock lock(mutex);
+  const int count = fake_graphics_registered();
+  resources.clear();
+  return count;
+}
 // Which device draws, -1 for none; with which ID3D11Device, if any.
 FAKE_API int fake_graphics_draw_on(int device, void *d3d) {
   const Lock lock(mutex);

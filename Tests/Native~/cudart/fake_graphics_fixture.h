@@ -241,7 +241,6 @@ inline void issue(int32_t event) {
   tell_driver("fake_graphics_draw_here", 1);
   qses_gpu_event_function()(event);
   tell_driver("fake_graphics_draw_here", 0);
-  EXPECT_EQ(tell_driver("fake_driver_has_context"), 0) << "the thread that draws was left with a context of CUDA";
 }
 
 // Has the event run that is to run now. Returns its number; 0: there is none.
@@ -319,6 +318,12 @@ inline std::vector<std::string> registering(qses_graphics api, int first, int la
 
 // ---- what a test begins and ends with
 
+// From now on no call fails. Where those did that give a thread its former context back, it has none again.
+inline void stop_failing() {
+  fail_after(-1, 0);
+  tell_driver("fake_driver_drop_context");
+}
+
 inline std::vector<qses_graphics> graphics_apis() {
 #if defined(_WIN32)
   return {QSES_GRAPHICS_OPENGL, QSES_GRAPHICS_D3D11};
@@ -332,7 +337,8 @@ inline std::string name_of_api(const testing::TestParamInfo<qses_graphics> &info
 }
 
 // Of one graphics API. Device 0 draws; in the end nothing is registered any more.
-class GraphicsTest : public testing::TestWithParam<qses_graphics> {
+template <class Parameter>
+class GraphicsTest : public testing::TestWithParam<Parameter> {
  protected:
   void SetUp() override {
     REQUIRE_DRIVER("graphics");
@@ -343,14 +349,23 @@ class GraphicsTest : public testing::TestWithParam<qses_graphics> {
   }
   void TearDown() override {
     if (!is_loaded_) return;
-    fail_after(-1, 0);
+    stop_failing();
     draw();
     EXPECT_EQ(tell_driver("fake_graphics_registered"), 0);
+    EXPECT_EQ(tell_driver("fake_driver_has_context"), 0) << "the thread was left with a context of CUDA";
+#if defined(_WIN32)
+    EXPECT_EQ(direct3d11_device().held_by(), 1u);
+#endif
   }
-  static qses_graphics api() { return GetParam(); }
+  virtual qses_graphics api() const = 0;
 
  private:
   bool is_loaded_ = false;
+};
+
+class GraphicsTestOfApi : public GraphicsTest<qses_graphics> {
+ protected:
+  qses_graphics api() const override { return GetParam(); }
 };
 
 }  // namespace fake_driver

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The graphics event with a fake driver (fake_graphics.cpp): what is asked of the driver, in which order, and what the
 // buffers have then. What a kernel would write is not there, since the fake's kernels do nothing. That every call may
-// fail is in fake_graphics_failures_test.cpp.
+// fail is in fake_graphics_failures.cpp.
 #include "cudart/fake_graphics_fixture.h"
 
 #include "graphics/gpu_target.h"
@@ -12,7 +12,7 @@ namespace {
 
 using namespace fake_driver;
 
-class GraphicsEvent : public GraphicsTest {};
+class GraphicsEvent : public GraphicsTestOfApi {};
 INSTANTIATE_TEST_SUITE_P(Apis, GraphicsEvent, testing::ValuesIn(graphics_apis()), name_of_api);
 
 // ---- order of calls
