@@ -85,7 +85,7 @@ def check_gpu_code(path, cmake_lists):
 
 
 def check_elf(path, name, beside, headers):
-    """name: as in the package; beside: names of the files of its folder; headers: folder of the C API's, or None to skip exports."""
+    """name: as in the package; beside: names of the files of its folder; headers: their folder, or None to skip exports."""
     text = output_of("readelf", "-W", "-h", "-d", "-V", path)
     if not re.search(r"Class: +ELF64\n(.*\n)*.*Type: +DYN(.*\n)+.*Machine: +Advanced Micro Devices X86-64", text):
         return ["is no shared library of Linux on x86-64"]

@@ -94,8 +94,7 @@ qses_mesh held_mesh(const qses_context &context) {
 quickses::SurfaceRequest make_request(const qses_context &context, const qses_settings &settings, bool ladder,
                                       const char *function) {
   check_settings(settings);
-  const bool on_device = settings.delivery == QSES_DELIVERY_DEVICE || settings.delivery == QSES_DELIVERY_BOTH;
-  if (on_device && context.backend != QSES_BACKEND_CUDA)
+  if (quickses::wants_device(settings) && context.backend != QSES_BACKEND_CUDA)
     invalid("settings.delivery asks for a mesh on the device, but this context computes on the CPU");
   quickses::require_atoms(context, function);
   quickses::SurfaceRequest request;

@@ -106,7 +106,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   void walk(const FrameInput &in, const std::atomic<bool> &stop, const Attempt &attempt) {
     const typename Executor::CallScope scope(executor_);
     const typename Executor::StopScope stop_scope(executor_, stop);
-    memory_.keep_on_device(in.settings.delivery == QSES_DELIVERY_DEVICE || in.settings.delivery == QSES_DELIVERY_BOTH);
+    memory_.keep_on_device(wants_device(in.settings));
     executor_.arena().reset();  // what is free is asked anew
     for (size_t step = first_step(in);; executor_.arena().reset()) {
       timer_.reset();
@@ -119,7 +119,8 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
       } catch (const MemoryRefused &refused) {
         if (!refused.again()) step = next_step(in, step);
         if (step < kMemoryPlanCount) continue;
-        learnt_ = {};  // what did not do at all teaches nothing
+        // The last plan takes least, but can't leave a mesh on the device: it is not where the next one should begin.
+        if (wants_device(in.settings)) learnt_ = {};
         name_smallest_budget(in);
         throw;
       }

@@ -14,6 +14,10 @@ struct MeshShape {
   size_t repeated = 0;  // vertices that stand for others (methods/hard_edges.h)
 };
 
+inline bool wants_device(const qses_settings &s) {
+  return s.delivery == QSES_DELIVERY_DEVICE || s.delivery == QSES_DELIVERY_BOTH;
+}
+
 inline MeshShape shape_of(const qses_settings &s, bool has_colors) {
   MeshShape shape;
   if (s.delivery == QSES_DELIVERY_NONE) return shape;  // nobody will look at it
