@@ -19,10 +19,13 @@ WINDOWS_NEEDS = {"kernel32.dll", "msvcrt.dll"}  # Parts of every Windows.
 MACHINE_CODE, PTX = 2, 1  # kinds of entries in a fat binary
 
 
-def declared_functions(header):
-    """The functions that quickses.h declares for export."""
-    with open(header, encoding="utf-8") as file:
-        return set(re.findall(r"QSES_API [^;(]*[ *](qses_[a-z0-9_]+)\(", file.read()))
+def declared_functions(headers):
+    """The functions that the headers of a folder declare for export."""
+    found = set()
+    for name in sorted(os.listdir(headers)):
+        with open(os.path.join(headers, name), encoding="utf-8") as file:
+            found |= set(re.findall(r"QSES_API [^;(]*[ *](qses_[a-z0-9_]+)\(", file.read()))
+    return found
 
 
 def output_of(*command):
@@ -30,12 +33,12 @@ def output_of(*command):
     return done.stdout if done.returncode == 0 else ""
 
 
-def check_exports(exported, header):
-    declared = declared_functions(header)
+def check_exports(exported, headers):
+    declared = declared_functions(headers)
     if not declared:
-        return [f"no declarations found in {header}"]
-    return ([f"exports {name}, which the header doesn't declare" for name in sorted(exported - declared)] +
-            [f"doesn't export {name}, which the header declares" for name in sorted(declared - exported)])
+        return [f"no declarations found in {headers}"]
+    return ([f"exports {name}, which no header declares" for name in sorted(exported - declared)] +
+            [f"doesn't export {name}, which a header declares" for name in sorted(declared - exported)])
 
 
 def check_glibc(text):
@@ -81,8 +84,8 @@ def check_gpu_code(path, cmake_lists):
         for kind, number in sorted(missing)]
 
 
-def check_elf(path, name, beside, header):
-    """name: as in the package; beside: names of the files of its folder; header: of the C API, or None to skip exports."""
+def check_elf(path, name, beside, headers):
+    """name: as in the package; beside: names of the files of its folder; headers: folder of the C API's, or None to skip exports."""
     text = output_of("readelf", "-W", "-h", "-d", "-V", path)
     if not re.search(r"Class: +ELF64\n(.*\n)*.*Type: +DYN(.*\n)+.*Machine: +Advanced Micro Devices X86-64", text):
         return ["is no shared library of Linux on x86-64"]
@@ -101,14 +104,14 @@ def check_elf(path, name, beside, header):
     if any(library.startswith("libquickses") for library in needed) and "[$ORIGIN]" not in text:
         faults.append("doesn't look for libraries in its own folder ($ORIGIN)")
     faults += check_glibc(text)
-    if header:
+    if headers:
         symbols = output_of("readelf", "-W", "--dyn-syms", path)
         exported = re.findall(r"(?m)^ +\d+: +\S+ +\S+ +\S+ +(?:GLOBAL|WEAK|UNIQUE) +\S+ +(?!UND)\S+ +([^\s@]+)", symbols)
-        faults += check_exports(set(exported), header)
+        faults += check_exports(set(exported), headers)
     return faults
 
 
-def check_pe(path, header):
+def check_pe(path, headers):
     text = output_of("objdump", "-p", path)
     if "file format pei-x86-64" not in text:
         return ["is no library of Windows on x86-64"]
@@ -116,4 +119,4 @@ def check_pe(path, header):
               if library.lower() not in WINDOWS_NEEDS]
     table = re.search(r"\[Ordinal/Name Pointer\] Table.*\n((?:\s*\[ *\d+\].*\n)*)", text)
     exported = re.findall(r"(?m)([^\s\]]+)$", table.group(1)) if table else []
-    return faults + check_exports(set(exported), header)
+    return faults + check_exports(set(exported), headers)

@@ -29,7 +29,7 @@ void GpuTarget::set_look(std::shared_ptr<const Appearance> look, size_t atom_cou
 void GpuTarget::check(const DeviceMesh &mesh, const qses_gpu_buffers &buffers) const {
   if (!buffers.vertices) invalid("buffers.vertices is 0");
   if (!buffers.indices) invalid("buffers.indices is 0");
-  if (mesh.shape.layout == QSES_VERTICES_SEPARATE)
+  if (mesh.shape.layout == QSES_VERTICES_SEPARATE && mesh.view.mesh.vertex_count > 0)
     invalid("the mesh was made with settings.vertex_layout SEPARATE: a buffer takes INTERLEAVED or COMPACT");
   check_room("vertex", buffers.vertex_capacity, mesh.view.mesh.vertex_count);
   check_room("index", buffers.index_capacity, 3 * uint64_t(mesh.view.mesh.triangle_count));

@@ -74,8 +74,11 @@ class SmallPackage:
 
     def __init__(self, repository, compiler, mingw):
         self.repository, self.compiler, self.mingw = repository, compiler, mingw
-        with open(os.path.join(repository, "NativePlugin/Source~/include/quickses/quickses.h"), encoding="utf-8") as file:
-            names = re.findall(r"QSES_API [^;(]*[ *](qses_[a-z0-9_]+)\(", file.read())
+        names = []
+        for header in ("quickses.h", "quickses_gpu.h"):
+            path = os.path.join(repository, "NativePlugin/Source~/include/quickses", header)
+            with open(path, encoding="utf-8") as file:
+                names += re.findall(r"QSES_API [^;(]*[ *](qses_[a-z0-9_]+)\(", file.read())
         self.source = "".join(f"void {name}(void) {{}}\n" for name in names)
         self.linux = ("-fPIC", "-nostartfiles", "-Wl,-soname,libquickses.so")
         self.tbb = built(compiler, "void tbb(void) {}", "-fPIC", "-Wl,-soname,libquickses_tbb.so")

@@ -45,8 +45,14 @@ class MeshMemory<CudaExecutor> {
     device_meshes_.use_slot(slot);
   }
   MeshHold keep(int slot) { return {host_meshes_.keep(slot), device_meshes_.keep(slot), host_meshes_.share_pool()}; }
-  // Whether meshes that are handed out stay on the device.
-  void keep_on_device(bool keep) { keep_ = keep; }
+  // Whether meshes that are handed out stay on the device. What was given back since the last computation is the
+  // arena's again, within a budget.
+  void keep_on_device(bool keep) {
+    keep_ = keep;
+    if (!executor_.arena().has_budget()) return;
+    if (!keep) device_meshes_.pool().drop_spares();
+    executor_.arena().set_taken(device_meshes_.bytes());
+  }
   // What was allocated beside a mesh in pieces, or as one to be made into another, is given up.
   void forget_spills() { spilled_ = 0; }
   uint64_t host_bytes() const {
