@@ -22,6 +22,9 @@ namespace fake_driver {
 // What any function returns: the failure from one call on, for all the calls after it or for that one.
 CUresult next(bool *fails = nullptr);
 
+// Of the calling thread.
+CUcontext current_context();
+
 // Handles of devices are other numbers than their ordinals: nobody may take one for the other.
 constexpr CUdevice kFirstDevice = 100;
 inline CUdevice device_of(int ordinal) { return kFirstDevice + ordinal; }

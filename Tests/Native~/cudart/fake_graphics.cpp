@@ -25,6 +25,7 @@ struct Buffer {
 // Knows the buffer also when there is another one of the same name.
 struct Resource {
   std::shared_ptr<Buffer> buffer;
+  CUcontext context;  // that knows it, and no other one
   bool discards;
   std::unique_ptr<unsigned char[]> mapped;  // as many bytes as the buffer has
   CUstream stream = nullptr;                // that it is mapped for
@@ -81,6 +82,7 @@ CUresult register_buffer(CUgraphicsResource *resource, uint64_t key, bool discar
   ++found->second->registered;
   auto made = std::make_unique<Resource>();
   made->buffer = found->second;
+  made->context = current_context();
   made->discards = discards;
   *resource = reinterpret_cast<CUgraphicsResource>(made.get());
   resources[*resource] = std::move(made);
@@ -91,6 +93,7 @@ CUresult register_buffer(CUgraphicsResource *resource, uint64_t key, bool discar
 CUresult check(CUgraphicsResource resource, bool mapped) {
   const auto found = resources.find(resource);
   if (found == resources.end()) return CUDA_ERROR_INVALID_HANDLE;
+  if (found->second->context != current_context()) return CUDA_ERROR_INVALID_CONTEXT;
   if (mapped) return found->second->mapped ? CUDA_SUCCESS : CUDA_ERROR_NOT_MAPPED;
   if (found->second->buffer->is_spoilt) return CUDA_ERROR_MAP_FAILED;
   return found->second->buffer->is_mapped ? CUDA_ERROR_ALREADY_MAPPED : CUDA_SUCCESS;
@@ -238,9 +241,12 @@ FAKE_API CUresult CUDAAPI cuGraphicsUnmapResources(unsigned count, CUgraphicsRes
 // One that is mapped is unmapped, but without what was written.
 FAKE_API CUresult CUDAAPI cuGraphicsUnregisterResource(CUgraphicsResource resource) {
   const Lock lock(mutex);
-  const CUresult result = call("Unregister" + names_of(1, &resource),
-                               [&] { return resources.count(resource) ? CUDA_SUCCESS : CUDA_ERROR_INVALID_HANDLE; });
-  if (const auto found = resources.find(resource); found != resources.end()) {
+  const auto found = resources.find(resource);
+  const CUresult result = call("Unregister" + names_of(1, &resource), [&] {
+    if (found == resources.end()) return CUDA_ERROR_INVALID_HANDLE;
+    return found->second->context == current_context() ? CUDA_SUCCESS : CUDA_ERROR_INVALID_CONTEXT;
+  });
+  if (found != resources.end()) {
     unmap(*found->second, false);
     --found->second->buffer->registered;
     resources.erase(found);

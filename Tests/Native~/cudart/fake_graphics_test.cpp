@@ -6,6 +6,7 @@
 
 #include "graphics/gpu_target.h"
 
+#include <atomic>
 #include <thread>
 
 namespace {
@@ -392,6 +393,38 @@ TEST_P(GraphicsEvent, GivesUpMeshesWhoseEventsDoNotCome) {
   expect_ok(surface.submit(mesh));
   draw();
   surface.expect_shows(mesh);
+}
+
+// One thread draws while another one submits, asks, and makes and ends targets.
+TEST_P(GraphicsEvent, RunsBesideTheThreadThatSubmits) {
+  const HandMadeMesh meshes[] = {HandMadeMesh(1), HandMadeMesh(60, 8, 8), HandMadeMesh(120, 3, 1)};
+  DrawnSurface surface(api(), 1);
+  std::atomic<bool> is_over{false};
+  std::thread drawing([&] {
+    while (!is_over) {
+      draw();
+      std::this_thread::yield();
+    }
+  });
+  std::vector<std::unique_ptr<DrawnSurface>> passing;  // their buffers stay until events have run
+  while (passing.size() < 300) {
+    const HandMadeMesh &mesh = meshes[passing.size() % 3];
+    const qses_status status = surface.submit(mesh);
+    EXPECT_TRUE(status == QSES_OK || status == QSES_BUSY) << qses_last_error();
+    surface.expect_status(QSES_OK, {});
+    if (status != QSES_OK) continue;
+    passing.push_back(std::make_unique<DrawnSurface>(api(), 3));
+    expect_ok(passing.back()->submit(mesh));
+    passing.back()->expect_status(QSES_OK, {});
+    passing.back()->destroy();
+  }
+  is_over = true;
+  drawing.join();
+  draw();
+  expect_ok(surface.submit(meshes[0]));
+  draw();
+  surface.expect_status(QSES_OK, {});
+  surface.expect_shows(meshes[0]);
 }
 
 // ---- other graphics APIs, other drivers
