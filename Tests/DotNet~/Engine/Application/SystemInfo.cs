@@ -7,6 +7,11 @@ namespace UnityEngine
     {
         public static int maxTextureSize => 16384;
 
+        /// <summary>What the machine draws with; only the double sets it.</summary>
+        public static GraphicsDeviceType GraphicsDevice { get; set; } = GraphicsDeviceType.OpenGLCore;
+
+        public static GraphicsDeviceType graphicsDeviceType => GraphicsDevice;
+
         /// <summary>What the machine has; only the double sets it.</summary>
         public static bool HasIntegerAttributes { get; set; } = true;
 

@@ -48,6 +48,8 @@ namespace QuickSes.EngineDouble
         {
             EngineThread.Adopt();
             DestroyScene();
+            RenderThread.Reset();
+            SystemInfo.GraphicsDevice = UnityEngine.Rendering.GraphicsDeviceType.OpenGLCore;
             for (int i = ObjectRegistry.Objects.Count; i-- > 0; i = Math.Min(i, ObjectRegistry.Objects.Count))
                 ObjectRegistry.Objects[i].DestroyNow();
             DestructionQueue.Clear();
@@ -82,6 +84,7 @@ namespace QuickSes.EngineDouble
             Lifecycle.Broadcast(Message.Update);
             Animating?.Invoke();
             Lifecycle.Broadcast(Message.LateUpdate);
+            RenderThread.EndFrame();
             if (ChecksMeshes)
                 MeshCheck.RunOnChanged();
             DestructionQueue.Run();

@@ -14,7 +14,8 @@ namespace QuickSes
     /// </summary>
     internal sealed unsafe class MeshWriter : IDisposable
     {
-        private const MeshUpdateFlags Unchecked = MeshUpdateFlags.DontValidateIndices |
+        /// <summary>The engine neither checks nor measures what it is given.</summary>
+        public const MeshUpdateFlags Unchecked = MeshUpdateFlags.DontValidateIndices |
             MeshUpdateFlags.DontResetBoneBounds | MeshUpdateFlags.DontNotifyMeshUsers |
             MeshUpdateFlags.DontRecalculateBounds;
 
@@ -166,7 +167,8 @@ namespace QuickSes
             SetSubMesh(mesh, default, 0, 0);
         }
 
-        private static void SetSubMesh(Mesh mesh, in Bounds bounds, int vertices, int indices)
+        /// <summary>What is drawn of a mesh with one submesh.</summary>
+        public static void SetSubMesh(Mesh mesh, in Bounds bounds, int vertices, int indices)
         {
             var submesh = new SubMeshDescriptor(0, indices) { bounds = bounds, vertexCount = vertices };
             mesh.SetSubMesh(0, submesh, Unchecked);
@@ -178,7 +180,8 @@ namespace QuickSes
         private bool Suffices(int capacity, int needed, bool withRoom) =>
             withRoom ? HasRoom && capacity >= needed : capacity == needed;
 
-        private static int WithRoom(int count) => (int)Math.Min(count + (long)count / 4, int.MaxValue);
+        /// <summary>What buffers are made for that are to last.</summary>
+        public static int WithRoom(int count) => (int)Math.Min(count + (long)count / 4, int.MaxValue);
 
         private void Write<T>(int stream, void* data, int first, int count) where T : unmanaged =>
             _mesh.SetVertexBufferData(_memory.View<T>(data, count), 0, first, count, stream, Unchecked);
