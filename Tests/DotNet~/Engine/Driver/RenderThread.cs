@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 using System;
 using System.Collections.Generic;
-using System.Runtime.InteropServices;
 
 namespace QuickSes.EngineDouble
 {
@@ -11,11 +10,8 @@ namespace QuickSes.EngineDouble
     /// </summary>
     public static class RenderThread
     {
-        [UnmanagedFunctionPointer(CallingConvention.StdCall)]
-        private delegate void Callback(int eventId);
-
         private static readonly Queue<(IntPtr, int)> s_waiting = new Queue<(IntPtr, int)>();
-        private static readonly Dictionary<IntPtr, Callback> s_callbacks = new Dictionary<IntPtr, Callback>();
+        private static readonly Dictionary<IntPtr, Action<int>> s_functions = new Dictionary<IntPtr, Action<int>>();
 
         /// <summary>Whether frames end with it; else it stands still, as while a window is minimised.</summary>
         public static bool IsRunning { get; set; } = true;
@@ -26,15 +22,18 @@ namespace QuickSes.EngineDouble
         /// <summary>Events that were issued so far.</summary>
         public static int Issued { get; private set; }
 
+        /// <summary>Lets a pointer, any number but 0, be one to a function: no native code is called here.</summary>
+        public static void Declare(IntPtr pointer, Action<int> function) => s_functions[pointer] = function;
+
         /// <summary>Does what is waiting, or as much of it.</summary>
         public static void Run(int count = int.MaxValue)
         {
             for (; count > 0 && s_waiting.Count > 0; --count)
             {
                 (IntPtr callback, int eventId) = s_waiting.Dequeue();
-                if (!s_callbacks.TryGetValue(callback, out Callback call))
-                    s_callbacks[callback] = call = Marshal.GetDelegateForFunctionPointer<Callback>(callback);
-                call(eventId);
+                if (!s_functions.TryGetValue(callback, out Action<int> function))
+                    throw new InvalidOperationException($"There is no function at {callback}.");
+                function(eventId);
             }
         }
 

@@ -14,6 +14,9 @@ namespace QuickSes.EngineDouble
         private static readonly Dictionary<int, Entry> s_buffers = new Dictionary<int, Entry>();
         private static long s_made;
 
+        /// <summary>A buffer is being deleted; its identity.</summary>
+        public static event Action<long> Deleting;
+
         /// <summary>False: there is no such buffer.</summary>
         /// <param name="name">Its name.</param>
         /// <param name="identity">A number that no other buffer has or will have.</param>
@@ -38,6 +41,7 @@ namespace QuickSes.EngineDouble
         {
             if (name == 0)
                 return;
+            Deleting?.Invoke(s_buffers[name].Identity);
             s_buffers.Remove(name);
             s_free.Add(name);
             name = 0;

@@ -197,7 +197,10 @@ namespace QuickSes
                 return GpuStep.Waiting;
             SurfaceMeshView view = _awaited.View;
             _awaited = null;
-            return Draw(_back, view, look, _given);
+            Draw(_back, view, look, _given);
+            if (!_isFollowing)
+                FreeBack();
+            return GpuStep.Shown;
         }
 
         private GpuStep Draw(GpuMesh mesh, in SurfaceMeshView view, AtomLook look, GivenLook given)
