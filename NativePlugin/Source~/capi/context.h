@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a qses_context holds.
+// What a qses_context holds, and a qses_kept_mesh.
 #pragma once
 
 #include "capi/barrier.h"
@@ -17,6 +17,10 @@ struct qses_context {
   std::shared_ptr<const quickses::AtomSet> atoms;  // of the next computation; null before qses_set_atoms
   std::shared_ptr<const quickses::Appearance> appearance = std::make_shared<quickses::Appearance>();
   std::vector<std::shared_ptr<quickses::Appearance>> appearance_pool;
+};
+
+struct qses_kept_mesh {
+  quickses::KeptMesh held;
 };
 
 namespace quickses {

@@ -6,10 +6,6 @@
 
 #include <cmath>
 
-struct qses_kept_mesh {
-  quickses::KeptMesh held;
-};
-
 namespace {
 
 using quickses::check_struct;
@@ -18,6 +14,12 @@ using quickses::invalid;
 using quickses::KeptMesh;
 using quickses::require;
 using quickses::write_struct;
+
+constexpr const char *kNothingKept = "nothing is kept here yet";
+
+void check_on_host(const KeptMesh &kept) {
+  if (kept.is_elsewhere()) invalid("the mesh is on the device only: call qses_kept_mesh_download first");
+}
 
 // name: of what there are `total`.
 void check_run(const char *name, uint32_t first, uint32_t count, uint32_t total) {
@@ -74,6 +76,14 @@ qses_status qses_keep(qses_context *context, qses_kept_mesh *kept) {
   });
 }
 
+qses_status qses_kept_mesh_download(qses_kept_mesh *kept) {
+  return guarded([&] {
+    require(kept, "kept");
+    if (!kept->held.is_full) throw quickses::Error(QSES_NO_RESULT, kNothingKept);
+    kept->held.download();
+  });
+}
+
 qses_status qses_kept_mesh_view(const qses_kept_mesh *kept, qses_mesh *mesh) {
   return guarded([&] {
     require(kept, "kept");
@@ -86,7 +96,7 @@ qses_status qses_kept_mesh_report(const qses_kept_mesh *kept, qses_report *repor
   return guarded([&] {
     require(kept, "kept");
     require(report, "report");
-    if (!kept->held.is_full) throw quickses::Error(QSES_NO_RESULT, "nothing is kept here yet");
+    if (!kept->held.is_full) throw quickses::Error(QSES_NO_RESULT, kNothingKept);
     write_struct(report, kept->held.report, "qses_report");
   });
 }
@@ -97,6 +107,7 @@ qses_status qses_kept_mesh_paint(const qses_kept_mesh *kept, const void *per_ato
     require(kept, "kept");
     if (value_bytes % 4 != 0 || value_bytes < 4 || value_bytes > 16)
       invalid("value_bytes is " + std::to_string(value_bytes) + ": it must be 4, 8, 12 or 16");
+    check_on_host(kept->held);
     check_atoms(kept->held, atom_count);
     check_run("vertices", first, count, kept->held.mesh.vertex_count);
     if (count == 0) return;
@@ -112,6 +123,7 @@ qses_status qses_kept_mesh_filter(const qses_kept_mesh *kept, const uint8_t *vis
   return guarded([&] {
     require(kept, "kept");
     require(kept_triangles, "kept_triangles");
+    check_on_host(kept->held);
     check_atoms(kept->held, atom_count);
     check_run("triangles", first, count, kept->held.mesh.triangle_count);
     if (count == 0) return;
@@ -128,6 +140,7 @@ qses_status qses_kept_mesh_pick(const qses_kept_mesh *kept, const float origin[3
     require(hit, "hit");
     check_struct(hit, "qses_hit");
     check_ray(origin, direction);
+    check_on_host(kept->held);
     if (visible) check_atoms(kept->held, atom_count);
     const KeptMesh &held = kept->held;
     write_struct(hit, quickses::pick(held.mesh, held.boxes, origin, direction, visible), "qses_hit");

@@ -32,6 +32,9 @@ CUresult make_current(int device);
 // only gives memory back starts no other; else 0.
 int selected_device();
 
+// The ordinal of a device of the driver; -1: it has none.
+CUresult find_ordinal(CUdevice handle, int *ordinal);
+
 // The device whose primary context is current; -1 if the current one is another's, which has none of our kernels.
 int current_device();
 

@@ -2,6 +2,24 @@
 // CUDA Runtime API, "Device Management".
 #include "cudart/current_context.h"
 
+namespace quickses {
+namespace cudart {
+
+CUresult find_ordinal(CUdevice handle, int *ordinal) {
+  int count = 0;
+  *ordinal = -1;
+  CUresult result = driver().cuDeviceGetCount(&count);
+  for (int k = 0; k < count && result == CUDA_SUCCESS && *ordinal < 0; ++k) {
+    CUdevice there = 0;
+    result = driver().cuDeviceGet(&there, k);
+    if (there == handle) *ordinal = k;
+  }
+  return result;
+}
+
+}  // namespace cudart
+}  // namespace quickses
+
 using namespace quickses::cudart;
 
 extern "C" {
@@ -19,13 +37,9 @@ cudaError_t CUDARTAPI cudaGetDevice(int *device) {
   *device = selected_device();
   if (const cudaError_t error = start()) return remember(error);
   CUdevice current = 0;
-  int count = 0;
-  if (driver().cuCtxGetDevice(&current) != CUDA_SUCCESS || driver().cuDeviceGetCount(&count) != CUDA_SUCCESS)
-    return cudaSuccess;
-  for (int ordinal = 0; ordinal < count; ++ordinal) {
-    CUdevice handle = 0;
-    if (driver().cuDeviceGet(&handle, ordinal) == CUDA_SUCCESS && handle == current) *device = ordinal;
-  }
+  if (driver().cuCtxGetDevice(&current) != CUDA_SUCCESS) return cudaSuccess;
+  int ordinal = -1;
+  if (find_ordinal(current, &ordinal) == CUDA_SUCCESS && ordinal >= 0) *device = ordinal;
   return cudaSuccess;
 }
 

@@ -46,6 +46,9 @@ Driver load() {
   if (!d.name && !missing) missing = #name;
   QSES_DRIVER_FUNCTIONS(QSES_FIND)
 #undef QSES_FIND
+#define QSES_FIND(name, ...) d.name = reinterpret_cast<DriverFunction<__VA_ARGS__>>(find(library, #name));
+  QSES_DRIVER_GRAPHICS_FUNCTIONS(QSES_FIND)
+#undef QSES_FIND
   int version = 0;
   const CUresult told = d.cuDriverGetVersion ? d.cuDriverGetVersion(&version) : CUDA_SUCCESS;
   if (told != CUDA_SUCCESS)

@@ -6,6 +6,11 @@
 
 #include <string>
 
+#if defined(_WIN32)
+struct ID3D11Device;
+struct ID3D11Resource;
+#endif
+
 namespace quickses {
 namespace cudart {
 
@@ -43,11 +48,35 @@ namespace cudart {
   F(cuStreamCreate, CUresult, CUstream *, unsigned)                                                             \
   F(cuStreamDestroy_v2, CUresult, CUstream)                                                                     \
   F(cuStreamSynchronize, CUresult, CUstream)                                                                    \
+  F(cuStreamWaitEvent, CUresult, CUstream, CUevent, unsigned)                                                   \
   F(cuEventCreate, CUresult, CUevent *, unsigned)                                                               \
   F(cuEventDestroy_v2, CUresult, CUevent)                                                                       \
   F(cuEventRecord, CUresult, CUevent, CUstream)                                                                 \
+  F(cuEventQuery, CUresult, CUevent)                                                                            \
   F(cuEventSynchronize, CUresult, CUevent)                                                                      \
   F(cuEventElapsedTime, CUresult, float *, CUevent, CUevent)
+
+// Those for buffers of graphics APIs, which a driver need not have.
+#if defined(_WIN32)
+#define QSES_DRIVER_D3D11_FUNCTIONS(F)                                                       \
+  F(cuD3D11GetDevices, CUresult, unsigned *, CUdevice *, unsigned, ID3D11Device *, unsigned) \
+  F(cuGraphicsD3D11RegisterResource, CUresult, CUgraphicsResource *, ID3D11Resource *, unsigned)
+#else
+#define QSES_DRIVER_D3D11_FUNCTIONS(F)
+#endif
+#define QSES_DRIVER_OPENGL_FUNCTIONS(F)                                      \
+  F(cuGLGetDevices_v2, CUresult, unsigned *, CUdevice *, unsigned, unsigned) \
+  F(cuGraphicsGLRegisterBuffer, CUresult, CUgraphicsResource *, unsigned, unsigned)
+#define QSES_DRIVER_MAPPING_FUNCTIONS(F)                                                          \
+  F(cuGraphicsResourceSetMapFlags_v2, CUresult, CUgraphicsResource, unsigned)                     \
+  F(cuGraphicsMapResources, CUresult, unsigned, CUgraphicsResource *, CUstream)                   \
+  F(cuGraphicsResourceGetMappedPointer_v2, CUresult, CUdeviceptr *, size_t *, CUgraphicsResource) \
+  F(cuGraphicsUnmapResources, CUresult, unsigned, CUgraphicsResource *, CUstream)                 \
+  F(cuGraphicsUnregisterResource, CUresult, CUgraphicsResource)
+#define QSES_DRIVER_GRAPHICS_FUNCTIONS(F) \
+  QSES_DRIVER_OPENGL_FUNCTIONS(F)         \
+  QSES_DRIVER_D3D11_FUNCTIONS(F)          \
+  QSES_DRIVER_MAPPING_FUNCTIONS(F)
 
 template <class Result, class... Arguments>
 using DriverFunction = Result(CUDAAPI *)(Arguments...);
@@ -55,7 +84,17 @@ using DriverFunction = Result(CUDAAPI *)(Arguments...);
 struct Driver {
 #define QSES_DRIVER_MEMBER(name, ...) DriverFunction<__VA_ARGS__> name = nullptr;
   QSES_DRIVER_FUNCTIONS(QSES_DRIVER_MEMBER)
+  QSES_DRIVER_GRAPHICS_FUNCTIONS(QSES_DRIVER_MEMBER)
 #undef QSES_DRIVER_MEMBER
+  // Whether it has all that is asked of it for buffers of a graphics API.
+#define QSES_DRIVER_HAS(name, ...) &&name
+  bool has_opengl() const {
+    return true QSES_DRIVER_OPENGL_FUNCTIONS(QSES_DRIVER_HAS) QSES_DRIVER_MAPPING_FUNCTIONS(QSES_DRIVER_HAS);
+  }
+  bool has_direct3d11() const {
+    return true QSES_DRIVER_D3D11_FUNCTIONS(QSES_DRIVER_HAS) QSES_DRIVER_MAPPING_FUNCTIONS(QSES_DRIVER_HAS);
+  }
+#undef QSES_DRIVER_HAS
   // Whether its functions can be called: CUDA_SUCCESS; CUDA_ERROR_STUB_LIBRARY where there is none, an older one,
   // one that lacks a function, or the toolkit's stub; else what cuInit or cuDriverGetVersion returned.
   CUresult state = CUDA_ERROR_STUB_LIBRARY;

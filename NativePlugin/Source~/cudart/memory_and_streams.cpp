@@ -81,7 +81,14 @@ cudaError_t CUDARTAPI cudaStreamDestroy(cudaStream_t stream) {
 cudaError_t CUDARTAPI cudaStreamSynchronize(cudaStream_t stream) {
   return inside([&](const Driver &d) { return d.cuStreamSynchronize(stream); });
 }
+cudaError_t CUDARTAPI cudaStreamWaitEvent(cudaStream_t stream, cudaEvent_t event, unsigned flags) {
+  return inside([&](const Driver &d) { return d.cuStreamWaitEvent(stream, event, flags); });
+}
 
+// The flags have the numbers of CU_EVENT_* (driver_types.h).
+cudaError_t CUDARTAPI cudaEventCreateWithFlags(cudaEvent_t *event, unsigned flags) {
+  return inside([&](const Driver &d) { return d.cuEventCreate(event, flags); });
+}
 cudaError_t CUDARTAPI cudaEventCreate(cudaEvent_t *event) {
   return inside([&](const Driver &d) { return d.cuEventCreate(event, CU_EVENT_DEFAULT); });
 }
@@ -90,6 +97,12 @@ cudaError_t CUDARTAPI cudaEventDestroy(cudaEvent_t event) {
 }
 cudaError_t CUDARTAPI cudaEventRecord(cudaEvent_t event, cudaStream_t stream) {
   return inside([&](const Driver &d) { return d.cuEventRecord(event, stream); });
+}
+// cudaErrorNotReady is an answer, not an error.
+cudaError_t CUDARTAPI cudaEventQuery(cudaEvent_t event) {
+  if (const cudaError_t error = enter()) return remember(error);
+  const CUresult result = driver().cuEventQuery(event);
+  return result == CUDA_ERROR_NOT_READY ? cudaErrorNotReady : remember(result);
 }
 cudaError_t CUDARTAPI cudaEventSynchronize(cudaEvent_t event) {
   return inside([&](const Driver &d) { return d.cuEventSynchronize(event); });

@@ -205,7 +205,7 @@ int SurfaceJob::slot() {
   writing_ = kNoSlot;
   for (int slot = kMeshSlots; slot-- > 0;) {
     if (slot == held_.slot || slot == ready_.slot) continue;
-    engine_->keep(slot).give_back();  // nobody wants it any more: the next level may have its memory
+    engine_->keep(slot) = {};  // nobody wants it any more: the next level may have its memory
     writing_ = slot;
   }
   return writing_;
@@ -260,16 +260,25 @@ void SurfaceJob::keep(KeptMesh *kept) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (held_.slot == kNoSlot) throw Error(QSES_NO_RESULT, "nothing has been computed or collected that could be kept");
   const FinishedMesh &mesh = held_.mesh;
-  if (mesh.delivery == QSES_DELIVERY_DEVICE || mesh.delivery == QSES_DELIVERY_NONE)
-    throw Error(QSES_INVALID_ARGUMENT, std::string("the mesh was made with settings.delivery ") +
-                                           (mesh.delivery == QSES_DELIVERY_NONE ? "NONE" : "DEVICE") +
-                                           ": only a mesh in host memory can be kept");
+  if (mesh.delivery == QSES_DELIVERY_NONE)
+    throw Error(QSES_INVALID_ARGUMENT, "the mesh was made with settings.delivery NONE: there is none to be kept");
+  const bool is_on_device = mesh.delivery != QSES_DELIVERY_HOST;
+  const auto on_device = is_on_device ? std::make_shared<DeviceMesh>() : nullptr;
   kept->clear();
+  MeshHold hold = engine_->keep(held_.slot);
+  if (is_on_device) {
+    on_device->view = mesh.on_device;
+    on_device->shape = mesh.shape;
+    on_device->atom_count = held_.atom_count;
+    on_device->memory = std::move(hold.on_device);
+  }
   kept->mesh = mesh.on_host;
   kept->boxes = mesh.boxes;
   kept->report = mesh.report;
   kept->atom_count = held_.atom_count;
-  kept->memory = engine_->keep(held_.slot);
+  kept->memory = std::move(hold.on_host);
+  kept->on_device = on_device;
+  kept->host_pool = std::move(hold.host_pool);
   kept->is_full = true;
   held_ = {};
 }

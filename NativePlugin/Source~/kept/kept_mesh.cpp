@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "kept/kept_mesh.h"
 
+#if defined(QUICKSES_HAS_CUDA)
+#include "parallel/cuda_memory.h"
+#endif
+
 #include <cstring>
 
 namespace quickses {
@@ -26,6 +30,24 @@ void KeptMesh::clear() noexcept {
   atom_count = 0;
   is_full = false;
   memory.give_back();
+  downloaded_.give_back();
+  on_device.reset();
+  host_pool.reset();
+}
+
+void KeptMesh::download() {
+  if (!on_device || !is_elsewhere()) return;
+#if defined(QUICKSES_HAS_CUDA)
+  const qses_device_mesh &device = on_device->view;
+  const DeviceGuard guard(device.device);
+  const MeshArrays arrays(mesh.vertex_count, mesh.triangle_count, on_device->shape);
+  MeshLease host(host_pool, arrays.bytes());
+  copy_to_host(device.device, host.memory(), on_device->memory.memory(), arrays.bytes());
+  downloaded_ = std::move(host);
+  const MeshView view = arrays.view(downloaded_.memory());
+  point_at(view, on_device->shape, &mesh);
+  boxes = view.boxes;
+#endif
 }
 
 void paint(const qses_mesh &mesh, const void *per_atom, size_t value_bytes, uint32_t first, uint32_t count,

@@ -1,31 +1,44 @@
 // SPDX-License-Identifier: MIT
-// A finished mesh that is held on to, and what is asked of it: all on the host.
+// A finished mesh that is held on to, and what is asked of it on the host.
 #pragma once
 
-#include "quickses/quickses.h"
-#include "surface/mesh/mesh_pool.h"
-#include "surface/mesh/pick_boxes.h"
+#include "kept/device_mesh.h"
+
+#include <memory>
 
 namespace quickses {
 
 struct KeptMesh {
-  qses_mesh mesh;  // like the boxes in memory of the lease
+  qses_mesh mesh;  // on the host, like the boxes
   PickBoxes boxes;
   qses_report report;
   size_t atom_count = 0;
   MeshLease memory;
+  std::shared_ptr<const DeviceMesh> on_device;  // null: it is not there
+  std::shared_ptr<MeshPool> host_pool;
   bool is_full = false;
 
   KeptMesh() { clear(); }
   void clear() noexcept;
+  // Whether there is a mesh without a copy on the host.
+  bool is_elsewhere() const { return mesh.vertex_count > 0 && !mesh.positions; }
+  // Copies it from the device, if it is only there. Throws Error; it is as it was then.
+  void download();
+
+ private:
+  MeshLease downloaded_;
 };
 
 // Which of the mesh's atoms are shown; nullptr: all of them.
 using VisibleAtoms = const uint8_t *;
 
+// corners: vertex numbers of a triangle.
+QSES_HOST_DEVICE inline bool is_shown(const uint32_t *corners, const uint32_t *owners, VisibleAtoms visible) {
+  return visible[owners[corners[0]]] && visible[owners[corners[1]]] && visible[owners[corners[2]]];
+}
+
 inline bool is_shown(const qses_mesh &mesh, uint32_t triangle, VisibleAtoms visible) {
-  const uint32_t *const corner = mesh.indices + 3 * size_t(triangle);
-  return visible[mesh.owners[corner[0]]] && visible[mesh.owners[corner[1]]] && visible[mesh.owners[corner[2]]];
+  return is_shown(mesh.indices + 3 * size_t(triangle), mesh.owners, visible);
 }
 
 // Values of so many bytes (4, 8, 12 or 16) of the atoms that own the vertices.

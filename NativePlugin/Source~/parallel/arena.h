@@ -66,6 +66,8 @@ class Arena {
                               describe_bytes(budget_),
                           bytes < budget_);
   }
+  // Of the limit, what others have not taken.
+  uint64_t share() { return limit() - std::min(limit(), taken_); }
   // Bytes that can still be allocated, as far as is known.
   uint64_t available() { return limit() - std::min(limit(), used_ + taken_); }
 

@@ -222,6 +222,48 @@ DeviceGuard::DeviceGuard(int device) {
 
 DeviceGuard::~DeviceGuard() { cudart::driver().cuCtxSetCurrent(static_cast<CUcontext>(before_)); }
 
+StreamMark::StreamMark(int device) : device_(device) {
+  const DeviceGuard guard(device);
+  cudaEvent_t event = nullptr;
+  check_cuda(cudaEventCreateWithFlags(&event, cudaEventDisableTiming), "cudaEventCreateWithFlags");
+  event_ = event;
+}
+
+StreamMark::~StreamMark() {
+  try {
+    const DeviceGuard guard(device_);
+    if (may_hand_back()) cudaEventDestroy(static_cast<cudaEvent_t>(event_));
+  } catch (...) {  // the device is lost
+  }
+}
+
+void StreamMark::set(void *stream) {
+  check_cuda(cudaEventRecord(static_cast<cudaEvent_t>(event_), static_cast<cudaStream_t>(stream)), "cudaEventRecord");
+}
+
+void StreamMark::hold_back(void *stream) const {
+  check_cuda(cudaStreamWaitEvent(static_cast<cudaStream_t>(stream), static_cast<cudaEvent_t>(event_), 0),
+             "cudaStreamWaitEvent");
+}
+
+void StreamMark::wait() const noexcept {
+  try {
+    const DeviceGuard guard(device_);
+    check_cuda(cudaEventSynchronize(static_cast<cudaEvent_t>(event_)), "cudaEventSynchronize");
+  } catch (...) {
+  }
+}
+
+void copy_to_host(int device, void *to, const void *from, size_t bytes) {
+  const DeviceGuard guard(device);
+  cudaStream_t stream = nullptr;
+  check_cuda(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "cudaStreamCreateWithFlags");
+  cudaError_t error = cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToHost, stream);
+  if (error == cudaSuccess) error = cudaStreamSynchronize(stream);
+  cudaStreamDestroy(stream);
+  check_cuda(error, "cudaMemcpyAsync");
+}
+
 CudaMemoryRequests cuda_memory_requests() { return {device_requests, pinned_requests}; }
 
 uint64_t DeviceMemory::free_bytes() {

@@ -53,6 +53,28 @@ class DeviceGuard {
   void *before_ = nullptr;  // CUcontext
 };
 
+// What a stream had been given when the mark was set. Streams are cudaStream_t. What may fail throws Error.
+class StreamMark {
+ public:
+  explicit StreamMark(int device);
+  ~StreamMark();
+  StreamMark(const StreamMark &) = delete;
+  StreamMark &operator=(const StreamMark &) = delete;
+
+  void set(void *stream);
+  // What the stream is given from now on is done after that. Nobody waits on the CPU.
+  void hold_back(void *stream) const;
+  // Until it is done, or the device is lost.
+  void wait() const noexcept;
+
+ private:
+  const int device_;
+  void *event_ = nullptr;  // cudaEvent_t
+};
+
+// Copies from memory of a device and waits for it, beside what its streams do. Throws Error.
+void copy_to_host(int device, void *to, const void *from, size_t bytes);
+
 // Sources for Arena.
 struct DeviceMemory {
   static constexpr const char *kName = "the GPU";

@@ -6,8 +6,7 @@
 #include "parallel/worker_threads.h"
 #include "quickses/quickses.h"
 #include "surface/memory/atom_set.h"
-#include "surface/mesh/mesh_pool.h"
-#include "surface/mesh/pick_boxes.h"
+#include "surface/mesh/mesh_memory.h"
 #include "surface/stages/appearance.h"
 
 #include <atomic>
@@ -22,6 +21,7 @@ struct FinishedMesh {
   PickBoxes boxes;             // beside it
   qses_delivery delivery;      // where it was wanted
   qses_device_mesh on_device;  // empty arrays unless settings.delivery asks for it
+  MeshShape shape;
   qses_report report;
 };
 
@@ -53,8 +53,8 @@ class SurfaceEngine {
   virtual qses_size_estimate estimate(const AtomSet &atoms, const Appearance &appearance, const qses_settings &settings,
                                       const std::atomic<bool> &stop) = 0;
 
-  // Takes the host memory of a finished mesh out of its slot. From any thread, also while other slots are computed.
-  virtual MeshLease keep(int slot) = 0;
+  // Takes the memory of a finished mesh out of its slot. From any thread, also while other slots are computed.
+  virtual MeshHold keep(int slot) = 0;
 
   virtual void enable_stage_times(bool enabled) = 0;
   // Called with the fraction done; empty: not at all.

@@ -88,7 +88,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     return out;
   }
 
-  MeshLease keep(int slot) override { return memory_.keep(slot); }
+  MeshHold keep(int slot) override { return memory_.keep(slot); }
 
   void enable_stage_times(bool enabled) override { timer_.enable(enabled); }
   void set_progress(std::function<void(double)> progress) override { progress_.set(std::move(progress)); }
@@ -119,6 +119,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
       } catch (const MemoryRefused &refused) {
         if (!refused.again()) step = next_step(in, step);
         if (step < kMemoryPlanCount) continue;
+        learnt_ = {};  // what did not do at all teaches nothing
         name_smallest_budget(in);
         throw;
       }
@@ -131,7 +132,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     if (in.atoms.count != learnt_.atoms || p.max_radius != learnt_.reach) rooms_.forget();
     if (in.atoms.count != learnt_.atoms || p.max_radius != learnt_.reach || p.spacing != learnt_.spacing)
       learnt_ = {in.atoms.count, p.max_radius, p.spacing, 0, 0, false};
-    if (learnt_.step > 0 && executor_.arena().limit() > learnt_.limit / 4 * 5) learnt_.step = 0;
+    if (learnt_.step > 0 && executor_.arena().share() > learnt_.share / 4 * 5) learnt_.step = 0;
     return learnt_.step;
   }
 
@@ -143,7 +144,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     for (++step; step + 1 < kMemoryPlanCount && knows_size(); ++step)
       if (forecast(in, kMemoryPlans[step], limit) <= limit) break;
     learnt_.step = std::min(step, kMemoryPlanCount - 1);
-    learnt_.limit = limit;
+    learnt_.share = executor_.arena().share();
     learnt_.is_proven = false;
     return step;
   }
@@ -192,6 +193,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
       memory_.finish(built, in.settings, &out.on_host, &out.boxes, &out.on_device);
       timer_.end();
       out.delivery = in.settings.delivery;
+      out.shape = built.shape;
       out.on_host.spacing = out.on_device.mesh.spacing = spacings[k];
       report.compute_ms = milliseconds_since(start);
       start = std::chrono::steady_clock::now();
@@ -222,7 +224,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   // atoms before, nothing is predicted.
   void check_forecast(LevelWork<Executor, Timer> &work, const FrameInput &in) {
     auto &arena = executor_.arena();
-    const bool is_fine = work.parameters.spacing < kCheckedSpacing, is_short = arena.has_budget() || learnt_.limit > 0;
+    const bool is_fine = work.parameters.spacing < kCheckedSpacing, is_short = arena.has_budget() || learnt_.share > 0;
     if (learnt_.is_proven || in.settings.method == QSES_METHOD_GRID || !(is_fine || is_short)) return;
     facts_.size = predict_size(work);
     if (is_short && forecast(in, work.plan, arena.limit()) > kMemoryCertainty * static_cast<double>(arena.limit()))
@@ -316,7 +318,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     size_t atoms;
     float reach, spacing;
     size_t step;
-    uint64_t limit;
+    uint64_t share;
     bool is_proven;
   } learnt_{};
   WorkFacts facts_{};  // of the level that is being made

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The header as a C99 program sees it, against the library as users link it. */
 #include <quickses/quickses.h>
+#include <quickses/quickses_gpu.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -90,6 +91,10 @@ int main(void) {
   uint32_t v, t;
 
   CHECK(qses_abi_version() == QSES_ABI_VERSION);
+  CHECK(qses_gpu_abi_version() == QSES_GPU_ABI_VERSION);
+  CHECK(qses_gpu_check_graphics((qses_graphics)0) == QSES_INVALID_ARGUMENT);
+  CHECK(strstr(qses_last_error(), "graphics is 0") != NULL);
+  CHECK(qses_gpu_check_graphics((qses_graphics)3) == QSES_INVALID_ARGUMENT);
   CHECK(strlen(qses_version()) >= 5);
   qses_backend_description_init(&description);
   CHECK(qses_backend_info(QSES_BACKEND_CPU, &description) == QSES_OK);

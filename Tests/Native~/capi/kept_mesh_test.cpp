@@ -197,22 +197,40 @@ TEST(KeptMesh, EmptyOnesAreFine) {
   qses_kept_mesh_destroy(nullptr);
 }
 
-TEST(KeptMesh, DeviceMeshesAreRefused) {
-  if (tested_backend() != QSES_BACKEND_CUDA) GTEST_SKIP() << "there is no device";
+TEST(KeptMesh, NothingIsKeptOfNone) {
   const Context context;
   set_atoms(context, crambin());
   qses_settings s = all_attributes();
-  s.delivery = QSES_DELIVERY_DEVICE;
+  s.delivery = QSES_DELIVERY_NONE;
   compute_view(context, s);
   const Kept kept;
-  expect_error(qses_keep(context, kept), QSES_INVALID_ARGUMENT, {"DEVICE"});
-  qses_device_mesh still;
-  qses_device_mesh_init(&still);
-  expect_ok(qses_collect_device(context, &still));
-  s.delivery = QSES_DELIVERY_BOTH;
+  expect_error(qses_keep(context, kept), QSES_INVALID_ARGUMENT, {"NONE"});
+  expect_error(qses_kept_mesh_download(kept), QSES_NO_RESULT, {"nothing is kept"});
+  expect_error(qses_kept_mesh_download(nullptr), QSES_INVALID_ARGUMENT, {"kept is NULL"});
+  s.delivery = QSES_DELIVERY_HOST;
   const Copy before(compute_view(context, s));
   expect_ok(qses_keep(context, kept));
+  expect_ok(qses_kept_mesh_download(kept));  // it is there already
   EXPECT_TRUE(Copy(kept.view()) == before);
+}
+
+TEST(KeptMesh, ComesFromTheDeviceWhenAskedFor) {
+  if (tested_backend() != QSES_BACKEND_CUDA) GTEST_SKIP() << "there is no device";
+  auto context = std::make_unique<Context>();
+  set_atoms(*context, crambin());
+  qses_settings s = all_attributes();
+  const Copy expected(compute_view(*context, s));
+  for (const qses_delivery delivery : {QSES_DELIVERY_DEVICE, QSES_DELIVERY_BOTH}) {
+    s.delivery = delivery;
+    compute_view(*context, s);
+    const Kept kept;
+    expect_ok(qses_keep(*context, kept));
+    EXPECT_EQ(kept.view().vertex_count > 0 && !kept.view().positions, delivery == QSES_DELIVERY_DEVICE);
+    for (int frame = 0; frame < 4; ++frame) compute_view(*context, s);
+    if (delivery == QSES_DELIVERY_BOTH) context.reset();  // what is kept lives on
+    expect_ok(qses_kept_mesh_download(kept));
+    EXPECT_TRUE(Copy(kept.view()) == expected);
+  }
 }
 
 // ---- painting

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Runs the C of README.md, Documentation~/api.md and Documentation~/trajectories.md, as it stands there.
  *   page_examples_test STRUCTURE        STRUCTURE: 1CRN.pdb. Writes top.gro and md.xtc where it is started. */
-#include <quickses/quickses.h>
+#include <quickses/quickses_gpu.h>
 
 #include <stdio.h>
 
@@ -24,7 +24,10 @@ size_t count_triangles(const qses_context *context);
 int ask_for_surface(qses_context *context, uint32_t frame);
 int take_surface(qses_context *context, qses_mesh *mesh);
 int stop(qses_context *context);
-int compute_on_device(qses_context *context, qses_device_mesh *mesh);
+int send_to_gpu(qses_context *context, qses_kept_mesh *kept, qses_gpu_target *target, const qses_gpu_buffers *buffers,
+                qses_mesh *mesh);
+int32_t event_of_frame(void);
+void run_event(int32_t event);
 int load_atoms(qses_context *context, const char *path);
 int show_chain(qses_context *context, const qses_structure *structure);
 int print_areas(qses_context *context, const void *bytes, size_t size, qses_trajectory_format format);
@@ -76,6 +79,28 @@ static void write_trajectory(void) {
     for (k = 0; k < 9; ++k) put_float(file, xyz[k] + 0.05f * (float)frame);
   }
   fclose(file);
+}
+
+/* A mesh that was not made on a GPU can't stay there. */
+static void show_from_host(qses_context *context) {
+  qses_gpu_target *target = NULL;
+  qses_kept_mesh *kept = NULL;
+  qses_gpu_buffers buffers;
+  qses_mesh mesh;
+  qses_gpu_buffers_init(&buffers);
+  if (qses_gpu_target_create(&target) != QSES_OK) {
+    CHECK(strstr(qses_last_error(), "without CUDA") != NULL);
+    return;
+  }
+  CHECK(qses_kept_mesh_create(&kept) == QSES_OK);
+  CHECK(ask_for_surface(context, 9) == QSES_OK);
+  CHECK(qses_wait(context, -1, NULL) == QSES_OK);
+  CHECK(send_to_gpu(context, kept, target, &buffers, &mesh) == -1);
+  CHECK(qses_kept_mesh_view(kept, &mesh) == QSES_OK && mesh.positions != NULL);
+  CHECK(event_of_frame() == 0);
+  run_event(1); /* there is nothing to do */
+  qses_kept_mesh_destroy(kept);
+  qses_gpu_target_destroy(target);
 }
 
 static void run_api_page(qses_context *context, const char *path) {
@@ -136,14 +161,7 @@ static void run_api_page(qses_context *context, const char *path) {
   CHECK(levels >= 1 && levels <= 3);
   CHECK(ask_for_surface(context, 8) == QSES_OK);
   CHECK(stop(context) == 0);
-  {
-    qses_backend backend;
-    qses_device_mesh on_device;
-    const int is_there = compute_on_device(context, &on_device);
-    CHECK(qses_context_info(context, &backend, NULL) == QSES_OK);
-    CHECK(is_there == (backend == QSES_BACKEND_CUDA));
-    CHECK(!is_there || on_device.mesh.positions);
-  }
+  show_from_host(context);
 }
 
 int main(int argc, char **argv) {

@@ -3,24 +3,17 @@
 // kernels do nothing. FAKE_VERSION: of CUDA, as cuDriverGetVersion counts; 0: it fails as cuInit. FAKE_START: what
 // cuInit returns. FAKE_DEVICES: how many GPUs, else one. To leave a function out, rename it by a macro
 // (-DcuMemAlloc_v2=left_out).
-#include "cudart/driver.h"
+#include "fake_driver.h"
 
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdlib>
 #include <cstring>
+#include <map>
 #include <mutex>
 
-#if !defined(FAKE_DEVICES)
-#define FAKE_DEVICES 1
-#endif
-
-#if defined(_WIN32)
-#define FAKE_API extern "C" __declspec(dllexport)
-#else
-#define FAKE_API extern "C" __attribute__((visibility("default")))
-#endif
+using namespace fake_driver;
 
 namespace {
 
@@ -28,23 +21,78 @@ std::atomic<int> calls{0}, good_calls{-1}, failure{0};
 thread_local CUcontext current = nullptr;
 int contexts[FAKE_DEVICES], the_module, the_function;
 std::atomic<int> retained[FAKE_DEVICES];
+std::atomic<int> streams_and_events{0};
+std::atomic<uintptr_t> last_handle{0};
 
 // Of cuModuleLoadData.
 std::mutex mutex;
 std::condition_variable changed;
 bool is_held = false, is_compiling = false;
 
-// What any function returns: the failure from one call on, for all the calls after it or for that one.
-CUresult next(bool *fails = nullptr) {
+// What cuMemAlloc and cuMemHostAlloc have given: how many bytes by address.
+std::mutex memory_mutex;
+std::map<CUdeviceptr, size_t> memory_given;
+
+CUresult give_memory(size_t bytes, void **memory) {
+  bool fails = false;
+  const CUresult result = next(&fails);
+  if (fails) return result;
+  if (!(*memory = std::calloc(bytes, 1))) return CUDA_ERROR_OUT_OF_MEMORY;
+  const std::lock_guard<std::mutex> lock(memory_mutex);
+  memory_given[address(*memory)] = bytes;
+  return result;
+}
+
+CUresult take_memory_back(void *memory) {
+  const std::lock_guard<std::mutex> lock(memory_mutex);
+  if (memory_given.erase(address(memory)) == 0) return CUDA_ERROR_INVALID_VALUE;
+  std::free(memory);
+  return next();
+}
+
+bool is_given(CUdeviceptr memory, size_t bytes) {
+  const std::lock_guard<std::mutex> lock(memory_mutex);
+  const auto after = memory_given.upper_bound(memory);
+  if (after == memory_given.begin()) return false;
+  const auto &[begin, size] = *std::prev(after);
+  return memory + bytes <= begin + size;
+}
+
+// What the GPU reads or writes must be memory that it has at that time.
+bool is_there(CUdeviceptr memory, size_t bytes, CUstream stream) {
+  return is_given(memory, bytes) || is_mapped_for(memory, bytes, stream);
+}
+
+template <class Copy>
+CUresult copy_if(bool is_allowed, const Copy &copy) {
+  if (!is_allowed) return CUDA_ERROR_ILLEGAL_ADDRESS;
+  copy();
+  return next();
+}
+
+template <class Handle>
+CUresult make(Handle *handle) {
+  bool fails = false;
+  const CUresult result = next(&fails);
+  if (fails) return result;
+  ++streams_and_events;
+  *handle = reinterpret_cast<Handle>(++last_handle);
+  return result;
+}
+
+CUresult end_one() {
+  --streams_and_events;
+  return next();
+}
+
+}  // namespace
+
+CUresult fake_driver::next(bool *fails) {
   const int call = calls++, good = good_calls.load(), error = failure.load();
   const bool now = good >= 0 && (error > 0 ? call >= good : call == good);
   if (fails) *fails = now;
   return now ? static_cast<CUresult>(error > 0 ? error : -error) : CUDA_SUCCESS;
 }
-
-void *host(CUdeviceptr p) { return reinterpret_cast<void *>(static_cast<uintptr_t>(p)); }
-
-}  // namespace
 
 // The first `good` calls from now on succeed; those that follow return `error`, and where it is negative, only the next
 // one returns -error. good < 0: nothing fails. Returns how many calls there were since the last time.
@@ -58,6 +106,8 @@ FAKE_API int fake_driver_fail_after(int good, int error) {
 
 // How often the context of a device was asked for.
 FAKE_API int fake_driver_retained(int device) { return retained[device]; }
+// How many streams and events there are.
+FAKE_API int fake_driver_streams_and_events() { return streams_and_events; }
 // Whether the calling thread has one.
 FAKE_API int fake_driver_has_context() { return current ? 1 : 0; }
 
@@ -90,7 +140,7 @@ FAKE_API CUresult CUDAAPI cuGetErrorString(CUresult, const char **text) {
 
 // ---- devices and contexts
 FAKE_API CUresult CUDAAPI cuDeviceGet(CUdevice *device, int ordinal) {
-  *device = ordinal;
+  *device = device_of(ordinal);
   return next();
 }
 FAKE_API CUresult CUDAAPI cuDeviceGetCount(int *count) {
@@ -110,8 +160,9 @@ FAKE_API CUresult CUDAAPI cuDeviceTotalMem_v2(size_t *bytes, CUdevice) {
   return next();
 }
 FAKE_API CUresult CUDAAPI cuDevicePrimaryCtxRetain(CUcontext *context, CUdevice device) {
-  ++retained[device];
-  *context = reinterpret_cast<CUcontext>(&contexts[device]);
+  const int ordinal = device - kFirstDevice;
+  ++retained[ordinal];
+  *context = reinterpret_cast<CUcontext>(&contexts[ordinal]);
   return next();
 }
 FAKE_API CUresult CUDAAPI cuCtxGetCurrent(CUcontext *context) {
@@ -125,9 +176,9 @@ FAKE_API CUresult CUDAAPI cuCtxSetCurrent(CUcontext context) {
   return result;
 }
 FAKE_API CUresult CUDAAPI cuCtxGetDevice(CUdevice *device) {
-  *device = 0;
+  *device = device_of(0);
   for (int k = 0; k < FAKE_DEVICES; ++k)
-    if (current == reinterpret_cast<CUcontext>(&contexts[k])) *device = k;
+    if (current == reinterpret_cast<CUcontext>(&contexts[k])) *device = device_of(k);
   const CUresult result = next();
   return result == CUDA_SUCCESS && !current ? CUDA_ERROR_INVALID_CONTEXT : result;
 }
@@ -160,65 +211,48 @@ FAKE_API CUresult CUDAAPI cuOccupancyMaxActiveBlocksPerMultiprocessorWithFlags(i
 }
 FAKE_API CUresult CUDAAPI cuLaunchKernel(CUfunction, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned,
                                          unsigned, CUstream, void **, void **) {
+  note_launch();
   return next();
 }
 
 // ---- memory: zeros, so that what a kernel should have counted is nothing
 FAKE_API CUresult CUDAAPI cuMemAlloc_v2(CUdeviceptr *memory, size_t bytes) {
-  bool fails = false;
-  const CUresult result = next(&fails);
-  if (!fails) *memory = reinterpret_cast<uintptr_t>(std::calloc(bytes, 1));
-  return fails || *memory ? result : CUDA_ERROR_OUT_OF_MEMORY;
+  void *given = nullptr;
+  const CUresult result = give_memory(bytes, &given);
+  if (given) *memory = address(given);
+  return result;
 }
-FAKE_API CUresult CUDAAPI cuMemFree_v2(CUdeviceptr memory) {
-  std::free(host(memory));
-  return next();
-}
-FAKE_API CUresult CUDAAPI cuMemHostAlloc(void **memory, size_t bytes, unsigned) {
-  bool fails = false;
-  const CUresult result = next(&fails);
-  if (!fails) *memory = std::calloc(bytes, 1);
-  return fails || *memory ? result : CUDA_ERROR_OUT_OF_MEMORY;
-}
-FAKE_API CUresult CUDAAPI cuMemFreeHost(void *memory) {
-  std::free(memory);
-  return next();
-}
+FAKE_API CUresult CUDAAPI cuMemFree_v2(CUdeviceptr memory) { return take_memory_back(host(memory)); }
+FAKE_API CUresult CUDAAPI cuMemHostAlloc(void **memory, size_t bytes, unsigned) { return give_memory(bytes, memory); }
+FAKE_API CUresult CUDAAPI cuMemFreeHost(void *memory) { return take_memory_back(memory); }
 FAKE_API CUresult CUDAAPI cuMemGetInfo_v2(size_t *free, size_t *total) {
   *free = size_t(96) << 20;
   *total = size_t(128) << 20;
   return next();
 }
-FAKE_API CUresult CUDAAPI cuMemcpyHtoDAsync_v2(CUdeviceptr to, const void *from, size_t bytes, CUstream) {
-  std::memcpy(host(to), from, bytes);
-  return next();
+FAKE_API CUresult CUDAAPI cuMemcpyHtoDAsync_v2(CUdeviceptr to, const void *from, size_t bytes, CUstream stream) {
+  return copy_if(is_there(to, bytes, stream), [&] { std::memcpy(host(to), from, bytes); });
 }
-FAKE_API CUresult CUDAAPI cuMemcpyDtoHAsync_v2(void *to, CUdeviceptr from, size_t bytes, CUstream) {
-  std::memcpy(to, host(from), bytes);
-  return next();
+FAKE_API CUresult CUDAAPI cuMemcpyDtoHAsync_v2(void *to, CUdeviceptr from, size_t bytes, CUstream stream) {
+  return copy_if(is_there(from, bytes, stream), [&] { std::memcpy(to, host(from), bytes); });
 }
-FAKE_API CUresult CUDAAPI cuMemcpyDtoDAsync_v2(CUdeviceptr to, CUdeviceptr from, size_t bytes, CUstream) {
-  std::memmove(host(to), host(from), bytes);
-  return next();
+FAKE_API CUresult CUDAAPI cuMemcpyDtoDAsync_v2(CUdeviceptr to, CUdeviceptr from, size_t bytes, CUstream stream) {
+  return copy_if(is_there(from, bytes, stream) && is_there(to, bytes, stream),
+                 [&] { std::memmove(host(to), host(from), bytes); });
 }
-FAKE_API CUresult CUDAAPI cuMemsetD8Async(CUdeviceptr memory, unsigned char byte, size_t bytes, CUstream) {
-  std::memset(host(memory), byte, bytes);
-  return next();
+FAKE_API CUresult CUDAAPI cuMemsetD8Async(CUdeviceptr memory, unsigned char byte, size_t bytes, CUstream stream) {
+  return copy_if(is_there(memory, bytes, stream), [&] { std::memset(host(memory), byte, bytes); });
 }
 
-// ---- streams and events
-FAKE_API CUresult CUDAAPI cuStreamCreate(CUstream *stream, unsigned) {
-  *stream = nullptr;
-  return next();
-}
-FAKE_API CUresult CUDAAPI cuStreamDestroy_v2(CUstream) { return next(); }
+// ---- streams and events: what a stream is given is done at once
+FAKE_API CUresult CUDAAPI cuStreamCreate(CUstream *stream, unsigned) { return make(stream); }
+FAKE_API CUresult CUDAAPI cuStreamDestroy_v2(CUstream) { return end_one(); }
 FAKE_API CUresult CUDAAPI cuStreamSynchronize(CUstream) { return next(); }
-FAKE_API CUresult CUDAAPI cuEventCreate(CUevent *event, unsigned) {
-  *event = nullptr;
-  return next();
-}
-FAKE_API CUresult CUDAAPI cuEventDestroy_v2(CUevent) { return next(); }
+FAKE_API CUresult CUDAAPI cuStreamWaitEvent(CUstream, CUevent, unsigned) { return next(); }
+FAKE_API CUresult CUDAAPI cuEventCreate(CUevent *event, unsigned) { return make(event); }
+FAKE_API CUresult CUDAAPI cuEventDestroy_v2(CUevent) { return end_one(); }
 FAKE_API CUresult CUDAAPI cuEventRecord(CUevent, CUstream) { return next(); }
+FAKE_API CUresult CUDAAPI cuEventQuery(CUevent) { return next(); }
 FAKE_API CUresult CUDAAPI cuEventSynchronize(CUevent) { return next(); }
 FAKE_API CUresult CUDAAPI cuEventElapsedTime(float *milliseconds, CUevent, CUevent) {
   *milliseconds = 1;

@@ -2,25 +2,16 @@
 // The library with drivers that do not do (fake_driver.cpp): what is wrong is said, and the CPU takes over. CTest puts
 // one of them in the place of NVIDIA's and says in QUICKSES_FAKE_DRIVER which.
 #include "capi/capi_fixture.h"
+#include "cudart/fake_driver_functions.h"
 
 #include <cstdio>
 #include <cstdlib>
 #include <thread>
 
-#if defined(_WIN32)
-#define WIN32_LEAN_AND_MEAN
-#include <windows.h>
-#else
-#include <dlfcn.h>
-#endif
-
 namespace {
 
 using namespace capi_fixture;
-
-#define REQUIRE_DRIVER(name)                                                                         \
-  if (const char *given = std::getenv("QUICKSES_FAKE_DRIVER"); !given || std::string(given) != name) \
-  GTEST_SKIP() << "skipped: is for the fake driver " name
+using namespace fake_driver;
 
 qses_status create(qses_backend backend, qses_context **context, int device = 0) {
   qses_context_options options;
@@ -61,12 +52,6 @@ void expect_refused(const std::string &reason) {
   expect_the_cpu_takes_over(reason);
 }
 
-#if defined(_WIN32)
-constexpr const char *kLibrary = "nvcuda.dll";
-#else
-constexpr const char *kLibrary = "libcuda.so.1";
-#endif
-
 TEST(FakeDriver, NoneIsInstalled) {
   REQUIRE_DRIVER("none");
 #if !defined(_WIN32)
@@ -98,19 +83,6 @@ TEST(FakeDriver, Stub) {
 }
 
 // ---- a driver whose calls fail, from any one of them on -------------------------------------------------------------
-
-// A function that only the fake has.
-template <class... Arguments>
-int tell_driver(const char *name, Arguments... arguments) {
-  using Function = int (*)(Arguments...);
-#if defined(_WIN32)
-  void *const found = reinterpret_cast<void *>(GetProcAddress(GetModuleHandleA(kLibrary), name));
-#else
-  void *const found = dlsym(dlopen(kLibrary, RTLD_NOW), name);
-#endif
-  return reinterpret_cast<Function>(found)(arguments...);
-}
-int fail_after(int good, int error) { return tell_driver("fake_driver_fail_after", good, error); }
 
 // Allowed is success, or one of these errors with a sentence.
 void expect_said(qses_status status) {

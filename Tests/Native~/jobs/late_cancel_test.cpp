@@ -82,7 +82,7 @@ class StoppingEngine : public quickses::SurfaceEngine {
                               const std::atomic<bool> &) override {
     return {};
   }
-  quickses::MeshLease keep(int) override { return {}; }
+  quickses::MeshHold keep(int) override { return {}; }
   void enable_stage_times(bool) override {}
   void set_progress(std::function<void(double)>) override {}
 };

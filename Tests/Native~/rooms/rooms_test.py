@@ -25,10 +25,11 @@ ROOMS = {
     "surface/cpu": "parallel surface/geometry surface/memory surface/mesh surface/stages",
     "surface/cuda": "parallel surface/geometry surface/memory surface/mesh surface/stages",
     "surface": "include parallel surface/memory surface/mesh surface/stages surface/methods surface/cpu surface/cuda",
-    "kept": "include surface/mesh surface/stages",
+    "kept": "include parallel surface/mesh surface/stages",
+    "graphics": "include cudart parallel surface/mesh surface/stages kept",
     "jobs": "include parallel surface kept",
     "io": "",
-    "capi": "include parallel surface/cpu surface kept jobs io",
+    "capi": "include parallel surface/cpu surface kept graphics jobs io",
     "cli": "include io",
 }
 # What only the CPU's side may see.

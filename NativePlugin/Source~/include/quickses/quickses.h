@@ -3,8 +3,8 @@
  * QuickSES for Unity: molecular surfaces as closed triangle meshes.
  *
  * This header is the manual of the library. It is C99 and needs nothing but <stddef.h>, <stdint.h> and <string.h>.
- * quickses_gpu.h beside it, which is experimental, is for meshes that go from CUDA to a graphics API without leaving the
- * GPU. Documentation~/api.md has an example for each group of functions.
+ * quickses_gpu.h beside it, which is experimental, is for meshes that go from CUDA to a graphics API without leaving
+ * the GPU. Documentation~/api.md has an example for each group of functions.
  *
  * In one page
  *   qses_context_options options;            qses_settings settings;            qses_mesh mesh;
@@ -113,7 +113,7 @@ typedef enum qses_status {
   QSES_NO_BOX = 10,             /* the trajectory has no periodic box, so there is nothing to unwrap */
   QSES_NO_ATOMS = 11,           /* qses_set_atoms has not been called for this context */
   QSES_NOTHING_NEW = 12,        /* qses_collect: no level was finished since the last call. Not an error in itself */
-  QSES_BUSY = 13                /* what is there already has to be done first: try again later. Not an error in itself */
+  QSES_BUSY = 13 /* what is there already has to be done first: try again later. Not an error in itself */
 } qses_status;
 
 /* 1 (yes) or 0 (no); any other number that is given counts as 1. */
@@ -608,7 +608,8 @@ QSES_API qses_status qses_poll(const qses_context *context, qses_progress *progr
  * Asking often is cheap. Errors: NOTHING_NEW (not an error in itself), INVALID_ARGUMENT. */
 QSES_API qses_status qses_collect(qses_context *context, qses_mesh *mesh);
 
-/* A mesh on a CUDA device, made with settings.delivery DEVICE or BOTH. It is finished: who reads it waits for nothing. */
+/* A mesh on a CUDA device, made with settings.delivery DEVICE or BOTH. It is finished: who reads it waits for nothing.
+ */
 typedef struct qses_device_mesh {
   uint32_t struct_size; /* set by qses_device_mesh_init */
   int32_t device;       /* CUDA ordinal */
@@ -668,13 +669,14 @@ QSES_API void qses_kept_mesh_clear(qses_kept_mesh *kept);
  * Errors: INVALID_ARGUMENT (NULL; the mesh was made with settings.delivery NONE, so that there is none), NO_RESULT. */
 QSES_API qses_status qses_keep(qses_context *context, qses_kept_mesh *kept);
 
-/* Copies a mesh that is on the device only (settings.delivery DEVICE) into host memory, and waits for that: from then on
- * it has all that one of delivery BOTH has, the same bytes. Does nothing if it is there already, or empty. Changes the
- * kept mesh. Errors: INVALID_ARGUMENT, NO_RESULT (nothing is kept), OUT_OF_MEMORY, DEVICE_ERROR. */
+/* Copies a mesh that is on the device only (settings.delivery DEVICE) into host memory, and waits for that: from then
+ * on it has all that one of delivery BOTH has, the same bytes. Does nothing if it is there already, or empty. Changes
+ * the kept mesh. Errors: INVALID_ARGUMENT, NO_RESULT (nothing is kept), OUT_OF_MEMORY, DEVICE_ERROR. */
 QSES_API qses_status qses_kept_mesh_download(qses_kept_mesh *kept);
 
 /* A view of the mesh; an empty mesh (vertex_count 0) if nothing is kept. While it is on the device only, counts and
- * bounds are there, but no arrays, and the three functions below give INVALID_ARGUMENT. Errors: INVALID_ARGUMENT. */
+ * bounds are there, but no arrays, and painting, filtering and picking are INVALID_ARGUMENT. Errors: INVALID_ARGUMENT.
+ */
 QSES_API qses_status qses_kept_mesh_view(const qses_kept_mesh *kept, qses_mesh *mesh);
 
 /* What qses_context_report said about it. Errors: INVALID_ARGUMENT, NO_RESULT (nothing is kept). */

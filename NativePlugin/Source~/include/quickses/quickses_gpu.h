@@ -27,8 +27,9 @@
  *   they held before, or nothing of use if they are new.
  *
  * Graphics APIs
- *   OpenGL on Linux and Windows; Direct3D 11 on Windows, which nobody has run yet on a GPU: its order of calls is tested
- *   against stand-ins. Vulkan and Direct3D 12 would need memory that both sides import: Documentation~/gpu-delivery.md.
+ *   OpenGL on Linux and Windows; Direct3D 11 on Windows, which nobody has run yet on a GPU: its order of calls is
+ * tested against stand-ins. Vulkan and Direct3D 12 would need memory that both sides import:
+ * Documentation~/gpu-delivery.md.
  */
 #ifndef QUICKSES_QUICKSES_GPU_H
 #define QUICKSES_QUICKSES_GPU_H
@@ -92,17 +93,17 @@ QSES_API qses_status qses_gpu_target_set_look(qses_gpu_target *target, const qse
 
 /* Where a mesh goes. Buffers that are 0 are not written. */
 typedef struct qses_gpu_buffers {
-  uint32_t struct_size; /* set by qses_gpu_buffers_init */
-  qses_graphics graphics; /* default OPENGL */
-  uint64_t vertices;  /* positions and normals: INTERLEAVED or COMPACT, as the mesh has them. Never 0 */
-  uint64_t colors;    /* 4 bytes per vertex */
-  uint64_t owners;    /* uint32_t per vertex: the atom it belongs to */
-  uint64_t texcoords; /* 2 floats per vertex */
-  uint64_t indices;   /* uint32_t, 3 per triangle. Never 0 */
+  uint32_t struct_size;     /* set by qses_gpu_buffers_init */
+  qses_graphics graphics;   /* default OPENGL */
+  uint64_t vertices;        /* positions and normals: INTERLEAVED or COMPACT, as the mesh has them. Never 0 */
+  uint64_t colors;          /* 4 bytes per vertex */
+  uint64_t owners;          /* uint32_t per vertex: the atom it belongs to */
+  uint64_t texcoords;       /* 2 floats per vertex */
+  uint64_t indices;         /* uint32_t, 3 per triangle. Never 0 */
   uint64_t vertex_capacity; /* vertices for which each buffer of the first four has room */
   uint64_t index_capacity;  /* indices */
-  uint32_t generation; /* another number whenever one of the buffers was made anew: names and addresses come again, and
-                          CUDA would go on writing into the memory of the old one */
+  uint32_t generation;  /* another number whenever one of the buffers was made anew: names and addresses come again, and
+                           CUDA would go on writing into the memory of the old one */
   qses_bool clear_rest; /* 1: indices behind those of the mesh become 0, up to index_capacity, so that all of the buffer
                            can be drawn; default 0 */
 } qses_gpu_buffers;
@@ -130,9 +131,9 @@ typedef struct qses_gpu_status {
   int32_t submitted;    /* number of the event that the newest mesh waits for or has had; 0: none */
   int32_t done;         /* number of the last event that had a mesh for this target; 0: none */
   uint32_t waiting;     /* meshes that wait for their event */
-  qses_bool stopped;    /* 1: meshes have waited for an event longer than QSES_GPU_PATIENCE_MS, as they do while a window
-                           is minimised, and were let go. 0 again once an event runs; qses_gpu_next_event gives some to
-                           try with */
+  qses_bool stopped; /* 1: meshes have waited for an event longer than QSES_GPU_PATIENCE_MS, as they do while a window
+                        is minimised, and were let go. 0 again once an event runs; qses_gpu_next_event gives some to
+                        try with */
   uint32_t registrations; /* buffers that were made known to CUDA so far */
   float event_ms; /* of the thread that drew: how long it was in the last event, which may have had other targets too */
   float copy_ms;  /* of the GPU: the copies of the event before that one, those of other targets too; 0: not known */
@@ -145,8 +146,8 @@ static inline void qses_gpu_status_init(qses_gpu_status *status) { qses_clear(st
 /* How a target stands. From any thread before qses_gpu_target_destroy. Errors: INVALID_ARGUMENT. */
 QSES_API qses_status qses_gpu_target_status(const qses_gpu_target *target, qses_gpu_status *status);
 
-/* The number of the event that is to be issued now; 0: there is nothing to do. What is submitted later belongs to a later
- * event. Targets share events: one per frame suffices for all surfaces of a process. Errors: INVALID_ARGUMENT. */
+/* The number of the event that is to be issued now; 0: there is nothing to do. What is submitted later belongs to a
+ * later event. Targets share events: one per frame suffices for all surfaces of a process. Errors: INVALID_ARGUMENT. */
 QSES_API qses_status qses_gpu_next_event(int32_t *event);
 
 /* What runs an event on the thread that draws, where the graphics API's context is current: it does what was submitted

@@ -15,7 +15,7 @@ class MeshMemory<CpuKernelExecutor> {
   explicit MeshMemory(CpuKernelExecutor &) : meshes_(MeshPool::source<HostMemory>()) {}
 
   void use_slot(int slot) { meshes_.use_slot(slot); }
-  MeshLease keep(int slot) { return meshes_.keep(slot); }
+  MeshHold keep(int slot) { return {meshes_.keep(slot), {}, meshes_.share_pool()}; }
   uint64_t host_bytes() const { return meshes_.bytes(); }
   // Bytes of work that are not in the arena; those that are taken off a budget for it at first; and those that it would
   // have to leave as far as is known, where the pool of features is in the arena.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The meshes of the GPU: made on the device, their arrays behind each other so that one copy brings them to page-locked
 // memory. In pieces: the mesh is in page-locked memory from the beginning, which kernels reach as well, slowly; what
-// makes most of it goes through parts on the device. A mesh that is wanted on the device has memory of its slot there.
+// makes most of it goes through parts on the device. A mesh that is wanted on the device has memory of a pool there.
 #pragma once
 
 #include "parallel/cuda_executor.cuh"
@@ -12,46 +12,47 @@
 
 namespace quickses {
 
-// The memory of the meshes that stay on the device, one per slot.
-class DeviceMeshes {
- public:
-  void use_slot(int slot) { slot_ = slot; }
-  // Room for a mesh: as much as for any before, since which slot gets the finest level differs from frame to frame.
-  void *reserve(size_t bytes) {
-    largest_ = std::max(largest_, bytes);
-    if (mesh_[slot_].try_reserve(largest_)) return mesh_[slot_].data();
-    return mesh_[slot_].reserve(largest_ = bytes);
-  }
-  uint64_t bytes() const {
-    uint64_t sum = 0;
-    for (const auto &slot : mesh_) sum += slot.size();
-    return sum;
-  }
-  // Bytes of all slots once there is room for such a mesh.
-  uint64_t bytes_with(size_t bytes) const {
-    const size_t wanted = std::max(largest_, bytes), now = mesh_[slot_].size();
-    return this->bytes() - now + (now < wanted ? GrowingBuffer<DeviceMemory>::size_for(wanted) : now);
-  }
-
- private:
-  GrowingBuffer<DeviceMemory> mesh_[kMeshSlots];
-  size_t largest_ = 0;
-  int slot_ = 0;
-};
+// Memory of a device, for a pool: whoever gives it back last may be on any thread.
+inline MeshPool::Source device_meshes_of(int device) {
+  return {DeviceMemory::kName,
+          [device](size_t bytes) {
+            const DeviceGuard guard(device);
+            return DeviceMemory::acquire(bytes);
+          },
+          [device](MeshBuffer &buffer) {
+            if (buffer.readers) buffer.readers->wait();
+            buffer.readers.reset();
+            try {
+              const DeviceGuard guard(device);
+              DeviceMemory::release(buffer.memory);
+            } catch (const Error &) {  // the device is lost, and its memory with it
+            }
+          },
+          2};
+}
 
 template <>
 class MeshMemory<CudaExecutor> {
  public:
-  explicit MeshMemory(CudaExecutor &executor) : executor_(executor), host_meshes_(MeshPool::source<PinnedMemory>()) {}
+  explicit MeshMemory(CudaExecutor &executor)
+      : executor_(executor),
+        host_meshes_(MeshPool::source<PinnedMemory>()),
+        device_meshes_(device_meshes_of(executor.device())) {}
   ~MeshMemory() { DeviceMemory::release(table_); }
 
   void use_slot(int slot) {
     host_meshes_.use_slot(slot);
     device_meshes_.use_slot(slot);
   }
-  MeshLease keep(int slot) { return host_meshes_.keep(slot); }
-  // Whether meshes that are handed out stay on the device.
-  void keep_on_device(bool keep) { keep_ = keep; }
+  MeshHold keep(int slot) { return {host_meshes_.keep(slot), device_meshes_.keep(slot), host_meshes_.share_pool()}; }
+  // Whether meshes that are handed out stay on the device. What was given back since the last computation is the
+  // arena's again, within a budget.
+  void keep_on_device(bool keep) {
+    keep_ = keep;
+    if (!executor_.arena().has_budget()) return;
+    if (!keep) device_meshes_.pool().drop_spares();
+    executor_.arena().set_taken(device_meshes_.bytes());
+  }
   // What was allocated beside a mesh in pieces, or as one to be made into another, is given up.
   void forget_spills() { spilled_ = 0; }
   uint64_t host_bytes() const {
@@ -102,8 +103,8 @@ class MeshMemory<CudaExecutor> {
         executor_.download(memory, static_cast<const char *>(built.memory), arrays.bytes());
         host = arrays.view(memory);
       }
-      executor_.wait();
     }
+    executor_.wait();
     describe_mesh(built, to_host ? &host : nullptr, settings, mesh);
     *boxes = host.boxes;
     qses_device_mesh_init(on_device);
@@ -126,8 +127,15 @@ class MeshMemory<CudaExecutor> {
   // Room for a mesh that stays on the device. A budget covers it.
   void *keep(CudaExecutor &executor, const MeshArrays &arrays, bool in_pieces) {
     if (in_pieces) throw MemoryRefused("the mesh does not fit on the device, where it is wanted");
-    executor.arena().set_taken(device_meshes_.bytes_with(arrays.bytes()));
-    return device_meshes_.reserve(arrays.bytes());
+    device_meshes_.lease().give_back();
+    MeshPool &pool = device_meshes_.pool();
+    // Within a budget nothing is held ready that does not fit.
+    if (executor.arena().has_budget() && pool.bytes_with(arrays.bytes()) > pool.bytes()) pool.drop_spares();
+    executor.arena().set_taken(pool.bytes_with(arrays.bytes()));
+    void *const memory = device_meshes_.reserve(arrays.bytes());
+    if (const std::shared_ptr<const StreamMark> readers = device_meshes_.lease().take_readers())
+      readers->hold_back(executor.stream());
+    return memory;
   }
 
   // At most a mesh to be made into another one, its normals and those of the other one, sums and starts at a time.
@@ -137,8 +145,7 @@ class MeshMemory<CudaExecutor> {
   }
 
   CudaExecutor &executor_;
-  MeshLeases host_meshes_;
-  DeviceMeshes device_meshes_;
+  MeshLeases host_meshes_, device_meshes_;
   bool keep_ = false;
   std::deque<PinnedBuffer> spill_;
   size_t spilled_ = 0;

@@ -23,7 +23,7 @@ inline MeshShape shape_of(const qses_settings &s, bool has_colors) {
   shape.patches = s.patch_types != 0 && s.method == QSES_METHOD_EXACT;
   shape.reversed = s.winding == QSES_WINDING_REVERSED;
   shape.component_ids = s.component_ids != 0;
-  shape.boxes = s.pickable != 0 && s.delivery != QSES_DELIVERY_DEVICE;
+  shape.boxes = s.pickable != 0;
   return shape;
 }
 

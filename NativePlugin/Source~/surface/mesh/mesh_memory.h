@@ -47,6 +47,20 @@ inline MeshMemoryView describe_memory(const MeshArrays &arrays, size_t vertices,
   return mesh;
 }
 
+inline void point_at(const MeshView &arrays, const MeshShape &shape, qses_mesh *mesh) {
+  mesh->positions = arrays.positions;
+  mesh->normals = arrays.normals;
+  mesh->colors = reinterpret_cast<const uint8_t *>(arrays.colors);
+  mesh->texcoords = arrays.texcoords;
+  mesh->vertex_bytes = shape.layout == QSES_VERTICES_SEPARATE ? 0 : arrays.vertex_bytes;
+  mesh->owners = arrays.owners;
+  mesh->patches = arrays.patches;
+  mesh->indices = arrays.indices;
+  mesh->repeated = arrays.repeated;
+  mesh->repeated_count = shape.repeated;
+  mesh->component_ids = arrays.component_ids;
+}
+
 // Points the caller's view at a finished mesh. arrays: where they are; nullptr: not here.
 inline void describe_mesh(const MeshMemoryView &built, const MeshView *arrays, const qses_settings &settings,
                           qses_mesh *mesh) {
@@ -63,24 +77,19 @@ inline void describe_mesh(const MeshMemoryView &built, const MeshView *arrays, c
     mesh->bounds_min[d] = built.bounds.min[d];
     mesh->bounds_max[d] = built.bounds.max[d];
   }
-  if (!arrays) return;
-  mesh->positions = arrays->positions;
-  mesh->normals = arrays->normals;
-  mesh->colors = reinterpret_cast<const uint8_t *>(arrays->colors);
-  mesh->texcoords = arrays->texcoords;
-  mesh->vertex_bytes = built.shape.layout == QSES_VERTICES_SEPARATE ? 0 : arrays->vertex_bytes;
-  mesh->owners = arrays->owners;
-  mesh->patches = arrays->patches;
-  mesh->indices = arrays->indices;
-  mesh->repeated = arrays->repeated;
-  mesh->repeated_count = built.shape.repeated;
-  mesh->component_ids = arrays->component_ids;
+  if (arrays) point_at(*arrays, built.shape, mesh);
 }
 
-// The host memory of the meshes in the slots, as the pool gives it.
+// What is held of a mesh that has left its slot.
+struct MeshHold {
+  MeshLease on_host, on_device;
+  std::shared_ptr<MeshPool> host_pool;  // for a copy on the host, if it is only on the device
+};
+
+// The memory of the meshes in the slots, as the pool gives it.
 class MeshLeases {
  public:
-  explicit MeshLeases(const MeshPool::Source &source) : pool_(std::make_shared<MeshPool>(source)) {}
+  explicit MeshLeases(MeshPool::Source source) : pool_(std::make_shared<MeshPool>(std::move(source))) {}
   ~MeshLeases() { pool_->close(); }
   MeshLeases(const MeshLeases &) = delete;
   MeshLeases &operator=(const MeshLeases &) = delete;
@@ -98,6 +107,9 @@ class MeshLeases {
   }
   // Takes the mesh that is finished out of its slot. From any thread, while another slot is in use.
   MeshLease keep(int slot) { return std::move(leases_[slot]); }
+  MeshLease &lease() { return leases_[slot_]; }
+  MeshPool &pool() { return *pool_; }
+  std::shared_ptr<MeshPool> share_pool() const { return pool_; }
   uint64_t bytes() const { return pool_->bytes(); }
 
  private:

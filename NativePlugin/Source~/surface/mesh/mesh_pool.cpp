@@ -7,15 +7,14 @@
 namespace quickses {
 namespace {
 
-// Spares that are held back: levels of a ladder take one of each size. Their bytes are bounded too, in multiples of the
-// largest: while one is shown and one is on its way to where it is shown, two are made in turn.
-constexpr size_t kMostSpares = 12, kMostOfTheLargest = 4;
+// Spares that are held back: levels of a ladder take one of each size. Their bytes are bounded too.
+constexpr size_t kMostSpares = 12;
 // A small mesh must not carry a large buffer away: how many times too large one may be, and what is small anyway.
 constexpr size_t kMostTooLarge = 8, kSmall = size_t(1) << 20;
 
 }  // namespace
 
-MeshPool::MeshPool(const Source &source) : source_(source) { spares_.reserve(kMostSpares + 1); }
+MeshPool::MeshPool(Source source) : source_(std::move(source)) { spares_.reserve(kMostSpares + 1); }
 
 std::unique_ptr<MeshBuffer> MeshPool::take(size_t bytes) {
   std::unique_ptr<MeshBuffer> buffer = take_spare(bytes);
@@ -40,15 +39,20 @@ std::unique_ptr<MeshBuffer> MeshPool::take(size_t bytes) {
 
 std::unique_ptr<MeshBuffer> MeshPool::take_spare(size_t bytes) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  auto best = spares_.end();
-  for (auto spare = spares_.begin(); spare != spares_.end(); ++spare)
-    if ((*spare)->size >= bytes && (*spare)->size <= std::max(kSmall, kMostTooLarge * bytes) &&
-        (best == spares_.end() || (*spare)->size <= (*best)->size))
-      best = spare;
+  const auto best = spares_.begin() + (best_spare(bytes) - spares_.cbegin());
   if (best == spares_.end()) return nullptr;
   std::unique_ptr<MeshBuffer> buffer = std::move(*best);
   spares_.erase(best);
   return buffer;
+}
+
+MeshPool::Spares::const_iterator MeshPool::best_spare(size_t bytes) const {
+  auto best = spares_.cend();
+  for (auto spare = spares_.cbegin(); spare != spares_.cend(); ++spare)
+    if ((*spare)->size >= bytes && (*spare)->size <= std::max(kSmall, kMostTooLarge * bytes) &&
+        (best == spares_.cend() || (*spare)->size <= (*best)->size))
+      best = spare;
+  return best;
 }
 
 std::unique_ptr<MeshBuffer> MeshPool::oldest_spare() {
@@ -80,7 +84,7 @@ bool MeshPool::has_surplus() const {
     sum += spare->size;
     largest = std::max(largest, spare->size);
   }
-  return is_closed_ ? !spares_.empty() : spares_.size() > kMostSpares || sum > kMostOfTheLargest * largest;
+  return is_closed_ ? !spares_.empty() : spares_.size() > kMostSpares || sum > source_.most_of_the_largest * largest;
 }
 
 void MeshPool::close() noexcept {
@@ -88,12 +92,21 @@ void MeshPool::close() noexcept {
     const std::lock_guard<std::mutex> lock(mutex_);
     is_closed_ = true;
   }
+  drop_spares();
+}
+
+void MeshPool::drop_spares() noexcept {
   while (const std::unique_ptr<MeshBuffer> spare = oldest_spare()) release(*spare);
 }
 
 uint64_t MeshPool::bytes() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   return bytes_;
+}
+
+uint64_t MeshPool::bytes_with(size_t bytes) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return best_spare(bytes) != spares_.cend() ? bytes_ : bytes_ + GrowingBuffer<HostMemory>::size_for(bytes);
 }
 
 void MeshPool::count_numbers(int64_t bytes) {
@@ -106,7 +119,7 @@ void MeshPool::release(MeshBuffer &buffer) noexcept {
     const std::lock_guard<std::mutex> lock(mutex_);
     bytes_ -= buffer.size + buffer.components.size() + buffer.atom_areas.size();
   }
-  if (buffer.memory) source_.release(buffer.memory);
+  if (buffer.memory) source_.release(buffer);
 }
 
 MeshLease::MeshLease(std::shared_ptr<MeshPool> pool, size_t bytes) : buffer_(pool->take(bytes)) {

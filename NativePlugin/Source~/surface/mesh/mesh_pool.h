@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: MIT
-// Host memory for meshes that are handed out. Buffers go from hand to hand: the engine fills one, the job holds it
-// until it is collected, a kept mesh may hold it for long, also when the engine has gone; who lets go of it gives it
-// back.
+// Memory for meshes that are handed out, on the host or on a device. Buffers go from hand to hand: the engine fills
+// one, the job holds it until it is collected, a kept mesh may hold it for long, also when the engine has gone; who
+// lets go of it gives it back.
 #pragma once
 
 #include "parallel/growing_buffer.h"
 #include "parallel/host_memory.h"
 #include "parallel/span.h"
 
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <vector>
 
 namespace quickses {
+
+class StreamMark;
 
 // Meshes are made in numbered slots. With three of them one can be written while another one waits to be collected and
 // the caller still reads the third.
@@ -22,23 +25,26 @@ struct MeshBuffer {
   void *memory = nullptr;
   size_t size = 0;
   GrowingBuffer<HostMemory> components, atom_areas;
+  std::shared_ptr<const StreamMark> readers;  // on a device: streams read it until then; null: none does
 };
 
 // All functions may be called from any thread.
 class MeshPool {
  public:
-  // Static functions of a source of Arena.
   struct Source {
     const char *name;
-    void *(*acquire)(size_t);
-    void (*release)(void *);
+    std::function<void *(size_t)> acquire;
+    std::function<void(MeshBuffer &)> release;  // its memory; must not throw
+    size_t most_of_the_largest;                 // spares together, as a multiple of the largest of them
   };
+  // Of a source of Arena, on the host.
   template <class AnySource>
   static Source source() {
-    return {AnySource::kName, AnySource::acquire, AnySource::release};
+    // While one is shown and one is on its way to where it is shown, two are made in turn.
+    return {AnySource::kName, AnySource::acquire, [](MeshBuffer &buffer) { AnySource::release(buffer.memory); }, 4};
   }
 
-  explicit MeshPool(const Source &source);
+  explicit MeshPool(Source source);
   ~MeshPool() { close(); }
   MeshPool(const MeshPool &) = delete;
   MeshPool &operator=(const MeshPool &) = delete;
@@ -50,13 +56,16 @@ class MeshPool {
   // Nobody will take any more: spares are released, and what is given back from now on.
   void close() noexcept;
 
-  uint64_t bytes() const;  // of spare buffers and of those that are out
+  uint64_t bytes() const;                   // of spare buffers and of those that are out
+  uint64_t bytes_with(size_t bytes) const;  // once there is room for such a mesh as well
   void count_numbers(int64_t bytes);
+  void drop_spares() noexcept;
 
  private:
   using Spares = std::vector<std::unique_ptr<MeshBuffer>>;
   void release(MeshBuffer &buffer) noexcept;
-  bool has_surplus() const;  // the mutex is held
+  bool has_surplus() const;                               // the mutex is held, for the next too
+  Spares::const_iterator best_spare(size_t bytes) const;  // end: none fits
   std::unique_ptr<MeshBuffer> take_spare(size_t bytes);
   std::unique_ptr<MeshBuffer> oldest_spare();  // out of the list; null if there is none
 
@@ -80,6 +89,10 @@ class MeshLease {
   bool is_empty() const { return !buffer_; }
   void *memory() const { return buffer_->memory; }
   size_t size() const { return buffer_ ? buffer_->size : 0; }
+  // On a device: streams read the memory until the mark. One thread at a time.
+  void note_readers(std::shared_ptr<const StreamMark> readers) const { buffer_->readers = std::move(readers); }
+  // Who writes there has to be held back until then; null: by nobody. Are forgotten.
+  std::shared_ptr<const StreamMark> take_readers() { return std::move(buffer_->readers); }
   // What there is to say about a mesh besides its arrays.
   enum Numbers { kComponents, kAtomAreas };
   // Copies it into memory of its own. Throws MemoryRefused.

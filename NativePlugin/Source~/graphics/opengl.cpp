@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// OpenGL: CUDA Runtime API, "OpenGL Interoperability". Declared here as cuda_gl_interop.h does, which asks for GL's own
+// headers.
+#include "cudart/driver.h"
+#include "graphics/graphics_api.h"
+#include "parallel/cuda_memory.h"
+
+#include <cuda_runtime_api.h>
+
+extern "C" {
+cudaError_t CUDARTAPI cudaGLGetDevices(unsigned *count, int *devices, unsigned room, unsigned list);
+cudaError_t CUDARTAPI cudaGraphicsGLRegisterBuffer(cudaGraphicsResource **resource, unsigned buffer, unsigned flags);
+}
+
+namespace quickses {
+namespace {
+
+std::string refusal() {
+  return cudart::driver().has_opengl() ? "" : "the NVIDIA driver can't share buffers with OpenGL";
+}
+
+std::vector<int> drawing_devices(uint64_t) {
+  constexpr unsigned kAll = 1;  // cudaGLDeviceListAll
+  std::vector<int> devices(16);
+  unsigned count = 0;
+  const cudaError_t error = cudaGLGetDevices(&count, devices.data(), static_cast<unsigned>(devices.size()), kAll);
+  if (error == cudaErrorNoDevice)
+    count = 0, cudaGetLastError();  // something else draws
+  else
+    check_cuda(error, "cudaGLGetDevices");
+  devices.resize(count);
+  return devices;
+}
+
+cudaGraphicsResource *register_buffer(uint64_t buffer) {
+  cudaGraphicsResource *resource = nullptr;
+  check_cuda(
+      cudaGraphicsGLRegisterBuffer(&resource, static_cast<unsigned>(buffer), cudaGraphicsRegisterFlagsWriteDiscard),
+      "cudaGraphicsGLRegisterBuffer");
+  return resource;
+}
+
+}  // namespace
+
+const GraphicsApi &opengl() {
+  static const GraphicsApi api = {"OpenGL", refusal, drawing_devices, register_buffer};
+  return api;
+}
+
+}  // namespace quickses
