@@ -5,6 +5,8 @@ namespace UnityEngine
 {
     public sealed class SystemInfo
     {
+        public static string graphicsDeviceName => "The double of a GPU";
+
         public static int maxTextureSize => 16384;
 
         /// <summary>What the machine draws with; only the double sets it.</summary>

@@ -14,22 +14,4 @@ namespace UnityEngine
             RenderThread.Add(callback, eventID);
         }
     }
-
-    public sealed class GraphicsBuffer
-    {
-        [Flags]
-        public enum Target
-        {
-            Vertex = 1 << 0,
-            Index = 1 << 1,
-            CopySource = 1 << 2,
-            CopyDestination = 1 << 3,
-            Structured = 1 << 4,
-            Raw = 1 << 5,
-            Append = 1 << 6,
-            Counter = 1 << 7,
-            IndirectArguments = 1 << 8,
-            Constant = 1 << 9
-        }
-    }
 }

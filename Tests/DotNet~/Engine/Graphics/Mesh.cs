@@ -129,6 +129,10 @@ namespace UnityEngine
             return (IntPtr)Writable().NameOfIndices();
         }
 
+        public GraphicsBuffer GetVertexBuffer(int index) => new GraphicsBuffer((int)GetNativeVertexBufferPtr(index));
+
+        public GraphicsBuffer GetIndexBuffer() => new GraphicsBuffer((int)GetNativeIndexBufferPtr());
+
         private void SetTarget(ref GraphicsBuffer.Target target, GraphicsBuffer.Target value, string what)
         {
             RequireAlive(what);

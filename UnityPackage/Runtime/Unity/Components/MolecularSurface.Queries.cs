@@ -70,10 +70,12 @@ namespace QuickSes
         }
 
         /// <summary>
-        /// Copies what is shown into a mesh of the caller's, with colours in the vertices however it is coloured here, and
-        /// buffers of just its size.
+        /// Copies what is shown into a mesh of the caller's, with colours in the vertices however it is coloured here,
+        /// without what is hidden, and with buffers of just its size: for scripts that read it, also where
+        /// <see cref="Mesh"/> can't be read.
         /// </summary>
-        internal void CopyTo(Mesh mesh) => Shown.CopyTo(mesh);
+        /// <param name="mesh">Readable (its default); what it held is replaced.</param>
+        public void CopyTo(Mesh mesh) => Shown.CopyTo(mesh != null ? mesh : throw new ArgumentNullException(nameof(mesh)));
 
         // Asked for every vertex of large surfaces, on Mono too: no question for the session or for the view but the first.
         private unsafe void CacheOwners(int vertex)

@@ -75,8 +75,8 @@ namespace QuickSes
         /// <summary>
         /// Whether it is as it was made, as far as that can be asked: else the engine has made other buffers.
         /// </summary>
-        public bool IsIntact => _mesh != null && _mesh.vertexCount == _vertexCapacity && _mesh.subMeshCount == 1 &&
-            _mesh.GetIndexCount(0) == (uint)_indexCount;
+        public bool IsIntact =>
+            _mesh != null && MeshWriter.AreIntact(_mesh, _style.Layout, _vertexCapacity, _indexCount);
 
         public bool Suffices(in SurfaceMeshView view, MeshStyle style, GpuMeshPlan plan) =>
             view.VertexCount <= _vertexCapacity && 3L * view.TriangleCount <= _indexCapacity && FitsTo(style, plan);

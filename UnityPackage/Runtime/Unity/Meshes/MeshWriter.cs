@@ -42,13 +42,17 @@ namespace QuickSes
         public void Forget() => _mesh = null;
 
         /// <summary>Whether the mesh is still as this writer left it, as far as that can be asked without garbage.</summary>
-        public bool IsIntact(Mesh mesh)
+        public bool IsIntact(Mesh mesh) =>
+            _mesh == mesh && AreIntact(mesh, _layout, _vertexCapacity, _indexCount);
+
+        /// <summary>Whether a mesh has such buffers, as far as that can be asked without garbage.</summary>
+        public static bool AreIntact(Mesh mesh, VertexAttributeDescriptor[] layout, int vertices, int drawnIndices)
         {
-            if (_mesh != mesh || mesh.vertexCount != _vertexCapacity || mesh.vertexAttributeCount != _layout.Length ||
+            if (mesh.vertexCount != vertices || mesh.vertexAttributeCount != layout.Length ||
                 mesh.indexFormat != IndexFormat.UInt32 || mesh.subMeshCount != 1 ||
-                mesh.GetIndexCount(0) != (uint)_indexCount)
+                mesh.GetIndexCount(0) != (uint)drawnIndices)
                 return false;
-            foreach (VertexAttributeDescriptor attribute in _layout)
+            foreach (VertexAttributeDescriptor attribute in layout)
                 if (mesh.GetVertexAttributeStream(attribute.attribute) != attribute.stream ||
                     mesh.GetVertexAttributeFormat(attribute.attribute) != attribute.format ||
                     mesh.GetVertexAttributeDimension(attribute.attribute) != attribute.dimension)

@@ -27,7 +27,7 @@ namespace QuickSes
         private bool _isResting; // buffers have to be made exact
 
         /// <summary>What is shown. Another one after surfaces too large for one frame.</summary>
-        public Mesh Mesh => IsOnGpu ? _gpu.Front.Mesh : _front.Mesh;
+        public Mesh Mesh => IsOnGpu && _gpu.Front.Mesh != null ? _gpu.Front.Mesh : _front.Mesh;
 
         /// <summary>The same; null if nobody has asked for it.</summary>
         public Mesh MeshIfMade => IsOnGpu || _front.HasMesh ? Mesh : null;
