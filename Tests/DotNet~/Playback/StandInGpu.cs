@@ -3,6 +3,7 @@ using QuickSes.EngineDouble;
 using QuickSes.Interop;
 using System;
 using System.Collections.Generic;
+using System.Diagnostics;
 using System.Numerics;
 using System.Runtime.InteropServices;
 
@@ -48,6 +49,9 @@ namespace QuickSes.Tests
         public int LooksSet { get; private set; }
 
         public int Downloads { get; private set; }
+
+        /// <summary>What it took to stand for a GPU so far: copies.</summary>
+        public double Milliseconds { get; private set; }
 
         public int TargetCount => _targets.Count;
 
@@ -113,12 +117,17 @@ namespace QuickSes.Tests
 
         private static readonly Predicate<Target> s_isStopped = target => target.IsStopped;
 
+        private void NoteTime(long begin) =>
+            Milliseconds += (Stopwatch.GetTimestamp() - begin) * 1000.0 / Stopwatch.Frequency;
+
         private void RunEvent(int number)
         {
+            long begin = Stopwatch.GetTimestamp();
             if (number > _issued)
                 Faults.Add($"event {number} was never given out");
             foreach (Target target in _targets)
                 target.RunEvent(number);
+            NoteTime(begin);
         }
 
         // Of the thread that calls: buffers are deleted in the order of events that were issued before.
@@ -175,7 +184,9 @@ namespace QuickSes.Tests
                 Submission submission = _unused.Count > 0 ? _unused.Pop() : new Submission();
                 submission.Event = gpuEvent = _gpu._issued + 1;
                 submission.Buffers = buffers;
+                long begin = Stopwatch.GetTimestamp();
                 submission.Take(view, _colors.Span, _texcoords.Span, _visible.Span);
+                _gpu.NoteTime(begin);
                 _waiting.Add(submission);
                 _gpu._isAnythingNew = true;
                 ++_gpu.Submissions;
