@@ -32,7 +32,8 @@ namespace QuickSes.Samples
         public bool IsGood => _lines.TrueForAll(line => line.IsGood);
 
         /// <summary>What was found, a line each.</summary>
-        public string Outcome => string.Join("\n", _lines.ConvertAll(line => (line.IsGood ? "good: " : "BAD: ") + line.Text));
+        public string Outcome =>
+            string.Join("\n", _lines.ConvertAll(line => (line.IsGood ? "good: " : "BAD: ") + line.Text));
 
         private static double Now => Time.realtimeSinceStartupAsDouble;
 
@@ -114,7 +115,8 @@ namespace QuickSes.Samples
             {
                 _surface.CopyTo(expected);
                 string difference = DifferenceOf(_surface.Mesh, expected);
-                Note($"{when}: " + (difference ?? $"{expected.vertexCount} vertices are in the buffers"), difference == null);
+                Note($"{when}: " + (difference ?? $"{expected.vertexCount} vertices are in the buffers"),
+                    difference == null);
             }
             catch (Exception e)
             {

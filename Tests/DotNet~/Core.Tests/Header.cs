@@ -23,8 +23,8 @@ internal sealed class HeaderStruct
 }
 
 /// <summary>
-/// What quickses.h and quickses_gpu.h declare. Names are read from its text; sizes, offsets and values come from a C program that is made
-/// of these names, compiled and run.
+/// What quickses.h and quickses_gpu.h declare. Names are read from their text; sizes, offsets and values come from a C
+/// program that is made of these names, compiled and run.
 /// </summary>
 internal sealed class Header
 {

@@ -88,7 +88,8 @@ namespace QuickSes.Tests
         public bool WorksWith(SurfaceBackend backend) => true;
 
         public bool IsOnGpuOnly(KeptMesh mesh) => mesh.View.VertexCount > 0 &&
-            _jobs[mesh.View.Tag % _jobs.Length] == mesh.View.Tag && !(_home.TryGetValue(mesh, out SurfaceMeshView home) && home.IsValid);
+            _jobs[mesh.View.Tag % _jobs.Length] == mesh.View.Tag &&
+            !(_home.TryGetValue(mesh, out SurfaceMeshView home) && home.IsValid);
 
         public QuickSesError Download(KeptMesh mesh)
         {

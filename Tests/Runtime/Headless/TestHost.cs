@@ -156,7 +156,8 @@ namespace QuickSes.Tests
 
         bool ISurfaceHost.UsesGpu => false;
 
-        UploadStep ISurfaceHost.Deliver(bool isUrgent) => throw new InvalidOperationException("there is nothing to deliver");
+        UploadStep ISurfaceHost.Deliver(bool isUrgent) =>
+            throw new InvalidOperationException("there is nothing to deliver");
 
         string ISurfaceHost.GpuRefusal => "";
 

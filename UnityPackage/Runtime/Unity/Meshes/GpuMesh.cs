@@ -125,7 +125,9 @@ namespace QuickSes
         private ulong VertexBuffer(int stream) => (ulong)_mesh.GetNativeVertexBufferPtr(stream).ToInt64();
     }
 
-    /// <summary>What of an <see cref="AtomLook"/> was given to a target, or is in a mesh: equal as long as nothing is new.</summary>
+    /// <summary>
+    /// What of an <see cref="AtomLook"/> was given to a target, or is in a mesh: equal as long as nothing is new.
+    /// </summary>
     internal readonly struct GivenLook : IEquatable<GivenLook>
     {
         private readonly AtomLook _look;

@@ -23,7 +23,8 @@ namespace QuickSes
     /// </summary>
     internal sealed class GpuMeshUploader : IDisposable
     {
-        private const string Stopped = "No event of the thread that draws has run for a while, as while a window is minimised.";
+        private const string Stopped =
+            "No event of the thread that draws has run for a while, as while a window is minimised.";
 
         private IGpuTarget _target;
         private GivenLook _given; // to the target
@@ -40,7 +41,9 @@ namespace QuickSes
         private uint _version; // of GpuDelivery, that the reason is of
 
         /// <summary>Why surfaces are to be shown from host memory; "": they need not.</summary>
-        public string Reason => _version != GpuDelivery.Version ? "" : _reason.Length > 0 ? _reason : _isStopped ? Stopped : "";
+        public string Reason => _version != GpuDelivery.Version ? "" :
+            _reason.Length > 0 ? _reason :
+            _isStopped ? Stopped : "";
 
         /// <summary>Whether a surface is shown by it.</summary>
         public bool IsShown { get; private set; }
@@ -123,7 +126,9 @@ namespace QuickSes
             _isBusy = false;
         }
 
-        /// <summary>What is shown is another mesh from now on. Buffers stay where surfaces are expected to come back.</summary>
+        /// <summary>
+        /// What is shown is another mesh from now on. Buffers stay where surfaces are expected to come back.
+        /// </summary>
         public void Hide()
         {
             IsShown = false;

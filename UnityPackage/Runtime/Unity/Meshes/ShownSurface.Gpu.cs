@@ -23,7 +23,8 @@ namespace QuickSes
         public bool UsesGpu => _gpu != null;
 
         /// <summary>As of <see cref="ISurfaceHost.HasDelivery"/>.</summary>
-        public bool HasDelivery => _gpu != null && ((_hasArrival && _isArrivalForGpu) || _gpu.IsFollowing || MustPaintOnGpu);
+        public bool HasDelivery =>
+            _gpu != null && ((_hasArrival && _isArrivalForGpu) || _gpu.IsFollowing || MustPaintOnGpu);
 
         private bool MustLeaveGpu => IsOnGpu && !_staysOnGpu && !CanUseGpu;
 

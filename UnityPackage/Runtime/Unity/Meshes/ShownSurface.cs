@@ -59,7 +59,8 @@ namespace QuickSes
             MustMove || MustPaint;
 
         // What is shown has to go into other buffers.
-        private bool MustMove => MustLeaveGpu || (_front.IsFilled && (_isResting || !_front.Style.Equals(StyleOf(_kept.View, _front.Look)) ||
+        private bool MustMove => MustLeaveGpu || (_front.IsFilled && (_isResting ||
+            !_front.Style.Equals(StyleOf(_kept.View, _front.Look)) ||
             (!_front.Style.HasAtoms && _front.VisibleVersion != _front.Look.VisibleVersion)));
 
         private bool MustPaint => _front.IsFilled && SurfacePainter.IsNeeded(_front);

@@ -27,7 +27,8 @@ namespace QuickSes
                 if (!GpuDelivery.Library.WorksWith(UsedBackend))
                     return "It is not CUDA that computes.";
                 long bytes = BytesOf(_hasArrival ? _arrival : CurrentLevel);
-                return SurfaceScheduler.Delivery == SurfaceDelivery.Auto && bytes < (_isJobForGpu ? StillLargeMesh : LargeMesh)
+                long least = _isJobForGpu ? StillLargeMesh : LargeMesh;
+                return SurfaceScheduler.Delivery == SurfaceDelivery.Auto && bytes < least
                     ? "By host memory it takes no longer: the mesh is not large."
                     : "";
             }

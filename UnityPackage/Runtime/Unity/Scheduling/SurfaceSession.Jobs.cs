@@ -152,7 +152,8 @@ namespace QuickSes
             {
                 return;
             }
-            else if (progress.State == SurfaceJobState.Failed && progress.Status == QuickSesStatus.OutOfMemory && _isJobForGpu)
+            else if (progress.State == SurfaceJobState.Failed && _isJobForGpu &&
+                progress.Status == QuickSesStatus.OutOfMemory)
             {
                 ComputeForHostMemory(progress.Message);
             }
