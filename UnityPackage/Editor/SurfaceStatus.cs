@@ -90,6 +90,16 @@ namespace QuickSes.Editor
             return string.IsNullOrEmpty(device) ? name : name + ", " + device;
         }
 
+        /// <summary>How what is shown came.</summary>
+        public static string Delivery(SurfaceDelivery used) =>
+            used == SurfaceDelivery.Device ? "On the GPU" : "By host memory";
+
+        /// <summary>Why surfaces do not stay on the GPU; null: they do, or nobody wants it.</summary>
+        /// <param name="wanted">Of <see cref="SurfaceScheduler.Delivery"/>.</param>
+        /// <param name="reason">Of <see cref="MolecularSurface.DeliveryReason"/>.</param>
+        public static string WhyNotOnGpu(SurfaceDelivery wanted, string reason) =>
+            wanted == SurfaceDelivery.Host || reason.Length == 0 ? null : $"By host memory: {reason}";
+
         /// <summary>Why it is not CUDA and what to do; null: it is, or the CPU was asked for.</summary>
         /// <param name="used">The back end that computes.</param>
         /// <param name="reason">The library's, of its <see cref="BackendDescription"/>.</param>

@@ -65,6 +65,10 @@ namespace QuickSes.Editor
             Row("Compute time", SurfaceStatus.Milliseconds(shown.ComputeMilliseconds));
             Row("Upload time", SurfaceStatus.Milliseconds(shown.UploadMilliseconds));
             string place = surface.UsedBackend == SurfaceBackend.Cuda ? " (GPU)" : "";
+            Row("Delivery", SurfaceStatus.Delivery(surface.UsedDelivery));
+            string note = SurfaceStatus.WhyNotOnGpu(SurfaceScheduler.Delivery, surface.DeliveryReason);
+            if (note != null)
+                EditorGUILayout.HelpBox(note, MessageType.Info);
             Row("Work memory", SurfaceStatus.Bytes(shown.WorkBytes) + place);
             Row("Mesh memory", SurfaceStatus.Bytes(shown.MeshBytes));
             Row("Host memory", SurfaceStatus.Bytes(shown.HostBytes));

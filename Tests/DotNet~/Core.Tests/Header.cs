@@ -23,8 +23,8 @@ internal sealed class HeaderStruct
 }
 
 /// <summary>
-/// What quickses.h declares. Names are read from its text; sizes, offsets and values come from a C program that is made
-/// of these names, compiled and run.
+/// What quickses.h and quickses_gpu.h declare. Names are read from their text; sizes, offsets and values come from a C
+/// program that is made of these names, compiled and run.
 /// </summary>
 internal sealed class Header
 {
@@ -44,7 +44,8 @@ internal sealed class Header
 
     private Header()
     {
-        string text = Regex.Replace(File.ReadAllText(Repository.Header), @"/\*.*?\*/", " ", RegexOptions.Singleline);
+        string text = Regex.Replace(File.ReadAllText(Repository.Header) + File.ReadAllText(Repository.GpuHeader),
+            @"/\*.*?\*/", " ", RegexOptions.Singleline);
         foreach (Match constant in Regex.Matches(text, @"(?m)^#define (QSES_\w+) \d+\s*$"))
             Constants[constant.Groups[1].Value] = 0;
         text = Regex.Replace(text, @"(?m)^\s*#.*$", "");
@@ -85,7 +86,7 @@ internal sealed class Header
     private void AskCompiler()
     {
         var program = new StringBuilder(
-            "#include <stddef.h>\n#include <stdio.h>\n#include <quickses/quickses.h>\nint main(void) {\n");
+            "#include <stddef.h>\n#include <stdio.h>\n#include <quickses/quickses_gpu.h>\nint main(void) {\n");
         foreach (HeaderStruct type in Structs.Values)
         {
             program.Append($"  printf(\"%d\\n\", (int)sizeof({type.Name}));\n");

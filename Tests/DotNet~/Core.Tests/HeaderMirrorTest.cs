@@ -30,7 +30,8 @@ namespace QuickSes.Tests
             ("qses_patch", "QSES_PATCH_", typeof(SurfacePatch)),
             ("qses_job_state", "QSES_JOB_", typeof(SurfaceJobState)),
             ("qses_structure_format", "QSES_STRUCTURE_", typeof(StructureFormat)),
-            ("qses_trajectory_format", "QSES_TRAJECTORY_", typeof(TrajectoryFormat))
+            ("qses_trajectory_format", "QSES_TRAJECTORY_", typeof(TrajectoryFormat)),
+            ("qses_graphics", "QSES_GRAPHICS_", typeof(GpuGraphics))
         };
 
         private static readonly Dictionary<string, Type> Numbers = new Dictionary<string, Type>
@@ -150,6 +151,7 @@ namespace QuickSes.Tests
         public void ConstantsAreThoseOfC()
         {
             Assert.That(Header.Constants["QSES_ABI_VERSION"], Is.EqualTo((int)NativeMethods.AbiVersion));
+            Assert.That(Header.Constants["QSES_GPU_ABI_VERSION"], Is.EqualTo((int)NativeMethods.GpuAbiVersion));
             Assert.That(Header.Constants["QSES_MAX_LEVELS"], Is.EqualTo(NativeSettings.MaxLevels));
             Assert.That(Header.Constants["QSES_REMEMBERED_SERIES"], Is.EqualTo(NativeSettings.RememberedSeries));
             Assert.That(Header.Constants["QSES_MAX_STAGES"], Is.EqualTo(NativeReport.MaxStages));

@@ -11,6 +11,8 @@ internal static class Repository
     public static string Header =>
         Path.Combine(Root, "NativePlugin", "Source~", "include", "quickses", "quickses.h");
 
+    public static string GpuHeader => Path.Combine(Path.GetDirectoryName(Header), "quickses_gpu.h");
+
     public static string CrambinPath => Path.Combine(Root, "Tests", "Data~", "1CRN.pdb");
 
     /// <summary>Compiles C; what the compiler says against it is the exception's message.</summary>

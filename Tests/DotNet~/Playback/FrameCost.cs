@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 using QuickSes.EngineDouble;
+using QuickSes.Tests;
 using System;
 using System.Collections.Generic;
 using System.Diagnostics;
@@ -21,6 +22,7 @@ namespace QuickSes.Playback
 
         private string _name;
         private readonly MolecularSurface _surface;
+        private StandInGpu _gpu;
         private readonly Vector3[] _start;
         private readonly Vector3[] _positions;
         private readonly System.Random _random = new System.Random(1);
@@ -37,9 +39,19 @@ namespace QuickSes.Playback
         }
 
         /// <summary>false: the file can't be read; the log says why.</summary>
-        public static bool TryPrint(string file)
+        /// <param name="file">A structure.</param>
+        /// <param name="gpu">
+        /// If not null, surfaces stay on its GPU. What it takes to stand for one, by copies on the main thread, is measured
+        /// apart.
+        /// </param>
+        public static bool TryPrint(string file, StandInGpu gpu = null)
         {
             Engine.Reset();
+            if (gpu != null)
+            {
+                GpuDelivery.Library = gpu;
+                SurfaceScheduler.Delivery = SurfaceDelivery.Device;
+            }
             Engine.ChecksMeshes = false;
             var surface = new GameObject("surface").AddComponent<MolecularSurface>();
             surface.FrameBudget = 0;
@@ -50,6 +62,7 @@ namespace QuickSes.Playback
             cost.Settle();
             Console.WriteLine($"{cost._name}: {start.Length} atoms, {surface.CurrentLevel.VertexCount} vertices, " +
                 $"{surface.CurrentLevel.TriangleCount} triangles, {surface.UsedBackend}; main thread, ms");
+            cost._gpu = gpu;
             foreach (AtomColoring coloring in new[] { AtomColoring.Vertices, AtomColoring.Texture })
             {
                 surface.Coloring = coloring;
@@ -91,12 +104,16 @@ namespace QuickSes.Playback
             shown = _shown;
             var frames = new double[Frames];
             var feeds = new double[Frames];
+            var copies = new double[Frames];
             Stopwatch clock = Stopwatch.StartNew();
             long bytes = MeshRecord.AllBytesUploaded, garbage = GC.GetAllocatedBytesForCurrentThread();
             long most = 0, before = bytes;
             for (int k = 0; k < Frames; ++k)
             {
+                double copied = CopyMilliseconds;
                 frames[k] = PlayFrame(out feeds[k]);
+                copies[k] = CopyMilliseconds - copied;
+                frames[k] -= copies[k];
                 most = Math.Max(most, MeshRecord.AllBytesUploaded - before);
                 before = MeshRecord.AllBytesUploaded;
             }
@@ -104,11 +121,15 @@ namespace QuickSes.Playback
             shown = _shown - shown;
             Print("frame, playing", frames);
             Print("  of that SetPositions", feeds);
+            if (_gpu != null)
+                Print("  not counted: what stands for the GPU", copies);
             Console.WriteLine($"{_name}: {shown} surfaces in {Frames} frames, " +
                 $"{(shown > 0 ? clock.Elapsed.TotalMilliseconds / shown : 0):F0} ms each, shown " +
                 $"{_surface.CurrentLevel.LatencyMilliseconds:F0} ms after they were computed; MB moved per frame: mean " +
                 $"{(before - bytes) / 1e6 / Frames:F2}, most {most / 1e6:F2}; garbage {garbage} bytes");
         }
+
+        private double CopyMilliseconds => _gpu?.Milliseconds ?? 0;
 
         private double PlayFrame(out double feed)
         {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+using QuickSes.Tests;
 using System;
 using System.Globalization;
 using System.IO;
@@ -11,6 +12,7 @@ namespace QuickSes.Playback
     /// playback LIBRARY frames FILE COUNT: plays a trajectory until COUNT surfaces were shown; prints what that took.
     /// <para>playback LIBRARY many SURFACES COUNT: moves as many small surfaces at once; prints the same.</para>
     /// <para>playback LIBRARY cost FILE...: prints the milliseconds the main thread spends on a frame.</para>
+    /// <para>playback LIBRARY device FILE...: the same for surfaces that stay on a GPU, of which there is a stand-in.</para>
     /// A process of its own, since test hosts allocate as they please on other threads.
     /// </summary>
     internal static class Program
@@ -20,7 +22,7 @@ namespace QuickSes.Playback
             if (arguments.Length < 3)
             {
                 Console.Error.WriteLine("usage: playback LIBRARY frames FILE COUNT | playback LIBRARY many SURFACES " +
-                    "COUNT | playback LIBRARY cost FILE...");
+                    "COUNT | playback LIBRARY cost FILE... | playback LIBRARY device FILE...");
                 return 2;
             }
             CultureInfo.DefaultThreadCurrentCulture = CultureInfo.CurrentCulture = CultureInfo.InvariantCulture;
@@ -35,7 +37,7 @@ namespace QuickSes.Playback
                 return 0;
             }
             for (int k = 2; k < arguments.Length; ++k)
-                if (!FrameCost.TryPrint(Path.GetFullPath(arguments[k])))
+                if (!FrameCost.TryPrint(Path.GetFullPath(arguments[k]), arguments[1] == "device" ? new StandInGpu() : null))
                     return 1;
             return 0;
         }

@@ -20,7 +20,26 @@ namespace QuickSes.Tests
         private bool _isOver;
 
         [UnityTest]
-        public IEnumerator EachShowsItsOwnInTheEnd([Values(1, 2, 3, 4, 5, 6)] int seed)
+        public IEnumerator EachShowsItsOwnInTheEnd([Values(1, 2, 3, 4, 5, 6)] int seed) => UseAtRandom(seed);
+
+        [UnityTest]
+        public IEnumerator SoItDoesOnTheGpu([Values(7, 8, 9, 10)] int seed)
+        {
+            IGpuLibrary library = GpuDelivery.Library;
+            using (var gpu = new StandInGpu())
+            {
+                GpuDelivery.Library = gpu;
+                SurfaceScheduler.Delivery = SurfaceDelivery.Device;
+                yield return UseAtRandom(seed);
+                Assert.That(gpu.Submissions, Is.GreaterThan(0));
+                Assert.That(gpu.Faults, Is.Empty);
+                Assert.That(GpuDelivery.Targets, Is.EqualTo(0));
+                SurfaceScheduler.Delivery = SurfaceDelivery.Host;
+                GpuDelivery.Library = library;
+            }
+        }
+
+        private IEnumerator UseAtRandom(int seed)
         {
             _isOver = false;
             int most = SurfaceScheduler.MaxContexts;

@@ -75,6 +75,17 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void ItIsToldWhyNotOnTheGpuWhereThatIsWanted()
+        {
+            Assert.That(SurfaceStatus.WhyNotOnGpu(SurfaceDelivery.Auto, ""), Is.Null);
+            Assert.That(SurfaceStatus.WhyNotOnGpu(SurfaceDelivery.Host, "Delivery is Host."), Is.Null);
+            Assert.That(SurfaceStatus.WhyNotOnGpu(SurfaceDelivery.Device, "Vulkan is not supported."),
+                Does.Contain("Vulkan is not supported."));
+            Assert.That(SurfaceStatus.Delivery(SurfaceDelivery.Device), Is.Not.EqualTo(
+                SurfaceStatus.Delivery(SurfaceDelivery.Host)));
+        }
+
+        [Test]
         public void WhereNothingCanBeComputedTheNextStepIsNamed()
         {
             Assert.That(SurfaceStatus.Unsupported("missing", true), Does.StartWith("missing").And.Contain("Install"));

@@ -152,6 +152,17 @@ namespace QuickSes.Tests
 
         bool ISurfaceHost.HasUpload => _hasTaken;
 
+        bool ISurfaceHost.HasDelivery => false;
+
+        bool ISurfaceHost.UsesGpu => false;
+
+        UploadStep ISurfaceHost.Deliver(bool isUrgent) =>
+            throw new InvalidOperationException("there is nothing to deliver");
+
+        string ISurfaceHost.GpuRefusal => "";
+
+        void ISurfaceHost.RefuseGpu(string reason) => throw new InvalidOperationException(reason);
+
         void ISurfaceHost.Take(SurfaceContext context, AtomLook look, bool isMoving)
         {
             Assert.That(_steps, Is.EqualTo(0), "what is being uploaded must not be replaced");

@@ -4,3 +4,4 @@ using System.Runtime.CompilerServices;
 [assembly: InternalsVisibleTo("QuickSes.Core.Tests")]
 [assembly: InternalsVisibleTo("QuickSes.Unity")]
 [assembly: InternalsVisibleTo("QuickSes.Unity.Tests")]
+[assembly: InternalsVisibleTo("QuickSes.Playback")]

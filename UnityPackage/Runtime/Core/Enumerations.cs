@@ -32,7 +32,9 @@ namespace QuickSes
         /// <summary>The context has no atoms yet.</summary>
         NoAtoms = 11,
         /// <summary>No level was finished since the last time: not an error in itself.</summary>
-        NothingNew = 12
+        NothingNew = 12,
+        /// <summary>What is there already has to be done first; try again later: not an error in itself.</summary>
+        Busy = 13
     }
 
     /// <summary>What computes.</summary>

@@ -38,6 +38,22 @@ namespace QuickSes
             }
         }
 
+        /// <summary>
+        /// Brings a mesh that is on a CUDA device only (<see cref="MeshDelivery.Device"/>) into host memory, and waits for
+        /// that: then all questions are answered. Does nothing if it is there, or empty. Ends views if it does something.
+        /// </summary>
+        /// <returns>Ok, NoResult (nothing is kept), OutOfMemory or DeviceError.</returns>
+        public QuickSesStatus Download()
+        {
+            ThrowIfDisposed();
+            QuickSesStatus status = NativeMethods.qses_kept_mesh_download(_handle);
+            if (status == QuickSesStatus.InvalidArgument)
+                throw QuickSesException.FromLastCall(status);
+            if (status == QuickSesStatus.Ok && !View.IsInHostMemory)
+                Renew();
+            return status;
+        }
+
         /// <summary>What was done for the mesh; false if nothing is kept.</summary>
         public bool TryGetReport(out SurfaceReport report)
         {
@@ -121,6 +137,8 @@ namespace QuickSes
 
         /// <summary>Gives the memory back. May be called twice.</summary>
         public void Dispose() => _handle.Dispose();
+
+        internal KeptMeshHandle Handle => _handle;
 
         /// <summary>What <see cref="SurfaceContext.Keep"/> does.</summary>
         internal QuickSesStatus TakeFrom(ContextHandle context)

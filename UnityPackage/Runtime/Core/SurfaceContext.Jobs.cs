@@ -99,8 +99,8 @@ namespace QuickSes
         /// <summary>
         /// Moves the mesh of the last <see cref="TryCollect"/> or <see cref="Compute"/> that succeeded, and its report,
         /// into <paramref name="kept"/>, without a copy; what that held before comes back to the context it was from.
-        /// The context has no mesh then, and views of it have ended. Throws if the mesh was not wanted
-        /// on the host (<see cref="SurfaceSettings.Delivery"/>).
+        /// The context has no mesh then, and views of it have ended. What was wanted on the device
+        /// (<see cref="SurfaceSettings.Delivery"/>) is kept there. Throws if the mesh was wanted nowhere.
         /// </summary>
         /// <returns>Whether there was a mesh; if not, nothing has changed.</returns>
         public bool Keep(KeptMesh kept)

@@ -6,7 +6,7 @@ namespace QuickSes
 {
     /// <summary>
     /// A mesh in memory of a CUDA device, for plug-ins that copy it into graphics buffers. The pointers are CUDA's, valid
-    /// until the next mesh is collected or computed; what reads them waits for <see cref="Stream"/> first.
+    /// until the next mesh is collected or computed. It is finished: what reads it waits for nothing.
     /// </summary>
     public readonly unsafe struct SurfaceDeviceMesh
     {
@@ -17,7 +17,7 @@ namespace QuickSes
         /// <summary>CUDA ordinal of the device.</summary>
         public int Device => _native.Device;
 
-        /// <summary>The cudaStream_t that writes the mesh.</summary>
+        /// <summary>The cudaStream_t that wrote the mesh.</summary>
         public IntPtr Stream => (IntPtr)_native.Stream;
 
         /// <summary>How many vertices there are.</summary>

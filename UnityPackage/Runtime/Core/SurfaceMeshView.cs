@@ -21,12 +21,20 @@ namespace QuickSes
             _native = native;
         }
 
+        private const uint InterleavedBytes = 6 * sizeof(float);
+
         private readonly IMeshHolder _holder;
         private readonly int _generation;
         private readonly NativeMesh _native;
 
         /// <summary>Whether the memory may still be looked at.</summary>
         public bool IsValid => _holder == null || _holder.IsCurrent(_generation);
+
+        /// <summary>
+        /// Whether its arrays are there. Those of a mesh that is on a CUDA device only are empty, its numbers are there:
+        /// see <see cref="KeptMesh.Download"/>.
+        /// </summary>
+        public bool IsInHostMemory => _native.VertexCount == 0 || _native.Positions != null;
 
         /// <summary>V.</summary>
         public int VertexCount => checked((int)_native.VertexCount);
@@ -57,7 +65,7 @@ namespace QuickSes
         /// <summary>How the vertices lie in memory.</summary>
         public SurfaceVertexLayout VertexLayout =>
             _native.VertexBytes == 0 ? SurfaceVertexLayout.Separate :
-            _native.Normals != null ? SurfaceVertexLayout.Interleaved : SurfaceVertexLayout.Compact;
+            _native.VertexBytes == InterleavedBytes ? SurfaceVertexLayout.Interleaved : SurfaceVertexLayout.Compact;
 
         /// <summary>
         /// Bytes from one vertex to the next in <see cref="Vertices"/>: interleaved 24, compact 16; else 0.
@@ -84,7 +92,7 @@ namespace QuickSes
                     throw new InvalidOperationException(
                         "The vertices are in separate arrays: use Positions and Normals.");
                 return new ReadOnlySpan<byte>(Valid(_native.Positions),
-                    Length(_native.VertexCount, _native.VertexBytes));
+                    IsInHostMemory ? Length(_native.VertexCount, _native.VertexBytes) : 0);
             }
         }
 

@@ -4,3 +4,4 @@ using System.Runtime.CompilerServices;
 [assembly: InternalsVisibleTo("QuickSes.Editor")]
 [assembly: InternalsVisibleTo("QuickSes.Unity.Tests")]
 [assembly: InternalsVisibleTo("QuickSes.Editor.Tests")]
+[assembly: InternalsVisibleTo("QuickSes.Playback")]

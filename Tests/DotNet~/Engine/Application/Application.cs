@@ -12,6 +12,8 @@ namespace UnityEngine
         /// <summary>The double is a player, but for <see cref="isPlaying"/>.</summary>
         public static bool isEditor => false;
 
+        public static string unityVersion => "2021.3.0f1";
+
         public static bool isPlaying { get; internal set; } = true;
 
         public static string dataPath { get; internal set; } = Path.Combine(AppContext.BaseDirectory, "Assets");

@@ -48,6 +48,9 @@ namespace QuickSes.EngineDouble
         {
             EngineThread.Adopt();
             DestroyScene();
+            RenderThread.Reset();
+            Coroutine.Reset();
+            SystemInfo.GraphicsDevice = UnityEngine.Rendering.GraphicsDeviceType.OpenGLCore;
             for (int i = ObjectRegistry.Objects.Count; i-- > 0; i = Math.Min(i, ObjectRegistry.Objects.Count))
                 ObjectRegistry.Objects[i].DestroyNow();
             DestructionQueue.Clear();
@@ -80,8 +83,10 @@ namespace QuickSes.EngineDouble
             Time.Advance(seconds);
             Lifecycle.StartPending();
             Lifecycle.Broadcast(Message.Update);
+            Coroutine.RunAll();
             Animating?.Invoke();
             Lifecycle.Broadcast(Message.LateUpdate);
+            RenderThread.EndFrame();
             if (ChecksMeshes)
                 MeshCheck.RunOnChanged();
             DestructionQueue.Run();

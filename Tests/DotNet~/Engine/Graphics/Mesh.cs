@@ -11,6 +11,8 @@ namespace UnityEngine
     public sealed unsafe partial class Mesh : Object
     {
         private bool _isReadable = true;
+        private GraphicsBuffer.Target _vertexTarget = GraphicsBuffer.Target.Vertex;
+        private GraphicsBuffer.Target _indexTarget = GraphicsBuffer.Target.Index;
 
         public Mesh()
         {
@@ -95,6 +97,48 @@ namespace UnityEngine
             RequireAlive("Clear");
             Writable().Clear(keepVertexLayout);
             Record.NoteChange(this, MeshUpdateFlags.Default);
+        }
+
+        /// <summary>What the buffers can be used for besides; another value makes the engine make others.</summary>
+        public GraphicsBuffer.Target vertexBufferTarget
+        {
+            get => _vertexTarget;
+            set => SetTarget(ref _vertexTarget, value, "set_vertexBufferTarget");
+        }
+
+        public GraphicsBuffer.Target indexBufferTarget
+        {
+            get => _indexTarget;
+            set => SetTarget(ref _indexTarget, value, "set_indexBufferTarget");
+        }
+
+        /// <summary>The graphics API's buffer of a stream (OpenGL: its name), until the mesh gets another one.</summary>
+        public IntPtr GetNativeVertexBufferPtr(int index)
+        {
+            RequireAlive("GetNativeVertexBufferPtr");
+            ++Record.NativePointerCalls;
+            if (index < 0 || index >= VertexLayout.StreamCount)
+                throw new ArgumentOutOfRangeException(nameof(index));
+            return (IntPtr)Writable().NameOf(index);
+        }
+
+        public IntPtr GetNativeIndexBufferPtr()
+        {
+            RequireAlive("GetNativeIndexBufferPtr");
+            ++Record.NativePointerCalls;
+            return (IntPtr)Writable().NameOfIndices();
+        }
+
+        public GraphicsBuffer GetVertexBuffer(int index) => new GraphicsBuffer((int)GetNativeVertexBufferPtr(index));
+
+        public GraphicsBuffer GetIndexBuffer() => new GraphicsBuffer((int)GetNativeIndexBufferPtr());
+
+        private void SetTarget(ref GraphicsBuffer.Target target, GraphicsBuffer.Target value, string what)
+        {
+            RequireAlive(what);
+            if (target != value)
+                Writable().Rename();
+            target = value;
         }
 
         public void MarkDynamic() => RequireAlive("MarkDynamic");

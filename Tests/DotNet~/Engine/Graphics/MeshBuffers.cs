@@ -16,8 +16,10 @@ namespace QuickSes.EngineDouble
 
         private readonly IntPtr[] _streams = new IntPtr[VertexLayout.StreamCount];
         private readonly long[] _streamBytes = new long[VertexLayout.StreamCount];
+        private readonly int[] _streamNames = new int[VertexLayout.StreamCount]; // of GraphicsMemory; 0: none
         private IntPtr _indices;
         private long _indexBytes;
+        private int _indexName;
         private int _references;
 
         private MeshBuffers()
@@ -86,14 +88,27 @@ namespace QuickSes.EngineDouble
             if (!keepVertexLayout)
                 Layout.Set(ReadOnlySpan<VertexAttributeDescriptor>.Empty);
             for (int stream = 0; stream < VertexLayout.StreamCount; ++stream)
-                Resize(ref _streams[stream], ref _streamBytes[stream], 0);
+                Resize(ref _streams[stream], ref _streamBytes[stream], 0, ref _streamNames[stream]);
             IndexCount = 0;
             if (!keepVertexLayout)
                 IndexFormat = IndexFormat.UInt16;
-            Resize(ref _indices, ref _indexBytes, 0);
+            Resize(ref _indices, ref _indexBytes, 0, ref _indexName);
             SubMeshes.Clear();
             SubMeshes.Add(default);
             Bounds = default;
+        }
+
+        /// <summary>Of the buffer that the graphics API has of a stream, or of the indices; 0: of none.</summary>
+        public int NameOf(int stream) => Name(ref _streamNames[stream], _streams[stream], _streamBytes[stream]);
+
+        public int NameOfIndices() => Name(ref _indexName, _indices, _indexBytes);
+
+        /// <summary>The graphics API gets other buffers.</summary>
+        public void Rename()
+        {
+            for (int stream = 0; stream < VertexLayout.StreamCount; ++stream)
+                GraphicsMemory.Forget(ref _streamNames[stream]);
+            GraphicsMemory.Forget(ref _indexName);
         }
 
         public byte* Stream(int stream) => (byte*)_streams[stream];
@@ -110,7 +125,8 @@ namespace QuickSes.EngineDouble
             Layout.Set(attributes);
             VertexCount = vertexCount;
             for (int stream = 0; stream < VertexLayout.StreamCount; ++stream)
-                Resize(ref _streams[stream], ref _streamBytes[stream], (long)Layout.StrideOf(stream) * vertexCount);
+                Resize(ref _streams[stream], ref _streamBytes[stream], (long)Layout.StrideOf(stream) * vertexCount,
+                    ref _streamNames[stream]);
         }
 
         public void SetIndexParams(int indexCount, IndexFormat format)
@@ -119,7 +135,7 @@ namespace QuickSes.EngineDouble
                 throw new ArgumentOutOfRangeException(nameof(indexCount), "The index count can't be negative.");
             IndexFormat = format;
             IndexCount = indexCount;
-            Resize(ref _indices, ref _indexBytes, (long)IndexSize * indexCount);
+            Resize(ref _indices, ref _indexBytes, (long)IndexSize * indexCount, ref _indexName);
         }
 
         public void WriteVertices(int stream, void* data, int dataStart, int start, int count, int elementSize)
@@ -167,10 +183,18 @@ namespace QuickSes.EngineDouble
             Buffer.MemoryCopy((byte*)data + (long)dataStart * elementSize, to + begin, bytes, bytes);
         }
 
-        private static void Resize(ref IntPtr block, ref long size, long newSize)
+        private static int Name(ref int name, IntPtr block, long size)
+        {
+            if (name == 0 && block != IntPtr.Zero)
+                name = GraphicsMemory.Add(block, size);
+            return name;
+        }
+
+        private static void Resize(ref IntPtr block, ref long size, long newSize, ref int name)
         {
             if (size == newSize)
                 return;
+            GraphicsMemory.Forget(ref name);
             NativeHeap.Free((void*)block, NativeHeap.Meshes);
             block = newSize == 0 ? IntPtr.Zero : (IntPtr)NativeHeap.Allocate(newSize, 16, NativeHeap.Meshes);
             size = newSize;

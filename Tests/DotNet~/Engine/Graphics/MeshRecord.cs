@@ -23,6 +23,9 @@ namespace QuickSes.EngineDouble
 
         public int SubMeshCalls { get; internal set; }
 
+        /// <summary>Each waits for the thread that draws.</summary>
+        public int NativePointerCalls { get; internal set; }
+
         public long BytesUploaded { get; internal set; }
 
         /// <summary>Flags of all uploads and of SetSubMesh that each of them had; all, before the first.</summary>
@@ -40,7 +43,7 @@ namespace QuickSes.EngineDouble
 
         public void Clear()
         {
-            VertexParamsCalls = IndexParamsCalls = VertexUploads = IndexUploads = SubMeshCalls = 0;
+            VertexParamsCalls = IndexParamsCalls = VertexUploads = IndexUploads = SubMeshCalls = NativePointerCalls = 0;
             BytesUploaded = 0;
             FlagsOfEach = ~MeshUpdateFlags.Default;
         }

@@ -29,6 +29,7 @@ namespace UnityEngine
     {
         private readonly MaterialPropertyBlock _block = new MaterialPropertyBlock();
         private Material[] _materials = Array.Empty<Material>();
+        private Bounds _ownBounds;
 
         public Material sharedMaterial
         {
@@ -44,6 +45,36 @@ namespace UnityEngine
                     _materials = new Material[1];
                 _materials[0] = value;
             }
+        }
+
+        /// <summary>
+        /// Those that were set; else those of the mesh of a filter beside it, if there is one.
+        /// </summary>
+        public Bounds localBounds
+        {
+            get
+            {
+                RequireAlive("get_localBounds");
+                var filter = GetComponent<MeshFilter>();
+                return HasOwnBounds ? _ownBounds : filter != null && filter.sharedMesh != null
+                    ? filter.sharedMesh.bounds
+                    : default;
+            }
+            set
+            {
+                RequireAlive("set_localBounds");
+                _ownBounds = value;
+                HasOwnBounds = true;
+            }
+        }
+
+        /// <summary>Only the double tells.</summary>
+        public bool HasOwnBounds { get; private set; }
+
+        public void ResetLocalBounds()
+        {
+            RequireAlive("ResetLocalBounds");
+            HasOwnBounds = false;
         }
 
         public bool HasPropertyBlock() => !_block.isEmpty;

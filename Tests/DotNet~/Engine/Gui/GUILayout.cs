@@ -20,6 +20,8 @@ namespace UnityEngine
     {
         private static GUISkin s_skin;
 
+        public static Color color { get; set; } = Color.white;
+
         public static Matrix4x4 matrix { get; set; } = Matrix4x4.identity;
 
         public static GUISkin skin

@@ -18,6 +18,10 @@ namespace UnityEngine
             this.a = a;
         }
 
+        public static Color white => new Color(1, 1, 1, 1);
+        public static Color red => new Color(1, 0, 0, 1);
+        public static Color green => new Color(0, 1, 0, 1);
+
         public static Color Lerp(Color a, Color b, float t) => a + (b - a) * Mathf.Clamp01(t);
 
         public static Color operator +(Color a, Color b) => new Color(a.r + b.r, a.g + b.g, a.b + b.b, a.a + b.a);

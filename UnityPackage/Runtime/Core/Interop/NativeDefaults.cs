@@ -56,6 +56,15 @@ namespace QuickSes.Interop
         public static NativeTrajectoryDescription TrajectoryDescription() =>
             new NativeTrajectoryDescription { StructSize = (uint)sizeof(NativeTrajectoryDescription) };
 
+        public static NativeGpuLook GpuLook() => new NativeGpuLook { StructSize = (uint)sizeof(NativeGpuLook) };
+
+        public static NativeGpuBuffers GpuBuffers() => new NativeGpuBuffers
+        {
+            StructSize = (uint)sizeof(NativeGpuBuffers), Graphics = GpuGraphics.Opengl
+        };
+
+        public static NativeGpuStatus GpuStatus() => new NativeGpuStatus { StructSize = (uint)sizeof(NativeGpuStatus) };
+
         public static NativeFrame Frame() => new NativeFrame { StructSize = (uint)sizeof(NativeFrame) };
     }
 }

@@ -41,6 +41,15 @@ namespace QuickSes.Interop
         }
     }
 
+    internal sealed class GpuTargetHandle : NativeHandle
+    {
+        protected override bool ReleaseHandle()
+        {
+            NativeMethods.qses_gpu_target_destroy(handle);
+            return true;
+        }
+    }
+
     internal sealed class StructureHandle : NativeHandle
     {
         protected override bool ReleaseHandle()

@@ -49,6 +49,28 @@ namespace QuickSes.Interop
             return false;
         }
 
+        /// <summary>
+        /// The same of quickses_gpu.h, which may change in any release: where it is another one, the rest can be used.
+        /// </summary>
+        public static bool IsGpuUsable(out string reason)
+        {
+            if (!IsUsable(out reason))
+                return false;
+            try
+            {
+                uint version = NativeMethods.qses_gpu_abi_version();
+                if (version == NativeMethods.GpuAbiVersion)
+                    return true;
+                reason = $"The native library {Library} has version {version} of what keeps meshes on the GPU, but this " +
+                         $"package needs {NativeMethods.GpuAbiVersion}: both must come from the same release.";
+            }
+            catch (EntryPointNotFoundException)
+            {
+                reason = $"The native library {Library} that was found is too old to keep meshes on the GPU.";
+            }
+            return false;
+        }
+
         public static void ThrowIfUnusable()
         {
             if (!IsUsable(out string reason))

@@ -9,7 +9,7 @@ namespace QuickSes.Interop
     /// which the runtime keeps open while a call uses them. Not here: qses_set_progress_callback, since native code
     /// never calls managed code in this package.
     /// </summary>
-    internal static unsafe class NativeMethods
+    internal static unsafe partial class NativeMethods
     {
         /// <summary>QSES_ABI_VERSION of the header these declarations were written after.</summary>
         public const uint AbiVersion = 4;
@@ -117,6 +117,9 @@ namespace QuickSes.Interop
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
         public static extern QuickSesStatus qses_keep(ContextHandle context, KeptMeshHandle kept);
+
+        [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
+        public static extern QuickSesStatus qses_kept_mesh_download(KeptMeshHandle kept);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
         public static extern QuickSesStatus qses_kept_mesh_view(KeptMeshHandle kept, NativeMesh* mesh);

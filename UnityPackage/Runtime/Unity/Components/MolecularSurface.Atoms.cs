@@ -127,8 +127,13 @@ namespace QuickSes
         {
             LoseStructure();
             Session.Clear();
+            Mesh onGpu = Shown.IsOnGpu ? Shown.Mesh : null;
             Shown.Clear();
             ForgetOwners();
+            if (onGpu is null)
+                return;
+            FollowMesh(onGpu);
+            FollowBounds();
         }
 
         // The session knows nothing of the engine; the numbers are the same.

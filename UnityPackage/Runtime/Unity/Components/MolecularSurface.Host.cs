@@ -10,6 +10,7 @@ namespace QuickSes
     public sealed partial class MolecularSurface : ISurfaceHost
     {
         private QuickSesError _loggedFailure; // since a surface came last
+        private bool _hasRendererBounds;
 
         // The engine tells components that were never enabled nothing, not even that they are destroyed.
         bool ISurfaceHost.IsGone => this == null;
@@ -44,14 +45,26 @@ namespace QuickSes
             _shown.UsesTexture = UsesTexture();
             Mesh before = _shown.MeshIfMade;
             UploadStep step = _shown.Upload(share, out bytes);
-            if (step == UploadStep.Shown || step == UploadStep.Moved)
-            {
-                CacheOwners(); // first: those before have ended
-                FollowMesh(before);
-                ShowColors();
-            }
+            Follow(step, before);
             return step;
         }
+
+        bool ISurfaceHost.HasDelivery => _shown.HasDelivery;
+
+        bool ISurfaceHost.UsesGpu => _shown.UsesGpu;
+
+        UploadStep ISurfaceHost.Deliver(bool isUrgent)
+        {
+            _shown.UsesTexture = UsesTexture();
+            Mesh before = _shown.MeshIfMade;
+            UploadStep step = _shown.Deliver(isUrgent);
+            Follow(step, before);
+            return step;
+        }
+
+        string ISurfaceHost.GpuRefusal => _shown.GpuRefusal;
+
+        void ISurfaceHost.RefuseGpu(string reason) => _shown.RefuseGpu(reason);
 
         void ISurfaceHost.DropUpload() => _shown.DropUpload();
 
@@ -95,6 +108,26 @@ namespace QuickSes
 
         private bool UsesTexture() => _coloring != AtomColoring.Vertices &&
             (_coloring == AtomColoring.Texture || AtomColorTexture.IsUsedBy(OwnRenderer.sharedMaterial, AtomCount));
+
+        private void Follow(UploadStep step, Mesh before)
+        {
+            if (step != UploadStep.Shown && step != UploadStep.Moved)
+                return;
+            ForgetOwners(); // they have ended
+            FollowMesh(before);
+            FollowBounds();
+            ShowColors();
+        }
+
+        // A mesh that tells nothing of its own.
+        private void FollowBounds()
+        {
+            if (_shown.RendererBounds is Bounds bounds)
+                OwnRenderer.localBounds = bounds;
+            else if (_hasRendererBounds)
+                OwnRenderer.ResetLocalBounds();
+            _hasRendererBounds = _shown.RendererBounds.HasValue;
+        }
 
         // The filter of a component that was never enabled may have somebody else's mesh, and scripts may have given it
         // one on purpose.

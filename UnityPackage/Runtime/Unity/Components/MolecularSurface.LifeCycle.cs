@@ -29,6 +29,7 @@ namespace QuickSes
                 meshRenderer.sharedMaterial = Resources.Load<Material>(DefaultMaterial);
             Session.Atoms.SetBaseColor(Number(_baseColor));
             _editedFrom = ShapeSettings();
+            Shown.ForgiveGpu();
             Session.Resume();
             QueueEditorUpdate();
         }

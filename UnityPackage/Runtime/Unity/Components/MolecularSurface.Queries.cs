@@ -46,7 +46,7 @@ namespace QuickSes
         public unsafe int OwnerAtomAt(int vertex)
         {
             if ((uint)vertex >= (uint)_ownerCount)
-                ThrowOutOfRange(vertex);
+                CacheOwners(vertex);
             return (int)((uint*)_owners)[vertex];
         }
 
@@ -70,30 +70,28 @@ namespace QuickSes
         }
 
         /// <summary>
-        /// Copies what is shown into a mesh of the caller's, with colours in the vertices however it is coloured here, and
-        /// buffers of just its size.
+        /// Copies what is shown into a mesh of the caller's, with colours in the vertices however it is coloured here,
+        /// without what is hidden, and with buffers of just its size: for scripts that read it, also where
+        /// <see cref="Mesh"/> can't be read.
         /// </summary>
-        internal void CopyTo(Mesh mesh) => Shown.CopyTo(mesh);
+        /// <param name="mesh">Readable (its default); what it held is replaced.</param>
+        public void CopyTo(Mesh mesh) => Shown.CopyTo(mesh != null ? mesh : throw new ArgumentNullException(nameof(mesh)));
 
-        // Asked for every vertex of large surfaces, on Mono too: no question for the session or for the view.
-        private unsafe void CacheOwners()
+        // Asked for every vertex of large surfaces, on Mono too: no question for the session or for the view but the first.
+        private unsafe void CacheOwners(int vertex)
         {
-            ReadOnlySpan<uint> owners = _shown.View.Owners;
+            ReadOnlySpan<uint> owners = Shown.View.Owners; // throws if the component has been destroyed
             fixed (uint* first = owners)
                 _owners = (IntPtr)first; // in native memory, which does not move
             _ownerCount = owners.Length;
+            if ((uint)vertex >= (uint)_ownerCount)
+                throw new ArgumentOutOfRangeException(nameof(vertex), vertex, $"there are {_ownerCount} vertices");
         }
 
         private void ForgetOwners()
         {
             _owners = IntPtr.Zero;
             _ownerCount = 0;
-        }
-
-        private void ThrowOutOfRange(int vertex)
-        {
-            _ = Session; // throws if it has been destroyed
-            throw new ArgumentOutOfRangeException(nameof(vertex), vertex, $"there are {_ownerCount} vertices");
         }
     }
 }

@@ -177,6 +177,18 @@ namespace QuickSes
         /// <summary>The device, and for Auto why it is not CUDA. Empty before the first computation.</summary>
         public BackendDescription UsedDevice => Session.UsedDevice;
 
+        /// <summary>
+        /// How what is shown came; Auto: nothing is shown. Device: it has not left the GPU, so that the vertices of
+        /// <see cref="Mesh"/> are zeros for scripts and Mesh.vertexCount counts unused ones at the end. All else is
+        /// as ever: <see cref="TryPick"/>, <see cref="Owners"/> and baking download the surface once, when they first
+        /// ask, and wait for that. See <see cref="SurfaceScheduler.Delivery"/>.
+        /// </summary>
+        public SurfaceDelivery UsedDelivery => !Shown.IsFilled ? SurfaceDelivery.Auto :
+            Shown.IsOnGpu ? SurfaceDelivery.Device : SurfaceDelivery.Host;
+
+        /// <summary>Why surfaces come by host memory; "": they stay on the GPU.</summary>
+        public string DeliveryReason => Session.DeliveryReason;
+
         /// <summary>Why there is no surface of the newest atoms; Ok if there is or will be one.</summary>
         public QuickSesError LastError => Session.LastError;
 

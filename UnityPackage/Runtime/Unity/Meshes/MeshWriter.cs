@@ -14,7 +14,8 @@ namespace QuickSes
     /// </summary>
     internal sealed unsafe class MeshWriter : IDisposable
     {
-        private const MeshUpdateFlags Unchecked = MeshUpdateFlags.DontValidateIndices |
+        /// <summary>The engine neither checks nor measures what it is given.</summary>
+        public const MeshUpdateFlags Unchecked = MeshUpdateFlags.DontValidateIndices |
             MeshUpdateFlags.DontResetBoneBounds | MeshUpdateFlags.DontNotifyMeshUsers |
             MeshUpdateFlags.DontRecalculateBounds;
 
@@ -41,13 +42,17 @@ namespace QuickSes
         public void Forget() => _mesh = null;
 
         /// <summary>Whether the mesh is still as this writer left it, as far as that can be asked without garbage.</summary>
-        public bool IsIntact(Mesh mesh)
+        public bool IsIntact(Mesh mesh) =>
+            _mesh == mesh && AreIntact(mesh, _layout, _vertexCapacity, _indexCount);
+
+        /// <summary>Whether a mesh has such buffers, as far as that can be asked without garbage.</summary>
+        public static bool AreIntact(Mesh mesh, VertexAttributeDescriptor[] layout, int vertices, int drawnIndices)
         {
-            if (_mesh != mesh || mesh.vertexCount != _vertexCapacity || mesh.vertexAttributeCount != _layout.Length ||
+            if (mesh.vertexCount != vertices || mesh.vertexAttributeCount != layout.Length ||
                 mesh.indexFormat != IndexFormat.UInt32 || mesh.subMeshCount != 1 ||
-                mesh.GetIndexCount(0) != (uint)_indexCount)
+                mesh.GetIndexCount(0) != (uint)drawnIndices)
                 return false;
-            foreach (VertexAttributeDescriptor attribute in _layout)
+            foreach (VertexAttributeDescriptor attribute in layout)
                 if (mesh.GetVertexAttributeStream(attribute.attribute) != attribute.stream ||
                     mesh.GetVertexAttributeFormat(attribute.attribute) != attribute.format ||
                     mesh.GetVertexAttributeDimension(attribute.attribute) != attribute.dimension)
@@ -166,7 +171,8 @@ namespace QuickSes
             SetSubMesh(mesh, default, 0, 0);
         }
 
-        private static void SetSubMesh(Mesh mesh, in Bounds bounds, int vertices, int indices)
+        /// <summary>What is drawn of a mesh with one submesh.</summary>
+        public static void SetSubMesh(Mesh mesh, in Bounds bounds, int vertices, int indices)
         {
             var submesh = new SubMeshDescriptor(0, indices) { bounds = bounds, vertexCount = vertices };
             mesh.SetSubMesh(0, submesh, Unchecked);
@@ -178,7 +184,8 @@ namespace QuickSes
         private bool Suffices(int capacity, int needed, bool withRoom) =>
             withRoom ? HasRoom && capacity >= needed : capacity == needed;
 
-        private static int WithRoom(int count) => (int)Math.Min(count + (long)count / 4, int.MaxValue);
+        /// <summary>What buffers are made for that are to last.</summary>
+        public static int WithRoom(int count) => (int)Math.Min(count + (long)count / 4, int.MaxValue);
 
         private void Write<T>(int stream, void* data, int first, int count) where T : unmanaged =>
             _mesh.SetVertexBufferData(_memory.View<T>(data, count), 0, first, count, stream, Unchecked);

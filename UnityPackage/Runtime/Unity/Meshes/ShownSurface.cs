@@ -7,9 +7,10 @@ namespace QuickSes
     /// <summary>
     /// The surface a component shows, and the one on its way: both kept by the native library, of which the engine's
     /// meshes are copies. What fits into a frame goes into the mesh that is shown; what does not, into a second one,
-    /// which takes its place when it is full. Main thread only; no garbage once both are there.
+    /// which takes its place when it is full. What is kept on the GPU goes another way, as long as that works. Main thread
+    /// only; no garbage once both are there.
     /// </summary>
-    internal sealed class ShownSurface : IDisposable
+    internal sealed partial class ShownSurface : IDisposable
     {
         private const int FreshCost = 6; // of bytes in new buffers, in bytes in warm ones
 
@@ -26,37 +27,41 @@ namespace QuickSes
         private bool _isResting; // buffers have to be made exact
 
         /// <summary>What is shown. Another one after surfaces too large for one frame.</summary>
-        public Mesh Mesh => _front.Mesh;
+        public Mesh Mesh => IsOnGpu && _gpu.Front.Mesh != null ? _gpu.Front.Mesh : _front.Mesh;
 
         /// <summary>The same; null if nobody has asked for it.</summary>
-        public Mesh MeshIfMade => _front.HasMesh ? _front.Mesh : null;
+        public Mesh MeshIfMade => IsOnGpu || _front.HasMesh ? Mesh : null;
 
         /// <summary>How surfaces that can be coloured either way are uploaded from now on.</summary>
         public bool UsesTexture { get; set; }
 
         /// <summary>Whether vertices of what is shown have atoms instead of colours.</summary>
-        public bool HasAtoms => _front.IsFilled && _front.Style.HasAtoms;
+        public bool HasAtoms => IsFilled && (IsOnGpu ? _gpu.Front.Style : _front.Style).HasAtoms;
 
-        public bool IsFilled => _front.IsFilled;
+        public bool IsFilled => IsOnGpu || _front.IsFilled;
 
         /// <summary>Of the atoms of what is shown; null: nothing is.</summary>
-        public AtomLook Look => _front.Look;
+        public AtomLook Look => IsOnGpu ? _gpu.Front.Look : _front.Look;
 
         public double Area { get; private set; }
 
         public double Volume { get; private set; }
 
-        /// <summary>The native mesh of what is shown.</summary>
-        public SurfaceMeshView View => IsFilled ? _kept.View : default;
+        /// <summary>
+        /// The native mesh of what is shown. What is on the GPU only is brought home; throws if that is not possible.
+        /// </summary>
+        public SurfaceMeshView View => IsFilled ? BroughtHome(_kept).View : default;
 
-        public bool IsUploading => _upload.IsUnderWay && _isArrivalUploaded;
+        public bool IsUploading =>
+            (_upload.IsUnderWay && _isArrivalUploaded) || (_hasArrival && _isArrivalForGpu && _gpu.IsWaiting);
 
-        public bool HasUpload =>
-            _hasArrival || _upload.IsUnderWay || _painter.IsUnderWay || MustMove || MustPaint;
+        public bool HasUpload => (_hasArrival && !_isArrivalForGpu) || _upload.IsUnderWay || _painter.IsUnderWay ||
+            MustMove || MustPaint;
 
         // What is shown has to go into other buffers.
-        private bool MustMove => _front.IsFilled && (_isResting || !_front.Style.Equals(StyleOf(_kept.View, _front.Look)) ||
-            (!_front.Style.HasAtoms && _front.VisibleVersion != _front.Look.VisibleVersion));
+        private bool MustMove => MustLeaveGpu || (_front.IsFilled && (_isResting ||
+            !_front.Style.Equals(StyleOf(_kept.View, _front.Look)) ||
+            (!_front.Style.HasAtoms && _front.VisibleVersion != _front.Look.VisibleVersion)));
 
         private bool MustPaint => _front.IsFilled && SurfacePainter.IsNeeded(_front);
 
@@ -71,6 +76,7 @@ namespace QuickSes
             _arrivingLook?.Release();
             _arrivingLook = look;
             _hasArrival = true;
+            _isArrivalForGpu = IsForGpu(_arriving);
             _isArrivalMoving = isMoving;
         }
 
@@ -80,7 +86,7 @@ namespace QuickSes
             bytes = 0;
             try
             {
-                if (!_upload.IsUnderWay && (_hasArrival || MustMove))
+                if (!_upload.IsUnderWay && ((_hasArrival && !_isArrivalForGpu) || MustMove))
                     Begin(share);
                 if (_upload.IsUnderWay)
                     return Fill(share, ref bytes);
@@ -104,6 +110,7 @@ namespace QuickSes
         public void DropUpload()
         {
             AbandonUpload();
+            _gpu?.Forget();
             _hasArrival = false;
             _arrivingLook?.Release();
             _arrivingLook = null;
@@ -122,6 +129,8 @@ namespace QuickSes
         public void Clear()
         {
             DropUpload();
+            _gpu?.Dispose();
+            _gpu = null;
             _front.Clear();
             _back.FreeMesh();
             _kept?.Clear();
@@ -136,8 +145,8 @@ namespace QuickSes
         public bool TryPick(Vector3 origin, Vector3 direction, out SurfaceHit hit)
         {
             hit = default;
-            return IsFilled && IsRay(origin, direction) && _kept.TryPick((origin.x, origin.y, origin.z),
-                (direction.x, direction.y, direction.z), _front.Look.Visible, out hit);
+            return IsFilled && IsRay(origin, direction) && BroughtHome(_kept).TryPick((origin.x, origin.y, origin.z),
+                (direction.x, direction.y, direction.z), Look.Visible, out hit);
         }
 
         /// <summary>
@@ -175,6 +184,8 @@ namespace QuickSes
         public void Dispose()
         {
             DropUpload();
+            _gpu?.Dispose();
+            _gpu = null;
             _front.Dispose();
             _back.Dispose();
             _upload.Dispose();
@@ -187,19 +198,19 @@ namespace QuickSes
         private void Begin(in UploadShare share)
         {
             _painter.Abandon();
-            KeptMesh source = _hasArrival ? _arriving : _kept;
-            AtomLook look = _hasArrival ? _arrivingLook : _front.Look;
-            bool withRoom = _hasArrival ? _isArrivalMoving : _front.Writer.HasRoom && !_isResting;
+            _isArrivalUploaded = _hasArrival && !_isArrivalForGpu;
+            KeptMesh source = BroughtHome(_isArrivalUploaded ? _arriving : _kept);
+            AtomLook look = _isArrivalUploaded ? _arrivingLook : Look;
+            bool withRoom = _isArrivalUploaded ? _isArrivalMoving : _front.Writer.HasRoom && !_isResting;
             SurfaceMeshView view = source.View;
             MeshStyle style = StyleOf(view, look);
             long cost = SurfaceUpload.BytesOf(view, style);
             if (cost > share.PieceBytes && !_front.Writer.Suffices(
                 _front.Mesh, style, view.VertexCount, 3 * view.TriangleCount, withRoom))
                 cost *= FreshCost;
-            SurfaceMesh target = cost <= share.RestBytes ? _front : _back;
+            SurfaceMesh target = cost <= share.RestBytes && !IsOnGpu ? _front : _back;
             if (withRoom && cost > UploadQueue.MinPiece)
                 _ = _back.Mesh; // now, rather than in the one slow frame of an hour of playback
-            _isArrivalUploaded = _hasArrival;
             _upload.Begin(source, look, target, style, withRoom);
         }
 
@@ -216,12 +227,18 @@ namespace QuickSes
                 (_front, _back) = (_back, _front);
             _back.IsFilled = false;
             _isResting = false;
+            if (IsOnGpu)
+                _gpu.Hide();
             if (!_front.Writer.HasRoom)
                 _back.FreeMesh(); // at rest: a single mesh will do
-            if (!_isArrivalUploaded)
-                return UploadStep.Moved;
+            return _isArrivalUploaded ? Arrive() : UploadStep.Moved;
+        }
+
+        private UploadStep Arrive()
+        {
             (_kept, _arriving) = (_arriving, _kept);
             DropUpload();
+            _staysOnGpu = false;
             _kept.TryGetReport(out SurfaceReport report);
             Area = report.Area;
             Volume = report.Volume;
@@ -238,6 +255,7 @@ namespace QuickSes
         private void GiveUpLook()
         {
             _isResting = false;
+            _staysOnGpu = IsOnGpu;
             if (!_front.IsFilled)
                 return;
             _front.Style = StyleOf(_kept.View, _front.Look);

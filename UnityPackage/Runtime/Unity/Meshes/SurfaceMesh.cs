@@ -27,9 +27,8 @@ namespace QuickSes
                 if (_mesh == null)
                 {
                     FreeMesh();
-                    _mesh = new Mesh { name = "Molecular Surface", hideFlags = HideFlags.DontSave };
+                    _mesh = MakeMesh("Molecular Surface");
                     _mesh.MarkDynamic();
-                    s_made.Add(_mesh);
                 }
                 return _mesh;
             }
@@ -67,6 +66,23 @@ namespace QuickSes
         /// <summary>Whether a mesh is that of a component, be it another one.</summary>
         public static bool IsMade(Mesh mesh) => mesh != null && s_made.Contains(mesh);
 
+        /// <summary>One that <see cref="IsMade"/> knows and scenes don't save.</summary>
+        public static Mesh MakeMesh(string name)
+        {
+            var mesh = new Mesh { name = name, hideFlags = HideFlags.DontSave };
+            s_made.Add(mesh);
+            return mesh;
+        }
+
+        /// <summary>Also of one that is gone; null: nothing happens.</summary>
+        public static void DestroyMesh(Mesh mesh)
+        {
+            if (!(mesh is null))
+                s_made.Remove(mesh);
+            if (mesh != null)
+                Object.DestroyImmediate(mesh); // at the end of play mode no later frame would destroy it
+        }
+
         /// <summary>Shows nothing, and holds no memory for it.</summary>
         public void Clear()
         {
@@ -81,10 +97,7 @@ namespace QuickSes
         public void FreeMesh()
         {
             IsFilled = false;
-            if (!(_mesh is null))
-                s_made.Remove(_mesh);
-            if (_mesh != null)
-                Object.DestroyImmediate(_mesh); // at the end of play mode no later frame would destroy it
+            DestroyMesh(_mesh);
             _mesh = null;
             Writer.Forget();
         }

@@ -45,6 +45,28 @@ namespace QuickSes
         /// <summary>A step of it; throws if it fails.</summary>
         UploadStep Upload(in UploadShare share, out long bytes);
 
+        /// <summary>
+        /// Whether something on the GPU is on its way from there to there (and not to be uploaded): what was taken, or
+        /// another look of what is shown.
+        /// </summary>
+        bool HasDelivery { get; }
+
+        /// <summary>Whether it is to be asked for a delivery once per frame.</summary>
+        bool UsesGpu { get; }
+
+        /// <summary>
+        /// How deliveries of the frames before have ended, and the next; what can't be delivered is to be uploaded
+        /// afterwards. Who calls it lets an event be issued (<see cref="GpuDelivery.Issue"/>). Throws if it fails.
+        /// </summary>
+        /// <param name="isUrgent">Whether it is to be shown at once, or uploaded.</param>
+        UploadStep Deliver(bool isUrgent);
+
+        /// <summary>Why meshes of this surface are to be in host memory; "": they need not.</summary>
+        string GpuRefusal { get; }
+
+        /// <summary>They have to be, from now on.</summary>
+        void RefuseGpu(string reason);
+
         /// <summary>Forgets what is not uploaded yet; what is shown stays.</summary>
         void DropUpload();
 

@@ -12,12 +12,16 @@ namespace QuickSes
         public ulong MemoryBudget;
         public int Device;
         public double UploadBudget;
+        public SurfaceDelivery Delivery;
 
         /// <summary>So that the game keeps a processor.</summary>
         public static uint DefaultThreads => (uint)Math.Max(2, Environment.ProcessorCount - 1);
 
         public static SchedulerOptions Default =>
-            new SchedulerOptions { MaxContexts = 4, Threads = DefaultThreads, UploadBudget = 2 };
+            new SchedulerOptions
+            {
+                MaxContexts = 4, Threads = DefaultThreads, UploadBudget = 2, Delivery = SurfaceDelivery.Host
+            };
     }
 
     public static partial class SurfaceScheduler
@@ -75,7 +79,12 @@ namespace QuickSes
         }
 
         /// <summary>What scripts have set is forgotten: the options are those of the project again.</summary>
-        internal static void ResetOptions() => s_areOptionsRead = false;
+        internal static void ResetOptions()
+        {
+            s_areOptionsRead = false;
+            GpuMeshPlan = default;
+            GpuDelivery.ChooseAgain();
+        }
 
         static partial void ReadProjectOptions(ref SchedulerOptions options);
     }

@@ -94,7 +94,12 @@ namespace QuickSes
             settings.Tag = SurfaceScheduler.NextJob();
             settings.Series = _series;
             settings.Pickable = true;
-            settings.ShowMillisecondsPerMegabyte = ShowMillisecondsPerMegabyte();
+            _isJobForGpu = DeliveryReason.Length == 0;
+            _wantsHostMemory = false;
+            if (_isJobForGpu)
+                settings.Delivery = GpuDelivery.Library.Delivery; // and showing it takes nothing
+            else
+                settings.ShowMillisecondsPerMegabyte = ShowMillisecondsPerMegabyte();
             _ladderCount = SurfaceJobPlan.MakeLadder(levels, settings.Spacing, _ladder);
             _wantsCreases = settings.Creases;
             if (isFinestOnly)
@@ -146,6 +151,11 @@ namespace QuickSes
             else if (progress.IsMeshReady)
             {
                 return;
+            }
+            else if (progress.State == SurfaceJobState.Failed && _isJobForGpu &&
+                progress.Status == QuickSesStatus.OutOfMemory)
+            {
+                ComputeForHostMemory(progress.Message);
             }
             else if (progress.State == SurfaceJobState.Failed)
             {

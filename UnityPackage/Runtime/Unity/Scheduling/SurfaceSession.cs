@@ -67,7 +67,7 @@ namespace QuickSes
         /// Whether nothing is left to do: the best surface of the newest atoms is shown as they look now, or failed, or
         /// was cancelled, or there are no atoms.
         /// </summary>
-        public bool IsUpToDate => IsComputed && !_host.HasUpload;
+        public bool IsUpToDate => IsComputed && !_host.HasUpload && !_host.HasDelivery;
 
         /// <summary>Whether <see cref="Tick"/> has something to wait for.</summary>
         public bool IsWaiting => !IsUpToDate || (_isHeldReady && !double.IsInfinity(_host.RestDelay));
@@ -89,7 +89,8 @@ namespace QuickSes
         public void Tick(double now)
         {
             UploadQueue uploads = SurfaceScheduler.Uploads;
-            uploads.Note(_host.Frame, ref _lastTick);
+            if (uploads.Note(_host.Frame, ref _lastTick))
+                SurfaceScheduler.Deliver();
             uploads.Run(); // what has waited, also of others
             if (_slot != null)
                 Advance();
@@ -171,6 +172,10 @@ namespace QuickSes
                 }
                 _begunChange = SurfaceChange.None; // who waits for it wants it for itself
                 Advance();
+                if (_wantsHostMemory)
+                    return ComputeNow(goesOn);
+                if (_hasArrival && _host.HasDelivery)
+                    DeliverNow();
                 if (_hasArrival)
                 {
                     SurfaceScheduler.Uploads.Enqueue(this);

@@ -112,12 +112,15 @@ namespace QuickSes
         /// Somebody who is asked once per frame is asked: if in another frame of the engine than the one before, or for
         /// the second time (in edit mode nothing else tells), it is a new one.
         /// </summary>
-        public void Note(int engineFrame, ref uint lastFrame)
+        /// <returns>Whether it is a new one.</returns>
+        public bool Note(int engineFrame, ref uint lastFrame)
         {
-            if (engineFrame != _engineFrame || lastFrame == _frame)
+            bool isNew = engineFrame != _engineFrame || lastFrame == _frame;
+            if (isNew)
                 BeginFrame();
             _engineFrame = engineFrame;
             lastFrame = _frame;
+            return isNew;
         }
 
         public void Enqueue(IUploader uploader)

@@ -29,6 +29,10 @@ namespace QuickSes
         [SerializeField, Min(0), Tooltip("Milliseconds per frame that all surfaces together may take to be copied into " +
             "meshes. 0: no limit. What does not fit comes in later frames.")]
         private float _uploadBudget = 2;
+        [SerializeField, Tooltip("Whether surfaces that CUDA computes stay on the GPU. Host: no. Auto: large ones, with " +
+            "OpenGLCore. Device: all, with OpenGLCore and Direct3D11. Not tried in an Editor yet: see the sample GPU " +
+            "delivery check.")]
+        private SurfaceDelivery _delivery = SurfaceDelivery.Host;
 
         /// <summary>The project's; null: there is none, and the defaults hold. Main thread only.</summary>
         public static QuickSesSettings Find() => Resources.Load<QuickSesSettings>(AssetName);
@@ -40,6 +44,9 @@ namespace QuickSes
             options.Threads = _threads > 0 ? (uint)_threads : SchedulerOptions.DefaultThreads;
             options.MemoryBudget = (ulong)Mathf.Max(_memoryBudget, 0) * BytesPerMegabyte;
             options.Device = Mathf.Max(_device, 0);
+            options.Delivery = _delivery >= SurfaceDelivery.Auto && _delivery <= SurfaceDelivery.Device
+                ? _delivery
+                : SurfaceDelivery.Host;
             options.UploadBudget = _uploadBudget >= 0 && !float.IsInfinity(_uploadBudget) ? _uploadBudget : 0;
         }
     }
