@@ -23,8 +23,8 @@
  *
  * When it can't be done
  *   Every failure is a status of the target (qses_gpu_target_status) with a sentence. The mesh is still kept:
- *   qses_kept_mesh_download brings it to host memory, from where it is shown as any other. Then the buffers hold what
- *   they held before, or nothing of use if they are new.
+ *   qses_kept_mesh_download brings it to host memory, from where it is shown as any other. What the buffers hold then
+ * is undefined.
  *
  * Graphics APIs
  *   OpenGL on Linux and Windows; Direct3D 11 on Windows, which nobody has run yet on a GPU: its order of calls is
@@ -152,7 +152,8 @@ QSES_API qses_status qses_gpu_next_event(int32_t *event);
 
 /* What runs an event on the thread that draws, where the graphics API's context is current: it does what was submitted
  * for this event and those before it (of each target, only the newest mesh). Has the form of Unity's
- * UnityRenderingEvent. It returns nothing, throws nothing and does not wait for the GPU. */
+ * UnityRenderingEvent. It returns nothing, throws nothing and does not wait for the GPU, but where a look is of more
+ * atoms than any before. */
 typedef void (*qses_gpu_event)(int32_t event);
 QSES_API qses_gpu_event qses_gpu_event_function(void);
 
