@@ -206,6 +206,7 @@ namespace QuickSes.Tests
                     surface.RestDelay = random.Next(2) * 0.05f;
                     break;
                 case 18:
+                    RenderThread.Run(); // what was on its way to it is there
                     if (random.Next(2) > 0)
                         surface.Mesh.Clear();
                     else

@@ -31,9 +31,8 @@ namespace QuickSes
         private GpuMesh _front; // what is shown, or was before it was hidden
         private GpuMesh _back; // in new buffers; or buffers that are not needed any more, until no event can write them
         private KeptMesh _awaited; // what the back waits for; null: nothing
-        private int _awaitedEvent;
         private bool _isBackDone;
-        private int _firstEvent; // since all had run
+        private int _done; // the last event that is known to have run
         private bool _isBusy; // what was to be submitted has to wait
         private bool _isFollowing; // events have not run yet
         private bool _isStopped;
@@ -67,13 +66,15 @@ namespace QuickSes
             GpuTargetStatus status = _target.GetStatus();
             _isStopped = status.IsStopped;
             _isFollowing = status.Waiting > 0;
-            if (status.Error.Status != QuickSesStatus.Ok && HasRun(_firstEvent, status))
+            bool hasRun = status.Done != _done; // else the failure is one that was told
+            _done = status.Done;
+            if (status.Error.Status != QuickSesStatus.Ok && hasRun)
                 Refuse(status.Error.Message);
             else if (_isStopped)
                 Forget();
             else if (!_isFollowing && !IsWaiting)
                 FreeBack();
-            _isBackDone = _awaited != null && HasRun(_awaitedEvent, status);
+            _isBackDone = _awaited != null && !_isFollowing; // it was the last
         }
 
         /// <summary>Shows a surface, or the one that is shown as it looks now.</summary>
@@ -92,20 +93,17 @@ namespace QuickSes
             {
                 _target ??= NewTarget();
                 GpuMesh mesh = MeshFor(view, style);
-                QuickSesError error = Submit(surface, look, mesh, out int number);
+                QuickSesError error = Submit(surface, look, mesh);
                 _isBusy = error.Status == QuickSesStatus.Busy;
                 if (_isBusy)
                     return isUrgent ? GpuStep.Refused : GpuStep.Waiting;
                 if (error.Status != QuickSesStatus.Ok)
                     return Refuse(error.Message);
-                if (!_isFollowing)
-                    _firstEvent = number;
                 _isFollowing = true;
                 _awaited = null;
                 if (mesh == _front || isUrgent)
                     return Draw(mesh, view, look, _given);
                 _awaited = surface;
-                _awaitedEvent = number;
                 _isBackDone = false;
                 return GpuStep.Waiting;
             }
@@ -164,6 +162,7 @@ namespace QuickSes
         {
             IGpuTarget target = GpuDelivery.Library.NewTarget();
             ++GpuDelivery.Targets;
+            _done = 0;
             _given = default;
             return target;
         }
@@ -181,9 +180,8 @@ namespace QuickSes
             return _back;
         }
 
-        private QuickSesError Submit(KeptMesh surface, AtomLook look, GpuMesh mesh, out int number)
+        private QuickSesError Submit(KeptMesh surface, AtomLook look, GpuMesh mesh)
         {
-            number = 0;
             var given = new GivenLook(look, mesh.Style.HasAtoms);
             if (!given.Equals(_given))
             {
@@ -193,7 +191,7 @@ namespace QuickSes
                     return error;
                 _given = given;
             }
-            return _target.Submit(surface, mesh.Buffers, out number);
+            return _target.Submit(surface, mesh.Buffers, out _);
         }
 
         private GpuStep ShowAwaited(AtomLook look)
@@ -216,10 +214,6 @@ namespace QuickSes
             _front.Draw(view, look, given);
             return GpuStep.Shown;
         }
-
-        // Numbers may wrap.
-        private static bool HasRun(int number, in GpuTargetStatus status) =>
-            status.Done != 0 && unchecked(status.Done - number) >= 0;
 
         private void FreeBack()
         {
