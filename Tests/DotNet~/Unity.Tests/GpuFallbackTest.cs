@@ -150,7 +150,7 @@ namespace QuickSes.Tests
             _gpu.Gpu.DownloadsFail = true;
             SurfaceScheduler.Delivery = SurfaceDelivery.Host;
             yield return SurfaceRig.Frames(5);
-            Assert.That(_gpu.Rig.Failures, Has.Count.EqualTo(1));
+            Assert.That(_gpu.Rig.Failures.Count, Is.EqualTo(1));
             Assert.That(_gpu.Rig.Failures[0].Message, Does.Contain("no memory"));
             Assert.That(Surface.UsedDelivery, Is.EqualTo(SurfaceDelivery.Device));
             Assert.Throws<QuickSesException>(() => _ = Surface.Owners);

@@ -11,7 +11,7 @@ namespace QuickSes.EngineDouble
     public static class RenderThread
     {
         private static readonly Queue<(IntPtr, int)> s_waiting = new Queue<(IntPtr, int)>();
-        private static readonly Dictionary<IntPtr, Action<int>> s_functions = new Dictionary<IntPtr, Action<int>>();
+        private static readonly Dictionary<int, Action<int>> s_functions = new Dictionary<int, Action<int>>();
 
         /// <summary>Whether frames end with it; else it stands still, as while a window is minimised.</summary>
         public static bool IsRunning { get; set; } = true;
@@ -22,8 +22,8 @@ namespace QuickSes.EngineDouble
         /// <summary>Events that were issued so far.</summary>
         public static int Issued { get; private set; }
 
-        /// <summary>Lets a pointer, any number but 0, be one to a function: no native code is called here.</summary>
-        public static void Declare(IntPtr pointer, Action<int> function) => s_functions[pointer] = function;
+        /// <summary>Lets a pointer, any small number but 0, be one to a function: no native code is called here.</summary>
+        public static void Declare(IntPtr pointer, Action<int> function) => s_functions[(int)pointer] = function;
 
         /// <summary>Does what is waiting, or as much of it.</summary>
         public static void Run(int count = int.MaxValue)
@@ -31,7 +31,7 @@ namespace QuickSes.EngineDouble
             for (; count > 0 && s_waiting.Count > 0; --count)
             {
                 (IntPtr callback, int eventId) = s_waiting.Dequeue();
-                if (!s_functions.TryGetValue(callback, out Action<int> function))
+                if (!s_functions.TryGetValue((int)callback, out Action<int> function))
                     throw new InvalidOperationException($"There is no function at {callback}.");
                 function(eventId);
             }
