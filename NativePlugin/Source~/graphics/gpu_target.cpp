@@ -53,7 +53,7 @@ bool GpuTarget::try_submit(Submission submission) {
 qses_gpu_status GpuTarget::status() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   look_at_clock();
-  status_.waiting = static_cast<uint32_t>(waiting_.size());
+  status_.waiting = static_cast<uint32_t>(waiting_.size()) + (is_in_event_ ? 1 : 0);
   return status_;
 }
 
@@ -74,15 +74,25 @@ bool GpuTarget::take(int32_t event, Submission *submission) {
     waiting_.pop_front();
     found = true;
   }
+  is_in_event_ = found;
   return found;
 }
 
 void GpuTarget::note_outcome(int32_t event, qses_status outcome, const char *message) {
   const std::lock_guard<std::mutex> lock(mutex_);
+  is_in_event_ = false;
   status_.done = event;
   status_.status = outcome;
   status_.registrations = registered.registrations();
   std::snprintf(status_.message, sizeof status_.message, "%s", message);
+}
+
+void GpuTarget::note_interruption(int32_t event) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!is_in_event_) return;
+  }
+  note_outcome(event, QSES_OUT_OF_MEMORY, "the machine refused memory");
 }
 
 void GpuTarget::note_times(float event_ms, float copy_ms) {

@@ -47,9 +47,11 @@ class GpuTarget {
   void let_go() noexcept;  // of what waits
 
   // ---- from the thread that draws, one at a time
-  // The newest that is to be done with this event; older ones are let go. False: there is none.
+  // The newest that is to be done with this event; older ones are let go. False: there is none; else the outcome is to
+  // be noted.
   bool take(int32_t event, Submission *submission);
   void note_outcome(int32_t event, qses_status outcome, const char *message);
+  void note_interruption(int32_t event);  // for want of memory; if something was taken
   void note_times(float event_ms, float copy_ms);
 
   RegisteredBuffers registered;  // of that thread alone, like the next
@@ -61,6 +63,7 @@ class GpuTarget {
 
   mutable std::mutex mutex_;
   mutable std::deque<Submission> waiting_;
+  bool is_in_event_ = false;  // one has been taken, whose outcome is not known yet
   mutable qses_gpu_status status_{};
   std::shared_ptr<const Appearance> look_;
   size_t look_atoms_ = 0;

@@ -96,7 +96,9 @@ void RenderQueue::run(int32_t event) noexcept try {
     arrival.target->note_times(event_ms, lanes_[arrival.submission.mesh->view.device].copy_ms);
     arrival.target->note_outcome(event, arrival.outcome, arrival.message.c_str());
   }
-} catch (...) {  // no memory for a list of a few pointers: the meshes count as dropped
+} catch (...) {  // no memory for a list of a few pointers
+  const std::lock_guard<std::mutex> lock(mutex_);
+  for (const std::shared_ptr<GpuTarget> &target : targets_) target->note_interruption(event);
 }
 
 RenderQueue::Lane &RenderQueue::lane_of(int device) {

@@ -57,17 +57,21 @@ TEST(CudaAllocations, NoneWithComponents) {
 }
 
 TEST(CudaAllocations, NoneInFramesThatAreKept) {
-  qses_kept_mesh *kept[2] = {};
-  for (qses_kept_mesh *&one : kept) expect_ok(qses_kept_mesh_create(&one));
-  int frame = 0;
-  expect_no_request([&](qses_context *context, const std::vector<float> &positions) {
-    set_positions(context, positions);
-    qses_settings s = settings();
-    s.pickable = 1;
-    begin_and_collect(context, s);
-    expect_ok(qses_keep(context, kept[frame++ % 2]));
-  });
-  for (qses_kept_mesh *one : kept) qses_kept_mesh_destroy(one);
+  for (const qses_delivery delivery : {QSES_DELIVERY_HOST, QSES_DELIVERY_DEVICE, QSES_DELIVERY_BOTH}) {
+    SCOPED_TRACE(delivery);
+    qses_kept_mesh *kept[2] = {};
+    for (qses_kept_mesh *&one : kept) expect_ok(qses_kept_mesh_create(&one));
+    int frame = 0;
+    expect_no_request([&](qses_context *context, const std::vector<float> &positions) {
+      set_positions(context, positions);
+      qses_settings s = settings();
+      s.pickable = 1;
+      s.delivery = delivery;
+      begin_and_collect(context, s);
+      expect_ok(qses_keep(context, kept[frame++ % 2]));
+    });
+    for (qses_kept_mesh *one : kept) qses_kept_mesh_destroy(one);
+  }
 }
 
 TEST(CudaAllocations, NoneWithTheGridMethod) {

@@ -423,9 +423,9 @@ typedef struct qses_mesh {
                              hard_edges say. COMPACT: NULL, they are behind the positions */
   const uint8_t *colors;  /* V x 4, tightly packed, or NULL if there are none */
   const float *texcoords; /* V x 2, tightly packed, or NULL if not asked for */
-  uint32_t vertex_bytes;  /* INTERLEAVED (24) and COMPACT (16): bytes from one vertex to the next in the vertices that
-                             positions points to, V * vertex_bytes bytes of memory. SEPARATE: 0, positions and normals
-                             are tightly packed */
+  uint32_t vertex_bytes;  /* INTERLEAVED (24) and COMPACT (16), wherever the mesh is: bytes from one vertex to the next
+                             in the vertices that  positions points to, V * vertex_bytes bytes of memory. SEPARATE: 0,
+                             positions and normals  are tightly packed */
   uint32_t reserved;      /* 0 */
   const uint32_t *owners; /* V, the atom whose van der Waals surface is nearest to the vertex; with GRID, to where it
                              was before it was smoothed */

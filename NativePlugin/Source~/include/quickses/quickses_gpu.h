@@ -130,7 +130,8 @@ typedef struct qses_gpu_status {
   qses_status status;   /* of the last event that had a mesh for this target; OK if there was none */
   int32_t submitted;    /* number of the event that the newest mesh waits for or has had; 0: none */
   int32_t done;         /* number of the last event that had a mesh for this target; 0: none */
-  uint32_t waiting;     /* meshes that wait for their event */
+  uint32_t waiting;  /* meshes that wait for their event, and one that an event is at work on: 0 as soon as `done` and
+                        `status` are of the newest */
   qses_bool stopped; /* 1: meshes have waited for an event longer than QSES_GPU_PATIENCE_MS, as they do while a window
                         is minimised, and were let go. 0 again once an event runs; qses_gpu_next_event gives some to
                         try with */

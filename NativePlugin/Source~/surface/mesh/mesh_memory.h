@@ -52,7 +52,6 @@ inline void point_at(const MeshView &arrays, const MeshShape &shape, qses_mesh *
   mesh->normals = arrays.normals;
   mesh->colors = reinterpret_cast<const uint8_t *>(arrays.colors);
   mesh->texcoords = arrays.texcoords;
-  mesh->vertex_bytes = shape.layout == QSES_VERTICES_SEPARATE ? 0 : arrays.vertex_bytes;
   mesh->owners = arrays.owners;
   mesh->patches = arrays.patches;
   mesh->indices = arrays.indices;
@@ -77,6 +76,7 @@ inline void describe_mesh(const MeshMemoryView &built, const MeshView *arrays, c
     mesh->bounds_min[d] = built.bounds.min[d];
     mesh->bounds_max[d] = built.bounds.max[d];
   }
+  if (built.shape.layout != QSES_VERTICES_SEPARATE) mesh->vertex_bytes = built.view.vertex_bytes;
   if (arrays) point_at(*arrays, built.shape, mesh);
 }
 
