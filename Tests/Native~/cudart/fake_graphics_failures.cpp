@@ -24,7 +24,7 @@ class Scene {
   bool draw_all() {
     events_that_failed = 0;
     DrawnSurface plain(api_, 1), painted(api_, 3, true);
-    set_look(painted);
+    paint_and_hide(painted);
     draw_both(plain, plain_mesh_, painted, look_mesh_);
     qses_gpu_target_set_look(painted.target(), nullptr);
     draw_both(plain, other_mesh_, painted, painted_mesh_);
@@ -54,16 +54,6 @@ class Scene {
   static constexpr int kRegistrations = 2 * (2 + 5);
 
  private:
-  static void set_look(const DrawnSurface &surface) {
-    const std::vector<uint8_t> colors(4 * HandMadeMesh::kAtoms, 1), visible = {1, 0, 1};
-    qses_gpu_look look;
-    qses_gpu_look_init(&look);
-    look.atom_count = HandMadeMesh::kAtoms;
-    look.colors = colors.data();
-    look.visible = visible.data();
-    expect_ok(qses_gpu_target_set_look(surface.target(), &look));
-  }
-
   void draw_both(const DrawnSurface &plain, const HandMadeMesh &of_plain, const DrawnSurface &painted,
                  const HandMadeMesh &of_painted) {
     const bool has_plain = submit(plain, of_plain), has_painted = submit(painted, of_painted);

@@ -204,6 +204,7 @@ class DrawnSurface {
 
   void expect_shows(const HandMadeMesh &made) const {
     const qses_mesh &mesh = made.here();
+    EXPECT_EQ(mesh.vertex_bytes > 0, mesh.vertex_count > 0) << "nothing is compared";
     expect_has(vertices(), mesh.positions, size_t(mesh.vertex_count) * mesh.vertex_bytes, "vertices");
     expect_has(indices(), mesh.indices, 12 * size_t(mesh.triangle_count), "indices");
     if (all_) expect_has(owners(), mesh.owners, 4 * size_t(mesh.vertex_count), "owners");
@@ -233,6 +234,17 @@ class DrawnSurface {
   qses_gpu_target *target_ = nullptr;
   std::vector<std::unique_ptr<Buffer>> buffers_, former_;
 };
+
+// Colours for all atoms, and the second of them hidden.
+inline void paint_and_hide(const DrawnSurface &surface) {
+  const std::vector<uint8_t> colors(4 * HandMadeMesh::kAtoms, 1), visible = {1, 0, 1};
+  qses_gpu_look look;
+  qses_gpu_look_init(&look);
+  look.atom_count = HandMadeMesh::kAtoms;
+  look.colors = colors.data();
+  look.visible = visible.data();
+  expect_ok(qses_gpu_target_set_look(surface.target(), &look));
+}
 
 // ---- events
 

@@ -228,13 +228,7 @@ TEST_P(GraphicsEvent, PaintsWhiteWhatHasNoColours) {
 TEST_P(GraphicsEvent, PaintsAndHidesAsTheLookSays) {
   const HandMadeMesh mesh(1, 5, 4, 0, true);
   DrawnSurface surface(api(), 1, true);
-  const std::vector<uint8_t> colors(4 * HandMadeMesh::kAtoms, 1), visible = {1, 0, 1};
-  qses_gpu_look look;
-  qses_gpu_look_init(&look);
-  look.atom_count = HandMadeMesh::kAtoms;
-  look.colors = colors.data();
-  look.visible = visible.data();
-  expect_ok(qses_gpu_target_set_look(surface.target(), &look));
+  paint_and_hide(surface);
   expect_ok(surface.submit(mesh));
   draw();
   surface.expect_status(QSES_OK, {});
@@ -244,6 +238,7 @@ TEST_P(GraphicsEvent, PaintsAndHidesAsTheLookSays) {
                 {"Launch", "Launch"},
                 {all("Unmap", 1, 5)}});
   // A look that says nothing is none.
+  qses_gpu_look look;
   qses_gpu_look_init(&look);
   expect_ok(qses_gpu_target_set_look(surface.target(), &look));
   expect_ok(surface.submit(mesh));

@@ -47,11 +47,17 @@ inline MeshMemoryView describe_memory(const MeshArrays &arrays, size_t vertices,
   return mesh;
 }
 
+// As of qses_mesh.vertex_bytes.
+inline uint32_t interleaved_bytes(const MeshView &arrays, const MeshShape &shape) {
+  return shape.layout == QSES_VERTICES_SEPARATE ? 0 : arrays.vertex_bytes;
+}
+
 inline void point_at(const MeshView &arrays, const MeshShape &shape, qses_mesh *mesh) {
   mesh->positions = arrays.positions;
   mesh->normals = arrays.normals;
   mesh->colors = reinterpret_cast<const uint8_t *>(arrays.colors);
   mesh->texcoords = arrays.texcoords;
+  mesh->vertex_bytes = interleaved_bytes(arrays, shape);
   mesh->owners = arrays.owners;
   mesh->patches = arrays.patches;
   mesh->indices = arrays.indices;
@@ -76,7 +82,7 @@ inline void describe_mesh(const MeshMemoryView &built, const MeshView *arrays, c
     mesh->bounds_min[d] = built.bounds.min[d];
     mesh->bounds_max[d] = built.bounds.max[d];
   }
-  if (built.shape.layout != QSES_VERTICES_SEPARATE) mesh->vertex_bytes = built.view.vertex_bytes;
+  mesh->vertex_bytes = interleaved_bytes(built.view, built.shape);  // also where the arrays are not
   if (arrays) point_at(*arrays, built.shape, mesh);
 }
 
