@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
 // What vertices take from their atoms. A job that runs keeps what it was begun with: a change goes into another set,
 // one that nobody holds any more if there is one, so that colours of every frame soon need no new memory.
+#include "capi/appearance_in.h"
 #include "capi/context.h"
 #include "parallel/sole_holder.h"
-
-#include <algorithm>
-#include <cstring>
 
 using quickses::Appearance;
 using quickses::check_atom_count;
@@ -41,29 +39,22 @@ extern "C" {
 
 qses_status qses_set_visible(qses_context *context, const uint8_t *visible, size_t count) {
   return guarded([&] {
-    change_appearance(context, count, "qses_set_visible", [&](Appearance &a) {
-      a.visible.clear();
-      if (visible && std::find(visible, visible + count, uint8_t(0)) != visible + count)
-        a.visible.assign(visible, visible + count);
-    });
+    change_appearance(context, count, "qses_set_visible",
+                      [&](Appearance &a) { quickses::copy_visible(visible, count, &a); });
   });
 }
 
 qses_status qses_set_colors(qses_context *context, const uint8_t *rgba, size_t count) {
   return guarded([&] {
-    change_appearance(context, count, "qses_set_colors", [&](Appearance &a) {
-      a.colors.resize(rgba ? count : 0);
-      if (rgba && count > 0) std::memcpy(a.colors.data(), rgba, 4 * count);
-    });
+    change_appearance(context, count, "qses_set_colors",
+                      [&](Appearance &a) { quickses::copy_colors(rgba, count, &a); });
   });
 }
 
 qses_status qses_set_texcoords(qses_context *context, const float *uv, size_t count) {
   return guarded([&] {
-    change_appearance(context, count, "qses_set_texcoords", [&](Appearance &a) {
-      a.texcoords.resize(uv ? count : 0);
-      if (uv && count > 0) std::memcpy(static_cast<void *>(a.texcoords.data()), uv, sizeof(glm::vec2) * count);
-    });
+    change_appearance(context, count, "qses_set_texcoords",
+                      [&](Appearance &a) { quickses::copy_texcoords(uv, count, &a); });
   });
 }
 

@@ -25,6 +25,10 @@ struct qses_kept_mesh {
 
 namespace quickses {
 
+inline void require_kept(const qses_kept_mesh &kept) {
+  if (!kept.held.is_full) throw Error(QSES_NO_RESULT, "nothing is kept here yet");
+}
+
 // function: the one that was called, for the message.
 inline void require_atoms(const qses_context &context, const char *function) {
   if (!context.atoms) throw Error(QSES_NO_ATOMS, std::string("qses_set_atoms must come before ") + function);

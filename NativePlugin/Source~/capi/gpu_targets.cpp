@@ -2,14 +2,11 @@
 // The part of the C API about meshes that go to a graphics API without leaving the GPU.
 #include "quickses/quickses_gpu.h"
 
+#include "capi/appearance_in.h"
 #include "capi/context.h"
 #include "capi/structs.h"
 
-#include <algorithm>
-#include <cstring>
-
 using quickses::check_choice;
-using quickses::check_struct;
 using quickses::guarded;
 using quickses::invalid;
 using quickses::require;
@@ -45,28 +42,20 @@ void set_look(qses_gpu_target *target, const qses_gpu_look *given) {
   const size_t n = static_cast<size_t>(look.atom_count);
   if (n == 0 || (!look.colors && !look.texcoords && !look.visible)) return target->held->set_look(nullptr, 0);
   const auto made = std::make_shared<Appearance>();
-  if (look.colors) {
-    made->colors.resize(n);
-    std::memcpy(made->colors.data(), look.colors, 4 * n);
-  }
-  if (look.texcoords) {
-    made->texcoords.resize(n);
-    std::memcpy(static_cast<void *>(made->texcoords.data()), look.texcoords, sizeof(glm::vec2) * n);
-  }
-  if (look.visible && std::find(look.visible, look.visible + n, uint8_t(0)) != look.visible + n)
-    made->visible.assign(look.visible, look.visible + n);
+  quickses::copy_colors(look.colors, n, made.get());
+  quickses::copy_texcoords(look.texcoords, n, made.get());
+  quickses::copy_visible(look.visible, n, made.get());
   target->held->set_look(made, n);
 }
 
-bool try_submit(qses_gpu_target *target, const quickses::KeptMesh &kept, const qses_gpu_buffers &buffers,
-                int32_t *event) {
-  if (!kept.is_full || !kept.on_device)
-    throw quickses::Error(QSES_NO_RESULT, kept.is_full ? "the mesh that is kept is not on a device (settings.delivery)"
-                                                       : "nothing is kept here yet");
-  target->held->check(*kept.on_device, buffers);
+bool try_submit(qses_gpu_target *target, const qses_kept_mesh &kept, const qses_gpu_buffers &buffers, int32_t *event) {
+  quickses::require_kept(kept);
+  const std::shared_ptr<const quickses::DeviceMesh> &mesh = kept.held.on_device;
+  if (!mesh) throw quickses::Error(QSES_NO_RESULT, "the mesh that is kept is not on a device (settings.delivery)");
+  target->held->check(*mesh, buffers);
   check_graphics(buffers.graphics);
   quickses::Submission submission;
-  submission.mesh = kept.on_device;
+  submission.mesh = mesh;
   submission.buffers = buffers;
   return RenderQueue::instance().try_submit(*target->held, std::move(submission), event);
 }
@@ -95,7 +84,7 @@ void check_graphics(qses_graphics) { refuse(); }
 qses_gpu_target *make_target() { refuse(); }
 void end_target(qses_gpu_target *) {}
 void set_look(qses_gpu_target *, const qses_gpu_look *) {}
-bool try_submit(qses_gpu_target *, const quickses::KeptMesh &, const qses_gpu_buffers &, int32_t *) { refuse(); }
+bool try_submit(qses_gpu_target *, const qses_kept_mesh &, const qses_gpu_buffers &, int32_t *) { refuse(); }
 qses_gpu_status status_of(const qses_gpu_target *) { refuse(); }
 int32_t next_event() { return 0; }
 void run_event(int32_t) {}
@@ -154,7 +143,7 @@ qses_status qses_gpu_target_submit(qses_gpu_target *target, const qses_kept_mesh
     const qses_gpu_buffers b = quickses::read_struct(buffers, qses_gpu_buffers_init, "qses_gpu_buffers");
     check_known("buffers.graphics", b.graphics);
     int32_t number = 0;
-    is_taken = try_submit(target, kept->held, b, &number);
+    is_taken = try_submit(target, *kept, b, &number);
     if (is_taken && event) *event = number;
   });
   // Callers ask in every frame: an exception would be too dear an answer.

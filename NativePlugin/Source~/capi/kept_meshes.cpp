@@ -15,8 +15,6 @@ using quickses::KeptMesh;
 using quickses::require;
 using quickses::write_struct;
 
-constexpr const char *kNothingKept = "nothing is kept here yet";
-
 void check_on_host(const KeptMesh &kept) {
   if (kept.is_elsewhere()) invalid("the mesh is on the device only: call qses_kept_mesh_download first");
 }
@@ -79,7 +77,7 @@ qses_status qses_keep(qses_context *context, qses_kept_mesh *kept) {
 qses_status qses_kept_mesh_download(qses_kept_mesh *kept) {
   return guarded([&] {
     require(kept, "kept");
-    if (!kept->held.is_full) throw quickses::Error(QSES_NO_RESULT, kNothingKept);
+    quickses::require_kept(*kept);
     kept->held.download();
   });
 }
@@ -96,7 +94,7 @@ qses_status qses_kept_mesh_report(const qses_kept_mesh *kept, qses_report *repor
   return guarded([&] {
     require(kept, "kept");
     require(report, "report");
-    if (!kept->held.is_full) throw quickses::Error(QSES_NO_RESULT, kNothingKept);
+    quickses::require_kept(*kept);
     write_struct(report, kept->held.report, "qses_report");
   });
 }

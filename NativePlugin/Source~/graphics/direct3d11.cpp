@@ -3,10 +3,7 @@
 // that all of them is written is said with the map flags, since registering takes none for Direct3D.
 #include "cudart/driver.h"
 #include "graphics/graphics_api.h"
-#include "parallel/cuda_memory.h"
 #include "parallel/error.h"
-
-#include <cuda_runtime_api.h>
 
 #if defined(_WIN32)
 #include <d3d11.h>
@@ -31,17 +28,11 @@ std::vector<int> drawing_devices(uint64_t any_buffer) {
   constexpr unsigned kAll = 1;  // cudaD3D11DeviceListAll
   ID3D11Device *d3d = nullptr;
   buffer_of(any_buffer)->GetDevice(&d3d);
-  std::vector<int> devices(16);
-  unsigned count = 0;
-  const cudaError_t error =
-      cudaD3D11GetDevices(&count, devices.data(), static_cast<unsigned>(devices.size()), d3d, kAll);
-  if (d3d) d3d->Release();
-  if (error == cudaErrorNoDevice)
-    count = 0, cudaGetLastError();  // something else draws
-  else
-    check_cuda(error, "cudaD3D11GetDevices");
-  devices.resize(count);
-  return devices;
+  return list_devices("cudaD3D11GetDevices", [&](unsigned *count, int *devices, unsigned room) {
+    const cudaError_t error = cudaD3D11GetDevices(count, devices, room, d3d, kAll);
+    if (d3d) d3d->Release();
+    return error;
+  });
 }
 
 cudaGraphicsResource *register_buffer(uint64_t pointer) {

@@ -3,12 +3,13 @@
 // draws.
 #pragma once
 
+#include "parallel/cuda_memory.h"
 #include "quickses/quickses_gpu.h"
+
+#include <cuda_runtime_api.h>
 
 #include <string>
 #include <vector>
-
-struct cudaGraphicsResource;
 
 namespace quickses {
 
@@ -21,6 +22,21 @@ struct GraphicsApi {
   // For writing only. Throws Error.
   cudaGraphicsResource *(*register_buffer)(uint64_t buffer);
 };
+
+// The devices that ask(count, devices, room) lists, as the functions cuda...GetDevices do; none where something else
+// draws. Throws Error.
+template <class Ask>
+std::vector<int> list_devices(const char *call, const Ask &ask) {
+  std::vector<int> devices(16);
+  unsigned count = 0;
+  const cudaError_t error = ask(&count, devices.data(), static_cast<unsigned>(devices.size()));
+  if (error == cudaErrorNoDevice)
+    count = 0, cudaGetLastError();
+  else
+    check_cuda(error, call);
+  devices.resize(count);
+  return devices;
+}
 
 const GraphicsApi &opengl();
 const GraphicsApi &direct3d11();

@@ -3,9 +3,6 @@
 // headers.
 #include "cudart/driver.h"
 #include "graphics/graphics_api.h"
-#include "parallel/cuda_memory.h"
-
-#include <cuda_runtime_api.h>
 
 extern "C" {
 cudaError_t CUDARTAPI cudaGLGetDevices(unsigned *count, int *devices, unsigned room, unsigned list);
@@ -21,15 +18,9 @@ std::string refusal() {
 
 std::vector<int> drawing_devices(uint64_t) {
   constexpr unsigned kAll = 1;  // cudaGLDeviceListAll
-  std::vector<int> devices(16);
-  unsigned count = 0;
-  const cudaError_t error = cudaGLGetDevices(&count, devices.data(), static_cast<unsigned>(devices.size()), kAll);
-  if (error == cudaErrorNoDevice)
-    count = 0, cudaGetLastError();  // something else draws
-  else
-    check_cuda(error, "cudaGLGetDevices");
-  devices.resize(count);
-  return devices;
+  return list_devices("cudaGLGetDevices", [](unsigned *count, int *devices, unsigned room) {
+    return cudaGLGetDevices(count, devices, room, kAll);
+  });
 }
 
 cudaGraphicsResource *register_buffer(uint64_t buffer) {

@@ -47,7 +47,7 @@ void require_graphics(qses_graphics graphics) {
 }
 
 void RegisteredBuffers::use(const qses_gpu_buffers &buffers, int device) {
-  if (count_ > 0 && device == device_ && are_the_same(buffers, known_)) return;
+  if (count_ > 0 && are_the_same(buffers, known_)) return;
   forget();
   const GraphicsApi &api = graphics_api(buffers.graphics);
   require_same_device(api, buffers, device);
@@ -65,7 +65,6 @@ void RegisteredBuffers::use(const qses_gpu_buffers &buffers, int device) {
     throw;
   }
   known_ = buffers;
-  device_ = device;
 }
 
 void RegisteredBuffers::forget() noexcept {

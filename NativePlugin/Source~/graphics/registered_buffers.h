@@ -25,8 +25,8 @@ class RegisteredBuffers {
   RegisteredBuffers(const RegisteredBuffers &) = delete;
   RegisteredBuffers &operator=(const RegisteredBuffers &) = delete;
 
-  // Makes buffers known to CUDA, as far as they are other ones than before. The device is selected. Throws Error: then
-  // none is known.
+  // Makes buffers known to CUDA, unless they are those that are. The device is selected; before another one is, they
+  // are to be forgotten. Throws Error: then none is known.
   void use(const qses_gpu_buffers &buffers, int device);
   // None is known any more. Must be done before the thread's context goes; what fails is the driver's to clean up.
   void forget() noexcept;
@@ -41,7 +41,6 @@ class RegisteredBuffers {
 
  private:
   qses_gpu_buffers known_{};
-  int device_ = -1;
   std::array<cudaGraphicsResource *, kMost> resources_{};  // count_ of them
   std::array<int, kMost> place_{};                         // in these, by Which; -1: none
   size_t count_ = 0;

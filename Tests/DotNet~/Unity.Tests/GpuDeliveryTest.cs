@@ -286,11 +286,7 @@ namespace QuickSes.Tests
                     System.Threading.Thread.Sleep(1);
                 }
             };
-            play();
-            play();
-            long before = GC.GetAllocatedBytesForCurrentThread();
-            play();
-            Assert.That(GC.GetAllocatedBytesForCurrentThread() - before, Is.EqualTo(0));
+            Garbage.AssertNone(play);
             Assert.That(Surface.UsedDelivery, Is.EqualTo(SurfaceDelivery.Device));
         }
 

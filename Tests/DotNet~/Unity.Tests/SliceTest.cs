@@ -380,11 +380,7 @@ namespace QuickSes.Tests
                     System.Threading.Thread.Sleep(1);
                 }
             };
-            play();
-            play();
-            long before = GC.GetAllocatedBytesForCurrentThread();
-            play();
-            Assert.That(GC.GetAllocatedBytesForCurrentThread() - before, Is.EqualTo(0));
+            Garbage.AssertNone(play);
         }
 
         private MeshFilter Filter => _rig.GameObject.GetComponent<MeshFilter>();

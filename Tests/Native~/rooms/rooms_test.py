@@ -29,7 +29,7 @@ ROOMS = {
     "graphics": "include cudart parallel surface/mesh surface/stages kept",
     "jobs": "include parallel surface kept",
     "io": "",
-    "capi": "include parallel surface/cpu surface kept graphics jobs io",
+    "capi": "include parallel surface/cpu surface/stages surface kept graphics jobs io",
     "cli": "include io",
 }
 # What only the CPU's side may see.
