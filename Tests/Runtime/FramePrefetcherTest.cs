@@ -20,10 +20,9 @@ namespace QuickSes.Tests
             public int Damaged = -1, Throws = -1;
             public bool CanOpen = true, ThrowsOnOpening, WaitsOnOpening;
             public volatile bool IsDisposed;
-            public long Garbage; // bytes the thread allocated since the second read
+            public long Allocated; // bytes, by the thread, before its newest read
 
             private readonly int _frames, _atoms;
-            private long _allocatedBefore = -1;
 
             public CountingReader(int frames, int atoms = 4)
             {
@@ -48,8 +47,7 @@ namespace QuickSes.Tests
             public override bool TryRead(int frame, Span<Vector3> positions, out TrajectoryFrame info,
                 out QuickSesError error)
             {
-                if (_allocatedBefore >= 0)
-                    Volatile.Write(ref Garbage, GC.GetAllocatedBytesForCurrentThread() - _allocatedBefore);
+                Volatile.Write(ref Allocated, GC.GetAllocatedBytesForCurrentThread());
                 lock (Reads)
                     Reads.Add(frame);
                 Gate.Wait();
@@ -59,8 +57,6 @@ namespace QuickSes.Tests
                     positions[i] = new Vector3(frame, i, 0);
                 info = default;
                 error = frame == Damaged ? new QuickSesError(QuickSesStatus.FileError, "damaged") : default;
-                if (_allocatedBefore < 0)
-                    _allocatedBefore = GC.GetAllocatedBytesForCurrentThread();
                 return frame != Damaged;
             }
 
@@ -389,8 +385,17 @@ namespace QuickSes.Tests
                 };
                 play();
                 Assert.That(play, Is.Not.AllocatingGCMemory());
-                Assert.That(Volatile.Read(ref reader.Garbage), Is.EqualTo(0));
-                Assert.That(reader.ReadsSoFar().Length, Is.GreaterThanOrEqualTo(400));
+                // The runtime allocates where a thread first waits for another, at any time; frames that leave
+                // garbage leave it in every round.
+                long least = long.MaxValue;
+                for (int round = 0; round < 8 && least != 0; ++round)
+                {
+                    long before = Volatile.Read(ref reader.Allocated);
+                    play();
+                    least = Math.Min(least, Volatile.Read(ref reader.Allocated) - before);
+                }
+                Assert.That(least, Is.EqualTo(0));
+                Assert.That(reader.ReadsSoFar().Length, Is.GreaterThanOrEqualTo(600));
             }
         }
     }
