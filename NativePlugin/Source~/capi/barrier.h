@@ -6,7 +6,6 @@
 #include "parallel/error.h"
 #include "parallel/working_thread.h"
 
-#include <new>
 #include <string>
 
 namespace quickses {
@@ -21,22 +20,15 @@ qses_status fail(qses_status status, const char *message) noexcept;
 template <class Call>
 qses_status guarded(const Call &call) noexcept {
   const FloatScope floats;
+  qses_status outcome = QSES_OK;
   try {
     call();
-    return QSES_OK;
-  } catch (const Error &e) {
-    return fail(e.status(), e.what());
   } catch (const io::Error &e) {
-    return fail(e.kind() == io::ErrorKind::kUsage ? QSES_INVALID_ARGUMENT : QSES_FILE_ERROR, e.what());
-  } catch (const Cancelled &) {
-    return fail(QSES_CANCELLED, "the computation was cancelled");
-  } catch (const std::bad_alloc &) {
-    return fail(QSES_OUT_OF_MEMORY, "the machine refused memory");
-  } catch (const std::exception &e) {
-    return fail(QSES_INTERNAL_ERROR, e.what());
+    outcome = fail(e.kind() == io::ErrorKind::kUsage ? QSES_INVALID_ARGUMENT : QSES_FILE_ERROR, e.what());
   } catch (...) {
-    return fail(QSES_INTERNAL_ERROR, "an unknown exception");
+    explain_exception([&](qses_status status, const char *message) { outcome = fail(status, message); });
   }
+  return outcome;
 }
 
 [[noreturn]] inline void invalid(const std::string &message) { throw Error(QSES_INVALID_ARGUMENT, message); }

@@ -121,14 +121,13 @@ bool RenderQueue::attempt(Arrival &arrival, const Call &call) {
   try {
     call();
     return true;
-  } catch (const Error &e) {
-    arrival.outcome = e.status();
-    arrival.message = e.what();
-  } catch (const std::bad_alloc &) {
-    arrival.outcome = QSES_OUT_OF_MEMORY;
-    arrival.message = "the machine refused memory";
+  } catch (...) {
+    explain_exception([&](qses_status status, const char *message) {
+      arrival.outcome = status;
+      arrival.message = message;
+    });
+    return false;
   }
-  return false;
 }
 
 // Nothing here waits for the GPU.

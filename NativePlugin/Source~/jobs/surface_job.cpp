@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cstdio>
 #include <cstring>
-#include <new>
 #include <system_error>
 
 namespace quickses {
@@ -94,25 +93,21 @@ void SurfaceJob::work() {
     choose_levels(request);
     lock.unlock();
     qses_status status = QSES_OK;
-    std::string message;
+    char message[sizeof state_.message] = "";  // no string, which may find no memory
     try {
       run(request);
     } catch (const Cancelled &) {
-    } catch (const Error &e) {
-      status = e.status();
-      message = e.what();
-    } catch (const std::bad_alloc &) {
-      status = QSES_OUT_OF_MEMORY;
-      message = "the machine refused memory";
-    } catch (const std::exception &e) {
-      status = QSES_INTERNAL_ERROR;
-      message = e.what();
+    } catch (...) {
+      explain_exception([&](qses_status failure, const char *sentence) {
+        status = failure;
+        std::snprintf(message, sizeof message, "%s", sentence);
+      });
     }
     lock.lock();
     running_ = false;
     writing_ = kNoSlot;
     state_.status = status;
-    std::snprintf(state_.message, sizeof state_.message, "%s", message.c_str());
+    std::memcpy(state_.message, message, sizeof message);
     state_.state = status != QSES_OK                  ? QSES_JOB_FAILED
                    : levels_finished_ == level_count_ ? QSES_JOB_FINISHED
                                                       : QSES_JOB_CANCELLED;
@@ -168,14 +163,8 @@ void SurfaceJob::compute(SurfaceRequest request) {
   } catch (const Cancelled &) {
     end(QSES_JOB_CANCELLED, QSES_OK, "");
     throw;
-  } catch (const Error &e) {
-    end(QSES_JOB_FAILED, e.status(), e.what());
-    throw;
-  } catch (const std::bad_alloc &) {
-    end(QSES_JOB_FAILED, QSES_OUT_OF_MEMORY, "the machine refused memory");
-    throw;
-  } catch (const std::exception &e) {
-    end(QSES_JOB_FAILED, QSES_INTERNAL_ERROR, e.what());
+  } catch (...) {
+    explain_exception([&](qses_status status, const char *message) { end(QSES_JOB_FAILED, status, message); });
     throw;
   }
   end(QSES_JOB_FINISHED, QSES_OK, "");

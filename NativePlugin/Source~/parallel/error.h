@@ -4,6 +4,7 @@
 
 #include "quickses/quickses.h"
 
+#include <new>
 #include <stdexcept>
 #include <string>
 
@@ -32,5 +33,24 @@ class MemoryRefused : public Error {
 
 // A computation that was told to stop. Not an error: whoever asked for it knows.
 struct Cancelled {};
+
+// In a catch block: take(status, sentence) is told what the exception that is being handled comes to. Needs no memory;
+// the sentence is there as long as the call.
+template <class Take>
+void explain_exception(const Take &take) {
+  try {
+    throw;
+  } catch (const Error &e) {
+    take(e.status(), e.what());
+  } catch (const Cancelled &) {
+    take(QSES_CANCELLED, "the computation was cancelled");
+  } catch (const std::bad_alloc &) {
+    take(QSES_OUT_OF_MEMORY, "the machine refused memory");
+  } catch (const std::exception &e) {
+    take(QSES_INTERNAL_ERROR, e.what());
+  } catch (...) {
+    take(QSES_INTERNAL_ERROR, "an unknown exception");
+  }
+}
 
 }  // namespace quickses
