@@ -14,16 +14,25 @@ namespace quickses::cli {
 // Of at least one value.
 double median(std::vector<double> values);
 
-// A structure whose atoms are in the engine already. Each adds what it found to the entry and returns lines of text for
-// the user.
+struct BenchSubject {
+  const io::Structure &structure;
+  const std::string &path;  // that it came from
+  const Options &options;
+  qses_backend backend;  // CUDA or CPU: what the options come to here
+};
 
-// Surfaces of the whole, from atoms in memory to the mesh in memory.
-std::string bench_surface(Engine &engine, const io::Structure &structure, const Options &options, Json *entry);
+// A context of its own, so that nothing is in its memory but what is measured, with the atoms.
+Engine start_engine(const BenchSubject &subject);
+
+// Each adds what it found to the entry and returns lines of text for the user.
+
+// Surfaces of the whole, from atoms in host memory to the mesh, which is left on the device or brought to host memory.
+std::string bench_surface(const BenchSubject &subject, Json *entry);
 
 // Many surfaces of a few residues each, one after the other.
-std::string bench_small(Engine &engine, const io::Structure &structure, const Options &options, Json *entry);
+std::string bench_small(const BenchSubject &subject, Json *entry);
 
 // Jobs: how long their calls take, how soon they end, and what the coarse levels cost.
-std::string bench_jobs(Engine &engine, const io::Structure &structure, const Options &options, Json *entry);
+std::string bench_jobs(const BenchSubject &subject, Json *entry);
 
 }  // namespace quickses::cli

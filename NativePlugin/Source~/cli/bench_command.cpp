@@ -2,9 +2,11 @@
 // quickses bench: times of warm calls.
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 
 #include "cli/bench.h"
 #include "cli/commands.h"
+#include "cli/copies.h"
 #include "cli/exit_code.h"
 #include "cli/input.h"
 #include "cli/text_output.h"
@@ -13,6 +15,7 @@ namespace quickses::cli {
 namespace {
 
 constexpr size_t kSmallSurfaces = 100;
+constexpr double kGap = 4;  // Å between copies, besides room for two probes and two cells of the lattice
 
 // First atom of each residue, and the number of atoms.
 std::vector<size_t> find_residues(const io::Structure &structure) {
@@ -51,29 +54,16 @@ double median(std::vector<double> values) {
   return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
-std::string bench_surface(Engine &engine, const io::Structure &structure, const Options &options, Json *entry) {
-  qses_settings settings = settings_of(options.compute);
-  settings.measure = 0;                       // area and volume are no part of the mesh
-  qses_mesh mesh = engine.compute(settings);  // warms up: memory is taken here
-  std::vector<double> times;
-  for (unsigned k = 0; k < options.repeat; ++k) {
-    const auto start = Clock::now();
-    engine.set_positions(structure);
-    mesh = engine.compute(settings);
-    times.push_back(ms_since(start));
-  }
-  const double host = median(times);
-  (*entry)["vertices"] = mesh.vertex_count;
-  (*entry)["triangles"] = mesh.triangle_count;
-  (*entry)["host"] = host;
-  char text[160];
-  std::snprintf(text, sizeof text, "%u triangles, %s, host %.3f ms (median of %u)", mesh.triangle_count,
-                name_of(engine.backend()), host, options.repeat);
-  return text;
+Engine start_engine(const BenchSubject &subject) {
+  Engine engine(subject.options.compute);
+  engine.set_atoms(subject.structure, subject.path);
+  return engine;
 }
 
-std::string bench_small(Engine &engine, const io::Structure &structure, const Options &options, Json *entry) {
-  const std::vector<Window> windows = cut_windows(structure, options.small);
+std::string bench_small(const BenchSubject &subject, Json *entry) {
+  const auto &[structure, path, options, backend] = subject;
+  Engine engine = start_engine(subject);
+  const std::vector<Window> windows = cut_windows(structure, options.bench.small);
   const qses_settings settings = settings_of(options.compute);
   size_t fewest = windows.front().count, most = fewest;
   for (const Window &w : windows) {
@@ -81,7 +71,7 @@ std::string bench_small(Engine &engine, const io::Structure &structure, const Op
     most = std::max(most, w.count);
   }
   std::vector<double> times;
-  for (unsigned k = 0; k <= options.repeat; ++k) {
+  for (unsigned k = 0; k <= options.bench.repeat; ++k) {
     const auto start = Clock::now();
     for (const Window &w : windows) {
       if (qses_set_atoms(engine.context(), &structure.positions[3 * w.first], 0, &structure.radii[w.first], w.count) !=
@@ -95,24 +85,30 @@ std::string bench_small(Engine &engine, const io::Structure &structure, const Op
   (*entry)["small"] = {{"surfaces", windows.size()}, {"fewest_atoms", fewest}, {"most_atoms", most}, {"total", total}};
   char text[200];
   std::snprintf(text, sizeof text, "%zu surfaces of %zu to %zu atoms, %s, %.3f ms in all (median of %u)",
-                windows.size(), fewest, most, name_of(engine.backend()), total, options.repeat);
+                windows.size(), fewest, most, name_of(backend), total, options.bench.repeat);
   return text;
 }
 
 void run_bench(const Options &options) {
+  const BenchOptions &bench = options.bench;
   check_text_output(options.json);
   std::vector<io::StructureFile> files;  // all of them first: a bad name should not cost a run
   for (const std::string &input : options.inputs)
     files.push_back(load(input, options.read, options.compute, options.quiet));
 
-  Engine engine = start_engine(options.compute, options.quiet);
+  const Engine first = start_engine(options.compute, options.quiet);  // starts CUDA; nothing is computed with it
+  const bool needs_device = bench.deliveries == Deliveries::kDevice || bench.deliveries == Deliveries::kBoth;
+  if (needs_device && first.backend() == QSES_BACKEND_CPU)
+    throw Failure(kBackendUnavailable, "--delivery: meshes stay on CUDA devices only: " + first.why_not_cuda());
   Json structures = Json::array();
   for (size_t i = 0; i < files.size(); ++i) {
-    const io::Structure &structure = files[i].models.front();
-    engine.set_atoms(structure, options.inputs[i]);
+    const double gap = 2 * options.compute.probe + 2 * options.compute.spacing + kGap;
+    const io::Structure structure =
+        make_copies(std::move(files[i].models.front()), bench.copies, static_cast<float>(options.compute.spacing), gap);
+    const BenchSubject subject = {structure, options.inputs[i], options, first.backend()};
     Json entry = {{"input", options.inputs[i]}, {"atoms", structure.atoms.size()}};
-    const auto bench = options.jobs ? bench_jobs : options.small > 0 ? bench_small : bench_surface;
-    const std::string text = bench(engine, structure, options, &entry);
+    const auto measure = bench.jobs ? bench_jobs : bench.small > 0 ? bench_small : bench_surface;
+    const std::string text = measure(subject, &entry);
     structures.push_back(entry);
     if (!options.quiet && options.json != "-") {
       std::printf("%s: %zu atoms, %s\n", options.inputs[i].c_str(), structure.atoms.size(), text.c_str());
@@ -120,9 +116,12 @@ void run_bench(const Options &options) {
     }
   }
   if (options.json.empty()) return;
-  const Json json = {{"version", qses_version()}, {"backend", name_of(engine.backend())},
-                     {"device", engine.device()}, {"settings", settings_json(options.compute)},
-                     {"repeat", options.repeat},  {"structures", structures}};
+  Json settings = settings_json(options.compute);
+  settings["layout"] = name_of(bench.layout);
+  const Json json = {{"version", qses_version()}, {"backend", name_of(first.backend())},
+                     {"device", first.device()},  {"settings", settings},
+                     {"copies", bench.copies},    {"repeat", bench.repeat},
+                     {"structures", structures}};
   write_text(options.json, dump(json, false));
 }
 

@@ -68,19 +68,21 @@ Json summary(const std::vector<double> &times) {
 
 }  // namespace
 
-std::string bench_jobs(Engine &engine, const io::Structure &structure, const Options &options, Json *entry) {
+std::string bench_jobs(const BenchSubject &subject, Json *entry) {
+  const auto &[structure, path, options, backend] = subject;
+  Engine engine = start_engine(subject);
   const qses_settings ladder = settings_of(options.compute);
   qses_settings finest = ladder;
   finest.level_count = 0;
   Latencies found;
   run_job(engine, ladder, nullptr);  // warms up
-  for (unsigned k = 0; k < options.repeat; ++k) {
+  for (unsigned k = 0; k < options.bench.repeat; ++k) {
     found.finest.push_back(run_job(engine, finest, nullptr));
     found.ladder.push_back(run_job(engine, ladder, &found.first_level));
   }
   const double length = median(found.ladder);
-  for (unsigned k = 0; k < options.repeat; ++k) {
-    const double moment = length * k / options.repeat;  // all parts of a job have their turn
+  for (unsigned k = 0; k < options.bench.repeat; ++k) {
+    const double moment = length * k / options.bench.repeat;  // all parts of a job have their turn
     engine.set_positions(structure);
     auto start = Clock::now();
     begin(engine, ladder);
@@ -98,8 +100,7 @@ std::string bench_jobs(Engine &engine, const io::Structure &structure, const Opt
     wait_for_all(engine);
     found.cancel.push_back(ms_since(start));
 
-    auto other = std::make_unique<Engine>(options.compute);
-    other->set_atoms(structure, "");
+    auto other = std::make_unique<Engine>(start_engine(subject));
     run_job(*other, ladder, nullptr);
     begin(*other, ladder);
     sleep_ms(moment);
@@ -118,7 +119,7 @@ std::string bench_jobs(Engine &engine, const io::Structure &structure, const Opt
                       {"ladder_to_finest", ratio}};
   char text[120];
   std::snprintf(text, sizeof text, "\n  the ladder takes %.2f times as long as its finest level alone", ratio);
-  return std::string("jobs, ") + name_of(engine.backend()) + ", " + std::to_string(options.repeat) + " each" +
+  return std::string("jobs, ") + name_of(backend) + ", " + std::to_string(options.bench.repeat) + " each" +
          line("begin", found.begin) + line("begin, replacing", found.replace) + line("cancel to idle", found.cancel) +
          line("destroy", found.destroy) + line("first level", found.first_level) + line("finest alone", found.finest) +
          line("ladder", found.ladder) + text;

@@ -55,6 +55,13 @@ qses_mesh Engine::compute(const qses_settings &settings) {
   return mesh;
 }
 
+qses_device_mesh Engine::collect_device() {
+  qses_device_mesh mesh;
+  qses_device_mesh_init(&mesh);
+  check(qses_collect_device(context(), &mesh));
+  return mesh;
+}
+
 qses_report Engine::report() const {
   qses_report report;
   qses_report_init(&report);

@@ -28,6 +28,8 @@ class Engine {
   // The next frame: atom i is at xyz[indices[i]]. xyz has three numbers for each of position_count atoms.
   void set_frame(const float *xyz, size_t position_count, const std::vector<uint32_t> &indices);
   qses_mesh compute(const qses_settings &settings);
+  // The mesh that compute() left on the device.
+  qses_device_mesh collect_device();
   qses_report report() const;
   // The atoms of component k of a mesh are those from (*starts)[k] to (*starts)[k + 1].
   void find_component_atoms(const qses_mesh &mesh, std::vector<uint32_t> *starts, std::vector<uint32_t> *atoms) const;

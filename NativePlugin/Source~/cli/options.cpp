@@ -22,6 +22,11 @@ const std::map<std::string, qses_surface> kSurfaces = {
 const std::map<std::string, qses_method> kMethods = {{"exact", QSES_METHOD_EXACT}, {"grid", QSES_METHOD_GRID}};
 const std::map<std::string, qses_backend> kBackends = {
     {"auto", QSES_BACKEND_AUTO}, {"cuda", QSES_BACKEND_CUDA}, {"cpu", QSES_BACKEND_CPU}};
+const std::map<std::string, qses_vertex_layout> kLayouts = {{"separate", QSES_VERTICES_SEPARATE},
+                                                            {"interleaved", QSES_VERTICES_INTERLEAVED},
+                                                            {"compact", QSES_VERTICES_COMPACT}};
+const std::map<std::string, Deliveries> kDeliveries = {
+    {"host", Deliveries::kHost}, {"device", Deliveries::kDevice}, {"both", Deliveries::kBoth}};
 
 const char kFooter[] =
     "Exit codes:\n"
@@ -165,7 +170,41 @@ void add_file_options(CLI::App *app, Options &options) {
   app->add_flag("--quiet", options.quiet, "Print nothing but errors");
 }
 
+void add_bench_options(CLI::App *app, BenchOptions &options) {
+  add_count(app, "--repeat", "--repeat", options.repeat, 1, 1000000, "Timed calls per structure; default 20");
+  app->add_option_function<std::string>(
+         "--delivery",
+         [&options](const std::string &text) { options.deliveries = look_up("--delivery", kDeliveries, text); },
+         "Where the mesh is when the time is up: in host memory, or on the CUDA device without a download. Default: "
+         "both with CUDA, host on the CPU")
+      ->type_name("host|device|both");
+  add_choice(app, "--layout", options.layout, kLayouts,
+             "Bytes of a vertex: 24 in two arrays (separate) or one (interleaved), or 16 with rounded normals");
+  add_count(app, "--copies", "--copies", options.copies, 1, 10000,
+            "Copies of each structure side by side on a grid, to see how times grow; default 1");
+  app->add_flag("--stages", options.stages, "The time of each stage as well, in as many calls of their own");
+  add_count(app, "--small", "--small", options.small, 1, 1000000,
+            "Time 100 surfaces of at least N atoms each instead, cut between residues, one after the other");
+  app->add_flag("--jobs", options.jobs,
+                "Time jobs instead: begin, cancel, destroy, the first level, and all levels against the finest alone");
+}
+
 // given: whether a flag was on the command line.
+void check_bench(const Options &options, const std::function<bool(const char *)> &given) {
+  if (options.inputs.empty()) throw Failure(kUsage, "bench: no input file was given");
+  const BenchOptions &bench = options.bench;
+  if (bench.jobs && bench.small > 0) throw Failure(kUsage, "--jobs and --small: one at a time");
+  if (bench.small > 0 && given("--copies"))
+    throw Failure(kUsage, "--copies: --small cuts surfaces out of one molecule, and copies have the same ones");
+  if (bench.jobs || bench.small > 0)
+    for (const char *flag : {"--delivery", "--layout", "--stages"})
+      if (given(flag)) throw Failure(kUsage, std::string(flag) + ": not with --jobs and --small");
+  const bool is_cpu = options.compute.backend == QSES_BACKEND_CPU;
+  if (is_cpu && (bench.deliveries == Deliveries::kDevice || bench.deliveries == Deliveries::kBoth))
+    throw Failure(kUsage, "--delivery: meshes stay on CUDA devices only, and --backend is cpu");
+}
+
+// given: as above.
 void check_trajectory(const Options &options, const std::function<bool(const char *)> &given) {
   if (options.trajectory.empty()) {
     for (const char *flag : {"--frames", "--unwrap", "--csv", "--workers"})
@@ -222,8 +261,7 @@ void check(const Options &options, const std::function<bool(const char *)> &give
   if (options.compute.method == QSES_METHOD_GRID && options.compute.creases == Switch::kOn)
     throw Failure(kUsage, "--creases on: --method grid does not know where creases are");
   if (options.command == Options::Command::kBench) {
-    if (options.inputs.empty()) throw Failure(kUsage, "bench: no input file was given");
-    if (options.jobs && options.small > 0) throw Failure(kUsage, "--jobs and --small: one at a time");
+    check_bench(options, given);
     UsedFiles check(options);
     return;
   }
@@ -247,6 +285,7 @@ void check(const Options &options, const std::function<bool(const char *)> &give
 const char *name_of(qses_surface surface) { return find_name(kSurfaces, surface); }
 const char *name_of(qses_method method) { return find_name(kMethods, method); }
 const char *name_of(qses_backend backend) { return find_name(kBackends, backend); }
+const char *name_of(qses_vertex_layout layout) { return find_name(kLayouts, layout); }
 
 bool has_hard_edges(const Options &options) {
   return options.hard_edges != Switch::kOff && options.compute.method == QSES_METHOD_EXACT && !options.output.empty() &&
@@ -262,7 +301,8 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
       "  quickses INPUT --trajectory FILE [--frames A:B:STEP] [--csv FILE] [-o frame_%05d.ply] [options]\n"
       "  quickses measure INPUT [--surface sas,vdw,ses] [--per-atom FILE] [--per-residue FILE] [options]\n"
       "  quickses cavities INPUT [--csv FILE] [options]\n"
-      "  quickses bench FILE... [--repeat N] [--small N | --jobs] [options]\n",
+      "  quickses bench FILE... [--repeat N] [--copies N] [--delivery host|device|both] [--small N | --jobs] "
+      "[options]\n",
       "quickses");
   app.allow_windows_style_options(false);  // a path may begin with a slash there too
   app.footer(kFooter);
@@ -297,15 +337,10 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
   cavities->add_option("--csv", options.csv, "Table of the cavities; - for standard output")->type_name("FILE|-");
   add_file_options(cavities, options);
 
-  CLI::App *bench = app.add_subcommand("bench", "Time warm calls: median ms from atoms in memory to mesh in memory");
+  CLI::App *bench = app.add_subcommand("bench", "Time warm calls: median ms from atoms in host memory to the mesh");
   bench->footer(kFooter);
   bench->add_option("FILE", options.inputs, "Structures")->type_name("FILE");
-  add_count(bench, "--repeat", "--repeat", options.repeat, 1, 1000000, "Timed calls per structure; default 20");
-  add_count(bench, "--small", "--small", options.small, 1, 1000000,
-            "Time 100 surfaces of at least N atoms each instead, cut between residues, one after the other");
-  bench->add_flag(
-      "--jobs", options.jobs,
-      "Time jobs instead: begin, cancel, destroy, the first level, and all levels against the finest alone");
+  add_bench_options(bench, options.bench);
   add_surface_choice(bench, options.compute);
   add_compute_options(bench, options.compute, device);
   add_file_options(bench, options);

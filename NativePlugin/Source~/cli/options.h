@@ -34,6 +34,19 @@ struct ComputeOptions {
   bool radii_given = false;
 };
 
+// Which meshes bench times: those in host memory, those that stay on the device. Not given: those there are.
+enum class Deliveries { kDefault, kHost, kDevice, kBoth };
+
+struct BenchOptions {
+  unsigned repeat = 20;
+  unsigned copies = 1;  // of each structure, side by side
+  Deliveries deliveries = Deliveries::kDefault;
+  qses_vertex_layout layout = QSES_VERTICES_SEPARATE;
+  bool stages = false;
+  unsigned small = 0;  // atoms per surface; 0 = the whole
+  bool jobs = false;
+};
+
 struct Options {
   enum class Command { kSurface, kMeasure, kCavities, kBench, kNone } command = Command::kSurface;
   ComputeOptions compute;
@@ -45,9 +58,7 @@ struct Options {
   bool outer = false;                                                         // without cavities
   std::vector<qses_surface> measured = {QSES_SURFACE_SAS, QSES_SURFACE_VDW};  // of measure
   std::vector<std::string> inputs;                                            // of bench
-  unsigned repeat = 20;                                                       // of bench
-  unsigned small = 0;       // of bench: atoms per surface, 0 = the whole
-  bool jobs = false;        // of bench
+  BenchOptions bench;
   std::string trajectory;   // empty: the input alone
   FrameRange frames;        // of the trajectory
   bool unwrap = false;      // molecules in one piece
@@ -74,5 +85,6 @@ bool has_hard_edges(const Options &options);
 const char *name_of(qses_surface surface);
 const char *name_of(qses_method method);
 const char *name_of(qses_backend backend);
+const char *name_of(qses_vertex_layout layout);
 
 }  // namespace quickses::cli

@@ -74,6 +74,19 @@ Json measures_json(const qses_report &report) {
   return json;
 }
 
+Json memory_json(const qses_report &report, qses_backend backend, const qses_size_estimate *predicted) {
+  Json memory = Json::object();
+  const bool cuda = backend == QSES_BACKEND_CUDA;
+  if (predicted && cuda) memory["predicted_device"] = predicted->work_bytes;
+  if (cuda) memory["peak_device"] = report.work_bytes_peak;
+  // In host memory: the mesh with some room to grow, and on the CPU the work.
+  if (predicted)
+    memory["predicted_host"] = predicted->mesh_bytes + predicted->mesh_bytes / 8 + (cuda ? 0 : predicted->work_bytes);
+  memory["peak_host"] = report.host_bytes_peak;
+  memory["mesh"] = report.mesh_bytes;
+  return memory;
+}
+
 Json component_json(const qses_component &component) {
   return {{"triangles", component.triangles},
           {"area", component.area},
@@ -99,16 +112,7 @@ Json surface_json(const Options &options, const io::Structure &structure, const 
     stages[report.stages[i].name] = report.stages[i].milliseconds;
   json["time_ms"] = {
       {"read", timings.read}, {"compute", report.compute_ms}, {"write", timings.write}, {"stages", stages}};
-  Json memory = Json::object();
-  const bool cuda = engine.backend() == QSES_BACKEND_CUDA;
-  if (predicted && cuda) memory["predicted_device"] = predicted->work_bytes;
-  if (cuda) memory["peak_device"] = report.work_bytes_peak;
-  // In host memory: the mesh with some room to grow, and on the CPU the work.
-  if (predicted)
-    memory["predicted_host"] = predicted->mesh_bytes + predicted->mesh_bytes / 8 + (cuda ? 0 : predicted->work_bytes);
-  memory["peak_host"] = report.host_bytes_peak;
-  memory["mesh"] = report.mesh_bytes;
-  json["memory"] = memory;
+  json["memory"] = memory_json(report, engine.backend(), predicted);
   return json;
 }
 

@@ -26,6 +26,8 @@ const char *name_of(qses_measured_by measured_by);
 Json report_head_json(const Options &options, const io::Structure &structure, const Engine &engine);
 // area, volume, measured_by, and those of the triangles where there are any.
 Json measures_json(const qses_report &report);
+// memory of a report: peak_device (CUDA), peak_host, mesh. predicted: before it was computed, or nullptr.
+Json memory_json(const qses_report &report, qses_backend backend, const qses_size_estimate *predicted);
 // Of a component: triangles, area, volume, cavity, center, bounds.
 Json component_json(const qses_component &component);
 

@@ -401,7 +401,7 @@ class Output(ProgramTest):
                      "--outer", "--component-ids", "--per-atom", "--per-residue", "--hard-edges", "--creases"):
             self.assertIn(part, text)
         for command, parts in (("measure", ["--surface", "--per-atom", "--per-residue", "--trajectory", "--csv"]),
-                               ("cavities", ["--csv", "--method", "--select"]), ("bench", ["--repeat"])):
+                               ("cavities", ["--csv", "--method", "--select"]), ("bench", ["--repeat", "--copies", "--delivery", "--layout", "--stages"])):
             text = self.run_program(command, "--help").stdout
             for part in parts + ["INPUT" if command != "bench" else "FILE", "Exit codes"]:
                 self.assertIn(part, text)
@@ -500,43 +500,6 @@ class Report(ProgramTest):
         result = self.run_cpu(CRAMBIN, "--json", "a.json")
         self.assertEqual(json.loads((self.folder / "a.json").read_text())["atoms"], 327)
         self.assertEqual(len(result.stdout.splitlines()), 1)
-
-
-class Bench(ProgramTest):
-    def test_report(self):
-        self.write("two.xyzr", "0 0 0 1.5\n2 0 0 1.5\n")
-        result = self.run_cpu("bench", CRAMBIN, "two.xyzr", "--repeat", "3", "--json", "-")
-        report = json.loads(result.stdout)
-        self.assertEqual(report["repeat"], 3)
-        self.assertEqual([entry["atoms"] for entry in report["structures"]], [327, 2])
-        for entry in report["structures"]:
-            self.assertGreater(entry["host"], 0)
-            self.assertGreater(entry["triangles"], 0)
-
-    def test_small_surfaces(self):
-        self.write("two.xyzr", "0 0 0 1.5\n2 0 0 1.5\n")
-        result = self.run_cpu("bench", CRAMBIN, "two.xyzr", "--small", "100", "--repeat", "1", "--json", "-")
-        pieces, whole = (entry["small"] for entry in json.loads(result.stdout)["structures"])
-        self.assertEqual(pieces["surfaces"], 100)
-        self.assertEqual(pieces["fewest_atoms"], 100)
-        self.assertLess(pieces["most_atoms"], 100 + 14)  # the largest amino acid, without hydrogen
-        self.assertGreater(pieces["total"], 0)
-        self.assertEqual((whole["fewest_atoms"], whole["most_atoms"]), (2, 2))
-
-    def test_jobs(self):
-        result = self.run_cpu("bench", CRAMBIN, "--jobs", "--repeat", "2", "--json", "-")
-        jobs = json.loads(result.stdout)["structures"][0]["jobs"]
-        for name in ("begin", "begin_replacing", "cancel_to_idle", "destroy", "first_level", "finest_alone", "ladder"):
-            self.assertGreater(jobs[name]["median"], 0)
-            self.assertGreaterEqual(jobs[name]["max"], jobs[name]["median"])
-        self.assertGreater(jobs["ladder_to_finest"], 0)
-        self.assertIn("cancel to idle", self.run_cpu("bench", CRAMBIN, "--jobs", "--repeat", "1").stdout)
-        self.assert_fails(USAGE, ["--jobs", "--small"], "bench", CRAMBIN, "--jobs", "--small", "100")
-
-    def test_summary_and_errors(self):
-        self.assertIn("327 atoms", self.run_cpu("bench", CRAMBIN, "--repeat", "1").stdout)
-        self.assert_fails(INPUT, ["nowhere.pdb"], "bench", CRAMBIN, "nowhere.pdb")
-        self.assert_fails(USAGE, ["--repeat"], "bench", CRAMBIN, "--repeat", "0")
 
 
 if __name__ == "__main__":
