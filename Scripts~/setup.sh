@@ -56,7 +56,7 @@ fi
 is_there() {
   case "$1" in
     /*) [ -e "$1" ] ;;
-    python:*) python3 -c "import ${1#python:}" 2>/dev/null ;;
+    python:*) python3 -c "import ${1#python:}" 2>/dev/null || /usr/bin/python3 -c "import ${1#python:}" 2>/dev/null ;;
     *.h | *.hpp) [ -e "/usr/local/include/$1" ] || [ -e "/usr/include/$1" ] ;;
     *) command -v "$1" >/dev/null ;;
   esac
@@ -80,6 +80,10 @@ optional=(
   "glslang-tools glslangValidator"
   "spirv-cross spirv-cross"
   "libosmesa6 /usr/lib/x86_64-linux-gnu/libOSMesa.so.8"
+  # Counts the instructions of the CPU back end (Scripts~/measure/count-instructions).
+  "valgrind valgrind"
+  # Draws how time grows with size (Scripts~/measure/plot-growth).
+  "python3-matplotlib python:matplotlib"
   # Another program's areas, to compare with.
   "freesasa freesasa"
   # Finds triangles that pass through each other.

@@ -8,6 +8,7 @@
 # for as well.
 # --long: 100,000 random sets of atoms instead of 2,000, on all cores, and 20,000 on the GPU if there is one
 # (Tests/Native~/properties/property_test.cpp); QUICKSES_PROPERTY_SEED is the first set's.
+# Instructions of the CPU back end are counted where Valgrind is, and must not have grown: Scripts~/measure/count-instructions.
 # That sources are written as clang-format 14 writes them is one of the tests; without that version it is skipped.
 # The C# tests need a .NET SDK, which is not installed, and NuGet packages; without them they are skipped, and that is
 # said. With CI=true in the environment, packages that can't be had are an error. Where Mono is, they run there as well.
@@ -25,7 +26,7 @@ for argument in "$@"; do
     --with-mpi) with_mpi=yes setup+=("$argument") ;;
     --with-windows) with_windows=yes setup+=("$argument") ;;
     --long) long=yes ;;
-    -h | --help) sed -n '3,13s/^# //p' Scripts~/test.sh; exit 0 ;;
+    -h | --help) sed -n '3,14s/^# //p' Scripts~/test.sh; exit 0 ;;
     *) echo "test.sh: unknown option $argument (there are --with-cuda, --with-mpi, --with-windows and --long)" >&2; exit 2 ;;
   esac
 done
@@ -50,6 +51,11 @@ for preset in "${presets[@]}"; do
     echo "No CUDA device here: tests of the CUDA back end are skipped."
   fi
   ctest --preset "$preset" --parallel "$(nproc)"
+  # Those of the CPU back end, which is the same in all of them. With another compiler nothing is judged, which is then said.
+  if [ "$preset" = cpu ]; then
+    echo "==== cpu: instructions"
+    python3 -B Scripts~/measure/count-instructions .build/cpu/bin/quickses || [ $? -eq 77 ]
+  fi
 done
 
 # Sets per family, the worst of each, and faults by kind are printed at the end; faults are shrunk first.
