@@ -68,6 +68,12 @@ QSES_FN Pack multiply_add(Pack a, Pack b, Pack c) {
 #endif
 }
 QSES_FN Pack square_root(Pack a) { return _mm256_sqrt_ps(a.v); }
+// A product that is rounded before anything is added to it, whatever the compiler would make of the two.
+QSES_FN Pack rounded_product(Pack a, Pack b) {
+  __m256 product = _mm256_mul_ps(a.v, b.v);
+  __asm__("" : "+x"(product));
+  return product;
+}
 QSES_FN Pack absolute(Pack a) { return _mm256_andnot_ps(_mm256_set1_ps(-0.f), a.v); }
 QSES_FN Pack maximum(Pack a, Pack b) { return _mm256_max_ps(a.v, b.v); }
 QSES_FN Pack minimum(Pack a, Pack b) { return _mm256_min_ps(a.v, b.v); }
@@ -85,12 +91,13 @@ QSES_FN PackMask lane_mask(uint32_t bits) {
 }
 QSES_FN Pack load_pack(const float *p) { return _mm256_loadu_ps(p); }
 QSES_FN void store_pack(float *p, Pack a) { _mm256_storeu_ps(p, a.v); }
-// Eight rows of four floats, turned into four packs.
-QSES_FN void load_columns(const float *p, Pack *x, Pack *y, Pack *z, Pack *w) {
-  const __m256 r0 = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(p)), _mm_loadu_ps(p + 16), 1);
-  const __m256 r1 = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(p + 4)), _mm_loadu_ps(p + 20), 1);
-  const __m256 r2 = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(p + 8)), _mm_loadu_ps(p + 24), 1);
-  const __m256 r3 = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(p + 12)), _mm_loadu_ps(p + 28), 1);
+// Eight rows of four floats, turned into four packs. row(k): where the k-th begins.
+template <class Row>
+QSES_FN void load_rows(const Row &row, Pack *x, Pack *y, Pack *z, Pack *w) {
+  const __m256 r0 = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(row(0))), _mm_loadu_ps(row(4)), 1);
+  const __m256 r1 = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(row(1))), _mm_loadu_ps(row(5)), 1);
+  const __m256 r2 = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(row(2))), _mm_loadu_ps(row(6)), 1);
+  const __m256 r3 = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(row(3))), _mm_loadu_ps(row(7)), 1);
   const __m256 a = _mm256_unpacklo_ps(r0, r1), b = _mm256_unpackhi_ps(r0, r1);
   const __m256 c = _mm256_unpacklo_ps(r2, r3), d = _mm256_unpackhi_ps(r2, r3);
   x->v = _mm256_shuffle_ps(a, c, 0x44);
@@ -172,9 +179,10 @@ QSES_FN void store_pack(float *p, Pack a) {
   _mm_storeu_ps(p, a.l);
   _mm_storeu_ps(p + 4, a.h);
 }
-QSES_FN void load_columns(const float *p, Pack *x, Pack *y, Pack *z, Pack *w) {
-  __m128 r0 = _mm_loadu_ps(p), r1 = _mm_loadu_ps(p + 4), r2 = _mm_loadu_ps(p + 8), r3 = _mm_loadu_ps(p + 12);
-  __m128 s0 = _mm_loadu_ps(p + 16), s1 = _mm_loadu_ps(p + 20), s2 = _mm_loadu_ps(p + 24), s3 = _mm_loadu_ps(p + 28);
+template <class Row>
+QSES_FN void load_rows(const Row &row, Pack *x, Pack *y, Pack *z, Pack *w) {
+  __m128 r0 = _mm_loadu_ps(row(0)), r1 = _mm_loadu_ps(row(1)), r2 = _mm_loadu_ps(row(2)), r3 = _mm_loadu_ps(row(3));
+  __m128 s0 = _mm_loadu_ps(row(4)), s1 = _mm_loadu_ps(row(5)), s2 = _mm_loadu_ps(row(6)), s3 = _mm_loadu_ps(row(7));
   _MM_TRANSPOSE4_PS(r0, r1, r2, r3);
   _MM_TRANSPOSE4_PS(s0, s1, s2, s3);
   *x = {r0, s0};
@@ -227,8 +235,9 @@ QSES_FN uint32_t lane_bits(PackMask m) { uint32_t b = 0; QSES_EACH_LANE b |= uin
 QSES_FN PackMask lane_mask(uint32_t bits) { PackMask m; QSES_EACH_LANE m.v[i] = bits >> i & 1; return m; }
 QSES_FN Pack load_pack(const float *p) { Pack a; QSES_EACH_LANE a.v[i] = p[i]; return a; }
 QSES_FN void store_pack(float *p, Pack a) { QSES_EACH_LANE p[i] = a.v[i]; }
-QSES_FN void load_columns(const float *p, Pack *x, Pack *y, Pack *z, Pack *w) {
-  QSES_EACH_LANE { x->v[i] = p[4 * i]; y->v[i] = p[4 * i + 1]; z->v[i] = p[4 * i + 2]; w->v[i] = p[4 * i + 3]; }
+template <class Row>
+QSES_FN void load_rows(const Row &row, Pack *x, Pack *y, Pack *z, Pack *w) {
+  QSES_EACH_LANE { const float *p = row(i); x->v[i] = p[0]; y->v[i] = p[1]; z->v[i] = p[2]; w->v[i] = p[3]; }
 }
 QSES_FN float horizontal_minimum(Pack a) { QSES_EACH_LANE if (a.v[i] < a.v[0]) a.v[0] = a.v[i]; return a.v[0]; }
 QSES_FN float horizontal_maximum(Pack a) { QSES_EACH_LANE if (a.v[i] > a.v[0]) a.v[0] = a.v[i]; return a.v[0]; }
@@ -238,6 +247,7 @@ QSES_FN float horizontal_maximum(Pack a) { QSES_EACH_LANE if (a.v[i] > a.v[0]) a
 #endif
 
 #if !defined(__AVX2__)
+QSES_FN Pack rounded_product(Pack a, Pack b) { return a * b; }
 QSES_FN void store_lanes(float *dst, uint32_t set, Pack a) {
   float lanes[8];
   store_pack(lanes, a);
@@ -250,6 +260,10 @@ QSES_FN int store_lane_numbers(int32_t *dst, uint32_t set, int32_t base) {
 }
 #endif
 
+// Of rows that lie behind each other.
+QSES_FN void load_columns(const float *p, Pack *x, Pack *y, Pack *z, Pack *w) {
+  load_rows([p](int k) { return p + 4 * k; }, x, y, z, w);
+}
 QSES_FN Pack reciprocal_root(Pack a) { return Pack(1.f) / square_root(a); }
 QSES_FN PackMask operator>(Pack a, Pack b) { return b < a; }
 QSES_FN PackMask operator>=(Pack a, Pack b) { return b <= a; }

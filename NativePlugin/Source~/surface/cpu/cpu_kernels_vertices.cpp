@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // CPU kernel: the vertices that one brick owns, placed exactly on the surface eight at a time.
+#include "surface/cpu/cpu_arc_projection.h"
+#include "surface/cpu/cpu_brick_signs.h"
 #include "surface/cpu/cpu_candidates.h"
 #include "surface/stages/edge_placement.h"
 
@@ -17,39 +19,6 @@ struct Points {
       z[kMaxBrickVertices + kPackSize];
 };
 
-// Signs of the lattice points of a brick and one more on every side: bit x + 1 of row_of(y, z).
-struct SignRows {
-  static constexpr int kSide = kBrickEdge + 2;
-  uint16_t row[kSide * kSide];
-  QSES_FN uint16_t *row_of(int y, int z) { return row + (z + 1) * kSide + (y + 1); }
-};
-
-SignRows read_sign_rows(const BrickSet &bricks, const uint64_t *signs, uint32_t brick) {
-  const glm::ivec3 place = bricks.lattice.brick_at(bricks.linear[brick]);
-  const uint64_t *near[27];
-  for (int k = 0; k < 27; ++k) {
-    const int found =
-        k == 13 ? static_cast<int>(brick) : bricks.find(place + glm::ivec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1));
-    near[k] = found < 0 ? nullptr : signs + static_cast<size_t>(found) * kLeavesPerBrick;
-  }
-  const auto row_of = [](const uint64_t *words, int y, int z) {
-    const int leaf = (y >> 2) * 2 + (z >> 2) * 4, shift = 4 * (y & 3) + 16 * (z & 3);
-    return static_cast<uint32_t>((words[leaf] >> shift & 15) | (words[leaf + 1] >> shift & 15) << 4);
-  };
-  SignRows rows;
-  for (int z = -1; z <= kBrickEdge; ++z)
-    for (int y = -1; y <= kBrickEdge; ++y) {
-      const int side = (z < 0 ? 0 : z < kBrickEdge ? 9 : 18) + (y < 0 ? 0 : y < kBrickEdge ? 3 : 6);
-      // Where a brick is not active, no cell at it changes sign: its points are like the nearest ones here.
-      const int cy = y < 0 ? 0 : y < kBrickEdge ? y : 7, cz = z < 0 ? 0 : z < kBrickEdge ? z : 7;
-      const uint32_t own = near[side + 1] ? row_of(near[side + 1], y & 7, z & 7) : row_of(near[13], cy, cz);
-      const uint32_t left = near[side] ? row_of(near[side], y & 7, z & 7) >> 7 : row_of(near[13], cy, cz) & 1;
-      const uint32_t right = near[side + 2] ? row_of(near[side + 2], y & 7, z & 7) & 1 : row_of(near[13], cy, cz) >> 7;
-      *rows.row_of(y, z) = static_cast<uint16_t>(left | own << 1 | right << 9);
-    }
-  return rows;
-}
-
 // The candidates of the brick for the functions that work on single points.
 struct AllCandidates {
   const BrickCandidates &c;
@@ -66,7 +35,15 @@ int start_vertices(const FeatureView &f, const BrickSet &bricks, const MeshLayou
   const glm::ivec3 first = lattice.first_point(lattice.brick_at(bricks.linear[brick]));
   const float h = lattice.spacing;
   const bool halve = starts_by_halving(f.parameters);
-  SignRows rows = read_sign_rows(bricks, layout.signs, brick);
+  SignRows rows;
+  read_sign_rows(find_near_words(bricks, layout.signs, brick), &rows);
+  CellCases cases;
+  if (starts.relax) read_cell_cases(rows, &cases);
+  // The cells around an edge, from its own one: a step along the other two axes, lower axis first.
+  constexpr int kCellSteps[kAxes][2] = {
+      {CellCases::kRow, CellCases::kLayer}, {1, CellCases::kLayer}, {1, CellCases::kRow}};
+  Vec3<float> places[kBrickEdge];
+  for (int k = 0; k < kBrickEdge; ++k) places[k] = lattice.position(first.x + k, first.y + k, first.z + k);
   int n = 0;
   for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf)
     for (int axis = 0; axis < kAxes; ++axis)
@@ -75,19 +52,20 @@ int start_vertices(const FeatureView &f, const BrickSet &bricks, const MeshLayou
            w; w &= w - 1, ++n) {
         const int bit = lowest_bit64(w);
         const glm::ivec3 at = brick_point(leaf, bit);
-        const Vec3<float> low = lattice.position(first.x + at.x, first.y + at.y, first.z + at.z);
-        const uint16_t *const row = rows.row_of(at.y, at.z);
-        Vec3<float> start = low;
+        Vec3<float> start(places[at.x].x, places[at.y].y, places[at.z].z);
         if (halve) {
           start = find_sign_change(f, AllCandidates{c}, ends_of_edge(bricks, layout, brick, {leaf, axis, bit}),
                                    kStartHalvings);
         } else {
-          const float along = vertex_start(*row >> (at.x + 1) & 1) * h;
-          start = {low.x + (axis == 0 ? along : 0.f), low.y + (axis == 1 ? along : 0.f),
-                   low.z + (axis == 2 ? along : 0.f)};
+          const float along = vertex_start(*rows.row_of(at.y, at.z) >> (at.x + 1) & 1) * h;
+          (axis == 0 ? start.x : axis == 1 ? start.y : start.z) += along;
           if (starts.relax) {
+            const uint8_t *const own = cases.at(at.x, at.y, at.z);
+            const auto case_near = [&](int second, int third) {
+              return own[second * kCellSteps[axis][0] + third * kCellSteps[axis][1]];
+            };
             float mx, my, mz;
-            ring_displacement(edge_ring_of_rows(row, SignRows::kSide, at.x + 1, axis, starts.ring), &mx, &my, &mz);
+            ring_displacement(edge_ring_of_cells(case_near, axis, starts.ring), &mx, &my, &mz);
             start = start + Vec3<float>(mx, my, mz) * h;
           }
         }
@@ -110,6 +88,11 @@ struct Work {
   int32_t open_number[kMaxBrickVertices + kPackSize];
   uint8_t rounds[kMaxBrickVertices + kPackSize];  // of those that are reprojected
 
+  // Whether a vertex lies on the sphere of one probe, after one round.
+  bool is_plain(int v) const {
+    return rounds[v] == 1 && normal.x[v] == second_normal.x[v] && normal.y[v] == second_normal.y[v] &&
+           normal.z[v] == second_normal.z[v];
+  }
   SurfacePoint point(int v) const {
     return {{place.x[v], place.y[v], place.z[v]},
             {normal.x[v], normal.y[v], normal.z[v]},
@@ -204,22 +187,55 @@ void project_reentrant(const FeatureView &f, const BrickCandidates &c, float spa
       store_pack(seconds2, second);
       store_pack(numbers, number);
       const int used = open - g < kPackSize ? open - g : kPackSize;
+      const auto arc_of = [&](int l) { return c.arc_index[c.arc_list[static_cast<int>(numbers[l])]]; };
+      const auto go_on = [&](int v, const Vec3<float> &x, int after) {
+        w->rounds[v] = static_cast<uint8_t>(after);
+        w->open_number[covered] = v;
+        w->open.x[covered] = x.x, w->open.y[covered] = x.y, w->open.z[covered] = x.z;
+        ++covered;
+      };
+      // What can be done for all lanes at once, and which lanes that is.
+      uint32_t together = lane_bits(Pack(0.f) <= number);
+      PackedProjection projected{};
+      alignas(32) float point[6][kPackSize];
+      if (together) {
+        const PackedArc arcs_of_lanes =
+            load_arcs([&](int l) { return f.arcs + (numbers[l] < 0.f ? c.arc_index[c.arc_list[0]] : arc_of(l)); });
+        if (rounds == 0) {
+          projected = project_on_arcs(f.parameters, arcs_of_lanes, second, p);
+          together &= ~projected.lost;
+        } else {
+          uint32_t plain = 0;
+          for (int l = 0; l < used; ++l) plain |= static_cast<uint32_t>(w->is_plain(w->open_number[g + l])) << l;
+          projected = keep_on_arcs(f.parameters, arcs_of_lanes, p, plain);
+          together &= projected.placed;
+        }
+        store_pack(point[0], projected.point.position.x);
+        store_pack(point[1], projected.point.position.y);
+        store_pack(point[2], projected.point.position.z);
+        store_pack(point[3], projected.point.normal.x);
+        store_pack(point[4], projected.point.normal.y);
+        store_pack(point[5], projected.point.normal.z);
+      }
       for (int l = 0; l < used; ++l) {
-        const int v = w->open_number[g + l], k = static_cast<int>(numbers[l]);
-        const NearestArc nearest{k < 0 ? -1 : c.arc_index[c.arc_list[k]], nearest2[l], seconds2[l]};
+        const int v = w->open_number[g + l];
+        w->owner[v] = -1;
+        if (together >> l & 1) {
+          const Vec3<float> x(point[0][l], point[1][l], point[2][l]), normal(point[3][l], point[4][l], point[5][l]);
+          const bool is_placed = (projected.placed >> l & 1) != 0, goes_on = (projected.reprojected >> l & 1) != 0;
+          w->set_point(v, {x, normal, normal, projected.at_end >> l & 1 ? QSES_PATCH_REENTRANT : QSES_PATCH_TOROIDAL,
+                           is_placed || goes_on});
+          if (goes_on) go_on(v, x, projected.from_afar >> l & 1 ? 2 : 1);
+          continue;
+        }
+        const NearestArc nearest{numbers[l] < 0.f ? -1 : arc_of(l), nearest2[l], seconds2[l]};
         const Projection projection =
             rounds == 0
                 ? project_on_arc(f, nearest, {w->open.x[g + l], w->open.y[g + l], w->open.z[g + l]})
                 : reproject(f, AllCandidates{c}, nearest, {w->point(v), ProjectionState::kReproject, w->rounds[v]});
         w->set_point(v, projection.point);
-        w->owner[v] = -1;
         w->placed[v] = projection.state != ProjectionState::kOnEdge;
-        if (projection.state != ProjectionState::kReproject) continue;
-        w->rounds[v] = static_cast<uint8_t>(projection.rounds);
-        const Vec3<float> &x = projection.point.position;
-        w->open_number[covered] = v;
-        w->open.x[covered] = x.x, w->open.y[covered] = x.y, w->open.z[covered] = x.z;
-        ++covered;
+        if (projection.state == ProjectionState::kReproject) go_on(v, projection.point.position, projection.rounds);
       }
     }
     open = covered;
