@@ -11,7 +11,7 @@ namespace quickses {
 
 // Scratch of one thread for the features of one atom. The kernel cuts the memory into its columns.
 struct AtomScratch {
-  static constexpr int kColumns = 24;
+  static constexpr int kColumns = 15;
   float *memory;  // kColumns * (capacity + 16) floats, 64-byte aligned
   int capacity;   // neighbours
 };

@@ -12,9 +12,7 @@ namespace {
 struct Columns {
   float *x, *y, *z, *cosine, *sine;   // neighbours: direction and cap
   float *sx, *sy, *sz, *scos, *ssin;  // the same, sorted by cosine, then without contained caps
-  float *begin, *end;                 // covered stretches of one circle
   int32_t *index, *sorted_index;      // places of the neighbours in the grid
-  float *tangent;                     // stretches that came out as a point: the half-plane's c
   Interval *intervals;                // two columns
   uint64_t *taken;
 };
@@ -33,7 +31,6 @@ QSES_FN Columns cut_columns(const AtomScratch &s) {
   c.taken = reinterpret_cast<uint64_t *>(next());
   c.x = next(), c.y = next(), c.z = next(), c.cosine = next(), c.sine = next();
   c.sx = next(), c.sy = next(), c.sz = next(), c.scos = next(), c.ssin = next();
-  c.begin = next(), c.end = next(), c.tangent = next();
   c.index = reinterpret_cast<int32_t *>(next());
   c.sorted_index = reinterpret_cast<int32_t *>(next());
   return c;
@@ -140,7 +137,6 @@ int drop_contained_caps(const Columns &c, int n) {
 
 // The exposed intervals of circle j of the n caps; false if it is hidden.
 bool cut_by_neighbors(const Circle &circle, const Columns &c, int n, int j, ExposedIntervals<Interval *> *intervals) {
-  int cuts = 0;
   for (int q = 0; q < n; q += kPackSize) {
     if (q % 64 == 0) look_for_stop();
     const Vec3<Pack> axis(load_pack(c.x + q), load_pack(c.y + q), load_pack(c.z + q));
@@ -158,13 +154,15 @@ bool cut_by_neighbors(const Circle &circle, const Columns &c, int n, int j, Expo
       if (lane_bits(h.c < Pack(0.f)) & points) return false;
       lanes &= ~points;
     }
-    store_lanes(c.begin + cuts, lanes, begin);
-    store_lanes(c.end + cuts, lanes, end);
-    cuts += popcount64(lanes);
-  }
-  for (int k = 0; k < cuts; ++k) {
-    intervals->cover(c.begin[k], c.end[k]);
-    if (intervals->empty()) return false;
+    // The largest caps come first: most hidden circles are found to be so before the others are looked at.
+    alignas(32) float begins[kPackSize], ends[kPackSize];
+    store_pack(begins, begin);
+    store_pack(ends, end);
+    for (; lanes; lanes &= lanes - 1) {
+      const int l = lowest_bit32(lanes);
+      intervals->cover(begins[l], ends[l]);
+      if (intervals->empty()) return false;
+    }
   }
   return true;
 }

@@ -4,6 +4,8 @@
 #include "surface/cpu/cpu_candidates.h"
 #include "surface/cpu/cpu_leaf_bits.h"
 
+#include <algorithm>
+
 namespace quickses {
 namespace QSES_CPU_ISA {
 namespace {
@@ -32,16 +34,22 @@ QSES_FN void fill_ball(uint64_t planes[8], const PlaneRows &rows, float cx, floa
   const float ox = maximum(0.f, maximum(-cx, cx - side)), oy = maximum(0.f, maximum(-cy, cy - side));
   const float nearest = ox * ox + oy * oy;
   if (nearest >= radius2) return;
+  uint32_t open = 0;  // planes that the ball meets and that are not full
+  for (int z = 0; z < 8; ++z) {
+    const float dz = static_cast<float>(z) * h - cz;
+    open |= static_cast<uint32_t>(radius2 - dz * dz > nearest && planes[z] != ~uint64_t(0)) << z;
+  }
+  if (!open) return;
   const Pack dx = rows.x - Pack(cx), dx2 = dx * dx;
   Pack row2[8];
   for (int y = 0; y < 8; ++y) {
     const float dy = static_cast<float>(y) * h - cy;
     row2[y] = dx2 + Pack(dy * dy);
   }
-  for (int z = 0; z < 8; ++z) {
-    const float dz = static_cast<float>(z) * h - cz, limit = radius2 - dz * dz;
-    if (limit <= nearest) continue;
-    const Pack bound(limit);
+  for (; open; open &= open - 1) {
+    const int z = lowest_bit32(open);
+    const float dz = static_cast<float>(z) * h - cz;
+    const Pack bound(radius2 - dz * dz);
     uint64_t plane = 0;
     for (int y = 0; y < 8; ++y) plane |= static_cast<uint64_t>(lane_bits(row2[y] < bound)) << (8 * y);
     planes[z] |= plane;
@@ -53,13 +61,8 @@ QSES_FN void fill_ball(uint64_t planes[8], const PlaneRows &rows, float cx, floa
 uint64_t leaf_inside(const FeatureView &f, const BrickCandidates &c, const Lattice &lattice, const glm::ivec3 &first,
                      uint64_t open, float slack) {
   alignas(32) float px[64 + kPackSize], py[64 + kPackSize], pz[64 + kPackSize];
-  int n = 0;
   open = to_blocks(open);
-  for (uint64_t w = open; w; w &= w - 1, ++n) {
-    const glm::ivec3 at = first + block_point(lowest_bit64(w));
-    const Vec3<float> p = lattice.position(at.x, at.y, at.z);
-    px[n] = p.x, py[n] = p.y, pz[n] = p.z;
-  }
+  const int n = list_points(lattice, first, open, px, py, pz);
   for (int k = n; k < n + kPackSize; ++k) px[k] = px[n - 1], py[k] = py[n - 1], pz[k] = pz[n - 1];
   const float depth = f.parameters.depth;
   const Pack depth2(depth * depth);
@@ -107,11 +110,13 @@ BrickNeeds evaluate_brick_signs(const FeatureView &f, const BrickSet &bricks, ui
     }
     for (uint64_t plane : core) full &= plane == ~uint64_t(0);
   }
-  if (depth == 0.f || !full)
+  if (depth == 0.f || !full) {
+    std::copy_n(core, 8, reached);  // whoever is in the core needs no second look
     for (int a = 0; a < c.atom_count; ++a) {
       const float r = c.atoms.radius[a] - f.parameters.least_depth();
       fill_ball(reached, rows, c.atoms.x[a] - low.x, c.atoms.y[a] - low.y, c.atoms.z[a] - low.z, r * r);
     }
+  }
   for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
     uint64_t in_core = 0, in_reach = 0;
     for (int z = 0; z < 4; ++z) {

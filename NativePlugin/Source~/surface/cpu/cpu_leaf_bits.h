@@ -3,6 +3,7 @@
 // fewer balls meet eight of them. Only for the CPU kernels.
 #pragma once
 
+#include "parallel/pack.h"
 #include "surface/cpu/cpu_kernels.h"
 
 #if defined(__BMI2__)
@@ -56,6 +57,27 @@ QSES_FN uint64_t from_blocks(uint64_t w) {
 QSES_FN glm::ivec3 block_point(int bit) {
   const int block = bit >> 3;
   return glm::ivec3((bit & 1) + 2 * (block & 1), (bit >> 1 & 1) + (block & 2), (bit >> 2 & 1) + (block >> 1 & 2));
+}
+
+// Where the points of a word in blocks lie, in its order, as Lattice::position() has it; `first` is the leaf's first
+// point. Returns how many there are; room for eight more is needed.
+QSES_FN int list_points(const Lattice &lattice, const glm::ivec3 &first, uint64_t blocks, float *x, float *y,
+                        float *z) {
+  static constexpr float kStep[3][kPackSize] = {
+      {0, 1, 0, 1, 0, 1, 0, 1}, {0, 0, 1, 1, 0, 0, 1, 1}, {0, 0, 0, 0, 1, 1, 1, 1}};
+  const Pack step_x = load_pack(kStep[0]), step_y = load_pack(kStep[1]), step_z = load_pack(kStep[2]);
+  const Pack spacing(lattice.spacing);
+  int n = 0;
+  for (int block = 0; block < 8; ++block) {
+    const uint32_t bits = static_cast<uint32_t>(blocks >> 8 * block & 0xff);
+    if (!bits) continue;
+    const glm::ivec3 at = first + block_point(8 * block);
+    store_lanes(x + n, bits, (Pack(static_cast<float>(at.x)) + step_x) * spacing);
+    store_lanes(y + n, bits, (Pack(static_cast<float>(at.y)) + step_y) * spacing);
+    store_lanes(z + n, bits, (Pack(static_cast<float>(at.z)) + step_z) * spacing);
+    n += popcount64(bits);
+  }
+  return n;
 }
 
 }  // namespace QSES_CPU_ISA
