@@ -66,20 +66,18 @@ void emit_brick_triangles(const BrickSet &bricks, const MeshLayout &layout, uint
                           const MeshView &mesh) {
   const size_t begin = layout.triangle_base[brick];
   if (layout.triangle_base[brick + 1] == begin) return;
-  const glm::ivec3 place = bricks.lattice.brick_at(bricks.linear[brick]);
+  const UpperBricks upper = upper_bricks(bricks, brick);
   VertexNumbers numbers;
 #if !defined(NDEBUG)
   std::memset(&numbers, 0xff, sizeof numbers);  // no signs change on the border of the set, so none of these is read
 #endif
   number_vertices(layout, brick, 0, &numbers);
-  for (int towards = 1; towards < 8; ++towards) {
-    const int k = bricks.find(place + glm::ivec3(towards & 1, towards >> 1 & 1, towards >> 2));
-    if (k >= 0) number_vertices(layout, static_cast<size_t>(k), towards, &numbers);
-  }
+  for (int towards = 1; towards < 8; ++towards)
+    if (upper.at[towards] >= 0) number_vertices(layout, static_cast<size_t>(upper.at[towards]), towards, &numbers);
   const int second = mesh.reversed ? 2 : 1, third = mesh.reversed ? 1 : 2;
   uint32_t *out = mesh.triangle(begin);
   for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
-    const LeafWords corners = cell_corners(leaf_words(bricks, layout.signs, static_cast<int>(brick), leaf));
+    const LeafWords corners = cell_corners(leaf_words(upper, layout.signs, leaf));
     for (uint64_t mixed = mixed_cells(corners); mixed; mixed &= mixed - 1) {
       const int bit = lowest_bit64(mixed), code = cell_case(corners, bit);
       const glm::ivec3 p = brick_point(leaf, bit);

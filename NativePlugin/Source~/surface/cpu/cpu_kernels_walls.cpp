@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // CPU kernel: the walls thinner than the spacing that edges of one brick pass through. Edges are sorted out in bulk: by
 // signs, whole leaves at once, then by the probes nearest to their ends, eight at a time; few are left to be walked.
+#include "surface/cpu/cpu_brick_signs.h"
 #include "surface/cpu/cpu_candidates.h"
 #include "surface/cpu/cpu_leaf_bits.h"
 #include "surface/stages/thin_walls.h"
@@ -236,18 +237,14 @@ BrickNeeds mark_brick_walls(const FeatureView &f, const BrickSet &bricks, uint32
                             const BrickScratch &scratch, uint64_t *marks) {
   // Edges that signs leave.
   const glm::ivec3 own = bricks.lattice.brick_at(bricks.linear[brick]);
-  const uint64_t *near[kNeighborhood];
-  for (int k = 0; k < kNeighborhood; ++k) {
-    const int found = k == kOwnPlace ? static_cast<int>(brick) : bricks.find(own + neighbor_step(k));
-    near[k] = found < 0 ? nullptr : signs + static_cast<size_t>(found) * kLeavesPerBrick;
-  }
+  const NearWords near = find_near_words(bricks, signs, brick);
   uint64_t candidates[kLeavesPerBrick][kWallSteps];
   uint32_t leaves = 0;
   uint64_t around[4][4][4];  // words of the leaves of the brick and next to it
   for (int z = 0; z < 4; ++z)
     for (int y = 0; y < 4; ++y)
       for (int x = 0; x < 4; ++x)
-        around[z][y][x] = word_of_leaf(glm::ivec3(x - 1, y - 1, z - 1), [&](int at) { return near[at]; });
+        around[z][y][x] = word_of_leaf(glm::ivec3(x - 1, y - 1, z - 1), [&](int at) { return near.at[at]; });
   for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
     LeafNeighborhood words;
     for (int z = 0; z < 3; ++z)

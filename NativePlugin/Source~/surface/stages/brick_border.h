@@ -72,6 +72,8 @@ QSES_FN uint32_t border_changes(const BrickSet &bricks, const BorderSigns *signs
   int other[kNeighborhood];
 #if defined(__CUDA_ARCH__)
 #pragma unroll
+#elif !defined(__CUDACC__)
+#pragma GCC unroll 27
 #endif
   for (int k = 0; k < kNeighborhood; ++k)
     other[k] = k == kOwnPlace ? static_cast<int>(brick) : bricks.find(place + neighbor_step(k));
@@ -79,6 +81,8 @@ QSES_FN uint32_t border_changes(const BrickSet &bricks, const BorderSigns *signs
   uint32_t inactive = 0;
 #if defined(__CUDA_ARCH__)
 #pragma unroll
+#elif !defined(__CUDACC__)
+#pragma GCC unroll 27
 #endif
   for (int k = 0; k < kNeighborhood; ++k) {
     const BorderSigns there = signs[other[k] < 0 ? brick : static_cast<size_t>(other[k])];

@@ -49,7 +49,24 @@ QSES_FN void visit_bricks_of_shell(const Lattice &lattice, const glm::vec3 &cent
     last[d] = last[d] >= lattice.brick_count[d] ? lattice.brick_count[d] - 1 : last[d];
   }
   constexpr int kLongRow = 16;  // fewer bricks are tried one by one
-  const bool many = last[1] - first[1] > 64;
+  const bool many = last[1] - first[1] > 64, is_short = last[0] - first[0] < kLongRow;
+  const auto start_of = [&](int x) { return static_cast<float>(x + lattice.first_brick.x) * size + low_offset - c[0]; };
+  const auto nearest2_of = [&](int x) {
+    const float x0 = start_of(x), nx = maximum(0.f, maximum(x0, -x0 - box));
+    return nx * nx;
+  };
+  const auto farthest2_of = [&](int x) {
+    const float x0 = start_of(x), fx = maximum(absolute(x0), absolute(x0 + box));
+    return fx * fx;
+  };
+#if !defined(__CUDA_ARCH__)
+  // The same for all rows; a GPU has no room for them.
+  float nearest2[kLongRow], farthest2[kLongRow];
+  for (int x = first[0]; is_short && x <= last[0]; ++x) {
+    nearest2[x - first[0]] = nearest2_of(x);
+    farthest2[x - first[0]] = farthest2_of(x);
+  }
+#endif
   int z = first[2], y_begin = first[1];
   if (rows.first > 0 && last[1] >= first[1]) {
     const uint64_t rows_y = static_cast<uint64_t>(last[1] - first[1]) + 1;
@@ -67,20 +84,17 @@ QSES_FN void visit_bricks_of_shell(const Lattice &lattice, const glm::vec3 &cent
       const float near2 = nz * nz + ny * ny, far2 = fz * fz + fy * fy;
       if (near2 > outer2) continue;
       const uint64_t row = lattice.linear(glm::ivec3(0, y, z));
-      const auto start_of = [&](int x) {
-        return static_cast<float>(x + lattice.first_brick.x) * size + low_offset - c[0];
-      };
-      const auto is_near = [&](int x) {
-        const float x0 = start_of(x), nx = maximum(0.f, maximum(x0, -x0 - box));
-        return near2 + nx * nx <= outer2;
-      };
-      const auto is_far = [&](int x) {
-        const float x0 = start_of(x), fx = maximum(absolute(x0), absolute(x0 + box));
-        return far2 + fx * fx >= inner2;
-      };
-      if (last[0] - first[0] < kLongRow) {
-        for (int x = first[0]; x <= last[0]; ++x)
+      const auto is_near = [&](int x) { return near2 + nearest2_of(x) <= outer2; };
+      const auto is_far = [&](int x) { return far2 + farthest2_of(x) >= inner2; };
+      if (is_short) {
+        for (int x = first[0]; x <= last[0]; ++x) {
+#if defined(__CUDA_ARCH__)
           if (is_near(x) && is_far(x)) visit(row + static_cast<uint64_t>(x), uint64_t(1));
+#else
+          if (near2 + nearest2[x - first[0]] <= outer2 && far2 + farthest2[x - first[0]] >= inner2)
+            visit(row + static_cast<uint64_t>(x), uint64_t(1));
+#endif
+        }
         continue;
       }
       // Along a row bricks come nearer and then go farther: the ends of the runs are looked for by halving.

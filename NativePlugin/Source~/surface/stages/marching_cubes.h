@@ -47,24 +47,44 @@ struct LeafWords {
   uint64_t at[8];
 };
 
-// Word of the leaf at an offset (bits x, y, z) from a leaf of an active brick. No cell at an inactive brick has a sign
-// change, so there the word repeats the nearest point of the leaf itself.
-QSES_FN uint64_t neighbor_leaf_word(const BrickSet &bricks, const uint64_t *signs, int brick, const glm::ivec3 &place,
-                                    int leaf, int offset) {
-  const int carry = leaf & offset, other = leaf ^ offset;
-  if (carry == 0) return signs[static_cast<size_t>(brick) * kLeavesPerBrick + other];
-  const int k = bricks.find(place + glm::ivec3(carry & 1, carry >> 1 & 1, carry >> 2));
-  if (k >= 0) return signs[static_cast<size_t>(k) * kLeavesPerBrick + other];
-  const int bit = leaf_bit(offset & 1 ? 3 : 0, offset & 2 ? 3 : 0, offset & 4 ? 3 : 0);
-  return signs[static_cast<size_t>(brick) * kLeavesPerBrick + leaf] >> bit & 1 ? ~uint64_t(0) : 0;
+// The words of a leaf of an active brick and of its neighbours. upper_brick(k): number of the brick towards larger x,
+// y, z (bits of k), -1 if that is not active. No cell at an inactive brick has a sign change, so there the word repeats
+// the nearest point of the leaf itself.
+template <class UpperBrick>
+QSES_FN LeafWords leaf_words(const uint64_t *signs, int brick, int leaf, const UpperBrick &upper_brick) {
+  LeafWords w;
+  const uint64_t own = w.at[0] = signs[static_cast<size_t>(brick) * kLeavesPerBrick + leaf];
+  for (int d = 1; d < 8; ++d) {
+    const int carry = leaf & d, other = leaf ^ d, k = carry == 0 ? brick : upper_brick(carry);
+    if (k >= 0) {
+      w.at[d] = signs[static_cast<size_t>(k) * kLeavesPerBrick + other];
+    } else {
+      const int bit = leaf_bit(d & 1 ? 3 : 0, d & 2 ? 3 : 0, d & 4 ? 3 : 0);
+      w.at[d] = own >> bit & 1 ? ~uint64_t(0) : 0;
+    }
+  }
+  return w;
 }
 
 QSES_FN LeafWords leaf_words(const BrickSet &bricks, const uint64_t *signs, int brick, int leaf) {
   const glm::ivec3 place = bricks.lattice.brick_at(bricks.linear[brick]);
-  LeafWords w;
-  w.at[0] = signs[static_cast<size_t>(brick) * kLeavesPerBrick + leaf];
-  for (int d = 1; d < 8; ++d) w.at[d] = neighbor_leaf_word(bricks, signs, brick, place, leaf, d);
-  return w;
+  return leaf_words(signs, brick, leaf,
+                    [&](int k) { return bricks.find(place + glm::ivec3(k & 1, k >> 1 & 1, k >> 2)); });
+}
+
+// Where all leaves of a brick are looked at: the bricks towards larger x, y, z, looked up once. Itself at 0.
+struct UpperBricks {
+  int at[8];
+};
+QSES_FN UpperBricks upper_bricks(const BrickSet &bricks, uint32_t brick) {
+  const glm::ivec3 place = bricks.lattice.brick_at(bricks.linear[brick]);
+  UpperBricks upper;
+  upper.at[0] = static_cast<int>(brick);
+  for (int k = 1; k < 8; ++k) upper.at[k] = bricks.find(place + glm::ivec3(k & 1, k >> 1 & 1, k >> 2));
+  return upper;
+}
+QSES_FN LeafWords leaf_words(const UpperBricks &upper, const uint64_t *signs, int leaf) {
+  return leaf_words(signs, upper.at[0], leaf, [&](int k) { return upper.at[k]; });
 }
 
 // The eight corner words: bit b of corner word c is the sign of corner c of the cell at point b.
@@ -108,6 +128,44 @@ QSES_FN int cell_case(const Row *row, int rows_per_layer, int x) {
 
 // ---- count -----------------------------------------------------------------------------------------------------
 
+// The masks of a leaf's edges that change sign go to crossing[axis]. Returns how many triangles its cells have.
+QSES_FN int count_leaf(const LeafWords &words, const uint8_t *case_triangles, uint64_t *crossing) {
+  const LeafWords c = cell_corners(words);
+  for (int axis = 0; axis < kAxes; ++axis) crossing[axis] = c.at[0] ^ c.at[1 << axis];
+  int triangles = 0;
+  for (uint64_t mixed = mixed_cells(c); mixed; mixed &= mixed - 1)
+    triangles += case_triangles[cell_case(c, lowest_bit64(mixed))];
+  return triangles;
+}
+
+constexpr int kBrickMasks = kLeavesPerBrick * kAxes;
+
+// The ranks of a brick from its counts; its totals go to vertices, triangles and leaves.
+struct BrickTotals {
+  uint32_t *vertices, *triangles, *leaves;
+};
+QSES_FN void rank_brick(const MeshLayout &layout, size_t brick, const uint16_t vertex_counts[kBrickMasks],
+                        const uint16_t triangle_counts[kLeavesPerBrick], const BrickTotals &totals) {
+  uint16_t *const vertex = layout.vertex_rank + brick * kBrickMasks;
+  uint16_t *const triangle = layout.triangle_rank + brick * kLeavesPerBrick;
+  uint32_t v = 0, t = 0, owning = 0;
+  for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
+    const uint32_t before = v;
+    for (int k = leaf * kAxes; k < (leaf + 1) * kAxes; ++k) {
+      vertex[k] = static_cast<uint16_t>(v);
+      v += vertex_counts[k];
+    }
+    owning += v != before ? 1 : 0;
+    triangle[leaf] = static_cast<uint16_t>(t);
+    t += triangle_counts[leaf];
+  }
+  totals.vertices[brick] = v;
+  totals.triangles[brick] = t;
+  totals.leaves[brick] = owning;
+  layout.border[brick] = border_signs(layout.signs + brick * kLeavesPerBrick);
+}
+
+// On the GPU a thread per leaf, then one per brick.
 struct CountLeaf {
   BrickSet bricks;
   MeshLayout layout;
@@ -115,44 +173,41 @@ struct CountLeaf {
   QSES_HOST_DEVICE void operator()(size_t i) const {
     if (i == 0) *layout.totals = {};
     const int brick = static_cast<int>(i >> 3), leaf = static_cast<int>(i & 7);
-    const LeafWords c = cell_corners(leaf_words(bricks, layout.signs, brick, leaf));
-    for (int axis = 0; axis < kAxes; ++axis) {
-      const uint64_t crossing = c.at[0] ^ c.at[1 << axis];
-      layout.crossing[3 * i + static_cast<size_t>(axis)] = crossing;
-      layout.vertex_rank[3 * i + static_cast<size_t>(axis)] = static_cast<uint16_t>(popcount64(crossing));
-    }
-    int triangles = 0;
-    for (uint64_t mixed = mixed_cells(c); mixed; mixed &= mixed - 1)
-      triangles += case_triangles[cell_case(c, lowest_bit64(mixed))];
-    layout.triangle_rank[i] = static_cast<uint16_t>(triangles);
+    uint64_t *const crossing = layout.crossing + 3 * i;
+    layout.triangle_rank[i] =
+        static_cast<uint16_t>(count_leaf(leaf_words(bricks, layout.signs, brick, leaf), case_triangles, crossing));
+    for (int axis = 0; axis < kAxes; ++axis)
+      layout.vertex_rank[3 * i + static_cast<size_t>(axis)] = static_cast<uint16_t>(popcount64(crossing[axis]));
+  }
+};
+struct RankBrick {
+  MeshLayout layout;
+  BrickTotals totals;
+  QSES_HOST_DEVICE void operator()(size_t brick) const {
+    uint16_t vertex_counts[kBrickMasks], triangle_counts[kLeavesPerBrick];  // all loads before the first store
+    for (int k = 0; k < kBrickMasks; ++k) vertex_counts[k] = layout.vertex_rank[brick * kBrickMasks + k];
+    for (int k = 0; k < kLeavesPerBrick; ++k) triangle_counts[k] = layout.triangle_rank[brick * kLeavesPerBrick + k];
+    rank_brick(layout, brick, vertex_counts, triangle_counts, totals);
   }
 };
 
-// Turns the counts of a brick into ranks; its totals go to vertices and triangles.
-struct RankBrick {
+// On the CPU both at once.
+struct CountBrick {
+  BrickSet bricks;
   MeshLayout layout;
-  uint32_t *vertices, *triangles, *leaves;
-  QSES_HOST_DEVICE void operator()(size_t brick) const {
-    constexpr int kMasks = kLeavesPerBrick * kAxes;
-    uint16_t *const vertex = layout.vertex_rank + brick * kMasks;
-    uint16_t *const triangle = layout.triangle_rank + brick * kLeavesPerBrick;
-    uint16_t vertex_counts[kMasks], triangle_counts[kLeavesPerBrick];  // all loads before the first store
-    for (int k = 0; k < kMasks; ++k) vertex_counts[k] = vertex[k];
-    for (int k = 0; k < kLeavesPerBrick; ++k) triangle_counts[k] = triangle[k];
-    uint32_t v = 0, t = 0, owning = 0;
-    for (int k = 0; k < kMasks; ++k) {
-      vertex[k] = static_cast<uint16_t>(v);
-      v += vertex_counts[k];
-      if (k % kAxes == kAxes - 1 && v != vertex[k - kAxes + 1]) ++owning;
-    }
-    for (int k = 0; k < kLeavesPerBrick; ++k) {
-      triangle[k] = static_cast<uint16_t>(t);
-      t += triangle_counts[k];
-    }
-    vertices[brick] = v;
-    triangles[brick] = t;
-    leaves[brick] = owning;
-    layout.border[brick] = border_signs(layout.signs + brick * kLeavesPerBrick);
+  const uint8_t *case_triangles;
+  BrickTotals totals;
+  void operator()(size_t brick) const {
+    if (brick == 0) *layout.totals = {};
+    const UpperBricks upper = upper_bricks(bricks, static_cast<uint32_t>(brick));
+    uint64_t *const crossing = layout.crossing + brick * kBrickMasks;
+    uint16_t vertex_counts[kBrickMasks], triangle_counts[kLeavesPerBrick];
+    for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf)
+      triangle_counts[leaf] = static_cast<uint16_t>(
+          count_leaf(leaf_words(upper, layout.signs, leaf), case_triangles, crossing + leaf * kAxes));
+    for (int k = 0; k < kBrickMasks; ++k)
+      vertex_counts[k] = static_cast<uint16_t>(crossing[k] ? popcount64(crossing[k]) : 0);
+    rank_brick(layout, brick, vertex_counts, triangle_counts, totals);
   }
 };
 
@@ -276,8 +331,13 @@ MeshCounts lay_out_mesh(Executor &executor, const BrickSet &bricks, const uint64
   Span<uint32_t> vertices = executor.template allocate<uint32_t>(n);
   Span<uint32_t> triangles = executor.template allocate<uint32_t>(n);
   Span<uint32_t> owning = executor.template allocate<uint32_t>(n);
-  executor.for_each(leaves, CountLeaf{bricks, *layout, case_triangles});
-  executor.for_each(n, RankBrick{*layout, vertices.data, triangles.data, owning.data});
+  const BrickTotals counts{vertices.data, triangles.data, owning.data};
+  if constexpr (Executor::kIsCuda) {
+    executor.for_each(leaves, CountLeaf{bricks, *layout, case_triangles});
+    executor.for_each(n, RankBrick{*layout, counts});
+  } else {
+    executor.for_each(n, CountBrick{bricks, *layout, case_triangles, counts});
+  }
   executor.exclusive_scan(n, LoadCount<uint32_t>{vertices.data}, vertex_base);
   executor.exclusive_scan(n, LoadCount<uint32_t>{triangles.data}, triangle_base);
   executor.exclusive_scan(n, LoadCount<uint32_t>{owning.data}, leaf_base);

@@ -47,15 +47,17 @@ struct FindBounds {
     for (int d = team.rank(); d < 6; d += team.size()) scratch.least[d] = ~uint32_t(0);
     team.sync();
     const size_t begin = chunk * kChunk, end = begin + kChunk < vertices ? begin + kChunk : vertices;
-    uint32_t own[6] = {~uint32_t(0), ~uint32_t(0), ~uint32_t(0), ~uint32_t(0), ~uint32_t(0), ~uint32_t(0)};
+    uint32_t low[3] = {~uint32_t(0), ~uint32_t(0), ~uint32_t(0)}, high[3] = {0, 0, 0};
     for (size_t v = begin + static_cast<size_t>(team.rank()); v < end; v += static_cast<size_t>(team.size()))
       for (int d = 0; d < 3; ++d) {
-        const float x = mesh.position(static_cast<uint32_t>(v))[d];
-        const uint32_t low = ordered_bits(x), high = ordered_bits(-x);
-        own[d] = low < own[d] ? low : own[d];
-        own[d + 3] = high < own[d + 3] ? high : own[d + 3];
+        const uint32_t x = ordered_bits(mesh.position(static_cast<uint32_t>(v))[d]);
+        low[d] = x < low[d] ? x : low[d];
+        high[d] = x > high[d] ? x : high[d];
       }
-    for (int d = 0; d < 6; ++d) atomic_min(scratch.least + d, own[d]);
+    for (int d = 0; d < 3; ++d) {
+      atomic_min(scratch.least + d, low[d]);
+      atomic_min(scratch.least + d + 3, ~high[d]);  // the bits of -x
+    }
     team.sync();
     for (int d = team.rank(); d < 6; d += team.size()) atomic_min(least + d, scratch.least[d]);
     if (chunk == 0 && team.rank() == 0) least[6] = extra ? *extra : 0;
