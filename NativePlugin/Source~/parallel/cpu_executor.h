@@ -66,9 +66,11 @@ class CpuExecutor {
   }
 
   template <class F>
-  void for_each(size_t n, F f, uint64_t /*steps*/ = 0) {
-    // Chunks keep the functor's loop tight and the scheduler out of it.
-    const size_t chunk = std::max<size_t>(kSerialItems, n / (size_t(threads()) * 16));
+  void for_each(size_t n, F f, uint64_t steps = kPlainSteps) {
+    // Chunks keep the functor's loop tight and the scheduler out of it. Few items without loops are done before another
+    // thread has woken up.
+    const size_t chunk =
+        std::max<size_t>(steps > kPlainSteps ? kSerialItems : kPlainItems, n / (size_t(threads()) * 16));
     run_chunks((n + chunk - 1) / chunk,
                [&](size_t, size_t c) { for_range(c * chunk, std::min(n, (c + 1) * chunk), f); });
   }
@@ -101,6 +103,7 @@ class CpuExecutor {
   template <class Scratch, class F>
   void for_each_brick(size_t n, F f, size_t grain = 8, uint64_t /*steps*/ = 0) {
     auto &pool = scratches<Scratch>();
+    grain = std::max<size_t>(1, std::min(grain, n / (size_t(threads()) * 16)));  // few bricks are shared out evenly
     run_chunks((n + grain - 1) / grain, [&](size_t worker, size_t c) {
       for (size_t i = c * grain; i < std::min(n, (c + 1) * grain); ++i) f(SoloTeam{}, *pool[worker], i);
     });
@@ -265,6 +268,7 @@ class CpuExecutor {
 
  private:
   static constexpr size_t kSerialItems = 64;
+  static constexpr size_t kPlainItems = 1024;              // of a pass without loops, that one thread does
   static constexpr size_t kSortedRun = size_t(1) << 15;    // items that one thread sorts, or merges, at a time
   static constexpr size_t kFilledPiece = size_t(1) << 20;  // bytes
 

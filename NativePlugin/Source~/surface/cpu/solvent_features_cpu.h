@@ -317,7 +317,8 @@ inline void find_solvent_features(CpuKernelExecutor &executor, const NeighborGri
   if (pool.holds_all()) {
     executor.for_each(a.chunks,
                       CollectChunk{a.table.data, &pool, a.cap_first.data, a.arc_base.data, a.atoms, a.atoms_per_chunk,
-                                   f.exposed.data, f.cap_ranges.data, f.caps.data, f.arcs.data, f.arc_atoms.data});
+                                   f.exposed.data, f.cap_ranges.data, f.caps.data, f.arcs.data, f.arc_atoms.data},
+                      kMaxAtomsPerChunk * kPlainSteps);
     return;
   }
   // Next time they will fit; the room is taken now, so that this computation tells what later ones take.

@@ -336,7 +336,7 @@ MeshCounts lay_out_mesh(Executor &executor, const BrickSet &bricks, const uint64
     executor.for_each(leaves, CountLeaf{bricks, *layout, case_triangles});
     executor.for_each(n, RankBrick{*layout, counts});
   } else {
-    executor.for_each(n, CountBrick{bricks, *layout, case_triangles, counts});
+    executor.for_each(n, CountBrick{bricks, *layout, case_triangles, counts}, kLeavesPerBrick * kPlainSteps);
   }
   executor.exclusive_scan(n, LoadCount<uint32_t>{vertices.data}, vertex_base);
   executor.exclusive_scan(n, LoadCount<uint32_t>{triangles.data}, triangle_base);
