@@ -21,8 +21,8 @@
 // is done, but everything runs in the order it was asked for; only what "waits" blocks the calling thread.
 //
 // for_each, for_each_brick and reduce take a last argument, `steps`: of a thread of the GPU for an item, at most. A
-// pass over items that may need many of them must tell, since the launches of the GPU are cut by it; the CPU does not
-// look.
+// pass over items that may need many of them must tell, since the launches of the GPU are cut by it. On the CPU, few
+// items of a for_each that needs no more than kPlainSteps stay on one thread.
 //
 // A team has rank() in [0, size()), and sync(). On the CPU it is one thread, so its loops run straight through.
 #pragma once
