@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 namespace quickses {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 constexpr float kLargestCoordinate = 1e6f;
 constexpr float kLargestRadius = 100.f;
 
-[[noreturn]] void bad_position(size_t atom, const float *p) {
+[[noreturn]] void bad_position(size_t atom, const glm::vec3 &p) {
   char text[160];
   const bool finite = std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
   std::snprintf(text, sizeof text, "position of atom %zu is (%g, %g, %g): %s", atom, static_cast<double>(p[0]),
@@ -34,23 +35,38 @@ void check_layout(const float *positions, size_t stride, size_t count) {
 
 namespace {
 
-// Box of the positions at(0) ... at(count - 1), each a pointer to three floats.
+glm::vec3 load(const char *position) {
+  glm::vec3 p;
+  for (int d = 0; d < 3; ++d) std::memcpy(&p[d], position + 4 * d, 4);
+  return p;
+}
+
+bool is_in_range(const glm::vec3 &p) {
+  bool is_good = true;
+  for (int d = 0; d < 3; ++d) is_good &= std::fabs(p[d]) <= kLargestCoordinate;  // NaN fails every comparison
+  return is_good;
+}
+
+// Of the positions at(0) ... at(count - 1), each a pointer to three floats. Once for each frame of a trajectory, while
+// the back end waits for it.
 template <class At>
-AtomBounds bound_positions(size_t count, const At &at) {
-  AtomBounds bounds{glm::vec3(0.f), glm::vec3(0.f), 0.f};
+AtomBounds check_and_copy(size_t count, const At &at, Sphere *atoms) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  glm::vec3 low(kInfinity), high(-kInfinity);
+  bool all_good = true;
   for (size_t i = 0; i < count; ++i) {
-    float p[3];
-    std::memcpy(p, at(i), sizeof p);
-    // NaN fails every comparison, so it ends here too.
-    if (!(std::fabs(p[0]) <= kLargestCoordinate && std::fabs(p[1]) <= kLargestCoordinate &&
-          std::fabs(p[2]) <= kLargestCoordinate))
-      bad_position(i, p);
+    const glm::vec3 p = load(at(i));
+    all_good &= is_in_range(p);
     for (int d = 0; d < 3; ++d) {
-      bounds.low[d] = i == 0 || p[d] < bounds.low[d] ? p[d] : bounds.low[d];
-      bounds.high[d] = i == 0 || p[d] > bounds.high[d] ? p[d] : bounds.high[d];
+      low[d] = p[d] < low[d] ? p[d] : low[d];
+      high[d] = p[d] > high[d] ? p[d] : high[d];
     }
+    atoms[i].center = p;
   }
-  return bounds;
+  for (size_t i = 0; !all_good && i < count; ++i)
+    if (!is_in_range(atoms[i].center)) bad_position(i, atoms[i].center);
+  if (count == 0) low = high = glm::vec3(0.f);
+  return {low, high, 0.f};
 }
 
 const char *position_at(const float *positions, size_t stride, size_t i) {
@@ -59,18 +75,23 @@ const char *position_at(const float *positions, size_t stride, size_t i) {
 
 }  // namespace
 
-AtomBounds check_positions(const float *positions, size_t stride, size_t count) {
-  return bound_positions(count, [&](size_t i) { return position_at(positions, stride, i); });
+AtomBounds copy_positions(const float *positions, size_t stride, size_t count, Sphere *atoms) {
+  return check_and_copy(
+      count, [&](size_t i) { return position_at(positions, stride, i); }, atoms);
 }
 
-AtomBounds check_indexed_positions(const float *positions, size_t stride, size_t position_count,
-                                   const uint32_t *indices, size_t count) {
+void check_indices(const uint32_t *indices, size_t count, size_t position_count) {
   if (count > 0) require(indices, "indices");
   for (size_t i = 0; i < count; ++i)
     if (indices[i] >= position_count)
       invalid("indices[" + std::to_string(i) + "] is " + std::to_string(indices[i]) + " but there are " +
               std::to_string(position_count) + " positions");
-  return bound_positions(count, [&](size_t i) { return position_at(positions, stride, indices[i]); });
+}
+
+AtomBounds copy_indexed_positions(const float *positions, size_t stride, const uint32_t *indices, size_t count,
+                                  Sphere *atoms) {
+  return check_and_copy(
+      count, [&](size_t i) { return position_at(positions, stride, indices[i]); }, atoms);
 }
 
 float check_radii(const float *radii, size_t count) {
@@ -87,15 +108,6 @@ float check_radii(const float *radii, size_t count) {
     largest = radii[i] > largest ? radii[i] : largest;
   }
   return largest;
-}
-
-void copy_positions(const float *positions, size_t stride, size_t count, Sphere *atoms) {
-  for (size_t i = 0; i < count; ++i) std::memcpy(&atoms[i].center, position_at(positions, stride, i), 12);
-}
-
-void copy_indexed_positions(const float *positions, size_t stride, const uint32_t *indices, size_t count,
-                            Sphere *atoms) {
-  for (size_t i = 0; i < count; ++i) std::memcpy(&atoms[i].center, position_at(positions, stride, indices[i]), 12);
 }
 
 }  // namespace quickses

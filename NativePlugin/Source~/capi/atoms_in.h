@@ -11,18 +11,15 @@ namespace quickses {
 
 void check_layout(const float *positions, size_t stride, size_t count);
 
-// Box of the positions; its max_radius is left 0.
-AtomBounds check_positions(const float *positions, size_t stride, size_t count);
-
 // The largest radius.
 float check_radii(const float *radii, size_t count);
 
-void copy_positions(const float *positions, size_t stride, size_t count, Sphere *atoms);
-
-// The same for positions[indices[i]].
-AtomBounds check_indexed_positions(const float *positions, size_t stride, size_t position_count,
-                                   const uint32_t *indices, size_t count);
-void copy_indexed_positions(const float *positions, size_t stride, const uint32_t *indices, size_t count,
-                            Sphere *atoms);
+// Where they throw, what they were to fill is of no use. They return the box of the positions; its max_radius is left
+// 0.
+AtomBounds copy_positions(const float *positions, size_t stride, size_t count, Sphere *atoms);
+// The same for positions[indices[i]]; indices are checked already.
+AtomBounds copy_indexed_positions(const float *positions, size_t stride, const uint32_t *indices, size_t count,
+                                  Sphere *atoms);
+void check_indices(const uint32_t *indices, size_t count, size_t position_count);
 
 }  // namespace quickses

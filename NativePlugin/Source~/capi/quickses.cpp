@@ -72,13 +72,15 @@ qses_backend choose_backend(qses_backend asked, int device, qses_backend_descrip
   return QSES_BACKEND_CPU;
 }
 
-// A new set with the radii of the one before; positions are still to be written.
-std::shared_ptr<quickses::AtomSet> next_frame(const qses_context &context, const quickses::AtomBounds &bounds) {
+// A new set with the radii of the one before.
+// copy_into(atoms) fills them in, and returns their box.
+template <class CopyInto>
+std::shared_ptr<quickses::AtomSet> next_frame(const qses_context &context, const CopyInto &copy_into) {
   const quickses::AtomSet &before = *context.atoms;
   std::shared_ptr<quickses::AtomSet> set = context.job->engine().make_atoms(before.count);
-  for (size_t i = 0; i < before.count; ++i) set->atoms[i].radius = before.atoms[i].radius;
-  set->bounds = bounds;
+  set->bounds = copy_into(set->atoms);
   set->bounds.max_radius = before.bounds.max_radius;
+  for (size_t i = 0; i < before.count; ++i) set->atoms[i].radius = before.atoms[i].radius;
   return set;
 }
 
@@ -185,12 +187,10 @@ qses_status qses_set_atoms(qses_context *context, const float *positions, size_t
   return guarded([&] {
     require(context, "context");
     quickses::check_layout(positions, stride, count);
-    quickses::AtomBounds bounds = quickses::check_positions(positions, stride, count);
-    bounds.max_radius = quickses::check_radii(radii, count);
     const std::shared_ptr<quickses::AtomSet> set = context->job->engine().make_atoms(count);
-    quickses::copy_positions(positions, stride, count, set->atoms);
+    set->bounds = quickses::copy_positions(positions, stride, count, set->atoms);
+    set->bounds.max_radius = quickses::check_radii(radii, count);
     for (size_t i = 0; i < count; ++i) set->atoms[i].radius = radii[i];
-    set->bounds = bounds;
     if (!context->atoms || context->atoms->count != count)
       context->appearance = std::make_shared<quickses::Appearance>();
     context->atoms = set;
@@ -202,10 +202,8 @@ qses_status qses_set_positions(qses_context *context, const float *positions, si
     require(context, "context");
     check_atom_count(*context, count, "qses_set_positions");
     quickses::check_layout(positions, stride, count);
-    const quickses::AtomBounds bounds = quickses::check_positions(positions, stride, count);
-    const std::shared_ptr<quickses::AtomSet> set = next_frame(*context, bounds);
-    quickses::copy_positions(positions, stride, count, set->atoms);
-    context->atoms = set;
+    context->atoms = next_frame(
+        *context, [&](quickses::Sphere *atoms) { return quickses::copy_positions(positions, stride, count, atoms); });
   });
 }
 
@@ -215,11 +213,10 @@ qses_status qses_set_positions_indexed(qses_context *context, const float *posit
     require(context, "context");
     check_atom_count(*context, count, "qses_set_positions_indexed");
     quickses::check_layout(positions, stride, position_count);
-    const quickses::AtomBounds bounds =
-        quickses::check_indexed_positions(positions, stride, position_count, indices, count);
-    const std::shared_ptr<quickses::AtomSet> set = next_frame(*context, bounds);
-    quickses::copy_indexed_positions(positions, stride, indices, count, set->atoms);
-    context->atoms = set;
+    quickses::check_indices(indices, count, position_count);
+    context->atoms = next_frame(*context, [&](quickses::Sphere *atoms) {
+      return quickses::copy_indexed_positions(positions, stride, indices, count, atoms);
+    });
   });
 }
 
