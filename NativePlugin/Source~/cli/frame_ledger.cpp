@@ -29,20 +29,30 @@ std::optional<FrameTask> FrameLedger::next() {
   return task;
 }
 
+// Whoever brings the result that was missing passes on what has come after it, too, without holding others up.
 void FrameLedger::deliver(FrameResult result) {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  std::unique_lock<std::mutex> lock(mutex_);
   if (why_ended_) return;
   if (!result.error.empty()) ++failed_count_;
   try {
-    early_.emplace(result.place, std::move(result));
-    for (; !early_.empty() && early_.begin()->first == passed_on_; ++passed_on_) {
-      sink_(early_.begin()->second);
-      early_.erase(early_.begin());
+    const uint64_t place = result.place;
+    early_.emplace(place, std::move(result));
+    if (is_passing_on_) return;
+    is_passing_on_ = true;
+    while (!why_ended_ && !early_.empty() && early_.begin()->first == passed_on_) {
+      const auto next = early_.extract(early_.begin());
+      lock.unlock();
+      sink_(next.mapped());
+      lock.lock();
+      ++passed_on_;
+      changed_.notify_all();
     }
   } catch (...) {
-    why_ended_ = std::current_exception();
+    if (!lock.owns_lock()) lock.lock();
+    if (!why_ended_) why_ended_ = std::current_exception();
+    changed_.notify_all();
   }
-  changed_.notify_all();
+  is_passing_on_ = false;
 }
 
 void FrameLedger::give_up(std::exception_ptr why) {

@@ -41,6 +41,7 @@ class FrameLedger : public FrameSupply {
   std::condition_variable changed_;
   size_t handed_out_ = 0, passed_on_ = 0, failed_count_ = 0;
   std::map<uint64_t, FrameResult> early_;  // by place, waiting for those before
+  bool is_passing_on_ = false;             // one of those who deliver
   std::exception_ptr why_ended_;
 };
 

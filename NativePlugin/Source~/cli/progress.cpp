@@ -19,7 +19,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr size_t kBarWidth = 30;
-constexpr std::chrono::milliseconds kDelay(200);  // what is done sooner needs no bar
+constexpr std::chrono::milliseconds kDelay(200);    // what is done sooner needs no bar
+constexpr std::chrono::milliseconds kInterval(50);  // nobody reads faster, and terminals are slow
 
 std::string duration_text(double seconds) {
   const long s = static_cast<long>(seconds + 0.5);
@@ -35,10 +36,12 @@ std::string duration_text(double seconds) {
 
 }  // namespace
 
-TerminalBar::TerminalBar(bool quiet) : active_(!quiet && QSES_STDERR_IS_TERMINAL) {}
+TerminalBar::TerminalBar(bool quiet) : active_(!quiet && QSES_STDERR_IS_TERMINAL), next_(Clock::now() + kDelay) {}
+
+bool TerminalBar::is_due() const { return active_ && Clock::now() >= next_; }
 
 void TerminalBar::show(double fraction, const std::string &text) {
-  if (!active_ || Clock::now() - start_ < kDelay) return;
+  if (!is_due()) return;
   const size_t percent = static_cast<size_t>(100 * std::clamp(fraction, 0.0, 1.0));
   const size_t done = percent * kBarWidth / 100;
   std::string line = "[" + std::string(done, '#') + std::string(kBarWidth - done, '.') + "] " +
@@ -49,6 +52,7 @@ void TerminalBar::show(double fraction, const std::string &text) {
                      std::to_string(percent) + " %" + text;
   if (line == shown_) return;
   shown_ = line;
+  next_ = Clock::now() + kInterval;
   const size_t length = line.size();
   if (length < width_) line.append(width_ - length, ' ');
   width_ = length;
@@ -76,7 +80,7 @@ void ProgressBar::on_progress(void *self, double fraction) { static_cast<Progres
 
 void FrameProgress::advance() {
   ++done_;
-  if (!bar_.is_active()) return;
+  if (!bar_.is_due()) return;
   const double rate = frames_per_second();
   char text[128];
   std::snprintf(text, sizeof text, "  %zu/%zu frames, %.*f frames/s, %s left", done_, frame_count_, rate < 10 ? 2 : 0,

@@ -10,7 +10,7 @@
 namespace quickses::cli {
 
 // One line of a terminal that is written over and over. Nothing is shown if quiet or if standard error is no terminal,
-// nor before a moment has passed.
+// nor before a moment has passed since the start, or since it was written last.
 class TerminalBar {
  public:
   explicit TerminalBar(bool quiet);
@@ -19,6 +19,7 @@ class TerminalBar {
   TerminalBar &operator=(const TerminalBar &) = delete;
 
   bool is_active() const { return active_; }
+  bool is_due() const;  // whether something would be shown now
   void show(double fraction, const std::string &text = "");
   void clear();  // before something else is printed
 
@@ -26,7 +27,7 @@ class TerminalBar {
   bool active_;
   size_t width_ = 0;  // of what stands there
   std::string shown_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::time_point next_;  // when something may be shown
 };
 
 // While one surface is computed.

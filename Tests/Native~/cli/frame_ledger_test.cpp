@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <future>
 #include <random>
 #include <set>
 #include <stdexcept>
@@ -93,6 +94,28 @@ TEST(FrameLedger, ManyWorkers) {
   EXPECT_EQ(too_far, 0);
   ASSERT_EQ(places.size(), kFrames);
   for (size_t i = 0; i < kFrames; ++i) ASSERT_EQ(places[i], i);
+}
+
+TEST(FrameLedger, ASlowSinkHoldsUpNobody) {
+  std::promise<void> begun, may_end;
+  std::vector<uint64_t> places;
+  FrameLedger ledger({0, 1, 4}, 10, [&](const FrameResult &result) {
+    if (result.place == 0) {
+      begun.set_value();
+      may_end.get_future().wait();
+    }
+    places.push_back(result.place);
+  });
+  const FrameTask first = *ledger.next(), second = *ledger.next();
+  std::thread slow([&] { ledger.deliver(result_of(first)); });
+  begun.get_future().wait();
+  ledger.deliver(result_of(second));  // would wait for ever, as would the next
+  EXPECT_EQ(ledger.next()->place, 2u);
+  EXPECT_TRUE(places.empty());
+  may_end.set_value();
+  slow.join();
+  EXPECT_EQ(places, (std::vector<uint64_t>{0, 1}));
+  EXPECT_NO_THROW(ledger.finish());
 }
 
 TEST(FrameLedger, ASinkThatFailsEndsTheRun) {
