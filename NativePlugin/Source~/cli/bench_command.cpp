@@ -55,7 +55,7 @@ double median(std::vector<double> values) {
 }
 
 Engine start_engine(const BenchSubject &subject) {
-  Engine engine(subject.options.compute);
+  Engine engine = start_engine(subject.options.compute, true);
   engine.set_atoms(subject.structure, subject.path);
   return engine;
 }

@@ -15,11 +15,24 @@ void check(qses_status status) {
 
 }  // namespace
 
-Engine::Engine(const ComputeOptions &options) : context_(nullptr, &qses_context_destroy) {
+KeptMesh::KeptMesh() : kept_(nullptr, &qses_kept_mesh_destroy) {
+  qses_kept_mesh *kept = nullptr;
+  check(qses_kept_mesh_create(&kept));
+  kept_.reset(kept);
+}
+
+qses_mesh KeptMesh::view() const {
+  qses_mesh mesh;
+  qses_mesh_init(&mesh);
+  check(qses_kept_mesh_view(handle(), &mesh));
+  return mesh;
+}
+
+Engine::Engine(const ComputeOptions &options, int device) : context_(nullptr, &qses_context_destroy) {
   qses_context_options context_options;
   qses_context_options_init(&context_options);
   context_options.backend = options.backend;
-  context_options.device = options.device;
+  context_options.device = device;
   context_options.threads = options.threads;
   context_options.memory_budget = options.memory;
   qses_context *context = nullptr;
@@ -69,6 +82,8 @@ qses_report Engine::report() const {
   return report;
 }
 
+void Engine::keep(KeptMesh &kept) { check(qses_keep(context(), kept.handle())); }
+
 void Engine::find_component_atoms(const qses_mesh &mesh, std::vector<uint32_t> *starts,
                                   std::vector<uint32_t> *atoms) const {
   starts->resize(size_t(mesh.component_count) + 1);
@@ -107,8 +122,18 @@ qses_settings mesh_settings_of(const Options &options) {
   return settings;
 }
 
+std::vector<int> chosen_devices(const ComputeOptions &options, unsigned nth) {
+  uint32_t count = 0;
+  if (options.devices.is_given() || nth > 0) qses_device_count(&count);  // none where it fails
+  return options.devices.select(count, nth);
+}
+
 Engine start_engine(const ComputeOptions &options, bool quiet) {
-  Engine engine(options);
+  return start_engine(options, chosen_devices(options, 0).front(), quiet);
+}
+
+Engine start_engine(const ComputeOptions &options, int device, bool quiet) {
+  Engine engine(options, device);
   if (!quiet && options.backend == QSES_BACKEND_AUTO && engine.backend() == QSES_BACKEND_CPU)
     std::fprintf(stderr, "quickses: the CPU computes: %s\n", engine.why_not_cuda().c_str());
   return engine;

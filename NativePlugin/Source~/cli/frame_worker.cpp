@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The surface of one frame after the other, with a context of its own.
+// From a frame of a trajectory to its result.
 #include "cli/frame_worker.h"
 
 #include <algorithm>
@@ -46,6 +46,18 @@ io::Unwrapper make_unwrapper(const io::Structure &structure, const io::Trajector
   return io::Unwrapper(structure.file_elements.data(), xyz.data(), trajectory.atom_count(), trajectory.box(0));
 }
 
+// For tables the numbers do. With CUDA nothing then leaves the device but these; on the CPU the mesh lies where it can
+// be looked at anyway.
+bool needs_mesh(const Options &options, qses_backend backend) {
+  return backend == QSES_BACKEND_CPU || !options.output.empty() || !options.json.empty();
+}
+
+qses_settings frame_settings(const Options &options, bool needs_mesh) {
+  qses_settings settings = mesh_settings_of(options);
+  if (!needs_mesh) settings.delivery = QSES_DELIVERY_NONE;
+  return settings;
+}
+
 }  // namespace
 
 std::string csv_header(const Options &options) {
@@ -69,22 +81,29 @@ FrameInputs::FrameInputs(const Options &given, bool quiet)
                  io::unwrap_sentence(io::UnwrapStatus::kNoBox));
 }
 
-FrameWorker::FrameWorker(const FrameInputs &inputs, const ComputeOptions &compute, unsigned shared_by)
-    : inputs_(inputs),
-      engine_(compute),
-      shared_by_(shared_by),
-      xyz_(3 * inputs.trajectory.atom_count()),
-      settings_(mesh_settings_of(inputs.options)) {
-  engine_.set_atoms(inputs.structure(), inputs.options.input);
-  if (!inputs.options.json.empty()) qses_set_stage_times(engine_.context(), 1);
+void prepare_engine(Engine &engine, const FrameInputs &inputs) {
+  engine.set_atoms(inputs.structure(), inputs.options.input);
+  if (!inputs.options.json.empty()) qses_set_stage_times(engine.context(), 1);
 }
+
+FrameWorker::FrameWorker(const FrameInputs &inputs, EnginePool &engines, qses_backend backend, unsigned shared_by)
+    : inputs_(inputs),
+      engines_(engines),
+      shared_by_(shared_by),
+      needs_mesh_(needs_mesh(inputs.options, backend)),
+      settings_(frame_settings(inputs.options, needs_mesh_)),
+      xyz_(3 * inputs.trajectory.atom_count()) {}
 
 FrameResult FrameWorker::run(const FrameTask &task) {
   FrameResult result;
   result.place = task.place;
   result.frame = task.frame;
   try {
-    fill(task, result);
+    const Read frame = read(task);
+    if (inputs_.options.command == Options::Command::kMeasure)
+      fill_measurement(task, frame, result);
+    else
+      fill_mesh(task, frame, result);
   } catch (...) {
     const Options &options = inputs_.options;
     result.error = failure_of(std::current_exception()).what();
@@ -96,6 +115,7 @@ FrameResult FrameWorker::run(const FrameTask &task) {
       result.json =
           dump(Json{{"frame", task.frame}, {"trajectory", options.trajectory}, {"error", result.error}}, true);
   }
+  mesh_.clear();
   return result;
 }
 
@@ -111,19 +131,19 @@ auto FrameWorker::explain_share(const Action &action) {
   }
 }
 
-void FrameWorker::fill(const FrameTask &task, FrameResult &result) {
+FrameWorker::Read FrameWorker::read(const FrameTask &task) {
   const io::Trajectory &trajectory = inputs_.trajectory;
-  const auto read_start = Clock::now();
+  Read read;
+  const auto start = Clock::now();
   trajectory.read_frame(task.frame, xyz_.data());
-  const std::optional<double> time = trajectory.time(task.frame);
+  read.time = trajectory.time(task.frame);
   if (inputs_.unwrapper) inputs_.unwrapper->apply(trajectory.box(task.frame), xyz_.data());
-  Timings timings;
-  timings.read = ms_since(read_start);
-  engine_.set_frame(xyz_.data(), trajectory.atom_count(), inputs_.file_indices);
-  if (inputs_.options.command == Options::Command::kMeasure)
-    fill_measurement(task, time, timings, result);
-  else
-    fill_mesh(task, time, timings, result);
+  read.timings.read = ms_since(start);
+  return read;
+}
+
+void FrameWorker::set_frame(Engine &engine) const {
+  engine.set_frame(xyz_.data(), inputs_.trajectory.atom_count(), inputs_.file_indices);
 }
 
 Json FrameWorker::frame_json(const FrameTask &task, std::optional<double> time) const {
@@ -138,32 +158,49 @@ void FrameWorker::add_areas(const std::vector<AtomAreas> &areas, FrameResult &re
   result.per_residue = std::move(rows.per_residue);
 }
 
-void FrameWorker::fill_measurement(const FrameTask &task, std::optional<double> time, const Timings &timings,
-                                   FrameResult &result) {
+void FrameWorker::fill_measurement(const FrameTask &task, const Read &read, FrameResult &result) {
   const Options &options = inputs_.options;
-  const Measurement found = explain_share([&] { return measure_surfaces(engine_, options); });
-  if (!options.csv.empty()) result.csv = measurement_csv_row(task.frame, time, found);
+  Measurement found;
+  const Engine *measured_by = nullptr;
+  engines_.run([&](Engine &engine) {
+    set_frame(engine);
+    found = explain_share([&] { return measure_surfaces(engine, options); });
+    measured_by = &engine;
+  });
+  if (!options.csv.empty()) result.csv = measurement_csv_row(task.frame, read.time, found);
   add_areas(found.areas, result);
   if (options.json.empty()) return;
-  Json json = frame_json(task, time);
-  json.update(measurement_json(options, inputs_.structure(), engine_, found, timings));
+  Json json = frame_json(task, read.time);
+  json.update(measurement_json(options, inputs_.structure(), *measured_by, found, read.timings));
   result.json = dump(json, true);
 }
 
-void FrameWorker::fill_mesh(const FrameTask &task, std::optional<double> time, Timings timings, FrameResult &result) {
+void FrameWorker::fill_mesh(const FrameTask &task, Read read, FrameResult &result) {
   const Options &options = inputs_.options;
-  const qses_mesh mesh = explain_share([&] { return engine_.compute(settings_); });
-  const qses_report report = engine_.report();
+  qses_mesh mesh;
+  qses_report report;
+  std::vector<AtomAreas> areas;
+  const Engine *computed_by = nullptr;
+  engines_.run([&](Engine &engine) {
+    set_frame(engine);
+    mesh = explain_share([&] { return engine.compute(settings_); });
+    report = engine.report();
+    if (!options.csv.empty()) result.csv = csv_row(task.frame, read.time, report, mesh);
+    areas = areas_of(options.compute.surface, mesh);
+    if (needs_mesh_) engine.keep(mesh_);
+    computed_by = &engine;
+  });
+  add_areas(areas, result);
+  if (!needs_mesh_) return;
+  mesh = mesh_.view();
   Options frame_options = options;
   if (inputs_.pattern) frame_options.output = inputs_.pattern->name(task.frame);
   const auto write_start = Clock::now();
   accept_surface(frame_options.output, mesh, inputs_.structure());
-  timings.write = ms_since(write_start);
-  if (!options.csv.empty()) result.csv = csv_row(task.frame, time, report, mesh);
-  add_areas(areas_of(options.compute.surface, mesh), result);
+  read.timings.write = ms_since(write_start);
   if (options.json.empty()) return;
-  Json json = frame_json(task, time);
-  json.update(surface_json(frame_options, inputs_.structure(), engine_, mesh, report, timings, nullptr));
+  Json json = frame_json(task, read.time);
+  json.update(surface_json(frame_options, inputs_.structure(), *computed_by, mesh, report, read.timings, nullptr));
   result.json = dump(json, true);
 }
 

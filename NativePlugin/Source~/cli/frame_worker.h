@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The surface of one frame after the other, with a context of its own.
+// From a frame of a trajectory to its result, for a thread that does one after the other.
 #pragma once
 
 #include <memory>
@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cli/area_tables.h"
-#include "cli/engine.h"
+#include "cli/engine_pool.h"
 #include "cli/frame_supply.h"
 #include "cli/input.h"
 #include "cli/options.h"
@@ -33,29 +33,41 @@ struct FrameInputs : Input {
   const io::Structure &structure() const { return file.models.front(); }
 };
 
+// An engine as it must be before workers borrow it: with the atoms of the structure. Throws Failure.
+void prepare_engine(Engine &engine, const FrameInputs &inputs);
+
+// Reads, computes, writes. It has an engine only while it computes, so that others compute while it reads or writes.
 class FrameWorker {
  public:
-  // compute: the worker's share of threads and memory; shared_by: how many workers there are. inputs must outlive the
-  // worker. Throws Failure.
-  FrameWorker(const FrameInputs &inputs, const ComputeOptions &compute, unsigned shared_by);
+  // engines: prepared, all of the back end. shared_by: how many of them share the memory of the options. inputs and
+  // engines must outlive the worker. Throws Failure.
+  FrameWorker(const FrameInputs &inputs, EnginePool &engines, qses_backend backend, unsigned shared_by);
 
   // Never fails: what goes wrong is part of the result.
   FrameResult run(const FrameTask &task);
 
  private:
-  void fill(const FrameTask &task, FrameResult &result);
-  void fill_mesh(const FrameTask &task, std::optional<double> time, Timings timings, FrameResult &result);
-  void fill_measurement(const FrameTask &task, std::optional<double> time, const Timings &timings, FrameResult &result);
+  struct Read {
+    std::optional<double> time;  // ps
+    Timings timings;
+  };
+
+  Read read(const FrameTask &task);
+  void fill_mesh(const FrameTask &task, Read read, FrameResult &result);
+  void fill_measurement(const FrameTask &task, const Read &read, FrameResult &result);
   Json frame_json(const FrameTask &task, std::optional<double> time) const;
   void add_areas(const std::vector<AtomAreas> &areas, FrameResult &result) const;
+  void set_frame(Engine &engine) const;
   template <class Action>
   auto explain_share(const Action &action);
 
   const FrameInputs &inputs_;
-  Engine engine_;
+  EnginePool &engines_;
   const unsigned shared_by_;
-  std::vector<float> xyz_;
-  qses_settings settings_;
+  const bool needs_mesh_;
+  const qses_settings settings_;
+  std::vector<float> xyz_;  // of the frame
+  KeptMesh mesh_;           // of the frame, if it is needed
 };
 
 // The first line of the table.

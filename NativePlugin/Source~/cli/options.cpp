@@ -41,7 +41,7 @@ const char kFooter[] =
     "Owner atoms in PLY files are 0-based places among the atoms of the input's model, before any filter.\n"
     "Lengths are in angstrom, areas in A^2, volumes in A^3.\n";
 
-void add_compute_options(CLI::App *app, ComputeOptions &options, int &device) {
+void add_compute_options(CLI::App *app, ComputeOptions &options) {
   add_number(app, "-v,--spacing", "--spacing (-v)", options.spacing, 0.001, 100,
              "Distance of lattice points (voxel size)");
   add_count(app, "-l,--steps", "--steps (-l)", options.steps, 0, 100, "Smoothing steps; default 1");
@@ -50,12 +50,8 @@ void add_compute_options(CLI::App *app, ComputeOptions &options, int &device) {
   add_number(app, "--probe", "--probe", options.probe, 0, 100, "Radius of the probe (solvent molecule)");
   add_choice(app, "--backend", options.backend, kBackends, "What computes; auto: CUDA if it can be used, else the CPU");
   app->add_option_function<std::string>(
-         "--device",
-         [&device](const std::string &text) {
-           if (!io::parse_integer(text, device) || device < 0)
-             throw Failure(kUsage, "--device: '" + text + "' is no number of a CUDA device");
-         },
-         "CUDA device; default 0")
+         "--device", [&options](const std::string &text) { options.devices = DeviceChoice(text); },
+         "CUDA device; default 0. With --trajectory also several, which share the frames: 0,1 or all")
       ->type_name("N");
   add_count(app, "--threads", "--threads", options.threads, 1, 4096, "CPU threads; default: all there are");
   add_size(app, "--memory", options.memory,
@@ -92,13 +88,11 @@ void add_measured(CLI::App *app, std::vector<qses_surface> &measured) {
          "--surface",
          [&measured](const std::string &text) {
            measured.clear();
-           for (size_t begin = 0; begin <= text.size();) {
-             const size_t end = std::min(text.find(',', begin), text.size());
-             const qses_surface surface = look_up("--surface", kSurfaces, text.substr(begin, end - begin));
+           for (const std::string &name : io::split(text, ',')) {
+             const qses_surface surface = look_up("--surface", kSurfaces, name);
              if (std::find(measured.begin(), measured.end(), surface) != measured.end())
                throw Failure(kUsage, "--surface: '" + text + "' names one of them twice");
              measured.push_back(surface);
-             begin = end + 1;
            }
          },
          "Which, in this order: sas, vdw, or ses (through a mesh that is not written), with commas between them")
@@ -160,7 +154,7 @@ void add_trajectory_options(CLI::App *app, Options &options, const char *csv_hel
   app->add_flag("--unwrap", options.unwrap, "Make molecules whole that the borders of the periodic box tear apart");
   app->add_option("--csv", options.csv, csv_help)->type_name("FILE|-");
   add_count(app, "--workers", "--workers", options.workers, 1, 1024,
-            "Frames in flight at a time; default: one per thread, with CUDA at most 8");
+            "Frames computed at a time, on each device; default: one per thread, with CUDA at most 8");
 }
 
 void add_file_options(CLI::App *app, Options &options) {
@@ -253,9 +247,17 @@ void check_output(const Options &options) {
     throw Failure(kUsage, "--component-ids: only PLY files have them, and --output (-o) is '" + options.output + "'");
 }
 
-void check(const Options &options, const std::function<bool(const char *)> &given) {
-  if (options.compute.device_given && options.compute.backend == QSES_BACKEND_CPU)
+void check_devices(const Options &options) {
+  const DeviceChoice &devices = options.compute.devices;
+  if (devices.is_given() && options.compute.backend == QSES_BACKEND_CPU)
     throw Failure(kUsage, "--device: only CUDA has devices to choose from, and --backend is cpu");
+  if (devices.may_be_many() && options.trajectory.empty())
+    throw Failure(kUsage, "--device " + devices.text() +
+                              ": several devices share the frames of a trajectory, and there is no --trajectory");
+}
+
+void check(const Options &options, const std::function<bool(const char *)> &given) {
+  check_devices(options);
   if (options.compute.method == QSES_METHOD_GRID && options.compute.surface != QSES_SURFACE_SES)
     throw Failure(kUsage, "--method grid makes the solvent-excluded surface only: leave --surface at ses");
   if (options.compute.method == QSES_METHOD_GRID && options.compute.creases == Switch::kOn)
@@ -294,7 +296,6 @@ bool has_hard_edges(const Options &options) {
 
 Options parse_options(int argc, char **argv, std::ostream &out) {
   Options options;
-  int device = -1;
   CLI::App app(
       "Molecular surfaces as closed triangle meshes.\n\n"
       "  quickses INPUT [-o OUT.obj|OUT.ply|OUT.stl] [options]\n"
@@ -311,7 +312,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
                     "Which model of the file; all: one mesh each, as out_0001.ply for -o out.ply; default 1");
   add_mesh_options(&app, options);
   add_surface_choice(&app, options.compute);
-  add_compute_options(&app, options.compute, device);
+  add_compute_options(&app, options.compute);
   add_trajectory_options(&app, options,
                          "Table of the frames: area, volume, components, cavities; - for standard output");
   add_area_options(&app, options);
@@ -323,7 +324,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
   add_input_options(measure, options, "Which model of the file, or all of them; default 1");
   add_measured(measure, options.measured);
   add_creases(measure, options.compute);
-  add_compute_options(measure, options.compute, device);
+  add_compute_options(measure, options.compute);
   add_trajectory_options(measure, options, "Table of the frames: area and volume; - for standard output");
   add_area_options(measure, options);
   add_file_options(measure, options);
@@ -333,7 +334,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
   cavities->footer(kFooter);
   add_input_options(cavities, options, "Which model of the file; default 1");
   add_surface_choice(cavities, options.compute);
-  add_compute_options(cavities, options.compute, device);
+  add_compute_options(cavities, options.compute);
   cavities->add_option("--csv", options.csv, "Table of the cavities; - for standard output")->type_name("FILE|-");
   add_file_options(cavities, options);
 
@@ -342,7 +343,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
   bench->add_option("FILE", options.inputs, "Structures")->type_name("FILE");
   add_bench_options(bench, options.bench);
   add_surface_choice(bench, options.compute);
-  add_compute_options(bench, options.compute, device);
+  add_compute_options(bench, options.compute);
   add_file_options(bench, options);
 
   try {
@@ -368,8 +369,6 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
     used = command;
     options.command = value;
   }
-  options.compute.device_given = device >= 0;
-  if (device >= 0) options.compute.device = device;
   if (options.compute.creases == Switch::kDefault) {
     const bool is_many = options.command == Options::Command::kBench || !options.trajectory.empty();
     options.compute.creases = is_many || options.compute.method == QSES_METHOD_GRID ? Switch::kOff : Switch::kOn;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/device_choice.h"
 #include "cli/frame_range.h"
 #include "io/structure.h"
 #include "quickses/quickses.h"
@@ -19,8 +20,7 @@ enum class Switch { kDefault, kOff, kOn };
 // How to compute: flags that both commands share.
 struct ComputeOptions {
   qses_backend backend = QSES_BACKEND_AUTO;
-  int device = 0;
-  bool device_given = false;
+  DeviceChoice devices;
   unsigned threads = 0;  // 0 = one per hardware thread
   uint64_t memory = 0;   // bytes; 0 = no bound
   qses_surface surface = QSES_SURFACE_SES;
@@ -62,7 +62,7 @@ struct Options {
   std::string trajectory;   // empty: the input alone
   FrameRange frames;        // of the trajectory
   bool unwrap = false;      // molecules in one piece
-  unsigned workers = 0;     // frames in flight; 0 = chosen by the program
+  unsigned workers = 0;     // frames computed at a time, on each device; 0 = chosen by the program
   uint64_t max_input = 0;   // bytes of an input in memory; 0 = the library's default
   std::string csv;          // a file, "-" for standard output, empty: no table
   std::string per_atom;     // a file, "-" for standard output, empty: no table

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <set>
+#include <string>
 #include <thread>
 #include <vector>
 
 #include "cli/area_tables.h"
 #include "cli/commands.h"
+#include "cli/engine_pool.h"
 #include "cli/exit_code.h"
 #include "cli/frame_ledger.h"
 #include "cli/frame_worker.h"
@@ -18,42 +21,47 @@
 namespace quickses::cli {
 namespace {
 
-constexpr unsigned kMostCudaWorkers = 8;  // keep a GPU busy while others read, measure and write
+constexpr unsigned kMostCudaWorkers = 8;  // keep a GPU busy, each with much to wait for
 constexpr size_t kMostMessages = 20;      // of failed frames; more are only counted
 
-ComputeOptions choose_device(const ComputeOptions &options, const Processes &processes) {
-  ComputeOptions chosen = options;
-  uint32_t device_count = 0;
-  qses_device_count(&device_count);
-  if (!options.device_given && device_count > 0)
-    chosen.device = processes.local_rank() % static_cast<int>(device_count);
-  return chosen;
-}
-
-// How many workers this process has, and each one's share of threads and memory.
+// What this process has for its frames.
 struct Share {
-  unsigned workers = 1;
-  ComputeOptions compute;
+  ComputeOptions compute;    // of one engine
+  std::vector<int> devices;  // of the engines
+  unsigned shared_by = 1;    // engines of a device, which share its memory
+  unsigned threads = 1;      // that take frames from reading to writing
+
+  size_t device_count() const { return std::set<int>(devices.begin(), devices.end()).size(); }
 };
 
 Share divide(const Options &options, const Processes &processes, size_t frame_count) {
   Share share;
-  share.compute = choose_device(options.compute, processes);
+  share.compute = options.compute;
   const unsigned threads = options.compute.threads ? options.compute.threads : processes.threads();
   share.compute.threads = threads;
+  std::vector<int> devices = {0};
+  if (options.compute.backend != QSES_BACKEND_CPU)
+    devices = chosen_devices(options.compute, static_cast<unsigned>(processes.local_rank()));
   // Tells what auto means here.
-  const Engine whole = start_engine(share.compute, options.quiet || !processes.is_first());
+  const Engine whole = start_engine(share.compute, devices.front(), options.quiet || !processes.is_first());
   share.compute.backend = whole.backend();
+  const bool is_cuda = whole.backend() == QSES_BACKEND_CUDA;
+  if (!is_cuda) devices = {0};
 
   // On the CPU, frames side by side use threads better than threads within a frame.
-  const bool is_cuda = whole.backend() == QSES_BACKEND_CUDA;
+  const unsigned device_count = static_cast<unsigned>(devices.size());
   const unsigned wanted = options.workers ? options.workers
-                          : is_cuda       ? std::clamp(threads, 2u, kMostCudaWorkers)
+                          : is_cuda       ? std::clamp(threads / device_count, 2u, kMostCudaWorkers)
                                           : threads;
   const size_t frames_here = (frame_count - 1) / static_cast<size_t>(processes.count()) + 1;
-  share.workers = static_cast<unsigned>(std::min<size_t>(wanted, frames_here));
-  share.compute.threads = std::max(1u, threads / share.workers);
-  if (options.compute.memory != 0) share.compute.memory = std::max<uint64_t>(1, options.compute.memory / share.workers);
+  const auto engines = static_cast<unsigned>(std::min<size_t>(size_t(wanted) * device_count, frames_here));
+  for (unsigned k = 0; k < engines; ++k) share.devices.push_back(devices[k % device_count]);
+  share.shared_by = (engines - 1) / device_count + 1;
+  // While a frame is computed, another one is read and one is written, where there are threads for that.
+  share.threads = static_cast<unsigned>(std::min<size_t>(std::clamp(threads, engines, 3 * engines), frames_here));
+  share.compute.threads = std::max(1u, threads / engines);
+  if (options.compute.memory != 0)
+    share.compute.memory = std::max<uint64_t>(1, options.compute.memory / share.shared_by);
   return share;
 }
 
@@ -122,14 +130,16 @@ class Run {
       if (inputs_.pattern) check_meshes();
       writer_ = std::make_unique<ResultWriter>(inputs_.options, frames_.count);
     }
-    for (unsigned k = 0; k < share_.workers; ++k)
-      workers_.push_back(std::make_unique<FrameWorker>(inputs_, share_.compute, share_.workers));
+    engines_ = std::make_unique<EnginePool>(share_.compute, share_.devices,
+                                            [this](Engine &engine) { prepare_engine(engine, inputs_); });
+    for (unsigned k = 0; k < share_.threads; ++k)
+      workers_.push_back(std::make_unique<FrameWorker>(inputs_, *engines_, share_.compute.backend, share_.shared_by));
   }
 
   // Computes all frames, with the other processes.
   void run() {
-    const uint64_t all_workers = processes_.sum(share_.workers);
-    const size_t window = 64 + 16 * static_cast<size_t>(all_workers);
+    const uint64_t all_engines = processes_.sum(share_.devices.size());
+    const size_t window = 64 + 16 * static_cast<size_t>(all_engines);
     FrameLedger ledger(frames_, window, [this](const FrameResult &result) { writer_->write(result); });
     const std::unique_ptr<FrameSupply> remote = processes_.remote_supply();
     FrameSupply &supply = remote ? *remote : ledger;
@@ -151,7 +161,7 @@ class Run {
     if (remote)
       processes_.say_done();
     else
-      finish(ledger, all_workers);
+      finish(ledger, all_engines);
   }
 
  private:
@@ -162,18 +172,24 @@ class Run {
     io::check_writable(inputs_.pattern->name(frames_.first));
   }
 
-  void finish(FrameLedger &ledger, uint64_t all_workers) {
+  void finish(FrameLedger &ledger, uint64_t all_engines) {
     ledger.finish();
     const double seconds = writer_->progress().seconds(), rate = writer_->progress().frames_per_second();
     writer_->finish();
     const Options &options = inputs_.options;
     if (!options.quiet && !options.prints_data())
-      std::printf("%zu frames of %zu atoms, %s, %llu at a time, %.2f s, %.1f frames/s%s%s\n", frames_.count,
-                  inputs_.structure().atoms.size(), name_of(share_.compute.backend),
-                  static_cast<unsigned long long>(all_workers), seconds, rate, options.csv.empty() ? "" : ", ",
+      std::printf("%zu frames of %zu atoms, %s, %s%llu at a time, %.2f s, %.1f frames/s%s%s\n", frames_.count,
+                  inputs_.structure().atoms.size(), name_of(share_.compute.backend), devices_text().c_str(),
+                  static_cast<unsigned long long>(all_engines), seconds, rate, options.csv.empty() ? "" : ", ",
                   options.csv.c_str());
     if (const size_t failed = ledger.failed_count())
       throw Failure(kFramesFailed, std::to_string(failed) + " of " + std::to_string(frames_.count) + " frames failed");
+  }
+
+  // Several of this process.
+  std::string devices_text() const {
+    const size_t count = share_.device_count();
+    return count > 1 ? std::to_string(count) + " devices, " : "";
   }
 
   Processes &processes_;
@@ -181,6 +197,7 @@ class Run {
   const FrameSelection frames_;
   const Share share_;
   std::unique_ptr<ResultWriter> writer_;  // of the first process
+  std::unique_ptr<EnginePool> engines_;
   std::vector<std::unique_ptr<FrameWorker>> workers_;
 };
 

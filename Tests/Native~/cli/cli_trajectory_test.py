@@ -81,12 +81,26 @@ class Results(TrajectoryTest):
             meshes = [(self.folder / f"f{k}.ply").read_bytes() for k in range(7)]
             return (self.folder / "a.csv").read_bytes(), reports, meshes
 
-        expected = everything(1)
+        expected = everything(1, "--threads", "1")
         self.assertEqual([report["frame"] for report in expected[1]], list(range(7)))
-        for workers in (2, 3, 20):
-            self.assertEqual(everything(workers), expected)
+        # With more threads than workers, frames are read and written while others are computed.
+        for workers, threads in ((1, 2), (1, 3), (1, 9), (2, 1), (2, 5), (3, 9), (20, 20)):
+            with self.subTest(workers=workers, threads=threads):
+                self.assertEqual(everything(workers, "--threads", threads), expected)
         self.assertEqual(everything(3, "--memory", "48M"), expected)
-        self.assertEqual(everything(2, "--threads", "1"), expected)
+
+    def test_tables_do_not_depend_on_the_number_of_workers(self):
+        tables = ["--csv", "--per-atom", "--per-residue"]
+
+        def everything(command, *arguments):
+            self.run_cpu(*command, "top.pdb", "--trajectory", "t.dcd", "-v", "0.8", *arguments,
+                         *(word for flag in tables for word in (flag, "a" + flag)))
+            return [(self.folder / ("a" + flag)).read_bytes() for flag in tables]
+
+        for command in ([], ["measure", "--surface", "ses,vdw"]):
+            expected = everything(command, "--workers", 1, "--threads", 1)
+            for workers, threads in ((1, 9), (2, 9), (7, 7)):
+                self.assertEqual(everything(command, "--workers", workers, "--threads", threads), expected)
 
     def test_atoms_that_are_left_out_are_left_out_of_every_frame(self):
         water = [("HETATM", "O", "HOH", 900 + i) for i in range(5)]
@@ -155,8 +169,8 @@ class Faults(TrajectoryTest):
     def test_a_damaged_frame_does_not_lose_the_others(self):
         expected = self.table("-o", "good%d.ply")
         self.write("bad.dcd", dcd_bytes(with_nan(self.frames, 3, 10)))
-        for workers in (1, 3):
-            result = self.run_frames("--workers", workers, "--csv", "a.csv", "--json", "a.json", "-o", "bad%d.ply",
+        for workers, threads in ((1, 1), (1, 9), (3, 3)):
+            result = self.run_frames("--workers", workers, "--threads", threads, "--csv", "a.csv", "--json", "a.json", "-o", "bad%d.ply",
                                      trajectory="bad.dcd", code=FRAMES_FAILED)
             self.assertIn("frame 3 failed", result.stderr)
             self.assertIn("atom 11", result.stderr)
@@ -180,10 +194,12 @@ class Faults(TrajectoryTest):
             self.assertTrue((self.folder / f"f{k}.ply").is_file())
 
     def test_frames_that_need_too_much_memory_are_reported(self):
-        rows = self.table("--memory", "4K", code=FRAMES_FAILED)
-        self.assertEqual(len(rows), 7)
-        for row in rows:
-            self.assertNotEqual(row["error"], "")
+        for workers, threads in ((1, 1), (1, 9), (3, 9)):
+            rows = self.table("--memory", "4K", "--workers", workers, "--threads", threads, code=FRAMES_FAILED)
+            self.assertEqual([row["frame"] for row in rows], [str(k) for k in range(7)])
+            for row in rows:
+                self.assertIn("memory", row["error"])
+                self.assertEqual(f"shared by {workers} frames" in row["error"], workers > 1)
 
     def test_a_file_that_is_cut_off_gives_the_frames_that_are_whole(self):
         expected = self.table()
@@ -229,6 +245,18 @@ class Faults(TrajectoryTest):
             for name in ("t.dcd", "top.pdb"):
                 self.assert_frames_fail(USAGE, [flag, name, "input"], flag, name)
         self.assert_frames_fail(USAGE, ["--workers"], "--workers", "0")
+
+    def test_devices_that_make_no_sense(self):
+        for text, part in (("x", "'x'"), ("-1", "'-1'"), ("1.5", "'1.5'"), ("0,", "''"), (",", "''"), ("0,x", "'x'"),
+                           ("all,0", "'all'"), ("0,1,0", "device 0 twice")):
+            self.assert_fails(USAGE, ["--device", part], "top.pdb", "--trajectory", "t.dcd", "--device", text)
+        for text in ("0", "0,1", "all"):
+            self.assert_frames_fail(USAGE, ["--device", "--backend is cpu"], "--device", text)
+
+    def test_several_devices_are_for_trajectories(self):
+        for text in ("0,1", "all"):
+            for command in ([CRAMBIN], ["measure", CRAMBIN], ["cavities", CRAMBIN], ["bench", CRAMBIN]):
+                self.assert_fails(USAGE, [f"--device {text}", "--trajectory"], *command, "--device", text)
 
 
 class Unwrap(TrajectoryTest):
