@@ -52,7 +52,7 @@ void add_compute_options(CLI::App *app, ComputeOptions &options) {
   app->add_option_function<std::string>(
          "--device", [&options](const std::string &text) { options.devices = DeviceChoice(text); },
          "CUDA device; default 0. With --trajectory also several, which share the frames: 0,1 or all")
-      ->type_name("N");
+      ->type_name("N|N,N|all");
   add_count(app, "--threads", "--threads", options.threads, 1, 4096, "CPU threads; default: all there are");
   add_size(app, "--memory", options.memory,
            "Bound of the memory for the work, on the device or in the machine: 512M, 2G (K, M, G: powers of 1024)");

@@ -48,6 +48,8 @@ class FrameProgress {
  public:
   FrameProgress(size_t frame_count, bool quiet) : frame_count_(frame_count), bar_(quiet) {}
 
+  // Everything is ready: time counts from now on.
+  void begin() { start_ = std::chrono::steady_clock::now(); }
   void advance();
   void clear() { bar_.clear(); }
   double seconds() const;

@@ -76,6 +76,8 @@ class ResultWriter {
     if (!options.csv.empty()) csv_.write(csv_header(options));
   }
 
+  void begin() { progress_.begin(); }
+
   void write(const FrameResult &result) {
     csv_.write(result.csv);
     json_.write(result.json);
@@ -144,6 +146,7 @@ class Run {
     const std::unique_ptr<FrameSupply> remote = processes_.remote_supply();
     FrameSupply &supply = remote ? *remote : ledger;
     std::vector<std::thread> threads;
+    if (writer_) writer_->begin();
     try {
       for (const auto &worker : workers_) threads.emplace_back([&] { work(*worker, supply); });
     } catch (...) {  // the system refuses threads; those that run have to be joined all the same
