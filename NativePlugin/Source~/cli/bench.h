@@ -29,7 +29,7 @@ Engine start_engine(const BenchSubject &subject);
 // Surfaces of the whole, from atoms in host memory to the mesh, which is left on the device or brought to host memory.
 std::string bench_surface(const BenchSubject &subject, Json *entry);
 
-// Many surfaces of a few residues each, one after the other.
+// Many surfaces of a few residues each, several at a time.
 std::string bench_small(const BenchSubject &subject, Json *entry);
 
 // Jobs: how long their calls take, how soon they end, and what the coarse levels cost.
