@@ -3,6 +3,7 @@
 // Work is cut into launches that are short on the smallest GPU (cuda_launch.cuh).
 #pragma once
 
+#include "parallel/anticipation.h"
 #include "parallel/arena.h"
 #include "parallel/cuda_launch.cuh"
 #include "parallel/cuda_memory.h"
@@ -118,6 +119,9 @@ class CudaExecutor {
     multiprocessors_ = static_cast<unsigned>(value);
     if (LaunchObserver::current) multiprocessors_ = LaunchObserver::current->multiprocessors(multiprocessors_);
     staging_.reserve(kStagingBytes);
+    counts_on_host_.reserve(kCountsBytes);
+    counts_ = static_cast<unsigned char *>(count_memory_.reserve(kCountsBytes));
+    check_cuda(cudaEventCreateWithFlags(&counted_, cudaEventDisableTiming), "cudaEventCreateWithFlags");
     check_cuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "cudaStreamCreateWithFlags");
   }
   ~CudaExecutor() {
@@ -127,6 +131,8 @@ class CudaExecutor {
       cudaStreamSynchronize(stream_);
       for (cudaEvent_t event : launched_)
         if (event) cudaEventDestroy(event);
+      if (counted_) cudaEventDestroy(counted_);
+      count_memory_.release();
       arena_.release();
       cudaStreamDestroy(stream_);
       cudaGetLastError();
@@ -161,7 +167,8 @@ class CudaExecutor {
   LaunchShape team_shape(uint64_t steps) const { return {BlockTeam::kSize, 1, steps, size_t(multiprocessors_) * 32}; }
 
   // A kernel on this stream, for all items, in as many launches as that takes: kernel(LaunchItems, arguments...). Of
-  // several, no more than two are queued at a time, since what is queued can't be cancelled. No items: nothing to do.
+  // several, no more than two are queued at a time, since what is queued can't be cancelled; but in a frame that is
+  // known to be short (open_counts). No items: nothing to do.
   template <class... Parameters, class... Arguments>
   void launch(const char *name, void (*kernel)(LaunchItems, Parameters...), size_t items, const LaunchShape &shape,
               Arguments... arguments) {
@@ -178,7 +185,7 @@ class CudaExecutor {
       kernel<<<static_cast<unsigned>(blocks), static_cast<unsigned>(shape.threads), shape.shared_bytes, stream_>>>(
           part, arguments...);
       check_cuda(cudaGetLastError(), name);
-      if (launches > 1) wait_for_launch_before();
+      if (launches > 1 && !runs_ahead_) wait_for_launch_before();
     }
   }
 
@@ -301,6 +308,68 @@ class CudaExecutor {
     wait();
     std::memcpy(values, host, n * sizeof(T));
   }
+  // ---- counts ---------------------------------------------------------------------------------------------------
+
+  // A frame begins whose counts may be anticipated (anticipation.h); kind 0: none. is_short: the last one of its kind
+  // was, so that all of it may be queued.
+  void open_counts(uint64_t kind, bool is_short = false) {
+    runs_ahead_ = is_short;
+    anticipation_.open(kind);
+    counts_used_ = 0;
+    if (anticipation_.is_open()) fill(Span<unsigned char>{counts_, kCountsBytes}, 0);
+  }
+  void turn_counts_to(uint32_t page) { anticipation_.turn_to(page); }
+
+  // Counts of zero, for as long as what is allocated now.
+  template <class T>
+  T *take_counts() {
+    constexpr size_t kBytes = (sizeof(T) + 15) / 16 * 16;
+    if (anticipation_.is_open() && counts_used_ + Anticipation::kMostBytes <= kCountsBytes) {
+      counts_used_ += kBytes;
+      return reinterpret_cast<T *>(counts_ + counts_used_ - kBytes);
+    }
+    Span<T> counts = allocate<T>(1);
+    fill(counts, 0);
+    return counts.data;
+  }
+  // How many there are, waiting for it; or how many there are at most, to be verified later.
+  template <class T>
+  T expect(const char *name, const T *counts, const T &most) {
+    if (!is_counted_here(counts)) return fetch(counts);
+    const auto place = static_cast<size_t>(reinterpret_cast<const unsigned char *>(counts) - counts_);
+    T value;
+    if (anticipation_.anticipate(name, place, most, &value)) return value;
+    value = fetch(counts);
+    anticipation_.note(name, value);
+    return value;
+  }
+  // All that is anticipated so far will have been counted when the device gets here.
+  void send_counts() {
+    if (!anticipation_.relies_on_something()) return;
+    anticipation_.note_counting();
+    download(static_cast<unsigned char *>(counts_on_host_.data()), counts_, counts_used_);
+    check_cuda(cudaEventRecord(counted_, stream_), "cudaEventRecord");
+  }
+  // Waits for that. False: all counts were exact. Throws AnticipatedTooLittle.
+  bool verify_counts() {
+    if (!anticipation_.is_counting()) return false;
+    check_cuda(cudaEventSynchronize(counted_), "cudaEventSynchronize");
+    anticipation_.verify(static_cast<const unsigned char *>(counts_on_host_.data()));
+    return true;
+  }
+  // As they were found then.
+  template <class T>
+  T verified(const T *counts) {
+    if (!is_counted_here(counts)) return fetch(counts);
+    T value;
+    std::memcpy(&value,
+                static_cast<const unsigned char *>(counts_on_host_.data()) +
+                    (reinterpret_cast<const unsigned char *>(counts) - counts_),
+                sizeof value);
+    return value;
+  }
+  static constexpr size_t kCountsBytes = 16384;  // of the device, beside the arena
+
   // From page-locked memory the copy goes on after the call returns: leave the memory alone until something waits.
   template <class T>
   void upload(T *destination, const T *host, size_t n) {
@@ -320,6 +389,11 @@ class CudaExecutor {
   void wait() { check_cuda(cudaStreamSynchronize(stream_), "cudaStreamSynchronize"); }
 
  private:
+  bool is_counted_here(const void *counts) const {
+    const auto *const bytes = static_cast<const unsigned char *>(counts);
+    return anticipation_.is_open() && bytes >= counts_ && bytes < counts_ + kCountsBytes;
+  }
+
   static constexpr size_t kStagingBytes = 4096;
   static constexpr size_t kDefaultSharedBytes = 48 * 1024;
 
@@ -381,6 +455,13 @@ class CudaExecutor {
   const std::atomic<bool> *stop_ = nullptr;
   cudaEvent_t launched_[2] = {};  // the next to be used: the launch before last
   PinnedBuffer staging_;
+  Anticipation anticipation_;
+  bool runs_ahead_ = false;
+  GrowingBuffer<DeviceMemory> count_memory_;
+  unsigned char *counts_ = nullptr;  // there
+  size_t counts_used_ = 0;
+  PinnedBuffer counts_on_host_;
+  cudaEvent_t counted_ = nullptr;
   Arena<DeviceMemory> arena_;
 };
 

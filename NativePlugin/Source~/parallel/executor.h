@@ -12,6 +12,10 @@
 //   compact(n, keep, out)          the i with keep(i), in order; returns their number. Waits
 //   compact(n, keep, out, count)   the same; their number stays with the back end
 //   fetch(p), fetch_each(sources, values, n)  copies one value, or several, to the host. Waits
+//   take_counts<T>()               a T of zeros for passes to count in
+//   expect(name, counts, most)     what was counted. Waits; or, if it is told by the frame before, at most so much
+//   send_counts(), verify_counts() later: what was expected is compared with what was counted (anticipation.h). Waits
+//   verified(counts)               what was counted then
 //   upload, download, fill         copies between host and back end, and memset
 //   scan_bytes<T>(n), sort_bytes<Key, Value>(n), reduce_bytes<T>(n), compact_bytes(n)  of the arena, that these verbs
 //                                  take while they work: for forecasts (surface/memory/counting_executor.h)

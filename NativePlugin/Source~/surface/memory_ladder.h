@@ -9,6 +9,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <cstring>
 
 namespace quickses {
 
@@ -43,10 +44,20 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     progress_.restart(&sink.stop_flag(), [&sink](double fraction) { sink.advance(fraction); });
     const FrameInput in{atoms, appearance, settings};
     Course course;
-    walk(in, sink.stop_flag(), [&](const MemoryPlan &plan) {
-      ++course.attempts;
-      compute_levels(in, plan, spacings, &course, sink);
-    });
+    const auto attempt = [&](const MemoryPlan &plan) {
+      const uint32_t attempts = course.attempts++;
+      executor_.open_counts(anticipates(in, plan) ? kind_of(in) : 0,
+                            learnt_.is_proven && learnt_.milliseconds < kShortFrame);
+      try {
+        compute_levels(in, plan, spacings, &course, sink);
+      } catch (const AnticipatedTooLittle &) {
+        course.attempts = attempts;
+        throw;
+      }
+    };
+    const auto start = std::chrono::steady_clock::now();
+    walk(in, sink.stop_flag(), attempt);
+    learnt_.milliseconds = milliseconds_since(start);
     learnt_.is_proven = true;
   }
 
@@ -61,6 +72,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     double growth = 1, hard_part = 0;
     const typename Executor::CallScope scope(executor_);
     walk(in, stop, [&](const MemoryPlan &plan) {
+      executor_.open_counts(0);
       qses_report report;
       auto work = work_of(in, plan, &report);
       prepare_frame(work, in);
@@ -95,6 +107,8 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
 
  private:
   static constexpr uint64_t kUnlimited = ~uint64_t(0) >> 1;
+  // The next one may be queued as a whole: nobody who cancels it waits longer.
+  static constexpr double kShortFrame = 100;  // ms
   // Of predictions that rest on a predicted size: sizes are known to some per cent.
   static constexpr double kMargin = 1.02;
   static constexpr uint64_t kSpareBytes = 32768;
@@ -106,7 +120,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   void walk(const FrameInput &in, const std::atomic<bool> &stop, const Attempt &attempt) {
     const typename Executor::CallScope scope(executor_);
     const typename Executor::StopScope stop_scope(executor_, stop);
-    memory_.keep_on_device(wants_device(in.settings));
+    memory_.deliver_to(in.settings);
     executor_.arena().reset();  // what is free is asked anew
     for (size_t step = first_step(in);; executor_.arena().reset()) {
       timer_.reset();
@@ -116,6 +130,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
       try {
         attempt(kMemoryPlans[step]);
         return;
+      } catch (const AnticipatedTooLittle &) {  // the same again: it waits for all counts now
       } catch (const MemoryRefused &refused) {
         if (!refused.again()) step = next_step(in, step);
         if (step < kMemoryPlanCount) continue;
@@ -127,12 +142,30 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     }
   }
 
+  // Whether a frame may go on with what was counted in the one before: where there is room for more than is needed, and
+  // arcs are only looked for, not gone through (as they are where the surface is that of the balls, to be measured).
+  bool anticipates(const FrameInput &in, const MemoryPlan &plan) {
+    return plan.single_slice && budget_ == 0 && learnt_.share == 0 && in.settings.slice_size == 0 &&
+           in.settings.method == QSES_METHOD_EXACT && !parameters_of(in).is_of_balls() && !progress_.wanted();
+  }
+  // What frames have in common whose counts are much the same. Never 0.
+  uint64_t kind_of(const FrameInput &in) const {
+    const SurfaceParameters p = parameters_of(in);
+    const float numbers[] = {p.max_radius, p.probe, p.depth};
+    uint32_t words[3];
+    static_assert(sizeof numbers == sizeof words, "one word each");
+    std::memcpy(words, numbers, sizeof words);
+    uint64_t kind = in.atoms.count;
+    for (const uint32_t word : words) kind = kind * 0x9e3779b97f4a7c15u + word;
+    return kind | 1;
+  }
+
   // Where the ladder begins: at the top, or where it ended for as many atoms of the same size with no more memory.
   size_t first_step(const FrameInput &in) {
     const SurfaceParameters p = parameters_of(in);
     if (in.atoms.count != learnt_.atoms || p.max_radius != learnt_.reach) rooms_.forget();
     if (in.atoms.count != learnt_.atoms || p.max_radius != learnt_.reach || p.spacing != learnt_.spacing)
-      learnt_ = {in.atoms.count, p.max_radius, p.spacing, 0, 0, false};
+      learnt_ = {in.atoms.count, p.max_radius, p.spacing, 0, 0, false, 0};
     if (learnt_.step > 0 && executor_.arena().share() > learnt_.share / 4 * 5) learnt_.step = 0;
     return learnt_.step;
   }
@@ -186,13 +219,18 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
         spacing_ = spacings[k];
         if (work.makes_mesh) {
           enter_level(work, spacing_);
+          uint32_t page;
+          std::memcpy(&page, &spacing_, sizeof page);
+          executor_.turn_counts_to(page);
           check_forecast(work, in);
         }
         built = build_level(work);
       }
       timer_.begin("mesh_memory");
+      executor_.send_counts();
       memory_.finish(built, in.settings, &out.on_host, &out.boxes, &out.on_device);
       timer_.end();
+      executor_.verify_counts();
       out.delivery = in.settings.delivery;
       out.shape = built.shape;
       out.on_host.spacing = out.on_device.mesh.spacing = spacings[k];
@@ -321,6 +359,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     size_t step;
     uint64_t share;
     bool is_proven;
+    double milliseconds;
   } learnt_{};
   WorkFacts facts_{};  // of the level that is being made
   float spacing_ = 0;  // of that level

@@ -73,9 +73,23 @@ class SerialExecutor {
       if (keep(i)) out[kept++] = static_cast<T>(i);
     return kept;
   }
+  template <class Keep, class T>
+  void compact(size_t n, Keep keep, quickses::Span<T> out, uint64_t *count) {
+    *count = compact(n, keep, out);
+  }
   template <class T>
   T fetch(const T *p) {
     return *p;
+  }
+  template <class T>
+  T *take_counts() {
+    const auto counts = allocate<T>(1);
+    fill(counts, 0);
+    return counts.data;
+  }
+  template <class T>
+  T expect(const char *, const T *counts, const T &) {
+    return *counts;
   }
   template <class T>
   void fetch_each(const T *const *sources, T *values, size_t n) {

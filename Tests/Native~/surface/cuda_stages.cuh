@@ -115,11 +115,11 @@ inline DeviceStages run_device_stages(CudaExecutor &executor, const DeviceTable 
   const size_t arcs = s.found.arcs.size;
   if (arcs > 0) {
     Span<Sphere> balls = executor.allocate<Sphere>(arcs);
-    executor.for_each(arcs, BoundArcs{s.found.arcs.data, balls.data});
+    executor.for_each(arcs, BoundArcs{s.found.arcs.data, nullptr, balls.data});
     const glm::vec3 reach(p.max_radius);
     f.arc_bounds = build_neighbor_grid(executor, balls, layout_cells(low - reach, high + reach, kArcCellEdge));
     Span<Arc> sorted = executor.allocate<Arc>(arcs);
-    executor.for_each(arcs, GatherArcs{s.found.arcs.data, f.arc_bounds.order, sorted.data});
+    executor.for_each(arcs, GatherArcs{s.found.arcs.data, nullptr, f.arc_bounds.order, sorted.data});
     f.arcs = sorted.data;
   }
   s.features = f;

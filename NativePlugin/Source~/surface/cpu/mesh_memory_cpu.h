@@ -43,7 +43,9 @@ class MeshMemory<CpuKernelExecutor> {
 
   void save(CpuKernelExecutor &, const MeshMemoryView &, const MeshView &, size_t, size_t) {}  // never in pieces
 
-  void keep_on_device(bool) {}
+  void deliver_to(const qses_settings &) {}
+  void note_triangles(CpuKernelExecutor &) {}
+  void bring_triangles(const MeshMemoryView &, MeshPurpose) {}
   // Fills in both meshes and the boxes.
   void finish(const MeshMemoryView &built, const qses_settings &settings, qses_mesh *mesh, PickBoxes *boxes,
               qses_device_mesh *on_device) {

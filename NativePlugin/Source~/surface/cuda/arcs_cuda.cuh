@@ -284,9 +284,14 @@ static __global__ __launch_bounds__(kWarp) void find_long_circle_arcs_kernel(Lau
 static __global__ __launch_bounds__(128) void write_arcs_kernel(LaunchItems items, CircleJob job,
                                                                 const uint32_t *arc_first) {
   if (job.circle_first[job.run.size()] > job.room.circles) return;
-  if (items.first + blockIdx.x + threadIdx.x == 0) job.counters->arcs = arc_first[job.room.circles];
   const unsigned long long staged = job.counters->staged;
-  if ((staged >> 32) > job.room.staged_circles || (staged & 0xffffffffu) > job.room.staged_arcs) return;
+  const bool fits = (staged >> 32) <= job.room.staged_circles && (staged & 0xffffffffu) <= job.room.staged_arcs;
+  if (items.first + blockIdx.x + threadIdx.x == 0) {
+    const uint32_t arcs = arc_first[job.room.circles];
+    job.counters->arcs = arcs;
+    job.counters->written_arcs = fits && arcs <= job.room.arcs ? arcs : 0;
+  }
+  if (!fits) return;
   const size_t end = (staged >> 32) < items.last ? static_cast<size_t>(staged >> 32) : items.last;
   for (size_t s = items.first + blockIdx.x * blockDim.x + threadIdx.x; s < end; s += gridDim.x * blockDim.x) {
     const StagedCircle staged_circle = job.staged[s];
@@ -357,7 +362,7 @@ ArcSearch find_arcs(E &executor, CircleJob job, float max_radius) {
                   LaunchShape{128, 4, 8 + caps / 8, processors * 32}, job);
   // Enough warps to fill the GPU, and enough circles per warp to refill its lanes.
   const uint32_t chunk =
-      static_cast<uint32_t>(std::min<size_t>(256, std::max<size_t>(64, room.circles / (processors * 64))));
+      static_cast<uint32_t>(std::min<size_t>(256, std::max<size_t>(kWarp, room.circles / (processors * 64))));
   const uint64_t rounds = chunk / (kWarp - kIdleLanes) + 1;
   executor.launch(
       "find_arcs", find_arcs_kernel, room.circles,

@@ -68,6 +68,13 @@ constexpr uint32_t kUsualRow = 192;
 struct CandidateCounters {
   unsigned long long atoms, arcs, leaves;
   uint32_t longest_row;  // of atoms or arcs; 0: none is longer than usual
+
+  static CandidateCounters anticipated(const CandidateCounters &last, const CandidateCounters &most) {
+    return {most.atoms, most.arcs, std::min(and_some_more(last.leaves), most.leaves), and_some_more(last.longest_row)};
+  }
+  bool covers(const CandidateCounters &found) const {
+    return found.atoms <= atoms && found.arcs <= arcs && found.leaves <= leaves && found.longest_row <= longest_row;
+  }
 };
 
 // The lists for a slice of bricks, as kernels see them.
@@ -79,7 +86,9 @@ struct CandidateView {
   uint8_t *arc_leaves;    // per entry of arcs: bit set = can be within depth of a point of that leaf
   uint32_t *leaf_list;    // leaves between whose points the surface may pass: 8 * brick of the slice + leaf
   uint8_t *brick_leaves;  // the same per brick: a bit per leaf
-  uint32_t *deciders;     // by 64 * (8 * brick + leaf) + bit, of those leaves: what a sign is from; nullptr: not kept
+  const CandidateCounters *counted;
+  unsigned long long leaf_room;  // so many leaves are evaluated: if there are more, all will be done again
+  uint32_t *deciders;  // by 64 * (8 * brick + leaf) + bit, of those leaves: what a sign is from; nullptr: not kept
 };
 
 // What decides about a point that is outside, for thin walls, which ask for the nearest probe: the number of the
@@ -273,15 +282,17 @@ static __global__ __launch_bounds__(kGatherWarps *kWarp, 8) void gather_candidat
       });
 
   active = warp_or(active);
+  // Without room for its rows the brick has none; all will be done again.
+  const bool fits = atoms.fits && arcs.fits;
+  if (!fits) active = 0;
   unsigned long long first_leaf = 0;
   if (lane == 0) {
-    first_leaf = atomicAdd(&job.counters->leaves, static_cast<unsigned long long>(__popc(active)));
-    job.view.brick_rows[b] = {atoms.first, arcs.first, atoms.count, arcs.count};
+    if (active != 0) first_leaf = atomicAdd(&job.counters->leaves, static_cast<unsigned long long>(__popc(active)));
+    job.view.brick_rows[b] = fits ? BrickRow{atoms.first, arcs.first, atoms.count, arcs.count} : BrickRow{0, 0, 0, 0};
     const uint32_t longest = atoms.count > arcs.count ? atoms.count : arcs.count;
     if (longest > kUsualRow) atomicMax(&job.counters->longest_row, longest);
   }
   first_leaf = __shfl_sync(kFullWarp, first_leaf, 0);
-  if (!atoms.fits || !arcs.fits) return;
 
   if (lane == 0) job.view.brick_leaves[b] = static_cast<uint8_t>(active);
   if (lane < kLeavesPerBrick) {
@@ -292,7 +303,8 @@ static __global__ __launch_bounds__(kGatherWarps *kWarp, 8) void gather_candidat
   if (!job.signs) return;
   for (uint32_t rest = ~active & 0xffu; rest; rest &= rest - 1) {
     const int leaf = __ffs(static_cast<int>(rest)) - 1;
-    const bool inside = uniform_leaf_inside(job, job.view.atoms + atoms.first, atoms.count, leaf_center(low, leaf, h));
+    const bool inside =
+        fits && uniform_leaf_inside(job, job.view.atoms + atoms.first, atoms.count, leaf_center(low, leaf, h));
     if (lane == 0)
       job.signs[static_cast<size_t>(job.view.first_brick + b) * kLeavesPerBrick + static_cast<size_t>(leaf)] =
           inside ? ~uint64_t(0) : 0;

@@ -357,9 +357,9 @@ void find_caps(E &executor, const CapJob &job, bool memory_is_short) {
   const auto shape = [&](uint64_t near) {
     return LaunchShape{kCapWarps * kWarp, kCapWarps, gather_steps(near) + 12 * kRowNeighbors, blocks};
   };
-  const uint64_t near = most_items_near(executor, job.atoms, 4.f * job.max_radius, [&](uint64_t items) {
-    return executor.is_few_launches(job.run.size(), shape(items));
-  });
+  const uint64_t near =
+      most_items_near(executor, "fullest cell of atoms", job.atoms, 4.f * job.max_radius,
+                      [&](uint64_t items) { return executor.is_few_launches(job.run.size(), shape(items)); });
   executor.launch("find_caps", find_caps_kernel, job.run.size(), shape(near), job);
   if (job.room.neighbors == 0) return;
   // Rows for as many warps as there is memory for; the others' atoms take turns.

@@ -109,7 +109,7 @@ static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_k
   const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();
   LeafScratch &scratch = scratch_memory[warp];
   const size_t leaf_place = leaves.first + blockIdx.x * kSignWarps + static_cast<uint32_t>(warp);
-  if (leaf_place >= leaves.last) return;
+  if (leaf_place >= leaves.last || leaf_place >= job.view.counted->leaves) return;
   const FeatureView &f = job.features;
   const CandidateReach &reach = job.reach;
   const Lattice &lattice = job.bricks.lattice;
@@ -250,7 +250,6 @@ void gather_candidates(E &executor, const FeatureView &features, const BrickSet 
   view.brick_rows = executor.template allocate<BrickRow>(n).data;
   view.leaf_list = executor.template allocate<uint32_t>(size_t(n) * kLeavesPerBrick).data;
   view.brick_leaves = executor.template allocate<uint8_t>(n).data;
-  Span<CandidateCounters> counters = executor.template allocate<CandidateCounters>(1);
   const double per_brick = listed_candidates(features.parameters);
   const auto room_for = [&](double rate, uint32_t most) {
     return static_cast<size_t>(std::min(rate * per_brick, static_cast<double>(most)) * n) + kSpareCandidates;
@@ -260,22 +259,25 @@ void gather_candidates(E &executor, const FeatureView &features, const BrickSet 
   // All items in the cells around a brick are looked at, at most twice.
   const float extent = 7.f * reach.spacing + 2.f * reach.grown;
   const auto shape = [](uint64_t near) { return LaunchShape{kGatherWarps * kWarp, kGatherWarps, 256 + near / 16}; };
-  const auto near_of = [&](const NeighborGridView &grid, float look) {
-    return most_items_near(executor, grid, extent + 2.f * look,
+  const auto near_of = [&](const char *name, const NeighborGridView &grid, float look) {
+    return most_items_near(executor, name, grid, extent + 2.f * look,
                            [&](uint64_t items) { return executor.is_few_launches(n, shape(items)); });
   };
-  const LaunchShape gather = shape(near_of(features.atoms, features.parameters.max_radius + reach.slack) +
-                                   near_of(features.arc_bounds, reach.start_reach + features.max_arc_bound));
+  const LaunchShape gather =
+      shape(near_of("fullest cell of atoms", features.atoms, features.parameters.max_radius + reach.slack) +
+            near_of("fullest cell of arcs", features.arc_bounds, reach.start_reach + features.max_arc_bound));
   const auto mark = executor.arena().mark();
   CandidateCounters found;
   for (;;) {
+    CandidateCounters *const counters = executor.template take_counts<CandidateCounters>();
+    view.counted = counters;
     view.atoms = executor.template allocate<uint32_t>(atom_room).data;
     view.arcs = executor.template allocate<uint32_t>(arc_room).data;
     view.arc_leaves = executor.template allocate<uint8_t>(arc_room).data;
-    executor.fill(counters, 0);
     executor.launch("gather_candidates", gather_candidates_kernel, n, gather,
-                    GatherJob{features, bricks, reach, view, counters.data, atom_room, arc_room, signs});
-    found = executor.fetch(counters.data);
+                    GatherJob{features, bricks, reach, view, counters, atom_room, arc_room, signs});
+    found = executor.expect("candidates", counters,
+                            CandidateCounters{atom_room, arc_room, uint64_t(n) * kLeavesPerBrick, 0});
     if (found.atoms <= atom_room && found.arcs <= arc_room) break;
     // The next surface may have a few more.
     const auto learn = [&](double *rate, unsigned long long count, size_t *room) {
@@ -289,6 +291,7 @@ void gather_candidates(E &executor, const FeatureView &features, const BrickSet 
   }
   candidates.leaves = static_cast<size_t>(found.leaves);
   candidates.longest_row = std::max(kUsualRow, found.longest_row);
+  view.leaf_room = found.leaves;
   candidates.view = view;
   candidates.have_deciders = false;
   candidates.slice = slice;

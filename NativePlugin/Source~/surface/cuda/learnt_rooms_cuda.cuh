@@ -3,6 +3,8 @@
 // begins anew; what it learnt is kept, so that it does so once.
 #pragma once
 
+#include "parallel/anticipation.h"
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -17,11 +19,27 @@ struct FeatureCounters {
   unsigned long long caps, circles;
   unsigned long long staged;  // circles with exposed arcs in the upper half, arcs before they are split in the lower
   unsigned long long arcs;
-  uint32_t neighbors;           // most of an atom for which the rows were too short
-  uint32_t long_atoms;          // number of those atoms
-  uint32_t longest_row;         // most caps of an atom
-  uint32_t long_circles;        // circles with more exposed intervals than a lane holds
-  uint32_t unfinished_circles;  // those of them that need another launch
+  unsigned long long written_arcs;  // the same, or 0 where there is no room for some
+  uint32_t neighbors;               // most of an atom for which the rows were too short
+  uint32_t long_atoms;              // number of those atoms
+  uint32_t longest_row;             // most caps of an atom
+  uint32_t long_circles;            // circles with more exposed intervals than a lane holds
+  uint32_t unfinished_circles;      // those of them that need another launch
+
+  // Of what there is room for, all may be taken: only arcs are gone through by their number.
+  static FeatureCounters anticipated(const FeatureCounters &last, const FeatureCounters &most) {
+    FeatureCounters c = most;
+    c.arcs = std::min(and_some_more(last.arcs), most.arcs);
+    c.longest_row = and_some_more(last.longest_row);
+    c.unfinished_circles = 0;
+    return c;
+  }
+  bool covers(const FeatureCounters &found) const {
+    return found.caps <= caps && found.circles <= circles && (found.staged >> 32) <= (staged >> 32) &&
+           (found.staged & 0xffffffffu) <= (staged & 0xffffffffu) && found.arcs <= arcs &&
+           found.neighbors <= neighbors && found.long_atoms <= long_atoms && found.longest_row <= longest_row &&
+           found.long_circles <= long_circles && found.unfinished_circles <= unfinished_circles;
+  }
 };
 
 // How much of each there is room for.
@@ -38,6 +56,19 @@ struct FeatureRoom {
     return c.neighbors <= neighbors && c.long_atoms <= long_atoms && c.caps <= caps && c.circles <= circles &&
            (c.staged >> 32) <= staged_circles && (c.staged & 0xffffffffu) <= staged_arcs && c.arcs <= arcs &&
            (c.long_circles == 0 || c.longest_row + 1u <= intervals);
+  }
+  // So much is counted at most where it holds it. (Circles that need intervals in memory are always waited for.)
+  FeatureCounters most() const {
+    return {caps,
+            circles,
+            static_cast<unsigned long long>(staged_circles) << 32 | staged_arcs,
+            arcs,
+            arcs,
+            static_cast<uint32_t>(neighbors),
+            static_cast<uint32_t>(long_atoms),
+            0,
+            0,
+            0};
   }
   size_t longest_row() const { return std::max<size_t>(kRowNeighbors, neighbors); }  // caps of an atom, at most
   // For what was counted.

@@ -38,10 +38,7 @@ VertexJob prepare_vertices(E &executor, const FeatureView &features, const Brick
   job.lists = executor.template allocate<uint32_t>(size_t(sizes.leaves) * job.list_words).data;
   job.open = executor.template allocate<uint32_t>(job.count).data;
   job.unfinished = executor.template allocate<uint32_t>(job.count).data;
-  Span<uint32_t> counts = executor.template allocate<uint32_t>(2);
-  job.open_count = counts.data;
-  job.unfinished_count = counts.data + 1;
-  executor.fill(counts, 0);
+  job.counts = executor.template take_counts<VertexCounts>();
   const uint64_t row = candidates.longest_row, look = vertex_steps(features, row);
   if (job.halved) {  // a lane's vertices one by one if each takes long
     const uint64_t halve = looks_for_sign_change(features.parameters, kStartHalvings) * look,
@@ -58,7 +55,7 @@ VertexJob prepare_vertices(E &executor, const FeatureView &features, const Brick
 }
 
 // Vertices are numbered over all slices: mesh.positions[0] is that of the very first. Waits once if there are several
-// slices.
+// slices, or far more vertices than one launch can place.
 template <class E>
 void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bricks, const MeshLayout &layout,
                    BrickRange slice, CudaRooms &rooms, CudaCandidates &candidates, const VertexStarts &starts,
@@ -76,7 +73,8 @@ void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bri
   const LaunchShape few{kVertexThreads, kVertexThreads / kVertexLanes, looks * (64 + look / kVertexLanes),
                         (job.count + kVertexThreads - size_t(1)) / kVertexThreads};
   size_t left = job.count;
-  if (!E::kCounts && !executor.is_few_launches(left, few)) left = executor.fetch(job.unfinished_count);
+  if (!E::kCounts && job.count > 0 && !executor.is_few_launches(left, few))
+    left = executor.expect("left vertices", job.counts, VertexCounts{job.count, job.count}).unfinished;
   executor.launch("reproject", reproject_kernel, left, few, job);
   if (gathered) executor.arena().rewind(mark);
 }

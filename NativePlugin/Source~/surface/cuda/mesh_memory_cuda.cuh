@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The meshes of the GPU: made on the device, their arrays behind each other so that one copy brings them to page-locked
-// memory. In pieces: the mesh is in page-locked memory from the beginning, which kernels reach as well, slowly; what
-// makes most of it goes through parts on the device. A mesh that is wanted on the device has memory of a pool there.
+// The meshes of the GPU: made on the device, and their arrays brought to page-locked memory. In pieces: the mesh is in
+// page-locked memory from the beginning, which kernels reach as well, slowly; what makes most of it goes through parts
+// on the device. A mesh that is wanted on the device has memory of a pool there.
 #pragma once
 
 #include "parallel/cuda_executor.cuh"
+#include "parallel/later_release.h"
 #include "surface/mesh/mesh_memory.h"
 #include "surface/stages/hot_stages.h"
 
@@ -31,26 +32,46 @@ inline MeshPool::Source device_meshes_of(int device) {
           2};
 }
 
+// Page-locked memory, for a pool. To unlock its pages takes milliseconds.
+inline MeshPool::Source page_locked_meshes() {
+  MeshPool::Source source = MeshPool::source<PinnedMemory>();
+  source.release = [](MeshBuffer &buffer) { release_later(PinnedMemory::release, buffer.memory); };
+  return source;
+}
+
 template <>
 class MeshMemory<CudaExecutor> {
  public:
   explicit MeshMemory(CudaExecutor &executor)
-      : executor_(executor),
-        host_meshes_(MeshPool::source<PinnedMemory>()),
-        device_meshes_(device_meshes_of(executor.device())) {}
-  ~MeshMemory() { DeviceMemory::release(table_); }
+      : executor_(executor), host_meshes_(page_locked_meshes()), device_meshes_(device_meshes_of(executor.device())) {}
+  ~MeshMemory() {
+    try {
+      const DeviceGuard guard(executor_.device());
+      if (!may_hand_back()) return;
+      if (triangles_made_) cudaEventDestroy(triangles_made_);
+      if (copies_) {
+        cudaStreamSynchronize(copies_);
+        cudaStreamDestroy(copies_);
+      }
+      DeviceMemory::release(table_);
+      cudaGetLastError();
+    } catch (...) {  // the device is lost, and its memory with it
+    }
+  }
 
   void use_slot(int slot) {
+    wait_for_triangles();  // of a mesh that was given up
     host_meshes_.use_slot(slot);
     device_meshes_.use_slot(slot);
   }
   MeshHold keep(int slot) { return {host_meshes_.keep(slot), device_meshes_.keep(slot), host_meshes_.share_pool()}; }
-  // Whether meshes that are handed out stay on the device. What was given back since the last computation is the
-  // arena's again, within a budget.
-  void keep_on_device(bool keep) {
-    keep_ = keep;
+  // Where meshes that are handed out are wanted. What was given back since the last computation is the arena's again,
+  // within a budget.
+  void deliver_to(const qses_settings &settings) {
+    keep_ = wants_device(settings);
+    to_host_ = settings.delivery == QSES_DELIVERY_HOST || settings.delivery == QSES_DELIVERY_BOTH;
     if (!executor_.arena().has_budget()) return;
-    if (!keep) device_meshes_.pool().drop_spares();
+    if (!keep_) device_meshes_.pool().drop_spares();
     executor_.arena().set_taken(device_meshes_.bytes());
   }
   // What was allocated beside a mesh in pieces, or as one to be made into another, is given up.
@@ -62,8 +83,12 @@ class MeshMemory<CudaExecutor> {
   }
 
   // Bytes of the device that are not in the arena.
-  uint64_t outside_arena(const CudaExecutor &) const { return sizeof(MarchingCubesTable) + device_meshes_.bytes(); }
-  uint64_t allowed_outside(const CudaExecutor &) const { return sizeof(MarchingCubesTable); }
+  uint64_t outside_arena(const CudaExecutor &executor) const {
+    return allowed_outside(executor) + device_meshes_.bytes();
+  }
+  uint64_t allowed_outside(const CudaExecutor &) const {
+    return sizeof(MarchingCubesTable) + CudaExecutor::kCountsBytes;
+  }
   uint64_t needed_outside(const CudaExecutor &executor) const { return outside_arena(executor); }
 
   MeshMemoryView allocate_mesh(CudaExecutor &executor, size_t vertices, size_t triangles, const MeshShape &shape,
@@ -92,20 +117,33 @@ class MeshMemory<CudaExecutor> {
     });
   }
 
+  // What the executor has been given so far makes the triangles of a mesh.
+  void note_triangles(CudaExecutor &executor) {
+    if (!triangles_made_)
+      check_cuda(cudaEventCreateWithFlags(&triangles_made_, cudaEventDisableTiming), "cudaEventCreateWithFlags");
+    check_cuda(cudaEventRecord(triangles_made_, executor.stream()), "cudaEventRecord");
+  }
+  // If the mesh is handed out on the host as it is, and large, they go there while the rest of it is made.
+  void bring_triangles(const MeshMemoryView &mesh, MeshPurpose purpose) {
+    constexpr size_t kWorthAStream = size_t(1) << 17;  // triangles: 1.5 MB
+    if (!to_host_ || purpose != MeshPurpose::kDelivered || mesh.triangles < kWorthAStream) return;
+    const MeshArrays arrays(mesh.vertices, mesh.triangles, without_spare(mesh.shape));
+    brought_ = arrays.view(host_meshes_.reserve(arrays.bytes()));
+    if (!copies_) check_cuda(cudaStreamCreateWithFlags(&copies_, cudaStreamNonBlocking), "cudaStreamCreateWithFlags");
+    check_cuda(cudaStreamWaitEvent(copies_, triangles_made_, 0), "cudaStreamWaitEvent");
+    are_brought_ = true;
+    check_cuda(
+        cudaMemcpyAsync(brought_.indices, mesh.view.indices, mesh.triangles * 12, cudaMemcpyDeviceToHost, copies_),
+        "cudaMemcpyAsync");
+  }
+
   void finish(const MeshMemoryView &built, const qses_settings &settings, qses_mesh *mesh, PickBoxes *boxes,
               qses_device_mesh *on_device) {
-    const MeshArrays arrays(built.vertices, built.triangles, built.shape);
-    const bool to_host = settings.delivery == QSES_DELIVERY_HOST || settings.delivery == QSES_DELIVERY_BOTH;
     MeshView host = built.view;
-    if (built.vertices > 0 && to_host) {
-      if (!built.in_pieces) {
-        char *const memory = static_cast<char *>(host_meshes_.reserve(arrays.bytes()));
-        executor_.download(memory, static_cast<const char *>(built.memory), arrays.bytes());
-        host = arrays.view(memory);
-      }
-    }
+    if (built.vertices > 0 && to_host_ && !built.in_pieces) host = bring(built);
     executor_.wait();
-    describe_mesh(built, to_host ? &host : nullptr, settings, mesh);
+    wait_for_triangles();
+    describe_mesh(built, to_host_ ? &host : nullptr, settings, mesh);
     *boxes = host.boxes;
     qses_device_mesh_init(on_device);
     on_device->device = executor_.device();
@@ -138,6 +176,27 @@ class MeshMemory<CudaExecutor> {
     return memory;
   }
 
+  // The arrays of a whole mesh, without what is spare; triangles may be on their way already.
+  MeshView bring(const MeshMemoryView &mesh) {
+    const MeshArrays arrays(mesh.vertices, mesh.triangles, without_spare(mesh.shape));
+    if (!are_brought_) brought_ = arrays.view(host_meshes_.reserve(arrays.bytes()));
+    const auto copy = [&](void *to, const void *from, size_t bytes) {
+      executor_.download(static_cast<char *>(to), static_cast<const char *>(from), bytes);
+    };
+    for_each_array(brought_, mesh.view, mesh.vertices, are_brought_ ? 0 : mesh.triangles, copy);
+    if (mesh.shape.component_ids) copy(brought_.component_ids, mesh.view.component_ids, mesh.vertices * 4);
+    if (mesh.shape.repeated > 0) copy(brought_.repeated, mesh.view.repeated, mesh.shape.repeated * 4);
+    if (mesh.shape.boxes) {
+      executor_.download(brought_.boxes.runs, mesh.view.boxes.runs, PickBoxes::run_count(mesh.triangles));
+      executor_.download(brought_.boxes.groups, mesh.view.boxes.groups, PickBoxes::group_count(mesh.triangles));
+    }
+    return brought_;
+  }
+  void wait_for_triangles() {
+    if (are_brought_) check_cuda(cudaStreamSynchronize(copies_), "cudaStreamSynchronize");
+    are_brought_ = false;
+  }
+
   // At most a mesh to be made into another one, its normals and those of the other one, sums and starts at a time.
   void *spill(size_t bytes) {
     if (spilled_ == spill_.size()) spill_.emplace_back();
@@ -146,7 +205,11 @@ class MeshMemory<CudaExecutor> {
 
   CudaExecutor &executor_;
   MeshLeases host_meshes_, device_meshes_;
-  bool keep_ = false;
+  bool keep_ = false, to_host_ = false;
+  cudaEvent_t triangles_made_ = nullptr;
+  cudaStream_t copies_ = nullptr;
+  bool are_brought_ = false;  // triangles are on their way, to here:
+  MeshView brought_{};
   std::deque<PinnedBuffer> spill_;
   size_t spilled_ = 0;
   void *table_ = nullptr;

@@ -42,8 +42,10 @@ __device__ __forceinline__ Projection left_vertex(const VertexJob &job, uint32_t
 
 static __global__ __launch_bounds__(kVertexThreads) void project_on_atoms_kernel(LaunchItems vertices, VertexJob job) {
   const uint32_t k0 = static_cast<uint32_t>(vertices.first) + blockIdx.x * kVertexThreads + threadIdx.x;
-  const bool on = k0 < vertices.last;
-  const uint32_t k = on ? k0 : job.count - 1;
+  const uint32_t count = vertex_count(job);
+  if (k0 - static_cast<uint32_t>(lane_id()) >= count) return;
+  const bool on = k0 < count;
+  const uint32_t k = on ? k0 : count - 1;
   const FeatureView &f = job.features;
   const ListedCandidates candidates = vertex_candidates(job, k);
   const Vec3<float> x = stored_start(job, job.first + k);
@@ -54,8 +56,8 @@ static __global__ __launch_bounds__(kVertexThreads) void project_on_atoms_kernel
   const Projection v = project_on_atom(f.parameters, ball, deepest.depth, x);
   const bool done = v.state == ProjectionState::kPlaced;
   __syncwarp();
-  append(job.open, job.open_count, k, on && !contact);
-  append(job.unfinished, job.unfinished_count, k, on && contact && !done);
+  append(job.open, &job.counts->open, k, on && !contact);
+  append(job.unfinished, &job.counts->unfinished, k, on && contact && !done);
   if (!on || !contact) return;
   if (done)
     finish_vertex(job, k, v.point, deepest.atom);
@@ -65,7 +67,7 @@ static __global__ __launch_bounds__(kVertexThreads) void project_on_atoms_kernel
 
 static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(LaunchItems vertices, VertexJob job) {
   const uint32_t place = static_cast<uint32_t>(vertices.first) + blockIdx.x * kVertexThreads + threadIdx.x,
-                 total = *job.open_count;
+                 total = job.counts->open;
   if (place - static_cast<uint32_t>(lane_id()) >= total) return;
   const bool on = place < total;
   const uint32_t k = job.open[on ? place : total - 1];
@@ -101,7 +103,7 @@ static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(
   }
   __syncwarp();
   const bool done = v.state == ProjectionState::kPlaced;
-  append(job.unfinished, job.unfinished_count, k, on && !done);
+  append(job.unfinished, &job.counts->unfinished, k, on && !done);
   if (!on) return;
   if (done)
     finish_vertex(job, k, v.point, nearest_atom(f, candidates, v.point.position));
@@ -157,10 +159,10 @@ __device__ __forceinline__ SharedCandidates choose_for_edge(const FeatureView &f
   return {room, room + atoms, atoms, arcs};
 }
 
-static __global__ __launch_bounds__(kVertexThreads) void reproject_kernel(LaunchItems vertices, VertexJob job) {
+static __global__ __launch_bounds__(kVertexThreads, 8) void reproject_kernel(LaunchItems vertices, VertexJob job) {
   __shared__ uint32_t edge_memory[kVertexThreads / kVertexLanes][kEdgeRoom];
   const FeatureView &f = job.features;
-  const uint32_t teams = gridDim.x * (kVertexThreads / kVertexLanes), unfinished = *job.unfinished_count;
+  const uint32_t teams = gridDim.x * (kVertexThreads / kVertexLanes), unfinished = job.counts->unfinished;
   const uint32_t total = unfinished < vertices.last ? unfinished : static_cast<uint32_t>(vertices.last);
   for (uint32_t place =
            static_cast<uint32_t>(vertices.first) + (blockIdx.x * kVertexThreads + threadIdx.x) / kVertexLanes;

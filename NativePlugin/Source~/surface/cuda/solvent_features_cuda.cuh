@@ -27,34 +27,33 @@ struct FeaturePass {
   bool with_arc_atoms;
 };
 
-// One attempt at the caps and arcs of a run of atoms; returns what was counted. Waits.
+// One attempt at the caps and arcs of a run of atoms; returns what was counted, or is expected to be.
 template <class E>
-FeatureCounters find_run_features(E &executor, const FeaturePass &pass, AtomRun run, const FeatureRoom &room, Cap *caps,
-                                  Arc *arcs, ArcAtoms *arc_atoms, bool memory_is_short) {
+FeatureCounters find_run_features(E &executor, const FeaturePass &pass, AtomRun run, const FeatureRoom &room,
+                                  FeatureCounters *counters, Cap *caps, Arc *arcs, ArcAtoms *arc_atoms,
+                                  bool memory_is_short) {
   const auto mark = executor.arena().mark();
   const size_t n = run.size();
-  Span<FeatureCounters> counters = executor.template allocate<FeatureCounters>(1);
   Span<uint32_t> neighbors = executor.template allocate<uint32_t>(room.caps);
   Span<uint32_t> circle_count = executor.template allocate<uint32_t>(n);
   Span<uint32_t> circle_first = executor.template allocate<uint32_t>(n + 1);
   Span<uint32_t> long_atoms = executor.template allocate<uint32_t>(n);
-  executor.fill(counters, 0);
   find_caps(executor,
-            CapJob{pass.atoms, pass.max_radius, run, room, counters.data, pass.cap_ranges, caps, neighbors.data,
+            CapJob{pass.atoms, pass.max_radius, run, room, counters, pass.cap_ranges, caps, neighbors.data,
                    circle_count.data, pass.exposed, long_atoms.data},
             memory_is_short);
   executor.exclusive_scan(n, LoadNumber{circle_count.data}, circle_first);
   const ArcSearch search = find_arcs(executor,
-                                     CircleJob{pass.atoms, run, room, counters.data, pass.cap_ranges, caps,
-                                               neighbors.data, circle_first.data, pass.exposed, arcs, arc_atoms},
+                                     CircleJob{pass.atoms, run, room, counters, pass.cap_ranges, caps, neighbors.data,
+                                               circle_first.data, pass.exposed, arcs, arc_atoms},
                                      pass.max_radius);
-  FeatureCounters found = executor.fetch(counters.data);
+  FeatureCounters found = executor.expect("features", counters, room.most());
   while (found.unfinished_circles > 0) {
     find_long_circle_arcs(executor, search);
-    found = executor.fetch(counters.data);
+    found = executor.fetch(counters);
     if (found.unfinished_circles > 0) continue;
     write_arcs(executor, search);
-    found = executor.fetch(counters.data);
+    found = executor.fetch(counters);
   }
   executor.arena().rewind(mark);
   return found;
@@ -70,12 +69,14 @@ void find_all_features(E &executor, const FeaturePass &pass, CudaRooms &rooms, S
     features->caps = executor.template allocate<Cap>(room.caps);
     features->arcs = executor.template allocate<Arc>(room.arcs);
     if (pass.with_arc_atoms) features->arc_atoms = executor.template allocate<ArcAtoms>(room.arcs);
+    FeatureCounters *const counters = executor.template take_counts<FeatureCounters>();
     const FeatureCounters found =
-        find_run_features(executor, pass, AtomRun{0, n}, room, features->caps.data, features->arcs.data,
+        find_run_features(executor, pass, AtomRun{0, n}, room, counters, features->caps.data, features->arcs.data,
                           features->arc_atoms.data, executor.arena().has_budget());
     if (room.holds(found)) {
       features->caps.size = static_cast<size_t>(found.caps);
       features->arcs.size = static_cast<size_t>(found.arcs);
+      features->arc_count = &counters->written_arcs;
       if (pass.with_arc_atoms) features->arc_atoms.size = features->arcs.size;
       features->most_caps = found.longest_row;
       rooms.runs.include(FeatureRoom::of(found).scaled(2 * n, n));  // circles are counted at the earlier of two atoms
@@ -98,7 +99,8 @@ uint64_t run_bytes(E &executor, const FeaturePass &pass, uint32_t atoms, Feature
   const WorkFacts none{};
   auto counted = counting(executor, none);
   counted.template allocate<Cap>(room.caps);
-  find_run_features(counted, pass, AtomRun{0, atoms}, room, nullptr, nullptr, nullptr, true);
+  find_run_features(counted, pass, AtomRun{0, atoms}, room, counted.template take_counts<FeatureCounters>(), nullptr,
+                    nullptr, nullptr, true);
   return counted.arena().peak();
 }
 
@@ -143,9 +145,10 @@ void find_features_in_runs(E &executor, const FeaturePass &pass, const MemoryPla
       room.arcs = arcs.size > arc_total ? static_cast<size_t>(arcs.size - arc_total) : 0;
       const auto mark = arena.mark();
       Cap *const caps = executor.template allocate<Cap>(room.caps).data;
+      FeatureCounters *const counters = executor.template take_counts<FeatureCounters>();
       ArcAtoms *const arc_atoms = pass.with_arc_atoms ? features->arc_atoms.data + arc_total : nullptr;
       FeatureCounters found =
-          find_run_features(executor, pass, run, room, caps, arcs.data + arc_total, arc_atoms, true);
+          find_run_features(executor, pass, run, room, counters, caps, arcs.data + arc_total, arc_atoms, true);
       arena.rewind(mark);
       arc_total += found.arcs;
       features->most_caps = std::max(features->most_caps, found.longest_row);
@@ -176,12 +179,11 @@ void find_features_in_runs(E &executor, const FeaturePass &pass, const MemoryPla
   room.caps = features->caps.size;
   room.neighbors = std::max(rooms.features.neighbors, rooms.runs.neighbors);
   room.long_atoms = n;
-  Span<FeatureCounters> counters = executor.template allocate<FeatureCounters>(1);
+  FeatureCounters *const counters = executor.template take_counts<FeatureCounters>();
   Span<uint32_t> long_atoms = executor.template allocate<uint32_t>(n);
-  executor.fill(counters, 0);
   find_caps(executor,
-            CapJob{pass.atoms, pass.max_radius, AtomRun{0, n}, room, counters.data, pass.cap_ranges,
-                   features->caps.data, nullptr, nullptr, pass.exposed, long_atoms.data},
+            CapJob{pass.atoms, pass.max_radius, AtomRun{0, n}, room, counters, pass.cap_ranges, features->caps.data,
+                   nullptr, nullptr, pass.exposed, long_atoms.data},
             true);
   arena.rewind(mark);
 }

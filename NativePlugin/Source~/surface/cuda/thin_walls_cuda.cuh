@@ -14,6 +14,11 @@ namespace gpu {
 struct WallCounters {
   uint32_t leaves;
   unsigned long long walks;
+
+  static WallCounters anticipated(const WallCounters &last, const WallCounters &most) {
+    return {most.leaves, std::min(and_some_more(last.walks), most.walks)};
+  }
+  bool covers(const WallCounters &found) const { return found.leaves <= leaves && found.walks <= walks; }
 };
 
 struct WallJob {
@@ -35,6 +40,7 @@ constexpr int kWallWarps = kWallThreads / kWarp;
 
 // A thread per leaf of the slice.
 static __global__ __launch_bounds__(kWallThreads) void find_wall_candidates_kernel(LaunchItems items, WallJob job) {
+  if (job.view.counted->leaves > job.view.leaf_room) return;  // of some, nothing is known
   const size_t k = items.first + blockIdx.x * size_t(kWallThreads) + threadIdx.x;
   const bool on = k < items.last;
   const uint32_t slot = static_cast<uint32_t>(on ? k : items.first);
@@ -118,6 +124,7 @@ __device__ __forceinline__ NearestProbe decided_probe(const FeatureView &f, uint
 // Shared memory of one warp.
 struct WallScratch {
   float4 probe[64];                // of first ends, by their bit
+  uint32_t decider[64];            // about them
   uint16_t edge[kWallSteps * 64];  // 64 * step + bit
   uint8_t bit[64];                 // of first ends
 };
@@ -155,9 +162,13 @@ static __global__ __launch_bounds__(kWallThreads, 8) void drop_open_edges_kernel
       const bool on = n0 + lane < starts;
       const int bit = scratch.bit[on ? n0 + lane : starts - 1];
       const Vec3<float> x = position(bit, glm::ivec3(0));
-      const NearestProbe probe = decided_probe(f, first_decider(job, slot, bit, x), x);
+      const uint32_t decider = first_decider(job, slot, bit, x);
+      const NearestProbe probe = decided_probe(f, decider, x);
       __syncwarp();
-      if (on) scratch.probe[bit] = make_float4(probe.center.x, probe.center.y, probe.center.z, probe.distance);
+      if (on) {
+        scratch.probe[bit] = make_float4(probe.center.x, probe.center.y, probe.center.z, probe.distance);
+        scratch.decider[bit] = decider;
+      }
 #pragma unroll
       for (int s = 0; s < kWallSteps; ++s) {
         const uint64_t word = __shfl_sync(kFullWarp, own, s);
@@ -180,10 +191,11 @@ static __global__ __launch_bounds__(kWallThreads, 8) void drop_open_edges_kernel
         const uint32_t decider = decider_at(job, brick, e.second);
         if (decider != kNotLookedAt) {
           const float4 v = scratch.probe[e.bit];
-          const Vec3<float> b = position(e.bit, wall_step(e.step));
-          left = !begin_wall_walk(f.parameters, e.step, position(e.bit, glm::ivec3(0)), {{v.x, v.y, v.z}, v.w}, b,
-                                  decided_probe(f, decider, b))
-                      .is_open();
+          const Vec3<float> a = position(e.bit, glm::ivec3(0)), b = position(e.bit, wall_step(e.step));
+          const bool same_atom = decider == scratch.decider[e.bit] && (decider & kOnContact) && decider < kNotLookedAt;
+          left = !begin_wall_walk(f.parameters, e.step, a, {{v.x, v.y, v.z}, v.w}, b, decided_probe(f, decider, b))
+                      .is_open() &&
+                 !(same_atom && rolls_over(f, decider & ~kOnContact, a, b));
         }
       }
       uint32_t walks = 0;
@@ -231,7 +243,7 @@ static __global__ __launch_bounds__(kWallThreads, 10) void walk_edges_kernel(Lau
   }
 }
 
-// Waits once, or twice if there are far more edges to walk than is usual.
+// Waits once if nothing is anticipated, or twice if there are far more edges to walk than is usual.
 template <class E>
 void mark_thin_walls(E &executor, const FeatureView &features, const BrickSet &bricks, BrickRange slice,
                      CudaRooms &rooms, CudaCandidates &candidates, const uint64_t *signs, uint64_t *marks) {
@@ -247,11 +259,10 @@ void mark_thin_walls(E &executor, const FeatureView &features, const BrickSet &b
   job.view = candidates.view;
   job.signs = signs;
   job.marks = marks;
-  Span<WallCounters> counters = executor.template allocate<WallCounters>(1);
-  job.counters = counters.data;
+  WallCounters *const counters = executor.template take_counts<WallCounters>();
+  job.counters = counters;
   job.leaves = executor.template allocate<uint32_t>(leaves).data;
   job.edges = executor.template allocate<uint64_t>(leaves * kWallSteps).data;
-  executor.fill(counters, 0);
   executor.launch("find_wall_candidates", find_wall_candidates_kernel, leaves,
                   LaunchShape{kWallThreads, kWallThreads, 96}, job);
   const uint64_t look = 64 + 2 * uint64_t(candidates.longest_row) + features.most_caps;
@@ -263,11 +274,11 @@ void mark_thin_walls(E &executor, const FeatureView &features, const BrickSet &b
     job.walks = executor.template allocate<uint64_t>(static_cast<size_t>(job.walk_room)).data;
     executor.launch("drop_open_edges", drop_open_edges_kernel, leaves,
                     LaunchShape{kWallThreads, kWallWarps, 36 * 48 + 2 * look, most_blocks}, job);
-    found = executor.fetch(counters.data);
+    found = executor.expect("walls", counters, WallCounters{static_cast<uint32_t>(leaves), job.walk_room});
     if (found.walks <= job.walk_room) break;
     executor.arena().rewind(before_walks);
     job.walk_room = found.walks;
-    executor.fill(Span<unsigned long long>{&counters.data->walks, 1}, 0);
+    executor.fill(Span<unsigned long long>{&counters->walks, 1}, 0);
   }
   executor.launch("walk_edges", walk_edges_kernel, static_cast<size_t>(found.walks),
                   LaunchShape{kWallThreads, kWallThreads / kVertexLanes,

@@ -39,6 +39,7 @@ static __global__ __launch_bounds__(kTriangleWarps *kWarp) void emit_triangles_k
     triangle_count[k] = job.table.triangle_count[k];
   }
   __syncthreads();
+  if (!job.layout.has_room()) return;
   const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();
   TriangleScratch &scratch = scratch_memory[warp];
   const MeshLayout &layout = job.layout;

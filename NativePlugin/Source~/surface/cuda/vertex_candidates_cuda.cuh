@@ -9,6 +9,14 @@
 namespace quickses {
 namespace gpu {
 
+struct VertexCounts {
+  uint32_t open, unfinished;
+  static VertexCounts anticipated(const VertexCounts &last, const VertexCounts &most) {
+    return {most.open, std::min(and_some_more(last.unfinished), most.unfinished)};
+  }
+  bool covers(const VertexCounts &found) const { return found.open <= open && found.unfinished <= unfinished; }
+};
+
 struct VertexJob {
   FeatureView features;
   BrickSet bricks;
@@ -22,13 +30,21 @@ struct VertexJob {
   uint32_t *list_of;      // per vertex: number of its leaf's list, or kBrickCandidates and the brick of the slice
   uint32_t *lists;        // list_words each
   uint32_t list_words, first_list;
-  uint32_t *open, *open_count;              // vertices that no contact patch has
-  uint32_t *unfinished, *unfinished_count;  // those to be reprojected, or placed on their edges
+  uint32_t *open;        // vertices that no contact patch has
+  uint32_t *unfinished;  // those to be reprojected, or placed on their edges
+  VertexCounts *counts;  // of both lists
 };
 
 // The list of a leaf: word 0 has the number of atoms in its lower and of arcs in its upper half, then they follow. If
 // they are too many the brick's candidates are used.
 constexpr uint32_t kBrickCandidates = 0x80000000u;
+
+// The vertices there are, of those that there is room for.
+__device__ __forceinline__ uint32_t vertex_count(const VertexJob &job) {
+  if (!job.layout.has_room()) return 0;
+  const uint32_t total = job.layout.totals->vertices, behind = total > job.first ? total - job.first : 0;
+  return behind < job.count ? behind : job.count;
+}
 constexpr int kLeafWarps = 4;
 constexpr int kMostLeafVertices = kAxes * 64;
 
@@ -140,7 +156,7 @@ static __global__ __launch_bounds__(kLeafWarps *kWarp) void halve_starts_kernel(
   const int warp = static_cast<int>(threadIdx.x) / kWarp;
   const uint32_t slot = static_cast<uint32_t>(leaves.first) + blockIdx.x * kLeafWarps + static_cast<uint32_t>(warp);
   VertexLeaf leaf;
-  if (slot >= leaves.last || !open_leaf(job, slot, &leaf, edge_memory[warp])) return;
+  if (slot >= leaves.last || !job.layout.has_room() || !open_leaf(job, slot, &leaf, edge_memory[warp])) return;
   const ListedCandidates candidates = brick_candidates(job.view, slot / kLeavesPerBrick);
   for (int k = first + lane_id(); k < leaf.count && k < last; k += kWarp) {
     const LatticeEdge edge{leaf.leaf, edge_memory[warp][k] >> 6, edge_memory[warp][k] & 63};
@@ -158,7 +174,7 @@ static __global__ __launch_bounds__(kLeafWarps *kWarp) void prepare_vertices_ker
   const uint32_t slot = static_cast<uint32_t>(leaves.first) + blockIdx.x * kLeafWarps + static_cast<uint32_t>(warp);
   const uint8_t *const edges = edge_memory[warp];
   VertexLeaf leaf;
-  if (slot >= leaves.last || !open_leaf(job, slot, &leaf, edge_memory[warp])) return;
+  if (slot >= leaves.last || !job.layout.has_room() || !open_leaf(job, slot, &leaf, edge_memory[warp])) return;
   const Lattice &lattice = job.bricks.lattice;
   const bool ring = job.starts.relax && !job.halved && !job.starts.moved;
   if (ring) fill_window(job, leaf, &window_memory[warp]);

@@ -11,7 +11,8 @@ namespace quickses {
 struct MeshShape {
   qses_vertex_layout layout = QSES_VERTICES_SEPARATE;
   bool colors = false, texcoords = false, patches = false, reversed = false, boxes = false, component_ids = false;
-  size_t repeated = 0;  // vertices that stand for others (methods/hard_edges.h)
+  size_t repeated = 0;                             // vertices that stand for others (methods/hard_edges.h)
+  size_t spare_vertices = 0, spare_triangles = 0;  // that there is room for behind the last
 };
 
 inline bool wants_device(const qses_settings &s) {
@@ -31,11 +32,13 @@ inline MeshShape shape_of(const qses_settings &s, bool has_colors) {
   return shape;
 }
 
-// Places of the arrays: behind each other without a gap, so that one copy moves the mesh and every byte it reads was
-// written. All values have four bytes but the patches, which come last.
+// Places of the arrays: behind each other without a gap but for what is spare, so that one copy moves the mesh. All
+// values have four bytes but the patches, which come last.
 class MeshArrays {
  public:
   MeshArrays(size_t vertices, size_t triangles, const MeshShape &shape) : shape_(shape) {
+    vertices += shape.spare_vertices;
+    triangles += shape.spare_triangles;
     const bool is_separate = shape.layout == QSES_VERTICES_SEPARATE;
     vertex_bytes_ = is_separate ? 12 : shape.layout == QSES_VERTICES_INTERLEAVED ? 24 : 16;
     positions_ = next(vertices * vertex_bytes_);
@@ -96,8 +99,8 @@ void for_each_array(const MeshView &to, const MeshView &from, size_t vertices, s
   const uint32_t v = from.first_vertex;
   if (vertices > 0) {
     copy(to.position(v), from.positions, vertices * from.vertex_bytes);
-    if (from.normals && from.normal_bytes == 12) copy(to.normal(v), from.normals, vertices * 12);
-    if (from.second_normals) copy(to.second_normal(v), from.second_normals, vertices * 12);
+    if (from.normals && to.normals && from.normal_bytes == 12) copy(to.normal(v), from.normals, vertices * 12);
+    if (from.second_normals && to.second_normals) copy(to.second_normal(v), from.second_normals, vertices * 12);
     if (from.colors) copy(to.color(v), from.colors, vertices * 4);
     if (from.texcoords) copy(to.texcoord(v), from.texcoords, vertices * 8);
     copy(&to.owner(v), from.owners, vertices * 4);

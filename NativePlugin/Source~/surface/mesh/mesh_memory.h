@@ -34,6 +34,20 @@ constexpr bool mesh_is_in_arena(bool is_cuda, MeshPurpose purpose, bool in_piece
   return is_cuda ? !in_pieces : purpose == MeshPurpose::kWork;
 }
 
+inline MeshShape without_spare(MeshShape shape) {
+  shape.spare_vertices = shape.spare_triangles = 0;
+  return shape;
+}
+
+// So much of what was allocated is the mesh; the rest is spare.
+inline void narrow_mesh(MeshMemoryView *mesh, size_t vertices, size_t triangles) {
+  mesh->shape.spare_vertices += mesh->vertices - vertices;
+  mesh->shape.spare_triangles += mesh->triangles - triangles;
+  mesh->vertices = vertices;
+  mesh->triangles = triangles;
+  mesh->bytes = MeshArrays(vertices, triangles, without_spare(mesh->shape)).bytes();
+}
+
 inline MeshMemoryView describe_memory(const MeshArrays &arrays, size_t vertices, size_t triangles,
                                       const MeshShape &shape, bool in_pieces, void *memory) {
   MeshMemoryView mesh;
@@ -152,6 +166,8 @@ class MeshMemory<CountingExecutor<Executor>> {
     return {nullptr, n};
   }
   void save(CountingExecutor<Executor> &, const MeshMemoryView &, const MeshView &, size_t, size_t) {}
+  void note_triangles(CountingExecutor<Executor> &) {}
+  void bring_triangles(const MeshMemoryView &, MeshPurpose) {}
 };
 
 }  // namespace quickses

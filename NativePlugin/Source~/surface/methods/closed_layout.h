@@ -7,6 +7,14 @@
 
 namespace quickses {
 
+// How large the mesh is of which these bricks are.
+template <class Work>
+void note_size(Work &work, uint64_t bricks, const MeshCounts &counts, uint64_t leaves) {
+  work.report->brick_count = bricks;
+  work.facts->size = {static_cast<double>(bricks), static_cast<double>(counts.vertices),
+                      static_cast<double>(counts.triangles), static_cast<double>(leaves)};
+}
+
 // evaluate(bricks, signs) finds the signs of all lattice points of a set. Throws if the mesh would be too large.
 template <class Work, class Evaluate>
 MeshCounts lay_out_closed_mesh(Work &work, BrickSet *bricks, MeshLayout *layout, const Evaluate &evaluate) {
@@ -17,10 +25,8 @@ MeshCounts lay_out_closed_mesh(Work &work, BrickSet *bricks, MeshLayout *layout,
     work.timer.begin("marching_cubes");
     const MeshCounts counts = lay_out_mesh(executor, *bricks, signs.data, work.table.triangle_count, layout);
     if (layout->border_changes == 0) {
-      work.report->brick_count = bricks->count;
       work.facts->brick_entries = bricks->table ? work.lattice.table_size() : 0;
-      work.facts->size = {static_cast<double>(bricks->count), static_cast<double>(counts.vertices),
-                          static_cast<double>(counts.triangles), static_cast<double>(layout->leaf_total)};
+      note_size(work, bricks->count, counts, layout->leaf_total);
       check_mesh_size(counts);
       return counts;
     }

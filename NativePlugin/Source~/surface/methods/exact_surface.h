@@ -16,7 +16,7 @@ void remove_contained_atoms(Executor &executor, const NeighborGridView &atoms, f
   Span<uint8_t> contained = executor.template allocate<uint8_t>(atoms.count);
   uint64_t near = atoms.count;
   if constexpr (Executor::kIsCuda)
-    near = most_items_near(executor, atoms, 4.f * max_radius + 1.f, [&](uint64_t items) {
+    near = most_items_near(executor, "fullest cell of atoms", atoms, 4.f * max_radius + 1.f, [&](uint64_t items) {
       return items <= kThreadSteps && executor.is_few_launches(atoms.count, executor.for_each_shape(items));
     });
   for_parts_of_met_items(near, Executor::kIsCuda ? kThreadSteps : near, [&](const MetItems &part, bool) {
@@ -58,12 +58,12 @@ FeatureView arrange_features(Work &work, const SolventFeatures &found) {
     const CellLayout cells = layout_cells(work.low - reach, work.high + reach, kArcCellEdge);
     f.arc_bounds = build_neighbor_grid(executor, n, cells, [&] {
       Span<Sphere> bounds = executor.template allocate<Sphere>(n);
-      executor.for_each(n, BoundArcs{found.arcs.data, bounds.data});
+      executor.for_each(n, BoundArcs{found.arcs.data, found.arc_count, bounds.data});
       return bounds;
     });
     const auto mark = executor.arena().mark();
     Span<Arc> sorted = executor.template allocate<Arc>(n);
-    executor.for_each(n, GatherArcs{found.arcs.data, f.arc_bounds.order, sorted.data});
+    executor.for_each(n, GatherArcs{found.arcs.data, found.arc_count, f.arc_bounds.order, sorted.data});
     if (work.plan.low_memory || executor.arena().has_budget()) {
       executor.for_each(n, CopyArcs{sorted.data, found.arcs.data});
       executor.arena().rewind(mark);
@@ -184,6 +184,7 @@ MeshMemoryView build_exact_surface(Work &work) {
     executor.arena().rewind(mark);
   });
 
+  executor.send_counts();
   MeshMemoryView mesh = work.memory.allocate_mesh(executor, with_spare_room(work, counts.vertices),
                                                   with_spare_room(work, counts.triangles), work.made_shape,
                                                   work.purpose, work.plan.mesh_in_pieces);
@@ -192,7 +193,11 @@ MeshMemoryView build_exact_surface(Work &work) {
   mesh.triangles = counts.triangles;
   const auto end_of_mesh = executor.arena().mark();
   VertexStarts starts{work.settings.relaxation_steps > 0, nullptr, work.table.ring, &layout.totals->unplaced};
-  // Without pieces only the vertices: triangles come for all bricks at once.
+  if (!mesh.in_pieces) {  // they may go out while the vertices are made
+    B::emit_triangles(executor, bricks, layout, BrickRange{0, bricks.count}, work.table, mesh.view);
+    work.memory.note_triangles(executor);
+  }
+  // Without pieces only the vertices are left.
   const auto emit_slice = [&](auto &any_executor, BrickRange slice, bool with_triangles) {
     Candidates<Executor> own{};
     MeshPart part{mesh.view, 0, 0};
@@ -214,19 +219,23 @@ MeshMemoryView build_exact_surface(Work &work) {
   };
   work.timer.begin("projection");
   emit(0.45, 0.8, true);
-  if (!mesh.in_pieces) {
-    work.timer.begin("marching_cubes");
-    B::emit_triangles(executor, bricks, layout, BrickRange{0, bricks.count}, work.table, mesh.view);
+  if (executor.verify_counts()) {  // now that all is under way it may be waited for how much it is
+    const MeshTotals found = executor.verified(layout.totals);
+    narrow_mesh(&mesh, found.vertices, found.triangles);
+    note_size(work, bricks.found ? executor.verified(bricks.found).count : bricks.count,
+              {found.vertices, found.triangles}, found.leaves);
   }
+  if (!mesh.in_pieces) work.memory.bring_triangles(mesh, work.purpose);
   work.progress.report(0.85);
 
   // Steps 2 and on: tangential, each projected again.
   work.timer.begin("relaxation");
   if (work.settings.relaxation_steps > 1) {
-    Span<RingSum> sums = work.memory.template allocate_where_mesh_is<RingSum>(executor, mesh, counts.vertices);
-    Span<glm::vec3> moved = work.memory.template allocate_where_mesh_is<glm::vec3>(executor, mesh, counts.vertices);
+    Span<RingSum> sums = work.memory.template allocate_where_mesh_is<RingSum>(executor, mesh, mesh.vertices);
+    Span<glm::vec3> moved = work.memory.template allocate_where_mesh_is<glm::vec3>(executor, mesh, mesh.vertices);
     for (uint32_t step = 1; step < work.settings.relaxation_steps; ++step) {
-      tangential_starts(executor, bricks, layout, mesh.view, counts, sums, moved.data);
+      tangential_starts(executor, bricks, layout, mesh.view, MeshCounts{mesh.vertices, mesh.triangles}, sums,
+                        moved.data);
       starts.moved = moved.data;
       executor.fill(Span<uint32_t>{starts.unplaced, 1}, 0);
       const double share_of_time = 0.15 / work.settings.relaxation_steps;

@@ -162,7 +162,8 @@ uint64_t most_grid_atoms_near(Executor &executor, const NeighborGridView &atoms,
                               size_t bricks, const StepsOf &steps_of) {
   if constexpr (Executor::kIsCuda)
     return most_items_near(
-        executor, atoms, 8.f * parameters.spacing + 2.f * (parameters.max_radius + 1.1f * parameters.spacing + 1e-3f),
+        executor, "fullest cell of atoms", atoms,
+        8.f * parameters.spacing + 2.f * (parameters.max_radius + 1.1f * parameters.spacing + 1e-3f),
         [&](uint64_t near) { return executor.is_few_launches(bricks, executor.team_shape(steps_of(near))); });
   else
     return atoms.count;

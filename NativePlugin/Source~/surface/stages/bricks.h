@@ -5,6 +5,7 @@
 // the surface passes lies in an active brick.
 #pragma once
 
+#include "parallel/anticipation.h"
 #include "parallel/arena.h"
 #include "parallel/atomics.h"
 #include "parallel/error.h"
@@ -29,6 +30,7 @@ struct BrickSet {
   const uint64_t *linear;  // of each active brick
   const int32_t *table;    // linear -> number of the active brick, -1 if inactive; nullptr if the set is sparse
   uint32_t count;
+  const Tally *found = nullptr;  // where their number is, if there may be fewer: the last ones then stand for none
 
   // Number of the active brick at a place of the table of bricks; -1 if there is none.
   QSES_FN int find(const glm::ivec3 &b) const {
@@ -67,6 +69,7 @@ struct FeatureBricks {
       visit_bricks_of_shell(lattice, atom.center, radius, radius, margin(), rows, visit_brick);
     } else {
       const Sphere ball = features.arc_bounds.items[i - features.atoms.count];
+      if (is_no_item(ball)) return;
       visit_bricks_of_shell(lattice, ball.center, 0.f, ball.radius + features.parameters.depth, margin(), rows,
                             visit_brick);
     }
@@ -147,10 +150,20 @@ struct GatherKeys {
   QSES_HOST_DEVICE void operator()(size_t i) const { places[i] = keys[places[i]]; }
 };
 
+// Stands in the list where there may have been one more brick: the first of the box, which is beyond the reach of
+// all atoms. It takes part in all passes as one of which all points are outside, and no look-up finds it.
+constexpr uint64_t kNoBrick = 0;
+
 struct FillBrickTable {
-  const uint64_t *linear;
+  const Tally *found;
+  uint64_t *linear;
   int32_t *table;
-  QSES_HOST_DEVICE void operator()(size_t i) const { table[linear[i]] = static_cast<int32_t>(i); }
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    if (i < found->count)
+      table[linear[i]] = static_cast<int32_t>(i);
+    else
+      linear[i] = kNoBrick;
+  }
 };
 
 struct SortValue {
@@ -247,9 +260,11 @@ BrickSet flag_bricks(Executor &executor, const Items &items, const Lattice &latt
                             ? entries
                             : static_cast<uint64_t>(executor.reduce(entries, LoadCount<uint8_t>{flags.data}));
   Span<uint64_t> linear = executor.template allocate<uint64_t>(room);
-  const uint32_t count = checked_brick_count(executor.compact(entries, IsFlagged{flags.data}, linear));
-  executor.for_each(count, FillBrickTable{linear.data, table.data});
-  return {lattice, linear.data, table.data, count};
+  Tally *const found = executor.template take_counts<Tally>();
+  executor.compact(entries, IsFlagged{flags.data}, linear, &found->count);
+  const uint32_t count = checked_brick_count(executor.expect("bricks", found, Tally{room}).count);
+  executor.for_each(count, FillBrickTable{found, linear.data, table.data});
+  return {lattice, linear.data, table.data, count, found};
 }
 
 template <class Executor, class Items>
@@ -313,6 +328,7 @@ BrickSet collect_bricks(CountingExecutor<Executor> &executor, const Items &items
       (entries <= kSmallTable || entries * kDenseEntryBytes <= visits * kVisitBytes || facts.brick_entries > 0)) {
     FlaggedBricks(executor, entries);
     executor.template allocate<uint64_t>(lists_all_entries(entries, executor.arena().has_budget()) ? entries : count);
+    executor.template take_counts<Tally>();
     executor.compact(entries, 0, Span<uint64_t>{});
     set.table = &some_table;
   } else {

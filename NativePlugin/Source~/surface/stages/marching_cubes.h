@@ -3,6 +3,7 @@
 // owns one vertex, named by counting bits, so the mesh is welded by construction and the same in every run.
 #pragma once
 
+#include "parallel/anticipation.h"
 #include "parallel/atomics.h"
 #include "surface/memory/counting_executor.h"
 #include "surface/mesh/mesh_view.h"
@@ -17,6 +18,14 @@ struct MeshTotals {
   uint32_t leaves;          // that own vertices
   uint32_t border_changes;  // pairs of a brick and an inactive neighbour next to which signs differ
   uint32_t unplaced;        // vertices for which no feature was found; counted while they are emitted
+
+  static MeshTotals anticipated(const MeshTotals &last, const MeshTotals &) {
+    return {and_some_more(last.vertices), and_some_more(last.triangles), and_some_more(last.leaves), 0, 0};
+  }
+  bool covers(const MeshTotals &found) const {
+    return found.vertices <= vertices && found.triangles <= triangles && found.leaves <= leaves &&
+           found.border_changes <= border_changes;
+  }
 };
 
 // 32 bits: what is more does not become a mesh.
@@ -37,9 +46,15 @@ struct MeshLayout {
   uint32_t *leaf_base;      // [brick + 1]: leaves that own vertices before the brick
   BorderSigns *border;      // [brick]
   MeshTotals *totals;
-  uint64_t vertex_total, triangle_total;  // of all bricks
+  uint64_t vertex_total, triangle_total;  // of all bricks; if they are anticipated, there may be fewer
   uint64_t leaf_total;                    // that own vertices
   uint64_t border_changes;                // 0, or the set of bricks must grow before anything is emitted
+
+  // Where more were counted than anticipated nothing may be emitted: there is no room for it, or a brick is missing.
+  QSES_FN bool has_room() const {
+    return totals->vertices <= vertex_total && totals->triangles <= triangle_total && totals->leaves <= leaf_total &&
+           totals->border_changes == 0;
+  }
 };
 
 // Leaf words around a leaf: itself and its neighbours towards larger x, y, z (bit 0, 1, 2 of the place).
@@ -171,7 +186,6 @@ struct CountLeaf {
   MeshLayout layout;
   const uint8_t *case_triangles;
   QSES_HOST_DEVICE void operator()(size_t i) const {
-    if (i == 0) *layout.totals = {};
     const int brick = static_cast<int>(i >> 3), leaf = static_cast<int>(i & 7);
     uint64_t *const crossing = layout.crossing + 3 * i;
     layout.triangle_rank[i] =
@@ -198,7 +212,6 @@ struct CountBrick {
   const uint8_t *case_triangles;
   BrickTotals totals;
   void operator()(size_t brick) const {
-    if (brick == 0) *layout.totals = {};
     const UpperBricks upper = upper_bricks(bricks, static_cast<uint32_t>(brick));
     uint64_t *const crossing = layout.crossing + brick * kBrickMasks;
     uint16_t vertex_counts[kBrickMasks], triangle_counts[kLeavesPerBrick];
@@ -326,7 +339,7 @@ MeshCounts lay_out_mesh(Executor &executor, const BrickSet &bricks, const uint64
   layout->triangle_base = triangle_base.data;
   layout->leaf_base = leaf_base.data;
   layout->border = executor.template allocate<BorderSigns>(n).data;
-  layout->totals = executor.template allocate<MeshTotals>(1).data;
+  layout->totals = executor.template take_counts<MeshTotals>();
   const auto mark = executor.arena().mark();
   Span<uint32_t> vertices = executor.template allocate<uint32_t>(n);
   Span<uint32_t> triangles = executor.template allocate<uint32_t>(n);
@@ -342,7 +355,7 @@ MeshCounts lay_out_mesh(Executor &executor, const BrickSet &bricks, const uint64
   executor.exclusive_scan(n, LoadCount<uint32_t>{triangles.data}, triangle_base);
   executor.exclusive_scan(n, LoadCount<uint32_t>{owning.data}, leaf_base);
   executor.for_each(n, CountBorderChanges{bricks, *layout});
-  const MeshTotals totals = n > 0 ? executor.fetch(layout->totals) : MeshTotals{};
+  const MeshTotals totals = n > 0 ? executor.expect("mesh", layout->totals, MeshTotals{}) : MeshTotals{};
   layout->border_changes = totals.border_changes;
   // The bases wrap if there are too many; then the true totals are summed up for the message.
   if (!Executor::kCounts && n * kBrickPoints * 5 > 0xffffffffull) {

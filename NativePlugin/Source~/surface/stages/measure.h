@@ -37,7 +37,7 @@ struct BoundsScratch {
 };
 
 struct FindBounds {
-  static constexpr size_t kChunk = 8192;
+  static constexpr size_t kChunk = 1024;
   MeshView mesh;
   size_t vertices;
   const uint32_t *extra;  // a number to be copied behind the six, or nullptr

@@ -3,6 +3,8 @@
 // again by the runs of cells along x. Used for the atoms (edge p + r_max) and for the balls around exposed arcs.
 #pragma once
 
+#include "parallel/anticipation.h"
+#include "parallel/atomics.h"
 #include "parallel/executor.h"
 #include "surface/geometry/types.h"
 
@@ -74,13 +76,17 @@ QSES_FN CellBox cells_around(const CellLayout &cells, const Vec3<float> &low, co
       cells.cell_along(low.z, cells.origin.z, cells.count.z), cells.cell_along(high.z, cells.origin.z, cells.count.z)};
 }
 
+// Stands where there may have been one more item: in no cell, behind all others.
+QSES_FN bool is_no_item(const Sphere &s) { return s.radius < 0.f; }
+QSES_FN Sphere no_item() { return {glm::vec3(kFarAway), -1.f}; }
+
 struct HashItems {
   CellLayout cells;
   const Sphere *items;
   uint64_t *keys;
   uint32_t *order;
   QSES_HOST_DEVICE void operator()(size_t i) const {
-    keys[i] = cells.hash(items[i].center);
+    keys[i] = is_no_item(items[i]) ? cells.cells() : cells.hash(items[i].center);
     order[i] = static_cast<uint32_t>(i);
   }
 };
@@ -157,36 +163,38 @@ void for_parts_of_met_items(uint64_t near, uint64_t most, const Pass &pass) {
   }
 }
 
-// Items in the cell of each item.
-struct LargestNumber {
-  uint32_t value = 0;
-  QSES_FN LargestNumber &operator+=(const LargestNumber &other) {
-    value = value > other.value ? value : other.value;
-    return *this;
+// Items in the fullest cell.
+struct FullestCell {
+  uint32_t items;
+  static FullestCell anticipated(const FullestCell &last, const FullestCell &most) {
+    return {std::min(and_some_more(last.items), most.items)};
   }
+  bool covers(const FullestCell &found) const { return found.items <= items; }
 };
-struct CountCellOfItem {
+struct FindFullestCell {
   NeighborGridView grid;
-  QSES_HOST_DEVICE LargestNumber operator()(size_t i) const {
+  FullestCell *fullest;
+  QSES_HOST_DEVICE void operator()(size_t i) const {
     const CellLayout &cells = grid.cells;
     const glm::vec3 p = grid.items[i].center;
     const int x = cells.cell_along(p.x, cells.origin.x, cells.count.x);
     const ItemRun run = grid.run(x, x, cells.cell_along(p.y, cells.origin.y, cells.count.y),
                                  cells.cell_along(p.z, cells.origin.z, cells.count.z));
-    LargestNumber number;
-    number.value = run.end - run.begin;
-    return number;
+    if (run.end - run.begin > atomic_load(&fullest->items)) atomic_max(&fullest->items, run.end - run.begin);
   }
 };
 
 // How many items look-ups in boxes of this extent meet, at most: for the steps of launches on the GPU. Where it is not
-// enough to take all items there are, those in the fullest cell are counted. Waits then.
+// enough to take all items there are, those in the fullest cell are counted. name: of the grid.
 template <class Executor, class IsEnough>
-uint64_t most_items_near(Executor &executor, const NeighborGridView &grid, float extent, const IsEnough &is_enough) {
+uint64_t most_items_near(Executor &executor, const char *name, const NeighborGridView &grid, float extent,
+                         const IsEnough &is_enough) {
   if (grid.count == 0 || is_enough(uint64_t(grid.count))) return grid.count;
   const double edges = std::floor(static_cast<double>(extent) * static_cast<double>(grid.cells.inverse_edge)) + 2;
-  const uint64_t fullest = executor.template reduce<LargestNumber>(grid.count, CountCellOfItem{grid}).value;
-  return static_cast<uint64_t>(std::min(static_cast<double>(grid.count), edges * edges * edges * double(fullest)));
+  FullestCell *const fullest = executor.template take_counts<FullestCell>();
+  executor.for_each(grid.count, FindFullestCell{grid, fullest});
+  const double items = executor.expect(name, fullest, FullestCell{grid.count}).items;
+  return static_cast<uint64_t>(std::min(static_cast<double>(grid.count), edges * edges * edges * items));
 }
 
 // A grid of n items. make_items() returns them as a Span<Sphere>; what it allocates is given up again, as is all else

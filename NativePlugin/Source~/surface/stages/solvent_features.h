@@ -37,6 +37,8 @@ struct SolventFeatures {
   Span<ArcAtoms> arc_atoms;  // of each arc, if the surface is that of the balls; else none
   Span<uint8_t> exposed;     // CPU only: per atom 1 or 0, and 8 bytes more
   uint32_t most_caps = 0;    // of an atom; GPU only
+  // Where the number of arcs is, if there may be fewer; nullptr: it is exact.
+  const unsigned long long *arc_count = nullptr;
 };
 
 // The features as the later stages see them: arcs sorted into a neighbour grid by their enclosing balls.
@@ -88,8 +90,13 @@ struct RemoveContainedAtoms {
 
 struct BoundArcs {
   const Arc *arcs;
+  const unsigned long long *count;  // nullptr: of as many as there are
   Sphere *bounds;
   QSES_HOST_DEVICE void operator()(size_t i) const {
+    if (count && i >= *count) {
+      bounds[i] = no_item();
+      return;
+    }
     bounds[i] = arc_bound(arcs[i]);
     bounds[i].radius += 1e-4f;
   }
@@ -97,9 +104,12 @@ struct BoundArcs {
 
 struct GatherArcs {
   const Arc *arcs;
+  const unsigned long long *count;
   const uint32_t *order;
   Arc *sorted;
-  QSES_HOST_DEVICE void operator()(size_t i) const { sorted[i] = arcs[order[i]]; }
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    if (!count || i < *count) sorted[i] = arcs[order[i]];  // those that are not there come last
+  }
 };
 
 struct CopyArcs {

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+// Counts that nobody waits for. Where a stage counts on the device what the host needs to know (how many bricks there
+// are, how many vertices), reading that back would leave the device without work. A frame that is like the one before
+// goes on with what was counted then and some more; later one look at all the counts tells whether that was enough. If
+// it was not, the frame is done again, and waits for each.
+//
+// A type of counts has two members: anticipated(last, most), how many there may be if there were `last` in the frame
+// before, and at most `most`; and covers(found), whether that is enough for what was found.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+namespace quickses {
+
+// Thrown where a frame was done with too little room: the same is to be done again. What is known of it is forgotten.
+struct AnticipatedTooLittle {};
+
+// So many, and what may be more in the next frame of a trajectory.
+template <class T>
+constexpr T and_some_more(T n) {
+  return n + n / 16 + 64;
+}
+
+// A single number.
+struct Tally {
+  uint64_t count;
+  static Tally anticipated(const Tally &last, const Tally &most) {
+    return {std::min(and_some_more(last.count), most.count)};
+  }
+  bool covers(const Tally &found) const { return found.count <= count; }
+};
+
+// What was counted in the last frame, by page (what frames share, or a level) and name; and what this one relies on.
+class Anticipation {
+ public:
+  // Frames of one kind follow each other; another kind is not like those before. 0: nothing is anticipated, or noted.
+  void open(uint64_t kind) {
+    is_open_ = kind != 0;
+    relied_on_.clear();
+    counting_ = 0;
+    if (!is_open_) return;
+    if (kind != kind_) pages_.clear();
+    kind_ = kind;
+    page_ = 0;
+    waiting_frames_ = waiting_frames_ > 0 ? waiting_frames_ - 1 : 0;
+  }
+  bool is_open() const { return is_open_; }
+  void turn_to(uint32_t page) { page_ = page; }
+
+  // False: whoever asks has to wait, and note() what there is.
+  template <class T>
+  bool anticipate(const char *name, size_t place, const T &most, T *expected) {
+    if (waiting_frames_ > 0) return false;
+    const Entry *const last = find(name);
+    if (!last) return false;
+    *expected = T::anticipated(last->as<T>(), most);
+    relied_on_.push_back({page_, place, Entry(name, *expected), &is_covered<T>});
+    return true;
+  }
+  template <class T>
+  void note(const char *name, const T &found) {
+    note(page_, Entry(name, found));
+  }
+
+  bool relies_on_something() const { return !relied_on_.empty(); }
+  // What is relied on by now is about to be counted.
+  void note_counting() { counting_ = relied_on_.size(); }
+  bool is_counting() const { return counting_ > 0; }
+  // counted: where the counts are whose places were given. Throws AnticipatedTooLittle.
+  void verify(const unsigned char *counted) {
+    bool enough = true;
+    const auto end = relied_on_.begin() + static_cast<std::ptrdiff_t>(std::min(counting_, relied_on_.size()));
+    for (auto relied = relied_on_.begin(); relied != end; ++relied) {
+      const Reliance &r = *relied;
+      enough &= r.is_covered(counted + r.place, r.expected.bytes);
+      Entry found = r.expected;
+      std::memcpy(found.bytes, counted + r.place, sizeof found.bytes);
+      note(r.page, found);
+    }
+    relied_on_.erase(relied_on_.begin(), end);
+    counting_ = 0;
+    if (enough) return;
+    relied_on_.clear();
+    // Counts that come after one that was not enough mean nothing. Frames that are unlike each other rather wait.
+    pages_.clear();
+    too_little_ = std::min(too_little_ + 1, 6u);
+    waiting_frames_ = 1u << too_little_;
+    throw AnticipatedTooLittle{};
+  }
+
+  static constexpr size_t kMostBytes = 64;  // of one type of counts
+
+ private:
+  struct Entry {
+    const char *name;
+    alignas(8) unsigned char bytes[kMostBytes] = {};
+    template <class T>
+    Entry(const char *entry, const T &value) : name(entry) {
+      static_assert(sizeof(T) <= kMostBytes, "counts are few");
+      std::memcpy(bytes, &value, sizeof value);
+    }
+    template <class T>
+    T as() const {
+      T value;
+      std::memcpy(&value, bytes, sizeof value);
+      return value;
+    }
+  };
+  struct Page {
+    uint32_t number;
+    std::vector<Entry> entries;
+  };
+  struct Reliance {
+    uint32_t page;
+    size_t place;
+    Entry expected;
+    bool (*is_covered)(const unsigned char *found, const unsigned char *expected);
+  };
+
+  template <class T>
+  static bool is_covered(const unsigned char *found, const unsigned char *expected) {
+    T f, e;
+    std::memcpy(&f, found, sizeof f);
+    std::memcpy(&e, expected, sizeof e);
+    return e.covers(f);
+  }
+  const Entry *find(const char *name) const {
+    for (const Page &page : pages_)
+      if (page.number == page_)
+        for (const Entry &entry : page.entries)
+          if (std::strcmp(entry.name, name) == 0) return &entry;
+    return nullptr;
+  }
+  void note(uint32_t number, const Entry &found) {
+    auto page = std::find_if(pages_.begin(), pages_.end(), [&](const Page &p) { return p.number == number; });
+    if (page == pages_.end()) page = pages_.insert(page, Page{number, {}});
+    for (Entry &entry : page->entries)
+      if (std::strcmp(entry.name, found.name) == 0) {
+        entry = found;
+        return;
+      }
+    page->entries.push_back(found);
+  }
+
+  bool is_open_ = false;
+  uint64_t kind_ = 0;
+  uint32_t page_ = 0;
+  std::vector<Page> pages_;
+  std::vector<Reliance> relied_on_;
+  size_t counting_ = 0;  // the first so many
+  unsigned too_little_ = 0, waiting_frames_ = 0;
+};
+
+}  // namespace quickses

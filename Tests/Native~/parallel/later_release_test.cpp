@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+// Memory that nobody waits for is given back all the same, once, and not by whoever hands it over.
+#include "parallel/later_release.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <thread>
+#include <vector>
+
+namespace quickses {
+namespace {
+
+struct Item {
+  std::atomic<int> releases{0};
+  std::atomic<std::thread::id> thread{};
+};
+void release_item(void *memory) {
+  Item &item = *static_cast<Item *>(memory);
+  item.thread = std::this_thread::get_id();
+  ++item.releases;
+}
+
+std::atomic<bool> is_open{false};
+void release_behind_gate(void *memory) {
+  while (!is_open) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  release_item(memory);
+}
+
+void wait_for(const Item &item) {
+  while (item.releases == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+TEST(LaterRelease, ReleasesOnceOnAnotherThread) {
+  std::vector<Item> items(100);
+  for (Item &item : items) release_later(release_item, &item);
+  for (const Item &item : items) wait_for(item);
+  for (const Item &item : items) {
+    EXPECT_EQ(item.releases, 1);
+    EXPECT_NE(item.thread.load(), std::this_thread::get_id());
+  }
+}
+
+// Were it released here, the gate would never open.
+TEST(LaterRelease, DoesNotWait) {
+  Item slow, next;
+  release_later(release_behind_gate, &slow);
+  release_later(release_item, &next);
+  EXPECT_EQ(slow.releases, 0);
+  is_open = true;
+  wait_for(slow);
+  wait_for(next);
+}
+
+TEST(LaterRelease, HasNothingToDoForNull) {
+  release_later([](void *) { ADD_FAILURE() << "there is no memory"; }, nullptr);
+}
+
+TEST(LaterRelease, TakesItemsFromAllThreads) {
+  std::vector<Item> items(64);
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 8; ++t)
+    threads.emplace_back([&items, t] {
+      for (int k = 0; k < 8; ++k) release_later(release_item, &items[static_cast<size_t>(8 * t + k)]);
+    });
+  for (std::thread &thread : threads) thread.join();
+  for (const Item &item : items) wait_for(item);
+  for (const Item &item : items) EXPECT_EQ(item.releases, 1);
+}
+
+}  // namespace
+}  // namespace quickses

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+// A frame is what it is by itself, whatever the frames before it were like: on the GPU it may go on with what was
+// counted in them (parallel/anticipation.h), which may be too little, or far too much.
+#include "surface/exact_fixture.h"
+#include "surface/surface_checks.h"
+
+#include <cmath>
+#include <cstring>
+#include <iterator>
+
+namespace {
+
+using namespace surface_checks;
+
+void expect_same(const Surface &a, const Surface &b) {
+  EXPECT_EQ(a.mesh.indices, b.mesh.indices);
+  EXPECT_EQ(a.mesh.owners, b.mesh.owners);
+  ASSERT_EQ(a.mesh.positions.size(), b.mesh.positions.size());
+  EXPECT_EQ(std::memcmp(a.mesh.positions.data(), b.mesh.positions.data(), 4 * a.mesh.positions.size()), 0);
+  ASSERT_EQ(a.mesh.normals.size(), b.mesh.normals.size());
+  EXPECT_EQ(std::memcmp(a.mesh.normals.data(), b.mesh.normals.data(), 4 * a.mesh.normals.size()), 0);
+  EXPECT_EQ(a.report.area, b.report.area);
+  EXPECT_EQ(a.report.volume, b.report.volume);
+  EXPECT_EQ(a.report.brick_count, b.report.brick_count);
+  EXPECT_EQ(a.report.mesh_bytes, b.report.mesh_bytes);
+  EXPECT_EQ(a.report.unplaced_vertices, b.report.unplaced_vertices);
+  EXPECT_EQ(a.report.attempts, b.report.attempts);
+}
+
+Atoms scaled(const Atoms &atoms, double factor) {
+  Atoms out;
+  for (size_t i = 0; i < atoms.size(); ++i) {
+    const auto p = atoms.center(i);
+    out.add(factor * p[0], factor * p[1], factor * p[2], static_cast<double>(atoms.radii[i]));
+  }
+  return out;
+}
+
+// Breathing, then bursting apart, collapsing to almost a point, and as at first.
+std::vector<Atoms> frames_of(const Atoms &atoms) {
+  std::vector<Atoms> frames;
+  for (double factor : {1.0, 1.0, 1.004, 0.997, 1.02, 1.0, 2.5, 2.5, 2.49, 6.0, 1.0, 0.02, 0.02, 1.0, 1.0, 40.0, 1.0})
+    frames.push_back(scaled(atoms, factor));
+  for (int k = 0; k < 4; ++k) frames.push_back(turned(atoms, 30.0 * k, -7.0 * k, 0));
+  return frames;
+}
+
+void expect_each_as_by_itself(const std::vector<Atoms> &frames, const qses_settings &s) {
+  const Context context;
+  for (size_t k = 0; k < frames.size(); ++k) {
+    SCOPED_TRACE("frame " + std::to_string(k));
+    expect_same(compute(context, frames[k], s), compute(frames[k], s));
+  }
+}
+
+TEST(FollowingFrames, OfASmallMolecule) { expect_each_as_by_itself(frames_of(cluster(60, 3)), settings()); }
+
+TEST(FollowingFrames, OfALargerMolecule) { expect_each_as_by_itself(frames_of(cluster(3000, 4)), settings()); }
+
+TEST(FollowingFrames, WithSomeMoreSteps) {
+  const Atoms molecule = cluster(300, 5);
+  using Change = void (*)(qses_settings *);
+  const Change changes[] = {
+      [](qses_settings *s) { s->surface = QSES_SURFACE_SAS; },
+      [](qses_settings *s) { s->surface = QSES_SURFACE_VDW; },
+      [](qses_settings *s) { s->relaxation_steps = 3; },
+      [](qses_settings *s) { s->creases = 1; },
+      [](qses_settings *s) { s->hard_edges = 1; },
+      [](qses_settings *s) { s->components = s->component_ids = 1; },
+      [](qses_settings *s) { s->pickable = 1; },
+      [](qses_settings *s) { s->vertex_layout = QSES_VERTICES_INTERLEAVED; },
+      [](qses_settings *s) { s->slice_size = 40; },
+      [](qses_settings *s) { s->method = QSES_METHOD_GRID; },
+      [](qses_settings *s) { s->spacing = 2.f; },
+  };
+  for (size_t k = 0; k < std::size(changes); ++k) {
+    SCOPED_TRACE("change " + std::to_string(k));
+    qses_settings s = settings();
+    changes[k](&s);
+    expect_each_as_by_itself(frames_of(molecule), s);
+  }
+}
+
+// What is learnt of one surface must not be taken for another one's.
+TEST(FollowingFrames, OfManyKindsInTurn) {
+  const Context context;
+  const Atoms molecules[] = {cluster(200, 6), cluster(200, 7), cluster(900, 8), Atoms().add(1, 2, 3, 1.7)};
+  for (int round = 0; round < 3; ++round)
+    for (const Atoms &atoms : molecules)
+      for (const double spacing : {0.5, 1.0, 0.35})
+        for (const double probe : {1.4, 0.7}) {
+          const qses_settings s = settings(spacing, probe);
+          expect_same(compute(context, atoms, s), compute(atoms, s));
+        }
+}
+
+Surface finest_of_ladder(qses_context *context, const Atoms &atoms, const qses_settings &s) {
+  set_atoms(context, atoms);
+  expect_ok(qses_begin(context, &s));
+  expect_ok(qses_wait(context, -1, nullptr));
+  qses_mesh mesh;
+  qses_mesh_init(&mesh);
+  expect_ok(qses_collect(context, &mesh));
+  return copy_surface(context);
+}
+
+// Levels, some of which a job before has made of atoms that are much the same.
+TEST(FollowingFrames, OfLadders) {
+  const std::vector<Atoms> frames = frames_of(cluster(400, 9));
+  const Context context;
+  for (size_t k = 0; k < frames.size(); ++k) {
+    SCOPED_TRACE("frame " + std::to_string(k));
+    qses_settings s = settings();
+    s.level_count = k % 3;
+    s.levels[0] = 2.f;
+    s.levels[1] = 1.f;
+    expect_same(finest_of_ladder(context, frames[k], s), finest_of_ladder(Context(), frames[k], s));
+  }
+}
+
+}  // namespace
