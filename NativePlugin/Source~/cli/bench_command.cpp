@@ -10,6 +10,7 @@
 #include "cli/bench.h"
 #include "cli/commands.h"
 #include "cli/copies.h"
+#include "cli/engine_pool.h"
 #include "cli/exit_code.h"
 #include "cli/input.h"
 #include "cli/text_output.h"
@@ -66,18 +67,6 @@ Engine start_engine(const BenchSubject &subject) {
 
 namespace {
 
-// Engines that share the threads, each for one surface at a time.
-std::vector<Engine> start_engines_in_flight(const ComputeOptions &options, qses_backend backend) {
-  const unsigned threads = options.threads ? options.threads : std::max(1u, std::thread::hardware_concurrency());
-  const unsigned count = backend == QSES_BACKEND_CUDA ? std::clamp(threads, 2u, kMostInFlight) : threads;
-  ComputeOptions share = options;
-  share.threads = std::max(1u, threads / count);
-  share.memory = options.memory / count;
-  std::vector<Engine> engines;
-  for (unsigned k = 0; k < count; ++k) engines.push_back(start_engine(share, true));
-  return engines;
-}
-
 void compute_window(Engine &engine, const io::Structure &structure, const Window &w, const qses_settings &settings) {
   if (qses_set_atoms(engine.context(), &structure.positions[3 * w.first], 0, &structure.radii[w.first], w.count) !=
       QSES_OK)
@@ -85,14 +74,15 @@ void compute_window(Engine &engine, const io::Structure &structure, const Window
   engine.compute(settings);
 }
 
-// Each engine takes the next window when it has done one.
-void compute_windows(std::vector<Engine> &engines, const io::Structure &structure, const std::vector<Window> &windows,
-                     const qses_settings &settings) {
+// As many at a time as there are engines.
+void compute_windows(EnginePool &engines, unsigned in_flight, const io::Structure &structure,
+                     const std::vector<Window> &windows, const qses_settings &settings) {
   std::atomic<size_t> next{0};
   std::vector<std::future<void>> workers;
-  for (Engine &engine : engines)
+  for (unsigned n = 0; n < in_flight; ++n)
     workers.push_back(std::async(std::launch::async, [&] {
-      for (size_t k; (k = next++) < windows.size();) compute_window(engine, structure, windows[k], settings);
+      for (size_t k; (k = next++) < windows.size();)
+        engines.run([&](Engine &engine) { compute_window(engine, structure, windows[k], settings); });
     }));
   for (std::future<void> &worker : workers) worker.wait();
   for (std::future<void> &worker : workers) worker.get();
@@ -102,7 +92,13 @@ void compute_windows(std::vector<Engine> &engines, const io::Structure &structur
 
 std::string bench_small(const BenchSubject &subject, Json *entry) {
   const auto &[structure, path, options, backend] = subject;
-  std::vector<Engine> engines = start_engines_in_flight(options.compute, backend);
+  const unsigned threads =
+      options.compute.threads ? options.compute.threads : std::max(1u, std::thread::hardware_concurrency());
+  const unsigned in_flight = backend == QSES_BACKEND_CUDA ? std::clamp(threads, 2u, kMostInFlight) : threads;
+  ComputeOptions share = options.compute;
+  share.threads = std::max(1u, threads / in_flight);
+  if (share.memory != 0) share.memory = std::max<uint64_t>(1, share.memory / in_flight);
+  EnginePool engines(share, std::vector<int>(in_flight, chosen_devices(share, 0).front()), [](Engine &) {});
   const std::vector<Window> windows = cut_windows(structure, options.bench.small);
   const qses_settings settings = settings_of(options.compute);
   size_t fewest = windows.front().count, most = fewest;
@@ -113,18 +109,18 @@ std::string bench_small(const BenchSubject &subject, Json *entry) {
   std::vector<double> times;
   for (unsigned k = 0; k <= options.bench.repeat; ++k) {
     const auto start = Clock::now();
-    compute_windows(engines, structure, windows, settings);
+    compute_windows(engines, in_flight, structure, windows, settings);
     if (k > 0) times.push_back(ms_since(start));  // the first round warms up
   }
   const double total = median(times);
   (*entry)["small"] = {{"surfaces", windows.size()},
-                       {"in_flight", engines.size()},
+                       {"in_flight", in_flight},
                        {"fewest_atoms", fewest},
                        {"most_atoms", most},
                        {"total", total}};
   char text[200];
-  std::snprintf(text, sizeof text, "%zu surfaces of %zu to %zu atoms, %zu at a time, %s, %.3f ms in all (median of %u)",
-                windows.size(), fewest, most, engines.size(), name_of(backend), total, options.bench.repeat);
+  std::snprintf(text, sizeof text, "%zu surfaces of %zu to %zu atoms, %u at a time, %s, %.3f ms in all (median of %u)",
+                windows.size(), fewest, most, in_flight, name_of(backend), total, options.bench.repeat);
   return text;
 }
 

@@ -25,16 +25,18 @@ constexpr T and_some_more(T n) {
   return n + n / 16 + 64;
 }
 
-// A single number.
+// A single number. T: uint32_t or uint64_t.
+template <class T>
 struct Tally {
-  uint64_t count;
+  T count;
   static Tally anticipated(const Tally &last, const Tally &most) {
     return {std::min(and_some_more(last.count), most.count)};
   }
   bool covers(const Tally &found) const { return found.count <= count; }
 };
 
-// What was counted in the last frame, by page (what frames share, or a level) and name; and what this one relies on.
+// What was counted in the last frame, by page (a number: the level's; 0: of what levels share) and name; and what this
+// one relies on.
 class Anticipation {
  public:
   // Frames of one kind follow each other; another kind is not like those before. 0: nothing is anticipated, or noted.
@@ -49,7 +51,7 @@ class Anticipation {
     waiting_frames_ = waiting_frames_ > 0 ? waiting_frames_ - 1 : 0;
   }
   bool is_open() const { return is_open_; }
-  void turn_to(uint32_t page) { page_ = page; }
+  void turn_to(float page) { page_ = page; }
 
   // False: whoever asks has to wait, and note() what there is.
   template <class T>
@@ -83,7 +85,10 @@ class Anticipation {
     }
     relied_on_.erase(relied_on_.begin(), end);
     counting_ = 0;
-    if (enough) return;
+    if (enough) {
+      if (too_little_ > 0) --too_little_;
+      return;
+    }
     relied_on_.clear();
     // Counts that come after one that was not enough mean nothing. Frames that are unlike each other rather wait.
     pages_.clear();
@@ -111,11 +116,11 @@ class Anticipation {
     }
   };
   struct Page {
-    uint32_t number;
+    float number;
     std::vector<Entry> entries;
   };
   struct Reliance {
-    uint32_t page;
+    float page;
     size_t place;
     Entry expected;
     bool (*is_covered)(const unsigned char *found, const unsigned char *expected);
@@ -135,7 +140,7 @@ class Anticipation {
           if (std::strcmp(entry.name, name) == 0) return &entry;
     return nullptr;
   }
-  void note(uint32_t number, const Entry &found) {
+  void note(float number, const Entry &found) {
     auto page = std::find_if(pages_.begin(), pages_.end(), [&](const Page &p) { return p.number == number; });
     if (page == pages_.end()) page = pages_.insert(page, Page{number, {}});
     for (Entry &entry : page->entries)
@@ -148,11 +153,12 @@ class Anticipation {
 
   bool is_open_ = false;
   uint64_t kind_ = 0;
-  uint32_t page_ = 0;
+  float page_ = 0;
   std::vector<Page> pages_;
   std::vector<Reliance> relied_on_;
-  size_t counting_ = 0;  // the first so many
-  unsigned too_little_ = 0, waiting_frames_ = 0;
+  size_t counting_ = 0;      // the first so many
+  unsigned too_little_ = 0;  // lately
+  unsigned waiting_frames_ = 0;
 };
 
 }  // namespace quickses

@@ -250,7 +250,7 @@ class CpuExecutor {
     return *counts;
   }
   void open_counts(uint64_t, bool = false) {}
-  void turn_counts_to(uint32_t) {}
+  void turn_counts_to(float) {}
   void send_counts() {}
   bool verify_counts() { return false; }
   template <class T>

@@ -318,7 +318,7 @@ class CudaExecutor {
     counts_used_ = 0;
     if (anticipation_.is_open()) fill(Span<unsigned char>{counts_, kCountsBytes}, 0);
   }
-  void turn_counts_to(uint32_t page) { anticipation_.turn_to(page); }
+  void turn_counts_to(float page) { anticipation_.turn_to(page); }
 
   // Counts of zero, for as long as what is allocated now.
   template <class T>

@@ -219,9 +219,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
         spacing_ = spacings[k];
         if (work.makes_mesh) {
           enter_level(work, spacing_);
-          uint32_t page;
-          std::memcpy(&page, &spacing_, sizeof page);
-          executor_.turn_counts_to(page);
+          executor_.turn_counts_to(spacing_);
           check_forecast(work, in);
         }
         built = build_level(work);

@@ -7,7 +7,9 @@
 namespace quickses {
 namespace {
 
-constexpr Tally kPlenty{1000000};
+using Bricks = Tally<uint64_t>;
+
+constexpr Bricks kPlenty{1000000};
 
 struct Counted {
   alignas(8) unsigned char bytes[2 * Anticipation::kMostBytes] = {};
@@ -19,7 +21,7 @@ struct Counted {
 
 TEST(Anticipation, KnowsNothingAtFirst) {
   Anticipation a;
-  Tally expected;
+  Bricks expected;
   a.open(7);
   EXPECT_FALSE(a.anticipate("bricks", 0, kPlenty, &expected));
   EXPECT_FALSE(a.relies_on_something());
@@ -27,23 +29,23 @@ TEST(Anticipation, KnowsNothingAtFirst) {
 
 TEST(Anticipation, ExpectsWhatWasCountedAndSomeMore) {
   Anticipation a;
-  Tally expected{};
+  Bricks expected{};
   a.open(7);
-  a.note("bricks", Tally{1600});
+  a.note("bricks", Bricks{1600});
   a.open(7);
   ASSERT_TRUE(a.anticipate("bricks", 0, kPlenty, &expected));
   EXPECT_GT(expected.count, 1600u);
   EXPECT_LT(expected.count, 2 * 1600u);
   a.open(7);
-  ASSERT_TRUE(a.anticipate("bricks", 0, Tally{1610}, &expected));
+  ASSERT_TRUE(a.anticipate("bricks", 0, Bricks{1610}, &expected));
   EXPECT_EQ(expected.count, 1610u) << "no more than there is room for";
 }
 
 TEST(Anticipation, FollowsWhatIsFound) {
   Anticipation a;
-  Tally expected{};
+  Bricks expected{};
   a.open(7);
-  a.note("bricks", Tally{1600});
+  a.note("bricks", Bricks{1600});
   for (uint64_t found : {1650u, 1500u, 1580u}) {
     a.open(7);
     ASSERT_TRUE(a.anticipate("bricks", 0, kPlenty, &expected));
@@ -51,16 +53,16 @@ TEST(Anticipation, FollowsWhatIsFound) {
     ASSERT_NO_THROW(a.verify(Counted(found).bytes));
     a.open(7);
     ASSERT_TRUE(a.anticipate("bricks", 0, kPlenty, &expected));
-    EXPECT_EQ(expected.count, Tally::anticipated(Tally{found}, kPlenty).count);
+    EXPECT_EQ(expected.count, Bricks::anticipated(Bricks{found}, kPlenty).count);
   }
 }
 
 TEST(Anticipation, NoticesTooLittleAndForgets) {
   Anticipation a;
-  Tally expected{};
+  Bricks expected{};
   a.open(7);
-  a.note("bricks", Tally{1600});
-  a.note("vertices", Tally{10});
+  a.note("bricks", Bricks{1600});
+  a.note("vertices", Bricks{10});
   a.open(7);
   ASSERT_TRUE(a.anticipate("bricks", 0, kPlenty, &expected));
   ASSERT_TRUE(a.anticipate("vertices", Anticipation::kMostBytes, kPlenty, &expected));
@@ -73,12 +75,12 @@ TEST(Anticipation, NoticesTooLittleAndForgets) {
 
 TEST(Anticipation, WaitsLongerForFramesThatAreUnlikeEachOther) {
   Anticipation a;
-  Tally expected{};
+  Bricks expected{};
   int failures = 0, frames = 0;
   for (; frames < 200; ++frames) {
     a.open(7);
     if (!a.anticipate("bricks", 0, kPlenty, &expected)) {
-      a.note("bricks", Tally{100});
+      a.note("bricks", Bricks{100});
       continue;
     }
     a.note_counting();
@@ -91,9 +93,9 @@ TEST(Anticipation, WaitsLongerForFramesThatAreUnlikeEachOther) {
 
 TEST(Anticipation, IsOfOneKindOfFrames) {
   Anticipation a;
-  Tally expected{};
+  Bricks expected{};
   a.open(7);
-  a.note("bricks", Tally{1600});
+  a.note("bricks", Bricks{1600});
   a.open(8);
   EXPECT_FALSE(a.anticipate("bricks", 0, kPlenty, &expected));
   a.open(7);
@@ -102,25 +104,48 @@ TEST(Anticipation, IsOfOneKindOfFrames) {
 
 TEST(Anticipation, IsOfOnePage) {
   Anticipation a;
-  Tally expected{};
+  Bricks expected{};
   a.open(7);
   a.turn_to(1);
-  a.note("bricks", Tally{1600});
+  a.note("bricks", Bricks{1600});
   a.turn_to(2);
   EXPECT_FALSE(a.anticipate("bricks", 0, kPlenty, &expected));
-  a.note("bricks", Tally{160});
+  a.note("bricks", Bricks{160});
   a.turn_to(1);
   ASSERT_TRUE(a.anticipate("bricks", 0, kPlenty, &expected));
   EXPECT_GE(expected.count, 1600u);
 }
 
+TEST(Anticipation, ForgivesWhatWasLongAgo) {
+  Anticipation a;
+  Bricks expected{};
+  int waiting = 0;
+  for (int jump = 0; jump < 8; ++jump) {
+    waiting = 0;
+    for (int frame = 0; frame < 100; ++frame) {
+      a.open(7);
+      if (!a.anticipate("bricks", 0, kPlenty, &expected)) {
+        a.note("bricks", Bricks{100});
+        ++waiting;
+        continue;
+      }
+      a.note_counting();
+      if (frame == 50)
+        EXPECT_THROW(a.verify(Counted(5000).bytes), AnticipatedTooLittle);
+      else
+        EXPECT_NO_THROW(a.verify(Counted(100).bytes));
+    }
+  }
+  EXPECT_LE(waiting, 2) << "one jump in a hundred frames";
+}
+
 // What is counted later than the counts were sent is looked at the next time.
 TEST(Anticipation, VerifiesWhatWasBeingCounted) {
   Anticipation a;
-  Tally expected{};
+  Bricks expected{};
   a.open(7);
-  a.note("bricks", Tally{1600});
-  a.note("left", Tally{10});
+  a.note("bricks", Bricks{1600});
+  a.note("left", Bricks{10});
   a.open(7);
   ASSERT_TRUE(a.anticipate("bricks", 0, kPlenty, &expected));
   a.note_counting();

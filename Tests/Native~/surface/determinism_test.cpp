@@ -17,19 +17,6 @@ namespace {
 
 using namespace surface_checks;
 
-void expect_same_bytes(const Surface &a, const Surface &b) {
-  EXPECT_EQ(a.mesh.indices, b.mesh.indices);
-  EXPECT_EQ(a.mesh.owners, b.mesh.owners);
-  EXPECT_EQ(a.patches, b.patches);
-  // Bytes, not values: NaN or -0 would hide differences.
-  ASSERT_EQ(a.mesh.positions.size(), b.mesh.positions.size());
-  EXPECT_EQ(std::memcmp(a.mesh.positions.data(), b.mesh.positions.data(), 4 * a.mesh.positions.size()), 0);
-  ASSERT_EQ(a.mesh.normals.size(), b.mesh.normals.size());
-  EXPECT_EQ(std::memcmp(a.mesh.normals.data(), b.mesh.normals.data(), 4 * a.mesh.normals.size()), 0);
-  EXPECT_EQ(a.report.area, b.report.area);
-  EXPECT_EQ(a.report.volume, b.report.volume);
-}
-
 struct Case {
   const char *name;
   Atoms atoms;
@@ -78,17 +65,6 @@ TEST(SameBytes, WithAnyNumberOfThreads) {
       for (int repeat = 0; repeat < 3; ++repeat) expect_same_bytes(one, compute(context, c.atoms, c.settings));
     }
   }
-}
-
-// The mesh a job ends with, as copy_surface gives it.
-Surface finest_of_job(qses_context *context, const Atoms &atoms, const qses_settings &s) {
-  set_atoms(context, atoms);
-  expect_ok(qses_begin(context, &s));
-  expect_ok(qses_wait(context, -1, nullptr));
-  qses_mesh m;
-  qses_mesh_init(&m);
-  expect_ok(qses_collect(context, &m));
-  return copy_surface(context);
 }
 
 TEST(SameBytes, OfJobs) {

@@ -4,8 +4,6 @@
 #include "surface/exact_fixture.h"
 #include "surface/surface_checks.h"
 
-#include <cmath>
-#include <cstring>
 #include <iterator>
 
 namespace {
@@ -13,14 +11,7 @@ namespace {
 using namespace surface_checks;
 
 void expect_same(const Surface &a, const Surface &b) {
-  EXPECT_EQ(a.mesh.indices, b.mesh.indices);
-  EXPECT_EQ(a.mesh.owners, b.mesh.owners);
-  ASSERT_EQ(a.mesh.positions.size(), b.mesh.positions.size());
-  EXPECT_EQ(std::memcmp(a.mesh.positions.data(), b.mesh.positions.data(), 4 * a.mesh.positions.size()), 0);
-  ASSERT_EQ(a.mesh.normals.size(), b.mesh.normals.size());
-  EXPECT_EQ(std::memcmp(a.mesh.normals.data(), b.mesh.normals.data(), 4 * a.mesh.normals.size()), 0);
-  EXPECT_EQ(a.report.area, b.report.area);
-  EXPECT_EQ(a.report.volume, b.report.volume);
+  expect_same_bytes(a, b);
   EXPECT_EQ(a.report.brick_count, b.report.brick_count);
   EXPECT_EQ(a.report.mesh_bytes, b.report.mesh_bytes);
   EXPECT_EQ(a.report.unplaced_vertices, b.report.unplaced_vertices);
@@ -94,16 +85,6 @@ TEST(FollowingFrames, OfManyKindsInTurn) {
         }
 }
 
-Surface finest_of_ladder(qses_context *context, const Atoms &atoms, const qses_settings &s) {
-  set_atoms(context, atoms);
-  expect_ok(qses_begin(context, &s));
-  expect_ok(qses_wait(context, -1, nullptr));
-  qses_mesh mesh;
-  qses_mesh_init(&mesh);
-  expect_ok(qses_collect(context, &mesh));
-  return copy_surface(context);
-}
-
 // Levels, some of which a job before has made of atoms that are much the same.
 TEST(FollowingFrames, OfLadders) {
   const std::vector<Atoms> frames = frames_of(cluster(400, 9));
@@ -114,7 +95,7 @@ TEST(FollowingFrames, OfLadders) {
     s.level_count = k % 3;
     s.levels[0] = 2.f;
     s.levels[1] = 1.f;
-    expect_same(finest_of_ladder(context, frames[k], s), finest_of_ladder(Context(), frames[k], s));
+    expect_same(finest_of_job(context, frames[k], s), finest_of_job(Context(), frames[k], s));
   }
 }
 

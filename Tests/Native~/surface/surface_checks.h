@@ -6,12 +6,27 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
+
 namespace surface_checks {
 
 using namespace surface_fixture;
 using exact_reference::Boundary;
 using exact_reference::Point;
 using exact_reference::point;
+
+inline void expect_same_bytes(const Surface &a, const Surface &b) {
+  EXPECT_EQ(a.mesh.indices, b.mesh.indices);
+  EXPECT_EQ(a.mesh.owners, b.mesh.owners);
+  EXPECT_EQ(a.patches, b.patches);
+  // Bytes, not values: NaN or -0 would hide differences.
+  ASSERT_EQ(a.mesh.positions.size(), b.mesh.positions.size());
+  EXPECT_EQ(std::memcmp(a.mesh.positions.data(), b.mesh.positions.data(), 4 * a.mesh.positions.size()), 0);
+  ASSERT_EQ(a.mesh.normals.size(), b.mesh.normals.size());
+  EXPECT_EQ(std::memcmp(a.mesh.normals.data(), b.mesh.normals.data(), 4 * a.mesh.normals.size()), 0);
+  EXPECT_EQ(a.report.area, b.report.area);
+  EXPECT_EQ(a.report.volume, b.report.volume);
+}
 
 struct Limits {
   double p99 = 1e-3, worst = 0.05;  // Å from the exact surface

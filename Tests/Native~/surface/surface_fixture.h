@@ -200,6 +200,17 @@ inline Surface compute(qses_context *context, const Atoms &atoms, const qses_set
   return copy_surface(context);
 }
 
+// The mesh a job ends with, as copy_surface gives it.
+inline Surface finest_of_job(qses_context *context, const Atoms &atoms, const qses_settings &s) {
+  set_atoms(context, atoms);
+  expect_ok(qses_begin(context, &s));
+  expect_ok(qses_wait(context, -1, nullptr));
+  qses_mesh m;
+  qses_mesh_init(&m);
+  expect_ok(qses_collect(context, &m));
+  return copy_surface(context);
+}
+
 inline Surface compute(const Atoms &atoms, const qses_settings &s, unsigned threads = 2) {
   const Context context(threads);
   return compute(context, atoms, s);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // CPU kernel: the features near a place, eight at a time.
 #include "parallel/pack.h"
+#include "surface/cpu/cpu_arc_projection.h"
 #include "surface/cpu/cpu_kernels.h"
 
 namespace quickses {
@@ -10,15 +11,6 @@ namespace {
 struct PackedBall {
   Vec3<Pack> center;
   Pack radius;
-};
-// One arc for each lane.
-struct PackedArc {
-  Vec3<Pack> center;
-  Pack radius;
-  Vec3<Pack> middle;
-  Pack cos_half;
-  Vec3<Pack> side;
-  Pack sin_half;
 };
 
 PackedArc load_arcs(const LocalColumns &c, int k) {

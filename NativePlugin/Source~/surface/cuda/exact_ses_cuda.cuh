@@ -279,10 +279,9 @@ void gather_candidates(E &executor, const FeatureView &features, const BrickSet 
     found = executor.expect("candidates", counters,
                             CandidateCounters{atom_room, arc_room, uint64_t(n) * kLeavesPerBrick, 0});
     if (found.atoms <= atom_room && found.arcs <= arc_room) break;
-    // The next surface may have a few more.
     const auto learn = [&](double *rate, unsigned long long count, size_t *room) {
       if (count <= *room) return;
-      *rate = std::max(*rate, 1.125 * static_cast<double>(count) / (per_brick * n));
+      *rate = std::max(*rate, kRoomToSpare * static_cast<double>(count) / (per_brick * n));
       *room = static_cast<size_t>(count);
     };
     learn(&rooms.listed_atoms, found.atoms, &atom_room);

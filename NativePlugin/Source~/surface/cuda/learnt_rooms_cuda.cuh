@@ -107,11 +107,15 @@ struct FeatureRoom {
 
 }  // namespace gpu
 
+// What was learnt serves surfaces that need a few more, too.
+constexpr double kRoomToSpare = 1.125;
+
 // Of surfaces of the same number of atoms with the same reach.
 struct CudaRooms {
-  gpu::FeatureRoom features{};               // of all atoms; 0: the guess was enough
-  gpu::FeatureRoom runs{};                   // of all atoms, if they were like the most crowded run of them
-  double listed_atoms = 1, listed_arcs = 1;  // candidates of bricks, in units of the guess
+  gpu::FeatureRoom features{};  // of all atoms; 0: the guess was enough
+  gpu::FeatureRoom runs{};      // of all atoms, if they were like the most crowded run of them
+  // Candidates of bricks, and edges that may pass through thin walls, in units of what is usual.
+  double listed_atoms = 1, listed_arcs = 1, walked_edges = 1;
   void forget() { *this = CudaRooms(); }
 };
 

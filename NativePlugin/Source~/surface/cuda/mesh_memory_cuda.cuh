@@ -69,7 +69,7 @@ class MeshMemory<CudaExecutor> {
   // within a budget.
   void deliver_to(const qses_settings &settings) {
     keep_ = wants_device(settings);
-    to_host_ = settings.delivery == QSES_DELIVERY_HOST || settings.delivery == QSES_DELIVERY_BOTH;
+    to_host_ = wants_host(settings);
     if (!executor_.arena().has_budget()) return;
     if (!keep_) device_meshes_.pool().drop_spares();
     executor_.arena().set_taken(device_meshes_.bytes());

@@ -105,7 +105,6 @@ class CountingExecutor {
   T expect(const char *, const T *counts, const T &) {
     return fetch(counts);
   }
-  void turn_counts_to(uint32_t) {}
   void send_counts() {}
   bool verify_counts() { return false; }
   template <class T>

@@ -15,6 +15,9 @@ struct MeshShape {
   size_t spare_vertices = 0, spare_triangles = 0;  // that there is room for behind the last
 };
 
+inline bool wants_host(const qses_settings &s) {
+  return s.delivery == QSES_DELIVERY_HOST || s.delivery == QSES_DELIVERY_BOTH;
+}
 inline bool wants_device(const qses_settings &s) {
   return s.delivery == QSES_DELIVERY_DEVICE || s.delivery == QSES_DELIVERY_BOTH;
 }

@@ -30,7 +30,8 @@ struct BrickSet {
   const uint64_t *linear;  // of each active brick
   const int32_t *table;    // linear -> number of the active brick, -1 if inactive; nullptr if the set is sparse
   uint32_t count;
-  const Tally *found = nullptr;  // where their number is, if there may be fewer: the last ones then stand for none
+  const Tally<uint64_t> *found =
+      nullptr;  // where their number is, if there may be fewer: the last ones then stand for none
 
   // Number of the active brick at a place of the table of bricks; -1 if there is none.
   QSES_FN int find(const glm::ivec3 &b) const {
@@ -155,7 +156,7 @@ struct GatherKeys {
 constexpr uint64_t kNoBrick = 0;
 
 struct FillBrickTable {
-  const Tally *found;
+  const Tally<uint64_t> *found;
   uint64_t *linear;
   int32_t *table;
   QSES_HOST_DEVICE void operator()(size_t i) const {
@@ -260,9 +261,9 @@ BrickSet flag_bricks(Executor &executor, const Items &items, const Lattice &latt
                             ? entries
                             : static_cast<uint64_t>(executor.reduce(entries, LoadCount<uint8_t>{flags.data}));
   Span<uint64_t> linear = executor.template allocate<uint64_t>(room);
-  Tally *const found = executor.template take_counts<Tally>();
+  Tally<uint64_t> *const found = executor.template take_counts<Tally<uint64_t>>();
   executor.compact(entries, IsFlagged{flags.data}, linear, &found->count);
-  const uint32_t count = checked_brick_count(executor.expect("bricks", found, Tally{room}).count);
+  const uint32_t count = checked_brick_count(executor.expect("bricks", found, Tally<uint64_t>{room}).count);
   executor.for_each(count, FillBrickTable{found, linear.data, table.data});
   return {lattice, linear.data, table.data, count, found};
 }
@@ -328,7 +329,7 @@ BrickSet collect_bricks(CountingExecutor<Executor> &executor, const Items &items
       (entries <= kSmallTable || entries * kDenseEntryBytes <= visits * kVisitBytes || facts.brick_entries > 0)) {
     FlaggedBricks(executor, entries);
     executor.template allocate<uint64_t>(lists_all_entries(entries, executor.arena().has_budget()) ? entries : count);
-    executor.template take_counts<Tally>();
+    executor.template take_counts<Tally<uint64_t>>();
     executor.compact(entries, 0, Span<uint64_t>{});
     set.table = &some_table;
   } else {

@@ -164,23 +164,16 @@ void for_parts_of_met_items(uint64_t near, uint64_t most, const Pass &pass) {
 }
 
 // Items in the fullest cell.
-struct FullestCell {
-  uint32_t items;
-  static FullestCell anticipated(const FullestCell &last, const FullestCell &most) {
-    return {std::min(and_some_more(last.items), most.items)};
-  }
-  bool covers(const FullestCell &found) const { return found.items <= items; }
-};
 struct FindFullestCell {
   NeighborGridView grid;
-  FullestCell *fullest;
+  Tally<uint32_t> *fullest;
   QSES_HOST_DEVICE void operator()(size_t i) const {
     const CellLayout &cells = grid.cells;
     const glm::vec3 p = grid.items[i].center;
     const int x = cells.cell_along(p.x, cells.origin.x, cells.count.x);
     const ItemRun run = grid.run(x, x, cells.cell_along(p.y, cells.origin.y, cells.count.y),
                                  cells.cell_along(p.z, cells.origin.z, cells.count.z));
-    if (run.end - run.begin > atomic_load(&fullest->items)) atomic_max(&fullest->items, run.end - run.begin);
+    if (run.end - run.begin > atomic_load(&fullest->count)) atomic_max(&fullest->count, run.end - run.begin);
   }
 };
 
@@ -191,9 +184,9 @@ uint64_t most_items_near(Executor &executor, const char *name, const NeighborGri
                          const IsEnough &is_enough) {
   if (grid.count == 0 || is_enough(uint64_t(grid.count))) return grid.count;
   const double edges = std::floor(static_cast<double>(extent) * static_cast<double>(grid.cells.inverse_edge)) + 2;
-  FullestCell *const fullest = executor.template take_counts<FullestCell>();
+  auto *const fullest = executor.template take_counts<Tally<uint32_t>>();
   executor.for_each(grid.count, FindFullestCell{grid, fullest});
-  const double items = executor.expect(name, fullest, FullestCell{grid.count}).items;
+  const double items = executor.expect(name, fullest, Tally<uint32_t>{grid.count}).count;
   return static_cast<uint64_t>(std::min(static_cast<double>(grid.count), edges * edges * edges * items));
 }
 
