@@ -68,14 +68,17 @@ void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bri
   const LaunchShape once{kVertexThreads, kVertexThreads, 2 * look};
   executor.launch("project_on_atoms", project_on_atoms_kernel, job.count, once, job);
   executor.launch("project_on_arcs", project_on_arcs_kernel, job.count, once, job);
-  // Eight lanes for each: rounds of arcs, or halvings of an edge. As a rule few vertices are left.
-  const uint64_t looks = 1 + kMaxProjections + looks_for_sign_change(features.parameters, kPlaceHalvings);
-  const LaunchShape few{kVertexThreads, kVertexThreads / kVertexLanes, looks * (64 + look / kVertexLanes),
-                        (job.count + kVertexThreads - size_t(1)) / kVertexThreads};
-  size_t left = job.count;
-  if (!E::kCounts && job.count > 0 && !executor.is_few_launches(left, few))
-    left = executor.expect("left vertices", job.counts, VertexCounts{job.count, job.count}).unfinished;
-  executor.launch("reproject", reproject_kernel, left, few, job);
+  // As a rule few vertices are left.
+  const auto share = [&](int lanes, uint64_t looks) {
+    return LaunchShape{kVertexThreads, static_cast<size_t>(kVertexThreads / lanes),
+                       looks * (64 + look / static_cast<uint64_t>(lanes)), size_t(executor.multiprocessors()) * 16};
+  };
+  executor.launch("reproject", reproject_kernel, job.count, share(kVertexLanes, 1 + kMaxProjections), job);
+  const LaunchShape place = share(kWarp, looks_for_sign_change(features.parameters, kPlaceHalvings));
+  size_t on_edges = job.count;
+  if (!E::kCounts && job.count > 0 && !executor.is_few_launches(on_edges, place))
+    on_edges = executor.expect("vertices on edges", job.counts, VertexCounts{job.count, job.count, job.count}).on_edges;
+  executor.launch("place_on_edges", place_on_edges_kernel, on_edges, place, job);
   if (gathered) executor.arena().rewind(mark);
 }
 

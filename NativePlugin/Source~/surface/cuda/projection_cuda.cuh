@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// GPU: vertices from their starts to the exact surface, a thread per vertex. Three kernels step the rule of
-// projection.h, so that lanes do not wait for each other: vertices on contact patches are done with the first, nearly
-// all others with the second; the third has those that turn from one probe to another, or find no place.
+// GPU: vertices from their starts to the exact surface. Four kernels step the rule of projection.h, so that lanes do
+// not wait for each other: vertices on contact patches are done with the first, nearly all others with the second, both
+// with a thread per vertex; the third has those that turn from one probe to another, eight lanes for each, and the last
+// a warp for each that finds no place.
 #pragma once
 
 #include "surface/cuda/lane_candidates_cuda.cuh"
@@ -24,20 +25,24 @@ __device__ __forceinline__ void finish_vertex(const VertexJob &job, uint32_t k, 
   if (job.mesh.patches) job.mesh.patch(vertex) = static_cast<uint8_t>(s.patch);
 }
 
-// Between the kernels the mesh holds where a vertex is on its way, on the sphere of one probe, and for its owner the
-// rounds it has had; 0 if its edge decides.
+// Before a vertex is reprojected the mesh holds where it is on its way, on the sphere of one probe, and for its owner
+// the rounds it has had.
 __device__ __forceinline__ void leave_vertex(const VertexJob &job, uint32_t k, const Projection &v) {
   const uint32_t vertex = job.first + k;
   store_start(job, vertex, v.point.position);
   store_vec3(job.mesh.normal(vertex), v.point.normal);
-  job.mesh.owner(vertex) = v.state == ProjectionState::kOnEdge ? 0u : static_cast<uint32_t>(v.rounds);
+  job.mesh.owner(vertex) = static_cast<uint32_t>(v.rounds);
 }
 __device__ __forceinline__ Projection left_vertex(const VertexJob &job, uint32_t k) {
-  const uint32_t vertex = job.first + k, rounds = job.mesh.owner(vertex);
+  const uint32_t vertex = job.first + k;
   const Vec3<float> normal = load_vec3(job.mesh.normal(vertex));
-  return {{stored_start(job, vertex), normal, normal, QSES_PATCH_CONTACT, rounds > 0},
-          rounds > 0 ? ProjectionState::kReproject : ProjectionState::kOnEdge,
-          static_cast<int>(rounds)};
+  return {{stored_start(job, vertex), normal, normal, QSES_PATCH_CONTACT, true},
+          ProjectionState::kReproject,
+          static_cast<int>(job.mesh.owner(vertex))};
+}
+__device__ __forceinline__ void append_on_edge(const VertexJob &job, uint32_t k, bool has) {
+  const uint32_t place = shared_append_place(has, &job.counts->on_edges);
+  if (has) job.unfinished[job.count - 1 - place] = k;
 }
 
 static __global__ __launch_bounds__(kVertexThreads) void project_on_atoms_kernel(LaunchItems vertices, VertexJob job) {
@@ -57,12 +62,8 @@ static __global__ __launch_bounds__(kVertexThreads) void project_on_atoms_kernel
   const bool done = v.state == ProjectionState::kPlaced;
   __syncwarp();
   append(job.open, &job.counts->open, k, on && !contact);
-  append(job.unfinished, &job.counts->unfinished, k, on && contact && !done);
-  if (!on || !contact) return;
-  if (done)
-    finish_vertex(job, k, v.point, deepest.atom);
-  else
-    leave_vertex(job, k, v);
+  append_on_edge(job, k, on && contact && !done);
+  if (on && contact && done) finish_vertex(job, k, v.point, deepest.atom);
 }
 
 static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(LaunchItems vertices, VertexJob job) {
@@ -102,44 +103,67 @@ static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(
     if (next.state == ProjectionState::kPlaced) v = next;  // else that round is done again
   }
   __syncwarp();
-  const bool done = v.state == ProjectionState::kPlaced;
-  append(job.unfinished, &job.counts->unfinished, k, on && !done);
+  append(job.unfinished, &job.counts->unfinished, k, on && v.state == ProjectionState::kReproject);
+  append_on_edge(job, k, on && v.state == ProjectionState::kOnEdge);
   if (!on) return;
-  if (done)
+  if (v.state == ProjectionState::kPlaced)
     finish_vertex(job, k, v.point, nearest_atom(f, candidates, v.point.position));
-  else
+  else if (v.state == ProjectionState::kReproject)
     leave_vertex(job, k, v);
 }
 
-constexpr int kVertexLanes = 8;
-using SharedCandidates = LaneCandidates<kVertexLanes>;
-template <class Candidates>
-__device__ __forceinline__ SharedCandidates shared(const Candidates &all) {
+template <int kLanes>
+__device__ __forceinline__ LaneCandidates<kLanes> shared(const ListedCandidates &all) {
   return {all.atoms, all.arcs, all.atom_total, all.arc_total};
+}
+
+constexpr int kVertexLanes = 8;
+static __global__ __launch_bounds__(kVertexThreads, 8) void reproject_kernel(LaunchItems vertices, VertexJob job) {
+  const FeatureView &f = job.features;
+  const uint32_t teams = gridDim.x * (kVertexThreads / kVertexLanes), unfinished = job.counts->unfinished;
+  const uint32_t total = unfinished < vertices.last ? unfinished : static_cast<uint32_t>(vertices.last);
+  const uint32_t team = static_cast<uint32_t>(lane_id()) / kVertexLanes;
+  for (uint32_t place0 =
+           static_cast<uint32_t>(vertices.first) + (blockIdx.x * kVertexThreads + threadIdx.x) / kVertexLanes - team;
+       place0 < total; place0 += teams) {
+    const bool on = place0 + team < total;
+    const uint32_t k = job.unfinished[on ? place0 + team : place0];
+    const auto candidates = shared<kVertexLanes>(vertex_candidates(job, k));
+    Projection v{};
+    if (on) v = left_vertex(job, k);
+    __syncwarp();
+    while (v.state == ProjectionState::kReproject)
+      v = reproject(f, candidates, nearest_arc(f, candidates, v.point.position), v);
+    __syncwarp();
+    const bool placed = v.state == ProjectionState::kPlaced, writes = on && candidates.rank() == 0;
+    append_on_edge(job, k, writes && !placed);
+    const uint32_t owner = nearest_atom(f, candidates, v.point.position);
+    if (writes && placed) finish_vertex(job, k, v.point, owner);
+  }
 }
 
 // Those of a brick's candidates that decide about points of an edge, which are within `reach` of its middle; all of
 // them where there is no room for the choice.
-constexpr int kEdgeRoom = 160;
-template <class Candidates>
-__device__ __forceinline__ SharedCandidates choose_for_edge(const FeatureView &f, const Candidates &all,
-                                                            const Vec3<float> &middle, float reach, uint32_t *room) {
-  const unsigned lanes = SharedCandidates::lanes();
-  const int rank = SharedCandidates::rank();
+template <int kLanes>
+__device__ __forceinline__ LaneCandidates<kLanes> choose_for_edge(const FeatureView &f, const ListedCandidates &all,
+                                                                  const Vec3<float> &middle, float reach,
+                                                                  uint32_t *room, int most) {
+  using Chosen = LaneCandidates<kLanes>;
+  const unsigned lanes = Chosen::lanes();
+  const int rank = Chosen::rank();
   const auto choose = [&](const Sphere *balls, const uint32_t *items, int count, float reach, uint32_t *out, int left) {
     constexpr int kAhead = 4;  // loads that are under way together
     int n = 0;
-    for (int k0 = rank; k0 - rank < count; k0 += kAhead * kVertexLanes) {
+    for (int k0 = rank; k0 - rank < count; k0 += kAhead * kLanes) {
       uint32_t item[kAhead];
       bool near[kAhead];
 #pragma unroll
-      for (int j = 0; j < kAhead; ++j)
-        item[j] = __ldg(items + (k0 + j * kVertexLanes < count ? k0 + j * kVertexLanes : 0));
+      for (int j = 0; j < kAhead; ++j) item[j] = __ldg(items + (k0 + j * kLanes < count ? k0 + j * kLanes : 0));
 #pragma unroll
       for (int j = 0; j < kAhead; ++j) {
         const Sphere ball = load(balls + item[j]);
         const float r = ball.radius + reach;
-        near[j] = k0 + j * kVertexLanes < count && length_squared(Vec3<float>(ball.center) - middle) < r * r;
+        near[j] = k0 + j * kLanes < count && length_squared(Vec3<float>(ball.center) - middle) < r * r;
       }
 #pragma unroll
       for (int j = 0; j < kAhead; ++j) {
@@ -150,40 +174,33 @@ __device__ __forceinline__ SharedCandidates choose_for_edge(const FeatureView &f
     return n;
   };
   __syncwarp(lanes);  // the choice before is not looked at any more
-  const int atoms = choose(f.atoms.items, all.atoms, all.atom_total, reach, room, kEdgeRoom);
-  const int left = atoms < kEdgeRoom ? kEdgeRoom - atoms : 0;
+  const int atoms = choose(f.atoms.items, all.atoms, all.atom_total, reach, room, most);
+  const int left = atoms < most ? most - atoms : 0;
   const int arcs =
-      choose(f.arc_bounds.items, all.arcs, all.arc_total, f.parameters.depth + reach, room + (kEdgeRoom - left), left);
+      choose(f.arc_bounds.items, all.arcs, all.arc_total, f.parameters.depth + reach, room + (most - left), left);
   __syncwarp(lanes);
-  if (atoms > kEdgeRoom || arcs > left) return shared(all);
+  if (atoms > most || arcs > left) return shared<kLanes>(all);
   return {room, room + atoms, atoms, arcs};
 }
 
-static __global__ __launch_bounds__(kVertexThreads, 8) void reproject_kernel(LaunchItems vertices, VertexJob job) {
-  __shared__ uint32_t edge_memory[kVertexThreads / kVertexLanes][kEdgeRoom];
+// A warp for each: all their looks depend on one another.
+constexpr int kEdgeWarps = kVertexThreads / kWarp, kEdgeRoom = 640;
+static __global__ __launch_bounds__(kVertexThreads, 8) void place_on_edges_kernel(LaunchItems vertices, VertexJob job) {
+  __shared__ uint32_t edge_memory[kEdgeWarps][kEdgeRoom];
   const FeatureView &f = job.features;
-  const uint32_t teams = gridDim.x * (kVertexThreads / kVertexLanes), unfinished = job.counts->unfinished;
-  const uint32_t total = unfinished < vertices.last ? unfinished : static_cast<uint32_t>(vertices.last);
-  for (uint32_t place =
-           static_cast<uint32_t>(vertices.first) + (blockIdx.x * kVertexThreads + threadIdx.x) / kVertexLanes;
-       place < total; place += teams) {
-    const uint32_t k = job.unfinished[place], vertex = job.first + k;
-    SharedCandidates candidates = shared(vertex_candidates(job, k));
-    Projection v = left_vertex(job, k);
-    while (v.state == ProjectionState::kReproject)
-      v = reproject(f, candidates, nearest_arc(f, candidates, v.point.position), v);
-    SurfacePoint s = v.point;
-    if (v.state == ProjectionState::kOnEdge) {
-      const uint32_t brick = brick_of_vertex(job.layout, job.bricks.count, vertex);
-      const CutEdge edge = ends_of_edge(job.bricks, job.layout, brick, edge_of_vertex(job.layout, brick, vertex));
-      candidates = shared(brick_candidates(job.view, brick - job.view.first_brick));
-      const SharedCandidates near = choose_for_edge(f, candidates, edge.middle(), edge_reach(f.parameters),
-                                                    edge_memory[threadIdx.x / kVertexLanes]);
-      s = place_on_edge(f, near, edge);
-    }
-    const uint32_t owner = nearest_atom(f, candidates, s.position);
-    __syncwarp(candidates.lanes());  // all of them have read what is written now
-    if (candidates.rank() == 0) finish_vertex(job, k, s, owner);
+  const uint32_t warps = gridDim.x * kEdgeWarps, on_edges = job.counts->on_edges, warp = threadIdx.x / kWarp;
+  const uint32_t total = on_edges < vertices.last ? on_edges : static_cast<uint32_t>(vertices.last);
+  for (uint32_t place = static_cast<uint32_t>(vertices.first) + blockIdx.x * kEdgeWarps + warp; place < total;
+       place += warps) {
+    const uint32_t k = job.unfinished[job.count - 1 - place], vertex = job.first + k;
+    const uint32_t brick = brick_of_vertex(job.layout, job.bricks.count, vertex);
+    const CutEdge edge = ends_of_edge(job.bricks, job.layout, brick, edge_of_vertex(job.layout, brick, vertex));
+    const ListedCandidates all = brick_candidates(job.view, brick - job.view.first_brick);
+    const auto near =
+        choose_for_edge<kWarp>(f, all, edge.middle(), edge_reach(f.parameters), edge_memory[warp], kEdgeRoom);
+    const SurfacePoint s = place_on_edge(f, near, edge);
+    const uint32_t owner = nearest_atom(f, shared<kWarp>(all), s.position);
+    if (lane_id() == 0) finish_vertex(job, k, s, owner);
   }
 }
 

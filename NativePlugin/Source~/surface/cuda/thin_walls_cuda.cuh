@@ -209,14 +209,15 @@ static __global__ __launch_bounds__(kWallThreads, 8) void drop_open_edges_kernel
 }
 
 // Eight lanes for each edge that is left. They wait for memory: more blocks at a time are worth registers.
+constexpr int kWallLanes = 8, kWalkRoom = 160;
 static __global__ __launch_bounds__(kWallThreads, 10) void walk_edges_kernel(LaunchItems items, WallJob job) {
-  __shared__ uint32_t edge_memory[kWallThreads / kVertexLanes][kEdgeRoom];
+  __shared__ uint32_t edge_memory[kWallThreads / kWallLanes][kWalkRoom];
   const FeatureView &f = job.features;
   const SurfaceParameters &p = f.parameters;
-  const size_t teams = size_t(gridDim.x) * (kWallThreads / kVertexLanes), walks = job.counters->walks;
+  const size_t teams = size_t(gridDim.x) * (kWallThreads / kWallLanes), walks = job.counters->walks;
   const size_t total = walks < items.last ? walks : items.last;
-  const int team = static_cast<int>(threadIdx.x) / kVertexLanes;
-  for (size_t k = items.first + blockIdx.x * (kWallThreads / kVertexLanes) + static_cast<size_t>(team); k < total;
+  const int team = static_cast<int>(threadIdx.x) / kWallLanes;
+  for (size_t k = items.first + blockIdx.x * (kWallThreads / kWallLanes) + static_cast<size_t>(team); k < total;
        k += teams) {
     const uint64_t item = job.walks[k];
     const WallEdge e = wall_edge(job, static_cast<uint32_t>(item / (64 * kWallSteps)),
@@ -224,7 +225,7 @@ static __global__ __launch_bounds__(kWallThreads, 10) void walk_edges_kernel(Lau
     const Vec3<float> a = wall_point(job, e.brick, e.first), b = wall_point(job, e.brick, e.second);
     const float half = 0.5f * wall_step_length(e.step) * p.spacing + 2.f * job.reach.slack;
     const ListedCandidates all = brick_candidates(job.view, e.slot / kLeavesPerBrick);
-    const SharedCandidates near = choose_for_edge(f, all, (a + b) * 0.5f, half, edge_memory[team]);
+    const auto near = choose_for_edge<kWallLanes>(f, all, (a + b) * 0.5f, half, edge_memory[team], kWalkRoom);
     const NearestProbe probe_a = decided_probe(f, first_decider(job, e.slot, e.bit, a), a);
     const uint32_t decider_b = decider_at(job, e.brick, e.second);
     const NearestProbe probe_b = decider_b == kNotLookedAt ? nearest_probe(f, near, b) : decided_probe(f, decider_b, b);
@@ -244,7 +245,7 @@ static __global__ __launch_bounds__(kWallThreads, 10) void walk_edges_kernel(Lau
 }
 
 // How many edges of a leaf are left to be walked, at most as a rule: the wider the spacing beside the probe, the fewer
-// are covered by the probes at their ends. Of 1AON with a probe of 1.4 Å, at spacings of 0.5, 1 and 2 Å: 0.2, 2 and 21.
+// are covered by the probes at their ends. Of 1AON with a probe of 1.4 Å, at spacings of 1 and 2 Å: 2 and 21.
 inline double walked_edges(const SurfaceParameters &p) {
   const double ratio = static_cast<double>(p.spacing) / static_cast<double>(p.depth);
   return std::min(32.0, std::max(1.0, 8 * ratio * ratio * ratio));
@@ -290,8 +291,8 @@ void mark_thin_walls(E &executor, const FeatureView &features, const BrickSet &b
     executor.fill(Span<unsigned long long>{&counters->walks, 1}, 0);
   }
   executor.launch("walk_edges", walk_edges_kernel, static_cast<size_t>(found.walks),
-                  LaunchShape{kWallThreads, kWallThreads / kVertexLanes,
-                              (2 + kMostWallSteps) * (64 + look / kVertexLanes), most_blocks},
+                  LaunchShape{kWallThreads, kWallThreads / kWallLanes,
+                              (2 + kMostWallSteps) * (64 + look / kWallLanes), most_blocks},
                   job);
   executor.arena().rewind(mark);
 }

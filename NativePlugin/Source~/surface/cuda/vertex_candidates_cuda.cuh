@@ -10,11 +10,13 @@ namespace quickses {
 namespace gpu {
 
 struct VertexCounts {
-  uint32_t open, unfinished;
+  uint32_t open, unfinished, on_edges;
   static VertexCounts anticipated(const VertexCounts &last, const VertexCounts &most) {
-    return {most.open, std::min(and_some_more(last.unfinished), most.unfinished)};
+    return {most.open, most.unfinished, std::min(and_some_more(last.on_edges), most.on_edges)};
   }
-  bool covers(const VertexCounts &found) const { return found.open <= open && found.unfinished <= unfinished; }
+  bool covers(const VertexCounts &found) const {
+    return found.open <= open && found.unfinished <= unfinished && found.on_edges <= on_edges;
+  }
 };
 
 struct VertexJob {
@@ -31,8 +33,8 @@ struct VertexJob {
   uint32_t *lists;        // list_words each
   uint32_t list_words, first_list;
   uint32_t *open;        // vertices that no contact patch has
-  uint32_t *unfinished;  // those to be reprojected, or placed on their edges
-  VertexCounts *counts;  // of both lists
+  uint32_t *unfinished;  // from the front those to be reprojected, from the back those to be placed on their edges
+  VertexCounts *counts;  // of these lists
 };
 
 // The list of a leaf: word 0 has the number of atoms in its lower and of arcs in its upper half, then they follow. If
