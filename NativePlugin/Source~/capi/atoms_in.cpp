@@ -4,6 +4,7 @@
 
 #include "capi/barrier.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -47,26 +48,56 @@ bool is_in_range(const glm::vec3 &p) {
   return is_good;
 }
 
-// Of the positions at(0) ... at(count - 1), each a pointer to three floats. Once for each frame of a trajectory, while
-// the back end waits for it.
-template <class At>
-AtomBounds check_and_copy(size_t count, const At &at, Sphere *atoms) {
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  glm::vec3 low(kInfinity), high(-kInfinity);
+// What is known of positions while they are copied, which is done for each frame of a trajectory while the back end
+// waits for it.
+struct Met {
+  static constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  glm::vec3 low{kInfinity}, high{-kInfinity};
   bool all_good = true;
-  for (size_t i = 0; i < count; ++i) {
-    const glm::vec3 p = load(at(i));
+
+  void meet(const glm::vec3 &p) {
     all_good &= is_in_range(p);
     for (int d = 0; d < 3; ++d) {
       low[d] = p[d] < low[d] ? p[d] : low[d];
       high[d] = p[d] > high[d] ? p[d] : high[d];
     }
-    atoms[i].center = p;
   }
-  for (size_t i = 0; !all_good && i < count; ++i)
+};
+
+// Of those that lie behind each other, several at a time: compilers make vectors of a loop of this length. Returns how
+// many.
+size_t copy_groups(const float *positions, size_t count, Sphere *atoms, Met *met) {
+  constexpr size_t kGroup = 16, kFloats = 3 * kGroup;
+  float low[kFloats], high[kFloats];
+  uint32_t bad[kFloats] = {};
+  std::fill_n(low, kFloats, Met::kInfinity);
+  std::fill_n(high, kFloats, -Met::kInfinity);
+  size_t i = 0;
+  for (; i + kGroup <= count; i += kGroup) {
+    const float *const v = positions + 3 * i;
+    for (size_t k = 0; k < kFloats; ++k) {
+      low[k] = v[k] < low[k] ? v[k] : low[k];
+      high[k] = v[k] > high[k] ? v[k] : high[k];
+      bad[k] |= std::fabs(v[k]) <= kLargestCoordinate ? 0u : 1u;
+    }
+    for (size_t k = 0; k < kGroup; ++k) std::memcpy(&atoms[i + k].center, v + 3 * k, 12);
+  }
+  for (size_t k = 0; k < kFloats && i > 0; k += 3) {
+    met->meet({low[k], low[k + 1], low[k + 2]});
+    met->meet({high[k], high[k + 1], high[k + 2]});
+    met->all_good &= (bad[k] | bad[k + 1] | bad[k + 2]) == 0;
+  }
+  return i;
+}
+
+// Of the positions at(0) ... at(count - 1), each a pointer to three floats, of which so many are copied already.
+template <class At>
+AtomBounds copy_rest(size_t copied, size_t count, const At &at, Sphere *atoms, Met met) {
+  for (size_t i = copied; i < count; ++i) met.meet(atoms[i].center = load(at(i)));
+  for (size_t i = 0; !met.all_good && i < count; ++i)
     if (!is_in_range(atoms[i].center)) bad_position(i, atoms[i].center);
-  if (count == 0) low = high = glm::vec3(0.f);
-  return {low, high, 0.f};
+  if (count == 0) met.low = met.high = glm::vec3(0.f);
+  return {met.low, met.high, 0.f};
 }
 
 const char *position_at(const float *positions, size_t stride, size_t i) {
@@ -76,8 +107,10 @@ const char *position_at(const float *positions, size_t stride, size_t i) {
 }  // namespace
 
 AtomBounds copy_positions(const float *positions, size_t stride, size_t count, Sphere *atoms) {
-  return check_and_copy(
-      count, [&](size_t i) { return position_at(positions, stride, i); }, atoms);
+  Met met;
+  const size_t copied = stride == 0 || stride == 12 ? copy_groups(positions, count, atoms, &met) : 0;
+  return copy_rest(
+      copied, count, [&](size_t i) { return position_at(positions, stride, i); }, atoms, met);
 }
 
 void check_indices(const uint32_t *indices, size_t count, size_t position_count) {
@@ -90,8 +123,8 @@ void check_indices(const uint32_t *indices, size_t count, size_t position_count)
 
 AtomBounds copy_indexed_positions(const float *positions, size_t stride, const uint32_t *indices, size_t count,
                                   Sphere *atoms) {
-  return check_and_copy(
-      count, [&](size_t i) { return position_at(positions, stride, indices[i]); }, atoms);
+  return copy_rest(
+      0, count, [&](size_t i) { return position_at(positions, stride, indices[i]); }, atoms, {});
 }
 
 float check_radii(const float *radii, size_t count) {
