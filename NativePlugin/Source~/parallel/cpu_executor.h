@@ -133,14 +133,14 @@ class CpuExecutor {
     const size_t chunks = scan_chunks(n), chunk = (n + chunks - 1) / chunks;
     const auto mark = arena_.mark();
     const Span<T> begin = allocate<T>(chunks + 1);
-    begin[0] = T(0);
+    begin[0] = T{};
     if (chunks > 1) {
       run_chunks(chunks, [&](size_t, size_t c) {
-        T sum = 0;
-        for_range(c * chunk, std::min(n, (c + 1) * chunk), [&](size_t i) { sum += static_cast<T>(load(i)); });
+        T sum{};
+        for_range(c * chunk, std::min(n, (c + 1) * chunk), [&](size_t i) { sum = sum + static_cast<T>(load(i)); });
         begin[c + 1] = sum;
       });
-      for (size_t c = 0; c < chunks; ++c) begin[c + 1] += begin[c];
+      for (size_t c = 0; c < chunks; ++c) begin[c + 1] = begin[c + 1] + begin[c];
     }
     run_chunks(chunks, [&](size_t, size_t c) {
       T sum = begin[c];
@@ -148,7 +148,7 @@ class CpuExecutor {
       for_range(c * chunk, end, [&](size_t i) {
         const T value = static_cast<T>(load(i));
         out[i] = sum;
-        sum += value;
+        sum = sum + value;
       });
       if (c + 1 == chunks) out[n] = sum;
     });
@@ -222,7 +222,7 @@ class CpuExecutor {
       for_range(c * chunk, std::min(n, (c + 1) * chunk), [&](size_t i) { count += keep(i) ? 1 : 0; });
       begin[c + 1] = count;
     });
-    for (size_t c = 0; c < chunks; ++c) begin[c + 1] += begin[c];
+    for (size_t c = 0; c < chunks; ++c) begin[c + 1] = begin[c + 1] + begin[c];
     run_chunks(chunks, [&](size_t, size_t c) {
       size_t k = begin[c];
       for_range(c * chunk, std::min(n, (c + 1) * chunk), [&](size_t i) {

@@ -78,7 +78,7 @@ template <class Load, class T>
 struct LoadOrZero {
   Load load;
   size_t n;
-  QSES_HOST_DEVICE T operator()(size_t i) const { return i < n ? static_cast<T>(load(i)) : T(0); }
+  QSES_HOST_DEVICE T operator()(size_t i) const { return i < n ? static_cast<T>(load(i)) : T{}; }
 };
 
 template <class Keep, class T>
@@ -212,8 +212,9 @@ class CudaExecutor {
     check_count(n + 1, "exclusive_scan");
     const auto in =
         thrust::make_transform_iterator(thrust::counting_iterator<size_t>(0), gpu::LoadOrZero<Load, T>{load, n});
-    with_temporary("cub::DeviceScan::ExclusiveSum", [&](void *temporary, size_t &bytes) {
-      return cub::DeviceScan::ExclusiveSum(temporary, bytes, in, out.data, static_cast<int>(n + 1), stream_);
+    with_temporary("cub::DeviceScan::ExclusiveScan", [&](void *temporary, size_t &bytes) {
+      return cub::DeviceScan::ExclusiveScan(temporary, bytes, in, out.data, cub::Sum(), T{}, static_cast<int>(n + 1),
+                                            stream_);
     });
   }
 
@@ -221,8 +222,9 @@ class CudaExecutor {
   template <class T>
   size_t scan_bytes(size_t n) const {
     return cub_bytes([&](void *temporary, size_t &bytes) {
-      return cub::DeviceScan::ExclusiveSum(temporary, bytes, static_cast<const T *>(nullptr), static_cast<T *>(nullptr),
-                                           static_cast<int>(n + 1), stream_);
+      return cub::DeviceScan::ExclusiveScan(temporary, bytes, static_cast<const T *>(nullptr),
+                                            static_cast<T *>(nullptr), cub::Sum(), T{}, static_cast<int>(n + 1),
+                                            stream_);
     });
   }
   template <class Key, class Value>

@@ -131,11 +131,8 @@ void prepare_frame(Work &work, const FrameInput &in) {
                      bring(executor, look.texcoords.data(), look.texcoords.size())};
   const CellLayout cells = layout_cells(work.low, work.high, std::max(work.parameters.max_radius, kSmallestCell));
   work.atoms = build_neighbor_grid(executor, set.count, cells, [&] {
-    Span<Sphere> centered = executor.template allocate<Sphere>(set.count);
-    const Sphere *const given = bring(executor, set.atoms, set.count);
-    executor.for_each(set.count, CenterAtoms{given, work.lattice.center_x, work.lattice.center_y, work.lattice.center_z,
-                                             work.parameters.probe, centered.data});
-    return centered;
+    return CenteredAtomAt{bring(executor, set.atoms, set.count), work.lattice.center_x, work.lattice.center_y,
+                          work.lattice.center_z, work.parameters.probe};
   });
   remove_contained_atoms(executor, work.atoms, work.parameters.max_radius);
   if (in.settings.method != QSES_METHOD_EXACT) return;

@@ -93,11 +93,11 @@ inline DeviceStages run_device_stages(CudaExecutor &executor, const DeviceTable 
   Lattice lattice = center_lattice(bounds, options.spacing);
   const glm::vec3 low = to_centered(lattice, bounds.low), high = to_centered(lattice, bounds.high);
   s.lattice = lattice = layout_lattice(lattice, low, high, p.max_radius);
-  Span<Sphere> given = executor.allocate<Sphere>(n), atoms = executor.allocate<Sphere>(n);
+  Span<Sphere> given = executor.allocate<Sphere>(n);
   executor.upload(given.data, host_atoms, n);
-  executor.for_each(n,
-                    CenterAtoms{given.data, lattice.center_x, lattice.center_y, lattice.center_z, p.probe, atoms.data});
-  s.grid = build_neighbor_grid(executor, atoms, layout_cells(low, high, p.max_radius));
+  s.grid = build_neighbor_grid(executor, n, layout_cells(low, high, p.max_radius), [&] {
+    return CenteredAtomAt{given.data, lattice.center_x, lattice.center_y, lattice.center_z, p.probe};
+  });
   Span<uint8_t> contained = executor.allocate<uint8_t>(n);
   executor.for_each(n, FindContainedAtoms{s.grid, p.max_radius, contained.data});
   executor.for_each(n, RemoveContainedAtoms{contained.data, const_cast<Sphere *>(s.grid.items)});
@@ -114,10 +114,9 @@ inline DeviceStages run_device_stages(CudaExecutor &executor, const DeviceTable 
   f.max_arc_bound = kMaxArcBound + 1e-3f;
   const size_t arcs = s.found.arcs.size;
   if (arcs > 0) {
-    Span<Sphere> balls = executor.allocate<Sphere>(arcs);
-    executor.for_each(arcs, BoundArcs{s.found.arcs.data, nullptr, balls.data});
     const glm::vec3 reach(p.max_radius);
-    f.arc_bounds = build_neighbor_grid(executor, balls, layout_cells(low - reach, high + reach, kArcCellEdge));
+    f.arc_bounds = build_neighbor_grid(executor, arcs, layout_cells(low - reach, high + reach, kArcCellEdge),
+                                       [&] { return ArcBoundAt{s.found.arcs.data, nullptr}; });
     Span<Arc> sorted = executor.allocate<Arc>(arcs);
     executor.for_each(arcs, GatherArcs{s.found.arcs.data, nullptr, f.arc_bounds.order, sorted.data});
     f.arcs = sorted.data;

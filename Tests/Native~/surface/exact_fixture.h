@@ -36,7 +36,7 @@ struct ExactRun {
            const CpuKernels &kernels = cpu_kernels())
       : settings(s), executor(threads, kernels), timer(executor), memory(executor) {
     AtomBounds bounds{glm::vec3(1e9f), glm::vec3(-1e9f), 0.f};
-    Span<Sphere> raw = executor.allocate<Sphere>(given.size()), centered = executor.allocate<Sphere>(given.size());
+    Span<Sphere> raw = executor.allocate<Sphere>(given.size());
     for (size_t i = 0; i < given.size(); ++i) {
       const float *p = &given.positions[3 * i];
       raw[i] = {glm::vec3(p[0], p[1], p[2]), given.radii[i]};
@@ -53,9 +53,9 @@ struct ExactRun {
     low = to_centered(lattice, bounds.low);
     high = to_centered(lattice, bounds.high);
     lattice = layout_lattice(lattice, low, high, parameters.max_radius);
-    executor.for_each(given.size(), CenterAtoms{raw.data, lattice.center_x, lattice.center_y, lattice.center_z,
-                                                parameters.probe, centered.data});
-    atoms = build_neighbor_grid(executor, centered, layout_cells(low, high, parameters.max_radius));
+    atoms = build_neighbor_grid(executor, given.size(), layout_cells(low, high, parameters.max_radius), [&] {
+      return CenteredAtomAt{raw.data, lattice.center_x, lattice.center_y, lattice.center_z, parameters.probe};
+    });
     remove_contained_atoms(executor, atoms, parameters.max_radius);
   }
 

@@ -50,7 +50,7 @@ void number_vertices(const MeshLayout &layout, size_t brick, int towards, Vertex
     for (int axis = 0; axis < kAxes; ++axis) {
       if (towards >> axis & 1) continue;
       const uint64_t crossing = layout.crossing[3 * k + static_cast<size_t>(axis)];
-      const uint32_t base = layout.vertex_base[brick] + layout.vertex_rank[3 * k + static_cast<size_t>(axis)];
+      const uint32_t base = layout.base[brick].vertices + layout.vertex_rank[3 * k + static_cast<size_t>(axis)];
       for (uint64_t w = crossing & mask; w; w &= w - 1) {
         const int bit = lowest_bit64(w);
         const glm::ivec3 p = brick_point(leaf, bit) + kBrickEdge * brick_step;
@@ -64,8 +64,8 @@ void number_vertices(const MeshLayout &layout, size_t brick, int towards, Vertex
 
 void emit_brick_triangles(const BrickSet &bricks, const MeshLayout &layout, uint32_t brick, const TableView &table,
                           const MeshView &mesh) {
-  const size_t begin = layout.triangle_base[brick];
-  if (layout.triangle_base[brick + 1] == begin) return;
+  const size_t begin = layout.base[brick].triangles;
+  if (layout.base[brick + 1].triangles == begin) return;
   const UpperBricks upper = upper_bricks(bricks, brick);
   VertexNumbers numbers;
 #if !defined(NDEBUG)

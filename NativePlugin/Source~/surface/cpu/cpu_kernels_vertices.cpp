@@ -257,7 +257,7 @@ void place_on_edges(const FeatureView &f, const BrickSet &bricks, const MeshLayo
                     const BrickCandidates &c, int n, Work *w) {
   for (int v = 0; v < n; ++v) {
     if (w->placed[v]) continue;
-    const LatticeEdge edge = edge_of_vertex(layout, brick, layout.vertex_base[brick] + static_cast<uint32_t>(v));
+    const LatticeEdge edge = edge_of_vertex(layout, brick, layout.base[brick].vertices + static_cast<uint32_t>(v));
     const CutEdge ends = ends_of_edge(bricks, layout, brick, edge);
     const EdgeCandidates near{
         c, choose_balls(c.atoms, c.atom_count, ends.middle(), edge_reach(f.parameters), c.near_list),
@@ -316,8 +316,8 @@ void write_vertices(const FeatureView &f, const Lattice &lattice, const VertexSt
 
 BrickNeeds emit_brick_vertices(const FeatureView &f, const BrickSet &bricks, const MeshLayout &layout, uint32_t brick,
                                const VertexStarts &starts, const BrickScratch &scratch, const MeshView &mesh) {
-  const uint32_t base = layout.vertex_base[brick];
-  const int n = static_cast<int>(layout.vertex_base[brick + 1] - layout.vertex_base[brick]);
+  const uint32_t base = layout.base[brick].vertices;
+  const int n = static_cast<int>(layout.base[brick + 1].vertices - layout.base[brick].vertices);
   if (n == 0) return {0, 0};
   const Lattice &lattice = bricks.lattice;
   const float h = lattice.spacing, overhang = kStartOverhang * h;

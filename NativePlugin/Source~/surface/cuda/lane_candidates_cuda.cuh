@@ -36,15 +36,9 @@ __device__ __forceinline__ DeepestAtom deepest_atom(const FeatureView &f, const 
   return {best.number == kNoAtom ? 0u : candidates.atom(static_cast<int>(best.number)), best.value};
 }
 
+// The nearest arc of those that each of some lanes has found.
 template <int kLanes>
-__device__ __forceinline__ NearestArc nearest_arc(const FeatureView &f, const LaneCandidates<kLanes> &candidates,
-                                                  const Vec3<float> &x) {
-  NearestArc best;
-  for (int k = candidates.rank(); k < candidates.arc_count(); k += kLanes) {
-    const int a = static_cast<int>(candidates.arc(k));
-    best.offer(a, arc_distance2(load(f.arcs + a), x));
-  }
-  const unsigned lanes = candidates.lanes();
+__device__ __forceinline__ NearestArc nearest_of_lanes(NearestArc best, unsigned lanes) {
 #pragma unroll
   for (int d = kLanes / 2; d > 0; d >>= 1) {
     const int arc = __shfl_xor_sync(lanes, best.arc, d);
@@ -54,6 +48,17 @@ __device__ __forceinline__ NearestArc nearest_arc(const FeatureView &f, const La
     best.second2 = minimum(best.second2, second2);
   }
   return best;
+}
+
+template <int kLanes>
+__device__ __forceinline__ NearestArc nearest_arc(const FeatureView &f, const LaneCandidates<kLanes> &candidates,
+                                                  const Vec3<float> &x) {
+  NearestArc best;
+  for (int k = candidates.rank(); k < candidates.arc_count(); k += kLanes) {
+    const int a = static_cast<int>(candidates.arc(k));
+    best.offer(a, arc_distance2(load(f.arcs + a), x));
+  }
+  return nearest_of_lanes<kLanes>(best, candidates.lanes());
 }
 
 template <int kLanes>

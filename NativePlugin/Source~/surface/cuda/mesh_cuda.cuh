@@ -65,9 +65,16 @@ void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bri
   const bool gathered = candidates.slice.first == slice.first && candidates.slice.last == slice.last;
   const VertexJob job = prepare_vertices(executor, features, bricks, layout, slice, rooms, candidates, starts, mesh);
   const uint64_t look = vertex_steps(features, candidates.longest_row);
-  const LaunchShape once{kVertexThreads, kVertexThreads, 2 * look};
-  executor.launch("project_on_atoms", project_on_atoms_kernel, job.count, once, job);
-  executor.launch("project_on_arcs", project_on_arcs_kernel, job.count, once, job);
+  const auto launch_first = [&](auto lanes, auto on_atoms, auto on_arcs) {
+    const LaunchShape once{kVertexThreads, kVertexThreads / lanes, 64 + 2 * look / lanes};
+    executor.launch("project_on_atoms", on_atoms, job.count, once, job);
+    executor.launch("project_on_arcs", on_arcs, job.count, once, job);
+  };
+  constexpr size_t kFew = 4, kFullThreads = 1536;  // lanes for each of few vertices; threads that a multiprocessor has
+  if (job.count * kFew <= executor.multiprocessors() * kFullThreads)
+    launch_first(kFew, project_on_atoms_kernel<kFew>, project_on_arcs_kernel<kFew>);
+  else
+    launch_first(size_t(1), project_on_atoms_kernel<1>, project_on_arcs_kernel<1>);
   // As a rule few vertices are left.
   const auto share = [&](int lanes, uint64_t looks) {
     return LaunchShape{kVertexThreads, static_cast<size_t>(kVertexThreads / lanes),

@@ -45,35 +45,59 @@ __device__ __forceinline__ void append_on_edge(const VertexJob &job, uint32_t k,
   if (has) job.unfinished[job.count - 1 - place] = k;
 }
 
+template <int kLanes>
+__device__ __forceinline__ auto shared(const ListedCandidates &all) {
+  if constexpr (kLanes == 1)
+    return all;
+  else
+    return LaneCandidates<kLanes>{all.atoms, all.arcs, all.atom_total, all.arc_total};
+}
+
+// The first two kernels have so many lanes for each vertex: few vertices leave a GPU idle with one.
+template <int kLanes>
+struct VertexTeam {
+  uint32_t place;
+  bool on, writes;
+  // Of a team that takes one of `total` places.
+  __device__ __forceinline__ VertexTeam(const LaunchItems &vertices, uint32_t total)
+      : place(static_cast<uint32_t>(vertices.first) + (blockIdx.x * kVertexThreads + threadIdx.x) / kLanes),
+        on(place < total),
+        writes(on && lane_id() % kLanes == 0) {}
+  // Whether any team of this warp has a place.
+  __device__ __forceinline__ bool has_work(uint32_t total) const {
+    return place - static_cast<uint32_t>(lane_id() / kLanes) < total;
+  }
+};
+
+template <int kLanes>
 static __global__ __launch_bounds__(kVertexThreads) void project_on_atoms_kernel(LaunchItems vertices, VertexJob job) {
-  const uint32_t k0 = static_cast<uint32_t>(vertices.first) + blockIdx.x * kVertexThreads + threadIdx.x;
   const uint32_t count = vertex_count(job);
-  if (k0 - static_cast<uint32_t>(lane_id()) >= count) return;
-  const bool on = k0 < count;
-  const uint32_t k = on ? k0 : count - 1;
+  const VertexTeam<kLanes> team(vertices, count);
+  if (!team.has_work(count)) return;
+  const uint32_t k = team.on ? team.place : count - 1;
   const FeatureView &f = job.features;
-  const ListedCandidates candidates = vertex_candidates(job, k);
+  const auto candidates = shared<kLanes>(vertex_candidates(job, k));
   const Vec3<float> x = stored_start(job, job.first + k);
   const DeepestAtom deepest = deepest_atom(f, candidates, x);
   __syncwarp();
   const Sphere ball = load(f.atoms.items + deepest.atom);
-  const bool contact = is_on_contact(f, deepest, x);
+  const bool contact = is_on_contact(f, candidates, deepest, x);
   const Projection v = project_on_atom(f.parameters, ball, deepest.depth, x);
   const bool done = v.state == ProjectionState::kPlaced;
   __syncwarp();
-  append(job.open, &job.counts->open, k, on && !contact);
-  append_on_edge(job, k, on && contact && !done);
-  if (on && contact && done) finish_vertex(job, k, v.point, deepest.atom);
+  append(job.open, &job.counts->open, k, team.writes && !contact);
+  append_on_edge(job, k, team.writes && contact && !done);
+  if (team.writes && contact && done) finish_vertex(job, k, v.point, deepest.atom);
 }
 
+template <int kLanes>
 static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(LaunchItems vertices, VertexJob job) {
-  const uint32_t place = static_cast<uint32_t>(vertices.first) + blockIdx.x * kVertexThreads + threadIdx.x,
-                 total = job.counts->open;
-  if (place - static_cast<uint32_t>(lane_id()) >= total) return;
-  const bool on = place < total;
-  const uint32_t k = job.open[on ? place : total - 1];
+  const uint32_t total = job.counts->open;
+  const VertexTeam<kLanes> team(vertices, total);
+  if (!team.has_work(total)) return;
+  const uint32_t k = job.open[team.on ? team.place : total - 1];
   const FeatureView &f = job.features;
-  const ListedCandidates candidates = vertex_candidates(job, k);
+  const auto candidates = shared<kLanes>(vertex_candidates(job, k));
   const Vec3<float> x = stored_start(job, job.first + k);
 
   // The nearest arc, and which are hardly farther than depth: of a vertex that has moved by no more than the difference
@@ -81,40 +105,41 @@ static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(
   constexpr int kMaskBits = 64;
   const float margin = 0.3f * job.reach.spacing, near = f.parameters.depth + margin;
   NearestArc nearest;
-  uint64_t near_arcs = 0;
-  const int arcs = candidates.arc_count();
-  for (int q = 0; q < arcs; ++q) {
-    const int a = static_cast<int>(candidates.arc(q));
+  uint64_t near_arcs = 0;  // of this lane
+  const unsigned lanes = LaneCandidates<kLanes>::lanes();
+  const int arcs = candidates.arc_count(), rank = LaneCandidates<kLanes>::rank();
+  for (int q = 0; q * kLanes + rank < arcs; ++q) {
+    const int a = static_cast<int>(candidates.arc(q * kLanes + rank));
     const float d2 = arc_distance2(load(f.arcs + a), x);
     nearest.offer(a, d2);
     near_arcs |= static_cast<uint64_t>(d2 < near * near) << (q & (kMaskBits - 1));
   }
+  nearest = nearest_of_lanes<kLanes>(nearest, lanes);
   __syncwarp();
   Projection v = project_on_arc(f, nearest, x);
-  const bool mask_tells = arcs <= kMaskBits && f.parameters.depth - square_root(nearest.distance2) < margin;
+  const bool mask_tells =
+      arcs <= kMaskBits * kLanes && f.parameters.depth - square_root(nearest.distance2) < margin;
   __syncwarp();
   if (v.state == ProjectionState::kReproject && mask_tells) {
     nearest = NearestArc();
     for (uint64_t rest = near_arcs; rest; rest &= rest - 1) {
-      const int a = static_cast<int>(candidates.arc(lowest_bit64(rest)));
+      const int a = static_cast<int>(candidates.arc(lowest_bit64(rest) * kLanes + rank));
       nearest.offer(a, arc_distance2(load(f.arcs + a), v.point.position));
     }
+    nearest = nearest_of_lanes<kLanes>(nearest, lanes);
     const Projection next = reproject(f, candidates, nearest, v);
     if (next.state == ProjectionState::kPlaced) v = next;  // else that round is done again
   }
   __syncwarp();
-  append(job.unfinished, &job.counts->unfinished, k, on && v.state == ProjectionState::kReproject);
-  append_on_edge(job, k, on && v.state == ProjectionState::kOnEdge);
-  if (!on) return;
-  if (v.state == ProjectionState::kPlaced)
-    finish_vertex(job, k, v.point, nearest_atom(f, candidates, v.point.position));
-  else if (v.state == ProjectionState::kReproject)
+  const bool placed = v.state == ProjectionState::kPlaced, goes_on = v.state == ProjectionState::kReproject;
+  append(job.unfinished, &job.counts->unfinished, k, team.writes && goes_on);
+  append_on_edge(job, k, team.writes && !placed && !goes_on);
+  if (placed) {
+    const uint32_t owner = nearest_atom(f, candidates, v.point.position);
+    if (team.writes) finish_vertex(job, k, v.point, owner);
+  } else if (team.writes && goes_on) {
     leave_vertex(job, k, v);
-}
-
-template <int kLanes>
-__device__ __forceinline__ LaneCandidates<kLanes> shared(const ListedCandidates &all) {
-  return {all.atoms, all.arcs, all.atom_total, all.arc_total};
+  }
 }
 
 constexpr int kVertexLanes = 8;

@@ -208,16 +208,17 @@ static __global__ __launch_bounds__(kWallThreads, 8) void drop_open_edges_kernel
   }
 }
 
-// Eight lanes for each edge that is left. They wait for memory: more blocks at a time are worth registers.
-constexpr int kWallLanes = 8, kWalkRoom = 160;
+// Some lanes for each edge that is left. They wait for memory: more blocks at a time are worth registers.
+template <int kLanes>
 static __global__ __launch_bounds__(kWallThreads, 10) void walk_edges_kernel(LaunchItems items, WallJob job) {
-  __shared__ uint32_t edge_memory[kWallThreads / kWallLanes][kWalkRoom];
+  constexpr int kTeams = kWallThreads / kLanes, kRoom = 2560 / kTeams;
+  __shared__ uint32_t edge_memory[kTeams][kRoom];
   const FeatureView &f = job.features;
   const SurfaceParameters &p = f.parameters;
-  const size_t teams = size_t(gridDim.x) * (kWallThreads / kWallLanes), walks = job.counters->walks;
+  const size_t teams = size_t(gridDim.x) * kTeams, walks = job.counters->walks;
   const size_t total = walks < items.last ? walks : items.last;
-  const int team = static_cast<int>(threadIdx.x) / kWallLanes;
-  for (size_t k = items.first + blockIdx.x * (kWallThreads / kWallLanes) + static_cast<size_t>(team); k < total;
+  const int team = static_cast<int>(threadIdx.x) / kLanes;
+  for (size_t k = items.first + blockIdx.x * kTeams + static_cast<size_t>(team); k < total;
        k += teams) {
     const uint64_t item = job.walks[k];
     const WallEdge e = wall_edge(job, static_cast<uint32_t>(item / (64 * kWallSteps)),
@@ -225,7 +226,7 @@ static __global__ __launch_bounds__(kWallThreads, 10) void walk_edges_kernel(Lau
     const Vec3<float> a = wall_point(job, e.brick, e.first), b = wall_point(job, e.brick, e.second);
     const float half = 0.5f * wall_step_length(e.step) * p.spacing + 2.f * job.reach.slack;
     const ListedCandidates all = brick_candidates(job.view, e.slot / kLeavesPerBrick);
-    const auto near = choose_for_edge<kWallLanes>(f, all, (a + b) * 0.5f, half, edge_memory[team], kWalkRoom);
+    const auto near = choose_for_edge<kLanes>(f, all, (a + b) * 0.5f, half, edge_memory[team], kRoom);
     const NearestProbe probe_a = decided_probe(f, first_decider(job, e.slot, e.bit, a), a);
     const uint32_t decider_b = decider_at(job, e.brick, e.second);
     const NearestProbe probe_b = decider_b == kNotLookedAt ? nearest_probe(f, near, b) : decided_probe(f, decider_b, b);
@@ -290,10 +291,17 @@ void mark_thin_walls(E &executor, const FeatureView &features, const BrickSet &b
     rooms.walked_edges = std::max(rooms.walked_edges, kRoomToSpare * static_cast<double>(found.walks) / usual_walks);
     executor.fill(Span<unsigned long long>{&counters->walks, 1}, 0);
   }
-  executor.launch("walk_edges", walk_edges_kernel, static_cast<size_t>(found.walks),
-                  LaunchShape{kWallThreads, kWallThreads / kWallLanes,
-                              (2 + kMostWallSteps) * (64 + look / kWallLanes), most_blocks},
-                  job);
+  // Few edges leave a GPU idle with eight lanes each.
+  const auto walk = [&](size_t lanes, auto kernel) {
+    executor.launch(
+        "walk_edges", kernel, static_cast<size_t>(found.walks),
+        LaunchShape{kWallThreads, kWallThreads / lanes, (2 + kMostWallSteps) * (64 + look / lanes), most_blocks}, job);
+  };
+  constexpr size_t kFullThreads = 1024;  // of a multiprocessor
+  if (found.walks * kWarp <= executor.multiprocessors() * kFullThreads)
+    walk(kWarp, walk_edges_kernel<kWarp>);
+  else
+    walk(8, walk_edges_kernel<8>);
   executor.arena().rewind(mark);
 }
 

@@ -47,7 +47,7 @@ static __global__ __launch_bounds__(kTriangleWarps *kWarp) void emit_triangles_k
   for (uint32_t b = job.slice.first + static_cast<uint32_t>(items.first) + blockIdx.x * kTriangleWarps +
                     static_cast<uint32_t>(warp);
        b < last; b += gridDim.x * kTriangleWarps) {
-    const uint32_t base = layout.triangle_base[b], total = layout.triangle_base[b + 1] - base;
+    const uint32_t base = layout.base[b].triangles, total = layout.base[b + 1].triangles - base;
     if (total == 0) continue;
     const int brick = static_cast<int>(b);
     __syncwarp();
@@ -64,7 +64,7 @@ static __global__ __launch_bounds__(kTriangleWarps *kWarp) void emit_triangles_k
             static_cast<size_t>(k) * kLeavesPerBrick + static_cast<size_t>((x & 1) + 2 * (y & 1) + 4 * (z & 1));
         for (int axis = 0; axis < kAxes; ++axis) {
           scratch.crossing[lane][axis] = layout.crossing[leaf * kAxes + axis];
-          scratch.first[lane][axis] = layout.vertex_base[k] + layout.vertex_rank[leaf * kAxes + axis];
+          scratch.first[lane][axis] = layout.base[k].vertices + layout.vertex_rank[leaf * kAxes + axis];
         }
       }
     }

@@ -115,7 +115,7 @@ __device__ __forceinline__ bool open_leaf(const VertexJob &job, uint32_t slot, V
   }
   __syncwarp();
   if (out->count == 0) return false;
-  out->first = job.layout.vertex_base[out->brick] + job.layout.vertex_rank[k];
+  out->first = job.layout.base[out->brick].vertices + job.layout.vertex_rank[k];
   out->place = job.bricks.lattice.brick_at(job.bricks.linear[out->brick]);
   out->origin = brick_point(out->leaf, 0);
   return true;
@@ -223,7 +223,7 @@ static __global__ __launch_bounds__(kLeafWarps *kWarp) void prepare_vertices_ker
   }
   const unsigned owning = __ballot_sync(kFullWarp, owns);
   const uint32_t number =
-      job.layout.leaf_base[leaf.brick] - job.first_list + static_cast<uint32_t>(place_in(owning, leaf.leaf));
+      job.layout.base[leaf.brick].leaves - job.first_list + static_cast<uint32_t>(place_in(owning, leaf.leaf));
   const int room = static_cast<int>(job.list_words);
   uint32_t *const list = job.lists + static_cast<size_t>(number) * job.list_words;
   int listed = 1;  // word 0 is for the numbers

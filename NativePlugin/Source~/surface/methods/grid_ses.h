@@ -276,8 +276,8 @@ QSES_FN uint32_t nearest_grid_atom(const GridField &f, const Vec3<float> &x, flo
 }
 
 struct OwnsVertices {
-  const uint32_t *vertex_base;
-  QSES_FN bool operator()(uint32_t brick) const { return vertex_base[brick] != vertex_base[brick + 1]; }
+  const BrickTotals *base;
+  QSES_FN bool operator()(uint32_t brick) const { return base[brick].vertices != base[brick + 1].vertices; }
 };
 
 struct EmitGridVertices {
@@ -296,7 +296,7 @@ struct EmitGridVertices {
   template <class Team>
   QSES_HOST_DEVICE void operator()(const Team &team, DistanceScratch<kCorners> &scratch, size_t i) const {
     const uint32_t brick = first + static_cast<uint32_t>(i);
-    if (!OwnsVertices{layout.vertex_base}(brick)) return;
+    if (!OwnsVertices{layout.base}(brick)) return;
     bring_distances<kCorners>(field, brick, team, scratch, limit(field.parameters),
                               saved ? saved + i * (kCorners * kCorners * kCorners) : nullptr);
     const Lattice &lattice = field.bricks.lattice;
@@ -348,7 +348,7 @@ void emit_grid_vertices(Executor &executor, const GridField &field, const MeshLa
   const auto owner_steps = [&](uint64_t near) { return kEdges * (64 + std::min(near, kMost) / 2); };
   const uint64_t near = most_grid_atoms_near(executor, field.atoms, field.parameters, range.size(), owner_steps);
   with_distances<kCorners>(
-      executor, field, range, EmitGridVertices::limit(field.parameters), OwnsVertices{layout.vertex_base},
+      executor, field, range, EmitGridVertices::limit(field.parameters), OwnsVertices{layout.base},
       [&](BrickRange some, int32_t *saved, uint64_t steps) {
         for_parts_of_met_items(near, Executor::kIsCuda ? kMost : near, [&](const MetItems &part, bool is_last) {
           executor.template for_each_brick<DistanceScratch<kCorners>>(

@@ -9,17 +9,16 @@
 
 namespace quickses {
 
-struct CenterAtoms {
+struct CenteredAtomAt {
   const Sphere *given;
   double x, y, z;
   float probe;
-  Sphere *centered;
-  QSES_HOST_DEVICE void operator()(size_t i) const {
+  QSES_HOST_DEVICE Sphere operator()(size_t i) const {
     const Sphere a = given[i];
-    centered[i] = {glm::vec3(static_cast<float>(static_cast<double>(a.center.x) - x),
-                             static_cast<float>(static_cast<double>(a.center.y) - y),
-                             static_cast<float>(static_cast<double>(a.center.z) - z)),
-                   a.radius + probe};
+    return {glm::vec3(static_cast<float>(static_cast<double>(a.center.x) - x),
+                      static_cast<float>(static_cast<double>(a.center.y) - y),
+                      static_cast<float>(static_cast<double>(a.center.z) - z)),
+            a.radius + probe};
   }
 };
 

@@ -34,6 +34,14 @@ inline MeshTotals expected_value(const WorkFacts &facts, const MeshTotals *) {
   return {number(facts.size.vertices), number(facts.size.triangles), number(facts.size.leaves), 0, 0};
 }
 
+// What bricks own; leaves: those that own vertices.
+struct BrickTotals {
+  uint32_t vertices, triangles, leaves;
+  QSES_FN BrickTotals operator+(const BrickTotals &b) const {
+    return {vertices + b.vertices, triangles + b.triangles, leaves + b.leaves};
+  }
+};
+
 // What counting leaves behind, per active brick. Vertices are numbered by brick, leaf, axis of their edge, and bit;
 // triangles by brick, leaf, bit of their cell, and place in the table.
 struct MeshLayout {
@@ -41,9 +49,7 @@ struct MeshLayout {
   uint64_t *crossing;       // [brick][leaf][axis]: bit set = the edge from that point along the axis changes sign
   uint16_t *vertex_rank;    // [brick][leaf][axis]: vertices of the brick before that mask
   uint16_t *triangle_rank;  // [brick][leaf]: triangles of the brick before that leaf
-  uint32_t *vertex_base;    // [brick + 1]: vertices before the brick
-  uint32_t *triangle_base;  // [brick + 1]
-  uint32_t *leaf_base;      // [brick + 1]: leaves that own vertices before the brick
+  BrickTotals *base;        // [brick + 1]: what the bricks before it own
   BorderSigns *border;      // [brick]
   MeshTotals *totals;
   uint64_t vertex_total, triangle_total;  // of all bricks; if they are anticipated, there may be fewer
@@ -155,12 +161,9 @@ QSES_FN int count_leaf(const LeafWords &words, const uint8_t *case_triangles, ui
 
 constexpr int kBrickMasks = kLeavesPerBrick * kAxes;
 
-// The ranks of a brick from its counts; its totals go to vertices, triangles and leaves.
-struct BrickTotals {
-  uint32_t *vertices, *triangles, *leaves;
-};
-QSES_FN void rank_brick(const MeshLayout &layout, size_t brick, const uint16_t vertex_counts[kBrickMasks],
-                        const uint16_t triangle_counts[kLeavesPerBrick], const BrickTotals &totals) {
+// The ranks of a brick from its counts. Returns its totals.
+QSES_FN BrickTotals rank_brick(const MeshLayout &layout, size_t brick, const uint16_t vertex_counts[kBrickMasks],
+                        const uint16_t triangle_counts[kLeavesPerBrick]) {
   uint16_t *const vertex = layout.vertex_rank + brick * kBrickMasks;
   uint16_t *const triangle = layout.triangle_rank + brick * kLeavesPerBrick;
   uint32_t v = 0, t = 0, owning = 0;
@@ -174,10 +177,8 @@ QSES_FN void rank_brick(const MeshLayout &layout, size_t brick, const uint16_t v
     triangle[leaf] = static_cast<uint16_t>(t);
     t += triangle_counts[leaf];
   }
-  totals.vertices[brick] = v;
-  totals.triangles[brick] = t;
-  totals.leaves[brick] = owning;
   layout.border[brick] = border_signs(layout.signs + brick * kLeavesPerBrick);
+  return {v, t, owning};
 }
 
 // On the GPU a thread per leaf, then one per brick.
@@ -196,12 +197,12 @@ struct CountLeaf {
 };
 struct RankBrick {
   MeshLayout layout;
-  BrickTotals totals;
+  BrickTotals *totals;
   QSES_HOST_DEVICE void operator()(size_t brick) const {
     uint16_t vertex_counts[kBrickMasks], triangle_counts[kLeavesPerBrick];  // all loads before the first store
     for (int k = 0; k < kBrickMasks; ++k) vertex_counts[k] = layout.vertex_rank[brick * kBrickMasks + k];
     for (int k = 0; k < kLeavesPerBrick; ++k) triangle_counts[k] = layout.triangle_rank[brick * kLeavesPerBrick + k];
-    rank_brick(layout, brick, vertex_counts, triangle_counts, totals);
+    totals[brick] = rank_brick(layout, brick, vertex_counts, triangle_counts);
   }
 };
 
@@ -210,7 +211,7 @@ struct CountBrick {
   BrickSet bricks;
   MeshLayout layout;
   const uint8_t *case_triangles;
-  BrickTotals totals;
+  BrickTotals *totals;
   void operator()(size_t brick) const {
     const UpperBricks upper = upper_bricks(bricks, static_cast<uint32_t>(brick));
     uint64_t *const crossing = layout.crossing + brick * kBrickMasks;
@@ -220,8 +221,18 @@ struct CountBrick {
           count_leaf(leaf_words(upper, layout.signs, leaf), case_triangles, crossing + leaf * kAxes));
     for (int k = 0; k < kBrickMasks; ++k)
       vertex_counts[k] = static_cast<uint16_t>(crossing[k] ? popcount64(crossing[k]) : 0);
-    rank_brick(layout, brick, vertex_counts, triangle_counts, totals);
+    totals[brick] = rank_brick(layout, brick, vertex_counts, triangle_counts);
   }
+};
+
+struct LoadTotals {
+  const BrickTotals *totals;
+  QSES_HOST_DEVICE BrickTotals operator()(size_t i) const { return totals[i]; }
+};
+struct LoadTotal {
+  const BrickTotals *totals;
+  uint32_t BrickTotals::*which;
+  QSES_HOST_DEVICE double operator()(size_t i) const { return totals[i].*which; }
 };
 
 // Runs when all bases are known.
@@ -232,9 +243,10 @@ struct CountBorderChanges {
     const int changes = popcount64(border_changes(bricks, layout.border, brick));
     if (changes > 0) atomic_add(&layout.totals->border_changes, static_cast<uint32_t>(changes));
     if (brick > 0) return;
-    layout.totals->vertices = layout.vertex_base[bricks.count];
-    layout.totals->triangles = layout.triangle_base[bricks.count];
-    layout.totals->leaves = layout.leaf_base[bricks.count];
+    const BrickTotals all = layout.base[bricks.count];
+    layout.totals->vertices = all.vertices;
+    layout.totals->triangles = all.triangles;
+    layout.totals->leaves = all.leaves;
   }
 };
 
@@ -249,7 +261,7 @@ QSES_FN uint32_t vertex_number(uint32_t first, uint64_t crossing, int bit) {
 QSES_FN uint32_t vertex_number(const MeshLayout &m, int brick, int leaf, int axis, int bit) {
   const size_t k =
       (static_cast<size_t>(brick) * kLeavesPerBrick + static_cast<size_t>(leaf)) * 3 + static_cast<size_t>(axis);
-  return vertex_number(m.vertex_base[brick] + m.vertex_rank[k], m.crossing[k], bit);
+  return vertex_number(m.base[brick].vertices + m.vertex_rank[k], m.crossing[k], bit);
 }
 
 // A lattice edge, by its lower point: a bit of a leaf of a brick.
@@ -261,7 +273,7 @@ struct LatticeEdge {
 QSES_FN LatticeEdge edge_of_vertex(const MeshLayout &m, uint32_t brick, uint32_t vertex) {
   constexpr int kMasks = kLeavesPerBrick * kAxes;
   const size_t first = static_cast<size_t>(brick) * kMasks;
-  const uint32_t rank = vertex - m.vertex_base[brick];
+  const uint32_t rank = vertex - m.base[brick].vertices;
   int k = kMasks - 1;  // the last mask that begins no later
   while (k > 0 && m.vertex_rank[first + static_cast<size_t>(k)] > rank) --k;
   uint64_t mask = m.crossing[first + static_cast<size_t>(k)];
@@ -286,7 +298,7 @@ QSES_FN uint32_t brick_of_vertex(const MeshLayout &m, uint32_t bricks, uint32_t 
   uint32_t first = 0, n = bricks;  // the last one that begins no later
   while (n > 1) {
     const uint32_t half = n / 2;
-    const bool later = m.vertex_base[first + half] > vertex;
+    const bool later = m.base[first + half].vertices > vertex;
     first = later ? first : first + half;
     n = later ? half : n - half;
   }
@@ -322,8 +334,8 @@ struct MeshCounts {
   uint64_t vertices, triangles;
 };
 
-// Counts and scans; the signs of all bricks must be known. vertex_base and triangle_base of the layout are only valid
-// if both totals fit 32 bits.
+// Counts and scans; the signs of all bricks must be known. The bases of the layout are only valid if all totals fit 32
+// bits.
 template <class Executor>
 MeshCounts lay_out_mesh(Executor &executor, const BrickSet &bricks, const uint64_t *signs,
                         const uint8_t *case_triangles, MeshLayout *layout) {
@@ -332,40 +344,32 @@ MeshCounts lay_out_mesh(Executor &executor, const BrickSet &bricks, const uint64
   layout->crossing = executor.template allocate<uint64_t>(leaves * 3).data;
   layout->vertex_rank = executor.template allocate<uint16_t>(leaves * 3).data;
   layout->triangle_rank = executor.template allocate<uint16_t>(leaves).data;
-  Span<uint32_t> vertex_base = executor.template allocate<uint32_t>(n + 1);
-  Span<uint32_t> triangle_base = executor.template allocate<uint32_t>(n + 1);
-  layout->vertex_base = vertex_base.data;
-  Span<uint32_t> leaf_base = executor.template allocate<uint32_t>(n + 1);
-  layout->triangle_base = triangle_base.data;
-  layout->leaf_base = leaf_base.data;
+  const Span<BrickTotals> base = executor.template allocate<BrickTotals>(n + 1);
+  layout->base = base.data;
   layout->border = executor.template allocate<BorderSigns>(n).data;
   layout->totals = executor.template take_counts<MeshTotals>();
   const auto mark = executor.arena().mark();
-  Span<uint32_t> vertices = executor.template allocate<uint32_t>(n);
-  Span<uint32_t> triangles = executor.template allocate<uint32_t>(n);
-  Span<uint32_t> owning = executor.template allocate<uint32_t>(n);
-  const BrickTotals counts{vertices.data, triangles.data, owning.data};
+  const Span<BrickTotals> counts = executor.template allocate<BrickTotals>(n);
   if constexpr (Executor::kIsCuda) {
     executor.for_each(leaves, CountLeaf{bricks, *layout, case_triangles});
-    executor.for_each(n, RankBrick{*layout, counts});
+    executor.for_each(n, RankBrick{*layout, counts.data});
   } else {
-    executor.for_each(n, CountBrick{bricks, *layout, case_triangles, counts}, kLeavesPerBrick * kPlainSteps);
+    executor.for_each(n, CountBrick{bricks, *layout, case_triangles, counts.data}, kLeavesPerBrick * kPlainSteps);
   }
-  executor.exclusive_scan(n, LoadCount<uint32_t>{vertices.data}, vertex_base);
-  executor.exclusive_scan(n, LoadCount<uint32_t>{triangles.data}, triangle_base);
-  executor.exclusive_scan(n, LoadCount<uint32_t>{owning.data}, leaf_base);
+  executor.exclusive_scan(n, LoadTotals{counts.data}, base);
   executor.for_each(n, CountBorderChanges{bricks, *layout});
   const MeshTotals totals = n > 0 ? executor.expect("mesh", layout->totals, MeshTotals{}) : MeshTotals{};
   layout->border_changes = totals.border_changes;
   // The bases wrap if there are too many; then the true totals are summed up for the message.
   if (!Executor::kCounts && n * kBrickPoints * 5 > 0xffffffffull) {
-    const double v = executor.reduce(n, LoadCount<uint32_t>{vertices.data});
-    const double t = executor.reduce(n, LoadCount<uint32_t>{triangles.data});
-    layout->vertex_total = static_cast<uint64_t>(v);
-    layout->triangle_total = static_cast<uint64_t>(t);
-    layout->leaf_total = static_cast<uint64_t>(executor.reduce(n, LoadCount<uint32_t>{owning.data}));
+    const auto sum = [&](uint32_t BrickTotals::*which) {
+      return static_cast<uint64_t>(executor.reduce(n, LoadTotal{counts.data, which}));
+    };
+    layout->vertex_total = sum(&BrickTotals::vertices);
+    layout->triangle_total = sum(&BrickTotals::triangles);
+    layout->leaf_total = sum(&BrickTotals::leaves);
     executor.arena().rewind(mark);
-    return {static_cast<uint64_t>(v), static_cast<uint64_t>(t)};
+    return {layout->vertex_total, layout->triangle_total};
   }
   executor.arena().rewind(mark);
   layout->vertex_total = totals.vertices;
@@ -386,12 +390,11 @@ SliceSizes slice_sizes(Executor &executor, const BrickSet &bricks, const MeshLay
   if (last - first == bricks.count)
     return {0, static_cast<uint32_t>(layout.vertex_total), 0, static_cast<uint32_t>(layout.triangle_total),
             0, static_cast<uint32_t>(layout.leaf_total)};
-  const uint32_t *const sources[6] = {layout.vertex_base + first,   layout.vertex_base + last,
-                                      layout.triangle_base + first, layout.triangle_base + last,
-                                      layout.leaf_base + first,     layout.leaf_base + last};
-  uint32_t n[6];
-  executor.fetch_each(sources, n, 6);
-  return {n[0], n[1] - n[0], n[2], n[3] - n[2], n[4], n[5] - n[4]};
+  const BrickTotals *const ends[2] = {layout.base + first, layout.base + last};
+  BrickTotals n[2];
+  executor.fetch_each(ends, n, 2);
+  return {n[0].vertices,  n[1].vertices - n[0].vertices, n[0].triangles, n[1].triangles - n[0].triangles,
+          n[0].leaves, n[1].leaves - n[0].leaves};
 }
 // The mean; but a few bricks may be three times as full.
 template <class Executor>

@@ -80,15 +80,24 @@ QSES_FN CellBox cells_around(const CellLayout &cells, const Vec3<float> &low, co
 QSES_FN bool is_no_item(const Sphere &s) { return s.radius < 0.f; }
 QSES_FN Sphere no_item() { return {glm::vec3(kFarAway), -1.f}; }
 
+template <class ItemAt>
 struct HashItems {
   CellLayout cells;
-  const Sphere *items;
+  ItemAt item_at;
+  Sphere *items;
   uint64_t *keys;
   uint32_t *order;
   QSES_HOST_DEVICE void operator()(size_t i) const {
-    keys[i] = is_no_item(items[i]) ? cells.cells() : cells.hash(items[i].center);
+    const Sphere item = item_at(i);
+    items[i] = item;
+    keys[i] = is_no_item(item) ? cells.cells() : cells.hash(item.center);
     order[i] = static_cast<uint32_t>(i);
   }
+};
+
+struct LoadItem {
+  const Sphere *items;
+  QSES_HOST_DEVICE Sphere operator()(size_t i) const { return items[i]; }
 };
 
 struct GatherItems {
@@ -190,11 +199,10 @@ uint64_t most_items_near(Executor &executor, const char *name, const NeighborGri
   return static_cast<uint64_t>(std::min(static_cast<double>(grid.count), edges * edges * edges * items));
 }
 
-// A grid of n items. make_items() returns them as a Span<Sphere>; what it allocates is given up again, as is all else
-// but the grid. The cells bound the items' centres.
-template <class Executor, class MakeItems>
-NeighborGridView build_neighbor_grid(Executor &executor, size_t n, const CellLayout &cells,
-                                     const MakeItems &make_items) {
+// A grid of n items. prepare() returns what makes one from its number; what it allocates is given up again, as is all
+// else but the grid. The cells bound the items' centres.
+template <class Executor, class Prepare>
+NeighborGridView build_neighbor_grid(Executor &executor, size_t n, const CellLayout &cells, const Prepare &prepare) {
   // Kernels load whole packs of spheres: room behind the last one, far away.
   Span<Sphere> sorted = executor.template allocate<Sphere>(n + 8);
   Span<uint32_t> order = executor.template allocate<uint32_t>(n);
@@ -206,10 +214,11 @@ NeighborGridView build_neighbor_grid(Executor &executor, size_t n, const CellLay
   else
     keys = executor.template allocate<uint64_t>(n);
   const auto mark = executor.arena().mark();
-  const Span<Sphere> items = make_items();
+  const auto item_at = prepare();
+  const Span<Sphere> items = executor.template allocate<Sphere>(n);
   if (dense) keys = executor.template allocate<uint64_t>(n);
   executor.fill(Span<Sphere>{sorted.data + n, 8}, 0x4c);  // all bytes 0x4c: about 5e7 Å in every coordinate
-  executor.for_each(n, HashItems{cells, items.data, keys.data, order.data});
+  executor.for_each(n, HashItems<std::decay_t<decltype(item_at)>>{cells, item_at, items.data, keys.data, order.data});
   executor.sort_by_key(keys, order, bits_for(cells.cells()));
   executor.for_each(n, GatherItems{items.data, order.data, sorted.data});
   if (dense) {
@@ -224,7 +233,7 @@ NeighborGridView build_neighbor_grid(Executor &executor, size_t n, const CellLay
 // The same for items that are there already.
 template <class Executor>
 NeighborGridView build_neighbor_grid(Executor &executor, Span<Sphere> items, const CellLayout &cells) {
-  return build_neighbor_grid(executor, items.size, cells, [&] { return items; });
+  return build_neighbor_grid(executor, items.size, cells, [&] { return LoadItem{items.data}; });
 }
 
 }  // namespace quickses

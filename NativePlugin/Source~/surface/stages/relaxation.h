@@ -109,7 +109,7 @@ struct NoScratch {};
 struct TangentialStarts {
   Lattice lattice;
   const uint64_t *linear;
-  const uint32_t *vertex_base;
+  const BrickTotals *base;
   const RingSum *sums;
   MeshView mesh;
   glm::vec3 *starts;
@@ -119,8 +119,8 @@ struct TangentialStarts {
     const float h = lattice.spacing, overhang = 0.999f * kStartOverhang * h, edge = 7.f * h;
     const glm::ivec3 first = lattice.first_point(lattice.brick_at(linear[brick]));
     const Vec3<float> low = lattice.position(first.x, first.y, first.z);
-    const uint32_t end = vertex_base[brick + 1];
-    for (uint32_t v = vertex_base[brick] + static_cast<uint32_t>(team.rank()); v < end;
+    const uint32_t end = base[brick + 1].vertices;
+    for (uint32_t v = base[brick].vertices + static_cast<uint32_t>(team.rank()); v < end;
          v += static_cast<uint32_t>(team.size())) {
       const Vec3<float> n = shared_normal(mesh, v);
       const float *const position = mesh.position(v);
@@ -152,7 +152,7 @@ void tangential_starts(Executor &executor, const BrickSet &bricks, const MeshLay
   executor.fill(sums, 0);
   executor.for_each(counts.triangles, AddNeighborOffsets{mesh, 1.f / spacing, sums.data});
   executor.template for_each_brick<NoScratch>(
-      bricks.count, TangentialStarts{bricks.lattice, bricks.linear, layout.vertex_base, sums.data, mesh, starts});
+      bricks.count, TangentialStarts{bricks.lattice, bricks.linear, layout.base, sums.data, mesh, starts});
 }
 
 // ---- normals ---------------------------------------------------------------------------------------------------

@@ -88,17 +88,14 @@ struct RemoveContainedAtoms {
   }
 };
 
-struct BoundArcs {
+struct ArcBoundAt {
   const Arc *arcs;
   const unsigned long long *count;  // nullptr: of as many as there are
-  Sphere *bounds;
-  QSES_HOST_DEVICE void operator()(size_t i) const {
-    if (count && i >= *count) {
-      bounds[i] = no_item();
-      return;
-    }
-    bounds[i] = arc_bound(arcs[i]);
-    bounds[i].radius += 1e-4f;
+  QSES_HOST_DEVICE Sphere operator()(size_t i) const {
+    if (count && i >= *count) return no_item();
+    Sphere bound = arc_bound(arcs[i]);
+    bound.radius += 1e-4f;
+    return bound;
   }
 };
 
