@@ -123,8 +123,7 @@ void check_indices(const uint32_t *indices, size_t count, size_t position_count)
 
 AtomBounds copy_indexed_positions(const float *positions, size_t stride, const uint32_t *indices, size_t count,
                                   Sphere *atoms) {
-  return copy_rest(
-      0, count, [&](size_t i) { return position_at(positions, stride, indices[i]); }, atoms, {});
+  return copy_rest(0, count, [&](size_t i) { return position_at(positions, stride, indices[i]); }, atoms, {});
 }
 
 float check_radii(const float *radii, size_t count) {

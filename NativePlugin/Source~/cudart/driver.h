@@ -40,6 +40,9 @@ namespace cudart {
   F(cuMemFree_v2, CUresult, CUdeviceptr)                                                                        \
   F(cuMemHostAlloc, CUresult, void **, size_t, unsigned)                                                        \
   F(cuMemFreeHost, CUresult, void *)                                                                            \
+  F(cuMemHostRegister_v2, CUresult, void *, size_t, unsigned)                                                   \
+  F(cuMemHostUnregister, CUresult, void *)                                                                      \
+  F(cuMemHostGetDevicePointer_v2, CUresult, CUdeviceptr *, void *, unsigned)                                    \
   F(cuMemGetInfo_v2, CUresult, size_t *, size_t *)                                                              \
   F(cuMemcpyHtoDAsync_v2, CUresult, CUdeviceptr, const void *, size_t, CUstream)                                \
   F(cuMemcpyDtoHAsync_v2, CUresult, void *, CUdeviceptr, size_t, CUstream)                                      \

@@ -42,6 +42,22 @@ cudaError_t CUDARTAPI cudaFreeHost(void *memory) {
   return inside([&](const Driver &d) { return d.cuMemFreeHost(memory); });
 }
 
+// The flags have the numbers of CU_MEMHOSTREGISTER_*.
+cudaError_t CUDARTAPI cudaHostRegister(void *memory, size_t bytes, unsigned flags) {
+  return inside([&](const Driver &d) { return d.cuMemHostRegister_v2(memory, bytes, flags); });
+}
+cudaError_t CUDARTAPI cudaHostUnregister(void *memory) {
+  return inside([&](const Driver &d) { return d.cuMemHostUnregister(memory); });
+}
+cudaError_t CUDARTAPI cudaHostGetDevicePointer(void **on_device, void *memory, unsigned flags) {
+  return inside([&](const Driver &d) {
+    CUdeviceptr p = 0;
+    const CUresult result = d.cuMemHostGetDevicePointer_v2(&p, memory, flags);
+    if (result == CUDA_SUCCESS) *on_device = reinterpret_cast<void *>(static_cast<uintptr_t>(p));
+    return result;
+  });
+}
+
 cudaError_t CUDARTAPI cudaMemGetInfo(size_t *free, size_t *total) {
   return inside([&](const Driver &d) { return d.cuMemGetInfo_v2(free, total); });
 }

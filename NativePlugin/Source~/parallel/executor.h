@@ -40,7 +40,7 @@
 namespace quickses {
 
 // Items per chunk of reduce(): part of the result's definition, since float sums depend on the order.
-constexpr size_t kReduceChunk = 2048;
+constexpr size_t kReduceChunk = 512;
 
 // Steps of a thread: rounds of its loops, of some 25 instructions each (cuda_launch.cuh). For one item no more than
 // this may be asked for: the work on it is cut.

@@ -176,7 +176,9 @@ MeshMemoryView build_surface(Work &work) {
   if (work.settings.measure) {
     // Only the solvent-excluded surface is measured along its normals: of balls the atoms know better.
     const bool bent = work.report->measured_by == QSES_MEASURED_BY_NORMALS;
-    const Measures m = measure(executor, mesh.view, counts, bent, mesh.unplaced, &work.report->unplaced_vertices);
+    const double middle[3] = {work.lattice.center_x, work.lattice.center_y, work.lattice.center_z};
+    const Measures m =
+        measure(executor, mesh.view, counts, bent, middle, mesh.unplaced, &work.report->unplaced_vertices);
     work.report->area = m.sums.area;
     work.report->volume = m.sums.volume;
     work.report->triangle_area = m.sums.flat_area;

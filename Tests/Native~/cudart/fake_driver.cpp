@@ -241,6 +241,23 @@ FAKE_API CUresult CUDAAPI cuMemAlloc_v2(CUdeviceptr *memory, size_t bytes) {
 FAKE_API CUresult CUDAAPI cuMemFree_v2(CUdeviceptr memory) { return take_memory_back(host(memory)); }
 FAKE_API CUresult CUDAAPI cuMemHostAlloc(void **memory, size_t bytes, unsigned) { return give_memory(bytes, memory); }
 FAKE_API CUresult CUDAAPI cuMemFreeHost(void *memory) { return take_memory_back(memory); }
+FAKE_API CUresult CUDAAPI cuMemHostRegister_v2(void *memory, size_t bytes, unsigned) {
+  bool fails = false;
+  const CUresult result = next(&fails);
+  if (fails) return result;
+  const std::lock_guard<std::mutex> lock(memory_mutex);
+  memory_given[address(memory)] = bytes;
+  return result;
+}
+FAKE_API CUresult CUDAAPI cuMemHostUnregister(void *memory) {
+  const std::lock_guard<std::mutex> lock(memory_mutex);
+  if (memory_given.erase(address(memory)) == 0) return CUDA_ERROR_INVALID_VALUE;
+  return next();
+}
+FAKE_API CUresult CUDAAPI cuMemHostGetDevicePointer_v2(CUdeviceptr *on_device, void *memory, unsigned) {
+  *on_device = address(memory);
+  return next();
+}
 FAKE_API CUresult CUDAAPI cuMemGetInfo_v2(size_t *free, size_t *total) {
   *free = size_t(96) << 20;
   *total = size_t(128) << 20;

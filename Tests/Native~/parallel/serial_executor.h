@@ -41,10 +41,10 @@ class SerialExecutor {
   }
   template <class Load, class T>
   void exclusive_scan(size_t n, Load load, quickses::Span<T> out) {
-    T sum = 0;
+    T sum{};
     for (size_t i = 0; i < n; ++i) {
       out[i] = sum;
-      sum += static_cast<T>(load(i));
+      sum = sum + static_cast<T>(load(i));
     }
     out[n] = sum;
   }

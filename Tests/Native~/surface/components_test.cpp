@@ -155,7 +155,9 @@ TEST(Components, LabelIsTheSmallestVertex) {
   CpuExecutor executor(2);
   std::vector<uint32_t> labels(m.vertex_count(), 99);
   const MeshView view = view_of(m);
-  label_components(executor, view, MeshCounts{m.vertex_count(), m.triangle_count()}, labels.data());
+  Tally<uint32_t> count{0};
+  label_components(executor, view, MeshCounts{m.vertex_count(), m.triangle_count()}, labels.data(), &count);
+  EXPECT_EQ(count.count, 2u);
   for (size_t v = 0; v < labels.size(); ++v) EXPECT_EQ(labels[v], v < 6 ? 0u : 6u);
 }
 

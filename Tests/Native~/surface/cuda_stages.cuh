@@ -115,8 +115,9 @@ inline DeviceStages run_device_stages(CudaExecutor &executor, const DeviceTable 
   const size_t arcs = s.found.arcs.size;
   if (arcs > 0) {
     const glm::vec3 reach(p.max_radius);
-    f.arc_bounds = build_neighbor_grid(executor, arcs, layout_cells(low - reach, high + reach, kArcCellEdge),
-                                       [&] { return ArcBoundAt{s.found.arcs.data, nullptr}; });
+    f.arc_bounds = build_neighbor_grid(executor, arcs, layout_cells(low - reach, high + reach, kArcCellEdge), [&] {
+      return ArcBoundAt{s.found.arcs.data, nullptr};
+    });
     Span<Arc> sorted = executor.allocate<Arc>(arcs);
     executor.for_each(arcs, GatherArcs{s.found.arcs.data, nullptr, f.arc_bounds.order, sorted.data});
     f.arcs = sorted.data;

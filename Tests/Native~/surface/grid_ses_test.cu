@@ -117,8 +117,9 @@ void compare(const std::vector<Atom> &atoms, float probe, float spacing) {
   for (size_t v = 0; v < host_starts.size(); ++v)
     for (int d = 0; d < 3; ++d) ASSERT_NEAR(device_starts[v][d], host_starts[v][d], 1e-5f) << v;
 
-  const Measures found = measure(executor, view, counts, true);
-  const Measures plain = measure(serial.executor, serial.view(expected), serial.counts, true);
+  const double middle[3] = {};
+  const Measures found = measure(executor, view, counts, true, middle);
+  const Measures plain = measure(serial.executor, serial.view(expected), serial.counts, true, middle);
   EXPECT_NEAR(found.sums.area, plain.sums.area, 1e-9 * plain.sums.area);
   EXPECT_NEAR(found.sums.volume, plain.sums.volume, 1e-9 * plain.sums.volume);
   EXPECT_NEAR(found.sums.flat_area, plain.sums.flat_area, 1e-9 * plain.sums.area);

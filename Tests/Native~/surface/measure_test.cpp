@@ -15,6 +15,7 @@ using namespace quickses;
 using mesh_checks::Mesh;
 
 const double kPi = std::acos(-1.0);
+const double kOrigin[3] = {};
 
 struct Flat {
   double area, volume;
@@ -26,7 +27,7 @@ Flat measure_mesh(Mesh &mesh, unsigned threads = 2, bool reversed = false) {
   view.positions = mesh.positions.data();
   view.indices = mesh.indices.data();
   view.reversed = reversed;
-  const Measures m = measure(executor, view, MeshCounts{mesh.vertex_count(), mesh.triangle_count()}, false);
+  const Measures m = measure(executor, view, MeshCounts{mesh.vertex_count(), mesh.triangle_count()}, false, kOrigin);
   EXPECT_EQ(m.sums.area, m.sums.flat_area);
   EXPECT_EQ(m.sums.volume, m.sums.flat_volume);
   return {m.sums.area, m.sums.volume, m.bounds};
@@ -108,7 +109,7 @@ TriangleSums measure_bent(Mesh &mesh, const std::vector<float> &normals, const s
   if (!second.empty()) view.second_normals = const_cast<float *>(second.data());
   view.indices = mesh.indices.data();
   view.reversed = reversed;
-  return measure(executor, view, MeshCounts{mesh.vertex_count(), mesh.triangle_count()}, true).sums;
+  return measure(executor, view, MeshCounts{mesh.vertex_count(), mesh.triangle_count()}, true, kOrigin).sums;
 }
 
 // What is left falls with the fourth power of the size of triangles, where that of flat ones falls with the second.

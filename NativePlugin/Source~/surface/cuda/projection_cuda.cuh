@@ -118,7 +118,7 @@ static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(
   __syncwarp();
   Projection v = project_on_arc(f, nearest, x);
   const bool mask_tells =
-      arcs <= kMaskBits * kLanes && f.parameters.depth - square_root(nearest.distance2) < margin;
+      arcs <= kMaskBits * kLanes && absolute(f.parameters.depth - square_root(nearest.distance2)) < margin;
   __syncwarp();
   if (v.state == ProjectionState::kReproject && mask_tells) {
     nearest = NearestArc();

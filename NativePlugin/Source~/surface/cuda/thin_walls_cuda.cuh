@@ -218,8 +218,7 @@ static __global__ __launch_bounds__(kWallThreads, 10) void walk_edges_kernel(Lau
   const size_t teams = size_t(gridDim.x) * kTeams, walks = job.counters->walks;
   const size_t total = walks < items.last ? walks : items.last;
   const int team = static_cast<int>(threadIdx.x) / kLanes;
-  for (size_t k = items.first + blockIdx.x * kTeams + static_cast<size_t>(team); k < total;
-       k += teams) {
+  for (size_t k = items.first + blockIdx.x * kTeams + static_cast<size_t>(team); k < total; k += teams) {
     const uint64_t item = job.walks[k];
     const WallEdge e = wall_edge(job, static_cast<uint32_t>(item / (64 * kWallSteps)),
                                  static_cast<int>(item / 64 % kWallSteps), static_cast<int>(item % 64));

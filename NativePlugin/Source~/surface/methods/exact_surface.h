@@ -56,7 +56,9 @@ FeatureView arrange_features(Work &work, const SolventFeatures &found) {
   if (n > 0) {
     const glm::vec3 reach(work.parameters.max_radius);
     const CellLayout cells = layout_cells(work.low - reach, work.high + reach, kArcCellEdge);
-    f.arc_bounds = build_neighbor_grid(executor, n, cells, [&] { return ArcBoundAt{found.arcs.data, found.arc_count}; });
+    f.arc_bounds = build_neighbor_grid(executor, n, cells, [&] {
+      return ArcBoundAt{found.arcs.data, found.arc_count};
+    });
     const auto mark = executor.arena().mark();
     Span<Arc> sorted = executor.template allocate<Arc>(n);
     executor.for_each(n, GatherArcs{found.arcs.data, found.arc_count, f.arc_bounds.order, sorted.data});

@@ -29,15 +29,31 @@ QSES_FN uint32_t find_root(uint32_t *parents, uint32_t v) {
   }
 }
 
-// Joins the trees of a triangle's corners. Parents only ever get smaller, and a link that another thread replaces in
-// between is made anew from where it led.
+// A first parent for vertices: a smaller neighbour, so that few trees are left to be joined (ECL-CC, Jaiganesh and
+// Burtscher 2018).
+struct HookCorners {
+  const uint32_t *indices;
+  uint32_t *parents;
+  QSES_HOST_DEVICE void operator()(size_t triangle) const {
+    const uint32_t *const t = indices + 3 * triangle;
+    for (int k = 0; k < 3; ++k) {
+      const uint32_t a = t[k], b = t[k == 2 ? 0 : k + 1];
+      if (a < b) atomic_min(parents + b, a);  // the other triangle of this edge has it the other way round
+    }
+  }
+};
+
+// Joins the trees of a triangle's corners, of a closed mesh. Parents only ever get smaller, and a link that another
+// thread replaces in between is made anew from where it led.
 struct JoinCorners {
   const uint32_t *indices;
   uint32_t *parents;
   QSES_HOST_DEVICE void operator()(size_t triangle) const {
     const uint32_t *const t = indices + 3 * triangle;
-    join(t[0], t[1]);
-    join(t[1], t[2]);
+    for (int k = 0; k < 3; ++k) {
+      const uint32_t a = t[k], b = t[k == 2 ? 0 : k + 1];
+      if (a < b) join(a, b);
+    }
   }
 
  private:
@@ -56,17 +72,22 @@ struct JoinCorners {
 
 struct LabelWithRoot {
   uint32_t *parents;
+  Tally<uint32_t> *roots;
   QSES_HOST_DEVICE void operator()(size_t v) const {
-    atomic_store(parents + v, find_root(parents, static_cast<uint32_t>(v)));
+    const uint32_t root = find_root(parents, static_cast<uint32_t>(v));
+    atomic_store(parents + v, root);
+    if (root == v) atomic_add(&roots->count, 1u);
   }
 };
 
-// Fills labels[vertex] with the smallest vertex number of its component.
+// Fills labels[vertex] with the smallest vertex number of its component, and adds to the number of components.
 template <class Executor>
-void label_components(Executor &executor, const MeshView &mesh, const MeshCounts &counts, uint32_t *labels) {
+void label_components(Executor &executor, const MeshView &mesh, const MeshCounts &counts, uint32_t *labels,
+                      Tally<uint32_t> *components) {
   executor.for_each(counts.vertices, StartLabels{labels});
+  if (Executor::kIsCuda) executor.for_each(counts.triangles, HookCorners{mesh.indices, labels});
   executor.for_each(counts.triangles, JoinCorners{mesh.indices, labels});
-  executor.for_each(counts.vertices, LabelWithRoot{labels});
+  executor.for_each(counts.vertices, LabelWithRoot{labels, components});
 }
 
 // ---- what each component measures ------------------------------------------------------------------------------
@@ -139,13 +160,25 @@ struct ChunkSums {
   ComponentSums sums;
 };
 
+// The number of the component with a root. If there are more than anticipated, the last one stands for the others: all
+// will be done again.
+struct ComponentNumbers {
+  const uint32_t *of_root;
+  uint32_t count;
+  QSES_FN uint32_t operator()(uint32_t root) const {
+    const uint32_t number = of_root[root];
+    return number < count ? number : count - 1;
+  }
+};
+
 // Numbers the vertices' components, and tells each component its first vertex.
 struct NumberComponents {
   MeshView mesh;
-  const uint32_t *labels, *number_of_root;
+  const uint32_t *labels;
+  ComponentNumbers number_of;
   ComponentSums *sums;
   QSES_HOST_DEVICE void operator()(size_t v) const {
-    const uint32_t vertex = static_cast<uint32_t>(v), number = number_of_root[labels[v]];
+    const uint32_t vertex = static_cast<uint32_t>(v), number = number_of(labels[v]);
     if (mesh.component_ids) mesh.component_id(vertex) = number;
     if (labels[v] != vertex) return;
     for (int d = 0; d < 3; ++d) sums[number].first[d] = mesh.position(vertex)[d];
@@ -153,10 +186,11 @@ struct NumberComponents {
 };
 
 struct SumComponents {
-  static constexpr size_t kChunk = 2048;
+  static constexpr size_t kChunk = 512;
   MeshView mesh;
   size_t triangles;
-  const uint32_t *labels, *number_of_root;
+  const uint32_t *labels;
+  ComponentNumbers number_of;
   double inverse_spacing, units;
   bool bent;  // along the normals of the vertices
   ComponentSums *sums;
@@ -164,16 +198,16 @@ struct SumComponents {
   template <class Team>
   QSES_HOST_DEVICE void operator()(const Team &team, ChunkSums &chunk, size_t k) const {
     const size_t begin = k * kChunk, end = begin + kChunk < triangles ? begin + kChunk : triangles;
-    if (team.rank() == 0) chunk = {number_of_root[labels[mesh.triangle(begin)[0]]], {}};
+    if (team.rank() == 0) chunk = {number_of(labels[mesh.triangle(begin)[0]]), {}};
     team.sync();
     uint32_t number = chunk.number;
     RunSums own;
     for (size_t t = begin + static_cast<size_t>(team.rank()); t < end; t += static_cast<size_t>(team.size())) {
       const uint32_t root = labels[mesh.triangle(t)[0]];
-      if (number_of_root[root] != number) {
+      if (number_of(root) != number) {
         add_sums(own.total(), number == chunk.number ? &chunk.sums : sums + number);
         own = RunSums{};
-        number = number_of_root[root];
+        number = number_of(root);
       }
       add_triangle(mesh.triangle(t), root, &own);
     }
@@ -261,22 +295,25 @@ Span<const qses_component> find_components(Executor &executor, const MeshView &m
   const auto mark = executor.arena().mark();
   const size_t n = counts.vertices;
   const Span<uint32_t> labels = executor.template allocate<uint32_t>(n);
-  label_components(executor, mesh, counts, labels.data);
+  Tally<uint32_t> *const components_found = executor.template take_counts<Tally<uint32_t>>();
+  label_components(executor, mesh, counts, labels.data, components_found);
   const Span<uint32_t> number_of_root = executor.template allocate<uint32_t>(n + 1);
   executor.exclusive_scan(n, IsRoot{labels.data}, number_of_root);
-  const size_t count = executor.fetch(number_of_root.data + n);
+  size_t count = executor.expect("components", components_found, Tally<uint32_t>{static_cast<uint32_t>(n)}).count;
+  const ComponentNumbers number_of{number_of_root.data, static_cast<uint32_t>(count)};
 
   const Span<ComponentSums> found = memory.sums(count);
   const Span<ComponentSums> sums = Executor::kIsCuda ? executor.template allocate<ComponentSums>(count) : found;
   executor.fill(sums, 0);
-  executor.for_each(n, NumberComponents{mesh, labels.data, number_of_root.data, sums.data});
+  executor.for_each(n, NumberComponents{mesh, labels.data, number_of, sums.data});
   const double h = static_cast<double>(spacing), units = rest_units(counts.triangles);
   executor.template for_each_brick<ChunkSums>(
       (counts.triangles + SumComponents::kChunk - 1) / SumComponents::kChunk,
-      SumComponents{mesh, counts.triangles, labels.data, number_of_root.data, 1.0 / h, units, bent, sums.data}, 1);
+      SumComponents{mesh, counts.triangles, labels.data, number_of, 1.0 / h, units, bent, sums.data}, 1);
   if (Executor::kIsCuda) executor.download(found.data, sums.data, count);
   executor.wait();
   executor.arena().rewind(mark);
+  while (count > 0 && found[count - 1].triangles == 0) --count;  // there are fewer than anticipated
 
   const Span<qses_component> components = memory.list(count);
   for (size_t k = 0; k < count; ++k) components[k] = describe_component(found[k], units, h);

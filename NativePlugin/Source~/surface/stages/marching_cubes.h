@@ -163,7 +163,7 @@ constexpr int kBrickMasks = kLeavesPerBrick * kAxes;
 
 // The ranks of a brick from its counts. Returns its totals.
 QSES_FN BrickTotals rank_brick(const MeshLayout &layout, size_t brick, const uint16_t vertex_counts[kBrickMasks],
-                        const uint16_t triangle_counts[kLeavesPerBrick]) {
+                               const uint16_t triangle_counts[kLeavesPerBrick]) {
   uint16_t *const vertex = layout.vertex_rank + brick * kBrickMasks;
   uint16_t *const triangle = layout.triangle_rank + brick * kLeavesPerBrick;
   uint32_t v = 0, t = 0, owning = 0;
@@ -393,8 +393,8 @@ SliceSizes slice_sizes(Executor &executor, const BrickSet &bricks, const MeshLay
   const BrickTotals *const ends[2] = {layout.base + first, layout.base + last};
   BrickTotals n[2];
   executor.fetch_each(ends, n, 2);
-  return {n[0].vertices,  n[1].vertices - n[0].vertices, n[0].triangles, n[1].triangles - n[0].triangles,
-          n[0].leaves, n[1].leaves - n[0].leaves};
+  return {n[0].vertices, n[1].vertices - n[0].vertices, n[0].triangles, n[1].triangles - n[0].triangles,
+          n[0].leaves,   n[1].leaves - n[0].leaves};
 }
 // The mean; but a few bricks may be three times as full.
 template <class Executor>

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#include "parallel/touched_pages.h"
+
+#include "parallel/host_memory.h"
+
+#include <algorithm>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+#if defined(_WIN32)
+#include <malloc.h>
+#else
+#include <sys/mman.h>
+#endif
+
+namespace quickses {
+namespace {
+
+constexpr size_t kPage = 4096, kLargePage = size_t(2) << 20;
+
+void *take(size_t bytes) {
+#if defined(_WIN32)
+  return _aligned_malloc(bytes, kLargePage);
+#else
+  void *const memory = std::aligned_alloc(kLargePage, (bytes + kLargePage - 1) / kLargePage * kLargePage);
+#if defined(MADV_HUGEPAGE)
+  if (memory) madvise(memory, bytes, MADV_HUGEPAGE);  // as the system likes
+#endif
+  return memory;
+#endif
+}
+
+void touch(char *begin, char *end) {
+  for (volatile char *page = begin; page < end; page += kPage) *page = 0;
+}
+
+}  // namespace
+
+void *TouchedPages::acquire(size_t bytes) {
+  if (bytes > HostMemory::free_bytes() / 4) return nullptr;
+  char *const memory = static_cast<char *>(take(bytes));
+  if (!memory) return nullptr;
+  const size_t pages = (bytes + kLargePage - 1) / kLargePage;
+  const size_t most = std::clamp<size_t>(std::thread::hardware_concurrency(), 1, 8);
+  const size_t share = (pages + most - 1) / most * kLargePage;
+  std::vector<std::thread> threads;
+  char *next = memory, *const end = memory + bytes;
+  try {
+    for (; static_cast<size_t>(end - next) > share; next += share) threads.emplace_back(touch, next, next + share);
+  } catch (const std::system_error &) {  // no more threads: this one does the rest
+  } catch (const std::bad_alloc &) {
+  }
+  touch(next, end);
+  for (std::thread &thread : threads) thread.join();
+  return memory;
+}
+
+void TouchedPages::release(void *memory) {
+#if defined(_WIN32)
+  _aligned_free(memory);
+#else
+  std::free(memory);
+#endif
+}
+
+}  // namespace quickses
