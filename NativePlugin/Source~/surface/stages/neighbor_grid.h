@@ -100,13 +100,6 @@ struct LoadItem {
   QSES_HOST_DEVICE Sphere operator()(size_t i) const { return items[i]; }
 };
 
-struct GatherItems {
-  const Sphere *items;
-  const uint32_t *order;
-  Sphere *sorted;
-  QSES_HOST_DEVICE void operator()(size_t i) const { sorted[i] = items[order[i]]; }
-};
-
 // First item of each cell of a chunk: found once, then walked. On the GPU a chunk is one cell.
 template <uint64_t kChunk>
 struct FindCellStarts {
@@ -121,6 +114,24 @@ struct FindCellStarts {
       while (i < count && keys[i] < cell) ++i;
       starts[cell] = i;
     }
+  }
+};
+
+// Puts items in order, finds where cells start, and leaves what kernels may load behind the last item.
+template <uint64_t kChunk>
+struct ArrangeItems {
+  static constexpr size_t kBehind = 8;  // kernels load whole packs
+  const Sphere *items;
+  const uint32_t *order;
+  Sphere *sorted;
+  size_t count, chunks;
+  FindCellStarts<kChunk> find_starts;
+  // As many as there are items, chunks, or spheres behind, whichever is the most.
+  size_t size() const { return std::max({count, chunks, kBehind}); }
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    if (i < count) sorted[i] = items[order[i]];
+    if (i < chunks) find_starts(i);
+    if (i < kBehind) sorted[count + i] = {glm::vec3(kFarAway), 0.f};
   }
 };
 
@@ -203,8 +214,9 @@ uint64_t most_items_near(Executor &executor, const char *name, const NeighborGri
 // else but the grid. The cells bound the items' centres.
 template <class Executor, class Prepare>
 NeighborGridView build_neighbor_grid(Executor &executor, size_t n, const CellLayout &cells, const Prepare &prepare) {
-  // Kernels load whole packs of spheres: room behind the last one, far away.
-  Span<Sphere> sorted = executor.template allocate<Sphere>(n + 8);
+  constexpr uint64_t kChunk = Executor::kIsCuda ? 1 : 16;
+  using Arrange = ArrangeItems<kChunk>;
+  Span<Sphere> sorted = executor.template allocate<Sphere>(n + Arrange::kBehind);
   Span<uint32_t> order = executor.template allocate<uint32_t>(n);
   const bool dense = dense_table_pays(cells.cells(), n);
   Span<uint32_t> starts{};
@@ -217,15 +229,12 @@ NeighborGridView build_neighbor_grid(Executor &executor, size_t n, const CellLay
   const auto item_at = prepare();
   const Span<Sphere> items = executor.template allocate<Sphere>(n);
   if (dense) keys = executor.template allocate<uint64_t>(n);
-  executor.fill(Span<Sphere>{sorted.data + n, 8}, 0x4c);  // all bytes 0x4c: about 5e7 Å in every coordinate
-  executor.for_each(n, HashItems<std::decay_t<decltype(item_at)>>{cells, item_at, items.data, keys.data, order.data});
+  executor.for_each(n,
+                    HashItems<std::decay_t<decltype(item_at)>>{cells, item_at, items.data, keys.data, order.data});
   executor.sort_by_key(keys, order, bits_for(cells.cells()));
-  executor.for_each(n, GatherItems{items.data, order.data, sorted.data});
-  if (dense) {
-    constexpr uint64_t kChunk = Executor::kIsCuda ? 1 : 16;
-    executor.for_each(cells.cells() / kChunk + 1,
-                      FindCellStarts<kChunk>{keys.data, static_cast<uint32_t>(n), cells.cells(), starts.data});
-  }
+  const FindCellStarts<kChunk> find_starts{keys.data, static_cast<uint32_t>(n), cells.cells(), starts.data};
+  const Arrange arrange{items.data, order.data, sorted.data, n, dense ? cells.cells() / kChunk + 1 : 0, find_starts};
+  executor.for_each(arrange.size(), arrange);
   executor.arena().rewind(mark);
   return {cells, sorted.data, order.data, starts.data, dense ? nullptr : keys.data, static_cast<uint32_t>(n)};
 }
