@@ -229,8 +229,7 @@ NeighborGridView build_neighbor_grid(Executor &executor, size_t n, const CellLay
   const auto item_at = prepare();
   const Span<Sphere> items = executor.template allocate<Sphere>(n);
   if (dense) keys = executor.template allocate<uint64_t>(n);
-  executor.for_each(n,
-                    HashItems<std::decay_t<decltype(item_at)>>{cells, item_at, items.data, keys.data, order.data});
+  executor.for_each(n, HashItems<std::decay_t<decltype(item_at)>>{cells, item_at, items.data, keys.data, order.data});
   executor.sort_by_key(keys, order, bits_for(cells.cells()));
   const FindCellStarts<kChunk> find_starts{keys.data, static_cast<uint32_t>(n), cells.cells(), starts.data};
   const Arrange arrange{items.data, order.data, sorted.data, n, dense ? cells.cells() / kChunk + 1 : 0, find_starts};
