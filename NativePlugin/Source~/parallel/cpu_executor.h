@@ -123,7 +123,7 @@ class CpuExecutor {
   }
   template <class T>
   size_t reduce_bytes(size_t n) const {
-    return (n + kReduceChunk - 1) / kReduceChunk * sizeof(T);
+    return reduce_chunks(n) * sizeof(T);
   }
   size_t compact_bytes(size_t n) const { return (scan_chunks(n) + 1) * sizeof(size_t); }
 
@@ -157,7 +157,7 @@ class CpuExecutor {
 
   template <class T = double, class Load>
   T reduce(size_t n, Load load, uint64_t /*steps*/ = 0) {
-    const size_t chunks = (n + kReduceChunk - 1) / kReduceChunk;
+    const size_t chunks = reduce_chunks(n);
     const auto mark = arena_.mark();
     const Span<T> sums = allocate<T>(chunks);
     run_chunks(chunks, [&](size_t, size_t chunk) { SumChunk<T, Load>{load, n, sums.data}(chunk); });

@@ -61,8 +61,8 @@ __global__ __launch_bounds__(BlockTeam::kSize) void sum_chunks_kernel(LaunchItem
                                                                       T *sums) {
   __shared__ __align__(16) unsigned char partial_memory[BlockTeam::kSize * sizeof(T)];
   T *partial = reinterpret_cast<T *>(partial_memory);
-  const size_t chunk = chunks.first + blockIdx.x, begin = chunk * kReduceChunk;
-  const size_t end = begin + kReduceChunk < n ? begin + kReduceChunk : n;
+  const size_t chunk = chunks.first + blockIdx.x, begin = chunk * reduce_chunk(n);
+  const size_t end = begin + reduce_chunk(n) < n ? begin + reduce_chunk(n) : n;
   T sum{};
   for (size_t i = begin + threadIdx.x; i < end; i += BlockTeam::kSize) sum += load(i);
   partial[threadIdx.x] = sum;
@@ -239,18 +239,18 @@ class CudaExecutor {
   }
   template <class T>
   size_t reduce_bytes(size_t n) const {
-    return (n + kReduceChunk - 1) / kReduceChunk * sizeof(T);
+    return reduce_chunks(n) * sizeof(T);
   }
   size_t compact_bytes(size_t n) const { return n / 128 + 4096; }  // CUB's states of its tiles, generously
 
   template <class T = double, class Load>
   T reduce(size_t n, Load load, uint64_t steps = kPlainSumSteps) {
     if (n == 0) return T{};
-    const size_t chunks = (n + kReduceChunk - 1) / kReduceChunk;
+    const size_t chunks = reduce_chunks(n);
     const auto mark = arena_.mark();
     Span<T> sums = allocate<T>(chunks);
     launch("reduce", gpu::sum_chunks_kernel<T, Load>, chunks,
-           {BlockTeam::kSize, 1, kReduceChunk / BlockTeam::kSize * steps}, n, load, sums.data);
+           {BlockTeam::kSize, 1, reduce_chunk(n) / BlockTeam::kSize * steps}, n, load, sums.data);
     const T *host = static_cast<const T *>(to_staging(sums.data, chunks * sizeof(T)));
     arena_.rewind(mark);
     T sum{};

@@ -39,8 +39,10 @@
 
 namespace quickses {
 
-// Items per chunk of reduce(): part of the result's definition, since float sums depend on the order.
-constexpr size_t kReduceChunk = 512;
+// Items per chunk of reduce(): part of the result's definition, since float sums depend on the order. Few items are
+// enough chunks for a GPU, many not too many for the host, which adds them up.
+QSES_FN constexpr size_t reduce_chunk(size_t n) { return n <= (size_t(1) << 18) ? 512 : 4096; }
+inline size_t reduce_chunks(size_t n) { return (n + reduce_chunk(n) - 1) / reduce_chunk(n); }
 
 // Steps of a thread: rounds of its loops, of some 25 instructions each (cuda_launch.cuh). For one item no more than
 // this may be asked for: the work on it is cut.
@@ -81,7 +83,7 @@ struct SumChunk {
   size_t n;
   T *sums;
   QSES_HOST_DEVICE void operator()(size_t chunk) const {
-    const size_t begin = chunk * kReduceChunk, end = begin + kReduceChunk < n ? begin + kReduceChunk : n;
+    const size_t begin = chunk * reduce_chunk(n), end = begin + reduce_chunk(n) < n ? begin + reduce_chunk(n) : n;
     T sum{};
     for (size_t i = begin; i < end; ++i) {
       if (i % 64 == 0) look_for_stop();

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <type_traits>
 
 namespace quickses {
 
@@ -30,13 +31,17 @@ QSES_FN float from_ordered_bits(uint32_t ordered) {
   return value;
 }
 
-// What is summed up of a mesh: of vertices their box, of triangles what they measure.
-struct MeshSums {
-  TriangleSums sums;
+// What is summed up of a mesh: of vertices their box, and of triangles, if these are measured, what they measure.
+struct Nothing {
+  QSES_FN Nothing &operator+=(const Nothing &) { return *this; }
+};
+template <bool kMeasured>
+struct MeshSums : std::conditional_t<kMeasured, TriangleSums, Nothing> {
+  using Triangles = std::conditional_t<kMeasured, TriangleSums, Nothing>;
   uint32_t low[3] = {~uint32_t(0), ~uint32_t(0), ~uint32_t(0)}, high[3] = {0, 0, 0};  // as ordered bits
-  uint32_t extra = 0;
+  uint64_t extra = 0;
   QSES_FN MeshSums &operator+=(const MeshSums &other) {
-    sums += other.sums;
+    Triangles::operator+=(other);
     for (int d = 0; d < 3; ++d) {
       low[d] = other.low[d] < low[d] ? other.low[d] : low[d];
       high[d] = other.high[d] > high[d] ? other.high[d] : high[d];
@@ -46,18 +51,20 @@ struct MeshSums {
   }
 };
 
-// By number of a vertex, and of a triangle if these are measured.
+// By number of a vertex, and of a triangle.
 template <bool kMeasured>
 struct LoadMeshSums {
   MeshView mesh;
   size_t vertices, triangles;
   MeasureTriangle measure;
   const uint32_t *extra;
-  QSES_HOST_DEVICE MeshSums operator()(size_t i) const {
-    MeshSums s;
+  QSES_HOST_DEVICE MeshSums<kMeasured> operator()(size_t i) const {
+    MeshSums<kMeasured> s;
     if (i < vertices)
       for (int d = 0; d < 3; ++d) s.low[d] = s.high[d] = ordered_bits(mesh.position(static_cast<uint32_t>(i))[d]);
-    if (kMeasured && i < triangles) s.sums = measure(i);
+    if constexpr (kMeasured) {
+      if (i < triangles) static_cast<TriangleSums &>(s) = measure(i);
+    }
     if (i == 0 && extra) s.extra = *extra;
     return s;
   }
@@ -67,10 +74,10 @@ template <class Executor, bool kMeasured>
 Measures sum_mesh(Executor &executor, const LoadMeshSums<kMeasured> &load, uint64_t *extra_value) {
   Measures m = {};
   if (load.vertices == 0) return m;
-  const MeshSums found =
-      executor.template reduce<MeshSums>(kMeasured ? std::max(load.vertices, load.triangles) : load.vertices, load);
+  const auto found = executor.template reduce<MeshSums<kMeasured>>(
+      kMeasured ? std::max(load.vertices, load.triangles) : load.vertices, load);
   if (extra_value) *extra_value = found.extra;
-  m.sums = found.sums;
+  if constexpr (kMeasured) m.sums = found;
   for (int d = 0; d < 3; ++d) {
     m.bounds.min[d] = from_ordered_bits(found.low[d]);
     m.bounds.max[d] = from_ordered_bits(found.high[d]);
