@@ -189,6 +189,12 @@ class CudaExecutor {
     }
   }
 
+  // Between parts of a long work: waits for the part before the last one, so that little is queued that can't be
+  // cancelled. In a frame that is known to be short nothing waits.
+  void keep_pace() {
+    if (!runs_ahead_) wait_for_launch_before();
+  }
+
   // steps: of one thread for one item, at most (cuda_launch.cuh). What is not told is a plain pass.
   template <class F>
   void for_each(size_t n, F f, uint64_t steps = kPlainSteps) {

@@ -16,6 +16,7 @@
 //   expect(name, counts, most)     what was counted. Waits; or, if it is told by the frame before, at most so much
 //   send_counts(), verify_counts() later: what was expected is compared with what was counted (anticipation.h). Waits
 //   verified(counts)               what was counted then
+//   keep_pace()                    called between parts of a long work, so that it can be cancelled. May wait
 //   upload, download, fill         copies between host and back end, and memset
 //   scan_bytes<T>(n), sort_bytes<Key, Value>(n), reduce_bytes<T>(n), compact_bytes(n)  of the arena, that these verbs
 //                                  take while they work: for forecasts (surface/memory/counting_executor.h)
@@ -41,7 +42,7 @@ namespace quickses {
 
 // Items per chunk of reduce(): part of the result's definition, since float sums depend on the order. Few items are
 // enough chunks for a GPU, many not too many for the host, which adds them up.
-QSES_FN constexpr size_t reduce_chunk(size_t n) { return n <= (size_t(1) << 18) ? 512 : 4096; }
+QSES_FN constexpr size_t reduce_chunk(size_t n) { return n <= (size_t(1) << 18) ? 512 : 2048; }
 inline size_t reduce_chunks(size_t n) { return (n + reduce_chunk(n) - 1) / reduce_chunk(n); }
 
 // Steps of a thread: rounds of its loops, of some 25 instructions each (cuda_launch.cuh). For one item no more than

@@ -238,6 +238,7 @@ MeshMemoryView build_exact_surface(Work &work) {
       executor.fill(Span<uint32_t>{starts.unplaced, 1}, 0);
       const double share_of_time = 0.15 / work.settings.relaxation_steps;
       emit(0.85 + share_of_time * (step - 1), 0.85 + share_of_time * step, false);
+      executor.keep_pace();
     }
   }
   if (holds && mesh.vertices > 0) hold_to_edges(work, bricks, layout, channels.data, mesh);
