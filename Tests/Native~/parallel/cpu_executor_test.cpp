@@ -58,10 +58,7 @@ struct WatchedSum {
     value = other.value;
     return *this;
   }
-  WatchedSum &operator+=(const WatchedSum &other) {
-    value += other.value;
-    return *this;
-  }
+  WatchedSum operator+(const WatchedSum &other) const { return value + other.value; }
 };
 
 struct LoadNumber {
