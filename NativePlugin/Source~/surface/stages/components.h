@@ -29,17 +29,23 @@ QSES_FN uint32_t find_root(uint32_t *parents, uint32_t v) {
   }
 }
 
+// Of a triangle of a closed mesh, the edges that lead to a larger number: each edge of the mesh is met once, since its
+// other triangle has it the other way round.
+template <class Visit>
+QSES_FN void for_rising_edges(const uint32_t *corners, const Visit &visit) {
+  for (int k = 0; k < 3; ++k) {
+    const uint32_t a = corners[k], b = corners[k == 2 ? 0 : k + 1];
+    if (a < b) visit(a, b);
+  }
+}
+
 // A first parent for vertices: a smaller neighbour, so that few trees are left to be joined (ECL-CC, Jaiganesh and
 // Burtscher 2018).
 struct HookCorners {
   const uint32_t *indices;
   uint32_t *parents;
   QSES_HOST_DEVICE void operator()(size_t triangle) const {
-    const uint32_t *const t = indices + 3 * triangle;
-    for (int k = 0; k < 3; ++k) {
-      const uint32_t a = t[k], b = t[k == 2 ? 0 : k + 1];
-      if (a < b) atomic_min(parents + b, a);  // the other triangle of this edge has it the other way round
-    }
+    for_rising_edges(indices + 3 * triangle, [this](uint32_t low, uint32_t high) { atomic_min(parents + high, low); });
   }
 };
 
@@ -49,11 +55,7 @@ struct JoinCorners {
   const uint32_t *indices;
   uint32_t *parents;
   QSES_HOST_DEVICE void operator()(size_t triangle) const {
-    const uint32_t *const t = indices + 3 * triangle;
-    for (int k = 0; k < 3; ++k) {
-      const uint32_t a = t[k], b = t[k == 2 ? 0 : k + 1];
-      if (a < b) join(a, b);
-    }
+    for_rising_edges(indices + 3 * triangle, [this](uint32_t low, uint32_t high) { join(low, high); });
   }
 
  private:
