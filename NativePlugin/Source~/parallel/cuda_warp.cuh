@@ -26,16 +26,13 @@ __device__ __forceinline__ Count append_place(bool has, Count *count, unsigned l
 }
 
 // The same for a list that all warps fill.
-__device__ __forceinline__ uint32_t shared_append_place(bool has, uint32_t *count) {
+__device__ __forceinline__ void append(uint32_t *list, uint32_t *count, uint32_t item, bool has) {
   uint32_t own = 0;
   const uint32_t place = append_place(has, &own);
   uint32_t base = 0;
   if (lane_id() == 0 && own > 0) base = atomicAdd(count, own);
-  return __shfl_sync(kFullWarp, base, 0) + place;
-}
-__device__ __forceinline__ void append(uint32_t *list, uint32_t *count, uint32_t item, bool has) {
-  const uint32_t place = shared_append_place(has, count);
-  if (has) list[place] = item;
+  base = __shfl_sync(kFullWarp, base, 0);
+  if (has) list[base + place] = item;
 }
 
 // Sum over the lanes up to and including this one: of a warp, or of each group of so many lanes.

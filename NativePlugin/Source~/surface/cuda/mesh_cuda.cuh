@@ -38,6 +38,7 @@ VertexJob prepare_vertices(E &executor, const FeatureView &features, const Brick
   job.lists = executor.template allocate<uint32_t>(size_t(sizes.leaves) * job.list_words).data;
   job.open = executor.template allocate<uint32_t>(job.count).data;
   job.unfinished = executor.template allocate<uint32_t>(job.count).data;
+  job.on_edges = executor.template allocate<uint32_t>(job.count).data;
   job.counts = executor.template take_counts<VertexCounts>();
   const uint64_t row = candidates.longest_row, look = vertex_steps(features, row);
   if (job.halved) {  // a lane's vertices one by one if each takes long

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // GPU: vertices from their starts to the exact surface. Four kernels step the rule of projection.h, so that lanes do
 // not wait for each other: vertices on contact patches are done with the first, nearly all others with the second, both
-// with a thread per vertex; the third has those that turn from one probe to another, eight lanes for each, and the last
-// a warp for each that finds no place.
+// with a thread for each, or four where they are few; the third has those that turn from one probe to another, eight
+// lanes for each, and the last a warp for each that finds no place.
 #pragma once
 
 #include "surface/cuda/lane_candidates_cuda.cuh"
@@ -39,10 +39,6 @@ __device__ __forceinline__ Projection left_vertex(const VertexJob &job, uint32_t
   return {{stored_start(job, vertex), normal, normal, QSES_PATCH_CONTACT, true},
           ProjectionState::kReproject,
           static_cast<int>(job.mesh.owner(vertex))};
-}
-__device__ __forceinline__ void append_on_edge(const VertexJob &job, uint32_t k, bool has) {
-  const uint32_t place = shared_append_place(has, &job.counts->on_edges);
-  if (has) job.unfinished[job.count - 1 - place] = k;
 }
 
 template <int kLanes>
@@ -86,7 +82,7 @@ static __global__ __launch_bounds__(kVertexThreads) void project_on_atoms_kernel
   const bool done = v.state == ProjectionState::kPlaced;
   __syncwarp();
   append(job.open, &job.counts->open, k, team.writes && !contact);
-  append_on_edge(job, k, team.writes && contact && !done);
+  append(job.on_edges, &job.counts->on_edges, k, team.writes && contact && !done);
   if (team.writes && contact && done) finish_vertex(job, k, v.point, deepest.atom);
 }
 
@@ -133,7 +129,7 @@ static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(
   __syncwarp();
   const bool placed = v.state == ProjectionState::kPlaced, goes_on = v.state == ProjectionState::kReproject;
   append(job.unfinished, &job.counts->unfinished, k, team.writes && goes_on);
-  append_on_edge(job, k, team.writes && !placed && !goes_on);
+  append(job.on_edges, &job.counts->on_edges, k, team.writes && !placed && !goes_on);
   if (placed) {
     const uint32_t owner = nearest_atom(f, candidates, v.point.position);
     if (team.writes) finish_vertex(job, k, v.point, owner);
@@ -161,7 +157,7 @@ static __global__ __launch_bounds__(kVertexThreads, 8) void reproject_kernel(Lau
       v = reproject(f, candidates, nearest_arc(f, candidates, v.point.position), v);
     __syncwarp();
     const bool placed = v.state == ProjectionState::kPlaced, writes = on && candidates.rank() == 0;
-    append_on_edge(job, k, writes && !placed);
+    append(job.on_edges, &job.counts->on_edges, k, writes && !placed);
     const uint32_t owner = nearest_atom(f, candidates, v.point.position);
     if (writes && placed) finish_vertex(job, k, v.point, owner);
   }
@@ -217,7 +213,7 @@ static __global__ __launch_bounds__(kVertexThreads, 8) void place_on_edges_kerne
   const uint32_t total = on_edges < vertices.last ? on_edges : static_cast<uint32_t>(vertices.last);
   for (uint32_t place = static_cast<uint32_t>(vertices.first) + blockIdx.x * kEdgeWarps + warp; place < total;
        place += warps) {
-    const uint32_t k = job.unfinished[job.count - 1 - place], vertex = job.first + k;
+    const uint32_t k = job.on_edges[place], vertex = job.first + k;
     const uint32_t brick = brick_of_vertex(job.layout, job.bricks.count, vertex);
     const CutEdge edge = ends_of_edge(job.bricks, job.layout, brick, edge_of_vertex(job.layout, brick, vertex));
     const ListedCandidates all = brick_candidates(job.view, brick - job.view.first_brick);

@@ -33,7 +33,8 @@ struct VertexJob {
   uint32_t *lists;        // list_words each
   uint32_t list_words, first_list;
   uint32_t *open;        // vertices that no contact patch has
-  uint32_t *unfinished;  // from the front those to be reprojected, from the back those to be placed on their edges
+  uint32_t *unfinished;  // those to be reprojected
+  uint32_t *on_edges;    // those to be placed on their edges, of which some were unfinished before
   VertexCounts *counts;  // of these lists
 };
 
