@@ -66,7 +66,7 @@ struct Met {
 
 // Of those that lie behind each other, several at a time: compilers make vectors of a loop of this length. Returns how
 // many.
-size_t copy_groups(const float *positions, size_t count, Sphere *atoms, Met *met) {
+size_t copy_groups(const float *positions, const float *radii, size_t count, Sphere *atoms, Met *met) {
   constexpr size_t kGroup = 16, kFloats = 3 * kGroup;
   float low[kFloats], high[kFloats];
   uint32_t bad[kFloats] = {};
@@ -80,7 +80,7 @@ size_t copy_groups(const float *positions, size_t count, Sphere *atoms, Met *met
       high[k] = v[k] > high[k] ? v[k] : high[k];
       bad[k] |= std::fabs(v[k]) <= kLargestCoordinate ? 0u : 1u;
     }
-    for (size_t k = 0; k < kGroup; ++k) std::memcpy(&atoms[i + k].center, v + 3 * k, 12);
+    for (size_t k = 0; k < kGroup; ++k) atoms[i + k] = {{v[3 * k], v[3 * k + 1], v[3 * k + 2]}, radii[i + k]};
   }
   for (size_t k = 0; k < kFloats && i > 0; k += 3) {
     met->meet({low[k], low[k + 1], low[k + 2]});
@@ -92,8 +92,11 @@ size_t copy_groups(const float *positions, size_t count, Sphere *atoms, Met *met
 
 // Of the positions at(0) ... at(count - 1), each a pointer to three floats, of which so many are copied already.
 template <class At>
-AtomBounds copy_rest(size_t copied, size_t count, const At &at, Sphere *atoms, Met met) {
-  for (size_t i = copied; i < count; ++i) met.meet(atoms[i].center = load(at(i)));
+AtomBounds copy_rest(size_t copied, size_t count, const At &at, const float *radii, Sphere *atoms, Met met) {
+  for (size_t i = copied; i < count; ++i) {
+    atoms[i] = {load(at(i)), radii[i]};
+    met.meet(atoms[i].center);
+  }
   for (size_t i = 0; !met.all_good && i < count; ++i)
     if (!is_in_range(atoms[i].center)) bad_position(i, atoms[i].center);
   if (count == 0) met.low = met.high = glm::vec3(0.f);
@@ -106,11 +109,11 @@ const char *position_at(const float *positions, size_t stride, size_t i) {
 
 }  // namespace
 
-AtomBounds copy_positions(const float *positions, size_t stride, size_t count, Sphere *atoms) {
+AtomBounds copy_atoms(const float *positions, size_t stride, const float *radii, size_t count, Sphere *atoms) {
   Met met;
-  const size_t copied = stride == 0 || stride == 12 ? copy_groups(positions, count, atoms, &met) : 0;
+  const size_t copied = stride == 0 || stride == 12 ? copy_groups(positions, radii, count, atoms, &met) : 0;
   return copy_rest(
-      copied, count, [&](size_t i) { return position_at(positions, stride, i); }, atoms, met);
+      copied, count, [&](size_t i) { return position_at(positions, stride, i); }, radii, atoms, met);
 }
 
 void check_indices(const uint32_t *indices, size_t count, size_t position_count) {
@@ -121,9 +124,9 @@ void check_indices(const uint32_t *indices, size_t count, size_t position_count)
               std::to_string(position_count) + " positions");
 }
 
-AtomBounds copy_indexed_positions(const float *positions, size_t stride, const uint32_t *indices, size_t count,
-                                  Sphere *atoms) {
-  return copy_rest(0, count, [&](size_t i) { return position_at(positions, stride, indices[i]); }, atoms, {});
+AtomBounds copy_indexed_atoms(const float *positions, size_t stride, const uint32_t *indices, const float *radii,
+                              size_t count, Sphere *atoms) {
+  return copy_rest(0, count, [&](size_t i) { return position_at(positions, stride, indices[i]); }, radii, atoms, {});
 }
 
 float check_radii(const float *radii, size_t count) {

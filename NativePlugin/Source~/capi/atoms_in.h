@@ -16,10 +16,10 @@ float check_radii(const float *radii, size_t count);
 
 // Where they throw, what they were to fill is of no use. They return the box of the positions; its max_radius is left
 // 0.
-AtomBounds copy_positions(const float *positions, size_t stride, size_t count, Sphere *atoms);
+AtomBounds copy_atoms(const float *positions, size_t stride, const float *radii, size_t count, Sphere *atoms);
 // The same for positions[indices[i]]; indices are checked already.
-AtomBounds copy_indexed_positions(const float *positions, size_t stride, const uint32_t *indices, size_t count,
-                                  Sphere *atoms);
+AtomBounds copy_indexed_atoms(const float *positions, size_t stride, const uint32_t *indices, const float *radii,
+                              size_t count, Sphere *atoms);
 void check_indices(const uint32_t *indices, size_t count, size_t position_count);
 
 }  // namespace quickses

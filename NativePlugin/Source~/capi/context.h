@@ -15,6 +15,7 @@ struct qses_context {
   qses_backend_description description{};
   std::unique_ptr<quickses::SurfaceJob> job;
   std::shared_ptr<const quickses::AtomSet> atoms;  // of the next computation; null before qses_set_atoms
+  std::vector<float> radii;                        // theirs: here, since reading what a GPU fetches each frame is slow
   std::shared_ptr<const quickses::Appearance> appearance = std::make_shared<quickses::Appearance>();
   std::vector<std::shared_ptr<quickses::Appearance>> appearance_pool;
 };

@@ -72,7 +72,7 @@ qses_backend choose_backend(qses_backend asked, int device, qses_backend_descrip
   return QSES_BACKEND_CPU;
 }
 
-// A new set with the radii of the one before.
+// A new set of as many atoms, of the largest radius of the one before.
 // copy_into(atoms) fills them in, and returns their box.
 template <class CopyInto>
 std::shared_ptr<quickses::AtomSet> next_frame(const qses_context &context, const CopyInto &copy_into) {
@@ -80,7 +80,6 @@ std::shared_ptr<quickses::AtomSet> next_frame(const qses_context &context, const
   std::shared_ptr<quickses::AtomSet> set = context.job->engine().make_atoms(before.count);
   set->bounds = copy_into(set->atoms);
   set->bounds.max_radius = before.bounds.max_radius;
-  for (size_t i = 0; i < before.count; ++i) set->atoms[i].radius = before.atoms[i].radius;
   return set;
 }
 
@@ -188,12 +187,14 @@ qses_status qses_set_atoms(qses_context *context, const float *positions, size_t
     require(context, "context");
     quickses::check_layout(positions, stride, count);
     const std::shared_ptr<quickses::AtomSet> set = context->job->engine().make_atoms(count);
-    set->bounds = quickses::copy_positions(positions, stride, count, set->atoms);
-    set->bounds.max_radius = quickses::check_radii(radii, count);
-    for (size_t i = 0; i < count; ++i) set->atoms[i].radius = radii[i];
+    const float max_radius = quickses::check_radii(radii, count);
+    std::vector<float> kept_radii(radii, radii + count);
+    set->bounds = quickses::copy_atoms(positions, stride, radii, count, set->atoms);
+    set->bounds.max_radius = max_radius;
     if (!context->atoms || context->atoms->count != count)
       context->appearance = std::make_shared<quickses::Appearance>();
     context->atoms = set;
+    context->radii.swap(kept_radii);
   });
 }
 
@@ -202,8 +203,9 @@ qses_status qses_set_positions(qses_context *context, const float *positions, si
     require(context, "context");
     check_atom_count(*context, count, "qses_set_positions");
     quickses::check_layout(positions, stride, count);
-    context->atoms = next_frame(
-        *context, [&](quickses::Sphere *atoms) { return quickses::copy_positions(positions, stride, count, atoms); });
+    context->atoms = next_frame(*context, [&](quickses::Sphere *atoms) {
+      return quickses::copy_atoms(positions, stride, context->radii.data(), count, atoms);
+    });
   });
 }
 
@@ -215,7 +217,7 @@ qses_status qses_set_positions_indexed(qses_context *context, const float *posit
     quickses::check_layout(positions, stride, position_count);
     quickses::check_indices(indices, count, position_count);
     context->atoms = next_frame(*context, [&](quickses::Sphere *atoms) {
-      return quickses::copy_indexed_positions(positions, stride, indices, count, atoms);
+      return quickses::copy_indexed_atoms(positions, stride, indices, context->radii.data(), count, atoms);
     });
   });
 }

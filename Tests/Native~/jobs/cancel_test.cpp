@@ -37,7 +37,7 @@ std::vector<Case> cases() {
       {"everybody is everybody's neighbour", crowd(60000, 60, 1.7), settings(0.5, 100)},
       {"many arcs at a brick", crowd(3000, 30, 1.7), settings(0.1, 40)},
       {"the grid method with a cube of 200 lattice points", crowd(3000, 60, 1.7), settings(0.1, 10)},
-      {"many steps", crowd(20000, 62, 1.7), settings(0.15)},
+      {"many steps", crowd(20000, 62, 1.7), settings(0.08)},
   };
   all[3].settings.method = QSES_METHOD_GRID;
   all[4].settings.relaxation_steps = 100;

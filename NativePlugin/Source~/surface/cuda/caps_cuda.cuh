@@ -87,12 +87,14 @@ __device__ __forceinline__ int gather_caps(const NeighborGridView &atoms, float 
 __device__ __forceinline__ bool lies_within_another(const CapRows &rows, int n, int j, int k, int step) {
   const Cap cap = rows.cap[j];
   const float sine = rows.sine[j];
+  bool within = false;  // to the end in any case: some lane's cap lies in none
+#pragma unroll 4
   for (; k < n; k += step) {
     const Cap other = rows.cap[k];
-    if (cap_contains(other.cosine, rows.sine[k], cap.cosine, sine, dot(Vec3<float>(other.axis), Vec3<float>(cap.axis))))
-      return true;
+    within |=
+        cap_contains(other.cosine, rows.sine[k], cap.cosine, sine, dot(Vec3<float>(other.axis), Vec3<float>(cap.axis)));
   }
-  return false;
+  return within;
 }
 
 // Closes the gaps that contained caps leave; returns how many stay.

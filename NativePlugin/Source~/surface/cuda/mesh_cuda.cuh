@@ -81,7 +81,7 @@ void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bri
     return LaunchShape{kVertexThreads, static_cast<size_t>(kVertexThreads / lanes),
                        looks * (64 + look / static_cast<uint64_t>(lanes)), size_t(executor.multiprocessors()) * 16};
   };
-  executor.launch("reproject", reproject_kernel, job.count, share(kVertexLanes, 1 + kMaxProjections), job);
+  executor.launch("reproject", reproject_kernel, job.count, share(kVertexLanes, 2 + kMaxProjections), job);
   const LaunchShape place = share(kWarp, looks_for_sign_change(features.parameters, kPlaceHalvings));
   size_t on_edges = job.count;
   if (!E::kCounts && job.count > 0 && !executor.is_few_launches(on_edges, place))

@@ -12,6 +12,8 @@ namespace quickses {
 namespace gpu {
 
 constexpr int kVertexThreads = 128;
+// Nearly all starts are nearer to the surface than this, in units of the spacing.
+constexpr float kUsualStart = 0.5f;
 
 __device__ __forceinline__ void finish_vertex(const VertexJob &job, uint32_t k, SurfacePoint s, uint32_t owner) {
   const FeatureView &f = job.features;
@@ -25,20 +27,23 @@ __device__ __forceinline__ void finish_vertex(const VertexJob &job, uint32_t k, 
   if (job.mesh.patches) job.mesh.patch(vertex) = static_cast<uint8_t>(s.patch);
 }
 
-// Before a vertex is reprojected the mesh holds where it is on its way, on the sphere of one probe, and for its owner
-// the rounds it has had.
+// A vertex that is left to the third kernel: the mesh holds where it is on its way, on the sphere of one probe, and for
+// its owner the rounds it has had; none if it is where it starts.
+__device__ __forceinline__ void leave_start(const VertexJob &job, uint32_t k) { job.mesh.owner(job.first + k) = 0; }
 __device__ __forceinline__ void leave_vertex(const VertexJob &job, uint32_t k, const Projection &v) {
   const uint32_t vertex = job.first + k;
   store_start(job, vertex, v.point.position);
   store_vec3(job.mesh.normal(vertex), v.point.normal);
   job.mesh.owner(vertex) = static_cast<uint32_t>(v.rounds);
 }
-__device__ __forceinline__ Projection left_vertex(const VertexJob &job, uint32_t k) {
+template <class Candidates>
+__device__ __forceinline__ Projection left_vertex(const VertexJob &job, const Candidates &candidates, uint32_t k) {
   const uint32_t vertex = job.first + k;
+  const Vec3<float> x = stored_start(job, vertex);
+  const int rounds = static_cast<int>(job.mesh.owner(vertex));
+  if (rounds == 0) return project_on_arc(job.features, nearest_arc(job.features, candidates, x), x);
   const Vec3<float> normal = load_vec3(job.mesh.normal(vertex));
-  return {{stored_start(job, vertex), normal, normal, QSES_PATCH_CONTACT, true},
-          ProjectionState::kReproject,
-          static_cast<int>(job.mesh.owner(vertex))};
+  return {{x, normal, normal, QSES_PATCH_CONTACT, true}, ProjectionState::kReproject, rounds};
 }
 
 template <int kLanes>
@@ -96,30 +101,41 @@ static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(
   const auto candidates = shared<kLanes>(vertex_candidates(job, k));
   const Vec3<float> x = stored_start(job, job.first + k);
 
-  // The nearest arc, and which are hardly farther than depth: of a vertex that has moved by no more than the difference
-  // no others can be nearer than depth.
+  // Of a usual start, no arc that is farther than `near` is the nearest, nor can it cover where the vertex goes. So
+  // only arcs are looked at whose bounds are nearer; where the nearest of them tells that the start is not usual, what
+  // they say is not used.
   constexpr int kMaskBits = 64;
-  const float margin = 0.3f * job.reach.spacing, near = f.parameters.depth + margin;
+  const float margin = kUsualStart * job.reach.spacing, near = f.parameters.depth + margin;
   NearestArc nearest;
   uint64_t near_arcs = 0;  // of this lane
   const unsigned lanes = LaneCandidates<kLanes>::lanes();
   const int arcs = candidates.arc_count(), rank = LaneCandidates<kLanes>::rank();
-  for (int q = 0; q * kLanes + rank < arcs; ++q) {
-    const int a = static_cast<int>(candidates.arc(q * kLanes + rank));
-    const float d2 = arc_distance2(load(f.arcs + a), x);
-    nearest.offer(a, d2);
-    near_arcs |= static_cast<uint64_t>(d2 < near * near) << (q & (kMaskBits - 1));
+  const auto arc_at = [&](int q) { return static_cast<int>(candidates.arc(q * kLanes + rank)); };
+  const int own_arcs = (arcs - rank + kLanes - 1) / kLanes;
+  for (int q0 = 0; q0 < own_arcs; q0 += kMaskBits) {
+    near_arcs = 0;
+    const int last = own_arcs - q0 < kMaskBits ? own_arcs - q0 : kMaskBits;
+    for (int q = 0; q < last; ++q) {
+      const Sphere bound = load(f.arc_bounds.items + arc_at(q0 + q));
+      const float limit = bound.radius + near + job.reach.slack;
+      near_arcs |= static_cast<uint64_t>(length_squared(x - Vec3<float>(bound.center)) < limit * limit) << q;
+    }
+    for (uint64_t rest = near_arcs; rest; rest &= rest - 1) {
+      const int bit = lowest_bit64(rest), a = arc_at(q0 + bit);
+      const float d2 = arc_distance2(load(f.arcs + a), x);
+      nearest.offer(a, d2);
+      if (!(d2 < near * near)) near_arcs &= ~(uint64_t(1) << bit);
+    }
   }
   nearest = nearest_of_lanes<kLanes>(nearest, lanes);
   __syncwarp();
+  const bool usual = absolute(f.parameters.depth - square_root(nearest.distance2)) < margin;
   Projection v = project_on_arc(f, nearest, x);
-  const bool mask_tells =
-      arcs <= kMaskBits * kLanes && absolute(f.parameters.depth - square_root(nearest.distance2)) < margin;
   __syncwarp();
-  if (v.state == ProjectionState::kReproject && mask_tells) {
+  if (usual && v.state == ProjectionState::kReproject && arcs <= kMaskBits * kLanes) {
     nearest = NearestArc();
     for (uint64_t rest = near_arcs; rest; rest &= rest - 1) {
-      const int a = static_cast<int>(candidates.arc(lowest_bit64(rest) * kLanes + rank));
+      const int a = arc_at(lowest_bit64(rest));
       nearest.offer(a, arc_distance2(load(f.arcs + a), v.point.position));
     }
     nearest = nearest_of_lanes<kLanes>(nearest, lanes);
@@ -127,14 +143,18 @@ static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(
     if (next.state == ProjectionState::kPlaced) v = next;  // else that round is done again
   }
   __syncwarp();
-  const bool placed = v.state == ProjectionState::kPlaced, goes_on = v.state == ProjectionState::kReproject;
-  append(job.unfinished, &job.counts->unfinished, k, team.writes && goes_on);
-  append(job.on_edges, &job.counts->on_edges, k, team.writes && !placed && !goes_on);
+  const bool placed = usual && v.state == ProjectionState::kPlaced,
+             on_edge = usual && v.state == ProjectionState::kOnEdge;
+  append(job.unfinished, &job.counts->unfinished, k, team.writes && !placed && !on_edge);
+  append(job.on_edges, &job.counts->on_edges, k, team.writes && on_edge);
   if (placed) {
     const uint32_t owner = nearest_atom(f, candidates, v.point.position);
     if (team.writes) finish_vertex(job, k, v.point, owner);
-  } else if (team.writes && goes_on) {
-    leave_vertex(job, k, v);
+  } else if (team.writes && !on_edge) {
+    if (usual)
+      leave_vertex(job, k, v);
+    else
+      leave_start(job, k);
   }
 }
 
@@ -151,7 +171,7 @@ static __global__ __launch_bounds__(kVertexThreads, 8) void reproject_kernel(Lau
     const uint32_t k = job.unfinished[on ? place0 + team : place0];
     const auto candidates = shared<kVertexLanes>(vertex_candidates(job, k));
     Projection v{};
-    if (on) v = left_vertex(job, k);
+    if (on) v = left_vertex(job, candidates, k);
     __syncwarp();
     while (v.state == ProjectionState::kReproject)
       v = reproject(f, candidates, nearest_arc(f, candidates, v.point.position), v);

@@ -101,10 +101,12 @@ __device__ __forceinline__ bool open_leaf(const VertexJob &job, uint32_t slot, V
   out->leaf = static_cast<int>(slot % kLeavesPerBrick);
   const size_t k = (static_cast<size_t>(out->brick) * kLeavesPerBrick + static_cast<size_t>(out->leaf)) * kAxes;
   uint64_t masks[kAxes];
+#pragma unroll
+  for (int axis = 0; axis < kAxes; ++axis) masks[axis] = job.layout.crossing[k + static_cast<size_t>(axis)];
+  if ((masks[0] | masks[1] | masks[2]) == 0) return false;
   out->count = 0;
 #pragma unroll
   for (int axis = 0; axis < kAxes; ++axis) {
-    masks[axis] = job.layout.crossing[k + static_cast<size_t>(axis)];
 #pragma unroll
     for (int half = 0; half < 2; ++half) {
       const int bit = lane + 32 * half;
@@ -115,7 +117,6 @@ __device__ __forceinline__ bool open_leaf(const VertexJob &job, uint32_t slot, V
     out->count += popcount64(masks[axis]);
   }
   __syncwarp();
-  if (out->count == 0) return false;
   out->first = job.layout.base[out->brick].vertices + job.layout.vertex_rank[k];
   out->place = job.bricks.lattice.brick_at(job.bricks.linear[out->brick]);
   out->origin = brick_point(out->leaf, 0);

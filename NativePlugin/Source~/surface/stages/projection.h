@@ -90,13 +90,10 @@ struct NearestArc {
   float second2 = kFarAway;    // of the second nearest
 
   QSES_FN void offer(int a, float d2) {
-    if (d2 < distance2 || (d2 == distance2 && a < arc)) {  // ties by number: arcs come in any order
-      second2 = distance2;
-      distance2 = d2;
-      arc = a;
-    } else {
-      second2 = minimum(second2, d2);
-    }
+    const bool nearer = d2 < distance2 || (d2 == distance2 && a < arc);  // ties by number: arcs come in any order
+    second2 = minimum(second2, maximum(d2, distance2));
+    distance2 = minimum(distance2, d2);
+    arc = nearer ? a : arc;
   }
 };
 template <class Candidates>
