@@ -16,10 +16,11 @@ __device__ __forceinline__ int lane_id() { return static_cast<int>(threadIdx.x &
 __device__ __forceinline__ int place_in(unsigned ballot, int lane) { return __popc(ballot & ((1u << lane) - 1u)); }
 
 // Appends to a list that the lanes fill together: the place of this lane's item if it has one. count: of the list, the
-// same in all lanes.
+// same in all lanes. team: those lanes that fill the same list.
 template <class Count>
-__device__ __forceinline__ Count append_place(bool has, Count *count, unsigned lanes = kFullWarp) {
-  const unsigned ballot = __ballot_sync(lanes, has);
+__device__ __forceinline__ Count append_place(bool has, Count *count, unsigned lanes = kFullWarp,
+                                              unsigned team = kFullWarp) {
+  const unsigned ballot = __ballot_sync(lanes, has) & team;
   const Count place = *count + static_cast<Count>(place_in(ballot, lane_id()));
   *count += static_cast<Count>(__popc(ballot));
   return place;

@@ -9,7 +9,9 @@
 namespace quickses {
 namespace gpu {
 
-template <int kLanes>
+// kTogether: all lanes of the warp call the functions together. Else those of a team do, while others may be elsewhere;
+// then each team's turn comes after the others', which takes several times as long.
+template <int kLanes, bool kTogether = false>
 struct LaneCandidates {
   const uint32_t *atoms;  // in any memory
   const uint32_t *arcs;
@@ -19,13 +21,21 @@ struct LaneCandidates {
   __device__ __forceinline__ uint32_t atom(int k) const { return atoms[k]; }
   __device__ __forceinline__ uint32_t arc(int k) const { return arcs[k]; }
   static __device__ __forceinline__ int rank() { return lane_id() % kLanes; }
-  static __device__ __forceinline__ unsigned lanes() {
+  static __device__ __forceinline__ unsigned team() {
     return (kFullWarp >> (kWarp - kLanes)) << (lane_id() / kLanes * kLanes);
   }
+  static __device__ __forceinline__ unsigned lanes() { return kTogether ? kFullWarp : team(); }
 };
 
+// For functions that only some teams of a warp call.
 template <int kLanes>
-__device__ __forceinline__ DeepestAtom deepest_atom(const FeatureView &f, const LaneCandidates<kLanes> &candidates,
+__device__ __forceinline__ LaneCandidates<kLanes> apart(const LaneCandidates<kLanes, true> &c) {
+  return {c.atoms, c.arcs, c.atom_total, c.arc_total};
+}
+
+template <int kLanes, bool kTogether>
+__device__ __forceinline__ DeepestAtom deepest_atom(const FeatureView &f,
+                                                    const LaneCandidates<kLanes, kTogether> &candidates,
                                                     const Vec3<float> &x) {
   NumberedValue best{-2.f * kFarAway, kNoAtom};  // its place in the list: of several, the first
   for (int k = candidates.rank(); k < candidates.atom_count(); k += kLanes) {
@@ -50,8 +60,9 @@ __device__ __forceinline__ NearestArc nearest_of_lanes(NearestArc best, unsigned
   return best;
 }
 
-template <int kLanes>
-__device__ __forceinline__ NearestArc nearest_arc(const FeatureView &f, const LaneCandidates<kLanes> &candidates,
+template <int kLanes, bool kTogether>
+__device__ __forceinline__ NearestArc nearest_arc(const FeatureView &f,
+                                                  const LaneCandidates<kLanes, kTogether> &candidates,
                                                   const Vec3<float> &x) {
   NearestArc best;
   for (int k = candidates.rank(); k < candidates.arc_count(); k += kLanes) {
@@ -61,19 +72,18 @@ __device__ __forceinline__ NearestArc nearest_arc(const FeatureView &f, const La
   return nearest_of_lanes<kLanes>(best, candidates.lanes());
 }
 
-template <int kLanes>
-__device__ __forceinline__ bool is_on_contact(const FeatureView &f, const LaneCandidates<kLanes> &candidates,
+template <int kLanes, bool kTogether>
+__device__ __forceinline__ bool is_on_contact(const FeatureView &f, const LaneCandidates<kLanes, kTogether> &candidates,
                                               const DeepestAtom &deepest, const Vec3<float> &x) {
-  if (deepest.depth <= -kFarAway) return false;
-  const CapRange range = f.cap_ranges[deepest.atom];
-  if (range.count == kBuriedAtom) return false;
+  CapRange range{0, kBuriedAtom};
+  if (deepest.depth > -kFarAway) range = f.cap_ranges[deepest.atom];
   const Sphere ball = load(f.atoms.items + deepest.atom);
   const Vec3<float> offset = x - Vec3<float>(ball.center);
   const float length = offset_length(ball, deepest.depth);
-  bool covered = false;
+  bool covered = range.count == kBuriedAtom;
   for (int32_t k = candidates.rank(); k < range.count && !covered; k += kLanes)
     covered = cap_covers(load(f.caps + range.first + k), offset, length);
-  return !__any_sync(candidates.lanes(), covered);
+  return (__ballot_sync(candidates.lanes(), covered) & candidates.team()) == 0;
 }
 
 }  // namespace gpu

@@ -36,23 +36,21 @@ __device__ __forceinline__ void leave_vertex(const VertexJob &job, uint32_t k, c
   store_vec3(job.mesh.normal(vertex), v.point.normal);
   job.mesh.owner(vertex) = static_cast<uint32_t>(v.rounds);
 }
-template <class Candidates>
-__device__ __forceinline__ Projection left_vertex(const VertexJob &job, const Candidates &candidates, uint32_t k) {
+__device__ __forceinline__ Projection left_vertex(const VertexJob &job, uint32_t k) {
   const uint32_t vertex = job.first + k;
-  const Vec3<float> x = stored_start(job, vertex);
   const int rounds = static_cast<int>(job.mesh.owner(vertex));
-  if (rounds == 0) return project_on_arc(job.features, nearest_arc(job.features, candidates, x), x);
-  const Vec3<float> normal = load_vec3(job.mesh.normal(vertex));
-  return {{x, normal, normal, QSES_PATCH_CONTACT, true}, ProjectionState::kReproject, rounds};
+  const Vec3<float> normal = rounds > 0 ? load_vec3(job.mesh.normal(vertex)) : Vec3<float>(0.f, 0.f, 1.f);
+  return {{stored_start(job, vertex), normal, normal, QSES_PATCH_CONTACT, true}, ProjectionState::kReproject, rounds};
 }
 
-template <int kLanes>
-__device__ __forceinline__ auto shared(const ListedCandidates &all) {
+template <int kLanes, class Candidates>
+__device__ __forceinline__ auto shared(const Candidates &all) {
   if constexpr (kLanes == 1)
     return all;
   else
-    return LaneCandidates<kLanes>{all.atoms, all.arcs, all.atom_total, all.arc_total};
+    return LaneCandidates<kLanes, true>{all.atoms, all.arcs, all.atom_total, all.arc_total};
 }
+__device__ __forceinline__ const ListedCandidates &apart(const ListedCandidates &all) { return all; }
 
 // The first two kernels have so many lanes for each vertex: few vertices leave a GPU idle with one.
 template <int kLanes>
@@ -108,7 +106,6 @@ static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(
   const float margin = kUsualStart * job.reach.spacing, near = f.parameters.depth + margin;
   NearestArc nearest;
   uint64_t near_arcs = 0;  // of this lane
-  const unsigned lanes = LaneCandidates<kLanes>::lanes();
   const int arcs = candidates.arc_count(), rank = LaneCandidates<kLanes>::rank();
   const auto arc_at = [&](int q) { return static_cast<int>(candidates.arc(q * kLanes + rank)); };
   const int own_arcs = (arcs - rank + kLanes - 1) / kLanes;
@@ -127,19 +124,20 @@ static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(
       if (!(d2 < near * near)) near_arcs &= ~(uint64_t(1) << bit);
     }
   }
-  nearest = nearest_of_lanes<kLanes>(nearest, lanes);
+  nearest = nearest_of_lanes<kLanes>(nearest, kFullWarp);
   __syncwarp();
   const bool usual = absolute(f.parameters.depth - square_root(nearest.distance2)) < margin;
   Projection v = project_on_arc(f, nearest, x);
   __syncwarp();
-  if (usual && v.state == ProjectionState::kReproject && arcs <= kMaskBits * kLanes) {
-    nearest = NearestArc();
-    for (uint64_t rest = near_arcs; rest; rest &= rest - 1) {
-      const int a = arc_at(lowest_bit64(rest));
-      nearest.offer(a, arc_distance2(load(f.arcs + a), v.point.position));
-    }
-    nearest = nearest_of_lanes<kLanes>(nearest, lanes);
-    const Projection next = reproject(f, candidates, nearest, v);
+  const bool again = usual && v.state == ProjectionState::kReproject && arcs <= kMaskBits * kLanes;
+  nearest = NearestArc();
+  for (uint64_t rest = again ? near_arcs : 0; rest; rest &= rest - 1) {
+    const int a = arc_at(lowest_bit64(rest));
+    nearest.offer(a, arc_distance2(load(f.arcs + a), v.point.position));
+  }
+  nearest = nearest_of_lanes<kLanes>(nearest, kFullWarp);
+  if (again) {
+    const Projection next = reproject(f, apart(candidates), nearest, v);
     if (next.state == ProjectionState::kPlaced) v = next;  // else that round is done again
   }
   __syncwarp();
@@ -147,15 +145,15 @@ static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(
              on_edge = usual && v.state == ProjectionState::kOnEdge;
   append(job.unfinished, &job.counts->unfinished, k, team.writes && !placed && !on_edge);
   append(job.on_edges, &job.counts->on_edges, k, team.writes && on_edge);
-  if (placed) {
-    const uint32_t owner = nearest_atom(f, candidates, v.point.position);
-    if (team.writes) finish_vertex(job, k, v.point, owner);
-  } else if (team.writes && !on_edge) {
-    if (usual)
-      leave_vertex(job, k, v);
-    else
-      leave_start(job, k);
-  }
+  uint32_t owner = 0;
+  if (kLanes > 1 || placed) owner = nearest_atom(f, candidates, v.point.position);
+  if (!team.writes || on_edge) return;
+  if (placed)
+    finish_vertex(job, k, v.point, owner);
+  else if (usual)
+    leave_vertex(job, k, v);
+  else
+    leave_start(job, k);
 }
 
 constexpr int kVertexLanes = 8;
@@ -171,11 +169,14 @@ static __global__ __launch_bounds__(kVertexThreads, 8) void reproject_kernel(Lau
     const uint32_t k = job.unfinished[on ? place0 + team : place0];
     const auto candidates = shared<kVertexLanes>(vertex_candidates(job, k));
     Projection v{};
-    if (on) v = left_vertex(job, candidates, k);
-    __syncwarp();
-    while (v.state == ProjectionState::kReproject)
-      v = reproject(f, candidates, nearest_arc(f, candidates, v.point.position), v);
-    __syncwarp();
+    if (on) v = left_vertex(job, k);
+    // In step, so that the lanes of all teams look for arcs together.
+    while (__any_sync(kFullWarp, v.state == ProjectionState::kReproject)) {
+      const NearestArc nearest = nearest_arc(f, candidates, v.point.position);
+      if (v.state == ProjectionState::kReproject)
+        v = v.rounds == 0 ? project_on_arc(f, nearest, v.point.position) : reproject(f, apart(candidates), nearest, v);
+      __syncwarp();
+    }
     const bool placed = v.state == ProjectionState::kPlaced, writes = on && candidates.rank() == 0;
     append(job.on_edges, &job.counts->on_edges, k, writes && !placed);
     const uint32_t owner = nearest_atom(f, candidates, v.point.position);
@@ -183,43 +184,49 @@ static __global__ __launch_bounds__(kVertexThreads, 8) void reproject_kernel(Lau
   }
 }
 
-// Those of a brick's candidates that decide about points of an edge, which are within `reach` of its middle; all of
-// them where there is no room for the choice.
-template <int kLanes>
-__device__ __forceinline__ LaneCandidates<kLanes> choose_for_edge(const FeatureView &f, const ListedCandidates &all,
-                                                                  const Vec3<float> &middle, float reach,
-                                                                  uint32_t *room, int most) {
-  using Chosen = LaneCandidates<kLanes>;
-  const unsigned lanes = Chosen::lanes();
+// Those of some candidates that decide about points within `reach` of a middle, as those of an edge; all of them where
+// there is no room for the choice.
+template <int kLanes, class Candidates>
+__device__ __forceinline__ LaneCandidates<kLanes, true> choose_near(const FeatureView &f, const Candidates &all,
+                                                                    const Vec3<float> &middle, float reach,
+                                                                    uint32_t *room, int most) {
+  using Chosen = LaneCandidates<kLanes, true>;
+  const unsigned team = Chosen::team();
   const int rank = Chosen::rank();
-  const auto choose = [&](const Sphere *balls, const uint32_t *items, int count, float reach, uint32_t *out, int left) {
+  const auto choose = [&](const Sphere *balls, const auto &item_at, int count, float reach, uint32_t *out, int left) {
     constexpr int kAhead = 4;  // loads that are under way together
     int n = 0;
-    for (int k0 = rank; k0 - rank < count; k0 += kAhead * kLanes) {
+    for (int k0 = rank; __any_sync(kFullWarp, k0 - rank < count); k0 += kAhead * kLanes) {
       uint32_t item[kAhead];
       bool near[kAhead];
 #pragma unroll
-      for (int j = 0; j < kAhead; ++j) item[j] = __ldg(items + (k0 + j * kLanes < count ? k0 + j * kLanes : 0));
-#pragma unroll
       for (int j = 0; j < kAhead; ++j) {
-        const Sphere ball = load(balls + item[j]);
-        const float r = ball.radius + reach;
-        near[j] = k0 + j * kLanes < count && length_squared(Vec3<float>(ball.center) - middle) < r * r;
+        near[j] = k0 + j * kLanes < count;
+        item[j] = near[j] ? item_at(k0 + j * kLanes) : 0;
       }
 #pragma unroll
       for (int j = 0; j < kAhead; ++j) {
-        const int place = append_place(near[j], &n, lanes);
+        if (!near[j]) continue;
+        const Sphere ball = load(balls + item[j]);
+        const float r = ball.radius + reach;
+        near[j] = length_squared(Vec3<float>(ball.center) - middle) < r * r;
+      }
+#pragma unroll
+      for (int j = 0; j < kAhead; ++j) {
+        const int place = append_place(near[j], &n, kFullWarp, team);
         if (near[j] && place < left) out[place] = item[j];
       }
     }
     return n;
   };
-  __syncwarp(lanes);  // the choice before is not looked at any more
-  const int atoms = choose(f.atoms.items, all.atoms, all.atom_total, reach, room, most);
+  __syncwarp();  // the choice before is not looked at any more
+  const int atoms = choose(
+      f.atoms.items, [&](int k) { return all.atom(k); }, all.atom_total, reach, room, most);
   const int left = atoms < most ? most - atoms : 0;
-  const int arcs =
-      choose(f.arc_bounds.items, all.arcs, all.arc_total, f.parameters.depth + reach, room + (most - left), left);
-  __syncwarp(lanes);
+  const int arcs = choose(
+      f.arc_bounds.items, [&](int k) { return all.arc(k); }, all.arc_total, f.parameters.depth + reach,
+      room + (most - left), left);
+  __syncwarp();
   if (atoms > most || arcs > left) return shared<kLanes>(all);
   return {room, room + atoms, atoms, arcs};
 }
@@ -237,8 +244,7 @@ static __global__ __launch_bounds__(kVertexThreads, 8) void place_on_edges_kerne
     const uint32_t brick = brick_of_vertex(job.layout, job.bricks.count, vertex);
     const CutEdge edge = ends_of_edge(job.bricks, job.layout, brick, edge_of_vertex(job.layout, brick, vertex));
     const ListedCandidates all = brick_candidates(job.view, brick - job.view.first_brick);
-    const auto near =
-        choose_for_edge<kWarp>(f, all, edge.middle(), edge_reach(f.parameters), edge_memory[warp], kEdgeRoom);
+    const auto near = choose_near<kWarp>(f, all, edge.middle(), edge_reach(f.parameters), edge_memory[warp], kEdgeRoom);
     const SurfacePoint s = place_on_edge(f, near, edge);
     const uint32_t owner = nearest_atom(f, shared<kWarp>(all), s.position);
     if (lane_id() == 0) finish_vertex(job, k, s, owner);

@@ -208,41 +208,90 @@ static __global__ __launch_bounds__(kWallThreads, 8) void drop_open_edges_kernel
   }
 }
 
-// Some lanes for each edge that is left. They wait for memory: more blocks at a time are worth registers.
+// The box of the points of the lanes of a warp, as its middle and half diagonal.
+struct PointsBox {
+  Vec3<float> middle;
+  float radius;
+};
+__device__ __forceinline__ PointsBox box_of_points(const Vec3<float> &x) {
+  const Vec3<float> high(warp_maximum(x.x), warp_maximum(x.y), warp_maximum(x.z)),
+      low(-warp_maximum(-x.x), -warp_maximum(-x.y), -warp_maximum(-x.z));
+  return {(low + high) * 0.5f, 0.5f * square_root(length_squared(high - low))};
+}
+
+// nearest_probe() by all teams of a warp in step, of which some ask.
 template <int kLanes>
+__device__ __forceinline__ NearestProbe nearest_probe_if(bool asks, const FeatureView &f,
+                                                         LaneCandidates<kLanes, true> near, const Vec3<float> &x) {
+  if (!asks) near.atom_total = 0;
+  DeepestAtom deepest = deepest_atom(f, near, x);
+  const bool told = tells_probe(f.parameters, deepest);
+  const NearestProbe said = told_probe(f.parameters, deepest, x);
+  if (told) deepest.depth = -2.f * kFarAway;
+  const bool contact = is_on_contact(f, near, deepest, x);
+  if (told || contact) near.arc_total = 0;
+  const NearestArc nearest = nearest_arc(f, near, x);
+  return told ? said : contact ? probe_on_atom(f, deepest, x) : probe_on_arc(f, nearest, x);
+}
+
+// Some lanes for each edge that is left. They wait for memory: more blocks at a time are worth registers. kWarpRoom:
+// where rows are long, the edges of a warp, which are neighbours as a rule, have a choice of candidates in common
+// first.
+template <int kLanes, int kWarpRoom>
 static __global__ __launch_bounds__(kWallThreads, 10) void walk_edges_kernel(LaunchItems items, WallJob job) {
-  constexpr int kTeams = kWallThreads / kLanes, kRoom = 2560 / kTeams;
-  __shared__ uint32_t edge_memory[kTeams][kRoom];
+  constexpr int kTeams = kWallThreads / kLanes, kWarpTeams = kWarp / kLanes, kRoom = 2560 / kTeams;
+  __shared__ uint32_t edge_memory[kTeams][kRoom], warp_memory[kWallWarps][kWarpRoom > 0 ? kWarpRoom : 1];
   const FeatureView &f = job.features;
   const SurfaceParameters &p = f.parameters;
   const size_t teams = size_t(gridDim.x) * kTeams, walks = job.counters->walks;
   const size_t total = walks < items.last ? walks : items.last;
-  const int team = static_cast<int>(threadIdx.x) / kLanes;
-  for (size_t k = items.first + blockIdx.x * kTeams + static_cast<size_t>(team); k < total; k += teams) {
-    const uint64_t item = job.walks[k];
+  const int team = static_cast<int>(threadIdx.x) / kLanes, warp = team / kWarpTeams;
+  for (size_t k0 = items.first + blockIdx.x * kTeams + static_cast<size_t>(warp * kWarpTeams); k0 < total;
+       k0 += teams) {
+    const size_t k = k0 + static_cast<size_t>(team % kWarpTeams);
+    const bool on = k < total;
+    const uint64_t item = job.walks[on ? k : k0];
     const WallEdge e = wall_edge(job, static_cast<uint32_t>(item / (64 * kWallSteps)),
                                  static_cast<int>(item / 64 % kWallSteps), static_cast<int>(item % 64));
     const Vec3<float> a = wall_point(job, e.brick, e.first), b = wall_point(job, e.brick, e.second);
-    const float half = 0.5f * wall_step_length(e.step) * p.spacing + 2.f * job.reach.slack;
+    const auto reach_of = [&](int step) { return 0.5f * wall_step_length(step) * p.spacing + 2.f * job.reach.slack; };
     const ListedCandidates all = brick_candidates(job.view, e.slot / kLeavesPerBrick);
-    const auto near = choose_for_edge<kLanes>(f, all, (a + b) * 0.5f, half, edge_memory[team], kRoom);
+    const auto choose = [&](const auto &candidates) {
+      return choose_near<kLanes>(f, candidates, (a + b) * 0.5f, reach_of(e.step), edge_memory[team], kRoom);
+    };
+    LaneCandidates<kLanes, true> near;
+    if (kWarpRoom > 0 && __all_sync(kFullWarp, e.brick == __shfl_sync(kFullWarp, e.brick, 0))) {
+      const PointsBox box = box_of_points((a + b) * 0.5f);
+      near = choose(
+          choose_near<kWarp>(f, all, box.middle, box.radius + reach_of(kWallSteps - 1), warp_memory[warp], kWarpRoom));
+    } else {
+      near = choose(all);
+    }
     const NearestProbe probe_a = decided_probe(f, first_decider(job, e.slot, e.bit, a), a);
     const uint32_t decider_b = decider_at(job, e.brick, e.second);
-    const NearestProbe probe_b = decider_b == kNotLookedAt ? nearest_probe(f, near, b) : decided_probe(f, decider_b, b);
+    const bool looks_for_b = decider_b == kNotLookedAt;
+    NearestProbe probe_b{b, 0.f};
+    if (__any_sync(kFullWarp, looks_for_b)) probe_b = nearest_probe_if(looks_for_b, f, near, b);
+    if (!looks_for_b) probe_b = decided_probe(f, decider_b, b);
     WallWalk walk = begin_wall_walk(p, e.step, a, probe_a, b, probe_b);
+    if (!on) walk = {0.f, 0.f};
     const Vec3<float> direction = wall_direction(e.step);
-    for (int round = 0; round < kMostWallSteps && !walk.is_open(); ++round) {
+    for (int round = 0; round < kMostWallSteps && __any_sync(kFullWarp, !walk.is_open()); ++round) {
       const Vec3<float> x = a + direction * (walk.at + kWallStep);
-      const NearestProbe probe = nearest_probe(f, near, x);
+      const NearestProbe probe = nearest_probe_if(!walk.is_open(), f, near, x);
+      if (walk.is_open()) continue;
       if (probe.distance > p.depth) {
         if (near.rank() == 0)
           mark_wall(job.bricks, e.brick, marks_first_end(probe_a, probe_b) ? e.first : e.second, job.marks);
-        break;
+        walk = {0.f, 0.f};
+      } else {
+        walk.at += kWallStep + way_out(p, probe, x, direction);
       }
-      walk.at += kWallStep + way_out(p, probe, x, direction);
     }
   }
 }
+
+constexpr uint32_t kLongRow = 4 * kUsualRow;
 
 // How many edges of a leaf are left to be walked, at most as a rule: the wider the spacing beside the probe, the fewer
 // are covered by the probes at their ends. Of 1AON with a probe of 1.4 Å, at spacings of 1 and 2 Å: 2 and 21.
@@ -298,9 +347,11 @@ void mark_thin_walls(E &executor, const FeatureView &features, const BrickSet &b
   };
   constexpr size_t kFullThreads = 1024;  // of a multiprocessor
   if (found.walks * kWarp <= executor.multiprocessors() * kFullThreads)
-    walk(kWarp, walk_edges_kernel<kWarp>);
+    walk(kWarp, walk_edges_kernel<kWarp, 0>);
+  else if (candidates.longest_row <= kLongRow)
+    walk(8, walk_edges_kernel<8, 0>);
   else
-    walk(8, walk_edges_kernel<8>);
+    walk(8, walk_edges_kernel<8, 640>);
   executor.arena().rewind(mark);
 }
 

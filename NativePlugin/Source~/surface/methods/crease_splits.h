@@ -125,7 +125,10 @@ void split_round(Work &work, const Sheets &sheets, const SplitRound &round, Grow
   const Span<uint32_t> old_near = room(uint32_t{}, is_last ? 0 : mesh->whole.triangles);
   executor.for_each(n, CountNew<Sheets>{find, sheets, lattice, counts_of.data}, kSteps);
   executor.exclusive_scan(n, LoadCount<uint64_t>{counts_of.data}, Span<uint64_t>{before.data, n + 1});
-  if (!is_last) executor.compact(mesh->whole.triangles, IsMarked{mesh->view.near_marks}, old_near, before.data + n + 1);
+  if (is_last)
+    executor.fill(Span<uint64_t>{before.data + n + 1, 1}, 0);
+  else
+    executor.compact(mesh->whole.triangles, IsMarked{mesh->view.near_marks}, old_near, before.data + n + 1);
   RoundCounts counts = executor.fetch(reinterpret_cast<const RoundCounts *>(before.data + n));
   size_t vertices = counts.vertices, triangles = counts.triangles;
   if (kCounts) {

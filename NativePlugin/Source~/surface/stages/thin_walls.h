@@ -109,21 +109,28 @@ struct NearestProbe {
   float distance;
 };
 
-template <class Candidates>
-QSES_FN NearestProbe nearest_probe(const FeatureView &f, const Candidates &candidates, const Vec3<float> &x) {
-  if (candidates.atom_count() == 0) return {x, 0.f};
-  const float depth = f.parameters.depth;
-  const DeepestAtom deepest = deepest_atom(f, candidates, x);
-  if (deepest.depth <= f.parameters.least_depth()) return {x, 0.f};
-  if (deepest.depth > depth) return {x, kFarAway};
-  if (is_on_contact(f, candidates, deepest, x)) {
-    const Sphere ball = load(f.atoms.items + deepest.atom);
-    return {boundary_on_atom(ball, deepest.depth, x, true).position, deepest.depth};
-  }
-  const NearestArc nearest = nearest_arc(f, candidates, x);
-  if (nearest.distance2 > depth * depth) return {x, kFarAway};
+// Where a point is outside all balls or in the solid, the ball it is deepest in tells so.
+QSES_FN bool tells_probe(const SurfaceParameters &p, const DeepestAtom &deepest) {
+  return deepest.depth <= p.least_depth() || deepest.depth > p.depth;
+}
+QSES_FN NearestProbe told_probe(const SurfaceParameters &p, const DeepestAtom &deepest, const Vec3<float> &x) {
+  return {x, deepest.depth > p.depth ? kFarAway : 0.f};
+}
+QSES_FN NearestProbe probe_on_atom(const FeatureView &f, const DeepestAtom &deepest, const Vec3<float> &x) {
+  return {boundary_on_atom(load(f.atoms.items + deepest.atom), deepest.depth, x, true).position, deepest.depth};
+}
+QSES_FN NearestProbe probe_on_arc(const FeatureView &f, const NearestArc &nearest, const Vec3<float> &x) {
+  if (nearest.distance2 > f.parameters.depth * f.parameters.depth) return {x, kFarAway};
   const BoundaryPoint y = boundary_on_arc(load(f.arcs + nearest.arc), x);
   return {y.position, y.distance};
+}
+
+template <class Candidates>
+QSES_FN NearestProbe nearest_probe(const FeatureView &f, const Candidates &candidates, const Vec3<float> &x) {
+  const DeepestAtom deepest = deepest_atom(f, candidates, x);
+  if (tells_probe(f.parameters, deepest)) return told_probe(f.parameters, deepest, x);
+  if (is_on_contact(f, candidates, deepest, x)) return probe_on_atom(f, deepest, x);
+  return probe_on_arc(f, nearest_arc(f, candidates, x), x);
 }
 
 // Is the other end of an edge in the ball of the probe of this one? Then so is all of the edge.
