@@ -252,6 +252,7 @@ class CpuExecutor {
   void open_counts(uint64_t, bool = false) {}
   void turn_counts_to(float) {}
   void keep_pace() {}
+  bool runs_ahead() const { return false; }
   void send_counts() {}
   bool verify_counts() { return false; }
   template <class T>

@@ -189,6 +189,9 @@ class CudaExecutor {
     }
   }
 
+  // Whether all of this frame may be queued.
+  bool runs_ahead() const { return runs_ahead_; }
+
   // Between parts of a long work: waits for the part before the last one, so that little is queued that can't be
   // cancelled. In a frame that is known to be short nothing waits.
   void keep_pace() {

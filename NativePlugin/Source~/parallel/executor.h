@@ -16,6 +16,7 @@
 //   expect(name, counts, most)     what was counted. Waits; or, if it is told by the frame before, at most so much
 //   send_counts(), verify_counts() later: what was expected is compared with what was counted (anticipation.h). Waits
 //   verified(counts)               what was counted then
+//   runs_ahead()                   whether all of this frame may be queued, since frames like it are short
 //   keep_pace()                    called between parts of a long work, so that it can be cancelled. May wait
 //   upload, download, fill         copies between host and back end, and memset
 //   scan_bytes<T>(n), sort_bytes<Key, Value>(n), reduce_bytes<T>(n), compact_bytes(n)  of the arena, that these verbs

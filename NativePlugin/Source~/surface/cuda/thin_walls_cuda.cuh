@@ -129,6 +129,10 @@ struct WallScratch {
   uint8_t bit[64];                 // of first ends
 };
 
+__device__ __forceinline__ Vec3<float> from_lane(const Vec3<float> &v, int lane) {
+  return {__shfl_sync(kFullWarp, v.x, lane), __shfl_sync(kFullWarp, v.y, lane), __shfl_sync(kFullWarp, v.z, lane)};
+}
+
 // Lists the edges of leaves that the probes nearest to their ends, as far as they are known, do not cover together. A
 // warp per leaf that has edges.
 static __global__ __launch_bounds__(kWallThreads, 8) void drop_open_edges_kernel(LaunchItems items, WallJob job) {
@@ -182,8 +186,9 @@ static __global__ __launch_bounds__(kWallThreads, 8) void drop_open_edges_kernel
 
     // By those of both ends.
     for (int n0 = 0; n0 < count; n0 += kWarp) {
-      bool left = n0 + lane < count;
+      bool left = n0 + lane < count, rests = false;
       uint64_t item = 0;
+      WallRest rest{};
       if (left) {
         const int number = scratch.edge[n0 + lane];
         const WallEdge e = wall_edge(job, slot, number / 64, number % 64);
@@ -193,10 +198,23 @@ static __global__ __launch_bounds__(kWallThreads, 8) void drop_open_edges_kernel
           const float4 v = scratch.probe[e.bit];
           const Vec3<float> a = position(e.bit, glm::ivec3(0)), b = position(e.bit, wall_step(e.step));
           const bool same_atom = decider == scratch.decider[e.bit] && (decider & kOnContact) && decider < kNotLookedAt;
-          left = !begin_wall_walk(f.parameters, e.step, a, {{v.x, v.y, v.z}, v.w}, b, decided_probe(f, decider, b))
-                      .is_open() &&
-                 !(same_atom && rolls_over(f, decider & ~kOnContact, a, b));
+          const WallWalk walk =
+              begin_wall_walk(f.parameters, e.step, a, {{v.x, v.y, v.z}, v.w}, b, decided_probe(f, decider, b));
+          left = rests = !walk.is_open() && !(same_atom && rolls_over(f, decider & ~kOnContact, a, b));
+          rest = rest_of_walk(walk, e.step, a);
         }
+      }
+      // By those of the leaf's other first ends.
+      for (unsigned open = __ballot_sync(kFullWarp, rests); open; open &= open - 1) {
+        const int whose = __ffs(static_cast<int>(open)) - 1;
+        const WallRest asked{from_lane(rest.from, whose), from_lane(rest.to, whose)};
+        bool covered = false;
+        for (int bit = lane; bit < 64; bit += kWarp) {
+          if (!(points >> bit & 1)) continue;
+          const float4 v = scratch.probe[bit];
+          covered |= v.w <= f.parameters.depth && covers_rest(f.parameters, {v.x, v.y, v.z}, asked);
+        }
+        if (__any_sync(kFullWarp, covered) && lane == whose) left = false;
       }
       uint32_t walks = 0;
       const uint32_t place = append_place(left, &walks);

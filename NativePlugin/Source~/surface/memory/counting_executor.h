@@ -106,6 +106,7 @@ class CountingExecutor {
     return fetch(counts);
   }
   void keep_pace() {}
+  bool runs_ahead() const { return false; }
   void send_counts() {}
   bool verify_counts() { return false; }
   template <class T>

@@ -215,15 +215,22 @@ MeshMemoryView build_exact_surface(Work &work) {
         work.memory.save(executor, mesh, part.view, part.vertices, with_triangles ? part.triangles : 0);
     });
   };
+  const auto send_triangles = [&] {
+    if (executor.verify_counts()) {
+      const MeshTotals found = executor.verified(layout.totals);
+      narrow_mesh(&mesh, found.vertices, found.triangles);
+      note_size(work, bricks.found ? executor.verified(bricks.found).count : bricks.count,
+                {found.vertices, found.triangles}, found.leaves);
+    }
+    if (!mesh.in_pieces) work.memory.bring_triangles(mesh, work.purpose);
+  };
+  // How much it is may be waited for when all is under way; in a long frame, while which the vertices are waited for as
+  // well, before.
+  const bool runs_ahead = executor.runs_ahead();
   work.timer.begin("projection");
+  if (!runs_ahead) send_triangles();
   emit(0.45, 0.8, true);
-  if (executor.verify_counts()) {  // now that all is under way it may be waited for how much it is
-    const MeshTotals found = executor.verified(layout.totals);
-    narrow_mesh(&mesh, found.vertices, found.triangles);
-    note_size(work, bricks.found ? executor.verified(bricks.found).count : bricks.count,
-              {found.vertices, found.triangles}, found.leaves);
-  }
-  if (!mesh.in_pieces) work.memory.bring_triangles(mesh, work.purpose);
+  if (runs_ahead) send_triangles();
   work.progress.report(0.85);
 
   // Steps 2 and on: tangential, each projected again.

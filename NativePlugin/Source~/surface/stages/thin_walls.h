@@ -164,6 +164,21 @@ QSES_FN WallWalk begin_wall_walk(const SurfaceParameters &p, int step, const Vec
           wall_step_length(step) * p.spacing - way_out(p, probe_b, b, direction * -1.f)};
 }
 
+// What no probe at an end of an edge covers: from one point to another.
+struct WallRest {
+  Vec3<float> from, to;
+};
+QSES_FN WallRest rest_of_walk(const WallWalk &walk, int step, const Vec3<float> &a) {
+  const Vec3<float> direction = wall_direction(step);
+  return {a + direction * walk.at, a + direction * walk.end};
+}
+// Is that in the ball of a probe that is known from another point? Not by a hair, so that a walk would find no wall
+// either.
+QSES_FN bool covers_rest(const SurfaceParameters &p, const Vec3<float> &probe, const WallRest &rest) {
+  const float clear = p.depth - kWallStep;
+  return length_squared(rest.from - probe) < clear * clear && length_squared(rest.to - probe) < clear * clear;
+}
+
 // Does the probe that rolls over an atom, from where it is nearest to a to where it is nearest to b, cover all between
 // them? Both are projected on the exposed part of that atom. A quick answer for most edges: no means nothing.
 QSES_FN bool rolls_over(const FeatureView &f, uint32_t atom, const Vec3<float> &a, const Vec3<float> &b) {
