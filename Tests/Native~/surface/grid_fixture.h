@@ -138,6 +138,7 @@ struct GridRunOn {
     m.owners.assign(counts.vertices, ~uint32_t(0));
     m.indices.assign(3 * counts.triangles, ~uint32_t(0));
     for (const BrickRange &range : slices(slice)) emit_grid_vertices(executor, field, layout, range, view(m));
+    find_grid_owners(executor, field, view(m), counts.vertices);
     emit_triangles(m);
     return m;
   }

@@ -86,6 +86,7 @@ void compare(const std::vector<Atom> &atoms, float probe, float spacing) {
                          to_device(executor, expected.indices.data(), expected.indices.size()).data,
                          false};
   for (const BrickRange &range : serial.slices(100)) emit_grid_vertices(executor, field, layout, range, view);
+  find_grid_owners(executor, field, view, counts.vertices);
   expect_near(to_host(executor, view.positions, values), expected.positions, 2e-6f * spacing + 1e-5f, "position");
   const std::vector<uint32_t> owners = to_host(executor, view.owners, counts.vertices);
   size_t other_owners = 0;

@@ -280,15 +280,14 @@ struct OwnsVertices {
   QSES_FN bool operator()(uint32_t brick) const { return base[brick].vertices != base[brick + 1].vertices; }
 };
 
+// Vertices where they belong, in the centred frame, until owners are found.
 struct EmitGridVertices {
   static constexpr int kCorners = kBrickEdge + 1;
   GridField field;
   MeshLayout layout;
   uint32_t first;
   MeshView mesh;
-  MetItems part{};  // of the atoms around a vertex
-  bool is_last;     // of the parts
-  int32_t *saved;   // distances, or nullptr
+  int32_t *saved;  // distances, or nullptr
 
   // The inner end of an edge that changes sign is one step farther off at most.
   QSES_FN static int32_t limit(const GridParameters &g) { return g.max_outside + 2 * (g.reach + 1) + 1; }
@@ -315,47 +314,64 @@ struct EmitGridVertices {
       Vec3<float> p = lattice.position(origin.x + x, origin.y + y, origin.z + z);
       const float along = lattice.spacing * (low / (low - high));
       (axis == 0 ? p.x : axis == 1 ? p.y : p.z) += along;
-      write_vertex(vertex_number(layout, static_cast<int>(brick), leaf, axis, bit), p);
+      store_vec3(mesh.position(vertex_number(layout, static_cast<int>(brick), leaf, axis, bit)), p);
     }
     team.sync();
   }
-
- private:
-  QSES_FN void write_vertex(uint32_t vertex, const Vec3<float> &p) const {
-    const glm::vec3 position = field.bricks.lattice.to_caller(p);
-    // The inner end of the edge is in an inflated ball, and at most a spacing away.
-    const uint32_t before = part.first > 0 ? mesh.owner(vertex) : 0;
-    const uint32_t atom = nearest_grid_atom(field, p, 1.01f * field.parameters.spacing + 1e-4f, part, before);
-    if (!is_last) {
-      mesh.owner(vertex) = atom;
-      return;
-    }
-    const Vec3<float> normal = sphere_normal(field.atoms.items[atom], p);
-    store_vec3(mesh.position(vertex), Vec3<float>(position));
-    store_vec3(mesh.normal(vertex), normal);
-    mesh.owner(vertex) = field.atoms.order[atom];
-  }
 };
 
-// Vertices of the bricks of the slice, by linear interpolation, with their owners. The normals written are those of the
-// owners' spheres: compute_normals (relaxation.h) replaces them where the triangles define one.
+// Vertices of the bricks of the slice, by linear interpolation. Owners and normals are missing yet.
 template <class Executor>
 void emit_grid_vertices(Executor &executor, const GridField &field, const MeshLayout &layout, BrickRange range,
                         const MeshView &mesh) {
-  // A thread has so many of a brick's edges at most.
   constexpr int kCorners = EmitGridVertices::kCorners;
-  constexpr uint64_t kEdges = kAxes * kBrickPoints / 128, kMost = kThreadSteps / (2 * kEdges);
-  const auto owner_steps = [&](uint64_t near) { return kEdges * (64 + std::min(near, kMost) / 2); };
-  const uint64_t near = most_grid_atoms_near(executor, field.atoms, field.parameters, range.size(), owner_steps);
-  with_distances<kCorners>(
-      executor, field, range, EmitGridVertices::limit(field.parameters), OwnsVertices{layout.base},
-      [&](BrickRange some, int32_t *saved, uint64_t steps) {
-        for_parts_of_met_items(near, Executor::kIsCuda ? kMost : near, [&](const MetItems &part, bool is_last) {
-          executor.template for_each_brick<DistanceScratch<kCorners>>(
-              some.size(), EmitGridVertices{field, layout, some.first, mesh, part, is_last, saved}, 8,
-              steps / 2 + owner_steps(near));
+  with_distances<kCorners>(executor, field, range, EmitGridVertices::limit(field.parameters),
+                           OwnsVertices{layout.base}, [&](BrickRange some, int32_t *saved, uint64_t steps) {
+                             executor.template for_each_brick<DistanceScratch<kCorners>>(
+                                 some.size(), EmitGridVertices{field, layout, some.first, mesh, saved}, 8,
+                                 kPlainTeamSteps + steps);
+                           });
+}
+
+// ---- owners ----------------------------------------------------------------------------------------------------
+
+struct FindGridOwners {
+  GridField field;
+  MeshView mesh;
+  MetItems part;  // of the atoms around a vertex
+  bool is_last;   // of the parts
+
+  // The inner end of a vertex's edge is in an inflated ball, and at most a spacing away.
+  QSES_FN static float margin(const GridParameters &g) { return 1.01f * g.spacing + 1e-4f; }
+
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    const auto vertex = static_cast<uint32_t>(i);
+    const Vec3<float> p = load_vec3(mesh.position(vertex));
+    const uint32_t before = part.first > 0 ? mesh.owner(vertex) : 0;
+    const uint32_t atom = nearest_grid_atom(field, p, margin(field.parameters), part, before);
+    mesh.owner(vertex) = is_last ? field.atoms.order[atom] : atom;
+    if (!is_last) return;
+    store_vec3(mesh.position(vertex), Vec3<float>(field.bricks.lattice.to_caller(p)));
+    store_vec3(mesh.normal(vertex), sphere_normal(field.atoms.items[atom], p));
+  }
+};
+
+// Owners of all vertices, and where they are in the caller's frame. The normals written are those of the owners'
+// spheres: compute_normals (relaxation.h) replaces them where the triangles define one.
+template <class Executor>
+void find_grid_owners(Executor &executor, const GridField &field, const MeshView &mesh, size_t vertices) {
+  constexpr uint64_t kMost = kThreadSteps - kPlainSteps;
+  const auto steps_of = [&](uint64_t near) { return kPlainSteps + std::min(near, kMost); };
+  uint64_t near = field.atoms.count;
+  if constexpr (Executor::kIsCuda)
+    near = most_items_near(
+        executor, "fullest cell of atoms", field.atoms,
+        2.f * (field.parameters.max_radius + FindGridOwners::margin(field.parameters)), [&](uint64_t items) {
+          return executor.is_few_launches(vertices, executor.for_each_shape(steps_of(items)));
         });
-      });
+  for_parts_of_met_items(near, Executor::kIsCuda ? kMost : near, [&](const MetItems &part, bool is_last) {
+    executor.for_each(vertices, FindGridOwners{field, mesh, part, is_last}, steps_of(near));
+  });
 }
 
 }  // namespace quickses

@@ -41,6 +41,7 @@ MeshMemoryView build_grid_surface(Work &work) {
   work.timer.begin("projection");
   for_each_slice(work, bricks.count, slice_size(), 0.5, 0.8,
                  [&](BrickRange slice) { emit_grid_vertices(executor, field, layout, slice, mesh.view); });
+  find_grid_owners(executor, field, mesh.view, counts.vertices);
   work.timer.begin("marching_cubes");
   Backend<Executor>::emit_triangles(executor, bricks, layout, BrickRange{0, bricks.count}, work.table, mesh.view);
   work.progress.report(0.85);

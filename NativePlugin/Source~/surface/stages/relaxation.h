@@ -17,9 +17,13 @@ namespace quickses {
 constexpr float kRingUnits = 524288.f;
 constexpr float kMaxRingTerm = 64.f;
 
+// Two signed sums of 32 bits in one of 64, so that one atomic addition serves both.
+QSES_FN int64_t two_sums(int32_t low, int32_t high) { return high * (int64_t(1) << 32) + low; }
+QSES_FN int32_t low_sum(int64_t sums) { return static_cast<int32_t>(static_cast<uint32_t>(sums)); }
+QSES_FN int32_t high_sum(int64_t sums) { return static_cast<int32_t>((sums - low_sum(sums)) >> 32); }
+
 struct alignas(16) RingSum {
-  int32_t x, y, z;
-  uint32_t count;
+  int64_t x_and_y, z_and_count;
 };
 
 QSES_FN int32_t ring_term(float value, float scale) {
@@ -27,15 +31,15 @@ QSES_FN int32_t ring_term(float value, float scale) {
   return static_cast<int32_t>(rintf(kRingUnits * minimum(kMaxRingTerm, maximum(-kMaxRingTerm, v))));
 }
 
-QSES_FN void add_to_ring(RingSum *sum, const Vec3<float> &v, float scale) {
-  atomic_add(&sum->x, ring_term(v.x, scale));
-  atomic_add(&sum->y, ring_term(v.y, scale));
-  atomic_add(&sum->z, ring_term(v.z, scale));
+QSES_FN void add_to_ring(RingSum *sum, int32_t x, int32_t y, int32_t z, int32_t count) {
+  atomic_add(&sum->x_and_y, two_sums(x, y));
+  atomic_add(&sum->z_and_count, two_sums(z, count));
 }
 
 QSES_FN Vec3<float> ring_vector(const RingSum &sum, float unit) {
   const float k = unit / kRingUnits;
-  return {static_cast<float>(sum.x) * k, static_cast<float>(sum.y) * k, static_cast<float>(sum.z) * k};
+  return {static_cast<float>(low_sum(sum.x_and_y)) * k, static_cast<float>(high_sum(sum.x_and_y)) * k,
+          static_cast<float>(low_sum(sum.z_and_count)) * k};
 }
 
 // Adds to each corner of a triangle the ways to the other two, in units of the spacing. On a closed mesh every
@@ -57,18 +61,16 @@ struct AddNeighborOffsets {
 
  private:
   QSES_FN void add(uint32_t vertex, const Vec3<float> &u, const Vec3<float> &v) const {
-    RingSum *sum = sums + vertex;
-    atomic_add(&sum->x, ring_term(u.x, inverse_spacing) + ring_term(v.x, inverse_spacing));
-    atomic_add(&sum->y, ring_term(u.y, inverse_spacing) + ring_term(v.y, inverse_spacing));
-    atomic_add(&sum->z, ring_term(u.z, inverse_spacing) + ring_term(v.z, inverse_spacing));
-    atomic_add(&sum->count, uint32_t(2));
+    const auto both = [&](float a, float b) { return ring_term(a, inverse_spacing) + ring_term(b, inverse_spacing); };
+    add_to_ring(sums + vertex, both(u.x, v.x), both(u.y, v.y), both(u.z, v.z), 2);
   }
 };
 
 // From a vertex to the mean of its neighbours.
 QSES_FN Vec3<float> mean_offset(const RingSum &sum, float spacing) {
-  if (sum.count == 0) return {0.f, 0.f, 0.f};
-  return ring_vector(sum, spacing / static_cast<float>(sum.count));
+  const int32_t count = high_sum(sum.z_and_count);
+  if (count == 0) return {0.f, 0.f, 0.f};
+  return ring_vector(sum, spacing / static_cast<float>(count));
 }
 
 // ---- Laplacian smoothing ---------------------------------------------------------------------------------------
@@ -165,7 +167,8 @@ struct AddTriangleNormals {
     const uint32_t *t = mesh.triangle(triangle);
     const Vec3<float> a = load_vec3(mesh.position(t[0]));
     const Vec3<float> n = cross(load_vec3(mesh.position(t[1])) - a, load_vec3(mesh.position(t[2])) - a);
-    for (int k = 0; k < 3; ++k) add_to_ring(sums + t[k], n, scale);
+    const int32_t x = ring_term(n.x, scale), y = ring_term(n.y, scale), z = ring_term(n.z, scale);
+    for (int k = 0; k < 3; ++k) add_to_ring(sums + t[k], x, y, z, 1);
   }
 };
 
