@@ -48,4 +48,13 @@ QSES_FN int lowest_bit64(uint64_t v) {
 
 QSES_FN int lowest_bit32(uint32_t v) { return lowest_bit64(v); }
 
+// Number of the highest.
+QSES_FN int highest_bit32(uint32_t v) {
+#if defined(__CUDA_ARCH__)
+  return 31 - __clz(static_cast<int>(v));
+#else
+  return 31 - __builtin_clz(v);
+#endif
+}
+
 }  // namespace quickses

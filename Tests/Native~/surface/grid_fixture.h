@@ -42,6 +42,22 @@ struct StoreDistances {
   }
 };
 
+// The same by rows, of the 9 x 9 x 9 corners.
+struct StoreRowDistances {
+  GridField field;
+  int32_t *distances;
+  template <class Team>
+  QSES_HOST_DEVICE void operator()(const Team &team, NearRows &scratch, size_t i) const {
+    constexpr int kEdge = kBrickEdge + 1, kPoints = kEdge * kEdge * kEdge;
+    const NearCube cube{kEdge, field.parameters.reach};
+    find_near_rows(field, static_cast<uint32_t>(i), cube, team, scratch);
+    for (int k = team.rank(); k < kPoints; k += team.size())
+      distances[i * kPoints + static_cast<size_t>(k)] =
+          nearest_outside(scratch, cube, glm::ivec3(k % kEdge, k / kEdge % kEdge, k / kEdge / kEdge), kNoneInReach - 1);
+    team.sync();
+  }
+};
+
 struct Atom {
   double x, y, z, r;
 };

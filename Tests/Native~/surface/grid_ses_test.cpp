@@ -120,6 +120,9 @@ void check_distances(const Case &c) {
                                                            StoreDistances<kBrickEdge>{run.field, 0, own.data()});
   run.executor.for_each_brick<DistanceScratch<kEdge>>(bricks.count,
                                                       StoreDistances<kEdge>{run.field, 0, corners.data()});
+  std::vector<int32_t> by_rows = corners;
+  if (has_near_rows(run.field))
+    run.executor.for_each_brick<NearRows>(bricks.count, StoreRowDistances{run.field, by_rows.data()});
 
   size_t looked_at = 0, refined = 0, wrong = 0;
   std::map<std::array<int, 3>, bool> active;
@@ -132,7 +135,8 @@ void check_distances(const Case &c) {
       const int32_t found = corners[size_t(b) * kPoints + static_cast<size_t>(i)];
       ++looked_at;
       refined += expected > 0 ? 1 : 0;
-      bool good = expected < 0 ? found >= kNoneInReach : found == expected;
+      const auto is_expected = [&](int32_t d2) { return expected < 0 ? d2 >= kNoneInReach : d2 == expected; };
+      bool good = is_expected(found) && is_expected(by_rows[size_t(b) * kPoints + static_cast<size_t>(i)]);
       const bool inside =
           expected < 0 || static_cast<double>(expected) * c.spacing * c.spacing > c.probe * c.probe * (1 + 1e-9);
       if (x < kBrickEdge && y < kBrickEdge && z < kBrickEdge) {
@@ -188,8 +192,10 @@ TEST(GridDistances, WithOtherProbes) {
   check_distances({&kTwo, 0.0, 0.5, 0, 1});
   check_distances({&kTwo, 0.3, 0.5, 1, 1});
   check_distances({&kTwo, 1.4, 3.0, 1, 1});
-  check_distances({&kThree, 3.0, 0.5, 6, 7});   // 3 / 0.5 is a whole number as well
-  check_distances({&kThree, 4.1, 0.5, 9, 23});  // more than one brick to either side
+  check_distances({&kThree, 3.0, 0.5, 6, 7});    // 3 / 0.5 is a whole number as well
+  check_distances({&kThree, 4.1, 0.5, 9, 23});   // more than one brick to either side
+  check_distances({&kThree, 5.5, 0.5, 11, 23});  // the widest cube whose rows are words, and the next one
+  check_distances({&kThree, 6.0, 0.5, 12, 23});
   check_distances({&kOne, 1.4, 0.1, 14, 1009});
   check_distances({&kTwo, 10.0, 0.5, 20, 4001});  // several tiles of rows and planes
   check_distances({&kOne, 14.0, 0.5, 28, 30011});

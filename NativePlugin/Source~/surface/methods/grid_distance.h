@@ -136,9 +136,8 @@ struct FindBrickSides {
   }
 };
 
-// Outside bits of the eight lattice points of one row of a brick.
-QSES_FN uint32_t outside_row(const GridField &f, const glm::ivec3 &place, int y, int z) {
-  const int brick = f.bricks.find(place);
+// Outside bits of the eight lattice points of one row of a brick; all, if it is not active.
+QSES_FN uint32_t outside_row(const GridField &f, int brick, int y, int z) {
   if (brick < 0) return 0xff;
   const uint64_t *leaf = f.outside + static_cast<size_t>(brick) * kLeavesPerBrick + leaf_of(0, y, z);
   const int shift = leaf_bit(0, y & 3, z & 3);
@@ -157,7 +156,7 @@ QSES_FN void row_distances(const GridField &f, glm::ivec3 place, int y, int z, i
   z &= 7;
   const auto bits_at = [&](int bricks_on) {
     place.x = x + bricks_on;
-    return outside_row(f, place, y, z);
+    return outside_row(f, f.bricks.find(place), y, z);
   };
   const uint32_t bits = bits_at(0) | bits_at(1) << kBrickEdge;
   int before = far_away;  // from the first point back to an outside one

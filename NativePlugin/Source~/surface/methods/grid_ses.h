@@ -5,7 +5,7 @@
 #pragma once
 
 #include "parallel/atomics.h"
-#include "surface/methods/grid_distance.h"
+#include "surface/methods/grid_rows.h"
 
 namespace quickses {
 
@@ -137,17 +137,26 @@ struct ClassifyBrick {
     for (int row = share.first_row; row < kBrickEdge * kBrickEdge; row += share.row_step) {
       const float py = static_cast<float>(first.y + row % kBrickEdge) * h;
       const float pz = static_cast<float>(first.z + row / kBrickEdge) * h;
-      float *ball = scratch.beyond_ball + row * kBrickEdge;
+      float *const points = scratch.beyond_ball + row * kBrickEdge;
+      float own[kBrickEdge];  // of this thread, so that they stay in registers
+      const auto for_own = [&](const auto &visit) {
+        for (int x = share.first_x, k = 0; x < kBrickEdge; x += share.x_step, ++k) visit(x, own[k]);
+      };
+      for_own([&](int x, float &beyond) { beyond = points[x]; });
       for (uint32_t k = 0; k < count; ++k) {
         const Sphere s = scratch.listed[k];
         const float dy = py - s.center.y, dz = pz - s.center.z, across2 = dy * dy + dz * dz;
         const float ball2 = s.radius * s.radius;
         if (across2 >= ball2) continue;
-        for (int x = share.first_x; x < kBrickEdge; x += share.x_step) {
+        bool all_in = true;
+        for_own([&](int x, float &beyond) {
           const float dx = static_cast<float>(first.x + x) * h - s.center.x, d2 = dx * dx + across2;
-          ball[x] = minimum(ball[x], d2 - ball2);
-        }
+          beyond = minimum(beyond, d2 - ball2);
+          all_in &= beyond < 0.f;
+        });
+        if (all_in) break;  // deeper does not matter
       }
+      for_own([&](int x, const float &beyond) { points[x] = beyond; });
     }
     team.sync();
     if (team.rank() == 0) scratch.count = 0;
@@ -203,45 +212,73 @@ struct IsUndecided {
   QSES_FN bool operator()(uint32_t brick) const { return field.sides[brick] == BrickSide::kUndecided; }
 };
 
+// The signs of a brick, by distances of any reach, or by rows of few words.
 struct EvaluateGridSigns {
   GridField field;
   uint32_t first;
   uint64_t *signs;
   int32_t *saved;  // distances, or nullptr
+
   template <class Team>
   QSES_HOST_DEVICE void operator()(const Team &team, DistanceScratch<kBrickEdge> &scratch, size_t i) const {
     const uint32_t brick = first + static_cast<uint32_t>(i);
-    uint64_t *words = signs + static_cast<size_t>(brick) * kLeavesPerBrick;
-    const BrickSide side = field.sides[brick];
-    const bool open = side == BrickSide::kUndecided && !is_all_outside(brick);
-    if (open)
+    if (is_open(brick))
       bring_distances<kBrickEdge>(field, brick, team, scratch, field.parameters.max_outside,
                                   saved ? saved + i * kBrickPoints : nullptr);
-    for (int leaf = team.rank(); leaf < kLeavesPerBrick; leaf += team.size()) {
-      uint64_t word = side == BrickSide::kInside ? ~uint64_t(0) : 0;
-      for (int bit = 0; bit < 64 && open; ++bit) {
-        const int x = (leaf & 1) * kLeafEdge + (bit & 3), y = (leaf >> 1 & 1) * kLeafEdge + (bit >> 2 & 3);
-        const int z = (leaf >> 2) * kLeafEdge + (bit >> 4);
+    write_signs(team, brick, [&](int y, int z) {
+      uint32_t row = 0;
+      for (int x = 0; x < kBrickEdge; ++x) {
         const int32_t d2 = scratch.nearest[x + kBrickEdge * (y + kBrickEdge * z)];
-        word |= static_cast<uint64_t>(grid_is_inside(field.parameters, d2) ? 1 : 0) << bit;
+        row |= static_cast<uint32_t>(grid_is_inside(field.parameters, d2)) << x;
       }
-      words[leaf] = word;
+      return row;
+    });
+  }
+  template <class Team>
+  QSES_HOST_DEVICE void operator()(const Team &team, NearRows &scratch, size_t i) const {
+    const uint32_t brick = first + static_cast<uint32_t>(i);
+    if (is_open(brick)) {
+      const NearCube cube{kBrickEdge, field.parameters.reach};
+      find_near_rows(field, brick, cube, team, scratch);
+      for (int row = team.rank(); row < kBrickEdge * kBrickEdge; row += team.size())
+        scratch.inside[row] =
+            inside_of_row(scratch, cube, field.parameters.max_outside, row % kBrickEdge, row / kBrickEdge);
+      team.sync();
     }
-    team.sync();
+    write_signs(team, brick, [&](int y, int z) { return scratch.inside[y + kBrickEdge * z]; });
   }
 
  private:
-  QSES_FN bool is_all_outside(uint32_t brick) const {
+  QSES_FN bool is_open(uint32_t brick) const {
+    if (field.sides[brick] != BrickSide::kUndecided) return false;
     uint64_t all = ~uint64_t(0);
     for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf)
       all &= field.outside[static_cast<size_t>(brick) * kLeavesPerBrick + static_cast<size_t>(leaf)];
-    return all == ~uint64_t(0);
+    return all != ~uint64_t(0);
+  }
+  // row_at(y, z): the points inside of a row, as bits, of a brick that is open.
+  template <class Team, class RowAt>
+  QSES_HOST_DEVICE void write_signs(const Team &team, uint32_t brick, const RowAt &row_at) const {
+    const bool open = is_open(brick);
+    for (int leaf = team.rank(); leaf < kLeavesPerBrick; leaf += team.size()) {
+      uint64_t word = field.sides[brick] == BrickSide::kInside ? ~uint64_t(0) : 0;
+      for (int k = 0; k < kLeafEdge * kLeafEdge && open; ++k) {
+        const glm::ivec3 p = brick_point(leaf, kLeafEdge * k);
+        word |= static_cast<uint64_t>(row_at(p.y, p.z) >> p.x & 15) << (kLeafEdge * k);
+      }
+      signs[static_cast<size_t>(brick) * kLeavesPerBrick + static_cast<size_t>(leaf)] = word;
+    }
+    team.sync();
   }
 };
 
 // signs[8 * brick + leaf] for the bricks of the slice.
 template <class Executor>
 void evaluate_grid_signs(Executor &executor, const GridField &field, BrickRange range, uint64_t *signs) {
+  if (has_near_rows(field))
+    return executor.template for_each_brick<NearRows>(
+        range.size(), EvaluateGridSigns{field, range.first, signs, nullptr}, 8,
+        kPlainTeamSteps + 2 * NearCube{kBrickEdge, field.parameters.reach}.rows_of_point());
   with_distances<kBrickEdge>(executor, field, range, field.parameters.max_outside, IsUndecided{field},
                              [&](BrickRange some, int32_t *saved, uint64_t steps) {
                                executor.template for_each_brick<DistanceScratch<kBrickEdge>>(
@@ -298,23 +335,40 @@ struct EmitGridVertices {
     if (!OwnsVertices{layout.base}(brick)) return;
     bring_distances<kCorners>(field, brick, team, scratch, limit(field.parameters),
                               saved ? saved + i * (kCorners * kCorners * kCorners) : nullptr);
+    write_vertices(team, brick,
+                   [&](const glm::ivec3 &p, bool) { return scratch.nearest[p.x + kCorners * (p.y + kCorners * p.z)]; });
+  }
+  template <class Team>
+  QSES_HOST_DEVICE void operator()(const Team &team, NearRows &scratch, size_t i) const {
+    const uint32_t brick = first + static_cast<uint32_t>(i);
+    if (!OwnsVertices{layout.base}(brick)) return;
+    const NearCube cube{kCorners, field.parameters.reach};
+    find_near_rows(field, brick, cube, team, scratch);
+    write_vertices(team, brick, [&](const glm::ivec3 &p, bool inside) {
+      return nearest_outside(scratch, cube, p, inside ? limit(field.parameters) : field.parameters.max_outside);
+    });
+  }
+
+ private:
+  // distance_at(p, inside): squared, of a point of the brick or next to it.
+  template <class Team, class DistanceAt>
+  QSES_HOST_DEVICE void write_vertices(const Team &team, uint32_t brick, const DistanceAt &distance_at) const {
     const Lattice &lattice = field.bricks.lattice;
     const glm::ivec3 origin = lattice.first_point(lattice.brick_at(field.bricks.linear[brick]));
-    for (int k = team.rank(); k < kAxes * kBrickPoints; k += team.size()) {
-      const int axis = k / kBrickPoints, leaf = k / 64 % kLeavesPerBrick, bit = k % 64;
-      const size_t word = (static_cast<size_t>(brick) * kLeavesPerBrick + static_cast<size_t>(leaf)) * kAxes +
-                          static_cast<size_t>(axis);
-      if (!(layout.crossing[word] >> bit & 1)) continue;
-      const int x = (leaf & 1) * kLeafEdge + (bit & 3), y = (leaf >> 1 & 1) * kLeafEdge + (bit >> 2 & 3);
-      const int z = (leaf >> 2) * kLeafEdge + (bit >> 4);
-      const int corner = x + kCorners * (y + kCorners * z);
-      const int step = axis == 0 ? 1 : axis == 1 ? kCorners : kCorners * kCorners;
-      const float low = grid_value(field.parameters, scratch.nearest[corner]);
-      const float high = grid_value(field.parameters, scratch.nearest[corner + step]);
-      Vec3<float> p = lattice.position(origin.x + x, origin.y + y, origin.z + z);
+    const uint32_t end = layout.base[brick + 1].vertices;
+    for (uint32_t vertex = layout.base[brick].vertices + static_cast<uint32_t>(team.rank()); vertex < end;
+         vertex += static_cast<uint32_t>(team.size())) {
+      const LatticeEdge edge = edge_of_vertex(layout, brick, vertex);
+      const glm::ivec3 at = brick_point(edge.leaf, edge.bit);
+      const glm::ivec3 step(edge.axis == 0, edge.axis == 1, edge.axis == 2);
+      const bool inside =
+          (layout.signs[size_t(brick) * kLeavesPerBrick + static_cast<size_t>(edge.leaf)] >> edge.bit & 1) != 0;
+      const float low = grid_value(field.parameters, distance_at(at, inside));
+      const float high = grid_value(field.parameters, distance_at(at + step, !inside));
+      Vec3<float> p = lattice.position(origin.x + at.x, origin.y + at.y, origin.z + at.z);
       const float along = lattice.spacing * (low / (low - high));
-      (axis == 0 ? p.x : axis == 1 ? p.y : p.z) += along;
-      store_vec3(mesh.position(vertex_number(layout, static_cast<int>(brick), leaf, axis, bit)), p);
+      (edge.axis == 0 ? p.x : edge.axis == 1 ? p.y : p.z) += along;
+      store_vec3(mesh.position(vertex), p);
     }
     team.sync();
   }
@@ -325,8 +379,14 @@ template <class Executor>
 void emit_grid_vertices(Executor &executor, const GridField &field, const MeshLayout &layout, BrickRange range,
                         const MeshView &mesh) {
   constexpr int kCorners = EmitGridVertices::kCorners;
-  with_distances<kCorners>(executor, field, range, EmitGridVertices::limit(field.parameters),
-                           OwnsVertices{layout.base}, [&](BrickRange some, int32_t *saved, uint64_t steps) {
+  if (has_near_rows(field)) {  // a thread looks for both ends of so many edges at most
+    constexpr uint64_t kEdges = kAxes * kBrickPoints / 128;
+    return executor.template for_each_brick<NearRows>(
+        range.size(), EmitGridVertices{field, layout, range.first, mesh, nullptr}, 8,
+        kPlainTeamSteps + 2 * kEdges * NearCube{kCorners, field.parameters.reach}.rows_of_point());
+  }
+  with_distances<kCorners>(executor, field, range, EmitGridVertices::limit(field.parameters), OwnsVertices{layout.base},
+                           [&](BrickRange some, int32_t *saved, uint64_t steps) {
                              executor.template for_each_brick<DistanceScratch<kCorners>>(
                                  some.size(), EmitGridVertices{field, layout, some.first, mesh, saved}, 8,
                                  kPlainTeamSteps + steps);
@@ -366,9 +426,8 @@ void find_grid_owners(Executor &executor, const GridField &field, const MeshView
   if constexpr (Executor::kIsCuda)
     near = most_items_near(
         executor, "fullest cell of atoms", field.atoms,
-        2.f * (field.parameters.max_radius + FindGridOwners::margin(field.parameters)), [&](uint64_t items) {
-          return executor.is_few_launches(vertices, executor.for_each_shape(steps_of(items)));
-        });
+        2.f * (field.parameters.max_radius + FindGridOwners::margin(field.parameters)),
+        [&](uint64_t items) { return executor.is_few_launches(vertices, executor.for_each_shape(steps_of(items))); });
   for_parts_of_met_items(near, Executor::kIsCuda ? kMost : near, [&](const MetItems &part, bool is_last) {
     executor.for_each(vertices, FindGridOwners{field, mesh, part, is_last}, steps_of(near));
   });

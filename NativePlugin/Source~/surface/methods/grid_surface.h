@@ -38,12 +38,16 @@ MeshMemoryView build_grid_surface(Work &work) {
                                                   work.purpose, work.plan.mesh_in_pieces);
   add_normals(work, &mesh);
   const auto end_of_mesh = executor.arena().mark();
+  work.timer.begin("marching_cubes");
+  Backend<Executor>::emit_triangles(executor, bricks, layout, BrickRange{0, bricks.count}, work.table, mesh.view);
+  if (!mesh.in_pieces) {  // they go out while the vertices are made
+    work.memory.note_triangles(executor);
+    work.memory.bring_triangles(mesh, work.purpose);
+  }
   work.timer.begin("projection");
   for_each_slice(work, bricks.count, slice_size(), 0.5, 0.8,
                  [&](BrickRange slice) { emit_grid_vertices(executor, field, layout, slice, mesh.view); });
   find_grid_owners(executor, field, mesh.view, counts.vertices);
-  work.timer.begin("marching_cubes");
-  Backend<Executor>::emit_triangles(executor, bricks, layout, BrickRange{0, bricks.count}, work.table, mesh.view);
   work.progress.report(0.85);
 
   work.timer.begin("relaxation");
