@@ -71,7 +71,7 @@ void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bri
     executor.launch("project_on_atoms", on_atoms, job.count, once, job);
     executor.launch("project_on_arcs", on_arcs, job.count, once, job);
   };
-  constexpr size_t kFew = 4, kFullThreads = 1536;  // lanes for each of few vertices; threads that a multiprocessor has
+  constexpr size_t kFew = 4, kFullThreads = 3072;  // lanes for each of few vertices; threads that a multiprocessor has
   if (job.count * kFew <= executor.multiprocessors() * kFullThreads)
     launch_first(kFew, project_on_atoms_kernel<kFew>, project_on_arcs_kernel<kFew>);
   else

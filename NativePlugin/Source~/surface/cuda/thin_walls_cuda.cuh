@@ -226,17 +226,6 @@ static __global__ __launch_bounds__(kWallThreads, 8) void drop_open_edges_kernel
   }
 }
 
-// The box of the points of the lanes of a warp, as its middle and half diagonal.
-struct PointsBox {
-  Vec3<float> middle;
-  float radius;
-};
-__device__ __forceinline__ PointsBox box_of_points(const Vec3<float> &x) {
-  const Vec3<float> high(warp_maximum(x.x), warp_maximum(x.y), warp_maximum(x.z)),
-      low(-warp_maximum(-x.x), -warp_maximum(-x.y), -warp_maximum(-x.z));
-  return {(low + high) * 0.5f, 0.5f * square_root(length_squared(high - low))};
-}
-
 // nearest_probe() by all teams of a warp in step, of which some ask.
 template <int kLanes>
 __device__ __forceinline__ NearestProbe nearest_probe_if(bool asks, const FeatureView &f,
@@ -252,13 +241,11 @@ __device__ __forceinline__ NearestProbe nearest_probe_if(bool asks, const Featur
   return told ? said : contact ? probe_on_atom(f, deepest, x) : probe_on_arc(f, nearest, x);
 }
 
-// Some lanes for each edge that is left. They wait for memory: more blocks at a time are worth registers. kWarpRoom:
-// where rows are long, the edges of a warp, which are neighbours as a rule, have a choice of candidates in common
-// first.
-template <int kLanes, int kWarpRoom>
+// Some lanes for each edge that is left. They wait for memory: more blocks at a time are worth registers.
+template <int kLanes>
 static __global__ __launch_bounds__(kWallThreads, 10) void walk_edges_kernel(LaunchItems items, WallJob job) {
   constexpr int kTeams = kWallThreads / kLanes, kWarpTeams = kWarp / kLanes, kRoom = 2560 / kTeams;
-  __shared__ uint32_t edge_memory[kTeams][kRoom], warp_memory[kWallWarps][kWarpRoom > 0 ? kWarpRoom : 1];
+  __shared__ uint32_t edge_memory[kTeams][kRoom];
   const FeatureView &f = job.features;
   const SurfaceParameters &p = f.parameters;
   const size_t teams = size_t(gridDim.x) * kTeams, walks = job.counters->walks;
@@ -272,19 +259,9 @@ static __global__ __launch_bounds__(kWallThreads, 10) void walk_edges_kernel(Lau
     const WallEdge e = wall_edge(job, static_cast<uint32_t>(item / (64 * kWallSteps)),
                                  static_cast<int>(item / 64 % kWallSteps), static_cast<int>(item % 64));
     const Vec3<float> a = wall_point(job, e.brick, e.first), b = wall_point(job, e.brick, e.second);
-    const auto reach_of = [&](int step) { return 0.5f * wall_step_length(step) * p.spacing + 2.f * job.reach.slack; };
-    const ListedCandidates all = brick_candidates(job.view, e.slot / kLeavesPerBrick);
-    const auto choose = [&](const auto &candidates) {
-      return choose_near<kLanes>(f, candidates, (a + b) * 0.5f, reach_of(e.step), edge_memory[team], kRoom);
-    };
-    LaneCandidates<kLanes, true> near;
-    if (kWarpRoom > 0 && __all_sync(kFullWarp, e.brick == __shfl_sync(kFullWarp, e.brick, 0))) {
-      const PointsBox box = box_of_points((a + b) * 0.5f);
-      near = choose(
-          choose_near<kWarp>(f, all, box.middle, box.radius + reach_of(kWallSteps - 1), warp_memory[warp], kWarpRoom));
-    } else {
-      near = choose(all);
-    }
+    const float reach = 0.5f * wall_step_length(e.step) * p.spacing + 2.f * job.reach.slack;
+    const auto near = choose_near<kLanes>(f, brick_candidates(job.view, e.slot / kLeavesPerBrick), (a + b) * 0.5f,
+                                          reach, edge_memory[team], kRoom);
     const NearestProbe probe_a = decided_probe(f, first_decider(job, e.slot, e.bit, a), a);
     const uint32_t decider_b = decider_at(job, e.brick, e.second);
     const bool looks_for_b = decider_b == kNotLookedAt;
@@ -308,8 +285,6 @@ static __global__ __launch_bounds__(kWallThreads, 10) void walk_edges_kernel(Lau
     }
   }
 }
-
-constexpr uint32_t kLongRow = 4 * kUsualRow;
 
 // How many edges of a leaf are left to be walked, at most as a rule: the wider the spacing beside the probe, the fewer
 // are covered by the probes at their ends. Of 1AON with a probe of 1.4 Å, at spacings of 1 and 2 Å: 2 and 21.
@@ -365,11 +340,9 @@ void mark_thin_walls(E &executor, const FeatureView &features, const BrickSet &b
   };
   constexpr size_t kFullThreads = 1024;  // of a multiprocessor
   if (found.walks * kWarp <= executor.multiprocessors() * kFullThreads)
-    walk(kWarp, walk_edges_kernel<kWarp, 0>);
-  else if (candidates.longest_row <= kLongRow)
-    walk(8, walk_edges_kernel<8, 0>);
+    walk(kWarp, walk_edges_kernel<kWarp>);
   else
-    walk(8, walk_edges_kernel<8, 640>);
+    walk(8, walk_edges_kernel<8>);
   executor.arena().rewind(mark);
 }
 

@@ -302,7 +302,10 @@ QSES_FN uint32_t nearest_grid_atom(const GridField &f, const Vec3<float> &x, flo
     for (int y = box.y0; y <= box.y1; ++y) {
       const ItemRun run = met.cut(f.atoms.run(box.x0, box.x1, y, z));
       for (uint32_t k = run.begin; k < run.end; ++k) {
-        const float d = ball_depth(f.atoms.items[k], x);
+        const Sphere ball = load(f.atoms.items + k);
+        const float farthest = ball.radius - depth;
+        if (length_squared(x - Vec3<float>(ball.center)) > 1.0001f * farthest * farthest) continue;  // without a root
+        const float d = ball_depth(ball, x);
         if (d > depth || (d == depth && f.atoms.order[k] < f.atoms.order[best])) {
           depth = d;
           best = k;

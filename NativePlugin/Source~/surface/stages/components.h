@@ -39,13 +39,16 @@ QSES_FN void for_rising_edges(const uint32_t *corners, const Visit &visit) {
   }
 }
 
-// A first parent for vertices: a smaller neighbour, so that few trees are left to be joined (ECL-CC, Jaiganesh and
-// Burtscher 2018).
+// Hangs the trees of a triangle's corners under each other, as far as that goes without going back over what is lost
+// where several meet, so that few are left to be joined (ECL-CC, Jaiganesh and Burtscher 2018).
 struct HookCorners {
   const uint32_t *indices;
   uint32_t *parents;
   QSES_HOST_DEVICE void operator()(size_t triangle) const {
-    for_rising_edges(indices + 3 * triangle, [this](uint32_t low, uint32_t high) { atomic_min(parents + high, low); });
+    for_rising_edges(indices + 3 * triangle, [this](uint32_t a, uint32_t b) {
+      const uint32_t p = atomic_load(parents + a), q = atomic_load(parents + b);
+      if (p != q) atomic_min(parents + (p < q ? q : p), p < q ? p : q);
+    });
   }
 };
 
@@ -74,11 +77,11 @@ struct JoinCorners {
 
 struct LabelWithRoot {
   uint32_t *parents;
-  Tally<uint32_t> *roots;
+  Tally<uint32_t> *roots;  // nullptr: not counted
   QSES_HOST_DEVICE void operator()(size_t v) const {
     const uint32_t root = find_root(parents, static_cast<uint32_t>(v));
     atomic_store(parents + v, root);
-    if (root == v) atomic_add(&roots->count, 1u);
+    if (roots && root == v) atomic_add(&roots->count, 1u);
   }
 };
 
@@ -87,7 +90,11 @@ template <class Executor>
 void label_components(Executor &executor, const MeshView &mesh, const MeshCounts &counts, uint32_t *labels,
                       Tally<uint32_t> *components) {
   executor.for_each(counts.vertices, StartLabels{labels});
-  if (Executor::kIsCuda) executor.for_each(counts.triangles, HookCorners{mesh.indices, labels});
+  constexpr int kHookings = Executor::kIsCuda ? 3 : 0;
+  for (int k = 0; k < kHookings; ++k) {
+    executor.for_each(counts.triangles, HookCorners{mesh.indices, labels});
+    executor.for_each(counts.vertices, LabelWithRoot{labels, nullptr});
+  }
   executor.for_each(counts.triangles, JoinCorners{mesh.indices, labels});
   executor.for_each(counts.vertices, LabelWithRoot{labels, components});
 }
