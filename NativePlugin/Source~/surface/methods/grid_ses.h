@@ -132,31 +132,34 @@ struct ClassifyBrick {
   template <class Team>
   QSES_HOST_DEVICE void apply(const Team &team, ClassifyScratch &scratch, uint32_t count,
                               const glm::ivec3 &first) const {
+    // A thread has so many points of a row, in registers.
+    constexpr int kRows = kBrickEdge * kBrickEdge;
+    const int parts = team.size() > kRows ? team.size() / kRows : 1, points = kBrickEdge / parts;
     const float h = bricks.lattice.spacing;
-    const RowShare share = row_share<kBrickEdge>(team);
-    for (int row = share.first_row; row < kBrickEdge * kBrickEdge; row += share.row_step) {
+    for (int part = team.rank(); part < kRows * parts; part += team.size()) {
+      const int row = part / parts, first_x = part % parts * points;
       const float py = static_cast<float>(first.y + row % kBrickEdge) * h;
       const float pz = static_cast<float>(first.z + row / kBrickEdge) * h;
-      float *const points = scratch.beyond_ball + row * kBrickEdge;
-      float own[kBrickEdge];  // of this thread, so that they stay in registers
-      const auto for_own = [&](const auto &visit) {
-        for (int x = share.first_x, k = 0; x < kBrickEdge; x += share.x_step, ++k) visit(x, own[k]);
-      };
-      for_own([&](int x, float &beyond) { beyond = points[x]; });
-      for (uint32_t k = 0; k < count; ++k) {
-        const Sphere s = scratch.listed[k];
+      float *const in_brick = scratch.beyond_ball + row * kBrickEdge + first_x;
+      float px[kBrickEdge], beyond[kBrickEdge];
+      for (int k = 0; k < points; ++k) {
+        px[k] = static_cast<float>(first.x + first_x + k) * h;
+        beyond[k] = in_brick[k];
+      }
+      for (uint32_t i = 0; i < count; ++i) {
+        const Sphere s = scratch.listed[i];
         const float dy = py - s.center.y, dz = pz - s.center.z, across2 = dy * dy + dz * dz;
         const float ball2 = s.radius * s.radius;
         if (across2 >= ball2) continue;
         bool all_in = true;
-        for_own([&](int x, float &beyond) {
-          const float dx = static_cast<float>(first.x + x) * h - s.center.x, d2 = dx * dx + across2;
-          beyond = minimum(beyond, d2 - ball2);
-          all_in &= beyond < 0.f;
-        });
+        for (int k = 0; k < points; ++k) {
+          const float dx = px[k] - s.center.x, d2 = dx * dx + across2;
+          beyond[k] = minimum(beyond[k], d2 - ball2);
+          all_in &= beyond[k] < 0.f;
+        }
         if (all_in) break;  // deeper does not matter
       }
-      for_own([&](int x, const float &beyond) { points[x] = beyond; });
+      for (int k = 0; k < points; ++k) in_brick[k] = beyond[k];
     }
     team.sync();
     if (team.rank() == 0) scratch.count = 0;
@@ -302,10 +305,7 @@ QSES_FN uint32_t nearest_grid_atom(const GridField &f, const Vec3<float> &x, flo
     for (int y = box.y0; y <= box.y1; ++y) {
       const ItemRun run = met.cut(f.atoms.run(box.x0, box.x1, y, z));
       for (uint32_t k = run.begin; k < run.end; ++k) {
-        const Sphere ball = load(f.atoms.items + k);
-        const float farthest = ball.radius - depth;
-        if (length_squared(x - Vec3<float>(ball.center)) > 1.0001f * farthest * farthest) continue;  // without a root
-        const float d = ball_depth(ball, x);
+        const float d = ball_depth(f.atoms.items[k], x);
         if (d > depth || (d == depth && f.atoms.order[k] < f.atoms.order[best])) {
           depth = d;
           best = k;
