@@ -195,9 +195,8 @@ struct NumberComponents {
 };
 
 struct SumComponents {
-  static constexpr size_t kChunk = 512;
   MeshView mesh;
-  size_t triangles;
+  size_t triangles, chunk_size;
   const uint32_t *labels;
   ComponentNumbers number_of;
   double inverse_spacing, units;
@@ -206,7 +205,7 @@ struct SumComponents {
 
   template <class Team>
   QSES_HOST_DEVICE void operator()(const Team &team, ChunkSums &chunk, size_t k) const {
-    const size_t begin = k * kChunk, end = begin + kChunk < triangles ? begin + kChunk : triangles;
+    const size_t begin = k * chunk_size, end = begin + chunk_size < triangles ? begin + chunk_size : triangles;
     if (team.rank() == 0) chunk = {number_of(labels[mesh.triangle(begin)[0]]), {}};
     team.sync();
     uint32_t number = chunk.number;
@@ -316,9 +315,10 @@ Span<const qses_component> find_components(Executor &executor, const MeshView &m
   executor.fill(sums, 0);
   executor.for_each(n, NumberComponents{mesh, labels.data, number_of, sums.data});
   const double h = static_cast<double>(spacing), units = rest_units(counts.triangles);
+  const size_t chunk = reduce_chunk(counts.triangles);
   executor.template for_each_brick<ChunkSums>(
-      (counts.triangles + SumComponents::kChunk - 1) / SumComponents::kChunk,
-      SumComponents{mesh, counts.triangles, labels.data, number_of, 1.0 / h, units, bent, sums.data}, 1);
+      reduce_chunks(counts.triangles),
+      SumComponents{mesh, counts.triangles, chunk, labels.data, number_of, 1.0 / h, units, bent, sums.data}, 1);
   if (Executor::kIsCuda) executor.download(found.data, sums.data, count);
   executor.wait();
   executor.arena().rewind(mark);
