@@ -4,6 +4,7 @@
 
 #include "surface/mesh_checks.h"
 
+#include "surface/methods/grid_owners.h"
 #include "surface/methods/grid_ses.h"
 #include "surface/stages/measure.h"
 #include "surface/stages/relaxation.h"

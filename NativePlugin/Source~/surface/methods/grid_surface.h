@@ -4,6 +4,7 @@
 #pragma once
 
 #include "surface/methods/closed_layout.h"
+#include "surface/methods/grid_owners.h"
 #include "surface/methods/grid_ses.h"
 #include "surface/stages/relaxation.h"
 
