@@ -52,6 +52,28 @@ double largest_difference(const std::vector<Point> &a, const std::vector<Point> 
   return largest;
 }
 
+// Two sums in one word keep apart, whatever their signs, as far as each of them fits.
+TEST(RingSums, KeepTwoSumsApart) {
+  std::mt19937 random(7);
+  for (const int32_t most : {1, 3, 1 << 20, 53'000'000}) {
+    std::uniform_int_distribution<int32_t> term(-most, most);
+    int64_t both = 0, low = 0, high = 0;
+    for (int k = 0; k < 40; ++k) {
+      const int32_t a = term(random), b = term(random);
+      both += two_sums(a, b);
+      low += a, high += b;
+      ASSERT_EQ(low_sum(both), low);
+      ASSERT_EQ(high_sum(both), high);
+    }
+  }
+  for (const int64_t low : {INT64_C(-2147483648), INT64_C(-1), INT64_C(0), INT64_C(2147483647)})
+    for (const int64_t high : {INT64_C(-2147483647), INT64_C(-1), INT64_C(0), INT64_C(2147483647)}) {
+      const int64_t both = two_sums(static_cast<int32_t>(low), static_cast<int32_t>(high));
+      EXPECT_EQ(low_sum(both), low);
+      EXPECT_EQ(high_sum(both), high);
+    }
+}
+
 TEST(Laplacian, IsTheMeanOfTheNeighbors) {
   GridRun run(random_cluster(40, 3), 1.4f, 0.5f);
   for (uint32_t steps : {0u, 1u, 2u, 5u}) {

@@ -186,7 +186,7 @@ template <class Executor>
 GridField classify_grid_points(Executor &executor, const NeighborGridView &atoms, const GridParameters &parameters,
                                const BrickSet &bricks) {
   Span<uint64_t> outside = executor.template allocate<uint64_t>(size_t(bricks.count) * kLeavesPerBrick);
-  // Per atom that is listed, a thread looks at four rows of points.
+  // Per atom that is listed, a thread looks at four points of a row.
   constexpr uint64_t kAtomSteps = 4, kMost = kThreadSteps / (2 * kAtomSteps);
   const auto steps_of = [&](uint64_t near) { return 512 + kAtomSteps * std::min(near, kMost); };
   const uint64_t near = most_grid_atoms_near(executor, atoms, parameters, bricks.count, steps_of);
