@@ -71,8 +71,9 @@ void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bri
     executor.launch("project_on_atoms", on_atoms, job.count, once, job);
     executor.launch("project_on_arcs", on_arcs, job.count, once, job);
   };
-  constexpr size_t kFew = 4, kFullThreads = 3072;  // lanes for each of few vertices; threads that a multiprocessor has
-  if (job.count * kFew <= executor.multiprocessors() * kFullThreads)
+  constexpr size_t kFew = 4,
+                   kMostThreads = 3072;  // lanes for each of few vertices; so many for a multiprocessor at most
+  if (job.count * kFew <= executor.multiprocessors() * kMostThreads)
     launch_first(kFew, project_on_atoms_kernel<kFew>, project_on_arcs_kernel<kFew>);
   else
     launch_first(size_t(1), project_on_atoms_kernel<1>, project_on_arcs_kernel<1>);

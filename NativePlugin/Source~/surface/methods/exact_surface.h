@@ -215,7 +215,7 @@ MeshMemoryView build_exact_surface(Work &work) {
         work.memory.save(executor, mesh, part.view, part.vertices, with_triangles ? part.triangles : 0);
     });
   };
-  const auto send_triangles = [&] {
+  const auto settle_counts = [&] {
     if (executor.verify_counts()) {
       const MeshTotals found = executor.verified(layout.totals);
       narrow_mesh(&mesh, found.vertices, found.triangles);
@@ -224,13 +224,13 @@ MeshMemoryView build_exact_surface(Work &work) {
     }
     if (!mesh.in_pieces) work.memory.bring_triangles(mesh, work.purpose);
   };
-  // How much it is may be waited for when all is under way; in a long frame, while which the vertices are waited for as
-  // well, before.
+  // For how much it is, a short frame waits when all of it is under way. A long one waits again and again while its
+  // vertices are made; so it does that before, and its triangles go out meanwhile.
   const bool runs_ahead = executor.runs_ahead();
   work.timer.begin("projection");
-  if (!runs_ahead) send_triangles();
+  if (!runs_ahead) settle_counts();
   emit(0.45, 0.8, true);
-  if (runs_ahead) send_triangles();
+  if (runs_ahead) settle_counts();
   work.progress.report(0.85);
 
   // Steps 2 and on: tangential, each projected again.

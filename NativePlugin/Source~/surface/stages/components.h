@@ -39,8 +39,9 @@ QSES_FN void for_rising_edges(const uint32_t *corners, const Visit &visit) {
   }
 }
 
-// Hangs the trees of a triangle's corners under each other, as far as that goes without going back over what is lost
-// where several meet, so that few are left to be joined (ECL-CC, Jaiganesh and Burtscher 2018).
+// Hangs the trees of a triangle's corners under each other. Where several are hung at once, one link stays and the
+// others are lost: joining the corners makes them anew. Few trees are left for that (hooking, as in ECL-CC, Jaiganesh
+// and Burtscher 2018).
 struct HookCorners {
   const uint32_t *indices;
   uint32_t *parents;
@@ -90,7 +91,7 @@ template <class Executor>
 void label_components(Executor &executor, const MeshView &mesh, const MeshCounts &counts, uint32_t *labels,
                       Tally<uint32_t> *components) {
   executor.for_each(counts.vertices, StartLabels{labels});
-  constexpr int kHookings = Executor::kIsCuda ? 3 : 0;
+  constexpr int kHookings = Executor::kIsCuda ? 3 : 0;  // the few threads of a CPU hardly meet
   for (int k = 0; k < kHookings; ++k) {
     executor.for_each(counts.triangles, HookCorners{mesh.indices, labels});
     executor.for_each(counts.vertices, LabelWithRoot{labels, nullptr});
