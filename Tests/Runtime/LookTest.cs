@@ -195,9 +195,11 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
-        public IEnumerator TextureCoordinatesComeAndGoWithoutAComputation()
+        public IEnumerator TextureCoordinatesComeAndGoWithoutAComputation([Values] bool isOccluded)
         {
+            _rig.Surface.AmbientOcclusion = isOccluded;
             yield return Show(AtomColoring.Vertices);
+            Vector2[] occlusion = _rig.Surface.Mesh.uv2;
             var texcoords = new Vector2[Atoms];
             for (int round = 0; round < 2; ++round)
             {
@@ -211,7 +213,8 @@ namespace QuickSes.Tests
             }
             _rig.Surface.SetTexcoords(Array.Empty<Vector2>());
             yield return _rig.Settle();
-            Assert.That(_rig.Surface.Mesh.HasVertexAttribute(VertexAttribute.TexCoord1), Is.False);
+            Assert.That(_rig.Surface.Mesh.HasVertexAttribute(VertexAttribute.TexCoord1), Is.EqualTo(isOccluded));
+            Assert.That(_rig.Surface.Mesh.uv2, Is.EqualTo(occlusion));
             AssertNothingWasComputed();
         }
 

@@ -2,6 +2,7 @@
 using NUnit.Framework;
 using System;
 using System.Collections.Generic;
+using System.Runtime.InteropServices;
 using UnityEngine;
 
 namespace QuickSes.Tests
@@ -92,6 +93,7 @@ namespace QuickSes.Tests
             settings.ProbeRadius = surface.ProbeRadius;
             settings.Spacing = surface.Spacing;
             settings.RelaxationSteps = (uint)surface.RelaxationSteps;
+            settings.Occlusion = surface.AmbientOcclusion;
             return settings;
         }
 
@@ -122,7 +124,18 @@ namespace QuickSes.Tests
                 : !First(mesh.normals, normals.Length).AsSpan().SequenceEqual(normals) ? "other normals"
                 : !surface.Owners.SequenceEqual(view.Owners) || !IsToldEach(surface) ? "other owners"
                 : !surface.Repeated.SequenceEqual(view.Repeated) ? "other vertices that are repeated"
+                : HasOtherOcclusion(mesh, view) ? "another ambient occlusion"
                 : "";
+        }
+
+        // Texture coordinates of atoms may have taken its place: they are no such pairs.
+        private static bool HasOtherOcclusion(Mesh mesh, in SurfaceMeshView view)
+        {
+            if (!view.HasTexcoords)
+                return false;
+            Vector2[] shown = First(mesh.uv2, view.VertexCount);
+            ReadOnlySpan<Vector2> own = MemoryMarshal.Cast<float, Vector2>(view.Texcoords);
+            return shown.Length > 0 && shown[0].y == 1 && !own.SequenceEqual(shown);
         }
 
         // Corner by corner.

@@ -109,6 +109,7 @@ qses_settings settings_of(const ComputeOptions &options) {
   settings.relaxation_steps = options.steps;
   settings.slice_size = options.slice;
   settings.creases = options.creases == Switch::kOn;
+  settings.occlusion = options.occlusion == Switch::kOn;
   return settings;
 }
 

@@ -81,6 +81,10 @@ void add_surface_choice(CLI::App *app, ComputeOptions &options) {
   add_choice(app, "--method", options.method, kMethods,
              "exact: vertices on the exact surface; grid: the voxel method of Martinez, Krone and Baaden 2019");
   add_creases(app, options);
+  add_switch(
+      app, "--occlusion", options.occlusion,
+      "on: how open the surface is at each vertex (ambient occlusion), as float occlusion in PLY files. Default: "
+      "off");
 }
 
 void add_measured(CLI::App *app, std::vector<qses_surface> &measured) {

@@ -30,6 +30,7 @@ struct ComputeOptions {
   unsigned steps = 1;
   unsigned slice = 0;                 // 0 = sized by memory
   Switch creases = Switch::kDefault;  // when options are read: on or off
+  Switch occlusion = Switch::kDefault;
   std::string radii = "quickses";
   bool radii_given = false;
 };

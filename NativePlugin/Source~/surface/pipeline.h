@@ -213,7 +213,7 @@ MeshMemoryView build_level(Work &work) {
   MeshMemoryView mesh{};
   if (work.makes_mesh) mesh = build_surface(work);
   if (work.settings.delivery != QSES_DELIVERY_NONE) {
-    work.timer.begin("appearance");
+    work.timer.begin(work.settings.occlusion ? "occlusion" : "appearance");
     complete_vertices(work, &mesh);
   }
   if (work.shape.boxes) {

@@ -320,12 +320,13 @@ namespace QuickSes.Tests
                 Owners.CopyFrom(view.Owners);
                 Indices.CopyFrom(view.Indices);
                 ReadOnlySpan<uint> owners = Owners.Span;
+                ReadOnlySpan<Vector2> own = MemoryMarshal.Cast<float, Vector2>(view.Texcoords);
                 Span<uint> painted = Colors.Resize(owners.Length);
                 Span<Vector2> mapped = Texcoords.Resize(owners.Length);
                 for (int v = 0; v < owners.Length; ++v)
                 {
                     painted[v] = colors.IsEmpty ? uint.MaxValue : colors[(int)owners[v]];
-                    mapped[v] = texcoords.IsEmpty ? default : texcoords[(int)owners[v]];
+                    mapped[v] = !texcoords.IsEmpty ? texcoords[(int)owners[v]] : own.IsEmpty ? default : own[v];
                 }
                 Span<uint> indices = Indices.Span;
                 for (int i = 0; i < indices.Length && !visible.IsEmpty; i += 3)

@@ -240,7 +240,7 @@ TEST(GridClasses, FollowTheirDefinition) {
     const BrickSet &bricks = run.field.bricks;
     std::vector<uint64_t> outside(size_t(bricks.count) * kLeavesPerBrick);
     run.executor.for_each_brick<ClassifyScratch>(
-        bricks.count, ClassifyBrick{run.field.atoms, bricks, run.parameters, outside.data()});
+        bricks.count, ClassifyBrick{{run.field.atoms, run.parameters.max_radius, 0.f}, bricks, outside.data()});
     size_t number[2] = {};
     for (uint32_t b = 0; b < bricks.count; ++b) {
       const glm::ivec3 first = bricks.lattice.first_point(bricks.lattice.brick_at(bricks.linear[b]));

@@ -75,8 +75,8 @@ namespace QuickSes
         /// <summary>Whether there is a colour per vertex.</summary>
         public bool HasColors => _native.Colors != null;
 
-        /// <summary>Whether there are texture coordinates.</summary>
-        public bool HasTexcoords => _native.Texcoords != null;
+        /// <summary>Whether there are texture coordinates, wherever the mesh is.</summary>
+        public bool HasTexcoords => _native.HasTexcoords != 0;
 
         /// <summary>Whether there are kinds of patch.</summary>
         public bool HasPatches => _native.Patches != null;

@@ -75,7 +75,10 @@ namespace QuickSes
         /// <summary>How the vertices lie in memory.</summary>
         public SurfaceVertexLayout VertexLayout { get => Native.VertexLayout; set => Native.VertexLayout = value; }
 
-        /// <summary>Whether vertices have texture coordinates: see <see cref="SurfaceContext.SetTexcoords"/>.</summary>
+        /// <summary>
+        /// Whether vertices have texture coordinates: see <see cref="SurfaceContext.SetTexcoords"/> and
+        /// <see cref="Occlusion"/>.
+        /// </summary>
         public bool Texcoords { get => Native.Texcoords != 0; set => Native.Texcoords = value ? 1 : 0; }
 
         /// <summary>
@@ -141,6 +144,12 @@ namespace QuickSes
         /// with the grid method.
         /// </summary>
         public bool AtomAreas { get => Native.AtomAreas != 0; set => Native.AtomAreas = value ? 1 : 0; }
+
+        /// <summary>
+        /// Ambient occlusion: vertices have texture coordinates, of which the first number is the part of an even sky's
+        /// light that arrives there, from 0 (closed in) to 1 (open); what is farther than 20 Å does not count.
+        /// </summary>
+        public bool Occlusion { get => Native.Occlusion != 0; set => Native.Occlusion = value ? 1 : 0; }
 
         /// <summary>How many coarser levels come before <see cref="Spacing"/> in a job.</summary>
         public int LevelCount => (int)Native.LevelCount;

@@ -27,7 +27,7 @@ inline MeshShape shape_of(const qses_settings &s, bool has_colors) {
   if (s.delivery == QSES_DELIVERY_NONE) return shape;  // nobody will look at it
   shape.layout = s.vertex_layout;
   shape.colors = has_colors;
-  shape.texcoords = s.texcoords != 0;
+  shape.texcoords = s.texcoords != 0 || s.occlusion != 0;
   shape.patches = s.patch_types != 0 && s.method == QSES_METHOD_EXACT;
   shape.reversed = s.winding == QSES_WINDING_REVERSED;
   shape.component_ids = s.component_ids != 0;

@@ -97,6 +97,7 @@ inline void describe_mesh(const MeshMemoryView &built, const MeshView *arrays, c
     mesh->bounds_max[d] = built.bounds.max[d];
   }
   mesh->vertex_bytes = interleaved_bytes(built.view, built.shape);  // also where the arrays are not
+  mesh->has_texcoords = built.shape.texcoords ? 1 : 0;
   if (arrays) point_at(*arrays, built.shape, mesh);
 }
 

@@ -4,8 +4,8 @@
 // and marching cubes interpolates it (2.4). Here on sparse bricks, and refined at every point.
 #pragma once
 
-#include "parallel/atomics.h"
 #include "surface/methods/grid_rows.h"
+#include "surface/stages/ball_points.h"
 
 namespace quickses {
 
@@ -26,24 +26,6 @@ inline GridParameters make_grid_parameters(float probe, float spacing, float max
 
 // ---- bricks ----------------------------------------------------------------------------------------------------
 
-// Bricks that hold a lattice point of an inflated ball, grown by one spacing: the field is positive everywhere else.
-struct BallBricks {
-  NeighborGridView atoms;
-  Lattice lattice;
-  float max_radius;
-  QSES_FN size_t size() const { return atoms.count; }
-  uint64_t most_across() const { return most_bricks_across(lattice, max_radius); }
-  template <class Visit>
-  QSES_FN void visit(size_t i, const RowRange &rows, const Visit &visit_brick) const {
-    const Sphere atom = atoms.items[i];
-    visit_bricks_of_shell(lattice, atom.center, 0.f, atom.radius, 1.f, rows, visit_brick);
-  }
-  QSES_FN double fewest(size_t i) const {
-    const float radius = atoms.items[i].radius;
-    return atoms.items[i].center.x >= 0.5f * kFarAway ? 0.0 : fewest_bricks_of_ball(lattice, radius);
-  }
-};
-
 template <class Executor>
 BrickSet find_grid_bricks(Executor &executor, const NeighborGridView &atoms, const GridParameters &parameters,
                           const Lattice &lattice, uint64_t *listed = nullptr) {
@@ -52,148 +34,21 @@ BrickSet find_grid_bricks(Executor &executor, const NeighborGridView &atoms, con
     throw Error(QSES_TOO_FINE,
                 "the largest inflated atom alone needs more bricks of the SES grid than 32-bit numbers can name: use a "
                 "larger spacing");
-  return collect_bricks(executor, BallBricks{atoms, lattice, parameters.max_radius}, lattice, listed);
+  // Grown by one spacing: the field is positive everywhere else.
+  return collect_bricks(executor, BallBricks{atoms, lattice, parameters.max_radius, 1.f}, lattice, "bricks", listed);
 }
 
 // ---- classes ---------------------------------------------------------------------------------------------------
 
-struct ClassifyScratch {
-  static constexpr int kListed = 128, kBlock = 64;
-  Sphere listed[kListed];
-  uint32_t count;
-  float beyond_ball[kBrickPoints];  // smallest |x - c|² - R², x fastest; >= 0 outside
-};
-
-// Writes the outside bits of a brick: of the points in no inflated ball, where the probe's centre may be. The paper
-// tells the others apart as "inside" (in an atom) and "border"; refined at every point, both are treated alike.
-struct ClassifyBrick {
-  NeighborGridView atoms;
-  BrickSet bricks;
-  GridParameters parameters;
-  uint64_t *outside;  // [brick][leaf]
-  MetItems part{};    // of the atoms around a brick; the first part comes first
-
-  template <class Team>
-  QSES_HOST_DEVICE void operator()(const Team &team, ClassifyScratch &scratch, size_t brick) const {
-    const Lattice &lattice = bricks.lattice;
-    const glm::ivec3 first = lattice.first_point(lattice.brick_at(bricks.linear[brick]));
-    const Vec3<float> low = lattice.position(first.x, first.y, first.z);
-    const Vec3<float> high = lattice.position(first.x + 7, first.y + 7, first.z + 7);
-    const float slack = 1e-4f + 1e-3f * lattice.spacing, reach = parameters.max_radius + slack;
-    const Vec3<float> margin(reach, reach, reach);
-    const CellBox box = cells_around(atoms.cells, low - margin, high + margin);
-    for (int i = team.rank(); i < kBrickPoints; i += team.size()) scratch.beyond_ball[i] = kFarAway;
-    if (team.rank() == 0) scratch.count = 0;
-    team.sync();
-    MetItems met = part;
-    for (int z = box.z0; z <= box.z1; ++z)
-      for (int y = box.y0; y <= box.y1; ++y) {
-        const ItemRun run = met.cut(atoms.run(box.x0, box.x1, y, z));
-        for (uint32_t begin = run.begin; begin < run.end; begin += ClassifyScratch::kBlock) {
-          const uint32_t end = run.end - begin < ClassifyScratch::kBlock ? run.end : begin + ClassifyScratch::kBlock;
-          list(team, scratch, begin, end, low, high, slack);
-          team.sync();
-          const uint32_t count = scratch.count;
-          team.sync();
-          if (count > ClassifyScratch::kListed - ClassifyScratch::kBlock) apply(team, scratch, count, first);
-        }
-      }
-    apply(team, scratch, scratch.count, first);
-    for (int leaf = team.rank(); leaf < kLeavesPerBrick; leaf += team.size()) {
-      uint64_t out = 0;
-      for (int bit = 0; bit < 64; ++bit)
-        out |= static_cast<uint64_t>(scratch.beyond_ball[point_of(leaf, bit)] < 0.f ? 0 : 1) << bit;
-      uint64_t *const word = outside + brick * kLeavesPerBrick + static_cast<size_t>(leaf);
-      *word = part.first > 0 ? *word & out : out;
-    }
-    team.sync();
-  }
-
- private:
-  QSES_FN static int point_of(int leaf, int bit) {
-    const int x = (leaf & 1) * kLeafEdge + (bit & 3), y = (leaf >> 1 & 1) * kLeafEdge + (bit >> 2 & 3);
-    return x + kBrickEdge * (y + kBrickEdge * ((leaf >> 2) * kLeafEdge + (bit >> 4)));
-  }
-
-  // Lists the atoms begin ... end - 1 whose balls touch the box of the brick's lattice points. In any order: the minima
-  // below do not depend on it.
-  template <class Team>
-  QSES_HOST_DEVICE void list(const Team &team, ClassifyScratch &scratch, uint32_t begin, uint32_t end,
-                             const Vec3<float> &low, const Vec3<float> &high, float slack) const {
-    for (uint32_t k = begin + static_cast<uint32_t>(team.rank()); k < end; k += static_cast<uint32_t>(team.size())) {
-      const Sphere s = atoms.items[k];
-      const float r = s.radius + slack;
-      if (distance_to_box_squared(Vec3<float>(s.center), low, high) <= r * r)
-        scratch.listed[atomic_add(&scratch.count, uint32_t(1))] = s;
-    }
-  }
-
-  // Takes the listed atoms into account and empties the list.
-  template <class Team>
-  QSES_HOST_DEVICE void apply(const Team &team, ClassifyScratch &scratch, uint32_t count,
-                              const glm::ivec3 &first) const {
-    // A thread has so many points of a row, in registers.
-    constexpr int kRows = kBrickEdge * kBrickEdge;
-    const int parts = team.size() > kRows ? team.size() / kRows : 1, points = kBrickEdge / parts;
-    const float h = bricks.lattice.spacing;
-    for (int part = team.rank(); part < kRows * parts; part += team.size()) {
-      const int row = part / parts, first_x = part % parts * points;
-      const float py = static_cast<float>(first.y + row % kBrickEdge) * h;
-      const float pz = static_cast<float>(first.z + row / kBrickEdge) * h;
-      float *const in_brick = scratch.beyond_ball + row * kBrickEdge + first_x;
-      float px[kBrickEdge], beyond[kBrickEdge];
-      for (int k = 0; k < points; ++k) {
-        px[k] = static_cast<float>(first.x + first_x + k) * h;
-        beyond[k] = in_brick[k];
-      }
-      for (uint32_t i = 0; i < count; ++i) {
-        const Sphere s = scratch.listed[i];
-        const float dy = py - s.center.y, dz = pz - s.center.z, across2 = dy * dy + dz * dz;
-        const float ball2 = s.radius * s.radius;
-        if (across2 >= ball2) continue;
-        bool all_in = true;
-        for (int k = 0; k < points; ++k) {
-          const float dx = px[k] - s.center.x, d2 = dx * dx + across2;
-          beyond[k] = minimum(beyond[k], d2 - ball2);
-          all_in &= beyond[k] < 0.f;
-        }
-        if (all_in) break;  // deeper does not matter
-      }
-      for (int k = 0; k < points; ++k) in_brick[k] = beyond[k];
-    }
-    team.sync();
-    if (team.rank() == 0) scratch.count = 0;
-    team.sync();
-  }
-};
-
-// How many atoms the look-ups of a brick meet, at most; steps_of(atoms): of a team's thread, for all bricks at once.
-// May wait.
-template <class Executor, class StepsOf>
-uint64_t most_grid_atoms_near(Executor &executor, const NeighborGridView &atoms, const GridParameters &parameters,
-                              size_t bricks, const StepsOf &steps_of) {
-  if constexpr (Executor::kIsCuda)
-    return most_items_near(
-        executor, "fullest cell of atoms", atoms,
-        8.f * parameters.spacing + 2.f * (parameters.max_radius + 1.1f * parameters.spacing + 1e-3f),
-        [&](uint64_t near) { return executor.is_few_launches(bricks, executor.team_shape(steps_of(near))); });
-  else
-    return atoms.count;
-}
+// The paper tells points in an atom ("inside") and those in an inflated ball only ("border") apart; refined at every
+// point, both are treated alike.
 
 // The classes of all bricks, which stay allocated. bricks and atoms must outlive the field.
 template <class Executor>
 GridField classify_grid_points(Executor &executor, const NeighborGridView &atoms, const GridParameters &parameters,
                                const BrickSet &bricks) {
   Span<uint64_t> outside = executor.template allocate<uint64_t>(size_t(bricks.count) * kLeavesPerBrick);
-  // Per atom that is listed, a thread looks at four points of a row.
-  constexpr uint64_t kAtomSteps = 4, kMost = kThreadSteps / (2 * kAtomSteps);
-  const auto steps_of = [&](uint64_t near) { return 512 + kAtomSteps * std::min(near, kMost); };
-  const uint64_t near = most_grid_atoms_near(executor, atoms, parameters, bricks.count, steps_of);
-  for_parts_of_met_items(near, Executor::kIsCuda ? kMost : near, [&](const MetItems &part, bool) {
-    executor.template for_each_brick<ClassifyScratch>(
-        bricks.count, ClassifyBrick{atoms, bricks, parameters, outside.data, part}, 8, steps_of(near));
-  });
+  find_outside_points(executor, Balls{atoms, parameters.max_radius, 0.f}, bricks, outside.data);
   Span<uint16_t> along_x = executor.template allocate<uint16_t>(bricks.count);
   Span<BrickSide> sides = executor.template allocate<BrickSide>(bricks.count);
   const GridField field{atoms, bricks, outside.data, parameters, along_x.data, sides.data};

@@ -11,6 +11,7 @@
 #include "surface/stages/components.h"
 #include "surface/stages/facing_normals.h"
 #include "surface/stages/hot_stages.h"
+#include "surface/stages/occlusion.h"
 #include "surface/stages/packed_normals.h"
 #include "surface/stages/side_normals.h"
 
@@ -109,6 +110,9 @@ void complete_vertices(Work &work, MeshMemoryView *mesh) {
   paint_vertices(work.executor, work.appearance, mesh->view, mesh->vertices);
   share_normals(work.executor, mesh->view, mesh->vertices);
   if (work.side_normals) face_triangles(work.executor, mesh->view, MeshCounts{mesh->vertices, mesh->triangles});
+  if (work.settings.occlusion && mesh->vertices > 0)
+    find_openness(work.executor, work.atoms, work.parameters, work.lattice, work.low, work.high, mesh->view,
+                  mesh->vertices, !work.appearance.texcoords);
   pack_normals(work.executor, mesh->view, mesh->vertices);
   mesh->view.second_normals = nullptr;
   if (mesh->view.packed_normals) mesh->view.normals = nullptr;

@@ -114,7 +114,7 @@ struct GrownBricks {
 
 template <class Executor>
 BrickSet grow_bricks(Executor &executor, const BrickSet &bricks, const BorderSigns *signs) {
-  const BrickSet grown = collect_bricks(executor, GrownBricks{bricks, signs}, bricks.lattice);
+  const BrickSet grown = collect_bricks(executor, GrownBricks{bricks, signs}, bricks.lattice, "grown bricks");
   // The box of bricks is wider than any atom reaches, and outside of them all points are outside.
   if (grown.count == bricks.count) throw Error(QSES_INTERNAL_ERROR, "the surface leaves the box of the SES grid");
   return grown;

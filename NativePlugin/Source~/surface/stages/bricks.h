@@ -246,7 +246,7 @@ void for_rows_of_bricks(const Items &items, const Pass &pass) {
 }
 
 template <class Executor, class Items>
-BrickSet flag_bricks(Executor &executor, const Items &items, const Lattice &lattice) {
+BrickSet flag_bricks(Executor &executor, const Items &items, const Lattice &lattice, const char *name) {
   const uint64_t entries = lattice.table_size();
   const FlaggedBricks memory(executor, entries);
   const Span<int32_t> table = memory.table;
@@ -263,7 +263,7 @@ BrickSet flag_bricks(Executor &executor, const Items &items, const Lattice &latt
   Span<uint64_t> linear = executor.template allocate<uint64_t>(room);
   Tally<uint64_t> *const found = executor.template take_counts<Tally<uint64_t>>();
   executor.compact(entries, IsFlagged{flags.data}, linear, &found->count);
-  const uint32_t count = checked_brick_count(executor.expect("bricks", found, Tally<uint64_t>{room}).count);
+  const uint32_t count = checked_brick_count(executor.expect(name, found, Tally<uint64_t>{room}).count);
   executor.for_each(count, FillBrickTable{found, linear.data, table.data});
   return {lattice, linear.data, table.data, count, found};
 }
@@ -285,17 +285,19 @@ BrickSet sort_bricks(Executor &executor, const Items &items, const Lattice &latt
 }
 
 // The set of all bricks that the items visit. A table with an entry per brick of the box while that is the smaller way:
-// a stray atom far away makes the box large, a fine spacing makes the visits many. listed: visits, if they were.
+// a stray atom far away makes the box large, a fine spacing makes the visits many. name: of the set, among those of a
+// frame. listed: visits, if they were.
 template <class Executor, class Items>
-BrickSet collect_bricks(Executor &executor, const Items &items, const Lattice &lattice, uint64_t *listed = nullptr) {
+BrickSet collect_bricks(Executor &executor, const Items &items, const Lattice &lattice, const char *name,
+                        uint64_t *listed = nullptr) {
   if (listed) *listed = 0;
   const size_t n = items.size();
   const uint64_t entries = lattice.table_size();
-  if (entries <= kSmallTable) return flag_bricks(executor, items, lattice);
+  if (entries <= kSmallTable) return flag_bricks(executor, items, lattice, name);
   // To count the visits may take long. Often it is clear without that they are too many to be listed.
   const double fewest = executor.reduce(n, FewestBricks<Items>{items}) * static_cast<double>(kVisitBytes);
   if (entries <= kMaxDenseCells && static_cast<double>(entries * kDenseEntryBytes) <= fewest)
-    return flag_bricks(executor, items, lattice);
+    return flag_bricks(executor, items, lattice, name);
   if (entries > kMaxDenseCells && fewest > static_cast<double>(executor.arena().available()))
     throw MemoryRefused("the work needs at least " + describe_bytes(static_cast<uint64_t>(fewest)) +
                         " for the bricks of the SES grid, but " + describe_bytes(executor.arena().available()) +
@@ -310,23 +312,32 @@ BrickSet collect_bricks(Executor &executor, const Items &items, const Lattice &l
   executor.arena().rewind(mark);
   const uint64_t visits = executor.fetch(first.data + n);
   if (entries <= kMaxDenseCells && entries * kDenseEntryBytes <= visits * kVisitBytes)
-    return flag_bricks(executor, items, lattice);
+    return flag_bricks(executor, items, lattice, name);
   if (listed) *listed = visits;
   return sort_bricks(executor, items, lattice, first, visits);
 }
 
+// What is known of a set before it is collected; 0: not known.
+struct ExpectedBricks {
+  uint64_t count, visits, entries;
+};
+template <class Items>
+ExpectedBricks expected_bricks(const WorkFacts &facts, const Items &) {
+  return {static_cast<uint64_t>(facts.size.bricks), facts.brick_visits, facts.brick_entries};
+}
+
 // As many as there are known to be; where it is not known whether their table is dense, what would be smaller.
 template <class Executor, class Items>
-BrickSet collect_bricks(CountingExecutor<Executor> &executor, const Items &items, const Lattice &lattice,
+BrickSet collect_bricks(CountingExecutor<Executor> &executor, const Items &items, const Lattice &lattice, const char *,
                         uint64_t * = nullptr) {
-  const WorkFacts &facts = executor.facts();
-  const uint64_t count = static_cast<uint64_t>(facts.size.bricks), entries = lattice.table_size();
+  const ExpectedBricks expected = expected_bricks(executor.facts(), items);
+  const uint64_t count = expected.count, entries = lattice.table_size();
   constexpr uint64_t kVisitsPerBrick = 4;
-  const uint64_t visits = facts.brick_visits ? facts.brick_visits : kVisitsPerBrick * count;
+  const uint64_t visits = expected.visits ? expected.visits : kVisitsPerBrick * count;
   static const int32_t some_table = 0;
   BrickSet set{lattice, nullptr, nullptr, static_cast<uint32_t>(std::min<uint64_t>(count, kMaxBricks))};
-  if (facts.brick_visits == 0 && entries <= kMaxDenseCells &&
-      (entries <= kSmallTable || entries * kDenseEntryBytes <= visits * kVisitBytes || facts.brick_entries > 0)) {
+  if (expected.visits == 0 && entries <= kMaxDenseCells &&
+      (entries <= kSmallTable || entries * kDenseEntryBytes <= visits * kVisitBytes || expected.entries > 0)) {
     FlaggedBricks(executor, entries);
     executor.template allocate<uint64_t>(lists_all_entries(entries, executor.arena().has_budget()) ? entries : count);
     executor.template take_counts<Tally<uint64_t>>();
@@ -347,7 +358,7 @@ BrickSet collect_bricks(CountingExecutor<Executor> &executor, const Items &items
 template <class Executor>
 BrickSet find_bricks(Executor &executor, const FeatureView &features, const Lattice &lattice,
                      uint64_t *listed = nullptr) {
-  return collect_bricks(executor, FeatureBricks{features, lattice}, lattice, listed);
+  return collect_bricks(executor, FeatureBricks{features, lattice}, lattice, "bricks", listed);
 }
 
 }  // namespace quickses

@@ -61,6 +61,7 @@ namespace QuickSes.Interop
         public int ComponentIds;
         public int OuterOnly;
         public int AtomAreas;
+        public int Occlusion;
     }
 
     [StructLayout(LayoutKind.Sequential)]
@@ -103,6 +104,8 @@ namespace QuickSes.Interop
         public ulong AtomCount;
         public uint* Repeated;
         public ulong RepeatedCount;
+        public int HasTexcoords;
+        public uint Reserved2;
     }
 
     [StructLayout(LayoutKind.Sequential)]

@@ -28,6 +28,7 @@ namespace QuickSes
             settings.VertexLayout =
                 _compactVertices ? SurfaceVertexLayout.Compact : SurfaceVertexLayout.Interleaved;
             settings.Creases = settings.HardEdges = _sharpCreases && settings.Method == SurfaceMethod.Exact;
+            settings.Occlusion = _ambientOcclusion;
             settings.Components = _measureComponents;
             levels = _levels;
             return settings;

@@ -120,8 +120,8 @@ namespace QuickSes
         }
 
         private SurfaceShapeSettings ShapeSettings() => new SurfaceShapeSettings(
-            _surface, _method, _probeRadius, _spacing, _levels, _relaxationSteps, _sharpCreases, _measureComponents,
-            _compactVertices, _backend);
+            _surface, _method, _probeRadius, _spacing, _levels, _relaxationSteps, _sharpCreases,
+            _ambientOcclusion, _measureComponents, _compactVertices, _backend);
 
         // The inspector, Undo and changed prefabs write serialised fields, also that of the filter beside this
         // component, whose mesh is in no file.

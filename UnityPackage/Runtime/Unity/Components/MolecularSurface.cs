@@ -47,6 +47,9 @@ namespace QuickSes
         [SerializeField, Tooltip("When atoms rest, triangles of the finest level follow the creases where sheets of the " +
             "surface meet, and light breaks there. Not while atoms move, nor with the grid method.")]
         private bool _sharpCreases = true;
+        [SerializeField, Tooltip("Less light where the surface is closed in, computed with it, also while atoms move: " +
+            "texture coordinate 1, which the package's shaders read.")]
+        private bool _ambientOcclusion = true;
 
         [Header("Playback")]
         [SerializeField, Min(0), Tooltip("Milliseconds per surface while atoms move: the finest level that " +

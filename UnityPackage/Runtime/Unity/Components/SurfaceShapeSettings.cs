@@ -15,13 +15,14 @@ namespace QuickSes
         private readonly float[] _levels;
         private readonly int _relaxationSteps;
         private readonly bool _sharpCreases;
+        private readonly bool _ambientOcclusion;
         private readonly bool _measureComponents;
         private readonly bool _compactVertices;
         private readonly SurfaceBackend _backend;
 
         public SurfaceShapeSettings(SurfaceKind surface, SurfaceMethod method, float probeRadius, float spacing,
-            float[] levels, int relaxationSteps, bool sharpCreases, bool measureComponents, bool compactVertices,
-            SurfaceBackend backend)
+            float[] levels, int relaxationSteps, bool sharpCreases, bool ambientOcclusion, bool measureComponents,
+            bool compactVertices, SurfaceBackend backend)
         {
             _surface = surface;
             _method = method;
@@ -30,6 +31,7 @@ namespace QuickSes
             _levels = (float[])levels.Clone();
             _relaxationSteps = relaxationSteps;
             _sharpCreases = sharpCreases;
+            _ambientOcclusion = ambientOcclusion;
             _measureComponents = measureComponents;
             _compactVertices = compactVertices;
             _backend = backend;
@@ -38,7 +40,7 @@ namespace QuickSes
         public bool Equals(SurfaceShapeSettings other) => _surface == other._surface && _method == other._method &&
             _probeRadius.Equals(other._probeRadius) && _spacing.Equals(other._spacing) &&
             _relaxationSteps == other._relaxationSteps && _sharpCreases == other._sharpCreases &&
-            _measureComponents == other._measureComponents && _compactVertices == other._compactVertices &&
+            _ambientOcclusion == other._ambientOcclusion && _measureComponents == other._measureComponents && _compactVertices == other._compactVertices &&
             _backend == other._backend && _levels.AsSpan().SequenceEqual(other._levels);
 
         public override bool Equals(object other) => other is SurfaceShapeSettings settings && Equals(settings);

@@ -149,6 +149,22 @@ namespace QuickSes
             WriteVertices(stream, sizeof(T), room.Pointer, first, count);
         }
 
+        /// <summary>Writes texture coordinates: those of the atoms, or those that the surface has itself.</summary>
+        /// <param name="surface">What is in the mesh.</param>
+        /// <param name="perAtom">Empty: the surface's own.</param>
+        /// <param name="first">Vertex.</param>
+        /// <param name="count">How many.</param>
+        /// <param name="room">For the piece.</param>
+        public void WriteTexcoords(KeptMesh surface, ReadOnlySpan<System.Numerics.Vector2> perAtom, int first, int count,
+            UnmanagedBuffer<byte> room)
+        {
+            if (perAtom.IsEmpty)
+                fixed (float* own = surface.View.Texcoords)
+                    WriteVertices(MeshStyle.TexcoordStream, MeshStyle.TexcoordBytes, own + 2L * first, first, count);
+            else
+                Paint(surface, perAtom, MeshStyle.TexcoordStream, first, count, room);
+        }
+
         public void WriteIndices(uint* data, int first, int count)
         {
             using (s_marker.Auto())

@@ -173,7 +173,7 @@ namespace QuickSes
                         MeshStyle.SurfaceStream, style.SurfaceBytes, view.PositionsPointer, 0, vertices);
                     writer.Paint(_kept, Look.Colors, MeshStyle.AtomStream, 0, vertices, room);
                     if (style.HasTexcoords)
-                        writer.Paint(_kept, Look.Texcoords, MeshStyle.TexcoordStream, 0, vertices, room);
+                        writer.WriteTexcoords(_kept, Look.Texcoords, 0, vertices, room);
                 }
                 if (triangles > 0)
                     writer.WriteIndices(indices.Pointer, 0, 3 * triangles);
@@ -274,7 +274,11 @@ namespace QuickSes
 
         private MeshStyle StyleOf(in SurfaceMeshView view, AtomLook look) => StyleOf(view, look, UsesTexture);
 
+        /// <summary>Whether vertices have texture coordinates: those of their atoms, or else ambient occlusion.</summary>
+        public static bool HasTexcoords(in SurfaceMeshView view, AtomLook look) =>
+            look.Texcoords.Length > 0 || view.HasTexcoords;
+
         private static MeshStyle StyleOf(in SurfaceMeshView view, AtomLook look, bool hasAtoms) => new MeshStyle(
-            view.VertexLayout == SurfaceVertexLayout.Compact, hasAtoms, look.Texcoords.Length > 0);
+            view.VertexLayout == SurfaceVertexLayout.Compact, hasAtoms, HasTexcoords(view, look));
     }
 }

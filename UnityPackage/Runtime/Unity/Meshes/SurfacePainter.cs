@@ -57,8 +57,7 @@ namespace QuickSes
                     target.Writer.Paint<uint>(
                         surface, target.Colors.Span, MeshStyle.AtomStream, first, last - first + 1, share.Room);
                 else
-                    target.Writer.Paint<System.Numerics.Vector2>(
-                        surface, _texcoords.Span, MeshStyle.TexcoordStream, first, last - first + 1, share.Room);
+                    target.Writer.WriteTexcoords(surface, _texcoords.Span, first, last - first + 1, share.Room);
                 target.Writer.Tell();
             }
             _next += count;

@@ -178,15 +178,14 @@ namespace QuickSes
                         WriteAtoms(view, count, share.Room);
                     bytes = (long)MeshStyle.AtomBytes * count;
                     // That there are none any more is another style, which comes next.
-                    Go(count, view.VertexCount, _target.Style.HasTexcoords && _look.Texcoords.Length > 0
+                    Go(count, view.VertexCount, _target.Style.HasTexcoords && ShownSurface.HasTexcoords(view, _look)
                         ? Stage.Texcoords
                         : Stage.None);
                     break;
                 case Stage.Texcoords:
                     count = Count(view.VertexCount, MeshStyle.TexcoordBytes, share);
                     if (count > 0)
-                        _target.Writer.Paint<System.Numerics.Vector2>(
-                            _source, _texcoords.Span, MeshStyle.TexcoordStream, _next, count, share.Room);
+                        _target.Writer.WriteTexcoords(_source, _texcoords.Span, _next, count, share.Room);
                     bytes = (long)MeshStyle.TexcoordBytes * count;
                     Go(count, view.VertexCount, Stage.None);
                     break;

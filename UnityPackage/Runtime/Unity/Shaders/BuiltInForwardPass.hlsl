@@ -39,7 +39,7 @@ Varyings Vertex(Attributes v)
     o.worldPos = mul(unity_ObjectToWorld, v.vertex).xyz;
     o.worldNormal = UnityObjectToWorldNormal(v.normal);
     o.color = SurfaceColor(v, o.shownAndOcclusion.x);
-    o.shownAndOcclusion.y = lerp(1, saturate(v.occlusion.x), _OcclusionStrength);
+    o.shownAndOcclusion.y = QuickSesOcclusion(v.occlusion, _OcclusionStrength);
 
     #if !defined(QUICKSES_FURTHER_LIGHT)
     // The light of probes and of lights that are not lit by pixel.

@@ -9,8 +9,8 @@ Shader "QuickSES/Molecular Surface"
         [MainColor] _Color("Tint", Color) = (1, 1, 1, 1)
         _Smoothness("Smoothness", Range(0, 1)) = 0.45
         _Metallic("Metallic", Range(0, 1)) = 0
-        // A mesh without the attribute reads 0, which would be black: hence off unless somebody turns it up.
-        _OcclusionStrength("Ambient Occlusion (mesh TexCoord1.x, 1 = open)", Range(0, 1)) = 0
+        // A mesh without the attribute reads 0, 0, which stands for open.
+        _OcclusionStrength("Ambient Occlusion (mesh TexCoord1.x, 1 = open)", Range(0, 1)) = 1
         [Enum(UnityEngine.Rendering.CullMode)] _Cull("Cull (Off = two-sided)", Float) = 2
         // The tint under the name that scripts written for the Universal Render Pipeline use; both are multiplied.
         [HideInInspector] _BaseColor("Tint", Color) = (1, 1, 1, 1)

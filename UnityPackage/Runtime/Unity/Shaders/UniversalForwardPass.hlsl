@@ -40,7 +40,7 @@ Varyings Vertex(Attributes input)
     output.positionWS = position.positionWS;
     output.normalWS = half3(TransformObjectToWorldNormal(input.normalOS));
     output.color = half4(SurfaceColor(input.color, input.owner, output.shownAndOcclusion.x));
-    output.shownAndOcclusion.y = lerp(1.0, saturate(input.occlusion.x), _OcclusionStrength);
+    output.shownAndOcclusion.y = QuickSesOcclusion(input.occlusion, _OcclusionStrength);
 
     half fog = half(ComputeFogFactor(position.positionCS.z));
     output.fogAndVertexLight = half4(fog, VertexLighting(position.positionWS, output.normalWS));
