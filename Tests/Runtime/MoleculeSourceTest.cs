@@ -127,6 +127,7 @@ namespace QuickSes.Tests
 
         [TestCase("a.dcd.bytes", TrajectoryFormat.Dcd)]
         [TestCase("a.xtc", TrajectoryFormat.Xtc)]
+        [TestCase("a.trr.gz", TrajectoryFormat.Trr)]
         [TestCase("a.pdb.gz.bytes", TrajectoryFormat.Pdb)]
         [TestCase("a.gro", TrajectoryFormat.Auto)]
         public void NamesTellTheFormatOfFrames(string name, TrajectoryFormat format) =>

@@ -34,7 +34,7 @@ namespace {
 
 // By reference: a number that names no format must not be looked at as one before it is checked.
 std::optional<io::TrajectoryFormat> format_of(const qses_trajectory_format &format) {
-  check_choice("format", format, QSES_TRAJECTORY_PDB);
+  check_choice("format", format, QSES_TRAJECTORY_TRR);
   switch (format) {
     case QSES_TRAJECTORY_DCD:
       return io::TrajectoryFormat::kDcd;
@@ -42,6 +42,8 @@ std::optional<io::TrajectoryFormat> format_of(const qses_trajectory_format &form
       return io::TrajectoryFormat::kXtc;
     case QSES_TRAJECTORY_PDB:
       return io::TrajectoryFormat::kPdb;
+    case QSES_TRAJECTORY_TRR:
+      return io::TrajectoryFormat::kTrr;
     default:
       return std::nullopt;
   }
@@ -55,6 +57,8 @@ qses_trajectory_format format_of(io::TrajectoryFormat format) {
       return QSES_TRAJECTORY_XTC;
     case io::TrajectoryFormat::kPdb:
       return QSES_TRAJECTORY_PDB;
+    case io::TrajectoryFormat::kTrr:
+      return QSES_TRAJECTORY_TRR;
   }
   return QSES_TRAJECTORY_AUTO;
 }

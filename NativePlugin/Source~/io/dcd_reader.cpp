@@ -8,6 +8,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "io/big_endian.h"
+
 namespace quickses::io {
 namespace {
 
@@ -18,11 +20,6 @@ constexpr uint32_t kMaxAtoms = 0x7fffffff / 4;        // more would not fit in t
 constexpr double kAkmaPicoseconds = 0.0488882129084;  // CHARMM's unit of time
 
 uint32_t swap_bytes(uint32_t v) { return v >> 24 | (v >> 8 & 0xff00) | (v << 8 & 0xff0000) | v << 24; }
-
-uint32_t big_endian(const unsigned char *p) {
-  return static_cast<uint32_t>(p[0]) << 24 | static_cast<uint32_t>(p[1]) << 16 | static_cast<uint32_t>(p[2]) << 8 |
-         p[3];
-}
 
 double dot(const std::array<double, 3> &u, const std::array<double, 3> &v) {
   return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
@@ -96,7 +93,7 @@ class DcdReader : public TrajectoryReader {
   uint32_t get_u32(uint64_t at) const {
     unsigned char bytes[4];
     source_->read(at, bytes, 4);
-    const uint32_t value = big_endian(bytes);
+    const uint32_t value = big_endian_u32(bytes);
     return is_big_endian_ ? value : swap_bytes(value);
   }
 
@@ -128,7 +125,7 @@ class DcdReader : public TrajectoryReader {
     unsigned char head[12];
     if (!is_there(0, sizeof head)) fail("it is cut off within its header");
     source_->read(0, head, sizeof head);
-    const uint32_t first = big_endian(head), second = big_endian(head + 4);
+    const uint32_t first = big_endian_u32(head), second = big_endian_u32(head + 4);
     if (std::memcmp(head + 8, "CORD", 4) == 0 &&
         ((first == swap_bytes(kHeaderLength) && second == 0) || (first == 0 && second == kHeaderLength)))
       fail(
@@ -272,7 +269,7 @@ class DcdReader : public TrajectoryReader {
         const size_t size = std::min(kChunk, count - begin);
         source_->read(at + 4 + 4 * begin, bytes, 4 * size);
         for (size_t i = 0; i < size; ++i) {
-          uint32_t bits = big_endian(bytes + 4 * i);
+          uint32_t bits = big_endian_u32(bytes + 4 * i);
           if (!is_big_endian_) bits = swap_bytes(bits);
           std::memcpy(&xyz[3 * (only_free ? free_[begin + i] : begin + i) + axis], &bits, 4);
         }

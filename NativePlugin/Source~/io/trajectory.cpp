@@ -12,6 +12,7 @@
 #include "io/pdb_frames.h"
 #include "io/text.h"
 #include "io/trajectory_reader.h"
+#include "io/trr_reader.h"
 #include "io/xtc_reader.h"
 
 namespace quickses::io {
@@ -23,15 +24,18 @@ TrajectoryFormat find_format(const std::string &path, const ByteSource &source) 
   const std::string extension = lower_extension_of_content(path_of(path));
   if (extension == ".dcd") return TrajectoryFormat::kDcd;
   if (extension == ".xtc") return TrajectoryFormat::kXtc;
+  if (extension == ".trr") return TrajectoryFormat::kTrr;
   if (extension == ".pdb" || extension == ".ent" || extension == ".brk") return TrajectoryFormat::kPdb;
   unsigned char head[256] = {};
   const size_t count = static_cast<size_t>(std::min<uint64_t>(source.size(), sizeof head));
   source.read(0, head, count);
   if (is_dcd(head, count)) return TrajectoryFormat::kDcd;
   if (is_xtc(head, count)) return TrajectoryFormat::kXtc;
+  if (is_trr(head, count)) return TrajectoryFormat::kTrr;
   if (is_pdb(head, count)) return TrajectoryFormat::kPdb;
-  fail_input("'" + path + "': its name and content tell no format of trajectories; known are .dcd .xtc .pdb .ent .brk" +
-             ", each also as .gz");
+  fail_input("'" + path +
+             "': its name and content tell no format of trajectories; known are .dcd .xtc .trr .pdb .ent " +
+             ".brk, each also as .gz");
 }
 
 std::unique_ptr<TrajectoryReader> open_reader(TrajectoryFormat format, std::unique_ptr<ByteSource> source) {
@@ -42,6 +46,8 @@ std::unique_ptr<TrajectoryReader> open_reader(TrajectoryFormat format, std::uniq
       return open_xtc(std::move(source));
     case TrajectoryFormat::kPdb:
       return open_pdb_frames(std::move(source));
+    case TrajectoryFormat::kTrr:
+      return open_trr(std::move(source));
   }
   fail_usage("unknown format of trajectories");
 }

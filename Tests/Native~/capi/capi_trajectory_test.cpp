@@ -100,6 +100,20 @@ TEST(Trajectory, TimeAndBox) {
   EXPECT_EQ(frame.is_unwrapped, 0);
 }
 
+TEST(Trajectory, FormatsByNumberAndByContent) {
+  const Positions positions = {1, 2, 3};
+  const std::pair<qses_trajectory_format, std::string> files[] = {
+      {QSES_TRAJECTORY_TRR, quickses::io::TrrWriter().frame(positions)},
+  };
+  for (const auto &[format, bytes] : files)
+    for (const qses_trajectory_format asked : {format, QSES_TRAJECTORY_AUTO}) {
+      const TrajectoryPointer trajectory = open_bytes(bytes, asked);
+      EXPECT_EQ(info_of(trajectory).format, format);
+      const Positions read = read_frame(trajectory, 0);
+      for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(read[i], positions[i], 1e-5);
+    }
+}
+
 TEST(Trajectory, GzippedBuffersAndUnknownFormats) {
   const std::vector<Positions> frames = some_frames(3);
   const std::string plain = dcd(frames);

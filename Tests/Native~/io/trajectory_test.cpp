@@ -171,6 +171,7 @@ std::vector<Sample> samples(std::vector<Positions> &frames, size_t atom_count = 
   const XtcWriter xtc;
   Sample dcd_file = {dcd.header(static_cast<int32_t>(atom_count)), TrajectoryFormat::kDcd, ".dcd"};
   Sample xtc_file = {"", TrajectoryFormat::kXtc, ".xtc"}, pdb_file = {"", TrajectoryFormat::kPdb, ".pdb"};
+  Sample trr_file = {"", TrajectoryFormat::kTrr, ".trr"};
   for (uint32_t k = 0; k < frame_count; ++k) {
     frames.push_back(rounded_positions(atom_count, k));
     dcd_file.bytes += dcd.frame(frames.back(), k == 0);
@@ -182,9 +183,10 @@ std::vector<Sample> samples(std::vector<Positions> &frames, size_t atom_count = 
     std::vector<float> nm;
     for (float x : frames.back()) nm.push_back(x / 10);
     xtc_file.bytes += atom_count <= 9 ? xtc.plain_frame(nm) : fine.packed_frame(integers);
+    trr_file.bytes += TrrWriter().frame(frames.back());
     pdb_file.bytes += pdb_model(static_cast<int>(k + 1), frames.back());
   }
-  return {dcd_file, xtc_file, pdb_file};
+  return {dcd_file, xtc_file, trr_file, pdb_file};
 }
 
 void expect_frames(const Trajectory &trajectory, const std::vector<Positions> &frames) {
@@ -222,8 +224,8 @@ TEST_F(TrajectoryTest, FilesThatCanNotBeOpened) {
   EXPECT_HAS(error(path("none.xtc")), path("none.xtc"));
   EXPECT_HAS(error(folder_.string()), "is a directory");
   EXPECT_HAS(error(write("empty.dcd", "")), "is empty");
-  EXPECT_HAS(error(write("a.trr", "what is this")), "known are .dcd .xtc .pdb");
-  EXPECT_HAS(error(write("one", "x")), "known are .dcd .xtc .pdb");
+  EXPECT_HAS(error(write("a.txt", "what is this")), "known are .dcd .xtc .trr");
+  EXPECT_HAS(error(write("one", "x")), "known are .dcd .xtc .trr");
   std::vector<Positions> frames;
   const Sample xtc = samples(frames)[1];
   EXPECT_HAS(error(write("a.xtc.gz", xtc.bytes)), "is no gzip file");
@@ -253,7 +255,7 @@ TEST_F(TrajectoryTest, FramesOutOfRange) {
 TEST_F(TrajectoryTest, FileThatShrinksWhileItIsOpen) {
   std::vector<Positions> frames;
   std::vector<Sample> files = samples(frames, 2000);
-  for (size_t i : {0, 1}) {  // PDB files are in memory
+  for (size_t i : {0, 1, 2}) {  // PDB files are in memory
     const std::string file = write(std::string("a") + files[i].extension, files[i].bytes);
     const Trajectory trajectory = Trajectory::open(file);
     std::filesystem::resize_file(file, files[i].bytes.size() / 2);

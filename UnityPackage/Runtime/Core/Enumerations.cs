@@ -176,6 +176,8 @@ namespace QuickSes
         /// <summary>GROMACS; nm become Å.</summary>
         Xtc = 2,
         /// <summary>PDB with several models.</summary>
-        Pdb = 3
+        Pdb = 3,
+        /// <summary>GROMACS, in full precision; nm become Å; frames without positions are left out.</summary>
+        Trr = 4
     }
 }

@@ -215,6 +215,8 @@ namespace QuickSes
                     return TrajectoryFormat.Dcd;
                 case ".xtc":
                     return TrajectoryFormat.Xtc;
+                case ".trr":
+                    return TrajectoryFormat.Trr;
                 case ".pdb":
                 case ".ent":
                 case ".brk":
