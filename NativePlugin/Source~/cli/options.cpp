@@ -144,8 +144,9 @@ void add_area_options(CLI::App *app, Options &options) {
 }
 
 void add_trajectory_options(CLI::App *app, Options &options, const char *csv_help) {
-  app->add_option("--trajectory", options.trajectory,
-                  "Frames of the atoms of INPUT: .dcd .xtc .trr, or .pdb with several models, each also as .gz")
+  app->add_option(
+         "--trajectory", options.trajectory,
+         "Frames of the atoms of INPUT: .dcd .xtc .trr .nc .ncdf .ncrst, or .pdb with several models, each also as .gz")
       ->type_name("FILE");
   app->add_option_function<std::string>(
          "--frames", [&options](const std::string &text) { options.frames = FrameRange(text); },

@@ -9,6 +9,8 @@
 #include "io/dcd_reader.h"
 #include "io/file_bytes.h"
 #include "io/file_path.h"
+#include "io/netcdf_header.h"
+#include "io/netcdf_reader.h"
 #include "io/pdb_frames.h"
 #include "io/text.h"
 #include "io/trajectory_reader.h"
@@ -25,6 +27,7 @@ TrajectoryFormat find_format(const std::string &path, const ByteSource &source) 
   if (extension == ".dcd") return TrajectoryFormat::kDcd;
   if (extension == ".xtc") return TrajectoryFormat::kXtc;
   if (extension == ".trr") return TrajectoryFormat::kTrr;
+  if (extension == ".nc" || extension == ".ncdf" || extension == ".ncrst") return TrajectoryFormat::kNetcdf;
   if (extension == ".pdb" || extension == ".ent" || extension == ".brk") return TrajectoryFormat::kPdb;
   unsigned char head[256] = {};
   const size_t count = static_cast<size_t>(std::min<uint64_t>(source.size(), sizeof head));
@@ -32,10 +35,11 @@ TrajectoryFormat find_format(const std::string &path, const ByteSource &source) 
   if (is_dcd(head, count)) return TrajectoryFormat::kDcd;
   if (is_xtc(head, count)) return TrajectoryFormat::kXtc;
   if (is_trr(head, count)) return TrajectoryFormat::kTrr;
+  if (is_netcdf(head, count)) return TrajectoryFormat::kNetcdf;
   if (is_pdb(head, count)) return TrajectoryFormat::kPdb;
   fail_input("'" + path +
-             "': its name and content tell no format of trajectories; known are .dcd .xtc .trr .pdb .ent " +
-             ".brk, each also as .gz");
+             "': its name and content tell no format of trajectories; known are .dcd .xtc .trr .nc .ncdf " +
+             ".ncrst .pdb .ent .brk, each also as .gz");
 }
 
 std::unique_ptr<TrajectoryReader> open_reader(TrajectoryFormat format, std::unique_ptr<ByteSource> source) {
@@ -48,6 +52,8 @@ std::unique_ptr<TrajectoryReader> open_reader(TrajectoryFormat format, std::uniq
       return open_pdb_frames(std::move(source));
     case TrajectoryFormat::kTrr:
       return open_trr(std::move(source));
+    case TrajectoryFormat::kNetcdf:
+      return open_netcdf(std::move(source));
   }
   fail_usage("unknown format of trajectories");
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Trajectories: many frames of the same atoms. DCD (CHARMM, NAMD, X-PLOR), XTC and TRR (GROMACS), PDB
-// with several models.
+// Trajectories: many frames of the same atoms. DCD (CHARMM, NAMD, X-PLOR), XTC and TRR (GROMACS), netCDF
+// (AMBER), PDB with several models.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@
 
 namespace quickses::io {
 
-enum class TrajectoryFormat { kDcd, kXtc, kPdb, kTrr };
+enum class TrajectoryFormat { kDcd, kXtc, kPdb, kTrr, kNetcdf };
 
 class TrajectoryReader;
 
@@ -21,7 +21,8 @@ class TrajectoryReader;
 // All const members may be called from several threads at a time; files are read by position, without a lock.
 class Trajectory {
  public:
-  // The format follows from the name (.dcd .xtc .trr .pdb .ent .brk, each also with .gz behind), else from the content.
+  // The format follows from the name (.dcd .xtc .trr .nc .ncdf .ncrst .pdb .ent .brk, each also with .gz
+  // behind), else from the content.
   // A file that ends within a frame, or makes no sense from some frame on, gives the frames before: see incomplete().
   // Throws Error (kInput): unreadable, no such format, not one whole frame, frames of different numbers of atoms, DCD
   // with 64-bit record markers or with velocities.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The C API: trajectories from files and from memory.
 #include "capi/capi_fixture.h"
-#include "io/trajectory_fixture.h"
+#include "io/netcdf_fixture.h"
 
 #include <atomic>
 #include <thread>
@@ -104,6 +104,7 @@ TEST(Trajectory, FormatsByNumberAndByContent) {
   const Positions positions = {1, 2, 3};
   const std::pair<qses_trajectory_format, std::string> files[] = {
       {QSES_TRAJECTORY_TRR, quickses::io::TrrWriter().frame(positions)},
+      {QSES_TRAJECTORY_NETCDF, quickses::io::NetcdfWriter().file({positions})},
   };
   for (const auto &[format, bytes] : files)
     for (const qses_trajectory_format asked : {format, QSES_TRAJECTORY_AUTO}) {

@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <thread>
 
+#include "io/netcdf_fixture.h"
 #include "io/structure.h"
-#include "io/trajectory_fixture.h"
 
 namespace quickses::io {
 namespace {
@@ -171,7 +171,7 @@ std::vector<Sample> samples(std::vector<Positions> &frames, size_t atom_count = 
   const XtcWriter xtc;
   Sample dcd_file = {dcd.header(static_cast<int32_t>(atom_count)), TrajectoryFormat::kDcd, ".dcd"};
   Sample xtc_file = {"", TrajectoryFormat::kXtc, ".xtc"}, pdb_file = {"", TrajectoryFormat::kPdb, ".pdb"};
-  Sample trr_file = {"", TrajectoryFormat::kTrr, ".trr"};
+  Sample trr_file = {"", TrajectoryFormat::kTrr, ".trr"}, nc_file = {"", TrajectoryFormat::kNetcdf, ".nc"};
   for (uint32_t k = 0; k < frame_count; ++k) {
     frames.push_back(rounded_positions(atom_count, k));
     dcd_file.bytes += dcd.frame(frames.back(), k == 0);
@@ -186,7 +186,8 @@ std::vector<Sample> samples(std::vector<Positions> &frames, size_t atom_count = 
     trr_file.bytes += TrrWriter().frame(frames.back());
     pdb_file.bytes += pdb_model(static_cast<int>(k + 1), frames.back());
   }
-  return {dcd_file, xtc_file, trr_file, pdb_file};
+  nc_file.bytes = NetcdfWriter().file(frames);
+  return {dcd_file, xtc_file, trr_file, nc_file, pdb_file};
 }
 
 void expect_frames(const Trajectory &trajectory, const std::vector<Positions> &frames) {
@@ -224,8 +225,8 @@ TEST_F(TrajectoryTest, FilesThatCanNotBeOpened) {
   EXPECT_HAS(error(path("none.xtc")), path("none.xtc"));
   EXPECT_HAS(error(folder_.string()), "is a directory");
   EXPECT_HAS(error(write("empty.dcd", "")), "is empty");
-  EXPECT_HAS(error(write("a.txt", "what is this")), "known are .dcd .xtc .trr");
-  EXPECT_HAS(error(write("one", "x")), "known are .dcd .xtc .trr");
+  EXPECT_HAS(error(write("a.txt", "what is this")), "known are .dcd .xtc .trr .nc");
+  EXPECT_HAS(error(write("one", "x")), "known are .dcd .xtc .trr .nc");
   std::vector<Positions> frames;
   const Sample xtc = samples(frames)[1];
   EXPECT_HAS(error(write("a.xtc.gz", xtc.bytes)), "is no gzip file");
@@ -255,7 +256,7 @@ TEST_F(TrajectoryTest, FramesOutOfRange) {
 TEST_F(TrajectoryTest, FileThatShrinksWhileItIsOpen) {
   std::vector<Positions> frames;
   std::vector<Sample> files = samples(frames, 2000);
-  for (size_t i : {0, 1, 2}) {  // PDB files are in memory
+  for (size_t i : {0, 1, 2, 3}) {  // PDB files are in memory
     const std::string file = write(std::string("a") + files[i].extension, files[i].bytes);
     const Trajectory trajectory = Trajectory::open(file);
     std::filesystem::resize_file(file, files[i].bytes.size() / 2);

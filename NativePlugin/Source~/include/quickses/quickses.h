@@ -729,8 +729,8 @@ QSES_API qses_status qses_kept_mesh_pick(const qses_kept_mesh *kept, const float
 /* How many bytes structures and trajectories may take into memory from one file, pipe, device or buffer, unpacked: a
  * gzip file of 3 MB can hold 3 GB, and a device has no end. More is a FILE_ERROR. It holds for the whole process from
  * now on. 0 (default): 4 GiB, but of gzip data at most 100 times its size or 256 MiB, whichever is larger. Any other
- * number holds for all alike. Frames that stay in their file (DCD, XTC and TRR, not gzipped) and plain bytes of a
- * buffer are not counted. What is made of the bytes, atoms above all, takes several times as much again. */
+ * number holds for all alike. Frames that stay in their file (not gzipped, and not PDB) and plain bytes of a buffer are
+ * not counted. What is made of the bytes, atoms above all, takes several times as much again. */
 QSES_API void qses_input_set_limit(uint64_t bytes);
 
 /* The atoms of one model of a file, after filters, with radii. Opaque. It never changes: any number of threads may use
@@ -857,11 +857,12 @@ QSES_API qses_status qses_structure_select(const qses_structure *structure, cons
 QSES_API qses_status qses_structure_warning(const qses_structure *structure, uint32_t k, const char **sentence);
 
 typedef enum qses_trajectory_format {
-  QSES_TRAJECTORY_AUTO = 0, /* by the extension of the file's name, else by the content */
-  QSES_TRAJECTORY_DCD = 1,  /* CHARMM, NAMD, X-PLOR */
-  QSES_TRAJECTORY_XTC = 2,  /* GROMACS; nm become Å */
-  QSES_TRAJECTORY_PDB = 3,  /* PDB with several models */
-  QSES_TRAJECTORY_TRR = 4   /* GROMACS, in full precision; nm become Å; frames without positions are left out */
+  QSES_TRAJECTORY_AUTO = 0,  /* by the extension of the file's name, else by the content */
+  QSES_TRAJECTORY_DCD = 1,   /* CHARMM, NAMD, X-PLOR */
+  QSES_TRAJECTORY_XTC = 2,   /* GROMACS; nm become Å */
+  QSES_TRAJECTORY_PDB = 3,   /* PDB with several models */
+  QSES_TRAJECTORY_TRR = 4,   /* GROMACS, in full precision; nm become Å; frames without positions are left out */
+  QSES_TRAJECTORY_NETCDF = 5 /* AMBER, in netCDF's classic format (CDF-1, -2 and -5, not HDF5); also restart files */
 } qses_trajectory_format;
 
 /* Opens a trajectory; path is UTF-8. Frames stay in the file and are read when they are asked for (gzipped files

@@ -217,6 +217,10 @@ namespace QuickSes
                     return TrajectoryFormat.Xtc;
                 case ".trr":
                     return TrajectoryFormat.Trr;
+                case ".nc":
+                case ".ncdf":
+                case ".ncrst":
+                    return TrajectoryFormat.Netcdf;
                 case ".pdb":
                 case ".ent":
                 case ".brk":
