@@ -25,7 +25,7 @@ class Trajectory {
   // behind), else from the content.
   // A file that ends within a frame, or makes no sense from some frame on, gives the frames before: see incomplete().
   // Throws Error (kInput): unreadable, no such format, not one whole frame, frames of different numbers of atoms, DCD
-  // with 64-bit record markers or with velocities.
+  // with velocities.
   static Trajectory open(const std::string &path);
   static Trajectory open(const std::string &path, TrajectoryFormat format);
 

@@ -51,6 +51,7 @@ struct DcdWriter {
   int32_t start = 0, interval = 0;
   double step = 0;
   std::string magic = "CORD";
+  bool has_wide_markers = false;  // 64 bits
 
   template <typename T>
   std::string number(T value) const {
@@ -58,7 +59,8 @@ struct DcdWriter {
   }
 
   std::string record(const std::string &content) const {
-    const std::string marker = number(static_cast<int32_t>(content.size()));
+    const auto size = static_cast<int32_t>(content.size());
+    const std::string marker = has_wide_markers ? number(int64_t{size}) : number(size);
     return marker + content + marker;
   }
 

@@ -869,8 +869,8 @@ typedef enum qses_trajectory_format {
  * and PDB files are taken into memory). A file that ends within a frame, or makes no sense from some frame on, gives
  * the frames before: see qses_trajectory_description.incomplete. On success *trajectory is the caller's, who ends it
  * with qses_trajectory_close; on failure it is NULL. Errors: INVALID_ARGUMENT, FILE_ERROR (no such format, not one
- * whole frame, frames of different numbers of atoms, DCD files with 64-bit record markers or velocities, more in memory
- * than qses_input_set_limit allows), OUT_OF_MEMORY. */
+ * whole frame, frames of different numbers of atoms, DCD files of velocities, more in memory than qses_input_set_limit
+ * allows), OUT_OF_MEMORY. */
 QSES_API qses_status qses_trajectory_open(const char *path, qses_trajectory_format format,
                                           qses_trajectory **trajectory);
 
