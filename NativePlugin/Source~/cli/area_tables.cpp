@@ -71,7 +71,7 @@ void check_has_residues(const Options &options, const io::Structure &structure) 
 
 AreaTables::AreaTables(const Options &options, const std::vector<qses_surface> &surfaces)
     : per_atom_(options.per_atom), per_residue_(options.per_residue) {
-  const std::string first = !options.trajectory.empty() ? "frame," : options.read.model == 0 ? "model," : "";
+  const std::string first = !options.trajectories.empty() ? "frame," : options.read.model == 0 ? "model," : "";
   const std::string residue = "chain,residue_number,insertion_code,residue_name";
   std::string areas;
   for (const qses_surface surface : surfaces) areas += std::string(",") + name_of(surface) + "_area_A2";

@@ -144,10 +144,12 @@ void add_area_options(CLI::App *app, Options &options) {
 }
 
 void add_trajectory_options(CLI::App *app, Options &options, const char *csv_help) {
-  app->add_option(
-         "--trajectory", options.trajectory,
-         "Frames of the atoms of INPUT: .dcd .xtc .trr .nc .ncdf .ncrst, or .pdb with several models, each also as .gz")
-      ->type_name("FILE");
+  app->add_option("--trajectory", options.trajectories,
+                  "Frames of the atoms of INPUT: .dcd .xtc .trr .nc .ncdf .ncrst, or .pdb with several models, each "
+                  "also as .gz. "
+                  "Given several times: files in a row, their frames numbered through")
+      ->type_name("FILE")
+      ->allow_extra_args(false);  // INPUT may come next
   app->add_option_function<std::string>(
          "--frames", [&options](const std::string &text) { options.frames = FrameRange(text); },
          "Which frames, from 0: A:B:STEP as in Python (B is left out, negative numbers count from the end), or one")
@@ -201,7 +203,7 @@ void check_bench(const Options &options, const std::function<bool(const char *)>
 
 // given: as above.
 void check_trajectory(const Options &options, const std::function<bool(const char *)> &given) {
-  if (options.trajectory.empty()) {
+  if (options.trajectories.empty()) {
     for (const char *flag : {"--frames", "--unwrap", "--csv", "--workers"})
       if (given(flag))
         throw Failure(kUsage, std::string(flag) +
@@ -252,7 +254,7 @@ void check_devices(const Options &options) {
   const DeviceChoice &devices = options.compute.devices;
   if (devices.is_given() && options.compute.backend == QSES_BACKEND_CPU)
     throw Failure(kUsage, "--device: only CUDA has devices to choose from, and --backend is cpu");
-  if (devices.may_be_many() && options.trajectory.empty())
+  if (devices.may_be_many() && options.trajectories.empty())
     throw Failure(kUsage, "--device " + devices.text() +
                               ": several devices share the frames of a trajectory, and there is no --trajectory");
 }
@@ -290,6 +292,11 @@ const char *name_of(qses_method method) { return find_name(kMethods, method); }
 const char *name_of(qses_backend backend) { return find_name(kBackends, backend); }
 const char *name_of(qses_vertex_layout layout) { return find_name(kLayouts, layout); }
 
+std::string Options::quoted_trajectories() const {
+  const std::string first = "'" + trajectories.front() + "'";
+  return trajectories.size() == 1 ? first : first + " and " + std::to_string(trajectories.size() - 1) + " more";
+}
+
 bool has_hard_edges(const Options &options) {
   return options.hard_edges != Switch::kOff && options.compute.method == QSES_METHOD_EXACT && !options.output.empty() &&
          io::mesh_format_of(options.output) != io::MeshFormat::kStl;
@@ -300,7 +307,8 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
   CLI::App app(
       "Molecular surfaces as closed triangle meshes.\n\n"
       "  quickses INPUT [-o OUT.obj|OUT.ply|OUT.stl] [options]\n"
-      "  quickses INPUT --trajectory FILE [--frames A:B:STEP] [--csv FILE] [-o frame_%05d.ply] [options]\n"
+      "  quickses INPUT --trajectory FILE [--trajectory FILE...] [--frames A:B:STEP] [--csv FILE] [-o frame_%05d.ply] "
+      "[options]\n"
       "  quickses measure INPUT [--surface sas,vdw,ses] [--per-atom FILE] [--per-residue FILE] [options]\n"
       "  quickses cavities INPUT [--csv FILE] [options]\n"
       "  quickses bench FILE... [--repeat N] [--copies N] [--delivery host|device|both] [--small N | --jobs] "
@@ -371,7 +379,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
     options.command = value;
   }
   if (options.compute.creases == Switch::kDefault) {
-    const bool is_many = options.command == Options::Command::kBench || !options.trajectory.empty();
+    const bool is_many = options.command == Options::Command::kBench || !options.trajectories.empty();
     options.compute.creases = is_many || options.compute.method == QSES_METHOD_GRID ? Switch::kOff : Switch::kOn;
   }
   check_values(*used);

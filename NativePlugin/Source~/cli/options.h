@@ -59,17 +59,19 @@ struct Options {
   std::vector<qses_surface> measured = {QSES_SURFACE_SAS, QSES_SURFACE_VDW};  // of measure
   std::vector<std::string> inputs;                                            // of bench
   BenchOptions bench;
-  std::string trajectory;   // empty: the input alone
-  FrameRange frames;        // of the trajectory
-  bool unwrap = false;      // molecules in one piece
-  unsigned workers = 0;     // frames computed at a time, on each device; 0 = chosen by the program
-  uint64_t max_input = 0;   // bytes of an input in memory; 0 = the library's default
-  std::string csv;          // a file, "-" for standard output, empty: no table
-  std::string per_atom;     // a file, "-" for standard output, empty: no table
-  std::string per_residue;  // the same
-  std::string json;         // a file, "-" for standard output, empty: no report
+  std::vector<std::string> trajectories;  // in a row; empty: the input alone
+  FrameRange frames;                      // of the trajectory
+  bool unwrap = false;                    // molecules in one piece
+  unsigned workers = 0;                   // frames computed at a time, on each device; 0 = chosen by the program
+  uint64_t max_input = 0;                 // bytes of an input in memory; 0 = the library's default
+  std::string csv;                        // a file, "-" for standard output, empty: no table
+  std::string per_atom;                   // a file, "-" for standard output, empty: no table
+  std::string per_residue;                // the same
+  std::string json;                       // a file, "-" for standard output, empty: no report
   bool quiet = false;
 
+  // For messages: 'a.xtc', or 'a.xtc' and 2 more.
+  std::string quoted_trajectories() const;
   bool wants_areas() const { return !per_atom.empty() || !per_residue.empty(); }
   // Whether standard output is taken by something that other programs read.
   bool prints_data() const { return csv == "-" || json == "-" || per_atom == "-" || per_residue == "-"; }

@@ -126,7 +126,7 @@ class Run {
   Run(const Options &options, Processes &processes)
       : processes_(processes),
         inputs_(options, options.quiet || !processes.is_first()),
-        frames_(options.frames.select(inputs_.trajectory.frame_count(), options.trajectory)),
+        frames_(options.frames.select(inputs_.trajectory.frame_count(), options.quoted_trajectories())),
         share_(divide(inputs_.options, processes, frames_.count)) {
     if (processes.is_first()) {
       if (inputs_.pattern) check_meshes();

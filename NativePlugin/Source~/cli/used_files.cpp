@@ -68,9 +68,9 @@ void UsedFiles::add_output(const char *flag, const std::string &name) {
 UsedFiles::UsedFiles(const Options &options) {
   for (const std::string &input : options.inputs) add_input("FILE", input);
   add_input("INPUT", options.input);
-  add_input("--trajectory", options.trajectory);
+  for (const std::string &trajectory : options.trajectories) add_input("--trajectory", trajectory);
   if (!io::is_radius_set(options.compute.radii)) add_input("--radii", options.compute.radii);
-  const bool is_one_mesh = options.trajectory.empty() && options.read.model != 0;
+  const bool is_one_mesh = options.trajectories.empty() && options.read.model != 0;
   if (is_one_mesh) add_output(kOutputFlag, options.output);
   add_output("--csv", options.csv);
   add_output("--per-atom", options.per_atom);

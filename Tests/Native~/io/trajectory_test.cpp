@@ -246,11 +246,72 @@ TEST_F(TrajectoryTest, FramesOutOfRange) {
     const Trajectory trajectory = Trajectory::from_memory(sample.bytes, sample.format, "a.trj");
     float xyz[15];
     for (size_t frame : {size_t{3}, SIZE_MAX}) {
-      EXPECT_HAS(error_of(ErrorKind::kUsage, [&] { trajectory.read_frame(frame, xyz); }), "its frames are 0 to 2");
+      EXPECT_HAS(error_of(ErrorKind::kUsage, [&] { trajectory.read_frame(frame, xyz); }),
+                 "has no frame " + std::to_string(frame) + ": the frames are 0 to 2");
       error_of(ErrorKind::kUsage, [&] { trajectory.box(frame); });
       error_of(ErrorKind::kUsage, [&] { trajectory.time(frame); });
     }
   }
+}
+
+// ---- files in a row
+
+TEST_F(TrajectoryTest, FilesInARowAreNumberedThrough) {
+  std::vector<Positions> frames, all;
+  std::vector<std::string> files, file_of_frame;
+  for (const Sample &sample : samples(frames)) {
+    files.push_back(write("part" + std::to_string(files.size()) + sample.extension, sample.bytes));
+    all.insert(all.end(), frames.begin(), frames.end());
+    file_of_frame.insert(file_of_frame.end(), frames.size(), files.back());
+  }
+  const Trajectory trajectory = Trajectory::open_all(files);
+  expect_frames(trajectory, all);
+  EXPECT_FALSE(trajectory.incomplete());
+  EXPECT_TRUE(trajectory.warnings().empty());
+  EXPECT_EQ(trajectory.format(), Trajectory::open(files[0]).format());
+  for (size_t k = 0; k < all.size(); ++k) EXPECT_EQ(trajectory.file_of(k), file_of_frame[k]);
+  const std::string last = std::to_string(all.size() - 1);
+  EXPECT_HAS(error_of(ErrorKind::kUsage, [&] { frame_of(trajectory, all.size()); }), "the frames are 0 to " + last);
+  EXPECT_HAS(error_of(ErrorKind::kUsage, [&] { trajectory.file_of(SIZE_MAX); }), "the frames are 0 to " + last);
+  EXPECT_HAS(error_of(ErrorKind::kUsage, [&] { Trajectory::open_all({}); }), "no trajectories");
+}
+
+TEST_F(TrajectoryTest, FilesInARowKeepTheirTimesAndBoxes) {
+  const auto file = [&](const std::string &name, double time, double edge) {
+    TrrWriter writer;
+    writer.time = time;
+    writer.box = {edge, 0, 0, 0, edge, 0, 0, 0, edge};
+    return write(name, writer.frame(Positions{1, 2, 3}));
+  };
+  const Trajectory trajectory = Trajectory::open_all({file("a.trr", 8, 2), file("b.trr", 4, 3), file("c.trr", 16, 5)});
+  const double times[] = {8, 4, 16}, edges[] = {20, 30, 50};
+  for (size_t k : {2, 0, 1}) {
+    EXPECT_EQ(trajectory.time(k), times[k]);
+    ASSERT_TRUE(trajectory.box(k));
+    EXPECT_EQ(trajectory.box(k)->vectors[0][0], edges[k]);
+  }
+}
+
+TEST_F(TrajectoryTest, FilesInARowWithFaults) {
+  const DcdWriter dcd;
+  const Positions good = {1, 2, 3}, bad = {1, NAN, 3};
+  const std::string whole = dcd.header(1) + dcd.frame(good, true) + dcd.frame(good, false);
+  const std::string first = write("first.dcd", whole);
+  const std::string cut = write("cut.dcd", whole.substr(0, whole.size() - 1));
+  const std::string damaged = write("damaged.dcd", dcd.header(1) + dcd.frame(good, true) + dcd.frame(bad, false));
+  const Trajectory trajectory = Trajectory::open_all({first, cut, damaged});
+  ASSERT_EQ(trajectory.frame_count(), 5u);
+  EXPECT_TRUE(trajectory.incomplete());
+  ASSERT_EQ(trajectory.warnings().size(), 1u);
+  EXPECT_HAS(trajectory.warnings()[0], cut + "': frame 1 is cut off");
+  for (size_t k = 0; k < 4; ++k) EXPECT_EQ(frame_of(trajectory, k), good);
+  EXPECT_HAS(error_of(ErrorKind::kInput, [&] { frame_of(trajectory, 4); }),
+             damaged + "': frame 1: atom 1 has no finite");
+
+  const std::string other = write("other.dcd", dcd.header(2) + dcd.frame({1, 2, 3, 4, 5, 6}, true));
+  const std::string message = error_of(ErrorKind::kInput, [&] { Trajectory::open_all({first, cut, other}); });
+  EXPECT_HAS(message, other + "' has 2 atoms, but '" + first + "' has 1");
+  EXPECT_HAS(error_of(ErrorKind::kInput, [&] { Trajectory::open_all({first, path("none.dcd")}); }), "none.dcd");
 }
 
 TEST_F(TrajectoryTest, FileThatShrinksWhileItIsOpen) {
