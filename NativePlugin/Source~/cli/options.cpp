@@ -36,10 +36,14 @@ const char kFooter[] =
     "  3  an output file can't be written\n"
     "  4  computing failed: memory, the device, a spacing too fine for either, a mesh that is not closed\n"
     "  5  the back end asked for can't be used here\n"
-    "  6  some frames of a trajectory failed; the others are done\n"
+    "  6  some frames of a trajectory, or some of several structures, failed; the others are done\n"
     "\n"
     "Owner atoms in PLY files are 0-based places among the atoms of the input's model, before any filter.\n"
     "Lengths are in angstrom, areas in A^2, volumes in A^3.\n";
+
+const char kInputHelp[] = "Structure: .pdb .ent .cif .mmcif .pqr .xyzr .gro, each also as .gz";
+const char kInputsHelp[] =
+    "Structure: .pdb .ent .cif .mmcif .pqr .xyzr .gro, each also as .gz; or several, each with a mesh of its own";
 
 void add_compute_options(CLI::App *app, ComputeOptions &options) {
   add_number(app, "-v,--spacing", "--spacing (-v)", options.spacing, 0.001, 100,
@@ -100,9 +104,8 @@ void add_measured(CLI::App *app, std::vector<qses_surface> &measured) {
       ->default_str("sas,vdw");
 }
 
-void add_input_options(CLI::App *app, Options &options, const char *model_help) {
-  app->add_option("-i,--input,INPUT", options.input,
-                  "Structure: .pdb .ent .cif .mmcif .pqr .xyzr .gro, each also as .gz");
+void add_input_options(CLI::App *app, Options &options, const char *input_help, const char *model_help) {
+  app->add_option("-i,--input,INPUT", options.inputs, input_help)->type_name("FILE");
   app->add_flag_callback(
       "--no-water", [&options] { options.read.water = false; }, "Leave out water");
   app->add_flag_callback(
@@ -125,7 +128,8 @@ void add_input_options(CLI::App *app, Options &options, const char *model_help) 
 }
 
 void add_mesh_options(CLI::App *app, Options &options) {
-  app->add_option("-o,--output", options.output, "Mesh: .obj, .ply (binary, with normals and owner atoms) or .stl")
+  app->add_option("-o,--output", options.output,
+                  "Mesh: .obj, .ply (binary, with normals and owner atoms) or .stl. %s stands for the name of INPUT")
       ->type_name("FILE");
   add_switch(app, "--hard-edges", options.hard_edges,
              "on: a vertex on a crease has a normal for each side, so that light breaks there; PLY files then have it "
@@ -259,6 +263,19 @@ void check_devices(const Options &options) {
                               ": several devices share the frames of a trajectory, and there is no --trajectory");
 }
 
+void check_inputs(const Options &options) {
+  if (!options.has_several_inputs()) return;
+  const std::string count = std::to_string(options.inputs.size());
+  if (options.command == Options::Command::kCavities)
+    throw Failure(kUsage, "cavities: one structure at a time, and " + count + " were given");
+  if (!options.trajectories.empty())
+    throw Failure(kUsage, "--trajectory: its frames are of one structure, and " + count +
+                              " were given (of several trajectories, each needs a --trajectory before it)");
+  if (!options.output.empty() && options.output.find("%s") == std::string::npos)
+    throw Failure(kUsage, "--output (-o): '" + options.output + "' names one file for " + count +
+                              " structures: write %s where the name of each goes, as in out/%s.ply");
+}
+
 void check(const Options &options, const std::function<bool(const char *)> &given) {
   check_devices(options);
   if (options.compute.method == QSES_METHOD_GRID && options.compute.surface != QSES_SURFACE_SES)
@@ -270,7 +287,8 @@ void check(const Options &options, const std::function<bool(const char *)> &give
     UsedFiles check(options);
     return;
   }
-  if (options.input.empty()) throw Failure(kUsage, "no input file was given; see quickses --help");
+  if (options.inputs.empty()) throw Failure(kUsage, "no input file was given; see quickses --help");
+  check_inputs(options);
   if (options.command == Options::Command::kCavities) {
     if (options.read.model == 0) throw Failure(kUsage, "--model all: cavities lists those of one model");
   } else {
@@ -307,9 +325,10 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
   CLI::App app(
       "Molecular surfaces as closed triangle meshes.\n\n"
       "  quickses INPUT [-o OUT.obj|OUT.ply|OUT.stl] [options]\n"
+      "  quickses INPUT... [-o out/%s.ply] [options]\n"
       "  quickses INPUT --trajectory FILE [--trajectory FILE...] [--frames A:B:STEP] [--csv FILE] [-o frame_%05d.ply] "
       "[options]\n"
-      "  quickses measure INPUT [--surface sas,vdw,ses] [--per-atom FILE] [--per-residue FILE] [options]\n"
+      "  quickses measure INPUT... [--surface sas,vdw,ses] [--per-atom FILE] [--per-residue FILE] [options]\n"
       "  quickses cavities INPUT [--csv FILE] [options]\n"
       "  quickses bench FILE... [--repeat N] [--copies N] [--delivery host|device|both] [--small N | --jobs] "
       "[options]\n",
@@ -317,7 +336,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
   app.allow_windows_style_options(false);  // a path may begin with a slash there too
   app.footer(kFooter);
   app.set_version_flag("--version", std::string("quickses ") + qses_version(), "Print the version");
-  add_input_options(&app, options,
+  add_input_options(&app, options, kInputsHelp,
                     "Which model of the file; all: one mesh each, as out_0001.ply for -o out.ply; default 1");
   add_mesh_options(&app, options);
   add_surface_choice(&app, options.compute);
@@ -330,7 +349,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
   CLI::App *measure = app.add_subcommand(
       "measure", "Area and volume, those of SAS and VDW exactly and without a mesh, per atom and residue on request");
   measure->footer(kFooter);
-  add_input_options(measure, options, "Which model of the file, or all of them; default 1");
+  add_input_options(measure, options, kInputsHelp, "Which model of the file, or all of them; default 1");
   add_measured(measure, options.measured);
   add_creases(measure, options.compute);
   add_compute_options(measure, options.compute);
@@ -341,7 +360,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
   CLI::App *cavities =
       app.add_subcommand("cavities", "The cavities of a surface: volume, area, centre and the residues that line them");
   cavities->footer(kFooter);
-  add_input_options(cavities, options, "Which model of the file; default 1");
+  add_input_options(cavities, options, kInputHelp, "Which model of the file; default 1");
   add_surface_choice(cavities, options.compute);
   add_compute_options(cavities, options.compute);
   cavities->add_option("--csv", options.csv, "Table of the cavities; - for standard output")->type_name("FILE|-");
@@ -378,6 +397,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
     used = command;
     options.command = value;
   }
+  if (!options.inputs.empty()) options.input = options.inputs.front();
   if (options.compute.creases == Switch::kDefault) {
     const bool is_many = options.command == Options::Command::kBench || !options.trajectories.empty();
     options.compute.creases = is_many || options.compute.method == QSES_METHOD_GRID ? Switch::kOff : Switch::kOn;

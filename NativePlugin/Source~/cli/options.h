@@ -51,13 +51,13 @@ struct Options {
   enum class Command { kSurface, kMeasure, kCavities, kBench, kNone } command = Command::kSurface;
   ComputeOptions compute;
   io::ReadOptions read;
-  std::string input;
-  std::string output;  // empty: no mesh file
+  std::vector<std::string> inputs;  // structures; "-" is standard input
+  std::string input;                // the one of them that these options are for, or the first
+  std::string output;               // empty: no mesh file
   Switch hard_edges = Switch::kDefault;
   bool component_ids = false;                                                 // in that file
   bool outer = false;                                                         // without cavities
   std::vector<qses_surface> measured = {QSES_SURFACE_SAS, QSES_SURFACE_VDW};  // of measure
-  std::vector<std::string> inputs;                                            // of bench
   BenchOptions bench;
   std::vector<std::string> trajectories;  // in a row; empty: the input alone
   FrameRange frames;                      // of the trajectory
@@ -70,6 +70,7 @@ struct Options {
   std::string json;                       // a file, "-" for standard output, empty: no report
   bool quiet = false;
 
+  bool has_several_inputs() const { return inputs.size() > 1; }
   // For messages: 'a.xtc', or 'a.xtc' and 2 more.
   std::string quoted_trajectories() const;
   bool wants_areas() const { return !per_atom.empty() || !per_residue.empty(); }

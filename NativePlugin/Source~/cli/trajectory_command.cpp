@@ -186,7 +186,7 @@ class Run {
                   static_cast<unsigned long long>(all_engines), seconds, rate, options.csv.empty() ? "" : ", ",
                   options.csv.c_str());
     if (const size_t failed = ledger.failed_count())
-      throw Failure(kFramesFailed, std::to_string(failed) + " of " + std::to_string(frames_.count) + " frames failed");
+      throw Failure(kSomeFailed, std::to_string(failed) + " of " + std::to_string(frames_.count) + " frames failed");
   }
 
   // Several of this process.
