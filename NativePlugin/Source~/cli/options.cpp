@@ -19,6 +19,11 @@ namespace {
 
 const std::map<std::string, qses_surface> kSurfaces = {
     {"ses", QSES_SURFACE_SES}, {"sas", QSES_SURFACE_SAS}, {"vdw", QSES_SURFACE_VDW}};
+const std::map<std::string, io::StructureFormat> kInputFormats = {{"pdb", io::StructureFormat::kPdb},
+                                                                  {"mmcif", io::StructureFormat::kMmcif},
+                                                                  {"pqr", io::StructureFormat::kPqr},
+                                                                  {"xyzr", io::StructureFormat::kXyzr},
+                                                                  {"gro", io::StructureFormat::kGro}};
 const std::map<std::string, qses_method> kMethods = {{"exact", QSES_METHOD_EXACT}, {"grid", QSES_METHOD_GRID}};
 const std::map<std::string, qses_backend> kBackends = {
     {"auto", QSES_BACKEND_AUTO}, {"cuda", QSES_BACKEND_CUDA}, {"cpu", QSES_BACKEND_CPU}};
@@ -41,9 +46,11 @@ const char kFooter[] =
     "Owner atoms in PLY files are 0-based places among the atoms of the input's model, before any filter.\n"
     "Lengths are in angstrom, areas in A^2, volumes in A^3.\n";
 
-const char kInputHelp[] = "Structure: .pdb .ent .cif .mmcif .pqr .xyzr .gro, each also as .gz";
+const char kInputHelp[] = "Structure: .pdb .ent .cif .mmcif .pqr .xyzr .gro, each also as .gz; - for standard input";
 const char kInputsHelp[] =
-    "Structure: .pdb .ent .cif .mmcif .pqr .xyzr .gro, each also as .gz; or several, each with a mesh of its own";
+    "Structure: .pdb .ent .cif .mmcif .pqr .xyzr .gro, each also as .gz; - for standard input. Or several, each with a "
+    "mesh "
+    "of its own";
 
 void add_compute_options(CLI::App *app, ComputeOptions &options) {
   add_number(app, "-v,--spacing", "--spacing (-v)", options.spacing, 0.001, 100,
@@ -67,7 +74,7 @@ void add_compute_options(CLI::App *app, ComputeOptions &options) {
            options.radii_given = true;
          },
          "Van der Waals radii: quickses (O 1.52, C 1.70, N 1.55, H 1.20, S 1.80, P 1.80, others 1.40), bondi, or a "
-         "file with lines `ELEMENT radius` (`*` for all others)")
+         "file with lines `ELEMENT radius` (`*` for all others) or `RESIDUE ATOM radius`")
       ->type_name("SET|FILE")
       ->default_str("quickses");
 }
@@ -104,8 +111,17 @@ void add_measured(CLI::App *app, std::vector<qses_surface> &measured) {
       ->default_str("sas,vdw");
 }
 
+void add_input_format(CLI::App *app, Options &options) {
+  app->add_option_function<std::string>(
+         "--input-format",
+         [&options](const std::string &text) { options.input_format = look_up("--input-format", kInputFormats, text); },
+         "pdb, mmcif, pqr, xyzr or gro, whatever the name and the content say")
+      ->type_name("NAME");
+}
+
 void add_input_options(CLI::App *app, Options &options, const char *input_help, const char *model_help) {
   app->add_option("-i,--input,INPUT", options.inputs, input_help)->type_name("FILE");
+  add_input_format(app, options);
   app->add_flag_callback(
       "--no-water", [&options] { options.read.water = false; }, "Leave out water");
   app->add_flag_callback(
@@ -369,6 +385,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
   CLI::App *bench = app.add_subcommand("bench", "Time warm calls: median ms from atoms in host memory to the mesh");
   bench->footer(kFooter);
   bench->add_option("FILE", options.inputs, "Structures")->type_name("FILE");
+  add_input_format(bench, options);
   add_bench_options(bench, options.bench);
   add_surface_choice(bench, options.compute);
   add_compute_options(bench, options.compute);

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <iosfwd>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,9 +52,10 @@ struct Options {
   enum class Command { kSurface, kMeasure, kCavities, kBench, kNone } command = Command::kSurface;
   ComputeOptions compute;
   io::ReadOptions read;
-  std::vector<std::string> inputs;  // structures; "-" is standard input
-  std::string input;                // the one of them that these options are for, or the first
-  std::string output;               // empty: no mesh file
+  std::optional<io::StructureFormat> input_format;  // nothing: name and content tell
+  std::vector<std::string> inputs;                  // structures; "-" is standard input
+  std::string input;                                // the one of them that these options are for, or the first
+  std::string output;                               // empty: no mesh file
   Switch hard_edges = Switch::kDefault;
   bool component_ids = false;                                                 // in that file
   bool outer = false;                                                         // without cavities

@@ -38,7 +38,8 @@ UsedFiles::File UsedFiles::file_of(const char *flag, const std::string &name, bo
 #if defined(_WIN32)
   const fs::path path = io::path_of(name);
 #else
-  const fs::path path = is_output && name == "-" ? "/dev/stdout" : io::path_of(name);  // may be a file
+  // What a shell leads there may be a file.
+  const fs::path path = name != "-" ? io::path_of(name) : is_output ? "/dev/stdout" : "/dev/stdin";
 #endif
   return {flag, name, is_output, path, io::place_of(path)};
 }

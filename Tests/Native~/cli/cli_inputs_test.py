@@ -6,11 +6,13 @@ usage: cli_inputs_test.py PROGRAM [unittest options]      (or QUICKSES_PROGRAM i
 import csv
 import gzip
 import json
+import os
+import subprocess
 import unittest
 
 import cli_test
 from cli_test import INPUT, OK, USAGE, ProgramTest
-from trajectory_files import chain_of, moving, pdb_text
+from trajectory_files import chain_of, dcd_bytes, moving, pdb_text
 
 SOME_FAILED = 6
 
@@ -103,6 +105,64 @@ class SeveralStructures(InputTest):
         self.write("in/models.pdb", text)
         self.run_cpu("in/models.pdb", self.names[0], "--model", "all", "-o", "out/%s.ply", code=OK)
         self.assertEqual(self.outputs(), ["models_0001.ply", "models_0002.ply", "one_0001.ply"])
+
+
+class StandardInput(InputTest):
+    def run_with(self, content, *arguments, code=OK):
+        result = subprocess.run([cli_test.PROGRAM, *map(str, arguments), "--backend", "cpu"], input=content,
+                                capture_output=True, cwd=self.folder, timeout=120)
+        self.assertEqual(result.returncode, code, result.stderr)
+        return result
+
+    def test_it_is_read_as_the_file_would_be(self):
+        text = (self.folder / self.names[0]).read_bytes()
+        alone = json.loads(self.run_cpu(self.names[0], "--json", "-", "-o", "file.ply").stdout)
+        for content in (text, gzip.compress(text), text.replace(b"\n", b"\r\n")):
+            report = json.loads(self.run_with(content, "-", "--json", "-", "-o", "pipe.ply").stdout)
+            self.assertEqual((report["input"], report["area"]), ("-", alone["area"]))
+            self.assertEqual((self.folder / "pipe.ply").read_bytes(), (self.folder / "file.ply").read_bytes())
+        self.run_with(text, self.names[1], "-", "-o", "out/%s.ply")
+        self.assertEqual(self.outputs(), ["stdin.ply", "two.x.ply"])
+
+    def test_measure_cavities_bench_and_trajectories(self):
+        text = (self.folder / self.names[0]).read_bytes()
+        self.write("t.dcd", dcd_bytes(self.frames))
+        self.assertIn(b"sas ", self.run_with(text, "measure", "-").stdout)
+        self.assertIn(b"no cavities", self.run_with(text, "cavities", "-").stdout)
+        self.assertIn(b"12 atoms", self.run_with(text, "bench", "-", "--repeat", 1).stdout)
+        self.assertIn(b"3 frames of 12 atoms", self.run_with(text, "-", "--trajectory", "t.dcd", "--csv", "a.csv").stdout)
+
+    def test_formats_that_content_does_not_tell(self):
+        report = json.loads(self.run_with(b"0 0 0 1.5\n", "-", "--input-format", "xyzr", "--json", "-").stdout)
+        self.assertEqual(report["atoms"], 1)
+        self.assertIn(b"standard input", self.run_with(b"0 0 0 1.5\n", "-", code=INPUT).stderr)
+        self.assertIn(b"'standard input' is empty", self.run_with(b"", "-", code=INPUT).stderr)
+        self.write("a.txt", "0 0 0 1.5\n")
+        self.run_cpu("a.txt", "--input-format", "xyzr")
+        self.assert_fails(USAGE, ["--input-format", "'cif'", "mmcif"], "a.txt", "--input-format", "cif")
+
+    def test_more_than_may_be_read(self):
+        result = self.run_with(b"REMARK\n" * 1000, "-", "--max-input", "1K", code=INPUT)
+        self.assertIn(b"--max-input", result.stderr)
+
+    @unittest.skipIf(os.name == "nt", "there is no /dev/stdin")
+    def test_the_file_that_it_comes_from_is_not_overwritten(self):
+        path = self.folder / self.names[0]
+        with path.open("rb") as file:
+            result = subprocess.run([cli_test.PROGRAM, "-", "--json", self.names[0]], stdin=file, capture_output=True,
+                                    cwd=self.folder, encoding="utf-8", timeout=120)
+        self.assertEqual(result.returncode, USAGE)
+        self.assertIn("would be overwritten", result.stderr)
+
+
+class Radii(InputTest):
+    def test_lines_by_residue_and_atom(self):
+        self.write("r.txt", "C 2.1\nALA CA 1.1   # of all\n* N 1.3\n")
+        table = self.run_cpu("measure", self.names[0], "--radii", "r.txt", "--per-atom", "-", "--quiet").stdout
+        radii = {(row["atom_name"], row["radius_A"]) for row in csv.DictReader(table.splitlines())}
+        self.assertEqual(radii, {("C", "2.100"), ("CA", "1.100"), ("N", "1.300")})
+        self.write("bad.txt", "C 2.1\nALA CA x\n")
+        self.assert_fails(INPUT, ["bad.txt", "line 2", "'x'"], self.names[0], "--radii", "bad.txt", "--backend", "cpu")
 
 
 if __name__ == "__main__":

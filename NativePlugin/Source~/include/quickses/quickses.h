@@ -758,9 +758,9 @@ typedef struct qses_structure_options {
   qses_bool hydrogen;    /* the same for hydrogen and deuterium */
   const char *selection; /* CID syntax of gemmi, such as "//A" or "/1/A/10-40/CA[C]"; NULL (default) = everything */
   const char *radii;     /* "quickses", "bondi", or the name of a text file with lines `ELEMENT radius` (Å; `*` for all
-                            others) and `RESIDUE ATOM radius` (either may be `*`); the most specific holds: residue and
-                            atom, residue, atom, element, `*`. NULL (default) = those of the file (PQR, XYZR), else "quickses": O 1.52, C 1.70,
-                            N 1.55, H 1.20, S 1.80, P 1.80, others 1.40 Å */
+                            others) and `RESIDUE ATOM radius` (either may be `*`), of which the most specific holds:
+                            residue and atom, residue, atom, element, `*`. NULL (default) = those of the file (PQR,
+                            XYZR), else "quickses": O 1.52, C 1.70, N 1.55, H 1.20, S 1.80, P 1.80, others 1.40 Å */
 } qses_structure_options;
 
 /* The defaults, with struct_size set. NULL is ignored. */
