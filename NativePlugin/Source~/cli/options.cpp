@@ -11,6 +11,7 @@
 #include "cli/option_kinds.h"
 #include "cli/output_pattern.h"
 #include "cli/used_files.h"
+#include "io/atomic_file.h"
 #include "io/mesh_writer.h"
 #include "io/text.h"
 
@@ -24,6 +25,9 @@ const std::map<std::string, io::StructureFormat> kInputFormats = {{"pdb", io::St
                                                                   {"pqr", io::StructureFormat::kPqr},
                                                                   {"xyzr", io::StructureFormat::kXyzr},
                                                                   {"gro", io::StructureFormat::kGro}};
+// Of those that are one file each.
+const std::map<std::string, io::MeshFormat> kMeshFormats = {
+    {"obj", io::MeshFormat::kObj}, {"ply", io::MeshFormat::kPly}, {"stl", io::MeshFormat::kStl}};
 const std::map<std::string, qses_method> kMethods = {{"exact", QSES_METHOD_EXACT}, {"grid", QSES_METHOD_GRID}};
 const std::map<std::string, qses_backend> kBackends = {
     {"auto", QSES_BACKEND_AUTO}, {"cuda", QSES_BACKEND_CUDA}, {"cpu", QSES_BACKEND_CPU}};
@@ -146,7 +150,7 @@ void add_input_options(CLI::App *app, Options &options, const char *input_help, 
 void add_mesh_options(CLI::App *app, Options &options) {
   app->add_option("-o,--output", options.output,
                   "Mesh: .obj, .ply (binary, with normals and owner atoms) or .stl. %s stands for the name of INPUT")
-      ->type_name("FILE");
+      ->type_name("FILE|-");
   add_switch(app, "--hard-edges", options.hard_edges,
              "on: a vertex on a crease has a normal for each side, so that light breaks there; PLY files then have it "
              "once per side. Default: on for .obj and .ply");
@@ -236,8 +240,25 @@ void check_trajectory(const Options &options, const std::function<bool(const cha
   if (!options.output.empty()) OutputPattern check(options.output);  // throws if it is none
 }
 
+// The mesh's file: "-" becomes the name of standard output with the format in it.
+void resolve_output(Options &options, const std::string &format) {
+  if (io::is_standard_output(options.output)) options.output = "./" + options.output;  // a file that is called so
+  if (options.output != "-") {
+    if (!format.empty())
+      throw Failure(kUsage, "--output-format: is for standard output (-o -); a file's extension names its format");
+    return;
+  }
+  if (format.empty())
+    throw Failure(kUsage, "--output (-o): standard output has no extension: --output-format ply says what to write");
+  if (options.has_several_inputs() || !options.trajectories.empty() || options.read.model == 0)
+    throw Failure(kUsage, "--output (-o): standard output takes one mesh, and there may be several");
+  options.output = "-." + format;
+}
+
 void check_standard_output(const Options &options) {
-  const std::pair<const char *, const std::string &> outputs[] = {{"--csv", options.csv},
+  const std::string mesh = io::is_standard_output(options.output) ? "-" : "";
+  const std::pair<const char *, const std::string &> outputs[] = {{"--output (-o)", mesh},
+                                                                  {"--csv", options.csv},
                                                                   {"--per-atom", options.per_atom},
                                                                   {"--per-residue", options.per_residue},
                                                                   {"--json", options.json}};
@@ -326,6 +347,10 @@ const char *name_of(qses_method method) { return find_name(kMethods, method); }
 const char *name_of(qses_backend backend) { return find_name(kBackends, backend); }
 const char *name_of(qses_vertex_layout layout) { return find_name(kLayouts, layout); }
 
+bool Options::prints_data() const {
+  return csv == "-" || json == "-" || per_atom == "-" || per_residue == "-" || io::is_standard_output(output);
+}
+
 std::string Options::quoted_trajectories() const {
   const std::string first = "'" + trajectories.front() + "'";
   return trajectories.size() == 1 ? first : first + " and " + std::to_string(trajectories.size() - 1) + " more";
@@ -338,6 +363,7 @@ bool has_hard_edges(const Options &options) {
 
 Options parse_options(int argc, char **argv, std::ostream &out) {
   Options options;
+  std::string output_format;  // of standard output
   CLI::App app(
       "Molecular surfaces as closed triangle meshes.\n\n"
       "  quickses INPUT [-o OUT.obj|OUT.ply|OUT.stl] [options]\n"
@@ -355,6 +381,14 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
   add_input_options(&app, options, kInputsHelp,
                     "Which model of the file; all: one mesh each, as out_0001.ply for -o out.ply; default 1");
   add_mesh_options(&app, options);
+  app.add_option_function<std::string>(
+         "--output-format",
+         [&](const std::string &text) {
+           look_up("--output-format", kMeshFormats, text);
+           output_format = text;
+         },
+         "obj, ply or stl: what -o - writes to standard output")
+      ->type_name("NAME");
   add_surface_choice(&app, options.compute);
   add_compute_options(&app, options.compute);
   add_trajectory_options(&app, options,
@@ -415,6 +449,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
     options.command = value;
   }
   if (!options.inputs.empty()) options.input = options.inputs.front();
+  resolve_output(options, output_format);
   if (options.compute.creases == Switch::kDefault) {
     const bool is_many = options.command == Options::Command::kBench || !options.trajectories.empty();
     options.compute.creases = is_many || options.compute.method == QSES_METHOD_GRID ? Switch::kOff : Switch::kOn;

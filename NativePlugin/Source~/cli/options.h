@@ -55,7 +55,7 @@ struct Options {
   std::optional<io::StructureFormat> input_format;  // nothing: name and content tell
   std::vector<std::string> inputs;                  // structures; "-" is standard input
   std::string input;                                // the one of them that these options are for, or the first
-  std::string output;                               // empty: no mesh file
+  std::string output;                               // empty: no mesh file; see also io::is_standard_output
   Switch hard_edges = Switch::kDefault;
   bool component_ids = false;                                                 // in that file
   bool outer = false;                                                         // without cavities
@@ -77,7 +77,7 @@ struct Options {
   std::string quoted_trajectories() const;
   bool wants_areas() const { return !per_atom.empty() || !per_residue.empty(); }
   // Whether standard output is taken by something that other programs read.
-  bool prints_data() const { return csv == "-" || json == "-" || per_atom == "-" || per_residue == "-"; }
+  bool prints_data() const;
 };
 
 // Reads the command line. After --help or --version, which print to out, the command is kNone.

@@ -7,6 +7,7 @@
 
 #include "cli/each_input.h"
 #include "cli/exit_code.h"
+#include "io/atomic_file.h"
 #include "io/file_path.h"
 #include "io/radii.h"
 
@@ -35,13 +36,14 @@ bool is_same_place(const fs::path &a, const fs::path &b) { return comparable(a) 
 }  // namespace
 
 UsedFiles::File UsedFiles::file_of(const char *flag, const std::string &name, bool is_output) {
+  const bool is_standard = name == "-" || (is_output && io::is_standard_output(name));
 #if defined(_WIN32)
   const fs::path path = io::path_of(name);
 #else
   // What a shell leads there may be a file.
-  const fs::path path = name != "-" ? io::path_of(name) : is_output ? "/dev/stdout" : "/dev/stdin";
+  const fs::path path = !is_standard ? io::path_of(name) : is_output ? "/dev/stdout" : "/dev/stdin";
 #endif
-  return {flag, name, is_output, path, io::place_of(path)};
+  return {flag, is_standard ? "-" : name, is_output, path, io::place_of(path)};
 }
 
 bool UsedFiles::is_same(const File &a, const File &b) {

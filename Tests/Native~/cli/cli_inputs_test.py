@@ -155,6 +155,46 @@ class StandardInput(InputTest):
         self.assertIn("would be overwritten", result.stderr)
 
 
+class StandardOutput(InputTest):
+    def run_bytes(self, *arguments, stdin=b""):
+        result = subprocess.run([cli_test.PROGRAM, *map(str, arguments), "--backend", "cpu"], input=stdin,
+                                capture_output=True, cwd=self.folder, timeout=120)
+        self.assertEqual(result.returncode, OK, result.stderr)
+        return result.stdout
+
+    def test_the_mesh_is_what_the_file_would_be(self):
+        for name in ("obj", "ply", "stl"):
+            self.run_cpu(self.names[0], "-o", f"file.{name}")
+            expected = (self.folder / f"file.{name}").read_bytes()
+            arguments = ("-o", "-", "--output-format", name, "--json", "a.json")
+            self.assertEqual(self.run_bytes(self.names[0], *arguments), expected)
+            self.assertEqual(json.loads((self.folder / "a.json").read_text())["output"], "-")
+            text = (self.folder / self.names[0]).read_bytes()
+            self.assertEqual(self.run_bytes("-", "-o", "-", "--output-format", name, stdin=text), expected)  # a filter
+
+    def test_what_does_not_go_with_it(self):
+        def fails(parts, *arguments):
+            self.assert_fails(USAGE, parts, *arguments, "--backend", "cpu")
+        fails(["--output-format ply"], self.names[0], "-o", "-")
+        fails(["--output-format", "'gif'", "ply"], self.names[0], "-o", "-", "--output-format", "gif")
+        fails(["--output-format", "extension"], self.names[0], "-o", "a.ply", "--output-format", "ply")
+        fails(["--output-format", "extension"], self.names[0], "--output-format", "ply")
+        ply = ("-o", "-", "--output-format", "ply")
+        for flag in ("--json", "--per-atom"):
+            fails(["--output (-o) and " + flag, "standard output"], self.names[0], *ply, flag, "-")
+        fails(["one mesh"], *self.names, *ply)
+        fails(["one mesh"], self.names[0], "--model", "all", *ply)
+        fails(["one mesh"], self.names[0], "--trajectory", "t.dcd", *ply)
+        fails(["--hard-edges"], self.names[0], "--hard-edges", "on", "-o", "-", "--output-format", "stl")
+
+    def test_after_an_error_nothing_was_printed(self):
+        self.assert_fails(INPUT, ["none.pdb"], "none.pdb", "-o", "-", "--output-format", "ply", "--backend", "cpu")
+
+    def test_a_file_that_is_called_so_is_a_file(self):
+        self.run_cpu(self.names[0], "-o", "-.ply")
+        self.assertTrue((self.folder / "-.ply").read_bytes().startswith(b"ply"))
+
+
 class Radii(InputTest):
     def test_lines_by_residue_and_atom(self):
         self.write("r.txt", "C 2.1\nALA CA 1.1   # of all\n* N 1.3\n")
