@@ -127,6 +127,10 @@ namespace QuickSes.Tests
 
         [TestCase("a.dcd.bytes", TrajectoryFormat.Dcd)]
         [TestCase("a.xtc", TrajectoryFormat.Xtc)]
+        [TestCase("a.trr.gz", TrajectoryFormat.Trr)]
+        [TestCase("a.nc", TrajectoryFormat.Netcdf)]
+        [TestCase("a.ncdf.gz.bytes", TrajectoryFormat.Netcdf)]
+        [TestCase("a.ncrst", TrajectoryFormat.Netcdf)]
         [TestCase("a.pdb.gz.bytes", TrajectoryFormat.Pdb)]
         [TestCase("a.gro", TrajectoryFormat.Auto)]
         public void NamesTellTheFormatOfFrames(string name, TrajectoryFormat format) =>

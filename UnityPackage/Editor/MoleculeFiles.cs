@@ -26,7 +26,7 @@ namespace QuickSes.Editor
         public static bool IsTrajectory(string fileName)
         {
             TrajectoryFormat format = MoleculeFile.TrajectoryFormatOf(fileName);
-            return format == TrajectoryFormat.Dcd || format == TrajectoryFormat.Xtc;
+            return format != TrajectoryFormat.Auto && format != TrajectoryFormat.Pdb;
         }
 
         /// <summary>Whether it lies where files stay as they are and are found by their paths.</summary>

@@ -12,7 +12,8 @@ namespace QuickSes.Editor
     /// database beside a .dll stays with Unity, and no other package's importer is in its way.
     /// </summary>
     [ScriptedImporter(1,
-        new[] { "cif", "mmcif", "ent", "brk", "pqr", "xyzr", "xyzrn", "gro", "xtc", "dcd" }, new[] { "pdb", "gz" })]
+        new[] { "cif", "mmcif", "ent", "brk", "pqr", "xyzr", "xyzrn", "gro", "xtc", "trr", "nc", "ncdf", "ncrst", "dcd" },
+        new[] { "pdb", "gz" })]
     internal sealed class MoleculeImporter : ScriptedImporter
     {
         public override void OnImportAsset(AssetImportContext ctx)

@@ -34,7 +34,7 @@ namespace {
 
 // By reference: a number that names no format must not be looked at as one before it is checked.
 std::optional<io::TrajectoryFormat> format_of(const qses_trajectory_format &format) {
-  check_choice("format", format, QSES_TRAJECTORY_PDB);
+  check_choice("format", format, QSES_TRAJECTORY_NETCDF);
   switch (format) {
     case QSES_TRAJECTORY_DCD:
       return io::TrajectoryFormat::kDcd;
@@ -42,6 +42,10 @@ std::optional<io::TrajectoryFormat> format_of(const qses_trajectory_format &form
       return io::TrajectoryFormat::kXtc;
     case QSES_TRAJECTORY_PDB:
       return io::TrajectoryFormat::kPdb;
+    case QSES_TRAJECTORY_TRR:
+      return io::TrajectoryFormat::kTrr;
+    case QSES_TRAJECTORY_NETCDF:
+      return io::TrajectoryFormat::kNetcdf;
     default:
       return std::nullopt;
   }
@@ -55,6 +59,10 @@ qses_trajectory_format format_of(io::TrajectoryFormat format) {
       return QSES_TRAJECTORY_XTC;
     case io::TrajectoryFormat::kPdb:
       return QSES_TRAJECTORY_PDB;
+    case io::TrajectoryFormat::kTrr:
+      return QSES_TRAJECTORY_TRR;
+    case io::TrajectoryFormat::kNetcdf:
+      return QSES_TRAJECTORY_NETCDF;
   }
   return QSES_TRAJECTORY_AUTO;
 }

@@ -64,6 +64,12 @@ AreaRows make_area_rows(const Options &options, const std::string &first, const 
   return rows;
 }
 
+std::string first_columns(const Options &options, const io::Structure &structure) {
+  const std::string input = options.has_several_inputs() ? csv_field(options.input) : "";
+  const std::string model = options.read.model == 0 ? std::to_string(structure.model) : "";
+  return input + (input.empty() || model.empty() ? "" : ",") + model;
+}
+
 void check_has_residues(const Options &options, const io::Structure &structure) {
   if (!options.per_residue.empty() && !structure.has_names)
     throw Failure(kUsage, "--per-residue: '" + options.input + "' does not tell residues");
@@ -71,7 +77,9 @@ void check_has_residues(const Options &options, const io::Structure &structure) 
 
 AreaTables::AreaTables(const Options &options, const std::vector<qses_surface> &surfaces)
     : per_atom_(options.per_atom), per_residue_(options.per_residue) {
-  const std::string first = !options.trajectory.empty() ? "frame," : options.read.model == 0 ? "model," : "";
+  std::string first = options.trajectories.empty() ? "" : "frame,";
+  if (options.has_several_inputs()) first += "input,";
+  if (options.read.model == 0) first += "model,";
   const std::string residue = "chain,residue_number,insertion_code,residue_name";
   std::string areas;
   for (const qses_surface surface : surfaces) areas += std::string(",") + name_of(surface) + "_area_A2";

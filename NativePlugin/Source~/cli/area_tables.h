@@ -25,10 +25,13 @@ struct AreaRows {
   std::string per_atom, per_residue;
 };
 
-// first: what the first column says (see AreaTables); nothing where there is none.
+// first: what the first columns say (see AreaTables); nothing where there are none.
 // The tables are those that the options ask for.
 AreaRows make_area_rows(const Options &options, const std::string &first, const io::Structure &structure,
                         const std::vector<AtomAreas> &surfaces);
+
+// The first columns of a structure's rows that are not of a trajectory.
+std::string first_columns(const Options &options, const io::Structure &structure);
 
 // Throws Failure (kUsage) if a table of residues is asked for and the file does not tell them.
 void check_has_residues(const Options &options, const io::Structure &structure);
@@ -36,7 +39,8 @@ void check_has_residues(const Options &options, const io::Structure &structure);
 // The files, or those of them that the options ask for.
 class AreaTables {
  public:
-  // The first column is "frame" of a trajectory, "model" of all models of a file; else there is none.
+  // The first column is "frame" of a trajectory; "input" of several structures, then "model" of all models of a file;
+  // else there is none.
   AreaTables(const Options &options, const std::vector<qses_surface> &surfaces);
 
   void write(const AreaRows &rows);

@@ -128,8 +128,7 @@ void run_bench(const Options &options) {
   const BenchOptions &bench = options.bench;
   check_text_output(options.json);
   std::vector<io::StructureFile> files;  // all of them first: a bad name should not cost a run
-  for (const std::string &input : options.inputs)
-    files.push_back(load(input, options.read, options.compute, options.quiet));
+  for (const std::string &input : options.inputs) files.push_back(load(input, options, options.quiet));
 
   const Engine first = start_engine(options.compute, options.quiet);  // starts CUDA; nothing is computed with it
   const bool needs_device = bench.deliveries == Deliveries::kDevice || bench.deliveries == Deliveries::kBoth;

@@ -7,9 +7,9 @@
 
 namespace quickses::cli {
 
-void run_surface(const Options &options);                           // quickses INPUT
+void run_surface(const Options &options);                           // quickses INPUT...
 void run_trajectory(const Options &options, Processes &processes);  // quickses [measure] INPUT --trajectory FILE
-void run_measure(const Options &options);                           // quickses measure INPUT
+void run_measure(const Options &options);                           // quickses measure INPUT...
 void run_cavities(const Options &options);                          // quickses cavities INPUT
 void run_bench(const Options &options);                             // quickses bench FILE...
 

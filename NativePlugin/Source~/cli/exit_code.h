@@ -17,7 +17,7 @@ enum ExitCode {
   kOutputUnwritable = 3,    // an output file can't be written
   kComputingFailed = 4,     // memory, device, spacing too fine
   kBackendUnavailable = 5,  // the back end asked for can't be used here
-  kFramesFailed = 6,        // some frames of a trajectory failed; the others are done
+  kSomeFailed = 6,          // some frames of a trajectory, or some of several structures; the others are done
 };
 
 class Failure : public std::runtime_error {

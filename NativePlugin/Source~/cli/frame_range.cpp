@@ -46,21 +46,21 @@ FrameRange::FrameRange(const std::string &text) : text_(text) {
   }
 }
 
-FrameSelection FrameRange::select(size_t frame_count, const std::string &trajectory) const {
+FrameSelection FrameRange::select(size_t frame_count, const std::string &quoted_trajectory) const {
   const int64_t count = static_cast<int64_t>(frame_count);
   const std::string frames = std::to_string(frame_count) + (frame_count == 1 ? " frame" : " frames");
   const auto from_start = [count](int64_t frame) { return frame < 0 ? frame + count : frame; };
   if (is_single_) {
     const int64_t frame = from_start(*begin_);
     if (frame < 0 || frame >= count)
-      throw Failure(kUsage, "--frames: '" + trajectory + "' has no frame " + text_ + ": it has " + frames + ", 0 to " +
-                                std::to_string(count - 1));
+      throw Failure(kUsage, "--frames: " + quoted_trajectory + " has no frame " + text_ + ": there are " + frames +
+                                ", 0 to " + std::to_string(count - 1));
     return {static_cast<size_t>(frame), 1, 1};
   }
   const auto place = [&](int64_t frame) { return std::clamp<int64_t>(from_start(frame), 0, count); };
   const int64_t begin = begin_ ? place(*begin_) : 0, end = end_ ? place(*end_) : count;
   if (begin >= end)
-    throw Failure(kUsage, "--frames: " + text_ + " selects none of the " + frames + " of '" + trajectory + "'");
+    throw Failure(kUsage, "--frames: " + text_ + " selects none of the " + frames + " of " + quoted_trajectory);
   const size_t span = static_cast<size_t>(end - begin);
   return {static_cast<size_t>(begin), step_, (span - 1) / step_ + 1};
 }

@@ -27,8 +27,8 @@ class FrameRange {
   explicit FrameRange(const std::string &text);
 
   // The frames of a trajectory, at least one. As in Python, A and B may lie beyond the ends; a single frame must exist.
-  // Throws Failure (kUsage) naming --frames and the trajectory.
-  FrameSelection select(size_t frame_count, const std::string &trajectory) const;
+  // Throws Failure (kUsage) naming --frames and the trajectory, which is given in quotes.
+  FrameSelection select(size_t frame_count, const std::string &quoted_trajectory) const;
 
  private:
   std::string text_;

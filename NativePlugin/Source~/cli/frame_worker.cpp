@@ -35,7 +35,7 @@ std::string csv_row(uint64_t frame, std::optional<double> time, const qses_repor
 void check_atom_counts(const Options &options, const io::Structure &structure, const io::Trajectory &trajectory) {
   if (structure.file_atom_count == trajectory.atom_count()) return;
   throw Failure(kInputUnreadable, "'" + options.input + "' has " + std::to_string(structure.file_atom_count) +
-                                      " atoms, but '" + options.trajectory + "' has " +
+                                      " atoms, but '" + options.trajectories.front() + "' has " +
                                       std::to_string(trajectory.atom_count()) + ": they must be of the same atoms");
 }
 
@@ -66,7 +66,7 @@ std::string csv_header(const Options &options) {
 }
 
 FrameInputs::FrameInputs(const Options &given, bool quiet)
-    : Input(given, quiet), trajectory(io::Trajectory::open(options.trajectory)) {
+    : Input(given, quiet), trajectory(io::Trajectory::open_all(options.trajectories)) {
   check_atom_counts(options, structure(), trajectory);
   for (const io::AtomInfo &atom : structure().atoms) file_indices.push_back(atom.file_index);
   if (!options.output.empty()) pattern.emplace(options.output);
@@ -77,7 +77,7 @@ FrameInputs::FrameInputs(const Options &given, bool quiet)
   if (trajectory.box(0))
     unwrapper = make_unwrapper(structure(), trajectory);
   else if (!quiet)
-    std::fprintf(stderr, "quickses: warning: --unwrap: '%s': %s\n", options.trajectory.c_str(),
+    std::fprintf(stderr, "quickses: warning: --unwrap: '%s': %s\n", options.trajectories.front().c_str(),
                  io::unwrap_sentence(io::UnwrapStatus::kNoBox));
 }
 
@@ -112,8 +112,7 @@ FrameResult FrameWorker::run(const FrameTask &task) {
     result.csv = std::to_string(task.frame) + std::string(commas, ',') + csv_field(result.error) + "\n";
     result.per_atom = result.per_residue = "";
     if (!options.json.empty())
-      result.json =
-          dump(Json{{"frame", task.frame}, {"trajectory", options.trajectory}, {"error", result.error}}, true);
+      result.json = dump(Json{{"frame", task.frame}, {"trajectory", file_of(task)}, {"error", result.error}}, true);
   }
   mesh_.clear();
   return result;
@@ -142,12 +141,14 @@ FrameWorker::Read FrameWorker::read(const FrameTask &task) {
   return read;
 }
 
+const std::string &FrameWorker::file_of(const FrameTask &task) const { return inputs_.trajectory.file_of(task.frame); }
+
 void FrameWorker::set_frame(Engine &engine) const {
   engine.set_frame(xyz_.data(), inputs_.trajectory.atom_count(), inputs_.file_indices);
 }
 
 Json FrameWorker::frame_json(const FrameTask &task, std::optional<double> time) const {
-  Json json = {{"frame", task.frame}, {"trajectory", inputs_.options.trajectory}};
+  Json json = {{"frame", task.frame}, {"trajectory", file_of(task)}};
   json["time_ps"] = time ? Json(*time) : Json();
   return json;
 }

@@ -20,7 +20,7 @@ namespace quickses::cli {
 
 // What the workers of a process share and only read.
 struct FrameInputs : Input {
-  // Reads both files. Warnings go to standard error unless quiet.
+  // Reads all files. Warnings go to standard error unless quiet.
   // Throws Failure, io::Error.
   FrameInputs(const Options &options, bool quiet);
 
@@ -55,6 +55,7 @@ class FrameWorker {
   Read read(const FrameTask &task);
   void fill_mesh(const FrameTask &task, Read read, FrameResult &result);
   void fill_measurement(const FrameTask &task, const Read &read, FrameResult &result);
+  const std::string &file_of(const FrameTask &task) const;
   Json frame_json(const FrameTask &task, std::optional<double> time) const;
   void add_areas(const std::vector<AtomAreas> &areas, FrameResult &result) const;
   void set_frame(Engine &engine) const;

@@ -7,16 +7,28 @@
 #include "cli/area_tables.h"
 #include "cli/clock.h"
 #include "cli/exit_code.h"
+#include "io/file_bytes.h"
 #include "io/radii.h"
 
 namespace quickses::cli {
 
-io::StructureFile load(const std::string &path, const io::ReadOptions &read, const ComputeOptions &options,
-                       bool quiet) {
-  io::StructureFile file = io::read_structure(path, read);
-  if (io::has_own_radii(file.format) && options.radii_given)
+namespace {
+
+io::StructureFile read(const std::string &path, const Options &options) {
+  if (path == "-")
+    return io::parse_structure(io::read_standard_input(), options.input_format, options.read, io::kStandardInput);
+  if (options.input_format) return io::read_structure(path, *options.input_format, options.read);
+  return io::read_structure(path, options.read);
+}
+
+}  // namespace
+
+io::StructureFile load(const std::string &path, const Options &options, bool quiet) {
+  io::StructureFile file = read(path, options);
+  const ComputeOptions &compute = options.compute;
+  if (io::has_own_radii(file.format) && compute.radii_given)
     throw Failure(kUsage, "--radii: '" + path + "' has radii of its own");
-  io::assign_radii(file, options.radii_given ? options.radii : "");
+  io::assign_radii(file, compute.radii_given ? compute.radii : "");
   if (!quiet)
     for (const std::string &warning : file.warnings) std::fprintf(stderr, "quickses: warning: %s\n", warning.c_str());
   return file;
@@ -24,7 +36,7 @@ io::StructureFile load(const std::string &path, const io::ReadOptions &read, con
 
 Input::Input(const Options &given, bool quiet) : options(given) {
   const auto start = Clock::now();
-  file = load(options.input, options.read, options.compute, quiet);
+  file = load(options.input, options, quiet);
   read_ms = ms_since(start);
   if (io::has_own_radii(file.format)) options.compute.radii = "file";
   for (const io::Structure &structure : file.models) check_has_residues(options, structure);

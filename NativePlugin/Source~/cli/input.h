@@ -9,9 +9,9 @@
 
 namespace quickses::cli {
 
-// The structures of a file with their radii. Warnings go to standard error unless quiet.
+// The structures of a file, or "-" for standard input, with their radii. Warnings go to standard error unless quiet.
 // Throws Failure, io::Error.
-io::StructureFile load(const std::string &path, const io::ReadOptions &read, const ComputeOptions &options, bool quiet);
+io::StructureFile load(const std::string &path, const Options &options, bool quiet);
 
 // The input of a command, which has what the options need of it. Throws as load() does.
 struct Input {

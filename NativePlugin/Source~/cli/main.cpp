@@ -18,7 +18,7 @@ namespace {
 
 void run_command(const Options &options, Processes &processes) {
   io::set_input_limit(options.max_input);
-  if (!options.trajectory.empty()) {
+  if (!options.trajectories.empty()) {
     run_trajectory(options, processes);
   } else if (processes.is_first()) {  // nothing to share
     if (options.command == Options::Command::kSurface) run_surface(options);

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-// quickses measure INPUT: area and volume, without a mesh.
+// quickses measure INPUT...: area and volume, without a mesh.
 #include <cstdio>
+#include <optional>
 #include <string>
 
 #include "cli/area_tables.h"
 #include "cli/commands.h"
+#include "cli/each_input.h"
 #include "cli/input.h"
 #include "cli/measuring.h"
 #include "cli/text_output.h"
@@ -32,24 +34,29 @@ void print_table(const Options &options, const io::Structure &structure, const E
 void run_measure(const Options &options) {
   check_text_output(options.json);
   AreaTables tables(options, options.measured);
-  const Input input(options, options.quiet);
-  Timings timings;
-  timings.read = input.read_ms;
-
-  Engine engine = start_engine(options.compute, options.quiet);
-  const bool all_models = options.read.model == 0;
+  std::optional<Engine> engine;
   std::string reports;
-  for (const io::Structure &structure : input.file.models) {
-    engine.set_atoms(structure, options.input);
-    const Measurement measurement = measure_surfaces(engine, options);
-    tables.write(
-        make_area_rows(options, all_models ? std::to_string(structure.model) : "", structure, measurement.areas));
-    if (!options.json.empty())
-      reports += dump(measurement_json(input.options, structure, engine, measurement, timings), all_models);
-    if (!options.quiet && !options.prints_data()) print_table(options, structure, engine, measurement);
-  }
+  const bool has_several = options.read.model == 0 || options.has_several_inputs();
+  const auto measure = [&](const Options &one) {
+    const Input input(one, options.quiet);
+    Timings timings;
+    timings.read = input.read_ms;
+    if (!engine) engine.emplace(start_engine(options.compute, options.quiet));
+    for (const io::Structure &structure : input.file.models) {
+      engine->set_atoms(structure, one.input);
+      const Measurement measurement = measure_surfaces(*engine, one);
+      tables.write(make_area_rows(one, first_columns(one, structure), structure, measurement.areas));
+      if (!options.json.empty())
+        reports += dump(measurement_json(input.options, structure, *engine, measurement, timings), has_several);
+      if (!options.quiet && !options.prints_data()) print_table(one, structure, *engine, measurement);
+    }
+  };
+  const size_t failed_count = for_each_input(options, measure, [&](const Options &one, const Failure &failure) {
+    if (!options.json.empty()) reports += dump(Json{{"input", one.input}, {"error", failure.what()}}, true);
+  });
   tables.finish();
   if (!options.json.empty()) write_text(options.json, reports);
+  check_failed_inputs(options, failed_count);
 }
 
 }  // namespace quickses::cli

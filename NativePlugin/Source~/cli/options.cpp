@@ -11,6 +11,7 @@
 #include "cli/option_kinds.h"
 #include "cli/output_pattern.h"
 #include "cli/used_files.h"
+#include "io/atomic_file.h"
 #include "io/mesh_writer.h"
 #include "io/text.h"
 
@@ -19,6 +20,14 @@ namespace {
 
 const std::map<std::string, qses_surface> kSurfaces = {
     {"ses", QSES_SURFACE_SES}, {"sas", QSES_SURFACE_SAS}, {"vdw", QSES_SURFACE_VDW}};
+const std::map<std::string, io::StructureFormat> kInputFormats = {{"pdb", io::StructureFormat::kPdb},
+                                                                  {"mmcif", io::StructureFormat::kMmcif},
+                                                                  {"pqr", io::StructureFormat::kPqr},
+                                                                  {"xyzr", io::StructureFormat::kXyzr},
+                                                                  {"gro", io::StructureFormat::kGro}};
+// Of those that are one file each.
+const std::map<std::string, io::MeshFormat> kMeshFormats = {
+    {"obj", io::MeshFormat::kObj}, {"ply", io::MeshFormat::kPly}, {"stl", io::MeshFormat::kStl}};
 const std::map<std::string, qses_method> kMethods = {{"exact", QSES_METHOD_EXACT}, {"grid", QSES_METHOD_GRID}};
 const std::map<std::string, qses_backend> kBackends = {
     {"auto", QSES_BACKEND_AUTO}, {"cuda", QSES_BACKEND_CUDA}, {"cpu", QSES_BACKEND_CPU}};
@@ -36,10 +45,16 @@ const char kFooter[] =
     "  3  an output file can't be written\n"
     "  4  computing failed: memory, the device, a spacing too fine for either, a mesh that is not closed\n"
     "  5  the back end asked for can't be used here\n"
-    "  6  some frames of a trajectory failed; the others are done\n"
+    "  6  some frames of a trajectory, or some of several structures, failed; the others are done\n"
     "\n"
     "Owner atoms in PLY files are 0-based places among the atoms of the input's model, before any filter.\n"
     "Lengths are in angstrom, areas in A^2, volumes in A^3.\n";
+
+const char kInputHelp[] = "Structure: .pdb .ent .cif .mmcif .pqr .xyzr .gro, each also as .gz; - for standard input";
+const char kInputsHelp[] =
+    "Structure: .pdb .ent .cif .mmcif .pqr .xyzr .gro, each also as .gz; - for standard input. Or several, each with a "
+    "mesh "
+    "of its own";
 
 void add_compute_options(CLI::App *app, ComputeOptions &options) {
   add_number(app, "-v,--spacing", "--spacing (-v)", options.spacing, 0.001, 100,
@@ -63,7 +78,7 @@ void add_compute_options(CLI::App *app, ComputeOptions &options) {
            options.radii_given = true;
          },
          "Van der Waals radii: quickses (O 1.52, C 1.70, N 1.55, H 1.20, S 1.80, P 1.80, others 1.40), bondi, or a "
-         "file with lines `ELEMENT radius` (`*` for all others)")
+         "file with lines `ELEMENT radius` (`*` for all others) or `RESIDUE ATOM radius`")
       ->type_name("SET|FILE")
       ->default_str("quickses");
 }
@@ -104,9 +119,17 @@ void add_measured(CLI::App *app, std::vector<qses_surface> &measured) {
       ->default_str("sas,vdw");
 }
 
-void add_input_options(CLI::App *app, Options &options, const char *model_help) {
-  app->add_option("-i,--input,INPUT", options.input,
-                  "Structure: .pdb .ent .cif .mmcif .pqr .xyzr .gro, each also as .gz");
+void add_input_format(CLI::App *app, Options &options) {
+  app->add_option_function<std::string>(
+         "--input-format",
+         [&options](const std::string &text) { options.input_format = look_up("--input-format", kInputFormats, text); },
+         "pdb, mmcif, pqr, xyzr or gro, whatever the name and the content say")
+      ->type_name("NAME");
+}
+
+void add_input_options(CLI::App *app, Options &options, const char *input_help, const char *model_help) {
+  app->add_option("-i,--input,INPUT", options.inputs, input_help)->type_name("FILE");
+  add_input_format(app, options);
   app->add_flag_callback(
       "--no-water", [&options] { options.read.water = false; }, "Leave out water");
   app->add_flag_callback(
@@ -129,8 +152,9 @@ void add_input_options(CLI::App *app, Options &options, const char *model_help) 
 }
 
 void add_mesh_options(CLI::App *app, Options &options) {
-  app->add_option("-o,--output", options.output, "Mesh: .obj, .ply (binary, with normals and owner atoms) or .stl")
-      ->type_name("FILE");
+  app->add_option("-o,--output", options.output,
+                  "Mesh: .obj, .ply (binary, with normals and owner atoms) or .stl. %s stands for the name of INPUT")
+      ->type_name("FILE|-");
   add_switch(app, "--hard-edges", options.hard_edges,
              "on: a vertex on a crease has a normal for each side, so that light breaks there; PLY files then have it "
              "once per side. Default: on for .obj and .ply");
@@ -148,9 +172,12 @@ void add_area_options(CLI::App *app, Options &options) {
 }
 
 void add_trajectory_options(CLI::App *app, Options &options, const char *csv_help) {
-  app->add_option("--trajectory", options.trajectory,
-                  "Frames of the atoms of INPUT: .dcd .xtc, or .pdb with several models, each also as .gz")
-      ->type_name("FILE");
+  app->add_option("--trajectory", options.trajectories,
+                  "Frames of the atoms of INPUT: .dcd .xtc .trr .nc .ncdf .ncrst, or .pdb with several models, each "
+                  "also as .gz. "
+                  "Given several times: files in a row, their frames numbered through")
+      ->type_name("FILE")
+      ->allow_extra_args(false);  // INPUT may come next
   app->add_option_function<std::string>(
          "--frames", [&options](const std::string &text) { options.frames = FrameRange(text); },
          "Which frames, from 0: A:B:STEP as in Python (B is left out, negative numbers count from the end), or one")
@@ -204,7 +231,7 @@ void check_bench(const Options &options, const std::function<bool(const char *)>
 
 // given: as above.
 void check_trajectory(const Options &options, const std::function<bool(const char *)> &given) {
-  if (options.trajectory.empty()) {
+  if (options.trajectories.empty()) {
     for (const char *flag : {"--frames", "--unwrap", "--csv", "--workers"})
       if (given(flag))
         throw Failure(kUsage, std::string(flag) +
@@ -217,8 +244,25 @@ void check_trajectory(const Options &options, const std::function<bool(const cha
   if (!options.output.empty()) OutputPattern check(options.output);  // throws if it is none
 }
 
+// The mesh's file: "-" becomes the name of standard output with the format in it.
+void resolve_output(Options &options, const std::string &format) {
+  if (io::is_standard_output(options.output)) options.output = "./" + options.output;  // a file that is called so
+  if (options.output != "-") {
+    if (!format.empty())
+      throw Failure(kUsage, "--output-format: is for standard output (-o -); a file's extension names its format");
+    return;
+  }
+  if (format.empty())
+    throw Failure(kUsage, "--output (-o): standard output has no extension: --output-format ply says what to write");
+  if (options.has_several_inputs() || !options.trajectories.empty() || options.read.model == 0)
+    throw Failure(kUsage, "--output (-o): standard output takes one mesh, and there may be several");
+  options.output = "-." + format;
+}
+
 void check_standard_output(const Options &options) {
-  const std::pair<const char *, const std::string &> outputs[] = {{"--csv", options.csv},
+  const std::string mesh = io::is_standard_output(options.output) ? "-" : "";
+  const std::pair<const char *, const std::string &> outputs[] = {{"--output (-o)", mesh},
+                                                                  {"--csv", options.csv},
                                                                   {"--per-atom", options.per_atom},
                                                                   {"--per-residue", options.per_residue},
                                                                   {"--json", options.json}};
@@ -255,9 +299,22 @@ void check_devices(const Options &options) {
   const DeviceChoice &devices = options.compute.devices;
   if (devices.is_given() && options.compute.backend == QSES_BACKEND_CPU)
     throw Failure(kUsage, "--device: only CUDA has devices to choose from, and --backend is cpu");
-  if (devices.may_be_many() && options.trajectory.empty())
+  if (devices.may_be_many() && options.trajectories.empty())
     throw Failure(kUsage, "--device " + devices.text() +
                               ": several devices share the frames of a trajectory, and there is no --trajectory");
+}
+
+void check_inputs(const Options &options) {
+  if (!options.has_several_inputs()) return;
+  const std::string count = std::to_string(options.inputs.size());
+  if (options.command == Options::Command::kCavities)
+    throw Failure(kUsage, "cavities: one structure at a time, and " + count + " were given");
+  if (!options.trajectories.empty())
+    throw Failure(kUsage, "--trajectory: its frames are of one structure, and " + count +
+                              " were given (of several trajectories, each needs a --trajectory before it)");
+  if (!options.output.empty() && options.output.find("%s") == std::string::npos)
+    throw Failure(kUsage, "--output (-o): '" + options.output + "' names one file for " + count +
+                              " structures: write %s where the name of each goes, as in out/%s.ply");
 }
 
 void check(const Options &options, const std::function<bool(const char *)> &given) {
@@ -271,7 +328,8 @@ void check(const Options &options, const std::function<bool(const char *)> &give
     UsedFiles check(options);
     return;
   }
-  if (options.input.empty()) throw Failure(kUsage, "no input file was given; see quickses --help");
+  if (options.inputs.empty()) throw Failure(kUsage, "no input file was given; see quickses --help");
+  check_inputs(options);
   if (options.command == Options::Command::kCavities) {
     if (options.read.model == 0) throw Failure(kUsage, "--model all: cavities lists those of one model");
   } else {
@@ -293,6 +351,15 @@ const char *name_of(qses_method method) { return find_name(kMethods, method); }
 const char *name_of(qses_backend backend) { return find_name(kBackends, backend); }
 const char *name_of(qses_vertex_layout layout) { return find_name(kLayouts, layout); }
 
+bool Options::prints_data() const {
+  return csv == "-" || json == "-" || per_atom == "-" || per_residue == "-" || io::is_standard_output(output);
+}
+
+std::string Options::quoted_trajectories() const {
+  const std::string first = "'" + trajectories.front() + "'";
+  return trajectories.size() == 1 ? first : first + " and " + std::to_string(trajectories.size() - 1) + " more";
+}
+
 bool has_hard_edges(const Options &options) {
   return options.hard_edges != Switch::kOff && options.compute.method == QSES_METHOD_EXACT && !options.output.empty() &&
          io::mesh_format_of(options.output) != io::MeshFormat::kStl;
@@ -300,11 +367,14 @@ bool has_hard_edges(const Options &options) {
 
 Options parse_options(int argc, char **argv, std::ostream &out) {
   Options options;
+  std::string output_format;  // of standard output
   CLI::App app(
       "Molecular surfaces as closed triangle meshes.\n\n"
       "  quickses INPUT [-o OUT.obj|OUT.ply|OUT.stl] [options]\n"
-      "  quickses INPUT --trajectory FILE [--frames A:B:STEP] [--csv FILE] [-o frame_%05d.ply] [options]\n"
-      "  quickses measure INPUT [--surface sas,vdw,ses] [--per-atom FILE] [--per-residue FILE] [options]\n"
+      "  quickses INPUT... [-o out/%s.ply] [options]\n"
+      "  quickses INPUT --trajectory FILE [--trajectory FILE...] [--frames A:B:STEP] [--csv FILE] [-o frame_%05d.ply] "
+      "[options]\n"
+      "  quickses measure INPUT... [--surface sas,vdw,ses] [--per-atom FILE] [--per-residue FILE] [options]\n"
       "  quickses cavities INPUT [--csv FILE] [options]\n"
       "  quickses bench FILE... [--repeat N] [--copies N] [--delivery host|device|both] [--small N | --jobs] "
       "[options]\n",
@@ -312,9 +382,17 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
   app.allow_windows_style_options(false);  // a path may begin with a slash there too
   app.footer(kFooter);
   app.set_version_flag("--version", std::string("quickses ") + qses_version(), "Print the version");
-  add_input_options(&app, options,
+  add_input_options(&app, options, kInputsHelp,
                     "Which model of the file; all: one mesh each, as out_0001.ply for -o out.ply; default 1");
   add_mesh_options(&app, options);
+  app.add_option_function<std::string>(
+         "--output-format",
+         [&](const std::string &text) {
+           look_up("--output-format", kMeshFormats, text);
+           output_format = text;
+         },
+         "obj, ply or stl: what -o - writes to standard output")
+      ->type_name("NAME");
   add_surface_choice(&app, options.compute);
   add_compute_options(&app, options.compute);
   add_trajectory_options(&app, options,
@@ -325,7 +403,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
   CLI::App *measure = app.add_subcommand(
       "measure", "Area and volume, those of SAS and VDW exactly and without a mesh, per atom and residue on request");
   measure->footer(kFooter);
-  add_input_options(measure, options, "Which model of the file, or all of them; default 1");
+  add_input_options(measure, options, kInputsHelp, "Which model of the file, or all of them; default 1");
   add_measured(measure, options.measured);
   add_creases(measure, options.compute);
   add_compute_options(measure, options.compute);
@@ -336,7 +414,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
   CLI::App *cavities =
       app.add_subcommand("cavities", "The cavities of a surface: volume, area, centre and the residues that line them");
   cavities->footer(kFooter);
-  add_input_options(cavities, options, "Which model of the file; default 1");
+  add_input_options(cavities, options, kInputHelp, "Which model of the file; default 1");
   add_surface_choice(cavities, options.compute);
   add_compute_options(cavities, options.compute);
   cavities->add_option("--csv", options.csv, "Table of the cavities; - for standard output")->type_name("FILE|-");
@@ -345,6 +423,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
   CLI::App *bench = app.add_subcommand("bench", "Time warm calls: median ms from atoms in host memory to the mesh");
   bench->footer(kFooter);
   bench->add_option("FILE", options.inputs, "Structures")->type_name("FILE");
+  add_input_format(bench, options);
   add_bench_options(bench, options.bench);
   add_surface_choice(bench, options.compute);
   add_compute_options(bench, options.compute);
@@ -373,8 +452,10 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
     used = command;
     options.command = value;
   }
+  if (!options.inputs.empty()) options.input = options.inputs.front();
+  resolve_output(options, output_format);
   if (options.compute.creases == Switch::kDefault) {
-    const bool is_many = options.command == Options::Command::kBench || !options.trajectory.empty();
+    const bool is_many = options.command == Options::Command::kBench || !options.trajectories.empty();
     options.compute.creases = is_many || options.compute.method == QSES_METHOD_GRID ? Switch::kOff : Switch::kOn;
   }
   check_values(*used);

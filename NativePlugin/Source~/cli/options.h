@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <iosfwd>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,28 +53,32 @@ struct Options {
   enum class Command { kSurface, kMeasure, kCavities, kBench, kNone } command = Command::kSurface;
   ComputeOptions compute;
   io::ReadOptions read;
-  std::string input;
-  std::string output;  // empty: no mesh file
+  std::optional<io::StructureFormat> input_format;  // nothing: name and content tell
+  std::vector<std::string> inputs;                  // structures; "-" is standard input
+  std::string input;                                // the one of them that these options are for, or the first
+  std::string output;                               // empty: no mesh file; see also io::is_standard_output
   Switch hard_edges = Switch::kDefault;
   bool component_ids = false;                                                 // in that file
   bool outer = false;                                                         // without cavities
   std::vector<qses_surface> measured = {QSES_SURFACE_SAS, QSES_SURFACE_VDW};  // of measure
-  std::vector<std::string> inputs;                                            // of bench
   BenchOptions bench;
-  std::string trajectory;   // empty: the input alone
-  FrameRange frames;        // of the trajectory
-  bool unwrap = false;      // molecules in one piece
-  unsigned workers = 0;     // frames computed at a time, on each device; 0 = chosen by the program
-  uint64_t max_input = 0;   // bytes of an input in memory; 0 = the library's default
-  std::string csv;          // a file, "-" for standard output, empty: no table
-  std::string per_atom;     // a file, "-" for standard output, empty: no table
-  std::string per_residue;  // the same
-  std::string json;         // a file, "-" for standard output, empty: no report
+  std::vector<std::string> trajectories;  // in a row; empty: the input alone
+  FrameRange frames;                      // of the trajectory
+  bool unwrap = false;                    // molecules in one piece
+  unsigned workers = 0;                   // frames computed at a time, on each device; 0 = chosen by the program
+  uint64_t max_input = 0;                 // bytes of an input in memory; 0 = the library's default
+  std::string csv;                        // a file, "-" for standard output, empty: no table
+  std::string per_atom;                   // a file, "-" for standard output, empty: no table
+  std::string per_residue;                // the same
+  std::string json;                       // a file, "-" for standard output, empty: no report
   bool quiet = false;
 
+  bool has_several_inputs() const { return inputs.size() > 1; }
+  // For messages: 'a.xtc', or 'a.xtc' and 2 more.
+  std::string quoted_trajectories() const;
   bool wants_areas() const { return !per_atom.empty() || !per_residue.empty(); }
   // Whether standard output is taken by something that other programs read.
-  bool prints_data() const { return csv == "-" || json == "-" || per_atom == "-" || per_residue == "-"; }
+  bool prints_data() const;
 };
 
 // Reads the command line. After --help or --version, which print to out, the command is kNone.

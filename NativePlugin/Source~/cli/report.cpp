@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "io/atomic_file.h"
+
 namespace quickses::cli {
 namespace {
 
@@ -55,7 +57,7 @@ Json report_head_json(const Options &options, const io::Structure &structure, co
   Json json;
   json["version"] = qses_version();
   json["input"] = options.input;
-  if (!options.output.empty()) json["output"] = options.output;
+  if (!options.output.empty()) json["output"] = io::is_standard_output(options.output) ? "-" : options.output;
   json["model"] = structure.model;
   json["atoms"] = structure.atoms.size();
   json["settings"] = settings_json(options.compute);

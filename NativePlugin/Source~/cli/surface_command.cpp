@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// quickses INPUT: a structure in, a mesh and a report out.
+// quickses INPUT...: structures in, meshes and a report out.
 #include <cstdio>
 #include <filesystem>
 #include <optional>
@@ -7,6 +7,7 @@
 #include "cli/area_tables.h"
 #include "cli/clock.h"
 #include "cli/commands.h"
+#include "cli/each_input.h"
 #include "cli/engine.h"
 #include "cli/exit_code.h"
 #include "cli/input.h"
@@ -34,60 +35,96 @@ std::string output_of_model(const Options &options, int model) {
 void print_summary(const Options &options, const io::Structure &structure, const Engine &engine, const qses_mesh &mesh,
                    const qses_report &report) {
   const auto vertices = static_cast<uint32_t>(mesh.vertex_count - mesh.repeated_count);
+  if (options.has_several_inputs()) std::printf("%s: ", options.input.c_str());
   std::printf("%zu atoms, %u vertices, %u triangles, area %.2f Å², volume %.2f Å³, %s, %.2f ms%s%s\n",
               structure.atoms.size(), vertices, mesh.triangle_count, report.area, report.volume,
               name_of(engine.backend()), report.compute_ms, options.output.empty() ? "" : ", ", options.output.c_str());
 }
 
+// The surfaces of structures, one after the other, with one engine.
+class SurfaceRun {
+ public:
+  explicit SurfaceRun(const Options &options)
+      : options_(options), files_(options), tables_(options, {options.compute.surface}) {}
+
+  // options: of one structure.
+  void run(const Options &options) {
+    const Input input(options, options.quiet);
+    timings_.read = input.read_ms;
+    if (!engine_) start();
+    if (has_all_models() && !options.output.empty())
+      for (const io::Structure &structure : input.file.models)
+        files_.check_mesh(output_of_model(options, structure.model));
+    for (const io::Structure &structure : input.file.models) {
+      Options model_options = input.options;
+      model_options.output = output_of_model(options, structure.model);
+      run(model_options, structure);
+    }
+  }
+
+  void add_failure(const Options &options, const Failure &failure) {
+    if (!options.json.empty()) reports_ += dump(Json{{"input", options.input}, {"error", failure.what()}}, true);
+  }
+
+  void finish() {
+    tables_.finish();
+    if (!options_.json.empty()) write_text(options_.json, reports_);
+  }
+
+ private:
+  bool has_all_models() const { return options_.read.model == 0; }
+
+  // Once something could be read.
+  void start() {
+    engine_.emplace(start_engine(options_.compute, options_.quiet));
+    if (!options_.json.empty()) qses_set_stage_times(engine_->context(), 1);
+  }
+
+  // options: of this model.
+  void run(const Options &options, const io::Structure &structure) {
+    const qses_settings settings = mesh_settings_of(options);
+    engine_->set_atoms(structure, options.input);
+    std::optional<qses_size_estimate> predicted;
+    if (!options.json.empty()) predicted = engine_->estimate(settings);
+    qses_mesh mesh;
+    {
+      ProgressBar bar(engine_->context(), options.quiet);
+      mesh = engine_->compute(settings);
+    }
+    const qses_report report = engine_->report();
+    const auto write_start = Clock::now();
+    accept_surface(options.output, mesh, structure);
+    tables_.write(
+        make_area_rows(options, first_columns(options, structure), structure, areas_of(options.compute.surface, mesh)));
+    timings_.write = ms_since(write_start);
+    if (!options.json.empty()) {
+      const Json json =
+          surface_json(options, structure, *engine_, mesh, report, timings_, predicted ? &*predicted : nullptr);
+      reports_ += dump(json, has_all_models() || options.has_several_inputs());  // of several: one line each
+    }
+    if (!options.quiet && !options.prints_data()) print_summary(options, structure, *engine_, mesh, report);
+  }
+
+  const Options &options_;
+  const UsedFiles files_;
+  AreaTables tables_;
+  std::optional<Engine> engine_;
+  Timings timings_;
+  std::string reports_;
+};
+
 }  // namespace
 
 void run_surface(const Options &options) {
   // Before anything takes time: can the results be written?
-  if (!options.output.empty()) io::check_writable(options.output);
+  if (!options.output.empty()) io::check_writable(output_of_input(options.output, options.inputs.front()));
   check_text_output(options.json);
-  AreaTables tables(options, {options.compute.surface});
-
-  const Input input(options, options.quiet);
-  Timings timings;
-  timings.read = input.read_ms;
-
-  Engine engine = start_engine(options.compute, options.quiet);
-  const qses_settings settings = mesh_settings_of(options);
-  if (!options.json.empty()) qses_set_stage_times(engine.context(), 1);
-
-  const bool all_models = options.read.model == 0;
-  if (all_models && !options.output.empty()) {
-    const UsedFiles files(options);
-    for (const io::Structure &structure : input.file.models)
-      files.check_mesh(output_of_model(options, structure.model));
-  }
-  std::string reports;
-  for (const io::Structure &structure : input.file.models) {
-    Options model_options = input.options;
-    model_options.output = output_of_model(options, structure.model);
-    engine.set_atoms(structure, options.input);
-    std::optional<qses_size_estimate> predicted;
-    if (!options.json.empty()) predicted = engine.estimate(settings);
-    qses_mesh mesh;
-    {
-      ProgressBar bar(engine.context(), options.quiet);
-      mesh = engine.compute(settings);
-    }
-    const qses_report report = engine.report();
-    const auto write_start = Clock::now();
-    accept_surface(model_options.output, mesh, structure);
-    tables.write(make_area_rows(options, all_models ? std::to_string(structure.model) : "", structure,
-                                areas_of(options.compute.surface, mesh)));
-    timings.write = ms_since(write_start);
-    if (!options.json.empty()) {
-      const Json json =
-          surface_json(model_options, structure, engine, mesh, report, timings, predicted ? &*predicted : nullptr);
-      reports += dump(json, all_models);  // of several models: one line each
-    }
-    if (!options.quiet && !options.prints_data()) print_summary(model_options, structure, engine, mesh, report);
-  }
-  tables.finish();
-  if (!options.json.empty()) write_text(options.json, reports);
+  SurfaceRun run(options);
+  const size_t failed_count = for_each_input(
+      options, [&](const Options &one) { run.run(one); },
+      [&](const Options &one, const Failure &failure) { run.add_failure(one, failure); });
+  run.finish();
+  check_failed_inputs(options, failed_count);
 }
 
 }  // namespace quickses::cli

@@ -126,7 +126,7 @@ class Run {
   Run(const Options &options, Processes &processes)
       : processes_(processes),
         inputs_(options, options.quiet || !processes.is_first()),
-        frames_(options.frames.select(inputs_.trajectory.frame_count(), options.trajectory)),
+        frames_(options.frames.select(inputs_.trajectory.frame_count(), options.quoted_trajectories())),
         share_(divide(inputs_.options, processes, frames_.count)) {
     if (processes.is_first()) {
       if (inputs_.pattern) check_meshes();
@@ -186,7 +186,7 @@ class Run {
                   static_cast<unsigned long long>(all_engines), seconds, rate, options.csv.empty() ? "" : ", ",
                   options.csv.c_str());
     if (const size_t failed = ledger.failed_count())
-      throw Failure(kFramesFailed, std::to_string(failed) + " of " + std::to_string(frames_.count) + " frames failed");
+      throw Failure(kSomeFailed, std::to_string(failed) + " of " + std::to_string(frames_.count) + " frames failed");
   }
 
   // Several of this process.

@@ -2,14 +2,17 @@
 // The files of a run, and that none is written over another one.
 #include "cli/used_files.h"
 
+#include <map>
 #include <system_error>
 
+#include "cli/each_input.h"
 #include "cli/exit_code.h"
+#include "io/atomic_file.h"
 #include "io/file_path.h"
 #include "io/radii.h"
 
 #if defined(_WIN32)
-#include <cwchar>
+#include <cwctype>
 #endif
 
 namespace quickses::cli {
@@ -19,23 +22,28 @@ namespace fs = std::filesystem;
 
 const char kOutputFlag[] = "--output (-o)";
 
-bool is_same_place(const fs::path &a, const fs::path &b) {
+// Two places are one if these are equal.
+fs::path::string_type comparable(const fs::path &place) {
+  fs::path::string_type text = place.native();
 #if defined(_WIN32)
-  return _wcsicmp(a.c_str(), b.c_str()) == 0;
-#else
-  return a == b;
+  for (wchar_t &c : text) c = static_cast<wchar_t>(std::towlower(c));
 #endif
+  return text;
 }
+
+bool is_same_place(const fs::path &a, const fs::path &b) { return comparable(a) == comparable(b); }
 
 }  // namespace
 
 UsedFiles::File UsedFiles::file_of(const char *flag, const std::string &name, bool is_output) {
+  const bool is_standard = name == "-" || (is_output && io::is_standard_output(name));
 #if defined(_WIN32)
   const fs::path path = io::path_of(name);
 #else
-  const fs::path path = is_output && name == "-" ? "/dev/stdout" : io::path_of(name);  // may be a file
+  // What a shell leads there may be a file.
+  const fs::path path = !is_standard ? io::path_of(name) : is_output ? "/dev/stdout" : "/dev/stdin";
 #endif
-  return {flag, name, is_output, path, io::place_of(path)};
+  return {flag, is_standard ? "-" : name, is_output, path, io::place_of(path)};
 }
 
 bool UsedFiles::is_same(const File &a, const File &b) {
@@ -58,6 +66,27 @@ void UsedFiles::add_input(const char *flag, const std::string &name) {
   if (!name.empty()) files_.push_back(file_of(flag, name, false));
 }
 
+// There may be thousands, so they are not compared two by two. Hard links don't matter: a mesh takes the place of a
+// name, not of what is in the file.
+void UsedFiles::add_meshes(const Options &options) {
+  if (!options.has_several_inputs()) {
+    if (options.read.model != 0) add_output(kOutputFlag, output_of_input(options.output, options.input));
+    return;
+  }
+  std::map<fs::path::string_type, const std::string *> inputs, meshes;  // by place
+  for (const File &file : files_) inputs.emplace(comparable(file.place), &file.name);
+  for (const std::string &input : options.inputs) {
+    const File file = file_of(kOutputFlag, output_of_input(options.output, input), true);
+    const auto [other, is_new] = meshes.emplace(comparable(file.place), &input);
+    if (!is_new)
+      throw Failure(kUsage, file.flag + ": '" + *other->second + "' and '" + input + "' would both be written to '" +
+                                file.name + "'");
+    if (options.read.model == 0) continue;  // its meshes have names that are made of this one
+    if (inputs.count(comparable(file.place)) != 0) check(file);
+    files_.push_back(file);
+  }
+}
+
 void UsedFiles::add_output(const char *flag, const std::string &name) {
   if (name.empty()) return;
   const File file = file_of(flag, name, true);
@@ -66,12 +95,10 @@ void UsedFiles::add_output(const char *flag, const std::string &name) {
 }
 
 UsedFiles::UsedFiles(const Options &options) {
-  for (const std::string &input : options.inputs) add_input("FILE", input);
-  add_input("INPUT", options.input);
-  add_input("--trajectory", options.trajectory);
+  for (const std::string &input : options.inputs) add_input("INPUT", input);
+  for (const std::string &trajectory : options.trajectories) add_input("--trajectory", trajectory);
   if (!io::is_radius_set(options.compute.radii)) add_input("--radii", options.compute.radii);
-  const bool is_one_mesh = options.trajectory.empty() && options.read.model != 0;
-  if (is_one_mesh) add_output(kOutputFlag, options.output);
+  if (options.trajectories.empty() && !options.output.empty()) add_meshes(options);
   add_output("--csv", options.csv);
   add_output("--per-atom", options.per_atom);
   add_output("--per-residue", options.per_residue);

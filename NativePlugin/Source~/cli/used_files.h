@@ -31,6 +31,7 @@ class UsedFiles {
   static File file_of(const char *flag, const std::string &name, bool is_output);
   static bool is_same(const File &a, const File &b);
   void check(const File &output) const;
+  void add_meshes(const Options &options);
   void add_input(const char *flag, const std::string &name);
   void add_output(const char *flag, const std::string &name);
 

@@ -115,7 +115,24 @@ std::FILE *create_new(const fs::path &name, const fs::path &like) {
 
 }  // namespace
 
-AtomicFile::AtomicFile(const std::string &path) : path_(path), target_(path_of(path)), buffer_(kBufferSize) {
+bool is_standard_output(const std::string &path) {
+  return path.compare(0, 2, "-.") == 0 && path_of(path).filename() == path_of(path);
+}
+
+AtomicFile::AtomicFile(const std::string &path)
+    : path_(path), target_(path_of(path)), to_standard_output_(is_standard_output(path)), buffer_(kBufferSize) {
+  if (to_standard_output_) {
+    path_ = "standard output";
+    file_ = stdout;
+#if defined(_WIN32)
+    _setmode(_fileno(stdout), _O_BINARY);
+#endif
+  } else {
+    open_target();
+  }
+}
+
+void AtomicFile::open_target() {
   std::error_code error;
   fs::file_status status;
   patiently(target_, error, [&] { status = fs::status(target_, error); });
@@ -166,7 +183,7 @@ void AtomicFile::create_temporary() {
 AtomicFile::~AtomicFile() { close_and_remove(); }
 
 void AtomicFile::close_and_remove() {
-  if (file_) std::fclose(file_);
+  if (file_ && !to_standard_output_) std::fclose(file_);
   file_ = nullptr;
   if (temporary_.empty()) return;
   Unfinished &all = unfinished();
@@ -203,7 +220,7 @@ void AtomicFile::commit() {
   flush();
   std::FILE *file = file_;
   file_ = nullptr;
-  if (std::fclose(file) != 0) fail(errno);
+  if ((to_standard_output_ ? std::fflush(file) : std::fclose(file)) != 0) fail(errno);
   if (temporary_.empty()) return;
   std::error_code error;
   patiently(target_, error, [&] { fs::rename(temporary_, target_, error); });

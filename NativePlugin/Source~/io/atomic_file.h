@@ -9,10 +9,13 @@
 
 namespace quickses::io {
 
+// Names such as "-.ply" stand for standard output, and say what is written there.
+bool is_standard_output(const std::string &path);
+
 // Buffered output that goes to a temporary name in the folder of the target. commit() renames it over the target, with
 // the rights that the target had; without it the destructor removes it, and whatever the target was before stays as it
-// was. Devices and pipes (/dev/stdout) are written directly. All but the destructor throw Error (kOutput), naming the
-// target.
+// was. Devices and pipes (/dev/stdout) are written directly, and so is standard output, as bytes. All but the
+// destructor throw Error (kOutput), naming the target.
 class AtomicFile {
  public:
   explicit AtomicFile(const std::string &path);
@@ -33,6 +36,7 @@ class AtomicFile {
   static constexpr size_t kBufferSize = 1 << 20;
 
  private:
+  void open_target();
   void create_temporary();
   void flush();
   [[noreturn]] void fail(int error_number);
@@ -41,6 +45,7 @@ class AtomicFile {
   std::string path_;                 // as given, for messages
   std::filesystem::path target_;     // with links resolved
   std::filesystem::path temporary_;  // empty: the target is written directly
+  const bool to_standard_output_;
   std::FILE *file_ = nullptr;
   std::vector<char> buffer_;
   size_t used_ = 0;

@@ -1,28 +1,25 @@
 // SPDX-License-Identifier: MIT
-// DCD: the trajectories of CHARMM, NAMD and X-PLOR, and of many programs after them. Records of Fortran: a 32-bit
-// length before and behind each, in the byte order of the machine that wrote them. A header, titles, the number of
-// atoms, the free atoms if others are fixed; then per frame: unit cell (if there is one), x, y, z, fourth dimension.
+// DCD: the trajectories of CHARMM, NAMD and X-PLOR, and of many programs after them. Records of Fortran: a length
+// of 32 bits, of some compilers 64, before and behind each, in the byte order of the machine that wrote them. A header,
+// titles, the number of atoms, the free atoms if others are fixed; then per frame: unit cell (if there is one), x, y,
+// z, fourth dimension.
 #include "io/dcd_reader.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
+#include "io/big_endian.h"
+
 namespace quickses::io {
 namespace {
 
 constexpr uint32_t kHeaderLength = 84;
 constexpr uint32_t kCellLength = 48;
-constexpr uint64_t kMarkers = 8;                      // bytes of the two lengths around a record
-constexpr uint32_t kMaxAtoms = 0x7fffffff / 4;        // more would not fit in the length of a record
+constexpr uint32_t kMaxAtoms = 0x7fffffff / 4;        // more would not fit in the length of a record of 32 bits
 constexpr double kAkmaPicoseconds = 0.0488882129084;  // CHARMM's unit of time
 
 uint32_t swap_bytes(uint32_t v) { return v >> 24 | (v >> 8 & 0xff00) | (v << 8 & 0xff0000) | v << 24; }
-
-uint32_t big_endian(const unsigned char *p) {
-  return static_cast<uint32_t>(p[0]) << 24 | static_cast<uint32_t>(p[1]) << 16 | static_cast<uint32_t>(p[2]) << 8 |
-         p[3];
-}
 
 double dot(const std::array<double, 3> &u, const std::array<double, 3> &v) {
   return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
@@ -81,9 +78,9 @@ class DcdReader : public TrajectoryReader {
   std::optional<Box> box(size_t frame) const override {
     if (!has_cell_) return std::nullopt;
     const uint64_t at = frame_offset(frame);
-    if (get_u32(at) != kCellLength || get_u32(at + 4 + kCellLength) != kCellLength) fail_markers(frame);
+    if (!is_record(at, kCellLength)) fail_markers(frame);
     double cell[6];
-    for (int i = 0; i < 6; ++i) cell[i] = get_f64(at + 4 + 8 * i);
+    for (int i = 0; i < 6; ++i) cell[i] = get_f64(at + marker_ + 8 * i);
     return box_of_cell(cell, version_);
   }
 
@@ -96,7 +93,7 @@ class DcdReader : public TrajectoryReader {
   uint32_t get_u32(uint64_t at) const {
     unsigned char bytes[4];
     source_->read(at, bytes, 4);
-    const uint32_t value = big_endian(bytes);
+    const uint32_t value = big_endian_u32(bytes);
     return is_big_endian_ ? value : swap_bytes(value);
   }
 
@@ -117,6 +114,26 @@ class DcdReader : public TrajectoryReader {
     return value;
   }
 
+  // The length that is told before or behind a record.
+  uint64_t get_length(uint64_t at) const {
+    if (marker_ == 4) return get_u32(at);
+    const uint64_t first = get_u32(at), second = get_u32(at + 4);
+    return is_big_endian_ ? first << 32 | second : second << 32 | first;
+  }
+
+  // Whether both lengths of a record, which must be there, are this one.
+  bool is_record(uint64_t at, uint64_t length) const {
+    return get_length(at) == length && get_length(at + marker_ + length) == length;
+  }
+
+  // Of the two lengths around a record.
+  uint64_t markers() const { return 2 * marker_; }
+
+  // Whether a record of a length that the file tells is there as a whole.
+  bool has_record(uint64_t at, uint64_t length) const {
+    return length <= source_->size() && is_there(at, length + markers());
+  }
+
   bool is_there(uint64_t at, uint64_t count) const { return at <= source_->size() && count <= source_->size() - at; }
 
   [[noreturn]] void fail_markers(size_t frame) const {
@@ -128,20 +145,19 @@ class DcdReader : public TrajectoryReader {
     unsigned char head[12];
     if (!is_there(0, sizeof head)) fail("it is cut off within its header");
     source_->read(0, head, sizeof head);
-    const uint32_t first = big_endian(head), second = big_endian(head + 4);
-    if (std::memcmp(head + 8, "CORD", 4) == 0 &&
-        ((first == swap_bytes(kHeaderLength) && second == 0) || (first == 0 && second == kHeaderLength)))
-      fail(
-          "this DCD file has 64-bit record markers; it has to be written with 32-bit ones (gfortran: "
-          "-frecord-marker=4) to be read");
-    is_big_endian_ = first == kHeaderLength;
-    if (!is_big_endian_ && first != swap_bytes(kHeaderLength)) fail("it is no DCD file");
-    if (std::memcmp(head + 4, "VELD", 4) == 0) fail("this DCD file holds velocities, not positions");
-    if (std::memcmp(head + 4, "CORD", 4) != 0) fail("it is no DCD file");
-    if (!is_there(0, kHeaderLength + kMarkers + 4)) fail("it is cut off within its header");
-    if (get_u32(4 + kHeaderLength) != kHeaderLength) fail("its header is damaged");
+    const uint32_t first = big_endian_u32(head), second = big_endian_u32(head + 4);
+    const uint32_t little_endian = swap_bytes(kHeaderLength);
+    if ((first == little_endian && second == 0) || (first == 0 && second == kHeaderLength)) marker_ = 8;
+    is_big_endian_ = first != little_endian;
+    if (is_big_endian_ && marker_ == 4 && first != kHeaderLength) fail("it is no DCD file");
+    if (std::memcmp(head + marker_, "VELD", 4) == 0) fail("this DCD file holds velocities, not positions");
+    if (std::memcmp(head + marker_, "CORD", 4) != 0) fail("it is no DCD file");
+    if (!is_there(0, kHeaderLength + markers() + marker_)) fail("it is cut off within its header");
+    if (!is_record(0, kHeaderLength)) fail("its header is damaged");
 
-    const auto control = [](int i) { return uint64_t{8} + 4 * i; };  // where the 20 numbers of the header are
+    const auto control = [this](int i) {
+      return marker_ + 4 + 4 * static_cast<uint64_t>(i);
+    };  // where the 20 numbers of the header are
     announced_ = get_i32(control(0));
     start_ = get_i32(control(1));
     interval_ = get_i32(control(2));
@@ -155,56 +171,56 @@ class DcdReader : public TrajectoryReader {
       step_ = get_f64(control(9));
     }
 
-    const uint64_t titles = kHeaderLength + kMarkers;
-    const uint64_t length = get_u32(titles);
-    if (!is_there(titles, length + kMarkers)) fail("it is cut off within its titles");
-    if (get_u32(titles + 4 + length) != length) fail("its titles are damaged");
-    return titles + length + kMarkers;
+    const uint64_t titles = kHeaderLength + markers();
+    const uint64_t length = get_length(titles);
+    if (!has_record(titles, length)) fail("it is cut off within its titles");
+    if (!is_record(titles, length)) fail("its titles are damaged");
+    return titles + length + markers();
   }
 
   // Gives where the first frame starts.
   uint64_t read_atom_counts(uint64_t at) {
-    if (!is_there(at, 4 + kMarkers)) fail("it is cut off before its number of atoms");
-    if (get_u32(at) != 4 || get_u32(at + 8) != 4) fail("the record of its number of atoms is damaged");
-    const int32_t count = get_i32(at + 4);
+    if (!has_record(at, 4)) fail("it is cut off before its number of atoms");
+    if (!is_record(at, 4)) fail("the record of its number of atoms is damaged");
+    const int32_t count = get_i32(at + marker_);
     if (count <= 0 || static_cast<uint32_t>(count) > kMaxAtoms)
       fail("its number of atoms, " + std::to_string(count) + ", makes no sense");
     if (fixed_count_ < 0 || fixed_count_ >= count)
       fail("its number of fixed atoms, " + std::to_string(fixed_count_) + " of " + std::to_string(count) +
            ", makes no sense");
-    at += 4 + kMarkers;
+    at += 4 + markers();
     atom_count = static_cast<size_t>(count);
     free_count_ = static_cast<size_t>(count - fixed_count_);
     if (fixed_count_ == 0) return at;
 
     const uint64_t length = 4 * static_cast<uint64_t>(free_count_);
-    if (!is_there(at, length + kMarkers)) fail("it is cut off within its list of free atoms");
-    if (get_u32(at) != length || get_u32(at + 4 + length) != length) fail("its list of free atoms is damaged");
+    if (!has_record(at, length)) fail("it is cut off within its list of free atoms");
+    if (!is_record(at, length)) fail("its list of free atoms is damaged");
     free_.resize(free_count_);
     for (size_t i = 0; i < free_count_; ++i) {
-      const uint32_t number = get_u32(at + 4 + 4 * i);
+      const uint32_t number = get_u32(at + marker_ + 4 * i);
       if (number < 1 || number > atom_count)
         fail("its list of free atoms names atom " + std::to_string(static_cast<int32_t>(number)) + " of " +
              std::to_string(atom_count));
       free_[i] = number - 1;
     }
-    return at + length + kMarkers;
+    return at + length + markers();
   }
 
   // Some writers forget to announce the unit cell, or announce one that is not there: the first record decides, unless
   // coordinates are as long.
   void find_cell() {
-    if (4 * atom_count == kCellLength || !is_there(first_frame_, 4)) return;
-    const uint32_t length = get_u32(first_frame_);
+    if (4 * atom_count == kCellLength || !is_there(first_frame_, marker_)) return;
+    const uint64_t length = get_length(first_frame_);
     if (length == kCellLength) has_cell_ = true;
     if (length == 4 * atom_count) has_cell_ = false;
   }
 
-  uint64_t cell_size() const { return has_cell_ ? kCellLength + kMarkers : 0; }
+  uint64_t cell_size() const { return has_cell_ ? kCellLength + markers() : 0; }
 
   uint64_t frame_size(size_t frame) const {
     const uint64_t atoms = frame == 0 ? atom_count : free_count_;
-    return cell_size() + (has_fourth_ ? 4 : 3) * (4 * atoms + kMarkers);
+    return cell_size() + (has_fourth_ ? 4 : 3) * (4 * atoms + markers());
   }
 
   uint64_t frame_offset(size_t frame) const {
@@ -233,24 +249,24 @@ class DcdReader : public TrajectoryReader {
   // The markers that the frame starts with, as far as they are there.
   bool check_head(uint64_t at) {
     const size_t frame = frame_count;
-    if (is_there(at, 8) && get_u32(at) == kHeaderLength) {
+    if (is_there(at, marker_ + 4) && get_length(at) == kHeaderLength) {
       unsigned char magic[4];
-      source_->read(at + 4, magic, 4);
+      source_->read(at + marker_, magic, 4);
       if (frame != 0 && std::memcmp(magic, "CORD", 4) == 0) {
         end_at(frame, "is the header of another DCD file");
         return false;
       }
     }
-    if (has_cell_ && is_there(at, 4) &&
-        (get_u32(at) != kCellLength || (is_there(at, cell_size()) && get_u32(at + 4 + kCellLength) != kCellLength))) {
+    if (has_cell_ && is_there(at, marker_) &&
+        (get_length(at) != kCellLength || (is_there(at, cell_size()) && !is_record(at, kCellLength)))) {
       end_at(frame, "is damaged: its unit cell is missing");
       return false;
     }
     const uint64_t axis = at + cell_size();
-    if (!is_there(axis, 4)) return true;
-    const uint64_t length = get_u32(axis), expected = 4 * (frame == 0 ? atom_count : free_count_);
+    if (!is_there(axis, marker_)) return true;
+    const uint64_t length = get_length(axis), expected = 4 * (frame == 0 ? atom_count : free_count_);
     if (length == expected) return true;
-    if (length != 0 && length % 4 == 0 && is_there(axis, length + kMarkers) && get_u32(axis + 4 + length) == length) {
+    if (length != 0 && length % 4 == 0 && has_record(axis, length) && is_record(axis, length)) {
       if (frame == 0)
         fail("frame 0 has " + std::to_string(length / 4) + " atoms, but the header says " + std::to_string(atom_count));
       fail_atom_count(frame, length / 4 + (atom_count - free_count_));
@@ -267,22 +283,23 @@ class DcdReader : public TrajectoryReader {
     const size_t count = only_free ? free_count_ : atom_count;
     uint64_t at = frame_offset(frame) + cell_size();
     for (int axis = 0; axis < 3; ++axis) {
-      if (get_u32(at) != 4 * count || get_u32(at + 4 + 4 * count) != 4 * count) fail_markers(frame);
+      if (!is_record(at, 4 * count)) fail_markers(frame);
       for (size_t begin = 0; begin < count; begin += kChunk) {
         const size_t size = std::min(kChunk, count - begin);
-        source_->read(at + 4 + 4 * begin, bytes, 4 * size);
+        source_->read(at + marker_ + 4 * begin, bytes, 4 * size);
         for (size_t i = 0; i < size; ++i) {
-          uint32_t bits = big_endian(bytes + 4 * i);
+          uint32_t bits = big_endian_u32(bytes + 4 * i);
           if (!is_big_endian_) bits = swap_bytes(bits);
           std::memcpy(&xyz[3 * (only_free ? free_[begin + i] : begin + i) + axis], &bits, 4);
         }
       }
-      at += 4 * count + kMarkers;
+      at += 4 * count + markers();
     }
   }
 
   std::unique_ptr<ByteSource> source_;
   bool is_big_endian_ = false;
+  uint64_t marker_ = 4;    // bytes of the length before or behind a record
   int32_t announced_ = 0;  // frames, as the header says; often 0 or wrong
   int32_t start_ = 0;      // number of the first step
   int32_t interval_ = 0;   // steps between frames
@@ -305,7 +322,7 @@ std::unique_ptr<TrajectoryReader> open_dcd(std::unique_ptr<ByteSource> source) {
 
 bool is_dcd(const unsigned char *head, size_t size) {
   return size >= 12 && (std::memcmp(head + 4, "CORD", 4) == 0 || std::memcmp(head + 4, "VELD", 4) == 0 ||
-                        std::memcmp(head + 8, "CORD", 4) == 0);
+                        std::memcmp(head + 8, "CORD", 4) == 0 || std::memcmp(head + 8, "VELD", 4) == 0);
 }
 
 }  // namespace quickses::io

@@ -14,6 +14,11 @@
 #include <string_view>
 #include <system_error>
 
+#if defined(_WIN32)
+#include <fcntl.h>
+#include <io.h>
+#endif
+
 #include "io/error.h"
 #include "io/file_path.h"
 
@@ -55,6 +60,24 @@ bool append_within(uint64_t limit, const char *data, size_t count, std::string &
              ", the most that is taken into memory; --max-input (in the library qses_input_set_limit) allows more");
 }
 
+constexpr size_t kPiece = size_t(1) << 16;
+
+// Reads to the end rather than trust the size: pipes and devices have none.
+std::string read_to_end(std::FILE *file, size_t size, const std::string &name) {
+  const uint64_t limit = input_limit();
+  std::string bytes;
+  bytes.reserve(size + kPiece);
+  for (size_t count = kPiece, read = 0; count > 0;) {
+    bytes.resize(read + kPiece);
+    count = std::fread(&bytes[read], 1, kPiece, file);
+    bytes.resize(read += count);
+    if (read > limit) fail_too_large(name, limit);
+  }
+  if (std::ferror(file)) fail_input("'" + name + "' can't be read: " + std::strerror(errno));
+  if (bytes.empty()) fail_input("'" + name + "' is empty");
+  return bytes;
+}
+
 std::string read_raw_bytes(const std::string &path) {
   std::error_code error;
   const fs::path place = path_of(path);
@@ -65,21 +88,9 @@ std::string read_raw_bytes(const std::string &path) {
   if (!file) fail_input("'" + path + "' can't be opened: " + std::strerror(errno));
 
   const uint64_t limit = input_limit();
-  std::string bytes;
   const auto size = fs::file_size(place, error);
   if (!error && size > limit) fail_too_large(path, limit);
-  constexpr size_t kPiece = size_t(1) << 16;
-  if (!error) bytes.reserve(static_cast<size_t>(size) + kPiece);
-  // Read to the end rather than trust the size: pipes and devices have none.
-  for (size_t count = kPiece, read = 0; count > 0;) {
-    bytes.resize(read + kPiece);
-    count = std::fread(&bytes[read], 1, kPiece, file.get());
-    bytes.resize(read += count);
-    if (read > limit) fail_too_large(path, limit);
-  }
-  if (std::ferror(file.get())) fail_input("'" + path + "' can't be read: " + std::strerror(errno));
-  if (bytes.empty()) fail_input("'" + path + "' is empty");
-  return bytes;
+  return read_to_end(file.get(), error ? 0 : static_cast<size_t>(size), path);
 }
 
 bool has_gzip_magic(std::string_view bytes) { return bytes.substr(0, 2) == "\x1f\x8b"; }
@@ -141,6 +152,15 @@ std::string unpack_gzip(std::string bytes, const std::string &name) {
   std::string text = gunzip(bytes, name);
   if (text.empty()) fail_input("'" + name + "' is empty");
   return text;
+}
+
+const char kStandardInput[] = "standard input";
+
+std::string read_standard_input() {
+#if defined(_WIN32)
+  _setmode(_fileno(stdin), _O_BINARY);
+#endif
+  return unpack_gzip(read_to_end(stdin, 0, kStandardInput), kStandardInput);
 }
 
 std::string read_file_bytes(const std::string &path) {

@@ -23,6 +23,12 @@ uint64_t input_limit();
 // one, gzip data that is damaged or cut off, even where the part before the cut would make sense.
 std::string read_file_bytes(const std::string &path);
 
+// The same of standard input, which is read to its end.
+std::string read_standard_input();
+
+// What standard input is called in messages.
+extern const char kStandardInput[];
+
 // What is compressed in gzip data; other bytes as they are. name: for messages. Throws as read_file_bytes.
 std::string unpack_gzip(std::string bytes, const std::string &name);
 

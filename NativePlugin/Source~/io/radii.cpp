@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Van der Waals radii by element.
+// Van der Waals radii by element, and by residue and atom.
 #include "io/radii.h"
 
 #include <filesystem>
 #include <gemmi/elem.hpp>
 #include <string_view>
+#include <utility>
 
 #include "io/elements.h"
 #include "io/error.h"
@@ -21,9 +22,18 @@ struct ElementRadius {
   float radius;
 };
 
-RadiusTable read_radii(const std::string &path) {
+std::string name_of(std::string_view residue, std::string_view atom) {
+  std::string name(residue);
+  name += ' ';
+  name += atom;
+  for (char &c : name) c = to_upper(c);
+  return name;
+}
+
+Radii read_radii(const std::string &path) {
   const std::string text = read_file_bytes(path);
-  RadiusTable table = quickses_radii();
+  Radii radii;
+  radii.by_element = quickses_radii();
   std::array<bool, std::tuple_size<RadiusTable>::value> named = {};
   double others = 0;
   std::string_view rest = text, line;
@@ -31,25 +41,30 @@ RadiusTable read_radii(const std::string &path) {
   for (size_t number = 1; next_line(rest, line); ++number) {
     split_words(line.substr(0, line.find('#')), words);
     if (words.empty()) continue;
-    if (words.size() != 2) fail_input(at_line(path, number) + "expected an element and its radius");
+    if (words.size() != 2 && words.size() != 3)
+      fail_input(at_line(path, number) + "expected an element and its radius, or a residue, an atom and its radius");
     double radius = 0;
-    if (!parse_number(words[1], radius) || !(radius > 0) || radius > 100)
-      fail_input(at_line(path, number) + "the radius '" + std::string(words[1]) +
+    if (!parse_number(words.back(), radius) || !(radius > 0) || radius > 100)
+      fail_input(at_line(path, number) + "the radius '" + std::string(words.back()) +
                  "' is no number above 0 and up to 100 Å");
-    if (words[0] == "*") {
+    if (words[0] == "*" && (words.size() == 2 || words[1] == "*")) {
       others = radius;
+      continue;
+    }
+    if (words.size() == 3) {
+      radii.by_name[name_of(words[0], words[1])] = static_cast<float>(radius);
       continue;
     }
     const std::string symbol(words[0]);
     const gemmi::Element element(parse_element(symbol));
     if (element == gemmi::El::X && symbol != "X") fail_input(at_line(path, number) + "'" + symbol + "' is no element");
-    table[element.atomic_number()] = static_cast<float>(radius);
+    radii.by_element[element.atomic_number()] = static_cast<float>(radius);
     named[element.atomic_number()] = true;
   }
   if (others > 0)
-    for (size_t i = 0; i < table.size(); ++i)
-      if (!named[i]) table[i] = static_cast<float>(others);
-  return table;
+    for (size_t i = 0; i < named.size(); ++i)
+      if (!named[i]) radii.by_element[i] = static_cast<float>(others);
+  return radii;
 }
 
 }  // namespace
@@ -87,19 +102,29 @@ RadiusTable bondi_radii() {
 
 bool is_radius_set(const std::string &name) { return name == "quickses" || name == "bondi"; }
 
-RadiusTable find_radii(const std::string &name_or_path) {
-  if (name_or_path == "quickses") return quickses_radii();
-  if (name_or_path == "bondi") return bondi_radii();
+float Radii::of(const AtomInfo &atom) const {
+  if (!by_name.empty()) {
+    const std::pair<std::string_view, std::string_view> names[] = {
+        {atom.residue_name, atom.name}, {atom.residue_name, "*"}, {"*", atom.name}};
+    for (const auto &[residue, name] : names)
+      if (const auto found = by_name.find(name_of(residue, name)); found != by_name.end()) return found->second;
+  }
+  return by_element[atom.element];
+}
+
+Radii find_radii(const std::string &name_or_path) {
+  if (name_or_path == "quickses") return {quickses_radii(), {}};
+  if (name_or_path == "bondi") return {bondi_radii(), {}};
   std::error_code error;
   if (!std::filesystem::exists(path_of(name_or_path), error))
     fail_input("'" + name_or_path + "' is neither a set of radii (quickses, bondi) nor a file");
   return read_radii(name_or_path);
 }
 
-void assign_radii(Structure &structure, const RadiusTable &table) {
+void assign_radii(Structure &structure, const Radii &radii) {
   structure.radii.clear();
   structure.radii.reserve(structure.atoms.size());
-  for (const AtomInfo &atom : structure.atoms) structure.radii.push_back(table[atom.element]);
+  for (const AtomInfo &atom : structure.atoms) structure.radii.push_back(radii.of(atom));
 }
 
 bool has_own_radii(StructureFormat format) {
@@ -111,8 +136,8 @@ void assign_radii(StructureFile &file, const std::string &radius_set) {
     if (!radius_set.empty()) fail_usage("radii: the file has radii of its own, so none can be chosen");
     return;
   }
-  const RadiusTable table = find_radii(radius_set.empty() ? "quickses" : radius_set);
-  for (Structure &structure : file.models) assign_radii(structure, table);
+  const Radii radii = find_radii(radius_set.empty() ? "quickses" : radius_set);
+  for (Structure &structure : file.models) assign_radii(structure, radii);
 }
 
 }  // namespace quickses::io

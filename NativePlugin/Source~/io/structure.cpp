@@ -43,8 +43,22 @@ bool format_of_content(std::string_view text, StructureFormat &format) {
   return false;
 }
 
+// What a server sends instead of a file that it does not have.
+void refuse_web_page(const std::string &path, const std::string &text) {
+  const size_t begin = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");  // the last three: a byte order mark
+  if (begin == std::string::npos || text[begin] != '<') return;
+  std::string head = text.substr(begin, 1024);
+  for (char &c : head) c = to_lower(c);
+  if (head.find("<!doctype html") != std::string::npos || head.find("<html") != std::string::npos)
+    fail_input("'" + path +
+               "' looks like a web page, not like a structure: the address that it was loaded from may be wrong");
+}
+
 StructureFormat find_format(const std::string &path, const std::string &text) {
   const std::string extension = lower_extension_of_content(path_of(path));
+  if (extension == ".bcif" || extension == ".mmtf")
+    fail_input("'" + path + "': " + (extension == ".bcif" ? "BinaryCIF" : "MMTF") +
+               " files are not read; the mmCIF file of the same entry (.cif or .cif.gz) is");
   if (extension == ".pdb" || extension == ".ent" || extension == ".brk") return StructureFormat::kPdb;
   if (extension == ".cif" || extension == ".mmcif") return StructureFormat::kMmcif;
   if (extension == ".pqr") return StructureFormat::kPqr;
@@ -53,7 +67,7 @@ StructureFormat find_format(const std::string &path, const std::string &text) {
   StructureFormat format;
   if (!format_of_content(text, format))
     fail_input("'" + path + "': its name and content tell no format; known are .pdb .ent .cif .mmcif .pqr .xyzr .gro" +
-               ", each also as .gz");
+               ", each also as .gz; of others the format has to be given");
   return format;
 }
 
@@ -192,6 +206,7 @@ namespace {
 StructureFile parse_text(const std::string &text, const std::string &path, std::optional<StructureFormat> format,
                          const ReadOptions &options) {
   Filter filter{options, parse_selection(options.selection)};
+  refuse_web_page(path, text);
   StructureFile file;
   file.format = format ? *format : find_format(path, text);
   RawFile raw_file = read_raw(file.format, text, path, options.model);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Trajectories: many frames of the same atoms. DCD (CHARMM, NAMD, X-PLOR), XTC (GROMACS), PDB with several models.
+// Trajectories: many frames of the same atoms. DCD (CHARMM, NAMD, X-PLOR), XTC and TRR (GROMACS), netCDF
+// (AMBER), PDB with several models.
 #pragma once
 
 #include <memory>
@@ -11,7 +12,7 @@
 
 namespace quickses::io {
 
-enum class TrajectoryFormat { kDcd, kXtc, kPdb };
+enum class TrajectoryFormat { kDcd, kXtc, kPdb, kTrr, kNetcdf };
 
 class TrajectoryReader;
 
@@ -20,12 +21,17 @@ class TrajectoryReader;
 // All const members may be called from several threads at a time; files are read by position, without a lock.
 class Trajectory {
  public:
-  // The format follows from the name (.dcd .xtc .pdb .ent .brk, each also with .gz behind), else from the content.
+  // The format follows from the name (.dcd .xtc .trr .nc .ncdf .ncrst .pdb .ent .brk, each also with .gz
+  // behind), else from the content.
   // A file that ends within a frame, or makes no sense from some frame on, gives the frames before: see incomplete().
   // Throws Error (kInput): unreadable, no such format, not one whole frame, frames of different numbers of atoms, DCD
-  // with 64-bit record markers or with velocities.
+  // with velocities.
   static Trajectory open(const std::string &path);
   static Trajectory open(const std::string &path, TrajectoryFormat format);
+
+  // Files whose frames follow each other, numbered through; at least one. Nothing is left out where they overlap, nor
+  // are times changed. Throws as open; also Error (kInput) if they have different numbers of atoms.
+  static Trajectory open_all(const std::vector<std::string> &paths);
 
   // As open, from bytes, gzipped or not. Without a format, the content tells. name: for messages.
   static Trajectory from_memory(std::string bytes, std::optional<TrajectoryFormat> format,
@@ -35,17 +41,21 @@ class Trajectory {
   Trajectory &operator=(Trajectory &&) noexcept;
   ~Trajectory();
 
-  TrajectoryFormat format() const { return format_; }
-  size_t frame_count() const;  // whole frames, at least 1
-  size_t atom_count() const;   // per frame, at least 1; in PDB files all ATOM and HETATM records of a model
+  TrajectoryFormat format() const { return format_; }  // of the first file
+  size_t frame_count() const { return frame_count_; }  // whole frames, at least 1
+  size_t atom_count() const;  // per frame, at least 1; in PDB files all ATOM and HETATM records of a model
+
+  // The file that a frame is in. Throws Error (kUsage): no such frame.
+  const std::string &file_of(size_t frame) const;
 
   // True if the file ends, or stops making sense, before it should: within a frame, or (DCD) before as many frames as
   // its header announces. warnings() then says what and where.
   bool incomplete() const;
-  const std::vector<std::string> &warnings() const;  // sentences for the user
+  const std::vector<std::string> &warnings() const { return warnings_; }  // sentences for the user
 
   // The positions of a frame in Å: atom_count() x 3 numbers, all finite and within 1e6 Å of the origin per axis.
-  // Throws Error: kUsage (no such frame), kInput (the frame is damaged; what xyz holds is then undefined).
+  // Throws Error: kUsage (no such frame), kInput (the frame is damaged; what xyz holds is then undefined). What is said
+  // of a damaged frame names its file, and counts from 0 in there.
   void read_frame(size_t frame, float *xyz) const;
 
   // The periodic box of a frame, if it has one. Throws as read_frame.
@@ -55,11 +65,19 @@ class Trajectory {
   std::optional<double> time(size_t frame) const;
 
  private:
+  // A file, and the number of its first frame.
+  struct Part {
+    std::unique_ptr<TrajectoryReader> reader;
+    size_t first = 0;
+  };
+
   Trajectory(TrajectoryFormat format, std::unique_ptr<TrajectoryReader> reader);
-  void check_frame(size_t frame) const;
+  const Part &part_of(size_t frame) const;
 
   TrajectoryFormat format_;
-  std::unique_ptr<TrajectoryReader> reader_;
+  std::vector<Part> parts_;
+  size_t frame_count_ = 0;
+  std::vector<std::string> warnings_;
 };
 
 }  // namespace quickses::io

@@ -4,8 +4,8 @@
 #include "io/xtc_reader.h"
 
 #include <cmath>
-#include <cstring>
 
+#include "io/big_endian.h"
 #include "io/xtc_coder.h"
 
 namespace quickses::io {
@@ -17,20 +17,6 @@ constexpr int32_t kMaxPlainAtoms = 9;
 constexpr size_t kHeadSize = 56;        // up to and with the second number of atoms
 constexpr size_t kPackedHeadSize = 88;  // up to the number of packed bytes
 constexpr size_t kMaxHeadSize = kPackedHeadSize + 8;
-
-uint32_t get_u32(const unsigned char *p) {
-  return static_cast<uint32_t>(p[0]) << 24 | static_cast<uint32_t>(p[1]) << 16 | static_cast<uint32_t>(p[2]) << 8 |
-         p[3];
-}
-
-int32_t get_i32(const unsigned char *p) { return static_cast<int32_t>(get_u32(p)); }
-
-float get_f32(const unsigned char *p) {
-  const uint32_t bits = get_u32(p);
-  float value;
-  std::memcpy(&value, &bits, sizeof value);
-  return value;
-}
 
 // What the head of a frame says about where things are.
 struct Head {
@@ -59,16 +45,16 @@ class XtcReader : public TrajectoryReader {
     std::vector<unsigned char> scratch;
     const unsigned char *data = source_->view(start + head.data_at, static_cast<size_t>(head.data_size), scratch);
     if (head.atom_count <= kMaxPlainAtoms) {
-      for (size_t i = 0; i < 3 * atom_count; ++i) xyz[i] = static_cast<float>(10.0 * get_f32(data + 4 * i));
+      for (size_t i = 0; i < 3 * atom_count; ++i) xyz[i] = static_cast<float>(10.0 * big_endian_f32(data + 4 * i));
       return;
     }
     XtcBlock block;
-    block.precision = get_f32(bytes + 56);
+    block.precision = big_endian_f32(bytes + 56);
     for (int i = 0; i < 3; ++i) {
-      block.min[i] = get_i32(bytes + 60 + 4 * i);
-      block.max[i] = get_i32(bytes + 72 + 4 * i);
+      block.min[i] = big_endian_i32(bytes + 60 + 4 * i);
+      block.max[i] = big_endian_i32(bytes + 72 + 4 * i);
     }
-    block.small_index = get_i32(bytes + 84);
+    block.small_index = big_endian_i32(bytes + 84);
     problem = unpack_xtc(block, data, static_cast<size_t>(head.data_size), atom_count, xyz);
     if (problem != nullptr) fail_frame(frame, std::string("is damaged: ") + problem);
   }
@@ -77,14 +63,14 @@ class XtcReader : public TrajectoryReader {
     unsigned char bytes[36];
     source_->read(offsets_[frame] + 16, bytes, sizeof bytes);
     std::array<std::array<double, 3>, 3> vectors;
-    for (int i = 0; i < 9; ++i) vectors[i / 3][i % 3] = 10.0 * get_f32(bytes + 4 * i);
+    for (int i = 0; i < 9; ++i) vectors[i / 3][i % 3] = 10.0 * big_endian_f32(bytes + 4 * i);
     return box_from_vectors(vectors);
   }
 
   std::optional<double> time(size_t frame) const override {
     unsigned char bytes[4];
     source_->read(offsets_[frame] + 12, bytes, sizeof bytes);
-    const float time = get_f32(bytes);
+    const float time = big_endian_f32(bytes);
     if (!std::isfinite(time)) return std::nullopt;
     return time;
   }
@@ -97,14 +83,14 @@ class XtcReader : public TrajectoryReader {
     const size_t count = static_cast<size_t>(left < kMaxHeadSize ? left : kMaxHeadSize);
     source_->read(start, bytes, count);
     if (count < 4) return false;
-    const int32_t magic = get_i32(bytes);
+    const int32_t magic = big_endian_i32(bytes);
     if (magic != kMagic && magic != kLargeMagic) {
       problem = "does not start as frames of XTC files do";
       return false;
     }
     if (count < kHeadSize) return false;
-    head.atom_count = get_i32(bytes + 4);
-    if (head.atom_count <= 0 || head.atom_count != get_i32(bytes + 52)) {
+    head.atom_count = big_endian_i32(bytes + 4);
+    if (head.atom_count <= 0 || head.atom_count != big_endian_i32(bytes + 52)) {
       problem = "is damaged: its number of atoms makes no sense";
       return false;
     }
@@ -115,8 +101,8 @@ class XtcReader : public TrajectoryReader {
       const size_t size_bytes = magic == kLargeMagic ? 8 : 4;
       if (count < kPackedHeadSize + size_bytes) return false;
       head.data_at = kPackedHeadSize + size_bytes;
-      head.data_size = get_u32(bytes + kPackedHeadSize);
-      if (magic == kLargeMagic) head.data_size = head.data_size << 32 | get_u32(bytes + kPackedHeadSize + 4);
+      head.data_size = big_endian_u32(bytes + kPackedHeadSize);
+      if (magic == kLargeMagic) head.data_size = head.data_size << 32 | big_endian_u32(bytes + kPackedHeadSize + 4);
       // Also keeps callers from making room for atoms that can't be there.
       if (head.data_size > (uint64_t{1} << 48) || head.data_size < min_xtc_bytes(head.atom_count)) {
         problem = "is damaged: its number of bytes makes no sense";
@@ -163,7 +149,7 @@ std::unique_ptr<TrajectoryReader> open_xtc(std::unique_ptr<ByteSource> source) {
 }
 
 bool is_xtc(const unsigned char *head, size_t size) {
-  return size >= 4 && (get_i32(head) == kMagic || get_i32(head) == kLargeMagic);
+  return size >= 4 && (big_endian_i32(head) == kMagic || big_endian_i32(head) == kLargeMagic);
 }
 
 }  // namespace quickses::io

@@ -91,6 +91,8 @@ namespace QuickSes.Tests
 
         [TestCase("md.xtc", true)]
         [TestCase("md.DCD.gz", true)]
+        [TestCase("md.trr", true)]
+        [TestCase("md.nc", true)]
         [TestCase("a.pdb", false)]
         [TestCase("a.gro", false)]
         [TestCase("a", false)]

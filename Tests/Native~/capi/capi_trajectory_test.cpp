@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The C API: trajectories from files and from memory.
 #include "capi/capi_fixture.h"
-#include "io/trajectory_fixture.h"
+#include "io/netcdf_fixture.h"
 
 #include <atomic>
 #include <thread>
@@ -98,6 +98,21 @@ TEST(Trajectory, TimeAndBox) {
   const double expected[9] = {20, 0, 0, 0, 30, 0, 10, 0, 40};
   for (int i = 0; i < 9; ++i) EXPECT_NEAR(frame.box[i], expected[i], 1e-5);
   EXPECT_EQ(frame.is_unwrapped, 0);
+}
+
+TEST(Trajectory, FormatsByNumberAndByContent) {
+  const Positions positions = {1, 2, 3};
+  const std::pair<qses_trajectory_format, std::string> files[] = {
+      {QSES_TRAJECTORY_TRR, quickses::io::TrrWriter().frame(positions)},
+      {QSES_TRAJECTORY_NETCDF, quickses::io::NetcdfWriter().file({positions})},
+  };
+  for (const auto &[format, bytes] : files)
+    for (const qses_trajectory_format asked : {format, QSES_TRAJECTORY_AUTO}) {
+      const TrajectoryPointer trajectory = open_bytes(bytes, asked);
+      EXPECT_EQ(info_of(trajectory).format, format);
+      const Positions read = read_frame(trajectory, 0);
+      for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(read[i], positions[i], 1e-5);
+    }
 }
 
 TEST(Trajectory, GzippedBuffersAndUnknownFormats) {

@@ -116,6 +116,35 @@ class Results(TrajectoryTest):
             self.assertEqual((vertices, normals, faces), (expected[0], expected[1], expected[3]))
             self.assertEqual(owners, [owner + 5 for owner in expected[2]])  # places in the file
 
+    def test_files_in_a_row_are_one_trajectory(self):
+        self.write("a.dcd", dcd_bytes(self.frames[:3]))
+        self.write("b.dcd", dcd_bytes(self.frames[3:4]))
+        self.write("c.dcd", dcd_bytes(self.frames[4:]))
+        row = ("--trajectory", "b.dcd", "--trajectory", "c.dcd")
+        expected = self.table("-o", "one%d.ply")
+        self.assertEqual(self.table("-o", "row%d.ply", *row, trajectory="a.dcd"), expected)
+        for k in range(7):
+            self.assertEqual((self.folder / f"row{k}.ply").read_bytes(), (self.folder / f"one{k}.ply").read_bytes())
+        self.assertEqual(self.table("-o", "row%d.ply", "--frames", "1:-1:2", *row, trajectory="a.dcd"), expected[1:-1:2])
+        lines = self.run_frames("--json", "-", "--frames", "2:5", *row, trajectory="a.dcd").stdout.splitlines()
+        self.assertEqual([(json.loads(line)["frame"], json.loads(line)["trajectory"]) for line in lines],
+                         [(2, "a.dcd"), (3, "b.dcd"), (4, "c.dcd")])
+        result = self.run_cpu("--trajectory", "a.dcd", "top.pdb", "--trajectory", "c.dcd", "-v", "0.8", "--csv", "a.csv")
+        self.assertIn("6 frames of 24 atoms", result.stdout)  # INPUT may stand between
+
+    def test_files_in_a_row_that_do_not_go_together(self):
+        self.write("other.dcd", dcd_bytes([frame[:20] for frame in self.frames]))
+        row = ("top.pdb", "--trajectory", "t.dcd", "--trajectory")
+        self.assert_fails(INPUT, ["other.dcd", "20 atoms", "t.dcd", "24"], *row, "other.dcd", "--csv", "a.csv", "--backend", "cpu")
+        self.assert_fails(INPUT, ["none.dcd"], *row, "none.dcd", "--csv", "a.csv", "--backend", "cpu")
+        self.assert_fails(USAGE, ["no frame 14", "14 frames, 0 to 13", "t.dcd", "1 more"], *row, "t.dcd", "--frames", "14",
+                          "--csv", "a.csv", "--backend", "cpu")
+        self.assert_fails(USAGE, ["--csv", "inputs"], *row, "b.dcd", "--csv", self.write("b.dcd", dcd_bytes(self.frames)))
+        damaged = self.write("bad.dcd", dcd_bytes(with_nan(self.frames, 3, 10)))
+        result = self.run_cpu(*row, damaged, "-v", "0.8", "--csv", "-", code=FRAMES_FAILED)
+        self.assertIn("frame 10 failed: ", result.stderr)
+        self.assertIn("bad.dcd': frame 3: atom 11", result.stderr)
+
     def test_models_of_a_pdb_file_are_frames(self):
         text = "".join(f"MODEL     {k + 1:4d}\n" + pdb_text(self.atoms, frame).replace("END\n", "ENDMDL\n")
                        for k, frame in enumerate(self.frames)) + "END\n"

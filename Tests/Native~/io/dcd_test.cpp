@@ -22,6 +22,7 @@ struct Flavour {
   bool has_cell;
   bool has_fourth;
   bool has_fixed;
+  bool has_wide_markers = false;
 };
 
 void PrintTo(const Flavour &flavour, std::ostream *stream) { *stream << flavour.name; }
@@ -34,6 +35,7 @@ class DcdFlavourTest : public ::testing::TestWithParam<Flavour> {
     writer_.version = flavour.version;
     writer_.announces_cell = flavour.has_cell;
     writer_.has_fourth = flavour.has_fourth;
+    writer_.has_wide_markers = flavour.has_wide_markers;
     if (flavour.has_fixed) writer_.free_atoms = {2, 5, 7};
     bytes_ = writer_.header(7);
     header_size_ = bytes_.size();
@@ -88,7 +90,10 @@ INSTANTIATE_TEST_SUITE_P(
         Flavour{"fourth", false, 24, false, true, false}, Flavour{"cell_fourth_big", true, 24, true, true, false},
         Flavour{"fixed", false, 24, false, false, true}, Flavour{"fixed_cell_fourth", false, 24, true, true, true},
         Flavour{"fixed_cell_big", true, 24, true, false, true}, Flavour{"xplor", false, 0, false, false, false},
-        Flavour{"xplor_big", true, 0, false, false, false}, Flavour{"xplor_fixed", false, 0, false, false, true}),
+        Flavour{"xplor_big", true, 0, false, false, false}, Flavour{"xplor_fixed", false, 0, false, false, true},
+        Flavour{"wide", false, 24, false, false, false, true}, Flavour{"wide_big", true, 24, false, false, false, true},
+        Flavour{"wide_all", false, 24, true, true, true, true},
+        Flavour{"wide_all_big", true, 41, true, true, true, true}),
     [](const auto &info) { return std::string(info.param.name); });
 
 // ---- unit cells
@@ -225,10 +230,21 @@ TEST(DcdTest, AnnouncedFrames) {
 
 // ---- what is refused
 
-TEST(DcdTest, RefusesWideMarkers) {
+TEST(DcdTest, WideMarkersAreKnownByContent) {
   for (bool big_endian : {false, true}) {
-    const std::string wide = raw_bytes(int64_t{84}, big_endian);
-    EXPECT_HAS(error_of_bytes(wide + "CORD" + std::string(80, '\0') + wide), "64-bit record markers");
+    DcdWriter writer;
+    writer.big_endian = big_endian;
+    writer.has_wide_markers = true;
+    const std::string bytes = writer.header(1) + writer.frame({1, 2, 3}, true);
+    const Trajectory trajectory = Trajectory::from_memory(bytes, std::nullopt, "no_extension");
+    EXPECT_EQ(trajectory.format(), TrajectoryFormat::kDcd);
+    EXPECT_EQ(frame_of(trajectory, 0), (Positions{1, 2, 3}));
+    writer.magic = "VELD";
+    EXPECT_HAS(error_of_bytes(writer.header(1) + writer.frame({1, 2, 3}, true)), "velocities");
+    // A length that is more than 64 bits can be added to.
+    std::string damaged = bytes;
+    damaged.replace(100, 8, raw_bytes(int64_t{-1}, big_endian));
+    EXPECT_HAS(error_of_bytes(damaged), "it is cut off within its titles");
   }
 }
 

@@ -59,7 +59,7 @@ TEST_F(FilePathTest, StructuresAndTrajectoriesAreFound) {
 
 TEST_F(FilePathTest, RadiiAreFound) {
   std::ofstream(file_) << "N 1.23\n";
-  EXPECT_FLOAT_EQ(find_radii(name_)[7], 1.23f);
+  EXPECT_FLOAT_EQ(find_radii(name_).by_element[7], 1.23f);
 }
 
 TEST_F(FilePathTest, FilesAreWrittenUnderTheirName) {

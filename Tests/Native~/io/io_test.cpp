@@ -416,7 +416,7 @@ TEST_F(IoTest, GroIsReadInAngstrom) {
 float radius_of(const RadiusTable &table, int atomic_number) { return table.at(atomic_number); }
 
 TEST_F(IoTest, RadiiOfThePaperAreTheDefault) {
-  const RadiusTable table = find_radii("quickses");
+  const RadiusTable table = find_radii("quickses").by_element;
   EXPECT_EQ(radius_of(table, 8), 1.52f);
   EXPECT_EQ(radius_of(table, 6), 1.70f);
   EXPECT_EQ(radius_of(table, 7), 1.55f);
@@ -427,7 +427,7 @@ TEST_F(IoTest, RadiiOfThePaperAreTheDefault) {
 }
 
 TEST_F(IoTest, BondiRadii) {
-  const RadiusTable table = find_radii("bondi");
+  const RadiusTable table = find_radii("bondi").by_element;
   EXPECT_EQ(radius_of(table, 1), 1.20f);
   EXPECT_EQ(radius_of(table, 9), 1.47f);
   EXPECT_EQ(radius_of(table, 17), 1.75f);
@@ -436,31 +436,10 @@ TEST_F(IoTest, BondiRadii) {
   EXPECT_EQ(radius_of(table, 26), 2.00f);
 }
 
-TEST_F(IoTest, RadiiFromAFile) {
-  const RadiusTable table = find_radii(write("r.txt", "# mine\nC 2.5\nzn 1.1 # zinc\n"));
-  EXPECT_EQ(radius_of(table, 6), 2.5f);
-  EXPECT_EQ(radius_of(table, 30), 1.1f);
-  EXPECT_EQ(radius_of(table, 8), 1.52f);
-  const RadiusTable all = find_radii(write("s.txt", "C 2.5\n* 1.0\n"));
-  EXPECT_EQ(radius_of(all, 6), 2.5f);
-  EXPECT_EQ(radius_of(all, 8), 1.0f);
-  const struct {
-    const char *text;
-    const char *part;
-  } kBad[] = {{"C 1.7\nQq 1\n", "line 2"},
-              {"C\n", "line 1"},
-              {"C 1 2\n", "line 1"},
-              {"C 0\n", "line 1"},
-              {"\nC x\n", "line 2"}};
-  for (const auto &bad : kBad)
-    EXPECT_HAS(error_of(ErrorKind::kInput, [&] { find_radii(write("bad.txt", bad.text)); }), bad.part);
-  EXPECT_HAS(error_of(ErrorKind::kInput, [&] { find_radii(path("none.txt")); }), "bondi");
-}
-
 TEST_F(IoTest, DeuteriumHasTheRadiusOfHydrogen) {
   Structure structure = only_model(
       write("a.pdb", pdb_atom(" D  ", ' ', "GLY", 'A', 1, 1, "D") + pdb_atom("XX  ", ' ', "UNX", 'A', 2, 2, " X")));
-  assign_radii(structure, quickses_radii());
+  assign_radii(structure, find_radii("quickses"));
   EXPECT_EQ(structure.radii, (std::vector<float>{1.20f, 1.40f}));
 }
 

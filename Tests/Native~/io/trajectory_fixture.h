@@ -51,6 +51,7 @@ struct DcdWriter {
   int32_t start = 0, interval = 0;
   double step = 0;
   std::string magic = "CORD";
+  bool has_wide_markers = false;  // 64 bits
 
   template <typename T>
   std::string number(T value) const {
@@ -58,7 +59,8 @@ struct DcdWriter {
   }
 
   std::string record(const std::string &content) const {
-    const std::string marker = number(static_cast<int32_t>(content.size()));
+    const auto size = static_cast<int32_t>(content.size());
+    const std::string marker = has_wide_markers ? number(int64_t{size}) : number(size);
     return marker + content + marker;
   }
 
@@ -259,6 +261,54 @@ struct XtcWriter {
       index += group.change;
     }
     return bits.bytes();
+  }
+};
+
+// ---- TRR
+
+struct TrrWriter {
+  bool is_double = false;
+  double time = 0;
+  std::vector<double> box;  // nm; empty: none
+  bool has_pressure = false, has_velocities = false, has_forces = false;
+
+  template <typename T>
+  static std::string number(T value) {
+    return raw_bytes(value, true);
+  }
+  std::string real(double x) const { return is_double ? number(x) : number(static_cast<float>(x)); }
+  std::string reals(const std::vector<double> &values) const {
+    std::string bytes;
+    for (double x : values) bytes += real(x);
+    return bytes;
+  }
+
+  // nm: empty for a frame without positions.
+  std::string frame(int32_t atom_count, const std::vector<double> &nm) const {
+    const std::string others = reals(std::vector<double>(3 * static_cast<size_t>(atom_count), 7.5)), none;
+    const std::string pressure = has_pressure ? reals(std::vector<double>(9, 1.25)) : none;
+    const std::string blocks[10] = {none,
+                                    none,
+                                    reals(box),
+                                    pressure,
+                                    pressure,
+                                    none,
+                                    none,
+                                    reals(nm),
+                                    has_velocities ? others : none,
+                                    has_forces ? others : none};
+    std::string bytes = number(int32_t{1993}) + number(int32_t{13}) + number(int32_t{12}) + "GMX_trn_file", body;
+    for (const std::string &block : blocks) {
+      bytes += number(static_cast<int32_t>(block.size()));
+      body += block;
+    }
+    return bytes + number(atom_count) + number(int32_t{100}) + number(int32_t{0}) + real(time) + real(0.5) + body;
+  }
+
+  std::string frame(const Positions &angstrom) const {
+    std::vector<double> nm;
+    for (float x : angstrom) nm.push_back(static_cast<double>(x) / 10);
+    return frame(static_cast<int32_t>(nm.size() / 3), nm);
   }
 };
 

@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <thread>
 
+#include "io/netcdf_fixture.h"
 #include "io/structure.h"
-#include "io/trajectory_fixture.h"
 
 namespace quickses::io {
 namespace {
@@ -171,6 +171,7 @@ std::vector<Sample> samples(std::vector<Positions> &frames, size_t atom_count = 
   const XtcWriter xtc;
   Sample dcd_file = {dcd.header(static_cast<int32_t>(atom_count)), TrajectoryFormat::kDcd, ".dcd"};
   Sample xtc_file = {"", TrajectoryFormat::kXtc, ".xtc"}, pdb_file = {"", TrajectoryFormat::kPdb, ".pdb"};
+  Sample trr_file = {"", TrajectoryFormat::kTrr, ".trr"}, nc_file = {"", TrajectoryFormat::kNetcdf, ".nc"};
   for (uint32_t k = 0; k < frame_count; ++k) {
     frames.push_back(rounded_positions(atom_count, k));
     dcd_file.bytes += dcd.frame(frames.back(), k == 0);
@@ -182,9 +183,11 @@ std::vector<Sample> samples(std::vector<Positions> &frames, size_t atom_count = 
     std::vector<float> nm;
     for (float x : frames.back()) nm.push_back(x / 10);
     xtc_file.bytes += atom_count <= 9 ? xtc.plain_frame(nm) : fine.packed_frame(integers);
+    trr_file.bytes += TrrWriter().frame(frames.back());
     pdb_file.bytes += pdb_model(static_cast<int>(k + 1), frames.back());
   }
-  return {dcd_file, xtc_file, pdb_file};
+  nc_file.bytes = NetcdfWriter().file(frames);
+  return {dcd_file, xtc_file, trr_file, nc_file, pdb_file};
 }
 
 void expect_frames(const Trajectory &trajectory, const std::vector<Positions> &frames) {
@@ -222,8 +225,8 @@ TEST_F(TrajectoryTest, FilesThatCanNotBeOpened) {
   EXPECT_HAS(error(path("none.xtc")), path("none.xtc"));
   EXPECT_HAS(error(folder_.string()), "is a directory");
   EXPECT_HAS(error(write("empty.dcd", "")), "is empty");
-  EXPECT_HAS(error(write("a.trr", "what is this")), "known are .dcd .xtc .pdb");
-  EXPECT_HAS(error(write("one", "x")), "known are .dcd .xtc .pdb");
+  EXPECT_HAS(error(write("a.txt", "what is this")), "known are .dcd .xtc .trr .nc");
+  EXPECT_HAS(error(write("one", "x")), "known are .dcd .xtc .trr .nc");
   std::vector<Positions> frames;
   const Sample xtc = samples(frames)[1];
   EXPECT_HAS(error(write("a.xtc.gz", xtc.bytes)), "is no gzip file");
@@ -243,17 +246,78 @@ TEST_F(TrajectoryTest, FramesOutOfRange) {
     const Trajectory trajectory = Trajectory::from_memory(sample.bytes, sample.format, "a.trj");
     float xyz[15];
     for (size_t frame : {size_t{3}, SIZE_MAX}) {
-      EXPECT_HAS(error_of(ErrorKind::kUsage, [&] { trajectory.read_frame(frame, xyz); }), "its frames are 0 to 2");
+      EXPECT_HAS(error_of(ErrorKind::kUsage, [&] { trajectory.read_frame(frame, xyz); }),
+                 "has no frame " + std::to_string(frame) + ": the frames are 0 to 2");
       error_of(ErrorKind::kUsage, [&] { trajectory.box(frame); });
       error_of(ErrorKind::kUsage, [&] { trajectory.time(frame); });
     }
   }
 }
 
+// ---- files in a row
+
+TEST_F(TrajectoryTest, FilesInARowAreNumberedThrough) {
+  std::vector<Positions> frames, all;
+  std::vector<std::string> files, file_of_frame;
+  for (const Sample &sample : samples(frames)) {
+    files.push_back(write("part" + std::to_string(files.size()) + sample.extension, sample.bytes));
+    all.insert(all.end(), frames.begin(), frames.end());
+    file_of_frame.insert(file_of_frame.end(), frames.size(), files.back());
+  }
+  const Trajectory trajectory = Trajectory::open_all(files);
+  expect_frames(trajectory, all);
+  EXPECT_FALSE(trajectory.incomplete());
+  EXPECT_TRUE(trajectory.warnings().empty());
+  EXPECT_EQ(trajectory.format(), Trajectory::open(files[0]).format());
+  for (size_t k = 0; k < all.size(); ++k) EXPECT_EQ(trajectory.file_of(k), file_of_frame[k]);
+  const std::string last = std::to_string(all.size() - 1);
+  EXPECT_HAS(error_of(ErrorKind::kUsage, [&] { frame_of(trajectory, all.size()); }), "the frames are 0 to " + last);
+  EXPECT_HAS(error_of(ErrorKind::kUsage, [&] { trajectory.file_of(SIZE_MAX); }), "the frames are 0 to " + last);
+  EXPECT_HAS(error_of(ErrorKind::kUsage, [&] { Trajectory::open_all({}); }), "no trajectories");
+}
+
+TEST_F(TrajectoryTest, FilesInARowKeepTheirTimesAndBoxes) {
+  const auto file = [&](const std::string &name, double time, double edge) {
+    TrrWriter writer;
+    writer.time = time;
+    writer.box = {edge, 0, 0, 0, edge, 0, 0, 0, edge};
+    return write(name, writer.frame(Positions{1, 2, 3}));
+  };
+  const Trajectory trajectory = Trajectory::open_all({file("a.trr", 8, 2), file("b.trr", 4, 3), file("c.trr", 16, 5)});
+  const double times[] = {8, 4, 16}, edges[] = {20, 30, 50};
+  for (size_t k : {2, 0, 1}) {
+    EXPECT_EQ(trajectory.time(k), times[k]);
+    ASSERT_TRUE(trajectory.box(k));
+    EXPECT_EQ(trajectory.box(k)->vectors[0][0], edges[k]);
+  }
+}
+
+TEST_F(TrajectoryTest, FilesInARowWithFaults) {
+  const DcdWriter dcd;
+  const Positions good = {1, 2, 3}, bad = {1, NAN, 3};
+  const std::string whole = dcd.header(1) + dcd.frame(good, true) + dcd.frame(good, false);
+  const std::string first = write("first.dcd", whole);
+  const std::string cut = write("cut.dcd", whole.substr(0, whole.size() - 1));
+  const std::string damaged = write("damaged.dcd", dcd.header(1) + dcd.frame(good, true) + dcd.frame(bad, false));
+  const Trajectory trajectory = Trajectory::open_all({first, cut, damaged});
+  ASSERT_EQ(trajectory.frame_count(), 5u);
+  EXPECT_TRUE(trajectory.incomplete());
+  ASSERT_EQ(trajectory.warnings().size(), 1u);
+  EXPECT_HAS(trajectory.warnings()[0], cut + "': frame 1 is cut off");
+  for (size_t k = 0; k < 4; ++k) EXPECT_EQ(frame_of(trajectory, k), good);
+  EXPECT_HAS(error_of(ErrorKind::kInput, [&] { frame_of(trajectory, 4); }),
+             damaged + "': frame 1: atom 1 has no finite");
+
+  const std::string other = write("other.dcd", dcd.header(2) + dcd.frame({1, 2, 3, 4, 5, 6}, true));
+  const std::string message = error_of(ErrorKind::kInput, [&] { Trajectory::open_all({first, cut, other}); });
+  EXPECT_HAS(message, other + "' has 2 atoms, but '" + first + "' has 1");
+  EXPECT_HAS(error_of(ErrorKind::kInput, [&] { Trajectory::open_all({first, path("none.dcd")}); }), "none.dcd");
+}
+
 TEST_F(TrajectoryTest, FileThatShrinksWhileItIsOpen) {
   std::vector<Positions> frames;
   std::vector<Sample> files = samples(frames, 2000);
-  for (size_t i : {0, 1}) {  // PDB files are in memory
+  for (size_t i : {0, 1, 2, 3}) {  // PDB files are in memory
     const std::string file = write(std::string("a") + files[i].extension, files[i].bytes);
     const Trajectory trajectory = Trajectory::open(file);
     std::filesystem::resize_file(file, files[i].bytes.size() / 2);

@@ -176,6 +176,10 @@ namespace QuickSes
         /// <summary>GROMACS; nm become Å.</summary>
         Xtc = 2,
         /// <summary>PDB with several models.</summary>
-        Pdb = 3
+        Pdb = 3,
+        /// <summary>GROMACS, in full precision; nm become Å; frames without positions are left out.</summary>
+        Trr = 4,
+        /// <summary>AMBER, in netCDF's classic format (CDF-1, -2 and -5, not HDF5); also restart files.</summary>
+        Netcdf = 5
     }
 }

@@ -5,7 +5,7 @@ using System;
 namespace QuickSes
 {
     /// <summary>
-    /// Many frames of the same atoms (DCD, XTC, PDB with several models; gzipped or not), read in any order. Any number
+    /// Many frames of the same atoms (DCD, XTC, TRR, NetCDF, PDB with several models; gzipped or not), read in any order. Any number
     /// of threads may read it at a time, but for <see cref="TryUnwrap"/>. Coordinates are those of the file, in Å,
     /// right-handed.
     /// </summary>

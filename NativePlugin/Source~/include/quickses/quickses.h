@@ -740,7 +740,7 @@ QSES_API qses_status qses_kept_mesh_pick(const qses_kept_mesh *kept, const float
 /* How many bytes structures and trajectories may take into memory from one file, pipe, device or buffer, unpacked: a
  * gzip file of 3 MB can hold 3 GB, and a device has no end. More is a FILE_ERROR. It holds for the whole process from
  * now on. 0 (default): 4 GiB, but of gzip data at most 100 times its size or 256 MiB, whichever is larger. Any other
- * number holds for all alike. Frames that stay in their file (DCD and XTC, not gzipped) and plain bytes of a buffer are
+ * number holds for all alike. Frames that stay in their file (not gzipped, and not PDB) and plain bytes of a buffer are
  * not counted. What is made of the bytes, atoms above all, takes several times as much again. */
 QSES_API void qses_input_set_limit(uint64_t bytes);
 
@@ -769,8 +769,9 @@ typedef struct qses_structure_options {
   qses_bool hydrogen;    /* the same for hydrogen and deuterium */
   const char *selection; /* CID syntax of gemmi, such as "//A" or "/1/A/10-40/CA[C]"; NULL (default) = everything */
   const char *radii;     /* "quickses", "bondi", or the name of a text file with lines `ELEMENT radius` (Å; `*` for all
-                            others). NULL (default) = those of the file (PQR, XYZR), else "quickses": O 1.52, C 1.70,
-                            N 1.55, H 1.20, S 1.80, P 1.80, others 1.40 Å */
+                            others) and `RESIDUE ATOM radius` (either may be `*`), of which the most specific holds:
+                            residue and atom, residue, atom, element, `*`. NULL (default) = those of the file (PQR,
+                            XYZR), else "quickses": O 1.52, C 1.70, N 1.55, H 1.20, S 1.80, P 1.80, others 1.40 Å */
 } qses_structure_options;
 
 /* The defaults, with struct_size set. NULL is ignored. */
@@ -868,18 +869,20 @@ QSES_API qses_status qses_structure_select(const qses_structure *structure, cons
 QSES_API qses_status qses_structure_warning(const qses_structure *structure, uint32_t k, const char **sentence);
 
 typedef enum qses_trajectory_format {
-  QSES_TRAJECTORY_AUTO = 0, /* by the extension of the file's name, else by the content */
-  QSES_TRAJECTORY_DCD = 1,  /* CHARMM, NAMD, X-PLOR */
-  QSES_TRAJECTORY_XTC = 2,  /* GROMACS; nm become Å */
-  QSES_TRAJECTORY_PDB = 3   /* PDB with several models */
+  QSES_TRAJECTORY_AUTO = 0,  /* by the extension of the file's name, else by the content */
+  QSES_TRAJECTORY_DCD = 1,   /* CHARMM, NAMD, X-PLOR */
+  QSES_TRAJECTORY_XTC = 2,   /* GROMACS; nm become Å */
+  QSES_TRAJECTORY_PDB = 3,   /* PDB with several models */
+  QSES_TRAJECTORY_TRR = 4,   /* GROMACS, in full precision; nm become Å; frames without positions are left out */
+  QSES_TRAJECTORY_NETCDF = 5 /* AMBER, in netCDF's classic format (CDF-1, -2 and -5, not HDF5); also restart files */
 } qses_trajectory_format;
 
 /* Opens a trajectory; path is UTF-8. Frames stay in the file and are read when they are asked for (gzipped files
  * and PDB files are taken into memory). A file that ends within a frame, or makes no sense from some frame on, gives
  * the frames before: see qses_trajectory_description.incomplete. On success *trajectory is the caller's, who ends it
  * with qses_trajectory_close; on failure it is NULL. Errors: INVALID_ARGUMENT, FILE_ERROR (no such format, not one
- * whole frame, frames of different numbers of atoms, DCD files with 64-bit record markers or velocities, more in memory
- * than qses_input_set_limit allows), OUT_OF_MEMORY. */
+ * whole frame, frames of different numbers of atoms, DCD files of velocities, more in memory than qses_input_set_limit
+ * allows), OUT_OF_MEMORY. */
 QSES_API qses_status qses_trajectory_open(const char *path, qses_trajectory_format format,
                                           qses_trajectory **trajectory);
 

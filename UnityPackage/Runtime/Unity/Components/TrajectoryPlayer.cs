@@ -5,7 +5,7 @@ using UnityEngine;
 namespace QuickSes
 {
     /// <summary>
-    /// Plays a trajectory (DCD, XTC, PDB with several models) in the <see cref="MolecularSurface"/> beside it, and in
+    /// Plays a trajectory (DCD, XTC, TRR, NetCDF, PDB with several models) in the <see cref="MolecularSurface"/> beside it, and in
     /// any number of others (<see cref="Surfaces"/>), which are all given the same frame at the same time: reads atoms
     /// of a structure, gives them to the surfaces, then their positions frame by frame, with x negated, since Unity is
     /// left-handed. Files are read, and frames read ahead, on threads of its own; playing makes no garbage. In edit

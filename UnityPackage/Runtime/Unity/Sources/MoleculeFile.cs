@@ -215,6 +215,12 @@ namespace QuickSes
                     return TrajectoryFormat.Dcd;
                 case ".xtc":
                     return TrajectoryFormat.Xtc;
+                case ".trr":
+                    return TrajectoryFormat.Trr;
+                case ".nc":
+                case ".ncdf":
+                case ".ncrst":
+                    return TrajectoryFormat.Netcdf;
                 case ".pdb":
                 case ".ent":
                 case ".brk":

@@ -24,8 +24,8 @@ namespace QuickSes
         [SerializeField, Tooltip("Which atoms, in gemmi's CID syntax, such as //A or //A/10-40/CA[C]. Empty: all.")]
         private string _selection = "";
         [SerializeField, Tooltip(
-            "quickses, bondi, or the path of a text file with lines ELEMENT radius (Å). Empty: the file's own radii " +
-            "(PQR, XYZR), else quickses.")]
+            "quickses, bondi, or the path of a text file with lines ELEMENT radius or RESIDUE ATOM radius (Å). Empty: " +
+            "the file's own radii (PQR, XYZR), else quickses.")]
         private string _radii = "";
         [SerializeField, Tooltip("How atoms are coloured.")]
         private AtomColorScheme _colorScheme = AtomColorScheme.Element;

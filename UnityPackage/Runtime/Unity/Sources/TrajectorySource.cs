@@ -5,7 +5,7 @@ using UnityEngine;
 namespace QuickSes
 {
     /// <summary>
-    /// Where frames come from: DCD, XTC or PDB with several models, each also gzipped. Of kind None: the file of the
+    /// Where frames come from: DCD, XTC, TRR, NetCDF or PDB with several models, each also gzipped. Of kind None: the file of the
     /// structure, which must then be a PDB file with several models. Serialised with the component it belongs to. Main
     /// thread only.
     /// </summary>
