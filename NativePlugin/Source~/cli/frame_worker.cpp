@@ -9,7 +9,6 @@
 #include "cli/csv.h"
 #include "cli/exit_code.h"
 #include "cli/measuring.h"
-#include "cli/mesh_output.h"
 #include "cli/report.h"
 
 namespace quickses::cli {
@@ -66,7 +65,7 @@ std::string csv_header(const Options &options) {
 }
 
 FrameInputs::FrameInputs(const Options &given, bool quiet)
-    : Input(given, quiet), trajectory(io::Trajectory::open(options.trajectory)) {
+    : Input(given, quiet), trajectory(io::Trajectory::open(options.trajectory)), mesh_output(options, structure()) {
   check_atom_counts(options, structure(), trajectory);
   for (const io::AtomInfo &atom : structure().atoms) file_indices.push_back(atom.file_index);
   if (!options.output.empty()) pattern.emplace(options.output);
@@ -196,7 +195,7 @@ void FrameWorker::fill_mesh(const FrameTask &task, Read read, FrameResult &resul
   Options frame_options = options;
   if (inputs_.pattern) frame_options.output = inputs_.pattern->name(task.frame);
   const auto write_start = Clock::now();
-  accept_surface(frame_options.output, mesh, inputs_.structure());
+  inputs_.mesh_output.accept(frame_options.output, mesh);
   read.timings.write = ms_since(write_start);
   if (options.json.empty()) return;
   Json json = frame_json(task, read.time);

@@ -8,10 +8,10 @@
 #include <map>
 
 #include "cli/exit_code.h"
+#include "cli/mesh_options.h"
 #include "cli/option_kinds.h"
 #include "cli/output_pattern.h"
 #include "cli/used_files.h"
-#include "io/mesh_writer.h"
 #include "io/text.h"
 
 namespace quickses::cli {
@@ -38,7 +38,7 @@ const char kFooter[] =
     "  5  the back end asked for can't be used here\n"
     "  6  some frames of a trajectory failed; the others are done\n"
     "\n"
-    "Owner atoms in PLY files are 0-based places among the atoms of the input's model, before any filter.\n"
+    "Owner atoms in PLY and GLB files are 0-based places among the atoms of the input's model, before any filter.\n"
     "Lengths are in angstrom, areas in A^2, volumes in A^3.\n";
 
 void add_compute_options(CLI::App *app, ComputeOptions &options) {
@@ -122,17 +122,6 @@ void add_input_options(CLI::App *app, Options &options, const char *model_help) 
          },
          model_help)
       ->type_name("N|all");
-}
-
-void add_mesh_options(CLI::App *app, Options &options) {
-  app->add_option("-o,--output", options.output, "Mesh: .obj, .ply (binary, with normals and owner atoms) or .stl")
-      ->type_name("FILE");
-  add_switch(app, "--hard-edges", options.hard_edges,
-             "on: a vertex on a crease has a normal for each side, so that light breaks there; PLY files then have it "
-             "once per side. Default: on for .obj and .ply");
-  app->add_flag("--outer", options.outer, "Leave the walls of cavities out of the mesh, not of the numbers");
-  app->add_flag("--component-ids", options.component_ids,
-                "The number of each vertex's connected piece in PLY files, as int component");
 }
 
 void add_area_options(CLI::App *app, Options &options) {
@@ -233,20 +222,6 @@ void check_values(const CLI::App &used) {
       if (value.empty()) throw Failure(kUsage, option->get_name() + ": '' is given, which is nothing");
 }
 
-void check_output(const Options &options) {
-  if (options.component_ids && options.output.empty())
-    throw Failure(kUsage, "--component-ids: they are part of a PLY file, and there is no --output (-o)");
-  if (options.output.empty()) return;
-  io::MeshFormat format = io::MeshFormat::kObj;
-  try {
-    format = io::mesh_format_of(options.output);
-  } catch (const std::exception &error) {
-    throw Failure(kUsage, std::string("--output (-o): ") + error.what());
-  }
-  if (options.component_ids && format != io::MeshFormat::kPly)
-    throw Failure(kUsage, "--component-ids: only PLY files have them, and --output (-o) is '" + options.output + "'");
-}
-
 void check_devices(const Options &options) {
   const DeviceChoice &devices = options.compute.devices;
   if (devices.is_given() && options.compute.backend == QSES_BACKEND_CPU)
@@ -273,11 +248,9 @@ void check(const Options &options, const std::function<bool(const char *)> &give
   } else {
     check_trajectory(options, given);
   }
-  if (options.hard_edges == Switch::kOn && !has_hard_edges(options))
-    throw Failure(kUsage, "--hard-edges on: is for the exact method and mesh files with normals, .obj or .ply");
   if (options.wants_areas() && options.compute.method == QSES_METHOD_GRID)
     throw Failure(kUsage, "--per-atom and --per-residue: areas of atoms are there with --method exact only");
-  check_output(options);
+  check_mesh_options(options);
   check_standard_output(options);
   UsedFiles check(options);
 }
@@ -289,16 +262,11 @@ const char *name_of(qses_method method) { return find_name(kMethods, method); }
 const char *name_of(qses_backend backend) { return find_name(kBackends, backend); }
 const char *name_of(qses_vertex_layout layout) { return find_name(kLayouts, layout); }
 
-bool has_hard_edges(const Options &options) {
-  return options.hard_edges != Switch::kOff && options.compute.method == QSES_METHOD_EXACT && !options.output.empty() &&
-         io::mesh_format_of(options.output) != io::MeshFormat::kStl;
-}
-
 Options parse_options(int argc, char **argv, std::ostream &out) {
   Options options;
   CLI::App app(
       "Molecular surfaces as closed triangle meshes.\n\n"
-      "  quickses INPUT [-o OUT.obj|OUT.ply|OUT.stl] [options]\n"
+      "  quickses INPUT [-o OUT.ply|OUT.obj|OUT.glb|OUT.stl|OUT.off|OUT.vert] [options]\n"
       "  quickses INPUT --trajectory FILE [--frames A:B:STEP] [--csv FILE] [-o frame_%05d.ply] [options]\n"
       "  quickses measure INPUT [--surface sas,vdw,ses] [--per-atom FILE] [--per-residue FILE] [options]\n"
       "  quickses cavities INPUT [--csv FILE] [options]\n"

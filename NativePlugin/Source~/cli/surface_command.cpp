@@ -15,7 +15,6 @@
 #include "cli/report.h"
 #include "cli/text_output.h"
 #include "cli/used_files.h"
-#include "io/atomic_file.h"
 #include "io/file_path.h"
 
 namespace quickses::cli {
@@ -43,7 +42,7 @@ void print_summary(const Options &options, const io::Structure &structure, const
 
 void run_surface(const Options &options) {
   // Before anything takes time: can the results be written?
-  if (!options.output.empty()) io::check_writable(options.output);
+  check_mesh_writable(options.output);
   check_text_output(options.json);
   AreaTables tables(options, {options.compute.surface});
 
@@ -75,7 +74,7 @@ void run_surface(const Options &options) {
     }
     const qses_report report = engine.report();
     const auto write_start = Clock::now();
-    accept_surface(model_options.output, mesh, structure);
+    MeshOutput(options, structure).accept(model_options.output, mesh);
     tables.write(make_area_rows(options, all_models ? std::to_string(structure.model) : "", structure,
                                 areas_of(options.compute.surface, mesh)));
     timings.write = ms_since(write_start);

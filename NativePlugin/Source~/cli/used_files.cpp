@@ -6,6 +6,7 @@
 
 #include "cli/exit_code.h"
 #include "io/file_path.h"
+#include "io/mesh_writer.h"
 #include "io/radii.h"
 
 #if defined(_WIN32)
@@ -71,13 +72,16 @@ UsedFiles::UsedFiles(const Options &options) {
   add_input("--trajectory", options.trajectory);
   if (!io::is_radius_set(options.compute.radii)) add_input("--radii", options.compute.radii);
   const bool is_one_mesh = options.trajectory.empty() && options.read.model != 0;
-  if (is_one_mesh) add_output(kOutputFlag, options.output);
+  if (is_one_mesh && !options.output.empty())
+    for (const std::string &name : io::mesh_files_of(options.output)) add_output(kOutputFlag, name);
   add_output("--csv", options.csv);
   add_output("--per-atom", options.per_atom);
   add_output("--per-residue", options.per_residue);
   add_output("--json", options.json);
 }
 
-void UsedFiles::check_mesh(const std::string &path) const { check(file_of(kOutputFlag, path, true)); }
+void UsedFiles::check_mesh(const std::string &path) const {
+  for (const std::string &name : io::mesh_files_of(path)) check(file_of(kOutputFlag, name, true));
+}
 
 }  // namespace quickses::cli
