@@ -60,6 +60,7 @@ class FrameWorker {
   Json frame_json(const FrameTask &task, std::optional<double> time) const;
   void add_areas(const std::vector<AtomAreas> &areas, FrameResult &result) const;
   void set_frame(Engine &engine) const;
+  std::vector<float> centers() const;  // of the atoms in the frame, if they are needed
   template <class Action>
   auto explain_share(const Action &action);
 

@@ -57,9 +57,15 @@ void check_without_output(const MeshFileOptions &mesh) {
   };
   if (mesh.component_ids) refuse("--component-ids", "they are part");
   if (mesh.colors != MeshColors::kNone) refuse("--color", "it is");
+  if (mesh.sharp) refuse("--sharp-colors", "it is about colours");
   if (mesh.text) refuse("--ascii", "it is a form");
   if (mesh.center) refuse("--center", "it moves the vertices");
   if (mesh.scale != 1) refuse("--scale", "it is the size");
+}
+
+bool are_of_atoms(MeshColors colors) {
+  return colors != MeshColors::kNone && colors != MeshColors::kOne && colors != MeshColors::kComponent &&
+         colors != MeshColors::kPatch;
 }
 
 void check_format(const Options &options) {
@@ -73,6 +79,10 @@ void check_format(const Options &options) {
   if (mesh.text && format != io::MeshFormat::kPly) refuse("--ascii", "only PLY files are there as bytes and as text");
   if (mesh.colors != MeshColors::kNone && !io::has_colors(format))
     refuse("--color", "STL and MSMS files have no colours (.ply, .obj, .glb and .off have)");
+  if (mesh.sharp && !are_of_atoms(mesh.colors))
+    throw Failure(
+        kUsage,
+        "--sharp-colors: is for colours of atoms (--color element, chain, residue, hydrophobicity or sequence)");
   if (options.compute.method == QSES_METHOD_GRID && needs_patches(options))
     throw Failure(kUsage, "--method grid does not know on what kind of patch a vertex is, which " +
                               std::string(format == io::MeshFormat::kMsms ? "MSMS files tell" : "--color patch shows"));
@@ -96,6 +106,8 @@ void add_mesh_options(CLI::App *app, Options &options) {
          "hydrophobicity, sequence, component (connected pieces), patch (contact, toroidal, reentrant), or one for all")
       ->type_name("NAME|#RRGGBB")
       ->default_str("none");
+  app->add_flag("--sharp-colors", mesh.sharp,
+                "Cut triangles where the colours of atoms meet, so that each has one colour and borders are smooth");
   app->add_flag("--component-ids", mesh.component_ids,
                 "The number of each vertex's connected piece in PLY files, as int component, and in GLB files");
   app->add_flag("--ascii", mesh.text, "PLY files as text");

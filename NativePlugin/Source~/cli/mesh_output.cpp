@@ -11,6 +11,7 @@
 #include "cli/exit_code.h"
 #include "cli/mesh_check.h"
 #include "io/atomic_file.h"
+#include "io/color_borders.h"
 #include "io/mesh_writer.h"
 
 namespace quickses::cli {
@@ -68,13 +69,14 @@ std::vector<uint32_t> file_owners_of(const qses_mesh &mesh, const io::Structure 
   return owners;
 }
 
-std::vector<float> placed(const qses_mesh &mesh, const MeshFileOptions &options) {
-  std::vector<float> positions(3 * size_t(mesh.vertex_count));
+// mesh: what the vertices are of, or were before they became more.
+std::vector<float> placed(const io::MeshView &vertices, const qses_mesh &mesh, const MeshFileOptions &options) {
+  std::vector<float> positions(3 * size_t(vertices.vertex_count));
   double middle[3] = {0, 0, 0};
   if (options.center)
     for (int axis = 0; axis < 3; ++axis) middle[axis] = (double(mesh.bounds_min[axis]) + mesh.bounds_max[axis]) / 2;
   for (size_t i = 0; i < positions.size(); ++i)
-    positions[i] = static_cast<float>((mesh.positions[i] - middle[i % 3]) * options.scale);
+    positions[i] = static_cast<float>((vertices.positions[i] - middle[i % 3]) * options.scale);
   return positions;
 }
 
@@ -117,18 +119,16 @@ std::vector<uint8_t> MeshOutput::colors_of(const qses_mesh &mesh) const {
   return colors;
 }
 
-void MeshOutput::accept(const std::string &path, const qses_mesh &mesh) const {
+void MeshOutput::accept(const std::string &path, const qses_mesh &mesh, const float *centers) const {
   accept_surface(mesh);
   if (path.empty()) return;
   const std::vector<uint32_t> owners = file_owners_of(mesh, structure_);
   const std::vector<uint8_t> colors = colors_of(mesh);
-  std::vector<float> positions;
-  if (options_.center || options_.scale != 1) positions = placed(mesh, options_);
   const io::MeshFormat format = io::mesh_format_of(path);
   io::MeshView view;
   view.vertex_count = mesh.vertex_count;
   view.triangle_count = mesh.triangle_count;
-  view.positions = positions.empty() ? mesh.positions : positions.data();
+  view.positions = mesh.positions;
   view.normals = mesh.normals;
   view.owners = owners.data();
   if (format == io::MeshFormat::kMsms) view.patches = mesh.patches;
@@ -140,6 +140,18 @@ void MeshOutput::accept(const std::string &path, const qses_mesh &mesh) const {
   view.unit = unit_of(options_);
   view.atom_count = structure_.file_atom_count;
   view.probe_radius = probe_radius_;
+  io::OwnedMesh cut;
+  if (options_.sharp) {
+    cut = io::cut_at_color_borders(view, {mesh.owners, centers, structure_.radii.data()});
+    view = cut.view();
+    // These have the colour of a place, so there must be one for each colour.
+    if (!io::has_repeated_vertices(format)) view.repeated_count = 0;
+  }
+  std::vector<float> positions;
+  if (options_.center || options_.scale != 1) {
+    positions = placed(view, mesh, options_);
+    view.positions = positions.data();
+  }
   io::write_mesh(path, view, format, options_.text);
 }
 

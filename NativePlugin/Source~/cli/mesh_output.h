@@ -22,8 +22,10 @@ class MeshOutput {
   MeshOutput(const Options &options, const io::Structure &structure);
 
   // Takes the surface of all atoms for good, and writes it, with owners as places in the structure's file; an empty
-  // path: writes nothing. Throws as accept_surface, before anything is written; io::Error (output).
-  void accept(const std::string &path, const qses_mesh &mesh) const;
+  // path: writes nothing. centers: of the structure's atoms when the mesh was made, only looked at if needs_centers().
+  // Throws as accept_surface, before anything is written; io::Error (output).
+  void accept(const std::string &path, const qses_mesh &mesh, const float *centers) const;
+  bool needs_centers() const { return options_.sharp; }
 
  private:
   std::vector<uint8_t> colors_of(const qses_mesh &mesh) const;

@@ -65,6 +65,7 @@ enum class MeshColors {
 struct MeshFileOptions {
   MeshColors colors = MeshColors::kNone;
   io::Rgba color = {190, 190, 190, 255};  // kOne, and of atoms of which the others tell nothing
+  bool sharp = false;                     // triangles are cut along the borders of colours
   bool component_ids = false;
   bool text = false;    // of formats that can be both
   bool center = false;  // of the mesh's box at the origin

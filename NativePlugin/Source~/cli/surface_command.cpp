@@ -74,7 +74,7 @@ void run_surface(const Options &options) {
     }
     const qses_report report = engine.report();
     const auto write_start = Clock::now();
-    MeshOutput(options, structure).accept(model_options.output, mesh);
+    MeshOutput(options, structure).accept(model_options.output, mesh, structure.positions.data());
     tables.write(make_area_rows(options, all_models ? std::to_string(structure.model) : "", structure,
                                 areas_of(options.compute.surface, mesh)));
     timings.write = ms_since(write_start);

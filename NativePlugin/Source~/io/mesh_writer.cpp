@@ -43,6 +43,8 @@ bool has_normals(MeshFormat format) {
 
 bool has_colors(MeshFormat format) { return format != MeshFormat::kStl && format != MeshFormat::kMsms; }
 
+bool has_repeated_vertices(MeshFormat format) { return format != MeshFormat::kObj && format != MeshFormat::kOff; }
+
 bool has_alpha(const MeshView &mesh) {
   for (size_t i = 0; mesh.colors && i < mesh.vertex_count; ++i)
     if (mesh.colors[4 * i + 3] != 255) return true;

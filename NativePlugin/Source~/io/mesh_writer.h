@@ -40,6 +40,8 @@ std::vector<std::string> mesh_files_of(const std::string &path);
 // Whether vertices have normals of their own, and colours.
 bool has_normals(MeshFormat format);
 bool has_colors(MeshFormat format);
+// Whether a vertex that is repeated is written like any other one, with all it has; else its place is written once.
+bool has_repeated_vertices(MeshFormat format);
 
 // Writes a mesh. The file appears under its name when it is complete; after an error what was there before is
 // unchanged. Throws Error (kOutput).

@@ -29,8 +29,8 @@ def colors_of(ply):
 
 
 class MeshTest(ProgramTest):
-    def make(self, name, *arguments):
-        self.run_cpu(CRAMBIN, "-v", "1", "-o", name, *arguments)
+    def make(self, name, *arguments, spacing=1):
+        self.run_cpu(CRAMBIN, "-v", spacing, "-o", name, *arguments)
         return self.folder / name
 
 
@@ -114,6 +114,72 @@ class Colors(MeshTest):
                 (["-o", "a.vert", "--hard-edges", "on"], ["--hard-edges", ".glb"])):
             with self.subTest(arguments=arguments):
                 self.assert_fails(USAGE, parts, CRAMBIN, *arguments)
+
+
+class SharpColors(MeshTest):
+    """Borders of colours are where their atoms are equally near."""
+    RADII = {"C": 1.70, "N": 1.55, "O": 1.52, "S": 1.80}
+
+    def share_of_wrong(self, ply, shift=0.0):
+        """The share of triangles in whose middle the nearest atom has another colour."""
+        atoms = [([float(line[30:38]) + shift, float(line[38:46]), float(line[46:54])], line[76:78].strip())
+                 for line in ATOMS]
+        colors, wrong = colors_of(ply), 0
+        faces = ply.faces[::7]
+        for face in faces:
+            middle = [sum(ply.vertices[i][axis] for i in face) / 3 for axis in range(3)]
+            _, element = min((math.dist(middle, at) - self.RADII[element], element) for at, element in atoms)
+            wrong += JMOL[element] != colors[face[0]]
+        return wrong / len(faces)
+
+    def assert_sharp(self, vertices, colors, faces):
+        self.assertTrue(all(len({colors[i] for i in face}) == 1 for face in faces))
+        self.assertTrue(is_closed(welded(vertices, faces)))
+
+    def test_each_format(self):
+        arguments = ["--color", "element", "--sharp-colors"]
+        # What is left are borders that a third atom has a part in.
+        plain, ply = (read_any_ply(self.make("a.ply", *given, spacing=0.5)) for given in (arguments[:2], arguments))
+        self.assertLess(self.share_of_wrong(ply), self.share_of_wrong(plain) / 3)
+        plain, ply = (read_any_ply(self.make("a.ply", *given)) for given in (arguments[:2], arguments))
+        self.assert_sharp(ply.vertices, colors_of(ply), ply.faces)
+        for measure in (cli_test.area_of, volume_of):
+            self.assertAlmostEqual(measure(ply.vertices, ply.faces), measure(plain.vertices, plain.faces), delta=1e-2)
+        self.assertEqual(colors_of(ply), [element_color(owner) for owner in ply.more["owner"]])
+        glb = read_glb(self.make("a.glb", *arguments))
+        self.assertEqual(glb[:3], ply[:3])
+        self.assert_sharp(glb.vertices, glb.more["COLOR_0"], glb.faces)
+        self.assert_sharp(*read_off(self.make("a.off", *arguments)))
+        rows = [line.split() for line in self.make("a.obj", *arguments).read_text().splitlines()]
+        places = [tuple(row[1:]) for row in rows if row[0] == "v"]
+        faces = [tuple(int(word.split("//")[0]) - 1 for word in row[1:]) for row in rows if row[0] == "f"]
+        self.assert_sharp([place[:3] for place in places], [place[3:] for place in places], faces)
+
+    def test_frames_have_atoms_of_their_own(self):
+        moved = [f"{line[:30]}{float(line[30:38]) + 50:8.3f}{line[38:]}" for line in ATOMS]
+        self.write("two.pdb", "".join(f"MODEL     {k:4d}\n" + "\n".join(model) + "\nENDMDL\n"
+                                      for k, model in ((1, ATOMS), (2, moved))))
+        self.run_cpu("two.pdb", "--trajectory", "two.pdb", "-v", "1", "-o", "f%d.ply", "--color", "element",
+                     "--sharp-colors")
+        for frame in (0, 1):
+            ply = read_any_ply(self.folder / f"f{frame}.ply")
+            self.assert_sharp(ply.vertices, colors_of(ply), ply.faces)
+            self.assertLess(self.share_of_wrong(ply, 50 * frame), 0.06)
+
+    def test_with_other_flags(self):
+        for arguments in (["--method", "grid"], ["--surface", "vdw"], ["--hard-edges", "off"], ["--no-hydrogen", "--outer"]):
+            ply = read_any_ply(self.make("a.ply", "--color", "residue", "--sharp-colors", *arguments))
+            self.assert_sharp(ply.vertices, colors_of(ply), ply.faces)
+        plain = read_any_ply(self.make("a.ply", "--color", "chain"))
+        self.assertEqual(read_any_ply(self.make("b.ply", "--color", "chain", "--sharp-colors")), plain)  # one chain
+        moved = read_any_ply(self.make("b.ply", "--color", "element", "--sharp-colors", "--center", "--scale", "0.1"))
+        self.assert_sharp(moved.vertices, colors_of(moved), moved.faces)
+        for column in zip(*moved.vertices):
+            self.assertAlmostEqual(min(column) + max(column), 0, delta=1e-5)
+
+    def test_what_is_refused(self):
+        for arguments in (["-o", "a.ply"], ["-o", "a.ply", "--color", "patch"], ["-o", "a.ply", "--color", "#102030"], []):
+            self.assert_fails(USAGE, ["--sharp-colors"], CRAMBIN, "--sharp-colors", *arguments)
 
 
 class Formats(MeshTest):
@@ -216,10 +282,8 @@ class Printing(MeshTest):
 
     @unittest.skipUnless(shutil.which("admesh"), "admesh is not installed")
     def test_admesh_finds_nothing_to_mend(self):
-        for arguments in ([], ["--center", "--scale", "0.5"], ["--outer", "--scale", "3"], ["-v", "0.4"]):
-            path = self.make("a.stl", *arguments) if "-v" not in arguments else self.folder / "a.stl"
-            if "-v" in arguments:
-                self.run_cpu(CRAMBIN, "-o", "a.stl", *arguments)
+        for arguments in ([], ["--center", "--scale", "0.5"], ["--outer", "--scale", "3"]):
+            path = self.make("a.stl", *arguments, spacing=0.4)
             report = subprocess.run(["admesh", path], capture_output=True, encoding="utf-8", check=True).stdout
             for line in ("Total disconnected facets        :     0                   0", "Degenerate facets     :     0",
                          "Edges fixed           :     0", "Facets removed        :     0", "Facets added          :     0",
@@ -240,7 +304,7 @@ class KhronosValidator(MeshTest):
 
     def test_it_has_nothing_to_say(self):
         for arguments in ([], ["--hard-edges", "off"], ["--color", "element", "--component-ids"], ["--method", "grid"],
-                          ["--center", "--scale", "1e-10"], ["--surface", "vdw", "--color", "patch"]):
+                          ["--color", "element", "--sharp-colors"], ["--center", "--scale", "1e-10"], ["--surface", "vdw", "--color", "patch"]):
             path = self.make("a.glb", *arguments)
             report = json.loads(subprocess.run(["node", "-e", self.SCRIPT, path], capture_output=True, check=True).stdout)
             self.assertEqual(report["issues"]["messages"], [], arguments)
