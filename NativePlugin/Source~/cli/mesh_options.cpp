@@ -113,7 +113,8 @@ void add_mesh_options(CLI::App *app, Options &options) {
   app->add_flag("--ascii", mesh.text, "PLY files as text");
   app->add_flag("--center", mesh.center, "The middle of the mesh's box goes to the origin, in the file");
   add_number(app, "--scale", "--scale", mesh.scale, 1e-12, 1e12,
-             "Multiply coordinates in the file, which are in angstrom: 0.5 prints half a millimetre per angstrom");
+             "Multiply coordinates in the file, which are in angstrom: 0.5 prints half a millimetre per angstrom",
+             false);
 }
 
 void check_mesh_options(const Options &options) {
