@@ -86,6 +86,8 @@ optional=(
   "python3-matplotlib python:matplotlib"
   # Another program's areas, to compare with.
   "freesasa freesasa"
+  # Looks for what is to be mended in STL files.
+  "admesh admesh"
   # Finds triangles that pass through each other.
   "libcgal-dev CGAL/Surface_mesh.h"
 )

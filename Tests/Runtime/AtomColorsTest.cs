@@ -57,14 +57,6 @@ namespace QuickSes.Tests
             }));
 
         [Test]
-        public void ElementsThatNobodyKnowsHaveNone()
-        {
-            Assert.That(ElementColors.TryGet(0, out _) || ElementColors.TryGet(110, out _), Is.False);
-            Assert.That(ElementColors.TryGet(109, out Color32 last), Is.True);
-            Assert.That(last, Is.EqualTo(Rgb(0xEB0026)));
-        }
-
-        [Test]
         public void ChainsDiffer()
         {
             (string, string, string, char, int)[] atoms = "ABCDEFGHIJKLMNOPA"
@@ -102,17 +94,6 @@ namespace QuickSes.Tests
             ("HIS", -3.2f), ("GLU", -3.5f), ("GLN", -3.5f), ("ASP", -3.5f), ("ASN", -3.5f), ("LYS", -3.9f),
             ("ARG", -4.5f)
         };
-
-        [Test]
-        public void HydropathyIsKyteAndDoolittles()
-        {
-            foreach ((string residue, float expected) in s_hydropathy)
-            {
-                Assert.That(Residues.TryGetHydropathy(residue, out float hydropathy), Is.True, residue);
-                Assert.That(hydropathy, Is.EqualTo(expected), residue);
-            }
-            Assert.That(Residues.TryGetHydropathy("DA", out _) || Residues.TryGetHydropathy("HOH", out _), Is.False);
-        }
 
         [Test]
         public void HydrophobicityGoesFromBlueToRed()

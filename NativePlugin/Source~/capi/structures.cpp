@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The C API: structures from files and from memory.
 #include "capi/structs.h"
+#include "io/atom_colors.h"
 #include "io/file_bytes.h"
 #include "io/radii.h"
 #include "io/structure.h"
@@ -61,6 +62,32 @@ qses_structure_format format_of(io::StructureFormat format) {
       return QSES_STRUCTURE_GRO;
   }
   return QSES_STRUCTURE_AUTO;
+}
+
+io::ColorScheme scheme_of(qses_color_scheme scheme) {
+  check_choice("scheme", scheme, QSES_COLOR_SEQUENCE);
+  switch (scheme) {
+    case QSES_COLOR_UNIFORM:
+      break;
+    case QSES_COLOR_ELEMENT:
+      return io::ColorScheme::kElement;
+    case QSES_COLOR_CHAIN:
+      return io::ColorScheme::kChain;
+    case QSES_COLOR_RESIDUE:
+      return io::ColorScheme::kResidue;
+    case QSES_COLOR_HYDROPHOBICITY:
+      return io::ColorScheme::kHydrophobicity;
+    case QSES_COLOR_SEQUENCE:
+      return io::ColorScheme::kSequence;
+  }
+  return io::ColorScheme::kUniform;
+}
+
+// count: of a caller's array of atoms.
+void check_atom_count(const io::Structure &model, size_t count) {
+  if (count != model.atoms.size())
+    invalid("count is " + std::to_string(count) + " but the structure has " + std::to_string(model.atoms.size()) +
+            " atoms");
 }
 
 io::ReadOptions read_options_of(const qses_structure_options &options) {
@@ -175,11 +202,22 @@ qses_status qses_structure_select(const qses_structure *structure, const char *s
     require(selection, "selection");
     require(mask, "mask");
     const io::Structure &model = structure->model();
-    if (count != model.atoms.size())
-      invalid("count is " + std::to_string(count) + " but the structure has " + std::to_string(model.atoms.size()) +
-              " atoms");
+    check_atom_count(model, count);
     const uint32_t found = io::select_atoms(model, selection, mask);
     if (selected) *selected = found;
+  });
+}
+
+qses_status qses_structure_colors(const qses_structure *structure, qses_color_scheme scheme,
+                                  const uint8_t uniform_rgba[4], uint8_t *rgba, size_t count) {
+  return guarded([&] {
+    require(structure, "structure");
+    require(uniform_rgba, "uniform_rgba");
+    require(rgba, "rgba");
+    const io::ColorScheme chosen = scheme_of(scheme);
+    check_atom_count(structure->model(), count);
+    const io::Rgba uniform = {uniform_rgba[0], uniform_rgba[1], uniform_rgba[2], uniform_rgba[3]};
+    io::color_atoms(structure->model(), chosen, uniform, rgba);
   });
 }
 

@@ -141,7 +141,7 @@ void run_cavities(const Options &options) {
     ProgressBar bar(engine.context(), options.quiet);
     mesh = engine.compute(settings);
   }
-  accept_surface("", mesh, structure);
+  accept_surface(mesh);
   const std::vector<Cavity> cavities = find_cavities(engine, mesh);
   const std::vector<uint32_t> residues = io::residues_of(structure);
   if (!options.csv.empty()) write_text(options.csv, csv_table(cavities, structure, residues));

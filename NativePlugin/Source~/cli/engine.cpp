@@ -116,7 +116,8 @@ qses_settings settings_of(const ComputeOptions &options) {
 qses_settings mesh_settings_of(const Options &options) {
   qses_settings settings = settings_of(options.compute);
   settings.components = !options.csv.empty() || !options.json.empty();
-  settings.component_ids = options.component_ids;
+  settings.component_ids = options.mesh.component_ids || options.mesh.colors == MeshColors::kComponent;
+  settings.patch_types = needs_patches(options);
   settings.outer_only = options.outer;
   settings.hard_edges = has_hard_edges(options);
   settings.atom_areas = options.wants_areas();

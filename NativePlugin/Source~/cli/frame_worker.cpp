@@ -9,7 +9,6 @@
 #include "cli/csv.h"
 #include "cli/exit_code.h"
 #include "cli/measuring.h"
-#include "cli/mesh_output.h"
 #include "cli/report.h"
 
 namespace quickses::cli {
@@ -66,7 +65,9 @@ std::string csv_header(const Options &options) {
 }
 
 FrameInputs::FrameInputs(const Options &given, bool quiet)
-    : Input(given, quiet), trajectory(io::Trajectory::open_all(options.trajectories)) {
+    : Input(given, quiet),
+      trajectory(io::Trajectory::open_all(options.trajectories)),
+      mesh_output(options, structure()) {
   check_atom_counts(options, structure(), trajectory);
   for (const io::AtomInfo &atom : structure().atoms) file_indices.push_back(atom.file_index);
   if (!options.output.empty()) pattern.emplace(options.output);
@@ -147,6 +148,14 @@ void FrameWorker::set_frame(Engine &engine) const {
   engine.set_frame(xyz_.data(), inputs_.trajectory.atom_count(), inputs_.file_indices);
 }
 
+std::vector<float> FrameWorker::centers() const {
+  std::vector<float> centers;
+  if (!inputs_.mesh_output.needs_centers()) return centers;
+  for (const uint32_t index : inputs_.file_indices)
+    for (size_t axis = 0; axis < 3; ++axis) centers.push_back(xyz_[3 * size_t(index) + axis]);
+  return centers;
+}
+
 Json FrameWorker::frame_json(const FrameTask &task, std::optional<double> time) const {
   Json json = {{"frame", task.frame}, {"trajectory", file_of(task)}};
   json["time_ps"] = time ? Json(*time) : Json();
@@ -197,7 +206,7 @@ void FrameWorker::fill_mesh(const FrameTask &task, Read read, FrameResult &resul
   Options frame_options = options;
   if (inputs_.pattern) frame_options.output = inputs_.pattern->name(task.frame);
   const auto write_start = Clock::now();
-  accept_surface(frame_options.output, mesh, inputs_.structure());
+  inputs_.mesh_output.accept(frame_options.output, mesh, centers().data());
   read.timings.write = ms_since(write_start);
   if (options.json.empty()) return;
   Json json = frame_json(task, read.time);

@@ -10,6 +10,7 @@
 #include "cli/engine_pool.h"
 #include "cli/frame_supply.h"
 #include "cli/input.h"
+#include "cli/mesh_output.h"
 #include "cli/options.h"
 #include "cli/output_pattern.h"
 #include "cli/report.h"
@@ -28,6 +29,7 @@ struct FrameInputs : Input {
   std::vector<uint32_t> file_indices;  // of the atoms of the structure
   std::optional<io::Unwrapper> unwrapper;
   std::optional<OutputPattern> pattern;
+  MeshOutput mesh_output;
 
   // The only one.
   const io::Structure &structure() const { return file.models.front(); }
@@ -59,6 +61,7 @@ class FrameWorker {
   Json frame_json(const FrameTask &task, std::optional<double> time) const;
   void add_areas(const std::vector<AtomAreas> &areas, FrameResult &result) const;
   void set_frame(Engine &engine) const;
+  std::vector<float> centers() const;  // of the atoms in the frame, if they are needed
   template <class Action>
   auto explain_share(const Action &action);
 

@@ -2,33 +2,171 @@
 // Meshes of the C API to files.
 #include "cli/mesh_output.h"
 
-#include <vector>
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+#include <iterator>
+#include <numeric>
 
 #include "cli/exit_code.h"
 #include "cli/mesh_check.h"
+#include "io/atomic_file.h"
+#include "io/color_borders.h"
 #include "io/mesh_writer.h"
 
 namespace quickses::cli {
+namespace {
 
-void accept_surface(const std::string &path, const qses_mesh &mesh, const io::Structure &structure) {
+// Of qses_patch, to be told apart by whoever sees colours otherwise: three of those of Okabe and Ito (2008).
+constexpr io::Rgba kPatchColors[] = {{0, 158, 115, 255}, {240, 228, 66, 255}, {0, 114, 178, 255}};
+
+// Of colours that are not those of atoms: none.
+std::vector<uint8_t> atom_colors_of(const MeshFileOptions &options, const io::Structure &structure) {
+  io::ColorScheme scheme = io::ColorScheme::kUniform;
+  switch (options.colors) {
+    case MeshColors::kNone:
+    case MeshColors::kComponent:
+    case MeshColors::kPatch:
+      return {};
+    case MeshColors::kOne:
+      break;
+    case MeshColors::kElement:
+      scheme = io::ColorScheme::kElement;
+      break;
+    case MeshColors::kChain:
+      scheme = io::ColorScheme::kChain;
+      break;
+    case MeshColors::kResidue:
+      scheme = io::ColorScheme::kResidue;
+      break;
+    case MeshColors::kHydrophobicity:
+      scheme = io::ColorScheme::kHydrophobicity;
+      break;
+    case MeshColors::kSequence:
+      scheme = io::ColorScheme::kSequence;
+      break;
+  }
+  std::vector<uint8_t> colors(4 * structure.atoms.size());
+  io::color_atoms(structure, scheme, options.color, colors.data());
+  return colors;
+}
+
+// The largest piece has the first colour, in every frame.
+std::vector<io::Rgba> component_colors_of(const qses_mesh &mesh) {
+  std::vector<uint32_t> order(mesh.component_count);
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](uint32_t a, uint32_t b) { return mesh.components[a].area > mesh.components[b].area; });
+  std::vector<io::Rgba> colors(order.size());
+  for (size_t k = 0; k < order.size(); ++k) colors[order[k]] = io::distinct_color(k);
+  return colors;
+}
+
+// In the file, not among the atoms that were kept.
+std::vector<uint32_t> file_owners_of(const qses_mesh &mesh, const io::Structure &structure) {
+  std::vector<uint32_t> owners(mesh.vertex_count);
+  for (uint32_t i = 0; i < mesh.vertex_count; ++i) owners[i] = structure.atoms[mesh.owners[i]].file_index;
+  return owners;
+}
+
+// How open the surface is, if that was asked for.
+std::vector<float> occlusion_of(const qses_mesh &mesh) {
+  std::vector<float> openness(mesh.texcoords ? mesh.vertex_count : 0);
+  for (size_t i = 0; i < openness.size(); ++i) openness[i] = mesh.texcoords[2 * i];
+  return openness;
+}
+
+// mesh: what the vertices are of, or were before they became more.
+std::vector<float> placed(const io::MeshView &vertices, const qses_mesh &mesh, const MeshFileOptions &options) {
+  std::vector<float> positions(3 * size_t(vertices.vertex_count));
+  double middle[3] = {0, 0, 0};
+  if (options.center)
+    for (int axis = 0; axis < 3; ++axis) middle[axis] = (double(mesh.bounds_min[axis]) + mesh.bounds_max[axis]) / 2;
+  for (size_t i = 0; i < positions.size(); ++i)
+    positions[i] = static_cast<float>((vertices.positions[i] - middle[i % 3]) * options.scale);
+  return positions;
+}
+
+// "angstrom", or "angstrom times 0.5"
+std::string unit_of(const MeshFileOptions &options) {
+  if (options.scale == 1) return "angstrom";
+  char digits[32];
+  return "angstrom times " + std::string(digits, std::to_chars(digits, std::end(digits), options.scale).ptr);
+}
+
+}  // namespace
+
+void accept_surface(const qses_mesh &mesh) {
   if (!is_closed(mesh))
     throw Failure(kComputingFailed,
                   "the surface that was computed is not closed, so it is not used: a fault of this program; please "
                   "report it with the input and the settings (another --spacing may help meanwhile)");
+}
+
+MeshOutput::MeshOutput(const Options &options, const io::Structure &structure)
+    : structure_(structure),
+      options_(options.mesh),
+      probe_radius_(static_cast<float>(options.compute.probe * options.mesh.scale)),
+      atom_colors_(atom_colors_of(options.mesh, structure)) {}
+
+std::vector<uint8_t> MeshOutput::colors_of(const qses_mesh &mesh) const {
+  std::vector<uint8_t> colors;
+  const auto fill = [&](const auto &color_of) {
+    colors.resize(4 * size_t(mesh.vertex_count));
+    for (size_t i = 0; i < mesh.vertex_count; ++i) std::memcpy(&colors[4 * i], color_of(i), 4);
+  };
+  if (options_.colors == MeshColors::kComponent) {
+    const std::vector<io::Rgba> of_components = component_colors_of(mesh);
+    fill([&](size_t i) { return of_components[mesh.component_ids[i]].data(); });
+  } else if (options_.colors == MeshColors::kPatch) {
+    fill([&](size_t i) { return kPatchColors[mesh.patches[i]].data(); });
+  } else if (!atom_colors_.empty()) {
+    fill([&](size_t i) { return &atom_colors_[4 * size_t(mesh.owners[i])]; });
+  }
+  return colors;
+}
+
+void MeshOutput::accept(const std::string &path, const qses_mesh &mesh, const float *centers) const {
+  accept_surface(mesh);
   if (path.empty()) return;
-  std::vector<uint32_t> owners(mesh.vertex_count);  // in the file, not among the atoms that were kept
-  for (uint32_t i = 0; i < mesh.vertex_count; ++i) owners[i] = structure.atoms[mesh.owners[i]].file_index;
+  const std::vector<uint32_t> owners = file_owners_of(mesh, structure_);
+  const std::vector<uint8_t> colors = colors_of(mesh);
+  const io::MeshFormat format = io::mesh_format_of(path);
   io::MeshView view;
   view.vertex_count = mesh.vertex_count;
   view.triangle_count = mesh.triangle_count;
   view.positions = mesh.positions;
   view.normals = mesh.normals;
   view.owners = owners.data();
-  view.component_ids = mesh.component_ids;
+  if (format == io::MeshFormat::kMsms) view.patches = mesh.patches;
+  if (options_.component_ids) view.component_ids = mesh.component_ids;
+  if (!colors.empty()) view.colors = colors.data();
+  const std::vector<float> occlusion = occlusion_of(mesh);
+  if (!occlusion.empty()) view.occlusion = occlusion.data();
   view.indices = mesh.indices;
   view.repeated = mesh.repeated;
   view.repeated_count = static_cast<uint32_t>(mesh.repeated_count);
-  io::write_mesh(path, view, io::mesh_format_of(path));
+  view.unit = unit_of(options_);
+  view.atom_count = structure_.file_atom_count;
+  view.probe_radius = probe_radius_;
+  io::OwnedMesh cut;
+  if (options_.sharp) {
+    cut = io::cut_at_color_borders(view, {mesh.owners, centers, structure_.radii.data()});
+    view = cut.view();
+    // These have the colour of a place, so there must be one for each colour.
+    if (!io::has_repeated_vertices(format)) view.repeated_count = 0;
+  }
+  std::vector<float> positions;
+  if (options_.center || options_.scale != 1) {
+    positions = placed(view, mesh, options_);
+    view.positions = positions.data();
+  }
+  io::write_mesh(path, view, format, options_.text);
+}
+
+void check_mesh_writable(const std::string &path) {
+  if (path.empty()) return;
+  for (const std::string &file : io::mesh_files_of(path)) io::check_writable(file);
 }
 
 }  // namespace quickses::cli

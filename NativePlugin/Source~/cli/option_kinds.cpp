@@ -17,22 +17,22 @@ void add_switch(CLI::App *app, const char *flag, Switch &value, const char *help
 }
 
 void add_number(CLI::App *app, const char *flags, const char *shown, double &value, double low, double high,
-                const char *help) {
+                const char *help, bool is_length) {
   app->add_option_function<std::string>(
          flags,
-         [&value, shown, low, high](const std::string &text) {
+         [&value, shown, low, high, is_length](const std::string &text) {
            double number = 0;
            if (!io::parse_number(text, number))
              throw Failure(kUsage, std::string(shown) + ": '" + text + "' is no number");
            if (number < low || number > high) {
              char range[96];
-             std::snprintf(range, sizeof range, " is not between %g and %g angstrom", low, high);
+             std::snprintf(range, sizeof range, " is not between %g and %g%s", low, high, is_length ? " angstrom" : "");
              throw Failure(kUsage, std::string(shown) + ": " + text + range);
            }
            value = number;
          },
          help)
-      ->type_name("A")
+      ->type_name(is_length ? "A" : "F")
       ->default_str(CLI::detail::to_string(value));
 }
 

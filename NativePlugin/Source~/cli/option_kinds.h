@@ -41,9 +41,9 @@ void add_choice(CLI::App *app, const char *flag, Enum &value, const std::map<std
 
 void add_switch(CLI::App *app, const char *flag, Switch &value, const char *help);
 
-// flags as CLI11 wants them; shown: in messages.
+// flags as CLI11 wants them; shown: in messages. is_length: in angstrom, else a factor.
 void add_number(CLI::App *app, const char *flags, const char *shown, double &value, double low, double high,
-                const char *help);
+                const char *help, bool is_length = true);
 void add_count(CLI::App *app, const char *flags, const char *shown, unsigned &value, int low, int high,
                const char *help);
 void add_size(CLI::App *app, const char *flag, uint64_t &value, const char *help);

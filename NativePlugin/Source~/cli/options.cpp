@@ -8,11 +8,11 @@
 #include <map>
 
 #include "cli/exit_code.h"
+#include "cli/mesh_options.h"
 #include "cli/option_kinds.h"
 #include "cli/output_pattern.h"
 #include "cli/used_files.h"
 #include "io/atomic_file.h"
-#include "io/mesh_writer.h"
 #include "io/text.h"
 
 namespace quickses::cli {
@@ -27,7 +27,8 @@ const std::map<std::string, io::StructureFormat> kInputFormats = {{"pdb", io::St
                                                                   {"gro", io::StructureFormat::kGro}};
 // Of those that are one file each.
 const std::map<std::string, io::MeshFormat> kMeshFormats = {
-    {"obj", io::MeshFormat::kObj}, {"ply", io::MeshFormat::kPly}, {"stl", io::MeshFormat::kStl}};
+    {"obj", io::MeshFormat::kObj}, {"ply", io::MeshFormat::kPly}, {"stl", io::MeshFormat::kStl},
+    {"glb", io::MeshFormat::kGlb}, {"off", io::MeshFormat::kOff}};
 const std::map<std::string, qses_method> kMethods = {{"exact", QSES_METHOD_EXACT}, {"grid", QSES_METHOD_GRID}};
 const std::map<std::string, qses_backend> kBackends = {
     {"auto", QSES_BACKEND_AUTO}, {"cuda", QSES_BACKEND_CUDA}, {"cpu", QSES_BACKEND_CPU}};
@@ -47,7 +48,7 @@ const char kFooter[] =
     "  5  the back end asked for can't be used here\n"
     "  6  some frames of a trajectory, or some of several structures, failed; the others are done\n"
     "\n"
-    "Owner atoms in PLY files are 0-based places among the atoms of the input's model, before any filter.\n"
+    "Owner atoms in PLY and GLB files are 0-based places among the atoms of the input's model, before any filter.\n"
     "Lengths are in angstrom, areas in A^2, volumes in A^3.\n";
 
 const char kInputHelp[] = "Structure: .pdb .ent .cif .mmcif .pqr .xyzr .gro, each also as .gz; - for standard input";
@@ -149,18 +150,6 @@ void add_input_options(CLI::App *app, Options &options, const char *input_help, 
          },
          model_help)
       ->type_name("N|all");
-}
-
-void add_mesh_options(CLI::App *app, Options &options) {
-  app->add_option("-o,--output", options.output,
-                  "Mesh: .obj, .ply (binary, with normals and owner atoms) or .stl. %s stands for the name of INPUT")
-      ->type_name("FILE|-");
-  add_switch(app, "--hard-edges", options.hard_edges,
-             "on: a vertex on a crease has a normal for each side, so that light breaks there; PLY files then have it "
-             "once per side. Default: on for .obj and .ply");
-  app->add_flag("--outer", options.outer, "Leave the walls of cavities out of the mesh, not of the numbers");
-  app->add_flag("--component-ids", options.component_ids,
-                "The number of each vertex's connected piece in PLY files, as int component");
 }
 
 void add_area_options(CLI::App *app, Options &options) {
@@ -281,20 +270,6 @@ void check_values(const CLI::App &used) {
       if (value.empty()) throw Failure(kUsage, option->get_name() + ": '' is given, which is nothing");
 }
 
-void check_output(const Options &options) {
-  if (options.component_ids && options.output.empty())
-    throw Failure(kUsage, "--component-ids: they are part of a PLY file, and there is no --output (-o)");
-  if (options.output.empty()) return;
-  io::MeshFormat format = io::MeshFormat::kObj;
-  try {
-    format = io::mesh_format_of(options.output);
-  } catch (const std::exception &error) {
-    throw Failure(kUsage, std::string("--output (-o): ") + error.what());
-  }
-  if (options.component_ids && format != io::MeshFormat::kPly)
-    throw Failure(kUsage, "--component-ids: only PLY files have them, and --output (-o) is '" + options.output + "'");
-}
-
 void check_devices(const Options &options) {
   const DeviceChoice &devices = options.compute.devices;
   if (devices.is_given() && options.compute.backend == QSES_BACKEND_CPU)
@@ -335,11 +310,9 @@ void check(const Options &options, const std::function<bool(const char *)> &give
   } else {
     check_trajectory(options, given);
   }
-  if (options.hard_edges == Switch::kOn && !has_hard_edges(options))
-    throw Failure(kUsage, "--hard-edges on: is for the exact method and mesh files with normals, .obj or .ply");
   if (options.wants_areas() && options.compute.method == QSES_METHOD_GRID)
     throw Failure(kUsage, "--per-atom and --per-residue: areas of atoms are there with --method exact only");
-  check_output(options);
+  check_mesh_options(options);
   check_standard_output(options);
   UsedFiles check(options);
 }
@@ -360,17 +333,12 @@ std::string Options::quoted_trajectories() const {
   return trajectories.size() == 1 ? first : first + " and " + std::to_string(trajectories.size() - 1) + " more";
 }
 
-bool has_hard_edges(const Options &options) {
-  return options.hard_edges != Switch::kOff && options.compute.method == QSES_METHOD_EXACT && !options.output.empty() &&
-         io::mesh_format_of(options.output) != io::MeshFormat::kStl;
-}
-
 Options parse_options(int argc, char **argv, std::ostream &out) {
   Options options;
   std::string output_format;  // of standard output
   CLI::App app(
       "Molecular surfaces as closed triangle meshes.\n\n"
-      "  quickses INPUT [-o OUT.obj|OUT.ply|OUT.stl] [options]\n"
+      "  quickses INPUT [-o OUT.ply|OUT.obj|OUT.glb|OUT.stl|OUT.off|OUT.vert] [options]\n"
       "  quickses INPUT... [-o out/%s.ply] [options]\n"
       "  quickses INPUT --trajectory FILE [--trajectory FILE...] [--frames A:B:STEP] [--csv FILE] [-o frame_%05d.ply] "
       "[options]\n"
@@ -391,7 +359,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
            look_up("--output-format", kMeshFormats, text);
            output_format = text;
          },
-         "obj, ply or stl: what -o - writes to standard output")
+         "obj, ply, stl, glb or off: what -o - writes to standard output")
       ->type_name("NAME");
   add_surface_choice(&app, options.compute);
   add_compute_options(&app, options.compute);

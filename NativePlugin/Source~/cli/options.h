@@ -10,6 +10,7 @@
 
 #include "cli/device_choice.h"
 #include "cli/frame_range.h"
+#include "io/atom_colors.h"
 #include "io/structure.h"
 #include "quickses/quickses.h"
 
@@ -49,6 +50,30 @@ struct BenchOptions {
   bool jobs = false;
 };
 
+// What the colours of vertices tell.
+enum class MeshColors {
+  kNone,
+  kOne,  // the same for all
+  kElement,
+  kChain,
+  kResidue,
+  kHydrophobicity,
+  kSequence,
+  kComponent,
+  kPatch
+};
+
+// What is in a mesh file, besides the mesh.
+struct MeshFileOptions {
+  MeshColors colors = MeshColors::kNone;
+  io::Rgba color = {190, 190, 190, 255};  // kOne, and of atoms of which the others tell nothing
+  bool sharp = false;                     // triangles are cut along the borders of colours
+  bool component_ids = false;
+  bool text = false;    // of formats that can be both
+  bool center = false;  // of the mesh's box at the origin
+  double scale = 1;
+};
+
 struct Options {
   enum class Command { kSurface, kMeasure, kCavities, kBench, kNone } command = Command::kSurface;
   ComputeOptions compute;
@@ -58,7 +83,7 @@ struct Options {
   std::string input;                                // the one of them that these options are for, or the first
   std::string output;                               // empty: no mesh file; see also io::is_standard_output
   Switch hard_edges = Switch::kDefault;
-  bool component_ids = false;                                                 // in that file
+  MeshFileOptions mesh;                                                       // of that file
   bool outer = false;                                                         // without cavities
   std::vector<qses_surface> measured = {QSES_SURFACE_SAS, QSES_SURFACE_VDW};  // of measure
   BenchOptions bench;
@@ -88,6 +113,10 @@ Options parse_options(int argc, char **argv, std::ostream &out);
 // Whether the mesh has a vertex on a crease once per side. The output, if there is one, has a known extension.
 bool has_hard_edges(const Options &options);
 
+// Whether the mesh file tells on what kind of patch vertices are. The output, if there is one, has a known extension.
+bool needs_patches(const Options &options);
+
+const char *name_of(MeshColors colors);
 const char *name_of(qses_surface surface);
 const char *name_of(qses_method method);
 const char *name_of(qses_backend backend);

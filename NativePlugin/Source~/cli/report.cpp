@@ -102,6 +102,10 @@ Json surface_json(const Options &options, const io::Structure &structure, const 
                   const qses_report &report, const Timings &timings, const qses_size_estimate *predicted) {
   Json json = report_head_json(options, structure, engine);
   json["settings"]["hard_edges"] = has_hard_edges(options);
+  if (options.mesh.colors != MeshColors::kNone) json["settings"]["color"] = name_of(options.mesh.colors);
+  if (options.mesh.sharp) json["settings"]["sharp_colors"] = true;
+  if (options.mesh.center) json["settings"]["center"] = true;
+  if (options.mesh.scale != 1) json["settings"]["scale"] = options.mesh.scale;
   json["mesh"] = {{"vertices", mesh.vertex_count - mesh.repeated_count},
                   {"repeated", mesh.repeated_count},
                   {"triangles", mesh.triangle_count},

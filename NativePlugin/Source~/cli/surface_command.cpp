@@ -16,7 +16,6 @@
 #include "cli/report.h"
 #include "cli/text_output.h"
 #include "cli/used_files.h"
-#include "io/atomic_file.h"
 #include "io/file_path.h"
 
 namespace quickses::cli {
@@ -93,7 +92,7 @@ class SurfaceRun {
     }
     const qses_report report = engine_->report();
     const auto write_start = Clock::now();
-    accept_surface(options.output, mesh, structure);
+    MeshOutput(options, structure).accept(options.output, mesh, structure.positions.data());
     tables_.write(
         make_area_rows(options, first_columns(options, structure), structure, areas_of(options.compute.surface, mesh)));
     timings_.write = ms_since(write_start);
@@ -117,7 +116,7 @@ class SurfaceRun {
 
 void run_surface(const Options &options) {
   // Before anything takes time: can the results be written?
-  if (!options.output.empty()) io::check_writable(output_of_input(options.output, options.inputs.front()));
+  if (!options.output.empty()) check_mesh_writable(output_of_input(options.output, options.inputs.front()));
   check_text_output(options.json);
   SurfaceRun run(options);
   const size_t failed_count = for_each_input(

@@ -172,7 +172,7 @@ class Run {
     const UsedFiles files(inputs_.options);
     for (size_t place = 0; place < frames_.count; ++place)
       files.check_mesh(inputs_.pattern->name(frames_.frame(place)));
-    io::check_writable(inputs_.pattern->name(frames_.first));
+    check_mesh_writable(inputs_.pattern->name(frames_.first));
   }
 
   void finish(FrameLedger &ledger, uint64_t all_engines) {

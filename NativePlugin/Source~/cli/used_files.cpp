@@ -9,6 +9,7 @@
 #include "cli/exit_code.h"
 #include "io/atomic_file.h"
 #include "io/file_path.h"
+#include "io/mesh_writer.h"
 #include "io/radii.h"
 
 #if defined(_WIN32)
@@ -70,21 +71,24 @@ void UsedFiles::add_input(const char *flag, const std::string &name) {
 // name, not of what is in the file.
 void UsedFiles::add_meshes(const Options &options) {
   if (!options.has_several_inputs()) {
-    if (options.read.model != 0) add_output(kOutputFlag, output_of_input(options.output, options.input));
+    if (options.read.model == 0) return;
+    for (const std::string &name : io::mesh_files_of(output_of_input(options.output, options.input)))
+      add_output(kOutputFlag, name);
     return;
   }
   std::map<fs::path::string_type, const std::string *> inputs, meshes;  // by place
   for (const File &file : files_) inputs.emplace(comparable(file.place), &file.name);
-  for (const std::string &input : options.inputs) {
-    const File file = file_of(kOutputFlag, output_of_input(options.output, input), true);
-    const auto [other, is_new] = meshes.emplace(comparable(file.place), &input);
-    if (!is_new)
-      throw Failure(kUsage, file.flag + ": '" + *other->second + "' and '" + input + "' would both be written to '" +
-                                file.name + "'");
-    if (options.read.model == 0) continue;  // its meshes have names that are made of this one
-    if (inputs.count(comparable(file.place)) != 0) check(file);
-    files_.push_back(file);
-  }
+  for (const std::string &input : options.inputs)
+    for (const std::string &name : io::mesh_files_of(output_of_input(options.output, input))) {
+      const File file = file_of(kOutputFlag, name, true);
+      const auto [other, is_new] = meshes.emplace(comparable(file.place), &input);
+      if (!is_new)
+        throw Failure(kUsage, file.flag + ": '" + *other->second + "' and '" + input + "' would both be written to '" +
+                                  file.name + "'");
+      if (options.read.model == 0) continue;  // its meshes have names that are made of this one
+      if (inputs.count(comparable(file.place)) != 0) check(file);
+      files_.push_back(file);
+    }
 }
 
 void UsedFiles::add_output(const char *flag, const std::string &name) {
@@ -105,6 +109,8 @@ UsedFiles::UsedFiles(const Options &options) {
   add_output("--json", options.json);
 }
 
-void UsedFiles::check_mesh(const std::string &path) const { check(file_of(kOutputFlag, path, true)); }
+void UsedFiles::check_mesh(const std::string &path) const {
+  for (const std::string &name : io::mesh_files_of(path)) check(file_of(kOutputFlag, name, true));
+}
 
 }  // namespace quickses::cli

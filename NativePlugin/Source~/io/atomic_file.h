@@ -33,6 +33,9 @@ class AtomicFile {
   void write(const std::string &text) { write(text.data(), text.size()); }
   void commit();
 
+  // As it was given.
+  const std::string &path() const { return path_; }
+
   static constexpr size_t kBufferSize = 1 << 20;
 
  private:

@@ -30,6 +30,7 @@ namespace QuickSes.Tests
             ("qses_patch", "QSES_PATCH_", typeof(SurfacePatch)),
             ("qses_job_state", "QSES_JOB_", typeof(SurfaceJobState)),
             ("qses_structure_format", "QSES_STRUCTURE_", typeof(StructureFormat)),
+            ("qses_color_scheme", "QSES_COLOR_", typeof(AtomColorScheme)),
             ("qses_trajectory_format", "QSES_TRAJECTORY_", typeof(TrajectoryFormat)),
             ("qses_graphics", "QSES_GRAPHICS_", typeof(GpuGraphics))
         };

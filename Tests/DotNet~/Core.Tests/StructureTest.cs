@@ -47,6 +47,27 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void AtomsHaveColours()
+        {
+            byte[] uniform = { 1, 2, 3, 4 };
+            Structure structure = Open(default);
+            var rgba = new byte[4 * structure.AtomCount + 4]; // more room than needed
+            structure.FillColors(AtomColorScheme.Uniform, uniform, rgba);
+            Assert.That(rgba.Take(4 * structure.AtomCount).Select((value, i) => value == 1 + i % 4), Has.All.True);
+            Assert.That(rgba.Skip(4 * structure.AtomCount), Is.All.EqualTo(0));
+            structure.FillColors(AtomColorScheme.Element, uniform, rgba);
+            Assert.That(rgba.Take(8), Is.EqualTo(new byte[] { 0x30, 0x50, 0xF8, 255, 0x90, 0x90, 0x90, 255 })); // N, C
+            Assert.That(() => structure.FillColors((AtomColorScheme)6, uniform, rgba),
+                Throws.TypeOf<ArgumentOutOfRangeException>());
+            Assert.That(() => structure.FillColors(AtomColorScheme.Chain, new byte[3], rgba), Throws.ArgumentException);
+            Assert.That(() => structure.FillColors(AtomColorScheme.Chain, uniform, new byte[4 * structure.AtomCount - 1]),
+                Throws.ArgumentException);
+            structure.Dispose();
+            Assert.That(() => structure.FillColors(AtomColorScheme.Chain, uniform, rgba),
+                Throws.TypeOf<ObjectDisposedException>());
+        }
+
+        [Test]
         public void AtomsAreThoseOfTheFile()
         {
             List<string> lines = AtomLines();

@@ -30,6 +30,7 @@ int32_t event_of_frame(void);
 void run_event(int32_t event);
 int load_atoms(qses_context *context, const char *path);
 int show_chain(qses_context *context, const qses_structure *structure);
+int color_chains(qses_context *context, const qses_structure *structure);
 int print_areas(qses_context *context, const void *bytes, size_t size, qses_trajectory_format format);
 
 static int failures = 0;
@@ -147,6 +148,7 @@ static void run_api_page(qses_context *context, const char *path) {
   CHECK(load_atoms(context, "nowhere.pdb") == 1);
   CHECK(qses_structure_open(path, NULL, &structure) == QSES_OK);
   CHECK(show_chain(context, structure) == 0);
+  CHECK(color_chains(context, structure) == 0);
   qses_structure_close(structure);
   CHECK(take_surface(context, &mesh) == 0);
   CHECK(ask_for_surface(context, 7) == QSES_OK);

@@ -154,6 +154,7 @@ class AcceptSurface : public io::IoTest {
  protected:
   AcceptSurface() { structure_.atoms.resize(1); }
   io::Structure structure_;
+  Options options_;
 };
 
 TEST_F(AcceptSurface, OfAnOpenMeshNothingIsWritten) {
@@ -163,7 +164,7 @@ TEST_F(AcceptSurface, OfAnOpenMeshNothingIsWritten) {
   write("old.obj", "old");
   for (const std::string &name : {path("a.obj"), path("b.ply"), path("c.stl"), path("old.obj"), std::string()}) {
     try {
-      accept_surface(name, surface.view, structure_);
+      MeshOutput(options_, structure_).accept(name, surface.view, nullptr);
       ADD_FAILURE() << name;
     } catch (const Failure &failure) {
       EXPECT_EQ(failure.code(), 4);
@@ -176,9 +177,9 @@ TEST_F(AcceptSurface, OfAnOpenMeshNothingIsWritten) {
 
 TEST_F(AcceptSurface, AClosedMeshIsWritten) {
   const Surface surface(mesh_shapes::cube());
-  accept_surface("", surface.view, structure_);
+  MeshOutput(options_, structure_).accept("", surface.view, nullptr);
   EXPECT_EQ(file_count(), 0u);
-  accept_surface(path("a.stl"), surface.view, structure_);
+  MeshOutput(options_, structure_).accept(path("a.stl"), surface.view, nullptr);
   EXPECT_EQ(slurp(path("a.stl")).size(), 84u + 50 * 12);
 }
 

@@ -197,9 +197,12 @@ TEST_F(MeshWriterTest, MeshFormatFollowsTheExtension) {
   EXPECT_EQ(mesh_format_of("a.b/c.OBJ"), MeshFormat::kObj);
   EXPECT_EQ(mesh_format_of("c.ply"), MeshFormat::kPly);
   EXPECT_EQ(mesh_format_of("c.stl"), MeshFormat::kStl);
+  EXPECT_EQ(mesh_format_of("c.glb"), MeshFormat::kGlb);
+  EXPECT_EQ(mesh_format_of("c.off"), MeshFormat::kOff);
+  EXPECT_EQ(mesh_format_of("c.vert"), MeshFormat::kMsms);
   for (const char *name : {"c.xyz", "c", "obj"}) {
     const std::string message = error_of(ErrorKind::kUsage, [&] { mesh_format_of(name); });
-    for (const char *known : {".obj", ".ply", ".stl"}) EXPECT_HAS(message, known);
+    for (const char *known : {".obj", ".ply", ".stl", ".glb", ".off", ".vert"}) EXPECT_HAS(message, known);
   }
 }
 
@@ -241,7 +244,7 @@ TEST_F(MeshWriterTest, PlacesThatCanNotBeWrittenAreNamed) {
 #if defined(__linux__)
 TEST_F(MeshWriterTest, AFullDiskIsReported) {
   const Tetrahedron mesh;
-  for (MeshFormat format : {MeshFormat::kObj, MeshFormat::kPly, MeshFormat::kStl})
+  for (MeshFormat format : {MeshFormat::kObj, MeshFormat::kPly, MeshFormat::kStl, MeshFormat::kGlb, MeshFormat::kOff})
     EXPECT_HAS(error_of(ErrorKind::kOutput, [&] { write_mesh("/dev/full", mesh.view(), format); }), "/dev/full");
 }
 

@@ -864,6 +864,28 @@ QSES_API qses_status qses_structure_atom(const qses_structure *structure, uint32
 QSES_API qses_status qses_structure_select(const qses_structure *structure, const char *selection, uint8_t *mask,
                                            size_t count, uint32_t *selected);
 
+/* How the atoms of a structure are coloured. */
+typedef enum qses_color_scheme {
+  QSES_COLOR_UNIFORM = 0, /* one colour for all */
+  QSES_COLOR_ELEMENT = 1, /* in the colours of Jmol: carbon grey, nitrogen blue, oxygen red, ... */
+  QSES_COLOR_CHAIN = 2,   /* a colour per chain, in the order of the file */
+  QSES_COLOR_RESIDUE = 3, /* acidic residues red, basic blue, polar green, nonpolar white; purines orange,
+                             pyrimidines violet */
+  QSES_COLOR_HYDROPHOBICITY =
+      4,                  /* Kyte and Doolittle's scale: hydrophilic residues blue, hydrophobic ones orange-red */
+  QSES_COLOR_SEQUENCE = 5 /* along each chain from blue (N terminus, 5' end) to red (C terminus, 3' end) */
+} qses_color_scheme;
+
+/* A colour for each atom of the structure, red, green, blue, alpha (sRGB, 8 bits each), as qses_set_colors takes them.
+ *   uniform_rgba  for UNIFORM, and for atoms of which the scheme tells nothing, such as those of ligands in the schemes
+ *                 of residues; its alpha goes along. The other colours are opaque
+ *   rgba          room for 4 count bytes
+ *   count         must be atom_count
+ * Modified residues have the colour of those they were made of. Errors: INVALID_ARGUMENT (also: an unknown scheme),
+ * after which rgba is as it was; OUT_OF_MEMORY. */
+QSES_API qses_status qses_structure_colors(const qses_structure *structure, qses_color_scheme scheme,
+                                           const uint8_t uniform_rgba[4], uint8_t *rgba, size_t count);
+
 /* A sentence for the user, such as one about elements that had to be inferred; k is below warning_count. Valid until
  * qses_structure_close. Errors: INVALID_ARGUMENT. */
 QSES_API qses_status qses_structure_warning(const qses_structure *structure, uint32_t k, const char **sentence);

@@ -172,6 +172,10 @@ namespace QuickSes.Interop
             StructureHandle structure, byte* selection, byte* mask, UIntPtr count, uint* selected);
 
         [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
+        public static extern QuickSesStatus qses_structure_colors(
+            StructureHandle structure, AtomColorScheme scheme, byte* uniformRgba, byte* rgba, UIntPtr count);
+
+        [DllImport(Library, CallingConvention = Cdecl, ExactSpelling = true)]
         public static extern QuickSesStatus qses_structure_warning(StructureHandle structure, uint k, byte** sentence);
 
         // ---- trajectories

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+// The flags that say what mesh files have in them.
+#include "cli/mesh_options.h"
+
+#include <map>
+
+#include "cli/exit_code.h"
+#include "cli/option_kinds.h"
+#include "io/mesh_writer.h"
+
+namespace quickses::cli {
+namespace {
+
+const std::map<std::string, MeshColors> kColors = {
+    {"none", MeshColors::kNone},           {"element", MeshColors::kElement},
+    {"chain", MeshColors::kChain},         {"residue", MeshColors::kResidue},
+    {"sequence", MeshColors::kSequence},   {"hydrophobicity", MeshColors::kHydrophobicity},
+    {"component", MeshColors::kComponent}, {"patch", MeshColors::kPatch}};
+
+// "#C08000"
+bool parse_color(const std::string &text, io::Rgba &color) {
+  constexpr size_t kSize = 7;
+  if (text.size() != kSize || text[0] != '#' || text.find_first_not_of("0123456789abcdefABCDEF", 1) != text.npos)
+    return false;
+  const unsigned long rgb = std::stoul(text.substr(1), nullptr, 16);
+  color = {static_cast<uint8_t>(rgb >> 16), static_cast<uint8_t>(rgb >> 8), static_cast<uint8_t>(rgb), 255};
+  return true;
+}
+
+void read_color(const std::string &text, MeshFileOptions &mesh) {
+  if (parse_color(text, mesh.color)) {
+    mesh.colors = MeshColors::kOne;
+    return;
+  }
+  if (text.compare(0, 1, "#") == 0)
+    throw Failure(kUsage, "--color: '" + text + "' is no colour: they are written #RRGGBB, as #C08000");
+  mesh.colors = look_up("--color", kColors, text);
+}
+
+// Of the output, which there is.
+io::MeshFormat format_of(const Options &options) {
+  try {
+    return io::mesh_format_of(options.output);
+  } catch (const std::exception &error) {
+    throw Failure(kUsage, std::string("--output (-o): ") + error.what());
+  }
+}
+
+void check_hard_edges(const Options &options) {
+  if (options.hard_edges == Switch::kOn && !has_hard_edges(options))
+    throw Failure(kUsage, "--hard-edges on: is for the exact method and mesh files with normals, .obj, .ply or .glb");
+}
+
+void check_without_output(const MeshFileOptions &mesh) {
+  const auto refuse = [](const char *flag, const char *what) {
+    throw Failure(kUsage, std::string(flag) + ": " + what + " of a mesh file, and there is no --output (-o)");
+  };
+  if (mesh.component_ids) refuse("--component-ids", "they are part");
+  if (mesh.colors != MeshColors::kNone) refuse("--color", "it is");
+  if (mesh.sharp) refuse("--sharp-colors", "it is about colours");
+  if (mesh.text) refuse("--ascii", "it is a form");
+  if (mesh.center) refuse("--center", "it moves the vertices");
+  if (mesh.scale != 1) refuse("--scale", "it is the size");
+}
+
+bool are_of_atoms(MeshColors colors) {
+  return colors != MeshColors::kNone && colors != MeshColors::kOne && colors != MeshColors::kComponent &&
+         colors != MeshColors::kPatch;
+}
+
+void check_format(const Options &options) {
+  const MeshFileOptions &mesh = options.mesh;
+  const io::MeshFormat format = format_of(options);
+  const auto refuse = [&](const char *flag, const char *what) {
+    throw Failure(kUsage, std::string(flag) + ": " + what + ", and --output (-o) is '" + options.output + "'");
+  };
+  if (mesh.component_ids && format != io::MeshFormat::kPly && format != io::MeshFormat::kGlb)
+    refuse("--component-ids", "only PLY and GLB files have them");
+  if (mesh.text && format != io::MeshFormat::kPly) refuse("--ascii", "only PLY files are there as bytes and as text");
+  if (mesh.colors != MeshColors::kNone && !io::has_colors(format))
+    refuse("--color", "STL and MSMS files have no colours (.ply, .obj, .glb and .off have)");
+  if (mesh.sharp && !are_of_atoms(mesh.colors))
+    throw Failure(
+        kUsage,
+        "--sharp-colors: is for colours of atoms (--color element, chain, residue, hydrophobicity or sequence)");
+  if (options.compute.method == QSES_METHOD_GRID && needs_patches(options))
+    throw Failure(kUsage, "--method grid does not know on what kind of patch a vertex is, which " +
+                              std::string(format == io::MeshFormat::kMsms ? "MSMS files tell" : "--color patch shows"));
+}
+
+}  // namespace
+
+void add_mesh_options(CLI::App *app, Options &options) {
+  MeshFileOptions &mesh = options.mesh;
+  app->add_option("-o,--output", options.output,
+                  "Mesh: .obj, .ply (with normals and owner atoms), .glb (glTF 2.0), .stl, .off, or .vert, with .face "
+                  "beside it, as MSMS writes them. %s stands for the name of INPUT")
+      ->type_name("FILE|-");
+  add_switch(app, "--hard-edges", options.hard_edges,
+             "on: a vertex on a crease has a normal for each side, so that light breaks there; PLY and GLB files then "
+             "have it once per side. Default: on for .obj, .ply and .glb");
+  app->add_flag("--outer", options.outer, "Leave the walls of cavities out of the mesh, not of the numbers");
+  app->add_option_function<std::string>(
+         "--color", [&mesh](const std::string &text) { read_color(text, mesh); },
+         "Colours of the vertices, in .ply, .obj, .glb and .off: element (Jmol's), chain, residue (their classes), "
+         "hydrophobicity, sequence, component (connected pieces), patch (contact, toroidal, reentrant), or one for all")
+      ->type_name("NAME|#RRGGBB")
+      ->default_str("none");
+  app->add_flag("--sharp-colors", mesh.sharp,
+                "Cut triangles where the colours of atoms meet, so that each has one colour and borders are smooth");
+  app->add_flag("--component-ids", mesh.component_ids,
+                "The number of each vertex's connected piece in PLY files, as int component, and in GLB files");
+  app->add_flag("--ascii", mesh.text, "PLY files as text");
+  app->add_flag("--center", mesh.center, "The middle of the mesh's box goes to the origin, in the file");
+  add_number(app, "--scale", "--scale", mesh.scale, 1e-12, 1e12,
+             "Multiply coordinates in the file, which are in angstrom: 0.5 prints half a millimetre per angstrom",
+             false);
+}
+
+void check_mesh_options(const Options &options) {
+  if (options.output.empty())
+    check_without_output(options.mesh);
+  else
+    check_format(options);
+  check_hard_edges(options);
+}
+
+bool has_hard_edges(const Options &options) {
+  return options.hard_edges != Switch::kOff && options.compute.method == QSES_METHOD_EXACT && !options.output.empty() &&
+         io::has_normals(io::mesh_format_of(options.output));
+}
+
+bool needs_patches(const Options &options) {
+  return options.mesh.colors == MeshColors::kPatch ||
+         (!options.output.empty() && io::mesh_format_of(options.output) == io::MeshFormat::kMsms);
+}
+
+const char *name_of(MeshColors colors) { return colors == MeshColors::kOne ? "one" : find_name(kColors, colors); }
+
+}  // namespace quickses::cli

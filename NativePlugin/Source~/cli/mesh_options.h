@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+// The flags that say what mesh files have in them.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "cli/options.h"
+
+namespace quickses::cli {
+
+void add_mesh_options(CLI::App *app, Options &options);
+
+// Whether they fit to each other and to the format of the output. Throws Failure (kUsage).
+void check_mesh_options(const Options &options);
+
+}  // namespace quickses::cli

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+// What is known about residues by their names in files of the PDB and of molecular dynamics.
+#include "io/residue_table.h"
+
+#include <gemmi/resinfo.hpp>
+
+#include "io/text.h"
+
+namespace quickses::io {
+namespace {
+
+// Of the letters of sequences.
+ResidueTraits amino_acid(char letter) {
+  switch (letter) {
+    case 'A':
+      return {ResidueClass::kNonpolar, 1.8f};
+    case 'G':
+      return {ResidueClass::kNonpolar, -0.4f};
+    case 'I':
+      return {ResidueClass::kNonpolar, 4.5f};
+    case 'L':
+      return {ResidueClass::kNonpolar, 3.8f};
+    case 'M':
+      return {ResidueClass::kNonpolar, 1.9f};
+    case 'F':
+      return {ResidueClass::kNonpolar, 2.8f};
+    case 'P':
+      return {ResidueClass::kNonpolar, -1.6f};
+    case 'W':
+      return {ResidueClass::kNonpolar, -0.9f};
+    case 'V':
+      return {ResidueClass::kNonpolar, 4.2f};
+    case 'N':
+    case 'Q':
+      return {ResidueClass::kPolar, -3.5f};
+    case 'C':
+    case 'U':  // selenocysteine
+      return {ResidueClass::kPolar, 2.5f};
+    case 'S':
+      return {ResidueClass::kPolar, -0.8f};
+    case 'T':
+      return {ResidueClass::kPolar, -0.7f};
+    case 'Y':
+      return {ResidueClass::kPolar, -1.3f};
+    case 'D':
+    case 'E':
+      return {ResidueClass::kAcidic, -3.5f};
+    case 'R':
+      return {ResidueClass::kBasic, -4.5f};
+    case 'H':
+      return {ResidueClass::kBasic, -3.2f};
+    case 'K':
+    case 'O':  // pyrrolysine
+      return {ResidueClass::kBasic, -3.9f};
+    default:
+      return {};
+  }
+}
+
+ResidueTraits nucleotide(char letter) {
+  switch (letter) {
+    case 'A':
+    case 'G':
+    case 'I':
+      return {ResidueClass::kPurine, 0};
+    case 'C':
+    case 'T':
+    case 'U':
+      return {ResidueClass::kPyrimidine, 0};
+    default:
+      return {};
+  }
+}
+
+// Names that Amber, CHARMM and GROMACS give to protonation states and to cysteines in bridges; '\0' for others.
+char letter_in_simulations(const std::string &name) {
+  static const struct {
+    const char *name;
+    char letter;
+  } kNames[] = {{"CYX", 'C'},  {"CYM", 'C'},  {"CYS2", 'C'}, {"ASH", 'D'},  {"ASPH", 'D'}, {"GLH", 'E'}, {"GLUH", 'E'},
+                {"ARGN", 'R'}, {"HID", 'H'},  {"HIE", 'H'},  {"HIP", 'H'},  {"HSD", 'H'},  {"HSE", 'H'}, {"HSP", 'H'},
+                {"HISA", 'H'}, {"HISB", 'H'}, {"HISH", 'H'}, {"HISD", 'H'}, {"HISE", 'H'}, {"LYN", 'K'}, {"LYSH", 'K'}};
+  for (const auto &entry : kNames)
+    if (name == entry.name) return entry.letter;
+  return '\0';
+}
+
+// The base of names such as A, DA, RA and of the ends of a strand in Amber, DA5 and A3, and of CHARMM's; else '\0'.
+char base_in_simulations(std::string name) {
+  for (const char *base : {"ADE", "GUA", "CYT", "THY", "URA"})
+    if (name == base) return base[0];
+  if (name.size() > 1 && (name.back() == '5' || name.back() == '3')) name.pop_back();
+  if (name.size() == 2 && (name[0] == 'D' || name[0] == 'R')) name.erase(0, 1);
+  return name.size() == 1 ? name[0] : '\0';
+}
+
+}  // namespace
+
+ResidueTraits traits_of(const std::string &residue_name) {
+  std::string name = residue_name;
+  for (char &c : name) c = to_ascii(c);
+  // Before gemmi, which knows the names of the PDB: there, HSE is homoserine.
+  const ResidueTraits traits = amino_acid(letter_in_simulations(name));
+  if (traits.is_amino_acid()) return traits;
+  const gemmi::ResidueInfo info = gemmi::find_tabulated_residue(name);
+  const char letter = to_upper(info.one_letter_code);  // a small one marks a modified residue
+  if (info.is_amino_acid()) return amino_acid(letter);
+  return nucleotide(info.is_nucleic_acid() ? letter : base_in_simulations(name));
+}
+
+}  // namespace quickses::io
