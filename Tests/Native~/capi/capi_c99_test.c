@@ -57,8 +57,8 @@ static void check_files(qses_context *context) {
   CHECK(qses_structure_atom(structure, 0, &atom) == QSES_OK);
   CHECK(strcmp(atom.name, "CA") == 0 && atom.element == 6);
 
-  CHECK(qses_trajectory_open_memory(text, size, (qses_trajectory_format)4, &trajectory) == QSES_INVALID_ARGUMENT);
-  CHECK(strstr(qses_last_error(), "format is 4") != NULL);
+  CHECK(qses_trajectory_open_memory(text, size, (qses_trajectory_format)6, &trajectory) == QSES_INVALID_ARGUMENT);
+  CHECK(strstr(qses_last_error(), "format is 6") != NULL);
   CHECK(qses_trajectory_open_memory(text, size, QSES_TRAJECTORY_PDB, &trajectory) == QSES_OK);
   qses_trajectory_description_init(&trajectory_info);
   CHECK(qses_trajectory_info(trajectory, &trajectory_info) == QSES_OK);
