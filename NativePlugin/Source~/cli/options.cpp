@@ -109,8 +109,10 @@ void add_input_options(CLI::App *app, Options &options, const char *model_help) 
       "--no-hetero", [&options] { options.read.hetero = false; }, "Leave out HETATM records");
   app->add_flag_callback(
       "--no-hydrogen", [&options] { options.read.hydrogen = false; }, "Leave out hydrogen");
-  app->add_option("--select", options.read.selection, "Only these atoms, such as //A or //A/10-40 or (ALA)")
-      ->type_name("CID");
+  app->add_option(
+         "--select", options.read.selection,
+         "Only these atoms: words such as 'protein and chain A' or 'within 5 of ligand', or CID such as //A/10-40")
+      ->type_name("SELECTION");
   app->add_option_function<std::string>(
          "--model",
          [&options](const std::string &text) {

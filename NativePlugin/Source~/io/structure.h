@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "io/residue_kinds.h"
+
 namespace quickses::io {
 
 enum class StructureFormat { kPdb, kMmcif, kPqr, kXyzr, kGro };
@@ -31,6 +33,7 @@ struct AtomInfo {
   uint8_t entity = 0;              // gemmi's EntityType of the residue
   bool deuterium = false;
   bool has_residue_number = false;
+  ResidueKind kind = ResidueKind::kLigand;  // of the residue
 };
 
 // The atoms of one model that were kept, in the order of the file.
@@ -51,7 +54,7 @@ struct ReadOptions {
   bool water = true;      // false: waters are left out
   bool hetero = true;     // false: HETATM records are left out (waters mostly are such records too)
   bool hydrogen = true;   // false: hydrogen and deuterium are left out
-  std::string selection;  // CID syntax of gemmi, such as "//A" or "/1/A/10-40/CA[C]"; empty = everything
+  std::string selection;  // see selection.h, such as "protein and chain A" or "//A/10-40"; empty = everything
 };
 
 struct StructureFile {
@@ -77,7 +80,7 @@ StructureFile parse_structure(const std::string &bytes, std::optional<StructureF
 // mask[i] becomes 1 for the atoms that a selection names, in the syntax of ReadOptions.selection, else 0; mask has room
 // for all atoms of the structure. Gives their number. Throws Error (kUsage): the selection can't be understood, or the
 // structure has no names.
-uint32_t select_atoms(const Structure &structure, const std::string &cid, uint8_t *mask);
+uint32_t select_atoms(const Structure &structure, const std::string &text, uint8_t *mask);
 
 // Which residue each atom is of, from 0. Neighbours of the same chain, residue number, insertion code and residue name
 // are of one; where there are no names each atom is one by itself.

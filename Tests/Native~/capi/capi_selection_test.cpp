@@ -93,7 +93,27 @@ TEST(Selection, NamesAtoms) {
   EXPECT_EQ(select(structure, "//Z"), Indices{});
 }
 
-// The filter asks gemmi's own atoms, a selection those that were kept of them.
+TEST(Selection, NamesAtomsByWords) {
+  const StructurePointer structure = open_text(kPdb);
+  EXPECT_EQ(select(structure, "protein and chain A"), (Indices{0, 1, 3, 4}));
+  EXPECT_EQ(select(structure, "ions or water"), (Indices{7, 8}));
+  EXPECT_EQ(select(structure, "within 3.7 of (ZN) or //A//N"), (Indices{0, 5, 6, 7}));
+  EXPECT_EQ(select(structure, "resid -5-1 12C"), (Indices{0, 1, 3, 4, 5}));
+  EXPECT_EQ(select(structure, "ligand"), Indices{});
+  EXPECT_EQ(select(open_text(kPdb, QSES_STRUCTURE_PDB, "not protein"), ""), (Indices{7, 8}));
+}
+
+TEST(Selection, KindsAreThoseOfTheWholeFile) {
+  // One atom of the residue is left, a metal, which does not make it an ion.
+  std::string text = kPdb;
+  text.replace(text.find("TER\n"), 4,
+               "HETATM    8 FE   HEM B  50       8.000   9.000   3.000  1.00 15.00          FE\n"
+               "HETATM    8  NA  HEM B  50       8.000   9.000   5.000  1.00 15.00           N\n");
+  EXPECT_EQ(select(open_text(text, QSES_STRUCTURE_PDB, "[FE]"), "ions"), Indices{});
+  EXPECT_EQ(select(open_text(text, QSES_STRUCTURE_PDB, "[FE]"), "ligand"), (Indices{7}));
+}
+
+// What the filter keeps is what a selection names afterwards.
 TEST(Selection, NamesWhatTheFilterKeeps) {
   const StructurePointer structure = open_text(kPdb);
   for (const char *cid :
@@ -136,6 +156,7 @@ TEST(Selection, Errors) {
   refused("//A/(ALA", {"//A/(ALA", "understood"});
   refused("//*//[Qq]", {"//*//[Qq]", "element"});
   refused("//A/10-x", {"//A/10-x"});
+  refused("protien or water", {"'protien' at character 1 ", "did you mean 'protein'?"});
   refused(nullptr, {"selection", "NULL"});
   const auto select_all = [&](size_t count) {
     return qses_structure_select(structure.get(), "", mask.data(), count, nullptr);

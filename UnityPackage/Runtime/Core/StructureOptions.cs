@@ -21,7 +21,10 @@ namespace QuickSes
         /// <summary>Whether hydrogen and deuterium are left out.</summary>
         public bool SkipHydrogen { get; set; }
 
-        /// <summary>CID syntax of gemmi, such as "//A" or "/1/A/10-40/CA[C]"; null (default): everything.</summary>
+        /// <summary>
+        /// Words such as "protein and not chain B", or CID such as "//A/10-40"; null (default): everything. Of all atoms
+        /// of the model, those that are left out by the other options too.
+        /// </summary>
         public string Selection { get; set; }
 
         /// <summary>
