@@ -8,8 +8,9 @@
 #include <cmath>
 #include <initializer_list>
 #include <limits>
-#include <unordered_map>
 
+#include "io/alternate_locations.h"
+#include "io/assembly.h"
 #include "io/error.h"
 #include "io/file_bytes.h"
 #include "io/file_path.h"
@@ -73,20 +74,6 @@ RawFile read_raw(StructureFormat format, const std::string &text, const std::str
   fail_input("'" + path + "': unknown format");
 }
 
-// Keeps atoms without a label and, per residue (by number: residues of two kinds may share a place), those with the
-// first label met.
-class AlternateLocations {
- public:
-  bool keep(const AtomRef &ref) {
-    if (ref.atom->altloc == '\0') return true;
-    const std::string key = ref.chain->name + '/' + ref.residue->seqid.str();
-    return first_label_.emplace(key, ref.atom->altloc).first->second == ref.atom->altloc;
-  }
-
- private:
-  std::unordered_map<std::string, char> first_label_;
-};
-
 std::vector<AtomRef> in_file_order(const gemmi::Model &model) {
   std::vector<AtomRef> refs;
   for (const gemmi::Chain &chain : model.chains)
@@ -143,6 +130,23 @@ bool is_near(double x) { return std::abs(x) <= kMaxCoordinate; }
              " is more than 1,000,000 Å from the origin");
 }
 
+void check_options(const ReadOptions &options) {
+  Selection selection(options.selection);
+  AlternateLocations locations(options.altloc);
+}
+
+// Before a model is taken apart.
+void build_assembly(RawFile &file, StructureFormat format, const std::string &text, const std::string &path,
+                    const std::string &name) {
+  if (name.empty() || file.models.empty()) return;
+  if (format != StructureFormat::kPdb && format != StructureFormat::kMmcif)
+    fail_usage("'" + path + "': only PDB and mmCIF files describe assemblies");
+  const gemmi::Assembly assembly =
+      format == StructureFormat::kPdb ? find_pdb_assembly(text, path, name) : find_mmcif_assembly(text, path, name);
+  for (RawModel &raw : file.models)
+    if (raw.atom_count != 0) build_assembly(assembly, raw, path);
+}
+
 // All atoms of the model but those at locations that are not taken.
 Structure flatten(const RawModel &raw, const Filter &filter) {
   Structure structure;
@@ -151,10 +155,13 @@ Structure flatten(const RawModel &raw, const Filter &filter) {
   structure.has_names = raw.has_names;
   structure.file_atom_count = raw.atom_count;
   structure.file_elements.resize(raw.atom_count);
-  AlternateLocations locations;
-  for (const AtomRef &ref : in_file_order(raw.model)) {
+  const std::vector<AtomRef> refs = in_file_order(raw.model);
+  AlternateLocations locations(filter.options.altloc);
+  for (const AtomRef &ref : refs) locations.see(*ref.chain, *ref.residue, *ref.atom);
+  const bool takes_all = filter.selection.asks_for_locations();
+  for (const AtomRef &ref : refs) {
     structure.file_elements[static_cast<size_t>(ref.atom->serial - 1)] = atomic_number(*ref.atom);
-    if (!filter.selection.asks_for_locations() && !locations.keep(ref)) continue;
+    if (!takes_all && !locations.keep(*ref.chain, *ref.residue, *ref.atom)) continue;
     structure.atoms.push_back(describe(ref));
     for (double x : {ref.atom->pos.x, ref.atom->pos.y, ref.atom->pos.z})
       structure.positions.push_back(is_near(x) ? static_cast<float>(x) : std::numeric_limits<float>::infinity());
@@ -230,6 +237,7 @@ StructureFile parse_text(const std::string &text, const std::string &path, std::
     fail_usage("'" + path + "' has " + count_of(file.model_count, "model", "models") + ": there is no model " +
                std::to_string(options.model));
 
+  build_assembly(raw_file, file.format, text, path, options.assembly);
   size_t radius_zero_count = 0;
   for (RawModel &raw : raw_file.models) {
     const std::string which = file.model_count == 1 ? "" : "model " + std::to_string(raw.number) + " of ";
@@ -285,12 +293,12 @@ uint64_t memory_of(const StructureFile &file) {
 }
 
 StructureFile read_structure(const std::string &path, const ReadOptions &options) {
-  Selection check(options.selection);  // before a large file is read
+  check_options(options);  // before a large file is read
   return parse_text(read_file_bytes(path), path, std::nullopt, options);
 }
 
 StructureFile read_structure(const std::string &path, StructureFormat format, const ReadOptions &options) {
-  Selection check(options.selection);
+  check_options(options);
   return parse_text(read_file_bytes(path), path, format, options);
 }
 

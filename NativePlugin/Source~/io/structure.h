@@ -55,6 +55,8 @@ struct ReadOptions {
   bool hetero = true;     // false: HETATM records are left out (waters mostly are such records too)
   bool hydrogen = true;   // false: hydrogen and deuterium are left out
   std::string selection;  // see selection.h, such as "protein and chain A" or "//A/10-40"; empty = everything
+  std::string assembly;   // of PDB and mmCIF files: the name of a biological assembly; empty = the atoms of the file
+  std::string altloc;     // which alternate locations are taken: see alternate_locations.h; empty = the first
 };
 
 struct StructureFile {
@@ -65,11 +67,11 @@ struct StructureFile {
 };
 
 // Reads a file. The format follows from the name, and for names that tell nothing from the content (PDB or mmCIF).
-// Of alternate locations those without a label and the first label met in each residue are kept, unless the selection
-// names locations itself. Elements that the file leaves out are inferred from residue and atom name, with one warning.
-// In PDB files, END and ENDMDL both end a model. Atoms of radius 0 (PQR, XYZR) are left out with a warning.
-// Throws Error: kInput (file, syntax, no atoms; the message has file and line), kUsage (selection; no such model;
-// filters on a file without names).
+// Of alternate locations those without a label and one label of each residue are kept, unless the selection asks for
+// locations itself. Of an assembly, places in the file are places among its atoms. Elements that the file leaves out
+// are inferred from residue and atom name, with one warning. In PDB files, END and ENDMDL both end a model. Atoms of
+// radius 0 (PQR, XYZR) are left out with a warning. Throws Error: kInput (file, syntax, no atoms; the message has file
+// and line), kUsage (selection; no such model, no such assembly; filters on a file without names).
 StructureFile read_structure(const std::string &path, const ReadOptions &options = ReadOptions());
 StructureFile read_structure(const std::string &path, StructureFormat format, const ReadOptions &options);
 

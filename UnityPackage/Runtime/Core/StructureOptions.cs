@@ -32,5 +32,17 @@ namespace QuickSes
         /// (default): those of the file (PQR, XYZR), else "quickses".
         /// </summary>
         public string Radii { get; set; }
+
+        /// <summary>
+        /// The name of a biological assembly of a PDB or mmCIF file, mostly "1"; null (default): the atoms of the file.
+        /// Further copies of a chain have 2, 3 and so on behind its name. An assembly fits no trajectory of the file.
+        /// </summary>
+        public string Assembly { get; set; }
+
+        /// <summary>
+        /// Which alternate locations are taken: "first" of each residue; "highest", of the greatest mean occupancy; or a
+        /// label such as "B" where a residue has it, else the first. null (default): "first".
+        /// </summary>
+        public string AlternateLocation { get; set; }
     }
 }

@@ -778,6 +778,14 @@ typedef struct qses_structure_options {
   const char *radii;     /* "quickses", "bondi", or the name of a text file with lines `ELEMENT radius` (Å; `*` for all
                             others). NULL (default) = those of the file (PQR, XYZR), else "quickses": O 1.52, C 1.70,
                             N 1.55, H 1.20, S 1.80, P 1.80, others 1.40 Å */
+  const char *assembly;  /* PDB and mmCIF: the name of a biological assembly, mostly "1", which is made of copies of the
+                            file's chains. The first copy of a chain keeps its name, others have 2, 3 and so on behind
+                            it. Atoms, file_indices, file_atom_count and file_elements are then those of the assembly,
+                            operation by operation and chain by chain, and fit no trajectory of the file. NULL (default)
+                            = the atoms of the file */
+  const char *altloc;    /* which alternate locations are taken, with the atoms that have none: "first", in each residue
+                            the label met first; "highest", that of the greatest mean occupancy; or a label, such as
+                            "B", where a residue has it, else the first. NULL (default) = "first" */
 } qses_structure_options;
 
 /* The defaults, with struct_size set. NULL is ignored. */
@@ -788,11 +796,10 @@ static inline void qses_structure_options_init(qses_structure_options *options) 
   options->water = options->hetero = options->hydrogen = 1;
 }
 
-/* Reads a structure from a file, gzipped or not. path is UTF-8. options may be NULL (defaults). Of alternate locations,
- * those without a label and the first label met in each residue are kept.
- * On success *structure is the caller's, who ends it with qses_structure_close; on failure it is NULL.
- * Errors: INVALID_ARGUMENT (options; a selection that can't be understood; no such model), FILE_ERROR (the message
- * names file and line; also more than qses_input_set_limit allows), OUT_OF_MEMORY. */
+/* Reads a structure from a file, gzipped or not. path is UTF-8. options may be NULL (defaults). On success *structure
+ * is the caller's, who ends it with qses_structure_close; on failure it is NULL. Errors: INVALID_ARGUMENT (options; a
+ * selection that can't be understood; no such model or assembly), FILE_ERROR (the message names file and line; also
+ * more than qses_input_set_limit allows), OUT_OF_MEMORY. */
 QSES_API qses_status qses_structure_open(const char *path, const qses_structure_options *options,
                                          qses_structure **structure);
 
