@@ -112,8 +112,11 @@ FrameResult FrameWorker::run(const FrameTask &task) {
     result.csv = std::to_string(task.frame) + std::string(commas, ',') + csv_field(result.error) + "\n";
     result.per_atom = result.per_residue = "";
     if (!options.json.empty())
-      result.json =
-          dump(Json{{"frame", task.frame}, {"trajectory", options.trajectory}, {"error", result.error}}, true);
+      result.json = dump(Json{{"schema", kReportSchema},
+                              {"frame", task.frame},
+                              {"trajectory", options.trajectory},
+                              {"error", result.error}},
+                         true);
   }
   mesh_.clear();
   return result;
@@ -147,7 +150,7 @@ void FrameWorker::set_frame(Engine &engine) const {
 }
 
 Json FrameWorker::frame_json(const FrameTask &task, std::optional<double> time) const {
-  Json json = {{"frame", task.frame}, {"trajectory", inputs_.options.trajectory}};
+  Json json = {{"schema", kReportSchema}, {"frame", task.frame}, {"trajectory", inputs_.options.trajectory}};
   json["time_ps"] = time ? Json(*time) : Json();
   return json;
 }
