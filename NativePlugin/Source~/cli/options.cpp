@@ -394,7 +394,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
     throw Failure(failure.code(), failure.what() + suggest_dashes(asked, arguments));
   } catch (const CLI::ExtrasError &error) {
     const std::vector<std::string> extras = app.remaining(true);
-    throw Failure(kUsage, extras.empty() ? error.what() : explain_extra(asked, extras[0]));
+    throw Failure(kUsage, extras.empty() ? error.what() : explain_extra(asked, arguments, extras[0]));
   } catch (const CLI::Success &success) {  // --help, --version
     app.exit(success, out);
     options.command = Options::Command::kNone;

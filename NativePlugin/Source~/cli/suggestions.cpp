@@ -66,7 +66,8 @@ std::string suggest_dashes(const CLI::App &command, const std::vector<std::strin
   return "";
 }
 
-std::string explain_extra(const CLI::App &command, const std::string &extra) {
+std::string explain_extra(const CLI::App &command, const std::vector<std::string> &arguments,
+                          const std::string &extra) {
   if (extra.size() > 1 && extra[0] == '-') {
     const std::string flag = extra.substr(0, extra.find('='));
     const std::string word = flag.substr(std::min(flag.find_first_not_of('-'), flag.size()));
@@ -74,6 +75,10 @@ std::string explain_extra(const CLI::App &command, const std::string &extra) {
     return flag + ": there is no such flag; " +
            (nearest.empty() ? "see " + help_of(command) : "did you mean --" + nearest + "?");
   }
+  std::vector<std::string> names;
+  for (const CLI::App *other : command.get_subcommands(nullptr)) names.push_back(other->get_name());
+  const std::string nearest = io::nearest_word(arguments[0], names);
+  if (!nearest.empty()) return "'" + arguments[0] + "' is no command; did you mean " + nearest + "?";
   return "'" + extra + "': one INPUT was given already; " +
          (is_mesh_name(extra) ? "did you mean -o " + extra + "?" : "see " + help_of(command));
 }

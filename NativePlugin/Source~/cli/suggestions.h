@@ -17,7 +17,7 @@ void check_dashes(const CLI::App &command, const std::vector<std::string> &argum
 // "; did you mean --spacing?" for an argument such as "-spacng" among these that may be why something failed; else "".
 std::string suggest_dashes(const CLI::App &command, const std::vector<std::string> &arguments);
 
-// A sentence about the first argument that nobody expected.
-std::string explain_extra(const CLI::App &command, const std::string &extra);
+// A sentence about an argument that nobody expected.
+std::string explain_extra(const CLI::App &command, const std::vector<std::string> &arguments, const std::string &extra);
 
 }  // namespace quickses::cli

@@ -19,10 +19,6 @@ constexpr double kRounding = 1e-6;   // Å, of the borders of cells
 
 using Point = std::array<double, 3>;
 
-struct Range {
-  size_t first = 0, last = 0;
-};
-
 class Cells {
  public:
   Cells(const std::vector<float> &positions, const std::vector<uint8_t> &set, double distance)
@@ -37,7 +33,8 @@ class Cells {
     std::sort(members.begin(), members.end());
     for (size_t first = 0, last = 0; first < members.size(); first = last) {
       while (last < members.size() && members[last].first == members[first].first) ++last;
-      ranges_[members[first].first] = {first, last};
+      places_[members[first].first] = filled_.size();
+      filled_.push_back({cell_of(members[first].second), first, last});
     }
     for (const auto &member : members) points_.push_back(member.second);
   }
@@ -46,6 +43,10 @@ class Cells {
     if (!is_in_reach(point)) return false;
     const Cell home = cell_of(point);
     if (look_into(home, point)) return true;  // mostly that is enough
+    const auto width = static_cast<uint64_t>(2 * reach_ + 1);
+    if (filled_.size() < width * width * width)
+      return std::any_of(filled_.begin(), filled_.end(),
+                         [&](const FilledCell &filled) { return look_into(filled, point); });
     Cell cell;
     for (cell[0] = home[0] - reach_; cell[0] <= home[0] + reach_; ++cell[0])
       for (cell[1] = home[1] - reach_; cell[1] <= home[1] + reach_; ++cell[1])
@@ -56,6 +57,11 @@ class Cells {
 
  private:
   using Cell = std::array<int64_t, 3>;
+
+  struct FilledCell {
+    Cell cell;
+    size_t first, last;  // points
+  };
 
   static bool is_in_reach(const Point &point) {
     return std::all_of(point.begin(), point.end(), [](double x) { return std::abs(x) <= kFarthest; });
@@ -75,8 +81,12 @@ class Cells {
   }
 
   bool look_into(const Cell &cell, const Point &point) const {
-    const auto found = ranges_.find(key_of(cell));
-    if (found == ranges_.end()) return false;
+    const auto found = places_.find(key_of(cell));
+    return found != places_.end() && look_into(filled_[found->second], point);
+  }
+
+  bool look_into(const FilledCell &filled, const Point &point) const {
+    const Cell &cell = filled.cell;
     double nearest = 0, farthest = 0;  // squared distances to the cell
     for (int axis = 0; axis < 3; ++axis) {
       const double low = static_cast<double>(cell[axis]) * edge_ - point[axis];
@@ -89,8 +99,8 @@ class Cells {
     const double square = distance_ * distance_;
     if (farthest < square) return true;
     if (nearest > square) return false;
-    return std::any_of(points_.begin() + static_cast<ptrdiff_t>(found->second.first),
-                       points_.begin() + static_cast<ptrdiff_t>(found->second.last), [&](const Point &other) {
+    return std::any_of(points_.begin() + static_cast<ptrdiff_t>(filled.first),
+                       points_.begin() + static_cast<ptrdiff_t>(filled.last), [&](const Point &other) {
                          double sum = 0;
                          for (int axis = 0; axis < 3; ++axis)
                            sum += (other[axis] - point[axis]) * (other[axis] - point[axis]);
@@ -101,7 +111,8 @@ class Cells {
   const double distance_, edge_;
   const int64_t reach_;  // cells
   std::vector<Point> points_;
-  std::unordered_map<uint64_t, Range> ranges_;
+  std::vector<FilledCell> filled_;
+  std::unordered_map<uint64_t, size_t> places_;  // of filled cells, by their keys
 };
 
 }  // namespace

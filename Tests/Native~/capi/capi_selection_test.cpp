@@ -2,6 +2,8 @@
 // The C API: which atoms of a structure a selection names.
 #include "capi/capi_fixture.h"
 
+#include <cstddef>
+#include <cstdio>
 #include <numeric>
 #include <string>
 
@@ -136,6 +138,46 @@ TEST(Selection, NamesWhatTheFilterKeeps) {
       EXPECT_EQ(select(structure, cid), Indices{}) << qses_last_error();  // no atom would be left
     }
   }
+}
+
+TEST(Selection, OfAnAssemblyAndOfLocations) {
+  std::string text = "REMARK 350 BIOMOLECULE: 1\nREMARK 350 APPLY THE FOLLOWING TO CHAINS: A\n";
+  for (int operation = 1; operation <= 2; ++operation)
+    for (int row = 1; row <= 3; ++row) {
+      char line[96];
+      std::snprintf(line, sizeof line, "REMARK 350   BIOMT%d%4d%10.6f%10.6f%10.6f     %10.5f\n", row, operation,
+                    row == 1 ? 1.0 : 0.0, row == 2 ? 1.0 : 0.0, row == 3 ? 1.0 : 0.0,
+                    row == 1 ? 100.0 * (operation - 1) : 0.0);
+      text += line;
+    }
+  text += kPdb;
+  qses_structure_options options;
+  qses_structure_options_init(&options);
+  EXPECT_EQ(options.assembly, nullptr);
+  EXPECT_EQ(options.altloc, nullptr);
+  options.format = QSES_STRUCTURE_PDB;
+  options.assembly = "1";
+  options.altloc = "B";
+  qses_structure *opened = nullptr;
+  ASSERT_EQ(qses_structure_open_memory(text.data(), text.size(), &options, &opened), QSES_OK) << qses_last_error();
+  const StructurePointer structure(opened);
+  const qses_structure_description info = info_of(structure);
+  EXPECT_EQ(info.file_atom_count, 12u);  // twice chain A, which has six records
+  EXPECT_EQ(select(structure, ""), (Indices{0, 2, 3, 4, 5, 6, 8, 9, 10, 11}));
+  EXPECT_EQ(select(structure, "chain A2 and name CA"), (Indices{8}));
+  EXPECT_EQ(info.positions[3 * 6], 102.4f);
+  EXPECT_EQ(info.positions[3 * 6 + 1], 2.5f);  // the location B
+  options.assembly = "2";
+  expect_error(qses_structure_open_memory(text.data(), text.size(), &options, &opened), QSES_INVALID_ARGUMENT,
+               {"assembly '2'", "there is 1"});
+  options.assembly = nullptr;
+  options.altloc = "lowest";
+  expect_error(qses_structure_open_memory(text.data(), text.size(), &options, &opened), QSES_INVALID_ARGUMENT,
+               {"'lowest'", "highest"});
+  // A caller that was compiled with a header that ended before them.
+  options.struct_size = offsetof(qses_structure_options, assembly);
+  ASSERT_EQ(qses_structure_open_memory(text.data(), text.size(), &options, &opened), QSES_OK) << qses_last_error();
+  EXPECT_EQ(info_of(StructurePointer(opened)).file_atom_count, 9u);
 }
 
 TEST(Selection, OnlyFindsWhatWasKept) {

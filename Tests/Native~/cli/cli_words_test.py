@@ -44,6 +44,10 @@ class Suggestions(ProgramTest):
         for name in ("out.ply", "out.obj", "out.stl"):
             self.assert_suggests("-o " + name, CRAMBIN, name)
 
+    def test_commands(self):
+        self.assert_suggests("measure", "mesure", CRAMBIN)
+        self.assert_suggests("cavities", "cavites", CRAMBIN)
+
     def test_selections(self):
         self.assert_fails(USAGE, ["'protien' at character 1 ", "did you mean 'protein'?"], CRAMBIN, "--select", "protien")
         self.assert_fails(INPUT, ["'water' names none", "chain A", "protein"], CRAMBIN, "--select", "water")
