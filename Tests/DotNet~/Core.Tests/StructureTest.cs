@@ -231,8 +231,8 @@ namespace QuickSes.Tests
             Assert.That(Places(default), Is.EqualTo(new[] { 1f }));
             Assert.That(Places(new StructureOptions { AlternateLocation = "highest" }), Is.EqualTo(new[] { 2f }));
             Assert.That(Places(new StructureOptions { Assembly = "1" }), Is.EqualTo(new[] { 1f, 11f }));
-            Assert.That(Places(new StructureOptions { Assembly = "1", AlternateLocation = "B", Selection = "chain A2" }),
-                Is.EqualTo(new[] { 12f }));
+            var copy = new StructureOptions { Assembly = "1", AlternateLocation = "B", Selection = "chain A2" };
+            Assert.That(Places(copy), Is.EqualTo(new[] { 12f }));
             Assert.That(Structure.TryOpen(bytes, new StructureOptions { Format = StructureFormat.Pdb, Assembly = "9" },
                 out _, out QuickSesError unknown), Is.False);
             Assert.That(unknown.Message, Does.Contain("there is 1"));

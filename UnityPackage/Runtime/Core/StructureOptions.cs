@@ -22,8 +22,8 @@ namespace QuickSes
         public bool SkipHydrogen { get; set; }
 
         /// <summary>
-        /// Words such as "protein and not chain B", or CID such as "//A/10-40"; null (default): everything. Of all atoms
-        /// of the model, those that are left out by the other options too.
+        /// Words such as "protein and not chain B", or CID such as "//A/10-40"; null (default): everything. Of all
+        /// atoms of the model, those that are left out by the other options too.
         /// </summary>
         public string Selection { get; set; }
 

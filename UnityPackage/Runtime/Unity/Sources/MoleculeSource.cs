@@ -21,7 +21,7 @@ namespace QuickSes
         private bool _skipHydrogen;
         [SerializeField, Tooltip("Leaves out HETATM records: ligands, ions, most waters.")]
         private bool _skipHetero;
-        [SerializeField, Tooltip("Which atoms: words such as protein and chain A, or CID such as //A/10-40. Empty: all.")]
+        [SerializeField, Tooltip("Which atoms: words such as protein, or CID such as //A/10-40. Empty: all.")]
         private string _selection = "";
         [SerializeField, Tooltip(
             "quickses, bondi, or the path of a text file with lines ELEMENT radius (Å). Empty: the file's own radii " +
