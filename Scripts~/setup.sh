@@ -84,6 +84,8 @@ optional=(
   "valgrind valgrind"
   # Draws how time grows with size (Scripts~/measure/plot-growth).
   "python3-matplotlib python:matplotlib"
+  # Checks reports against their schema.
+  "python3-jsonschema python:jsonschema"
   # Another program's areas, to compare with.
   "freesasa freesasa"
   # Looks for what is to be mended in STL files.

@@ -99,6 +99,8 @@ io::ReadOptions read_options_of(const qses_structure_options &options) {
   read.hetero = options.hetero != 0;
   read.hydrogen = options.hydrogen != 0;
   if (options.selection) read.selection = options.selection;
+  if (options.assembly) read.assembly = options.assembly;
+  if (options.altloc) read.altloc = options.altloc;
   return read;
 }
 

@@ -152,10 +152,9 @@ void run_bench(const Options &options) {
   if (options.json.empty()) return;
   Json settings = settings_json(options.compute);
   settings["layout"] = name_of(bench.layout);
-  const Json json = {{"version", qses_version()}, {"backend", name_of(first.backend())},
-                     {"device", first.device()},  {"settings", settings},
-                     {"copies", bench.copies},    {"repeat", bench.repeat},
-                     {"structures", structures}};
+  const Json json = {{"schema", kReportSchema},  {"version", qses_version()}, {"backend", name_of(first.backend())},
+                     {"device", first.device()}, {"settings", settings},      {"copies", bench.copies},
+                     {"repeat", bench.repeat},   {"structures", structures}};
   write_text(options.json, dump(json, false));
 }
 

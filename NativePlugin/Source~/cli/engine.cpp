@@ -136,7 +136,12 @@ Engine start_engine(const ComputeOptions &options, bool quiet) {
 
 Engine start_engine(const ComputeOptions &options, int device, bool quiet) {
   Engine engine(options, device);
-  if (!quiet && options.backend == QSES_BACKEND_AUTO && engine.backend() == QSES_BACKEND_CPU)
+#if defined(QUICKSES_HAS_CUDA)  // else there is nothing to explain
+  constexpr bool has_cuda = true;
+#else
+  constexpr bool has_cuda = false;
+#endif
+  if (has_cuda && !quiet && options.backend == QSES_BACKEND_AUTO && engine.backend() == QSES_BACKEND_CPU)
     std::fprintf(stderr, "quickses: the CPU computes: %s\n", engine.why_not_cuda().c_str());
   return engine;
 }

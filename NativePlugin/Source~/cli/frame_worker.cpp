@@ -113,7 +113,11 @@ FrameResult FrameWorker::run(const FrameTask &task) {
     result.csv = std::to_string(task.frame) + std::string(commas, ',') + csv_field(result.error) + "\n";
     result.per_atom = result.per_residue = "";
     if (!options.json.empty())
-      result.json = dump(Json{{"frame", task.frame}, {"trajectory", file_of(task)}, {"error", result.error}}, true);
+      result.json = dump(Json{{"schema", kReportSchema},
+                              {"frame", task.frame},
+                              {"trajectory", file_of(task)},
+                              {"error", result.error}},
+                         true);
   }
   mesh_.clear();
   return result;
@@ -157,7 +161,7 @@ std::vector<float> FrameWorker::centers() const {
 }
 
 Json FrameWorker::frame_json(const FrameTask &task, std::optional<double> time) const {
-  Json json = {{"frame", task.frame}, {"trajectory", file_of(task)}};
+  Json json = {{"schema", kReportSchema}, {"frame", task.frame}, {"trajectory", file_of(task)}};
   json["time_ps"] = time ? Json(*time) : Json();
   return json;
 }

@@ -7,6 +7,7 @@
 #include "cli/area_tables.h"
 #include "cli/clock.h"
 #include "cli/exit_code.h"
+#include "cli/water_hint.h"
 #include "io/file_bytes.h"
 #include "io/radii.h"
 
@@ -39,6 +40,7 @@ Input::Input(const Options &given, bool quiet) : options(given) {
   file = load(options.input, options, quiet);
   read_ms = ms_since(start);
   if (io::has_own_radii(file.format)) options.compute.radii = "file";
+  if (!quiet) hint_at_water(options, file.models.front());
   for (const io::Structure &structure : file.models) check_has_residues(options, structure);
 }
 

@@ -20,6 +20,14 @@ const char *find_name(const std::map<std::string, Enum> &names, Enum value) {
   return "unknown";
 }
 
+// "auto|cuda|cpu", for --help.
+template <typename Enum>
+std::string joined_names(const std::map<std::string, Enum> &names) {
+  std::string list;
+  for (const auto &entry : names) list += (list.empty() ? "" : "|") + entry.first;
+  return list;
+}
+
 // Throws Failure (kUsage) with the list of what there is.
 template <typename Enum>
 Enum look_up(const std::string &flag, const std::map<std::string, Enum> &names, const std::string &text) {
@@ -35,7 +43,7 @@ void add_choice(CLI::App *app, const char *flag, Enum &value, const std::map<std
                 const char *help) {
   app->add_option_function<std::string>(
          flag, [&value, &names, flag](const std::string &text) { value = look_up(flag, names, text); }, help)
-      ->type_name("NAME")
+      ->type_name(joined_names(names))
       ->default_str(find_name(names, value));
 }
 

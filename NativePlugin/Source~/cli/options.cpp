@@ -8,9 +8,12 @@
 #include <map>
 
 #include "cli/exit_code.h"
+#include "cli/help_format.h"
+#include "cli/manual.h"
 #include "cli/mesh_options.h"
 #include "cli/option_kinds.h"
 #include "cli/output_pattern.h"
+#include "cli/suggestions.h"
 #include "cli/used_files.h"
 #include "io/atomic_file.h"
 #include "io/text.h"
@@ -44,11 +47,12 @@ const char kFooter[] =
     "  1  wrong usage: an unknown flag, a value out of range, an unknown extension of the output\n"
     "  2  an input file can't be read, or has no atoms (after the filters)\n"
     "  3  an output file can't be written\n"
-    "  4  computing failed: memory, the device, a spacing too fine for either, a mesh that is not closed\n"
+    "  4  computing failed: memory, the device, a spacing too fine for either, a mesh not closed\n"
     "  5  the back end asked for can't be used here\n"
     "  6  some frames of a trajectory, or some of several structures, failed; the others are done\n"
     "\n"
-    "Owner atoms in PLY and GLB files are 0-based places among the atoms of the input's model, before any filter.\n"
+    "Owner atoms in PLY and GLB files are 0-based places among the atoms of the input's model (or of\n"
+    "the assembly), before any filter.\n"
     "Lengths are in angstrom, areas in A^2, volumes in A^3.\n";
 
 const char kInputHelp[] = "Structure: .pdb .ent .cif .mmcif .pqr .xyzr .gro, each also as .gz; - for standard input";
@@ -80,8 +84,11 @@ void add_compute_options(CLI::App *app, ComputeOptions &options) {
          },
          "Van der Waals radii: quickses (O 1.52, C 1.70, N 1.55, H 1.20, S 1.80, P 1.80, others 1.40), bondi, or a "
          "file with lines `ELEMENT radius` (`*` for all others) or `RESIDUE ATOM radius`")
-      ->type_name("SET|FILE")
+      ->type_name("quickses|bondi|FILE")
       ->default_str("quickses");
+  put_into_group(app, "Input", {"--radii"});
+  put_into_group(app, "Surface", {"--spacing", "--steps", "--slice", "--probe"});
+  put_into_group(app, "Computing", {"--backend", "--device", "--threads", "--memory"});
 }
 
 void add_creases(CLI::App *app, ComputeOptions &options) {
@@ -97,10 +104,9 @@ void add_surface_choice(CLI::App *app, ComputeOptions &options) {
   add_choice(app, "--method", options.method, kMethods,
              "exact: vertices on the exact surface; grid: the voxel method of Martinez, Krone and Baaden 2019");
   add_creases(app, options);
-  add_switch(
-      app, "--occlusion", options.occlusion,
-      "on: how open the surface is at each vertex (ambient occlusion), as float occlusion in PLY files. Default: "
-      "off");
+  add_switch(app, "--occlusion", options.occlusion,
+             "on: how open the surface is at each vertex (ambient occlusion), in .ply and .glb files. Default: off");
+  put_rest_into_group(app, "Surface");
 }
 
 void add_measured(CLI::App *app, std::vector<qses_surface> &measured) {
@@ -132,13 +138,24 @@ void add_input_options(CLI::App *app, Options &options, const char *input_help, 
   app->add_option("-i,--input,INPUT", options.inputs, input_help)->type_name("FILE");
   add_input_format(app, options);
   app->add_flag_callback(
-      "--no-water", [&options] { options.read.water = false; }, "Leave out water");
+      "--no-water", [&options] { options.read.water = false; }, "Leave out water; ions and ligands stay");
   app->add_flag_callback(
-      "--no-hetero", [&options] { options.read.hetero = false; }, "Leave out HETATM records");
+      "--no-hetero", [&options] { options.read.hetero = false; },
+      "Leave out HETATM records: ligands, ions, most waters");
   app->add_flag_callback(
       "--no-hydrogen", [&options] { options.read.hydrogen = false; }, "Leave out hydrogen");
-  app->add_option("--select", options.read.selection, "Only these atoms, such as //A or //A/10-40 or (ALA)")
-      ->type_name("CID");
+  app->add_option(
+         "--select", options.read.selection,
+         "Only these atoms: words such as 'protein and chain A' or 'within 5 of ligand', or CID such as //A/10-40")
+      ->type_name("SELECTION");
+  app->add_option("--assembly", options.read.assembly,
+                  "Biological assembly of a PDB or mmCIF file, by its name there, mostly 1: copies of chains")
+      ->type_name("NAME");
+  app->add_option(
+         "--altloc", options.read.altloc,
+         "Which alternate locations: first, highest (of the greatest occupancy), or a label where there is one")
+      ->type_name("first|highest|LABEL")
+      ->default_str("first");
   app->add_option_function<std::string>(
          "--model",
          [&options](const std::string &text) {
@@ -150,6 +167,7 @@ void add_input_options(CLI::App *app, Options &options, const char *input_help, 
          },
          model_help)
       ->type_name("N|all");
+  put_rest_into_group(app, "Input");
 }
 
 void add_area_options(CLI::App *app, Options &options) {
@@ -158,6 +176,7 @@ void add_area_options(CLI::App *app, Options &options) {
   app->add_option("--per-residue", options.per_residue,
                   "Table of the area of each residue (CSV); - for standard output")
       ->type_name("FILE|-");
+  put_rest_into_group(app, "Report");
 }
 
 void add_trajectory_options(CLI::App *app, Options &options, const char *csv_help) {
@@ -175,6 +194,7 @@ void add_trajectory_options(CLI::App *app, Options &options, const char *csv_hel
   app->add_option("--csv", options.csv, csv_help)->type_name("FILE|-");
   add_count(app, "--workers", "--workers", options.workers, 1, 1024,
             "Frames computed at a time, on each device; default: one per thread, with CUDA at most 8");
+  put_rest_into_group(app, "Trajectory");
 }
 
 void add_file_options(CLI::App *app, Options &options) {
@@ -182,6 +202,8 @@ void add_file_options(CLI::App *app, Options &options) {
            "Bound of what is taken into memory of each input, unpacked; default 4G, of gzip data 100 times its size");
   app->add_option("--json", options.json, "Report as JSON; - for standard output")->type_name("FILE|-");
   app->add_flag("--quiet", options.quiet, "Print nothing but errors");
+  put_into_group(app, "Input", {"--max-input"});
+  put_rest_into_group(app, "Report");
 }
 
 void add_bench_options(CLI::App *app, BenchOptions &options) {
@@ -201,6 +223,7 @@ void add_bench_options(CLI::App *app, BenchOptions &options) {
             "Time 100 surfaces of at least N atoms each instead, cut between residues, one after the other");
   app->add_flag("--jobs", options.jobs,
                 "Time jobs instead: begin, cancel, destroy, the first level, and all levels against the finest alone");
+  put_rest_into_group(app, "Timing");
 }
 
 // given: whether a flag was on the command line.
@@ -230,6 +253,8 @@ void check_trajectory(const Options &options, const std::function<bool(const cha
   }
   if (options.read.model == 0)
     throw Failure(kUsage, "--model all: with --trajectory, the atoms are those of one model");
+  if (!options.read.assembly.empty())
+    throw Failure(kUsage, "--assembly: the frames of --trajectory have the atoms of the file, not of an assembly");
   if (!options.output.empty()) OutputPattern check(options.output);  // throws if it is none
 }
 
@@ -344,12 +369,14 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
       "[options]\n"
       "  quickses measure INPUT... [--surface sas,vdw,ses] [--per-atom FILE] [--per-residue FILE] [options]\n"
       "  quickses cavities INPUT [--csv FILE] [options]\n"
-      "  quickses bench FILE... [--repeat N] [--copies N] [--delivery host|device|both] [--small N | --jobs] "
-      "[options]\n",
+      "  quickses bench FILE... [--repeat N] [--copies N] [--small N | --jobs] [options]\n",
       "quickses");
+  app.formatter(std::make_shared<HelpFormat>());
+  put_into_group(&app, "Report", {"--help"});
   app.allow_windows_style_options(false);  // a path may begin with a slash there too
   app.footer(kFooter);
   app.set_version_flag("--version", std::string("quickses ") + qses_version(), "Print the version");
+  put_rest_into_group(&app, "Report");
   add_input_options(&app, options, kInputsHelp,
                     "Which model of the file; all: one mesh each, as out_0001.ply for -o out.ply; default 1");
   add_mesh_options(&app, options);
@@ -361,8 +388,9 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
          },
          "obj, ply, stl, glb or off: what -o - writes to standard output")
       ->type_name("NAME");
-  add_surface_choice(&app, options.compute);
+  put_rest_into_group(&app, "Output");
   add_compute_options(&app, options.compute);
+  add_surface_choice(&app, options.compute);
   add_trajectory_options(&app, options,
                          "Table of the frames: area, volume, components, cavities; - for standard output");
   add_area_options(&app, options);
@@ -371,10 +399,12 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
   CLI::App *measure = app.add_subcommand(
       "measure", "Area and volume, those of SAS and VDW exactly and without a mesh, per atom and residue on request");
   measure->footer(kFooter);
+  put_into_group(measure, "Report", {"--help"});
   add_input_options(measure, options, kInputsHelp, "Which model of the file, or all of them; default 1");
   add_measured(measure, options.measured);
-  add_creases(measure, options.compute);
   add_compute_options(measure, options.compute);
+  add_creases(measure, options.compute);
+  put_rest_into_group(measure, "Surface");
   add_trajectory_options(measure, options, "Table of the frames: area and volume; - for standard output");
   add_area_options(measure, options);
   add_file_options(measure, options);
@@ -382,23 +412,38 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
   CLI::App *cavities =
       app.add_subcommand("cavities", "The cavities of a surface: volume, area, centre and the residues that line them");
   cavities->footer(kFooter);
+  put_into_group(cavities, "Report", {"--help"});
   add_input_options(cavities, options, kInputHelp, "Which model of the file; default 1");
-  add_surface_choice(cavities, options.compute);
   add_compute_options(cavities, options.compute);
+  add_surface_choice(cavities, options.compute);
   cavities->add_option("--csv", options.csv, "Table of the cavities; - for standard output")->type_name("FILE|-");
   add_file_options(cavities, options);
 
   CLI::App *bench = app.add_subcommand("bench", "Time warm calls: median ms from atoms in host memory to the mesh");
   bench->footer(kFooter);
+  put_into_group(bench, "Report", {"--help"});
   bench->add_option("FILE", options.inputs, "Structures")->type_name("FILE");
   add_input_format(bench, options);
   add_bench_options(bench, options.bench);
-  add_surface_choice(bench, options.compute);
   add_compute_options(bench, options.compute);
+  add_surface_choice(bench, options.compute);
   add_file_options(bench, options);
 
+  const std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
+  if (arguments.size() == 1 && (arguments[0] == "--help-man" || arguments[0] == "--help-completion")) {
+    out << (arguments[0] == "--help-man" ? manual_page(app, qses_version()) : bash_completion(app));
+    options.command = Options::Command::kNone;
+    return options;
+  }
+  const CLI::App &asked = command_of(app, arguments);
+  check_dashes(asked, arguments);
   try {
     app.parse(argc, argv);
+  } catch (const Failure &failure) {  // of an option's value
+    throw Failure(failure.code(), failure.what() + suggest_dashes(asked, arguments));
+  } catch (const CLI::ExtrasError &error) {
+    const std::vector<std::string> extras = app.remaining(true);
+    throw Failure(kUsage, extras.empty() ? error.what() : explain_extra(asked, arguments, extras[0]));
   } catch (const CLI::Success &success) {  // --help, --version
     app.exit(success, out);
     options.command = Options::Command::kNone;

@@ -55,6 +55,7 @@ const char *name_of(qses_measured_by measured_by) {
 
 Json report_head_json(const Options &options, const io::Structure &structure, const Engine &engine) {
   Json json;
+  json["schema"] = kReportSchema;
   json["version"] = qses_version();
   json["input"] = options.input;
   if (!options.output.empty()) json["output"] = io::is_standard_output(options.output) ? "-" : options.output;

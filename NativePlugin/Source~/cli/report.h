@@ -12,6 +12,10 @@ namespace quickses::cli {
 
 using Json = nlohmann::ordered_json;
 
+// Of Documentation~/report.schema.json, which says what is in a report. It counts up when something changes its meaning
+// or goes; new fields leave it.
+constexpr int kReportSchema = 1;
+
 struct Timings {
   double read = 0;
   double write = 0;
@@ -22,7 +26,7 @@ Json settings_json(const ComputeOptions &options);
 // "atoms" and so on: where area and volume come from.
 const char *name_of(qses_measured_by measured_by);
 
-// What reports begin with: version, input, model, atoms, settings, backend, device.
+// What reports begin with: schema, version, input, model, atoms, settings, backend, device.
 Json report_head_json(const Options &options, const io::Structure &structure, const Engine &engine);
 // area, volume, measured_by, and those of the triangles where there are any.
 Json measures_json(const qses_report &report);

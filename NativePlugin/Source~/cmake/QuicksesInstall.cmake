@@ -11,6 +11,18 @@ install(FILES "${PROJECT_SOURCE_DIR}/LICENSE.md" "${PROJECT_SOURCE_DIR}/Third Pa
   DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 if(TARGET quickses_cli)
   install(TARGETS quickses_cli RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
+  # The manual page and the completion are written by the program itself, from its table of options.
+  if(UNIX AND NOT CMAKE_CROSSCOMPILING)
+    set(_page "${PROJECT_BINARY_DIR}/share/quickses.1")
+    set(_completion "${PROJECT_BINARY_DIR}/share/quickses")
+    file(MAKE_DIRECTORY "${PROJECT_BINARY_DIR}/share")
+    add_custom_command(OUTPUT "${_page}" "${_completion}" VERBATIM DEPENDS quickses_cli
+      COMMAND sh -c "\"$0\" --help-man > \"$1\" && \"$0\" --help-completion > \"$2\""
+        "$<TARGET_FILE:quickses_cli>" "${_page}" "${_completion}")
+    add_custom_target(quickses_manual ALL DEPENDS "${_page}" "${_completion}")
+    install(FILES "${_page}" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
+    install(FILES "${_completion}" DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions")
+  endif()
 endif()
 
 # ---- find_package(quickses CONFIG)

@@ -7,9 +7,10 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
-#include <memory>
-#include <unordered_map>
+#include <limits>
 
+#include "io/alternate_locations.h"
+#include "io/assembly.h"
 #include "io/error.h"
 #include "io/file_bytes.h"
 #include "io/file_path.h"
@@ -87,20 +88,6 @@ RawFile read_raw(StructureFormat format, const std::string &text, const std::str
   fail_input("'" + path + "': unknown format");
 }
 
-// Keeps atoms without a label and, per residue (by number: residues of two kinds may share a place), those with the
-// first label met.
-class AlternateLocations {
- public:
-  bool keep(const AtomRef &ref) {
-    if (ref.atom->altloc == '\0') return true;
-    const std::string key = ref.chain->name + '/' + ref.residue->seqid.str();
-    return first_label_.emplace(key, ref.atom->altloc).first->second == ref.atom->altloc;
-  }
-
- private:
-  std::unordered_map<std::string, char> first_label_;
-};
-
 std::vector<AtomRef> in_file_order(const gemmi::Model &model) {
   std::vector<AtomRef> refs;
   for (const gemmi::Chain &chain : model.chains)
@@ -136,20 +123,20 @@ AtomInfo describe(const AtomRef &ref) {
 
 struct Filter {
   const ReadOptions &options;
-  std::unique_ptr<gemmi::Selection> selection;  // null: everything
+  const Selection selection;
 
-  bool keep(const AtomInfo &info, const gemmi::Model &model, const AtomRef &ref) const {
+  bool keep(const AtomInfo &info) const {
     if (!options.water && info.water) return false;
     if (!options.hetero && info.hetero) return false;
-    if (!options.hydrogen && info.hydrogen) return false;
-    return !selection || (selection->matches(model) && selection->matches(*ref.chain) &&
-                          selection->matches(*ref.residue) && selection->matches(*ref.atom));
+    return options.hydrogen || !info.hydrogen;
   }
 
-  bool is_any() const { return !options.water || !options.hetero || !options.hydrogen || selection; }
+  bool is_any() const { return !options.water || !options.hetero || !options.hydrogen || !selection.is_everything(); }
 };
 
 constexpr double kMaxCoordinate = 1e6;  // Å, what the surface library takes
+
+bool is_near(double x) { return std::abs(x) <= kMaxCoordinate; }
 
 [[noreturn]] void fail_far_away(const std::string &path, const AtomInfo &info) {
   fail_input("'" + path + "': atom " + std::to_string(info.file_index + 1) +
@@ -157,35 +144,84 @@ constexpr double kMaxCoordinate = 1e6;  // Å, what the surface library takes
              " is more than 1,000,000 Å from the origin");
 }
 
-Structure flatten(const RawModel &raw, const Filter &filter, const std::string &path, size_t &radius_zero_count) {
+void check_options(const ReadOptions &options) {
+  Selection selection(options.selection);
+  AlternateLocations locations(options.altloc);
+}
+
+// Before a model is taken apart.
+void build_assembly(RawFile &file, StructureFormat format, const std::string &text, const std::string &path,
+                    const std::string &name) {
+  if (name.empty() || file.models.empty()) return;
+  if (format != StructureFormat::kPdb && format != StructureFormat::kMmcif)
+    fail_usage("'" + path + "': only PDB and mmCIF files describe assemblies");
+  const gemmi::Assembly assembly =
+      format == StructureFormat::kPdb ? find_pdb_assembly(text, path, name) : find_mmcif_assembly(text, path, name);
+  for (RawModel &raw : file.models)
+    if (raw.atom_count != 0) build_assembly(assembly, raw, path);
+}
+
+// All atoms of the model but those at locations that are not taken.
+Structure flatten(const RawModel &raw, const Filter &filter) {
   Structure structure;
   structure.model = raw.number;
   structure.model_name = raw.model.name;
   structure.has_names = raw.has_names;
   structure.file_atom_count = raw.atom_count;
   structure.file_elements.resize(raw.atom_count);
-  const bool chooses_location = filter.selection && !filter.selection->altlocs.all;
-  AlternateLocations locations;
-  for (const AtomRef &ref : in_file_order(raw.model)) {
+  const std::vector<AtomRef> refs = in_file_order(raw.model);
+  AlternateLocations locations(filter.options.altloc);
+  for (const AtomRef &ref : refs) locations.see(*ref.chain, *ref.residue, *ref.atom);
+  const bool takes_all = filter.selection.asks_for_locations();
+  for (const AtomRef &ref : refs) {
     structure.file_elements[static_cast<size_t>(ref.atom->serial - 1)] = atomic_number(*ref.atom);
-    if (!chooses_location && !locations.keep(ref)) continue;
-    AtomInfo info = describe(ref);
-    if (!filter.keep(info, raw.model, ref)) continue;
-    if (!raw.radii.empty()) {
-      const float radius = raw.radii[info.file_index];
-      if (radius == 0) {
+    if (!takes_all && !locations.keep(*ref.chain, *ref.residue, *ref.atom)) continue;
+    structure.atoms.push_back(describe(ref));
+    for (double x : {ref.atom->pos.x, ref.atom->pos.y, ref.atom->pos.z})
+      structure.positions.push_back(is_near(x) ? static_cast<float>(x) : std::numeric_limits<float>::infinity());
+    if (!raw.radii.empty()) structure.radii.push_back(raw.radii[structure.atoms.back().file_index]);
+  }
+  find_residue_kinds(structure);
+  return structure;
+}
+
+// Leaves out what the filters and the selection do, and atoms of radius 0, which are counted. The selection looks at
+// all the atoms: what filters leave out may still be what others are near to.
+void leave_out(Structure &structure, const Filter &filter, const std::string &path, const std::string &which,
+               size_t &radius_zero_count) {
+  const bool selects = !filter.selection.is_everything();
+  const std::vector<uint8_t> mask = selects ? filter.selection.select(structure) : std::vector<uint8_t>();
+  if (selects && std::find(mask.begin(), mask.end(), 1) == mask.end())
+    fail_input("no atoms of " + which + "'" + path + "' are left after the filters: the selection '" +
+               filter.selection.text() +
+               "' names none (it may be words such as 'chain A and protein', or CID such as '//A'); there are " +
+               contents_of(structure));
+  size_t kept = 0;
+  for (size_t i = 0; i < structure.atoms.size(); ++i) {
+    AtomInfo &info = structure.atoms[i];
+    if ((selects && !mask[i]) || !filter.keep(info)) continue;
+    if (!structure.radii.empty()) {
+      if (structure.radii[i] == 0) {
         ++radius_zero_count;
         continue;
       }
-      structure.radii.push_back(radius);
+      structure.radii[kept] = structure.radii[i];
     }
-    for (double x : {ref.atom->pos.x, ref.atom->pos.y, ref.atom->pos.z}) {
-      if (!(std::abs(x) <= kMaxCoordinate)) fail_far_away(path, info);
-      structure.positions.push_back(static_cast<float>(x));
+    for (size_t axis = 0; axis < 3; ++axis) {
+      const float x = structure.positions[3 * i + axis];
+      if (!is_near(x)) fail_far_away(path, info);
+      structure.positions[3 * kept + axis] = x;
     }
-    structure.atoms.push_back(std::move(info));
+    if (kept != i) structure.atoms[kept] = std::move(info);
+    ++kept;
   }
-  return structure;
+  structure.atoms.resize(kept);
+  structure.positions.resize(3 * kept);
+  if (!structure.radii.empty()) structure.radii.resize(kept);
+  if (kept == structure.atoms.capacity()) return;
+  structure.atoms.shrink_to_fit();
+  structure.positions.shrink_to_fit();
+  structure.radii.shrink_to_fit();
 }
 
 std::string count_of(size_t count, const char *one, const char *many) {
@@ -205,8 +241,8 @@ namespace {
 // text: unpacked. path: as given, or any name for messages.
 StructureFile parse_text(const std::string &text, const std::string &path, std::optional<StructureFormat> format,
                          const ReadOptions &options) {
-  Filter filter{options, parse_selection(options.selection)};
   refuse_web_page(path, text);
+  const Filter filter{options, Selection(options.selection)};
   StructureFile file;
   file.format = format ? *format : find_format(path, text);
   RawFile raw_file = read_raw(file.format, text, path, options.model);
@@ -216,14 +252,16 @@ StructureFile parse_text(const std::string &text, const std::string &path, std::
     fail_usage("'" + path + "' has " + count_of(file.model_count, "model", "models") + ": there is no model " +
                std::to_string(options.model));
 
+  build_assembly(raw_file, file.format, text, path, options.assembly);
   size_t radius_zero_count = 0;
   for (RawModel &raw : raw_file.models) {
     const std::string which = file.model_count == 1 ? "" : "model " + std::to_string(raw.number) + " of ";
     if (raw.atom_count == 0) fail_input(which + "'" + path + "' has no atoms");
     if (!raw.has_names && filter.is_any())
       fail_usage("'" + path + "' has no names, so nothing can be selected from it or left out");
-    file.models.push_back(flatten(raw, filter, path, radius_zero_count));
+    file.models.push_back(flatten(raw, filter));
     raw.model = gemmi::Model(raw.model.name);
+    leave_out(file.models.back(), filter, path, which, radius_zero_count);
     if (!file.models.back().atoms.empty()) continue;
     const std::string why = filter.is_any() ? "the filters" : "those of radius 0 were left out";
     fail_input("no atoms of " + which + "'" + path + "' are left after " + why);
@@ -270,12 +308,12 @@ uint64_t memory_of(const StructureFile &file) {
 }
 
 StructureFile read_structure(const std::string &path, const ReadOptions &options) {
-  parse_selection(options.selection);  // before a large file is read
+  check_options(options);  // before a large file is read
   return parse_text(read_file_bytes(path), path, std::nullopt, options);
 }
 
 StructureFile read_structure(const std::string &path, StructureFormat format, const ReadOptions &options) {
-  parse_selection(options.selection);
+  check_options(options);
   return parse_text(read_file_bytes(path), path, format, options);
 }
 

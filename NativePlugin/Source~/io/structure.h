@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "io/residue_kinds.h"
+
 namespace quickses::io {
 
 enum class StructureFormat { kPdb, kMmcif, kPqr, kXyzr, kGro };
@@ -31,6 +33,7 @@ struct AtomInfo {
   uint8_t entity = 0;              // gemmi's EntityType of the residue
   bool deuterium = false;
   bool has_residue_number = false;
+  ResidueKind kind = ResidueKind::kLigand;  // of the residue
 };
 
 // The atoms of one model that were kept, in the order of the file.
@@ -51,7 +54,9 @@ struct ReadOptions {
   bool water = true;      // false: waters are left out
   bool hetero = true;     // false: HETATM records are left out (waters mostly are such records too)
   bool hydrogen = true;   // false: hydrogen and deuterium are left out
-  std::string selection;  // CID syntax of gemmi, such as "//A" or "/1/A/10-40/CA[C]"; empty = everything
+  std::string selection;  // see selection.h, such as "protein and chain A" or "//A/10-40"; empty = everything
+  std::string assembly;   // of PDB and mmCIF files: the name of a biological assembly; empty = the atoms of the file
+  std::string altloc;     // which alternate locations are taken: see alternate_locations.h; empty = the first
 };
 
 struct StructureFile {
@@ -62,11 +67,11 @@ struct StructureFile {
 };
 
 // Reads a file. The format follows from the name, and for names that tell nothing from the content (PDB or mmCIF).
-// Of alternate locations those without a label and the first label met in each residue are kept, unless the selection
-// names locations itself. Elements that the file leaves out are inferred from residue and atom name, with one warning.
-// In PDB files, END and ENDMDL both end a model. Atoms of radius 0 (PQR, XYZR) are left out with a warning.
-// Throws Error: kInput (file, syntax, no atoms; the message has file and line), kUsage (selection; no such model;
-// filters on a file without names).
+// Of alternate locations those without a label and one label of each residue are kept, unless the selection asks for
+// locations itself. Of an assembly, places in the file are places among its atoms. Elements that the file leaves out
+// are inferred from residue and atom name, with one warning. In PDB files, END and ENDMDL both end a model. Atoms of
+// radius 0 (PQR, XYZR) are left out with a warning. Throws Error: kInput (file, syntax, no atoms; the message has file
+// and line), kUsage (selection; no such model, no such assembly; filters on a file without names).
 StructureFile read_structure(const std::string &path, const ReadOptions &options = ReadOptions());
 StructureFile read_structure(const std::string &path, StructureFormat format, const ReadOptions &options);
 
@@ -77,7 +82,7 @@ StructureFile parse_structure(const std::string &bytes, std::optional<StructureF
 // mask[i] becomes 1 for the atoms that a selection names, in the syntax of ReadOptions.selection, else 0; mask has room
 // for all atoms of the structure. Gives their number. Throws Error (kUsage): the selection can't be understood, or the
 // structure has no names.
-uint32_t select_atoms(const Structure &structure, const std::string &cid, uint8_t *mask);
+uint32_t select_atoms(const Structure &structure, const std::string &text, uint8_t *mask);
 
 // Which residue each atom is of, from 0. Neighbours of the same chain, residue number, insertion code and residue name
 // are of one; where there are no names each atom is one by itself.

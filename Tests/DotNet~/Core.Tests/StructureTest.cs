@@ -229,6 +229,46 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void AssembliesAndLocationsReachTheReader()
+        {
+            string text = "REMARK 350 BIOMOLECULE: 1\nREMARK 350 APPLY THE FOLLOWING TO CHAINS: A\n" +
+                          "REMARK 350   BIOMT1   1  1.000000  0.000000  0.000000        0.00000\n" +
+                          "REMARK 350   BIOMT2   1  0.000000  1.000000  0.000000        0.00000\n" +
+                          "REMARK 350   BIOMT3   1  0.000000  0.000000  1.000000        0.00000\n" +
+                          "REMARK 350   BIOMT1   2  1.000000  0.000000  0.000000       10.00000\n" +
+                          "REMARK 350   BIOMT2   2  0.000000  1.000000  0.000000        0.00000\n" +
+                          "REMARK 350   BIOMT3   2  0.000000  0.000000  1.000000        0.00000\n" +
+                          "ATOM      1  CA AGLY A   1       1.000   0.000   0.000  0.40  0.00           C\n" +
+                          "ATOM      2  CA BGLY A   1       2.000   0.000   0.000  0.60  0.00           C\nEND\n";
+            byte[] bytes = System.Text.Encoding.ASCII.GetBytes(text);
+            float[] Places(StructureOptions options)
+            {
+                options.Format = StructureFormat.Pdb;
+                Assert.That(Structure.TryOpen(bytes, options, out Structure structure, out QuickSesError error),
+                    Is.True, error.ToString());
+                using (structure)
+                    return structure.Positions.ToArray().Where((x, i) => i % 3 == 0).ToArray();
+            }
+            Assert.That(Places(default), Is.EqualTo(new[] { 1f }));
+            Assert.That(Places(new StructureOptions { AlternateLocation = "highest" }), Is.EqualTo(new[] { 2f }));
+            Assert.That(Places(new StructureOptions { Assembly = "1" }), Is.EqualTo(new[] { 1f, 11f }));
+            var copy = new StructureOptions { Assembly = "1", AlternateLocation = "B", Selection = "chain A2" };
+            Assert.That(Places(copy), Is.EqualTo(new[] { 12f }));
+            Assert.That(Structure.TryOpen(bytes, new StructureOptions { Format = StructureFormat.Pdb, Assembly = "9" },
+                out _, out QuickSesError unknown), Is.False);
+            Assert.That(unknown.Message, Does.Contain("there is 1"));
+        }
+
+        [TestCase("protein and chain A", 327)]
+        [TestCase("resid 3-10 and name CA", 8)]
+        [TestCase("water", 0)]
+        public void SelectionsMayBeWords(string selection, int count)
+        {
+            using Structure all = Open(default);
+            Assert.That(all.Select(selection).Length, Is.EqualTo(count));
+        }
+
+        [Test]
         public void PathsAreUtf8()
         {
             using var folder = new TemporaryFolder();

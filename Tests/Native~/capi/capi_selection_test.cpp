@@ -2,6 +2,8 @@
 // The C API: which atoms of a structure a selection names.
 #include "capi/capi_fixture.h"
 
+#include <cstddef>
+#include <cstdio>
 #include <numeric>
 #include <string>
 
@@ -93,7 +95,27 @@ TEST(Selection, NamesAtoms) {
   EXPECT_EQ(select(structure, "//Z"), Indices{});
 }
 
-// The filter asks gemmi's own atoms, a selection those that were kept of them.
+TEST(Selection, NamesAtomsByWords) {
+  const StructurePointer structure = open_text(kPdb);
+  EXPECT_EQ(select(structure, "protein and chain A"), (Indices{0, 1, 3, 4}));
+  EXPECT_EQ(select(structure, "ions or water"), (Indices{7, 8}));
+  EXPECT_EQ(select(structure, "within 3.7 of (ZN) or //A//N"), (Indices{0, 5, 6, 7}));
+  EXPECT_EQ(select(structure, "resid -5-1 12C"), (Indices{0, 1, 3, 4, 5}));
+  EXPECT_EQ(select(structure, "ligand"), Indices{});
+  EXPECT_EQ(select(open_text(kPdb, QSES_STRUCTURE_PDB, "not protein"), ""), (Indices{7, 8}));
+}
+
+TEST(Selection, KindsAreThoseOfTheWholeFile) {
+  // One atom of the residue is left, a metal, which does not make it an ion.
+  std::string text = kPdb;
+  text.replace(text.find("TER\n"), 4,
+               "HETATM    8 FE   HEM B  50       8.000   9.000   3.000  1.00 15.00          FE\n"
+               "HETATM    8  NA  HEM B  50       8.000   9.000   5.000  1.00 15.00           N\n");
+  EXPECT_EQ(select(open_text(text, QSES_STRUCTURE_PDB, "[FE]"), "ions"), Indices{});
+  EXPECT_EQ(select(open_text(text, QSES_STRUCTURE_PDB, "[FE]"), "ligand"), (Indices{7}));
+}
+
+// What the filter keeps is what a selection names afterwards.
 TEST(Selection, NamesWhatTheFilterKeeps) {
   const StructurePointer structure = open_text(kPdb);
   for (const char *cid :
@@ -118,6 +140,46 @@ TEST(Selection, NamesWhatTheFilterKeeps) {
   }
 }
 
+TEST(Selection, OfAnAssemblyAndOfLocations) {
+  std::string text = "REMARK 350 BIOMOLECULE: 1\nREMARK 350 APPLY THE FOLLOWING TO CHAINS: A\n";
+  for (int operation = 1; operation <= 2; ++operation)
+    for (int row = 1; row <= 3; ++row) {
+      char line[96];
+      std::snprintf(line, sizeof line, "REMARK 350   BIOMT%d%4d%10.6f%10.6f%10.6f     %10.5f\n", row, operation,
+                    row == 1 ? 1.0 : 0.0, row == 2 ? 1.0 : 0.0, row == 3 ? 1.0 : 0.0,
+                    row == 1 ? 100.0 * (operation - 1) : 0.0);
+      text += line;
+    }
+  text += kPdb;
+  qses_structure_options options;
+  qses_structure_options_init(&options);
+  EXPECT_EQ(options.assembly, nullptr);
+  EXPECT_EQ(options.altloc, nullptr);
+  options.format = QSES_STRUCTURE_PDB;
+  options.assembly = "1";
+  options.altloc = "B";
+  qses_structure *opened = nullptr;
+  ASSERT_EQ(qses_structure_open_memory(text.data(), text.size(), &options, &opened), QSES_OK) << qses_last_error();
+  const StructurePointer structure(opened);
+  const qses_structure_description info = info_of(structure);
+  EXPECT_EQ(info.file_atom_count, 12u);  // twice chain A, which has six records
+  EXPECT_EQ(select(structure, ""), (Indices{0, 2, 3, 4, 5, 6, 8, 9, 10, 11}));
+  EXPECT_EQ(select(structure, "chain A2 and name CA"), (Indices{8}));
+  EXPECT_EQ(info.positions[3 * 6], 102.4f);
+  EXPECT_EQ(info.positions[3 * 6 + 1], 2.5f);  // the location B
+  options.assembly = "2";
+  expect_error(qses_structure_open_memory(text.data(), text.size(), &options, &opened), QSES_INVALID_ARGUMENT,
+               {"assembly '2'", "there is 1"});
+  options.assembly = nullptr;
+  options.altloc = "lowest";
+  expect_error(qses_structure_open_memory(text.data(), text.size(), &options, &opened), QSES_INVALID_ARGUMENT,
+               {"'lowest'", "highest"});
+  // A caller that was compiled with a header that ended before them.
+  options.struct_size = offsetof(qses_structure_options, assembly);
+  ASSERT_EQ(qses_structure_open_memory(text.data(), text.size(), &options, &opened), QSES_OK) << qses_last_error();
+  EXPECT_EQ(info_of(StructurePointer(opened)).file_atom_count, 9u);
+}
+
 TEST(Selection, OnlyFindsWhatWasKept) {
   const StructurePointer some = open_text(kPdb, QSES_STRUCTURE_PDB, "//A");
   EXPECT_EQ(select(some, "//B"), Indices{});
@@ -136,6 +198,7 @@ TEST(Selection, Errors) {
   refused("//A/(ALA", {"//A/(ALA", "understood"});
   refused("//*//[Qq]", {"//*//[Qq]", "element"});
   refused("//A/10-x", {"//A/10-x"});
+  refused("protien or water", {"'protien' at character 1 ", "did you mean 'protein'?"});
   refused(nullptr, {"selection", "NULL"});
   const auto select_all = [&](size_t count) {
     return qses_structure_select(structure.get(), "", mask.data(), count, nullptr);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Which of its atoms a selection names, in gemmi's CID syntax, such as "//A" or "//A/10-40/CA[C]"; "": all. Atoms that
-// were left out when the file was read are not found.
+// Which of its atoms a selection names: words such as "protein and chain A", or CID such as "//A/10-40"; "": all. Atoms
+// that were left out when the file was read are not found.
 using QuickSes.Interop;
 using System;
 using System.Text;
@@ -30,7 +30,7 @@ namespace QuickSes
         /// <summary>
         /// Which atoms a selection names. Makes no garbage unless it fails.
         /// </summary>
-        /// <param name="selection">In CID syntax; "": all.</param>
+        /// <param name="selection">Words or CID; "": all.</param>
         /// <param name="selected">Room for N; atoms that are named become true, others false.</param>
         /// <param name="count">How many are named.</param>
         /// <param name="error">Why not: the selection can't be understood, or the file has no names (XYZR).</param>

@@ -154,9 +154,13 @@ namespace QuickSes
             QuickSesStatus status;
             fixed (byte* selection = NativeText.Write(options.Selection, nameof(options)))
             fixed (byte* radii = NativeText.Write(options.Radii, nameof(options)))
+            fixed (byte* assembly = NativeText.Write(options.Assembly, nameof(options)))
+            fixed (byte* altloc = NativeText.Write(options.AlternateLocation, nameof(options)))
             {
                 native.Selection = selection;
                 native.Radii = radii;
+                native.Assembly = assembly;
+                native.Altloc = altloc;
                 status = path != null
                     ? NativeMethods.qses_structure_open(path, &native, &opened)
                     : NativeMethods.qses_structure_open_memory(bytes, (UIntPtr)size, &native, &opened);

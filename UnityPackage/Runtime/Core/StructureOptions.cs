@@ -21,7 +21,10 @@ namespace QuickSes
         /// <summary>Whether hydrogen and deuterium are left out.</summary>
         public bool SkipHydrogen { get; set; }
 
-        /// <summary>CID syntax of gemmi, such as "//A" or "/1/A/10-40/CA[C]"; null (default): everything.</summary>
+        /// <summary>
+        /// Words such as "protein and not chain B", or CID such as "//A/10-40"; null (default): everything. Of all
+        /// atoms of the model, those that are left out by the other options too.
+        /// </summary>
         public string Selection { get; set; }
 
         /// <summary>
@@ -29,5 +32,17 @@ namespace QuickSes
         /// `RESIDUE ATOM radius` (either may be `*`), of which the most specific holds. null (default): those of the file (PQR, XYZR), else "quickses".
         /// </summary>
         public string Radii { get; set; }
+
+        /// <summary>
+        /// The name of a biological assembly of a PDB or mmCIF file, mostly "1"; null (default): the atoms of the file.
+        /// Further copies of a chain have 2, 3 and so on behind its name. An assembly fits no trajectory of the file.
+        /// </summary>
+        public string Assembly { get; set; }
+
+        /// <summary>
+        /// Which alternate locations are taken: "first" of each residue; "highest", of the greatest mean occupancy; or a
+        /// label such as "B" where a residue has it, else the first. null (default): "first".
+        /// </summary>
+        public string AlternateLocation { get; set; }
     }
 }

@@ -760,6 +760,22 @@ typedef enum qses_structure_format {
   QSES_STRUCTURE_GRO = 5   /* GROMACS */
 } qses_structure_format;
 
+/* Selections are words, with names of the file behind some of them. Words may be in capitals or not, names are as in
+ * the file, and several have blanks or commas between them. all, none protein, nucleic, ligand, ions, water (or
+ * solvent)  residues: each is of exactly one of these kinds. Of protein and nucleic are modified residues in the chain
+ * too; an ion is one atom of a metal or a halogen; a ligand is whatever is none of the others backbone, sidechain  of
+ * protein and nucleic: N, CA, C, O and their hydrogens, or phosphate and sugar; and the rest hydrogen, hetero hydrogen
+ * and deuterium; HETATM records chain A B, resname HEM ATP (or resn), name CA CB, altloc A resid -5-40 52A (or resi)
+ * residue numbers and ranges of them, with insertion codes: 52 is not 52A, 52-53 is both element C FE               D
+ * is deuterium, H is not index 0-99                 places among the atom records of the model, from 0, as file_indices
+ *   within 5 of X              atoms at most 5 Å from one of X, centre to centre, those of X too
+ *   same residue as X          all atoms of residues that X has an atom of
+ *   not X, X and X, X or X, (X)   `not` binds before `and`, and `and` before `or`; X behind `not`, `of` and `as` is the
+ *              one word, with its names, or parenthesis that follows
+ * Terms in the CID syntax of gemmi, without blanks, may stand wherever X may: "within 5 of (HEM) and not //B". What was
+ * CID before there were words still is: a single word names a chain, and a single word in parentheses a residue, if the
+ * structure has one of this name ("//all" and "resname ALL" leave no doubt). A word that nobody knows is an error. */
+
 typedef struct qses_structure_options {
   uint32_t struct_size; /* set by qses_structure_options_init */
   qses_structure_format format;
@@ -767,11 +783,21 @@ typedef struct qses_structure_options {
   qses_bool water;       /* 1 (default): waters are kept; 0: they are left out */
   qses_bool hetero;      /* the same for HETATM records, which waters mostly are too */
   qses_bool hydrogen;    /* the same for hydrogen and deuterium */
-  const char *selection; /* CID syntax of gemmi, such as "//A" or "/1/A/10-40/CA[C]"; NULL (default) = everything */
+  const char *selection; /* words, such as "protein and not chain B", or CID, such as "//A/10-40": see "selections"
+                            above. Of all atoms of the model, those that the filters leave out too. NULL (default) =
+                            everything */
   const char *radii;     /* "quickses", "bondi", or the name of a text file with lines `ELEMENT radius` (Å; `*` for all
                             others) and `RESIDUE ATOM radius` (either may be `*`), of which the most specific holds:
                             residue and atom, residue, atom, element, `*`. NULL (default) = those of the file (PQR,
                             XYZR), else "quickses": O 1.52, C 1.70, N 1.55, H 1.20, S 1.80, P 1.80, others 1.40 Å */
+  const char *assembly;  /* PDB and mmCIF: the name of a biological assembly, mostly "1", which is made of copies of the
+                            file's chains. The first copy of a chain keeps its name, others have 2, 3 and so on behind
+                            it. Atoms, file_indices, file_atom_count and file_elements are then those of the assembly,
+                            operation by operation and chain by chain, and fit no trajectory of the file. NULL (default)
+                            = the atoms of the file */
+  const char *altloc;    /* which alternate locations are taken, with the atoms that have none: "first", in each residue
+                            the label met first; "highest", that of the greatest mean occupancy; or a label, such as
+                            "B", where a residue has it, else the first. NULL (default) = "first" */
 } qses_structure_options;
 
 /* The defaults, with struct_size set. NULL is ignored. */
@@ -782,11 +808,10 @@ static inline void qses_structure_options_init(qses_structure_options *options) 
   options->water = options->hetero = options->hydrogen = 1;
 }
 
-/* Reads a structure from a file, gzipped or not. path is UTF-8. options may be NULL (defaults). Of alternate locations,
- * those without a label and the first label met in each residue are kept.
- * On success *structure is the caller's, who ends it with qses_structure_close; on failure it is NULL.
- * Errors: INVALID_ARGUMENT (options; a selection that can't be understood; no such model), FILE_ERROR (the message
- * names file and line; also more than qses_input_set_limit allows), OUT_OF_MEMORY. */
+/* Reads a structure from a file, gzipped or not. path is UTF-8. options may be NULL (defaults). On success *structure
+ * is the caller's, who ends it with qses_structure_close; on failure it is NULL. Errors: INVALID_ARGUMENT (options; a
+ * selection that can't be understood; no such model or assembly), FILE_ERROR (the message names file and line; also
+ * more than qses_input_set_limit allows), OUT_OF_MEMORY. */
 QSES_API qses_status qses_structure_open(const char *path, const qses_structure_options *options,
                                          qses_structure **structure);
 
@@ -854,7 +879,8 @@ QSES_API qses_status qses_structure_atom(const qses_structure *structure, uint32
 
 /* Which atoms of the structure a selection names: mask[k] becomes 1 for those, 0 for others, as qses_set_visible takes
  * it.
- *   selection  as in the options; of the atoms that were kept, so what filters left out is not found. "": everything.
+ *   selection  as in the options, but of the atoms that were kept: what filters left out is not found, and nothing is
+ *              near to it. "": everything.
  *              "/2" names a model by the number that the file gives it: of another model it names nothing
  *   mask       room for count bytes
  *   count      must be atom_count

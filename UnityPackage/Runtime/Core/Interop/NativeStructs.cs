@@ -204,6 +204,8 @@ namespace QuickSes.Interop
         public int Hydrogen;
         public byte* Selection;
         public byte* Radii;
+        public byte* Assembly;
+        public byte* Altloc;
     }
 
     [StructLayout(LayoutKind.Sequential)]

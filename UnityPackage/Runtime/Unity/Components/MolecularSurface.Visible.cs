@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which atoms are shown: by a mask, or by a selection in the CID syntax of gemmi, which says what is shown and hides the
+// Which atoms are shown: by a mask, or by a selection, of words or in CID syntax, which says what is shown and hides the
 // rest. What was set last counts; a selection is looked at again whenever a file is read.
 using System;
 using System.Buffers;
@@ -44,7 +44,7 @@ namespace QuickSes
         /// later as well. Atoms must be of a file: those of scripts have no names. Reads the file again, if it is not
         /// open: see <see cref="Structure"/>.
         /// </summary>
-        /// <param name="selection">In gemmi's CID syntax: "//A/10-40", "//!B", "(!HOH)"; "": all.</param>
+        /// <param name="selection">Words or CID: "protein", "within 5 of ligand", "//A/10-40"; "": all.</param>
         /// <returns>
         /// False: <see cref="VisibleSelectionError"/> says why; what was shown stays. True where there are no atoms yet.
         /// </returns>

@@ -61,7 +61,8 @@ namespace QuickSes
         [Header("Look and extras")]
         [SerializeField, Tooltip("Colour of the surface where atoms have none of their own.")]
         private Color32 _baseColor = new Color32(200, 205, 215, 255);
-        [SerializeField, Tooltip("Which atoms of a file are shown, in gemmi's CID syntax, such as //A/10-40 or (!HOH). " +
+        [SerializeField, Tooltip("Which atoms of a file are shown: words such as within 5 of ligand, or CID such as " +
+            "//A/10-40. " +
             "Empty: all. The surface is that of all atoms, cut open where they are hidden.")]
         private string _visible = "";
         [SerializeField, Tooltip("Area and volume of each closed piece and cavity of the surface, not only in all.")]

@@ -14,7 +14,7 @@ namespace QuickSes
         // Members of lists come from the inspector with zeros: these must be the defaults.
         [SerializeField, Tooltip("Gets its atoms from the player; its own source is left alone.")]
         private MolecularSurface _surface;
-        [SerializeField, Tooltip("Which atoms, in gemmi's CID syntax, such as //A or (LIG). Empty: all.")]
+        [SerializeField, Tooltip("Which atoms: words such as ligand or chain A, or CID such as //A. Empty: all.")]
         private string _selection = "";
         [SerializeField, Tooltip("Takes waters, too.")]
         private bool _keepWater;
@@ -36,7 +36,7 @@ namespace QuickSes
         /// <summary>The surface; null: the entry is left out.</summary>
         public MolecularSurface Surface { get => _surface; set => _surface = value; }
 
-        /// <summary>Which atoms, in gemmi's CID syntax such as "//A"; "": all. Never null.</summary>
+        /// <summary>Which atoms: words such as "ligand", or CID such as "//A"; "": all. Never null.</summary>
         public string Selection { get => _selection ?? ""; set => _selection = value; }
 
         /// <summary>Takes waters, too; default false.</summary>

@@ -21,7 +21,7 @@ namespace QuickSes
         private bool _skipHydrogen;
         [SerializeField, Tooltip("Leaves out HETATM records: ligands, ions, most waters.")]
         private bool _skipHetero;
-        [SerializeField, Tooltip("Which atoms, in gemmi's CID syntax, such as //A or //A/10-40/CA[C]. Empty: all.")]
+        [SerializeField, Tooltip("Which atoms: words such as protein, or CID such as //A/10-40. Empty: all.")]
         private string _selection = "";
         [SerializeField, Tooltip(
             "quickses, bondi, or the path of a text file with lines ELEMENT radius or RESIDUE ATOM radius (Å). Empty: " +
@@ -45,7 +45,7 @@ namespace QuickSes
         /// <summary>Leaves out HETATM records: ligands, ions, most waters.</summary>
         public bool SkipHetero { get => _skipHetero; set => _skipHetero = value; }
 
-        /// <summary>Which atoms, in gemmi's CID syntax such as "//A"; "": all. Never null.</summary>
+        /// <summary>Which atoms: words such as "chain A", or CID such as "//A"; "": all. Never null.</summary>
         public string Selection { get => _selection ?? ""; set => _selection = value; }
 
         /// <summary>As <see cref="StructureOptions.Radii"/>; "": the default. Never null.</summary>

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#include "cli/suggestions.h"
+
+#include <algorithm>
+
+#include "cli/exit_code.h"
+#include "io/mesh_writer.h"
+#include "io/nearest_word.h"
+
+namespace quickses::cli {
+namespace {
+
+// Without dashes.
+std::vector<std::string> long_flags(const CLI::App &command) {
+  std::vector<std::string> flags;
+  for (const CLI::Option *option : command.get_options())
+    flags.insert(flags.end(), option->get_lnames().begin(), option->get_lnames().end());
+  return flags;
+}
+
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+
+// "spacing" of "-spacing" and "-spacing=0.3"; "" where it is something else, as -v0.3 is.
+std::string word_behind_dash(const std::string &argument) {
+  if (argument.size() < 4 || argument[0] != '-' || !is_letter(argument[1]) || !is_letter(argument[2])) return "";
+  return argument.substr(1, argument.find('=') - 1);
+}
+
+bool is_mesh_name(const std::string &name) {
+  try {
+    io::mesh_format_of(name);
+    return true;
+  } catch (const std::exception &) {
+    return false;
+  }
+}
+
+std::string help_of(const CLI::App &command) {
+  const CLI::App *parent = command.get_parent();
+  return (parent ? parent->get_name() + " " : "") + command.get_name() + " --help";
+}
+
+}  // namespace
+
+const CLI::App &command_of(const CLI::App &app, const std::vector<std::string> &arguments) {
+  for (const CLI::App *command : app.get_subcommands(nullptr))
+    if (!arguments.empty() && command->get_name() == arguments[0]) return *command;
+  return app;
+}
+
+void check_dashes(const CLI::App &command, const std::vector<std::string> &arguments) {
+  const std::vector<std::string> flags = long_flags(command);
+  for (const std::string &argument : arguments) {
+    const std::string word = word_behind_dash(argument);
+    if (!word.empty() && std::find(flags.begin(), flags.end(), word) != flags.end())
+      throw Failure(kUsage,
+                    "-" + word + ": flags of more than one letter have two dashes; did you mean --" + word + "?");
+  }
+}
+
+std::string suggest_dashes(const CLI::App &command, const std::vector<std::string> &arguments) {
+  for (const std::string &argument : arguments) {
+    const std::string nearest = io::nearest_word(word_behind_dash(argument), long_flags(command));
+    if (!nearest.empty()) return "; did you mean --" + nearest + "?";
+  }
+  return "";
+}
+
+std::string explain_extra(const CLI::App &command, const std::vector<std::string> &arguments,
+                          const std::string &extra) {
+  if (extra.size() > 1 && extra[0] == '-') {
+    const std::string flag = extra.substr(0, extra.find('='));
+    const std::string word = flag.substr(std::min(flag.find_first_not_of('-'), flag.size()));
+    const std::string nearest = io::nearest_word(word, long_flags(command));
+    return flag + ": there is no such flag; " +
+           (nearest.empty() ? "see " + help_of(command) : "did you mean --" + nearest + "?");
+  }
+  std::vector<std::string> names;
+  for (const CLI::App *other : command.get_subcommands(nullptr)) names.push_back(other->get_name());
+  const std::string nearest = io::nearest_word(arguments[0], names);
+  if (!nearest.empty()) return "'" + arguments[0] + "' is no command; did you mean " + nearest + "?";
+  return "'" + extra + "': one INPUT was given already; " +
+         (is_mesh_name(extra) ? "did you mean -o " + extra + "?" : "see " + help_of(command));
+}
+
+}  // namespace quickses::cli

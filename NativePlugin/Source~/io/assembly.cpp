@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: MIT
+#include "io/assembly.h"
+
+#include <algorithm>
+#include <gemmi/assembly.hpp>
+#include <gemmi/cif.hpp>
+#include <gemmi/numb.hpp>
+#include <gemmi/pdb.hpp>
+#include <map>
+#include <string_view>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "io/error.h"
+#include "io/text.h"
+
+namespace quickses::io {
+namespace {
+
+namespace cif = gemmi::cif;
+using Operators = std::vector<gemmi::Assembly::Operator>;
+
+constexpr uint64_t kMostAtoms = 43'770'000;  // as of a model in a PDB file
+constexpr size_t kMostOperators = 100'000;   // viruses have 60 per chain
+constexpr double kSamePlace = 0.2;           // Å
+
+[[noreturn]] void fail_unknown(const std::string &path, const std::string &name,
+                               const std::vector<std::string> &names) {
+  std::string list;
+  for (size_t k = 0; k < names.size(); ++k) list += (k == 0 ? "" : k + 1 == names.size() ? " and " : ", ") + names[k];
+  fail_usage("'" + path + "' has no assembly '" + name + "'; " +
+             (names.empty() ? "it describes none" : "there " + std::string(names.size() == 1 ? "is " : "are ") + list));
+}
+
+[[noreturn]] void fail_large(const std::string &path, const std::string &name) {
+  fail_input("'" + path + "': assembly " + name + " has more than " + std::to_string(kMostOperators) +
+             " operations or " + std::to_string(kMostAtoms) + " atoms");
+}
+
+// ---- mmCIF: gemmi reads these tables too, but leaves out products of operations, such as (1-60)(61-88) of viruses
+
+// "1,3,5-8"
+std::vector<std::string> read_identifiers(const std::string &text, const std::string &path, const std::string &name) {
+  std::vector<std::string> identifiers;
+  for (const std::string &part : split(text, ',')) {
+    const size_t dash = part.find('-');
+    int first = 0, last = 0;
+    const bool is_range = dash != std::string::npos && parse_integer(part.substr(0, dash), first) &&
+                          parse_integer(part.substr(dash + 1), last);
+    if (!is_range) {
+      identifiers.emplace_back(trim(part));
+      continue;
+    }
+    for (int64_t number = first; number <= last; ++number) {
+      if (identifiers.size() == kMostOperators) fail_large(path, name);
+      identifiers.push_back(std::to_string(number));
+    }
+  }
+  return identifiers;
+}
+
+// "1,2" or "(1-3)" or "(X0)(1-60)": of several parentheses the last is applied first.
+Operators read_operators(const std::string &expression, const std::map<std::string, gemmi::Transform> &known,
+                         const std::string &path, const std::string &name) {
+  Operators product(1);
+  size_t at = 0;
+  while (at < expression.size()) {
+    const bool is_group = expression[at] == '(';
+    const size_t end = is_group ? expression.find(')', at) : expression.find('(', at);
+    if (is_group && end == std::string::npos)
+      fail_input("'" + path + "': assembly " + name + ": '" + expression + "' lacks a ')'");
+    const size_t begin = at + (is_group ? 1 : 0);
+    const std::string list = expression.substr(begin, end == std::string::npos ? end : end - begin);
+    at = end == std::string::npos ? expression.size() : end + (is_group ? 1 : 0);
+    const std::vector<std::string> identifiers = read_identifiers(list, path, name);
+    if (product.size() * identifiers.size() > kMostOperators) fail_large(path, name);
+    Operators longer;
+    for (const auto &left : product)
+      for (const std::string &identifier : identifiers) {
+        const auto found = known.find(identifier);
+        if (found == known.end())
+          fail_input("'" + path + "': assembly " + name + " asks for operation '" + identifier +
+                     "', which the file does not describe");
+        longer.emplace_back();
+        longer.back().transform = left.transform.combine(found->second);
+      }
+    product = std::move(longer);
+  }
+  return product;
+}
+
+std::map<std::string, gemmi::Transform> read_transforms(cif::Block &block, const std::string &path) {
+  std::vector<std::string> tags = {"id"};
+  for (const char *row : {"1", "2", "3"}) {
+    for (const char *column : {"1", "2", "3"}) tags.push_back(std::string("matrix[") + row + "][" + column + "]");
+    tags.push_back(std::string("vector[") + row + "]");
+  }
+  std::map<std::string, gemmi::Transform> transforms;
+  for (cif::Table::Row row : block.find("_pdbx_struct_oper_list.", tags)) {
+    gemmi::Transform &transform = transforms[row.str(0)];
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 4; ++j) {
+        const double value = cif::as_number(row[static_cast<size_t>(1 + 4 * i + j)]);
+        if (!std::isfinite(value)) fail_input("'" + path + "': operation '" + row.str(0) + "' lacks a number");
+        (j < 3 ? transform.mat[i][j] : transform.vec.at(i)) = value;
+      }
+  }
+  return transforms;
+}
+
+gemmi::Assembly find_in_block(cif::Block &block, const std::string &path, const std::string &name) {
+  const auto transforms = read_transforms(block, path);
+  gemmi::Assembly assembly(name);
+  std::vector<std::string> names;
+  for (cif::Table::Row row :
+       block.find("_pdbx_struct_assembly_gen.", {"assembly_id", "oper_expression", "asym_id_list"})) {
+    if (std::find(names.begin(), names.end(), row.str(0)) == names.end()) names.push_back(row.str(0));
+    if (row.str(0) != name) continue;
+    assembly.generators.emplace_back();
+    gemmi::Assembly::Gen &generator = assembly.generators.back();
+    for (const std::string &chain : split(row.str(2), ',')) generator.subchains.emplace_back(trim(chain));
+    generator.operators = read_operators(row.str(1), transforms, path, name);
+  }
+  if (assembly.generators.empty()) fail_unknown(path, name, names);
+  return assembly;
+}
+
+// ---- copies
+
+// gemmi copies residues of one chain or subchain after the other; how many atoms will that be?
+uint64_t count_atoms(const gemmi::Assembly &assembly, const gemmi::Model &model) {
+  uint64_t count = 0;
+  for (const gemmi::Assembly::Gen &generator : assembly.generators) {
+    const std::unordered_set<std::string> chains(generator.chains.begin(), generator.chains.end());
+    const std::unordered_set<std::string> subchains(generator.subchains.begin(), generator.subchains.end());
+    uint64_t atoms = 0;
+    for (const gemmi::Chain &chain : model.chains)
+      for (const gemmi::Residue &residue : chain.residues)
+        if (chains.count(chain.name) != 0 || subchains.count(residue.subchain) != 0) atoms += residue.atoms.size();
+    count += atoms * generator.operators.size();
+  }
+  return count;
+}
+
+void name_copies(gemmi::Model &model) {
+  std::unordered_set<std::string> used, seen;
+  std::unordered_map<std::string, int> copies;
+  for (const gemmi::Chain &chain : model.chains) used.insert(chain.name);
+  for (gemmi::Chain &chain : model.chains) {
+    if (seen.insert(chain.name).second) continue;
+    int &copy = copies.emplace(chain.name, 1).first->second;
+    std::string name;
+    do name = chain.name + std::to_string(++copy);
+    while (!used.insert(name).second);
+    chain.name = name;
+  }
+}
+
+// Atoms with the same serial number are copies of the same one.
+void leave_out_doubles(gemmi::Model &model) {
+  std::vector<gemmi::Atom *> atoms;
+  for (gemmi::Chain &chain : model.chains)
+    for (gemmi::Residue &residue : chain.residues)
+      for (gemmi::Atom &atom : residue.atoms) atoms.push_back(&atom);
+  std::vector<size_t> order(atoms.size());
+  for (size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::sort(order.begin(), order.end(), [&](size_t i, size_t j) {
+    const gemmi::Atom &a = *atoms[i], &b = *atoms[j];
+    return std::make_tuple(a.serial, a.pos.x, i) < std::make_tuple(b.serial, b.pos.x, j);
+  });
+  std::vector<size_t> doubles;
+  for (size_t k = 0; k < order.size(); ++k)
+    for (size_t other = k + 1; other < order.size(); ++other) {
+      const gemmi::Atom &a = *atoms[order[k]], &b = *atoms[order[other]];
+      if (a.serial != b.serial || b.pos.x - a.pos.x > kSamePlace) break;
+      if (a.pos.dist(b.pos) < kSamePlace) doubles.push_back(std::max(order[k], order[other]));
+    }
+  for (const size_t i : doubles) atoms[i]->serial = 0;
+  for (gemmi::Chain &chain : model.chains)
+    for (gemmi::Residue &residue : chain.residues) {
+      const auto is_double = [](const gemmi::Atom &atom) { return atom.serial == 0; };
+      residue.atoms.erase(std::remove_if(residue.atoms.begin(), residue.atoms.end(), is_double), residue.atoms.end());
+    }
+}
+
+}  // namespace
+
+gemmi::Assembly find_pdb_assembly(const std::string &text, const std::string &path, const std::string &name) {
+  std::string remarks;
+  std::string_view rest = text, line;
+  while (next_line(rest, line)) {
+    if (line.substr(0, 10) != "REMARK 350") continue;
+    std::string clean(line.substr(0, 80));
+    for (char &c : clean) c = c == '\0' || c == '\t' ? ' ' : to_ascii(c);
+    clean.resize(80, ' ');
+    remarks += clean + "\n";
+  }
+  std::vector<std::string> names;
+  try {
+    for (const gemmi::Assembly &assembly :
+         gemmi::read_pdb_from_memory(remarks.data(), remarks.size(), path).assemblies) {
+      if (assembly.name == name) return assembly;
+      names.push_back(assembly.name);
+    }
+  } catch (const std::bad_alloc &) {
+    throw;
+  } catch (const std::exception &error) {
+    fail_input("'" + path + "', REMARK 350: " + error.what());
+  }
+  fail_unknown(path, name, names);
+}
+
+gemmi::Assembly find_mmcif_assembly(const std::string &text, const std::string &path, const std::string &name) {
+  cif::Document document;
+  try {
+    document = cif::read_memory(text.data(), text.size(), path.c_str());
+  } catch (const std::bad_alloc &) {
+    throw;
+  } catch (const std::exception &error) {
+    fail_input("'" + path + "' can't be read as mmCIF: " + error.what());
+  }
+  for (cif::Block &block : document.blocks)
+    if (block.find("_atom_site.", {"Cartn_x"}).length() != 0) return find_in_block(block, path, name);
+  fail_unknown(path, name, {});
+}
+
+void build_assembly(const gemmi::Assembly &assembly, RawModel &raw, const std::string &path) {
+  const uint64_t count = count_atoms(assembly, raw.model);
+  size_t operators = 0;
+  for (const gemmi::Assembly::Gen &generator : assembly.generators) operators += generator.operators.size();
+  if (count > kMostAtoms || operators > kMostOperators) fail_large(path, assembly.name);
+  if (count == 0) fail_input("'" + path + "': assembly " + assembly.name + " is made of chains that have no atoms");
+  raw.model.merge_chain_parts();  // PDB files have ligands and water of a chain behind other chains
+  // No stream or logger, whichever this version of gemmi writes its progress to.
+  raw.model = gemmi::make_assembly(assembly, raw.model, gemmi::HowToNameCopiedChain::Dup, {});
+  name_copies(raw.model);
+  leave_out_doubles(raw.model);
+  int serial = 0;
+  for (gemmi::Chain &chain : raw.model.chains)
+    for (gemmi::Residue &residue : chain.residues)
+      for (gemmi::Atom &atom : residue.atoms) atom.serial = ++serial;
+  raw.atom_count = static_cast<uint32_t>(serial);
+}
+
+}  // namespace quickses::io

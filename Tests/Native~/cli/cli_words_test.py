@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: MIT
+"""What the program says: help, hints, suggestions, the manual page and the completion.   cli_words_test.py PROGRAM"""
+import os
+import re
+import shutil
+import subprocess
+import unittest
+
+import cli_test
+from cli_test import CRAMBIN, INPUT, USAGE, ProgramTest, program_to_test
+
+COMMANDS = ("", "measure", "cavities", "bench")
+
+
+def water(number):
+    return "HETATM    1  O   HOH A%4d    %8.3f   0.000   0.000  1.00  0.00           O\n" % (number, 3 * number)
+
+
+class Suggestions(ProgramTest):
+    def assert_suggests(self, suggestion, *arguments):
+        self.assert_fails(USAGE, [f"did you mean {suggestion}?"], *arguments)
+        line = self.run_program(*arguments, code=USAGE).stderr.strip()
+        self.assertTrue(line.endswith(f"did you mean {suggestion}?"), line)
+
+    def test_one_dash(self):
+        for flag, value in (("spacing", "0.3"), ("steps", "2"), ("select", "all"), ("output", "a.obj"), ("outer", ""),
+                            ("surface", "sas"), ("input", "a.pdb")):
+            with self.subTest(flag=flag):
+                self.assert_suggests("--" + flag, CRAMBIN, "-" + flag, *([value] if value else []))
+        self.assert_suggests("--spacing", CRAMBIN, "-spacing=0.3")
+        self.assert_suggests("--spacing", CRAMBIN, "-spacng", "0.3")
+
+    def test_letters_with_values_still_work(self):
+        self.run_cpu(CRAMBIN, "-v2", "-l0", "-s64")
+
+    def test_unknown_flags(self):
+        self.assert_suggests("--spacing", CRAMBIN, "--spcing", "1")
+        self.assert_suggests("--per-residue", "measure", CRAMBIN, "--per-residu", "a.csv")
+        self.assert_suggests("--repeat", "bench", CRAMBIN, "--repaet=3")
+        self.assert_fails(USAGE, ["--repeat", "no such flag", "quickses measure --help"], "measure", CRAMBIN, "--repeat", "3")
+        self.assert_fails(USAGE, ["--xyzzy", "no such flag", "quickses --help"], CRAMBIN, "--xyzzy")
+
+    def test_an_output_without_its_flag(self):
+        for name in ("out.ply", "out.obj", "out.stl"):
+            self.assert_suggests("-o " + name, CRAMBIN, name)
+
+    def test_commands(self):
+        self.assert_suggests("measure", "mesure", CRAMBIN)
+        self.assert_suggests("cavities", "cavites", CRAMBIN)
+
+    def test_selections(self):
+        self.assert_fails(USAGE, ["'protien' at character 1 ", "did you mean 'protein'?"], CRAMBIN, "--select", "protien")
+        self.assert_fails(INPUT, ["'water' names none", "chain A", "protein"], CRAMBIN, "--select", "water")
+
+    def test_assemblies(self):
+        self.assert_fails(USAGE, ["assembly '7'", "there is 1"], CRAMBIN, "--assembly", "7")
+        self.assert_fails(USAGE, ["--assembly", "--trajectory"], CRAMBIN, "--assembly", "1", "--trajectory", "a.xtc")
+
+
+class Hints(ProgramTest):
+    def hint_of(self, name, *arguments):
+        return self.run_cpu(name, "-v", "1", *arguments).stderr
+
+    def test_water(self):
+        self.write("wet.pdb", CRAMBIN.read_text().replace("END   ", "") + water(1) + water(2))
+        hint = "quickses: 2 water molecules are part of the surface; --no-water leaves them out\n"
+        self.assertEqual(self.hint_of("wet.pdb"), hint)
+        self.assertEqual(self.run_cpu("measure", "wet.pdb").stderr, hint)
+        for flags in (["--no-water"], ["--no-hetero"], ["--quiet"], ["--select", "all"], ["--select", "water"]):
+            self.assertEqual(self.hint_of("wet.pdb", *flags), "", flags)
+        self.write("one.pdb", water(1))
+        self.assertEqual(self.hint_of("one.pdb"),
+                         "quickses: 1 water molecule is part of the surface; --no-water leaves it out\n")
+        self.assertEqual(self.hint_of(CRAMBIN), "")
+
+    def test_cuda_is_not_spoken_of_where_it_was_not_built(self):
+        refused = subprocess.run([cli_test.PROGRAM, CRAMBIN, "--backend", "cuda"], capture_output=True, encoding="utf-8",
+                                 env=dict(os.environ, CUDA_VISIBLE_DEVICES=""))
+        if "no CUDA back end" not in refused.stderr:
+            self.skipTest("this build has CUDA")
+        self.assertEqual(self.run_program(CRAMBIN, "-v", "1").stderr, "")
+
+
+class Help(ProgramTest):
+    def help_of(self, command):
+        return self.run_program(*command.split(), "--help").stdout
+
+    def test_fits_a_terminal(self):
+        for command in COMMANDS:
+            for line in self.help_of(command).splitlines():
+                self.assertLessEqual(len(line), 100, line)
+
+    def test_is_grouped(self):
+        text = self.help_of("")
+        places = [text.index(f"\n{group}:\n") for group in ("Input", "Output", "Surface", "Trajectory", "Computing", "Report")]
+        self.assertEqual(places, sorted(places))
+        self.assertLess(text.index("--spacing A"), text.index("--method "))
+        for command in COMMANDS:
+            self.assertNotIn("\nOptions:\n", self.help_of(command), "a flag is in no group")
+
+    def test_water_is_not_ions(self):
+        self.assertRegex(self.help_of(""), r"--no-water +Leave out water; ions and ligands stay")
+
+
+def flags_of(text):
+    return set(re.findall(r"^  (?:-\w, )?(--[\w-]+)", text, re.MULTILINE))
+
+
+class ManualPage(ProgramTest):
+    def test_has_all_flags(self):
+        page = self.run_program("--help-man").stdout
+        bold = set(re.findall(r"--[\w-]+", page.replace("\\-", "-")))
+        for command in COMMANDS:
+            flags = flags_of(self.run_program(*command.split(), "--help").stdout)
+            self.assertGreater(len(flags), 10)
+            self.assertLessEqual(flags, bold)
+            self.assertIn("COMMAND " + command if command else "SYNOPSIS", page)
+        self.assertTrue(page.isascii())
+
+    @unittest.skipUnless(shutil.which("man"), "there is no man")
+    def test_man_has_no_complaints(self):
+        page = self.write("quickses.1", self.run_program("--help-man").stdout)
+        result = subprocess.run(["man", "--warnings", "-E", "UTF-8", "-l", page], capture_output=True, encoding="utf-8",
+                                env=dict(os.environ, LC_ALL="C.UTF-8", MANWIDTH="80", MAN_KEEP_FORMATTING=""))
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        for part in ("--spacing", "EXIT", "measure", "Computing"):
+            self.assertIn(part, result.stdout) if part != "EXIT" else self.assertIn("Exit codes", result.stdout)
+
+
+@unittest.skipUnless(shutil.which("bash"), "there is no bash")
+class Completion(ProgramTest):
+    def complete(self, *words):
+        self.write("quickses.bash", self.run_program("--help-completion").stdout)
+        self.write("file.pdb", "")
+        script = "source ./quickses.bash; COMP_WORDS=(\"$@\"); COMP_CWORD=$(($# - 1)); _quickses; printf '%s\\n' \"${COMPREPLY[@]}\""
+        result = subprocess.run(["bash", "--norc", "-u", "-c", script, "bash", "quickses", *words], cwd=self.folder,
+                                capture_output=True, encoding="utf-8")
+        self.assertEqual(result.stderr, "")
+        return sorted(result.stdout.split())
+
+    def test_flags(self):
+        self.assertEqual(self.complete("a.pdb", "--sp"), ["--spacing"])
+        self.assertEqual(self.complete("a.pdb", "--per"), ["--per-atom", "--per-residue"])
+        self.assertEqual(self.complete("bench", "--rep"), ["--repeat"])
+        self.assertEqual(self.complete("a.pdb", "--rep"), [])
+        for command in COMMANDS:
+            flags = flags_of(self.run_program(*command.split(), "--help").stdout)
+            self.assertLessEqual(flags, set(self.complete(*(command.split() or ["a.pdb"]), "--")))
+
+    def test_values(self):
+        self.assertEqual(self.complete("a.pdb", "--backend", ""), ["auto", "cpu", "cuda"])
+        self.assertEqual(self.complete("a.pdb", "--backend", "cu"), ["cuda"])
+        self.assertEqual(self.complete("a.pdb", "--backend", "=", "cu"), ["cuda"])
+        self.assertEqual(self.complete("a.pdb", "--backend", "="), ["auto", "cpu", "cuda"])
+        self.assertEqual(self.complete("a.pdb", "--surface", "s"), ["sas", "ses"])
+        self.assertEqual(self.complete("a.pdb", "--creases", ""), ["off", "on"])
+        self.assertEqual(self.complete("a.pdb", "--altloc", "h"), ["highest"])
+        self.assertEqual(self.complete("bench", "--layout", "c"), ["compact"])
+        self.assertEqual(self.complete("a.pdb", "--radii", "b"), ["bondi"])
+        self.assertEqual(self.complete("a.pdb", "--radii", "f"), ["file.pdb"])
+        self.assertEqual(self.complete("a.pdb", "--spacing", "-"), [])  # a number: nothing is known
+        self.assertEqual(self.complete("a.pdb", "--json", "f"), [])  # bash completes files itself
+
+    def test_commands(self):
+        self.assertEqual(self.complete("me"), ["measure"])
+        self.assertEqual(self.complete("f"), ["file.pdb"])
+
+
+if __name__ == "__main__":
+    cli_test.PROGRAM = program_to_test("", __doc__)
+    unittest.main()

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: MIT
+// Biological assemblies of PDB and mmCIF files, and alternate locations.
+#include "io/assembly.h"
+
+#include <cstdio>
+#include <map>
+#include <vector>
+
+#include "io/io_fixture.h"
+#include "io/structure.h"
+
+namespace quickses::io {
+namespace {
+
+using Names = std::vector<std::string>;
+
+std::string pdb_atom(const char *name, char altloc, const char *residue, char chain, int number, double x, double y,
+                     double occupancy = 1) {
+  char line[96];
+  std::snprintf(line, sizeof line, "ATOM      1 %-4s%c%3s %c%4d    %8.3f%8.3f%8.3f%6.2f%6.2f           C\n", name,
+                altloc, residue, chain, number, x, y, 0.0, occupancy, 0.0);
+  return line;
+}
+
+// Assembly 1: chain A, and a copy of it turned by half a turn around z; chain B as it is. Assembly 2: chain B alone.
+const char kRemark[] =
+    "REMARK 350 BIOMOLECULE: 1\n"
+    "REMARK 350 APPLY THE FOLLOWING TO CHAINS: A\n"
+    "REMARK 350   BIOMT1   1  1.000000  0.000000  0.000000        0.00000\n"
+    "REMARK 350   BIOMT2   1  0.000000  1.000000  0.000000        0.00000\n"
+    "REMARK 350   BIOMT3   1  0.000000  0.000000  1.000000        0.00000\n"
+    "REMARK 350   BIOMT1   2 -1.000000  0.000000  0.000000        0.00000\n"
+    "REMARK 350   BIOMT2   2  0.000000 -1.000000  0.000000        0.00000\n"
+    "REMARK 350   BIOMT3   2  0.000000  0.000000  1.000000        7.00000\n"
+    "REMARK 350 APPLY THE FOLLOWING TO CHAINS: B\n"
+    "REMARK 350   BIOMT1   1  1.000000  0.000000  0.000000        0.00000\n"
+    "REMARK 350   BIOMT2   1  0.000000  1.000000  0.000000        0.00000\n"
+    "REMARK 350   BIOMT3   1  0.000000  0.000000  1.000000        0.00000\n"
+    "REMARK 350 BIOMOLECULE: 2\n"
+    "REMARK 350 APPLY THE FOLLOWING TO CHAINS: B\n"
+    "REMARK 350   BIOMT1   1  1.000000  0.000000  0.000000        0.00000\n"
+    "REMARK 350   BIOMT2   1  0.000000  1.000000  0.000000        0.00000\n"
+    "REMARK 350   BIOMT3   1  0.000000  0.000000  1.000000        0.00000\n";
+
+std::string pdb_file() {
+  return kRemark + pdb_atom(" CA ", ' ', "ALA", 'A', 1, 1, 2) + pdb_atom(" CB ", ' ', "ALA", 'B', 1, 5, 5) +
+         pdb_atom(" CA ", ' ', "GLY", 'A', 2, 3, 4) + "END\n";
+}
+
+Structure parse(const std::string &text, const ReadOptions &options, StructureFormat format = StructureFormat::kPdb) {
+  return parse_structure(text, format, options).models.at(0);
+}
+
+ReadOptions assembly_named(const std::string &name) {
+  ReadOptions options;
+  options.assembly = name;
+  return options;
+}
+
+Names chains_of(const Structure &structure) {
+  Names chains;
+  for (const AtomInfo &atom : structure.atoms) chains.push_back(atom.chain);
+  return chains;
+}
+
+TEST(Assembly, OfPdbFiles) {
+  const Structure structure = parse(pdb_file(), assembly_named("1"));
+  EXPECT_EQ(chains_of(structure), (Names{"A", "A", "A2", "A2", "B"}));
+  EXPECT_EQ(structure.positions, (std::vector<float>{1, 2, 0, 3, 4, 0, -1, -2, 7, -3, -4, 7, 5, 5, 0}));
+  EXPECT_EQ(structure.file_atom_count, 5u);
+  EXPECT_EQ(structure.file_elements, std::vector<uint8_t>(5, 6));
+  for (uint32_t i = 0; i < 5; ++i) EXPECT_EQ(structure.atoms[i].file_index, i);
+  EXPECT_EQ(parse(pdb_file(), assembly_named("2")).positions, (std::vector<float>{5, 5, 0}));
+  EXPECT_EQ(parse(pdb_file(), ReadOptions()).atoms.size(), 3u);
+}
+
+TEST(Assembly, SelectionsLookAtTheCopies) {
+  ReadOptions options = assembly_named("1");
+  options.selection = "chain A2 and name CA";
+  const Structure structure = parse(pdb_file(), options);
+  EXPECT_EQ(structure.positions, (std::vector<float>{-1, -2, 7, -3, -4, 7}));
+  EXPECT_EQ(structure.atoms[0].file_index, 2u);
+}
+
+TEST(Assembly, OfEachModel) {
+  const std::string text = kRemark + ("MODEL        1\n" + pdb_atom(" CA ", ' ', "ALA", 'A', 1, 1, 2)) +
+                           "ENDMDL\nMODEL        2\n" + pdb_atom(" CA ", ' ', "ALA", 'A', 1, 8, 9) + "ENDMDL\n";
+  ReadOptions options = assembly_named("1");
+  options.model = 0;
+  const StructureFile file = parse_structure(text, StructureFormat::kPdb, options);
+  ASSERT_EQ(file.models.size(), 2u);
+  EXPECT_EQ(file.models[0].positions, (std::vector<float>{1, 2, 0, -1, -2, 7}));
+  EXPECT_EQ(file.models[1].positions, (std::vector<float>{8, 9, 0, -8, -9, 7}));
+}
+
+TEST(Assembly, AtomsOnAnAxisAreThereOnce) {
+  std::string remark = kRemark;
+  remark.replace(remark.find("7.00000"), 7, "0.00000");
+  const Structure structure =
+      parse(remark + pdb_atom(" CA ", ' ', "ALA", 'A', 1, 0.05, 0) + pdb_atom(" CB ", ' ', "ALA", 'A', 1, 2, 0),
+            assembly_named("1"));
+  EXPECT_EQ(structure.positions, (std::vector<float>{0.05f, 0, 0, 2, 0, 0, -2, 0, 0}));
+  EXPECT_EQ(structure.file_atom_count, 3u);
+}
+
+// ---- mmCIF
+
+std::string cif_file(const std::string &expression) {
+  std::string text =
+      "data_a\nloop_\n_atom_site.id\n_atom_site.type_symbol\n_atom_site.label_atom_id\n_atom_site.label_comp_id\n"
+      "_atom_site.label_asym_id\n_atom_site.auth_asym_id\n_atom_site.label_seq_id\n_atom_site.Cartn_x\n"
+      "_atom_site.Cartn_y\n_atom_site.Cartn_z\n"
+      "1 C CA ALA A X 1 1 2 3\n2 ZN ZN ZN B X . 0 0 5\n"
+      "loop_\n_pdbx_struct_assembly_gen.assembly_id\n_pdbx_struct_assembly_gen.oper_expression\n"
+      "_pdbx_struct_assembly_gen.asym_id_list\n";
+  text += "1 '" + expression + "' A\nPAU P A,B\n";
+  text += "loop_\n_pdbx_struct_oper_list.id\n";
+  for (int i = 1; i <= 3; ++i) {
+    for (int j = 1; j <= 3; ++j) {
+      char tag[64];
+      std::snprintf(tag, sizeof tag, "_pdbx_struct_oper_list.matrix[%d][%d]\n", i, j);
+      text += tag;
+    }
+    text += "_pdbx_struct_oper_list.vector[" + std::to_string(i) + "]\n";
+  }
+  // The identity; shifts by 10 along x, and by 20; a quarter turn around z.
+  return text +
+         "1 1 0 0 0 0 1 0 0 0 0 1 0\n2 1 0 0 10 0 1 0 0 0 0 1 0\n3 1 0 0 20 0 1 0 0 0 0 1 0\nP 0 -1 0 0 1 0 0 0 0 0 1 "
+         "0\n";
+}
+
+TEST(Assembly, OfMmcifFiles) {
+  const auto positions = [](const std::string &expression) {
+    return parse(cif_file(expression), assembly_named("1"), StructureFormat::kMmcif).positions;
+  };
+  using Positions = std::vector<float>;
+  EXPECT_EQ(positions("1"), (Positions{1, 2, 3}));
+  EXPECT_EQ(positions("1,3"), (Positions{1, 2, 3, 21, 2, 3}));
+  EXPECT_EQ(positions("(1-3)"), (Positions{1, 2, 3, 11, 2, 3, 21, 2, 3}));
+  EXPECT_EQ(positions("(1-2,P)"), (Positions{1, 2, 3, 11, 2, 3, -2, 1, 3}));
+  // Of products the right one is applied first: (2)(P) turns, then shifts; (P)(2) shifts, then turns.
+  EXPECT_EQ(positions("(2)(P)"), (Positions{8, 1, 3}));
+  EXPECT_EQ(positions("(P)(2)"), (Positions{-2, 11, 3}));
+  EXPECT_EQ(positions("(1,2)(1,3)"), (Positions{1, 2, 3, 21, 2, 3, 11, 2, 3, 31, 2, 3}));
+  const Structure structure = parse(cif_file("1"), assembly_named("PAU"), StructureFormat::kMmcif);
+  EXPECT_EQ(structure.positions, (Positions{-2, 1, 3, 0, 0, 5}));
+  EXPECT_EQ(chains_of(structure), (Names{"X", "X"}));
+}
+
+TEST(Assembly, Errors) {
+  const auto usage = [](const std::string &text, const std::string &name, StructureFormat format) {
+    return error_of(ErrorKind::kUsage, [&] { parse(text, assembly_named(name), format); });
+  };
+  EXPECT_HAS(usage(pdb_file(), "3", StructureFormat::kPdb), "no assembly '3'; there are 1 and 2");
+  EXPECT_HAS(usage(cif_file("1"), "3", StructureFormat::kMmcif), "no assembly '3'; there are 1 and PAU");
+  EXPECT_HAS(usage(pdb_atom(" CA ", ' ', "ALA", 'A', 1, 1, 2), "1", StructureFormat::kPdb), "describes none");
+  EXPECT_HAS(usage("ATOM 1 CA ALA 1 0 0 0 0.5 1.5\n", "1", StructureFormat::kPqr), "only PDB and mmCIF");
+  const auto input = [](const std::string &expression) {
+    return error_of(ErrorKind::kInput,
+                    [&] { parse(cif_file(expression), assembly_named("1"), StructureFormat::kMmcif); });
+  };
+  EXPECT_HAS(input("7"), "operation '7'");
+  EXPECT_HAS(input("(1)(7)"), "operation '7'");
+  EXPECT_HAS(input("(1-999999999)"), "more than");
+  EXPECT_HAS(input("(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)"),
+             "more than");
+  input("(1");
+  input("()");
+  std::string other = kRemark;
+  other += pdb_atom(" CA ", ' ', "ALA", 'C', 1, 1, 2);
+  EXPECT_HAS(error_of(ErrorKind::kInput, [&] { parse(other, assembly_named("1")); }), "no atoms");
+}
+
+// Damaged remarks give an answer or an error.
+TEST(Assembly, DamagedRemarks) {
+  const std::string atoms = pdb_atom(" CA ", ' ', "ALA", 'A', 1, 1, 2);
+  unsigned random = 1;
+  for (int k = 0; k < 3000; ++k) {
+    std::string remark = kRemark;
+    for (int n = 0; n < 3; ++n) {
+      random = random * 1664525 + 1013904223;
+      remark[(random >> 8) % remark.size()] = static_cast<char>(random >> 24);
+    }
+    try {
+      parse(remark + "\n" + atoms, assembly_named("1"));
+    } catch (const Error &) {
+    }
+  }
+}
+
+// ---- alternate locations
+
+std::string locations() {
+  return pdb_atom(" N  ", ' ', "ALA", 'A', 1, 1, 0) + pdb_atom(" CA ", 'A', "ALA", 'A', 1, 2, 0, 0.3) +
+         pdb_atom(" CA ", 'B', "ALA", 'A', 1, 3, 0, 0.7) + pdb_atom(" CB ", 'B', "ALA", 'A', 1, 4, 0, 0.6) +
+         pdb_atom(" CA ", 'A', "GLY", 'A', 2, 5, 0, 0.5) + pdb_atom(" CA ", 'C', "GLY", 'A', 2, 6, 0, 0.5) +
+         pdb_atom(" CA ", 'B', "SER", 'B', 1, 7, 0, 0.1) + pdb_atom(" CA ", 'A', "SER", 'B', 1, 8, 0, 0.9);
+}
+
+std::vector<float> taken(const std::string &altloc, const std::string &selection = "") {
+  ReadOptions options;
+  options.altloc = altloc;
+  options.selection = selection;
+  const Structure structure = parse(locations(), options);
+  std::vector<float> x;
+  for (size_t i = 0; i < structure.atoms.size(); ++i) x.push_back(structure.positions[3 * i]);
+  return x;
+}
+
+TEST(AlternateLocations, AreChosen) {
+  using X = std::vector<float>;
+  EXPECT_EQ(taken(""), (X{1, 2, 5, 7}));
+  EXPECT_EQ(taken("first"), (X{1, 2, 5, 7}));
+  EXPECT_EQ(taken("highest"), (X{1, 3, 4, 5, 8}));  // of two alike the first
+  EXPECT_EQ(taken("A"), (X{1, 2, 5, 8}));
+  EXPECT_EQ(taken("B"), (X{1, 3, 4, 5, 7}));  // GLY has none
+  EXPECT_EQ(taken("C"), (X{1, 2, 6, 7}));
+  EXPECT_EQ(taken("b"), (X{1, 2, 5, 7}));
+  EXPECT_EQ(taken("B", "resname GLY or name N"), (X{1, 5}));
+  EXPECT_EQ(taken("B", "altloc A"), (X{2, 5, 8}));  // who asks for locations finds all
+  for (const char *wrong : {"AB", "Highest"}) EXPECT_HAS(error_of(ErrorKind::kUsage, [&] { taken(wrong); }), wrong);
+}
+
+}  // namespace
+}  // namespace quickses::io
