@@ -113,11 +113,10 @@ FrameResult FrameWorker::run(const FrameTask &task) {
     result.csv = std::to_string(task.frame) + std::string(commas, ',') + csv_field(result.error) + "\n";
     result.per_atom = result.per_residue = "";
     if (!options.json.empty())
-      result.json = dump(Json{{"schema", kReportSchema},
-                              {"frame", task.frame},
-                              {"trajectory", file_of(task)},
-                              {"error", result.error}},
-                         true);
+      result.json = dump(
+          Json{
+              {"schema", kReportSchema}, {"frame", task.frame}, {"trajectory", file_of(task)}, {"error", result.error}},
+          true);
   }
   mesh_.clear();
   return result;

@@ -5,7 +5,9 @@
 #include <map>
 
 #include "cli/exit_code.h"
+#include "cli/help_format.h"
 #include "cli/option_kinds.h"
+#include "io/atomic_file.h"
 #include "io/mesh_writer.h"
 
 namespace quickses::cli {
@@ -36,6 +38,13 @@ void read_color(const std::string &text, MeshFileOptions &mesh) {
     throw Failure(kUsage, "--color: '" + text + "' is no colour: they are written #RRGGBB, as #C08000");
   mesh.colors = look_up("--color", kColors, text);
 }
+
+// Of those that are one file each.
+const std::map<std::string, io::MeshFormat> kMeshFormats = {{"obj", io::MeshFormat::kObj},
+                                                            {"ply", io::MeshFormat::kPly},
+                                                            {"stl", io::MeshFormat::kStl},
+                                                            {"glb", io::MeshFormat::kGlb},
+                                                            {"off", io::MeshFormat::kOff}};
 
 // Of the output, which there is.
 io::MeshFormat format_of(const Options &options) {
@@ -96,6 +105,14 @@ void add_mesh_options(CLI::App *app, Options &options) {
                   "Mesh: .obj, .ply (with normals and owner atoms), .glb (glTF 2.0), .stl, .off, or .vert, with .face "
                   "beside it, as MSMS writes them. %s stands for the name of INPUT")
       ->type_name("FILE|-");
+  app->add_option_function<std::string>(
+         "--output-format",
+         [&options](const std::string &text) {
+           look_up("--output-format", kMeshFormats, text);
+           options.output_format = text;
+         },
+         "obj, ply, stl, glb or off: what -o - writes to standard output")
+      ->type_name("NAME");
   add_switch(app, "--hard-edges", options.hard_edges,
              "on: a vertex on a crease has a normal for each side, so that light breaks there; PLY and GLB files then "
              "have it once per side. Default: on for .obj, .ply and .glb");
@@ -115,6 +132,7 @@ void add_mesh_options(CLI::App *app, Options &options) {
   add_number(app, "--scale", "--scale", mesh.scale, 1e-12, 1e12,
              "Multiply coordinates in the file, which are in angstrom: 0.5 prints half a millimetre per angstrom",
              false);
+  put_rest_into_group(app, "Output");
 }
 
 void check_mesh_options(const Options &options) {
@@ -123,6 +141,21 @@ void check_mesh_options(const Options &options) {
   else
     check_format(options);
   check_hard_edges(options);
+}
+
+void resolve_output(Options &options) {
+  const std::string &format = options.output_format;
+  if (io::is_standard_output(options.output)) options.output = "./" + options.output;  // a file that is called so
+  if (options.output != "-") {
+    if (!format.empty())
+      throw Failure(kUsage, "--output-format: is for standard output (-o -); a file's extension names its format");
+    return;
+  }
+  if (format.empty())
+    throw Failure(kUsage, "--output (-o): standard output has no extension: --output-format ply says what to write");
+  if (options.has_several_inputs() || !options.trajectories.empty() || options.read.model == 0)
+    throw Failure(kUsage, "--output (-o): standard output takes one mesh, and there may be several");
+  options.output = "-." + format;
 }
 
 bool has_hard_edges(const Options &options) {

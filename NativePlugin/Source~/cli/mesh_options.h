@@ -10,6 +10,9 @@ namespace quickses::cli {
 
 void add_mesh_options(CLI::App *app, Options &options);
 
+// "-" for standard output becomes a name with the format in it. Throws Failure (kUsage).
+void resolve_output(Options &options);
+
 // Whether they fit to each other and to the format of the output. Throws Failure (kUsage).
 void check_mesh_options(const Options &options);
 

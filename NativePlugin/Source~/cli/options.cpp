@@ -7,8 +7,10 @@
 #include <functional>
 #include <map>
 
+#include "cli/bench_options.h"
 #include "cli/exit_code.h"
 #include "cli/help_format.h"
+#include "cli/input_options.h"
 #include "cli/manual.h"
 #include "cli/mesh_options.h"
 #include "cli/option_kinds.h"
@@ -23,23 +25,9 @@ namespace {
 
 const std::map<std::string, qses_surface> kSurfaces = {
     {"ses", QSES_SURFACE_SES}, {"sas", QSES_SURFACE_SAS}, {"vdw", QSES_SURFACE_VDW}};
-const std::map<std::string, io::StructureFormat> kInputFormats = {{"pdb", io::StructureFormat::kPdb},
-                                                                  {"mmcif", io::StructureFormat::kMmcif},
-                                                                  {"pqr", io::StructureFormat::kPqr},
-                                                                  {"xyzr", io::StructureFormat::kXyzr},
-                                                                  {"gro", io::StructureFormat::kGro}};
-// Of those that are one file each.
-const std::map<std::string, io::MeshFormat> kMeshFormats = {
-    {"obj", io::MeshFormat::kObj}, {"ply", io::MeshFormat::kPly}, {"stl", io::MeshFormat::kStl},
-    {"glb", io::MeshFormat::kGlb}, {"off", io::MeshFormat::kOff}};
 const std::map<std::string, qses_method> kMethods = {{"exact", QSES_METHOD_EXACT}, {"grid", QSES_METHOD_GRID}};
 const std::map<std::string, qses_backend> kBackends = {
     {"auto", QSES_BACKEND_AUTO}, {"cuda", QSES_BACKEND_CUDA}, {"cpu", QSES_BACKEND_CPU}};
-const std::map<std::string, qses_vertex_layout> kLayouts = {{"separate", QSES_VERTICES_SEPARATE},
-                                                            {"interleaved", QSES_VERTICES_INTERLEAVED},
-                                                            {"compact", QSES_VERTICES_COMPACT}};
-const std::map<std::string, Deliveries> kDeliveries = {
-    {"host", Deliveries::kHost}, {"device", Deliveries::kDevice}, {"both", Deliveries::kBoth}};
 
 const char kFooter[] =
     "Exit codes:\n"
@@ -54,12 +42,6 @@ const char kFooter[] =
     "Owner atoms in PLY and GLB files are 0-based places among the atoms of the input's model (or of\n"
     "the assembly), before any filter.\n"
     "Lengths are in angstrom, areas in A^2, volumes in A^3.\n";
-
-const char kInputHelp[] = "Structure: .pdb .ent .cif .mmcif .pqr .xyzr .gro, each also as .gz; - for standard input";
-const char kInputsHelp[] =
-    "Structure: .pdb .ent .cif .mmcif .pqr .xyzr .gro, each also as .gz; - for standard input. Or several, each with a "
-    "mesh "
-    "of its own";
 
 void add_compute_options(CLI::App *app, ComputeOptions &options) {
   add_number(app, "-v,--spacing", "--spacing (-v)", options.spacing, 0.001, 100,
@@ -126,50 +108,6 @@ void add_measured(CLI::App *app, std::vector<qses_surface> &measured) {
       ->default_str("sas,vdw");
 }
 
-void add_input_format(CLI::App *app, Options &options) {
-  app->add_option_function<std::string>(
-         "--input-format",
-         [&options](const std::string &text) { options.input_format = look_up("--input-format", kInputFormats, text); },
-         "pdb, mmcif, pqr, xyzr or gro, whatever the name and the content say")
-      ->type_name("NAME");
-}
-
-void add_input_options(CLI::App *app, Options &options, const char *input_help, const char *model_help) {
-  app->add_option("-i,--input,INPUT", options.inputs, input_help)->type_name("FILE");
-  add_input_format(app, options);
-  app->add_flag_callback(
-      "--no-water", [&options] { options.read.water = false; }, "Leave out water; ions and ligands stay");
-  app->add_flag_callback(
-      "--no-hetero", [&options] { options.read.hetero = false; },
-      "Leave out HETATM records: ligands, ions, most waters");
-  app->add_flag_callback(
-      "--no-hydrogen", [&options] { options.read.hydrogen = false; }, "Leave out hydrogen");
-  app->add_option(
-         "--select", options.read.selection,
-         "Only these atoms: words such as 'protein and chain A' or 'within 5 of ligand', or CID such as //A/10-40")
-      ->type_name("SELECTION");
-  app->add_option("--assembly", options.read.assembly,
-                  "Biological assembly of a PDB or mmCIF file, by its name there, mostly 1: copies of chains")
-      ->type_name("NAME");
-  app->add_option(
-         "--altloc", options.read.altloc,
-         "Which alternate locations: first, highest (of the greatest occupancy), or a label where there is one")
-      ->type_name("first|highest|LABEL")
-      ->default_str("first");
-  app->add_option_function<std::string>(
-         "--model",
-         [&options](const std::string &text) {
-           if (text == "all") {
-             options.read.model = 0;
-           } else if (!io::parse_integer(text, options.read.model) || options.read.model < 1) {
-             throw Failure(kUsage, "--model: '" + text + "' is neither a number from 1 on nor 'all'");
-           }
-         },
-         model_help)
-      ->type_name("N|all");
-  put_rest_into_group(app, "Input");
-}
-
 void add_area_options(CLI::App *app, Options &options) {
   app->add_option("--per-atom", options.per_atom, "Table of the area of each atom (CSV); - for standard output")
       ->type_name("FILE|-");
@@ -206,42 +144,7 @@ void add_file_options(CLI::App *app, Options &options) {
   put_rest_into_group(app, "Report");
 }
 
-void add_bench_options(CLI::App *app, BenchOptions &options) {
-  add_count(app, "--repeat", "--repeat", options.repeat, 1, 1000000, "Timed calls per structure; default 20");
-  app->add_option_function<std::string>(
-         "--delivery",
-         [&options](const std::string &text) { options.deliveries = look_up("--delivery", kDeliveries, text); },
-         "Where the mesh is when the time is up: in host memory, or on the CUDA device without a download. Default: "
-         "both with CUDA, host on the CPU")
-      ->type_name("host|device|both");
-  add_choice(app, "--layout", options.layout, kLayouts,
-             "Bytes of a vertex: 24 in two arrays (separate) or one (interleaved), or 16 with rounded normals");
-  add_count(app, "--copies", "--copies", options.copies, 1, 10000,
-            "Copies of each structure side by side on a grid, to see how times grow; default 1");
-  app->add_flag("--stages", options.stages, "The time of each stage as well, in as many calls of their own");
-  add_count(app, "--small", "--small", options.small, 1, 1000000,
-            "Time 100 surfaces of at least N atoms each instead, cut between residues, one after the other");
-  app->add_flag("--jobs", options.jobs,
-                "Time jobs instead: begin, cancel, destroy, the first level, and all levels against the finest alone");
-  put_rest_into_group(app, "Timing");
-}
-
 // given: whether a flag was on the command line.
-void check_bench(const Options &options, const std::function<bool(const char *)> &given) {
-  if (options.inputs.empty()) throw Failure(kUsage, "bench: no input file was given");
-  const BenchOptions &bench = options.bench;
-  if (bench.jobs && bench.small > 0) throw Failure(kUsage, "--jobs and --small: one at a time");
-  if (bench.small > 0 && given("--copies"))
-    throw Failure(kUsage, "--copies: --small cuts surfaces out of one molecule, and copies have the same ones");
-  if (bench.jobs || bench.small > 0)
-    for (const char *flag : {"--delivery", "--layout", "--stages"})
-      if (given(flag)) throw Failure(kUsage, std::string(flag) + ": not with --jobs and --small");
-  const bool is_cpu = options.compute.backend == QSES_BACKEND_CPU;
-  if (is_cpu && (bench.deliveries == Deliveries::kDevice || bench.deliveries == Deliveries::kBoth))
-    throw Failure(kUsage, "--delivery: meshes stay on CUDA devices only, and --backend is cpu");
-}
-
-// given: as above.
 void check_trajectory(const Options &options, const std::function<bool(const char *)> &given) {
   if (options.trajectories.empty()) {
     for (const char *flag : {"--frames", "--unwrap", "--csv", "--workers"})
@@ -256,21 +159,6 @@ void check_trajectory(const Options &options, const std::function<bool(const cha
   if (!options.read.assembly.empty())
     throw Failure(kUsage, "--assembly: the frames of --trajectory have the atoms of the file, not of an assembly");
   if (!options.output.empty()) OutputPattern check(options.output);  // throws if it is none
-}
-
-// The mesh's file: "-" becomes the name of standard output with the format in it.
-void resolve_output(Options &options, const std::string &format) {
-  if (io::is_standard_output(options.output)) options.output = "./" + options.output;  // a file that is called so
-  if (options.output != "-") {
-    if (!format.empty())
-      throw Failure(kUsage, "--output-format: is for standard output (-o -); a file's extension names its format");
-    return;
-  }
-  if (format.empty())
-    throw Failure(kUsage, "--output (-o): standard output has no extension: --output-format ply says what to write");
-  if (options.has_several_inputs() || !options.trajectories.empty() || options.read.model == 0)
-    throw Failure(kUsage, "--output (-o): standard output takes one mesh, and there may be several");
-  options.output = "-." + format;
 }
 
 void check_standard_output(const Options &options) {
@@ -304,19 +192,6 @@ void check_devices(const Options &options) {
                               ": several devices share the frames of a trajectory, and there is no --trajectory");
 }
 
-void check_inputs(const Options &options) {
-  if (!options.has_several_inputs()) return;
-  const std::string count = std::to_string(options.inputs.size());
-  if (options.command == Options::Command::kCavities)
-    throw Failure(kUsage, "cavities: one structure at a time, and " + count + " were given");
-  if (!options.trajectories.empty())
-    throw Failure(kUsage, "--trajectory: its frames are of one structure, and " + count +
-                              " were given (of several trajectories, each needs a --trajectory before it)");
-  if (!options.output.empty() && options.output.find("%s") == std::string::npos)
-    throw Failure(kUsage, "--output (-o): '" + options.output + "' names one file for " + count +
-                              " structures: write %s where the name of each goes, as in out/%s.ply");
-}
-
 void check(const Options &options, const std::function<bool(const char *)> &given) {
   check_devices(options);
   if (options.compute.method == QSES_METHOD_GRID && options.compute.surface != QSES_SURFACE_SES)
@@ -347,7 +222,6 @@ void check(const Options &options, const std::function<bool(const char *)> &give
 const char *name_of(qses_surface surface) { return find_name(kSurfaces, surface); }
 const char *name_of(qses_method method) { return find_name(kMethods, method); }
 const char *name_of(qses_backend backend) { return find_name(kBackends, backend); }
-const char *name_of(qses_vertex_layout layout) { return find_name(kLayouts, layout); }
 
 bool Options::prints_data() const {
   return csv == "-" || json == "-" || per_atom == "-" || per_residue == "-" || io::is_standard_output(output);
@@ -360,7 +234,6 @@ std::string Options::quoted_trajectories() const {
 
 Options parse_options(int argc, char **argv, std::ostream &out) {
   Options options;
-  std::string output_format;  // of standard output
   CLI::App app(
       "Molecular surfaces as closed triangle meshes.\n\n"
       "  quickses INPUT [-o OUT.ply|OUT.obj|OUT.glb|OUT.stl|OUT.off|OUT.vert] [options]\n"
@@ -377,18 +250,9 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
   app.footer(kFooter);
   app.set_version_flag("--version", std::string("quickses ") + qses_version(), "Print the version");
   put_rest_into_group(&app, "Report");
-  add_input_options(&app, options, kInputsHelp,
+  add_input_options(&app, options,
                     "Which model of the file; all: one mesh each, as out_0001.ply for -o out.ply; default 1");
   add_mesh_options(&app, options);
-  app.add_option_function<std::string>(
-         "--output-format",
-         [&](const std::string &text) {
-           look_up("--output-format", kMeshFormats, text);
-           output_format = text;
-         },
-         "obj, ply, stl, glb or off: what -o - writes to standard output")
-      ->type_name("NAME");
-  put_rest_into_group(&app, "Output");
   add_compute_options(&app, options.compute);
   add_surface_choice(&app, options.compute);
   add_trajectory_options(&app, options,
@@ -400,7 +264,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
       "measure", "Area and volume, those of SAS and VDW exactly and without a mesh, per atom and residue on request");
   measure->footer(kFooter);
   put_into_group(measure, "Report", {"--help"});
-  add_input_options(measure, options, kInputsHelp, "Which model of the file, or all of them; default 1");
+  add_input_options(measure, options, "Which model of the file, or all of them; default 1");
   add_measured(measure, options.measured);
   add_compute_options(measure, options.compute);
   add_creases(measure, options.compute);
@@ -413,7 +277,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
       app.add_subcommand("cavities", "The cavities of a surface: volume, area, centre and the residues that line them");
   cavities->footer(kFooter);
   put_into_group(cavities, "Report", {"--help"});
-  add_input_options(cavities, options, kInputHelp, "Which model of the file; default 1");
+  add_single_input_options(cavities, options, "Which model of the file; default 1");
   add_compute_options(cavities, options.compute);
   add_surface_choice(cavities, options.compute);
   cavities->add_option("--csv", options.csv, "Table of the cavities; - for standard output")->type_name("FILE|-");
@@ -466,7 +330,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
     options.command = value;
   }
   if (!options.inputs.empty()) options.input = options.inputs.front();
-  resolve_output(options, output_format);
+  resolve_output(options);
   if (options.compute.creases == Switch::kDefault) {
     const bool is_many = options.command == Options::Command::kBench || !options.trajectories.empty();
     options.compute.creases = is_many || options.compute.method == QSES_METHOD_GRID ? Switch::kOff : Switch::kOn;

@@ -82,6 +82,7 @@ struct Options {
   std::vector<std::string> inputs;                  // structures; "-" is standard input
   std::string input;                                // the one of them that these options are for, or the first
   std::string output;                               // empty: no mesh file; see also io::is_standard_output
+  std::string output_format;                        // of standard output
   Switch hard_edges = Switch::kDefault;
   MeshFileOptions mesh;                                                       // of that file
   bool outer = false;                                                         // without cavities

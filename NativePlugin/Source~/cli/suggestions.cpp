@@ -26,6 +26,13 @@ std::string word_behind_dash(const std::string &argument) {
   return argument.substr(1, argument.find('=') - 1);
 }
 
+std::string help_of(const CLI::App &command) {
+  const CLI::App *parent = command.get_parent();
+  return (parent ? parent->get_name() + " " : "") + command.get_name() + " --help";
+}
+
+}  // namespace
+
 bool is_mesh_name(const std::string &name) {
   try {
     io::mesh_format_of(name);
@@ -34,13 +41,6 @@ bool is_mesh_name(const std::string &name) {
     return false;
   }
 }
-
-std::string help_of(const CLI::App &command) {
-  const CLI::App *parent = command.get_parent();
-  return (parent ? parent->get_name() + " " : "") + command.get_name() + " --help";
-}
-
-}  // namespace
 
 const CLI::App &command_of(const CLI::App &app, const std::vector<std::string> &arguments) {
   for (const CLI::App *command : app.get_subcommands(nullptr))

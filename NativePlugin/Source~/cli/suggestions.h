@@ -17,6 +17,9 @@ void check_dashes(const CLI::App &command, const std::vector<std::string> &argum
 // "; did you mean --spacing?" for an argument such as "-spacng" among these that may be why something failed; else "".
 std::string suggest_dashes(const CLI::App &command, const std::vector<std::string> &arguments);
 
+// Whether a file of this name would be a mesh.
+bool is_mesh_name(const std::string &name);
+
 // A sentence about an argument that nobody expected.
 std::string explain_extra(const CLI::App &command, const std::vector<std::string> &arguments, const std::string &extra);
 
