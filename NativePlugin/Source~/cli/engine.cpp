@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "cli/exit_code.h"
+#include "cli/shown_output.h"
 
 namespace quickses::cli {
 namespace {
@@ -118,7 +119,7 @@ qses_settings mesh_settings_of(const Options &options) {
   settings.components = !options.csv.empty() || !options.json.empty();
   settings.component_ids = options.mesh.component_ids || options.mesh.colors == MeshColors::kComponent;
   settings.patch_types = needs_patches(options);
-  settings.outer_only = options.outer;
+  settings.outer_only = options.outer || makes_shown(options);  // nobody sees walls of cavities
   settings.hard_edges = has_hard_edges(options);
   settings.atom_areas = options.wants_areas();
   return settings;

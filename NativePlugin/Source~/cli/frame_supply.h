@@ -19,6 +19,7 @@ struct FrameResult {
   uint64_t place = 0, frame = 0;      // of its task
   std::string csv;                    // its row, with the end of the line
   std::string json;                   // its line, or empty
+  std::string page;                   // its mesh, if they go to a page, or empty
   std::string per_atom, per_residue;  // lines of those tables, or empty
   std::string error;                  // why it failed; empty if it did not
 };

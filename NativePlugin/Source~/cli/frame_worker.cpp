@@ -10,6 +10,7 @@
 #include "cli/exit_code.h"
 #include "cli/measuring.h"
 #include "cli/report.h"
+#include "cli/shown_output.h"
 
 namespace quickses::cli {
 
@@ -29,6 +30,13 @@ std::string csv_row(uint64_t frame, std::optional<double> time, const qses_repor
   char time_text[32] = "";
   if (time) std::snprintf(time_text, sizeof time_text, "%.3f", *time);
   return std::string(row) + time_text + ",\n";
+}
+
+// "frame 7, 14.00 ps", in a page
+std::string label_of(uint64_t frame, std::optional<double> time) {
+  char time_text[32] = "";
+  if (time) std::snprintf(time_text, sizeof time_text, ", %.2f ps", *time);
+  return "frame " + std::to_string(frame) + time_text;
 }
 
 void check_atom_counts(const Options &options, const io::Structure &structure, const io::Trajectory &trajectory) {
@@ -70,16 +78,34 @@ FrameInputs::FrameInputs(const Options &given, bool quiet)
       mesh_output(options, structure()) {
   check_atom_counts(options, structure(), trajectory);
   for (const io::AtomInfo &atom : structure().atoms) file_indices.push_back(atom.file_index);
-  if (!options.output.empty()) pattern.emplace(options.output);
+  if (!options.output.empty() && !makes_page(options)) pattern.emplace(options.output);
   if (!quiet)
     for (const std::string &warning : trajectory.warnings())
       std::fprintf(stderr, "quickses: warning: %s\n", warning.c_str());
-  if (!options.unwrap) return;
-  if (trajectory.box(0))
-    unwrapper = make_unwrapper(structure(), trajectory);
-  else if (!quiet)
-    std::fprintf(stderr, "quickses: warning: --unwrap: '%s': %s\n", options.trajectories.front().c_str(),
-                 io::unwrap_sentence(io::UnwrapStatus::kNoBox));
+  if (options.unwrap) {
+    if (trajectory.box(0))
+      unwrapper = make_unwrapper(structure(), trajectory);
+    else if (!quiet)
+      std::fprintf(stderr, "quickses: warning: --unwrap: '%s': %s\n", options.trajectories.front().c_str(),
+                   io::unwrap_sentence(io::UnwrapStatus::kNoBox));
+  }
+  if (makes_shown(options)) look_at_first_frame();
+}
+
+// All frames are seen the same way.
+void FrameInputs::look_at_first_frame() {
+  const FrameSelection frames = options.frames.select(trajectory.frame_count(), options.quoted_trajectories());
+  std::vector<float> xyz(3 * trajectory.atom_count());
+  trajectory.read_frame(frames.first, xyz.data());
+  if (unwrapper) unwrapper->apply(trajectory.box(frames.first), xyz.data());
+  mesh_output.look_at(centers(xyz).data());
+}
+
+std::vector<float> FrameInputs::centers(const std::vector<float> &xyz) const {
+  std::vector<float> centers;
+  for (const uint32_t index : file_indices)
+    for (size_t axis = 0; axis < 3; ++axis) centers.push_back(xyz[3 * size_t(index) + axis]);
+  return centers;
 }
 
 void prepare_engine(Engine &engine, const FrameInputs &inputs) {
@@ -111,7 +137,7 @@ FrameResult FrameWorker::run(const FrameTask &task) {
     const std::string header = csv_header(options);
     const auto commas = static_cast<size_t>(std::count(header.begin(), header.end(), ','));
     result.csv = std::to_string(task.frame) + std::string(commas, ',') + csv_field(result.error) + "\n";
-    result.per_atom = result.per_residue = "";
+    result.per_atom = result.per_residue = result.page = "";
     if (!options.json.empty())
       result.json = dump(
           Json{
@@ -152,11 +178,7 @@ void FrameWorker::set_frame(Engine &engine) const {
 }
 
 std::vector<float> FrameWorker::centers() const {
-  std::vector<float> centers;
-  if (!inputs_.mesh_output.needs_centers()) return centers;
-  for (const uint32_t index : inputs_.file_indices)
-    for (size_t axis = 0; axis < 3; ++axis) centers.push_back(xyz_[3 * size_t(index) + axis]);
-  return centers;
+  return inputs_.mesh_output.needs_centers() ? inputs_.centers(xyz_) : std::vector<float>();
 }
 
 Json FrameWorker::frame_json(const FrameTask &task, std::optional<double> time) const {
@@ -209,7 +231,10 @@ void FrameWorker::fill_mesh(const FrameTask &task, Read read, FrameResult &resul
   Options frame_options = options;
   if (inputs_.pattern) frame_options.output = inputs_.pattern->name(task.frame);
   const auto write_start = Clock::now();
-  inputs_.mesh_output.accept(frame_options.output, mesh, centers().data());
+  if (makes_page(options))
+    result.page = inputs_.mesh_output.page_mesh(mesh, centers().data(), label_of(task.frame, read.time));
+  else
+    inputs_.mesh_output.accept(frame_options.output, mesh, centers().data());
   read.timings.write = ms_since(write_start);
   if (options.json.empty()) return;
   Json json = frame_json(task, read.time);

@@ -31,8 +31,14 @@ struct FrameInputs : Input {
   std::optional<OutputPattern> pattern;
   MeshOutput mesh_output;
 
+  // Of the structure's atoms in a frame.
+  std::vector<float> centers(const std::vector<float> &xyz) const;
+
   // The only one.
   const io::Structure &structure() const { return file.models.front(); }
+
+ private:
+  void look_at_first_frame();
 };
 
 // An engine as it must be before workers borrow it: with the atoms of the structure. Throws Failure.

@@ -55,7 +55,8 @@ std::string description_of(const CLI::Option &option) {
 }
 
 std::vector<std::string> groups_of(const CLI::App &app) {
-  std::vector<std::string> groups = {"Input", "Output", "Surface", "Timing", "Trajectory", "Computing", "Report"};
+  std::vector<std::string> groups = {"Input",  "Output",     "Picture",   "Surface",
+                                     "Timing", "Trajectory", "Computing", "Report"};
   for (const std::string &group : app.get_groups())
     if (!group.empty() && std::find(groups.begin(), groups.end(), group) == groups.end()) groups.push_back(group);
   return groups;

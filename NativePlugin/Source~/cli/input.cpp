@@ -2,11 +2,13 @@
 // The structures that a command is about.
 #include "cli/input.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "cli/area_tables.h"
 #include "cli/clock.h"
 #include "cli/exit_code.h"
+#include "cli/shown_output.h"
 #include "cli/water_hint.h"
 #include "io/file_bytes.h"
 #include "io/radii.h"
@@ -20,6 +22,11 @@ io::StructureFile read(const std::string &path, const Options &options) {
     return io::parse_structure(io::read_standard_input(), options.input_format, options.read, io::kStandardInput);
   if (options.input_format) return io::read_structure(path, *options.input_format, options.read);
   return io::read_structure(path, options.read);
+}
+
+bool has_one_chain(const io::Structure &structure) {
+  return std::all_of(structure.atoms.begin(), structure.atoms.end(),
+                     [&](const io::AtomInfo &atom) { return atom.chain == structure.atoms.front().chain; });
 }
 
 }  // namespace
@@ -40,6 +47,8 @@ Input::Input(const Options &given, bool quiet) : options(given) {
   file = load(options.input, options, quiet);
   read_ms = ms_since(start);
   if (io::has_own_radii(file.format)) options.compute.radii = "file";
+  if (options.mesh.colors == MeshColors::kDefault && makes_shown(options))
+    options.mesh.colors = has_one_chain(file.models.front()) ? MeshColors::kElement : MeshColors::kChain;
   if (!quiet) hint_at_water(options, file.models.front());
   for (const io::Structure &structure : file.models) check_has_residues(options, structure);
 }

@@ -7,6 +7,7 @@
 #include "cli/exit_code.h"
 #include "cli/help_format.h"
 #include "cli/option_kinds.h"
+#include "cli/shown_output.h"
 #include "io/atomic_file.h"
 #include "io/mesh_writer.h"
 
@@ -19,7 +20,8 @@ const std::map<std::string, MeshColors> kColors = {
     {"sequence", MeshColors::kSequence},   {"hydrophobicity", MeshColors::kHydrophobicity},
     {"component", MeshColors::kComponent}, {"patch", MeshColors::kPatch}};
 
-// "#C08000"
+}  // namespace
+
 bool parse_color(const std::string &text, io::Rgba &color) {
   constexpr size_t kSize = 7;
   if (text.size() != kSize || text[0] != '#' || text.find_first_not_of("0123456789abcdefABCDEF", 1) != text.npos)
@@ -28,6 +30,8 @@ bool parse_color(const std::string &text, io::Rgba &color) {
   color = {static_cast<uint8_t>(rgb >> 16), static_cast<uint8_t>(rgb >> 8), static_cast<uint8_t>(rgb), 255};
   return true;
 }
+
+namespace {
 
 void read_color(const std::string &text, MeshFileOptions &mesh) {
   if (parse_color(text, mesh.color)) {
@@ -40,11 +44,10 @@ void read_color(const std::string &text, MeshFileOptions &mesh) {
 }
 
 // Of those that are one file each.
-const std::map<std::string, io::MeshFormat> kMeshFormats = {{"obj", io::MeshFormat::kObj},
-                                                            {"ply", io::MeshFormat::kPly},
-                                                            {"stl", io::MeshFormat::kStl},
-                                                            {"glb", io::MeshFormat::kGlb},
-                                                            {"off", io::MeshFormat::kOff}};
+const std::map<std::string, io::MeshFormat> kMeshFormats = {
+    {"obj", io::MeshFormat::kObj},  {"ply", io::MeshFormat::kPly}, {"stl", io::MeshFormat::kStl},
+    {"glb", io::MeshFormat::kGlb},  {"off", io::MeshFormat::kOff}, {"png", io::MeshFormat::kPng},
+    {"html", io::MeshFormat::kHtml}};
 
 // Of the output, which there is.
 io::MeshFormat format_of(const Options &options) {
@@ -57,7 +60,12 @@ io::MeshFormat format_of(const Options &options) {
 
 void check_hard_edges(const Options &options) {
   if (options.hard_edges == Switch::kOn && !has_hard_edges(options))
-    throw Failure(kUsage, "--hard-edges on: is for the exact method and mesh files with normals, .obj, .ply or .glb");
+    throw Failure(kUsage,
+                  "--hard-edges on: is for the exact method and files with normals, .obj, .ply, .glb, .png or .html");
+}
+
+bool has_colors(const MeshFileOptions &mesh) {
+  return mesh.colors != MeshColors::kNone && mesh.colors != MeshColors::kDefault;
 }
 
 void check_without_output(const MeshFileOptions &mesh) {
@@ -65,7 +73,7 @@ void check_without_output(const MeshFileOptions &mesh) {
     throw Failure(kUsage, std::string(flag) + ": " + what + " of a mesh file, and there is no --output (-o)");
   };
   if (mesh.component_ids) refuse("--component-ids", "they are part");
-  if (mesh.colors != MeshColors::kNone) refuse("--color", "it is");
+  if (has_colors(mesh)) refuse("--color", "it is");
   if (mesh.sharp) refuse("--sharp-colors", "it is about colours");
   if (mesh.text) refuse("--ascii", "it is a form");
   if (mesh.center) refuse("--center", "it moves the vertices");
@@ -73,8 +81,8 @@ void check_without_output(const MeshFileOptions &mesh) {
 }
 
 bool are_of_atoms(MeshColors colors) {
-  return colors != MeshColors::kNone && colors != MeshColors::kOne && colors != MeshColors::kComponent &&
-         colors != MeshColors::kPatch;
+  return colors != MeshColors::kNone && colors != MeshColors::kDefault && colors != MeshColors::kOne &&
+         colors != MeshColors::kComponent && colors != MeshColors::kPatch;
 }
 
 void check_format(const Options &options) {
@@ -86,9 +94,11 @@ void check_format(const Options &options) {
   if (mesh.component_ids && format != io::MeshFormat::kPly && format != io::MeshFormat::kGlb)
     refuse("--component-ids", "only PLY and GLB files have them");
   if (mesh.text && format != io::MeshFormat::kPly) refuse("--ascii", "only PLY files are there as bytes and as text");
-  if (mesh.colors != MeshColors::kNone && !io::has_colors(format))
-    refuse("--color", "STL and MSMS files have no colours (.ply, .obj, .glb and .off have)");
-  if (mesh.sharp && !are_of_atoms(mesh.colors))
+  if (has_colors(mesh) && !io::has_colors(format))
+    refuse("--color", "STL and MSMS files have no colours (.ply, .obj, .glb, .off, .png and .html have)");
+  if (mesh.center && io::is_shown(format)) refuse("--center", "a picture or page has the middle in the middle anyway");
+  if (mesh.scale != 1 && io::is_shown(format)) refuse("--scale", "a picture or page has no unit (there is --zoom)");
+  if (mesh.sharp && !are_of_atoms(mesh.colors) && mesh.colors != MeshColors::kDefault)
     throw Failure(
         kUsage,
         "--sharp-colors: is for colours of atoms (--color element, chain, residue, hydrophobicity or sequence)");
@@ -103,7 +113,8 @@ void add_mesh_options(CLI::App *app, Options &options) {
   MeshFileOptions &mesh = options.mesh;
   app->add_option("-o,--output", options.output,
                   "Mesh: .obj, .ply (with normals and owner atoms), .glb (glTF 2.0), .stl, .off, or .vert, with .face "
-                  "beside it, as MSMS writes them. %s stands for the name of INPUT")
+                  "beside it, as MSMS writes them. Or a picture of it: .png, or .html, a web page to turn it. %s "
+                  "stands for the name of INPUT")
       ->type_name("FILE|-");
   app->add_option_function<std::string>(
          "--output-format",
@@ -111,18 +122,19 @@ void add_mesh_options(CLI::App *app, Options &options) {
            look_up("--output-format", kMeshFormats, text);
            options.output_format = text;
          },
-         "obj, ply, stl, glb or off: what -o - writes to standard output")
+         "obj, ply, stl, glb, off, png or html: what -o - writes to standard output")
       ->type_name("NAME");
   add_switch(app, "--hard-edges", options.hard_edges,
              "on: a vertex on a crease has a normal for each side, so that light breaks there; PLY and GLB files then "
-             "have it once per side. Default: on for .obj, .ply and .glb");
+             "have it once per side. Default: on for .obj, .ply, .glb, .png and .html");
   app->add_flag("--outer", options.outer, "Leave the walls of cavities out of the mesh, not of the numbers");
   app->add_option_function<std::string>(
          "--color", [&mesh](const std::string &text) { read_color(text, mesh); },
-         "Colours of the vertices, in .ply, .obj, .glb and .off: element (Jmol's), chain, residue (their classes), "
-         "hydrophobicity, sequence, component (connected pieces), patch (contact, toroidal, reentrant), or one for all")
-      ->type_name("NAME|#RRGGBB")
-      ->default_str("none");
+         "Colours of the vertices, in all but .stl and .vert: element (Jmol's), chain, residue (their classes), "
+         "hydrophobicity, sequence, component (connected pieces), patch (contact, toroidal, reentrant), none, or one "
+         "for "
+         "all. Default: none; of .png and .html chain, or element where there is one chain only")
+      ->type_name("NAME|#RRGGBB");
   app->add_flag("--sharp-colors", mesh.sharp,
                 "Cut triangles where the colours of atoms meet, so that each has one colour and borders are smooth");
   app->add_flag("--component-ids", mesh.component_ids,
@@ -133,6 +145,15 @@ void add_mesh_options(CLI::App *app, Options &options) {
              "Multiply coordinates in the file, which are in angstrom: 0.5 prints half a millimetre per angstrom",
              false);
   put_rest_into_group(app, "Output");
+}
+
+void set_mesh_defaults(Options &options) {
+  MeshFileOptions &mesh = options.mesh;
+  const bool is_shown = makes_shown(options);
+  if (!is_shown && mesh.colors == MeshColors::kDefault) mesh.colors = MeshColors::kNone;
+  if (is_shown && options.compute.occlusion == Switch::kDefault) options.compute.occlusion = Switch::kOn;
+  if (is_shown && !options.picture.edges && (mesh.colors == MeshColors::kDefault || are_of_atoms(mesh.colors)))
+    mesh.sharp = true;
 }
 
 void check_mesh_options(const Options &options) {
@@ -153,7 +174,7 @@ void resolve_output(Options &options) {
   }
   if (format.empty())
     throw Failure(kUsage, "--output (-o): standard output has no extension: --output-format ply says what to write");
-  if (options.has_several_inputs() || !options.trajectories.empty() || options.read.model == 0)
+  if (options.has_several_inputs() || (options.is_series() && format != "html"))
     throw Failure(kUsage, "--output (-o): standard output takes one mesh, and there may be several");
   options.output = "-." + format;
 }
@@ -168,6 +189,9 @@ bool needs_patches(const Options &options) {
          (!options.output.empty() && io::mesh_format_of(options.output) == io::MeshFormat::kMsms);
 }
 
-const char *name_of(MeshColors colors) { return colors == MeshColors::kOne ? "one" : find_name(kColors, colors); }
+const char *name_of(MeshColors colors) {
+  if (colors == MeshColors::kDefault) return "none";
+  return colors == MeshColors::kOne ? "one" : find_name(kColors, colors);
+}
 
 }  // namespace quickses::cli

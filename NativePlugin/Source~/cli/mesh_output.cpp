@@ -1,18 +1,23 @@
 // SPDX-License-Identifier: MIT
-// Meshes of the C API to files.
+// Meshes of the C API to files, pictures and pages.
 #include "cli/mesh_output.h"
 
 #include <algorithm>
 #include <charconv>
+#include <cstdio>
 #include <cstring>
 #include <iterator>
 #include <numeric>
+#include <thread>
 
 #include "cli/exit_code.h"
 #include "cli/mesh_check.h"
+#include "cli/shown_output.h"
 #include "io/atomic_file.h"
 #include "io/color_borders.h"
+#include "io/file_path.h"
 #include "io/mesh_writer.h"
+#include "render/picture.h"
 
 namespace quickses::cli {
 namespace {
@@ -24,6 +29,7 @@ constexpr io::Rgba kPatchColors[] = {{0, 158, 115, 255}, {240, 228, 66, 255}, {0
 std::vector<uint8_t> atom_colors_of(const MeshFileOptions &options, const io::Structure &structure) {
   io::ColorScheme scheme = io::ColorScheme::kUniform;
   switch (options.colors) {
+    case MeshColors::kDefault:
     case MeshColors::kNone:
     case MeshColors::kComponent:
     case MeshColors::kPatch:
@@ -94,7 +100,37 @@ std::string unit_of(const MeshFileOptions &options) {
   return "angstrom times " + std::string(digits, std::to_chars(digits, std::end(digits), options.scale).ptr);
 }
 
+render::View view_of(const PictureOptions &picture, bool is_series) {
+  const auto vector = [](const std::array<double, 3> &v) { return glm::vec3(v[0], v[1], v[2]); };
+  render::View view;
+  if (picture.toward) view.toward = vector(*picture.toward);
+  if (picture.up) view.up = vector(*picture.up);
+  for (size_t k = 0; k < 2; ++k) view.turn[k] = static_cast<float>(picture.turn[k]);
+  view.zoom = static_cast<float>(picture.zoom);
+  if (is_series) view.fill = 0.85f;  // atoms move
+  return view;
+}
+
+std::string title_of(const std::string &input) {
+  return input == "-" ? "standard input" : io::utf8_of(io::path_of(input).filename());
+}
+
+// Frames are drawn beside each other.
+unsigned drawing_threads(const Options &options) {
+  if (!options.trajectories.empty()) return 1;
+  return options.compute.threads ? options.compute.threads : std::max(1u, std::thread::hardware_concurrency());
+}
+
 }  // namespace
+
+// What a file needs of a mesh, beside the mesh.
+struct MeshOutput::Prepared {
+  std::vector<uint32_t> owners;
+  std::vector<uint8_t> colors;
+  std::vector<float> occlusion, positions;
+  io::OwnedMesh cut;
+  io::MeshView view;
+};
 
 void accept_surface(const qses_mesh &mesh) {
   if (!is_closed(mesh))
@@ -106,8 +142,24 @@ void accept_surface(const qses_mesh &mesh) {
 MeshOutput::MeshOutput(const Options &options, const io::Structure &structure)
     : structure_(structure),
       options_(options.mesh),
+      picture_(options.picture),
+      is_shown_(makes_shown(options)),
+      is_series_(options.is_series()),
+      title_(title_of(options.input)),
+      threads_(drawing_threads(options)),
       probe_radius_(static_cast<float>(options.compute.probe * options.mesh.scale)),
-      atom_colors_(atom_colors_of(options.mesh, structure)) {}
+      added_radius_(options.compute.surface == QSES_SURFACE_SAS ? static_cast<float>(options.compute.probe) : 0),
+      atom_colors_(atom_colors_of(options.mesh, structure)) {
+  if (is_shown_) look_at(structure.positions.data());
+}
+
+render::Balls MeshOutput::balls(const float *centers) const {
+  return {centers, structure_.radii.data(), structure_.atoms.size(), added_radius_};
+}
+
+void MeshOutput::look_at(const float *centers) {
+  camera_ = render::Camera(balls(centers), view_of(picture_, is_series_), picture_.height > picture_.width);
+}
 
 std::vector<uint8_t> MeshOutput::colors_of(const qses_mesh &mesh) const {
   std::vector<uint8_t> colors;
@@ -126,13 +178,10 @@ std::vector<uint8_t> MeshOutput::colors_of(const qses_mesh &mesh) const {
   return colors;
 }
 
-void MeshOutput::accept(const std::string &path, const qses_mesh &mesh, const float *centers) const {
-  accept_surface(mesh);
-  if (path.empty()) return;
-  const std::vector<uint32_t> owners = file_owners_of(mesh, structure_);
-  const std::vector<uint8_t> colors = colors_of(mesh);
-  const io::MeshFormat format = io::mesh_format_of(path);
-  io::MeshView view;
+void MeshOutput::prepare(const qses_mesh &mesh, io::MeshFormat format, const float *centers, Prepared &prepared) const {
+  auto &[owners, colors, occlusion, positions, cut, view] = prepared;
+  owners = file_owners_of(mesh, structure_);
+  colors = colors_of(mesh);
   view.vertex_count = mesh.vertex_count;
   view.triangle_count = mesh.triangle_count;
   view.positions = mesh.positions;
@@ -141,7 +190,7 @@ void MeshOutput::accept(const std::string &path, const qses_mesh &mesh, const fl
   if (format == io::MeshFormat::kMsms) view.patches = mesh.patches;
   if (options_.component_ids) view.component_ids = mesh.component_ids;
   if (!colors.empty()) view.colors = colors.data();
-  const std::vector<float> occlusion = occlusion_of(mesh);
+  occlusion = occlusion_of(mesh);
   if (!occlusion.empty()) view.occlusion = occlusion.data();
   view.indices = mesh.indices;
   view.repeated = mesh.repeated;
@@ -149,19 +198,59 @@ void MeshOutput::accept(const std::string &path, const qses_mesh &mesh, const fl
   view.unit = unit_of(options_);
   view.atom_count = structure_.file_atom_count;
   view.probe_radius = probe_radius_;
-  io::OwnedMesh cut;
   if (options_.sharp) {
     cut = io::cut_at_color_borders(view, {mesh.owners, centers, structure_.radii.data()});
     view = cut.view();
     // These have the colour of a place, so there must be one for each colour.
     if (!io::has_repeated_vertices(format)) view.repeated_count = 0;
   }
-  std::vector<float> positions;
   if (options_.center || options_.scale != 1) {
     positions = placed(view, mesh, options_);
     view.positions = positions.data();
   }
-  io::write_mesh(path, view, format, options_.text);
+}
+
+void MeshOutput::accept(const std::string &path, const qses_mesh &mesh, const float *centers) const {
+  accept_surface(mesh);
+  if (path.empty()) return;
+  const io::MeshFormat format = io::mesh_format_of(path);
+  Prepared prepared;
+  prepare(mesh, format, centers, prepared);
+  if (format == io::MeshFormat::kPng)
+    draw(path, prepared.view, centers);
+  else
+    io::write_mesh(path, prepared.view, format, options_.text);
+}
+
+void MeshOutput::draw(const std::string &path, const io::MeshView &view, const float *centers) const {
+  render::PictureSettings settings;
+  settings.width = picture_.width, settings.height = picture_.height;
+  settings.samples = static_cast<int>(picture_.samples);
+  if (picture_.background[3] != 0) settings.background = picture_.background;
+  settings.edges = picture_.edges;
+  settings.threads = threads_;
+  render::write_png(path, render::draw(view, camera_, camera_.middle(balls(centers)), settings));
+}
+
+std::string MeshOutput::page_mesh(const qses_mesh &mesh, const float *centers, const std::string &label) const {
+  accept_surface(mesh);
+  Prepared prepared;
+  prepare(mesh, io::MeshFormat::kHtml, centers, prepared);
+  return render::page_mesh(prepared.view, camera_.middle(balls(centers)), label);
+}
+
+std::unique_ptr<render::Page> MeshOutput::begin_page(const std::string &path) const {
+  return std::make_unique<render::Page>(
+      path, render::PageSettings{title_, structure_.atoms.size(), picture_.background, camera_});
+}
+
+void hint_at_size(const render::Page &page, const Options &options) {
+  if (options.quiet || page.size() < render::Page::kManyBytes) return;
+  std::fprintf(stderr,
+               "quickses: the page has %llu MB, for which browsers need some time: a larger --spacing%s makes it "
+               "smaller\n",
+               static_cast<unsigned long long>(page.size() / 1'000'000),
+               options.trajectories.empty() ? "" : ", or fewer --frames,");
 }
 
 void check_mesh_writable(const std::string &path) {

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Meshes of the C API to files.
+// Meshes of the C API to files, pictures and pages.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "cli/options.h"
 #include "io/structure.h"
 #include "quickses/quickses.h"
+#include "render/page.h"
 
 namespace quickses::cli {
 
@@ -18,23 +20,43 @@ void accept_surface(const qses_mesh &mesh);
 // What there is to do with the meshes of a structure, in one conformation or many. Any number of threads may use it.
 class MeshOutput {
  public:
-  // The structure must outlive it.
+  // The structure must outlive it. Pictures are seen so that its atoms, where they are then, fill them.
   MeshOutput(const Options &options, const io::Structure &structure);
+
+  // Of a series: pictures are seen so that these atoms fill them, of which there are as many.
+  void look_at(const float *centers);
 
   // Takes the surface of all atoms for good, and writes it, with owners as places in the structure's file; an empty
   // path: writes nothing. centers: of the structure's atoms when the mesh was made, only looked at if needs_centers().
   // Throws as accept_surface, before anything is written; io::Error (output).
   void accept(const std::string &path, const qses_mesh &mesh, const float *centers) const;
-  bool needs_centers() const { return options_.sharp; }
+  bool needs_centers() const { return options_.sharp || is_shown_; }
+
+  // The same for a page of many: what Page::add takes.
+  std::string page_mesh(const qses_mesh &mesh, const float *centers, const std::string &label) const;
+  std::unique_ptr<render::Page> begin_page(const std::string &path) const;
 
  private:
+  struct Prepared;
+
   std::vector<uint8_t> colors_of(const qses_mesh &mesh) const;
+  void prepare(const qses_mesh &mesh, io::MeshFormat format, const float *centers, Prepared &prepared) const;
+  render::Balls balls(const float *centers) const;
+  void draw(const std::string &path, const io::MeshView &view, const float *centers) const;
 
   const io::Structure &structure_;
   const MeshFileOptions options_;
-  const float probe_radius_;
+  const PictureOptions picture_;
+  const bool is_shown_, is_series_;
+  const std::string title_;
+  const unsigned threads_;
+  const float probe_radius_, added_radius_;
+  render::Camera camera_;             // of what is shown
   std::vector<uint8_t> atom_colors_;  // N x 4; empty if colours are not those of atoms
 };
+
+// Says so, unless quiet, if a page is so large that browsers need time for it.
+void hint_at_size(const render::Page &page, const Options &options);
 
 // Throws io::Error (output) if a mesh could not be written there; an empty path is none.
 void check_mesh_writable(const std::string &path);

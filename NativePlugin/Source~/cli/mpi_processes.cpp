@@ -39,7 +39,8 @@ constexpr std::chrono::milliseconds kLater(2);
 
 std::vector<uint8_t> pack(const FrameResult &result) {
   nlohmann::json packed = {result.place, result.frame};
-  for (const std::string *text : {&result.csv, &result.json, &result.per_atom, &result.per_residue, &result.error})
+  for (const std::string *text :
+       {&result.csv, &result.json, &result.page, &result.per_atom, &result.per_residue, &result.error})
     packed.push_back(nlohmann::json::binary({text->begin(), text->end()}));
   return nlohmann::json::to_msgpack(packed);
 }
@@ -50,7 +51,8 @@ FrameResult unpack(const std::vector<uint8_t> &bytes) {
     const auto &binary = packed.at(k).get_binary();
     return std::string(binary.begin(), binary.end());
   };
-  return {packed.at(0).get<uint64_t>(), packed.at(1).get<uint64_t>(), text(2), text(3), text(4), text(5), text(6)};
+  return {
+      packed.at(0).get<uint64_t>(), packed.at(1).get<uint64_t>(), text(2), text(3), text(4), text(5), text(6), text(7)};
 }
 
 // Workers of this process take turns at talking to the first process.

@@ -15,6 +15,8 @@
 #include "cli/mesh_options.h"
 #include "cli/option_kinds.h"
 #include "cli/output_pattern.h"
+#include "cli/picture_options.h"
+#include "cli/shown_output.h"
 #include "cli/suggestions.h"
 #include "cli/used_files.h"
 #include "io/atomic_file.h"
@@ -87,7 +89,8 @@ void add_surface_choice(CLI::App *app, ComputeOptions &options) {
              "exact: vertices on the exact surface; grid: the voxel method of Martinez, Krone and Baaden 2019");
   add_creases(app, options);
   add_switch(app, "--occlusion", options.occlusion,
-             "on: how open the surface is at each vertex (ambient occlusion), in .ply and .glb files. Default: off");
+             "on: how open the surface is at each vertex (ambient occlusion), in .ply and .glb files, and as shade in "
+             ".png and .html. Default: on for these two");
   put_rest_into_group(app, "Surface");
 }
 
@@ -158,7 +161,7 @@ void check_trajectory(const Options &options, const std::function<bool(const cha
     throw Failure(kUsage, "--model all: with --trajectory, the atoms are those of one model");
   if (!options.read.assembly.empty())
     throw Failure(kUsage, "--assembly: the frames of --trajectory have the atoms of the file, not of an assembly");
-  if (!options.output.empty()) OutputPattern check(options.output);  // throws if it is none
+  if (!options.output.empty() && !makes_page(options)) OutputPattern check(options.output);  // throws if it is none
 }
 
 void check_standard_output(const Options &options) {
@@ -213,6 +216,7 @@ void check(const Options &options, const std::function<bool(const char *)> &give
   if (options.wants_areas() && options.compute.method == QSES_METHOD_GRID)
     throw Failure(kUsage, "--per-atom and --per-residue: areas of atoms are there with --method exact only");
   check_mesh_options(options);
+  check_picture_options(options, given);
   check_standard_output(options);
   UsedFiles check(options);
 }
@@ -236,7 +240,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
   Options options;
   CLI::App app(
       "Molecular surfaces as closed triangle meshes.\n\n"
-      "  quickses INPUT [-o OUT.ply|OUT.obj|OUT.glb|OUT.stl|OUT.off|OUT.vert] [options]\n"
+      "  quickses INPUT [-o OUT.ply|OUT.obj|OUT.glb|OUT.stl|OUT.off|OUT.vert|OUT.png|OUT.html] [options]\n"
       "  quickses INPUT... [-o out/%s.ply] [options]\n"
       "  quickses INPUT --trajectory FILE [--trajectory FILE...] [--frames A:B:STEP] [--csv FILE] [-o frame_%05d.ply] "
       "[options]\n"
@@ -253,6 +257,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
   add_input_options(&app, options,
                     "Which model of the file; all: one mesh each, as out_0001.ply for -o out.ply; default 1");
   add_mesh_options(&app, options);
+  add_picture_options(&app, options.picture);
   add_compute_options(&app, options.compute);
   add_surface_choice(&app, options.compute);
   add_trajectory_options(&app, options,
@@ -331,6 +336,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
   }
   if (!options.inputs.empty()) options.input = options.inputs.front();
   resolve_output(options);
+  set_mesh_defaults(options);
   if (options.compute.creases == Switch::kDefault) {
     const bool is_many = options.command == Options::Command::kBench || !options.trajectories.empty();
     options.compute.creases = is_many || options.compute.method == QSES_METHOD_GRID ? Switch::kOff : Switch::kOn;

@@ -2,6 +2,7 @@
 // The flags of the program.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <iosfwd>
 #include <optional>
@@ -52,6 +53,7 @@ struct BenchOptions {
 
 // What the colours of vertices tell.
 enum class MeshColors {
+  kDefault,  // of what shows a mesh: its chains, of a single one its elements. Of mesh files: none
   kNone,
   kOne,  // the same for all
   kElement,
@@ -65,13 +67,25 @@ enum class MeshColors {
 
 // What is in a mesh file, besides the mesh.
 struct MeshFileOptions {
-  MeshColors colors = MeshColors::kNone;
-  io::Rgba color = {190, 190, 190, 255};  // kOne, and of atoms of which the others tell nothing
-  bool sharp = false;                     // triangles are cut along the borders of colours
+  MeshColors colors = MeshColors::kDefault;  // when options are read, only of what shows a mesh
+  io::Rgba color = {190, 190, 190, 255};     // kOne, and of atoms of which the others tell nothing
+  bool sharp = false;                        // triangles are cut along the borders of colours
   bool component_ids = false;
   bool text = false;    // of formats that can be both
   bool center = false;  // of the mesh's box at the origin
   double scale = 1;
+};
+
+// What a picture or a page shows, and how.
+struct PictureOptions {
+  int width = 1024, height = 1024;
+  unsigned samples = 4;                         // along each side of a pixel
+  io::Rgba background = {255, 255, 255, 255};   // alpha 0: none
+  std::optional<std::array<double, 3>> toward;  // to the eye
+  std::optional<std::array<double, 3>> up;
+  std::array<double, 2> turn = {0, 0};  // degrees
+  double zoom = 1;
+  bool edges = false;  // of triangles
 };
 
 struct Options {
@@ -85,6 +99,7 @@ struct Options {
   std::string output_format;                        // of standard output
   Switch hard_edges = Switch::kDefault;
   MeshFileOptions mesh;                                                       // of that file
+  PictureOptions picture;                                                     // if that is what the file is
   bool outer = false;                                                         // without cavities
   std::vector<qses_surface> measured = {QSES_SURFACE_SAS, QSES_SURFACE_VDW};  // of measure
   BenchOptions bench;
@@ -102,6 +117,8 @@ struct Options {
   bool has_several_inputs() const { return inputs.size() > 1; }
   // For messages: 'a.xtc', or 'a.xtc' and 2 more.
   std::string quoted_trajectories() const;
+  // Whether frames and models have one picture each, seen the same way.
+  bool is_series() const { return !trajectories.empty() || read.model == 0; }
   bool wants_areas() const { return !per_atom.empty() || !per_residue.empty(); }
   // Whether standard output is taken by something that other programs read.
   bool prints_data() const;

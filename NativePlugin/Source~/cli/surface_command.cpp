@@ -2,6 +2,7 @@
 // quickses INPUT...: structures in, meshes and a report out.
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <optional>
 
 #include "cli/area_tables.h"
@@ -14,6 +15,7 @@
 #include "cli/mesh_output.h"
 #include "cli/progress.h"
 #include "cli/report.h"
+#include "cli/shown_output.h"
 #include "cli/text_output.h"
 #include "cli/used_files.h"
 #include "io/file_path.h"
@@ -23,7 +25,7 @@ namespace {
 
 // out.ply for one model; out_0001.ply and so on with --model all.
 std::string output_of_model(const Options &options, int model) {
-  if (options.output.empty() || options.read.model != 0) return options.output;
+  if (options.output.empty() || options.read.model != 0 || makes_page(options)) return options.output;
   const std::filesystem::path path = io::path_of(options.output);
   char number[16];
   std::snprintf(number, sizeof number, "_%04d", model);
@@ -51,14 +53,22 @@ class SurfaceRun {
     const Input input(options, options.quiet);
     timings_.read = input.read_ms;
     if (!engine_) start();
-    if (has_all_models() && !options.output.empty())
+    if (has_all_models() && !options.output.empty() && !makes_page(options))
       for (const io::Structure &structure : input.file.models)
         files_.check_mesh(output_of_model(options, structure.model));
+    const io::Structure &first = input.file.models.front();
+    std::unique_ptr<render::Page> page;
+    if (makes_page(options)) page = MeshOutput(input.options, first).begin_page(options.output);
     for (const io::Structure &structure : input.file.models) {
       Options model_options = input.options;
       model_options.output = output_of_model(options, structure.model);
-      run(model_options, structure);
+      MeshOutput output(model_options, structure);
+      if (structure.atoms.size() == first.atoms.size()) output.look_at(first.positions.data());
+      run(model_options, structure, output, page.get());
     }
+    if (!page) return;
+    page->finish();
+    hint_at_size(*page, options);
   }
 
   void add_failure(const Options &options, const Failure &failure) {
@@ -80,7 +90,7 @@ class SurfaceRun {
   }
 
   // options: of this model.
-  void run(const Options &options, const io::Structure &structure) {
+  void run(const Options &options, const io::Structure &structure, const MeshOutput &output, render::Page *page) {
     const qses_settings settings = mesh_settings_of(options);
     engine_->set_atoms(structure, options.input);
     std::optional<qses_size_estimate> predicted;
@@ -92,7 +102,11 @@ class SurfaceRun {
     }
     const qses_report report = engine_->report();
     const auto write_start = Clock::now();
-    MeshOutput(options, structure).accept(options.output, mesh, structure.positions.data());
+    const float *const centers = structure.positions.data();
+    if (page)
+      page->add(output.page_mesh(mesh, centers, has_all_models() ? "model " + std::to_string(structure.model) : ""));
+    else
+      output.accept(options.output, mesh, centers);
     tables_.write(
         make_area_rows(options, first_columns(options, structure), structure, areas_of(options.compute.surface, mesh)));
     timings_.write = ms_since(write_start);

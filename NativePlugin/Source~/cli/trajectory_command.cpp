@@ -15,6 +15,7 @@
 #include "cli/frame_ledger.h"
 #include "cli/frame_worker.h"
 #include "cli/progress.h"
+#include "cli/shown_output.h"
 #include "cli/text_output.h"
 #include "cli/used_files.h"
 
@@ -68,8 +69,10 @@ Share divide(const Options &options, const Processes &processes, size_t frame_co
 // Results in the order of the frames: table, report, messages, progress.
 class ResultWriter {
  public:
-  ResultWriter(const Options &options, size_t frame_count)
-      : csv_(options.csv),
+  ResultWriter(const Options &options, size_t frame_count, std::unique_ptr<render::Page> page)
+      : options_(options),
+        page_(std::move(page)),
+        csv_(options.csv),
         json_(options.json),
         areas_(options, surfaces_of(options)),
         progress_(frame_count, options.quiet) {
@@ -79,6 +82,7 @@ class ResultWriter {
   void begin() { progress_.begin(); }
 
   void write(const FrameResult &result) {
+    if (page_) page_->add(result.page);
     csv_.write(result.csv);
     json_.write(result.json);
     areas_.write({result.per_atom, result.per_residue});
@@ -94,6 +98,10 @@ class ResultWriter {
     progress_.clear();
     if (failed_ > kMostMessages)
       std::fprintf(stderr, "quickses: %zu more messages of failed frames are not shown\n", failed_ - kMostMessages);
+    if (page_) {
+      page_->finish();
+      hint_at_size(*page_, options_);
+    }
     csv_.finish();
     json_.finish();
     areas_.finish();
@@ -107,6 +115,8 @@ class ResultWriter {
     return {options.compute.surface};
   }
 
+  const Options &options_;
+  std::unique_ptr<render::Page> page_;  // null: there is none
   TextOutput csv_, json_;
   AreaTables areas_;
   FrameProgress progress_;
@@ -130,7 +140,9 @@ class Run {
         share_(divide(inputs_.options, processes, frames_.count)) {
     if (processes.is_first()) {
       if (inputs_.pattern) check_meshes();
-      writer_ = std::make_unique<ResultWriter>(inputs_.options, frames_.count);
+      const Options &used = inputs_.options;
+      writer_ = std::make_unique<ResultWriter>(
+          used, frames_.count, makes_page(used) ? inputs_.mesh_output.begin_page(used.output) : nullptr);
     }
     engines_ = std::make_unique<EnginePool>(share_.compute, share_.devices,
                                             [this](Engine &engine) { prepare_engine(engine, inputs_); });

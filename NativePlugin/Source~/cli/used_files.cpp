@@ -7,6 +7,7 @@
 
 #include "cli/each_input.h"
 #include "cli/exit_code.h"
+#include "cli/shown_output.h"
 #include "io/atomic_file.h"
 #include "io/file_path.h"
 #include "io/mesh_writer.h"
@@ -71,7 +72,7 @@ void UsedFiles::add_input(const char *flag, const std::string &name) {
 // name, not of what is in the file.
 void UsedFiles::add_meshes(const Options &options) {
   if (!options.has_several_inputs()) {
-    if (options.read.model == 0) return;
+    if (options.read.model == 0 && !makes_page(options)) return;
     for (const std::string &name : io::mesh_files_of(output_of_input(options.output, options.input)))
       add_output(kOutputFlag, name);
     return;
@@ -85,7 +86,7 @@ void UsedFiles::add_meshes(const Options &options) {
       if (!is_new)
         throw Failure(kUsage, file.flag + ": '" + *other->second + "' and '" + input + "' would both be written to '" +
                                   file.name + "'");
-      if (options.read.model == 0) continue;  // its meshes have names that are made of this one
+      if (options.read.model == 0 && !makes_page(options)) continue;  // its meshes have names that are made of this one
       if (inputs.count(comparable(file.place)) != 0) check(file);
       files_.push_back(file);
     }
@@ -102,7 +103,7 @@ UsedFiles::UsedFiles(const Options &options) {
   for (const std::string &input : options.inputs) add_input("INPUT", input);
   for (const std::string &trajectory : options.trajectories) add_input("--trajectory", trajectory);
   if (!io::is_radius_set(options.compute.radii)) add_input("--radii", options.compute.radii);
-  if (options.trajectories.empty() && !options.output.empty()) add_meshes(options);
+  if (!options.output.empty() && (options.trajectories.empty() || makes_page(options))) add_meshes(options);
   add_output("--csv", options.csv);
   add_output("--per-atom", options.per_atom);
   add_output("--per-residue", options.per_residue);

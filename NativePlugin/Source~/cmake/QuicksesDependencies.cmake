@@ -46,7 +46,7 @@ set(QUICKSES_HEADERS_FROM "" CACHE PATH "Folder whose header-only libraries serv
 mark_as_advanced(QUICKSES_HEADERS_FROM)
 if(QUICKSES_HEADERS_FROM)
   file(MAKE_DIRECTORY "${PROJECT_BINARY_DIR}/headers/include")
-  foreach(_name IN ITEMS CLI cub gemmi glm nlohmann tao thrust)
+  foreach(_name IN ITEMS CLI cub gemmi glm nlohmann stb tao thrust)
     if(EXISTS "${QUICKSES_HEADERS_FROM}/${_name}")
       file(CREATE_LINK "${QUICKSES_HEADERS_FROM}/${_name}" "${PROJECT_BINARY_DIR}/headers/include/${_name}" SYMBOLIC)
     endif()
@@ -173,6 +173,39 @@ if(QUICKSES_BUILD_CLI OR QUICKSES_BUILD_TESTS)
   quickses_find_headers(nlohmann_json nlohmann/json.hpp nlohmann_json::nlohmann_json)
   if(NOT TARGET nlohmann_json::nlohmann_json)
     quickses_fetch(nlohmann_json https://github.com/nlohmann/json.git v3.11.3)
+  endif()
+endif()
+
+if(QUICKSES_BUILD_CLI OR QUICKSES_BUILD_TESTS)
+  # ---- stb_image_write: the program's pictures. It has no releases, so a commit is pinned.
+  add_library(quickses_stb INTERFACE)
+  quickses_find_headers(stb stb/stb_image_write.h quickses_stb_headers)
+  if(NOT TARGET quickses_stb_headers)
+    if(NOT QUICKSES_FETCH)
+      message(FATAL_ERROR "stb was not found (${_how_to_get_it}).")
+    endif()
+    FetchContent_Declare(stb GIT_REPOSITORY https://github.com/nothings/stb.git
+      GIT_TAG 5736b15f7ea0ffb08dd38af21067c314d6a3aae9)
+    FetchContent_GetProperties(stb)
+    if(NOT stb_POPULATED)
+      FetchContent_Populate(stb)
+    endif()
+    configure_file("${stb_SOURCE_DIR}/stb_image_write.h" "${PROJECT_BINARY_DIR}/stb/stb/stb_image_write.h" COPYONLY)
+    target_include_directories(quickses_stb SYSTEM INTERFACE "${PROJECT_BINARY_DIR}/stb")
+  else()
+    target_link_libraries(quickses_stb INTERFACE quickses_stb_headers)
+  endif()
+
+  # ---- three.js: the program's pages. It is text, so a cross-compilation takes that of the machine that builds.
+  find_file(QUICKSES_THREE_JS three.min.js PATHS /usr/share/javascript/three /usr/share/nodejs/three/build
+    NO_CMAKE_FIND_ROOT_PATH DOC "three.js of a release up to r124, for pages (-o x.html)")
+  find_file(QUICKSES_THREE_CONTROLS_JS TrackballControls.js PATHS /usr/share/javascript/three/examples/js/controls
+    /usr/share/nodejs/three/examples/js/controls NO_CMAKE_FIND_ROOT_PATH DOC "Its TrackballControls")
+  mark_as_advanced(QUICKSES_THREE_JS QUICKSES_THREE_CONTROLS_JS)
+  if(QUICKSES_THREE_JS AND QUICKSES_THREE_CONTROLS_JS)
+    message(STATUS "three.js for pages: ${QUICKSES_THREE_JS}")
+  else()
+    message(STATUS "three.js was not found (libjs-three): the program will make no pages (-o x.html)")
   endif()
 endif()
 

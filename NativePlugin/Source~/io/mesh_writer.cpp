@@ -15,8 +15,9 @@ namespace {
 constexpr struct {
   const char *extension;
   MeshFormat format;
-} kExtensions[] = {{".obj", MeshFormat::kObj}, {".ply", MeshFormat::kPly}, {".stl", MeshFormat::kStl},
-                   {".glb", MeshFormat::kGlb}, {".off", MeshFormat::kOff}, {".vert", MeshFormat::kMsms}};
+} kExtensions[] = {{".obj", MeshFormat::kObj}, {".ply", MeshFormat::kPly},  {".stl", MeshFormat::kStl},
+                   {".glb", MeshFormat::kGlb}, {".off", MeshFormat::kOff},  {".vert", MeshFormat::kMsms},
+                   {".png", MeshFormat::kPng}, {".html", MeshFormat::kHtml}};
 
 }  // namespace
 
@@ -37,8 +38,10 @@ std::vector<std::string> mesh_files_of(const std::string &path) {
   return {path, utf8_of(name.replace_extension(".face"))};
 }
 
+bool is_shown(MeshFormat format) { return format == MeshFormat::kPng || format == MeshFormat::kHtml; }
+
 bool has_normals(MeshFormat format) {
-  return format == MeshFormat::kObj || format == MeshFormat::kPly || format == MeshFormat::kGlb;
+  return format == MeshFormat::kObj || format == MeshFormat::kPly || format == MeshFormat::kGlb || is_shown(format);
 }
 
 bool has_colors(MeshFormat format) { return format != MeshFormat::kStl && format != MeshFormat::kMsms; }
@@ -52,6 +55,7 @@ bool has_alpha(const MeshView &mesh) {
 }
 
 void write_mesh(const std::string &path, const MeshView &mesh, MeshFormat format, bool text) {
+  if (is_shown(format)) fail_usage("'" + path + "' is no file of a mesh");
   AtomicFile file(path);
   switch (format) {
     case MeshFormat::kObj:
@@ -75,6 +79,9 @@ void write_mesh(const std::string &path, const MeshView &mesh, MeshFormat format
       faces.commit();
       break;
     }
+    case MeshFormat::kPng:
+    case MeshFormat::kHtml:
+      break;
   }
   file.commit();
 }

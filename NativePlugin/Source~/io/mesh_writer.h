@@ -8,7 +8,8 @@
 
 namespace quickses::io {
 
-enum class MeshFormat { kObj, kPly, kStl, kGlb, kOff, kMsms };
+// The last two show a mesh, and are written elsewhere (render/): a picture and a web page.
+enum class MeshFormat { kObj, kPly, kStl, kGlb, kOff, kMsms, kPng, kHtml };
 
 // A mesh in the caller's memory.
 struct MeshView {
@@ -37,6 +38,8 @@ MeshFormat mesh_format_of(const std::string &path);
 // The files that write_mesh makes under this name: itself first.
 std::vector<std::string> mesh_files_of(const std::string &path);
 
+// Whether it shows a mesh and holds none that programs could read.
+bool is_shown(MeshFormat format);
 // Whether vertices have normals of their own, and colours.
 bool has_normals(MeshFormat format);
 bool has_colors(MeshFormat format);
@@ -58,7 +61,7 @@ bool has_repeated_vertices(MeshFormat format);
 //         colours; no normals
 //   MSMS  text; the vertices x.vert and the triangles x.face, as MSMS 2.6 writes them but for the numbers of analytical
 //         faces, which are 0, and six digits behind the point instead of three; needs owners and patches
-// text: of PLY only.
+// text: of PLY only. format: not one that is_shown.
 void write_mesh(const std::string &path, const MeshView &mesh, MeshFormat format, bool text = false);
 
 }  // namespace quickses::io

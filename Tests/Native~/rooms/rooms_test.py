@@ -30,7 +30,8 @@ ROOMS = {
     "jobs": "include parallel surface kept",
     "io": "",
     "capi": "include parallel surface/cpu surface/stages surface kept graphics jobs io",
-    "cli": "include io",
+    "render": "io",
+    "cli": "include io render",
 }
 # What only the CPU's side may see.
 CPU_HEADERS = re.compile(r"tbb/|omp\.h$|thrust/system/(tbb|omp)/")

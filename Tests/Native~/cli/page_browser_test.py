@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: MIT
+"""Opens pages of the quickses program in Chromium, without a window, and looks at what is to be seen. Skipped (77) where
+there is no Chromium, where it has no WebGL, and where the program was built without three.js.
+
+usage: page_browser_test.py PROGRAM
+"""
+import math
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import cli_test
+from cli_picture_test import BLUE, FILL, RADIUS, RED, TWO_ATOMS, atom, project
+from cli_test import ProgramTest, program_to_test
+from png_files import Picture
+
+SIZE = (640, 480)
+BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+SKIPPED = 77
+
+
+def browse(browser, page, folder, *arguments):
+    """Standard output of the browser, which can reach nothing but the page."""
+    return subprocess.run(
+        [browser, "--headless", "--no-sandbox", "--disable-gpu", "--use-gl=angle", "--use-angle=swiftshader",
+         "--enable-unsafe-swiftshader", "--hide-scrollbars", "--force-device-scale-factor=1", "--no-first-run",
+         "--proxy-server=127.0.0.1:1", f"--user-data-dir={folder}/profile", "--window-size=%d,%d" % SIZE,
+         "--virtual-time-budget=5000", *arguments, page],
+        stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, encoding="utf-8", timeout=120).stdout
+
+
+def why_not(browser, program):
+    if not browser:
+        return "there is no Chromium"
+    with tempfile.TemporaryDirectory() as folder:
+        structure, page = pathlib.Path(folder) / "a.pdb", pathlib.Path(folder) / "a.html"
+        structure.write_text(TWO_ATOMS)
+        made = subprocess.run([program, structure, "-o", page], capture_output=True, encoding="utf-8")
+        if "three.js" in made.stderr:
+            return made.stderr
+        page.write_text("<body><script>document.body.textContent = 'WebGL: ' + "
+                        "!!document.createElement('canvas').getContext('webgl')</script>")
+        if "WebGL: true" not in browse(browser, page.as_uri(), folder, "--dump-dom"):
+            return "Chromium has no WebGL here"
+    return ""
+
+
+class Browser(ProgramTest):
+    def open(self, fragment="", *arguments):
+        return browse(BROWSER, (self.folder / "a.html").as_uri() + fragment, self.folder, *arguments)
+
+    def screenshot(self, fragment=""):
+        self.open(fragment, f"--screenshot={self.folder}/a.png")
+        seen = Picture(self.folder / "a.png")
+        self.assertEqual((seen.width, seen.height), SIZE)
+        return seen
+
+    def assert_seen(self, seen, atoms, middle, distance, scale, background):
+        """Spheres, each {element: (place, channel)}, none in front of another, fill their outlines and no more."""
+        for element, (place, channel) in atoms.items():
+            x, y = project(place, middle, distance, scale, SIZE)
+            radius = RADIUS[element] * scale * distance / (distance - place[2] + middle[2])
+            for angle in range(0, 360, 15):
+                across, down = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+                for part in (0, 0.5, 0.93):
+                    pixel = seen.pixel(int(x + part * radius * across), int(y + part * radius * down))
+                    self.assertEqual(max(range(3), key=pixel.__getitem__), channel, (element, angle, part, pixel))
+                beside = (int(x + 1.08 * radius * across), int(y + 1.08 * radius * down))
+                if 0 <= beside[0] < SIZE[0] and 0 <= beside[1] < SIZE[1]:
+                    self.assertEqual(seen.pixel(*beside)[:3], background)
+
+    def test_two_atoms(self):
+        self.write("in.pdb", TWO_ATOMS)
+        self.run_cpu("in.pdb", "-v", "0.2", "-o", "a.html", "--view", "z", "--background", "#102030")
+        low, high = -4 - RADIUS["O"], 4 + RADIUS["N"]
+        middle = ((low + high) / 2, 0, 0)
+        distance = 6 * (high - low) / 2
+        half = max(distance * math.tan(math.atan2(abs(x - middle[0]), distance)
+                                       + math.asin(RADIUS[e] / math.hypot(x - middle[0], distance)))
+                   for e, x in (("O", -4), ("N", 4)))
+        self.assert_seen(self.screenshot(), {"O": ((-4, 0, 0), RED), "N": ((4, 0, 0), BLUE)}, middle, distance,
+                         FILL / 2 * SIZE[0] / half, (0x10, 0x20, 0x30))
+
+    def test_frames(self):
+        models = "".join("MODEL     %4d\n%sENDMDL\n" % (k, atom(1, element, 0, 0, 0))
+                         for k, element in ((1, "O"), (2, "O"), (3, "O")))
+        self.write("m.pdb", models)
+        self.run_cpu("m.pdb", "--trajectory", "m.pdb", "-v", "0.3", "-o", "a.html", "--view", "z")
+        for fragment, number in (("", 0), ("#2", 1), ("#3", 2), ("#9", 0), ("#<b>", 0)):
+            page = self.open(fragment, "--dump-dom")
+            self.assertIn(f">frame {number}<", page)
+            self.assertRegex(page, r'id="triangles">[0-9,]{3,}<')
+            self.assertRegex(page, r'id="trouble" hidden')
+        middle = self.screenshot("#3").pixel(SIZE[0] // 2, SIZE[1] // 2)
+        self.assertEqual(max(range(3), key=middle.__getitem__), RED)
+
+    @unittest.skipIf(os.name == "nt", "no such names there")
+    def test_names_do_not_run(self):
+        self.write("<img src=x onerror=document.title='ran'>.pdb", TWO_ATOMS)
+        self.run_cpu("<img src=x onerror=document.title='ran'>.pdb", "-o", "a.html")
+        page = self.open("", "--dump-dom")
+        self.assertIsNone(re.search(r"<img", page))
+        self.assertRegex(page, r"<title>&lt;img")
+        self.assertRegex(page, r'id="triangles">[0-9,]{3,}<')
+
+
+if __name__ == "__main__":
+    cli_test.PROGRAM = program_to_test("", __doc__)
+    BROWSER = next(filter(None, map(shutil.which, BROWSERS)), None)
+    reason = why_not(BROWSER, cli_test.PROGRAM)
+    if reason:
+        print("skipped:", reason)
+        sys.exit(SKIPPED)
+    unittest.main()
