@@ -96,7 +96,8 @@ std::string values_of_command(const CLI::App &app, const std::string &command) {
 }  // namespace
 
 std::string manual_page(const CLI::App &app, const std::string &version) {
-  std::string_view rest = app.get_description(), line;
+  const std::string description = app.get_description();
+  std::string_view rest = description, line;
   io::next_line(rest, line);
   std::string text = ".\\\" Made by quickses --help-man\n.TH QUICKSES 1 \"\" \"quickses " + version +
                      "\" \"User Commands\"\n.SH NAME\nquickses \\- molecular surfaces as closed triangle meshes\n" +
