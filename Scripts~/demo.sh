@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Installs what is missing, builds the quickses program for the CPU, computes the surface of crambin (PDB entry 1CRN),
-# and says what it made and where.
+# Installs what is missing, builds the quickses program for the CPU, computes the surface of crambin (PDB entry 1CRN), draws
+# it, and says what it made and where.
 #   bash Scripts~/demo.sh
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -18,6 +18,10 @@ program=.build/cpu/bin/quickses
 input=Tests/Data~/1CRN.pdb
 "$program" "$input" -o .build/demo/1crn.obj --json .build/demo/1crn.json --quiet
 "$program" "$input" -o .build/demo/1crn.ply --quiet
+"$program" "$input" -o .build/demo/1crn.png --color residue --quiet
+page=.build/demo/1crn.html
+rm -f "$page"
+"$program" "$input" -o "$page" --color residue --quiet || page= # it says why: pages need libjs-three
 
 python3 - "$input" .build/demo/1crn.json <<'PYTHON'
 import json, sys
@@ -30,4 +34,7 @@ PYTHON
 for file in .build/demo/1crn.obj .build/demo/1crn.ply; do
   echo "  $PWD/$file ($(du -h "$file" | cut -f1))"
 done
-echo "Open either file with a mesh viewer such as MeshLab or Blender. The program: $PWD/$program --help"
+echo "Open either file with a mesh viewer such as MeshLab or Blender."
+echo "  $PWD/.build/demo/1crn.png: a picture of it"
+if [ -n "$page" ]; then echo "  $PWD/$page: a page to turn it in a browser"; fi
+echo "The program: $PWD/$program --help"

@@ -3,7 +3,7 @@
 # Makes the pictures of the documentation anew with the built program (bash Scripts~/demo.sh builds it).
 #   bash Scripts~/pictures.sh FOLDER
 # FOLDER holds 3EAM.pdb.gz and 1AON.pdb.gz of the Protein Data Bank (https://files.rcsb.org/download/3EAM.pdb.gz and
-# .../1AON.pdb.gz). Takes some minutes.
+# .../1AON.pdb.gz). Takes a minute. Needs optipng and Pillow (optipng, python3-pil), which make the files small.
 set -euo pipefail
 if [ $# -ne 1 ] || [ ! -d "$1" ]; then
   sed -n '3,6s/^# //p' "$0" >&2
@@ -12,20 +12,25 @@ fi
 data=$(cd "$1" && pwd)
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-quickses=.build/cpu/bin/quickses
-work=.build/pictures
 images=Documentation~/images
-mkdir -p "$work" "$images"
-g++ -O3 -march=native -std=c++17 -pthread Scripts~/render/render.cpp -lz -o "$work/render"
+draw() { # INPUT NAME FLAG...
+  .build/cpu/bin/quickses "$1" -o "$images/$2" --quiet --background transparent "${@:3}"
+  # Shades in steps of 3: half as large, and nobody sees it.
+  /usr/bin/python3 - "$images/$2" <<'PYTHON'
+import sys
+from PIL import Image
+image = Image.open(sys.argv[1])
+*colors, last = image.split()
+if image.mode == "RGB":
+    colors.append(last)
+steps = [channel.point(lambda value: 3 * round(value / 3)) for channel in colors]
+Image.merge(image.mode, steps if image.mode == "RGB" else steps + [last]).save(sys.argv[1])
+PYTHON
+  optipng -quiet -o5 "$images/$2"
+}
 
-"$quickses" Tests/Data~/1CRN.pdb -o "$work/1CRN.ply" --quiet
-"$quickses" "$data/3EAM.pdb.gz" -o "$work/3EAM.ply" --quiet
-"$quickses" "$data/1AON.pdb.gz" -o "$work/1AON.ply" --quiet
-
-"$work/render" "$work/1CRN.ply" Tests/Data~/1CRN.pdb "$images/1crn.png" --color element --size 640x520
-"$work/render" "$work/1CRN.ply" Tests/Data~/1CRN.pdb "$images/1crn-triangles.png" --color element --edges --size 640x400 --zoom 2.6
-"$work/render" "$work/3EAM.ply" "$data/3EAM.pdb.gz" "$images/3eam.png" --color chain \
-  --up -0.4541,0,-0.8909 --turn 10,10 --size 480x640
-"$work/render" "$work/1AON.ply" "$data/1AON.pdb.gz" "$images/1aon.png" --color chain --run 7 \
-  --up 0,0,-1 --turn 0,12 --size 540x640
+draw Tests/Data~/1CRN.pdb 1crn.png --color residue --size 640x520
+draw Tests/Data~/1CRN.pdb 1crn-triangles.png --color residue --edges --size 640x400 --zoom 2.6
+draw "$data/3EAM.pdb.gz" 3eam.png --up -0.4541,0,-0.8909 --turn 10,10 --size 480x640
+draw "$data/1AON.pdb.gz" 1aon.png --view x --up z --turn 0,12 --size 540x640
 ls -l "$images"

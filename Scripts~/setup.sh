@@ -37,6 +37,7 @@ needs=(
   "gemmi-dev gemmi/version.hpp"
   "tao-pegtl-dev tao/pegtl.hpp"
   "libcli11-dev CLI/CLI.hpp"
+  "libstb-dev stb/stb_image_write.h"
   "nlohmann-json3-dev nlohmann/json.hpp"
   "libgtest-dev gtest/gtest.h"
   "patchelf patchelf"
@@ -72,8 +73,10 @@ has_cuda_toolkit() {
 
 has_candidate() { [[ $(apt-cache policy "$1" 2>/dev/null) == *"  Candidate: "[!\(]* ]]; }
 
-# ---- what more tests need, which are left out without it: where the system does not offer it, it is not missing
+# ---- what pages (-o x.html) and more tests need, which are left out without it: where the system does not offer it, it is not missing
 optional=(
+  # Draws in pages (quickses x.pdb -o x.html): a part of the program.
+  "libjs-three /usr/share/javascript/three/three.min.js"
   # Versions differ in small things, so check-format asserts what 14 writes (Debian 12; Ubuntu 22.04, 24.04).
   "clang-format-14 clang-format-14"
   # Compile the package's shaders and draw with them.
@@ -129,7 +132,7 @@ if ! command -v apt-get >/dev/null; then
   fail "can install on Debian and Ubuntu only, and $system has no apt-get.
 Missing here (Debian's package names): ${missing[*]}
 Needed in all: CMake 3.22, Ninja, a C++17 compiler, Python 3, zlib, Thrust 1.15, oneTBB, GLM, gemmi (and PEGTL with
-gemmi 0.5), CLI11, nlohmann-json, GoogleTest, PyYAML, patchelf; for the GPU the CUDA Toolkit 11.8 or later and Clang 18
+gemmi 0.5), CLI11, nlohmann-json, stb, GoogleTest, PyYAML, patchelf; for the GPU the CUDA Toolkit 11.8 or later and Clang 18
 or later; for many processes an MPI library."
 fi
 as_root=()

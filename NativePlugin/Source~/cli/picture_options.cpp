@@ -75,7 +75,7 @@ void add_picture_options(CLI::App *app, PictureOptions &picture) {
       "From where it is seen: x, -z, or as 1,0,2.5. Default: so that the longest of the molecule's principal axes lies "
       "along the longer side of the picture, and the shortest points at the eye",
       "AXIS|X,Y,Z", [&picture](const std::string &text) { picture.toward = read_direction("--view", text); });
-  add("--up", "The direction that points upwards; default with --view: z, seen along z y", "AXIS|X,Y,Z",
+  add("--up", "The direction that points upwards. Default with --view: z, or y where it is seen along z", "AXIS|X,Y,Z",
       [&picture](const std::string &text) { picture.up = read_direction("--up", text); });
   add("--turn", "Degrees to turn it then, about the vertical and about the horizontal: 30,-15", "SPIN,NOD",
       [&picture](const std::string &text) {

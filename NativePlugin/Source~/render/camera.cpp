@@ -80,8 +80,10 @@ float reach(float across, float near, float radius, float distance) {
 Camera::Camera(const Balls &balls, const View &view, bool is_tall) : filled_(view.fill * view.zoom) {
   if (view.toward) {
     toward = glm::normalize(*view.toward);
-    const vec3 vertical = view.up ? glm::normalize(*view.up) : vec3(0, 0, 1);
-    up = are_parallel(vertical, toward) ? vec3(0, 1, 0) : vertical;
+    for (const vec3 vertical : {view.up ? glm::normalize(*view.up) : vec3(0, 0, 1), vec3(0, 0, 1), vec3(0, 1, 0)}) {
+      up = vertical;
+      if (!are_parallel(up, toward)) break;
+    }
   } else {
     const glm::dmat3 axes = principal_axes(balls);
     toward = axes[2], up = axes[is_tall ? 0 : 1];

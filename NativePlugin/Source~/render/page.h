@@ -16,7 +16,7 @@ namespace quickses::render {
 // Throws io::Error (usage) if the program was built without three.js.
 void check_pages_can_be_made();
 
-// A mesh as a page has it: text in base64 and what is needed to read it, some 16 bytes per vertex and 4 per triangle.
+// A mesh as a page has it: text in base64 and what is needed to read it, some 16 bytes per vertex and 6 per triangle.
 // Positions have 16 bits per axis of the mesh's box, less the middle, which the camera looks at; normals two bytes
 // (octahedral, within a degree); colours and openness a byte each; triangles are differences of vertices' numbers in
 // as many bytes as they need. label: of the frame.

@@ -110,6 +110,7 @@
 
   let stale = true;
   const reset = () => {
+    controls.update();  // what a hand did before must not come after
     controls.target.set(0, 0, 0);
     camera.position.copy(vector(told.toward).multiplyScalar(distance));
     camera.up.copy(vector(told.up));
@@ -157,13 +158,15 @@
   };
 
   const play = byId('play'), framesPerSecond = 12;
-  let playing = false, due = 0;
+  const step = (by) => show((current + by + meshes.length) % meshes.length);
+  let playing = false, timer;
   const setPlaying = (now) => {
     playing = now;
+    clearInterval(timer);
+    if (playing) timer = setInterval(() => step(1), 1000 / framesPerSecond);
     play.textContent = playing ? '\u275a\u275a' : '\u25b6';
     play.setAttribute('aria-label', playing ? 'Pause' : 'Play');
   };
-  const step = (by) => show((current + by + meshes.length) % meshes.length);
   if (meshes.length > 1) {
     byId('player').hidden = false;
     byId('slider').max = meshes.length - 1;
@@ -182,12 +185,8 @@
     });
   }
 
-  const tick = (time) => {
+  const tick = () => {
     window.requestAnimationFrame(tick);
-    if (playing && time >= due) {
-      step(1);
-      due = time + 1000 / framesPerSecond;
-    }
     controls.update();
     if (!stale) return;
     stale = false;
@@ -198,10 +197,10 @@
     renderer.render(scene, camera);
   };
 
+  resize();
+  reset();
   // "page.html#3" begins with the third frame.
   const asked = parseInt(location.hash.slice(1), 10);
   show(asked >= 1 && asked <= meshes.length ? asked - 1 : 0);
-  reset();
-  resize();
-  tick(0);
+  tick();
 })();

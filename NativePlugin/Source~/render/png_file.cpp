@@ -45,6 +45,7 @@ void write_png(const std::string &path, const Image &image) {
   bool is_opaque = true;
   for (size_t k = 3; k < image.rgba.size(); k += 4) is_opaque = is_opaque && image.rgba[k] == 255;
   std::vector<uint8_t> rgb;
+  if (is_opaque) rgb.reserve(image.rgba.size() / 4 * 3);
   if (is_opaque)
     for (size_t k = 0; k < image.rgba.size(); ++k)
       if (k % 4 != 3) rgb.push_back(image.rgba[k]);

@@ -124,6 +124,11 @@ class Pictures(PictureTest):
                 self.assertTrue(places)
                 self.assert_two_atoms(seen, places)
 
+    def test_upwards_along_the_view(self):
+        for axis in "xyz":  # then something else is upwards
+            seen = self.picture(TWO_ATOMS, "--size", "60x40", "--background", "transparent", "--view", axis, "--up", axis)
+            self.assertGreater(sum(map(sum, seen.alphas())), 255 * 100)
+
     def test_the_longest_axis_lies_along_the_longer_side(self):
         for place in ((1, 0, 0), (0.6, 0.8, 0), (0, 0.6, 0.8)):
             content = "".join(atom(k, "C", *(3 * k * x for x in place)) for k in range(8))

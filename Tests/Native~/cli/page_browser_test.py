@@ -99,6 +99,73 @@ class Browser(ProgramTest):
         middle = self.screenshot("#3").pixel(SIZE[0] // 2, SIZE[1] // 2)
         self.assertEqual(max(range(3), key=middle.__getitem__), RED)
 
+    def seen_after(self, script):
+        """(where the red pixels are on average, how many, the same of blue) after events of a hand."""
+        page = self.folder / "a.html"
+        if not hasattr(self, "text"):
+            self.text = page.read_text()
+        hand = """const view = document.getElementById('view');
+            const mouse = (target, kind, x, y, more) => target.dispatchEvent(
+                new MouseEvent(kind, {clientX: x, clientY: y, bubbles: true, cancelable: true, ...more}));
+            const touch = (kind, ...places) => {
+              const touches = places.map(([x, y], k) => new Touch(
+                  {identifier: k, target: view, clientX: x, clientY: y, pageX: x, pageY: y}));
+              view.dispatchEvent(new TouchEvent(kind, {touches, changedTouches: touches, bubbles: true, cancelable: true}));
+            };
+            const steps = [];
+            const next = () => { if (steps.length) { steps.shift()(); setTimeout(next, 100); } };
+            setTimeout(next, 100);\n"""
+        page.write_text(self.text.replace("</body>", f"<script>{hand}{script}</script></body>"))
+        seen, found = self.screenshot(), {RED: [], BLUE: []}
+        for y in range(60, SIZE[1]):
+            for x in range(SIZE[0]):
+                pixel = seen.pixel(x, y)[:3]
+                if max(pixel) - min(pixel) > 60:
+                    found[max(range(3), key=pixel.__getitem__)].append(x)
+        return [value for channel in (RED, BLUE)
+                for value in (sum(found[channel]) / max(1, len(found[channel])), len(found[channel]))]
+
+    def test_a_hand_turns_zooms_and_resets(self):
+        self.write("in.pdb", atom(1, "O", 0, 0, 5) + atom(2, "N", 0, 0, -5))
+        self.run_cpu("in.pdb", "-v", "0.4", "-o", "a.html", "--view", "z", "--up", "y", "--zoom", "0.3")
+        red, red_count, _, blue_count = self.seen_after("")
+        self.assertAlmostEqual(red, SIZE[0] / 2, delta=2)
+        self.assertEqual(blue_count, 0)  # behind
+        drag = """steps.push(() => mouse(view, 'mousedown', 300, 240, {button: 0}),
+            () => mouse(document, 'mousemove', 340, 240), () => mouse(document, 'mousemove', 380, 240),
+            () => mouse(document, 'mouseup', 380, 240));\n"""
+        swipe = """steps.push(() => touch('touchstart', [300, 240]), () => touch('touchmove', [340, 240]),
+            () => touch('touchmove', [380, 240]), () => touch('touchend'));\n"""
+        for turn in (drag, swipe):
+            turned = self.seen_after(turn)
+            self.assertGreater(turned[0], red + 20)  # the near one goes with the hand, the far one the other way
+            self.assertGreater(turned[3], 0)
+            self.assertLess(turned[2], red - 20)
+        again = self.seen_after(drag + "steps.push(() => mouse(view, 'dblclick', 300, 240));")
+        self.assertAlmostEqual(again[0], red, delta=1)
+        self.assertAlmostEqual(again[1], red_count, delta=0.01 * red_count)
+        wheel = "steps.push(() => view.dispatchEvent(new WheelEvent('wheel', {deltaY: -100, bubbles: true, cancelable: true})));"
+        self.assertGreater(self.seen_after(wheel)[1], 1.05 * red_count)
+        pan = """steps.push(() => mouse(view, 'mousedown', 300, 240, {button: 2}),
+            () => mouse(document, 'mousemove', 340, 240), () => mouse(document, 'mousemove', 400, 240),
+            () => mouse(document, 'mouseup', 400, 240));"""
+        self.assertGreater(self.seen_after(pan)[0], red + 5)
+
+    def test_it_plays(self):
+        models = "".join("MODEL     %4d\n%sENDMDL\n" % (k, atom(1, "O", 0, 0, 0)) for k in range(1, 6))
+        self.write("m.pdb", models)
+        self.run_cpu("m.pdb", "--model", "all", "-v", "1", "-o", "a.html")
+        page = self.folder / "a.html"
+        watch = """<script>
+          const seen = new Set(), label = document.getElementById('label');
+          new MutationObserver(() => seen.add(label.textContent)).observe(label, {childList: true});
+          document.getElementById('play').click();
+          setTimeout(() => { document.getElementById('play').click(); document.title = [...seen].join(); }, 1500);
+        </script></body>"""
+        page.write_text(page.read_text().replace("</body>", watch))
+        title = re.search("<title>(.*)</title>", self.open("", "--dump-dom"))
+        self.assertEqual(title[1], "model 2,model 3,model 4,model 5,model 1")
+
     @unittest.skipIf(os.name == "nt", "no such names there")
     def test_names_do_not_run(self):
         self.write("<img src=x onerror=document.title='ran'>.pdb", TWO_ATOMS)

@@ -200,6 +200,8 @@ TEST_F(MeshWriterTest, MeshFormatFollowsTheExtension) {
   EXPECT_EQ(mesh_format_of("c.glb"), MeshFormat::kGlb);
   EXPECT_EQ(mesh_format_of("c.off"), MeshFormat::kOff);
   EXPECT_EQ(mesh_format_of("c.vert"), MeshFormat::kMsms);
+  EXPECT_EQ(mesh_format_of("c.PNG"), MeshFormat::kPng);
+  EXPECT_EQ(mesh_format_of("c.html"), MeshFormat::kHtml);
   for (const char *name : {"c.xyz", "c", "obj"}) {
     const std::string message = error_of(ErrorKind::kUsage, [&] { mesh_format_of(name); });
     for (const char *known : {".obj", ".ply", ".stl", ".glb", ".off", ".vert"}) EXPECT_HAS(message, known);
