@@ -170,18 +170,23 @@ class Painter {
     const auto [x0, x1] = samples_between(low, high, columns_);
     const auto [row0, row1] = rows_of(t);
     const float area = static_cast<float>(area_of(t));
-    for (int y = std::max(row0, band.first); y < std::min(row1, band.end); ++y)
-      for (int x = x0; x < x1; ++x) {
-        const int64_t px = x * kSubpixels + kSubpixels / 2, py = y * kSubpixels + kSubpixels / 2;
-        const int64_t wa = -cross(b, c, px, py), wb = -cross(c, a, px, py), wc = -cross(a, b, px, py);
-        if (wa < 0 || wb < 0 || wc < 0) continue;
+    // What is beside each side changes by the same from sample to sample.
+    const int64_t step_a = (c.y - b.y) * kSubpixels, step_b = (a.y - c.y) * kSubpixels,
+                  step_c = (b.y - a.y) * kSubpixels;
+    const int64_t px = x0 * kSubpixels + kSubpixels / 2;
+    for (int y = std::max(row0, band.first); y < std::min(row1, band.end); ++y) {
+      const int64_t py = y * kSubpixels + kSubpixels / 2;
+      int64_t wa = -cross(b, c, px, py), wb = -cross(c, a, px, py), wc = -cross(a, b, px, py);
+      size_t at = sample(band, x0, y);
+      for (int x = x0; x < x1; ++x, ++at, wa += step_a, wb += step_b, wc += step_c) {
+        if ((wa | wb | wc) < 0) continue;
         const float z =
             (static_cast<float>(wa) * a.z + static_cast<float>(wb) * b.z + static_cast<float>(wc) * c.z) / area;
-        const size_t at = sample(band, x, y);
         if (z <= band.depth[at]) continue;
         band.depth[at] = z;
         band.triangle[at] = t;
       }
+    }
   }
 
   vec3 color_of(uint32_t vertex) const {

@@ -12,11 +12,13 @@
 
 namespace {
 
+constexpr int kLevel = 6;  // higher ones take several times as long, for some percent
+
 // As stb_image_write wants it: memory of malloc, or null.
-unsigned char *pack_by_zlib(unsigned char *data, int size, int *packed_size, int level) {
+unsigned char *pack_by_zlib(unsigned char *data, int size, int *packed_size, int) {
   uLongf packed = compressBound(static_cast<uLong>(size));
   auto *memory = static_cast<unsigned char *>(std::malloc(packed));
-  if (memory && compress2(memory, &packed, data, static_cast<uLong>(size), level) != Z_OK) {
+  if (memory && compress2(memory, &packed, data, static_cast<uLong>(size), kLevel) != Z_OK) {
     std::free(memory);
     memory = nullptr;
   }

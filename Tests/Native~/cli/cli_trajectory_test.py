@@ -262,7 +262,7 @@ class Faults(TrajectoryTest):
         for name in ("f.ply", "f%s.ply", "f%.ply", "f%d_%d.ply", "f%5.2d.ply", "f%-5d.ply", "f%0999d.ply", "f%n.ply",
                      "f%ld.ply"):
             self.assert_frames_fail(USAGE, ["--output (-o)", name], "-o", name)
-        self.assert_frames_fail(USAGE, ["--output (-o)", ".ply"], "-o", "f%d.png")
+        self.assert_frames_fail(USAGE, ["--output (-o)", ".ply"], "-o", "f%d.gif")
 
     def test_flags_that_do_not_go_together(self):
         for flags in (["--frames", "1:2"], ["--unwrap"], ["--csv", "a.csv"], ["--workers", "2"]):
