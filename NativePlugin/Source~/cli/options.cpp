@@ -209,8 +209,10 @@ void check(const Options &options, const std::function<bool(const char *)> &give
   const bool is_gaussian = options.compute.surface == QSES_SURFACE_GAUSSIAN;
   if (is_gaussian && options.compute.creases == Switch::kOn)
     throw Failure(kUsage, "--creases on: a Gaussian surface has none");
+  const bool measures = options.command == Options::Command::kMeasure;  // which knows no such flag
   for (const char *flag : {"--radius-scale", "--isovalue"})
-    if (!is_gaussian && given(flag)) throw Failure(kUsage, std::string(flag) + ": is for --surface gaussian");
+    if (!is_gaussian && !measures && given(flag))
+      throw Failure(kUsage, std::string(flag) + ": is for --surface gaussian");
   if (options.compute.method == QSES_METHOD_GRID && options.compute.creases == Switch::kOn)
     throw Failure(kUsage, "--creases on: --method grid does not know where creases are");
   if (options.command == Options::Command::kBench) {
@@ -253,8 +255,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
       "Molecular surfaces as closed triangle meshes.\n\n"
       "  quickses INPUT [-o OUT.ply|OUT.obj|OUT.glb|OUT.stl|OUT.off|OUT.vert] [options]\n"
       "  quickses INPUT... [-o out/%s.ply] [options]\n"
-      "  quickses INPUT --trajectory FILE [--trajectory FILE...] [--frames A:B:STEP] [--csv FILE] [-o frame_%05d.ply] "
-      "[options]\n"
+      "  quickses INPUT --trajectory FILE [--frames A:B:STEP] [--csv FILE] [-o frame_%05d.ply] [options]\n"
       "  quickses measure INPUT... [--surface sas,vdw,ses] [--per-atom FILE] [--per-residue FILE] [options]\n"
       "  quickses cavities INPUT [--csv FILE] [options]\n"
       "  quickses bench FILE... [--repeat N] [--copies N] [--small N | --jobs] [options]\n",
@@ -345,6 +346,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
     options.command = value;
   }
   if (!options.inputs.empty()) options.input = options.inputs.front();
+  if (used == &app && options.has_several_inputs()) check_command(app, options.input);
   resolve_output(options);
   if (options.compute.creases == Switch::kDefault) {
     const bool is_many = options.command == Options::Command::kBench || !options.trajectories.empty();
