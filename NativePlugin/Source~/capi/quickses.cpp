@@ -51,8 +51,8 @@ void check_settings(const qses_settings &s) {
   }
   check_range("settings.frame_budget_ms", static_cast<double>(s.frame_budget_ms), 0, 60000, " ms");
   check_range("settings.show_ms_per_mb", static_cast<double>(s.show_ms_per_mb), 0, 60000, " ms");
-  check_range("settings.gaussian_radius_scale", static_cast<double>(s.gaussian_radius_scale), 0.05, 10, "");
-  check_range("settings.gaussian_isovalue", static_cast<double>(s.gaussian_isovalue), 0.01, 1000, "");
+  check_range("settings.gaussian_radius_scale", static_cast<double>(s.gaussian_radius_scale), 0.05f, 10, "");
+  check_range("settings.gaussian_isovalue", static_cast<double>(s.gaussian_isovalue), 0.01f, 1000, "");
   if (s.surface == QSES_SURFACE_GAUSSIAN && (s.patch_types || s.creases || s.hard_edges))
     invalid("settings.patch_types, creases and hard_edges are not available with surface GAUSSIAN");
   if (s.method == QSES_METHOD_GRID && s.surface != QSES_SURFACE_SES)

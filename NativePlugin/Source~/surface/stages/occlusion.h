@@ -199,11 +199,20 @@ struct OpenNodes {
     const uint64_t stays_x = static_cast<uint64_t>(0xf >> rx) * 0x1111111111111111ull;
     const uint64_t stays_y = static_cast<uint64_t>(0xffff >> 4 * ry) * 0x0001000100010001ull;
     const auto along_x = [&](int k) {
+#if !defined(__CUDA_ARCH__)
+      if (rx == 0) return scratch.outside[k][word];  // a GPU's threads have different ways to go
+#endif
       return (scratch.outside[k][word] >> rx & stays_x) | (scratch.outside[k + 1][word] << (4 - rx) & ~stays_x);
     };
     const auto along_y = [&](int k) {
+#if !defined(__CUDA_ARCH__)
+      if (ry == 0) return along_x(k);
+#endif
       return (along_x(k) >> 4 * ry & stays_y) | (along_x(k + kEdge) << (16 - 4 * ry) & ~stays_y);
     };
+#if !defined(__CUDA_ARCH__)
+    if (rz == 0) return along_y(first);
+#endif
     return along_y(first) >> 16 * rz | along_y(first + kEdge * kEdge) << 1 << (63 - 16 * rz);
   }
 
