@@ -197,8 +197,10 @@ namespace QuickSes.Tests
         [UnityTest]
         public IEnumerator TextureCoordinatesComeAndGoWithoutAComputation([Values] bool isOccluded)
         {
-            _rig.Surface.AmbientOcclusion = isOccluded;
             yield return Show(AtomColoring.Vertices);
+            _rig.Surface.AmbientOcclusion = isOccluded;
+            yield return _rig.Settle();
+            _jobs = SurfaceScheduler.LastJob;
             Vector2[] occlusion = _rig.Surface.Mesh.uv2;
             var texcoords = new Vector2[Atoms];
             for (int round = 0; round < 2; ++round)

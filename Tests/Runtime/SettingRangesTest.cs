@@ -43,7 +43,7 @@ namespace QuickSes.Tests
         public void Choices()
         {
             MolecularSurface surface = _rig.Surface;
-            foreach (int wrong in new[] { -1, 3, int.MaxValue })
+            foreach (int wrong in new[] { -1, 4, int.MaxValue })
             {
                 Assert.That(() => surface.Surface = (SurfaceKind)wrong, Throws.TypeOf<ArgumentOutOfRangeException>());
                 Assert.That(() => surface.Method = (SurfaceMethod)wrong, Throws.TypeOf<ArgumentOutOfRangeException>());

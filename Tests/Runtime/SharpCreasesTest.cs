@@ -31,7 +31,8 @@ namespace QuickSes.Tests
         public void TearDown() => _rig.Dispose();
 
         [UnityTest]
-        public IEnumerator WhatRestsIsSharpByDefault([Values] SurfaceKind kind)
+        public IEnumerator WhatRestsIsSharpByDefault(
+            [Values(SurfaceKind.Ses, SurfaceKind.Sas, SurfaceKind.Vdw)] SurfaceKind kind)
         {
             _rig.Surface.Surface = kind;
             _rig.Surface.SetAtoms(_positions, _radii);

@@ -54,7 +54,8 @@ namespace QuickSes.Tests
             bool[] visible = null)
         {
             SurfaceSettings settings = SettingsOf(surface);
-            settings.Creases = settings.HardEdges = surface.SharpCreases && !isMoving;
+            settings.Creases = settings.HardEdges =
+                surface.SharpCreases && !isMoving && surface.Surface != SurfaceKind.Gaussian;
             Assert.That(surface.CurrentLevel.Spacing, Is.EqualTo(surface.Spacing));
             Assert.That(surface.CurrentLevel.HasCreases, Is.EqualTo(settings.Creases));
             string difference = "";
@@ -94,6 +95,8 @@ namespace QuickSes.Tests
             settings.Spacing = surface.Spacing;
             settings.RelaxationSteps = (uint)surface.RelaxationSteps;
             settings.Occlusion = surface.AmbientOcclusion;
+            settings.GaussianRadiusScale = surface.GaussianRadiusScale;
+            settings.GaussianIsovalue = surface.GaussianIsovalue;
             return settings;
         }
 

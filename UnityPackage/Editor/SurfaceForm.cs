@@ -31,11 +31,17 @@ namespace QuickSes.Editor
             switch (property)
             {
                 case "_probeRadius":
-                    return surface != SurfaceKind.Vdw;
+                    return surface == SurfaceKind.Ses || surface == SurfaceKind.Sas;
                 case "_method":
                     return surface == SurfaceKind.Ses;
                 case "_sharpCreases":
-                    return surface != SurfaceKind.Ses || method != SurfaceMethod.Grid;
+                    return surface != SurfaceKind.Gaussian &&
+                        (surface != SurfaceKind.Ses || method != SurfaceMethod.Grid);
+                case "_relaxationSteps":
+                    return surface != SurfaceKind.Gaussian;
+                case "_gaussianRadiusScale":
+                case "_gaussianIsovalue":
+                    return surface == SurfaceKind.Gaussian;
                 default:
                     return true;
             }

@@ -33,7 +33,7 @@ void check_range(const char *name, double value, double low, double high, const 
 }
 
 void check_settings(const qses_settings &s) {
-  check_choice("settings.surface", s.surface, QSES_SURFACE_VDW);
+  check_choice("settings.surface", s.surface, QSES_SURFACE_GAUSSIAN);
   check_choice("settings.method", s.method, QSES_METHOD_GRID);
   check_choice("settings.winding", s.winding, QSES_WINDING_REVERSED);
   check_choice("settings.vertex_layout", s.vertex_layout, QSES_VERTICES_COMPACT);
@@ -51,6 +51,10 @@ void check_settings(const qses_settings &s) {
   }
   check_range("settings.frame_budget_ms", static_cast<double>(s.frame_budget_ms), 0, 60000, " ms");
   check_range("settings.show_ms_per_mb", static_cast<double>(s.show_ms_per_mb), 0, 60000, " ms");
+  check_range("settings.gaussian_radius_scale", static_cast<double>(s.gaussian_radius_scale), 0.05f, 10, "");
+  check_range("settings.gaussian_isovalue", static_cast<double>(s.gaussian_isovalue), 0.01f, 1000, "");
+  if (s.surface == QSES_SURFACE_GAUSSIAN && (s.patch_types || s.creases || s.hard_edges))
+    invalid("settings.patch_types, creases and hard_edges are not available with surface GAUSSIAN");
   if (s.method == QSES_METHOD_GRID && s.surface != QSES_SURFACE_SES)
     invalid("settings.method GRID makes the solvent-excluded surface only: use EXACT for the others");
   if (s.method == QSES_METHOD_GRID && s.patch_types) invalid("settings.patch_types is not available with method GRID");

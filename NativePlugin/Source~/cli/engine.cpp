@@ -107,6 +107,8 @@ qses_settings settings_of(const ComputeOptions &options) {
   settings.method = options.method;
   settings.probe_radius = static_cast<float>(options.probe);
   settings.spacing = static_cast<float>(options.spacing);
+  settings.gaussian_radius_scale = static_cast<float>(options.radius_scale);
+  settings.gaussian_isovalue = static_cast<float>(options.isovalue);
   settings.relaxation_steps = options.steps;
   settings.slice_size = options.slice;
   settings.creases = options.creases == Switch::kOn;

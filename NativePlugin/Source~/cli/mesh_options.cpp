@@ -102,9 +102,11 @@ void check_format(const Options &options) {
     throw Failure(
         kUsage,
         "--sharp-colors: is for colours of atoms (--color element, chain, residue, hydrophobicity or sequence)");
-  if (options.compute.method == QSES_METHOD_GRID && needs_patches(options))
-    throw Failure(kUsage, "--method grid does not know on what kind of patch a vertex is, which " +
-                              std::string(format == io::MeshFormat::kMsms ? "MSMS files tell" : "--color patch shows"));
+  if (!knows_creases(options.compute) && needs_patches(options))
+    throw Failure(kUsage,
+                  std::string(options.compute.method == QSES_METHOD_GRID ? "--method grid" : "--surface gaussian") +
+                      " does not know on what kind of patch a vertex is, which " +
+                      std::string(format == io::MeshFormat::kMsms ? "MSMS files tell" : "--color patch shows"));
 }
 
 }  // namespace
@@ -180,7 +182,7 @@ void resolve_output(Options &options) {
 }
 
 bool has_hard_edges(const Options &options) {
-  return options.hard_edges != Switch::kOff && options.compute.method == QSES_METHOD_EXACT && !options.output.empty() &&
+  return options.hard_edges != Switch::kOff && knows_creases(options.compute) && !options.output.empty() &&
          io::has_normals(io::mesh_format_of(options.output));
 }
 

@@ -25,7 +25,12 @@
 namespace quickses::cli {
 namespace {
 
-const std::map<std::string, qses_surface> kSurfaces = {
+const std::map<std::string, qses_surface> kSurfaces = {{"ses", QSES_SURFACE_SES},
+                                                       {"sas", QSES_SURFACE_SAS},
+                                                       {"vdw", QSES_SURFACE_VDW},
+                                                       {"gaussian", QSES_SURFACE_GAUSSIAN}};
+// By measure.
+const std::map<std::string, qses_surface> kMeasured = {
     {"ses", QSES_SURFACE_SES}, {"sas", QSES_SURFACE_SAS}, {"vdw", QSES_SURFACE_VDW}};
 const std::map<std::string, qses_method> kMethods = {{"exact", QSES_METHOD_EXACT}, {"grid", QSES_METHOD_GRID}};
 const std::map<std::string, qses_backend> kBackends = {
@@ -84,7 +89,12 @@ void add_creases(CLI::App *app, ComputeOptions &options) {
 
 void add_surface_choice(CLI::App *app, ComputeOptions &options) {
   add_choice(app, "--surface", options.surface, kSurfaces,
-             "ses: solvent-excluded; sas: solvent-accessible; vdw: the atoms themselves");
+             "ses: solvent-excluded; sas: solvent-accessible; vdw: the atoms themselves; gaussian: of a density, as "
+             "QuickSurf's");
+  add_number(app, "--radius-scale", "--radius-scale", options.radius_scale, 0.05, 10,
+             "gaussian: an atom's standard deviation over its radius", false);
+  add_number(app, "--isovalue", "--isovalue", options.isovalue, 0.01, 1000, "gaussian: the density on the surface",
+             false);
   add_choice(app, "--method", options.method, kMethods,
              "exact: vertices on the exact surface; grid: the voxel method of Martinez, Krone and Baaden 2019");
   add_creases(app, options);
@@ -100,7 +110,7 @@ void add_measured(CLI::App *app, std::vector<qses_surface> &measured) {
          [&measured](const std::string &text) {
            measured.clear();
            for (const std::string &name : io::split(text, ',')) {
-             const qses_surface surface = look_up("--surface", kSurfaces, name);
+             const qses_surface surface = look_up("--surface", kMeasured, name);
              if (std::find(measured.begin(), measured.end(), surface) != measured.end())
                throw Failure(kUsage, "--surface: '" + text + "' names one of them twice");
              measured.push_back(surface);
@@ -199,6 +209,13 @@ void check(const Options &options, const std::function<bool(const char *)> &give
   check_devices(options);
   if (options.compute.method == QSES_METHOD_GRID && options.compute.surface != QSES_SURFACE_SES)
     throw Failure(kUsage, "--method grid makes the solvent-excluded surface only: leave --surface at ses");
+  const bool is_gaussian = options.compute.surface == QSES_SURFACE_GAUSSIAN;
+  if (is_gaussian && options.compute.creases == Switch::kOn)
+    throw Failure(kUsage, "--creases on: a Gaussian surface has none");
+  const bool measures = options.command == Options::Command::kMeasure;  // which knows no such flag
+  for (const char *flag : {"--radius-scale", "--isovalue"})
+    if (!is_gaussian && !measures && given(flag))
+      throw Failure(kUsage, std::string(flag) + ": is for --surface gaussian");
   if (options.compute.method == QSES_METHOD_GRID && options.compute.creases == Switch::kOn)
     throw Failure(kUsage, "--creases on: --method grid does not know where creases are");
   if (options.command == Options::Command::kBench) {
@@ -242,8 +259,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
       "Molecular surfaces as closed triangle meshes.\n\n"
       "  quickses INPUT [-o OUT.ply|OUT.obj|OUT.glb|OUT.stl|OUT.off|OUT.vert|OUT.png|OUT.html] [options]\n"
       "  quickses INPUT... [-o out/%s.ply] [options]\n"
-      "  quickses INPUT --trajectory FILE [--trajectory FILE...] [--frames A:B:STEP] [--csv FILE] [-o frame_%05d.ply] "
-      "[options]\n"
+      "  quickses INPUT --trajectory FILE [--frames A:B:STEP] [--csv FILE] [-o frame_%05d.ply] [options]\n"
       "  quickses measure INPUT... [--surface sas,vdw,ses] [--per-atom FILE] [--per-residue FILE] [options]\n"
       "  quickses cavities INPUT [--csv FILE] [options]\n"
       "  quickses bench FILE... [--repeat N] [--copies N] [--small N | --jobs] [options]\n",
@@ -335,11 +351,12 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
     options.command = value;
   }
   if (!options.inputs.empty()) options.input = options.inputs.front();
+  if (used == &app && options.has_several_inputs()) check_command(app, options.input);
   resolve_output(options);
   set_mesh_defaults(options);
   if (options.compute.creases == Switch::kDefault) {
     const bool is_many = options.command == Options::Command::kBench || !options.trajectories.empty();
-    options.compute.creases = is_many || options.compute.method == QSES_METHOD_GRID ? Switch::kOff : Switch::kOn;
+    options.compute.creases = is_many || !knows_creases(options.compute) ? Switch::kOff : Switch::kOn;
   }
   check_values(*used);
   check(options, [used](const char *flag) { return used->count(flag) != 0; });

@@ -28,8 +28,9 @@ struct ComputeOptions {
   uint64_t memory = 0;   // bytes; 0 = no bound
   qses_surface surface = QSES_SURFACE_SES;
   qses_method method = QSES_METHOD_EXACT;
-  double probe = 1.4;    // Å
-  double spacing = 0.5;  // Å
+  double probe = 1.4;                       // Å
+  double spacing = 0.5;                     // Å
+  double radius_scale = 1, isovalue = 0.5;  // of the Gaussian surface
   unsigned steps = 1;
   unsigned slice = 0;                 // 0 = sized by memory
   Switch creases = Switch::kDefault;  // when options are read: on or off
@@ -37,6 +38,11 @@ struct ComputeOptions {
   std::string radii = "quickses";
   bool radii_given = false;
 };
+
+// Whether the surface is made of the features of balls, whose creases are known.
+inline bool knows_creases(const ComputeOptions &options) {
+  return options.method == QSES_METHOD_EXACT && options.surface != QSES_SURFACE_GAUSSIAN;
+}
 
 // Which meshes bench times: those in host memory, those that stay on the device. Not given: those there are.
 enum class Deliveries { kDefault, kHost, kDevice, kBoth };

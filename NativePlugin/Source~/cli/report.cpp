@@ -32,6 +32,11 @@ Json settings_json(const ComputeOptions &options) {
                {"spacing", options.spacing},
                {"steps", options.steps},
                {"creases", options.creases == Switch::kOn}};
+  if (options.surface == QSES_SURFACE_GAUSSIAN) {
+    json["radius_scale"] = options.radius_scale;
+    json["isovalue"] = options.isovalue;
+  }
+  if (options.occlusion == Switch::kOn) json["occlusion"] = true;
   if (options.slice != 0) json["slice"] = options.slice;
   if (options.memory != 0) json["memory"] = options.memory;
   if (options.threads != 0) json["threads"] = options.threads;

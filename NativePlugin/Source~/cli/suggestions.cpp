@@ -2,8 +2,11 @@
 #include "cli/suggestions.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
 
 #include "cli/exit_code.h"
+#include "io/file_path.h"
 #include "io/mesh_writer.h"
 #include "io/nearest_word.h"
 
@@ -31,7 +34,22 @@ std::string help_of(const CLI::App &command) {
   return (parent ? parent->get_name() + " " : "") + command.get_name() + " --help";
 }
 
+// "" if the word is like no command.
+std::string explain_command(const CLI::App &command, const std::string &word) {
+  std::vector<std::string> names;
+  for (const CLI::App *other : command.get_subcommands(nullptr)) names.push_back(other->get_name());
+  const std::string nearest = io::nearest_word(word, names);
+  return nearest.empty() ? "" : "'" + word + "' is no command; did you mean " + nearest + "?";
+}
+
 }  // namespace
+
+void check_command(const CLI::App &app, const std::string &first_input) {
+  std::error_code no_matter;
+  if (std::filesystem::exists(io::path_of(first_input), no_matter)) return;
+  const std::string explained = explain_command(app, first_input);
+  if (!explained.empty()) throw Failure(kUsage, explained);
+}
 
 bool is_mesh_name(const std::string &name) {
   try {
@@ -75,10 +93,8 @@ std::string explain_extra(const CLI::App &command, const std::vector<std::string
     return flag + ": there is no such flag; " +
            (nearest.empty() ? "see " + help_of(command) : "did you mean --" + nearest + "?");
   }
-  std::vector<std::string> names;
-  for (const CLI::App *other : command.get_subcommands(nullptr)) names.push_back(other->get_name());
-  const std::string nearest = io::nearest_word(arguments[0], names);
-  if (!nearest.empty()) return "'" + arguments[0] + "' is no command; did you mean " + nearest + "?";
+  const std::string explained = explain_command(command, arguments[0]);
+  if (!explained.empty()) return explained;
   return "'" + extra + "': one INPUT was given already; " +
          (is_mesh_name(extra) ? "did you mean -o " + extra + "?" : "see " + help_of(command));
 }

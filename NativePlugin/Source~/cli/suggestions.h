@@ -20,6 +20,10 @@ std::string suggest_dashes(const CLI::App &command, const std::vector<std::strin
 // Whether a file of this name would be a mesh.
 bool is_mesh_name(const std::string &name);
 
+// "mesure" for "measure", which would be taken for the first of several inputs: throws Failure (kUsage), unless there
+// is a file of that name.
+void check_command(const CLI::App &app, const std::string &first_input);
+
 // A sentence about an argument that nobody expected.
 std::string explain_extra(const CLI::App &command, const std::vector<std::string> &arguments, const std::string &extra);
 

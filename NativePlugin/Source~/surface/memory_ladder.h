@@ -78,7 +78,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
       prepare_frame(work, in);
       if (work.makes_mesh) {
         enter_level(work, settings.spacing);
-        if (settings.method == QSES_METHOD_EXACT) facts_.caps = count_kept_caps(work);
+        if (is_exact(settings)) facts_.caps = count_kept_caps(work);
         facts_.size = estimate_size(work);
         if (splits_creases(work)) growth += expected_splits(work).new_part();
         if (work.hard_edges) hard_part = expected_hard_part(work);
@@ -146,7 +146,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   // arcs are only looked for, not gone through (as they are where the surface is that of the balls, to be measured).
   bool anticipates(const FrameInput &in, const MemoryPlan &plan) {
     return plan.single_slice && budget_ == 0 && learnt_.share == 0 && in.settings.slice_size == 0 &&
-           in.settings.method == QSES_METHOD_EXACT && !parameters_of(in).is_of_balls() && !progress_.wanted();
+           is_exact(in.settings) && !parameters_of(in).is_of_balls() && !progress_.wanted();
   }
   // What frames have in common whose counts are much the same. Never 0.
   uint64_t kind_of(const FrameInput &in) const {
@@ -262,7 +262,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   void check_forecast(LevelWork<Executor, Timer> &work, const FrameInput &in) {
     auto &arena = executor_.arena();
     const bool is_fine = work.parameters.spacing < kCheckedSpacing, is_short = arena.has_budget() || learnt_.share > 0;
-    if (learnt_.is_proven || in.settings.method == QSES_METHOD_GRID || !(is_fine || is_short)) return;
+    if (learnt_.is_proven || !is_exact(in.settings) || !(is_fine || is_short)) return;
     facts_.size = predict_size(work);
     if (is_short && forecast(in, work.plan, arena.limit()) > kMemoryCertainty * static_cast<double>(arena.limit()))
       throw MemoryRefused("the surface is forecast not to fit into what there is");
@@ -333,8 +333,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     if (spacing_ != in.settings.spacing) facts_.size = {};  // those of a coarser level
     spacing_ = in.settings.spacing;
     const bool is_counted = knows_size();
-    guess_unknown(parameters, in.settings.method == QSES_METHOD_EXACT, static_cast<double>(lattice.table_size()),
-                  &facts_);
+    guess_unknown(parameters, is_exact(in.settings), static_cast<double>(lattice.table_size()), &facts_);
     const uint64_t least = least_bytes(in) / 10 * (is_counted ? 10 : 11) + memory_.needed_outside(executor_);
     throw Error(QSES_OUT_OF_MEMORY,
                 "the memory budget of " + describe_bytes(budget_) + " does not suffice for this surface: about " +

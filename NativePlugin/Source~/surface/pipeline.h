@@ -7,6 +7,7 @@
 #include "surface/levels.h"
 #include "surface/methods/crease_splits.h"
 #include "surface/methods/exact_surface.h"
+#include "surface/methods/gaussian_surface.h"
 #include "surface/methods/grid_surface.h"
 #include "surface/methods/hard_edges.h"
 #include "surface/methods/size_check.h"
@@ -40,28 +41,35 @@ inline SurfaceParameters parameters_of(const FrameInput &in) {
   p.probe = vdw ? 0.f : s.probe_radius;
   p.depth = s.surface == QSES_SURFACE_SES && !vdw ? p.probe : 0.f;
   p.spacing = s.spacing;
-  p.max_radius = in.atoms.bounds.max_radius + p.probe;
+  if (s.surface == QSES_SURFACE_GAUSSIAN) {
+    p.probe = 0.f;
+    p.scale = kGaussianReach * s.gaussian_radius_scale;
+    p.inner_part = inner_part(s.gaussian_isovalue);
+  }
+  p.max_radius = p.scale * in.atoms.bounds.max_radius + p.probe;
   return p;
 }
+
+// Whether the surface is the boundary of the balls, which the atoms measure.
+inline bool is_of_balls(const FrameInput &in) { return is_exact(in.settings) && parameters_of(in).is_of_balls(); }
 
 // Where area and volume come from.
 inline qses_measured_by measured_by(const FrameInput &in) {
   const qses_settings &s = in.settings;
   if (!s.measure) return QSES_MEASURED_BY_NOTHING;
   if (s.method == QSES_METHOD_GRID) return QSES_MEASURED_BY_TRIANGLES;
-  return parameters_of(in).is_of_balls() ? QSES_MEASURED_BY_ATOMS : QSES_MEASURED_BY_NORMALS;
+  return is_of_balls(in) ? QSES_MEASURED_BY_ATOMS : QSES_MEASURED_BY_NORMALS;
 }
 
 // Whether vertices where sheets of the surface meet keep the normals of both.
 inline bool needs_side_normals(const FrameInput &in) {
-  return in.settings.method == QSES_METHOD_EXACT && (in.settings.creases || in.settings.hard_edges);
+  return is_exact(in.settings) && (in.settings.creases || in.settings.hard_edges);
 }
 
 // Whether there is something to be made at each level, or only numbers of the atoms.
 inline bool makes_mesh(const FrameInput &in) {
   const qses_settings &s = in.settings;
-  return s.delivery != QSES_DELIVERY_NONE || wants_components(s) || s.method == QSES_METHOD_GRID ||
-         !parameters_of(in).is_of_balls();
+  return s.delivery != QSES_DELIVERY_NONE || wants_components(s) || !is_of_balls(in);
 }
 
 // Something the host has per atom, where the back end reads it.
@@ -118,7 +126,7 @@ void prepare_frame(Work &work, const FrameInput &in) {
   work.makes_mesh = makes_mesh(in);
   const bool is_delivered = in.settings.delivery != QSES_DELIVERY_NONE;
   work.is_cut = is_delivered && (!look.visible.empty() || in.settings.outer_only);
-  work.hard_edges = is_delivered && in.settings.hard_edges && in.settings.method == QSES_METHOD_EXACT;
+  work.hard_edges = is_delivered && in.settings.hard_edges && is_exact(in.settings);
   work.purpose = is_delivered && !work.is_cut && !work.hard_edges ? MeshPurpose::kDelivered : MeshPurpose::kWork;
   work.made_shape = work.shape;
   work.made_shape.component_ids |= in.settings.outer_only && is_delivered;
@@ -129,11 +137,19 @@ void prepare_frame(Work &work, const FrameInput &in) {
   work.appearance = {bring(executor, look.visible.data(), look.visible.size()),
                      bring(executor, look.colors.data(), look.colors.size()),
                      bring(executor, look.texcoords.data(), look.texcoords.size())};
-  const CellLayout cells = layout_cells(work.low, work.high, std::max(work.parameters.max_radius, kSmallestCell));
+  // Gaussians reach far: in smaller cells there are fewer atoms that they do not reach.
+  const float cell =
+      in.settings.surface == QSES_SURFACE_GAUSSIAN ? work.parameters.max_radius / 3.f : work.parameters.max_radius;
+  const CellLayout cells = layout_cells(work.low, work.high, std::max(cell, kSmallestCell));
   work.atoms = build_neighbor_grid(executor, set.count, cells, [&] {
-    return CenteredAtomAt{bring(executor, set.atoms, set.count), work.lattice.center_x, work.lattice.center_y,
-                          work.lattice.center_z, work.parameters.probe};
+    return CenteredAtomAt{bring(executor, set.atoms, set.count),
+                          work.lattice.center_x,
+                          work.lattice.center_y,
+                          work.lattice.center_z,
+                          work.parameters.scale,
+                          work.parameters.probe};
   });
+  if (in.settings.surface == QSES_SURFACE_GAUSSIAN) return;
   remove_contained_atoms(executor, work.atoms, work.parameters.max_radius);
   if (in.settings.method != QSES_METHOD_EXACT) return;
   const SolventFeatures features = list_features(work);
@@ -168,9 +184,10 @@ MeshMemoryView cut_surface(Work &work, const MeshMemoryView &whole) {
 template <class Work>
 MeshMemoryView build_surface(Work &work) {
   auto &executor = work.executor;
-  MeshMemoryView mesh = work.settings.method == QSES_METHOD_GRID ? build_grid_surface(work)
-                        : splits_creases(work)                   ? build_creased_surface(work)
-                                                                 : build_exact_surface(work);
+  MeshMemoryView mesh = work.settings.surface == QSES_SURFACE_GAUSSIAN ? build_gaussian_surface(work)
+                        : work.settings.method == QSES_METHOD_GRID     ? build_grid_surface(work)
+                        : splits_creases(work)                         ? build_creased_surface(work)
+                                                                       : build_exact_surface(work);
   work.timer.begin("measure");
   const MeshCounts counts{mesh.vertices, mesh.triangles};
   if (work.settings.measure) {
@@ -187,13 +204,13 @@ MeshMemoryView build_surface(Work &work) {
   } else {
     mesh.bounds = find_bounds(executor, mesh.view, counts, mesh.unplaced, &work.report->unplaced_vertices);
   }
-  if (work.settings.atom_areas && !work.parameters.is_of_balls())
+  if (work.settings.atom_areas && !(is_exact(work.settings) && work.parameters.is_of_balls()))
     work.atom_areas = bring_areas(work, [&](double *areas) {
       measure_owners(executor, mesh.view, mesh.triangles, work.parameters.spacing, true, work.atoms.count, areas);
     });
   if (wants_components(work.settings)) {
     work.timer.begin("components");
-    const bool bent = work.settings.method == QSES_METHOD_EXACT;
+    const bool bent = work.settings.method != QSES_METHOD_GRID;
     mesh.components = work.components.find(executor, mesh, work.parameters.spacing, bent);
   }
   if (work.is_cut && mesh.vertices > 0) {

@@ -22,6 +22,10 @@ namespace QuickSes.Tests
                 SurfaceSettings.MinSpacing, SurfaceSettings.MaxSpacing);
             Check(context, (ref SurfaceSettings s, float value) => s.FrameBudget = value, 0,
                 SurfaceSettings.MaxFrameBudget);
+            Check(context, (ref SurfaceSettings s, float value) => s.GaussianRadiusScale = value,
+                SurfaceSettings.MinGaussianRadiusScale, SurfaceSettings.MaxGaussianRadiusScale);
+            Check(context, (ref SurfaceSettings s, float value) => s.GaussianIsovalue = value,
+                SurfaceSettings.MinGaussianIsovalue, SurfaceSettings.MaxGaussianIsovalue);
             Check(context, (ref SurfaceSettings s, float value) => s.RelaxationSteps = (uint)Math.Round(value), 0,
                 SurfaceSettings.MaxRelaxationSteps, 1);
         }

@@ -39,7 +39,8 @@ namespace QuickSes.Tests
         }
 
         [Test]
-        public void HardEdgesAreClosedByTheirNumbers([Values] SurfaceKind kind)
+        public void HardEdgesAreClosedByTheirNumbers(
+            [Values(SurfaceKind.Ses, SurfaceKind.Sas, SurfaceKind.Vdw)] SurfaceKind kind)
         {
             using SurfaceContext context = Meshes.CrambinContext();
             SurfaceSettings settings = SurfaceSettings.Default;
@@ -85,7 +86,8 @@ namespace QuickSes.Tests
             Assert.That(report.Area, Is.InRange(area, 1.2 * area));
             Assert.That(report.Volume, Is.EqualTo(volume).Within(2).Percent);
             Assert.That(report.MeasuredBy,
-                Is.EqualTo(kind == SurfaceKind.Ses ? SurfaceMeasuredBy.Normals : SurfaceMeasuredBy.Atoms));
+                Is.EqualTo(kind == SurfaceKind.Sas || kind == SurfaceKind.Vdw ? SurfaceMeasuredBy.Atoms :
+                    SurfaceMeasuredBy.Normals));
 
             float[] low = { float.MaxValue, float.MaxValue, float.MaxValue },
                 high = { float.MinValue, float.MinValue, float.MinValue };

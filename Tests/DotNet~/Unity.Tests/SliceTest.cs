@@ -125,8 +125,9 @@ namespace QuickSes.Tests
         [UnityTest]
         public IEnumerator TextureCoordinatesMayGoAndComeMeanwhile([Values] bool hasThemFirst)
         {
-            _rig.Surface.AmbientOcclusion = false;
             yield return ShowFirst();
+            _rig.Surface.AmbientOcclusion = false;
+            yield return _rig.Settle();
             Vector2[] texcoords = Array.ConvertAll(_positions, place => new Vector2(place.x, place.z));
             _rig.Surface.SetTexcoords(hasThemFirst ? texcoords : Array.Empty<Vector2>());
             for (int frames = 0; frames < 12; ++frames)

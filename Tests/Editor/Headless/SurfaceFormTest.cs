@@ -25,16 +25,19 @@ namespace QuickSes.Tests
         [TestCase(SurfaceKind.Ses, true, true)]
         [TestCase(SurfaceKind.Sas, true, false)]
         [TestCase(SurfaceKind.Vdw, false, false)]
+        [TestCase(SurfaceKind.Gaussian, false, false)]
         public void ProbeAndMethodCountForTheSurfacesThatHaveThem(SurfaceKind kind, bool probe, bool method)
         {
             Assert.That(IsUsed("_probeRadius", kind), Is.EqualTo(probe));
             Assert.That(IsUsed("_method", kind), Is.EqualTo(method));
             Assert.That(IsUsed("_spacing", kind), Is.True);
+            Assert.That(IsUsed("_gaussianIsovalue", kind), Is.EqualTo(kind == SurfaceKind.Gaussian));
         }
 
         [TestCase(SurfaceKind.Ses, SurfaceMethod.Exact, true)]
         [TestCase(SurfaceKind.Ses, SurfaceMethod.Grid, false)]
         [TestCase(SurfaceKind.Sas, SurfaceMethod.Grid, true)]
+        [TestCase(SurfaceKind.Gaussian, SurfaceMethod.Exact, false)]
         public void CreasesAreOfExactSurfaces(SurfaceKind kind, SurfaceMethod method, bool expected) =>
             Assert.That(SurfaceForm.IsUsed("_sharpCreases", kind, method), Is.EqualTo(expected));
 

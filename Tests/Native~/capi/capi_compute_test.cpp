@@ -32,8 +32,8 @@ TEST_F(WithMesh, ComputeErrors) {
     bad(s, {"probe_radius"});
   }
   s = settings();
-  set_any(&s.surface, 3);
-  bad(s, {"surface", "3"});
+  set_any(&s.surface, 4);
+  bad(s, {"surface", "4"});
   set_any(&s.surface, -1);
   bad(s, {"surface", "-1"});
   s = settings();

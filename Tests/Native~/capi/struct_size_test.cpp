@@ -253,6 +253,9 @@ TEST(Init, WritesDefaultsAndNothingBehind) {
   EXPECT_EQ(s[0].levels[0], 2.f);
   EXPECT_EQ(s[0].levels[1], 1.f);
   EXPECT_EQ(s[0].components, 0);
+  EXPECT_EQ(s[0].occlusion, 0);
+  EXPECT_EQ(s[0].gaussian_radius_scale, 1.f);
+  EXPECT_EQ(s[0].gaussian_isovalue, 0.5f);
   EXPECT_EQ(*reinterpret_cast<unsigned char *>(&s[1]), kCanary);
   qses_settings_init(nullptr);
   qses_mesh_init(nullptr);
@@ -268,16 +271,16 @@ constexpr bool is_without_padding(size_t end_of_last_field) {
 #define END(type, field) (offsetof(type, field) + sizeof(type::field))
 static_assert(is_without_padding<qses_backend_description>(END(qses_backend_description, reserved)), "");
 static_assert(is_without_padding<qses_context_options>(END(qses_context_options, reserved)), "");
-static_assert(is_without_padding<qses_settings>(END(qses_settings, atom_areas)), "");
+static_assert(is_without_padding<qses_settings>(END(qses_settings, gaussian_isovalue)), "");
 static_assert(is_without_padding<qses_component>(END(qses_component, bounds_max)), "");
-static_assert(is_without_padding<qses_mesh>(END(qses_mesh, repeated_count)), "");
+static_assert(is_without_padding<qses_mesh>(END(qses_mesh, reserved2)), "");
 static_assert(is_without_padding<qses_device_mesh>(END(qses_device_mesh, mesh)), "");
 static_assert(is_without_padding<qses_stage_time>(END(qses_stage_time, milliseconds)), "");
 static_assert(is_without_padding<qses_report>(END(qses_report, reserved)), "");
 static_assert(is_without_padding<qses_size_estimate>(END(qses_size_estimate, smallest_budget)), "");
 static_assert(is_without_padding<qses_progress>(END(qses_progress, message)), "");
 static_assert(is_without_padding<qses_hit>(END(qses_hit, normal)), "");
-static_assert(is_without_padding<qses_structure_options>(END(qses_structure_options, radii)), "");
+static_assert(is_without_padding<qses_structure_options>(END(qses_structure_options, altloc)), "");
 static_assert(is_without_padding<qses_structure_description>(END(qses_structure_description, residues)), "");
 static_assert(is_without_padding<qses_atom>(END(qses_atom, reserved)), "");
 static_assert(is_without_padding<qses_trajectory_description>(END(qses_trajectory_description, reserved)), "");

@@ -125,7 +125,7 @@ void grow_and_check(const SignField &field, const std::vector<glm::ivec3> &begin
   lattice.brick_count = glm::ivec3(box);
   std::vector<uint64_t> chosen;
   for (const glm::ivec3 &b : begin) chosen.push_back(lattice.linear(b));
-  BrickSet bricks = collect_bricks(executor, ChosenBricks{&chosen}, lattice);
+  BrickSet bricks = collect_bricks(executor, ChosenBricks{&chosen}, lattice, "bricks");
   ASSERT_EQ(bricks.table == nullptr, box > 1000);
   const MarchingCubesTable &table = marching_cubes_table();
   MeshLayout layout{};

@@ -96,7 +96,7 @@ inline DeviceStages run_device_stages(CudaExecutor &executor, const DeviceTable 
   Span<Sphere> given = executor.allocate<Sphere>(n);
   executor.upload(given.data, host_atoms, n);
   s.grid = build_neighbor_grid(executor, n, layout_cells(low, high, p.max_radius), [&] {
-    return CenteredAtomAt{given.data, lattice.center_x, lattice.center_y, lattice.center_z, p.probe};
+    return CenteredAtomAt{given.data, lattice.center_x, lattice.center_y, lattice.center_z, 1.f, p.probe};
   });
   Span<uint8_t> contained = executor.allocate<uint8_t>(n);
   executor.for_each(n, FindContainedAtoms{s.grid, p.max_radius, contained.data});

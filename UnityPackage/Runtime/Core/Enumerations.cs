@@ -56,7 +56,12 @@ namespace QuickSes
         /// <summary>Solvent-accessible: where the centre of the probe may be.</summary>
         Sas = 1,
         /// <summary>Van der Waals: the union of the atoms themselves.</summary>
-        Vdw = 2
+        Vdw = 2,
+        /// <summary>
+        /// Where a density of Gaussians about the atoms has a value, as QuickSurf of VMD defines it
+        /// (<see cref="SurfaceSettings.GaussianRadiusScale"/>).
+        /// </summary>
+        Gaussian = 3
     }
 
     /// <summary>How the surface is computed.</summary>

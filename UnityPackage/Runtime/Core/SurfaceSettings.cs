@@ -31,6 +31,18 @@ namespace QuickSes
         /// <summary>The largest <see cref="FrameBudget"/>, ms.</summary>
         public const float MaxFrameBudget = 60000;
 
+        /// <summary>The smallest <see cref="GaussianRadiusScale"/>.</summary>
+        public const float MinGaussianRadiusScale = 0.05f;
+
+        /// <summary>The largest <see cref="GaussianRadiusScale"/>.</summary>
+        public const float MaxGaussianRadiusScale = 10;
+
+        /// <summary>The smallest <see cref="GaussianIsovalue"/>.</summary>
+        public const float MinGaussianIsovalue = 0.01f;
+
+        /// <summary>The largest <see cref="GaussianIsovalue"/>.</summary>
+        public const float MaxGaussianIsovalue = 1000;
+
         internal NativeSettings Native;
 
         /// <summary>
@@ -150,6 +162,19 @@ namespace QuickSes
         /// light that arrives there, from 0 (closed in) to 1 (open); what is farther than 20 Å does not count.
         /// </summary>
         public bool Occlusion { get => Native.Occlusion != 0; set => Native.Occlusion = value ? 1 : 0; }
+
+        /// <summary>
+        /// Of <see cref="SurfaceKind.Gaussian"/>, 0.05 to 10: an atom's standard deviation over its radius, as the radius scale
+        /// of VMD's QuickSurf. No creases, hard edges or kinds of patch there.
+        /// </summary>
+        public float GaussianRadiusScale
+        {
+            get => Native.GaussianRadiusScale;
+            set => Native.GaussianRadiusScale = value;
+        }
+
+        /// <summary>Of <see cref="SurfaceKind.Gaussian"/>, 0.01 to 1000: the density on the surface.</summary>
+        public float GaussianIsovalue { get => Native.GaussianIsovalue; set => Native.GaussianIsovalue = value; }
 
         /// <summary>How many coarser levels come before <see cref="Spacing"/> in a job.</summary>
         public int LevelCount => (int)Native.LevelCount;

@@ -126,9 +126,11 @@ typedef enum qses_backend {
 } qses_backend;
 
 typedef enum qses_surface {
-  QSES_SURFACE_SES = 0, /* solvent-excluded: what a probe sphere rolling over the atoms can't reach */
-  QSES_SURFACE_SAS = 1, /* solvent-accessible: where the centre of the probe may be */
-  QSES_SURFACE_VDW = 2  /* the union of the atoms themselves */
+  QSES_SURFACE_SES = 0,     /* solvent-excluded: what a probe sphere rolling over the atoms can't reach */
+  QSES_SURFACE_SAS = 1,     /* solvent-accessible: where the centre of the probe may be */
+  QSES_SURFACE_VDW = 2,     /* the union of the atoms themselves */
+  QSES_SURFACE_GAUSSIAN = 3 /* where a density of Gaussians has a value, as QuickSurf of VMD defines it: see
+                               settings.gaussian_radius_scale */
 } qses_surface;
 
 typedef enum qses_method {
@@ -388,6 +390,14 @@ typedef struct qses_settings {
                           qses_set_texcoords. What shuts out light are the atoms, hidden ones too. Of an SES with the
                           usual probe it is .04 off in the mean, of SAS and VDW .07, and narrow slits are too
                           bright. Default 0 */
+  float gaussian_radius_scale; /* of SURFACE_GAUSSIAN, 0.05 to 10; default 1: the density at a place is the sum of
+                                  exp(-d² / 2s²) over the atoms, where d is the distance of the atom's centre and s its
+                                  radius times this scale; atoms farther than 4 s add nothing. (Radius scale of
+                                  QuickSurf, Krone and others 2012; its grid spacing is `spacing`, 1 in VMD) */
+  float gaussian_isovalue;     /* the surface is where the density has this value, 0.01 to 1000; default 0.5, as in VMD.
+                                  Vertices are at it within a thousandth of the spacing, normals along the density's exact
+                                  gradient. No smoothing steps, creases, hard edges or kinds of patch; area and volume
+                                  through the normals */
 } qses_settings;
 
 /* The defaults, with struct_size set. NULL is ignored. */
@@ -401,6 +411,8 @@ static inline void qses_settings_init(qses_settings *settings) {
   settings->levels[0] = 2.0f;
   settings->levels[1] = 1.0f;
   settings->level_count = 2;
+  settings->gaussian_radius_scale = 1.0f;
+  settings->gaussian_isovalue = 0.5f;
 }
 
 /* One connected piece of the surface: an outer surface, or the wall of a cavity. An element of an array: it never
@@ -488,7 +500,8 @@ QSES_API qses_status qses_context_mesh(const qses_context *context, qses_mesh *m
 /* An element of an array: it never grows. */
 typedef struct qses_stage_time {
   char name[24];       /* of the file under surface/ that does the work (the method's own files end in _cpu or _cuda):
-                          "neighbor_grid", "solvent_features", "bricks", "exact_ses" or "grid_ses", "thin_walls",
+                          "neighbor_grid", "solvent_features", "bricks", "exact_ses", "grid_ses" or
+                          "gaussian_density", "thin_walls",
                           "marching_cubes", "projection", "relaxation", "creases", "measure", "components",
                           "visible_mask", "hard_edges", "appearance" (with settings.occlusion: "occlusion"),
                           "pick_boxes", "mesh_memory" */

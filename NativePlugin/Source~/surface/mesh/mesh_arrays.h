@@ -15,6 +15,11 @@ struct MeshShape {
   size_t spare_vertices = 0, spare_triangles = 0;  // that there is room for behind the last
 };
 
+// Whether the surface is made of the features of balls: not on the paper's grid, nor out of a density.
+inline bool is_exact(const qses_settings &s) {
+  return s.method == QSES_METHOD_EXACT && s.surface != QSES_SURFACE_GAUSSIAN;
+}
+
 inline bool wants_host(const qses_settings &s) {
   return s.delivery == QSES_DELIVERY_HOST || s.delivery == QSES_DELIVERY_BOTH;
 }
@@ -28,7 +33,7 @@ inline MeshShape shape_of(const qses_settings &s, bool has_colors) {
   shape.layout = s.vertex_layout;
   shape.colors = has_colors;
   shape.texcoords = s.texcoords != 0 || s.occlusion != 0;
-  shape.patches = s.patch_types != 0 && s.method == QSES_METHOD_EXACT;
+  shape.patches = s.patch_types != 0 && is_exact(s);
   shape.reversed = s.winding == QSES_WINDING_REVERSED;
   shape.component_ids = s.component_ids != 0;
   shape.boxes = s.pickable != 0;

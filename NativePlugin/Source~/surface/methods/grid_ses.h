@@ -26,16 +26,11 @@ inline GridParameters make_grid_parameters(float probe, float spacing, float max
 
 // ---- bricks ----------------------------------------------------------------------------------------------------
 
+// Grown by one spacing: the field is positive everywhere else.
 template <class Executor>
 BrickSet find_grid_bricks(Executor &executor, const NeighborGridView &atoms, const GridParameters &parameters,
                           const Lattice &lattice, uint64_t *listed = nullptr) {
-  const double reach = static_cast<double>(parameters.max_radius) / static_cast<double>(lattice.brick_size());
-  if (atoms.count > 0 && 4.0 / 3.0 * 3.14159265358979 * reach * reach * reach > static_cast<double>(kMaxBricks))
-    throw Error(QSES_TOO_FINE,
-                "the largest inflated atom alone needs more bricks of the SES grid than 32-bit numbers can name: use a "
-                "larger spacing");
-  // Grown by one spacing: the field is positive everywhere else.
-  return collect_bricks(executor, BallBricks{atoms, lattice, parameters.max_radius, 1.f}, lattice, "bricks", listed);
+  return collect_ball_bricks(executor, atoms, parameters.max_radius, lattice, listed);
 }
 
 // ---- classes ---------------------------------------------------------------------------------------------------

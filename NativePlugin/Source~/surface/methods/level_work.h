@@ -59,8 +59,7 @@ struct LevelWork {
 // Are creases of the mesh of this level split? Not of coarser ones.
 template <class Work>
 bool splits_creases(const Work &work) {
-  return work.settings.creases != 0 && work.settings.method == QSES_METHOD_EXACT &&
-         work.parameters.spacing <= work.settings.spacing;
+  return work.settings.creases != 0 && is_exact(work.settings) && work.parameters.spacing <= work.settings.spacing;
 }
 
 // What splits of creases will find of a mesh, before anybody knows: how many arcs there are for a vertex tells how

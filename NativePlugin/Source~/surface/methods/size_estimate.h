@@ -4,6 +4,7 @@
 #pragma once
 
 #include "surface/methods/exact_surface.h"
+#include "surface/methods/gaussian_surface.h"
 #include "surface/methods/grid_surface.h"
 #include "surface/methods/size_check.h"
 
@@ -37,6 +38,16 @@ SurfaceSize count_size(Work &work, WorkFacts *facts) {
     return SurfaceSize{static_cast<double>(bricks.count), static_cast<double>(counts.vertices),
                        static_cast<double>(counts.triangles), static_cast<double>(layout.leaf_total)};
   };
+  if (work.settings.surface == QSES_SURFACE_GAUSSIAN)
+    return count(find_density_bricks(work, facts), [&](const BrickSet &bricks, uint64_t *signs) {
+      if (bricks.count > 0)
+        evaluate_density_signs(
+            work, bricks,
+            [&](const auto &work_on) {
+              work_on(BrickRange{0, bricks.count});
+            },
+            signs);
+    });
   if (work.settings.method == QSES_METHOD_GRID) {
     const GridParameters parameters =
         make_grid_parameters(work.parameters.probe, work.parameters.spacing, work.parameters.max_radius);
@@ -90,7 +101,7 @@ template <class Work>
 bool is_cheap_to_count(const Work &work, double spacing) {
   const double atoms = static_cast<double>(work.facts->atoms);
   if (guess_bricks(atoms, usual_area(work.parameters) * atoms, spacing) > kCheapBricks) return false;
-  const bool exact = work.settings.method == QSES_METHOD_EXACT;
+  const bool exact = is_exact(work.settings);
   const double pairs = guess_pairs(*work.facts, work.parameters, exact, spacing), brick = spacing * kBrickEdge;
   if (exact) return pairs <= kCheapPairs;
   double box = 1;
@@ -120,9 +131,8 @@ SurfaceSize estimate_size(const Work &wanted) {
   SurfaceSize size = extrapolate(fine, h, coarse, 2 * h, spacing);
   // Bricks of large probes fill space and follow no such line; to find them takes much less than their signs.
   const uint64_t entries = wanted.lattice.table_size(), room = wanted.executor.arena().available();
-  if (wanted.settings.method == QSES_METHOD_EXACT &&
-      guess_pairs(*wanted.facts, wanted.parameters, true, spacing) <= 64 * kCheapPairs && entries <= kMaxDenseCells &&
-      (kDenseEntryBytes + sizeof(uint64_t)) * entries <= room / 2) {
+  if (is_exact(wanted.settings) && guess_pairs(*wanted.facts, wanted.parameters, true, spacing) <= 64 * kCheapPairs &&
+      entries <= kMaxDenseCells && (kDenseEntryBytes + sizeof(uint64_t)) * entries <= room / 2) {
     const auto mark = wanted.executor.arena().mark();
     size.bricks = static_cast<double>(find_bricks(wanted.executor, wanted.features, wanted.lattice).count);
     wanted.executor.arena().rewind(mark);

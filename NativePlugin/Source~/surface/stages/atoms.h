@@ -12,13 +12,13 @@ namespace quickses {
 struct CenteredAtomAt {
   const Sphere *given;
   double x, y, z;
-  float probe;
+  float scale, probe;  // radius times scale, and the probe
   QSES_HOST_DEVICE Sphere operator()(size_t i) const {
     const Sphere a = given[i];
     return {glm::vec3(static_cast<float>(static_cast<double>(a.center.x) - x),
                       static_cast<float>(static_cast<double>(a.center.y) - y),
                       static_cast<float>(static_cast<double>(a.center.z) - z)),
-            a.radius + probe};
+            scale * a.radius + probe};
   }
 };
 

@@ -7,11 +7,13 @@
 
 namespace quickses {
 
-// Balls about the atoms of a grid: each smaller by `inset` than the grid says, Å.
+// Balls about the atoms of a grid: of `part` of the radii that it has, less `inset`, Å.
 struct Balls {
   NeighborGridView atoms;
   float max_radius;  // of the grid's
   float inset;
+  float part = 1.f;
+  QSES_FN float radius(float of_grid) const { return part * of_grid - inset; }
 };
 
 // Bricks that hold a lattice point of a ball of the grid, grown by `margin` spacings.
@@ -32,6 +34,18 @@ struct BallBricks {
     return atoms.items[i].center.x >= 0.5f * kFarAway ? 0.0 : fewest_bricks_of_ball(lattice, radius);
   }
 };
+
+// Those bricks, grown by one spacing.
+template <class Executor>
+BrickSet collect_ball_bricks(Executor &executor, const NeighborGridView &atoms, float max_radius,
+                             const Lattice &lattice, uint64_t *listed) {
+  const double reach = static_cast<double>(max_radius) / static_cast<double>(lattice.brick_size());
+  if (atoms.count > 0 && 4.0 / 3.0 * 3.14159265358979 * reach * reach * reach > static_cast<double>(kMaxBricks))
+    throw Error(QSES_TOO_FINE,
+                "the largest inflated atom alone needs more bricks of the SES grid than 32-bit numbers can name: use a "
+                "larger spacing");
+  return collect_bricks(executor, BallBricks{atoms, lattice, max_radius, 1.f}, lattice, "bricks", listed);
+}
 
 struct ClassifyScratch {
   static constexpr int kListed = 128, kBlock = 64;
@@ -57,7 +71,7 @@ struct ClassifyBrick {
     const glm::ivec3 first = lattice.first_point(lattice.brick_at(bricks.linear[brick]));
     const Vec3<float> low = lattice.position(first.x, first.y, first.z);
     const Vec3<float> high = lattice.position(first.x + 7, first.y + 7, first.z + 7);
-    const float reach = balls.max_radius - balls.inset + slack(lattice.spacing);
+    const float reach = balls.radius(balls.max_radius) + slack(lattice.spacing);
     const Vec3<float> margin(reach, reach, reach);
     const CellBox box = cells_around(atoms.cells, low - margin, high + margin);
     for (int i = team.rank(); i < kBrickPoints; i += team.size()) scratch.beyond_ball[i] = kFarAway;
@@ -99,7 +113,7 @@ struct ClassifyBrick {
                              const Vec3<float> &low, const Vec3<float> &high) const {
     for (uint32_t k = begin + static_cast<uint32_t>(team.rank()); k < end; k += static_cast<uint32_t>(team.size())) {
       Sphere s = balls.atoms.items[k];
-      s.radius -= balls.inset;
+      s.radius = balls.radius(s.radius);
       const float r = s.radius + slack(bricks.lattice.spacing);
       if (distance_to_box_squared(Vec3<float>(s.center), low, high) <= r * r)
         scratch.listed[atomic_add(&scratch.count, uint32_t(1))] = s;
@@ -153,7 +167,7 @@ void find_outside_points(Executor &executor, const Balls &balls, const BrickSet 
   const auto steps_of = [&](uint64_t near) { return 512 + kAtomSteps * std::min(near, kMost); };
   uint64_t near = balls.atoms.count;
   if constexpr (Executor::kIsCuda) {
-    const float spacing = bricks.lattice.spacing, reach = balls.max_radius - balls.inset + 1.1f * spacing + 1e-3f;
+    const float spacing = bricks.lattice.spacing, reach = balls.radius(balls.max_radius) + 1.1f * spacing + 1e-3f;
     near = most_items_near(
         executor, "fullest cell of atoms", balls.atoms, 8.f * spacing + 2.f * reach,
         [&](uint64_t n) { return executor.is_few_launches(bricks.count, executor.team_shape(steps_of(n))); });

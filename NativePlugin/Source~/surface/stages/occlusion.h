@@ -60,14 +60,14 @@ struct OpennessField {
 // Takes the points of a ball out of those outside: a thread for each of the planes that may cut it.
 struct FillBalls {
   NeighborGridView atoms;
-  float inset;  // how much smaller balls are than the grid says, Å
+  float part, inset;  // balls have this part of the grid's radius, less this, Å
   OpennessField field;
   int planes;
 
   QSES_HOST_DEVICE void operator()(size_t i) const {
     const size_t count = static_cast<size_t>(planes);
     const Sphere atom = atoms.items[i / count];
-    const float r = (atom.radius - inset) / kOcclusionPoint;
+    const float r = (part * atom.radius - inset) / kOcclusionPoint;
     if (atom.center.x >= 0.5f * kFarAway || r <= 0.f) return;
     const Vec3<float> c = Vec3<float>(atom.center) * (1.f / kOcclusionPoint);
     const int z = static_cast<int>(ceilf(c.z - r)) + static_cast<int>(i % count);
@@ -199,11 +199,20 @@ struct OpenNodes {
     const uint64_t stays_x = static_cast<uint64_t>(0xf >> rx) * 0x1111111111111111ull;
     const uint64_t stays_y = static_cast<uint64_t>(0xffff >> 4 * ry) * 0x0001000100010001ull;
     const auto along_x = [&](int k) {
+#if !defined(__CUDA_ARCH__)
+      if (rx == 0) return scratch.outside[k][word];  // a GPU's threads have different ways to go
+#endif
       return (scratch.outside[k][word] >> rx & stays_x) | (scratch.outside[k + 1][word] << (4 - rx) & ~stays_x);
     };
     const auto along_y = [&](int k) {
+#if !defined(__CUDA_ARCH__)
+      if (ry == 0) return along_x(k);
+#endif
       return (along_x(k) >> 4 * ry & stays_y) | (along_x(k + kEdge) << (16 - 4 * ry) & ~stays_y);
     };
+#if !defined(__CUDA_ARCH__)
+    if (rz == 0) return along_y(first);
+#endif
     return along_y(first) >> 16 * rz | along_y(first + kEdge * kEdge) << 1 << (63 - 16 * rz);
   }
 
@@ -285,9 +294,10 @@ void find_openness(Executor &executor, const NeighborGridView &atoms, const Surf
   const Span<Openness> nodes = executor.template allocate<Openness>(size_t(bricks.count) * kBrickNodes);
   OpennessField field{bricks, outside.data, nodes.data, nullptr};
   executor.fill(outside, 0xff);
-  const float inset = parameters.depth - kFilledGap, most = (parameters.max_radius - inset) / kOcclusionPoint;
+  const float part = parameters.inner_part, inset = parameters.depth - kFilledGap;
+  const float most = (part * parameters.max_radius - inset) / kOcclusionPoint;
   const int planes = static_cast<int>(2.f * most) + 1;
-  executor.for_each(size_t(atoms.count) * static_cast<size_t>(planes), FillBalls{atoms, inset, field, planes},
+  executor.for_each(size_t(atoms.count) * static_cast<size_t>(planes), FillBalls{atoms, part, inset, field, planes},
                     kPlainSteps + static_cast<uint64_t>(planes) * static_cast<uint64_t>(planes));
   if constexpr (!Executor::kIsCuda) {  // a GPU has opened the others before it knows which they are
     const Span<uint8_t> asked = executor.template allocate<uint8_t>(bricks.count);

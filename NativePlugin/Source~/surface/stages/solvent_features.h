@@ -16,7 +16,9 @@ struct SurfaceParameters {
   float probe;
   float depth;
   float spacing;
-  float max_radius;  // largest inflated radius
+  float max_radius;        // largest inflated radius
+  float scale = 1.f;       // of atoms' radii, before the probe inflates them
+  float inner_part = 1.f;  // of an inflated ball, what is inside whatever else there is, but for the depth
 
   // A point that is no deeper than this in any ball is outside. Where a surface is looked for further inside, a point
   // on the boundary within rounding is outside only if a feature says so: else it would be a hole of its own.

@@ -22,7 +22,9 @@ namespace QuickSes.Interop
                 Spacing = 0.5f,
                 RelaxationSteps = 1,
                 Measure = 1,
-                LevelCount = 2
+                LevelCount = 2,
+                GaussianRadiusScale = 1,
+                GaussianIsovalue = 0.5f
             };
             settings.Levels[0] = 2;
             settings.Levels[1] = 1;

@@ -62,6 +62,8 @@ namespace QuickSes.Interop
         public int OuterOnly;
         public int AtomAreas;
         public int Occlusion;
+        public float GaussianRadiusScale;
+        public float GaussianIsovalue;
     }
 
     [StructLayout(LayoutKind.Sequential)]

@@ -27,7 +27,10 @@ namespace QuickSes
             settings.RelaxationSteps = (uint)_relaxationSteps;
             settings.VertexLayout =
                 _compactVertices ? SurfaceVertexLayout.Compact : SurfaceVertexLayout.Interleaved;
-            settings.Creases = settings.HardEdges = _sharpCreases && settings.Method == SurfaceMethod.Exact;
+            settings.Creases = settings.HardEdges = _sharpCreases &&
+                settings.Method == SurfaceMethod.Exact && _surface != SurfaceKind.Gaussian;
+            settings.GaussianRadiusScale = _gaussianRadiusScale;
+            settings.GaussianIsovalue = _gaussianIsovalue;
             settings.Occlusion = _ambientOcclusion;
             settings.Components = _measureComponents;
             levels = _levels;

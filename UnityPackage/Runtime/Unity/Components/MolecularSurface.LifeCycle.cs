@@ -120,7 +120,7 @@ namespace QuickSes
         }
 
         private SurfaceShapeSettings ShapeSettings() => new SurfaceShapeSettings(
-            _surface, _method, _probeRadius, _spacing, _levels, _relaxationSteps, _sharpCreases,
+            _surface, _method, _probeRadius, _gaussianRadiusScale, _gaussianIsovalue, _spacing, _levels, _relaxationSteps, _sharpCreases,
             _ambientOcclusion, _measureComponents, _compactVertices, _backend);
 
         // The inspector, Undo and changed prefabs write serialised fields, also that of the filter beside this

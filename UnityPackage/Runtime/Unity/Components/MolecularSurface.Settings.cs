@@ -13,7 +13,7 @@ namespace QuickSes
         public SurfaceKind Surface
         {
             get => _surface;
-            set => Set(ref _surface, Known(value, value <= SurfaceKind.Vdw && value >= 0));
+            set => Set(ref _surface, Known(value, value <= SurfaceKind.Gaussian && value >= 0));
         }
 
         /// <summary>How the solvent-excluded surface is computed; default: exactly.</summary>
@@ -28,6 +28,24 @@ namespace QuickSes
         {
             get => _probeRadius;
             set => Set(ref _probeRadius, InRange(value, 0, SurfaceSettings.MaxProbeRadius, "Å"));
+        }
+
+        /// <summary>
+        /// Of <see cref="SurfaceKind.Gaussian"/>, 0.05 to 10: an atom's standard deviation over its radius; default 1.
+        /// </summary>
+        public float GaussianRadiusScale
+        {
+            get => _gaussianRadiusScale;
+            set => Set(ref _gaussianRadiusScale, InRange(value, SurfaceSettings.MinGaussianRadiusScale,
+                SurfaceSettings.MaxGaussianRadiusScale, "of the radius"));
+        }
+
+        /// <summary>Of <see cref="SurfaceKind.Gaussian"/>, 0.01 to 1000: the density on the surface; default 0.5.</summary>
+        public float GaussianIsovalue
+        {
+            get => _gaussianIsovalue;
+            set => Set(ref _gaussianIsovalue,
+                InRange(value, SurfaceSettings.MinGaussianIsovalue, SurfaceSettings.MaxGaussianIsovalue, "of density"));
         }
 
         /// <summary>Å between lattice points of the finest level, 0.001 to 100; default 0.5.</summary>

@@ -27,13 +27,20 @@ namespace QuickSes
 
         [Header("Surface")]
         [SerializeField, Tooltip("Solvent-excluded: what a probe rolling over the atoms can't reach. Solvent-" +
-            "accessible: where its centre may be. Van der Waals: the atoms themselves.")]
+            "accessible: where its centre may be. Van der Waals: the atoms themselves. Gaussian: of a density, as QuickSurf.")]
         private SurfaceKind _surface = SurfaceKind.Ses;
         [SerializeField, Min(0), Tooltip("Radius of the probe in Å; 1.4 is water.")]
         private float _probeRadius = 1.4f;
         [SerializeField, Tooltip("Exact: vertices lie on the exact surface. Grid: the voxel method of the QuickSES " +
             "paper, for comparison.")]
         private SurfaceMethod _method = SurfaceMethod.Exact;
+
+        [SerializeField, Range(SurfaceSettings.MinGaussianRadiusScale, SurfaceSettings.MaxGaussianRadiusScale),
+            Tooltip("Gaussian: an atom's standard deviation over its radius, as QuickSurf's radius scale.")]
+        private float _gaussianRadiusScale = 1;
+        [SerializeField, Range(SurfaceSettings.MinGaussianIsovalue, SurfaceSettings.MaxGaussianIsovalue),
+            Tooltip("Gaussian: the density on the surface, as QuickSurf's isovalue.")]
+        private float _gaussianIsovalue = 0.5f;
 
         [Header("Quality")]
         [SerializeField, Min(MinEditedSpacing), Tooltip("How fine the mesh is in the end: Å between the points of the " +

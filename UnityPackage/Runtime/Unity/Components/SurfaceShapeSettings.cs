@@ -11,6 +11,8 @@ namespace QuickSes
         private readonly SurfaceKind _surface;
         private readonly SurfaceMethod _method;
         private readonly float _probeRadius;
+        private readonly float _gaussianRadiusScale;
+        private readonly float _gaussianIsovalue;
         private readonly float _spacing;
         private readonly float[] _levels;
         private readonly int _relaxationSteps;
@@ -20,13 +22,15 @@ namespace QuickSes
         private readonly bool _compactVertices;
         private readonly SurfaceBackend _backend;
 
-        public SurfaceShapeSettings(SurfaceKind surface, SurfaceMethod method, float probeRadius, float spacing,
-            float[] levels, int relaxationSteps, bool sharpCreases, bool ambientOcclusion, bool measureComponents,
+        public SurfaceShapeSettings(SurfaceKind surface, SurfaceMethod method, float probeRadius,
+            float gaussianRadiusScale, float gaussianIsovalue, float spacing, float[] levels, int relaxationSteps, bool sharpCreases, bool ambientOcclusion, bool measureComponents,
             bool compactVertices, SurfaceBackend backend)
         {
             _surface = surface;
             _method = method;
             _probeRadius = probeRadius;
+            _gaussianRadiusScale = gaussianRadiusScale;
+            _gaussianIsovalue = gaussianIsovalue;
             _spacing = spacing;
             _levels = (float[])levels.Clone();
             _relaxationSteps = relaxationSteps;
@@ -38,7 +42,8 @@ namespace QuickSes
         }
 
         public bool Equals(SurfaceShapeSettings other) => _surface == other._surface && _method == other._method &&
-            _probeRadius.Equals(other._probeRadius) && _spacing.Equals(other._spacing) &&
+            _probeRadius.Equals(other._probeRadius) && _gaussianRadiusScale.Equals(other._gaussianRadiusScale) &&
+            _gaussianIsovalue.Equals(other._gaussianIsovalue) && _spacing.Equals(other._spacing) &&
             _relaxationSteps == other._relaxationSteps && _sharpCreases == other._sharpCreases &&
             _ambientOcclusion == other._ambientOcclusion && _measureComponents == other._measureComponents && _compactVertices == other._compactVertices &&
             _backend == other._backend && _levels.AsSpan().SequenceEqual(other._levels);
