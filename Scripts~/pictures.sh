@@ -3,7 +3,7 @@
 # Makes the pictures of the documentation anew with the built program (bash Scripts~/demo.sh builds it).
 #   bash Scripts~/pictures.sh FOLDER
 # FOLDER holds 3EAM.pdb.gz and 1AON.pdb.gz of the Protein Data Bank (https://files.rcsb.org/download/3EAM.pdb.gz and
-# .../1AON.pdb.gz). Takes a minute. Needs optipng and Pillow (optipng, python3-pil), which make the files small.
+# .../1AON.pdb.gz). Takes a minute. Needs pngquant and optipng, which make the files small.
 set -euo pipefail
 if [ $# -ne 1 ] || [ ! -d "$1" ]; then
   sed -n '3,6s/^# //p' "$0" >&2
@@ -15,17 +15,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 images=Documentation~/images
 draw() { # INPUT NAME FLAG...
   .build/cpu/bin/quickses "$1" -o "$images/$2" --quiet --background transparent "${@:3}"
-  # Shades in steps of 3: half as large, and nobody sees it.
-  /usr/bin/python3 - "$images/$2" <<'PYTHON'
-import sys
-from PIL import Image
-image = Image.open(sys.argv[1])
-*colors, last = image.split()
-if image.mode == "RGB":
-    colors.append(last)
-steps = [channel.point(lambda value: 3 * round(value / 3)) for channel in colors]
-Image.merge(image.mode, steps if image.mode == "RGB" else steps + [last]).save(sys.argv[1])
-PYTHON
+  # 256 colours: half as large, and nobody sees it.
+  pngquant --speed 1 --quality 70-95 --strip --force --output "$images/$2" "$images/$2"
   optipng -quiet -o5 "$images/$2"
 }
 

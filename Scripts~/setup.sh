@@ -41,6 +41,7 @@ needs=(
   "nlohmann-json3-dev nlohmann/json.hpp"
   "libgtest-dev gtest/gtest.h"
   "patchelf patchelf"
+  "pigz pigz"
 )
 
 if [ "$with_cuda" = yes ]; then needs+=("clang-19 clang++-19"); fi
@@ -132,7 +133,7 @@ if ! command -v apt-get >/dev/null; then
   fail "can install on Debian and Ubuntu only, and $system has no apt-get.
 Missing here (Debian's package names): ${missing[*]}
 Needed in all: CMake 3.22, Ninja, a C++17 compiler, Python 3, zlib, Thrust 1.15, oneTBB, GLM, gemmi (and PEGTL with
-gemmi 0.5), CLI11, nlohmann-json, stb, GoogleTest, PyYAML, patchelf; for the GPU the CUDA Toolkit 11.8 or later and Clang 18
+gemmi 0.5), CLI11, nlohmann-json, stb, GoogleTest, PyYAML, patchelf, pigz; for the GPU the CUDA Toolkit 11.8 or later and Clang 18
 or later; for many processes an MPI library."
 fi
 as_root=()
