@@ -7,7 +7,7 @@
 #include "cli/exit_code.h"
 #include "cli/help_format.h"
 #include "cli/option_kinds.h"
-#include "cli/suggestions.h"
+#include "io/mesh_writer.h"
 #include "io/text.h"
 
 namespace quickses::cli {
@@ -85,7 +85,7 @@ void check_inputs(const Options &options) {
     throw Failure(kUsage, "--trajectory: its frames are of one structure, and " + count +
                               " were given (of several trajectories, each needs a --trajectory before it)");
   for (const std::string &input : options.inputs)
-    if (options.output.empty() && is_mesh_name(input))
+    if (options.output.empty() && io::find_mesh_format(input))
       throw Failure(kUsage, "'" + input + "': one INPUT was given already; did you mean -o " + input + "?");
   if (!options.output.empty() && options.output.find("%s") == std::string::npos)
     throw Failure(kUsage, "--output (-o): '" + options.output + "' names one file for " + count +

@@ -52,7 +52,7 @@ void run_measure(const Options &options) {
     }
   };
   const size_t failed_count = for_each_input(options, measure, [&](const Options &one, const Failure &failure) {
-    if (!options.json.empty()) reports += dump(Json{{"input", one.input}, {"error", failure.what()}}, true);
+    if (!options.json.empty()) reports += dump(failed_input_json(one, failure), true);
   });
   tables.finish();
   if (!options.json.empty()) write_text(options.json, reports);

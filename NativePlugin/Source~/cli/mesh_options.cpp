@@ -6,6 +6,7 @@
 
 #include "cli/exit_code.h"
 #include "cli/help_format.h"
+#include "cli/mesh_output.h"
 #include "cli/option_kinds.h"
 #include "cli/shown_output.h"
 #include "io/atomic_file.h"
@@ -19,19 +20,6 @@ const std::map<std::string, MeshColors> kColors = {
     {"chain", MeshColors::kChain},         {"residue", MeshColors::kResidue},
     {"sequence", MeshColors::kSequence},   {"hydrophobicity", MeshColors::kHydrophobicity},
     {"component", MeshColors::kComponent}, {"patch", MeshColors::kPatch}};
-
-}  // namespace
-
-bool parse_color(const std::string &text, io::Rgba &color) {
-  constexpr size_t kSize = 7;
-  if (text.size() != kSize || text[0] != '#' || text.find_first_not_of("0123456789abcdefABCDEF", 1) != text.npos)
-    return false;
-  const unsigned long rgb = std::stoul(text.substr(1), nullptr, 16);
-  color = {static_cast<uint8_t>(rgb >> 16), static_cast<uint8_t>(rgb >> 8), static_cast<uint8_t>(rgb), 255};
-  return true;
-}
-
-namespace {
 
 void read_color(const std::string &text, MeshFileOptions &mesh) {
   if (parse_color(text, mesh.color)) {
@@ -80,9 +68,8 @@ void check_without_output(const MeshFileOptions &mesh) {
   if (mesh.scale != 1) refuse("--scale", "it is the size");
 }
 
-bool are_of_atoms(MeshColors colors) {
-  return colors != MeshColors::kNone && colors != MeshColors::kDefault && colors != MeshColors::kOne &&
-         colors != MeshColors::kComponent && colors != MeshColors::kPatch;
+bool differ_by_atom(MeshColors colors) {
+  return scheme_of(colors).value_or(io::ColorScheme::kUniform) != io::ColorScheme::kUniform;
 }
 
 void check_format(const Options &options) {
@@ -96,9 +83,11 @@ void check_format(const Options &options) {
   if (mesh.text && format != io::MeshFormat::kPly) refuse("--ascii", "only PLY files are there as bytes and as text");
   if (has_colors(mesh) && !io::has_colors(format))
     refuse("--color", "STL and MSMS files have no colours (.ply, .obj, .glb, .off, .png and .html have)");
+  if (options.compute.occlusion == Switch::kOn && !io::has_occlusion(format))
+    refuse("--occlusion", "such files have no place for it (.ply, .glb, .png and .html have)");
   if (mesh.center && io::is_shown(format)) refuse("--center", "a picture or page has the middle in the middle anyway");
   if (mesh.scale != 1 && io::is_shown(format)) refuse("--scale", "a picture or page has no unit (there is --zoom)");
-  if (mesh.sharp && !are_of_atoms(mesh.colors) && mesh.colors != MeshColors::kDefault)
+  if (mesh.sharp && !differ_by_atom(mesh.colors) && mesh.colors != MeshColors::kDefault)
     throw Failure(
         kUsage,
         "--sharp-colors: is for colours of atoms (--color element, chain, residue, hydrophobicity or sequence)");
@@ -154,7 +143,7 @@ void set_mesh_defaults(Options &options) {
   const bool is_shown = makes_shown(options);
   if (!is_shown && mesh.colors == MeshColors::kDefault) mesh.colors = MeshColors::kNone;
   if (is_shown && options.compute.occlusion == Switch::kDefault) options.compute.occlusion = Switch::kOn;
-  if (is_shown && !options.picture.edges && (mesh.colors == MeshColors::kDefault || are_of_atoms(mesh.colors)))
+  if (is_shown && !options.picture.edges && (mesh.colors == MeshColors::kDefault || differ_by_atom(mesh.colors)))
     mesh.sharp = true;
 }
 

@@ -17,9 +17,6 @@ void resolve_output(Options &options);
 // Of what was not given, as the output wants it.
 void set_mesh_defaults(Options &options);
 
-// "#C08000". False where the text is no colour.
-bool parse_color(const std::string &text, io::Rgba &color);
-
 // Whether they fit to each other and to the format of the output. Throws Failure (kUsage).
 void check_mesh_options(const Options &options);
 

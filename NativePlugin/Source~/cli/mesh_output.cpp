@@ -27,33 +27,10 @@ constexpr io::Rgba kPatchColors[] = {{0, 158, 115, 255}, {240, 228, 66, 255}, {0
 
 // Of colours that are not those of atoms: none.
 std::vector<uint8_t> atom_colors_of(const MeshFileOptions &options, const io::Structure &structure) {
-  io::ColorScheme scheme = io::ColorScheme::kUniform;
-  switch (options.colors) {
-    case MeshColors::kDefault:
-    case MeshColors::kNone:
-    case MeshColors::kComponent:
-    case MeshColors::kPatch:
-      return {};
-    case MeshColors::kOne:
-      break;
-    case MeshColors::kElement:
-      scheme = io::ColorScheme::kElement;
-      break;
-    case MeshColors::kChain:
-      scheme = io::ColorScheme::kChain;
-      break;
-    case MeshColors::kResidue:
-      scheme = io::ColorScheme::kResidue;
-      break;
-    case MeshColors::kHydrophobicity:
-      scheme = io::ColorScheme::kHydrophobicity;
-      break;
-    case MeshColors::kSequence:
-      scheme = io::ColorScheme::kSequence;
-      break;
-  }
+  const std::optional<io::ColorScheme> scheme = scheme_of(options.colors);
+  if (!scheme) return {};
   std::vector<uint8_t> colors(4 * structure.atoms.size());
-  io::color_atoms(structure, scheme, options.color, colors.data());
+  io::color_atoms(structure, *scheme, options.color, colors.data());
   return colors;
 }
 
@@ -122,6 +99,29 @@ unsigned drawing_threads(const Options &options) {
 }
 
 }  // namespace
+
+std::optional<io::ColorScheme> scheme_of(MeshColors colors) {
+  switch (colors) {
+    case MeshColors::kOne:
+      return io::ColorScheme::kUniform;
+    case MeshColors::kElement:
+      return io::ColorScheme::kElement;
+    case MeshColors::kChain:
+      return io::ColorScheme::kChain;
+    case MeshColors::kResidue:
+      return io::ColorScheme::kResidue;
+    case MeshColors::kHydrophobicity:
+      return io::ColorScheme::kHydrophobicity;
+    case MeshColors::kSequence:
+      return io::ColorScheme::kSequence;
+    case MeshColors::kDefault:
+    case MeshColors::kNone:
+    case MeshColors::kComponent:
+    case MeshColors::kPatch:
+      break;
+  }
+  return std::nullopt;
+}
 
 // What a file needs of a mesh, beside the mesh.
 struct MeshOutput::Prepared {

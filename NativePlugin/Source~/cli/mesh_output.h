@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,9 @@ namespace quickses::cli {
 // Takes the surface of all atoms for good. Throws Failure (kComputingFailed) if the mesh is not closed, which that
 // surface always should be.
 void accept_surface(const qses_mesh &mesh);
+
+// How atoms are coloured; of colours that are not those of atoms: nothing.
+std::optional<io::ColorScheme> scheme_of(MeshColors colors);
 
 // What there is to do with the meshes of a structure, in one conformation or many. Any number of threads may use it.
 class MeshOutput {

@@ -80,4 +80,13 @@ bool parse_size(const std::string &text, uint64_t &bytes) {
   return true;
 }
 
+bool parse_color(const std::string &text, io::Rgba &color) {
+  constexpr size_t kSize = 7;
+  if (text.size() != kSize || text[0] != '#' || text.find_first_not_of("0123456789abcdefABCDEF", 1) != text.npos)
+    return false;
+  const unsigned long rgb = std::stoul(text.substr(1), nullptr, 16);
+  color = {static_cast<uint8_t>(rgb >> 16), static_cast<uint8_t>(rgb >> 8), static_cast<uint8_t>(rgb), 255};
+  return true;
+}
+
 }  // namespace quickses::cli

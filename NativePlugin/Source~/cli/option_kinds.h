@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Kinds of options: names out of a list, numbers within bounds, sizes of memory. Whatever else is given is refused with
-// a sentence that names the flag.
+// Kinds of options: names out of a list, numbers within bounds, sizes of memory, colours. Whatever else is given is
+// refused with a sentence that names the flag.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -58,5 +58,8 @@ void add_size(CLI::App *app, const char *flag, uint64_t &value, const char *help
 
 // "512M" and the like in bytes: K, M, G, T are powers of 1024. False where the text is no such size or none at all.
 bool parse_size(const std::string &text, uint64_t &bytes);
+
+// "#C08000". False where the text is no colour.
+bool parse_color(const std::string &text, io::Rgba &color);
 
 }  // namespace quickses::cli

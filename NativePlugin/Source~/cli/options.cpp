@@ -30,8 +30,11 @@ const std::map<std::string, qses_surface> kSurfaces = {{"ses", QSES_SURFACE_SES}
                                                        {"vdw", QSES_SURFACE_VDW},
                                                        {"gaussian", QSES_SURFACE_GAUSSIAN}};
 // By measure.
-const std::map<std::string, qses_surface> kMeasured = {
-    {"ses", QSES_SURFACE_SES}, {"sas", QSES_SURFACE_SAS}, {"vdw", QSES_SURFACE_VDW}};
+const std::map<std::string, qses_surface> kMeasured = [] {
+  std::map<std::string, qses_surface> surfaces = kSurfaces;
+  surfaces.erase("gaussian");
+  return surfaces;
+}();
 const std::map<std::string, qses_method> kMethods = {{"exact", QSES_METHOD_EXACT}, {"grid", QSES_METHOD_GRID}};
 const std::map<std::string, qses_backend> kBackends = {
     {"auto", QSES_BACKEND_AUTO}, {"cuda", QSES_BACKEND_CUDA}, {"cpu", QSES_BACKEND_CPU}};

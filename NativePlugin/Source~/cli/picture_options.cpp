@@ -6,7 +6,6 @@
 
 #include "cli/exit_code.h"
 #include "cli/help_format.h"
-#include "cli/mesh_options.h"
 #include "cli/option_kinds.h"
 #include "cli/shown_output.h"
 #include "io/text.h"

@@ -25,6 +25,10 @@ Json bounds_json(const float *min, const float *max) { return {vector_json(min),
 
 }  // namespace
 
+Json failed_input_json(const Options &options, const Failure &failure) {
+  return {{"schema", kReportSchema}, {"input", options.input}, {"error", failure.what()}};
+}
+
 Json settings_json(const ComputeOptions &options) {
   Json json = {{"surface", name_of(options.surface)},
                {"method", name_of(options.method)},

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "cli/engine.h"
+#include "cli/exit_code.h"
 #include "cli/options.h"
 
 namespace quickses::cli {
@@ -25,6 +26,9 @@ Json settings_json(const ComputeOptions &options);
 
 // "atoms" and so on: where area and volume come from.
 const char *name_of(qses_measured_by measured_by);
+
+// Of one of several inputs that can't be used: schema, input, error.
+Json failed_input_json(const Options &options, const Failure &failure);
 
 // What reports begin with: schema, version, input, model, atoms, settings, backend, device.
 Json report_head_json(const Options &options, const io::Structure &structure, const Engine &engine);

@@ -51,15 +51,6 @@ void check_command(const CLI::App &app, const std::string &first_input) {
   if (!explained.empty()) throw Failure(kUsage, explained);
 }
 
-bool is_mesh_name(const std::string &name) {
-  try {
-    io::mesh_format_of(name);
-    return true;
-  } catch (const std::exception &) {
-    return false;
-  }
-}
-
 const CLI::App &command_of(const CLI::App &app, const std::vector<std::string> &arguments) {
   for (const CLI::App *command : app.get_subcommands(nullptr))
     if (!arguments.empty() && command->get_name() == arguments[0]) return *command;
@@ -96,7 +87,7 @@ std::string explain_extra(const CLI::App &command, const std::vector<std::string
   const std::string explained = explain_command(command, arguments[0]);
   if (!explained.empty()) return explained;
   return "'" + extra + "': one INPUT was given already; " +
-         (is_mesh_name(extra) ? "did you mean -o " + extra + "?" : "see " + help_of(command));
+         (io::find_mesh_format(extra) ? "did you mean -o " + extra + "?" : "see " + help_of(command));
 }
 
 }  // namespace quickses::cli

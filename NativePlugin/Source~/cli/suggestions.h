@@ -17,9 +17,6 @@ void check_dashes(const CLI::App &command, const std::vector<std::string> &argum
 // "; did you mean --spacing?" for an argument such as "-spacng" among these that may be why something failed; else "".
 std::string suggest_dashes(const CLI::App &command, const std::vector<std::string> &arguments);
 
-// Whether a file of this name would be a mesh.
-bool is_mesh_name(const std::string &name);
-
 // "mesure" for "measure", which would be taken for the first of several inputs: throws Failure (kUsage), unless there
 // is a file of that name.
 void check_command(const CLI::App &app, const std::string &first_input);

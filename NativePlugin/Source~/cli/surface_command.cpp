@@ -72,7 +72,7 @@ class SurfaceRun {
   }
 
   void add_failure(const Options &options, const Failure &failure) {
-    if (!options.json.empty()) reports_ += dump(Json{{"input", options.input}, {"error", failure.what()}}, true);
+    if (!options.json.empty()) reports_ += dump(failed_input_json(options, failure), true);
   }
 
   void finish() {

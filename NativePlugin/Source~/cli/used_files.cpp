@@ -40,11 +40,11 @@ bool is_same_place(const fs::path &a, const fs::path &b) { return comparable(a) 
 UsedFiles::File UsedFiles::file_of(const char *flag, const std::string &name, bool is_output) {
   const bool is_standard = name == "-" || (is_output && io::is_standard_output(name));
 #if defined(_WIN32)
-  const fs::path path = io::path_of(name);
+  const char *const standard = is_output ? "<stdout>" : "<stdin>";  // names that no file can have
 #else
-  // What a shell leads there may be a file.
-  const fs::path path = !is_standard ? io::path_of(name) : is_output ? "/dev/stdout" : "/dev/stdin";
+  const char *const standard = is_output ? "/dev/stdout" : "/dev/stdin";  // what a shell leads there may be a file
 #endif
+  const fs::path path = is_standard ? fs::path(standard) : io::path_of(name);
   return {flag, is_standard ? "-" : name, is_output, path, io::place_of(path)};
 }
 

@@ -21,13 +21,18 @@ constexpr struct {
 
 }  // namespace
 
-MeshFormat mesh_format_of(const std::string &path) {
+std::optional<MeshFormat> find_mesh_format(const std::string &path) {
   const std::string extension = lower_extension(path_of(path));
-  std::string known;
-  for (const auto &entry : kExtensions) {
+  for (const auto &entry : kExtensions)
     if (extension == entry.extension) return entry.format;
-    known += std::string(" ") + entry.extension;
-  }
+  return std::nullopt;
+}
+
+MeshFormat mesh_format_of(const std::string &path) {
+  if (const std::optional<MeshFormat> format = find_mesh_format(path)) return *format;
+  std::string known;
+  for (const auto &entry : kExtensions) known += std::string(" ") + entry.extension;
+  const std::string extension = lower_extension(path_of(path));
   const std::string what = extension.empty() ? "has no extension" : "has the unknown extension '" + extension + "'";
   fail_usage("the output file '" + path + "' " + what + "; known are" + known);
 }
@@ -45,6 +50,10 @@ bool has_normals(MeshFormat format) {
 }
 
 bool has_colors(MeshFormat format) { return format != MeshFormat::kStl && format != MeshFormat::kMsms; }
+
+bool has_occlusion(MeshFormat format) {
+  return is_shown(format) || format == MeshFormat::kPly || format == MeshFormat::kGlb;
+}
 
 bool has_repeated_vertices(MeshFormat format) { return format != MeshFormat::kObj && format != MeshFormat::kOff; }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,7 +33,9 @@ struct MeshView {
   float probe_radius = 0;
 };
 
-// The format that the extension of a file name stands for. Throws Error (kUsage) that lists the known ones.
+// The format that the extension of a file name stands for, or nothing.
+std::optional<MeshFormat> find_mesh_format(const std::string &path);
+// Throws Error (kUsage) that lists the known ones.
 MeshFormat mesh_format_of(const std::string &path);
 
 // The files that write_mesh makes under this name: itself first.
@@ -43,6 +46,7 @@ bool is_shown(MeshFormat format);
 // Whether vertices have normals of their own, and colours.
 bool has_normals(MeshFormat format);
 bool has_colors(MeshFormat format);
+bool has_occlusion(MeshFormat format);
 // Whether a vertex that is repeated is written like any other one, with all it has; else its place is written once.
 bool has_repeated_vertices(MeshFormat format);
 

@@ -14,9 +14,8 @@ import time
 import unittest
 
 import cli_test
-from cli_test import CRAMBIN, INPUT, OK, OUTPUT, USAGE, ProgramTest, is_closed, read_obj
+from cli_test import CRAMBIN, INPUT, IS_WINDOWS, OK, OUTPUT, USAGE, ProgramTest, is_closed, read_obj
 
-IS_WINDOWS = os.name == "nt" or os.environ.get("QUICKSES_TEST_SYSTEM") == "Windows"
 MODELS = 3
 
 

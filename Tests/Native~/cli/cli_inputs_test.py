@@ -6,7 +6,6 @@ usage: cli_inputs_test.py PROGRAM [unittest options]      (or QUICKSES_PROGRAM i
 import csv
 import gzip
 import json
-import os
 import subprocess
 import unittest
 
@@ -145,7 +144,7 @@ class StandardInput(InputTest):
         result = self.run_with(b"REMARK\n" * 1000, "-", "--max-input", "1K", code=INPUT)
         self.assertIn(b"--max-input", result.stderr)
 
-    @unittest.skipIf(os.name == "nt", "there is no /dev/stdin")
+    @unittest.skipIf(cli_test.IS_WINDOWS, "there is no /dev/stdin")
     def test_the_file_that_it_comes_from_is_not_overwritten(self):
         path = self.folder / self.names[0]
         with path.open("rb") as file:

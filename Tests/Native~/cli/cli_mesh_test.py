@@ -95,6 +95,7 @@ class Colors(MeshTest):
         for arguments, parts in (
                 (["-o", "a.stl", "--color", "element"], ["--color", "STL", "no colours", "a.stl"]),
                 (["-o", "a.vert", "--color", "element"], ["--color", "MSMS", "no colours", "a.vert"]),
+                (["-o", "a.obj", "--occlusion", "on"], ["--occlusion", ".ply", "a.obj"]),
                 (["--color", "element"], ["--color", "--output"]),
                 (["-o", "a.ply", "--color", "colourful"], ["--color", "colourful", "hydrophobicity", "patch"]),
                 (["-o", "a.ply", "--color", "#12345"], ["--color", "#12345", "#RRGGBB"]),

@@ -6,12 +6,11 @@ usage: cli_picture_test.py PROGRAM [unittest options]      (or QUICKSES_PROGRAM 
 import colorsys
 import json
 import math
-import os
 import subprocess
 import unittest
 
 import cli_test
-from cli_test import CRAMBIN, OUTPUT, USAGE, ProgramTest
+from cli_test import CRAMBIN, IS_WINDOWS, OUTPUT, USAGE, ProgramTest
 from mesh_files import read_any_ply
 from page_files import Page
 from png_files import Picture
@@ -293,8 +292,7 @@ class Pages(PictureTest):
         self.run_cpu("m.pdb", "--trajectory", "m.pdb", "--frames", "2:8:3", "-o", "c.html", "-v", "0.5")
         self.assertEqual([mesh.label for mesh in Page(self.folder / "c.html").meshes], ["frame 2", "frame 5"])
 
-    @unittest.skipIf(os.environ.get("QUICKSES_TEST_SYSTEM") == "Windows" or os.name == "nt",
-                     "no such names there")
+    @unittest.skipIf(IS_WINDOWS, "no such names there")
     def test_names_do_not_run(self):
         name = "<script>alert(1)&amp;\"'.pdb"
         self.write(name, atom(1, "C", 0, 0, 0))

@@ -19,6 +19,8 @@ import unittest
 PROGRAM = os.environ.get("QUICKSES_PROGRAM", "")
 DATA = pathlib.Path(os.environ.get("QUICKSES_TEST_DATA_DIR") or pathlib.Path(__file__).resolve().parents[2] / "Data~")
 CRAMBIN = DATA / "1CRN.pdb"
+# By Wine the program has the habits of Windows, this one has not.
+IS_WINDOWS = os.name == "nt" or os.environ.get("QUICKSES_TEST_SYSTEM") == "Windows"
 
 OK, USAGE, INPUT, OUTPUT, COMPUTE, BACKEND = range(6)
 

@@ -17,7 +17,7 @@ except ImportError:
     print("report_schema_test: skipped, Python has no jsonschema (python3-jsonschema)")
     sys.exit(77)
 
-FRAMES_FAILED = 6
+FRAMES_FAILED = INPUTS_FAILED = 6
 SCHEMA = {}
 
 
@@ -68,6 +68,11 @@ class Schema(ProgramTest):
         models = self.models()
         reports = self.check("failed_frame", models, "--trajectory", models, "-v", "2", "--memory", "1K", code=FRAMES_FAILED)
         self.assertEqual(len(reports), 3)
+
+    def test_failed_inputs(self):
+        for command in ([], ["measure"]):
+            reports = self.check("failed_input", *command, "none_1.pdb", "none_2.pdb", code=INPUTS_FAILED)
+            self.assertEqual([report["input"] for report in reports], ["none_1.pdb", "none_2.pdb"])
 
     def test_numbers(self):
         self.check("measurement", "measure", CRAMBIN)

@@ -7,6 +7,14 @@
 
 namespace quickses {
 
+// The bricks before anything is known of the mesh.
+template <class Work>
+void note_bricks(Work &work, const BrickSet &bricks) {
+  work.facts->size = {};
+  work.facts->size.bricks = static_cast<double>(bricks.count);
+  work.facts->brick_entries = bricks.table ? work.lattice.table_size() : 0;
+}
+
 // How large the mesh is of which these bricks are.
 template <class Work>
 void note_size(Work &work, uint64_t bricks, const MeshCounts &counts, uint64_t leaves) {
@@ -35,6 +43,29 @@ MeshCounts lay_out_closed_mesh(Work &work, BrickSet *bricks, MeshLayout *layout,
     *bricks = grown;
     work.progress.report(0.0);  // looks whether to go on
   }
+}
+
+// Memory for the mesh that was laid out, with the normals that later stages read.
+template <class Work>
+MeshMemoryView begin_mesh(Work &work, const MeshCounts &counts) {
+  MeshMemoryView mesh = work.memory.allocate_mesh(work.executor, with_spare_room(work, counts.vertices),
+                                                  with_spare_room(work, counts.triangles), work.made_shape,
+                                                  work.purpose, work.plan.mesh_in_pieces);
+  add_normals(work, &mesh);
+  mesh.vertices = counts.vertices;
+  mesh.triangles = counts.triangles;
+  return mesh;
+}
+
+// Of all bricks at once, by methods of which counts are settled.
+template <class Work>
+void emit_all_triangles(Work &work, const BrickSet &bricks, const MeshLayout &layout, MeshMemoryView &mesh) {
+  auto &executor = work.executor;
+  Backend<std::remove_reference_t<decltype(executor)>>::emit_triangles(
+      executor, bricks, layout, BrickRange{0, bricks.count}, work.table, mesh.view);
+  if (mesh.in_pieces) return;
+  work.memory.note_triangles(executor);
+  work.memory.bring_triangles(mesh, work.purpose);  // they go out while the vertices are made
 }
 
 }  // namespace quickses

@@ -154,9 +154,7 @@ MeshMemoryView build_exact_surface(Work &work) {
   work.memory.forget_spills();
   work.timer.begin("bricks");
   BrickSet bricks = find_bricks(executor, features, work.lattice, &work.facts->brick_visits);
-  work.facts->size = {};
-  work.facts->size.bricks = static_cast<double>(bricks.count);
-  work.facts->brick_entries = bricks.table ? work.lattice.table_size() : 0;
+  note_bricks(work, bricks);
   work.progress.report(0.1);
 
   // What signs and vertices share, if all bricks are worked on at once; gathered again for each of several slices.
@@ -183,12 +181,7 @@ MeshMemoryView build_exact_surface(Work &work) {
   });
 
   executor.send_counts();
-  MeshMemoryView mesh = work.memory.allocate_mesh(executor, with_spare_room(work, counts.vertices),
-                                                  with_spare_room(work, counts.triangles), work.made_shape,
-                                                  work.purpose, work.plan.mesh_in_pieces);
-  add_normals(work, &mesh);
-  mesh.vertices = counts.vertices;
-  mesh.triangles = counts.triangles;
+  MeshMemoryView mesh = begin_mesh(work, counts);
   const auto end_of_mesh = executor.arena().mark();
   VertexStarts starts{work.settings.relaxation_steps > 0, nullptr, work.table.ring, &layout.totals->unplaced};
   if (!mesh.in_pieces) {  // they may go out while the vertices are made

@@ -64,13 +64,10 @@ void evaluate_density_signs(Work &work, const BrickSet &bricks, const ForSlices 
 template <class Work>
 MeshMemoryView build_gaussian_surface(Work &work) {
   auto &executor = work.executor;
-  using Executor = std::remove_reference_t<decltype(executor)>;
   work.memory.forget_spills();
   work.timer.begin("bricks");
   BrickSet bricks = find_density_bricks(work, work.facts);
-  work.facts->size = {};
-  work.facts->size.bricks = static_cast<double>(bricks.count);
-  work.facts->brick_entries = bricks.table ? work.lattice.table_size() : 0;
+  note_bricks(work, bricks);
   work.progress.report(0.1);
 
   // Slices take no memory here, but the caller can follow them.
@@ -83,16 +80,10 @@ MeshMemoryView build_gaussian_surface(Work &work) {
     };
     evaluate_density_signs(work, set, for_slices, signs);
   });
-  MeshMemoryView mesh = work.memory.allocate_mesh(executor, counts.vertices, counts.triangles, work.made_shape,
-                                                  work.purpose, work.plan.mesh_in_pieces);
-  add_normals(work, &mesh);
+  MeshMemoryView mesh = begin_mesh(work, counts);
   const auto end_of_mesh = executor.arena().mark();
   work.timer.begin("marching_cubes");
-  Backend<Executor>::emit_triangles(executor, bricks, layout, BrickRange{0, bricks.count}, work.table, mesh.view);
-  if (!mesh.in_pieces) {  // they go out while the vertices are made
-    work.memory.note_triangles(executor);
-    work.memory.bring_triangles(mesh, work.purpose);
-  }
+  emit_all_triangles(work, bricks, layout, mesh);
   work.timer.begin("projection");
   const GaussianDensity density = density_of(work);
   executor.for_each(counts.vertices, PlaceDensityVertices{density, bricks, layout, mesh.view},

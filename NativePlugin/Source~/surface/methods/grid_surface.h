@@ -13,15 +13,12 @@ namespace quickses {
 template <class Work>
 MeshMemoryView build_grid_surface(Work &work) {
   auto &executor = work.executor;
-  using Executor = std::remove_reference_t<decltype(executor)>;
   work.memory.forget_spills();
   work.timer.begin("bricks");
   const GridParameters parameters =
       make_grid_parameters(work.parameters.probe, work.parameters.spacing, work.parameters.max_radius);
   BrickSet bricks = find_grid_bricks(executor, work.atoms, parameters, work.lattice, &work.facts->brick_visits);
-  work.facts->size = {};
-  work.facts->size.bricks = static_cast<double>(bricks.count);
-  work.facts->brick_entries = bricks.table ? work.lattice.table_size() : 0;
+  note_bricks(work, bricks);
   work.progress.report(0.1);
 
   // Slices take no memory here, but the caller can follow them.
@@ -35,16 +32,10 @@ MeshMemoryView build_grid_surface(Work &work) {
       evaluate_grid_signs(executor, field, slice, signs);
     });
   });
-  MeshMemoryView mesh = work.memory.allocate_mesh(executor, counts.vertices, counts.triangles, work.made_shape,
-                                                  work.purpose, work.plan.mesh_in_pieces);
-  add_normals(work, &mesh);
+  MeshMemoryView mesh = begin_mesh(work, counts);
   const auto end_of_mesh = executor.arena().mark();
   work.timer.begin("marching_cubes");
-  Backend<Executor>::emit_triangles(executor, bricks, layout, BrickRange{0, bricks.count}, work.table, mesh.view);
-  if (!mesh.in_pieces) {  // they go out while the vertices are made
-    work.memory.note_triangles(executor);
-    work.memory.bring_triangles(mesh, work.purpose);
-  }
+  emit_all_triangles(work, bricks, layout, mesh);
   work.timer.begin("projection");
   for_each_slice(work, bricks.count, slice_size(), 0.5, 0.8,
                  [&](BrickRange slice) { emit_grid_vertices(executor, field, layout, slice, mesh.view); });

@@ -59,15 +59,14 @@ struct OpennessField {
 
 // Takes the points of a ball out of those outside: a thread for each of the planes that may cut it.
 struct FillBalls {
-  NeighborGridView atoms;
-  float part, inset;  // balls have this part of the grid's radius, less this, Å
+  Balls balls;
   OpennessField field;
   int planes;
 
   QSES_HOST_DEVICE void operator()(size_t i) const {
     const size_t count = static_cast<size_t>(planes);
-    const Sphere atom = atoms.items[i / count];
-    const float r = (part * atom.radius - inset) / kOcclusionPoint;
+    const Sphere atom = balls.atoms.items[i / count];
+    const float r = balls.radius(atom.radius) / kOcclusionPoint;
     if (atom.center.x >= 0.5f * kFarAway || r <= 0.f) return;
     const Vec3<float> c = Vec3<float>(atom.center) * (1.f / kOcclusionPoint);
     const int z = static_cast<int>(ceilf(c.z - r)) + static_cast<int>(i % count);
@@ -122,19 +121,24 @@ struct Lookout {
   }
 };
 
-// The nodes around a lookout are in up to eight bricks.
+// Calls use(k, brick) for the bricks around a lookout, up to eight. Bits of k: along which axes it is the next one.
+// brick -1: there is none.
+template <class Use>
+QSES_FN void for_bricks_around(const OpennessField &field, const Lookout &at, const Use &use) {
+  const int crossed = at.crossed();
+  for (int k = 0; k < 8; ++k)
+    if (k == (k & crossed)) use(k, field.find(at.brick() + glm::ivec3(k & 1, k >> 1 & 1, k >> 2)));
+}
+
 struct AskBricks {
   OpennessField field;
   MeshView mesh;
   QSES_HOST_DEVICE void operator()(size_t i) const {
     const uint32_t vertex = mesh.first_vertex + static_cast<uint32_t>(i);
-    const Lookout at(field.bricks.lattice, mesh.position(vertex), mesh.normal(vertex));
-    const int crossed = at.crossed();
-    for (int k = 0; k < 8; ++k) {
-      if (k != (k & crossed)) continue;
-      const int brick = field.find(at.brick() + glm::ivec3(k & 1, k >> 1 & 1, k >> 2));
-      if (brick >= 0) atomic_set(field.asked + brick);
-    }
+    for_bricks_around(field, Lookout(field.bricks.lattice, mesh.position(vertex), mesh.normal(vertex)),
+                      [&](int, int brick) {
+                        if (brick >= 0) atomic_set(field.asked + brick);
+                      });
   }
 };
 
@@ -240,8 +244,7 @@ struct LightVertices {
     const Lookout at(field.bricks.lattice, mesh.position(vertex), n);
     const int crossed = at.crossed();
     int bricks[8];
-    for (int k = 0; k < 8; ++k)
-      if (k == (k & crossed)) bricks[k] = field.find(at.brick() + glm::ivec3(k & 1, k >> 1 & 1, k >> 2));
+    for_bricks_around(field, at, [&](int k, int brick) { bricks[k] = brick; });
     Openness sum{0.f, 0.f, 0.f, 0.f};
     float weights = 0.f;
     for (int z = 0; z < 2; ++z)
@@ -294,10 +297,9 @@ void find_openness(Executor &executor, const NeighborGridView &atoms, const Surf
   const Span<Openness> nodes = executor.template allocate<Openness>(size_t(bricks.count) * kBrickNodes);
   OpennessField field{bricks, outside.data, nodes.data, nullptr};
   executor.fill(outside, 0xff);
-  const float part = parameters.inner_part, inset = parameters.depth - kFilledGap;
-  const float most = (part * parameters.max_radius - inset) / kOcclusionPoint;
-  const int planes = static_cast<int>(2.f * most) + 1;
-  executor.for_each(size_t(atoms.count) * static_cast<size_t>(planes), FillBalls{atoms, part, inset, field, planes},
+  const Balls balls{atoms, parameters.max_radius, parameters.depth - kFilledGap, parameters.inner_part};
+  const int planes = static_cast<int>(2.f * balls.radius(balls.max_radius) / kOcclusionPoint) + 1;
+  executor.for_each(size_t(atoms.count) * static_cast<size_t>(planes), FillBalls{balls, field, planes},
                     kPlainSteps + static_cast<uint64_t>(planes) * static_cast<uint64_t>(planes));
   if constexpr (!Executor::kIsCuda) {  // a GPU has opened the others before it knows which they are
     const Span<uint8_t> asked = executor.template allocate<uint8_t>(bricks.count);
