@@ -9,6 +9,10 @@
 #include "surface/mesh/mesh_view.h"
 #include "surface/stages/ball_points.h"
 
+#if defined(__SSE__)
+#include <xmmintrin.h>
+#endif
+
 namespace quickses {
 
 constexpr float kOcclusionPoint = 1.f;  // Å between points of the lattice; its bricks have 8 of them along an edge
@@ -31,20 +35,51 @@ struct SkyDirections {
     for (int k = 0; k < kCount; ++k) {
       const double z = 1 - (2 * k + 1) / static_cast<double>(kCount), across = std::sqrt(1 - z * z);
       const double angle = 2.399963229728653 * k;
-      direction[k][0] = static_cast<float>(across * std::cos(angle));
-      direction[k][1] = static_cast<float>(across * std::sin(angle));
-      direction[k][2] = static_cast<float>(z);
+      direction[k][0] = rounded(across * std::cos(angle));
+      direction[k][1] = rounded(across * std::sin(angle));
+      direction[k][2] = rounded(z);
     }
   }
+  // So that sums of them are exact, whatever their order.
+  static float rounded(double x) { return static_cast<float>(std::nearbyint(x * 65536) / 65536); }
 };
 
-// What a node knows: the part of the directions that are free, and twice their mean. The light on a plane is then
-// part + dot(mean, normal).
+// What a node knows: twice the mean of the directions that are free, and what part of all they are. The light on a
+// plane is then dot(mean, normal) + part.
 struct alignas(16) Openness {
-  float part, x, y, z;
+  float value[4] = {};
+  QSES_FN float &part() { return value[3]; }
+  QSES_FN float part() const { return value[3]; }
+  QSES_FN void add(float weight, const Openness &other) {
+#if defined(__SSE__) && !defined(__CUDA_ARCH__)
+    const __m128 product = _mm_mul_ps(_mm_set1_ps(weight), _mm_load_ps(other.value));
+    _mm_store_ps(value, _mm_add_ps(_mm_load_ps(value), product));
+#else
+    for (int k = 0; k < 4; ++k) value[k] += weight * other.value[k];
+#endif
+  }
 };
 // Within a ball.
 constexpr float kFilled = -1.f;
+
+#if !defined(__CUDA_ARCH__)
+// Of each set of four directions that follow each other.
+struct SkySums {
+  static constexpr int kCount = SkyDirections::kCount / 4;
+  Openness of[kCount][16];
+  SkySums() {
+    const SkyDirections sky;
+    for (int d = 0; d < SkyDirections::kCount; ++d)
+      for (int set = 0; set < 16; ++set) {
+        Openness &sum = of[d / 4][set];
+        if ((set >> d % 4 & 1) == 0) continue;
+        for (int axis = 0; axis < kAxes; ++axis) sum.value[axis] += sky.direction[d][axis];
+        sum.part() += 1.f;
+      }
+  }
+};
+inline const SkySums kSkySums;
+#endif
 
 struct OpennessField {
   BrickSet bricks;
@@ -52,7 +87,7 @@ struct OpennessField {
   // the points of word 0: word x & 1, ..., and bit x >> 1, ... of the point, counted from the brick's first.
   uint64_t *outside;
   Openness *nodes;  // [brick][node]
-  uint8_t *asked;   // [brick]: whether a vertex looks from there; nullptr: all are
+  int32_t *behind;  // [brick][k]: the next brick along the axes of k's bits; -1: there is none
 
   QSES_FN int find(const glm::ivec3 &brick) const { return bricks.find(brick - bricks.lattice.first_brick); }
 };
@@ -121,27 +156,6 @@ struct Lookout {
   }
 };
 
-// Calls use(k, brick) for the bricks around a lookout, up to eight. Bits of k: along which axes it is the next one.
-// brick -1: there is none.
-template <class Use>
-QSES_FN void for_bricks_around(const OpennessField &field, const Lookout &at, const Use &use) {
-  const int crossed = at.crossed();
-  for (int k = 0; k < 8; ++k)
-    if (k == (k & crossed)) use(k, field.find(at.brick() + glm::ivec3(k & 1, k >> 1 & 1, k >> 2)));
-}
-
-struct AskBricks {
-  OpennessField field;
-  MeshView mesh;
-  QSES_HOST_DEVICE void operator()(size_t i) const {
-    const uint32_t vertex = mesh.first_vertex + static_cast<uint32_t>(i);
-    for_bricks_around(field, Lookout(field.bricks.lattice, mesh.position(vertex), mesh.normal(vertex)),
-                      [&](int, int brick) {
-                        if (brick >= 0) atomic_set(field.asked + brick);
-                      });
-  }
-};
-
 struct SkyScratch {
   static constexpr int kReach = 3, kEdge = 2 * kReach + 1;  // bricks that rays come to
   uint64_t outside[kEdge * kEdge * kEdge][kLeavesPerBrick];
@@ -155,10 +169,12 @@ struct OpenNodes {
 
   template <class Team>
   QSES_HOST_DEVICE void operator()(const Team &team, SkyScratch &scratch, size_t i) const {
-    if (field.asked && !field.asked[i]) return;
+    const glm::ivec3 place = field.bricks.lattice.brick_at(field.bricks.linear[i]);
+    for (int k = team.rank(); k < 8; k += team.size())
+      field.behind[8 * i + static_cast<size_t>(k)] = field.bricks.find(place + glm::ivec3(k & 1, k >> 1 & 1, k >> 2));
     const uint64_t free_nodes = field.outside[i * kLeavesPerBrick];
     if (free_nodes != 0) {
-      bring_points(team, scratch, field.bricks.lattice.brick_at(field.bricks.linear[i]));
+      bring_points(team, scratch, place);
       team.sync();
       for (int d = team.rank(); d < SkyDirections::kCount; d += team.size())
         scratch.seen[d] = see(scratch, sky.direction[d], free_nodes);
@@ -166,7 +182,7 @@ struct OpenNodes {
     }
     for (int node = team.rank(); node < kBrickNodes; node += team.size())
       field.nodes[i * kBrickNodes + static_cast<size_t>(node)] =
-          free_nodes >> node & 1 ? sum_up(scratch, node) : Openness{kFilled, 0.f, 0.f, 0.f};
+          free_nodes >> node & 1 ? sum_up(scratch, node) : Openness{{0.f, 0.f, 0.f, kFilled}};
     team.sync();
   }
 
@@ -221,16 +237,23 @@ struct OpenNodes {
   }
 
   QSES_FN Openness sum_up(const SkyScratch &scratch, int node) const {
-    Openness sum{0.f, 0.f, 0.f, 0.f};
+    Openness sum;
+#if defined(__CUDA_ARCH__)
     for (int d = 0; d < SkyDirections::kCount; ++d) {
       const float seen = scratch.seen[d] >> node & 1 ? 1.f : 0.f;
-      sum.part += seen;
-      sum.x += seen * sky.direction[d][0];
-      sum.y += seen * sky.direction[d][1];
-      sum.z += seen * sky.direction[d][2];
+      for (int axis = 0; axis < kAxes; ++axis) sum.value[axis] += seen * sky.direction[d][axis];
+      sum.part() += seen;
     }
+#else
+    for (int four = 0; four < SkySums::kCount; ++four) {
+      const uint64_t *const seen = scratch.seen + 4 * four;
+      const uint64_t set =
+          (seen[0] >> node & 1) | (seen[1] >> node & 1) << 1 | (seen[2] >> node & 1) << 2 | (seen[3] >> node & 1) << 3;
+      sum.add(1.f, kSkySums.of[four][set]);
+    }
+#endif
     constexpr float kPart = 1.f / static_cast<float>(SkyDirections::kCount);
-    return {kPart * sum.part, 2.f * kPart * sum.x, 2.f * kPart * sum.y, 2.f * kPart * sum.z};
+    return {{2.f * kPart * sum.value[0], 2.f * kPart * sum.value[1], 2.f * kPart * sum.value[2], kPart * sum.part()}};
   }
 };
 
@@ -242,10 +265,18 @@ struct LightVertices {
     const uint32_t vertex = mesh.first_vertex + static_cast<uint32_t>(i);
     const float *const n = mesh.normal(vertex);
     const Lookout at(field.bricks.lattice, mesh.position(vertex), n);
+    const int brick = field.find(at.brick());
+    const float light = brick < 0 ? 0.f : open_to(n, at, field.behind + 8 * static_cast<size_t>(brick));
+    float *const texcoord = mesh.texcoord(vertex);
+    texcoord[0] = minimum(1.f, maximum(0.f, light));
+    if (marks) texcoord[1] = 1.f;
+  }
+
+ private:
+  // bricks: of the first node's and those behind it.
+  QSES_FN float open_to(const float *n, const Lookout &at, const int32_t *bricks) const {
     const int crossed = at.crossed();
-    int bricks[8];
-    for_bricks_around(field, at, [&](int k, int brick) { bricks[k] = brick; });
-    Openness sum{0.f, 0.f, 0.f, 0.f};
+    Openness sum;
     float weights = 0.f;
     for (int z = 0; z < 2; ++z)
       for (int y = 0; y < 2; ++y) {
@@ -254,21 +285,16 @@ struct LightVertices {
         for (int x = 0; x < 2; ++x) {
           const int brick = bricks[(x + 2 * y + 4 * z) & crossed];
           if (brick < 0) continue;
-          const Openness *const open =
-              &field.nodes[static_cast<size_t>(brick) * kBrickNodes + static_cast<size_t>(row + at.x.in_brick(x))];
+          const Openness &open =
+              field.nodes[static_cast<size_t>(brick) * kBrickNodes + static_cast<size_t>(row + at.x.in_brick(x))];
           // None is 0, so that a single node that is free tells.
-          const float weight = open->part < 0.f ? 0.f : 1e-4f + across * at.x.weight(x);
-          sum.part += weight * open->part;
-          sum.x += weight * open->x;
-          sum.y += weight * open->y;
-          sum.z += weight * open->z;
+          const float weight = open.part() < 0.f ? 0.f : 1e-4f + across * at.x.weight(x);
+          sum.add(weight, open);
           weights += weight;
         }
       }
-    const float light = weights > 0.f ? (sum.part + sum.x * n[0] + sum.y * n[1] + sum.z * n[2]) / weights : 0.f;
-    float *const texcoord = mesh.texcoord(vertex);
-    texcoord[0] = minimum(1.f, maximum(0.f, light));
-    if (marks) texcoord[1] = 1.f;
+    return weights > 0.f ? (sum.value[0] * n[0] + sum.value[1] * n[1] + sum.value[2] * n[2] + sum.part()) / weights
+                         : 0.f;
   }
 };
 
@@ -295,18 +321,13 @@ void find_openness(Executor &executor, const NeighborGridView &atoms, const Surf
   const BrickSet bricks = collect_bricks(executor, items, lattice, "occlusion bricks");
   const Span<uint64_t> outside = executor.template allocate<uint64_t>(size_t(bricks.count) * kLeavesPerBrick);
   const Span<Openness> nodes = executor.template allocate<Openness>(size_t(bricks.count) * kBrickNodes);
-  OpennessField field{bricks, outside.data, nodes.data, nullptr};
+  const Span<int32_t> behind = executor.template allocate<int32_t>(size_t(bricks.count) * 8);
+  const OpennessField field{bricks, outside.data, nodes.data, behind.data};
   executor.fill(outside, 0xff);
   const Balls balls{atoms, parameters.max_radius, parameters.depth - kFilledGap, parameters.inner_part};
   const int planes = static_cast<int>(2.f * balls.radius(balls.max_radius) / kOcclusionPoint) + 1;
   executor.for_each(size_t(atoms.count) * static_cast<size_t>(planes), FillBalls{balls, field, planes},
                     kPlainSteps + static_cast<uint64_t>(planes) * static_cast<uint64_t>(planes));
-  if constexpr (!Executor::kIsCuda) {  // a GPU has opened the others before it knows which they are
-    const Span<uint8_t> asked = executor.template allocate<uint8_t>(bricks.count);
-    executor.fill(asked, 0);
-    field.asked = asked.data;
-    executor.for_each(vertices, AskBricks{field, mesh});
-  }
   executor.template for_each_brick<SkyScratch>(bricks.count, OpenNodes{field, SkyDirections()}, 8, kPlainTeamSteps);
   executor.for_each(vertices, LightVertices{field, mesh, marks});
   executor.arena().rewind(mark);
