@@ -3,6 +3,7 @@
 #pragma once
 
 #include "surface/cpu/exact_ses_cpu.h"
+#include "surface/cpu/gaussian_density_cpu.h"
 #include "surface/cpu/local_features_cpu.h"
 #include "surface/cpu/mesh_memory_cpu.h"
 #include "surface/cpu/solvent_features_cpu.h"
@@ -45,6 +46,16 @@ struct Backend<CpuKernelExecutor> {
   static void emit_triangles(E &executor, const BrickSet &bricks, const MeshLayout &layout, BrickRange slice,
                              const TableView &table, const MeshView &mesh) {
     if constexpr (!E::kCounts) quickses::emit_triangles(executor, bricks, layout, slice, table, mesh);
+  }
+  template <class E>
+  static void evaluate_density(E &executor, const GaussianDensity &density, const BrickSet &bricks, BrickRange slice,
+                               uint64_t *signs) {
+    if constexpr (!E::kCounts) quickses::evaluate_density(executor, density, bricks, slice, signs);
+  }
+  template <class E>
+  static void emit_density_vertices(E &executor, const GaussianDensity &density, const BrickSet &bricks,
+                                    const MeshLayout &layout, size_t /*vertices*/, const MeshView &mesh) {
+    if constexpr (!E::kCounts) quickses::emit_density_vertices(executor, density, bricks, layout, mesh);
   }
   template <class E, class F>
   static void for_each_gathering(E &executor, size_t n, const F &f) {

@@ -53,23 +53,29 @@ struct LocalColumns {
 //   mark_brick_walls       ORs the lattice points into marks that thin walls of its edges need (thin_walls.h)
 //   emit_brick_vertices    the vertices a brick owns
 //   emit_brick_triangles   the triangles of a brick's cells
+//   evaluate_brick_density the eight leaf words of a brick of a Gaussian surface
+//   emit_brick_density_vertices  the vertices that a brick of it owns
 //   gather_local_features  those near a place; false if it is too crowded
 //   nearest_local_arc      of those that were gathered
-#define QSES_CPU_KERNELS(KERNEL)                                                                                \
-  KERNEL(AtomFeatures, find_atom_features, const NeighborGridView &atoms, const SurfaceParameters &parameters,  \
-         uint32_t i, const AtomScratch &scratch, Cap *caps, int cap_room, Arc *arcs, ArcAtoms *arc_atoms,       \
-         int64_t arc_room, uint8_t *exposed)                                                                    \
-  KERNEL(BrickNeeds, evaluate_brick_signs, const FeatureView &features, const BrickSet &bricks, uint32_t brick, \
-         const BrickScratch &scratch, uint64_t *words)                                                          \
-  KERNEL(BrickNeeds, mark_brick_walls, const FeatureView &features, const BrickSet &bricks, uint32_t brick,     \
-         const uint64_t *signs, const BrickScratch &scratch, uint64_t *marks)                                   \
-  KERNEL(BrickNeeds, emit_brick_vertices, const FeatureView &features, const BrickSet &bricks,                  \
-         const MeshLayout &layout, uint32_t brick, const VertexStarts &starts, const BrickScratch &scratch,     \
-         const MeshView &mesh)                                                                                  \
-  KERNEL(void, emit_brick_triangles, const BrickSet &bricks, const MeshLayout &layout, uint32_t brick,          \
-         const TableView &table, const MeshView &mesh)                                                          \
-  KERNEL(bool, gather_local_features, const FeatureView &features, const Vec3<float> &x, float around,          \
-         LocalColumns *out)                                                                                     \
+#define QSES_CPU_KERNELS(KERNEL)                                                                                     \
+  KERNEL(AtomFeatures, find_atom_features, const NeighborGridView &atoms, const SurfaceParameters &parameters,       \
+         uint32_t i, const AtomScratch &scratch, Cap *caps, int cap_room, Arc *arcs, ArcAtoms *arc_atoms,            \
+         int64_t arc_room, uint8_t *exposed)                                                                         \
+  KERNEL(BrickNeeds, evaluate_brick_signs, const FeatureView &features, const BrickSet &bricks, uint32_t brick,      \
+         const BrickScratch &scratch, uint64_t *words)                                                               \
+  KERNEL(BrickNeeds, mark_brick_walls, const FeatureView &features, const BrickSet &bricks, uint32_t brick,          \
+         const uint64_t *signs, const BrickScratch &scratch, uint64_t *marks)                                        \
+  KERNEL(BrickNeeds, emit_brick_vertices, const FeatureView &features, const BrickSet &bricks,                       \
+         const MeshLayout &layout, uint32_t brick, const VertexStarts &starts, const BrickScratch &scratch,          \
+         const MeshView &mesh)                                                                                       \
+  KERNEL(void, emit_brick_triangles, const BrickSet &bricks, const MeshLayout &layout, uint32_t brick,               \
+         const TableView &table, const MeshView &mesh)                                                               \
+  KERNEL(BrickNeeds, evaluate_brick_density, const GaussianDensity &density, const BrickSet &bricks, uint32_t brick, \
+         const BrickScratch &scratch, uint64_t *words)                                                               \
+  KERNEL(BrickNeeds, emit_brick_density_vertices, const GaussianDensity &density, const BrickSet &bricks,            \
+         const MeshLayout &layout, uint32_t brick, const BrickScratch &scratch, const MeshView &mesh)                \
+  KERNEL(bool, gather_local_features, const FeatureView &features, const Vec3<float> &x, float around,               \
+         LocalColumns *out)                                                                                          \
   KERNEL(NearestArc, nearest_local_arc, const LocalColumns &local, const Vec3<float> &x)
 
 struct CpuKernels {

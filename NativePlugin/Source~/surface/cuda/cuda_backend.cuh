@@ -2,6 +2,7 @@
 // The hot stages on the GPU (stages/hot_stages.h).
 #pragma once
 
+#include "surface/cuda/gaussian_density_cuda.cuh"
 #include "surface/cuda/local_features_cuda.cuh"
 #include "surface/cuda/mesh_cuda.cuh"
 #include "surface/cuda/mesh_memory_cuda.cuh"
@@ -52,6 +53,16 @@ struct Backend<CudaExecutor> {
   static void emit_triangles(E &executor, const BrickSet &bricks, const MeshLayout &layout, BrickRange slice,
                              const TableView &table, const MeshView &mesh) {
     gpu::emit_triangles(executor, bricks, layout, slice, table, mesh);
+  }
+  template <class E>
+  static void evaluate_density(E &executor, const GaussianDensity &density, const BrickSet &bricks, BrickRange slice,
+                               uint64_t *signs) {
+    gpu::evaluate_density(executor, density, bricks, slice, signs);
+  }
+  template <class E>
+  static void emit_density_vertices(E &executor, const GaussianDensity &density, const BrickSet &bricks,
+                                    const MeshLayout &layout, size_t vertices, const MeshView &mesh) {
+    gpu::emit_density_vertices(executor, density, bricks, layout, vertices, mesh);
   }
   template <class E, class F>
   static void for_each_gathering(E &executor, size_t n, const F &f) {

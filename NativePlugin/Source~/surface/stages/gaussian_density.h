@@ -5,29 +5,32 @@
 #pragma once
 
 #include "surface/stages/marching_cubes.h"
-
-#include <cmath>
-#include <cstring>
-
 namespace quickses {
 
 // Standard deviations after which an atom's density ends.
 constexpr float kGaussianReach = 4.f;
 constexpr float kHalfReach2 = 0.5f * kGaussianReach * kGaussianReach;
 
-// exp(x) for x from -kHalfReach2 to 0, in operations that compilers make packs of.
+// exp(x) for x from -kHalfReach2 to 0, within 1e-6 of itself: the eighth power of a Taylor series about -1/2.
+template <class F>
+QSES_FN F gaussian_series(F x) {
+  const F u = x * F(0.125f) + F(0.5f);  // from -1/2 to 1/2
+  F e = u * F(1.f / 5040) + F(1.f / 720);
+  e = e * u + F(1.f / 120);
+  e = e * u + F(1.f / 24);
+  e = e * u + F(1.f / 6);
+  e = e * u + F(0.5f);
+  e = e * u + F(1.f);
+  e = (e * u + F(1.f)) * F(0.60653066f);
+  e = e * e;
+  e = e * e;
+  return e * e;
+}
 QSES_FN float gaussian(float x) {
 #if defined(__CUDA_ARCH__)
   return __expf(x);
 #else
-  const float y = x * 1.44269504f;
-  const int n = static_cast<int>(y - 0.5f);
-  const float f = (y - static_cast<float>(n)) * 0.69314718f;  // half of log 2 at most
-  const float e = 1.f + f * (1.f + f * (0.5f + f * (0.166666667f + f * (0.0416666667f + f * 0.00833333333f))));
-  const int32_t bits = (n + 127) * (1 << 23);
-  float power;
-  std::memcpy(&power, &bits, sizeof power);
-  return e * power;
+  return gaussian_series(x);
 #endif
 }
 
@@ -35,7 +38,8 @@ struct GaussianDensity {
   NeighborGridView atoms;  // with the radii where their densities end
   float max_radius;        // of those
   float isovalue;
-  float atom_part;  // an atom's radius over that where its density ends
+  float atom_part;                       // an atom's radius over that where its density ends
+  static constexpr int kMostLooks = 12;  // for a vertex
 
   struct Value {
     float density;
@@ -70,6 +74,21 @@ struct GaussianDensity {
     return sum;
   }
 
+  // What an atom adds at least and at most to the points of a box, of which middle and half the edges are given. That
+  // is rounded: sums are to be multiplied with these before they decide.
+  static constexpr float kSurelyLess = 0.999f, kSurelyMore = 1.001f;
+  template <class F>
+  QSES_FN static void add_bounds(const Vec3<F> &center, F end2, const Vec3<F> &middle, const Vec3<F> &half, F *least,
+                                 F *most) {
+    const F slope = F(-kHalfReach2) / maximum(end2, F(1e-20f)), zero(0.f);
+    const Vec3<F> d(absolute(center.x - middle.x), absolute(center.y - middle.y), absolute(center.z - middle.z));
+    const Vec3<F> far = d + half;
+    const Vec3<F> near(maximum(zero, d.x - half.x), maximum(zero, d.y - half.y), maximum(zero, d.z - half.z));
+    const F far2 = dot(far, far), near2 = dot(near, near);
+    *least = *least + select(far2 < end2, gaussian(slope * minimum(far2, end2)), zero);
+    *most = *most + select(near2 < end2, gaussian(slope * minimum(near2, end2)), zero);
+  }
+
   // Place in the grid of the atom whose van der Waals surface is nearest; of several, of the smallest number.
   QSES_FN uint32_t owner_at(const Vec3<float> &x) const {
     uint32_t best = 0;
@@ -86,130 +105,47 @@ struct GaussianDensity {
   }
 };
 
-struct DensityScratch {
-  static constexpr int kMostThreads = 256;
-  float bounds[kMostThreads];
-  uint8_t halves[kBrickEdge * kBrickEdge][2];  // of each row, the points inside
+// Where an edge has the isovalue, in parts of it from its end inside.
+struct IsovaluePlace {
+  float part;
+  GaussianDensity::Value found;  // close to it
 };
-
-// The signs of a brick.
-struct EvaluateDensity {
-  GaussianDensity density;
-  BrickSet bricks;
-  const uint64_t *outside;  // [brick][leaf]: points that no atom alone puts inside
-  uint32_t first;
-  uint64_t *signs;
-
-  template <class Team>
-  QSES_HOST_DEVICE void operator()(const Team &team, DensityScratch &scratch, size_t i) const {
-    const size_t brick = first + i;
-    const Lattice &lattice = bricks.lattice;
-    const glm::ivec3 point = lattice.first_point(lattice.brick_at(bricks.linear[brick]));
-    const Vec3<float> low = lattice.position(point.x, point.y, point.z);
-    const Vec3<float> high = lattice.position(point.x + 7, point.y + 7, point.z + 7);
-    uint64_t undecided = 0;
-    for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf)
-      undecided |= outside[brick * kLeavesPerBrick + static_cast<size_t>(leaf)];
-    const CellBox box = density.cells_near(low, high);
-    const bool is_empty = undecided != 0 && most_in_box(team, scratch, box, low, high) < density.isovalue;
-    if (undecided != 0 && !is_empty) {
-      // A thread has so many points of a row, in registers.
-      constexpr int kRows = kBrickEdge * kBrickEdge;
-      const int parts = team.size() > kRows ? 2 : 1;
-      for (int part = team.rank(); part < kRows * parts; part += team.size()) {
-        const int row = part / parts;
-        for (int half = part % parts; half < 2; half += parts)
-          scratch.halves[row][half] = inside_of_half(box, point + glm::ivec3(4 * half, row % 8, row / 8));
-      }
+// at(x): the density at a place.
+template <class At>
+QSES_FN IsovaluePlace find_isovalue(const CutEdge &edge, float isovalue, const At &at) {
+  constexpr int kMostSteps = GaussianDensity::kMostLooks;
+  const Vec3<float> along = edge.outside - edge.inside;
+  float inner = 0.f, outer = 1.f;
+  IsovaluePlace place{0.5f, {}};
+  for (int step = 0; step < kMostSteps; ++step) {  // Newton's, between what is known to be inside and outside
+    float &t = place.part;
+    place.found = at(edge.inside + along * t);
+    const float above = place.found.density - isovalue, slope = dot(place.found.gradient, along);
+    (above > 0.f ? inner : outer) = t;
+    const float next = t - above / slope;
+    if (absolute(next - t) < 1e-3f) {  // the next step would be a thousandth of this one
+      t = minimum(1.f, maximum(0.f, next));
+      break;
     }
-    team.sync();
-    for (int leaf = team.rank(); leaf < kLeavesPerBrick; leaf += team.size()) {
-      uint64_t word = undecided == 0 ? ~uint64_t(0) : 0;
-      for (int k = 0; k < kLeafEdge * kLeafEdge && undecided != 0 && !is_empty; ++k) {
-        const glm::ivec3 p = brick_point(leaf, kLeafEdge * k);
-        word |= static_cast<uint64_t>(scratch.halves[p.y + kBrickEdge * p.z][p.x / 4]) << (kLeafEdge * k);
-      }
-      signs[brick * kLeavesPerBrick + static_cast<size_t>(leaf)] = word;
-    }
-    team.sync();
+    t = next > inner && next < outer ? next : 0.5f * (inner + outer);
   }
+  return place;
+}
 
- private:
-  // No point of the box has more; the same for all threads of the team. A bit more, for what rounding takes.
-  template <class Team>
-  QSES_HOST_DEVICE float most_in_box(const Team &team, DensityScratch &scratch, const CellBox &box,
-                                     const Vec3<float> &low, const Vec3<float> &high) const {
-    float bound = 0.f;
-    uint32_t met = 0;
-    density.visit_atoms(box, [&](const Sphere &atom, uint32_t) {
-      if (static_cast<int>(met++ % static_cast<uint32_t>(team.size())) != team.rank()) return;
-      const float end2 = atom.radius * atom.radius, d2 = distance_to_box_squared(Vec3<float>(atom.center), low, high);
-      if (d2 < end2) bound += gaussian(-kHalfReach2 / end2 * d2);
-    });
-    scratch.bounds[team.rank()] = bound;
-    team.sync();
-    float sum = 0.f;
-    for (int k = 0; k < team.size(); ++k) sum += scratch.bounds[k];
-    return 1.001f * sum;
-  }
-
-  // Bits of four points along x.
-  QSES_FN uint8_t inside_of_half(const CellBox &box, const glm::ivec3 &point) const {
-    const Vec3<float> p = bricks.lattice.position(point.x, point.y, point.z);
-    const float h = bricks.lattice.spacing;
-    float sums[4] = {};
-    density.visit_atoms(box, [&](const Sphere &atom, uint32_t) {
-      const float dx = p.x - atom.center.x, dy = p.y - atom.center.y, dz = p.z - atom.center.z;
-      const float across2 = dy * dy + dz * dz, end2 = atom.radius * atom.radius;
-      if (across2 >= end2) return;
-      const float slope = kHalfReach2 / end2;
-      for (int k = 0; k < 4; ++k) {
-        const float x = dx + static_cast<float>(k) * h, d2 = x * x + across2;
-        const float e = gaussian(-slope * minimum(d2, end2));
-        sums[k] += d2 < end2 ? e : 0.f;
-      }
-    });
-    int bits = 0;
-    for (int k = 0; k < 4; ++k) bits |= (sums[k] > density.isovalue ? 1 : 0) << k;
-    return static_cast<uint8_t>(bits);
-  }
-};
-
-// Vertices where the density has the isovalue on their edges, with the gradient's direction as normal.
-struct PlaceDensityVertices {
-  GaussianDensity density;
-  BrickSet bricks;
-  MeshLayout layout;
-  MeshView mesh;
-
-  static constexpr int kMostSteps = 12;
-
-  QSES_HOST_DEVICE void operator()(size_t i) const {
-    const uint32_t vertex = mesh.first_vertex + static_cast<uint32_t>(i);
-    const uint32_t brick = brick_of_vertex(layout, bricks.count, vertex);
-    const CutEdge edge = ends_of_edge(bricks, layout, brick, edge_of_vertex(layout, brick, vertex));
-    const Vec3<float> along = edge.outside - edge.inside;
-    float inner = 0.f, outer = 1.f, t = 0.5f;
-    GaussianDensity::Value found{};
-    for (int step = 0; step < kMostSteps; ++step) {  // Newton's, between what is known to be inside and outside
-      found = density.at(edge.inside + along * t);
-      const float above = found.density - density.isovalue, slope = dot(found.gradient, along);
-      (above > 0.f ? inner : outer) = t;
-      const float next = t - above / slope;
-      if (absolute(next - t) < 1e-3f) {  // the next step would be a thousandth of this one
-        t = minimum(1.f, maximum(0.f, next));
-        break;
-      }
-      t = next > inner && next < outer ? next : 0.5f * (inner + outer);
-    }
-    const Vec3<float> x = edge.inside + along * t;
-    const uint32_t owner = density.owner_at(x);
-    const float steepness2 = dot(found.gradient, found.gradient);
-    mesh.owner(vertex) = density.atoms.order[owner];
-    store_vec3(mesh.position(vertex), Vec3<float>(bricks.lattice.to_caller(x)));
-    store_vec3(mesh.normal(vertex), steepness2 > 1e-20f ? found.gradient * (-1.f / square_root(steepness2))
-                                                        : along * (1.f / bricks.lattice.spacing));
-  }
-};
+// Writes a vertex. owner(x): the place of the owner in the grid.
+template <class At, class Owner>
+QSES_FN void place_density_vertex(const GaussianDensity &density, const BrickSet &bricks, const MeshLayout &layout,
+                                  uint32_t brick, uint32_t vertex, const MeshView &mesh, const At &at,
+                                  const Owner &owner) {
+  const CutEdge edge = ends_of_edge(bricks, layout, brick, edge_of_vertex(layout, brick, vertex));
+  const IsovaluePlace place = find_isovalue(edge, density.isovalue, at);
+  const Vec3<float> along = edge.outside - edge.inside, x = edge.inside + along * place.part;
+  const Vec3<float> &gradient = place.found.gradient;
+  const float steepness2 = dot(gradient, gradient);
+  mesh.owner(vertex) = density.atoms.order[owner(x)];
+  store_vec3(mesh.position(vertex), Vec3<float>(bricks.lattice.to_caller(x)));
+  store_vec3(mesh.normal(vertex), steepness2 > 1e-20f ? gradient * (-1.f / square_root(steepness2))
+                                                      : along * (1.f / bricks.lattice.spacing));
+}
 
 }  // namespace quickses

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "surface/memory/memory_plan.h"
+#include "surface/stages/gaussian_density.h"
 #include "surface/stages/marching_cubes.h"
 #include "surface/stages/projection.h"
 #include "surface/stages/side_normals.h"
@@ -48,6 +49,10 @@ struct TableView {
 //       inside because of edges of the slice's bricks (thin_walls.h)
 //   emit_vertices(E, features, bricks, layout, slice, rooms, candidates, starts, mesh)
 //   emit_triangles(E, bricks, layout, slice, table, mesh)
+//   evaluate_density(E, density, bricks, slice, signs)
+//       signs of a Gaussian surface
+//   emit_density_vertices(E, density, bricks, layout, vertices, mesh)
+//       all of them
 //   for_each_gathering(E, n, f)
 //       f(near by, i), where near by gathers the features around a place, as LocalFeatures do (local_features.h)
 template <class Executor>
@@ -84,6 +89,12 @@ struct BackendContract {
   static_assert(has<decltype(&B::template emit_triangles<Executor>), const BrickSet &, const MeshLayout &, BrickRange,
                     const TableView &, const MeshView &>,
                 "emit_triangles");
+  static_assert(has<decltype(&B::template evaluate_density<Executor>), const GaussianDensity &, const BrickSet &,
+                    BrickRange, uint64_t *>,
+                "evaluate_density");
+  static_assert(has<decltype(&B::template emit_density_vertices<Executor>), const GaussianDensity &, const BrickSet &,
+                    const MeshLayout &, size_t, const MeshView &>,
+                "emit_density_vertices");
 };
 
 }  // namespace quickses
