@@ -2,6 +2,7 @@
 using NUnit.Framework;
 using System.IO;
 using System.IO.Compression;
+using System.Linq;
 using System.Text;
 using UnityEngine;
 
@@ -78,6 +79,41 @@ namespace QuickSes.Tests
             source.Radii = "bondi";
             source.Model = 2;
             Assert.That(Fail(source).Message, Does.Contain("model").And.Contain("small.pdb"));
+        }
+
+        [Test]
+        public void AssembliesAreMadeAndAlternateLocationsChosen()
+        {
+            MoleculeSource source = OfText("pair.pdb",
+                "REMARK 350 BIOMOLECULE: 1\n" +
+                "REMARK 350 APPLY THE FOLLOWING TO CHAINS: A\n" +
+                "REMARK 350   BIOMT1   1  1.000000  0.000000  0.000000        0.00000\n" +
+                "REMARK 350   BIOMT2   1  0.000000  1.000000  0.000000        0.00000\n" +
+                "REMARK 350   BIOMT3   1  0.000000  0.000000  1.000000        0.00000\n" +
+                "REMARK 350   BIOMT1   2  1.000000  0.000000  0.000000       10.00000\n" +
+                "REMARK 350   BIOMT2   2  0.000000  1.000000  0.000000        0.00000\n" +
+                "REMARK 350   BIOMT3   2  0.000000  0.000000  1.000000        0.00000\n" +
+                "ATOM      1  CA AALA A   1       1.000   0.000   0.000  0.40  0.00           C\n" +
+                "ATOM      2  CA BALA A   1       2.000   0.000   0.000  0.60  0.00           C\n" +
+                "END\n");
+            Assert.That(XOf(source), Is.EqualTo(new[] { 1f }));
+            source.AlternateLocation = "B";
+            Assert.That(XOf(source), Is.EqualTo(new[] { 2f }));
+            source.Assembly = "1";
+            Assert.That(XOf(source), Is.EqualTo(new[] { 2f, 12f }));
+            source.Assembly = " ";
+            source.AlternateLocation = "highest";
+            Assert.That(XOf(source), Is.EqualTo(new[] { 2f }));
+            source.Assembly = "7";
+            Assert.That(Fail(source).Message, Does.Contain("'7'").And.Contain("pair.pdb"));
+            source.Assembly = source.AlternateLocation = null;
+            Assert.That(source.Assembly + source.AlternateLocation, Is.EqualTo(""));
+        }
+
+        private static float[] XOf(MoleculeSource source)
+        {
+            using (Structure structure = Open(source))
+                return structure.Positions.ToArray().Where((_, i) => i % 3 == 0).ToArray();
         }
 
         [Test]

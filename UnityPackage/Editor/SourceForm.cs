@@ -21,6 +21,8 @@ namespace QuickSes.Editor
         Radii = 1 << 8,
         ColorScheme = 1 << 9,
         Molecule = 1 << 10,
+        Assembly = 1 << 11,
+        AlternateLocation = 1 << 12,
         Filters = Model | SkipWater | SkipHydrogen | SkipHetero | Selection
     }
 
@@ -35,6 +37,8 @@ namespace QuickSes.Editor
             ("_path", SourceFields.Path),
             ("_format", SourceFields.Format),
             ("_model", SourceFields.Model),
+            ("_assembly", SourceFields.Assembly),
+            ("_alternateLocation", SourceFields.AlternateLocation),
             ("_skipWater", SourceFields.SkipWater),
             ("_skipHydrogen", SourceFields.SkipHydrogen),
             ("_skipHetero", SourceFields.SkipHetero),
@@ -55,8 +59,16 @@ namespace QuickSes.Editor
             SourceFields fields = place | SourceFields.Format | SourceFields.Radii | SourceFields.ColorScheme;
             if (format == StructureFormat.Auto && fileName != null)
                 format = MoleculeFile.StructureFormatOf(fileName);
-            // XYZR is lines of numbers, which nothing can be filtered by.
-            return format == StructureFormat.Xyzr ? fields : fields | SourceFields.Filters;
+            switch (format)
+            {
+                case StructureFormat.Xyzr: // lines of numbers, which nothing can be filtered by
+                    return fields;
+                case StructureFormat.Pqr:
+                case StructureFormat.Gro:
+                    return fields | SourceFields.Filters;
+                default:
+                    return fields | SourceFields.Filters | SourceFields.Assembly | SourceFields.AlternateLocation;
+            }
         }
 
         /// <summary>Which fields of a trajectory's source mean something.</summary>

@@ -53,6 +53,19 @@ namespace QuickSes.Tests
             Assert.That(fields & SourceFields.Radii, Is.EqualTo(SourceFields.Radii));
         }
 
+        [TestCase("a.pdb", true)]
+        [TestCase("a.cif.gz", true)]
+        [TestCase("a", true)]
+        [TestCase("a.pqr", false)]
+        [TestCase("a.gro", false)]
+        [TestCase("a.xyzr", false)]
+        public void AssembliesAndAlternateLocationsAreShownWhereThereMayBeSome(string name, bool shown)
+        {
+            const SourceFields both = SourceFields.Assembly | SourceFields.AlternateLocation;
+            SourceFields fields = SourceForm.OfStructure(MoleculeSourceKind.File, StructureFormat.Auto, name);
+            Assert.That(fields & both, Is.EqualTo(shown ? both : SourceFields.None));
+        }
+
         [Test]
         public void OnlyAbsolutePathsComeWithAHint()
         {

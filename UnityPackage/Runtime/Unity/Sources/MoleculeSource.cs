@@ -15,6 +15,13 @@ namespace QuickSes
         private StructureFormat _format = StructureFormat.Auto;
         [SerializeField, Min(1), Tooltip("Which model of a file with several, from 1.")]
         private int _model = 1;
+        [SerializeField, Tooltip(
+            "The biological assembly of a PDB or mmCIF file, mostly 1. Empty: the atoms of the file. It fits no " +
+            "trajectory of the file.")]
+        private string _assembly = "";
+        [SerializeField, Tooltip(
+            "Which alternate locations: first, highest (of the greatest occupancy), or a label such as B. Empty: first.")]
+        private string _alternateLocation = "";
         [SerializeField, Tooltip("Leaves out waters.")]
         private bool _skipWater = true;
         [SerializeField, Tooltip("Leaves out hydrogen and deuterium.")]
@@ -35,6 +42,12 @@ namespace QuickSes
 
         /// <summary>Which model of a file with several, from 1.</summary>
         public int Model { get => _model; set => _model = value; }
+
+        /// <summary>As <see cref="StructureOptions.Assembly"/>; "": the atoms of the file. Never null.</summary>
+        public string Assembly { get => _assembly ?? ""; set => _assembly = value; }
+
+        /// <summary>As <see cref="StructureOptions.AlternateLocation"/>; "": the default. Never null.</summary>
+        public string AlternateLocation { get => _alternateLocation ?? ""; set => _alternateLocation = value; }
 
         /// <summary>Leaves out waters; default true.</summary>
         public bool SkipWater { get => _skipWater; set => _skipWater = value; }
@@ -85,6 +98,8 @@ namespace QuickSes
             CopyFileFrom(other);
             _format = other._format;
             _model = other._model;
+            _assembly = other._assembly;
+            _alternateLocation = other._alternateLocation;
             _skipWater = other._skipWater;
             _skipHydrogen = other._skipHydrogen;
             _skipHetero = other._skipHetero;
@@ -95,7 +110,8 @@ namespace QuickSes
 
         /// <summary>Whether the other would read the same atoms; colours may differ.</summary>
         internal bool IsSameAs(MoleculeSource other) => HasSameFileAs(other) && _format == other._format &&
-            _model == other._model && _skipWater == other._skipWater && _skipHydrogen == other._skipHydrogen &&
+            _model == other._model && Assembly == other.Assembly && AlternateLocation == other.AlternateLocation &&
+            _skipWater == other._skipWater && _skipHydrogen == other._skipHydrogen &&
             _skipHetero == other._skipHetero && Selection == other.Selection && Radii == other.Radii;
 
         /// <summary>Of a copy that nobody changes: on any thread that may read the file.</summary>
@@ -105,10 +121,12 @@ namespace QuickSes
             {
                 Format = _format == StructureFormat.Auto ? MoleculeFile.StructureFormatOf(file.Name) : _format,
                 Model = _model,
+                Assembly = NullIfBlank(_assembly),
+                AlternateLocation = NullIfBlank(_alternateLocation),
                 SkipHydrogen = _skipHydrogen,
                 SkipHetero = _skipHetero,
-                Selection = string.IsNullOrWhiteSpace(_selection) ? null : _selection,
-                Radii = string.IsNullOrWhiteSpace(_radii) ? null : _radii
+                Selection = NullIfBlank(_selection),
+                Radii = NullIfBlank(_radii)
             };
             // XYZR has no residues, hence no waters, and its reader takes no filter; this one is on by default.
             options.SkipWater = _skipWater && options.Format != StructureFormat.Xyzr;
@@ -120,5 +138,7 @@ namespace QuickSes
             error = new QuickSesError(error.Status, $"asset '{file.Name}': {error.Message}");
             return false;
         }
+
+        private static string NullIfBlank(string text) => string.IsNullOrWhiteSpace(text) ? null : text;
     }
 }
