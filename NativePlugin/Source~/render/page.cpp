@@ -45,7 +45,8 @@ void check_pages_can_be_made() {
     io::fail_usage("this build of the program can't make pages (.html): three.js was not there (libjs-three)");
 }
 
-Page::Page(const std::string &path, const PageSettings &settings) : file_(path) {
+Page::Page(const std::string &path, const PageSettings &settings, uint64_t most_bytes)
+    : file_(path), most_bytes_(most_bytes) {
   check_pages_can_be_made();
   const Camera &camera = settings.camera;
   char background[16];
@@ -79,8 +80,8 @@ Page::Page(const std::string &path, const PageSettings &settings) : file_(path) 
 
 void Page::write(const std::string &text) {
   size_ += text.size();
-  if (size_ > kMostBytes)
-    io::fail_output("the page '" + file_.path() + "' would have more than " + std::to_string(kMostBytes / 1'000'000) +
+  if (size_ > most_bytes_)
+    io::fail_output("the page '" + file_.path() + "' would have more than " + std::to_string(most_bytes_ / 1'000'000) +
                     " MB, which browsers don't bear: a larger --spacing, or fewer --frames, make it smaller");
   file_.write(text);
 }

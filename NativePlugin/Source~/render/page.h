@@ -35,9 +35,9 @@ class Page {
   static constexpr uint64_t kMostBytes = 500'000'000;  // more than browsers bear
   static constexpr uint64_t kManyBytes = 100'000'000;  // they need some time
 
-  Page(const std::string &path, const PageSettings &settings);
+  Page(const std::string &path, const PageSettings &settings, uint64_t most_bytes = kMostBytes);
 
-  // The next frame.
+  // The next frame. If the page would become larger than may be, the error says so, and there will be no file.
   void add(const std::string &mesh);
   void finish();
 
@@ -47,6 +47,7 @@ class Page {
   void write(const std::string &text);
 
   io::AtomicFile file_;
+  const uint64_t most_bytes_;
   uint64_t size_ = 0;
 };
 

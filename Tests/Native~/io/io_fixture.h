@@ -21,7 +21,7 @@ class IoTest : public ::testing::Test {
   void SetUp() override {
     const auto *info = ::testing::UnitTest::GetInstance()->current_test_info();
     folder_ = std::filesystem::path(::testing::TempDir()) /
-              (std::string("quickses_io_") + info->name() + "_" +
+              (std::string("quickses_io_") + info->test_suite_name() + "_" + info->name() + "_" +
                std::to_string(reinterpret_cast<uintptr_t>(this) & 0xffffff) + "_" +
                std::to_string(::testing::UnitTest::GetInstance()->random_seed()));
     std::filesystem::remove_all(folder_);
