@@ -282,6 +282,8 @@ namespace QuickSes.Tests
             [Values] bool clears, [Values(PiecePerFrame, 0)] double budget)
         {
             yield return ShowFirst();
+            _rig.Surface.AmbientOcclusion = false; // or the mesh would have a TexCoord1 of its own
+            yield return _rig.Settle();
             SurfaceScheduler.UploadBudget = budget;
             Change(_rig.Surface.Mesh, clears);
             _rig.Surface.SetPositions(Moved(1));

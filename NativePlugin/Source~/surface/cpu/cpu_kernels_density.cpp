@@ -82,7 +82,7 @@ struct NearAtoms {
       nearest = minimum(nearest, to_surface);
     }
     const float least = horizontal_minimum(nearest);
-    uint32_t best = static_cast<uint32_t>(place[0]), order = ~uint32_t(0);
+    uint32_t best = 0, order = ~uint32_t(0);
     for (int k = 0; k < count; k += kPackSize)
       for (uint32_t lanes = lane_bits(load_pack(distance + k) <= Pack(least)); lanes; lanes &= lanes - 1) {
         const uint32_t atom = static_cast<uint32_t>(place[k + lowest_bit32(lanes)]);
@@ -105,36 +105,36 @@ struct NearAtoms {
 struct DensityBounds {
   float least, most;
 };
-DensityBounds bounds_in_box(const NearAtoms &near, const Vec3<float> &low, const Vec3<float> &high) {
+DensityBounds bounds_in_box(const NearAtoms &atoms, const Vec3<float> &low, const Vec3<float> &high) {
   const Vec3<float> m = (low + high) * 0.5f, e = (high - low) * 0.5f;
   const Vec3<Pack> middle(m.x, m.y, m.z), half(e.x, e.y, e.z);
   Pack least(0.f), most(0.f);
-  for (int k = 0; k < near.count; k += kPackSize) {
-    const Vec3<Pack> center(load_pack(near.x + k), load_pack(near.y + k), load_pack(near.z + k));
-    GaussianDensity::add_bounds(center, load_pack(near.end2 + k), middle, half, &least, &most);
+  for (int k = 0; k < atoms.count; k += kPackSize) {
+    const Vec3<Pack> center(load_pack(atoms.x + k), load_pack(atoms.y + k), load_pack(atoms.z + k));
+    GaussianDensity::add_bounds(center, load_pack(atoms.end2 + k), middle, half, &least, &most);
   }
   return {GaussianDensity::kSurelyLess * horizontal_sum(least), GaussianDensity::kSurelyMore * horizontal_sum(most)};
 }
 
 // The densities of the brick's points, of each row along x as a pack. An atom's is a product of three, one for
 // each axis.
-void sum_rows(const NearAtoms &near, const Vec3<float> &low, float h, float (*rows)[kBrickEdge]) {
+void sum_rows(const NearAtoms &atoms, const Vec3<float> &low, float h, float (*rows)[kBrickEdge]) {
   static_assert(kBrickEdge == kPackSize, "a pack is a row");
   float steps[kBrickEdge];
   for (int k = 0; k < kBrickEdge; ++k) steps[k] = static_cast<float>(k) * h;
   const Pack step = load_pack(steps);
   for (int row = 0; row < kBrickEdge * kBrickEdge; ++row) store_pack(rows[row], Pack(0.f));
-  for (int k = 0; k < near.count; ++k) {
-    const float end2 = near.end2[k], slope = -kHalfReach2 / end2;
+  for (int k = 0; k < atoms.count; ++k) {
+    const float end2 = atoms.end2[k], slope = -kHalfReach2 / end2;
     const auto along = [&](float from, Pack *d2, Pack *e) {
       const Pack d = Pack(from) + step;
       *d2 = d * d;
       *e = gaussian(Pack(slope) * minimum(*d2, Pack(end2)));
     };
     Pack x2, ex, y2, ey, z2, ez;
-    along(low.x - near.x[k], &x2, &ex);
-    along(low.y - near.y[k], &y2, &ey);
-    along(low.z - near.z[k], &z2, &ez);
+    along(low.x - atoms.x[k], &x2, &ex);
+    along(low.y - atoms.y[k], &y2, &ey);
+    along(low.z - atoms.z[k], &z2, &ez);
     float across[2][kBrickEdge], parts[2][kBrickEdge];
     store_pack(across[0], y2);
     store_pack(across[1], z2);
@@ -161,14 +161,14 @@ BrickNeeds evaluate_brick_density(const GaussianDensity &density, const BrickSet
   const glm::ivec3 point = lattice.first_point(lattice.brick_at(bricks.linear[brick]));
   const Vec3<float> low = lattice.position(point.x, point.y, point.z);
   const Vec3<float> high = lattice.position(point.x + 7, point.y + 7, point.z + 7);
-  NearAtoms near(density, scratch);
-  if (!near.gather(low, high, [](const Sphere &atom) { return atom.radius; })) return {near.count, 0};
-  const DensityBounds bounds = bounds_in_box(near, low, high);
+  NearAtoms atoms(density, scratch);
+  if (!atoms.gather(low, high, [](const Sphere &atom) { return atom.radius; })) return {atoms.count, 0};
+  const DensityBounds bounds = bounds_in_box(atoms, low, high);
   const bool is_full = bounds.least > density.isovalue, is_empty = bounds.most < density.isovalue;
   for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) words[leaf] = is_full ? ~uint64_t(0) : 0;
   if (is_full || is_empty) return {};
   float rows[kBrickEdge * kBrickEdge][kBrickEdge];
-  sum_rows(near, low, lattice.spacing, rows);
+  sum_rows(atoms, low, lattice.spacing, rows);
   for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf)
     for (int k = 0; k < kLeafEdge * kLeafEdge; ++k) {
       const glm::ivec3 p = brick_point(leaf, kLeafEdge * k);
@@ -184,15 +184,16 @@ BrickNeeds emit_brick_density_vertices(const GaussianDensity &density, const Bri
   if (first == last) return {};
   const Lattice &lattice = bricks.lattice;
   const glm::ivec3 point = lattice.first_point(lattice.brick_at(bricks.linear[brick]));
-  NearAtoms near(density, scratch);
+  NearAtoms atoms(density, scratch);
   // The nearest atom may be one whose density has ended.
-  if (!near.gather(lattice.position(point.x, point.y, point.z), lattice.position(point.x + 8, point.y + 8, point.z + 8),
-                   [&](const Sphere &) { return density.max_radius; }))
-    return {near.count, 0};
+  if (!atoms.gather(lattice.position(point.x, point.y, point.z),
+                    lattice.position(point.x + 8, point.y + 8, point.z + 8),
+                    [&](const Sphere &) { return density.max_radius; }))
+    return {atoms.count, 0};
   for (uint32_t vertex = first; vertex < last; ++vertex)
     place_density_vertex(
-        density, bricks, layout, brick, vertex, mesh, [&](const Vec3<float> &x) { return near.at(x); },
-        [&](const Vec3<float> &x) { return near.owner_at(x); });
+        density, bricks, layout, brick, vertex, mesh, [&](const Vec3<float> &x) { return atoms.at(x); },
+        [&](const Vec3<float> &x) { return atoms.owner_at(x); });
   return {};
 }
 

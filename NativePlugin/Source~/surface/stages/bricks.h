@@ -317,6 +317,25 @@ BrickSet collect_bricks(Executor &executor, const Items &items, const Lattice &l
   return sort_bricks(executor, items, lattice, first, visits);
 }
 
+struct NumberAllBricks {
+  uint64_t *linear;
+  int32_t *table;
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    linear[i] = i;
+    table[i] = static_cast<int32_t>(i);
+  }
+};
+
+// The set of all bricks of a small box.
+template <class Executor>
+BrickSet all_bricks(Executor &executor, const Lattice &lattice) {
+  const size_t count = static_cast<size_t>(lattice.table_size());
+  const Span<uint64_t> linear = executor.template allocate<uint64_t>(count);
+  const Span<int32_t> table = executor.template allocate<int32_t>(count);
+  executor.for_each(count, NumberAllBricks{linear.data, table.data});
+  return {lattice, linear.data, table.data, static_cast<uint32_t>(count)};
+}
+
 // What is known of a set before it is collected; 0: not known.
 struct ExpectedBricks {
   uint64_t count, visits, entries;

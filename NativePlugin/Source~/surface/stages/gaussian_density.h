@@ -82,11 +82,11 @@ struct GaussianDensity {
                                  F *most) {
     const F slope = F(-kHalfReach2) / maximum(end2, F(1e-20f)), zero(0.f);
     const Vec3<F> d(absolute(center.x - middle.x), absolute(center.y - middle.y), absolute(center.z - middle.z));
-    const Vec3<F> far = d + half;
-    const Vec3<F> near(maximum(zero, d.x - half.x), maximum(zero, d.y - half.y), maximum(zero, d.z - half.z));
-    const F far2 = dot(far, far), near2 = dot(near, near);
-    *least = *least + select(far2 < end2, gaussian(slope * minimum(far2, end2)), zero);
-    *most = *most + select(near2 < end2, gaussian(slope * minimum(near2, end2)), zero);
+    const Vec3<F> farthest = d + half;
+    const Vec3<F> nearest(maximum(zero, d.x - half.x), maximum(zero, d.y - half.y), maximum(zero, d.z - half.z));
+    const F most2 = dot(farthest, farthest), least2 = dot(nearest, nearest);
+    *least = *least + select(most2 < end2, gaussian(slope * minimum(most2, end2)), zero);
+    *most = *most + select(least2 < end2, gaussian(slope * minimum(least2, end2)), zero);
   }
 
   // Place in the grid of the atom whose van der Waals surface is nearest; of several, of the smallest number.

@@ -305,6 +305,10 @@ inline ExpectedBricks expected_bricks(const WorkFacts &, const OcclusionBricks &
   return {std::min<uint64_t>(items.lattice.table_size(), 1024 + items.atoms.count / 2), 0, 0};
 }
 
+// A GPU looks from so many bricks at a time: where the box has no more, to find out which are needed takes longer than
+// to work on the others as well.
+constexpr uint64_t kBricksAtATime = 512;
+
 // Writes how open the surface is at vertices, from 0 to 1, into the first of their texture coordinates. Positions and
 // normals are finished.
 //   frame, low, high  the centred frame's origin is that of frame; bounds of the atoms' centres in it
@@ -318,7 +322,9 @@ void find_openness(Executor &executor, const NeighborGridView &atoms, const Surf
   lattice.spacing = kOcclusionPoint;
   lattice = layout_lattice(lattice, low, high, parameters.max_radius + kNodeReach * kOcclusionPoint);
   const OcclusionBricks items{{atoms, lattice, parameters.max_radius, kNodeReach}};
-  const BrickSet bricks = collect_bricks(executor, items, lattice, "occlusion bricks");
+  const BrickSet bricks = Executor::kIsCuda && lattice.table_size() <= kBricksAtATime
+                              ? all_bricks(executor, lattice)
+                              : collect_bricks(executor, items, lattice, "occlusion bricks");
   const Span<uint64_t> outside = executor.template allocate<uint64_t>(size_t(bricks.count) * kLeavesPerBrick);
   const Span<Openness> nodes = executor.template allocate<Openness>(size_t(bricks.count) * kBrickNodes);
   const Span<int32_t> behind = executor.template allocate<int32_t>(size_t(bricks.count) * 8);
