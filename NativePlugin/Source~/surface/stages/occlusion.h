@@ -307,7 +307,7 @@ inline ExpectedBricks expected_bricks(const WorkFacts &, const OcclusionBricks &
 
 // A GPU looks from so many bricks at a time: where the box has no more, to find out which are needed takes longer than
 // to work on the others as well.
-constexpr uint64_t kBricksAtATime = 512;
+constexpr uint64_t kBricksAtATime = 2048;
 
 // Writes how open the surface is at vertices, from 0 to 1, into the first of their texture coordinates. Positions and
 // normals are finished.
