@@ -84,6 +84,8 @@ optional=(
   "glslang-tools glslangValidator"
   "spirv-cross spirv-cross"
   "libosmesa6 /usr/lib/x86_64-linux-gnu/libOSMesa.so.8"
+  # Compiles what several build trees have in common once (Scripts~/test.sh).
+  "ccache ccache"
   # Counts the instructions of the CPU back end (Scripts~/measure/count-instructions).
   "valgrind valgrind"
   # Draws how time grows with size (Scripts~/measure/plot-growth).

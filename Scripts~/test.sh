@@ -33,6 +33,11 @@ done
 
 bash Scripts~/setup.sh "${setup[@]}"
 
+# Much is the same in all build trees.
+if command -v ccache >/dev/null; then
+  export CCACHE_DIR=$PWD/.build/ccache CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
+fi
+
 # One architecture keeps the build short: the GPU's own, or the newest of those that releases are made for.
 architecture=90-real
 if capability=$(nvidia-smi --query-gpu=compute_cap --format=csv,noheader 2>/dev/null | sed -n 1p) && [ -n "$capability" ]; then
@@ -50,7 +55,12 @@ for preset in "${presets[@]}"; do
   if [ "$preset" = cuda ] && ! nvidia-smi >/dev/null 2>&1; then
     echo "No CUDA device here: tests of the CUDA back end are skipped."
   fi
-  ctest --preset "$preset" --parallel "$(nproc)"
+  # What has nothing to do with the back end was tested with the first preset.
+  others=()
+  if [ "$preset" != cpu ]; then
+    others=(--exclude-regex '^(check_.*|consumer_add_subdirectory|measure_scripts|page_browser_test|release_scripts|shaders|test_in_unity)$')
+  fi
+  ctest --preset "$preset" --parallel "$(nproc)" "${others[@]}"
   # Those of the CPU back end, which is the same in all of them. With another compiler nothing is judged, which is then said.
   if [ "$preset" = cpu ]; then
     echo "==== cpu: instructions"
