@@ -35,7 +35,7 @@ bash Scripts~/setup.sh "${setup[@]}"
 
 # Much is the same in all build trees.
 if command -v ccache >/dev/null; then
-  export CCACHE_DIR=$PWD/.build/ccache CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
+  export CCACHE_DIR=${CCACHE_DIR:-$PWD/.build/ccache} CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
 fi
 
 # One architecture keeps the build short: the GPU's own, or the newest of those that releases are made for.

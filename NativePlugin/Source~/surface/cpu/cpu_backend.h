@@ -47,14 +47,16 @@ struct Backend<CpuKernelExecutor> {
                              const TableView &table, const MeshView &mesh) {
     if constexpr (!E::kCounts) quickses::emit_triangles(executor, bricks, layout, slice, table, mesh);
   }
-  template <class E>
-  static void evaluate_density(E &executor, const GaussianDensity &density, const BrickSet &bricks, BrickRange slice,
-                               uint64_t *signs) {
-    if constexpr (!E::kCounts) quickses::evaluate_density(executor, density, bricks, slice, signs);
+  template <class E, class Slices>
+  static void evaluate_density(E &executor, const GaussianDensity &density, const BrickSet &bricks,
+                               const Slices &slices, uint64_t *signs) {
+    slices([&](BrickRange slice) {
+      if constexpr (!E::kCounts) quickses::evaluate_density(executor, density, bricks, slice, signs);
+    });
   }
   template <class E>
   static void emit_density_vertices(E &executor, const GaussianDensity &density, const BrickSet &bricks,
-                                    const MeshLayout &layout, size_t /*vertices*/, const MeshView &mesh) {
+                                    const MeshLayout &layout, const MeshView &mesh) {
     if constexpr (!E::kCounts) quickses::emit_density_vertices(executor, density, bricks, layout, mesh);
   }
   template <class E, class F>

@@ -52,32 +52,24 @@ struct NearAtoms {
   }
 
   GaussianDensity::Value at(const Vec3<float> &p) const {
-    Pack sum(0.f), sum_x(0.f), sum_y(0.f), sum_z(0.f);
+    GaussianDensity::Sum<Pack> sum{Pack(0.f), {Pack(0.f), Pack(0.f), Pack(0.f)}};
     for (int k = 0; k < count; k += kPackSize) {
-      const Pack dx = Pack(p.x) - load_pack(x + k), dy = Pack(p.y) - load_pack(y + k),
-                 dz = Pack(p.z) - load_pack(z + k);
-      const Pack d2 = dx * dx + dy * dy + dz * dz, end = load_pack(end2 + k);
+      const Vec3<Pack> d = from_centers(p, k);
+      const Pack d2 = dot(d, d), end = load_pack(end2 + k);
       const PackMask reaches = d2 < end;
       if (lane_bits(reaches) == 0) continue;
-      const Pack slope = Pack(-kHalfReach2) / maximum(end, Pack(1e-20f));
-      const Pack e = select(reaches, gaussian(slope * minimum(d2, end)), Pack(0.f));
-      const Pack steepness = Pack(2.f) * slope * e;
-      sum = sum + e;
-      sum_x = multiply_add(steepness, dx, sum_x);
-      sum_y = multiply_add(steepness, dy, sum_y);
-      sum_z = multiply_add(steepness, dz, sum_z);
+      GaussianDensity::add(d, minimum(d2, end), maximum(end, Pack(1e-20f)), reaches, &sum);
     }
-    return {horizontal_sum(sum), {horizontal_sum(sum_x), horizontal_sum(sum_y), horizontal_sum(sum_z)}};
+    const Vec3<Pack> &g = sum.gradient;
+    return {horizontal_sum(sum.density), {horizontal_sum(g.x), horizontal_sum(g.y), horizontal_sum(g.z)}};
   }
 
   // As GaussianDensity::owner_at.
   uint32_t owner_at(const Vec3<float> &p) const {
     Pack nearest(kFarAway);
     for (int k = 0; k < count; k += kPackSize) {
-      const Pack dx = Pack(p.x) - load_pack(x + k), dy = Pack(p.y) - load_pack(y + k),
-                 dz = Pack(p.z) - load_pack(z + k);
-      const Pack to_surface =
-          square_root(dx * dx + dy * dy + dz * dz) - Pack(density.atom_part) * square_root(load_pack(end2 + k));
+      const Vec3<Pack> d = from_centers(p, k);
+      const Pack to_surface = square_root(dot(d, d)) - Pack(density.atom_part) * square_root(load_pack(end2 + k));
       store_pack(distance + k, to_surface);
       nearest = minimum(nearest, to_surface);
     }
@@ -94,6 +86,9 @@ struct NearAtoms {
   }
 
  private:
+  Vec3<Pack> from_centers(const Vec3<float> &p, int k) const {
+    return {Pack(p.x) - load_pack(x + k), Pack(p.y) - load_pack(y + k), Pack(p.z) - load_pack(z + k)};
+  }
   void put(int k, const Sphere &atom, uint32_t number) {
     x[k] = atom.center.x, y[k] = atom.center.y, z[k] = atom.center.z;
     end2[k] = atom.radius * atom.radius;

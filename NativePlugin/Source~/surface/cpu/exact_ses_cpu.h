@@ -35,69 +35,38 @@ struct BrickColumns {
   }
 };
 
-struct EvaluateBrick {
-  const CpuKernels *kernels;
-  const FeatureView *features;
-  const BrickSet *bricks;
-  uint32_t first;
-  uint64_t *signs;
-  void operator()(SoloTeam, BrickColumns &columns, size_t i) const {
-    const uint32_t brick = first + static_cast<uint32_t>(i);
-    while (columns.grow(kernels->evaluate_brick_signs(*features, *bricks, brick, columns.scratch(),
-                                                      signs + size_t(brick) * kLeavesPerBrick))) {
+// kernel(brick, scratch) for the bricks of a slice, again with more room while it returns needs.
+template <class Kernel>
+void for_each_brick_with_columns(CpuKernelExecutor &executor, BrickRange slice, const Kernel &kernel) {
+  executor.for_each_brick<BrickColumns>(slice.size(), [&kernel, slice](SoloTeam, BrickColumns &columns, size_t i) {
+    const uint32_t brick = slice.first + static_cast<uint32_t>(i);
+    while (columns.grow(kernel(brick, columns.scratch()))) {
     }
-  }
-};
+  });
+  executor.match_scratches<BrickColumns>();
+}
 
 inline void evaluate_signs(CpuKernelExecutor &executor, const FeatureView &features, const BrickSet &bricks,
                            BrickRange slice, uint64_t *signs) {
-  executor.for_each_brick<BrickColumns>(slice.size(),
-                                        EvaluateBrick{&executor.kernels(), &features, &bricks, slice.first, signs});
-  executor.match_scratches<BrickColumns>();
+  for_each_brick_with_columns(executor, slice, [&](uint32_t brick, const BrickScratch &scratch) {
+    return executor.kernels().evaluate_brick_signs(features, bricks, brick, scratch,
+                                                   signs + size_t(brick) * kLeavesPerBrick);
+  });
 }
-
-struct MarkBrickWalls {
-  const CpuKernels *kernels;
-  const FeatureView *features;
-  const BrickSet *bricks;
-  uint32_t first;
-  const uint64_t *signs;
-  uint64_t *marks;
-  void operator()(SoloTeam, BrickColumns &columns, size_t i) const {
-    while (columns.grow(kernels->mark_brick_walls(*features, *bricks, first + static_cast<uint32_t>(i), signs,
-                                                  columns.scratch(), marks))) {
-    }
-  }
-};
 
 inline void mark_thin_walls(CpuKernelExecutor &executor, const FeatureView &features, const BrickSet &bricks,
                             BrickRange slice, const uint64_t *signs, uint64_t *marks) {
-  executor.for_each_brick<BrickColumns>(
-      slice.size(), MarkBrickWalls{&executor.kernels(), &features, &bricks, slice.first, signs, marks});
-  executor.match_scratches<BrickColumns>();
+  for_each_brick_with_columns(executor, slice, [&](uint32_t brick, const BrickScratch &scratch) {
+    return executor.kernels().mark_brick_walls(features, bricks, brick, signs, scratch, marks);
+  });
 }
-
-struct EmitBrickVertices {
-  const CpuKernels *kernels;
-  const FeatureView *features;
-  const BrickSet *bricks;
-  const MeshLayout *layout;
-  const VertexStarts *starts;
-  const MeshView *mesh;
-  uint32_t first;
-  void operator()(SoloTeam, BrickColumns &columns, size_t i) const {
-    while (columns.grow(kernels->emit_brick_vertices(*features, *bricks, *layout, first + static_cast<uint32_t>(i),
-                                                     *starts, columns.scratch(), *mesh))) {
-    }
-  }
-};
 
 inline void emit_vertices(CpuKernelExecutor &executor, const FeatureView &features, const BrickSet &bricks,
                           const MeshLayout &layout, BrickRange slice, const VertexStarts &starts,
                           const MeshView &mesh) {
-  executor.for_each_brick<BrickColumns>(
-      slice.size(), EmitBrickVertices{&executor.kernels(), &features, &bricks, &layout, &starts, &mesh, slice.first});
-  executor.match_scratches<BrickColumns>();
+  for_each_brick_with_columns(executor, slice, [&](uint32_t brick, const BrickScratch &scratch) {
+    return executor.kernels().emit_brick_vertices(features, bricks, layout, brick, starts, scratch, mesh);
+  });
 }
 
 struct EmitBrickTriangles {

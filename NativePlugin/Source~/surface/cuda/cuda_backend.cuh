@@ -54,15 +54,15 @@ struct Backend<CudaExecutor> {
                              const TableView &table, const MeshView &mesh) {
     gpu::emit_triangles(executor, bricks, layout, slice, table, mesh);
   }
-  template <class E>
-  static void evaluate_density(E &executor, const GaussianDensity &density, const BrickSet &bricks, BrickRange slice,
-                               uint64_t *signs) {
-    gpu::evaluate_density(executor, density, bricks, slice, signs);
+  template <class E, class Slices>
+  static void evaluate_density(E &executor, const GaussianDensity &density, const BrickSet &bricks,
+                               const Slices &slices, uint64_t *signs) {
+    gpu::evaluate_density(executor, density, bricks, slices, signs);
   }
   template <class E>
   static void emit_density_vertices(E &executor, const GaussianDensity &density, const BrickSet &bricks,
-                                    const MeshLayout &layout, size_t vertices, const MeshView &mesh) {
-    gpu::emit_density_vertices(executor, density, bricks, layout, vertices, mesh);
+                                    const MeshLayout &layout, const MeshView &mesh) {
+    gpu::emit_density_vertices(executor, density, bricks, layout, mesh);
   }
   template <class E, class F>
   static void for_each_gathering(E &executor, size_t n, const F &f) {

@@ -30,8 +30,9 @@ struct EvaluateDensity {
     const Vec3<float> high = lattice.position(point.x + 7, point.y + 7, point.z + 7);
     const CellBox box = density.cells_near(low, high);
     const Bounds bounds = bounds_in_box(team, scratch, box, low, high);
-    const bool is_empty = bounds.most<density.isovalue, is_full = bounds.least> density.isovalue;
-    if (!is_empty && !is_full) {
+    const bool is_full = bounds.least > density.isovalue;
+    const bool is_open = !is_full && !(bounds.most < density.isovalue);
+    if (is_open) {
       // A thread has so many points of a row, in registers.
       constexpr int kRows = kBrickEdge * kBrickEdge;
       const int parts = team.size() > kRows ? 2 : 1;
@@ -44,7 +45,7 @@ struct EvaluateDensity {
     team.sync();
     for (int leaf = team.rank(); leaf < kLeavesPerBrick; leaf += team.size()) {
       uint64_t word = is_full ? ~uint64_t(0) : 0;
-      for (int k = 0; k < kLeafEdge * kLeafEdge && !is_empty && !is_full; ++k) {
+      for (int k = 0; is_open && k < kLeafEdge * kLeafEdge; ++k) {
         const glm::ivec3 p = brick_point(leaf, kLeafEdge * k);
         word |= static_cast<uint64_t>(scratch.halves[p.y + kBrickEdge * p.z][p.x / 4]) << (kLeafEdge * k);
       }
@@ -132,19 +133,22 @@ uint64_t density_steps(E &executor, const GaussianDensity &density, size_t items
   return steps_of(near);
 }
 
-template <class E>
-void evaluate_density(E &executor, const GaussianDensity &density, const BrickSet &bricks, BrickRange slice,
+template <class E, class Slices>
+void evaluate_density(E &executor, const GaussianDensity &density, const BrickSet &bricks, const Slices &slices,
                       uint64_t *signs) {
   const float extent = static_cast<float>(kBrickEdge) * bricks.lattice.spacing;
-  executor.template for_each_brick<DensityScratch>(slice.size(), EvaluateDensity{density, bricks, slice.first, signs},
-                                                   8, density_steps(executor, density, bricks.count, 2, extent));
+  const uint64_t steps = density_steps(executor, density, bricks.count, 2, extent);
+  slices([&](BrickRange slice) {
+    executor.template for_each_brick<DensityScratch>(slice.size(), EvaluateDensity{density, bricks, slice.first, signs},
+                                                     8, steps);
+  });
 }
 
 template <class E>
 void emit_density_vertices(E &executor, const GaussianDensity &density, const BrickSet &bricks,
-                           const MeshLayout &layout, size_t vertices, const MeshView &mesh) {
-  executor.for_each(vertices, PlaceDensityVertices{density, bricks, layout, mesh},
-                    density_steps(executor, density, vertices, GaussianDensity::kMostLooks + 1, 0.f));
+                           const MeshLayout &layout, const MeshView &mesh) {
+  executor.for_each(layout.vertex_total, PlaceDensityVertices{density, bricks, layout, mesh},
+                    density_steps(executor, density, layout.vertex_total, GaussianDensity::kMostLooks + 1, 0.f));
 }
 
 }  // namespace gpu

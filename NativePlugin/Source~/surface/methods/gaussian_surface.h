@@ -22,11 +22,11 @@ BrickSet find_density_bricks(Work &work, WorkFacts *facts) {
   return collect_ball_bricks(work.executor, work.atoms, work.parameters.max_radius, work.lattice, &facts->brick_visits);
 }
 
-// The signs of the points of a slice.
-template <class Work>
-void evaluate_density_signs(Work &work, const BrickSet &bricks, BrickRange slice, uint64_t *signs) {
+// The signs of all points. slices(work_on): calls work_on(slice) for runs of bricks.
+template <class Work, class Slices>
+void evaluate_density_signs(Work &work, const BrickSet &bricks, const Slices &slices, uint64_t *signs) {
   using Executor = std::remove_reference_t<decltype(work.executor)>;
-  Backend<Executor>::evaluate_density(work.executor, density_of(work), bricks, slice, signs);
+  Backend<Executor>::evaluate_density(work.executor, density_of(work), bricks, slices, signs);
 }
 
 template <class Work>
@@ -43,16 +43,18 @@ MeshMemoryView build_gaussian_surface(Work &work) {
   MeshLayout layout{};
   const MeshCounts counts = lay_out_closed_mesh(work, &bricks, &layout, [&](const BrickSet &set, uint64_t *signs) {
     work.timer.begin("gaussian_density");
-    work.report->slice_count =
-        for_each_slice(work, set.count, asked_slice(work.settings, set.count, work.progress.wanted()), 0.1, 0.6,
-                       [&](BrickRange slice) { evaluate_density_signs(work, set, slice, signs); });
+    const auto slices = [&](const auto &work_on) {
+      work.report->slice_count = for_each_slice(
+          work, set.count, asked_slice(work.settings, set.count, work.progress.wanted()), 0.1, 0.6, work_on);
+    };
+    evaluate_density_signs(work, set, slices, signs);
   });
   MeshMemoryView mesh = begin_mesh(work, counts);
   const auto end_of_mesh = executor.arena().mark();
   work.timer.begin("marching_cubes");
   emit_all_triangles(work, bricks, layout, mesh);
   work.timer.begin("projection");
-  Backend<Executor>::emit_density_vertices(executor, density_of(work), bricks, layout, counts.vertices, mesh.view);
+  Backend<Executor>::emit_density_vertices(executor, density_of(work), bricks, layout, mesh.view);
   work.progress.report(0.9);
   executor.arena().rewind(end_of_mesh);
   return mesh;

@@ -40,7 +40,8 @@ SurfaceSize count_size(Work &work, WorkFacts *facts) {
   };
   if (work.settings.surface == QSES_SURFACE_GAUSSIAN)
     return count(find_density_bricks(work, facts), [&](const BrickSet &bricks, uint64_t *signs) {
-      if (bricks.count > 0) evaluate_density_signs(work, bricks, BrickRange{0, bricks.count}, signs);
+      const auto at_once = [&](const auto &work_on) { work_on(BrickRange{0, bricks.count}); };
+      if (bricks.count > 0) evaluate_density_signs(work, bricks, at_once, signs);
     });
   if (work.settings.method == QSES_METHOD_GRID) {
     const GridParameters parameters =

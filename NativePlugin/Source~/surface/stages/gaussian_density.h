@@ -5,6 +5,7 @@
 #pragma once
 
 #include "surface/stages/marching_cubes.h"
+
 namespace quickses {
 
 // Standard deviations after which an atom's density ends.
@@ -38,13 +39,16 @@ struct GaussianDensity {
   NeighborGridView atoms;  // with the radii where their densities end
   float max_radius;        // of those
   float isovalue;
-  float atom_part;                       // an atom's radius over that where its density ends
-  static constexpr int kMostLooks = 12;  // for a vertex
+  float atom_part;  // an atom's radius over that where its density ends
 
-  struct Value {
-    float density;
-    Vec3<float> gradient;
+  template <class F>
+  struct Sum {
+    F density;
+    Vec3<F> gradient;
   };
+  using Value = Sum<float>;
+
+  static constexpr int kMostLooks = 12;  // for a vertex
 
   // Where atoms can be that add to the density in a box.
   QSES_FN CellBox cells_near(const Vec3<float> &low, const Vec3<float> &high) const {
@@ -61,15 +65,21 @@ struct GaussianDensity {
       }
   }
 
+  // Adds what an atom adds at a place, where it reaches that: d from its centre, of which d2 is the square, at most
+  // end2.
+  template <class F, class Mask>
+  QSES_FN static void add(const Vec3<F> &d, F d2, F end2, Mask reaches, Sum<F> *sum) {
+    const F slope = F(-kHalfReach2) / end2, e = select(reaches, gaussian(slope * d2), F(0.f));
+    sum->density = sum->density + e;
+    sum->gradient = sum->gradient + d * (F(2.f) * slope * e);
+  }
+
   QSES_FN Value at(const Vec3<float> &x) const {
     Value sum{0.f, Vec3<float>(0.f, 0.f, 0.f)};
     visit_atoms(cells_near(x, x), [&](const Sphere &atom, uint32_t) {
       const Vec3<float> d = x - Vec3<float>(atom.center);
       const float d2 = dot(d, d), end2 = atom.radius * atom.radius;
-      if (d2 >= end2) return;
-      const float slope = kHalfReach2 / end2, e = gaussian(-slope * d2);
-      sum.density += e;
-      sum.gradient = sum.gradient - d * (2.f * slope * e);
+      if (d2 < end2) add(d, d2, end2, true, &sum);
     });
     return sum;
   }
@@ -113,11 +123,11 @@ struct IsovaluePlace {
 // at(x): the density at a place.
 template <class At>
 QSES_FN IsovaluePlace find_isovalue(const CutEdge &edge, float isovalue, const At &at) {
-  constexpr int kMostSteps = GaussianDensity::kMostLooks;
   const Vec3<float> along = edge.outside - edge.inside;
   float inner = 0.f, outer = 1.f;
   IsovaluePlace place{0.5f, {}};
-  for (int step = 0; step < kMostSteps; ++step) {  // Newton's, between what is known to be inside and outside
+  for (int step = 0; step < GaussianDensity::kMostLooks;
+       ++step) {  // Newton's, between what is known to be inside and outside
     float &t = place.part;
     place.found = at(edge.inside + along * t);
     const float above = place.found.density - isovalue, slope = dot(place.found.gradient, along);

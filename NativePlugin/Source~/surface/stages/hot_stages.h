@@ -49,9 +49,9 @@ struct TableView {
 //       inside because of edges of the slice's bricks (thin_walls.h)
 //   emit_vertices(E, features, bricks, layout, slice, rooms, candidates, starts, mesh)
 //   emit_triangles(E, bricks, layout, slice, table, mesh)
-//   evaluate_density(E, density, bricks, slice, signs)
-//       signs of a Gaussian surface
-//   emit_density_vertices(E, density, bricks, layout, vertices, mesh)
+//   evaluate_density(E, density, bricks, slices, signs)
+//       signs of a Gaussian surface; slices(work_on) calls work_on(slice) for runs of bricks
+//   emit_density_vertices(E, density, bricks, layout, mesh)
 //       all of them
 //   for_each_gathering(E, n, f)
 //       f(near by, i), where near by gathers the features around a place, as LocalFeatures do (local_features.h)
@@ -64,6 +64,11 @@ template <class Executor>
 using Candidates = typename Backend<Executor>::Candidates;
 template <class Executor>
 using LearntRooms = typename Backend<Executor>::LearntRooms;
+
+struct NoSlices {
+  template <class WorkOn>
+  void operator()(const WorkOn &) const {}
+};
 
 template <class Executor>
 struct BackendContract {
@@ -89,11 +94,11 @@ struct BackendContract {
   static_assert(has<decltype(&B::template emit_triangles<Executor>), const BrickSet &, const MeshLayout &, BrickRange,
                     const TableView &, const MeshView &>,
                 "emit_triangles");
-  static_assert(has<decltype(&B::template evaluate_density<Executor>), const GaussianDensity &, const BrickSet &,
-                    BrickRange, uint64_t *>,
+  static_assert(has<decltype(&B::template evaluate_density<Executor, NoSlices>), const GaussianDensity &,
+                    const BrickSet &, const NoSlices &, uint64_t *>,
                 "evaluate_density");
   static_assert(has<decltype(&B::template emit_density_vertices<Executor>), const GaussianDensity &, const BrickSet &,
-                    const MeshLayout &, size_t, const MeshView &>,
+                    const MeshLayout &, const MeshView &>,
                 "emit_density_vertices");
 };
 

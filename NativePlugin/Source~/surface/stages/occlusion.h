@@ -78,7 +78,10 @@ struct SkySums {
       }
   }
 };
-inline const SkySums kSkySums;
+inline const SkySums &sky_sums() {
+  static const SkySums sums;
+  return sums;
+}
 #endif
 
 struct OpennessField {
@@ -249,7 +252,7 @@ struct OpenNodes {
       const uint64_t *const seen = scratch.seen + 4 * four;
       const uint64_t set =
           (seen[0] >> node & 1) | (seen[1] >> node & 1) << 1 | (seen[2] >> node & 1) << 2 | (seen[3] >> node & 1) << 3;
-      sum.add(1.f, kSkySums.of[four][set]);
+      sum.add(1.f, sky_sums().of[four][set]);
     }
 #endif
     constexpr float kPart = 1.f / static_cast<float>(SkyDirections::kCount);
