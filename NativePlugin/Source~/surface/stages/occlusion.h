@@ -8,16 +8,11 @@
 #include "parallel/atomics.h"
 #include "surface/mesh/mesh_view.h"
 #include "surface/stages/ball_points.h"
-
-#if defined(__SSE__)
-#include <xmmintrin.h>
-#endif
+#include "surface/stages/sky_directions.h"
 
 namespace quickses {
 
-constexpr float kOcclusionPoint = 1.f;  // Å between points of the lattice; its bricks have 8 of them along an edge
-constexpr float kSkyDistance = 20.f;    // Å
-constexpr int kNodeEdge = 4;            // nodes along a brick: every other point
+constexpr int kNodeEdge = 4;  // nodes along a brick: every other point
 constexpr int kBrickNodes = kNodeEdge * kNodeEdge * kNodeEdge;
 
 // The balls are larger than the atoms, since between atoms the surface lies above them.
@@ -26,63 +21,6 @@ constexpr float kFilledGap = 0.2f;
 constexpr float kLookout = 1.f;
 // All nodes around a lookout are within so many points of a ball of the neighbour grid, along each axis.
 constexpr float kNodeReach = 3.f;
-
-// Evenly spread over the sphere: a spiral with the golden angle.
-struct SkyDirections {
-  static constexpr int kCount = 48;
-  float direction[kCount][kAxes];
-  SkyDirections() {
-    for (int k = 0; k < kCount; ++k) {
-      const double z = 1 - (2 * k + 1) / static_cast<double>(kCount), across = std::sqrt(1 - z * z);
-      const double angle = 2.399963229728653 * k;
-      direction[k][0] = rounded(across * std::cos(angle));
-      direction[k][1] = rounded(across * std::sin(angle));
-      direction[k][2] = rounded(z);
-    }
-  }
-  // So that sums of them are exact, whatever their order.
-  static float rounded(double x) { return static_cast<float>(std::nearbyint(x * 65536) / 65536); }
-};
-
-// What a node knows: twice the mean of the directions that are free, and what part of all they are. The light on a
-// plane is then dot(mean, normal) + part.
-struct alignas(16) Openness {
-  float value[4] = {};
-  QSES_FN float &part() { return value[3]; }
-  QSES_FN float part() const { return value[3]; }
-  QSES_FN void add(float weight, const Openness &other) {
-#if defined(__SSE__) && !defined(__CUDA_ARCH__)
-    const __m128 product = _mm_mul_ps(_mm_set1_ps(weight), _mm_load_ps(other.value));
-    _mm_store_ps(value, _mm_add_ps(_mm_load_ps(value), product));
-#else
-    for (int k = 0; k < 4; ++k) value[k] += weight * other.value[k];
-#endif
-  }
-};
-// Within a ball.
-constexpr float kFilled = -1.f;
-
-#if !defined(__CUDA_ARCH__)
-// Of each set of four directions that follow each other.
-struct SkySums {
-  static constexpr int kCount = SkyDirections::kCount / 4;
-  Openness of[kCount][16];
-  SkySums() {
-    const SkyDirections sky;
-    for (int d = 0; d < SkyDirections::kCount; ++d)
-      for (int set = 0; set < 16; ++set) {
-        Openness &sum = of[d / 4][set];
-        if ((set >> d % 4 & 1) == 0) continue;
-        for (int axis = 0; axis < kAxes; ++axis) sum.value[axis] += sky.direction[d][axis];
-        sum.part() += 1.f;
-      }
-  }
-};
-inline const SkySums &sky_sums() {
-  static const SkySums sums;
-  return sums;
-}
-#endif
 
 struct OpennessField {
   BrickSet bricks;
@@ -160,9 +98,8 @@ struct Lookout {
 };
 
 struct SkyScratch {
-  static constexpr int kReach = 3, kEdge = 2 * kReach + 1;  // bricks that rays come to
-  uint64_t outside[kEdge * kEdge * kEdge][kLeavesPerBrick];
-  uint64_t seen[SkyDirections::kCount];  // nodes from which the direction is free
+  uint64_t outside[SkyBricks::kCount][kLeavesPerBrick];
+  uint64_t seen[kBrickNodes];  // by direction, the nodes from which it is free; on the CPU then by node
 };
 
 // Rays of all nodes of a brick at a time: a word is what a step meets.
@@ -176,13 +113,7 @@ struct OpenNodes {
     for (int k = team.rank(); k < 8; k += team.size())
       field.behind[8 * i + static_cast<size_t>(k)] = field.bricks.find(place + glm::ivec3(k & 1, k >> 1 & 1, k >> 2));
     const uint64_t free_nodes = field.outside[i * kLeavesPerBrick];
-    if (free_nodes != 0) {
-      bring_points(team, scratch, place);
-      team.sync();
-      for (int d = team.rank(); d < SkyDirections::kCount; d += team.size())
-        scratch.seen[d] = see(scratch, sky.direction[d], free_nodes);
-      team.sync();
-    }
+    if (free_nodes != 0) look_around(team, scratch, place, free_nodes);
     for (int node = team.rank(); node < kBrickNodes; node += team.size())
       field.nodes[i * kBrickNodes + static_cast<size_t>(node)] =
           free_nodes >> node & 1 ? sum_up(scratch, node) : Openness{{0.f, 0.f, 0.f, kFilled}};
@@ -190,73 +121,87 @@ struct OpenNodes {
   }
 
  private:
-  // Those of the brick and of all that rays come to.
+#if defined(__CUDA_ARCH__)
   template <class Team>
-  QSES_HOST_DEVICE void bring_points(const Team &team, SkyScratch &scratch, const glm::ivec3 &place) const {
-    constexpr int kEdge = SkyScratch::kEdge;
-    for (int k = team.rank(); k < kEdge * kEdge * kEdge; k += team.size()) {
-      const glm::ivec3 step(k % kEdge, k / kEdge % kEdge, k / (kEdge * kEdge));
-      const int brick = field.bricks.find(place + step - SkyScratch::kReach);
-      for (int word = 0; word < kLeavesPerBrick; ++word)
-        scratch.outside[k][word] =
-            brick < 0 ? ~uint64_t(0) : field.outside[static_cast<size_t>(brick) * kLeavesPerBrick + size_t(word)];
+  QSES_HOST_DEVICE void look_around(const Team &team, SkyScratch &scratch, const glm::ivec3 &place,
+                                    uint64_t free_nodes) const {
+    for (int k = team.rank(); k < SkyBricks::kCount; k += team.size()) bring_points(scratch, place, k);
+    team.sync();
+    for (int d = team.rank(); d < SkyDirections::kCount; d += team.size()) {
+      uint64_t seen = free_nodes;
+      for_sky_steps(sky.direction[d], [&](const SkyStep &step) { return (seen &= outside_at(scratch, step)) != 0; });
+      scratch.seen[d] = seen;
     }
+    team.sync();
+  }
+  QSES_FN Openness sum_up(const SkyScratch &scratch, int node) const {
+    Openness sum = {};
+    for (int d = 0; d < SkyDirections::kCount; ++d) {
+      const float seen = scratch.seen[d] >> node & 1 ? 1.f : 0.f;
+      for (int axis = 0; axis < kAxes; ++axis) sum.value[axis] += seen * sky.direction[d][axis];
+      sum.value[3] += seen;
+    }
+    return mean_of(sum);
+  }
+#else
+  template <class Team>
+  QSES_HOST_DEVICE void look_around(const Team &, SkyScratch &scratch, const glm::ivec3 &place,
+                                    uint64_t free_nodes) const {
+    const SkyTable &table = SkyTable::get();
+    for (int k = 0; k < table.brick_count; ++k) bring_points(scratch, place, table.bricks[k]);
+    for (int d = 0; d < kBrickNodes; ++d) {
+      uint64_t seen = d < SkyDirections::kCount ? free_nodes : 0;
+      for (int k = 0; k < table.step_count && seen; ++k) seen &= outside_at(scratch, table.steps[d][k]);
+      scratch.seen[d] = seen;
+    }
+    transpose_bits(scratch.seen);
+  }
+  QSES_FN Openness sum_up(const SkyScratch &scratch, int node) const {
+    const SkyTable &table = SkyTable::get();
+    OpennessSum sum;
+    uint64_t seen = scratch.seen[node];
+    for (const Openness(&of_four)[1 << SkyTable::kFour] : table.sums) {
+      sum.add(of_four[seen & ((1 << SkyTable::kFour) - 1)]);
+      seen >>= SkyTable::kFour;
+    }
+    return mean_of(sum.total());
+  }
+#endif
+
+  QSES_FN static Openness mean_of(const Openness &sum) {
+    constexpr float kPart = 1.f / static_cast<float>(SkyDirections::kCount);
+    return {{2.f * kPart * sum.value[0], 2.f * kPart * sum.value[1], 2.f * kPart * sum.value[2], kPart * sum.part()}};
   }
 
-  // Those of the nodes that see the sky in a direction. Steps grow with the distance, as what is seen there covers more
-  // of the sky, but never beyond a layer of atoms.
-  QSES_FN uint64_t see(const SkyScratch &scratch, const float (&direction)[kAxes], uint64_t nodes) const {
-    for (float t = 1.f; t <= kSkyDistance / kOcclusionPoint && nodes; t += minimum(2.5f, maximum(1.f, 0.35f * t)))
-      nodes &= outside_at(scratch, round(t * direction[0]), round(t * direction[1]), round(t * direction[2]));
-    return nodes;
+  // Those of a brick around the one at place.
+  QSES_FN void bring_points(SkyScratch &scratch, const glm::ivec3 &place, int k) const {
+    const int brick = field.bricks.find(place + SkyBricks::step(k));
+    for (int word = 0; word < kLeavesPerBrick; ++word)
+      scratch.outside[k][word] =
+          brick < 0 ? ~uint64_t(0) : field.outside[static_cast<size_t>(brick) * kLeavesPerBrick + size_t(word)];
   }
-  // Of numbers above -64.
-  QSES_FN static int round(float x) { return static_cast<int>(x + 64.5f) - 64; }
 
-  // The outside bits of the points so far from each of the brick's nodes, out of the words of eight bricks.
-  QSES_FN static uint64_t outside_at(const SkyScratch &scratch, int dx, int dy, int dz) {
-    constexpr int kEdge = SkyScratch::kEdge, kReach = SkyScratch::kReach;
-    const int word = (dx & 1) | (dy & 1) << 1 | (dz & 1) << 2;
-    const int first = (dx >> 3) + kReach + kEdge * ((dy >> 3) + kReach + kEdge * ((dz >> 3) + kReach));
-    const int rx = dx >> 1 & 3, ry = dy >> 1 & 3, rz = dz >> 1 & 3;  // nodes on, besides
-    const uint64_t stays_x = static_cast<uint64_t>(0xf >> rx) * 0x1111111111111111ull;
-    const uint64_t stays_y = static_cast<uint64_t>(0xffff >> 4 * ry) * 0x0001000100010001ull;
+  // The outside bits of the points a step from each of the brick's nodes.
+  QSES_FN static uint64_t outside_at(const SkyScratch &scratch, const SkyStep &step) {
+    constexpr int kEdge = SkyBricks::kEdge;
+    const int word = step.word, rx = step.x, ry = step.y, rz = step.z;
     const auto along_x = [&](int k) {
 #if !defined(__CUDA_ARCH__)
       if (rx == 0) return scratch.outside[k][word];  // a GPU's threads have different ways to go
 #endif
-      return (scratch.outside[k][word] >> rx & stays_x) | (scratch.outside[k + 1][word] << (4 - rx) & ~stays_x);
+      return (scratch.outside[k][word] >> rx & step.stays_x) |
+             (scratch.outside[k + 1][word] << (4 - rx) & ~step.stays_x);
     };
     const auto along_y = [&](int k) {
 #if !defined(__CUDA_ARCH__)
       if (ry == 0) return along_x(k);
 #endif
-      return (along_x(k) >> 4 * ry & stays_y) | (along_x(k + kEdge) << (16 - 4 * ry) & ~stays_y);
+      return (along_x(k) >> 4 * ry & step.stays_y) | (along_x(k + kEdge) << (16 - 4 * ry) & ~step.stays_y);
     };
 #if !defined(__CUDA_ARCH__)
-    if (rz == 0) return along_y(first);
+    if (rz == 0) return along_y(step.brick);
 #endif
-    return along_y(first) >> 16 * rz | along_y(first + kEdge * kEdge) << 1 << (63 - 16 * rz);
-  }
-
-  QSES_FN Openness sum_up(const SkyScratch &scratch, int node) const {
-    Openness sum;
-#if defined(__CUDA_ARCH__)
-    for (int d = 0; d < SkyDirections::kCount; ++d) {
-      const float seen = scratch.seen[d] >> node & 1 ? 1.f : 0.f;
-      for (int axis = 0; axis < kAxes; ++axis) sum.value[axis] += seen * sky.direction[d][axis];
-      sum.part() += seen;
-    }
-#else
-    for (int four = 0; four < SkySums::kCount; ++four) {
-      const uint64_t *const seen = scratch.seen + 4 * four;
-      const uint64_t set =
-          (seen[0] >> node & 1) | (seen[1] >> node & 1) << 1 | (seen[2] >> node & 1) << 2 | (seen[3] >> node & 1) << 3;
-      sum.add(1.f, sky_sums().of[four][set]);
-    }
-#endif
-    constexpr float kPart = 1.f / static_cast<float>(SkyDirections::kCount);
-    return {{2.f * kPart * sum.value[0], 2.f * kPart * sum.value[1], 2.f * kPart * sum.value[2], kPart * sum.part()}};
+    return along_y(step.brick) >> 16 * rz | along_y(step.brick + kEdge * kEdge) << 1 << (63 - 16 * rz);
   }
 };
 
@@ -279,8 +224,7 @@ struct LightVertices {
   // bricks: of the first node's and those behind it.
   QSES_FN float open_to(const float *n, const Lookout &at, const int32_t *bricks) const {
     const int crossed = at.crossed();
-    Openness sum;
-    float weights = 0.f;
+    OpennessSum sum;
     for (int z = 0; z < 2; ++z)
       for (int y = 0; y < 2; ++y) {
         const float across = at.y.weight(y) * at.z.weight(z);
@@ -288,16 +232,14 @@ struct LightVertices {
         for (int x = 0; x < 2; ++x) {
           const int brick = bricks[(x + 2 * y + 4 * z) & crossed];
           if (brick < 0) continue;
-          const Openness &open =
-              field.nodes[static_cast<size_t>(brick) * kBrickNodes + static_cast<size_t>(row + at.x.in_brick(x))];
           // None is 0, so that a single node that is free tells.
-          const float weight = open.part() < 0.f ? 0.f : 1e-4f + across * at.x.weight(x);
-          sum.add(weight, open);
-          weights += weight;
+          sum.add(1e-4f + across * at.x.weight(x),
+                  field.nodes[static_cast<size_t>(brick) * kBrickNodes + static_cast<size_t>(row + at.x.in_brick(x))]);
         }
       }
-    return weights > 0.f ? (sum.value[0] * n[0] + sum.value[1] * n[1] + sum.value[2] * n[2] + sum.part()) / weights
-                         : 0.f;
+    const Openness o = sum.total();
+    return sum.weight() > 0.f ? (o.value[0] * n[0] + o.value[1] * n[1] + o.value[2] * n[2] + o.part()) / sum.weight()
+                              : 0.f;
   }
 };
 
