@@ -188,31 +188,36 @@ MeshMemoryView build_surface(Work &work) {
                         : work.settings.method == QSES_METHOD_GRID     ? build_grid_surface(work)
                         : splits_creases(work)                         ? build_creased_surface(work)
                                                                        : build_exact_surface(work);
-  work.timer.begin("measure");
   const MeshCounts counts{mesh.vertices, mesh.triangles};
-  if (work.settings.measure) {
-    // Only the solvent-excluded surface is measured along its normals: of balls the atoms know better.
-    const bool bent = work.report->measured_by == QSES_MEASURED_BY_NORMALS;
+  Measures measures{};
+  if (wants_components(work.settings)) {
+    work.timer.begin("components");
+    // Along the normals also of balls, whose atoms know area and volume better, but not of each component.
+    const bool bent = work.settings.method != QSES_METHOD_GRID;
+    const MeshComponents components =
+        work.components.find(executor, mesh, work.parameters.spacing, bent, &work.report->unplaced_vertices);
+    mesh.components = components.list;
+    measures = components.total;
+  } else if (work.settings.measure) {
+    work.timer.begin("measure");
     const double middle[3] = {work.lattice.center_x, work.lattice.center_y, work.lattice.center_z};
-    const Measures m =
-        measure(executor, mesh.view, counts, bent, middle, mesh.unplaced, &work.report->unplaced_vertices);
-    work.report->area = m.sums.area;
-    work.report->volume = m.sums.volume;
-    work.report->triangle_area = m.sums.flat_area;
-    work.report->triangle_volume = m.sums.flat_volume;
-    mesh.bounds = m.bounds;
+    measures = measure(executor, mesh.view, counts, work.report->measured_by == QSES_MEASURED_BY_NORMALS, middle,
+                       mesh.unplaced, &work.report->unplaced_vertices);
   } else {
-    mesh.bounds = find_bounds(executor, mesh.view, counts, mesh.unplaced, &work.report->unplaced_vertices);
+    work.timer.begin("measure");
+    measures.bounds = find_bounds(executor, mesh.view, counts, mesh.unplaced, &work.report->unplaced_vertices);
+  }
+  mesh.bounds = measures.bounds;
+  if (work.settings.measure) {
+    work.report->area = measures.sums.area;
+    work.report->volume = measures.sums.volume;
+    work.report->triangle_area = measures.sums.flat_area;
+    work.report->triangle_volume = measures.sums.flat_volume;
   }
   if (work.settings.atom_areas && !(is_exact(work.settings) && work.parameters.is_of_balls()))
     work.atom_areas = bring_areas(work, [&](double *areas) {
       measure_owners(executor, mesh.view, mesh.triangles, work.parameters.spacing, true, work.atoms.count, areas);
     });
-  if (wants_components(work.settings)) {
-    work.timer.begin("components");
-    const bool bent = work.settings.method != QSES_METHOD_GRID;
-    mesh.components = work.components.find(executor, mesh, work.parameters.spacing, bent);
-  }
   if (work.is_cut && mesh.vertices > 0) {
     work.timer.begin("visible_mask");
     mesh = cut_surface(work, mesh);

@@ -255,17 +255,18 @@ TEST(Report, StagesAreCalledAsTheirFiles) {
   for (qses_method method : {QSES_METHOD_EXACT, QSES_METHOD_GRID}) {
     qses_settings s = settings();
     s.method = method;
-    s.components = s.hard_edges = 1;
+    s.components = method == QSES_METHOD_EXACT;
+    s.hard_edges = 1;
     ASSERT_EQ(qses_compute(context, &s, nullptr), QSES_OK);
     const qses_report report = report_of(context);
     std::set<std::string> names;
     for (uint32_t k = 0; k < report.stage_count; ++k) names.insert(report.stages[k].name);
     EXPECT_EQ(names.size(), report.stage_count) << "a name twice";
-    std::set<std::string> expected = {"neighbor_grid", "bricks",     "marching_cubes", "projection", "relaxation",
-                                      "measure",       "components", "visible_mask",   "appearance", "mesh_memory"};
+    std::set<std::string> expected = {"neighbor_grid", "bricks",       "marching_cubes", "projection",
+                                      "relaxation",    "visible_mask", "appearance",     "mesh_memory"};
     if (method == QSES_METHOD_EXACT) expected.insert("hard_edges");
-    if (method == QSES_METHOD_EXACT) expected.insert({"solvent_features", "exact_ses", "thin_walls"});
-    if (method == QSES_METHOD_GRID) expected.insert("grid_ses");
+    if (method == QSES_METHOD_EXACT) expected.insert({"solvent_features", "exact_ses", "thin_walls", "components"});
+    if (method == QSES_METHOD_GRID) expected.insert({"grid_ses", "measure"});
     EXPECT_EQ(names, expected);
     for (const std::string &name : names) EXPECT_TRUE(is_file_of_the_surface(name)) << name;
   }

@@ -23,13 +23,32 @@ MeshView view_of(Mesh &m, bool reversed = false) {
   return view;
 }
 
+constexpr double kOrigin[3] = {};
+
+// All components together measure what the mesh does.
+void expect_measures(const Measures &found, const Measures &wanted) {
+  const double size = 1e-12 * (std::abs(wanted.sums.volume) + wanted.sums.area * std::sqrt(wanted.sums.area));
+  EXPECT_NEAR(found.sums.area, wanted.sums.area, 1e-12 * wanted.sums.area);
+  EXPECT_NEAR(found.sums.flat_area, wanted.sums.flat_area, 1e-12 * wanted.sums.area);
+  EXPECT_NEAR(found.sums.volume, wanted.sums.volume, size);
+  EXPECT_NEAR(found.sums.flat_volume, wanted.sums.flat_volume, size);
+  for (int d = 0; d < 3; ++d) {
+    EXPECT_EQ(found.bounds.min[d], wanted.bounds.min[d]);
+    EXPECT_EQ(found.bounds.max[d], wanted.bounds.max[d]);
+  }
+}
+
 std::vector<qses_component> components_of(Mesh &m, unsigned threads = 2, bool reversed = false, float spacing = 0.5f) {
   CpuExecutor executor(threads);
   ComponentMemory memory;
   const MeshView view = view_of(m, reversed);
-  const auto found =
-      find_components(executor, view, MeshCounts{m.vertex_count(), m.triangle_count()}, spacing, false, memory);
-  return {found.begin(), found.end()};
+  const MeshCounts counts{m.vertex_count(), m.triangle_count()};
+  const uint32_t extra = 37;
+  uint64_t brought = 0;
+  const MeshComponents found = find_components(executor, view, counts, spacing, false, memory, &extra, &brought);
+  expect_measures(found.total, measure(executor, view, counts, false, kOrigin));
+  EXPECT_EQ(brought, counts.triangles > 0 ? extra : 0);
+  return {found.list.begin(), found.list.end()};
 }
 
 void expect_same(const std::vector<qses_component> &a, const std::vector<qses_component> &b) {

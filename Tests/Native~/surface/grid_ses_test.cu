@@ -131,7 +131,8 @@ void compare(const std::vector<Atom> &atoms, float probe, float spacing) {
   }
 
   ComponentMemory memory, serial_memory;
-  const Span<const qses_component> pieces = find_components(executor, view, counts, spacing, true, memory);
+  const MeshComponents all = find_components(executor, view, counts, spacing, true, memory);
+  const Span<const qses_component> pieces = all.list;
   ASSERT_EQ(pieces.size, mesh_checks::piece_count(expected));
   double area = 0, volume = 0;
   for (const qses_component &piece : pieces) {
@@ -142,8 +143,17 @@ void compare(const std::vector<Atom> &atoms, float probe, float spacing) {
   EXPECT_NEAR(area, plain.sums.area, 1e-12 * plain.sums.area);
   EXPECT_NEAR(volume, plain.sums.volume, 1e-12 * plain.sums.volume);
   // Of the same triangles the CPU finds the same numbers, to the last bit.
-  const Span<const qses_component> on_host =
+  const MeshComponents all_on_host =
       find_components(serial.executor, serial.view(expected), serial.counts, spacing, true, serial_memory);
+  const Span<const qses_component> on_host = all_on_host.list;
+  EXPECT_EQ(all.total.sums.area, all_on_host.total.sums.area);
+  EXPECT_EQ(all.total.sums.volume, all_on_host.total.sums.volume);
+  EXPECT_EQ(all.total.sums.flat_area, all_on_host.total.sums.flat_area);
+  EXPECT_EQ(all.total.sums.flat_volume, all_on_host.total.sums.flat_volume);
+  for (int d = 0; d < 3; ++d) {
+    EXPECT_EQ(all.total.bounds.min[d], found.bounds.min[d]);
+    EXPECT_EQ(all.total.bounds.max[d], found.bounds.max[d]);
+  }
   ASSERT_EQ(on_host.size, pieces.size);
   for (size_t k = 0; k < pieces.size; ++k) {
     EXPECT_EQ(pieces[k].triangles, on_host[k].triangles);

@@ -501,10 +501,9 @@ QSES_API qses_status qses_context_mesh(const qses_context *context, qses_mesh *m
 typedef struct qses_stage_time {
   char name[24];       /* of the file under surface/ that does the work (the method's own files end in _cpu or _cuda):
                           "neighbor_grid", "solvent_features", "bricks", "exact_ses", "grid_ses" or
-                          "gaussian_density", "thin_walls",
-                          "marching_cubes", "projection", "relaxation", "creases", "measure", "components",
-                          "visible_mask", "hard_edges", "appearance" (with settings.occlusion: "occlusion"),
-                          "pick_boxes", "mesh_memory" */
+                          "gaussian_density", "thin_walls", "marching_cubes", "projection", "relaxation", "creases",
+                          "measure" or, if components are asked for, "components", "visible_mask", "hard_edges",
+                          "appearance" (with settings.occlusion: "occlusion"), "pick_boxes", "mesh_memory" */
   double milliseconds; /* with CUDA: between events on the stream */
 } qses_stage_time;
 

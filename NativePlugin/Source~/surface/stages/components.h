@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The connected pieces of a mesh, with area, signed volume, centre and box: outer surfaces enclose a positive volume,
 // cavities a negative one. Vertices are joined along the edges of the triangles into trees whose roots are the smallest
-// vertices.
+// vertices. All of them together measure what the mesh does.
 #pragma once
 
 #include "parallel/growing_buffer.h"
@@ -127,9 +127,10 @@ QSES_FN void atomic_add(ExactSum *sum, const ExactSum &more) {
 struct ComponentSums {
   uint64_t triangles;
   ExactSum area, volume;
-  ExactSum flat_volume, moment[3];  // of the triangles as they are
-  uint32_t most[6];                 // greatest x, y, z and -x, -y, -z, as ordered bits
-  float first[3];                   // the first vertex
+  ExactSum flat_area, flat_volume, moment[3];  // of the triangles as they are
+  uint32_t most[6];                            // greatest x, y, z and -x, -y, -z, as ordered bits
+  float first[3];                              // the first vertex
+  uint32_t extra;                              // of the first component: what comes along
 };
 
 // Rests are multiples of 1 / this.
@@ -159,6 +160,7 @@ QSES_FN void add_sums(const ComponentSums &from, ComponentSums *to) {
   atomic_add(&to->triangles, from.triangles);
   atomic_add(&to->area, from.area);
   atomic_add(&to->volume, from.volume);
+  atomic_add(&to->flat_area, from.flat_area);
   atomic_add(&to->flat_volume, from.flat_volume);
   for (int d = 0; d < 3; ++d) atomic_add(to->moment + d, from.moment[d]);
   for (int d = 0; d < 6; ++d) atomic_max(to->most + d, from.most[d]);
@@ -186,12 +188,14 @@ struct NumberComponents {
   MeshView mesh;
   const uint32_t *labels;
   ComponentNumbers number_of;
+  const uint32_t *extra;
   ComponentSums *sums;
   QSES_HOST_DEVICE void operator()(size_t v) const {
     const uint32_t vertex = static_cast<uint32_t>(v), number = number_of(labels[v]);
     if (mesh.component_ids) mesh.component_id(vertex) = number;
     if (labels[v] != vertex) return;
     for (int d = 0; d < 3; ++d) sums[number].first[d] = mesh.position(vertex)[d];
+    if (v == 0 && extra) sums->extra = *extra;
   }
 };
 
@@ -237,6 +241,7 @@ struct SumComponents {
     ++own_sums.triangles;
     own_sums.area.add(rounded_product(t.area, per_area), units);
     own_sums.volume.add(rounded_product(t.volume, per_volume), units);
+    own_sums.flat_area.add(rounded_product(t.flat_area, per_area), units);
     own_sums.flat_volume.add(flat_volume, units);
     for (int k = 0; k < 3; ++k) {
       double sum = -3.0 * origin[k];
@@ -251,17 +256,33 @@ struct SumComponents {
   }
 };
 
+inline TriangleSums measured_sums(const ComponentSums &s, double units, double spacing) {
+  const double h2 = spacing * spacing, h3 = h2 * spacing;
+  return {s.area.value(units) * h2, s.volume.value(units) * h3, s.flat_area.value(units) * h2,
+          s.flat_volume.value(units) * h3};
+}
+inline Bounds bounds_of(const ComponentSums &s) {
+  Bounds b;
+  for (int d = 0; d < 3; ++d) {
+    b.min[d] = -from_ordered_bits(s.most[d + 3]);
+    b.max[d] = from_ordered_bits(s.most[d]);
+  }
+  return b;
+}
+
 inline qses_component describe_component(const ComponentSums &s, double units, double spacing) {
   qses_component c{};
+  const TriangleSums measured = measured_sums(s, units, spacing);
+  const Bounds bounds = bounds_of(s);
   c.triangles = s.triangles;
-  c.area = s.area.value(units) * spacing * spacing;
-  c.volume = s.volume.value(units) * spacing * spacing * spacing;
-  c.is_cavity = s.flat_volume.value(units) < 0 ? 1 : 0;  // what bounds a hollow in the mesh, however small
+  c.area = measured.area;
+  c.volume = measured.volume;
+  c.is_cavity = measured.flat_volume < 0 ? 1 : 0;  // what bounds a hollow in the mesh, however small
   bool is_within = true;
   double center[3];
   for (int d = 0; d < 3; ++d) {
-    c.bounds_min[d] = -from_ordered_bits(s.most[d + 3]);
-    c.bounds_max[d] = from_ordered_bits(s.most[d]);
+    c.bounds_min[d] = bounds.min[d];
+    c.bounds_max[d] = bounds.max[d];
     center[d] = static_cast<double>(s.first[d]) + s.moment[d].value(units) / s.flat_volume.value(units) * spacing;
     is_within = is_within && center[d] >= static_cast<double>(c.bounds_min[d]) &&
                 center[d] <= static_cast<double>(c.bounds_max[d]);
@@ -295,11 +316,17 @@ class ComponentMemory {
 // Whether anything asks for them.
 inline bool wants_components(const qses_settings &s) { return s.components || s.component_ids || s.outer_only; }
 
-// The components in the order of their first vertices; valid until the next call with the same memory. If the mesh has
-// room for their numbers, vertices get them. Waits.
+// The components in the order of their first vertices; valid until the next call with the same memory.
+struct MeshComponents {
+  Span<const qses_component> list;
+  Measures total;
+};
+
+// If the mesh has room for their numbers, vertices get them. extra: as in find_bounds (measure.h). Waits.
 template <class Executor>
-Span<const qses_component> find_components(Executor &executor, const MeshView &mesh, const MeshCounts &counts,
-                                           float spacing, bool bent, ComponentMemory &memory) {
+MeshComponents find_components(Executor &executor, const MeshView &mesh, const MeshCounts &counts, float spacing,
+                               bool bent, ComponentMemory &memory, const uint32_t *extra = nullptr,
+                               uint64_t *extra_value = nullptr) {
   if (counts.triangles == 0) return {};
   const auto mark = executor.arena().mark();
   const size_t n = counts.vertices;
@@ -314,7 +341,7 @@ Span<const qses_component> find_components(Executor &executor, const MeshView &m
   const Span<ComponentSums> found = memory.sums(count);
   const Span<ComponentSums> sums = Executor::kIsCuda ? executor.template allocate<ComponentSums>(count) : found;
   executor.fill(sums, 0);
-  executor.for_each(n, NumberComponents{mesh, labels.data, number_of, sums.data});
+  executor.for_each(n, NumberComponents{mesh, labels.data, number_of, extra, sums.data});
   const double h = static_cast<double>(spacing), units = rest_units(counts.triangles);
   const size_t chunk = reduce_chunk(counts.triangles);
   executor.template for_each_brick<ChunkSums>(
@@ -325,9 +352,21 @@ Span<const qses_component> find_components(Executor &executor, const MeshView &m
   executor.arena().rewind(mark);
   while (count > 0 && found[count - 1].triangles == 0) --count;  // there are fewer than anticipated
 
-  const Span<qses_component> components = memory.list(count);
-  for (size_t k = 0; k < count; ++k) components[k] = describe_component(found[k], units, h);
-  return {components.data, count};
+  MeshComponents components{};
+  const Span<qses_component> list = memory.list(count);
+  for (size_t k = 0; k < count; ++k) {
+    list[k] = describe_component(found[k], units, h);
+    components.total.sums += measured_sums(found[k], units, h);
+    const Bounds bounds = bounds_of(found[k]);
+    for (int d = 0; d < 3; ++d) {
+      float &low = components.total.bounds.min[d], &high = components.total.bounds.max[d];
+      low = k == 0 ? bounds.min[d] : std::min(low, bounds.min[d]);
+      high = k == 0 ? bounds.max[d] : std::max(high, bounds.max[d]);
+    }
+  }
+  components.list = {list.data, count};
+  if (extra && extra_value && count > 0) *extra_value = found[0].extra;
+  return components;
 }
 
 // Finds them where the mesh is, with memory that is kept: on the device, or, for a mesh that left it in pieces, by the
@@ -336,12 +375,16 @@ class ComponentFinder {
  public:
   // threads: used only for meshes that left the device.
   explicit ComponentFinder(const WorkerThreads &threads) : on_host_(threads) {}
+  // unplaced: gets the mesh's number of them, if it has one.
   template <class Executor>
-  Span<const qses_component> find(Executor &executor, const MeshMemoryView &mesh, float spacing, bool bent) {
+  MeshComponents find(Executor &executor, const MeshMemoryView &mesh, float spacing, bool bent, uint64_t *unplaced) {
     const MeshCounts counts{mesh.vertices, mesh.triangles};
-    if (!mesh.in_pieces) return find_components(executor, mesh.view, counts, spacing, bent, memory_);
+    if (!mesh.in_pieces)
+      return find_components(executor, mesh.view, counts, spacing, bent, memory_, mesh.unplaced, unplaced);
+    if (Executor::kCounts) return {};
+    if (mesh.unplaced) *unplaced = executor.fetch(mesh.unplaced);
     executor.wait();
-    return Executor::kCounts ? Span<const qses_component>{} : on_host_.find(mesh.view, counts, spacing, bent, memory_);
+    return on_host_.find(mesh.view, counts, spacing, bent, memory_);
   }
   // Of each component whether it is no cavity; valid until the next call.
   Span<const uint8_t> outer(Span<const qses_component> components) {

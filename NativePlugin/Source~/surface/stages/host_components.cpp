@@ -10,8 +10,8 @@ namespace quickses {
 HostComponents::HostComponents(const WorkerThreads &threads) : threads_(threads) {}
 HostComponents::~HostComponents() = default;
 
-Span<const qses_component> HostComponents::find(const MeshView &mesh, const MeshCounts &counts, float spacing,
-                                                bool bent, ComponentMemory &memory) {
+MeshComponents HostComponents::find(const MeshView &mesh, const MeshCounts &counts, float spacing, bool bent,
+                                    ComponentMemory &memory) {
   if (!executor_) executor_ = std::make_unique<CpuExecutor>(threads_);
   executor_->arena().reset();
   return find_components(*executor_, mesh, counts, spacing, bent, memory);

@@ -13,6 +13,7 @@ namespace quickses {
 
 class ComponentMemory;
 class CpuExecutor;
+struct MeshComponents;
 struct MeshCounts;
 
 class HostComponents {
@@ -21,8 +22,8 @@ class HostComponents {
   ~HostComponents();
 
   // As find_components. Its threads and its work memory stay for the next call.
-  Span<const qses_component> find(const MeshView &mesh, const MeshCounts &counts, float spacing, bool bent,
-                                  ComponentMemory &memory);
+  MeshComponents find(const MeshView &mesh, const MeshCounts &counts, float spacing, bool bent,
+                      ComponentMemory &memory);
   uint64_t bytes() const;  // of work memory
 
  private:
