@@ -160,7 +160,16 @@ class CpuExecutor {
     const size_t chunks = reduce_chunks(n);
     const auto mark = arena_.mark();
     const Span<T> sums = allocate<T>(chunks);
-    run_chunks(chunks, [&](size_t, size_t chunk) { SumChunk<T, Load>{load, n, sums.data}(chunk); });
+    run_chunks(chunks, [&](size_t, size_t chunk) {
+      constexpr size_t kRun = 64;
+      const size_t end = std::min(n, (chunk + 1) * reduce_chunk(n));
+      T sum{};
+      for (size_t begin = chunk * reduce_chunk(n); begin < end; begin += kRun) {
+        look_for_stop();
+        add_run(load, begin, std::min(begin + kRun, end), &sum);
+      }
+      sums[chunk] = sum;
+    });
     T sum{};
     for (const T &s : sums) sum += s;
     arena_.rewind(mark);
@@ -288,6 +297,16 @@ class CpuExecutor {
   void wait() {}
 
  private:
+  // A load may know how to find what a run of them adds.
+  template <class Load, class T>
+  static auto add_run(const Load &load, size_t begin, size_t end, T *sum) -> decltype(load.add_run(begin, end, sum)) {
+    return load.add_run(begin, end, sum);
+  }
+  template <class Load, class Sum>
+  static void add_run(const Load &load, size_t begin, size_t end, Sum sum) {
+    for (size_t i = begin; i < end; ++i) *sum += load(i);
+  }
+
   static constexpr size_t kSerialItems = 64;
   static constexpr size_t kPlainItems = 1024;              // of a pass without loops, that one thread does
   static constexpr size_t kSortedRun = size_t(1) << 15;    // items that one thread sorts, or merges, at a time

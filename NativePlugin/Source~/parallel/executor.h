@@ -78,21 +78,4 @@ struct SumPair {
   }
 };
 
-// Sum of one chunk of reduce().
-template <class T, class Load>
-struct SumChunk {
-  Load load;
-  size_t n;
-  T *sums;
-  QSES_HOST_DEVICE void operator()(size_t chunk) const {
-    const size_t begin = chunk * reduce_chunk(n), end = begin + reduce_chunk(n) < n ? begin + reduce_chunk(n) : n;
-    T sum{};
-    for (size_t i = begin; i < end; ++i) {
-      if (i % 64 == 0) look_for_stop();
-      sum += load(i);
-    }
-    sums[chunk] = sum;
-  }
-};
-
 }  // namespace quickses

@@ -52,5 +52,8 @@ QSES_FN float absolute(float x) { return fabsf(x); }
 QSES_FN float maximum(float a, float b) { return a > b ? a : b; }
 QSES_FN float minimum(float a, float b) { return a < b ? a : b; }
 QSES_FN float select(bool m, float yes, float no) { return m ? yes : no; }
+QSES_FN bool any(bool m) { return m; }
+QSES_FN double square_root(double x) { return sqrt(x); }
+QSES_FN double select(bool m, double yes, double no) { return m ? yes : no; }
 
 }  // namespace quickses

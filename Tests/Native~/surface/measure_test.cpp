@@ -3,11 +3,14 @@
 #include "surface/stages/measure.h"
 
 #include "parallel/cpu_executor.h"
+#include "surface/cpu/cpu_kernels.h"
 #include "surface/mesh_shapes.h"
 
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <limits>
+#include <random>
 
 namespace {
 
@@ -110,6 +113,52 @@ TriangleSums measure_bent(Mesh &mesh, const std::vector<float> &normals, const s
   view.indices = mesh.indices.data();
   view.reversed = reversed;
   return measure(executor, view, MeshCounts{mesh.vertex_count(), mesh.triangle_count()}, true, kOrigin).sums;
+}
+
+// Four triangles at a time measure what each of them does, to the last bit: crests, corners that face away, and
+// triangles without area among them, whatever their number.
+TEST(Measure, FourAtATimeAsOneByOne) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> place(-1, 1);
+  constexpr size_t kTriangles = 400;
+  Mesh m;
+  std::vector<float> normals, second;
+  const auto unit = [](glm::vec3 v) { return v / std::sqrt(glm::dot(v, v)); };
+  const auto add = [](std::vector<float> &to, const glm::vec3 &v) { to.insert(to.end(), {v.x, v.y, v.z}); };
+  for (uint32_t t = 0; t < kTriangles; ++t) {
+    const auto anywhere = [&] { return glm::vec3(place(random), place(random), place(random)); };
+    const glm::vec3 a = anywhere(), b = t % 11 == 0 ? a : a + 0.3f * anywhere(), c = a + 0.3f * anywhere();
+    const glm::vec3 facing = t % 11 == 0 ? glm::vec3(0, 0, 1) : unit(glm::cross(b - a, c - a));
+    for (const glm::vec3 &x : {a, b, c}) {
+      const glm::vec3 n = unit(facing + (t % 7 == 0 ? 2.f : 0.4f) * anywhere());
+      add(m.positions, x);
+      add(normals, n);
+      add(second, t % 3 == 0 ? unit(facing + 0.8f * anywhere()) : n);
+      m.indices.push_back(static_cast<uint32_t>(m.indices.size()));
+    }
+  }
+  for (const bool reversed : {false, true})
+    for (const bool has_second : {false, true})
+      for (const bool bent : {false, true}) {
+        MeshView view;
+        view.positions = m.positions.data();
+        view.normals = normals.data();
+        view.second_normals = has_second ? second.data() : nullptr;
+        view.indices = m.indices.data();
+        view.reversed = reversed;
+        const MeasureTriangle measure{view, {0.5, -0.25, 3.0}, bent};
+        for (const CpuKernels *kernels : {&cpu_kernels(), &base_cpu_kernels()})
+          for (size_t first = 0, count = 0; first + count <= kTriangles; first += count, count = count % 9 + 1) {
+            TriangleSums sums[9];
+            kernels->measure_triangles(measure, first, count, sums);
+            for (size_t k = 0; k < count; ++k) {
+              const TriangleSums one = measure(first + k);
+              ASSERT_EQ(std::memcmp(&one, sums + k, sizeof one), 0)
+                  << kernels->name << " " << first + k << ": " << one.area << " " << sums[k].area << " " << one.volume
+                  << " " << sums[k].volume;
+            }
+          }
+      }
 }
 
 // What is left falls with the fourth power of the size of triangles, where that of flat ones falls with the second.

@@ -31,4 +31,8 @@ const CpuKernels &cpu_kernels() {
 
 const CpuKernels &base_cpu_kernels() { return kBase; }
 
+void measure_triangles(const MeasureTriangle &measure, size_t first, size_t count, TriangleSums *sums) {
+  cpu_kernels().measure_triangles(measure, first, count, sums);
+}
+
 }  // namespace quickses

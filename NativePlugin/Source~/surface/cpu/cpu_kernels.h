@@ -6,6 +6,7 @@
 #include "parallel/working_thread.h"
 #include "surface/stages/hot_stages.h"
 #include "surface/stages/local_features.h"
+#include "surface/stages/triangle_measures.h"
 
 namespace quickses {
 
@@ -55,6 +56,7 @@ struct LocalColumns {
 //   emit_brick_triangles   the triangles of a brick's cells
 //   evaluate_brick_density the eight leaf words of a brick of a Gaussian surface
 //   emit_brick_density_vertices  the vertices that a brick of it owns
+//   measure_triangles      as in triangle_measures.h
 //   gather_local_features  those near a place; false if it is too crowded
 //   nearest_local_arc      of those that were gathered
 #define QSES_CPU_KERNELS(KERNEL)                                                                                     \
@@ -74,6 +76,7 @@ struct LocalColumns {
          const BrickScratch &scratch, uint64_t *words)                                                               \
   KERNEL(BrickNeeds, emit_brick_density_vertices, const GaussianDensity &density, const BrickSet &bricks,            \
          const MeshLayout &layout, uint32_t brick, const BrickScratch &scratch, const MeshView &mesh)                \
+  KERNEL(void, measure_triangles, const MeasureTriangle &measure, size_t first, size_t count, TriangleSums *sums)    \
   KERNEL(bool, gather_local_features, const FeatureView &features, const Vec3<float> &x, float around,               \
          LocalColumns *out)                                                                                          \
   KERNEL(NearestArc, nearest_local_arc, const LocalColumns &local, const Vec3<float> &x)

@@ -41,6 +41,10 @@ template <class T>
 QSES_FN Vec3<T> cross(const Vec3<T> &a, const Vec3<T> &b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
+template <class Mask, class T>
+QSES_FN Vec3<T> select(Mask m, const Vec3<T> &yes, const Vec3<T> &no) {
+  return {select(m, yes.x, no.x), select(m, yes.y, no.y), select(m, yes.z, no.z)};
+}
 // From a point to the nearest one of a box.
 QSES_FN float distance_to_box_squared(const Vec3<float> &x, const Vec3<float> &low, const Vec3<float> &high) {
   return length_squared(Vec3<float>(maximum(0.f, maximum(low.x - x.x, x.x - high.x)),

@@ -215,25 +215,47 @@ struct SumComponents {
     team.sync();
     uint32_t number = chunk.number;
     RunSums own;
-    for (size_t t = begin + static_cast<size_t>(team.rank()); t < end; t += static_cast<size_t>(team.size())) {
-      const uint32_t root = labels[mesh.triangle(t)[0]];
+    measure_each(team, begin, end, [&](size_t t, uint32_t root, const double *origin, const TriangleSums &measured) {
       if (number_of(root) != number) {
         add_sums(own.total(), number == chunk.number ? &chunk.sums : sums + number);
         own = RunSums{};
         number = number_of(root);
       }
-      add_triangle(mesh.triangle(t), root, &own);
-    }
+      add_triangle(mesh.triangle(t), origin, measured, &own);
+    });
     add_sums(own.total(), number == chunk.number ? &chunk.sums : sums + number);
     team.sync();
     if (team.rank() == 0) add_sums(chunk.sums, sums + chunk.number);
   }
 
  private:
-  QSES_FN void add_triangle(const uint32_t *triangle, uint32_t root, RunSums *own) const {
+  QSES_FN uint32_t root_of(size_t triangle) const { return labels[mesh.triangle(triangle)[0]]; }
+  QSES_FN MeasureTriangle measure_from(uint32_t root) const {
     const float *const tip = mesh.position(root);
-    const double origin[3] = {static_cast<double>(tip[0]), static_cast<double>(tip[1]), static_cast<double>(tip[2])};
-    const TriangleSums t = measure_triangle(mesh, triangle, origin, bent);
+    return {mesh, {static_cast<double>(tip[0]), static_cast<double>(tip[1]), static_cast<double>(tip[2])}, bent};
+  }
+  // visit(triangle, root, origin, what it measures from there), for all triangles that a thread of the team has.
+  template <class Team, class Visit>
+  QSES_HOST_DEVICE void measure_each(const Team &team, size_t begin, size_t end, const Visit &visit) const {
+    for (size_t t = begin + static_cast<size_t>(team.rank()); t < end; t += static_cast<size_t>(team.size())) {
+      const uint32_t root = root_of(t);
+      const MeasureTriangle measure = measure_from(root);
+      visit(t, root, measure.origin, measure(t));
+    }
+  }
+  template <class Visit>
+  void measure_each(const SoloTeam &, size_t begin, size_t end, const Visit &visit) const {
+    TriangleSums measured[kTriangleRun];
+    for (size_t t = begin, run = 1; t < end; t += run) {
+      const uint32_t root = root_of(t);
+      for (run = 1; run < kTriangleRun && t + run < end && root_of(t + run) == root;) ++run;
+      const MeasureTriangle measure = measure_from(root);
+      measure_triangles(measure, t, run, measured);
+      for (size_t k = 0; k < run; ++k) visit(t + k, root, measure.origin, measured[k]);
+    }
+  }
+
+  QSES_FN void add_triangle(const uint32_t *triangle, const double *origin, const TriangleSums &t, RunSums *own) const {
     const double per_area = inverse_spacing * inverse_spacing, per_volume = per_area * inverse_spacing;
     // Rounded before their whole parts are taken off.
     const double flat_volume = rounded_product(t.flat_volume, per_volume);

@@ -68,6 +68,25 @@ struct LoadMeshSums {
     if (i == 0 && extra) s.extra = *extra;
     return s;
   }
+  // On the CPU.
+  void add_run(size_t begin, size_t end, MeshSums<kMeasured> *sum) const {
+    if constexpr (kMeasured) {
+      TriangleSums measured[kTriangleRun];
+      for (size_t t = begin; t < std::min(end, triangles); t += kTriangleRun) {
+        const size_t run = std::min(kTriangleRun, std::min(end, triangles) - t);
+        measure_triangles(measure, t, run, measured);
+        for (size_t k = 0; k < run; ++k) static_cast<TriangleSums &>(*sum) += measured[k];
+      }
+    }
+    MeshSums<false> box;
+    for (size_t v = begin; v < std::min(end, vertices); ++v)
+      box += LoadMeshSums<false>{mesh, vertices, 0, {}, extra}(v);
+    for (int d = 0; d < 3; ++d) {
+      sum->low[d] = std::min(sum->low[d], box.low[d]);
+      sum->high[d] = std::max(sum->high[d], box.high[d]);
+    }
+    sum->extra += box.extra;
+  }
 };
 
 template <class Executor, bool kMeasured>
