@@ -14,7 +14,7 @@ constexpr unsigned kWarmUps = 2;
 
 qses_settings bench_settings(const Options &options, qses_delivery delivery) {
   qses_settings settings = settings_of(options.compute);
-  settings.measure = 0;  // area and volume are no part of the mesh
+  settings.measure = options.bench.measure;
   settings.vertex_layout = options.bench.layout;
   settings.delivery = delivery;
   return settings;
@@ -94,13 +94,13 @@ std::string bench_surface(const BenchSubject &subject, Json *entry) {
   std::string times, stages;
   Json places = Json::object();
   qses_mesh mesh = {};
-  uint64_t bytes = 0;
+  qses_report report = {};
   const std::pair<const char *, qses_delivery> all[] = {{"device", QSES_DELIVERY_DEVICE}, {"host", QSES_DELIVERY_HOST}};
   for (const auto &[name, delivery] : all) {
     if (deliveries == (delivery == QSES_DELIVERY_HOST ? Deliveries::kDevice : Deliveries::kHost)) continue;
     const Delivered found = deliver(subject, delivery);
     mesh = found.mesh;
-    bytes = found.report.mesh_bytes;
+    report = found.report;
     places[name] = times_json(found, subject.backend);
     char text[60];
     std::snprintf(text, sizeof text, ", %s %.3f ms", name, median(found.times));
@@ -109,10 +109,14 @@ std::string bench_surface(const BenchSubject &subject, Json *entry) {
   }
   (*entry)["vertices"] = mesh.vertex_count;
   (*entry)["triangles"] = mesh.triangle_count;
+  if (bench.measure) {
+    (*entry)["area"] = report.area;
+    (*entry)["volume"] = report.volume;
+  }
   entry->update(places);
   char text[240];
   std::snprintf(text, sizeof text, "%u triangles, %.2f MB, %s%s (median of %u)", mesh.triangle_count,
-                1e-6 * static_cast<double>(bytes), name_of(subject.backend), times.c_str(), bench.repeat);
+                1e-6 * static_cast<double>(report.mesh_bytes), name_of(subject.backend), times.c_str(), bench.repeat);
   return text + stages;
 }
 

@@ -47,6 +47,15 @@ class Reports(BenchTest):
         entry, = self.bench(CRAMBIN, "--repeat", "1")["structures"]
         self.assertEqual([entry[key] for key in ("vertices", "triangles")], [mesh[key] for key in ("vertices", "triangles")])
 
+    def test_measures_are_those_of_the_program(self):
+        arguments = ("measure", CRAMBIN, "--surface", "ses", "--creases", "off", "--json", "-")
+        found = json.loads(self.run_cpu(*arguments).stdout)["surfaces"][0]
+        entry, = self.bench(CRAMBIN, "--repeat", "1", "--measure")["structures"]
+        plain, = self.bench(CRAMBIN, "--repeat", "1")["structures"]
+        for name in ("area", "volume"):
+            self.assertEqual(entry[name], found[name])
+            self.assertNotIn(name, plain)
+
     def test_layouts_and_their_bytes(self):
         for layout, vertex in (("separate", 24), ("interleaved", 24), ("compact", 16)):
             with self.subTest(layout):
