@@ -47,14 +47,12 @@ std::vector<std::string> read_identifiers(const std::string &text, const std::st
     int first = 0, last = 0;
     const bool is_range = dash != std::string::npos && parse_integer(part.substr(0, dash), first) &&
                           parse_integer(part.substr(dash + 1), last);
-    if (!is_range) {
-      identifiers.emplace_back(trim(part));
-      continue;
-    }
-    for (int64_t number = first; number <= last; ++number) {
-      if (identifiers.size() == kMostOperators) fail_large(path, name);
-      identifiers.push_back(std::to_string(number));
-    }
+    const auto add = [&](std::string identifier) {
+      if (identifiers.size() >= kMostOperators) fail_large(path, name);
+      identifiers.push_back(std::move(identifier));
+    };
+    if (!is_range) add(std::string(trim(part)));
+    for (int64_t number = first; is_range && number <= last; ++number) add(std::to_string(number));
   }
   return identifiers;
 }
@@ -62,6 +60,8 @@ std::vector<std::string> read_identifiers(const std::string &text, const std::st
 // "1,2" or "(1-3)" or "(X0)(1-60)": of several parentheses the last is applied first.
 Operators read_operators(const std::string &expression, const std::map<std::string, gemmi::Transform> &known,
                          const std::string &path, const std::string &name) {
+  if (trim(expression).empty() || expression == "?" || expression == ".")
+    fail_input("'" + path + "': assembly " + name + " names no operation");
   Operators product(1);
   size_t at = 0;
   while (at < expression.size()) {
@@ -168,14 +168,17 @@ void leave_out_doubles(gemmi::Model &model) {
     const gemmi::Atom &a = *atoms[i], &b = *atoms[j];
     return std::make_tuple(a.serial, a.pos.x, i) < std::make_tuple(b.serial, b.pos.x, j);
   });
-  std::vector<size_t> doubles;
+  // The first of them stays, and what was left out is not compared any more.
+  std::vector<uint8_t> is_left_out(atoms.size());
   for (size_t k = 0; k < order.size(); ++k)
-    for (size_t other = k + 1; other < order.size(); ++other) {
+    for (size_t other = k + 1; other < order.size() && !is_left_out[order[k]]; ++other) {
       const gemmi::Atom &a = *atoms[order[k]], &b = *atoms[order[other]];
       if (a.serial != b.serial || b.pos.x - a.pos.x > kSamePlace) break;
-      if (a.pos.dist(b.pos) < kSamePlace) doubles.push_back(std::max(order[k], order[other]));
+      if (is_left_out[order[other]] || a.pos.dist(b.pos) >= kSamePlace) continue;
+      is_left_out[std::max(order[k], order[other])] = 1;
     }
-  for (const size_t i : doubles) atoms[i]->serial = 0;
+  for (size_t i = 0; i < atoms.size(); ++i)
+    if (is_left_out[i]) atoms[i]->serial = 0;
   for (gemmi::Chain &chain : model.chains)
     for (gemmi::Residue &residue : chain.residues) {
       const auto is_double = [](const gemmi::Atom &atom) { return atom.serial == 0; };

@@ -216,11 +216,14 @@ void AtomicFile::write(const void *data, size_t size) {
   used_ += size;
 }
 
-void AtomicFile::commit() {
+void AtomicFile::finish() {
   flush();
   std::FILE *file = file_;
   file_ = nullptr;
   if ((to_standard_output_ ? std::fflush(file) : std::fclose(file)) != 0) fail(errno);
+}
+
+void AtomicFile::publish() {
   if (temporary_.empty()) return;
   std::error_code error;
   patiently(target_, error, [&] { fs::rename(temporary_, target_, error); });

@@ -31,7 +31,14 @@ class AtomicFile {
   void advance(size_t size) { used_ += size; }
   void write(const void *data, size_t size);
   void write(const std::string &text) { write(text.data(), text.size()); }
-  void commit();
+  void commit() {
+    finish();
+    publish();
+  }
+  // In two steps, for several files that belong together: all that was written is on its way to the disk, or it
+  // throws; then it gets its name.
+  void finish();
+  void publish();
 
   // As it was given.
   const std::string &path() const { return path_; }

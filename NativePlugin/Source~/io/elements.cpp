@@ -2,11 +2,10 @@
 // Elements of atoms whose file does not name them.
 #include "io/elements.h"
 
-#include <algorithm>
 #include <gemmi/elem.hpp>
 #include <gemmi/resinfo.hpp>
-#include <initializer_list>
 
+#include "io/simulation_names.h"
 #include "io/structure.h"
 #include "io/text.h"
 
@@ -17,10 +16,6 @@ using gemmi::El;
 
 bool is_letter(char c) { return c >= 'A' && c <= 'Z'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-bool is_one_of(const std::string &word, std::initializer_list<const char *> list) {
-  return std::any_of(list.begin(), list.end(), [&](const char *item) { return word == item; });
-}
 
 std::string upper_trimmed(const std::string &text) {
   const size_t first = text.find_first_not_of(' ');
@@ -66,11 +61,7 @@ bool is_biopolymer_residue(const std::string &residue) {
   if (is_water_name(residue)) return true;
   const gemmi::ResidueInfo info = gemmi::find_tabulated_residue(residue);
   if (info.is_amino_acid() || info.is_nucleic_acid()) return true;
-  return is_one_of(residue, {"HID",  "HIE",  "HIP",  "HSD",  "HSE",  "HSP",  "CYX",  "CYM",  "ASH",  "GLH",  "LYN",
-                             "ACE",  "NME",  "NMA",  "NH2",  "FOR",  "ADE",  "GUA",  "CYT",  "THY",  "URA",  "RA",
-                             "RC",   "RG",   "RU",   "RA5",  "RC5",  "RG5",  "RU5",  "RA3",  "RC3",  "RG3",  "RU3",
-                             "DA5",  "DC5",  "DG5",  "DT5",  "DA3",  "DC3",  "DG3",  "DT3",  "NALA", "CALA", "CYS2",
-                             "ILE1", "HISA", "HISB", "HISD", "HISE", "HISH", "ASPH", "GLUH", "LYSH", "ARGN"});
+  return find_simulated_residue(residue).is_known();
 }
 
 // Two letters that start an atom name and are read as one element even where a column does not say so.
@@ -87,8 +78,6 @@ gemmi::El parse_element(const std::string &symbol) {
   const std::string letters = leading_letters(upper_trimmed(symbol));
   return letters.empty() || letters.size() > 2 ? El::X : gemmi::find_element(letters.c_str());
 }
-
-std::string element_symbol(gemmi::El element) { return gemmi::element_name(element); }
 
 gemmi::El infer_element(const std::string &residue_name, const std::string &atom_name) {
   const std::string residue = upper_trimmed(residue_name);

@@ -13,9 +13,6 @@ namespace quickses::io {
 // An element symbol as files write it: any case, spaces around, a charge behind ("Fe3+"). El::X where it is none.
 gemmi::El parse_element(const std::string &symbol);
 
-// "Ca" for calcium, "X" for El::X.
-std::string element_symbol(gemmi::El element);
-
 // The element of an atom from its names.
 //   residue_name  such as "ALA"
 //   atom_name     such as "CA"; if it is exactly the four columns 13 to 16 of a PDB record (" CA " or "CA  "), then in

@@ -22,8 +22,11 @@ inline std::string printable(std::string message) {
     while ((static_cast<unsigned char>(message.back()) & 0xc0) == 0x80) message.pop_back();  // of a cut letter
     message.back() = '?';
   }
-  for (char &c : message)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  const auto byte = [&](size_t k) { return k < message.size() ? static_cast<unsigned char>(message[k]) : 0u; };
+  for (size_t k = 0; k < message.size(); ++k) {
+    if (byte(k) < 0x20 || byte(k) == 0x7f) message[k] = '?';
+    if (byte(k) == 0xc2 && byte(k + 1) >= 0x80 && byte(k + 1) < 0xa0) message[k] = message[k + 1] = '?';
+  }
   return message;
 }
 

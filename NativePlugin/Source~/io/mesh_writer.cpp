@@ -85,8 +85,11 @@ void write_mesh(const std::string &path, const MeshView &mesh, MeshFormat format
     case MeshFormat::kMsms: {
       AtomicFile faces(mesh_files_of(path).back());
       write_msms(file, faces, mesh);
-      faces.commit();
-      break;
+      faces.finish();
+      file.finish();
+      faces.publish();
+      file.publish();
+      return;
     }
     case MeshFormat::kPng:
     case MeshFormat::kHtml:

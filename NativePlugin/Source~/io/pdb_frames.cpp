@@ -43,6 +43,7 @@ class PdbFrames : public TrajectoryReader {
  public:
   explicit PdbFrames(std::unique_ptr<ByteSource> source) : TrajectoryReader(source->name()) {
     text_ = source->take_all();
+    drop_byte_order_mark(text_);
     index_frames();
     drop_cut_off_frame();
     if (frames_.empty()) fail("it has no atoms");
@@ -96,7 +97,7 @@ class PdbFrames : public TrajectoryReader {
           ends_in_atom_ = true;
           return;
         }
-        if (line.size() < 47)
+        if (line.size() < kCoordinatesEnd)
           fail_input(quoted_name() + ", line " + std::to_string(number) +
                      ": the record ends before its coordinates (columns 31 to 54)");
         if (frame.atom_count++ == 0) frame.box = box;
@@ -135,6 +136,7 @@ std::unique_ptr<TrajectoryReader> open_pdb_frames(std::unique_ptr<ByteSource> so
 
 bool is_pdb(const unsigned char *head, size_t size) {
   std::string_view text(reinterpret_cast<const char *>(head), size), line;
+  if (has_byte_order_mark(text)) text.remove_prefix(3);
   while (next_line(text, line)) {
     if (trim(line).empty()) continue;
     for (const char *record : {"HEADER", "TITLE ", "REMARK", "CRYST1", "MODEL ", "ATOM  ", "HETATM", "COMPND"})

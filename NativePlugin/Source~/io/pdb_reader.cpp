@@ -74,7 +74,7 @@ class Splitter {
   void atom(std::string_view line, const std::string &record) {
     if (!open_) begin_model("");
     if (!is_wanted()) return;
-    if (line.size() < 47)
+    if (line.size() < 54)
       fail_input(at_line(path_, line_number_) + "the " + std::string(trim(record)) +
                  " record ends before its coordinates (columns 31 to 54)");
     for (int axis = 0; axis < 3; ++axis) {

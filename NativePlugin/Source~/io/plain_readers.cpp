@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Text formats of one line per atom: XYZR, PQR (as PDB2PQR writes it: words, not columns) and GRO (GROMACS, nm).
+// Text formats of one line per atom: XYZR, PQR (words, which PDB2PQR puts in columns, so that wide ones join) and GRO
+// (GROMACS, nm).
 #include "io/readers.h"  // first: settles how gemmi formats numbers
 
 #include <string_view>
@@ -32,10 +33,55 @@ const char *axis_name(int axis) {
   return kNames[axis];
 }
 
+bool is_letter(char c) { return to_upper(c) >= 'A' && to_upper(c) <= 'Z'; }
+
 // A residue number with a possible insertion code behind: "52A".
-bool parse_residue_number(std::string_view word, int &number) {
-  if (!word.empty() && to_upper(word.back()) >= 'A') word.remove_suffix(1);
-  return parse_integer(word, number);
+bool parse_residue_number(std::string_view word, gemmi::SeqId &id) {
+  char code = ' ';
+  if (!word.empty() && is_letter(word.back())) {
+    code = word.back();
+    word.remove_suffix(1);
+  }
+  int number = 0;
+  if (!parse_integer(word, number)) return false;
+  id = gemmi::SeqId(number, code);
+  return true;
+}
+
+// What an atom's line of a PQR file says.
+struct PqrLine {
+  bool is_hetero;
+  std::vector<std::string_view> words;  // serial name residue [chain] number x y z charge radius
+};
+
+// Splits a line into words, and words that columns have joined: the record and a long serial number, names of four
+// letters each, a chain and a number of four digits, coordinates by the sign. False if it is no atom's.
+bool split_pqr_line(std::string_view line, PqrLine &out) {
+  line = trim(line);
+  size_t begin = 0;
+  for (const char *record : {"ATOM", "HETATM"})
+    if (const std::string_view name = record; line.substr(0, name.size()) == name) begin = name.size();
+  if (begin == 0 || (begin < line.size() && !is_blank(line[begin]) && (line[begin] < '0' || line[begin] > '9')))
+    return false;
+  out.is_hetero = line[0] == 'H';
+  split_words(line.substr(begin), out.words);
+  std::vector<std::string_view> &words = out.words;
+  const auto split_at = [&](size_t k, size_t place) {
+    words.insert(words.begin() + static_cast<std::ptrdiff_t>(k) + 1, words[k].substr(place));
+    words[k] = words[k].substr(0, place);
+  };
+  for (size_t k = 3; k < words.size(); ++k)
+    for (size_t sign = 1; sign < words[k].size(); ++sign)
+      if (words[k][sign] == '-' && words[k][sign - 1] >= '0' && words[k][sign - 1] <= '9') {
+        split_at(k, sign);
+        break;
+      }
+  if (words.size() > 1 && words.size() < 10 && words[1].size() == 8) split_at(1, 4);
+  gemmi::SeqId number;
+  if (words.size() == 9 && words[3].size() > 1 && is_letter(words[3][0]) &&
+      parse_residue_number(words[3].substr(1), number))
+    split_at(3, 1);
+  return true;
 }
 
 }  // namespace
@@ -44,12 +90,12 @@ std::string at_line(const std::string &path, size_t line) {
   return "'" + path + "', line " + std::to_string(line) + ": ";
 }
 
-void ModelBuilder::add(const std::string &chain, const std::string &residue, int residue_number, bool hetero,
+void ModelBuilder::add(const std::string &chain, const std::string &residue, gemmi::SeqId number, bool hetero,
                        gemmi::Atom atom) {
   if (model_.chains.empty() || model_.chains.back().name != chain) model_.chains.emplace_back(chain);
   std::vector<gemmi::Residue> &residues = model_.chains.back().residues;
   gemmi::ResidueId id;
-  id.seqid.num = residue_number;
+  id.seqid = number;
   id.name = residue;
   if (residues.empty() || !residues.back().matches(id)) {
     residues.emplace_back(id);
@@ -75,45 +121,54 @@ RawFile read_xyzr_text(const std::string &text, const std::string &path) {
     atom.pos.z = number_at_line(words[2], axis_name(2), path, number);
     atom.serial = static_cast<int>(++raw.atom_count);
     raw.radii.push_back(radius_at_line(words[3], path, number));
-    builder.add("", "", 0, false, std::move(atom));
+    builder.add("", "", gemmi::SeqId(0, ' '), false, std::move(atom));
   }
   file.model_count = raw.atom_count != 0;
   if (raw.atom_count != 0) file.models.push_back(std::move(raw));
   return file;
 }
 
-RawFile read_pqr_text(const std::string &text, const std::string &path) {
+// Models begin with MODEL and end with ENDMDL; atoms outside begin one. Atoms may follow END.
+RawFile read_pqr_text(const std::string &text, const std::string &path, int model) {
   RawFile file;
-  RawModel raw;
-  ModelBuilder builder(raw.model);
+  bool is_open = false, is_wanted = false;
+  const auto begin_model = [&] {
+    is_open = true;
+    ++file.model_count;
+    is_wanted = model == 0 || model == file.model_count;
+    if (!is_wanted) return;
+    file.models.emplace_back();
+    file.models.back().number = file.model_count;
+    file.models.back().model.name = std::to_string(file.model_count);
+  };
   std::string_view rest = text, line;
-  std::vector<std::string_view> words;
+  PqrLine atom_line;
   for (size_t number = 1; next_line(rest, line); ++number) {
-    split_words(line, words);
-    if (words.empty()) continue;
-    const bool hetero = words[0] == "HETATM";
-    if (!hetero && words[0] != "ATOM") continue;
-    // ATOM serial name residue [chain] number x y z charge radius
-    if (words.size() < 10)
+    if (line.substr(0, 6) == "ENDMDL") is_open = false;
+    if (trim(line.substr(0, 6)) == "MODEL") begin_model();
+    if (!split_pqr_line(line, atom_line)) continue;
+    if (!is_open) begin_model();
+    if (!is_wanted) continue;
+    const std::vector<std::string_view> &words = atom_line.words;
+    if (words.size() < 9)
       fail_input(at_line(path, number) + "expected ATOM serial name residue [chain] number x y z charge radius");
-    const bool has_chain = words.size() > 10;
-    const std::string residue(words[3]), chain(has_chain ? std::string(words[4]) : std::string());
-    const std::string_view *field = words.data() + (has_chain ? 5 : 4);
-    int residue_number = 0;
+    const bool has_chain = words.size() > 9;
+    const std::string residue(words[2]), chain(has_chain ? std::string(words[3]) : std::string());
+    const std::string_view *field = words.data() + (has_chain ? 4 : 3);
+    gemmi::SeqId residue_number;
     if (!parse_residue_number(field[0], residue_number))
       fail_input(at_line(path, number) + "the residue number '" + std::string(field[0]) + "' is no number");
     gemmi::Atom atom;
-    atom.name = std::string(words[2]);
+    atom.name = std::string(words[1]);
     atom.pos.x = number_at_line(field[1], axis_name(0), path, number);
     atom.pos.y = number_at_line(field[2], axis_name(1), path, number);
     atom.pos.z = number_at_line(field[3], axis_name(2), path, number);
     atom.element = infer_element(residue, atom.name);  // PQR has no elements: nothing to warn of
+    RawModel &raw = file.models.back();
     atom.serial = static_cast<int>(++raw.atom_count);
     raw.radii.push_back(radius_at_line(field[5], path, number));
-    builder.add(chain, residue, residue_number, hetero, std::move(atom));
+    ModelBuilder(raw.model).add(chain, residue, residue_number, atom_line.is_hetero, std::move(atom));
   }
-  file.model_count = raw.atom_count != 0;
-  if (raw.atom_count != 0) file.models.push_back(std::move(raw));
   return file;
 }
 
@@ -124,7 +179,7 @@ RawFile read_gro_text(const std::string &text, const std::string &path, int mode
   for (;;) {  // frames: title, number of atoms, atoms, box
     ++number;
     if (!next_line(rest, line)) break;
-    if (trim(line).empty() && trim(rest).find_first_not_of('\n') == std::string_view::npos) break;
+    if (trim(line).empty() && rest.find_first_not_of(" \t\r\n\v\f") == std::string_view::npos) break;
     ++number;
     int count = 0;
     if (!next_line(rest, line) || !parse_integer(line, count) || count < 0)
@@ -162,7 +217,7 @@ RawFile read_gro_text(const std::string &text, const std::string &path, int mode
       // Four letters would be taken for the columns of PDB.
       atom.element = infer_element(residue, atom.name.size() == 4 ? atom.name + " " : atom.name);
       atom.serial = static_cast<int>(++raw.atom_count);
-      builder.add("", residue, residue_number, false, std::move(atom));
+      builder.add("", residue, gemmi::SeqId(residue_number, ' '), false, std::move(atom));
     }
     ++number;
     if (!next_line(rest, line)) fail_input("'" + path + "' is cut off: the line of the box is missing");

@@ -2,6 +2,7 @@
 // Van der Waals radii by element, and by residue and atom.
 #include "io/radii.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <gemmi/elem.hpp>
 #include <string_view>
@@ -56,7 +57,9 @@ Radii read_radii(const std::string &path) {
       continue;
     }
     const std::string symbol(words[0]);
-    const gemmi::Element element(parse_element(symbol));
+    // "C1" is an atom whose residue was forgotten.
+    const bool has_digit = std::any_of(symbol.begin(), symbol.end(), [](char c) { return c >= '0' && c <= '9'; });
+    const gemmi::Element element(has_digit ? gemmi::El::X : parse_element(symbol));
     if (element == gemmi::El::X && symbol != "X") fail_input(at_line(path, number) + "'" + symbol + "' is no element");
     radii.by_element[element.atomic_number()] = static_cast<float>(radius);
     named[element.atomic_number()] = true;

@@ -30,7 +30,7 @@ struct RawFile {
 // model: place in the file, from 1; 0 = all. path is for messages only. All throw Error (kInput).
 RawFile read_pdb_text(const std::string &text, const std::string &path, int model);
 RawFile read_mmcif_text(const std::string &text, const std::string &path, int model);
-RawFile read_pqr_text(const std::string &text, const std::string &path);
+RawFile read_pqr_text(const std::string &text, const std::string &path, int model);
 RawFile read_xyzr_text(const std::string &text, const std::string &path);
 RawFile read_gro_text(const std::string &text, const std::string &path, int model);
 
@@ -41,7 +41,7 @@ std::string at_line(const std::string &path, size_t line);
 class ModelBuilder {
  public:
   explicit ModelBuilder(gemmi::Model &model) : model_(model) {}
-  void add(const std::string &chain, const std::string &residue, int residue_number, bool hetero, gemmi::Atom atom);
+  void add(const std::string &chain, const std::string &residue, gemmi::SeqId number, bool hetero, gemmi::Atom atom);
 
  private:
   gemmi::Model &model_;

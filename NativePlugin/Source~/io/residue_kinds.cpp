@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// gemmi's table knows the common residues of the PDB; names of molecular-dynamics packages are listed here; of other
+// gemmi's table knows the common residues of the PDB, and simulation_names.h those of molecular dynamics; of other
 // residues the atoms tell.
 #include "io/residue_kinds.h"
 
@@ -7,37 +7,13 @@
 
 #include <algorithm>
 #include <gemmi/resinfo.hpp>
-#include <initializer_list>
 
+#include "io/simulation_names.h"
 #include "io/structure.h"
+#include "io/text.h"
 
 namespace quickses::io {
 namespace {
-
-bool is_one_of(const std::string &word, std::initializer_list<const char *> list) {
-  return std::any_of(list.begin(), list.end(), [&](const char *item) { return word == item; });
-}
-
-// AMBER, CHARMM and GROMACS: protonation states, and the ends of chains.
-bool is_amino_acid_of_dynamics(const std::string &name) {
-  if (is_one_of(name, {"HID",  "HIE",  "HIP",  "HSD",  "HSE",  "HSP",  "CYX",  "CYM",  "CYN",  "ASH",  "GLH",
-                       "LYN",  "LSN",  "ARN",  "HISA", "HISB", "HISD", "HISE", "HISH", "HIS1", "HIS2", "CYS1",
-                       "CYS2", "CYSH", "ASPH", "ASPP", "GLUH", "GLUP", "LYSH", "ARGN", "ILE1"}))
-    return true;
-  const bool has_end = name.size() == 4 && (name[0] == 'N' || name[0] == 'C');
-  return has_end && (gemmi::find_tabulated_residue(name.substr(1)).is_amino_acid() ||
-                     is_one_of(name.substr(1), {"HID", "HIE", "HIP", "CYX", "ASH", "GLH", "LYN"}));
-}
-
-bool is_cap(const std::string &name) { return is_one_of(name, {"ACE", "NME", "NMA", "NH2", "FOR"}); }
-
-// ADE and the like of CHARMM; DA, RA, A, with 5, 3 or N of AMBER behind for the ends.
-bool is_nucleotide_of_dynamics(std::string name) {
-  if (is_one_of(name, {"ADE", "GUA", "CYT", "THY", "URA"})) return true;
-  if (name.size() > 1 && is_one_of(name.substr(name.size() - 1), {"5", "3", "N"})) name.pop_back();
-  if (name.size() == 2 && (name[0] == 'D' || name[0] == 'R')) name.erase(0, 1);
-  return is_one_of(name, {"A", "C", "G", "T", "U"});
-}
 
 bool is_halogen(gemmi::El element) {
   return element == gemmi::El::F || element == gemmi::El::Cl || element == gemmi::El::Br || element == gemmi::El::I;
@@ -70,8 +46,9 @@ ResidueKind kind_of(const Residue &residue) {
   // for granted too. A modified one is a part of a chain, unless the file says otherwise.
   const bool may_be_linked = in_chain || (!is_apart && !(atom.hetero && known.found() && known.is_standard()));
   if (may_be_linked) {
-    if (known.is_amino_acid() || is_cap(name) || is_amino_acid_of_dynamics(name)) return ResidueKind::kProtein;
-    if (known.is_nucleic_acid() || is_nucleotide_of_dynamics(name)) return ResidueKind::kNucleic;
+    const SimulatedResidue simulated = find_simulated_residue(name);
+    if (known.is_amino_acid() || simulated.is_cap || simulated.amino_acid != '\0') return ResidueKind::kProtein;
+    if (known.is_nucleic_acid() || simulated.base != '\0') return ResidueKind::kNucleic;
   }
   if (!known.found() && (in_chain || (!is_apart && !atom.hetero))) {
     if (residue.has("CA") && ((residue.has("N") && residue.has("C")) || (in_chain && residue.is_one_atom())))

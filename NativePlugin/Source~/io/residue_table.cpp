@@ -4,6 +4,7 @@
 
 #include <gemmi/resinfo.hpp>
 
+#include "io/simulation_names.h"
 #include "io/text.h"
 
 namespace quickses::io {
@@ -72,40 +73,18 @@ ResidueTraits nucleotide(char letter) {
   }
 }
 
-// Names that Amber, CHARMM and GROMACS give to protonation states and to cysteines in bridges; '\0' for others.
-char letter_in_simulations(const std::string &name) {
-  static const struct {
-    const char *name;
-    char letter;
-  } kNames[] = {{"CYX", 'C'},  {"CYM", 'C'},  {"CYS2", 'C'}, {"ASH", 'D'},  {"ASPH", 'D'}, {"GLH", 'E'}, {"GLUH", 'E'},
-                {"ARGN", 'R'}, {"HID", 'H'},  {"HIE", 'H'},  {"HIP", 'H'},  {"HSD", 'H'},  {"HSE", 'H'}, {"HSP", 'H'},
-                {"HISA", 'H'}, {"HISB", 'H'}, {"HISH", 'H'}, {"HISD", 'H'}, {"HISE", 'H'}, {"LYN", 'K'}, {"LYSH", 'K'}};
-  for (const auto &entry : kNames)
-    if (name == entry.name) return entry.letter;
-  return '\0';
-}
-
-// The base of names such as A, DA, RA and of the ends of a strand in Amber, DA5 and A3, and of CHARMM's; else '\0'.
-char base_in_simulations(std::string name) {
-  for (const char *base : {"ADE", "GUA", "CYT", "THY", "URA"})
-    if (name == base) return base[0];
-  if (name.size() > 1 && (name.back() == '5' || name.back() == '3')) name.pop_back();
-  if (name.size() == 2 && (name[0] == 'D' || name[0] == 'R')) name.erase(0, 1);
-  return name.size() == 1 ? name[0] : '\0';
-}
-
 }  // namespace
 
 ResidueTraits traits_of(const std::string &residue_name) {
   std::string name = residue_name;
   for (char &c : name) c = to_ascii(c);
   // Before gemmi, which knows the names of the PDB: there, HSE is homoserine.
-  const ResidueTraits traits = amino_acid(letter_in_simulations(name));
-  if (traits.is_amino_acid()) return traits;
+  const SimulatedResidue simulated = find_simulated_residue(name);
+  if (simulated.amino_acid != '\0') return amino_acid(simulated.amino_acid);
   const gemmi::ResidueInfo info = gemmi::find_tabulated_residue(name);
   const char letter = to_upper(info.one_letter_code);  // a small one marks a modified residue
   if (info.is_amino_acid()) return amino_acid(letter);
-  return nucleotide(info.is_nucleic_acid() ? letter : base_in_simulations(name));
+  return nucleotide(info.is_nucleic_acid() ? letter : simulated.base);
 }
 
 }  // namespace quickses::io

@@ -82,7 +82,8 @@ class Selection {
   SelectionTerm root_;
 };
 
-// What there is to be selected, for those who selected nothing: "chains A and B, with protein, water and ligand HEM".
+// What there is to be selected, for those who selected nothing: "chains A and B, with protein,
+// ligand (HEM) and water".
 std::string contents_of(const Structure &structure);
 
 }  // namespace quickses::io

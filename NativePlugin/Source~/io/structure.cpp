@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 #include <limits>
 
 #include "io/alternate_locations.h"
@@ -46,7 +45,7 @@ bool format_of_content(std::string_view text, StructureFormat &format) {
 
 // What a server sends instead of a file that it does not have.
 void refuse_web_page(const std::string &path, const std::string &text) {
-  const size_t begin = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");  // the last three: a byte order mark
+  const size_t begin = text.find_first_not_of(" \t\r\n");
   if (begin == std::string::npos || text[begin] != '<') return;
   std::string head = text.substr(begin, 1024);
   for (char &c : head) c = to_lower(c);
@@ -79,7 +78,7 @@ RawFile read_raw(StructureFormat format, const std::string &text, const std::str
     case StructureFormat::kMmcif:
       return read_mmcif_text(text, path, model);
     case StructureFormat::kPqr:
-      return read_pqr_text(text, path);
+      return read_pqr_text(text, path, model);
     case StructureFormat::kXyzr:
       return read_xyzr_text(text, path);
     case StructureFormat::kGro:
@@ -239,8 +238,9 @@ bool is_water_name(const std::string &residue_name) {
 namespace {
 
 // text: unpacked. path: as given, or any name for messages.
-StructureFile parse_text(const std::string &text, const std::string &path, std::optional<StructureFormat> format,
+StructureFile parse_text(std::string text, const std::string &path, std::optional<StructureFormat> format,
                          const ReadOptions &options) {
+  drop_byte_order_mark(text);
   refuse_web_page(path, text);
   const Filter filter{options, Selection(options.selection)};
   StructureFile file;
@@ -261,9 +261,13 @@ StructureFile parse_text(const std::string &text, const std::string &path, std::
       fail_usage("'" + path + "' has no names, so nothing can be selected from it or left out");
     file.models.push_back(flatten(raw, filter));
     raw.model = gemmi::Model(raw.model.name);
+    const size_t zero_before = radius_zero_count;
     leave_out(file.models.back(), filter, path, which, radius_zero_count);
     if (!file.models.back().atoms.empty()) continue;
-    const std::string why = filter.is_any() ? "the filters" : "those of radius 0 were left out";
+    const bool had_radii = radius_zero_count > zero_before;
+    const std::string why = std::string(filter.is_any() ? "the filters" : "") +
+                            (filter.is_any() && had_radii ? ", and " : "") +
+                            (had_radii ? "those of radius 0 were left out" : "");
     fail_input("no atoms of " + which + "'" + path + "' are left after " + why);
   }
   if (raw_file.inferred_elements != 0)

@@ -2,8 +2,10 @@
 // Lines, words and numbers of text files, independent of the locale.
 #pragma once
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +18,10 @@ inline bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c ==
 inline char to_upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
 inline char to_lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
+inline bool is_one_of(std::string_view word, std::initializer_list<std::string_view> list) {
+  return std::find(list.begin(), list.end(), word) != list.end();
+}
+
 // Names in structures are ASCII; gemmi shifts their characters as signed numbers.
 inline char to_ascii(char c) { return static_cast<unsigned char>(c) < 0x80 ? c : '?'; }
 
@@ -23,6 +29,12 @@ inline std::string_view trim(std::string_view text) {
   while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
   while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
   return text;
+}
+
+// Editors of Windows put it before a text.
+inline bool has_byte_order_mark(std::string_view text) { return text.substr(0, 3) == "\xef\xbb\xbf"; }
+inline void drop_byte_order_mark(std::string &text) {
+  if (has_byte_order_mark(text)) text.erase(0, 3);
 }
 
 // Takes the first line off the text, without its end. False at the end of the text.

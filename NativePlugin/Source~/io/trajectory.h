@@ -33,7 +33,8 @@ class Trajectory {
   // are times changed. Throws as open; also Error (kInput) if they have different numbers of atoms.
   static Trajectory open_all(const std::vector<std::string> &paths);
 
-  // As open, from bytes, gzipped or not. Without a format, the content tells. name: for messages.
+  // As open, from bytes, gzipped or not. Without a format, the name's extension tells, or the content.
+  // name: also for messages.
   static Trajectory from_memory(std::string bytes, std::optional<TrajectoryFormat> format,
                                 const std::string &name = "trajectory");
 

@@ -183,7 +183,7 @@ class Unpacker {
     int64_t before[3] = {full[0], full[1], full[2]};
     for (int k = 0; k < run_length_; ++k) {
       uint64_t n[3];
-      take_triple(reader_, small_index_, size, size, n);
+      take_triple(reader_, static_cast<int>(small_index_), size, size, n);
       for (int i = 0; i < 3; ++i) {
         if (n[i] >= size) return kOutside;
         before[i] += static_cast<int64_t>(n[i]) - size / 2;
@@ -205,7 +205,7 @@ class Unpacker {
   uint64_t size_[3] = {};
   bool is_packed_ = true;
   int packed_bits_ = 0;
-  int small_index_;
+  int64_t small_index_;  // as the file says: only where there are differences must it be one
   int run_length_ = 0;
 };
 

@@ -101,7 +101,7 @@ class Painter {
     for (size_t v = 0; v < places_.size(); ++v) {
       const vec3 p = seen_.positions[v];
       const float k = scale * camera.distance / std::max(camera.distance - p.z, 0.1f * camera.distance);
-      const auto units = [](float pixels) { return static_cast<int64_t>(std::lround(pixels * kSubpixels)); };
+      const auto units = [](float pixels) { return static_cast<int64_t>(std::llround(pixels * kSubpixels)); };
       places_[v] = {units(0.5f * size.x + k * p.x), units(0.5f * size.y - k * p.y), p.z};
     }
   }

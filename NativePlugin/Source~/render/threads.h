@@ -3,7 +3,6 @@
 
 #include <exception>
 #include <mutex>
-#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -23,9 +22,10 @@ void run_on_threads(unsigned count, const Work &work) {
     }
   };
   std::vector<std::thread> others;
+  others.reserve(count);
   try {
     for (unsigned k = 1; k < count; ++k) others.emplace_back(guarded);
-  } catch (const std::system_error &) {  // the system refuses more: these do
+  } catch (const std::exception &) {  // there are no more to be had: these do
   }
   guarded();
   for (std::thread &thread : others) thread.join();

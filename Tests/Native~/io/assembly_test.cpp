@@ -103,6 +103,21 @@ TEST(Assembly, AtomsOnAnAxisAreThereOnce) {
   EXPECT_EQ(structure.file_atom_count, 3u);
 }
 
+// Pairs of them would not fit into memory.
+TEST(Assembly, ManyCopiesAtOnePlaceAreOne) {
+  std::string remark = "REMARK 350 BIOMOLECULE: 1\nREMARK 350 APPLY THE FOLLOWING TO CHAINS: A\n";
+  for (int k = 1; k <= 9999; ++k)
+    for (int row = 1; row <= 3; ++row) {
+      char line[96];
+      std::snprintf(line, sizeof line, "REMARK 350   BIOMT%d%4d%10.6f%10.6f%10.6f%15.5f\n", row, k, row == 1 ? 1. : 0.,
+                    row == 2 ? 1. : 0., row == 3 ? 1. : 0., 0.);
+      remark += line;
+    }
+  const Structure structure = parse(remark + pdb_atom(" CA ", ' ', "ALA", 'A', 1, 1, 2), assembly_named("1"));
+  EXPECT_EQ(structure.positions, (std::vector<float>{1, 2, 0}));
+  EXPECT_EQ(chains_of(structure), Names{"A"});
+}
+
 // ---- mmCIF
 
 std::string cif_file(const std::string &expression) {
@@ -164,8 +179,13 @@ TEST(Assembly, Errors) {
   EXPECT_HAS(input("(1-999999999)"), "more than");
   EXPECT_HAS(input("(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)"),
              "more than");
+  std::string many;
+  for (int k = 0; k < 100001; ++k) many += "1,";
+  EXPECT_HAS(input("(" + many + "1-999999999)"), "more than");
   input("(1");
   input("()");
+  EXPECT_HAS(input(" "), "names no operation");
+  EXPECT_HAS(input("?"), "names no operation");
   std::string other = kRemark;
   other += pdb_atom(" CA ", ' ', "ALA", 'C', 1, 1, 2);
   EXPECT_HAS(error_of(ErrorKind::kInput, [&] { parse(other, assembly_named("1")); }), "no atoms");

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "io/io_fixture.h"
+#include "io/residue_kinds.h"
 #include "io/residue_table.h"
+#include "io/structure.h"
 
 namespace quickses::io {
 namespace {
@@ -63,30 +65,46 @@ TEST(ResidueTable, HydropathyIsKyteAndDoolittles) {
   for (const char *name : {"DA", "HOH", "HEM", "", "XYZ"}) EXPECT_FALSE(traits_of(name).is_amino_acid()) << name;
 }
 
+// As selections take it.
+ResidueKind kind_of_residue(const char *name) {
+  Structure structure;
+  structure.atoms.resize(2);
+  for (AtomInfo &atom : structure.atoms) atom.residue_name = name, atom.element = 6;
+  structure.atoms[1].name = "X";
+  find_residue_kinds(structure);
+  return structure.atoms[0].kind;
+}
+
 TEST(ResidueTable, OtherNamesOfTheSame) {
   const struct {
     const char *name;
     std::vector<const char *> others;
-  } kSame[] = {{"CYS", {"CYX", "CYM", "CYS2", "SEC", "CSO", "OCS"}},
-               {"ASP", {"ASH", "ASPH"}},
-               {"GLU", {"GLH", "GLUH", "PCA"}},
-               {"HIS", {"HID", "HIE", "HIP", "HSD", "HSE", "HSP", "HISA", "HISB", "HISH", "HISD", "HISE"}},
-               {"LYS", {"LYN", "LYSH", "PYL", "MLY", "M3L"}},
-               {"ARG", {"ARGN"}},
-               {"MET", {"MSE"}},
-               {"PRO", {"HYP"}},
-               {"SER", {"SEP"}},
-               {"THR", {"TPO"}},
-               {"TYR", {"PTR"}},
-               {"A", {"DA", "RA", "A5", "A3", "DA5", "DA3", "RA5", "ADE"}},
-               {"G", {"DG", "RG", "G5", "DG3", "GUA", "I", "DI", "7MG"}},
-               {"C", {"DC", "RC", "C3", "DC5", "CYT", "5CM"}},
-               {"U", {"DT", "T", "RU", "U5", "DT3", "URA", "THY", "PSU", "H2U"}}};
+  } kSame[] = {
+      {"CYS", {"CYX", "CYM", "CYS1", "CYS2", "CYSH", "NCYX", "SEC", "CSO", "OCS"}},
+      {"ASP", {"ASH", "ASPH", "ASPP", "CASP"}},
+      {"GLU", {"GLH", "GLUH", "GLUP", "NGLU", "PCA"}},
+      {"HIS",
+       {"HID", "HIE", "HIP", "HSD", "HSE", "HSP", "HISA", "HISB", "HISH", "HISD", "HISE", "HIS1", "HIS2", "CHID"}},
+      {"LYS", {"LYN", "LSN", "LYSH", "PYL", "MLY", "M3L"}},
+      {"ARG", {"ARGN", "ARN", "NARG"}},
+      {"ALA", {"NALA", "CALA"}},
+      {"ILE", {"ILE1"}},
+      {"MET", {"MSE"}},
+      {"PRO", {"HYP"}},
+      {"SER", {"SEP"}},
+      {"THR", {"TPO"}},
+      {"TYR", {"PTR"}},
+      {"A", {"DA", "RA", "A5", "A3", "DA5", "DA3", "RA5", "AN", "DAN", "ADE"}},
+      {"G", {"DG", "RG", "G5", "DG3", "GUA", "I", "DI", "7MG"}},
+      {"C", {"DC", "RC", "C3", "DC5", "CYT", "5CM"}},
+      {"U", {"DT", "T", "RU", "U5", "DT3", "URA", "THY", "PSU", "H2U"}}};
   for (const auto &same : kSame)
     for (const char *other : same.others) {
       EXPECT_NE(traits_of(other).residue_class, ResidueClass::kOther) << other;
       EXPECT_EQ(traits_of(other).residue_class, traits_of(same.name).residue_class) << other;
       EXPECT_EQ(traits_of(other).hydropathy, traits_of(same.name).hydropathy) << other;
+      const bool is_amino_acid = traits_of(other).is_amino_acid();
+      EXPECT_EQ(kind_of_residue(other), is_amino_acid ? ResidueKind::kProtein : ResidueKind::kNucleic) << other;
     }
   for (const char *name : {"HOH", "HEM", "ZN", "UNK", "", "5", "DD5", "X", "D", "R", "Ä", "\xff\xff\xff"})
     EXPECT_EQ(traits_of(name).residue_class, ResidueClass::kOther) << name;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Readers and radii, on small files that the tests write themselves.
 #include <cstdio>
+#include <gemmi/elem.hpp>
 #include <sstream>
 #include <vector>
 
@@ -50,6 +51,8 @@ using Names = std::vector<std::string>;
 using Indices = std::vector<uint32_t>;
 
 // ---- elements
+
+std::string element_symbol(gemmi::El element) { return gemmi::element_name(element); }
 
 struct ElementCase {
   const char *residue;
@@ -248,6 +251,8 @@ TEST_F(IoTest, BadPdbRecordsAreNamedByLine) {
   EXPECT_HAS(message, "line 3");
   bad.replace(38, 8, "     nan");
   EXPECT_HAS(input_error(write("c.pdb", bad)), "no number");
+  // "3.000" cut off after its first digit would be a number too.
+  EXPECT_HAS(input_error(write("d.pdb", good + good.substr(0, 51))), "columns 31 to 54");
 }
 
 // ---- mmCIF
@@ -322,6 +327,10 @@ TEST_F(IoTest, MessagesQuoteNothingThatSteersATerminal) {
   EXPECT_HAS(message, "'?[2J??x'");
   const std::string letters = input_error(write("b.xyzr", "1 2 \u00c5\u00c5 1\n"));
   EXPECT_HAS(letters, "'\u00c5\u00c5'");
+  EXPECT_HAS(input_error(write("d.xyzr",
+                               "1 2 \xc2\x9b"
+                               "2Jx 1\n")),
+             "'??2Jx'");
   std::string many;
   for (int i = 0; i < 100000; ++i) many += "\u00c5";
   EXPECT_LE(input_error(write("c.xyzr", "1 2 " + many + " 1\n")).size(), 8000u);
@@ -396,6 +405,62 @@ TEST_F(IoTest, PqrGivesNamesAndRadii) {
   EXPECT_HAS(input_error(write("b.pqr", "ATOM 1 N ALA 1 1.0 2.0\n")), "line 1");
 }
 
+// As PDB2PQR writes it unless asked for blanks between: what fills its columns joins what is before it.
+TEST_F(IoTest, PqrWordsThatColumnsJoin) {
+  const Structure structure = only_model(write("a.pqr",
+                                               "ATOM   9999 HD11NLEU A   1       1.000   2.000   3.000  0.1000 1.2000\n"
+                                               "HETATM10000 CA    CA A1000    -110.000-120.000-130.000  2.0000 1.4000\n"
+                                               "ATOM  10001  N   ALA B1000A     10.000-120.000   3.000 -0.3000 1.5500\n"
+                                               "ATOM  10002  CA  ALA    12       1.000   2.000   3.000 -0.3000 1.7000\n"
+                                               "HETATMS are no atoms\n"));
+  EXPECT_EQ(structure.positions, (std::vector<float>{1, 2, 3, -110, -120, -130, 10, -120, 3, 1, 2, 3}));
+  EXPECT_EQ(names_of(structure), (Names{"HD11", "CA", "N", "CA"}));
+  EXPECT_EQ(structure.radii, (std::vector<float>{1.2f, 1.4f, 1.55f, 1.7f}));
+  const AtomInfo &first = structure.atoms[0], &ion = structure.atoms[1], &inserted = structure.atoms[2],
+                 &last = structure.atoms[3];
+  EXPECT_EQ(first.residue_name + first.chain + std::to_string(first.residue_number), "NLEUA1");
+  EXPECT_EQ(ion.chain + std::to_string(ion.residue_number), "A1000");
+  EXPECT_TRUE(ion.hetero);
+  EXPECT_EQ(inserted.chain + std::to_string(inserted.residue_number) + inserted.insertion_code, "B1000A");
+  EXPECT_EQ(last.chain + std::to_string(last.residue_number), "12");
+}
+
+TEST_F(IoTest, PqrModelsAndInsertionCodes) {
+  const auto atom = [](const char *number, int x) {
+    return "ATOM 1 CA ALA A " + std::string(number) + " " + std::to_string(x) + " 0 0 0.1 1.5\n";
+  };
+  const std::string file = write("a.pqr", "MODEL        1\n" + atom("52", 1) + atom("52A", 2) +
+                                              "ENDMDL\nMODEL        2\n" + atom("52", 3) + "ENDMDL\nEND\n");
+  ReadOptions options;
+  options.model = 2;
+  EXPECT_EQ(only_model(file, options).positions, (std::vector<float>{3, 0, 0}));
+  options.model = 0;
+  EXPECT_EQ(read_structure(file, options).models.size(), 2u);
+  options.model = 1;
+  options.selection = "resid 52A";
+  EXPECT_EQ(only_model(file, options).positions, (std::vector<float>{2, 0, 0}));
+}
+
+// Editors of Windows begin a text with it.
+TEST_F(IoTest, AByteOrderMarkIsNoPartOfTheText) {
+  const std::string mark = "\xef\xbb\xbf", pdb = pdb_atom(" N  ", ' ', "GLY", 'A', 1, 1, "N");
+  EXPECT_EQ(only_model(write("a.pdb", mark + pdb + pdb)).atoms.size(), 2u);
+  EXPECT_EQ(only_model(write("a", mark + pdb)).atoms.size(), 1u);
+  EXPECT_EQ(only_model(write("a.pqr", mark + "ATOM 1 N ALA 1 1 2 3 0 1\n")).atoms.size(), 1u);
+  EXPECT_EQ(only_model(write("a.xyzr", mark + "1 2 3 1\n")).atoms.size(), 1u);
+  EXPECT_EQ(only_model(write("a.cif", mark + kCifHead + "ATOM 10 C CA . GLY A 1 1 1 2 3 1 10 27 X 1\n")).atoms.size(),
+            1u);
+  EXPECT_HAS(input_error(write("b.pdb", mark + "<html><body>gone</body></html>")), "web page");
+}
+
+TEST_F(IoTest, AtomsOfRadiusZeroAreSaidToBeWhatIsLeftOut) {
+  ReadOptions options;
+  const std::string file = write("a.pqr", "ATOM 1 N ALA 1 1 2 3 0 0\n");
+  EXPECT_HAS(input_error(file, options), "those of radius 0");
+  options.water = false;
+  EXPECT_HAS(input_error(file, options), "those of radius 0");
+}
+
 TEST_F(IoTest, GroIsReadInAngstrom) {
   const std::string text =
       "A title\n    2\n    1ALA     CA    1   0.125   1.000  -2.000\n    2SOL     OW    2   0.250   1.500   2.000\n"
@@ -409,6 +474,8 @@ TEST_F(IoTest, GroIsReadInAngstrom) {
   const Structure fine =
       only_model(write("c.gro", "t\n1\n    1ALA     CA    1   0.12500   1.00000  -2.00000\n 5 5 5\n"));
   EXPECT_EQ(fine.positions, (std::vector<float>{1.25f, 10, -20}));
+  for (const char *end : {"\r\n\r\n\r\n\r\n", "\n\n \n\n", " \n\t\n\n"})
+    EXPECT_EQ(only_model(write("d.gro", text + end)).positions, structure.positions);
 }
 
 // ---- radii

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Mesh writers: colours, and the formats besides plain OBJ, PLY and STL, read back by code of the tests' own.
 #include <cmath>
+#include <csignal>
 #include <cstring>
 #include <limits>
 #include <sstream>
 #include <vector>
+
+#if !defined(_WIN32)
+#include <sys/resource.h>
+#endif
 
 #include "io/io_fixture.h"
 #include "io/mesh_writer.h"
@@ -263,6 +268,29 @@ TEST_F(MeshFormatsTest, MsmsIsAPairOfFiles) {
   const auto again = words_of(slurp(path("a.face")));
   for (size_t t = 0; t < 4; ++t) EXPECT_EQ(again[3 + t][3], (std::vector<std::string>{"3", "3", "2", "2"})[t]);
 }
+
+#if !defined(_WIN32)
+// Neither file gets its name before both are written to the end.
+TEST_F(MeshFormatsTest, MsmsThatTheDiskHasNoRoomForChangesNothing) {
+  Tetrahedron mesh;
+  write("a.vert", "old");
+  write("a.face", "old");
+  rlimit before, small;
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  small = before;
+  small.rlim_cur = 250;  // the faces fit, the vertices do not
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  const std::string error =
+      error_of(ErrorKind::kOutput, [&] { write_mesh(path("a.vert"), mesh.full_view(), MeshFormat::kMsms); });
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_HAS(error, "a.vert");
+  EXPECT_EQ(slurp(path("a.vert")), "old");
+  EXPECT_EQ(slurp(path("a.face")), "old");
+  EXPECT_EQ(file_count(), 2u);
+}
+#endif
 
 TEST_F(MeshFormatsTest, MsmsWritesBothFilesOrNone) {
   Tetrahedron mesh;

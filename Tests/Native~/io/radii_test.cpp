@@ -82,6 +82,7 @@ TEST_F(RadiiTest, ErrorsNameFileAndLine) {
     const char *text;
     const char *part;
   } kBad[] = {{"C 1.7\nQq 1\n", "bad.txt', line 2: 'Qq' is no element"},
+              {"C1 2.5\n", "bad.txt', line 1: 'C1' is no element"},
               {"C\n", "bad.txt', line 1: expected an element and its radius, or a residue, an atom and its radius"},
               {"ALA CB 1 2\n", "bad.txt', line 1: expected"},
               {"C 0\n", "line 1: the radius '0'"},

@@ -119,6 +119,9 @@ TEST_F(TrajectoryTest, PdbErrors) {
   EXPECT_HAS(pdb_error(pdb_model(1, three) + pdb_model(2, four)), "frame 1 has 4 atoms, but frame 0 has 3");
   EXPECT_HAS(pdb_error(pdb_model(1, four) + pdb_model(2, three)), "frame 1 has 3 atoms, but frame 0 has 4");
   EXPECT_HAS(pdb_error("ATOM      1  CA\n" + pdb_atoms(three)), "'test.pdb', line 1: ");
+  const std::string atoms = pdb_atoms(three);
+  EXPECT_HAS(pdb_error(atoms.substr(0, 51) + atoms.substr(atoms.find('\n'))), "columns 31 to 54");
+  EXPECT_EQ(frame_of(open_pdb("\xef\xbb\xbf" + atoms), 0), three);
 
   std::string text = pdb_model(1, three) + pdb_model(2, three);
   text.replace(text.rfind("ATOM") + 30, 8, "  1.2z3 ");
