@@ -81,12 +81,14 @@ void check_format(const Options &options) {
   if (mesh.component_ids && format != io::MeshFormat::kPly && format != io::MeshFormat::kGlb)
     refuse("--component-ids", "only PLY and GLB files have them");
   if (mesh.text && format != io::MeshFormat::kPly) refuse("--ascii", "only PLY files are there as bytes and as text");
-  if (has_colors(mesh) && !io::has_colors(format))
+  if (has_colors(mesh) && !io::format_traits_of(format).has_colors)
     refuse("--color", "STL and MSMS files have no colours (.ply, .obj, .glb, .off, .png and .html have)");
-  if (options.compute.occlusion == Switch::kOn && !io::has_occlusion(format))
+  if (options.compute.occlusion == Switch::kOn && !io::format_traits_of(format).has_occlusion)
     refuse("--occlusion", "such files have no place for it (.ply, .glb, .png and .html have)");
-  if (mesh.center && io::is_shown(format)) refuse("--center", "a picture or page has the middle in the middle anyway");
-  if (mesh.scale != 1 && io::is_shown(format)) refuse("--scale", "a picture or page has no unit (there is --zoom)");
+  if (mesh.center && io::format_traits_of(format).is_shown)
+    refuse("--center", "a picture or page has the middle in the middle anyway");
+  if (mesh.scale != 1 && io::format_traits_of(format).is_shown)
+    refuse("--scale", "a picture or page has no unit (there is --zoom)");
   if (mesh.sharp && !differ_by_atom(mesh.colors) && mesh.colors != MeshColors::kDefault)
     throw Failure(
         kUsage,
@@ -172,7 +174,7 @@ void resolve_output(Options &options) {
 
 bool has_hard_edges(const Options &options) {
   return options.hard_edges != Switch::kOff && knows_creases(options.compute) && !options.output.empty() &&
-         io::has_normals(io::mesh_format_of(options.output));
+         io::format_traits_of(io::mesh_format_of(options.output)).has_hard_edges;
 }
 
 bool needs_patches(const Options &options) {

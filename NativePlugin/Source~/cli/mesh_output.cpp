@@ -202,7 +202,7 @@ void MeshOutput::prepare(const qses_mesh &mesh, io::MeshFormat format, const flo
     cut = io::cut_at_color_borders(view, {mesh.owners, centers, structure_.radii.data()});
     view = cut.view();
     // These have the colour of a place, so there must be one for each colour.
-    if (!io::has_repeated_vertices(format)) view.repeated_count = 0;
+    if (!io::format_traits_of(format).has_repeated_vertices) view.repeated_count = 0;
   }
   if (options_.center || options_.scale != 1) {
     positions = placed(view, mesh, options_);

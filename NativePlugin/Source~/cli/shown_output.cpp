@@ -8,7 +8,7 @@ namespace quickses::cli {
 
 bool makes_shown(const Options &options) {
   const std::optional<io::MeshFormat> format = io::find_mesh_format(options.output);
-  return format && io::is_shown(*format);
+  return format && io::format_traits_of(*format).is_shown;
 }
 
 bool makes_page(const Options &options) { return io::find_mesh_format(options.output) == io::MeshFormat::kHtml; }

@@ -43,4 +43,9 @@ class Error : public std::runtime_error {
 [[noreturn]] inline void fail_output(const std::string &message) { throw Error(ErrorKind::kOutput, message); }
 [[noreturn]] inline void fail_usage(const std::string &message) { throw Error(ErrorKind::kUsage, message); }
 
+// "'FILE', line 12: " for messages.
+inline std::string at_line(const std::string &path, size_t line) {
+  return "'" + path + "', line " + std::to_string(line) + ": ";
+}
+
 }  // namespace quickses::io

@@ -12,18 +12,22 @@
 namespace quickses::io {
 namespace {
 
-constexpr struct {
-  const char *extension;
-  MeshFormat format;
-} kExtensions[] = {{".obj", MeshFormat::kObj}, {".ply", MeshFormat::kPly},  {".stl", MeshFormat::kStl},
-                   {".glb", MeshFormat::kGlb}, {".off", MeshFormat::kOff},  {".vert", MeshFormat::kMsms},
-                   {".png", MeshFormat::kPng}, {".html", MeshFormat::kHtml}};
+constexpr FormatTraits kFormats[] = {
+    // extension, format, shown, hard edges, colours, occlusion, repeated vertices
+    {".obj", MeshFormat::kObj, false, true, true, false, false},
+    {".ply", MeshFormat::kPly, false, true, true, true, true},
+    {".stl", MeshFormat::kStl, false, false, false, false, true},
+    {".glb", MeshFormat::kGlb, false, true, true, true, true},
+    {".off", MeshFormat::kOff, false, false, true, false, false},
+    {".vert", MeshFormat::kMsms, false, false, false, false, true},
+    {".png", MeshFormat::kPng, true, true, true, true, true},
+    {".html", MeshFormat::kHtml, true, true, true, true, true}};
 
 }  // namespace
 
 std::optional<MeshFormat> find_mesh_format(const std::string &path) {
   const std::string extension = lower_extension(path_of(path));
-  for (const auto &entry : kExtensions)
+  for (const FormatTraits &entry : kFormats)
     if (extension == entry.extension) return entry.format;
   return std::nullopt;
 }
@@ -31,7 +35,7 @@ std::optional<MeshFormat> find_mesh_format(const std::string &path) {
 MeshFormat mesh_format_of(const std::string &path) {
   if (const std::optional<MeshFormat> format = find_mesh_format(path)) return *format;
   std::string known;
-  for (const auto &entry : kExtensions) known += std::string(" ") + entry.extension;
+  for (const FormatTraits &entry : kFormats) known += std::string(" ") + entry.extension;
   const std::string extension = lower_extension(path_of(path));
   const std::string what = extension.empty() ? "has no extension" : "has the unknown extension '" + extension + "'";
   fail_usage("the output file '" + path + "' " + what + "; known are" + known);
@@ -43,19 +47,11 @@ std::vector<std::string> mesh_files_of(const std::string &path) {
   return {path, utf8_of(name.replace_extension(".face"))};
 }
 
-bool is_shown(MeshFormat format) { return format == MeshFormat::kPng || format == MeshFormat::kHtml; }
-
-bool has_normals(MeshFormat format) {
-  return format == MeshFormat::kObj || format == MeshFormat::kPly || format == MeshFormat::kGlb || is_shown(format);
+const FormatTraits &format_traits_of(MeshFormat format) {
+  const FormatTraits *found = kFormats;
+  while (found->format != format) ++found;
+  return *found;
 }
-
-bool has_colors(MeshFormat format) { return format != MeshFormat::kStl && format != MeshFormat::kMsms; }
-
-bool has_occlusion(MeshFormat format) {
-  return is_shown(format) || format == MeshFormat::kPly || format == MeshFormat::kGlb;
-}
-
-bool has_repeated_vertices(MeshFormat format) { return format != MeshFormat::kObj && format != MeshFormat::kOff; }
 
 bool has_alpha(const MeshView &mesh) {
   for (size_t i = 0; mesh.colors && i < mesh.vertex_count; ++i)
@@ -64,7 +60,7 @@ bool has_alpha(const MeshView &mesh) {
 }
 
 void write_mesh(const std::string &path, const MeshView &mesh, MeshFormat format, bool text) {
-  if (is_shown(format)) fail_usage("'" + path + "' is no file of a mesh");
+  if (format_traits_of(format).is_shown) fail_usage("'" + path + "' is no file of a mesh");
   AtomicFile file(path);
   switch (format) {
     case MeshFormat::kObj:

@@ -41,14 +41,17 @@ MeshFormat mesh_format_of(const std::string &path);
 // The files that write_mesh makes under this name: itself first.
 std::vector<std::string> mesh_files_of(const std::string &path);
 
-// Whether it shows a mesh and holds none that programs could read.
-bool is_shown(MeshFormat format);
-// Whether vertices have normals of their own, and colours.
-bool has_normals(MeshFormat format);
-bool has_colors(MeshFormat format);
-bool has_occlusion(MeshFormat format);
-// Whether a vertex that is repeated is written like any other one, with all it has; else its place is written once.
-bool has_repeated_vertices(MeshFormat format);
+// What files of a format can hold.
+struct FormatTraits {
+  const char *extension;
+  MeshFormat format;
+  bool is_shown;        // it shows a mesh and holds none that programs could read
+  bool has_hard_edges;  // vertices have normals that light can break at
+  bool has_colors;
+  bool has_occlusion;
+  bool has_repeated_vertices;  // one that is repeated is written like any other, with all it has; else its place once
+};
+const FormatTraits &format_traits_of(MeshFormat format);
 
 // Writes a mesh. The file appears under its name when it is complete; after an error what was there before is
 // unchanged. Throws Error (kOutput).
@@ -65,7 +68,7 @@ bool has_repeated_vertices(MeshFormat format);
 //         colours; no normals
 //   MSMS  text; the vertices x.vert and the triangles x.face, as MSMS 2.6 writes them but for the numbers of analytical
 //         faces, which are 0, and six digits behind the point instead of three; needs owners and patches
-// text: of PLY only. format: not one that is_shown.
+// text: of PLY only. format: not one that is shown.
 void write_mesh(const std::string &path, const MeshView &mesh, MeshFormat format, bool text = false);
 
 }  // namespace quickses::io

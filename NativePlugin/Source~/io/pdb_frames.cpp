@@ -3,22 +3,14 @@
 // (pdb_reader.cpp): MODEL starts one, ENDMDL and END end one, atoms outside start one.
 #include "io/pdb_frames.h"
 
+#include <algorithm>
 #include <string_view>
 
+#include "io/pdb_lines.h"
 #include "io/text.h"
 
 namespace quickses::io {
 namespace {
-
-constexpr size_t kCoordinatesEnd = 54;  // columns 31 to 54 hold the coordinates
-
-// The first six columns in capitals.
-std::string_view record_name(std::string_view line, char *buffer) {
-  for (size_t i = 0; i < 6; ++i) buffer[i] = i < line.size() ? to_upper(line[i]) : ' ';
-  return {buffer, 6};
-}
-
-bool is_atom(std::string_view record) { return record == "ATOM  " || record == "HETATM"; }
 
 std::optional<Box> parse_cryst1(std::string_view line) {
   static constexpr size_t kColumns[6][2] = {{6, 9}, {15, 9}, {24, 9}, {33, 7}, {40, 7}, {47, 7}};
@@ -58,17 +50,11 @@ class PdbFrames : public TrajectoryReader {
     const Frame &place = frames_[frame];
     std::string_view rest = std::string_view(text_).substr(place.begin, place.end - place.begin);
     std::string_view line;
-    char buffer[6];
     for (size_t number = place.first_line; next_line(rest, line); ++number) {
-      if (!is_atom(record_name(line, buffer))) continue;
-      for (int axis = 0; axis < 3; ++axis) {
-        double value = 0;
-        const std::string_view field = line.substr(30 + 8 * axis, 8);
-        if (!parse_number(field, value))
-          fail_input(quoted_name() + ", line " + std::to_string(number) + ": the " + "xyz"[axis] + " coordinate '" +
-                     std::string(trim(field)) + "' is no number");
-        *xyz++ = static_cast<float>(value);
-      }
+      if (!is_atom(pdb_record_of(line))) continue;
+      double position[3];
+      read_pdb_position(line, name(), number, position);
+      xyz = std::copy_n(position, 3, xyz);
     }
   }
 
@@ -80,7 +66,6 @@ class PdbFrames : public TrajectoryReader {
     std::string_view rest = text_, line;
     std::optional<Box> box;
     bool is_open = false;
-    char buffer[6];
     for (size_t number = 1, at = 0; next_line(rest, line); ++number, at = text_.size() - rest.size()) {
       const auto begin_frame = [&] {
         frames_.emplace_back();
@@ -88,26 +73,24 @@ class PdbFrames : public TrajectoryReader {
         frames_.back().first_line = number;
         is_open = true;
       };
-      const std::string_view record = record_name(line, buffer);
+      const PdbRecord record = pdb_record_of(line);
       if (is_atom(record)) {
         if (!is_open) begin_frame();
         Frame &frame = frames_.back();
         const bool is_last_line = rest.empty() && text_.back() != '\n';
-        if (is_last_line && line.size() < kCoordinatesEnd) {
+        if (is_last_line && line.size() < kPdbPositionEnd) {
           ends_in_atom_ = true;
           return;
         }
-        if (line.size() < kCoordinatesEnd)
-          fail_input(quoted_name() + ", line " + std::to_string(number) +
-                     ": the record ends before its coordinates (columns 31 to 54)");
+        check_pdb_position(line, name(), number);
         if (frame.atom_count++ == 0) frame.box = box;
         frame.end = text_.size() - rest.size();
-      } else if (record == "MODEL ") {
+      } else if (record == PdbRecord::kModel) {
         begin_frame();
-      } else if (record == "ENDMDL" || record == "END   ") {
+      } else if (record == PdbRecord::kEnd) {
         if (is_open) frames_.back().closed = true;
         is_open = false;
-      } else if (record == "CRYST1") {
+      } else if (record == PdbRecord::kCell) {
         box = parse_cryst1(line);
       }
     }
@@ -139,9 +122,7 @@ bool is_pdb(const unsigned char *head, size_t size) {
   if (has_byte_order_mark(text)) text.remove_prefix(3);
   while (next_line(text, line)) {
     if (trim(line).empty()) continue;
-    for (const char *record : {"HEADER", "TITLE ", "REMARK", "CRYST1", "MODEL ", "ATOM  ", "HETATM", "COMPND"})
-      if (line.substr(0, 6) == record) return true;
-    return false;
+    return begins_pdb(line);
   }
   return false;
 }

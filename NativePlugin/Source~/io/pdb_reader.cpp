@@ -10,6 +10,7 @@
 
 #include "io/elements.h"
 #include "io/error.h"
+#include "io/pdb_lines.h"
 #include "io/text.h"
 
 namespace quickses::io {
@@ -41,18 +42,16 @@ class Splitter {
     std::string_view line;
     while (next_line(text, line)) {
       ++line_number_;
-      std::string record(line.substr(0, 6));
-      for (char &c : record) c = to_upper(c);
-      record.resize(6, ' ');
-      if (record == "ATOM  " || record == "HETATM") {
-        atom(line, record);
-      } else if (record == "MODEL ") {
+      const PdbRecord record = pdb_record_of(line);
+      if (is_atom(record)) {
+        atom(line, record == PdbRecord::kAtom ? "ATOM  " : "HETATM");
+      } else if (record == PdbRecord::kModel) {
         int number = 0;
         const bool has_number = line.size() > 6 && parse_integer(line.substr(6), number);
         begin_model(has_number ? std::to_string(number) : "");
-      } else if (record == "ENDMDL" || record == "END   ") {
+      } else if (record == PdbRecord::kEnd) {
         open_ = false;
-      } else if (record.compare(0, 4, "TER ") == 0) {
+      } else if (record == PdbRecord::kTer) {
         if (open_ && is_wanted()) models.back().text += "TER\n";
       }
     }
@@ -71,20 +70,11 @@ class Splitter {
     if (is_wanted()) models.push_back({model_count, name.empty() ? std::to_string(model_count) : name, "", 0});
   }
 
-  void atom(std::string_view line, const std::string &record) {
+  void atom(std::string_view line, const char *record) {
     if (!open_) begin_model("");
     if (!is_wanted()) return;
-    if (line.size() < 54)
-      fail_input(at_line(path_, line_number_) + "the " + std::string(trim(record)) +
-                 " record ends before its coordinates (columns 31 to 54)");
-    for (int axis = 0; axis < 3; ++axis) {
-      double value = 0;
-      const std::string_view field = line.substr(30 + 8 * axis, 8);
-      if (!parse_number(field, value))
-        fail_input(at_line(path_, line_number_) + "the " + "xyz"[axis] + " coordinate '" + std::string(trim(field)) +
-                   "' is no number (columns " + std::to_string(31 + 8 * axis) + " to " + std::to_string(38 + 8 * axis) +
-                   ")");
-    }
+    double position[3];
+    read_pdb_position(line, path_, line_number_, position);
     ModelText &model = models.back();
     if (++model.atom_count > kMaxSerial)
       fail_input("'" + path_ + "' has more than " + std::to_string(kMaxSerial) + " atoms in one model");
@@ -94,7 +84,7 @@ class Splitter {
     std::copy_n(line.data(), std::min<size_t>(line.size(), 78), columns);
     for (char *c = columns; c != columns + 78; ++c) *c = *c == '\0' || *c == '\t' ? ' ' : to_ascii(*c);
     columns[78] = '\n';
-    std::copy_n(record.data(), 6, columns);
+    std::copy_n(record, 6, columns);
     write_serial(model.atom_count, columns + 6);
     write_element(columns);
     model.text.append(columns, sizeof columns);

@@ -86,10 +86,6 @@ bool split_pqr_line(std::string_view line, PqrLine &out) {
 
 }  // namespace
 
-std::string at_line(const std::string &path, size_t line) {
-  return "'" + path + "', line " + std::to_string(line) + ": ";
-}
-
 void ModelBuilder::add(const std::string &chain, const std::string &residue, gemmi::SeqId number, bool hetero,
                        gemmi::Atom atom) {
   if (model_.chains.empty() || model_.chains.back().name != chain) model_.chains.emplace_back(chain);

@@ -34,9 +34,6 @@ RawFile read_pqr_text(const std::string &text, const std::string &path, int mode
 RawFile read_xyzr_text(const std::string &text, const std::string &path);
 RawFile read_gro_text(const std::string &text, const std::string &path, int model);
 
-// "'FILE', line 12: " for messages.
-std::string at_line(const std::string &path, size_t line);
-
 // Adds atoms to a gemmi model in the order they come.
 class ModelBuilder {
  public:

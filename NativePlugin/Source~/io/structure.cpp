@@ -13,6 +13,7 @@
 #include "io/error.h"
 #include "io/file_bytes.h"
 #include "io/file_path.h"
+#include "io/pdb_lines.h"
 #include "io/text.h"
 
 namespace quickses::io {
@@ -33,12 +34,8 @@ bool format_of_content(std::string_view text, StructureFormat &format) {
       format = StructureFormat::kMmcif;
       return true;
     }
-    for (const char *record : {"HEADER", "TITLE ", "REMARK", "CRYST1", "MODEL ", "ATOM  ", "HETATM", "COMPND"})
-      if (line.substr(0, 6) == record) {
-        format = StructureFormat::kPdb;
-        return true;
-      }
-    return false;
+    format = StructureFormat::kPdb;
+    return begins_pdb(line);
   }
   return false;
 }
