@@ -11,6 +11,7 @@
 #include "cli/measuring.h"
 #include "cli/report.h"
 #include "cli/shown_output.h"
+#include "io/error.h"
 
 namespace quickses::cli {
 
@@ -50,7 +51,11 @@ void check_atom_counts(const Options &options, const io::Structure &structure, c
 io::Unwrapper make_unwrapper(const io::Structure &structure, const io::Trajectory &trajectory) {
   std::vector<float> xyz(3 * trajectory.atom_count());
   trajectory.read_frame(0, xyz.data());
-  return io::Unwrapper(structure.file_elements.data(), xyz.data(), trajectory.atom_count(), trajectory.box(0));
+  try {
+    return io::Unwrapper(structure.file_elements.data(), xyz.data(), trajectory.atom_count(), trajectory.box(0));
+  } catch (const io::Error &error) {
+    throw io::Error(error.kind(), "--unwrap: '" + trajectory.file_of(0) + "': " + error.what());
+  }
 }
 
 // For tables the numbers do. With CUDA nothing then leaves the device but these; on the CPU the mesh lies where it can

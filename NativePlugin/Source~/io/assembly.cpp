@@ -20,9 +20,8 @@ namespace {
 namespace cif = gemmi::cif;
 using Operators = std::vector<gemmi::Assembly::Operator>;
 
-constexpr uint64_t kMostAtoms = 43'770'000;  // as of a model in a PDB file
-constexpr size_t kMostOperators = 100'000;   // viruses have 60 per chain
-constexpr double kSamePlace = 0.2;           // Å
+constexpr size_t kMostOperators = 100'000;  // viruses have 60 per chain
+constexpr double kSamePlace = 0.2;          // Å
 
 [[noreturn]] void fail_unknown(const std::string &path, const std::string &name,
                                const std::vector<std::string> &names) {

@@ -114,8 +114,6 @@ class MemorySource : public ByteSource {
   std::string bytes_;
 };
 
-bool has_gzip_magic(const unsigned char *bytes) { return bytes[0] == 0x1f && bytes[1] == 0x8b; }
-
 }  // namespace
 
 void ByteSource::check_range(uint64_t offset, uint64_t count) const {
@@ -132,9 +130,9 @@ std::unique_ptr<ByteSource> ByteSource::open_file(const std::string &path) {
     if (!file) fail_input("'" + path + "' can't be opened: " + std::strerror(errno));
     if (!error && size >= 2) {
       auto source = std::make_unique<FileSource>(path, std::move(file), size);
-      unsigned char magic[2];
+      char magic[2];
       source->read(0, magic, 2);
-      if (!has_gzip_magic(magic)) return source;
+      if (!has_gzip_magic({magic, 2})) return source;
     }
   }
   return in_memory(read_file_bytes(path), path);  // also says what is wrong with what is no file
@@ -142,8 +140,7 @@ std::unique_ptr<ByteSource> ByteSource::open_file(const std::string &path) {
 
 std::unique_ptr<ByteSource> ByteSource::in_memory(std::string bytes, const std::string &name) {
   if (bytes.empty()) fail_input("'" + name + "' is empty");
-  if (bytes.size() >= 2 && has_gzip_magic(reinterpret_cast<const unsigned char *>(bytes.data())))
-    fail_input("'" + name + "' is gzip data: it has to be unpacked first");
+  if (has_gzip_magic(bytes)) fail_input("'" + name + "' is gzip data: it has to be unpacked first");
   return std::make_unique<MemorySource>(std::move(bytes), name);
 }
 

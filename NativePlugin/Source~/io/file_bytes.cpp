@@ -93,8 +93,6 @@ std::string read_raw_bytes(const std::string &path) {
   return read_to_end(file.get(), error ? 0 : static_cast<size_t>(size), path);
 }
 
-bool has_gzip_magic(std::string_view bytes) { return bytes.substr(0, 2) == "\x1f\x8b"; }
-
 // Inflates all members of a gzip file. Only the end status of zlib tells a whole member from one that was cut off.
 std::string gunzip(const std::string &packed, const std::string &path) {
   z_stream stream = {};

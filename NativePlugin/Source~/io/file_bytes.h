@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace quickses::io {
 
@@ -28,6 +29,9 @@ std::string read_standard_input();
 
 // What standard input is called in messages.
 extern const char kStandardInput[];
+
+// Whether they begin as gzip data do.
+inline bool has_gzip_magic(std::string_view bytes) { return bytes.substr(0, 2) == "\x1f\x8b"; }
 
 // What is compressed in gzip data; other bytes as they are. name: for messages. Throws as read_file_bytes.
 std::string unpack_gzip(std::string bytes, const std::string &name);

@@ -16,8 +16,6 @@
 namespace quickses::io {
 namespace {
 
-constexpr uint32_t kMaxSerial = 43'770'000;  // what five characters of hybrid-36 can say, in capitals
-
 // Serial number in five columns: decimal, then base 36 from A0000 on (hybrid-36).
 void write_serial(uint32_t serial, char *columns) {
   static const char kDigits[] = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZ";
@@ -76,8 +74,8 @@ class Splitter {
     double position[3];
     read_pdb_position(line, path_, line_number_, position);
     ModelText &model = models.back();
-    if (++model.atom_count > kMaxSerial)
-      fail_input("'" + path_ + "' has more than " + std::to_string(kMaxSerial) + " atoms in one model");
+    if (++model.atom_count > kMostAtoms)
+      fail_input("'" + path_ + "' has more than " + std::to_string(kMostAtoms) + " atoms in one model");
 
     char columns[79];
     std::fill(columns, columns + 78, ' ');

@@ -13,6 +13,9 @@
 
 namespace quickses::io {
 
+// Of one model: what five characters of hybrid-36 can number, in capitals.
+constexpr uint32_t kMostAtoms = 43'770'000;
+
 struct RawModel {
   int number = 1;            // place in the file, from 1
   gemmi::Model model{"1"};   // its name is the number the file gives it
