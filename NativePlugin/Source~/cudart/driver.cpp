@@ -47,6 +47,7 @@ Driver load() {
   QSES_DRIVER_FUNCTIONS(QSES_FIND)
 #undef QSES_FIND
 #define QSES_FIND(name, ...) d.name = reinterpret_cast<DriverFunction<__VA_ARGS__>>(find(library, #name));
+  QSES_DRIVER_NEWER_FUNCTIONS(QSES_FIND)
   QSES_DRIVER_GRAPHICS_FUNCTIONS(QSES_FIND)
 #undef QSES_FIND
   int version = 0;

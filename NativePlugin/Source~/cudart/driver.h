@@ -59,7 +59,11 @@ namespace cudart {
   F(cuEventSynchronize, CUresult, CUevent)                                                                      \
   F(cuEventElapsedTime, CUresult, float *, CUevent, CUevent)
 
-// Those for buffers of graphics APIs, which a driver need not have.
+// Those that a driver need not have: of CUDA 11.8 …
+#define QSES_DRIVER_NEWER_FUNCTIONS(F) \
+  F(cuLaunchKernelEx, CUresult, const CUlaunchConfig *, CUfunction, void **, void **)
+
+// … and for buffers of graphics APIs.
 #if defined(_WIN32)
 #define QSES_DRIVER_D3D11_FUNCTIONS(F)                                                       \
   F(cuD3D11GetDevices, CUresult, unsigned *, CUdevice *, unsigned, ID3D11Device *, unsigned) \
@@ -87,6 +91,7 @@ using DriverFunction = Result(CUDAAPI *)(Arguments...);
 struct Driver {
 #define QSES_DRIVER_MEMBER(name, ...) DriverFunction<__VA_ARGS__> name = nullptr;
   QSES_DRIVER_FUNCTIONS(QSES_DRIVER_MEMBER)
+  QSES_DRIVER_NEWER_FUNCTIONS(QSES_DRIVER_MEMBER)
   QSES_DRIVER_GRAPHICS_FUNCTIONS(QSES_DRIVER_MEMBER)
 #undef QSES_DRIVER_MEMBER
   // Whether it has all that is asked of it for buffers of a graphics API.

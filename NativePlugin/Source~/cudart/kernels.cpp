@@ -32,6 +32,7 @@ struct Kernel {
   Module *module;
   const char *name;
   std::array<std::atomic<CUfunction>, kMostDevices> function{};
+  std::array<int, kMostDevices> architecture{};  // of its source, 10 * major + minor; there before the function is
 };
 
 struct Registry {
@@ -64,8 +65,18 @@ CUresult find_function(const void *stub, CUfunction *function) {
   CUresult result = CUDA_SUCCESS;
   if (!module) result = driver().cuModuleLoadData(&module, kernel.module->image);
   if (result == CUDA_SUCCESS) result = driver().cuModuleGetFunction(function, module, kernel.name);
+  if (result == CUDA_SUCCESS)
+    result = driver().cuFuncGetAttribute(&kernel.architecture[static_cast<size_t>(device)],
+                                         CU_FUNC_ATTRIBUTE_PTX_VERSION, *function);
   if (result == CUDA_SUCCESS) slot.store(*function, std::memory_order_release);
   return result;
+}
+
+// Whether a kernel whose function was found may be sent before those queued ahead of it are done. Code for GPUs before
+// Hopper has no way to wait for them.
+bool may_overlap(const void *stub) {
+  return driver().cuLaunchKernelEx &&
+         registry().kernels.at(stub).architecture[static_cast<size_t>(current_device())] >= 90;
 }
 
 template <class Call>
@@ -134,6 +145,31 @@ cudaError_t CUDARTAPI cudaLaunchKernel(const void *stub, dim3 grid, dim3 block, 
   return with_function(stub, [&](const Driver &d, CUfunction f) {
     return d.cuLaunchKernel(f, grid.x, grid.y, grid.z, block.x, block.y, block.z, static_cast<unsigned>(shared_bytes),
                             stream, arguments, nullptr);
+  });
+}
+
+// Attributes: cudaLaunchAttributeProgrammaticStreamSerialization, which is passed over where the driver or the device
+// code don't know it.
+cudaError_t CUDARTAPI cudaLaunchKernelExC(const cudaLaunchConfig_t *config, const void *stub, void **arguments) {
+  for (unsigned k = 0; k < config->numAttrs; ++k)
+    if (config->attrs[k].id != cudaLaunchAttributeProgrammaticStreamSerialization) return cudaErrorNotSupported;
+  const dim3 &grid = config->gridDim, &block = config->blockDim;
+  return with_function(stub, [&](const Driver &d, CUfunction f) {
+    if (config->numAttrs == 0 || !may_overlap(stub))
+      return d.cuLaunchKernel(f, grid.x, grid.y, grid.z, block.x, block.y, block.z,
+                              static_cast<unsigned>(config->dynamicSmemBytes), config->stream, arguments, nullptr);
+    CUlaunchAttribute attribute{};
+    attribute.id = CU_LAUNCH_ATTRIBUTE_PROGRAMMATIC_STREAM_SERIALIZATION;
+    attribute.value.programmaticStreamSerializationAllowed =
+        config->attrs[0].val.programmaticStreamSerializationAllowed;
+    CUlaunchConfig same{};
+    same.gridDimX = grid.x, same.gridDimY = grid.y, same.gridDimZ = grid.z;
+    same.blockDimX = block.x, same.blockDimY = block.y, same.blockDimZ = block.z;
+    same.sharedMemBytes = static_cast<unsigned>(config->dynamicSmemBytes);
+    same.hStream = config->stream;
+    same.attrs = &attribute;
+    same.numAttrs = 1;
+    return d.cuLaunchKernelEx(&same, f, arguments, nullptr);
   });
 }
 

@@ -27,7 +27,7 @@ void for_each(cudaStream_t stream, size_t n, const F &f) {
   if (n == 0) return;
   const auto blocks = static_cast<unsigned>((n + gpu::kForEachThreads - 1) / gpu::kForEachThreads);
   cudaGetLastError();  // of something that may fail, as what measures time
-  gpu::for_each_kernel<<<blocks, gpu::kForEachThreads, 0, stream>>>(LaunchItems{0, n}, f);
+  gpu::for_each_kernel<<<blocks, gpu::kForEachThreads, 0, stream>>>(QueuedItems(0, n), f);
   check_cuda(cudaGetLastError(), "a kernel of the graphics event");
 }
 

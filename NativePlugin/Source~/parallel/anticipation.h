@@ -68,7 +68,8 @@ class Anticipation {
     note(page_, Entry(name, found));
   }
 
-  bool relies_on_something() const { return !relied_on_.empty(); }
+  // Of which it was not told yet that it is being counted.
+  bool relies_on_something() const { return relied_on_.size() > counting_; }
   // What is relied on by now is about to be counted.
   void note_counting() { counting_ = relied_on_.size(); }
   bool is_counting() const { return counting_ > 0; }

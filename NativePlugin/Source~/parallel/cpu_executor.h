@@ -180,7 +180,7 @@ class CpuExecutor {
   // the arena: runs are sorted one by one, then merged pairwise, an even number of times so that the result is where
   // the keys were.
   template <class Key, class Value>
-  void sort_by_key(Span<Key> keys, Span<Value> values, int /*key_bits*/) {
+  void sort_by_key(Span<Key> keys, Span<Value> values) {
     const size_t n = keys.size;
     if (n < 2) return;
     const SortRuns sorted(n, threads());
@@ -272,6 +272,10 @@ class CpuExecutor {
   template <class T>
   T fetch(const T *p) {
     return *p;
+  }
+  template <class T>
+  void fetch_all(T *values, const T *source, size_t n) {
+    if (values != source) std::copy(source, source + n, values);
   }
   // Several values with one wait.
   template <class T>

@@ -12,9 +12,10 @@
 #include <cuda_runtime.h>
 #include <thrust/iterator/counting_iterator.h>
 #include <thrust/iterator/transform_iterator.h>
-#include <cub/device/device_radix_sort.cuh>
+#include <cub/device/device_merge_sort.cuh>
 #include <cub/device/device_scan.cuh>
 #include <cub/device/device_select.cuh>
+#include <cub/warp/warp_scan.cuh>
 
 #include <algorithm>
 #include <atomic>
@@ -38,14 +39,16 @@ namespace gpu {
 constexpr int kForEachThreads = 128;
 
 template <class F>
-__global__ __launch_bounds__(kForEachThreads) void for_each_kernel(LaunchItems items, F f) {
+__global__ __launch_bounds__(kForEachThreads) void for_each_kernel(QueuedItems queued, F f) {
+  const LaunchItems items = queued.in_turn();
   const size_t i = items.first + static_cast<size_t>(blockIdx.x) * kForEachThreads + threadIdx.x;
   if (i < items.last) f(i);
 }
 
 // The scratch is in dynamic shared memory: one object per block, used by one item after the other.
 template <class Scratch, class F>
-__global__ __launch_bounds__(BlockTeam::kSize) void for_each_brick_kernel(LaunchItems items, F f) {
+__global__ __launch_bounds__(BlockTeam::kSize) void for_each_brick_kernel(QueuedItems queued, F f) {
+  const LaunchItems items = queued.in_turn();
   extern __shared__ __align__(16) unsigned char scratch_memory[];
   Scratch &scratch = *reinterpret_cast<Scratch *>(scratch_memory);
   for (size_t i = items.first + blockIdx.x; i < items.last; i += gridDim.x) {
@@ -57,8 +60,9 @@ __global__ __launch_bounds__(BlockTeam::kSize) void for_each_brick_kernel(Launch
 // Sum of each chunk of reduce(): a thread adds every 128th item, then the threads are added as a tree. Always the same
 // order, but not the one of a single thread.
 template <class T, class Load>
-__global__ __launch_bounds__(BlockTeam::kSize) void sum_chunks_kernel(LaunchItems chunks, size_t n, Load load,
+__global__ __launch_bounds__(BlockTeam::kSize) void sum_chunks_kernel(QueuedItems queued, size_t n, Load load,
                                                                       T *sums) {
+  const LaunchItems chunks = queued.in_turn();
   __shared__ __align__(16) unsigned char partial_memory[BlockTeam::kSize * sizeof(T)];
   T *partial = reinterpret_cast<T *>(partial_memory);
   const size_t chunk = chunks.first + blockIdx.x, begin = chunk * reduce_chunk(n);
@@ -73,12 +77,100 @@ __global__ __launch_bounds__(BlockTeam::kSize) void sum_chunks_kernel(LaunchItem
   if (threadIdx.x == 0) sums[chunk] = partial[0];
 }
 
+// Few items are scanned, or chosen, by one block: each thread goes over a run of them, twice. CUB's passes over the
+// whole device take two launches, of which each waits for what was queued before it.
+constexpr int kFewThreads = 1024;
+constexpr size_t kFewItems = 16 * kFewThreads;
+struct FewItems {
+  size_t first, last;
+  __device__ __forceinline__ explicit FewItems(size_t n) {
+    const size_t each = (n + kFewThreads - 1) / kFewThreads, begin = each * threadIdx.x;
+    first = begin < n ? begin : n;
+    last = begin + each < n ? begin + each : n;
+  }
+};
+// Of the threads before this one; and of all.
+template <class T>
+__device__ __forceinline__ T sum_before(const T &own, T *total) {
+  using Scan = cub::WarpScan<T>;
+  constexpr int kWarps = kFewThreads / 32;
+  __shared__ typename Scan::TempStorage temporary[kWarps];
+  __shared__ __align__(16) unsigned char memory[kWarps * sizeof(T)];
+  T *const of_warps = reinterpret_cast<T *>(memory);
+  const int warp = static_cast<int>(threadIdx.x) / 32, lane = static_cast<int>(threadIdx.x) % 32;
+  T with_own, before;
+  Scan(temporary[warp]).Scan(own, with_own, before, T{}, cub::Sum());
+  if (lane == 31) of_warps[warp] = with_own;
+  __syncthreads();
+  if (warp == 0) {
+    T with_warp;
+    Scan(temporary[0]).InclusiveScan(of_warps[lane], with_warp, cub::Sum());
+    of_warps[lane] = with_warp;
+  }
+  __syncthreads();
+  *total = of_warps[kWarps - 1];
+  return warp > 0 ? of_warps[warp - 1] + before : before;
+}
+
+template <class Load, class T>
+__global__ __launch_bounds__(kFewThreads) void scan_few_kernel(QueuedItems queued, Load load, size_t n, T *out) {
+  queued.in_turn();
+  const FewItems items(n);
+  T own{}, total;
+  for (size_t i = items.first; i < items.last; ++i) own = own + static_cast<T>(load(i));
+  T sum = sum_before(own, &total);
+  for (size_t i = items.first; i < items.last; ++i) {
+    const T value = static_cast<T>(load(i));
+    out[i] = sum;
+    sum = sum + value;
+  }
+  if (threadIdx.x == 0) out[n] = total;
+}
+
+template <class Keep, class T>
+__global__ __launch_bounds__(kFewThreads) void compact_few_kernel(QueuedItems queued, Keep keep, size_t n, T *out,
+                                                                  uint64_t *count) {
+  queued.in_turn();
+  const FewItems items(n);
+  uint32_t own = 0, total;
+  for (size_t i = items.first; i < items.last; ++i) own += keep(i) ? 1 : 0;
+  uint32_t place = sum_before(own, &total);
+  for (size_t i = items.first; i < items.last; ++i)
+    if (keep(i)) out[place++] = static_cast<T>(i);
+  if (threadIdx.x == 0) *count = total;
+}
+
+// By words of four bytes, the last of which may be shorter.
+struct FillBytes {
+  unsigned char *bytes;
+  size_t count;
+  uint32_t word;
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    if (4 * i + 4 <= count)
+      *reinterpret_cast<uint32_t *>(bytes + 4 * i) = word;
+    else
+      for (size_t k = 4 * i; k < count; ++k) bytes[k] = static_cast<unsigned char>(word);
+  }
+};
+struct CopyWords {
+  uint32_t *to;
+  const uint32_t *from;
+  QSES_HOST_DEVICE void operator()(size_t i) const { to[i] = from[i]; }
+};
+
 // load(i), and 0 for the one element behind the last.
 template <class Load, class T>
 struct LoadOrZero {
   Load load;
   size_t n;
   QSES_HOST_DEVICE T operator()(size_t i) const { return i < n ? static_cast<T>(load(i)) : T{}; }
+};
+
+struct IsLess {
+  template <class T>
+  QSES_HOST_DEVICE bool operator()(const T &a, const T &b) const {
+    return a < b;
+  }
 };
 
 template <class Keep, class T>
@@ -164,27 +256,30 @@ class CudaExecutor {
   bool is_few_launches(size_t items, const LaunchShape &shape) const { return launches_of(items, shape) <= 4; }
   static LaunchShape for_each_shape(uint64_t steps) { return {gpu::kForEachThreads, gpu::kForEachThreads, steps}; }
 
+  static LaunchShape few_shape() {
+    return {gpu::kFewThreads, 1, 2 * gpu::kFewItems / gpu::kFewThreads * kPlainSumSteps};
+  }
   LaunchShape team_shape(uint64_t steps) const { return {BlockTeam::kSize, 1, steps, size_t(multiprocessors_) * 32}; }
 
-  // A kernel on this stream, for all items, in as many launches as that takes: kernel(LaunchItems, arguments...). Of
+  // A kernel on this stream, for all items, in as many launches as that takes: kernel(QueuedItems, arguments...). Of
   // several, no more than two are queued at a time, since what is queued can't be cancelled; but in a frame that is
   // known to be short (open_counts). No items: nothing to do.
-  template <class... Parameters, class... Arguments>
-  void launch(const char *name, void (*kernel)(LaunchItems, Parameters...), size_t items, const LaunchShape &shape,
-              Arguments... arguments) {
+  template <class... Parameters>
+  void launch(const char *name, void (*kernel)(QueuedItems, Parameters...), size_t items, const LaunchShape &shape,
+              std::common_type_t<Parameters>... arguments) {
     if (items == 0) return;
     const size_t launches = launches_of(items, shape);
     const size_t even = (items + launches - 1) / launches;
     const size_t length = (even + shape.items_per_block - 1) / shape.items_per_block * shape.items_per_block;
     for (size_t first = 0; first < items; first += length) {
-      const LaunchItems part{first, std::min(items, first + length)};
-      const size_t wanted = (part.last - first + shape.items_per_block - 1) / shape.items_per_block;
+      const size_t last = std::min(items, first + length);
+      const size_t wanted = (last - first + shape.items_per_block - 1) / shape.items_per_block;
       const size_t blocks = shape.most_blocks ? std::min(shape.most_blocks, wanted) : wanted;
       stop_if_asked();
       const LaunchWatch watch(name, blocks, wanted, shape, multiprocessors_, stream_);
-      kernel<<<static_cast<unsigned>(blocks), static_cast<unsigned>(shape.threads), shape.shared_bytes, stream_>>>(
-          part, arguments...);
-      check_cuda(cudaGetLastError(), name);
+      QueuedItems queued(first, last);
+      void *parameters[] = {&queued, &arguments...};
+      check_cuda(launch_queued(reinterpret_cast<const void *>(kernel), blocks, shape, parameters), name);
       if (launches > 1 && !runs_ahead_) wait_for_launch_before();
     }
   }
@@ -218,6 +313,10 @@ class CudaExecutor {
 
   template <class Load, class T>
   void exclusive_scan(size_t n, Load load, Span<T> out) {
+    if (n <= gpu::kFewItems) {
+      launch("scan_few", gpu::scan_few_kernel<Load, T>, 1, few_shape(), load, n, out.data);
+      return;
+    }
     check_count(n + 1, "exclusive_scan");
     const auto in =
         thrust::make_transform_iterator(thrust::counting_iterator<size_t>(0), gpu::LoadOrZero<Load, T>{load, n});
@@ -227,24 +326,17 @@ class CudaExecutor {
     });
   }
 
-  // Bytes of the arena that the verbs take for as long as they work; T, Key and Value as there.
+  // Bytes of the arena that the verbs take for as long as they work; T, Key and Value as there. CUB's scan keeps, for
+  // each tile of 128 items or more, two sums and a status.
   template <class T>
   size_t scan_bytes(size_t n) const {
-    return cub_bytes([&](void *temporary, size_t &bytes) {
-      return cub::DeviceScan::ExclusiveScan(temporary, bytes, static_cast<const T *>(nullptr),
-                                            static_cast<T *>(nullptr), cub::Sum(), T{}, static_cast<int>(n + 1),
-                                            stream_);
-    });
+    return n <= gpu::kFewItems ? 0 : (n / 128 + 33) * (2 * sizeof(T) + 8) + 1024;
   }
   template <class Key, class Value>
   size_t sort_bytes(size_t n) const {
-    cub::DoubleBuffer<Key> keys(nullptr, nullptr);
-    cub::DoubleBuffer<Value> values(nullptr, nullptr);
-    return n * (sizeof(Key) + sizeof(Value)) + 2 * Arena<DeviceMemory>::kAlignment +
-           cub_bytes([&](void *temporary, size_t &bytes) {
-             return cub::DeviceRadixSort::SortPairs(temporary, bytes, keys, values, static_cast<int>(n), 0,
-                                                    static_cast<int>(8 * sizeof(Key)), stream_);
-           });
+    size_t bytes = 0;
+    check_cuda(sort_pairs(nullptr, bytes, Span<Key>{nullptr, n}, Span<Value>{nullptr, n}), "CUB");
+    return bytes;
   }
   template <class T>
   size_t reduce_bytes(size_t n) const {
@@ -268,20 +360,11 @@ class CudaExecutor {
   }
 
   template <class Key, class Value>
-  void sort_by_key(Span<Key> keys, Span<Value> values, int key_bits) {
-    const size_t n = keys.size;
-    if (n < 2) return;
-    check_count(n, "sort_by_key");
-    const auto mark = arena_.mark();
-    cub::DoubleBuffer<Key> key_buffer(keys.data, allocate<Key>(n).data);
-    cub::DoubleBuffer<Value> value_buffer(values.data, allocate<Value>(n).data);
-    with_temporary("cub::DeviceRadixSort::SortPairs", [&](void *temporary, size_t &bytes) {
-      return cub::DeviceRadixSort::SortPairs(temporary, bytes, key_buffer, value_buffer, static_cast<int>(n), 0,
-                                             std::min(key_bits, static_cast<int>(8 * sizeof(Key))), stream_);
-    });
-    if (key_buffer.Current() != keys.data) copy_device(keys.data, key_buffer.Current(), n);
-    if (value_buffer.Current() != values.data) copy_device(values.data, value_buffer.Current(), n);
-    arena_.rewind(mark);
+  void sort_by_key(Span<Key> keys, Span<Value> values) {
+    if (keys.size < 2) return;
+    check_count(keys.size, "sort_by_key");
+    with_temporary("cub::DeviceMergeSort::StableSortPairs",
+                   [&](void *temporary, size_t &bytes) { return sort_pairs(temporary, bytes, keys, values); });
   }
 
   template <class Keep, class T>
@@ -296,6 +379,10 @@ class CudaExecutor {
   }
   template <class Keep, class T>
   void compact(size_t n, Keep keep, Span<T> out, uint64_t *count) {
+    if (n <= gpu::kFewItems) {
+      launch("compact_few", gpu::compact_few_kernel<Keep, T>, 1, few_shape(), keep, n, out.data, count);
+      return;
+    }
     check_count(n, "compact");
     with_temporary("cub::DeviceSelect::If", [&](void *temporary, size_t &bytes) {
       return cub::DeviceSelect::If(temporary, bytes, thrust::counting_iterator<T>(0), out.data, count,
@@ -358,7 +445,9 @@ class CudaExecutor {
   void send_counts() {
     if (!anticipation_.relies_on_something()) return;
     anticipation_.note_counting();
-    download(static_cast<unsigned char *>(counts_on_host_.data()), counts_, counts_used_);
+    // Not by a copy, around which the device would wait.
+    for_each(counts_used_ / sizeof(uint32_t), gpu::CopyWords{static_cast<uint32_t *>(counts_on_host_.data()),
+                                                             reinterpret_cast<const uint32_t *>(counts_)});
     check_cuda(cudaEventRecord(counted_, stream_), "cudaEventRecord");
   }
   // Waits for that. False: all counts were exact. Throws AnticipatedTooLittle.
@@ -379,6 +468,16 @@ class CudaExecutor {
                 sizeof value);
     return value;
   }
+  // Copies n values. Waits.
+  template <class T>
+  void fetch_all(T *values, const T *source, size_t n) {
+    if (n * sizeof(T) <= kMostStaged) {
+      if (n > 0) std::memcpy(values, to_staging(source, n * sizeof(T)), n * sizeof(T));
+      return;
+    }
+    download(values, source, n);
+    wait();
+  }
   static constexpr size_t kCountsBytes = 16384;  // of the device, beside the arena
 
   // From page-locked memory the copy goes on after the call returns: leave the memory alone until something waits.
@@ -395,7 +494,13 @@ class CudaExecutor {
   }
   template <class T>
   void fill(Span<T> span, int byte) {
-    if (span.size) check_cuda(cudaMemsetAsync(span.data, byte, span.size * sizeof(T), stream_), "cudaMemsetAsync");
+    // Little is filled by a kernel, which can be sent ahead as the others.
+    auto *const bytes = reinterpret_cast<unsigned char *>(span.data);
+    const size_t count = span.size * sizeof(T);
+    if (count <= kLittleFill && reinterpret_cast<uintptr_t>(bytes) % sizeof(uint32_t) == 0)
+      for_each((count + 3) / 4, gpu::FillBytes{bytes, count, 0x01010101u * static_cast<unsigned char>(byte)});
+    else if (count > 0)
+      check_cuda(cudaMemsetAsync(bytes, byte, count, stream_), "cudaMemsetAsync");
   }
   void wait() { check_cuda(cudaStreamSynchronize(stream_), "cudaStreamSynchronize"); }
 
@@ -405,7 +510,8 @@ class CudaExecutor {
     return anticipation_.is_open() && bytes >= counts_ && bytes < counts_ + kCountsBytes;
   }
 
-  static constexpr size_t kStagingBytes = 4096;
+  static constexpr size_t kStagingBytes = 4096, kMostStaged = size_t(1) << 20;
+  static constexpr size_t kLittleFill = size_t(1) << 19;
   static constexpr size_t kDefaultSharedBytes = 48 * 1024;
 
   static void check_count(size_t n, const char *verb) {
@@ -414,21 +520,15 @@ class CudaExecutor {
                   std::string(verb) + ": more than 2^31 items; use a larger spacing or a smaller slice size");
   }
 
-  template <class T>
-  void copy_device(T *destination, const T *source, size_t n) {
-    check_cuda(cudaMemcpyAsync(destination, source, n * sizeof(T), cudaMemcpyDeviceToDevice, stream_),
-               "cudaMemcpyAsync");
-  }
-
   void stop_if_asked() const {
     if (stop_ && stop_->load(std::memory_order_relaxed)) throw Cancelled{};
   }
 
-  template <class Call>
-  static size_t cub_bytes(Call call) {
-    size_t bytes = 0;
-    check_cuda(call(nullptr, bytes), "CUB");
-    return bytes;
+  // Not by digits: it is rare, and that would be six times as much code in the library.
+  template <class Key, class Value>
+  cudaError_t sort_pairs(void *temporary, size_t &bytes, Span<Key> keys, Span<Value> values) const {
+    return cub::DeviceMergeSort::StableSortPairs(temporary, bytes, keys.data, values.data, static_cast<int>(keys.size),
+                                                 gpu::IsLess{}, stream_);
   }
 
   // CUB's two calls: how much memory, then the work.
@@ -442,6 +542,21 @@ class CudaExecutor {
     const LaunchWatch watch(name, stream_);
     check_cuda(call(temporary, bytes), name);
     arena_.rewind(mark);
+  }
+
+  // A kernel that waits for what is queued before it by itself (QueuedItems).
+  cudaError_t launch_queued(const void *kernel, size_t blocks, const LaunchShape &shape, void **parameters) {
+    cudaLaunchAttribute early{};
+    early.id = cudaLaunchAttributeProgrammaticStreamSerialization;
+    early.val.programmaticStreamSerializationAllowed = 1;
+    cudaLaunchConfig_t config{};
+    config.gridDim = dim3(static_cast<unsigned>(blocks));
+    config.blockDim = dim3(static_cast<unsigned>(shape.threads));
+    config.dynamicSmemBytes = shape.shared_bytes;
+    config.stream = stream_;
+    config.attrs = &early;
+    config.numAttrs = 1;
+    return cudaLaunchKernelExC(&config, kernel, parameters);
   }
 
   void wait_for_launch_before() {

@@ -30,6 +30,24 @@ struct LaunchItems {
   size_t first, last;
 };
 
+// They are told to a kernel when all that was queued before it is done: so it may be sent to the multiprocessors while
+// the last blocks of the kernel before it still run (programmatic dependent launch, from compute capability 9.0 on),
+// and has no other way to learn what it is to do. Each kernel asks first of all, and by all its threads. (To let the
+// next one in as early as a kernel starts was slower: what waits takes room from what works.)
+class QueuedItems {
+ public:
+  QueuedItems(size_t first, size_t last) : items_{first, last} {}
+  __device__ __forceinline__ LaunchItems in_turn() const {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
+    asm volatile("griddepcontrol.wait;" ::: "memory");
+#endif
+    return items_;
+  }
+
+ private:
+  LaunchItems items_;
+};
+
 // Steps per multiprocessor.
 constexpr uint64_t kLaunchSteps = uint64_t(1) << 22;
 struct LaunchShape {

@@ -8,10 +8,11 @@
 //   for_each_brick<Scratch>(n, f)  f(team, scratch, i): a team of threads shares one Scratch per item
 //   exclusive_scan(n, load, out)   out[i] = load(0) + ... + load(i - 1); out has n + 1 elements
 //   reduce<T>(n, load)             sum of load(i), T a double or a few: fixed chunks, added in fixed order. Waits
-//   sort_by_key(keys, values, key_bits)  stable, by the low key_bits bits of the keys
+//   sort_by_key(keys, values)      stable, in place
 //   compact(n, keep, out)          the i with keep(i), in order; returns their number. Waits
 //   compact(n, keep, out, count)   the same; their number stays with the back end
 //   fetch(p), fetch_each(sources, values, n)  copies one value, or several, to the host. Waits
+//   fetch_all(values, source, n)   copies an array to the host, if it is not there already. Waits
 //   take_counts<T>()               a T of zeros for passes to count in
 //   expect(name, counts, most)     what was counted. Waits; or, if it is told by the frame before, at most so much
 //   send_counts(), verify_counts() later: what was expected is compared with what was counted (anticipation.h). Waits

@@ -141,7 +141,7 @@ void prepare_frame(Work &work, const FrameInput &in) {
   const float cell =
       in.settings.surface == QSES_SURFACE_GAUSSIAN ? work.parameters.max_radius / 3.f : work.parameters.max_radius;
   const CellLayout cells = layout_cells(work.low, work.high, std::max(cell, kSmallestCell));
-  work.atoms = build_neighbor_grid(executor, set.count, cells, [&] {
+  work.atoms = build_neighbor_grid(executor, "crowded cell of atoms", set.count, cells, [&] {
     return CenteredAtomAt{bring(executor, set.atoms, set.count),
                           work.lattice.center_x,
                           work.lattice.center_y,

@@ -231,6 +231,13 @@ FAKE_API CUresult CUDAAPI cuLaunchKernel(CUfunction, unsigned, unsigned, unsigne
   return next();
 }
 
+FAKE_API CUresult CUDAAPI cuLaunchKernelEx(const CUlaunchConfig *config, CUfunction, void **, void **) {
+  note_launch();
+  for (unsigned k = 0; k < config->numAttrs; ++k)
+    if (config->attrs[k].id != CU_LAUNCH_ATTRIBUTE_PROGRAMMATIC_STREAM_SERIALIZATION) return CUDA_ERROR_INVALID_VALUE;
+  return next();
+}
+
 // ---- memory: zeros, so that what a kernel should have counted is nothing
 FAKE_API CUresult CUDAAPI cuMemAlloc_v2(CUdeviceptr *memory, size_t bytes) {
   void *given = nullptr;

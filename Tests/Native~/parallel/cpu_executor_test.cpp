@@ -31,7 +31,7 @@ void check_sort(CpuExecutor &executor, size_t n, uint64_t different) {
     sorted[i] = keys[i];
     values[i] = static_cast<uint32_t>(i);
   }
-  executor.sort_by_key(sorted, values, 64);
+  executor.sort_by_key(sorted, values);
   for (size_t i = 0; i < n; ++i) {
     ASSERT_EQ(values[i], order[i]) << n << " items, place " << i;
     ASSERT_EQ(sorted[i], keys[order[i]]);

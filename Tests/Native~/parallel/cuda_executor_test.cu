@@ -28,7 +28,8 @@ CudaExecutor *device() {
   CudaExecutor &executor = *device();                                                                  \
   executor.arena().reset()
 
-const size_t kSizes[] = {1, 31, 128, 129, 5000, 1000003};
+// Also as many as one block scans, and one more.
+const size_t kSizes[] = {1, 31, 128, 129, 5000, gpu::kFewItems - 1, gpu::kFewItems, gpu::kFewItems + 1, 1000003};
 
 template <class T>
 std::vector<T> to_host(CudaExecutor &executor, Span<T> span) {
@@ -169,7 +170,7 @@ TEST(CudaExecutor, SortByKeyIsStable) {
       std::iota(values.begin(), values.end(), 0u);
       Span<uint64_t> device_keys = to_device(executor, keys);
       Span<uint32_t> device_values = to_device(executor, values);
-      executor.sort_by_key(device_keys, device_values, bits);
+      executor.sort_by_key(device_keys, device_values);
       std::stable_sort(values.begin(), values.end(), [&](uint32_t a, uint32_t b) { return keys[a] < keys[b]; });
       std::stable_sort(keys.begin(), keys.end());
       EXPECT_EQ(to_host(executor, device_keys), keys);
@@ -196,6 +197,9 @@ TEST(CudaExecutor, CopiesAndFills) {
   const auto in = random_numbers(1000, 5000);
   Span<uint32_t> span = to_device(executor, in);
   EXPECT_EQ(executor.fetch(span.data + 77), in[77]);
+  std::vector<uint32_t> all(in.size());
+  executor.fetch_all(all.data(), span.data, all.size());
+  EXPECT_EQ(all, in);
   const uint32_t *const sources[3] = {span.data + 5, span.data + 999, span.data};
   uint32_t values[3];
   executor.fetch_each(sources, values, 3);
@@ -206,6 +210,21 @@ TEST(CudaExecutor, CopiesAndFills) {
   const auto host = to_host(executor, span);
   EXPECT_EQ(host[499], 0x11111111u);
   EXPECT_EQ(host[500], in[500]);
+}
+
+// Few and many bytes, from any one on, and no others.
+TEST(CudaExecutor, FillsTheBytesItIsGiven) {
+  REQUIRE_DEVICE();
+  const size_t most = 700000;
+  Span<unsigned char> bytes = executor.allocate<unsigned char>(most);
+  for (size_t first : {size_t(0), size_t(1), size_t(4), size_t(7)})
+    for (size_t count : {size_t(0), size_t(1), size_t(3), size_t(4), size_t(1026), size_t(600001)}) {
+      executor.fill(bytes, 0x55);
+      executor.fill(Span<unsigned char>{bytes.data + first, count}, 0xfe);
+      std::vector<unsigned char> expected(most, 0x55);
+      std::fill_n(expected.begin() + static_cast<std::ptrdiff_t>(first), count, static_cast<unsigned char>(0xfe));
+      ASSERT_EQ(to_host(executor, bytes), expected) << count << " bytes from " << first;
+    }
 }
 
 TEST(CudaExecutor, RefusedMemoryIsAnErrorAndNothingElse) {

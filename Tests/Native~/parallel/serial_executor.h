@@ -55,7 +55,7 @@ class SerialExecutor {
     return sum;
   }
   template <class Key, class Value>
-  void sort_by_key(quickses::Span<Key> keys, quickses::Span<Value> values, int) {
+  void sort_by_key(quickses::Span<Key> keys, quickses::Span<Value> values) {
     std::vector<size_t> order(keys.size);
     std::iota(order.begin(), order.end(), size_t(0));
     std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return keys[a] < keys[b]; });
@@ -81,6 +81,11 @@ class SerialExecutor {
   T fetch(const T *p) {
     return *p;
   }
+  template <class T>
+  void fetch_all(T *values, const T *source, size_t n) {
+    if (values != source) std::copy(source, source + n, values);
+  }
+  void send_counts() {}
   template <class T>
   T *take_counts() {
     const auto counts = allocate<T>(1);

@@ -95,7 +95,7 @@ inline DeviceStages run_device_stages(CudaExecutor &executor, const DeviceTable 
   s.lattice = lattice = layout_lattice(lattice, low, high, p.max_radius);
   Span<Sphere> given = executor.allocate<Sphere>(n);
   executor.upload(given.data, host_atoms, n);
-  s.grid = build_neighbor_grid(executor, n, layout_cells(low, high, p.max_radius), [&] {
+  s.grid = build_neighbor_grid(executor, "crowded cell of atoms", n, layout_cells(low, high, p.max_radius), [&] {
     return CenteredAtomAt{given.data, lattice.center_x, lattice.center_y, lattice.center_z, 1.f, p.probe};
   });
   Span<uint8_t> contained = executor.allocate<uint8_t>(n);
@@ -115,9 +115,10 @@ inline DeviceStages run_device_stages(CudaExecutor &executor, const DeviceTable 
   const size_t arcs = s.found.arcs.size;
   if (arcs > 0) {
     const glm::vec3 reach(p.max_radius);
-    f.arc_bounds = build_neighbor_grid(executor, arcs, layout_cells(low - reach, high + reach, kArcCellEdge), [&] {
-      return ArcBoundAt{s.found.arcs.data, nullptr};
-    });
+    f.arc_bounds = build_neighbor_grid(executor, "crowded cell of arcs", arcs,
+                                       layout_cells(low - reach, high + reach, kArcCellEdge), [&] {
+                                         return ArcBoundAt{s.found.arcs.data, nullptr};
+                                       });
     Span<Arc> sorted = executor.allocate<Arc>(arcs);
     executor.for_each(arcs, GatherArcs{s.found.arcs.data, nullptr, f.arc_bounds.order, sorted.data});
     f.arcs = sorted.data;

@@ -53,9 +53,10 @@ struct ExactRun {
     low = to_centered(lattice, bounds.low);
     high = to_centered(lattice, bounds.high);
     lattice = layout_lattice(lattice, low, high, parameters.max_radius);
-    atoms = build_neighbor_grid(executor, given.size(), layout_cells(low, high, parameters.max_radius), [&] {
-      return CenteredAtomAt{raw.data, lattice.center_x, lattice.center_y, lattice.center_z, 1.f, parameters.probe};
-    });
+    atoms = build_neighbor_grid(
+        executor, "crowded cell of atoms", given.size(), layout_cells(low, high, parameters.max_radius), [&] {
+          return CenteredAtomAt{raw.data, lattice.center_x, lattice.center_y, lattice.center_z, 1.f, parameters.probe};
+        });
     remove_contained_atoms(executor, atoms, parameters.max_radius);
   }
 

@@ -101,6 +101,15 @@ TEST(NeighborGrid, FindsWhatABoxHolds) {
   check_grid(random_items(30, 100.f, 3), 3.1f, true);
 }
 
+// A cell with more items than are counted one against the other, and one with as many as just are.
+TEST(NeighborGrid, CrowdsAreInOrder) {
+  for (const uint32_t crowd : {kCrowd - 1, kCrowd, kCrowd + 1, 3 * kCrowd}) {
+    Items items = random_items(3000, 20.f, 6);
+    for (uint32_t k = 0; k < crowd; ++k) items.add(glm::vec3(1.f, 2.f, 3.f));
+    check_grid(items, 4.6f, true);
+  }
+}
+
 TEST(NeighborGrid, SparseOnesFindTheSame) {
   Items items = random_items(400, 20.f, 4);
   items.add(glm::vec3(20000.f, 100.f, -15000.f));

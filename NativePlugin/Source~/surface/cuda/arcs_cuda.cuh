@@ -67,7 +67,8 @@ struct StridedIntervals {
 };
 
 // Lists the circles of each atom: caps behind which a later atom is. A warp per atom.
-static __global__ __launch_bounds__(128) void list_circles_kernel(LaunchItems atoms, CircleJob job) {
+static __global__ __launch_bounds__(128) void list_circles_kernel(QueuedItems queued, CircleJob job) {
+  const LaunchItems atoms = queued.in_turn();
   const int lane = lane_id();
   for (size_t place = atoms.first + (blockIdx.x * blockDim.x + threadIdx.x) / kWarp; place < atoms.last;
        place += gridDim.x * blockDim.x / kWarp) {
@@ -153,8 +154,9 @@ __device__ __forceinline__ void stage_circle(const CircleJob &job, const OpenCir
   job.arc_count[c.number] = pieces;
 }
 
-static __global__ __launch_bounds__(kArcThreads) void find_arcs_kernel(LaunchItems circles, CircleJob job,
+static __global__ __launch_bounds__(kArcThreads) void find_arcs_kernel(QueuedItems queued, CircleJob job,
                                                                        uint32_t chunk) {
+  const LaunchItems circles = queued.in_turn();
   __shared__ Interval memory[kLaneIntervals * kArcThreads];
   const StridedIntervals storage{memory + threadIdx.x, kArcThreads};
   enum class State { kIdle, kActive, kDone };
@@ -244,9 +246,10 @@ constexpr uint32_t kLongCircleSteps = 1u << 18;
 constexpr uint32_t kCutSteps = 4;  // of one cap of a circle
 
 // The circles that have more exposed intervals, with room for as many as they can have: one more than there are caps.
-static __global__ __launch_bounds__(kWarp) void find_long_circle_arcs_kernel(LaunchItems slots, CircleJob job,
+static __global__ __launch_bounds__(kWarp) void find_long_circle_arcs_kernel(QueuedItems queued, CircleJob job,
                                                                              Interval *memory,
                                                                              LongCircleState *states) {
+  const LaunchItems slots = queued.in_turn();
   const uint32_t thread = static_cast<uint32_t>(slots.first) + blockIdx.x * kWarp + threadIdx.x;
   const uint32_t count = job.counters->long_circles;
   LongCircleState state = states[thread];
@@ -281,8 +284,9 @@ static __global__ __launch_bounds__(kWarp) void find_long_circle_arcs_kernel(Lau
 }
 
 // Writes the staged arcs, split, to their places in order.
-static __global__ __launch_bounds__(128) void write_arcs_kernel(LaunchItems items, CircleJob job,
+static __global__ __launch_bounds__(128) void write_arcs_kernel(QueuedItems queued, CircleJob job,
                                                                 const uint32_t *arc_first) {
+  const LaunchItems items = queued.in_turn();
   if (job.circle_first[job.run.size()] > job.room.circles) return;
   const unsigned long long staged = job.counters->staged;
   const bool fits = (staged >> 32) <= job.room.staged_circles && (staged & 0xffffffffu) <= job.room.staged_arcs;

@@ -224,8 +224,9 @@ __device__ __forceinline__ GatheredRow gather_row(const NeighborGridView &grid, 
 }
 
 // The rows of one brick. A warp per brick.
-static __global__ __launch_bounds__(kGatherWarps *kWarp, 8) void gather_candidates_kernel(LaunchItems bricks,
+static __global__ __launch_bounds__(kGatherWarps *kWarp, 8) void gather_candidates_kernel(QueuedItems queued,
                                                                                           GatherJob job) {
+  const LaunchItems bricks = queued.in_turn();
   __shared__ uint32_t near_memory[kGatherWarps][kGatherRoom];
   __shared__ uint8_t near_leaves[kGatherWarps][kGatherRoom];
   const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();

@@ -215,7 +215,8 @@ __device__ __forceinline__ bool find_caps(const CapJob &job, uint32_t i, const C
   return true;
 }
 
-static __global__ __launch_bounds__(kCapWarps *kWarp) void find_caps_kernel(LaunchItems atoms, CapJob job) {
+static __global__ __launch_bounds__(kCapWarps *kWarp) void find_caps_kernel(QueuedItems queued, CapJob job) {
+  const LaunchItems atoms = queued.in_turn();
   __shared__ Cap cap[kCapWarps][kRowNeighbors];
   __shared__ float sine[kCapWarps][kRowNeighbors];
   __shared__ uint32_t neighbor[kCapWarps][kRowNeighbors];
@@ -245,8 +246,9 @@ struct LongRows {
 };
 
 // A warp per atom.
-static __global__ __launch_bounds__(kCapWarps *kWarp) void find_long_caps_kernel(LaunchItems atoms, CapJob job,
+static __global__ __launch_bounds__(kCapWarps *kWarp) void find_long_caps_kernel(QueuedItems queued, CapJob job,
                                                                                  LongRows long_rows) {
+  const LaunchItems atoms = queued.in_turn();
   const uint32_t warp = (blockIdx.x * blockDim.x + threadIdx.x) / kWarp, warps = gridDim.x * kCapWarps;
   const CapRows rows = long_rows.of(warp);
   const size_t count = job.counters->long_atoms, end = atoms.last < count ? atoms.last : count;
@@ -277,7 +279,8 @@ struct CrowdedJob {
   }
 };
 
-static __global__ __launch_bounds__(kCapWarps *kWarp) void gather_crowded_kernel(LaunchItems rows, CrowdedJob job) {
+static __global__ __launch_bounds__(kCapWarps *kWarp) void gather_crowded_kernel(QueuedItems queued, CrowdedJob job) {
+  const LaunchItems rows = queued.in_turn();
   const size_t row = rows.first + (blockIdx.x * blockDim.x + threadIdx.x) / kWarp;
   uint32_t i;
   if (row >= rows.last || !job.atom(row, &i)) return;
@@ -291,7 +294,8 @@ static __global__ __launch_bounds__(kCapWarps *kWarp) void gather_crowded_kernel
   job.atoms[row].caps = n;
 }
 
-static __global__ __launch_bounds__(kCapWarps *kWarp) void mark_crowded_kernel(LaunchItems groups, CrowdedJob job) {
+static __global__ __launch_bounds__(kCapWarps *kWarp) void mark_crowded_kernel(QueuedItems queued, CrowdedJob job) {
+  const LaunchItems groups = queued.in_turn();
   const size_t item = groups.first + (blockIdx.x * blockDim.x + threadIdx.x) / kWarp, row = item / job.groups;
   uint32_t i;
   if (item >= groups.last || !job.atom(row, &i)) return;
@@ -300,7 +304,8 @@ static __global__ __launch_bounds__(kCapWarps *kWarp) void mark_crowded_kernel(L
   if (j < n && lies_within_another(rows, n, j, 0, 1)) rows.neighbor[j] |= kContainedCap;
 }
 
-static __global__ __launch_bounds__(kCapWarps *kWarp) void keep_crowded_kernel(LaunchItems rows, CrowdedJob job) {
+static __global__ __launch_bounds__(kCapWarps *kWarp) void keep_crowded_kernel(QueuedItems queued, CrowdedJob job) {
+  const LaunchItems rows = queued.in_turn();
   const size_t row = rows.first + (blockIdx.x * blockDim.x + threadIdx.x) / kWarp;
   uint32_t i;
   if (row >= rows.last || !job.atom(row, &i)) return;
@@ -311,7 +316,8 @@ static __global__ __launch_bounds__(kCapWarps *kWarp) void keep_crowded_kernel(L
   note_caps(job.caps, i, n, place, false);
 }
 
-static __global__ __launch_bounds__(kCapWarps *kWarp) void rank_crowded_kernel(LaunchItems groups, CrowdedJob job) {
+static __global__ __launch_bounds__(kCapWarps *kWarp) void rank_crowded_kernel(QueuedItems queued, CrowdedJob job) {
+  const LaunchItems groups = queued.in_turn();
   const size_t item = groups.first + (blockIdx.x * blockDim.x + threadIdx.x) / kWarp, row = item / job.groups;
   uint32_t i;
   if (item >= groups.last || !job.atom(row, &i)) return;

@@ -104,7 +104,8 @@ __device__ __forceinline__ int stage_leaf_atoms(const FeatureView &f, const Cand
 
 enum class LeafKind { kMixed, kInside, kOutside };
 
-static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_kernel(LaunchItems leaves, SignJob job) {
+static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_kernel(QueuedItems queued, SignJob job) {
+  const LaunchItems leaves = queued.in_turn();
   __shared__ LeafScratch scratch_memory[kSignWarps];
   const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();
   LeafScratch &scratch = scratch_memory[warp];

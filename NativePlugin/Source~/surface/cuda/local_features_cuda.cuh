@@ -91,7 +91,8 @@ __device__ __forceinline__ bool is_on_contact(const FeatureView &f, const Gather
 
 // Seven blocks per multiprocessor: the work waits for memory, so more of it at a time is worth a few registers.
 template <class F>
-__global__ __launch_bounds__(kGatheringThreads, 7) void gathering_kernel(LaunchItems items, F f) {
+__global__ __launch_bounds__(kGatheringThreads, 7) void gathering_kernel(QueuedItems queued, F f) {
+  const LaunchItems items = queued.in_turn();
   constexpr unsigned kTeams = kGatheringThreads / kGatheringLanes;
   __shared__ LocalLists lists[kTeams];
   const unsigned team = threadIdx.x / kGatheringLanes;

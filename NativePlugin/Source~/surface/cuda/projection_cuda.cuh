@@ -69,7 +69,8 @@ struct VertexTeam {
 };
 
 template <int kLanes>
-static __global__ __launch_bounds__(kVertexThreads) void project_on_atoms_kernel(LaunchItems vertices, VertexJob job) {
+static __global__ __launch_bounds__(kVertexThreads) void project_on_atoms_kernel(QueuedItems queued, VertexJob job) {
+  const LaunchItems vertices = queued.in_turn();
   const uint32_t count = vertex_count(job);
   const VertexTeam<kLanes> team(vertices, count);
   if (!team.has_work(count)) return;
@@ -90,7 +91,8 @@ static __global__ __launch_bounds__(kVertexThreads) void project_on_atoms_kernel
 }
 
 template <int kLanes>
-static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(LaunchItems vertices, VertexJob job) {
+static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(QueuedItems queued, VertexJob job) {
+  const LaunchItems vertices = queued.in_turn();
   const uint32_t total = job.counts->open;
   const VertexTeam<kLanes> team(vertices, total);
   if (!team.has_work(total)) return;
@@ -157,7 +159,8 @@ static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(
 }
 
 constexpr int kVertexLanes = 8;
-static __global__ __launch_bounds__(kVertexThreads, 8) void reproject_kernel(LaunchItems vertices, VertexJob job) {
+static __global__ __launch_bounds__(kVertexThreads, 8) void reproject_kernel(QueuedItems queued, VertexJob job) {
+  const LaunchItems vertices = queued.in_turn();
   const FeatureView &f = job.features;
   const uint32_t teams = gridDim.x * (kVertexThreads / kVertexLanes), unfinished = job.counts->unfinished;
   const uint32_t total = unfinished < vertices.last ? unfinished : static_cast<uint32_t>(vertices.last);
@@ -233,7 +236,8 @@ __device__ __forceinline__ LaneCandidates<kLanes, true> choose_near(const Featur
 
 // A warp for each: all their looks depend on one another.
 constexpr int kEdgeWarps = kVertexThreads / kWarp, kEdgeRoom = 640;
-static __global__ __launch_bounds__(kVertexThreads, 8) void place_on_edges_kernel(LaunchItems vertices, VertexJob job) {
+static __global__ __launch_bounds__(kVertexThreads, 8) void place_on_edges_kernel(QueuedItems queued, VertexJob job) {
+  const LaunchItems vertices = queued.in_turn();
   __shared__ uint32_t edge_memory[kEdgeWarps][kEdgeRoom];
   const FeatureView &f = job.features;
   const uint32_t warps = gridDim.x * kEdgeWarps, on_edges = job.counts->on_edges, warp = threadIdx.x / kWarp;

@@ -39,7 +39,8 @@ constexpr int kWallThreads = 128;
 constexpr int kWallWarps = kWallThreads / kWarp;
 
 // A thread per leaf of the slice.
-static __global__ __launch_bounds__(kWallThreads) void find_wall_candidates_kernel(LaunchItems items, WallJob job) {
+static __global__ __launch_bounds__(kWallThreads) void find_wall_candidates_kernel(QueuedItems queued, WallJob job) {
+  const LaunchItems items = queued.in_turn();
   if (job.view.counted->leaves > job.view.leaf_room) return;  // of some, nothing is known
   const size_t k = items.first + blockIdx.x * size_t(kWallThreads) + threadIdx.x;
   const bool on = k < items.last;
@@ -135,7 +136,8 @@ __device__ __forceinline__ Vec3<float> from_lane(const Vec3<float> &v, int lane)
 
 // Lists the edges of leaves that the probes nearest to their ends, as far as they are known, do not cover together. A
 // warp per leaf that has edges.
-static __global__ __launch_bounds__(kWallThreads, 8) void drop_open_edges_kernel(LaunchItems items, WallJob job) {
+static __global__ __launch_bounds__(kWallThreads, 8) void drop_open_edges_kernel(QueuedItems queued, WallJob job) {
+  const LaunchItems items = queued.in_turn();
   __shared__ WallScratch scratch_memory[kWallWarps];
   const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();
   WallScratch &scratch = scratch_memory[warp];
@@ -243,7 +245,8 @@ __device__ __forceinline__ NearestProbe nearest_probe_if(bool asks, const Featur
 
 // Some lanes for each edge that is left. They wait for memory: more blocks at a time are worth registers.
 template <int kLanes>
-static __global__ __launch_bounds__(kWallThreads, 10) void walk_edges_kernel(LaunchItems items, WallJob job) {
+static __global__ __launch_bounds__(kWallThreads, 10) void walk_edges_kernel(QueuedItems queued, WallJob job) {
+  const LaunchItems items = queued.in_turn();
   constexpr int kTeams = kWallThreads / kLanes, kWarpTeams = kWarp / kLanes, kRoom = 2560 / kTeams;
   __shared__ uint32_t edge_memory[kTeams][kRoom];
   const FeatureView &f = job.features;

@@ -29,8 +29,9 @@ struct TriangleScratch {
   uint32_t items[kTriangleItems];  // cell << 16 | case << 8 | triangle of the case
 };
 
-static __global__ __launch_bounds__(kTriangleWarps *kWarp) void emit_triangles_kernel(LaunchItems items,
+static __global__ __launch_bounds__(kTriangleWarps *kWarp) void emit_triangles_kernel(QueuedItems queued,
                                                                                       TriangleJob job) {
+  const LaunchItems items = queued.in_turn();
   __shared__ TriangleScratch scratch_memory[kTriangleWarps];
   __shared__ __align__(16) uint8_t edges[kCellCases][16];
   __shared__ uint8_t triangle_count[kCellCases];

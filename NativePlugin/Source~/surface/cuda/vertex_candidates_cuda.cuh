@@ -154,8 +154,9 @@ __device__ __forceinline__ void fill_window(const VertexJob &job, const VertexLe
 
 // Starts found by halving the edges, for spacings much wider than the probe: of a leaf's vertices first to last - 1. A
 // warp per leaf.
-static __global__ __launch_bounds__(kLeafWarps *kWarp) void halve_starts_kernel(LaunchItems leaves, VertexJob job,
+static __global__ __launch_bounds__(kLeafWarps *kWarp) void halve_starts_kernel(QueuedItems queued, VertexJob job,
                                                                                 int first, int last) {
+  const LaunchItems leaves = queued.in_turn();
   __shared__ uint8_t edge_memory[kLeafWarps][kMostLeafVertices];
   const int warp = static_cast<int>(threadIdx.x) / kWarp;
   const uint32_t slot = static_cast<uint32_t>(leaves.first) + blockIdx.x * kLeafWarps + static_cast<uint32_t>(warp);
@@ -171,7 +172,8 @@ static __global__ __launch_bounds__(kLeafWarps *kWarp) void halve_starts_kernel(
 }
 
 // Starts and candidates of the leaves that own vertices. A warp per leaf.
-static __global__ __launch_bounds__(kLeafWarps *kWarp) void prepare_vertices_kernel(LaunchItems leaves, VertexJob job) {
+static __global__ __launch_bounds__(kLeafWarps *kWarp) void prepare_vertices_kernel(QueuedItems queued, VertexJob job) {
+  const LaunchItems leaves = queued.in_turn();
   __shared__ uint8_t edge_memory[kLeafWarps][kMostLeafVertices];
   __shared__ SignWindow window_memory[kLeafWarps];
   const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();

@@ -81,7 +81,7 @@ class CountingExecutor {
     return T{};
   }
   template <class Key, class Value>
-  void sort_by_key(Span<Key> keys, Span<Value>, int) {
+  void sort_by_key(Span<Key> keys, Span<Value>) {
     if (keys.size > 1) take_for_a_while(executor_.template sort_bytes<Key, Value>(keys.size));
   }
   template <class Keep, class T>
@@ -97,6 +97,8 @@ class CountingExecutor {
   T fetch(const T *p) {
     return expected_value(facts_, p);
   }
+  template <class T>
+  void fetch_all(T *, const T *, size_t) {}
   template <class T>
   T *take_counts() {
     return allocate<T>(1).data;

@@ -56,7 +56,7 @@ FeatureView arrange_features(Work &work, const SolventFeatures &found) {
   if (n > 0) {
     const glm::vec3 reach(work.parameters.max_radius);
     const CellLayout cells = layout_cells(work.low - reach, work.high + reach, kArcCellEdge);
-    f.arc_bounds = build_neighbor_grid(executor, n, cells, [&] {
+    f.arc_bounds = build_neighbor_grid(executor, "crowded cell of arcs", n, cells, [&] {
       return ArcBoundAt{found.arcs.data, found.arc_count};
     });
     const auto mark = executor.arena().mark();

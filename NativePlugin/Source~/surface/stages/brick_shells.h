@@ -22,9 +22,11 @@ QSES_FN int first_with(int first, int last, const Property &has) {
   return first;
 }
 
-// Of the rows along x of the bricks around something: those to look at.
+// Of the rows along x of the bricks around something: those to look at. If they are all of them, perhaps only those of
+// every so-manieth layer along z.
 struct RowRange {
   uint64_t first = 0, last = ~uint64_t(0);
+  int layer = 0, layers = 1;
 };
 
 // Calls visit(linear index of the first, number) for the runs along x of the bricks whose boxes, grown by so many
@@ -67,14 +69,14 @@ QSES_FN void visit_bricks_of_shell(const Lattice &lattice, const glm::vec3 &cent
     farthest2[x - first[0]] = farthest2_of(x);
   }
 #endif
-  int z = first[2], y_begin = first[1];
+  int z = first[2] + rows.layer, y_begin = first[1];
   if (rows.first > 0 && last[1] >= first[1]) {
     const uint64_t rows_y = static_cast<uint64_t>(last[1] - first[1]) + 1;
     z += static_cast<int>(rows.first / rows_y);
     y_begin += static_cast<int>(rows.first % rows_y);
   }
   uint64_t left = rows.last - rows.first;
-  for (; z <= last[2] && left > 0; ++z, y_begin = first[1]) {
+  for (; z <= last[2] && left > 0; z += rows.layers, y_begin = first[1]) {
     if (many) look_for_stop();
     const float z0 = static_cast<float>(z + lattice.first_brick.z) * size + low_offset - c[2];
     const float nz = maximum(0.f, maximum(z0, -z0 - box)), fz = maximum(absolute(z0), absolute(z0 + box));

@@ -63,17 +63,13 @@ struct FeatureBricks {
 
   template <class Visit>
   QSES_FN void visit(size_t i, const RowRange &rows, const Visit &visit_brick) const {
-    if (i < features.atoms.count) {
-      if (features.cap_ranges[i].count == kBuriedAtom) return;
-      const Sphere atom = features.atoms.items[i];
-      const float radius = maximum(0.f, atom.radius - features.parameters.depth);
-      visit_bricks_of_shell(lattice, atom.center, radius, radius, margin(), rows, visit_brick);
-    } else {
-      const Sphere ball = features.arc_bounds.items[i - features.atoms.count];
-      if (is_no_item(ball)) return;
-      visit_bricks_of_shell(lattice, ball.center, 0.f, ball.radius + features.parameters.depth, margin(), rows,
-                            visit_brick);
-    }
+    const bool is_atom = i < features.atoms.count;
+    if (is_atom && features.cap_ranges[i].count == kBuriedAtom) return;
+    const Sphere item = is_atom ? features.atoms.items[i] : features.arc_bounds.items[i - features.atoms.count];
+    if (is_no_item(item)) return;
+    const float depth = features.parameters.depth;
+    const float outer = is_atom ? maximum(0.f, item.radius - depth) : item.radius + depth;
+    visit_bricks_of_shell(lattice, item.center, is_atom ? outer : 0.f, outer, margin(), rows, visit_brick);
   }
   QSES_FN double fewest(size_t i) const {
     return i < features.atoms.count ? 0.0 : fewest_bricks_of_ball(lattice, features.parameters.depth);
@@ -91,7 +87,13 @@ struct FlagBricks {
       for (const uint64_t end = linear + count; linear < end; ++linear) atomic_set(&flags[linear]);
     }
   };
-  QSES_HOST_DEVICE void operator()(size_t i) const { items.visit(i, rows, Visit{flags}); }
+  int layers = 1;  // threads of an item
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    RowRange own = rows;
+    own.layer = static_cast<int>(i % static_cast<unsigned>(layers));
+    own.layers = layers;
+    items.visit(i / static_cast<unsigned>(layers), own, Visit{flags});
+  }
 };
 
 template <class Items>
@@ -245,6 +247,9 @@ void for_rows_of_bricks(const Items &items, const Pass &pass) {
   }
 }
 
+// So many keep a GPU busy with a thread for each.
+constexpr size_t kManyItems = size_t(1) << 15;
+
 template <class Executor, class Items>
 BrickSet flag_bricks(Executor &executor, const Items &items, const Lattice &lattice, const char *name) {
   const uint64_t entries = lattice.table_size();
@@ -254,7 +259,10 @@ BrickSet flag_bricks(Executor &executor, const Items &items, const Lattice &latt
   executor.fill(flags, 0);
   executor.fill(table, 0xff);
   for_rows_of_bricks<Executor>(items, [&](const RowRange &rows, uint64_t steps) {
-    executor.for_each(items.size(), FlagBricks<Items>{items, flags.data, rows}, steps);
+    const bool is_all = rows.first == 0 && rows.last == ~uint64_t(0);
+    const size_t layers = Executor::kIsCuda && is_all && items.size() < kManyItems ? 4 : 1;
+    executor.for_each(items.size() * layers, FlagBricks<Items>{items, flags.data, rows, static_cast<int>(layers)},
+                      steps);
   });
   // Room for the list: for all entries, or counted first.
   const uint64_t room = lists_all_entries(entries, executor.arena().has_budget())
@@ -278,7 +286,7 @@ BrickSet sort_bricks(Executor &executor, const Items &items, const Lattice &latt
     executor.for_each(items.size(), ListBricks<Items>{items, first.data, keys.data, rows}, steps);
   });
   executor.for_each(visits, SortValue{unused.data});
-  executor.sort_by_key(keys, unused, bits_for(lattice.table_size()));
+  executor.sort_by_key(keys, unused);
   const uint32_t count = checked_brick_count(executor.compact(visits, IsFirstOfEqual{keys.data}, linear));
   executor.for_each(count, GatherKeys{keys.data, linear.data});
   return {lattice, linear.data, nullptr, count};
@@ -369,7 +377,7 @@ BrickSet collect_bricks(CountingExecutor<Executor> &executor, const Items &items
     executor.exclusive_scan(items.size(), 0, Span<uint64_t>{});
     executor.arena().rewind(mark);
     SortedBricks(executor, visits);
-    executor.sort_by_key(Span<uint64_t>{nullptr, visits}, Span<uint32_t>{nullptr, visits}, 64);
+    executor.sort_by_key(Span<uint64_t>{nullptr, visits}, Span<uint32_t>{nullptr, visits});
   }
   return set;
 }

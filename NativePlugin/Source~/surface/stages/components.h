@@ -369,8 +369,8 @@ MeshComponents find_components(Executor &executor, const MeshView &mesh, const M
   executor.template for_each_brick<ChunkSums>(
       reduce_chunks(counts.triangles),
       SumComponents{mesh, counts.triangles, chunk, labels.data, number_of, 1.0 / h, units, bent, sums.data}, 1);
-  if (Executor::kIsCuda) executor.download(found.data, sums.data, count);
-  executor.wait();
+  executor.send_counts();  // they come with what is waited for
+  executor.fetch_all(found.data, sums.data, count);
   executor.arena().rewind(mark);
   while (count > 0 && found[count - 1].triangles == 0) --count;  // there are fewer than anticipated
 

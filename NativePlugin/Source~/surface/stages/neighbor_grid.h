@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Uniform neighbour grid (QuickSES 2019, section 2.1): items are hashed to cells, sorted by cell with Thrust, and found
-// again by the runs of cells along x. Used for the atoms (edge p + r_max) and for the balls around exposed arcs.
+// Uniform neighbour grid (QuickSES 2019, section 2.1): items are hashed to cells, put in order by cell, and found again
+// by the runs of cells along x. Used for the atoms (edge p + r_max) and for the balls around exposed arcs. The order is
+// found by counting where cells are few and none is crowded, else by sorting.
 #pragma once
 
 #include "parallel/anticipation.h"
@@ -76,9 +77,24 @@ QSES_FN CellBox cells_around(const CellLayout &cells, const Vec3<float> &low, co
       cells.cell_along(low.z, cells.origin.z, cells.count.z), cells.cell_along(high.z, cells.origin.z, cells.count.z)};
 }
 
-// Stands where there may have been one more item: in no cell, behind all others.
+// Stands where there may have been one more item: in no cell, and behind all others from the start.
 QSES_FN bool is_no_item(const Sphere &s) { return s.radius < 0.f; }
 QSES_FN Sphere no_item() { return {glm::vec3(kFarAway), -1.f}; }
+
+// More items in a cell are sorted: counting asks each of a cell's items for its rank among the others.
+constexpr uint32_t kCrowd = 1024;
+// Fewer are not told to the host, so that it does not matter to it that they change.
+constexpr uint32_t kFewInCell = 256;
+
+struct CellCounts {
+  uint32_t *in_cell = nullptr;         // zeros at first; nullptr: nothing is counted
+  uint32_t *slots = nullptr;           // of each item, how many of its cell were counted before it
+  Tally<uint32_t> *fullest = nullptr;  // items in the fullest cell, if that has more than a few
+  QSES_FN void add(size_t i, uint64_t cell) const {
+    const uint32_t slot = slots[i] = atomic_add(&in_cell[cell], uint32_t(1));
+    if (slot >= kFewInCell && slot >= atomic_load(&fullest->count)) atomic_max(&fullest->count, slot + 1);
+  }
+};
 
 template <class ItemAt>
 struct HashItems {
@@ -87,17 +103,61 @@ struct HashItems {
   Sphere *items;
   uint64_t *keys;
   uint32_t *order;
+  CellCounts counts;
   QSES_HOST_DEVICE void operator()(size_t i) const {
     const Sphere item = item_at(i);
     items[i] = item;
-    keys[i] = is_no_item(item) ? cells.cells() : cells.hash(item.center);
     order[i] = static_cast<uint32_t>(i);
+    keys[i] = is_no_item(item) ? cells.cells() : cells.hash(item.center);
+    if (counts.in_cell && !is_no_item(item)) counts.add(i, keys[i]);
   }
 };
 
 struct LoadItem {
   const Sphere *items;
   QSES_HOST_DEVICE Sphere operator()(size_t i) const { return items[i]; }
+};
+
+// The items of each cell together, in whatever order they were counted.
+struct CollectNumbers {
+  const uint64_t *keys;
+  const uint32_t *starts, *slots;
+  uint64_t cells;
+  uint32_t *numbers;
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    const uint64_t cell = keys[i];
+    if (cell < cells) numbers[starts[cell] + slots[i]] = static_cast<uint32_t>(i);
+  }
+};
+
+constexpr size_t kBehindItems = 8;  // kernels load whole packs
+QSES_FN Sphere behind_items() { return {glm::vec3(kFarAway), 0.f}; }
+
+// Puts them in order, and leaves what kernels may load behind the last item. For kBehindItems or all items, whichever
+// are more.
+struct RankItems {
+  const uint64_t *keys;
+  const uint32_t *starts, *numbers;
+  const Sphere *items;
+  uint64_t cells;
+  size_t count;
+  Sphere *sorted;
+  uint32_t *order;
+  QSES_HOST_DEVICE void operator()(size_t place) const {
+    if (place < kBehindItems) sorted[count + place] = behind_items();
+    if (place >= count) return;
+    if (place >= starts[cells]) {  // no item
+      sorted[place] = items[place];
+      order[place] = static_cast<uint32_t>(place);
+      return;
+    }
+    const uint32_t i = numbers[place];
+    const uint32_t begin = starts[keys[i]], found = starts[keys[i] + 1] - begin;
+    uint32_t rank = begin;  // a crowd is met in frames only that are thrown away
+    for (uint32_t k = 0; k < (found < kCrowd ? found : kCrowd); ++k) rank += numbers[begin + k] < i ? 1 : 0;
+    sorted[rank] = items[i];
+    order[rank] = i;
+  }
 };
 
 // First item of each cell of a chunk: found once, then walked. On the GPU a chunk is one cell.
@@ -120,18 +180,17 @@ struct FindCellStarts {
 // Puts items in order, finds where cells start, and leaves what kernels may load behind the last item.
 template <uint64_t kChunk>
 struct ArrangeItems {
-  static constexpr size_t kBehind = 8;  // kernels load whole packs
   const Sphere *items;
   const uint32_t *order;
   Sphere *sorted;
   size_t count, chunks;
   FindCellStarts<kChunk> find_starts;
   // As many as there are items, chunks, or spheres behind, whichever is the most.
-  size_t size() const { return std::max({count, chunks, kBehind}); }
+  size_t size() const { return std::max({count, chunks, kBehindItems}); }
   QSES_HOST_DEVICE void operator()(size_t i) const {
     if (i < count) sorted[i] = items[order[i]];
     if (i < chunks) find_starts(i);
-    if (i < kBehind) sorted[count + i] = {glm::vec3(kFarAway), 0.f};
+    if (i < kBehindItems) sorted[count + i] = behind_items();
   }
 };
 
@@ -143,18 +202,15 @@ constexpr bool dense_table_pays(uint64_t entries, uint64_t items) {
   return entries <= kMaxDenseCells && (entries <= kSmallTable || entries <= 64 * items);
 }
 
+// Whether to count pays, which goes over all cells.
+constexpr bool counting_pays(uint64_t cells, uint64_t items) { return cells <= 65536 || cells <= 8 * items; }
+
 inline CellLayout layout_cells(const glm::vec3 &low, const glm::vec3 &high, float edge) {
   CellLayout cells;
   cells.origin = low;
   cells.inverse_edge = 1.f / edge;
   for (int d = 0; d < 3; ++d) cells.count[d] = static_cast<int>((high[d] - low[d]) / edge) + 1;
   return cells;
-}
-
-inline int bits_for(uint64_t values) {
-  int bits = 1;
-  while (bits < 64 && (values >> bits) != 0) ++bits;
-  return bits;
 }
 
 // Of items that a look-up meets run by run: those whose places among them are in a range. With very many of them the
@@ -211,12 +267,11 @@ uint64_t most_items_near(Executor &executor, const char *name, const NeighborGri
 }
 
 // A grid of n items. prepare() returns what makes one from its number; what it allocates is given up again, as is all
-// else but the grid. The cells bound the items' centres.
+// else but the grid. The cells bound the items' centres. name: of the count of the fullest cell, if it is crowded.
 template <class Executor, class Prepare>
-NeighborGridView build_neighbor_grid(Executor &executor, size_t n, const CellLayout &cells, const Prepare &prepare) {
-  constexpr uint64_t kChunk = Executor::kIsCuda ? 1 : 16;
-  using Arrange = ArrangeItems<kChunk>;
-  Span<Sphere> sorted = executor.template allocate<Sphere>(n + Arrange::kBehind);
+NeighborGridView build_neighbor_grid(Executor &executor, const char *name, size_t n, const CellLayout &cells,
+                                     const Prepare &prepare) {
+  Span<Sphere> sorted = executor.template allocate<Sphere>(n + kBehindItems);
   Span<uint32_t> order = executor.template allocate<uint32_t>(n);
   const bool dense = dense_table_pays(cells.cells(), n);
   Span<uint32_t> starts{};
@@ -229,11 +284,32 @@ NeighborGridView build_neighbor_grid(Executor &executor, size_t n, const CellLay
   const auto item_at = prepare();
   const Span<Sphere> items = executor.template allocate<Sphere>(n);
   if (dense) keys = executor.template allocate<uint64_t>(n);
-  executor.for_each(n, HashItems<std::decay_t<decltype(item_at)>>{cells, item_at, items.data, keys.data, order.data});
-  executor.sort_by_key(keys, order, bits_for(cells.cells()));
-  const FindCellStarts<kChunk> find_starts{keys.data, static_cast<uint32_t>(n), cells.cells(), starts.data};
-  const Arrange arrange{items.data, order.data, sorted.data, n, dense ? cells.cells() / kChunk + 1 : 0, find_starts};
-  executor.for_each(arrange.size(), arrange);
+  bool is_counted = dense && counting_pays(cells.cells(), n);
+  CellCounts counts{};
+  if (is_counted) {
+    const Span<uint32_t> in_cell = executor.template allocate<uint32_t>(cells.cells());
+    executor.fill(in_cell, 0);
+    counts = {in_cell.data, executor.template allocate<uint32_t>(n).data,
+              executor.template take_counts<Tally<uint32_t>>()};
+  }
+  executor.for_each(
+      n, HashItems<std::decay_t<decltype(item_at)>>{cells, item_at, items.data, keys.data, order.data, counts});
+  if (is_counted && n > kCrowd)
+    is_counted = executor.expect(name, counts.fullest, Tally<uint32_t>{static_cast<uint32_t>(n)}).count <= kCrowd;
+  if (is_counted) {
+    executor.exclusive_scan(cells.cells(), LoadCount<uint32_t>{counts.in_cell}, starts);
+    const Span<uint32_t> numbers = executor.template allocate<uint32_t>(n);
+    executor.for_each(n, CollectNumbers{keys.data, starts.data, counts.slots, cells.cells(), numbers.data});
+    executor.for_each(std::max(n, kBehindItems), RankItems{keys.data, starts.data, numbers.data, items.data,
+                                                           cells.cells(), n, sorted.data, order.data});
+  } else {
+    constexpr uint64_t kChunk = Executor::kIsCuda ? 1 : 16;
+    executor.sort_by_key(keys, order);
+    const FindCellStarts<kChunk> find_starts{keys.data, static_cast<uint32_t>(n), cells.cells(), starts.data};
+    const ArrangeItems<kChunk> arrange{items.data, order.data, sorted.data, n, dense ? cells.cells() / kChunk + 1 : 0,
+                                       find_starts};
+    executor.for_each(arrange.size(), arrange);
+  }
   executor.arena().rewind(mark);
   return {cells, sorted.data, order.data, starts.data, dense ? nullptr : keys.data, static_cast<uint32_t>(n)};
 }
@@ -241,7 +317,7 @@ NeighborGridView build_neighbor_grid(Executor &executor, size_t n, const CellLay
 // The same for items that are there already.
 template <class Executor>
 NeighborGridView build_neighbor_grid(Executor &executor, Span<Sphere> items, const CellLayout &cells) {
-  return build_neighbor_grid(executor, items.size, cells, [&] { return LoadItem{items.data}; });
+  return build_neighbor_grid(executor, "crowded cell", items.size, cells, [&] { return LoadItem{items.data}; });
 }
 
 }  // namespace quickses
