@@ -19,11 +19,6 @@ struct AtomRun {
   QSES_FN uint32_t size() const { return last - first; }
 };
 
-struct LoadNumber {
-  const uint32_t *numbers;
-  QSES_HOST_DEVICE uint32_t operator()(size_t i) const { return numbers[i]; }
-};
-
 // A circle: its atom, and the rank of its cap among the atom's.
 struct CircleName {
   uint32_t atom;
@@ -337,7 +332,7 @@ template <class E>
 void write_arcs(E &executor, const ArcSearch &search) {
   const CircleJob &job = search.job;
   const FeatureRoom &room = job.room;
-  executor.exclusive_scan(room.circles, LoadNumber{search.arc_count.data}, search.arc_first);
+  executor.exclusive_scan(room.circles, LoadCount<uint32_t>{search.arc_count.data}, search.arc_first);
   // A circle's arcs are split into no more pieces than its length in Å, and one for each.
   const uint64_t intervals = std::max<uint64_t>(kLaneIntervals, room.intervals);
   const uint64_t pieces = static_cast<uint64_t>(6.3f * search.max_radius) + intervals;

@@ -42,7 +42,7 @@ FeatureCounters find_run_features(E &executor, const FeaturePass &pass, AtomRun 
             CapJob{pass.atoms, pass.max_radius, run, room, counters, pass.cap_ranges, caps, neighbors.data,
                    circle_count.data, pass.exposed, long_atoms.data},
             memory_is_short);
-  executor.exclusive_scan(n, LoadNumber{circle_count.data}, circle_first);
+  executor.exclusive_scan(n, LoadCount<uint32_t>{circle_count.data}, circle_first);
   const ArcSearch search = find_arcs(executor,
                                      CircleJob{pass.atoms, run, room, counters, pass.cap_ranges, caps, neighbors.data,
                                                circle_first.data, pass.exposed, arcs, arc_atoms},
