@@ -180,6 +180,11 @@ MeshMemoryView cut_surface(Work &work, const MeshMemoryView &whole) {
   return mesh;
 }
 
+template <class Work>
+void begin_appearance(Work &work) {
+  work.timer.begin(work.settings.occlusion ? "occlusion" : "appearance");
+}
+
 // The mesh of all atoms, measured; then what is shown of it, with hard edges if they are asked for.
 template <class Work>
 MeshMemoryView build_surface(Work &work) {
@@ -189,6 +194,10 @@ MeshMemoryView build_surface(Work &work) {
                         : splits_creases(work)                         ? build_creased_surface(work)
                                                                        : build_exact_surface(work);
   const MeshCounts counts{mesh.vertices, mesh.triangles};
+  if (work.paints_early()) {
+    begin_appearance(work);
+    paint_and_light(work, mesh);
+  }
   Measures measures{};
   if (wants_components(work.settings)) {
     work.timer.begin("components");
@@ -235,7 +244,7 @@ MeshMemoryView build_level(Work &work) {
   MeshMemoryView mesh{};
   if (work.makes_mesh) mesh = build_surface(work);
   if (work.settings.delivery != QSES_DELIVERY_NONE) {
-    work.timer.begin(work.settings.occlusion ? "occlusion" : "appearance");
+    begin_appearance(work);
     complete_vertices(work, &mesh);
   }
   if (work.shape.boxes) {

@@ -54,6 +54,12 @@ struct LevelWork {
   bool makes_mesh = true;
   AtomMeasures atom_measures{};     // where the surface is that of the balls, and measured
   Span<const double> atom_areas{};  // in host memory; of all levels
+
+  // Whether the mesh, as it is made, has the vertices and normals that will be delivered: then they are painted before
+  // anything waits for what is measured.
+  bool paints_early() const {
+    return settings.delivery != QSES_DELIVERY_NONE && !side_normals && !is_cut && !hard_edges;
+  }
 };
 
 // Are creases of the mesh of this level split? Not of coarser ones.
@@ -103,15 +109,21 @@ void add_normals(Work &work, MeshMemoryView *mesh) {
   add_normals(work, work.side_normals, mesh);
 }
 
+// Colours, texture coordinates and light of vertices that have their places, owners and normals.
+template <class Work>
+void paint_and_light(Work &work, const MeshMemoryView &mesh) {
+  paint_vertices(work.executor, work.appearance, mesh.view, mesh.vertices);
+  if (work.settings.occlusion && mesh.vertices > 0)
+    find_openness(work.executor, work.atoms, work.parameters, work.lattice, work.low, work.high, mesh.view,
+                  mesh.vertices, !work.appearance.texcoords);
+}
+
 // What is left to do for a mesh whose vertices have their places, owners, and normals of each side.
 template <class Work>
 void complete_vertices(Work &work, MeshMemoryView *mesh) {
-  paint_vertices(work.executor, work.appearance, mesh->view, mesh->vertices);
   share_normals(work.executor, mesh->view, mesh->vertices);
   if (work.side_normals) face_triangles(work.executor, mesh->view, MeshCounts{mesh->vertices, mesh->triangles});
-  if (work.settings.occlusion && mesh->vertices > 0)
-    find_openness(work.executor, work.atoms, work.parameters, work.lattice, work.low, work.high, mesh->view,
-                  mesh->vertices, !work.appearance.texcoords);
+  if (!work.paints_early()) paint_and_light(work, *mesh);
   pack_normals(work.executor, mesh->view, mesh->vertices);
   mesh->view.second_normals = nullptr;
   if (mesh->view.packed_normals) mesh->view.normals = nullptr;
