@@ -334,6 +334,7 @@ class CudaExecutor {
   }
   template <class Key, class Value>
   size_t sort_bytes(size_t n) const {
+    if (n >= kMostItems) return n * (sizeof(Key) + sizeof(Value));  // forecast, but never done
     size_t bytes = 0;
     check_cuda(sort_pairs(nullptr, bytes, Span<Key>{nullptr, n}, Span<Value>{nullptr, n}), "CUB");
     return bytes;
@@ -514,8 +515,9 @@ class CudaExecutor {
   static constexpr size_t kLittleFill = size_t(1) << 19;
   static constexpr size_t kDefaultSharedBytes = 48 * 1024;
 
+  static constexpr size_t kMostItems = std::numeric_limits<int>::max();  // of CUB's passes
   static void check_count(size_t n, const char *verb) {
-    if (n >= static_cast<size_t>(std::numeric_limits<int>::max()))
+    if (n >= kMostItems)
       throw Error(QSES_OUT_OF_MEMORY,
                   std::string(verb) + ": more than 2^31 items; use a larger spacing or a smaller slice size");
   }

@@ -96,4 +96,29 @@ TEST(NeighborGridCuda, IsThatOfPlainLoops) {
       }
 }
 
+// Nothing is known of it when it comes; what is made of it until then has each item once.
+TEST(NeighborGridCuda, BearsACrowdThatIsNotAnticipated) {
+  if (no_device()) GTEST_SKIP() << "skipped: no CUDA device";
+  const DeviceGuard guard(0);
+  CudaExecutor executor(0);
+  const CellLayout cells = layout_cells(glm::vec3(0.f), glm::vec3(60.f), 3.1f);
+  std::vector<Sphere> spheres = random_spheres(5000, 60.f, 8);
+  for (const bool crowded : {false, true}) {
+    for (size_t k = 0; crowded && k < 3 * kCrowd; ++k) spheres[k].center = glm::vec3(1.f, 2.f, 3.f);
+    executor.arena().reset();
+    executor.open_counts(1);
+    const Span<Sphere> on_device = executor.allocate<Sphere>(spheres.size());
+    executor.upload(on_device.data, spheres.data(), spheres.size());
+    const NeighborGridView grid = build_neighbor_grid(executor, on_device, cells);
+    std::vector<uint32_t> order = to_host(executor, grid.order, spheres.size());
+    std::sort(order.begin(), order.end());
+    for (uint32_t k = 0; k < order.size(); ++k) ASSERT_EQ(order[k], k);
+    executor.send_counts();
+    if (crowded)
+      EXPECT_THROW(executor.verify_counts(), AnticipatedTooLittle);
+    else
+      executor.verify_counts();
+  }
+}
+
 }  // namespace

@@ -23,7 +23,7 @@ QSES_FN int first_with(int first, int last, const Property &has) {
 }
 
 // Of the rows along x of the bricks around something: those to look at. If they are all of them, perhaps only those of
-// every so-manieth layer along z.
+// the layers along z from one on, so many apart.
 struct RowRange {
   uint64_t first = 0, last = ~uint64_t(0);
   int layer = 0, layers = 1;

@@ -153,8 +153,11 @@ struct RankItems {
     }
     const uint32_t i = numbers[place];
     const uint32_t begin = starts[keys[i]], found = starts[keys[i] + 1] - begin;
-    uint32_t rank = begin;  // a crowd is met in frames only that are thrown away
-    for (uint32_t k = 0; k < (found < kCrowd ? found : kCrowd); ++k) rank += numbers[begin + k] < i ? 1 : 0;
+    uint32_t rank = begin;
+    if (found <= kCrowd)
+      for (uint32_t k = 0; k < found; ++k) rank += numbers[begin + k] < i ? 1 : 0;
+    else  // only in a frame that is thrown away
+      rank = static_cast<uint32_t>(place);
     sorted[rank] = items[i];
     order[rank] = i;
   }
