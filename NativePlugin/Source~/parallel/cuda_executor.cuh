@@ -526,7 +526,7 @@ class CudaExecutor {
     if (stop_ && stop_->load(std::memory_order_relaxed)) throw Cancelled{};
   }
 
-  // Not by digits: it is rare, and that would be six times as much code in the library.
+  // Not by digits: it is rare, and that would be half as much code again in the library.
   template <class Key, class Value>
   cudaError_t sort_pairs(void *temporary, size_t &bytes, Span<Key> keys, Span<Value> values) const {
     return cub::DeviceMergeSort::StableSortPairs(temporary, bytes, keys.data, values.data, static_cast<int>(keys.size),
