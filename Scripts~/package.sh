@@ -25,10 +25,12 @@ for argument in "$@"; do
 done
 bash Scripts~/setup.sh "${setup[@]}"
 
-# Build trees of its own: what somebody chose for another one, an architecture say, isn't in them.
+# Build trees of its own, with the options of now: what somebody chose for another one, an architecture say, isn't in
+# them, nor is what was the default at the run before.
 unset CFLAGS CXXFLAGS CUDAFLAGS LDFLAGS
 for preset in "${presets[@]}"; do
   build=.build/package/$preset
+  rm -f "$build/CMakeCache.txt"
   cmake --preset "$preset" -B "$build" -DQUICKSES_BUILD_CLI=OFF -DQUICKSES_BUILD_TESTS=OFF
   cmake --build "$build" --target plugin --parallel "$(nproc)"
 done
