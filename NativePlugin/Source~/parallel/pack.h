@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Pack: eight floats that the geometry functions treat like one. AVX2 where the file is compiled for it, two SSE
-// registers otherwise, plain arrays on other processors. Included only by the CPU kernels.
+// registers otherwise, plain arrays on other processors. Included only by the CPU kernels, and by tests of their parts.
 #pragma once
 
 #include "parallel/scalar.h"

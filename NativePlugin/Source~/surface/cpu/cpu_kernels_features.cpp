@@ -2,6 +2,7 @@
 // CPU kernel: caps and exposed arcs of one atom, eight neighbours or eight cutting balls at a time.
 #include "parallel/atomics.h"
 #include "parallel/pack.h"
+#include "surface/cpu/cpu_covered_sphere.h"
 #include "surface/cpu/cpu_kernels.h"
 
 namespace quickses {
@@ -70,7 +71,8 @@ int gather_neighbors(const NeighborGridView &atoms, float max_radius, uint32_t i
   return n;
 }
 
-// Turns offsets and radii into unit directions and cap cosines; leaves out neighbours that only touch.
+// Turns offsets and radii into unit directions and cap cosines, with a pack of caps behind them that are none; leaves
+// out neighbours that only touch.
 int make_caps(float radius, const Columns &c, int n) {
   int kept = 0;
   for (int q = 0; q < n; q += kPackSize) {
@@ -88,13 +90,13 @@ int make_caps(float radius, const Columns &c, int n) {
     store_lanes(c.cosine + kept, keep, cosine);
     for (uint32_t k = keep; k; k &= k - 1) c.index[kept++] = index[lowest_bit32(k)];
   }
+  for (int k = kept; k < kept + kPackSize; ++k) c.x[k] = c.y[k] = c.z[k] = 0.f, c.cosine[k] = 2.f;
   return kept;
 }
 
 // Largest cap first; of equal ones the earlier atom.
 void sort_caps(const Columns &c, int n) {
   for (int w = 0; w <= n / 64; ++w) c.taken[w] = 0;
-  for (int k = n; k < n + kPackSize; ++k) c.cosine[k] = 2.f;
   for (int j = 0; j < n; ++j) {
     if (j % 64 == 0) look_for_stop();
     const Pack own(c.cosine[j]);
@@ -182,6 +184,11 @@ AtomFeatures find_atom_features(const NeighborGridView &atoms, const SurfacePara
     atomic_set(&exposed[i]);
     return {0, 0, 0};
   }
+  // Far from the surface most atoms are: none of their circles needs to be looked at.
+  float *const bounds[] = {c.sx, c.sy, c.sz, c.scos};  // not in use yet
+  if (self.radius > kLeastCoveredRadius * parameters.max_radius &&
+      CoveredSphere({c.x, c.y, c.z}, c.cosine, n, bounds).is_covered())
+    return {0, 0, 0};
   sort_caps(c, n);
   n = drop_contained_caps(c, n);
   if (n > cap_room) return {0, n, 0};

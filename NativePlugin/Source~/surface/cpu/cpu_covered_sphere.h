@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+// CPU: atoms that are buried beyond doubt are known without their circles. Discs are laid over the atom's sphere; it is
+// covered if each lies within a cap, or each of the seven smaller discs that cover it does, and so on.
+#pragma once
+
+#include "parallel/pack.h"
+#include "parallel/working_thread.h"
+#include "surface/geometry/circle.h"
+
+#include <cmath>
+
+namespace quickses {
+namespace QSES_CPU_ISA {
+
+// Caps of smaller spheres, in units of the largest one, are not exact enough for the margins of the discs.
+constexpr float kLeastCoveredRadius = 0.01f;
+
+// Directions that turn by the golden angle while they go down, told in an order that is soon everywhere. None is
+// farther from the nearest than 0.3414.
+struct SpreadDirections {
+  static constexpr int kCount = 64, kStep = 27;
+  Vec3<float> at[kCount];
+  SpreadDirections() {
+    for (int k = 0; k < kCount; ++k) {
+      const int place = k * kStep % kCount;
+      const double z = 1 - (2 * place + 1) / double(kCount), r = std::sqrt(1 - z * z), turn = 2.399963229728653 * place;
+      at[k] = {static_cast<float>(r * std::cos(turn)), static_cast<float>(r * std::sin(turn)), static_cast<float>(z)};
+    }
+  }
+};
+
+class CoveredSphere {
+ public:
+  static constexpr int kLevels = 4;
+
+  // Of n caps: axes and cosines, which may be read up to the next whole pack, and are no caps there (0 and 2). bounds:
+  // room for as many.
+  CoveredSphere(const Vec3<const float *> &axes, const float *cosines, int n, float *const (&bounds)[kLevels])
+      : axes_(axes), count_(n) {
+    for (int level = 0; level < kLevels; ++level) bounds_[level] = bounds[level];
+    for (int q = 0; q < n; q += kPackSize) {
+      const Pack cosine = load_pack(cosines + q), sine = square_root(maximum(Pack(0.f), Pack(1.f) - cosine * cosine));
+      for (int level = 0; level < kLevels; ++level) {
+        // The cosine of the cap's angle less the disc's, if there is anything left.
+        const Pack c(kDiscs[level].cosine), bound = cosine * c + sine * Pack(kDiscs[level].sine);
+        store_pack(bounds[level] + q, select(cosine < c, bound, Pack(2.f)));
+      }
+    }
+  }
+
+  bool is_covered() {
+    static const SpreadDirections directions;
+    for (int k = 0; k < SpreadDirections::kCount; ++k) {
+      if (k % 8 == 0) look_for_stop();  // in a crowd, the smallest discs take their time
+      if (!is_disc_covered(directions.at[k], 0)) return false;
+    }
+    return true;
+  }
+
+ private:
+  // Discs of .345, .176, .0898 and .0458 radians. Seven of half a disc's radius, six of them .85 of it away from its
+  // middle, cover it; these have two hundredths more, for rounding.
+  struct Disc {
+    float cosine, sine;
+    float cosine_away;
+  };
+  static constexpr Disc kDiscs[kLevels] = {{0.9410755f, 0.3381967f, 0.9573095f},
+                                           {0.9845519f, 0.1750928f, 0.9888308f},
+                                           {0.9959707f, 0.0896794f, 0.9970883f},
+                                           {0.9989514f, 0.0457840f, 0.9992423f}};
+  static constexpr float kHexagon[6][2] = {{1.f, 0.f},  {0.5f, 0.8660254f},   {-0.5f, 0.8660254f},
+                                           {-1.f, 0.f}, {-0.5f, -0.8660254f}, {0.5f, -0.8660254f}};
+
+  bool is_within_a_cap(const Vec3<float> &middle, int level) {
+    const Vec3<Pack> d(Pack(middle.x), Pack(middle.y), Pack(middle.z));
+    const auto is_within = [&](int q) {
+      const Vec3<Pack> axis(load_pack(axes_.x + q), load_pack(axes_.y + q), load_pack(axes_.z + q));
+      return lane_bits(load_pack(bounds_[level] + q) <= dot(d, axis)) != 0;
+    };
+    if (is_within(latest_)) return true;
+    for (int q = 0; q < count_; q += kPackSize)
+      if (is_within(q)) {
+        latest_ = q;
+        return true;
+      }
+    return false;
+  }
+
+  bool is_disc_covered(const Vec3<float> &middle, int level) {
+    if (is_within_a_cap(middle, level)) return true;
+    if (level + 1 == kLevels || !is_disc_covered(middle, level + 1)) return false;
+    const Circle around = make_circle(glm::vec3(middle.x, middle.y, middle.z), kDiscs[level].cosine_away, 1.f);
+    for (int k = 0; k < 6; ++k) {
+      const Vec3<float> side = around.e1 * kHexagon[k][0] + around.e2 * kHexagon[k][1];
+      if (!is_disc_covered(around.axis * around.cosine + side * around.sine, level + 1)) return false;
+    }
+    return true;
+  }
+
+  Vec3<const float *> axes_;
+  const float *bounds_[kLevels];
+  int count_, latest_ = 0;
+};
+
+}  // namespace QSES_CPU_ISA
+}  // namespace quickses
