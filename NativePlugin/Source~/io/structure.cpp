@@ -188,10 +188,11 @@ void leave_out(Structure &structure, const Filter &filter, const std::string &pa
   const bool selects = !filter.selection.is_everything();
   const std::vector<uint8_t> mask = selects ? filter.selection.select(structure) : std::vector<uint8_t>();
   if (selects && std::find(mask.begin(), mask.end(), 1) == mask.end())
-    fail_input("no atoms of " + which + "'" + path + "' are left after the filters: the selection '" +
-               filter.selection.text() +
-               "' names none (it may be words such as 'chain A and protein', or CID such as '//A'); there are " +
-               contents_of(structure));
+    fail_input(
+        "no atoms of " + which + "'" + path + "' are left after the filters: the selection '" +
+        filter.selection.text() +
+        "' names none (it may be words such as 'chain A and protein', or CID such as '//A'); the structure has " +
+        contents_of(structure));
   size_t kept = 0;
   for (size_t i = 0; i < structure.atoms.size(); ++i) {
     AtomInfo &info = structure.atoms[i];

@@ -59,9 +59,10 @@ __global__ __launch_bounds__(BlockTeam::kSize) void for_each_brick_kernel(Queued
 
 // Sum of each chunk of reduce(): a thread adds every 128th item, then the threads are added as a tree. Always the same
 // order, but not the one of a single thread.
+constexpr int kSumBlocks = 4;  // of a multiprocessor, at least: sums of doubles wait for each other
 template <class T, class Load>
-__global__ __launch_bounds__(BlockTeam::kSize) void sum_chunks_kernel(QueuedItems queued, size_t n, Load load,
-                                                                      T *sums) {
+__global__ __launch_bounds__(BlockTeam::kSize, kSumBlocks) void sum_chunks_kernel(QueuedItems queued, size_t n,
+                                                                                  Load load, T *sums) {
   const LaunchItems chunks = queued.in_turn();
   __shared__ __align__(16) unsigned char partial_memory[BlockTeam::kSize * sizeof(T)];
   T *partial = reinterpret_cast<T *>(partial_memory);
@@ -80,7 +81,7 @@ __global__ __launch_bounds__(BlockTeam::kSize) void sum_chunks_kernel(QueuedItem
 // Few items are scanned, or chosen, by one block: each thread goes over a run of them, twice. CUB's passes over the
 // whole device take two launches, of which each waits for what was queued before it.
 constexpr int kFewThreads = 1024;
-constexpr size_t kFewItems = 16 * kFewThreads;
+constexpr size_t kFewItems = 4 * kFewThreads;
 struct FewItems {
   size_t first, last;
   __device__ __forceinline__ explicit FewItems(size_t n) {
@@ -512,7 +513,7 @@ class CudaExecutor {
   }
 
   static constexpr size_t kStagingBytes = 4096, kMostStaged = size_t(1) << 20;
-  static constexpr size_t kLittleFill = size_t(1) << 19;
+  static constexpr size_t kLittleFill = size_t(1) << 19, kLittleFetch = size_t(1) << 22;
   static constexpr size_t kDefaultSharedBytes = 48 * 1024;
 
   static constexpr size_t kMostItems = std::numeric_limits<int>::max();  // of CUB's passes
@@ -572,7 +573,12 @@ class CudaExecutor {
   // Waits; what it returns is valid until the next call that copies to the host.
   const void *to_staging(const void *source, size_t bytes) {
     void *host = staging_.reserve(bytes);
-    check_cuda(cudaMemcpyAsync(host, source, bytes, cudaMemcpyDeviceToHost, stream_), "cudaMemcpyAsync");
+    // Little comes by a kernel: a copy would wait for those of a mesh that is on its way to the host.
+    if (bytes <= kLittleFetch && bytes % sizeof(uint32_t) == 0 && reinterpret_cast<uintptr_t>(source) % 4 == 0)
+      for_each(bytes / sizeof(uint32_t),
+               gpu::CopyWords{static_cast<uint32_t *>(host), static_cast<const uint32_t *>(source)});
+    else
+      check_cuda(cudaMemcpyAsync(host, source, bytes, cudaMemcpyDeviceToHost, stream_), "cudaMemcpyAsync");
     wait();
     return host;
   }

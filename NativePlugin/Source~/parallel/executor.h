@@ -56,6 +56,12 @@ constexpr uint64_t kPlainSteps = 512, kPlainTeamSteps = 4096;
 // For a sum's item: double precision, of which the smallest GPU does one thirty-second.
 constexpr uint64_t kPlainSumSteps = 64;
 
+// Each item its own number, as before a sort.
+struct NumberItems {
+  uint32_t *numbers;
+  QSES_HOST_DEVICE void operator()(size_t i) const { numbers[i] = static_cast<uint32_t>(i); }
+};
+
 // The usual thing to sum up or scan.
 template <class T>
 struct LoadCount {

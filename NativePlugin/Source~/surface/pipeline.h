@@ -197,6 +197,7 @@ MeshMemoryView build_surface(Work &work) {
   if (work.paints_early()) {
     begin_appearance(work);
     paint_and_light(work, mesh);
+    work.memory.bring_vertices(executor, mesh);
   }
   Measures measures{};
   if (wants_components(work.settings)) {

@@ -33,7 +33,7 @@ struct CornersOfFour {
 
 void measure_triangles(const MeasureTriangle &measure, size_t first, size_t count, TriangleSums *sums) {
   const MeshView &mesh = measure.mesh;
-  const Vec3<DoublePack> origin(measure.origin[0], measure.origin[1], measure.origin[2]);
+  const Vec3<DoublePack> origin(measure.origin.x, measure.origin.y, measure.origin.z);
   constexpr size_t kFour = kDoublePackSize;
   for (size_t t = 0; t < count; t += kFour) {
     const size_t n = count - t < kFour ? count - t : kFour;

@@ -46,6 +46,7 @@ class MeshMemory<CpuKernelExecutor> {
   void deliver_to(const qses_settings &) {}
   void note_triangles(CpuKernelExecutor &) {}
   void bring_triangles(const MeshMemoryView &, MeshPurpose) {}
+  void bring_vertices(CpuKernelExecutor &, const MeshMemoryView &) {}
   // Fills in both meshes and the boxes.
   void finish(const MeshMemoryView &built, const qses_settings &settings, qses_mesh *mesh, PickBoxes *boxes,
               qses_device_mesh *on_device) {

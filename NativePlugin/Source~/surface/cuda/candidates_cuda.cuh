@@ -108,21 +108,60 @@ __device__ __forceinline__ float box_distance2(const Vec3<float> &low, float ext
   return dx * dx + dy * dy + dz * dz;
 }
 
-// Calls visit(item, on) for the items of the cells around a box.
-template <class Visit>
-__device__ __forceinline__ void visit_cells(const NeighborGridView &grid, const Vec3<float> &low, float extent,
-                                            float reach, const Visit &visit) {
+constexpr int kGatherWarps = 4;
+constexpr int kGatherRoom = 192;  // of each kind, in a warp's shared memory; longer rows are gathered twice
+
+// The warps that gather for one brick: one, or all of a block where bricks are few. Each goes over a run of the cells.
+template <int kWarps>
+struct GatherTeam {
+  static_assert(kWarps == 1 || kWarps == kGatherWarps, "a warp or a block");
+  struct Memory {
+    uint32_t words[kWarps];
+    unsigned long long first;
+  };
+  Memory &memory;
+  __device__ __forceinline__ int rank() const { return kWarps == 1 ? 0 : static_cast<int>(threadIdx.x) / kWarp; }
+  __device__ __forceinline__ bool leads() const { return rank() == 0 && lane_id() == 0; }
+  __device__ __forceinline__ void sync() const {
+    if constexpr (kWarps == 1)
+      __syncwarp();
+    else
+      __syncthreads();
+  }
+  // reduce(rank, word) for the words of all warps. Not again before sync().
+  template <class Reduce>
+  __device__ __forceinline__ void for_each_word(uint32_t own, const Reduce &reduce) const {
+    if constexpr (kWarps == 1) {
+      reduce(0, own);
+    } else {
+      if (lane_id() == 0) memory.words[rank()] = own;
+      __syncthreads();
+      for (int w = 0; w < kWarps; ++w) reduce(w, memory.words[w]);
+    }
+  }
+  // A number that the one who leads has. Not again before sync().
+  __device__ __forceinline__ unsigned long long from_leader(unsigned long long value) const {
+    if constexpr (kWarps == 1) return __shfl_sync(kFullWarp, value, 0);
+    if (leads()) memory.first = value;
+    __syncthreads();
+    return memory.first;
+  }
+};
+
+// Calls visit(item, on) for the items of the cells around a box that are this warp's share.
+template <int kWarps, class Visit>
+__device__ __forceinline__ void visit_cells(const GatherTeam<kWarps> &team, const NeighborGridView &grid,
+                                            const Vec3<float> &low, float extent, float reach, const Visit &visit) {
   if (grid.count == 0) return;
   const CellBox box = cells_around(grid.cells, {low.x - reach, low.y - reach, low.z - reach},
                                    {low.x + extent + reach, low.y + extent + reach, low.z + extent + reach});
-  const int rows_y = box.y1 - box.y0 + 1;
+  const int rows_y = box.y1 - box.y0 + 1, rows = rows_y * (box.z1 - box.z0 + 1);
+  const int begin = rows * team.rank() / kWarps, end = rows * (team.rank() + 1) / kWarps;
   visit_runs(
-      rows_y * (box.z1 - box.z0 + 1),
-      [&](int r) { return grid.run(box.x0, box.x1, box.y0 + r % rows_y, box.z0 + r / rows_y); }, visit);
+      end - begin,
+      [&](int r) { return grid.run(box.x0, box.x1, box.y0 + (begin + r) % rows_y, box.z0 + (begin + r) / rows_y); },
+      visit);
 }
-
-constexpr int kGatherWarps = 4;
-constexpr int kGatherRoom = 192;  // of each kind, in shared memory; longer rows are gathered twice
 
 struct GatherJob {
   FeatureView features;
@@ -181,11 +220,13 @@ struct GatheredRow {
   bool fits;
 };
 
-// Gathers the things around a box for which test(item, &leaves) holds. The first round counts, and keeps short rows in
-// shared memory; a second one writes long rows. One copy of the test for both, so that they never disagree.
-template <class Test>
-__device__ __forceinline__ GatheredRow gather_row(const NeighborGridView &grid, const Vec3<float> &low, float extent,
-                                                  float reach, const RowMemory &memory, const Test &test) {
+// Gathers the things around a box for which test(item, &leaves) holds, in the order of the grid. The first round
+// counts, and keeps few in shared memory; a second one writes more. One copy of the test for both, so that they never
+// disagree.
+template <int kWarps, class Test>
+__device__ __forceinline__ GatheredRow gather_row(const GatherTeam<kWarps> &team, const NeighborGridView &grid,
+                                                  const Vec3<float> &low, float extent, float reach,
+                                                  const RowMemory &memory, const Test &test) {
   const int lane = lane_id();
   uint32_t *items = memory.near;
   uint8_t *leaves = memory.near_leaves;
@@ -193,7 +234,7 @@ __device__ __forceinline__ GatheredRow gather_row(const NeighborGridView &grid, 
   GatheredRow row{0, 0, false};
   for (int round = 0;; ++round) {
     uint32_t n = 0;
-    visit_cells(grid, low, extent, reach, [&](uint32_t k, bool on) {
+    visit_cells(team, grid, low, extent, reach, [&](uint32_t k, bool on) {
       uint32_t set = 0;
       const bool near = on && test(k, &set);
       const uint32_t place = append_place(near, &n);
@@ -203,13 +244,17 @@ __device__ __forceinline__ GatheredRow gather_row(const NeighborGridView &grid, 
       }
     });
     if (round == 1) break;
-    row.count = n;
-    if (lane == 0) row.first = atomicAdd(memory.counter, static_cast<unsigned long long>(n));
-    row.first = __shfl_sync(kFullWarp, row.first, 0);
-    row.fits = row.first + n <= memory.room;
+    uint32_t before = 0;
+    team.for_each_word(n, [&](int rank, uint32_t count) {
+      if (rank < team.rank()) before += count;
+      row.count += count;
+    });
+    if (team.leads()) row.first = atomicAdd(memory.counter, static_cast<unsigned long long>(row.count));
+    row.first = team.from_leader(row.first);
+    row.fits = row.first + row.count <= memory.room;
     if (!row.fits) break;  // all will be done again
-    items = memory.items + row.first;
-    if (leaves) leaves = memory.leaves + row.first;
+    items = memory.items + row.first + before;
+    if (leaves) leaves = memory.leaves + row.first + before;
     room = 0xffffffffu;
     if (n > kGatherRoom) continue;
     __syncwarp();
@@ -219,18 +264,22 @@ __device__ __forceinline__ GatheredRow gather_row(const NeighborGridView &grid, 
     }
     break;
   }
-  __syncwarp();
+  team.sync();
   return row;
 }
 
-// The rows of one brick. A warp per brick.
+// The rows of one brick.
+template <int kWarps>
 static __global__ __launch_bounds__(kGatherWarps *kWarp, 8) void gather_candidates_kernel(QueuedItems queued,
                                                                                           GatherJob job) {
   const LaunchItems bricks = queued.in_turn();
   __shared__ uint32_t near_memory[kGatherWarps][kGatherRoom];
   __shared__ uint8_t near_leaves[kGatherWarps][kGatherRoom];
+  __shared__ typename GatherTeam<kWarps>::Memory team_memory;
+  const GatherTeam<kWarps> team{team_memory};
   const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();
-  const uint32_t b = static_cast<uint32_t>(bricks.first) + blockIdx.x * kGatherWarps + static_cast<uint32_t>(warp);
+  const uint32_t b =
+      static_cast<uint32_t>(bricks.first) + (blockIdx.x * kGatherWarps + static_cast<uint32_t>(warp)) / kWarps;
   if (b >= bricks.last) return;
   const FeatureView &f = job.features;
   const CandidateReach &reach = job.reach;
@@ -244,7 +293,7 @@ static __global__ __launch_bounds__(kGatherWarps *kWarp, 8) void gather_candidat
   const float grown = reach.grown, atom_extent = extent + 2.f * grown;
   const Vec3<float> atom_low(low.x - grown, low.y - grown, low.z - grown);
   const GatheredRow atoms =
-      gather_row(f.atoms, atom_low, atom_extent, f.parameters.max_radius + reach.slack,
+      gather_row(team, f.atoms, atom_low, atom_extent, f.parameters.max_radius + reach.slack,
                  {near_memory[warp], nullptr, job.view.atoms, nullptr, &job.counters->atoms, job.atom_room},
                  [&](uint32_t k, uint32_t *) {
                    const Sphere atom = load(f.atoms.items + k);
@@ -266,7 +315,7 @@ static __global__ __launch_bounds__(kGatherWarps *kWarp, 8) void gather_candidat
   const float overhang = reach.overhang, arc_extent = extent + 2.f * overhang;
   const Vec3<float> arc_low(low.x - overhang, low.y - overhang, low.z - overhang);
   const GatheredRow arcs = gather_row(
-      f.arc_bounds, arc_low, arc_extent, reach.start_reach + f.max_arc_bound,
+      team, f.arc_bounds, arc_low, arc_extent, reach.start_reach + f.max_arc_bound,
       {near_memory[warp], near_leaves[warp], job.view.arcs, job.view.arc_leaves, &job.counters->arcs, job.arc_room},
       [&](uint32_t k, uint32_t *leaves) {
         const Sphere ball = load(f.arc_bounds.items + k);
@@ -282,28 +331,29 @@ static __global__ __launch_bounds__(kGatherWarps *kWarp, 8) void gather_candidat
         return true;
       });
 
-  active = warp_or(active);
+  uint32_t active_leaves = 0;
+  team.for_each_word(warp_or(active), [&](int, uint32_t leaves) { active_leaves |= leaves; });
   // Without room for its rows the brick has none; all will be done again.
   const bool fits = atoms.fits && arcs.fits;
-  if (!fits) active = 0;
+  if (!fits) active_leaves = 0;
   unsigned long long first_leaf = 0;
-  if (lane == 0) {
-    if (active != 0) first_leaf = atomicAdd(&job.counters->leaves, static_cast<unsigned long long>(__popc(active)));
+  if (team.leads()) {
+    if (active_leaves != 0)
+      first_leaf = atomicAdd(&job.counters->leaves, static_cast<unsigned long long>(__popc(active_leaves)));
     job.view.brick_rows[b] = fits ? BrickRow{atoms.first, arcs.first, atoms.count, arcs.count} : BrickRow{0, 0, 0, 0};
     const uint32_t longest = atoms.count > arcs.count ? atoms.count : arcs.count;
     if (longest > kUsualRow) atomicMax(&job.counters->longest_row, longest);
   }
-  first_leaf = __shfl_sync(kFullWarp, first_leaf, 0);
-
-  if (lane == 0) job.view.brick_leaves[b] = static_cast<uint8_t>(active);
-  if (lane < kLeavesPerBrick) {
-    if (active >> lane & 1)
-      job.view.leaf_list[first_leaf + static_cast<unsigned>(place_in(active, lane))] =
+  if (team.rank() == 0) {
+    first_leaf = __shfl_sync(kFullWarp, first_leaf, 0);
+    if (lane == 0) job.view.brick_leaves[b] = static_cast<uint8_t>(active_leaves);
+    if (lane < kLeavesPerBrick && (active_leaves >> lane & 1) != 0)
+      job.view.leaf_list[first_leaf + static_cast<unsigned>(place_in(active_leaves, lane))] =
           b * kLeavesPerBrick + static_cast<uint32_t>(lane);
   }
   if (!job.signs) return;
-  for (uint32_t rest = ~active & 0xffu; rest; rest &= rest - 1) {
-    const int leaf = __ffs(static_cast<int>(rest)) - 1;
+  for (int leaf = team.rank(); leaf < kLeavesPerBrick; leaf += kWarps) {
+    if (active_leaves >> leaf & 1) continue;
     const bool inside =
         fits && uniform_leaf_inside(job, job.view.atoms + atoms.first, atoms.count, leaf_center(low, leaf, h));
     if (lane == 0)

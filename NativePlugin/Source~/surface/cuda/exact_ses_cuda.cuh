@@ -259,7 +259,11 @@ void gather_candidates(E &executor, const FeatureView &features, const BrickSet 
   size_t arc_room = room_for(rooms.listed_arcs, features.arc_bounds.count);
   // All items in the cells around a brick are looked at, at most twice.
   const float extent = 7.f * reach.spacing + 2.f * reach.grown;
-  const auto shape = [](uint64_t near) { return LaunchShape{kGatherWarps * kWarp, kGatherWarps, 256 + near / 16}; };
+  constexpr size_t kMostWarps = 40;  // of a multiprocessor, that few bricks may have
+  const bool together = size_t(n) * kGatherWarps <= executor.multiprocessors() * kMostWarps;
+  const auto shape = [&](uint64_t near) {
+    return LaunchShape{kGatherWarps * kWarp, together ? size_t(1) : size_t(kGatherWarps), 256 + near / 16};
+  };
   const auto near_of = [&](const char *name, const NeighborGridView &grid, float look) {
     return most_items_near(executor, name, grid, extent + 2.f * look,
                            [&](uint64_t items) { return executor.is_few_launches(n, shape(items)); });
@@ -275,7 +279,8 @@ void gather_candidates(E &executor, const FeatureView &features, const BrickSet 
     view.atoms = executor.template allocate<uint32_t>(atom_room).data;
     view.arcs = executor.template allocate<uint32_t>(arc_room).data;
     view.arc_leaves = executor.template allocate<uint8_t>(arc_room).data;
-    executor.launch("gather_candidates", gather_candidates_kernel, n, gather,
+    executor.launch("gather_candidates",
+                    together ? gather_candidates_kernel<kGatherWarps> : gather_candidates_kernel<1>, n, gather,
                     GatherJob{features, bricks, reach, view, counters, atom_room, arc_room, signs});
     found = executor.expect("candidates", counters,
                             CandidateCounters{atom_room, arc_room, uint64_t(n) * kLeavesPerBrick, 0});

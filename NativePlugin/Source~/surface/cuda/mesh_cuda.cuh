@@ -66,23 +66,26 @@ void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bri
   const bool gathered = candidates.slice.first == slice.first && candidates.slice.last == slice.last;
   const VertexJob job = prepare_vertices(executor, features, bricks, layout, slice, rooms, candidates, starts, mesh);
   const uint64_t look = vertex_steps(features, candidates.longest_row);
-  const auto launch_first = [&](auto lanes, auto on_atoms, auto on_arcs) {
-    const LaunchShape once{kVertexThreads, kVertexThreads / lanes, 64 + 2 * look / lanes};
-    executor.launch("project_on_atoms", on_atoms, job.count, once, job);
-    executor.launch("project_on_arcs", on_arcs, job.count, once, job);
+  // Lanes for each of few vertices, or of such that have much to look at; so many for a multiprocessor at most.
+  constexpr size_t kFew = 4, kMostThreads = 3072;
+  constexpr uint32_t kLongList = 256;
+  const bool are_few = job.count * kFew <= executor.multiprocessors() * kMostThreads,
+             have_much = job.list_words >= kLongList;
+  const auto launch_first = [&](const char *name, bool by_several, auto by_one, auto by_few) {
+    const size_t lanes = by_several ? kFew : 1;
+    executor.launch(name, by_several ? by_few : by_one, job.count,
+                    LaunchShape{kVertexThreads, kVertexThreads / lanes, 64 + 2 * look / lanes}, job);
   };
-  constexpr size_t kFew = 4,
-                   kMostThreads = 3072;  // lanes for each of few vertices; so many for a multiprocessor at most
-  if (job.count * kFew <= executor.multiprocessors() * kMostThreads)
-    launch_first(kFew, project_on_atoms_kernel<kFew>, project_on_arcs_kernel<kFew>);
-  else
-    launch_first(size_t(1), project_on_atoms_kernel<1>, project_on_arcs_kernel<1>);
+  launch_first("project_on_atoms", are_few, project_on_atoms_kernel<1>, project_on_atoms_kernel<kFew>);
+  launch_first("project_on_arcs", are_few || have_much, project_on_arcs_kernel<1>, project_on_arcs_kernel<kFew>);
   // As a rule few vertices are left.
   const auto share = [&](int lanes, uint64_t looks) {
     return LaunchShape{kVertexThreads, static_cast<size_t>(kVertexThreads / lanes),
                        looks * (64 + look / static_cast<uint64_t>(lanes)), size_t(executor.multiprocessors()) * 16};
   };
-  executor.launch("reproject", reproject_kernel, job.count, share(kVertexLanes, 2 + kMaxProjections), job);
+  const int lanes = have_much ? kWarp : 8;
+  executor.launch("reproject", have_much ? reproject_kernel<kWarp> : reproject_kernel<8>, job.count,
+                  share(lanes, 2 + kMaxProjections), job);
   const LaunchShape place = share(kWarp, looks_for_sign_change(features.parameters, kPlaceHalvings));
   size_t on_edges = job.count;
   if (!E::kCounts && job.count > 0 && !executor.is_few_launches(on_edges, place))

@@ -48,7 +48,8 @@ class MeshMemory<CudaExecutor> {
     try {
       const DeviceGuard guard(executor_.device());
       if (!may_hand_back()) return;
-      if (triangles_made_) cudaEventDestroy(triangles_made_);
+      for (cudaEvent_t event : {triangles_made_, vertices_made_})
+        if (event) cudaEventDestroy(event);
       if (copies_) {
         cudaStreamSynchronize(copies_);
         cudaStreamDestroy(copies_);
@@ -60,7 +61,7 @@ class MeshMemory<CudaExecutor> {
   }
 
   void use_slot(int slot) {
-    wait_for_triangles();  // of a mesh that was given up
+    wait_for_copies();  // of a mesh that was given up
     host_meshes_.use_slot(slot);
     device_meshes_.use_slot(slot);
   }
@@ -118,23 +119,24 @@ class MeshMemory<CudaExecutor> {
   }
 
   // What the executor has been given so far makes the triangles of a mesh.
-  void note_triangles(CudaExecutor &executor) {
-    if (!triangles_made_)
-      check_cuda(cudaEventCreateWithFlags(&triangles_made_, cudaEventDisableTiming), "cudaEventCreateWithFlags");
-    check_cuda(cudaEventRecord(triangles_made_, executor.stream()), "cudaEventRecord");
-  }
+  void note_triangles(CudaExecutor &executor) { note(executor, &triangles_made_); }
   // If the mesh is handed out on the host as it is, and large, they go there while the rest of it is made.
   void bring_triangles(const MeshMemoryView &mesh, MeshPurpose purpose) {
-    constexpr size_t kWorthAStream = size_t(1) << 17;  // triangles: 1.5 MB
+    constexpr size_t kWorthAStream = size_t(1) << 13;  // triangles: 98 KB
     if (!to_host_ || purpose != MeshPurpose::kDelivered || mesh.triangles < kWorthAStream) return;
     const MeshArrays arrays(mesh.vertices, mesh.triangles, without_spare(mesh.shape));
     brought_ = arrays.view(host_meshes_.reserve(arrays.bytes()));
     if (!copies_) check_cuda(cudaStreamCreateWithFlags(&copies_, cudaStreamNonBlocking), "cudaStreamCreateWithFlags");
-    check_cuda(cudaStreamWaitEvent(copies_, triangles_made_, 0), "cudaStreamWaitEvent");
-    are_brought_ = true;
-    check_cuda(
-        cudaMemcpyAsync(brought_.indices, mesh.view.indices, mesh.triangles * 12, cudaMemcpyDeviceToHost, copies_),
-        "cudaMemcpyAsync");
+    are_triangles_brought_ = true;
+    bring_after(triangles_made_, brought_.indices, mesh.view.indices, mesh.triangles * 12);
+  }
+  // Then its vertices as well, once they are as they are handed out, while the mesh is measured.
+  void bring_vertices(CudaExecutor &executor, const MeshMemoryView &mesh) {
+    if (!are_triangles_brought_) return;
+    note(executor, &vertices_made_);
+    are_vertices_brought_ = true;
+    for_each_array(brought_, mesh.view, mesh.vertices, 0,
+                   [&](void *to, const void *from, size_t bytes) { bring_after(vertices_made_, to, from, bytes); });
   }
 
   void finish(const MeshMemoryView &built, const qses_settings &settings, qses_mesh *mesh, PickBoxes *boxes,
@@ -142,7 +144,7 @@ class MeshMemory<CudaExecutor> {
     MeshView host = built.view;
     if (built.vertices > 0 && to_host_ && !built.in_pieces) host = bring(built);
     executor_.wait();
-    wait_for_triangles();
+    wait_for_copies();
     describe_mesh(built, to_host_ ? &host : nullptr, settings, mesh);
     *boxes = host.boxes;
     qses_device_mesh_init(on_device);
@@ -176,14 +178,24 @@ class MeshMemory<CudaExecutor> {
     return memory;
   }
 
-  // The arrays of a whole mesh, without what is spare; triangles may be on their way already.
+  static void note(CudaExecutor &executor, cudaEvent_t *made) {
+    if (!*made) check_cuda(cudaEventCreateWithFlags(made, cudaEventDisableTiming), "cudaEventCreateWithFlags");
+    check_cuda(cudaEventRecord(*made, executor.stream()), "cudaEventRecord");
+  }
+  void bring_after(cudaEvent_t made, void *to, const void *from, size_t bytes) {
+    check_cuda(cudaStreamWaitEvent(copies_, made, 0), "cudaStreamWaitEvent");
+    check_cuda(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToHost, copies_), "cudaMemcpyAsync");
+  }
+
+  // The arrays of a whole mesh, without what is spare; triangles and vertices may be on their way already.
   MeshView bring(const MeshMemoryView &mesh) {
     const MeshArrays arrays(mesh.vertices, mesh.triangles, without_spare(mesh.shape));
-    if (!are_brought_) brought_ = arrays.view(host_meshes_.reserve(arrays.bytes()));
+    if (!are_triangles_brought_) brought_ = arrays.view(host_meshes_.reserve(arrays.bytes()));
     const auto copy = [&](void *to, const void *from, size_t bytes) {
       executor_.download(static_cast<char *>(to), static_cast<const char *>(from), bytes);
     };
-    for_each_array(brought_, mesh.view, mesh.vertices, are_brought_ ? 0 : mesh.triangles, copy);
+    for_each_array(brought_, mesh.view, are_vertices_brought_ ? 0 : mesh.vertices,
+                   are_triangles_brought_ ? 0 : mesh.triangles, copy);
     if (mesh.shape.component_ids) copy(brought_.component_ids, mesh.view.component_ids, mesh.vertices * 4);
     if (mesh.shape.repeated > 0) copy(brought_.repeated, mesh.view.repeated, mesh.shape.repeated * 4);
     if (mesh.shape.boxes) {
@@ -192,9 +204,9 @@ class MeshMemory<CudaExecutor> {
     }
     return brought_;
   }
-  void wait_for_triangles() {
-    if (are_brought_) check_cuda(cudaStreamSynchronize(copies_), "cudaStreamSynchronize");
-    are_brought_ = false;
+  void wait_for_copies() {
+    if (are_triangles_brought_) check_cuda(cudaStreamSynchronize(copies_), "cudaStreamSynchronize");
+    are_triangles_brought_ = are_vertices_brought_ = false;
   }
 
   // At most a mesh to be made into another one, its normals and those of the other one, sums and starts at a time.
@@ -206,9 +218,9 @@ class MeshMemory<CudaExecutor> {
   CudaExecutor &executor_;
   MeshLeases host_meshes_, device_meshes_;
   bool keep_ = false, to_host_ = false;
-  cudaEvent_t triangles_made_ = nullptr;
+  cudaEvent_t triangles_made_ = nullptr, vertices_made_ = nullptr;
   cudaStream_t copies_ = nullptr;
-  bool are_brought_ = false;  // triangles are on their way, to here:
+  bool are_triangles_brought_ = false, are_vertices_brought_ = false;  // they are on their way, to here:
   MeshView brought_{};
   std::deque<PinnedBuffer> spill_;
   size_t spilled_ = 0;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // GPU: vertices from their starts to the exact surface. Four kernels step the rule of projection.h, so that lanes do
 // not wait for each other: vertices on contact patches are done with the first, nearly all others with the second, both
-// with a thread for each, or four where they are few; the third has those that turn from one probe to another, eight
-// lanes for each, and the last a warp for each that finds no place.
+// with a thread for each, or four where they are few or lists are long; the third has those that turn from one probe to
+// another, eight lanes for each or, where lists are long, a warp, and the last a warp for each that finds no place.
 #pragma once
 
 #include "surface/cuda/lane_candidates_cuda.cuh"
@@ -158,19 +158,19 @@ static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(
     leave_start(job, k);
 }
 
-constexpr int kVertexLanes = 8;
+template <int kLanes>
 static __global__ __launch_bounds__(kVertexThreads, 8) void reproject_kernel(QueuedItems queued, VertexJob job) {
   const LaunchItems vertices = queued.in_turn();
   const FeatureView &f = job.features;
-  const uint32_t teams = gridDim.x * (kVertexThreads / kVertexLanes), unfinished = job.counts->unfinished;
+  const uint32_t teams = gridDim.x * (kVertexThreads / kLanes), unfinished = job.counts->unfinished;
   const uint32_t total = unfinished < vertices.last ? unfinished : static_cast<uint32_t>(vertices.last);
-  const uint32_t team = static_cast<uint32_t>(lane_id()) / kVertexLanes;
+  const uint32_t team = static_cast<uint32_t>(lane_id()) / kLanes;
   for (uint32_t place0 =
-           static_cast<uint32_t>(vertices.first) + (blockIdx.x * kVertexThreads + threadIdx.x) / kVertexLanes - team;
+           static_cast<uint32_t>(vertices.first) + (blockIdx.x * kVertexThreads + threadIdx.x) / kLanes - team;
        place0 < total; place0 += teams) {
     const bool on = place0 + team < total;
     const uint32_t k = job.unfinished[on ? place0 + team : place0];
-    const auto candidates = shared<kVertexLanes>(vertex_candidates(job, k));
+    const auto candidates = shared<kLanes>(vertex_candidates(job, k));
     Projection v{};
     if (on) v = left_vertex(job, k);
     // In step, so that the lanes of all teams look for arcs together.

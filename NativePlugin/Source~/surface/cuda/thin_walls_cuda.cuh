@@ -33,7 +33,10 @@ struct WallJob {
   uint64_t *edges;   // by that number, kWallSteps words each: those that may be walls
   uint64_t *walks;   // 64 * kWallSteps * number of the leaf + 64 * step + bit
   unsigned long long walk_room;
+  uint32_t walk_run;  // those of a leaf take whole runs of so many places; kNoWalk in the rest
 };
+
+constexpr uint64_t kNoWalk = ~uint64_t(0);
 
 constexpr int kWallThreads = 128;
 constexpr int kWallWarps = kWallThreads / kWarp;
@@ -175,26 +178,28 @@ static __global__ __launch_bounds__(kWallThreads, 8) void drop_open_edges_kernel
         scratch.probe[bit] = make_float4(probe.center.x, probe.center.y, probe.center.z, probe.distance);
         scratch.decider[bit] = decider;
       }
+      uint32_t left = 0;
 #pragma unroll
       for (int s = 0; s < kWallSteps; ++s) {
         const uint64_t word = __shfl_sync(kFullWarp, own, s);
-        const bool left =
-            on && (word >> bit & 1) != 0 && !probe_covers(f.parameters, probe, position(bit, wall_step(s)));
-        const int place = append_place(left, &count);
-        if (left) scratch.edge[place] = static_cast<uint16_t>(64 * s + bit);
+        if (on && (word >> bit & 1) != 0 && !probe_covers(f.parameters, probe, position(bit, wall_step(s))))
+          left |= 1u << s;
       }
+      const int own_count = __popc(left), with_own = warp_inclusive_sum(own_count, lane);
+      for (int place = count + with_own - own_count; left; left &= left - 1)
+        scratch.edge[place++] = static_cast<uint16_t>(64 * (__ffs(static_cast<int>(left)) - 1) + bit);
+      count += __shfl_sync(kFullWarp, with_own, kWarp - 1);
     }
     __syncwarp();
 
     // By those of both ends.
+    int walks = 0;
     for (int n0 = 0; n0 < count; n0 += kWarp) {
       bool left = n0 + lane < count, rests = false;
-      uint64_t item = 0;
+      const int number = scratch.edge[left ? n0 + lane : 0];
       WallRest rest{};
       if (left) {
-        const int number = scratch.edge[n0 + lane];
         const WallEdge e = wall_edge(job, slot, number / 64, number % 64);
-        item = static_cast<uint64_t>(slot) * (kWallSteps * 64) + static_cast<uint64_t>(number);
         const uint32_t decider = decider_at(job, brick, e.second);
         if (decider != kNotLookedAt) {
           const float4 v = scratch.probe[e.bit];
@@ -218,13 +223,19 @@ static __global__ __launch_bounds__(kWallThreads, 8) void drop_open_edges_kernel
         }
         if (__any_sync(kFullWarp, covered) && lane == whose) left = false;
       }
-      uint32_t walks = 0;
-      const uint32_t place = append_place(left, &walks);
-      unsigned long long base = 0;
-      if (lane == 0 && walks > 0) base = atomicAdd(&job.counters->walks, static_cast<unsigned long long>(walks));
-      base = __shfl_sync(kFullWarp, base, 0);
-      if (left && base + place < job.walk_room) job.walks[base + place] = item;
+      __syncwarp();
+      const int place = append_place(left, &walks);  // never beyond those looked at
+      if (left) scratch.edge[place] = static_cast<uint16_t>(number);
+      __syncwarp();
     }
+    const uint32_t places = (static_cast<uint32_t>(walks) + job.walk_run - 1) / job.walk_run * job.walk_run;
+    unsigned long long base = 0;
+    if (lane == 0 && places > 0) base = atomicAdd(&job.counters->walks, static_cast<unsigned long long>(places));
+    base = __shfl_sync(kFullWarp, base, 0);
+    for (int n = lane; n < static_cast<int>(places); n += kWarp)
+      if (base + static_cast<unsigned>(n) < job.walk_room)
+        job.walks[base + static_cast<unsigned>(n)] =
+            n < walks ? static_cast<uint64_t>(slot) * (kWallSteps * 64) + scratch.edge[n] : kNoWalk;
   }
 }
 
@@ -243,48 +254,91 @@ __device__ __forceinline__ NearestProbe nearest_probe_if(bool asks, const Featur
   return told ? said : contact ? probe_on_atom(f, deepest, x) : probe_on_arc(f, nearest, x);
 }
 
-// Some lanes for each edge that is left. They wait for memory: more blocks at a time are worth registers.
+// Walks an edge by a team of lanes, if it is on; all teams of a warp in step.
 template <int kLanes>
+__device__ __forceinline__ void walk_edge(const WallJob &job, const WallEdge &e, const Vec3<float> &a,
+                                          const Vec3<float> &b, bool on, const LaneCandidates<kLanes, true> &near) {
+  const FeatureView &f = job.features;
+  const SurfaceParameters &p = f.parameters;
+  const NearestProbe probe_a = decided_probe(f, first_decider(job, e.slot, e.bit, a), a);
+  const uint32_t decider_b = decider_at(job, e.brick, e.second);
+  const bool looks_for_b = decider_b == kNotLookedAt;
+  NearestProbe probe_b{b, 0.f};
+  if (__any_sync(kFullWarp, looks_for_b)) probe_b = nearest_probe_if(looks_for_b, f, near, b);
+  if (!looks_for_b) probe_b = decided_probe(f, decider_b, b);
+  WallWalk walk = begin_wall_walk(p, e.step, a, probe_a, b, probe_b);
+  if (!on) walk = {0.f, 0.f};
+  const Vec3<float> direction = wall_direction(e.step);
+  for (int round = 0; round < kMostWallSteps && __any_sync(kFullWarp, !walk.is_open()); ++round) {
+    const Vec3<float> x = a + direction * (walk.at + kWallStep);
+    const NearestProbe probe = nearest_probe_if(!walk.is_open(), f, near, x);
+    if (walk.is_open()) continue;
+    if (probe.distance > p.depth) {
+      if (near.rank() == 0)
+        mark_wall(job.bricks, e.brick, marks_first_end(probe_a, probe_b) ? e.first : e.second, job.marks);
+      walk = {0.f, 0.f};
+    } else {
+      walk.at += kWallStep + way_out(p, probe, x, direction);
+    }
+  }
+}
+
+__device__ __forceinline__ WallEdge edge_to_walk(const WallJob &job, uint64_t item) {
+  return wall_edge(job, static_cast<uint32_t>(item / (64 * kWallSteps)), static_cast<int>(item / 64 % kWallSteps),
+                   static_cast<int>(item % 64));
+}
+// How far from the middle of an edge balls decide about its points.
+__device__ __forceinline__ float walk_reach(const WallJob &job, int step) {
+  return 0.5f * wall_step_length(step) * job.reach.spacing + 2.f * job.reach.slack;
+}
+
+// What can decide about any edge of a run, which are all of one leaf.
+__device__ __forceinline__ LaneCandidates<kWarp, true> choose_for_run(const WallJob &job, const uint64_t *run,
+                                                                      int count, uint32_t *room, int most) {
+  const uint64_t own = run[lane_id() < count ? lane_id() : 0];
+  const WallEdge e = edge_to_walk(job, own == kNoWalk ? run[0] : own);
+  const Vec3<float> middle = (wall_point(job, e.brick, e.first) + wall_point(job, e.brick, e.second)) * 0.5f;
+  const Vec3<float> low(-warp_maximum(-middle.x), -warp_maximum(-middle.y), -warp_maximum(-middle.z)),
+      high(warp_maximum(middle.x), warp_maximum(middle.y), warp_maximum(middle.z)), center = (low + high) * 0.5f;
+  const float reach = square_root(length_squared(high - center)) + walk_reach(job, kWallSteps - 1) + job.reach.slack;
+  return choose_near<kWarp>(job.features, brick_candidates(job.view, e.slot / kLeavesPerBrick), center, reach, room,
+                            most);
+}
+
+// Some lanes for each edge that is left. They wait for memory: more blocks at a time are worth registers. A warp takes
+// so many edges one after the other. Where leaves have many, as at wide spacings, what can decide about any edge of a
+// run is chosen first, and from that what can decide about each.
+template <int kLanes, int kRun>
 static __global__ __launch_bounds__(kWallThreads, 10) void walk_edges_kernel(QueuedItems queued, WallJob job) {
   const LaunchItems items = queued.in_turn();
   constexpr int kTeams = kWallThreads / kLanes, kWarpTeams = kWarp / kLanes, kRoom = 2560 / kTeams;
+  constexpr bool kChosenTwice = kRun > kWarpTeams;
+  constexpr int kRunRoom = kChosenTwice ? 640 : 1;
+  static_assert(kRun % kWarpTeams == 0 && kRun <= kWarp, "a lane for each edge, and none of another run");
   __shared__ uint32_t edge_memory[kTeams][kRoom];
-  const FeatureView &f = job.features;
-  const SurfaceParameters &p = f.parameters;
-  const size_t teams = size_t(gridDim.x) * kTeams, walks = job.counters->walks;
-  const size_t total = walks < items.last ? walks : items.last;
+  __shared__ uint32_t run_memory[kWallWarps][kRunRoom];
+  const size_t walks = job.counters->walks, total = walks < items.last ? walks : items.last;
   const int team = static_cast<int>(threadIdx.x) / kLanes, warp = team / kWarpTeams;
-  for (size_t k0 = items.first + blockIdx.x * kTeams + static_cast<size_t>(warp * kWarpTeams); k0 < total;
-       k0 += teams) {
-    const size_t k = k0 + static_cast<size_t>(team % kWarpTeams);
-    const bool on = k < total;
-    const uint64_t item = job.walks[on ? k : k0];
-    const WallEdge e = wall_edge(job, static_cast<uint32_t>(item / (64 * kWallSteps)),
-                                 static_cast<int>(item / 64 % kWallSteps), static_cast<int>(item % 64));
-    const Vec3<float> a = wall_point(job, e.brick, e.first), b = wall_point(job, e.brick, e.second);
-    const float reach = 0.5f * wall_step_length(e.step) * p.spacing + 2.f * job.reach.slack;
-    const auto near = choose_near<kLanes>(f, brick_candidates(job.view, e.slot / kLeavesPerBrick), (a + b) * 0.5f,
-                                          reach, edge_memory[team], kRoom);
-    const NearestProbe probe_a = decided_probe(f, first_decider(job, e.slot, e.bit, a), a);
-    const uint32_t decider_b = decider_at(job, e.brick, e.second);
-    const bool looks_for_b = decider_b == kNotLookedAt;
-    NearestProbe probe_b{b, 0.f};
-    if (__any_sync(kFullWarp, looks_for_b)) probe_b = nearest_probe_if(looks_for_b, f, near, b);
-    if (!looks_for_b) probe_b = decided_probe(f, decider_b, b);
-    WallWalk walk = begin_wall_walk(p, e.step, a, probe_a, b, probe_b);
-    if (!on) walk = {0.f, 0.f};
-    const Vec3<float> direction = wall_direction(e.step);
-    for (int round = 0; round < kMostWallSteps && __any_sync(kFullWarp, !walk.is_open()); ++round) {
-      const Vec3<float> x = a + direction * (walk.at + kWallStep);
-      const NearestProbe probe = nearest_probe_if(!walk.is_open(), f, near, x);
-      if (walk.is_open()) continue;
-      if (probe.distance > p.depth) {
-        if (near.rank() == 0)
-          mark_wall(job.bricks, e.brick, marks_first_end(probe_a, probe_b) ? e.first : e.second, job.marks);
-        walk = {0.f, 0.f};
-      } else {
-        walk.at += kWallStep + way_out(p, probe, x, direction);
-      }
+  for (size_t first = items.first + (blockIdx.x * size_t(kWallWarps) + static_cast<size_t>(warp)) * kRun; first < total;
+       first += size_t(gridDim.x) * kWallWarps * kRun) {
+    const uint64_t *const run = job.walks + first;
+    const int count = total - first < kRun ? static_cast<int>(total - first) : kRun;
+    LaneCandidates<kWarp, true> near_run{};
+    if constexpr (kChosenTwice) near_run = choose_for_run(job, run, count, run_memory[warp], kRunRoom);
+    for (int n0 = 0; n0 < count && run[n0] != kNoWalk; n0 += kWarpTeams) {
+      const int n = n0 + team % kWarpTeams;
+      const uint64_t own = run[n < count ? n : n0];
+      const bool on = n < count && own != kNoWalk;
+      const WallEdge e = edge_to_walk(job, on ? own : run[n0]);
+      const Vec3<float> a = wall_point(job, e.brick, e.first), b = wall_point(job, e.brick, e.second);
+      const auto choose = [&](const auto &all) {
+        return choose_near<kLanes>(job.features, all, (a + b) * 0.5f, walk_reach(job, e.step), edge_memory[team],
+                                   kRoom);
+      };
+      if constexpr (kChosenTwice)
+        walk_edge(job, e, a, b, on, choose(near_run));
+      else
+        walk_edge(job, e, a, b, on, choose(brick_candidates(job.view, e.slot / kLeavesPerBrick)));
     }
   }
 }
@@ -323,6 +377,8 @@ void mark_thin_walls(E &executor, const FeatureView &features, const BrickSet &b
   WallCounters found{};
   const double usual_walks = walked_edges(features.parameters) * static_cast<double>(leaves);
   job.walk_room = static_cast<unsigned long long>(rooms.walked_edges * usual_walks);
+  constexpr int kLongWalkRun = 8;
+  job.walk_run = walked_edges(features.parameters) > kLongWalkRun ? kLongWalkRun : 1;
   for (;;) {
     const auto before_walks = executor.arena().mark();
     job.walks = executor.template allocate<uint64_t>(static_cast<size_t>(job.walk_room)).data;
@@ -335,17 +391,21 @@ void mark_thin_walls(E &executor, const FeatureView &features, const BrickSet &b
     rooms.walked_edges = std::max(rooms.walked_edges, kRoomToSpare * static_cast<double>(found.walks) / usual_walks);
     executor.fill(Span<unsigned long long>{&counters->walks, 1}, 0);
   }
-  // Few edges leave a GPU idle with eight lanes each.
-  const auto walk = [&](size_t lanes, auto kernel) {
-    executor.launch(
-        "walk_edges", kernel, static_cast<size_t>(found.walks),
-        LaunchShape{kWallThreads, kWallThreads / lanes, (2 + kMostWallSteps) * (64 + look / lanes), most_blocks}, job);
+  const auto walk = [&](size_t lanes, size_t run, auto kernel) {
+    const uint64_t rounds = run * lanes / kWarp;
+    executor.launch("walk_edges", kernel, static_cast<size_t>(found.walks),
+                    LaunchShape{kWallThreads, kWallWarps * run,
+                                look / kWarp + rounds * (2 + kMostWallSteps) * (64 + look / lanes), most_blocks},
+                    job);
   };
+  // Few edges leave a GPU idle with eight lanes each.
   constexpr size_t kFullThreads = 1024;  // of a multiprocessor
   if (found.walks * kWarp <= executor.multiprocessors() * kFullThreads)
-    walk(kWarp, walk_edges_kernel<kWarp>);
+    walk(kWarp, 1, walk_edges_kernel<kWarp, 1>);
+  else if (job.walk_run > 1)
+    walk(8, kLongWalkRun, walk_edges_kernel<8, kLongWalkRun>);
   else
-    walk(8, walk_edges_kernel<8>);
+    walk(8, 4, walk_edges_kernel<8, 4>);
   executor.arena().rewind(mark);
 }
 

@@ -109,13 +109,14 @@ void add_normals(Work &work, MeshMemoryView *mesh) {
   add_normals(work, work.side_normals, mesh);
 }
 
-// Colours, texture coordinates and light of vertices that have their places, owners and normals.
+// Colours, texture coordinates, light and packed normals of vertices that have their places, owners and normals.
 template <class Work>
 void paint_and_light(Work &work, const MeshMemoryView &mesh) {
   paint_vertices(work.executor, work.appearance, mesh.view, mesh.vertices);
   if (work.settings.occlusion && mesh.vertices > 0)
     find_openness(work.executor, work.atoms, work.parameters, work.lattice, work.low, work.high, mesh.view,
                   mesh.vertices, !work.appearance.texcoords);
+  pack_normals(work.executor, mesh.view, mesh.vertices);
 }
 
 // What is left to do for a mesh whose vertices have their places, owners, and normals of each side.
@@ -124,7 +125,6 @@ void complete_vertices(Work &work, MeshMemoryView *mesh) {
   share_normals(work.executor, mesh->view, mesh->vertices);
   if (work.side_normals) face_triangles(work.executor, mesh->view, MeshCounts{mesh->vertices, mesh->triangles});
   if (!work.paints_early()) paint_and_light(work, *mesh);
-  pack_normals(work.executor, mesh->view, mesh->vertices);
   mesh->view.second_normals = nullptr;
   if (mesh->view.packed_normals) mesh->view.normals = nullptr;
 }

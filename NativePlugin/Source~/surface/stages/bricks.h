@@ -169,11 +169,6 @@ struct FillBrickTable {
   }
 };
 
-struct SortValue {
-  uint32_t *values;
-  QSES_HOST_DEVICE void operator()(size_t i) const { values[i] = static_cast<uint32_t>(i); }
-};
-
 // Atoms may lie this many spacings from the middle of them all: a float32 coordinate then still tells eight places
 // between two lattice points, and all numbers of bricks are far from overflowing.
 constexpr double kMaxLatticeReach = 2097152;  // 2^21
@@ -285,7 +280,7 @@ BrickSet sort_bricks(Executor &executor, const Items &items, const Lattice &latt
   for_rows_of_bricks<Executor>(items, [&](const RowRange &rows, uint64_t steps) {
     executor.for_each(items.size(), ListBricks<Items>{items, first.data, keys.data, rows}, steps);
   });
-  executor.for_each(visits, SortValue{unused.data});
+  executor.for_each(visits, NumberItems{unused.data});
   executor.sort_by_key(keys, unused);
   const uint32_t count = checked_brick_count(executor.compact(visits, IsFirstOfEqual{keys.data}, linear));
   executor.for_each(count, GatherKeys{keys.data, linear.data});

@@ -209,20 +209,21 @@ struct SumComponents {
   ComponentSums *sums;
 
   template <class Team>
-  QSES_HOST_DEVICE void operator()(const Team &team, ChunkSums &chunk, size_t k) const {
+  QSES_FN void operator()(const Team &team, ChunkSums &chunk, size_t k) const {
     const size_t begin = k * chunk_size, end = begin + chunk_size < triangles ? begin + chunk_size : triangles;
     if (team.rank() == 0) chunk = {number_of(labels[mesh.triangle(begin)[0]]), {}};
     team.sync();
     uint32_t number = chunk.number;
     RunSums own;
-    measure_each(team, begin, end, [&](size_t t, uint32_t root, const double *origin, const TriangleSums &measured) {
-      if (number_of(root) != number) {
-        add_sums(own.total(), number == chunk.number ? &chunk.sums : sums + number);
-        own = RunSums{};
-        number = number_of(root);
-      }
-      add_triangle(mesh.triangle(t), origin, measured, &own);
-    });
+    measure_each(team, begin, end,
+                 [&](size_t t, uint32_t root, const Vec3<double> &origin, const TriangleSums &measured) {
+                   if (number_of(root) != number) {
+                     add_sums(own.total(), number == chunk.number ? &chunk.sums : sums + number);
+                     own = RunSums{};
+                     number = number_of(root);
+                   }
+                   add_triangle(mesh.triangle(t), origin, measured, &own);
+                 });
     add_sums(own.total(), number == chunk.number ? &chunk.sums : sums + number);
     team.sync();
     if (team.rank() == 0) add_sums(chunk.sums, sums + chunk.number);
@@ -230,17 +231,17 @@ struct SumComponents {
 
  private:
   QSES_FN uint32_t root_of(size_t triangle) const { return labels[mesh.triangle(triangle)[0]]; }
-  QSES_FN MeasureTriangle measure_from(uint32_t root) const {
+  QSES_FN Vec3<double> origin_of(uint32_t root) const {
     const float *const tip = mesh.position(root);
-    return {mesh, {static_cast<double>(tip[0]), static_cast<double>(tip[1]), static_cast<double>(tip[2])}, bent};
+    return {static_cast<double>(tip[0]), static_cast<double>(tip[1]), static_cast<double>(tip[2])};
   }
   // visit(triangle, root, origin, what it measures from there), for all triangles that a thread of the team has.
   template <class Team, class Visit>
-  QSES_HOST_DEVICE void measure_each(const Team &team, size_t begin, size_t end, const Visit &visit) const {
+  QSES_FN void measure_each(const Team &team, size_t begin, size_t end, const Visit &visit) const {
     for (size_t t = begin + static_cast<size_t>(team.rank()); t < end; t += static_cast<size_t>(team.size())) {
       const uint32_t root = root_of(t);
-      const MeasureTriangle measure = measure_from(root);
-      visit(t, root, measure.origin, measure(t));
+      const Vec3<double> origin = origin_of(root);
+      visit(t, root, origin, measure_triangle(mesh, t, origin, bent));
     }
   }
   template <class Visit>
@@ -249,13 +250,14 @@ struct SumComponents {
     for (size_t t = begin, run = 1; t < end; t += run) {
       const uint32_t root = root_of(t);
       for (run = 1; run < kTriangleRun && t + run < end && root_of(t + run) == root;) ++run;
-      const MeasureTriangle measure = measure_from(root);
-      measure_triangles(measure, t, run, measured);
-      for (size_t k = 0; k < run; ++k) visit(t + k, root, measure.origin, measured[k]);
+      const Vec3<double> origin = origin_of(root);
+      measure_triangles({mesh, origin, bent}, t, run, measured);
+      for (size_t k = 0; k < run; ++k) visit(t + k, root, origin, measured[k]);
     }
   }
 
-  QSES_FN void add_triangle(const uint32_t *triangle, const double *origin, const TriangleSums &t, RunSums *own) const {
+  QSES_FN void add_triangle(const uint32_t *triangle, const Vec3<double> &origin, const TriangleSums &t,
+                            RunSums *own) const {
     const double per_area = inverse_spacing * inverse_spacing, per_volume = per_area * inverse_spacing;
     // Rounded before their whole parts are taken off.
     const double flat_volume = rounded_product(t.flat_volume, per_volume);
@@ -266,7 +268,7 @@ struct SumComponents {
     own_sums.flat_area.add(rounded_product(t.flat_area, per_area), units);
     own_sums.flat_volume.add(flat_volume, units);
     for (int k = 0; k < 3; ++k) {
-      double sum = -3.0 * origin[k];
+      double sum = -3.0 * (k == 0 ? origin.x : k == 1 ? origin.y : origin.z);
       for (int corner = 0; corner < 3; ++corner) {
         const float x = mesh.position(triangle[corner])[k];
         sum += static_cast<double>(x);

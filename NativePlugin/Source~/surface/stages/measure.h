@@ -58,7 +58,7 @@ struct LoadMeshSums {
   size_t vertices, triangles;
   MeasureTriangle measure;
   const uint32_t *extra;
-  QSES_HOST_DEVICE MeshSums<kMeasured> operator()(size_t i) const {
+  QSES_FN MeshSums<kMeasured> operator()(size_t i) const {
     MeshSums<kMeasured> s;
     if (i < vertices)
       for (int d = 0; d < 3; ++d) s.low[d] = s.high[d] = ordered_bits(mesh.position(static_cast<uint32_t>(i))[d]);

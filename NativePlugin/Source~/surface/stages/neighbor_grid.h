@@ -102,12 +102,10 @@ struct HashItems {
   ItemAt item_at;
   Sphere *items;
   uint64_t *keys;
-  uint32_t *order;
   CellCounts counts;
   QSES_HOST_DEVICE void operator()(size_t i) const {
     const Sphere item = item_at(i);
     items[i] = item;
-    order[i] = static_cast<uint32_t>(i);
     keys[i] = is_no_item(item) ? cells.cells() : cells.hash(item.center);
     if (counts.in_cell && !is_no_item(item)) counts.add(i, keys[i]);
   }
@@ -295,8 +293,7 @@ NeighborGridView build_neighbor_grid(Executor &executor, const char *name, size_
     counts = {in_cell.data, executor.template allocate<uint32_t>(n).data,
               executor.template take_counts<Tally<uint32_t>>()};
   }
-  executor.for_each(
-      n, HashItems<std::decay_t<decltype(item_at)>>{cells, item_at, items.data, keys.data, order.data, counts});
+  executor.for_each(n, HashItems<std::decay_t<decltype(item_at)>>{cells, item_at, items.data, keys.data, counts});
   if (is_counted && n > kCrowd)
     is_counted = executor.expect(name, counts.fullest, Tally<uint32_t>{static_cast<uint32_t>(n)}).count <= kCrowd;
   if (is_counted) {
@@ -307,6 +304,7 @@ NeighborGridView build_neighbor_grid(Executor &executor, const char *name, size_
                                                            cells.cells(), n, sorted.data, order.data});
   } else {
     constexpr uint64_t kChunk = Executor::kIsCuda ? 1 : 16;
+    executor.for_each(n, NumberItems{order.data});
     executor.sort_by_key(keys, order);
     const FindCellStarts<kChunk> find_starts{keys.data, static_cast<uint32_t>(n), cells.cells(), starts.data};
     const ArrangeItems<kChunk> arrange{items.data, order.data, sorted.data, n, dense ? cells.cells() / kChunk + 1 : 0,

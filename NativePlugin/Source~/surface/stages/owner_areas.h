@@ -17,7 +17,7 @@ struct AddOwnerAreas {
   int64_t *sums;  // per atom, multiples of 1 / units
   QSES_HOST_DEVICE void operator()(size_t i) const {
     const uint32_t *const t = mesh.triangle(i);
-    const double third = MeasureTriangle{mesh, {0.0, 0.0, 0.0}, bent}(i).area / 3.0;
+    const double third = measure_triangle(mesh, i, {0.0, 0.0, 0.0}, bent).area / 3.0;
     const int64_t share = static_cast<int64_t>(floor(rounded_product(third, units) + 0.5));
     const uint32_t a = mesh.owner(t[0]), b = mesh.owner(t[1]), c = mesh.owner(t[2]);
     if (a == b && b == c) {

@@ -193,14 +193,15 @@ QSES_FN SumsOfTriangles<F> measure_corners(const TriangleCorners &corners, const
   return sums;
 }
 
+QSES_FN TriangleSums measure_triangle(const MeshView &mesh, size_t t, const Vec3<double> &origin, bool bent) {
+  return measure_corners(CornersOfOne{mesh, outward_corners(mesh, mesh.triangle(t))}, origin, bent,
+                         mesh.second_normals != nullptr);
+}
 struct MeasureTriangle {
   MeshView mesh;
-  double origin[3];
+  Vec3<double> origin;
   bool bent;
-  QSES_HOST_DEVICE TriangleSums operator()(size_t t) const {
-    return measure_corners(CornersOfOne{mesh, outward_corners(mesh, mesh.triangle(t))},
-                           Vec3<double>(origin[0], origin[1], origin[2]), bent, mesh.second_normals != nullptr);
-  }
+  QSES_FN TriangleSums operator()(size_t t) const { return measure_triangle(mesh, t, origin, bent); }
 };
 
 // The same of so many triangles that follow each other, on the CPU: with the best instructions it has.
