@@ -259,6 +259,22 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void AnAtomThatCoarseLatticesMissIsShownInTheEnd()
+        {
+            _host = TestHost.WithAtom(Vector3.One, 1.5f); // in the middle of eight points that are 2 Å apart
+            _host.CoarserLevels = Array.Empty<float>();
+            _host.Spacing = 2;
+            _host.Settle();
+            Assert.That(_host.Session.CurrentLevel.VertexCount, Is.EqualTo(0));
+            Assert.That(_host.Failures, Is.Empty);
+            _host.Spacing = 0.5f;
+            _host.CoarserLevels = new[] { 2f, 1f };
+            _host.Session.Change(SurfaceChange.Shape, _host.Now);
+            _host.Settle();
+            _host.AssertShowsAtom(Vector3.One, 1.5f);
+        }
+
+        [Test]
         public void AWrongAtomIsToldOnceAndForgottenWithTheNextFrame()
         {
             _host = TestHost.WithAtom(Vector3.Zero, 1.5f);

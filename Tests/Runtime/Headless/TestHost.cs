@@ -166,7 +166,9 @@ namespace QuickSes.Tests
         void ISurfaceHost.Take(SurfaceContext context, AtomLook look, bool isMoving)
         {
             Assert.That(_steps, Is.EqualTo(0), "what is being uploaded must not be replaced");
-            Assert.That(look.Count, Is.EqualTo(AtomsOf(context)));
+            int atoms = AtomsOf(context);
+            if (atoms > 0)
+                Assert.That(look.Count, Is.EqualTo(atoms));
             _taken ??= new KeptMesh();
             Assert.That(context.Keep(_taken));
             _hasTaken = true;
@@ -204,7 +206,7 @@ namespace QuickSes.Tests
             _hasTaken = false;
         }
 
-        // Every atom owns a vertex in these tests, unless there is none at all.
+        // Every atom of these tests owns a vertex, but a lone one that lies between the points of a coarse lattice has none.
         private static int AtomsOf(SurfaceContext context)
         {
             int atoms = 0;

@@ -325,7 +325,8 @@ typedef struct qses_settings {
   float probe_radius; /* Å, 0 to 100; default 1.4 (water). Ignored by VDW. With method EXACT, the SES of a probe below
                          0.05 Å is computed as the VDW surface, from which it hardly differs */
   float spacing;      /* Å between the points of the lattice on whose edges vertices begin (the paper's "voxel size"):
-                         how fine the mesh is. 0.001 to 100; default 0.5 */
+                         how fine the mesh is. What lies between its points is missing: at 2 Å, an ion that touches
+                         nothing may be. 0.001 to 100; default 0.5 */
   uint32_t relaxation_steps; /* default 1, at most 100. EXACT: tangential smoothing, each step projected back onto the
                                 exact surface. GRID: Laplacian smoothing as in the paper, which moves off it */
   uint32_t slice_size;   /* 0 (default): work on as much at a time as memory allows. Else at least 8: in slices of at
