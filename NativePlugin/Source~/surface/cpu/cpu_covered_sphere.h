@@ -12,8 +12,9 @@
 namespace quickses {
 namespace QSES_CPU_ISA {
 
-// Caps of smaller spheres, in units of the largest one, are not exact enough for the margins of the discs.
-constexpr float kLeastCoveredRadius = 0.01f;
+// What is said to be covered lies this deep in a ball, at least, Å: of less, the circles of the neighbours, whose caps
+// are rounded differently, could say that it is not.
+inline float least_covered_depth(float max_radius) { return maximum(5 * kExposureTolerance, 1e-5f * max_radius); }
 
 // Directions that turn by the golden angle while they go down, told in an order that is soon everywhere. None is
 // farther from the nearest than 0.3414.
@@ -33,17 +34,20 @@ class CoveredSphere {
  public:
   static constexpr int kLevels = 4;
 
-  // Of n caps: axes and cosines, which may be read up to the next whole pack, and are no caps there (0 and 2). bounds:
-  // room for as many.
-  CoveredSphere(const Vec3<const float *> &axes, const float *cosines, int n, float *const (&bounds)[kLevels])
+  // Of n caps, in columns that may be read up to the next whole pack: axes, cosines, sines, and how much deeper the
+  // sphere lies in the ball with each radian from the border of the cap. bounds: room for as many.
+  CoveredSphere(const Vec3<const float *> &axes, const float *cosines, const float *sines, const float *slopes, int n,
+                float least_depth, float *const (&bounds)[kLevels])
       : axes_(axes), count_(n) {
     for (int level = 0; level < kLevels; ++level) bounds_[level] = bounds[level];
     for (int q = 0; q < n; q += kPackSize) {
-      const Pack cosine = load_pack(cosines + q), sine = square_root(maximum(Pack(0.f), Pack(1.f) - cosine * cosine));
+      const Pack cosine = load_pack(cosines + q), sine = load_pack(sines + q), slope = load_pack(slopes + q);
       for (int level = 0; level < kLevels; ++level) {
+        const Disc &disc = kDiscs[level];
         // The cosine of the cap's angle less the disc's, if there is anything left.
-        const Pack c(kDiscs[level].cosine), bound = cosine * c + sine * Pack(kDiscs[level].sine);
-        store_pack(bounds[level] + q, select(cosine < c, bound, Pack(2.f)));
+        const Pack c(disc.cosine), bound = cosine * c + sine * Pack(disc.sine);
+        const auto counts = (cosine < c) & (Pack(least_depth) < slope * Pack(disc.margin));
+        store_pack(bounds[level] + q, select(counts, bound, Pack(2.f)));
       }
     }
   }
@@ -59,15 +63,16 @@ class CoveredSphere {
 
  private:
   // Discs of .345, .176, .0898 and .0458 radians. Seven of half a disc's radius, six of them .85 of it away from its
-  // middle, cover it; these have two hundredths more, for rounding.
+  // middle, cover it; these are larger by a margin.
   struct Disc {
     float cosine, sine;
     float cosine_away;
+    float margin;  // radians
   };
-  static constexpr Disc kDiscs[kLevels] = {{0.9410755f, 0.3381967f, 0.9573095f},
-                                           {0.9845519f, 0.1750928f, 0.9888308f},
-                                           {0.9959707f, 0.0896794f, 0.9970883f},
-                                           {0.9989514f, 0.0457840f, 0.9992423f}};
+  static constexpr Disc kDiscs[kLevels] = {{0.9410755f, 0.3381967f, 0.9573095f, 0.0035f},
+                                           {0.9845519f, 0.1750928f, 0.9888308f, 0.0034f},
+                                           {0.9959707f, 0.0896794f, 0.9970883f, 0.0017f},
+                                           {0.9989514f, 0.0457840f, 0.9992423f, 0.0008f}};
   static constexpr float kHexagon[6][2] = {{1.f, 0.f},  {0.5f, 0.8660254f},   {-0.5f, 0.8660254f},
                                            {-1.f, 0.f}, {-0.5f, -0.8660254f}, {0.5f, -0.8660254f}};
 

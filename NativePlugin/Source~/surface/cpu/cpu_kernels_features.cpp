@@ -71,9 +71,9 @@ int gather_neighbors(const NeighborGridView &atoms, float max_radius, uint32_t i
   return n;
 }
 
-// Turns offsets and radii into unit directions and cap cosines, with a pack of caps behind them that are none; leaves
-// out neighbours that only touch.
-int make_caps(float radius, const Columns &c, int n) {
+// Turns offsets and radii into unit directions and caps, with a pack of caps behind them that are none; leaves out
+// neighbours that only touch. slopes: of CoveredSphere.
+int make_caps(float radius, const Columns &c, float *slopes, int n) {
   int kept = 0;
   for (int q = 0; q < n; q += kPackSize) {
     const Vec3<Pack> d(load_pack(c.x + q), load_pack(c.y + q), load_pack(c.z + q));
@@ -87,10 +87,14 @@ int make_caps(float radius, const Columns &c, int n) {
     store_lanes(c.x + kept, keep, d.x * inverse);
     store_lanes(c.y + kept, keep, d.y * inverse);
     store_lanes(c.z + kept, keep, d.z * inverse);
+    const Pack sine = square_root(maximum(Pack(0.f), Pack(1.f) - cosine * cosine));
     store_lanes(c.cosine + kept, keep, cosine);
+    store_lanes(c.sine + kept, keep, sine);
+    store_lanes(slopes + kept, keep, quotient(Pack(radius) * sine * distance2 * inverse, other));
     for (uint32_t k = keep; k; k &= k - 1) c.index[kept++] = index[lowest_bit32(k)];
   }
-  for (int k = kept; k < kept + kPackSize; ++k) c.x[k] = c.y[k] = c.z[k] = 0.f, c.cosine[k] = 2.f;
+  for (int k = kept; k < kept + kPackSize; ++k)
+    c.x[k] = c.y[k] = c.z[k] = c.sine[k] = slopes[k] = 0.f, c.cosine[k] = 2.f;
   return kept;
 }
 
@@ -179,16 +183,15 @@ AtomFeatures find_atom_features(const NeighborGridView &atoms, const SurfacePara
   const Columns c = cut_columns(scratch);
   const int near = gather_neighbors(atoms, parameters.max_radius, i, c, scratch.capacity);
   if (near + kPackSize > scratch.capacity) return {near + kPackSize, 0, 0};
-  int n = make_caps(self.radius, c, near);
+  float *const slopes = c.ssin, *const bounds[] = {c.sx, c.sy, c.sz, c.scos};  // not in use yet
+  int n = make_caps(self.radius, c, slopes, near);
   if (n == 0) {
     atomic_set(&exposed[i]);
     return {0, 0, 0};
   }
   // Far from the surface most atoms are: none of their circles needs to be looked at.
-  float *const bounds[] = {c.sx, c.sy, c.sz, c.scos};  // not in use yet
-  if (self.radius > kLeastCoveredRadius * parameters.max_radius &&
-      CoveredSphere({c.x, c.y, c.z}, c.cosine, n, bounds).is_covered())
-    return {0, 0, 0};
+  const float least_depth = least_covered_depth(parameters.max_radius);
+  if (CoveredSphere({c.x, c.y, c.z}, c.cosine, c.sine, slopes, n, least_depth, bounds).is_covered()) return {0, 0, 0};
   sort_caps(c, n);
   n = drop_contained_caps(c, n);
   if (n > cap_room) return {0, n, 0};
