@@ -14,6 +14,9 @@ constexpr size_t kMinAtomsPerChunk = 4, kMaxAtomsPerChunk = 32;
 // Caps and arcs an atom is given room for at first.
 constexpr size_t kRoomPerAtom = 256;
 
+// What proteins have, generously. Where atoms have more, the first surface takes a second pass.
+constexpr size_t kUsualCapsPerAtom = 32, kUsualArcsPerAtom = 6;
+
 // Room of one thread for the features of one chunk. Kept between surfaces.
 struct FeatureStaging {
   GrowingBuffer<HostMemory> memory;
@@ -39,25 +42,32 @@ struct FeatureStaging {
     grow(arcs, n);
     if (with_atoms) grow(arc_atoms, arcs.size());
   }
+  // For the features of a chunk, with room for usual ones: which of its atoms are buried, and have none, changes from
+  // frame to frame.
+  void open(size_t atoms, bool with_arc_atoms) {
+    cap_count = arc_count = 0;
+    grow(caps, atoms * kUsualCapsPerAtom + kRoomPerAtom);
+    grow_arcs(atoms * kUsualArcsPerAtom + kRoomPerAtom, with_arc_atoms);
+  }
   uint64_t bytes() const {
     return memory.size() + sizeof(Cap) * caps.capacity() + sizeof(Arc) * arcs.capacity() +
            sizeof(ArcAtoms) * arc_atoms.capacity();
   }
-  // As much room as another thread needed: who meets the largest atom differs from surface to surface.
+  // As much room as another thread took, and some to spare beyond what it needed: who meets the largest atom differs
+  // from surface to surface.
   void match(const FeatureStaging &other) {
+    const auto with_spare_room = [](size_t size, size_t most) {
+      return size < most + most / 4 + kRoomPerAtom ? most + most / 2 + kRoomPerAtom : size;
+    };
     capacity = std::max(capacity, other.capacity);
     scratch();
     most_caps = std::max(most_caps, other.most_caps);
     most_arcs = std::max(most_arcs, other.most_arcs);
-    if (caps.size() < most_caps + most_caps / 4 + kRoomPerAtom) grow(caps, most_caps + most_caps / 2 + kRoomPerAtom);
-    const bool with_atoms = !other.arc_atoms.empty() || !arc_atoms.empty();
-    if (arcs.size() < most_arcs + most_arcs / 4 + kRoomPerAtom || (with_atoms && arc_atoms.size() < arcs.size()))
-      grow_arcs(most_arcs + most_arcs / 2 + kRoomPerAtom, with_atoms);
+    grow(caps, with_spare_room(std::max(caps.size(), other.caps.size()), most_caps));
+    grow_arcs(with_spare_room(std::max(arcs.size(), other.arcs.size()), most_arcs),
+              !other.arc_atoms.empty() || !arc_atoms.empty());
   }
 };
-
-// What proteins have, generously. Where atoms have more, the first surface takes a second pass.
-constexpr size_t kUsualCapsPerAtom = 32, kUsualArcsPerAtom = 6;
 
 // What all threads found, chunk behind chunk in the order they were finished. What does not fit is only counted.
 struct FeaturePool {
@@ -141,9 +151,9 @@ struct FindChunkFeatures {
   FeatureChunk *chunks;
   FeaturePool *pool;
   void operator()(SoloTeam, FeatureStaging &s, size_t chunk) const {
-    s.cap_count = s.arc_count = 0;
-    const size_t end = std::min<size_t>(atoms->count, (chunk + 1) * atoms_per_chunk);
     const StagedRoom room{parameters->is_of_balls()};
+    s.open(atoms_per_chunk, room.with_arc_atoms);
+    const size_t end = std::min<size_t>(atoms->count, (chunk + 1) * atoms_per_chunk);
     for (size_t i = chunk * atoms_per_chunk; i < end; ++i) {
       room.open(s);
       const AtomFeatures found = find_features_of(*kernels, *atoms, *parameters, i, s, exposed, room);
