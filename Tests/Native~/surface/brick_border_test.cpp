@@ -86,7 +86,7 @@ class SignField {
 
   void evaluate(const BrickSet &bricks, uint64_t *signs) const {
     for (size_t b = 0; b < bricks.count; ++b) {
-      const glm::ivec3 first = bricks.lattice.first_point(bricks.lattice.brick_at(bricks.linear[b]));
+      const glm::ivec3 first = bricks.lattice.first_point(bricks.place(b));
       for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) signs[b * kLeavesPerBrick + size_t(leaf)] = 0;
       for (int z = 0; z < kBrickEdge; ++z)
         for (int y = 0; y < kBrickEdge; ++y)
@@ -139,7 +139,7 @@ void grow_and_check(const SignField &field, const std::vector<glm::ivec3> &begin
     if (layout.border_changes == 0) break;
     const BrickSet grown = grow_bricks(executor, bricks, layout.border);
     for (uint32_t b = 0; b < bricks.count; ++b)
-      ASSERT_GE(grown.find(lattice.brick_at(bricks.linear[b])), 0) << "a brick was lost";
+      ASSERT_GE(grown.find(bricks.place(b)), 0) << "a brick was lost";
     bricks = grown;
   }
 

@@ -66,8 +66,8 @@ void check_lattice(const Atoms &atoms, const qses_settings &s, bool dense_table 
     const BrickSet bricks = find_bricks(run.executor, features, run.lattice);
     ASSERT_EQ(bricks.table != nullptr, dense_table);
     for (uint32_t b = 0; b < bricks.count; ++b) {
-      ASSERT_EQ(bricks.find(bricks.lattice.brick_at(bricks.linear[b])), static_cast<int>(b));
-      ASSERT_TRUE(b == 0 || bricks.linear[b - 1] < bricks.linear[b]);
+      ASSERT_EQ(bricks.find(bricks.place(b)), static_cast<int>(b));
+      ASSERT_TRUE(b == 0 || bricks.places[b - 1] < bricks.places[b]);
     }
     const std::vector<uint64_t> signs = run.signs(features, bricks);
     const DenseField field(run, atoms);
@@ -161,7 +161,7 @@ TEST(Signs, OnASparseSetOfBricks) {
   const exact_reference::Boundary boundary(atoms, static_cast<double>(1.4f));
   size_t inside = 0, outside = 0;
   for (uint32_t b = 0; b < bricks.count; ++b) {
-    const glm::ivec3 first = run.lattice.first_point(run.lattice.brick_at(bricks.linear[b]));
+    const glm::ivec3 first = run.lattice.first_point(bricks.place(b));
     for (int k = 0; k < kBrickPoints; k += 5) {
       const int x = k & 7, y = k >> 3 & 7, z = k >> 6;
       const double h = static_cast<double>(0.1f);

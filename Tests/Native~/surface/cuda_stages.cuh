@@ -179,7 +179,7 @@ inline StageResult run_stages(CudaExecutor &executor, const Molecule &molecule, 
   r.cap_ranges = to_host(executor, s.found.cap_ranges.data, s.grid.count);
   r.caps = to_host(executor, s.found.caps.data, s.found.caps.size);
   r.arcs = to_host(executor, s.found.arcs.data, s.found.arcs.size);
-  r.bricks = to_host(executor, s.bricks.linear, s.bricks.count);
+  r.bricks = to_host(executor, s.bricks.places, s.bricks.count);
   r.signs = to_host(executor, s.signs.data, s.signs.size);
   r.counts = s.counts;
   r.positions = to_host(executor, s.mesh.positions, s.counts.vertices * 3);

@@ -114,7 +114,7 @@ void check_signs(const StageResult &r, const ExactBoundary &exact) {
   const double depth = r.options.depth;
   size_t wrong = 0, close = 0, total = 0;
   for (size_t b = 0; b < r.bricks.size(); ++b) {
-    const glm::ivec3 first = lattice.first_point(lattice.brick_at(r.bricks[b]));
+    const glm::ivec3 first = lattice.first_point(unpack_place(r.bricks[b]));
     for (int z = 0; z < kBrickEdge; ++z)
       for (int y = 0; y < kBrickEdge; ++y)
         for (int x = 0; x < kBrickEdge; ++x) {
@@ -288,7 +288,7 @@ TEST(CudaStages, StartsOfVertices) {
   const BrickSet bricks{r.lattice, r.bricks.data(), nullptr, static_cast<uint32_t>(r.bricks.size())};
   size_t vertex = 0;
   for (size_t b = 0; b < r.bricks.size(); ++b) {
-    const glm::ivec3 place = r.lattice.brick_at(r.bricks[b]);
+    const glm::ivec3 place = unpack_place(r.bricks[b]);
     for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf)
       for (int axis = 0; axis < kAxes; ++axis)
         for (int bit = 0; bit < 64; ++bit) {

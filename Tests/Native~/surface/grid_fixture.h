@@ -180,7 +180,7 @@ struct GridRunOn {
     int p[3] = {(leaf & 1) * 4 + (bit & 3) + edge_origin_x(edge),
                 (leaf >> 1 & 1) * 4 + (bit >> 2 & 3) + edge_origin_y(edge),
                 (leaf >> 2) * 4 + (bit >> 4) + edge_origin_z(edge)};
-    glm::ivec3 place = field.bricks.lattice.brick_at(field.bricks.linear[brick]);
+    glm::ivec3 place = field.bricks.place(brick);
     for (int d = 0; d < 3; ++d)
       if (p[d] == kBrickEdge) {
         p[d] = 0;

@@ -127,7 +127,7 @@ void check_distances(const Case &c) {
   size_t looked_at = 0, refined = 0, wrong = 0;
   std::map<std::array<int, 3>, bool> active;
   for (uint32_t b = 0; b < bricks.count; ++b) {
-    const glm::ivec3 place = bricks.lattice.brick_at(bricks.linear[b]), first = bricks.lattice.first_point(place);
+    const glm::ivec3 place = bricks.place(b), first = bricks.lattice.first_point(place);
     active[{first.x, first.y, first.z}] = true;
     for (int i = static_cast<int>(b) % c.stride; i < kPoints; i += c.stride) {
       const int x = i % kEdge, y = i / kEdge % kEdge, z = i / kEdge / kEdge;
@@ -214,7 +214,7 @@ TEST(GridDistances, WithAStrayAtom) {
                                                            StoreDistances<kBrickEdge>{run.field, 0, own.data()});
   size_t near_by = 0, far_away = 0;
   for (uint32_t b = 0; b < bricks.count; ++b) {
-    const glm::ivec3 first = bricks.lattice.first_point(bricks.lattice.brick_at(bricks.linear[b]));
+    const glm::ivec3 first = bricks.lattice.first_point(bricks.place(b));
     if (!reference.contains(first.x, first.y, first.z)) {
       ++far_away;
       continue;
@@ -243,7 +243,7 @@ TEST(GridClasses, FollowTheirDefinition) {
         bricks.count, ClassifyBrick{{run.field.atoms, run.parameters.max_radius, 0.f}, bricks, outside.data()});
     size_t number[2] = {};
     for (uint32_t b = 0; b < bricks.count; ++b) {
-      const glm::ivec3 first = bricks.lattice.first_point(bricks.lattice.brick_at(bricks.linear[b]));
+      const glm::ivec3 first = bricks.lattice.first_point(bricks.place(b));
       for (int i = 0; i < kBrickPoints; ++i) {
         const int x = i % 8, y = i / 8 % 8, z = i / 64;
         const bool expected = reference.outside(first.x + x, first.y + y, first.z + z);
@@ -267,7 +267,7 @@ TEST(GridClasses, OfMoreAtomsInABrickThanAListHolds) {
   const Reference reference(run, atoms.size(), 0);
   size_t outside = 0, points = 0;
   for (uint32_t b = 0; b < run.field.bricks.count; ++b) {
-    const glm::ivec3 first = run.lattice.first_point(run.lattice.brick_at(run.field.bricks.linear[b]));
+    const glm::ivec3 first = run.lattice.first_point(run.field.bricks.place(b));
     for (int i = 0; i < kBrickPoints; ++i, ++points) {
       const int x = i % 8, y = i / 8 % 8, z = i / 64;
       const uint64_t word = run.field.outside[size_t(b) * kLeavesPerBrick + static_cast<size_t>(leaf_of(x, y, z))];

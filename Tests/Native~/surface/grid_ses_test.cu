@@ -49,8 +49,8 @@ void compare(const std::vector<Atom> &atoms, float probe, float spacing) {
   const NeighborGridView grid = build_neighbor_grid(executor, spheres, serial.field.atoms.cells);
   const BrickSet bricks = find_grid_bricks(executor, grid, serial.parameters, serial.lattice);
   ASSERT_EQ(bricks.count, host_bricks.count);
-  EXPECT_EQ(to_host(executor, bricks.linear, bricks.count),
-            std::vector<uint64_t>(host_bricks.linear, host_bricks.linear + host_bricks.count));
+  EXPECT_EQ(to_host(executor, bricks.places, bricks.count),
+            std::vector<uint64_t>(host_bricks.places, host_bricks.places + host_bricks.count));
 
   // The GPU may round a multiplication and an addition at once: of points as near to a ball as that, none may differ
   // here by luck of the numbers chosen, but not many.

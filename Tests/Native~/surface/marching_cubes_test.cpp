@@ -165,11 +165,11 @@ class Block {
     lattice_.brick_count = glm::ivec3(bricks + 2, bricks + 1, bricks + 3);  // some of the table is not active
     for (int z = 0; z < bricks; ++z)
       for (int y = 0; y < bricks; ++y)
-        for (int x = 0; x < bricks; ++x) linear_.push_back(lattice_.linear(glm::ivec3(x, y, z)));
+        for (int x = 0; x < bricks; ++x) places_.push_back(pack_place(glm::ivec3(x, y, z)));
     table_.assign(lattice_.table_size(), -1);
-    for (size_t b = 0; b < linear_.size(); ++b) table_[linear_[b]] = static_cast<int32_t>(b);
-    bricks_ = {lattice_, linear_.data(), table ? table_.data() : nullptr, static_cast<uint32_t>(linear_.size())};
-    signs_.assign(linear_.size() * kLeavesPerBrick, 0);
+    for (size_t b = 0; b < places_.size(); ++b) table_[lattice_.linear(unpack_place(places_[b]))] = static_cast<int32_t>(b);
+    bricks_ = {lattice_, places_.data(), table ? table_.data() : nullptr, static_cast<uint32_t>(places_.size())};
+    signs_.assign(places_.size() * kLeavesPerBrick, 0);
     for (int z = 0; z < edge_; ++z)
       for (int y = 0; y < edge_; ++y)
         for (int x = 0; x < edge_; ++x)
@@ -223,7 +223,7 @@ class Block {
   CpuExecutor executor_;
   std::vector<uint8_t> inside_;
   Lattice lattice_{};
-  std::vector<uint64_t> linear_;
+  std::vector<uint64_t> places_;
   std::vector<int32_t> table_;
   BrickSet bricks_{};
   std::vector<uint64_t> signs_;

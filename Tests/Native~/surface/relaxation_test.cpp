@@ -223,7 +223,7 @@ TEST(TangentialStep, IsLimited) {
   const BrickSet &bricks = t.run.field.bricks;
   size_t far_moves = 0, held_back = 0;
   for (uint32_t b = 0; b < bricks.count; ++b) {
-    const glm::ivec3 first = bricks.lattice.first_point(bricks.lattice.brick_at(bricks.linear[b]));
+    const glm::ivec3 first = bricks.lattice.first_point(bricks.place(b));
     for (uint32_t v = t.run.layout.base[b].vertices; v < t.run.layout.base[b + 1].vertices; ++v) {
       double outside = -1e9, length2 = 0;
       for (int d = 0; d < 3; ++d) {

@@ -23,7 +23,7 @@ using Place = std::tuple<int, int, int>;  // of a lattice point
 std::set<Place> points_of(const BrickSet &bricks, const std::vector<uint64_t> &words) {
   std::set<Place> points;
   for (uint32_t b = 0; b < bricks.count; ++b) {
-    const glm::ivec3 first = bricks.lattice.first_point(bricks.lattice.brick_at(bricks.linear[b]));
+    const glm::ivec3 first = bricks.lattice.first_point(bricks.place(b));
     for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf)
       for (uint64_t w = words[size_t(b) * kLeavesPerBrick + size_t(leaf)]; w; w &= w - 1) {
         const glm::ivec3 p = first + brick_point(leaf, lowest_bit64(w));

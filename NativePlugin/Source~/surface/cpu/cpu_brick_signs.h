@@ -15,7 +15,7 @@ struct NearWords {
 };
 QSES_FN NearWords find_near_words(const BrickSet &bricks, const uint64_t *signs, uint32_t brick) {
   const Lattice &lattice = bricks.lattice;
-  const glm::ivec3 place = lattice.brick_at(bricks.linear[brick]), last = lattice.brick_count - glm::ivec3(1);
+  const glm::ivec3 place = bricks.place(brick), last = lattice.brick_count - glm::ivec3(1);
   const bool is_within =
       place.x > 0 && place.y > 0 && place.z > 0 && place.x < last.x && place.y < last.y && place.z < last.z;
   NearWords near;
@@ -23,7 +23,7 @@ QSES_FN NearWords find_near_words(const BrickSet &bricks, const uint64_t *signs,
     near.at[k] = found < 0 ? nullptr : signs + static_cast<size_t>(found) * kLeavesPerBrick;
   };
   if (bricks.table && is_within) {
-    const int32_t *const own = bricks.table + bricks.linear[brick];
+    const int32_t *const own = bricks.table + lattice.linear(place);
     const ptrdiff_t row = lattice.brick_count.x, layer = row * lattice.brick_count.y;
     for (int z = -1, k = 0; z <= 1; ++z)
       for (int y = -1; y <= 1; ++y)

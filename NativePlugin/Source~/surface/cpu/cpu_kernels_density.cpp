@@ -153,7 +153,7 @@ void sum_rows(const NearAtoms &atoms, const Vec3<float> &low, float h, float (*r
 BrickNeeds evaluate_brick_density(const GaussianDensity &density, const BrickSet &bricks, uint32_t brick,
                                   const BrickScratch &scratch, uint64_t *words) {
   const Lattice &lattice = bricks.lattice;
-  const glm::ivec3 point = lattice.first_point(lattice.brick_at(bricks.linear[brick]));
+  const glm::ivec3 point = lattice.first_point(bricks.place(brick));
   const Vec3<float> low = lattice.position(point.x, point.y, point.z);
   const Vec3<float> high = lattice.position(point.x + 7, point.y + 7, point.z + 7);
   NearAtoms atoms(density, scratch);
@@ -178,7 +178,7 @@ BrickNeeds emit_brick_density_vertices(const GaussianDensity &density, const Bri
   const uint32_t first = layout.base[brick].vertices, last = layout.base[brick + 1].vertices;
   if (first == last) return {};
   const Lattice &lattice = bricks.lattice;
-  const glm::ivec3 point = lattice.first_point(lattice.brick_at(bricks.linear[brick]));
+  const glm::ivec3 point = lattice.first_point(bricks.place(brick));
   NearAtoms atoms(density, scratch);
   // The nearest atom may be one whose density has ended.
   if (!atoms.gather(lattice.position(point.x, point.y, point.z),

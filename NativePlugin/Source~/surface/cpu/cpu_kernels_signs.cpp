@@ -92,7 +92,7 @@ BrickNeeds evaluate_brick_signs(const FeatureView &f, const BrickSet &bricks, ui
                                 const BrickScratch &scratch, uint64_t *words) {
   const Lattice &lattice = bricks.lattice;
   const float h = lattice.spacing, depth = f.parameters.depth;
-  const glm::ivec3 first = lattice.first_point(lattice.brick_at(bricks.linear[brick]));
+  const glm::ivec3 first = lattice.first_point(bricks.place(brick));
   const Vec3<float> low = lattice.position(first.x, first.y, first.z);
   // More than rounding.
   const float farthest = maximum(maximum(absolute(low.x), absolute(low.y)), absolute(low.z));

@@ -32,7 +32,7 @@ struct AllCandidates {
 int start_vertices(const FeatureView &f, const BrickSet &bricks, const MeshLayout &layout, uint32_t brick,
                    const VertexStarts &starts, const BrickCandidates &c, Points *p) {
   const Lattice &lattice = bricks.lattice;
-  const glm::ivec3 first = lattice.first_point(lattice.brick_at(bricks.linear[brick]));
+  const glm::ivec3 first = lattice.first_point(bricks.place(brick));
   const float h = lattice.spacing;
   const bool halve = starts_by_halving(f.parameters);
   SignRows rows;
@@ -321,7 +321,7 @@ BrickNeeds emit_brick_vertices(const FeatureView &f, const BrickSet &bricks, con
   if (n == 0) return {0, 0};
   const Lattice &lattice = bricks.lattice;
   const float h = lattice.spacing, overhang = kStartOverhang * h;
-  const glm::ivec3 first = lattice.first_point(lattice.brick_at(bricks.linear[brick]));
+  const glm::ivec3 first = lattice.first_point(bricks.place(brick));
   const Vec3<float> low = lattice.position(first.x, first.y, first.z) - Vec3<float>(overhang, overhang, overhang);
   const BrickCandidates c = gather_candidates(f, low, 7.f * h + 2.f * overhang, kStartReach * h,
                                               f.parameters.depth + kStartReach * h, scratch);

@@ -236,7 +236,7 @@ void sort_out_edges(const WallField &field, const Lattice &lattice, const glm::i
 BrickNeeds mark_brick_walls(const FeatureView &f, const BrickSet &bricks, uint32_t brick, const uint64_t *signs,
                             const BrickScratch &scratch, uint64_t *marks) {
   // Edges that signs leave.
-  const glm::ivec3 own = bricks.lattice.brick_at(bricks.linear[brick]);
+  const glm::ivec3 own = bricks.place(brick);
   const NearWords near = find_near_words(bricks, signs, brick);
   uint64_t candidates[kLeavesPerBrick][kWallSteps];
   uint32_t leaves = 0;

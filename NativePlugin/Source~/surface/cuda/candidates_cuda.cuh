@@ -285,7 +285,7 @@ static __global__ __launch_bounds__(kGatherWarps *kWarp, 8) void gather_candidat
   const CandidateReach &reach = job.reach;
   const Lattice &lattice = job.bricks.lattice;
   const float h = reach.spacing, extent = 7.f * h;
-  const glm::ivec3 first = lattice.first_point(lattice.brick_at(job.bricks.linear[job.view.first_brick + b]));
+  const glm::ivec3 first = lattice.first_point(job.bricks.place(job.view.first_brick + b));
   const Vec3<float> low = lattice.position(first.x, first.y, first.z);
 
   // Atoms whose ball meets the box of the brick's vertices.

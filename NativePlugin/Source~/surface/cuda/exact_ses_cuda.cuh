@@ -70,41 +70,58 @@ struct BoxCull {
   }
 };
 
-// Puts the atoms that can be deepest at a point of a leaf into the shared memory of its warp. Returns how many they
-// are; those that there is no room for are left out. best: the one that is deepest at the leaf's centre.
-__device__ __forceinline__ int stage_leaf_atoms(const FeatureView &f, const CandidateReach &reach, uint32_t row_count,
-                                                const uint32_t *atoms, const Vec3<float> &center, LeafScratch &scratch,
-                                                DeepestAtom *best) {
-  const auto atom_at = [&](uint32_t k) { return __ldg(atoms + k); };
-  *best = warp_deepest_atom(f, row_count, atom_at, center);
-  int atom_count = 0;
-  if (row_count == 0) return 0;
+// Of `count` atoms, atom_at(k), those that can be deepest at a point of a box, as far as they come up to `floor` at its
+// centre: visit(chosen, ball, number) for a warp's worth after the other. Returns the one that is deepest at the centre,
+// which is chosen in any case.
+template <class AtomAt, class Visit>
+__device__ __forceinline__ DeepestAtom choose_deepest_atoms(const FeatureView &f, uint32_t count, const AtomAt &atom_at,
+                                                            const Vec3<float> &center, const Vec3<float> &half,
+                                                            float floor, float slack, const Visit &visit) {
+  struct Looked {
+    Sphere ball;
+    float depth;
+    uint32_t number;
+  };
+  const auto look_at = [&](uint32_t k) {
+    Looked atom{{glm::vec3(0.f), 0.f}, -2.f * kFarAway, kNoAtom};
+    if (k < count) {
+      atom.number = atom_at(k);
+      atom.ball = load(f.atoms.items + atom.number);
+      atom.depth = ball_depth(atom.ball, center);
+    }
+    return atom;
+  };
+  // As a rule there are not more than these, which are looked at once.
+  constexpr int kHeld = 2;
+  const uint32_t lane = static_cast<uint32_t>(lane_id());
+  Looked held[kHeld];
+  NumberedValue best{-2.f * kFarAway, kNoAtom};
+  const auto meet = [&](const Looked &atom) {
+    if (atom.depth > best.value) best = {atom.depth, atom.number};
+  };
+#pragma unroll
+  for (int c = 0; c < kHeld; ++c) held[c] = look_at(lane + static_cast<uint32_t>(c * kWarp));
+#pragma unroll
+  for (int c = 0; c < kHeld; ++c) meet(held[c]);
+  for (uint32_t k = lane + kHeld * kWarp; k < count; k += kWarp) meet(look_at(k));
+  best = warp_largest(best);
+  if (count == 0) return {best.number, best.value};
   BoxCull cull;
-  const float half = 1.5f * reach.spacing;
-  cull.set(center, {half, half, half}, load(f.atoms.items + best->atom), reach.slack);
-  for (uint32_t k0 = 0; k0 < row_count; k0 += kWarp) {
-    const uint32_t k = k0 + static_cast<uint32_t>(lane_id());
-    bool near = false;
-    uint32_t i = 0;
-    Sphere ball{glm::vec3(0.f), 0.f};
-    if (k < row_count) {
-      i = __ldg(atoms + k);
-      ball = load(f.atoms.items + i);
-      const float d = ball_depth(ball, center);
-      near = (d >= -reach.leaf_radius - reach.slack && cull.keeps(ball, d)) || i == best->atom;
-    }
-    const int place = append_place(near, &atom_count);
-    if (near && place < kLeafAtoms) {
-      scratch.atom[place] = ball;
-      scratch.atom_number[place] = i;
-    }
-  }
-  return atom_count;
+  cull.set(center, half, load(f.atoms.items + best.number), slack);
+  const auto choose = [&](const Looked &atom) {
+    const bool is_best = atom.number == best.number && atom.number != kNoAtom;
+    visit((atom.depth >= floor && cull.keeps(atom.ball, atom.depth)) || is_best, atom.ball, atom.number);
+  };
+#pragma unroll
+  for (int c = 0; c < kHeld; ++c)
+    if (static_cast<uint32_t>(c * kWarp) < count) choose(held[c]);
+  for (uint32_t k0 = kHeld * kWarp; k0 < count; k0 += kWarp) choose(look_at(k0 + lane));
+  return {best.number, best.value};
 }
 
 enum class LeafKind { kMixed, kInside, kOutside };
 
-static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_kernel(QueuedItems queued, SignJob job) {
+static __global__ __launch_bounds__(kSignWarps *kWarp, 9) void evaluate_leaves_kernel(QueuedItems queued, SignJob job) {
   const LaunchItems leaves = queued.in_turn();
   __shared__ LeafScratch scratch_memory[kSignWarps];
   const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();
@@ -122,25 +139,50 @@ static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_k
   const uint32_t *const atoms = job.view.atoms + brick_row.first_atom;
   const uint32_t *const arcs = job.view.arcs + brick_row.first_arc;
   const uint8_t *const arc_leaves = job.view.arc_leaves + brick_row.first_arc;
-  glm::ivec3 first = lattice.first_point(lattice.brick_at(job.bricks.linear[job.view.first_brick + b]));
+  glm::ivec3 first = lattice.first_point(job.bricks.place(job.view.first_brick + b));
   const Vec3<float> center = leaf_center(lattice.position(first.x, first.y, first.z), leaf, h);
   first += brick_point(leaf, 0);
 
-  DeepestAtom best;
-  const int atom_count = stage_leaf_atoms(f, reach, brick_row.atom_count, atoms, center, scratch, &best);
+  // The first arcs are asked for before the atoms are looked at.
+  struct ListedArc {
+    uint32_t number, leaves;
+  };
+  const auto listed_arc = [&](uint32_t k0) {
+    const uint32_t k = k0 + static_cast<uint32_t>(lane);
+    return k < brick_row.arc_count ? ListedArc{__ldg(arcs + k), __ldg(arc_leaves + k)} : ListedArc{0, 0};
+  };
+  constexpr int kAhead = 2;
+  ListedArc ahead[kAhead];
+#pragma unroll
+  for (int c = 0; c < kAhead; ++c) ahead[c] = listed_arc(static_cast<uint32_t>(c * kWarp));
+
+  // Those that can be deepest at one of its points; what there is no room for is left out.
+  int atom_count = 0;
+  const float half = 1.5f * h;
+  const DeepestAtom best = choose_deepest_atoms(
+      f, brick_row.atom_count, [&](uint32_t k) { return __ldg(atoms + k); }, center, {half, half, half},
+      -reach.leaf_radius - reach.slack, reach.slack, [&](bool chosen, const Sphere &ball, uint32_t number) {
+        const int place = append_place(chosen, &atom_count);
+        if (chosen && place < kLeafAtoms) {
+          scratch.atom[place] = ball;
+          scratch.atom_number[place] = number;
+        }
+      });
 
   // Arcs that can be within depth of a point.
   int arc_count = 0;
-  const auto stage_arcs = [&](uint32_t k0) {
-    const uint32_t k = k0 + static_cast<uint32_t>(lane);
-    const bool near = k < brick_row.arc_count && (__ldg(arc_leaves + k) >> leaf & 1) != 0;
+  const auto stage_arcs = [&](const ListedArc &arc) {
+    const bool near = (arc.leaves >> leaf & 1) != 0;
     const int place = append_place(near, &arc_count);
     if (near && place < kLeafArcs) {
-      scratch.arc_number[place] = __ldg(arcs + k);
-      scratch.arc[place] = load(f.arcs + scratch.arc_number[place]);
+      scratch.arc_number[place] = arc.number;
+      scratch.arc[place] = load(f.arcs + arc.number);
     }
   };
-  for (uint32_t k0 = 0; k0 < brick_row.arc_count; k0 += kWarp) stage_arcs(k0);
+#pragma unroll
+  for (int c = 0; c < kAhead; ++c)
+    if (static_cast<uint32_t>(c * kWarp) < brick_row.arc_count) stage_arcs(ahead[c]);
+  for (uint32_t k0 = kAhead * kWarp; k0 < brick_row.arc_count; k0 += kWarp) stage_arcs(listed_arc(k0));
   __syncwarp();
 
   LeafKind kind = LeafKind::kMixed;
@@ -217,7 +259,7 @@ static __global__ __launch_bounds__(kSignWarps *kWarp, 8) void evaluate_leaves_k
       } else {
         for (uint32_t k0 = 0; k0 < brick_row.arc_count; k0 += kWarp) {
           arc_count = 0;
-          stage_arcs(k0);
+          stage_arcs(listed_arc(k0));
           __syncwarp();
           meet_arcs(arc_count);
           __syncwarp();

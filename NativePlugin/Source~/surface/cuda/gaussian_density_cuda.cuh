@@ -25,7 +25,7 @@ struct EvaluateDensity {
   QSES_HOST_DEVICE void operator()(const Team &team, DensityScratch &scratch, size_t i) const {
     const size_t brick = first + i;
     const Lattice &lattice = bricks.lattice;
-    const glm::ivec3 point = lattice.first_point(lattice.brick_at(bricks.linear[brick]));
+    const glm::ivec3 point = lattice.first_point(bricks.place(brick));
     const Vec3<float> low = lattice.position(point.x, point.y, point.z);
     const Vec3<float> high = lattice.position(point.x + 7, point.y + 7, point.z + 7);
     const CellBox box = density.cells_near(low, high);

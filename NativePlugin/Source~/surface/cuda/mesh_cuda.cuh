@@ -23,7 +23,6 @@ VertexJob prepare_vertices(E &executor, const FeatureView &features, const Brick
   job.count = sizes.vertices;
   if (job.count == 0) return job;
   if (!candidates.are_of(slice)) gather_candidates(executor, features, bricks, slice, rooms, candidates, nullptr);
-  const size_t leaves = static_cast<size_t>(slice.size()) * kLeavesPerBrick;
   job.features = features;
   job.bricks = bricks;
   job.layout = layout;
@@ -34,8 +33,9 @@ VertexJob prepare_vertices(E &executor, const FeatureView &features, const Brick
   job.mesh = mesh;
   job.list_of = executor.template allocate<uint32_t>(job.count).data;
   job.list_words = leaf_list_words(features.parameters);
-  job.first_list = sizes.first_leaf;
-  job.lists = executor.template allocate<uint32_t>(size_t(sizes.leaves) * job.list_words).data;
+  const size_t leaves = sizes.leaves;
+  job.first_leaf = sizes.first_leaf;
+  job.lists = executor.template allocate<uint32_t>(leaves * job.list_words).data;
   job.open = executor.template allocate<uint32_t>(job.count).data;
   job.unfinished = executor.template allocate<uint32_t>(job.count).data;
   job.on_edges = executor.template allocate<uint32_t>(job.count).data;

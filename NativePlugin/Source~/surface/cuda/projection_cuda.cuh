@@ -69,7 +69,7 @@ struct VertexTeam {
 };
 
 template <int kLanes>
-static __global__ __launch_bounds__(kVertexThreads) void project_on_atoms_kernel(QueuedItems queued, VertexJob job) {
+static __global__ __launch_bounds__(kVertexThreads, 14) void project_on_atoms_kernel(QueuedItems queued, VertexJob job) {
   const LaunchItems vertices = queued.in_turn();
   const uint32_t count = vertex_count(job);
   const VertexTeam<kLanes> team(vertices, count);
@@ -91,7 +91,7 @@ static __global__ __launch_bounds__(kVertexThreads) void project_on_atoms_kernel
 }
 
 template <int kLanes>
-static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(QueuedItems queued, VertexJob job) {
+static __global__ __launch_bounds__(kVertexThreads, 12) void project_on_arcs_kernel(QueuedItems queued, VertexJob job) {
   const LaunchItems vertices = queued.in_turn();
   const uint32_t total = job.counts->open;
   const VertexTeam<kLanes> team(vertices, total);
@@ -114,6 +114,7 @@ static __global__ __launch_bounds__(kVertexThreads) void project_on_arcs_kernel(
   for (int q0 = 0; q0 < own_arcs; q0 += kMaskBits) {
     near_arcs = 0;
     const int last = own_arcs - q0 < kMaskBits ? own_arcs - q0 : kMaskBits;
+#pragma unroll 4
     for (int q = 0; q < last; ++q) {
       const Sphere bound = load(f.arc_bounds.items + arc_at(q0 + q));
       const float limit = bound.radius + near + job.reach.slack;

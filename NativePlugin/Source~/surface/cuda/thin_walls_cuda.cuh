@@ -49,7 +49,7 @@ static __global__ __launch_bounds__(kWallThreads) void find_wall_candidates_kern
   const bool on = k < items.last;
   const uint32_t slot = static_cast<uint32_t>(on ? k : items.first);
   const int leaf = static_cast<int>(slot % kLeavesPerBrick), brick = static_cast<int>(job.view.first_brick + slot / 8);
-  const glm::ivec3 place = job.bricks.lattice.brick_at(job.bricks.linear[brick]);
+  const glm::ivec3 place = job.bricks.place(brick);
   const auto words_of = [&](int at) -> const uint64_t * {
     const int found = at == kOwnPlace ? brick : job.bricks.find(place + neighbor_step(at));
     return found < 0 ? nullptr : job.signs + static_cast<size_t>(found) * kLeavesPerBrick;
@@ -79,7 +79,7 @@ __device__ __forceinline__ WallEdge wall_edge(const WallJob &job, uint32_t slot,
   return {job.view.first_brick + slot / kLeavesPerBrick, slot, step, bit, first, first + wall_step(step)};
 }
 __device__ __forceinline__ Vec3<float> wall_point(const WallJob &job, uint32_t brick, const glm::ivec3 &p) {
-  const glm::ivec3 at = job.bricks.lattice.first_point(job.bricks.lattice.brick_at(job.bricks.linear[brick])) + p;
+  const glm::ivec3 at = job.bricks.lattice.first_point(job.bricks.place(brick)) + p;
   return job.bricks.lattice.position(at.x, at.y, at.z);
 }
 
@@ -90,7 +90,7 @@ __device__ __forceinline__ uint32_t decider_at(const WallJob &job, uint32_t slot
 }
 __device__ __forceinline__ uint32_t decider_at(const WallJob &job, uint32_t brick, const glm::ivec3 &p) {
   if ((p.x | p.y | p.z) & ~7) {
-    const glm::ivec3 place = job.bricks.lattice.brick_at(job.bricks.linear[brick]);
+    const glm::ivec3 place = job.bricks.place(brick);
     const int found = job.bricks.find(place + glm::ivec3(p.x >> 3, p.y >> 3, p.z >> 3));
     if (found < 0) return kNotLookedAt;
     brick = static_cast<uint32_t>(found);
@@ -129,6 +129,7 @@ __device__ __forceinline__ NearestProbe decided_probe(const FeatureView &f, uint
 struct WallScratch {
   float4 probe[64];                // of first ends, by their bit
   uint32_t decider[64];            // about them
+  uint32_t candidates[kWallSteps][2];
   uint16_t edge[kWallSteps * 64];  // 64 * step + bit
   uint8_t bit[64];                 // of first ends
 };
@@ -151,15 +152,19 @@ static __global__ __launch_bounds__(kWallThreads, 8) void drop_open_edges_kernel
     const uint32_t slot = job.leaves[k], brick = job.view.first_brick + slot / kLeavesPerBrick;
     const int leaf = static_cast<int>(slot % kLeavesPerBrick);
     const glm::ivec3 low =
-        job.bricks.lattice.first_point(job.bricks.lattice.brick_at(job.bricks.linear[brick])) + brick_point(leaf, 0);
+        job.bricks.lattice.first_point(job.bricks.place(brick)) + brick_point(leaf, 0);
     const auto position = [&](int bit, const glm::ivec3 &step) {
       return job.bricks.lattice.position(low.x + (bit & 3) + step.x, low.y + (bit >> 2 & 3) + step.y,
                                          low.z + (bit >> 4) + step.z);
     };
     const uint64_t own = lane < kWallSteps ? job.edges[size_t(slot) * kWallSteps + size_t(lane)] : 0;
-    const uint64_t points =
-        static_cast<uint64_t>(warp_or(static_cast<uint32_t>(own >> 32))) << 32 | warp_or(static_cast<uint32_t>(own));
+    const uint32_t own_low = static_cast<uint32_t>(own), own_high = static_cast<uint32_t>(own >> 32);
+    const uint64_t points = static_cast<uint64_t>(warp_or(own_high)) << 32 | warp_or(own_low);
     __syncwarp();
+    if (lane < kWallSteps) {
+      scratch.candidates[lane][0] = own_low;
+      scratch.candidates[lane][1] = own_high;
+    }
     for (int bit = lane; bit < 64; bit += kWarp)
       if (points >> bit & 1) scratch.bit[popcount64(points & ((uint64_t(1) << bit) - 1))] = static_cast<uint8_t>(bit);
     __syncwarp();
@@ -178,13 +183,15 @@ static __global__ __launch_bounds__(kWallThreads, 8) void drop_open_edges_kernel
         scratch.probe[bit] = make_float4(probe.center.x, probe.center.y, probe.center.z, probe.distance);
         scratch.decider[bit] = decider;
       }
+      const float depth2 = f.parameters.depth * f.parameters.depth;
       uint32_t left = 0;
 #pragma unroll
       for (int s = 0; s < kWallSteps; ++s) {
-        const uint64_t word = __shfl_sync(kFullWarp, own, s);
-        if (on && (word >> bit & 1) != 0 && !probe_covers(f.parameters, probe, position(bit, wall_step(s))))
-          left |= 1u << s;
+        const bool covered = length_squared(second_offset(x - probe.center, s, job.reach.spacing)) < depth2;
+        const uint32_t candidate = scratch.candidates[s][bit >> 5] >> (bit & 31) & 1;
+        left |= covered ? 0u : candidate << s;
       }
+      if (!on || probe.distance > f.parameters.depth) left = 0;
       const int own_count = __popc(left), with_own = warp_inclusive_sum(own_count, lane);
       for (int place = count + with_own - own_count; left; left &= left - 1)
         scratch.edge[place++] = static_cast<uint16_t>(64 * (__ffs(static_cast<int>(left)) - 1) + bit);

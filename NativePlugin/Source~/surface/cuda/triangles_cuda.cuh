@@ -24,9 +24,12 @@ struct TriangleJob {
 
 // The 27 leaves whose vertices a brick's cells use.
 struct TriangleScratch {
+  uint64_t signs[27];
   uint64_t crossing[27][kAxes];
-  uint32_t first[27][kAxes];       // vertex of each mask's lowest bit
-  uint32_t items[kTriangleItems];  // cell << 16 | case << 8 | triangle of the case
+  uint32_t first[27][kAxes];  // vertex of each mask's lowest bit
+  uint64_t cases[kBrickPoints / 8];  // of the cells, a byte each: by 64 * leaf + bit
+  uint16_t items[kTriangleItems];  // cell << 3 | triangle of its case
+  __device__ __forceinline__ int case_of(int cell) const { return reinterpret_cast<const uint8_t *>(cases)[cell]; }
 };
 
 static __global__ __launch_bounds__(kTriangleWarps *kWarp) void emit_triangles_kernel(QueuedItems queued,
@@ -52,44 +55,53 @@ static __global__ __launch_bounds__(kTriangleWarps *kWarp) void emit_triangles_k
     if (total == 0) continue;
     const int brick = static_cast<int>(b);
     __syncwarp();
+    bool is_active = false;
     if (lane < 27) {
       const int x = lane % 3, y = lane / 3 % 3, z = lane / 9;
       int k = brick;
       if (x == 2 || y == 2 || z == 2)
-        k = job.bricks.find(job.bricks.lattice.brick_at(job.bricks.linear[b]) + glm::ivec3(x >> 1, y >> 1, z >> 1));
+        k = job.bricks.find(job.bricks.place(b) + glm::ivec3(x >> 1, y >> 1, z >> 1));
 #if !defined(NDEBUG)
       for (int axis = 0; axis < kAxes; ++axis) scratch.first[lane][axis] = scratch.crossing[lane][axis] = 0xffffffffu;
 #endif
-      if (k >= 0) {
+      is_active = k >= 0;
+      if (is_active) {
         const size_t leaf =
             static_cast<size_t>(k) * kLeavesPerBrick + static_cast<size_t>((x & 1) + 2 * (y & 1) + 4 * (z & 1));
+        scratch.signs[lane] = layout.signs[leaf];
         for (int axis = 0; axis < kAxes; ++axis) {
           scratch.crossing[lane][axis] = layout.crossing[leaf * kAxes + axis];
           scratch.first[lane][axis] = layout.base[k].vertices + layout.vertex_rank[leaf * kAxes + axis];
         }
       }
     }
+    const unsigned active = __ballot_sync(kFullWarp, is_active);
     // A lane has one layer of 16 cells of a leaf: in the order of the triangles.
-    const int leaf = lane >> 2, layer = lane & 3;
-    const LeafWords corners = cell_corners(leaf_words(job.bricks, layout.signs, brick, leaf));
-    const uint64_t mixed = mixed_cells(corners) & uint64_t(0xffff) << (16 * layer);
+    const int leaf = lane >> 2, first_cell = 16 * lane;
+    const int own_place = (leaf & 1) + 3 * (leaf >> 1 & 1) + 9 * (leaf >> 2);
+    const LeafWords corners = cell_corners(leaf_words(scratch.signs[own_place], [&](int d, uint64_t *word) {
+      const int place = own_place + (d & 1) + 3 * (d >> 1 & 1) + 9 * (d >> 2);
+      if (active >> place & 1) *word = scratch.signs[place];
+    }));
+    const uint32_t mixed = static_cast<uint32_t>(mixed_cells(corners) >> (first_cell & 63)) & 0xffff;
+    scratch.cases[2 * lane] = cell_cases(corners, first_cell & 63);
+    scratch.cases[2 * lane + 1] = cell_cases(corners, (first_cell & 63) + 8);
     uint32_t own = 0;
-    for (uint64_t m = mixed; m; m &= m - 1) own += triangle_count[cell_case(corners, lowest_bit64(m))];
+    for (uint32_t m = mixed; m; m &= m - 1) own += triangle_count[scratch.case_of(first_cell + lowest_bit32(m))];
     const uint32_t before = warp_inclusive_sum(own, lane) - own;
     for (uint32_t start = 0; start < total; start += kTriangleItems) {
       uint32_t place = before;
-      for (uint64_t m = mixed; m; m &= m - 1) {
-        const int bit = lowest_bit64(m), code = cell_case(corners, bit);
-        const uint32_t item = static_cast<uint32_t>(leaf << 6 | bit) << 16 | static_cast<uint32_t>(code) << 8;
-        for (uint32_t t = 0; t < triangle_count[code]; ++t, ++place)
-          if (place >= start && place - start < kTriangleItems) scratch.items[place - start] = item | t;
+      for (uint32_t m = mixed; m; m &= m - 1) {
+        const int cell = first_cell + lowest_bit32(m);
+        const uint32_t count = triangle_count[scratch.case_of(cell)];
+        for (uint32_t t = 0; t < count; ++t, ++place)
+          if (place >= start && place - start < kTriangleItems)
+            scratch.items[place - start] = static_cast<uint16_t>(static_cast<uint32_t>(cell) << 3 | t);
       }
       __syncwarp();
       const uint32_t listed = total - start < kTriangleItems ? total - start : kTriangleItems;
       for (uint32_t r = static_cast<uint32_t>(lane); r < listed; r += kWarp) {
-        const uint32_t item = scratch.items[r];
-        const int code = static_cast<int>(item >> 8 & 255), cell = static_cast<int>(item >> 16);
-        const int t = static_cast<int>(item & 255);
+        const int item = scratch.items[r], cell = item >> 3, t = item & 7, code = scratch.case_of(cell);
         const glm::ivec3 p = brick_point(cell >> 6, cell & 63);
         uint32_t id[3];
 #pragma unroll

@@ -29,9 +29,10 @@ struct VertexJob {
   bool halved;            // the starts are in the mesh already
   MeshView mesh;          // its positions hold the starts, in the centred frame, until they are projected
   uint32_t first, count;  // vertices of the slice
+  uint32_t first_leaf;    // in layout.vertex_leaves: of the slice, whose leaves have a list each
   uint32_t *list_of;      // per vertex: number of its leaf's list, or kBrickCandidates and the brick of the slice
   uint32_t *lists;        // list_words each
-  uint32_t list_words, first_list;
+  uint32_t list_words;
   uint32_t *open;        // vertices that no contact patch has
   uint32_t *unfinished;  // those to be reprojected
   uint32_t *on_edges;    // those to be placed on their edges, of which some were unfinished before
@@ -84,7 +85,7 @@ __device__ __forceinline__ void store_start(const VertexJob &job, uint32_t verte
   store_vec3(job.mesh.position(vertex), x);
 }
 
-// A leaf and the edges it owns vertices on.
+// A leaf of the slice that owns vertices, and the edges they are on.
 struct VertexLeaf {
   uint32_t brick;  // of the set
   int leaf;
@@ -94,16 +95,18 @@ struct VertexLeaf {
   int count;
 };
 
-// False if it owns none. edges: 64 * axis + bit of the lower point, in the order of the vertices. A warp together.
-__device__ __forceinline__ bool open_leaf(const VertexJob &job, uint32_t slot, VertexLeaf *out, uint8_t *edges) {
+// False if there is none of this number. edges: 64 * axis + bit of the lower point, in the order of the vertices. A warp
+// together.
+__device__ __forceinline__ bool open_leaf(const VertexJob &job, size_t number, VertexLeaf *out, uint8_t *edges) {
+  if (!job.layout.has_room() || job.first_leaf + number >= job.layout.totals->leaves) return false;
   const int lane = lane_id();
-  out->brick = job.view.first_brick + slot / kLeavesPerBrick;
+  const uint32_t slot = job.layout.vertex_leaves[job.first_leaf + number];
+  out->brick = slot / kLeavesPerBrick;
   out->leaf = static_cast<int>(slot % kLeavesPerBrick);
   const size_t k = (static_cast<size_t>(out->brick) * kLeavesPerBrick + static_cast<size_t>(out->leaf)) * kAxes;
   uint64_t masks[kAxes];
 #pragma unroll
   for (int axis = 0; axis < kAxes; ++axis) masks[axis] = job.layout.crossing[k + static_cast<size_t>(axis)];
-  if ((masks[0] | masks[1] | masks[2]) == 0) return false;
   out->count = 0;
 #pragma unroll
   for (int axis = 0; axis < kAxes; ++axis) {
@@ -118,7 +121,7 @@ __device__ __forceinline__ bool open_leaf(const VertexJob &job, uint32_t slot, V
   }
   __syncwarp();
   out->first = job.layout.base[out->brick].vertices + job.layout.vertex_rank[k];
-  out->place = job.bricks.lattice.brick_at(job.bricks.linear[out->brick]);
+  out->place = job.bricks.place(out->brick);
   out->origin = brick_point(out->leaf, 0);
   return true;
 }
@@ -159,10 +162,10 @@ static __global__ __launch_bounds__(kLeafWarps *kWarp) void halve_starts_kernel(
   const LaunchItems leaves = queued.in_turn();
   __shared__ uint8_t edge_memory[kLeafWarps][kMostLeafVertices];
   const int warp = static_cast<int>(threadIdx.x) / kWarp;
-  const uint32_t slot = static_cast<uint32_t>(leaves.first) + blockIdx.x * kLeafWarps + static_cast<uint32_t>(warp);
+  const size_t number = leaves.first + blockIdx.x * kLeafWarps + static_cast<uint32_t>(warp);
   VertexLeaf leaf;
-  if (slot >= leaves.last || !job.layout.has_room() || !open_leaf(job, slot, &leaf, edge_memory[warp])) return;
-  const ListedCandidates candidates = brick_candidates(job.view, slot / kLeavesPerBrick);
+  if (number >= leaves.last || !open_leaf(job, number, &leaf, edge_memory[warp])) return;
+  const ListedCandidates candidates = brick_candidates(job.view, leaf.brick - job.view.first_brick);
   for (int k = first + lane_id(); k < leaf.count && k < last; k += kWarp) {
     const LatticeEdge edge{leaf.leaf, edge_memory[warp][k] >> 6, edge_memory[warp][k] & 63};
     store_start(job, leaf.first + static_cast<uint32_t>(k),
@@ -177,10 +180,10 @@ static __global__ __launch_bounds__(kLeafWarps *kWarp) void prepare_vertices_ker
   __shared__ uint8_t edge_memory[kLeafWarps][kMostLeafVertices];
   __shared__ SignWindow window_memory[kLeafWarps];
   const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();
-  const uint32_t slot = static_cast<uint32_t>(leaves.first) + blockIdx.x * kLeafWarps + static_cast<uint32_t>(warp);
+  const size_t number = leaves.first + blockIdx.x * kLeafWarps + static_cast<uint32_t>(warp);
   const uint8_t *const edges = edge_memory[warp];
   VertexLeaf leaf;
-  if (slot >= leaves.last || !job.layout.has_room() || !open_leaf(job, slot, &leaf, edge_memory[warp])) return;
+  if (number >= leaves.last || !open_leaf(job, number, &leaf, edge_memory[warp])) return;
   const Lattice &lattice = job.bricks.lattice;
   const bool ring = job.starts.relax && !job.halved && !job.starts.moved;
   if (ring) fill_window(job, leaf, &window_memory[warp]);
@@ -218,39 +221,20 @@ static __global__ __launch_bounds__(kLeafWarps *kWarp) void prepare_vertices_ker
   const Vec3<float> center = (low + high) * 0.5f, half = (high - low) * 0.5f;
 
   const FeatureView &f = job.features;
-  const ListedCandidates all = brick_candidates(job.view, slot / kLeavesPerBrick);
-  // Lists are numbered like the leaves that own vertices.
-  bool owns = false;
-  if (lane < kLeavesPerBrick) {
-    const uint64_t *const masks = job.layout.crossing + (size_t(leaf.brick) * kLeavesPerBrick + size_t(lane)) * kAxes;
-    owns = (masks[0] | masks[1] | masks[2]) != 0;
-  }
-  const unsigned owning = __ballot_sync(kFullWarp, owns);
-  const uint32_t number =
-      job.layout.base[leaf.brick].leaves - job.first_list + static_cast<uint32_t>(place_in(owning, leaf.leaf));
+  const uint32_t brick = leaf.brick - job.view.first_brick;  // of the slice
+  const ListedCandidates all = brick_candidates(job.view, brick);
   const int room = static_cast<int>(job.list_words);
-  uint32_t *const list = job.lists + static_cast<size_t>(number) * job.list_words;
+  uint32_t *const list = job.lists + number * job.list_words;
   int listed = 1;  // word 0 is for the numbers
-  if (all.atom_total > 0) {
-    // What can be deepest at a start, or at its projection.
-    const auto atom_at = [&](uint32_t k) { return all.atom(static_cast<int>(k)); };
-    const DeepestAtom best = warp_deepest_atom(f, static_cast<uint32_t>(all.atom_total), atom_at, center);
-    const float move = kStartReach * job.reach.spacing;
-    BoxCull cull;
-    cull.set(center, {half.x + move, half.y + move, half.z + move}, load(f.atoms.items + best.atom), job.reach.slack);
-    for (int k0 = 0; k0 < all.atom_total; k0 += kWarp) {
-      const int k = k0 + lane;
-      bool keep = false;
-      uint32_t i = 0;
-      if (k < all.atom_total) {
-        i = all.atom(k);
-        const Sphere ball = load(f.atoms.items + i);
-        keep = cull.keeps(ball, ball_depth(ball, center)) || i == best.atom;
-      }
-      const int at = append_place(keep, &listed);
-      if (keep && at < room) list[at] = i;
-    }
-  }
+  // What can be deepest at a start, or at its projection.
+  const float move = kStartReach * job.reach.spacing;
+  choose_deepest_atoms(
+      f, static_cast<uint32_t>(all.atom_total), [&](uint32_t k) { return all.atom(static_cast<int>(k)); }, center,
+      {half.x + move, half.y + move, half.z + move}, -2.f * kFarAway, job.reach.slack,
+      [&](bool chosen, const Sphere &, uint32_t atom) {
+        const int at = append_place(chosen, &listed);
+        if (chosen && at < room) list[at] = atom;
+      });
   const int atoms = listed - 1;
   const float radius = square_root(length_squared(half)), limit = job.reach.start_reach;
   for (int k0 = 0; k0 < all.arc_total; k0 += kWarp) {
@@ -274,7 +258,7 @@ static __global__ __launch_bounds__(kLeafWarps *kWarp) void prepare_vertices_ker
   if (fits && lane == 0) list[0] = static_cast<uint32_t>(atoms) | static_cast<uint32_t>(listed - 1 - atoms) << 16;
   for (int k = lane; k < leaf.count; k += kWarp)
     job.list_of[leaf.first - job.first + static_cast<uint32_t>(k)] =
-        fits ? number : kBrickCandidates | slot / kLeavesPerBrick;
+        fits ? static_cast<uint32_t>(number) : kBrickCandidates | brick;
 }
 
 }  // namespace gpu

@@ -31,7 +31,7 @@ struct Lattice {
     return brick.x >= 0 && brick.y >= 0 && brick.z >= 0 && brick.x < brick_count.x && brick.y < brick_count.y &&
            brick.z < brick_count.z;
   }
-  // Linear brick index: x fastest. It orders the output.
+  // Linear brick index: x fastest. For tables.
   QSES_FN uint64_t linear(const glm::ivec3 &brick) const {
     return static_cast<uint64_t>(brick.x) +
            static_cast<uint64_t>(brick_count.x) *
@@ -57,6 +57,19 @@ struct Lattice {
                      static_cast<float>(static_cast<double>(p.z) + center_z));
   }
 };
+
+// The place of a brick in one word. Words are ordered as linear indices are, and so is the output; to take one apart
+// needs no division.
+constexpr int kPlaceBits = 21;  // of each coordinate
+QSES_FN uint64_t pack_place(const glm::ivec3 &b) {
+  return static_cast<uint64_t>(b.x) | static_cast<uint64_t>(b.y) << kPlaceBits |
+         static_cast<uint64_t>(b.z) << (2 * kPlaceBits);
+}
+QSES_FN glm::ivec3 unpack_place(uint64_t word) {
+  constexpr uint64_t kMask = (uint64_t(1) << kPlaceBits) - 1;
+  return glm::ivec3(static_cast<int>(word & kMask), static_cast<int>(word >> kPlaceBits & kMask),
+                    static_cast<int>(word >> (2 * kPlaceBits)));
+}
 
 // An edge of the lattice, or what is left of it, that the surface crosses.
 struct CutEdge {

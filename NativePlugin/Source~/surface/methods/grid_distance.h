@@ -80,7 +80,7 @@ struct FindOutsideAlongX {
   GridField field;
   uint16_t *along_x;
   QSES_HOST_DEVICE void operator()(size_t i) const {
-    const glm::ivec3 place = field.bricks.lattice.brick_at(field.bricks.linear[i]);
+    const glm::ivec3 place = field.bricks.place(i);
     const auto has_outside = [&](int bricks_on) {
       const int brick = field.bricks.find(glm::ivec3(place.x + bricks_on, place.y, place.z));
       if (brick < 0) return true;
@@ -112,7 +112,7 @@ struct FindBrickSides {
 
  private:
   QSES_FN BrickSide side_of(size_t i, bool in_reach) const {
-    const glm::ivec3 place = field.bricks.lattice.brick_at(field.bricks.linear[i]);
+    const glm::ivec3 place = field.bricks.place(i);
     const int rows = 2 * field.bricks_in_reach() + 1, limit = field.parameters.max_outside;
     int64_t left = part.last - part.first;
     int first_l = static_cast<int>(part.first % rows);
@@ -235,7 +235,7 @@ QSES_HOST_DEVICE inline void find_distances(const GridField &f, uint32_t brick, 
   constexpr int kTileBricks = DistanceScratch<N>::kTileBricks;
   const int reach = f.parameters.reach;
   const CubeTiles cube = CubeTiles::of<N>(reach);
-  const glm::ivec3 place = f.bricks.lattice.brick_at(f.bricks.linear[brick]);
+  const glm::ivec3 place = f.bricks.place(brick);
   const RowShare share = row_share<N>(team);
   for (int r = share.first_row; r < N * N; r += share.row_step)
     for (int x = share.first_x; x < N; x += share.x_step)

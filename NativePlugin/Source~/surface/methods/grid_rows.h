@@ -36,7 +36,7 @@ template <class Team>
 QSES_HOST_DEVICE inline void find_near_rows(const GridField &f, uint32_t brick, const NearCube &cube, const Team &team,
                                             NearRows &near) {
   const int width = cube.width(), back = cube.bricks_back(), bricks = cube.bricks();
-  const glm::ivec3 place = f.bricks.lattice.brick_at(f.bricks.linear[brick]) - glm::ivec3(back);
+  const glm::ivec3 place = f.bricks.place(brick) - glm::ivec3(back);
   for (int k = team.rank(); k < bricks * bricks * bricks; k += team.size())
     near.brick[k] = f.bricks.find(place + glm::ivec3(k % bricks, k / bricks % bricks, k / (bricks * bricks)));
   team.sync();

@@ -184,7 +184,7 @@ struct EmitGridVertices {
   template <class Team, class DistanceAt>
   QSES_HOST_DEVICE void write_vertices(const Team &team, uint32_t brick, const DistanceAt &distance_at) const {
     const Lattice &lattice = field.bricks.lattice;
-    const glm::ivec3 origin = lattice.first_point(lattice.brick_at(field.bricks.linear[brick]));
+    const glm::ivec3 origin = lattice.first_point(field.bricks.place(brick));
     const uint32_t end = layout.base[brick + 1].vertices;
     for (uint32_t vertex = layout.base[brick].vertices + static_cast<uint32_t>(team.rank()); vertex < end;
          vertex += static_cast<uint32_t>(team.size())) {

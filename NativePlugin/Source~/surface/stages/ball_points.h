@@ -68,7 +68,7 @@ struct ClassifyBrick {
   QSES_HOST_DEVICE void operator()(const Team &team, ClassifyScratch &scratch, size_t brick) const {
     const NeighborGridView &atoms = balls.atoms;
     const Lattice &lattice = bricks.lattice;
-    const glm::ivec3 first = lattice.first_point(lattice.brick_at(bricks.linear[brick]));
+    const glm::ivec3 first = lattice.first_point(bricks.place(brick));
     const Vec3<float> low = lattice.position(first.x, first.y, first.z);
     const Vec3<float> high = lattice.position(first.x + 7, first.y + 7, first.z + 7);
     const float reach = balls.radius(balls.max_radius) + slack(lattice.spacing);

@@ -67,7 +67,7 @@ QSES_FN uint32_t shared_neighbors(uint32_t bits, const glm::ivec3 &step) {
 
 // The inactive neighbours of a brick next to which signs differ, among its own points and those of its neighbours.
 QSES_FN uint32_t border_changes(const BrickSet &bricks, const BorderSigns *signs, size_t brick) {
-  const glm::ivec3 place = bricks.lattice.brick_at(bricks.linear[brick]);
+  const glm::ivec3 place = bricks.place(brick);
   // All loads before what needs them: on the GPU they are waited for together.
   int other[kNeighborhood];
 #if defined(__CUDA_ARCH__)
@@ -103,8 +103,8 @@ struct GrownBricks {
   uint64_t most_across() const { return 1; }  // they are few: always all
   template <class Visit>
   QSES_FN void visit(size_t i, const RowRange &, const Visit &visit_brick) const {
-    visit_brick(bricks.linear[i], uint64_t(1));
-    const glm::ivec3 place = bricks.lattice.brick_at(bricks.linear[i]);
+    const glm::ivec3 place = bricks.place(i);
+    visit_brick(bricks.lattice.linear(place), uint64_t(1));
     for (uint32_t rest = border_changes(bricks, signs, i); rest; rest &= rest - 1) {
       const glm::ivec3 p = place + neighbor_step(lowest_bit32(rest));
       if (bricks.lattice.has(p)) visit_brick(bricks.lattice.linear(p), uint64_t(1));

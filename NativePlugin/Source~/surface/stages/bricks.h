@@ -24,22 +24,23 @@ namespace quickses {
 // Bricks are numbered by signed 32-bit integers.
 constexpr uint64_t kMaxBricks = 0x7fffffff;
 
-// Active bricks as kernels see them, sorted by linear index.
+// Active bricks as kernels see them.
 struct BrickSet {
   Lattice lattice;
-  const uint64_t *linear;  // of each active brick
-  const int32_t *table;    // linear -> number of the active brick, -1 if inactive; nullptr if the set is sparse
+  const uint64_t *places;  // of each active brick, packed, in rising order
+  const int32_t *table;    // by linear index: number of the active brick, -1 if inactive; nullptr if the set is sparse
   uint32_t count;
   const Tally<uint64_t> *found =
       nullptr;  // where their number is, if there may be fewer: the last ones then stand for none
 
-  // Number of the active brick at a place of the table of bricks; -1 if there is none.
+  QSES_FN glm::ivec3 place(size_t brick) const { return unpack_place(places[brick]); }
+  // Number of the active brick at a place; -1 if there is none.
   QSES_FN int find(const glm::ivec3 &b) const {
     if (!lattice.has(b)) return -1;
-    const uint64_t key = lattice.linear(b);
-    if (table) return table[key];
-    const uint32_t k = lower_bound(linear, count, key);
-    return k < count && linear[k] == key ? static_cast<int>(k) : -1;
+    if (table) return table[lattice.linear(b)];
+    const uint64_t key = pack_place(b);
+    const uint32_t k = lower_bound(places, count, key);
+    return k < count && places[k] == key ? static_cast<int>(k) : -1;
   }
 };
 
@@ -147,10 +148,11 @@ struct IsFirstOfEqual {
   QSES_HOST_DEVICE bool operator()(size_t i) const { return i == 0 || keys[i] != keys[i - 1]; }
 };
 
-struct GatherKeys {
+struct GatherPlaces {
+  Lattice lattice;
   const uint64_t *keys;
-  uint64_t *places;  // in: places of the first of equal keys; out: the keys
-  QSES_HOST_DEVICE void operator()(size_t i) const { places[i] = keys[places[i]]; }
+  uint64_t *places;  // in: where the first of equal keys is; out: packed
+  QSES_HOST_DEVICE void operator()(size_t i) const { places[i] = pack_place(lattice.brick_at(keys[places[i]])); }
 };
 
 // Stands in the list where there may have been one more brick: the first of the box, which is beyond the reach of
@@ -158,14 +160,14 @@ struct GatherKeys {
 constexpr uint64_t kNoBrick = 0;
 
 struct FillBrickTable {
+  Lattice lattice;
   const Tally<uint64_t> *found;
-  uint64_t *linear;
+  uint64_t *places;  // in: linear indices; out: packed
   int32_t *table;
   QSES_HOST_DEVICE void operator()(size_t i) const {
-    if (i < found->count)
-      table[linear[i]] = static_cast<int32_t>(i);
-    else
-      linear[i] = kNoBrick;
+    const uint64_t linear = i < found->count ? places[i] : kNoBrick;
+    if (i < found->count) table[linear] = static_cast<int32_t>(i);
+    places[i] = pack_place(lattice.brick_at(linear));
   }
 };
 
@@ -192,6 +194,8 @@ inline Lattice layout_lattice(Lattice lattice, const glm::vec3 &low, const glm::
     const double reach = static_cast<double>(max_radius) + 2.0 * lattice.spacing;
     const double first = std::floor((low[d] - reach) / size) - 1.0, last = std::floor((high[d] + reach) / size) + 1.0;
     lattice.first_brick[d] = static_cast<int>(first);
+    if (last - first >= double(1 << kPlaceBits) - 1)
+      throw Error(QSES_TOO_FINE, "the SES grid would be too large: use a larger spacing");
     lattice.brick_count[d] = static_cast<int>(last - first) + 1;
   }
   return lattice;
@@ -217,12 +221,12 @@ struct FlaggedBricks {
       : table(room.template allocate<int32_t>(entries)), flags(room.template allocate<uint8_t>(entries)) {}
 };
 struct SortedBricks {
-  Span<uint64_t> keys, linear;
+  Span<uint64_t> keys, places;
   Span<uint32_t> unused;
   template <class Room>
   SortedBricks(Room &room, uint64_t visits)
       : keys(room.template allocate<uint64_t>(visits)),
-        linear(room.template allocate<uint64_t>(visits)),
+        places(room.template allocate<uint64_t>(visits)),
         unused(room.template allocate<uint32_t>(visits)) {}
 };
 
@@ -263,28 +267,28 @@ BrickSet flag_bricks(Executor &executor, const Items &items, const Lattice &latt
   const uint64_t room = lists_all_entries(entries, executor.arena().has_budget())
                             ? entries
                             : static_cast<uint64_t>(executor.reduce(entries, LoadCount<uint8_t>{flags.data}));
-  Span<uint64_t> linear = executor.template allocate<uint64_t>(room);
+  Span<uint64_t> places = executor.template allocate<uint64_t>(room);
   Tally<uint64_t> *const found = executor.template take_counts<Tally<uint64_t>>();
-  executor.compact(entries, IsFlagged{flags.data}, linear, &found->count);
+  executor.compact(entries, IsFlagged{flags.data}, places, &found->count);
   const uint32_t count = checked_brick_count(executor.expect(name, found, Tally<uint64_t>{room}).count);
-  executor.for_each(count, FillBrickTable{found, linear.data, table.data});
-  return {lattice, linear.data, table.data, count, found};
+  executor.for_each(count, FillBrickTable{lattice, found, places.data, table.data});
+  return {lattice, places.data, table.data, count, found};
 }
 
 template <class Executor, class Items>
 BrickSet sort_bricks(Executor &executor, const Items &items, const Lattice &lattice, Span<uint64_t> first,
                      uint64_t visits) {
   const SortedBricks memory(executor, visits);
-  const Span<uint64_t> keys = memory.keys, linear = memory.linear;
+  const Span<uint64_t> keys = memory.keys, places = memory.places;
   const Span<uint32_t> unused = memory.unused;
   for_rows_of_bricks<Executor>(items, [&](const RowRange &rows, uint64_t steps) {
     executor.for_each(items.size(), ListBricks<Items>{items, first.data, keys.data, rows}, steps);
   });
   executor.for_each(visits, NumberItems{unused.data});
   executor.sort_by_key(keys, unused);
-  const uint32_t count = checked_brick_count(executor.compact(visits, IsFirstOfEqual{keys.data}, linear));
-  executor.for_each(count, GatherKeys{keys.data, linear.data});
-  return {lattice, linear.data, nullptr, count};
+  const uint32_t count = checked_brick_count(executor.compact(visits, IsFirstOfEqual{keys.data}, places));
+  executor.for_each(count, GatherPlaces{lattice, keys.data, places.data});
+  return {lattice, places.data, nullptr, count};
 }
 
 // The set of all bricks that the items visit. A table with an entry per brick of the box while that is the smaller way:
@@ -321,10 +325,11 @@ BrickSet collect_bricks(Executor &executor, const Items &items, const Lattice &l
 }
 
 struct NumberAllBricks {
-  uint64_t *linear;
+  Lattice lattice;
+  uint64_t *places;
   int32_t *table;
   QSES_HOST_DEVICE void operator()(size_t i) const {
-    linear[i] = i;
+    places[i] = pack_place(lattice.brick_at(i));
     table[i] = static_cast<int32_t>(i);
   }
 };
@@ -333,10 +338,10 @@ struct NumberAllBricks {
 template <class Executor>
 BrickSet all_bricks(Executor &executor, const Lattice &lattice) {
   const size_t count = static_cast<size_t>(lattice.table_size());
-  const Span<uint64_t> linear = executor.template allocate<uint64_t>(count);
+  const Span<uint64_t> places = executor.template allocate<uint64_t>(count);
   const Span<int32_t> table = executor.template allocate<int32_t>(count);
-  executor.for_each(count, NumberAllBricks{linear.data, table.data});
-  return {lattice, linear.data, table.data, static_cast<uint32_t>(count)};
+  executor.for_each(count, NumberAllBricks{lattice, places.data, table.data});
+  return {lattice, places.data, table.data, static_cast<uint32_t>(count)};
 }
 
 // What is known of a set before it is collected; 0: not known.

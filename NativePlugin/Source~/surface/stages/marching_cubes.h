@@ -51,10 +51,17 @@ struct MeshLayout {
   uint16_t *triangle_rank;  // [brick][leaf]: triangles of the brick before that leaf
   BrickTotals *base;        // [brick + 1]: what the bricks before it own
   BorderSigns *border;      // [brick]
+  uint32_t *vertex_leaves;  // 8 * brick + leaf of those that own vertices; nullptr on the CPU, which goes by brick
   MeshTotals *totals;
   uint64_t vertex_total, triangle_total;  // of all bricks; if they are anticipated, there may be fewer
   uint64_t leaf_total;                    // that own vertices
   uint64_t border_changes;                // 0, or the set of bricks must grow before anything is emitted
+
+  // Vertices of a brick before a leaf; of all, before leaf 8.
+  QSES_FN uint32_t vertices_before(size_t brick, int leaf) const {
+    if (leaf == kLeavesPerBrick) return base[brick + 1].vertices - base[brick].vertices;
+    return vertex_rank[(brick * kLeavesPerBrick + static_cast<size_t>(leaf)) * kAxes];
+  }
 
   // Where more were counted than anticipated nothing may be emitted: there is no room for it, or a brick is missing.
   QSES_FN bool has_room() const {
@@ -68,27 +75,31 @@ struct LeafWords {
   uint64_t at[8];
 };
 
-// The words of a leaf of an active brick and of its neighbours. upper_brick(k): number of the brick towards larger x,
-// y, z (bits of k), -1 if that is not active. No cell at an inactive brick has a sign change, so there the word repeats
-// the nearest point of the leaf itself.
-template <class UpperBrick>
-QSES_FN LeafWords leaf_words(const uint64_t *signs, int brick, int leaf, const UpperBrick &upper_brick) {
+// Of a leaf with this word in an active brick. get(place, word) leaves the word as it is where the neighbour's brick is
+// not active: no cell there has a sign change, so it repeats the nearest point of the leaf itself.
+template <class Get>
+QSES_FN LeafWords leaf_words(uint64_t own, const Get &get) {
   LeafWords w;
-  const uint64_t own = w.at[0] = signs[static_cast<size_t>(brick) * kLeavesPerBrick + leaf];
+  w.at[0] = own;
   for (int d = 1; d < 8; ++d) {
-    const int carry = leaf & d, other = leaf ^ d, k = carry == 0 ? brick : upper_brick(carry);
-    if (k >= 0) {
-      w.at[d] = signs[static_cast<size_t>(k) * kLeavesPerBrick + other];
-    } else {
-      const int bit = leaf_bit(d & 1 ? 3 : 0, d & 2 ? 3 : 0, d & 4 ? 3 : 0);
-      w.at[d] = own >> bit & 1 ? ~uint64_t(0) : 0;
-    }
+    const int bit = leaf_bit(d & 1 ? 3 : 0, d & 2 ? 3 : 0, d & 4 ? 3 : 0);
+    uint64_t word = own >> bit & 1 ? ~uint64_t(0) : 0;
+    get(d, &word);
+    w.at[d] = word;
   }
   return w;
 }
+// upper_brick(k): number of the brick towards larger x, y, z (bits of k), -1 if that is not active.
+template <class UpperBrick>
+QSES_FN LeafWords leaf_words(const uint64_t *signs, int brick, int leaf, const UpperBrick &upper_brick) {
+  return leaf_words(signs[static_cast<size_t>(brick) * kLeavesPerBrick + leaf], [&](int d, uint64_t *word) {
+    const int carry = leaf & d, other = leaf ^ d, k = carry == 0 ? brick : upper_brick(carry);
+    if (k >= 0) *word = signs[static_cast<size_t>(k) * kLeavesPerBrick + other];
+  });
+}
 
 QSES_FN LeafWords leaf_words(const BrickSet &bricks, const uint64_t *signs, int brick, int leaf) {
-  const glm::ivec3 place = bricks.lattice.brick_at(bricks.linear[brick]);
+  const glm::ivec3 place = bricks.place(brick);
   return leaf_words(signs, brick, leaf,
                     [&](int k) { return bricks.find(place + glm::ivec3(k & 1, k >> 1 & 1, k >> 2)); });
 }
@@ -98,7 +109,7 @@ struct UpperBricks {
   int at[8];
 };
 QSES_FN UpperBricks upper_bricks(const BrickSet &bricks, uint32_t brick) {
-  const glm::ivec3 place = bricks.lattice.brick_at(bricks.linear[brick]);
+  const glm::ivec3 place = bricks.place(brick);
   UpperBricks upper;
   upper.at[0] = static_cast<int>(brick);
   for (int k = 1; k < 8; ++k) upper.at[k] = bricks.find(place + glm::ivec3(k & 1, k >> 1 & 1, k >> 2));
@@ -141,6 +152,20 @@ QSES_FN int cell_case(const LeafWords &c, int bit) {
   for (int d = 0; d < 8; ++d) code |= static_cast<int>(c.at[d] >> bit & 1) << d;
   return code;
 }
+// Those of eight cells that follow each other, a byte each: the corners' bits as a matrix, transposed (H. S. Warren,
+// Hacker's Delight, 2nd edition, section 7-3).
+QSES_FN uint64_t cell_cases(const LeafWords &c, int first) {
+  uint64_t m = 0;
+  for (int d = 0; d < 8; ++d) m |= (c.at[d] >> first & 0xff) << (8 * d);
+  const auto swap_blocks = [&](int shift, uint64_t mask) {
+    const uint64_t t = (m ^ m >> shift) & mask;
+    m ^= t ^ t << shift;
+  };
+  swap_blocks(7, 0x00aa00aa00aa00aaull);
+  swap_blocks(14, 0x0000cccc0000ccccull);
+  swap_blocks(28, 0x00000000f0f0f0f0ull);
+  return m;
+}
 template <class Row>
 QSES_FN int cell_case(const Row *row, int rows_per_layer, int x) {
   const Row *const above = row + rows_per_layer;
@@ -153,9 +178,14 @@ QSES_FN int cell_case(const Row *row, int rows_per_layer, int x) {
 QSES_FN int count_leaf(const LeafWords &words, const uint8_t *case_triangles, uint64_t *crossing) {
   const LeafWords c = cell_corners(words);
   for (int axis = 0; axis < kAxes; ++axis) crossing[axis] = c.at[0] ^ c.at[1 << axis];
+  const uint64_t mixed = mixed_cells(c);
   int triangles = 0;
-  for (uint64_t mixed = mixed_cells(c); mixed; mixed &= mixed - 1)
-    triangles += case_triangles[cell_case(c, lowest_bit64(mixed))];
+  for (int first = 0; first < 64; first += 8) {
+    uint32_t some = static_cast<uint32_t>(mixed >> first & 0xff);
+    if (some == 0) continue;
+    const uint64_t cases = cell_cases(c, first);
+    for (; some; some &= some - 1) triangles += case_triangles[cases >> (8 * lowest_bit32(some)) & 0xff];
+  }
   return triangles;
 }
 
@@ -242,6 +272,15 @@ struct CountBorderChanges {
   QSES_HOST_DEVICE void operator()(size_t brick) const {
     const int changes = popcount64(border_changes(bricks, layout.border, brick));
     if (changes > 0) atomic_add(&layout.totals->border_changes, static_cast<uint32_t>(changes));
+    if (layout.vertex_leaves) {
+      uint32_t next = layout.base[brick].leaves, before = 0;
+      for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
+        const uint32_t with = layout.vertices_before(brick, leaf + 1);
+        if (with != before)
+          layout.vertex_leaves[next++] = static_cast<uint32_t>(brick) * kLeavesPerBrick + static_cast<uint32_t>(leaf);
+        before = with;
+      }
+    }
     if (brick > 0) return;
     const BrickTotals all = layout.base[bricks.count];
     layout.totals->vertices = all.vertices;
@@ -284,7 +323,7 @@ QSES_FN LatticeEdge edge_of_vertex(const MeshLayout &m, uint32_t brick, uint32_t
 // Its ends, in the centred frame.
 QSES_FN CutEdge ends_of_edge(const BrickSet &bricks, const MeshLayout &m, uint32_t brick, const LatticeEdge &edge) {
   const glm::ivec3 p =
-      bricks.lattice.first_point(bricks.lattice.brick_at(bricks.linear[brick])) + brick_point(edge.leaf, edge.bit);
+      bricks.lattice.first_point(bricks.place(brick)) + brick_point(edge.leaf, edge.bit);
   const Vec3<float> low = bricks.lattice.position(p.x, p.y, p.z);
   const Vec3<float> high =
       bricks.lattice.position(p.x + (edge.axis == 0), p.y + (edge.axis == 1), p.z + (edge.axis == 2));
@@ -347,6 +386,7 @@ MeshCounts lay_out_mesh(Executor &executor, const BrickSet &bricks, const uint64
   const Span<BrickTotals> base = executor.template allocate<BrickTotals>(n + 1);
   layout->base = base.data;
   layout->border = executor.template allocate<BorderSigns>(n).data;
+  layout->vertex_leaves = Executor::kIsCuda ? executor.template allocate<uint32_t>(leaves).data : nullptr;
   layout->totals = executor.template take_counts<MeshTotals>();
   const auto mark = executor.arena().mark();
   const Span<BrickTotals> counts = executor.template allocate<BrickTotals>(n);

@@ -109,7 +109,7 @@ struct OpenNodes {
 
   template <class Team>
   QSES_HOST_DEVICE void operator()(const Team &team, SkyScratch &scratch, size_t i) const {
-    const glm::ivec3 place = field.bricks.lattice.brick_at(field.bricks.linear[i]);
+    const glm::ivec3 place = field.bricks.place(i);
     for (int k = team.rank(); k < 8; k += team.size())
       field.behind[8 * i + static_cast<size_t>(k)] = field.bricks.find(place + glm::ivec3(k & 1, k >> 1 & 1, k >> 2));
     const uint64_t free_nodes = field.outside[i * kLeavesPerBrick];

@@ -43,9 +43,12 @@ QSES_FN bool is_exposed(const FeatureView &f, uint32_t atom, const Vec3<float> &
   const CapRange range = f.cap_ranges[atom];
   if (range.count == kBuriedAtom) return false;
   const Cap *caps = f.caps + range.first;
-  for (int32_t k = 0; k < range.count; ++k)
-    if (cap_covers(load(caps + k), d, length)) return false;
-  return true;
+  int32_t k = 0;
+  for (; k + 1 < range.count; k += 2) {  // two at a time, so that the GPU waits for both loads together
+    const Cap first = load(caps + k), second = load(caps + k + 1);
+    if (cap_covers(first, d, length) | cap_covers(second, d, length)) return false;
+  }
+  return k == range.count || !cap_covers(load(caps + k), d, length);
 }
 
 // How far a point at some depth in a ball is from its centre.

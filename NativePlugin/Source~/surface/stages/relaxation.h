@@ -109,8 +109,7 @@ struct NoScratch {};
 // Starts of the next projection for the vertices of a brick: towards the mean of the neighbours, but only along the
 // surface, and never further from the brick than the projection looks for atoms and arcs.
 struct TangentialStarts {
-  Lattice lattice;
-  const uint64_t *linear;
+  BrickSet bricks;
   const BrickTotals *base;
   const RingSum *sums;
   MeshView mesh;
@@ -118,8 +117,9 @@ struct TangentialStarts {
 
   template <class Team>
   QSES_HOST_DEVICE void operator()(const Team &team, NoScratch &, size_t brick) const {
+    const Lattice &lattice = bricks.lattice;
     const float h = lattice.spacing, overhang = 0.999f * kStartOverhang * h, edge = 7.f * h;
-    const glm::ivec3 first = lattice.first_point(lattice.brick_at(linear[brick]));
+    const glm::ivec3 first = lattice.first_point(bricks.place(brick));
     const Vec3<float> low = lattice.position(first.x, first.y, first.z);
     const uint32_t end = base[brick + 1].vertices;
     for (uint32_t v = base[brick].vertices + static_cast<uint32_t>(team.rank()); v < end;
@@ -154,7 +154,7 @@ void tangential_starts(Executor &executor, const BrickSet &bricks, const MeshLay
   executor.fill(sums, 0);
   executor.for_each(counts.triangles, AddNeighborOffsets{mesh, 1.f / spacing, sums.data});
   executor.template for_each_brick<NoScratch>(
-      bricks.count, TangentialStarts{bricks.lattice, bricks.linear, layout.base, sums.data, mesh, starts});
+      bricks.count, TangentialStarts{bricks, layout.base, sums.data, mesh, starts});
 }
 
 // ---- normals ---------------------------------------------------------------------------------------------------

@@ -137,6 +137,13 @@ QSES_FN NearestProbe nearest_probe(const FeatureView &f, const Candidates &candi
 QSES_FN bool probe_covers(const SurfaceParameters &p, const NearestProbe &probe, const Vec3<float> &x) {
   return probe.distance > p.depth || length_squared(x - probe.center) < p.depth * p.depth;
 }
+// How far the second end of an edge is from where the first one is by so much.
+template <class T>
+QSES_FN Vec3<T> second_offset(const Vec3<T> &first, int step, float spacing) {
+  const glm::ivec3 s = wall_step(step);
+  const auto moved = [&](const T &x, int by) { return by == 0 ? x : x + T(by > 0 ? spacing : -spacing); };
+  return {moved(first.x, s.x), moved(first.y, s.y), moved(first.z, s.z)};
+}
 
 // How far from x, which it covers, in a direction of length 1, the ball of a probe ends.
 QSES_FN float way_out(const SurfaceParameters &p, const NearestProbe &probe, const Vec3<float> &x,
@@ -211,7 +218,7 @@ QSES_FN bool marks_first_end(const NearestProbe &probe_a, const NearestProbe &pr
 // Marks a point, counted from the first one of a brick, in the words of its brick.
 QSES_FN void mark_wall(const BrickSet &bricks, uint32_t brick, const glm::ivec3 &p, uint64_t *marks) {
   const glm::ivec3 away(p.x >> 3, p.y >> 3, p.z >> 3);
-  const int owner = (p.x | p.y | p.z) & ~7 ? bricks.find(bricks.lattice.brick_at(bricks.linear[brick]) + away)
+  const int owner = (p.x | p.y | p.z) & ~7 ? bricks.find(bricks.place(brick) + away)
                                            : static_cast<int>(brick);
   if (owner < 0) return;
   const int x = p.x & 7, y = p.y & 7, z = p.z & 7;
