@@ -46,7 +46,13 @@ QSES_FN int lowest_bit64(uint64_t v) {
 #endif
 }
 
-QSES_FN int lowest_bit32(uint32_t v) { return lowest_bit64(v); }
+QSES_FN int lowest_bit32(uint32_t v) {
+#if defined(__CUDA_ARCH__)
+  return __ffs(static_cast<int>(v)) - 1;
+#else
+  return __builtin_ctz(v);
+#endif
+}
 
 // Number of the highest.
 QSES_FN int highest_bit32(uint32_t v) {

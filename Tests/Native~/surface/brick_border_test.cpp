@@ -138,8 +138,7 @@ void grow_and_check(const SignField &field, const std::vector<glm::ivec3> &begin
     counts = lay_out_mesh(executor, bricks, signs.data(), table.triangle_count, &layout);
     if (layout.border_changes == 0) break;
     const BrickSet grown = grow_bricks(executor, bricks, layout.border);
-    for (uint32_t b = 0; b < bricks.count; ++b)
-      ASSERT_GE(grown.find(bricks.place(b)), 0) << "a brick was lost";
+    for (uint32_t b = 0; b < bricks.count; ++b) ASSERT_GE(grown.find(bricks.place(b)), 0) << "a brick was lost";
     bricks = grown;
   }
 

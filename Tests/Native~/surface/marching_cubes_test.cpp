@@ -167,7 +167,8 @@ class Block {
       for (int y = 0; y < bricks; ++y)
         for (int x = 0; x < bricks; ++x) places_.push_back(pack_place(glm::ivec3(x, y, z)));
     table_.assign(lattice_.table_size(), -1);
-    for (size_t b = 0; b < places_.size(); ++b) table_[lattice_.linear(unpack_place(places_[b]))] = static_cast<int32_t>(b);
+    for (size_t b = 0; b < places_.size(); ++b)
+      table_[lattice_.linear(unpack_place(places_[b]))] = static_cast<int32_t>(b);
     bricks_ = {lattice_, places_.data(), table ? table_.data() : nullptr, static_cast<uint32_t>(places_.size())};
     signs_.assign(places_.size() * kLeavesPerBrick, 0);
     for (int z = 0; z < edge_; ++z)

@@ -109,11 +109,13 @@ __device__ __forceinline__ OpenCircle open_circle(const CircleJob &job, uint32_t
   return c;
 }
 
-// What cap k covers of the circle: a stretch from begin to end, nothing, or all.
+__device__ __forceinline__ Cap cap_of(const CircleJob &job, const OpenCircle &c, int k) {
+  return load(job.caps + c.first_cap + static_cast<uint32_t>(k));
+}
+
+// What a cap of the atom covers of the circle: a stretch from begin to end, nothing, or all.
 enum class CutKind { kNone, kPart, kAll };
-__device__ __forceinline__ CutKind cut_by_cap(const CircleJob &job, const OpenCircle &c, int k, float *begin,
-                                              float *end) {
-  const Cap cap = load(job.caps + c.first_cap + static_cast<uint32_t>(k));
+__device__ __forceinline__ CutKind cut_by_cap(const OpenCircle &c, const Cap &cap, float *begin, float *end) {
   const HalfPlane<float> h = cut_circle(c.circle, Vec3<float>(cap.axis), cap.cosine - c.shrink);
   if (same_circle(c.circle, h)) return CutKind::kNone;
   if (misses_circle(h)) return covers_circle(h) ? CutKind::kAll : CutKind::kNone;
@@ -169,7 +171,12 @@ static __global__ __launch_bounds__(kArcThreads) void find_arcs_kernel(QueuedIte
     State state = State::kIdle;
     OpenCircle c{};
     ExposedIntervals<StridedIntervals> intervals{storage, kLaneIntervals};
-    int k = 0;
+    int k = 0;    // the cap that is next
+    Cap ahead{};  // that one, asked for while the one before is looked at
+    const auto go_on = [&] {
+      if (k == c.rank) ++k;
+      if (k < c.cap_count) ahead = cap_of(job, c, k);
+    };
     for (;;) {
       const unsigned idle = __ballot_sync(kFullWarp, state != State::kActive);
       if (idle == kFullWarp || (next < end && __popc(idle) >= kIdleLanes)) {
@@ -195,6 +202,7 @@ static __global__ __launch_bounds__(kArcThreads) void find_arcs_kernel(QueuedIte
             intervals.whole = true;
             intervals.overflow = false;
             k = 0;
+            go_on();
             state = State::kActive;
           }
         }
@@ -205,12 +213,13 @@ static __global__ __launch_bounds__(kArcThreads) void find_arcs_kernel(QueuedIte
       CutKind cut = CutKind::kNone;
       float begin = 0.f, end_of = 0.f;
       if (state == State::kActive) {
-        if (k == c.rank) ++k;
         if (k >= c.cap_count) {
           state = State::kDone;
         } else {
-          cut = cut_by_cap(job, c, k, &begin, &end_of);
+          const Cap cap = ahead;
           ++k;
+          go_on();
+          cut = cut_by_cap(c, cap, &begin, &end_of);
           if (cut == CutKind::kAll) state = State::kIdle;
         }
       }
@@ -263,7 +272,7 @@ static __global__ __launch_bounds__(kWarp) void find_long_circle_arcs_kernel(Que
     for (; k < c.cap_count && !hidden && steps < kLongCircleSteps; ++k) {
       if (k == c.rank) continue;
       float begin, end;
-      const CutKind cut = cut_by_cap(job, c, k, &begin, &end);
+      const CutKind cut = cut_by_cap(c, cap_of(job, c, k), &begin, &end);
       if (cut == CutKind::kPart) intervals.cover(begin, end);
       hidden = cut == CutKind::kAll || intervals.empty();
       steps += kCutSteps + static_cast<uint32_t>(intervals.count);

@@ -71,8 +71,8 @@ struct BoxCull {
 };
 
 // Of `count` atoms, atom_at(k), those that can be deepest at a point of a box, as far as they come up to `floor` at its
-// centre: visit(chosen, ball, number) for a warp's worth after the other. Returns the one that is deepest at the centre,
-// which is chosen in any case.
+// centre: visit(chosen, ball, number) for a warp's worth after the other. Returns the one that is deepest at the
+// centre, which is chosen in any case.
 template <class AtomAt, class Visit>
 __device__ __forceinline__ DeepestAtom choose_deepest_atoms(const FeatureView &f, uint32_t count, const AtomAt &atom_at,
                                                             const Vec3<float> &center, const Vec3<float> &half,
@@ -161,7 +161,8 @@ static __global__ __launch_bounds__(kSignWarps *kWarp, 9) void evaluate_leaves_k
   const float half = 1.5f * h;
   const DeepestAtom best = choose_deepest_atoms(
       f, brick_row.atom_count, [&](uint32_t k) { return __ldg(atoms + k); }, center, {half, half, half},
-      -reach.leaf_radius - reach.slack, reach.slack, [&](bool chosen, const Sphere &ball, uint32_t number) {
+      -reach.leaf_radius - reach.slack, reach.slack,
+      [&](bool chosen, const Sphere &ball, uint32_t number) {
         const int place = append_place(chosen, &atom_count);
         if (chosen && place < kLeafAtoms) {
           scratch.atom[place] = ball;

@@ -83,8 +83,9 @@ void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bri
     return LaunchShape{kVertexThreads, static_cast<size_t>(kVertexThreads / lanes),
                        looks * (64 + look / static_cast<uint64_t>(lanes)), size_t(executor.multiprocessors()) * 16};
   };
-  const int lanes = have_much ? kWarp : 8;
-  executor.launch("reproject", have_much ? reproject_kernel<kWarp> : reproject_kernel<8>, job.count,
+  const bool by_warps = have_much || are_few;
+  const int lanes = by_warps ? kWarp : 8;
+  executor.launch("reproject", by_warps ? reproject_kernel<kWarp> : reproject_kernel<8>, job.count,
                   share(lanes, 2 + kMaxProjections), job);
   const LaunchShape place = share(kWarp, looks_for_sign_change(features.parameters, kPlaceHalvings));
   size_t on_edges = job.count;

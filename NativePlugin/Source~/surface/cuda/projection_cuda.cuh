@@ -69,7 +69,8 @@ struct VertexTeam {
 };
 
 template <int kLanes>
-static __global__ __launch_bounds__(kVertexThreads, 14) void project_on_atoms_kernel(QueuedItems queued, VertexJob job) {
+static __global__ __launch_bounds__(kVertexThreads, 14) void project_on_atoms_kernel(QueuedItems queued,
+                                                                                     VertexJob job) {
   const LaunchItems vertices = queued.in_turn();
   const uint32_t count = vertex_count(job);
   const VertexTeam<kLanes> team(vertices, count);
@@ -90,8 +91,28 @@ static __global__ __launch_bounds__(kVertexThreads, 14) void project_on_atoms_ke
   if (team.writes && contact && done) finish_vertex(job, k, v.point, deepest.atom);
 }
 
+// Some of a run of arcs. In two words, since operations on 64 bits take several instructions each.
+struct ArcMask {
+  static constexpr int kBits = 64;
+  uint32_t low, high;
+  __device__ __forceinline__ void add(int q) { (q < 32 ? low : high) |= 1u << (q & 31); }
+  // All lanes of a warp that have any go on together: use(q).
+  template <class Use>
+  __device__ __forceinline__ void for_each(const Use &use) const {
+    int first = 0;
+    for (uint32_t rest = low, later = high; rest | later; rest &= rest - 1) {
+      if (rest == 0) {
+        rest = later;
+        later = 0;
+        first = 32;
+      }
+      use(first + lowest_bit32(rest));
+    }
+  }
+};
+
 template <int kLanes>
-static __global__ __launch_bounds__(kVertexThreads, 12) void project_on_arcs_kernel(QueuedItems queued, VertexJob job) {
+static __global__ __launch_bounds__(kVertexThreads, 10) void project_on_arcs_kernel(QueuedItems queued, VertexJob job) {
   const LaunchItems vertices = queued.in_turn();
   const uint32_t total = job.counts->open;
   const VertexTeam<kLanes> team(vertices, total);
@@ -104,40 +125,46 @@ static __global__ __launch_bounds__(kVertexThreads, 12) void project_on_arcs_ker
   // Of a usual start, no arc that is farther than `near` is the nearest, nor can it cover where the vertex goes. So
   // only arcs are looked at whose bounds are nearer; where the nearest of them tells that the start is not usual, what
   // they say is not used.
-  constexpr int kMaskBits = 64;
   const float margin = kUsualStart * job.reach.spacing, near = f.parameters.depth + margin;
+  const float limit_beyond = near + job.reach.slack, near2 = near * near;
   NearestArc nearest;
-  uint64_t near_arcs = 0;  // of this lane
+  ArcMask near_arcs{};  // of this lane
   const int arcs = candidates.arc_count(), rank = LaneCandidates<kLanes>::rank();
   const auto arc_at = [&](int q) { return static_cast<int>(candidates.arc(q * kLanes + rank)); };
   const int own_arcs = (arcs - rank + kLanes - 1) / kLanes;
-  for (int q0 = 0; q0 < own_arcs; q0 += kMaskBits) {
-    near_arcs = 0;
-    const int last = own_arcs - q0 < kMaskBits ? own_arcs - q0 : kMaskBits;
+  for (int q0 = 0; q0 < own_arcs; q0 += ArcMask::kBits) {
+    const auto choose_by_bounds = [&](int first) {
+      const int count = own_arcs - first < 32 ? own_arcs - first : 32;
+      uint32_t chosen = 0;
 #pragma unroll 4
-    for (int q = 0; q < last; ++q) {
-      const Sphere bound = load(f.arc_bounds.items + arc_at(q0 + q));
-      const float limit = bound.radius + near + job.reach.slack;
-      near_arcs |= static_cast<uint64_t>(length_squared(x - Vec3<float>(bound.center)) < limit * limit) << q;
-    }
-    for (uint64_t rest = near_arcs; rest; rest &= rest - 1) {
-      const int bit = lowest_bit64(rest), a = arc_at(q0 + bit);
+      for (int q = 0; q < count; ++q) {
+        const Sphere bound = load(f.arc_bounds.items + arc_at(first + q));
+        const float limit = bound.radius + limit_beyond;
+        chosen |= static_cast<uint32_t>(length_squared(x - Vec3<float>(bound.center)) < limit * limit) << q;
+      }
+      return chosen;
+    };
+    const ArcMask chosen{choose_by_bounds(q0), choose_by_bounds(q0 + 32)};
+    near_arcs = {};
+    chosen.for_each([&](int q) {
+      const int a = arc_at(q0 + q);
       const float d2 = arc_distance2(load(f.arcs + a), x);
       nearest.offer(a, d2);
-      if (!(d2 < near * near)) near_arcs &= ~(uint64_t(1) << bit);
-    }
+      if (d2 < near2) near_arcs.add(q);
+    });
   }
   nearest = nearest_of_lanes<kLanes>(nearest, kFullWarp);
   __syncwarp();
   const bool usual = absolute(f.parameters.depth - square_root(nearest.distance2)) < margin;
   Projection v = project_on_arc(f, nearest, x);
   __syncwarp();
-  const bool again = usual && v.state == ProjectionState::kReproject && arcs <= kMaskBits * kLanes;
+  const bool again = usual && v.state == ProjectionState::kReproject && arcs <= ArcMask::kBits * kLanes;
   nearest = NearestArc();
-  for (uint64_t rest = again ? near_arcs : 0; rest; rest &= rest - 1) {
-    const int a = arc_at(lowest_bit64(rest));
+  if (!again) near_arcs = {};
+  near_arcs.for_each([&](int q) {
+    const int a = arc_at(q);
     nearest.offer(a, arc_distance2(load(f.arcs + a), v.point.position));
-  }
+  });
   nearest = nearest_of_lanes<kLanes>(nearest, kFullWarp);
   if (again) {
     const Projection next = reproject(f, apart(candidates), nearest, v);

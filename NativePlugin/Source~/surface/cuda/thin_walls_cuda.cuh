@@ -42,7 +42,7 @@ constexpr int kWallThreads = 128;
 constexpr int kWallWarps = kWallThreads / kWarp;
 
 // A thread per leaf of the slice.
-static __global__ __launch_bounds__(kWallThreads) void find_wall_candidates_kernel(QueuedItems queued, WallJob job) {
+static __global__ __launch_bounds__(kWallThreads, 6) void find_wall_candidates_kernel(QueuedItems queued, WallJob job) {
   const LaunchItems items = queued.in_turn();
   if (job.view.counted->leaves > job.view.leaf_room) return;  // of some, nothing is known
   const size_t k = items.first + blockIdx.x * size_t(kWallThreads) + threadIdx.x;
@@ -50,14 +50,20 @@ static __global__ __launch_bounds__(kWallThreads) void find_wall_candidates_kern
   const uint32_t slot = static_cast<uint32_t>(on ? k : items.first);
   const int leaf = static_cast<int>(slot % kLeavesPerBrick), brick = static_cast<int>(job.view.first_brick + slot / 8);
   const glm::ivec3 place = job.bricks.place(brick);
-  const auto words_of = [&](int at) -> const uint64_t * {
-    const int found = at == kOwnPlace ? brick : job.bricks.find(place + neighbor_step(at));
-    return found < 0 ? nullptr : job.signs + static_cast<size_t>(found) * kLeavesPerBrick;
-  };
+  const auto leaf_at = [&](int n) { return glm::ivec3(leaf & 1, leaf >> 1 & 1, leaf >> 2) + neighbor_step(n); };
+  int found[kNeighborhood];
+  job.bricks.find_each<kNeighborhood>(
+      [&](int n) {
+        const glm::ivec3 p = leaf_at(n);
+        return place + glm::ivec3(p.x >> 1, p.y >> 1, p.z >> 1);
+      },
+      found);
   LeafNeighborhood words;
 #pragma unroll
   for (int n = 0; n < kNeighborhood; ++n)
-    words.at[n] = word_of_leaf(glm::ivec3(leaf & 1, leaf >> 1 & 1, leaf >> 2) + neighbor_step(n), words_of);
+    words.at[n] = word_of_leaf(leaf_at(n), [&](int) {
+      return found[n] < 0 ? nullptr : job.signs + static_cast<size_t>(found[n]) * kLeavesPerBrick;
+    });
   uint64_t edges[kWallSteps];
   const bool any = on && find_wall_candidates(words, edges);
   if (any) {
@@ -127,8 +133,8 @@ __device__ __forceinline__ NearestProbe decided_probe(const FeatureView &f, uint
 
 // Shared memory of one warp.
 struct WallScratch {
-  float4 probe[64];                // of first ends, by their bit
-  uint32_t decider[64];            // about them
+  float4 probe[64];      // of first ends, by their bit
+  uint32_t decider[64];  // about them
   uint32_t candidates[kWallSteps][2];
   uint16_t edge[kWallSteps * 64];  // 64 * step + bit
   uint8_t bit[64];                 // of first ends
@@ -151,8 +157,7 @@ static __global__ __launch_bounds__(kWallThreads, 8) void drop_open_edges_kernel
        k += size_t(gridDim.x) * kWallWarps) {
     const uint32_t slot = job.leaves[k], brick = job.view.first_brick + slot / kLeavesPerBrick;
     const int leaf = static_cast<int>(slot % kLeavesPerBrick);
-    const glm::ivec3 low =
-        job.bricks.lattice.first_point(job.bricks.place(brick)) + brick_point(leaf, 0);
+    const glm::ivec3 low = job.bricks.lattice.first_point(job.bricks.place(brick)) + brick_point(leaf, 0);
     const auto position = [&](int bit, const glm::ivec3 &step) {
       return job.bricks.lattice.position(low.x + (bit & 3) + step.x, low.y + (bit >> 2 & 3) + step.y,
                                          low.z + (bit >> 4) + step.z);

@@ -26,9 +26,9 @@ struct TriangleJob {
 struct TriangleScratch {
   uint64_t signs[27];
   uint64_t crossing[27][kAxes];
-  uint32_t first[27][kAxes];  // vertex of each mask's lowest bit
+  uint32_t first[27][kAxes];         // vertex of each mask's lowest bit
   uint64_t cases[kBrickPoints / 8];  // of the cells, a byte each: by 64 * leaf + bit
-  uint16_t items[kTriangleItems];  // cell << 3 | triangle of its case
+  uint16_t items[kTriangleItems];    // cell << 3 | triangle of its case
   __device__ __forceinline__ int case_of(int cell) const { return reinterpret_cast<const uint8_t *>(cases)[cell]; }
 };
 
@@ -59,8 +59,7 @@ static __global__ __launch_bounds__(kTriangleWarps *kWarp) void emit_triangles_k
     if (lane < 27) {
       const int x = lane % 3, y = lane / 3 % 3, z = lane / 9;
       int k = brick;
-      if (x == 2 || y == 2 || z == 2)
-        k = job.bricks.find(job.bricks.place(b) + glm::ivec3(x >> 1, y >> 1, z >> 1));
+      if (x == 2 || y == 2 || z == 2) k = job.bricks.find(job.bricks.place(b) + glm::ivec3(x >> 1, y >> 1, z >> 1));
 #if !defined(NDEBUG)
       for (int axis = 0; axis < kAxes; ++axis) scratch.first[lane][axis] = scratch.crossing[lane][axis] = 0xffffffffu;
 #endif
@@ -84,19 +83,25 @@ static __global__ __launch_bounds__(kTriangleWarps *kWarp) void emit_triangles_k
       if (active >> place & 1) *word = scratch.signs[place];
     }));
     const uint32_t mixed = static_cast<uint32_t>(mixed_cells(corners) >> (first_cell & 63)) & 0xffff;
-    scratch.cases[2 * lane] = cell_cases(corners, first_cell & 63);
-    scratch.cases[2 * lane + 1] = cell_cases(corners, (first_cell & 63) + 8);
     uint32_t own = 0;
-    for (uint32_t m = mixed; m; m &= m - 1) own += triangle_count[scratch.case_of(first_cell + lowest_bit32(m))];
+#pragma unroll
+    for (int half = 0; half < 2; ++half) {
+      const uint64_t cases = cell_cases(corners, (first_cell & 63) + 8 * half);
+      scratch.cases[2 * lane + half] = cases;
+#pragma unroll
+      for (int shift = 0; shift < 64; shift += 8) own += triangle_count[cases >> shift & 0xff];  // none if not mixed
+    }
     const uint32_t before = warp_inclusive_sum(own, lane) - own;
     for (uint32_t start = 0; start < total; start += kTriangleItems) {
       uint32_t place = before;
       for (uint32_t m = mixed; m; m &= m - 1) {
         const int cell = first_cell + lowest_bit32(m);
         const uint32_t count = triangle_count[scratch.case_of(cell)];
-        for (uint32_t t = 0; t < count; ++t, ++place)
-          if (place >= start && place - start < kTriangleItems)
-            scratch.items[place - start] = static_cast<uint16_t>(static_cast<uint32_t>(cell) << 3 | t);
+#pragma unroll
+        for (uint32_t t = 0; t < uint32_t(kMostCaseTriangles); ++t)
+          if (t < count && place + t - start < kTriangleItems)  // unsigned: not before start either
+            scratch.items[place + t - start] = static_cast<uint16_t>(static_cast<uint32_t>(cell) << 3 | t);
+        place += count;
       }
       __syncwarp();
       const uint32_t listed = total - start < kTriangleItems ? total - start : kTriangleItems;

@@ -95,8 +95,8 @@ struct VertexLeaf {
   int count;
 };
 
-// False if there is none of this number. edges: 64 * axis + bit of the lower point, in the order of the vertices. A warp
-// together.
+// False if there is none of this number. edges: 64 * axis + bit of the lower point, in the order of the vertices. A
+// warp together.
 __device__ __forceinline__ bool open_leaf(const VertexJob &job, size_t number, VertexLeaf *out, uint8_t *edges) {
   if (!job.layout.has_room() || job.first_leaf + number >= job.layout.totals->leaves) return false;
   const int lane = lane_id();
@@ -223,6 +223,12 @@ static __global__ __launch_bounds__(kLeafWarps *kWarp) void prepare_vertices_ker
   const FeatureView &f = job.features;
   const uint32_t brick = leaf.brick - job.view.first_brick;  // of the slice
   const ListedCandidates all = brick_candidates(job.view, brick);
+  // The numbers of the first arcs are asked for before the atoms are looked at.
+  const auto arc_number = [&](int k0) { return k0 + lane < all.arc_total ? all.arc(k0 + lane) : 0; };
+  constexpr int kAhead = 2;
+  uint32_t ahead[kAhead];
+#pragma unroll
+  for (int c = 0; c < kAhead; ++c) ahead[c] = arc_number(c * kWarp);
   const int room = static_cast<int>(job.list_words);
   uint32_t *const list = job.lists + number * job.list_words;
   int listed = 1;  // word 0 is for the numbers
@@ -237,12 +243,9 @@ static __global__ __launch_bounds__(kLeafWarps *kWarp) void prepare_vertices_ker
       });
   const int atoms = listed - 1;
   const float radius = square_root(length_squared(half)), limit = job.reach.start_reach;
-  for (int k0 = 0; k0 < all.arc_total; k0 += kWarp) {
-    const int k = k0 + lane;
+  const auto choose_arc = [&](bool on, uint32_t a) {
     bool keep = false;
-    uint32_t a = 0;
-    if (k < all.arc_total) {
-      a = all.arc(k);
+    if (on) {
       const Sphere ball = load(f.arc_bounds.items + a);
       const float near = ball.radius + limit;
       const Vec3<float> d(fmaxf(0.f, absolute(ball.center.x - center.x) - half.x),
@@ -253,7 +256,11 @@ static __global__ __launch_bounds__(kLeafWarps *kWarp) void prepare_vertices_ker
     }
     const int at = append_place(keep, &listed);
     if (keep && at < room) list[at] = a;
-  }
+  };
+#pragma unroll
+  for (int c = 0; c < kAhead; ++c)
+    if (c * kWarp < all.arc_total) choose_arc(c * kWarp + lane < all.arc_total, ahead[c]);
+  for (int k0 = kAhead * kWarp; k0 < all.arc_total; k0 += kWarp) choose_arc(k0 + lane < all.arc_total, arc_number(k0));
   const bool fits = listed <= room;
   if (fits && lane == 0) list[0] = static_cast<uint32_t>(atoms) | static_cast<uint32_t>(listed - 1 - atoms) << 16;
   for (int k = lane; k < leaf.count; k += kWarp)

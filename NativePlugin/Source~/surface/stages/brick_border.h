@@ -68,15 +68,9 @@ QSES_FN uint32_t shared_neighbors(uint32_t bits, const glm::ivec3 &step) {
 // The inactive neighbours of a brick next to which signs differ, among its own points and those of its neighbours.
 QSES_FN uint32_t border_changes(const BrickSet &bricks, const BorderSigns *signs, size_t brick) {
   const glm::ivec3 place = bricks.place(brick);
-  // All loads before what needs them: on the GPU they are waited for together.
   int other[kNeighborhood];
-#if defined(__CUDA_ARCH__)
-#pragma unroll
-#elif !defined(__CUDACC__)
-#pragma GCC unroll 27
-#endif
-  for (int k = 0; k < kNeighborhood; ++k)
-    other[k] = k == kOwnPlace ? static_cast<int>(brick) : bricks.find(place + neighbor_step(k));
+  bricks.find_each<kNeighborhood>([&](int k) { return place + neighbor_step(k); }, other);
+  other[kOwnPlace] = static_cast<int>(brick);  // one that stands for none is not found
   BorderSigns near{0, 0};
   uint32_t inactive = 0;
 #if defined(__CUDA_ARCH__)

@@ -42,6 +42,26 @@ struct BrickSet {
     const uint32_t k = lower_bound(places, count, key);
     return k < count && places[k] == key ? static_cast<int>(k) : -1;
   }
+  // The same for several at once: found[k] of place_of(k). With a table nothing depends on what was found before, so
+  // that a GPU waits for all of them together.
+  template <int kCount, class PlaceOf>
+  QSES_FN void find_each(const PlaceOf &place_of, int *found) const {
+    if (table) {
+#if defined(__CUDA_ARCH__)
+#pragma unroll
+#elif !defined(__CUDACC__)
+#pragma GCC unroll 27
+#endif
+      for (int k = 0; k < kCount; ++k) {
+        const glm::ivec3 b = place_of(k);
+        const bool is_within = lattice.has(b);
+        const int number = table[is_within ? lattice.linear(b) : 0];
+        found[k] = is_within ? number : -1;
+      }
+    } else {
+      for (int k = 0; k < kCount; ++k) found[k] = find(place_of(k));
+    }
+  }
 };
 
 // What the passes below go through: size() items, and visit(i, rows, v), which calls v(linear index, number) for each

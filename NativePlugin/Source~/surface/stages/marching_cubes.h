@@ -81,6 +81,9 @@ template <class Get>
 QSES_FN LeafWords leaf_words(uint64_t own, const Get &get) {
   LeafWords w;
   w.at[0] = own;
+#if defined(__CUDA_ARCH__)
+#pragma unroll
+#endif
   for (int d = 1; d < 8; ++d) {
     const int bit = leaf_bit(d & 1 ? 3 : 0, d & 2 ? 3 : 0, d & 4 ? 3 : 0);
     uint64_t word = own >> bit & 1 ? ~uint64_t(0) : 0;
@@ -104,15 +107,15 @@ QSES_FN LeafWords leaf_words(const BrickSet &bricks, const uint64_t *signs, int 
                     [&](int k) { return bricks.find(place + glm::ivec3(k & 1, k >> 1 & 1, k >> 2)); });
 }
 
-// Where all leaves of a brick are looked at: the bricks towards larger x, y, z, looked up once. Itself at 0.
+// The bricks towards larger x, y, z. Itself at 0.
 struct UpperBricks {
   int at[8];
 };
 QSES_FN UpperBricks upper_bricks(const BrickSet &bricks, uint32_t brick) {
   const glm::ivec3 place = bricks.place(brick);
   UpperBricks upper;
-  upper.at[0] = static_cast<int>(brick);
-  for (int k = 1; k < 8; ++k) upper.at[k] = bricks.find(place + glm::ivec3(k & 1, k >> 1 & 1, k >> 2));
+  bricks.find_each<8>([&](int k) { return place + glm::ivec3(k & 1, k >> 1 & 1, k >> 2); }, upper.at);
+  upper.at[0] = static_cast<int>(brick);  // one that stands for none is not found
   return upper;
 }
 QSES_FN LeafWords leaf_words(const UpperBricks &upper, const uint64_t *signs, int leaf) {
@@ -181,33 +184,54 @@ QSES_FN int count_leaf(const LeafWords &words, const uint8_t *case_triangles, ui
   const uint64_t mixed = mixed_cells(c);
   int triangles = 0;
   for (int first = 0; first < 64; first += 8) {
-    uint32_t some = static_cast<uint32_t>(mixed >> first & 0xff);
-    if (some == 0) continue;
+    if ((mixed >> first & 0xff) == 0) continue;
     const uint64_t cases = cell_cases(c, first);
-    for (; some; some &= some - 1) triangles += case_triangles[cases >> (8 * lowest_bit32(some)) & 0xff];
+    for (int shift = 0; shift < 64; shift += 8) triangles += case_triangles[cases >> shift & 0xff];
   }
   return triangles;
 }
 
-constexpr int kBrickMasks = kLeavesPerBrick * kAxes;
+// The counts of a leaf in one word: of vertices on edges along x, y and z, and of triangles.
+constexpr int kCountBits = 7;
+QSES_FN uint32_t pack_counts(const uint64_t *crossing, int triangles) {
+  uint32_t counts = static_cast<uint32_t>(triangles) << (kAxes * kCountBits);
+  for (int axis = 0; axis < kAxes; ++axis)
+    counts |= static_cast<uint32_t>(crossing[axis] ? popcount64(crossing[axis]) : 0) << (axis * kCountBits);
+  return counts;
+}
+struct alignas(16) BrickCounts {
+  uint32_t of_leaf[kLeavesPerBrick];
+};
+
+// Ranks of a brick, as they lie in the layout: each kind is stored as a whole.
+struct alignas(16) VertexRanks {
+  uint16_t of_mask[kLeavesPerBrick * kAxes];
+};
+struct alignas(16) TriangleRanks {
+  uint16_t of_leaf[kLeavesPerBrick];
+};
 
 // The ranks of a brick from its counts. Returns its totals.
-QSES_FN BrickTotals rank_brick(const MeshLayout &layout, size_t brick, const uint16_t vertex_counts[kBrickMasks],
-                               const uint16_t triangle_counts[kLeavesPerBrick]) {
-  uint16_t *const vertex = layout.vertex_rank + brick * kBrickMasks;
-  uint16_t *const triangle = layout.triangle_rank + brick * kLeavesPerBrick;
+QSES_FN BrickTotals rank_brick(const MeshLayout &layout, size_t brick, const BrickCounts &counts) {
+  VertexRanks vertex;
+  TriangleRanks triangle;
   uint32_t v = 0, t = 0, owning = 0;
+#if defined(__CUDA_ARCH__)
+#pragma unroll
+#endif
   for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
-    const uint32_t before = v;
-    for (int k = leaf * kAxes; k < (leaf + 1) * kAxes; ++k) {
-      vertex[k] = static_cast<uint16_t>(v);
-      v += vertex_counts[k];
+    const uint32_t before = v, count = counts.of_leaf[leaf];
+    for (int axis = 0; axis < kAxes; ++axis) {
+      vertex.of_mask[leaf * kAxes + axis] = static_cast<uint16_t>(v);
+      v += count >> (axis * kCountBits) & ((1u << kCountBits) - 1);
     }
     owning += v != before ? 1 : 0;
-    triangle[leaf] = static_cast<uint16_t>(t);
-    t += triangle_counts[leaf];
+    triangle.of_leaf[leaf] = static_cast<uint16_t>(t);
+    t += count >> (kAxes * kCountBits);
   }
   layout.border[brick] = border_signs(layout.signs + brick * kLeavesPerBrick);
+  reinterpret_cast<VertexRanks *>(layout.vertex_rank)[brick] = vertex;
+  reinterpret_cast<TriangleRanks *>(layout.triangle_rank)[brick] = triangle;
   return {v, t, owning};
 }
 
@@ -216,23 +240,24 @@ struct CountLeaf {
   BrickSet bricks;
   MeshLayout layout;
   const uint8_t *case_triangles;
-  QSES_HOST_DEVICE void operator()(size_t i) const {
-    const int brick = static_cast<int>(i >> 3), leaf = static_cast<int>(i & 7);
-    uint64_t *const crossing = layout.crossing + 3 * i;
-    layout.triangle_rank[i] =
-        static_cast<uint16_t>(count_leaf(leaf_words(bricks, layout.signs, brick, leaf), case_triangles, crossing));
-    for (int axis = 0; axis < kAxes; ++axis)
-      layout.vertex_rank[3 * i + static_cast<size_t>(axis)] = static_cast<uint16_t>(popcount64(crossing[axis]));
+  BrickCounts *counts;
+  QSES_FN void operator()(size_t i) const {
+    const size_t brick = i >> 3;
+    const int leaf = static_cast<int>(i & 7);
+    const UpperBricks upper = upper_bricks(bricks, static_cast<uint32_t>(brick));
+    uint64_t crossing[kAxes];
+    const int triangles = count_leaf(leaf_words(upper, layout.signs, leaf), case_triangles, crossing);
+    for (int axis = 0; axis < kAxes; ++axis) layout.crossing[kAxes * i + static_cast<size_t>(axis)] = crossing[axis];
+    counts[brick].of_leaf[leaf] = pack_counts(crossing, triangles);
   }
 };
 struct RankBrick {
   MeshLayout layout;
+  const BrickCounts *counts;
   BrickTotals *totals;
   QSES_HOST_DEVICE void operator()(size_t brick) const {
-    uint16_t vertex_counts[kBrickMasks], triangle_counts[kLeavesPerBrick];  // all loads before the first store
-    for (int k = 0; k < kBrickMasks; ++k) vertex_counts[k] = layout.vertex_rank[brick * kBrickMasks + k];
-    for (int k = 0; k < kLeavesPerBrick; ++k) triangle_counts[k] = layout.triangle_rank[brick * kLeavesPerBrick + k];
-    totals[brick] = rank_brick(layout, brick, vertex_counts, triangle_counts);
+    const BrickCounts own = counts[brick];
+    totals[brick] = rank_brick(layout, brick, own);
   }
 };
 
@@ -244,14 +269,13 @@ struct CountBrick {
   BrickTotals *totals;
   void operator()(size_t brick) const {
     const UpperBricks upper = upper_bricks(bricks, static_cast<uint32_t>(brick));
-    uint64_t *const crossing = layout.crossing + brick * kBrickMasks;
-    uint16_t vertex_counts[kBrickMasks], triangle_counts[kLeavesPerBrick];
-    for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf)
-      triangle_counts[leaf] = static_cast<uint16_t>(
-          count_leaf(leaf_words(upper, layout.signs, leaf), case_triangles, crossing + leaf * kAxes));
-    for (int k = 0; k < kBrickMasks; ++k)
-      vertex_counts[k] = static_cast<uint16_t>(crossing[k] ? popcount64(crossing[k]) : 0);
-    totals[brick] = rank_brick(layout, brick, vertex_counts, triangle_counts);
+    uint64_t *const crossing = layout.crossing + brick * kLeavesPerBrick * kAxes;
+    BrickCounts counts;
+    for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
+      const int triangles = count_leaf(leaf_words(upper, layout.signs, leaf), case_triangles, crossing + leaf * kAxes);
+      counts.of_leaf[leaf] = pack_counts(crossing + leaf * kAxes, triangles);
+    }
+    totals[brick] = rank_brick(layout, brick, counts);
   }
 };
 
@@ -269,7 +293,7 @@ struct LoadTotal {
 struct CountBorderChanges {
   BrickSet bricks;
   MeshLayout layout;
-  QSES_HOST_DEVICE void operator()(size_t brick) const {
+  QSES_FN void operator()(size_t brick) const {
     const int changes = popcount64(border_changes(bricks, layout.border, brick));
     if (changes > 0) atomic_add(&layout.totals->border_changes, static_cast<uint32_t>(changes));
     if (layout.vertex_leaves) {
@@ -322,8 +346,7 @@ QSES_FN LatticeEdge edge_of_vertex(const MeshLayout &m, uint32_t brick, uint32_t
 
 // Its ends, in the centred frame.
 QSES_FN CutEdge ends_of_edge(const BrickSet &bricks, const MeshLayout &m, uint32_t brick, const LatticeEdge &edge) {
-  const glm::ivec3 p =
-      bricks.lattice.first_point(bricks.place(brick)) + brick_point(edge.leaf, edge.bit);
+  const glm::ivec3 p = bricks.lattice.first_point(bricks.place(brick)) + brick_point(edge.leaf, edge.bit);
   const Vec3<float> low = bricks.lattice.position(p.x, p.y, p.z);
   const Vec3<float> high =
       bricks.lattice.position(p.x + (edge.axis == 0), p.y + (edge.axis == 1), p.z + (edge.axis == 2));
@@ -389,21 +412,22 @@ MeshCounts lay_out_mesh(Executor &executor, const BrickSet &bricks, const uint64
   layout->vertex_leaves = Executor::kIsCuda ? executor.template allocate<uint32_t>(leaves).data : nullptr;
   layout->totals = executor.template take_counts<MeshTotals>();
   const auto mark = executor.arena().mark();
-  const Span<BrickTotals> counts = executor.template allocate<BrickTotals>(n);
+  const Span<BrickTotals> own = executor.template allocate<BrickTotals>(n);
   if constexpr (Executor::kIsCuda) {
-    executor.for_each(leaves, CountLeaf{bricks, *layout, case_triangles});
-    executor.for_each(n, RankBrick{*layout, counts.data});
+    const Span<BrickCounts> counts = executor.template allocate<BrickCounts>(n);
+    executor.for_each(leaves, CountLeaf{bricks, *layout, case_triangles, counts.data});
+    executor.for_each(n, RankBrick{*layout, counts.data, own.data});
   } else {
-    executor.for_each(n, CountBrick{bricks, *layout, case_triangles, counts.data}, kLeavesPerBrick * kPlainSteps);
+    executor.for_each(n, CountBrick{bricks, *layout, case_triangles, own.data}, kLeavesPerBrick * kPlainSteps);
   }
-  executor.exclusive_scan(n, LoadTotals{counts.data}, base);
+  executor.exclusive_scan(n, LoadTotals{own.data}, base);
   executor.for_each(n, CountBorderChanges{bricks, *layout});
   const MeshTotals totals = n > 0 ? executor.expect("mesh", layout->totals, MeshTotals{}) : MeshTotals{};
   layout->border_changes = totals.border_changes;
   // The bases wrap if there are too many; then the true totals are summed up for the message.
-  if (!Executor::kCounts && n * kBrickPoints * 5 > 0xffffffffull) {
+  if (!Executor::kCounts && n * kBrickPoints * kMostCaseTriangles > 0xffffffffull) {
     const auto sum = [&](uint32_t BrickTotals::*which) {
-      return static_cast<uint64_t>(executor.reduce(n, LoadTotal{counts.data, which}));
+      return static_cast<uint64_t>(executor.reduce(n, LoadTotal{own.data, which}));
     };
     layout->vertex_total = sum(&BrickTotals::vertices);
     layout->triangle_total = sum(&BrickTotals::triangles);

@@ -11,6 +11,7 @@ namespace quickses {
 // Corner c of a cell is at (c & 1, c >> 1 & 1, c >> 2); a case has the bits of its inside corners set.
 // Edge 4 axis + k runs along the axis from the corner whose other two coordinates, lower axis first, are the bits of k.
 constexpr int kCellCases = 256;
+constexpr int kMostCaseTriangles = 5;
 constexpr int kCellEdges = 12;
 constexpr int kMaxCellTriangles = 5;
 

@@ -43,12 +43,16 @@ QSES_FN bool is_exposed(const FeatureView &f, uint32_t atom, const Vec3<float> &
   const CapRange range = f.cap_ranges[atom];
   if (range.count == kBuriedAtom) return false;
   const Cap *caps = f.caps + range.first;
+  constexpr int32_t kTogether = 4;  // so that a GPU waits for their loads together
   int32_t k = 0;
-  for (; k + 1 < range.count; k += 2) {  // two at a time, so that the GPU waits for both loads together
-    const Cap first = load(caps + k), second = load(caps + k + 1);
-    if (cap_covers(first, d, length) | cap_covers(second, d, length)) return false;
+  for (; k + kTogether <= range.count; k += kTogether) {
+    bool covered = false;
+    for (int32_t j = 0; j < kTogether; ++j) covered |= cap_covers(load(caps + k + j), d, length);
+    if (covered) return false;
   }
-  return k == range.count || !cap_covers(load(caps + k), d, length);
+  for (; k < range.count; ++k)
+    if (cap_covers(load(caps + k), d, length)) return false;
+  return true;
 }
 
 // How far a point at some depth in a ball is from its centre.

@@ -153,8 +153,8 @@ void tangential_starts(Executor &executor, const BrickSet &bricks, const MeshLay
   const float spacing = bricks.lattice.spacing;
   executor.fill(sums, 0);
   executor.for_each(counts.triangles, AddNeighborOffsets{mesh, 1.f / spacing, sums.data});
-  executor.template for_each_brick<NoScratch>(
-      bricks.count, TangentialStarts{bricks, layout.base, sums.data, mesh, starts});
+  executor.template for_each_brick<NoScratch>(bricks.count,
+                                              TangentialStarts{bricks, layout.base, sums.data, mesh, starts});
 }
 
 // ---- normals ---------------------------------------------------------------------------------------------------

@@ -107,7 +107,7 @@ struct GatherArcs {
   const uint32_t *order;
   Arc *sorted;
   QSES_HOST_DEVICE void operator()(size_t i) const {
-    if (!count || i < *count) sorted[i] = arcs[order[i]];  // those that are not there come last
+    if (!count || i < *count) sorted[i] = load(arcs + order[i]);  // those that are not there come last
   }
 };
 
