@@ -64,6 +64,12 @@ class CpuExecutor {
   Span<T> allocate(size_t n) {
     return {static_cast<T *>(arena_.allocate(n * sizeof(T))), n};
   }
+  template <class T>
+  Span<T> allocate_zeros(size_t n) {
+    Span<T> zeros = allocate<T>(n);
+    fill(zeros, 0);
+    return zeros;
+  }
 
   template <class F>
   void for_each(size_t n, F f, uint64_t steps = kPlainSteps) {
@@ -250,9 +256,7 @@ class CpuExecutor {
 
   template <class T>
   T *take_counts() {
-    Span<T> counts = allocate<T>(1);
-    fill(counts, 0);
-    return counts.data;
+    return allocate_zeros<T>(1).data;
   }
   template <class T>
   T expect(const char *, const T *counts, const T &) {

@@ -213,7 +213,7 @@ class CudaExecutor {
     if (LaunchObserver::current) multiprocessors_ = LaunchObserver::current->multiprocessors(multiprocessors_);
     staging_.reserve(kStagingBytes);
     counts_on_host_.reserve(kCountsBytes);
-    counts_ = static_cast<unsigned char *>(count_memory_.reserve(kCountsBytes));
+    counts_ = static_cast<unsigned char *>(count_memory_.reserve(kFixedBytes));
     check_cuda(cudaEventCreateWithFlags(&counted_, cudaEventDisableTiming), "cudaEventCreateWithFlags");
     check_cuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "cudaStreamCreateWithFlags");
   }
@@ -244,6 +244,18 @@ class CudaExecutor {
   template <class T>
   Span<T> allocate(size_t n) {
     return {static_cast<T *>(arena_.allocate(n * sizeof(T))), n};
+  }
+  // The first few of a frame lie behind its counts, and were filled with them at once.
+  template <class T>
+  Span<T> allocate_zeros(size_t n) {
+    const size_t bytes = (n * sizeof(T) + 15) / 16 * 16;
+    if (anticipation_.is_open() && bytes <= kZeroBytes - zeros_used_) {
+      zeros_used_ += bytes;
+      return {reinterpret_cast<T *>(counts_ + kCountsBytes + zeros_used_ - bytes), n};
+    }
+    Span<T> zeros = allocate<T>(n);
+    fill(zeros, 0);
+    return zeros;
   }
 
   // How many items a launch is given, and how many launches that makes. Known before anything is launched.
@@ -415,8 +427,9 @@ class CudaExecutor {
   void open_counts(uint64_t kind, bool is_short = false) {
     runs_ahead_ = is_short;
     anticipation_.open(kind);
-    counts_used_ = 0;
-    if (anticipation_.is_open()) fill(Span<unsigned char>{counts_, kCountsBytes}, 0);
+    if (!anticipation_.is_open()) return;
+    fill(Span<unsigned char>{counts_, kCountsBytes + zeros_used_}, 0);
+    counts_used_ = zeros_used_ = 0;
   }
   void turn_counts_to(float page) { anticipation_.turn_to(page); }
 
@@ -428,9 +441,7 @@ class CudaExecutor {
       counts_used_ += kBytes;
       return reinterpret_cast<T *>(counts_ + counts_used_ - kBytes);
     }
-    Span<T> counts = allocate<T>(1);
-    fill(counts, 0);
-    return counts.data;
+    return allocate_zeros<T>(1).data;
   }
   // How many there are, waiting for it; or how many there are at most, to be verified later.
   template <class T>
@@ -480,7 +491,8 @@ class CudaExecutor {
     download(values, source, n);
     wait();
   }
-  static constexpr size_t kCountsBytes = 16384;  // of the device, beside the arena
+  // Of the device, beside the arena: counts, and zeros behind them.
+  static constexpr size_t kCountsBytes = 16384, kZeroBytes = 384 * 1024, kFixedBytes = kCountsBytes + kZeroBytes;
 
   // From page-locked memory the copy goes on after the call returns: leave the memory alone until something waits.
   template <class T>
@@ -593,7 +605,7 @@ class CudaExecutor {
   bool runs_ahead_ = false;
   GrowingBuffer<DeviceMemory> count_memory_;
   unsigned char *counts_ = nullptr;  // there
-  size_t counts_used_ = 0;
+  size_t counts_used_ = 0, zeros_used_ = kZeroBytes;  // by the frame before: what is not zero any more
   PinnedBuffer counts_on_host_;
   cudaEvent_t counted_ = nullptr;
   Arena<DeviceMemory> arena_;

@@ -4,6 +4,7 @@
 //
 // clang-format off
 //   Span<T> allocate<T>(n)         memory of the back end, uninitialised, valid until the arena is rewound
+//   allocate_zeros<T>(n)           the same, of zeros
 //   for_each(n, f)                 f(i) for i in [0, n), in any order
 //   for_each_brick<Scratch>(n, f)  f(team, scratch, i): a team of threads shares one Scratch per item
 //   exclusive_scan(n, load, out)   out[i] = load(0) + ... + load(i - 1); out has n + 1 elements

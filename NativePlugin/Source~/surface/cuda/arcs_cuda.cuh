@@ -358,13 +358,12 @@ ArcSearch find_arcs(E &executor, CircleJob job, float max_radius) {
   const size_t processors = executor.multiprocessors();
   const uint64_t caps = room.longest_row();
   job.names = executor.template allocate<CircleName>(room.circles).data;
-  Span<uint32_t> arc_count = executor.template allocate<uint32_t>(room.circles);
+  Span<uint32_t> arc_count = executor.template allocate_zeros<uint32_t>(room.circles);
   Span<uint32_t> arc_first = executor.template allocate<uint32_t>(room.circles + 1);
   job.arc_count = arc_count.data;
   job.staged = executor.template allocate<StagedCircle>(room.staged_circles).data;
   job.staged_arcs = executor.template allocate<ExposedArc>(room.staged_arcs).data;
   job.long_circles = executor.template allocate<uint32_t>(room.circles).data;
-  executor.fill(arc_count, 0);
 
   executor.launch("list_circles", list_circles_kernel, job.run.size(),
                   LaunchShape{128, 4, 8 + caps / 8, processors * 32}, job);

@@ -88,7 +88,7 @@ class MeshMemory<CudaExecutor> {
     return allowed_outside(executor) + device_meshes_.bytes();
   }
   uint64_t allowed_outside(const CudaExecutor &) const {
-    return sizeof(MarchingCubesTable) + CudaExecutor::kCountsBytes;
+    return sizeof(MarchingCubesTable) + CudaExecutor::kFixedBytes;
   }
   uint64_t needed_outside(const CudaExecutor &executor) const { return outside_arena(executor); }
 

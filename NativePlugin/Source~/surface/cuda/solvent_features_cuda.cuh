@@ -193,8 +193,7 @@ void find_solvent_features(E &executor, const NeighborGridView &atoms, const Sur
                            const MemoryPlan &plan, CudaRooms &rooms, SolventFeatures *features) {
   features->cap_ranges = executor.template allocate<CapRange>(atoms.count);
   if (atoms.count == 0) return;
-  Span<uint8_t> exposed = executor.template allocate<uint8_t>(atoms.count);
-  executor.fill(exposed, 0);
+  Span<uint8_t> exposed = executor.template allocate_zeros<uint8_t>(atoms.count);
   const FeaturePass pass{atoms, parameters.max_radius, features->cap_ranges.data, exposed.data,
                          parameters.is_of_balls()};
   if (plan.low_memory)

@@ -59,6 +59,10 @@ class CountingExecutor {
     arena_.take(n * sizeof(T));
     return {nullptr, n};
   }
+  template <class T>
+  Span<T> allocate_zeros(size_t n) {
+    return allocate<T>(n);
+  }
   template <class F>
   void for_each(size_t, const F &, uint64_t = 0) {}
   template <class Scratch, class F>

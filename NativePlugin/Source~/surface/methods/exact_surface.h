@@ -109,8 +109,7 @@ void mend_thin_walls(Work &work, const BrickSet &bricks,
   using B = Backend<std::remove_reference_t<decltype(executor)>>;
   work.timer.begin("thin_walls");
   const auto mark = executor.arena().mark();
-  const Span<uint64_t> marks = executor.template allocate<uint64_t>(size_t(bricks.count) * kLeavesPerBrick);
-  executor.fill(marks, 0);
+  const Span<uint64_t> marks = executor.template allocate_zeros<uint64_t>(size_t(bricks.count) * kLeavesPerBrick);
   const auto mark_slice = [&](auto &any_executor, BrickRange slice) {
     typename B::Candidates own{};
     B::mark_thin_walls(any_executor, work.features, bricks, slice, work.rooms, shared ? *shared : own, signs,

@@ -96,8 +96,7 @@ MeshMemoryView harden_edges(Work &work, const MeshMemoryView &smooth) {
   const size_t n = smooth.vertices, words = (n + 31) / 32;
   const RankedSet both = allocate_set(executor, n);
   const Span<uint32_t> crest = executor.template allocate<uint32_t>(words),
-                       second = executor.template allocate<uint32_t>(words);
-  executor.fill(second, 0);
+                       second = executor.template allocate_zeros<uint32_t>(words);
   executor.for_each(words, MarkCrestVertices{smooth.view, n, crest.data});
   executor.for_each(smooth.triangles, MarkSides{smooth.view, crest.data, {both.words, second.data}});
   executor.for_each(words, SeparateSides{{both.words, second.data}});

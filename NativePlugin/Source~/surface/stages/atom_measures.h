@@ -197,9 +197,8 @@ AtomMeasures measure_atoms(Executor &executor, const NeighborGridView &atoms, co
                            double *areas) {
   const auto mark = executor.arena().mark();
   const size_t n = atoms.count, arcs = features.arcs.size;
-  const Span<int64_t> solid_angles = executor.template allocate<int64_t>(n);
+  const Span<int64_t> solid_angles = executor.template allocate_zeros<int64_t>(n);
   const Span<double> volumes = executor.template allocate<double>(arcs);
-  executor.fill(solid_angles, 0);
   executor.for_each(arcs,
                     MeasureArc{atoms.items, features.cap_ranges.data, features.caps.data, features.arcs.data,
                                features.arc_atoms.data, solid_angles.data, volumes.data},

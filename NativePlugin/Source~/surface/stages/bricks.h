@@ -238,7 +238,7 @@ struct FlaggedBricks {
   Span<uint8_t> flags;
   template <class Room>
   FlaggedBricks(Room &room, uint64_t entries)
-      : table(room.template allocate<int32_t>(entries)), flags(room.template allocate<uint8_t>(entries)) {}
+      : table(room.template allocate<int32_t>(entries)), flags(room.template allocate_zeros<uint8_t>(entries)) {}
 };
 struct SortedBricks {
   Span<uint64_t> keys, places;
@@ -275,7 +275,6 @@ BrickSet flag_bricks(Executor &executor, const Items &items, const Lattice &latt
   const FlaggedBricks memory(executor, entries);
   const Span<int32_t> table = memory.table;
   const Span<uint8_t> flags = memory.flags;
-  executor.fill(flags, 0);
   executor.fill(table, 0xff);
   for_rows_of_bricks<Executor>(items, [&](const RowRange &rows, uint64_t steps) {
     const bool is_all = rows.first == 0 && rows.last == ~uint64_t(0);

@@ -288,8 +288,7 @@ NeighborGridView build_neighbor_grid(Executor &executor, const char *name, size_
   bool is_counted = dense && counting_pays(cells.cells(), n);
   CellCounts counts{};
   if (is_counted) {
-    const Span<uint32_t> in_cell = executor.template allocate<uint32_t>(cells.cells());
-    executor.fill(in_cell, 0);
+    const Span<uint32_t> in_cell = executor.template allocate_zeros<uint32_t>(cells.cells());
     counts = {in_cell.data, executor.template allocate<uint32_t>(n).data,
               executor.template take_counts<Tally<uint32_t>>()};
   }

@@ -44,12 +44,11 @@ template <class Executor>
 void measure_owners(Executor &executor, const MeshView &mesh, size_t triangles, float spacing, bool bent, size_t atoms,
                     double *areas) {
   const auto mark = executor.arena().mark();
-  const Span<int64_t> sums = executor.template allocate<int64_t>(atoms);
+  const Span<int64_t> sums = executor.template allocate_zeros<int64_t>(atoms);
   // All of them together fit, if they are not larger than sixteen squares of the lattice on average.
   int bits = 58;
   for (size_t k = triangles; k > 0; k >>= 1) --bits;
   const double h = static_cast<double>(spacing), units = std::ldexp(1.0, bits) / (h * h);
-  executor.fill(sums, 0);
   executor.for_each(triangles, AddOwnerAreas{mesh, bent, units, sums.data});
   executor.for_each(atoms, StoreOwnerAreas{sums.data, 1.0 / units, areas});
   executor.arena().rewind(mark);

@@ -41,8 +41,7 @@ struct FillWord {
 template <class Executor>
 RankedSet allocate_set(Executor &executor, size_t n) {
   const size_t words = (n + 31) / 32;
-  Span<uint32_t> bits = executor.template allocate<uint32_t>(words);
-  executor.fill(bits, 0);
+  Span<uint32_t> bits = executor.template allocate_zeros<uint32_t>(words);
   return {bits.data, executor.template allocate<uint32_t>(words + 1).data};
 }
 template <class Executor>
