@@ -48,9 +48,18 @@ Registry &registry() {
   return the_registry;
 }
 
+// A kernel on a device.
+struct LoadedKernel {
+  CUfunction function = nullptr;
+  int architecture = 0;
+  // Whether it may be sent before those queued ahead of it are done. Code for GPUs before Hopper has no way to wait for
+  // them.
+  bool may_overlap() const { return driver().cuLaunchKernelEx && architecture >= 90; }
+};
+
 // The kernel behind a stub, on the thread's device. The first kernel of a source loads the device code of all of it;
 // on a GPU newer than the toolkit the driver compiles it then, which takes seconds.
-CUresult find_function(const void *stub, CUfunction *function) {
+CUresult find_kernel(const void *stub, LoadedKernel *found_kernel) {
   Registry &r = registry();
   const auto found = r.kernels.find(stub);
   if (found == r.kernels.end()) return CUDA_ERROR_NOT_FOUND;
@@ -58,34 +67,35 @@ CUresult find_function(const void *stub, CUfunction *function) {
   if (device < 0) return CUDA_ERROR_INVALID_CONTEXT;
   Kernel &kernel = found->second;
   std::atomic<CUfunction> &slot = kernel.function[static_cast<size_t>(device)];
-  *function = slot.load(std::memory_order_acquire);
-  if (*function) return CUDA_SUCCESS;
+  int &architecture = kernel.architecture[static_cast<size_t>(device)];
+  CUfunction function = slot.load(std::memory_order_acquire);
+  if (function) {
+    *found_kernel = {function, architecture};
+    return CUDA_SUCCESS;
+  }
   const std::lock_guard<std::mutex> lock(r.loading[static_cast<size_t>(device)]);
   CUmodule &module = kernel.module->loaded[static_cast<size_t>(device)];
   CUresult result = CUDA_SUCCESS;
   if (!module) result = driver().cuModuleLoadData(&module, kernel.module->image);
-  if (result == CUDA_SUCCESS) result = driver().cuModuleGetFunction(function, module, kernel.name);
+  if (result == CUDA_SUCCESS) result = driver().cuModuleGetFunction(&function, module, kernel.name);
   if (result == CUDA_SUCCESS)
-    result = driver().cuFuncGetAttribute(&kernel.architecture[static_cast<size_t>(device)],
-                                         CU_FUNC_ATTRIBUTE_PTX_VERSION, *function);
-  if (result == CUDA_SUCCESS) slot.store(*function, std::memory_order_release);
+    result = driver().cuFuncGetAttribute(&architecture, CU_FUNC_ATTRIBUTE_PTX_VERSION, function);
+  if (result == CUDA_SUCCESS) slot.store(function, std::memory_order_release);
+  *found_kernel = {function, architecture};
   return result;
 }
 
-// Whether a kernel whose function was found may be sent before those queued ahead of it are done. Code for GPUs before
-// Hopper has no way to wait for them.
-bool may_overlap(const void *stub) {
-  return driver().cuLaunchKernelEx &&
-         registry().kernels.at(stub).architecture[static_cast<size_t>(current_device())] >= 90;
+template <class Call>
+cudaError_t with_kernel(const void *stub, Call call) {
+  return inside([&](const Driver &d) {
+    LoadedKernel kernel;
+    const CUresult result = find_kernel(stub, &kernel);
+    return result == CUDA_SUCCESS ? call(d, kernel) : result;
+  });
 }
-
 template <class Call>
 cudaError_t with_function(const void *stub, Call call) {
-  return inside([&](const Driver &d) {
-    CUfunction function = nullptr;
-    const CUresult result = find_function(stub, &function);
-    return result == CUDA_SUCCESS ? call(d, function) : result;
-  });
+  return with_kernel(stub, [&](const Driver &d, const LoadedKernel &kernel) { return call(d, kernel.function); });
 }
 
 struct CallConfiguration {
@@ -154,9 +164,9 @@ cudaError_t CUDARTAPI cudaLaunchKernelExC(const cudaLaunchConfig_t *config, cons
   for (unsigned k = 0; k < config->numAttrs; ++k)
     if (config->attrs[k].id != cudaLaunchAttributeProgrammaticStreamSerialization) return cudaErrorNotSupported;
   const dim3 &grid = config->gridDim, &block = config->blockDim;
-  return with_function(stub, [&](const Driver &d, CUfunction f) {
-    if (config->numAttrs == 0 || !may_overlap(stub))
-      return d.cuLaunchKernel(f, grid.x, grid.y, grid.z, block.x, block.y, block.z,
+  return with_kernel(stub, [&](const Driver &d, const LoadedKernel &kernel) {
+    if (config->numAttrs == 0 || !kernel.may_overlap())
+      return d.cuLaunchKernel(kernel.function, grid.x, grid.y, grid.z, block.x, block.y, block.z,
                               static_cast<unsigned>(config->dynamicSmemBytes), config->stream, arguments, nullptr);
     CUlaunchAttribute attribute{};
     attribute.id = CU_LAUNCH_ATTRIBUTE_PROGRAMMATIC_STREAM_SERIALIZATION;
@@ -169,7 +179,7 @@ cudaError_t CUDARTAPI cudaLaunchKernelExC(const cudaLaunchConfig_t *config, cons
     same.hStream = config->stream;
     same.attrs = &attribute;
     same.numAttrs = 1;
-    return d.cuLaunchKernelEx(&same, f, arguments, nullptr);
+    return d.cuLaunchKernelEx(&same, kernel.function, arguments, nullptr);
   });
 }
 

@@ -81,7 +81,7 @@ __global__ __launch_bounds__(BlockTeam::kSize, kSumBlocks) void sum_chunks_kerne
 // Few items are scanned, or chosen, by one block: each thread goes over a run of them, twice. CUB's passes over the
 // whole device take two launches, of which each waits for what was queued before it.
 constexpr int kFewThreads = 1024;
-constexpr size_t kFewItems = 4 * kFewThreads;
+constexpr size_t kFewItems = 8 * kFewThreads;
 struct FewItems {
   size_t first, last;
   __device__ __forceinline__ explicit FewItems(size_t n) {
@@ -354,7 +354,7 @@ class CudaExecutor {
   }
   template <class T>
   size_t reduce_bytes(size_t n) const {
-    return reduce_chunks(n) * sizeof(T);
+    return sums_go_to_host<T>(reduce_chunks(n)) ? 0 : reduce_chunks(n) * sizeof(T);
   }
   size_t compact_bytes(size_t n) const { return n / 128 + 4096; }  // CUB's states of its tiles, generously
 
@@ -362,11 +362,18 @@ class CudaExecutor {
   T reduce(size_t n, Load load, uint64_t steps = kPlainSumSteps) {
     if (n == 0) return T{};
     const size_t chunks = reduce_chunks(n);
+    const bool to_host = sums_go_to_host<T>(chunks);
     const auto mark = arena_.mark();
-    Span<T> sums = allocate<T>(chunks);
+    const T *host = nullptr;
+    T *const sums = to_host ? static_cast<T *>(staging_.reserve(chunks * sizeof(T))) : allocate<T>(chunks).data;
     launch("reduce", gpu::sum_chunks_kernel<T, Load>, chunks,
-           {BlockTeam::kSize, 1, reduce_chunk(n) / BlockTeam::kSize * steps}, n, load, sums.data);
-    const T *host = static_cast<const T *>(to_staging(sums.data, chunks * sizeof(T)));
+           {BlockTeam::kSize, 1, reduce_chunk(n) / BlockTeam::kSize * steps}, n, load, sums);
+    if (to_host) {
+      wait();
+      host = sums;
+    } else {
+      host = static_cast<const T *>(to_staging(sums, chunks * sizeof(T)));
+    }
     arena_.rewind(mark);
     T sum{};
     for (size_t c = 0; c < chunks; ++c) sum += host[c];
@@ -524,9 +531,15 @@ class CudaExecutor {
     return anticipation_.is_open() && bytes >= counts_ && bytes < counts_ + kCountsBytes;
   }
 
-  static constexpr size_t kStagingBytes = 4096, kMostStaged = size_t(1) << 20;
+  static constexpr size_t kStagingBytes = 32768, kMostStaged = size_t(1) << 20;
   static constexpr size_t kLittleFill = size_t(1) << 19, kLittleFetch = size_t(1) << 22;
   static constexpr size_t kDefaultSharedBytes = 48 * 1024;
+
+  // Sums of few chunks: over the bus one by one, which spares a launch.
+  template <class T>
+  static bool sums_go_to_host(size_t chunks) {
+    return chunks * sizeof(T) <= kStagingBytes;
+  }
 
   static constexpr size_t kMostItems = std::numeric_limits<int>::max();  // of CUB's passes
   static void check_count(size_t n, const char *verb) {
@@ -604,7 +617,7 @@ class CudaExecutor {
   Anticipation anticipation_;
   bool runs_ahead_ = false;
   GrowingBuffer<DeviceMemory> count_memory_;
-  unsigned char *counts_ = nullptr;  // there
+  unsigned char *counts_ = nullptr;                   // there
   size_t counts_used_ = 0, zeros_used_ = kZeroBytes;  // by the frame before: what is not zero any more
   PinnedBuffer counts_on_host_;
   cudaEvent_t counted_ = nullptr;

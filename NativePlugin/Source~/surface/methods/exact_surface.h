@@ -109,7 +109,11 @@ void mend_thin_walls(Work &work, const BrickSet &bricks,
   using B = Backend<std::remove_reference_t<decltype(executor)>>;
   work.timer.begin("thin_walls");
   const auto mark = executor.arena().mark();
-  const Span<uint64_t> marks = executor.template allocate_zeros<uint64_t>(size_t(bricks.count) * kLeavesPerBrick);
+  // The GPU reads all signs of a slice before it marks: those of the only one may be marked where they are.
+  const bool in_place = std::remove_reference_t<decltype(executor)>::kIsCuda && shared;
+  const size_t leaves = size_t(bricks.count) * kLeavesPerBrick;
+  const Span<uint64_t> marks =
+      in_place ? Span<uint64_t>{signs, leaves} : executor.template allocate_zeros<uint64_t>(leaves);
   const auto mark_slice = [&](auto &any_executor, BrickRange slice) {
     typename B::Candidates own{};
     B::mark_thin_walls(any_executor, work.features, bricks, slice, work.rooms, shared ? *shared : own, signs,
@@ -117,7 +121,7 @@ void mend_thin_walls(Work &work, const BrickSet &bricks,
   };
   const uint32_t slice_size = shared ? bricks.count : slice_of(work, bricks.count, mark_slice);
   for_each_slice(work, bricks.count, slice_size, 0.4, 0.45, [&](BrickRange slice) { mark_slice(executor, slice); });
-  executor.for_each(marks.size, AddMarks{marks.data, signs});
+  if (!in_place) executor.for_each(leaves, AddMarks{marks.data, signs});
   executor.arena().rewind(mark);
 }
 
