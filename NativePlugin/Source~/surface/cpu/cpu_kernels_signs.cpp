@@ -62,7 +62,7 @@ uint64_t leaf_inside(const FeatureView &f, const BrickCandidates &c, const Latti
                      uint64_t open, float slack) {
   alignas(32) float px[64 + kPackSize], py[64 + kPackSize], pz[64 + kPackSize];
   open = to_blocks(open);
-  const int n = list_points(lattice, first, open, px, py, pz);
+  const int n = list_points<BlockSteps>(lattice, first, open, px, py, pz);
   for (int k = n; k < n + kPackSize; ++k) px[k] = px[n - 1], py[k] = py[n - 1], pz[k] = pz[n - 1];
   const float depth = f.parameters.depth;
   const Pack depth2(depth * depth);

@@ -59,19 +59,30 @@ QSES_FN glm::ivec3 block_point(int bit) {
   return glm::ivec3((bit & 1) + 2 * (block & 1), (bit >> 1 & 1) + (block & 2), (bit >> 2 & 1) + (block >> 1 & 2));
 }
 
-// Where the points of a word in blocks lie, in its order, as Lattice::position() has it; `first` is the leaf's first
-// point. Returns how many there are; room for eight more is needed.
-QSES_FN int list_points(const Lattice &lattice, const glm::ivec3 &first, uint64_t blocks, float *x, float *y,
-                        float *z) {
-  static constexpr float kStep[3][kPackSize] = {
+// What the bits of a byte add to the point of its first bit: in a word in blocks, and in a leaf word.
+struct BlockSteps {
+  static constexpr float kSteps[3][kPackSize] = {
       {0, 1, 0, 1, 0, 1, 0, 1}, {0, 0, 1, 1, 0, 0, 1, 1}, {0, 0, 0, 0, 1, 1, 1, 1}};
-  const Pack step_x = load_pack(kStep[0]), step_y = load_pack(kStep[1]), step_z = load_pack(kStep[2]);
+  QSES_FN static glm::ivec3 first_of(int byte) { return block_point(8 * byte); }
+};
+struct LeafSteps {
+  static constexpr float kSteps[3][kPackSize] = {
+      {0, 1, 2, 3, 0, 1, 2, 3}, {0, 0, 0, 0, 1, 1, 1, 1}, {0, 0, 0, 0, 0, 0, 0, 0}};
+  QSES_FN static glm::ivec3 first_of(int byte) { return glm::ivec3(0, 2 * (byte & 1), byte >> 1); }
+};
+
+// Where the points of a word lie, in its order, as Lattice::position() has it; `first` is the leaf's first point.
+// Returns how many there are; room for eight more is needed.
+template <class Steps>
+QSES_FN int list_points(const Lattice &lattice, const glm::ivec3 &first, uint64_t word, float *x, float *y, float *z) {
+  const Pack step_x = load_pack(Steps::kSteps[0]), step_y = load_pack(Steps::kSteps[1]),
+             step_z = load_pack(Steps::kSteps[2]);
   const Pack spacing(lattice.spacing);
   int n = 0;
-  for (int block = 0; block < 8; ++block) {
-    const uint32_t bits = static_cast<uint32_t>(blocks >> 8 * block & 0xff);
+  for (int byte = 0; byte < 8; ++byte) {
+    const uint32_t bits = static_cast<uint32_t>(word >> 8 * byte & 0xff);
     if (!bits) continue;
-    const glm::ivec3 at = first + block_point(8 * block);
+    const glm::ivec3 at = first + Steps::first_of(byte);
     store_lanes(x + n, bits, (Pack(static_cast<float>(at.x)) + step_x) * spacing);
     store_lanes(y + n, bits, (Pack(static_cast<float>(at.y)) + step_y) * spacing);
     store_lanes(z + n, bits, (Pack(static_cast<float>(at.z)) + step_z) * spacing);

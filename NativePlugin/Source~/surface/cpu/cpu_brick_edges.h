@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+// The edges of a brick that may pass through thin walls (thin_walls.h), as words of its leaves: which they are by signs,
+// from where their probes are looked for, and which of them these probes leave. Only for the CPU kernels.
+#pragma once
+
+#include "parallel/word_pack.h"
+#include "surface/cpu/cpu_brick_signs.h"
+#include "surface/cpu/cpu_leaf_bits.h"
+#include "surface/stages/thin_walls.h"
+
+namespace quickses {
+namespace QSES_CPU_ISA {
+
+// The words of the lower and the upper leaves of a brick. What is beyond the brick counts as 0.
+struct BrickWords {
+  WordPack half[2];
+  QSES_FN static BrickWords load(const uint64_t *p) { return {{load_words(p), load_words(p + kPackWords)}}; }
+  QSES_FN void store(uint64_t *p) const { store_words(p, half[0]), store_words(p + kPackWords, half[1]); }
+};
+QSES_FN BrickWords operator&(const BrickWords &a, const BrickWords &b) {
+  return {{a.half[0] & b.half[0], a.half[1] & b.half[1]}};
+}
+QSES_FN BrickWords operator|(const BrickWords &a, const BrickWords &b) {
+  return {{a.half[0] | b.half[0], a.half[1] | b.half[1]}};
+}
+QSES_FN BrickWords operator~(const BrickWords &a) { return {{~a.half[0], ~a.half[1]}}; }
+
+// Seen one lattice point further along an axis: what is at p + axis comes to p. And one point back.
+QSES_FN BrickWords shift(const BrickWords &w, int axis) {
+  const WordPack &l = w.half[0], &h = w.half[1];
+  if (axis == 0) return {{shift_x(l, next_words(l)), shift_x(h, next_words(h))}};
+  if (axis == 1) return {{shift_y(l, next_pairs(l)), shift_y(h, next_pairs(h))}};
+  return {{shift_z(l, h), shift_z(h, WordPack(0))}};
+}
+QSES_FN BrickWords shift_back(const BrickWords &w, int axis) {
+  const WordPack &l = w.half[0], &h = w.half[1];
+  if (axis == 0) return {{shift_x_back(l, words_before(l)), shift_x_back(h, words_before(h))}};
+  if (axis == 1) return {{shift_y_back(l, pairs_before(l)), shift_y_back(h, pairs_before(h))}};
+  return {{shift_z_back(l, WordPack(0)), shift_z_back(h, l)}};
+}
+
+// Points whose probes are looked for: those of a leaf are numbered in the order of its bits, from first[leaf] on.
+struct BrickStarts {
+  uint64_t words[kLeavesPerBrick];
+  int first[kLeavesPerBrick], count;
+  // -1: it is none.
+  QSES_FN int number_of(const glm::ivec3 &p) const {
+    if ((p.x | p.y | p.z) & ~7) return -1;
+    const int leaf = leaf_of(p.x, p.y, p.z);
+    const uint64_t bit = uint64_t(1) << leaf_bit(p.x & 3, p.y & 3, p.z & 3);
+    return words[leaf] & bit ? first[leaf] + popcount64(words[leaf] & (bit - 1)) : -1;
+  }
+};
+
+// What is known of starts, a bit for each: which points around them their probes cover, by the step there, or kWallSteps
+// and the step from there; and whether there is no probe.
+struct CoveredNeighbors {
+  static constexpr int kSteps = 2 * kWallSteps, kBytes = kBrickPoints / 8 + 8;
+  uint8_t by_step[kSteps][kBytes], solid[kBytes];
+};
+
+struct BrickEdges {
+  alignas(32) uint64_t words[kWallSteps][kLeavesPerBrick];  // by the bits of their first ends
+
+  // Those that signs leave, if there are any.
+  QSES_FN bool find_candidates(const BrickSet &bricks, const uint64_t *signs, uint32_t brick) {
+    const uint64_t *const own = signs + static_cast<size_t>(brick) * kLeavesPerBrick;
+    if (!has_bits(~(load_words(own) & load_words(own + kPackWords)))) return false;
+    alignas(32) static constexpr uint64_t kNoWords[kLeavesPerBrick] = {};  // no wall is where no brick is
+    const NearWords near = find_near_words(bricks, signs, brick);
+    alignas(32) uint64_t around[4][4][4];  // words of the leaves of the brick and next to it
+    WordPack any(0);
+    for (int z = 0; z < 4; ++z)
+      for (int y = 0; y < 4; ++y) {
+        const uint64_t *const *const at = near.at + 9 * ((z + 1) >> 1) + 3 * ((y + 1) >> 1);
+        const int leaf = 2 * ((y + 1) & 1) + 4 * ((z + 1) & 1);
+        uint64_t *const row = around[z][y];
+        row[0] = (at[0] ? at[0] : kNoWords)[leaf + 1];
+        std::memcpy(row + 1, (at[1] ? at[1] : kNoWords) + leaf, 2 * sizeof(uint64_t));
+        row[3] = (at[2] ? at[2] : kNoWords)[leaf];
+        any = any | load_words(row);
+      }
+    if (!has_bits(any)) return false;
+    WordPack left(0);
+    for (int half = 0; half < 2; ++half) {
+      WordNeighborhood<WordPack> leaves;
+      WordPack *at = leaves.at;
+      for (int z = half; z < half + 3; ++z)
+        for (int y = 0; y < 3; ++y)
+          for (int x = 0; x < 3; ++x) *at++ = load_word_pairs(&around[z][y][x], &around[z][y + 1][x]);
+      WordPack found[kWallSteps];
+      list_wall_candidates(leaves, found);
+      for (int k = 0; k < kWallSteps; ++k) {
+        left = left | found[k];
+        store_words(words[k] + half * kPackWords, found[k]);
+      }
+    }
+    return has_bits(left);
+  }
+
+  // Of points with even sums of coordinates, as every other one is, each edge along an axis has one as an end, and of
+  // the diagonals half have two. Those of edges that leave the brick to such an end start at the other one.
+  QSES_FN BrickStarts choose_starts() const {
+    const WordPack even_words(0x5a5aa5a55a5aa5a5ull);
+    const BrickWords even{{even_words, even_words}};
+    BrickWords all = edges_of(0), starts{{WordPack(0), WordPack(0)}};
+    for (int k = 1; k < kWallSteps; ++k) all = all | edges_of(k);
+    for (int axis = 0; axis < kAxes; ++axis) {
+      const BrickWords odd = edges_of(axis) & ~even;
+      starts = starts | shift_back(odd, axis) | (odd & last_points(axis));
+    }
+    starts = starts | (all & even);
+    BrickStarts chosen;
+    starts.store(chosen.words);
+    chosen.count = 0;
+    for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
+      chosen.first[leaf] = chosen.count;
+      chosen.count += popcount64(chosen.words[leaf]);
+    }
+    return chosen;
+  }
+
+  // An edge is open if one probe covers both its ends: that of one of them, or, of a diagonal, of one of the other two
+  // corners of its square; or if an end is in the solid, since then its sign is a matter of rounding.
+  QSES_FN void leave_out_covered(const BrickStarts &starts, const CoveredNeighbors &covered) {
+    BrickWords to[CoveredNeighbors::kSteps];
+    for (int k = 0; k < CoveredNeighbors::kSteps; ++k) to[k] = of_starts(starts, covered.by_step[k]);
+    const BrickWords solid = of_starts(starts, covered.solid);
+    const auto from = [&](int axis, bool back) -> const BrickWords & { return to[axis + (back ? kWallSteps : 0)]; };
+    for (int axis = 0; axis < kAxes; ++axis)
+      leave_out(axis, to[axis] | solid | shift(to[kWallSteps + axis] | solid, axis));
+    int k = kAxes;
+    for (int a = 0; a < kAxes; ++a)
+      for (int b = a + 1; b < kAxes; ++b)
+        for (int down = 0; down < 2; ++down, ++k) {  // the step is a + b or a - b
+          const auto along_b = [&](const BrickWords &w) { return down ? shift_back(w, b) : shift(w, b); };
+          const BrickWords at_second = along_b(to[kWallSteps + k] | solid),
+                           at_a = from(a, true) & from(b, down), at_b = along_b(from(b, !down) & from(a, false));
+          leave_out(k, to[k] | solid | at_b | shift(at_second | at_a, a));
+        }
+  }
+
+ private:
+  QSES_FN BrickWords edges_of(int k) const { return BrickWords::load(words[k]); }
+  QSES_FN void leave_out(int k, const BrickWords &open) { (edges_of(k) & ~open).store(words[k]); }
+  QSES_FN static BrickWords last_points(int axis) {
+    alignas(32) static constexpr uint64_t kLast[kAxes][kLeavesPerBrick] = {
+        {0, 0x8888888888888888ull, 0, 0x8888888888888888ull, 0, 0x8888888888888888ull, 0, 0x8888888888888888ull},
+        {0, 0, 0xf000f000f000f000ull, 0xf000f000f000f000ull, 0, 0, 0xf000f000f000f000ull, 0xf000f000f000f000ull},
+        {0, 0, 0, 0, 0xffff000000000000ull, 0xffff000000000000ull, 0xffff000000000000ull, 0xffff000000000000ull}};
+    return BrickWords::load(kLast[axis]);
+  }
+  // Bits of starts in their order, brought to their places. A leaf has no more than 32 even starts, and 19 others.
+  QSES_FN static BrickWords of_starts(const BrickStarts &starts, const uint8_t *bits) {
+    alignas(32) uint64_t placed[kLeavesPerBrick];
+    for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
+      uint64_t in_order;
+      std::memcpy(&in_order, bits + starts.first[leaf] / 8, sizeof in_order);
+      placed[leaf] = deposit_bits(in_order >> starts.first[leaf] % 8, starts.words[leaf]);
+    }
+    return BrickWords::load(placed);
+  }
+};
+
+}  // namespace QSES_CPU_ISA
+}  // namespace quickses
