@@ -25,18 +25,24 @@ QSES_FN BrickWords operator|(const BrickWords &a, const BrickWords &b) {
 }
 QSES_FN BrickWords operator~(const BrickWords &a) { return {{~a.half[0], ~a.half[1]}}; }
 
-// Seen one lattice point further along an axis: what is at p + axis comes to p. And one point back.
-QSES_FN BrickWords shift(const BrickWords &w, int axis) {
-  const WordPack &l = w.half[0], &h = w.half[1];
-  if (axis == 0) return {{shift_x(l, next_words(l)), shift_x(h, next_words(h))}};
-  if (axis == 1) return {{shift_y(l, next_pairs(l)), shift_y(h, next_pairs(h))}};
-  return {{shift_z(l, h), shift_z(h, WordPack(0))}};
-}
-QSES_FN BrickWords shift_back(const BrickWords &w, int axis) {
-  const WordPack &l = w.half[0], &h = w.half[1];
-  if (axis == 0) return {{shift_x_back(l, words_before(l)), shift_x_back(h, words_before(h))}};
-  if (axis == 1) return {{shift_y_back(l, pairs_before(l)), shift_y_back(h, pairs_before(h))}};
-  return {{shift_z_back(l, WordPack(0)), shift_z_back(h, l)}};
+// A step along an axis, or back.
+struct Way {
+  int axis;
+  bool back;
+  QSES_FN Way operator-() const { return {axis, !back}; }
+};
+
+// What is a step away comes here.
+QSES_FN BrickWords seen(const BrickWords &w, Way way) {
+  const WordPack &l = w.half[0], &h = w.half[1], none(0);
+  if (way.back) {
+    if (way.axis == 0) return {{shift_x_back(l, words_before(l)), shift_x_back(h, words_before(h))}};
+    if (way.axis == 1) return {{shift_y_back(l, pairs_before(l)), shift_y_back(h, pairs_before(h))}};
+    return {{shift_z_back(l, none), shift_z_back(h, l)}};
+  }
+  if (way.axis == 0) return {{shift_x(l, next_words(l)), shift_x(h, next_words(h))}};
+  if (way.axis == 1) return {{shift_y(l, next_pairs(l)), shift_y(h, next_pairs(h))}};
+  return {{shift_z(l, h), shift_z(h, none)}};
 }
 
 // Points whose probes are looked for: those of a leaf are numbered in the order of its bits, from first[leaf] on.
@@ -107,7 +113,7 @@ struct BrickEdges {
     for (int k = 1; k < kWallSteps; ++k) all = all | edges_of(k);
     for (int axis = 0; axis < kAxes; ++axis) {
       const BrickWords odd = edges_of(axis) & ~even;
-      starts = starts | shift_back(odd, axis) | (odd & last_points(axis));
+      starts = starts | seen(odd, {axis, true}) | (odd & last_points(axis));
     }
     starts = starts | (all & even);
     BrickStarts chosen;
@@ -120,24 +126,44 @@ struct BrickEdges {
     return chosen;
   }
 
-  // An edge is open if one probe covers both its ends: that of one of them, or, of a diagonal, of one of the other two
-  // corners of its square; or if an end is in the solid, since then its sign is a matter of rounding.
+  // An edge is open if one probe covers both its ends: that of one of them, or of a point that both are steps away from;
+  // or if an end is in the solid, since then its sign is a matter of rounding.
   QSES_FN void leave_out_covered(const BrickStarts &starts, const CoveredNeighbors &covered) {
     BrickWords to[CoveredNeighbors::kSteps];
     for (int k = 0; k < CoveredNeighbors::kSteps; ++k) to[k] = of_starts(starts, covered.by_step[k]);
     const BrickWords solid = of_starts(starts, covered.solid);
-    const auto from = [&](int axis, bool back) -> const BrickWords & { return to[axis + (back ? kWallSteps : 0)]; };
-    for (int axis = 0; axis < kAxes; ++axis)
-      leave_out(axis, to[axis] | solid | shift(to[kWallSteps + axis] | solid, axis));
-    int k = kAxes;
-    for (int a = 0; a < kAxes; ++a)
-      for (int b = a + 1; b < kAxes; ++b)
-        for (int down = 0; down < 2; ++down, ++k) {  // the step is a + b or a - b
-          const auto along_b = [&](const BrickWords &w) { return down ? shift_back(w, b) : shift(w, b); };
-          const BrickWords at_second = along_b(to[kWallSteps + k] | solid),
-                           at_a = from(a, true) & from(b, down), at_b = along_b(from(b, !down) & from(a, false));
-          leave_out(k, to[k] | solid | at_b | shift(at_second | at_a, a));
-        }
+    // What covers the point a step along one axis, or two, away.
+    const auto at = [&](Way u) -> const BrickWords & { return to[u.axis + (u.back ? kWallSteps : 0)]; };
+    const auto at_both = [&](Way u, Way v) -> const BrickWords & {
+      const Way first = u.axis < v.axis ? u : v;
+      return to[kAxes + 2 * (u.axis + v.axis - 1) + (u.back != v.back) + (first.back ? kWallSteps : 0)];
+    };
+#pragma GCC unroll 3
+    for (int axis = 0; axis < kAxes; ++axis) {
+      const Way s{axis, false};
+      BrickWords open = at(s) | solid, at_second = at(-s) | solid;
+#pragma GCC unroll 4
+      for (int side = 0; side < 4; ++side) {
+        const Way u{(axis + 1 + side / 2) % kAxes, side % 2 != 0};
+        open = open | seen(at(-u) & at_both(s, -u), u);
+        at_second = at_second | seen(at(-u) & at_both(-s, -u), u);
+      }
+      leave_out(axis, open | seen(at_second, s));
+    }
+#pragma GCC unroll 6
+    for (int k = kAxes; k < kWallSteps; ++k) {
+      const int pair = (k - kAxes) / 2, third = 2 - pair;
+      const Way s{pair / 2, false}, t{1 + (pair + 1) / 2, k % 2 == 0};  // the step is s + t
+      BrickWords beyond_s = at(-s) & at(t), beyond_t = at(-t) & at(s);
+#pragma GCC unroll 2
+      for (int side = 0; side < 2; ++side) {
+        const Way u{third, side != 0};
+        beyond_s = beyond_s | seen(at_both(-s, -u) & at_both(t, -u), u);
+        beyond_t = beyond_t | seen(at_both(-t, -u) & at_both(s, -u), u);
+      }
+      beyond_s = beyond_s | seen(at_both(-s, -t) | solid, t);
+      leave_out(k, at_both(s, t) | solid | seen(beyond_s, s) | seen(beyond_t, t));
+    }
   }
 
  private:
