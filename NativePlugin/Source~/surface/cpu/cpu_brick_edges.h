@@ -49,13 +49,6 @@ QSES_FN BrickWords seen(const BrickWords &w, Way way) {
 struct BrickStarts {
   uint64_t words[kLeavesPerBrick];
   int first[kLeavesPerBrick], count;
-  // -1: it is none.
-  QSES_FN int number_of(const glm::ivec3 &p) const {
-    if ((p.x | p.y | p.z) & ~7) return -1;
-    const int leaf = leaf_of(p.x, p.y, p.z);
-    const uint64_t bit = uint64_t(1) << leaf_bit(p.x & 3, p.y & 3, p.z & 3);
-    return words[leaf] & bit ? first[leaf] + popcount64(words[leaf] & (bit - 1)) : -1;
-  }
 };
 
 // What is known of starts, a bit for each: which points around them their probes cover, by the step there, or kWallSteps

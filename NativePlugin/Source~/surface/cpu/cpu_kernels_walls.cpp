@@ -12,10 +12,34 @@ namespace quickses {
 namespace QSES_CPU_ISA {
 namespace {
 
-// Points of a brick and one more on every side.
-constexpr int kSide = kBrickEdge + 2, kMostPoints = kSide * kSide * kSide;
+// Places of the points of a brick and one more on every side: x + 1, y + 1 and z + 1 in four bits each.
+constexpr int kPlaces = 16 * 16 * (kBrickEdge + 2), kMostPoints = 10 * 10 * 10;
 constexpr int kMostEdges = kBrickPoints * kWallSteps;
 constexpr int kMostWalks = 128;  // edges walked together
+
+QSES_FN constexpr int place_of(int x, int y, int z) { return x + 1 + 16 * (y + 1) + 256 * (z + 1); }
+QSES_FN glm::ivec3 point_of(int place) { return glm::ivec3((place & 15) - 1, (place >> 4 & 15) - 1, (place >> 8) - 1); }
+struct StepPlaces {
+  int at[kWallSteps];  // what a step adds
+};
+QSES_FN StepPlaces make_step_places() {
+  StepPlaces places;
+  for (int k = 0; k < kWallSteps; ++k) {
+    const glm::ivec3 s = wall_step(k);
+    places.at[k] = s.x + 16 * s.y + 256 * s.z;
+  }
+  return places;
+}
+struct BitPlaces {
+  int16_t at[64];  // of the points of the first leaf
+};
+constexpr BitPlaces make_bit_places() {
+  BitPlaces places{};
+  for (int bit = 0; bit < 64; ++bit) places.at[bit] = static_cast<int16_t>(place_of(bit & 3, bit >> 2 & 3, bit >> 4));
+  return places;
+}
+constexpr BitPlaces kBitPlaces = make_bit_places();
+QSES_FN int leaf_offset(int leaf) { return 4 * (leaf & 1) + 64 * (leaf >> 1 & 1) + 1024 * (leaf >> 2); }
 
 // Points and the probes nearest to them.
 template <int kRoom>
@@ -26,8 +50,7 @@ struct ProbedPoints {
   QSES_FN NearestProbe probe(int k) const { return {{center_x[k], center_y[k], center_z[k]}, distance[k]}; }
 };
 
-// An edge that may be a wall: the numbers of its ends, the first one's place in the brick (as 64 * leaf + bit), and the
-// step.
+// An edge that may be a wall: the numbers of its ends, the place of the first one, and the step.
 struct Edge {
   uint16_t first, second, place, step;
 };
@@ -40,7 +63,7 @@ struct WallWork {
   ProbedPoints<kMostPoints + 2 * kPackSize> ends;
   ProbedPoints<kMostWalks + kPackSize> walked;
   CoveredNeighbors covered;
-  int16_t number[kMostPoints];  // of the points in ends that are no starts, by place; -1: none
+  int16_t number[kPlaces];  // of the points in ends, by place; -1: none
   Walk walks[kMostWalks];
   Edge edges[kMostEdges];
 };
@@ -174,7 +197,7 @@ void walk_edges(const WallField &field, const BrickSet &bricks, uint32_t brick, 
       const NearestProbe probe = w.walked.probe(q);
       if (probe.distance > p.depth) {
         const bool first = marks_first_end(w.ends.probe(walk.edge.first), w.ends.probe(walk.edge.second));
-        const glm::ivec3 at = brick_point(walk.edge.place / 64, walk.edge.place % 64);
+        const glm::ivec3 at = point_of(walk.edge.place);
         mark_wall(bricks, brick, first ? at : at + wall_step(walk.edge.step), marks);
         continue;
       }
@@ -241,25 +264,28 @@ BrickNeeds mark_brick_walls(const FeatureView &f, const BrickSet &bricks, uint32
 
   // Those that are left: by the probes nearest to both ends, and then by those between them.
   std::memset(w.number, 0xff, sizeof w.number);
-  const auto number_of = [&](const glm::ivec3 &at) {
-    const int number = starts.number_of(at);
-    if (number >= 0) return number;
-    int16_t &other = w.number[at.x + 1 + kSide * (at.y + 1 + kSide * (at.z + 1))];
-    if (other < 0) {
-      w.ends.set(count, lattice.position(first.x + at.x, first.y + at.y, first.z + at.z));
-      other = static_cast<int16_t>(count++);
+  for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
+    int16_t number = static_cast<int16_t>(starts.first[leaf]);
+    for (uint64_t rest = starts.words[leaf]; rest; rest &= rest - 1)
+      w.number[leaf_offset(leaf) + kBitPlaces.at[lowest_bit64(rest)]] = number++;
+  }
+  const auto number_at = [&](int place) {
+    int16_t &number = w.number[place];
+    if (number < 0) {
+      const glm::ivec3 at = first + point_of(place);
+      w.ends.set(count, lattice.position(at.x, at.y, at.z));
+      number = static_cast<int16_t>(count++);
     }
-    return static_cast<int>(other);
+    return static_cast<uint16_t>(number);
   };
+  const StepPlaces steps = make_step_places();
   int edge_count = 0;
   for (int k = 0; k < kWallSteps; ++k)
     for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf)
       for (uint64_t rest = edges.words[k][leaf]; rest; rest &= rest - 1) {
-        const int bit = lowest_bit64(rest);
-        const glm::ivec3 at = brick_point(leaf, bit);
-        w.edges[edge_count++] = {static_cast<uint16_t>(number_of(at)),
-                                 static_cast<uint16_t>(number_of(at + wall_step(k))),
-                                 static_cast<uint16_t>(64 * leaf + bit), static_cast<uint16_t>(k)};
+        const int place = leaf_offset(leaf) + kBitPlaces.at[lowest_bit64(rest)];
+        w.edges[edge_count++] = {number_at(place), number_at(place + steps.at[k]), static_cast<uint16_t>(place),
+                                 static_cast<uint16_t>(k)};
       }
   find_all_probes(field, w.ends, starts.count, count);
   int walks = 0;
