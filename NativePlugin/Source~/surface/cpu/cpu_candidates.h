@@ -100,7 +100,6 @@ QSES_FN BrickCandidates gather_candidates(const FeatureView &f, const Vec3<float
         const Pack reach = maximum(Pack(0.f), radius + Pack(atom_reach));
         uint32_t near = lane_bits(box.distance2(ax, ay, az) < reach * reach);
         if (run.end - q < kPackSize) near &= (1u << (run.end - q)) - 1;
-        if (!near) continue;
         const uint32_t exposed = near & bits_of_bytes(f.exposed + q);
         const int n = c.atom_count, e = c.exposed_count;
         if (n + kPackSize <= scratch.atom_capacity) {
@@ -125,8 +124,7 @@ QSES_FN BrickCandidates gather_candidates(const FeatureView &f, const Vec3<float
           const Pack reach = radius + Pack(arc_reach);
           uint32_t near = lane_bits(box.distance2(bx, by, bz) < reach * reach);
           if (run.end - q < kPackSize) near &= (1u << (run.end - q)) - 1;
-          if (!near) continue;
-          const int n = c.arc_count;
+            const int n = c.arc_count;
           if (n + kPackSize <= scratch.arc_capacity) {
             store_balls(c.arcs, n, near, bx, by, bz, radius);
             store_lane_numbers(c.arc_index + n, near, static_cast<int32_t>(q));
