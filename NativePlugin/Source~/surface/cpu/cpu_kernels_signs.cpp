@@ -4,43 +4,50 @@
 #include "surface/cpu/cpu_candidates.h"
 #include "surface/cpu/cpu_leaf_bits.h"
 
-#include <algorithm>
 
 namespace quickses {
 namespace QSES_CPU_ISA {
 namespace {
 
-// A plane of the brick: bit x + 8 y. Its quarter as 16 bits x + 4 y.
-QSES_FN uint64_t quarter(uint64_t plane, int half_x, int half_y) {
-  uint64_t v = plane >> (4 * half_x + 32 * half_y) & 0x0f0f0f0full;
-  v = (v | v >> 4) & 0x00ff00ffull;
-  return (v | v >> 8) & 0xffffull;
-}
+// Bits of the points of a brick, plane by plane: 16 for each quarter of a plane, as leaf words have them.
+struct BrickPlanes {
+  uint64_t at[kBrickEdge];
+  uint32_t full;  // planes with all bits set
+  QSES_FN void add(int z, uint64_t bits) {
+    at[z] |= bits;
+    full |= static_cast<uint32_t>(at[z] == ~uint64_t(0)) << z;
+  }
+  QSES_FN bool are_full() const { return full == kAllLanes; }
+  QSES_FN uint64_t leaf(int number) const {
+    const int shift = 16 * (number & 3);
+    const uint64_t *const p = at + (number & 4);
+    return (p[0] >> shift & 0xffff) | (p[1] >> shift & 0xffff) << 16 | (p[2] >> shift & 0xffff) << 32 |
+           (p[3] >> shift & 0xffff) << 48;
+  }
+};
 
-// In-plane coordinates of the points of a plane, eight at a time: one row of x, and y.
-struct PlaneRows {
-  Pack x;
+// Along each axis: 0 to 7, and these times the spacing.
+struct BrickSteps {
+  Pack number, along;
   float h;
-  QSES_FN explicit PlaneRows(float spacing) : h(spacing) {
-    alignas(32) float row[kPackSize];
-    for (int k = 0; k < kPackSize; ++k) row[k] = static_cast<float>(k) * spacing;
-    x = load_pack(row);
+  QSES_FN explicit BrickSteps(float spacing) : h(spacing) {
+    alignas(32) static constexpr float kNumbers[kPackSize] = {0, 1, 2, 3, 4, 5, 6, 7};
+    number = load_pack(kNumbers);
+    along = number * Pack(spacing);
   }
 };
 
 // Sets the bits of the lattice points within a ball; the centre is relative to the brick's first point.
-QSES_FN void fill_ball(uint64_t planes[8], const PlaneRows &rows, float cx, float cy, float cz, float radius2) {
-  const float h = rows.h, side = 7.f * h;
+QSES_FN void fill_ball(BrickPlanes *planes, const BrickSteps &steps, float cx, float cy, float cz, float radius2) {
+  const float h = steps.h, side = 7.f * h;
   const float ox = maximum(0.f, maximum(-cx, cx - side)), oy = maximum(0.f, maximum(-cy, cy - side));
-  const float nearest = ox * ox + oy * oy;
-  if (nearest >= radius2) return;
-  uint32_t open = 0;  // planes that the ball meets and that are not full
-  for (int z = 0; z < 8; ++z) {
-    const float dz = static_cast<float>(z) * h - cz;
-    open |= static_cast<uint32_t>(radius2 - dz * dz > nearest && planes[z] != ~uint64_t(0)) << z;
-  }
+  const Pack dz = multiply_add(steps.number, Pack(h), Pack(-cz)), left = Pack(radius2) - dz * dz;
+  // Planes that the ball meets and that are not full.
+  uint32_t open = lane_bits(left > Pack(ox * ox + oy * oy)) & ~planes->full;
   if (!open) return;
-  const Pack dx = rows.x - Pack(cx), dx2 = dx * dx;
+  alignas(32) float bounds[kPackSize];
+  store_pack(bounds, left);
+  const Pack dx = steps.along - Pack(cx), dx2 = dx * dx;
   Pack row2[8];
   for (int y = 0; y < 8; ++y) {
     const float dy = static_cast<float>(y) * h - cy;
@@ -48,11 +55,12 @@ QSES_FN void fill_ball(uint64_t planes[8], const PlaneRows &rows, float cx, floa
   }
   for (; open; open &= open - 1) {
     const int z = lowest_bit32(open);
-    const float dz = static_cast<float>(z) * h - cz;
-    const Pack bound(radius2 - dz * dz);
-    uint64_t plane = 0;
-    for (int y = 0; y < 8; ++y) plane |= static_cast<uint64_t>(lane_bits(row2[y] < bound)) << (8 * y);
-    planes[z] |= plane;
+    const Pack bound(bounds[z]);
+    const auto half = [&](int y) {
+      return static_cast<uint64_t>(
+          half_rows(row2[y] < bound, row2[y + 1] < bound, row2[y + 2] < bound, row2[y + 3] < bound));
+    };
+    planes->add(z, half(0) | half(4) << 32);
   }
 }
 
@@ -100,30 +108,21 @@ BrickNeeds evaluate_brick_signs(const FeatureView &f, const BrickSet &bricks, ui
   const BrickCandidates c = gather_candidates(f, low, 7.f * h, 1.1f * slack, depth + slack, scratch);
   if (c.needs.atoms || c.needs.arcs) return c.needs;
 
-  const PlaneRows rows(h);
-  uint64_t reached[8] = {}, core[8] = {};  // within an inflated ball; deeper than depth in one
-  bool full = true;
-  if (depth > 0.f) {
+  const BrickSteps steps(h);
+  const auto fill = [&](BrickPlanes *planes, int a, float radius) {
+    fill_ball(planes, steps, c.atoms.x[a] - low.x, c.atoms.y[a] - low.y, c.atoms.z[a] - low.z, radius * radius);
+  };
+  BrickPlanes core{};  // deeper than depth in an inflated ball
+  if (depth > 0.f)
     for (int a = 0; a < c.atom_count; ++a) {
-      const float r = c.atoms.radius[a] - depth;
-      if (r > 0.f) fill_ball(core, rows, c.atoms.x[a] - low.x, c.atoms.y[a] - low.y, c.atoms.z[a] - low.z, r * r);
+      const float radius = c.atoms.radius[a] - depth;
+      if (radius > 0.f) fill(&core, a, radius);
     }
-    for (uint64_t plane : core) full &= plane == ~uint64_t(0);
-  }
-  if (depth == 0.f || !full) {
-    std::copy_n(core, 8, reached);  // whoever is in the core needs no second look
-    for (int a = 0; a < c.atom_count; ++a) {
-      const float r = c.atoms.radius[a] - f.parameters.least_depth();
-      fill_ball(reached, rows, c.atoms.x[a] - low.x, c.atoms.y[a] - low.y, c.atoms.z[a] - low.z, r * r);
-    }
-  }
+  BrickPlanes reached = core;  // within one: whoever is in the core needs no second look
+  if (!core.are_full())
+    for (int a = 0; a < c.atom_count; ++a) fill(&reached, a, c.atoms.radius[a] - f.parameters.least_depth());
   for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
-    uint64_t in_core = 0, in_reach = 0;
-    for (int z = 0; z < 4; ++z) {
-      const int plane = (leaf & 4) + z;
-      in_core |= quarter(core[plane], leaf & 1, leaf >> 1 & 1) << (16 * z);
-      in_reach |= quarter(reached[plane], leaf & 1, leaf >> 1 & 1) << (16 * z);
-    }
+    const uint64_t in_core = core.leaf(leaf), in_reach = reached.leaf(leaf);
     if (depth == 0.f) {
       words[leaf] = in_reach;
       continue;

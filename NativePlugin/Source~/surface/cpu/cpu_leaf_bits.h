@@ -81,7 +81,6 @@ QSES_FN int list_points(const Lattice &lattice, const glm::ivec3 &first, uint64_
   int n = 0;
   for (int byte = 0; byte < 8; ++byte) {
     const uint32_t bits = static_cast<uint32_t>(word >> 8 * byte & 0xff);
-    if (!bits) continue;
     const glm::ivec3 at = first + Steps::first_of(byte);
     store_lanes(x + n, bits, (Pack(static_cast<float>(at.x)) + step_x) * spacing);
     store_lanes(y + n, bits, (Pack(static_cast<float>(at.y)) + step_y) * spacing);
