@@ -57,7 +57,6 @@ int gather_neighbors(const NeighborGridView &atoms, float max_radius, uint32_t i
         uint32_t near = lane_bits(x * x + yy * yy + zz * zz < sum * sum);
         if (run.end - q < kPackSize) near &= (1u << (run.end - q)) - 1;
         if (i - q < kPackSize) near &= ~(1u << (i - q));
-        if (!near) continue;
         if (n + kPackSize <= capacity) {
           store_lanes(c.x + n, near, x);
           store_lanes(c.y + n, near, yy);

@@ -4,7 +4,6 @@
 #include "surface/cpu/cpu_candidates.h"
 #include "surface/cpu/cpu_leaf_bits.h"
 
-
 namespace quickses {
 namespace QSES_CPU_ISA {
 namespace {
