@@ -66,7 +66,7 @@ QSES_FN void fill_ball(BrickPlanes *planes, const BrickSteps &steps, float cx, f
 // Points of a leaf that no arc and no exposed atom puts outside, out of those set in `open`. slack: how far rounding
 // may have put a point into a ball; a point that is hardly outside an exposed ball is still projected on it.
 uint64_t leaf_inside(const FeatureView &f, const BrickCandidates &c, const Lattice &lattice, const glm::ivec3 &first,
-                     uint64_t open, float slack) {
+                     uint64_t open, float slack, int *latest_arc) {
   alignas(32) float px[64 + kPackSize], py[64 + kPackSize], pz[64 + kPackSize];
   open = to_blocks(open);
   const int n = list_points<BlockSteps>(lattice, first, open, px, py, pz);
@@ -78,10 +78,15 @@ uint64_t leaf_inside(const FeatureView &f, const BrickCandidates &c, const Latti
     if (c.arc_count > kManyArcs) look_for_stop();
     const Vec3<Pack> p = load_points(px + g, py + g, pz + g);
     uint32_t lanes = n - g < kPackSize ? (1u << (n - g)) - 1 : kAllLanes;
+    const auto leave_out_near = [&](int arc) {
+      lanes &= ~lane_bits(arc_distance2(f.arcs[c.arc_index[arc]], p) <= depth2);
+    };
+    // What put the last points outside often does so with these.
+    if (c.arc_count > 0) leave_out_near(*latest_arc);
+    if (!lanes) continue;
     const PointBall ball = ball_around(p);
     const int arcs = choose_balls(c.arcs, c.arc_count, ball.center, depth + ball.radius, c.arc_list);
-    for (int k = 0; k < arcs && lanes; ++k)
-      lanes &= ~lane_bits(arc_distance2(f.arcs[c.arc_index[c.arc_list[k]]], p) <= depth2);
+    for (int k = 0; k < arcs && lanes; ++k) leave_out_near(*latest_arc = c.arc_list[k]);
     if (lanes) {
       const int near = choose_balls(c.exposed, c.exposed_count, ball.center, ball.radius + slack, c.near_list);
       const Deepest deepest = deepest_ball(c.exposed, c.near_list, near, p, -slack);
@@ -120,6 +125,7 @@ BrickNeeds evaluate_brick_signs(const FeatureView &f, const BrickSet &bricks, ui
   BrickPlanes reached = core;  // within one: whoever is in the core needs no second look
   if (!core.are_full())
     for (int a = 0; a < c.atom_count; ++a) fill(&reached, a, c.atoms.radius[a] - f.parameters.least_depth());
+  int latest_arc = 0;
   for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
     const uint64_t in_core = core.leaf(leaf), in_reach = reached.leaf(leaf);
     if (depth == 0.f) {
@@ -129,7 +135,7 @@ BrickNeeds evaluate_brick_signs(const FeatureView &f, const BrickSet &bricks, ui
     const uint64_t open = in_reach & ~in_core;
     words[leaf] = in_core;
     if (open) {
-      words[leaf] |= leaf_inside(f, c, lattice, first + brick_point(leaf, 0), open, slack);
+      words[leaf] |= leaf_inside(f, c, lattice, first + brick_point(leaf, 0), open, slack, &latest_arc);
     }
   }
   return {0, 0};
