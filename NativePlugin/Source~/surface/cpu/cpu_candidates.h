@@ -43,20 +43,28 @@ QSES_FN BrickCandidates cut_columns(const BrickScratch &s) {
   return c;
 }
 
-// A box as centre and half extent, and squared distances to it.
+QSES_FN Vec3<Pack> packs_of(const Vec3<float> &v) { return {Pack(v.x), Pack(v.y), Pack(v.z)}; }
+
+// A box as centre and half extents, and squared distances to it.
 struct PackBox {
-  Vec3<Pack> center;
-  Pack half;
-  QSES_FN PackBox(const Vec3<float> &low, float extent)
-      : center(Pack(low.x + 0.5f * extent), Pack(low.y + 0.5f * extent), Pack(low.z + 0.5f * extent)),
-        half(0.5f * extent) {}
+  Vec3<Pack> center, half;
+  QSES_FN PackBox(const Vec3<float> &low, const Vec3<float> &high)
+      : center(packs_of((low + high) * 0.5f)), half(packs_of((high - low) * 0.5f)) {}
   QSES_FN Pack distance2(Pack x, Pack y, Pack z) const {
     const Pack zero(0.f);
-    const Pack dx = maximum(absolute(x - center.x) - half, zero), dy = maximum(absolute(y - center.y) - half, zero),
-               dz = maximum(absolute(z - center.z) - half, zero);
+    const Pack dx = maximum(absolute(x - center.x) - half.x, zero), dy = maximum(absolute(y - center.y) - half.y, zero),
+               dz = maximum(absolute(z - center.z) - half.z, zero);
     return dx * dx + dy * dy + dz * dz;
   }
 };
+
+// That around eight points, and a bit more.
+QSES_FN PackBox box_around(const Vec3<Pack> &p) {
+  const Vec3<float> more(1e-4f, 1e-4f, 1e-4f);
+  const Vec3<float> low(horizontal_minimum(p.x), horizontal_minimum(p.y), horizontal_minimum(p.z)),
+      high(horizontal_maximum(p.x), horizontal_maximum(p.y), horizontal_maximum(p.z));
+  return {low - more, high + more};
+}
 
 QSES_FN void store_balls(const BallColumns &c, int at, uint32_t set, Pack x, Pack y, Pack z, Pack radius) {
   store_lanes(c.x + at, set, x);
@@ -84,8 +92,8 @@ QSES_FN uint32_t bits_of_bytes(const uint8_t *bytes) {
 QSES_FN BrickCandidates gather_candidates(const FeatureView &f, const Vec3<float> &low, float extent, float atom_reach,
                                           float arc_reach, const BrickScratch &scratch) {
   BrickCandidates c = cut_columns(scratch);
-  const PackBox box(low, extent);
   const Vec3<float> high(low.x + extent, low.y + extent, low.z + extent);
+  const PackBox box(low, high);
   const auto around = [&](const NeighborGridView &grid, float reach) {
     const Vec3<float> r(reach, reach, reach);
     return cells_around(grid.cells, low - r, high + r);
@@ -142,30 +150,16 @@ QSES_FN BrickCandidates gather_candidates(const FeatureView &f, const Vec3<float
   return c;
 }
 
-// Numbers of the balls that, grown by `reach` (which may be negative), meet the point. Room for eight more is needed.
-QSES_FN int choose_balls(const BallColumns &c, int n, const Vec3<float> &point, float reach, int32_t *out) {
-  const Pack x(point.x), y(point.y), z(point.z), grow(reach);
+// Numbers of the balls that, grown by `reach` (which may be negative), meet the box. Room for eight more is needed.
+QSES_FN int choose_balls(const BallColumns &c, int n, const PackBox &box, float reach, int32_t *out) {
+  const Pack grow(reach);
   int k = 0;
   for (int q = 0; q < n; q += kPackSize) {
-    const Pack dx = load_pack(c.x + q) - x, dy = load_pack(c.y + q) - y, dz = load_pack(c.z + q) - z;
     const Pack r = maximum(Pack(0.f), load_pack(c.radius + q) + grow);
-    k += store_lane_numbers(out + k, lane_bits(dx * dx + dy * dy + dz * dz < r * r), q);
+    const Pack distance2 = box.distance2(load_pack(c.x + q), load_pack(c.y + q), load_pack(c.z + q));
+    k += store_lane_numbers(out + k, lane_bits(distance2 < r * r), q);
   }
   return k;
-}
-
-// Ball around eight points.
-struct PointBall {
-  Vec3<float> center;
-  float radius;
-};
-QSES_FN PointBall ball_around(const Vec3<Pack> &p) {
-  const float x0 = horizontal_minimum(p.x), x1 = horizontal_maximum(p.x);
-  const float y0 = horizontal_minimum(p.y), y1 = horizontal_maximum(p.y);
-  const float z0 = horizontal_minimum(p.z), z1 = horizontal_maximum(p.z);
-  const float dx = x1 - x0, dy = y1 - y0, dz = z1 - z0;
-  return {{0.5f * (x0 + x1), 0.5f * (y0 + y1), 0.5f * (z0 + z1)},
-          0.5f * square_root(dx * dx + dy * dy + dz * dz) + 1e-4f};
 }
 
 QSES_FN Vec3<Pack> load_points(const float *x, const float *y, const float *z) {

@@ -84,11 +84,11 @@ uint64_t leaf_inside(const FeatureView &f, const BrickCandidates &c, const Latti
     // What put the last points outside often does so with these.
     if (c.arc_count > 0) leave_out_near(*latest_arc);
     if (!lanes) continue;
-    const PointBall ball = ball_around(p);
-    const int arcs = choose_balls(c.arcs, c.arc_count, ball.center, depth + ball.radius, c.arc_list);
+    const PackBox box = box_around(p);
+    const int arcs = choose_balls(c.arcs, c.arc_count, box, depth, c.arc_list);
     for (int k = 0; k < arcs && lanes; ++k) leave_out_near(*latest_arc = c.arc_list[k]);
     if (lanes) {
-      const int near = choose_balls(c.exposed, c.exposed_count, ball.center, ball.radius + slack, c.near_list);
+      const int near = choose_balls(c.exposed, c.exposed_count, box, slack, c.near_list);
       const Deepest deepest = deepest_ball(c.exposed, c.near_list, near, p, -slack);
       for_exposed_projections(f, c, p, deepest, lanes,
                               [&](const Sphere &, uint32_t, uint32_t exposed) { lanes &= ~exposed; });

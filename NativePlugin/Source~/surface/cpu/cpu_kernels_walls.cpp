@@ -111,17 +111,17 @@ void find_probes(const WallField &field, ProbedPoints<kRoom> &points, int begin,
     if (c.arc_count > kManyArcs) look_for_stop();
     const Vec3<Pack> p = load_points(points.x + g, points.y + g, points.z + g);
     uint32_t lanes = end - g < kPackSize ? (1u << (end - g)) - 1 : kAllLanes;
-    const PointBall ball = ball_around(p);
+    const PackBox box = box_around(p);
     Vec3<Pack> center = p;
     Pack distance(kFarAway);
     if (field.looks_out) {
-      const int near = choose_balls(c.atoms, c.atom_count, ball.center, ball.radius + field.slack, c.near_list);
+      const int near = choose_balls(c.atoms, c.atom_count, box, field.slack, c.near_list);
       const PackMask outside =
           deepest_ball(c.atoms, c.near_list, near, p, -kFarAway).depth <= Pack(f.parameters.least_depth());
       distance = select(outside, Pack(0.f), distance);
       lanes &= ~lane_bits(outside);
     }
-    const int near = choose_balls(c.exposed, c.exposed_count, ball.center, ball.radius + field.slack, c.near_list);
+    const int near = choose_balls(c.exposed, c.exposed_count, box, field.slack, c.near_list);
     const Deepest deepest = deepest_ball(c.exposed, c.near_list, near, p, -field.slack);
     for_exposed_projections(f, c, p, deepest, lanes, [&](const Sphere &atom_ball, uint32_t, uint32_t exposed) {
       lanes &= ~exposed;
@@ -144,8 +144,8 @@ void find_probes(const WallField &field, ProbedPoints<kRoom> &points, int begin,
     open_x[k] = open_x[open - 1], open_y[k] = open_y[open - 1], open_z[k] = open_z[open - 1];
   for (int g = 0; g < open; g += kPackSize) {
     const Vec3<Pack> p = load_points(open_x + g, open_y + g, open_z + g);
-    const PointBall ball = ball_around(p);
-    const int arcs = choose_balls(c.arcs, c.arc_count, ball.center, depth + ball.radius, c.arc_list);
+    const PackBox box = box_around(p);
+    const int arcs = choose_balls(c.arcs, c.arc_count, box, depth, c.arc_list);
     if (arcs == 0) continue;
     Pack nearest(kFarAway), place(0.f), k_pack(0.f);
     for (int k = 0; k < arcs; ++k) {
