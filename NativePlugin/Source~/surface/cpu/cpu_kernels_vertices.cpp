@@ -271,11 +271,11 @@ void place_on_edges(const FeatureView &f, const BrickSet &bricks, const MeshLayo
 // Owners of the vertices that lie on no single atom.
 void find_owners(const FeatureView &f, const BrickCandidates &c, int n, Work *w) {
   int open = 0;
-  for (int v = 0; v < n; ++v)
-    if (w->owner[v] < 0) {
-      w->open.x[open] = w->place.x[v], w->open.y[open] = w->place.y[v], w->open.z[open] = w->place.z[v];
-      w->open_number[open++] = v;
-    }
+  for (int v = 0; v < n; ++v) {
+    w->open.x[open] = w->place.x[v], w->open.y[open] = w->place.y[v], w->open.z[open] = w->place.z[v];
+    w->open_number[open] = v;
+    open += w->owner[v] < 0 ? 1 : 0;
+  }
   if (open == 0) return;
   fill_up(&w->open, open);
   for (int g = 0; g < open; g += kPackSize) {
