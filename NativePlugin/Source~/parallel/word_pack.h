@@ -17,6 +17,9 @@ struct WordPack {
   WordPack() = default;
   QSES_FN WordPack(__m256i x) : v(x) {}
   QSES_FN WordPack(uint64_t x) : v(_mm256_set1_epi64x(static_cast<long long>(x))) {}
+  QSES_FN WordPack(uint64_t a, uint64_t b, uint64_t c, uint64_t d)
+      : v(_mm256_setr_epi64x(static_cast<long long>(a), static_cast<long long>(b), static_cast<long long>(c),
+                             static_cast<long long>(d))) {}
 };
 QSES_FN WordPack operator&(WordPack a, WordPack b) { return _mm256_and_si256(a.v, b.v); }
 QSES_FN WordPack operator|(WordPack a, WordPack b) { return _mm256_or_si256(a.v, b.v); }

@@ -68,18 +68,18 @@ struct BrickEdges {
     alignas(32) static constexpr uint64_t kNoWords[kLeavesPerBrick] = {};  // no wall is where no brick is
     const NearWords near = find_near_words(bricks, signs, brick);
     alignas(32) uint64_t around[4][4][4];  // words of the leaves of the brick and next to it
-    WordPack any(0);
+    uint64_t any = 0;
     for (int z = 0; z < 4; ++z)
       for (int y = 0; y < 4; ++y) {
         const uint64_t *const *const at = near.at + 9 * ((z + 1) >> 1) + 3 * ((y + 1) >> 1);
         const int leaf = 2 * ((y + 1) & 1) + 4 * ((z + 1) & 1);
+        const uint64_t *const left = (at[0] ? at[0] : kNoWords) + leaf, *const middle = (at[1] ? at[1] : kNoWords) + leaf,
+                              *const right = (at[2] ? at[2] : kNoWords) + leaf;
         uint64_t *const row = around[z][y];
-        row[0] = (at[0] ? at[0] : kNoWords)[leaf + 1];
-        std::memcpy(row + 1, (at[1] ? at[1] : kNoWords) + leaf, 2 * sizeof(uint64_t));
-        row[3] = (at[2] ? at[2] : kNoWords)[leaf];
-        any = any | load_words(row);
+        row[0] = left[1], row[1] = middle[0], row[2] = middle[1], row[3] = right[0];
+        any |= row[0] | row[1] | row[2] | row[3];
       }
-    if (!has_bits(any)) return false;
+    if (any == 0) return false;
     WordPack left(0);
     for (int half = 0; half < 2; ++half) {
       WordNeighborhood<WordPack> leaves;
@@ -171,13 +171,12 @@ struct BrickEdges {
   }
   // Bits of starts in their order, brought to their places. A leaf has no more than 32 even starts, and 19 others.
   QSES_FN static BrickWords of_starts(const BrickStarts &starts, const uint8_t *bits) {
-    alignas(32) uint64_t placed[kLeavesPerBrick];
-    for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
+    const auto placed = [&](int leaf) {
       uint64_t in_order;
       std::memcpy(&in_order, bits + starts.first[leaf] / 8, sizeof in_order);
-      placed[leaf] = deposit_bits(in_order >> starts.first[leaf] % 8, starts.words[leaf]);
-    }
-    return BrickWords::load(placed);
+      return deposit_bits(in_order >> starts.first[leaf] % 8, starts.words[leaf]);
+    };
+    return {{WordPack(placed(0), placed(1), placed(2), placed(3)), WordPack(placed(4), placed(5), placed(6), placed(7))}};
   }
 };
 
