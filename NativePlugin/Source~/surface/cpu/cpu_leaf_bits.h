@@ -35,6 +35,25 @@ QSES_FN uint64_t extract_bits(uint64_t bits, uint64_t mask) {
 #endif
 }
 
+// Four bits to the lower half of each byte, and one bit to each byte.
+QSES_FN uint64_t spread_by_four(uint64_t v) {
+#if defined(__BMI2__)
+  return _pdep_u64(v, 0x0f0f0f0f0f0f0f0full);
+#else
+  v = (v | v << 16) & 0x0000ffff0000ffffull;
+  v = (v | v << 8) & 0x00ff00ff00ff00ffull;
+  return (v | v << 4) & 0x0f0f0f0f0f0f0f0full;
+#endif
+}
+QSES_FN uint64_t spread_bits(uint32_t bits) {
+#if defined(__BMI2__)
+  return _pdep_u64(bits, 0x0101010101010101ull);
+#else
+  const uint64_t v = bits;
+  return ((v & 0x7f) * 0x0002040810204081ull & 0x0101010101010101ull) | (v & 0x80) << 49;
+#endif
+}
+
 // Exchanges two bits of the numbers of a word's bits. first_only: the numbers with the first bit but not the second.
 template <int kFirst, int kSecond>
 QSES_FN uint64_t exchange_number_bits(uint64_t w, uint64_t first_only) {
