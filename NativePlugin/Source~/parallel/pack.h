@@ -29,6 +29,8 @@ using quickses::square_root;
 
 constexpr int kPackSize = 8;
 constexpr uint32_t kAllLanes = 0xffu;
+// So many lanes from the first one on, without a branch; all of eight and more.
+QSES_FN uint32_t first_lanes(uint32_t n) { return (1u << (n < kPackSize ? n : kPackSize)) - 1; }
 
 // For each set of lanes, the numbers of its members in order (then zeros): the permutation of a compressing store.
 struct alignas(32) LaneTable {

@@ -106,8 +106,7 @@ QSES_FN BrickCandidates gather_candidates(const FeatureView &f, const Vec3<float
         Pack ax, ay, az, radius;
         load_columns(&f.atoms.items[q].center.x, &ax, &ay, &az, &radius);
         const Pack reach = maximum(Pack(0.f), radius + Pack(atom_reach));
-        uint32_t near = lane_bits(box.distance2(ax, ay, az) < reach * reach);
-        if (run.end - q < kPackSize) near &= (1u << (run.end - q)) - 1;
+        const uint32_t near = first_lanes(run.end - q) & lane_bits(box.distance2(ax, ay, az) < reach * reach);
         const uint32_t exposed = near & bits_of_bytes(f.exposed + q);
         const int n = c.atom_count, e = c.exposed_count;
         if (n + kPackSize <= scratch.atom_capacity) {
@@ -130,8 +129,7 @@ QSES_FN BrickCandidates gather_candidates(const FeatureView &f, const Vec3<float
           Pack bx, by, bz, radius;
           load_columns(&f.arc_bounds.items[q].center.x, &bx, &by, &bz, &radius);
           const Pack reach = radius + Pack(arc_reach);
-          uint32_t near = lane_bits(box.distance2(bx, by, bz) < reach * reach);
-          if (run.end - q < kPackSize) near &= (1u << (run.end - q)) - 1;
+          const uint32_t near = first_lanes(run.end - q) & lane_bits(box.distance2(bx, by, bz) < reach * reach);
             const int n = c.arc_count;
           if (n + kPackSize <= scratch.arc_capacity) {
             store_balls(c.arcs, n, near, bx, by, bz, radius);

@@ -38,15 +38,17 @@ struct BrickSteps {
 
 // Sets the bits of the lattice points within a ball; the centre is relative to the brick's first point.
 QSES_FN void fill_ball(BrickPlanes *planes, const BrickSteps &steps, float cx, float cy, float cz, float radius2) {
-  const float h = steps.h, side = 7.f * h;
-  const float ox = maximum(0.f, maximum(-cx, cx - side)), oy = maximum(0.f, maximum(-cy, cy - side));
+  const float h = steps.h;
+  // In packs, since compilers make branches of maxima of single floats.
+  const Pack none(0.f), side(7.f * h), x(cx), y(cy);
+  const Pack ox = maximum(none, maximum(-x, x - side)), oy = maximum(none, maximum(-y, y - side));
   const Pack dz = multiply_add(steps.number, Pack(h), Pack(-cz)), left = Pack(radius2) - dz * dz;
   // Planes that the ball meets and that are not full.
-  uint32_t open = lane_bits(left > Pack(ox * ox + oy * oy)) & ~planes->full;
+  uint32_t open = lane_bits(left > ox * ox + oy * oy) & ~planes->full;
   if (!open) return;
   alignas(32) float bounds[kPackSize];
   store_pack(bounds, left);
-  const Pack dx = steps.along - Pack(cx), dx2 = dx * dx;
+  const Pack dx = steps.along - x, dx2 = dx * dx;
   Pack row2[8];
   for (int y = 0; y < 8; ++y) {
     const float dy = static_cast<float>(y) * h - cy;
@@ -77,7 +79,7 @@ uint64_t leaf_inside(const FeatureView &f, const BrickCandidates &c, const Latti
   for (int g = 0; g < n; g += kPackSize) {
     if (c.arc_count > kManyArcs) look_for_stop();
     const Vec3<Pack> p = load_points(px + g, py + g, pz + g);
-    uint32_t lanes = n - g < kPackSize ? (1u << (n - g)) - 1 : kAllLanes;
+    uint32_t lanes = first_lanes(static_cast<uint32_t>(n - g));
     const auto leave_out_near = [&](int arc) {
       lanes &= ~lane_bits(arc_distance2(f.arcs[c.arc_index[arc]], p) <= depth2);
     };

@@ -119,7 +119,7 @@ int project_contact(const FeatureView &f, const BrickCandidates &c, float spacin
   for (int g = 0; g < n; g += kPackSize) {
     if (c.arc_count > kManyArcs) look_for_stop();
     const Vec3<Pack> p = load_points(w->place.x + g, w->place.y + g, w->place.z + g);
-    const uint32_t used = n - g < kPackSize ? (1u << (n - g)) - 1 : kAllLanes;
+    const uint32_t used = first_lanes(static_cast<uint32_t>(n - g));
     const PackBox box = box_around(p);
     const int near =
         choose_balls(c.exposed, c.exposed_count, box, kStartReach * spacing - depth, c.near_list);

@@ -110,7 +110,7 @@ void find_probes(const WallField &field, ProbedPoints<kRoom> &points, int begin,
   for (int g = begin; g < end; g += kPackSize) {
     if (c.arc_count > kManyArcs) look_for_stop();
     const Vec3<Pack> p = load_points(points.x + g, points.y + g, points.z + g);
-    uint32_t lanes = end - g < kPackSize ? (1u << (end - g)) - 1 : kAllLanes;
+    uint32_t lanes = first_lanes(static_cast<uint32_t>(end - g));
     const PackBox box = box_around(p);
     Vec3<Pack> center = p;
     Pack distance(kFarAway);
