@@ -57,8 +57,8 @@ QSES_FN void visit_bricks_of_shell(const Lattice &lattice, const glm::vec3 &cent
     return static_cast<float>(k + lattice.first_brick[axis]) * size + low_offset - c[axis];
   };
   const auto nearest2_of = [&](int axis, int k) {
-    const float start = start_of(axis, k), nearest = maximum(0.f, maximum(start, -start - box));
-    return nearest * nearest;
+    const float start = start_of(axis, k), beyond = maximum(start, -start - box);
+    return beyond * maximum(beyond, 0.f);  // of the square of a maximum compilers make a branch
   };
   const auto farthest2_of = [&](int axis, int k) {
     const float start = start_of(axis, k), farthest = maximum(absolute(start), absolute(start + box));
