@@ -100,8 +100,8 @@ void emit_brick_triangles(const BrickSet &bricks, const MeshLayout &layout, uint
   number_vertices(layout, upper, &numbers);
   const int second = mesh.reversed ? 2 : 1, third = mesh.reversed ? 1 : 2;
   uint32_t *out = mesh.triangle(begin);
-  for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
-    const LeafWords corners = cell_corners(leaf_words(upper, layout.signs, leaf));
+  for_leaf_words(upper, layout.signs, [&](int leaf, const LeafWords &words) {
+    const LeafWords corners = cell_corners(words);
     for (uint64_t mixed = mixed_cells(corners); mixed; mixed &= mixed - 1) {
       const int bit = lowest_bit64(mixed), code = cell_case(corners, bit);
       const uint32_t *const here = numbers.at[0] + place_of_leaf(leaf) + kBitPlaces.at[bit];
@@ -113,7 +113,7 @@ void emit_brick_triangles(const BrickSet &bricks, const MeshLayout &layout, uint
         assert(out[0] < layout.vertex_total && out[1] < layout.vertex_total && out[2] < layout.vertex_total);
       }
     }
-  }
+  });
 }
 
 }  // namespace QSES_CPU_ISA

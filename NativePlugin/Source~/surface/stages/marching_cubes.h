@@ -107,6 +107,16 @@ QSES_FN UpperBricks upper_bricks(const BrickSet &bricks, uint32_t brick) {
 QSES_FN LeafWords leaf_words(const UpperBricks &upper, const uint64_t *signs, int leaf) {
   return leaf_words(signs, upper.at[0], leaf, [&](int k) { return upper.at[k]; });
 }
+// use(leaf, words) for the leaves of a brick. Unrolled, so that which neighbours they have needs no branches.
+template <class Use>
+QSES_FN void for_leaf_words(const UpperBricks &upper, const uint64_t *signs, const Use &use) {
+  LeafWords words[kLeavesPerBrick];
+#if !defined(__CUDACC__)
+#pragma GCC unroll 8
+#endif
+  for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) words[leaf] = leaf_words(upper, signs, leaf);
+  for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) use(leaf, words[leaf]);
+}
 
 // The eight corner words: bit b of corner word c is the sign of corner c of the cell at point b.
 QSES_FN LeafWords cell_corners(const LeafWords &w) {
@@ -216,9 +226,9 @@ struct CountBrick {
     const UpperBricks upper = upper_bricks(bricks, static_cast<uint32_t>(brick));
     uint64_t *const crossing = layout.crossing + brick * kBrickMasks;
     uint16_t vertex_counts[kBrickMasks], triangle_counts[kLeavesPerBrick];
-    for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf)
-      triangle_counts[leaf] = static_cast<uint16_t>(
-          count_leaf(leaf_words(upper, layout.signs, leaf), case_triangles, crossing + leaf * kAxes));
+    for_leaf_words(upper, layout.signs, [&](int leaf, const LeafWords &words) {
+      triangle_counts[leaf] = static_cast<uint16_t>(count_leaf(words, case_triangles, crossing + leaf * kAxes));
+    });
     for (int k = 0; k < kBrickMasks; ++k)
       vertex_counts[k] = static_cast<uint16_t>(crossing[k] ? popcount64(crossing[k]) : 0);
     totals[brick] = rank_brick(layout, brick, vertex_counts, triangle_counts);
