@@ -88,17 +88,18 @@ QSES_FN uint32_t bits_of_bytes(const uint8_t *bytes) {
   return static_cast<uint32_t>((v * 0x0102040810204080ull) >> 56);
 }
 
-// Gathers what can matter in the box: atoms whose ball, grown by atom_reach, meets it, and arcs within arc_reach.
-QSES_FN BrickCandidates gather_candidates(const FeatureView &f, const Vec3<float> &low, float extent, float atom_reach,
-                                          float arc_reach, const BrickScratch &scratch) {
+QSES_FN CellBox cells_within(const CellLayout &cells, const Vec3<float> &low, const Vec3<float> &high, float reach) {
+  const Vec3<float> r(reach, reach, reach);
+  return cells_around(cells, low - r, high + r);
+}
+
+// Gathers what can matter in a cube: atoms whose ball, grown by a reach, meets it.
+QSES_FN BrickCandidates gather_atoms(const FeatureView &f, const Vec3<float> &low, float extent, float atom_reach,
+                                     const BrickScratch &scratch) {
   BrickCandidates c = cut_columns(scratch);
   const Vec3<float> high(low.x + extent, low.y + extent, low.z + extent);
   const PackBox box(low, high);
-  const auto around = [&](const NeighborGridView &grid, float reach) {
-    const Vec3<float> r(reach, reach, reach);
-    return cells_around(grid.cells, low - r, high + r);
-  };
-  const CellBox cells = around(f.atoms, maximum(0.f, f.parameters.max_radius + atom_reach));
+  const CellBox cells = cells_within(f.atoms.cells, low, high, maximum(0.f, f.parameters.max_radius + atom_reach));
   for (int z = cells.z0; z <= cells.z1; ++z)
     for (int y = cells.y0; y <= cells.y1; ++y) {
       const ItemRun run = f.atoms.run(cells.x0, cells.x1, y, z);
@@ -119,32 +120,49 @@ QSES_FN BrickCandidates gather_candidates(const FeatureView &f, const Vec3<float
         c.exposed_count += popcount64(exposed);
       }
     }
-  if (c.atom_count + kPackSize > scratch.atom_capacity) c.needs.atoms = c.atom_count + kPackSize;
+  if (c.atom_count + kPackSize > scratch.atom_capacity) {
+    c.needs.atoms = c.atom_count + kPackSize;
+    return c;
+  }
+  end_balls(c.atoms, c.atom_count);
+  end_balls(c.exposed, c.exposed_count);
+  return c;
+}
+
+// And arcs within a reach of it.
+QSES_FN void gather_arcs(const FeatureView &f, const Vec3<float> &low, float extent, float arc_reach,
+                         const BrickScratch &scratch, BrickCandidates *c) {
+  const Vec3<float> high(low.x + extent, low.y + extent, low.z + extent);
+  const PackBox box(low, high);
   if (f.arc_bounds.count > 0) {
-    const CellBox arc_cells = around(f.arc_bounds, arc_reach + f.max_arc_bound);
-    for (int z = arc_cells.z0; z <= arc_cells.z1; ++z)
-      for (int y = arc_cells.y0; y <= arc_cells.y1; ++y) {
-        const ItemRun run = f.arc_bounds.run(arc_cells.x0, arc_cells.x1, y, z);
+    const CellBox cells = cells_within(f.arc_bounds.cells, low, high, arc_reach + f.max_arc_bound);
+    for (int z = cells.z0; z <= cells.z1; ++z)
+      for (int y = cells.y0; y <= cells.y1; ++y) {
+        const ItemRun run = f.arc_bounds.run(cells.x0, cells.x1, y, z);
         for (uint32_t q = run.begin; q < run.end; q += kPackSize) {
           Pack bx, by, bz, radius;
           load_columns(&f.arc_bounds.items[q].center.x, &bx, &by, &bz, &radius);
           const Pack reach = radius + Pack(arc_reach);
           const uint32_t near = first_lanes(run.end - q) & lane_bits(box.distance2(bx, by, bz) < reach * reach);
-            const int n = c.arc_count;
+          const int n = c->arc_count;
           if (n + kPackSize <= scratch.arc_capacity) {
-            store_balls(c.arcs, n, near, bx, by, bz, radius);
-            store_lane_numbers(c.arc_index + n, near, static_cast<int32_t>(q));
+            store_balls(c->arcs, n, near, bx, by, bz, radius);
+            store_lane_numbers(c->arc_index + n, near, static_cast<int32_t>(q));
           }
-          c.arc_count += popcount64(near);
+          c->arc_count += popcount64(near);
         }
       }
-    if (c.arc_count + kPackSize > scratch.arc_capacity) c.needs.arcs = c.arc_count + kPackSize;
   }
-  if (c.needs.atoms == 0 && c.needs.arcs == 0) {
-    end_balls(c.atoms, c.atom_count);
-    end_balls(c.exposed, c.exposed_count);
-    end_balls(c.arcs, c.arc_count);
-  }
+  if (c->arc_count + kPackSize > scratch.arc_capacity)
+    c->needs.arcs = c->arc_count + kPackSize;
+  else
+    end_balls(c->arcs, c->arc_count);
+}
+
+QSES_FN BrickCandidates gather_candidates(const FeatureView &f, const Vec3<float> &low, float extent, float atom_reach,
+                                          float arc_reach, const BrickScratch &scratch) {
+  BrickCandidates c = gather_atoms(f, low, extent, atom_reach, scratch);
+  if (c.needs.atoms == 0) gather_arcs(f, low, extent, arc_reach, scratch, &c);
   return c;
 }
 

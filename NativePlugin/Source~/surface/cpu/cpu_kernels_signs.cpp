@@ -111,8 +111,8 @@ BrickNeeds evaluate_brick_signs(const FeatureView &f, const BrickSet &bricks, ui
   // More than rounding.
   const float farthest = maximum(maximum(absolute(low.x), absolute(low.y)), absolute(low.z));
   const float slack = 1e-3f + 1e-6f * farthest;
-  const BrickCandidates c = gather_candidates(f, low, 7.f * h, 1.1f * slack, depth + slack, scratch);
-  if (c.needs.atoms || c.needs.arcs) return c.needs;
+  BrickCandidates c = gather_atoms(f, low, 7.f * h, 1.1f * slack, scratch);
+  if (c.needs.atoms) return c.needs;
 
   const BrickSteps steps(h);
   const auto fill = [&](BrickPlanes *planes, int a, float radius) {
@@ -127,19 +127,19 @@ BrickNeeds evaluate_brick_signs(const FeatureView &f, const BrickSet &bricks, ui
   BrickPlanes reached = core;  // within one: whoever is in the core needs no second look
   if (!core.are_full())
     for (int a = 0; a < c.atom_count; ++a) fill(&reached, a, c.atoms.radius[a] - f.parameters.least_depth());
-  int latest_arc = 0;
+  uint64_t open[kLeavesPerBrick], any = 0;
   for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
-    const uint64_t in_core = core.leaf(leaf), in_reach = reached.leaf(leaf);
-    if (depth == 0.f) {
-      words[leaf] = in_reach;
-      continue;
-    }
-    const uint64_t open = in_reach & ~in_core;
-    words[leaf] = in_core;
-    if (open) {
-      words[leaf] |= leaf_inside(f, c, lattice, first + brick_point(leaf, 0), open, slack, &latest_arc);
-    }
+    words[leaf] = depth > 0.f ? core.leaf(leaf) : reached.leaf(leaf);
+    open[leaf] = reached.leaf(leaf) & ~words[leaf];
+    any |= open[leaf];
   }
+  if (any == 0) return {0, 0};
+  gather_arcs(f, low, 7.f * h, depth + slack, scratch, &c);
+  if (c.needs.arcs) return c.needs;
+  int latest_arc = 0;
+  for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf)
+    if (open[leaf])
+      words[leaf] |= leaf_inside(f, c, lattice, first + brick_point(leaf, 0), open[leaf], slack, &latest_arc);
   return {0, 0};
 }
 
