@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The edges of a brick that may pass through thin walls (thin_walls.h), as words of its leaves: which they are by signs,
-// from where their probes are looked for, and which of them these probes leave. Only for the CPU kernels.
+// The edges of a brick that may pass through thin walls (thin_walls.h), as words of its leaves: which they are by
+// signs, from where their probes are looked for, and which of them these probes leave. Only for the CPU kernels.
 #pragma once
 
 #include "parallel/word_pack.h"
@@ -51,8 +51,8 @@ struct BrickStarts {
   int first[kLeavesPerBrick], count;
 };
 
-// What is known of starts, a bit for each: which points around them their probes cover, by the step there, or kWallSteps
-// and the step from there; and whether there is no probe.
+// What is known of starts, a bit for each: which points around them their probes cover, by the step there, or
+// kWallSteps and the step from there; and whether there is no probe.
 struct CoveredNeighbors {
   static constexpr int kSteps = 2 * kWallSteps, kBytes = kBrickPoints / 8 + 8;
   uint8_t by_step[kSteps][kBytes], solid[kBytes];
@@ -73,7 +73,8 @@ struct BrickEdges {
       for (int y = 0; y < 4; ++y) {
         const uint64_t *const *const at = near.at + 9 * ((z + 1) >> 1) + 3 * ((y + 1) >> 1);
         const int leaf = 2 * ((y + 1) & 1) + 4 * ((z + 1) & 1);
-        const uint64_t *const left = (at[0] ? at[0] : kNoWords) + leaf, *const middle = (at[1] ? at[1] : kNoWords) + leaf,
+        const uint64_t *const left = (at[0] ? at[0] : kNoWords) + leaf,
+                              *const middle = (at[1] ? at[1] : kNoWords) + leaf,
                               *const right = (at[2] ? at[2] : kNoWords) + leaf;
         uint64_t *const row = around[z][y];
         row[0] = left[1], row[1] = middle[0], row[2] = middle[1], row[3] = right[0];
@@ -119,8 +120,8 @@ struct BrickEdges {
     return chosen;
   }
 
-  // An edge is open if one probe covers both its ends: that of one of them, or of a point that both are steps away from;
-  // or if an end is in the solid, since then its sign is a matter of rounding.
+  // An edge is open if one probe covers both its ends: that of one of them, or of a point that both are steps away
+  // from; or if an end is in the solid, since then its sign is a matter of rounding.
   QSES_FN void leave_out_covered(const BrickStarts &starts, const CoveredNeighbors &covered) {
     BrickWords to[CoveredNeighbors::kSteps];
     for (int k = 0; k < CoveredNeighbors::kSteps; ++k) to[k] = of_starts(starts, covered.by_step[k]);
@@ -176,7 +177,8 @@ struct BrickEdges {
       std::memcpy(&in_order, bits + starts.first[leaf] / 8, sizeof in_order);
       return deposit_bits(in_order >> starts.first[leaf] % 8, starts.words[leaf]);
     };
-    return {{WordPack(placed(0), placed(1), placed(2), placed(3)), WordPack(placed(4), placed(5), placed(6), placed(7))}};
+    return {
+        {WordPack(placed(0), placed(1), placed(2), placed(3)), WordPack(placed(4), placed(5), placed(6), placed(7))}};
   }
 };
 

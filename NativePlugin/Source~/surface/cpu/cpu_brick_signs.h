@@ -45,7 +45,9 @@ QSES_FN uint32_t row_of(const uint64_t *words, int y, int z) {
 QSES_FN uint64_t plane_of(const uint64_t *words, int z) {
   const uint64_t *const w = words + (z >> 2) * 4;
   const int shift = 16 * (z & 3);
-  const auto rows_of = [&](int leaf) { return spread_by_four((w[leaf] >> shift & 0xffff) | (w[leaf + 2] >> shift & 0xffff) << 16); };
+  const auto rows_of = [&](int leaf) {
+    return spread_by_four((w[leaf] >> shift & 0xffff) | (w[leaf + 2] >> shift & 0xffff) << 16);
+  };
   return rows_of(0) | rows_of(1) << 4;
 }
 

@@ -121,8 +121,7 @@ int project_contact(const FeatureView &f, const BrickCandidates &c, float spacin
     const Vec3<Pack> p = load_points(w->place.x + g, w->place.y + g, w->place.z + g);
     const uint32_t used = first_lanes(static_cast<uint32_t>(n - g));
     const PackBox box = box_around(p);
-    const int near =
-        choose_balls(c.exposed, c.exposed_count, box, kStartReach * spacing - depth, c.near_list);
+    const int near = choose_balls(c.exposed, c.exposed_count, box, kStartReach * spacing - depth, c.near_list);
     const Deepest deepest = deepest_ball(c.exposed, c.near_list, near, p, -kFarAway);
     Vec3<Pack> place = p, normal = p;
     uint32_t done = 0;
@@ -260,9 +259,8 @@ void place_on_edges(const FeatureView &f, const BrickSet &bricks, const MeshLayo
     const LatticeEdge edge = edge_of_vertex(layout, brick, layout.base[brick].vertices + static_cast<uint32_t>(v));
     const CutEdge ends = ends_of_edge(bricks, layout, brick, edge);
     const PackBox middle(ends.middle(), ends.middle());
-    const EdgeCandidates near{
-        c, choose_balls(c.atoms, c.atom_count, middle, edge_reach(f.parameters), c.near_list),
-        choose_balls(c.arcs, c.arc_count, middle, edge_arc_reach(f.parameters), c.arc_list)};
+    const EdgeCandidates near{c, choose_balls(c.atoms, c.atom_count, middle, edge_reach(f.parameters), c.near_list),
+                              choose_balls(c.arcs, c.arc_count, middle, edge_arc_reach(f.parameters), c.arc_list)};
     w->set_point(v, place_on_edge(f, near, ends));
     w->owner[v] = -1;
   }
