@@ -29,6 +29,8 @@ using quickses::square_root;
 
 constexpr int kPackSize = 8;
 constexpr uint32_t kAllLanes = 0xffu;
+// So many lanes from the first one on, without a branch; all of eight and more.
+QSES_FN uint32_t first_lanes(uint32_t n) { return (1u << (n < kPackSize ? n : kPackSize)) - 1; }
 
 // For each set of lanes, the numbers of its members in order (then zeros): the permutation of a compressing store.
 struct alignas(32) LaneTable {
@@ -84,6 +86,12 @@ QSES_FN PackMask operator&(PackMask a, PackMask b) { return {_mm256_and_ps(a.v, 
 QSES_FN PackMask operator|(PackMask a, PackMask b) { return {_mm256_or_ps(a.v, b.v)}; }
 QSES_FN Pack select(PackMask m, Pack yes, Pack no) { return _mm256_blendv_ps(no.v, yes.v, m.v); }
 QSES_FN uint32_t lane_bits(PackMask m) { return static_cast<uint32_t>(_mm256_movemask_ps(m.v)); }
+// Of four rows of lanes: the lower halves one after the other, and then the upper ones.
+QSES_FN uint32_t half_rows(PackMask a, PackMask b, PackMask c, PackMask d) {
+  const auto words = [](PackMask m) { return _mm256_castps_si256(m.v); };
+  return static_cast<uint32_t>(_mm256_movemask_epi8(
+      _mm256_packs_epi16(_mm256_packs_epi32(words(a), words(b)), _mm256_packs_epi32(words(c), words(d)))));
+}
 QSES_FN PackMask lane_mask(uint32_t bits) {
   const __m256i one = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
   return {
@@ -247,6 +255,12 @@ QSES_FN float horizontal_maximum(Pack a) { QSES_EACH_LANE if (a.v[i] > a.v[0]) a
 #endif
 
 #if !defined(__AVX2__)
+QSES_FN uint32_t half_rows(PackMask a, PackMask b, PackMask c, PackMask d) {
+  const uint32_t rows[4] = {lane_bits(a), lane_bits(b), lane_bits(c), lane_bits(d)};
+  uint32_t halves = 0;
+  for (int k = 0; k < 4; ++k) halves |= (rows[k] & 15) << 4 * k | (rows[k] >> 4) << (16 + 4 * k);
+  return halves;
+}
 QSES_FN Pack rounded_product(Pack a, Pack b) { return a * b; }
 QSES_FN void store_lanes(float *dst, uint32_t set, Pack a) {
   float lanes[8];

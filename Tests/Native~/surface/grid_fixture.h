@@ -166,7 +166,7 @@ struct GridRunOn {
     size_t next = 0;
     for (uint32_t b = 0; b < field.bricks.count; ++b)
       for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
-        const LeafWords corners = cell_corners(leaf_words(field.bricks, signs.data(), static_cast<int>(b), leaf));
+        const LeafWords corners = cell_corners(leaf_words(upper_bricks(field.bricks, b), signs.data(), leaf));
         for (int bit = 0; bit < 64; ++bit) {
           const int code = cell_case(corners, bit);
           for (int k = 0; k < 3 * table.triangle_count[code]; ++k)

@@ -2,6 +2,7 @@
 // The signs of a brick's lattice points together with those around it, as rows along x. Only for the CPU kernels.
 #pragma once
 
+#include "surface/cpu/cpu_leaf_bits.h"
 #include "surface/stages/marching_cubes.h"
 
 #include <cstring>
@@ -44,15 +45,10 @@ QSES_FN uint32_t row_of(const uint64_t *words, int y, int z) {
 QSES_FN uint64_t plane_of(const uint64_t *words, int z) {
   const uint64_t *const w = words + (z >> 2) * 4;
   const int shift = 16 * (z & 3);
-  const auto low = [&](int leaf) { return w[leaf] >> shift & 0xffff; };
-  uint64_t left = low(0) | low(2) << 32, right = low(1) | low(3) << 32;
-  const auto spread = [](uint64_t v) {
-    v = (v | v << 8) & 0x00ff00ff00ff00ffull;
-    return (v | v << 4) & 0x0f0f0f0f0f0f0f0full;
+  const auto rows_of = [&](int leaf) {
+    return spread_by_four((w[leaf] >> shift & 0xffff) | (w[leaf + 2] >> shift & 0xffff) << 16);
   };
-  left = spread(left);
-  right = spread(right);
-  return left | right << 4;
+  return rows_of(0) | rows_of(1) << 4;
 }
 
 // Signs of the lattice points of a brick and one more on every side: bit x + 1 of row_of(y, z).
@@ -74,8 +70,11 @@ QSES_FN void read_sign_rows(const NearWords &near, SignRows *rows) {
     };
     const uint64_t middle = layer == 9 ? nearest : plane_at(layer + 4, nearest);
     const uint64_t left = plane_at(layer + 3, nearest << 7) >> 7, right = plane_at(layer + 5, nearest >> 7);
+    const uint64_t ends[] = {left & 0x0101010101010101ull, middle, right & 0x0101010101010101ull};
+    uint8_t bytes[3][kBrickEdge];
+    std::memcpy(bytes, ends, sizeof bytes);
     for (int y = 0; y < kBrickEdge; ++y)
-      out[y] = static_cast<uint16_t>((left >> 8 * y & 1) | (middle >> 8 * y & 0xff) << 1 | (right >> 8 * y & 1) << 9);
+      out[y] = static_cast<uint16_t>(bytes[0][y] | bytes[1][y] << 1 | bytes[2][y] << 9);
     for (int side = 0; side < 2; ++side) {
       const int place = layer + 6 * side, y = side ? 0 : kBrickEdge - 1;
       const uint32_t instead = row_of(own, kBrickEdge - 1 - y, cz);
@@ -100,10 +99,9 @@ QSES_FN void read_cell_cases(const SignRows &rows, CellCases *cases) {
     uint64_t first;
     uint32_t last;
   };
-  const auto bytes_of = [](uint64_t bits) {
-    return ((bits & 0x7f) * 0x0002040810204081ull & 0x0101010101010101ull) | (bits & 0x80) << 49;
+  const auto pairs_of = [&](uint32_t row) {
+    return RowPairs{spread_bits(row & 0xff) | spread_bits(row >> 1 & 0xff) << 1, row >> 8 & 3};
   };
-  const auto pairs_of = [&](uint32_t row) { return RowPairs{bytes_of(row) | bytes_of(row >> 1) << 1, row >> 8 & 3}; };
   RowPairs below[SignRows::kSide], above[SignRows::kSide];
   for (int y = 0; y <= kCells; ++y) below[y] = pairs_of(rows.row[y]);
   for (int z = 0; z < kCells; ++z) {

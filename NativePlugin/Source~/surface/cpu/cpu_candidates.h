@@ -43,20 +43,28 @@ QSES_FN BrickCandidates cut_columns(const BrickScratch &s) {
   return c;
 }
 
-// A box as centre and half extent, and squared distances to it.
+QSES_FN Vec3<Pack> packs_of(const Vec3<float> &v) { return {Pack(v.x), Pack(v.y), Pack(v.z)}; }
+
+// A box as centre and half extents, and squared distances to it.
 struct PackBox {
-  Vec3<Pack> center;
-  Pack half;
-  QSES_FN PackBox(const Vec3<float> &low, float extent)
-      : center(Pack(low.x + 0.5f * extent), Pack(low.y + 0.5f * extent), Pack(low.z + 0.5f * extent)),
-        half(0.5f * extent) {}
+  Vec3<Pack> center, half;
+  QSES_FN PackBox(const Vec3<float> &low, const Vec3<float> &high)
+      : center(packs_of((low + high) * 0.5f)), half(packs_of((high - low) * 0.5f)) {}
   QSES_FN Pack distance2(Pack x, Pack y, Pack z) const {
     const Pack zero(0.f);
-    const Pack dx = maximum(absolute(x - center.x) - half, zero), dy = maximum(absolute(y - center.y) - half, zero),
-               dz = maximum(absolute(z - center.z) - half, zero);
+    const Pack dx = maximum(absolute(x - center.x) - half.x, zero), dy = maximum(absolute(y - center.y) - half.y, zero),
+               dz = maximum(absolute(z - center.z) - half.z, zero);
     return dx * dx + dy * dy + dz * dz;
   }
 };
+
+// That around eight points, and a bit more.
+QSES_FN PackBox box_around(const Vec3<Pack> &p) {
+  const Vec3<float> more(1e-4f, 1e-4f, 1e-4f);
+  const Vec3<float> low(horizontal_minimum(p.x), horizontal_minimum(p.y), horizontal_minimum(p.z)),
+      high(horizontal_maximum(p.x), horizontal_maximum(p.y), horizontal_maximum(p.z));
+  return {low - more, high + more};
+}
 
 QSES_FN void store_balls(const BallColumns &c, int at, uint32_t set, Pack x, Pack y, Pack z, Pack radius) {
   store_lanes(c.x + at, set, x);
@@ -80,17 +88,18 @@ QSES_FN uint32_t bits_of_bytes(const uint8_t *bytes) {
   return static_cast<uint32_t>((v * 0x0102040810204080ull) >> 56);
 }
 
-// Gathers what can matter in the box: atoms whose ball, grown by atom_reach, meets it, and arcs within arc_reach.
-QSES_FN BrickCandidates gather_candidates(const FeatureView &f, const Vec3<float> &low, float extent, float atom_reach,
-                                          float arc_reach, const BrickScratch &scratch) {
+QSES_FN CellBox cells_within(const CellLayout &cells, const Vec3<float> &low, const Vec3<float> &high, float reach) {
+  const Vec3<float> r(reach, reach, reach);
+  return cells_around(cells, low - r, high + r);
+}
+
+// Gathers what can matter in a cube: atoms whose ball, grown by a reach, meets it.
+QSES_FN BrickCandidates gather_atoms(const FeatureView &f, const Vec3<float> &low, float extent, float atom_reach,
+                                     const BrickScratch &scratch) {
   BrickCandidates c = cut_columns(scratch);
-  const PackBox box(low, extent);
   const Vec3<float> high(low.x + extent, low.y + extent, low.z + extent);
-  const auto around = [&](const NeighborGridView &grid, float reach) {
-    const Vec3<float> r(reach, reach, reach);
-    return cells_around(grid.cells, low - r, high + r);
-  };
-  const CellBox cells = around(f.atoms, maximum(0.f, f.parameters.max_radius + atom_reach));
+  const PackBox box(low, high);
+  const CellBox cells = cells_within(f.atoms.cells, low, high, maximum(0.f, f.parameters.max_radius + atom_reach));
   for (int z = cells.z0; z <= cells.z1; ++z)
     for (int y = cells.y0; y <= cells.y1; ++y) {
       const ItemRun run = f.atoms.run(cells.x0, cells.x1, y, z);
@@ -98,9 +107,7 @@ QSES_FN BrickCandidates gather_candidates(const FeatureView &f, const Vec3<float
         Pack ax, ay, az, radius;
         load_columns(&f.atoms.items[q].center.x, &ax, &ay, &az, &radius);
         const Pack reach = maximum(Pack(0.f), radius + Pack(atom_reach));
-        uint32_t near = lane_bits(box.distance2(ax, ay, az) < reach * reach);
-        if (run.end - q < kPackSize) near &= (1u << (run.end - q)) - 1;
-        if (!near) continue;
+        const uint32_t near = first_lanes(run.end - q) & lane_bits(box.distance2(ax, ay, az) < reach * reach);
         const uint32_t exposed = near & bits_of_bytes(f.exposed + q);
         const int n = c.atom_count, e = c.exposed_count;
         if (n + kPackSize <= scratch.atom_capacity) {
@@ -113,61 +120,62 @@ QSES_FN BrickCandidates gather_candidates(const FeatureView &f, const Vec3<float
         c.exposed_count += popcount64(exposed);
       }
     }
-  if (c.atom_count + kPackSize > scratch.atom_capacity) c.needs.atoms = c.atom_count + kPackSize;
+  if (c.atom_count + kPackSize > scratch.atom_capacity) {
+    c.needs.atoms = c.atom_count + kPackSize;
+    return c;
+  }
+  end_balls(c.atoms, c.atom_count);
+  end_balls(c.exposed, c.exposed_count);
+  return c;
+}
+
+// And arcs within a reach of it.
+QSES_FN void gather_arcs(const FeatureView &f, const Vec3<float> &low, float extent, float arc_reach,
+                         const BrickScratch &scratch, BrickCandidates *c) {
+  const Vec3<float> high(low.x + extent, low.y + extent, low.z + extent);
+  const PackBox box(low, high);
   if (f.arc_bounds.count > 0) {
-    const CellBox arc_cells = around(f.arc_bounds, arc_reach + f.max_arc_bound);
-    for (int z = arc_cells.z0; z <= arc_cells.z1; ++z)
-      for (int y = arc_cells.y0; y <= arc_cells.y1; ++y) {
-        const ItemRun run = f.arc_bounds.run(arc_cells.x0, arc_cells.x1, y, z);
+    const CellBox cells = cells_within(f.arc_bounds.cells, low, high, arc_reach + f.max_arc_bound);
+    for (int z = cells.z0; z <= cells.z1; ++z)
+      for (int y = cells.y0; y <= cells.y1; ++y) {
+        const ItemRun run = f.arc_bounds.run(cells.x0, cells.x1, y, z);
         for (uint32_t q = run.begin; q < run.end; q += kPackSize) {
           Pack bx, by, bz, radius;
           load_columns(&f.arc_bounds.items[q].center.x, &bx, &by, &bz, &radius);
           const Pack reach = radius + Pack(arc_reach);
-          uint32_t near = lane_bits(box.distance2(bx, by, bz) < reach * reach);
-          if (run.end - q < kPackSize) near &= (1u << (run.end - q)) - 1;
-          if (!near) continue;
-          const int n = c.arc_count;
+          const uint32_t near = first_lanes(run.end - q) & lane_bits(box.distance2(bx, by, bz) < reach * reach);
+          const int n = c->arc_count;
           if (n + kPackSize <= scratch.arc_capacity) {
-            store_balls(c.arcs, n, near, bx, by, bz, radius);
-            store_lane_numbers(c.arc_index + n, near, static_cast<int32_t>(q));
+            store_balls(c->arcs, n, near, bx, by, bz, radius);
+            store_lane_numbers(c->arc_index + n, near, static_cast<int32_t>(q));
           }
-          c.arc_count += popcount64(near);
+          c->arc_count += popcount64(near);
         }
       }
-    if (c.arc_count + kPackSize > scratch.arc_capacity) c.needs.arcs = c.arc_count + kPackSize;
   }
-  if (c.needs.atoms == 0 && c.needs.arcs == 0) {
-    end_balls(c.atoms, c.atom_count);
-    end_balls(c.exposed, c.exposed_count);
-    end_balls(c.arcs, c.arc_count);
-  }
+  if (c->arc_count + kPackSize > scratch.arc_capacity)
+    c->needs.arcs = c->arc_count + kPackSize;
+  else
+    end_balls(c->arcs, c->arc_count);
+}
+
+QSES_FN BrickCandidates gather_candidates(const FeatureView &f, const Vec3<float> &low, float extent, float atom_reach,
+                                          float arc_reach, const BrickScratch &scratch) {
+  BrickCandidates c = gather_atoms(f, low, extent, atom_reach, scratch);
+  if (c.needs.atoms == 0) gather_arcs(f, low, extent, arc_reach, scratch, &c);
   return c;
 }
 
-// Numbers of the balls that, grown by `reach` (which may be negative), meet the point. Room for eight more is needed.
-QSES_FN int choose_balls(const BallColumns &c, int n, const Vec3<float> &point, float reach, int32_t *out) {
-  const Pack x(point.x), y(point.y), z(point.z), grow(reach);
+// Numbers of the balls that, grown by `reach` (which may be negative), meet the box. Room for eight more is needed.
+QSES_FN int choose_balls(const BallColumns &c, int n, const PackBox &box, float reach, int32_t *out) {
+  const Pack grow(reach);
   int k = 0;
   for (int q = 0; q < n; q += kPackSize) {
-    const Pack dx = load_pack(c.x + q) - x, dy = load_pack(c.y + q) - y, dz = load_pack(c.z + q) - z;
     const Pack r = maximum(Pack(0.f), load_pack(c.radius + q) + grow);
-    k += store_lane_numbers(out + k, lane_bits(dx * dx + dy * dy + dz * dz < r * r), q);
+    const Pack distance2 = box.distance2(load_pack(c.x + q), load_pack(c.y + q), load_pack(c.z + q));
+    k += store_lane_numbers(out + k, lane_bits(distance2 < r * r), q);
   }
   return k;
-}
-
-// Ball around eight points.
-struct PointBall {
-  Vec3<float> center;
-  float radius;
-};
-QSES_FN PointBall ball_around(const Vec3<Pack> &p) {
-  const float x0 = horizontal_minimum(p.x), x1 = horizontal_maximum(p.x);
-  const float y0 = horizontal_minimum(p.y), y1 = horizontal_maximum(p.y);
-  const float z0 = horizontal_minimum(p.z), z1 = horizontal_maximum(p.z);
-  const float dx = x1 - x0, dy = y1 - y0, dz = z1 - z0;
-  return {{0.5f * (x0 + x1), 0.5f * (y0 + y1), 0.5f * (z0 + z1)},
-          0.5f * square_root(dx * dx + dy * dy + dz * dz) + 1e-4f};
 }
 
 QSES_FN Vec3<Pack> load_points(const float *x, const float *y, const float *z) {

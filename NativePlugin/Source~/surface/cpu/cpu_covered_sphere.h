@@ -78,16 +78,17 @@ class CoveredSphere {
 
   bool is_within_a_cap(const Vec3<float> &middle, int level) {
     const Vec3<Pack> d(Pack(middle.x), Pack(middle.y), Pack(middle.z));
-    const auto is_within = [&](int q) {
-      const Vec3<Pack> axis(load_pack(axes_.x + q), load_pack(axes_.y + q), load_pack(axes_.z + q));
-      return lane_bits(load_pack(bounds_[level] + q) <= dot(d, axis)) != 0;
-    };
-    if (is_within(latest_)) return true;
-    for (int q = 0; q < count_; q += kPackSize)
-      if (is_within(q)) {
-        latest_ = q;
-        return true;
+    // Which caps it is can't be foreseen: a few packs are looked at before the next branch.
+    constexpr int kTogether = 8 * kPackSize;
+    for (int first = 0, last; first < count_; first = last) {
+      last = first + kTogether < count_ ? first + kTogether : count_;
+      uint32_t within = 0;
+      for (int q = first; q < last; q += kPackSize) {
+        const Vec3<Pack> axis(load_pack(axes_.x + q), load_pack(axes_.y + q), load_pack(axes_.z + q));
+        within |= lane_bits(load_pack(bounds_[level] + q) <= dot(d, axis));
       }
+      if (within) return true;
+    }
     return false;
   }
 
@@ -104,7 +105,7 @@ class CoveredSphere {
 
   Vec3<const float *> axes_;
   const float *bounds_[kLevels];
-  int count_, latest_ = 0;
+  int count_;
 };
 
 }  // namespace QSES_CPU_ISA

@@ -55,9 +55,8 @@ int gather_neighbors(const NeighborGridView &atoms, float max_radius, uint32_t i
         x = x - x0, yy = yy - y0, zz = zz - z0;
         const Pack sum = radius + r0;
         uint32_t near = lane_bits(x * x + yy * yy + zz * zz < sum * sum);
-        if (run.end - q < kPackSize) near &= (1u << (run.end - q)) - 1;
+        near &= first_lanes(run.end - q);
         if (i - q < kPackSize) near &= ~(1u << (i - q));
-        if (!near) continue;
         if (n + kPackSize <= capacity) {
           store_lanes(c.x + n, near, x);
           store_lanes(c.y + n, near, yy);
@@ -81,7 +80,7 @@ int make_caps(float radius, const Columns &c, float *slopes, int n) {
     const Pack inverse = reciprocal_root(distance2);
     const Pack other = load_pack(c.cosine + q), cosine = cap_cosine(Pack(radius), other, distance2, inverse);
     uint32_t keep = lane_bits(overlap(Pack(radius), other, distance2));
-    if (n - q < kPackSize) keep &= (1u << (n - q)) - 1;
+    keep &= first_lanes(static_cast<uint32_t>(n - q));
     int32_t index[kPackSize];
     for (int l = 0; l < kPackSize; ++l) index[l] = c.index[q + l];
     store_lanes(c.x + kept, keep, d.x * inverse);
@@ -125,7 +124,7 @@ int drop_contained_caps(const Columns &c, int n) {
     if (q % 64 == 0) look_for_stop();
     const Vec3<Pack> axis(load_pack(c.sx + q), load_pack(c.sy + q), load_pack(c.sz + q));
     const Pack cosine = load_pack(c.scos + q), sine = load_pack(c.ssin + q);
-    uint32_t keep = n - q < kPackSize ? (1u << (n - q)) - 1 : kAllLanes;
+    uint32_t keep = first_lanes(static_cast<uint32_t>(n - q));
     const int last = q + kPackSize < n ? q + kPackSize : n;  // only larger caps contain: those sorted before
     for (int k = 0; k < last && keep; ++k) {
       const Pack between = dot(axis, Vec3<Pack>(Pack(c.sx[k]), Pack(c.sy[k]), Pack(c.sz[k])));
@@ -147,7 +146,7 @@ bool cut_by_neighbors(const Circle &circle, const Columns &c, int n, int j, Expo
     if (q % 64 == 0) look_for_stop();
     const Vec3<Pack> axis(load_pack(c.x + q), load_pack(c.y + q), load_pack(c.z + q));
     const HalfPlane<Pack> h = cut_circle(circle, axis, load_pack(c.cosine + q));
-    uint32_t lanes = n - q < kPackSize ? (1u << (n - q)) - 1 : kAllLanes;
+    uint32_t lanes = first_lanes(static_cast<uint32_t>(n - q));
     if (j >= q && j < q + kPackSize) lanes &= ~(1u << (j - q));
     lanes &= ~lane_bits(same_circle(circle, h));
     if (lane_bits(covers_circle(h)) & lanes) return false;

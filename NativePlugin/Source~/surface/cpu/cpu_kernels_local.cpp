@@ -36,7 +36,7 @@ QSES_FN bool for_each_met(const NeighborGridView &grid, const CellBox &box, uint
       for (uint32_t i = run.begin; i < run.end; i += kPackSize) {
         PackedBall balls;
         load_columns(&grid.items[i].center.x, &balls.center.x, &balls.center.y, &balls.center.z, &balls.radius);
-        const uint32_t lanes = run.end - i < kPackSize ? (1u << (run.end - i)) - 1 : kAllLanes;
+        const uint32_t lanes = first_lanes(run.end - i);
         if (!use(i, balls, lanes)) return false;
       }
     }

@@ -4,43 +4,51 @@
 #include "surface/cpu/cpu_candidates.h"
 #include "surface/cpu/cpu_leaf_bits.h"
 
-#include <algorithm>
-
 namespace quickses {
 namespace QSES_CPU_ISA {
 namespace {
 
-// A plane of the brick: bit x + 8 y. Its quarter as 16 bits x + 4 y.
-QSES_FN uint64_t quarter(uint64_t plane, int half_x, int half_y) {
-  uint64_t v = plane >> (4 * half_x + 32 * half_y) & 0x0f0f0f0full;
-  v = (v | v >> 4) & 0x00ff00ffull;
-  return (v | v >> 8) & 0xffffull;
-}
+// Bits of the points of a brick, plane by plane: 16 for each quarter of a plane, as leaf words have them.
+struct BrickPlanes {
+  uint64_t at[kBrickEdge];
+  uint32_t full;  // planes with all bits set
+  QSES_FN void add(int z, uint64_t bits) {
+    at[z] |= bits;
+    full |= static_cast<uint32_t>(at[z] == ~uint64_t(0)) << z;
+  }
+  QSES_FN bool are_full() const { return full == kAllLanes; }
+  QSES_FN uint64_t leaf(int number) const {
+    const int shift = 16 * (number & 3);
+    const uint64_t *const p = at + (number & 4);
+    return (p[0] >> shift & 0xffff) | (p[1] >> shift & 0xffff) << 16 | (p[2] >> shift & 0xffff) << 32 |
+           (p[3] >> shift & 0xffff) << 48;
+  }
+};
 
-// In-plane coordinates of the points of a plane, eight at a time: one row of x, and y.
-struct PlaneRows {
-  Pack x;
+// Along each axis: 0 to 7, and these times the spacing.
+struct BrickSteps {
+  Pack number, along;
   float h;
-  QSES_FN explicit PlaneRows(float spacing) : h(spacing) {
-    alignas(32) float row[kPackSize];
-    for (int k = 0; k < kPackSize; ++k) row[k] = static_cast<float>(k) * spacing;
-    x = load_pack(row);
+  QSES_FN explicit BrickSteps(float spacing) : h(spacing) {
+    alignas(32) static constexpr float kNumbers[kPackSize] = {0, 1, 2, 3, 4, 5, 6, 7};
+    number = load_pack(kNumbers);
+    along = number * Pack(spacing);
   }
 };
 
 // Sets the bits of the lattice points within a ball; the centre is relative to the brick's first point.
-QSES_FN void fill_ball(uint64_t planes[8], const PlaneRows &rows, float cx, float cy, float cz, float radius2) {
-  const float h = rows.h, side = 7.f * h;
-  const float ox = maximum(0.f, maximum(-cx, cx - side)), oy = maximum(0.f, maximum(-cy, cy - side));
-  const float nearest = ox * ox + oy * oy;
-  if (nearest >= radius2) return;
-  uint32_t open = 0;  // planes that the ball meets and that are not full
-  for (int z = 0; z < 8; ++z) {
-    const float dz = static_cast<float>(z) * h - cz;
-    open |= static_cast<uint32_t>(radius2 - dz * dz > nearest && planes[z] != ~uint64_t(0)) << z;
-  }
+QSES_FN void fill_ball(BrickPlanes *planes, const BrickSteps &steps, float cx, float cy, float cz, float radius2) {
+  const float h = steps.h;
+  // In packs, since compilers make branches of maxima of single floats.
+  const Pack none(0.f), side(7.f * h), x(cx), y(cy);
+  const Pack ox = maximum(none, maximum(-x, x - side)), oy = maximum(none, maximum(-y, y - side));
+  const Pack dz = multiply_add(steps.number, Pack(h), Pack(-cz)), left = Pack(radius2) - dz * dz;
+  // Planes that the ball meets and that are not full.
+  uint32_t open = lane_bits(left > ox * ox + oy * oy) & ~planes->full;
   if (!open) return;
-  const Pack dx = rows.x - Pack(cx), dx2 = dx * dx;
+  alignas(32) float bounds[kPackSize];
+  store_pack(bounds, left);
+  const Pack dx = steps.along - x, dx2 = dx * dx;
   Pack row2[8];
   for (int y = 0; y < 8; ++y) {
     const float dy = static_cast<float>(y) * h - cy;
@@ -48,21 +56,22 @@ QSES_FN void fill_ball(uint64_t planes[8], const PlaneRows &rows, float cx, floa
   }
   for (; open; open &= open - 1) {
     const int z = lowest_bit32(open);
-    const float dz = static_cast<float>(z) * h - cz;
-    const Pack bound(radius2 - dz * dz);
-    uint64_t plane = 0;
-    for (int y = 0; y < 8; ++y) plane |= static_cast<uint64_t>(lane_bits(row2[y] < bound)) << (8 * y);
-    planes[z] |= plane;
+    const Pack bound(bounds[z]);
+    const auto half = [&](int y) {
+      return static_cast<uint64_t>(
+          half_rows(row2[y] < bound, row2[y + 1] < bound, row2[y + 2] < bound, row2[y + 3] < bound));
+    };
+    planes->add(z, half(0) | half(4) << 32);
   }
 }
 
 // Points of a leaf that no arc and no exposed atom puts outside, out of those set in `open`. slack: how far rounding
 // may have put a point into a ball; a point that is hardly outside an exposed ball is still projected on it.
 uint64_t leaf_inside(const FeatureView &f, const BrickCandidates &c, const Lattice &lattice, const glm::ivec3 &first,
-                     uint64_t open, float slack) {
+                     uint64_t open, float slack, int *latest_arc) {
   alignas(32) float px[64 + kPackSize], py[64 + kPackSize], pz[64 + kPackSize];
   open = to_blocks(open);
-  const int n = list_points(lattice, first, open, px, py, pz);
+  const int n = list_points<BlockSteps>(lattice, first, open, px, py, pz);
   for (int k = n; k < n + kPackSize; ++k) px[k] = px[n - 1], py[k] = py[n - 1], pz[k] = pz[n - 1];
   const float depth = f.parameters.depth;
   const Pack depth2(depth * depth);
@@ -70,13 +79,18 @@ uint64_t leaf_inside(const FeatureView &f, const BrickCandidates &c, const Latti
   for (int g = 0; g < n; g += kPackSize) {
     if (c.arc_count > kManyArcs) look_for_stop();
     const Vec3<Pack> p = load_points(px + g, py + g, pz + g);
-    uint32_t lanes = n - g < kPackSize ? (1u << (n - g)) - 1 : kAllLanes;
-    const PointBall ball = ball_around(p);
-    const int arcs = choose_balls(c.arcs, c.arc_count, ball.center, depth + ball.radius, c.arc_list);
-    for (int k = 0; k < arcs && lanes; ++k)
-      lanes &= ~lane_bits(arc_distance2(f.arcs[c.arc_index[c.arc_list[k]]], p) <= depth2);
+    uint32_t lanes = first_lanes(static_cast<uint32_t>(n - g));
+    const auto leave_out_near = [&](int arc) {
+      lanes &= ~lane_bits(arc_distance2(f.arcs[c.arc_index[arc]], p) <= depth2);
+    };
+    // What put the last points outside often does so with these.
+    if (c.arc_count > 0) leave_out_near(*latest_arc);
+    if (!lanes) continue;
+    const PackBox box = box_around(p);
+    const int arcs = choose_balls(c.arcs, c.arc_count, box, depth, c.arc_list);
+    for (int k = 0; k < arcs && lanes; ++k) leave_out_near(*latest_arc = c.arc_list[k]);
     if (lanes) {
-      const int near = choose_balls(c.exposed, c.exposed_count, ball.center, ball.radius + slack, c.near_list);
+      const int near = choose_balls(c.exposed, c.exposed_count, box, slack, c.near_list);
       const Deepest deepest = deepest_ball(c.exposed, c.near_list, near, p, -slack);
       for_exposed_projections(f, c, p, deepest, lanes,
                               [&](const Sphere &, uint32_t, uint32_t exposed) { lanes &= ~exposed; });
@@ -97,43 +111,35 @@ BrickNeeds evaluate_brick_signs(const FeatureView &f, const BrickSet &bricks, ui
   // More than rounding.
   const float farthest = maximum(maximum(absolute(low.x), absolute(low.y)), absolute(low.z));
   const float slack = 1e-3f + 1e-6f * farthest;
-  const BrickCandidates c = gather_candidates(f, low, 7.f * h, 1.1f * slack, depth + slack, scratch);
-  if (c.needs.atoms || c.needs.arcs) return c.needs;
+  BrickCandidates c = gather_atoms(f, low, 7.f * h, 1.1f * slack, scratch);
+  if (c.needs.atoms) return c.needs;
 
-  const PlaneRows rows(h);
-  uint64_t reached[8] = {}, core[8] = {};  // within an inflated ball; deeper than depth in one
-  bool full = true;
-  if (depth > 0.f) {
+  const BrickSteps steps(h);
+  const auto fill = [&](BrickPlanes *planes, int a, float radius) {
+    fill_ball(planes, steps, c.atoms.x[a] - low.x, c.atoms.y[a] - low.y, c.atoms.z[a] - low.z, radius * radius);
+  };
+  BrickPlanes core{};  // deeper than depth in an inflated ball
+  if (depth > 0.f)
     for (int a = 0; a < c.atom_count; ++a) {
-      const float r = c.atoms.radius[a] - depth;
-      if (r > 0.f) fill_ball(core, rows, c.atoms.x[a] - low.x, c.atoms.y[a] - low.y, c.atoms.z[a] - low.z, r * r);
+      const float radius = c.atoms.radius[a] - depth;
+      if (radius > 0.f) fill(&core, a, radius);
     }
-    for (uint64_t plane : core) full &= plane == ~uint64_t(0);
-  }
-  if (depth == 0.f || !full) {
-    std::copy_n(core, 8, reached);  // whoever is in the core needs no second look
-    for (int a = 0; a < c.atom_count; ++a) {
-      const float r = c.atoms.radius[a] - f.parameters.least_depth();
-      fill_ball(reached, rows, c.atoms.x[a] - low.x, c.atoms.y[a] - low.y, c.atoms.z[a] - low.z, r * r);
-    }
-  }
+  BrickPlanes reached = core;  // within one: whoever is in the core needs no second look
+  if (!core.are_full())
+    for (int a = 0; a < c.atom_count; ++a) fill(&reached, a, c.atoms.radius[a] - f.parameters.least_depth());
+  uint64_t open[kLeavesPerBrick], any = 0;
   for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
-    uint64_t in_core = 0, in_reach = 0;
-    for (int z = 0; z < 4; ++z) {
-      const int plane = (leaf & 4) + z;
-      in_core |= quarter(core[plane], leaf & 1, leaf >> 1 & 1) << (16 * z);
-      in_reach |= quarter(reached[plane], leaf & 1, leaf >> 1 & 1) << (16 * z);
-    }
-    if (depth == 0.f) {
-      words[leaf] = in_reach;
-      continue;
-    }
-    const uint64_t open = in_reach & ~in_core;
-    words[leaf] = in_core;
-    if (open) {
-      words[leaf] |= leaf_inside(f, c, lattice, first + brick_point(leaf, 0), open, slack);
-    }
+    words[leaf] = depth > 0.f ? core.leaf(leaf) : reached.leaf(leaf);
+    open[leaf] = reached.leaf(leaf) & ~words[leaf];
+    any |= open[leaf];
   }
+  if (any == 0) return {0, 0};
+  gather_arcs(f, low, 7.f * h, depth + slack, scratch, &c);
+  if (c.needs.arcs) return c.needs;
+  int latest_arc = 0;
+  for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf)
+    if (open[leaf])
+      words[leaf] |= leaf_inside(f, c, lattice, first + brick_point(leaf, 0), open[leaf], slack, &latest_arc);
   return {0, 0};
 }
 

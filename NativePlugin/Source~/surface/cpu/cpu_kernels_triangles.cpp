@@ -32,30 +32,56 @@ constexpr EdgeOffsets make_edge_offsets() {
 }
 constexpr EdgeOffsets kEdgeOffsets = make_edge_offsets();
 
-// Points of a leaf that a neighbour towards larger x, y, z (bits of `towards`) shares with the brick's cells.
-QSES_FN uint64_t shared_points(int towards) {
-  uint64_t mask = ~uint64_t(0);
-  if (towards & 1) mask &= 0x1111111111111111ull;
-  if (towards & 2) mask &= 0x000f000f000f000full;
-  if (towards & 4) mask &= 0xffffull;
-  return mask;
+// Where a lattice point is in the arrays: by its bit in a leaf, and the leaf's first point.
+struct BitPlaces {
+  int16_t at[64];
+};
+constexpr int place_of(int x, int y, int z) { return x + kSide * (y + kSide * z); }
+constexpr BitPlaces make_bit_places() {
+  BitPlaces p{};
+  for (int bit = 0; bit < 64; ++bit) p.at[bit] = static_cast<int16_t>(place_of(bit & 3, bit >> 2 & 3, bit >> 4));
+  return p;
 }
+constexpr BitPlaces kBitPlaces = make_bit_places();
+constexpr int place_of_leaf(int leaf) { return kLeafEdge * place_of(leaf & 1, leaf >> 1 & 1, leaf >> 2); }
 
-void number_vertices(const MeshLayout &layout, size_t brick, int towards, VertexNumbers *numbers) {
-  const uint64_t mask = shared_points(towards);
-  const glm::ivec3 brick_step(towards & 1, towards >> 1 & 1, towards >> 2);
-  for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
-    if (leaf & towards) continue;
-    const size_t k = brick * kLeavesPerBrick + static_cast<size_t>(leaf);
-    for (int axis = 0; axis < kAxes; ++axis) {
-      if (towards >> axis & 1) continue;
-      const uint64_t crossing = layout.crossing[3 * k + static_cast<size_t>(axis)];
-      const uint32_t base = layout.base[brick].vertices + layout.vertex_rank[3 * k + static_cast<size_t>(axis)];
-      for (uint64_t w = crossing & mask; w; w &= w - 1) {
-        const int bit = lowest_bit64(w);
-        const glm::ivec3 p = brick_point(leaf, bit) + kBrickEdge * brick_step;
-        numbers->at[axis][p.x + kSide * (p.y + kSide * p.z)] = vertex_number(base, crossing, bit);
-      }
+// The masks of a brick whose edges its cells have: its own, and those of its neighbours towards larger x, y, z (bits of
+// `towards`) with the points that they share.
+struct EdgeMask {
+  int towards, mask, axis, place;
+  uint64_t shared;
+};
+struct EdgeMasks {
+  static constexpr int kCount = kBrickMasks + 3 * 4 * 2 + 3 * 2;
+  EdgeMask at[kCount];
+};
+constexpr EdgeMasks make_edge_masks() {
+  EdgeMasks masks{};
+  int n = 0;
+  for (int towards = 0; towards < 8; ++towards)
+    for (int k = 0; k < kBrickMasks; ++k) {
+      const int leaf = k / kAxes, axis = k % kAxes;
+      if (leaf & towards || towards >> axis & 1) continue;
+      masks.at[n++] = {towards, k, axis,
+                       place_of_leaf(leaf) + kBrickEdge * place_of(towards & 1, towards >> 1 & 1, towards >> 2),
+                       (towards & 1 ? 0x1111111111111111ull : ~0ull) & (towards & 2 ? 0x000f000f000f000full : ~0ull) &
+                           (towards & 4 ? 0xffffull : ~0ull)};
+    }
+  return masks;
+}
+constexpr EdgeMasks kEdgeMasks = make_edge_masks();
+
+void number_vertices(const MeshLayout &layout, const UpperBricks &upper, VertexNumbers *numbers) {
+  for (const EdgeMask &edges : kEdgeMasks.at) {
+    if (upper.at[edges.towards] < 0) continue;
+    const size_t brick = static_cast<size_t>(upper.at[edges.towards]);
+    const size_t k = brick * kBrickMasks + static_cast<size_t>(edges.mask);
+    const uint64_t crossing = layout.crossing[k];
+    const uint32_t base = layout.base[brick].vertices + layout.vertex_rank[k];
+    uint32_t *const at = numbers->at[edges.axis] + edges.place;
+    for (uint64_t w = crossing & edges.shared; w; w &= w - 1) {
+      const int bit = lowest_bit64(w);
+      at[kBitPlaces.at[bit]] = vertex_number(base, crossing, bit);
     }
   }
 }
@@ -71,17 +97,14 @@ void emit_brick_triangles(const BrickSet &bricks, const MeshLayout &layout, uint
 #if !defined(NDEBUG)
   std::memset(&numbers, 0xff, sizeof numbers);  // no signs change on the border of the set, so none of these is read
 #endif
-  number_vertices(layout, brick, 0, &numbers);
-  for (int towards = 1; towards < 8; ++towards)
-    if (upper.at[towards] >= 0) number_vertices(layout, static_cast<size_t>(upper.at[towards]), towards, &numbers);
+  number_vertices(layout, upper, &numbers);
   const int second = mesh.reversed ? 2 : 1, third = mesh.reversed ? 1 : 2;
   uint32_t *out = mesh.triangle(begin);
-  for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
-    const LeafWords corners = cell_corners(leaf_words(upper, layout.signs, leaf));
+  for_leaf_words(upper, layout.signs, [&](int leaf, const LeafWords &words) {
+    const LeafWords corners = cell_corners(words);
     for (uint64_t mixed = mixed_cells(corners); mixed; mixed &= mixed - 1) {
       const int bit = lowest_bit64(mixed), code = cell_case(corners, bit);
-      const glm::ivec3 p = brick_point(leaf, bit);
-      const uint32_t *here = &numbers.at[0][p.x + kSide * (p.y + kSide * p.z)];
+      const uint32_t *const here = numbers.at[0] + place_of_leaf(leaf) + kBitPlaces.at[bit];
       const uint8_t *edges = table.edges[code];
       for (int t = 0; t < table.triangle_count[code]; ++t, edges += 3, out += 3) {
         out[0] = here[kEdgeOffsets.at[edges[0]]];
@@ -90,7 +113,7 @@ void emit_brick_triangles(const BrickSet &bricks, const MeshLayout &layout, uint
         assert(out[0] < layout.vertex_total && out[1] < layout.vertex_total && out[2] < layout.vertex_total);
       }
     }
-  }
+  });
 }
 
 }  // namespace QSES_CPU_ISA

@@ -119,10 +119,9 @@ int project_contact(const FeatureView &f, const BrickCandidates &c, float spacin
   for (int g = 0; g < n; g += kPackSize) {
     if (c.arc_count > kManyArcs) look_for_stop();
     const Vec3<Pack> p = load_points(w->place.x + g, w->place.y + g, w->place.z + g);
-    const uint32_t used = n - g < kPackSize ? (1u << (n - g)) - 1 : kAllLanes;
-    const PointBall ball = ball_around(p);
-    const int near =
-        choose_balls(c.exposed, c.exposed_count, ball.center, ball.radius + kStartReach * spacing - depth, c.near_list);
+    const uint32_t used = first_lanes(static_cast<uint32_t>(n - g));
+    const PackBox box = box_around(p);
+    const int near = choose_balls(c.exposed, c.exposed_count, box, kStartReach * spacing - depth, c.near_list);
     const Deepest deepest = deepest_ball(c.exposed, c.near_list, near, p, -kFarAway);
     Vec3<Pack> place = p, normal = p;
     uint32_t done = 0;
@@ -171,9 +170,9 @@ void project_reentrant(const FeatureView &f, const BrickCandidates &c, float spa
     for (int g = 0; g < open; g += kPackSize) {
       if (c.arc_count > kManyArcs) look_for_stop();
       const Vec3<Pack> p = load_points(w->open.x + g, w->open.y + g, w->open.z + g);
-      const PointBall ball = ball_around(p);
+      const PackBox box = box_around(p);
       const float reach = depth + (rounds > 0 ? 1e-3f : kStartReach * spacing);
-      const int arcs = choose_balls(c.arcs, c.arc_count, ball.center, ball.radius + reach, c.arc_list);
+      const int arcs = choose_balls(c.arcs, c.arc_count, box, reach, c.arc_list);
       Pack best(kFarAway), second(kFarAway), number(-1.f);
       for (int k = 0; k < arcs; ++k) {
         const Pack d2 = arc_distance2(f.arcs[c.arc_index[c.arc_list[k]]], p);
@@ -259,9 +258,9 @@ void place_on_edges(const FeatureView &f, const BrickSet &bricks, const MeshLayo
     if (w->placed[v]) continue;
     const LatticeEdge edge = edge_of_vertex(layout, brick, layout.base[brick].vertices + static_cast<uint32_t>(v));
     const CutEdge ends = ends_of_edge(bricks, layout, brick, edge);
-    const EdgeCandidates near{
-        c, choose_balls(c.atoms, c.atom_count, ends.middle(), edge_reach(f.parameters), c.near_list),
-        choose_balls(c.arcs, c.arc_count, ends.middle(), edge_arc_reach(f.parameters), c.arc_list)};
+    const PackBox middle(ends.middle(), ends.middle());
+    const EdgeCandidates near{c, choose_balls(c.atoms, c.atom_count, middle, edge_reach(f.parameters), c.near_list),
+                              choose_balls(c.arcs, c.arc_count, middle, edge_arc_reach(f.parameters), c.arc_list)};
     w->set_point(v, place_on_edge(f, near, ends));
     w->owner[v] = -1;
   }
@@ -270,17 +269,17 @@ void place_on_edges(const FeatureView &f, const BrickSet &bricks, const MeshLayo
 // Owners of the vertices that lie on no single atom.
 void find_owners(const FeatureView &f, const BrickCandidates &c, int n, Work *w) {
   int open = 0;
-  for (int v = 0; v < n; ++v)
-    if (w->owner[v] < 0) {
-      w->open.x[open] = w->place.x[v], w->open.y[open] = w->place.y[v], w->open.z[open] = w->place.z[v];
-      w->open_number[open++] = v;
-    }
+  for (int v = 0; v < n; ++v) {
+    w->open.x[open] = w->place.x[v], w->open.y[open] = w->place.y[v], w->open.z[open] = w->place.z[v];
+    w->open_number[open] = v;
+    open += w->owner[v] < 0 ? 1 : 0;
+  }
   if (open == 0) return;
   fill_up(&w->open, open);
   for (int g = 0; g < open; g += kPackSize) {
     const Vec3<Pack> p = load_points(w->open.x + g, w->open.y + g, w->open.z + g);
-    const PointBall ball = ball_around(p);
-    const int near = choose_balls(c.atoms, c.atom_count, ball.center, ball.radius + 1e-3f, c.near_list);
+    const PackBox box = box_around(p);
+    const int near = choose_balls(c.atoms, c.atom_count, box, 1e-3f, c.near_list);
     const Deepest deepest = deepest_ball(c.atoms, c.near_list, near, p, -kFarAway);
     alignas(32) float number[kPackSize];
     store_pack(number, deepest.number);

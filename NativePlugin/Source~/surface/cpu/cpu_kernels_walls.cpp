@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 // CPU kernel: the walls thinner than the spacing that edges of one brick pass through. Edges are sorted out in bulk: by
-// signs, whole leaves at once, then by the probes nearest to their ends, eight at a time; few are left to be walked.
-#include "surface/cpu/cpu_brick_signs.h"
+// signs, all leaves at once, then by probes near them, eight at a time; few are left to be walked.
+#include "surface/cpu/cpu_brick_edges.h"
 #include "surface/cpu/cpu_candidates.h"
 #include "surface/cpu/cpu_leaf_bits.h"
-#include "surface/stages/thin_walls.h"
 
 #include <cstring>
 #include <new>
@@ -18,12 +17,29 @@ constexpr int kPlaces = 16 * 16 * (kBrickEdge + 2), kMostPoints = 10 * 10 * 10;
 constexpr int kMostEdges = kBrickPoints * kWallSteps;
 constexpr int kMostWalks = 128;  // edges walked together
 
-QSES_FN int place_of(const glm::ivec3 &p) { return p.x + 1 + 16 * (p.y + 1) + 256 * (p.z + 1); }
+QSES_FN constexpr int place_of(int x, int y, int z) { return x + 1 + 16 * (y + 1) + 256 * (z + 1); }
 QSES_FN glm::ivec3 point_of(int place) { return glm::ivec3((place & 15) - 1, (place >> 4 & 15) - 1, (place >> 8) - 1); }
-QSES_FN int step_of_place(int k) {
-  const glm::ivec3 s = wall_step(k);
-  return s.x + 16 * s.y + 256 * s.z;
+struct StepPlaces {
+  int at[kWallSteps];  // what a step adds
+};
+QSES_FN StepPlaces make_step_places() {
+  StepPlaces places;
+  for (int k = 0; k < kWallSteps; ++k) {
+    const glm::ivec3 s = wall_step(k);
+    places.at[k] = s.x + 16 * s.y + 256 * s.z;
+  }
+  return places;
 }
+struct BitPlaces {
+  int16_t at[64];  // of the points of the first leaf
+};
+constexpr BitPlaces make_bit_places() {
+  BitPlaces places{};
+  for (int bit = 0; bit < 64; ++bit) places.at[bit] = static_cast<int16_t>(place_of(bit & 3, bit >> 2 & 3, bit >> 4));
+  return places;
+}
+constexpr BitPlaces kBitPlaces = make_bit_places();
+QSES_FN int leaf_offset(int leaf) { return 4 * (leaf & 1) + 64 * (leaf >> 1 & 1) + 1024 * (leaf >> 2); }
 
 // Points and the probes nearest to them.
 template <int kRoom>
@@ -34,9 +50,9 @@ struct ProbedPoints {
   QSES_FN NearestProbe probe(int k) const { return {{center_x[k], center_y[k], center_z[k]}, distance[k]}; }
 };
 
-// An edge that may be a wall: by the step, and the number of its first end; later of both.
+// An edge that may be a wall: the numbers of its ends, the place of the first one, and the step.
 struct Edge {
-  uint16_t first, second, step;
+  uint16_t first, second, place, step;
 };
 struct Walk {
   Edge edge;
@@ -44,15 +60,13 @@ struct Walk {
 };
 
 struct WallWork {
-  ProbedPoints<kMostPoints + (kLeavesPerBrick + 1) * kPackSize> ends;
+  ProbedPoints<kMostPoints + 2 * kPackSize> ends;
   ProbedPoints<kMostWalks + kPackSize> walked;
-  int16_t number[kPlaces];                                         // of the points in ends, by place; -1: none
-  int16_t place[kMostPoints + (kLeavesPerBrick + 1) * kPackSize];  // and back
+  CoveredNeighbors covered;
+  int16_t number[kPlaces];  // of the points in ends, by place; -1: none
   Walk walks[kMostWalks];
-  int edge_count;
-  Edge edges[1];  // more follow
+  Edge edges[kMostEdges];
 };
-constexpr size_t kWallBytes = sizeof(WallWork) + kMostEdges * sizeof(Edge);
 
 struct WallField {
   const FeatureView &f;
@@ -96,18 +110,18 @@ void find_probes(const WallField &field, ProbedPoints<kRoom> &points, int begin,
   for (int g = begin; g < end; g += kPackSize) {
     if (c.arc_count > kManyArcs) look_for_stop();
     const Vec3<Pack> p = load_points(points.x + g, points.y + g, points.z + g);
-    uint32_t lanes = end - g < kPackSize ? (1u << (end - g)) - 1 : kAllLanes;
-    const PointBall ball = ball_around(p);
+    uint32_t lanes = first_lanes(static_cast<uint32_t>(end - g));
+    const PackBox box = box_around(p);
     Vec3<Pack> center = p;
     Pack distance(kFarAway);
     if (field.looks_out) {
-      const int near = choose_balls(c.atoms, c.atom_count, ball.center, ball.radius + field.slack, c.near_list);
+      const int near = choose_balls(c.atoms, c.atom_count, box, field.slack, c.near_list);
       const PackMask outside =
           deepest_ball(c.atoms, c.near_list, near, p, -kFarAway).depth <= Pack(f.parameters.least_depth());
       distance = select(outside, Pack(0.f), distance);
       lanes &= ~lane_bits(outside);
     }
-    const int near = choose_balls(c.exposed, c.exposed_count, ball.center, ball.radius + field.slack, c.near_list);
+    const int near = choose_balls(c.exposed, c.exposed_count, box, field.slack, c.near_list);
     const Deepest deepest = deepest_ball(c.exposed, c.near_list, near, p, -field.slack);
     for_exposed_projections(f, c, p, deepest, lanes, [&](const Sphere &atom_ball, uint32_t, uint32_t exposed) {
       lanes &= ~exposed;
@@ -130,8 +144,8 @@ void find_probes(const WallField &field, ProbedPoints<kRoom> &points, int begin,
     open_x[k] = open_x[open - 1], open_y[k] = open_y[open - 1], open_z[k] = open_z[open - 1];
   for (int g = 0; g < open; g += kPackSize) {
     const Vec3<Pack> p = load_points(open_x + g, open_y + g, open_z + g);
-    const PointBall ball = ball_around(p);
-    const int arcs = choose_balls(c.arcs, c.arc_count, ball.center, depth + ball.radius, c.arc_list);
+    const PackBox box = box_around(p);
+    const int arcs = choose_balls(c.arcs, c.arc_count, box, depth, c.arc_list);
     if (arcs == 0) continue;
     Pack nearest(kFarAway), place(0.f), k_pack(0.f);
     for (int k = 0; k < arcs; ++k) {
@@ -183,7 +197,8 @@ void walk_edges(const WallField &field, const BrickSet &bricks, uint32_t brick, 
       const NearestProbe probe = w.walked.probe(q);
       if (probe.distance > p.depth) {
         const bool first = marks_first_end(w.ends.probe(walk.edge.first), w.ends.probe(walk.edge.second));
-        mark_wall(bricks, brick, point_of(w.place[first ? walk.edge.first : walk.edge.second]), marks);
+        const glm::ivec3 at = point_of(walk.edge.place);
+        mark_wall(bricks, brick, first ? at : at + wall_step(walk.edge.step), marks);
         continue;
       }
       walk.state.at += kWallStep + way_out(p, probe, w.walked.point(q), wall_direction(walk.edge.step));
@@ -193,72 +208,42 @@ void walk_edges(const WallField &field, const BrickSet &bricks, uint32_t brick, 
   }
 }
 
-// Finds the edges of a leaf that their first ends' probes do not cover. count: of points so far.
-void sort_out_edges(const WallField &field, const Lattice &lattice, const glm::ivec3 &first, int leaf,
-                    const uint64_t *candidates, WallWork &w, int *count) {
-  const SurfaceParameters &p = field.f.parameters;
-  uint64_t edges[kWallSteps], starts = 0;
-  for (int k = 0; k < kWallSteps; ++k) starts |= edges[k] = to_blocks(candidates[k]);
-  if (starts == 0) return;
-  for (int k = 0; k < kWallSteps; ++k) edges[k] = extract_bits(edges[k], starts);
-  const int begin = *count;
-  int n = begin;
-  for (uint64_t w_bits = starts; w_bits; w_bits &= w_bits - 1, ++n) {
-    const glm::ivec3 at = brick_point(leaf, 0) + block_point(lowest_bit64(w_bits));
-    w.place[n] = static_cast<int16_t>(place_of(at));
-    w.number[w.place[n]] = static_cast<int16_t>(n);
-    w.ends.set(n, lattice.position(first.x + at.x, first.y + at.y, first.z + at.z));
+// Which of the points around them the probes of the points from 0 to count cover, by what no walk would contradict.
+void find_covered(const SurfaceParameters &p, int count, WallWork *w) {
+  const float h = p.spacing, clear = p.depth - kWallStep;
+  const Pack clear2(clear * clear), twice(2.f * h), h2(h * h);
+  for (int g = 0; g < count; g += kPackSize) {
+    const Vec3<Pack> from = load_points(w->ends.x + g, w->ends.y + g, w->ends.z + g) -
+                            load_points(w->ends.center_x + g, w->ends.center_y + g, w->ends.center_z + g);
+    const Pack at[kAxes] = {from.x * twice, from.y * twice, from.z * twice};
+    const PackMask solid = load_pack(w->ends.distance + g) > Pack(p.depth);
+    const Pack left = select(solid, Pack(-kFarAway), clear2 - length_squared(from) - h2);  // for a step along an axis
+    const auto covers = [&](int k, Pack needs) {
+      w->covered.by_step[k][g / kPackSize] = static_cast<uint8_t>(lane_bits(needs < left));
+    };
+    for (int a = 0; a < kAxes; ++a) covers(a, at[a]), covers(kWallSteps + a, -at[a]);
+    int k = kAxes;
+    for (int a = 0; a < kAxes; ++a)
+      for (int b = a + 1; b < kAxes; ++b, k += 2) {
+        const Pack sum = at[a] + at[b], difference = at[a] - at[b];
+        covers(k, h2 + sum), covers(kWallSteps + k, h2 - sum);
+        covers(k + 1, h2 + difference), covers(kWallSteps + k + 1, h2 - difference);
+      }
+    w->covered.solid[g / kPackSize] = static_cast<uint8_t>(lane_bits(solid));
   }
-  const float h = lattice.spacing;
-  const Pack depth2(p.depth * p.depth);
-  find_probes(field, w.ends, begin, n);
-  for (int g = begin; g < n; g += kPackSize) {
-    const Vec3<Pack> from = load_points(w.ends.x + g, w.ends.y + g, w.ends.z + g) -
-                            load_points(w.ends.center_x + g, w.ends.center_y + g, w.ends.center_z + g);
-    const uint32_t solid = lane_bits(load_pack(w.ends.distance + g) > Pack(p.depth));
-#pragma GCC unroll 9
-    for (int k = 0; k < kWallSteps; ++k) {
-      const glm::ivec3 s = wall_step(k);
-      const Vec3<Pack> other = from + Vec3<Pack>(Pack(static_cast<float>(s.x) * h), Pack(static_cast<float>(s.y) * h),
-                                                 Pack(static_cast<float>(s.z) * h));
-      const uint32_t open = solid | lane_bits(length_squared(other) < depth2);
-      edges[k] &= ~(static_cast<uint64_t>(open) << (g - begin));
-    }
-  }
-  for (int k = 0; k < kWallSteps; ++k)
-    for (uint64_t rest = edges[k]; rest; rest &= rest - 1)
-      w.edges[w.edge_count++] = {static_cast<uint16_t>(begin + lowest_bit64(rest)), 0, static_cast<uint16_t>(k)};
-  *count = begin + (n - begin + kPackSize - 1) / kPackSize * kPackSize;
 }
 
 }  // namespace
 
 BrickNeeds mark_brick_walls(const FeatureView &f, const BrickSet &bricks, uint32_t brick, const uint64_t *signs,
                             const BrickScratch &scratch, uint64_t *marks) {
-  // Edges that signs leave.
-  const glm::ivec3 own = bricks.place(brick);
-  const NearWords near = find_near_words(bricks, signs, brick);
-  uint64_t candidates[kLeavesPerBrick][kWallSteps];
-  uint32_t leaves = 0;
-  uint64_t around[4][4][4];  // words of the leaves of the brick and next to it
-  for (int z = 0; z < 4; ++z)
-    for (int y = 0; y < 4; ++y)
-      for (int x = 0; x < 4; ++x)
-        around[z][y][x] = word_of_leaf(glm::ivec3(x - 1, y - 1, z - 1), [&](int at) { return near.at[at]; });
-  for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
-    LeafNeighborhood words;
-    for (int z = 0; z < 3; ++z)
-      for (int y = 0; y < 3; ++y)
-        std::memcpy(words.at + 3 * y + 9 * z, &around[z + (leaf >> 2)][y + (leaf >> 1 & 1)][leaf & 1],
-                    3 * sizeof(uint64_t));
-    leaves |= static_cast<uint32_t>(find_wall_candidates(words, candidates[leaf])) << leaf;
-  }
-  if (!leaves) return {0, 0};
+  BrickEdges edges;
+  if (!edges.find_candidates(bricks, signs, brick)) return {0, 0};
 
   const SurfaceParameters &p = f.parameters;
   const Lattice &lattice = bricks.lattice;
   const float h = lattice.spacing;
-  const glm::ivec3 first = lattice.first_point(own);
+  const glm::ivec3 first = lattice.first_point(bricks.place(brick));
   const Vec3<float> low = lattice.position(first.x - 1, first.y - 1, first.z - 1);
   const float farthest = maximum(maximum(absolute(low.x), absolute(low.y)), absolute(low.z));
   const float slack = 1e-3f + 1e-6f * farthest;
@@ -266,35 +251,50 @@ BrickNeeds mark_brick_walls(const FeatureView &f, const BrickSet &bricks, uint32
   if (c.needs.atoms || c.needs.arcs) return c.needs;
   const WallField field{f, c, slack, p.depth - kRoot3 * h < 0.01f * p.depth};
 
-  static_assert(kWallBytes <= BrickScratch::kVertexBytes, "the scratch of a thread has room for it");
+  static_assert(sizeof(WallWork) <= BrickScratch::kVertexBytes, "the scratch of a thread has room for it");
   WallWork &w = *new (scratch.vertex_memory) WallWork;
-  std::memset(w.number, 0xff, sizeof w.number);
-  w.edge_count = 0;
-  int count = 0;
-  for (; leaves; leaves &= leaves - 1) {
-    const int leaf = lowest_bit32(leaves);
-    sort_out_edges(field, lattice, first, leaf, candidates[leaf], w, &count);
-  }
+  const BrickStarts starts = edges.choose_starts();
+  for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf)
+    list_points<LeafSteps>(lattice, first + brick_point(leaf, 0), starts.words[leaf], w.ends.x + starts.first[leaf],
+                           w.ends.y + starts.first[leaf], w.ends.z + starts.first[leaf]);
+  int count = starts.count;
+  find_all_probes(field, w.ends, 0, count);
+  find_covered(p, count, &w);
+  edges.leave_out_covered(starts, w.covered);
 
-  // Those that are left: by the probes of their second ends, and then by those between them.
-  const int firsts = count;
-  for (int q = 0; q < w.edge_count; ++q) {
-    Edge &edge = w.edges[q];
-    const int place = w.place[edge.first] + step_of_place(edge.step);
-    if (w.number[place] < 0) {
-      const glm::ivec3 at = first + point_of(place);
-      w.number[place] = static_cast<int16_t>(count);
-      w.place[count] = static_cast<int16_t>(place);
-      w.ends.set(count++, lattice.position(at.x, at.y, at.z));
-    }
-    edge.second = static_cast<uint16_t>(w.number[place]);
+  // Those that are left: by the probes nearest to both ends, and then by those between them.
+  std::memset(w.number, 0xff, sizeof w.number);
+  for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
+    int16_t number = static_cast<int16_t>(starts.first[leaf]);
+    for (uint64_t rest = starts.words[leaf]; rest; rest &= rest - 1)
+      w.number[leaf_offset(leaf) + kBitPlaces.at[lowest_bit64(rest)]] = number++;
   }
-  find_all_probes(field, w.ends, firsts, count);
+  const auto number_at = [&](int place) {
+    int16_t &number = w.number[place];
+    if (number < 0) {
+      const glm::ivec3 at = first + point_of(place);
+      w.ends.set(count, lattice.position(at.x, at.y, at.z));
+      number = static_cast<int16_t>(count++);
+    }
+    return static_cast<uint16_t>(number);
+  };
+  const StepPlaces steps = make_step_places();
+  int edge_count = 0;
+  for (int k = 0; k < kWallSteps; ++k)
+    for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf)
+      for (uint64_t rest = edges.words[k][leaf]; rest; rest &= rest - 1) {
+        const int place = leaf_offset(leaf) + kBitPlaces.at[lowest_bit64(rest)];
+        w.edges[edge_count++] = {number_at(place), number_at(place + steps.at[k]), static_cast<uint16_t>(place),
+                                 static_cast<uint16_t>(k)};
+      }
+  find_all_probes(field, w.ends, starts.count, count);
   int walks = 0;
-  for (int q = 0; q < w.edge_count; ++q) {
+  for (int q = 0; q < edge_count; ++q) {
     const Edge &edge = w.edges[q];
-    const Walk walk{edge, begin_wall_walk(p, edge.step, w.ends.point(edge.first), w.ends.probe(edge.first),
-                                          w.ends.point(edge.second), w.ends.probe(edge.second))};
+    const Vec3<float> a = w.ends.point(edge.first), b = w.ends.point(edge.second);
+    const NearestProbe probe_a = w.ends.probe(edge.first), probe_b = w.ends.probe(edge.second);
+    if (probe_covers(p, probe_a, b)) continue;
+    const Walk walk{edge, begin_wall_walk(p, edge.step, a, probe_a, b, probe_b)};
     if (walk.state.is_open()) continue;
     w.walks[walks++] = walk;
     if (walks < kMostWalks) continue;

@@ -35,6 +35,25 @@ QSES_FN uint64_t extract_bits(uint64_t bits, uint64_t mask) {
 #endif
 }
 
+// Four bits to the lower half of each byte, and one bit to each byte.
+QSES_FN uint64_t spread_by_four(uint64_t v) {
+#if defined(__BMI2__)
+  return _pdep_u64(v, 0x0f0f0f0f0f0f0f0full);
+#else
+  v = (v | v << 16) & 0x0000ffff0000ffffull;
+  v = (v | v << 8) & 0x00ff00ff00ff00ffull;
+  return (v | v << 4) & 0x0f0f0f0f0f0f0f0full;
+#endif
+}
+QSES_FN uint64_t spread_bits(uint32_t bits) {
+#if defined(__BMI2__)
+  return _pdep_u64(bits, 0x0101010101010101ull);
+#else
+  const uint64_t v = bits;
+  return ((v & 0x7f) * 0x0002040810204081ull & 0x0101010101010101ull) | (v & 0x80) << 49;
+#endif
+}
+
 // Exchanges two bits of the numbers of a word's bits. first_only: the numbers with the first bit but not the second.
 template <int kFirst, int kSecond>
 QSES_FN uint64_t exchange_number_bits(uint64_t w, uint64_t first_only) {
@@ -59,19 +78,29 @@ QSES_FN glm::ivec3 block_point(int bit) {
   return glm::ivec3((bit & 1) + 2 * (block & 1), (bit >> 1 & 1) + (block & 2), (bit >> 2 & 1) + (block >> 1 & 2));
 }
 
-// Where the points of a word in blocks lie, in its order, as Lattice::position() has it; `first` is the leaf's first
-// point. Returns how many there are; room for eight more is needed.
-QSES_FN int list_points(const Lattice &lattice, const glm::ivec3 &first, uint64_t blocks, float *x, float *y,
-                        float *z) {
-  static constexpr float kStep[3][kPackSize] = {
+// What the bits of a byte add to the point of its first bit: in a word in blocks, and in a leaf word.
+struct BlockSteps {
+  static constexpr float kSteps[3][kPackSize] = {
       {0, 1, 0, 1, 0, 1, 0, 1}, {0, 0, 1, 1, 0, 0, 1, 1}, {0, 0, 0, 0, 1, 1, 1, 1}};
-  const Pack step_x = load_pack(kStep[0]), step_y = load_pack(kStep[1]), step_z = load_pack(kStep[2]);
+  QSES_FN static glm::ivec3 first_of(int byte) { return block_point(8 * byte); }
+};
+struct LeafSteps {
+  static constexpr float kSteps[3][kPackSize] = {
+      {0, 1, 2, 3, 0, 1, 2, 3}, {0, 0, 0, 0, 1, 1, 1, 1}, {0, 0, 0, 0, 0, 0, 0, 0}};
+  QSES_FN static glm::ivec3 first_of(int byte) { return glm::ivec3(0, 2 * (byte & 1), byte >> 1); }
+};
+
+// Where the points of a word lie, in its order, as Lattice::position() has it; `first` is the leaf's first point.
+// Returns how many there are; room for eight more is needed.
+template <class Steps>
+QSES_FN int list_points(const Lattice &lattice, const glm::ivec3 &first, uint64_t word, float *x, float *y, float *z) {
+  const Pack step_x = load_pack(Steps::kSteps[0]), step_y = load_pack(Steps::kSteps[1]),
+             step_z = load_pack(Steps::kSteps[2]);
   const Pack spacing(lattice.spacing);
   int n = 0;
-  for (int block = 0; block < 8; ++block) {
-    const uint32_t bits = static_cast<uint32_t>(blocks >> 8 * block & 0xff);
-    if (!bits) continue;
-    const glm::ivec3 at = first + block_point(8 * block);
+  for (int byte = 0; byte < 8; ++byte) {
+    const uint32_t bits = static_cast<uint32_t>(word >> 8 * byte & 0xff);
+    const glm::ivec3 at = first + Steps::first_of(byte);
     store_lanes(x + n, bits, (Pack(static_cast<float>(at.x)) + step_x) * spacing);
     store_lanes(y + n, bits, (Pack(static_cast<float>(at.y)) + step_y) * spacing);
     store_lanes(z + n, bits, (Pack(static_cast<float>(at.z)) + step_z) * spacing);

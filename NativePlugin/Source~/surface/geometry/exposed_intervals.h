@@ -60,28 +60,23 @@ struct ExposedIntervals {
       const Interval v = interval[k];
       const float length = pseudo_way(v.begin, v.end);
       const float from = pseudo_way(v.begin, begin), to = pseudo_way(v.begin, end);
-      if (from <= to) {  // the stretch does not contain v.begin, unless it starts there
-        if (from >= length) continue;
-        const bool keep_left = from > 0.f, keep_right = to < length;
-        if (keep_left && keep_right) {
-          if (count == capacity) {
-            overflow = true;
-            return;
-          }
-          interval[k].end = begin;
-          interval[count++] = {end, v.end};  // disjoint from the stretch: looked at again without effect
-        } else if (keep_left) {
-          interval[k].end = begin;
-        } else if (keep_right) {
-          interval[k].begin = end;
-        } else {
-          interval[k--] = interval[--count];
-        }
-      } else if (to >= length) {
+      // What stays before the stretch, or, if it contains v.begin, between its end and its begin; and what stays behind
+      // it. Written without branches, since none could be foreseen but the rare ones.
+      const bool wraps = from > to, has_rest = to < length;
+      const bool has_first = wraps ? has_rest : (from > 0.f) | (from >= length), has_second = !wraps & has_rest;
+      const Interval first{wraps ? end : v.begin, from < length ? begin : v.end}, second{end, v.end};
+      if (!(has_first | has_second)) {
         interval[k--] = interval[--count];
-      } else {
-        interval[k].begin = end;
-        if (from < length) interval[k].end = begin;
+        continue;
+      }
+      interval[k].begin = has_first ? first.begin : second.begin;
+      interval[k].end = has_first ? first.end : second.end;
+      if (has_first & has_second) {
+        if (count == capacity) {
+          overflow = true;
+          return;
+        }
+        interval[count++] = second;  // disjoint from the stretch: looked at again without effect
       }
     }
   }

@@ -86,21 +86,32 @@ QSES_FN glm::ivec3 brick_point(int leaf, int bit) {
   return glm::ivec3(4 * (leaf & 1) + (bit & 3), 4 * (leaf >> 1 & 1) + (bit >> 2 & 3), 4 * (leaf >> 2) + (bit >> 4));
 }
 
-// The leaf word seen one lattice point further along an axis: w is the leaf, next its neighbour on that side.
-QSES_FN uint64_t shift_x(uint64_t w, uint64_t next) {
+// The leaf word seen one lattice point further along an axis: w is the leaf, next its neighbour on that side. Word: of
+// one leaf, or several side by side.
+template <class Word>
+QSES_FN Word shift_x(Word w, Word next) {
   return (w >> 1 & 0x7777777777777777ull) | (next & 0x1111111111111111ull) << 3;
 }
-QSES_FN uint64_t shift_y(uint64_t w, uint64_t next) {
+template <class Word>
+QSES_FN Word shift_y(Word w, Word next) {
   return (w >> 4 & 0x0fff0fff0fff0fffull) | (next & 0x000f000f000f000full) << 12;
 }
-QSES_FN uint64_t shift_z(uint64_t w, uint64_t next) { return w >> 16 | next << 48; }
+template <class Word>
+QSES_FN Word shift_z(Word w, Word next) {
+  return w >> 16 | next << 48;
+}
 // The same one point back.
-QSES_FN uint64_t shift_x_back(uint64_t w, uint64_t before) {
+template <class Word>
+QSES_FN Word shift_x_back(Word w, Word before) {
   return (w & 0x7777777777777777ull) << 1 | (before >> 3 & 0x1111111111111111ull);
 }
-QSES_FN uint64_t shift_y_back(uint64_t w, uint64_t before) {
+template <class Word>
+QSES_FN Word shift_y_back(Word w, Word before) {
   return (w & 0x0fff0fff0fff0fffull) << 4 | (before >> 12 & 0x000f000f000f000full);
 }
-QSES_FN uint64_t shift_z_back(uint64_t w, uint64_t before) { return w << 16 | before >> 48; }
+template <class Word>
+QSES_FN Word shift_z_back(Word w, Word before) {
+  return w << 16 | before >> 48;
+}
 
 }  // namespace quickses

@@ -51,23 +51,32 @@ QSES_FN void visit_bricks_of_shell(const Lattice &lattice, const glm::vec3 &cent
     last[d] = last[d] >= lattice.brick_count[d] ? lattice.brick_count[d] - 1 : last[d];
   }
   constexpr int kLongRow = 16;  // fewer bricks are tried one by one
-  const bool many = last[1] - first[1] > 64, is_short = last[0] - first[0] < kLongRow;
-  const auto start_of = [&](int x) { return static_cast<float>(x + lattice.first_brick.x) * size + low_offset - c[0]; };
-  const auto nearest2_of = [&](int x) {
-    const float x0 = start_of(x), nx = maximum(0.f, maximum(x0, -x0 - box));
-    return nx * nx;
+  const bool many = last[1] - first[1] > 64;
+  const auto is_short = [&](int axis) { return last[axis] - first[axis] < kLongRow; };
+  const auto start_of = [&](int axis, int k) {
+    return static_cast<float>(k + lattice.first_brick[axis]) * size + low_offset - c[axis];
   };
-  const auto farthest2_of = [&](int x) {
-    const float x0 = start_of(x), fx = maximum(absolute(x0), absolute(x0 + box));
-    return fx * fx;
+  const auto nearest2_of = [&](int axis, int k) {
+    const float start = start_of(axis, k), beyond = maximum(start, -start - box);
+    return beyond * maximum(beyond, 0.f);  // of the square of a maximum compilers make a branch
   };
-#if !defined(__CUDA_ARCH__)
-  // The same for all rows; a GPU has no room for them.
-  float nearest2[kLongRow], farthest2[kLongRow];
-  for (int x = first[0]; is_short && x <= last[0]; ++x) {
-    nearest2[x - first[0]] = nearest2_of(x);
-    farthest2[x - first[0]] = farthest2_of(x);
-  }
+  const auto farthest2_of = [&](int axis, int k) {
+    const float start = start_of(axis, k), farthest = maximum(absolute(start), absolute(start + box));
+    return farthest * farthest;
+  };
+#if defined(__CUDA_ARCH__)
+  const auto known_nearest2 = nearest2_of;
+  const auto known_farthest2 = farthest2_of;
+#else
+  // The same for all rows and layers; a GPU has no room for them.
+  float nearest2[2][kLongRow], farthest2[2][kLongRow];
+  for (int axis = 0; axis < 2; ++axis)
+    for (int k = first[axis]; is_short(axis) && k <= last[axis]; ++k) {
+      nearest2[axis][k - first[axis]] = nearest2_of(axis, k);
+      farthest2[axis][k - first[axis]] = farthest2_of(axis, k);
+    }
+  const auto known_nearest2 = [&](int axis, int k) { return nearest2[axis][k - first[axis]]; };
+  const auto known_farthest2 = [&](int axis, int k) { return farthest2[axis][k - first[axis]]; };
 #endif
   int z = first[2] + rows.layer, y_begin = first[1];
   if (rows.first > 0 && last[1] >= first[1]) {
@@ -78,29 +87,22 @@ QSES_FN void visit_bricks_of_shell(const Lattice &lattice, const glm::vec3 &cent
   uint64_t left = rows.last - rows.first;
   for (; z <= last[2] && left > 0; z += rows.layers, y_begin = first[1]) {
     if (many) look_for_stop();
-    const float z0 = static_cast<float>(z + lattice.first_brick.z) * size + low_offset - c[2];
-    const float nz = maximum(0.f, maximum(z0, -z0 - box)), fz = maximum(absolute(z0), absolute(z0 + box));
+    const float z_near2 = nearest2_of(2, z), z_far2 = farthest2_of(2, z);
     for (int y = y_begin; y <= last[1] && left > 0; ++y, --left) {
-      const float y0 = static_cast<float>(y + lattice.first_brick.y) * size + low_offset - c[1];
-      const float ny = maximum(0.f, maximum(y0, -y0 - box)), fy = maximum(absolute(y0), absolute(y0 + box));
-      const float near2 = nz * nz + ny * ny, far2 = fz * fz + fy * fy;
+      const float near2 = z_near2 + (is_short(1) ? known_nearest2(1, y) : nearest2_of(1, y));
       if (near2 > outer2) continue;
+      const float far2 = z_far2 + (is_short(1) ? known_farthest2(1, y) : farthest2_of(1, y));
       const uint64_t row = lattice.linear(glm::ivec3(0, y, z));
-      const auto is_near = [&](int x) { return near2 + nearest2_of(x) <= outer2; };
-      const auto is_far = [&](int x) { return far2 + farthest2_of(x) >= inner2; };
-      if (is_short) {
-        for (int x = first[0]; x <= last[0]; ++x) {
-#if defined(__CUDA_ARCH__)
-          if (is_near(x) && is_far(x)) visit(row + static_cast<uint64_t>(x), uint64_t(1));
-#else
-          if (near2 + nearest2[x - first[0]] <= outer2 && far2 + farthest2[x - first[0]] >= inner2)
+      if (is_short(0)) {
+        for (int x = first[0]; x <= last[0]; ++x)
+          if (near2 + known_nearest2(0, x) <= outer2 && far2 + known_farthest2(0, x) >= inner2)
             visit(row + static_cast<uint64_t>(x), uint64_t(1));
-#endif
-        }
         continue;
       }
+      const auto is_near = [&](int x) { return near2 + nearest2_of(0, x) <= outer2; };
+      const auto is_far = [&](int x) { return far2 + farthest2_of(0, x) >= inner2; };
       // Along a row bricks come nearer and then go farther: the ends of the runs are looked for by halving.
-      const int turn = first_with(first[0], last[0], [&](int x) { return start_of(x) + 0.5f * box >= 0.f; });
+      const int turn = first_with(first[0], last[0], [&](int x) { return start_of(0, x) + 0.5f * box >= 0.f; });
       const int begin = first_with(first[0], turn - 1, is_near);
       const int end = first_with(turn, last[0], [&](int x) { return !is_near(x); });
       const int hole = first_with(begin, turn - 1, [&](int x) { return !is_far(x); });

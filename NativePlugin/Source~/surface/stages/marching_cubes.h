@@ -92,21 +92,6 @@ QSES_FN LeafWords leaf_words(uint64_t own, const Get &get) {
   }
   return w;
 }
-// upper_brick(k): number of the brick towards larger x, y, z (bits of k), -1 if that is not active.
-template <class UpperBrick>
-QSES_FN LeafWords leaf_words(const uint64_t *signs, int brick, int leaf, const UpperBrick &upper_brick) {
-  return leaf_words(signs[static_cast<size_t>(brick) * kLeavesPerBrick + leaf], [&](int d, uint64_t *word) {
-    const int carry = leaf & d, other = leaf ^ d, k = carry == 0 ? brick : upper_brick(carry);
-    if (k >= 0) *word = signs[static_cast<size_t>(k) * kLeavesPerBrick + other];
-  });
-}
-
-QSES_FN LeafWords leaf_words(const BrickSet &bricks, const uint64_t *signs, int brick, int leaf) {
-  const glm::ivec3 place = bricks.place(brick);
-  return leaf_words(signs, brick, leaf,
-                    [&](int k) { return bricks.find(place + glm::ivec3(k & 1, k >> 1 & 1, k >> 2)); });
-}
-
 // The bricks towards larger x, y, z. Itself at 0.
 struct UpperBricks {
   int at[8];
@@ -119,7 +104,21 @@ QSES_FN UpperBricks upper_bricks(const BrickSet &bricks, uint32_t brick) {
   return upper;
 }
 QSES_FN LeafWords leaf_words(const UpperBricks &upper, const uint64_t *signs, int leaf) {
-  return leaf_words(signs, upper.at[0], leaf, [&](int k) { return upper.at[k]; });
+  const auto words_of = [&](int k) { return signs + static_cast<size_t>(upper.at[k]) * kLeavesPerBrick; };
+  return leaf_words(words_of(0)[leaf], [&](int d, uint64_t *word) {
+    const int k = leaf & d;
+    if (upper.at[k] >= 0) *word = words_of(k)[leaf ^ d];
+  });
+}
+// use(leaf, words) for the leaves of a brick. Unrolled, so that which neighbours they have needs no branches.
+template <class Use>
+QSES_FN void for_leaf_words(const UpperBricks &upper, const uint64_t *signs, const Use &use) {
+  LeafWords words[kLeavesPerBrick];
+#if !defined(__CUDACC__)
+#pragma GCC unroll 8
+#endif
+  for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) words[leaf] = leaf_words(upper, signs, leaf);
+  for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) use(leaf, words[leaf]);
 }
 
 // The eight corner words: bit b of corner word c is the sign of corner c of the cell at point b.
@@ -191,6 +190,8 @@ QSES_FN int count_leaf(const LeafWords &words, const uint8_t *case_triangles, ui
   return triangles;
 }
 
+constexpr int kBrickMasks = kLeavesPerBrick * kAxes;
+
 // The counts of a leaf in one word: of vertices on edges along x, y and z, and of triangles.
 constexpr int kCountBits = 7;
 QSES_FN uint32_t pack_counts(const uint64_t *crossing, int triangles) {
@@ -205,7 +206,7 @@ struct alignas(16) BrickCounts {
 
 // Ranks of a brick, as they lie in the layout: each kind is stored as a whole.
 struct alignas(16) VertexRanks {
-  uint16_t of_mask[kLeavesPerBrick * kAxes];
+  uint16_t of_mask[kBrickMasks];
 };
 struct alignas(16) TriangleRanks {
   uint16_t of_leaf[kLeavesPerBrick];
@@ -269,12 +270,12 @@ struct CountBrick {
   BrickTotals *totals;
   void operator()(size_t brick) const {
     const UpperBricks upper = upper_bricks(bricks, static_cast<uint32_t>(brick));
-    uint64_t *const crossing = layout.crossing + brick * kLeavesPerBrick * kAxes;
+    uint64_t *const crossing = layout.crossing + brick * kBrickMasks;
     BrickCounts counts;
-    for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
-      const int triangles = count_leaf(leaf_words(upper, layout.signs, leaf), case_triangles, crossing + leaf * kAxes);
+    for_leaf_words(upper, layout.signs, [&](int leaf, const LeafWords &words) {
+      const int triangles = count_leaf(words, case_triangles, crossing + leaf * kAxes);
       counts.of_leaf[leaf] = pack_counts(crossing + leaf * kAxes, triangles);
-    }
+    });
     totals[brick] = rank_brick(layout, brick, counts);
   }
 };
@@ -334,10 +335,9 @@ struct LatticeEdge {
 
 // The edge that owns a vertex of a brick.
 QSES_FN LatticeEdge edge_of_vertex(const MeshLayout &m, uint32_t brick, uint32_t vertex) {
-  constexpr int kMasks = kLeavesPerBrick * kAxes;
-  const size_t first = static_cast<size_t>(brick) * kMasks;
+  const size_t first = static_cast<size_t>(brick) * kBrickMasks;
   const uint32_t rank = vertex - m.base[brick].vertices;
-  int k = kMasks - 1;  // the last mask that begins no later
+  int k = kBrickMasks - 1;  // the last mask that begins no later
   while (k > 0 && m.vertex_rank[first + static_cast<size_t>(k)] > rank) --k;
   uint64_t mask = m.crossing[first + static_cast<size_t>(k)];
   for (uint32_t n = rank - m.vertex_rank[first + static_cast<size_t>(k)]; n > 0; --n) mask &= mask - 1;

@@ -48,10 +48,13 @@ QSES_FN Vec3<float> wall_direction(int k) {
   return {static_cast<float>(s.x) * scale, static_cast<float>(s.y) * scale, static_cast<float>(s.z) * scale};
 }
 
-// The words of a leaf and its neighbours, numbered as neighbours of a brick are (brick_border.h).
-struct LeafNeighborhood {
-  uint64_t at[kNeighborhood];
+// The words of a leaf and its neighbours, numbered as neighbours of a brick are (brick_border.h). Word: of one leaf, or
+// several side by side.
+template <class Word>
+struct WordNeighborhood {
+  Word at[kNeighborhood];
 };
+using LeafNeighborhood = WordNeighborhood<uint64_t>;
 
 // The word of a leaf at a place counted from the first leaf of a brick, from -1 to 2 along each axis. words_of(place):
 // those of the brick itself and around it; nullptr if a brick is not active: no wall is there, so all is outside.
@@ -62,20 +65,18 @@ QSES_FN uint64_t word_of_leaf(const glm::ivec3 &p, const WordsOf &words_of) {
 }
 
 // Edges that may pass through a wall, by the bit of their first end in the leaf: both ends are outside, and a point
-// next to both is inside, since a wall does not begin farther from where it is thick enough to be seen. Is there any?
-QSES_FN bool find_wall_candidates(const LeafNeighborhood &n, uint64_t edges[kWallSteps]) {
-  uint64_t any = 0, all = n.at[kOwnPlace];
-  for (int k = 0; k < kNeighborhood; ++k) any |= n.at[k];
-  if (any == 0 || all == ~uint64_t(0)) return false;
+// next to both is inside, since a wall does not begin farther from where it is thick enough to be seen.
+template <class Word>
+QSES_FN void list_wall_candidates(const WordNeighborhood<Word> &n, Word edges[kWallSteps]) {
   // Inside within 0 to 1 or -1 to 1 along x; then within so much along y; the rows are those along x.
-  uint64_t own[9], next[9], x2[9], x3[9];
+  Word own[9], next[9], x2[9], x3[9];
   for (int r = 0; r < 9; ++r) {
     own[r] = n.at[3 * r + 1];
     next[r] = shift_x(own[r], n.at[3 * r + 2]);
     x2[r] = own[r] | next[r];
     x3[r] = x2[r] | shift_x_back(own[r], n.at[3 * r]);
   }
-  uint64_t x2_up[3], x2_down[3], x2_all[3], x3_up[3], x3_all[3];
+  Word x2_up[3], x2_down[3], x2_all[3], x3_up[3], x3_all[3];
   for (int z = 0; z < 3; ++z) {
     const int r = 3 * z + 1;
     x2_up[z] = x2[r] | shift_y(x2[r], x2[r + 1]);
@@ -84,21 +85,27 @@ QSES_FN bool find_wall_candidates(const LeafNeighborhood &n, uint64_t edges[kWal
     x3_up[z] = x3[r] | shift_y(x3[r], x3[r + 1]);
     x3_all[z] = x3_up[z] | shift_y_back(x3[r], x3[r - 1]);
   }
-  const auto up = [](const uint64_t *w) { return w[1] | shift_z(w[1], w[2]); };
-  const auto down = [](const uint64_t *w) { return w[1] | shift_z_back(w[1], w[0]); };
+  const auto up = [](const Word *w) { return w[1] | shift_z(w[1], w[2]); };
+  const auto down = [](const Word *w) { return w[1] | shift_z_back(w[1], w[0]); };
   constexpr int kOwnRow = 4;
-  const uint64_t first = own[kOwnRow], first_y = shift_y(own[4], own[5]);
-  edges[0] = (up(x2_all) | down(x2_all)) & ~next[kOwnRow];
-  edges[1] = (up(x3_up) | down(x3_up)) & ~first_y;
-  edges[2] = up(x3_all) & ~shift_z(own[4], own[7]);
-  edges[3] = (up(x2_up) | down(x2_up)) & ~shift_y(next[4], next[5]);
-  edges[4] = (up(x2_down) | down(x2_down)) & ~shift_y_back(next[4], next[3]);
-  edges[5] = up(x2_all) & ~shift_z(next[4], next[7]);
-  edges[6] = down(x2_all) & ~shift_z_back(next[4], next[1]);
-  edges[7] = up(x3_up) & ~shift_z(first_y, shift_y(own[7], own[8]));
-  edges[8] = down(x3_up) & ~shift_z_back(first_y, shift_y(own[1], own[2]));
-  uint64_t left = 0;
-  for (int k = 0; k < kWallSteps; ++k) left |= edges[k] &= ~first;
+  const Word first = own[kOwnRow], first_y = shift_y(own[4], own[5]);
+  edges[0] = (up(x2_all) | down(x2_all)) & ~(first | next[kOwnRow]);
+  edges[1] = (up(x3_up) | down(x3_up)) & ~(first | first_y);
+  edges[2] = up(x3_all) & ~(first | shift_z(own[4], own[7]));
+  edges[3] = (up(x2_up) | down(x2_up)) & ~(first | shift_y(next[4], next[5]));
+  edges[4] = (up(x2_down) | down(x2_down)) & ~(first | shift_y_back(next[4], next[3]));
+  edges[5] = up(x2_all) & ~(first | shift_z(next[4], next[7]));
+  edges[6] = down(x2_all) & ~(first | shift_z_back(next[4], next[1]));
+  edges[7] = up(x3_up) & ~(first | shift_z(first_y, shift_y(own[7], own[8])));
+  edges[8] = down(x3_up) & ~(first | shift_z_back(first_y, shift_y(own[1], own[2])));
+}
+// Those of one leaf, if there is any.
+QSES_FN bool find_wall_candidates(const LeafNeighborhood &n, uint64_t edges[kWallSteps]) {
+  uint64_t any = 0, left = 0;
+  for (int k = 0; k < kNeighborhood; ++k) any |= n.at[k];
+  if (any == 0 || n.at[kOwnPlace] == ~uint64_t(0)) return false;
+  list_wall_candidates(n, edges);
+  for (int k = 0; k < kWallSteps; ++k) left |= edges[k];
   return left != 0;
 }
 
