@@ -30,6 +30,12 @@ class SerialExecutor {
   quickses::Span<T> allocate(size_t n) {
     return {static_cast<T *>(arena_.allocate(n * sizeof(T))), n};
   }
+  template <class T>
+  quickses::Span<T> allocate_zeros(size_t n) {
+    const auto zeros = allocate<T>(n);
+    fill(zeros, 0);
+    return zeros;
+  }
   template <class F>
   void for_each(size_t n, F f, uint64_t = 0) {
     for (size_t i = 0; i < n; ++i) f(i);
@@ -88,9 +94,7 @@ class SerialExecutor {
   void send_counts() {}
   template <class T>
   T *take_counts() {
-    const auto counts = allocate<T>(1);
-    fill(counts, 0);
-    return counts.data;
+    return allocate_zeros<T>(1).data;
   }
   template <class T>
   T expect(const char *, const T *counts, const T &) {
