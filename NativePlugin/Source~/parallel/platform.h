@@ -50,7 +50,7 @@ QSES_FN int lowest_bit32(uint32_t v) {
 #if defined(__CUDA_ARCH__)
   return __ffs(static_cast<int>(v)) - 1;
 #else
-  return __builtin_ctz(v);
+  return lowest_bit64(v);
 #endif
 }
 
