@@ -68,6 +68,14 @@ void check_lattice(const Atoms &atoms, const qses_settings &s, bool dense_table 
     for (uint32_t b = 0; b < bricks.count; ++b) {
       ASSERT_EQ(bricks.find(bricks.place(b)), static_cast<int>(b));
       ASSERT_TRUE(b == 0 || bricks.places[b - 1] < bricks.places[b]);
+      ASSERT_TRUE(b == 0 || run.lattice.linear(bricks.place(b - 1)) < run.lattice.linear(bricks.place(b)));
+    }
+    // Several at once, also where there is none: just outside of the box of bricks.
+    for (const glm::ivec3 &corner : {glm::ivec3(0), run.lattice.brick_count - glm::ivec3(1), bricks.place(0)}) {
+      const auto around = [&](int k) { return corner + neighbor_step(k); };
+      int found[kNeighborhood];
+      bricks.find_each<kNeighborhood>(around, found);
+      for (int k = 0; k < kNeighborhood; ++k) ASSERT_EQ(found[k], bricks.find(around(k))) << "neighbour " << k;
     }
     const std::vector<uint64_t> signs = run.signs(features, bricks);
     const DenseField field(run, atoms);
@@ -182,6 +190,14 @@ TEST(Signs, OnASparseSetOfBricks) {
 
 // Rows of bricks that a shell passes, whether they are short or long, hollow or not, and cut by the border of the
 // table.
+TEST(Places, ArePackedInTheOrderOfLinearIndices) {
+  constexpr int kMost = (1 << kPlaceBits) - 1;
+  const glm::ivec3 rising[] = {{0, 0, 0},     {1, 0, 0}, {kMost, 0, 0}, {0, 1, 0},     {kMost, 1, 0},
+                               {0, kMost, 0}, {0, 0, 1}, {5, 7, 9},     {0, 0, kMost}, {kMost, kMost, kMost}};
+  for (const glm::ivec3 &place : rising) EXPECT_EQ(unpack_place(pack_place(place)), place);
+  for (size_t k = 1; k < std::size(rising); ++k) EXPECT_LT(pack_place(rising[k - 1]), pack_place(rising[k]));
+}
+
 TEST(BricksOfAShell, AreTheOnesWhoseBoxesMeetIt) {
   Lattice lattice{};
   lattice.spacing = 0.25f;

@@ -239,6 +239,21 @@ struct Noise {
 };
 const Noise kNoises[] = {{1, 0.5, 1}, {2, 0.02, 2}, {4, 0.5, 3}, {4, 0.15, 4}, {3, 0.85, 5}, {2, 1.0, 6}};
 
+TEST(Leaves, CasesOfEightCellsAreThoseOfEach) {
+  std::mt19937_64 random(3);
+  for (int trial = 0; trial < 200; ++trial) {
+    LeafWords words;
+    for (uint64_t &word : words.at) word = random() & random();
+    const LeafWords corners = cell_corners(words);
+    for (int bit = 0; bit < 64; ++bit)
+      ASSERT_EQ(static_cast<int>(cell_cases(corners, bit & ~7) >> (8 * (bit & 7)) & 0xff), cell_case(corners, bit));
+  }
+  const MarchingCubesTable &table = marching_cubes_table();
+  EXPECT_EQ(table.triangle_count[0], 0);  // what count_leaf() relies on
+  EXPECT_EQ(table.triangle_count[kCellCases - 1], 0);
+  EXPECT_EQ(*std::max_element(table.triangle_count, table.triangle_count + kCellCases), kMostCaseTriangles);
+}
+
 TEST(Noise, VerticesAreNumberedOnceByBrickLeafAxisAndBit) {
   for (const Noise &n : kNoises)
     for (bool table : {true, false}) {

@@ -185,7 +185,8 @@ QSES_FN int count_leaf(const LeafWords &words, const uint8_t *case_triangles, ui
   for (int first = 0; first < 64; first += 8) {
     if ((mixed >> first & 0xff) == 0) continue;
     const uint64_t cases = cell_cases(c, first);
-    for (int shift = 0; shift < 64; shift += 8) triangles += case_triangles[cases >> shift & 0xff];
+    for (int shift = 0; shift < 64; shift += 8)
+      triangles += case_triangles[cases >> shift & 0xff];  // none of cells that are not mixed
   }
   return triangles;
 }
