@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+// The kernels behind the verbs of cuda_executor.cuh: a thread, or a block, for each item; sums of chunks; and passes
+// over few items, which one block does at once.
+#pragma once
+
+#include "parallel/cuda_launch.cuh"
+#include "parallel/executor.h"
+
+#include <cub/warp/warp_scan.cuh>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace quickses {
+
+// Threads that work on one item of for_each_brick.
+struct BlockTeam {
+  static constexpr int kSize = 128;
+  __device__ __forceinline__ int rank() const { return static_cast<int>(threadIdx.x); }
+  __device__ __forceinline__ int size() const { return kSize; }
+  __device__ __forceinline__ void sync() const { __syncthreads(); }
+};
+
+namespace gpu {
+
+constexpr int kForEachThreads = 128;
+
+template <class F>
+__global__ __launch_bounds__(kForEachThreads) void for_each_kernel(QueuedItems queued, F f) {
+  const LaunchItems items = queued.in_turn();
+  const size_t i = items.first + static_cast<size_t>(blockIdx.x) * kForEachThreads + threadIdx.x;
+  if (i < items.last) f(i);
+}
+
+// The scratch is in dynamic shared memory: one object per block, used by one item after the other.
+template <class Scratch, class F>
+__global__ __launch_bounds__(BlockTeam::kSize) void for_each_brick_kernel(QueuedItems queued, F f) {
+  const LaunchItems items = queued.in_turn();
+  extern __shared__ __align__(16) unsigned char scratch_memory[];
+  Scratch &scratch = *reinterpret_cast<Scratch *>(scratch_memory);
+  for (size_t i = items.first + blockIdx.x; i < items.last; i += gridDim.x) {
+    f(BlockTeam{}, scratch, i);
+    __syncthreads();
+  }
+}
+
+// Sum of each chunk of reduce(): a thread adds every 128th item, then the threads are added as a tree. Always the same
+// order, but not the one of a single thread.
+constexpr int kSumBlocks = 4;  // of a multiprocessor, at least: sums of doubles wait for each other
+template <class T, class Load>
+__global__ __launch_bounds__(BlockTeam::kSize, kSumBlocks) void sum_chunks_kernel(QueuedItems queued, size_t n,
+                                                                                  Load load, T *sums) {
+  const LaunchItems chunks = queued.in_turn();
+  __shared__ __align__(16) unsigned char partial_memory[BlockTeam::kSize * sizeof(T)];
+  T *partial = reinterpret_cast<T *>(partial_memory);
+  const size_t chunk = chunks.first + blockIdx.x, begin = chunk * reduce_chunk(n);
+  const size_t end = begin + reduce_chunk(n) < n ? begin + reduce_chunk(n) : n;
+  T sum{};
+  for (size_t i = begin + threadIdx.x; i < end; i += BlockTeam::kSize) sum += load(i);
+  partial[threadIdx.x] = sum;
+  for (int half = BlockTeam::kSize / 2; half > 0; half >>= 1) {
+    __syncthreads();
+    if (static_cast<int>(threadIdx.x) < half) partial[threadIdx.x] += partial[threadIdx.x + half];
+  }
+  if (threadIdx.x == 0) sums[chunk] = partial[0];
+}
+
+// Few items are scanned, or chosen, by one block: each thread goes over a run of them, twice. CUB's passes over the
+// whole device take two launches, of which each waits for what was queued before it.
+constexpr int kFewThreads = 1024;
+constexpr size_t kFewItems = 8 * kFewThreads;
+struct FewItems {
+  size_t first, last;
+  __device__ __forceinline__ explicit FewItems(size_t n) {
+    const size_t each = (n + kFewThreads - 1) / kFewThreads, begin = each * threadIdx.x;
+    first = begin < n ? begin : n;
+    last = begin + each < n ? begin + each : n;
+  }
+};
+// Of the threads before this one; and of all.
+template <class T>
+__device__ __forceinline__ T sum_before(const T &own, T *total) {
+  using Scan = cub::WarpScan<T>;
+  constexpr int kWarps = kFewThreads / 32;
+  __shared__ typename Scan::TempStorage temporary[kWarps];
+  __shared__ __align__(16) unsigned char memory[kWarps * sizeof(T)];
+  T *const of_warps = reinterpret_cast<T *>(memory);
+  const int warp = static_cast<int>(threadIdx.x) / 32, lane = static_cast<int>(threadIdx.x) % 32;
+  T with_own, before;
+  Scan(temporary[warp]).Scan(own, with_own, before, T{}, cub::Sum());
+  if (lane == 31) of_warps[warp] = with_own;
+  __syncthreads();
+  if (warp == 0) {
+    T with_warp;
+    Scan(temporary[0]).InclusiveScan(of_warps[lane], with_warp, cub::Sum());
+    of_warps[lane] = with_warp;
+  }
+  __syncthreads();
+  *total = of_warps[kWarps - 1];
+  return warp > 0 ? of_warps[warp - 1] + before : before;
+}
+
+template <class Load, class T>
+__global__ __launch_bounds__(kFewThreads) void scan_few_kernel(QueuedItems queued, Load load, size_t n, T *out) {
+  queued.in_turn();
+  const FewItems items(n);
+  T own{}, total;
+  for (size_t i = items.first; i < items.last; ++i) own = own + static_cast<T>(load(i));
+  T sum = sum_before(own, &total);
+  for (size_t i = items.first; i < items.last; ++i) {
+    const T value = static_cast<T>(load(i));
+    out[i] = sum;
+    sum = sum + value;
+  }
+  if (threadIdx.x == 0) out[n] = total;
+}
+
+template <class Keep, class T>
+__global__ __launch_bounds__(kFewThreads) void compact_few_kernel(QueuedItems queued, Keep keep, size_t n, T *out,
+                                                                  uint64_t *count) {
+  queued.in_turn();
+  const FewItems items(n);
+  uint32_t own = 0, total;
+  for (size_t i = items.first; i < items.last; ++i) own += keep(i) ? 1 : 0;
+  uint32_t place = sum_before(own, &total);
+  for (size_t i = items.first; i < items.last; ++i)
+    if (keep(i)) out[place++] = static_cast<T>(i);
+  if (threadIdx.x == 0) *count = total;
+}
+
+// By words of four bytes, the last of which may be shorter.
+struct FillBytes {
+  unsigned char *bytes;
+  size_t count;
+  uint32_t word;
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    if (4 * i + 4 <= count)
+      *reinterpret_cast<uint32_t *>(bytes + 4 * i) = word;
+    else
+      for (size_t k = 4 * i; k < count; ++k) bytes[k] = static_cast<unsigned char>(word);
+  }
+};
+struct CopyWords {
+  uint32_t *to;
+  const uint32_t *from;
+  QSES_HOST_DEVICE void operator()(size_t i) const { to[i] = from[i]; }
+};
+
+// load(i), and 0 for the one element behind the last.
+template <class Load, class T>
+struct LoadOrZero {
+  Load load;
+  size_t n;
+  QSES_HOST_DEVICE T operator()(size_t i) const { return i < n ? static_cast<T>(load(i)) : T{}; }
+};
+
+struct IsLess {
+  template <class T>
+  QSES_HOST_DEVICE bool operator()(const T &a, const T &b) const {
+    return a < b;
+  }
+};
+
+template <class Keep, class T>
+struct KeepNumber {
+  Keep keep;
+  QSES_HOST_DEVICE bool operator()(T i) const { return keep(static_cast<size_t>(i)); }
+};
+
+}  // namespace gpu
+
+}  // namespace quickses
