@@ -48,6 +48,19 @@ class QueuedItems {
   LaunchItems items_;
 };
 
+// For __launch_bounds__: so many blocks that a multiprocessor is to hold at once, or those whose threads it can hold
+// (CUDA C++ Programming Guide, "Technical Specifications per Compute Capability").
+constexpr int blocks_at_once(int threads, int wanted) {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ < 800
+  constexpr int kMostThreads = 1024;
+#elif defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 860 && __CUDA_ARCH__ < 900
+  constexpr int kMostThreads = 1536;
+#else
+  constexpr int kMostThreads = 2048;
+#endif
+  return wanted * threads <= kMostThreads ? wanted : kMostThreads / threads;
+}
+
 // Steps per multiprocessor.
 constexpr uint64_t kLaunchSteps = uint64_t(1) << 22;
 struct LaunchShape {

@@ -19,7 +19,7 @@ struct CudaCandidates {
 };
 namespace gpu {
 
-constexpr int kSignWarps = 4;
+constexpr int kSignWarps = 4, kSignThreads = kSignWarps * kWarp;
 constexpr int kLeafAtoms = 64;  // of a leaf in shared memory; more are read from the brick's row
 constexpr int kLeafArcs = 64;   // in shared memory; more are staged bit by bit
 
@@ -121,7 +121,9 @@ __device__ __forceinline__ DeepestAtom choose_deepest_atoms(const FeatureView &f
 
 enum class LeafKind { kMixed, kInside, kOutside };
 
-static __global__ __launch_bounds__(kSignWarps *kWarp, 9) void evaluate_leaves_kernel(QueuedItems queued, SignJob job) {
+static __global__ __launch_bounds__(kSignThreads,
+                                    blocks_at_once(kSignThreads, 9)) void evaluate_leaves_kernel(QueuedItems queued,
+                                                                                                 SignJob job) {
   const LaunchItems leaves = queued.in_turn();
   __shared__ LeafScratch scratch_memory[kSignWarps];
   const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();
@@ -355,10 +357,9 @@ void evaluate_leaves(E &executor, const FeatureView &features, const BrickSet &b
     candidates.have_deciders = true;
   }
   // Lanes look at all atoms and arcs of a row, and at an atom's caps.
-  executor.launch(
-      "evaluate_leaves", evaluate_leaves_kernel, candidates.leaves,
-      LaunchShape{kSignWarps * kWarp, kSignWarps, 64 + 2 * uint64_t(candidates.longest_row) + features.most_caps},
-      SignJob{features, bricks, CandidateReach::of(features.parameters), candidates.view, signs});
+  executor.launch("evaluate_leaves", evaluate_leaves_kernel, candidates.leaves,
+                  LaunchShape{kSignThreads, kSignWarps, 64 + 2 * uint64_t(candidates.longest_row) + features.most_caps},
+                  SignJob{features, bricks, CandidateReach::of(features.parameters), candidates.view, signs});
 }
 
 }  // namespace gpu

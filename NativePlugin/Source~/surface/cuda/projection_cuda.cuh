@@ -69,8 +69,9 @@ struct VertexTeam {
 };
 
 template <int kLanes>
-static __global__ __launch_bounds__(kVertexThreads, 14) void project_on_atoms_kernel(QueuedItems queued,
-                                                                                     VertexJob job) {
+static __global__ __launch_bounds__(kVertexThreads,
+                                    blocks_at_once(kVertexThreads, 14)) void project_on_atoms_kernel(QueuedItems queued,
+                                                                                                     VertexJob job) {
   const LaunchItems vertices = queued.in_turn();
   const uint32_t count = vertex_count(job);
   const VertexTeam<kLanes> team(vertices, count);
@@ -112,7 +113,9 @@ struct ArcMask {
 };
 
 template <int kLanes>
-static __global__ __launch_bounds__(kVertexThreads, 10) void project_on_arcs_kernel(QueuedItems queued, VertexJob job) {
+static __global__ __launch_bounds__(kVertexThreads,
+                                    blocks_at_once(kVertexThreads, 10)) void project_on_arcs_kernel(QueuedItems queued,
+                                                                                                    VertexJob job) {
   const LaunchItems vertices = queued.in_turn();
   const uint32_t total = job.counts->open;
   const VertexTeam<kLanes> team(vertices, total);

@@ -321,7 +321,9 @@ __device__ __forceinline__ LaneCandidates<kWarp, true> choose_for_run(const Wall
 // so many edges one after the other. Where leaves have many, as at wide spacings, what can decide about any edge of a
 // run is chosen first, and from that what can decide about each.
 template <int kLanes, int kRun>
-static __global__ __launch_bounds__(kWallThreads, 10) void walk_edges_kernel(QueuedItems queued, WallJob job) {
+static __global__ __launch_bounds__(kWallThreads,
+                                    blocks_at_once(kWallThreads, 10)) void walk_edges_kernel(QueuedItems queued,
+                                                                                             WallJob job) {
   const LaunchItems items = queued.in_turn();
   constexpr int kTeams = kWallThreads / kLanes, kWarpTeams = kWarp / kLanes, kRoom = 2560 / kTeams;
   constexpr bool kChosenTwice = kRun > kWarpTeams;
