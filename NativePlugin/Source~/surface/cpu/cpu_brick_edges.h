@@ -56,6 +56,12 @@ struct BrickStarts {
 struct CoveredNeighbors {
   static constexpr int kSteps = 2 * kWallSteps, kBytes = kBrickPoints / 8 + 8;
   uint8_t by_step[kSteps][kBytes], solid[kBytes];
+  // Bits of so many: those behind are read with the last ones, and left out.
+  QSES_FN void end(int count) {
+    const auto clear = [&](uint8_t *bits) { std::memset(bits + (count + 7) / 8, 0, sizeof(uint64_t)); };
+    for (uint8_t(&bits)[kBytes] : by_step) clear(bits);
+    clear(solid);
+  }
 };
 
 struct BrickEdges {

@@ -231,6 +231,7 @@ void find_covered(const SurfaceParameters &p, int count, WallWork *w) {
       }
     w->covered.solid[g / kPackSize] = static_cast<uint8_t>(lane_bits(solid));
   }
+  w->covered.end(count);
 }
 
 }  // namespace
