@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // CPU kernel: the triangles of one brick's cells. The numbers of all vertices in reach are written to an array first,
 // so that a triangle is three look-ups.
-#include "surface/cpu/cpu_kernels.h"
+#include "surface/cpu/cpu_leaf_bits.h"
 
 #include <cassert>
 #if !defined(NDEBUG)
@@ -14,6 +14,7 @@ namespace {
 
 // Numbers of the vertices on edges that start at lattice points 0 ... 8 in each axis.
 constexpr int kSide = kBrickEdge + 1;
+constexpr PointPlaces<kSide, kSide * kSide> kPlaces;
 struct VertexNumbers {
   uint32_t at[kAxes][kSide * kSide * kSide];
 };
@@ -26,24 +27,11 @@ constexpr EdgeOffsets make_edge_offsets() {
   EdgeOffsets o{};
   for (int e = 0; e < kCellEdges; ++e) {
     const int x = e < 4 ? 0 : e & 1, y = e < 4 ? e & 1 : e < 8 ? 0 : e >> 1 & 1, z = e < 8 ? e >> 1 & 1 : 0;
-    o.at[e] = (e >> 2) * kSide * kSide * kSide + x + kSide * (y + kSide * z);
+    o.at[e] = (e >> 2) * kSide * kSide * kSide + kPlaces.of(x, y, z);
   }
   return o;
 }
 constexpr EdgeOffsets kEdgeOffsets = make_edge_offsets();
-
-// Where a lattice point is in the arrays: by its bit in a leaf, and the leaf's first point.
-struct BitPlaces {
-  int16_t at[64];
-};
-constexpr int place_of(int x, int y, int z) { return x + kSide * (y + kSide * z); }
-constexpr BitPlaces make_bit_places() {
-  BitPlaces p{};
-  for (int bit = 0; bit < 64; ++bit) p.at[bit] = static_cast<int16_t>(place_of(bit & 3, bit >> 2 & 3, bit >> 4));
-  return p;
-}
-constexpr BitPlaces kBitPlaces = make_bit_places();
-constexpr int place_of_leaf(int leaf) { return kLeafEdge * place_of(leaf & 1, leaf >> 1 & 1, leaf >> 2); }
 
 // The masks of a brick whose edges its cells have: its own, and those of its neighbours towards larger x, y, z (bits of
 // `towards`) with the points that they share.
@@ -63,7 +51,7 @@ constexpr EdgeMasks make_edge_masks() {
       const int leaf = k / kAxes, axis = k % kAxes;
       if (leaf & towards || towards >> axis & 1) continue;
       masks.at[n++] = {towards, k, axis,
-                       place_of_leaf(leaf) + kBrickEdge * place_of(towards & 1, towards >> 1 & 1, towards >> 2),
+                       kPlaces.of_leaf(leaf) + kBrickEdge * kPlaces.of(towards & 1, towards >> 1 & 1, towards >> 2),
                        (towards & 1 ? 0x1111111111111111ull : ~0ull) & (towards & 2 ? 0x000f000f000f000full : ~0ull) &
                            (towards & 4 ? 0xffffull : ~0ull)};
     }
@@ -81,7 +69,7 @@ void number_vertices(const MeshLayout &layout, const UpperBricks &upper, VertexN
     uint32_t *const at = numbers->at[edges.axis] + edges.place;
     for (uint64_t w = crossing & edges.shared; w; w &= w - 1) {
       const int bit = lowest_bit64(w);
-      at[kBitPlaces.at[bit]] = vertex_number(base, crossing, bit);
+      at[kPlaces.of_bit[bit]] = vertex_number(base, crossing, bit);
     }
   }
 }
@@ -104,7 +92,7 @@ void emit_brick_triangles(const BrickSet &bricks, const MeshLayout &layout, uint
     const LeafWords corners = cell_corners(words);
     for (uint64_t mixed = mixed_cells(corners); mixed; mixed &= mixed - 1) {
       const int bit = lowest_bit64(mixed), code = cell_case(corners, bit);
-      const uint32_t *const here = numbers.at[0] + place_of_leaf(leaf) + kBitPlaces.at[bit];
+      const uint32_t *const here = numbers.at[0] + kPlaces.of_leaf(leaf) + kPlaces.of_bit[bit];
       const uint8_t *edges = table.edges[code];
       for (int t = 0; t < table.triangle_count[code]; ++t, edges += 3, out += 3) {
         out[0] = here[kEdgeOffsets.at[edges[0]]];

@@ -17,7 +17,11 @@ constexpr int kPlaces = 16 * 16 * (kBrickEdge + 2), kMostPoints = 10 * 10 * 10;
 constexpr int kMostEdges = kBrickPoints * kWallSteps;
 constexpr int kMostWalks = 128;  // edges walked together
 
-QSES_FN constexpr int place_of(int x, int y, int z) { return x + 1 + 16 * (y + 1) + 256 * (z + 1); }
+constexpr PointPlaces<16, 256> kPlacesFromFirst;
+constexpr int kFirstPlace = kPlacesFromFirst.of(1, 1, 1);
+QSES_FN int place_of(int leaf, int bit) {
+  return kFirstPlace + kPlacesFromFirst.of_leaf(leaf) + kPlacesFromFirst.of_bit[bit];
+}
 QSES_FN glm::ivec3 point_of(int place) { return glm::ivec3((place & 15) - 1, (place >> 4 & 15) - 1, (place >> 8) - 1); }
 struct StepPlaces {
   int at[kWallSteps];  // what a step adds
@@ -26,20 +30,10 @@ QSES_FN StepPlaces make_step_places() {
   StepPlaces places;
   for (int k = 0; k < kWallSteps; ++k) {
     const glm::ivec3 s = wall_step(k);
-    places.at[k] = s.x + 16 * s.y + 256 * s.z;
+    places.at[k] = kPlacesFromFirst.of(s.x, s.y, s.z);
   }
   return places;
 }
-struct BitPlaces {
-  int16_t at[64];  // of the points of the first leaf
-};
-constexpr BitPlaces make_bit_places() {
-  BitPlaces places{};
-  for (int bit = 0; bit < 64; ++bit) places.at[bit] = static_cast<int16_t>(place_of(bit & 3, bit >> 2 & 3, bit >> 4));
-  return places;
-}
-constexpr BitPlaces kBitPlaces = make_bit_places();
-QSES_FN int leaf_offset(int leaf) { return 4 * (leaf & 1) + 64 * (leaf >> 1 & 1) + 1024 * (leaf >> 2); }
 
 // Points and the probes nearest to them.
 template <int kRoom>
@@ -268,7 +262,7 @@ BrickNeeds mark_brick_walls(const FeatureView &f, const BrickSet &bricks, uint32
   for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
     int16_t number = static_cast<int16_t>(starts.first[leaf]);
     for (uint64_t rest = starts.words[leaf]; rest; rest &= rest - 1)
-      w.number[leaf_offset(leaf) + kBitPlaces.at[lowest_bit64(rest)]] = number++;
+      w.number[place_of(leaf, lowest_bit64(rest))] = number++;
   }
   const auto number_at = [&](int place) {
     int16_t &number = w.number[place];
@@ -284,7 +278,7 @@ BrickNeeds mark_brick_walls(const FeatureView &f, const BrickSet &bricks, uint32
   for (int k = 0; k < kWallSteps; ++k)
     for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf)
       for (uint64_t rest = edges.words[k][leaf]; rest; rest &= rest - 1) {
-        const int place = leaf_offset(leaf) + kBitPlaces.at[lowest_bit64(rest)];
+        const int place = place_of(leaf, lowest_bit64(rest));
         w.edges[edge_count++] = {number_at(place), number_at(place + steps.at[k]), static_cast<uint16_t>(place),
                                  static_cast<uint16_t>(k)};
       }

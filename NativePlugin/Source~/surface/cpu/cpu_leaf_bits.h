@@ -90,6 +90,17 @@ struct LeafSteps {
   QSES_FN static glm::ivec3 first_of(int byte) { return glm::ivec3(0, 2 * (byte & 1), byte >> 1); }
 };
 
+// Places of a brick's points in an array with rows of kRow points and layers of kLayer: by leaf, and by bit in it.
+template <int kRow, int kLayer>
+struct PointPlaces {
+  int16_t of_bit[64];
+  static constexpr int of(int x, int y, int z) { return x + kRow * y + kLayer * z; }
+  static constexpr int of_leaf(int leaf) { return kLeafEdge * of(leaf & 1, leaf >> 1 & 1, leaf >> 2); }
+  constexpr PointPlaces() : of_bit() {
+    for (int bit = 0; bit < 64; ++bit) of_bit[bit] = static_cast<int16_t>(of(bit & 3, bit >> 2 & 3, bit >> 4));
+  }
+};
+
 // Where the points of a word lie, in its order, as Lattice::position() has it; `first` is the leaf's first point.
 // Returns how many there are; room for eight more is needed.
 template <class Steps>
