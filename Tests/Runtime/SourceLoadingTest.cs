@@ -117,6 +117,7 @@ namespace QuickSes.Tests
                 Assert.That(Surface.IsLoading || Surface.IsBusy, Is.False);
                 BackgroundThread.SendAllAway();
                 yield return SurfaceRig.Frames(5);
+                Assert.That(Surface.IsLoading, Is.False); // nor does it begin again
                 Assert.That(Surface.AtomCount, Is.EqualTo(0));
                 Assert.That(_loaded, Is.EqualTo(0));
                 Assert.That(_rig.Failures, Is.Empty);

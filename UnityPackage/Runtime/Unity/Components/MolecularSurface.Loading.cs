@@ -105,6 +105,7 @@ namespace QuickSes
             CancelLoading();
             load = null;
             _isScriptFed = false;
+            _asksForAtoms &= !_source.IsSet; // these are the ones, also if they are cancelled before it could ask
             _loadedSource = _source.Copy();
             if (!_loadedSource.TryFind(out MoleculeFile file, out QuickSesError error))
                 return FailToLoad(error);
