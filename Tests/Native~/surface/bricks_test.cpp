@@ -58,7 +58,7 @@ PlaceInBrick place_of(const BrickSet &bricks, int x, int y, int z) {
 }
 
 void check_lattice(const Atoms &atoms, const qses_settings &s, bool dense_table = true) {
-  for (const CpuKernels *kernels : {&base_cpu_kernels(), &cpu_kernels()}) {
+  for (const CpuKernels *kernels : usable_cpu_kernels()) {
     SCOPED_TRACE(testing::Message() << kernels->name << ", " << atoms.size() << " atoms, spacing " << s.spacing
                                     << ", probe " << s.probe_radius << ", surface " << s.surface);
     ExactRun run(atoms, s, 2, *kernels);

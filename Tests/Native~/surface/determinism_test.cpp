@@ -246,14 +246,14 @@ TEST(OrderOfAtoms, DoesNotMatter) {
 
 TEST(InstructionSets, GiveTheSameSurface) {
   using exact_fixture::ExactRun;
-  using quickses::base_cpu_kernels;
   using quickses::cpu_kernels;
-  if (&base_cpu_kernels() == &cpu_kernels()) GTEST_SKIP() << "this processor or build has one set of kernels only";
+  const quickses::CpuKernels &base_kernels = *quickses::usable_cpu_kernels()[0];
+  if (&base_kernels == &cpu_kernels()) GTEST_SKIP() << "this processor or build has one set of kernels only";
   for (const Atoms &atoms : {cluster(300, 24), crambin()})
     for (qses_surface kind : {QSES_SURFACE_SES, QSES_SURFACE_SAS, QSES_SURFACE_VDW}) {
       SCOPED_TRACE(testing::Message() << atoms.size() << " atoms, surface " << kind);
       const qses_settings s = settings(0.5, 1.4, kind);
-      ExactRun base_run(atoms, s, 2, base_cpu_kernels()), best_run(atoms, s, 2, cpu_kernels());
+      ExactRun base_run(atoms, s, 2, base_kernels), best_run(atoms, s, 2, cpu_kernels());
       Surface base, best;
       base.mesh = base_run.mesh();
       best.mesh = best_run.mesh();
@@ -277,6 +277,32 @@ TEST(InstructionSets, GiveTheSameSurface) {
       for (size_t v = 0; v < best.vertex_count(); ++v) found += places.count(key(best.mesh.position(v), 0.01));
       EXPECT_GT(found, best.vertex_count() * 99 / 100);
     }
+}
+
+// However many points they take at a time, what is near each of them decides about it.
+TEST(InstructionSets, NewerOnesGiveTheSameBytes) {
+  using exact_fixture::ExactRun;
+  const auto sets = quickses::usable_cpu_kernels();
+  if (sets.size < 3) GTEST_SKIP() << "this processor or build has no set of kernels beyond AVX2";
+  for (const Atoms &atoms : {cluster(300, 24), cluster(120, 7), crambin()})
+    for (qses_surface kind : {QSES_SURFACE_SES, QSES_SURFACE_SAS, QSES_SURFACE_VDW})
+      for (double spacing : {0.35, 0.5, 1.3, 3.0})
+        for (double probe : {0.4, 1.4, 4.0}) {
+          if (kind == QSES_SURFACE_VDW && probe != 1.4) continue;
+          const qses_settings s = settings(spacing, probe, kind);
+          ExactRun avx2_run(atoms, s, 2, *sets[1]);
+          const mesh_checks::Mesh avx2 = avx2_run.mesh();
+          for (size_t k = 2; k < sets.size; ++k) {
+            SCOPED_TRACE(testing::Message() << sets[k]->name << ", " << atoms.size() << " atoms, surface " << kind
+                                            << ", spacing " << spacing << ", probe " << probe);
+            ExactRun run(atoms, s, 2, *sets[k]);
+            const mesh_checks::Mesh mesh = run.mesh();
+            ASSERT_EQ(mesh.indices, avx2.indices);
+            ASSERT_EQ(mesh.positions, avx2.positions);
+            ASSERT_EQ(mesh.normals, avx2.normals);
+            ASSERT_EQ(mesh.owners, avx2.owners);
+          }
+        }
 }
 
 }  // namespace

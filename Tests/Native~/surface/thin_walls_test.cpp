@@ -98,7 +98,7 @@ Edge judge(const exact_reference::Boundary &boundary, double probe, const Point 
 }
 
 void check_marks(const Atoms &atoms, const qses_settings &s, size_t *walls) {
-  for (const CpuKernels *kernels : {&base_cpu_kernels(), &cpu_kernels()}) {
+  for (const CpuKernels *kernels : usable_cpu_kernels()) {
     SCOPED_TRACE(testing::Message() << kernels->name << ", " << atoms.size() << " atoms, spacing " << s.spacing
                                     << ", probe " << s.probe_radius);
     ExactRun run(atoms, s, 2, *kernels);

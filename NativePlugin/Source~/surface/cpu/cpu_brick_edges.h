@@ -104,6 +104,22 @@ struct BrickEdges {
     return has_bits(left);
   }
 
+  // use(step, leaf, bit of the first end). Most words have no bit, so that those that have are found first.
+  template <class Use>
+  QSES_FN void for_each(const Use &use) const {
+    static_assert(kLeavesPerBrick == 8, "the words of eight steps are found at once");
+    for (int first = 0; first < kWallSteps; first += 8) {
+      uint64_t some = 0;
+      for (int k = first; k < kWallSteps && k < first + 8; ++k)
+        for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf)
+          some |= static_cast<uint64_t>(words[k][leaf] != 0) << (8 * (k - first) + leaf);
+      for (; some; some &= some - 1) {
+        const int k = first + (lowest_bit64(some) >> 3), leaf = lowest_bit64(some) & 7;
+        for (uint64_t rest = words[k][leaf]; rest; rest &= rest - 1) use(k, leaf, lowest_bit64(rest));
+      }
+    }
+  }
+
   // Of points with even sums of coordinates, as every other one is, each edge along an axis has one as an end, and of
   // the diagonals half have two. Those of edges that leave the brick to such an end start at the other one.
   QSES_FN BrickStarts choose_starts() const {

@@ -3,7 +3,7 @@
 // kernels.
 #pragma once
 
-#include "parallel/pack.h"
+#include "parallel/wide_pack.h"
 #include "surface/cpu/cpu_kernels.h"
 
 #include <cstring>
@@ -43,30 +43,33 @@ QSES_FN BrickCandidates cut_columns(const BrickScratch &s) {
   return c;
 }
 
-QSES_FN Vec3<Pack> packs_of(const Vec3<float> &v) { return {Pack(v.x), Pack(v.y), Pack(v.z)}; }
+
+QSES_FN Vec3<WidePack> packs_of(const Vec3<float> &v) { return {WidePack(v.x), WidePack(v.y), WidePack(v.z)}; }
 
 // A box as centre and half extents, and squared distances to it.
 struct PackBox {
-  Vec3<Pack> center, half;
+  Vec3<WidePack> center, half;
   QSES_FN PackBox(const Vec3<float> &low, const Vec3<float> &high)
       : center(packs_of((low + high) * 0.5f)), half(packs_of((high - low) * 0.5f)) {}
-  QSES_FN Pack distance2(Pack x, Pack y, Pack z) const {
-    const Pack zero(0.f);
-    const Pack dx = maximum(absolute(x - center.x) - half.x, zero), dy = maximum(absolute(y - center.y) - half.y, zero),
-               dz = maximum(absolute(z - center.z) - half.z, zero);
+  QSES_FN WidePack distance2(WidePack x, WidePack y, WidePack z) const {
+    const WidePack zero(0.f);
+    const WidePack dx = maximum(absolute(x - center.x) - half.x, zero),
+                   dy = maximum(absolute(y - center.y) - half.y, zero),
+                   dz = maximum(absolute(z - center.z) - half.z, zero);
     return dx * dx + dy * dy + dz * dz;
   }
 };
 
 // That around eight points, and a bit more.
-QSES_FN PackBox box_around(const Vec3<Pack> &p) {
+QSES_FN PackBox box_around(const Vec3<WidePack> &p) {
   const Vec3<float> more(1e-4f, 1e-4f, 1e-4f);
   const Vec3<float> low(horizontal_minimum(p.x), horizontal_minimum(p.y), horizontal_minimum(p.z)),
       high(horizontal_maximum(p.x), horizontal_maximum(p.y), horizontal_maximum(p.z));
   return {low - more, high + more};
 }
 
-QSES_FN void store_balls(const BallColumns &c, int at, uint32_t set, Pack x, Pack y, Pack z, Pack radius) {
+QSES_FN void store_balls(const BallColumns &c, int at, uint32_t set, WidePack x, WidePack y, WidePack z,
+                         WidePack radius) {
   store_lanes(c.x + at, set, x);
   store_lanes(c.y + at, set, y);
   store_lanes(c.z + at, set, z);
@@ -75,17 +78,8 @@ QSES_FN void store_balls(const BallColumns &c, int at, uint32_t set, Pack x, Pac
 
 // Behind the last ball stand others that nothing meets, so that whole packs can be read.
 QSES_FN void end_balls(const BallColumns &c, int at) {
-  store_pack(c.x + at, Pack(kFarAway));
-  store_pack(c.y + at, Pack(kFarAway));
-  store_pack(c.z + at, Pack(kFarAway));
-  store_pack(c.radius + at, Pack(0.f));
-}
-
-// One bit per lane from eight bytes that are 0 or 1.
-QSES_FN uint32_t bits_of_bytes(const uint8_t *bytes) {
-  uint64_t v;
-  std::memcpy(&v, bytes, sizeof v);
-  return static_cast<uint32_t>((v * 0x0102040810204080ull) >> 56);
+  for (float *column : {c.x, c.y, c.z}) store_pack(column + at, WidePack(kFarAway));
+  store_pack(c.radius + at, WidePack(0.f));
 }
 
 QSES_FN CellBox cells_within(const CellLayout &cells, const Vec3<float> &low, const Vec3<float> &high, float reach) {
@@ -103,25 +97,25 @@ QSES_FN BrickCandidates gather_atoms(const FeatureView &f, const Vec3<float> &lo
   for (int z = cells.z0; z <= cells.z1; ++z)
     for (int y = cells.y0; y <= cells.y1; ++y) {
       const ItemRun run = f.atoms.run(cells.x0, cells.x1, y, z);
-      for (uint32_t q = run.begin; q < run.end; q += kPackSize) {
-        Pack ax, ay, az, radius;
-        load_columns(&f.atoms.items[q].center.x, &ax, &ay, &az, &radius);
-        const Pack reach = maximum(Pack(0.f), radius + Pack(atom_reach));
-        const uint32_t near = first_lanes(run.end - q) & lane_bits(box.distance2(ax, ay, az) < reach * reach);
-        const uint32_t exposed = near & bits_of_bytes(f.exposed + q);
+      for (uint32_t q = run.begin; q < run.end; q += kWideLanes) {
+        WidePack ax, ay, az, radius;
+        load_wide_rows(&f.atoms.items[q].center.x, run.end - q, &ax, &ay, &az, &radius);
+        const WidePack reach = maximum(WidePack(0.f), radius + WidePack(atom_reach));
+        const uint32_t near = first_wide_lanes(run.end - q) & lane_bits(box.distance2(ax, ay, az) < reach * reach);
+        const uint32_t exposed = near & bits_of_bytes(f.exposed + q, run.end - q);
         const int n = c.atom_count, e = c.exposed_count;
-        if (n + kPackSize <= scratch.atom_capacity) {
+        if (n + kWideLanes <= scratch.atom_capacity) {
           store_balls(c.atoms, n, near, ax, ay, az, radius);
-          store_lane_numbers(c.atom_index + n, near, static_cast<int32_t>(q));
+          store_wide_numbers(c.atom_index + n, near, static_cast<int32_t>(q));
           store_balls(c.exposed, e, exposed, ax, ay, az, radius);
-          store_lane_numbers(c.exposed_index + e, exposed, static_cast<int32_t>(q));
+          store_wide_numbers(c.exposed_index + e, exposed, static_cast<int32_t>(q));
         }
         c.atom_count += popcount64(near);
         c.exposed_count += popcount64(exposed);
       }
     }
-  if (c.atom_count + kPackSize > scratch.atom_capacity) {
-    c.needs.atoms = c.atom_count + kPackSize;
+  if (c.atom_count + kWideLanes > scratch.atom_capacity) {
+    c.needs.atoms = c.atom_count + kWideLanes;
     return c;
   }
   end_balls(c.atoms, c.atom_count);
@@ -139,22 +133,22 @@ QSES_FN void gather_arcs(const FeatureView &f, const Vec3<float> &low, float ext
     for (int z = cells.z0; z <= cells.z1; ++z)
       for (int y = cells.y0; y <= cells.y1; ++y) {
         const ItemRun run = f.arc_bounds.run(cells.x0, cells.x1, y, z);
-        for (uint32_t q = run.begin; q < run.end; q += kPackSize) {
-          Pack bx, by, bz, radius;
-          load_columns(&f.arc_bounds.items[q].center.x, &bx, &by, &bz, &radius);
-          const Pack reach = radius + Pack(arc_reach);
-          const uint32_t near = first_lanes(run.end - q) & lane_bits(box.distance2(bx, by, bz) < reach * reach);
+        for (uint32_t q = run.begin; q < run.end; q += kWideLanes) {
+          WidePack bx, by, bz, radius;
+          load_wide_rows(&f.arc_bounds.items[q].center.x, run.end - q, &bx, &by, &bz, &radius);
+          const WidePack reach = radius + WidePack(arc_reach);
+          const uint32_t near = first_wide_lanes(run.end - q) & lane_bits(box.distance2(bx, by, bz) < reach * reach);
           const int n = c->arc_count;
-          if (n + kPackSize <= scratch.arc_capacity) {
+          if (n + kWideLanes <= scratch.arc_capacity) {
             store_balls(c->arcs, n, near, bx, by, bz, radius);
-            store_lane_numbers(c->arc_index + n, near, static_cast<int32_t>(q));
+            store_wide_numbers(c->arc_index + n, near, static_cast<int32_t>(q));
           }
           c->arc_count += popcount64(near);
         }
       }
   }
-  if (c->arc_count + kPackSize > scratch.arc_capacity)
-    c->needs.arcs = c->arc_count + kPackSize;
+  if (c->arc_count + kWideLanes > scratch.arc_capacity)
+    c->needs.arcs = c->arc_count + kWideLanes;
   else
     end_balls(c->arcs, c->arc_count);
 }
@@ -166,42 +160,42 @@ QSES_FN BrickCandidates gather_candidates(const FeatureView &f, const Vec3<float
   return c;
 }
 
-// Numbers of the balls that, grown by `reach` (which may be negative), meet the box. Room for eight more is needed.
+// Numbers of the balls that, grown by `reach` (which may be negative), meet the box. Room for sixteen more is needed.
 QSES_FN int choose_balls(const BallColumns &c, int n, const PackBox &box, float reach, int32_t *out) {
-  const Pack grow(reach);
+  const WidePack grow(reach);
   int k = 0;
-  for (int q = 0; q < n; q += kPackSize) {
-    const Pack r = maximum(Pack(0.f), load_pack(c.radius + q) + grow);
-    const Pack distance2 = box.distance2(load_pack(c.x + q), load_pack(c.y + q), load_pack(c.z + q));
-    k += store_lane_numbers(out + k, lane_bits(distance2 < r * r), q);
+  for (int q = 0; q < n; q += kWideLanes) {
+    const WidePack r = maximum(WidePack(0.f), load_wide(c.radius + q) + grow);
+    const WidePack distance2 = box.distance2(load_wide(c.x + q), load_wide(c.y + q), load_wide(c.z + q));
+    k += store_wide_numbers(out + k, lane_bits(distance2 < r * r), q);
   }
   return k;
 }
 
-QSES_FN Vec3<Pack> load_points(const float *x, const float *y, const float *z) {
-  return {load_pack(x), load_pack(y), load_pack(z)};
+QSES_FN Vec3<WidePack> load_points(const float *x, const float *y, const float *z) {
+  return {load_wide(x), load_wide(y), load_wide(z)};
 }
 
 // The deepest of the chosen balls for each of eight points: its number in the columns (as a float; -1: none deeper than
 // floor), and the depth.
 struct Deepest {
-  Pack number, depth;
+  WidePack number, depth;
 };
-QSES_FN Deepest deepest_ball(const BallColumns &c, const int32_t *list, int n, const Vec3<Pack> &p, float floor) {
-  Deepest best{Pack(-1.f), Pack(floor)};
+QSES_FN Deepest deepest_ball(const BallColumns &c, const int32_t *list, int n, const Vec3<WidePack> &p, float floor) {
+  Deepest best{WidePack(-1.f), WidePack(floor)};
   for (int k = 0; k < n; ++k) {
     const int a = list[k];
-    const Pack dx = p.x - Pack(c.x[a]), dy = p.y - Pack(c.y[a]), dz = p.z - Pack(c.z[a]);
-    const Pack depth = Pack(c.radius[a]) - square_root(dx * dx + dy * dy + dz * dz);
-    const PackMask deeper = depth > best.depth;
+    const WidePack dx = p.x - WidePack(c.x[a]), dy = p.y - WidePack(c.y[a]), dz = p.z - WidePack(c.z[a]);
+    const WidePack depth = WidePack(c.radius[a]) - square_root(dx * dx + dy * dy + dz * dz);
+    const WideMask deeper = depth > best.depth;
     best.depth = select(deeper, depth, best.depth);
-    best.number = select(deeper, Pack(static_cast<float>(a)), best.number);
+    best.number = select(deeper, WidePack(static_cast<float>(a)), best.number);
   }
   return best;
 }
 
 // Of the points in `lanes`, all nearest to one atom: which have their radial projection on it exposed?
-QSES_FN uint32_t exposed_lanes(const FeatureView &f, uint32_t atom, const Vec3<Pack> &offset, Pack length,
+QSES_FN uint32_t exposed_lanes(const FeatureView &f, uint32_t atom, const Vec3<WidePack> &offset, WidePack length,
                                uint32_t lanes) {
   const CapRange range = f.cap_ranges[atom];
   const Cap *caps = f.caps + range.first;
@@ -212,19 +206,19 @@ QSES_FN uint32_t exposed_lanes(const FeatureView &f, uint32_t atom, const Vec3<P
 // Eight points on the exposed balls that they are deepest in: use(ball, atom, exposed) is called for each such ball
 // with its place in the grid, and those of the points in `lanes` whose radial projection on it is exposed.
 template <class Use>
-QSES_FN void for_exposed_projections(const FeatureView &f, const BrickCandidates &c, const Vec3<Pack> &p,
+QSES_FN void for_exposed_projections(const FeatureView &f, const BrickCandidates &c, const Vec3<WidePack> &p,
                                      const Deepest &deepest, uint32_t lanes, const Use &use) {
-  alignas(32) float number[kPackSize];
+  alignas(32) float number[kWideLanes];
   store_pack(number, deepest.number);
-  for (uint32_t todo = lanes & lane_bits(Pack(0.f) <= deepest.number); todo;) {
+  for (uint32_t todo = lanes & lane_bits(WidePack(0.f) <= deepest.number); todo;) {
     const float a = number[lowest_bit32(todo)];
-    const uint32_t same = todo & lane_bits(deepest.number == Pack(a));
+    const uint32_t same = todo & lane_bits(deepest.number == WidePack(a));
     todo &= ~same;
     const int k = static_cast<int>(a);
     const Sphere ball{glm::vec3(c.exposed.x[k], c.exposed.y[k], c.exposed.z[k]), c.exposed.radius[k]};
     const uint32_t atom = static_cast<uint32_t>(c.exposed_index[k]);
     const uint32_t exposed =
-        exposed_lanes(f, atom, p - Vec3<Pack>(ball.center), offset_length(ball, deepest.depth), same);
+        exposed_lanes(f, atom, p - Vec3<WidePack>(ball.center), offset_length(ball, deepest.depth), same);
     if (exposed) use(ball, atom, exposed);
   }
 }

@@ -3,7 +3,7 @@
 // covered if each lies within a cap, or each of the seven smaller discs that cover it does, and so on.
 #pragma once
 
-#include "parallel/pack.h"
+#include "parallel/wide_pack.h"
 #include "parallel/working_thread.h"
 #include "surface/geometry/circle.h"
 
@@ -40,14 +40,15 @@ class CoveredSphere {
                 float least_depth, float *const (&bounds)[kLevels])
       : axes_(axes), count_(n) {
     for (int level = 0; level < kLevels; ++level) bounds_[level] = bounds[level];
-    for (int q = 0; q < n; q += kPackSize) {
-      const Pack cosine = load_pack(cosines + q), sine = load_pack(sines + q), slope = load_pack(slopes + q);
+    for (int q = 0; q < n; q += kWideLanes) {
+      const WidePack cosine = load_wide(cosines + q), sine = load_wide(sines + q),
+                       slope = load_wide(slopes + q);
       for (int level = 0; level < kLevels; ++level) {
         const Disc &disc = kDiscs[level];
         // The cosine of the cap's angle less the disc's, if there is anything left.
-        const Pack c(disc.cosine), bound = cosine * c + sine * Pack(disc.sine);
-        const auto counts = (cosine < c) & (Pack(least_depth) < slope * Pack(disc.margin));
-        store_pack(bounds[level] + q, select(counts, bound, Pack(2.f)));
+        const WidePack c(disc.cosine), bound = cosine * c + sine * WidePack(disc.sine);
+        const auto counts = (cosine < c) & (WidePack(least_depth) < slope * WidePack(disc.margin));
+        store_pack(bounds[level] + q, select(counts, bound, WidePack(2.f)));
       }
     }
   }
@@ -77,15 +78,15 @@ class CoveredSphere {
                                            {-1.f, 0.f}, {-0.5f, -0.8660254f}, {0.5f, -0.8660254f}};
 
   bool is_within_a_cap(const Vec3<float> &middle, int level) {
-    const Vec3<Pack> d(Pack(middle.x), Pack(middle.y), Pack(middle.z));
+    const Vec3<WidePack> d(WidePack(middle.x), WidePack(middle.y), WidePack(middle.z));
     // Which caps it is can't be foreseen: a few packs are looked at before the next branch.
-    constexpr int kTogether = 8 * kPackSize;
+    constexpr int kTogether = 64;
     for (int first = 0, last; first < count_; first = last) {
       last = first + kTogether < count_ ? first + kTogether : count_;
       uint32_t within = 0;
-      for (int q = first; q < last; q += kPackSize) {
-        const Vec3<Pack> axis(load_pack(axes_.x + q), load_pack(axes_.y + q), load_pack(axes_.z + q));
-        within |= lane_bits(load_pack(bounds_[level] + q) <= dot(d, axis));
+      for (int q = first; q < last; q += kWideLanes) {
+        const Vec3<WidePack> axis(load_wide(axes_.x + q), load_wide(axes_.y + q), load_wide(axes_.z + q));
+        within |= lane_bits(load_wide(bounds_[level] + q) <= dot(d, axis));
       }
       if (within) return true;
     }

@@ -3,6 +3,7 @@
 // brick; the drivers (solvent_features_cpu.h, exact_ses_cpu.h) hand out the work and own all memory.
 #pragma once
 
+#include "parallel/span.h"
 #include "parallel/working_thread.h"
 #include "surface/stages/hot_stages.h"
 #include "surface/stages/local_features.h"
@@ -40,7 +41,7 @@ struct BrickNeeds {
 
 // The features near a place (stages/local_features.h), the arcs also in columns. A thread has one.
 struct LocalColumns {
-  static constexpr int kArcRoom = LocalReach::kMostArcs + 8, kArcColumns = 12;
+  static constexpr int kArcRoom = LocalReach::kMostArcs + 16, kArcColumns = 12;
   uint32_t atoms[LocalReach::kMostAtoms + 8], arcs[kArcRoom];
   float depths[LocalReach::kMostAtoms + 8];  // of the place in the balls of the atoms
   float arc_columns[kArcColumns][kArcRoom];
@@ -96,12 +97,15 @@ QSES_CPU_KERNELS(QSES_DECLARE)
 namespace v3 {
 QSES_CPU_KERNELS(QSES_DECLARE)
 }  // namespace v3
+namespace v4 {
+QSES_CPU_KERNELS(QSES_DECLARE)
+}  // namespace v4
 #undef QSES_DECLARE
 
-// The best set of kernels this processor runs.
-const CpuKernels &cpu_kernels();
+// The sets that this processor runs, each better than those before it. All but the first give the same bytes.
+Span<const CpuKernels *const> usable_cpu_kernels();
 
-// Those that every processor runs.
-const CpuKernels &base_cpu_kernels();
+// The best of them.
+const CpuKernels &cpu_kernels();
 
 }  // namespace quickses

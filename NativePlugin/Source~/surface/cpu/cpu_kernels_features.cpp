@@ -44,25 +44,25 @@ int gather_neighbors(const NeighborGridView &atoms, float max_radius, uint32_t i
   const float reach = self.radius + max_radius;
   const Vec3<float> r(reach, reach, reach);
   const CellBox box = cells_around(atoms.cells, center - r, center + r);
-  const Pack x0(center.x), y0(center.y), z0(center.z), r0(self.radius);
+  const WidePack x0(center.x), y0(center.y), z0(center.z), r0(self.radius);
   int n = 0;
   for (int z = box.z0; z <= box.z1; ++z)
     for (int y = box.y0; y <= box.y1; ++y) {
       const ItemRun run = atoms.run(box.x0, box.x1, y, z);
-      for (uint32_t q = run.begin; q < run.end; q += kPackSize) {
-        Pack x, yy, zz, radius;
-        load_columns(&atoms.items[q].center.x, &x, &yy, &zz, &radius);
+      for (uint32_t q = run.begin; q < run.end; q += kWideLanes) {
+        WidePack x, yy, zz, radius;
+        load_wide_rows(&atoms.items[q].center.x, run.end - q, &x, &yy, &zz, &radius);
         x = x - x0, yy = yy - y0, zz = zz - z0;
-        const Pack sum = radius + r0;
+        const WidePack sum = radius + r0;
         uint32_t near = lane_bits(x * x + yy * yy + zz * zz < sum * sum);
-        near &= first_lanes(run.end - q);
-        if (i - q < kPackSize) near &= ~(1u << (i - q));
+        near &= first_wide_lanes(run.end - q);
+        if (i - q < kWideLanes) near &= ~(1u << (i - q));
         if (n + kPackSize <= capacity) {
           store_lanes(c.x + n, near, x);
           store_lanes(c.y + n, near, yy);
           store_lanes(c.z + n, near, zz);
           store_lanes(c.cosine + n, near, radius);
-          store_lane_numbers(c.index + n, near, static_cast<int32_t>(q));
+          store_wide_numbers(c.index + n, near, static_cast<int32_t>(q));
         }
         n += popcount64(near);
       }
@@ -74,25 +74,25 @@ int gather_neighbors(const NeighborGridView &atoms, float max_radius, uint32_t i
 // neighbours that only touch. slopes: of CoveredSphere.
 int make_caps(float radius, const Columns &c, float *slopes, int n) {
   int kept = 0;
-  for (int q = 0; q < n; q += kPackSize) {
-    const Vec3<Pack> d(load_pack(c.x + q), load_pack(c.y + q), load_pack(c.z + q));
-    const Pack distance2 = maximum(length_squared(d), Pack(1e-20f));
-    const Pack inverse = reciprocal_root(distance2);
-    const Pack other = load_pack(c.cosine + q), cosine = cap_cosine(Pack(radius), other, distance2, inverse);
-    uint32_t keep = lane_bits(overlap(Pack(radius), other, distance2));
-    keep &= first_lanes(static_cast<uint32_t>(n - q));
-    int32_t index[kPackSize];
-    for (int l = 0; l < kPackSize; ++l) index[l] = c.index[q + l];
+  for (int q = 0; q < n; q += kWideLanes) {
+    const Vec3<WidePack> d(load_wide(c.x + q), load_wide(c.y + q), load_wide(c.z + q));
+    const WidePack distance2 = maximum(length_squared(d), WidePack(1e-20f));
+    const WidePack inverse = reciprocal_root(distance2);
+    const WidePack other = load_wide(c.cosine + q), cosine = cap_cosine(WidePack(radius), other, distance2, inverse);
+    uint32_t keep = lane_bits(overlap(WidePack(radius), other, distance2));
+    keep &= first_wide_lanes(static_cast<uint32_t>(n - q));
+    int32_t index[kWideLanes];
+    for (int l = 0; l < kWideLanes; ++l) index[l] = c.index[q + l];
     store_lanes(c.x + kept, keep, d.x * inverse);
     store_lanes(c.y + kept, keep, d.y * inverse);
     store_lanes(c.z + kept, keep, d.z * inverse);
-    const Pack sine = square_root(maximum(Pack(0.f), Pack(1.f) - cosine * cosine));
+    const WidePack sine = square_root(maximum(WidePack(0.f), WidePack(1.f) - cosine * cosine));
     store_lanes(c.cosine + kept, keep, cosine);
     store_lanes(c.sine + kept, keep, sine);
-    store_lanes(slopes + kept, keep, quotient(Pack(radius) * sine * distance2 * inverse, other));
+    store_lanes(slopes + kept, keep, quotient(WidePack(radius) * sine * distance2 * inverse, other));
     for (uint32_t k = keep; k; k &= k - 1) c.index[kept++] = index[lowest_bit32(k)];
   }
-  for (int k = kept; k < kept + kPackSize; ++k)
+  for (int k = kept; k < kept + kWideLanes; ++k)
     c.x[k] = c.y[k] = c.z[k] = c.sine[k] = slopes[k] = 0.f, c.cosine[k] = 2.f;
   return kept;
 }
@@ -102,33 +102,33 @@ void sort_caps(const Columns &c, int n) {
   for (int w = 0; w <= n / 64; ++w) c.taken[w] = 0;
   for (int j = 0; j < n; ++j) {
     if (j % 64 == 0) look_for_stop();
-    const Pack own(c.cosine[j]);
+    const WidePack own(c.cosine[j]);
     int rank = 0;
-    for (int q = 0; q < n; q += kPackSize) rank += popcount64(lane_bits(load_pack(c.cosine + q) < own));
+    for (int q = 0; q < n; q += kWideLanes) rank += popcount64(lane_bits(load_wide(c.cosine + q) < own));
     while (c.taken[rank >> 6] >> (rank & 63) & 1) ++rank;
     c.taken[rank >> 6] |= uint64_t(1) << (rank & 63);
     c.sx[rank] = c.x[j], c.sy[rank] = c.y[j], c.sz[rank] = c.z[j], c.scos[rank] = c.cosine[j];
     c.sorted_index[rank] = c.index[j];
   }
-  for (int k = n; k < n + kPackSize; ++k) c.sx[k] = c.sy[k] = c.sz[k] = 0.f, c.scos[k] = 2.f;
-  for (int q = 0; q < n; q += kPackSize) {
-    const Pack cosine = load_pack(c.scos + q);
-    store_pack(c.ssin + q, square_root(maximum(Pack(0.f), Pack(1.f) - cosine * cosine)));
+  for (int k = n; k < n + kWideLanes; ++k) c.sx[k] = c.sy[k] = c.sz[k] = 0.f, c.scos[k] = 2.f;
+  for (int q = 0; q < n; q += kWideLanes) {
+    const WidePack cosine = load_wide(c.scos + q);
+    store_pack(c.ssin + q, square_root(maximum(WidePack(0.f), WidePack(1.f) - cosine * cosine)));
   }
 }
 
 // Drops caps that lie within a larger one; what is left goes to x, y, z, cosine, sine, index.
 int drop_contained_caps(const Columns &c, int n) {
   int kept = 0;
-  for (int q = 0; q < n; q += kPackSize) {
+  for (int q = 0; q < n; q += kWideLanes) {
     if (q % 64 == 0) look_for_stop();
-    const Vec3<Pack> axis(load_pack(c.sx + q), load_pack(c.sy + q), load_pack(c.sz + q));
-    const Pack cosine = load_pack(c.scos + q), sine = load_pack(c.ssin + q);
-    uint32_t keep = first_lanes(static_cast<uint32_t>(n - q));
-    const int last = q + kPackSize < n ? q + kPackSize : n;  // only larger caps contain: those sorted before
+    const Vec3<WidePack> axis(load_wide(c.sx + q), load_wide(c.sy + q), load_wide(c.sz + q));
+    const WidePack cosine = load_wide(c.scos + q), sine = load_wide(c.ssin + q);
+    uint32_t keep = first_wide_lanes(static_cast<uint32_t>(n - q));
+    const int last = q + kWideLanes < n ? q + kWideLanes : n;  // only larger caps contain: those sorted before
     for (int k = 0; k < last && keep; ++k) {
-      const Pack between = dot(axis, Vec3<Pack>(Pack(c.sx[k]), Pack(c.sy[k]), Pack(c.sz[k])));
-      keep &= ~lane_bits(cap_contains(Pack(c.scos[k]), Pack(c.ssin[k]), cosine, sine, between));
+      const WidePack between = dot(axis, Vec3<WidePack>(WidePack(c.sx[k]), WidePack(c.sy[k]), WidePack(c.sz[k])));
+      keep &= ~lane_bits(cap_contains(WidePack(c.scos[k]), WidePack(c.ssin[k]), cosine, sine, between));
     }
     store_lanes(c.x + kept, keep, axis.x);
     store_lanes(c.y + kept, keep, axis.y);
@@ -142,25 +142,25 @@ int drop_contained_caps(const Columns &c, int n) {
 
 // The exposed intervals of circle j of the n caps; false if it is hidden.
 bool cut_by_neighbors(const Circle &circle, const Columns &c, int n, int j, ExposedIntervals<Interval *> *intervals) {
-  for (int q = 0; q < n; q += kPackSize) {
+  for (int q = 0; q < n; q += kWideLanes) {
     if (q % 64 == 0) look_for_stop();
-    const Vec3<Pack> axis(load_pack(c.x + q), load_pack(c.y + q), load_pack(c.z + q));
-    const HalfPlane<Pack> h = cut_circle(circle, axis, load_pack(c.cosine + q));
-    uint32_t lanes = first_lanes(static_cast<uint32_t>(n - q));
-    if (j >= q && j < q + kPackSize) lanes &= ~(1u << (j - q));
+    const Vec3<WidePack> axis(load_wide(c.x + q), load_wide(c.y + q), load_wide(c.z + q));
+    const HalfPlane<WidePack> h = cut_circle(circle, axis, load_wide(c.cosine + q));
+    uint32_t lanes = first_wide_lanes(static_cast<uint32_t>(n - q));
+    if (j >= q && j < q + kWideLanes) lanes &= ~(1u << (j - q));
     lanes &= ~lane_bits(same_circle(circle, h));
     if (lane_bits(covers_circle(h)) & lanes) return false;
     lanes &= ~lane_bits(misses_circle(h));
     if (!lanes) continue;
-    Pack begin, end;
+    WidePack begin, end;
     covered_stretch(h, &begin, &end);
     const uint32_t points = lane_bits(begin == end) & lanes;
     if (points) {
-      if (lane_bits(h.c < Pack(0.f)) & points) return false;
+      if (lane_bits(h.c < WidePack(0.f)) & points) return false;
       lanes &= ~points;
     }
     // The largest caps come first: most hidden circles are found to be so before the others are looked at.
-    alignas(32) float begins[kPackSize], ends[kPackSize];
+    alignas(32) float begins[kWideLanes], ends[kWideLanes];
     store_pack(begins, begin);
     store_pack(ends, end);
     for (; lanes; lanes &= lanes - 1) {

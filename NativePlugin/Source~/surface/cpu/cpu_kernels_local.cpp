@@ -14,7 +14,7 @@ struct PackedBall {
 };
 
 PackedArc load_arcs(const LocalColumns &c, int k) {
-  const auto column = [&](int n) { return load_pack(c.arc_columns[n] + k); };
+  const auto column = [&](int n) { return load_wide(c.arc_columns[n] + k); };
   return {{column(0), column(1), column(2)},  column(3), {column(4), column(5), column(6)}, column(7),
           {column(8), column(9), column(10)}, column(11)};
 }
@@ -93,27 +93,27 @@ bool gather_local_features(const FeatureView &f, const Vec3<float> &place, float
                                               });
   if (!arcs_fit) return false;
   const glm::vec3 zero(0.f);
-  for (int k = 0; k < kPackSize; ++k)
+  for (int k = 0; k < kWideLanes; ++k)
     store_arc(out, out->arc_number + k, {glm::vec3(1e6f), 0.f, zero, 0.f, zero, 0.f});  // farther than all others
   return true;
 }
 
 NearestArc nearest_local_arc(const LocalColumns &c, const Vec3<float> &place) {
-  const Vec3<Pack> x{Pack(place.x), Pack(place.y), Pack(place.z)};
-  Pack best(kFarAway), second(kFarAway), number(0.f);
-  for (int k = 0; k < c.arc_number; k += kPackSize) {
-    const Pack distance2 = arc_distance2(load_arcs(c, k), x);
-    const PackMask nearer = distance2 < best;
+  const Vec3<WidePack> x{WidePack(place.x), WidePack(place.y), WidePack(place.z)};
+  WidePack best(kFarAway), second(kFarAway), number(0.f);
+  for (int k = 0; k < c.arc_number; k += kWideLanes) {
+    const WidePack distance2 = arc_distance2(load_arcs(c, k), x);
+    const WideMask nearer = distance2 < best;
     second = minimum(second, select(nearer, best, distance2));
-    number = select(nearer, Pack(static_cast<float>(k)), number);
+    number = select(nearer, WidePack(static_cast<float>(k)), number);
     best = select(nearer, distance2, best);
   }
-  float lane_best[kPackSize], lane_second[kPackSize], lane_number[kPackSize];
+  float lane_best[kWideLanes], lane_second[kWideLanes], lane_number[kWideLanes];
   store_pack(lane_best, best);
   store_pack(lane_second, second);
   store_pack(lane_number, number);
   NearestArc nearest;
-  for (int lane = 0; lane < kPackSize; ++lane) {
+  for (int lane = 0; lane < kWideLanes; ++lane) {
     if (!(lane_best[lane] < kFarAway)) continue;
     nearest.offer(static_cast<int>(c.arcs[static_cast<int>(lane_number[lane]) + lane]), lane_best[lane]);
     nearest.second2 = minimum(nearest.second2, lane_second[lane]);

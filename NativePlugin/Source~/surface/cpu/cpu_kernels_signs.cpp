@@ -36,6 +36,41 @@ struct BrickSteps {
   }
 };
 
+// How far the points of a plane are from the middle of a ball, seen along z: squared, from the offsets in x and the
+// squared ones in y of a row and a column.
+struct PlaneDistances {
+#if defined(__AVX512F__)
+  WidePack quarter[4];
+  QSES_FN PlaneDistances(Pack dx, Pack dy2) {
+    const __m512i x = _mm512_setr_epi32(0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3),
+                  y = _mm512_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3);
+    for (int k = 0; k < 4; ++k) {
+      const WidePack dx_k = spread_lanes(dx, _mm512_add_epi32(x, _mm512_set1_epi32(4 * (k & 1))));
+      quarter[k] = multiply_add(dx_k, dx_k, spread_lanes(dy2, _mm512_add_epi32(y, _mm512_set1_epi32(2 * (k & 2)))));
+    }
+  }
+  // Which of them are less, in the order of BrickPlanes.
+  QSES_FN uint64_t less_than(float bound) const {
+    const WidePack b(bound);
+    return join_lanes(quarter[0] < b, quarter[1] < b, quarter[2] < b, quarter[3] < b);
+  }
+#else
+  Pack row[kBrickEdge];
+  QSES_FN PlaneDistances(Pack dx, Pack dy2) {
+    alignas(32) float dy2_of[kPackSize];
+    store_pack(dy2_of, dy2);
+    for (int y = 0; y < kBrickEdge; ++y) row[y] = multiply_add(dx, dx, Pack(dy2_of[y]));
+  }
+  QSES_FN uint64_t less_than(float bound) const {
+    const Pack b(bound);
+    const auto half = [&](int y) {
+      return static_cast<uint64_t>(half_rows(row[y] < b, row[y + 1] < b, row[y + 2] < b, row[y + 3] < b));
+    };
+    return half(0) | half(4) << 32;
+  }
+#endif
+};
+
 // Sets the bits of the lattice points within a ball; the centre is relative to the brick's first point.
 QSES_FN void fill_ball(BrickPlanes *planes, const BrickSteps &steps, float cx, float cy, float cz, float radius2) {
   const float h = steps.h;
@@ -48,20 +83,11 @@ QSES_FN void fill_ball(BrickPlanes *planes, const BrickSteps &steps, float cx, f
   if (!open) return;
   alignas(32) float bounds[kPackSize];
   store_pack(bounds, left);
-  const Pack dx = steps.along - x, dx2 = dx * dx;
-  Pack row2[8];
-  for (int y = 0; y < 8; ++y) {
-    const float dy = static_cast<float>(y) * h - cy;
-    row2[y] = dx2 + Pack(dy * dy);
-  }
+  const Pack dy = multiply_add(steps.number, Pack(h), Pack(-cy));
+  const PlaneDistances distances(steps.along - x, rounded_product(dy, dy));
   for (; open; open &= open - 1) {
     const int z = lowest_bit32(open);
-    const Pack bound(bounds[z]);
-    const auto half = [&](int y) {
-      return static_cast<uint64_t>(
-          half_rows(row2[y] < bound, row2[y + 1] < bound, row2[y + 2] < bound, row2[y + 3] < bound));
-    };
-    planes->add(z, half(0) | half(4) << 32);
+    planes->add(z, distances.less_than(bounds[z]));
   }
 }
 
@@ -69,17 +95,17 @@ QSES_FN void fill_ball(BrickPlanes *planes, const BrickSteps &steps, float cx, f
 // may have put a point into a ball; a point that is hardly outside an exposed ball is still projected on it.
 uint64_t leaf_inside(const FeatureView &f, const BrickCandidates &c, const Lattice &lattice, const glm::ivec3 &first,
                      uint64_t open, float slack, int *latest_arc) {
-  alignas(32) float px[64 + kPackSize], py[64 + kPackSize], pz[64 + kPackSize];
+  alignas(32) float px[64 + kWideLanes], py[64 + kWideLanes], pz[64 + kWideLanes];
   open = to_blocks(open);
   const int n = list_points<BlockSteps>(lattice, first, open, px, py, pz);
-  for (int k = n; k < n + kPackSize; ++k) px[k] = px[n - 1], py[k] = py[n - 1], pz[k] = pz[n - 1];
+  for (int k = n; k < n + kWideLanes; ++k) px[k] = px[n - 1], py[k] = py[n - 1], pz[k] = pz[n - 1];
   const float depth = f.parameters.depth;
-  const Pack depth2(depth * depth);
+  const WidePack depth2(depth * depth);
   uint64_t result = 0;
-  for (int g = 0; g < n; g += kPackSize) {
+  for (int g = 0; g < n; g += kWideLanes) {
     if (c.arc_count > kManyArcs) look_for_stop();
-    const Vec3<Pack> p = load_points(px + g, py + g, pz + g);
-    uint32_t lanes = first_lanes(static_cast<uint32_t>(n - g));
+    const Vec3<WidePack> p = load_points(px + g, py + g, pz + g);
+    uint32_t lanes = first_wide_lanes(static_cast<uint32_t>(n - g));
     const auto leave_out_near = [&](int arc) {
       lanes &= ~lane_bits(arc_distance2(f.arcs[c.arc_index[arc]], p) <= depth2);
     };

@@ -15,8 +15,8 @@ constexpr int kMaxBrickVertices = kBrickPoints * kAxes;
 
 // Vertices of a brick on their way to the surface.
 struct Points {
-  alignas(32) float x[kMaxBrickVertices + kPackSize], y[kMaxBrickVertices + kPackSize],
-      z[kMaxBrickVertices + kPackSize];
+  alignas(32) float x[kMaxBrickVertices + kWideLanes], y[kMaxBrickVertices + kWideLanes],
+      z[kMaxBrickVertices + kWideLanes];
 };
 
 // The candidates of the brick for the functions that work on single points.
@@ -75,18 +75,18 @@ int start_vertices(const FeatureView &f, const BrickSet &bricks, const MeshLayou
 }
 
 QSES_FN void fill_up(Points *p, int n) {
-  for (int k = n; k < n + kPackSize; ++k) p->x[k] = p->x[n - 1], p->y[k] = p->y[n - 1], p->z[k] = p->z[n - 1];
+  for (int k = n; k < n + kWideLanes; ++k) p->x[k] = p->x[n - 1], p->y[k] = p->y[n - 1], p->z[k] = p->z[n - 1];
 }
 
 // One brick's vertices in the making: where each one is now, and what is known of it.
 struct Work {
   Points place, normal, second_normal;
-  int32_t owner[kMaxBrickVertices + kPackSize];  // place in the grid
-  uint8_t patch[kMaxBrickVertices + kPackSize];
-  bool placed[kMaxBrickVertices + kPackSize];
+  int32_t owner[kMaxBrickVertices + kWideLanes];  // place in the grid
+  uint8_t patch[kMaxBrickVertices + kWideLanes];
+  bool placed[kMaxBrickVertices + kWideLanes];
   Points open;  // those whose radial projection is not exposed
-  int32_t open_number[kMaxBrickVertices + kPackSize];
-  uint8_t rounds[kMaxBrickVertices + kPackSize];  // of those that are reprojected
+  int32_t open_number[kMaxBrickVertices + kWideLanes];
+  uint8_t rounds[kMaxBrickVertices + kWideLanes];  // of those that are reprojected
 
   // Whether a vertex lies on the sphere of one probe, after one round.
   bool is_plain(int v) const {
@@ -114,24 +114,25 @@ static_assert(sizeof(Work) <= BrickScratch::kVertexBytes, "the scratch of a thre
 // Vertices on the convex part: projected radially on their deepest atom. The others are packed into w->open.
 int project_contact(const FeatureView &f, const BrickCandidates &c, float spacing, int n, Work *w) {
   const float depth = f.parameters.depth;
+  const float reach = kStartReach * spacing - depth;
   fill_up(&w->place, n);
   int open = 0;
-  for (int g = 0; g < n; g += kPackSize) {
+  for (int g = 0; g < n; g += kWideLanes) {
     if (c.arc_count > kManyArcs) look_for_stop();
-    const Vec3<Pack> p = load_points(w->place.x + g, w->place.y + g, w->place.z + g);
-    const uint32_t used = first_lanes(static_cast<uint32_t>(n - g));
+    const Vec3<WidePack> p = load_points(w->place.x + g, w->place.y + g, w->place.z + g);
+    const uint32_t used = first_wide_lanes(static_cast<uint32_t>(n - g));
     const PackBox box = box_around(p);
-    const int near = choose_balls(c.exposed, c.exposed_count, box, kStartReach * spacing - depth, c.near_list);
-    const Deepest deepest = deepest_ball(c.exposed, c.near_list, near, p, -kFarAway);
-    Vec3<Pack> place = p, normal = p;
+    const int near = choose_balls(c.exposed, c.exposed_count, box, reach, c.near_list);
+    const Deepest deepest = deepest_ball(c.exposed, c.near_list, near, p, -reach);
+    Vec3<WidePack> place = p, normal = p;
     uint32_t done = 0;
-    const Pack way_in = Pack(depth) - deepest.depth;
+    const WidePack way_in = WidePack(depth) - deepest.depth;
     const uint32_t trusted = lane_bits(is_short_move(f.parameters, way_in, way_in * way_in));
     for_exposed_projections(f, c, p, deepest, used, [&](const Sphere &atom_ball, uint32_t atom, uint32_t exposed) {
       done |= exposed;
-      const PackMask here = lane_mask(exposed);
-      const Vec3<Pack> outward = sphere_normal(atom_ball, p);
-      const Vec3<Pack> on = Vec3<Pack>(atom_ball.center) + outward * Pack(atom_ball.radius - depth);
+      const WideMask here = wide_mask(exposed);
+      const Vec3<WidePack> outward = sphere_normal(atom_ball, p);
+      const Vec3<WidePack> on = Vec3<WidePack>(atom_ball.center) + outward * WidePack(atom_ball.radius - depth);
       place = {select(here, on.x, place.x), select(here, on.y, place.y), select(here, on.z, place.z)};
       normal = {select(here, outward.x, normal.x), select(here, outward.y, normal.y),
                 select(here, outward.z, normal.z)};
@@ -142,7 +143,7 @@ int project_contact(const FeatureView &f, const BrickCandidates &c, float spacin
       }
     });
     const uint32_t left = used & ~done;
-    const PackMask mask = lane_mask(done);
+    const WideMask mask = wide_mask(done);
     store_pack(w->place.x + g, select(mask, place.x, p.x));
     store_pack(w->place.y + g, select(mask, place.y, p.y));
     store_pack(w->place.z + g, select(mask, place.z, p.z));
@@ -155,7 +156,7 @@ int project_contact(const FeatureView &f, const BrickCandidates &c, float spacin
     store_lanes(w->open.x + open, left, p.x);
     store_lanes(w->open.y + open, left, p.y);
     store_lanes(w->open.z + open, left, p.z);
-    open += store_lane_numbers(w->open_number + open, left, g);
+    open += store_wide_numbers(w->open_number + open, left, g);
   }
   return open;
 }
@@ -167,25 +168,29 @@ void project_reentrant(const FeatureView &f, const BrickCandidates &c, float spa
   for (int rounds = 0; open > 0; ++rounds) {
     fill_up(&w->open, open);
     int covered = 0;
-    for (int g = 0; g < open; g += kPackSize) {
+    for (int g = 0; g < open; g += kWideLanes) {
       if (c.arc_count > kManyArcs) look_for_stop();
-      const Vec3<Pack> p = load_points(w->open.x + g, w->open.y + g, w->open.z + g);
+      const Vec3<WidePack> p = load_points(w->open.x + g, w->open.y + g, w->open.z + g);
       const PackBox box = box_around(p);
       const float reach = depth + (rounds > 0 ? 1e-3f : kStartReach * spacing);
       const int arcs = choose_balls(c.arcs, c.arc_count, box, reach, c.arc_list);
-      Pack best(kFarAway), second(kFarAway), number(-1.f);
+      WidePack best(kFarAway), second(kFarAway), number(-1.f);
       for (int k = 0; k < arcs; ++k) {
-        const Pack d2 = arc_distance2(f.arcs[c.arc_index[c.arc_list[k]]], p);
-        const PackMask nearer = d2 < best;
+        const WidePack d2 = arc_distance2(f.arcs[c.arc_index[c.arc_list[k]]], p);
+        const WideMask nearer = d2 < best;
         second = minimum(second, maximum(d2, best));
         best = select(nearer, d2, best);
-        number = select(nearer, Pack(static_cast<float>(k)), number);
+        number = select(nearer, WidePack(static_cast<float>(k)), number);
       }
-      alignas(32) float nearest2[kPackSize], seconds2[kPackSize], numbers[kPackSize];
+      // What is farther from a point than that is another point's.
+      const WidePack reach2(reach * reach);
+      number = select(best <= reach2, number, WidePack(-1.f));
+      second = select(second <= reach2, second, WidePack(kFarAway));
+      alignas(32) float nearest2[kWideLanes], seconds2[kWideLanes], numbers[kWideLanes];
       store_pack(nearest2, best);
       store_pack(seconds2, second);
       store_pack(numbers, number);
-      const int used = open - g < kPackSize ? open - g : kPackSize;
+      const int used = open - g < kWideLanes ? open - g : kWideLanes;
       const auto arc_of = [&](int l) { return c.arc_index[c.arc_list[static_cast<int>(numbers[l])]]; };
       const auto go_on = [&](int v, const Vec3<float> &x, int after) {
         w->rounds[v] = static_cast<uint8_t>(after);
@@ -194,9 +199,9 @@ void project_reentrant(const FeatureView &f, const BrickCandidates &c, float spa
         ++covered;
       };
       // What can be done for all lanes at once, and which lanes that is.
-      uint32_t together = lane_bits(Pack(0.f) <= number);
+      uint32_t together = lane_bits(WidePack(0.f) <= number);
       PackedProjection projected{};
-      alignas(32) float point[6][kPackSize];
+      alignas(32) float point[6][kWideLanes];
       if (together) {
         const PackedArc arcs_of_lanes =
             load_arcs([&](int l) { return f.arcs + (numbers[l] < 0.f ? c.arc_index[c.arc_list[0]] : arc_of(l)); });
@@ -275,15 +280,16 @@ void find_owners(const FeatureView &f, const BrickCandidates &c, int n, Work *w)
     open += w->owner[v] < 0 ? 1 : 0;
   }
   if (open == 0) return;
+  constexpr float kRounding = 1e-3f;
   fill_up(&w->open, open);
-  for (int g = 0; g < open; g += kPackSize) {
-    const Vec3<Pack> p = load_points(w->open.x + g, w->open.y + g, w->open.z + g);
+  for (int g = 0; g < open; g += kWideLanes) {
+    const Vec3<WidePack> p = load_points(w->open.x + g, w->open.y + g, w->open.z + g);
     const PackBox box = box_around(p);
-    const int near = choose_balls(c.atoms, c.atom_count, box, 1e-3f, c.near_list);
-    const Deepest deepest = deepest_ball(c.atoms, c.near_list, near, p, -kFarAway);
-    alignas(32) float number[kPackSize];
+    const int near = choose_balls(c.atoms, c.atom_count, box, kRounding, c.near_list);
+    const Deepest deepest = deepest_ball(c.atoms, c.near_list, near, p, -kRounding);
+    alignas(32) float number[kWideLanes];
     store_pack(number, deepest.number);
-    for (int l = 0; l < kPackSize && g + l < open; ++l) {
+    for (int l = 0; l < kWideLanes && g + l < open; ++l) {
       const int v = w->open_number[g + l];
       if (number[l] >= 0.f)
         w->owner[v] = c.atom_index[static_cast<int>(number[l])];

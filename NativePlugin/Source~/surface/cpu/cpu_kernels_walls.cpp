@@ -54,8 +54,8 @@ struct Walk {
 };
 
 struct WallWork {
-  ProbedPoints<kMostPoints + 2 * kPackSize> ends;
-  ProbedPoints<kMostWalks + kPackSize> walked;
+  ProbedPoints<kMostPoints + 2 * kWideLanes> ends;
+  ProbedPoints<kMostWalks + kWideLanes> walked;
   CoveredNeighbors covered;
   int16_t number[kPlaces];  // of the points in ends, by place; -1: none
   Walk walks[kMostWalks];
@@ -70,20 +70,20 @@ struct WallField {
 };
 
 // Those of eight arcs, one to each lane, as nearest_on_arc() has them.
-QSES_FN Vec3<Pack> nearest_on_arcs(const float *rows, const Vec3<Pack> &x) {
-  Vec3<Pack> center, middle, side;
-  Pack radius, cos_half, sin_half;
-  load_columns(rows, &center.x, &center.y, &center.z, &radius);
-  load_columns(rows + 4 * kPackSize, &middle.x, &middle.y, &middle.z, &cos_half);
-  load_columns(rows + 8 * kPackSize, &side.x, &side.y, &side.z, &sin_half);
-  const Vec3<Pack> t = x - center;
-  const Pack along_middle = dot(t, middle), along_side = dot(t, side);
-  const Pack in_plane = square_root(along_middle * along_middle + along_side * along_side);
-  const PackMask on_arc = along_middle >= cos_half * in_plane, off_axis = in_plane > Pack(1e-6f) * radius;
-  const Pack inverse = Pack(1.f) / maximum(in_plane, Pack(1e-30f));
-  const Pack end_sine = select(along_side < Pack(0.f), -sin_half, sin_half);
-  const Pack cosine = select(on_arc, select(off_axis, along_middle * inverse, Pack(1.f)), cos_half);
-  const Pack sine = select(on_arc, select(off_axis, along_side * inverse, Pack(0.f)), end_sine);
+QSES_FN Vec3<WidePack> nearest_on_arcs(const float *rows, const Vec3<WidePack> &x) {
+  Vec3<WidePack> center, middle, side;
+  WidePack radius, cos_half, sin_half;
+  load_wide_rows(rows, kWideLanes, &center.x, &center.y, &center.z, &radius);
+  load_wide_rows(rows + 4 * kWideLanes, kWideLanes, &middle.x, &middle.y, &middle.z, &cos_half);
+  load_wide_rows(rows + 8 * kWideLanes, kWideLanes, &side.x, &side.y, &side.z, &sin_half);
+  const Vec3<WidePack> t = x - center;
+  const WidePack along_middle = dot(t, middle), along_side = dot(t, side);
+  const WidePack in_plane = square_root(along_middle * along_middle + along_side * along_side);
+  const WideMask on_arc = along_middle >= cos_half * in_plane, off_axis = in_plane > WidePack(1e-6f) * radius;
+  const WidePack inverse = WidePack(1.f) / maximum(in_plane, WidePack(1e-30f));
+  const WidePack end_sine = select(along_side < WidePack(0.f), -sin_half, sin_half);
+  const WidePack cosine = select(on_arc, select(off_axis, along_middle * inverse, WidePack(1.f)), cos_half);
+  const WidePack sine = select(on_arc, select(off_axis, along_side * inverse, WidePack(0.f)), end_sine);
   return center + middle * (radius * cosine) + side * (radius * sine);
 }
 
@@ -96,32 +96,32 @@ void find_probes(const WallField &field, ProbedPoints<kRoom> &points, int begin,
   const FeatureView &f = field.f;
   const BrickCandidates &c = field.c;
   const float depth = f.parameters.depth;
-  alignas(32) float number[kPackSize], open_x[kGroup + kPackSize], open_y[kGroup + kPackSize],
-      open_z[kGroup + kPackSize];
-  int32_t open_number[kGroup + kPackSize];
+  alignas(32) float number[kWideLanes], open_x[kGroup + kWideLanes], open_y[kGroup + kWideLanes],
+      open_z[kGroup + kWideLanes];
+  int32_t open_number[kGroup + kWideLanes];
   int open = 0;
-  for (int k = end; k < end + ((begin - end) & 7); ++k) points.set(k, points.point(end - 1));
-  for (int g = begin; g < end; g += kPackSize) {
+  for (int k = end; k < end + ((begin - end) & (kWideLanes - 1)); ++k) points.set(k, points.point(end - 1));
+  for (int g = begin; g < end; g += kWideLanes) {
     if (c.arc_count > kManyArcs) look_for_stop();
-    const Vec3<Pack> p = load_points(points.x + g, points.y + g, points.z + g);
-    uint32_t lanes = first_lanes(static_cast<uint32_t>(end - g));
+    const Vec3<WidePack> p = load_points(points.x + g, points.y + g, points.z + g);
+    uint32_t lanes = first_wide_lanes(static_cast<uint32_t>(end - g));
     const PackBox box = box_around(p);
-    Vec3<Pack> center = p;
-    Pack distance(kFarAway);
+    Vec3<WidePack> center = p;
+    WidePack distance(kFarAway);
     if (field.looks_out) {
       const int near = choose_balls(c.atoms, c.atom_count, box, field.slack, c.near_list);
-      const PackMask outside =
-          deepest_ball(c.atoms, c.near_list, near, p, -kFarAway).depth <= Pack(f.parameters.least_depth());
-      distance = select(outside, Pack(0.f), distance);
+      const WideMask outside =
+          deepest_ball(c.atoms, c.near_list, near, p, -kFarAway).depth <= WidePack(f.parameters.least_depth());
+      distance = select(outside, WidePack(0.f), distance);
       lanes &= ~lane_bits(outside);
     }
     const int near = choose_balls(c.exposed, c.exposed_count, box, field.slack, c.near_list);
     const Deepest deepest = deepest_ball(c.exposed, c.near_list, near, p, -field.slack);
     for_exposed_projections(f, c, p, deepest, lanes, [&](const Sphere &atom_ball, uint32_t, uint32_t exposed) {
       lanes &= ~exposed;
-      const PackMask here = lane_mask(exposed);
-      const Vec3<Pack> atom(atom_ball.center);
-      const Vec3<Pack> on = atom + (p - atom) * (Pack(atom_ball.radius) / offset_length(atom_ball, deepest.depth));
+      const WideMask here = wide_mask(exposed);
+      const Vec3<WidePack> atom(atom_ball.center);
+      const Vec3<WidePack> on = atom + (p - atom) * (WidePack(atom_ball.radius) / offset_length(atom_ball, deepest.depth));
       center = {select(here, on.x, center.x), select(here, on.y, center.y), select(here, on.z, center.z)};
       distance = select(here, deepest.depth, distance);
     });
@@ -132,38 +132,38 @@ void find_probes(const WallField &field, ProbedPoints<kRoom> &points, int begin,
     store_lanes(open_x + open, lanes, p.x);
     store_lanes(open_y + open, lanes, p.y);
     store_lanes(open_z + open, lanes, p.z);
-    open += store_lane_numbers(open_number + open, lanes, g);
+    open += store_wide_numbers(open_number + open, lanes, g);
   }
-  for (int k = open; k < open + (-open & 7); ++k)
+  for (int k = open; k < open + (-open & (kWideLanes - 1)); ++k)
     open_x[k] = open_x[open - 1], open_y[k] = open_y[open - 1], open_z[k] = open_z[open - 1];
-  for (int g = 0; g < open; g += kPackSize) {
-    const Vec3<Pack> p = load_points(open_x + g, open_y + g, open_z + g);
+  for (int g = 0; g < open; g += kWideLanes) {
+    const Vec3<WidePack> p = load_points(open_x + g, open_y + g, open_z + g);
     const PackBox box = box_around(p);
     const int arcs = choose_balls(c.arcs, c.arc_count, box, depth, c.arc_list);
     if (arcs == 0) continue;
-    Pack nearest(kFarAway), place(0.f), k_pack(0.f);
+    WidePack nearest(kFarAway), place(0.f), k_pack(0.f);
     for (int k = 0; k < arcs; ++k) {
-      const Pack d2 = arc_distance2(f.arcs[c.arc_index[c.arc_list[k]]], p);
-      const PackMask nearer = d2 < nearest;
+      const WidePack d2 = arc_distance2(f.arcs[c.arc_index[c.arc_list[k]]], p);
+      const WideMask nearer = d2 < nearest;
       nearest = select(nearer, d2, nearest);
       place = select(nearer, k_pack, place);
-      k_pack = k_pack + Pack(1.f);
+      k_pack = k_pack + WidePack(1.f);
     }
     store_pack(number, place);
-    alignas(32) float rows[12 * kPackSize];
-    for (int l = 0; l < kPackSize; ++l) {
+    alignas(32) float rows[12 * kWideLanes];
+    for (int l = 0; l < kWideLanes; ++l) {
       const Arc &arc = f.arcs[c.arc_index[c.arc_list[static_cast<int>(number[l])]]];
       std::memcpy(rows + 4 * l, &arc.center, 16);
-      std::memcpy(rows + 4 * kPackSize + 4 * l, &arc.middle, 16);
-      std::memcpy(rows + 8 * kPackSize + 4 * l, &arc.side, 16);
+      std::memcpy(rows + 4 * kWideLanes + 4 * l, &arc.middle, 16);
+      std::memcpy(rows + 8 * kWideLanes + 4 * l, &arc.side, 16);
     }
-    const Vec3<Pack> on = nearest_on_arcs(rows, p);
-    alignas(32) float x[kPackSize], y[kPackSize], z[kPackSize], distance[kPackSize];
+    const Vec3<WidePack> on = nearest_on_arcs(rows, p);
+    alignas(32) float x[kWideLanes], y[kWideLanes], z[kWideLanes], distance[kWideLanes];
     store_pack(x, on.x);
     store_pack(y, on.y);
     store_pack(z, on.z);
-    store_pack(distance, square_root(maximum(nearest, Pack(0.f))));
-    for (int l = 0; l < kPackSize && g + l < open; ++l) {
+    store_pack(distance, square_root(maximum(nearest, WidePack(0.f))));
+    for (int l = 0; l < kWideLanes && g + l < open; ++l) {
       const int k = open_number[g + l];
       points.center_x[k] = x[l], points.center_y[k] = y[l], points.center_z[k] = z[l];
       points.distance[k] = distance[l];
@@ -202,13 +202,17 @@ void walk_edges(const WallField &field, const BrickSet &bricks, uint32_t brick, 
   }
 }
 
+QSES_FN Vec3<Pack> load_eight(const float *x, const float *y, const float *z) {
+  return {load_pack(x), load_pack(y), load_pack(z)};
+}
+
 // Which of the points around them the probes of the points from 0 to count cover, by what no walk would contradict.
 void find_covered(const SurfaceParameters &p, int count, WallWork *w) {
   const float h = p.spacing, clear = p.depth - kWallStep;
   const Pack clear2(clear * clear), twice(2.f * h), h2(h * h);
   for (int g = 0; g < count; g += kPackSize) {
-    const Vec3<Pack> from = load_points(w->ends.x + g, w->ends.y + g, w->ends.z + g) -
-                            load_points(w->ends.center_x + g, w->ends.center_y + g, w->ends.center_z + g);
+    const Vec3<Pack> from = load_eight(w->ends.x + g, w->ends.y + g, w->ends.z + g) -
+                            load_eight(w->ends.center_x + g, w->ends.center_y + g, w->ends.center_z + g);
     const Pack at[kAxes] = {from.x * twice, from.y * twice, from.z * twice};
     const PackMask solid = load_pack(w->ends.distance + g) > Pack(p.depth);
     const Pack left = select(solid, Pack(-kFarAway), clear2 - length_squared(from) - h2);  // for a step along an axis
@@ -265,23 +269,22 @@ BrickNeeds mark_brick_walls(const FeatureView &f, const BrickSet &bricks, uint32
       w.number[place_of(leaf, lowest_bit64(rest))] = number++;
   }
   const auto number_at = [&](int place) {
-    int16_t &number = w.number[place];
-    if (number < 0) {
-      const glm::ivec3 at = first + point_of(place);
-      w.ends.set(count, lattice.position(at.x, at.y, at.z));
-      number = static_cast<int16_t>(count++);
-    }
+    const int16_t known = w.number[place];
+    const glm::ivec3 at = first + point_of(place);
+    w.ends.set(count, lattice.position(at.x, at.y, at.z));  // behind the last one, for want of a branch
+    const bool is_new = known < 0;
+    const int16_t number = is_new ? static_cast<int16_t>(count) : known;
+    count += is_new ? 1 : 0;
+    w.number[place] = number;
     return static_cast<uint16_t>(number);
   };
   const StepPlaces steps = make_step_places();
   int edge_count = 0;
-  for (int k = 0; k < kWallSteps; ++k)
-    for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf)
-      for (uint64_t rest = edges.words[k][leaf]; rest; rest &= rest - 1) {
-        const int place = place_of(leaf, lowest_bit64(rest));
-        w.edges[edge_count++] = {number_at(place), number_at(place + steps.at[k]), static_cast<uint16_t>(place),
-                                 static_cast<uint16_t>(k)};
-      }
+  edges.for_each([&](int step, int leaf, int bit) {
+    const int place = place_of(leaf, bit);
+    w.edges[edge_count++] = {number_at(place), number_at(place + steps.at[step]), static_cast<uint16_t>(place),
+                             static_cast<uint16_t>(step)};
+  });
   find_all_probes(field, w.ends, starts.count, count);
   int walks = 0;
   for (int q = 0; q < edge_count; ++q) {
