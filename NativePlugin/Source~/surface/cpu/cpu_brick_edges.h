@@ -3,6 +3,7 @@
 // signs, from where their probes are looked for, and which of them these probes leave. Only for the CPU kernels.
 #pragma once
 
+#include "parallel/wide_pack.h"
 #include "parallel/word_pack.h"
 #include "surface/cpu/cpu_brick_signs.h"
 #include "surface/cpu/cpu_leaf_bits.h"
@@ -56,6 +57,10 @@ struct BrickStarts {
 struct CoveredNeighbors {
   static constexpr int kSteps = 2 * kWallSteps, kBytes = kBrickPoints / 8 + 8;
   uint8_t by_step[kSteps][kBytes], solid[kBytes];
+  QSES_FN static void set(uint8_t *bits, int first, WideMask mask) {
+    for (int byte = 0; byte < kWideLanes / 8; ++byte)
+      bits[first / 8 + byte] = static_cast<uint8_t>(lane_bits(mask) >> 8 * byte);
+  }
   // Bits of so many: those behind are read with the last ones, and left out.
   QSES_FN void end(int count) {
     const auto clear = [&](uint8_t *bits) { std::memset(bits + (count + 7) / 8, 0, sizeof(uint64_t)); };

@@ -46,6 +46,11 @@ const CpuKernels &cpu_kernels() {
   return *usable[usable.size - 1];
 }
 
+BrickTotals count_brick(const BrickSet &bricks, const MeshLayout &layout, uint32_t brick,
+                        const uint8_t *case_triangles) {
+  return cpu_kernels().count_brick(bricks, layout, brick, case_triangles);
+}
+
 void measure_triangles(const MeasureTriangle &measure, size_t first, size_t count, TriangleSums *sums) {
   cpu_kernels().measure_triangles(measure, first, count, sums);
 }

@@ -54,6 +54,7 @@ struct LocalColumns {
 //   evaluate_brick_signs   the eight leaf words of a brick
 //   mark_brick_walls       ORs the lattice points into marks that thin walls of its edges need (thin_walls.h)
 //   emit_brick_vertices    the vertices a brick owns
+//   count_brick            what a brick owns, and its part of the layout
 //   emit_brick_triangles   the triangles of a brick's cells
 //   evaluate_brick_density the eight leaf words of a brick of a Gaussian surface
 //   emit_brick_density_vertices  the vertices that a brick of it owns
@@ -71,6 +72,8 @@ struct LocalColumns {
   KERNEL(BrickNeeds, emit_brick_vertices, const FeatureView &features, const BrickSet &bricks,                       \
          const MeshLayout &layout, uint32_t brick, const VertexStarts &starts, const BrickScratch &scratch,          \
          const MeshView &mesh)                                                                                       \
+  KERNEL(BrickTotals, count_brick, const BrickSet &bricks, const MeshLayout &layout, uint32_t brick,                 \
+         const uint8_t *case_triangles)                                                                              \
   KERNEL(void, emit_brick_triangles, const BrickSet &bricks, const MeshLayout &layout, uint32_t brick,               \
          const TableView &table, const MeshView &mesh)                                                               \
   KERNEL(BrickNeeds, evaluate_brick_density, const GaussianDensity &density, const BrickSet &bricks, uint32_t brick, \

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
-// CPU kernel: the triangles of one brick's cells. The numbers of all vertices in reach are written to an array first,
-// so that a triangle is three look-ups.
+// CPU kernels: the triangles of one brick's cells, counted and written. The numbers of all vertices in reach are written
+// to an array first, so that a triangle is three look-ups.
 #include "surface/cpu/cpu_leaf_bits.h"
 
 #include <cassert>
-#if !defined(NDEBUG)
 #include <cstring>
-#endif
 
 namespace quickses {
 namespace QSES_CPU_ISA {
@@ -59,6 +57,22 @@ constexpr EdgeMasks make_edge_masks() {
 }
 constexpr EdgeMasks kEdgeMasks = make_edge_masks();
 
+// The cases of the mixed cells of a leaf, in the order of their bits. Behind them stand cells that have no triangle, up
+// to a whole word.
+struct MixedCases {
+  static constexpr int kTogether = 8;
+  alignas(8) uint8_t code[64];
+  QSES_FN MixedCases(const LeafWords &corners, uint64_t mixed) {
+    LeafWords packed;
+    for (int c = 0; c < 8; ++c) packed.at[c] = extract_bits(corners.at[c], mixed);
+    const int count = popcount64(mixed);
+    for (int k = 0; k < count; k += kTogether) {
+      const uint64_t cases = cell_cases(packed, k);
+      for (int j = 0; j < kTogether; ++j) code[k + j] = static_cast<uint8_t>(cases >> 8 * j);
+    }
+  }
+};
+
 void number_vertices(const MeshLayout &layout, const UpperBricks &upper, VertexNumbers *numbers) {
   for (const EdgeMask &edges : kEdgeMasks.at) {
     if (upper.at[edges.towards] < 0) continue;
@@ -76,6 +90,23 @@ void number_vertices(const MeshLayout &layout, const UpperBricks &upper, VertexN
 
 }  // namespace
 
+BrickTotals count_brick(const BrickSet &bricks, const MeshLayout &layout, uint32_t brick,
+                        const uint8_t *case_triangles) {
+  uint64_t *const crossing = layout.crossing + static_cast<size_t>(brick) * kBrickMasks;
+  BrickCounts counts;
+  for_leaf_words(upper_bricks(bricks, brick), layout.signs, [&](int leaf, const LeafWords &words) {
+    const LeafWords corners = cell_corners(words);
+    const uint64_t mixed = mixed_cells(corners);
+    const MixedCases cases(corners, mixed);
+    int triangles = 0;
+    for (int k = 0, count = popcount64(mixed); k < count; k += MixedCases::kTogether)
+      for (int j = 0; j < MixedCases::kTogether; ++j) triangles += case_triangles[cases.code[k + j]];
+    find_crossings(corners, crossing + leaf * kAxes);
+    counts.of_leaf[leaf] = pack_counts(crossing + leaf * kAxes, triangles);
+  });
+  return rank_brick(layout, brick, counts);
+}
+
 void emit_brick_triangles(const BrickSet &bricks, const MeshLayout &layout, uint32_t brick, const TableView &table,
                           const MeshView &mesh) {
   const size_t begin = layout.base[brick].triangles;
@@ -90,8 +121,10 @@ void emit_brick_triangles(const BrickSet &bricks, const MeshLayout &layout, uint
   uint32_t *out = mesh.triangle(begin);
   for_leaf_words(upper, layout.signs, [&](int leaf, const LeafWords &words) {
     const LeafWords corners = cell_corners(words);
-    for (uint64_t mixed = mixed_cells(corners); mixed; mixed &= mixed - 1) {
-      const int bit = lowest_bit64(mixed), code = cell_case(corners, bit);
+    uint64_t mixed = mixed_cells(corners);
+    const MixedCases cases(corners, mixed);
+    for (const uint8_t *next = cases.code; mixed; mixed &= mixed - 1) {
+      const int bit = lowest_bit64(mixed), code = *next++;
       const uint32_t *const here = numbers.at[0] + kPlaces.of_leaf(leaf) + kPlaces.of_bit[bit];
       const uint8_t *edges = table.edges[code];
       for (int t = 0; t < table.triangle_count[code]; ++t, edges += 3, out += 3) {

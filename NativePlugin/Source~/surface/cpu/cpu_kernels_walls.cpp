@@ -202,32 +202,27 @@ void walk_edges(const WallField &field, const BrickSet &bricks, uint32_t brick, 
   }
 }
 
-QSES_FN Vec3<Pack> load_eight(const float *x, const float *y, const float *z) {
-  return {load_pack(x), load_pack(y), load_pack(z)};
-}
-
 // Which of the points around them the probes of the points from 0 to count cover, by what no walk would contradict.
 void find_covered(const SurfaceParameters &p, int count, WallWork *w) {
   const float h = p.spacing, clear = p.depth - kWallStep;
-  const Pack clear2(clear * clear), twice(2.f * h), h2(h * h);
-  for (int g = 0; g < count; g += kPackSize) {
-    const Vec3<Pack> from = load_eight(w->ends.x + g, w->ends.y + g, w->ends.z + g) -
-                            load_eight(w->ends.center_x + g, w->ends.center_y + g, w->ends.center_z + g);
-    const Pack at[kAxes] = {from.x * twice, from.y * twice, from.z * twice};
-    const PackMask solid = load_pack(w->ends.distance + g) > Pack(p.depth);
-    const Pack left = select(solid, Pack(-kFarAway), clear2 - length_squared(from) - h2);  // for a step along an axis
-    const auto covers = [&](int k, Pack needs) {
-      w->covered.by_step[k][g / kPackSize] = static_cast<uint8_t>(lane_bits(needs < left));
-    };
+  const WidePack clear2(clear * clear), twice(2.f * h), h2(h * h);
+  for (int g = 0; g < count; g += kWideLanes) {
+    const Vec3<WidePack> from = load_points(w->ends.x + g, w->ends.y + g, w->ends.z + g) -
+                                load_points(w->ends.center_x + g, w->ends.center_y + g, w->ends.center_z + g);
+    const WidePack at[kAxes] = {from.x * twice, from.y * twice, from.z * twice};
+    const WideMask solid = load_wide(w->ends.distance + g) > WidePack(p.depth);
+    // For a step along an axis.
+    const WidePack left = select(solid, WidePack(-kFarAway), clear2 - length_squared(from) - h2);
+    const auto covers = [&](int k, WidePack needs) { w->covered.set(w->covered.by_step[k], g, needs < left); };
     for (int a = 0; a < kAxes; ++a) covers(a, at[a]), covers(kWallSteps + a, -at[a]);
     int k = kAxes;
     for (int a = 0; a < kAxes; ++a)
       for (int b = a + 1; b < kAxes; ++b, k += 2) {
-        const Pack sum = at[a] + at[b], difference = at[a] - at[b];
+        const WidePack sum = at[a] + at[b], difference = at[a] - at[b];
         covers(k, h2 + sum), covers(kWallSteps + k, h2 - sum);
         covers(k + 1, h2 + difference), covers(kWallSteps + k + 1, h2 - difference);
       }
-    w->covered.solid[g / kPackSize] = static_cast<uint8_t>(lane_bits(solid));
+    w->covered.set(w->covered.solid, g, solid);
   }
   w->covered.end(count);
 }
@@ -291,7 +286,7 @@ BrickNeeds mark_brick_walls(const FeatureView &f, const BrickSet &bricks, uint32
     const Edge &edge = w.edges[q];
     const Vec3<float> a = w.ends.point(edge.first), b = w.ends.point(edge.second);
     const NearestProbe probe_a = w.ends.probe(edge.first), probe_b = w.ends.probe(edge.second);
-    if (probe_covers(p, probe_a, b)) continue;
+    if (probe_covers(p, probe_a, b) | probe_covers(p, probe_b, a)) continue;
     const Walk walk{edge, begin_wall_walk(p, edge.step, a, probe_a, b, probe_b)};
     if (walk.state.is_open()) continue;
     w.walks[walks++] = walk;

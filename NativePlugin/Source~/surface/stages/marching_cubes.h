@@ -73,10 +73,14 @@ struct MeshLayout {
 
 // ---- count -----------------------------------------------------------------------------------------------------
 
-// The masks of a leaf's edges that change sign go to crossing[axis]. Returns how many triangles its cells have.
+// The masks of a leaf's edges that change sign, from its corner words.
+QSES_FN void find_crossings(const LeafWords &c, uint64_t *crossing) {
+  for (int axis = 0; axis < kAxes; ++axis) crossing[axis] = c.at[0] ^ c.at[1 << axis];
+}
+// They go to crossing[axis]. Returns how many triangles the leaf's cells have.
 QSES_FN int count_leaf(const LeafWords &words, const uint8_t *case_triangles, uint64_t *crossing) {
   const LeafWords c = cell_corners(words);
-  for (int axis = 0; axis < kAxes; ++axis) crossing[axis] = c.at[0] ^ c.at[1 << axis];
+  find_crossings(c, crossing);
   const uint64_t mixed = mixed_cells(c);
   int triangles = 0;
   for (int first = 0; first < 64; first += 8) {
@@ -160,21 +164,16 @@ struct RankBrick {
   }
 };
 
-// On the CPU both at once.
+// On the CPU both at once, by the kernel of the processor (cpu_kernels.h).
+BrickTotals count_brick(const BrickSet &bricks, const MeshLayout &layout, uint32_t brick,
+                        const uint8_t *case_triangles);
 struct CountBrick {
   BrickSet bricks;
   MeshLayout layout;
   const uint8_t *case_triangles;
   BrickTotals *totals;
   void operator()(size_t brick) const {
-    const UpperBricks upper = upper_bricks(bricks, static_cast<uint32_t>(brick));
-    uint64_t *const crossing = layout.crossing + brick * kBrickMasks;
-    BrickCounts counts;
-    for_leaf_words(upper, layout.signs, [&](int leaf, const LeafWords &words) {
-      const int triangles = count_leaf(words, case_triangles, crossing + leaf * kAxes);
-      counts.of_leaf[leaf] = pack_counts(crossing + leaf * kAxes, triangles);
-    });
-    totals[brick] = rank_brick(layout, brick, counts);
+    totals[brick] = count_brick(bricks, layout, static_cast<uint32_t>(brick), case_triangles);
   }
 };
 
