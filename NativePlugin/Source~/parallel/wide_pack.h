@@ -45,9 +45,7 @@ QSES_FN WideMask operator>(WidePack a, WidePack b) { return b < a; }
 QSES_FN WideMask operator>=(WidePack a, WidePack b) { return b <= a; }
 QSES_FN WideMask operator&(WideMask a, WideMask b) { return {static_cast<__mmask16>(a.m & b.m)}; }
 QSES_FN WideMask operator|(WideMask a, WideMask b) { return {static_cast<__mmask16>(a.m | b.m)}; }
-QSES_FN WidePack select(WideMask m, WidePack yes, WidePack no) {
-  return _mm512_mask_blend_ps(m.m, no.v, yes.v);
-}
+QSES_FN WidePack select(WideMask m, WidePack yes, WidePack no) { return _mm512_mask_blend_ps(m.m, no.v, yes.v); }
 QSES_FN WidePack reciprocal_root(WidePack a) { return WidePack(1.f) / square_root(a); }
 QSES_FN uint32_t lane_bits(WideMask m) { return m.m; }
 QSES_FN WideMask wide_mask(uint32_t bits) { return {static_cast<__mmask16>(bits)}; }
@@ -60,14 +58,14 @@ QSES_FN void store_lanes(float *dst, uint32_t set, WidePack a) {
 }
 QSES_FN int store_wide_numbers(int32_t *dst, uint32_t set, int32_t base) {
   const __m512i lanes = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-  _mm512_storeu_si512(dst, _mm512_maskz_compress_epi32(static_cast<__mmask16>(set),
-                                                       _mm512_add_epi32(_mm512_set1_epi32(base), lanes)));
+  _mm512_storeu_si512(
+      dst, _mm512_maskz_compress_epi32(static_cast<__mmask16>(set), _mm512_add_epi32(_mm512_set1_epi32(base), lanes)));
   return popcount64(set);
 }
 
-// Rows of four floats that lie behind each other, turned into four packs. Zeros behind the last one, if there are fewer.
-QSES_FN void load_wide_rows(const float *p, uint32_t rows, WidePack *x, WidePack *y, WidePack *z,
-                              WidePack *w) {
+// Rows of four floats that lie behind each other, turned into four packs. Zeros behind the last one, if there are
+// fewer.
+QSES_FN void load_wide_rows(const float *p, uint32_t rows, WidePack *x, WidePack *y, WidePack *z, WidePack *w) {
   const uint64_t floats = rows < kWideLanes ? (uint64_t(1) << 4 * rows) - 1 : ~uint64_t(0);
   const auto four_rows = [&](int k) {
     return _mm512_maskz_loadu_ps(static_cast<__mmask16>(floats >> 16 * k), p + 16 * k);
@@ -99,7 +97,7 @@ QSES_FN void load_rows(const Row &row, WidePack *x, WidePack *y, WidePack *z, Wi
   z->v = _mm512_shuffle_ps(ab_high, cd_high, 0x44);
   w->v = _mm512_shuffle_ps(ab_high, cd_high, 0xee);
 }
-// The lanes with these numbers, out of eight.
+// The lanes with these numbers, out of a Pack's.
 QSES_FN WidePack spread_lanes(Pack a, __m512i numbers) {
   return _mm512_permutexvar_ps(numbers, _mm512_castps256_ps512(a.v));
 }
@@ -121,9 +119,7 @@ using WideMask = PackMask;
 constexpr int kWideLanes = kPackSize;
 QSES_FN WideMask wide_mask(uint32_t bits) { return lane_mask(bits); }
 QSES_FN WidePack load_wide(const float *p) { return load_pack(p); }
-QSES_FN int store_wide_numbers(int32_t *dst, uint32_t set, int32_t base) {
-  return store_lane_numbers(dst, set, base);
-}
+QSES_FN int store_wide_numbers(int32_t *dst, uint32_t set, int32_t base) { return store_lane_numbers(dst, set, base); }
 // Whole packs are read: there is something behind the last row.
 QSES_FN void load_wide_rows(const float *p, uint32_t, WidePack *x, WidePack *y, WidePack *z, WidePack *w) {
   load_columns(p, x, y, z, w);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Eight vertices projected from the arcs nearest to them, one arc to each lane: project_on_arc() and the plain case of
-// reproject() (stages/projection.h), with the same operations in the same order, so that a vertex comes out the same to
-// the last bit whichever way it goes. Only for the CPU kernels.
+// A pack of vertices projected from the arcs nearest to them, one arc to each lane: project_on_arc() and the plain case
+// of reproject() (stages/projection.h), with the same operations in the same order, so that a vertex comes out the same
+// to the last bit whichever way it goes. Only for the CPU kernels.
 #pragma once
 
 #include "parallel/wide_pack.h"
@@ -68,17 +68,19 @@ struct PackedSurfacePoint {
 };
 
 // As place_on_surface() has it.
-QSES_FN PackedSurfacePoint place_on_surface(const SurfaceParameters &p, const Vec3<WidePack> &x, const PackedBoundary &y) {
+QSES_FN PackedSurfacePoint place_on_surface(const SurfaceParameters &p, const Vec3<WidePack> &x,
+                                            const PackedBoundary &y) {
   const WidePack least(1e-9f);
   Vec3<WidePack> outward = (y.position - x) * (WidePack(1.f) / select(absolute(y.distance) > least, y.distance, least));
   const WidePack length2 = squared_as_of_floats(outward), inverse = reciprocal_root(length2);
   const WideMask has_length = length2 > WidePack(0.25f);
-  outward = {select(has_length, outward.x * inverse, WidePack(0.f)), select(has_length, outward.y * inverse, WidePack(0.f)),
+  outward = {select(has_length, outward.x * inverse, WidePack(0.f)),
+             select(has_length, outward.y * inverse, WidePack(0.f)),
              select(has_length, outward.z * inverse, WidePack(1.f))};
   // In z the other one is the same for all starts without a direction, so there compilers round the product.
   const WidePack depth(p.depth);
   const Vec3<WidePack> position{y.position.x - outward.x * depth, y.position.y - outward.y * depth,
-                            y.position.z - rounded_product(outward.z, depth)};
+                                y.position.z - rounded_product(outward.z, depth)};
   return {position, outward,
           lane_bits(is_short_move(p, WidePack(p.depth) - y.distance, squared_as_of_floats(position - x)))};
 }
@@ -100,12 +102,15 @@ QSES_FN PackedProjection project_on_arcs(const SurfaceParameters &p, const Packe
   out.at_end = y.at_end;
   out.lost = p.depth > 0.f ? lane_bits(y.distance < WidePack(kProjectionTolerance)) : 0;
   out.point = place_on_surface(p, x, y);
-  const WideMask beyond_axis = dot_as_of_floats(out.point.position - arc.center, y.position - arc.center) < WidePack(0.f);
-  const uint32_t may_be_covered = lane_bits((y.distance < WidePack(p.depth - kProjectionTolerance)) &
-                                            ((square_root(second2) < WidePack(2.f * p.depth) - y.distance) | beyond_axis));
+  const WideMask beyond_axis =
+      dot_as_of_floats(out.point.position - arc.center, y.position - arc.center) < WidePack(0.f);
+  const uint32_t may_be_covered =
+      lane_bits((y.distance < WidePack(p.depth - kProjectionTolerance)) &
+                ((square_root(second2) < WidePack(2.f * p.depth) - y.distance) | beyond_axis));
   const WideMask may_be_outside = dot_as_of_floats(x - y.position, arc.center - y.position) <= WidePack(0.f);
   const uint32_t on = out.point.near & ~out.lost;
-  out.from_afar = on & lane_bits((WidePack(p.depth) - y.distance > WidePack(kLongestWayIn * p.spacing)) | may_be_outside);
+  out.from_afar =
+      on & lane_bits((WidePack(p.depth) - y.distance > WidePack(kLongestWayIn * p.spacing)) | may_be_outside);
   out.reprojected = out.from_afar | (on & may_be_covered);
   out.placed = on & ~out.reprojected;
   return out;

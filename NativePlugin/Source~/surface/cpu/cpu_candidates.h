@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The atoms and arcs near one brick, gathered into columns so that eight of them are tested at once. Only for the CPU
+// The atoms and arcs near one brick, gathered into columns so that a pack of them is tested at once. Only for the CPU
 // kernels.
 #pragma once
 
@@ -43,7 +43,6 @@ QSES_FN BrickCandidates cut_columns(const BrickScratch &s) {
   return c;
 }
 
-
 QSES_FN Vec3<WidePack> packs_of(const Vec3<float> &v) { return {WidePack(v.x), WidePack(v.y), WidePack(v.z)}; }
 
 // A box as centre and half extents, and squared distances to it.
@@ -60,7 +59,7 @@ struct PackBox {
   }
 };
 
-// That around eight points, and a bit more.
+// That around a pack of points, and a bit more.
 QSES_FN PackBox box_around(const Vec3<WidePack> &p) {
   const Vec3<float> more(1e-4f, 1e-4f, 1e-4f);
   const Vec3<float> low(horizontal_minimum(p.x), horizontal_minimum(p.y), horizontal_minimum(p.z)),
@@ -160,7 +159,7 @@ QSES_FN BrickCandidates gather_candidates(const FeatureView &f, const Vec3<float
   return c;
 }
 
-// Numbers of the balls that, grown by `reach` (which may be negative), meet the box. Room for sixteen more is needed.
+// Numbers of the balls that, grown by `reach` (which may be negative), meet the box. Room for a pack more is needed.
 QSES_FN int choose_balls(const BallColumns &c, int n, const PackBox &box, float reach, int32_t *out) {
   const WidePack grow(reach);
   int k = 0;
@@ -176,7 +175,7 @@ QSES_FN Vec3<WidePack> load_points(const float *x, const float *y, const float *
   return {load_wide(x), load_wide(y), load_wide(z)};
 }
 
-// The deepest of the chosen balls for each of eight points: its number in the columns (as a float; -1: none deeper than
+// The deepest of the chosen balls for each of a pack of points: its number in the columns (as a float; -1: none deeper than
 // floor), and the depth.
 struct Deepest {
   WidePack number, depth;
@@ -203,7 +202,7 @@ QSES_FN uint32_t exposed_lanes(const FeatureView &f, uint32_t atom, const Vec3<W
   return lanes;
 }
 
-// Eight points on the exposed balls that they are deepest in: use(ball, atom, exposed) is called for each such ball
+// A pack of points on the exposed balls that they are deepest in: use(ball, atom, exposed) is called for each such ball
 // with its place in the grid, and those of the points in `lanes` whose radial projection on it is exposed.
 template <class Use>
 QSES_FN void for_exposed_projections(const FeatureView &f, const BrickCandidates &c, const Vec3<WidePack> &p,

@@ -41,8 +41,7 @@ class CoveredSphere {
       : axes_(axes), count_(n) {
     for (int level = 0; level < kLevels; ++level) bounds_[level] = bounds[level];
     for (int q = 0; q < n; q += kWideLanes) {
-      const WidePack cosine = load_wide(cosines + q), sine = load_wide(sines + q),
-                       slope = load_wide(slopes + q);
+      const WidePack cosine = load_wide(cosines + q), sine = load_wide(sines + q), slope = load_wide(slopes + q);
       for (int level = 0; level < kLevels; ++level) {
         const Disc &disc = kDiscs[level];
         // The cosine of the cap's angle less the disc's, if there is anything left.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// CPU kernel: caps and exposed arcs of one atom, eight neighbours or eight cutting balls at a time.
+// CPU kernel: caps and exposed arcs of one atom, a pack of neighbours or of cutting balls at a time.
 #include "parallel/atomics.h"
 #include "parallel/pack.h"
 #include "surface/cpu/cpu_covered_sphere.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// CPU kernels: the triangles of one brick's cells, counted and written. The numbers of all vertices in reach are written
-// to an array first, so that a triangle is three look-ups.
+// CPU kernels: the triangles of one brick's cells, counted and written. The numbers of all vertices in reach are
+// written to an array first, so that a triangle is three look-ups.
 #include "surface/cpu/cpu_leaf_bits.h"
 
 #include <cassert>

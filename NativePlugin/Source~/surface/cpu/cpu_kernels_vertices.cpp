@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// CPU kernel: the vertices that one brick owns, placed exactly on the surface eight at a time.
+// CPU kernel: the vertices that one brick owns, placed exactly on the surface a pack at a time.
 #include "surface/cpu/cpu_arc_projection.h"
 #include "surface/cpu/cpu_brick_signs.h"
 #include "surface/cpu/cpu_candidates.h"

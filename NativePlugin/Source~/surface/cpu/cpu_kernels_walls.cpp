@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // CPU kernel: the walls thinner than the spacing that edges of one brick pass through. Edges are sorted out in bulk: by
-// signs, all leaves at once, then by probes near them, eight at a time; few are left to be walked.
+// signs, all leaves at once, then by probes near them, a pack at a time; few are left to be walked.
 #include "surface/cpu/cpu_brick_edges.h"
 #include "surface/cpu/cpu_candidates.h"
 #include "surface/cpu/cpu_leaf_bits.h"
@@ -69,7 +69,7 @@ struct WallField {
   bool looks_out;  // points may lie outside all balls
 };
 
-// Those of eight arcs, one to each lane, as nearest_on_arc() has them.
+// Those of a pack of arcs, one to each lane, as nearest_on_arc() has them.
 QSES_FN Vec3<WidePack> nearest_on_arcs(const float *rows, const Vec3<WidePack> &x) {
   Vec3<WidePack> center, middle, side;
   WidePack radius, cos_half, sin_half;
@@ -89,8 +89,8 @@ QSES_FN Vec3<WidePack> nearest_on_arcs(const float *rows, const Vec3<WidePack> &
 
 constexpr int kGroup = 64;  // points whose probes are found together
 
-// The rule of nearest_probe(), for the points from begin to end, which are at most a group. There is room for eight
-// more.
+// The rule of nearest_probe(), for the points from begin to end, which are at most a group. There is room for a
+// pack more.
 template <int kRoom>
 void find_probes(const WallField &field, ProbedPoints<kRoom> &points, int begin, int end) {
   const FeatureView &f = field.f;
@@ -121,7 +121,8 @@ void find_probes(const WallField &field, ProbedPoints<kRoom> &points, int begin,
       lanes &= ~exposed;
       const WideMask here = wide_mask(exposed);
       const Vec3<WidePack> atom(atom_ball.center);
-      const Vec3<WidePack> on = atom + (p - atom) * (WidePack(atom_ball.radius) / offset_length(atom_ball, deepest.depth));
+      const Vec3<WidePack> on =
+          atom + (p - atom) * (WidePack(atom_ball.radius) / offset_length(atom_ball, deepest.depth));
       center = {select(here, on.x, center.x), select(here, on.y, center.y), select(here, on.z, center.z)};
       distance = select(here, deepest.depth, distance);
     });

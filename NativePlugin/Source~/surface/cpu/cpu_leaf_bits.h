@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The points of a leaf that some bits choose, in an order in which neighbours in the order are neighbours in space: the
-// fewer balls meet eight of them. Only for the CPU kernels.
+// fewer balls meet a pack of them. Only for the CPU kernels.
 #pragma once
 
 #include "parallel/pack.h"
