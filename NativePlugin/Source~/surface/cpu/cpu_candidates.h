@@ -175,8 +175,8 @@ QSES_FN Vec3<WidePack> load_points(const float *x, const float *y, const float *
   return {load_wide(x), load_wide(y), load_wide(z)};
 }
 
-// The deepest of the chosen balls for each of a pack of points: its number in the columns (as a float; -1: none deeper than
-// floor), and the depth.
+// The deepest of the chosen balls for each of a pack of points: its number in the columns (as a float; -1: none deeper
+// than floor), and the depth.
 struct Deepest {
   WidePack number, depth;
 };
