@@ -1,27 +1,21 @@
 // SPDX-License-Identifier: MIT
-// The CPU's threads: by one of Thrust's parallel systems, TBB or OpenMP, or by Windows' thread pool, whose threads wake
-// up sooner than those of MinGW's OpenMP. Which one is a build option; nothing outside this file knows.
+// The CPU's threads, by one of Thrust's parallel systems: TBB, or OpenMP where there is no TBB. Which one is a build
+// option; nothing outside this file knows.
 #pragma once
 
 #include "parallel/startable_threads.h"
 #include "parallel/worker_threads.h"
 
-#if defined(QSES_CPU_SYSTEM_WINDOWS)
-#include "parallel/windows_threads.h"
-
-#include <memory>
-#elif defined(QSES_CPU_SYSTEM_OMP)
+#if defined(QSES_CPU_SYSTEM_OMP)
 #include <omp.h>
-#include <thrust/for_each.h>
-#include <thrust/iterator/counting_iterator.h>
 #include <thrust/system/omp/execution_policy.h>
 #else
 #include <tbb/info.h>
 #include <tbb/task_arena.h>
-#include <thrust/for_each.h>
-#include <thrust/iterator/counting_iterator.h>
 #include <thrust/system/tbb/execution_policy.h>
 #endif
+#include <thrust/for_each.h>
+#include <thrust/iterator/counting_iterator.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -43,15 +37,14 @@ class CpuThreads {
   unsigned usable() {
     if (count_ == 1) return 1;
     if (usable_ == 0) {
-#if defined(QSES_CPU_SYSTEM_WINDOWS)
-      usable_ = count_;  // the pool does with those that it can start
-      helpers_ = std::make_unique<WindowsThreads>(count_ - 1);
-#elif defined(QSES_CPU_SYSTEM_OMP)
-      usable_ = 1 + count_startable_threads(count_ - 1);
-#else
+#if !defined(QSES_CPU_SYSTEM_OMP)
       // More than the machine has are of no use, and TBB would complain on stderr.
       const unsigned wanted = std::min(count_, static_cast<unsigned>(tbb::info::default_concurrency()));
+#else
+      const unsigned wanted = count_;
+#endif
       usable_ = 1 + count_startable_threads(wanted - 1);
+#if !defined(QSES_CPU_SYSTEM_OMP)
       arena_.initialize(static_cast<int>(usable_));
 #endif
     }
@@ -59,14 +52,9 @@ class CpuThreads {
   }
 
   // work(worker) for all workers, by the calling thread and those of the parallel system. False if that had none to
-  // give after all. The work of those that did not come is left to the caller.
+  // give after all: what was left undone is then to be done by the caller.
   template <class Work>
   bool run(size_t workers, const Work &work) {
-#if defined(QSES_CPU_SYSTEM_WINDOWS)
-    if (!helpers_->is_open()) return false;
-    helpers_->run(
-        workers, [](const void *of, size_t worker) { (*static_cast<const Work *>(of))(worker); }, &work);
-#else
     const thrust::counting_iterator<size_t> first(0), last(workers);
 #if defined(QSES_CPU_SYSTEM_OMP)
     const struct Restore {
@@ -83,7 +71,6 @@ class CpuThreads {
       return false;
     }
 #endif
-#endif
     return true;
   }
 
@@ -91,9 +78,7 @@ class CpuThreads {
   unsigned count_;
   bool in_background_;
   unsigned usable_ = 0;  // of them; 0: not known yet
-#if defined(QSES_CPU_SYSTEM_WINDOWS)
-  std::unique_ptr<WindowsThreads> helpers_;
-#elif !defined(QSES_CPU_SYSTEM_OMP)
+#if !defined(QSES_CPU_SYSTEM_OMP)
   tbb::task_arena arena_;
 #endif
 };

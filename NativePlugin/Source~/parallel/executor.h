@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The few verbs every pass is written in. There are two back ends with the same members: CpuExecutor (Thrust's TBB or
-// OpenMP system, or Windows' thread pool) and CudaExecutor (Thrust/CUB on one stream). Stages are templates over the
-// executor and know neither.
+// OpenMP system) and CudaExecutor (Thrust/CUB on one stream). Stages are templates over the executor and know neither.
 //
 // clang-format off
 //   Span<T> allocate<T>(n)         memory of the back end, uninitialised, valid until the arena is rewound
