@@ -6,13 +6,21 @@
 #include "parallel/pack.h"
 
 #include <cstring>
+#include <initializer_list>
 
 namespace quickses {
 namespace QSES_CPU_ISA {
 
 #if defined(__AVX512F__)
-
 constexpr int kWideLanes = 16;
+#else
+constexpr int kWideLanes = kPackSize;
+#endif
+constexpr uint32_t kAllWideLanes = (1u << kWideLanes) - 1;
+// So many lanes from the first one on, without a branch.
+QSES_FN uint32_t first_wide_lanes(uint32_t n) { return (1u << (n < kWideLanes ? n : kWideLanes)) - 1; }
+
+#if defined(__AVX512F__)
 
 struct WidePack {
   __m512 v;
@@ -63,23 +71,28 @@ QSES_FN int store_wide_numbers(int32_t *dst, uint32_t set, int32_t base) {
   return popcount64(set);
 }
 
-// Rows of four floats that lie behind each other, turned into four packs. Zeros behind the last one, if there are
-// fewer.
+// Rows of four floats, four in each register, turned into four packs: lane 4 k + l of a pack is of the k-th row of
+// register l.
+QSES_FN void transpose_rows(__m512 a, __m512 b, __m512 c, __m512 d, WidePack *x, WidePack *y, WidePack *z,
+                            WidePack *w) {
+  const __m512 ab_low = _mm512_unpacklo_ps(a, b), ab_high = _mm512_unpackhi_ps(a, b);
+  const __m512 cd_low = _mm512_unpacklo_ps(c, d), cd_high = _mm512_unpackhi_ps(c, d);
+  x->v = _mm512_shuffle_ps(ab_low, cd_low, 0x44);
+  y->v = _mm512_shuffle_ps(ab_low, cd_low, 0xee);
+  z->v = _mm512_shuffle_ps(ab_high, cd_high, 0x44);
+  w->v = _mm512_shuffle_ps(ab_high, cd_high, 0xee);
+}
+// Of rows that lie behind each other. Zeros behind the last one, if there are fewer.
 QSES_FN void load_wide_rows(const float *p, uint32_t rows, WidePack *x, WidePack *y, WidePack *z, WidePack *w) {
   const uint64_t floats = rows < kWideLanes ? (uint64_t(1) << 4 * rows) - 1 : ~uint64_t(0);
   const auto four_rows = [&](int k) {
     return _mm512_maskz_loadu_ps(static_cast<__mmask16>(floats >> 16 * k), p + 16 * k);
   };
-  const __m512 a = four_rows(0), b = four_rows(1), c = four_rows(2), d = four_rows(3);
-  const __m512 ab_low = _mm512_unpacklo_ps(a, b), ab_high = _mm512_unpackhi_ps(a, b);
-  const __m512 cd_low = _mm512_unpacklo_ps(c, d), cd_high = _mm512_unpackhi_ps(c, d);
+  transpose_rows(four_rows(0), four_rows(1), four_rows(2), four_rows(3), x, y, z, w);
   const __m512i order = _mm512_setr_epi32(0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15);
-  x->v = _mm512_permutexvar_ps(order, _mm512_shuffle_ps(ab_low, cd_low, 0x44));
-  y->v = _mm512_permutexvar_ps(order, _mm512_shuffle_ps(ab_low, cd_low, 0xee));
-  z->v = _mm512_permutexvar_ps(order, _mm512_shuffle_ps(ab_high, cd_high, 0x44));
-  w->v = _mm512_permutexvar_ps(order, _mm512_shuffle_ps(ab_high, cd_high, 0xee));
+  for (WidePack *column : {x, y, z, w}) column->v = _mm512_permutexvar_ps(order, column->v);
 }
-// Sixteen rows that lie anywhere. row(k): where the k-th begins.
+// Of rows that lie anywhere. row(k): where the k-th begins.
 template <class Row>
 QSES_FN void load_rows(const Row &row, WidePack *x, WidePack *y, WidePack *z, WidePack *w) {
   // The k-th, fourth, eighth and twelfth after it.
@@ -89,13 +102,7 @@ QSES_FN void load_rows(const Row &row, WidePack *x, WidePack *y, WidePack *z, Wi
     r = _mm512_insertf32x4(r, _mm_loadu_ps(row(k + 8)), 2);
     return _mm512_insertf32x4(r, _mm_loadu_ps(row(k + 12)), 3);
   };
-  const __m512 a = every_fourth(0), b = every_fourth(1), c = every_fourth(2), d = every_fourth(3);
-  const __m512 ab_low = _mm512_unpacklo_ps(a, b), ab_high = _mm512_unpackhi_ps(a, b);
-  const __m512 cd_low = _mm512_unpacklo_ps(c, d), cd_high = _mm512_unpackhi_ps(c, d);
-  x->v = _mm512_shuffle_ps(ab_low, cd_low, 0x44);
-  y->v = _mm512_shuffle_ps(ab_low, cd_low, 0xee);
-  z->v = _mm512_shuffle_ps(ab_high, cd_high, 0x44);
-  w->v = _mm512_shuffle_ps(ab_high, cd_high, 0xee);
+  transpose_rows(every_fourth(0), every_fourth(1), every_fourth(2), every_fourth(3), x, y, z, w);
 }
 // The lanes with these numbers, out of a Pack's.
 QSES_FN WidePack spread_lanes(Pack a, __m512i numbers) {
@@ -107,8 +114,7 @@ QSES_FN uint64_t join_lanes(WideMask a, WideMask b, WideMask c, WideMask d) {
 }
 // Which of so many bytes are not zero.
 QSES_FN uint32_t bits_of_bytes(const uint8_t *bytes, uint32_t count) {
-  const __m128i v =
-      _mm_maskz_loadu_epi8(static_cast<__mmask16>((1u << (count < kWideLanes ? count : kWideLanes)) - 1), bytes);
+  const __m128i v = _mm_maskz_loadu_epi8(static_cast<__mmask16>(first_wide_lanes(count)), bytes);
   return _mm_test_epi8_mask(v, v);
 }
 
@@ -116,7 +122,6 @@ QSES_FN uint32_t bits_of_bytes(const uint8_t *bytes, uint32_t count) {
 
 using WidePack = Pack;
 using WideMask = PackMask;
-constexpr int kWideLanes = kPackSize;
 QSES_FN WideMask wide_mask(uint32_t bits) { return lane_mask(bits); }
 QSES_FN WidePack load_wide(const float *p) { return load_pack(p); }
 QSES_FN int store_wide_numbers(int32_t *dst, uint32_t set, int32_t base) { return store_lane_numbers(dst, set, base); }
@@ -132,10 +137,6 @@ QSES_FN uint32_t bits_of_bytes(const uint8_t *bytes, uint32_t) {
 }
 
 #endif
-
-constexpr uint32_t kAllWideLanes = (1u << kWideLanes) - 1;
-// So many lanes from the first one on, without a branch.
-QSES_FN uint32_t first_wide_lanes(uint32_t n) { return (1u << (n < kWideLanes ? n : kWideLanes)) - 1; }
 
 }  // namespace QSES_CPU_ISA
 }  // namespace quickses

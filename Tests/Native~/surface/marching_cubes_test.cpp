@@ -191,6 +191,27 @@ class Block {
     return vertex_number(layout_, brick_of(x, y, z), leaf_of(x & 7, y & 7, z & 7), axis, leaf_bit(x & 3, y & 3, z & 3));
   }
 
+  // What a set of kernels counts is what was laid out, by whichever set.
+  void expect_counts_of(const CpuKernels &kernels) {
+    const size_t masks = size_t(bricks_.count) * kBrickMasks;
+    const std::vector<uint64_t> crossing(layout_.crossing, layout_.crossing + masks);
+    const std::vector<uint16_t> ranks(layout_.vertex_rank, layout_.vertex_rank + masks);
+    const std::vector<uint16_t> triangle_ranks(layout_.triangle_rank,
+                                               layout_.triangle_rank + size_t(bricks_.count) * kLeavesPerBrick);
+    std::fill_n(layout_.crossing, masks, 0);
+    std::fill_n(layout_.vertex_rank, masks, uint16_t(0));
+    std::fill_n(layout_.triangle_rank, triangle_ranks.size(), uint16_t(0));
+    for (uint32_t b = 0; b < bricks_.count; ++b) {
+      const BrickTotals own = kernels.count_brick(bricks_, layout_, b, marching_cubes_table().triangle_count);
+      ASSERT_EQ(own.vertices, layout_.base[b + 1].vertices - layout_.base[b].vertices);
+      ASSERT_EQ(own.triangles, layout_.base[b + 1].triangles - layout_.base[b].triangles);
+      ASSERT_EQ(own.leaves, layout_.base[b + 1].leaves - layout_.base[b].leaves);
+    }
+    ASSERT_TRUE(std::equal(crossing.begin(), crossing.end(), layout_.crossing));
+    ASSERT_TRUE(std::equal(ranks.begin(), ranks.end(), layout_.vertex_rank));
+    ASSERT_TRUE(std::equal(triangle_ranks.begin(), triangle_ranks.end(), layout_.triangle_rank));
+  }
+
   mesh_checks::Mesh mesh(const CpuKernels &kernels, bool reversed = false) {
     CpuKernelExecutor executor(2, kernels);
     mesh_checks::Mesh m;
@@ -279,6 +300,7 @@ TEST(Noise, MeshesAreClosedManifolds) {
       for (bool table : {true, false}) {
         SCOPED_TRACE(testing::Message() << n.bricks << " bricks, " << n.share << " inside, " << kernels->name);
         Block block(n.bricks, n.share, n.seed, table);
+        ASSERT_NO_FATAL_FAILURE(block.expect_counts_of(*kernels));
         const mesh_checks::Mesh mesh = block.mesh(*kernels);
         ASSERT_GT(mesh.triangle_count(), 100u);
         EXPECT_EQ(mesh_checks::manifold_fault(mesh), "");

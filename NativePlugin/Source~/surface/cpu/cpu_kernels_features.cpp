@@ -57,7 +57,7 @@ int gather_neighbors(const NeighborGridView &atoms, float max_radius, uint32_t i
         uint32_t near = lane_bits(x * x + yy * yy + zz * zz < sum * sum);
         near &= first_wide_lanes(run.end - q);
         if (i - q < kWideLanes) near &= ~(1u << (i - q));
-        if (n + kPackSize <= capacity) {
+        if (n + kWideLanes <= capacity) {
           store_lanes(c.x + n, near, x);
           store_lanes(c.y + n, near, yy);
           store_lanes(c.z + n, near, zz);
@@ -181,7 +181,7 @@ AtomFeatures find_atom_features(const NeighborGridView &atoms, const SurfacePara
   if (self.center.x >= 0.5f * kFarAway) return {0, 0, 0};  // another atom contains it
   const Columns c = cut_columns(scratch);
   const int near = gather_neighbors(atoms, parameters.max_radius, i, c, scratch.capacity);
-  if (near + kPackSize > scratch.capacity) return {near + kPackSize, 0, 0};
+  if (near + kWideLanes > scratch.capacity) return {near + kWideLanes, 0, 0};
   float *const slopes = c.ssin, *const bounds[] = {c.sx, c.sy, c.sz, c.scos};  // not in use yet
   int n = make_caps(self.radius, c, slopes, near);
   if (n == 0) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // CPU kernel: the walls thinner than the spacing that edges of one brick pass through. Edges are sorted out in bulk: by
 // signs, all leaves at once, then by probes near them, a pack at a time; few are left to be walked.
+#include "surface/cpu/cpu_arc_projection.h"
 #include "surface/cpu/cpu_brick_edges.h"
 #include "surface/cpu/cpu_candidates.h"
 #include "surface/cpu/cpu_leaf_bits.h"
@@ -70,21 +71,16 @@ struct WallField {
 };
 
 // Those of a pack of arcs, one to each lane, as nearest_on_arc() has them.
-QSES_FN Vec3<WidePack> nearest_on_arcs(const float *rows, const Vec3<WidePack> &x) {
-  Vec3<WidePack> center, middle, side;
-  WidePack radius, cos_half, sin_half;
-  load_wide_rows(rows, kWideLanes, &center.x, &center.y, &center.z, &radius);
-  load_wide_rows(rows + 4 * kWideLanes, kWideLanes, &middle.x, &middle.y, &middle.z, &cos_half);
-  load_wide_rows(rows + 8 * kWideLanes, kWideLanes, &side.x, &side.y, &side.z, &sin_half);
-  const Vec3<WidePack> t = x - center;
-  const WidePack along_middle = dot(t, middle), along_side = dot(t, side);
+QSES_FN Vec3<WidePack> nearest_on_arcs(const PackedArc &arc, const Vec3<WidePack> &x) {
+  const Vec3<WidePack> t = x - arc.center;
+  const WidePack along_middle = dot(t, arc.middle), along_side = dot(t, arc.side);
   const WidePack in_plane = square_root(along_middle * along_middle + along_side * along_side);
-  const WideMask on_arc = along_middle >= cos_half * in_plane, off_axis = in_plane > WidePack(1e-6f) * radius;
+  const WideMask on_arc = along_middle >= arc.cos_half * in_plane, off_axis = in_plane > WidePack(1e-6f) * arc.radius;
   const WidePack inverse = WidePack(1.f) / maximum(in_plane, WidePack(1e-30f));
-  const WidePack end_sine = select(along_side < WidePack(0.f), -sin_half, sin_half);
-  const WidePack cosine = select(on_arc, select(off_axis, along_middle * inverse, WidePack(1.f)), cos_half);
+  const WidePack end_sine = select(along_side < WidePack(0.f), -arc.sin_half, arc.sin_half);
+  const WidePack cosine = select(on_arc, select(off_axis, along_middle * inverse, WidePack(1.f)), arc.cos_half);
   const WidePack sine = select(on_arc, select(off_axis, along_side * inverse, WidePack(0.f)), end_sine);
-  return center + middle * (radius * cosine) + side * (radius * sine);
+  return arc.center + arc.middle * (arc.radius * cosine) + arc.side * (arc.radius * sine);
 }
 
 constexpr int kGroup = 64;  // points whose probes are found together
@@ -151,14 +147,9 @@ void find_probes(const WallField &field, ProbedPoints<kRoom> &points, int begin,
       k_pack = k_pack + WidePack(1.f);
     }
     store_pack(number, place);
-    alignas(32) float rows[12 * kWideLanes];
-    for (int l = 0; l < kWideLanes; ++l) {
-      const Arc &arc = f.arcs[c.arc_index[c.arc_list[static_cast<int>(number[l])]]];
-      std::memcpy(rows + 4 * l, &arc.center, 16);
-      std::memcpy(rows + 4 * kWideLanes + 4 * l, &arc.middle, 16);
-      std::memcpy(rows + 8 * kWideLanes + 4 * l, &arc.side, 16);
-    }
-    const Vec3<WidePack> on = nearest_on_arcs(rows, p);
+    const PackedArc nearest_arcs =
+        load_arcs([&](int l) { return f.arcs + c.arc_index[c.arc_list[static_cast<int>(number[l])]]; });
+    const Vec3<WidePack> on = nearest_on_arcs(nearest_arcs, p);
     alignas(32) float x[kWideLanes], y[kWideLanes], z[kWideLanes], distance[kWideLanes];
     store_pack(x, on.x);
     store_pack(y, on.y);
