@@ -114,6 +114,14 @@ class CudaExecutor {
   static LaunchShape few_shape() {
     return {gpu::kFewThreads, 1, 2 * gpu::kFewItems / gpu::kFewThreads * kPlainSumSteps};
   }
+  // Of do_in_turn(). False: one of them has too many items, and nothing is done.
+  template <class... Steps>
+  bool do_few(const Steps &...steps) {
+    const uint64_t longest = (gpu::steps_of_few(steps) + ...);
+    if (!(gpu::is_few(steps) && ...) || longest > kLaunchSteps / (gpu::kFewThreads / 32)) return false;
+    launch("do_few", gpu::do_few_kernel<Steps...>, 1, {gpu::kFewThreads, 1, longest}, steps...);
+    return true;
+  }
   LaunchShape team_shape(uint64_t steps) const { return {BlockTeam::kSize, 1, steps, size_t(multiprocessors_) * 32}; }
 
   // A kernel on this stream, for all items, in as many launches as that takes: kernel(QueuedItems, arguments...). Of

@@ -101,8 +101,7 @@ __device__ __forceinline__ T sum_before(const T &own, T *total) {
 }
 
 template <class Load, class T>
-__global__ __launch_bounds__(kFewThreads) void scan_few_kernel(QueuedItems queued, Load load, size_t n, T *out) {
-  queued.in_turn();
+__device__ __forceinline__ void scan_few(const Load &load, size_t n, T *out) {
   const FewItems items(n);
   T own{}, total;
   for (size_t i = items.first; i < items.last; ++i) own = own + static_cast<T>(load(i));
@@ -113,6 +112,45 @@ __global__ __launch_bounds__(kFewThreads) void scan_few_kernel(QueuedItems queue
     sum = sum + value;
   }
   if (threadIdx.x == 0) out[n] = total;
+}
+template <class Load, class T>
+__global__ __launch_bounds__(kFewThreads) void scan_few_kernel(QueuedItems queued, Load load, size_t n, T *out) {
+  queued.in_turn();
+  scan_few(load, n, out);
+}
+
+// Steps of do_in_turn(), by one block: a launch of their own takes each some microseconds.
+constexpr size_t kFewTogether = 2 * kFewThreads;
+template <class F>
+constexpr bool is_few(const ForEach<F> &step) {
+  return step.n <= kFewTogether;
+}
+template <class Load, class T>
+constexpr bool is_few(const Scan<Load, T> &step) {
+  return step.n <= kFewItems;
+}
+template <class F>
+constexpr uint64_t steps_of_few(const ForEach<F> &step) {
+  return kFewTogether / kFewThreads * step.steps;
+}
+template <class Load, class T>
+constexpr uint64_t steps_of_few(const Scan<Load, T> &) {
+  return 2 * kFewItems / kFewThreads * kPlainSumSteps;
+}
+template <class F>
+__device__ __forceinline__ void do_by_block(const ForEach<F> &step) {
+  for (size_t i = threadIdx.x; i < step.n; i += kFewThreads) step.f(i);
+  __syncthreads();
+}
+template <class Load, class T>
+__device__ __forceinline__ void do_by_block(const Scan<Load, T> &step) {
+  scan_few(step.load, step.n, step.out.data);
+  __syncthreads();
+}
+template <class... Steps>
+__global__ __launch_bounds__(kFewThreads) void do_few_kernel(QueuedItems queued, Steps... steps) {
+  queued.in_turn();
+  (do_by_block(steps), ...);
 }
 
 template <class Keep, class T>

@@ -8,6 +8,7 @@
 //   for_each(n, f)                 f(i) for i in [0, n), in any order
 //   for_each_brick<Scratch>(n, f)  f(team, scratch, i): a team of threads shares one Scratch per item
 //   exclusive_scan(n, load, out)   out[i] = load(0) + ... + load(i - 1); out has n + 1 elements
+//   do_in_turn(executor, steps...) for_each and exclusive_scan one after the other: ForEach{n, f}, Scan{n, load, out}
 //   reduce<T>(n, load)             sum of load(i), T a double or a few: fixed chunks, added in fixed order. Waits
 //   sort_by_key(keys, values)      stable, in place
 //   compact(n, keep, out)          the i with keep(i), in order; returns their number. Waits
@@ -69,6 +70,42 @@ struct LoadCount {
   const T *counts;
   QSES_HOST_DEVICE uint64_t operator()(size_t i) const { return counts[i]; }
 };
+
+// Steps that follow each other. A GPU does those of few items in one launch; then none may read by load(), or else as
+// what never changes, what one before it wrote.
+template <class F>
+struct ForEach {
+  size_t n;
+  F f;
+  uint64_t steps = kPlainSteps;  // of a thread for an item, at most
+};
+template <class Load, class T>
+struct Scan {
+  size_t n;
+  Load load;
+  Span<T> out;
+};
+template <class F>
+ForEach(size_t, F) -> ForEach<F>;
+template <class F>
+ForEach(size_t, F, uint64_t) -> ForEach<F>;
+template <class Load, class T>
+Scan(size_t, Load, Span<T>) -> Scan<Load, T>;
+
+template <class Executor, class F>
+void do_step(Executor &executor, const ForEach<F> &step) {
+  executor.for_each(step.n, step.f, step.steps);
+}
+template <class Executor, class Load, class T>
+void do_step(Executor &executor, const Scan<Load, T> &step) {
+  executor.exclusive_scan(step.n, step.load, step.out);
+}
+template <class Executor, class... Steps>
+void do_in_turn(Executor &executor, const Steps &...steps) {
+  if constexpr (Executor::kIsCuda && !Executor::kCounts && sizeof...(Steps) > 1)
+    if (executor.do_few(steps...)) return;
+  (do_step(executor, steps), ...);
+}
 
 struct SoloTeam {
   QSES_FN int rank() const { return 0; }

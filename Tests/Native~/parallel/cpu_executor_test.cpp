@@ -84,6 +84,22 @@ TEST(CpuExecutor, ScansAndWritesTheTotalOnce) {
   }
 }
 
+TEST(CpuExecutor, StepsInTurn) {
+  for (unsigned threads : {1u, 3u}) {
+    CpuExecutor executor(threads);
+    for (size_t n : {0, 1, 1000, 100003}) {
+      executor.arena().reset();
+      const Span<uint64_t> numbers = executor.allocate<uint64_t>(n), sums = executor.allocate<uint64_t>(n + 1),
+                           reversed = executor.allocate<uint64_t>(n + 1);
+      do_in_turn(executor, ForEach{n, [=](size_t i) { numbers.data[i] = i % 5; }},
+                 Scan{n, LoadCount<uint64_t>{numbers.data}, sums},
+                 ForEach{n + 1, [=](size_t i) { reversed.data[i] = sums.data[n - i]; }});
+      uint64_t sum = 0;
+      for (size_t i = 0; i <= n; sum += i % 5, ++i) ASSERT_EQ(reversed[n - i], sum) << n << ", " << i;
+    }
+  }
+}
+
 // Counts looks at each item; every third is left for the second step.
 struct EveryThird {
   uint32_t *looks, *second;

@@ -147,6 +147,51 @@ TEST(CudaExecutor, ExclusiveScan) {
   }
 }
 
+// Each step reads what the one before it wrote elsewhere.
+struct WriteDigits {
+  uint32_t *out;
+  QSES_HOST_DEVICE void operator()(size_t i) const { out[i] = static_cast<uint32_t>(i % 5); }
+};
+struct Reverse {
+  const uint64_t *in;
+  size_t last;
+  uint64_t *out;
+  QSES_HOST_DEVICE void operator()(size_t i) const { out[i] = in[last - i]; }
+};
+struct CountLaunches : LaunchObserver {
+  size_t launches = 0;
+  CountLaunches() { current = this; }
+  ~CountLaunches() override { current = nullptr; }
+  void before(const Launch &) override { ++launches; }
+  void after(const Launch &) override {}
+};
+TEST(CudaExecutor, StepsInTurn) {
+  REQUIRE_DEVICE();
+  for (size_t n : {size_t(1), size_t(1023), size_t(1025), gpu::kFewTogether - 1, gpu::kFewTogether, size_t(40000)}) {
+    Span<uint32_t> digits = executor.allocate<uint32_t>(n);
+    Span<uint64_t> sums = executor.allocate<uint64_t>(n + 1), reversed = executor.allocate<uint64_t>(n + 1);
+    size_t launches = 0;
+    {
+      const CountLaunches count;
+      do_in_turn(executor, ForEach{n, WriteDigits{digits.data}}, Scan{n, Load{digits.data}, sums},
+                 ForEach{n + 1, Reverse{sums.data, n, reversed.data}});
+      launches = count.launches;
+    }
+    const bool together = n + 1 <= gpu::kFewTogether;
+    EXPECT_EQ(launches == 1, together) << n;
+    std::vector<uint64_t> expected(n + 1, 0);
+    for (size_t i = 0; i < n; ++i) expected[i + 1] = expected[i] + i % 5;
+    std::reverse(expected.begin(), expected.end());
+    EXPECT_EQ(to_host(executor, reversed), expected) << n;
+  }
+  // What may take too long for one launch is done step by step.
+  const size_t n = 1000;
+  Span<uint64_t> out = executor.allocate<uint64_t>(n);
+  const CountLaunches count;
+  do_in_turn(executor, ForEach{n, Square{out.data}, kThreadSteps}, ForEach{n, Square{out.data}});
+  EXPECT_GE(count.launches, 2u);
+}
+
 TEST(CudaExecutor, Reduce) {
   REQUIRE_DEVICE();
   EXPECT_EQ(executor.reduce(0, Root{}), 0.0);

@@ -3,24 +3,13 @@
 // a point is deepest in decides about it by its caps, or else the nearest arc.
 #pragma once
 
-#include "surface/cuda/candidates_cuda.cuh"
-#include "surface/cuda/learnt_rooms_cuda.cuh"
+#include "surface/cuda/gather_candidates_cuda.cuh"
 
 namespace quickses {
-
-// What the stages of a slice share: rows of atoms and arcs per brick, and its active leaves.
-struct CudaCandidates {
-  BrickRange slice{0, 0};  // the bricks they are for; empty: not gathered yet
-  gpu::CandidateView view{};
-  bool have_deciders = false;
-  size_t leaves = 0;
-  uint32_t longest_row = 0;  // of atoms or arcs, at most
-  bool are_of(BrickRange r) const { return slice.first == r.first && slice.last == r.last; }
-};
 namespace gpu {
 
 constexpr int kSignWarps = 4, kSignThreads = kSignWarps * kWarp;
-constexpr int kLeafAtoms = 64;  // of a leaf in shared memory; more are read from the brick's row
+constexpr int kLeafAtoms = 64;  // of a leaf in shared memory; more are read from the row
 constexpr int kLeafArcs = 64;   // in shared memory; more are staged bit by bit
 
 struct SignJob {
@@ -137,10 +126,10 @@ static __global__ __launch_bounds__(kSignThreads,
 
   const uint32_t slot = job.view.leaf_list[leaf_place], b = slot >> 3;
   const int leaf = static_cast<int>(slot & 7);
-  const BrickRow brick_row = job.view.brick_rows[b];
-  const uint32_t *const atoms = job.view.atoms + brick_row.first_atom;
-  const uint32_t *const arcs = job.view.arcs + brick_row.first_arc;
-  const uint8_t *const arc_leaves = job.view.arc_leaves + brick_row.first_arc;
+  const CandidateRow row = job.view.row_of(slot);
+  const uint32_t *const atoms = job.view.atoms + row.first_atom;
+  const uint32_t *const arcs = job.view.arcs + row.first_arc;
+  const uint8_t *const arc_leaves = job.view.arc_leaves + row.first_arc;
   glm::ivec3 first = lattice.first_point(job.bricks.place(job.view.first_brick + b));
   const Vec3<float> center = leaf_center(lattice.position(first.x, first.y, first.z), leaf, h);
   first += brick_point(leaf, 0);
@@ -151,7 +140,7 @@ static __global__ __launch_bounds__(kSignThreads,
   };
   const auto listed_arc = [&](uint32_t k0) {
     const uint32_t k = k0 + static_cast<uint32_t>(lane);
-    return k < brick_row.arc_count ? ListedArc{__ldg(arcs + k), __ldg(arc_leaves + k)} : ListedArc{0, 0};
+    return k < row.arc_count ? ListedArc{__ldg(arcs + k), __ldg(arc_leaves + k)} : ListedArc{0, 0};
   };
   constexpr int kAhead = 2;
   ListedArc ahead[kAhead];
@@ -162,7 +151,7 @@ static __global__ __launch_bounds__(kSignThreads,
   int atom_count = 0;
   const float half = 1.5f * h;
   const DeepestAtom best = choose_deepest_atoms(
-      f, brick_row.atom_count, [&](uint32_t k) { return __ldg(atoms + k); }, center, {half, half, half},
+      f, row.atom_count, [&](uint32_t k) { return __ldg(atoms + k); }, center, {half, half, half},
       -reach.leaf_radius - reach.slack, reach.slack,
       [&](bool chosen, const Sphere &ball, uint32_t number) {
         const int place = append_place(chosen, &atom_count);
@@ -184,8 +173,8 @@ static __global__ __launch_bounds__(kSignThreads,
   };
 #pragma unroll
   for (int c = 0; c < kAhead; ++c)
-    if (static_cast<uint32_t>(c * kWarp) < brick_row.arc_count) stage_arcs(ahead[c]);
-  for (uint32_t k0 = kAhead * kWarp; k0 < brick_row.arc_count; k0 += kWarp) stage_arcs(listed_arc(k0));
+    if (static_cast<uint32_t>(c * kWarp) < row.arc_count) stage_arcs(ahead[c]);
+  for (uint32_t k0 = kAhead * kWarp; k0 < row.arc_count; k0 += kWarp) stage_arcs(listed_arc(k0));
   __syncwarp();
 
   LeafKind kind = LeafKind::kMixed;
@@ -226,7 +215,7 @@ static __global__ __launch_bounds__(kSignThreads,
       if (depth0 > reach.least_depth) atom0 = scratch.atom_number[atom0];
       if (depth1 > reach.least_depth) atom1 = scratch.atom_number[atom1];
     } else {
-      for (uint32_t k = 0; k < brick_row.atom_count; ++k) {
+      for (uint32_t k = 0; k < row.atom_count; ++k) {
         const uint32_t i = __ldg(atoms + k);
         meet_ball(load(f.atoms.items + i), i);
       }
@@ -260,7 +249,7 @@ static __global__ __launch_bounds__(kSignThreads,
       if (arc_count <= kLeafArcs) {
         meet_arcs(arc_count);
       } else {
-        for (uint32_t k0 = 0; k0 < brick_row.arc_count; k0 += kWarp) {
+        for (uint32_t k0 = 0; k0 < row.arc_count; k0 += kWarp) {
           arc_count = 0;
           stage_arcs(listed_arc(k0));
           __syncwarp();
@@ -281,70 +270,6 @@ static __global__ __launch_bounds__(kSignThreads,
   if (lane == 0 && job.signs)
     job.signs[static_cast<size_t>(job.view.first_brick + b) * kLeavesPerBrick + static_cast<size_t>(leaf)] =
         static_cast<uint64_t>(high) << 32 | low;
-}
-
-// Gathers the candidates of a slice, and finds the signs of its inactive leaves unless signs is nullptr. Waits once, or
-// more often if the guess of their number was too small.
-template <class E>
-void gather_candidates(E &executor, const FeatureView &features, const BrickSet &bricks, BrickRange slice,
-                       CudaRooms &rooms, CudaCandidates &candidates, uint64_t *signs) {
-  const uint32_t n = slice.size();
-  const CandidateReach reach = CandidateReach::of(features.parameters);
-  CandidateView view{};
-  view.first_brick = slice.first;
-  view.bricks = n;
-  view.brick_rows = executor.template allocate<BrickRow>(n).data;
-  view.leaf_list = executor.template allocate<uint32_t>(size_t(n) * kLeavesPerBrick).data;
-  view.brick_leaves = executor.template allocate<uint8_t>(n).data;
-  const double per_brick = listed_candidates(features.parameters);
-  const auto room_for = [&](double rate, uint32_t most) {
-    return static_cast<size_t>(std::min(rate * per_brick, static_cast<double>(most)) * n) + kSpareCandidates;
-  };
-  size_t atom_room = room_for(rooms.listed_atoms, features.atoms.count);
-  size_t arc_room = room_for(rooms.listed_arcs, features.arc_bounds.count);
-  // All items in the cells around a brick are looked at, at most twice.
-  const float extent = 7.f * reach.spacing + 2.f * reach.grown;
-  constexpr size_t kMostWarps = 40;  // of a multiprocessor, that few bricks may have
-  const bool together = size_t(n) * kGatherWarps <= executor.multiprocessors() * kMostWarps;
-  const auto shape = [&](uint64_t near) {
-    return LaunchShape{kGatherWarps * kWarp, together ? size_t(1) : size_t(kGatherWarps), 256 + near / 16};
-  };
-  const auto near_of = [&](const char *name, const NeighborGridView &grid, float look) {
-    return most_items_near(executor, name, grid, extent + 2.f * look,
-                           [&](uint64_t items) { return executor.is_few_launches(n, shape(items)); });
-  };
-  const LaunchShape gather =
-      shape(near_of("fullest cell of atoms", features.atoms, features.parameters.max_radius + reach.slack) +
-            near_of("fullest cell of arcs", features.arc_bounds, reach.start_reach + features.max_arc_bound));
-  const auto mark = executor.arena().mark();
-  CandidateCounters found;
-  for (;;) {
-    CandidateCounters *const counters = executor.template take_counts<CandidateCounters>();
-    view.counted = counters;
-    view.atoms = executor.template allocate<uint32_t>(atom_room).data;
-    view.arcs = executor.template allocate<uint32_t>(arc_room).data;
-    view.arc_leaves = executor.template allocate<uint8_t>(arc_room).data;
-    executor.launch("gather_candidates",
-                    together ? gather_candidates_kernel<kGatherWarps> : gather_candidates_kernel<1>, n, gather,
-                    GatherJob{features, bricks, reach, view, counters, atom_room, arc_room, signs});
-    found = executor.expect("candidates", counters,
-                            CandidateCounters{atom_room, arc_room, uint64_t(n) * kLeavesPerBrick, 0});
-    if (found.atoms <= atom_room && found.arcs <= arc_room) break;
-    const auto learn = [&](double *rate, unsigned long long count, size_t *room) {
-      if (count <= *room) return;
-      *rate = std::max(*rate, kRoomToSpare * static_cast<double>(count) / (per_brick * n));
-      *room = static_cast<size_t>(count);
-    };
-    learn(&rooms.listed_atoms, found.atoms, &atom_room);
-    learn(&rooms.listed_arcs, found.arcs, &arc_room);
-    executor.arena().rewind(mark);
-  }
-  candidates.leaves = static_cast<size_t>(found.leaves);
-  candidates.longest_row = std::max(kUsualRow, found.longest_row);
-  view.leaf_room = found.leaves;
-  candidates.view = view;
-  candidates.have_deciders = false;
-  candidates.slice = slice;
 }
 
 // Evaluates the active leaves of a slice. deciders: whether what decides about their points is kept for thin walls.

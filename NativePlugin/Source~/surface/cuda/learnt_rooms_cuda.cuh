@@ -114,8 +114,8 @@ constexpr double kRoomToSpare = 1.125;
 struct CudaRooms {
   gpu::FeatureRoom features{};  // of all atoms; 0: the guess was enough
   gpu::FeatureRoom runs{};      // of all atoms, if they were like the most crowded run of them
-  // Candidates of bricks, and edges that may pass through thin walls, in units of what is usual.
-  double listed_atoms = 1, listed_arcs = 1, walked_edges = 1;
+  // Candidates of bricks and of leaves, and edges that may pass through thin walls, in units of what is usual.
+  double listed_atoms = 1, listed_arcs = 1, leaf_atoms = 1, leaf_arcs = 1, walked_edges = 1;
   void forget() { *this = CudaRooms(); }
 };
 

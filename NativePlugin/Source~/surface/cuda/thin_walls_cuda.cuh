@@ -113,7 +113,7 @@ __device__ __forceinline__ uint32_t decider_at(const WallJob &job, uint32_t bric
 __device__ __forceinline__ uint32_t first_decider(const WallJob &job, uint32_t slot, int bit, const Vec3<float> &x) {
   const uint32_t decider = decider_at(job, slot, bit);
   if (decider != kNotLookedAt) return decider;
-  const DeepestAtom deepest = deepest_atom(job.features, brick_candidates(job.view, slot / kLeavesPerBrick), x);
+  const DeepestAtom deepest = deepest_atom(job.features, row_candidates(job.view, slot), x);
   return deepest.depth > job.reach.least_depth ? kOnContact | deepest.atom : kOutsideBalls;
 }
 
@@ -313,8 +313,7 @@ __device__ __forceinline__ LaneCandidates<kWarp, true> choose_for_run(const Wall
   const Vec3<float> low(-warp_maximum(-middle.x), -warp_maximum(-middle.y), -warp_maximum(-middle.z)),
       high(warp_maximum(middle.x), warp_maximum(middle.y), warp_maximum(middle.z)), center = (low + high) * 0.5f;
   const float reach = square_root(length_squared(high - center)) + walk_reach(job, kWallSteps - 1) + job.reach.slack;
-  return choose_near<kWarp>(job.features, brick_candidates(job.view, e.slot / kLeavesPerBrick), center, reach, room,
-                            most);
+  return choose_near<kWarp>(job.features, row_candidates(job.view, e.slot), center, reach, room, most);
 }
 
 // Some lanes for each edge that is left. They wait for memory: more blocks at a time are worth registers. A warp takes
@@ -352,7 +351,7 @@ static __global__ __launch_bounds__(kWallThreads,
       if constexpr (kChosenTwice)
         walk_edge(job, e, a, b, on, choose(near_run));
       else
-        walk_edge(job, e, a, b, on, choose(brick_candidates(job.view, e.slot / kLeavesPerBrick)));
+        walk_edge(job, e, a, b, on, choose(row_candidates(job.view, e.slot)));
     }
   }
 }

@@ -30,7 +30,7 @@ struct VertexJob {
   MeshView mesh;          // its positions hold the starts, in the centred frame, until they are projected
   uint32_t first, count;  // vertices of the slice
   uint32_t first_leaf;    // in layout.vertex_leaves: of the slice, whose leaves have a list each
-  uint32_t *list_of;      // per vertex: number of its leaf's list, or kBrickCandidates and the brick of the slice
+  uint32_t *list_of;      // per vertex: number of its leaf's list, or kRowCandidates and the leaf's slot
   uint32_t *lists;        // list_words each
   uint32_t list_words;
   uint32_t *open;        // vertices that no contact patch has
@@ -40,8 +40,8 @@ struct VertexJob {
 };
 
 // The list of a leaf: word 0 has the number of atoms in its lower and of arcs in its upper half, then they follow. If
-// they are too many the brick's candidates are used.
-constexpr uint32_t kBrickCandidates = 0x80000000u;
+// they are too many those of the row are used.
+constexpr uint32_t kRowCandidates = 0x80000000u;
 
 // The vertices there are, of those that there is room for.
 __device__ __forceinline__ uint32_t vertex_count(const VertexJob &job) {
@@ -63,15 +63,15 @@ struct ListedCandidates {
   __device__ __forceinline__ uint32_t arc(int k) const { return __ldg(arcs + k); }
 };
 
-__device__ __forceinline__ ListedCandidates brick_candidates(const CandidateView &view, uint32_t brick) {
-  const BrickRow row = view.brick_rows[brick];
+__device__ __forceinline__ ListedCandidates row_candidates(const CandidateView &view, uint32_t slot) {
+  const CandidateRow row = view.row_of(slot);
   return {view.atoms + row.first_atom, view.arcs + row.first_arc, static_cast<int>(row.atom_count),
           static_cast<int>(row.arc_count)};
 }
 
 __device__ __forceinline__ ListedCandidates vertex_candidates(const VertexJob &job, uint32_t k) {
   const uint32_t number = job.list_of[k];
-  if (number & kBrickCandidates) return brick_candidates(job.view, number & ~kBrickCandidates);
+  if (number & kRowCandidates) return row_candidates(job.view, number & ~kRowCandidates);
   const uint32_t *list = job.lists + static_cast<size_t>(number) * job.list_words;
   const uint32_t head = __ldg(list);
   const int atoms = static_cast<int>(head & 0xffff);
@@ -93,6 +93,9 @@ struct VertexLeaf {
   glm::ivec3 origin;  // first point of the leaf, counted from the brick's
   uint32_t first;     // vertex
   int count;
+  __device__ __forceinline__ uint32_t slot(const CandidateView &view) const {
+    return (brick - view.first_brick) * kLeavesPerBrick + static_cast<uint32_t>(leaf);
+  }
 };
 
 // False if there is none of this number. edges: 64 * axis + bit of the lower point, in the order of the vertices. A
@@ -165,7 +168,7 @@ static __global__ __launch_bounds__(kLeafWarps *kWarp) void halve_starts_kernel(
   const size_t number = leaves.first + blockIdx.x * kLeafWarps + static_cast<uint32_t>(warp);
   VertexLeaf leaf;
   if (number >= leaves.last || !open_leaf(job, number, &leaf, edge_memory[warp])) return;
-  const ListedCandidates candidates = brick_candidates(job.view, leaf.brick - job.view.first_brick);
+  const ListedCandidates candidates = row_candidates(job.view, leaf.slot(job.view));
   for (int k = first + lane_id(); k < leaf.count && k < last; k += kWarp) {
     const LatticeEdge edge{leaf.leaf, edge_memory[warp][k] >> 6, edge_memory[warp][k] & 63};
     store_start(job, leaf.first + static_cast<uint32_t>(k),
@@ -221,8 +224,8 @@ static __global__ __launch_bounds__(kLeafWarps *kWarp) void prepare_vertices_ker
   const Vec3<float> center = (low + high) * 0.5f, half = (high - low) * 0.5f;
 
   const FeatureView &f = job.features;
-  const uint32_t brick = leaf.brick - job.view.first_brick;  // of the slice
-  const ListedCandidates all = brick_candidates(job.view, brick);
+  const uint32_t slot = leaf.slot(job.view);
+  const ListedCandidates all = row_candidates(job.view, slot);
   // The numbers of the first arcs are asked for before the atoms are looked at.
   const auto arc_number = [&](int k0) { return k0 + lane < all.arc_total ? all.arc(k0 + lane) : 0; };
   constexpr int kAhead = 2;
@@ -265,7 +268,7 @@ static __global__ __launch_bounds__(kLeafWarps *kWarp) void prepare_vertices_ker
   if (fits && lane == 0) list[0] = static_cast<uint32_t>(atoms) | static_cast<uint32_t>(listed - 1 - atoms) << 16;
   for (int k = lane; k < leaf.count; k += kWarp)
     job.list_of[leaf.first - job.first + static_cast<uint32_t>(k)] =
-        fits ? static_cast<uint32_t>(number) : kBrickCandidates | brick;
+        fits ? static_cast<uint32_t>(number) : kRowCandidates | slot;
 }
 
 }  // namespace gpu

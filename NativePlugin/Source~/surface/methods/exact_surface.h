@@ -19,11 +19,15 @@ void remove_contained_atoms(Executor &executor, const NeighborGridView &atoms, f
     near = most_items_near(executor, "fullest cell of atoms", atoms, 4.f * max_radius + 1.f, [&](uint64_t items) {
       return items <= kThreadSteps && executor.is_few_launches(atoms.count, executor.for_each_shape(items));
     });
-  for_parts_of_met_items(near, Executor::kIsCuda ? kThreadSteps : near, [&](const MetItems &part, bool) {
-    executor.for_each(atoms.count, FindContainedAtoms{atoms, max_radius, contained.data, part},
-                      std::max(kPlainSteps, std::min(near, kThreadSteps)));
+  const ForEach remove{atoms.count, RemoveContainedAtoms{contained.data, const_cast<Sphere *>(atoms.items)}};
+  for_parts_of_met_items(near, Executor::kIsCuda ? kThreadSteps : near, [&](const MetItems &part, bool is_last) {
+    const ForEach find{atoms.count, FindContainedAtoms{atoms, max_radius, contained.data, part},
+                       std::max(kPlainSteps, std::min(near, kThreadSteps))};
+    if (is_last)
+      do_in_turn(executor, find, remove);
+    else
+      do_in_turn(executor, find);
   });
-  executor.for_each(atoms.count, RemoveContainedAtoms{contained.data, const_cast<Sphere *>(atoms.items)});
   executor.arena().rewind(mark);
 }
 

@@ -158,11 +158,6 @@ struct ListBricks {
   }
 };
 
-struct IsFlagged {
-  const uint8_t *flags;
-  QSES_HOST_DEVICE bool operator()(size_t i) const { return flags[i] != 0; }
-};
-
 struct IsFirstOfEqual {
   const uint64_t *keys;
   QSES_HOST_DEVICE bool operator()(size_t i) const { return i == 0 || keys[i] != keys[i - 1]; }
@@ -179,15 +174,21 @@ struct GatherPlaces {
 // all atoms. It takes part in all passes as one of which all points are outside, and no look-up finds it.
 constexpr uint64_t kNoBrick = 0;
 
+// Numbers the flagged bricks in linear order, and lists them.
 struct FillBrickTable {
   Lattice lattice;
-  const Tally<uint64_t> *found;
-  uint64_t *places;  // in: linear indices; out: packed
-  int32_t *table;
+  const uint8_t *flags;
+  int32_t *table;  // in: how many were flagged before, and of all behind the last; out: number, or -1
+  uint64_t entries;
+  uint64_t *places;
+  uint64_t room;  // of those
+  Tally<uint64_t> *found;
   QSES_HOST_DEVICE void operator()(size_t i) const {
-    const uint64_t linear = i < found->count ? places[i] : kNoBrick;
-    if (i < found->count) table[linear] = static_cast<int32_t>(i);
-    places[i] = pack_place(lattice.brick_at(linear));
+    const uint64_t total = static_cast<uint32_t>(table[entries]), number = static_cast<uint32_t>(table[i]);
+    if (i == 0) found->count = total;
+    if (flags[i] && number < room) places[number] = pack_place(lattice.brick_at(i));
+    if (!flags[i]) table[i] = -1;
+    if (i >= total && i < room) places[i] = pack_place(lattice.brick_at(kNoBrick));
   }
 };
 
@@ -238,7 +239,7 @@ struct FlaggedBricks {
   Span<uint8_t> flags;
   template <class Room>
   FlaggedBricks(Room &room, uint64_t entries)
-      : table(room.template allocate<int32_t>(entries)), flags(room.template allocate_zeros<uint8_t>(entries)) {}
+      : table(room.template allocate<int32_t>(entries + 1)), flags(room.template allocate_zeros<uint8_t>(entries)) {}
 };
 struct SortedBricks {
   Span<uint64_t> keys, places;
@@ -275,7 +276,6 @@ BrickSet flag_bricks(Executor &executor, const Items &items, const Lattice &latt
   const FlaggedBricks memory(executor, entries);
   const Span<int32_t> table = memory.table;
   const Span<uint8_t> flags = memory.flags;
-  executor.fill(table, 0xff);
   for_rows_of_bricks<Executor>(items, [&](const RowRange &rows, uint64_t steps) {
     const bool is_all = rows.first == 0 && rows.last == ~uint64_t(0);
     const size_t layers = Executor::kIsCuda && is_all && items.size() < kManyItems ? 4 : 1;
@@ -288,9 +288,9 @@ BrickSet flag_bricks(Executor &executor, const Items &items, const Lattice &latt
                             : static_cast<uint64_t>(executor.reduce(entries, LoadCount<uint8_t>{flags.data}));
   Span<uint64_t> places = executor.template allocate<uint64_t>(room);
   Tally<uint64_t> *const found = executor.template take_counts<Tally<uint64_t>>();
-  executor.compact(entries, IsFlagged{flags.data}, places, &found->count);
+  do_in_turn(executor, Scan{entries, LoadCount<uint8_t>{flags.data}, Span<int32_t>{table.data, entries + 1}},
+             ForEach{entries, FillBrickTable{lattice, flags.data, table.data, entries, places.data, room, found}});
   const uint32_t count = checked_brick_count(executor.expect(name, found, Tally<uint64_t>{room}).count);
-  executor.for_each(count, FillBrickTable{lattice, found, places.data, table.data});
   return {lattice, places.data, table.data, count, found};
 }
 
@@ -387,7 +387,7 @@ BrickSet collect_bricks(CountingExecutor<Executor> &executor, const Items &items
     FlaggedBricks(executor, entries);
     executor.template allocate<uint64_t>(lists_all_entries(entries, executor.arena().has_budget()) ? entries : count);
     executor.template take_counts<Tally<uint64_t>>();
-    executor.compact(entries, 0, Span<uint64_t>{});
+    executor.exclusive_scan(entries, 0, Span<int32_t>{});
     set.table = &some_table;
   } else {
     executor.template allocate<uint64_t>(items.size() + 1);

@@ -292,15 +292,23 @@ NeighborGridView build_neighbor_grid(Executor &executor, const char *name, size_
     counts = {in_cell.data, executor.template allocate<uint32_t>(n).data,
               executor.template take_counts<Tally<uint32_t>>()};
   }
-  executor.for_each(n, HashItems<std::decay_t<decltype(item_at)>>{cells, item_at, items.data, keys.data, counts});
-  if (is_counted && n > kCrowd)
+  const ForEach hash{n, HashItems<std::decay_t<decltype(item_at)>>{cells, item_at, items.data, keys.data, counts}};
+  const bool may_be_crowded = n > kCrowd;
+  if (may_be_crowded || !is_counted) do_in_turn(executor, hash);
+  if (is_counted && may_be_crowded)
     is_counted = executor.expect(name, counts.fullest, Tally<uint32_t>{static_cast<uint32_t>(n)}).count <= kCrowd;
   if (is_counted) {
-    executor.exclusive_scan(cells.cells(), LoadCount<uint32_t>{counts.in_cell}, starts);
     const Span<uint32_t> numbers = executor.template allocate<uint32_t>(n);
-    executor.for_each(n, CollectNumbers{keys.data, starts.data, counts.slots, cells.cells(), numbers.data});
-    executor.for_each(std::max(n, kBehindItems), RankItems{keys.data, starts.data, numbers.data, items.data,
-                                                           cells.cells(), n, sorted.data, order.data});
+    const auto arrange = [&](const auto &...before) {
+      do_in_turn(executor, before..., Scan{cells.cells(), LoadCount<uint32_t>{counts.in_cell}, starts},
+                 ForEach{n, CollectNumbers{keys.data, starts.data, counts.slots, cells.cells(), numbers.data}},
+                 ForEach{std::max(n, kBehindItems), RankItems{keys.data, starts.data, numbers.data, items.data,
+                                                              cells.cells(), n, sorted.data, order.data}});
+    };
+    if (may_be_crowded)
+      arrange();
+    else
+      arrange(hash);
   } else {
     constexpr uint64_t kChunk = Executor::kIsCuda ? 1 : 16;
     executor.for_each(n, NumberItems{order.data});

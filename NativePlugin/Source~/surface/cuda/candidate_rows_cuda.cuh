@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+// GPU: how a warp, or a block where there are few, puts together one row of candidates.
+#pragma once
+
+#include "surface/cuda/candidates_cuda.cuh"
+
+namespace quickses {
+namespace gpu {
+
+// A cube: the points of a brick or leaf, from its first one on, and so much around them.
+struct PointBox {
+  Vec3<float> low;
+  float extent;
+  __device__ __forceinline__ PointBox(const Vec3<float> &first, float points_extent, float around)
+      : low(first.x - around, first.y - around, first.z - around), extent(points_extent + 2.f * around) {}
+  __device__ __forceinline__ bool meets(const glm::vec3 &center, float radius) const {
+    const float dx = fmaxf(0.f, fmaxf(low.x - center.x, center.x - low.x - extent));
+    const float dy = fmaxf(0.f, fmaxf(low.y - center.y, center.y - low.y - extent));
+    const float dz = fmaxf(0.f, fmaxf(low.z - center.z, center.z - low.z - extent));
+    return dx * dx + dy * dy + dz * dz < radius * radius;
+  }
+};
+
+constexpr int kGatherWarps = 4;
+// Of each kind, in a warp's shared memory; longer rows are gathered twice.
+constexpr uint32_t kGatherRoom = 192, kNarrowRoom = 512;
+
+// The warps that gather for one brick: one, or all of a block where bricks are few. Each goes over a run of the cells.
+template <int kWarps>
+struct GatherTeam {
+  static_assert(kWarps == 1 || kWarps == kGatherWarps, "a warp or a block");
+  struct Memory {
+    uint32_t words[kWarps];
+    unsigned long long first;
+  };
+  Memory &memory;
+  __device__ __forceinline__ int rank() const { return kWarps == 1 ? 0 : static_cast<int>(threadIdx.x) / kWarp; }
+  __device__ __forceinline__ bool leads() const { return rank() == 0 && lane_id() == 0; }
+  __device__ __forceinline__ void sync() const {
+    if constexpr (kWarps == 1)
+      __syncwarp();
+    else
+      __syncthreads();
+  }
+  // reduce(rank, word) for the words of all warps. Not again before sync().
+  template <class Reduce>
+  __device__ __forceinline__ void for_each_word(uint32_t own, const Reduce &reduce) const {
+    if constexpr (kWarps == 1) {
+      reduce(0, own);
+    } else {
+      if (lane_id() == 0) memory.words[rank()] = own;
+      __syncthreads();
+      for (int w = 0; w < kWarps; ++w) reduce(w, memory.words[w]);
+    }
+  }
+  // A number that the one who leads has. Not again before sync().
+  __device__ __forceinline__ unsigned long long from_leader(unsigned long long value) const {
+    if constexpr (kWarps == 1) return __shfl_sync(kFullWarp, value, 0);
+    if (leads()) memory.first = value;
+    __syncthreads();
+    return memory.first;
+  }
+};
+
+// Calls visit(item, on) for the items of the cells around a box that are this warp's share.
+template <int kWarps, class Visit>
+__device__ __forceinline__ void visit_cells(const GatherTeam<kWarps> &team, const NeighborGridView &grid,
+                                            const PointBox &around, float reach, const Visit &visit) {
+  if (grid.count == 0) return;
+  const Vec3<float> &low = around.low;
+  const float beyond = around.extent + reach;
+  const CellBox box = cells_around(grid.cells, {low.x - reach, low.y - reach, low.z - reach},
+                                   {low.x + beyond, low.y + beyond, low.z + beyond});
+  const int rows_y = box.y1 - box.y0 + 1, rows = rows_y * (box.z1 - box.z0 + 1);
+  const int begin = rows * team.rank() / kWarps, end = rows * (team.rank() + 1) / kWarps;
+  visit_runs(
+      end - begin,
+      [&](int r) { return grid.run(box.x0, box.x1, box.y0 + (begin + r) % rows_y, box.z0 + (begin + r) / rows_y); },
+      visit);
+}
+
+// A list of one kind of things, and a warp's shared memory for the row it gathers.
+struct RowMemory {
+  uint32_t *near;
+  uint8_t *near_leaves;  // nullptr: this kind has none
+  uint32_t near_room;
+  uint32_t *items;
+  uint8_t *leaves;
+  unsigned long long *counter;
+  unsigned long long room;
+};
+struct GatheredRow {
+  unsigned long long first;
+  uint32_t count;
+  bool fits;
+};
+
+// Gathers those of the things that visit_all(visit) visits for which test(item, &leaves) holds, in that order. The
+// first round counts, and keeps few in shared memory; a second one writes more. One copy of the test for both, so that
+// they never disagree.
+template <int kWarps, class VisitAll, class Test>
+__device__ __forceinline__ GatheredRow gather_row(const GatherTeam<kWarps> &team, const VisitAll &visit_all,
+                                                  const RowMemory &memory, const Test &test) {
+  const int lane = lane_id();
+  uint32_t *items = memory.near;
+  uint8_t *leaves = memory.near_leaves;
+  uint32_t room = memory.near_room;
+  GatheredRow row{0, 0, false};
+  for (int round = 0;; ++round) {
+    uint32_t n = 0;
+    visit_all([&](uint32_t k, bool on) {
+      uint32_t set = 0;
+      const bool near = on && test(k, &set);
+      const uint32_t place = append_place(near, &n);
+      if (near && place < room) {
+        items[place] = k;
+        if (leaves) leaves[place] = static_cast<uint8_t>(set);
+      }
+    });
+    if (round == 1) break;
+    uint32_t before = 0;
+    team.for_each_word(n, [&](int rank, uint32_t count) {
+      if (rank < team.rank()) before += count;
+      row.count += count;
+    });
+    if (team.leads()) row.first = atomicAdd(memory.counter, static_cast<unsigned long long>(row.count));
+    row.first = team.from_leader(row.first);
+    row.fits = row.first + row.count <= memory.room;
+    if (!row.fits) break;  // all will be done again
+    items = memory.items + row.first + before;
+    if (leaves) leaves = memory.leaves + row.first + before;
+    room = 0xffffffffu;
+    if (n > memory.near_room) continue;
+    __syncwarp();
+    for (uint32_t k = static_cast<uint32_t>(lane); k < n; k += kWarp) {
+      items[k] = memory.near[k];
+      if (leaves) leaves[k] = memory.near_leaves[k];
+    }
+    break;
+  }
+  team.sync();
+  return row;
+}
+
+}  // namespace gpu
+}  // namespace quickses

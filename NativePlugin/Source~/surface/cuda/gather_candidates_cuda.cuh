@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: MIT
+// GPU: which atoms and arcs can matter in a brick, gathered once, and which of its leaves can hold surface. Where
+// spacings are wide, each leaf then has the part of its brick's that can matter to it.
+#pragma once
+
+#include "surface/cuda/candidate_rows_cuda.cuh"
+#include "surface/cuda/learnt_rooms_cuda.cuh"
+#include "surface/memory/work_facts.h"
+
+namespace quickses {
+namespace gpu {
+
+// Where rows are counted, and room for so many items of all of them.
+struct RowRoom {
+  CandidateCounters *counters;
+  unsigned long long atoms, arcs;
+};
+
+struct GatherJob {
+  FeatureView features;
+  BrickSet bricks;
+  CandidateReach reach;
+  CandidateView view;
+  RowRoom room;
+  uint64_t *signs;  // of inactive leaves; nullptr: known already
+};
+
+// The ball that a point is deepest in, of `count` atoms: atom_at(k). No atoms: no ball, and a depth below all.
+constexpr uint32_t kNoAtom = 0xffffffffu;
+template <class AtomAt>
+__device__ __forceinline__ DeepestAtom warp_deepest_atom(const FeatureView &f, uint32_t count, const AtomAt &atom_at,
+                                                         const Vec3<float> &x) {
+  NumberedValue best{-2.f * kFarAway, kNoAtom};
+  for (uint32_t k = static_cast<uint32_t>(lane_id()); k < count; k += kWarp) {
+    const uint32_t i = atom_at(k);
+    const float depth = ball_depth(load(f.atoms.items + i), x);
+    if (depth > best.value) best = {depth, i};
+  }
+  best = warp_largest(best);
+  return {best.number, best.value};
+}
+
+// Whether the radial projection of a point on the ball it is deepest in is exposed.
+__device__ __forceinline__ bool projection_exposed(const FeatureView &f, uint32_t atom, const Vec3<float> &x,
+                                                   float depth) {
+  const Sphere ball = load(f.atoms.items + atom);
+  return is_exposed(f, atom, x - Vec3<float>(ball.center), offset_length(ball, depth));
+}
+
+// Sign of a leaf between whose points no surface passes: that of its centre. No arc is as near to it as depth.
+__device__ __forceinline__ bool uniform_leaf_inside(const GatherJob &job, const uint32_t *atoms, uint32_t count,
+                                                    const Vec3<float> &center) {
+  const auto atom_at = [&](uint32_t k) { return atoms[k]; };  // this kernel wrote them
+  const DeepestAtom deepest = warp_deepest_atom(job.features, count, atom_at, center);
+  if (deepest.depth <= job.reach.least_depth) return false;
+  if (deepest.depth > job.reach.depth) return true;
+  return !projection_exposed(job.features, deepest.atom, center, deepest.depth);
+}
+
+// The rows of one brick.
+template <int kWarps>
+static __global__ __launch_bounds__(kGatherWarps *kWarp, 8) void gather_candidates_kernel(QueuedItems queued,
+                                                                                          GatherJob job) {
+  const LaunchItems bricks = queued.in_turn();
+  __shared__ uint32_t near_memory[kGatherWarps][kGatherRoom];
+  __shared__ uint8_t near_leaves[kGatherWarps][kGatherRoom];
+  __shared__ typename GatherTeam<kWarps>::Memory team_memory;
+  const GatherTeam<kWarps> team{team_memory};
+  const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();
+  const uint32_t b =
+      static_cast<uint32_t>(bricks.first) + (blockIdx.x * kGatherWarps + static_cast<uint32_t>(warp)) / kWarps;
+  if (b >= bricks.last) return;
+  const FeatureView &f = job.features;
+  const CandidateReach &reach = job.reach;
+  const Lattice &lattice = job.bricks.lattice;
+  const float h = reach.spacing, extent = 7.f * h;
+  const glm::ivec3 first = lattice.first_point(job.bricks.place(job.view.first_brick + b));
+  const Vec3<float> low = lattice.position(first.x, first.y, first.z);
+
+  // Atoms whose ball meets the box of the brick's vertices.
+  uint32_t active = 0;
+  const auto around = [&](const NeighborGridView &grid, const PointBox &box, float look) {
+    return [=, &grid, &team](const auto &visit) { visit_cells(team, grid, box, look, visit); };
+  };
+  const PointBox atom_box(low, extent, reach.grown);
+  const GatheredRow atoms = gather_row(
+      team, around(f.atoms, atom_box, f.parameters.max_radius + reach.slack),
+      {near_memory[warp], nullptr, kGatherRoom, job.view.atoms, nullptr, &job.room.counters->atoms, job.room.atoms},
+      [&](uint32_t k, uint32_t *) {
+        const Sphere atom = load(f.atoms.items + k);
+        if (!atom_box.meets(atom.center, atom.radius + reach.slack)) return false;
+        if (f.cap_ranges[k].count != kBuriedAtom) {
+          const float surface = atom.radius - reach.depth, shell = reach.leaf_radius + reach.slack;
+          const float inner = fmaxf(0.f, surface - shell), outer = surface + shell;
+#pragma unroll
+          for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
+            const float d2 = length_squared(leaf_center(low, leaf, h) - Vec3<float>(atom.center));
+            if (d2 >= inner * inner && d2 <= outer * outer) active |= 1u << leaf;
+          }
+        }
+        return true;
+      });
+
+  // Arcs that can decide about a vertex start, and in which leaves about a lattice point.
+  const PointBox points(low, extent, 0.f), arc_box(low, extent, reach.overhang);
+  const GatheredRow arcs = gather_row(team, around(f.arc_bounds, arc_box, reach.start_reach + f.max_arc_bound),
+                                      {near_memory[warp], near_leaves[warp], kGatherRoom, job.view.arcs,
+                                       job.view.arc_leaves, &job.room.counters->arcs, job.room.arcs},
+                                      [&](uint32_t k, uint32_t *leaves) {
+                                        const Sphere ball = load(f.arc_bounds.items + k);
+                                        if (!arc_box.meets(ball.center, ball.radius + reach.start_reach)) return false;
+                                        if (points.meets(ball.center, ball.radius + reach.depth + reach.slack)) {
+                                          const Arc arc = load(f.arcs + k);
+#pragma unroll 2
+                                          for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf)
+                                            if (arc_distance2(arc, leaf_center(low, leaf, h)) <= reach.sign_arcs2)
+                                              *leaves |= 1u << leaf;
+                                          active |= *leaves;
+                                        }
+                                        return true;
+                                      });
+
+  uint32_t active_leaves = 0;
+  team.for_each_word(warp_or(active), [&](int, uint32_t leaves) { active_leaves |= leaves; });
+  // Without room for its rows the brick has none; all will be done again.
+  const bool fits = atoms.fits && arcs.fits;
+  if (!fits) active_leaves = 0;
+  unsigned long long first_leaf = 0;
+  if (team.leads()) {
+    if (active_leaves != 0)
+      first_leaf = atomicAdd(&job.room.counters->leaves, static_cast<unsigned long long>(__popc(active_leaves)));
+    job.view.rows[b] = fits ? CandidateRow{atoms.first, arcs.first, atoms.count, arcs.count} : CandidateRow{0, 0, 0, 0};
+    const uint32_t longest = atoms.count > arcs.count ? atoms.count : arcs.count;
+    if (longest > kUsualRow) atomicMax(&job.room.counters->longest_row, longest);
+  }
+  if (team.rank() == 0) {
+    first_leaf = __shfl_sync(kFullWarp, first_leaf, 0);
+    if (lane == 0) job.view.brick_leaves[b] = static_cast<uint8_t>(active_leaves);
+    if (lane < kLeavesPerBrick && (active_leaves >> lane & 1) != 0)
+      job.view.leaf_list[first_leaf + static_cast<unsigned>(place_in(active_leaves, lane))] =
+          b * kLeavesPerBrick + static_cast<uint32_t>(lane);
+  }
+  if (!job.signs) return;
+  for (int leaf = team.rank(); leaf < kLeavesPerBrick; leaf += kWarps) {
+    if (active_leaves >> leaf & 1) continue;
+    const bool inside =
+        fits && uniform_leaf_inside(job, job.view.atoms + atoms.first, atoms.count, leaf_center(low, leaf, h));
+    if (lane == 0)
+      job.signs[static_cast<size_t>(job.view.first_brick + b) * kLeavesPerBrick + static_cast<size_t>(leaf)] =
+          inside ? ~uint64_t(0) : 0;
+  }
+}
+
+struct NarrowJob {
+  FeatureView features;
+  BrickSet bricks;
+  CandidateReach reach;
+  CandidateView from, to;
+  RowRoom room;
+};
+
+// The rows of the leaves from those of their bricks. A warp per leaf.
+static __global__ __launch_bounds__(kGatherWarps *kWarp) void narrow_candidates_kernel(QueuedItems queued,
+                                                                                       NarrowJob job) {
+  const LaunchItems leaves = queued.in_turn();
+  __shared__ uint32_t near_memory[kGatherWarps][kNarrowRoom];
+  __shared__ uint8_t near_leaves[kGatherWarps][kNarrowRoom];
+  const int warp = static_cast<int>(threadIdx.x) / kWarp;
+  const size_t item = leaves.first + blockIdx.x * kGatherWarps + static_cast<uint32_t>(warp);
+  if (item >= leaves.last) return;
+  const uint32_t slot = static_cast<uint32_t>(item);
+  const FeatureView &f = job.features;
+  const CandidateReach &reach = job.reach;
+  const Lattice &lattice = job.bricks.lattice;
+  const glm::ivec3 first = lattice.first_point(job.bricks.place(job.from.first_brick + slot / kLeavesPerBrick)) +
+                           brick_point(static_cast<int>(slot % kLeavesPerBrick), 0);
+  const Vec3<float> low = lattice.position(first.x, first.y, first.z);
+  const CandidateRow row = job.from.row_of(slot);
+  GatherTeam<1>::Memory none;
+  const GatherTeam<1> team{none};
+  uint32_t place = 0;  // in the brick's row, of the item that is visited
+  const auto along = [&](const uint32_t *items, uint32_t count) {
+    return [=, &place](const auto &visit) {
+      // Asked for some ahead.
+      constexpr int kAhead = 4;
+      for (uint32_t k0 = 0; k0 < count; k0 += kAhead * kWarp) {
+        uint32_t ahead[kAhead];
+#pragma unroll
+        for (int c = 0; c < kAhead; ++c) {
+          const uint32_t k = k0 + static_cast<uint32_t>(c * kWarp + lane_id());
+          ahead[c] = k < count ? __ldg(items + k) : 0;
+        }
+#pragma unroll
+        for (int c = 0; c < kAhead; ++c) {
+          place = k0 + static_cast<uint32_t>(c * kWarp + lane_id());
+          if (k0 + static_cast<uint32_t>(c * kWarp) < count) visit(ahead[c], place < count);
+        }
+      }
+    };
+  };
+  const float extent = 3.f * reach.spacing;
+  const PointBox atom_box(low, extent, reach.grown), arc_box(low, extent, reach.overhang);
+  const GatheredRow atoms = gather_row(
+      team, along(job.from.atoms + row.first_atom, row.atom_count),
+      {near_memory[warp], nullptr, kNarrowRoom, job.to.atoms, nullptr, &job.room.counters->atoms, job.room.atoms},
+      [&](uint32_t k, uint32_t *) {
+        const Sphere atom = load(f.atoms.items + k);
+        return atom_box.meets(atom.center, atom.radius + reach.slack);
+      });
+  const GatheredRow arcs = gather_row(team, along(job.from.arcs + row.first_arc, row.arc_count),
+                                      {near_memory[warp], near_leaves[warp], kNarrowRoom, job.to.arcs,
+                                       job.to.arc_leaves, &job.room.counters->arcs, job.room.arcs},
+                                      [&](uint32_t k, uint32_t *leaves_near) {
+                                        const Sphere ball = load(f.arc_bounds.items + k);
+                                        *leaves_near = __ldg(job.from.arc_leaves + row.first_arc + place);
+                                        return arc_box.meets(ball.center, ball.radius + reach.start_reach);
+                                      });
+  if (lane_id() != 0) return;
+  // Without room for its rows the leaf has none; all will be done again.
+  const bool fits = atoms.fits && arcs.fits;
+  job.to.rows[slot] = fits ? CandidateRow{atoms.first, arcs.first, atoms.count, arcs.count} : CandidateRow{0, 0, 0, 0};
+  const uint32_t longest = atoms.count > arcs.count ? atoms.count : arcs.count;
+  if (longest > kUsualRow) atomicMax(&job.room.counters->longest_row, longest);
+}
+
+// The list that all rows of one kind share: room for as many items as are usual, or were found before.
+struct ListRoom {
+  double usual;
+  double *rate;  // of that, as it was learnt
+  size_t items;
+  ListRoom(double usual_of_row, size_t rows, uint32_t most_of_row, double *learnt)
+      : usual(usual_of_row * static_cast<double>(rows)),
+        rate(learnt),
+        items(static_cast<size_t>(std::min(*rate * usual_of_row, static_cast<double>(most_of_row)) *
+                                  static_cast<double>(rows)) +
+              kSpareCandidates) {}
+  bool holds(unsigned long long count) {
+    if (count <= items) return true;
+    *rate = std::max(*rate, kRoomToSpare * static_cast<double>(count) / usual);
+    items = static_cast<size_t>(count);
+    return false;
+  }
+};
+
+// Room for the lists of a view, in which launch() fills its rows; once more if there was too little. Returns what was
+// counted.
+template <class E, class Launch>
+CandidateCounters fill_rows(E &executor, const char *name, ListRoom atoms, ListRoom arcs, uint64_t most_leaves,
+                            CandidateView *view, const Launch &launch) {
+  const auto mark = executor.arena().mark();
+  for (;;) {
+    CandidateCounters *const counters = executor.template take_counts<CandidateCounters>();
+    view->atoms = executor.template allocate<uint32_t>(atoms.items).data;
+    view->arcs = executor.template allocate<uint32_t>(arcs.items).data;
+    view->arc_leaves = executor.template allocate<uint8_t>(arcs.items).data;
+    launch(RowRoom{counters, atoms.items, arcs.items});
+    const CandidateCounters found =
+        executor.expect(name, counters, CandidateCounters{atoms.items, arcs.items, most_leaves, 0});
+    const bool atoms_fit = atoms.holds(found.atoms), arcs_fit = arcs.holds(found.arcs);
+    if (atoms_fit && arcs_fit) return found;
+    executor.arena().rewind(mark);
+  }
+}
+
+// Gathers the candidates of a slice, and finds the signs of its inactive leaves unless signs is nullptr. Waits once, or
+// more often if the guess of their number was too small.
+template <class E>
+void gather_candidates(E &executor, const FeatureView &features, const BrickSet &bricks, BrickRange slice,
+                       CudaRooms &rooms, CudaCandidates &candidates, uint64_t *signs) {
+  const uint32_t n = slice.size();
+  const size_t leaves = size_t(n) * kLeavesPerBrick;
+  const SurfaceParameters &parameters = features.parameters;
+  const CandidateReach reach = CandidateReach::of(parameters);
+  CandidateView view{};
+  view.first_brick = slice.first;
+  view.bricks = n;
+  view.rows = executor.template allocate<CandidateRow>(n).data;
+  view.row_shift = kRowOfBrick;
+  view.leaf_list = executor.template allocate<uint32_t>(leaves).data;
+  view.brick_leaves = executor.template allocate<uint8_t>(n).data;
+  // All items in the cells around a brick are looked at, at most twice.
+  const float extent = 7.f * reach.spacing + 2.f * reach.grown;
+  constexpr size_t kMostWarps = 40;  // of a multiprocessor, that few bricks may have
+  const bool together = size_t(n) * kGatherWarps <= executor.multiprocessors() * kMostWarps;
+  const auto shape = [&](uint64_t near) {
+    return LaunchShape{kGatherWarps * kWarp, together ? size_t(1) : size_t(kGatherWarps), 256 + near / 16};
+  };
+  const auto near_of = [&](const char *name, const NeighborGridView &grid, float look) {
+    return most_items_near(executor, name, grid, extent + 2.f * look,
+                           [&](uint64_t items) { return executor.is_few_launches(n, shape(items)); });
+  };
+  const LaunchShape gather =
+      shape(near_of("fullest cell of atoms", features.atoms, parameters.max_radius + reach.slack) +
+            near_of("fullest cell of arcs", features.arc_bounds, reach.start_reach + features.max_arc_bound));
+  const auto room_of = [&](size_t rows, int points, uint32_t most, double *learnt) {
+    return ListRoom(listed_candidates(parameters, points), rows, most, learnt);
+  };
+  const uint32_t atoms = features.atoms.count, arcs = features.arc_bounds.count;
+  CandidateCounters found =
+      fill_rows(executor, "candidates", room_of(n, kBrickEdge, atoms, &rooms.listed_atoms),
+                room_of(n, kBrickEdge, arcs, &rooms.listed_arcs), leaves, &view, [&](const RowRoom &room) {
+                  view.counted = room.counters;
+                  executor.launch("gather_candidates",
+                                  together ? gather_candidates_kernel<kGatherWarps> : gather_candidates_kernel<1>, n,
+                                  gather, GatherJob{features, bricks, reach, view, room, signs});
+                });
+  candidates.leaves = static_cast<size_t>(found.leaves);
+  view.leaf_room = found.leaves;
+  if (parameters.spacing >= kSpacingOfLeafRows) {
+    const CandidateView of_bricks = view;
+    view.rows = executor.template allocate<CandidateRow>(leaves).data;
+    view.row_shift = kRowOfLeaf;
+    const LaunchShape narrow{kGatherWarps * kWarp, kGatherWarps,
+                             128 + uint64_t(std::max(kUsualRow, found.longest_row)) / 4};
+    found = fill_rows(executor, "candidates of leaves", room_of(leaves, kLeafEdge, atoms, &rooms.leaf_atoms),
+                      room_of(leaves, kLeafEdge, arcs, &rooms.leaf_arcs), 0, &view, [&](const RowRoom &room) {
+                        executor.launch("narrow_candidates", narrow_candidates_kernel, leaves, narrow,
+                                        NarrowJob{features, bricks, reach, of_bricks, view, room});
+                      });
+  }
+  candidates.longest_row = std::max(kUsualRow, found.longest_row);
+  candidates.view = view;
+  candidates.have_deciders = false;
+  candidates.slice = slice;
+}
+
+}  // namespace gpu
+}  // namespace quickses
