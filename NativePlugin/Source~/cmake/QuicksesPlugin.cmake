@@ -32,14 +32,12 @@ else()
   set(_file_metas libquickses.so.meta)
   set(_folder "${PROJECT_BINARY_DIR}/plugin")
   set(_system_library ${QUICKSES_CPU_LIBRARY})
-  if(NOT QUICKSES_CPU_SYSTEM_FOUND STREQUAL "TBB")
-    quickses_no_plugin("libgomp, which the OMP system needs, can't be a part of it; install oneTBB")
-    return()
-  endif()
-
   # A shared TBB travels along. Unity copies only names that end in .so, hence a name, and a soname, of our own; it is
   # also why no other TBB in the process is mistaken for it.
-  get_target_property(_tbb_type TBB::tbb TYPE)
+  set(_tbb_type none)
+  if(QUICKSES_CPU_SYSTEM_FOUND STREQUAL "TBB")
+    get_target_property(_tbb_type TBB::tbb TYPE)
+  endif()
   if(_tbb_type STREQUAL "SHARED_LIBRARY")
     find_program(QUICKSES_PATCHELF patchelf DOC "Gives the copy of TBB that travels with the plug-in its name")
     mark_as_advanced(QUICKSES_PATCHELF)

@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: MIT
-// The CPU's threads, by one of Thrust's parallel systems: TBB, or OpenMP where there is no TBB. Which one is a build
-// option; nothing outside this file knows.
+// The CPU's threads: TBB's, by Thrust, or the library's own where there is no TBB. Which is a build option; nothing
+// outside this file knows.
 #pragma once
 
 #include "parallel/startable_threads.h"
 #include "parallel/worker_threads.h"
 
-#if defined(QSES_CPU_SYSTEM_OMP)
-#include <omp.h>
-#include <thrust/system/omp/execution_policy.h>
+#if defined(QSES_CPU_SYSTEM_OWN)
+#include "parallel/helper_threads.h"
+
+#include <memory>
 #else
 #include <tbb/info.h>
 #include <tbb/task_arena.h>
-#include <thrust/system/tbb/execution_policy.h>
-#endif
 #include <thrust/for_each.h>
 #include <thrust/iterator/counting_iterator.h>
+#include <thrust/system/tbb/execution_policy.h>
+#endif
 
 #include <algorithm>
 #include <cstddef>
@@ -37,33 +38,29 @@ class CpuThreads {
   unsigned usable() {
     if (count_ == 1) return 1;
     if (usable_ == 0) {
-#if !defined(QSES_CPU_SYSTEM_OMP)
       // More than the machine has are of no use, and TBB would complain on stderr.
-      const unsigned wanted = std::min(count_, static_cast<unsigned>(tbb::info::default_concurrency()));
+#if defined(QSES_CPU_SYSTEM_OWN)
+      const unsigned there_are = std::thread::hardware_concurrency();
+      helpers_ = std::make_unique<HelperThreads>((there_are > 0 ? std::min(count_, there_are) : count_) - 1);
+      usable_ = 1 + static_cast<unsigned>(helpers_->count());
 #else
-      const unsigned wanted = count_;
-#endif
+      const unsigned wanted = std::min(count_, static_cast<unsigned>(tbb::info::default_concurrency()));
       usable_ = 1 + count_startable_threads(wanted - 1);
-#if !defined(QSES_CPU_SYSTEM_OMP)
       arena_.initialize(static_cast<int>(usable_));
 #endif
     }
     return usable_ == 1 ? 1 : count_;
   }
 
-  // work(worker) for all workers, by the calling thread and those of the parallel system. False if that had none to
-  // give after all: what was left undone is then to be done by the caller.
+  // work(worker) for workers from 0 on, by the calling thread and those that help. False if TBB had none to give after
+  // all: what was left undone is then to be done by the caller.
   template <class Work>
   bool run(size_t workers, const Work &work) {
-    const thrust::counting_iterator<size_t> first(0), last(workers);
-#if defined(QSES_CPU_SYSTEM_OMP)
-    const struct Restore {
-      int threads = omp_get_max_threads();
-      ~Restore() { omp_set_num_threads(threads); }
-    } restore;
-    omp_set_num_threads(static_cast<int>(usable_));
-    thrust::for_each(thrust::omp::par, first, last, work);
+#if defined(QSES_CPU_SYSTEM_OWN)
+    helpers_->run(
+        workers, [](const void *of, size_t worker) { (*static_cast<const Work *>(of))(worker); }, &work);
 #else
+    const thrust::counting_iterator<size_t> first(0), last(workers);
     try {
       arena_.execute([&] { thrust::for_each(thrust::tbb::par, first, last, work); });
     } catch (const std::exception &) {
@@ -78,7 +75,9 @@ class CpuThreads {
   unsigned count_;
   bool in_background_;
   unsigned usable_ = 0;  // of them; 0: not known yet
-#if !defined(QSES_CPU_SYSTEM_OMP)
+#if defined(QSES_CPU_SYSTEM_OWN)
+  std::unique_ptr<HelperThreads> helpers_;
+#else
   tbb::task_arena arena_;
 #endif
 };

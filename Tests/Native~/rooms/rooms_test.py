@@ -34,7 +34,7 @@ ROOMS = {
     "cli": "include io render",
 }
 # What only the CPU's side may see.
-CPU_HEADERS = re.compile(r"tbb/|omp\.h$|thrust/system/(tbb|omp)/")
+CPU_HEADERS = re.compile(r"tbb/|thrust/system/tbb/")
 
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*(?:"([^"]+)"|<([^>]+)>)', re.MULTILINE)
 

@@ -241,7 +241,7 @@ static inline void qses_context_options_init(qses_context_options *options) { qs
  * With CUDA the first one of a process takes as long as CUDA needs to start, up to a second, and for a GPU newer than
  * this library up to a minute more (qses_backend_description.preparing): make it on a thread that may wait. Later ones
  * take milliseconds. From then on, or once CUDA was asked about, the library stays in the process: a host that unloads
- * it gets the same one when it loads it again, since threads of TBB, OpenMP and the driver end later than contexts.
+ * it gets the same one when it loads it again, since threads of TBB and the driver end later than contexts.
  * Errors: INVALID_ARGUMENT, BACKEND_UNAVAILABLE, OUT_OF_MEMORY, DEVICE_ERROR. */
 QSES_API qses_status qses_context_create(const qses_context_options *options, qses_context **context);
 
