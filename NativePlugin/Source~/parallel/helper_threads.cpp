@@ -81,6 +81,7 @@ void HelperThreads::wait_to_be_called() {
   do {
     pause_a_little();
     if (is_called()) return;
+    std::this_thread::yield();  // to whoever has something to do
   } while (std::chrono::steady_clock::now() < end);
   std::unique_lock<std::mutex> lock(mutex_);
   ++asleep_;

@@ -192,6 +192,27 @@ TEST(CudaExecutor, StepsInTurn) {
   EXPECT_GE(count.launches, 2u);
 }
 
+// Those of a frame whose counts may be anticipated lie together, as far as there is room, and are filled by one launch.
+TEST(CudaExecutor, ZerosAreZerosInEachFrame) {
+  REQUIRE_DEVICE();
+  for (const uint64_t kind : {uint64_t(0), uint64_t(7)})
+    for (int frame = 0; frame < 3; ++frame) {
+      executor.arena().reset();
+      executor.open_counts(kind);
+      std::vector<Span<uint32_t>> all;
+      for (size_t n : {size_t(1), size_t(3), size_t(1000), size_t(90000), size_t(60000), size_t(17), size_t(500000)})
+        all.push_back(executor.allocate_zeros<uint32_t>(n));
+      all.push_back({executor.take_counts<uint32_t>(), 1});
+      for (const Span<uint32_t> &zeros : all)
+        ASSERT_EQ(to_host(executor, zeros), std::vector<uint32_t>(zeros.size, 0)) << zeros.size << ", frame " << frame;
+      for (size_t k = 0; k < all.size(); ++k) executor.fill(all[k], static_cast<int>(k) + 1);
+      // Filled apart: none reaches into another.
+      for (size_t k = 0; k < all.size(); ++k)
+        for (uint32_t word : to_host(executor, all[k])) ASSERT_EQ(word, 0x01010101u * (static_cast<uint32_t>(k) + 1));
+    }
+  executor.open_counts(0);
+}
+
 TEST(CudaExecutor, Reduce) {
   REQUIRE_DEVICE();
   EXPECT_EQ(executor.reduce(0, Root{}), 0.0);

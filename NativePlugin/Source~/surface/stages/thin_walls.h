@@ -56,11 +56,9 @@ struct WordNeighborhood {
 };
 using LeafNeighborhood = WordNeighborhood<uint64_t>;
 
-// The word of a leaf at a place counted from the first leaf of a brick, from -1 to 2 along each axis. words_of(place):
-// those of the brick itself and around it; nullptr if a brick is not active: no wall is there, so all is outside.
-template <class WordsOf>
-QSES_FN uint64_t word_of_leaf(const glm::ivec3 &p, const WordsOf &words_of) {
-  const uint64_t *const words = words_of(kOwnPlace + (p.x >> 1) + 3 * (p.y >> 1) + 9 * (p.z >> 1));
+// The word of a leaf at a place counted from the first leaf of a brick, from -1 to 2 along each axis. words: of the
+// brick that it is in; nullptr if that is not active: no wall is there, so all is outside.
+QSES_FN uint64_t word_of_leaf(const glm::ivec3 &p, const uint64_t *words) {
   return words ? words[(p.x & 1) + 2 * (p.y & 1) + 4 * (p.z & 1)] : 0;
 }
 
