@@ -3,7 +3,6 @@
 // outside this file knows.
 #pragma once
 
-#include "parallel/startable_threads.h"
 #include "parallel/worker_threads.h"
 
 #if defined(QSES_CPU_SYSTEM_OWN)
@@ -11,6 +10,8 @@
 
 #include <memory>
 #else
+#include "parallel/startable_threads.h"
+
 #include <tbb/info.h>
 #include <tbb/task_arena.h>
 #include <thrust/for_each.h>

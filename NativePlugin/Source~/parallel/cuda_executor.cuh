@@ -111,9 +111,7 @@ class CudaExecutor {
   bool is_few_launches(size_t items, const LaunchShape &shape) const { return launches_of(items, shape) <= 4; }
   static LaunchShape for_each_shape(uint64_t steps) { return {gpu::kForEachThreads, gpu::kForEachThreads, steps}; }
 
-  static LaunchShape few_shape() {
-    return {gpu::kFewThreads, 1, 2 * gpu::kFewItems / gpu::kFewThreads * kPlainSumSteps};
-  }
+  static LaunchShape few_shape() { return {gpu::kFewThreads, 1, gpu::kFewSteps}; }
   // Of do_in_turn(). False: one of them has too many items, and nothing is done.
   template <class... Steps>
   bool do_few(const Steps &...steps) {

@@ -69,6 +69,7 @@ __global__ __launch_bounds__(BlockTeam::kSize, kSumBlocks) void sum_chunks_kerne
 // whole device take two launches, of which each waits for what was queued before it.
 constexpr int kFewThreads = 1024;
 constexpr size_t kFewItems = 8 * kFewThreads;
+constexpr uint64_t kFewSteps = 2 * kFewItems / kFewThreads * kPlainSumSteps;  // of a thread, for those
 struct FewItems {
   size_t first, last;
   __device__ __forceinline__ explicit FewItems(size_t n) {
@@ -135,7 +136,7 @@ constexpr uint64_t steps_of_few(const ForEach<F> &step) {
 }
 template <class Load, class T>
 constexpr uint64_t steps_of_few(const Scan<Load, T> &) {
-  return 2 * kFewItems / kFewThreads * kPlainSumSteps;
+  return kFewSteps;
 }
 template <class F>
 __device__ __forceinline__ void do_by_block(const ForEach<F> &step) {

@@ -12,6 +12,15 @@ constexpr int kWarp = 32;
 
 __device__ __forceinline__ int lane_id() { return static_cast<int>(threadIdx.x & 31u); }
 
+// Of what one warp does alone, or all so many of a block together.
+template <int kWarps>
+__device__ __forceinline__ void sync_warps() {
+  if constexpr (kWarps == 1)
+    __syncwarp();
+  else
+    __syncthreads();
+}
+
 // How many of the lanes before this one are in a ballot: the place of this lane among them.
 __device__ __forceinline__ int place_in(unsigned ballot, int lane) { return __popc(ballot & ((1u << lane) - 1u)); }
 

@@ -50,10 +50,11 @@ void HelperThreads::run(size_t workers, Work work, const void *context) noexcept
   work_ = work;
   context_ = context;
   next_worker_ = 1;
-  seats_ = std::min(workers - 1, count());
+  const size_t seats = std::min(workers - 1, count());
+  seats_ = seats;
   if (asleep_ > 0) {
     { const std::lock_guard<std::mutex> lock(mutex_); }  // who is about to sleep has looked at the seats, or sleeps
-    for (size_t k = 1; k < workers && k <= count(); ++k) called_.notify_one();
+    for (size_t k = 0; k < seats; ++k) called_.notify_one();
   }
   work(context, 0);
   seats_ = 0;

@@ -36,12 +36,7 @@ struct GatherTeam {
   Memory &memory;
   __device__ __forceinline__ int rank() const { return kWarps == 1 ? 0 : static_cast<int>(threadIdx.x) / kWarp; }
   __device__ __forceinline__ bool leads() const { return rank() == 0 && lane_id() == 0; }
-  __device__ __forceinline__ void sync() const {
-    if constexpr (kWarps == 1)
-      __syncwarp();
-    else
-      __syncthreads();
-  }
+  __device__ __forceinline__ void sync() const { sync_warps<kWarps>(); }
   // reduce(rank, word) for the words of all warps. Not again before sync().
   template <class Reduce>
   __device__ __forceinline__ void for_each_word(uint32_t own, const Reduce &reduce) const {

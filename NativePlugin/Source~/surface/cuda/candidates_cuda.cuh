@@ -96,6 +96,10 @@ struct CandidateView {
   unsigned long long leaf_room;  // so many leaves are evaluated: if there are more, all will be done again
   uint32_t *deciders;  // by 64 * (8 * brick + leaf) + bit, of those leaves: what a sign is from; nullptr: not kept
 
+  // brick: of the set; one of the slice.
+  __device__ __forceinline__ uint32_t slot_of(uint32_t brick, int leaf) const {
+    return (brick - first_brick) * kLeavesPerBrick + static_cast<uint32_t>(leaf);
+  }
   __device__ __forceinline__ CandidateRow row_of(uint32_t slot) const { return rows[slot >> row_shift]; }
 };
 constexpr int kRowOfBrick = 3, kRowOfLeaf = 0;  // row_shift

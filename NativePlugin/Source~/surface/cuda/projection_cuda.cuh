@@ -279,8 +279,7 @@ static __global__ __launch_bounds__(kVertexThreads, 8) void place_on_edges_kerne
     const uint32_t brick = brick_of_vertex(job.layout, job.bricks.count, vertex);
     const LatticeEdge own = edge_of_vertex(job.layout, brick, vertex);
     const CutEdge edge = ends_of_edge(job.bricks, job.layout, brick, own);
-    const uint32_t slot = (brick - job.view.first_brick) * kLeavesPerBrick + static_cast<uint32_t>(own.leaf);
-    const ListedCandidates all = row_candidates(job.view, slot);
+    const ListedCandidates all = row_candidates(job.view, job.view.slot_of(brick, own.leaf));
     const auto near = choose_near<kWarp>(f, all, edge.middle(), edge_reach(f.parameters), edge_memory[warp], kEdgeRoom);
     const SurfacePoint s = place_on_edge(f, near, edge);
     const uint32_t owner = nearest_atom(f, shared<kWarp>(all), s.position);

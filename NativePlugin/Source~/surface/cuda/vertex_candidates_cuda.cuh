@@ -93,9 +93,6 @@ struct VertexLeaf {
   glm::ivec3 origin;  // first point of the leaf, counted from the brick's
   uint32_t first;     // vertex
   int count;
-  __device__ __forceinline__ uint32_t slot(const CandidateView &view) const {
-    return (brick - view.first_brick) * kLeavesPerBrick + static_cast<uint32_t>(leaf);
-  }
 };
 
 // False if there is none of this number. edges: 64 * axis + bit of the lower point, in the order of the vertices. A
@@ -168,7 +165,7 @@ static __global__ __launch_bounds__(kLeafWarps *kWarp) void halve_starts_kernel(
   const size_t number = leaves.first + blockIdx.x * kLeafWarps + static_cast<uint32_t>(warp);
   VertexLeaf leaf;
   if (number >= leaves.last || !open_leaf(job, number, &leaf, edge_memory[warp])) return;
-  const ListedCandidates candidates = row_candidates(job.view, leaf.slot(job.view));
+  const ListedCandidates candidates = row_candidates(job.view, job.view.slot_of(leaf.brick, leaf.leaf));
   for (int k = first + lane_id(); k < leaf.count && k < last; k += kWarp) {
     const LatticeEdge edge{leaf.leaf, edge_memory[warp][k] >> 6, edge_memory[warp][k] & 63};
     store_start(job, leaf.first + static_cast<uint32_t>(k),
@@ -224,7 +221,7 @@ static __global__ __launch_bounds__(kLeafWarps *kWarp) void prepare_vertices_ker
   const Vec3<float> center = (low + high) * 0.5f, half = (high - low) * 0.5f;
 
   const FeatureView &f = job.features;
-  const uint32_t slot = leaf.slot(job.view);
+  const uint32_t slot = job.view.slot_of(leaf.brick, leaf.leaf);
   const ListedCandidates all = row_candidates(job.view, slot);
   // The numbers of the first arcs are asked for before the atoms are looked at.
   const auto arc_number = [&](int k0) { return k0 + lane < all.arc_total ? all.arc(k0 + lane) : 0; };

@@ -251,12 +251,6 @@ static __global__ __launch_bounds__(kWallThreads, 8) void drop_open_edges_kernel
   static_assert(kTogether == 1 || kTogether == kWallWarps, "a warp or a block");
   const LaunchItems items = queued.in_turn();
   __shared__ WallScratch leaves_memory[kWallWarps];
-  const auto sync = [] {
-    if constexpr (kTogether == 1)
-      __syncwarp();
-    else
-      __syncthreads();
-  };
   const int warp = static_cast<int>(threadIdx.x) / kWarp, rank = warp % kTogether, lane = lane_id();
   WallScratch &own = leaves_memory[warp], *const together = leaves_memory + (warp - rank);
   const size_t leaves = job.counters->leaves, total = leaves < items.last ? leaves : items.last;
@@ -267,7 +261,7 @@ static __global__ __launch_bounds__(kWallThreads, 8) void drop_open_edges_kernel
       list_uncovered_edges(job, job.leaves[k], &own);
     else if (lane == 0)
       own.edge_count = 0;
-    sync();
+    sync_warps<kTogether>();
 
     int ends[kTogether], all = 0;
 #pragma unroll
@@ -283,7 +277,7 @@ static __global__ __launch_bounds__(kWallThreads, 8) void drop_open_edges_kernel
       const bool left = is_left_by_probes(job, together, whose, edge, on);
       if (on && !left) edge = kOpenEdge;
     }
-    sync();
+    sync_warps<kTogether>();
 
     if (k < total) {
       int walks = 0;
@@ -304,7 +298,7 @@ static __global__ __launch_bounds__(kWallThreads, 8) void drop_open_edges_kernel
           job.walks[base + static_cast<unsigned>(n)] =
               n < walks ? static_cast<uint64_t>(own.slot) * (kWallSteps * 64) + own.edge[n] : kNoWalk;
     }
-    sync();  // the leaves are not looked at any more
+    sync_warps<kTogether>();  // the leaves are not looked at any more
   }
 }
 
