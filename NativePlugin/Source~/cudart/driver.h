@@ -49,6 +49,7 @@ namespace cudart {
   F(cuMemcpyDtoDAsync_v2, CUresult, CUdeviceptr, CUdeviceptr, size_t, CUstream)                                 \
   F(cuMemsetD8Async, CUresult, CUdeviceptr, unsigned char, size_t, CUstream)                                    \
   F(cuStreamCreate, CUresult, CUstream *, unsigned)                                                             \
+  F(cuStreamCreateWithPriority, CUresult, CUstream *, unsigned, int)                                            \
   F(cuStreamDestroy_v2, CUresult, CUstream)                                                                     \
   F(cuStreamSynchronize, CUresult, CUstream)                                                                    \
   F(cuStreamWaitEvent, CUresult, CUstream, CUevent, unsigned)                                                   \

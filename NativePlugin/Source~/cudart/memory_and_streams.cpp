@@ -88,6 +88,9 @@ cudaError_t CUDARTAPI cudaMemsetAsync(void *memory, int byte, size_t bytes, cuda
 
 // ---- streams and events, whose handles are those of the driver ------------------------------------------------------
 
+cudaError_t CUDARTAPI cudaStreamCreateWithPriority(cudaStream_t *stream, unsigned flags, int priority) {
+  return inside([&](const Driver &d) { return d.cuStreamCreateWithPriority(stream, flags, priority); });
+}
 cudaError_t CUDARTAPI cudaStreamCreateWithFlags(cudaStream_t *stream, unsigned flags) {
   return inside([&](const Driver &d) { return d.cuStreamCreate(stream, flags); });
 }

@@ -35,8 +35,8 @@ struct Tally {
   bool covers(const Tally &found) const { return found.count <= count; }
 };
 
-// What was counted in the last frame, by page (a number: the level's; 0: of what levels share) and name; and what this
-// one relies on.
+// What was counted in the last frame, by page (a number: the level's; 0: of what levels share; and that of a part of
+// it, or 0) and name; and what this one relies on.
 class Anticipation {
  public:
   // Frames of one kind follow each other; another kind is not like those before. 0: nothing is anticipated, or noted.
@@ -47,32 +47,44 @@ class Anticipation {
     if (!is_open_) return;
     if (kind != kind_) pages_.clear();
     kind_ = kind;
-    page_ = 0;
+    page_ = {};
     waiting_frames_ = waiting_frames_ > 0 ? waiting_frames_ - 1 : 0;
   }
   bool is_open() const { return is_open_; }
-  void turn_to(float page) { page_ = page; }
+  void turn_to(float level, uint32_t part = 0) { page_ = {level, part}; }
 
   // False: whoever asks has to wait, and note() what there is.
   template <class T>
   bool anticipate(const char *name, size_t place, const T &most, T *expected) {
-    if (waiting_frames_ > 0) return false;
-    const Entry *const last = find(name);
-    if (!last) return false;
-    *expected = T::anticipated(last->as<T>(), most);
-    relied_on_.push_back({page_, place, Entry(name, *expected), &is_covered<T>});
+    if (!foresee(name, most, expected)) return false;
+    relied_on_.push_back({page_, place, Entry(name, *expected), &is_covered<T>, is_aside_});
     return true;
   }
   template <class T>
   void note(const char *name, const T &found) {
     note(page_, Entry(name, found));
   }
+  // What would be anticipated now, if anything is.
+  template <class T>
+  bool foresee(const char *name, const T &most, T *expected) const {
+    const Entry *const last = is_open_ && waiting_frames_ == 0 ? find(name) : nullptr;
+    if (last) *expected = T::anticipated(last->as<T>(), most);
+    return last != nullptr;
+  }
 
   // Of which it was not told yet that it is being counted.
   bool relies_on_something() const { return relied_on_.size() > counting_; }
-  // What is relied on by now is about to be counted.
-  void note_counting() { counting_ = relied_on_.size(); }
-  bool is_counting() const { return counting_ > 0; }
+  // What is relied on by now is about to be counted, but what is counted aside.
+  void note_counting() {
+    counting_ = static_cast<size_t>(
+        std::stable_partition(relied_on_.begin(), relied_on_.end(), [](const Reliance &r) { return !r.is_aside; }) -
+        relied_on_.begin());
+  }
+  // What is relied on from now on is counted aside, until both come together again.
+  void turn_aside(bool is_aside) { is_aside_ = is_aside; }
+  void join() {
+    for (Reliance &r : relied_on_) r.is_aside = false;
+  }
   // counted: where the counts are whose places were given. Throws AnticipatedTooLittle.
   void verify(const unsigned char *counted) {
     bool enough = true;
@@ -116,15 +128,21 @@ class Anticipation {
       return value;
     }
   };
+  struct Number {
+    float level;
+    uint32_t part;
+    bool operator==(const Number &other) const { return level == other.level && part == other.part; }
+  };
   struct Page {
-    float number;
+    Number number;
     std::vector<Entry> entries;
   };
   struct Reliance {
-    float page;
+    Number page;
     size_t place;
     Entry expected;
     bool (*is_covered)(const unsigned char *found, const unsigned char *expected);
+    bool is_aside;
   };
 
   template <class T>
@@ -141,7 +159,7 @@ class Anticipation {
           if (std::strcmp(entry.name, name) == 0) return &entry;
     return nullptr;
   }
-  void note(float number, const Entry &found) {
+  void note(const Number &number, const Entry &found) {
     auto page = std::find_if(pages_.begin(), pages_.end(), [&](const Page &p) { return p.number == number; });
     if (page == pages_.end()) page = pages_.insert(page, Page{number, {}});
     for (Entry &entry : page->entries)
@@ -152,9 +170,9 @@ class Anticipation {
     page->entries.push_back(found);
   }
 
-  bool is_open_ = false;
+  bool is_open_ = false, is_aside_ = false;
   uint64_t kind_ = 0;
-  float page_ = 0;
+  Number page_{};
   std::vector<Page> pages_;
   std::vector<Reliance> relied_on_;
   size_t counting_ = 0;      // the first so many

@@ -63,13 +63,14 @@ class CudaExecutor {
     try {
       const DeviceGuard guard(device_);
       if (!may_hand_back()) return;
-      cudaStreamSynchronize(stream_);
-      for (cudaEvent_t event : launched_)
+      for (cudaStream_t stream : {stream_, second_stream_})
+        if (stream) cudaStreamSynchronize(stream);
+      for (cudaEvent_t event : {launched_[0], launched_[1], counted_, joined_})
         if (event) cudaEventDestroy(event);
-      if (counted_) cudaEventDestroy(counted_);
       count_memory_.release();
       arena_.release();
-      cudaStreamDestroy(stream_);
+      for (cudaStream_t stream : {stream_, second_stream_})
+        if (stream) cudaStreamDestroy(stream);
       cudaGetLastError();
     } catch (...) {  // the device is lost, and its memory with it
     }
@@ -178,13 +179,15 @@ class CudaExecutor {
       launch("scan_few", gpu::scan_few_kernel<Load, T>, 1, few_shape(), load, n, out.data);
       return;
     }
-    check_count(n + 1, "exclusive_scan");
-    const auto in =
-        thrust::make_transform_iterator(thrust::counting_iterator<size_t>(0), gpu::LoadOrZero<Load, T>{load, n});
-    with_temporary("cub::DeviceScan::ExclusiveScan", [&](void *temporary, size_t &bytes) {
-      return cub::DeviceScan::ExclusiveScan(temporary, bytes, in, out.data, cub::Sum(), T{}, static_cast<int>(n + 1),
-                                            stream_);
-    });
+    scan_all(n, load, out, T{});
+  }
+  // The same behind sums that are there already: out[0] is the last of them.
+  template <class Load, class T>
+  void go_on_scanning(size_t n, Load load, Span<T> out) {
+    if (n <= gpu::kFewItems)
+      launch("scan_few", gpu::go_on_scanning_few_kernel<Load, T>, 1, few_shape(), load, n, out.data);
+    else
+      scan_all(n, load, out, cub::FutureValue<T>(out.data));
   }
 
   // Bytes of the arena that the verbs take for as long as they work; T, Key and Value as there. CUB's scan keeps, for
@@ -281,12 +284,13 @@ class CudaExecutor {
   // was, so that all of it may be queued.
   void open_counts(uint64_t kind, bool is_short = false) {
     runs_ahead_ = is_short;
+    are_counts_sent_ = false;
     anticipation_.open(kind);
     if (!anticipation_.is_open()) return;
     fill(Span<unsigned char>{counts_, kCountsBytes + zeros_used_}, 0);
     counts_used_ = zeros_used_ = 0;
   }
-  void turn_counts_to(float page) { anticipation_.turn_to(page); }
+  void turn_counts_to(float level, uint32_t part = 0) { anticipation_.turn_to(level, part); }
 
   // Counts of zero, for as long as what is allocated now.
   template <class T>
@@ -309,10 +313,19 @@ class CudaExecutor {
     anticipation_.note(name, value);
     return value;
   }
+  // What would be anticipated, if that were asked.
+  template <class T>
+  bool foresee(const char *name, const T &most, T *expected) const {
+    return anticipation_.foresee(name, most, expected);
+  }
   // All that is anticipated so far will have been counted when the device gets here.
   void send_counts() {
-    if (!anticipation_.relies_on_something()) return;
+    if (anticipation_.relies_on_something()) send_all_counts();
+  }
+  // Also if nothing is: for what verified() tells.
+  void send_all_counts() {
     anticipation_.note_counting();
+    are_counts_sent_ = true;
     // Not by a copy, around which the device would wait.
     for_each(counts_used_ / sizeof(uint32_t), gpu::CopyWords{static_cast<uint32_t *>(counts_on_host_.data()),
                                                              reinterpret_cast<const uint32_t *>(counts_)});
@@ -320,7 +333,8 @@ class CudaExecutor {
   }
   // Waits for that. False: all counts were exact. Throws AnticipatedTooLittle.
   bool verify_counts() {
-    if (!anticipation_.is_counting()) return false;
+    if (!are_counts_sent_) return false;
+    are_counts_sent_ = false;
     check_cuda(cudaEventSynchronize(counted_), "cudaEventSynchronize");
     anticipation_.verify(static_cast<const unsigned char *>(counts_on_host_.data()));
     return true;
@@ -373,6 +387,28 @@ class CudaExecutor {
   }
   void wait() { check_cuda(cudaStreamSynchronize(stream_), "cudaStreamSynchronize"); }
 
+  // ---- a second stream (SecondStream) -----------------------------------------------------------------------------
+
+  void open_second_stream() {
+    constexpr int kHighestPriority = -1000;  // the driver takes the highest there is
+    if (!second_stream_)
+      check_cuda(cudaStreamCreateWithPriority(&second_stream_, cudaStreamNonBlocking, kHighestPriority),
+                 "cudaStreamCreateWithPriority");
+    if (!joined_) check_cuda(cudaEventCreateWithFlags(&joined_, cudaEventDisableTiming), "cudaEventCreateWithFlags");
+  }
+  // What is given from now on goes to the other stream, or to this one again.
+  void turn_to_second_stream(bool second) {
+    std::swap(stream_, second_stream_);
+    anticipation_.turn_aside(second);
+  }
+  // What is given from now on comes behind all that the second stream has.
+  void join_second_stream() {
+    anticipation_.join();
+    if (cudaEventRecord(joined_, second_stream_) != cudaSuccess ||
+        cudaStreamWaitEvent(stream_, joined_, 0) != cudaSuccess)
+      cudaStreamSynchronize(second_stream_);
+  }
+
  private:
   bool is_counted_here(const void *counts) const {
     const auto *const bytes = static_cast<const unsigned char *>(counts);
@@ -405,6 +441,17 @@ class CudaExecutor {
   cudaError_t sort_pairs(void *temporary, size_t &bytes, Span<Key> keys, Span<Value> values) const {
     return cub::DeviceMergeSort::StableSortPairs(temporary, bytes, keys.data, values.data, static_cast<int>(keys.size),
                                                  gpu::IsLess{}, stream_);
+  }
+
+  template <class Load, class T, class Start>
+  void scan_all(size_t n, Load load, Span<T> out, Start start) {
+    check_count(n + 1, "exclusive_scan");
+    const auto in =
+        thrust::make_transform_iterator(thrust::counting_iterator<size_t>(0), gpu::LoadOrZero<Load, T>{load, n});
+    with_temporary("cub::DeviceScan::ExclusiveScan", [&](void *temporary, size_t &bytes) {
+      return cub::DeviceScan::ExclusiveScan(temporary, bytes, in, out.data, cub::Sum(), start, static_cast<int>(n + 1),
+                                            stream_);
+    });
   }
 
   // CUB's two calls: how much memory, then the work.
@@ -458,17 +505,17 @@ class CudaExecutor {
 
   int device_;
   unsigned multiprocessors_ = 0;
-  cudaStream_t stream_ = nullptr;
+  cudaStream_t stream_ = nullptr, second_stream_ = nullptr;
   const std::atomic<bool> *stop_ = nullptr;
   cudaEvent_t launched_[2] = {};  // the next to be used: the launch before last
   PinnedBuffer staging_;
   Anticipation anticipation_;
-  bool runs_ahead_ = false;
+  bool runs_ahead_ = false, are_counts_sent_ = false;
   GrowingBuffer<DeviceMemory> count_memory_;
   unsigned char *counts_ = nullptr;                   // there
   size_t counts_used_ = 0, zeros_used_ = kZeroBytes;  // by the frame before: what is not zero any more
   PinnedBuffer counts_on_host_;
-  cudaEvent_t counted_ = nullptr;
+  cudaEvent_t counted_ = nullptr, joined_ = nullptr;
   Arena<DeviceMemory> arena_;
 };
 

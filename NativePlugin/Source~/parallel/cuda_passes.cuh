@@ -101,12 +101,14 @@ __device__ __forceinline__ T sum_before(const T &own, T *total) {
   return warp > 0 ? of_warps[warp - 1] + before : before;
 }
 
+// start: of the sums.
 template <class Load, class T>
-__device__ __forceinline__ void scan_few(const Load &load, size_t n, T *out) {
+__device__ __forceinline__ void scan_few(const Load &load, size_t n, T *out, const T &start = T{}) {
   const FewItems items(n);
-  T own{}, total;
+  T own = threadIdx.x == 0 ? start : T{}, total;
   for (size_t i = items.first; i < items.last; ++i) own = own + static_cast<T>(load(i));
   T sum = sum_before(own, &total);
+  if (threadIdx.x == 0) sum = sum + start;
   for (size_t i = items.first; i < items.last; ++i) {
     const T value = static_cast<T>(load(i));
     out[i] = sum;
@@ -118,6 +120,15 @@ template <class Load, class T>
 __global__ __launch_bounds__(kFewThreads) void scan_few_kernel(QueuedItems queued, Load load, size_t n, T *out) {
   queued.in_turn();
   scan_few(load, n, out);
+}
+// out[0] holds the start.
+template <class Load, class T>
+__global__ __launch_bounds__(kFewThreads) void go_on_scanning_few_kernel(QueuedItems queued, Load load, size_t n,
+                                                                         T *out) {
+  queued.in_turn();
+  const T start = *out;
+  __syncthreads();
+  scan_few(load, n, out, start);
 }
 
 // Steps of do_in_turn(), by one block: a launch of their own takes each some microseconds.

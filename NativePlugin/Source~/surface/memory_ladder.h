@@ -50,6 +50,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
                             learnt_.is_proven && learnt_.milliseconds < kShortFrame);
       try {
         compute_levels(in, plan, spacings, &course, sink);
+        forget_shortage();
       } catch (const AnticipatedTooLittle &) {
         course.attempts = attempts;
         throw;
@@ -181,6 +182,12 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     learnt_.share = executor_.arena().share();
     learnt_.is_proven = false;
     return step;
+  }
+
+  // A surface was made as a whole again, and there is more to spare than the next one anticipates.
+  void forget_shortage() {
+    auto &arena = executor_.arena();
+    if (learnt_.step == 0 && learnt_.share > 0 && arena.peak() + arena.peak() / 8 <= arena.share()) learnt_.share = 0;
   }
 
   // ---- one attempt ---------------------------------------------------------------------------------------------

@@ -194,7 +194,7 @@ MeshMemoryView build_surface(Work &work) {
                         : splits_creases(work)                         ? build_creased_surface(work)
                                                                        : build_exact_surface(work);
   const MeshCounts counts{mesh.vertices, mesh.triangles};
-  if (work.paints_early()) {
+  if (work.paints_early() && !mesh.is_brought) {
     begin_appearance(work);
     paint_and_light(work, mesh);
     work.memory.bring_vertices(executor, mesh);

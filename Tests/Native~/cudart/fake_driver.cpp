@@ -286,6 +286,7 @@ FAKE_API CUresult CUDAAPI cuMemsetD8Async(CUdeviceptr memory, unsigned char byte
 
 // ---- streams and events: what a stream is given is done at once
 FAKE_API CUresult CUDAAPI cuStreamCreate(CUstream *stream, unsigned) { return make(stream); }
+FAKE_API CUresult CUDAAPI cuStreamCreateWithPriority(CUstream *stream, unsigned, int) { return make(stream); }
 FAKE_API CUresult CUDAAPI cuStreamDestroy_v2(CUstream) { return end_one(); }
 FAKE_API CUresult CUDAAPI cuStreamSynchronize(CUstream) { return next(); }
 FAKE_API CUresult CUDAAPI cuStreamWaitEvent(CUstream, CUevent, unsigned) { return next(); }

@@ -111,9 +111,47 @@ TEST(Anticipation, IsOfOnePage) {
   a.turn_to(2);
   EXPECT_FALSE(a.anticipate("bricks", 0, kPlenty, &expected));
   a.note("bricks", Bricks{160});
+  a.turn_to(1, 5);
+  EXPECT_FALSE(a.anticipate("bricks", 0, kPlenty, &expected));
   a.turn_to(1);
   ASSERT_TRUE(a.anticipate("bricks", 0, kPlenty, &expected));
   EXPECT_GE(expected.count, 1600u);
+}
+
+TEST(Anticipation, ForeseesWithoutRelyingOnIt) {
+  Anticipation a;
+  Bricks expected{}, foreseen{};
+  EXPECT_FALSE(a.foresee("bricks", kPlenty, &foreseen));
+  a.open(7);
+  a.note("bricks", Bricks{1600});
+  ASSERT_TRUE(a.foresee("bricks", kPlenty, &foreseen));
+  EXPECT_FALSE(a.relies_on_something());
+  ASSERT_TRUE(a.anticipate("bricks", 0, kPlenty, &expected));
+  EXPECT_EQ(foreseen.count, expected.count);
+  EXPECT_TRUE(a.relies_on_something());
+  a.note_counting();
+  EXPECT_THROW(a.verify(Counted(expected.count + 1).bytes), AnticipatedTooLittle);
+  a.open(7);
+  a.note("bricks", Bricks{1600});
+  EXPECT_FALSE(a.foresee("bricks", kPlenty, &foreseen)) << "while frames wait";
+}
+
+TEST(Anticipation, WaitsForWhatIsCountedAside) {
+  Anticipation a;
+  Bricks inner{}, aside{};
+  a.open(7);
+  a.note("inner", Bricks{160});
+  a.note("aside", Bricks{1600});
+  a.turn_aside(true);
+  ASSERT_TRUE(a.anticipate("aside", 0, kPlenty, &aside));
+  a.turn_aside(false);
+  ASSERT_TRUE(a.anticipate("inner", 0, kPlenty, &inner));
+  a.note_counting();
+  EXPECT_NO_THROW(a.verify(Counted(inner.count).bytes)) << "the other may still grow";
+  EXPECT_TRUE(a.relies_on_something());
+  a.join();
+  a.note_counting();
+  EXPECT_THROW(a.verify(Counted(aside.count + 1).bytes), AnticipatedTooLittle);
 }
 
 TEST(Anticipation, ForgivesWhatWasLongAgo) {

@@ -2,6 +2,7 @@
 // The verbs of the CUDA executor against plain loops, and how it fails.
 #include "parallel/cuda_executor.cuh"
 #include "parallel/cuda_stage_timer.cuh"
+#include "parallel/second_stream.cuh"
 #include "parallel/two_step_pass.h"
 
 #include <gtest/gtest.h>
@@ -144,6 +145,15 @@ TEST(CudaExecutor, ExclusiveScan) {
     std::vector<uint64_t> expected(n + 1, 0);
     for (size_t i = 0; i < n; ++i) expected[i + 1] = expected[i] + in[i];
     EXPECT_EQ(to_host(executor, out), expected);
+    // In two parts.
+    for (size_t first : {size_t(1), n / 3, n}) {
+      if (first > n) continue;
+      executor.fill(out, 255);
+      executor.exclusive_scan(first, Load{to_device(executor, in).data}, out);
+      executor.go_on_scanning(n - first, Load{to_device(executor, in).data + first},
+                              Span<uint64_t>{out.data + first, n - first + 1});
+      EXPECT_EQ(to_host(executor, out), expected) << n << " from " << first;
+    }
   }
 }
 
@@ -311,6 +321,58 @@ TEST(CudaExecutor, RefusedMemoryIsAnErrorAndNothingElse) {
   Span<uint64_t> out = executor.allocate<uint64_t>(1000);
   executor.for_each(1000, Square{out.data});
   EXPECT_EQ(executor.fetch(out.data + 999), 999u * 999u);
+}
+
+// One thread that takes some milliseconds, so that whoever does not wait for it comes too early.
+struct WriteLate {
+  uint32_t *out;
+  uint32_t value;
+  QSES_HOST_DEVICE void operator()(size_t) const {
+    uint32_t x = value;
+    for (int k = 0; k < 300000; ++k) x = x * 1664525u + 1013904223u;
+    *out = x != 0 ? value : 0;
+  }
+};
+struct CopyWord {
+  const uint32_t *in;
+  uint32_t *out;
+  QSES_HOST_DEVICE void operator()(size_t) const { *out = *in; }
+};
+
+TEST(CudaExecutor, IsJoinedByItsSecondStream) {
+  REQUIRE_DEVICE();
+  const Span<uint32_t> words = executor.allocate<uint32_t>(2);
+  const auto write_late = [&](uint32_t value) { executor.for_each(1, WriteLate{words.data, value}); };
+  const auto expect_copied = [&](uint32_t value) {
+    executor.for_each(1, CopyWord{words.data, words.data + 1});
+    EXPECT_EQ(executor.fetch(words.data + 1), value);
+  };
+  const cudaStream_t first = executor.stream();
+  for (uint32_t round = 1; round < 4; ++round) {
+    executor.fill(words, 0);
+    executor.wait();
+    {
+      SecondStream second(executor);
+      second.queue([&] {
+        EXPECT_NE(executor.stream(), first);
+        write_late(round);
+      });
+      EXPECT_EQ(executor.stream(), first);
+    }
+    expect_copied(round);
+  }
+  // Also when it is left by an exception.
+  try {
+    SecondStream second(executor);
+    second.queue([&] {
+      write_late(99);
+      throw Cancelled{};
+    });
+    FAIL();
+  } catch (const Cancelled &) {
+  }
+  EXPECT_EQ(executor.stream(), first);
+  expect_copied(99);
 }
 
 TEST(CudaExecutor, StageTimes) {

@@ -281,8 +281,9 @@ TEST(CudaStages, StartsOfVertices) {
   const DeviceStages s = run_device_stages(executor, table, timer, m.atoms.data(), m.atoms.size(), bounds_of(m), o);
   CudaCandidates candidates;
   CudaRooms rooms;
-  gpu::prepare_vertices(executor, s.features, s.bricks, s.layout, {0, s.bricks.count}, rooms, candidates,
-                        {true, nullptr, table.view.ring, &s.layout.totals->unplaced}, s.mesh);
+  const BrickRange all{0, s.bricks.count};
+  gpu::prepare_vertices(executor, s.features, s.bricks, s.layout, all, slice_sizes(executor, s.bricks, s.layout, all),
+                        rooms, candidates, {true, nullptr, table.view.ring, &s.layout.totals->unplaced}, s.mesh);
   const std::vector<float> starts = to_host(executor, s.mesh.positions, s.counts.vertices * 3);
 
   const BrickSet bricks{r.lattice, r.bricks.data(), nullptr, static_cast<uint32_t>(r.bricks.size())};

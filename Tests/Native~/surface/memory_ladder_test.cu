@@ -68,11 +68,13 @@ TEST(GpuMemoryLadder, MakesDoWithWhatOthersLeave) {
   REQUIRE_DEVICE();
   const Atoms atoms = block_of_crambins(8);  // 167,424 atoms; some 0.7 GiB at 0.5 Å
   Surface expected;
-  uint64_t whole = 0;
+  uint64_t whole = 0, slices_of_last = 0;  // also where there is enough, a large mesh is made in parts once it is known
   {
     const Context context(0, 0, QSES_BACKEND_CUDA);
     expected = compute(context, atoms, settings(0.5));
     whole = report_of(context).work_bytes_peak;
+    compute_view(context, settings(0.5));
+    slices_of_last = report_of(context).slice_count;
   }
   int sliced = 0;
   for (const uint64_t percent : {130, 110, 100, 90, 70, 50, 40, 30}) {
@@ -90,12 +92,12 @@ TEST(GpuMemoryLadder, MakesDoWithWhatOthersLeave) {
         if (frame > 0) {
           EXPECT_EQ(report_of(context).attempts, 1u) << what;
         }
-        if (report_of(context).slice_count > 1) ++sliced;
+        if (frame == 0 && report_of(context).slice_count > 1) ++sliced;
       }
     }
     // They are gone: all at once again, soon.
-    for (int frame = 0; frame < 2; ++frame) compute_view(context, settings(0.5));
-    EXPECT_EQ(report_of(context).slice_count, 1u) << what;
+    for (int frame = 0; frame < 3; ++frame) compute_view(context, settings(0.5));
+    EXPECT_EQ(report_of(context).slice_count, slices_of_last) << what;
     EXPECT_EQ(report_of(context).attempts, 1u) << what;
   }
   EXPECT_GT(sliced, 0) << "there was always enough: nothing was tested";

@@ -181,7 +181,7 @@ inline Surface copy_surface(qses_context *context) {
   const size_t v = m.vertex_count, t = m.triangle_count;
   if (v > 0) {
     s.mesh.positions.assign(m.positions, m.positions + 3 * v);
-    s.mesh.normals.assign(m.normals, m.normals + 3 * v);
+    if (m.normals) s.mesh.normals.assign(m.normals, m.normals + 3 * v);
     s.mesh.owners.assign(m.owners, m.owners + v);
     s.mesh.indices.assign(m.indices, m.indices + 3 * t);
     if (m.patches) s.patches.assign(m.patches, m.patches + v);

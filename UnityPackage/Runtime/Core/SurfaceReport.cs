@@ -49,7 +49,8 @@ namespace QuickSes
         /// <summary>Bricks of 8x8x8 lattice points that were evaluated.</summary>
         public ulong BrickCount => _native.BrickCount;
 
-        /// <summary>Slices the work was done in.</summary>
+        /// <summary>Parts the surface was made in: of little memory several, and of a large mesh that leaves the GPU
+        /// while it is made.</summary>
         public ulong SliceCount => _native.SliceCount;
 
         /// <summary>Vertices that were dropped since their atoms are hidden.</summary>

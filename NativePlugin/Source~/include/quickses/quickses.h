@@ -532,7 +532,8 @@ typedef struct qses_report {
   uint64_t mesh_bytes;      /* of the mesh itself, without its components; with settings.delivery NONE 0 */
   uint64_t host_bytes_peak; /* host memory of the context, the mesh included, and what is kept of its meshes */
   uint64_t brick_count;     /* bricks of 8x8x8 lattice points that were evaluated */
-  uint64_t slice_count;
+  uint64_t slice_count;     /* parts it was made in: of little memory several, and of a large mesh that leaves the GPU
+                               while it is made */
   uint32_t hidden_vertices; /* what of the whole surface is left out of the mesh, since its atoms are hidden
                                (qses_set_visible) or it is of a cavity (settings.outer_only); else 0 */
   uint32_t hidden_triangles;

@@ -38,8 +38,8 @@ struct Backend<CpuKernelExecutor> {
   }
   template <class E>
   static void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bricks, const MeshLayout &layout,
-                            BrickRange slice, LearntRooms &, Candidates &, const VertexStarts &starts,
-                            const MeshView &mesh) {
+                            BrickRange slice, const SliceSizes &, LearntRooms &, Candidates &,
+                            const VertexStarts &starts, const MeshView &mesh) {
     if constexpr (!E::kCounts) quickses::emit_vertices(executor, features, bricks, layout, slice, starts, mesh);
   }
   template <class E>

@@ -122,8 +122,14 @@ struct CudaCandidates {
   BrickRange slice{0, 0};  // the bricks they are for; empty: not gathered yet
   gpu::CandidateView view{};
   bool have_deciders = false;
+  Span<uint32_t> decider_room{};  // for them; none: it is allocated
+  Span<uint32_t> vertex_room{};   // for vertices (vertex_room_words); none: it is allocated
   size_t leaves = 0;
   uint32_t longest_row = 0;  // of atoms or arcs, at most
+  // Words that placing vertices takes, of leaves that own some.
+  static size_t vertex_words(const SurfaceParameters &parameters, size_t vertices, size_t leaves) {
+    return 4 * vertices + leaves * gpu::leaf_list_words(parameters);
+  }
   bool are_of(BrickRange r) const { return slice.first == r.first && slice.last == r.last; }
 };
 

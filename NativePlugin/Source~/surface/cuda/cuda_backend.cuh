@@ -2,6 +2,7 @@
 // The hot stages on the GPU (stages/hot_stages.h).
 #pragma once
 
+#include "parallel/second_stream.cuh"
 #include "surface/cuda/gaussian_density_cuda.cuh"
 #include "surface/cuda/local_features_cuda.cuh"
 #include "surface/cuda/mesh_cuda.cuh"
@@ -15,6 +16,7 @@ template <>
 struct Backend<CudaExecutor> {
   using Candidates = CudaCandidates;
   using LearntRooms = CudaRooms;
+  using SecondStream = quickses::SecondStream;
 
   template <class E>
   static void find_solvent_features(E &executor, const NeighborGridView &atoms, const SurfaceParameters &parameters,
@@ -45,9 +47,9 @@ struct Backend<CudaExecutor> {
   }
   template <class E>
   static void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bricks, const MeshLayout &layout,
-                            BrickRange slice, LearntRooms &rooms, Candidates &candidates, const VertexStarts &starts,
-                            const MeshView &mesh) {
-    gpu::emit_vertices(executor, features, bricks, layout, slice, rooms, candidates, starts, mesh);
+                            BrickRange slice, const SliceSizes &sizes, LearntRooms &rooms, Candidates &candidates,
+                            const VertexStarts &starts, const MeshView &mesh) {
+    gpu::emit_vertices(executor, features, bricks, layout, slice, sizes, rooms, candidates, starts, mesh);
   }
   template <class E>
   static void emit_triangles(E &executor, const BrickSet &bricks, const MeshLayout &layout, BrickRange slice,

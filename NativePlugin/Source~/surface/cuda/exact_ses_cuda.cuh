@@ -277,8 +277,9 @@ template <class E>
 void evaluate_leaves(E &executor, const FeatureView &features, const BrickSet &bricks, CudaCandidates &candidates,
                      bool deciders, uint64_t *signs) {
   if (deciders) {
-    candidates.view.deciders =
-        executor.template allocate<uint32_t>(size_t(candidates.slice.size()) * kBrickPoints).data;
+    if (candidates.decider_room.size == 0)
+      candidates.decider_room = executor.template allocate<uint32_t>(size_t(candidates.slice.size()) * kBrickPoints);
+    candidates.view.deciders = candidates.decider_room.data;
     candidates.have_deciders = true;
   }
   // Lanes look at all atoms and arcs of a row, and at an atom's caps.

@@ -110,7 +110,7 @@ struct PlaceDensityVertices {
 
   QSES_HOST_DEVICE void operator()(size_t i) const {
     const uint32_t vertex = mesh.first_vertex + static_cast<uint32_t>(i);
-    const uint32_t brick = brick_of_vertex(layout, bricks.count, vertex);
+    const uint32_t brick = brick_of_vertex(layout, {0, bricks.count}, vertex);
     place_density_vertex(
         density, bricks, layout, brick, vertex, mesh, [&](const Vec3<float> &x) { return density.at(x); },
         [&](const Vec3<float> &x) { return density.owner_at(x); });

@@ -15,10 +15,10 @@ inline uint64_t vertex_steps(const FeatureView &features, uint64_t row) { return
 // Starts and candidates of the vertices of a slice; what they need is allocated here. No vertices: count is 0.
 template <class E>
 VertexJob prepare_vertices(E &executor, const FeatureView &features, const BrickSet &bricks, const MeshLayout &layout,
-                           BrickRange slice, CudaRooms &rooms, CudaCandidates &candidates, const VertexStarts &starts,
-                           const MeshView &mesh) {
+                           BrickRange slice, const SliceSizes &sizes, CudaRooms &rooms, CudaCandidates &candidates,
+                           const VertexStarts &starts, const MeshView &mesh) {
   VertexJob job{};
-  const SliceSizes sizes = slice_sizes(executor, bricks, layout, slice.first, slice.last);
+  job.slice = slice;
   job.first = sizes.first_vertex;
   job.count = sizes.vertices;
   if (job.count == 0) return job;
@@ -31,14 +31,17 @@ VertexJob prepare_vertices(E &executor, const FeatureView &features, const Brick
   job.starts = starts;
   job.halved = !starts.moved && starts_by_halving(features.parameters);
   job.mesh = mesh;
-  job.list_of = executor.template allocate<uint32_t>(job.count).data;
   job.list_words = leaf_list_words(features.parameters);
-  const size_t leaves = sizes.leaves;
+  const size_t count = job.count, leaves = sizes.leaves;
+  const size_t words = CudaCandidates::vertex_words(features.parameters, count, leaves);
+  uint32_t *const room =
+      candidates.vertex_room.size > 0 ? candidates.vertex_room.data : executor.template allocate<uint32_t>(words).data;
+  job.list_of = room;
+  job.open = room + count;
+  job.unfinished = room + 2 * count;
+  job.on_edges = room + 3 * count;
   job.first_leaf = sizes.first_leaf;
-  job.lists = executor.template allocate<uint32_t>(leaves * job.list_words).data;
-  job.open = executor.template allocate<uint32_t>(job.count).data;
-  job.unfinished = executor.template allocate<uint32_t>(job.count).data;
-  job.on_edges = executor.template allocate<uint32_t>(job.count).data;
+  job.lists = room + 4 * count;
   job.counts = executor.template take_counts<VertexCounts>();
   const uint64_t row = candidates.longest_row, look = vertex_steps(features, row);
   if (job.halved) {  // a lane's vertices one by one if each takes long
@@ -55,16 +58,17 @@ VertexJob prepare_vertices(E &executor, const FeatureView &features, const Brick
   return job;
 }
 
-// Vertices are numbered over all slices: mesh.positions[0] is that of the very first. Waits once if there are several
-// slices, or far more vertices than one launch can place.
+// Vertices are numbered over all slices: mesh.positions[0] is that of the very first. Waits once if there are far more
+// than one launch can place.
 template <class E>
 void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bricks, const MeshLayout &layout,
-                   BrickRange slice, CudaRooms &rooms, CudaCandidates &candidates, const VertexStarts &starts,
-                   const MeshView &mesh) {
+                   BrickRange slice, const SliceSizes &sizes, CudaRooms &rooms, CudaCandidates &candidates,
+                   const VertexStarts &starts, const MeshView &mesh) {
   if (slice.size() == 0) return;
   const auto mark = executor.arena().mark();
-  const bool gathered = candidates.slice.first == slice.first && candidates.slice.last == slice.last;
-  const VertexJob job = prepare_vertices(executor, features, bricks, layout, slice, rooms, candidates, starts, mesh);
+  const bool gives_back = candidates.are_of(slice) && candidates.vertex_room.size == 0;
+  const VertexJob job =
+      prepare_vertices(executor, features, bricks, layout, slice, sizes, rooms, candidates, starts, mesh);
   const uint64_t look = vertex_steps(features, candidates.longest_row);
   // Lanes for each of few vertices, or of such that have much to look at; so many for a multiprocessor at most.
   constexpr size_t kFew = 4, kMostThreads = 3072;
@@ -92,7 +96,7 @@ void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bri
   if (!E::kCounts && job.count > 0 && !executor.is_few_launches(on_edges, place))
     on_edges = executor.expect("vertices on edges", job.counts, VertexCounts{job.count, job.count, job.count}).on_edges;
   executor.launch("place_on_edges", place_on_edges_kernel, on_edges, place, job);
-  if (gathered) executor.arena().rewind(mark);
+  if (gives_back) executor.arena().rewind(mark);
 }
 
 template <class E>

@@ -118,25 +118,36 @@ class MeshMemory<CudaExecutor> {
     });
   }
 
+  // A mesh that is handed out on the host may go there part by part: triangles that are final, and vertices that are so
+  // when what the executor has been given is done.
+  bool goes_to_host() const { return to_host_; }
+  void open_parts(const MeshMemoryView &mesh) {
+    begin_bringing(mesh, mesh.shape);
+    are_vertices_brought_ = true;
+  }
+  void bring_triangles(const MeshView &part, size_t triangles) {
+    if (triangles > 0) copy_beside(brought_.triangle(part.first_triangle), part.indices, triangles * 12);
+  }
+  void bring_vertices(CudaExecutor &executor, const MeshView &part, size_t vertices) {
+    note(executor, &vertices_made_);
+    for_each_array(brought_, part, vertices, 0,
+                   [&](void *to, const void *from, size_t bytes) { bring_after(vertices_made_, to, from, bytes); });
+  }
+
   // What the executor has been given so far makes the triangles of a mesh.
   void note_triangles(CudaExecutor &executor) { note(executor, &triangles_made_); }
   // If the mesh is handed out on the host as it is, and large, they go there while the rest of it is made.
   void bring_triangles(const MeshMemoryView &mesh, MeshPurpose purpose) {
     constexpr size_t kWorthAStream = size_t(1) << 13;  // triangles: 98 KB
     if (!to_host_ || purpose != MeshPurpose::kDelivered || mesh.triangles < kWorthAStream) return;
-    const MeshArrays arrays(mesh.vertices, mesh.triangles, without_spare(mesh.shape));
-    brought_ = arrays.view(host_meshes_.reserve(arrays.bytes()));
-    if (!copies_) check_cuda(cudaStreamCreateWithFlags(&copies_, cudaStreamNonBlocking), "cudaStreamCreateWithFlags");
-    are_triangles_brought_ = true;
+    begin_bringing(mesh, without_spare(mesh.shape));
     bring_after(triangles_made_, brought_.indices, mesh.view.indices, mesh.triangles * 12);
   }
   // Then its vertices as well, once they are as they are handed out, while the mesh is measured.
   void bring_vertices(CudaExecutor &executor, const MeshMemoryView &mesh) {
     if (!are_triangles_brought_) return;
-    note(executor, &vertices_made_);
     are_vertices_brought_ = true;
-    for_each_array(brought_, mesh.view, mesh.vertices, 0,
-                   [&](void *to, const void *from, size_t bytes) { bring_after(vertices_made_, to, from, bytes); });
+    bring_vertices(executor, mesh.view, mesh.vertices);
   }
 
   void finish(const MeshMemoryView &built, const qses_settings &settings, qses_mesh *mesh, PickBoxes *boxes,
@@ -182,9 +193,19 @@ class MeshMemory<CudaExecutor> {
     if (!*made) check_cuda(cudaEventCreateWithFlags(made, cudaEventDisableTiming), "cudaEventCreateWithFlags");
     check_cuda(cudaEventRecord(*made, executor.stream()), "cudaEventRecord");
   }
+  void copy_beside(void *to, const void *from, size_t bytes) {
+    check_cuda(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToHost, copies_), "cudaMemcpyAsync");
+  }
   void bring_after(cudaEvent_t made, void *to, const void *from, size_t bytes) {
     check_cuda(cudaStreamWaitEvent(copies_, made, 0), "cudaStreamWaitEvent");
-    check_cuda(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToHost, copies_), "cudaMemcpyAsync");
+    copy_beside(to, from, bytes);
+  }
+  // Room on the host, and a stream.
+  void begin_bringing(const MeshMemoryView &mesh, const MeshShape &shape) {
+    const MeshArrays arrays(mesh.vertices, mesh.triangles, shape);
+    brought_ = arrays.view(host_meshes_.reserve(arrays.bytes()));
+    if (!copies_) check_cuda(cudaStreamCreateWithFlags(&copies_, cudaStreamNonBlocking), "cudaStreamCreateWithFlags");
+    are_triangles_brought_ = true;
   }
 
   // The arrays of a whole mesh, without what is spare; triangles and vertices may be on their way already.

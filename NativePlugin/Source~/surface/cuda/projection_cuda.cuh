@@ -276,7 +276,7 @@ static __global__ __launch_bounds__(kVertexThreads, 8) void place_on_edges_kerne
   for (uint32_t place = static_cast<uint32_t>(vertices.first) + blockIdx.x * kEdgeWarps + warp; place < total;
        place += warps) {
     const uint32_t k = job.on_edges[place], vertex = job.first + k;
-    const uint32_t brick = brick_of_vertex(job.layout, job.bricks.count, vertex);
+    const uint32_t brick = brick_of_vertex(job.layout, job.slice, vertex);
     const LatticeEdge own = edge_of_vertex(job.layout, brick, vertex);
     const CutEdge edge = ends_of_edge(job.bricks, job.layout, brick, own);
     const ListedCandidates all = row_candidates(job.view, job.view.slot_of(brick, own.leaf));

@@ -26,8 +26,9 @@ struct VertexJob {
   CandidateReach reach;
   CandidateView view;
   VertexStarts starts;
-  bool halved;            // the starts are in the mesh already
-  MeshView mesh;          // its positions hold the starts, in the centred frame, until they are projected
+  bool halved;    // the starts are in the mesh already
+  MeshView mesh;  // its positions hold the starts, in the centred frame, until they are projected
+  BrickRange slice;
   uint32_t first, count;  // vertices of the slice
   uint32_t first_leaf;    // in layout.vertex_leaves: of the slice, whose leaves have a list each
   uint32_t *list_of;      // per vertex: number of its leaf's list, or kRowCandidates and the leaf's slot

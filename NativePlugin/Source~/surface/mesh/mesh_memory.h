@@ -20,6 +20,7 @@ struct MeshMemoryView {
   size_t vertices = 0, triangles = 0, bytes = 0;
   void *memory = nullptr;
   bool in_pieces = false;              // CUDA: it is in host memory and filled slice by slice
+  bool is_brought = false;             // CUDA: its vertices are painted and on their way to the host, as its triangles
   const uint32_t *unplaced = nullptr;  // vertices without a feature, in the memory of the back end; nullptr: none
   Bounds bounds{};
   Span<const qses_component> components{};  // in host memory

@@ -49,6 +49,22 @@ struct MeshView {
   }
 };
 
+// The same arrays from a vertex and a triangle on.
+inline MeshView view_from(MeshView mesh, uint32_t vertex, uint32_t triangle) {
+  mesh.positions = mesh.position(vertex);
+  if (mesh.normals) mesh.normals = mesh.normal(vertex);
+  if (mesh.second_normals) mesh.second_normals = mesh.second_normal(vertex);
+  mesh.owners = &mesh.owner(vertex);
+  if (mesh.patches) mesh.patches = &mesh.patch(vertex);
+  if (mesh.colors) mesh.colors = mesh.color(vertex);
+  if (mesh.texcoords) mesh.texcoords = mesh.texcoord(vertex);
+  if (mesh.component_ids) mesh.component_ids = &mesh.component_id(vertex);
+  mesh.indices = mesh.triangle(triangle);
+  mesh.first_vertex = vertex;
+  mesh.first_triangle = triangle;
+  return mesh;
+}
+
 // One vertex of a mesh that is being made into another one, where colours and packed normals come last.
 QSES_FN void copy_vertex(const MeshView &from, uint32_t vertex, const MeshView &to, uint32_t place) {
   const auto copy3 = [](float *out, const float *in) {

@@ -4,6 +4,7 @@
 
 #include "surface/methods/ball_edges.h"
 #include "surface/methods/closed_layout.h"
+#include "surface/methods/exact_slabs.h"
 #include "surface/stages/relaxation.h"
 #include "surface/stages/thin_walls.h"
 
@@ -129,17 +130,15 @@ void mend_thin_walls(Work &work, const BrickSet &bricks,
   executor.arena().rewind(mark);
 }
 
-// The part of a mesh that a slice of bricks owns, in memory of the device. Waits.
+// The part of a mesh that a slice of bricks owns, in memory of the device.
 struct MeshPart {
   MeshView view;
   size_t vertices, triangles;
 };
 template <class Work, class Executor>
-MeshPart open_part(const Work &work, Executor &executor, const BrickSet &bricks, const MeshLayout &layout,
-                   BrickRange slice) {
+MeshPart open_part(const Work &work, Executor &executor, const SliceSizes &sizes) {
   MeshShape shape = work.shape;
   shape.boxes = shape.colors = shape.texcoords = shape.component_ids = false;
-  const SliceSizes sizes = slice_sizes(executor, bricks, layout, slice.first, slice.last);
   MeshPart part{{}, sizes.vertices, sizes.triangles};
   const MeshArrays arrays(part.vertices, part.triangles, shape);
   part.view = arrays.view(executor.template allocate<char>(arrays.bytes()).data);
@@ -163,6 +162,10 @@ MeshMemoryView build_exact_surface(Work &work) {
   BrickSet bricks = find_bricks(executor, features, work.lattice, &work.facts->brick_visits);
   note_bricks(work, bricks);
   work.progress.report(0.1);
+  if constexpr (Executor::kIsCuda && !Executor::kCounts) {
+    const Slabs slabs = slabs_of(work, bricks);
+    if (slabs.count > 0) return build_in_slabs(work, bricks, slabs);
+  }
 
   // What signs and vertices share, if all bricks are worked on at once; gathered again for each of several slices.
   Candidates<Executor> shared{};
@@ -199,8 +202,9 @@ MeshMemoryView build_exact_surface(Work &work) {
   const auto emit_slice = [&](auto &any_executor, BrickRange slice, bool with_triangles) {
     Candidates<Executor> own{};
     MeshPart part{mesh.view, 0, 0};
-    if (mesh.in_pieces) part = open_part(work, any_executor, bricks, layout, slice);
-    B::emit_vertices(any_executor, features, bricks, layout, slice, work.rooms, share ? shared : own, starts,
+    const SliceSizes sizes = slice_sizes(any_executor, bricks, layout, slice);
+    if (mesh.in_pieces) part = open_part(work, any_executor, sizes);
+    B::emit_vertices(any_executor, features, bricks, layout, slice, sizes, work.rooms, share ? shared : own, starts,
                      part.view);
     if (!mesh.in_pieces) return part;
     if (with_triangles) B::emit_triangles(any_executor, bricks, layout, slice, work.table, part.view);

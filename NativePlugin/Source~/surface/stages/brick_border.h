@@ -66,7 +66,9 @@ QSES_FN uint32_t shared_neighbors(uint32_t bits, const glm::ivec3 &step) {
 }
 
 // The inactive neighbours of a brick next to which signs differ, among its own points and those of its neighbours.
-QSES_FN uint32_t border_changes(const BrickSet &bricks, const BorderSigns *signs, size_t brick) {
+// near: how far the number of an active one is behind its own, at most.
+QSES_FN uint32_t border_changes(const BrickSet &bricks, const BorderSigns *signs, size_t brick,
+                                uint32_t *near_number = nullptr) {
   const glm::ivec3 place = bricks.place(brick);
   int other[kNeighborhood];
   bricks.find_each<kNeighborhood>([&](int k) { return place + neighbor_step(k); }, other);
@@ -84,6 +86,11 @@ QSES_FN uint32_t border_changes(const BrickSet &bricks, const BorderSigns *signs
     inactive |= static_cast<uint32_t>(other[k] < 0) << k;
     near.inside |= shared_neighbors(there.inside & mask, neighbor_step(k));
     near.outside |= shared_neighbors(there.outside & mask, neighbor_step(k));
+  }
+  if (near_number) {
+    int last = static_cast<int>(brick);
+    for (int k = kOwnPlace + 1; k < kNeighborhood; ++k) last = last < other[k] ? other[k] : last;
+    *near_number = static_cast<uint32_t>(last) - static_cast<uint32_t>(brick);
   }
   return inactive & near.inside & near.outside;
 }

@@ -64,6 +64,12 @@ struct BrickSet {
   }
 };
 
+// A run of bricks in linear order; a slice is one.
+struct BrickRange {
+  uint32_t first, last;
+  QSES_FN uint32_t size() const { return last - first; }
+};
+
 // What the passes below go through: size() items, and visit(i, rows, v), which calls v(linear index, number) for each
 // run of bricks that item i makes active; at least fewest(i) of them, in at most most_across() rows along y and z. Of
 // the features, an item is an atom (i < atom count) or an arc's ball.

@@ -47,7 +47,7 @@ struct MarkChannelVertices {
   const uint64_t *channels;  // the marked points, numbered like signs
   uint8_t *marked;           // [vertex]
   QSES_HOST_DEVICE void operator()(size_t i) const {
-    const uint32_t brick = brick_of_vertex(layout, bricks.count, static_cast<uint32_t>(i));
+    const uint32_t brick = brick_of_vertex(layout, {0, bricks.count}, static_cast<uint32_t>(i));
     const LatticeEdge edge = edge_of_vertex(layout, brick, static_cast<uint32_t>(i));
     const uint64_t word = layout.signs[size_t(brick) * kLeavesPerBrick + size_t(edge.leaf)];
     glm::ivec3 p = brick_point(edge.leaf, edge.bit);
@@ -99,7 +99,7 @@ struct FindEdgeExits {
 
  private:
   QSES_FN CutEdge edge_of(size_t i) const {
-    const uint32_t vertex = static_cast<uint32_t>(i), brick = brick_of_vertex(layout, bricks.count, vertex);
+    const uint32_t vertex = static_cast<uint32_t>(i), brick = brick_of_vertex(layout, {0, bricks.count}, vertex);
     return ends_of_edge(bricks, layout, brick, edge_of_vertex(layout, brick, vertex));
   }
 

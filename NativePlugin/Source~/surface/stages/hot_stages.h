@@ -13,12 +13,6 @@
 
 namespace quickses {
 
-// A slice: a run of bricks in linear order.
-struct BrickRange {
-  uint32_t first, last;
-  QSES_FN uint32_t size() const { return last - first; }
-};
-
 // Where vertices start before they are projected.
 struct VertexStarts {
   bool relax;                          // move by the ring table first (relaxation step 1)
@@ -47,7 +41,8 @@ struct TableView {
 //   mark_thin_walls(E, features, bricks, slice, rooms, candidates, signs, marks)
 //       of the signs of all bricks: sets the bits in marks, which are numbered like signs, of the points that are to be
 //       inside because of edges of the slice's bricks (thin_walls.h)
-//   emit_vertices(E, features, bricks, layout, slice, rooms, candidates, starts, mesh)
+//   emit_vertices(E, features, bricks, layout, slice, sizes, rooms, candidates, starts, mesh)
+//       sizes: what the slice owns, or at most if it is all of the bricks
 //   emit_triangles(E, bricks, layout, slice, table, mesh)
 //   evaluate_density(E, density, bricks, slices, signs)
 //       signs of a Gaussian surface; slices(work_on) calls work_on(slice) for runs of bricks
@@ -87,10 +82,10 @@ struct BackendContract {
   static_assert(has<decltype(&B::template mark_thin_walls<Executor>), const FeatureView &, const BrickSet &, BrickRange,
                     typename B::LearntRooms &, typename B::Candidates &, const uint64_t *, uint64_t *>,
                 "mark_thin_walls");
-  static_assert(
-      has<decltype(&B::template emit_vertices<Executor>), const FeatureView &, const BrickSet &, const MeshLayout &,
-          BrickRange, typename B::LearntRooms &, typename B::Candidates &, const VertexStarts &, const MeshView &>,
-      "emit_vertices");
+  static_assert(has<decltype(&B::template emit_vertices<Executor>), const FeatureView &, const BrickSet &,
+                    const MeshLayout &, BrickRange, const SliceSizes &, typename B::LearntRooms &,
+                    typename B::Candidates &, const VertexStarts &, const MeshView &>,
+                "emit_vertices");
   static_assert(has<decltype(&B::template emit_triangles<Executor>), const BrickSet &, const MeshLayout &, BrickRange,
                     const TableView &, const MeshView &>,
                 "emit_triangles");

@@ -19,20 +19,22 @@ struct MeshTotals {
   uint32_t leaves;          // that own vertices
   uint32_t border_changes;  // pairs of a brick and an inactive neighbour next to which signs differ
   uint32_t unplaced;        // vertices for which no feature was found; counted while they are emitted
+  uint32_t near;            // numbers of two bricks next to each other differ by so much at most (GPU)
 
   static MeshTotals anticipated(const MeshTotals &last, const MeshTotals &) {
-    return {and_some_more(last.vertices), and_some_more(last.triangles), and_some_more(last.leaves), 0, 0};
+    return {and_some_more(last.vertices), and_some_more(last.triangles), and_some_more(last.leaves), 0, 0,
+            and_some_more(last.near)};
   }
   bool covers(const MeshTotals &found) const {
     return found.vertices <= vertices && found.triangles <= triangles && found.leaves <= leaves &&
-           found.border_changes <= border_changes;
+           found.border_changes <= border_changes && found.near <= near;
   }
 };
 
 // 32 bits: what is more does not become a mesh.
 inline MeshTotals expected_value(const WorkFacts &facts, const MeshTotals *) {
   const auto number = [](double n) { return static_cast<uint32_t>(std::min(n, 4294967294.0)); };
-  return {number(facts.size.vertices), number(facts.size.triangles), number(facts.size.leaves), 0, 0};
+  return {number(facts.size.vertices), number(facts.size.triangles), number(facts.size.leaves), 0, 0, 0};
 }
 
 // What bricks own; leaves: those that own vertices.
@@ -138,19 +140,20 @@ QSES_FN BrickTotals rank_brick(const MeshLayout &layout, size_t brick, const Bri
   return {v, t, owning};
 }
 
-// On the GPU a thread per leaf, then one per brick.
+// On the GPU a thread per leaf, then one per brick: of those from brick `first` on. Counts and totals are by brick.
 struct CountLeaf {
   BrickSet bricks;
   MeshLayout layout;
   const uint8_t *case_triangles;
   BrickCounts *counts;
+  size_t first;
   QSES_FN void operator()(size_t i) const {
-    const size_t brick = i >> 3;
+    const size_t brick = first + (i >> 3), slot = first * kLeavesPerBrick + i;
     const int leaf = static_cast<int>(i & 7);
     const UpperBricks upper = upper_bricks(bricks, static_cast<uint32_t>(brick));
     uint64_t crossing[kAxes];
     const int triangles = count_leaf(leaf_words(upper, layout.signs, leaf), case_triangles, crossing);
-    for (int axis = 0; axis < kAxes; ++axis) layout.crossing[kAxes * i + static_cast<size_t>(axis)] = crossing[axis];
+    for (int axis = 0; axis < kAxes; ++axis) layout.crossing[kAxes * slot + static_cast<size_t>(axis)] = crossing[axis];
     counts[brick].of_leaf[leaf] = pack_counts(crossing, triangles);
   }
 };
@@ -158,7 +161,9 @@ struct RankBrick {
   MeshLayout layout;
   const BrickCounts *counts;
   BrickTotals *totals;
-  QSES_HOST_DEVICE void operator()(size_t brick) const {
+  size_t first;
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    const size_t brick = first + i;
     const BrickCounts own = counts[brick];
     totals[brick] = rank_brick(layout, brick, own);
   }
@@ -187,14 +192,18 @@ struct LoadTotal {
   QSES_HOST_DEVICE double operator()(size_t i) const { return totals[i].*which; }
 };
 
-// Runs when all bases are known.
+// Of the bricks from `first` on, when bases and borders of their neighbours are known; those of `counted` bricks are.
 struct CountBorderChanges {
   BrickSet bricks;
   MeshLayout layout;
-  QSES_FN void operator()(size_t brick) const {
-    const int changes = popcount64(border_changes(bricks, layout.border, brick));
+  size_t first, counted;
+  QSES_FN void operator()(size_t i) const {
+    const size_t brick = first + i;
+    uint32_t near = 0;
+    const int changes = popcount64(border_changes(bricks, layout.border, brick, &near));
     if (changes > 0) atomic_add(&layout.totals->border_changes, static_cast<uint32_t>(changes));
     if (layout.vertex_leaves) {
+      if (near > layout.totals->near) atomic_max(&layout.totals->near, near);
       uint32_t next = layout.base[brick].leaves, before = 0;
       for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
         const uint32_t with = layout.vertices_before(brick, leaf + 1);
@@ -203,8 +212,8 @@ struct CountBorderChanges {
         before = with;
       }
     }
-    if (brick > 0) return;
-    const BrickTotals all = layout.base[bricks.count];
+    if (i > 0) return;
+    const BrickTotals all = layout.base[counted];
     layout.totals->vertices = all.vertices;
     layout.totals->triangles = all.triangles;
     layout.totals->leaves = all.leaves;
@@ -252,9 +261,9 @@ QSES_FN CutEdge ends_of_edge(const BrickSet &bricks, const MeshLayout &m, uint32
   return low_inside ? CutEdge{low, high} : CutEdge{high, low};
 }
 
-// The brick that owns a vertex.
-QSES_FN uint32_t brick_of_vertex(const MeshLayout &m, uint32_t bricks, uint32_t vertex) {
-  uint32_t first = 0, n = bricks;  // the last one that begins no later
+// The brick of a run that owns a vertex.
+QSES_FN uint32_t brick_of_vertex(const MeshLayout &m, BrickRange run, uint32_t vertex) {
+  uint32_t first = run.first, n = run.size();  // the last one that begins no later
   while (n > 1) {
     const uint32_t half = n / 2;
     const bool later = m.base[first + half].vertices > vertex;
@@ -293,38 +302,69 @@ struct MeshCounts {
   uint64_t vertices, triangles;
 };
 
+// Memory of a layout for so many bricks.
+template <class Executor>
+void allocate_layout(Executor &executor, size_t bricks, const uint64_t *signs, MeshLayout *layout) {
+  const size_t leaves = bricks * kLeavesPerBrick;
+  layout->signs = signs;
+  layout->crossing = executor.template allocate<uint64_t>(leaves * 3).data;
+  layout->vertex_rank = executor.template allocate<uint16_t>(leaves * 3).data;
+  layout->triangle_rank = executor.template allocate<uint16_t>(leaves).data;
+  layout->base = executor.template allocate<BrickTotals>(bricks + 1).data;
+  layout->border = executor.template allocate<BorderSigns>(bricks).data;
+  layout->vertex_leaves = Executor::kIsCuda ? executor.template allocate<uint32_t>(leaves).data : nullptr;
+  layout->totals = executor.template take_counts<MeshTotals>();
+}
+
+// What is counted before it is numbered, by brick.
+struct CountedCells {
+  Span<BrickTotals> totals;
+  Span<BrickCounts> counts;  // on the GPU
+  template <class Executor>
+  CountedCells(Executor &executor, size_t bricks) : totals(executor.template allocate<BrickTotals>(bricks)) {
+    if (Executor::kIsCuda) counts = executor.template allocate<BrickCounts>(bricks);
+  }
+};
+
+// Counts what a run of bricks owns, and numbers it behind what those before own. The signs of the run and of the bricks
+// around it must be known.
+template <class Executor>
+void count_cells(Executor &executor, const BrickSet &bricks, const MeshLayout &layout, const uint8_t *case_triangles,
+                 const CountedCells &counts, BrickRange run) {
+  const size_t n = run.size();
+  const LoadTotals load{counts.totals.data + run.first};
+  const Span<BrickTotals> base{layout.base + run.first, n + 1};
+  if constexpr (Executor::kIsCuda) {
+    executor.for_each(n * kLeavesPerBrick, CountLeaf{bricks, layout, case_triangles, counts.counts.data, run.first});
+    executor.for_each(n, RankBrick{layout, counts.counts.data, counts.totals.data, run.first});
+    if constexpr (!Executor::kCounts)
+      if (run.first > 0) return executor.go_on_scanning(n, load, base);
+  } else {
+    executor.for_each(n, CountBrick{bricks, layout, case_triangles, counts.totals.data}, kLeavesPerBrick * kPlainSteps);
+  }
+  executor.exclusive_scan(n, load, base);
+}
+
+// Whether bases of so many bricks can't wrap.
+inline bool fits_bases(uint64_t bricks) { return bricks * kBrickPoints * kMostCaseTriangles <= 0xffffffffull; }
+
 // Counts and scans; the signs of all bricks must be known. The bases of the layout are only valid if all totals fit 32
 // bits.
 template <class Executor>
 MeshCounts lay_out_mesh(Executor &executor, const BrickSet &bricks, const uint64_t *signs,
                         const uint8_t *case_triangles, MeshLayout *layout) {
-  const size_t n = bricks.count, leaves = n * kLeavesPerBrick;
-  layout->signs = signs;
-  layout->crossing = executor.template allocate<uint64_t>(leaves * 3).data;
-  layout->vertex_rank = executor.template allocate<uint16_t>(leaves * 3).data;
-  layout->triangle_rank = executor.template allocate<uint16_t>(leaves).data;
-  const Span<BrickTotals> base = executor.template allocate<BrickTotals>(n + 1);
-  layout->base = base.data;
-  layout->border = executor.template allocate<BorderSigns>(n).data;
-  layout->vertex_leaves = Executor::kIsCuda ? executor.template allocate<uint32_t>(leaves).data : nullptr;
-  layout->totals = executor.template take_counts<MeshTotals>();
+  const size_t n = bricks.count;
+  allocate_layout(executor, n, signs, layout);
   const auto mark = executor.arena().mark();
-  const Span<BrickTotals> own = executor.template allocate<BrickTotals>(n);
-  if constexpr (Executor::kIsCuda) {
-    const Span<BrickCounts> counts = executor.template allocate<BrickCounts>(n);
-    executor.for_each(leaves, CountLeaf{bricks, *layout, case_triangles, counts.data});
-    executor.for_each(n, RankBrick{*layout, counts.data, own.data});
-  } else {
-    executor.for_each(n, CountBrick{bricks, *layout, case_triangles, own.data}, kLeavesPerBrick * kPlainSteps);
-  }
-  executor.exclusive_scan(n, LoadTotals{own.data}, base);
-  executor.for_each(n, CountBorderChanges{bricks, *layout});
+  const CountedCells counts(executor, n);
+  count_cells(executor, bricks, *layout, case_triangles, counts, {0, bricks.count});
+  executor.for_each(n, CountBorderChanges{bricks, *layout, 0, n});
   const MeshTotals totals = n > 0 ? executor.expect("mesh", layout->totals, MeshTotals{}) : MeshTotals{};
   layout->border_changes = totals.border_changes;
   // The bases wrap if there are too many; then the true totals are summed up for the message.
-  if (!Executor::kCounts && n * kBrickPoints * kMostCaseTriangles > 0xffffffffull) {
+  if (!Executor::kCounts && !fits_bases(n)) {
     const auto sum = [&](uint32_t BrickTotals::*which) {
-      return static_cast<uint64_t>(executor.reduce(n, LoadTotal{own.data, which}));
+      return static_cast<uint64_t>(executor.reduce(n, LoadTotal{counts.totals.data, which}));
     };
     layout->vertex_total = sum(&BrickTotals::vertices);
     layout->triangle_total = sum(&BrickTotals::triangles);
@@ -344,26 +384,29 @@ struct SliceSizes {
   uint32_t first_vertex, vertices, first_triangle, triangles, first_leaf, leaves;
 };
 
+inline SliceSizes sizes_between(const BrickTotals &begin, const BrickTotals &end) {
+  return {begin.vertices, end.vertices - begin.vertices, begin.triangles, end.triangles - begin.triangles,
+          begin.leaves,   end.leaves - begin.leaves};
+}
+
 // Waits, unless the slice is all of the bricks.
 template <class Executor>
-SliceSizes slice_sizes(Executor &executor, const BrickSet &bricks, const MeshLayout &layout, uint32_t first,
-                       uint32_t last) {
-  if (last - first == bricks.count)
+SliceSizes slice_sizes(Executor &executor, const BrickSet &bricks, const MeshLayout &layout, BrickRange slice) {
+  if (slice.size() == bricks.count)
     return {0, static_cast<uint32_t>(layout.vertex_total), 0, static_cast<uint32_t>(layout.triangle_total),
             0, static_cast<uint32_t>(layout.leaf_total)};
-  const BrickTotals *const ends[2] = {layout.base + first, layout.base + last};
+  const BrickTotals *const ends[2] = {layout.base + slice.first, layout.base + slice.last};
   BrickTotals n[2];
   executor.fetch_each(ends, n, 2);
-  return {n[0].vertices, n[1].vertices - n[0].vertices, n[0].triangles, n[1].triangles - n[0].triangles,
-          n[0].leaves,   n[1].leaves - n[0].leaves};
+  return sizes_between(n[0], n[1]);
 }
 // The mean; but a few bricks may be three times as full.
 template <class Executor>
-SliceSizes slice_sizes(CountingExecutor<Executor> &, const BrickSet &bricks, const MeshLayout &layout, uint32_t first,
-                       uint32_t last) {
+SliceSizes slice_sizes(CountingExecutor<Executor> &, const BrickSet &bricks, const MeshLayout &layout,
+                       BrickRange slice) {
   constexpr uint32_t kFew = 256;
   const double part =
-      std::min(1.0, (last - first < kFew ? 3.0 : 1.0) * (last - first) / std::max<uint32_t>(1, bricks.count));
+      std::min(1.0, (slice.size() < kFew ? 3.0 : 1.0) * slice.size() / std::max<uint32_t>(1, bricks.count));
   const auto of = [&](uint64_t all) { return static_cast<uint32_t>(std::ceil(part * static_cast<double>(all))); };
   return {0, of(layout.vertex_total), 0, of(layout.triangle_total), 0, of(layout.leaf_total)};
 }

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: MIT
+// The exact surface of a large mesh that goes from a GPU to the host: slab by slab, so that the first triangles and
+// vertices are on the bus while signs of the others are found. For frames of which the one before told how large the
+// mesh will be; each step goes as far as what it reads is final. The mesh is that of exact_surface.h, byte for byte.
+#pragma once
+
+#include "surface/methods/closed_layout.h"
+#include "surface/stages/thin_walls.h"
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+namespace quickses {
+
+// Runs of bricks in linear order. The numbers of two bricks that are next to each other differ by `near` at most, and a
+// slab is wider than what each of its steps must stay behind the one before (final_bricks).
+struct Slabs {
+  uint32_t count = 0, bricks = 0, near = 0;
+  MeshTotals room{};  // of the whole mesh, as it is foreseen
+  static constexpr uint32_t kSteps = 3;
+
+  uint32_t end(uint32_t slab) const { return static_cast<uint32_t>(uint64_t(bricks) * (slab + 1) / count); }
+  BrickRange range(uint32_t slab) const { return {slab > 0 ? end(slab - 1) : 0, end(slab)}; }
+  // When walls of so many slabs are looked for: how many bricks have final signs (steps: 1), which those of the
+  // slabs behind may still mark; how many may be counted (2), which takes the signs around, and how many emitted (3),
+  // which takes the counts around.
+  uint32_t final_bricks(uint32_t slabs, uint32_t steps) const {
+    return slabs == count ? bricks : slabs == 0 ? 0 : end(slabs - 1) - steps * near;
+  }
+  BrickRange newly_final(uint32_t slabs, uint32_t steps) const {
+    return {final_bricks(slabs - 1, steps), final_bricks(slabs, steps)};
+  }
+};
+
+// count 0: such a surface is made as a whole.
+template <class Work>
+Slabs slabs_of(const Work &work, const BrickSet &bricks) {
+  // Each slab has kernels that wait for their last few items, which costs the more, the fewer vertices it has.
+  constexpr uint32_t kMost = 8, kWorthASlab = 400000, kWorthIt = 1000000;
+  Slabs slabs;
+  const bool goes_out_as_made = work.paints_early() && !work.settings.occlusion && !work.will_be_split &&
+                                work.settings.relaxation_steps <= 1 && work.purpose == MeshPurpose::kDelivered;
+  if (!goes_out_as_made || !work.memory.goes_to_host() || !work.plan.single_slice || !bricks.table || !bricks.found ||
+      !work.executor.foresee("mesh", MeshTotals{}, &slabs.room) || !fits_bases(bricks.count))
+    return slabs;
+  slabs.bricks = bricks.count;
+  slabs.near = slabs.room.near;
+  if (slabs.room.vertices < kWorthIt) return slabs;
+  slabs.count = std::min({kMost, slabs.room.vertices / kWorthASlab, slabs.bricks / ((Slabs::kSteps + 1) * slabs.near)});
+  if (slabs.count < 2) slabs.count = 0;
+  return slabs;
+}
+
+// What bricks own that come before two of them.
+struct TotalsBefore {
+  BrickTotals emitted, placed;
+};
+struct TellTotals {
+  const BrickTotals *emitted, *placed;
+  TotalsBefore *out;
+  QSES_HOST_DEVICE void operator()(size_t) const { *out = {*emitted, *placed}; }
+};
+
+template <class Work>
+MeshMemoryView build_in_slabs(Work &work, const BrickSet &bricks, const Slabs &slabs) {
+  auto &executor = work.executor;
+  using Executor = std::remove_reference_t<decltype(executor)>;
+  using B = Backend<Executor>;
+  const FeatureView &features = work.features;
+  const bool has_walls = work.parameters.has_thin_walls();
+  const size_t leaves = size_t(bricks.count) * kLeavesPerBrick;
+  const Span<uint64_t> signs = executor.template allocate<uint64_t>(leaves);
+  const Span<uint64_t> marks = has_walls ? executor.template allocate_zeros<uint64_t>(leaves) : Span<uint64_t>{};
+  MeshLayout layout{};
+  allocate_layout(executor, bricks.count, signs.data, &layout);
+  layout.vertex_total = slabs.room.vertices;
+  layout.triangle_total = slabs.room.triangles;
+  layout.leaf_total = slabs.room.leaves;
+  MeshMemoryView mesh = begin_mesh(work, MeshCounts{slabs.room.vertices, slabs.room.triangles});
+  work.memory.open_parts(mesh);
+  mesh.is_brought = true;
+
+  const auto end_of_mesh = executor.arena().mark();
+  const CountedCells counts(executor, bricks.count);
+  TotalsBefore *const told = executor.template take_counts<TotalsBefore>();
+  const VertexStarts starts{work.settings.relaxation_steps > 0, nullptr, work.table.ring, &layout.totals->unplaced};
+  std::vector<Candidates<Executor>> candidates(slabs.count);
+  Span<uint32_t> deciders[2];  // of a slab until its walls are found
+  if (has_walls)
+    for (Span<uint32_t> &room : deciders)
+      room = executor.template allocate<uint32_t>((size_t(bricks.count) / slabs.count + 1) * kBrickPoints);
+  const auto vertex_words = [&](size_t vertices, size_t leaves) {
+    return Candidates<Executor>::vertex_words(work.parameters, vertices, leaves);
+  };
+  const Span<uint32_t> vertex_room =
+      executor.template allocate<uint32_t>(vertex_words(slabs.room.vertices, slabs.room.leaves));
+  const auto turn_to_slab = [&](uint32_t slab) {
+    executor.turn_counts_to(work.parameters.spacing, slabs.count << 8 | (slab + 1));
+  };
+
+  const auto find_signs = [&](uint32_t slab) {
+    work.timer.begin("exact_ses");
+    turn_to_slab(slab);
+    Candidates<Executor> &own = candidates[slab];
+    B::gather_candidates(executor, features, bricks, slabs.range(slab), work.rooms, own, signs.data);
+    own.decider_room = deciders[slab % 2];
+    B::evaluate_signs(executor, features, bricks, slabs.range(slab), work.rooms, own, signs.data);
+  };
+  const auto find_walls = [&](uint32_t slab) {
+    if (!has_walls) return;
+    work.timer.begin("thin_walls");
+    turn_to_slab(slab);
+    B::mark_thin_walls(executor, features, bricks, slabs.range(slab), work.rooms, candidates[slab], signs.data,
+                       marks.data);
+  };
+  // When walls of so many slabs are found. What is emitted then, and vertices of slabs behind which all is final, are
+  // told of.
+  const auto lay_out = [&](uint32_t found) {
+    work.timer.begin("marching_cubes");
+    const BrickRange final_signs = slabs.newly_final(found, 1), emitted = slabs.newly_final(found, 3);
+    const size_t first_leaf = size_t(final_signs.first) * kLeavesPerBrick;
+    if (has_walls)
+      executor.for_each(size_t(final_signs.size()) * kLeavesPerBrick,
+                        AddMarks{marks.data + first_leaf, signs.data + first_leaf});
+    count_cells(executor, bricks, layout, work.table.triangle_count, counts, slabs.newly_final(found, 2));
+    executor.for_each(emitted.size(), CountBorderChanges{bricks, layout, emitted.first, slabs.final_bricks(found, 2)});
+    if (found == slabs.count) {
+      executor.turn_counts_to(work.parameters.spacing);
+      executor.expect("mesh", layout.totals, MeshTotals{});
+    }
+    B::emit_triangles(executor, bricks, layout, emitted, work.table, mesh.view);
+    executor.for_each(
+        1, TellTotals{layout.base + emitted.last, layout.base + (found > 1 ? slabs.end(found - 2) : 0), told});
+    executor.send_all_counts();
+  };
+
+  // Beside the slabs that follow, from which it gets nothing; so it is a part of the time of their stages.
+  TotalsBefore done{};
+  std::optional<typename B::SecondStream> second(std::in_place, executor);
+  const auto place_vertices = [&](uint32_t slab, const BrickTotals &end) {
+    turn_to_slab(slab);
+    const SliceSizes sizes = sizes_between(done.placed, end);
+    candidates[slab].vertex_room = {vertex_room.data + vertex_words(sizes.first_vertex, sizes.first_leaf),
+                                    vertex_words(sizes.vertices, sizes.leaves)};
+    second->queue([&] {
+      B::emit_vertices(executor, features, bricks, layout, slabs.range(slab), sizes, work.rooms, candidates[slab],
+                       starts, mesh.view);
+      const MeshView part = view_from(mesh.view, sizes.first_vertex, 0);
+      paint_vertices(executor, work.appearance, part, sizes.vertices);
+      pack_normals(executor, part, sizes.vertices);
+      work.memory.bring_vertices(executor, part, sizes.vertices);
+    });
+    done.placed = end;
+  };
+  // What was told. Waits for it; the GPU has the next slab to work on meanwhile.
+  const auto deliver = [&](uint32_t found) {
+    executor.verify_counts();
+    const TotalsBefore now = executor.verified(told);
+    // What is more than was foreseen is not emitted either, and the last look at the counts will tell.
+    if (now.emitted.vertices > mesh.vertices || now.emitted.triangles > mesh.triangles ||
+        now.emitted.leaves > slabs.room.leaves)
+      return;
+    work.memory.bring_triangles(view_from(mesh.view, 0, done.emitted.triangles),
+                                now.emitted.triangles - done.emitted.triangles);
+    done.emitted = now.emitted;
+    if (found > 1) place_vertices(found - 2, now.placed);
+    if (found == slabs.count) place_vertices(found - 1, now.emitted);
+    work.progress.report(0.85 * found / slabs.count);
+  };
+  for (uint32_t slab = 0; slab < slabs.count; ++slab) {
+    find_signs(slab);
+    if (slab == 0) continue;
+    find_walls(slab - 1);
+    if (slab > 1) deliver(slab - 1);
+    lay_out(slab);
+  }
+  find_walls(slabs.count - 1);
+  if (slabs.count > 1) deliver(slabs.count - 1);
+  lay_out(slabs.count);
+  deliver(slabs.count);
+  work.timer.begin("projection");
+  second.reset();
+
+  narrow_mesh(&mesh, done.emitted.vertices, done.emitted.triangles);
+  note_size(work, executor.verified(bricks.found).count, {done.emitted.vertices, done.emitted.triangles},
+            done.emitted.leaves);
+  work.report->slice_count = slabs.count;
+  executor.arena().rewind(end_of_mesh);
+  mesh.unplaced = starts.unplaced;
+  return mesh;
+}
+
+}  // namespace quickses
