@@ -3,10 +3,8 @@
 // Work is cut into launches that are short on the smallest GPU (cuda_launch.cuh).
 #pragma once
 
-#include "parallel/anticipation.h"
 #include "parallel/arena.h"
-#include "parallel/cuda_memory.h"
-#include "parallel/cuda_passes.cuh"
+#include "parallel/cuda_counts.cuh"
 
 #include <cuda_runtime.h>
 #include <thrust/iterator/counting_iterator.h>
@@ -54,9 +52,7 @@ class CudaExecutor {
     multiprocessors_ = static_cast<unsigned>(value);
     if (LaunchObserver::current) multiprocessors_ = LaunchObserver::current->multiprocessors(multiprocessors_);
     staging_.reserve(kStagingBytes);
-    counts_on_host_.reserve(kCountsBytes);
-    counts_ = static_cast<unsigned char *>(count_memory_.reserve(kFixedBytes));
-    check_cuda(cudaEventCreateWithFlags(&counted_, cudaEventDisableTiming), "cudaEventCreateWithFlags");
+    counts_.allocate();
     check_cuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "cudaStreamCreateWithFlags");
   }
   ~CudaExecutor() {
@@ -65,9 +61,9 @@ class CudaExecutor {
       if (!may_hand_back()) return;
       for (cudaStream_t stream : {stream_, second_stream_})
         if (stream) cudaStreamSynchronize(stream);
-      for (cudaEvent_t event : {launched_[0], launched_[1], counted_, joined_})
+      for (cudaEvent_t event : {launched_[0], launched_[1], joined_})
         if (event) cudaEventDestroy(event);
-      count_memory_.release();
+      counts_.release();
       arena_.release();
       for (cudaStream_t stream : {stream_, second_stream_})
         if (stream) cudaStreamDestroy(stream);
@@ -91,11 +87,7 @@ class CudaExecutor {
   // The first few of a frame lie behind its counts, and were filled with them at once.
   template <class T>
   Span<T> allocate_zeros(size_t n) {
-    const size_t bytes = (n * sizeof(T) + 15) / 16 * 16;
-    if (anticipation_.is_open() && bytes <= kZeroBytes - zeros_used_) {
-      zeros_used_ += bytes;
-      return {reinterpret_cast<T *>(counts_ + kCountsBytes + zeros_used_ - bytes), n};
-    }
+    if (void *const there = counts_.take_zeros(n * sizeof(T))) return {static_cast<T *>(there), n};
     Span<T> zeros = allocate<T>(n);
     fill(zeros, 0);
     return zeros;
@@ -284,71 +276,48 @@ class CudaExecutor {
   // was, so that all of it may be queued.
   void open_counts(uint64_t kind, bool is_short = false) {
     runs_ahead_ = is_short;
-    are_counts_sent_ = false;
-    anticipation_.open(kind);
-    if (!anticipation_.is_open()) return;
-    fill(Span<unsigned char>{counts_, kCountsBytes + zeros_used_}, 0);
-    counts_used_ = zeros_used_ = 0;
+    fill(counts_.open(kind), 0);
   }
-  void turn_counts_to(float level, uint32_t part = 0) { anticipation_.turn_to(level, part); }
+  void turn_counts_to(float level, uint32_t part = 0) { counts_.anticipation().turn_to(level, part); }
 
   // Counts of zero, for as long as what is allocated now.
   template <class T>
   T *take_counts() {
-    constexpr size_t kBytes = (sizeof(T) + 15) / 16 * 16;
-    if (anticipation_.is_open() && counts_used_ + Anticipation::kMostBytes <= kCountsBytes) {
-      counts_used_ += kBytes;
-      return reinterpret_cast<T *>(counts_ + counts_used_ - kBytes);
-    }
-    return allocate_zeros<T>(1).data;
+    T *const counts = counts_.take<T>();
+    return counts ? counts : allocate_zeros<T>(1).data;
   }
   // How many there are, waiting for it; or how many there are at most, to be verified later.
   template <class T>
   T expect(const char *name, const T *counts, const T &most) {
-    if (!is_counted_here(counts)) return fetch(counts);
-    const auto place = static_cast<size_t>(reinterpret_cast<const unsigned char *>(counts) - counts_);
+    if (!counts_.has(counts)) return fetch(counts);
     T value;
-    if (anticipation_.anticipate(name, place, most, &value)) return value;
+    if (counts_.anticipation().anticipate(name, counts_.place_of(counts), most, &value)) return value;
     value = fetch(counts);
-    anticipation_.note(name, value);
+    counts_.anticipation().note(name, value);
     return value;
   }
   // What would be anticipated, if that were asked.
   template <class T>
   bool foresee(const char *name, const T &most, T *expected) const {
-    return anticipation_.foresee(name, most, expected);
+    return counts_.anticipation().foresee(name, most, expected);
   }
   // All that is anticipated so far will have been counted when the device gets here.
   void send_counts() {
-    if (anticipation_.relies_on_something()) send_all_counts();
+    if (counts_.anticipation().relies_on_something()) send_all_counts();
   }
   // Also if nothing is: for what verified() tells.
   void send_all_counts() {
-    anticipation_.note_counting();
-    are_counts_sent_ = true;
-    // Not by a copy, around which the device would wait.
-    for_each(counts_used_ / sizeof(uint32_t), gpu::CopyWords{static_cast<uint32_t *>(counts_on_host_.data()),
-                                                             reinterpret_cast<const uint32_t *>(counts_)});
-    check_cuda(cudaEventRecord(counted_, stream_), "cudaEventRecord");
+    size_t words = 0;
+    const gpu::CopyWords copy = counts_.begin_to_send(&words);
+    for_each(words, copy);  // not by a copy, around which the device would wait
+    counts_.note_sent(stream_);
   }
   // Waits for that. False: all counts were exact. Throws AnticipatedTooLittle.
-  bool verify_counts() {
-    if (!are_counts_sent_) return false;
-    are_counts_sent_ = false;
-    check_cuda(cudaEventSynchronize(counted_), "cudaEventSynchronize");
-    anticipation_.verify(static_cast<const unsigned char *>(counts_on_host_.data()));
-    return true;
-  }
+  bool verify_counts() { return counts_.verify(); }
   // As they were found then.
   template <class T>
   T verified(const T *counts) {
-    if (!is_counted_here(counts)) return fetch(counts);
-    T value;
-    std::memcpy(&value,
-                static_cast<const unsigned char *>(counts_on_host_.data()) +
-                    (reinterpret_cast<const unsigned char *>(counts) - counts_),
-                sizeof value);
-    return value;
+    return counts_.has(counts) ? counts_.verified(counts) : fetch(counts);
   }
   // Copies n values. Waits.
   template <class T>
@@ -360,8 +329,7 @@ class CudaExecutor {
     download(values, source, n);
     wait();
   }
-  // Of the device, beside the arena: counts, and zeros behind them.
-  static constexpr size_t kCountsBytes = 16384, kZeroBytes = 384 * 1024, kFixedBytes = kCountsBytes + kZeroBytes;
+  static constexpr size_t kFixedBytes = CudaCounts::kDeviceBytes;  // of the device, beside the arena
 
   // From page-locked memory the copy goes on after the call returns: leave the memory alone until something waits.
   template <class T>
@@ -399,22 +367,17 @@ class CudaExecutor {
   // What is given from now on goes to the other stream, or to this one again.
   void turn_to_second_stream(bool second) {
     std::swap(stream_, second_stream_);
-    anticipation_.turn_aside(second);
+    counts_.anticipation().turn_aside(second);
   }
   // What is given from now on comes behind all that the second stream has.
   void join_second_stream() {
-    anticipation_.join();
+    counts_.anticipation().join();
     if (cudaEventRecord(joined_, second_stream_) != cudaSuccess ||
         cudaStreamWaitEvent(stream_, joined_, 0) != cudaSuccess)
       cudaStreamSynchronize(second_stream_);
   }
 
  private:
-  bool is_counted_here(const void *counts) const {
-    const auto *const bytes = static_cast<const unsigned char *>(counts);
-    return anticipation_.is_open() && bytes >= counts_ && bytes < counts_ + kCountsBytes;
-  }
-
   static constexpr size_t kStagingBytes = 32768, kMostStaged = size_t(1) << 20;
   static constexpr size_t kLittleFill = size_t(1) << 19, kLittleFetch = size_t(1) << 22;
   static constexpr size_t kDefaultSharedBytes = 48 * 1024;
@@ -509,13 +472,9 @@ class CudaExecutor {
   const std::atomic<bool> *stop_ = nullptr;
   cudaEvent_t launched_[2] = {};  // the next to be used: the launch before last
   PinnedBuffer staging_;
-  Anticipation anticipation_;
-  bool runs_ahead_ = false, are_counts_sent_ = false;
-  GrowingBuffer<DeviceMemory> count_memory_;
-  unsigned char *counts_ = nullptr;                   // there
-  size_t counts_used_ = 0, zeros_used_ = kZeroBytes;  // by the frame before: what is not zero any more
-  PinnedBuffer counts_on_host_;
-  cudaEvent_t counted_ = nullptr, joined_ = nullptr;
+  bool runs_ahead_ = false;
+  CudaCounts counts_;
+  cudaEvent_t joined_ = nullptr;
   Arena<DeviceMemory> arena_;
 };
 
