@@ -4,6 +4,7 @@
 #include "kept/kept_mesh.h"
 #include "parallel/cuda_executor.cuh"
 
+#include <algorithm>
 #include <cstring>
 
 namespace quickses {
@@ -78,6 +79,7 @@ AppearanceView DeviceLook::use(const std::shared_ptr<const Appearance> &look, vo
   check_cuda(cudaMemcpyAsync(memory, staging, bytes, cudaMemcpyHostToDevice, static_cast<cudaStream_t>(stream)),
              "cudaMemcpyAsync");
   copied_->set(stream);
+  view_.atoms = std::max(look->colors.size(), look->texcoords.size());
   if (colors) view_.colors = reinterpret_cast<const uint32_t *>(memory);
   if (texcoords) view_.texcoords = reinterpret_cast<const glm::vec2 *>(memory + colors);
   if (visible) view_.visible = reinterpret_cast<const uint8_t *>(memory + colors + texcoords);

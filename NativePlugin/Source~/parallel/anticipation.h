@@ -49,6 +49,8 @@ class Anticipation {
     kind_ = kind;
     page_ = {};
     waiting_frames_ = waiting_frames_ > 0 ? waiting_frames_ - 1 : 0;
+    if (was_enough_ && too_little_ > 0) --too_little_;
+    was_enough_ = false;
   }
   bool is_open() const { return is_open_; }
   void turn_to(float level, uint32_t part = 0) { page_ = {level, part}; }
@@ -98,10 +100,8 @@ class Anticipation {
     }
     relied_on_.erase(relied_on_.begin(), end);
     counting_ = 0;
-    if (enough) {
-      if (too_little_ > 0) --too_little_;
-      return;
-    }
+    was_enough_ = enough;
+    if (enough) return;
     relied_on_.clear();
     // Counts that come after one that was not enough mean nothing. Frames that are unlike each other rather wait.
     pages_.clear();
@@ -176,6 +176,7 @@ class Anticipation {
   std::vector<Page> pages_;
   std::vector<Reliance> relied_on_;
   size_t counting_ = 0;      // the first so many
+  bool was_enough_ = false;  // in this frame
   unsigned too_little_ = 0;  // lately
   unsigned waiting_frames_ = 0;
 };

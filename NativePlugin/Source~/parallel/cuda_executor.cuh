@@ -369,7 +369,12 @@ class CudaExecutor {
     std::swap(stream_, second_stream_);
     counts_.anticipation().turn_aside(second);
   }
-  // What is given from now on comes behind all that the second stream has.
+  // What the second stream is given from now on comes behind all that this one has.
+  void lead_second_stream() {
+    check_cuda(cudaEventRecord(joined_, stream_), "cudaEventRecord");
+    check_cuda(cudaStreamWaitEvent(second_stream_, joined_, 0), "cudaStreamWaitEvent");
+  }
+  // The other way round.
   void join_second_stream() {
     counts_.anticipation().join();
     if (cudaEventRecord(joined_, second_stream_) != cudaSuccess ||

@@ -7,8 +7,9 @@
 
 namespace quickses {
 
-// What is queued here reads only what is known to be done (verify_counts()), or was queued here before; and memory of
-// the arena that it uses is not given up while this lives. At the end the executor's stream goes on behind all of it.
+// What is queued here reads only what is known to be done (verify_counts()), or was queued here before. It takes
+// nothing from the arena, where memory that was given up may still be in use by the other stream; what it got of it is
+// not given up while this lives. At the end the executor's stream goes on behind all of it.
 class SecondStream {
  public:
   explicit SecondStream(CudaExecutor &executor) : executor_(executor) { executor.open_second_stream(); }
@@ -16,6 +17,8 @@ class SecondStream {
   SecondStream(const SecondStream &) = delete;
   SecondStream &operator=(const SecondStream &) = delete;
 
+  // What is queued from now on may read whatever the executor's stream has by now, and use memory that it gave up.
+  void follow() { executor_.lead_second_stream(); }
   // Whatever give() asks of the executor.
   template <class Give>
   void queue(Give give) {

@@ -46,11 +46,10 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     Course course;
     const auto attempt = [&](const MemoryPlan &plan) {
       const uint32_t attempts = course.attempts++;
-      executor_.open_counts(anticipates(in, plan) ? kind_of(in) : 0,
-                            learnt_.is_proven && learnt_.milliseconds < kShortFrame);
+      anticipates_ = may_anticipate(in, plan);
+      executor_.open_counts(anticipates_ ? kind_of(in) : 0, learnt_.is_proven && learnt_.milliseconds < kShortFrame);
       try {
         compute_levels(in, plan, spacings, &course, sink);
-        forget_shortage();
       } catch (const AnticipatedTooLittle &) {
         course.attempts = attempts;
         throw;
@@ -133,7 +132,10 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
         return;
       } catch (const AnticipatedTooLittle &) {  // the same again: it waits for all counts now
       } catch (const MemoryRefused &refused) {
-        if (!refused.again()) step = next_step(in, step);
+        if (anticipates_)
+          note_tightness();  // the same again, without the room for more than there is
+        else if (!refused.again())
+          step = next_step(in, step);
         if (step < kMemoryPlanCount) continue;
         // The last plan takes least, but can't leave a mesh on the device: it is not where the next one should begin.
         if (wants_device(in.settings)) learnt_ = {};
@@ -145,8 +147,8 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
 
   // Whether a frame may go on with what was counted in the one before: where there is room for more than is needed, and
   // arcs are only looked for, not gone through (as they are where the surface is that of the balls, to be measured).
-  bool anticipates(const FrameInput &in, const MemoryPlan &plan) {
-    return plan.single_slice && budget_ == 0 && learnt_.share == 0 && in.settings.slice_size == 0 &&
+  bool may_anticipate(const FrameInput &in, const MemoryPlan &plan) {
+    return plan.single_slice && budget_ == 0 && !learnt_.is_tight && in.settings.slice_size == 0 &&
            is_exact(in.settings) && !parameters_of(in).is_of_balls() && !progress_.wanted();
   }
   // What frames have in common whose counts are much the same. Never 0.
@@ -166,9 +168,19 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     const SurfaceParameters p = parameters_of(in);
     if (in.atoms.count != learnt_.atoms || p.max_radius != learnt_.reach) rooms_.forget();
     if (in.atoms.count != learnt_.atoms || p.max_radius != learnt_.reach || p.spacing != learnt_.spacing)
-      learnt_ = {in.atoms.count, p.max_radius, p.spacing, 0, 0, false, 0};
-    if (learnt_.step > 0 && executor_.arena().share() > learnt_.share / 4 * 5) learnt_.step = 0;
+      learnt_ = {in.atoms.count, p.max_radius, p.spacing, 0, 0, false, false, 0};
+    if ((learnt_.step > 0 || learnt_.is_tight) && executor_.arena().share() > learnt_.share / 4 * 5) {
+      learnt_.step = 0;
+      learnt_.is_tight = false;
+    }
     return learnt_.step;
+  }
+
+  void note_tightness() {
+    executor_.arena().release();
+    learnt_.is_tight = true;
+    learnt_.share = executor_.arena().share();
+    anticipates_ = false;
   }
 
   // Memory was refused: whatever was taken is given back, so that it is known how much there is, and plans that are
@@ -182,12 +194,6 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     learnt_.share = executor_.arena().share();
     learnt_.is_proven = false;
     return step;
-  }
-
-  // A surface was made as a whole again, and there is more to spare than the next one anticipates.
-  void forget_shortage() {
-    auto &arena = executor_.arena();
-    if (learnt_.step == 0 && learnt_.share > 0 && arena.peak() + arena.peak() / 8 <= arena.share()) learnt_.share = 0;
   }
 
   // ---- one attempt ---------------------------------------------------------------------------------------------
@@ -356,17 +362,18 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   uint64_t budget_;
   LearntRooms<Executor> rooms_;
   // Of the last computation of so many atoms with this largest inflated radius and finest spacing: where the ladder
-  // ended, with how much memory, and whether that did.
+  // ended, with how much memory, whether there was too little for what frames anticipate, and whether that did.
   struct {
     size_t atoms;
     float reach, spacing;
     size_t step;
     uint64_t share;
-    bool is_proven;
+    bool is_tight, is_proven;
     double milliseconds;
   } learnt_{};
-  WorkFacts facts_{};  // of the level that is being made
-  float spacing_ = 0;  // of that level
+  bool anticipates_ = false;  // the attempt that is being made
+  WorkFacts facts_{};         // of the level that is being made
+  float spacing_ = 0;         // of that level
   Progress progress_;
   TableView table_{};
 };

@@ -136,7 +136,7 @@ void prepare_frame(Work &work, const FrameInput &in) {
   work.side_normals = needs_side_normals(in);
   work.appearance = {bring(executor, look.visible.data(), look.visible.size()),
                      bring(executor, look.colors.data(), look.colors.size()),
-                     bring(executor, look.texcoords.data(), look.texcoords.size())};
+                     bring(executor, look.texcoords.data(), look.texcoords.size()), set.count};
   // Gaussians reach far: in smaller cells there are fewer atoms that they do not reach.
   const float cell =
       in.settings.surface == QSES_SURFACE_GAUSSIAN ? work.parameters.max_radius / 3.f : work.parameters.max_radius;

@@ -177,6 +177,27 @@ TEST(Anticipation, ForgivesWhatWasLongAgo) {
   EXPECT_LE(waiting, 2) << "one jump in a hundred frames";
 }
 
+// A frame that is looked at several times, and was not enough at last, forgives nothing.
+TEST(Anticipation, FramesThatFailLateAreMadeAnewSeldom) {
+  Anticipation a;
+  Bricks expected{};
+  int failed = 0;
+  for (int frame = 0; frame < 200; ++frame) {
+    a.open(7);
+    if (!a.anticipate("bricks", 0, kPlenty, &expected)) {
+      a.note("bricks", Bricks{100});
+      continue;
+    }
+    a.note_counting();
+    EXPECT_NO_THROW(a.verify(Counted(100).bytes));
+    ASSERT_TRUE(a.anticipate("bricks", 0, kPlenty, &expected));
+    a.note_counting();
+    EXPECT_THROW(a.verify(Counted(5000).bytes), AnticipatedTooLittle);
+    ++failed;
+  }
+  EXPECT_LE(failed, 8);
+}
+
 // What is counted later than the counts were sent is looked at the next time.
 TEST(Anticipation, VerifiesWhatWasBeingCounted) {
   Anticipation a;

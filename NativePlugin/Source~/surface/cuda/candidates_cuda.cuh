@@ -123,7 +123,7 @@ struct CudaCandidates {
   gpu::CandidateView view{};
   bool have_deciders = false;
   Span<uint32_t> decider_room{};  // for them; none: it is allocated
-  Span<uint32_t> vertex_room{};   // for vertices (vertex_room_words); none: it is allocated
+  Span<uint32_t> vertex_room{};   // for vertices (vertex_words); none: it is allocated
   size_t leaves = 0;
   uint32_t longest_row = 0;  // of atoms or arcs, at most
   // Words that placing vertices takes, of leaves that own some.

@@ -121,14 +121,14 @@ class MeshMemory<CudaExecutor> {
   // A mesh that is handed out on the host may go there part by part: triangles that are final, and vertices that are so
   // when what the executor has been given is done.
   bool goes_to_host() const { return to_host_; }
-  void open_parts(const MeshMemoryView &mesh) {
-    begin_bringing(mesh, mesh.shape);
-    are_vertices_brought_ = true;
+  void begin_to_send(const MeshMemoryView &mesh) {
+    make_room_for(mesh, mesh.shape);
+    sends_vertices_ = true;
   }
-  void bring_triangles(const MeshView &part, size_t triangles) {
+  void send_triangles(const MeshView &part, size_t triangles) {
     if (triangles > 0) copy_beside(brought_.triangle(part.first_triangle), part.indices, triangles * 12);
   }
-  void bring_vertices(CudaExecutor &executor, const MeshView &part, size_t vertices) {
+  void send_vertices(CudaExecutor &executor, const MeshView &part, size_t vertices) {
     note(executor, &vertices_made_);
     for_each_array(brought_, part, vertices, 0,
                    [&](void *to, const void *from, size_t bytes) { bring_after(vertices_made_, to, from, bytes); });
@@ -140,14 +140,14 @@ class MeshMemory<CudaExecutor> {
   void bring_triangles(const MeshMemoryView &mesh, MeshPurpose purpose) {
     constexpr size_t kWorthAStream = size_t(1) << 13;  // triangles: 98 KB
     if (!to_host_ || purpose != MeshPurpose::kDelivered || mesh.triangles < kWorthAStream) return;
-    begin_bringing(mesh, without_spare(mesh.shape));
+    make_room_for(mesh, without_spare(mesh.shape));
     bring_after(triangles_made_, brought_.indices, mesh.view.indices, mesh.triangles * 12);
   }
   // Then its vertices as well, once they are as they are handed out, while the mesh is measured.
   void bring_vertices(CudaExecutor &executor, const MeshMemoryView &mesh) {
-    if (!are_triangles_brought_) return;
-    are_vertices_brought_ = true;
-    bring_vertices(executor, mesh.view, mesh.vertices);
+    if (!sends_triangles_) return;
+    sends_vertices_ = true;
+    send_vertices(executor, mesh.view, mesh.vertices);
   }
 
   void finish(const MeshMemoryView &built, const qses_settings &settings, qses_mesh *mesh, PickBoxes *boxes,
@@ -201,22 +201,22 @@ class MeshMemory<CudaExecutor> {
     copy_beside(to, from, bytes);
   }
   // Room on the host, and a stream.
-  void begin_bringing(const MeshMemoryView &mesh, const MeshShape &shape) {
+  void make_room_for(const MeshMemoryView &mesh, const MeshShape &shape) {
     const MeshArrays arrays(mesh.vertices, mesh.triangles, shape);
     brought_ = arrays.view(host_meshes_.reserve(arrays.bytes()));
     if (!copies_) check_cuda(cudaStreamCreateWithFlags(&copies_, cudaStreamNonBlocking), "cudaStreamCreateWithFlags");
-    are_triangles_brought_ = true;
+    sends_triangles_ = true;
   }
 
   // The arrays of a whole mesh, without what is spare; triangles and vertices may be on their way already.
   MeshView bring(const MeshMemoryView &mesh) {
     const MeshArrays arrays(mesh.vertices, mesh.triangles, without_spare(mesh.shape));
-    if (!are_triangles_brought_) brought_ = arrays.view(host_meshes_.reserve(arrays.bytes()));
+    if (!sends_triangles_) brought_ = arrays.view(host_meshes_.reserve(arrays.bytes()));
     const auto copy = [&](void *to, const void *from, size_t bytes) {
       executor_.download(static_cast<char *>(to), static_cast<const char *>(from), bytes);
     };
-    for_each_array(brought_, mesh.view, are_vertices_brought_ ? 0 : mesh.vertices,
-                   are_triangles_brought_ ? 0 : mesh.triangles, copy);
+    for_each_array(brought_, mesh.view, sends_vertices_ ? 0 : mesh.vertices, sends_triangles_ ? 0 : mesh.triangles,
+                   copy);
     if (mesh.shape.component_ids) copy(brought_.component_ids, mesh.view.component_ids, mesh.vertices * 4);
     if (mesh.shape.repeated > 0) copy(brought_.repeated, mesh.view.repeated, mesh.shape.repeated * 4);
     if (mesh.shape.boxes) {
@@ -226,8 +226,8 @@ class MeshMemory<CudaExecutor> {
     return brought_;
   }
   void wait_for_copies() {
-    if (are_triangles_brought_) check_cuda(cudaStreamSynchronize(copies_), "cudaStreamSynchronize");
-    are_triangles_brought_ = are_vertices_brought_ = false;
+    if (sends_triangles_) check_cuda(cudaStreamSynchronize(copies_), "cudaStreamSynchronize");
+    sends_triangles_ = sends_vertices_ = false;
   }
 
   // At most a mesh to be made into another one, its normals and those of the other one, sums and starts at a time.
@@ -241,7 +241,7 @@ class MeshMemory<CudaExecutor> {
   bool keep_ = false, to_host_ = false;
   cudaEvent_t triangles_made_ = nullptr, vertices_made_ = nullptr;
   cudaStream_t copies_ = nullptr;
-  bool are_triangles_brought_ = false, are_vertices_brought_ = false;  // they are on their way, to here:
+  bool sends_triangles_ = false, sends_vertices_ = false;  // they are on their way, to here:
   MeshView brought_{};
   std::deque<PinnedBuffer> spill_;
   size_t spilled_ = 0;

@@ -28,7 +28,8 @@ __device__ __forceinline__ void finish_vertex(const VertexJob &job, uint32_t k, 
 }
 
 // A vertex that is left to the third kernel: the mesh holds where it is on its way, on the sphere of one probe, and for
-// its owner the rounds it has had; none if it is where it starts.
+// its owner the rounds it has had; none if it is where it starts. So does one that is left to the fourth, and owners
+// are atoms' numbers even where more are left than was anticipated.
 __device__ __forceinline__ void leave_start(const VertexJob &job, uint32_t k) { job.mesh.owner(job.first + k) = 0; }
 __device__ __forceinline__ void leave_vertex(const VertexJob &job, uint32_t k, const Projection &v) {
   const uint32_t vertex = job.first + k;
@@ -89,6 +90,7 @@ static __global__ __launch_bounds__(kVertexThreads,
   __syncwarp();
   append(job.open, &job.counts->open, k, team.writes && !contact);
   append(job.on_edges, &job.counts->on_edges, k, team.writes && contact && !done);
+  if (team.writes && contact && !done) leave_start(job, k);
   if (team.writes && contact && done) finish_vertex(job, k, v.point, deepest.atom);
 }
 
@@ -178,6 +180,7 @@ static __global__ __launch_bounds__(kVertexThreads,
              on_edge = usual && v.state == ProjectionState::kOnEdge;
   append(job.unfinished, &job.counts->unfinished, k, team.writes && !placed && !on_edge);
   append(job.on_edges, &job.counts->on_edges, k, team.writes && on_edge);
+  if (team.writes && on_edge) leave_start(job, k);
   uint32_t owner = 0;
   if (kLanes > 1 || placed) owner = nearest_atom(f, candidates, v.point.position);
   if (!team.writes || on_edge) return;
@@ -213,6 +216,7 @@ static __global__ __launch_bounds__(kVertexThreads, 8) void reproject_kernel(Que
     }
     const bool placed = v.state == ProjectionState::kPlaced, writes = on && candidates.rank() == 0;
     append(job.on_edges, &job.counts->on_edges, k, writes && !placed);
+    if (writes && !placed) leave_start(job, k);
     const uint32_t owner = nearest_atom(f, candidates, v.point.position);
     if (writes && placed) finish_vertex(job, k, v.point, owner);
   }

@@ -18,18 +18,18 @@ namespace quickses {
 struct Slabs {
   uint32_t count = 0, bricks = 0, near = 0;
   MeshTotals room{};  // of the whole mesh, as it is foreseen
-  static constexpr uint32_t kSteps = 3;
+  // What bricks are final for: signs, which those of the slabs behind may mark; to be counted, which takes the signs
+  // around; and to be emitted, which takes the counts around.
+  enum Step : uint32_t { kSigns = 1, kCounts = 2, kEmission = 3 };
 
   uint32_t end(uint32_t slab) const { return static_cast<uint32_t>(uint64_t(bricks) * (slab + 1) / count); }
   BrickRange range(uint32_t slab) const { return {slab > 0 ? end(slab - 1) : 0, end(slab)}; }
-  // When walls of so many slabs are looked for: how many bricks have final signs (steps: 1), which those of the
-  // slabs behind may still mark; how many may be counted (2), which takes the signs around, and how many emitted (3),
-  // which takes the counts around.
-  uint32_t final_bricks(uint32_t slabs, uint32_t steps) const {
-    return slabs == count ? bricks : slabs == 0 ? 0 : end(slabs - 1) - steps * near;
+  // How many bricks are, when walls of so many slabs are found.
+  uint32_t final_bricks(uint32_t slabs, Step step) const {
+    return slabs == count ? bricks : slabs == 0 ? 0 : end(slabs - 1) - step * near;
   }
-  BrickRange newly_final(uint32_t slabs, uint32_t steps) const {
-    return {final_bricks(slabs - 1, steps), final_bricks(slabs, steps)};
+  BrickRange newly_final(uint32_t slabs, Step step) const {
+    return {final_bricks(slabs - 1, step), final_bricks(slabs, step)};
   }
 };
 
@@ -47,7 +47,8 @@ Slabs slabs_of(const Work &work, const BrickSet &bricks) {
   slabs.bricks = bricks.count;
   slabs.near = slabs.room.near;
   if (slabs.room.vertices < kWorthIt) return slabs;
-  slabs.count = std::min({kMost, slabs.room.vertices / kWorthASlab, slabs.bricks / ((Slabs::kSteps + 1) * slabs.near)});
+  slabs.count =
+      std::min({kMost, slabs.room.vertices / kWorthASlab, slabs.bricks / ((Slabs::kEmission + 1) * slabs.near)});
   if (slabs.count < 2) slabs.count = 0;
   return slabs;
 }
@@ -77,8 +78,9 @@ MeshMemoryView build_in_slabs(Work &work, const BrickSet &bricks, const Slabs &s
   layout.vertex_total = slabs.room.vertices;
   layout.triangle_total = slabs.room.triangles;
   layout.leaf_total = slabs.room.leaves;
+  layout.near = slabs.near;
   MeshMemoryView mesh = begin_mesh(work, MeshCounts{slabs.room.vertices, slabs.room.triangles});
-  work.memory.open_parts(mesh);
+  work.memory.begin_to_send(mesh);
   mesh.is_brought = true;
 
   const auto end_of_mesh = executor.arena().mark();
@@ -93,8 +95,9 @@ MeshMemoryView build_in_slabs(Work &work, const BrickSet &bricks, const Slabs &s
   const auto vertex_words = [&](size_t vertices, size_t leaves) {
     return Candidates<Executor>::vertex_words(work.parameters, vertices, leaves);
   };
-  const Span<uint32_t> vertex_room =
-      executor.template allocate<uint32_t>(vertex_words(slabs.room.vertices, slabs.room.leaves));
+  // For one slab after the other, of which few are much fuller than the mean.
+  Span<uint32_t> vertex_room =
+      executor.template allocate<uint32_t>(vertex_words(slabs.room.vertices, slabs.room.leaves) / slabs.count * 3 / 2);
   const auto turn_to_slab = [&](uint32_t slab) {
     executor.turn_counts_to(work.parameters.spacing, slabs.count << 8 | (slab + 1));
   };
@@ -118,13 +121,15 @@ MeshMemoryView build_in_slabs(Work &work, const BrickSet &bricks, const Slabs &s
   // told of.
   const auto lay_out = [&](uint32_t found) {
     work.timer.begin("marching_cubes");
-    const BrickRange final_signs = slabs.newly_final(found, 1), emitted = slabs.newly_final(found, 3);
+    const BrickRange final_signs = slabs.newly_final(found, Slabs::kSigns),
+                     emitted = slabs.newly_final(found, Slabs::kEmission);
     const size_t first_leaf = size_t(final_signs.first) * kLeavesPerBrick;
     if (has_walls)
       executor.for_each(size_t(final_signs.size()) * kLeavesPerBrick,
                         AddMarks{marks.data + first_leaf, signs.data + first_leaf});
-    count_cells(executor, bricks, layout, work.table.triangle_count, counts, slabs.newly_final(found, 2));
-    executor.for_each(emitted.size(), CountBorderChanges{bricks, layout, emitted.first, slabs.final_bricks(found, 2)});
+    count_cells(executor, bricks, layout, work.table.triangle_count, counts, slabs.newly_final(found, Slabs::kCounts));
+    executor.for_each(emitted.size(),
+                      CountBorderChanges{bricks, layout, emitted.first, slabs.final_bricks(found, Slabs::kCounts)});
     if (found == slabs.count) {
       executor.turn_counts_to(work.parameters.spacing);
       executor.expect("mesh", layout.totals, MeshTotals{});
@@ -141,28 +146,29 @@ MeshMemoryView build_in_slabs(Work &work, const BrickSet &bricks, const Slabs &s
   const auto place_vertices = [&](uint32_t slab, const BrickTotals &end) {
     turn_to_slab(slab);
     const SliceSizes sizes = sizes_between(done.placed, end);
-    candidates[slab].vertex_room = {vertex_room.data + vertex_words(sizes.first_vertex, sizes.first_leaf),
-                                    vertex_words(sizes.vertices, sizes.leaves)};
+    const size_t words = vertex_words(sizes.vertices, sizes.leaves);
+    if (words > vertex_room.size) {
+      vertex_room = executor.template allocate<uint32_t>(words);
+      second->follow();
+    }
+    candidates[slab].vertex_room = vertex_room;
     second->queue([&] {
       B::emit_vertices(executor, features, bricks, layout, slabs.range(slab), sizes, work.rooms, candidates[slab],
                        starts, mesh.view);
       const MeshView part = view_from(mesh.view, sizes.first_vertex, 0);
-      paint_vertices(executor, work.appearance, part, sizes.vertices);
-      pack_normals(executor, part, sizes.vertices);
-      work.memory.bring_vertices(executor, part, sizes.vertices);
+      paint(work, part, sizes.vertices);
+      work.memory.send_vertices(executor, part, sizes.vertices);
     });
     done.placed = end;
   };
   // What was told. Waits for it; the GPU has the next slab to work on meanwhile.
   const auto deliver = [&](uint32_t found) {
     executor.verify_counts();
+    // Where there is more than was foreseen no more is emitted, and the last look at the counts will throw.
+    if (!slabs.room.covers(executor.verified(layout.totals))) return;
     const TotalsBefore now = executor.verified(told);
-    // What is more than was foreseen is not emitted either, and the last look at the counts will tell.
-    if (now.emitted.vertices > mesh.vertices || now.emitted.triangles > mesh.triangles ||
-        now.emitted.leaves > slabs.room.leaves)
-      return;
-    work.memory.bring_triangles(view_from(mesh.view, 0, done.emitted.triangles),
-                                now.emitted.triangles - done.emitted.triangles);
+    work.memory.send_triangles(view_from(mesh.view, 0, done.emitted.triangles),
+                               now.emitted.triangles - done.emitted.triangles);
     done.emitted = now.emitted;
     if (found > 1) place_vertices(found - 2, now.placed);
     if (found == slabs.count) place_vertices(found - 1, now.emitted);
@@ -176,11 +182,12 @@ MeshMemoryView build_in_slabs(Work &work, const BrickSet &bricks, const Slabs &s
     lay_out(slab);
   }
   find_walls(slabs.count - 1);
-  if (slabs.count > 1) deliver(slabs.count - 1);
+  deliver(slabs.count - 1);
   lay_out(slabs.count);
   deliver(slabs.count);
   work.timer.begin("projection");
   second.reset();
+  executor.turn_counts_to(work.parameters.spacing);
 
   narrow_mesh(&mesh, done.emitted.vertices, done.emitted.triangles);
   note_size(work, executor.verified(bricks.found).count, {done.emitted.vertices, done.emitted.triangles},

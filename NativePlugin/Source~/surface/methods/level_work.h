@@ -109,14 +109,18 @@ void add_normals(Work &work, MeshMemoryView *mesh) {
   add_normals(work, work.side_normals, mesh);
 }
 
-// Colours, texture coordinates, light and packed normals of vertices that have their places, owners and normals.
+// Colours, texture coordinates and packed normals of vertices that have their places, owners and normals.
+template <class Work>
+void paint(Work &work, const MeshView &mesh, size_t vertices) {
+  paint_vertices(work.executor, work.appearance, mesh, vertices);
+  pack_normals(work.executor, mesh, vertices);
+}
 template <class Work>
 void paint_and_light(Work &work, const MeshMemoryView &mesh) {
-  paint_vertices(work.executor, work.appearance, mesh.view, mesh.vertices);
+  paint(work, mesh.view, mesh.vertices);
   if (work.settings.occlusion && mesh.vertices > 0)
     find_openness(work.executor, work.atoms, work.parameters, work.lattice, work.low, work.high, mesh.view,
                   mesh.vertices, !work.appearance.texcoords);
-  pack_normals(work.executor, mesh.view, mesh.vertices);
 }
 
 // What is left to do for a mesh whose vertices have their places, owners, and normals of each side.

@@ -20,17 +20,20 @@ struct AppearanceView {
   const uint8_t *visible;
   const uint32_t *colors;
   const glm::vec2 *texcoords;
+  size_t atoms;  // so many, of what is set
 };
 
-// Writes colours and texture coordinates of a run of vertices, whose owners are known.
+// Writes colours and texture coordinates of a run of vertices, whose owners are known: but where there are more than
+// was anticipated, and they will be made again.
 struct PaintVertices {
   AppearanceView appearance;
   MeshView mesh;
   QSES_HOST_DEVICE void operator()(size_t i) const {
     const uint32_t vertex = mesh.first_vertex + static_cast<uint32_t>(i), atom = mesh.owner(vertex);
-    if (mesh.colors) *mesh.color(vertex) = appearance.colors[atom];
+    const bool is_known = atom < appearance.atoms;
+    if (mesh.colors && is_known) *mesh.color(vertex) = appearance.colors[atom];
     if (mesh.texcoords) {
-      const glm::vec2 uv = appearance.texcoords ? appearance.texcoords[atom] : glm::vec2(1.f, 0.f);
+      const glm::vec2 uv = appearance.texcoords && is_known ? appearance.texcoords[atom] : glm::vec2(1.f, 0.f);
       float *const out = mesh.texcoord(vertex);
       out[0] = uv.x;
       out[1] = uv.y;

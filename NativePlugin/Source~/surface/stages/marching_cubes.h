@@ -13,6 +13,8 @@
 
 namespace quickses {
 
+constexpr uint32_t kAnyNear = ~uint32_t(0);
+
 // What is known of all bricks together, in the memory of the back end.
 struct MeshTotals {
   uint32_t vertices, triangles;
@@ -21,9 +23,14 @@ struct MeshTotals {
   uint32_t unplaced;        // vertices for which no feature was found; counted while they are emitted
   uint32_t near;            // numbers of two bricks next to each other differ by so much at most (GPU)
 
-  static MeshTotals anticipated(const MeshTotals &last, const MeshTotals &) {
-    return {and_some_more(last.vertices), and_some_more(last.triangles), and_some_more(last.leaves), 0, 0,
-            and_some_more(last.near)};
+  // most.near: kAnyNear for whoever does not care, else 0.
+  static MeshTotals anticipated(const MeshTotals &last, const MeshTotals &most) {
+    return {and_some_more(last.vertices),
+            and_some_more(last.triangles),
+            and_some_more(last.leaves),
+            0,
+            0,
+            std::max(and_some_more(last.near), most.near)};
   }
   bool covers(const MeshTotals &found) const {
     return found.vertices <= vertices && found.triangles <= triangles && found.leaves <= leaves &&
@@ -59,6 +66,7 @@ struct MeshLayout {
   uint64_t vertex_total, triangle_total;  // of all bricks; if they are anticipated, there may be fewer
   uint64_t leaf_total;                    // that own vertices
   uint64_t border_changes;                // 0, or the set of bricks must grow before anything is emitted
+  uint32_t near;                          // at most; where it is not, what is emitted may not be final
 
   // Vertices of a brick before a leaf; of all, before leaf 8.
   QSES_FN uint32_t vertices_before(size_t brick, int leaf) const {
@@ -69,7 +77,7 @@ struct MeshLayout {
   // Where more were counted than anticipated nothing may be emitted: there is no room for it, or a brick is missing.
   QSES_FN bool has_room() const {
     return totals->vertices <= vertex_total && totals->triangles <= triangle_total && totals->leaves <= leaf_total &&
-           totals->border_changes == 0;
+           totals->border_changes == 0 && totals->near <= near;
   }
 };
 
@@ -359,7 +367,9 @@ MeshCounts lay_out_mesh(Executor &executor, const BrickSet &bricks, const uint64
   const CountedCells counts(executor, n);
   count_cells(executor, bricks, *layout, case_triangles, counts, {0, bricks.count});
   executor.for_each(n, CountBorderChanges{bricks, *layout, 0, n});
-  const MeshTotals totals = n > 0 ? executor.expect("mesh", layout->totals, MeshTotals{}) : MeshTotals{};
+  layout->near = kAnyNear;
+  const MeshTotals totals =
+      n > 0 ? executor.expect("mesh", layout->totals, MeshTotals{0, 0, 0, 0, 0, kAnyNear}) : MeshTotals{};
   layout->border_changes = totals.border_changes;
   // The bases wrap if there are too many; then the true totals are summed up for the message.
   if (!Executor::kCounts && !fits_bases(n)) {
