@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <limits>
 
@@ -70,8 +71,18 @@ struct Met {
 
 #if defined(__SSE2__) || defined(_M_X64)
 
+// Writes past the caches, which many atoms do not fit into: they are not read soon.
+struct StorePast {
+  void operator()(float *to, __m128 v) const { _mm_stream_ps(to, v); }
+};
+struct Store {
+  void operator()(float *to, __m128 v) const { _mm_storeu_ps(to, v); }
+};
+
 // Of those that lie behind each other, four at a time; compilers do not find these shuffles. Returns how many.
-size_t copy_in_fours(const float *positions, const float *radii, size_t count, Sphere *atoms, Met *met) {
+template <class StorePack>
+size_t copy_in_fours(const float *positions, const float *radii, size_t count, Sphere *atoms, Met *met,
+                     const StorePack &store) {
   constexpr size_t kFloats = 12;
   __m128 low[3], high[3], has_nan = _mm_setzero_ps();
   for (int k = 0; k < 3; ++k) {
@@ -95,10 +106,10 @@ size_t copy_in_fours(const float *positions, const float *radii, size_t count, S
                  z2r2 = _mm_shuffle_ps(v[2], r, _MM_SHUFFLE(2, 2, 0, 0)),
                  z3r3 = _mm_shuffle_ps(v[2], r, _MM_SHUFFLE(3, 3, 3, 3));
     float *const to = &atoms[i].center.x;
-    _mm_storeu_ps(to, _mm_shuffle_ps(v[0], z0r0, _MM_SHUFFLE(2, 0, 1, 0)));
-    _mm_storeu_ps(to + 4, _mm_shuffle_ps(x1y1, z1r1, _MM_SHUFFLE(2, 0, 2, 0)));
-    _mm_storeu_ps(to + 8, _mm_shuffle_ps(v[1], z2r2, _MM_SHUFFLE(2, 0, 3, 2)));
-    _mm_storeu_ps(to + 12, _mm_shuffle_ps(v[2], z3r3, _MM_SHUFFLE(2, 0, 2, 1)));
+    store(to, _mm_shuffle_ps(v[0], z0r0, _MM_SHUFFLE(2, 0, 1, 0)));
+    store(to + 4, _mm_shuffle_ps(x1y1, z1r1, _MM_SHUFFLE(2, 0, 2, 0)));
+    store(to + 8, _mm_shuffle_ps(v[1], z2r2, _MM_SHUFFLE(2, 0, 3, 2)));
+    store(to + 12, _mm_shuffle_ps(v[2], z3r3, _MM_SHUFFLE(2, 0, 2, 1)));
   }
   float lows[kFloats], highs[kFloats];
   for (size_t k = 0; k < 3; ++k) {
@@ -111,6 +122,15 @@ size_t copy_in_fours(const float *positions, const float *radii, size_t count, S
   }
   met->all_good &= _mm_movemask_ps(has_nan) == 0;
   return i;
+}
+
+size_t copy_in_fours(const float *positions, const float *radii, size_t count, Sphere *atoms, Met *met) {
+  constexpr size_t kMany = size_t(1) << 17;  // 2 MB
+  if (count < kMany || reinterpret_cast<uintptr_t>(atoms) % sizeof(__m128) != 0)
+    return copy_in_fours(positions, radii, count, atoms, met, Store{});
+  const size_t copied = copy_in_fours(positions, radii, count, atoms, met, StorePast{});
+  _mm_sfence();
+  return copied;
 }
 
 #else

@@ -118,6 +118,32 @@ TEST(AtomsIn, OneWrongCoordinateIsFoundWhereverItIs) {
     }
 }
 
+// So many that they are written past the caches.
+TEST(AtomsIn, MayBeMany) {
+  Given given((size_t(1) << 17) + 5);
+  const size_t count = given.count();
+  for (const Copied &copied : {copy(given), copy_apart(given, 1), copy_indexed(given)}) {
+    bool are_same = true;
+    glm::vec3 low(kInf), high(-kInf);
+    for (size_t i = 0; i < count; ++i) {
+      are_same &= copied.atoms[i].radius == given.radii[i];
+      for (int d = 0; d < 3; ++d) {
+        const float x = given.positions[3 * i + static_cast<size_t>(d)];
+        are_same &= copied.atoms[i].center[d] == x;
+        low[d] = std::min(low[d], x);
+        high[d] = std::max(high[d], x);
+      }
+    }
+    EXPECT_TRUE(are_same);
+    EXPECT_EQ(copied.bounds.low, low);
+    EXPECT_EQ(copied.bounds.high, high);
+  }
+  for (const size_t atom : {count - 1, count - 7, size_t(0)}) {
+    given.positions[3 * atom + 1] = kInf;
+    expect_refused(copy, given, atom);
+  }
+}
+
 TEST(AtomsIn, OfSeveralWrongOnesTheFirstIsNamed) {
   Given given(kMostAtoms);
   for (size_t k = given.positions.size(); k-- > 0;) {
