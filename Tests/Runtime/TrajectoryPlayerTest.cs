@@ -301,6 +301,30 @@ namespace QuickSes.Tests
             Assert.That(_playing.Finishes, Is.EqualTo(0));
         }
 
+        // The last frame is far beyond those that were read ahead: it comes some ticks later.
+        [Test]
+        public void FinishesWhenTheLastFrameIsShown()
+        {
+            LoadEnsemble(200);
+            Player.Mode = PlaybackMode.Once;
+            Player.PrefetchFrames = 2;
+            int shown = -1;
+            Player.Finished += () => shown = Player.ShownFrame;
+            Player.Play();
+            Player.Tick(1000f);
+            Assert.That(Player.IsPlaying, Is.False);
+            _playing.TickUntil(() => _playing.Finishes > 0, "it has finished");
+            Assert.That(shown, Is.EqualTo(199));
+            _playing.Pass(0.1f);
+            Assert.That(_playing.Finishes, Is.EqualTo(1));
+            // Whoever plays it again meanwhile is not stopped by the end of the time before.
+            Player.Play();
+            Player.Tick(1000f);
+            Player.Play();
+            _playing.TickUntil(() => Player.ShownFrame == 0, "it is at the beginning again");
+            Assert.That(Player.IsPlaying, Is.True);
+        }
+
         [Test]
         public void HandlersMayDestroyIt()
         {

@@ -198,16 +198,19 @@ namespace QuickSes
             if (_framesPerSecond != 0)
                 _head.SetSign(_framesPerSecond > 0 ? 1 : -1);
             if (_isPlaying && !_isWaiting)
-                _untold |= _head.Advance(seconds * Math.Abs((double)_framesPerSecond));
-            if ((_untold & PlayHeadEvents.Finished) != 0)
-                _isPlaying = false;
+            {
+                PlayHeadEvents passed = _head.Advance(seconds * Math.Abs((double)_framesPerSecond));
+                _isPlaying = (passed & PlayHeadEvents.Finished) == 0;
+                _untold |= passed;
+            }
             SetPlace(_head.Position);
             Show();
             TellAll();
         }
 
         // Handlers may do anything: what they unload, disable or destroy has nothing left to tell (CloseFrames). Each
-        // event is taken before its handlers are called, so that those that throw do not hold up the others.
+        // event is taken before its handlers are called, so that those that throw do not hold up the others. It has not
+        // finished as long as it waits for the last frame.
         private void TellAll()
         {
             if (_isNewFrameUntold)
@@ -217,7 +220,7 @@ namespace QuickSes
             }
             if (TakeUntold(PlayHeadEvents.Looped))
                 RaiseLooped();
-            if (TakeUntold(PlayHeadEvents.Finished))
+            if (!_isWaiting && TakeUntold(PlayHeadEvents.Finished))
                 RaiseFinished();
         }
 
