@@ -42,6 +42,7 @@ class Anticipation {
   // Frames of one kind follow each other; another kind is not like those before. 0: nothing is anticipated, or noted.
   void open(uint64_t kind) {
     is_open_ = kind != 0;
+    has_anticipated_ = false;
     relied_on_.clear();
     counting_ = 0;
     if (!is_open_) return;
@@ -53,12 +54,15 @@ class Anticipation {
     was_enough_ = false;
   }
   bool is_open() const { return is_open_; }
+  // Whether this frame went on with a count from the one before.
+  bool has_anticipated() const { return has_anticipated_; }
   void turn_to(float level, uint32_t part = 0) { page_ = {level, part}; }
 
   // False: whoever asks has to wait, and note() what there is.
   template <class T>
   bool anticipate(const char *name, size_t place, const T &most, T *expected) {
     if (!foresee(name, most, expected)) return false;
+    has_anticipated_ = true;
     relied_on_.push_back({page_, place, Entry(name, *expected), &is_covered<T>, is_aside_});
     return true;
   }
@@ -170,7 +174,7 @@ class Anticipation {
     page->entries.push_back(found);
   }
 
-  bool is_open_ = false, is_aside_ = false;
+  bool is_open_ = false, has_anticipated_ = false, is_aside_ = false;
   uint64_t kind_ = 0;
   Number page_{};
   std::vector<Page> pages_;

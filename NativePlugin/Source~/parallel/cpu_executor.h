@@ -263,6 +263,7 @@ class CpuExecutor {
     return *counts;
   }
   void open_counts(uint64_t, bool = false) {}
+  bool has_anticipated() const { return false; }
   void turn_counts_to(float) {}
   void keep_pace() {}
   bool runs_ahead() const { return false; }

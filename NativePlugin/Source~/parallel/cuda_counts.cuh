@@ -8,7 +8,6 @@
 #include "parallel/cuda_passes.cuh"
 
 #include <cstring>
-#include <type_traits>
 
 namespace quickses {
 

@@ -278,6 +278,7 @@ class CudaExecutor {
     runs_ahead_ = is_short;
     fill(counts_.open(kind), 0);
   }
+  bool has_anticipated() const { return counts_.anticipation().has_anticipated(); }
   void turn_counts_to(float level, uint32_t part = 0) { counts_.anticipation().turn_to(level, part); }
 
   // Counts of zero, for as long as what is allocated now.

@@ -19,6 +19,7 @@
 //   expect(name, counts, most)     what was counted. Waits; or, if it is told by the frame before, at most so much
 //   send_counts(), verify_counts() later: what was expected is compared with what was counted (anticipation.h). Waits
 //   verified(counts)               what was counted then
+//   has_anticipated()              whether this frame went on with anything that the one before told
 //   go_on_scanning(n, load, out), foresee(name, most, out), send_all_counts()  of the GPU only, for work in slabs
 //                                  (methods/exact_slabs.h)
 //   runs_ahead()                   whether all of this frame may be queued, since frames like it are short

@@ -46,8 +46,8 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     Course course;
     const auto attempt = [&](const MemoryPlan &plan) {
       const uint32_t attempts = course.attempts++;
-      anticipates_ = may_anticipate(in, plan);
-      executor_.open_counts(anticipates_ ? kind_of(in) : 0, learnt_.is_proven && learnt_.milliseconds < kShortFrame);
+      executor_.open_counts(may_anticipate(in, plan) ? kind_of(in) : 0,
+                            learnt_.is_proven && learnt_.milliseconds < kShortFrame);
       try {
         compute_levels(in, plan, spacings, &course, sink);
       } catch (const AnticipatedTooLittle &) {
@@ -132,7 +132,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
         return;
       } catch (const AnticipatedTooLittle &) {  // the same again: it waits for all counts now
       } catch (const MemoryRefused &refused) {
-        if (anticipates_)
+        if (executor_.has_anticipated())
           note_tightness();  // the same again, without the room for more than there is
         else if (!refused.again())
           step = next_step(in, step);
@@ -180,7 +180,6 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     executor_.arena().release();
     learnt_.is_tight = true;
     learnt_.share = executor_.arena().share();
-    anticipates_ = false;
   }
 
   // Memory was refused: whatever was taken is given back, so that it is known how much there is, and plans that are
@@ -371,9 +370,8 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     bool is_tight, is_proven;
     double milliseconds;
   } learnt_{};
-  bool anticipates_ = false;  // the attempt that is being made
-  WorkFacts facts_{};         // of the level that is being made
-  float spacing_ = 0;         // of that level
+  WorkFacts facts_{};  // of the level that is being made
+  float spacing_ = 0;  // of that level
   Progress progress_;
   TableView table_{};
 };

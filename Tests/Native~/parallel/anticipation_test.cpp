@@ -126,12 +126,16 @@ TEST(Anticipation, ForeseesWithoutRelyingOnIt) {
   a.note("bricks", Bricks{1600});
   ASSERT_TRUE(a.foresee("bricks", kPlenty, &foreseen));
   EXPECT_FALSE(a.relies_on_something());
+  EXPECT_FALSE(a.has_anticipated());
   ASSERT_TRUE(a.anticipate("bricks", 0, kPlenty, &expected));
   EXPECT_EQ(foreseen.count, expected.count);
   EXPECT_TRUE(a.relies_on_something());
+  EXPECT_TRUE(a.has_anticipated());
   a.note_counting();
   EXPECT_THROW(a.verify(Counted(expected.count + 1).bytes), AnticipatedTooLittle);
+  EXPECT_TRUE(a.has_anticipated()) << "in this frame, even if it failed";
   a.open(7);
+  EXPECT_FALSE(a.has_anticipated());
   a.note("bricks", Bricks{1600});
   EXPECT_FALSE(a.foresee("bricks", kPlenty, &foreseen)) << "while frames wait";
 }
