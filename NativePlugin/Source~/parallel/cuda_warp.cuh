@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Work that the 32 threads of a warp do together. All of a warp's threads must call these.
+// Work that the 32 threads of a warp do together, or those of a block. All of them must call these.
 #pragma once
 
 #include "parallel/span.h"
@@ -45,6 +45,26 @@ __device__ __forceinline__ void append(uint32_t *list, uint32_t *count, uint32_t
   if (has) list[base + place] = item;
 }
 
+// The same by all threads of a block: the whole GPU can add to one count only every other clock cycle or so.
+template <int kThreads>
+__device__ __forceinline__ void append_of_block(uint32_t *list, uint32_t *count, uint32_t item, bool has) {
+  constexpr int kWarps = kThreads / kWarp;
+  __shared__ uint32_t counts[kWarps], base;
+  uint32_t own = 0, before = 0, all = 0;
+  const uint32_t place = append_place(has, &own);
+  const int warp = static_cast<int>(threadIdx.x) / kWarp;
+  if (lane_id() == 0) counts[warp] = own;
+  __syncthreads();
+#pragma unroll
+  for (int w = 0; w < kWarps; ++w) {
+    before += w < warp ? counts[w] : 0;
+    all += counts[w];
+  }
+  if (threadIdx.x == 0 && all > 0) base = atomicAdd(count, all);
+  __syncthreads();
+  if (has) list[base + before + place] = item;
+}
+
 // Sum over the lanes up to and including this one: of a warp, or of each group of so many lanes.
 template <int Lanes = kWarp, class T>
 __device__ __forceinline__ T warp_inclusive_sum(T value, int lane, unsigned lanes = kFullWarp) {
@@ -56,11 +76,66 @@ __device__ __forceinline__ T warp_inclusive_sum(T value, int lane, unsigned lane
   return value;
 }
 
+// Of a warp, or of each group of so many lanes; the same in all of them.
+template <int Lanes, class T, class Combine>
+__device__ __forceinline__ T fold_lanes(T value, const Combine &combine, unsigned lanes = kFullWarp) {
+#pragma unroll
+  for (int d = Lanes / 2; d > 0; d >>= 1) value = combine(value, __shfl_xor_sync(lanes, value, d));
+  return value;
+}
+
+// From compute capability 8.0 on one instruction. (Clang 19's __reduce_or_sync() and its like can't be used: they take
+// the mask for the value.)
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800
+#define QUICKSES_REDUCES_WARPS 1
+#else
+#define QUICKSES_REDUCES_WARPS 0
+#endif
+__device__ __forceinline__ uint32_t warp_or(uint32_t value) {
+#if QUICKSES_REDUCES_WARPS
+  asm volatile("redux.sync.or.b32 %0, %0, %1;" : "+r"(value) : "r"(kFullWarp));
+  return value;
+#else
+  return fold_lanes<kWarp>(value, [](uint32_t a, uint32_t b) { return a | b; });
+#endif
+}
+__device__ __forceinline__ uint32_t warp_sum(uint32_t value) {
+#if QUICKSES_REDUCES_WARPS
+  asm volatile("redux.sync.add.u32 %0, %0, %1;" : "+r"(value) : "r"(kFullWarp));
+  return value;
+#else
+  return fold_lanes<kWarp>(value, [](uint32_t a, uint32_t b) { return a + b; });
+#endif
+}
+__device__ __forceinline__ uint32_t warp_minimum(uint32_t value) {
+#if QUICKSES_REDUCES_WARPS
+  asm volatile("redux.sync.min.u32 %0, %0, %1;" : "+r"(value) : "r"(kFullWarp));
+  return value;
+#else
+  return fold_lanes<kWarp>(value, [](uint32_t a, uint32_t b) { return a < b ? a : b; });
+#endif
+}
+__device__ __forceinline__ int32_t warp_maximum(int32_t value) {
+#if QUICKSES_REDUCES_WARPS
+  asm volatile("redux.sync.max.s32 %0, %0, %1;" : "+r"(value) : "r"(kFullWarp));
+  return value;
+#else
+  return fold_lanes<kWarp>(value, [](int32_t a, int32_t b) { return a > b ? a : b; });
+#endif
+}
+
+// A number for a value, in their order, and a value for its number. Not for NaN; 0 comes after -0.
+__device__ __forceinline__ int32_t in_order(int32_t bits) { return bits < 0 ? bits ^ 0x7fffffff : bits; }
+__device__ __forceinline__ int32_t number_in_order(float value) { return in_order(__float_as_int(value)); }
+__device__ __forceinline__ float value_in_order(int32_t number) { return __int_as_float(in_order(number)); }
+
 template <int Lanes = kWarp>
 __device__ __forceinline__ float warp_maximum(float value, unsigned lanes = kFullWarp) {
-#pragma unroll
-  for (int d = Lanes / 2; d > 0; d >>= 1) value = fmaxf(value, __shfl_xor_sync(lanes, value, d));
-  return value;
+  if constexpr (Lanes == kWarp)
+    return value_in_order(warp_maximum(number_in_order(value)));
+  else
+    return fold_lanes<Lanes>(
+        value, [](float a, float b) { return fmaxf(a, b); }, lanes);
 }
 
 // The largest value, and the smallest number that comes with it, of a warp or of each group of so many lanes.
@@ -70,19 +145,18 @@ struct NumberedValue {
 };
 template <int Lanes = kWarp>
 __device__ __forceinline__ NumberedValue warp_largest(NumberedValue own, unsigned lanes = kFullWarp) {
+  if constexpr (Lanes == kWarp) {
+    const int32_t value = number_in_order(own.value), most = warp_maximum(value);
+    return {value_in_order(most), warp_minimum(value == most ? own.number : ~uint32_t(0))};
+  } else {
 #pragma unroll
-  for (int d = Lanes / 2; d > 0; d >>= 1) {
-    const float value = __shfl_xor_sync(lanes, own.value, d);
-    const uint32_t number = __shfl_xor_sync(lanes, own.number, d);
-    if (value > own.value || (value == own.value && number < own.number)) own = {value, number};
+    for (int d = Lanes / 2; d > 0; d >>= 1) {
+      const float value = __shfl_xor_sync(lanes, own.value, d);
+      const uint32_t number = __shfl_xor_sync(lanes, own.number, d);
+      if (value > own.value || (value == own.value && number < own.number)) own = {value, number};
+    }
+    return own;
   }
-  return own;
-}
-
-__device__ __forceinline__ uint32_t warp_or(uint32_t value) {
-#pragma unroll
-  for (int d = kWarp / 2; d > 0; d >>= 1) value |= __shfl_xor_sync(kFullWarp, value, d);
-  return value;
 }
 
 // Calls visit(item, on) for every item of the runs run_of(0), ..., run_of(rows - 1), in this order, with as many items

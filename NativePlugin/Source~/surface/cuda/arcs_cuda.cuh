@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // GPU driver of the arcs: each lane of a warp finds those of one circle; lanes that are done are given new circles
-// together, since most circles are covered after a few balls and some need many.
+// together, since most circles are covered after a few balls and some need many. Of few circles, a few lanes find those
+// of each.
 #pragma once
 
 #include "parallel/cuda_executor.cuh"
@@ -151,6 +152,60 @@ __device__ __forceinline__ void stage_circle(const CircleJob &job, const OpenCir
   job.arc_count[c.number] = pieces;
 }
 
+// Stages what the lanes of a warp have found of a circle each, of which some have one; those that have more intervals
+// than they hold are left to find_long_circle_arcs.
+template <class Storage>
+__device__ __forceinline__ void stage_circles(const CircleJob &job, bool found, const OpenCircle &c,
+                                              const ExposedIntervals<Storage> &intervals) {
+  if (!__any_sync(kFullWarp, found)) return;
+  const int lane = lane_id();
+  const bool keep = found && !intervals.overflow;
+  if (found && intervals.overflow) job.long_circles[atomicAdd(&job.counters->long_circles, 1u)] = c.number;
+  const unsigned long long own = keep ? (1ull << 32) + arcs_of(intervals) : 0;
+  const unsigned long long sum = warp_inclusive_sum(own, lane);
+  unsigned long long place = 0;
+  if (lane == kWarp - 1 && sum > 0) place = atomicAdd(&job.counters->staged, sum);
+  place = __shfl_sync(kFullWarp, place, kWarp - 1) + sum - own;
+  if (keep) stage_circle(job, c, intervals, place);
+}
+
+// Where there are few circles, which leave a GPU idle with a lane for each: so many lanes cut each by as many caps at a
+// time.
+constexpr int kArcLanes = 4;
+static __global__ __launch_bounds__(kArcThreads) void find_few_arcs_kernel(QueuedItems queued, CircleJob job) {
+  const LaunchItems circles = queued.in_turn();
+  constexpr int kTeams = kArcThreads / kArcLanes;
+  __shared__ Interval memory[kLaneIntervals * kTeams];
+  const uint32_t listed = job.circle_first[job.run.size()];
+  if (listed > job.room.circles) return;  // all will be done again
+  const size_t total = listed < circles.last ? listed : circles.last;
+  const int team = static_cast<int>(threadIdx.x) / kArcLanes, lane = lane_id(), rank = lane % kArcLanes;
+  const size_t first = circles.first + blockIdx.x * size_t(kTeams) + static_cast<size_t>(team);
+  if (first - static_cast<size_t>(lane / kArcLanes) >= total) return;
+  OpenCircle c{};
+  if (first < total) c = open_circle(job, static_cast<uint32_t>(first));
+  ExposedIntervals<StridedIntervals> intervals{StridedIntervals{memory + team, kTeams}, kLaneIntervals};
+  bool open = first < total;  // of rank 0: not known to be covered
+  for (int k0 = 0; __any_sync(kFullWarp, open && rank == 0 && k0 < c.cap_count); k0 += kArcLanes) {
+    CutKind cut = CutKind::kNone;
+    float begin = 0.f, end = 0.f;
+    const int k = k0 + rank;
+    if (k < c.cap_count && k != c.rank) cut = cut_by_cap(c, cap_of(job, c, k), &begin, &end);
+    __syncwarp();
+#pragma unroll
+    for (int r = 0; r < kArcLanes; ++r) {
+      const CutKind kind = static_cast<CutKind>(__shfl_sync(kFullWarp, static_cast<int>(cut), r, kArcLanes));
+      const float from = __shfl_sync(kFullWarp, begin, r, kArcLanes), to = __shfl_sync(kFullWarp, end, r, kArcLanes);
+      if (rank == 0 && open && !intervals.overflow && kind != CutKind::kNone) {
+        if (kind == CutKind::kPart) intervals.cover(from, to);
+        if (kind == CutKind::kAll || (!intervals.overflow && intervals.empty())) open = false;
+      }
+      __syncwarp();
+    }
+  }
+  stage_circles(job, open && rank == 0, c, intervals);
+}
+
 static __global__ __launch_bounds__(kArcThreads) void find_arcs_kernel(QueuedItems queued, CircleJob job,
                                                                        uint32_t chunk) {
   const LaunchItems circles = queued.in_turn();
@@ -180,17 +235,7 @@ static __global__ __launch_bounds__(kArcThreads) void find_arcs_kernel(QueuedIte
     for (;;) {
       const unsigned idle = __ballot_sync(kFullWarp, state != State::kActive);
       if (idle == kFullWarp || (next < end && __popc(idle) >= kIdleLanes)) {
-        const bool done = state == State::kDone;
-        if (__any_sync(kFullWarp, done)) {
-          const bool keep = done && !intervals.overflow;
-          if (done && intervals.overflow) job.long_circles[atomicAdd(&job.counters->long_circles, 1u)] = c.number;
-          const unsigned long long own = keep ? (1ull << 32) + arcs_of(intervals) : 0;
-          const unsigned long long sum = warp_inclusive_sum(own, lane);
-          unsigned long long place = 0;
-          if (lane == kWarp - 1 && sum > 0) place = atomicAdd(&job.counters->staged, sum);
-          place = __shfl_sync(kFullWarp, place, kWarp - 1) + sum - own;
-          if (keep) stage_circle(job, c, intervals, place);
-        }
+        stage_circles(job, state == State::kDone, c, intervals);
         __syncwarp();
         if (idle == kFullWarp && next >= end) break;
         if (state != State::kActive) {
@@ -367,14 +412,20 @@ ArcSearch find_arcs(E &executor, CircleJob job, float max_radius) {
 
   executor.launch("list_circles", list_circles_kernel, job.run.size(),
                   LaunchShape{128, 4, 8 + caps / 8, processors * 32}, job);
-  // Enough warps to fill the GPU, and enough circles per warp to refill its lanes.
-  const uint32_t chunk =
-      static_cast<uint32_t>(std::min<size_t>(256, std::max<size_t>(kWarp, room.circles / (processors * 64))));
-  const uint64_t rounds = chunk / (kWarp - kIdleLanes) + 1;
-  executor.launch(
-      "find_arcs", find_arcs_kernel, room.circles,
-      LaunchShape{kArcThreads, size_t(kArcThreads / kWarp) * chunk, kCutSteps * caps * rounds, processors * 64}, job,
-      chunk);
+  constexpr size_t kFullThreads = 1024;  // of a multiprocessor
+  if (room.circles * kArcLanes <= processors * kFullThreads) {
+    executor.launch("find_few_arcs", find_few_arcs_kernel, room.circles,
+                    LaunchShape{kArcThreads, kArcThreads / kArcLanes, kCutSteps * caps}, job);
+  } else {
+    // Enough warps to fill the GPU, and enough circles per warp to refill its lanes.
+    const uint32_t chunk =
+        static_cast<uint32_t>(std::min<size_t>(256, std::max<size_t>(kWarp, room.circles / (processors * 64))));
+    const uint64_t rounds = chunk / (kWarp - kIdleLanes) + 1;
+    executor.launch(
+        "find_arcs", find_arcs_kernel, room.circles,
+        LaunchShape{kArcThreads, size_t(kArcThreads / kWarp) * chunk, kCutSteps * caps * rounds, processors * 64}, job,
+        chunk);
+  }
   ArcSearch search{job, max_radius, arc_count, arc_first, {}, {}};
   if (room.intervals > 0) {
     search.long_memory = executor.template allocate<Interval>(kLongCircleThreads * room.intervals);

@@ -83,13 +83,14 @@ __device__ __forceinline__ int gather_caps(const NeighborGridView &atoms, float 
   return n;
 }
 
-// Does cap j lie within one of the caps k, k + step, ...?
-__device__ __forceinline__ bool lies_within_another(const CapRows &rows, int n, int j, int k, int step) {
+// Does cap j lie within one of the caps k, k + kStep, ...?
+template <int kStep>
+__device__ __forceinline__ bool lies_within_another(const CapRows &rows, int n, int j, int k) {
   const Cap cap = rows.cap[j];
   const float sine = rows.sine[j];
   bool within = false;  // to the end in any case: some lane's cap lies in none
 #pragma unroll 4
-  for (; k < n; k += step) {
+  for (; k < n; k += kStep) {
     const Cap other = rows.cap[k];
     within |=
         cap_contains(other.cosine, rows.sine[k], cap.cosine, sine, dot(Vec3<float>(other.axis), Vec3<float>(cap.axis)));
@@ -104,9 +105,11 @@ __device__ __forceinline__ int keep_free_caps(const CapRows &rows, int n) {
   for (int first = 0; first < n; first += kWarp) {
     const int j = first + lane;
     Cap cap{};
+    float sine = 0.f;
     uint32_t neighbor = kContainedCap;
     if (j < n) {
       cap = rows.cap[j];
+      sine = rows.sine[j];
       neighbor = rows.neighbor[j];
     }
     const bool stays = !(neighbor & kContainedCap);
@@ -114,6 +117,7 @@ __device__ __forceinline__ int keep_free_caps(const CapRows &rows, int n) {
     __syncwarp();
     if (stays) {
       rows.cap[place] = cap;
+      rows.sine[place] = sine;
       rows.neighbor[place] = neighbor;
     }
     __syncwarp();
@@ -121,17 +125,59 @@ __device__ __forceinline__ int keep_free_caps(const CapRows &rows, int n) {
   return kept;
 }
 
-// Drops the caps that lie within another one; returns how many stay. Few caps are tested by several lanes each.
-__device__ __forceinline__ int drop_contained_caps(const CapRows &rows, int n) {
+// Drops caps that lie within one of eight large ones, each the largest of some; returns how many stay. Most that lie
+// within any lie within one of these.
+__device__ __forceinline__ int drop_caps_within_large(const CapRows &rows, int n) {
+  constexpr int kLarge = 8, kLanes = kWarp / kLarge;
   const int lane = lane_id();
+  float least = 2.f;
+  int large = 0;
+  for (int j = lane; j < n; j += kWarp) {
+    const float cosine = rows.cap[j].cosine;
+    if (cosine < least) least = cosine, large = j;
+  }
+#pragma unroll
+  for (int d = kLanes / 2; d > 0; d >>= 1) {
+    const float other = __shfl_xor_sync(kFullWarp, least, d);
+    const int other_large = __shfl_xor_sync(kFullWarp, large, d);
+    if (other < least) least = other, large = other_large;
+  }
   for (int first = 0; first < n; first += kWarp) {
-    const int left = n - first;
-    const int parts = left > 16 ? 1 : left > 8 ? 2 : 4;
-    const int j = first + lane / parts;
-    const bool stays = j < n && !lies_within_another(rows, n, j, lane % parts, parts);
-    const unsigned ballot = __ballot_sync(kFullWarp, stays), all = (1u << parts) - 1u;
-    if (j < n && lane % parts == 0 && (ballot >> lane & all) != all) rows.neighbor[j] |= kContainedCap;
-    __syncwarp();
+    const int j = first + lane;
+    const Cap cap = rows.cap[j < n ? j : first];
+    const float sine = rows.sine[j < n ? j : first];
+    bool within = false;
+#pragma unroll
+    for (int g = 0; g < kLarge; ++g) {
+      const int k = __shfl_sync(kFullWarp, large, g * kLanes);
+      const Cap other = rows.cap[k];
+      within |= cap_contains(other.cosine, rows.sine[k], cap.cosine, sine,
+                             dot(Vec3<float>(other.axis), Vec3<float>(cap.axis)));
+    }
+    if (j < n && within) rows.neighbor[j] |= kContainedCap;
+  }
+  __syncwarp();
+  return keep_free_caps(rows, n);
+}
+
+// Marks those of the caps from `first` on that lie within another one, so many lanes for each.
+template <int kParts>
+__device__ __forceinline__ void mark_contained_caps(const CapRows &rows, int n, int first) {
+  const int lane = lane_id(), j = first + lane / kParts;
+  const bool stays = j < n && !lies_within_another<kParts>(rows, n, j, lane % kParts);
+  const unsigned ballot = __ballot_sync(kFullWarp, stays), all = (1u << kParts) - 1u;
+  if (j < n && lane % kParts == 0 && (ballot >> lane & all) != all) rows.neighbor[j] |= kContainedCap;
+  __syncwarp();
+}
+
+// Drops the caps that lie within another one; returns how many stay.
+__device__ __forceinline__ int drop_contained_caps(const CapRows &rows, int n) {
+  if (n > kWarp) n = drop_caps_within_large(rows, n);
+  for (int first = 0; first < n; first += kWarp) {
+    if (n - first > 8)
+      mark_contained_caps<1>(rows, n, first);
+    else
+      mark_contained_caps<4>(rows, n, first);
   }
   return keep_free_caps(rows, n);
 }
@@ -141,23 +187,35 @@ struct CapPlace {
   unsigned long long first;
   bool fits;
 };
-__device__ __forceinline__ CapPlace reserve_caps(const CapJob &job, int n) {
-  unsigned long long first = 0;
-  if (lane_id() == 0 && n > 0) first = atomicAdd(&job.counters->caps, static_cast<unsigned long long>(n));
-  first = __shfl_sync(kFullWarp, first, 0);
+// Asks for it, which lane 0 does: nothing waits until all are told.
+__device__ __forceinline__ unsigned long long reserve_caps(const CapJob &job, int n) {
+  return lane_id() == 0 && n > 0 ? atomicAdd(&job.counters->caps, static_cast<unsigned long long>(n)) : 0;
+}
+__device__ __forceinline__ CapPlace place_of_caps(const CapJob &job, unsigned long long reserved, int n) {
+  const unsigned long long first = __shfl_sync(kFullWarp, reserved, 0);
   return {first, first + static_cast<unsigned>(n) <= job.room.caps};
 }
 
+// The rank of cap q, of which each lane has one, or none: the largest first; of equal ones the earlier atom.
+__device__ __forceinline__ int rank_of_cap(const CapRows &rows, int n, int q) {
+  const bool on = q < n;
+  const float cosine = on ? rows.cap[q].cosine : -2.f;
+  int rank = 0;
+#pragma unroll 4
+  for (int k = 0; k < n; ++k) rank += rows.cap[k].cosine < cosine ? 1 : 0;
+  // Equal ones would share a rank, and the sum of all be less.
+  if (n > kWarp || warp_sum(static_cast<uint32_t>(rank)) != static_cast<uint32_t>(n * (n - 1) / 2)) {
+    const uint32_t neighbor = on ? rows.neighbor[q] : 0;
+    for (int k = 0; k < n; ++k) rank += rows.cap[k].cosine == cosine && rows.neighbor[k] < neighbor ? 1 : 0;
+  }
+  return rank;
+}
+
 // Writes cap q of atom i to its rank. Returns whether the atom owns the circle.
-__device__ __forceinline__ bool write_cap(const CapJob &job, uint32_t i, float radius, const CapRows &rows, int n,
-                                          int q, const CapPlace &place) {
+__device__ __forceinline__ bool write_cap(const CapJob &job, uint32_t i, float radius, const CapRows &rows, int q,
+                                          int rank, const CapPlace &place) {
   const Cap cap = rows.cap[q];
   const uint32_t neighbor = rows.neighbor[q];
-  int rank = 0;  // largest cap first; of equal ones the earlier atom
-  for (int k = 0; k < n; ++k) {
-    const float other = rows.cap[k].cosine;
-    rank += other < cap.cosine || (other == cap.cosine && rows.neighbor[k] < neighbor) ? 1 : 0;
-  }
   if (place.fits) {
     job.caps[place.first + rank] = {cap.axis, stored_cap_cosine(cap.cosine, radius)};
     if (job.neighbors) job.neighbors[place.first + rank] = neighbor;
@@ -169,10 +227,30 @@ __device__ __forceinline__ bool write_cap(const CapJob &job, uint32_t i, float r
 __device__ __forceinline__ void note_caps(const CapJob &job, uint32_t i, int n, const CapPlace &place, bool alone) {
   job.cap_ranges[i] = {static_cast<uint32_t>(place.first), place.fits ? n : 0};
   if (alone) job.exposed[i] = 1;
-  if (n > 0) atomicMax(&job.counters->longest_row, static_cast<uint32_t>(n));
 }
-__device__ __forceinline__ void count_circles(const CapJob &job, int circles) {
-  if (circles > 0) atomicAdd(&job.counters->circles, static_cast<unsigned long long>(circles));
+
+// Of several atoms. An addition to a counter takes the whole GPU two clock cycles, so a block adds but once.
+struct CapTally {
+  uint32_t longest_row;
+  unsigned long long circles;
+  __device__ __forceinline__ void add(const CapTally &other) {
+    longest_row = longest_row > other.longest_row ? longest_row : other.longest_row;
+    circles += other.circles;
+  }
+  __device__ __forceinline__ void count(const CapJob &job) const {
+    if (longest_row > 0) atomicMax(&job.counters->longest_row, longest_row);
+    if (circles > 0) atomicAdd(&job.counters->circles, circles);
+  }
+};
+// By all threads of a block; what lanes 0 know.
+__device__ __forceinline__ void count_of_block(const CapJob &job, const CapTally &own) {
+  __shared__ CapTally warps[kCapWarps];
+  if (lane_id() == 0) warps[threadIdx.x / kWarp] = own;
+  __syncthreads();
+  if (threadIdx.x != 0) return;
+  CapTally all = own;
+  for (int w = 1; w < kCapWarps; ++w) all.add(warps[w]);
+  all.count(job);
 }
 
 // Atoms whose caps nobody asks for.
@@ -181,7 +259,8 @@ __device__ __forceinline__ bool is_skipped(const CapJob &job, uint32_t i, const 
 }
 
 // All about the caps of atom i. False if it has more neighbours than the rows hold.
-__device__ __forceinline__ bool find_caps(const CapJob &job, uint32_t i, const CapRows &rows, int room) {
+__device__ __forceinline__ bool find_caps(const CapJob &job, uint32_t i, const CapRows &rows, int room,
+                                          CapTally *tally) {
   const int lane = lane_id();
   const Sphere self = load(job.atoms.items + i);
   const bool with_circles = job.neighbors != nullptr;
@@ -199,38 +278,44 @@ __device__ __forceinline__ bool find_caps(const CapJob &job, uint32_t i, const C
   }
   const bool alone = n == 0;
   n = drop_contained_caps(rows, n);
-  const CapPlace place = reserve_caps(job, n);
+  const unsigned long long reserved = reserve_caps(job, n);
   int circles = 0;
   for (int q0 = 0; q0 < n; q0 += kWarp) {
-    const int q = q0 + lane;
-    const bool owns = q < n && write_cap(job, i, self.radius, rows, n, q, place);
+    const int q = q0 + lane, rank = rank_of_cap(rows, n, q);
+    const CapPlace place = place_of_caps(job, reserved, n);
+    const bool owns = q < n && write_cap(job, i, self.radius, rows, q, rank, place);
     circles += __popc(__ballot_sync(kFullWarp, owns));
   }
+  const CapPlace place = place_of_caps(job, reserved, n);
   if (lane == 0) {
     note_caps(job, i, n, place, alone);
     if (with_circles) job.circle_count[i - job.run.first] = place.fits ? static_cast<uint32_t>(circles) : 0;
-    count_circles(job, circles);
   }
+  tally->add({static_cast<uint32_t>(n), static_cast<unsigned long long>(circles)});
   __syncwarp();
   return true;
 }
 
-static __global__ __launch_bounds__(kCapWarps *kWarp) void find_caps_kernel(QueuedItems queued, CapJob job) {
+static __global__ __launch_bounds__(kCapWarps *kWarp,
+                                    blocks_at_once(kCapWarps *kWarp, 9)) void find_caps_kernel(QueuedItems queued,
+                                                                                               CapJob job) {
   const LaunchItems atoms = queued.in_turn();
   __shared__ Cap cap[kCapWarps][kRowNeighbors];
   __shared__ float sine[kCapWarps][kRowNeighbors];
   __shared__ uint32_t neighbor[kCapWarps][kRowNeighbors];
   const int warp = static_cast<int>(threadIdx.x) / kWarp;
   const CapRows rows{cap[warp], sine[warp], neighbor[warp]};
+  CapTally tally{};
   for (size_t place = atoms.first + blockIdx.x * kCapWarps + static_cast<uint32_t>(warp); place < atoms.last;
        place += gridDim.x * kCapWarps) {
     const uint32_t i = job.run.first + static_cast<uint32_t>(place);
-    if (!find_caps(job, i, rows, kRowNeighbors) && lane_id() == 0) {
+    if (!find_caps(job, i, rows, kRowNeighbors, &tally) && lane_id() == 0) {
       job.long_atoms[atomicAdd(&job.counters->long_atoms, 1u)] = i;
       job.cap_ranges[i] = {0, 0};
       if (job.neighbors) job.circle_count[place] = 0;
     }
   }
+  count_of_block(job, tally);
 }
 
 // Atoms that have more neighbours, with rows of the needed length in global memory.
@@ -252,8 +337,10 @@ static __global__ __launch_bounds__(kCapWarps *kWarp) void find_long_caps_kernel
   const uint32_t warp = (blockIdx.x * blockDim.x + threadIdx.x) / kWarp, warps = gridDim.x * kCapWarps;
   const CapRows rows = long_rows.of(warp);
   const size_t count = job.counters->long_atoms, end = atoms.last < count ? atoms.last : count;
+  CapTally tally{};
   for (size_t k = atoms.first + warp; k < end; k += warps)
-    find_caps(job, job.long_atoms[k], rows, static_cast<int>(long_rows.room));
+    find_caps(job, job.long_atoms[k], rows, static_cast<int>(long_rows.room), &tally);
+  count_of_block(job, tally);
 }
 
 // Where an atom has very many neighbours, comparing its caps with each other takes too long for one warp: here all
@@ -301,7 +388,7 @@ static __global__ __launch_bounds__(kCapWarps *kWarp) void mark_crowded_kernel(Q
   if (item >= groups.last || !job.atom(row, &i)) return;
   const CapRows rows = job.rows.of(row);
   const int n = job.atoms[row].caps, j = static_cast<int>(item % job.groups) * kWarp + lane_id();
-  if (j < n && lies_within_another(rows, n, j, 0, 1)) rows.neighbor[j] |= kContainedCap;
+  if (j < n && lies_within_another<1>(rows, n, j, 0)) rows.neighbor[j] |= kContainedCap;
 }
 
 static __global__ __launch_bounds__(kCapWarps *kWarp) void keep_crowded_kernel(QueuedItems queued, CrowdedJob job) {
@@ -310,10 +397,11 @@ static __global__ __launch_bounds__(kCapWarps *kWarp) void keep_crowded_kernel(Q
   uint32_t i;
   if (row >= rows.last || !job.atom(row, &i)) return;
   const int n = keep_free_caps(job.rows.of(row), job.atoms[row].caps);
-  const CapPlace place = reserve_caps(job.caps, n);
+  const CapPlace place = place_of_caps(job.caps, reserve_caps(job.caps, n), n);
   if (lane_id() != 0) return;
   job.atoms[row] = {place, n};
   note_caps(job.caps, i, n, place, false);
+  CapTally{static_cast<uint32_t>(n), 0}.count(job.caps);
 }
 
 static __global__ __launch_bounds__(kCapWarps *kWarp) void rank_crowded_kernel(QueuedItems queued, CrowdedJob job) {
@@ -324,10 +412,12 @@ static __global__ __launch_bounds__(kCapWarps *kWarp) void rank_crowded_kernel(Q
   const CrowdedAtom atom = job.atoms[row];
   const int q = static_cast<int>(item % job.groups) * kWarp + lane_id();
   const float radius = load(job.caps.atoms.items + i).radius;
-  const bool owns = q < atom.caps && write_cap(job.caps, i, radius, job.rows.of(row), atom.caps, q, atom.place);
+  const CapRows rows = job.rows.of(row);
+  const int rank = rank_of_cap(rows, atom.caps, q);
+  const bool owns = q < atom.caps && write_cap(job.caps, i, radius, rows, q, rank, atom.place);
   const int circles = __popc(__ballot_sync(kFullWarp, owns));
   if (lane_id() != 0) return;
-  count_circles(job.caps, circles);
+  CapTally{0, static_cast<unsigned long long>(circles)}.count(job.caps);
   if (job.caps.neighbors && atom.place.fits && circles > 0)
     atomicAdd(job.caps.circle_count + (i - job.caps.run.first), static_cast<uint32_t>(circles));
 }
@@ -359,7 +449,7 @@ void find_crowded_caps(E &executor, const CapJob &job, const LongRows &rows, siz
 template <class E>
 void find_caps(E &executor, const CapJob &job, bool memory_is_short) {
   const size_t blocks =
-      std::min<size_t>((job.run.size() + kCapWarps - 1) / kCapWarps, size_t(executor.multiprocessors()) * 128);
+      std::min<size_t>((job.run.size() + kCapWarps - 1) / kCapWarps, size_t(executor.multiprocessors()) * 32);
   // An atom is compared with those around it, 32 at a time; what may be its neighbours then with each other.
   const auto gather_steps = [](uint64_t near) { return 64 + near / 8; };
   const auto shape = [&](uint64_t near) {

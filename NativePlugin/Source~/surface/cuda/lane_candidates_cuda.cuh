@@ -11,7 +11,8 @@ namespace gpu {
 
 // kTogether: all lanes of the warp call the functions together. Else those of a team do, while others may be elsewhere;
 // then each team's turn comes after the others', which takes several times as long.
-template <int kLanes, bool kTogether = false>
+// kAhead: the lists are in global memory, where numbers are asked for before they are needed.
+template <int kLanes, bool kTogether = false, bool kAhead = false>
 struct LaneCandidates {
   const uint32_t *atoms;  // in any memory
   const uint32_t *arcs;
@@ -28,18 +29,22 @@ struct LaneCandidates {
 };
 
 // For functions that only some teams of a warp call.
-template <int kLanes>
-__device__ __forceinline__ LaneCandidates<kLanes> apart(const LaneCandidates<kLanes, true> &c) {
+template <int kLanes, bool kAhead>
+__device__ __forceinline__ LaneCandidates<kLanes, false, kAhead> apart(const LaneCandidates<kLanes, true, kAhead> &c) {
   return {c.atoms, c.arcs, c.atom_total, c.arc_total};
 }
 
-template <int kLanes, bool kTogether>
+template <int kLanes, bool kTogether, bool kAhead>
 __device__ __forceinline__ DeepestAtom deepest_atom(const FeatureView &f,
-                                                    const LaneCandidates<kLanes, kTogether> &candidates,
+                                                    const LaneCandidates<kLanes, kTogether, kAhead> &candidates,
                                                     const Vec3<float> &x) {
   NumberedValue best{-2.f * kFarAway, kNoAtom};  // its place in the list: of several, the first
-  for (int k = candidates.rank(); k < candidates.atom_count(); k += kLanes) {
-    const float depth = ball_depth(load(f.atoms.items + candidates.atom(k)), x);
+  const int count = candidates.atom_count();
+  int k = candidates.rank();
+  for (uint32_t next = kAhead && k < count ? candidates.atom(k) : 0; k < count; k += kLanes) {
+    const uint32_t i = kAhead ? next : candidates.atom(k);
+    if (kAhead && k + kLanes < count) next = candidates.atom(k + kLanes);
+    const float depth = ball_depth(load(f.atoms.items + i), x);
     if (depth > best.value) best = {depth, static_cast<uint32_t>(k)};
   }
   best = warp_largest<kLanes>(best, candidates.lanes());
@@ -60,20 +65,24 @@ __device__ __forceinline__ NearestArc nearest_of_lanes(NearestArc best, unsigned
   return best;
 }
 
-template <int kLanes, bool kTogether>
+template <int kLanes, bool kTogether, bool kAhead>
 __device__ __forceinline__ NearestArc nearest_arc(const FeatureView &f,
-                                                  const LaneCandidates<kLanes, kTogether> &candidates,
+                                                  const LaneCandidates<kLanes, kTogether, kAhead> &candidates,
                                                   const Vec3<float> &x) {
   NearestArc best;
-  for (int k = candidates.rank(); k < candidates.arc_count(); k += kLanes) {
-    const int a = static_cast<int>(candidates.arc(k));
+  const int count = candidates.arc_count();
+  int k = candidates.rank();
+  for (uint32_t next = kAhead && k < count ? candidates.arc(k) : 0; k < count; k += kLanes) {
+    const int a = static_cast<int>(kAhead ? next : candidates.arc(k));
+    if (kAhead && k + kLanes < count) next = candidates.arc(k + kLanes);
     best.offer(a, arc_distance2(load(f.arcs + a), x));
   }
   return nearest_of_lanes<kLanes>(best, candidates.lanes());
 }
 
-template <int kLanes, bool kTogether>
-__device__ __forceinline__ bool is_on_contact(const FeatureView &f, const LaneCandidates<kLanes, kTogether> &candidates,
+template <int kLanes, bool kTogether, bool kAhead>
+__device__ __forceinline__ bool is_on_contact(const FeatureView &f,
+                                              const LaneCandidates<kLanes, kTogether, kAhead> &candidates,
                                               const DeepestAtom &deepest, const Vec3<float> &x) {
   CapRange range{0, kBuriedAtom};
   if (deepest.depth > -kFarAway) range = f.cap_ranges[deepest.atom];

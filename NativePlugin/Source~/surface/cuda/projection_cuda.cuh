@@ -49,7 +49,7 @@ __device__ __forceinline__ auto shared(const Candidates &all) {
   if constexpr (kLanes == 1)
     return all;
   else
-    return LaneCandidates<kLanes, true>{all.atoms, all.arcs, all.atom_total, all.arc_total};
+    return LaneCandidates<kLanes, true, true>{all.atoms, all.arcs, all.atom_total, all.arc_total};
 }
 __device__ __forceinline__ const ListedCandidates &apart(const ListedCandidates &all) { return all; }
 
@@ -69,15 +69,9 @@ struct VertexTeam {
   }
 };
 
+// Vertex k, if it is on a contact patch. True if it is on another, as its first lane says.
 template <int kLanes>
-static __global__ __launch_bounds__(kVertexThreads,
-                                    blocks_at_once(kVertexThreads, 14)) void project_on_atoms_kernel(QueuedItems queued,
-                                                                                                     VertexJob job) {
-  const LaunchItems vertices = queued.in_turn();
-  const uint32_t count = vertex_count(job);
-  const VertexTeam<kLanes> team(vertices, count);
-  if (!team.has_work(count)) return;
-  const uint32_t k = team.on ? team.place : count - 1;
+__device__ __forceinline__ bool project_on_atoms(const VertexJob &job, const VertexTeam<kLanes> &team, uint32_t k) {
   const FeatureView &f = job.features;
   const auto candidates = shared<kLanes>(vertex_candidates(job, k));
   const Vec3<float> x = stored_start(job, job.first + k);
@@ -88,10 +82,22 @@ static __global__ __launch_bounds__(kVertexThreads,
   const Projection v = project_on_atom(f.parameters, ball, deepest.depth, x);
   const bool done = v.state == ProjectionState::kPlaced;
   __syncwarp();
-  append(job.open, &job.counts->open, k, team.writes && !contact);
   append(job.on_edges, &job.counts->on_edges, k, team.writes && contact && !done);
   if (team.writes && contact && !done) leave_start(job, k);
   if (team.writes && contact && done) finish_vertex(job, k, v.point, deepest.atom);
+  return team.writes && !contact;
+}
+
+template <int kLanes>
+static __global__ __launch_bounds__(kVertexThreads,
+                                    blocks_at_once(kVertexThreads, 14)) void project_on_atoms_kernel(QueuedItems queued,
+                                                                                                     VertexJob job) {
+  const LaunchItems vertices = queued.in_turn();
+  const uint32_t count = vertex_count(job);
+  const VertexTeam<kLanes> team(vertices, count);
+  const uint32_t k = team.on ? team.place : count - 1;
+  const bool open = team.has_work(count) && project_on_atoms<kLanes>(job, team, k);
+  append_of_block<kVertexThreads>(job.open, &job.counts->open, k, open);
 }
 
 // Some of a run of arcs. In two words, since operations on 64 bits take several instructions each.
@@ -99,17 +105,41 @@ struct ArcMask {
   static constexpr int kBits = 64;
   uint32_t low, high;
   __device__ __forceinline__ void add(int q) { (q < 32 ? low : high) |= 1u << (q & 31); }
-  // All lanes of a warp that have any go on together: use(q).
-  template <class Use>
-  __device__ __forceinline__ void for_each(const Use &use) const {
+  // All lanes of a warp that have any go on together: use(q, number_at(q)). kAhead: the next number is asked for before
+  // it is needed, which pays where a lane has many.
+  template <bool kAhead, class NumberAt, class Use>
+  __device__ __forceinline__ void for_each(const NumberAt &number_at, const Use &use) const {
     int first = 0;
-    for (uint32_t rest = low, later = high; rest | later; rest &= rest - 1) {
+    uint32_t rest = low, later = high;
+    const auto take = [&] {
       if (rest == 0) {
         rest = later;
         later = 0;
         first = 32;
       }
-      use(first + lowest_bit32(rest));
+      const int q = first + lowest_bit32(rest);
+      rest &= rest - 1;
+      return q;
+    };
+    if constexpr (kAhead) {
+      if ((rest | later) == 0) return;
+      int next = take();
+      for (uint32_t next_number = number_at(next);;) {
+        const int q = next;
+        const uint32_t number = next_number;
+        const bool is_last = (rest | later) == 0;
+        if (!is_last) {
+          next = take();
+          next_number = number_at(next);
+        }
+        use(q, number);
+        if (is_last) break;
+      }
+    } else {
+      while (rest | later) {
+        const int q = take();
+        use(q, number_at(q));
+      }
     }
   }
 };
@@ -135,7 +165,8 @@ static __global__ __launch_bounds__(kVertexThreads,
   NearestArc nearest;
   ArcMask near_arcs{};  // of this lane
   const int arcs = candidates.arc_count(), rank = LaneCandidates<kLanes>::rank();
-  const auto arc_at = [&](int q) { return static_cast<int>(candidates.arc(q * kLanes + rank)); };
+  const auto arc_at = [&](int q) { return candidates.arc(q * kLanes + rank); };
+  constexpr bool kAhead = kLanes == 1;
   const int own_arcs = (arcs - rank + kLanes - 1) / kLanes;
   for (int q0 = 0; q0 < own_arcs; q0 += ArcMask::kBits) {
     const auto choose_by_bounds = [&](int first) {
@@ -151,12 +182,12 @@ static __global__ __launch_bounds__(kVertexThreads,
     };
     const ArcMask chosen{choose_by_bounds(q0), choose_by_bounds(q0 + 32)};
     near_arcs = {};
-    chosen.for_each([&](int q) {
-      const int a = arc_at(q0 + q);
-      const float d2 = arc_distance2(load(f.arcs + a), x);
-      nearest.offer(a, d2);
-      if (d2 < near2) near_arcs.add(q);
-    });
+    chosen.template for_each<kAhead>([&](int q) { return arc_at(q0 + q); },
+                                     [&](int q, uint32_t arc) {
+                                       const float d2 = arc_distance2(load(f.arcs + arc), x);
+                                       nearest.offer(static_cast<int>(arc), d2);
+                                       if (d2 < near2) near_arcs.add(q);
+                                     });
   }
   nearest = nearest_of_lanes<kLanes>(nearest, kFullWarp);
   __syncwarp();
@@ -166,9 +197,8 @@ static __global__ __launch_bounds__(kVertexThreads,
   const bool again = usual && v.state == ProjectionState::kReproject && arcs <= ArcMask::kBits * kLanes;
   nearest = NearestArc();
   if (!again) near_arcs = {};
-  near_arcs.for_each([&](int q) {
-    const int a = arc_at(q);
-    nearest.offer(a, arc_distance2(load(f.arcs + a), v.point.position));
+  near_arcs.template for_each<kAhead>(arc_at, [&](int, uint32_t arc) {
+    nearest.offer(static_cast<int>(arc), arc_distance2(load(f.arcs + arc), v.point.position));
   });
   nearest = nearest_of_lanes<kLanes>(nearest, kFullWarp);
   if (again) {
@@ -265,7 +295,7 @@ __device__ __forceinline__ LaneCandidates<kLanes, true> choose_near(const Featur
       f.arc_bounds.items, [&](int k) { return all.arc(k); }, all.arc_total, f.parameters.depth + reach,
       room + (most - left), left);
   __syncwarp();
-  if (atoms > most || arcs > left) return shared<kLanes>(all);
+  if (atoms > most || arcs > left) return {all.atoms, all.arcs, all.atom_total, all.arc_total};
   return {room, room + atoms, atoms, arcs};
 }
 

@@ -50,7 +50,7 @@ QSES_FN auto cap_covers(const Cap &cap, const Vec3<T> &d, T length) -> decltype(
 template <class T>
 QSES_FN auto cap_contains(T cosine_k, T sine_k, T cosine_j, T sine_j, T cosine_between)
     -> decltype(cosine_k < cosine_j) {
-  return (cosine_between >= cosine_k * cosine_j + sine_k * sine_j + T(1e-6f)) & (cosine_k < cosine_j);
+  return (cosine_between >= T(1e-6f) + sine_k * sine_j + cosine_k * cosine_j) & (cosine_k < cosine_j);
 }
 
 QSES_FN float cap_sine(float cosine) { return square_root(maximum(0.f, 1.f - cosine * cosine)); }
