@@ -129,6 +129,7 @@ __device__ __forceinline__ int32_t in_order(int32_t bits) { return bits < 0 ? bi
 __device__ __forceinline__ int32_t number_in_order(float value) { return in_order(__float_as_int(value)); }
 __device__ __forceinline__ float value_in_order(int32_t number) { return __int_as_float(in_order(number)); }
 
+// lanes: those of the groups that ask; where a group is a warp, all.
 template <int Lanes = kWarp>
 __device__ __forceinline__ float warp_maximum(float value, unsigned lanes = kFullWarp) {
   if constexpr (Lanes == kWarp)

@@ -196,7 +196,8 @@ __device__ __forceinline__ CapPlace place_of_caps(const CapJob &job, unsigned lo
   return {first, first + static_cast<unsigned>(n) <= job.room.caps};
 }
 
-// The rank of cap q, of which each lane has one, or none: the largest first; of equal ones the earlier atom.
+// The rank of cap q, of which each lane has one, or none: the largest first; of equal ones the earlier atom. No cosine
+// is near -2, since atoms within others have no caps.
 __device__ __forceinline__ int rank_of_cap(const CapRows &rows, int n, int q) {
   const bool on = q < n;
   const float cosine = on ? rows.cap[q].cosine : -2.f;
@@ -229,7 +230,8 @@ __device__ __forceinline__ void note_caps(const CapJob &job, uint32_t i, int n, 
   if (alone) job.exposed[i] = 1;
 }
 
-// Of several atoms. An addition to a counter takes the whole GPU two clock cycles, so a block adds but once.
+// Of several atoms. An addition to a counter takes the whole GPU two clock cycles, so a block adds what is only counted
+// but once.
 struct CapTally {
   uint32_t longest_row;
   unsigned long long circles;
@@ -437,7 +439,7 @@ void find_crowded_caps(E &executor, const CapJob &job, const LongRows &rows, siz
                     crowded);
     executor.launch("keep_crowded", keep_crowded_kernel, count, LaunchShape{kThreads, kCapWarps, 64 + row_room / 8},
                     crowded);
-    executor.launch("rank_crowded", rank_crowded_kernel, count * groups, LaunchShape{kThreads, kCapWarps, row_room},
+    executor.launch("rank_crowded", rank_crowded_kernel, count * groups, LaunchShape{kThreads, kCapWarps, 2 * row_room},
                     crowded);
     executor.wait();  // what is queued can't be cancelled
     if (E::kCounts) return;
@@ -453,7 +455,7 @@ void find_caps(E &executor, const CapJob &job, bool memory_is_short) {
   // An atom is compared with those around it, 32 at a time; what may be its neighbours then with each other.
   const auto gather_steps = [](uint64_t near) { return 64 + near / 8; };
   const auto shape = [&](uint64_t near) {
-    return LaunchShape{kCapWarps * kWarp, kCapWarps, gather_steps(near) + 12 * kRowNeighbors, blocks};
+    return LaunchShape{kCapWarps * kWarp, kCapWarps, gather_steps(near) + 13 * kRowNeighbors, blocks};
   };
   const uint64_t near =
       most_items_near(executor, "fullest cell of atoms", job.atoms, 4.f * job.max_radius,
