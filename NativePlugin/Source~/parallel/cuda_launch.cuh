@@ -61,6 +61,9 @@ constexpr int blocks_at_once(int threads, int wanted) {
   return wanted * threads <= kMostThreads ? wanted : kMostThreads / threads;
 }
 
+// Threads that keep a multiprocessor busy: where there would be fewer, each item may have several.
+constexpr size_t kFullThreads = 1024;
+
 // Steps per multiprocessor.
 constexpr uint64_t kLaunchSteps = uint64_t(1) << 22;
 struct LaunchShape {

@@ -412,7 +412,6 @@ ArcSearch find_arcs(E &executor, CircleJob job, float max_radius) {
 
   executor.launch("list_circles", list_circles_kernel, job.run.size(),
                   LaunchShape{128, 4, 8 + caps / 8, processors * 32}, job);
-  constexpr size_t kFullThreads = 1024;  // of a multiprocessor
   if (room.circles * kArcLanes <= processors * kFullThreads) {
     executor.launch("find_few_arcs", find_few_arcs_kernel, room.circles,
                     LaunchShape{kArcThreads, kArcThreads / kArcLanes, kCutSteps * caps}, job);

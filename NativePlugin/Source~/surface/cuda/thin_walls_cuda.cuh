@@ -170,7 +170,6 @@ void mark_thin_walls(E &executor, const FeatureView &features, const BrickSet &b
                     job);
   };
   // Few edges leave a GPU idle with eight lanes each.
-  constexpr size_t kFullThreads = 1024;  // of a multiprocessor
   if (found.walks * kWarp <= executor.multiprocessors() * kFullThreads)
     walk(kWarp, 1, walk_edges_kernel<kWarp, 1>);
   else if (job.walk_run > 1)
