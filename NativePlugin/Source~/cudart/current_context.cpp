@@ -15,6 +15,7 @@ thread_local int last_selected = -1;
 struct PrimaryContext {
   std::mutex mutex;
   std::atomic<CUcontext> handle{nullptr};
+  unsigned long long id = 0;  // as it was retained; set before the handle
 };
 // Never destroyed: threads may be in here as the process ends.
 std::array<PrimaryContext, kMostDevices> &primary_contexts() {
@@ -22,18 +23,35 @@ std::array<PrimaryContext, kMostDevices> &primary_contexts() {
   return contexts;
 }
 
+// A number that no other context of the process has had. After a reset there is none, and once somebody uses the device
+// again another one, though the handle is the same. Before CUDA 12.0 only the former can be told.
+CUresult context_id(CUcontext context, unsigned long long *id) {
+  if (driver().cuCtxGetId) return driver().cuCtxGetId(context, id);
+  unsigned version = 0;
+  *id = 0;
+  const CUresult result = driver().cuCtxGetApiVersion(context, &version);
+  return result == CUDA_ERROR_INVALID_CONTEXT ? CUDA_ERROR_CONTEXT_IS_DESTROYED : result;
+}
+
+CUresult look_for_reset(const PrimaryContext &primary, CUcontext context) {
+  unsigned long long id = 0;
+  const CUresult result = context_id(context, &id);
+  return result == CUDA_SUCCESS && id != primary.id ? CUDA_ERROR_CONTEXT_IS_DESTROYED : result;
+}
+
 CUresult primary_context(int device, CUcontext *context) {
   if (device < 0 || device >= kMostDevices) return CUDA_ERROR_INVALID_DEVICE;
   PrimaryContext &primary = primary_contexts()[static_cast<size_t>(device)];
   *context = primary.handle.load(std::memory_order_acquire);
-  if (*context) return CUDA_SUCCESS;
+  if (*context) return look_for_reset(primary, *context);
   const std::lock_guard<std::mutex> lock(primary.mutex);
   *context = primary.handle.load(std::memory_order_relaxed);
-  if (*context) return CUDA_SUCCESS;
+  if (*context) return look_for_reset(primary, *context);
   CUdevice handle = 0;
   CUresult result = driver().cuDeviceGet(&handle, device);
   // What fails is tried again by the next call: memory may be short now and not later.
   if (result == CUDA_SUCCESS) result = driver().cuDevicePrimaryCtxRetain(context, handle);
+  if (result == CUDA_SUCCESS) result = context_id(*context, &primary.id);
   if (result == CUDA_SUCCESS) primary.handle.store(*context, std::memory_order_release);
   return result;
 }
@@ -59,6 +77,13 @@ CUresult make_current(int device) {
   if (result == CUDA_SUCCESS) result = driver().cuCtxSetCurrent(context);
   if (result == CUDA_SUCCESS) last_selected = device;
   return result;
+}
+
+CUresult look_for_resets() {
+  for (const PrimaryContext &primary : primary_contexts())
+    if (const CUcontext context = primary.handle.load(std::memory_order_acquire))
+      if (const CUresult result = look_for_reset(primary, context)) return result;
+  return CUDA_SUCCESS;
 }
 
 int selected_device() {

@@ -25,8 +25,12 @@ cudaError_t remember(CUresult result);
 cudaError_t start();
 
 // Makes the primary context of a device the thread's. It is retained for good when it is first asked for: other users
-// of CUDA in the process share it.
+// of CUDA in the process share it. CUDA_ERROR_CONTEXT_IS_DESTROYED from then on if one of them resets the device.
 CUresult make_current(int device);
+
+// The same for any device that is in use: CUDA_SUCCESS if none was reset. Then what we hold there is gone, and the
+// driver must not be given it: it reads what the handles point to.
+CUresult look_for_resets();
 
 // The device that the thread made current last. If it never did: one that is in use already, so that a thread which
 // only gives memory back starts no other; else 0.

@@ -29,6 +29,7 @@ namespace cudart {
   F(cuCtxGetCurrent, CUresult, CUcontext *)                                                                     \
   F(cuCtxSetCurrent, CUresult, CUcontext)                                                                       \
   F(cuCtxGetDevice, CUresult, CUdevice *)                                                                       \
+  F(cuCtxGetApiVersion, CUresult, CUcontext, unsigned *)                                                        \
   F(cuModuleLoadData, CUresult, CUmodule *, const void *)                                                       \
   F(cuModuleGetFunction, CUresult, CUfunction *, CUmodule, const char *)                                        \
   F(cuFuncGetAttribute, CUresult, int *, CUfunction_attribute, CUfunction)                                      \
@@ -60,9 +61,10 @@ namespace cudart {
   F(cuEventSynchronize, CUresult, CUevent)                                                                      \
   F(cuEventElapsedTime, CUresult, float *, CUevent, CUevent)
 
-// Those that a driver need not have: of CUDA 11.8 …
-#define QSES_DRIVER_NEWER_FUNCTIONS(F) \
-  F(cuLaunchKernelEx, CUresult, const CUlaunchConfig *, CUfunction, void **, void **)
+// Those that a driver need not have: of CUDA 11.8 and 12.0 …
+#define QSES_DRIVER_NEWER_FUNCTIONS(F)                                                \
+  F(cuLaunchKernelEx, CUresult, const CUlaunchConfig *, CUfunction, void **, void **) \
+  F(cuCtxGetId, CUresult, CUcontext, unsigned long long *)
 
 // … and for buffers of graphics APIs.
 #if defined(_WIN32)

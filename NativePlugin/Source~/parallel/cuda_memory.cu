@@ -132,10 +132,11 @@ void check_cuda(int error, const char *call) {
 bool may_hand_back() {
   if (fault().is_there) return false;
   size_t free = 0, total = 0;
-  const cudaError_t error = cudaMemGetInfo(&free, &total);
+  cudaError_t error = static_cast<cudaError_t>(cudart::look_for_resets());
+  if (error == cudaSuccess) error = cudaMemGetInfo(&free, &total);
   if (error == cudaSuccess) return true;
   cudaGetLastError();
-  if (is_sticky(error)) fault().remember(error, "cudaMemGetInfo");
+  if (is_sticky(error)) fault().remember(error, "the look at the device");
   return !is_sticky(error);
 }
 

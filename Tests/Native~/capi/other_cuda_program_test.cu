@@ -103,8 +103,9 @@ TEST(OtherCudaProgram, WorksAtTheSameTime) {
   other_end();
 }
 
-// In a process of its own. A cudaDeviceReset takes away what our contexts have on the device.
-void reset_under_our_feet(int computations) {
+// In a process of its own. A cudaDeviceReset takes away what our contexts have on the device; how many surfaces are
+// computed before and tried after it. A warm context asks the driver for little.
+void reset_under_our_feet(int before, int after, bool other_goes_on) {
   const auto demand = [](bool holds, const char *what) {
     if (holds) return;
     std::fprintf(stderr, "not so: %s (%s)\n", what, qses_last_error());
@@ -118,9 +119,10 @@ void reset_under_our_feet(int computations) {
   demand(qses_context_create(&options, &context) == QSES_OK, "a context is made");
   const Atoms atoms = cluster(200, 1);
   demand(qses_set_atoms(context, atoms.positions.data(), 0, atoms.radii.data(), atoms.size()) == QSES_OK, "atoms");
-  demand(qses_compute(context, nullptr, nullptr) == QSES_OK, "a surface is computed");
+  for (int k = 0; k < before; ++k) demand(qses_compute(context, nullptr, nullptr) == QSES_OK, "a surface is computed");
   demand(other_reset(), "the device is reset");
-  for (int k = 0; k < computations; ++k) {
+  if (other_goes_on) demand(other_start() && !other_work()[0], "the other program goes on");
+  for (int k = 0; k < after; ++k) {
     const qses_status status = qses_compute(context, nullptr, nullptr);
     std::fprintf(stderr, "after the reset: status %d, %s\n", status, qses_last_error());
     demand(status != QSES_OK && qses_last_error()[0] != 0, "the context says that it has ended");
@@ -141,9 +143,12 @@ void reset_under_our_feet(int computations) {
 TEST(OtherCudaProgramDeathTest, ResetIsAnErrorAndNoCrash) {
   if (quickses::count_cuda_devices() == 0) GTEST_SKIP() << "no CUDA device";
   ::testing::FLAGS_gtest_death_test_style = "threadsafe";
-  for (const int computations : {0, 1, 2})
-    EXPECT_EXIT(reset_under_our_feet(computations), ::testing::ExitedWithCode(0),
-                computations ? "after the reset" : "");
+  for (const bool other_goes_on : {false, true})
+    for (const int before : {1, 2, 3})
+      for (const int after : {0, 1, 2})
+        EXPECT_EXIT(reset_under_our_feet(before, after, other_goes_on), ::testing::ExitedWithCode(0),
+                    after ? "after the reset" : "")
+            << before << " surfaces before, " << after << " after, " << (other_goes_on ? "the other goes on" : "");
 }
 
 }  // namespace

@@ -21,6 +21,7 @@ std::atomic<int> calls{0}, good_calls{-1}, failure{0};
 thread_local CUcontext current = nullptr;
 int contexts[FAKE_DEVICES], the_module, the_function;
 std::atomic<int> retained[FAKE_DEVICES];
+std::atomic<unsigned long long> context_id{1};
 std::atomic<int> streams_and_events{0};
 std::atomic<uintptr_t> last_handle{0};
 
@@ -125,6 +126,12 @@ FAKE_API int fake_driver_drop_context() {
   return 0;
 }
 
+// As if other code in the process had reset all devices, and gone on with them.
+FAKE_API int fake_driver_reset() {
+  ++context_id;
+  return 0;
+}
+
 // From now on device code is compiled, for the first GPU, until this is called with 0.
 FAKE_API int fake_driver_hold(int hold) {
   const std::lock_guard<std::mutex> lock(mutex);
@@ -197,6 +204,14 @@ FAKE_API CUresult CUDAAPI cuCtxGetDevice(CUdevice *device) {
     if (current == reinterpret_cast<CUcontext>(&contexts[k])) *device = device_of(k);
   const CUresult result = next();
   return result == CUDA_SUCCESS && !current ? CUDA_ERROR_INVALID_CONTEXT : result;
+}
+FAKE_API CUresult CUDAAPI cuCtxGetId(CUcontext, unsigned long long *id) {
+  *id = context_id;
+  return next();
+}
+FAKE_API CUresult CUDAAPI cuCtxGetApiVersion(CUcontext, unsigned *version) {
+  *version = FAKE_VERSION;
+  return next();
 }
 
 // ---- kernels

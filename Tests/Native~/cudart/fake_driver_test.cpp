@@ -278,4 +278,29 @@ TEST_P(LostDevice, IsSaidForGoodAndTheCpuTakesOver) {
 }
 INSTANTIATE_TEST_SUITE_P(Errors, LostDevice, testing::Values(702, 709, 719));
 
+// Other code resets the device and goes on with it: every call would succeed, but with handles that are gone.
+class ResetDevice : public FailingDriver {};
+
+TEST_P(ResetDevice, IsFoundBeforeTheDriverIsGivenWhatIsGone) {
+  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  EXPECT_EXIT(
+      {
+        qses_context *context = nullptr;
+        EXPECT_EQ(create(QSES_BACKEND_CUDA, &context), QSES_OK);
+        set_atoms(context, water());
+        for (int k = 0; k < 3; ++k) EXPECT_EQ(qses_compute(context, nullptr, nullptr), QSES_OK) << qses_last_error();
+        const int handles = tell_driver("fake_driver_streams_and_events");
+        tell_driver("fake_driver_reset");
+        for (int k = 0; k < GetParam(); ++k)
+          expect_error(qses_compute(context, nullptr, nullptr), QSES_DEVICE_ERROR, {"does not recover"});
+        qses_context_destroy(context);
+        EXPECT_EQ(tell_driver("fake_driver_streams_and_events"), handles) << "the driver was given one that is gone";
+        expect_error(create(QSES_BACKEND_CUDA, &context), QSES_BACKEND_UNAVAILABLE, {"does not recover"});
+        expect_the_cpu_takes_over("does not recover");
+        std::_Exit(HasFailure() ? 1 : 0);
+      },
+      testing::ExitedWithCode(0), "");
+}
+INSTANTIATE_TEST_SUITE_P(Surfaces, ResetDevice, testing::Values(0, 1, 2));  // tried after it
+
 }  // namespace

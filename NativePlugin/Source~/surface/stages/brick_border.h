@@ -66,8 +66,9 @@ QSES_FN uint32_t shared_neighbors(uint32_t bits, const glm::ivec3 &step) {
 }
 
 // The inactive neighbours of a brick next to which signs differ, among its own points and those of its neighbours.
-// near: how far the number of an active one is behind its own, at most.
-QSES_FN uint32_t border_changes(const BrickSet &bricks, const BorderSigns *signs, size_t brick,
+// Signs of the first `known` bricks are there; what others have is left out. near: how far the number of an active one
+// is behind its own, at most.
+QSES_FN uint32_t border_changes(const BrickSet &bricks, const BorderSigns *signs, size_t brick, size_t known,
                                 uint32_t *near_number = nullptr) {
   const glm::ivec3 place = bricks.place(brick);
   int other[kNeighborhood];
@@ -81,8 +82,9 @@ QSES_FN uint32_t border_changes(const BrickSet &bricks, const BorderSigns *signs
 #pragma GCC unroll 27
 #endif
   for (int k = 0; k < kNeighborhood; ++k) {
-    const BorderSigns there = signs[other[k] < 0 ? brick : static_cast<size_t>(other[k])];
-    const uint32_t mask = other[k] < 0 ? 0u : ~0u;
+    const bool is_known = static_cast<uint32_t>(other[k]) < known;  // and there
+    const BorderSigns there = signs[is_known ? static_cast<size_t>(other[k]) : brick];
+    const uint32_t mask = is_known ? ~0u : 0u;
     inactive |= static_cast<uint32_t>(other[k] < 0) << k;
     near.inside |= shared_neighbors(there.inside & mask, neighbor_step(k));
     near.outside |= shared_neighbors(there.outside & mask, neighbor_step(k));
@@ -106,7 +108,7 @@ struct GrownBricks {
   QSES_FN void visit(size_t i, const RowRange &, const Visit &visit_brick) const {
     const glm::ivec3 place = bricks.place(i);
     visit_brick(bricks.lattice.linear(place), uint64_t(1));
-    for (uint32_t rest = border_changes(bricks, signs, i); rest; rest &= rest - 1) {
+    for (uint32_t rest = border_changes(bricks, signs, i, bricks.count); rest; rest &= rest - 1) {
       const glm::ivec3 p = place + neighbor_step(lowest_bit32(rest));
       if (bricks.lattice.has(p)) visit_brick(bricks.lattice.linear(p), uint64_t(1));
     }

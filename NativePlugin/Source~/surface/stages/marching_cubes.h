@@ -208,7 +208,7 @@ struct CountBorderChanges {
   QSES_FN void operator()(size_t i) const {
     const size_t brick = first + i;
     uint32_t near = 0;
-    const int changes = popcount64(border_changes(bricks, layout.border, brick, &near));
+    const int changes = popcount64(border_changes(bricks, layout.border, brick, counted, &near));
     if (changes > 0) atomic_add(&layout.totals->border_changes, static_cast<uint32_t>(changes));
     if (layout.vertex_leaves) {
       if (near > layout.totals->near) atomic_max(&layout.totals->near, near);
