@@ -288,7 +288,8 @@ void DeviceMemory::release(void *memory) { give_back(memory, cudaFree); }
 
 namespace {
 
-// Pages that were touched first and locked then, which for many of them takes a fifth of what cudaHostAlloc does.
+// Pages that were touched first and locked then, which for many of them takes a fifth of what cudaHostAlloc does. They
+// are ours: a mesh there can still be read when other code has reset the device, which takes away what CUDA gave.
 class LockedPages {
  public:
   // Null where that can't be had: then it is for cudaHostAlloc to say why.
@@ -348,8 +349,7 @@ LockedPages &locked_pages() {
 
 void *PinnedMemory::acquire(size_t bytes) {
   ++pinned_requests;
-  if (bytes >= TouchedPages::kWorthIt)
-    if (void *const memory = locked_pages().acquire(bytes)) return memory;
+  if (void *const memory = locked_pages().acquire(bytes)) return memory;
   void *memory = nullptr;
   return was_granted(cudaHostAlloc(&memory, bytes, cudaHostAllocPortable), "cudaHostAlloc") ? memory : nullptr;
 }

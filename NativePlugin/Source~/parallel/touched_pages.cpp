@@ -18,14 +18,16 @@ namespace quickses {
 namespace {
 
 constexpr size_t kPage = 4096, kLargePage = size_t(2) << 20;
+constexpr size_t kMuch = size_t(4) << 20;  // is worth large pages, and threads
 
 void *take(size_t bytes) {
+  const size_t page = bytes < kMuch ? kPage : kLargePage, whole = (bytes + page - 1) / page * page;
 #if defined(_WIN32)
-  return _aligned_malloc(bytes, kLargePage);
+  return _aligned_malloc(whole, page);
 #else
-  void *const memory = std::aligned_alloc(kLargePage, (bytes + kLargePage - 1) / kLargePage * kLargePage);
+  void *const memory = std::aligned_alloc(page, whole);
 #if defined(MADV_HUGEPAGE)
-  if (memory) madvise(memory, bytes, MADV_HUGEPAGE);  // as the system likes
+  if (memory && bytes >= kMuch) madvise(memory, bytes, MADV_HUGEPAGE);  // as the system likes
 #endif
   return memory;
 #endif
@@ -42,7 +44,7 @@ void *TouchedPages::acquire(size_t bytes) {
   char *const memory = static_cast<char *>(take(bytes));
   if (!memory) return nullptr;
   const size_t pages = (bytes + kLargePage - 1) / kLargePage;
-  const size_t most = std::clamp<size_t>(std::thread::hardware_concurrency(), 1, 8);
+  const size_t most = bytes < kMuch ? 1 : std::clamp<size_t>(std::thread::hardware_concurrency(), 1, 8);
   const size_t share = (pages + most - 1) / most * kLargePage;
   std::vector<std::thread> threads;
   char *next = memory, *const end = memory + bytes;

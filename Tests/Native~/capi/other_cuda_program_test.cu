@@ -8,11 +8,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
 #include <thread>
+#include <vector>
 
 using namespace surface_fixture;
 
@@ -120,6 +122,10 @@ void reset_under_our_feet(int before, int after, bool other_goes_on) {
   const Atoms atoms = cluster(200, 1);
   demand(qses_set_atoms(context, atoms.positions.data(), 0, atoms.radii.data(), atoms.size()) == QSES_OK, "atoms");
   for (int k = 0; k < before; ++k) demand(qses_compute(context, nullptr, nullptr) == QSES_OK, "a surface is computed");
+  qses_mesh mesh;
+  qses_mesh_init(&mesh);
+  demand(qses_collect(context, &mesh) == QSES_OK && mesh.vertex_count > 0, "there is a mesh");
+  const std::vector<float> positions(mesh.positions, mesh.positions + 3 * mesh.vertex_count);
   demand(other_reset(), "the device is reset");
   if (other_goes_on) demand(other_start() && !other_work()[0], "the other program goes on");
   for (int k = 0; k < after; ++k) {
@@ -127,6 +133,7 @@ void reset_under_our_feet(int before, int after, bool other_goes_on) {
     std::fprintf(stderr, "after the reset: status %d, %s\n", status, qses_last_error());
     demand(status != QSES_OK && qses_last_error()[0] != 0, "the context says that it has ended");
   }
+  demand(std::equal(positions.begin(), positions.end(), mesh.positions), "the last mesh is still there");
   qses_context_destroy(context);
   context = nullptr;
   options.backend = QSES_BACKEND_CPU;

@@ -13,7 +13,8 @@ namespace quickses {
 namespace {
 
 TEST(TouchedPages, CanBeWrittenToTheLastByte) {
-  for (const size_t bytes : {TouchedPages::kWorthIt, TouchedPages::kWorthIt + 1, size_t(37) * 1000 * 1000}) {
+  for (const size_t bytes :
+       {size_t(1), size_t(4096), size_t(70000), size_t(4) << 20, (size_t(4) << 20) + 1, size_t(37) * 1000 * 1000}) {
     char *const memory = static_cast<char *>(TouchedPages::acquire(bytes));
     if (!memory) GTEST_SKIP() << "this machine has less than " << 4 * bytes << " bytes to give";
     EXPECT_EQ(reinterpret_cast<uintptr_t>(memory) % 4096, 0u) << "pages that others use, too, would be locked";

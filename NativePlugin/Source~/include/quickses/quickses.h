@@ -60,8 +60,8 @@
  *   wrong address, a failed assertion, an uncorrectable error of its memory ...), or a cudaDeviceReset by other code of
  *   the process. A fault ends all use of CUDA in the process, also by other libraries. From then on all contexts with
  * CUDA, on any GPU, give DEVICE_ERROR for whatever needs a GPU, with a sentence that says so, until they are destroyed,
- * which works as usual; their last meshes stay valid. New contexts with CUDA are refused with BACKEND_UNAVAILABLE until
- * the process ends; AUTO takes the CPU. Contexts on the CPU live on.
+ * which works as usual; their last meshes in host memory stay valid, after a reset on Linux only. New contexts with
+ * CUDA are refused with BACKEND_UNAVAILABLE until the process ends; AUTO takes the CPU. Contexts on the CPU live on.
  *
  * Threads
  *   A context may be used by one thread at a time, but for qses_poll and qses_cancel, which may be called from any
