@@ -267,6 +267,7 @@ FAKE_API CUresult CUDAAPI cuMemHostRegister_v2(void *memory, size_t bytes, unsig
   bool fails = false;
   const CUresult result = next(&fails);
   if (fails) return result;
+  std::memset(memory, 0, bytes);  // nobody has written there yet
   const std::lock_guard<std::mutex> lock(memory_mutex);
   memory_given[address(memory)] = bytes;
   return result;
