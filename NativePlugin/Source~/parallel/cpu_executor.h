@@ -11,6 +11,7 @@
 #include <thrust/execution_policy.h>
 #include <thrust/merge.h>
 #include <thrust/sort.h>
+#include <thrust/system/cpp/execution_policy.h>
 
 #include <algorithm>
 #include <atomic>
@@ -196,7 +197,7 @@ class CpuExecutor {
     run_chunks(runs, [&](size_t worker, size_t k) {
       const size_t first = std::min(n, k * length), last = std::min(n, first + length);
       RoomAllocator allocator(rooms.data + worker * room, room);
-      thrust::stable_sort_by_key(thrust::seq(allocator), keys.data + first, keys.data + last, values.data + first);
+      thrust::stable_sort_by_key(thrust::cpp::par(allocator), keys.data + first, keys.data + last, values.data + first);
     });
     arena_.rewind(mark);
     if (runs > 1) {

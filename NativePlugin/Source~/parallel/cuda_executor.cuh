@@ -418,7 +418,7 @@ class CudaExecutor {
     const auto in =
         thrust::make_transform_iterator(thrust::counting_iterator<size_t>(0), gpu::LoadOrZero<Load, T>{load, n});
     with_temporary("cub::DeviceScan::ExclusiveScan", [&](void *temporary, size_t &bytes) {
-      return cub::DeviceScan::ExclusiveScan(temporary, bytes, in, out.data, cub::Sum(), start, static_cast<int>(n + 1),
+      return cub::DeviceScan::ExclusiveScan(temporary, bytes, in, out.data, gpu::Sum(), start, static_cast<int>(n + 1),
                                             stream_);
     });
   }

@@ -65,6 +65,13 @@ __global__ __launch_bounds__(BlockTeam::kSize, kSumBlocks) void sum_chunks_kerne
   if (threadIdx.x == 0) sums[chunk] = partial[0];
 }
 
+// The sum that CUB knows better than any other operation.
+#if CUB_VERSION >= 200800
+using Sum = ::cuda::std::plus<>;
+#else
+using Sum = cub::Sum;
+#endif
+
 // Few items are scanned, or chosen, by one block: each thread goes over a run of them, twice. CUB's passes over the
 // whole device take two launches, of which each waits for what was queued before it.
 constexpr int kFewThreads = 1024;
@@ -88,12 +95,12 @@ __device__ __forceinline__ T sum_before(const T &own, T *total) {
   T *const of_warps = reinterpret_cast<T *>(memory);
   const int warp = static_cast<int>(threadIdx.x) / 32, lane = static_cast<int>(threadIdx.x) % 32;
   T with_own, before;
-  Scan(temporary[warp]).Scan(own, with_own, before, T{}, cub::Sum());
+  Scan(temporary[warp]).Scan(own, with_own, before, T{}, Sum());
   if (lane == 31) of_warps[warp] = with_own;
   __syncthreads();
   if (warp == 0) {
     T with_warp;
-    Scan(temporary[0]).InclusiveScan(of_warps[lane], with_warp, cub::Sum());
+    Scan(temporary[0]).InclusiveScan(of_warps[lane], with_warp, Sum());
     of_warps[lane] = with_warp;
   }
   __syncthreads();
