@@ -49,6 +49,8 @@ class Anticipation {
     if (kind != kind_) pages_.clear();
     kind_ = kind;
     page_ = {};
+    for (Page &page : pages_)
+      for (Entry &entry : page.entries) entry.is_new = false;
     waiting_frames_ = waiting_frames_ > 0 ? waiting_frames_ - 1 : 0;
     if (was_enough_ && too_little_ > 0) --too_little_;
     was_enough_ = false;
@@ -66,16 +68,20 @@ class Anticipation {
     relied_on_.push_back({page_, place, Entry(name, *expected), &is_covered<T>, is_aside_});
     return true;
   }
+  // This frame does not go on with it: where it counts anew, what it had counted was with too little room.
   template <class T>
   void note(const char *name, const T &found) {
-    note(page_, Entry(name, found));
+    Entry entry(name, found);
+    entry.is_new = true;
+    note(page_, entry);
   }
   // What would be anticipated now, if anything is.
   template <class T>
   bool foresee(const char *name, const T &most, T *expected) const {
     const Entry *const last = is_open_ && waiting_frames_ == 0 ? find(name) : nullptr;
-    if (last) *expected = T::anticipated(last->as<T>(), most);
-    return last != nullptr;
+    if (!last || last->is_new) return false;
+    *expected = T::anticipated(last->as<T>(), most);
+    return true;
   }
 
   // Of which it was not told yet that it is being counted.
@@ -119,6 +125,7 @@ class Anticipation {
  private:
   struct Entry {
     const char *name;
+    bool is_new = false;  // of this frame
     alignas(8) unsigned char bytes[kMostBytes] = {};
     template <class T>
     Entry(const char *entry, const T &value) : name(entry) {

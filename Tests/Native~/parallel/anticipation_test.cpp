@@ -41,6 +41,21 @@ TEST(Anticipation, ExpectsWhatWasCountedAndSomeMore) {
   EXPECT_EQ(expected.count, 1610u) << "no more than there is room for";
 }
 
+// Counted with too little room, it is counted anew.
+TEST(Anticipation, AFrameDoesNotGoOnWithWhatItCountedItself) {
+  Anticipation a;
+  Bricks expected{};
+  a.open(7);
+  a.note("bricks", Bricks{1600});
+  EXPECT_FALSE(a.anticipate("bricks", 0, kPlenty, &expected));
+  a.note("bricks", Bricks{2500});
+  EXPECT_FALSE(a.anticipate("bricks", 0, kPlenty, &expected));
+  EXPECT_FALSE(a.has_anticipated());
+  a.open(7);
+  ASSERT_TRUE(a.anticipate("bricks", 0, kPlenty, &expected));
+  EXPECT_GE(expected.count, 2500u);
+}
+
 TEST(Anticipation, FollowsWhatIsFound) {
   Anticipation a;
   Bricks expected{};
@@ -111,6 +126,7 @@ TEST(Anticipation, IsOfOnePage) {
   a.turn_to(2);
   EXPECT_FALSE(a.anticipate("bricks", 0, kPlenty, &expected));
   a.note("bricks", Bricks{160});
+  a.open(7);
   a.turn_to(1, 5);
   EXPECT_FALSE(a.anticipate("bricks", 0, kPlenty, &expected));
   a.turn_to(1);
@@ -124,6 +140,8 @@ TEST(Anticipation, ForeseesWithoutRelyingOnIt) {
   EXPECT_FALSE(a.foresee("bricks", kPlenty, &foreseen));
   a.open(7);
   a.note("bricks", Bricks{1600});
+  EXPECT_FALSE(a.foresee("bricks", kPlenty, &foreseen)) << "of this frame itself";
+  a.open(7);
   ASSERT_TRUE(a.foresee("bricks", kPlenty, &foreseen));
   EXPECT_FALSE(a.relies_on_something());
   EXPECT_FALSE(a.has_anticipated());
@@ -146,6 +164,7 @@ TEST(Anticipation, WaitsForWhatIsCountedAside) {
   a.open(7);
   a.note("inner", Bricks{160});
   a.note("aside", Bricks{1600});
+  a.open(7);
   a.turn_aside(true);
   ASSERT_TRUE(a.anticipate("aside", 0, kPlenty, &aside));
   a.turn_aside(false);
