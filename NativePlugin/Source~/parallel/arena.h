@@ -89,6 +89,12 @@ class Arena {
     return p;
   }
 
+  // What a first computation will take is taken at once, if it is little of what there is: it would wait for block
+  // after block, and the next one until they were given back.
+  void expect(uint64_t bytes) {
+    if (held_ == 0 && !budget_ && bytes <= limit() / 8) take_block(static_cast<size_t>(bytes));
+  }
+
   // Everything allocated so far is given up; the blocks stay.
   void reset() {
     if (budget_ && held_ > own_budget()) release();

@@ -46,6 +46,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     Course course;
     const auto attempt = [&](const MemoryPlan &plan) {
       const uint32_t attempts = course.attempts++;
+      if (attempts == 0) expect_memory(in);
       executor_.open_counts(may_anticipate(in, plan) ? kind_of(in) : 0,
                             learnt_.is_proven && learnt_.milliseconds < kShortFrame);
       try {
@@ -334,9 +335,8 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     return static_cast<uint64_t>(kMargin * static_cast<double>(bytes)) + kSpareBytes;
   }
 
-  // No plan was left. With a budget the user is told which one would do, as far as that is known by now.
-  void name_smallest_budget(const FrameInput &in) {
-    if (budget_ == 0) return;
+  // What is not known of the finest level, guessed.
+  void guess_facts(const FrameInput &in) {
     SurfaceParameters parameters = parameters_of(in);
     Lattice lattice = center_lattice(in.atoms.bounds, frame_spacing(levels_of(in.settings)));
     const glm::vec3 low = to_centered(lattice, in.atoms.bounds.low), high = to_centered(lattice, in.atoms.bounds.high);
@@ -344,8 +344,27 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     lattice = layout_lattice(lattice, low, high, parameters.max_radius);
     if (spacing_ != in.settings.spacing) facts_.size = {};  // those of a coarser level
     spacing_ = in.settings.spacing;
-    const bool is_counted = knows_size();
     guess_unknown(parameters, is_exact(in.settings), static_cast<double>(lattice.table_size()), &facts_);
+  }
+
+  // Of a first computation. The guess is generous: proteins take three quarters of it, or less.
+  void expect_memory(const FrameInput &in) {
+    auto &arena = executor_.arena();
+    if (arena.held() > 0 || arena.has_budget() || in.atoms.count == 0) return;
+    const WorkFacts known = facts_;
+    try {
+      guess_facts(in);
+      arena.expect(forecast(in, kMemoryPlans[0], arena.limit()) / 4 * 3);
+    } catch (const Error &) {  // so fine a level is refused when it comes to it
+    }
+    facts_ = known;
+  }
+
+  // No plan was left. With a budget the user is told which one would do, as far as that is known by now.
+  void name_smallest_budget(const FrameInput &in) {
+    if (budget_ == 0) return;
+    const bool is_counted = knows_size() && spacing_ == in.settings.spacing;
+    guess_facts(in);
     const uint64_t least = least_bytes(in) / 10 * (is_counted ? 10 : 11) + memory_.needed_outside(executor_);
     throw Error(QSES_OUT_OF_MEMORY,
                 "the memory budget of " + describe_bytes(budget_) + " does not suffice for this surface: about " +

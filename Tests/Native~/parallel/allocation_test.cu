@@ -30,6 +30,18 @@ void expect_no_request(const Frame &frame) {
   EXPECT_EQ(after.pinned, warm.pinned);
 }
 
+// The work of a first computation takes its memory at once, or in one more piece; and there are the tables.
+TEST(CudaAllocations, FewInAFirstComputation) {
+  if (!quickses::describe_cuda_device(0).available) GTEST_SKIP() << "no CUDA device";
+  const Context context(0, 0, QSES_BACKEND_CUDA);
+  set_atoms(context, crambin());
+  qses_settings s = settings();
+  s.delivery = QSES_DELIVERY_NONE;
+  const auto before = cuda_memory_requests();
+  expect_ok(qses_compute(context, &s, nullptr));
+  EXPECT_LE(cuda_memory_requests().device, before.device + 3);
+}
+
 TEST(CudaAllocations, NoneInJobsOverATrajectory) {
   expect_no_request([](qses_context *context, const std::vector<float> &positions) {
     set_positions(context, positions);
