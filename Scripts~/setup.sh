@@ -35,6 +35,7 @@ needs=(
   "libtbb-dev tbb/parallel_for.h"
   "libglm-dev glm/glm.hpp"
   "gemmi-dev gemmi/version.hpp"
+  "gemmi gemmi" # the program, which the CMake files of Debian 13's gemmi-dev insist on
   "tao-pegtl-dev tao/pegtl.hpp"
   "libcli11-dev CLI/CLI.hpp"
   "libstb-dev stb/stb_image_write.h"
@@ -44,7 +45,21 @@ needs=(
   "pigz pigz"
 )
 
-if [ "$with_cuda" = yes ]; then needs+=("clang-19 clang++-19"); fi
+# The CUDA Toolkit that is there, or nothing.
+cuda_toolkit() {
+  local folder
+  for folder in "${CUDA_PATH:-}" "${CUDA_HOME:-}" /usr/lib/cuda /usr/local/cuda /opt/cuda; do
+    if [ -e "$folder/nvvm/libdevice/libdevice.10.bc" ]; then
+      echo "$folder"
+      return
+    fi
+  done
+}
+
+# From CUDA 13 on it takes a Clang that knows it (NativePlugin/Source~/cmake/QuicksesCuda.cmake).
+clang=19
+if grep -qsE '#define CUDA_VERSION +1[3-9]' "$(cuda_toolkit)/include/cuda.h"; then clang=22; fi
+if [ "$with_cuda" = yes ]; then needs+=("clang-$clang clang++-$clang"); fi
 if [ "$with_mpi" = yes ]; then needs+=("libopenmpi-dev mpicxx" "openmpi-bin mpirun"); fi
 if [ "$with_windows" = yes ]; then
   needs+=(
@@ -62,14 +77,6 @@ is_there() {
     *.h | *.hpp) [ -e "/usr/local/include/$1" ] || [ -e "/usr/include/$1" ] ;;
     *) command -v "$1" >/dev/null ;;
   esac
-}
-
-has_cuda_toolkit() {
-  local folder
-  for folder in "${CUDA_PATH:-}" "${CUDA_HOME:-}" /usr/lib/cuda /usr/local/cuda /opt/cuda; do
-    if [ -e "$folder/nvvm/libdevice/libdevice.10.bc" ]; then return 0; fi
-  done
-  return 1
 }
 
 has_candidate() { [[ $(apt-cache policy "$1" 2>/dev/null) == *"  Candidate: "[!\(]* ]]; }
@@ -118,7 +125,7 @@ add_missing_optional() {
 
 missing=()
 for need in "${needs[@]}"; do add_missing "$need"; done
-if [ "$with_cuda" = yes ] && ! has_cuda_toolkit; then missing+=(nvidia-cuda-toolkit); fi
+if [ "$with_cuda" = yes ] && [ -z "$(cuda_toolkit)" ]; then missing+=(nvidia-cuda-toolkit); fi
 add_missing_optional
 if [ ${#missing[@]} -eq 0 ]; then
   say "everything is installed"

@@ -9,28 +9,37 @@ if(NOT BUILD_SHARED_LIBS)
     "runtime, and only a shared library keeps them to itself.")
 endif()
 
-find_program(QUICKSES_CLANG NAMES clang++-19 clang++-20 clang++-21 clang++-18 clang++
-  DOC "The Clang that compiles CUDA, 18 or later")
 find_path(QUICKSES_CUDA_PATH nvvm/libdevice/libdevice.10.bc
   HINTS ENV CUDA_PATH ENV CUDA_HOME ${CUDAToolkit_ROOT} PATHS /usr/lib/cuda /usr/local/cuda /opt/cuda
   NO_DEFAULT_PATH NO_CMAKE_FIND_ROOT_PATH DOC "The CUDA Toolkit")
 find_path(QUICKSES_CUDA_HEADERS cuda_runtime.h HINTS "${QUICKSES_CUDA_PATH}/include" PATHS /usr/include
   NO_DEFAULT_PATH NO_CMAKE_FIND_ROOT_PATH DOC "The CUDA Toolkit's headers") # Debian's are not below its folder
+set(_version 0)
+if(QUICKSES_CUDA_HEADERS)
+  file(STRINGS "${QUICKSES_CUDA_HEADERS}/cuda.h" _version REGEX "#define CUDA_VERSION +[0-9]+")
+  string(REGEX MATCH "[0-9]+$" _version "${_version}")
+endif()
+# Toolkits from 13.0 on lack a header and an option that earlier Clangs ask them for (LLVM's changes 151760 and 151766).
+set(_least_clang 18)
+set(_clangs clang++-19 clang++-20 clang++-21 clang++-18 clang++-22)
+if(_version GREATER_EQUAL 13000)
+  set(_least_clang 22)
+  set(_clangs clang++-22 clang++-23 clang++-24)
+endif()
+find_program(QUICKSES_CLANG NAMES ${_clangs} clang++ DOC "The Clang that compiles CUDA, 18 or later; with CUDA 13, 22 or later")
 mark_as_advanced(QUICKSES_CLANG QUICKSES_CUDA_PATH QUICKSES_CUDA_HEADERS)
 if(NOT QUICKSES_CLANG OR NOT QUICKSES_CUDA_PATH OR NOT QUICKSES_CUDA_HEADERS)
-  message(FATAL_ERROR "QUICKSES_CUDA is ON, which takes Clang 18 or later (found: ${QUICKSES_CLANG}) and the CUDA Toolkit "
-    "11.8 or later (found: ${QUICKSES_CUDA_PATH}). On Debian, bash Scripts~/setup.sh --with-cuda installs both; "
+  message(FATAL_ERROR "QUICKSES_CUDA is ON, which takes the CUDA Toolkit 11.8 or later (found: ${QUICKSES_CUDA_PATH}) and Clang "
+    "${_least_clang} or later (found: ${QUICKSES_CLANG}). On Debian, bash Scripts~/setup.sh --with-cuda installs both; "
     "elsewhere set QUICKSES_CLANG and QUICKSES_CUDA_PATH.")
 endif()
-
-file(STRINGS "${QUICKSES_CUDA_HEADERS}/cuda.h" _version REGEX "#define CUDA_VERSION +[0-9]+")
-string(REGEX MATCH "[0-9]+$" _version "${_version}")
 if(_version LESS 11080)
   message(FATAL_ERROR "The CUDA Toolkit in ${QUICKSES_CUDA_PATH} is too old (CUDA_VERSION ${_version}): 11.8 or later is needed.")
 endif()
 execute_process(COMMAND "${QUICKSES_CLANG}" -dumpversion OUTPUT_VARIABLE _clang OUTPUT_STRIP_TRAILING_WHITESPACE)
-if(_clang VERSION_LESS 18)
-  message(FATAL_ERROR "${QUICKSES_CLANG} is Clang ${_clang}: 18 or later is needed to compile CUDA.")
+if(_clang VERSION_LESS _least_clang)
+  message(FATAL_ERROR "${QUICKSES_CLANG} is Clang ${_clang}: ${_least_clang} or later is needed to compile with the CUDA Toolkit in "
+    "${QUICKSES_CUDA_PATH} (CUDA_VERSION ${_version}).")
 endif()
 message(STATUS "CUDA: toolkit ${QUICKSES_CUDA_PATH} (${_version}), Clang ${_clang}, architectures ${QUICKSES_CUDA_ARCHITECTURES}")
 

@@ -184,8 +184,8 @@ class CpuExecutor {
   }
 
   // Thrust's parallel sort takes its temporaries from the heap every time, and can't be stopped. Here its parts work in
-  // the arena: runs are sorted one by one, then merged pairwise, an even number of times so that the result is where
-  // the keys were.
+  // the arena (by cpp::par, since Thrust 3 does not take an allocator with seq): runs are sorted one by one, then
+  // merged pairwise, an even number of times so that the result is where the keys were.
   template <class Key, class Value>
   void sort_by_key(Span<Key> keys, Span<Value> values) {
     const size_t n = keys.size;

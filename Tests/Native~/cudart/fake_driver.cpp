@@ -13,6 +13,8 @@
 #include <map>
 #include <mutex>
 
+#undef cuEventElapsedTime  // CUDA 13 means another version of it, which the library does not ask for
+
 using namespace fake_driver;
 
 namespace {
@@ -114,6 +116,9 @@ FAKE_API int fake_driver_fail_after(int good, int error) {
 
 // How many there were so far.
 FAKE_API int fake_driver_calls() { return calls; }
+
+// The CUDA that it was compiled with, and the library.
+FAKE_API int fake_driver_toolkit() { return CUDA_VERSION; }
 
 // How often the context of a device was asked for.
 FAKE_API int fake_driver_retained(int device) { return retained[device]; }
