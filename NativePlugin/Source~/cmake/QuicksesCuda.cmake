@@ -43,8 +43,11 @@ if(_clang VERSION_LESS _least_clang)
 endif()
 message(STATUS "CUDA: toolkit ${QUICKSES_CUDA_PATH} (${_version}), Clang ${_clang}, architectures ${QUICKSES_CUDA_ARCHITECTURES}")
 
-# Searched last: where the toolkit lies in /usr/include, its neighbours are not for Windows.
-set(QUICKSES_CUDA_INCLUDE -idirafter "${QUICKSES_CUDA_HEADERS}")
+# Before those of another toolkit; but /usr/include last, whose other headers are not for Windows.
+set(QUICKSES_CUDA_INCLUDE -isystem "${QUICKSES_CUDA_HEADERS}")
+if(QUICKSES_CUDA_HEADERS STREQUAL "/usr/include")
+  set(QUICKSES_CUDA_INCLUDE -idirafter "${QUICKSES_CUDA_HEADERS}")
+endif()
 
 set(_flags "--cuda-path=${QUICKSES_CUDA_PATH}" --no-cuda-include-ptx=all)
 foreach(_architecture IN LISTS QUICKSES_CUDA_ARCHITECTURES)
@@ -57,8 +60,10 @@ endforeach()
 string(TOUPPER "${CMAKE_BUILD_TYPE}" _config)
 separate_arguments(_config UNIX_COMMAND "${CMAKE_CXX_FLAGS_${_config}}")
 list(APPEND _flags -Xcuda-fatbinary --compress-all -std=c++17 ${_config}
-  # On the device a*b+c is one operation, as nvcc has it; on the host nothing is contracted (see QuicksesTargets.cmake).
-  -Xarch_host -ffp-contract=off -fvisibility=hidden -UTHRUST_DEVICE_SYSTEM
+  # On the device a*b+c is one operation where an expression says so, whatever the optimizer sees beyond it: so all
+  # versions of Clang give the same bytes, and functions can be taken apart. On the host nothing is contracted (see
+  # QuicksesTargets.cmake).
+  -Xarch_device -ffp-contract=on -Xarch_host -ffp-contract=off -fvisibility=hidden -UTHRUST_DEVICE_SYSTEM
   # Kernels in headers are for one source each; masks of the CPU's vectors, which are bool here, have no && and ||.
   -Wall -Wextra -Wno-unneeded-internal-declaration -Wno-bitwise-instead-of-logical -Wno-pass-failed "$<$<BOOL:${QUICKSES_WERROR}>:-Werror>"
   --system-header-prefix=cub/ --system-header-prefix=thrust/ --system-header-prefix=glm/)
