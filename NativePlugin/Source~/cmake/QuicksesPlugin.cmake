@@ -18,6 +18,7 @@ elseif(NOT BUILD_SHARED_LIBS OR QUICKSES_SANITIZE)
   return()
 endif()
 
+set(_remove_stale "")
 if(WIN32)
   # quickses.dll is the plug-in as it is: MinGW puts everything into it. Its table of symbols would be a third of it.
   target_link_options(quickses PRIVATE -Wl,-s)
@@ -53,6 +54,9 @@ else()
     add_custom_target(quickses_tbb DEPENDS "${_system_library}")
     list(APPEND _files "${_system_library}")
     list(APPEND _file_metas libquickses_tbb.so.meta)
+  else() # one may lie there, from a build with it
+    set(_stale "${QUICKSES_PLUGINS_DIR}/${_platform}/libquickses_tbb.so")
+    set(_remove_stale COMMAND "${CMAKE_COMMAND}" -E rm -f "${_stale}" "${_stale}.meta")
   endif()
 
   # The same objects as libquickses.so, linked so that nothing but the C library and libgcc_s is asked of the machine (of TBB beside it also libstdc++).
@@ -72,6 +76,7 @@ set(_metas "${PROJECT_SOURCE_DIR}/NativePlugin/Source~/plugin_metas")
 list(TRANSFORM _file_metas PREPEND "${_metas}/${_platform}/")
 add_custom_target(plugin ALL
   COMMAND "${CMAKE_COMMAND}" -E make_directory "${QUICKSES_PLUGINS_DIR}/${_platform}"
+  ${_remove_stale}
   COMMAND "${CMAKE_COMMAND}" -E copy_if_different ${_files} ${_file_metas} "${QUICKSES_PLUGINS_DIR}/${_platform}"
   COMMAND "${CMAKE_COMMAND}" -E copy_if_different "${_metas}/${_platform}.meta" "${QUICKSES_PLUGINS_DIR}"
   COMMAND "${CMAKE_COMMAND}" -E copy_if_different "${_metas}/Plugins.meta" "${QUICKSES_PLUGINS_DIR}.meta"
