@@ -25,12 +25,12 @@ constexpr const char *kLibrary = "nvcuda.dll";
 constexpr const char *kLibrary = "libcuda.so.1";
 #endif
 
-// Calls one of the fake's own functions; the library has loaded it.
+// Calls one of the fake's own functions.
 template <class Result = int, class... Arguments>
 Result tell_driver(const char *name, Arguments... arguments) {
   using Function = Result (*)(Arguments...);
 #if defined(_WIN32)
-  void *const found = reinterpret_cast<void *>(GetProcAddress(GetModuleHandleA(kLibrary), name));
+  void *const found = reinterpret_cast<void *>(GetProcAddress(LoadLibraryA(kLibrary), name));
 #else
   void *const found = dlsym(dlopen(kLibrary, RTLD_NOW), name);
 #endif
