@@ -111,7 +111,7 @@ inline DeviceStages run_device_stages(CudaExecutor &executor, const DeviceTable 
   f.cap_ranges = s.found.cap_ranges.data;
   f.caps = s.found.caps.data;
   f.parameters = p;
-  f.max_arc_bound = kMaxArcBound + 1e-3f;
+  f.max_arc_bound = p.max_arc_bound() + 1e-3f;
   const size_t arcs = s.found.arcs.size;
   if (arcs > 0) {
     const glm::vec3 reach(p.max_radius);

@@ -92,12 +92,13 @@ Point point_of(const Arc &a, double share) {  // -1 ... 1 from end to end
 
 // The arcs are the exposed parts of all circles: none lies in a ball, and none is missing.
 void check_arcs(const StageResult &r, const ExactBoundary &exact) {
+  const SurfaceParameters parameters{r.options.probe, r.options.depth, r.options.spacing, 0.f};
   double length = 0, exact_length = 0;
   for (const Arc &a : r.arcs) {
     const double half = a.cos_half <= -1.f ? 3.14159265358979 : std::atan2(double(a.sin_half), double(a.cos_half));
     length += 2 * half * a.radius;
     for (double share : {-1.0, 0.0, 1.0}) ASSERT_NEAR(exact.depth(point_of(a, share)), 0.0, 5e-4);
-    ASSERT_LE(arc_bound(a).radius, kMaxArcBound + 1e-3f);
+    ASSERT_LE(arc_bound(a).radius, parameters.max_arc_bound() + 1e-3f);
   }
   for (const ExactArc &a : exact.arcs()) {
     exact_length += (a.end - a.begin) * a.radius;

@@ -228,6 +228,21 @@ TEST(ThreeAtoms, HaveConcaveTriangles) {
   }
 }
 
+// The probe rolls around two atoms but for a gap, at whose sides it comes to rest on the third: the ends of one arc are
+// near each other.
+TEST(ThreeAtoms, LeaveAGapInARing) {
+  for (double apart : {4.6, 4.9, 5.3})
+    for (double away : {2.6, 2.9, 3.2, 3.5})
+      for (double h : {0.25, 0.5, 0.8})
+        for (int turn = 0; turn < 3; ++turn) {
+          SCOPED_TRACE(testing::Message() << apart << " and " << away << " at " << h << ", turned " << turn);
+          Atoms atoms;
+          atoms.add(0, 0, 0, 1.7).add(apart, 0, 0, 1.7).add(apart / 2, away, 0, 0.3);
+          for (int k = 0; k < turn; ++k) atoms = turned(atoms, 0.7 * k, -0.3, 0.2);
+          checked_surface(atoms, settings(h), {1e-4, 1e-3});
+        }
+}
+
 // ---- against samples: a second reference that knows neither circles nor triple points
 
 void check_against_samples(const Atoms &atoms, double h, double p, size_t per_sphere) {

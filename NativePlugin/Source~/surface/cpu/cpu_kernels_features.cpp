@@ -208,7 +208,8 @@ AtomFeatures find_atom_features(const NeighborGridView &atoms, const SurfacePara
     atomic_set(&exposed[c.index[j]]);
     const float radius = self.radius * circle.sine;
     for (int k = 0; k < (intervals.whole ? 1 : intervals.count); ++k) {
-      const ExposedArc arc = exposed_arc(intervals.whole ? nullptr : &intervals.interval[k], radius);
+      const ExposedArc arc =
+          exposed_arc(intervals.whole ? nullptr : &intervals.interval[k], radius, parameters.max_arc_bound());
       const int pieces = 1 << arc.halvings;
       if (arc_count + pieces <= arc_room) {
         write_arc_pieces(circle, self, arc, arcs + arc_count);

@@ -34,6 +34,7 @@ struct StagedCircle {
 struct CircleJob {
   NeighborGridView atoms;
   AtomRun run;
+  float max_arc_bound;
   FeatureRoom room;
   FeatureCounters *counters;
   const CapRange *cap_ranges;
@@ -145,7 +146,7 @@ __device__ __forceinline__ void stage_circle(const CircleJob &job, const OpenCir
   for (uint32_t k = 0; k < count; ++k) {
     Interval interval{0.f, 0.f};
     if (!intervals.whole) interval = intervals.interval[static_cast<int>(k)];
-    const ExposedArc arc = exposed_arc(intervals.whole ? nullptr : &interval, c.radius);
+    const ExposedArc arc = exposed_arc(intervals.whole ? nullptr : &interval, c.radius, job.max_arc_bound);
     job.staged_arcs[first + k] = arc;
     pieces += 1u << arc.halvings;
   }

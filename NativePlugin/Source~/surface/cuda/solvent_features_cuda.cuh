@@ -21,10 +21,10 @@ struct ExposeAtoms {
 // What one pass over a run of atoms reads and writes besides its results.
 struct FeaturePass {
   NeighborGridView atoms;
-  float max_radius;
+  SurfaceParameters parameters;
   CapRange *cap_ranges;
   uint8_t *exposed;
-  bool with_arc_atoms;
+  bool with_arc_atoms() const { return parameters.is_of_balls(); }
 };
 
 // One attempt at the caps and arcs of a run of atoms; returns what was counted, or is expected to be.
@@ -39,14 +39,15 @@ FeatureCounters find_run_features(E &executor, const FeaturePass &pass, AtomRun 
   Span<uint32_t> circle_first = executor.template allocate<uint32_t>(n + 1);
   Span<uint32_t> long_atoms = executor.template allocate<uint32_t>(n);
   find_caps(executor,
-            CapJob{pass.atoms, pass.max_radius, run, room, counters, pass.cap_ranges, caps, neighbors.data,
+            CapJob{pass.atoms, pass.parameters.max_radius, run, room, counters, pass.cap_ranges, caps, neighbors.data,
                    circle_count.data, pass.exposed, long_atoms.data},
             memory_is_short);
   executor.exclusive_scan(n, LoadCount<uint32_t>{circle_count.data}, circle_first);
-  const ArcSearch search = find_arcs(executor,
-                                     CircleJob{pass.atoms, run, room, counters, pass.cap_ranges, caps, neighbors.data,
-                                               circle_first.data, pass.exposed, arcs, arc_atoms},
-                                     pass.max_radius);
+  const ArcSearch search =
+      find_arcs(executor,
+                CircleJob{pass.atoms, run, pass.parameters.max_arc_bound(), room, counters, pass.cap_ranges, caps,
+                          neighbors.data, circle_first.data, pass.exposed, arcs, arc_atoms},
+                pass.parameters.max_radius);
   FeatureCounters found = executor.expect("features", counters, room.most());
   while (found.unfinished_circles > 0) {
     find_long_circle_arcs(executor, search);
@@ -68,7 +69,7 @@ void find_all_features(E &executor, const FeaturePass &pass, CudaRooms &rooms, S
   for (const auto start = executor.arena().mark();; executor.arena().rewind(start)) {
     features->caps = executor.template allocate<Cap>(room.caps);
     features->arcs = executor.template allocate<Arc>(room.arcs);
-    if (pass.with_arc_atoms) features->arc_atoms = executor.template allocate<ArcAtoms>(room.arcs);
+    if (pass.with_arc_atoms()) features->arc_atoms = executor.template allocate<ArcAtoms>(room.arcs);
     FeatureCounters *const counters = executor.template take_counts<FeatureCounters>();
     const FeatureCounters found =
         find_run_features(executor, pass, AtomRun{0, n}, room, counters, features->caps.data, features->arcs.data,
@@ -77,7 +78,7 @@ void find_all_features(E &executor, const FeaturePass &pass, CudaRooms &rooms, S
       features->caps.size = static_cast<size_t>(found.caps);
       features->arcs.size = static_cast<size_t>(found.arcs);
       features->arc_count = &counters->written_arcs;
-      if (pass.with_arc_atoms) features->arc_atoms.size = features->arcs.size;
+      if (pass.with_arc_atoms()) features->arc_atoms.size = features->arcs.size;
       features->most_caps = found.longest_row;
       rooms.runs.include(FeatureRoom::of(found).scaled(2 * n, n));  // circles are counted at the earlier of two atoms
       return;
@@ -120,9 +121,9 @@ void find_features_in_runs(E &executor, const FeaturePass &pass, const MemoryPla
   };
   const auto before_arcs = arena.mark();
   const auto allocate_arc_atoms = [&](size_t room) {
-    if (pass.with_arc_atoms) features->arc_atoms = executor.template allocate<ArcAtoms>(room);
+    if (pass.with_arc_atoms()) features->arc_atoms = executor.template allocate<ArcAtoms>(room);
   };
-  const uint64_t arc_bytes = sizeof(Arc) + (pass.with_arc_atoms ? sizeof(ArcAtoms) : 0);
+  const uint64_t arc_bytes = sizeof(Arc) + (pass.with_arc_atoms() ? sizeof(ArcAtoms) : 0);
   uint64_t arc_total = 0;
   for (bool is_done = false; !is_done;) {
     arena.rewind(before_arcs);
@@ -146,7 +147,7 @@ void find_features_in_runs(E &executor, const FeaturePass &pass, const MemoryPla
       const auto mark = arena.mark();
       Cap *const caps = executor.template allocate<Cap>(room.caps).data;
       FeatureCounters *const counters = executor.template take_counts<FeatureCounters>();
-      ArcAtoms *const arc_atoms = pass.with_arc_atoms ? features->arc_atoms.data + arc_total : nullptr;
+      ArcAtoms *const arc_atoms = pass.with_arc_atoms() ? features->arc_atoms.data + arc_total : nullptr;
       FeatureCounters found =
           find_run_features(executor, pass, run, room, counters, caps, arcs.data + arc_total, arc_atoms, true);
       arena.rewind(mark);
@@ -182,8 +183,8 @@ void find_features_in_runs(E &executor, const FeaturePass &pass, const MemoryPla
   FeatureCounters *const counters = executor.template take_counts<FeatureCounters>();
   Span<uint32_t> long_atoms = executor.template allocate<uint32_t>(n);
   find_caps(executor,
-            CapJob{pass.atoms, pass.max_radius, AtomRun{0, n}, room, counters, pass.cap_ranges, features->caps.data,
-                   nullptr, nullptr, pass.exposed, long_atoms.data},
+            CapJob{pass.atoms, pass.parameters.max_radius, AtomRun{0, n}, room, counters, pass.cap_ranges,
+                   features->caps.data, nullptr, nullptr, pass.exposed, long_atoms.data},
             true);
   arena.rewind(mark);
 }
@@ -194,8 +195,7 @@ void find_solvent_features(E &executor, const NeighborGridView &atoms, const Sur
   features->cap_ranges = executor.template allocate<CapRange>(atoms.count);
   if (atoms.count == 0) return;
   Span<uint8_t> exposed = executor.template allocate_zeros<uint8_t>(atoms.count);
-  const FeaturePass pass{atoms, parameters.max_radius, features->cap_ranges.data, exposed.data,
-                         parameters.is_of_balls()};
+  const FeaturePass pass{atoms, parameters, features->cap_ranges.data, exposed.data};
   if (plan.low_memory)
     find_features_in_runs(executor, pass, plan, rooms, features);
   else

@@ -56,7 +56,7 @@ FeatureView arrange_features(Work &work, const SolventFeatures &found) {
   f.exposed = found.exposed.data;
   f.most_caps = found.most_caps;
   f.parameters = work.parameters;
-  f.max_arc_bound = kMaxArcBound + 1e-3f;
+  f.max_arc_bound = work.parameters.max_arc_bound() + 1e-3f;
   const size_t n = found.arcs.size;
   if (n > 0) {
     const glm::vec3 reach(work.parameters.max_radius);

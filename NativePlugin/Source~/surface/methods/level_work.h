@@ -81,7 +81,7 @@ ExpectedSplits expected_splits(const Work &work) {
   const double arcs = static_cast<double>(work.facts->arcs),
                per_edge = std::sqrt(arcs / std::max(1.0, work.facts->size.vertices));
   // Of probes' creases, fine meshes show the sharp ones only.
-  return {work.parameters.is_of_balls() ? 1.2 * per_edge : 1.3 * per_edge * per_edge * per_edge};
+  return {work.parameters.is_of_balls() ? 1.2 * per_edge : 2.3 * per_edge * per_edge * per_edge};
 }
 
 // Room for so many vertices or triangles, and for those that splits of creases add behind them.

@@ -85,9 +85,11 @@ inline double bricks_of_ball(double radius, double spacing) {
 }
 
 // Pairs of a brick and an arc within whose reach it lies, or an inflated ball that the grid method fills. The larger
-// the probe, the more there are.
+// the probe, the more there are. An arc is no point, but curved.
+constexpr double kArcReach = 1.15;  // as that of a ball
 inline double guess_pairs(const WorkFacts &facts, const SurfaceParameters &parameters, bool exact, double spacing) {
-  return exact ? static_cast<double>(facts.arcs) * bricks_of_ball(static_cast<double>(parameters.depth), spacing)
+  return exact ? static_cast<double>(facts.arcs) *
+                     bricks_of_ball(kArcReach * static_cast<double>(parameters.depth), spacing)
                : static_cast<double>(facts.atoms) * bricks_of_ball(static_cast<double>(parameters.max_radius), spacing);
 }
 
