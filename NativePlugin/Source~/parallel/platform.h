@@ -29,6 +29,14 @@
 
 namespace quickses {
 
+QSES_FN int popcount32(uint32_t v) {
+#if defined(__CUDA_ARCH__)
+  return __popc(v);
+#else
+  return __builtin_popcount(v);
+#endif
+}
+
 QSES_FN int popcount64(uint64_t v) {
 #if defined(__CUDA_ARCH__)
   return __popcll(v);
@@ -61,6 +69,25 @@ QSES_FN int highest_bit32(uint32_t v) {
 #else
   return 31 - __builtin_clz(v);
 #endif
+}
+
+// Number of the set bit with n others below it; v must have more than n.
+QSES_FN int nth_bit64(uint64_t v, int n) {
+  uint32_t word = static_cast<uint32_t>(v);
+  int at = 0, below = popcount32(word);
+  if (n >= below) {
+    n -= below;
+    word = static_cast<uint32_t>(v >> 32);
+    at = 32;
+  }
+  for (int width = 16; width > 0; width >>= 1) {
+    below = popcount32(word & ((uint32_t(1) << width) - 1));
+    if (n < below) continue;
+    n -= below;
+    word >>= width;
+    at += width;
+  }
+  return at;
 }
 
 }  // namespace quickses

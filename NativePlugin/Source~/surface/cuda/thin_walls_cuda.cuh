@@ -23,14 +23,15 @@ __device__ __forceinline__ NearestProbe nearest_probe_if(bool asks, const Featur
   return told ? said : contact ? probe_on_atom(f, deepest, x) : probe_on_arc(f, nearest, x);
 }
 
-// Walks an edge by a team of lanes, if it is on; all teams of a warp in step.
+// Walks the edge of an item by a team of lanes, if it is on; all teams of a warp in step.
 template <int kLanes>
-__device__ __forceinline__ void walk_edge(const WallJob &job, const WallEdge &e, const Vec3<float> &a,
-                                          const Vec3<float> &b, bool on, const LaneCandidates<kLanes, true> &near) {
+__device__ __forceinline__ void walk_edge(const WallJob &job, const uint64_t *item, const WallEdge &e,
+                                          const Vec3<float> &a, const Vec3<float> &b, bool on,
+                                          const LaneCandidates<kLanes, true> &near) {
   const FeatureView &f = job.features;
   const SurfaceParameters &p = f.parameters;
   const NearestProbe probe_a = decided_probe(f, first_decider(job, e.slot, e.bit, a), a);
-  const uint32_t decider_b = decider_at(job, e.brick, e.second);
+  const uint32_t decider_b = decider_at(job, e.brick, e.second());
   const bool looks_for_b = decider_b == kNotLookedAt;
   NearestProbe probe_b{b, 0.f};
   if (__any_sync(kFullWarp, looks_for_b)) probe_b = nearest_probe_if(looks_for_b, f, near, b);
@@ -43,8 +44,10 @@ __device__ __forceinline__ void walk_edge(const WallJob &job, const WallEdge &e,
     const NearestProbe probe = nearest_probe_if(!walk.is_open(), f, near, x);
     if (walk.is_open()) continue;
     if (probe.distance > p.depth) {
-      if (near.rank() == 0)
-        mark_wall(job.bricks, e.brick, marks_first_end(probe_a, probe_b) ? e.first : e.second, job.marks);
+      if (near.rank() == 0) {
+        const WallEdge wall = edge_to_walk(job, *item);  // once more: walls are few, and registers are
+        mark_wall(job.bricks, wall.brick, marks_first_end(probe_a, probe_b) ? wall.first() : wall.second(), job.marks);
+      }
       walk = {0.f, 0.f};
     } else {
       walk.at += kWallStep + way_out(p, probe, x, direction);
@@ -52,10 +55,6 @@ __device__ __forceinline__ void walk_edge(const WallJob &job, const WallEdge &e,
   }
 }
 
-__device__ __forceinline__ WallEdge edge_to_walk(const WallJob &job, uint64_t item) {
-  return wall_edge(job, static_cast<uint32_t>(item / (64 * kWallSteps)), static_cast<int>(item / 64 % kWallSteps),
-                   static_cast<int>(item % 64));
-}
 // How far from the middle of an edge balls decide about its points.
 __device__ __forceinline__ float walk_reach(const WallJob &job, int step) {
   return 0.5f * wall_step_length(step) * job.reach.spacing + 2.f * job.reach.slack;
@@ -66,7 +65,7 @@ __device__ __forceinline__ LaneCandidates<kWarp, true> choose_for_run(const Wall
                                                                       int count, uint32_t *room, int most) {
   const uint64_t own = run[lane_id() < count ? lane_id() : 0];
   const WallEdge e = edge_to_walk(job, own == kNoWalk ? run[0] : own);
-  const Vec3<float> middle = (wall_point(job, e.brick, e.first) + wall_point(job, e.brick, e.second)) * 0.5f;
+  const Vec3<float> middle = (wall_point(job, e.brick, e.first()) + wall_point(job, e.brick, e.second())) * 0.5f;
   const Vec3<float> low(-warp_maximum(-middle.x), -warp_maximum(-middle.y), -warp_maximum(-middle.z)),
       high(warp_maximum(middle.x), warp_maximum(middle.y), warp_maximum(middle.z)), center = (low + high) * 0.5f;
   const float reach = square_root(length_squared(high - center)) + walk_reach(job, kWallSteps - 1) + job.reach.slack;
@@ -78,8 +77,8 @@ __device__ __forceinline__ LaneCandidates<kWarp, true> choose_for_run(const Wall
 // run is chosen first, and from that what can decide about each.
 template <int kLanes, int kRun>
 static __global__ __launch_bounds__(kWallThreads,
-                                    blocks_at_once(kWallThreads, 10)) void walk_edges_kernel(QueuedItems queued,
-                                                                                             WallJob job) {
+                                    blocks_at_once(kWallThreads, 8)) void walk_edges_kernel(QueuedItems queued,
+                                                                                            WallJob job) {
   const LaunchItems items = queued.in_turn();
   constexpr int kTeams = kWallThreads / kLanes, kWarpTeams = kWarp / kLanes, kRoom = 2560 / kTeams;
   constexpr bool kChosenTwice = kRun > kWarpTeams;
@@ -97,18 +96,18 @@ static __global__ __launch_bounds__(kWallThreads,
     if constexpr (kChosenTwice) near_run = choose_for_run(job, run, count, run_memory[warp], kRunRoom);
     for (int n0 = 0; n0 < count && run[n0] != kNoWalk; n0 += kWarpTeams) {
       const int n = n0 + team % kWarpTeams;
-      const uint64_t own = run[n < count ? n : n0];
-      const bool on = n < count && own != kNoWalk;
-      const WallEdge e = edge_to_walk(job, on ? own : run[n0]);
-      const Vec3<float> a = wall_point(job, e.brick, e.first), b = wall_point(job, e.brick, e.second);
+      const bool on = n < count && run[n] != kNoWalk;
+      const uint64_t *const item = run + (on ? n : n0);
+      const WallEdge e = edge_to_walk(job, *item);
+      const Vec3<float> a = wall_point(job, e.brick, e.first()), b = wall_point(job, e.brick, e.second());
       const auto choose = [&](const auto &all) {
         return choose_near<kLanes>(job.features, all, (a + b) * 0.5f, walk_reach(job, e.step), edge_memory[team],
                                    kRoom);
       };
       if constexpr (kChosenTwice)
-        walk_edge(job, e, a, b, on, choose(near_run));
+        walk_edge(job, item, e, a, b, on, choose(near_run));
       else
-        walk_edge(job, e, a, b, on, choose(row_candidates(job.view, e.slot)));
+        walk_edge(job, item, e, a, b, on, choose(row_candidates(job.view, e.slot)));
     }
   }
 }
@@ -149,12 +148,17 @@ void mark_thin_walls(E &executor, const FeatureView &features, const BrickSet &b
   job.walk_room = static_cast<unsigned long long>(rooms.walked_edges * usual_walks);
   constexpr int kLongWalkRun = 8;
   job.walk_run = walked_edges(features.parameters) > kLongWalkRun ? kLongWalkRun : 1;
-  const bool has_many = walked_edges(features.parameters) > 1;  // edges to be looked at, in each leaf
   for (;;) {
     const auto before_walks = executor.arena().mark();
     job.walks = executor.template allocate<uint64_t>(static_cast<size_t>(job.walk_room)).data;
-    executor.launch("drop_open_edges", has_many ? drop_open_edges_kernel<kWallWarps> : drop_open_edges_kernel<1>,
-                    leaves, LaunchShape{kWallThreads, kWallWarps, 36 * 48 + 2 * look, most_blocks}, job);
+    // Of the least share of a warp: first ends and edges for each lane, and as many asked of the others' probes.
+    constexpr uint64_t kStarts = kLeastWallLeaves * 64 / kWarp, kEdges = kStarts * kWallSteps;
+    executor.launch("drop_open_edges", drop_open_edges_kernel, leaves,
+                    LaunchShape{kWallThreads, kWallWarps * kLeastWallLeaves,
+                                kStarts * (64 + uint64_t(candidates.longest_row)) +
+                                    kEdges * (kWarp * 2 + uint64_t(features.most_caps) * 3 / 4),
+                                most_blocks},
+                    job);
     found = executor.expect("walls", counters, WallCounters{static_cast<uint32_t>(leaves), job.walk_room});
     if (found.walks <= job.walk_room) break;
     executor.arena().rewind(before_walks);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// GPU: edges that may pass through thin walls. A thread per leaf finds by signs which they are; a warp per leaf drops
-// those that the probes nearest to their ends cover, which signs have left behind.
+// GPU: edges that may pass through thin walls. A thread per leaf finds by signs which they are; then, by a thread per
+// first end and a thread per edge, those are dropped that the probes nearest to their ends cover, which signs have left
+// behind.
 #pragma once
 
 #include "surface/cuda/projection_cuda.cuh"
@@ -71,16 +72,24 @@ static __global__ __launch_bounds__(kWallThreads, 6) void find_wall_candidates_k
   append(job.leaves, &job.counters->leaves, slot, any);
 }
 
-// An edge of a slice, by the number in the list.
+// An edge of a slice.
 struct WallEdge {
   uint32_t brick;  // of the set
   uint32_t slot;
   int step, bit;
-  glm::ivec3 first, second;  // points, counted from the first one of the brick
+  // Points, counted from the first one of the brick.
+  __device__ __forceinline__ glm::ivec3 first() const {
+    return brick_point(static_cast<int>(slot % kLeavesPerBrick), bit);
+  }
+  __device__ __forceinline__ glm::ivec3 second() const { return first() + wall_step(step); }
 };
 __device__ __forceinline__ WallEdge wall_edge(const WallJob &job, uint32_t slot, int step, int bit) {
-  const glm::ivec3 first = brick_point(static_cast<int>(slot % kLeavesPerBrick), bit);
-  return {job.view.first_brick + slot / kLeavesPerBrick, slot, step, bit, first, first + wall_step(step)};
+  return {job.view.first_brick + slot / kLeavesPerBrick, slot, step, bit};
+}
+// By its number in the list.
+__device__ __forceinline__ WallEdge edge_to_walk(const WallJob &job, uint64_t item) {
+  return wall_edge(job, static_cast<uint32_t>(item / (64 * kWallSteps)), static_cast<int>(item / 64 % kWallSteps),
+                   static_cast<int>(item % 64));
 }
 __device__ __forceinline__ Vec3<float> wall_point(const WallJob &job, uint32_t brick, const glm::ivec3 &p) {
   const glm::ivec3 at = job.bricks.lattice.first_point(job.bricks.place(brick)) + p;
@@ -129,176 +138,211 @@ __device__ __forceinline__ NearestProbe decided_probe(const FeatureView &f, uint
   return {y.position, y.distance};
 }
 
-// What a warp knows of its leaf, in shared memory. No edges: it has none.
-struct WallScratch {
-  float4 probe[64];      // of first ends, by their bit
-  uint32_t decider[64];  // about them
-  uint32_t candidates[kWallSteps][2];
-  uint32_t points[2];              // first ends
-  uint16_t edge[kWallSteps * 64];  // 64 * step + bit
-  uint8_t bit[64];                 // of first ends
-  uint32_t slot;
-  int edge_count;
-  glm::ivec3 low;  // its first point
+// A warp takes a run of leaves, shorter where the GPU has room for more warps, and in a round as many of the next ones
+// as have no more than so many first ends together.
+constexpr int kRoundStarts = 64, kRoundLeaves = 16;
+constexpr uint32_t kLeastWallLeaves = 1, kMostWallLeaves = 12;
 
-  __device__ __forceinline__ Vec3<float> position(const Lattice &lattice, int bit, const glm::ivec3 &step) const {
-    return lattice.position(low.x + (bit & 3) + step.x, low.y + (bit >> 2 & 3) + step.y, low.z + (bit >> 4) + step.z);
+// The next leaves; a lane for each.
+struct WallRound {
+  int leaves, starts;  // how many, and how many first ends
+  uint32_t slot;
+  uint64_t points;  // first ends
+  int starts_with;  // of the leaves before, and its own
+
+  __device__ __forceinline__ WallRound(const WallJob &job, uint32_t first, uint32_t last) : slot(0), points(0) {
+    const uint32_t k = first + static_cast<uint32_t>(lane_id());
+    const bool on = lane_id() < kRoundLeaves && k < last;
+    if (on) {
+      slot = job.leaves[k];
+#pragma unroll
+      for (int s = 0; s < kWallSteps; ++s) points |= job.edges[size_t(slot) * kWallSteps + size_t(s)];
+    }
+    starts_with = warp_inclusive_sum(popcount64(points), lane_id());
+    leaves = __popc(__ballot_sync(kFullWarp, on && starts_with <= kRoundStarts));
+    starts = __shfl_sync(kFullWarp, starts_with, leaves - 1);
   }
 };
-constexpr uint16_t kOpenEdge = 0xffff;
+static_assert(kRoundStarts >= 64, "there is room for the first ends of any leaf");
+
+// A first end: its leaf, of the round and of the slice, where that one's first ends begin, and its bit.
+struct WallStart {
+  uint32_t slot;
+  uint8_t leaf, first, count, bit;
+};
+// What a warp knows of its round.
+struct WallScratch {
+  float4 probe[kRoundStarts];  // of each first end
+  uint32_t decider[kRoundStarts];
+  WallStart start[kRoundStarts];
+  uint16_t edge[kRoundStarts * kWallSteps];  // number of the first end, and the step in kStepUnit
+  uint32_t leaf_walks[kRoundLeaves];         // edges that are left
+  int walk_shift[kRoundLeaves];              // from their place in the round to the one in the list
+};
+constexpr int kStepUnit = kRoundStarts;
+static_assert(kStepUnit * kWallSteps <= 0x10000, "two bytes");
+
+// The steps to second ends that the probe of a first end does not cover. That is put into the scratch.
+__device__ __forceinline__ uint32_t uncovered_steps(const WallJob &job, const WallStart &start, int n,
+                                                    WallScratch *scratch) {
+  const FeatureView &f = job.features;
+  const WallEdge e = wall_edge(job, start.slot, 0, start.bit);
+  const Vec3<float> x = wall_point(job, e.brick, e.first());
+  const uint32_t decider = first_decider(job, start.slot, start.bit, x);
+  const NearestProbe probe = decided_probe(f, decider, x);
+  scratch->probe[n] = make_float4(probe.center.x, probe.center.y, probe.center.z, probe.distance);
+  scratch->decider[n] = decider;
+  if (probe.distance > f.parameters.depth) return 0;
+  const float depth2 = f.parameters.depth * f.parameters.depth;
+  // Halves of the words of its leaf.
+  const uint32_t *const edges =
+      reinterpret_cast<const uint32_t *>(job.edges + size_t(start.slot) * kWallSteps) + start.bit / 32;
+  uint32_t left = 0;
+#pragma unroll
+  for (int s = 0; s < kWallSteps; ++s) {
+    const bool covered = length_squared(second_offset(x - probe.center, s, job.reach.spacing)) < depth2;
+    left |= covered ? 0u : (edges[2 * s] >> start.bit % 32 & 1) << s;
+  }
+  return left;
+}
 
 __device__ __forceinline__ Vec3<float> from_lane(const Vec3<float> &v, int lane) {
   return {__shfl_sync(kFullWarp, v.x, lane), __shfl_sync(kFullWarp, v.y, lane), __shfl_sync(kFullWarp, v.z, lane)};
 }
 
-// Lists the edges of a leaf that the probes of their first ends do not cover. A warp together.
-__device__ __forceinline__ void list_uncovered_edges(const WallJob &job, uint32_t slot, WallScratch *scratch) {
-  const FeatureView &f = job.features;
-  const int lane = lane_id();
-  const uint64_t own = lane < kWallSteps ? job.edges[size_t(slot) * kWallSteps + size_t(lane)] : 0;
-  const uint32_t own_low = static_cast<uint32_t>(own), own_high = static_cast<uint32_t>(own >> 32);
-  const uint32_t points_low = warp_or(own_low), points_high = warp_or(own_high);
-  const uint64_t points = static_cast<uint64_t>(points_high) << 32 | points_low;
-  if (lane < kWallSteps) {
-    scratch->candidates[lane][0] = own_low;
-    scratch->candidates[lane][1] = own_high;
-  }
-  if (lane == 0) {
-    scratch->points[0] = points_low;
-    scratch->points[1] = points_high;
-    scratch->slot = slot;
-    scratch->low = job.bricks.lattice.first_point(job.bricks.place(job.view.first_brick + slot / kLeavesPerBrick)) +
-                   brick_point(static_cast<int>(slot % kLeavesPerBrick), 0);
-  }
-  for (int bit = lane; bit < 64; bit += kWarp)
-    if (points >> bit & 1) scratch->bit[popcount64(points & ((uint64_t(1) << bit) - 1))] = static_cast<uint8_t>(bit);
-  __syncwarp();
-
-  const int starts = popcount64(points);
-  int count = 0;
-  for (int n0 = 0; n0 < starts; n0 += kWarp) {
-    const bool on = n0 + lane < starts;
-    const int bit = scratch->bit[on ? n0 + lane : starts - 1];
-    const Vec3<float> x = scratch->position(job.bricks.lattice, bit, glm::ivec3(0));
-    const uint32_t decider = first_decider(job, slot, bit, x);
-    const NearestProbe probe = decided_probe(f, decider, x);
-    __syncwarp();
-    if (on) {
-      scratch->probe[bit] = make_float4(probe.center.x, probe.center.y, probe.center.z, probe.distance);
-      scratch->decider[bit] = decider;
-    }
-    const float depth2 = f.parameters.depth * f.parameters.depth;
-    uint32_t left = 0;
-#pragma unroll
-    for (int s = 0; s < kWallSteps; ++s) {
-      const bool covered = length_squared(second_offset(x - probe.center, s, job.reach.spacing)) < depth2;
-      const uint32_t candidate = scratch->candidates[s][bit >> 5] >> (bit & 31) & 1;
-      left |= covered ? 0u : candidate << s;
-    }
-    if (!on || probe.distance > f.parameters.depth) left = 0;
-    const int own_count = __popc(left), with_own = warp_inclusive_sum(own_count, lane);
-    for (int place = count + with_own - own_count; left; left &= left - 1)
-      scratch->edge[place++] = static_cast<uint16_t>(64 * (__ffs(static_cast<int>(left)) - 1) + bit);
-    count += __shfl_sync(kFullWarp, with_own, kWarp - 1);
-  }
-  if (lane == 0) scratch->edge_count = count;
-}
-
 // Which of a warp's edges, one to each lane, are left by the probes of both ends, and those of the other first ends of
 // the same leaf.
-__device__ __forceinline__ bool is_left_by_probes(const WallJob &job, const WallScratch *leaves, int whose, int number,
-                                                  bool on) {
+__device__ __forceinline__ bool is_left_by_probes(const WallJob &job, const WallScratch &scratch, int number, bool on) {
   const FeatureView &f = job.features;
-  const int lane = lane_id();
-  const WallScratch &leaf = leaves[whose];
+  const int n = number % kStepUnit, step = number / kStepUnit;
   bool left = on, rests = false;
   WallRest rest{};
   if (on) {
-    const WallEdge e = wall_edge(job, leaf.slot, number / 64, number % 64);
-    const uint32_t decider = decider_at(job, e.brick, e.second);
+    const WallStart start = scratch.start[n];
+    const WallEdge e = wall_edge(job, start.slot, step, start.bit);
+    const uint32_t decider = decider_at(job, e.brick, e.second());
     if (decider != kNotLookedAt) {
-      const float4 v = leaf.probe[e.bit];
-      const Vec3<float> a = leaf.position(job.bricks.lattice, e.bit, glm::ivec3(0)),
-                        b = leaf.position(job.bricks.lattice, e.bit, wall_step(e.step));
-      const bool same_atom = decider == leaf.decider[e.bit] && (decider & kOnContact) && decider < kNotLookedAt;
+      const float4 v = scratch.probe[n];
+      const Vec3<float> a = wall_point(job, e.brick, e.first()), b = wall_point(job, e.brick, e.second());
+      const bool same_atom = decider == scratch.decider[n] && (decider & kOnContact) && decider < kNotLookedAt;
       const WallWalk walk =
-          begin_wall_walk(f.parameters, e.step, a, {{v.x, v.y, v.z}, v.w}, b, decided_probe(f, decider, b));
+          begin_wall_walk(f.parameters, step, a, {{v.x, v.y, v.z}, v.w}, b, decided_probe(f, decider, b));
       left = rests = !walk.is_open() && !(same_atom && rolls_over(f, decider & ~kOnContact, a, b));
-      rest = rest_of_walk(walk, e.step, a);
+      rest = rest_of_walk(walk, step, a);
     }
   }
   for (unsigned open = __ballot_sync(kFullWarp, rests); open; open &= open - 1) {
-    const int asking = __ffs(static_cast<int>(open)) - 1;
+    const int asking = lowest_bit32(open);
     const WallRest asked{from_lane(rest.from, asking), from_lane(rest.to, asking)};
-    const WallScratch &asked_leaf = leaves[__shfl_sync(kFullWarp, whose, asking)];
+    const WallStart start = scratch.start[__shfl_sync(kFullWarp, n, asking)];
     bool covered = false;
-#pragma unroll
-    for (int half = 0; half < 2; ++half) {
-      if (!(asked_leaf.points[half] >> lane & 1)) continue;
-      const float4 v = asked_leaf.probe[kWarp * half + lane];
+    for (int k = lane_id(); k < start.count; k += kWarp) {
+      const float4 v = scratch.probe[start.first + k];
       covered |= v.w <= f.parameters.depth && covers_rest(f.parameters, {v.x, v.y, v.z}, asked);
     }
-    if (__any_sync(kFullWarp, covered) && lane == asking) left = false;
+    if (__any_sync(kFullWarp, covered) && lane_id() == asking) left = false;
   }
   return left;
 }
 
+// Lists the edges of a round that its probes leave, in its scratch; returns how many.
+__device__ __forceinline__ uint32_t find_edges_to_walk(const WallJob &job, const WallRound &round,
+                                                       WallScratch *scratch) {
+  const int lane = lane_id();
+  uint32_t edges = 0;
+  for (int n0 = 0; n0 < round.starts; n0 += kWarp) {
+    const int n = n0 + lane;
+    int leaf = 0;  // the first whose sum exceeds n
+#pragma unroll
+    for (int d = kRoundLeaves / 2; d > 0; d >>= 1)
+      if (__shfl_sync(kFullWarp, round.starts_with, leaf + d - 1) <= n) leaf += d;
+    const uint32_t slot = __shfl_sync(kFullWarp, round.slot, leaf);
+    const uint64_t points = __shfl_sync(kFullWarp, round.points, leaf);
+    const int count = popcount64(points), first = __shfl_sync(kFullWarp, round.starts_with, leaf) - count;
+    uint32_t left = 0;
+    if (n < round.starts) {
+      const WallStart start{slot, static_cast<uint8_t>(leaf), static_cast<uint8_t>(first), static_cast<uint8_t>(count),
+                            static_cast<uint8_t>(nth_bit64(points, n - first))};
+      scratch->start[n] = start;
+      left = uncovered_steps(job, start, n, scratch);
+    }
+    __syncwarp();
+    const uint32_t own = static_cast<uint32_t>(__popc(left)), with_own = warp_inclusive_sum(own, lane);
+    for (uint32_t place = edges + with_own - own; left; left &= left - 1)
+      scratch->edge[place++] = static_cast<uint16_t>(kStepUnit * lowest_bit32(left) + n);
+    edges += __shfl_sync(kFullWarp, with_own, kWarp - 1);
+  }
+  __syncwarp();
+
+  uint32_t walks = 0;
+  for (uint32_t e0 = 0; e0 < edges; e0 += kWarp) {
+    const bool on = e0 + static_cast<uint32_t>(lane) < edges;
+    const uint16_t edge = on ? scratch->edge[e0 + static_cast<uint32_t>(lane)] : uint16_t(0);
+    const bool left = is_left_by_probes(job, *scratch, edge, on);
+    const uint32_t place = append_place(left, &walks);  // never beyond those looked at
+    if (left) scratch->edge[place] = edge;
+    __syncwarp();
+  }
+  return walks;
+}
+
+// Puts the edges that are left of a round behind those of others: those of a leaf in whole runs.
+__device__ __forceinline__ void list_walks(const WallJob &job, uint32_t walks, WallScratch *scratch) {
+  const uint32_t run = job.walk_run, lane = static_cast<uint32_t>(lane_id());
+  const auto start_of = [&](uint32_t w) { return scratch->start[scratch->edge[w] % kStepUnit]; };
+  if (lane < kRoundLeaves) scratch->leaf_walks[lane] = 0;
+  __syncwarp();
+  for (uint32_t w = lane; w < walks; w += kWarp) atomicAdd(&scratch->leaf_walks[start_of(w).leaf], 1u);
+  __syncwarp();
+  const uint32_t own = lane < kRoundLeaves ? scratch->leaf_walks[lane] : 0, places = (own + run - 1) / run * run;
+  const uint32_t with_own = warp_inclusive_sum(own, lane_id()), places_with = warp_inclusive_sum(places, lane_id());
+  if (lane < kRoundLeaves)
+    scratch->walk_shift[lane] = static_cast<int>(places_with - places) - static_cast<int>(with_own - own);
+  unsigned long long base = 0;
+  if (lane == kWarp - 1) base = atomicAdd(&job.counters->walks, static_cast<unsigned long long>(places_with));
+  base = __shfl_sync(kFullWarp, base, kWarp - 1);
+  __syncwarp();
+  const auto write = [&](uint32_t place, uint64_t walk) {
+    if (base + place < job.walk_room) job.walks[base + place] = walk;
+  };
+  for (uint32_t w = lane; w < walks; w += kWarp) {
+    const WallStart start = start_of(w);
+    const uint32_t step = scratch->edge[w] / kStepUnit,
+                   place = w + static_cast<uint32_t>(scratch->walk_shift[start.leaf]);
+    write(place, static_cast<uint64_t>(start.slot) * (kWallSteps * 64) + step * 64 + start.bit);
+    const bool is_last = w + 1 == walks || start_of(w + 1).leaf != start.leaf;
+    if (!is_last) continue;
+    const uint32_t filled = scratch->leaf_walks[start.leaf] % run;
+    for (uint32_t k = filled; k > 0 && k < run; ++k) write(place + 1 + k - filled, kNoWalk);
+  }
+}
+
 // Lists the edges of leaves that the probes nearest to their ends, as far as they are known, do not cover together. A
-// warp per leaf that has edges. So many leaves' edges are looked at together: of all in a block where each has a dozen,
-// so that lanes are not idle, and else, where the warps would wait for each other, of one.
-template <int kTogether>
-static __global__ __launch_bounds__(kWallThreads, 8) void drop_open_edges_kernel(QueuedItems queued, WallJob job) {
-  static_assert(kTogether == 1 || kTogether == kWallWarps, "a warp or a block");
+// leaf has few first ends, and few edges that are left by the first probe: a warp takes several leaves at a time, so
+// that its lanes are not idle.
+static __global__ __launch_bounds__(kWallThreads,
+                                    blocks_at_once(kWallThreads, 10)) void drop_open_edges_kernel(QueuedItems queued,
+                                                                                                  WallJob job) {
   const LaunchItems items = queued.in_turn();
-  __shared__ WallScratch leaves_memory[kWallWarps];
-  const int warp = static_cast<int>(threadIdx.x) / kWarp, rank = warp % kTogether, lane = lane_id();
-  WallScratch &own = leaves_memory[warp], *const together = leaves_memory + (warp - rank);
-  const size_t leaves = job.counters->leaves, total = leaves < items.last ? leaves : items.last;
-  for (size_t first = items.first + blockIdx.x * size_t(kWallWarps) + static_cast<size_t>(warp - rank); first < total;
-       first += size_t(gridDim.x) * kWallWarps) {
-    const size_t k = first + static_cast<size_t>(rank);
-    if (k < total)
-      list_uncovered_edges(job, job.leaves[k], &own);
-    else if (lane == 0)
-      own.edge_count = 0;
-    sync_warps<kTogether>();
-
-    int ends[kTogether], all = 0;
-#pragma unroll
-    for (int w = 0; w < kTogether; ++w) ends[w] = all += together[w].edge_count;
-    for (int n0 = kWarp * rank; n0 < all; n0 += kWarp * kTogether) {
-      const bool on = n0 + lane < all;
-      const int n = on ? n0 + lane : n0;
-      int whose = 0, before = 0;
-#pragma unroll
-      for (int w = 0; w + 1 < kTogether; ++w)
-        if (n >= ends[w]) whose = w + 1, before = ends[w];
-      uint16_t &edge = together[whose].edge[n - before];
-      const bool left = is_left_by_probes(job, together, whose, edge, on);
-      if (on && !left) edge = kOpenEdge;
+  __shared__ WallScratch scratch_memory[kWallWarps];
+  WallScratch &scratch = scratch_memory[threadIdx.x / kWarp];
+  const uint32_t first = static_cast<uint32_t>(items.first);
+  const uint32_t end = job.counters->leaves < items.last ? job.counters->leaves : static_cast<uint32_t>(items.last);
+  if (end <= first) return;
+  const uint32_t warps = gridDim.x * kWallWarps, even = (end - first - 1) / warps + 1,
+                 share = even > kMostWallLeaves    ? kMostWallLeaves
+                         : even < kLeastWallLeaves ? kLeastWallLeaves
+                                                   : even;
+  for (uint32_t own = first + (blockIdx.x * kWallWarps + threadIdx.x / kWarp) * share; own < end;
+       own += warps * share) {
+    const uint32_t own_end = own + share < end ? own + share : end;
+    for (uint32_t next = own; next < own_end;) {
+      const WallRound round(job, next, own_end);
+      const uint32_t walks = find_edges_to_walk(job, round, &scratch);
+      if (walks > 0) list_walks(job, walks, &scratch);
+      next += static_cast<uint32_t>(round.leaves);
+      __syncwarp();  // the scratch is not looked at any more
     }
-    sync_warps<kTogether>();
-
-    if (k < total) {
-      int walks = 0;
-      const int count = own.edge_count;
-      for (int n0 = 0; n0 < count; n0 += kWarp) {
-        const uint16_t edge = n0 + lane < count ? own.edge[n0 + lane] : kOpenEdge;
-        const int place = append_place(edge != kOpenEdge, &walks);  // never beyond those looked at
-        __syncwarp();
-        if (edge != kOpenEdge) own.edge[place] = edge;
-        __syncwarp();
-      }
-      const uint32_t places = (static_cast<uint32_t>(walks) + job.walk_run - 1) / job.walk_run * job.walk_run;
-      unsigned long long base = 0;
-      if (lane == 0 && places > 0) base = atomicAdd(&job.counters->walks, static_cast<unsigned long long>(places));
-      base = __shfl_sync(kFullWarp, base, 0);
-      for (int n = lane; n < static_cast<int>(places); n += kWarp)
-        if (base + static_cast<unsigned>(n) < job.walk_room)
-          job.walks[base + static_cast<unsigned>(n)] =
-              n < walks ? static_cast<uint64_t>(own.slot) * (kWallSteps * 64) + own.edge[n] : kNoWalk;
-    }
-    sync_warps<kTogether>();  // the leaves are not looked at any more
   }
 }
 

@@ -17,27 +17,18 @@ namespace quickses {
 
 // Edges by their first end: its lattice point and the step to the second.
 constexpr int kWallSteps = 9;
+constexpr int kWallStepTable[kWallSteps][3] = {{1, 0, 0}, {0, 1, 0},  {0, 0, 1}, {1, 1, 0}, {1, -1, 0},
+                                               {1, 0, 1}, {1, 0, -1}, {0, 1, 1}, {0, 1, -1}};
+// Along one axis, two bits each: the lanes of a GPU ask for different ones, as of no table quickly.
+constexpr uint32_t packed_wall_steps(int axis) {
+  uint32_t packed = 0;
+  for (int k = 0; k < kWallSteps; ++k) packed |= static_cast<uint32_t>(kWallStepTable[k][axis] + 1) << 2 * k;
+  return packed;
+}
 QSES_FN glm::ivec3 wall_step(int k) {
-  switch (k) {
-    case 0:
-      return {1, 0, 0};
-    case 1:
-      return {0, 1, 0};
-    case 2:
-      return {0, 0, 1};
-    case 3:
-      return {1, 1, 0};
-    case 4:
-      return {1, -1, 0};
-    case 5:
-      return {1, 0, 1};
-    case 6:
-      return {1, 0, -1};
-    case 7:
-      return {0, 1, 1};
-    default:
-      return {0, 1, -1};
-  }
+  constexpr uint32_t kAlongX = packed_wall_steps(0), kAlongY = packed_wall_steps(1), kAlongZ = packed_wall_steps(2);
+  const auto along = [&](uint32_t packed) { return static_cast<int>(packed >> 2 * k & 3) - 1; };
+  return {along(kAlongX), along(kAlongY), along(kAlongZ)};
 }
 // Their length, in spacings.
 QSES_FN float wall_step_length(int k) { return k < 3 ? 1.f : 1.41421356f; }
