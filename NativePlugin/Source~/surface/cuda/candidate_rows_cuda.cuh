@@ -66,21 +66,21 @@ __device__ __forceinline__ void visit_cells(const GatherTeam<kWarps> &team, cons
   const float beyond = around.extent + reach;
   const CellBox box = cells_around(grid.cells, {low.x - reach, low.y - reach, low.z - reach},
                                    {low.x + beyond, low.y + beyond, low.z + beyond});
-  const int rows_y = box.y1 - box.y0 + 1, rows = rows_y * (box.z1 - box.z0 + 1);
-  const int begin = rows * team.rank() / kWarps, end = rows * (team.rank() + 1) / kWarps;
+  const int rows = box.rows(), begin = rows * team.rank() / kWarps, end = rows * (team.rank() + 1) / kWarps;
   visit_runs(
       end - begin,
-      [&](int r) { return grid.run(box.x0, box.x1, box.y0 + (begin + r) % rows_y, box.z0 + (begin + r) / rows_y); },
+      [&](int r) {
+        const CellBox::Row row = box.row(begin + r);
+        return grid.run(box.x0, box.x1, row.y, row.z);
+      },
       visit);
 }
 
 // A list of one kind of things, and a warp's shared memory for the row it gathers.
 struct RowMemory {
   uint32_t *near;
-  uint8_t *near_leaves;  // nullptr: this kind has none
   uint32_t near_room;
   uint32_t *items;
-  uint8_t *leaves;
   unsigned long long *counter;
   unsigned long long room;
 };
@@ -90,46 +90,41 @@ struct GatheredRow {
   bool fits;
 };
 
-// Gathers those of the things that visit_all(visit) visits for which test(item, &leaves) holds, in that order. The
-// first round counts, and keeps few in shared memory; a second one writes more. One copy of the test for both, so that
-// they never disagree.
-template <int kWarps, class VisitAll, class Test>
+// Gathers those of the things that visit_all(visit) visits for which test(item) holds, in that order. What is listed of
+// each is number_of(item, place in the list), which is asked once all are known, so that no lane is idle. The first
+// round counts, and keeps few in shared memory; a second one writes more. One copy of the test for both, so that they
+// never disagree.
+template <int kWarps, class VisitAll, class Test, class NumberOf>
 __device__ __forceinline__ GatheredRow gather_row(const GatherTeam<kWarps> &team, const VisitAll &visit_all,
-                                                  const RowMemory &memory, const Test &test) {
-  const int lane = lane_id();
-  uint32_t *items = memory.near;
-  uint8_t *leaves = memory.near_leaves;
-  uint32_t room = memory.near_room;
+                                                  const RowMemory &memory, const Test &test,
+                                                  const NumberOf &number_of) {
+  uint32_t *to = memory.near, room = memory.near_room;
   GatheredRow row{0, 0, false};
   for (int round = 0;; ++round) {
     uint32_t n = 0;
     visit_all([&](uint32_t k, bool on) {
-      uint32_t set = 0;
-      const bool near = on && test(k, &set);
+      const bool near = on && test(k);
       const uint32_t place = append_place(near, &n);
-      if (near && place < room) {
-        items[place] = k;
-        if (leaves) leaves[place] = static_cast<uint8_t>(set);
-      }
+      if (near && place < room) to[place] = k;
     });
-    if (round == 1) break;
-    uint32_t before = 0;
-    team.for_each_word(n, [&](int rank, uint32_t count) {
-      if (rank < team.rank()) before += count;
-      row.count += count;
-    });
-    if (team.leads()) row.first = atomicAdd(memory.counter, static_cast<unsigned long long>(row.count));
-    row.first = team.from_leader(row.first);
-    row.fits = row.first + row.count <= memory.room;
-    if (!row.fits) break;  // all will be done again
-    items = memory.items + row.first + before;
-    if (leaves) leaves = memory.leaves + row.first + before;
-    room = 0xffffffffu;
-    if (n > memory.near_room) continue;
+    if (round == 0) {
+      uint32_t before = 0;
+      team.for_each_word(n, [&](int rank, uint32_t count) {
+        if (rank < team.rank()) before += count;
+        row.count += count;
+      });
+      if (team.leads()) row.first = atomicAdd(memory.counter, static_cast<unsigned long long>(row.count));
+      row.first = team.from_leader(row.first);
+      row.fits = row.first + row.count <= memory.room;
+      if (!row.fits) break;  // all will be done again
+      to = memory.items + row.first + before;
+      room = 0xffffffffu;
+      if (n > memory.near_room) continue;
+    }
     __syncwarp();
-    for (uint32_t k = static_cast<uint32_t>(lane); k < n; k += kWarp) {
-      items[k] = memory.near[k];
-      if (leaves) leaves[k] = memory.near_leaves[k];
+    for (uint32_t k = static_cast<uint32_t>(lane_id()); k < n; k += kWarp) {
+      const uint32_t item = round == 0 ? memory.near[k] : to[k];
+      to[k] = number_of(item, static_cast<size_t>(to - memory.items) + k);
     }
     break;
   }

@@ -42,9 +42,8 @@ __device__ __forceinline__ int gather_caps(const NeighborGridView &atoms, float 
   const float edge = 1.f / cells.inverse_edge;
   // Cells are told apart by rounded arithmetic: coordinates are good to this much.
   const float slack = 1e-3f + 1e-6f * edge * static_cast<float>(cells.count.x + cells.count.y + cells.count.z);
-  const int rows_y = box.y1 - box.y0 + 1, row_count = rows_y * (box.z1 - box.z0 + 1);
   const auto run_of = [&](int r) {
-    const int y = box.y0 + r % rows_y, z = box.z0 + r / rows_y;
+    const auto [y, z] = box.row(r);
     // Only the part of the row that the reach leaves beside the distance to it.
     const float y_low = cells.origin.y + static_cast<float>(y) * edge - self.center.y;
     const float z_low = cells.origin.z + static_cast<float>(z) * edge - self.center.z;
@@ -57,7 +56,7 @@ __device__ __forceinline__ int gather_caps(const NeighborGridView &atoms, float 
                      cells.cell_along(self.center.x + left, cells.origin.x, cells.count.x), y, z);
   };
   int n = 0;
-  visit_runs(row_count, run_of, [&](uint32_t k, bool on) {
+  visit_runs(box.rows(), run_of, [&](uint32_t k, bool on) {
     bool meets = false;
     Vec3<float> axis(0.f, 0.f, 0.f);
     float cosine = 0.f;

@@ -25,20 +25,7 @@ struct GatherJob {
   uint64_t *signs;  // of inactive leaves; nullptr: known already
 };
 
-// The ball that a point is deepest in, of `count` atoms: atom_at(k). No atoms: no ball, and a depth below all.
 constexpr uint32_t kNoAtom = 0xffffffffu;
-template <class AtomAt>
-__device__ __forceinline__ DeepestAtom warp_deepest_atom(const FeatureView &f, uint32_t count, const AtomAt &atom_at,
-                                                         const Vec3<float> &x) {
-  NumberedValue best{-2.f * kFarAway, kNoAtom};
-  for (uint32_t k = static_cast<uint32_t>(lane_id()); k < count; k += kWarp) {
-    const uint32_t i = atom_at(k);
-    const float depth = ball_depth(load(f.atoms.items + i), x);
-    if (depth > best.value) best = {depth, i};
-  }
-  best = warp_largest(best);
-  return {best.number, best.value};
-}
 
 // Whether the radial projection of a point on the ball it is deepest in is exposed.
 __device__ __forceinline__ bool projection_exposed(const FeatureView &f, uint32_t atom, const Vec3<float> &x,
@@ -47,23 +34,30 @@ __device__ __forceinline__ bool projection_exposed(const FeatureView &f, uint32_
   return is_exposed(f, atom, x - Vec3<float>(ball.center), offset_length(ball, depth));
 }
 
-// Sign of a leaf between whose points no surface passes: that of its centre. No arc is as near to it as depth.
+// Sign of a leaf between whose points no surface passes: that of its centre, to which no arc is as near as depth. By a
+// team of lanes for each of several leaves, all teams of a warp together.
+template <int kLanes>
 __device__ __forceinline__ bool uniform_leaf_inside(const GatherJob &job, const uint32_t *atoms, uint32_t count,
                                                     const Vec3<float> &center) {
-  const auto atom_at = [&](uint32_t k) { return atoms[k]; };  // this kernel wrote them
-  const DeepestAtom deepest = warp_deepest_atom(job.features, count, atom_at, center);
-  if (deepest.depth <= job.reach.least_depth) return false;
-  if (deepest.depth > job.reach.depth) return true;
-  return !projection_exposed(job.features, deepest.atom, center, deepest.depth);
+  NumberedValue deepest{-2.f * kFarAway, kNoAtom};
+  for (uint32_t k = static_cast<uint32_t>(lane_id() % kLanes); k < count; k += kLanes) {
+    const uint32_t i = atoms[k];  // this kernel wrote them
+    const float depth = ball_depth(load(job.features.atoms.items + i), center);
+    if (depth > deepest.value) deepest = {depth, i};
+  }
+  __syncwarp();
+  deepest = warp_largest<kLanes>(deepest);
+  if (deepest.value <= job.reach.least_depth) return false;
+  if (deepest.value > job.reach.depth) return true;
+  return !projection_exposed(job.features, deepest.number, center, deepest.value);
 }
 
 // The rows of one brick.
 template <int kWarps>
-static __global__ __launch_bounds__(kGatherWarps *kWarp, 8) void gather_candidates_kernel(QueuedItems queued,
+static __global__ __launch_bounds__(kGatherWarps *kWarp, 9) void gather_candidates_kernel(QueuedItems queued,
                                                                                           GatherJob job) {
   const LaunchItems bricks = queued.in_turn();
   __shared__ uint32_t near_memory[kGatherWarps][kGatherRoom];
-  __shared__ uint8_t near_leaves[kGatherWarps][kGatherRoom];
   __shared__ typename GatherTeam<kWarps>::Memory team_memory;
   const GatherTeam<kWarps> team{team_memory};
   const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();
@@ -77,48 +71,54 @@ static __global__ __launch_bounds__(kGatherWarps *kWarp, 8) void gather_candidat
   const glm::ivec3 first = lattice.first_point(job.bricks.place(job.view.first_brick + b));
   const Vec3<float> low = lattice.position(first.x, first.y, first.z);
 
-  // Atoms whose ball meets the box of the brick's vertices.
   uint32_t active = 0;
   const auto around = [&](const NeighborGridView &grid, const PointBox &box, float look) {
     return [=, &grid, &team](const auto &visit) { visit_cells(team, grid, box, look, visit); };
   };
+  // Atoms whose ball meets the box of the brick's vertices.
   const PointBox atom_box(low, extent, reach.grown);
   const GatheredRow atoms = gather_row(
       team, around(f.atoms, atom_box, f.parameters.max_radius + reach.slack),
-      {near_memory[warp], nullptr, kGatherRoom, job.view.atoms, nullptr, &job.room.counters->atoms, job.room.atoms},
-      [&](uint32_t k, uint32_t *) {
+      {near_memory[warp], kGatherRoom, job.view.atoms, &job.room.counters->atoms, job.room.atoms},
+      [&](uint32_t k) {
         const Sphere atom = load(f.atoms.items + k);
-        if (!atom_box.meets(atom.center, atom.radius + reach.slack)) return false;
-        if (f.cap_ranges[k].count != kBuriedAtom) {
-          const float surface = atom.radius - reach.depth, shell = reach.leaf_radius + reach.slack;
-          const float inner = fmaxf(0.f, surface - shell), outer = surface + shell;
+        return atom_box.meets(atom.center, atom.radius + reach.slack);
+      },
+      [&](uint32_t k, size_t) {
+        if (f.cap_ranges[k].count == kBuriedAtom) return k;
+        const Sphere atom = load(f.atoms.items + k);
+        const float surface = atom.radius - reach.depth, shell = reach.leaf_radius + reach.slack;
+        const float inner = fmaxf(0.f, surface - shell), outer = surface + shell;
 #pragma unroll
-          for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
-            const float d2 = length_squared(leaf_center(low, leaf, h) - Vec3<float>(atom.center));
-            if (d2 >= inner * inner && d2 <= outer * outer) active |= 1u << leaf;
-          }
+        for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
+          const float d2 = length_squared(leaf_center(low, leaf, h) - Vec3<float>(atom.center));
+          if (d2 >= inner * inner && d2 <= outer * outer) active |= 1u << leaf;
         }
-        return true;
+        return k;
       });
 
   // Arcs that can decide about a vertex start, and in which leaves about a lattice point.
   const PointBox points(low, extent, 0.f), arc_box(low, extent, reach.overhang);
-  const GatheredRow arcs = gather_row(team, around(f.arc_bounds, arc_box, reach.start_reach + f.max_arc_bound),
-                                      {near_memory[warp], near_leaves[warp], kGatherRoom, job.view.arcs,
-                                       job.view.arc_leaves, &job.room.counters->arcs, job.room.arcs},
-                                      [&](uint32_t k, uint32_t *leaves) {
-                                        const Sphere ball = load(f.arc_bounds.items + k);
-                                        if (!arc_box.meets(ball.center, ball.radius + reach.start_reach)) return false;
-                                        if (points.meets(ball.center, ball.radius + reach.depth + reach.slack)) {
-                                          const Arc arc = load(f.arcs + k);
+  const GatheredRow arcs = gather_row(
+      team, around(f.arc_bounds, arc_box, reach.start_reach + f.max_arc_bound),
+      {near_memory[warp], kGatherRoom, job.view.arcs, &job.room.counters->arcs, job.room.arcs},
+      [&](uint32_t k) {
+        const Sphere ball = load(f.arc_bounds.items + k);
+        return arc_box.meets(ball.center, ball.radius + reach.start_reach);
+      },
+      [&](uint32_t k, size_t place) {
+        uint32_t leaves = 0;
+        const Sphere ball = load(f.arc_bounds.items + k);
+        if (points.meets(ball.center, ball.radius + reach.depth + reach.slack)) {
+          const Arc arc = load(f.arcs + k);
 #pragma unroll 2
-                                          for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf)
-                                            if (arc_distance2(arc, leaf_center(low, leaf, h)) <= reach.sign_arcs2)
-                                              *leaves |= 1u << leaf;
-                                          active |= *leaves;
-                                        }
-                                        return true;
-                                      });
+          for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf)
+            if (arc_distance2(arc, leaf_center(low, leaf, h)) <= reach.sign_arcs2) leaves |= 1u << leaf;
+        }
+        job.view.arc_leaves[place] = static_cast<uint8_t>(leaves);
+        active |= leaves;
+        return k;
+      });
 
   uint32_t active_leaves = 0;
   team.for_each_word(warp_or(active), [&](int, uint32_t leaves) { active_leaves |= leaves; });
@@ -141,11 +141,14 @@ static __global__ __launch_bounds__(kGatherWarps *kWarp, 8) void gather_candidat
           b * kLeavesPerBrick + static_cast<uint32_t>(lane);
   }
   if (!job.signs) return;
-  for (int leaf = team.rank(); leaf < kLeavesPerBrick; leaf += kWarps) {
-    if (active_leaves >> leaf & 1) continue;
-    const bool inside =
-        fits && uniform_leaf_inside(job, job.view.atoms + atoms.first, atoms.count, leaf_center(low, leaf, h));
-    if (lane == 0)
+  constexpr int kLeafLanes = 8, kLeavesAtOnce = kWarp / kLeafLanes;
+  const uint32_t uniform = ~active_leaves & ((1u << kLeavesPerBrick) - 1);
+  const int leaves = __popc(uniform);
+  for (int n0 = kLeavesAtOnce * team.rank(); n0 < leaves; n0 += kLeavesAtOnce * kWarps) {
+    const int n = n0 + lane / kLeafLanes, leaf = nth_bit64(uniform, n < leaves ? n : n0);
+    const bool inside = uniform_leaf_inside<kLeafLanes>(job, job.view.atoms + atoms.first, fits ? atoms.count : 0,
+                                                        leaf_center(low, leaf, h));
+    if (n < leaves && lane % kLeafLanes == 0)
       job.signs[static_cast<size_t>(job.view.first_brick + b) * kLeavesPerBrick + static_cast<size_t>(leaf)] =
           inside ? ~uint64_t(0) : 0;
   }
@@ -164,7 +167,6 @@ static __global__ __launch_bounds__(kGatherWarps *kWarp) void narrow_candidates_
                                                                                        NarrowJob job) {
   const LaunchItems leaves = queued.in_turn();
   __shared__ uint32_t near_memory[kGatherWarps][kNarrowRoom];
-  __shared__ uint8_t near_leaves[kGatherWarps][kNarrowRoom];
   const int warp = static_cast<int>(threadIdx.x) / kWarp;
   const size_t item = leaves.first + blockIdx.x * kGatherWarps + static_cast<uint32_t>(warp);
   if (item >= leaves.last) return;
@@ -178,43 +180,47 @@ static __global__ __launch_bounds__(kGatherWarps *kWarp) void narrow_candidates_
   const CandidateRow row = job.from.row_of(slot);
   GatherTeam<1>::Memory none;
   const GatherTeam<1> team{none};
-  uint32_t place = 0;  // in the brick's row, of the item that is visited
+  uint32_t number = 0;  // of the item whose place in the brick's row is visited
   const auto along = [&](const uint32_t *items, uint32_t count) {
-    return [=, &place](const auto &visit) {
+    return [=, &number](const auto &visit) {
       // Asked for some ahead.
       constexpr int kAhead = 4;
       for (uint32_t k0 = 0; k0 < count; k0 += kAhead * kWarp) {
         uint32_t ahead[kAhead];
+        const auto place_of = [&](int c) { return k0 + static_cast<uint32_t>(c * kWarp + lane_id()); };
+#pragma unroll
+        for (int c = 0; c < kAhead; ++c) ahead[c] = place_of(c) < count ? __ldg(items + place_of(c)) : 0;
 #pragma unroll
         for (int c = 0; c < kAhead; ++c) {
-          const uint32_t k = k0 + static_cast<uint32_t>(c * kWarp + lane_id());
-          ahead[c] = k < count ? __ldg(items + k) : 0;
-        }
-#pragma unroll
-        for (int c = 0; c < kAhead; ++c) {
-          place = k0 + static_cast<uint32_t>(c * kWarp + lane_id());
-          if (k0 + static_cast<uint32_t>(c * kWarp) < count) visit(ahead[c], place < count);
+          number = ahead[c];
+          if (k0 + static_cast<uint32_t>(c * kWarp) < count) visit(place_of(c), place_of(c) < count);
         }
       }
     };
   };
   const float extent = 3.f * reach.spacing;
   const PointBox atom_box(low, extent, reach.grown), arc_box(low, extent, reach.overhang);
+  const uint32_t *const from_atoms = job.from.atoms + row.first_atom, *const from_arcs = job.from.arcs + row.first_arc;
+  const uint8_t *const from_leaves = job.from.arc_leaves + row.first_arc;
   const GatheredRow atoms = gather_row(
-      team, along(job.from.atoms + row.first_atom, row.atom_count),
-      {near_memory[warp], nullptr, kNarrowRoom, job.to.atoms, nullptr, &job.room.counters->atoms, job.room.atoms},
-      [&](uint32_t k, uint32_t *) {
-        const Sphere atom = load(f.atoms.items + k);
+      team, along(from_atoms, row.atom_count),
+      {near_memory[warp], kNarrowRoom, job.to.atoms, &job.room.counters->atoms, job.room.atoms},
+      [&](uint32_t) {
+        const Sphere atom = load(f.atoms.items + number);
         return atom_box.meets(atom.center, atom.radius + reach.slack);
+      },
+      [&](uint32_t k, size_t) { return __ldg(from_atoms + k); });
+  const GatheredRow arcs = gather_row(
+      team, along(from_arcs, row.arc_count),
+      {near_memory[warp], kNarrowRoom, job.to.arcs, &job.room.counters->arcs, job.room.arcs},
+      [&](uint32_t) {
+        const Sphere ball = load(f.arc_bounds.items + number);
+        return arc_box.meets(ball.center, ball.radius + reach.start_reach);
+      },
+      [&](uint32_t k, size_t place) {
+        job.to.arc_leaves[place] = __ldg(from_leaves + k);
+        return __ldg(from_arcs + k);
       });
-  const GatheredRow arcs = gather_row(team, along(job.from.arcs + row.first_arc, row.arc_count),
-                                      {near_memory[warp], near_leaves[warp], kNarrowRoom, job.to.arcs,
-                                       job.to.arc_leaves, &job.room.counters->arcs, job.room.arcs},
-                                      [&](uint32_t k, uint32_t *leaves_near) {
-                                        const Sphere ball = load(f.arc_bounds.items + k);
-                                        *leaves_near = __ldg(job.from.arc_leaves + row.first_arc + place);
-                                        return arc_box.meets(ball.center, ball.radius + reach.start_reach);
-                                      });
   if (lane_id() != 0) return;
   // Without room for its rows the leaf has none; all will be done again.
   const bool fits = atoms.fits && arcs.fits;

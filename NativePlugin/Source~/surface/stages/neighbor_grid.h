@@ -21,8 +21,9 @@ struct CellLayout {
   glm::ivec3 count;
 
   QSES_FN int cell_along(float position, float start, int n) const {
-    const float c = floorf((position - start) * inverse_edge);
-    return c <= 0.f ? 0 : c >= static_cast<float>(n - 1) ? n - 1 : static_cast<int>(c);
+    const float c = (position - start) * inverse_edge, last = static_cast<float>(n - 1);
+    const int cell = static_cast<int>(c > 0.f ? c < last ? c : last : 0.f);
+    return cell < n ? cell : n - 1;  // beyond 2^24 the last one may have been rounded up
   }
   QSES_FN uint64_t hash(const glm::vec3 &p) const {
     return row(cell_along(p.y, origin.y, count.y), cell_along(p.z, origin.z, count.z)) +
@@ -58,17 +59,33 @@ struct NeighborGridView {
 
   // Items of the cells x0 ... x1 of a row: one run, since x is fastest.
   QSES_FN ItemRun run(int x0, int x1, int y, int z) const {
+    if (starts) {  // there are fewer cells than 2^32
+      const uint32_t *const row = starts + static_cast<uint32_t>(cells.row(y, z));
+      return {row[x0], row[x1 + 1]};
+    }
     const uint64_t row = cells.row(y, z);
     const uint64_t first = row + static_cast<uint64_t>(x0), last = row + static_cast<uint64_t>(x1) + 1;
-    if (starts) return {starts[first], starts[last]};
     const uint32_t begin = lower_bound(sorted_keys, count, first);
     return {begin, begin + lower_bound(sorted_keys + begin, count - begin, last)};
   }
 };
 
-// Cells that a box can touch, clamped to the grid.
+// Cells that a box can touch, clamped to the grid: rows along x, numbered y fastest.
 struct CellBox {
   int x0, x1, y0, y1, z0, z1;
+  struct Row {
+    int y, z;
+  };
+  QSES_FN int rows_along_y() const { return y1 - y0 + 1; }
+  QSES_FN int rows() const { return rows_along_y() * (z1 - z0 + 1); }
+  // By a quotient of floats, which is quicker on a GPU, and wrong by one at most.
+  QSES_FN Row row(int r) const {
+    const int along_y = rows_along_y();
+    int z = static_cast<int>(quotient(static_cast<float>(r), static_cast<float>(along_y))), y = r - z * along_y;
+    if (y < 0) --z, y += along_y;
+    if (y >= along_y) ++z, y -= along_y;
+    return {y0 + y, z0 + z};
+  }
 };
 QSES_FN CellBox cells_around(const CellLayout &cells, const Vec3<float> &low, const Vec3<float> &high) {
   return {
@@ -204,7 +221,7 @@ constexpr bool dense_table_pays(uint64_t entries, uint64_t items) {
 }
 
 // Whether to count pays, which goes over all cells.
-constexpr bool counting_pays(uint64_t cells, uint64_t items) { return cells <= 65536 || cells <= 8 * items; }
+constexpr bool counting_pays(uint64_t cells, uint64_t items) { return cells <= 65536 || cells <= 32 * items; }
 
 inline CellLayout layout_cells(const glm::vec3 &low, const glm::vec3 &high, float edge) {
   CellLayout cells;
