@@ -8,7 +8,7 @@
 namespace quickses {
 namespace gpu {
 
-constexpr int kSignWarps = 4, kSignThreads = kSignWarps * kWarp;
+constexpr int kSignWarps = 2, kSignThreads = kSignWarps * kWarp;
 constexpr int kLeafAtoms = 64;  // of a leaf in shared memory; more are read from the row
 constexpr int kLeafArcs = 64;   // in shared memory; more are staged bit by bit
 
@@ -111,8 +111,8 @@ __device__ __forceinline__ DeepestAtom choose_deepest_atoms(const FeatureView &f
 enum class LeafKind { kMixed, kInside, kOutside };
 
 static __global__ __launch_bounds__(kSignThreads,
-                                    blocks_at_once(kSignThreads, 9)) void evaluate_leaves_kernel(QueuedItems queued,
-                                                                                                 SignJob job) {
+                                    blocks_at_once(kSignThreads, 18)) void evaluate_leaves_kernel(QueuedItems queued,
+                                                                                                  SignJob job) {
   const LaunchItems leaves = queued.in_turn();
   __shared__ LeafScratch scratch_memory[kSignWarps];
   const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();

@@ -100,53 +100,37 @@ static __global__ __launch_bounds__(kVertexThreads,
   append_of_block<kVertexThreads>(job.open, &job.counts->open, k, open);
 }
 
-// Some of a run of arcs. In two words, since operations on 64 bits take several instructions each.
-struct ArcMask {
-  static constexpr int kBits = 64;
-  uint32_t low, high;
-  __device__ __forceinline__ void add(int q) { (q < 32 ? low : high) |= 1u << (q & 31); }
-  // All lanes of a warp that have any go on together: use(q, number_at(q)). kAhead: the next number is asked for before
-  // it is needed, which pays where a lane has many.
-  template <bool kAhead, class NumberAt, class Use>
-  __device__ __forceinline__ void for_each(const NumberAt &number_at, const Use &use) const {
-    int first = 0;
-    uint32_t rest = low, later = high;
-    const auto take = [&] {
-      if (rest == 0) {
-        rest = later;
-        later = 0;
-        first = 32;
+// Arcs are looked at in runs of so many, of which a lane's choice is one word.
+constexpr int kArcRun = 32;
+// use(q, number_at(q)) for each of a choice. kAhead: the next number is asked for before it is needed, which pays where
+// a lane has many.
+template <bool kAhead, class NumberAt, class Use>
+__device__ __forceinline__ void for_each_chosen(uint32_t chosen, const NumberAt &number_at, const Use &use) {
+  if constexpr (kAhead) {
+    if (chosen == 0) return;
+    int next = lowest_bit32(chosen);
+    for (uint32_t next_number = number_at(next);;) {
+      const int q = next;
+      const uint32_t number = next_number;
+      chosen &= chosen - 1;
+      if (chosen != 0) {
+        next = lowest_bit32(chosen);
+        next_number = number_at(next);
       }
-      const int q = first + lowest_bit32(rest);
-      rest &= rest - 1;
-      return q;
-    };
-    if constexpr (kAhead) {
-      if ((rest | later) == 0) return;
-      int next = take();
-      for (uint32_t next_number = number_at(next);;) {
-        const int q = next;
-        const uint32_t number = next_number;
-        const bool is_last = (rest | later) == 0;
-        if (!is_last) {
-          next = take();
-          next_number = number_at(next);
-        }
-        use(q, number);
-        if (is_last) break;
-      }
-    } else {
-      while (rest | later) {
-        const int q = take();
-        use(q, number_at(q));
-      }
+      use(q, number);
+      if (chosen == 0) break;
+    }
+  } else {
+    for (; chosen != 0; chosen &= chosen - 1) {
+      const int q = lowest_bit32(chosen);
+      use(q, number_at(q));
     }
   }
-};
+}
 
 template <int kLanes>
 static __global__ __launch_bounds__(kVertexThreads,
-                                    blocks_at_once(kVertexThreads, 10)) void project_on_arcs_kernel(QueuedItems queued,
+                                    blocks_at_once(kVertexThreads, 11)) void project_on_arcs_kernel(QueuedItems queued,
                                                                                                     VertexJob job) {
   const LaunchItems vertices = queued.in_turn();
   const uint32_t total = job.counts->open;
@@ -163,43 +147,44 @@ static __global__ __launch_bounds__(kVertexThreads,
   const float margin = kUsualStart * job.reach.spacing, near = f.parameters.depth + margin;
   const float limit_beyond = near + job.reach.slack, near2 = near * near;
   NearestArc nearest;
-  ArcMask near_arcs{};  // of this lane
+  constexpr int kRuns = 2;  // whose near arcs are kept
+  uint32_t near_arcs[kRuns] = {};
   const int arcs = candidates.arc_count(), rank = LaneCandidates<kLanes>::rank();
   const auto arc_at = [&](int q) { return candidates.arc(q * kLanes + rank); };
   constexpr bool kAhead = kLanes == 1;
   const int own_arcs = (arcs - rank + kLanes - 1) / kLanes;
-  for (int q0 = 0; q0 < own_arcs; q0 += ArcMask::kBits) {
-    const auto choose_by_bounds = [&](int first) {
-      const int count = own_arcs - first < 32 ? own_arcs - first : 32;
-      uint32_t chosen = 0;
+  for (int q0 = 0; q0 < own_arcs; q0 += kArcRun) {
+    const int count = own_arcs - q0 < kArcRun ? own_arcs - q0 : kArcRun;
+    uint32_t chosen = 0, near_run = 0;
 #pragma unroll 4
-      for (int q = 0; q < count; ++q) {
-        const Sphere bound = load(f.arc_bounds.items + arc_at(first + q));
-        const float limit = bound.radius + limit_beyond;
-        chosen |= static_cast<uint32_t>(length_squared(x - Vec3<float>(bound.center)) < limit * limit) << q;
-      }
-      return chosen;
-    };
-    const ArcMask chosen{choose_by_bounds(q0), choose_by_bounds(q0 + 32)};
-    near_arcs = {};
-    chosen.template for_each<kAhead>([&](int q) { return arc_at(q0 + q); },
-                                     [&](int q, uint32_t arc) {
-                                       const float d2 = arc_distance2(load(f.arcs + arc), x);
-                                       nearest.offer(static_cast<int>(arc), d2);
-                                       if (d2 < near2) near_arcs.add(q);
-                                     });
+    for (int q = 0; q < count; ++q) {
+      const Sphere bound = load(f.arc_bounds.items + arc_at(q0 + q));
+      const float limit = bound.radius + limit_beyond;
+      chosen |= static_cast<uint32_t>(length_squared(x - Vec3<float>(bound.center)) < limit * limit) << q;
+    }
+    for_each_chosen<kAhead>(
+        chosen, [&](int q) { return arc_at(q0 + q); },
+        [&](int q, uint32_t arc) {
+          const float d2 = arc_distance2(load(f.arcs + arc), x);
+          nearest.offer(static_cast<int>(arc), d2);
+          if (d2 < near2) near_run |= 1u << q;
+        });
+    near_arcs[q0 == 0 ? 0 : 1] = near_run;
   }
   nearest = nearest_of_lanes<kLanes>(nearest, kFullWarp);
   __syncwarp();
   const bool usual = absolute(f.parameters.depth - square_root(nearest.distance2)) < margin;
   Projection v = project_on_arc(f, nearest, x);
   __syncwarp();
-  const bool again = usual && v.state == ProjectionState::kReproject && arcs <= ArcMask::kBits * kLanes;
+  const bool again = usual && v.state == ProjectionState::kReproject && arcs <= kRuns * kArcRun * kLanes;
   nearest = NearestArc();
-  if (!again) near_arcs = {};
-  near_arcs.template for_each<kAhead>(arc_at, [&](int, uint32_t arc) {
-    nearest.offer(static_cast<int>(arc), arc_distance2(load(f.arcs + arc), v.point.position));
-  });
+#pragma unroll
+  for (int run = 0; run < kRuns; ++run)
+    for_each_chosen<kAhead>(
+        again ? near_arcs[run] : 0, [&](int q) { return arc_at(run * kArcRun + q); },
+        [&](int, uint32_t arc) {
+          nearest.offer(static_cast<int>(arc), arc_distance2(load(f.arcs + arc), v.point.position));
+        });
   nearest = nearest_of_lanes<kLanes>(nearest, kFullWarp);
   if (again) {
     const Projection next = reproject(f, apart(candidates), nearest, v);

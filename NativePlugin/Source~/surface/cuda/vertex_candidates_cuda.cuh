@@ -178,7 +178,8 @@ static __global__ __launch_bounds__(kLeafWarps *kWarp) void halve_starts_kernel(
 // Starts and candidates of the leaves that own vertices. A warp per leaf.
 static __global__ __launch_bounds__(kLeafWarps *kWarp,
                                     blocks_at_once(kLeafWarps *kWarp,
-                                                   9)) void prepare_vertices_kernel(QueuedItems queued, VertexJob job) {
+                                                   11)) void prepare_vertices_kernel(QueuedItems queued,
+                                                                                     VertexJob job) {
   const LaunchItems leaves = queued.in_turn();
   __shared__ uint8_t edge_memory[kLeafWarps][kMostLeafVertices];
   __shared__ SignWindow window_memory[kLeafWarps];

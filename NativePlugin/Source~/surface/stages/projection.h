@@ -97,7 +97,8 @@ struct NearestArc {
   float second2 = kFarAway;    // of the second nearest
 
   QSES_FN void offer(int a, float d2) {
-    const bool nearer = d2 < distance2 || (d2 == distance2 && a < arc);  // ties by number: arcs come in any order
+    // Ties by number: arcs come in any order. (Without || and &&, which a GPU would branch for.)
+    const bool nearer = (d2 < distance2) | ((d2 == distance2) & (a < arc));
     second2 = minimum(second2, maximum(d2, distance2));
     distance2 = minimum(distance2, d2);
     arc = nearer ? a : arc;
