@@ -55,48 +55,4 @@ QSES_FN Sphere arc_bound(const Arc &arc) {
   return {arc.center + arc.middle * (arc.radius * arc.cos_half), arc.radius * arc.sin_half};
 }
 
-// Cosine and sine of half an angle of 0 to pi.
-QSES_FN void halve_angle(float *cosine, float *sine) {
-  const float c = *cosine;
-  *cosine = square_root(maximum(0.f, 0.5f * (1.f + c)));
-  // Of a small one 1 - c has hardly a digit left, and the sum of the parts would not be the whole.
-  *sine = c > 0.f ? quotient(*sine, *cosine + *cosine) : square_root(maximum(0.f, 0.5f * (1.f - c)));
-}
-// How often an arc with this half angle is halved until balls with radius `most` enclose its pieces. The half angle
-// becomes that of a piece.
-QSES_FN int halve_arc(float radius, float most, float *cosine, float *sine) {
-  int halvings = 0;
-  for (; radius * (*cosine <= 0.f ? 1.f : *sine) > most && halvings < 16; ++halvings) halve_angle(cosine, sine);
-  return halvings;
-}
-// visit(x, y) for the middle of each of the pieces, as parts of the directions to the middle and the side of the whole
-// arc, turned by x and y.
-template <class Visit>
-QSES_FN void visit_pieces(int halvings, float cosine, float sine, float x, float y, const Visit &visit) {
-  const int pieces = 1 << halvings;
-  // From the middle back to that of the first piece: by (pieces - 1) half angles.
-  for (int k = 1; k < pieces; ++k) {
-    const float t = x * cosine + y * sine;
-    y = y * cosine - x * sine;
-    x = t;
-  }
-  const float cosine2 = cosine * cosine - sine * sine, sine2 = 2.f * cosine * sine;
-  for (int k = 0; k < pieces; ++k) {
-    visit(x, y);
-    const float t = x * cosine2 - y * sine2;
-    y = y * cosine2 + x * sine2;
-    x = t;
-  }
-}
-
-// Balls with radius `most`, or smaller ones, that enclose an arc together.
-template <class Visit>
-QSES_FN void visit_balls_of_arc(const Arc &arc, float most, const Visit &visit) {
-  float cosine = arc.cos_half, sine = arc.sin_half;
-  const int halvings = halve_arc(arc.radius, most, &cosine, &sine);
-  visit_pieces(halvings, cosine, sine, 1.f, 0.f, [&](float x, float y) {
-    visit(arc_bound(Arc{arc.center, arc.radius, arc.middle * x + arc.side * y, cosine, arc.side, sine}));
-  });
-}
-
 }  // namespace quickses

@@ -2,7 +2,6 @@
 // The circle where two inflated spheres meet, what a third ball covers of it, and the arcs that remain.
 #pragma once
 
-#include "surface/geometry/arc.h"
 #include "surface/geometry/cap.h"
 #include "surface/geometry/exposed_intervals.h"
 
@@ -104,21 +103,41 @@ QSES_FN ExposedArc exposed_arc(const Interval *interval, float radius, float mos
     arc.cos_piece = a.x * arc.middle_x + a.y * arc.middle_y;
     arc.sin_piece = fabsf(arc.middle_x * b.y - arc.middle_y * b.x);
   }
-  arc.halvings = halve_arc(radius, most, &arc.cos_piece, &arc.sin_piece);
+  while (radius * (arc.cos_piece <= 0.f ? 1.f : arc.sin_piece) > most && arc.halvings < 16) {
+    const float c = arc.cos_piece;
+    arc.cos_piece = square_root(maximum(0.f, 0.5f * (1.f + c)));
+    // Of a short piece 1 - c has hardly a digit left, and the sum of pieces would not be the arc.
+    arc.sin_piece =
+        c > 0.f ? quotient(arc.sin_piece, arc.cos_piece + arc.cos_piece) : square_root(maximum(0.f, 0.5f * (1.f - c)));
+    ++arc.halvings;
+  }
   return arc;
 }
 
 // Writes the pieces of an exposed arc of the circle of sphere i. out has room for 1 << halvings arcs.
 QSES_FN void write_arc_pieces(const Circle &circle, const Sphere &sphere, const ExposedArc &arc, Arc *out) {
+  const int pieces = 1 << arc.halvings;
+  const float c = arc.cos_piece, s = arc.sin_piece;
+  // Turn the middle back to that of the first piece: by (pieces - 1) half angles.
+  float x = arc.middle_x, y = arc.middle_y;
+  for (int k = 1; k < pieces; ++k) {
+    const float t = x * c + y * s;
+    y = y * c - x * s;
+    x = t;
+  }
+  const float c2 = c * c - s * s, s2 = 2.f * c * s;
   const Vec3<float> center = Vec3<float>(sphere.center) + circle.axis * (sphere.radius * circle.cosine);
-  visit_pieces(arc.halvings, arc.cos_piece, arc.sin_piece, arc.middle_x, arc.middle_y, [&](float x, float y) {
-    *out++ = {to_glm(center),
-              arc.radius,
-              to_glm(circle.e1 * x + circle.e2 * y),
-              arc.cos_piece,
-              to_glm(circle.e2 * x - circle.e1 * y),
-              arc.sin_piece};
-  });
+  for (int k = 0; k < pieces; ++k) {
+    out[k].center = to_glm(center);
+    out[k].radius = arc.radius;
+    out[k].middle = to_glm(circle.e1 * x + circle.e2 * y);
+    out[k].cos_half = c;
+    out[k].side = to_glm(circle.e2 * x - circle.e1 * y);
+    out[k].sin_half = s;
+    const float t = x * c2 - y * s2;
+    y = y * c2 + x * s2;
+    x = t;
+  }
 }
 
 }  // namespace quickses

@@ -35,7 +35,7 @@ constexpr double kVerticesPerCell = 1.5, kVerticesPerLeaf = 14;
 // Bricks of a surface of that area: those it passes, and those that arcs alone make active, within a probe radius of
 // them. Measured on proteins, the more generous figures.
 inline double guess_bricks(double atoms, double area, double spacing) {
-  return (0.0254 * area + 0.062 * atoms / spacing) / (spacing * spacing);
+  return (0.0254 * area + 0.07 * atoms / spacing) / (spacing * spacing);
 }
 // Coarser spacings are never refused here, and a prediction only if it fails by these factors.
 constexpr float kCheckedSpacing = 0.25f;

@@ -85,36 +85,20 @@ struct FeatureBricks {
 
   QSES_FN size_t size() const { return size_t(features.atoms.count) + features.arc_bounds.count; }
 
-  // Balls of this size follow an arc closely enough: no more than four of them, since its own is at most twice as large
-  // or 1 Å.
-  QSES_FN float part_of_arc() const { return maximum(1.f, 0.5f * features.parameters.max_arc_bound()); }
   uint64_t most_across() const {
     const SurfaceParameters &p = features.parameters;
-    constexpr uint64_t kSidesOfParts = 2;  // of a square that is as large as those of four parts
-    return std::max(most_bricks_across(lattice, p.max_radius - p.depth),
-                    kSidesOfParts * most_bricks_across(lattice, part_of_arc() + p.depth));
+    return most_bricks_across(lattice, std::max(p.max_radius - p.depth, features.max_arc_bound + p.depth));
   }
 
   template <class Visit>
   QSES_FN void visit(size_t i, const RowRange &rows, const Visit &visit_brick) const {
     const bool is_atom = i < features.atoms.count;
     if (is_atom && features.cap_ranges[i].count == kBuriedAtom) return;
-    const size_t arc = i - features.atoms.count;
-    const Sphere item = is_atom ? features.atoms.items[i] : features.arc_bounds.items[arc];
+    const Sphere item = is_atom ? features.atoms.items[i] : features.arc_bounds.items[i - features.atoms.count];
     if (is_no_item(item)) return;
     const float depth = features.parameters.depth;
-    const auto visit_ball = [&](const Sphere &ball, float inner, float outer) {
-      visit_bricks_of_shell(lattice, ball.center, inner, outer, margin(), rows, visit_brick);
-    };
-    if (is_atom) {
-      const float surface = maximum(0.f, item.radius - depth);
-      visit_ball(item, surface, surface);
-    } else if (item.radius <= part_of_arc()) {
-      visit_ball(item, 0.f, item.radius + depth);
-    } else {
-      visit_balls_of_arc(load(features.arcs + arc), part_of_arc(),
-                         [&](const Sphere &ball) { visit_ball(ball, 0.f, ball.radius + depth); });
-    }
+    const float outer = is_atom ? maximum(0.f, item.radius - depth) : item.radius + depth;
+    visit_bricks_of_shell(lattice, item.center, is_atom ? outer : 0.f, outer, margin(), rows, visit_brick);
   }
   QSES_FN double fewest(size_t i) const {
     return i < features.atoms.count ? 0.0 : fewest_bricks_of_ball(lattice, features.parameters.depth);
