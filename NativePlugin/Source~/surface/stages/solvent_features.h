@@ -26,7 +26,7 @@ struct SurfaceParameters {
 
   // Arcs are split where their enclosing balls would be larger: what looks for near arcs looks at those balls, and at
   // each of the pieces. With a probe of 1.4 Å 1.5 to 3 Å are alike, and 1 Å takes 4 % longer.
-  QSES_FN float max_arc_bound() const { return maximum(1.f, 1.5f * depth); }
+  QSES_FN float max_arc_bound() const { return maximum(1.f, minimum(2.f, 1.5f * depth)); }
 
   // Only what a probe rolls on can have walls between two probes (thin_walls.h).
   QSES_FN bool has_thin_walls() const { return depth > 0.f; }
