@@ -48,17 +48,20 @@ class QueuedItems {
   LaunchItems items_;
 };
 
-// For __launch_bounds__: so many blocks that a multiprocessor is to hold at once, or those whose threads it can hold
-// (CUDA C++ Programming Guide, "Technical Specifications per Compute Capability").
+// For __launch_bounds__: so many blocks that a multiprocessor is to hold at once, or as many as it can hold at all, and
+// as their threads leave room for (CUDA C++ Programming Guide, "Technical Specifications per Compute Capability").
 constexpr int blocks_at_once(int threads, int wanted) {
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ < 800
-  constexpr int kMostThreads = 1024;
-#elif defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 860 && __CUDA_ARCH__ < 900
-  constexpr int kMostThreads = 1536;
+  constexpr int kMostThreads = 1024, kMostBlocks = 16;
+#elif defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 860 && __CUDA_ARCH__ < 890
+  constexpr int kMostThreads = 1536, kMostBlocks = 16;
+#elif defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 890 && __CUDA_ARCH__ < 900
+  constexpr int kMostThreads = 1536, kMostBlocks = 24;
 #else
-  constexpr int kMostThreads = 2048;
+  constexpr int kMostThreads = 2048, kMostBlocks = 32;
 #endif
-  return wanted * threads <= kMostThreads ? wanted : kMostThreads / threads;
+  const int most = kMostThreads / threads < kMostBlocks ? kMostThreads / threads : kMostBlocks;
+  return wanted < most ? wanted : most;
 }
 
 // Threads that keep a multiprocessor busy: where there would be fewer, each item may have several.

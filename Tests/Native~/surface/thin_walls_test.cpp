@@ -53,6 +53,16 @@ bool is_candidate(const Inside &inside, const glm::ivec3 &a, const glm::ivec3 &b
   return false;
 }
 
+TEST(Words, TellTheirNthBit) {
+  for (const uint64_t word :
+       {~uint64_t(0), uint64_t(1), uint64_t(1) << 63, uint64_t(0x8000000180000001), uint64_t(0x123456789abcdef0)}) {
+    int n = 0;
+    for (int bit = 0; bit < 64; ++bit)
+      if (word >> bit & 1) EXPECT_EQ(nth_bit64(word, n++), bit) << word;
+    EXPECT_EQ(n, popcount64(word));
+  }
+}
+
 TEST(WallCandidates, AreThoseOfTheRule) {
   std::mt19937_64 random(5);
   for (int round = 0; round < 60; ++round) {

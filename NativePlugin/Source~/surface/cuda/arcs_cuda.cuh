@@ -388,7 +388,8 @@ void write_arcs(E &executor, const ArcSearch &search) {
   const CircleJob &job = search.job;
   const FeatureRoom &room = job.room;
   executor.exclusive_scan(room.circles, LoadCount<uint32_t>{search.arc_count.data}, search.arc_first);
-  // A circle's arcs are split into no more pieces than its length in Å, and one for each.
+  // A circle's arcs are split into no more pieces than its length in Å, and one for each: max_arc_bound() is 1 Å or
+  // more.
   const uint64_t intervals = std::max<uint64_t>(kLaneIntervals, room.intervals);
   const uint64_t pieces = static_cast<uint64_t>(6.3f * search.max_radius) + intervals;
   executor.launch("write_arcs", write_arcs_kernel, room.staged_circles,

@@ -54,8 +54,10 @@ __device__ __forceinline__ bool uniform_leaf_inside(const GatherJob &job, const 
 
 // The rows of one brick.
 template <int kWarps>
-static __global__ __launch_bounds__(kGatherWarps *kWarp, 9) void gather_candidates_kernel(QueuedItems queued,
-                                                                                          GatherJob job) {
+static __global__ __launch_bounds__(kGatherWarps *kWarp,
+                                    blocks_at_once(kGatherWarps *kWarp,
+                                                   9)) void gather_candidates_kernel(QueuedItems queued,
+                                                                                     GatherJob job) {
   const LaunchItems bricks = queued.in_turn();
   __shared__ uint32_t near_memory[kGatherWarps][kGatherRoom];
   __shared__ typename GatherTeam<kWarps>::Memory team_memory;

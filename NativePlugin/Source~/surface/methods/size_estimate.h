@@ -85,8 +85,8 @@ inline double bricks_of_ball(double radius, double spacing) {
 }
 
 // Pairs of a brick and an arc within whose reach it lies, or an inflated ball that the grid method fills. The larger
-// the probe, the more there are. An arc is no point, but curved.
-constexpr double kArcReach = 1.15;  // as that of a ball
+// the probe, the more there are. An arc reaches as many bricks as a ball that is larger than the probe by so much.
+constexpr double kArcReach = 1.15;
 inline double guess_pairs(const WorkFacts &facts, const SurfaceParameters &parameters, bool exact, double spacing) {
   return exact ? static_cast<double>(facts.arcs) *
                      bricks_of_ball(kArcReach * static_cast<double>(parameters.depth), spacing)

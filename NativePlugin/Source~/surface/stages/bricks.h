@@ -34,7 +34,7 @@ struct BrickSet {
       nullptr;  // where their number is, if there may be fewer: the last ones then stand for none
 
   QSES_FN glm::ivec3 place(size_t brick) const { return unpack_place(places[brick]); }
-  // In 32 bits, of which a table has never more.
+  // A table has fewer entries than 2^32.
   QSES_FN uint32_t place_in_table(const glm::ivec3 &b) const { return static_cast<uint32_t>(lattice.linear(b)); }
   // Number of the active brick at a place; -1 if there is none.
   QSES_FN int find(const glm::ivec3 &b) const {

@@ -24,8 +24,10 @@ struct SurfaceParameters {
   // on the boundary within rounding is outside only if a feature says so: else it would be a hole of its own.
   QSES_FN float least_depth() const { return depth > 0.f ? -kExposureTolerance : 0.f; }
 
-  // Arcs are split where their enclosing balls would be larger: what looks for near arcs looks at those balls, and at
-  // each of the pieces. With a probe of 1.4 Å 1.5 to 3 Å are alike, and 1 Å takes 4 % longer.
+  // Arcs are split where their enclosing balls would be larger, since near arcs are found by those. The fewer there are
+  // the better, while the balls are small beside the reach of the probe: with 1.4 Å, 1.5 to 3 Å are alike, and 1 Å
+  // makes surfaces take 4 % longer. Rows of candidates have the usual room for balls of 2 Å at most; other estimates
+  // count on pieces of 1 Å at least.
   QSES_FN float max_arc_bound() const { return maximum(1.f, minimum(2.f, 1.5f * depth)); }
 
   // Only what a probe rolls on can have walls between two probes (thin_walls.h).

@@ -19,7 +19,7 @@ namespace quickses {
 constexpr int kWallSteps = 9;
 constexpr int kWallStepTable[kWallSteps][3] = {{1, 0, 0}, {0, 1, 0},  {0, 0, 1}, {1, 1, 0}, {1, -1, 0},
                                                {1, 0, 1}, {1, 0, -1}, {0, 1, 1}, {0, 1, -1}};
-// Along one axis, two bits each: the lanes of a GPU ask for different ones, as of no table quickly.
+// Along one axis, two bits each: of a table, the lanes of a GPU would have to load them.
 constexpr uint32_t packed_wall_steps(int axis) {
   uint32_t packed = 0;
   for (int k = 0; k < kWallSteps; ++k) packed |= static_cast<uint32_t>(kWallStepTable[k][axis] + 1) << 2 * k;
