@@ -58,7 +58,9 @@ TEST(Words, TellTheirNthBit) {
        {~uint64_t(0), uint64_t(1), uint64_t(1) << 63, uint64_t(0x8000000180000001), uint64_t(0x123456789abcdef0)}) {
     int n = 0;
     for (int bit = 0; bit < 64; ++bit)
-      if (word >> bit & 1) EXPECT_EQ(nth_bit64(word, n++), bit) << word;
+      if (word >> bit & 1) {
+        EXPECT_EQ(nth_bit64(word, n++), bit) << word;
+      }
     EXPECT_EQ(n, popcount64(word));
   }
 }
