@@ -72,55 +72,56 @@ using Sum = ::cuda::std::plus<>;
 using Sum = cub::Sum;
 #endif
 
-// Few items are scanned, or chosen, by one block: each thread goes over a run of them, twice. CUB's passes over the
-// whole device take two launches, of which each waits for what was queued before it.
+// Few items are scanned, or chosen, by one block, a tile of as many as it has threads after the other. CUB's passes
+// over the whole device take two launches, of which each waits for what was queued before it.
 constexpr int kFewThreads = 1024;
 constexpr size_t kFewItems = 8 * kFewThreads;
-constexpr uint64_t kFewSteps = 2 * kFewItems / kFewThreads * kPlainSumSteps;  // of a thread, for those
-struct FewItems {
-  size_t first, last;
-  __device__ __forceinline__ explicit FewItems(size_t n) {
-    const size_t each = (n + kFewThreads - 1) / kFewThreads, begin = each * threadIdx.x;
-    first = begin < n ? begin : n;
-    last = begin + each < n ? begin + each : n;
-  }
-};
-// Of the threads before this one; and of all.
+constexpr uint64_t kFewSteps = kFewItems / kFewThreads * kPlainSumSteps;  // of a thread, for those
+// Of the threads before this one; and of all. Memory: not used by the call before this one.
 template <class T>
-__device__ __forceinline__ T sum_before(const T &own, T *total) {
+struct TileMemory {
+  typename cub::WarpScan<T>::TempStorage scans[kFewThreads / 32];
+  T of_warps[kFewThreads / 32];
+};
+template <class T>
+__device__ __forceinline__ T sum_before(TileMemory<T> &memory, const T &own, T *total) {
   using Scan = cub::WarpScan<T>;
-  constexpr int kWarps = kFewThreads / 32;
-  __shared__ typename Scan::TempStorage temporary[kWarps];
-  __shared__ __align__(16) unsigned char memory[kWarps * sizeof(T)];
-  T *const of_warps = reinterpret_cast<T *>(memory);
   const int warp = static_cast<int>(threadIdx.x) / 32, lane = static_cast<int>(threadIdx.x) % 32;
   T with_own, before;
-  Scan(temporary[warp]).Scan(own, with_own, before, T{}, Sum());
-  if (lane == 31) of_warps[warp] = with_own;
+  Scan(memory.scans[warp]).Scan(own, with_own, before, T{}, Sum());
+  if (lane == 31) memory.of_warps[warp] = with_own;
   __syncthreads();
   if (warp == 0) {
     T with_warp;
-    Scan(temporary[0]).InclusiveScan(of_warps[lane], with_warp, Sum());
-    of_warps[lane] = with_warp;
+    Scan(memory.scans[0]).InclusiveScan(memory.of_warps[lane], with_warp, Sum());
+    memory.of_warps[lane] = with_warp;
   }
   __syncthreads();
-  *total = of_warps[kWarps - 1];
-  return warp > 0 ? of_warps[warp - 1] + before : before;
+  *total = memory.of_warps[kFewThreads / 32 - 1];
+  return warp > 0 ? memory.of_warps[warp - 1] + before : before;
 }
 
-// start: of the sums.
+// use(i, value, sum of those before it) for each of n items, whose values are load(i), in tiles: the next tile is asked
+// for before this one is summed. Returns the sum of all. start: of the sums.
+template <class T, class Load, class Use>
+__device__ __forceinline__ T for_sums(size_t n, const Load &load, const T &start, const Use &use) {
+  __shared__ __align__(16) unsigned char memory_of_tiles[2][sizeof(TileMemory<T>)];
+  T sum = start, next = threadIdx.x < n ? static_cast<T>(load(threadIdx.x)) : T{};
+  int tile = 0;
+  for (size_t i = threadIdx.x; i - threadIdx.x < n; i += kFewThreads, tile ^= 1) {
+    const T own = next;
+    if (i + kFewThreads < n) next = static_cast<T>(load(i + kFewThreads));
+    T total;
+    const T before = sum_before(*reinterpret_cast<TileMemory<T> *>(memory_of_tiles[tile]), i < n ? own : T{}, &total);
+    if (i < n) use(i, own, sum + before);
+    sum = sum + total;
+  }
+  return sum;
+}
+
 template <class Load, class T>
 __device__ __forceinline__ void scan_few(const Load &load, size_t n, T *out, const T &start = T{}) {
-  const FewItems items(n);
-  T own = threadIdx.x == 0 ? start : T{}, total;
-  for (size_t i = items.first; i < items.last; ++i) own = own + static_cast<T>(load(i));
-  T sum = sum_before(own, &total);
-  if (threadIdx.x == 0) sum = sum + start;
-  for (size_t i = items.first; i < items.last; ++i) {
-    const T value = static_cast<T>(load(i));
-    out[i] = sum;
-    sum = sum + value;
-  }
+  const T total = for_sums(n, load, start, [&](size_t i, const T &, const T &before) { out[i] = before; });
   if (threadIdx.x == 0) out[n] = total;
 }
 template <class Load, class T>
@@ -139,7 +140,7 @@ __global__ __launch_bounds__(kFewThreads) void go_on_scanning_few_kernel(QueuedI
 }
 
 // Steps of do_in_turn(), by one block: a launch of their own takes each some microseconds.
-constexpr size_t kFewTogether = 2 * kFewThreads;
+constexpr size_t kFewTogether = kFewThreads;
 template <class F>
 constexpr bool is_few(const ForEach<F> &step) {
   return step.n <= kFewTogether;
@@ -176,12 +177,11 @@ template <class Keep, class T>
 __global__ __launch_bounds__(kFewThreads) void compact_few_kernel(QueuedItems queued, Keep keep, size_t n, T *out,
                                                                   uint64_t *count) {
   queued.in_turn();
-  const FewItems items(n);
-  uint32_t own = 0, total;
-  for (size_t i = items.first; i < items.last; ++i) own += keep(i) ? 1 : 0;
-  uint32_t place = sum_before(own, &total);
-  for (size_t i = items.first; i < items.last; ++i)
-    if (keep(i)) out[place++] = static_cast<T>(i);
+  const uint32_t total = for_sums(
+      n, [&](size_t i) { return keep(i) ? 1u : 0u; }, 0u,
+      [&](size_t i, uint32_t kept, uint32_t before) {
+        if (kept) out[before] = static_cast<T>(i);
+      });
   if (threadIdx.x == 0) *count = total;
 }
 

@@ -9,8 +9,9 @@ namespace quickses {
 namespace gpu {
 
 constexpr int kSignWarps = 2, kSignThreads = kSignWarps * kWarp;
-constexpr int kLeafAtoms = 64;  // of a leaf in shared memory; more are read from the row
-constexpr int kLeafArcs = 64;   // in shared memory; more are staged bit by bit
+// Atoms of a leaf in shared memory, as a rule, and where spacings are so wide that leaves have rows of their own; more
+// are read from the row. Arcs; more are staged bit by bit.
+constexpr int kLeafAtoms = 64, kWideLeafAtoms = 192, kLeafArcs = 64;
 
 struct SignJob {
   FeatureView features;
@@ -21,10 +22,11 @@ struct SignJob {
 };
 
 // Shared memory of one warp.
+template <int kAtoms>
 struct LeafScratch {
-  Sphere atom[kLeafAtoms];
+  Sphere atom[kAtoms];
   Arc arc[kLeafArcs];
-  uint32_t atom_number[kLeafAtoms], arc_number[kLeafArcs];
+  uint32_t atom_number[kAtoms], arc_number[kLeafArcs];
 };
 
 // A candidate is superfluous if another ball is deeper everywhere in a box. Its depth is at most that of its tangent
@@ -110,13 +112,14 @@ __device__ __forceinline__ DeepestAtom choose_deepest_atoms(const FeatureView &f
 
 enum class LeafKind { kMixed, kInside, kOutside };
 
+template <int kAtoms>
 static __global__ __launch_bounds__(kSignThreads,
                                     blocks_at_once(kSignThreads, 18)) void evaluate_leaves_kernel(QueuedItems queued,
                                                                                                   SignJob job) {
   const LaunchItems leaves = queued.in_turn();
-  __shared__ LeafScratch scratch_memory[kSignWarps];
+  __shared__ LeafScratch<kAtoms> scratch_memory[kSignWarps];
   const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();
-  LeafScratch &scratch = scratch_memory[warp];
+  LeafScratch<kAtoms> &scratch = scratch_memory[warp];
   const size_t leaf_place = leaves.first + blockIdx.x * kSignWarps + static_cast<uint32_t>(warp);
   if (leaf_place >= leaves.last || leaf_place >= job.view.counted->leaves) return;
   const FeatureView &f = job.features;
@@ -155,11 +158,20 @@ static __global__ __launch_bounds__(kSignThreads,
       -reach.leaf_radius - reach.slack, reach.slack,
       [&](bool chosen, const Sphere &ball, uint32_t number) {
         const int place = append_place(chosen, &atom_count);
-        if (chosen && place < kLeafAtoms) {
+        if (chosen && place < kAtoms) {
           scratch.atom[place] = ball;
           scratch.atom_number[place] = number;
         }
       });
+
+  LeafKind kind = LeafKind::kMixed;
+  const bool far_out = best.depth <= -reach.leaf_radius - reach.slack;
+  // Where points may be next to one that is inside, what decides about them is asked for.
+  const bool is_asked = job.view.deciders && best.depth > depth - kRoot3 * h - reach.leaf_radius - reach.slack;
+  if (far_out || (best.depth <= reach.least_depth && depth > reach.leaf_radius + reach.slack && !is_asked))
+    kind = LeafKind::kOutside;
+  else if (best.depth - reach.leaf_radius - reach.slack > depth)
+    kind = LeafKind::kInside;
 
   // Arcs that can be within depth of a point.
   int arc_count = 0;
@@ -171,21 +183,14 @@ static __global__ __launch_bounds__(kSignThreads,
       scratch.arc[place] = load(f.arcs + arc.number);
     }
   };
+  if (kind == LeafKind::kMixed) {
 #pragma unroll
-  for (int c = 0; c < kAhead; ++c)
-    if (static_cast<uint32_t>(c * kWarp) < row.arc_count) stage_arcs(ahead[c]);
-  for (uint32_t k0 = kAhead * kWarp; k0 < row.arc_count; k0 += kWarp) stage_arcs(listed_arc(k0));
+    for (int c = 0; c < kAhead; ++c)
+      if (static_cast<uint32_t>(c * kWarp) < row.arc_count) stage_arcs(ahead[c]);
+    for (uint32_t k0 = kAhead * kWarp; k0 < row.arc_count; k0 += kWarp) stage_arcs(listed_arc(k0));
+  }
   __syncwarp();
-
-  LeafKind kind = LeafKind::kMixed;
-  const bool far_out = best.depth <= -reach.leaf_radius - reach.slack;
-  // Where points may be next to one that is inside, what decides about them is asked for.
-  const bool is_asked = job.view.deciders && best.depth > depth - kRoot3 * h - reach.leaf_radius - reach.slack;
-  if (far_out || (best.depth <= reach.least_depth && depth > reach.leaf_radius + reach.slack && !is_asked))
-    kind = LeafKind::kOutside;
-  else if (best.depth - reach.leaf_radius - reach.slack > depth)
-    kind = LeafKind::kInside;
-  else if (arc_count == 0 && best.depth > 0.f && best.depth < depth) {
+  if (kind == LeafKind::kMixed && arc_count == 0 && best.depth > 0.f && best.depth < depth) {
     // No arc is within depth of a point. If the centre is not on an exposed part, none of the points is.
     const CapRange range = f.cap_ranges[best.atom];
     bool covered = range.count == kBuriedAtom;
@@ -210,7 +215,7 @@ static __global__ __launch_bounds__(kSignThreads,
       atom1 = d1 > depth1 ? number : atom1;
       depth1 = fmaxf(depth1, d1);
     };
-    if (atom_count <= kLeafAtoms) {
+    if (atom_count <= kAtoms) {
       for (int k = 0; k < atom_count; ++k) meet_ball(scratch.atom[k], static_cast<uint32_t>(k));
       if (depth0 > reach.least_depth) atom0 = scratch.atom_number[atom0];
       if (depth1 > reach.least_depth) atom1 = scratch.atom_number[atom1];
@@ -283,7 +288,10 @@ void evaluate_leaves(E &executor, const FeatureView &features, const BrickSet &b
     candidates.have_deciders = true;
   }
   // Lanes look at all atoms and arcs of a row, and at an atom's caps.
-  executor.launch("evaluate_leaves", evaluate_leaves_kernel, candidates.leaves,
+  const bool are_wide = candidates.view.row_shift == kRowOfLeaf;
+  executor.launch("evaluate_leaves",
+                  are_wide ? evaluate_leaves_kernel<kWideLeafAtoms> : evaluate_leaves_kernel<kLeafAtoms>,
+                  candidates.leaves,
                   LaunchShape{kSignThreads, kSignWarps, 64 + 2 * uint64_t(candidates.longest_row) + features.most_caps},
                   SignJob{features, bricks, CandidateReach::of(features.parameters), candidates.view, signs});
 }

@@ -12,7 +12,9 @@ namespace quickses {
 namespace gpu {
 
 constexpr int kTriangleWarps = 4;
-constexpr int kTriangleItems = 512;  // triangles of a brick listed at a time
+constexpr int kTriangleItems = 256;                                    // triangles of a brick listed at a time
+constexpr uint32_t kMostTrianglesOfWarp = kWarp * kMostCaseTriangles;  // of a cell for each lane
+static_assert(kMostTrianglesOfWarp <= kTriangleItems, "they are listed together");
 
 struct TriangleJob {
   BrickSet bricks;
@@ -28,9 +30,21 @@ struct TriangleScratch {
   uint64_t crossing[27][kAxes];
   uint32_t first[27][kAxes];         // vertex of each mask's lowest bit
   uint64_t cases[kBrickPoints / 8];  // of the cells, a byte each: by 64 * leaf + bit
+  uint16_t mixed[kBrickPoints];      // the cells that have triangles
   uint16_t items[kTriangleItems];    // cell << 3 | triangle of its case
   __device__ __forceinline__ int case_of(int cell) const { return reinterpret_cast<const uint8_t *>(cases)[cell]; }
 };
+
+// A point and what is added to it, a byte for each coordinate; the highest byte is an axis.
+__device__ __forceinline__ uint32_t packed_point(const glm::ivec3 &p) {
+  return static_cast<uint32_t>(p.x | p.y << 8 | p.z << 16);
+}
+// The lower three bytes, two bits of each, times these numbers: no sum exceeds a byte.
+template <uint32_t kOfX, uint32_t kOfY, uint32_t kOfZ>
+__device__ __forceinline__ uint32_t sum_of_bytes(uint32_t packed) {
+  static_assert(3 * (kOfX + kOfY + kOfZ) < 256, "nor a part of it");
+  return (packed & 0x030303) * (kOfZ | kOfY << 8 | kOfX << 16) >> 16 & 0xff;
+}
 
 static __global__ __launch_bounds__(kTriangleWarps *kWarp) void emit_triangles_kernel(QueuedItems queued,
                                                                                       TriangleJob job) {
@@ -38,9 +52,13 @@ static __global__ __launch_bounds__(kTriangleWarps *kWarp) void emit_triangles_k
   __shared__ TriangleScratch scratch_memory[kTriangleWarps];
   __shared__ __align__(16) uint8_t edges[kCellCases][16];
   __shared__ uint8_t triangle_count[kCellCases];
+  __shared__ uint32_t edge_steps[kCellEdges];  // from a cell's lower corner to an edge's lower point, and its axis
   for (int k = static_cast<int>(threadIdx.x); k < kCellCases; k += kTriangleWarps * kWarp) {
     *reinterpret_cast<uint4 *>(edges[k]) = *reinterpret_cast<const uint4 *>(job.table.edges[k]);
     triangle_count[k] = job.table.triangle_count[k];
+    if (k < kCellEdges)
+      edge_steps[k] = packed_point({edge_origin_x(k), edge_origin_y(k), edge_origin_z(k)}) |
+                      static_cast<uint32_t>(edge_axis(k)) << 24;
   }
   __syncthreads();
   if (!job.layout.has_room()) return;
@@ -51,8 +69,8 @@ static __global__ __launch_bounds__(kTriangleWarps *kWarp) void emit_triangles_k
   for (uint32_t b = job.slice.first + static_cast<uint32_t>(items.first) + blockIdx.x * kTriangleWarps +
                     static_cast<uint32_t>(warp);
        b < last; b += gridDim.x * kTriangleWarps) {
-    const uint32_t base = layout.base[b].triangles, total = layout.base[b + 1].triangles - base;
-    if (total == 0) continue;
+    const uint32_t base = layout.base[b].triangles;
+    if (layout.base[b + 1].triangles == base) continue;
     const int brick = static_cast<int>(b);
     __syncwarp();
     bool is_active = false;
@@ -83,46 +101,48 @@ static __global__ __launch_bounds__(kTriangleWarps *kWarp) void emit_triangles_k
       if (active >> place & 1) *word = scratch.signs[place];
     }));
     const uint32_t mixed = static_cast<uint32_t>(mixed_cells(corners) >> (first_cell & 63)) & 0xffff;
-    uint32_t own = 0;
 #pragma unroll
-    for (int half = 0; half < 2; ++half) {
-      const uint64_t cases = cell_cases(corners, (first_cell & 63) + 8 * half);
-      scratch.cases[2 * lane + half] = cases;
-#pragma unroll
-      for (int shift = 0; shift < 64; shift += 8) own += triangle_count[cases >> shift & 0xff];  // none if not mixed
-    }
-    const uint32_t before = warp_inclusive_sum(own, lane) - own;
-    for (uint32_t start = 0; start < total; start += kTriangleItems) {
-      uint32_t place = before;
-      for (uint32_t m = mixed; m; m &= m - 1) {
-        const int cell = first_cell + lowest_bit32(m);
-        const uint32_t count = triangle_count[scratch.case_of(cell)];
+    for (int half = 0; half < 2; ++half)
+      scratch.cases[2 * lane + half] = cell_cases(corners, (first_cell & 63) + 8 * half);
+    const uint32_t own = static_cast<uint32_t>(__popc(mixed)), with_own = warp_inclusive_sum(own, lane),
+                   cells = __shfl_sync(kFullWarp, with_own, kWarp - 1);
+    uint32_t next = with_own - own;
+    for (uint32_t m = mixed; m; m &= m - 1) scratch.mixed[next++] = static_cast<uint16_t>(first_cell + lowest_bit32(m));
+    __syncwarp();
+    uint32_t *out = job.mesh.triangle(base);  // of the first that is listed
+    for (uint32_t cell0 = 0; cell0 < cells;) {
+      uint32_t listed = 0;
+      for (; cell0 < cells && listed + kMostTrianglesOfWarp <= kTriangleItems; cell0 += kWarp) {
+        const bool on = cell0 + static_cast<uint32_t>(lane) < cells;
+        const int cell = scratch.mixed[on ? cell0 + static_cast<uint32_t>(lane) : 0];
+        const uint32_t count = on ? triangle_count[scratch.case_of(cell)] : 0,
+                       with_count = warp_inclusive_sum(count, lane);
 #pragma unroll
         for (uint32_t t = 0; t < uint32_t(kMostCaseTriangles); ++t)
-          if (t < count && place + t - start < kTriangleItems)  // unsigned: not before start either
-            scratch.items[place + t - start] = static_cast<uint16_t>(static_cast<uint32_t>(cell) << 3 | t);
-        place += count;
+          if (t < count)
+            scratch.items[listed + with_count - count + t] =
+                static_cast<uint16_t>(static_cast<uint32_t>(cell) << 3 | t);
+        listed += __shfl_sync(kFullWarp, with_count, kWarp - 1);
       }
       __syncwarp();
-      const uint32_t listed = total - start < kTriangleItems ? total - start : kTriangleItems;
       for (uint32_t r = static_cast<uint32_t>(lane); r < listed; r += kWarp) {
         const int item = scratch.items[r], cell = item >> 3, t = item & 7, code = scratch.case_of(cell);
-        const glm::ivec3 p = brick_point(cell >> 6, cell & 63);
+        const uint32_t corner = packed_point(brick_point(cell >> 6, cell & 63));
         uint32_t id[3];
 #pragma unroll
         for (int k = 0; k < 3; ++k) {
-          const int e = edges[code][3 * t + k], axis = edge_axis(e);
-          const int ex = p.x + edge_origin_x(e), ey = p.y + edge_origin_y(e), ez = p.z + edge_origin_z(e);
-          const int place27 = (ex >> 2) + 3 * (ey >> 2) + 9 * (ez >> 2);
-          id[k] = vertex_number(scratch.first[place27][axis], scratch.crossing[place27][axis],
-                                leaf_bit(ex & 3, ey & 3, ez & 3));
+          const uint32_t lower = corner + edge_steps[edges[code][3 * t + k]], axis = lower >> 24,
+                         place = sum_of_bytes<1, 3, 9>(lower >> 2);
+          id[k] = vertex_number(scratch.first[place][axis], scratch.crossing[place][axis],
+                                static_cast<int>(sum_of_bytes<1, 4, 16>(lower)));
           assert(id[k] < layout.vertex_total);  // no signs change on the border of the set
         }
-        uint32_t *out = job.mesh.triangle(size_t(base) + start + r);
-        out[0] = id[0];
-        out[1] = job.mesh.reversed ? id[2] : id[1];
-        out[2] = job.mesh.reversed ? id[1] : id[2];
+        uint32_t *const own_out = out + 3 * r;
+        own_out[0] = id[0];
+        own_out[1] = job.mesh.reversed ? id[2] : id[1];
+        own_out[2] = job.mesh.reversed ? id[1] : id[2];
       }
+      out += 3 * listed;
       __syncwarp();
     }
   }
