@@ -82,20 +82,24 @@ void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bri
   };
   launch_first("project_on_atoms", are_few, project_on_atoms_kernel<1>, project_on_atoms_kernel<kFew>);
   launch_first("project_on_arcs", are_few || have_much, project_on_arcs_kernel<1>, project_on_arcs_kernel<kFew>);
-  // As a rule few vertices are left.
+  // As a rule few vertices are left: how many is asked if one launch can't place as many as there are.
   const auto share = [&](int lanes, uint64_t looks) {
     return LaunchShape{kVertexThreads, static_cast<size_t>(kVertexThreads / lanes),
                        looks * (64 + look / static_cast<uint64_t>(lanes)), size_t(executor.multiprocessors()) * 16};
   };
+  const auto launch_rest = [&](const char *name, const char *counted, auto kernel, const LaunchShape &shape,
+                               Tally<uint32_t> VertexCounts::*left) {
+    size_t vertices = job.count;
+    if (!E::kCounts && !executor.is_few_launches(vertices, shape))
+      vertices = executor.expect(counted, &(job.counts->*left), Tally<uint32_t>{job.count}).count;
+    executor.launch(name, kernel, vertices, shape, job);
+  };
   const bool by_warps = have_much || are_few;
   const int lanes = by_warps ? kWarp : 8;
-  executor.launch("reproject", by_warps ? reproject_kernel<kWarp> : reproject_kernel<8>, job.count,
-                  share(lanes, 2 + kMaxProjections), job);
-  const LaunchShape place = share(kWarp, looks_for_sign_change(features.parameters, kPlaceHalvings));
-  size_t on_edges = job.count;
-  if (!E::kCounts && job.count > 0 && !executor.is_few_launches(on_edges, place))
-    on_edges = executor.expect("vertices on edges", job.counts, VertexCounts{job.count, job.count, job.count}).on_edges;
-  executor.launch("place_on_edges", place_on_edges_kernel, on_edges, place, job);
+  launch_rest("reproject", "unfinished vertices", by_warps ? reproject_kernel<kWarp> : reproject_kernel<8>,
+              share(lanes, 2 + kMaxProjections), &VertexCounts::unfinished);
+  launch_rest("place_on_edges", "vertices on edges", place_on_edges_kernel,
+              share(kWarp, looks_for_sign_change(features.parameters, kPlaceHalvings)), &VertexCounts::on_edges);
   if (gives_back) executor.arena().rewind(mark);
 }
 

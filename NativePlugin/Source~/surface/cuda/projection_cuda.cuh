@@ -82,7 +82,7 @@ __device__ __forceinline__ bool project_on_atoms(const VertexJob &job, const Ver
   const Projection v = project_on_atom(f.parameters, ball, deepest.depth, x);
   const bool done = v.state == ProjectionState::kPlaced;
   __syncwarp();
-  append(job.on_edges, &job.counts->on_edges, k, team.writes && contact && !done);
+  append(job.on_edges, &job.counts->on_edges.count, k, team.writes && contact && !done);
   if (team.writes && contact && !done) leave_start(job, k);
   if (team.writes && contact && done) finish_vertex(job, k, v.point, deepest.atom);
   return team.writes && !contact;
@@ -193,8 +193,8 @@ static __global__ __launch_bounds__(kVertexThreads,
   __syncwarp();
   const bool placed = usual && v.state == ProjectionState::kPlaced,
              on_edge = usual && v.state == ProjectionState::kOnEdge;
-  append(job.unfinished, &job.counts->unfinished, k, team.writes && !placed && !on_edge);
-  append(job.on_edges, &job.counts->on_edges, k, team.writes && on_edge);
+  append(job.unfinished, &job.counts->unfinished.count, k, team.writes && !placed && !on_edge);
+  append(job.on_edges, &job.counts->on_edges.count, k, team.writes && on_edge);
   if (team.writes && on_edge) leave_start(job, k);
   uint32_t owner = 0;
   if (kLanes > 1 || placed) owner = nearest_atom(f, candidates, v.point.position);
@@ -211,7 +211,7 @@ template <int kLanes>
 static __global__ __launch_bounds__(kVertexThreads, 8) void reproject_kernel(QueuedItems queued, VertexJob job) {
   const LaunchItems vertices = queued.in_turn();
   const FeatureView &f = job.features;
-  const uint32_t teams = gridDim.x * (kVertexThreads / kLanes), unfinished = job.counts->unfinished;
+  const uint32_t teams = gridDim.x * (kVertexThreads / kLanes), unfinished = job.counts->unfinished.count;
   const uint32_t total = unfinished < vertices.last ? unfinished : static_cast<uint32_t>(vertices.last);
   const uint32_t team = static_cast<uint32_t>(lane_id()) / kLanes;
   for (uint32_t place0 =
@@ -230,7 +230,7 @@ static __global__ __launch_bounds__(kVertexThreads, 8) void reproject_kernel(Que
       __syncwarp();
     }
     const bool placed = v.state == ProjectionState::kPlaced, writes = on && candidates.rank() == 0;
-    append(job.on_edges, &job.counts->on_edges, k, writes && !placed);
+    append(job.on_edges, &job.counts->on_edges.count, k, writes && !placed);
     if (writes && !placed) leave_start(job, k);
     const uint32_t owner = nearest_atom(f, candidates, v.point.position);
     if (writes && placed) finish_vertex(job, k, v.point, owner);
@@ -290,7 +290,7 @@ static __global__ __launch_bounds__(kVertexThreads, 8) void place_on_edges_kerne
   const LaunchItems vertices = queued.in_turn();
   __shared__ uint32_t edge_memory[kEdgeWarps][kEdgeRoom];
   const FeatureView &f = job.features;
-  const uint32_t warps = gridDim.x * kEdgeWarps, on_edges = job.counts->on_edges, warp = threadIdx.x / kWarp;
+  const uint32_t warps = gridDim.x * kEdgeWarps, on_edges = job.counts->on_edges.count, warp = threadIdx.x / kWarp;
   const uint32_t total = on_edges < vertices.last ? on_edges : static_cast<uint32_t>(vertices.last);
   for (uint32_t place = static_cast<uint32_t>(vertices.first) + blockIdx.x * kEdgeWarps + warp; place < total;
        place += warps) {

@@ -10,13 +10,8 @@ namespace quickses {
 namespace gpu {
 
 struct VertexCounts {
-  uint32_t open, unfinished, on_edges;
-  static VertexCounts anticipated(const VertexCounts &last, const VertexCounts &most) {
-    return {most.open, most.unfinished, std::min(and_some_more(last.on_edges), most.on_edges)};
-  }
-  bool covers(const VertexCounts &found) const {
-    return found.open <= open && found.unfinished <= unfinished && found.on_edges <= on_edges;
-  }
+  uint32_t open;
+  Tally<uint32_t> unfinished, on_edges;
 };
 
 struct VertexJob {
