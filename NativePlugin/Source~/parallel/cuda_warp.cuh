@@ -21,6 +21,21 @@ __device__ __forceinline__ void sync_warps() {
     __syncthreads();
 }
 
+// Of teams of so many lanes that a warp is made of: the lane in its team, and the team's lanes.
+template <int kLanes>
+__device__ __forceinline__ int rank_in_team() {
+  return lane_id() % kLanes;
+}
+template <int kLanes>
+__device__ __forceinline__ unsigned lanes_of_team() {
+  return (kFullWarp >> (kWarp - kLanes)) << (lane_id() / kLanes * kLanes);
+}
+// Whether something that is the same in all lanes of a team holds for any team.
+template <int kLanes>
+__device__ __forceinline__ bool holds_for_any_team(bool own) {
+  return kLanes == kWarp ? own : __any_sync(kFullWarp, own) != 0;
+}
+
 // How many of the lanes before this one are in a ballot: the place of this lane among them.
 __device__ __forceinline__ int place_in(unsigned ballot, int lane) { return __popc(ballot & ((1u << lane) - 1u)); }
 

@@ -35,17 +35,18 @@ struct BoxCull {
   Vec3<float> center, half;
   float corner_depth[8];  // of the other ball
 
-  // Lane k < 8 works for corner k.
+  // By teams of so many lanes, of which lane k < 8 works for corner k.
+  template <int kLanes>
   __device__ __forceinline__ void set(const Vec3<float> &box_center, const Vec3<float> &half_extents,
                                       const Sphere &other, float slack) {
     center = box_center;
     half = half_extents;
-    const int lane = lane_id();
-    const Vec3<float> corner(center.x + (lane & 1 ? half.x : -half.x), center.y + (lane & 2 ? half.y : -half.y),
-                             center.z + (lane & 4 ? half.z : -half.z));
+    const int rank = rank_in_team<kLanes>(), first = lane_id() - rank;
+    const Vec3<float> corner(center.x + (rank & 1 ? half.x : -half.x), center.y + (rank & 2 ? half.y : -half.y),
+                             center.z + (rank & 4 ? half.z : -half.z));
     const float depth = ball_depth(other, corner) - slack;
 #pragma unroll
-    for (int k = 0; k < 8; ++k) corner_depth[k] = __shfl_sync(kFullWarp, depth, k);
+    for (int k = 0; k < 8; ++k) corner_depth[k] = __shfl_sync(kFullWarp, depth, first + k);
   }
 
   // depth: of the box's centre in the ball.
@@ -62,9 +63,9 @@ struct BoxCull {
 };
 
 // Of `count` atoms, atom_at(k), those that can be deepest at a point of a box, as far as they come up to `floor` at its
-// centre: visit(chosen, ball, number) for a warp's worth after the other. Returns the one that is deepest at the
-// centre, which is chosen in any case.
-template <class AtomAt, class Visit>
+// centre: visit(chosen, ball, number) for as many as a team has lanes after the other. Returns the one that is deepest
+// at the centre, which is chosen in any case. Each team of a warp may ask for other atoms and another box.
+template <int kLanes, class AtomAt, class Visit>
 __device__ __forceinline__ DeepestAtom choose_deepest_atoms(const FeatureView &f, uint32_t count, const AtomAt &atom_at,
                                                             const Vec3<float> &center, const Vec3<float> &half,
                                                             float floor, float slack, const Visit &visit) {
@@ -82,31 +83,32 @@ __device__ __forceinline__ DeepestAtom choose_deepest_atoms(const FeatureView &f
     }
     return atom;
   };
-  // As a rule there are not more than these, which are looked at once.
-  constexpr int kHeld = 2;
-  const uint32_t lane = static_cast<uint32_t>(lane_id());
+  // Of as many as a warp's lanes hold there are not more as a rule: those are looked at once.
+  constexpr uint32_t kStep = kLanes, kHeld = 2;
+  const uint32_t rank = static_cast<uint32_t>(rank_in_team<kLanes>());
   Looked held[kHeld];
   NumberedValue best{-2.f * kFarAway, kNoAtom};
   const auto meet = [&](const Looked &atom) {
     if (atom.depth > best.value) best = {atom.depth, atom.number};
   };
 #pragma unroll
-  for (int c = 0; c < kHeld; ++c) held[c] = look_at(lane + static_cast<uint32_t>(c * kWarp));
+  for (uint32_t c = 0; c < kHeld; ++c) held[c] = look_at(rank + c * kStep);
 #pragma unroll
-  for (int c = 0; c < kHeld; ++c) meet(held[c]);
-  for (uint32_t k = lane + kHeld * kWarp; k < count; k += kWarp) meet(look_at(k));
-  best = warp_largest(best);
-  if (count == 0) return {best.number, best.value};
+  for (uint32_t c = 0; c < kHeld; ++c) meet(held[c]);
+  for (uint32_t k = rank + kHeld * kStep; k < count; k += kStep) meet(look_at(k));
+  __syncwarp();
+  best = warp_largest<kLanes>(best);
+  if (!holds_for_any_team<kLanes>(count > 0)) return {best.number, best.value};
   BoxCull cull;
-  cull.set(center, half, load(f.atoms.items + best.number), slack);
+  cull.template set<kLanes>(center, half, load(f.atoms.items + (count > 0 ? best.number : 0)), slack);
   const auto choose = [&](const Looked &atom) {
     const bool is_best = atom.number == best.number && atom.number != kNoAtom;
     visit((atom.depth >= floor && cull.keeps(atom.ball, atom.depth)) || is_best, atom.ball, atom.number);
   };
 #pragma unroll
-  for (int c = 0; c < kHeld; ++c)
-    if (static_cast<uint32_t>(c * kWarp) < count) choose(held[c]);
-  for (uint32_t k0 = kHeld * kWarp; k0 < count; k0 += kWarp) choose(look_at(k0 + lane));
+  for (uint32_t c = 0; c < kHeld; ++c)
+    if (holds_for_any_team<kLanes>(c * kStep < count)) choose(held[c]);
+  for (uint32_t k0 = kHeld * kStep; holds_for_any_team<kLanes>(k0 < count); k0 += kStep) choose(look_at(k0 + rank));
   return {best.number, best.value};
 }
 
@@ -153,7 +155,7 @@ static __global__ __launch_bounds__(kSignThreads,
   // Those that can be deepest at one of its points; what there is no room for is left out.
   int atom_count = 0;
   const float half = 1.5f * h;
-  const DeepestAtom best = choose_deepest_atoms(
+  const DeepestAtom best = choose_deepest_atoms<kWarp>(
       f, row.atom_count, [&](uint32_t k) { return __ldg(atoms + k); }, center, {half, half, half},
       -reach.leaf_radius - reach.slack, reach.slack,
       [&](bool chosen, const Sphere &ball, uint32_t number) {

@@ -21,10 +21,8 @@ struct LaneCandidates {
   __device__ __forceinline__ int arc_count() const { return arc_total; }
   __device__ __forceinline__ uint32_t atom(int k) const { return atoms[k]; }
   __device__ __forceinline__ uint32_t arc(int k) const { return arcs[k]; }
-  static __device__ __forceinline__ int rank() { return lane_id() % kLanes; }
-  static __device__ __forceinline__ unsigned team() {
-    return (kFullWarp >> (kWarp - kLanes)) << (lane_id() / kLanes * kLanes);
-  }
+  static __device__ __forceinline__ int rank() { return rank_in_team<kLanes>(); }
+  static __device__ __forceinline__ unsigned team() { return lanes_of_team<kLanes>(); }
   static __device__ __forceinline__ unsigned lanes() { return kTogether ? kFullWarp : team(); }
 };
 

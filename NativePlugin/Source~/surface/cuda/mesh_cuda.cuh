@@ -53,8 +53,11 @@ VertexJob prepare_vertices(E &executor, const FeatureView &features, const Brick
                       LaunchShape{kLeafWarps * kWarp, kLeafWarps, halve * static_cast<uint64_t>(most / kWarp)}, job,
                       first, first + most);
   }
-  executor.launch("prepare_vertices", prepare_vertices_kernel, leaves,
-                  LaunchShape{kLeafWarps * kWarp, kLeafWarps, 128 + row / 4}, job);
+  constexpr size_t kManyLeaves = 64;  // of a multiprocessor
+  const bool by_halves = leaves > executor.multiprocessors() * kManyLeaves && job.list_words < kLongList;
+  const size_t lanes = by_halves ? kWarp / 2 : kWarp;
+  executor.launch("prepare_vertices", by_halves ? prepare_vertices_kernel<kWarp / 2> : prepare_vertices_kernel<kWarp>,
+                  leaves, LaunchShape{kLeafWarps * kWarp, kLeafWarps * kWarp / lanes, 128 + row * 8 / lanes}, job);
   return job;
 }
 
@@ -72,7 +75,6 @@ void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bri
   const uint64_t look = vertex_steps(features, candidates.longest_row);
   // Lanes for each of few vertices, or of such that have much to look at; so many for a multiprocessor at most.
   constexpr size_t kFew = 4, kMostThreads = 3072;
-  constexpr uint32_t kLongList = 256;
   const bool are_few = job.count * kFew <= executor.multiprocessors() * kMostThreads,
              have_much = job.list_words >= kLongList;
   const auto launch_first = [&](const char *name, bool by_several, auto by_one, auto by_few) {

@@ -38,6 +38,8 @@ struct VertexJob {
 // The list of a leaf: word 0 has the number of atoms in its lower and of arcs in its upper half, then they follow. If
 // they are too many those of the row are used.
 constexpr uint32_t kRowCandidates = 0x80000000u;
+// Room for so many is needed where spacings are wide: then there is much to look at for each vertex.
+constexpr uint32_t kLongList = 256;
 
 // The vertices there are, of those that there is room for.
 __device__ __forceinline__ uint32_t vertex_count(const VertexJob &job) {
@@ -91,24 +93,31 @@ struct VertexLeaf {
   int count;
 };
 
-// False if there is none of this number. edges: 64 * axis + bit of the lower point, in the order of the vertices. A
-// warp together.
-__device__ __forceinline__ bool open_leaf(const VertexJob &job, size_t number, VertexLeaf *out, uint8_t *edges) {
-  if (!job.layout.has_room() || job.first_leaf + number >= job.layout.totals->leaves) return false;
-  const int lane = lane_id();
-  const uint32_t slot = job.layout.vertex_leaves[job.first_leaf + number];
+// By teams of so many lanes, one for each of leaves whose numbers follow each other. A team whose number there is not
+// has the first one's leaf without vertices; false if no team has any. edges: 64 * axis + bit of the lower point, in
+// the order of the vertices.
+template <int kLanes>
+__device__ __forceinline__ bool open_leaf(const VertexJob &job, size_t number, size_t end, VertexLeaf *out,
+                                          uint8_t *edges) {
+  if (!job.layout.has_room()) return false;
+  const bool is_there = number < end && job.first_leaf + number < job.layout.totals->leaves;
+  if (!holds_for_any_team<kLanes>(is_there)) return false;
+  const int rank = rank_in_team<kLanes>();
+  const size_t known = is_there ? number : number - static_cast<size_t>(lane_id() / kLanes);
+  const uint32_t slot = job.layout.vertex_leaves[job.first_leaf + known];
   out->brick = slot / kLeavesPerBrick;
   out->leaf = static_cast<int>(slot % kLeavesPerBrick);
   const size_t k = (static_cast<size_t>(out->brick) * kLeavesPerBrick + static_cast<size_t>(out->leaf)) * kAxes;
   uint64_t masks[kAxes];
 #pragma unroll
-  for (int axis = 0; axis < kAxes; ++axis) masks[axis] = job.layout.crossing[k + static_cast<size_t>(axis)];
+  for (int axis = 0; axis < kAxes; ++axis)
+    masks[axis] = is_there ? job.layout.crossing[k + static_cast<size_t>(axis)] : 0;
   out->count = 0;
 #pragma unroll
   for (int axis = 0; axis < kAxes; ++axis) {
 #pragma unroll
-    for (int half = 0; half < 2; ++half) {
-      const int bit = lane + 32 * half;
+    for (int first = 0; first < 64; first += kLanes) {
+      const int bit = rank + first;
       if (masks[axis] >> bit & 1)
         edges[out->count + popcount64(masks[axis] & ((uint64_t(1) << bit) - 1))] =
             static_cast<uint8_t>(axis << 6 | bit);
@@ -128,21 +137,23 @@ struct SignWindow {
   uint64_t words[27];  // of the leaf and its neighbours, x fastest
   uint8_t rows[kWindowRows];
 };
+template <int kLanes>
 __device__ __forceinline__ void fill_window(const VertexJob &job, const VertexLeaf &leaf, SignWindow *window) {
-  const int lane = lane_id();
-  if (lane < 27) {
-    const int x = leaf.origin.x + 4 * (lane % 3 - 1), y = leaf.origin.y + 4 * (lane / 3 % 3 - 1),
-              z = leaf.origin.z + 4 * (lane / 9 - 1);
+  const int rank = rank_in_team<kLanes>();
+#pragma unroll
+  for (int k = rank; k < 27; k += kLanes) {
+    const int x = leaf.origin.x + 4 * (k % 3 - 1), y = leaf.origin.y + 4 * (k / 3 % 3 - 1),
+              z = leaf.origin.z + 4 * (k / 9 - 1);
     int b = static_cast<int>(leaf.brick);
     if ((x | y | z) & ~7) {
       b = job.bricks.find(leaf.place + glm::ivec3(x >> 3, y >> 3, z >> 3));
       if (b < 0) b = static_cast<int>(leaf.brick);  // no cell with a sign change reaches there: any sign will do
     }
-    window->words[lane] =
+    window->words[k] =
         job.layout.signs[static_cast<size_t>(b) * kLeavesPerBrick + static_cast<size_t>(leaf_of(x & 7, y & 7, z & 7))];
   }
   __syncwarp();
-  for (int r = lane; r < kWindowRows; r += kWarp) {
+  for (int r = rank; r < kWindowRows; r += kLanes) {
     const int y = r % 6 - 1, z = r / 6 - 1, row = leaf_bit(0, y & 3, z & 3);
     const uint64_t *const words = window->words + 3 * ((y >> 2) + 1) + 9 * ((z >> 2) + 1);
     window->rows[r] =
@@ -160,7 +171,7 @@ static __global__ __launch_bounds__(kLeafWarps *kWarp) void halve_starts_kernel(
   const int warp = static_cast<int>(threadIdx.x) / kWarp;
   const size_t number = leaves.first + blockIdx.x * kLeafWarps + static_cast<uint32_t>(warp);
   VertexLeaf leaf;
-  if (number >= leaves.last || !open_leaf(job, number, &leaf, edge_memory[warp])) return;
+  if (!open_leaf<kWarp>(job, number, leaves.last, &leaf, edge_memory[warp])) return;
   const ListedCandidates candidates = row_candidates(job.view, job.view.slot_of(leaf.brick, leaf.leaf));
   for (int k = first + lane_id(); k < leaf.count && k < last; k += kWarp) {
     const LatticeEdge edge{leaf.leaf, edge_memory[warp][k] >> 6, edge_memory[warp][k] & 63};
@@ -170,28 +181,32 @@ static __global__ __launch_bounds__(kLeafWarps *kWarp) void halve_starts_kernel(
   }
 }
 
-// Starts and candidates of the leaves that own vertices. A warp per leaf.
-static __global__ __launch_bounds__(kLeafWarps *kWarp,
-                                    blocks_at_once(kLeafWarps *kWarp,
-                                                   11)) void prepare_vertices_kernel(QueuedItems queued,
-                                                                                     VertexJob job) {
+// Starts and candidates of the leaves that own vertices. So many lanes for each: of many leaves two share a warp, since
+// most have no more than 20 vertices.
+template <int kLanes>
+static __global__ __launch_bounds__(
+    kLeafWarps *kWarp,
+    blocks_at_once(kLeafWarps *kWarp, kLanes == kWarp ? 11 : 10)) void prepare_vertices_kernel(QueuedItems queued,
+                                                                                               VertexJob job) {
   const LaunchItems leaves = queued.in_turn();
-  __shared__ uint8_t edge_memory[kLeafWarps][kMostLeafVertices];
-  __shared__ SignWindow window_memory[kLeafWarps];
-  const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();
-  const size_t number = leaves.first + blockIdx.x * kLeafWarps + static_cast<uint32_t>(warp);
-  const uint8_t *const edges = edge_memory[warp];
+  constexpr int kTeams = kLeafWarps * kWarp / kLanes;
+  __shared__ uint8_t edge_memory[kTeams][kMostLeafVertices];
+  __shared__ SignWindow window_memory[kTeams];
+  const int team = static_cast<int>(threadIdx.x) / kLanes, rank = rank_in_team<kLanes>();
+  const unsigned lanes = lanes_of_team<kLanes>();
+  const size_t number = leaves.first + blockIdx.x * kTeams + static_cast<uint32_t>(team);
+  const uint8_t *const edges = edge_memory[team];
   VertexLeaf leaf;
-  if (number >= leaves.last || !open_leaf(job, number, &leaf, edge_memory[warp])) return;
+  if (!open_leaf<kLanes>(job, number, leaves.last, &leaf, edge_memory[team])) return;
   const Lattice &lattice = job.bricks.lattice;
   const bool ring = job.starts.relax && !job.halved && !job.starts.moved;
-  if (ring) fill_window(job, leaf, &window_memory[warp]);
+  if (ring) fill_window<kLanes>(job, leaf, &window_memory[team]);
 
   Vec3<float> low(kFarAway, kFarAway, kFarAway), high(-kFarAway, -kFarAway, -kFarAway);
   const uint64_t word =
       job.layout.signs[static_cast<size_t>(leaf.brick) * kLeavesPerBrick + static_cast<size_t>(leaf.leaf)];
   const glm::ivec3 origin = lattice.first_point(leaf.place) + leaf.origin;
-  for (int k = lane; k < leaf.count; k += kWarp) {
+  for (int k = rank; k < leaf.count; k += kLanes) {
     const uint32_t vertex = leaf.first + static_cast<uint32_t>(k);
     Vec3<float> x(0.f, 0.f, 0.f);
     if (job.starts.moved) {
@@ -202,7 +217,7 @@ static __global__ __launch_bounds__(kLeafWarps *kWarp,
       const int axis = edges[k] >> 6, bit = edges[k] & 63, px = bit & 3, py = bit >> 2 & 3, pz = bit >> 4;
       Vec3<float> move(0.f, 0.f, 0.f);
       if (ring) {
-        const uint8_t *const row = window_memory[warp].rows + (py + 1) + 6 * (pz + 1);
+        const uint8_t *const row = window_memory[team].rows + (py + 1) + 6 * (pz + 1);
         ring_displacement(edge_ring_of_rows(row, 6, px + 1, axis, job.starts.ring), &move.x, &move.y, &move.z);
       }
       const float along = vertex_start(word >> bit & 1);
@@ -215,31 +230,34 @@ static __global__ __launch_bounds__(kLeafWarps *kWarp,
     low = {fminf(low.x, x.x), fminf(low.y, x.y), fminf(low.z, x.z)};
     high = {fmaxf(high.x, x.x), fmaxf(high.y, x.y), fmaxf(high.z, x.z)};
   }
-  low = {-warp_maximum(-low.x), -warp_maximum(-low.y), -warp_maximum(-low.z)};
-  high = {warp_maximum(high.x), warp_maximum(high.y), warp_maximum(high.z)};
+  __syncwarp();
+  low = {-warp_maximum<kLanes>(-low.x), -warp_maximum<kLanes>(-low.y), -warp_maximum<kLanes>(-low.z)};
+  high = {warp_maximum<kLanes>(high.x), warp_maximum<kLanes>(high.y), warp_maximum<kLanes>(high.z)};
   const Vec3<float> center = (low + high) * 0.5f, half = (high - low) * 0.5f;
 
   const FeatureView &f = job.features;
   const uint32_t slot = job.view.slot_of(leaf.brick, leaf.leaf);
-  const ListedCandidates all = row_candidates(job.view, slot);
+  ListedCandidates all = row_candidates(job.view, slot);
+  if (leaf.count == 0) all.atom_total = all.arc_total = 0;
   // The numbers of the first arcs are asked for before the atoms are looked at.
-  const auto arc_number = [&](int k0) { return k0 + lane < all.arc_total ? all.arc(k0 + lane) : 0; };
+  const auto arc_number = [&](int k0) { return k0 + rank < all.arc_total ? all.arc(k0 + rank) : 0; };
   constexpr int kAhead = 2;
   uint32_t ahead[kAhead];
 #pragma unroll
-  for (int c = 0; c < kAhead; ++c) ahead[c] = arc_number(c * kWarp);
+  for (int c = 0; c < kAhead; ++c) ahead[c] = arc_number(c * kLanes);
   const int room = static_cast<int>(job.list_words);
   uint32_t *const list = job.lists + number * job.list_words;
   int listed = 1;  // word 0 is for the numbers
+  const auto put = [&](bool chosen, uint32_t item) {
+    const int at = append_place(chosen, &listed, kFullWarp, lanes);
+    if (chosen && at < room) list[at] = item;
+  };
   // What can be deepest at a start, or at its projection.
   const float move = kStartReach * job.reach.spacing;
-  choose_deepest_atoms(
+  choose_deepest_atoms<kLanes>(
       f, static_cast<uint32_t>(all.atom_total), [&](uint32_t k) { return all.atom(static_cast<int>(k)); }, center,
       {half.x + move, half.y + move, half.z + move}, -2.f * kFarAway, job.reach.slack,
-      [&](bool chosen, const Sphere &, uint32_t atom) {
-        const int at = append_place(chosen, &listed);
-        if (chosen && at < room) list[at] = atom;
-      });
+      [&](bool chosen, const Sphere &, uint32_t atom) { put(chosen, atom); });
   const int atoms = listed - 1;
   const float radius = square_root(length_squared(half)), limit = job.reach.start_reach;
   const auto choose_arc = [&](bool on, uint32_t a) {
@@ -253,16 +271,17 @@ static __global__ __launch_bounds__(kLeafWarps *kWarp,
       if (length_squared(d) <= near * near)
         keep = arc_distance2(load(f.arcs + a), center) <= (limit + radius) * (limit + radius);
     }
-    const int at = append_place(keep, &listed);
-    if (keep && at < room) list[at] = a;
+    put(keep, a);
   };
 #pragma unroll
   for (int c = 0; c < kAhead; ++c)
-    if (c * kWarp < all.arc_total) choose_arc(c * kWarp + lane < all.arc_total, ahead[c]);
-  for (int k0 = kAhead * kWarp; k0 < all.arc_total; k0 += kWarp) choose_arc(k0 + lane < all.arc_total, arc_number(k0));
+    if (holds_for_any_team<kLanes>(c * kLanes < all.arc_total)) choose_arc(c * kLanes + rank < all.arc_total, ahead[c]);
+  for (int k0 = kAhead * kLanes; holds_for_any_team<kLanes>(k0 < all.arc_total); k0 += kLanes)
+    choose_arc(k0 + rank < all.arc_total, arc_number(k0));
+  if (leaf.count == 0) return;
   const bool fits = listed <= room;
-  if (fits && lane == 0) list[0] = static_cast<uint32_t>(atoms) | static_cast<uint32_t>(listed - 1 - atoms) << 16;
-  for (int k = lane; k < leaf.count; k += kWarp)
+  if (fits && rank == 0) list[0] = static_cast<uint32_t>(atoms) | static_cast<uint32_t>(listed - 1 - atoms) << 16;
+  for (int k = rank; k < leaf.count; k += kLanes)
     job.list_of[leaf.first - job.first + static_cast<uint32_t>(k)] =
         fits ? static_cast<uint32_t>(number) : kRowCandidates | slot;
 }
