@@ -68,12 +68,7 @@ __device__ __forceinline__ void visit_cells(const GatherTeam<kWarps> &team, cons
                                    {low.x + beyond, low.y + beyond, low.z + beyond});
   const int rows = box.rows(), begin = rows * team.rank() / kWarps, end = rows * (team.rank() + 1) / kWarps;
   visit_runs(
-      end - begin,
-      [&](int r) {
-        const CellBox::Row row = box.row(begin + r);
-        return grid.run(box.x0, box.x1, row.y, row.z);
-      },
-      visit);
+      end - begin, [&](int r) { return grid.run(box, begin + r); }, visit);
 }
 
 // A list of one kind of things, and a warp's shared memory for the row it gathers.

@@ -53,17 +53,12 @@ class GatheredFeatures : public LaneCandidates<kGatheringLanes> {
   }
 
  private:
-  static __device__ __forceinline__ int rows(const CellBox &b) { return (b.y1 - b.y0 + 1) * (b.z1 - b.z0 + 1); }
-  static __device__ __forceinline__ ItemRun run(const NeighborGridView &grid, const CellBox &b, int row) {
-    const int width = b.y1 - b.y0 + 1;
-    return grid.run(b.x0, b.x1, b.y0 + row % width, b.z0 + row / width);
-  }
   // Returns how many are met, of which no more than so many are visited.
   template <class Visit>
   static __device__ __forceinline__ uint32_t visit(const NeighborGridView &grid, const CellBox &box, uint32_t most,
                                                    const Visit &visit) {
     return visit_runs<kGatheringLanes>(
-        rows(box), [&](int row) { return run(grid, box, row); }, visit, lanes(), most);
+        box.rows(), [&](int r) { return grid.run(box, r); }, visit, lanes(), most);
   }
   // count: of those kept, which may be more than there is room for.
   static __device__ __forceinline__ void keep(uint32_t item, bool is_kept, uint32_t *out, int room, int *count) {

@@ -151,10 +151,10 @@ void mark_thin_walls(E &executor, const FeatureView &features, const BrickSet &b
   for (;;) {
     const auto before_walks = executor.arena().mark();
     job.walks = executor.template allocate<uint64_t>(static_cast<size_t>(job.walk_room)).data;
-    // Of the least share of a warp: first ends and edges for each lane, and as many asked of the others' probes.
-    constexpr uint64_t kStarts = kLeastWallLeaves * 64 / kWarp, kEdges = kStarts * kWallSteps;
+    // Of a leaf: first ends and edges for each lane, and as many asked of the others' probes.
+    constexpr uint64_t kStarts = 64 / kWarp, kEdges = kStarts * kWallSteps;
     executor.launch("drop_open_edges", drop_open_edges_kernel, leaves,
-                    LaunchShape{kWallThreads, kWallWarps * kLeastWallLeaves,
+                    LaunchShape{kWallThreads, kWallWarps,
                                 kStarts * (64 + uint64_t(candidates.longest_row)) +
                                     kEdges * (kWarp * 2 + uint64_t(features.most_caps) * 3 / 4),
                                 most_blocks},

@@ -141,7 +141,7 @@ __device__ __forceinline__ NearestProbe decided_probe(const FeatureView &f, uint
 // A warp takes a run of leaves, shorter where the GPU has room for more warps, and in a round as many of the next ones
 // as have no more than so many first ends together.
 constexpr int kRoundStarts = 64, kRoundLeaves = 16;
-constexpr uint32_t kLeastWallLeaves = 1, kMostWallLeaves = 12;
+constexpr uint32_t kMostWallLeaves = 12;
 
 // The next leaves; a lane for each.
 struct WallRound {
@@ -330,9 +330,7 @@ static __global__ __launch_bounds__(kWallThreads,
   const uint32_t end = job.counters->leaves < items.last ? job.counters->leaves : static_cast<uint32_t>(items.last);
   if (end <= first) return;
   const uint32_t warps = gridDim.x * kWallWarps, even = (end - first - 1) / warps + 1,
-                 share = even > kMostWallLeaves    ? kMostWallLeaves
-                         : even < kLeastWallLeaves ? kLeastWallLeaves
-                                                   : even;
+                 share = even < kMostWallLeaves ? even : kMostWallLeaves;
   for (uint32_t own = first + (blockIdx.x * kWallWarps + threadIdx.x / kWarp) * share; own < end;
        own += warps * share) {
     const uint32_t own_end = own + share < end ? own + share : end;

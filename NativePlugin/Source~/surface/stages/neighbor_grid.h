@@ -48,28 +48,6 @@ QSES_FN uint32_t lower_bound(const uint64_t *keys, uint32_t n, uint64_t key) {
   return first;
 }
 
-// The grid as kernels see it.
-struct NeighborGridView {
-  CellLayout cells;
-  const Sphere *items;          // sorted by cell, then by the order they were given in
-  const uint32_t *order;        // sorted place -> number when given
-  const uint32_t *starts;       // first item of each cell, and the total; nullptr if the grid is sparse
-  const uint64_t *sorted_keys;  // cell of each sorted item, if the grid is sparse
-  uint32_t count;
-
-  // Items of the cells x0 ... x1 of a row: one run, since x is fastest.
-  QSES_FN ItemRun run(int x0, int x1, int y, int z) const {
-    if (starts) {  // there are fewer cells than 2^32
-      const uint32_t *const row = starts + static_cast<uint32_t>(cells.row(y, z));
-      return {row[x0], row[x1 + 1]};
-    }
-    const uint64_t row = cells.row(y, z);
-    const uint64_t first = row + static_cast<uint64_t>(x0), last = row + static_cast<uint64_t>(x1) + 1;
-    const uint32_t begin = lower_bound(sorted_keys, count, first);
-    return {begin, begin + lower_bound(sorted_keys + begin, count - begin, last)};
-  }
-};
-
 // Cells that a box can touch, clamped to the grid: rows along x, numbered y fastest.
 struct CellBox {
   int x0, x1, y0, y1, z0, z1;
@@ -93,6 +71,33 @@ QSES_FN CellBox cells_around(const CellLayout &cells, const Vec3<float> &low, co
       cells.cell_along(low.y, cells.origin.y, cells.count.y), cells.cell_along(high.y, cells.origin.y, cells.count.y),
       cells.cell_along(low.z, cells.origin.z, cells.count.z), cells.cell_along(high.z, cells.origin.z, cells.count.z)};
 }
+
+// The grid as kernels see it.
+struct NeighborGridView {
+  CellLayout cells;
+  const Sphere *items;          // sorted by cell, then by the order they were given in
+  const uint32_t *order;        // sorted place -> number when given
+  const uint32_t *starts;       // first item of each cell, and the total; nullptr if the grid is sparse
+  const uint64_t *sorted_keys;  // cell of each sorted item, if the grid is sparse
+  uint32_t count;
+
+  // Items of the cells x0 ... x1 of a row: one run, since x is fastest.
+  QSES_FN ItemRun run(int x0, int x1, int y, int z) const {
+    if (starts) {  // there are fewer cells than 2^32
+      const uint32_t *const row = starts + static_cast<uint32_t>(cells.row(y, z));
+      return {row[x0], row[x1 + 1]};
+    }
+    const uint64_t row = cells.row(y, z);
+    const uint64_t first = row + static_cast<uint64_t>(x0), last = row + static_cast<uint64_t>(x1) + 1;
+    const uint32_t begin = lower_bound(sorted_keys, count, first);
+    return {begin, begin + lower_bound(sorted_keys + begin, count - begin, last)};
+  }
+  // Of those of a box, by the number of the row.
+  QSES_FN ItemRun run(const CellBox &box, int r) const {
+    const CellBox::Row row = box.row(r);
+    return run(box.x0, box.x1, row.y, row.z);
+  }
+};
 
 // Stands where there may have been one more item: in no cell, and behind all others from the start.
 QSES_FN bool is_no_item(const Sphere &s) { return s.radius < 0.f; }

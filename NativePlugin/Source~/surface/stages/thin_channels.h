@@ -105,10 +105,10 @@ struct BrickBalls {
     const float far = f.parameters.max_radius + reach;
     const Vec3<float> around(far, far, far);
     const CellBox box = cells_around(f.atoms.cells, low - around, high + around);
-    const int width = box.y1 - box.y0 + 1, rows = width * (box.z1 - box.z0 + 1);
+    const int rows = box.rows();
     const int share = team.size() % 8 == 0 ? 8 : 1, own = team.rank() % share;  // so many take turns in a row
     for (int row = team.rank() / share; row < rows; row += team.size() / share) {
-      const ItemRun run = f.atoms.run(box.x0, box.x1, box.y0 + row % width, box.z0 + row / width);
+      const ItemRun run = f.atoms.run(box, row);
       if (run.end == run.begin || (own == 0 && atomic_add(&met, run.end - run.begin) > kMostMet)) continue;
       for (uint32_t k = run.begin + static_cast<uint32_t>(own); k < run.end && k - run.begin <= kMostMet;
            k += static_cast<uint32_t>(share)) {
