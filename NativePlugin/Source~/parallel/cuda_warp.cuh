@@ -175,10 +175,60 @@ __device__ __forceinline__ NumberedValue warp_largest(NumberedValue own, unsigne
   }
 }
 
+// A run of items for each lane of a team: the t-th item of all, for t from t0 on, a lane each. t0: 0, kLanes, 2 kLanes,
+// ... in this order.
+template <int kLanes>
+class RunItems {
+ public:
+  // sum: of the lengths of the runs before, and its own.
+  __device__ __forceinline__ RunItems(const ItemRun &run, int sum, unsigned lanes)
+      : sum_(sum), shift_(run.end - static_cast<uint32_t>(sum)), lanes_(lanes) {}
+  __device__ __forceinline__ uint32_t item(int t0) {
+    const int t = t0 + rank_in_team<kLanes>();
+    int lane = 0;  // the first whose sum exceeds t
+#pragma unroll
+    for (int d = kLanes / 2; d > 0; d >>= 1)
+      if (__shfl_sync(lanes_, sum_, lane + d - 1, kLanes) <= t) lane += d;
+    return __shfl_sync(lanes_, shift_, lane, kLanes) + static_cast<uint32_t>(t);
+  }
+
+ private:
+  int sum_;
+  uint32_t shift_;
+  unsigned lanes_;
+};
+// By a warp, and quicker where there are many items: a word has a bit where a run begins, and so many bits up to an
+// item tell which run it is in. For that lane k knows the k-th of the runs that have items.
+class MarkedRunItems {
+ public:
+  __device__ __forceinline__ MarkedRunItems(const ItemRun &run, int sum, unsigned /*lanes*/)
+      : begin_(sum - static_cast<int>(run.end - run.begin)), shift_(run.end - static_cast<uint32_t>(sum)), begun_(0) {
+    const unsigned some = __ballot_sync(kFullWarp, run.begin < run.end);
+    if (some & (some + 1)) {
+      const int from = nth_bit32(some, lane_id()) & 31;
+      begin_ = __shfl_sync(kFullWarp, begin_, from);
+      shift_ = __shfl_sync(kFullWarp, shift_, from);
+    }
+    if (lane_id() >= __popc(some)) begin_ = -1;
+  }
+  __device__ __forceinline__ uint32_t item(int t0) {
+    const unsigned from = static_cast<unsigned>(begin_ - t0);
+    const uint32_t begins = warp_or(from < kWarp ? 1u << from : 0u);
+    const int with_own = begun_ + __popc(begins << (31 - lane_id()));
+    begun_ += __popc(begins);
+    return __shfl_sync(kFullWarp, shift_, with_own - 1) + static_cast<uint32_t>(t0 + lane_id());
+  }
+
+ private:
+  int begin_;  // of the lane's run; -1: there are fewer
+  uint32_t shift_;
+  int begun_;  // runs that begin before t0
+};
+
 // Calls visit(item, on) for every item of the runs run_of(0), ..., run_of(rows - 1), in this order, with as many items
 // at a time as a warp, or each group, has lanes: on tells whether the lane has one. Returns how many there are; once
 // they turn out to be more than `most`, no more are visited.
-template <int Lanes = kWarp, class RunOf, class Visit>
+template <int Lanes = kWarp, class Items = RunItems<Lanes>, class RunOf, class Visit>
 __device__ __forceinline__ uint32_t visit_runs(int rows, const RunOf &run_of, const Visit &visit,
                                                unsigned lanes = kFullWarp, uint32_t most = ~uint32_t(0)) {
   const int lane = lane_id() % Lanes;
@@ -186,22 +236,14 @@ __device__ __forceinline__ uint32_t visit_runs(int rows, const RunOf &run_of, co
   for (int r0 = 0; r0 < rows; r0 += Lanes) {
     ItemRun run{0, 0};
     if (r0 + lane < rows) run = run_of(r0 + lane);
-    const int length = static_cast<int>(run.end - run.begin);
-    const int sum = warp_inclusive_sum<Lanes>(length, lane, lanes);
+    const int sum = warp_inclusive_sum<Lanes>(static_cast<int>(run.end - run.begin), lane, lanes);
     const int total = __shfl_sync(lanes, sum, Lanes - 1, Lanes);
     met += static_cast<uint32_t>(total);
     if (met > most) break;
-    const uint32_t shift = run.begin - static_cast<uint32_t>(sum - length);
+    Items items(run, sum, lanes);
     for (int t0 = 0; t0 < total; t0 += Lanes) {
-      const int t = t0 + lane;
-      int row = 0;  // the first whose sum exceeds t
-#pragma unroll
-      for (int d = Lanes / 2; d > 0; d >>= 1) {
-        const int before = __shfl_sync(lanes, sum, row + d - 1, Lanes);
-        if (before <= t) row += d;
-      }
-      const uint32_t item = __shfl_sync(lanes, shift, row, Lanes) + static_cast<uint32_t>(t);
-      visit(item, t < total);
+      const uint32_t item = items.item(t0);
+      visit(item, t0 + lane < total);
     }
   }
   return met;

@@ -72,22 +72,22 @@ QSES_FN int highest_bit32(uint32_t v) {
 }
 
 // Number of the set bit with n others below it; v must have more than n.
-QSES_FN int nth_bit64(uint64_t v, int n) {
-  uint32_t word = static_cast<uint32_t>(v);
-  int at = 0, below = popcount32(word);
-  if (n >= below) {
-    n -= below;
-    word = static_cast<uint32_t>(v >> 32);
-    at = 32;
-  }
+QSES_FN int nth_bit32(uint32_t v, int n) {
+  int at = 0;
   for (int width = 16; width > 0; width >>= 1) {
-    below = popcount32(word & ((uint32_t(1) << width) - 1));
+    const int below = popcount32(v & ((uint32_t(1) << width) - 1));
     if (n < below) continue;
     n -= below;
-    word >>= width;
+    v >>= width;
     at += width;
   }
   return at;
+}
+QSES_FN int nth_bit64(uint64_t v, int n) {
+  const uint32_t low = static_cast<uint32_t>(v);
+  const int below = popcount32(low);
+  const bool in_low = n < below;
+  return (in_low ? 0 : 32) + nth_bit32(in_low ? low : static_cast<uint32_t>(v >> 32), in_low ? n : n - below);
 }
 
 }  // namespace quickses

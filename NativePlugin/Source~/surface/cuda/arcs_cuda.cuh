@@ -54,7 +54,8 @@ struct CircleJob {
 
 constexpr int kArcThreads = 128;
 constexpr int kLaneIntervals = 8;  // exposed intervals of a circle that a lane holds
-constexpr int kIdleLanes = 10;     // refill when so many have nothing to do
+constexpr int kIdleLanes = 8;      // refill when so many have nothing to do, as is asked after so many caps
+constexpr int kCapsAtOnce = 2;
 
 // Intervals of one lane, one block's worth apart.
 struct StridedIntervals {
@@ -255,29 +256,31 @@ static __global__ __launch_bounds__(kArcThreads) void find_arcs_kernel(QueuedIte
         next += static_cast<uint32_t>(__popc(idle));
         __syncwarp();
       }
-      // One cap further.
-      CutKind cut = CutKind::kNone;
-      float begin = 0.f, end_of = 0.f;
-      if (state == State::kActive) {
-        if (k >= c.cap_count) {
-          state = State::kDone;
-        } else {
-          const Cap cap = ahead;
-          ++k;
-          go_on();
-          cut = cut_by_cap(c, cap, &begin, &end_of);
-          if (cut == CutKind::kAll) state = State::kIdle;
+#pragma unroll
+      for (int further = 0; further < kCapsAtOnce; ++further) {
+        CutKind cut = CutKind::kNone;
+        float begin = 0.f, end_of = 0.f;
+        if (state == State::kActive) {
+          if (k >= c.cap_count) {
+            state = State::kDone;
+          } else {
+            const Cap cap = ahead;
+            ++k;
+            go_on();
+            cut = cut_by_cap(c, cap, &begin, &end_of);
+            if (cut == CutKind::kAll) state = State::kIdle;
+          }
         }
+        __syncwarp();
+        if (cut == CutKind::kPart) {
+          intervals.cover(begin, end_of);
+          if (intervals.overflow)
+            state = State::kDone;
+          else if (intervals.empty())
+            state = State::kIdle;
+        }
+        __syncwarp();
       }
-      __syncwarp();
-      if (cut == CutKind::kPart) {
-        intervals.cover(begin, end_of);
-        if (intervals.overflow)
-          state = State::kDone;
-        else if (intervals.empty())
-          state = State::kIdle;
-      }
-      __syncwarp();
     }
   }
 }

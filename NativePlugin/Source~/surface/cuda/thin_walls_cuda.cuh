@@ -75,13 +75,12 @@ __device__ __forceinline__ LaneCandidates<kWarp, true> choose_for_run(const Wall
 // Some lanes for each edge that is left. They wait for memory: more blocks at a time are worth registers. A warp takes
 // so many edges one after the other. Where leaves have many, as at wide spacings, what can decide about any edge of a
 // run is chosen first, and from that what can decide about each.
-template <int kLanes, int kRun>
+template <int kLanes, int kRun, bool kChosenTwice>
 static __global__ __launch_bounds__(kWallThreads,
                                     blocks_at_once(kWallThreads, 8)) void walk_edges_kernel(QueuedItems queued,
                                                                                             WallJob job) {
   const LaunchItems items = queued.in_turn();
   constexpr int kTeams = kWallThreads / kLanes, kWarpTeams = kWarp / kLanes, kRoom = 2560 / kTeams;
-  constexpr bool kChosenTwice = kRun > kWarpTeams;
   constexpr int kRunRoom = kChosenTwice ? 640 : 1;
   static_assert(kRun % kWarpTeams == 0 && kRun <= kWarp, "a lane for each edge, and none of another run");
   __shared__ uint32_t edge_memory[kTeams][kRoom];
@@ -173,13 +172,16 @@ void mark_thin_walls(E &executor, const FeatureView &features, const BrickSet &b
                                 look / kWarp + rounds * (2 + kMostWallSteps) * (64 + look / lanes), most_blocks},
                     job);
   };
-  // Few edges leave a GPU idle with eight lanes each.
-  if (found.walks * kWarp <= executor.multiprocessors() * kFullThreads)
-    walk(kWarp, 1, walk_edges_kernel<kWarp, 1>);
+  // Few edges leave a GPU idle with few lanes each; of many edges' lanes fewer are idle then.
+  const auto are_many = [&](size_t lanes) { return found.walks * lanes > executor.multiprocessors() * kFullThreads; };
+  if (!are_many(kWarp))
+    walk(kWarp, 1, walk_edges_kernel<kWarp, 1, false>);
   else if (job.walk_run > 1)
-    walk(8, kLongWalkRun, walk_edges_kernel<8, kLongWalkRun>);
+    walk(4, kLongWalkRun, walk_edges_kernel<4, kLongWalkRun, true>);
+  else if (!are_many(4))
+    walk(8, 4, walk_edges_kernel<8, 4, false>);
   else
-    walk(8, 4, walk_edges_kernel<8, 4>);
+    walk(4, 8, walk_edges_kernel<4, 8, false>);
   executor.arena().rewind(mark);
 }
 
