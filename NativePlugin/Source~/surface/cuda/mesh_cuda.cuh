@@ -76,14 +76,21 @@ void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bri
   // Lanes for each of few vertices, or of such that have much to look at; so many for a multiprocessor at most.
   constexpr size_t kFew = 4, kMostThreads = 3072;
   const bool are_few = job.count * kFew <= executor.multiprocessors() * kMostThreads,
-             have_much = job.list_words >= kLongList;
-  const auto launch_first = [&](const char *name, bool by_several, auto by_one, auto by_few) {
-    const size_t lanes = by_several ? kFew : 1;
-    executor.launch(name, by_several ? by_few : by_one, job.count,
-                    LaunchShape{kVertexThreads, kVertexThreads / lanes, 64 + 2 * look / lanes}, job);
+             have_much = job.list_words >= kLongList, have_very_much = job.list_words >= 4 * kLongList;
+  const auto launch_first = [&](const char *name, size_t lanes, auto kernel) {
+    executor.launch(name, kernel, job.count, LaunchShape{kVertexThreads, kVertexThreads / lanes, 64 + 2 * look / lanes},
+                    job);
   };
-  launch_first("project_on_atoms", are_few, project_on_atoms_kernel<1>, project_on_atoms_kernel<kFew>);
-  launch_first("project_on_arcs", are_few || have_much, project_on_arcs_kernel<1>, project_on_arcs_kernel<kFew>);
+  if (are_few)
+    launch_first("project_on_atoms", kFew, project_on_atoms_kernel<kFew>);
+  else
+    launch_first("project_on_atoms", 1, project_on_atoms_kernel<1>);
+  if (have_very_much)
+    launch_first("project_on_arcs", 8, project_on_arcs_kernel<8>);
+  else if (have_much || are_few)
+    launch_first("project_on_arcs", kFew, project_on_arcs_kernel<kFew>);
+  else
+    launch_first("project_on_arcs", 1, project_on_arcs_kernel<1>);
   // As a rule few vertices are left: how many is asked if one launch can't place as many as there are.
   const auto share = [&](int lanes, uint64_t looks) {
     return LaunchShape{kVertexThreads, static_cast<size_t>(kVertexThreads / lanes),
