@@ -28,6 +28,23 @@ struct AllCandidates {
   uint32_t arc(int k) const { return static_cast<uint32_t>(c.arc_index[k]); }
 };
 
+// Those that decide about points near a place: as numbers in the columns.
+struct NearCandidates {
+  const BrickCandidates *all;
+  int atoms, arcs;
+  int atom_count() const { return atoms; }
+  uint32_t atom(int k) const { return static_cast<uint32_t>(all->atom_index[all->near_list[k]]); }
+  int arc_count() const { return arcs; }
+  uint32_t arc(int k) const { return static_cast<uint32_t>(all->arc_index[all->arc_list[k]]); }
+};
+auto near_of(const FeatureView &f, const BrickCandidates &c) {
+  return [&](const Vec3<float> &place, float reach) {
+    const PackBox box(place, place);
+    return NearCandidates{&c, choose_balls(c.atoms, c.atom_count, box, reach, c.near_list),
+                          choose_balls(c.arcs, c.arc_count, box, f.parameters.depth + reach, c.arc_list)};
+  };
+}
+
 // Where the brick's vertices start, in the order of their numbers. Returns how many there are.
 int start_vertices(const FeatureView &f, const BrickSet &bricks, const MeshLayout &layout, uint32_t brick,
                    const VertexStarts &starts, const BrickCandidates &c, Points *p) {
@@ -54,7 +71,7 @@ int start_vertices(const FeatureView &f, const BrickSet &bricks, const MeshLayou
         const glm::ivec3 at = brick_point(leaf, bit);
         Vec3<float> start(places[at.x].x, places[at.y].y, places[at.z].z);
         if (halve) {
-          start = find_sign_change(f, AllCandidates{c}, ends_of_edge(bricks, layout, brick, {leaf, axis, bit}),
+          start = find_sign_change(f, near_of(f, c), ends_of_edge(bricks, layout, brick, {leaf, axis, bit}),
                                    kStartHalvings);
         } else {
           const float along = vertex_start(*rows.row_of(at.y, at.z) >> (at.x + 1) & 1) * h;
@@ -246,16 +263,6 @@ void project_reentrant(const FeatureView &f, const BrickCandidates &c, float spa
   }
 }
 
-// Those of the brick's candidates that decide about one edge.
-struct EdgeCandidates {
-  const BrickCandidates &c;
-  int atoms, arcs;
-  int atom_count() const { return atoms; }
-  uint32_t atom(int k) const { return static_cast<uint32_t>(c.atom_index[c.near_list[k]]); }
-  int arc_count() const { return arcs; }
-  uint32_t arc(int k) const { return static_cast<uint32_t>(c.arc_index[c.arc_list[k]]); }
-};
-
 // What is left: vertices near no feature, and those that probes on all sides push to and fro.
 void place_on_edges(const FeatureView &f, const BrickSet &bricks, const MeshLayout &layout, uint32_t brick,
                     const BrickCandidates &c, int n, Work *w) {
@@ -263,10 +270,7 @@ void place_on_edges(const FeatureView &f, const BrickSet &bricks, const MeshLayo
     if (w->placed[v]) continue;
     const LatticeEdge edge = edge_of_vertex(layout, brick, layout.base[brick].vertices + static_cast<uint32_t>(v));
     const CutEdge ends = ends_of_edge(bricks, layout, brick, edge);
-    const PackBox middle(ends.middle(), ends.middle());
-    const EdgeCandidates near{c, choose_balls(c.atoms, c.atom_count, middle, edge_reach(f.parameters), c.near_list),
-                              choose_balls(c.arcs, c.arc_count, middle, edge_arc_reach(f.parameters), c.arc_list)};
-    w->set_point(v, place_on_edge(f, near, ends));
+    w->set_point(v, place_on_edge(f, near_of(f, c), ends));
     w->owner[v] = -1;
   }
 }

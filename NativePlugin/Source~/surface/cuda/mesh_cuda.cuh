@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// GPU driver of the mesh: vertices in the kernels of vertex_candidates_cuda.cuh and projection_cuda.cuh, triangles in
-// that of triangles_cuda.cuh.
+// GPU driver of the mesh: vertices in the kernels of vertex_candidates_cuda.cuh, projection_cuda.cuh and
+// edge_placement_cuda.cuh, triangles in that of triangles_cuda.cuh.
 #pragma once
 
-#include "surface/cuda/projection_cuda.cuh"
+#include "surface/cuda/edge_placement_cuda.cuh"
 #include "surface/cuda/triangles_cuda.cuh"
 
 namespace quickses {
@@ -11,6 +11,16 @@ namespace gpu {
 
 // Steps of a thread that looks once at all that can decide about a vertex: atoms and arcs of a row, and an atom's caps.
 inline uint64_t vertex_steps(const FeatureView &features, uint64_t row) { return 64 + 3 * row + features.most_caps; }
+
+// Of warps that each look for the sign change on an edge: three times they choose what is near, then look at one point
+// after the other.
+template <class E>
+LaunchShape edge_shape(const E &executor, const FeatureView &features, uint64_t row, int halvings) {
+  const uint64_t steps =
+      looks_for_sign_change(features.parameters, halvings) * (64 + vertex_steps(features, row) / kWarp) +
+      3 * (32 + row / 4);
+  return {kVertexThreads, kEdgeWarps, steps, executor.multiprocessors() * size_t(16)};
+}
 
 // Starts and candidates of the vertices of a slice; what they need is allocated here. No vertices: count is 0.
 template <class E>
@@ -43,16 +53,10 @@ VertexJob prepare_vertices(E &executor, const FeatureView &features, const Brick
   job.first_leaf = sizes.first_leaf;
   job.lists = room + 4 * count;
   job.counts = executor.template take_counts<VertexCounts>();
-  const uint64_t row = candidates.longest_row, look = vertex_steps(features, row);
-  if (job.halved) {  // a lane's vertices one by one if each takes long
-    const uint64_t halve = looks_for_sign_change(features.parameters, kStartHalvings) * look,
-                   rounds = kMostLeafVertices / kWarp;
-    const int most = halve * rounds > kThreadSteps ? kWarp : kMostLeafVertices;
-    for (int first = 0; first < kMostLeafVertices; first += most)
-      executor.launch("halve_starts", halve_starts_kernel, leaves,
-                      LaunchShape{kLeafWarps * kWarp, kLeafWarps, halve * static_cast<uint64_t>(most / kWarp)}, job,
-                      first, first + most);
-  }
+  const uint64_t row = candidates.longest_row;
+  if (job.halved)
+    executor.launch("halve_starts", halve_starts_kernel, count, edge_shape(executor, features, row, kStartHalvings),
+                    job);
   constexpr size_t kManyLeaves = 64;  // of a multiprocessor
   const bool by_halves = leaves > executor.multiprocessors() * kManyLeaves && job.list_words < kLongList;
   const size_t lanes = by_halves ? kWarp / 2 : kWarp;
@@ -92,10 +96,7 @@ void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bri
   else
     launch_first("project_on_arcs", 1, project_on_arcs_kernel<1>);
   // As a rule few vertices are left: how many is asked if one launch can't place as many as there are.
-  const auto share = [&](int lanes, uint64_t looks) {
-    return LaunchShape{kVertexThreads, static_cast<size_t>(kVertexThreads / lanes),
-                       looks * (64 + look / static_cast<uint64_t>(lanes)), size_t(executor.multiprocessors()) * 16};
-  };
+  const size_t most_blocks = executor.multiprocessors() * size_t(16);
   const auto launch_rest = [&](const char *name, const char *counted, auto kernel, const LaunchShape &shape,
                                Tally<uint32_t> VertexCounts::*left) {
     size_t vertices = job.count;
@@ -104,11 +105,13 @@ void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bri
     executor.launch(name, kernel, vertices, shape, job);
   };
   const bool by_warps = have_much || are_few;
-  const int lanes = by_warps ? kWarp : 8;
-  launch_rest("reproject", "unfinished vertices", by_warps ? reproject_kernel<kWarp> : reproject_kernel<8>,
-              share(lanes, 2 + kMaxProjections), &VertexCounts::unfinished);
+  const size_t lanes = by_warps ? kWarp : 8;
+  launch_rest(
+      "reproject", "unfinished vertices", by_warps ? reproject_kernel<kWarp> : reproject_kernel<8>,
+      LaunchShape{kVertexThreads, kVertexThreads / lanes, (2 + kMaxProjections) * (64 + look / lanes), most_blocks},
+      &VertexCounts::unfinished);
   launch_rest("place_on_edges", "vertices on edges", place_on_edges_kernel,
-              share(kWarp, looks_for_sign_change(features.parameters, kPlaceHalvings)), &VertexCounts::on_edges);
+              edge_shape(executor, features, candidates.longest_row, kPlaceHalvings), &VertexCounts::on_edges);
   if (gives_back) executor.arena().rewind(mark);
 }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// GPU: vertices from their starts to the exact surface. Four kernels step the rule of projection.h, so that lanes do
+// GPU: vertices from their starts to the exact surface. Three kernels step the rule of projection.h, so that lanes do
 // not wait for each other: vertices on contact patches are done with the first, nearly all others with the second, both
-// with a thread for each, or four where they are few or lists are long; the third has those that turn from one probe to
-// another, eight lanes for each or, where lists are long, a warp, and the last a warp for each that finds no place.
+// with a thread for each, or some where they are few or lists are long; the third has those that turn from one probe to
+// another, eight lanes for each or, where lists are long, a warp. Those that find no place are left to
+// edge_placement_cuda.cuh.
 #pragma once
 
 #include "surface/cuda/lane_candidates_cuda.cuh"
@@ -234,75 +235,6 @@ static __global__ __launch_bounds__(kVertexThreads, 8) void reproject_kernel(Que
     if (writes && !placed) leave_start(job, k);
     const uint32_t owner = nearest_atom(f, candidates, v.point.position);
     if (writes && placed) finish_vertex(job, k, v.point, owner);
-  }
-}
-
-// Those of some candidates that decide about points within `reach` of a middle, as those of an edge; all of them where
-// there is no room for the choice.
-template <int kLanes, class Candidates>
-__device__ __forceinline__ LaneCandidates<kLanes, true> choose_near(const FeatureView &f, const Candidates &all,
-                                                                    const Vec3<float> &middle, float reach,
-                                                                    uint32_t *room, int most) {
-  using Chosen = LaneCandidates<kLanes, true>;
-  const unsigned team = Chosen::team();
-  const int rank = Chosen::rank();
-  const auto choose = [&](const Sphere *balls, const auto &item_at, int count, float reach, uint32_t *out, int left) {
-    constexpr int kAhead = 4;  // loads that are under way together
-    int n = 0;
-    for (int k0 = rank; __any_sync(kFullWarp, k0 - rank < count); k0 += kAhead * kLanes) {
-      uint32_t item[kAhead];
-      bool near[kAhead];
-#pragma unroll
-      for (int j = 0; j < kAhead; ++j) {
-        near[j] = k0 + j * kLanes < count;
-        item[j] = near[j] ? item_at(k0 + j * kLanes) : 0;
-      }
-#pragma unroll
-      for (int j = 0; j < kAhead; ++j) {
-        if (!near[j]) continue;
-        const Sphere ball = load(balls + item[j]);
-        const float r = ball.radius + reach;
-        near[j] = length_squared(Vec3<float>(ball.center) - middle) < r * r;
-      }
-#pragma unroll
-      for (int j = 0; j < kAhead; ++j) {
-        const int place = append_place(near[j], &n, kFullWarp, team);
-        if (near[j] && place < left) out[place] = item[j];
-      }
-    }
-    return n;
-  };
-  __syncwarp();  // the choice before is not looked at any more
-  const int atoms = choose(
-      f.atoms.items, [&](int k) { return all.atom(k); }, all.atom_total, reach, room, most);
-  const int left = atoms < most ? most - atoms : 0;
-  const int arcs = choose(
-      f.arc_bounds.items, [&](int k) { return all.arc(k); }, all.arc_total, f.parameters.depth + reach,
-      room + (most - left), left);
-  __syncwarp();
-  if (atoms > most || arcs > left) return {all.atoms, all.arcs, all.atom_total, all.arc_total};
-  return {room, room + atoms, atoms, arcs};
-}
-
-// A warp for each: all their looks depend on one another.
-constexpr int kEdgeWarps = kVertexThreads / kWarp, kEdgeRoom = 640;
-static __global__ __launch_bounds__(kVertexThreads, 8) void place_on_edges_kernel(QueuedItems queued, VertexJob job) {
-  const LaunchItems vertices = queued.in_turn();
-  __shared__ uint32_t edge_memory[kEdgeWarps][kEdgeRoom];
-  const FeatureView &f = job.features;
-  const uint32_t warps = gridDim.x * kEdgeWarps, on_edges = job.counts->on_edges.count, warp = threadIdx.x / kWarp;
-  const uint32_t total = on_edges < vertices.last ? on_edges : static_cast<uint32_t>(vertices.last);
-  for (uint32_t place = static_cast<uint32_t>(vertices.first) + blockIdx.x * kEdgeWarps + warp; place < total;
-       place += warps) {
-    const uint32_t k = job.on_edges[place], vertex = job.first + k;
-    const uint32_t brick = brick_of_vertex(job.layout, job.slice, vertex);
-    const LatticeEdge own = edge_of_vertex(job.layout, brick, vertex);
-    const CutEdge edge = ends_of_edge(job.bricks, job.layout, brick, own);
-    const ListedCandidates all = row_candidates(job.view, job.view.slot_of(brick, own.leaf));
-    const auto near = choose_near<kWarp>(f, all, edge.middle(), edge_reach(f.parameters), edge_memory[warp], kEdgeRoom);
-    const SurfacePoint s = place_on_edge(f, near, edge);
-    const uint32_t owner = nearest_atom(f, shared<kWarp>(all), s.position);
-    if (lane_id() == 0) finish_vertex(job, k, s, owner);
   }
 }
 

@@ -162,25 +162,6 @@ __device__ __forceinline__ void fill_window(const VertexJob &job, const VertexLe
   __syncwarp();
 }
 
-// Starts found by halving the edges, for spacings much wider than the probe: of a leaf's vertices first to last - 1. A
-// warp per leaf.
-static __global__ __launch_bounds__(kLeafWarps *kWarp) void halve_starts_kernel(QueuedItems queued, VertexJob job,
-                                                                                int first, int last) {
-  const LaunchItems leaves = queued.in_turn();
-  __shared__ uint8_t edge_memory[kLeafWarps][kMostLeafVertices];
-  const int warp = static_cast<int>(threadIdx.x) / kWarp;
-  const size_t number = leaves.first + blockIdx.x * kLeafWarps + static_cast<uint32_t>(warp);
-  VertexLeaf leaf;
-  if (!open_leaf<kWarp>(job, number, leaves.last, &leaf, edge_memory[warp])) return;
-  const ListedCandidates candidates = row_candidates(job.view, job.view.slot_of(leaf.brick, leaf.leaf));
-  for (int k = first + lane_id(); k < leaf.count && k < last; k += kWarp) {
-    const LatticeEdge edge{leaf.leaf, edge_memory[warp][k] >> 6, edge_memory[warp][k] & 63};
-    store_start(job, leaf.first + static_cast<uint32_t>(k),
-                find_sign_change(job.features, candidates, ends_of_edge(job.bricks, job.layout, leaf.brick, edge),
-                                 kStartHalvings));
-  }
-}
-
 // Starts and candidates of the leaves that own vertices. So many lanes for each: of many leaves two share a warp, since
 // most have no more than 20 vertices.
 template <int kLanes>

@@ -7,12 +7,11 @@
 
 namespace quickses {
 
-// A vertex that finds its place by no other way is where the sign changes on its edge. What decides about the edge:
-// atoms whose balls, and arcs whose enclosing balls, grown by these lengths, meet its middle.
+// What decides about points near a place is asked of Near: near(place, reach) are the atoms whose balls, and the arcs
+// whose enclosing balls grown by depth, come within reach of it; they serve until the next are asked for.
+
+// A vertex that finds its place by no other way is where the sign changes on its edge.
 constexpr int kPlaceHalvings = 12;
-// Where walls are mended, the solid next to one end may decide.
-QSES_FN float edge_reach(const SurfaceParameters &p) { return (p.has_thin_walls() ? 2.f : 0.51f) * p.spacing + 1e-3f; }
-QSES_FN float edge_arc_reach(const SurfaceParameters &p) { return p.depth + edge_reach(p); }
 
 // A lattice edge longer than the probe is wide may hold more than its middle tells: a vertex starts near the sign
 // change.
@@ -26,9 +25,10 @@ QSES_FN int most_solid_looks(const SurfaceParameters &p) {
 // Solid next to a lattice point that is marked inside because a wall passes through an edge from it (thin_walls.h):
 // along the edges, from ball to ball, of one edge at as many points as a wall may be away. The point itself if none is
 // found, which rounding may do.
-template <class Candidates>
-QSES_FN Vec3<float> find_solid(const FeatureView &f, const Candidates &candidates, const Vec3<float> &x) {
+template <class Near>
+QSES_FN Vec3<float> find_solid(const FeatureView &f, const Near &near, const Vec3<float> &x) {
   const SurfaceParameters &p = f.parameters;
+  const auto candidates = near(x, wall_step_length(kWallSteps - 1) * p.spacing + 1e-3f);
   const NearestProbe probe = nearest_probe(f, candidates, x);
   int left = most_solid_looks(p);
   for (int k = 0; k < 2 * kWallSteps; ++k) {
@@ -47,10 +47,16 @@ QSES_FN Vec3<float> find_solid(const FeatureView &f, const Candidates &candidate
 
 // Where the sign changes between the ends of an edge, or between the solid that its inside end stands for and the
 // other one.
-template <class Candidates>
-QSES_FN Vec3<float> find_sign_change(const FeatureView &f, const Candidates &candidates, CutEdge edge, int halvings) {
-  if (f.parameters.has_thin_walls() && !is_inside(f, candidates, edge.inside))
-    edge.inside = find_solid(f, candidates, edge.inside);
+template <class Near>
+QSES_FN Vec3<float> find_sign_change(const FeatureView &f, const Near &near, CutEdge edge, int halvings) {
+  const auto near_edge = [&] {
+    return near(edge.middle(), 0.51f * square_root(length_squared(edge.outside - edge.inside)) + 1e-3f);
+  };
+  auto candidates = near_edge();
+  if (f.parameters.has_thin_walls() && !is_inside(f, candidates, edge.inside)) {
+    edge.inside = find_solid(f, near, edge.inside);
+    candidates = near_edge();
+  }
   for (int k = 0; k < halvings; ++k)
     (is_inside(f, candidates, edge.middle()) ? edge.inside : edge.outside) = edge.middle();
   return edge.middle();
@@ -60,11 +66,11 @@ inline uint64_t looks_for_sign_change(const SurfaceParameters &p, int halvings) 
   return static_cast<uint64_t>(halvings + 2 + most_solid_looks(p));
 }
 
-template <class Candidates>
-QSES_FN SurfacePoint place_on_edge(const FeatureView &f, const Candidates &candidates, const CutEdge &edge) {
+template <class Near>
+QSES_FN SurfacePoint place_on_edge(const FeatureView &f, const Near &near, const CutEdge &edge) {
   const SurfaceParameters &p = f.parameters;
-  const Vec3<float> x = find_sign_change(f, candidates, edge, kPlaceHalvings);
-  SurfacePoint s = place_on_surface(p, x, nearest_boundary(f, candidates, x));
+  const Vec3<float> x = find_sign_change(f, near, edge, kPlaceHalvings);
+  SurfacePoint s = place_on_surface(p, x, nearest_boundary(f, near(x, 0.5f * p.spacing), x));
   const float far_out = maximum(maximum(absolute(x.x), absolute(x.y)), absolute(x.z));
   const float tolerance = 1e-3f * p.spacing + 4e-7f * far_out;  // of the halving, and of float32 there
   s.placed = s.placed && length_squared(s.position - x) <= tolerance * tolerance;
