@@ -9,6 +9,7 @@
 #include <cmath>
 #include <memory>
 #include <random>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -52,6 +53,31 @@ __global__ void append_of_blocks_kernel(QueuedItems queued, AppendJob job) {
   const LaunchItems items = queued.in_turn();
   const uint32_t i = static_cast<uint32_t>(items.first) + blockIdx.x * kThreads + threadIdx.x;
   gpu::append_of_block<kThreads>(job.list, job.listed, i, i < job.count && job.wanted[i]);
+}
+
+// A warp per job, or a team of so many lanes with the same one: all items of its runs, behind each other.
+struct RunsJob {
+  const ItemRun *runs;
+  const uint32_t *first_run, *first_item;  // of each job
+  uint32_t most;
+  uint32_t *items, *met;
+};
+template <int kLanes, class Items>
+__global__ void visit_runs_kernel(QueuedItems queued, RunsJob job) {
+  const LaunchItems items = queued.in_turn();
+  const size_t warp = items.first + blockIdx.x * size_t(kThreads / 32) + threadIdx.x / 32;
+  if (warp >= items.last) return;
+  const uint32_t first = job.first_run[warp], rows = job.first_run[warp + 1] - first;
+  uint32_t *const out = job.items + job.first_item[warp];
+  uint32_t listed = 0;
+  const uint32_t met = gpu::visit_runs<kLanes, Items>(
+      static_cast<int>(rows), [&](int r) { return job.runs[first + static_cast<uint32_t>(r)]; },
+      [&](uint32_t item, bool on) {
+        const uint32_t place = gpu::append_place(on, &listed, gpu::kFullWarp, gpu::lanes_of_team<kLanes>());
+        if (on && threadIdx.x % 32 < kLanes) out[place] = item;
+      },
+      gpu::kFullWarp, job.most);
+  if (threadIdx.x % 32 == 0) job.met[warp] = met;
 }
 
 class CudaWarps : public testing::Test {
@@ -143,6 +169,51 @@ TEST_F(CudaWarps, BlocksListEachItemOnce) {
   found.resize(count);
   std::sort(found.begin(), found.end());
   EXPECT_EQ(found, expected);
+}
+
+// Runs of all lengths, of which many are empty: their items in order, whatever tells them apart. Where there are more
+// than is asked for, that is told.
+TEST_F(CudaWarps, VisitTheItemsOfRunsInOrder) {
+  std::mt19937 random(13);
+  constexpr size_t kJobs = 300;
+  std::vector<ItemRun> runs;
+  std::vector<uint32_t> first_run{0}, first_item{0}, expected;
+  for (size_t j = 0; j < kJobs; ++j) {
+    const size_t rows = random() % 100, longest = 1 + (random() >> (random() % 32)) % 90, empty = random() % 4;
+    for (size_t r = 0; r < rows; ++r) {
+      const uint32_t begin = random() % 100000;
+      const uint32_t length = random() % 4 < empty ? 0 : static_cast<uint32_t>(random() % longest);
+      runs.push_back({begin, begin + length});
+      for (uint32_t k = 0; k < length; ++k) expected.push_back(begin + k);
+    }
+    first_run.push_back(static_cast<uint32_t>(runs.size()));
+    first_item.push_back(static_cast<uint32_t>(expected.size()));
+  }
+  const auto visit = [&](auto kernel, uint32_t most) {
+    RunsJob job{to_device(runs).data, to_device(first_run).data, to_device(first_item).data, most, nullptr, nullptr};
+    Span<uint32_t> items = executor_->allocate_zeros<uint32_t>(expected.size()),
+                   met = executor_->allocate<uint32_t>(kJobs);
+    job.items = items.data;
+    job.met = met.data;
+    executor_->launch("visit_runs", kernel, kJobs, LaunchShape{kThreads, kThreads / 32, 4096}, job);
+    return std::pair(to_host(items), to_host(met));
+  };
+  const auto check = [&](const char *name, auto kernel) {
+    const auto [items, met] = visit(kernel, ~uint32_t(0));
+    EXPECT_EQ(items, expected) << name;
+    for (size_t j = 0; j < kJobs; ++j) ASSERT_EQ(met[j], first_item[j + 1] - first_item[j]) << name << " " << j;
+    constexpr uint32_t kMost = 100;
+    const auto [few, met_of_few] = visit(kernel, kMost);
+    for (size_t j = 0; j < kJobs; ++j) {
+      const uint32_t all = first_item[j + 1] - first_item[j];
+      ASSERT_EQ(met_of_few[j] > kMost, all > kMost) << name << " " << j;
+      if (all <= kMost)
+        for (uint32_t k = first_item[j]; k < first_item[j + 1]; ++k) ASSERT_EQ(few[k], expected[k]) << name << " " << j;
+    }
+  };
+  check("by search", visit_runs_kernel<32, gpu::RunItems<32>>);
+  check("by marks", visit_runs_kernel<32, gpu::MarkedRunItems>);
+  check("by teams", visit_runs_kernel<16, gpu::RunItems<16>>);
 }
 
 }  // namespace

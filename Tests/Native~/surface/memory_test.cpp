@@ -143,12 +143,13 @@ TEST(Estimate, IsNearTheTruth) {
     // The same again now that memory is there; only the scratch of crowded bricks is known better.
     expect_close(e.smallest_budget, estimate(context, c.settings).smallest_budget, c.name + ": budget");
     compute_view(context, c.settings);
-    // A GPU's further frames do not wait for their counts: they take room for what they anticipate.
-    const double most = tested_backend() == QSES_BACKEND_CPU ? 1.25 : 1.5;
+    // A GPU's further frames do not wait for their counts: they take room for a sixteenth more of each, and for 64
+    // bricks and leaves at least, of some 30 KB each at 2 Å.
+    const double spare = tested_backend() == QSES_BACKEND_CPU ? 0 : 64 * 30e3;
     const double first = static_cast<double>(report.work_bytes_peak),
                  again = static_cast<double>(report_of(context).work_bytes_peak);
     EXPECT_GE(again, 0.9 * first) << c.name << ": work, again";
-    EXPECT_LE(again, most * first) << c.name << ": work, again";
+    EXPECT_LE(again, 1.25 * first + spare) << c.name << ": work, again";
   }
 }
 
