@@ -105,7 +105,7 @@ class Anticipation {
       const Reliance &r = *relied;
       enough &= r.is_covered(counted + r.place, r.expected.bytes);
       Entry found = r.expected;
-      std::memcpy(found.bytes, counted + r.place, sizeof found.bytes);
+      std::memcpy(found.bytes, counted + r.place, found.size);
       note(r.page, found);
     }
     relied_on_.erase(relied_on_.begin(), end);
@@ -125,10 +125,11 @@ class Anticipation {
  private:
   struct Entry {
     const char *name;
+    size_t size;          // of the counts
     bool is_new = false;  // of this frame
     alignas(8) unsigned char bytes[kMostBytes] = {};
     template <class T>
-    Entry(const char *entry, const T &value) : name(entry) {
+    Entry(const char *entry, const T &value) : name(entry), size(sizeof value) {
       static_assert(sizeof(T) <= kMostBytes, "counts are few");
       std::memcpy(bytes, &value, sizeof value);
     }

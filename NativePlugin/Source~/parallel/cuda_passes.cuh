@@ -139,11 +139,11 @@ __global__ __launch_bounds__(kFewThreads) void go_on_scanning_few_kernel(QueuedI
   scan_few(load, n, out, start);
 }
 
-// Steps of do_in_turn(), by one block: a launch of their own takes each some microseconds.
-constexpr size_t kFewTogether = kFewThreads;
+// Steps of do_in_turn(), by one block: a launch of their own takes each some microseconds. An item for each thread: of
+// more, one multiprocessor makes more than that.
 template <class F>
 constexpr bool is_few(const ForEach<F> &step) {
-  return step.n <= kFewTogether;
+  return step.n <= kFewThreads;
 }
 template <class Load, class T>
 constexpr bool is_few(const Scan<Load, T> &step) {
@@ -151,7 +151,7 @@ constexpr bool is_few(const Scan<Load, T> &step) {
 }
 template <class F>
 constexpr uint64_t steps_of_few(const ForEach<F> &step) {
-  return kFewTogether / kFewThreads * step.steps;
+  return step.steps;
 }
 template <class Load, class T>
 constexpr uint64_t steps_of_few(const Scan<Load, T> &) {
@@ -159,7 +159,7 @@ constexpr uint64_t steps_of_few(const Scan<Load, T> &) {
 }
 template <class F>
 __device__ __forceinline__ void do_by_block(const ForEach<F> &step) {
-  for (size_t i = threadIdx.x; i < step.n; i += kFewThreads) step.f(i);
+  if (threadIdx.x < step.n) step.f(threadIdx.x);
   __syncthreads();
 }
 template <class Load, class T>

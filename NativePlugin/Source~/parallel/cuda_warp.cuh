@@ -4,6 +4,8 @@
 
 #include "parallel/span.h"
 
+#include <type_traits>
+
 namespace quickses {
 namespace gpu {
 
@@ -205,7 +207,7 @@ class MarkedRunItems {
       : begin_(sum - static_cast<int>(run.end - run.begin)), shift_(run.end - static_cast<uint32_t>(sum)), begun_(0) {
     const unsigned some = __ballot_sync(kFullWarp, run.begin < run.end);
     if (some & (some + 1)) {
-      const int from = nth_bit32(some, lane_id()) & 31;
+      const int from = nth_bit32(some, lane_id()) & 31;  // any lane, if there are fewer
       begin_ = __shfl_sync(kFullWarp, begin_, from);
       shift_ = __shfl_sync(kFullWarp, shift_, from);
     }
@@ -231,6 +233,7 @@ class MarkedRunItems {
 template <int Lanes = kWarp, class Items = RunItems<Lanes>, class RunOf, class Visit>
 __device__ __forceinline__ uint32_t visit_runs(int rows, const RunOf &run_of, const Visit &visit,
                                                unsigned lanes = kFullWarp, uint32_t most = ~uint32_t(0)) {
+  static_assert(Lanes == kWarp || !std::is_same_v<Items, MarkedRunItems>, "those are a warp's");
   const int lane = lane_id() % Lanes;
   uint32_t met = 0;
   for (int r0 = 0; r0 < rows; r0 += Lanes) {

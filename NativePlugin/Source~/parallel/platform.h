@@ -71,7 +71,7 @@ QSES_FN int highest_bit32(uint32_t v) {
 #endif
 }
 
-// Number of the set bit with n others below it; v must have more than n.
+// Number of the set bit with n others below it, if v has more than n.
 QSES_FN int nth_bit32(uint32_t v, int n) {
   int at = 0;
   for (int width = 16; width > 0; width >>= 1) {

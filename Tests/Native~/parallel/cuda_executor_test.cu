@@ -177,7 +177,7 @@ struct CountLaunches : LaunchObserver {
 };
 TEST(CudaExecutor, StepsInTurn) {
   REQUIRE_DEVICE();
-  for (size_t n : {size_t(1), size_t(1023), size_t(1025), gpu::kFewTogether - 1, gpu::kFewTogether, size_t(40000)}) {
+  for (size_t n : {1, 500, gpu::kFewThreads - 1, gpu::kFewThreads, gpu::kFewThreads + 1, 40000}) {
     Span<uint32_t> digits = executor.allocate<uint32_t>(n);
     Span<uint64_t> sums = executor.allocate<uint64_t>(n + 1), reversed = executor.allocate<uint64_t>(n + 1);
     size_t launches = 0;
@@ -187,7 +187,7 @@ TEST(CudaExecutor, StepsInTurn) {
                  ForEach{n + 1, Reverse{sums.data, n, reversed.data}});
       launches = count.launches;
     }
-    const bool together = n + 1 <= gpu::kFewTogether;
+    const bool together = n + 1 <= gpu::kFewThreads;
     EXPECT_EQ(launches == 1, together) << n;
     std::vector<uint64_t> expected(n + 1, 0);
     for (size_t i = 0; i < n; ++i) expected[i + 1] = expected[i] + i % 5;

@@ -141,6 +141,8 @@ std::vector<Input> crowded_inputs() {
       {"two atoms at a large p / h, voxels", Atoms().add(0, 0, 0, 1.7).add(2, 0, 0, 1.6), voxels(settings(0.05, 10))},
       {"3,000 atoms on a line", on_a_line(3000), settings()},
       {"a giant and 3,000 small ones", giant_with(3000), settings(2)},
+      {"a giant and 3,000 small ones, edges wider than two probes", giant_with(3000), settings(4)},
+      {"crambin, edges wider than two probes", crambin(), settings(4)},
       {"a giant at a fine spacing", giant_with(0), settings(0.2)},
       {"800 beads on a circle", beads_on_a_circle(800), settings(2, 0.1)}};
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "surface/cuda/projection_cuda.cuh"
+#include "surface/stages/edge_placement.h"
 
 namespace quickses {
 namespace gpu {

@@ -83,7 +83,7 @@ __device__ __forceinline__ DeepestAtom choose_deepest_atoms(const FeatureView &f
     }
     return atom;
   };
-  // Of as many as a warp's lanes hold there are not more as a rule: those are looked at once.
+  // Two for each lane: a warp's hold as many as there are as a rule, and look at them once.
   constexpr uint32_t kStep = kLanes, kHeld = 2;
   const uint32_t rank = static_cast<uint32_t>(rank_in_team<kLanes>());
   Looked held[kHeld];
@@ -102,8 +102,8 @@ __device__ __forceinline__ DeepestAtom choose_deepest_atoms(const FeatureView &f
   BoxCull cull;
   cull.template set<kLanes>(center, half, load(f.atoms.items + (count > 0 ? best.number : 0)), slack);
   const auto choose = [&](const Looked &atom) {
-    const bool is_best = atom.number == best.number && atom.number != kNoAtom;
-    visit((atom.depth >= floor && cull.keeps(atom.ball, atom.depth)) || is_best, atom.ball, atom.number);
+    const bool is_there = atom.number != kNoAtom, is_best = is_there && atom.number == best.number;
+    visit(is_best || (is_there && atom.depth >= floor && cull.keeps(atom.ball, atom.depth)), atom.ball, atom.number);
   };
 #pragma unroll
   for (uint32_t c = 0; c < kHeld; ++c)

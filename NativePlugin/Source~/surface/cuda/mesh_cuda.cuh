@@ -5,6 +5,7 @@
 
 #include "surface/cuda/edge_placement_cuda.cuh"
 #include "surface/cuda/triangles_cuda.cuh"
+#include "surface/stages/edge_placement.h"
 
 namespace quickses {
 namespace gpu {
@@ -12,13 +13,13 @@ namespace gpu {
 // Steps of a thread that looks once at all that can decide about a vertex: atoms and arcs of a row, and an atom's caps.
 inline uint64_t vertex_steps(const FeatureView &features, uint64_t row) { return 64 + 3 * row + features.most_caps; }
 
-// Of warps that each look for the sign change on an edge: three times they choose what is near, then look at one point
-// after the other.
+// Of warps that each look for the sign change on an edge: up to four times they choose what is near, and look at one
+// point after the other.
 template <class E>
 LaunchShape edge_shape(const E &executor, const FeatureView &features, uint64_t row, int halvings) {
   const uint64_t steps =
       looks_for_sign_change(features.parameters, halvings) * (64 + vertex_steps(features, row) / kWarp) +
-      3 * (32 + row / 4);
+      4 * (32 + row / 4);
   return {kVertexThreads, kEdgeWarps, steps, executor.multiprocessors() * size_t(16)};
 }
 
@@ -65,8 +66,8 @@ VertexJob prepare_vertices(E &executor, const FeatureView &features, const Brick
   return job;
 }
 
-// Vertices are numbered over all slices: mesh.positions[0] is that of the very first. Waits once if there are far more
-// than one launch can place.
+// Vertices are numbered over all slices: mesh.positions[0] is that of the very first. Waits once or twice if there are
+// far more than one launch can place.
 template <class E>
 void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bricks, const MeshLayout &layout,
                    BrickRange slice, const SliceSizes &sizes, CudaRooms &rooms, CudaCandidates &candidates,
@@ -95,7 +96,7 @@ void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bri
     launch_first("project_on_arcs", kFew, project_on_arcs_kernel<kFew>);
   else
     launch_first("project_on_arcs", 1, project_on_arcs_kernel<1>);
-  // As a rule few vertices are left: how many is asked if one launch can't place as many as there are.
+  // As a rule few vertices are left: how many is asked if few launches can't place as many as there are.
   const size_t most_blocks = executor.multiprocessors() * size_t(16);
   const auto launch_rest = [&](const char *name, const char *counted, auto kernel, const LaunchShape &shape,
                                Tally<uint32_t> VertexCounts::*left) {

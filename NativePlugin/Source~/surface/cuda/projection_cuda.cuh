@@ -28,20 +28,24 @@ __device__ __forceinline__ void finish_vertex(const VertexJob &job, uint32_t k, 
   if (job.mesh.patches) job.mesh.patch(vertex) = static_cast<uint8_t>(s.patch);
 }
 
-// A vertex that is left to the third kernel: the mesh holds where it is on its way, on the sphere of one probe, and for
-// its owner the rounds it has had; none if it is where it starts. So does one that is left to the fourth, and owners
-// are atoms' numbers even where more are left than was anticipated.
-__device__ __forceinline__ void leave_start(const VertexJob &job, uint32_t k) { job.mesh.owner(job.first + k) = 0; }
+// A vertex that is left to the kernels behind: the mesh holds where it is on its way, on the sphere of one probe, and
+// for its normal that one times the rounds it has had, one or two; none if it is where it starts. Owners are atoms'
+// numbers even where more are left than was anticipated.
+__device__ __forceinline__ void leave(const VertexJob &job, uint32_t k, const Vec3<float> &rounds_of_normal) {
+  store_vec3(job.mesh.normal(job.first + k), rounds_of_normal);
+  job.mesh.owner(job.first + k) = 0;
+}
+__device__ __forceinline__ void leave_start(const VertexJob &job, uint32_t k) { leave(job, k, {0.f, 0.f, 0.f}); }
 __device__ __forceinline__ void leave_vertex(const VertexJob &job, uint32_t k, const Projection &v) {
-  const uint32_t vertex = job.first + k;
-  store_start(job, vertex, v.point.position);
-  store_vec3(job.mesh.normal(vertex), v.point.normal);
-  job.mesh.owner(vertex) = static_cast<uint32_t>(v.rounds);
+  store_start(job, job.first + k, v.point.position);
+  leave(job, k, v.point.normal * static_cast<float>(v.rounds));
 }
 __device__ __forceinline__ Projection left_vertex(const VertexJob &job, uint32_t k) {
   const uint32_t vertex = job.first + k;
-  const int rounds = static_cast<int>(job.mesh.owner(vertex));
-  const Vec3<float> normal = rounds > 0 ? load_vec3(job.mesh.normal(vertex)) : Vec3<float>(0.f, 0.f, 1.f);
+  Vec3<float> normal = load_vec3(job.mesh.normal(vertex));
+  const float length2 = length_squared(normal);
+  const int rounds = length2 < 0.25f ? 0 : length2 < 2.25f ? 1 : 2;
+  normal = rounds == 0 ? Vec3<float>(0.f, 0.f, 1.f) : rounds == 2 ? normal * 0.5f : normal;
   return {{stored_start(job, vertex), normal, normal, QSES_PATCH_CONTACT, true}, ProjectionState::kReproject, rounds};
 }
 

@@ -3,6 +3,7 @@
 // walked by some lanes each.
 #pragma once
 
+#include "surface/cuda/edge_placement_cuda.cuh"
 #include "surface/cuda/wall_edges_cuda.cuh"
 
 namespace quickses {
@@ -72,42 +73,36 @@ __device__ __forceinline__ LaneCandidates<kWarp, true> choose_for_run(const Wall
   return choose_near<kWarp>(job.features, row_candidates(job.view, e.slot), center, reach, room, most);
 }
 
-// Some lanes for each edge that is left. They wait for memory: more blocks at a time are worth registers. A warp takes
-// so many edges one after the other. Where leaves have many, as at wide spacings, what can decide about any edge of a
-// run is chosen first, and from that what can decide about each.
-template <int kLanes, int kRun, bool kChosenTwice>
+// Some lanes for each edge that is left, so that a warp takes a run of as many as it has teams. They wait for memory:
+// more blocks at a time are worth registers. Where leaves have many edges, as at wide spacings, what can decide about
+// any edge of a run is chosen first, and from that what can decide about each.
+template <int kLanes, bool kChosenTwice>
 static __global__ __launch_bounds__(kWallThreads,
                                     blocks_at_once(kWallThreads, 8)) void walk_edges_kernel(QueuedItems queued,
                                                                                             WallJob job) {
   const LaunchItems items = queued.in_turn();
-  constexpr int kTeams = kWallThreads / kLanes, kWarpTeams = kWarp / kLanes, kRoom = 2560 / kTeams;
+  constexpr int kTeams = kWallThreads / kLanes, kRun = kWarp / kLanes, kRoom = 2560 / kTeams;
   constexpr int kRunRoom = kChosenTwice ? 640 : 1;
-  static_assert(kRun % kWarpTeams == 0 && kRun <= kWarp, "a lane for each edge, and none of another run");
   __shared__ uint32_t edge_memory[kTeams][kRoom];
   __shared__ uint32_t run_memory[kWallWarps][kRunRoom];
   const size_t walks = job.counters->walks, total = walks < items.last ? walks : items.last;
-  const int team = static_cast<int>(threadIdx.x) / kLanes, warp = team / kWarpTeams;
+  const int team = static_cast<int>(threadIdx.x) / kLanes, warp = team / kRun, n = team % kRun;
   for (size_t first = items.first + (blockIdx.x * size_t(kWallWarps) + static_cast<size_t>(warp)) * kRun; first < total;
        first += size_t(gridDim.x) * kWallWarps * kRun) {
     const uint64_t *const run = job.walks + first;
+    if (*run == kNoWalk) continue;
     const int count = total - first < kRun ? static_cast<int>(total - first) : kRun;
-    LaneCandidates<kWarp, true> near_run{};
-    if constexpr (kChosenTwice) near_run = choose_for_run(job, run, count, run_memory[warp], kRunRoom);
-    for (int n0 = 0; n0 < count && run[n0] != kNoWalk; n0 += kWarpTeams) {
-      const int n = n0 + team % kWarpTeams;
-      const bool on = n < count && run[n] != kNoWalk;
-      const uint64_t *const item = run + (on ? n : n0);
-      const WallEdge e = edge_to_walk(job, *item);
-      const Vec3<float> a = wall_point(job, e.brick, e.first()), b = wall_point(job, e.brick, e.second());
-      const auto choose = [&](const auto &all) {
-        return choose_near<kLanes>(job.features, all, (a + b) * 0.5f, walk_reach(job, e.step), edge_memory[team],
-                                   kRoom);
-      };
-      if constexpr (kChosenTwice)
-        walk_edge(job, item, e, a, b, on, choose(near_run));
-      else
-        walk_edge(job, item, e, a, b, on, choose(row_candidates(job.view, e.slot)));
-    }
+    const bool on = n < count && run[n] != kNoWalk;
+    const uint64_t *const item = run + (on ? n : 0);
+    const WallEdge e = edge_to_walk(job, *item);
+    const Vec3<float> a = wall_point(job, e.brick, e.first()), b = wall_point(job, e.brick, e.second());
+    const auto choose = [&](const auto &all) {
+      return choose_near<kLanes>(job.features, all, (a + b) * 0.5f, walk_reach(job, e.step), edge_memory[team], kRoom);
+    };
+    if constexpr (kChosenTwice)
+      walk_edge(job, item, e, a, b, on, choose(choose_for_run(job, run, count, run_memory[warp], kRunRoom)));
+    else
+      walk_edge(job, item, e, a, b, on, choose(row_candidates(job.view, e.slot)));
   }
 }
 
@@ -165,23 +160,22 @@ void mark_thin_walls(E &executor, const FeatureView &features, const BrickSet &b
     rooms.walked_edges = std::max(rooms.walked_edges, kRoomToSpare * static_cast<double>(found.walks) / usual_walks);
     executor.fill(Span<unsigned long long>{&counters->walks, 1}, 0);
   }
-  const auto walk = [&](size_t lanes, size_t run, auto kernel) {
-    const uint64_t rounds = run * lanes / kWarp;
+  const auto walk = [&](size_t lanes, auto kernel) {
     executor.launch("walk_edges", kernel, static_cast<size_t>(found.walks),
-                    LaunchShape{kWallThreads, kWallWarps * run,
-                                look / kWarp + rounds * (2 + kMostWallSteps) * (64 + look / lanes), most_blocks},
+                    LaunchShape{kWallThreads, kWallThreads / lanes,
+                                look / kWarp + (2 + kMostWallSteps) * (64 + look / lanes), most_blocks},
                     job);
   };
   // Few edges leave a GPU idle with few lanes each; of many edges' lanes fewer are idle then.
   const auto are_many = [&](size_t lanes) { return found.walks * lanes > executor.multiprocessors() * kFullThreads; };
   if (!are_many(kWarp))
-    walk(kWarp, 1, walk_edges_kernel<kWarp, 1, false>);
+    walk(kWarp, walk_edges_kernel<kWarp, false>);
   else if (job.walk_run > 1)
-    walk(4, kLongWalkRun, walk_edges_kernel<4, kLongWalkRun, true>);
+    walk(kWarp / kLongWalkRun, walk_edges_kernel<kWarp / kLongWalkRun, true>);
   else if (!are_many(4))
-    walk(8, 4, walk_edges_kernel<8, 4, false>);
+    walk(8, walk_edges_kernel<8, false>);
   else
-    walk(4, 8, walk_edges_kernel<4, 8, false>);
+    walk(4, walk_edges_kernel<4, false>);
   executor.arena().rewind(mark);
 }
 

@@ -93,6 +93,7 @@ static __global__ __launch_bounds__(kTriangleWarps *kWarp) void emit_triangles_k
       }
     }
     const unsigned active = __ballot_sync(kFullWarp, is_active);
+    __syncwarp();
     // A lane has one layer of 16 cells of a leaf: in the order of the triangles.
     const int leaf = lane >> 2, first_cell = 16 * lane;
     const int own_place = (leaf & 1) + 3 * (leaf >> 1 & 1) + 9 * (leaf >> 2);

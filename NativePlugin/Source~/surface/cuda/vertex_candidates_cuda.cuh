@@ -4,7 +4,6 @@
 #pragma once
 
 #include "surface/cuda/exact_ses_cuda.cuh"
-#include "surface/stages/edge_placement.h"
 
 namespace quickses {
 namespace gpu {

@@ -4,7 +4,7 @@
 // behind.
 #pragma once
 
-#include "surface/cuda/edge_placement_cuda.cuh"
+#include "surface/cuda/vertex_candidates_cuda.cuh"
 #include "surface/stages/thin_walls.h"
 
 namespace quickses {

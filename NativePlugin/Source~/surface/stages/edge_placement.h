@@ -63,7 +63,7 @@ QSES_FN Vec3<float> find_sign_change(const FeatureView &f, const Near &near, Cut
 }
 // So many points are looked at for it.
 inline uint64_t looks_for_sign_change(const SurfaceParameters &p, int halvings) {
-  return static_cast<uint64_t>(halvings + 2 + most_solid_looks(p));
+  return static_cast<uint64_t>(halvings + 4 + most_solid_looks(p));
 }
 
 template <class Near>
@@ -75,7 +75,7 @@ QSES_FN SurfacePoint place_on_edge(const FeatureView &f, const Near &near, const
   const float tolerance = 1e-3f * p.spacing + 4e-7f * far_out;  // of the halving, and of float32 there
   s.placed = s.placed && length_squared(s.position - x) <= tolerance * tolerance;
   // Without a feature there the sign changes all the same, so that is where the vertex stays.
-  if (!s.placed) s.position = x;
+  if (!s.placed) s.position = x, s.patch = QSES_PATCH_CONTACT;  // whatever is near
   return s;
 }
 

@@ -152,7 +152,7 @@ template <class Candidates>
 QSES_FN BoundaryPoint nearest_boundary(const FeatureView &f, const Candidates &candidates, const Vec3<float> &x) {
   const DeepestAtom deepest = deepest_atom(f, candidates, x);
   const Sphere ball = load(f.atoms.items + deepest.atom);
-  if (is_on_contact(f, deepest, x)) return boundary_on_atom(ball, deepest.depth, x, true);
+  if (is_on_contact(f, candidates, deepest, x)) return boundary_on_atom(ball, deepest.depth, x, true);
   const NearestArc nearest = nearest_arc(f, candidates, x);
   if (nearest.arc >= 0) return boundary_on_arc(load(f.arcs + nearest.arc), x);
   return boundary_on_atom(ball, deepest.depth, x, false);
@@ -312,7 +312,7 @@ QSES_FN bool is_inside(const FeatureView &f, const Candidates &candidates, const
   const DeepestAtom deepest = deepest_atom(f, candidates, x);
   if (deepest.depth <= f.parameters.least_depth()) return false;
   if (deepest.depth > depth) return true;
-  if (is_on_contact(f, deepest, x)) return false;
+  if (is_on_contact(f, candidates, deepest, x)) return false;
   return nearest_arc(f, candidates, x).distance2 > depth * depth;
 }
 
