@@ -344,8 +344,9 @@ static __global__ __launch_bounds__(kCapWarps *kWarp) void find_long_caps_kernel
   count_of_block(job, tally);
 }
 
-// Where an atom has very many neighbours, comparing its caps with each other takes too long for one warp: here all
-// warps share it, 32 caps each at a time, in one pass after the other.
+// Where an atom has very many neighbours, comparing its caps with each other may take too long for one warp, though of
+// a wide probe's most lie within a large one: here all warps share what is left, 32 caps each at a time, in one pass
+// after the other.
 constexpr size_t kWarpNeighbors = 1024;
 
 struct CrowdedAtom {
@@ -373,13 +374,14 @@ static __global__ __launch_bounds__(kCapWarps *kWarp) void gather_crowded_kernel
   uint32_t i;
   if (row >= rows.last || !job.atom(row, &i)) return;
   const int room = static_cast<int>(job.rows.room);
-  int n = gather_caps(job.caps.atoms, job.caps.max_radius, i, load(job.caps.atoms.items + i), job.rows.of(row), room);
-  if (lane_id() != 0) return;
+  const CapRows caps = job.rows.of(row);
+  int n = gather_caps(job.caps.atoms, job.caps.max_radius, i, load(job.caps.atoms.items + i), caps, room);
   if (n > room) {
-    atomicMax(&job.caps.counters->neighbors, static_cast<uint32_t>(n));
+    if (lane_id() == 0) atomicMax(&job.caps.counters->neighbors, static_cast<uint32_t>(n));
     n = 0;  // all will be done again
   }
-  job.atoms[row].caps = n;
+  n = drop_caps_within_large(caps, n);
+  if (lane_id() == 0) job.atoms[row].caps = n;
 }
 
 static __global__ __launch_bounds__(kCapWarps *kWarp) void mark_crowded_kernel(QueuedItems queued, CrowdedJob job) {
@@ -432,8 +434,8 @@ void find_crowded_caps(E &executor, const CapJob &job, const LongRows &rows, siz
     const size_t count = std::min(row_count, job.room.long_atoms - first);
     const CrowdedJob crowded{job, rows, atoms.data, static_cast<uint32_t>(first), static_cast<uint32_t>(groups)};
     constexpr int kThreads = kCapWarps * kWarp;
-    executor.launch("gather_crowded", gather_crowded_kernel, count, LaunchShape{kThreads, kCapWarps, gather_steps},
-                    crowded);
+    executor.launch("gather_crowded", gather_crowded_kernel, count,
+                    LaunchShape{kThreads, kCapWarps, gather_steps + 16 + row_room / 4}, crowded);
     executor.launch("mark_crowded", mark_crowded_kernel, count * groups, LaunchShape{kThreads, kCapWarps, 2 * row_room},
                     crowded);
     executor.launch("keep_crowded", keep_crowded_kernel, count, LaunchShape{kThreads, kCapWarps, 64 + row_room / 8},
