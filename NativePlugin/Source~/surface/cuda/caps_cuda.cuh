@@ -351,7 +351,7 @@ constexpr size_t kWarpNeighbors = 1024;
 
 struct CrowdedAtom {
   CapPlace place;
-  int caps;
+  int caps;  // 0 also of one that is not asked for
 };
 struct CrowdedJob {
   CapJob caps;
@@ -371,8 +371,12 @@ struct CrowdedJob {
 static __global__ __launch_bounds__(kCapWarps *kWarp) void gather_crowded_kernel(QueuedItems queued, CrowdedJob job) {
   const LaunchItems rows = queued.in_turn();
   const size_t row = rows.first + (blockIdx.x * blockDim.x + threadIdx.x) / kWarp;
+  if (row >= rows.last) return;
   uint32_t i;
-  if (row >= rows.last || !job.atom(row, &i)) return;
+  if (!job.atom(row, &i)) {
+    if (lane_id() == 0) job.atoms[row].caps = 0;
+    return;
+  }
   const int room = static_cast<int>(job.rows.room);
   const CapRows caps = job.rows.of(row);
   int n = gather_caps(job.caps.atoms, job.caps.max_radius, i, load(job.caps.atoms.items + i), caps, room);
@@ -380,15 +384,18 @@ static __global__ __launch_bounds__(kCapWarps *kWarp) void gather_crowded_kernel
     if (lane_id() == 0) atomicMax(&job.caps.counters->neighbors, static_cast<uint32_t>(n));
     n = 0;  // all will be done again
   }
-  n = drop_caps_within_large(caps, n);
+  // Again while that drops many: of those that are left, others are the largest of some.
+  for (int before = 2 * n; n > kWarp && n <= before - before / 8;) {
+    before = n;
+    n = drop_caps_within_large(caps, n);
+  }
   if (lane_id() == 0) job.atoms[row].caps = n;
 }
 
 static __global__ __launch_bounds__(kCapWarps *kWarp) void mark_crowded_kernel(QueuedItems queued, CrowdedJob job) {
   const LaunchItems groups = queued.in_turn();
   const size_t item = groups.first + (blockIdx.x * blockDim.x + threadIdx.x) / kWarp, row = item / job.groups;
-  uint32_t i;
-  if (item >= groups.last || !job.atom(row, &i)) return;
+  if (item >= groups.last) return;
   const CapRows rows = job.rows.of(row);
   const int n = job.atoms[row].caps, j = static_cast<int>(item % job.groups) * kWarp + lane_id();
   if (j < n && lies_within_another<1>(rows, n, j, 0)) rows.neighbor[j] |= kContainedCap;
@@ -410,10 +417,11 @@ static __global__ __launch_bounds__(kCapWarps *kWarp) void keep_crowded_kernel(Q
 static __global__ __launch_bounds__(kCapWarps *kWarp) void rank_crowded_kernel(QueuedItems queued, CrowdedJob job) {
   const LaunchItems groups = queued.in_turn();
   const size_t item = groups.first + (blockIdx.x * blockDim.x + threadIdx.x) / kWarp, row = item / job.groups;
-  uint32_t i;
-  if (item >= groups.last || !job.atom(row, &i)) return;
+  if (item >= groups.last) return;
   const CrowdedAtom atom = job.atoms[row];
-  const int q = static_cast<int>(item % job.groups) * kWarp + lane_id();
+  const int first = static_cast<int>(item % job.groups) * kWarp, q = first + lane_id();
+  if (first >= atom.caps) return;
+  const uint32_t i = job.caps.long_atoms[job.first + row];
   const float radius = load(job.caps.atoms.items + i).radius;
   const CapRows rows = job.rows.of(row);
   const int rank = rank_of_cap(rows, atom.caps, q);
