@@ -77,12 +77,13 @@ using Sum = cub::Sum;
 constexpr int kFewThreads = 1024;
 constexpr size_t kFewItems = 8 * kFewThreads;
 constexpr uint64_t kFewSteps = kFewItems / kFewThreads * kPlainSumSteps;  // of a thread, for those
-// Of the threads before this one; and of all. Memory: not used by the call before this one.
+
 template <class T>
 struct TileMemory {
   typename cub::WarpScan<T>::TempStorage scans[kFewThreads / 32];
   T of_warps[kFewThreads / 32];
 };
+// Of the threads before this one; and of all. Memory: not used by the call before this one.
 template <class T>
 __device__ __forceinline__ T sum_before(TileMemory<T> &memory, const T &own, T *total) {
   using Scan = cub::WarpScan<T>;

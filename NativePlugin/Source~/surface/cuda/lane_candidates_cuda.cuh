@@ -93,5 +93,52 @@ __device__ __forceinline__ bool is_on_contact(const FeatureView &f,
   return (__ballot_sync(candidates.lanes(), covered) & candidates.team()) == 0;
 }
 
+// Those of some candidates that decide about points within `reach` of a middle, as those of an edge; all of them where
+// there is no room for the choice.
+template <int kLanes, class Candidates>
+__device__ __forceinline__ LaneCandidates<kLanes, true> choose_near(const FeatureView &f, const Candidates &all,
+                                                                    const Vec3<float> &middle, float reach,
+                                                                    uint32_t *room, int most) {
+  using Chosen = LaneCandidates<kLanes, true>;
+  const unsigned team = Chosen::team();
+  const int rank = Chosen::rank();
+  const auto choose = [&](const Sphere *balls, const auto &item_at, int count, float reach, uint32_t *out, int left) {
+    constexpr int kAhead = 4;  // loads that are under way together
+    int n = 0;
+    for (int k0 = rank; __any_sync(kFullWarp, k0 - rank < count); k0 += kAhead * kLanes) {
+      uint32_t item[kAhead];
+      bool near[kAhead];
+#pragma unroll
+      for (int j = 0; j < kAhead; ++j) {
+        near[j] = k0 + j * kLanes < count;
+        item[j] = near[j] ? item_at(k0 + j * kLanes) : 0;
+      }
+#pragma unroll
+      for (int j = 0; j < kAhead; ++j) {
+        if (!near[j]) continue;
+        const Sphere ball = load(balls + item[j]);
+        const float r = ball.radius + reach;
+        near[j] = length_squared(Vec3<float>(ball.center) - middle) < r * r;
+      }
+#pragma unroll
+      for (int j = 0; j < kAhead; ++j) {
+        const int place = append_place(near[j], &n, kFullWarp, team);
+        if (near[j] && place < left) out[place] = item[j];
+      }
+    }
+    return n;
+  };
+  __syncwarp();  // the choice before is not looked at any more
+  const int atoms = choose(
+      f.atoms.items, [&](int k) { return all.atom(k); }, all.atom_total, reach, room, most);
+  const int left = atoms < most ? most - atoms : 0;
+  const int arcs = choose(
+      f.arc_bounds.items, [&](int k) { return all.arc(k); }, all.arc_total, f.parameters.depth + reach,
+      room + (most - left), left);
+  __syncwarp();
+  if (atoms > most || arcs > left) return {all.atoms, all.arcs, all.atom_total, all.arc_total};
+  return {room, room + atoms, atoms, arcs};
+}
+
 }  // namespace gpu
 }  // namespace quickses

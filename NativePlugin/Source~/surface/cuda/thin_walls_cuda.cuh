@@ -3,7 +3,7 @@
 // walked by some lanes each.
 #pragma once
 
-#include "surface/cuda/edge_placement_cuda.cuh"
+#include "surface/cuda/lane_candidates_cuda.cuh"
 #include "surface/cuda/wall_edges_cuda.cuh"
 
 namespace quickses {
