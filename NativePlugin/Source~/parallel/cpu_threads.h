@@ -10,6 +10,7 @@
 
 #include <memory>
 #else
+#include "parallel/late_threads.h"
 #include "parallel/startable_threads.h"
 
 #include <tbb/info.h>
@@ -47,6 +48,7 @@ class CpuThreads {
 #else
       const unsigned wanted = std::min(count_, static_cast<unsigned>(tbb::info::default_concurrency()));
       usable_ = 1 + count_startable_threads(wanted - 1);
+      hold_tbb_for_late_threads();
       arena_.initialize(static_cast<int>(usable_));
 #endif
     }
