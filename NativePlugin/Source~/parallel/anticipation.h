@@ -164,6 +164,7 @@ class Anticipation {
     std::memcpy(&e, expected, sizeof e);
     return e.covers(f);
   }
+  static constexpr size_t kMostPages = 256;
   const Entry *find(const char *name) const {
     for (const Page &page : pages_)
       if (page.number == page_)
@@ -173,7 +174,10 @@ class Anticipation {
   }
   void note(const Number &number, const Entry &found) {
     auto page = std::find_if(pages_.begin(), pages_.end(), [&](const Page &p) { return p.number == number; });
-    if (page == pages_.end()) page = pages_.insert(page, Page{number, {}});
+    if (page == pages_.end()) {
+      if (pages_.size() == kMostPages) pages_.erase(pages_.begin());  // of a spacing that was left long ago
+      page = pages_.insert(pages_.end(), Page{number, {}});
+    }
     for (Entry &entry : page->entries)
       if (std::strcmp(entry.name, found.name) == 0) {
         entry = found;

@@ -263,6 +263,10 @@ class CpuExecutor {
   T expect(const char *, const T *counts, const T &) {
     return *counts;
   }
+  template <class T>
+  bool foresee(const char *, const T &, T *) const {
+    return false;
+  }
   void open_counts(uint64_t, bool = false) {}
   bool has_anticipated() const { return false; }
   void turn_counts_to(float, uint32_t = 0) {}

@@ -454,7 +454,7 @@ class CudaExecutor {
   void wait_for_launch_before() {
     cudaEvent_t &event = launched_[0];
     if (event) check_cuda(cudaEventSynchronize(event), "cudaEventSynchronize");
-    if (!event) check_cuda(cudaEventCreate(&event), "cudaEventCreate");
+    if (!event) check_cuda(cudaEventCreateWithFlags(&event, cudaEventDisableTiming), "cudaEventCreateWithFlags");
     check_cuda(cudaEventRecord(event, stream_), "cudaEventRecord");
     std::swap(launched_[0], launched_[1]);
   }

@@ -55,7 +55,7 @@ constexpr int blocks_at_once(int threads, int wanted) {
   constexpr int kMostThreads = 1024, kMostBlocks = 16;
 #elif defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 860 && __CUDA_ARCH__ < 890
   constexpr int kMostThreads = 1536, kMostBlocks = 16;
-#elif defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 890 && __CUDA_ARCH__ < 900
+#elif defined(__CUDA_ARCH__) && ((__CUDA_ARCH__ >= 890 && __CUDA_ARCH__ < 900) || __CUDA_ARCH__ >= 1200)
   constexpr int kMostThreads = 1536, kMostBlocks = 24;
 #else
   constexpr int kMostThreads = 2048, kMostBlocks = 32;

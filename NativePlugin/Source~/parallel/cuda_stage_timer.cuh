@@ -15,8 +15,13 @@ class CudaStageTimer {
  public:
   explicit CudaStageTimer(CudaExecutor &executor) : executor_(executor) {}
   ~CudaStageTimer() {
-    if (events_.empty() || !may_hand_back()) return;
-    for (cudaEvent_t event : events_) cudaEventDestroy(event);
+    if (events_.empty()) return;
+    try {
+      const DeviceGuard guard(executor_.device());
+      if (!may_hand_back()) return;
+      for (cudaEvent_t event : events_) cudaEventDestroy(event);
+    } catch (...) {  // the device is lost
+    }
   }
   CudaStageTimer(const CudaStageTimer &) = delete;
   CudaStageTimer &operator=(const CudaStageTimer &) = delete;

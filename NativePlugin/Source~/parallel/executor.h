@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The few verbs every pass is written in. There are two back ends with the same members: CpuExecutor (TBB, or threads
-// of its own) and CudaExecutor (Thrust/CUB on one stream). Stages are templates over the executor and know neither.
+// of its own) and CudaExecutor (Thrust/CUB on a stream). Stages are templates over the executor and know neither.
 //
 // clang-format off
 //   Span<T> allocate<T>(n)         memory of the back end, uninitialised, valid until the arena is rewound
@@ -19,9 +19,10 @@
 //   expect(name, counts, most)     what was counted. Waits; or, if it is told by the frame before, at most so much
 //   send_counts(), verify_counts() later: what was expected is compared with what was counted (anticipation.h). Waits
 //   verified(counts)               what was counted then
+//   foresee(name, most, out)       what expect() would say without waiting; false, and nothing, where it would wait
+//   open_counts(kind), turn_counts_to(level, part)  which frames, and what of them, have counts that are alike
 //   has_anticipated()              whether this frame went on with anything that the one before told
-//   go_on_scanning(n, load, out), foresee(name, most, out), send_all_counts()  of the GPU only, for work in slabs
-//                                  (methods/exact_slabs.h)
+//   go_on_scanning(n, load, out), send_all_counts()  of the GPU only, for work in slabs (methods/exact_slabs.h)
 //   runs_ahead()                   whether all of this frame may be queued, since frames like it are short
 //   keep_pace()                    called between parts of a long work, so that it can be cancelled. May wait
 //   upload, download, fill         copies between host and back end, and memset

@@ -2,6 +2,8 @@
 // What is anticipated is what was counted and some more; too little of it never goes unnoticed.
 #include "parallel/anticipation.h"
 
+#include "surface/stages/neighbor_grid.h"
+
 #include <gtest/gtest.h>
 
 namespace quickses {
@@ -132,6 +134,35 @@ TEST(Anticipation, IsOfOnePage) {
   a.turn_to(1);
   ASSERT_TRUE(a.anticipate("bricks", 0, kPlenty, &expected));
   EXPECT_GE(expected.count, 1600u);
+}
+
+// Of counts that are told only from so many on, fewer are none: they may become as many.
+TEST(Anticipation, OfCountsThatAreToldFromSoManyOn) {
+  using quickses::CrowdTally;
+  const CrowdTally most{5000}, few = CrowdTally::anticipated({0}, most);
+  EXPECT_TRUE(few.covers({0}));
+  EXPECT_TRUE(few.covers({quickses::kFewInCell}));
+  EXPECT_TRUE(CrowdTally::anticipated({400}, most).covers({401}));
+  EXPECT_EQ(CrowdTally::anticipated({0}, {100}).count, 100u);
+}
+
+// A slider goes through thousands of spacings.
+TEST(Anticipation, ForgetsPagesOfLongAgo) {
+  Anticipation a;
+  a.open(1);
+  for (int level = 1; level <= 1000; ++level) {
+    a.turn_to(static_cast<float>(level));
+    a.note("bricks", Bricks{100});
+  }
+  a.open(1);
+  Bricks expected{};
+  const auto is_known = [&](int level) {
+    a.turn_to(static_cast<float>(level));
+    return a.foresee("bricks", kPlenty, &expected);
+  };
+  EXPECT_TRUE(is_known(1000));
+  EXPECT_TRUE(is_known(900));
+  EXPECT_FALSE(is_known(1));
 }
 
 TEST(Anticipation, ForeseesWithoutRelyingOnIt) {

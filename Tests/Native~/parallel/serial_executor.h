@@ -97,6 +97,10 @@ class SerialExecutor {
     return allocate_zeros<T>(1).data;
   }
   template <class T>
+  bool foresee(const char *, const T &, T *) const {
+    return false;
+  }
+  template <class T>
   T expect(const char *, const T *counts, const T &) {
     return *counts;
   }

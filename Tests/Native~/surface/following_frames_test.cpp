@@ -85,6 +85,33 @@ TEST(FollowingFrames, OfManyKindsInTurn) {
         }
 }
 
+// Atoms by themselves, in the middle of bricks in one frame and where eight of them meet in another: there are far more
+// bricks then, but hardly more vertices.
+Atoms loose_atoms(double shift) {
+  Atoms atoms;
+  atoms.add(-80, -80, -80, 1.7).add(80, 80, 80, 1.7);  // the same box in all frames
+  for (int k = 0; k < 512; ++k)
+    atoms.add(shift + 16 * (k % 8) - 56, shift + 16 * (k / 8 % 8) - 56, shift + 16 * (k / 64) - 56, 1.7);
+  return atoms;
+}
+
+TEST(FollowingFrames, WithMoreBricksButNotMoreVertices) {
+  std::vector<Atoms> frames;
+  for (const double shift : {0.0, 0.1, 2.0, 2.0, 0.2, 0.0, 2.1, 0.0}) frames.push_back(loose_atoms(shift));
+  const Surface few = compute(frames[0], settings()), many = compute(frames[2], settings());
+  ASSERT_GT(many.report.brick_count, few.report.brick_count / 5 * 6) << "nothing would be tested";
+  ASSERT_LT(many.vertex_count(), few.vertex_count() / 50 * 51) << "nothing would be tested";
+  expect_each_as_by_itself(frames, settings());
+}
+
+// A circle around two large balls that many small ones cut: on the GPU its intervals are in memory.
+TEST(FollowingFrames, WithCirclesInManyPieces) {
+  Atoms atoms;
+  atoms.add(0, 0, -1, 3.2).add(0, 0, 1, 3.2);
+  for (int k = 0; k < 12; ++k) atoms.add(5.5 * std::cos(0.5236 * k), 5.5 * std::sin(0.5236 * k), 0.1, 0.3);
+  expect_each_as_by_itself(std::vector<Atoms>(10, atoms), settings(0.5, 0.3));
+}
+
 // Levels, some of which a job before has made of atoms that are much the same.
 TEST(FollowingFrames, OfLadders) {
   const std::vector<Atoms> frames = frames_of(cluster(400, 9));

@@ -116,7 +116,7 @@ class LaunchCounter : public quickses::CudaExecutor {
 };
 
 // Atoms with more neighbours than a warp's rows hold, and circles with more intervals than a lane's: the stage begins
-// anew for the first frame only.
+// anew for the first frame only, and no frame after it goes on with too little.
 TEST(GpuRooms, AreLearntOnce) {
   REQUIRE_DEVICE();
   using namespace quickses;
@@ -135,6 +135,7 @@ TEST(GpuRooms, AreLearntOnce) {
   for (int frame = 0; frame < 4; ++frame) {
     executor.arena().reset();
     executor.launches.clear();
+    executor.open_counts(1);
     Span<Sphere> atoms = executor.allocate<Sphere>(spheres.size());
     executor.upload(atoms.data, spheres.data(), spheres.size());
     const NeighborGridView grid = build_neighbor_grid(
@@ -142,7 +143,9 @@ TEST(GpuRooms, AreLearntOnce) {
     SolventFeatures features;
     const SurfaceParameters parameters{1.4f, 1.4f, 0.5f, 3.2f};
     Backend<CudaExecutor>::find_solvent_features(executor, grid, parameters, kMemoryPlans[0], rooms, &features);
+    executor.send_counts();
     executor.wait();
+    EXPECT_NO_THROW(executor.verify_counts());
     arcs.push_back(features.arcs.size);
     if (frame == 0) {
       EXPECT_GT(executor.launches["find_caps"], 1) << "nothing had to be learnt";
@@ -150,6 +153,44 @@ TEST(GpuRooms, AreLearntOnce) {
       EXPECT_EQ(executor.launches["find_caps"], 1) << "frame " << frame;
     }
     EXPECT_EQ(features.arcs.size, arcs.front());
+  }
+}
+
+// Deep in a crowd atoms have no arcs. In runs, arcs get room for as many as there may be, and give back what is too
+// much; they must stay where they are, whatever blocks the arena has.
+TEST(GpuRooms, ArcsStayWhereTheyAreFoundInRuns) {
+  REQUIRE_DEVICE();
+  using namespace quickses;
+  std::vector<Sphere> spheres;
+  constexpr int kEdge = 48;
+  for (int x = 0; x < kEdge; ++x)
+    for (int y = 0; y < kEdge; ++y)
+      for (int z = 0; z < kEdge; ++z) spheres.push_back({glm::vec3(1.9f * x, 1.91f * y, 1.89f * z), 3.1f});
+  const SurfaceParameters parameters{1.4f, 1.4f, 0.5f, 3.1f};
+  const auto arcs_with = [&](const MemoryPlan &plan) {
+    CudaExecutor executor(0);
+    const DeviceGuard guard(0);
+    CudaRooms rooms;
+    Span<Sphere> atoms = executor.allocate<Sphere>(spheres.size());
+    executor.upload(atoms.data, spheres.data(), spheres.size());
+    const NeighborGridView grid =
+        build_neighbor_grid(executor, atoms, layout_cells(glm::vec3(-1.f), glm::vec3(1.92f * kEdge), 3.1f));
+    SolventFeatures features;
+    Backend<CudaExecutor>::find_solvent_features(executor, grid, parameters, plan, rooms, &features);
+    // What comes behind the features may be written over.
+    const Span<char> behind = executor.allocate<char>(size_t(1) << 20);
+    executor.fill(behind, 0xff);
+    std::vector<Arc> arcs(features.arcs.size);
+    executor.fetch_all(arcs.data(), features.arcs.data, arcs.size());
+    return arcs;
+  };
+  const std::vector<Arc> expected = arcs_with(kMemoryPlans[0]);
+  ASSERT_GT(expected.size(), 1000u);
+  for (const MemoryPlan &plan : kMemoryPlans) {
+    if (!plan.low_memory) continue;
+    const std::vector<Arc> arcs = arcs_with(plan);
+    ASSERT_EQ(arcs.size(), expected.size());
+    EXPECT_EQ(std::memcmp(arcs.data(), expected.data(), arcs.size() * sizeof(Arc)), 0);
   }
 }
 

@@ -75,7 +75,8 @@ struct CandidateCounters {
   uint32_t longest_row;  // of atoms or arcs; 0: none is longer than usual
 
   static CandidateCounters anticipated(const CandidateCounters &last, const CandidateCounters &most) {
-    return {most.atoms, most.arcs, std::min(and_some_more(last.leaves), most.leaves), and_some_more(last.longest_row)};
+    return {most.atoms, most.arcs, std::min(and_some_more(last.leaves), most.leaves),
+            std::max(and_some_more(last.longest_row), kUsualRow)};
   }
   bool covers(const CandidateCounters &found) const {
     return found.atoms <= atoms && found.arcs <= arcs && found.leaves <= leaves && found.longest_row <= longest_row;

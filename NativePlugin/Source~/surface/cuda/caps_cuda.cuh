@@ -438,20 +438,21 @@ template <class E>
 void find_crowded_caps(E &executor, const CapJob &job, const LongRows &rows, size_t row_count, uint64_t gather_steps) {
   const size_t row_room = rows.room, groups = (row_room + kWarp - 1) / kWarp;
   const Span<CrowdedAtom> atoms = executor.template allocate<CrowdedAtom>(row_count);
-  for (size_t first = 0; first < job.room.long_atoms; first += row_count) {
-    const size_t count = std::min(row_count, job.room.long_atoms - first);
+  if (E::kCounts) return;
+  const size_t crowded_atoms = std::min<size_t>(job.room.long_atoms, executor.fetch(&job.counters->long_atoms));
+  for (size_t first = 0; first < crowded_atoms; first += row_count) {
+    const size_t count = std::min(row_count, crowded_atoms - first);
     const CrowdedJob crowded{job, rows, atoms.data, static_cast<uint32_t>(first), static_cast<uint32_t>(groups)};
     constexpr int kThreads = kCapWarps * kWarp;
     executor.launch("gather_crowded", gather_crowded_kernel, count,
-                    LaunchShape{kThreads, kCapWarps, gather_steps + 16 + row_room / 4}, crowded);
+                    LaunchShape{kThreads, kCapWarps, gather_steps + 16 + 2 * row_room}, crowded);
     executor.launch("mark_crowded", mark_crowded_kernel, count * groups, LaunchShape{kThreads, kCapWarps, 2 * row_room},
                     crowded);
     executor.launch("keep_crowded", keep_crowded_kernel, count, LaunchShape{kThreads, kCapWarps, 64 + row_room / 8},
                     crowded);
     executor.launch("rank_crowded", rank_crowded_kernel, count * groups, LaunchShape{kThreads, kCapWarps, 2 * row_room},
                     crowded);
-    executor.wait();  // what is queued can't be cancelled
-    if (E::kCounts) return;
+    executor.keep_pace();
   }
 }
 

@@ -57,7 +57,8 @@ struct FeatureRoom {
            (c.staged >> 32) <= staged_circles && (c.staged & 0xffffffffu) <= staged_arcs && c.arcs <= arcs &&
            (c.long_circles == 0 || c.longest_row + 1u <= intervals);
   }
-  // So much is counted at most where it holds it. (Circles that need intervals in memory are always waited for.)
+  // So much is counted at most where it holds it. (Where circles need intervals in memory, their number is always
+  // waited for.)
   FeatureCounters most() const {
     return {caps,
             circles,

@@ -60,8 +60,9 @@ class MeshMemory<CudaExecutor> {
     }
   }
 
+  // A mesh that was given up may be on its way to the host still. Waits until it is not.
+  void stop_sending() { wait_for_copies(); }
   void use_slot(int slot) {
-    wait_for_copies();  // of a mesh that was given up
     host_meshes_.use_slot(slot);
     device_meshes_.use_slot(slot);
   }

@@ -48,7 +48,8 @@ FeatureCounters find_run_features(E &executor, const FeaturePass &pass, AtomRun 
                 CircleJob{pass.atoms, run, pass.parameters.max_arc_bound(), room, counters, pass.cap_ranges, caps,
                           neighbors.data, circle_first.data, pass.exposed, arcs, arc_atoms},
                 pass.parameters.max_radius);
-  FeatureCounters found = executor.expect("features", counters, room.most());
+  FeatureCounters found =
+      room.intervals > 0 ? executor.fetch(counters) : executor.expect("features", counters, room.most());
   while (found.unfinished_circles > 0) {
     find_long_circle_arcs(executor, search);
     found = executor.fetch(counters);
@@ -124,6 +125,7 @@ void find_features_in_runs(E &executor, const FeaturePass &pass, const MemoryPla
     if (pass.with_arc_atoms()) features->arc_atoms = executor.template allocate<ArcAtoms>(room);
   };
   const uint64_t arc_bytes = sizeof(Arc) + (pass.with_arc_atoms() ? sizeof(ArcAtoms) : 0);
+  Span<Arc> arcs{};
   uint64_t arc_total = 0;
   for (bool is_done = false; !is_done;) {
     arena.rewind(before_arcs);
@@ -137,7 +139,7 @@ void find_features_in_runs(E &executor, const FeaturePass &pass, const MemoryPla
     const uint64_t expected = std::max({rooms.features.arcs, rooms.runs.arcs, FeatureRoom::guess(n).arcs});
     const size_t arc_room = E::kCounts ? features->arcs.size : static_cast<size_t>(std::min(left, expected));
     allocate_arc_atoms(arc_room);
-    Span<Arc> arcs = executor.template allocate<Arc>(arc_room);
+    arcs = executor.template allocate<Arc>(arc_room);
     arc_total = 0;
     is_done = true;
     for (uint32_t first = 0; first < n && is_done;) {
@@ -170,9 +172,17 @@ void find_features_in_runs(E &executor, const FeaturePass &pass, const MemoryPla
     features->caps.size = static_cast<size_t>(cap_total);
     features->arcs.size = static_cast<size_t>(arc_total);
   }
+  // What the arcs left of their room is given back, unless so few would have had their place in another block.
+  const auto behind_arcs = arena.mark();
+  const Span<ArcAtoms> arc_atoms = features->arc_atoms;
   arena.rewind(before_arcs);
-  allocate_arc_atoms(features->arc_atoms.size);
-  features->arcs = executor.template allocate<Arc>(features->arcs.size);  // where they are already
+  allocate_arc_atoms(arc_atoms.size);
+  features->arcs = executor.template allocate<Arc>(features->arcs.size);
+  if (features->arcs.data != arcs.data || features->arc_atoms.data != arc_atoms.data) {
+    arena.rewind(behind_arcs);
+    features->arcs.data = arcs.data;
+    features->arc_atoms = arc_atoms;
+  }
   features->caps = executor.template allocate<Cap>(features->caps.size);
 
   const auto mark = arena.mark();

@@ -111,6 +111,11 @@ class CountingExecutor {
   T expect(const char *, const T *counts, const T &) {
     return fetch(counts);
   }
+  template <class T>
+  bool foresee(const char *, const T &, T *) const {
+    return false;
+  }
+  void turn_counts_to(float, uint32_t = 0) {}
   void keep_pace() {}
   bool runs_ahead() const { return false; }
   void send_counts() {}

@@ -246,13 +246,13 @@ MeshMemoryView build_exact_surface(Work &work) {
       tangential_starts(executor, bricks, layout, mesh.view, MeshCounts{mesh.vertices, mesh.triangles}, sums,
                         moved.data);
       starts.moved = moved.data;
-      if constexpr (!Executor::kCounts) executor.turn_counts_to(work.parameters.spacing, step);  // of a kind each
+      executor.turn_counts_to(work.parameters.spacing, step);  // of a kind each
       executor.fill(Span<uint32_t>{starts.unplaced, 1}, 0);
       const double share_of_time = 0.15 / work.settings.relaxation_steps;
       emit(0.85 + share_of_time * (step - 1), 0.85 + share_of_time * step, false);
       executor.keep_pace();
     }
-    if constexpr (!Executor::kCounts) executor.turn_counts_to(work.parameters.spacing);
+    executor.turn_counts_to(work.parameters.spacing);
   }
   if (holds && mesh.vertices > 0) hold_to_edges(work, bricks, layout, channels.data, mesh);
   executor.arena().rewind(end_of_mesh);

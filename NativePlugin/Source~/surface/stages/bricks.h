@@ -189,13 +189,13 @@ struct FillBrickTable {
   int32_t *table;  // in: how many were flagged before, and of all behind the last; out: number, or -1
   uint64_t entries;
   uint64_t *places;
-  uint64_t room;  // of those
+  uint64_t room;  // bricks that the set has room for: the others are none
   Tally<uint64_t> *found;
   QSES_HOST_DEVICE void operator()(size_t i) const {
     const uint64_t total = static_cast<uint32_t>(table[entries]), number = static_cast<uint32_t>(table[i]);
     if (i == 0) found->count = total;
     if (flags[i] && number < room) places[number] = pack_place(lattice.brick_at(i));
-    if (!flags[i]) table[i] = -1;
+    if (!flags[i] || number >= room) table[i] = -1;
     if (i >= total && i < room) places[i] = pack_place(lattice.brick_at(kNoBrick));
   }
 };
@@ -296,8 +296,12 @@ BrickSet flag_bricks(Executor &executor, const Items &items, const Lattice &latt
                             : static_cast<uint64_t>(executor.reduce(entries, LoadCount<uint8_t>{flags.data}));
   Span<uint64_t> places = executor.template allocate<uint64_t>(room);
   Tally<uint64_t> *const found = executor.template take_counts<Tally<uint64_t>>();
-  do_in_turn(executor, Scan{entries, LoadCount<uint8_t>{flags.data}, Span<int32_t>{table.data, entries + 1}},
-             ForEach{entries, FillBrickTable{lattice, flags.data, table.data, entries, places.data, room, found}});
+  // No brick may have a number beyond those that there will be memory for: stages would read and write what is at it.
+  Tally<uint64_t> most{room};
+  executor.foresee(name, most, &most);
+  do_in_turn(
+      executor, Scan{entries, LoadCount<uint8_t>{flags.data}, Span<int32_t>{table.data, entries + 1}},
+      ForEach{entries, FillBrickTable{lattice, flags.data, table.data, entries, places.data, most.count, found}});
   const uint32_t count = checked_brick_count(executor.expect(name, found, Tally<uint64_t>{room}).count);
   return {lattice, places.data, table.data, count, found};
 }

@@ -107,11 +107,19 @@ QSES_FN Sphere no_item() { return {glm::vec3(kFarAway), -1.f}; }
 constexpr uint32_t kCrowd = 1024;
 // Fewer are not told to the host, so that it does not matter to it that they change.
 constexpr uint32_t kFewInCell = 256;
+// Items in the fullest cell; 0: a few.
+struct CrowdTally {
+  uint32_t count;
+  static CrowdTally anticipated(const CrowdTally &last, const CrowdTally &most) {
+    return {std::min(std::max(and_some_more(last.count), kFewInCell), most.count)};
+  }
+  bool covers(const CrowdTally &found) const { return found.count <= count; }
+};
 
 struct CellCounts {
-  uint32_t *in_cell = nullptr;         // zeros at first; nullptr: nothing is counted
-  uint32_t *slots = nullptr;           // of each item, how many of its cell were counted before it
-  Tally<uint32_t> *fullest = nullptr;  // items in the fullest cell, if that has more than a few
+  uint32_t *in_cell = nullptr;  // zeros at first; nullptr: nothing is counted
+  uint32_t *slots = nullptr;    // of each item, how many of its cell were counted before it
+  CrowdTally *fullest = nullptr;
   QSES_FN void add(size_t i, uint64_t cell) const {
     const uint32_t slot = slots[i] = atomic_add(&in_cell[cell], uint32_t(1));
     if (slot >= kFewInCell && slot >= atomic_load(&fullest->count)) atomic_max(&fullest->count, slot + 1);
@@ -311,14 +319,13 @@ NeighborGridView build_neighbor_grid(Executor &executor, const char *name, size_
   CellCounts counts{};
   if (is_counted) {
     const Span<uint32_t> in_cell = executor.template allocate_zeros<uint32_t>(cells.cells());
-    counts = {in_cell.data, executor.template allocate<uint32_t>(n).data,
-              executor.template take_counts<Tally<uint32_t>>()};
+    counts = {in_cell.data, executor.template allocate<uint32_t>(n).data, executor.template take_counts<CrowdTally>()};
   }
   const ForEach hash{n, HashItems<std::decay_t<decltype(item_at)>>{cells, item_at, items.data, keys.data, counts}};
   const bool may_be_crowded = n > kCrowd;
   if (may_be_crowded || !is_counted) do_in_turn(executor, hash);
   if (is_counted && may_be_crowded)
-    is_counted = executor.expect(name, counts.fullest, Tally<uint32_t>{static_cast<uint32_t>(n)}).count <= kCrowd;
+    is_counted = executor.expect(name, counts.fullest, CrowdTally{static_cast<uint32_t>(n)}).count <= kCrowd;
   if (is_counted) {
     const Span<uint32_t> numbers = executor.template allocate<uint32_t>(n);
     const auto arrange = [&](const auto &...before) {
