@@ -113,7 +113,9 @@ class CudaExecutor {
     launch("do_few", gpu::do_few_kernel<Steps...>, 1, {gpu::kFewThreads, 1, longest}, steps...);
     return true;
   }
-  LaunchShape team_shape(uint64_t steps) const { return {BlockTeam::kSize, 1, steps, size_t(multiprocessors_) * 32}; }
+  LaunchShape for_each_brick_shape(uint64_t steps) const {
+    return {BlockTeam::kSize, 1, steps, size_t(multiprocessors_) * 32};
+  }
 
   // A kernel on this stream, for all items, in as many launches as that takes: kernel(QueuedItems, arguments...). Of
   // several, no more than two are queued at a time, since what is queued can't be cancelled; but in a frame that is
@@ -160,7 +162,7 @@ class CudaExecutor {
     if (sizeof(Scratch) > kDefaultSharedBytes)
       check_cuda(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, sizeof(Scratch)),
                  "cudaFuncSetAttribute");
-    LaunchShape shape = team_shape(steps);
+    LaunchShape shape = for_each_brick_shape(steps);
     shape.shared_bytes = sizeof(Scratch);
     launch("for_each_brick", kernel, n, shape, f);
   }

@@ -67,6 +67,13 @@ constexpr int blocks_at_once(int threads, int wanted) {
 // Threads that keep a multiprocessor busy: where there would be fewer, each item may have several.
 constexpr size_t kFullThreads = 1024;
 
+// Where items take unlike times, so many blocks of each multiprocessor take turns: enough to fill it whatever their
+// size, and each goes on with what others would have waited for.
+template <class Executor>
+size_t blocks_in_turns(const Executor &executor) {
+  return size_t(executor.multiprocessors()) * 16;
+}
+
 // Steps per multiprocessor.
 constexpr uint64_t kLaunchSteps = uint64_t(1) << 22;
 struct LaunchShape {

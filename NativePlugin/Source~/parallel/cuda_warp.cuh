@@ -4,8 +4,6 @@
 
 #include "parallel/span.h"
 
-#include <type_traits>
-
 namespace quickses {
 namespace gpu {
 
@@ -44,9 +42,8 @@ __device__ __forceinline__ int place_in(unsigned ballot, int lane) { return __po
 // Appends to a list that the lanes fill together: the place of this lane's item if it has one. count: of the list, the
 // same in all lanes. team: those lanes that fill the same list.
 template <class Count>
-__device__ __forceinline__ Count append_place(bool has, Count *count, unsigned lanes = kFullWarp,
-                                              unsigned team = kFullWarp) {
-  const unsigned ballot = __ballot_sync(lanes, has) & team;
+__device__ __forceinline__ Count append_place(bool has, Count *count, unsigned team = kFullWarp) {
+  const unsigned ballot = __ballot_sync(kFullWarp, has) & team;
   const Count place = *count + static_cast<Count>(place_in(ballot, lane_id()));
   *count += static_cast<Count>(__popc(ballot));
   return place;
@@ -82,22 +79,32 @@ __device__ __forceinline__ void append_of_block(uint32_t *list, uint32_t *count,
   if (has) list[base + before + place] = item;
 }
 
-// Sum over the lanes up to and including this one: of a warp, or of each group of so many lanes.
-template <int Lanes = kWarp, class T>
-__device__ __forceinline__ T warp_inclusive_sum(T value, int lane, unsigned lanes = kFullWarp) {
+// Sum over the lanes up to and including this one.
+template <class T>
+__device__ __forceinline__ T warp_inclusive_sum(T value, int lane) {
 #pragma unroll
-  for (int d = 1; d < Lanes; d <<= 1) {
-    const T other = __shfl_up_sync(lanes, value, d, Lanes);
+  for (int d = 1; d < kWarp; d <<= 1) {
+    const T other = __shfl_up_sync(kFullWarp, value, d);
     if (lane >= d) value += other;
   }
   return value;
 }
 
+// Of so many first lanes, each with the sum of all up to it: the first whose sum exceeds t, of which there is one.
+template <int kLanes>
+__device__ __forceinline__ int lane_beyond(int sum, int t) {
+  int lane = 0;
+#pragma unroll
+  for (int d = kLanes / 2; d > 0; d >>= 1)
+    if (__shfl_sync(kFullWarp, sum, lane + d - 1) <= t) lane += d;
+  return lane;
+}
+
 // Of a warp, or of each group of so many lanes; the same in all of them.
 template <int Lanes, class T, class Combine>
-__device__ __forceinline__ T fold_lanes(T value, const Combine &combine, unsigned lanes = kFullWarp) {
+__device__ __forceinline__ T fold_lanes(T value, const Combine &combine) {
 #pragma unroll
-  for (int d = Lanes / 2; d > 0; d >>= 1) value = combine(value, __shfl_xor_sync(lanes, value, d));
+  for (int d = Lanes / 2; d > 0; d >>= 1) value = combine(value, __shfl_xor_sync(kFullWarp, value, d));
   return value;
 }
 
@@ -146,17 +153,17 @@ __device__ __forceinline__ int32_t in_order(int32_t bits) { return bits < 0 ? bi
 __device__ __forceinline__ int32_t number_in_order(float value) { return in_order(__float_as_int(value)); }
 __device__ __forceinline__ float value_in_order(int32_t number) { return __int_as_float(in_order(number)); }
 
-// lanes: those of the groups that ask; where a group is a warp, all.
+// Of a warp, or of each group of so many lanes.
 template <int Lanes = kWarp>
-__device__ __forceinline__ float warp_maximum(float value, unsigned lanes = kFullWarp) {
+__device__ __forceinline__ float warp_maximum(float value) {
   if constexpr (Lanes == kWarp)
     return value_in_order(warp_maximum(number_in_order(value)));
   else
-    return fold_lanes<Lanes>(
-        value, [](float a, float b) { return fmaxf(a, b); }, lanes);
+    return fold_lanes<Lanes>(value, [](float a, float b) { return fmaxf(a, b); });
 }
 
-// The largest value, and the smallest number that comes with it, of a warp or of each group of so many lanes.
+// The largest value, and the smallest number that comes with it, of a warp or of each group of so many lanes. lanes: of
+// all groups that ask.
 struct NumberedValue {
   float value;
   uint32_t number;
@@ -177,33 +184,26 @@ __device__ __forceinline__ NumberedValue warp_largest(NumberedValue own, unsigne
   }
 }
 
-// A run of items for each lane of a team: the t-th item of all, for t from t0 on, a lane each. t0: 0, kLanes, 2 kLanes,
-// ... in this order.
-template <int kLanes>
+// A run of items for each lane: the t-th item of all, for t from t0 on, a lane each. t0: 0, 32, 64, ... in this order.
 class RunItems {
  public:
   // sum: of the lengths of the runs before, and its own.
-  __device__ __forceinline__ RunItems(const ItemRun &run, int sum, unsigned lanes)
-      : sum_(sum), shift_(run.end - static_cast<uint32_t>(sum)), lanes_(lanes) {}
+  __device__ __forceinline__ RunItems(const ItemRun &run, int sum)
+      : sum_(sum), shift_(run.end - static_cast<uint32_t>(sum)) {}
   __device__ __forceinline__ uint32_t item(int t0) {
-    const int t = t0 + rank_in_team<kLanes>();
-    int lane = 0;  // the first whose sum exceeds t
-#pragma unroll
-    for (int d = kLanes / 2; d > 0; d >>= 1)
-      if (__shfl_sync(lanes_, sum_, lane + d - 1, kLanes) <= t) lane += d;
-    return __shfl_sync(lanes_, shift_, lane, kLanes) + static_cast<uint32_t>(t);
+    const int t = t0 + lane_id();
+    return __shfl_sync(kFullWarp, shift_, lane_beyond<kWarp>(sum_, t)) + static_cast<uint32_t>(t);
   }
 
  private:
   int sum_;
   uint32_t shift_;
-  unsigned lanes_;
 };
-// By a warp, and quicker where there are many items: a word has a bit where a run begins, and so many bits up to an
-// item tell which run it is in. For that lane k knows the k-th of the runs that have items.
+// The same, quicker where there are many items: a word has a bit where a run begins, and so many bits up to an item
+// tell which run it is in. For that lane k knows the k-th of the runs that have items.
 class MarkedRunItems {
  public:
-  __device__ __forceinline__ MarkedRunItems(const ItemRun &run, int sum, unsigned /*lanes*/)
+  __device__ __forceinline__ MarkedRunItems(const ItemRun &run, int sum)
       : begin_(sum - static_cast<int>(run.end - run.begin)), shift_(run.end - static_cast<uint32_t>(sum)), begun_(0) {
     const unsigned some = __ballot_sync(kFullWarp, run.begin < run.end);
     if (some & (some + 1)) {
@@ -227,24 +227,23 @@ class MarkedRunItems {
   int begun_;  // runs that begin before t0
 };
 
-// Calls visit(item, on) for every item of the runs run_of(0), ..., run_of(rows - 1), in this order, with as many items
-// at a time as a warp, or each group, has lanes: on tells whether the lane has one. Returns how many there are; once
-// they turn out to be more than `most`, no more are visited.
-template <int Lanes = kWarp, class Items = RunItems<Lanes>, class RunOf, class Visit>
+// Calls visit(item, on) for every item of the runs run_of(0), ..., run_of(rows - 1), in this order, an item for each
+// lane at a time: on tells whether the lane has one. Returns how many there are; once they turn out to be more than
+// `most`, no more are visited.
+template <class Items = RunItems, class RunOf, class Visit>
 __device__ __forceinline__ uint32_t visit_runs(int rows, const RunOf &run_of, const Visit &visit,
-                                               unsigned lanes = kFullWarp, uint32_t most = ~uint32_t(0)) {
-  static_assert(Lanes == kWarp || !std::is_same_v<Items, MarkedRunItems>, "those are a warp's");
-  const int lane = lane_id() % Lanes;
+                                               uint32_t most = ~uint32_t(0)) {
+  const int lane = lane_id();
   uint32_t met = 0;
-  for (int r0 = 0; r0 < rows; r0 += Lanes) {
+  for (int r0 = 0; r0 < rows; r0 += kWarp) {
     ItemRun run{0, 0};
     if (r0 + lane < rows) run = run_of(r0 + lane);
-    const int sum = warp_inclusive_sum<Lanes>(static_cast<int>(run.end - run.begin), lane, lanes);
-    const int total = __shfl_sync(lanes, sum, Lanes - 1, Lanes);
+    const int sum = warp_inclusive_sum(static_cast<int>(run.end - run.begin), lane);
+    const int total = __shfl_sync(kFullWarp, sum, kWarp - 1);
     met += static_cast<uint32_t>(total);
     if (met > most) break;
-    Items items(run, sum, lanes);
-    for (int t0 = 0; t0 < total; t0 += Lanes) {
+    Items items(run, sum);
+    for (int t0 = 0; t0 < total; t0 += kWarp) {
       const uint32_t item = items.item(t0);
       visit(item, t0 + lane < total);
     }

@@ -55,14 +55,14 @@ __global__ void append_of_blocks_kernel(QueuedItems queued, AppendJob job) {
   gpu::append_of_block<kThreads>(job.list, job.listed, i, i < job.count && job.wanted[i]);
 }
 
-// A warp per job, or a team of so many lanes with the same one: all items of its runs, behind each other.
+// A warp per job: all items of its runs, behind each other.
 struct RunsJob {
   const ItemRun *runs;
   const uint32_t *first_run, *first_item;  // of each job
   uint32_t most;
   uint32_t *items, *met;
 };
-template <int kLanes, class Items>
+template <class Items>
 __global__ void visit_runs_kernel(QueuedItems queued, RunsJob job) {
   const LaunchItems items = queued.in_turn();
   const size_t warp = items.first + blockIdx.x * size_t(kThreads / 32) + threadIdx.x / 32;
@@ -70,13 +70,13 @@ __global__ void visit_runs_kernel(QueuedItems queued, RunsJob job) {
   const uint32_t first = job.first_run[warp], rows = job.first_run[warp + 1] - first;
   uint32_t *const out = job.items + job.first_item[warp];
   uint32_t listed = 0;
-  const uint32_t met = gpu::visit_runs<kLanes, Items>(
+  const uint32_t met = gpu::visit_runs<Items>(
       static_cast<int>(rows), [&](int r) { return job.runs[first + static_cast<uint32_t>(r)]; },
       [&](uint32_t item, bool on) {
-        const uint32_t place = gpu::append_place(on, &listed, gpu::kFullWarp, gpu::lanes_of_team<kLanes>());
-        if (on && threadIdx.x % 32 < kLanes) out[place] = item;
+        const uint32_t place = gpu::append_place(on, &listed);
+        if (on) out[place] = item;
       },
-      gpu::kFullWarp, job.most);
+      job.most);
   if (threadIdx.x % 32 == 0) job.met[warp] = met;
 }
 
@@ -211,9 +211,8 @@ TEST_F(CudaWarps, VisitTheItemsOfRunsInOrder) {
         for (uint32_t k = first_item[j]; k < first_item[j + 1]; ++k) ASSERT_EQ(few[k], expected[k]) << name << " " << j;
     }
   };
-  check("by search", visit_runs_kernel<32, gpu::RunItems<32>>);
-  check("by marks", visit_runs_kernel<32, gpu::MarkedRunItems>);
-  check("by teams", visit_runs_kernel<16, gpu::RunItems<16>>);
+  check("by search", visit_runs_kernel<gpu::RunItems>);
+  check("by marks", visit_runs_kernel<gpu::MarkedRunItems>);
 }
 
 }  // namespace

@@ -196,11 +196,8 @@ class Block {
     const size_t masks = size_t(bricks_.count) * kBrickMasks;
     const std::vector<uint64_t> crossing(layout_.crossing, layout_.crossing + masks);
     const std::vector<uint16_t> ranks(layout_.vertex_rank, layout_.vertex_rank + masks);
-    const std::vector<uint16_t> triangle_ranks(layout_.triangle_rank,
-                                               layout_.triangle_rank + size_t(bricks_.count) * kLeavesPerBrick);
     std::fill_n(layout_.crossing, masks, 0);
     std::fill_n(layout_.vertex_rank, masks, uint16_t(0));
-    std::fill_n(layout_.triangle_rank, triangle_ranks.size(), uint16_t(0));
     for (uint32_t b = 0; b < bricks_.count; ++b) {
       const BrickTotals own = kernels.count_brick(bricks_, layout_, b, marching_cubes_table().triangle_count);
       ASSERT_EQ(own.vertices, layout_.base[b + 1].vertices - layout_.base[b].vertices);
@@ -209,7 +206,6 @@ class Block {
     }
     ASSERT_TRUE(std::equal(crossing.begin(), crossing.end(), layout_.crossing));
     ASSERT_TRUE(std::equal(ranks.begin(), ranks.end(), layout_.vertex_rank));
-    ASSERT_TRUE(std::equal(triangle_ranks.begin(), triangle_ranks.end(), layout_.triangle_rank));
   }
 
   mesh_checks::Mesh mesh(const CpuKernels &kernels, bool reversed = false) {

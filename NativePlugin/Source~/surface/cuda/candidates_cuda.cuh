@@ -110,6 +110,15 @@ static_assert(1 << kRowOfBrick == kLeavesPerBrick, "a brick's leaves share its r
 // nearest arc; that of the atom on whose exposed part the point is projected, with kOnContact; or one of the others.
 constexpr uint32_t kOnContact = 0x80000000u, kOutsideBalls = 0xffffffffu, kNotLookedAt = 0xfffffffeu;
 
+constexpr uint32_t kNoAtom = 0xffffffffu;
+
+// Whether the radial projection of a point on the ball it is deepest in is exposed.
+__device__ __forceinline__ bool projection_exposed(const FeatureView &f, uint32_t atom, const Vec3<float> &x,
+                                                   float depth) {
+  const Sphere ball = load(f.atoms.items + atom);
+  return is_exposed(f, atom, x - Vec3<float>(ball.center), offset_length(ball, depth));
+}
+
 __device__ __forceinline__ Vec3<float> leaf_center(const Vec3<float> &low, int leaf, float h) {
   return {low.x + (static_cast<float>(4 * (leaf & 1)) + 1.5f) * h,
           low.y + (static_cast<float>(4 * (leaf >> 1 & 1)) + 1.5f) * h,
@@ -132,6 +141,8 @@ struct CudaCandidates {
     return 4 * vertices + leaves * gpu::leaf_list_words(parameters);
   }
   bool are_of(BrickRange r) const { return slice.first == r.first && slice.last == r.last; }
+  // Steps of a thread that looks at all atoms and arcs of a row, and at an atom's caps.
+  uint64_t look_steps(const FeatureView &features) const { return 64 + 2 * uint64_t(longest_row) + features.most_caps; }
 };
 
 }  // namespace quickses

@@ -68,7 +68,7 @@ struct Backend<CudaExecutor> {
   }
   template <class E, class F>
   static void for_each_gathering(E &executor, size_t n, const F &f) {
-    constexpr int kThreads = gpu::kGatheringThreads, kItems = kThreads / gpu::kGatheringLanes;
+    constexpr int kThreads = gpu::kGatheringThreads, kItems = kThreads / gpu::kWarp;
     executor.launch("gather", gpu::gathering_kernel<F>, n, LaunchShape{kThreads, kItems, gpu::kGatheringSteps}, f);
   }
 

@@ -10,7 +10,7 @@ namespace gpu {
 
 constexpr int kSignWarps = 2, kSignThreads = kSignWarps * kWarp;
 // Atoms of a leaf in shared memory, as a rule, and where spacings are so wide that leaves have rows of their own; more
-// are read from the row. Arcs; more are staged bit by bit.
+// are read from the row. Arcs; of more some are staged at a time.
 constexpr int kLeafAtoms = 64, kWideLeafAtoms = 192, kLeafArcs = 64;
 
 struct SignJob {
@@ -129,8 +129,8 @@ static __global__ __launch_bounds__(kSignThreads,
   const Lattice &lattice = job.bricks.lattice;
   const float h = reach.spacing, depth = reach.depth;
 
-  const uint32_t slot = job.view.leaf_list[leaf_place], b = slot >> 3;
-  const int leaf = static_cast<int>(slot & 7);
+  const uint32_t slot = job.view.leaf_list[leaf_place], b = slot / kLeavesPerBrick;
+  const int leaf = static_cast<int>(slot % kLeavesPerBrick);
   const CandidateRow row = job.view.row_of(slot);
   const uint32_t *const atoms = job.view.atoms + row.first_atom;
   const uint32_t *const arcs = job.view.arcs + row.first_arc;
@@ -289,12 +289,10 @@ void evaluate_leaves(E &executor, const FeatureView &features, const BrickSet &b
     candidates.view.deciders = candidates.decider_room.data;
     candidates.have_deciders = true;
   }
-  // Lanes look at all atoms and arcs of a row, and at an atom's caps.
   const bool are_wide = candidates.view.row_shift == kRowOfLeaf;
   executor.launch("evaluate_leaves",
                   are_wide ? evaluate_leaves_kernel<kWideLeafAtoms> : evaluate_leaves_kernel<kLeafAtoms>,
-                  candidates.leaves,
-                  LaunchShape{kSignThreads, kSignWarps, 64 + 2 * uint64_t(candidates.longest_row) + features.most_caps},
+                  candidates.leaves, LaunchShape{kSignThreads, kSignWarps, candidates.look_steps(features)},
                   SignJob{features, bricks, CandidateReach::of(features.parameters), candidates.view, signs});
 }
 

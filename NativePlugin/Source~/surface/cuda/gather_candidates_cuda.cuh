@@ -25,15 +25,6 @@ struct GatherJob {
   uint64_t *signs;  // of inactive leaves; nullptr: known already
 };
 
-constexpr uint32_t kNoAtom = 0xffffffffu;
-
-// Whether the radial projection of a point on the ball it is deepest in is exposed.
-__device__ __forceinline__ bool projection_exposed(const FeatureView &f, uint32_t atom, const Vec3<float> &x,
-                                                   float depth) {
-  const Sphere ball = load(f.atoms.items + atom);
-  return is_exposed(f, atom, x - Vec3<float>(ball.center), offset_length(ball, depth));
-}
-
 // Sign of a leaf between whose points no surface passes: that of its centre, to which no arc is as near as depth. By a
 // team of lanes for each of several leaves, all teams of a warp together.
 template <int kLanes>
@@ -293,13 +284,11 @@ void gather_candidates(E &executor, const FeatureView &features, const BrickSet 
   const auto shape = [&](uint64_t near) {
     return LaunchShape{kGatherWarps * kWarp, together ? size_t(1) : size_t(kGatherWarps), 256 + near / 16};
   };
-  const auto near_of = [&](const char *name, const NeighborGridView &grid, float look) {
-    return most_items_near(executor, name, grid, extent + 2.f * look,
-                           [&](uint64_t items) { return executor.is_few_launches(n, shape(items)); });
-  };
+  const auto is_enough = [&](uint64_t items) { return executor.is_few_launches(n, shape(items)); };
   const LaunchShape gather =
-      shape(near_of("fullest cell of atoms", features.atoms, parameters.max_radius + reach.slack) +
-            near_of("fullest cell of arcs", features.arc_bounds, reach.start_reach + features.max_arc_bound));
+      shape(most_atoms_near(executor, features.atoms, extent + 2.f * (parameters.max_radius + reach.slack), is_enough) +
+            most_items_near(executor, "fullest cell of arcs", features.arc_bounds,
+                            extent + 2.f * (reach.start_reach + features.max_arc_bound), is_enough));
   const auto room_of = [&](size_t rows, int points, uint32_t most, double *learnt) {
     return ListRoom(listed_candidates(parameters, points), rows, most, learnt);
   };

@@ -9,8 +9,7 @@ namespace quickses {
 namespace gpu {
 
 struct DensityScratch {
-  static constexpr int kMostThreads = 256;
-  float least[kMostThreads], most[kMostThreads];
+  float least[BlockTeam::kSize], most[BlockTeam::kSize];
   uint8_t halves[kBrickEdge * kBrickEdge][2];  // of each row, the points inside
 };
 
@@ -34,12 +33,10 @@ struct EvaluateDensity {
     const bool is_open = !is_full && !(bounds.most < density.isovalue);
     if (is_open) {
       // A thread has so many points of a row, in registers.
-      constexpr int kRows = kBrickEdge * kBrickEdge;
-      const int parts = team.size() > kRows ? 2 : 1;
-      for (int part = team.rank(); part < kRows * parts; part += team.size()) {
-        const int row = part / parts;
-        for (int half = part % parts; half < 2; half += parts)
-          scratch.halves[row][half] = inside_of_half(box, point + glm::ivec3(4 * half, row % 8, row / 8));
+      constexpr int kHalves = 2 * kBrickEdge * kBrickEdge;
+      for (int k = team.rank(); k < kHalves; k += team.size()) {
+        const int row = k / 2, half = k % 2;
+        scratch.halves[row][half] = inside_of_half(box, point + glm::ivec3(4 * half, row % 8, row / 8));
       }
     }
     team.sync();
@@ -121,10 +118,9 @@ struct PlaceDensityVertices {
 template <class E>
 uint64_t density_steps(E &executor, const GaussianDensity &density, size_t items, uint64_t looks, float extent) {
   const auto steps_of = [&](uint64_t near) { return kPlainSteps + looks * near; };
-  const uint64_t near = most_items_near(
-      executor, "fullest cell of atoms", density.atoms, 2.f * density.max_radius + extent, [&](uint64_t n) {
-        return steps_of(n) <= kThreadSteps && executor.is_few_launches(items, executor.for_each_shape(steps_of(n)));
-      });
+  const uint64_t near = most_atoms_near(executor, density.atoms, 2.f * density.max_radius + extent, [&](uint64_t n) {
+    return steps_of(n) <= kThreadSteps && executor.is_few_launches(items, executor.for_each_shape(steps_of(n)));
+  });
   if (steps_of(near) > kThreadSteps)
     throw Error(QSES_TOO_FINE,
                 "the Gaussians of " + std::to_string(near) +

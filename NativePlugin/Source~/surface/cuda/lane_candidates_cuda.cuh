@@ -122,7 +122,7 @@ __device__ __forceinline__ LaneCandidates<kLanes, true> choose_near(const Featur
       }
 #pragma unroll
       for (int j = 0; j < kAhead; ++j) {
-        const int place = append_place(near[j], &n, kFullWarp, team);
+        const int place = append_place(near[j], &n, team);
         if (near[j] && place < left) out[place] = item[j];
       }
     }

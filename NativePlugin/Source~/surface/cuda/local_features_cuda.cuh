@@ -11,7 +11,7 @@
 namespace quickses {
 namespace gpu {
 
-constexpr int kGatheringThreads = 128, kGatheringLanes = kWarp;
+constexpr int kGatheringThreads = 128;
 // The items that are met, then what is kept, for every point that is tried.
 constexpr uint64_t kGatheringSteps = 4096;
 
@@ -19,21 +19,21 @@ struct LocalLists {
   uint32_t atoms[LocalReach::kMostAtoms], arcs[LocalReach::kMostArcs];
 };
 
-class GatheredFeatures : public LaneCandidates<kGatheringLanes> {
+class GatheredFeatures : public LaneCandidates<kWarp> {
  public:
   explicit __device__ __forceinline__ GatheredFeatures(LocalLists &lists)
-      : LaneCandidates<kGatheringLanes>{lists.atoms, lists.arcs, 0, 0}, lists_(lists) {}
+      : LaneCandidates<kWarp>{lists.atoms, lists.arcs, 0, 0}, lists_(lists) {}
 
   __device__ __forceinline__ bool gather(const FeatureView &f, const Vec3<float> &x, float around) {
     const LocalReach reach(f, x, around);
-    __syncwarp(lanes());  // nobody looks at the lists any more
+    __syncwarp();  // nobody looks at the lists any more
     const CellBox atom_box = reach.box(f.atoms, reach.atom_reach);
     float deepest = -kFarAway;
     uint32_t met = visit(f.atoms, atom_box, LocalReach::kMostMet, [&](uint32_t i, bool on) {
       if (on) deepest = maximum(deepest, ball_depth(load(f.atoms.items + i), x));
     });
     if (met > LocalReach::kMostMet) return false;
-    const float least = warp_maximum<kGatheringLanes>(deepest, lanes()) - reach.slack;
+    const float least = warp_maximum(deepest) - reach.slack;
     atom_total = 0;
     visit(f.atoms, atom_box, met, [&](uint32_t i, bool on) {
       keep(i, on && ball_depth(load(f.atoms.items + i), x) >= least, lists_.atoms, LocalReach::kMostAtoms, &atom_total);
@@ -48,7 +48,7 @@ class GatheredFeatures : public LaneCandidates<kGatheringLanes> {
       });
       if (met > LocalReach::kMostMet || arc_total > LocalReach::kMostArcs) return false;
     }
-    __syncwarp(lanes());  // the lists are written
+    __syncwarp();  // the lists are written
     return true;
   }
 
@@ -57,12 +57,12 @@ class GatheredFeatures : public LaneCandidates<kGatheringLanes> {
   template <class Visit>
   static __device__ __forceinline__ uint32_t visit(const NeighborGridView &grid, const CellBox &box, uint32_t most,
                                                    const Visit &visit) {
-    return visit_runs<kGatheringLanes>(
-        box.rows(), [&](int r) { return grid.run(box, r); }, visit, lanes(), most);
+    return visit_runs(
+        box.rows(), [&](int r) { return grid.run(box, r); }, visit, most);
   }
   // count: of those kept, which may be more than there is room for.
   static __device__ __forceinline__ void keep(uint32_t item, bool is_kept, uint32_t *out, int room, int *count) {
-    const int place = append_place(is_kept, count, lanes());
+    const int place = append_place(is_kept, count);
     if (is_kept && place < room) out[place] = item;
   }
 
@@ -72,25 +72,25 @@ class GatheredFeatures : public LaneCandidates<kGatheringLanes> {
 // Where the candidates are the class above, not one that it is derived from: overloads, not templates.
 __device__ __forceinline__ DeepestAtom deepest_atom(const FeatureView &f, const GatheredFeatures &near_by,
                                                     const Vec3<float> &x) {
-  return deepest_atom(f, static_cast<const LaneCandidates<kGatheringLanes> &>(near_by), x);
+  return deepest_atom(f, static_cast<const LaneCandidates<kWarp> &>(near_by), x);
 }
 __device__ __forceinline__ NearestArc nearest_arc(const FeatureView &f, const GatheredFeatures &near_by,
                                                   const Vec3<float> &x) {
-  return nearest_arc(f, static_cast<const LaneCandidates<kGatheringLanes> &>(near_by), x);
+  return nearest_arc(f, static_cast<const LaneCandidates<kWarp> &>(near_by), x);
 }
 
 __device__ __forceinline__ bool is_on_contact(const FeatureView &f, const GatheredFeatures &near_by,
                                               const DeepestAtom &deepest, const Vec3<float> &x) {
-  return is_on_contact(f, static_cast<const LaneCandidates<kGatheringLanes> &>(near_by), deepest, x);
+  return is_on_contact(f, static_cast<const LaneCandidates<kWarp> &>(near_by), deepest, x);
 }
 
 // Seven blocks per multiprocessor: the work waits for memory, so more of it at a time is worth a few registers.
 template <class F>
 __global__ __launch_bounds__(kGatheringThreads, 7) void gathering_kernel(QueuedItems queued, F f) {
   const LaunchItems items = queued.in_turn();
-  constexpr unsigned kTeams = kGatheringThreads / kGatheringLanes;
+  constexpr unsigned kTeams = kGatheringThreads / kWarp;
   __shared__ LocalLists lists[kTeams];
-  const unsigned team = threadIdx.x / kGatheringLanes;
+  const unsigned team = threadIdx.x / kWarp;
   const size_t i = items.first + static_cast<size_t>(blockIdx.x) * kTeams + team;
   if (i >= items.last) return;
   GatheredFeatures near_by(lists[team]);

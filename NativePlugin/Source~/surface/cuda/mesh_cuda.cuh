@@ -20,7 +20,7 @@ LaunchShape edge_shape(const E &executor, const FeatureView &features, uint64_t 
   const uint64_t steps =
       looks_for_sign_change(features.parameters, halvings) * (64 + vertex_steps(features, row) / kWarp) +
       4 * (32 + row / 4);
-  return {kVertexThreads, kEdgeWarps, steps, executor.multiprocessors() * size_t(16)};
+  return {kVertexThreads, kEdgeWarps, steps, blocks_in_turns(executor)};
 }
 
 // Starts and candidates of the vertices of a slice; what they need is allocated here. No vertices: count is 0.
@@ -67,7 +67,7 @@ VertexJob prepare_vertices(E &executor, const FeatureView &features, const Brick
 }
 
 // Vertices are numbered over all slices: mesh.positions[0] is that of the very first. Waits once or twice if there are
-// far more than one launch can place.
+// more than a few launches can place.
 template <class E>
 void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bricks, const MeshLayout &layout,
                    BrickRange slice, const SliceSizes &sizes, CudaRooms &rooms, CudaCandidates &candidates,
@@ -97,7 +97,6 @@ void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bri
   else
     launch_first("project_on_arcs", 1, project_on_arcs_kernel<1>);
   // As a rule few vertices are left: how many is asked if few launches can't place as many as there are.
-  const size_t most_blocks = executor.multiprocessors() * size_t(16);
   const auto launch_rest = [&](const char *name, const char *counted, auto kernel, const LaunchShape &shape,
                                Tally<uint32_t> VertexCounts::*left) {
     size_t vertices = job.count;
@@ -107,10 +106,10 @@ void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bri
   };
   const bool by_warps = have_much || are_few;
   const size_t lanes = by_warps ? kWarp : 8;
-  launch_rest(
-      "reproject", "unfinished vertices", by_warps ? reproject_kernel<kWarp> : reproject_kernel<8>,
-      LaunchShape{kVertexThreads, kVertexThreads / lanes, (2 + kMaxProjections) * (64 + look / lanes), most_blocks},
-      &VertexCounts::unfinished);
+  launch_rest("reproject", "unfinished vertices", by_warps ? reproject_kernel<kWarp> : reproject_kernel<8>,
+              LaunchShape{kVertexThreads, kVertexThreads / lanes, (2 + kMaxProjections) * (64 + look / lanes),
+                          blocks_in_turns(executor)},
+              &VertexCounts::unfinished);
   launch_rest("place_on_edges", "vertices on edges", place_on_edges_kernel,
               edge_shape(executor, features, candidates.longest_row, kPlaceHalvings), &VertexCounts::on_edges);
   if (gives_back) executor.arena().rewind(mark);
@@ -121,7 +120,7 @@ void emit_triangles(E &executor, const BrickSet &bricks, const MeshLayout &layou
                     const TableView &table, const MeshView &mesh) {
   constexpr uint64_t kSteps = 2048;  // of a brick that is full of triangles
   executor.launch("emit_triangles", emit_triangles_kernel, slice.size(),
-                  LaunchShape{kTriangleWarps * kWarp, kTriangleWarps, kSteps, size_t(executor.multiprocessors()) * 16},
+                  LaunchShape{kTriangleWarps * kWarp, kTriangleWarps, kSteps, blocks_in_turns(executor)},
                   TriangleJob{bricks, layout, table, mesh, slice});
 }
 

@@ -5,6 +5,7 @@
 // later stages look at are kept.
 #pragma once
 
+#include "surface/cuda/arcs_cuda.cuh"
 #include "surface/cuda/caps_cuda.cuh"
 
 namespace quickses {

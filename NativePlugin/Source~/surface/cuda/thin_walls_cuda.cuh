@@ -135,8 +135,7 @@ void mark_thin_walls(E &executor, const FeatureView &features, const BrickSet &b
   job.edges = executor.template allocate<uint64_t>(leaves * kWallSteps).data;
   executor.launch("find_wall_candidates", find_wall_candidates_kernel, leaves,
                   LaunchShape{kWallThreads, kWallThreads, 96}, job);
-  const uint64_t look = 64 + 2 * uint64_t(candidates.longest_row) + features.most_caps;
-  const size_t most_blocks = executor.multiprocessors() * size_t(16);
+  const uint64_t look = candidates.look_steps(features);
   WallCounters found{};
   const double usual_walks = walked_edges(features.parameters) * static_cast<double>(leaves);
   job.walk_room = static_cast<unsigned long long>(rooms.walked_edges * usual_walks);
@@ -151,7 +150,7 @@ void mark_thin_walls(E &executor, const FeatureView &features, const BrickSet &b
                     LaunchShape{kWallThreads, kWallWarps,
                                 kStarts * (64 + uint64_t(candidates.longest_row)) +
                                     kEdges * (kWarp * 2 + uint64_t(features.most_caps) * 3 / 4),
-                                most_blocks},
+                                blocks_in_turns(executor)},
                     job);
     found = executor.expect("walls", counters, WallCounters{static_cast<uint32_t>(leaves), job.walk_room});
     if (found.walks <= job.walk_room) break;
@@ -163,7 +162,7 @@ void mark_thin_walls(E &executor, const FeatureView &features, const BrickSet &b
   const auto walk = [&](size_t lanes, auto kernel) {
     executor.launch("walk_edges", kernel, static_cast<size_t>(found.walks),
                     LaunchShape{kWallThreads, kWallThreads / lanes,
-                                look / kWarp + (2 + kMostWallSteps) * (64 + look / lanes), most_blocks},
+                                look / kWarp + (2 + kMostWallSteps) * (64 + look / lanes), blocks_in_turns(executor)},
                     job);
   };
   // Few edges leave a GPU idle with few lanes each; of many edges' lanes fewer are idle then.

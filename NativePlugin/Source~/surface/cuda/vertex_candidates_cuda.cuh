@@ -229,7 +229,7 @@ static __global__ __launch_bounds__(
   uint32_t *const list = job.lists + number * job.list_words;
   int listed = 1;  // word 0 is for the numbers
   const auto put = [&](bool chosen, uint32_t item) {
-    const int at = append_place(chosen, &listed, kFullWarp, lanes);
+    const int at = append_place(chosen, &listed, lanes);
     if (chosen && at < room) list[at] = item;
   };
   // What can be deepest at a start, or at its projection.

@@ -48,7 +48,8 @@ static __global__ __launch_bounds__(kWallThreads, 6) void find_wall_candidates_k
   const size_t k = items.first + blockIdx.x * size_t(kWallThreads) + threadIdx.x;
   const bool on = k < items.last;
   const uint32_t slot = static_cast<uint32_t>(on ? k : items.first);
-  const int leaf = static_cast<int>(slot % kLeavesPerBrick), brick = static_cast<int>(job.view.first_brick + slot / 8);
+  const int leaf = static_cast<int>(slot % kLeavesPerBrick),
+            brick = static_cast<int>(job.view.first_brick + slot / kLeavesPerBrick);
   const glm::ivec3 place = job.bricks.place(brick);
   const auto leaf_at = [&](int n) { return glm::ivec3(leaf & 1, leaf >> 1 & 1, leaf >> 2) + neighbor_step(n); };
   int found[kNeighborhood];
@@ -252,10 +253,7 @@ __device__ __forceinline__ uint32_t find_edges_to_walk(const WallJob &job, const
   uint32_t edges = 0;
   for (int n0 = 0; n0 < round.starts; n0 += kWarp) {
     const int n = n0 + lane;
-    int leaf = 0;  // the first whose sum exceeds n
-#pragma unroll
-    for (int d = kRoundLeaves / 2; d > 0; d >>= 1)
-      if (__shfl_sync(kFullWarp, round.starts_with, leaf + d - 1) <= n) leaf += d;
+    const int leaf = lane_beyond<kRoundLeaves>(round.starts_with, n);
     const uint32_t slot = __shfl_sync(kFullWarp, round.slot, leaf);
     const uint64_t points = __shfl_sync(kFullWarp, round.points, leaf);
     const int count = popcount64(points), first = __shfl_sync(kFullWarp, round.starts_with, leaf) - count;

@@ -74,7 +74,7 @@ class CountingExecutor {
     return executor_.is_few_launches(items, shape);
   }
   static auto for_each_shape(uint64_t steps) { return Executor::for_each_shape(steps); }
-  auto team_shape(uint64_t steps) const { return executor_.team_shape(steps); }
+  auto for_each_brick_shape(uint64_t steps) const { return executor_.for_each_brick_shape(steps); }
   template <class Load, class T>
   void exclusive_scan(size_t n, const Load &, Span<T>) {
     take_for_a_while(executor_.template scan_bytes<T>(n));

@@ -17,7 +17,7 @@ void remove_contained_atoms(Executor &executor, const NeighborGridView &atoms, f
   Span<uint8_t> contained = executor.template allocate<uint8_t>(atoms.count);
   uint64_t near = atoms.count;
   if constexpr (Executor::kIsCuda)
-    near = most_items_near(executor, "fullest cell of atoms", atoms, 4.f * max_radius + 1.f, [&](uint64_t items) {
+    near = most_atoms_near(executor, atoms, 4.f * max_radius + 1.f, [&](uint64_t items) {
       return items <= kThreadSteps && executor.is_few_launches(atoms.count, executor.for_each_shape(items));
     });
   const ForEach remove{atoms.count, RemoveContainedAtoms{contained.data, const_cast<Sphere *>(atoms.items)}};

@@ -58,9 +58,8 @@ void find_grid_owners(Executor &executor, const GridField &field, const MeshView
   const auto steps_of = [&](uint64_t near) { return kPlainSteps + std::min(near, kMost); };
   uint64_t near = field.atoms.count;
   if constexpr (Executor::kIsCuda)
-    near = most_items_near(
-        executor, "fullest cell of atoms", field.atoms,
-        2.f * (field.parameters.max_radius + FindGridOwners::margin(field.parameters)),
+    near = most_atoms_near(
+        executor, field.atoms, 2.f * (field.parameters.max_radius + FindGridOwners::margin(field.parameters)),
         [&](uint64_t items) { return executor.is_few_launches(vertices, executor.for_each_shape(steps_of(items))); });
   for_parts_of_met_items(near, Executor::kIsCuda ? kMost : near, [&](const MetItems &part, bool is_last) {
     executor.for_each(vertices, FindGridOwners{field, mesh, part, is_last}, steps_of(near));

@@ -168,9 +168,9 @@ void find_outside_points(Executor &executor, const Balls &balls, const BrickSet 
   uint64_t near = balls.atoms.count;
   if constexpr (Executor::kIsCuda) {
     const float spacing = bricks.lattice.spacing, reach = balls.radius(balls.max_radius) + 1.1f * spacing + 1e-3f;
-    near = most_items_near(
-        executor, "fullest cell of atoms", balls.atoms, 8.f * spacing + 2.f * reach,
-        [&](uint64_t n) { return executor.is_few_launches(bricks.count, executor.team_shape(steps_of(n))); });
+    near = most_atoms_near(executor, balls.atoms, 8.f * spacing + 2.f * reach, [&](uint64_t n) {
+      return executor.is_few_launches(bricks.count, executor.for_each_brick_shape(steps_of(n)));
+    });
   }
   for_parts_of_met_items(near, Executor::kIsCuda ? kMost : near, [&](const MetItems &part, bool) {
     executor.template for_each_brick<ClassifyScratch>(bricks.count, ClassifyBrick{balls, bricks, outside, part}, 8,

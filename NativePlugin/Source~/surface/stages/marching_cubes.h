@@ -58,7 +58,6 @@ struct MeshLayout {
   const uint64_t *signs;    // [brick][leaf]: bit set = lattice point inside
   uint64_t *crossing;       // [brick][leaf][axis]: bit set = the edge from that point along the axis changes sign
   uint16_t *vertex_rank;    // [brick][leaf][axis]: vertices of the brick before that mask
-  uint16_t *triangle_rank;  // [brick][leaf]: triangles of the brick before that leaf
   BrickTotals *base;        // [brick + 1]: what the bricks before it own
   BorderSigns *border;      // [brick]
   uint32_t *vertex_leaves;  // 8 * brick + leaf of those that own vertices; nullptr on the CPU, which goes by brick
@@ -116,18 +115,14 @@ struct alignas(16) BrickCounts {
   uint32_t of_leaf[kLeavesPerBrick];
 };
 
-// Ranks of a brick, as they lie in the layout: each kind is stored as a whole.
+// Ranks of a brick, as they lie in the layout: stored as a whole.
 struct alignas(16) VertexRanks {
   uint16_t of_mask[kBrickMasks];
-};
-struct alignas(16) TriangleRanks {
-  uint16_t of_leaf[kLeavesPerBrick];
 };
 
 // The ranks of a brick from its counts. Returns its totals.
 QSES_FN BrickTotals rank_brick(const MeshLayout &layout, size_t brick, const BrickCounts &counts) {
   VertexRanks vertex;
-  TriangleRanks triangle;
   uint32_t v = 0, t = 0, owning = 0;
 #if defined(__CUDA_ARCH__)
 #pragma unroll
@@ -139,12 +134,10 @@ QSES_FN BrickTotals rank_brick(const MeshLayout &layout, size_t brick, const Bri
       v += count >> (axis * kCountBits) & ((1u << kCountBits) - 1);
     }
     owning += v != before ? 1 : 0;
-    triangle.of_leaf[leaf] = static_cast<uint16_t>(t);
     t += count >> (kAxes * kCountBits);
   }
   layout.border[brick] = border_signs(layout.signs + brick * kLeavesPerBrick);
   reinterpret_cast<VertexRanks *>(layout.vertex_rank)[brick] = vertex;
-  reinterpret_cast<TriangleRanks *>(layout.triangle_rank)[brick] = triangle;
   return {v, t, owning};
 }
 
@@ -156,8 +149,8 @@ struct CountLeaf {
   BrickCounts *counts;
   size_t first;
   QSES_FN void operator()(size_t i) const {
-    const size_t brick = first + (i >> 3), slot = first * kLeavesPerBrick + i;
-    const int leaf = static_cast<int>(i & 7);
+    const size_t brick = first + i / kLeavesPerBrick, slot = first * kLeavesPerBrick + i;
+    const int leaf = static_cast<int>(i % kLeavesPerBrick);
     const UpperBricks upper = upper_bricks(bricks, static_cast<uint32_t>(brick));
     uint64_t crossing[kAxes];
     const int triangles = count_leaf(leaf_words(upper, layout.signs, leaf), case_triangles, crossing);
@@ -317,7 +310,6 @@ void allocate_layout(Executor &executor, size_t bricks, const uint64_t *signs, M
   layout->signs = signs;
   layout->crossing = executor.template allocate<uint64_t>(leaves * 3).data;
   layout->vertex_rank = executor.template allocate<uint16_t>(leaves * 3).data;
-  layout->triangle_rank = executor.template allocate<uint16_t>(leaves).data;
   layout->base = executor.template allocate<BrickTotals>(bricks + 1).data;
   layout->border = executor.template allocate<BorderSigns>(bricks).data;
   layout->vertex_leaves = Executor::kIsCuda ? executor.template allocate<uint32_t>(leaves).data : nullptr;

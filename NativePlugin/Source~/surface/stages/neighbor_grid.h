@@ -297,6 +297,12 @@ uint64_t most_items_near(Executor &executor, const char *name, const NeighborGri
   return static_cast<uint64_t>(std::min(static_cast<double>(grid.count), edges * edges * edges * items));
 }
 
+// The same for the grid of atoms.
+template <class Executor, class IsEnough>
+uint64_t most_atoms_near(Executor &executor, const NeighborGridView &atoms, float extent, const IsEnough &is_enough) {
+  return most_items_near(executor, "fullest cell of atoms", atoms, extent, is_enough);
+}
+
 // A grid of n items. prepare() returns what makes one from its number; what it allocates is given up again, as is all
 // else but the grid. The cells bound the items' centres. name: of the count of the fullest cell, if it is crowded.
 template <class Executor, class Prepare>
