@@ -86,14 +86,15 @@ class CpuExecutor {
   // results in them and collect those afterwards.
   template <class Scratch>
   std::vector<std::unique_ptr<Scratch>> &scratches() {
-    ScratchPool &pool = scratch_pools_[std::type_index(typeid(Scratch))];
-    if (!pool.objects) {
+    const std::type_index type(typeid(Scratch));
+    auto pool = scratch_pools_.find(type);
+    if (pool == scratch_pools_.end()) {  // noted when all of it is there
       auto made = std::make_shared<std::vector<std::unique_ptr<Scratch>>>();
       made->reserve(threads());  // so that what is made below has an owner whatever fails
       for (unsigned k = 0; k < threads(); ++k) made->emplace_back(new Scratch);
-      pool = {made, &pool_bytes<Scratch>};
+      pool = scratch_pools_.emplace(type, ScratchPool{made, &pool_bytes<Scratch>}).first;
     }
-    return *static_cast<std::vector<std::unique_ptr<Scratch>> *>(pool.objects.get());
+    return *static_cast<std::vector<std::unique_ptr<Scratch>> *>(pool->second.objects.get());
   }
 
   // Gives every thread as much room as any of them needed so far, by Scratch::match: to do the same work once more,
@@ -353,7 +354,7 @@ class CpuExecutor {
 
   struct ScratchPool {
     std::shared_ptr<void> objects;
-    uint64_t (*bytes)(const void *objects) = nullptr;
+    uint64_t (*bytes)(const void *objects);
   };
   // Scratch may tell by bytes() what it holds besides itself.
   template <class Scratch>

@@ -10,10 +10,9 @@
 
 #include <memory>
 #else
-#include "parallel/late_threads.h"
+#include "parallel/lasting_tbb.h"
 #include "parallel/startable_threads.h"
 
-#include <tbb/info.h>
 #include <tbb/task_arena.h>
 #include <thrust/for_each.h>
 #include <thrust/iterator/counting_iterator.h>
@@ -31,7 +30,12 @@ class CpuThreads {
  public:
   explicit CpuThreads(const WorkerThreads &threads)
       : count_(threads.count ? threads.count : std::max(1u, std::thread::hardware_concurrency())),
-        in_background_(threads.in_background) {}
+        in_background_(threads.in_background) {
+#if !defined(QSES_CPU_SYSTEM_OWN)
+    // Now, not when there is something to do: the process may be ending then.
+    if (count_ > 1) there_are_ = threads_of_tbb();
+#endif
+  }
 
   unsigned count() const { return count_; }
   bool in_background() const { return in_background_; }
@@ -46,10 +50,8 @@ class CpuThreads {
       helpers_ = std::make_unique<HelperThreads>((there_are > 0 ? std::min(count_, there_are) : count_) - 1);
       usable_ = 1 + static_cast<unsigned>(helpers_->count());
 #else
-      const unsigned wanted = std::min(count_, static_cast<unsigned>(tbb::info::default_concurrency()));
-      usable_ = 1 + count_startable_threads(wanted - 1);
-      hold_tbb_for_late_threads();
-      arena_.initialize(static_cast<int>(usable_));
+      usable_ = 1 + count_startable_threads(std::min(count_, there_are_) - 1);
+      if (usable_ > 1) arena_.initialize(static_cast<int>(usable_));
 #endif
     }
     return usable_ == 1 ? 1 : count_;
@@ -81,6 +83,7 @@ class CpuThreads {
 #if defined(QSES_CPU_SYSTEM_OWN)
   std::unique_ptr<HelperThreads> helpers_;
 #else
+  unsigned there_are_ = 1;  // of TBB's
   tbb::task_arena arena_;
 #endif
 };

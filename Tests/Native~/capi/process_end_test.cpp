@@ -4,11 +4,18 @@
 
 #include <gtest/gtest.h>
 
+#if defined(__linux__)
+#include <sys/wait.h>
+#include <unistd.h>
+#endif
+
 #include <atomic>
 #include <chrono>
 #include <cstdlib>
 #include <exception>
+#include <memory>
 #include <thread>
+#include <vector>
 
 using namespace surface_fixture;
 
@@ -70,7 +77,56 @@ void end_processes(int threads) {
 
 TEST(ProcessEnd, DoesNotWaitForThreads) { end_processes(6); }
 
-// Between two surfaces nobody computes: what they share is let go, and begun anew.
+// Between two surfaces nobody computes.
 TEST(ProcessEnd, DoesNotWaitForAThread) { end_processes(1); }
+
+// Contexts that were made in time, and others that were not, whose first surface is made while the process ends.
+[[noreturn]] void end_before_the_first_surface(int ms) {
+  static auto &contexts = *new std::vector<std::unique_ptr<Context>>;  // never destroyed
+  for (int k = 0; k < 3; ++k) contexts.push_back(std::make_unique<Context>(kHelpers));
+  for (const auto &context : contexts)
+    std::thread([&context, ms] {
+      while (!ends) std::this_thread::yield();
+      std::this_thread::sleep_for(std::chrono::milliseconds(ms));
+      try {
+        compute(*context, Atoms().add(0, 0, 0, 1.7).add(2, 0, 0, 1.5), settings());
+        compute_once();
+      } catch (const std::exception &) {
+      }
+    }).detach();
+  ends = true;
+  std::exit(0);
+}
+
+TEST(ProcessEnd, BeforeTheFirstSurface) {
+  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  tested_backend();
+  for (int k = 0; k < kProcesses; ++k)
+    EXPECT_EXIT(end_before_the_first_surface(k % 6), testing::ExitedWithCode(0), "") << "process " << k;
+}
+
+#if defined(__linux__) && !defined(QSES_TEST_SANITIZED)
+// Threads of the parent hold whatever they hold as it forks; the child ends all the same.
+[[noreturn]] void fork_while_a_thread_computes() {
+  std::thread(compute_for_ever).detach();
+  while (surfaces < 1) std::this_thread::yield();
+  for (int k = 0; k < 400; ++k) {
+    const pid_t child = fork();
+    if (child == 0) {
+      alarm(20);
+      std::exit(0);
+    }
+    int status = 0;
+    if (child < 0 || waitpid(child, &status, 0) != child || status != 0) std::_Exit(1);
+  }
+  std::_Exit(0);
+}
+
+TEST(ProcessEnd, OfForkedChildren) {
+  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  if (tested_backend() != QSES_BACKEND_CPU) GTEST_SKIP() << "drivers do not survive a fork";
+  EXPECT_EXIT(fork_while_a_thread_computes(), testing::ExitedWithCode(0), "");
+}
+#endif
 
 }  // namespace

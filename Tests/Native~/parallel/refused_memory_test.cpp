@@ -121,6 +121,7 @@ struct CountedScratch {
 };
 
 TEST(RefusedMemory, ExecutorsLoseNoScratch) {
+  const CpuExecutor first(2);  // begins TBB, once; where memory for that is refused, executors do without
   const int failures = refuse_each(
       [] {
         CpuExecutor executor(20);
@@ -158,6 +159,32 @@ TEST(RefusedMemory, BuffersAreEmptyThen) {
   EXPECT_NE(buffer.reserve(100), nullptr);
   buffer.release();
   EXPECT_EQ(CountingMemory::blocks, 0);
+}
+
+// What could not be made is made the next time.
+TEST(RefusedMemory, ExecutorsMakeTheirScratchLater) {
+  struct First {
+    int number = 0;
+  };
+  struct Second {
+    std::vector<int> numbers = std::vector<int>(100);
+    uint64_t bytes() const { return 400; }
+  };
+  const CpuExecutor first(2);
+  for (const unsigned threads : {1u, 2u}) {
+    std::unique_ptr<CpuExecutor> executor;
+    const int failures = refuse_each(
+        [&] {
+          if (!executor) executor = std::make_unique<CpuExecutor>(WorkerThreads(threads));
+          executor->scratches<First>();
+          executor->scratches<Second>();
+        },
+        [&] {
+          if (executor) executor->scratch_bytes();
+        });
+    EXPECT_GT(failures, 2);
+    EXPECT_EQ(executor->scratch_bytes(), threads * (sizeof(First) + sizeof(Second) + 400));
+  }
 }
 
 }  // namespace
