@@ -3,7 +3,7 @@
 // neighbours, and the cases of marching cubes that they make.
 #pragma once
 
-#include "surface/stages/bricks.h"
+#include "surface/stages/brick_set.h"
 
 namespace quickses {
 
