@@ -40,27 +40,26 @@ enum Column {  // gemmi wants one that must be there first
   kModel
 };
 
-const std::vector<std::string> &column_names() {
-  static const std::vector<std::string> kNames = {"Cartn_x",
-                                                  "Cartn_y",
-                                                  "Cartn_z",
-                                                  "?group_PDB",
-                                                  "?type_symbol",
-                                                  "?label_atom_id",
-                                                  "?auth_atom_id",
-                                                  "?label_alt_id",
-                                                  "?label_comp_id",
-                                                  "?auth_comp_id",
-                                                  "?label_asym_id",
-                                                  "?auth_asym_id",
-                                                  "?label_entity_id",
-                                                  "?label_seq_id",
-                                                  "?auth_seq_id",
-                                                  "?pdbx_PDB_ins_code",
-                                                  "?occupancy",
-                                                  "?B_iso_or_equiv",
-                                                  "?pdbx_PDB_model_num"};
-  return kNames;
+std::vector<std::string> column_names() {
+  return {"Cartn_x",
+          "Cartn_y",
+          "Cartn_z",
+          "?group_PDB",
+          "?type_symbol",
+          "?label_atom_id",
+          "?auth_atom_id",
+          "?label_alt_id",
+          "?label_comp_id",
+          "?auth_comp_id",
+          "?label_asym_id",
+          "?auth_asym_id",
+          "?label_entity_id",
+          "?label_seq_id",
+          "?auth_seq_id",
+          "?pdbx_PDB_ins_code",
+          "?occupancy",
+          "?B_iso_or_equiv",
+          "?pdbx_PDB_model_num"};
 }
 
 std::string value_or(cif::Table::Row &row, Column column, const char *otherwise) {

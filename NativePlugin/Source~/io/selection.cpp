@@ -74,29 +74,37 @@ class Evaluation {
  public:
   explicit Evaluation(const Structure &structure) : structure_(structure) {}
 
+  // Calls itself; the rest is done by functions of their own, so that its frames are small: callers may have little
+  // stack.
   Mask select(const SelectionTerm &term) const {
+    switch (term.kind) {
+      case Kind::kNot:
+      case Kind::kAnd:
+      case Kind::kOr:
+      case Kind::kWithin:
+      case Kind::kSameResidue: {
+        Mask mask = select(term.operands[0]);
+        for (size_t k = 1; k < term.operands.size(); ++k) join(term.kind, mask, select(term.operands[k]));
+        if (term.kind == Kind::kNot)
+          for (uint8_t &named : mask) named = !named;
+        if (term.kind == Kind::kWithin) mask = atoms_near(structure_.positions, mask, term.distance);
+        if (term.kind == Kind::kSameResidue) widen_to_residues(mask);
+        return mask;
+      }
+      default:
+        return leaf(term);
+    }
+  }
+
+ private:
+  static void join(Kind kind, Mask &mask, const Mask &other) {
+    for (size_t i = 0; i < mask.size(); ++i) mask[i] = kind == Kind::kAnd ? mask[i] & other[i] : mask[i] | other[i];
+  }
+
+  [[gnu::noinline]] Mask leaf(const SelectionTerm &term) const {
     switch (term.kind) {
       case Kind::kCid:
         return cid(*term.cid);
-      case Kind::kNot: {
-        Mask mask = select(term.operands[0]);
-        for (uint8_t &named : mask) named = !named;
-        return mask;
-      }
-      case Kind::kAnd:
-      case Kind::kOr: {
-        Mask mask = select(term.operands[0]);
-        for (size_t k = 1; k < term.operands.size(); ++k) {
-          const Mask other = select(term.operands[k]);
-          for (size_t i = 0; i < mask.size(); ++i)
-            mask[i] = term.kind == Kind::kAnd ? mask[i] & other[i] : mask[i] | other[i];
-        }
-        return mask;
-      }
-      case Kind::kWithin:
-        return atoms_near(structure_.positions, select(term.operands[0]), term.distance);
-      case Kind::kSameResidue:
-        return same_residue(select(term.operands[0]));
       case Kind::kLoneName: {
         const Mask chain = where([&](const AtomInfo &atom) { return atom.chain == term.names[0]; });
         if (is_any(chain)) return chain;
@@ -113,7 +121,6 @@ class Evaluation {
     }
   }
 
- private:
   template <class Condition>
   Mask where(const Condition &condition) const {
     Mask mask(structure_.atoms.size());
@@ -129,14 +136,13 @@ class Evaluation {
     return where([&](const AtomInfo &atom) { return matcher.matches(atom); });
   }
 
-  Mask same_residue(Mask mask) const {
+  [[gnu::noinline]] void widen_to_residues(Mask &mask) const {
     const std::vector<uint32_t> residues = residues_of(structure_);
     for (size_t first = 0, last = 0; first < mask.size(); first = last) {
       bool is_named = false;
       for (; last < mask.size() && residues[last] == residues[first]; ++last) is_named |= mask[last] != 0;
       std::fill(mask.begin() + static_cast<ptrdiff_t>(first), mask.begin() + static_cast<ptrdiff_t>(last), is_named);
     }
-    return mask;
   }
 
   // Of the terms that look at one atom only.

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <climits>
-#include <map>
 #include <new>
 #include <string_view>
 
@@ -22,25 +21,32 @@ namespace {
 
 using Kind = SelectionTerm::Kind;
 
-constexpr int kDeepest = 100;             // parentheses in each other
+constexpr int kDeepest = 50;              // terms in each other; 64 KiB of stack do for twice as many
 constexpr double kLargestDistance = 1e6;  // Å
 
-const std::map<std::string, Kind> &plain_words() {
-  static const std::map<std::string, Kind> kWords = {
-      {"all", Kind::kAll},         {"none", Kind::kNone},         {"protein", Kind::kProtein},
-      {"nucleic", Kind::kNucleic}, {"ligand", Kind::kLigand},     {"ions", Kind::kIons},
-      {"water", Kind::kWater},     {"solvent", Kind::kWater},     {"hydrogen", Kind::kHydrogen},
-      {"hetero", Kind::kHetero},   {"backbone", Kind::kBackbone}, {"sidechain", Kind::kSidechain}};
-  return kWords;
-}
+struct KnownWord {
+  std::string_view text;
+  Kind kind;
+};
+
+constexpr KnownWord kPlainWords[] = {
+    {"all", Kind::kAll},         {"none", Kind::kNone},         {"protein", Kind::kProtein},
+    {"nucleic", Kind::kNucleic}, {"ligand", Kind::kLigand},     {"ions", Kind::kIons},
+    {"water", Kind::kWater},     {"solvent", Kind::kWater},     {"hydrogen", Kind::kHydrogen},
+    {"hetero", Kind::kHetero},   {"backbone", Kind::kBackbone}, {"sidechain", Kind::kSidechain}};
 
 // Words with names behind them.
-const std::map<std::string, Kind> &naming_words() {
-  static const std::map<std::string, Kind> kWords = {
-      {"chain", Kind::kChains},         {"resname", Kind::kResidueNames}, {"resn", Kind::kResidueNames},
-      {"resid", Kind::kResidueNumbers}, {"resi", Kind::kResidueNumbers},  {"name", Kind::kAtomNames},
-      {"element", Kind::kElements},     {"altloc", Kind::kLocations},     {"index", Kind::kIndices}};
-  return kWords;
+constexpr KnownWord kNamingWords[] = {
+    {"chain", Kind::kChains},         {"resname", Kind::kResidueNames}, {"resn", Kind::kResidueNames},
+    {"resid", Kind::kResidueNumbers}, {"resi", Kind::kResidueNumbers},  {"name", Kind::kAtomNames},
+    {"element", Kind::kElements},     {"altloc", Kind::kLocations},     {"index", Kind::kIndices}};
+
+// Null: it is none of them.
+template <size_t kCount>
+const KnownWord *find_word(const KnownWord (&words)[kCount], std::string_view text) {
+  const auto *const end = words + kCount;
+  const auto *const word = std::find_if(words, end, [&](const KnownWord &known) { return known.text == text; });
+  return word == end ? nullptr : word;
 }
 
 std::string lower(std::string_view word) {
@@ -52,7 +58,7 @@ std::string lower(std::string_view word) {
 bool is_joining_word(const std::string &word) { return word == "and" || word == "or"; }
 
 bool is_word(const std::string &word) {
-  return plain_words().count(word) != 0 || naming_words().count(word) != 0 || is_joining_word(word) || word == "not" ||
+  return find_word(kPlainWords, word) || find_word(kNamingWords, word) || is_joining_word(word) || word == "not" ||
          word == "within" || word == "same";
 }
 
@@ -60,8 +66,8 @@ bool is_word(const std::string &word) {
 std::string nearest_selection_word(std::string_view word) {
   if (std::none_of(word.begin(), word.end(), [](char c) { return c >= 'a' && c <= 'z'; })) return "";
   std::vector<std::string> words;
-  for (const auto &entry : plain_words()) words.push_back(entry.first);
-  for (const auto &entry : naming_words()) words.push_back(entry.first);
+  for (const KnownWord &known : kPlainWords) words.emplace_back(known.text);
+  for (const KnownWord &known : kNamingWords) words.emplace_back(known.text);
   for (const char *known : {"not", "within", "same", "and", "or"}) words.push_back(known);
   return nearest_word(std::string(word), words);
 }
@@ -107,7 +113,8 @@ class Parser {
   explicit Parser(const std::string &text) : text_(text) {}
 
   SelectionTerm parse() {
-    SelectionTerm term = either();
+    SelectionTerm term;
+    joined(Kind::kOr, term);
     if (!at_end()) {
       if (text_[at_] == ')') fail_at(at_, "')' closes no '('");
       fail_at(at_, "'and' or 'or' is missing before " + quoted(peek()));
@@ -156,42 +163,115 @@ class Parser {
     if (!take_word(word)) fail_at(place, "'" + std::string(word) + "' is missing, as in " + quoted(example));
   }
 
-  SelectionTerm either() { return joined(Kind::kOr); }
+  // What calls itself, joined() to parenthesised(), writes terms where they belong and leaves the rest to functions of
+  // their own: its frames are small, since callers may have little stack.
 
   // One of them or several, joined by the word of that kind.
-  SelectionTerm joined(Kind kind) {
-    const auto part = [&] { return kind == Kind::kOr ? joined(Kind::kAnd) : operand(); };
-    SelectionTerm first = part();
-    if (!take_word(kind == Kind::kOr ? "or" : "and")) return first;
-    SelectionTerm term(kind);
-    term.operands.push_back(std::move(first));
-    do term.operands.push_back(part());
-    while (take_word(kind == Kind::kOr ? "or" : "and"));
-    return term;
+  void joined(Kind kind, SelectionTerm &term) {
+    const char *const word = kind == Kind::kOr ? "or" : "and";
+    const auto part = [&](SelectionTerm &to) { kind == Kind::kOr ? joined(Kind::kAnd, to) : operand(to); };
+    part(term);
+    if (!take_word(word)) return;
+    become_first_operand(term, kind);
+    do part(term.operands.emplace_back());
+    while (take_word(word));
   }
 
-  SelectionTerm operand() {
-    if (at_end()) fail("something is missing at its end");
-    if (++depth_ > kDeepest) fail_at(at_, "more than " + std::to_string(kDeepest) + " terms are in each other");
-    SelectionTerm term = operand_of_any_kind();
+  void operand(SelectionTerm &term) {
+    check_operand();
+    ++depth_;
+    if (text_[at_] == '(')
+      parenthesised(term);
+    else if (take_modifier(term))
+      operand(term.operands.emplace_back());
+    else
+      read_leaf(term);
     --depth_;
-    return term;
   }
 
-  SelectionTerm operand_of_any_kind() {
+  // (HEM) and (!HOH)/CA[C] are CID; (water) is the word, unless residues are called that; other parentheses group.
+  void parenthesised(SelectionTerm &term) {
+    if (read_flat_parentheses(term)) return;
+    const size_t begin = at_++;
+    joined(Kind::kOr, term);
+    close(begin);
+  }
+
+  [[gnu::noinline]] static void become_first_operand(SelectionTerm &term, Kind kind) {
+    SelectionTerm first = std::move(term);
+    term = SelectionTerm(kind);
+    term.operands.push_back(std::move(first));
+  }
+
+  [[gnu::noinline]] void check_operand() {
+    if (at_end()) fail("something is missing at its end");
+    if (depth_ == kDeepest) fail_at(at_, "more than " + std::to_string(kDeepest) + " terms are in each other");
+  }
+
+  // Words that stand before the operand they are about.
+  [[gnu::noinline]] bool take_modifier(SelectionTerm &term) {
+    if (take_word("not")) {
+      term.kind = Kind::kNot;
+    } else if (take_word("within")) {
+      term.kind = Kind::kWithin;
+      term.distance = read_distance();
+      want_word("of", "within 5 of ligand");
+    } else if (take_word("same")) {
+      term.kind = Kind::kSameResidue;
+      want_word("residue", "same residue as within 5 of ligand");
+      want_word("as", "same residue as within 5 of ligand");
+    } else {
+      return false;
+    }
+    return true;
+  }
+
+  double read_distance() {
+    skip_blanks();
+    const size_t place = at_;
+    const std::string_view number = take();
+    double distance = 0;
+    if (!parse_number(number, distance) || distance < 0 || distance > kLargestDistance)
+      fail_at(place, "'within' wants a distance in Å, as in 'within 5 of ligand'" +
+                         (number.empty() ? "" : ", not " + quoted(number)));
+    return distance;
+  }
+
+  // False, and nothing read, where they group.
+  [[gnu::noinline]] bool read_flat_parentheses(SelectionTerm &term) {
+    const size_t begin = at_, end = text_.find_first_of("()", begin + 1);
+    if (end == std::string::npos) fail_at(begin, "'(' is not closed");
+    const std::string_view inside = std::string_view(text_).substr(begin + 1, end - begin - 1);
+    if (text_[end] == '(' || inside.empty() || !is_cid_list(inside)) return false;
+    const bool ends = end + 1 == text_.size() || is_blank(text_[end + 1]) || text_[end + 1] == ')';
+    const KnownWord *const plain = find_word(kPlainWords, lower(inside));
+    if (!ends || !plain) {
+      term = cid_from(begin);
+      return true;
+    }
+    at_ = end + 1;
+    term.kind = Kind::kLoneResidue;
+    term.names.emplace_back(inside);
+    term.operands.emplace_back(plain->kind);
+    return true;
+  }
+
+  [[gnu::noinline]] void close(size_t begin) {
+    if (at_end()) fail_at(begin, "'(' is not closed");
+    if (text_[at_] != ')') fail_at(at_, "'and' or 'or' is missing before " + quoted(peek()));
+    ++at_;
+  }
+
+  [[gnu::noinline]] void read_leaf(SelectionTerm &term) { term = leaf(); }
+
+  SelectionTerm leaf() {
     const size_t begin = at_;
-    if (text_[at_] == '(') return parenthesised();
     if (text_[at_] == ')') fail_at(at_, "something is missing before ')'");
     const std::string_view raw = take();
     const std::string word = lower(raw);
-    if (word == "not") return unary(Kind::kNot);
-    if (word == "within") return within();
-    if (word == "same") return same_residue();
     if (is_joining_word(word)) fail_at(begin, "something is missing before " + quoted(raw));
-    const auto plain = plain_words().find(word);
-    if (plain != plain_words().end()) return SelectionTerm(plain->second);
-    const auto naming = naming_words().find(word);
-    if (naming != naming_words().end()) return named(naming->second, word);
+    if (const KnownWord *const plain = find_word(kPlainWords, word)) return SelectionTerm(plain->kind);
+    if (const KnownWord *const naming = find_word(kNamingWords, word)) return named(naming->kind, word);
     const bool goes_on = at_ < text_.size() && text_[at_] == '(' && begins_with_digit(raw);  // 10(ALA)
     if (is_name(raw) && !begins_with_digit(raw)) fail_unknown(raw, begin);
     if (goes_on || !is_cid_list(raw) || begins_with_digit(raw) || raw[0] == '!' || raw[0] == '*' ||
@@ -205,59 +285,6 @@ class Parser {
     fail("'" + name + "' at character " + std::to_string(place + 1) + " is no word of selections; " +
          (nearest.empty() ? "is it a name, as in 'chain " + name + "' or 'resname " + name + "'?"
                           : "did you mean '" + nearest + "'?"));
-  }
-
-  SelectionTerm unary(Kind kind) {
-    SelectionTerm term(kind);
-    term.operands.push_back(operand());
-    return term;
-  }
-
-  SelectionTerm within() {
-    skip_blanks();
-    const size_t place = at_;
-    const std::string_view number = take();
-    double distance = 0;
-    if (!parse_number(number, distance) || distance < 0 || distance > kLargestDistance)
-      fail_at(place, "'within' wants a distance in Å, as in 'within 5 of ligand'" +
-                         (number.empty() ? "" : ", not " + quoted(number)));
-    want_word("of", "within 5 of ligand");
-    SelectionTerm term = unary(Kind::kWithin);
-    term.distance = distance;
-    return term;
-  }
-
-  SelectionTerm same_residue() {
-    want_word("residue", "same residue as within 5 of ligand");
-    want_word("as", "same residue as within 5 of ligand");
-    return unary(Kind::kSameResidue);
-  }
-
-  // (HEM) and (!HOH)/CA[C] are CID; (water) is the word, unless residues are called that; other parentheses group.
-  SelectionTerm parenthesised() {
-    const size_t begin = at_, close = text_.find_first_of("()", begin + 1);
-    if (close == std::string::npos) fail_at(begin, "'(' is not closed");
-    const bool is_flat = text_[close] == ')';
-    const std::string_view inside =
-        is_flat ? std::string_view(text_).substr(begin + 1, close - begin - 1) : std::string_view();
-    if (is_flat && !inside.empty() && is_cid_list(inside)) {
-      const bool ends = close + 1 == text_.size() || is_blank(text_[close + 1]) || text_[close + 1] == ')';
-      const auto plain = plain_words().find(lower(inside));
-      if (!ends || plain == plain_words().end()) return cid_from(begin);
-      at_ = close + 1;
-      SelectionTerm term(Kind::kLoneResidue);
-      term.names.emplace_back(inside);
-      term.operands.emplace_back(plain->second);
-      return term;
-    }
-    ++at_;
-    SelectionTerm term = either();
-    if (at_end() || text_[at_] != ')') {
-      if (at_end()) fail_at(begin, "'(' is not closed");
-      fail_at(at_, "'and' or 'or' is missing before " + quoted(peek()));
-    }
-    ++at_;
-    return term;
   }
 
   // A term in CID syntax: up to a blank, or to a parenthesis that closes none of its own.
@@ -383,12 +410,11 @@ SelectionTerm parse_selection(const std::string &text) {
   const bool is_parenthesised = text.size() > 2 && text.front() == '(' && text.back() == ')';
   const std::string inside = is_parenthesised ? text.substr(1, text.size() - 2) : text;
   if (is_name(inside) && !begins_with_digit(inside)) {
-    const auto plain = plain_words().find(lower(inside));
-    const bool is_known = plain != plain_words().end();
-    if (!is_parenthesised || is_known) {
+    const KnownWord *const plain = find_word(kPlainWords, lower(inside));
+    if (!is_parenthesised || plain) {
       term.kind = is_parenthesised ? Kind::kLoneResidue : Kind::kLoneName;
       term.names.push_back(inside);
-      if (is_known) term.operands.emplace_back(plain->second);
+      if (plain) term.operands.emplace_back(plain->kind);
       return term;
     }
   }

@@ -68,6 +68,29 @@ void compute_once() {
   std::exit(0);
 }
 
+const char kPdb[] = "HETATM    1 FE   HEM A   1       1.000   2.000   3.000  1.00  0.00          FE\nEND\n";
+const char kMmcif[] =
+    "data_x\nloop_\n_atom_site.type_symbol\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\nC 1 2 3\n";
+std::atomic<int> structures{0};
+
+[[noreturn]] void read_for_ever() {
+  for (;; ++structures)
+    for (const std::string text : {kPdb, kMmcif}) {
+      qses_structure_options options;
+      qses_structure_options_init(&options);
+      options.selection = "all and not (resname ALA or water)";
+      qses_structure *structure = nullptr;
+      if (qses_structure_open_memory(text.data(), text.size(), &options, &structure) != QSES_OK) std::_Exit(1);
+      qses_structure_close(structure);
+    }
+}
+
+[[noreturn]] void end_while_structures_are_read() {
+  for (int k = 0; k < 4; ++k) std::thread(read_for_ever).detach();
+  while (structures < 100) std::this_thread::yield();
+  std::exit(0);
+}
+
 void end_processes(int threads) {
   testing::FLAGS_gtest_death_test_style = "threadsafe";  // each is a fresh process: drivers do not survive a fork
   tested_backend();
@@ -128,5 +151,11 @@ TEST(ProcessEnd, OfForkedChildren) {
   EXPECT_EXIT(fork_while_a_thread_computes(), testing::ExitedWithCode(0), "");
 }
 #endif
+
+TEST(ProcessEnd, StructuresMayBeReadMeanwhile) {
+  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  for (int k = 0; k < kProcesses / 3; ++k)
+    EXPECT_EXIT(end_while_structures_are_read(), testing::ExitedWithCode(0), "") << "process " << k;
+}
 
 }  // namespace
