@@ -6,14 +6,15 @@
 #include "parallel/error.h"
 #include "parallel/working_thread.h"
 
+#include <stdexcept>
 #include <string>
 
 namespace quickses {
 
 // The message of the last failed call of this thread.
-std::string &last_error_message() noexcept;
+const char *last_error_message() noexcept;
 
-// Remembers the sentence; when even that finds no memory, a shorter one that needs none.
+// Remembers the sentence, cut between two letters where it is too long. Needs no memory.
 qses_status fail(qses_status status, const char *message) noexcept;
 
 // Calls compute in a floating-point environment of their own, and leave the caller's as it was.

@@ -123,7 +123,7 @@ const char *qses_version(void) { return QUICKSES_VERSION; }
 
 uint32_t qses_abi_version(void) { return QSES_ABI_VERSION; }
 
-const char *qses_last_error(void) { return quickses::last_error_message().c_str(); }
+const char *qses_last_error(void) { return quickses::last_error_message(); }
 
 qses_status qses_backend_info(qses_backend backend, qses_backend_description *description) {
   return guarded([&] {

@@ -69,6 +69,38 @@ TEST(LastError, BelongsToTheThread) {
   EXPECT_EQ(mine, qses_last_error());
 }
 
+TEST(LastError, LongOnesAreCutBetweenLetters) {
+  constexpr size_t kMost = 2047;
+  const std::string letter = u8"\u00e4";
+  for (const std::string begin : {"", "x"}) {
+    std::string path = begin;
+    while (path.size() < 2 * kMost) path += letter;
+    qses_structure *structure = nullptr;
+    ASSERT_EQ(qses_structure_open(path.c_str(), nullptr, &structure), QSES_FILE_ERROR);
+    const std::string message = qses_last_error();
+    EXPECT_EQ(message.size(), kMost - begin.size());
+    EXPECT_EQ(message, "'" + path.substr(0, message.size() - 1));
+  }
+}
+
+struct FailsAsItsThreadEnds {
+  std::string *message;
+  ~FailsAsItsThreadEnds() {
+    qses_backend_info(QSES_BACKEND_CPU, nullptr);
+    *message = qses_last_error();
+  }
+};
+
+TEST(LastError, IsThereAsLongAsItsThread) {
+  std::string message;
+  std::thread([&] {
+    thread_local FailsAsItsThreadEnds last{&message};
+    (void)last;
+    qses_compute(nullptr, nullptr, nullptr);  // after last was made, so what this makes is gone before last is
+  }).join();
+  EXPECT_NE(message.find("description"), std::string::npos);
+}
+
 // ---- contexts
 
 TEST(Create, DefaultsAreFilledIn) {

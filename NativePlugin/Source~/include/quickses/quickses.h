@@ -209,8 +209,9 @@ QSES_API qses_status qses_backend_info(qses_backend backend, qses_backend_descri
  * start (qses_backend_info says why). Starts CUDA, as qses_backend_info. Errors: INVALID_ARGUMENT. */
 QSES_API qses_status qses_device_count(uint32_t *count);
 
-/* The sentence that belongs to the last call that failed on this thread; "" if none has. Valid until the next call
- * into the library from the same thread. Never NULL. */
+/* The sentence that belongs to the last call that failed on this thread; "" if none has. Of one with more than 2047
+ * bytes there is only so much of the beginning, in whole letters. Valid until the next call into the library from the
+ * same thread. Never NULL. */
 QSES_API const char *qses_last_error(void);
 
 /* ---- contexts -------------------------------------------------------------------------------------------------- */
