@@ -27,11 +27,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct CloseFile {
-  void operator()(std::FILE *file) const { std::fclose(file); }
-};
-using FilePointer = std::unique_ptr<std::FILE, CloseFile>;
-
 // Reads at most count bytes at an offset; 0 at the end, negative on errors, with their sentence.
 int64_t read_at(std::FILE *file, uint64_t offset, void *to, size_t count, std::string &error) {
   count = std::min<size_t>(count, 1u << 30);
@@ -126,8 +121,7 @@ std::unique_ptr<ByteSource> ByteSource::open_file(const std::string &path) {
   const bool is_named_gzip = lower_extension(place) == ".gz";
   if (!is_named_gzip && fs::status(place, error).type() == fs::file_type::regular) {
     const uint64_t size = fs::file_size(place, error);
-    FilePointer file(open_stdio(place, "rb"));
-    if (!file) fail_input("'" + path + "' can't be opened: " + std::strerror(errno));
+    FilePointer file = open_input(path);
     if (!error && size >= 2) {
       auto source = std::make_unique<FileSource>(path, std::move(file), size);
       char magic[2];

@@ -84,9 +84,7 @@ std::string read_raw_bytes(const std::string &path) {
   const fs::file_status status = fs::status(place, error);
   if (status.type() == fs::file_type::not_found) fail_input("'" + path + "': no such file");
   if (status.type() == fs::file_type::directory) fail_input("'" + path + "' is a directory, not a file");
-  std::unique_ptr<std::FILE, int (*)(std::FILE *)> file(open_stdio(place, "rb"), &std::fclose);
-  if (!file) fail_input("'" + path + "' can't be opened: " + std::strerror(errno));
-
+  const FilePointer file = open_input(path);
   const uint64_t limit = input_limit();
   const auto size = fs::file_size(place, error);
   if (!error && size > limit) fail_too_large(path, limit);
@@ -139,6 +137,13 @@ void set_input_limit(uint64_t bytes) { chosen_limit = bytes; }
 uint64_t input_limit() {
   const uint64_t chosen = chosen_limit;
   return chosen != 0 ? chosen : kDefaultLimit;
+}
+
+FilePointer open_input(const std::string &path) {
+  FilePointer file(open_stdio(path_of(path), "rb"));
+  if (file) return file;
+  if (errno == ENOMEM) throw std::bad_alloc();
+  fail_input("'" + path + "' can't be opened: " + std::strerror(errno));
 }
 
 void fail_too_large(const std::string &name, uint64_t limit) { fail_above_limit(name, "has", limit); }

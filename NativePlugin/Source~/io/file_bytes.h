@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdio>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -18,6 +20,14 @@ uint64_t input_limit();
 
 // Throws Error (kInput) that names the limit and how to raise it.
 [[noreturn]] void fail_too_large(const std::string &name, uint64_t limit);
+
+struct CloseFile {
+  void operator()(std::FILE *file) const { std::fclose(file); }
+};
+using FilePointer = std::unique_ptr<std::FILE, CloseFile>;
+
+// Throws Error (kInput), or std::bad_alloc where it is memory that is missing.
+FilePointer open_input(const std::string &path);
 
 // The bytes of a file, a pipe or a device; of gzip data (known by its first two bytes), what is compressed in it, all
 // members. Throws Error (kInput): missing, a directory, unreadable, empty, more than the limit, named .gz without being

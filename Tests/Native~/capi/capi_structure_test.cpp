@@ -170,6 +170,7 @@ TEST_F(StructureFiles, Errors) {
   expect_error(qses_structure_open(nullptr, nullptr, &structure), QSES_INVALID_ARGUMENT, {"path", "NULL"});
   expect_error(qses_structure_open("a.pdb", nullptr, nullptr), QSES_INVALID_ARGUMENT, {"structure", "NULL"});
   expect_error(qses_structure_open_memory(nullptr, 0, nullptr, &structure), QSES_INVALID_ARGUMENT, {"bytes", "NULL"});
+  expect_error(qses_structure_open_memory("x", SIZE_MAX, nullptr, &structure), QSES_OUT_OF_MEMORY, {"memory"});
 
   const auto error = [&](qses_status status, std::initializer_list<const char *> words,
                          const qses_structure_options &options, const std::string &text = kPdb) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A machine that refuses threads, and callers with little stack: this program has a pthread_create of its own, which
-// refuses as many as it is told to.
+// A machine that refuses threads or memory, and callers with little stack: this program has functions of the C library
+// of its own, which refuse what they are told to.
 #include "surface/surface_fixture.h"
 
 #include <gtest/gtest.h>
@@ -19,6 +19,7 @@ using namespace surface_fixture;
 namespace {
 
 std::atomic<int> allowed{1 << 20};  // threads that may still be started
+std::atomic<bool> files_find_no_memory{false};
 
 }  // namespace
 
@@ -27,6 +28,14 @@ extern "C" int pthread_create(pthread_t *thread, const pthread_attr_t *attribute
   static const Create create = reinterpret_cast<Create>(dlsym(RTLD_NEXT, "pthread_create"));
   if (allowed.fetch_sub(1) <= 0) return EAGAIN;
   return create(thread, attributes, routine, x);
+}
+
+extern "C" std::FILE *fopen(const char *path, const char *mode) {
+  using Open = std::FILE *(*)(const char *, const char *);
+  static const Open open = reinterpret_cast<Open>(dlsym(RTLD_NEXT, "fopen"));
+  if (!files_find_no_memory) return open(path, mode);
+  errno = ENOMEM;
+  return nullptr;
 }
 
 namespace {
@@ -80,13 +89,27 @@ TEST(FewThreads, AnyNumberOfThemThatCanBeHad) {
   }
 }
 
+// ---- no memory
+
+TEST(FewMemory, FilesThatFindNoneAreNotToBlame) {
+  const std::string path = std::string(QUICKSES_TEST_DATA_DIR) + "/1CRN.pdb";
+  qses_structure *structure = nullptr;
+  qses_trajectory *trajectory = nullptr;
+  files_find_no_memory = true;
+  const qses_status opened = qses_structure_open(path.c_str(), nullptr, &structure),
+                    opened_frames = qses_trajectory_open(path.c_str(), QSES_TRAJECTORY_PDB, &trajectory);
+  files_find_no_memory = false;
+  EXPECT_EQ(opened, QSES_OUT_OF_MEMORY);
+  EXPECT_EQ(opened_frames, QSES_OUT_OF_MEMORY);
+}
+
 // ---- little stack
 
-// Runs call() on a thread with 64 KiB of stack and a guard behind.
-void on_small_stack(const std::function<void()> &call) {
+// Runs call() on a thread with so much stack and a guard behind.
+void on_small_stack(const std::function<void()> &call, size_t bytes = size_t(64) << 10) {
   pthread_attr_t attributes;
   ASSERT_EQ(pthread_attr_init(&attributes), 0);
-  ASSERT_EQ(pthread_attr_setstacksize(&attributes, size_t(64) << 10), 0);
+  ASSERT_EQ(pthread_attr_setstacksize(&attributes, bytes), 0);
   pthread_t thread;
   const int started = pthread_create(
       &thread, &attributes,
@@ -230,6 +253,51 @@ TEST(SmallStack, SufficesForStructuresAndTrajectories) {
   });
   EXPECT_EQ(opened, QSES_OK);
   EXPECT_EQ(read, QSES_OK);
+}
+
+std::string nested(int depth, const std::string &begin, const std::string &end) {
+  std::string text = "all";
+  for (int k = 0; k < depth; ++k) text = begin + text + end;
+  return text;
+}
+
+TEST(SmallStack, SufficesForTheDeepestSelections) {
+  SKIP_IF_STACKS_ARE_LARGER();
+  const std::string path = std::string(QUICKSES_TEST_DATA_DIR) + "/1CRN.pdb";
+  qses_structure_options options;
+  qses_structure_options_init(&options);
+  qses_structure *structure = nullptr;
+  expect_ok(qses_structure_open(path.c_str(), &options, &structure));
+  std::vector<uint8_t> mask(327);
+  const std::pair<const char *, const char *> kinds[] = {
+      {"(", ")"}, {"not ", ""}, {"not (", ")"}, {"(none or all and ", ")"}, {"same residue as (none or all and ", ")"}};
+  for (const auto &[begin, end] : kinds) {
+    SCOPED_TRACE(begin);
+    const auto select = [&](int depth) {
+      return qses_structure_select(structure, nested(depth, begin, end).c_str(), mask.data(), mask.size(), nullptr);
+    };
+    int deepest = 20;
+    while (select(deepest + 1) == QSES_OK) ++deepest;
+    EXPECT_NE(std::string(qses_last_error()).find("in each other"), std::string::npos);
+    qses_status selected = QSES_INTERNAL_ERROR, refused = QSES_INTERNAL_ERROR, opened = QSES_INTERNAL_ERROR;
+    on_small_stack(
+        [&] {
+          selected = select(deepest);
+          refused = select(deepest + 1);
+        },
+        size_t(32) << 10);  // half of what there is, since others build with larger frames
+    const std::string text = nested(deepest, begin, end);
+    options.selection = text.c_str();
+    on_small_stack([&] {
+      qses_structure *selecting = nullptr;
+      opened = qses_structure_open(path.c_str(), &options, &selecting);
+      qses_structure_close(selecting);
+    });
+    EXPECT_EQ(selected, QSES_OK);
+    EXPECT_EQ(refused, QSES_INVALID_ARGUMENT);
+    EXPECT_NE(opened, QSES_INTERNAL_ERROR);
+  }
+  qses_structure_close(structure);
 }
 
 }  // namespace
