@@ -113,6 +113,37 @@ std::FILE *create_new(const fs::path &name, const fs::path &like) {
 
 #endif
 
+struct Target {
+  fs::path place;    // with links resolved
+  bool is_replaced;  // else it is written to directly: a device or a pipe
+};
+
+// Throws Error (kOutput) if it can't be written, as far as can be told without opening it.
+Target find_target(const std::string &path) {
+  Target target = {path_of(path), false};
+  std::error_code error;
+  fs::file_status status;
+  patiently(target.place, error, [&] { status = fs::status(target.place, error); });
+  if (!fs::status_known(status)) fail_output("'" + path + "' can't be written: " + error.message());
+  if (fs::is_directory(status)) fail_output("'" + path + "' is a directory: it can't be written as a file");
+  target.is_replaced = !fs::exists(status) || fs::is_regular_file(status);
+  // A link stays a link: what it points to is replaced, if it has a name (what /dev/stdout points to may have none).
+  if (target.is_replaced && fs::is_symlink(target.place, error)) {
+    const fs::path place = place_of(target.place);
+    target.is_replaced = !fs::exists(status) || fs::equivalent(place, target.place, error);
+    if (target.is_replaced) target.place = place;
+  }
+  const fs::path folder = target.place.parent_path();
+  if (!folder.empty() && !fs::is_directory(folder, error))
+    fail_output("'" + path + "' can't be written: there is no folder '" + utf8_of(folder) + "'");
+#if !defined(_WIN32)
+  // Renaming would replace a file that is write-protected: ask first, as writing to it would.
+  if (fs::exists(status) && access(target.place.c_str(), W_OK) != 0)
+    fail_output("'" + path + "' can't be written: " + std::strerror(errno));
+#endif
+  return target;
+}
+
 }  // namespace
 
 bool is_standard_output(const std::string &path) {
@@ -120,7 +151,7 @@ bool is_standard_output(const std::string &path) {
 }
 
 AtomicFile::AtomicFile(const std::string &path)
-    : path_(path), target_(path_of(path)), to_standard_output_(is_standard_output(path)), buffer_(kBufferSize) {
+    : path_(path), to_standard_output_(is_standard_output(path)), buffer_(kBufferSize) {
   if (to_standard_output_) {
     path_ = "standard output";
     file_ = stdout;
@@ -133,26 +164,9 @@ AtomicFile::AtomicFile(const std::string &path)
 }
 
 void AtomicFile::open_target() {
-  std::error_code error;
-  fs::file_status status;
-  patiently(target_, error, [&] { status = fs::status(target_, error); });
-  if (!fs::status_known(status)) fail_output("'" + path_ + "' can't be written: " + error.message());
-  if (fs::is_directory(status)) fail_output("'" + path_ + "' is a directory: it can't be written as a file");
-  bool replace = !fs::exists(status) || fs::is_regular_file(status);
-  // A link stays a link: what it points to is replaced, if it has a name (what /dev/stdout points to may have none).
-  if (replace && fs::is_symlink(target_, error)) {
-    const fs::path place = place_of(target_);
-    replace = !fs::exists(status) || fs::equivalent(place, target_, error);
-    if (replace) target_ = place;
-  }
-  const fs::path folder = target_.parent_path();
-  if (!folder.empty() && !fs::is_directory(folder, error))
-    fail_output("'" + path_ + "' can't be written: there is no folder '" + utf8_of(folder) + "'");
-#if !defined(_WIN32)
-  // Renaming would replace a file that is write-protected: ask first, as writing to it would.
-  if (replace && fs::exists(status) && access(target_.c_str(), W_OK) != 0) fail(errno);
-#endif
-  if (replace)
+  const Target target = find_target(path_);
+  target_ = target.place;
+  if (target.is_replaced)
     create_temporary();
   else
     file_ = open_stdio(target_, "wb");
@@ -238,6 +252,8 @@ void AtomicFile::publish() {
 }
 
 void check_writable(const std::string &path) {
+  // To open a pipe and to close it would be its end for whoever reads it.
+  if (is_standard_output(path) || !find_target(path).is_replaced) return;
   AtomicFile probe(path);  // never committed: its temporary file goes with it
 }
 

@@ -14,8 +14,8 @@ bool is_standard_output(const std::string &path);
 
 // Buffered output that goes to a temporary name in the folder of the target. commit() renames it over the target, with
 // the rights that the target had; without it the destructor removes it, and whatever the target was before stays as it
-// was. Devices and pipes (/dev/stdout) are written directly, and so is standard output, as bytes. All but the
-// destructor throw Error (kOutput), naming the target.
+// was. Devices and pipes (/dev/stdout) are opened once and written directly, and so is standard output, as bytes. All
+// but the destructor throw Error (kOutput), naming the target.
 class AtomicFile {
  public:
   explicit AtomicFile(const std::string &path);

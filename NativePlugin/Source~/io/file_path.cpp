@@ -47,7 +47,7 @@ std::filesystem::path place_of(const std::filesystem::path &path) {
   }
   if (fs::is_symlink(place, error)) return path;
   const fs::path folder = fs::canonical(place.has_parent_path() ? place.parent_path() : ".", error);
-  return error ? path : folder / place.filename();
+  return error ? place : folder / place.filename();
 }
 
 std::string lower_extension(const std::filesystem::path &path) {

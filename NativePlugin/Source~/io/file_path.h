@@ -19,8 +19,8 @@ std::string lower_extension(const std::filesystem::path &path);
 // The same of what is in a gzip file: that before .gz, if it ends so.
 std::string lower_extension_of_content(const std::filesystem::path &path);
 
-// Where a file is, or would be made: links are followed, also one that leads to nothing yet. Absolute; the path as it
-// is where that can't be told, as in a circle of links.
+// Where a file is, or would be made: links are followed, also one that leads to nothing yet. Absolute, unless its
+// folder is missing; the path as it is where that can't be told, as in a circle of links.
 std::filesystem::path place_of(const std::filesystem::path &path);
 
 // As std::fopen.

@@ -5,6 +5,7 @@ and what is left when it fails or is stopped.
 usage: cli_files_test.py PROGRAM [unittest options]      (or QUICKSES_PROGRAM in the environment)
 """
 import gzip
+import json
 import os
 import shutil
 import signal
@@ -176,6 +177,29 @@ class Replacing(FilesTest):
         self.assert_fails(OUTPUT, ["circle.obj"], "p.pdb", "-v", "2", "-o", "circle.obj")
         self.assertTrue((self.folder / "circle.obj").is_symlink())
         self.assert_fails(INPUT, ["circle.obj"], "circle.obj")
+        (self.folder / "lost.obj").symlink_to("nowhere/real.obj")
+        self.assert_fails(OUTPUT, ["lost.obj", "no folder", "nowhere"], "p.pdb", "-v", "2", "-o", "lost.obj")
+        self.assertEqual(os.readlink(self.folder / "lost.obj"), "nowhere/real.obj")
+
+    @unittest.skipIf(IS_WINDOWS, "no named pipes")
+    def test_named_pipes(self):
+        self.run_cpu("p.pdb", "-v", "2", "-o", "file.obj")
+        self.run_cpu("p.pdb", "--trajectory", "many.pdb", "-v", "2", "--csv", "file.csv")
+        for name, arguments in (("pipe.obj", ["-o", "pipe.obj"]), ("pipe.json", ["--json", "pipe.json"]),
+                                ("pipe.csv", ["--trajectory", "many.pdb", "--csv", "pipe.csv"])):
+            os.mkfifo(self.folder / name)
+            with open(self.folder / "read", "wb") as read:
+                reader = subprocess.Popen(["cat", self.folder / name], stdout=read)
+            self.addCleanup(reader.wait)
+            self.addCleanup(reader.kill)
+            self.run_cpu("p.pdb", "-v", "2", *arguments)
+            reader.wait(timeout=60)
+            content = (self.folder / "read").read_bytes()
+            if name == "pipe.json":
+                self.assertEqual(json.loads(content)["atoms"], 327)
+            else:
+                self.assertEqual(content, (self.folder / name.replace("pipe", "file")).read_bytes())
+            self.assertTrue((self.folder / name).is_fifo())
 
 
 @unittest.skipIf(IS_WINDOWS, "no such devices")
