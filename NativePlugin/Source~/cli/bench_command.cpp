@@ -78,9 +78,9 @@ void compute_window(Engine &engine, const io::Structure &structure, const Window
 void compute_windows(EnginePool &engines, unsigned in_flight, const io::Structure &structure,
                      const std::vector<Window> &windows, const qses_settings &settings) {
   std::atomic<size_t> next{0};
-  std::vector<std::future<void>> workers;
+  std::vector<std::future<void>> workers;  // where the system refuses them, this thread does their work
   for (unsigned n = 0; n < in_flight; ++n)
-    workers.push_back(std::async(std::launch::async, [&] {
+    workers.push_back(std::async(std::launch::async | std::launch::deferred, [&] {
       for (size_t k; (k = next++) < windows.size();)
         engines.run([&](Engine &engine) { compute_window(engine, structure, windows[k], settings); });
     }));

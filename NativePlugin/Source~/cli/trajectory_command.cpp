@@ -158,11 +158,11 @@ class Run {
     const std::unique_ptr<FrameSupply> remote = processes_.remote_supply();
     FrameSupply &supply = remote ? *remote : ledger;
     std::vector<std::thread> threads;
+    threads.reserve(workers_.size());
     if (writer_) writer_->begin();
     try {
       for (const auto &worker : workers_) threads.emplace_back([&] { work(*worker, supply); });
-    } catch (...) {  // the system refuses threads; those that run have to be joined all the same
-      supply.give_up(std::current_exception());
+    } catch (const std::exception &) {  // there are no more to be had: these do, or this one
     }
     std::exception_ptr failed;
     try {
@@ -171,6 +171,7 @@ class Run {
       failed = std::current_exception();
       ledger.give_up(failed);
     }
+    if (threads.empty()) work(*workers_.front(), supply);
     for (std::thread &thread : threads) thread.join();
     if (failed) std::rethrow_exception(failed);
     if (remote)

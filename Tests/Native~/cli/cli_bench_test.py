@@ -5,10 +5,11 @@ usage: cli_bench_test.py PROGRAM [unittest options]      (or QUICKSES_PROGRAM in
 """
 import json
 import random
+import sys
 import unittest
 
 import cli_test
-from cli_test import BACKEND, CRAMBIN, INPUT, USAGE, ProgramTest
+from cli_test import BACKEND, CRAMBIN, INPUT, USAGE, ProgramTest, refuse_threads
 
 TWO_ATOMS = "0 0 0 1.5\n2 0 0 1.5\n"
 
@@ -99,6 +100,8 @@ class Reports(BenchTest):
         self.assertLess(pieces["most_atoms"], 100 + 14)  # the largest amino acid, without hydrogen
         self.assertGreater(pieces["total"], 0)
         self.assertEqual((whole["fewest_atoms"], whole["most_atoms"]), (2, 2))
+        if sys.platform == "linux":
+            self.run_cpu("bench", "two.xyzr", "--small", "100", "--repeat", "1", preexec_fn=refuse_threads)
 
     def test_jobs(self):
         result = self.run_cpu("bench", CRAMBIN, "--jobs", "--repeat", "2", "--json", "-")

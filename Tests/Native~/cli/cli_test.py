@@ -98,19 +98,25 @@ def program_to_test(program, usage):
     return os.path.abspath(program)
 
 
+def refuse_threads():
+    """In a process to be: threads want more stack than there are addresses."""
+    import resource  # Windows has none
+    resource.setrlimit(resource.RLIMIT_STACK, (1 << 47, resource.getrlimit(resource.RLIMIT_STACK)[1]))
+
+
 class ProgramTest(unittest.TestCase):
     def setUp(self):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="quickses_cli_"))
         self.addCleanup(shutil.rmtree, self.folder)
 
-    def run_program(self, *arguments, code=OK):
+    def run_program(self, *arguments, code=OK, **keywords):
         result = subprocess.run([PROGRAM, *map(str, arguments)], stdin=subprocess.DEVNULL, capture_output=True,
-                                cwd=self.folder, encoding="utf-8", timeout=120)
+                                cwd=self.folder, encoding="utf-8", timeout=120, **keywords)
         self.assertEqual(result.returncode, code, result.stderr + result.stdout)
         return result
 
-    def run_cpu(self, *arguments, code=OK):
-        return self.run_program(*arguments, "--backend", "cpu", code=code)
+    def run_cpu(self, *arguments, code=OK, **keywords):
+        return self.run_program(*arguments, "--backend", "cpu", code=code, **keywords)
 
     def assert_fails(self, code, parts, *arguments):
         """The run fails with one line that holds all the parts, prints nothing else and leaves no file behind."""

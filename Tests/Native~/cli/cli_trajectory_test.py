@@ -6,10 +6,11 @@ usage: cli_trajectory_test.py PROGRAM [unittest options]      (or QUICKSES_PROGR
 import csv
 import gzip
 import json
+import sys
 import unittest
 
 import cli_test
-from cli_test import CRAMBIN, INPUT, OK, OUTPUT, USAGE, ProgramTest, read_ply
+from cli_test import CRAMBIN, INPUT, OK, OUTPUT, USAGE, ProgramTest, read_ply, refuse_threads
 from trajectory_files import chain_of, dcd_bytes, moving, pdb_text, with_nan
 
 FRAMES_FAILED = 6
@@ -24,8 +25,8 @@ class TrajectoryTest(ProgramTest):
         self.write("top.pdb", pdb_text(self.atoms, positions))
         self.write("t.dcd", dcd_bytes(self.frames))
 
-    def run_frames(self, *arguments, code=OK, trajectory="t.dcd", top="top.pdb"):
-        return self.run_cpu(top, "--trajectory", trajectory, "-v", "0.8", *arguments, code=code)
+    def run_frames(self, *arguments, trajectory="t.dcd", top="top.pdb", **keywords):
+        return self.run_cpu(top, "--trajectory", trajectory, "-v", "0.8", *arguments, **keywords)
 
     def table(self, *arguments, **keywords):
         """The rows of the table as dictionaries."""
@@ -88,6 +89,10 @@ class Results(TrajectoryTest):
             with self.subTest(workers=workers, threads=threads):
                 self.assertEqual(everything(workers, "--threads", threads), expected)
         self.assertEqual(everything(3, "--memory", "48M"), expected)
+
+    @unittest.skipUnless(sys.platform == "linux", "no such limits")
+    def test_without_threads_the_program_has_one(self):
+        self.assertEqual(self.table("--threads", "4", preexec_fn=refuse_threads), self.table())
 
     def test_tables_do_not_depend_on_the_number_of_workers(self):
         tables = ["--csv", "--per-atom", "--per-residue"]
