@@ -184,7 +184,7 @@ qses_hit describe(const qses_mesh &mesh, const Meeting &meeting) {
   hit.triangle = meeting.triangle;
   hit.vertex = corner[heaviest];
   hit.owner = mesh.owners[hit.vertex];
-  hit.distance = static_cast<float>(meeting.distance);
+  hit.distance = static_cast<float>(std::min(meeting.distance, static_cast<double>(std::numeric_limits<float>::max())));
   for (int d = 0; d < 3; ++d) {
     hit.position[d] = static_cast<float>(position[d]);
     hit.normal[d] = static_cast<float>(normal[d] / length);

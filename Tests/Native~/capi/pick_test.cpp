@@ -261,7 +261,10 @@ TEST(Pick, OddRaysAreFine) {
   EXPECT_FALSE(pick(both.fast, {{1e38f, 1e38f, 1e38f}, {1, 0, 0}}).found);
   const qses_hit far = pick(both.fast, {{-1e6f, 0.1f, 0.1f}, {3e38f, 0, 0}});
   EXPECT_TRUE(far.found);
-  EXPECT_TRUE(pick(both.fast, {{-1e5f, 0, 0}, {1e-42f, 0, 0}}).found);
+  const qses_hit tiny = pick(both.fast, {{-1e5f, 0, 0}, {1e-42f, 0, 0}});
+  EXPECT_TRUE(tiny.found);
+  EXPECT_EQ(tiny.distance, std::numeric_limits<float>::max());
+  EXPECT_NEAR(tiny.position[0], -1.5, 0.03);
   const qses_hit hit = pick(both.fast, {{-10, 0.1f, 0.2f}, {2, 0, 0}});
   ASSERT_TRUE(hit.found);
   EXPECT_NEAR(hit.distance, 4.25, 0.02);

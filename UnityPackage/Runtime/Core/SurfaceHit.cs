@@ -19,7 +19,7 @@ namespace QuickSes
         /// <summary>The atom of that corner.</summary>
         public int Owner => (int)_native.Owner;
 
-        /// <summary>From the origin, in lengths of the direction.</summary>
+        /// <summary>From the origin, in lengths of the direction; float.MaxValue where it is more.</summary>
         public float Distance => _native.Distance;
 
         /// <summary>Å, in the coordinates the atoms were given in.</summary>

@@ -734,7 +734,7 @@ typedef struct qses_hit {
   uint32_t triangle;
   uint32_t vertex;   /* the corner of the triangle that weighs most at the point */
   uint32_t owner;    /* its atom */
-  float distance;    /* from the origin, in lengths of the direction */
+  float distance;    /* from the origin, in lengths of the direction; FLT_MAX where it is more */
   float position[3]; /* Å */
   float normal[3];   /* unit length, outward: between those of the corners */
 } qses_hit;
