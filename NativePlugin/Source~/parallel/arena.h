@@ -28,7 +28,8 @@ inline std::string describe_bytes(uint64_t bytes) {
 }
 
 // Source: three static functions: void *acquire(size_t) (nullptr when refused), void release(void *), and uint64_t
-// free_bytes(), what could be acquired now, or 0 if that is not known.
+// free_bytes(), what could be acquired now, or 0 if that is not known. And, where set_taken is called, kTakenUntouched:
+// whether memory takes room before anything is written to it.
 template <class Source>
 class Arena {
  public:
@@ -55,13 +56,13 @@ class Arena {
     }
     return limit_;
   }
-  // Bytes of the budget that others have taken, or are about to; they count as used. Throws if what is held does not
-  // leave so much: the next reset gives it up.
+  // Bytes of the budget that others have taken, or are about to; they count as used. Throws if what is held, as far as
+  // it takes room, does not leave so much. What is held beyond that is given up by the next reset.
   void set_taken(uint64_t bytes) {
     if (!budget_) return;
     const bool more = bytes > taken_;
     taken_ = bytes;
-    if (more && held_ > own_budget())
+    if (more && (Source::kTakenUntouched ? held_ : touched()) > own_budget())
       throw MemoryRefused("the work beside the arena needs " + describe_bytes(bytes) + " of the memory budget of " +
                               describe_bytes(budget_),
                           bytes < budget_);
@@ -84,6 +85,7 @@ class Arena {
     void *p = static_cast<char *>(blocks_[block].memory) + offset;
     current_ = block;
     offset_ = offset + bytes;
+    blocks_[block].touched = std::max(blocks_[block].touched, offset_);
     used_ += bytes;
     if (used_ > peak_) peak_ = used_;
     return p;
@@ -138,9 +140,14 @@ class Arena {
  private:
   struct Block {
     void *memory;
-    size_t size;
+    size_t size, touched;  // touched: so many of its first bytes were ever allocated
   };
 
+  uint64_t touched() const {
+    uint64_t sum = 0;
+    for (const Block &b : blocks_) sum += b.touched;
+    return sum;
+  }
   uint64_t own_budget() const { return budget_ - std::min(budget_, taken_); }
 
   [[noreturn]] void refuse(uint64_t needed) {
@@ -172,7 +179,7 @@ class Arena {
       memory = Source::acquire(wanted);
     }
     if (!memory) return false;
-    blocks_.push_back({memory, wanted});
+    blocks_.push_back({memory, wanted, 0});
     held_ += wanted;
     return true;
   }

@@ -78,6 +78,7 @@ void copy_to_host(int device, void *to, const void *from, size_t bytes);
 // Sources for Arena.
 struct DeviceMemory {
   static constexpr const char *kName = "the GPU";
+  static constexpr bool kTakenUntouched = true;
   static uint64_t free_bytes();  // of the selected device; what kernels need at their first launch is left to them
   static void *acquire(size_t bytes);
   static void release(void *memory);

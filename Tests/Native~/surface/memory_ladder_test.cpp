@@ -27,6 +27,13 @@ Atoms row_of_crambins(int count) {
   return all;
 }
 
+// A wide probe at a coarse spacing touches many of them from each brick: the threads' scratch grows.
+Atoms long_row() {
+  Atoms row;
+  for (int k = 0; k < 60; ++k) row.add(3.4 * k, 0, 0, 1.7);
+  return row;
+}
+
 std::vector<qses_settings> many_settings() {
   std::vector<qses_settings> all = {settings(0.5), settings(0.3), settings(0.5, 5.0),
                                     settings(0.5, 1.4, QSES_SURFACE_SAS)};
@@ -154,8 +161,8 @@ TEST(MemoryLadder, BudgetsHoldWhereScratchGrows) {
     qses_settings settings;
     unsigned threads;
   };
-  Atoms row, one;
-  for (int k = 0; k < 60; ++k) row.add(3.4 * k, 0, 0, 1.7);
+  const Atoms row = long_row();
+  Atoms one;
   one.add(0.1, -0.2, 0.3, 1.7);
   for (const Case &c : {Case{row, settings(10, 100), 1}, Case{one, settings(0.083), 2}, Case{one, settings(0.083), 8},
                         Case{cluster(600, 3), settings(1.0, 10), 8}, Case{crambin(), settings(0.4, 12), 16}}) {
@@ -171,6 +178,30 @@ TEST(MemoryLadder, BudgetsHoldWhereScratchGrows) {
         EXPECT_LE(report_of(context).work_bytes_peak, budget)
             << c.threads << " threads, " << c.atoms.size() << " atoms";
       }
+    }
+  }
+}
+
+// Where there is plenty, scratch that grows comes out of it: no work is done twice, on however many threads.
+TEST(MemoryLadder, ScratchThatGrowsInPlentyStopsNobody) {
+  if (tested_backend() != QSES_BACKEND_CPU) GTEST_SKIP() << "the scratch is that of the CPU's threads";
+  const Atoms atoms = long_row();
+  const qses_settings s = settings(10, 100);
+  for (const unsigned threads : {1u, 2u, 8u, 64u}) {
+    SCOPED_TRACE(testing::Message() << threads << " threads");
+    const Context unbounded(threads);
+    set_atoms(unbounded, atoms);
+    const qses_mesh expected = compute_view(unbounded, s);
+    const uint64_t budget = 4 * report_of(unbounded).work_bytes_peak;
+    const Context context(threads, budget);
+    set_atoms(context, atoms);
+    for (int frame = 0; frame < 3; ++frame) {
+      const qses_mesh mesh = compute_view(context, s);
+      EXPECT_EQ(report_of(context).attempts, 1u) << "frame " << frame;
+      EXPECT_LE(report_of(context).work_bytes_peak, budget);
+      ASSERT_EQ(mesh.vertex_count, expected.vertex_count);
+      EXPECT_EQ(std::memcmp(mesh.positions, expected.positions, 12 * size_t(mesh.vertex_count)), 0);
+      EXPECT_EQ(std::memcmp(mesh.indices, expected.indices, 12 * size_t(mesh.triangle_count)), 0);
     }
   }
 }
@@ -214,6 +245,32 @@ TEST(ArenaLimit, NobodyAsksWhereNothingGrows) {
     arena.allocate(1 << 20);
   }
   EXPECT_EQ(ChangingMemory::questions, before);
+}
+
+// As the GPU's.
+struct MemoryTakenAtOnce : ChangingMemory {
+  static constexpr bool kTakenUntouched = true;
+};
+
+TEST(ArenaBudget, OthersTakeWhatWasNeverWrittenTo) {
+  constexpr uint64_t kMiB = 1 << 20;
+  quickses::Arena<quickses::HostMemory> arena;
+  arena.set_budget(10 * kMiB);
+  const auto mark = arena.mark();
+  arena.allocate(4 * kMiB);
+  EXPECT_NO_THROW(arena.set_taken(6 * kMiB));
+  EXPECT_THROW(arena.allocate(1), quickses::MemoryRefused) << "nothing is left";
+  arena.rewind(mark);
+  EXPECT_THROW(arena.set_taken(7 * kMiB), quickses::MemoryRefused) << "4 MiB were written to";
+  arena.reset();
+  arena.allocate(kMiB);
+  EXPECT_EQ(arena.held(), 3 * kMiB);
+  EXPECT_NO_THROW(arena.set_taken(8 * kMiB)) << "these pages are new";
+
+  quickses::Arena<MemoryTakenAtOnce> taken_at_once;
+  taken_at_once.set_budget(10 * kMiB);
+  taken_at_once.allocate(4 * kMiB);
+  EXPECT_THROW(taken_at_once.set_taken(kMiB), quickses::MemoryRefused);
 }
 
 }  // namespace
