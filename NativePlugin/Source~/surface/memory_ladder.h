@@ -203,13 +203,14 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     uint32_t attempts = 0;  // at the next level
     size_t next = 0;        // levels before it are finished
     bool is_prepared = false;
+    std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();  // of the next level
   };
 
   void compute_levels(const FrameInput &in, const MemoryPlan &plan, Span<const float> spacings, Course *course,
                       LevelSink &sink) {
     double total = 0, begun = 0;
     for (float h : spacings) total += cost_of(h);
-    auto start = std::chrono::steady_clock::now();
+    const auto start = std::chrono::steady_clock::now();
     FinishedMesh out;
     qses_report &report = out.report;
     auto work = work_of(in, plan, &report);
@@ -246,8 +247,8 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
       out.delivery = in.settings.delivery;
       out.shape = built.shape;
       out.on_host.spacing = out.on_device.mesh.spacing = spacings[k];
-      report.compute_ms = milliseconds_since(start);
-      start = std::chrono::steady_clock::now();
+      report.compute_ms = milliseconds_since(course->start);
+      course->start = std::chrono::steady_clock::now();
       complete(built, in.settings, &report);
       timer_.reset();
       executor_.arena().rewind(mark);
