@@ -70,7 +70,7 @@ Delivered deliver(const BenchSubject &subject, qses_delivery delivery) {
 Json times_json(const Delivered &found, qses_backend backend) {
   Json json = {{"median", median(found.times)}, {"min", *std::min_element(found.times.begin(), found.times.end())}};
   for (const auto &[name, times] : found.stages) json["stages"][name] = median(times);
-  json["memory"] = memory_json(found.report, backend, nullptr);
+  json["memory"] = memory_json(found.report, backend);
   return json;
 }
 

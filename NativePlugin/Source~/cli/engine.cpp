@@ -93,13 +93,6 @@ void Engine::find_component_atoms(const qses_mesh &mesh, std::vector<uint32_t> *
   if (!atoms->empty()) check(qses_component_atoms(&mesh, starts->data(), atoms->data(), atoms->size()));
 }
 
-std::optional<qses_size_estimate> Engine::estimate(const qses_settings &settings) {
-  qses_size_estimate estimate;
-  qses_size_estimate_init(&estimate);
-  if (qses_estimate(context(), &settings, &estimate) != QSES_OK) return std::nullopt;
-  return estimate;
-}
-
 qses_settings settings_of(const ComputeOptions &options) {
   qses_settings settings;
   qses_settings_init(&settings);

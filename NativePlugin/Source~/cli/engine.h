@@ -3,7 +3,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -50,8 +49,6 @@ class Engine {
   void keep(KeptMesh &kept);
   // The atoms of component k of a mesh are those from (*starts)[k] to (*starts)[k + 1].
   void find_component_atoms(const qses_mesh &mesh, std::vector<uint32_t> *starts, std::vector<uint32_t> *atoms) const;
-  // What computing will take; nothing if it is going to fail.
-  std::optional<qses_size_estimate> estimate(const qses_settings &settings);
 
  private:
   std::unique_ptr<qses_context, void (*)(qses_context *)> context_;

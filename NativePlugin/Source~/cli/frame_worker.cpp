@@ -243,7 +243,7 @@ void FrameWorker::fill_mesh(const FrameTask &task, Read read, FrameResult &resul
   read.timings.write = ms_since(write_start);
   if (options.json.empty()) return;
   Json json = frame_json(task, read.time);
-  json.update(surface_json(frame_options, inputs_.structure(), *computed_by, mesh, report, read.timings, nullptr));
+  json.update(surface_json(frame_options, inputs_.structure(), *computed_by, mesh, report, read.timings));
   result.json = dump(json, true);
 }
 

@@ -86,14 +86,9 @@ Json measures_json(const qses_report &report) {
   return json;
 }
 
-Json memory_json(const qses_report &report, qses_backend backend, const qses_size_estimate *predicted) {
+Json memory_json(const qses_report &report, qses_backend backend) {
   Json memory = Json::object();
-  const bool cuda = backend == QSES_BACKEND_CUDA;
-  if (predicted && cuda) memory["predicted_device"] = predicted->work_bytes;
-  if (cuda) memory["peak_device"] = report.work_bytes_peak;
-  // In host memory: the mesh with some room to grow, and on the CPU the work.
-  if (predicted)
-    memory["predicted_host"] = predicted->mesh_bytes + predicted->mesh_bytes / 8 + (cuda ? 0 : predicted->work_bytes);
+  if (backend == QSES_BACKEND_CUDA) memory["peak_device"] = report.work_bytes_peak;
   memory["peak_host"] = report.host_bytes_peak;
   memory["mesh"] = report.mesh_bytes;
   return memory;
@@ -109,7 +104,7 @@ Json component_json(const qses_component &component) {
 }
 
 Json surface_json(const Options &options, const io::Structure &structure, const Engine &engine, const qses_mesh &mesh,
-                  const qses_report &report, const Timings &timings, const qses_size_estimate *predicted) {
+                  const qses_report &report, const Timings &timings) {
   Json json = report_head_json(options, structure, engine);
   json["settings"]["hard_edges"] = has_hard_edges(options);
   if (options.mesh.colors != MeshColors::kNone) json["settings"]["color"] = name_of(options.mesh.colors);
@@ -128,7 +123,7 @@ Json surface_json(const Options &options, const io::Structure &structure, const 
     stages[report.stages[i].name] = report.stages[i].milliseconds;
   json["time_ms"] = {
       {"read", timings.read}, {"compute", report.compute_ms}, {"write", timings.write}, {"stages", stages}};
-  json["memory"] = memory_json(report, engine.backend(), predicted);
+  json["memory"] = memory_json(report, engine.backend());
   return json;
 }
 

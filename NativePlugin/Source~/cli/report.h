@@ -34,15 +34,15 @@ Json failed_input_json(const Options &options, const Failure &failure);
 Json report_head_json(const Options &options, const io::Structure &structure, const Engine &engine);
 // area, volume, measured_by, and those of the triangles where there are any.
 Json measures_json(const qses_report &report);
-// memory of a report: peak_device (CUDA), peak_host, mesh. predicted: before it was computed, or nullptr.
-Json memory_json(const qses_report &report, qses_backend backend, const qses_size_estimate *predicted);
+// memory of a report: peak_device (CUDA), peak_host, mesh.
+Json memory_json(const qses_report &report, qses_backend backend);
 // Of a component: triangles, area, volume, cavity, center, bounds.
 Json component_json(const qses_component &component);
 
-// The report of one surface, which is closed (see accept_surface). predicted: before it was computed, or nullptr.
-// The mesh must have been computed with its components.
+// The report of one surface, which is closed (see accept_surface). The mesh must have been computed with its
+// components.
 Json surface_json(const Options &options, const io::Structure &structure, const Engine &engine, const qses_mesh &mesh,
-                  const qses_report &report, const Timings &timings, const qses_size_estimate *predicted);
+                  const qses_report &report, const Timings &timings);
 
 // Text of a report; names that are no UTF-8 are made so.
 std::string dump(const Json &json, bool one_line);

@@ -93,8 +93,6 @@ class SurfaceRun {
   void run(const Options &options, const io::Structure &structure, const MeshOutput &output, render::Page *page) {
     const qses_settings settings = mesh_settings_of(options);
     engine_->set_atoms(structure, options.input);
-    std::optional<qses_size_estimate> predicted;
-    if (!options.json.empty()) predicted = engine_->estimate(settings);
     qses_mesh mesh;
     {
       ProgressBar bar(engine_->context(), options.quiet);
@@ -111,8 +109,7 @@ class SurfaceRun {
         make_area_rows(options, first_columns(options, structure), structure, areas_of(options.compute.surface, mesh)));
     timings_.write = ms_since(write_start);
     if (!options.json.empty()) {
-      const Json json =
-          surface_json(options, structure, *engine_, mesh, report, timings_, predicted ? &*predicted : nullptr);
+      const Json json = surface_json(options, structure, *engine_, mesh, report, timings_);
       reports_ += dump(json, has_all_models() || options.has_several_inputs());  // of several: one line each
     }
     if (!options.quiet && !options.prints_data()) print_summary(options, structure, *engine_, mesh, report);
