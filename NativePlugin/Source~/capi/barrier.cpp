@@ -7,7 +7,7 @@ namespace quickses {
 namespace {
 
 // Without a destructor: to register one may end the process where memory is refused, and what a thread destroys as it
-// ends may call the library. Every thread has less stack by it.
+// ends may call the library. Threads of a program that is linked to the library have so much less stack.
 constexpr size_t kMessageRoom = 2048;
 thread_local char message_of_thread[kMessageRoom];
 

@@ -6,7 +6,6 @@
 #include "parallel/error.h"
 #include "parallel/working_thread.h"
 
-#include <stdexcept>
 #include <string>
 
 namespace quickses {
@@ -26,8 +25,6 @@ qses_status guarded(const Call &call) noexcept {
     call();
   } catch (const io::Error &e) {
     outcome = fail(e.kind() == io::ErrorKind::kUsage ? QSES_INVALID_ARGUMENT : QSES_FILE_ERROR, e.what());
-  } catch (const std::length_error &) {  // of a size that no memory can have
-    outcome = fail(QSES_OUT_OF_MEMORY, "more was asked for than memory can hold");
   } catch (...) {
     explain_exception([&](qses_status status, const char *message) { outcome = fail(status, message); });
   }

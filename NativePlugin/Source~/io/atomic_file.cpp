@@ -116,17 +116,19 @@ std::FILE *create_new(const fs::path &name, const fs::path &like) {
 struct Target {
   fs::path place;    // with links resolved
   bool is_replaced;  // else it is written to directly: a device or a pipe
+  bool is_pipe;
 };
 
 // Throws Error (kOutput) if it can't be written, as far as can be told without opening it.
 Target find_target(const std::string &path) {
-  Target target = {path_of(path), false};
+  Target target = {path_of(path), false, false};
   std::error_code error;
   fs::file_status status;
   patiently(target.place, error, [&] { status = fs::status(target.place, error); });
   if (!fs::status_known(status)) fail_output("'" + path + "' can't be written: " + error.message());
   if (fs::is_directory(status)) fail_output("'" + path + "' is a directory: it can't be written as a file");
   target.is_replaced = !fs::exists(status) || fs::is_regular_file(status);
+  target.is_pipe = fs::is_fifo(status);
   // A link stays a link: what it points to is replaced, if it has a name (what /dev/stdout points to may have none).
   if (target.is_replaced && fs::is_symlink(target.place, error)) {
     const fs::path place = place_of(target.place);
@@ -253,7 +255,7 @@ void AtomicFile::publish() {
 
 void check_writable(const std::string &path) {
   // To open a pipe and to close it would be its end for whoever reads it.
-  if (is_standard_output(path) || !find_target(path).is_replaced) return;
+  if (is_standard_output(path) || find_target(path).is_pipe) return;
   AtomicFile probe(path);  // never committed: its temporary file goes with it
 }
 

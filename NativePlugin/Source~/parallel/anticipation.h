@@ -164,7 +164,7 @@ class Anticipation {
     std::memcpy(&e, expected, sizeof e);
     return e.covers(f);
   }
-  static constexpr size_t kMostPages = 256;
+  static constexpr size_t kMostPages = 1024;  // a ladder may have 900, with all steps of relaxation
   const Entry *find(const char *name) const {
     for (const Page &page : pages_)
       if (page.number == page_)
@@ -175,8 +175,11 @@ class Anticipation {
   void note(const Number &number, const Entry &found) {
     auto page = std::find_if(pages_.begin(), pages_.end(), [&](const Page &p) { return p.number == number; });
     if (page == pages_.end()) {
-      if (pages_.size() == kMostPages) pages_.erase(pages_.begin());  // of a spacing that was left long ago
+      if (pages_.size() == kMostPages) pages_.erase(pages_.begin());  // noted longest ago
       page = pages_.insert(pages_.end(), Page{number, {}});
+    } else {
+      std::rotate(page, page + 1, pages_.end());
+      page = pages_.end() - 1;
     }
     for (Entry &entry : page->entries)
       if (std::strcmp(entry.name, found.name) == 0) {

@@ -265,7 +265,7 @@ class CpuExecutor {
     return *counts;
   }
   template <class T>
-  bool foresee(const char *, const T &, T *) const {
+  bool foresee(const char *, const void *, const T &, T *) const {
     return false;
   }
   void open_counts(uint64_t, bool = false) {}

@@ -299,10 +299,11 @@ class CudaExecutor {
     counts_.anticipation().note(name, value);
     return value;
   }
-  // What would be anticipated, if that were asked.
+  // What expect() would say without waiting. False, and nothing, where it would wait, also since these counts of the
+  // frame, or any others that it took before, found no room among those that are sent.
   template <class T>
-  bool foresee(const char *name, const T &most, T *expected) const {
-    return counts_.anticipation().foresee(name, most, expected);
+  bool foresee(const char *name, const void *counts, const T &most, T *expected) const {
+    return counts_.has(counts) && counts_.anticipation().foresee(name, most, expected);
   }
   // All that is anticipated so far will have been counted when the device gets here.
   void send_counts() {

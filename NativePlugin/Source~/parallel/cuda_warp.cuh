@@ -90,7 +90,7 @@ __device__ __forceinline__ T warp_inclusive_sum(T value, int lane) {
   return value;
 }
 
-// Of so many first lanes, each with the sum of all up to it: the first whose sum exceeds t, of which there is one.
+// Of the first kLanes lanes, each with the sum of all up to it: the first whose sum exceeds t, of which there is one.
 template <int kLanes>
 __device__ __forceinline__ int lane_beyond(int sum, int t) {
   int lane = 0;

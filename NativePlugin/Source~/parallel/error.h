@@ -46,6 +46,8 @@ void explain_exception(const Take &take) {
     take(QSES_CANCELLED, "the computation was cancelled");
   } catch (const std::bad_alloc &) {
     take(QSES_OUT_OF_MEMORY, "the machine refused memory");
+  } catch (const std::length_error &) {
+    take(QSES_OUT_OF_MEMORY, "more was asked for than memory can hold");
   } catch (const std::exception &e) {
     take(QSES_INTERNAL_ERROR, e.what());
   } catch (...) {

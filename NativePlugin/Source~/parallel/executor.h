@@ -19,7 +19,7 @@
 //   expect(name, counts, most)     what was counted. Waits; or, if it is told by the frame before, at most so much
 //   send_counts(), verify_counts() later: what was expected is compared with what was counted (anticipation.h). Waits
 //   verified(counts)               what was counted then
-//   foresee(name, most, out)       what expect() would say without waiting; false, and nothing, where it would wait
+//   foresee(name, counts, most, out)  what expect() would say without waiting; false, and nothing, where it would wait
 //   open_counts(kind), turn_counts_to(level, part)  which frames, and what of them, have counts that are alike
 //   has_anticipated()              whether this frame went on with anything that the one before told
 //   go_on_scanning(n, load, out), send_all_counts()  of the GPU only, for work in slabs (methods/exact_slabs.h)

@@ -22,7 +22,11 @@ HostMemoryStatus describe_host_memory();
 // Source for Arena.
 struct HostMemory {
   static constexpr const char *kName = "the machine";
-  static constexpr bool kTakenUntouched = false;  // pages come when they are written to
+#if defined(_WIN32)
+  static constexpr bool kTakenUntouched = true;
+#else
+  static constexpr bool kTakenUntouched = false;  // pages come when they are written to, of large blocks
+#endif
   static void *acquire(size_t bytes) {
 #if defined(_WIN32)
     return _aligned_malloc(bytes, 256);

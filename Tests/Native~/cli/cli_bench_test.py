@@ -9,7 +9,7 @@ import sys
 import unittest
 
 import cli_test
-from cli_test import BACKEND, CRAMBIN, INPUT, USAGE, ProgramTest, refuse_threads
+from cli_test import BACKEND, CRAMBIN, INPUT, USAGE, ProgramTest, can_refuse_threads, refuse_threads
 
 TWO_ATOMS = "0 0 0 1.5\n2 0 0 1.5\n"
 
@@ -100,7 +100,7 @@ class Reports(BenchTest):
         self.assertLess(pieces["most_atoms"], 100 + 14)  # the largest amino acid, without hydrogen
         self.assertGreater(pieces["total"], 0)
         self.assertEqual((whole["fewest_atoms"], whole["most_atoms"]), (2, 2))
-        if sys.platform == "linux":
+        if can_refuse_threads():
             self.run_cpu("bench", "two.xyzr", "--small", "100", "--repeat", "1", preexec_fn=refuse_threads)
 
     def test_jobs(self):

@@ -104,6 +104,18 @@ def refuse_threads():
     resource.setrlimit(resource.RLIMIT_STACK, (1 << 47, resource.getrlimit(resource.RLIMIT_STACK)[1]))
 
 
+def can_refuse_threads():
+    """Whether that works here: it is tried with another program."""
+    if sys.platform != "linux" or os.environ.get("QUICKSES_TEST_SYSTEM") or os.environ.get("QUICKSES_TEST_SANITIZE"):
+        return False  # what runs programs of another system, and sanitizers, have their own wishes
+    begin_one = "import threading; threading.Thread(target=int).start()"
+    try:
+        tried = subprocess.run([sys.executable, "-c", begin_one], preexec_fn=refuse_threads, stderr=subprocess.DEVNULL)
+    except subprocess.SubprocessError:  # the limit can't be set
+        return False
+    return tried.returncode != 0
+
+
 class ProgramTest(unittest.TestCase):
     def setUp(self):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="quickses_cli_"))

@@ -10,7 +10,7 @@ import sys
 import unittest
 
 import cli_test
-from cli_test import CRAMBIN, INPUT, OK, OUTPUT, USAGE, ProgramTest, read_ply, refuse_threads
+from cli_test import CRAMBIN, INPUT, OK, OUTPUT, USAGE, ProgramTest, can_refuse_threads, read_ply, refuse_threads
 from trajectory_files import chain_of, dcd_bytes, moving, pdb_text, with_nan
 
 FRAMES_FAILED = 6
@@ -90,7 +90,7 @@ class Results(TrajectoryTest):
                 self.assertEqual(everything(workers, "--threads", threads), expected)
         self.assertEqual(everything(3, "--memory", "48M"), expected)
 
-    @unittest.skipUnless(sys.platform == "linux", "no such limits")
+    @unittest.skipUnless(can_refuse_threads(), "threads can't be refused")
     def test_without_threads_the_program_has_one(self):
         self.assertEqual(self.table("--threads", "4", preexec_fn=refuse_threads), self.table())
 

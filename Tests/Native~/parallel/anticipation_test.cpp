@@ -136,7 +136,7 @@ TEST(Anticipation, IsOfOnePage) {
   EXPECT_GE(expected.count, 1600u);
 }
 
-// Of counts that are told only from so many on, fewer are none: they may become as many.
+// Counts below a threshold are told as 0, so 0 must leave room up to the threshold.
 TEST(Anticipation, OfCountsThatAreToldFromSoManyOn) {
   using quickses::CrowdTally;
   const CrowdTally most{5000}, few = CrowdTally::anticipated({0}, most);
@@ -150,18 +150,20 @@ TEST(Anticipation, OfCountsThatAreToldFromSoManyOn) {
 TEST(Anticipation, ForgetsPagesOfLongAgo) {
   Anticipation a;
   a.open(1);
-  for (int level = 1; level <= 1000; ++level) {
-    a.turn_to(static_cast<float>(level));
-    a.note("bricks", Bricks{100});
-  }
+  for (int level = 1; level <= 3000; ++level)
+    for (const int noted : {0, level}) {  // what levels share, too
+      a.turn_to(static_cast<float>(noted));
+      a.note("bricks", Bricks{100});
+    }
   a.open(1);
   Bricks expected{};
   const auto is_known = [&](int level) {
     a.turn_to(static_cast<float>(level));
     return a.foresee("bricks", kPlenty, &expected);
   };
-  EXPECT_TRUE(is_known(1000));
-  EXPECT_TRUE(is_known(900));
+  EXPECT_TRUE(is_known(0));
+  EXPECT_TRUE(is_known(3000));
+  EXPECT_TRUE(is_known(2100));
   EXPECT_FALSE(is_known(1));
 }
 

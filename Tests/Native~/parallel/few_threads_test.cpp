@@ -9,6 +9,7 @@
 #include <pthread.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
@@ -91,7 +92,7 @@ TEST(FewThreads, AnyNumberOfThemThatCanBeHad) {
 
 // ---- no memory
 
-TEST(FewMemory, FilesThatFindNoneAreNotToBlame) {
+TEST(LittleMemory, FilesThatFindNoneAreNotToBlame) {
   const std::string path = std::string(QUICKSES_TEST_DATA_DIR) + "/1CRN.pdb";
   qses_structure *structure = nullptr;
   qses_trajectory *trajectory = nullptr;
@@ -282,8 +283,8 @@ TEST(SmallStack, SufficesForTheDeepestSelections) {
     qses_status selected = QSES_INTERNAL_ERROR, refused = QSES_INTERNAL_ERROR, opened = QSES_INTERNAL_ERROR;
     on_small_stack(
         [&] {
-          selected = select(deepest);
           refused = select(deepest + 1);
+          selected = select(deepest);
         },
         size_t(32) << 10);  // half of what there is, since others build with larger frames
     const std::string text = nested(deepest, begin, end);
@@ -295,7 +296,8 @@ TEST(SmallStack, SufficesForTheDeepestSelections) {
     });
     EXPECT_EQ(selected, QSES_OK);
     EXPECT_EQ(refused, QSES_INVALID_ARGUMENT);
-    EXPECT_NE(opened, QSES_INTERNAL_ERROR);
+    const bool selects_some = std::count(mask.begin(), mask.end(), 0) < static_cast<ptrdiff_t>(mask.size());
+    EXPECT_EQ(opened == QSES_OK, selects_some) << opened;
   }
   qses_structure_close(structure);
 }

@@ -97,7 +97,7 @@ class SerialExecutor {
     return allocate_zeros<T>(1).data;
   }
   template <class T>
-  bool foresee(const char *, const T &, T *) const {
+  bool foresee(const char *, const void *, const T &, T *) const {
     return false;
   }
   template <class T>

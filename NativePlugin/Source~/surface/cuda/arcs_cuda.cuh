@@ -6,6 +6,8 @@
 
 #include "surface/cuda/circles_cuda.cuh"
 
+#include <algorithm>
+
 namespace quickses {
 namespace gpu {
 

@@ -5,6 +5,8 @@
 
 #include "surface/cuda/atom_caps_cuda.cuh"
 
+#include <algorithm>
+
 namespace quickses {
 namespace gpu {
 

@@ -8,6 +8,8 @@
 #include "surface/cuda/arcs_cuda.cuh"
 #include "surface/cuda/caps_cuda.cuh"
 
+#include <algorithm>
+
 namespace quickses {
 namespace gpu {
 

@@ -112,7 +112,7 @@ class CountingExecutor {
     return fetch(counts);
   }
   template <class T>
-  bool foresee(const char *, const T &, T *) const {
+  bool foresee(const char *, const void *, const T &, T *) const {
     return false;
   }
   void turn_counts_to(float, uint32_t = 0) {}

@@ -42,7 +42,7 @@ Slabs slabs_of(const Work &work, const BrickSet &bricks) {
   const bool goes_out_as_made = work.paints_early() && !work.settings.occlusion && !work.will_be_split &&
                                 work.settings.relaxation_steps <= 1 && work.purpose == MeshPurpose::kDelivered;
   if (!goes_out_as_made || !work.memory.goes_to_host() || !work.plan.single_slice || !bricks.table || !bricks.found ||
-      !work.executor.foresee("mesh", MeshTotals{}, &slabs.room) || !fits_bases(bricks.count))
+      !work.executor.foresee("mesh", bricks.found, MeshTotals{}, &slabs.room) || !fits_bases(bricks.count))
     return slabs;
   slabs.bricks = bricks.count;
   slabs.near = slabs.room.near;

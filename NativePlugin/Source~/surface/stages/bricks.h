@@ -215,7 +215,7 @@ BrickSet flag_bricks(Executor &executor, const Items &items, const Lattice &latt
   Tally<uint64_t> *const found = executor.template take_counts<Tally<uint64_t>>();
   // No brick may have a number beyond those that there will be memory for: stages would read and write what is at it.
   Tally<uint64_t> most{room};
-  executor.foresee(name, most, &most);
+  executor.foresee(name, found, most, &most);
   do_in_turn(
       executor, Scan{entries, LoadCount<uint8_t>{flags.data}, Span<int32_t>{table.data, entries + 1}},
       ForEach{entries, FillBrickTable{lattice, flags.data, table.data, entries, places.data, most.count, found}});

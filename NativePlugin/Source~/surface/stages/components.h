@@ -9,6 +9,8 @@
 #include "surface/stages/component_sums.h"
 #include "surface/stages/host_components.h"
 
+#include <algorithm>
+
 namespace quickses {
 
 // Host memory for the components of one mesh. It only grows.

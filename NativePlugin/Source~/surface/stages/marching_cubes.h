@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Marching cubes on sign masks (QuickSES 2019, section 2.4): what bricks own is counted, then numbered (mesh_layout.h);
-// where that lies in the tables.
+// Marching cubes on sign masks (QuickSES 2019, section 2.4): what bricks own is counted, then numbered (mesh_layout.h).
 #pragma once
 
 #include "parallel/atomics.h"

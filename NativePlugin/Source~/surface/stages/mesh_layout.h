@@ -9,6 +9,9 @@
 #include "surface/stages/brick_border.h"
 #include "surface/stages/marching_cubes_table.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace quickses {
 
 constexpr int kBrickMasks = kLeavesPerBrick * kAxes;

@@ -107,7 +107,7 @@ QSES_FN Sphere no_item() { return {glm::vec3(kFarAway), -1.f}; }
 constexpr uint32_t kCrowd = 1024;
 // Fewer are not told to the host, so that it does not matter to it that they change.
 constexpr uint32_t kFewInCell = 256;
-// Items in the fullest cell; 0: a few.
+// Items in the fullest cell; 0: at most kFewInCell.
 struct CrowdTally {
   uint32_t count;
   static CrowdTally anticipated(const CrowdTally &last, const CrowdTally &most) {
