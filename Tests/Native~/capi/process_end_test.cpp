@@ -73,6 +73,7 @@ void compute_once() {
   std::exit(0);
 }
 
+#if !defined(_WIN32)
 const char kPdb[] = "HETATM    1 FE   HEM A   1       1.000   2.000   3.000  1.00  0.00          FE\nEND\n";
 const char kMmcif[] =
     "data_x\nloop_\n_atom_site.type_symbol\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\nC 1 2 3\n";
@@ -95,6 +96,7 @@ std::atomic<int> structures{0};
   while (structures < 100) std::this_thread::yield();
   std::exit(0);
 }
+#endif
 
 void end_processes(int threads) {
   testing::FLAGS_gtest_death_test_style = "threadsafe";  // each is a fresh process: drivers do not survive a fork
@@ -160,10 +162,12 @@ TEST(ProcessEnd, OfForkedChildren) {
 }
 #endif
 
+#if !defined(_WIN32)  // Windows ends the threads first, whatever locks of the C++ runtime they hold
 TEST(ProcessEnd, StructuresMayBeReadMeanwhile) {
   testing::FLAGS_gtest_death_test_style = "threadsafe";
   for (int k = 0; k < kProcesses / 3; ++k)
     EXPECT_EXIT(end_while_structures_are_read(), testing::ExitedWithCode(0), "") << "process " << k;
 }
+#endif
 
 }  // namespace
