@@ -162,7 +162,7 @@ TEST(ProcessEnd, OfForkedChildren) {
 }
 #endif
 
-#if !defined(_WIN32)  // Windows ends the threads first, whatever locks of the C++ runtime they hold
+#if !defined(_WIN32)  // Wine ends the threads first, also in the midst of what they do to its heap
 TEST(ProcessEnd, StructuresMayBeReadMeanwhile) {
   testing::FLAGS_gtest_death_test_style = "threadsafe";
   for (int k = 0; k < kProcesses / 3; ++k)
