@@ -22,11 +22,7 @@ HostMemoryStatus describe_host_memory();
 // Source for Arena.
 struct HostMemory {
   static constexpr const char *kName = "the machine";
-#if defined(_WIN32)
-  static constexpr bool kTakenUntouched = true;
-#else
-  static constexpr bool kTakenUntouched = false;  // pages come when they are written to, of large blocks
-#endif
+  static constexpr bool kTakenUntouched = false;  // pages of large blocks come when they are written to
   static void *acquire(size_t bytes) {
 #if defined(_WIN32)
     return _aligned_malloc(bytes, 256);
