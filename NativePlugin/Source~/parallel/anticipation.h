@@ -25,12 +25,12 @@ constexpr T and_some_more(T n) {
   return n + n / 16 + 64;
 }
 
-// A single number. T: uint32_t or uint64_t.
-template <class T>
+// A single number. T: uint32_t or uint64_t. kUntold: up to so many are told as 0.
+template <class T, T kUntold = 0>
 struct Tally {
   T count;
   static Tally anticipated(const Tally &last, const Tally &most) {
-    return {std::min(and_some_more(last.count), most.count)};
+    return {std::min(std::max(and_some_more(last.count), kUntold), most.count)};
   }
   bool covers(const Tally &found) const { return found.count <= count; }
 };

@@ -227,7 +227,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
       qses_report_init(&report);
       report.attempts = course->attempts;
       report.measured_by = measured_by(in);
-      memory_.stop_sending();  // of a cancelled mesh, to memory of a slot that is given up now
+      memory_.wait_for_copies();  // of a cancelled mesh, to memory of a slot that is given up now
       memory_.use_slot(sink.slot());
       MeshMemoryView built{};
       if (in.atoms.count > 0) {

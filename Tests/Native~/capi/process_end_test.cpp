@@ -98,17 +98,22 @@ std::atomic<int> structures{0};
 }
 #endif
 
+class ProcessEnd : public testing::Test {
+ protected:
+  // Each is a fresh process: drivers do not survive a fork.
+  void SetUp() override { testing::FLAGS_gtest_death_test_style = "threadsafe"; }
+};
+
 void end_processes(int threads) {
-  testing::FLAGS_gtest_death_test_style = "threadsafe";  // each is a fresh process: drivers do not survive a fork
   tested_backend();
   for (int k = 0; k < kProcesses; ++k)
     EXPECT_EXIT(end_while_threads_compute(threads, k % 10), testing::ExitedWithCode(0), "") << "process " << k;
 }
 
-TEST(ProcessEnd, DoesNotWaitForThreads) { end_processes(6); }
+TEST_F(ProcessEnd, DoesNotWaitForThreads) { end_processes(6); }
 
 // Between two surfaces nobody computes.
-TEST(ProcessEnd, DoesNotWaitForAThread) { end_processes(1); }
+TEST_F(ProcessEnd, DoesNotWaitForAThread) { end_processes(1); }
 
 // The first surface, in a context that was made in time or in one that was not, is made while the process ends.
 [[noreturn]] void end_before_the_first_surface(bool has_context, int ms) {
@@ -127,8 +132,7 @@ TEST(ProcessEnd, DoesNotWaitForAThread) { end_processes(1); }
   std::exit(0);
 }
 
-TEST(ProcessEnd, BeforeTheFirstSurface) {
-  testing::FLAGS_gtest_death_test_style = "threadsafe";
+TEST_F(ProcessEnd, BeforeTheFirstSurface) {
   tested_backend();
   for (int k = 0; k < kProcesses; ++k)
     EXPECT_EXIT(end_before_the_first_surface(k % 2 == 0, 1 + k / 2 % 5), testing::ExitedWithCode(0), "")
@@ -155,16 +159,14 @@ TEST(ProcessEnd, BeforeTheFirstSurface) {
   std::_Exit(0);
 }
 
-TEST(ProcessEnd, OfForkedChildren) {
-  testing::FLAGS_gtest_death_test_style = "threadsafe";
+TEST_F(ProcessEnd, OfForkedChildren) {
   if (tested_backend() != QSES_BACKEND_CPU) GTEST_SKIP() << "drivers do not survive a fork";
   EXPECT_EXIT(fork_while_a_thread_computes(), testing::ExitedWithCode(0), "");
 }
 #endif
 
 #if !defined(_WIN32)  // Wine ends the threads first, also in the midst of what they do to its heap
-TEST(ProcessEnd, StructuresMayBeReadMeanwhile) {
-  testing::FLAGS_gtest_death_test_style = "threadsafe";
+TEST_F(ProcessEnd, StructuresMayBeReadMeanwhile) {
   for (int k = 0; k < kProcesses / 3; ++k)
     EXPECT_EXIT(end_while_structures_are_read(), testing::ExitedWithCode(0), "") << "process " << k;
 }

@@ -14,7 +14,7 @@ class MeshMemory<CpuKernelExecutor> {
  public:
   explicit MeshMemory(CpuKernelExecutor &) : meshes_(MeshPool::source<HostMemory>()) {}
 
-  void stop_sending() {}
+  void wait_for_copies() {}
   void use_slot(int slot) { meshes_.use_slot(slot); }
   MeshHold keep(int slot) { return {meshes_.keep(slot), {}, meshes_.share_pool()}; }
   uint64_t host_bytes() const { return meshes_.bytes(); }

@@ -21,7 +21,7 @@ static __global__ __launch_bounds__(kArcThreads) void find_few_arcs_kernel(Queue
   const uint32_t listed = job.circle_first[job.run.size()];
   if (listed > job.room.circles) return;  // all will be done again
   const size_t total = listed < circles.last ? listed : circles.last;
-  const int team = static_cast<int>(threadIdx.x) / kArcLanes, lane = lane_id(), rank = lane % kArcLanes;
+  const int team = static_cast<int>(threadIdx.x) / kArcLanes, lane = lane_id(), rank = rank_in_team<kArcLanes>();
   const size_t first = circles.first + blockIdx.x * size_t(kTeams) + static_cast<size_t>(team);
   if (first - static_cast<size_t>(lane / kArcLanes) >= total) return;
   OpenCircle c{};

@@ -60,8 +60,11 @@ class MeshMemory<CudaExecutor> {
     }
   }
 
-  // A mesh that was given up may be on its way to the host still. Waits until it is not.
-  void stop_sending() { wait_for_copies(); }
+  // Until no mesh is on its way to the host any more, also one that was given up.
+  void wait_for_copies() {
+    if (sends_triangles_) check_cuda(cudaStreamSynchronize(copies_), "cudaStreamSynchronize");
+    sends_triangles_ = sends_vertices_ = false;
+  }
   void use_slot(int slot) {
     host_meshes_.use_slot(slot);
     device_meshes_.use_slot(slot);
@@ -225,10 +228,6 @@ class MeshMemory<CudaExecutor> {
       executor_.download(brought_.boxes.groups, mesh.view.boxes.groups, PickBoxes::group_count(mesh.triangles));
     }
     return brought_;
-  }
-  void wait_for_copies() {
-    if (sends_triangles_) check_cuda(cudaStreamSynchronize(copies_), "cudaStreamSynchronize");
-    sends_triangles_ = sends_vertices_ = false;
   }
 
   // At most a mesh to be made into another one, its normals and those of the other one, sums and starts at a time.

@@ -67,7 +67,7 @@ struct VertexTeam {
   __device__ __forceinline__ VertexTeam(const LaunchItems &vertices, uint32_t total)
       : place(static_cast<uint32_t>(vertices.first) + (blockIdx.x * kVertexThreads + threadIdx.x) / kLanes),
         on(place < total),
-        writes(on && lane_id() % kLanes == 0) {}
+        writes(on && rank_in_team<kLanes>() == 0) {}
   // Whether any team of this warp has a place.
   __device__ __forceinline__ bool has_work(uint32_t total) const {
     return place - static_cast<uint32_t>(lane_id() / kLanes) < total;

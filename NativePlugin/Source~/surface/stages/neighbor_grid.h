@@ -107,14 +107,8 @@ QSES_FN Sphere no_item() { return {glm::vec3(kFarAway), -1.f}; }
 constexpr uint32_t kCrowd = 1024;
 // Fewer are not told to the host, so that it does not matter to it that they change.
 constexpr uint32_t kFewInCell = 256;
-// Items in the fullest cell; 0: at most kFewInCell.
-struct CrowdTally {
-  uint32_t count;
-  static CrowdTally anticipated(const CrowdTally &last, const CrowdTally &most) {
-    return {std::min(std::max(and_some_more(last.count), kFewInCell), most.count)};
-  }
-  bool covers(const CrowdTally &found) const { return found.count <= count; }
-};
+// Items in the fullest cell.
+using CrowdTally = Tally<uint32_t, kFewInCell>;
 
 struct CellCounts {
   uint32_t *in_cell = nullptr;  // zeros at first; nullptr: nothing is counted
