@@ -105,7 +105,6 @@ void SurfaceJob::work() {
     }
     lock.lock();
     running_ = false;
-    writing_ = kNoSlot;
     state_.status = status;
     std::memcpy(state_.message, message, sizeof message);
     state_.state = status != QSES_OK                  ? QSES_JOB_FAILED
@@ -153,7 +152,6 @@ void SurfaceJob::compute(SurfaceRequest request) {
   const auto end = [&](qses_job_state state, qses_status status, const char *message) {
     const std::lock_guard<std::mutex> lock(mutex_);
     running_ = false;
-    writing_ = kNoSlot;
     state_.state = state;
     state_.status = status;
     std::snprintf(state_.message, sizeof state_.message, "%s", message);
@@ -169,8 +167,7 @@ void SurfaceJob::compute(SurfaceRequest request) {
   }
   end(QSES_JOB_FINISHED, QSES_OK, "");
   const std::lock_guard<std::mutex> lock(mutex_);
-  held_ = ready_;
-  ready_ = {};
+  hold_what_is_ready();
 }
 
 qses_size_estimate SurfaceJob::estimate(const SurfaceRequest &request) {
@@ -189,29 +186,29 @@ qses_size_estimate SurfaceJob::estimate(const SurfaceRequest &request) {
   return engine_->estimate(*request.atoms, *request.appearance, request.settings, stop_now_);
 }
 
-int SurfaceJob::slot() {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  writing_ = kNoSlot;
-  for (int slot = kMeshSlots; slot-- > 0;) {
-    if (slot == held_.slot || slot == ready_.slot) continue;
-    engine_->keep(slot) = {};  // nobody wants it any more: the next level may have its memory
-    writing_ = slot;
-  }
-  return writing_;
+void SurfaceJob::hold_what_is_ready() {
+  let_go_ = std::move(held_.mesh.memory);
+  held_ = std::move(ready_);
+  ready_ = {};
 }
 
-void SurfaceJob::finished(const FinishedMesh &mesh) {
+void SurfaceJob::give_back() {
+  MeshHold let_go;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  let_go = std::move(let_go_);
+}
+
+void SurfaceJob::finished(FinishedMesh mesh) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    ready_.slot = writing_;
-    ready_.mesh = mesh;
+    ready_.is_there = true;
+    std::swap(ready_.mesh, mesh);
     ready_.atom_count = atom_count_;
-    mesh_bytes_ = static_cast<double>(mesh.report.mesh_bytes);
+    mesh_bytes_ = static_cast<double>(ready_.mesh.report.mesh_bytes);
     for (qses_mesh *view : {&ready_.mesh.on_host, &ready_.mesh.on_device.mesh}) {
       view->level = first_level_ + levels_finished_;
       view->level_count = ladder_count_;
     }
-    writing_ = kNoSlot;
     state_.levels_finished = ++levels_finished_;
     if (superseded_ || cancelled_) stop_now_ = true;
   }
@@ -222,9 +219,8 @@ void SurfaceJob::advance(double fraction) { fraction_.store(static_cast<float>(f
 
 bool SurfaceJob::collect(qses_mesh *mesh, qses_report *report) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (ready_.slot == kNoSlot) return false;
-  held_ = ready_;
-  ready_ = {};
+  if (!ready_.is_there) return false;
+  hold_what_is_ready();
   if (mesh) *mesh = held_.mesh.on_host;
   if (report) *report = held_.mesh.report;
   return true;
@@ -232,7 +228,7 @@ bool SurfaceJob::collect(qses_mesh *mesh, qses_report *report) {
 
 bool SurfaceJob::held(qses_mesh *mesh, qses_report *report) const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (held_.slot == kNoSlot) return false;
+  if (!held_.is_there) return false;
   if (mesh) *mesh = held_.mesh.on_host;
   if (report) *report = held_.mesh.report;
   return true;
@@ -240,34 +236,33 @@ bool SurfaceJob::held(qses_mesh *mesh, qses_report *report) const {
 
 bool SurfaceJob::held_on_device(qses_device_mesh *mesh) const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (held_.slot == kNoSlot) return false;
+  if (!held_.is_there) return false;
   *mesh = held_.mesh.on_device;
   return true;
 }
 
 void SurfaceJob::keep(KeptMesh *kept) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (held_.slot == kNoSlot) throw Error(QSES_NO_RESULT, "nothing has been computed or collected that could be kept");
-  const FinishedMesh &mesh = held_.mesh;
+  if (!held_.is_there) throw Error(QSES_NO_RESULT, "nothing has been computed or collected that could be kept");
+  FinishedMesh &mesh = held_.mesh;
   if (mesh.delivery == QSES_DELIVERY_NONE)
     throw Error(QSES_INVALID_ARGUMENT, "the mesh was made with settings.delivery NONE: there is none to be kept");
   const bool is_on_device = mesh.delivery != QSES_DELIVERY_HOST;
   const auto on_device = is_on_device ? std::make_shared<DeviceMesh>() : nullptr;
   kept->clear();
-  MeshHold hold = engine_->keep(held_.slot);
   if (is_on_device) {
     on_device->view = mesh.on_device;
     on_device->shape = mesh.shape;
     on_device->atom_count = held_.atom_count;
-    on_device->memory = std::move(hold.on_device);
+    on_device->memory = std::move(mesh.memory.on_device);
   }
   kept->mesh = mesh.on_host;
   kept->boxes = mesh.boxes;
   kept->report = mesh.report;
   kept->atom_count = held_.atom_count;
-  kept->memory = std::move(hold.on_host);
+  kept->memory = std::move(mesh.memory.on_host);
   kept->on_device = on_device;
-  kept->host_pool = std::move(hold.host_pool);
+  kept->host_pool = std::move(mesh.memory.host_pool);
   kept->is_full = true;
   held_ = {};
 }
@@ -303,7 +298,7 @@ qses_progress SurfaceJob::progress() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   qses_progress p = state_;
   p.fraction = p.state == QSES_JOB_FINISHED ? 1.f : fraction_.load(std::memory_order_relaxed);
-  p.mesh_ready = ready_.slot != kNoSlot ? 1 : 0;
+  p.mesh_ready = ready_.is_there ? 1 : 0;
   return p;
 }
 

@@ -61,17 +61,17 @@ class SurfaceJob : private LevelSink {
   qses_progress progress() const;
 
  private:
-  static constexpr int kNoSlot = -1;
-
   // LevelSink, called by the thread that computes.
   void prepared(double milliseconds) override { shared_ms_ = milliseconds; }
-  int slot() override;
-  void finished(const FinishedMesh &mesh) override;
+  void give_back() override;
+  void finished(FinishedMesh mesh) override;
   const std::atomic<bool> &stop_flag() const override { return stop_now_; }
   void advance(double fraction) override;
 
   // Waits until no job runs, with the mutex held again; throws if that was cancelled meanwhile.
   std::unique_lock<std::mutex> wait_for_turn();
+  // The mesh that is ready takes the place of the one that is held. The mutex is held.
+  void hold_what_is_ready();
   // The state of a job that is about to run. The mutex is held.
   void announce(const SurfaceRequest &request);
   // Which levels of the ladder will be computed. The mutex is held.
@@ -80,7 +80,7 @@ class SurfaceJob : private LevelSink {
   void run(const SurfaceRequest &request);
 
   struct Level {
-    int slot = kNoSlot;
+    bool is_there = false;
     FinishedMesh mesh{};
     size_t atom_count = 0;
   };
@@ -100,7 +100,7 @@ class SurfaceJob : private LevelSink {
   size_t atom_count_ = 0;                           // of the job
   double shared_ms_ = 0, mesh_bytes_ = 0;           // of the job's cost, what all levels share; of its last mesh
   Level held_, ready_;
-  int writing_ = kNoSlot;
+  MeshHold let_go_;  // of the one held before: given back by the thread that computes, since that may take a while
   qses_progress state_{};
   std::atomic<bool> stop_now_{false};
   std::atomic<float> fraction_{0.f};

@@ -45,7 +45,8 @@ class CudaExecutor {
     DeviceGuard guard;
   };
 
-  explicit CudaExecutor(int device) : device_(device) {
+  // goes_first: its kernels, before those of others.
+  explicit CudaExecutor(int device, bool goes_first = false) : device_(device) {
     const DeviceGuard guard(device);
     int value = 0;
     check_cuda(cudaDeviceGetAttribute(&value, cudaDevAttrMultiProcessorCount, device), "cudaDeviceGetAttribute");
@@ -53,7 +54,9 @@ class CudaExecutor {
     if (LaunchObserver::current) multiprocessors_ = LaunchObserver::current->multiprocessors(multiprocessors_);
     staging_.reserve(kStagingBytes);
     counts_.allocate();
-    check_cuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "cudaStreamCreateWithFlags");
+    check_cuda(cudaStreamCreateWithPriority(&stream_, cudaStreamNonBlocking, goes_first ? kHighestPriority : 0),
+               "cudaStreamCreateWithPriority");
+    check_cuda(cudaEventCreateWithFlags(&joined_, cudaEventDisableTiming), "cudaEventCreateWithFlags");
   }
   ~CudaExecutor() {
     try {
@@ -203,25 +206,31 @@ class CudaExecutor {
   }
   size_t compact_bytes(size_t n) const { return n / 128 + 4096; }  // CUB's states of its tiles, generously
 
+  // Sums of the chunks, to be added up when something has been waited for; they stay until the next call that copies to
+  // the host. Of too many chunks, none, and nothing is done.
+  template <class T, class Load>
+  Span<const T> reduce_later(size_t n, Load load, uint64_t steps = kPlainSumSteps) {
+    const size_t chunks = reduce_chunks(n);
+    if (!sums_go_to_host<T>(chunks)) return {};
+    T *const sums = static_cast<T *>(staging_.reserve(chunks * sizeof(T)));
+    sum_chunks(n, load, sums, steps);
+    return {sums, chunks};
+  }
   template <class T = double, class Load>
   T reduce(size_t n, Load load, uint64_t steps = kPlainSumSteps) {
     if (n == 0) return T{};
-    const size_t chunks = reduce_chunks(n);
-    const bool to_host = sums_go_to_host<T>(chunks);
-    const auto mark = arena_.mark();
-    const T *host = nullptr;
-    T *const sums = to_host ? static_cast<T *>(staging_.reserve(chunks * sizeof(T))) : allocate<T>(chunks).data;
-    launch("reduce", gpu::sum_chunks_kernel<T, Load>, chunks,
-           {BlockTeam::kSize, 1, reduce_chunk(n) / BlockTeam::kSize * steps}, n, load, sums);
-    if (to_host) {
+    Span<const T> sums = reduce_later<T>(n, load, steps);
+    if (sums.size > 0) {
       wait();
-      host = sums;
     } else {
-      host = static_cast<const T *>(to_staging(sums, chunks * sizeof(T)));
+      const auto mark = arena_.mark();
+      const Span<T> here = allocate<T>(reduce_chunks(n));
+      sum_chunks(n, load, here.data, steps);
+      sums = {static_cast<const T *>(to_staging(here.data, here.size * sizeof(T))), here.size};
+      arena_.rewind(mark);
     }
-    arena_.rewind(mark);
     T sum{};
-    for (size_t c = 0; c < chunks; ++c) sum += host[c];
+    for (const T &part : sums) sum += part;
     return sum;
   }
 
@@ -362,11 +371,9 @@ class CudaExecutor {
   // ---- a second stream (SecondStream) -----------------------------------------------------------------------------
 
   void open_second_stream() {
-    constexpr int kHighestPriority = -1000;  // the driver takes the highest there is
     if (!second_stream_)
       check_cuda(cudaStreamCreateWithPriority(&second_stream_, cudaStreamNonBlocking, kHighestPriority),
                  "cudaStreamCreateWithPriority");
-    if (!joined_) check_cuda(cudaEventCreateWithFlags(&joined_, cudaEventDisableTiming), "cudaEventCreateWithFlags");
   }
   // What is given from now on goes to the other stream, or to this one again.
   void turn_to_second_stream(bool second) {
@@ -374,19 +381,20 @@ class CudaExecutor {
     counts_.anticipation().turn_aside(second);
   }
   // What the second stream is given from now on comes behind all that this one has.
-  void lead_second_stream() {
-    check_cuda(cudaEventRecord(joined_, stream_), "cudaEventRecord");
-    check_cuda(cudaStreamWaitEvent(second_stream_, joined_, 0), "cudaStreamWaitEvent");
-  }
+  void lead_second_stream() { check_cuda(follow(second_stream_, stream_), "cudaStreamWaitEvent"); }
   // The other way round.
   void join_second_stream() {
     counts_.anticipation().join();
-    if (cudaEventRecord(joined_, second_stream_) != cudaSuccess ||
-        cudaStreamWaitEvent(stream_, joined_, 0) != cudaSuccess)
-      cudaStreamSynchronize(second_stream_);
+    if (follow(stream_, second_stream_) != cudaSuccess) cudaStreamSynchronize(second_stream_);
+  }
+
+  // What this is given from now on comes behind all that the other one has, also where that fails.
+  void go_behind(CudaExecutor &other) noexcept {
+    if (other.follow(stream_, other.stream_) != cudaSuccess) cudaStreamSynchronize(other.stream_);
   }
 
  private:
+  static constexpr int kHighestPriority = -1000;  // the driver takes the highest there is
   static constexpr size_t kStagingBytes = 32768, kMostStaged = size_t(1) << 20;
   static constexpr size_t kLittleFill = size_t(1) << 19, kLittleFetch = size_t(1) << 22;
   static constexpr size_t kDefaultSharedBytes = 48 * 1024;
@@ -394,7 +402,12 @@ class CudaExecutor {
   // Sums of few chunks: over the bus one by one, which spares a launch.
   template <class T>
   static bool sums_go_to_host(size_t chunks) {
-    return chunks * sizeof(T) <= kStagingBytes;
+    return chunks * sizeof(T) <= kMostStaged;
+  }
+  template <class T, class Load>
+  void sum_chunks(size_t n, Load load, T *sums, uint64_t steps) {
+    launch("reduce", gpu::sum_chunks_kernel<T, Load>, reduce_chunks(n),
+           {BlockTeam::kSize, 1, reduce_chunk(n) / BlockTeam::kSize * steps}, n, load, sums);
   }
 
   static constexpr size_t kMostItems = std::numeric_limits<int>::max();  // of CUB's passes
@@ -402,6 +415,11 @@ class CudaExecutor {
     if (n >= kMostItems)
       throw Error(QSES_OUT_OF_MEMORY,
                   std::string(verb) + ": more than 2^31 items; use a larger spacing or a smaller slice size");
+  }
+
+  cudaError_t follow(cudaStream_t behind, cudaStream_t ahead) {
+    const cudaError_t error = cudaEventRecord(joined_, ahead);
+    return error == cudaSuccess ? cudaStreamWaitEvent(behind, joined_, 0) : error;
   }
 
   void stop_if_asked() const {

@@ -15,23 +15,13 @@
 
 namespace quickses {
 
-// A mesh as it goes out.
-struct FinishedMesh {
-  qses_mesh on_host;
-  PickBoxes boxes;             // beside it
-  qses_delivery delivery;      // where it was wanted
-  qses_device_mesh on_device;  // empty arrays unless settings.delivery asks for it
-  MeshShape shape;
-  qses_report report;
-};
-
 // Who receives the levels. Called on the thread that computes.
 class LevelSink {
  public:
   virtual ~LevelSink() = default;
   virtual void prepared(double milliseconds) = 0;  // what all levels share is made; with CUDA: asked for
-  virtual int slot() = 0;                          // of the next level
-  virtual void finished(const FinishedMesh &mesh) = 0;
+  virtual void give_back() = 0;                    // the memory of meshes that nobody wants any more
+  virtual void finished(FinishedMesh mesh) = 0;
   virtual void advance(double fraction) = 0;  // of all levels; never falls
   virtual const std::atomic<bool> &stop_flag() const = 0;
 };
@@ -52,9 +42,6 @@ class SurfaceEngine {
   // What a computation at settings.spacing would need. Throws Error, or Cancelled as above.
   virtual qses_size_estimate estimate(const AtomSet &atoms, const Appearance &appearance, const qses_settings &settings,
                                       const std::atomic<bool> &stop) = 0;
-
-  // Takes the memory of a finished mesh out of its slot. From any thread, also while other slots are computed.
-  virtual MeshHold keep(int slot) = 0;
 
   virtual void enable_stage_times(bool enabled) = 0;
   // Called with the fraction done; empty: not at all.

@@ -3,12 +3,9 @@
 // that was. A template over the executor: cpu_engine.cpp and cuda_engine.cu make one of each.
 #pragma once
 
-#include "surface/engine.h"
+#include "surface/frame_levels.h"
 #include "surface/methods/size_estimate.h"
-#include "surface/pipeline.h"
 
-#include <chrono>
-#include <cstdio>
 #include <cstring>
 
 namespace quickses {
@@ -24,11 +21,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   // memory_budget: bytes, 0 for none. threads: for what is left to the CPU.
   template <class... Arguments>
   LadderEngine(uint64_t memory_budget, const WorkerThreads &threads, Arguments &&...arguments)
-      : executor_(std::forward<Arguments>(arguments)...),
-        timer_(executor_),
-        memory_(executor_),
-        components_(threads),
-        budget_(memory_budget) {
+      : levels_(threads, std::forward<Arguments>(arguments)...), budget_(memory_budget) {
     // What is held outside of the arena is taken off; the least budget is one that is surely too small.
     const uint64_t outside = memory_.allowed_outside(executor_);
     if (budget_ > 0) executor_.arena().set_budget(budget_ > outside + 4096 ? budget_ - outside : 4096);
@@ -41,7 +34,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
 
   void compute(const AtomSet &atoms, const Appearance &appearance, const qses_settings &settings,
                Span<const float> spacings, LevelSink &sink) override {
-    progress_.restart(&sink.stop_flag(), [&sink](double fraction) { sink.advance(fraction); });
+    levels_.progress.restart(&sink.stop_flag(), [&sink](double fraction) { sink.advance(fraction); });
     const FrameInput in{atoms, appearance, settings};
     Course course;
     const auto attempt = [&](const MemoryPlan &plan) {
@@ -50,7 +43,12 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
       executor_.open_counts(may_anticipate(in, plan) ? kind_of(in) : 0,
                             learnt_.is_proven && learnt_.milliseconds < kShortFrame);
       try {
-        compute_levels(in, plan, spacings, &course, sink);
+        is_beside_ = may_be_beside(in, plan, spacings);
+        const PlannedFrame frame{in, plan, spacings, is_beside_ ? kind_of(in) : 0, atoms_.bytes()};
+        levels_.make(frame, &course, sink, [&](Work &work, float spacing) {
+          spacing_ = spacing;
+          if (work.makes_mesh) check_forecast(work, in);
+        });
       } catch (const AnticipatedTooLittle &) {
         course.attempts = attempts;
         throw;
@@ -64,7 +62,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
 
   qses_size_estimate estimate(const AtomSet &atoms, const Appearance &appearance, const qses_settings &settings,
                               const std::atomic<bool> &stop) override {
-    progress_.restart(nullptr, {});
+    levels_.progress.restart(nullptr, {});
     qses_size_estimate out;
     qses_size_estimate_init(&out);
     out.fits = 1;
@@ -75,7 +73,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     walk(in, stop, [&](const MemoryPlan &plan) {
       executor_.open_counts(0);
       qses_report report;
-      auto work = work_of(in, plan, &report);
+      Work work = levels_.work_of(in, plan, &report);
       prepare_frame(work, in);
       if (work.makes_mesh) {
         enter_level(work, settings.spacing);
@@ -101,15 +99,19 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     return out;
   }
 
-  MeshHold keep(int slot) override { return memory_.keep(slot); }
-
-  void enable_stage_times(bool enabled) override { timer_.enable(enabled); }
-  void set_progress(std::function<void(double)> progress) override { progress_.set(std::move(progress)); }
+  void enable_stage_times(bool enabled) override {
+    takes_times_ = enabled;
+    levels_.timer.enable(enabled);
+  }
+  void set_progress(std::function<void(double)> progress) override { levels_.progress.set(std::move(progress)); }
 
  private:
+  using Work = typename FrameLevels<Executor, Timer>::Work;
   static constexpr uint64_t kUnlimited = ~uint64_t(0) >> 1;
   // The next one may be queued as a whole: nobody who cancels it waits longer.
   static constexpr double kShortFrame = 100;  // ms
+  // Its levels leave the GPU idle enough to be made beside each other, and are small enough for memory of their own.
+  static constexpr double kShortLadder = 3;  // ms
   // Of predictions that rest on a predicted size: sizes are known to some per cent.
   static constexpr double kMargin = 1.02;
   static constexpr uint64_t kSpareBytes = 32768;
@@ -123,8 +125,9 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     const typename Executor::StopScope stop_scope(executor_, stop);
     memory_.deliver_to(in.settings);
     executor_.arena().reset();  // what is free is asked anew
+    is_beside_ = false;
     for (size_t step = first_step(in);; executor_.arena().reset()) {
-      timer_.reset();
+      levels_.timer.reset();
       facts_ = {};
       facts_.atoms = in.atoms.count;
       spacing_ = in.settings.spacing;
@@ -133,7 +136,8 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
         return;
       } catch (const AnticipatedTooLittle &) {  // the same again: it waits for all counts now
       } catch (const MemoryRefused &refused) {
-        if (executor_.has_anticipated())
+        levels_.drop_lanes();
+        if (executor_.has_anticipated() || is_beside_)
           note_tightness();  // the same again, without the room for more than there is
         else if (!refused.again())
           step = next_step(in, step);
@@ -150,7 +154,12 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   // arcs are only looked for, not gone through (as they are where the surface is that of the balls, to be measured).
   bool may_anticipate(const FrameInput &in, const MemoryPlan &plan) {
     return plan.single_slice && budget_ == 0 && !learnt_.is_tight && in.settings.slice_size == 0 &&
-           is_exact(in.settings) && !parameters_of(in).is_of_balls() && !progress_.wanted();
+           is_exact(in.settings) && !parameters_of(in).is_of_balls() && !levels_.progress.wanted();
+  }
+  // Whether the levels of a ladder are made beside each other: where none is expected to wait.
+  bool may_be_beside(const FrameInput &in, const MemoryPlan &plan, Span<const float> spacings) {
+    return Executor::kIsCuda && spacings.size > 1 && in.atoms.count > 0 && !takes_times_ && may_anticipate(in, plan) &&
+           learnt_.is_proven && learnt_.milliseconds < kShortLadder;
   }
   // What frames have in common whose counts are much the same. Never 0.
   uint64_t kind_of(const FrameInput &in) const {
@@ -167,7 +176,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   // Where the ladder begins: at the top, or where it ended for as many atoms of the same size with no more memory.
   size_t first_step(const FrameInput &in) {
     const SurfaceParameters p = parameters_of(in);
-    if (in.atoms.count != learnt_.atoms || p.max_radius != learnt_.reach) rooms_.forget();
+    if (in.atoms.count != learnt_.atoms || p.max_radius != learnt_.reach) levels_.rooms.forget();
     if (in.atoms.count != learnt_.atoms || p.max_radius != learnt_.reach || p.spacing != learnt_.spacing)
       learnt_ = {in.atoms.count, p.max_radius, p.spacing, 0, 0, false, false, 0};
     if ((learnt_.step > 0 || learnt_.is_tight) && executor_.arena().share() > learnt_.share / 4 * 5) {
@@ -196,85 +205,11 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     return step;
   }
 
-  // ---- one attempt ---------------------------------------------------------------------------------------------
-
-  // How far a computation has come, over all attempts.
-  struct Course {
-    uint32_t attempts = 0;  // at the next level
-    size_t next = 0;        // levels before it are finished
-    bool is_prepared = false;
-    std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();  // of the next level
-  };
-
-  void compute_levels(const FrameInput &in, const MemoryPlan &plan, Span<const float> spacings, Course *course,
-                      LevelSink &sink) {
-    double total = 0, begun = 0;
-    for (float h : spacings) total += cost_of(h);
-    const auto start = std::chrono::steady_clock::now();
-    FinishedMesh out;
-    qses_report &report = out.report;
-    auto work = work_of(in, plan, &report);
-    if (in.atoms.count > 0) prepare_frame(work, in);
-    if (!course->is_prepared) sink.prepared(milliseconds_since(start));
-    course->is_prepared = true;
-    const auto mark = executor_.arena().mark();
-    for (size_t k = 0; k < spacings.size; ++k) {
-      const double before = begun;
-      begun += cost_of(spacings[k]);
-      if (k < course->next) continue;
-      progress_.enter(before / total, begun / total);
-      progress_.report(0.0);
-      qses_report_init(&report);
-      report.attempts = course->attempts;
-      report.measured_by = measured_by(in);
-      memory_.wait_for_copies();  // of a cancelled mesh, to memory of a slot that is given up now
-      memory_.use_slot(sink.slot());
-      MeshMemoryView built{};
-      if (in.atoms.count > 0) {
-        spacing_ = spacings[k];
-        if (work.makes_mesh) {
-          enter_level(work, spacing_);
-          executor_.turn_counts_to(spacing_);
-          check_forecast(work, in);
-        }
-        built = build_level(work);
-      }
-      timer_.begin("mesh_memory");
-      executor_.send_counts();
-      memory_.finish(built, in.settings, &out.on_host, &out.boxes, &out.on_device);
-      timer_.end();
-      executor_.verify_counts();
-      out.delivery = in.settings.delivery;
-      out.shape = built.shape;
-      out.on_host.spacing = out.on_device.mesh.spacing = spacings[k];
-      report.compute_ms = milliseconds_since(course->start);
-      course->start = std::chrono::steady_clock::now();
-      complete(built, in.settings, &report);
-      timer_.reset();
-      executor_.arena().rewind(mark);
-      progress_.report(1.0);
-      sink.finished(out);
-      course->next = k + 1;
-      course->attempts = 1;
-    }
-  }
-
-  // The work of a level grows with the number of its lattice points at the surface.
-  static double cost_of(float spacing) { return 1.0 / (static_cast<double>(spacing) * static_cast<double>(spacing)); }
-  static double milliseconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  }
-
-  LevelWork<Executor, Timer> work_of(const FrameInput &in, const MemoryPlan &plan, qses_report *report) {
-    LevelWork<Executor, Timer> work{executor_, timer_,      memory_, components_, rooms_, progress_,
-                                    table(),   in.settings, plan,    &facts_,     report};
-    work.area_memory = &area_memory_;
-    return work;
-  }
+  // ---- forecasts -----------------------------------------------------------------------------------------------
 
   // Before time is spent on a plan that won't do, or on a spacing that is hopelessly fine. Where a plan did for such
   // atoms before, nothing is predicted.
-  void check_forecast(LevelWork<Executor, Timer> &work, const FrameInput &in) {
+  void check_forecast(Work &work, const FrameInput &in) {
     auto &arena = executor_.arena();
     const bool is_fine = work.parameters.spacing < kCheckedSpacing, is_short = arena.has_budget() || learnt_.share > 0;
     if (learnt_.is_proven || !is_exact(in.settings) || !(is_fine || is_short)) return;
@@ -289,28 +224,6 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
                             arena.has_budget() ? 0.0 : static_cast<double>(arena.limit()));
   }
 
-  // Memory and times of the level that is just finished.
-  void complete(const MeshMemoryView &mesh, const qses_settings &settings, qses_report *report) {
-    report->work_bytes_peak = executor_.arena().peak() + memory_.outside_arena(executor_);
-    report->mesh_bytes = settings.delivery == QSES_DELIVERY_NONE ? 0 : mesh.bytes;
-    report->host_bytes_peak = atoms_.bytes() + components_.bytes() + area_memory_.size() + memory_.host_bytes() +
-                              (Executor::kIsCuda ? 0 : report->work_bytes_peak);
-    for (const auto &stage : timer_.collect()) {
-      if (report->stage_count == QSES_MAX_STAGES) break;
-      qses_stage_time &out = report->stages[report->stage_count++];
-      std::snprintf(out.name, sizeof out.name, "%s", stage.first);
-      out.milliseconds = stage.second;
-    }
-  }
-
-  // The tables of marching cubes, uploaded once.
-  const TableView &table() {
-    if (!table_.triangle_count) table_ = memory_.upload_table(executor_, marching_cubes_table());
-    return table_;
-  }
-
-  // ---- forecasts -----------------------------------------------------------------------------------------------
-
   bool knows_size() const { return facts_.size.vertices > 0; }
 
   // Bytes of the arena that a plan takes, if the sizes are as the facts say: the pipeline, only counted.
@@ -324,11 +237,12 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     WorkFacts facts;
     qses_report report;
     qses_report_init(&report);
-    LevelWork<Counting, NoTimer> work{counted, timer,       memory, components, rooms_, progress,
-                                      table_,  in.settings, plan,   &facts,     &report};
+    const TableView no_table{};
+    LevelWork<Counting, NoTimer> work{{},       counted,  timer,       memory, components, levels_.rooms,
+                                      progress, no_table, in.settings, plan,   &facts,     &report};
     prepare_frame(work, in);
     if (work.makes_mesh) enter_level(work, spacing_);
-    build_level(work);
+    end_level(work, quickses::begin_level(work));
     return counted.arena().peak();
   }
 
@@ -373,14 +287,14 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
                     describe_bytes(std::max(least, budget_ + budget_ / 8)) + " would do, or a larger spacing");
   }
 
-  Executor executor_;
-  Timer timer_;
+  FrameLevels<Executor, Timer> levels_;
+  Executor &executor_ = levels_.executor;
+  MeshMemory<Executor> &memory_ = levels_.memory;
+  WorkFacts &facts_ = levels_.facts;
   AtomPool<typename Executor::HostSource> atoms_;
-  MeshMemory<Executor> memory_;
-  ComponentFinder components_;
-  GrowingBuffer<HostMemory> area_memory_;
   uint64_t budget_;
-  LearntRooms<Executor> rooms_;
+  bool takes_times_ = false;  // of stages, whose levels are not made beside each other
+  bool is_beside_ = false;    // whether those of this frame are
   // Of the last computation of so many atoms with this largest inflated radius and finest spacing: where the ladder
   // ended, with how much memory, whether there was too little for what frames anticipate, and whether that did.
   struct {
@@ -391,10 +305,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     bool is_tight, is_proven;
     double milliseconds;
   } learnt_{};
-  WorkFacts facts_{};  // of the level that is being made
-  float spacing_ = 0;  // of that level
-  Progress progress_;
-  TableView table_{};
+  float spacing_ = 0;  // of the level that is being made
 };
 
 }  // namespace quickses

@@ -185,14 +185,38 @@ void begin_appearance(Work &work) {
   work.timer.begin(work.settings.occlusion ? "occlusion" : "appearance");
 }
 
-// The mesh of all atoms, measured; then what is shown of it, with hard edges if they are asked for.
+// The mesh of all atoms. Of a short frame like the one before, all of it is asked for and nothing is waited for.
 template <class Work>
-MeshMemoryView build_surface(Work &work) {
+MeshMemoryView begin_level(Work &work) {
+  if (!work.makes_mesh) return {};
+  return work.settings.surface == QSES_SURFACE_GAUSSIAN ? build_gaussian_surface(work)
+         : work.settings.method == QSES_METHOD_GRID     ? build_grid_surface(work)
+         : splits_creases(work)                         ? build_creased_surface(work)
+                                                        : build_exact_surface(work);
+}
+
+// Of a mesh that is painted and complete nothing is left but to bring it to where it is wanted: that is all that is
+// waited for, if what is measured is on its way as well.
+template <class Work>
+bool measures_come_later(Work &work, const MeshCounts &counts, const double *middle, MeshMemoryView *mesh) {
+  using Executor = std::decay_t<decltype(work.executor)>;
+  if constexpr (Executor::kIsCuda && !Executor::kCounts) {
+    if (!work.paints_early() || work.settings.atom_areas || work.shape.boxes ||
+        work.report->measured_by == QSES_MEASURED_BY_ATOMS)
+      return false;
+    const bool bent = work.report->measured_by == QSES_MEASURED_BY_NORMALS;
+    return work.settings.measure
+               ? send_sums(work.executor, measured_sums(mesh->view, counts, bent, middle, mesh->unplaced),
+                           &mesh->coming)
+               : send_sums(work.executor, bound_sums(mesh->view, counts, mesh->unplaced), &mesh->coming);
+  }
+  return false;
+}
+
+// It is measured; then what is shown of it, with hard edges if they are asked for.
+template <class Work>
+MeshMemoryView measure_and_cut(Work &work, MeshMemoryView mesh) {
   auto &executor = work.executor;
-  MeshMemoryView mesh = work.settings.surface == QSES_SURFACE_GAUSSIAN ? build_gaussian_surface(work)
-                        : work.settings.method == QSES_METHOD_GRID     ? build_grid_surface(work)
-                        : splits_creases(work)                         ? build_creased_surface(work)
-                                                                       : build_exact_surface(work);
   const MeshCounts counts{mesh.vertices, mesh.triangles};
   if (work.paints_early() && !mesh.is_brought) {
     begin_appearance(work);
@@ -208,22 +232,19 @@ MeshMemoryView build_surface(Work &work) {
         work.components.find(executor, mesh, work.parameters.spacing, bent, &work.report->unplaced_vertices);
     mesh.components = components.list;
     measures = components.total;
-  } else if (work.settings.measure) {
-    work.timer.begin("measure");
-    const double middle[3] = {work.lattice.center_x, work.lattice.center_y, work.lattice.center_z};
-    measures = measure(executor, mesh.view, counts, work.report->measured_by == QSES_MEASURED_BY_NORMALS, middle,
-                       mesh.unplaced, &work.report->unplaced_vertices);
   } else {
     work.timer.begin("measure");
-    measures.bounds = find_bounds(executor, mesh.view, counts, mesh.unplaced, &work.report->unplaced_vertices);
+    const double middle[3] = {work.lattice.center_x, work.lattice.center_y, work.lattice.center_z};
+    uint64_t *const unplaced = &work.report->unplaced_vertices;
+    if (measures_come_later(work, counts, middle, &mesh)) return mesh;
+    if (work.settings.measure)
+      measures = measure(executor, mesh.view, counts, work.report->measured_by == QSES_MEASURED_BY_NORMALS, middle,
+                         mesh.unplaced, unplaced);
+    else
+      measures.bounds = find_bounds(executor, mesh.view, counts, mesh.unplaced, unplaced);
   }
   mesh.bounds = measures.bounds;
-  if (work.settings.measure) {
-    work.report->area = measures.sums.area;
-    work.report->volume = measures.sums.volume;
-    work.report->triangle_area = measures.sums.flat_area;
-    work.report->triangle_volume = measures.sums.flat_volume;
-  }
+  if (work.settings.measure) note_measures(measures.sums, work.report);
   if (work.settings.atom_areas && !(is_exact(work.settings) && work.parameters.is_of_balls()))
     work.atom_areas = bring_areas(work, [&](double *areas) {
       measure_owners(executor, mesh.view, mesh.triangles, work.parameters.spacing, true, work.atoms.count, areas);
@@ -239,11 +260,11 @@ MeshMemoryView build_surface(Work &work) {
   return mesh;
 }
 
-// The mesh of the level, in memory of the arena and of the slots.
+// What is left to do for it: the mesh of the level, in memory of the arena and of the pools.
 template <class Work>
-MeshMemoryView build_level(Work &work) {
-  MeshMemoryView mesh{};
-  if (work.makes_mesh) mesh = build_surface(work);
+MeshMemoryView end_level(Work &work, MeshMemoryView mesh) {
+  settle_mesh(work, &mesh);
+  if (work.makes_mesh) mesh = measure_and_cut(work, mesh);
   if (work.settings.delivery != QSES_DELIVERY_NONE) {
     begin_appearance(work);
     complete_vertices(work, &mesh);

@@ -68,11 +68,11 @@ class StoppingEngine : public quickses::SurfaceEngine {
   void compute(const quickses::AtomSet &, const quickses::Appearance &, const qses_settings &,
                quickses::Span<const float> spacings, quickses::LevelSink &sink) override {
     for (size_t k = 0; k < std::min(spacings.size, finish_first); ++k) {
-      sink.slot();
+      sink.give_back();
       quickses::FinishedMesh mesh{};
       qses_mesh_init(&mesh.on_host);
       qses_report_init(&mesh.report);
-      sink.finished(mesh);
+      sink.finished(std::move(mesh));
     }
     job->cancel();
     EXPECT_TRUE(sink.stop_flag());
@@ -82,7 +82,6 @@ class StoppingEngine : public quickses::SurfaceEngine {
                               const std::atomic<bool> &) override {
     return {};
   }
-  quickses::MeshHold keep(int) override { return {}; }
   void enable_stage_times(bool) override {}
   void set_progress(std::function<void(double)>) override {}
 };

@@ -73,25 +73,16 @@ struct ExactRun {
   mesh_checks::Mesh mesh(const FeatureView &features) {
     const MarchingCubesTable &table = marching_cubes_table();
     const TableView view{table.triangle_count, table.edges, table.ring};
-    LevelWork<CpuKernelExecutor, CpuStageTimer> level{executor,
-                                                      timer,
-                                                      memory,
-                                                      components,
-                                                      rooms,
-                                                      progress,
-                                                      view,
-                                                      settings,
-                                                      plan,
-                                                      facts,
-                                                      &report,
-                                                      parameters,
-                                                      lattice,
-                                                      low,
-                                                      high,
-                                                      atoms,
-                                                      features,
-                                                      {},
-                                                      shape_of(settings, false)};
+    PreparedFrame frame;
+    frame.parameters = parameters;
+    frame.lattice = lattice;
+    frame.low = low;
+    frame.high = high;
+    frame.atoms = atoms;
+    frame.features = features;
+    frame.shape = frame.made_shape = shape_of(settings, false);
+    LevelWork<CpuKernelExecutor, CpuStageTimer> level{frame,    executor, timer,    memory, components, rooms,
+                                                      progress, view,     settings, plan,   facts,      &report};
     const MeshMemoryView built = build_exact_surface(level);
     mesh_checks::Mesh m;
     m.positions.assign(built.view.positions, built.view.positions + 3 * built.vertices);

@@ -12,12 +12,10 @@ namespace quickses {
 template <>
 class MeshMemory<CpuKernelExecutor> {
  public:
-  explicit MeshMemory(CpuKernelExecutor &) : meshes_(MeshPool::source<HostMemory>()) {}
+  explicit MeshMemory(CpuKernelExecutor &) : mesh_(MeshPool::source<HostMemory>()) {}
 
   void wait_for_copies() {}
-  void use_slot(int slot) { meshes_.use_slot(slot); }
-  MeshHold keep(int slot) { return {meshes_.keep(slot), {}, meshes_.share_pool()}; }
-  uint64_t host_bytes() const { return meshes_.bytes(); }
+  uint64_t host_bytes() const { return mesh_.bytes(); }
   // Bytes of work that are not in the arena; those that are taken off a budget for it at first; and those that it would
   // have to leave as far as is known, where the pool of features is in the arena.
   uint64_t outside_arena(const CpuKernelExecutor &executor) const { return executor.scratch_bytes(); }
@@ -33,7 +31,7 @@ class MeshMemory<CpuKernelExecutor> {
                                MeshPurpose purpose, bool in_pieces) {
     const MeshArrays arrays(vertices, triangles, shape);
     void *const memory = mesh_is_in_arena(false, purpose, in_pieces) ? executor.allocate<char>(arrays.bytes()).data
-                                                                     : meshes_.reserve(arrays.bytes());
+                                                                     : mesh_.reserve(arrays.bytes());
     return describe_memory(arrays, vertices, triangles, shape, false, memory);
   }
 
@@ -48,14 +46,17 @@ class MeshMemory<CpuKernelExecutor> {
   void note_triangles(CpuKernelExecutor &) {}
   void bring_triangles(const MeshMemoryView &, MeshPurpose) {}
   void bring_vertices(CpuKernelExecutor &, const MeshMemoryView &) {}
-  // Fills in both meshes and the boxes.
-  void finish(const MeshMemoryView &built, const qses_settings &settings, qses_mesh *mesh, PickBoxes *boxes,
-              qses_device_mesh *on_device) {
-    describe_mesh(built, settings.delivery == QSES_DELIVERY_NONE ? nullptr : &built.view, settings, mesh);
-    *boxes = built.view.boxes;
-    qses_device_mesh_init(on_device);
-    describe_mesh(built, nullptr, settings, &on_device->mesh);
-    meshes_.own_numbers(mesh, &on_device->mesh);
+  void send(const MeshMemoryView &) {}
+  // Hands it out: all but the report.
+  void finish(const MeshMemoryView &built, const qses_settings &settings, FinishedMesh *out) {
+    describe_mesh(built, settings.delivery == QSES_DELIVERY_NONE ? nullptr : &built.view, settings, &out->on_host);
+    out->boxes = built.view.boxes;
+    qses_device_mesh_init(&out->on_device);
+    describe_mesh(built, nullptr, settings, &out->on_device.mesh);
+    mesh_.own_numbers(&out->on_host, &out->on_device.mesh);
+    out->delivery = settings.delivery;
+    out->shape = built.shape;
+    out->memory = {mesh_.take(), {}, mesh_.share_pool()};
   }
 
   TableView upload_table(CpuKernelExecutor &, const MarchingCubesTable &table) {
@@ -63,7 +64,7 @@ class MeshMemory<CpuKernelExecutor> {
   }
 
  private:
-  MeshLeases meshes_;
+  PooledMesh mesh_;
 };
 
 }  // namespace quickses

@@ -8,6 +8,7 @@
 #include "parallel/later_release.h"
 #include "surface/mesh/mesh_memory.h"
 #include "surface/stages/hot_stages.h"
+#include "surface/stages/measure.h"
 
 #include <deque>
 
@@ -42,8 +43,13 @@ inline MeshPool::Source page_locked_meshes() {
 template <>
 class MeshMemory<CudaExecutor> {
  public:
-  explicit MeshMemory(CudaExecutor &executor)
-      : executor_(executor), host_meshes_(page_locked_meshes()), device_meshes_(device_meshes_of(executor.device())) {}
+  explicit MeshMemory(CudaExecutor &executor) : MeshMemory(executor, executor) {}
+  // main: the one that the context is said to have.
+  MeshMemory(CudaExecutor &executor, const CudaExecutor &main)
+      : executor_(executor),
+        stream_(main.stream()),
+        host_mesh_(page_locked_meshes()),
+        device_mesh_(device_meshes_of(executor.device())) {}
   ~MeshMemory() {
     try {
       const DeviceGuard guard(executor_.device());
@@ -65,31 +71,26 @@ class MeshMemory<CudaExecutor> {
     if (sends_triangles_) check_cuda(cudaStreamSynchronize(copies_), "cudaStreamSynchronize");
     sends_triangles_ = sends_vertices_ = false;
   }
-  void use_slot(int slot) {
-    host_meshes_.use_slot(slot);
-    device_meshes_.use_slot(slot);
-  }
-  MeshHold keep(int slot) { return {host_meshes_.keep(slot), device_meshes_.keep(slot), host_meshes_.share_pool()}; }
   // Where meshes that are handed out are wanted. What was given back since the last computation is the arena's again,
   // within a budget.
   void deliver_to(const qses_settings &settings) {
     keep_ = wants_device(settings);
     to_host_ = wants_host(settings);
     if (!executor_.arena().has_budget()) return;
-    if (!keep_) device_meshes_.pool().drop_spares();
-    executor_.arena().set_taken(device_meshes_.bytes());
+    if (!keep_) device_mesh_.pool().drop_spares();
+    executor_.arena().set_taken(device_mesh_.bytes());
   }
   // What was allocated beside a mesh in pieces, or as one to be made into another, is given up.
   void forget_spills() { spilled_ = 0; }
   uint64_t host_bytes() const {
-    uint64_t sum = host_meshes_.bytes();
+    uint64_t sum = host_mesh_.bytes();
     for (const PinnedBuffer &spill : spill_) sum += spill.size();
     return sum;
   }
 
   // Bytes of the device that are not in the arena.
   uint64_t outside_arena(const CudaExecutor &executor) const {
-    return allowed_outside(executor) + device_meshes_.bytes();
+    return allowed_outside(executor) + device_mesh_.bytes();
   }
   uint64_t allowed_outside(const CudaExecutor &) const {
     return sizeof(MarchingCubesTable) + CudaExecutor::kFixedBytes;
@@ -102,7 +103,7 @@ class MeshMemory<CudaExecutor> {
     const bool delivered = purpose == MeshPurpose::kDelivered;
     void *const memory = delivered && keep_                           ? keep(executor, arrays, in_pieces)
                          : mesh_is_in_arena(true, purpose, in_pieces) ? executor.allocate<char>(arrays.bytes()).data
-                         : delivered                                  ? host_meshes_.reserve(arrays.bytes())
+                         : delivered                                  ? host_mesh_.reserve(arrays.bytes())
                                                                       : spill(arrays.bytes());
     return describe_memory(arrays, vertices, triangles, shape, in_pieces, memory);
   }
@@ -154,19 +155,28 @@ class MeshMemory<CudaExecutor> {
     send_vertices(executor, mesh.view, mesh.vertices);
   }
 
-  void finish(const MeshMemoryView &built, const qses_settings &settings, qses_mesh *mesh, PickBoxes *boxes,
-              qses_device_mesh *on_device) {
-    MeshView host = built.view;
-    if (built.vertices > 0 && to_host_ && !built.in_pieces) host = bring(built);
+  // Where it goes out on the host, whatever of it is not on its way there.
+  void send(const MeshMemoryView &built) {
+    if (built.vertices == 0 || !to_host_ || built.in_pieces)
+      brought_ = built.view;
+    else
+      bring(built);
+  }
+  // Then hands it out, without the report but for sums that come along. Waits.
+  void finish(MeshMemoryView built, const qses_settings &settings, FinishedMesh *out) {
     executor_.wait();
     wait_for_copies();
-    describe_mesh(built, to_host_ ? &host : nullptr, settings, mesh);
-    *boxes = host.boxes;
-    qses_device_mesh_init(on_device);
-    on_device->device = executor_.device();
-    on_device->stream = executor_.stream();
-    describe_mesh(built, keep_ ? &built.view : nullptr, settings, &on_device->mesh);
-    host_meshes_.own_numbers(mesh, &on_device->mesh);
+    settle_sums(built.coming, &built.bounds, &out->report);
+    describe_mesh(built, to_host_ ? &brought_ : nullptr, settings, &out->on_host);
+    out->boxes = brought_.boxes;
+    qses_device_mesh_init(&out->on_device);
+    out->on_device.device = executor_.device();
+    out->on_device.stream = stream_;
+    describe_mesh(built, keep_ ? &built.view : nullptr, settings, &out->on_device.mesh);
+    host_mesh_.own_numbers(&out->on_host, &out->on_device.mesh);
+    out->delivery = settings.delivery;
+    out->shape = built.shape;
+    out->memory = {host_mesh_.take(), device_mesh_.take(), host_mesh_.share_pool()};
   }
 
   TableView upload_table(CudaExecutor &executor, const MarchingCubesTable &table) {
@@ -182,13 +192,13 @@ class MeshMemory<CudaExecutor> {
   // Room for a mesh that stays on the device. A budget covers it.
   void *keep(CudaExecutor &executor, const MeshArrays &arrays, bool in_pieces) {
     if (in_pieces) throw MemoryRefused("the mesh does not fit on the device, where it is wanted");
-    device_meshes_.lease().give_back();
-    MeshPool &pool = device_meshes_.pool();
+    device_mesh_.lease().give_back();
+    MeshPool &pool = device_mesh_.pool();
     // Within a budget nothing is held ready that does not fit.
     if (executor.arena().has_budget() && pool.bytes_with(arrays.bytes()) > pool.bytes()) pool.drop_spares();
     executor.arena().set_taken(pool.bytes_with(arrays.bytes()));
-    void *const memory = device_meshes_.reserve(arrays.bytes());
-    if (const std::shared_ptr<const StreamMark> readers = device_meshes_.lease().take_readers())
+    void *const memory = device_mesh_.reserve(arrays.bytes());
+    if (const std::shared_ptr<const StreamMark> readers = device_mesh_.lease().take_readers())
       readers->hold_back(executor.stream());
     return memory;
   }
@@ -207,15 +217,15 @@ class MeshMemory<CudaExecutor> {
   // Room on the host, and a stream.
   void make_room_for(const MeshMemoryView &mesh, const MeshShape &shape) {
     const MeshArrays arrays(mesh.vertices, mesh.triangles, shape);
-    brought_ = arrays.view(host_meshes_.reserve(arrays.bytes()));
+    brought_ = arrays.view(host_mesh_.reserve(arrays.bytes()));
     if (!copies_) check_cuda(cudaStreamCreateWithFlags(&copies_, cudaStreamNonBlocking), "cudaStreamCreateWithFlags");
     sends_triangles_ = true;
   }
 
   // The arrays of a whole mesh, without what is spare; triangles and vertices may be on their way already.
-  MeshView bring(const MeshMemoryView &mesh) {
+  void bring(const MeshMemoryView &mesh) {
     const MeshArrays arrays(mesh.vertices, mesh.triangles, without_spare(mesh.shape));
-    if (!sends_triangles_) brought_ = arrays.view(host_meshes_.reserve(arrays.bytes()));
+    if (!sends_triangles_) brought_ = arrays.view(host_mesh_.reserve(arrays.bytes()));
     const auto copy = [&](void *to, const void *from, size_t bytes) {
       executor_.download(static_cast<char *>(to), static_cast<const char *>(from), bytes);
     };
@@ -227,7 +237,6 @@ class MeshMemory<CudaExecutor> {
       executor_.download(brought_.boxes.runs, mesh.view.boxes.runs, PickBoxes::run_count(mesh.triangles));
       executor_.download(brought_.boxes.groups, mesh.view.boxes.groups, PickBoxes::group_count(mesh.triangles));
     }
-    return brought_;
   }
 
   // At most a mesh to be made into another one, its normals and those of the other one, sums and starts at a time.
@@ -237,7 +246,8 @@ class MeshMemory<CudaExecutor> {
   }
 
   CudaExecutor &executor_;
-  MeshLeases host_meshes_, device_meshes_;
+  const cudaStream_t stream_;
+  PooledMesh host_mesh_, device_mesh_;
   bool keep_ = false, to_host_ = false;
   cudaEvent_t triangles_made_ = nullptr, vertices_made_ = nullptr;
   cudaStream_t copies_ = nullptr;

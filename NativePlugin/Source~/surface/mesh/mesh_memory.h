@@ -13,6 +13,13 @@ struct Bounds {
   float min[3], max[3];  // Å, caller's coordinates; all 0 for an empty mesh
 };
 
+// Sums of parts of a mesh (MeshSums, stages/measure.h) that will be there on the host once it waits.
+struct ComingSums {
+  const void *parts = nullptr;
+  size_t count = 0;
+  bool are_measured = false;
+};
+
 // A mesh being made, in the memory of the back end.
 struct MeshMemoryView {
   MeshView view{};
@@ -23,6 +30,7 @@ struct MeshMemoryView {
   bool is_brought = false;             // CUDA: its vertices are painted and on their way to the host, as its triangles
   const uint32_t *unplaced = nullptr;  // vertices without a feature, in the memory of the back end; nullptr: none
   Bounds bounds{};
+  ComingSums coming{};                      // CUDA: of the bounds, and what else the report gets (settle_sums)
   Span<const qses_component> components{};  // in host memory
   Span<const double> atom_areas{};          // the same
 };
@@ -102,34 +110,45 @@ inline void describe_mesh(const MeshMemoryView &built, const MeshView *arrays, c
   if (arrays) point_at(*arrays, built.shape, mesh);
 }
 
-// What is held of a mesh that has left its slot.
+// Where a mesh that goes out has its memory.
 struct MeshHold {
   MeshLease on_host, on_device;
   std::shared_ptr<MeshPool> host_pool;  // for a copy on the host, if it is only on the device
 };
 
-// The memory of the meshes in the slots, as the pool gives it.
-class MeshLeases {
- public:
-  explicit MeshLeases(MeshPool::Source source) : pool_(std::make_shared<MeshPool>(std::move(source))) {}
-  ~MeshLeases() { pool_->close(); }
-  MeshLeases(const MeshLeases &) = delete;
-  MeshLeases &operator=(const MeshLeases &) = delete;
+// A mesh as it goes out, with its memory: whoever has it may let go of it on any thread.
+struct FinishedMesh {
+  qses_mesh on_host;
+  PickBoxes boxes;             // beside it
+  qses_delivery delivery;      // where it was wanted
+  qses_device_mesh on_device;  // empty arrays unless settings.delivery asks for it
+  MeshShape shape;
+  qses_report report;
+  MeshHold memory;
+};
 
-  void use_slot(int slot) { slot_ = slot; }
+// The memory of the mesh that is being made, of a pool of its own.
+class PooledMesh {
+ public:
+  explicit PooledMesh(MeshPool::Source source) : pool_(std::make_shared<MeshPool>(std::move(source))) {}
+  ~PooledMesh() { pool_->close(); }
+  PooledMesh(const PooledMesh &) = delete;
+  PooledMesh &operator=(const PooledMesh &) = delete;
+
+  // What it had is given back.
   void *reserve(size_t bytes) {
-    leases_[slot_].give_back();
-    leases_[slot_] = MeshLease(pool_, bytes);
-    return leases_[slot_].memory();
+    lease_.give_back();
+    lease_ = MeshLease(pool_, bytes);
+    return lease_.memory();
   }
-  // What comes in memory of whoever found it, into that of the slot.
+  // What comes in memory of whoever found it, into that of the mesh.
   void own_numbers(qses_mesh *mesh, qses_mesh *on_device) {
     on_device->components = mesh->components = own(MeshLease::kComponents, mesh->components, mesh->component_count);
     on_device->atom_areas = mesh->atom_areas = own(MeshLease::kAtomAreas, mesh->atom_areas, mesh->atom_count);
   }
-  // Takes the mesh that is finished out of its slot. From any thread, while another slot is in use.
-  MeshLease keep(int slot) { return std::move(leases_[slot]); }
-  MeshLease &lease() { return leases_[slot_]; }
+  // Of the mesh that is finished.
+  MeshLease take() { return std::move(lease_); }
+  MeshLease &lease() { return lease_; }
   MeshPool &pool() { return *pool_; }
   std::shared_ptr<MeshPool> share_pool() const { return pool_; }
   uint64_t bytes() const { return pool_->bytes(); }
@@ -138,13 +157,12 @@ class MeshLeases {
   template <class T>
   const T *own(MeshLease::Numbers which, const T *numbers, size_t n) {
     if (n == 0) return nullptr;
-    if (leases_[slot_].is_empty()) leases_[slot_] = MeshLease(pool_, 0);
-    return static_cast<const T *>(leases_[slot_].add(which, numbers, n * sizeof(T)));
+    if (lease_.is_empty()) lease_ = MeshLease(pool_, 0);
+    return static_cast<const T *>(lease_.add(which, numbers, n * sizeof(T)));
   }
 
   std::shared_ptr<MeshPool> pool_;
-  MeshLease leases_[kMeshSlots];
-  int slot_ = 0;
+  MeshLease lease_;
 };
 
 // Executor: whose memory the stages write to.

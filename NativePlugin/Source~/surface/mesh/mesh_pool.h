@@ -17,10 +17,6 @@ namespace quickses {
 
 class StreamMark;
 
-// Meshes are made in numbered slots. With three of them one can be written while another one waits to be collected and
-// the caller still reads the third.
-constexpr int kMeshSlots = 3;
-
 struct MeshBuffer {
   void *memory = nullptr;
   size_t size = 0;

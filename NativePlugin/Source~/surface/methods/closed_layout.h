@@ -57,6 +57,27 @@ MeshMemoryView begin_mesh(Work &work, const MeshCounts &counts) {
   return mesh;
 }
 
+// How large a mesh of which that was anticipated is, and where it goes. Waits for it.
+template <class Work>
+void settle_mesh(Work &work, MeshMemoryView *mesh) {
+  auto &executor = work.executor;
+  if (!work.untold.totals) return;
+  if (executor.verify_counts()) {
+    const MeshTotals found = executor.verified(work.untold.totals);
+    narrow_mesh(mesh, found.vertices, found.triangles);
+    note_size(work, work.untold.bricks ? executor.verified(work.untold.bricks).count : work.untold.most_bricks,
+              {found.vertices, found.triangles}, found.leaves);
+  }
+  work.untold = {};
+  if (!mesh->in_pieces) work.memory.bring_triangles(*mesh, work.purpose);
+}
+// The same in the midst of making it.
+template <class Work>
+void wait_for_size(Work &work, MeshMemoryView *mesh) {
+  if (work.hand_out_others) work.hand_out_others();
+  settle_mesh(work, mesh);
+}
+
 // Of all bricks at once, by methods of which counts are settled.
 template <class Work>
 void emit_all_triangles(Work &work, const BrickSet &bricks, const MeshLayout &layout, MeshMemoryView &mesh) {

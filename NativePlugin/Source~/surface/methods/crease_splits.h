@@ -206,7 +206,8 @@ MeshMemoryView build_creased_surface(Work &work) {
     work.executor.for_each(work.atoms.count, PlaceAtoms{work.atoms.order, places.data});
     plain.atom_places = places.data;
   }
-  const MeshMemoryView mesh = build_exact_surface(plain);
+  MeshMemoryView mesh = build_exact_surface(plain);
+  wait_for_size(plain, &mesh);
   if (mesh.vertices == 0) return mesh;
   work.timer.begin("creases");
   const GrowingMesh sharp =

@@ -149,8 +149,8 @@ MeshPart open_part(const Work &work, Executor &executor, const SliceSizes &sizes
   return part;
 }
 
-// All from the features to the mesh. Signs of all bricks first, slice by slice: numbers are global before anything is
-// emitted.
+// All from the features to the mesh, whose size may be left to be told (settle_mesh). Signs of all bricks first, slice
+// by slice: numbers are global before anything is emitted.
 template <class Work>
 MeshMemoryView build_exact_surface(Work &work) {
   auto &executor = work.executor;
@@ -219,22 +219,13 @@ MeshMemoryView build_exact_surface(Work &work) {
         work.memory.save(executor, mesh, part.view, part.vertices, with_triangles ? part.triangles : 0);
     });
   };
-  const auto settle_counts = [&] {
-    if (executor.verify_counts()) {
-      const MeshTotals found = executor.verified(layout.totals);
-      narrow_mesh(&mesh, found.vertices, found.triangles);
-      note_size(work, bricks.found ? executor.verified(bricks.found).count : bricks.count,
-                {found.vertices, found.triangles}, found.leaves);
-    }
-    if (!mesh.in_pieces) work.memory.bring_triangles(mesh, work.purpose);
-  };
   // For how much it is, a short frame waits when all of it is under way. A long one waits again and again while its
   // vertices are made; so it does that before, and its triangles go out meanwhile.
-  const bool runs_ahead = executor.runs_ahead();
+  work.untold = {layout.totals, bricks.found, bricks.count};
   work.timer.begin("projection");
-  if (!runs_ahead) settle_counts();
+  if (!executor.runs_ahead()) wait_for_size(work, &mesh);
   emit(0.45, 0.8, true);
-  if (runs_ahead) settle_counts();
+  if (work.settings.relaxation_steps > 1 || holds) wait_for_size(work, &mesh);
   work.progress.report(0.85);
 
   // Steps 2 and on: tangential, each projected again.

@@ -17,24 +17,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace quickses {
 
-template <class Executor, class Timer>
-struct LevelWork {
-  Executor &executor;
-  Timer &timer;
-  MeshMemory<Executor> &memory;
-  ComponentFinder &components;
-  LearntRooms<Executor> &rooms;
-  Progress &progress;
-  const TableView &table;
-  const qses_settings &settings;
-  MemoryPlan plan;
-  WorkFacts *facts;
-  qses_report *report;
+// Where it will be known how large a mesh is of which that was anticipated. No totals: it is known.
+struct UntoldSize {
+  const MeshTotals *totals = nullptr;
+  const Tally<uint64_t> *bricks = nullptr;  // nullptr: there are most_bricks
+  uint64_t most_bricks = 0;
+};
 
-  // By prepare_frame and enter_level (pipeline.h):
+// What prepare_frame makes for all levels of a frame, and enter_level (pipeline.h) turns to one of them.
+struct PreparedFrame {
   SurfaceParameters parameters{};
   Lattice lattice{};
   glm::vec3 low{0.f}, high{0.f};  // bounds of the atoms' centres, centred frame
@@ -50,10 +45,28 @@ struct LevelWork {
   bool hard_edges = false;     // whether a vertex on a crest is delivered once per side
   // Of creases of balls: the caller's number of an atom -> its place in the grid.
   const uint32_t *atom_places = nullptr;
-  GrowingBuffer<HostMemory> *area_memory = nullptr;  // of the areas of atoms
   bool makes_mesh = true;
   AtomMeasures atom_measures{};     // where the surface is that of the balls, and measured
   Span<const double> atom_areas{};  // in host memory; of all levels
+};
+
+template <class Executor, class Timer>
+struct LevelWork : PreparedFrame {
+  Executor &executor;
+  Timer &timer;
+  MeshMemory<Executor> &memory;
+  ComponentFinder &components;
+  LearntRooms<Executor> &rooms;
+  Progress &progress;
+  const TableView &table;
+  const qses_settings &settings;
+  MemoryPlan plan;
+  WorkFacts *facts;
+  qses_report *report;
+  GrowingBuffer<HostMemory> *area_memory = nullptr;  // of the areas of atoms
+  UntoldSize untold{};                               // of the mesh as it is made (closed_layout.h)
+  // Called before the host waits for this level: levels under way beside it go out first. Empty: there are none.
+  std::function<void()> hand_out_others{};
 
   // Whether the mesh, as it is made, has the vertices and normals that will be delivered: then they are painted before
   // anything waits for what is measured.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "parallel/atomics.h"
+#include "quickses/quickses.h"
 #include "surface/mesh/mesh_memory.h"
 #include "surface/stages/marching_cubes.h"
 #include "surface/stages/triangle_measures.h"
@@ -58,6 +59,7 @@ struct LoadMeshSums {
   size_t vertices, triangles;
   MeasureTriangle measure;
   const uint32_t *extra;
+  size_t items() const { return kMeasured ? std::max(vertices, triangles) : vertices; }
   QSES_FN MeshSums<kMeasured> operator()(size_t i) const {
     MeshSums<kMeasured> s;
     if (i < vertices)
@@ -89,18 +91,32 @@ struct LoadMeshSums {
   }
 };
 
+inline LoadMeshSums<false> bound_sums(const MeshView &mesh, const MeshCounts &counts, const uint32_t *extra) {
+  return {mesh, counts.vertices, 0, {}, extra};
+}
+inline LoadMeshSums<true> measured_sums(const MeshView &mesh, const MeshCounts &counts, bool bent, const double *origin,
+                                        const uint32_t *extra) {
+  return {mesh, counts.vertices, counts.triangles, {mesh, {origin[0], origin[1], origin[2]}, bent}, extra};
+}
+
+template <bool kMeasured>
+Bounds bounds_of(const MeshSums<kMeasured> &found) {
+  Bounds bounds;
+  for (int d = 0; d < 3; ++d) {
+    bounds.min[d] = from_ordered_bits(found.low[d]);
+    bounds.max[d] = from_ordered_bits(found.high[d]);
+  }
+  return bounds;
+}
+
 template <class Executor, bool kMeasured>
 Measures sum_mesh(Executor &executor, const LoadMeshSums<kMeasured> &load, uint64_t *extra_value) {
   Measures m = {};
   if (load.vertices == 0) return m;
-  const auto found = executor.template reduce<MeshSums<kMeasured>>(
-      kMeasured ? std::max(load.vertices, load.triangles) : load.vertices, load);
+  const auto found = executor.template reduce<MeshSums<kMeasured>>(load.items(), load);
   if (extra_value) *extra_value = found.extra;
   if constexpr (kMeasured) m.sums = found;
-  for (int d = 0; d < 3; ++d) {
-    m.bounds.min[d] = from_ordered_bits(found.low[d]);
-    m.bounds.max[d] = from_ordered_bits(found.high[d]);
-  }
+  m.bounds = bounds_of(found);
   return m;
 }
 
@@ -109,7 +125,7 @@ Measures sum_mesh(Executor &executor, const LoadMeshSums<kMeasured> &load, uint6
 template <class Executor>
 Bounds find_bounds(Executor &executor, const MeshView &mesh, const MeshCounts &counts, const uint32_t *extra = nullptr,
                    uint64_t *extra_value = nullptr) {
-  return sum_mesh(executor, LoadMeshSums<false>{mesh, counts.vertices, 0, {}, extra}, extra_value).bounds;
+  return sum_mesh(executor, bound_sums(mesh, counts, extra), extra_value).bounds;
 }
 
 // Area and volume as well. bent: along the exact normals that the vertices have. origin: a place near the mesh, from
@@ -117,8 +133,38 @@ Bounds find_bounds(Executor &executor, const MeshView &mesh, const MeshCounts &c
 template <class Executor>
 Measures measure(Executor &executor, const MeshView &mesh, const MeshCounts &counts, bool bent, const double *origin,
                  const uint32_t *extra = nullptr, uint64_t *extra_value = nullptr) {
-  const MeasureTriangle triangle{mesh, {origin[0], origin[1], origin[2]}, bent};
-  return sum_mesh(executor, LoadMeshSums<true>{mesh, counts.vertices, counts.triangles, triangle, extra}, extra_value);
+  return sum_mesh(executor, measured_sums(mesh, counts, bent, origin, extra), extra_value);
+}
+
+inline void note_measures(const TriangleSums &sums, qses_report *report) {
+  report->area = sums.area;
+  report->volume = sums.volume;
+  report->triangle_area = sums.flat_area;
+  report->triangle_volume = sums.flat_volume;
+}
+
+// On a GPU, the sums without waiting, as far as there is room for all parts of them.
+template <class Executor, bool kMeasured>
+bool send_sums(Executor &executor, const LoadMeshSums<kMeasured> &load, ComingSums *coming) {
+  const auto parts = executor.template reduce_later<MeshSums<kMeasured>>(load.items(), load);
+  *coming = {parts.data, parts.size, kMeasured};
+  return parts.size > 0;
+}
+template <bool kMeasured>
+void settle_parts(const ComingSums &coming, Bounds *bounds, qses_report *report) {
+  MeshSums<kMeasured> sum{};
+  for (size_t k = 0; k < coming.count; ++k) sum += static_cast<const MeshSums<kMeasured> *>(coming.parts)[k];
+  *bounds = bounds_of(sum);
+  report->unplaced_vertices = sum.extra;
+  if constexpr (kMeasured) note_measures(sum, report);
+}
+// When something has been waited for.
+inline void settle_sums(const ComingSums &coming, Bounds *bounds, qses_report *report) {
+  if (coming.count == 0) return;
+  if (coming.are_measured)
+    settle_parts<true>(coming, bounds, report);
+  else
+    settle_parts<false>(coming, bounds, report);
 }
 
 }  // namespace quickses

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+// Where the coarser levels of a ladder are made beside the finest one: each has streams and memory of its own, so that
+// a GPU which one of them leaves idle works on the others. A GPU goes through few vertices one dependent step after
+// the other: at 2 Å a small protein takes as long as at .5 Å.
+#pragma once
+
+#include "surface/mesh/mesh_memory.h"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace quickses {
+
+template <class Executor>
+struct LevelLane {
+  explicit LevelLane(const Executor &main) : executor(main.device(), true), memory(executor, main) {}
+  Executor executor;
+  MeshMemory<Executor> memory;
+  std::optional<typename Executor::StopScope> stop;  // of the frame
+};
+
+// On a CPU there are none. Use as the executor.
+template <class Executor>
+class CoarseLanes {
+ public:
+  // Ends with a frame: main goes on behind whatever lanes were given in it.
+  class Scope {
+   public:
+    Scope(CoarseLanes &lanes, Executor &main) : lanes_(lanes), main_(main) {}
+    ~Scope() { lanes_.close(main_); }
+    Scope(const Scope &) = delete;
+    Scope &operator=(const Scope &) = delete;
+
+   private:
+    CoarseLanes &lanes_;
+    Executor &main_;
+  };
+
+  // For so many levels of a frame of that kind (open_counts).
+  void open(const Executor &main, size_t count, uint64_t kind, const qses_settings &settings,
+            const std::atomic<bool> &stop) {
+    if constexpr (Executor::kIsCuda)
+      while (open_ < count) {
+        if (open_ == lanes_.size()) lanes_.push_back(std::make_unique<LevelLane<Executor>>(main));
+        LevelLane<Executor> &lane = *lanes_[open_++];
+        lane.stop.emplace(lane.executor, stop);
+        lane.memory.wait_for_copies();  // of a cancelled mesh
+        lane.memory.deliver_to(settings);
+        lane.executor.arena().reset();
+        lane.executor.open_counts(kind, true);
+      }
+  }
+  size_t count() const { return open_; }
+  LevelLane<Executor> &lane(size_t level) { return *lanes_[level]; }
+  // They go on behind what main has been given; another one behind what the lane of a level has been.
+  void go_behind(Executor &main) {
+    if constexpr (Executor::kIsCuda)
+      for (size_t k = 0; k < open_; ++k) lanes_[k]->executor.go_behind(main);
+  }
+  void go_behind(Executor &other, size_t level) {
+    if constexpr (Executor::kIsCuda) other.go_behind(lanes_[level]->executor);
+  }
+  // Their memory is needed elsewhere.
+  void drop() { lanes_.clear(); }
+
+  uint64_t work_bytes() const {
+    uint64_t sum = 0;
+    for (const auto &lane : lanes_) sum += lane->executor.arena().peak() + lane->memory.outside_arena(lane->executor);
+    return sum;
+  }
+  uint64_t host_bytes() const {
+    uint64_t sum = 0;
+    for (const auto &lane : lanes_) sum += lane->memory.host_bytes();
+    return sum;
+  }
+
+ private:
+  void close(Executor &main) noexcept {
+    if constexpr (Executor::kIsCuda)
+      for (size_t k = 0; k < open_; ++k) {
+        main.go_behind(lanes_[k]->executor);
+        lanes_[k]->stop.reset();
+      }
+    open_ = 0;
+  }
+
+  std::vector<std::unique_ptr<LevelLane<Executor>>> lanes_;
+  size_t open_ = 0;
+};
+
+}  // namespace quickses

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: MIT
+// The levels of a frame, made by one plan: one after the other, or, on a GPU, beside each other (coarse_lanes.h). And
+// all that they are made with, which is kept from frame to frame.
+#pragma once
+
+#include "surface/coarse_lanes.h"
+#include "surface/engine.h"
+#include "surface/levels_under_way.h"
+#include "surface/pipeline.h"
+
+#include <chrono>
+#include <cstdio>
+
+namespace quickses {
+
+inline double milliseconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+// How far a computation has come, over all attempts.
+struct Course {
+  uint32_t attempts = 0;  // at the next level
+  size_t next = 0;        // levels before it are finished
+  bool is_prepared = false;
+  std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();  // of the next level
+};
+
+// What a frame is made of, and by which plan.
+struct PlannedFrame {
+  const FrameInput &in;
+  const MemoryPlan &plan;
+  Span<const float> spacings;
+  uint64_t kind_beside;  // of frames whose levels are made beside each other (open_counts); 0: they are not
+  uint64_t atom_bytes;   // of the host, for the reports
+};
+
+template <class Executor, class Timer>
+class FrameLevels {
+ public:
+  using Work = LevelWork<Executor, Timer>;
+
+  // threads: for what is left to the CPU.
+  template <class... Arguments>
+  explicit FrameLevels(const WorkerThreads &threads, Arguments &&...arguments)
+      : executor(std::forward<Arguments>(arguments)...), timer(executor), memory(executor), components(threads) {}
+
+  Executor executor;
+  Timer timer;
+  MeshMemory<Executor> memory;
+  ComponentFinder components;
+  LearntRooms<Executor> rooms{};
+  Progress progress;
+  WorkFacts facts{};  // of the level that is being made; of those beside each other, of what they share
+
+  Work work_of(const FrameInput &in, const MemoryPlan &plan, qses_report *report) {
+    return {{},      executor,    timer, memory, components, rooms,        progress,
+            table(), in.settings, plan,  &facts, report,     &area_memory_};
+  }
+  // Tables of marching cubes, uploaded once.
+  const TableView &table() {
+    if (!table_.triangle_count) table_ = memory.upload_table(executor, marching_cubes_table());
+    return table_;
+  }
+
+  // All levels but those that are finished. check(work, spacing): whether to begin a level; throws if not.
+  template <class Check>
+  void make(const PlannedFrame &frame, Course *course, LevelSink &sink, const Check &check) {
+    double total = 0, begun = 0;
+    for (const float h : frame.spacings) total += cost_of(h);
+    const auto start = std::chrono::steady_clock::now();
+    qses_report report;
+    Work shared = work_of(frame.in, frame.plan, &report);
+    const bool is_beside = frame.kind_beside != 0;
+    const typename CoarseLanes<Executor>::Scope lanes_scope(lanes_, executor);
+    if (is_beside)
+      lanes_.open(executor, frame.spacings.size - 1, frame.kind_beside, frame.in.settings, sink.stop_flag());
+    if (frame.in.atoms.count > 0) prepare_frame(shared, frame.in);
+    if (!course->is_prepared) sink.prepared(milliseconds_since(start));
+    course->is_prepared = true;
+    if (is_beside) {
+      executor.send_counts();
+      lanes_.go_behind(executor);
+    }
+    Maker maker{*this, frame, course, sink};
+    LevelsUnderWay<Level, Maker> under_way(maker);
+    Level *coarser = nullptr;  // which is made beside the next one
+    for (size_t k = 0; k < frame.spacings.size; ++k) {
+      const double before = begun;
+      begun += cost_of(frame.spacings[k]);
+      if (k < course->next) continue;
+      const bool is_coarse = k < lanes_.count();
+      Executor &own_executor = is_coarse ? lanes_.lane(k).executor : executor;
+      MeshMemory<Executor> &own_memory = is_coarse ? lanes_.lane(k).memory : memory;
+      sink.give_back();
+      if (!is_coarse) executor.verify_counts();  // of what is prepared, if that was sent
+      own_memory.wait_for_copies();              // of a cancelled mesh, to memory that is given up now
+      const bool is_behind = coarser && coarser->facts.size.vertices > kManyVertices;
+      if (is_behind) lanes_.go_behind(own_executor, k - 1);
+      Level &level = under_way.add(is_behind, shared, own_executor, own_memory, is_beside);
+      level.work.hand_out_others = [&] { under_way.hand_out_others(); };
+      level.begin = before / total;
+      level.end = begun / total;
+      maker.begin(level, frame.spacings[k], check);
+      under_way.note_begun();
+      if (is_beside)
+        coarser = &level;
+      else
+        under_way.hand_out_all();
+    }
+    under_way.hand_out_all();
+  }
+
+  // Memory that only levels beside each other have is given up.
+  void drop_lanes() { lanes_.drop(); }
+
+ private:
+  // Beside a level of more vertices, which leaves little of the GPU, the next one would only be in its way.
+  static constexpr double kManyVertices = 30000;
+
+  // A level that is under way.
+  struct Level {
+    Level(const Work &frame, Executor &executor, MeshMemory<Executor> &memory, bool is_beside)
+        : facts(*frame.facts),
+          work{frame,
+               executor,
+               frame.timer,
+               memory,
+               frame.components,
+               frame.rooms,
+               frame.progress,
+               frame.table,
+               frame.settings,
+               frame.plan,
+               is_beside ? &facts : frame.facts,
+               &out.report,
+               frame.area_memory},
+          start(executor.arena().mark()) {
+      qses_report_init(&out.report);
+    }
+    FinishedMesh out{};
+    WorkFacts facts;  // where it is made beside others
+    Work work;
+    decltype(std::declval<Executor &>().arena().mark()) start;
+    MeshMemoryView mesh{};
+    double begin = 0, end = 0;  // of it, as fractions of all levels
+  };
+
+  // What is done for each level.
+  struct Maker {
+    FrameLevels &levels;
+    const PlannedFrame &frame;
+    Course *course;
+    LevelSink &sink;
+
+    template <class Check>
+    void begin(Level &level, float spacing, const Check &check) {
+      Work &work = level.work;
+      levels.progress.enter(level.begin, level.end);
+      levels.progress.report(0.0);
+      level.out.on_host.spacing = spacing;
+      if (frame.in.atoms.count == 0) return;
+      if (work.makes_mesh) {
+        enter_level(work, spacing);
+        work.executor.turn_counts_to(spacing);
+      }
+      check(work, spacing);
+      level.mesh = begin_level(work);
+    }
+    void end(Level &level) {
+      Work &work = level.work;
+      level.out.report.measured_by = measured_by(frame.in);
+      levels.progress.enter(level.begin, level.end);
+      if (frame.in.atoms.count > 0) level.mesh = end_level(work, level.mesh);
+      levels.timer.begin("mesh_memory");
+      work.executor.send_counts();
+      work.memory.send(level.mesh);
+    }
+    void hand_out(Level &level) {
+      Work &work = level.work;
+      FinishedMesh &out = level.out;
+      const float spacing = out.on_host.spacing;
+      work.memory.finish(level.mesh, frame.in.settings, &out);
+      levels.timer.end();
+      work.executor.verify_counts();
+      out.on_host.spacing = out.on_device.mesh.spacing = spacing;
+      out.report.attempts = course->attempts;
+      out.report.compute_ms = milliseconds_since(course->start);
+      course->start = std::chrono::steady_clock::now();
+      levels.complete(level.mesh, frame, &out.report);
+      levels.timer.reset();
+      work.executor.arena().rewind(level.start);
+      levels.progress.report(1.0);
+      sink.give_back();
+      sink.finished(std::move(out));
+      ++course->next;
+      course->attempts = 1;
+    }
+  };
+
+  // The work of a level grows with the number of its lattice points at the surface.
+  static double cost_of(float spacing) { return 1.0 / (static_cast<double>(spacing) * static_cast<double>(spacing)); }
+
+  // Memory and times of the level that is just finished.
+  void complete(const MeshMemoryView &mesh, const PlannedFrame &frame, qses_report *report) {
+    report->work_bytes_peak = executor.arena().peak() + memory.outside_arena(executor) + lanes_.work_bytes();
+    report->mesh_bytes = frame.in.settings.delivery == QSES_DELIVERY_NONE ? 0 : mesh.bytes;
+    report->host_bytes_peak = frame.atom_bytes + components.bytes() + area_memory_.size() + memory.host_bytes() +
+                              lanes_.host_bytes() + (Executor::kIsCuda ? 0 : report->work_bytes_peak);
+    for (const auto &stage : timer.collect()) {
+      if (report->stage_count == QSES_MAX_STAGES) break;
+      qses_stage_time &out = report->stages[report->stage_count++];
+      std::snprintf(out.name, sizeof out.name, "%s", stage.first);
+      out.milliseconds = stage.second;
+    }
+  }
+
+  CoarseLanes<Executor> lanes_;
+  GrowingBuffer<HostMemory> area_memory_;
+  TableView table_{};
+};
+
+}  // namespace quickses

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// The levels of a ladder that are under way, in their order. A level is begun, ended, which asks the back end for the
+// rest of it, and handed out, which waits for it. Those that are made beside each other are all ended before the host
+// waits for the one in front, so that they go out together.
+#pragma once
+
+#include "surface/levels.h"
+
+#include <cstddef>
+#include <optional>
+#include <utility>
+
+namespace quickses {
+
+// Maker: has end(Level &) and hand_out(Level &). Nothing is allocated.
+template <class Level, class Maker>
+class LevelsUnderWay {
+ public:
+  explicit LevelsUnderWay(Maker &maker) : maker_(maker) {}
+  LevelsUnderWay(const LevelsUnderWay &) = delete;
+  LevelsUnderWay &operator=(const LevelsUnderWay &) = delete;
+
+  // The next one, which is about to begin: beside the one before, or behind it.
+  template <class... Arguments>
+  Level &add(bool is_behind, Arguments &&...arguments) {
+    is_behind_[last_] = is_behind;
+    begun_ = last_;
+    return levels_[last_++].emplace(std::forward<Arguments>(arguments)...);
+  }
+  void note_begun() { begun_ = last_; }
+
+  // The last one is about to wait for the back end: the others go out first.
+  void hand_out_others() {
+    while (first_ + 1 < last_) hand_out_first();
+  }
+  void hand_out_all() {
+    while (first_ < last_) hand_out_first();
+  }
+
+ private:
+  void end_first() {
+    while (ended_ < begun_ && (ended_ == first_ || !is_behind_[ended_])) maker_.end(*levels_[ended_++]);
+  }
+  void hand_out_first() {
+    end_first();
+    maker_.hand_out(*levels_[first_]);
+    levels_[first_++].reset();
+  }
+
+  Maker &maker_;
+  std::optional<Level> levels_[Levels::kMax];
+  bool is_behind_[Levels::kMax] = {};
+  size_t first_ = 0, ended_ = 0, begun_ = 0, last_ = 0;  // those before them are handed out, ended, begun, there
+};
+
+}  // namespace quickses
