@@ -37,17 +37,20 @@ class CoarseLanes {
     Executor &main_;
   };
 
-  // For so many levels of a frame of that kind (open_counts).
-  void open(const Executor &main, size_t count, uint64_t kind, const qses_settings &settings,
+  // For all but the last of the levels, of frames of that kind (open_counts).
+  void open(Executor &main, Span<const float> spacings, uint64_t kind, const qses_settings &settings,
             const std::atomic<bool> &stop) {
     if constexpr (Executor::kIsCuda)
-      while (open_ < count) {
+      while (open_ + 1 < spacings.size) {
+        const float of_finest = spacings[spacings.size - 1] / spacings[open_];
         if (open_ == lanes_.size()) lanes_.push_back(std::make_unique<LevelLane<Executor>>(main));
         LevelLane<Executor> &lane = *lanes_[open_++];
         lane.stop.emplace(lane.executor, stop);
         lane.memory.wait_for_copies();  // of a cancelled mesh
         lane.memory.deliver_to(settings);
         lane.executor.arena().reset();
+        // Of what a frame takes. It would be the square for vertices alone, but what decides about each is more.
+        lane.executor.arena().expect(static_cast<uint64_t>(of_finest * static_cast<float>(main.arena().held())));
         lane.executor.open_counts(kind, true);
       }
   }

@@ -72,8 +72,7 @@ class FrameLevels {
     Work shared = work_of(frame.in, frame.plan, &report);
     const bool is_beside = frame.kind_beside != 0;
     const typename CoarseLanes<Executor>::Scope lanes_scope(lanes_, executor);
-    if (is_beside)
-      lanes_.open(executor, frame.spacings.size - 1, frame.kind_beside, frame.in.settings, sink.stop_flag());
+    if (is_beside) lanes_.open(executor, frame.spacings, frame.kind_beside, frame.in.settings, sink.stop_flag());
     if (frame.in.atoms.count > 0) prepare_frame(shared, frame.in);
     if (!course->is_prepared) sink.prepared(milliseconds_since(start));
     course->is_prepared = true;
@@ -173,7 +172,7 @@ class FrameLevels {
       if (frame.in.atoms.count > 0) level.mesh = end_level(work, level.mesh);
       levels.timer.begin("mesh_memory");
       work.executor.send_counts();
-      work.memory.send(level.mesh);
+      work.memory.send(&level.mesh);
     }
     void hand_out(Level &level) {
       Work &work = level.work;

@@ -137,7 +137,9 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
       } catch (const AnticipatedTooLittle &) {  // the same again: it waits for all counts now
       } catch (const MemoryRefused &refused) {
         levels_.drop_lanes();
-        if (executor_.has_anticipated() || is_beside_)
+        if (is_beside_)
+          note_loneliness();  // the same again, one level after the other
+        else if (executor_.has_anticipated())
           note_tightness();  // the same again, without the room for more than there is
         else if (!refused.again())
           step = next_step(in, step);
@@ -159,7 +161,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   // Whether the levels of a ladder are made beside each other: where none is expected to wait.
   bool may_be_beside(const FrameInput &in, const MemoryPlan &plan, Span<const float> spacings) {
     return Executor::kIsCuda && spacings.size > 1 && in.atoms.count > 0 && !takes_times_ && may_anticipate(in, plan) &&
-           learnt_.is_proven && learnt_.milliseconds < kShortLadder;
+           learnt_.is_proven && !learnt_.is_lone && learnt_.milliseconds < kShortLadder;
   }
   // What frames have in common whose counts are much the same. Never 0.
   uint64_t kind_of(const FrameInput &in) const {
@@ -178,10 +180,11 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     const SurfaceParameters p = parameters_of(in);
     if (in.atoms.count != learnt_.atoms || p.max_radius != learnt_.reach) levels_.rooms.forget();
     if (in.atoms.count != learnt_.atoms || p.max_radius != learnt_.reach || p.spacing != learnt_.spacing)
-      learnt_ = {in.atoms.count, p.max_radius, p.spacing, 0, 0, false, false, 0};
-    if ((learnt_.step > 0 || learnt_.is_tight) && executor_.arena().share() > learnt_.share / 4 * 5) {
+      learnt_ = {in.atoms.count, p.max_radius, p.spacing, 0, 0, false, false, false, 0};
+    const bool had_too_little = learnt_.step > 0 || learnt_.is_tight || learnt_.is_lone;
+    if (had_too_little && executor_.arena().share() > learnt_.share / 4 * 5) {
       learnt_.step = 0;
-      learnt_.is_tight = false;
+      learnt_.is_tight = learnt_.is_lone = false;
     }
     return learnt_.step;
   }
@@ -189,6 +192,11 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   void note_tightness() {
     executor_.arena().release();
     learnt_.is_tight = true;
+    learnt_.share = executor_.arena().share();
+  }
+
+  void note_loneliness() {
+    learnt_.is_lone = true;
     learnt_.share = executor_.arena().share();
   }
 
@@ -296,13 +304,14 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   bool takes_times_ = false;  // of stages, whose levels are not made beside each other
   bool is_beside_ = false;    // whether those of this frame are
   // Of the last computation of so many atoms with this largest inflated radius and finest spacing: where the ladder
-  // ended, with how much memory, whether there was too little for what frames anticipate, and whether that did.
+  // ended, with how much memory, whether there was too little for what frames anticipate, or for levels beside each
+  // other, and whether that did.
   struct {
     size_t atoms;
     float reach, spacing;
     size_t step;
     uint64_t share;
-    bool is_tight, is_proven;
+    bool is_tight, is_lone, is_proven;
     double milliseconds;
   } learnt_{};
   float spacing_ = 0;  // of the level that is being made

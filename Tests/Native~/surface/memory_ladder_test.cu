@@ -103,6 +103,37 @@ TEST(GpuMemoryLadder, MakesDoWithWhatOthersLeave) {
   EXPECT_GT(sliced, 0) << "there was always enough: nothing was tested";
 }
 
+// Levels that would be made beside each other have memory of their own; where there is none, they come one by one.
+TEST(GpuMemoryLadder, MakesTheLevelsOfALadderWithWhatOthersLeave) {
+  REQUIRE_DEVICE();
+  const Atoms atoms = block_of_crambins(2);
+  const qses_settings s = settings(0.5);
+  const Surface expected = compute(Context(0, 0, QSES_BACKEND_CUDA), atoms, s);
+  for (const uint64_t left : {0, 1, 2, 4, 8, 16, 32}) {
+    const std::string what = std::to_string(left) + " MiB";
+    const Context context(0, 0, QSES_BACKEND_CUDA);
+    set_atoms(context, atoms);
+    const auto expect_ladder = [&] {
+      expect_ok(qses_begin(context, &s));
+      expect_ok(qses_wait(context, -1, nullptr));
+      qses_mesh mesh;
+      qses_mesh_init(&mesh);
+      ASSERT_EQ(qses_collect(context, &mesh), QSES_OK) << what;
+      qses_progress progress;
+      qses_progress_init(&progress);
+      expect_ok(qses_poll(context, &progress));
+      EXPECT_EQ(progress.state, QSES_JOB_FINISHED) << what << ": " << progress.message;
+      expect_same(mesh, expected, what);
+    };
+    expect_ladder();
+    {
+      const OtherProcess others(left << 20);
+      for (int frame = 0; frame < 3; ++frame) expect_ladder();
+    }
+    for (int frame = 0; frame < 3; ++frame) expect_ladder();
+  }
+}
+
 // Counts launches by name.
 class LaunchCounter : public quickses::CudaExecutor {
  public:

@@ -46,14 +46,14 @@ class MeshMemory<CpuKernelExecutor> {
   void note_triangles(CpuKernelExecutor &) {}
   void bring_triangles(const MeshMemoryView &, MeshPurpose) {}
   void bring_vertices(CpuKernelExecutor &, const MeshMemoryView &) {}
-  void send(const MeshMemoryView &) {}
+  // A mesh that is complete gets memory for all that goes out with it.
+  void send(MeshMemoryView *built) { mesh_.own_numbers(built); }
   // Hands it out: all but the report.
   void finish(const MeshMemoryView &built, const qses_settings &settings, FinishedMesh *out) {
     describe_mesh(built, settings.delivery == QSES_DELIVERY_NONE ? nullptr : &built.view, settings, &out->on_host);
     out->boxes = built.view.boxes;
     qses_device_mesh_init(&out->on_device);
     describe_mesh(built, nullptr, settings, &out->on_device.mesh);
-    mesh_.own_numbers(&out->on_host, &out->on_device.mesh);
     out->delivery = settings.delivery;
     out->shape = built.shape;
     out->memory = {mesh_.take(), {}, mesh_.share_pool()};

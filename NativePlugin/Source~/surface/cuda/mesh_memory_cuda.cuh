@@ -155,12 +155,14 @@ class MeshMemory<CudaExecutor> {
     send_vertices(executor, mesh.view, mesh.vertices);
   }
 
-  // Where it goes out on the host, whatever of it is not on its way there.
-  void send(const MeshMemoryView &built) {
-    if (built.vertices == 0 || !to_host_ || built.in_pieces)
-      brought_ = built.view;
+  // A mesh that is complete gets memory for all that goes out with it; and goes to the host, if it is wanted there, as
+  // far as it is not on its way.
+  void send(MeshMemoryView *built) {
+    if (built->vertices == 0 || !to_host_ || built->in_pieces)
+      brought_ = built->view;
     else
-      bring(built);
+      bring(*built);
+    host_mesh_.own_numbers(built);
   }
   // Then hands it out, without the report but for sums that come along. Waits.
   void finish(MeshMemoryView built, const qses_settings &settings, FinishedMesh *out) {
@@ -173,7 +175,6 @@ class MeshMemory<CudaExecutor> {
     out->on_device.device = executor_.device();
     out->on_device.stream = stream_;
     describe_mesh(built, keep_ ? &built.view : nullptr, settings, &out->on_device.mesh);
-    host_mesh_.own_numbers(&out->on_host, &out->on_device.mesh);
     out->delivery = settings.delivery;
     out->shape = built.shape;
     out->memory = {host_mesh_.take(), device_mesh_.take(), host_mesh_.share_pool()};

@@ -141,10 +141,10 @@ class PooledMesh {
     lease_ = MeshLease(pool_, bytes);
     return lease_.memory();
   }
-  // What comes in memory of whoever found it, into that of the mesh.
-  void own_numbers(qses_mesh *mesh, qses_mesh *on_device) {
-    on_device->components = mesh->components = own(MeshLease::kComponents, mesh->components, mesh->component_count);
-    on_device->atom_areas = mesh->atom_areas = own(MeshLease::kAtomAreas, mesh->atom_areas, mesh->atom_count);
+  // What is in memory of whoever found it goes into that of the mesh, which is reserved by then, if it is to be.
+  void own_numbers(MeshMemoryView *mesh) {
+    mesh->components.data = own(MeshLease::kComponents, mesh->components);
+    mesh->atom_areas.data = own(MeshLease::kAtomAreas, mesh->atom_areas);
   }
   // Of the mesh that is finished.
   MeshLease take() { return std::move(lease_); }
@@ -155,10 +155,10 @@ class PooledMesh {
 
  private:
   template <class T>
-  const T *own(MeshLease::Numbers which, const T *numbers, size_t n) {
-    if (n == 0) return nullptr;
+  const T *own(MeshLease::Numbers which, Span<const T> numbers) {
+    if (numbers.size == 0) return nullptr;
     if (lease_.is_empty()) lease_ = MeshLease(pool_, 0);
-    return static_cast<const T *>(lease_.add(which, numbers, n * sizeof(T)));
+    return static_cast<const T *>(lease_.add(which, numbers.data, numbers.size * sizeof(T)));
   }
 
   std::shared_ptr<MeshPool> pool_;

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: MIT
+// Each level of a ladder is what it is by itself, however the frames before it were, and whether or not the levels are
+// made beside each other.
+#include "surface/engine.h"
+#include "surface/levels.h"
+#include "surface/surface_checks.h"
+
+#include <cstring>
+#include <random>
+#include <thread>
+
+namespace {
+
+using namespace surface_checks;
+
+std::unique_ptr<quickses::SurfaceEngine> make_engine() {
+  const quickses::WorkerThreads threads(2);
+#if defined(QUICKSES_HAS_CUDA)
+  if (tested_backend() == QSES_BACKEND_CUDA) return quickses::make_cuda_engine(0, threads, 0);
+#endif
+  return quickses::make_cpu_engine(threads, 0);
+}
+
+// Keeps all levels, and may stop the computation when so many of them are finished.
+class Levels : public quickses::LevelSink {
+ public:
+  std::vector<quickses::FinishedMesh> meshes;
+  size_t stop_behind = ~size_t(0);
+  std::atomic<bool> stop{false};
+
+  // Was more than one of them begun before the first was finished? Memory is given back before each of both.
+  bool were_beside() const { return given_back_ > 2; }
+
+  void prepared(double) override {}
+  void give_back() override {
+    if (meshes.empty()) ++given_back_;
+  }
+  void finished(quickses::FinishedMesh mesh) override {
+    meshes.push_back(std::move(mesh));
+    if (meshes.size() == stop_behind) stop = true;
+  }
+  void advance(double fraction) override {
+    EXPECT_GE(fraction, last_);
+    last_ = fraction;
+  }
+  const std::atomic<bool> &stop_flag() const override { return stop; }
+
+ private:
+  size_t given_back_ = 0;  // until the first was finished
+  double last_ = 0;
+};
+
+std::shared_ptr<quickses::AtomSet> atoms_of(quickses::SurfaceEngine &engine, const Atoms &atoms) {
+  auto set = engine.make_atoms(atoms.size());
+  quickses::AtomBounds &bounds = set->bounds;
+  bounds = {glm::vec3(1e9f), glm::vec3(-1e9f), 0.f};
+  for (size_t i = 0; i < atoms.size(); ++i) {
+    const glm::vec3 center(atoms.positions[3 * i], atoms.positions[3 * i + 1], atoms.positions[3 * i + 2]);
+    set->atoms[i] = quickses::Sphere{center, atoms.radii[i]};
+    bounds.low = glm::min(bounds.low, center);
+    bounds.high = glm::max(bounds.high, center);
+    bounds.max_radius = std::max(bounds.max_radius, atoms.radii[i]);
+  }
+  return set;
+}
+
+void compute(quickses::SurfaceEngine &engine, const Atoms &atoms, const qses_settings &s, Levels *levels) {
+  const quickses::Levels ladder = quickses::levels_of(s);
+  engine.compute(*atoms_of(engine, atoms), quickses::Appearance{}, s, {ladder.spacings, ladder.count}, *levels);
+}
+
+template <class T>
+void expect_equal(const T *a, const T *b, size_t n, const char *what) {
+  ASSERT_EQ(a == nullptr, b == nullptr) << what;
+  if (a && n > 0) {
+    EXPECT_EQ(std::memcmp(a, b, n * sizeof(T)), 0) << what;
+  }
+}
+
+void expect_same(const quickses::FinishedMesh &a, const quickses::FinishedMesh &b) {
+  const qses_mesh &p = a.on_host, &q = b.on_host;
+  ASSERT_EQ(p.vertex_count, q.vertex_count);
+  ASSERT_EQ(p.triangle_count, q.triangle_count);
+  EXPECT_EQ(p.spacing, q.spacing);
+  const size_t v = p.vertex_count;
+  if (p.vertex_bytes > 0) {
+    expect_equal(reinterpret_cast<const char *>(p.positions), reinterpret_cast<const char *>(q.positions),
+                 v * p.vertex_bytes, "vertices");
+  } else {
+    expect_equal(p.positions, q.positions, 3 * v, "positions");
+    expect_equal(p.normals, q.normals, 3 * v, "normals");
+    expect_equal(p.owners, q.owners, v, "owners");
+    expect_equal(p.component_ids, q.component_ids, v, "component_ids");
+  }
+  expect_equal(p.indices, q.indices, 3 * size_t(p.triangle_count), "indices");
+  ASSERT_EQ(p.component_count, q.component_count);
+  for (uint32_t k = 0; k < p.component_count; ++k) EXPECT_EQ(p.components[k].volume, q.components[k].volume);
+  ASSERT_EQ(p.atom_count, q.atom_count);
+  expect_equal(p.atom_areas, q.atom_areas, p.atom_count, "atom_areas");
+  for (int d = 0; d < 3; ++d) {
+    EXPECT_EQ(p.bounds_min[d], q.bounds_min[d]);
+    EXPECT_EQ(p.bounds_max[d], q.bounds_max[d]);
+  }
+  const qses_report &r = a.report, &s = b.report;
+  EXPECT_EQ(r.area, s.area);
+  EXPECT_EQ(r.volume, s.volume);
+  EXPECT_EQ(r.triangle_area, s.triangle_area);
+  EXPECT_EQ(r.brick_count, s.brick_count);
+  EXPECT_EQ(r.unplaced_vertices, s.unplaced_vertices);
+  EXPECT_EQ(r.mesh_bytes, s.mesh_bytes);
+  EXPECT_EQ(r.measured_by, s.measured_by);
+}
+
+// The levels as a first frame has them: one after the other.
+void expect_as_by_themselves(const Levels &found, const Atoms &atoms, const qses_settings &s) {
+  Levels alone;
+  compute(*make_engine(), atoms, s, &alone);
+  EXPECT_FALSE(alone.were_beside());
+  ASSERT_LE(found.meshes.size(), alone.meshes.size());
+  for (size_t k = 0; k < found.meshes.size(); ++k) {
+    SCOPED_TRACE("level " + std::to_string(k));
+    expect_same(found.meshes[k], alone.meshes[k]);
+  }
+}
+
+Atoms scaled(const Atoms &atoms, double factor) {
+  Atoms out;
+  for (size_t i = 0; i < atoms.size(); ++i) {
+    const auto p = atoms.center(i);
+    out.add(factor * p[0], factor * p[1], factor * p[2], static_cast<double>(atoms.radii[i]));
+  }
+  return out;
+}
+
+using Change = void (*)(qses_settings *);
+const Change kChanges[] = {
+    [](qses_settings *) {},
+    [](qses_settings *s) { s->measure = 0; },
+    [](qses_settings *s) { s->relaxation_steps = 3; },
+    [](qses_settings *s) { s->creases = 1; },
+    [](qses_settings *s) { s->hard_edges = 1; },
+    [](qses_settings *s) { s->components = s->component_ids = 1; },
+    [](qses_settings *s) { s->atom_areas = 1; },
+    [](qses_settings *s) { s->pickable = 1; },
+    [](qses_settings *s) { s->outer_only = 1; },
+    [](qses_settings *s) { s->occlusion = 1; },
+    [](qses_settings *s) { s->vertex_layout = QSES_VERTICES_INTERLEAVED; },
+    [](qses_settings *s) { s->vertex_layout = QSES_VERTICES_COMPACT; },
+    [](qses_settings *s) { s->surface = QSES_SURFACE_SAS; },
+    [](qses_settings *s) { s->method = QSES_METHOD_GRID; },
+    [](qses_settings *s) {
+      s->level_count = 4;
+      const float levels[] = {3.f, 2.f, 1.5f, 0.8f};
+      std::copy(levels, levels + 4, s->levels);
+    },
+};
+
+TEST(LadderLevels, AreAsByThemselves) {
+  const Atoms molecule = cluster(400, 5);
+  size_t beside = 0;
+  for (size_t k = 0; k < std::size(kChanges); ++k) {
+    SCOPED_TRACE("change " + std::to_string(k));
+    qses_settings s = settings();
+    kChanges[k](&s);
+    const auto engine = make_engine();
+    for (const double factor : {1.0, 1.0, 1.0, 1.003, 1.01, 2.5, 2.5, 0.02, 1.0, 1.0, 1.0}) {
+      SCOPED_TRACE("factor " + std::to_string(factor));
+      const Atoms atoms = scaled(molecule, factor);
+      Levels levels;
+      compute(*engine, atoms, s, &levels);
+      EXPECT_EQ(levels.meshes.size(), quickses::levels_of(s).count);
+      beside += levels.were_beside() ? 1 : 0;
+      expect_as_by_themselves(levels, atoms, s);
+    }
+  }
+  if (tested_backend() == QSES_BACKEND_CUDA) {
+    EXPECT_GT(beside, 40u) << "hardly any levels were made beside each other: little was tested";
+  }
+}
+
+// Levels that are given up leave nothing behind.
+TEST(LadderLevels, MayBeGivenUpAtAnyMoment) {
+  const Atoms molecule = cluster(400, 6);
+  std::mt19937 random(11);
+  size_t cancelled = 0;
+  for (const Change change : {kChanges[0], kChanges[3], kChanges[11]}) {
+    qses_settings s = settings();
+    change(&s);
+    const auto engine = make_engine();
+    for (int frame = 0; frame < 60; ++frame) {
+      const Atoms atoms = scaled(molecule, 1.0 + 0.002 * (frame % 5));
+      Levels levels;
+      std::thread other;
+      if (frame % 3 == 1) {
+        levels.stop_behind = random() % 3;
+        if (levels.stop_behind == 0) levels.stop = true;
+      } else if (frame % 3 == 2) {
+        other = std::thread([&levels, delay = random() % 600] {
+          std::this_thread::sleep_for(std::chrono::microseconds(delay));
+          levels.stop = true;
+        });
+      }
+      try {
+        compute(*engine, atoms, s, &levels);
+        EXPECT_EQ(levels.meshes.size(), 3u);
+      } catch (const quickses::Cancelled &) {
+        ++cancelled;
+        EXPECT_NE(frame % 3, 0);
+      }
+      if (other.joinable()) other.join();
+      expect_as_by_themselves(levels, atoms, s);
+    }
+  }
+  EXPECT_GT(cancelled, 20u);
+}
+
+}  // namespace
