@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <numeric>
+#include <random>
 
 namespace {
 
@@ -221,6 +222,122 @@ TEST(AtomMeasures, HugeAndTinyBalls) {
   expect_slices(turned(Atoms().add(0, 0, 0, 60).add(61, 0, 0, 2).add(0, 60.5, 0, 1)), QSES_SURFACE_SAS, 1.4, 2.0);
   expect_slices(turned(Atoms().add(0, 0, 0, 0.01).add(0.015, 0, 0, 0.01).add(0, 0.012, 0, 0.01)), QSES_SURFACE_VDW, 0,
                 1e-6);
+}
+
+// Whose largest cap is tiny: a large ball that small ones cover by and by.
+TEST(AtomMeasures, BallThatManySmallOnesCover) {
+  for (int count : {1, 5, 90, 1500, 1900, 2300, 2700}) {
+    Atoms atoms = Atoms().add(0, 0, 0, 40);
+    for (int k = 0; k < count; ++k) {
+      const double z = 1 - (2 * k + 1.0) / count, turn = 2.399963 * k, s = std::sqrt(1 - z * z);
+      atoms.add(40.2 * s * std::cos(turn), 40.2 * s * std::sin(turn), 40.2 * z, 1.5);
+    }
+    const Numbers n = numbers(turned(atoms), numbers_only(QSES_SURFACE_VDW));
+    const std::vector<double> expected = lee_richards::exposed_areas(turned(atoms), 0, 1000);
+    EXPECT_NEAR(n.areas[0], expected[0], 1e-3 * sphere_area(40)) << count;
+  }
+}
+
+// ---- circles that nearly coincide
+
+// Areas of all together, and of each from this one on: of atoms that are next to each other, rounding of their
+// positions decides which has how much.
+void expect_slices_in_all(const Atoms &atoms, qses_surface surface, size_t first, double tolerance) {
+  const double p = surface == QSES_SURFACE_VDW ? 0.0 : static_cast<double>(1.4f);
+  const Numbers n = numbers(atoms, numbers_only(surface));
+  const std::vector<double> expected = lee_richards::exposed_areas(atoms, p);
+  const double sum = std::accumulate(expected.begin(), expected.end(), 0.0);
+  ASSERT_NEAR(n.report.area, sum, tolerance);
+  for (size_t i = first; i < atoms.size(); ++i) ASSERT_NEAR(n.areas[i], expected[i], tolerance) << "atom " << i;
+}
+
+TEST(AtomMeasures, TwinsThatAThirdBarelyMeets) {
+  for (double apart : {3e-5, 1e-4, 1e-3, 3e-3, 1e-2})
+    for (double depth : {1e-5, 1e-4, 1e-3, 3e-3, 2e-2})
+      for (int side = 0; side < 3; ++side) {  // across, aslant, along
+        SCOPED_TRACE(testing::Message() << "apart " << apart << " depth " << depth << " side " << side);
+        const double r = 1.55, q = 1.4, y = side == 0 ? 0.0 : side == 1 ? 0.6 : 1.0;
+        const double first[3] = {0, 0, 0}, second[3] = {-apart * std::sqrt(1 - y * y), -apart * y, 0};
+        const double third[3] = {0, r + q + 2.8 - depth, 0};
+        for (int order = 0; order < 2; ++order) {
+          const double *one = order ? second : first, *other = order ? first : second;
+          const Atoms atoms = Atoms()
+                                  .add(one[0], one[1], one[2], r)
+                                  .add(other[0], other[1], other[2], r)
+                                  .add(third[0], third[1], third[2], q);
+          for (const Atoms &set : {atoms, turned(atoms), turned(shifted(atoms, -1, 2, 3))}) {
+            const Numbers n = numbers(set, numbers_only(QSES_SURFACE_SAS));
+            const double large = r + 1.4, small = q + 1.4;
+            // The twins have a strip more than one of them, and lack what the third covers; it lacks as little.
+            const double cap = 2 * kPi * large * depth;
+            ASSERT_NEAR(n.areas[2], sphere_area(small), cap + 0.01);
+            ASSERT_NEAR(n.areas[0] + n.areas[1], sphere_area(large), cap + 2 * kPi * large * apart + 0.01);
+            ASSERT_NEAR(n.report.volume, sphere_volume(large) + sphere_volume(small),
+                        kPi * large * large * apart + 0.02);
+          }
+        }
+      }
+}
+
+TEST(AtomMeasures, CrowdsThatOthersBarelyMeet) {
+  std::mt19937 random(11);
+  const auto in = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
+  for (int k = 0; k < 150; ++k) {
+    SCOPED_TRACE(k);
+    const qses_surface surface = k % 2 ? QSES_SURFACE_VDW : QSES_SURFACE_SAS;
+    const double p = k % 2 ? 0.0 : 1.4, crowd = std::pow(10, in(-4, -2));
+    Atoms atoms;
+    for (int i = 0; i < 2 + k % 3; ++i) atoms.add(in(-crowd, crowd), in(-crowd, crowd), in(-crowd, crowd), 1.7);
+    const size_t first = atoms.size();
+    for (int i = 0; i < 1 + k % 4; ++i) {
+      const double z = in(-1, 1), turn = in(0, 2 * kPi), q = in(1.2, 1.8), s = std::sqrt(1 - z * z);
+      const double distance = 1.7 + q + 2 * p - std::pow(10, in(-5, -1));
+      atoms.add(distance * s * std::cos(turn), distance * s * std::sin(turn), distance * z, q);
+    }
+    expect_slices_in_all(atoms, surface, first, 0.03);
+  }
+}
+
+TEST(AtomMeasures, BallsNearlyThroughOneCircle) {
+  std::mt19937 random(12);
+  const auto in = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
+  for (int k = 0; k < 150; ++k) {
+    SCOPED_TRACE(k);
+    const double off = k % 3 ? std::pow(10, in(-7, -3)) : 0.0;
+    Atoms atoms;
+    for (int i = 0; i < 3 + k % 4; ++i) {
+      const double x = in(-1.5, 1.5), r = std::sqrt(4 + x * x);
+      atoms.add(x, in(-off, off), in(-off, off), r + in(-off, off));
+    }
+    if (k % 2) atoms.add(0.2, 2.5, 0.3, 1.5);
+    expect_slices_in_all(k % 5 ? turned(atoms) : atoms, QSES_SURFACE_VDW, 0, 0.03);
+  }
+}
+
+// Circles so small that single precision has hardly a digit of their radius.
+TEST(AtomMeasures, BallsThatBarelyMeet) {
+  const Atoms sets[] = {Atoms().add(5.8999986, 0.0032, 0, 1.4).add(0, 0.0032, 0, 1.7).add(0, 0, 0, 1.7),
+                        Atoms()
+                            .add(6.8454504, 0.038259916, 0.265937865, 1.4)
+                            .add(0.945451856, 0.038259916, 0.265937865, 1.7)
+                            .add(-4.74141979, 0.0350473896, 0.265937865, 1.2)
+                            .add(0.945451856, 0.0350473896, 0.265937865, 1.7),
+                        Atoms()
+                            .add(-2.00543284, -0.286913782, -6.5461669, 1.8)
+                            .add(-1.54135561, -0.321423411, -0.764926136, 1.2)
+                            .add(-5.30245543, -2.27496576, 2.24789834, 1.2)
+                            .add(-1.98469126, -0.291635126, -5.94590664, 1.2)};
+  for (const Atoms &atoms : sets) expect_slices_in_all(atoms, QSES_SURFACE_SAS, atoms.size(), 0.03);
+}
+
+// Of three balls that just close at one point, each lacks so little of a circle that one precision has no digit of it.
+TEST(AtomMeasures, RingsThatJustClose) {
+  for (int k = 0; k < 50; ++k) {
+    const Atoms atoms = turned(ring(3, 2.92, 1.52), 0.1 * k, 0.3 * k, -0.2 * k);
+    const Numbers n = numbers(atoms, numbers_only(QSES_SURFACE_SAS));
+    const Numbers wider = numbers(turned(ring(3, 2.92, 1.52001)), numbers_only(QSES_SURFACE_SAS));
+    for (double area : n.areas) ASSERT_NEAR(area, wider.areas[0], 2e-3) << k;
+  }
 }
 
 // ---- invariance

@@ -4,6 +4,7 @@
 #include "parallel/pack.h"
 #include "surface/cpu/cpu_covered_sphere.h"
 #include "surface/cpu/cpu_kernels.h"
+#include "surface/geometry/close_cut.h"
 
 namespace quickses {
 namespace QSES_CPU_ISA {
@@ -140,15 +141,33 @@ int drop_contained_caps(const Columns &c, int n) {
   return kept;
 }
 
-// The exposed intervals of circle j of the n caps; false if it is hidden.
-bool cut_by_neighbors(const Circle &circle, const Columns &c, int n, int j, ExposedIntervals<Interval *> *intervals) {
+using Intervals = ExposedIntervals<Interval *>;
+
+// What those of a pack of caps cover of circle j of atom i that single precision can't tell; false if it is hidden.
+bool cut_exactly(const Circle &circle, const Sphere *atoms, uint32_t i, const int32_t *caps, int j, uint32_t lanes,
+                 Intervals *intervals) {
+  for (; lanes; lanes &= lanes - 1) {
+    const CircleCut cut = cut_exactly(circle, atoms[i], atoms[j], atoms[caps[lowest_bit32(lanes)]]);
+    if (cut.kind == CutKind::kPart) intervals->cover(cut.begin, cut.end);
+    if (cut.kind == CutKind::kAll || intervals->empty()) return false;
+  }
+  return true;
+}
+
+// The exposed intervals of circle j of the n caps of atom i; false if it is hidden. exactly: as if nothing were
+// rounded.
+bool cut_by_neighbors(const Circle &circle, const Columns &c, int n, int j, const Sphere *atoms, uint32_t i,
+                      bool exactly, Intervals *intervals) {
   for (int q = 0; q < n; q += kWideLanes) {
     if (q % 64 == 0) look_for_stop();
     const Vec3<WidePack> axis(load_wide(c.x + q), load_wide(c.y + q), load_wide(c.z + q));
     const HalfPlane<WidePack> h = cut_circle(circle, axis, load_wide(c.cosine + q));
     uint32_t lanes = first_wide_lanes(static_cast<uint32_t>(n - q));
     if (j >= q && j < q + kWideLanes) lanes &= ~(1u << (j - q));
-    lanes &= ~lane_bits(same_circle(circle, h));
+    if (const uint32_t unclear = lane_bits(is_unclear(circle, h)) & lanes) {
+      if (exactly && !cut_exactly(circle, atoms, i, c.index + q, c.index[j], unclear, intervals)) return false;
+      lanes &= ~(exactly ? unclear : lane_bits(same_circle(circle, h)));
+    }
     if (lane_bits(covers_circle(h)) & lanes) return false;
     lanes &= ~lane_bits(misses_circle(h));
     if (!lanes) continue;
@@ -197,19 +216,20 @@ AtomFeatures find_atom_features(const NeighborGridView &atoms, const SurfacePara
   for (int k = 0; k < n; ++k)
     caps[k] = {glm::vec3(c.x[k], c.y[k], c.z[k]), stored_cap_cosine(c.cosine[k], self.radius)};
 
+  const bool exactly = parameters.is_of_balls();
   int64_t arc_count = 0;
   for (int j = 0; j < n; ++j) {
     if (j % 16 == 0) look_for_stop();
     if (static_cast<uint32_t>(c.index[j]) < i) continue;  // the circle belongs to the other atom
     const Circle circle = make_circle(glm::vec3(c.x[j], c.y[j], c.z[j]), c.cosine[j], self.radius);
-    ExposedIntervals<Interval *> intervals{c.intervals, scratch.capacity};
-    if (!cut_by_neighbors(circle, c, n, j, &intervals)) continue;
+    Intervals intervals{c.intervals, scratch.capacity};
+    if (!cut_by_neighbors(circle, c, n, j, atoms.items, i, exactly, &intervals)) continue;
     atomic_set(&exposed[i]);
     atomic_set(&exposed[c.index[j]]);
     const float radius = self.radius * circle.sine;
     for (int k = 0; k < (intervals.whole ? 1 : intervals.count); ++k) {
       const ExposedArc arc =
-          exposed_arc(intervals.whole ? nullptr : &intervals.interval[k], radius, parameters.max_arc_bound());
+          exposed_arc(intervals.whole ? nullptr : &intervals.interval[k], radius, parameters.max_arc_bound(), exactly);
       const int pieces = 1 << arc.halvings;
       if (arc_count + pieces <= arc_room) {
         write_arc_pieces(circle, self, arc, arcs + arc_count);

@@ -32,7 +32,7 @@ static __global__ __launch_bounds__(kArcThreads) void find_few_arcs_kernel(Queue
     CutKind cut = CutKind::kNone;
     float begin = 0.f, end = 0.f;
     const int k = k0 + rank;
-    if (k < c.cap_count && k != c.rank) cut = cut_by_cap(c, cap_of(job, c, k), &begin, &end);
+    if (k < c.cap_count && k != c.rank) cut = cut_by_cap(job, c, cap_of(job, c, k), &begin, &end);
     __syncwarp();
 #pragma unroll
     for (int r = 0; r < kArcLanes; ++r) {
@@ -40,6 +40,7 @@ static __global__ __launch_bounds__(kArcThreads) void find_few_arcs_kernel(Queue
       const float from = __shfl_sync(kFullWarp, begin, r, kArcLanes), to = __shfl_sync(kFullWarp, end, r, kArcLanes);
       if (rank == 0 && open && !intervals.overflow && kind != CutKind::kNone) {
         if (kind == CutKind::kPart) intervals.cover(from, to);
+        if (kind == CutKind::kUnclear) intervals.overflow = true;
         if (kind == CutKind::kAll || (!intervals.overflow && intervals.empty())) open = false;
       }
       __syncwarp();
@@ -107,8 +108,12 @@ static __global__ __launch_bounds__(kArcThreads) void find_arcs_kernel(QueuedIte
             const Cap cap = ahead;
             ++k;
             go_on();
-            cut = cut_by_cap(c, cap, &begin, &end_of);
+            cut = cut_by_cap(job, c, cap, &begin, &end_of);
             if (cut == CutKind::kAll) state = State::kIdle;
+            if (cut == CutKind::kUnclear) {
+              intervals.overflow = true;
+              state = State::kDone;
+            }
           }
         }
         __syncwarp();
@@ -125,6 +130,33 @@ static __global__ __launch_bounds__(kArcThreads) void find_arcs_kernel(QueuedIte
   }
 }
 
+constexpr uint32_t kCutSteps = 4;       // of one cap of a circle
+constexpr uint32_t kCutAnewSteps = 64;  // in double precision
+
+// The circles that are unclear. A lane each; those that have more intervals than it holds are left to
+// find_long_circle_arcs.
+static __global__ __launch_bounds__(kWarp) void find_unclear_arcs_kernel(QueuedItems queued, CircleJob job) {
+  const LaunchItems places = queued.in_turn();
+  __shared__ Interval memory[kLaneIntervals * kWarp];
+  const size_t count = job.counters->unclear_circles, end = count < places.last ? count : places.last;
+  for (size_t t = places.first + blockIdx.x * kWarp + threadIdx.x; t < end; t += gridDim.x * kWarp) {
+    const OpenCircle c = open_circle(job, job.unclear_circles[t]);
+    ExposedIntervals<StridedIntervals> intervals{StridedIntervals{memory + threadIdx.x, kWarp}, kLaneIntervals};
+    bool hidden = false;
+    for (int k = 0; k < c.cap_count && !hidden && !intervals.overflow; ++k) {
+      if (k == c.rank) continue;
+      float begin, end_of;
+      const CutKind cut = cut_by_cap_anew(job, c, k, &begin, &end_of);
+      if (cut == CutKind::kPart) intervals.cover(begin, end_of);
+      hidden = cut == CutKind::kAll || (!intervals.overflow && intervals.empty());
+    }
+    if (intervals.overflow)
+      job.long_circles[atomicAdd(&job.counters->long_circles, 1u)] = c.number;
+    else if (!hidden)
+      stage_circle(job, c, intervals, atomicAdd(&job.counters->staged, (1ull << 32) + arcs_of(intervals)));
+  }
+}
+
 // How far a thread has come with the long circles that are its own.
 struct LongCircleState {
   uint32_t done;       // circles
@@ -136,7 +168,6 @@ constexpr uint32_t kLongCircleThreads = 512;
 // Each cap can cost as much as there are intervals: a thread that has taken so many steps leaves the rest to the next
 // launch.
 constexpr uint32_t kLongCircleSteps = 1u << 18;
-constexpr uint32_t kCutSteps = 4;  // of one cap of a circle
 
 // The circles that have more exposed intervals, with room for as many as they can have: one more than there are caps.
 static __global__ __launch_bounds__(kWarp) void find_long_circle_arcs_kernel(QueuedItems queued, CircleJob job,
@@ -161,10 +192,10 @@ static __global__ __launch_bounds__(kWarp) void find_long_circle_arcs_kernel(Que
     for (; k < c.cap_count && !hidden && steps < kLongCircleSteps; ++k) {
       if (k == c.rank) continue;
       float begin, end;
-      const CutKind cut = cut_by_cap(c, cap_of(job, c, k), &begin, &end);
+      const CutKind cut = cut_by_cap_anew(job, c, k, &begin, &end);
       if (cut == CutKind::kPart) intervals.cover(begin, end);
       hidden = cut == CutKind::kAll || intervals.empty();
-      steps += kCutSteps + static_cast<uint32_t>(intervals.count);
+      steps += (job.exactly ? kCutAnewSteps : kCutSteps) + static_cast<uint32_t>(intervals.count);
     }
     if (k < c.cap_count && !hidden) {
       state = {state.done, k, intervals.count, intervals.whole ? 0u : 1u};
@@ -253,6 +284,7 @@ ArcSearch find_arcs(E &executor, CircleJob job, float max_radius) {
   job.arc_count = arc_count.data;
   job.staged = executor.template allocate<StagedCircle>(room.staged_circles).data;
   job.staged_arcs = executor.template allocate<ExposedArc>(room.staged_arcs).data;
+  if (job.exactly) job.unclear_circles = executor.template allocate<uint32_t>(room.circles).data;
   job.long_circles = executor.template allocate<uint32_t>(room.circles).data;
 
   executor.launch("list_circles", list_circles_kernel, job.run.size(),
@@ -270,6 +302,9 @@ ArcSearch find_arcs(E &executor, CircleJob job, float max_radius) {
         LaunchShape{kArcThreads, size_t(kArcThreads / kWarp) * chunk, kCutSteps * caps * rounds, processors * 64}, job,
         chunk);
   }
+  if (job.exactly)
+    executor.launch("find_unclear_arcs", find_unclear_arcs_kernel, room.circles,
+                    LaunchShape{kWarp, kWarp, (kCutSteps + kCutAnewSteps) * caps, processors * 4}, job);
   ArcSearch search{job, max_radius, arc_count, arc_first, {}, {}};
   if (room.intervals > 0) {
     search.long_memory = executor.template allocate<Interval>(kLongCircleThreads * room.intervals);

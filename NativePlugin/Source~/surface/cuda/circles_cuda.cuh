@@ -4,6 +4,7 @@
 #pragma once
 
 #include "surface/cuda/atom_caps_cuda.cuh"
+#include "surface/geometry/close_cut.h"
 
 namespace quickses {
 namespace gpu {
@@ -32,11 +33,15 @@ struct CircleJob {
   uint8_t *exposed;
   Arc *arcs;
   ArcAtoms *arc_atoms;  // of each arc; nullptr: not wanted
+  bool exactly;         // as if nothing were rounded
   // Made by find_arcs().
   CircleName *names = nullptr;     // of the circles, by atom and rank
   uint32_t *arc_count = nullptr;   // per circle: pieces of arcs
   StagedCircle *staged = nullptr;  // circles with exposed arcs, in any order
   ExposedArc *staged_arcs = nullptr;
+  // Circles left to find_unclear_arcs, since single precision can't tell what some cap covers of them; nullptr: none
+  // is.
+  uint32_t *unclear_circles = nullptr;
   uint32_t *long_circles = nullptr;  // circles that need more intervals than a lane holds
 };
 
@@ -104,15 +109,32 @@ __device__ __forceinline__ Cap cap_of(const CircleJob &job, const OpenCircle &c,
   return load(job.caps + c.first_cap + static_cast<uint32_t>(k));
 }
 
-// What a cap of the atom covers of the circle: a stretch from begin to end, nothing, or all.
-enum class CutKind { kNone, kPart, kAll };
-__device__ __forceinline__ CutKind cut_by_cap(const OpenCircle &c, const Cap &cap, float *begin, float *end) {
+// What a cap of the atom covers of the circle.
+__device__ __forceinline__ CutKind cut_by_cap(const CircleJob &job, const OpenCircle &c, const Cap &cap, float *begin,
+                                              float *end) {
   const HalfPlane<float> h = cut_circle(c.circle, Vec3<float>(cap.axis), cap.cosine - c.shrink);
-  if (same_circle(c.circle, h)) return CutKind::kNone;
+  if (is_unclear(c.circle, h)) {
+    if (job.exactly) return CutKind::kUnclear;
+    if (same_circle(c.circle, h)) return CutKind::kNone;
+  }
   if (misses_circle(h)) return covers_circle(h) ? CutKind::kAll : CutKind::kNone;
   covered_stretch(h, begin, end);
   if (*begin == *end) return h.c < 0.f ? CutKind::kAll : CutKind::kNone;
   return CutKind::kPart;
+}
+
+// The same of the k-th cap, with another look where that is unclear. With so many registers that kernels for all
+// circles leave it to others.
+__device__ __forceinline__ CutKind cut_by_cap_anew(const CircleJob &job, const OpenCircle &c, int k, float *begin,
+                                                   float *end) {
+  const CutKind kind = cut_by_cap(job, c, cap_of(job, c, k), begin, end);
+  if (kind != CutKind::kUnclear) return kind;
+  const uint32_t other = job.neighbors[c.first_cap + static_cast<uint32_t>(k)];
+  const CircleCut cut = cut_exactly(c.circle, load(job.atoms.items + c.atom), load(job.atoms.items + c.other),
+                                    load(job.atoms.items + other));
+  *begin = cut.begin;
+  *end = cut.end;
+  return cut.kind;
 }
 
 // Number of arcs, before they are split, of a circle with exposed intervals.
@@ -135,22 +157,27 @@ __device__ __forceinline__ void stage_circle(const CircleJob &job, const OpenCir
   for (uint32_t k = 0; k < count; ++k) {
     Interval interval{0.f, 0.f};
     if (!intervals.whole) interval = intervals.interval[static_cast<int>(k)];
-    const ExposedArc arc = exposed_arc(intervals.whole ? nullptr : &interval, c.radius, job.max_arc_bound);
+    const ExposedArc arc = exposed_arc(intervals.whole ? nullptr : &interval, c.radius, job.max_arc_bound, job.exactly);
     job.staged_arcs[first + k] = arc;
     pieces += 1u << arc.halvings;
   }
   job.arc_count[c.number] = pieces;
 }
 
-// Stages what the lanes of a warp have found of a circle each, of which some have one; those that have more intervals
-// than they hold are left to find_long_circle_arcs.
+// Stages what the lanes of a warp have found of a circle each, of which some have one; what overflows, by number or as
+// unclear, is left to another kernel.
 template <class Storage>
 __device__ __forceinline__ void stage_circles(const CircleJob &job, bool found, const OpenCircle &c,
                                               const ExposedIntervals<Storage> &intervals) {
   if (!__any_sync(kFullWarp, found)) return;
   const int lane = lane_id();
   const bool keep = found && !intervals.overflow;
-  if (found && intervals.overflow) job.long_circles[atomicAdd(&job.counters->long_circles, 1u)] = c.number;
+  if (found && intervals.overflow) {
+    if (job.exactly)
+      job.unclear_circles[atomicAdd(&job.counters->unclear_circles, 1u)] = c.number;
+    else
+      job.long_circles[atomicAdd(&job.counters->long_circles, 1u)] = c.number;
+  }
   const unsigned long long own = keep ? (1ull << 32) + arcs_of(intervals) : 0;
   const unsigned long long sum = warp_inclusive_sum(own, lane);
   unsigned long long place = 0;

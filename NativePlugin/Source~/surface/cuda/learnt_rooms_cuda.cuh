@@ -23,6 +23,7 @@ struct FeatureCounters {
   uint32_t neighbors;               // most of an atom for which the rows were too short
   uint32_t long_atoms;              // number of those atoms
   uint32_t longest_row;             // most caps of an atom
+  uint32_t unclear_circles;         // circles that single precision can't tell about
   uint32_t long_circles;            // circles with more exposed intervals than a lane holds
   uint32_t unfinished_circles;      // those of them that need another launch
 
@@ -67,6 +68,7 @@ struct FeatureRoom {
             arcs,
             static_cast<uint32_t>(neighbors),
             static_cast<uint32_t>(long_atoms),
+            0,
             0,
             0,
             0};

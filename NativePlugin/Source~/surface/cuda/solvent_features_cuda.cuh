@@ -46,11 +46,11 @@ FeatureCounters find_run_features(E &executor, const FeaturePass &pass, AtomRun 
                    circle_count.data, pass.exposed, long_atoms.data},
             memory_is_short);
   executor.exclusive_scan(n, LoadCount<uint32_t>{circle_count.data}, circle_first);
-  const ArcSearch search =
-      find_arcs(executor,
-                CircleJob{pass.atoms, run, pass.parameters.max_arc_bound(), room, counters, pass.cap_ranges, caps,
-                          neighbors.data, circle_first.data, pass.exposed, arcs, arc_atoms},
-                pass.parameters.max_radius);
+  const ArcSearch search = find_arcs(
+      executor,
+      CircleJob{pass.atoms, run, pass.parameters.max_arc_bound(), room, counters, pass.cap_ranges, caps, neighbors.data,
+                circle_first.data, pass.exposed, arcs, arc_atoms, pass.parameters.is_of_balls()},
+      pass.parameters.max_radius);
   FeatureCounters found =
       room.intervals > 0 ? executor.fetch(counters) : executor.expect("features", counters, room.most());
   while (found.unfinished_circles > 0) {

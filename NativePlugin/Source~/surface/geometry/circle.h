@@ -45,11 +45,19 @@ QSES_FN HalfPlane<T> cut_circle(const Circle &circle, const Vec3<T> &axis, T cos
           (cosine - T(circle.cosine) * along) * T(circle.inverse_sine)};
 }
 
-// Do the ball's surface and the circle run along each other within rounding? Such a ball covers nothing: of several
-// balls through one circle each could hide it behind the others, and nothing would be left.
+// Do the ball's surface and the circle run along each other within rounding? For the SES such a ball covers nothing: of
+// several balls through one circle each could hide it behind the others, and nothing would be left. For the surface of
+// balls: cut_exactly() (close_cut.h).
 template <class T>
 QSES_FN auto same_circle(const Circle &circle, const HalfPlane<T> &h) -> decltype(h.a <= h.b) {
   return h.a * h.a + h.b * h.b + h.c * h.c <= T(circle.same2);
+}
+// Does the ball's surface come so near to touching the circle, or to running along it, that it depends on rounding what
+// it covers? That is so of every circle that is the same.
+constexpr float kUnclearTimes = 128.f;  // by how much more than what is the same
+template <class T>
+QSES_FN auto is_unclear(const Circle &circle, const HalfPlane<T> &h) -> decltype(h.a <= h.b) {
+  return absolute(h.a * h.a + h.b * h.b - h.c * h.c) <= T(circle.same2 * (kUnclearTimes * kUnclearTimes));
 }
 // The whole circle is covered, or nothing of it, where the line a x + b y = c misses it.
 template <class T>
@@ -60,6 +68,13 @@ template <class T>
 QSES_FN auto covers_circle(const HalfPlane<T> &h) -> decltype(h.a <= h.b) {
   return misses_circle(h) & (h.c <= T(0.f));
 }
+
+// What a ball covers of a circle: nothing, a stretch from begin to end, as pseudo-angles, or all; or rounding decides.
+enum class CutKind { kNone, kPart, kAll, kUnclear };
+struct CircleCut {
+  CutKind kind;
+  float begin, end;
+};
 
 // The stretch of the circle that the half-plane covers, as pseudo-angles, for lines that meet the circle. begin == end
 // means that it is too short (c > 0) or what remains is too short (c < 0) to be told from a point.
@@ -80,8 +95,8 @@ struct ExposedArc {
   int halvings;
 };
 
-// most: radius of the enclosing ball of a piece.
-QSES_FN ExposedArc exposed_arc(const Interval *interval, float radius, float most) {
+// most: radius of the enclosing ball of a piece. exactly: for measures.
+QSES_FN ExposedArc exposed_arc(const Interval *interval, float radius, float most, bool exactly) {
   ExposedArc arc{1.f, 0.f, -1.f, 0.f, radius, 0};
   if (interval) {
     const glm::vec2 a = pseudo_direction(interval->begin), b = pseudo_direction(interval->end);
@@ -104,11 +119,12 @@ QSES_FN ExposedArc exposed_arc(const Interval *interval, float radius, float mos
     arc.sin_piece = fabsf(arc.middle_x * b.y - arc.middle_y * b.x);
   }
   while (radius * (arc.cos_piece <= 0.f ? 1.f : arc.sin_piece) > most && arc.halvings < 16) {
-    const float c = arc.cos_piece;
+    const float c = arc.cos_piece, s = arc.sin_piece;
     arc.cos_piece = square_root(maximum(0.f, 0.5f * (1.f + c)));
     // Of a short piece 1 - c has hardly a digit left, and the sum of pieces would not be the arc.
-    arc.sin_piece =
-        c > 0.f ? quotient(arc.sin_piece, arc.cos_piece + arc.cos_piece) : square_root(maximum(0.f, 0.5f * (1.f - c)));
+    arc.sin_piece = c > 0.f ? quotient(s, arc.cos_piece + arc.cos_piece) : square_root(maximum(0.f, 0.5f * (1.f - c)));
+    // Nor has 1 + c of nearly a full circle.
+    if (exactly && c < -0.99f) arc.cos_piece = quotient(s, arc.sin_piece + arc.sin_piece);
     ++arc.halvings;
   }
   return arc;

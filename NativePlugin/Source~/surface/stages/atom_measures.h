@@ -6,9 +6,13 @@
 // along the border, about any pole whose opposite point the part does not contain (Stokes). The axis of the atom's
 // largest cap is such a point: it is covered, and no border comes near it. So it need not be known how arcs join to
 // borders, nor how many there are, as the formula of Gauss and Bonnet asks for. Volume by the divergence theorem.
+//
+// Where that cap is tiny, its border does come near: ends of its arcs that are off by little would count for much. Then
+// the pole is the axis itself, and the integral is less by the whole sphere where the opposite point is exposed.
 #pragma once
 
 #include "parallel/atomics.h"
+#include "surface/geometry/close_cut.h"
 #include "surface/stages/solvent_features.h"
 
 namespace quickses {
@@ -23,11 +27,12 @@ struct AtomMeasures {
 constexpr double kSolidAngleUnits = 17592186044416.0;   // 2^44
 constexpr double kWholeSphere = 12.566370614359172954;  // 4 pi
 
-// Of a thread of the GPU for one arc, besides the rounds over caps: double precision, some thousand operations.
+// Of a thread of the GPU for one arc: double precision, some thousand operations.
 constexpr uint64_t kArcMeasureSteps = 4096;
 
-QSES_FN Vec3<double> to_double(const glm::vec3 &v) {
-  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+// Is the largest cap tiny, and do all together cover less than half of the sphere, even if they were as large?
+QSES_FN bool has_tiny_caps(const CapRange &range, const Cap &largest) {
+  return largest.cosine > 0.99f && static_cast<float>(range.count) * (1.f - largest.cosine) < 1.f;
 }
 
 // Area of the triangle of great circles, positive if a, b, c come counter-clockwise seen from outside (van Oosterom &
@@ -72,24 +77,6 @@ QSES_FN double integrate_about(const Vec3<double> &pole, const SphereArc &arc) {
     a = b;
   }
   return sum;
-}
-
-// How many caps of an atom lie behind the circle of the arc, on the same side: where several balls pass through one
-// circle, none of them hides it, and each of them has its arcs there.
-QSES_FN int caps_of_circle(const CapRange &range, const Cap *caps, double radius, const SphereArc &arc) {
-  const double tolerance = static_cast<double>(kExposureTolerance), shrunk = tolerance / radius;
-  const double same = shrunk > 2e-6 ? shrunk : 2e-6;
-  int count = 0;
-  for (int k = 0; k < range.count; ++k) {
-    const Cap cap = load(caps + range.first + static_cast<uint32_t>(k));
-    const double cosine = static_cast<double>(cap.cosine) + shrunk;
-    if (fabs(cosine - arc.cosine) > 2.0 * same) continue;
-    const Vec3<double> axis = to_double(cap.axis);
-    const double along = dot(axis, arc.axis), apart = (cosine - arc.cosine * along) / arc.sine;
-    const Vec3<double> across = axis - arc.axis * along;
-    if (along > 0.0 && length_squared(across) + apart * apart <= same * same / (arc.sine * arc.sine)) ++count;
-  }
-  return count > 1 ? count : 1;
 }
 
 // Adds what the arcs bring to the areas of their two atoms, and notes what they bring to the volume.
@@ -139,15 +126,16 @@ struct MeasureArc {
     if (range.count <= 0) return 0.0;
     arc.cosine = along / atom_radius;
     arc.sine = circle_radius / atom_radius;
-    const Vec3<double> covered = to_double(load(caps + range.first).axis);
-    const Vec3<double> pole = covered * (-1.0 / sqrt(length_squared(covered)));
-    const double weight = 1.0 / caps_of_circle(range, caps, atom_radius, arc);
-    const double solid_angle = -weight * integrate_about(pole, arc);
+    const Cap largest = load(caps + range.first);
+    const Vec3<double> covered = to_double(largest.axis);
+    const double way = has_tiny_caps(range, largest) ? 1.0 : -1.0;
+    const Vec3<double> pole = covered * (way / sqrt(length_squared(covered)));
+    const double solid_angle = -integrate_about(pole, arc);
     atomic_add(solid_angles + atom, static_cast<int64_t>(floor(solid_angle * kSolidAngleUnits + 0.5)));
     // Half the integral of x cross dx along the arc, from the atom's centre.
     const Vec3<double> vector_area =
         arc.middle * (circle_radius * along * arc.sin_half) - arc.axis * (circle_radius * circle_radius * arc.half);
-    return weight * dot(center, vector_area);
+    return dot(center, vector_area);
   }
 };
 
@@ -155,13 +143,17 @@ struct MeasureArc {
 struct AreaOfAtom {
   const Sphere *atoms;
   const CapRange *cap_ranges;
+  const Cap *caps;
   const int64_t *solid_angles;
   QSES_FN double operator()(size_t i) const {
-    const int32_t caps = cap_ranges[i].count;
-    if (caps == kBuriedAtom) return 0.0;
+    const CapRange range = cap_ranges[i];
+    if (range.count == kBuriedAtom) return 0.0;
     const double r = static_cast<double>(atoms[i].radius);
-    const double sum = static_cast<double>(solid_angles[i]) / kSolidAngleUnits;
-    const double solid_angle = caps == 0 || sum > kWholeSphere ? kWholeSphere : sum < 0.0 ? 0.0 : sum;
+    double sum = static_cast<double>(solid_angles[i]) / kSolidAngleUnits;
+    // More than half is exposed then: it shows whether the opposite point is.
+    if (range.count > 0 && has_tiny_caps(range, load(caps + range.first)) && sum < 0.5 * kWholeSphere)
+      sum += kWholeSphere;
+    const double solid_angle = range.count == 0 || sum > kWholeSphere ? kWholeSphere : sum < 0.0 ? 0.0 : sum;
     return rounded_product(rounded_product(r, r), solid_angle);
   }
 };
@@ -202,8 +194,8 @@ AtomMeasures measure_atoms(Executor &executor, const NeighborGridView &atoms, co
   executor.for_each(arcs,
                     MeasureArc{atoms.items, features.cap_ranges.data, features.caps.data, features.arcs.data,
                                features.arc_atoms.data, solid_angles.data, volumes.data},
-                    kArcMeasureSteps + features.most_caps);
-  const AreaOfAtom area{atoms.items, features.cap_ranges.data, solid_angles.data};
+                    kArcMeasureSteps);
+  const AreaOfAtom area{atoms.items, features.cap_ranges.data, features.caps.data, solid_angles.data};
   if (areas) executor.for_each(n, StoreAreas{area, atoms.order, areas});
   const SumPair sums =
       executor.template reduce<SumPair>(n > arcs ? n : arcs, SumAtomsAndArcs{area, n, arcs, volumes.data});
