@@ -46,13 +46,14 @@ class Arena {
   // True if work should be cut into pieces that fit.
   bool has_budget() const { return budget_ > 0; }
   // Bytes beyond which everything is refused: the budget; or what is held and what is free besides, as it was when it
-  // was first asked for since the last reset.
+  // was first asked for since the last reset. What was held before it was given up may be had again, even if little is
+  // free besides.
   uint64_t limit() {
     constexpr uint64_t kNoLimit = ~uint64_t(0) >> 1;
     if (budget_) return budget_;
     if (limit_ == 0) {
       const uint64_t free = Source::free_bytes();
-      limit_ = free ? held_ + free : kNoLimit;
+      limit_ = free ? std::max(held_ + free, given_up_) : kNoLimit;
     }
     return limit_;
   }
@@ -130,6 +131,7 @@ class Arena {
 
   void release() {
     for (const Block &b : blocks_) Source::release(b.memory);
+    given_up_ = std::max(given_up_, held_);
     blocks_.clear();
     held_ = 0;
     current_ = 0;
@@ -181,12 +183,14 @@ class Arena {
     if (!memory) return false;
     blocks_.push_back({memory, wanted, 0});
     held_ += wanted;
+    given_up_ = 0;
     return true;
   }
 
   std::vector<Block> blocks_;
   size_t current_ = 0, offset_ = 0;
   uint64_t used_ = 0, peak_ = 0, held_ = 0, budget_ = 0, limit_ = 0, taken_ = 0;
+  uint64_t given_up_ = 0;  // by the last releases, since something was taken
 };
 
 }  // namespace quickses

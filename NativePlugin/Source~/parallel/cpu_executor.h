@@ -37,12 +37,12 @@ class CpuExecutor {
   };
 
   // While it lives, all work gives up soon after the flag is set, and throws Cancelled.
-  class StopScope {
+  class RunScope {
    public:
-    StopScope(CpuExecutor &executor, const std::atomic<bool> &flag) : executor_(executor) { executor.stop_ = &flag; }
-    ~StopScope() { executor_.stop_ = nullptr; }
-    StopScope(const StopScope &) = delete;
-    StopScope &operator=(const StopScope &) = delete;
+    RunScope(CpuExecutor &executor, const std::atomic<bool> &flag) : executor_(executor) { executor.stop_ = &flag; }
+    ~RunScope() { executor_.stop_ = nullptr; }
+    RunScope(const RunScope &) = delete;
+    RunScope &operator=(const RunScope &) = delete;
 
    private:
     CpuExecutor &executor_;

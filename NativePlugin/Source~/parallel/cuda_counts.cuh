@@ -7,6 +7,7 @@
 #include "parallel/cuda_memory.h"
 #include "parallel/cuda_passes.cuh"
 
+#include <algorithm>
 #include <cstring>
 
 namespace quickses {
@@ -31,20 +32,21 @@ class CudaCounts {
   CudaCounts(const CudaCounts &) = delete;
   CudaCounts &operator=(const CudaCounts &) = delete;
 
-  // A frame begins (Anticipation::open). Returns what is to be filled with zeros for it.
+  // A frame begins (Anticipation::open). Returns what is to be filled with zeros for it; note_zeros() when it will be.
   Span<unsigned char> open(uint64_t kind) {
     is_sent_ = false;
     anticipation_.open(kind);
     if (!anticipation_.is_open()) return {};
-    const Span<unsigned char> used{on_device_, kBytes + zeros_used_};
     used_ = zeros_used_ = 0;
-    return used;
+    return {on_device_, kBytes + written_};
   }
+  void note_zeros() { written_ = 0; }
   // Its memory for zeros, or nullptr if there is too little left.
   void *take_zeros(size_t bytes) {
     bytes = padded(bytes);
     if (!anticipation_.is_open() || bytes > kZeroBytes - zeros_used_) return nullptr;
     zeros_used_ += bytes;
+    written_ = std::max(written_, zeros_used_);
     return on_device_ + kBytes + zeros_used_ - bytes;
   }
   template <class T>
@@ -95,8 +97,9 @@ class CudaCounts {
 
   Anticipation anticipation_;
   GrowingBuffer<DeviceMemory> memory_;
-  unsigned char *on_device_ = nullptr;         // there
-  size_t used_ = 0, zeros_used_ = kZeroBytes;  // by the frame before: what is not zero any more
+  unsigned char *on_device_ = nullptr;  // there
+  size_t used_ = 0, zeros_used_ = 0;    // by this frame
+  size_t written_ = kZeroBytes;         // behind the counts: so much may not be zero any more
   PinnedBuffer on_host_;
   cudaEvent_t sent_ = nullptr;
   bool is_sent_ = false;

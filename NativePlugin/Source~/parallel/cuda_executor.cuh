@@ -28,13 +28,17 @@ class CudaExecutor {
   static constexpr bool kIsCuda = true, kCounts = false;
   using HostSource = PinnedMemory;  // of memory that the host shares with it
 
-  // While it lives, nothing more is asked of the device once the flag is set: Cancelled is thrown instead.
-  class StopScope {
+  // While it lives, nothing more is asked of the device once the flag is set: Cancelled is thrown instead. However the
+  // computation ends, what was to be uploaded is with the device then.
+  class RunScope {
    public:
-    StopScope(CudaExecutor &executor, const std::atomic<bool> &flag) : executor_(executor) { executor.stop_ = &flag; }
-    ~StopScope() { executor_.stop_ = nullptr; }
-    StopScope(const StopScope &) = delete;
-    StopScope &operator=(const StopScope &) = delete;
+    RunScope(CudaExecutor &executor, const std::atomic<bool> &flag) : executor_(executor) { executor.stop_ = &flag; }
+    ~RunScope() {
+      executor_.stop_ = nullptr;
+      executor_.wait_for_uploads();
+    }
+    RunScope(const RunScope &) = delete;
+    RunScope &operator=(const RunScope &) = delete;
 
    private:
     CudaExecutor &executor_;
@@ -56,7 +60,8 @@ class CudaExecutor {
     counts_.allocate();
     check_cuda(cudaStreamCreateWithPriority(&stream_, cudaStreamNonBlocking, goes_first ? kHighestPriority : 0),
                "cudaStreamCreateWithPriority");
-    check_cuda(cudaEventCreateWithFlags(&joined_, cudaEventDisableTiming), "cudaEventCreateWithFlags");
+    for (cudaEvent_t *event : {&joined_, &uploaded_})
+      check_cuda(cudaEventCreateWithFlags(event, cudaEventDisableTiming), "cudaEventCreateWithFlags");
   }
   ~CudaExecutor() {
     try {
@@ -64,7 +69,7 @@ class CudaExecutor {
       if (!may_hand_back()) return;
       for (cudaStream_t stream : {stream_, second_stream_})
         if (stream) cudaStreamSynchronize(stream);
-      for (cudaEvent_t event : {launched_[0], launched_[1], joined_})
+      for (cudaEvent_t event : {launched_[0], launched_[1], joined_, uploaded_})
         if (event) cudaEventDestroy(event);
       counts_.release();
       arena_.release();
@@ -287,7 +292,10 @@ class CudaExecutor {
   // was, so that all of it may be queued.
   void open_counts(uint64_t kind, bool is_short = false) {
     runs_ahead_ = is_short;
-    fill(counts_.open(kind), 0);
+    const Span<unsigned char> counts = counts_.open(kind);
+    if (counts.size == 0) return;
+    fill(counts, 0);  // may throw
+    counts_.note_zeros();
   }
   bool has_anticipated() const { return counts_.anticipation().has_anticipated(); }
   void turn_counts_to(float level, uint32_t part = 0) { counts_.anticipation().turn_to(level, part); }
@@ -348,7 +356,9 @@ class CudaExecutor {
   template <class T>
   void upload(T *destination, const T *host, size_t n) {
     if (n == 0) return;
+    is_uploading_ = true;
     check_cuda(cudaMemcpyAsync(destination, host, n * sizeof(T), cudaMemcpyHostToDevice, stream_), "cudaMemcpyAsync");
+    check_cuda(cudaEventRecord(uploaded_, stream_), "cudaEventRecord");
   }
   // Into page-locked memory the values are there after the next wait.
   template <class T>
@@ -366,7 +376,10 @@ class CudaExecutor {
     else if (count > 0)
       check_cuda(cudaMemsetAsync(bytes, byte, count, stream_), "cudaMemsetAsync");
   }
-  void wait() { check_cuda(cudaStreamSynchronize(stream_), "cudaStreamSynchronize"); }
+  void wait() {
+    check_cuda(cudaStreamSynchronize(stream_), "cudaStreamSynchronize");
+    is_uploading_ = false;
+  }
 
   // ---- a second stream (SecondStream) -----------------------------------------------------------------------------
 
@@ -420,6 +433,11 @@ class CudaExecutor {
   cudaError_t follow(cudaStream_t behind, cudaStream_t ahead) {
     const cudaError_t error = cudaEventRecord(joined_, ahead);
     return error == cudaSuccess ? cudaStreamWaitEvent(behind, joined_, 0) : error;
+  }
+
+  void wait_for_uploads() noexcept {
+    if (is_uploading_) cudaEventSynchronize(uploaded_);
+    is_uploading_ = false;
   }
 
   void stop_if_asked() const {
@@ -501,7 +519,8 @@ class CudaExecutor {
   PinnedBuffer staging_;
   bool runs_ahead_ = false;
   CudaCounts counts_;
-  cudaEvent_t joined_ = nullptr;
+  cudaEvent_t joined_ = nullptr, uploaded_ = nullptr;
+  bool is_uploading_ = false;
   Arena<DeviceMemory> arena_;
 };
 

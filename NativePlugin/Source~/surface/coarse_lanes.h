@@ -17,7 +17,7 @@ struct LevelLane {
   explicit LevelLane(const Executor &main) : executor(main.device(), true), memory(executor, main) {}
   Executor executor;
   MeshMemory<Executor> memory;
-  std::optional<typename Executor::StopScope> stop;  // of the frame
+  std::optional<typename Executor::RunScope> run;  // of the frame
 };
 
 // On a CPU there are none. Use as the executor.
@@ -45,12 +45,14 @@ class CoarseLanes {
         const float of_finest = spacings[spacings.size - 1] / spacings[open_];
         if (open_ == lanes_.size()) lanes_.push_back(std::make_unique<LevelLane<Executor>>(main));
         LevelLane<Executor> &lane = *lanes_[open_++];
-        lane.stop.emplace(lane.executor, stop);
+        lane.run.emplace(lane.executor, stop);
         lane.memory.wait_for_copies();  // of a cancelled mesh
         lane.memory.deliver_to(settings);
         lane.executor.arena().reset();
-        // Of what a frame takes. It would be the square for vertices alone, but what decides about each is more.
-        lane.executor.arena().expect(static_cast<uint64_t>(of_finest * static_cast<float>(main.arena().held())));
+        // Of what a frame takes, this level takes a part, and that is little to begin with.
+        const uint64_t whole = main.arena().held();
+        lane.executor.arena().expect(
+            std::max(static_cast<uint64_t>(of_finest * static_cast<float>(whole)), std::min(whole, kLittle)));
         lane.executor.open_counts(kind, true);
       }
   }
@@ -79,11 +81,13 @@ class CoarseLanes {
   }
 
  private:
+  static constexpr uint64_t kLittle = uint64_t(1) << 24;
+
   void close(Executor &main) noexcept {
     if constexpr (Executor::kIsCuda)
       for (size_t k = 0; k < open_; ++k) {
         main.go_behind(lanes_[k]->executor);
-        lanes_[k]->stop.reset();
+        lanes_[k]->run.reset();
       }
     open_ = 0;
   }

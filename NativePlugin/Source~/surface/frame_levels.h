@@ -80,7 +80,7 @@ class FrameLevels {
       executor.send_counts();
       lanes_.go_behind(executor);
     }
-    Maker maker{*this, frame, course, sink};
+    Maker maker{*this, frame, course, sink, !is_beside};
     LevelsUnderWay<Level, Maker> under_way(maker);
     Level *coarser = nullptr;  // which is made beside the next one
     for (size_t k = 0; k < frame.spacings.size; ++k) {
@@ -91,8 +91,8 @@ class FrameLevels {
       Executor &own_executor = is_coarse ? lanes_.lane(k).executor : executor;
       MeshMemory<Executor> &own_memory = is_coarse ? lanes_.lane(k).memory : memory;
       sink.give_back();
-      if (!is_coarse) executor.verify_counts();  // of what is prepared, if that was sent
-      own_memory.wait_for_copies();              // of a cancelled mesh, to memory that is given up now
+      if (!is_coarse) maker.verify_prepared();
+      own_memory.wait_for_copies();  // of a cancelled mesh, to memory that is given up now
       const bool is_behind = coarser && coarser->facts.size.vertices > kManyVertices;
       if (is_behind) lanes_.go_behind(own_executor, k - 1);
       Level &level = under_way.add(is_behind, shared, own_executor, own_memory, is_beside);
@@ -150,7 +150,13 @@ class FrameLevels {
     const PlannedFrame &frame;
     Course *course;
     LevelSink &sink;
+    bool is_verified;  // what is prepared for all levels; one after the other verify it with their own counts
 
+    // What is counted of the finest level is sent by the same executor, later.
+    void verify_prepared() {
+      if (!is_verified) levels.executor.verify_counts();
+      is_verified = true;
+    }
     template <class Check>
     void begin(Level &level, float spacing, const Check &check) {
       Work &work = level.work;
@@ -175,6 +181,7 @@ class FrameLevels {
       work.memory.send(&level.mesh);
     }
     void hand_out(Level &level) {
+      verify_prepared();
       Work &work = level.work;
       FinishedMesh &out = level.out;
       const float spacing = out.on_host.spacing;

@@ -122,7 +122,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   template <class Attempt>
   void walk(const FrameInput &in, const std::atomic<bool> &stop, const Attempt &attempt) {
     const typename Executor::CallScope scope(executor_);
-    const typename Executor::StopScope stop_scope(executor_, stop);
+    const typename Executor::RunScope run_scope(executor_, stop);
     memory_.deliver_to(in.settings);
     executor_.arena().reset();  // what is free is asked anew
     is_beside_ = false;

@@ -467,7 +467,7 @@ TEST(CudaLaunches, EndWhereTheyAreToldTo) {
   SmallGpu gpu;
   CudaExecutor small(0);
   std::atomic<bool> stop{false};
-  const CudaExecutor::StopScope scope(small, stop);
+  const CudaExecutor::RunScope scope(small, stop);
   Span<uint64_t> out = small.allocate<uint64_t>(1000);
   gpu.stop = &stop;
   EXPECT_THROW(small.for_each(1000, Square{out.data}, kThreadSteps), Cancelled);
