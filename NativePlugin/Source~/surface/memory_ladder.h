@@ -57,6 +57,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     const auto start = std::chrono::steady_clock::now();
     walk(in, sink.stop_flag(), attempt);
     learnt_.milliseconds = milliseconds_since(start);
+    learnt_.is_settled = learnt_.is_proven;
     learnt_.is_proven = true;
   }
 
@@ -161,7 +162,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   // Whether the levels of a ladder are made beside each other: where none is expected to wait.
   bool may_be_beside(const FrameInput &in, const MemoryPlan &plan, Span<const float> spacings) {
     return Executor::kIsCuda && spacings.size > 1 && in.atoms.count > 0 && !takes_times_ && may_anticipate(in, plan) &&
-           learnt_.is_proven && !learnt_.is_lone && learnt_.milliseconds < kShortLadder;
+           learnt_.is_settled && !learnt_.is_lone && learnt_.milliseconds < kShortLadder;
   }
   // What frames have in common whose counts are much the same. Never 0.
   uint64_t kind_of(const FrameInput &in) const {
@@ -180,7 +181,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     const SurfaceParameters p = parameters_of(in);
     if (in.atoms.count != learnt_.atoms || p.max_radius != learnt_.reach) levels_.rooms.forget();
     if (in.atoms.count != learnt_.atoms || p.max_radius != learnt_.reach || p.spacing != learnt_.spacing)
-      learnt_ = {in.atoms.count, p.max_radius, p.spacing, 0, 0, false, false, false, 0};
+      learnt_ = {in.atoms.count, p.max_radius, p.spacing, 0, 0, false, false, false, false, 0};
     const bool had_too_little = learnt_.step > 0 || learnt_.is_tight || learnt_.is_lone;
     if (had_too_little && executor_.arena().share() > learnt_.share / 4 * 5) {
       learnt_.step = 0;
@@ -209,7 +210,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
       if (forecast(in, kMemoryPlans[step], limit) <= limit) break;
     learnt_.step = std::min(step, kMemoryPlanCount - 1);
     learnt_.share = executor_.arena().share();
-    learnt_.is_proven = false;
+    learnt_.is_proven = learnt_.is_settled = false;
     return step;
   }
 
@@ -305,13 +306,13 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   bool is_beside_ = false;    // whether those of this frame are
   // Of the last computation of so many atoms with this largest inflated radius and finest spacing: where the ladder
   // ended, with how much memory, whether there was too little for what frames anticipate, or for levels beside each
-  // other, and whether that did.
+  // other, whether that did, and did again, so that memory is held as it will be.
   struct {
     size_t atoms;
     float reach, spacing;
     size_t step;
     uint64_t share;
-    bool is_tight, is_lone, is_proven;
+    bool is_tight, is_lone, is_proven, is_settled;
     double milliseconds;
   } learnt_{};
   float spacing_ = 0;  // of the level that is being made

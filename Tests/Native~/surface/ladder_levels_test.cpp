@@ -163,7 +163,7 @@ TEST(LadderLevels, AreAsByThemselves) {
     qses_settings s = settings();
     kChanges[k](&s);
     const auto engine = make_engine();
-    for (const double factor : {1.0, 1.0, 1.0, 1.003, 1.01, 2.5, 2.5, 0.02, 1.0, 1.0, 1.0}) {
+    for (const double factor : {1.0, 1.0, 1.0, 1.0, 1.003, 1.01, 2.5, 2.5, 0.02, 1.0, 1.0, 1.0}) {
       SCOPED_TRACE("factor " + std::to_string(factor));
       const Atoms atoms = scaled(molecule, factor);
       Levels levels;
