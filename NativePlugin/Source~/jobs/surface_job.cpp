@@ -199,8 +199,10 @@ void SurfaceJob::give_back() {
 }
 
 void SurfaceJob::finished(FinishedMesh mesh) {
+  MeshHold let_go;  // so that none waits for it when this one is collected
   {
     const std::lock_guard<std::mutex> lock(mutex_);
+    let_go = std::move(let_go_);
     ready_.is_there = true;
     std::swap(ready_.mesh, mesh);
     ready_.atom_count = atom_count_;

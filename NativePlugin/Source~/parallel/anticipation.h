@@ -56,6 +56,9 @@ class Anticipation {
     was_enough_ = false;
   }
   bool is_open() const { return is_open_; }
+  // Of frames of this kind.
+  bool knows_frames() const { return !pages_.empty(); }
+  void forget_frames() { pages_.clear(); }
   // Whether this frame went on with a count from the one before.
   bool has_anticipated() const { return has_anticipated_; }
   void turn_to(float level, uint32_t part = 0) { page_ = {level, part}; }

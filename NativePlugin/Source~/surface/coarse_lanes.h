@@ -6,6 +6,9 @@
 
 #include "surface/mesh/mesh_memory.h"
 
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -14,13 +17,13 @@ namespace quickses {
 
 template <class Executor>
 struct LevelLane {
-  explicit LevelLane(const Executor &main) : executor(main.device(), true), memory(executor, main) {}
+  explicit LevelLane(const Executor &main) : executor(main.device(), true), memory(executor, main.stream()) {}
   Executor executor;
   MeshMemory<Executor> memory;
   std::optional<typename Executor::RunScope> run;  // of the frame
 };
 
-// On a CPU there are none. Use as the executor.
+// On a CPU there are none. Use from one thread at a time.
 template <class Executor>
 class CoarseLanes {
  public:
@@ -46,10 +49,9 @@ class CoarseLanes {
         if (open_ == lanes_.size()) lanes_.push_back(std::make_unique<LevelLane<Executor>>(main));
         LevelLane<Executor> &lane = *lanes_[open_++];
         lane.run.emplace(lane.executor, stop);
-        lane.memory.wait_for_copies();  // of a cancelled mesh
         lane.memory.deliver_to(settings);
         lane.executor.arena().reset();
-        // Of what a frame takes, this level takes a part, and that is little to begin with.
+        // What a frame takes, by the spacing, which is more than a level needs; but all of it if that is little.
         const uint64_t whole = main.arena().held();
         lane.executor.arena().expect(
             std::max(static_cast<uint64_t>(of_finest * static_cast<float>(whole)), std::min(whole, kLittle)));
@@ -66,12 +68,29 @@ class CoarseLanes {
   void go_behind(Executor &other, size_t level) {
     if constexpr (Executor::kIsCuda) other.go_behind(lanes_[level]->executor);
   }
-  // Their memory is needed elsewhere.
-  void drop() { lanes_.clear(); }
+  // Whether all have counted in a frame like this one.
+  bool know_frames() const {
+    if constexpr (Executor::kIsCuda)
+      for (size_t k = 0; k < open_; ++k)
+        if (!lanes_[k]->executor.knows_frames()) return false;
+    return true;
+  }
+  void forget_frames() {
+    if constexpr (Executor::kIsCuda)
+      for (const auto &lane : lanes_) lane->executor.forget_frames();
+  }
+  // Their memory is needed elsewhere. False: there are none.
+  bool drop() {
+    const bool were_there = !lanes_.empty();
+    lanes_.clear();
+    return were_there;
+  }
 
+  // Of those in use, at most; and of meshes, whichever made them.
   uint64_t work_bytes() const {
     uint64_t sum = 0;
-    for (const auto &lane : lanes_) sum += lane->executor.arena().peak() + lane->memory.outside_arena(lane->executor);
+    for (const auto &lane : lanes_) sum += lane->memory.outside_arena(lane->executor);
+    for (size_t k = 0; k < open_; ++k) sum += lanes_[k]->executor.arena().peak();
     return sum;
   }
   uint64_t host_bytes() const {

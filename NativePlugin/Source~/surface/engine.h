@@ -26,6 +26,10 @@ class LevelSink {
   virtual const std::atomic<bool> &stop_flag() const = 0;
 };
 
+// Levels of ladders that take no longer, in ms, leave a GPU idle enough to be made beside each other, and are small
+// enough for memory of their own. Tests change it.
+inline double short_ladder = 3;
+
 class SurfaceEngine {
  public:
   virtual ~SurfaceEngine() = default;

@@ -30,8 +30,9 @@ struct PlannedFrame {
   const FrameInput &in;
   const MemoryPlan &plan;
   Span<const float> spacings;
-  uint64_t kind_beside;  // of frames whose levels are made beside each other (open_counts); 0: they are not
-  uint64_t atom_bytes;   // of the host, for the reports
+  bool is_beside;       // whether its levels are made beside each other
+  uint64_t kind;        // of frames like it (open_counts)
+  uint64_t atom_bytes;  // of the host, for the reports
 };
 
 template <class Executor, class Timer>
@@ -70,9 +71,9 @@ class FrameLevels {
     const auto start = std::chrono::steady_clock::now();
     qses_report report;
     Work shared = work_of(frame.in, frame.plan, &report);
-    const bool is_beside = frame.kind_beside != 0;
+    const bool is_beside = frame.is_beside;
     const typename CoarseLanes<Executor>::Scope lanes_scope(lanes_, executor);
-    if (is_beside) lanes_.open(executor, frame.spacings, frame.kind_beside, frame.in.settings, sink.stop_flag());
+    if (is_beside) lanes_.open(executor, frame.spacings, frame.kind, frame.in.settings, sink.stop_flag());
     if (frame.in.atoms.count > 0) prepare_frame(shared, frame.in);
     if (!course->is_prepared) sink.prepared(milliseconds_since(start));
     course->is_prepared = true;
@@ -81,6 +82,7 @@ class FrameLevels {
       lanes_.go_behind(executor);
     }
     Maker maker{*this, frame, course, sink, !is_beside};
+    if (!lanes_.know_frames()) maker.verify_prepared();  // they will wait, and note what they count
     LevelsUnderWay<Level, Maker> under_way(maker);
     Level *coarser = nullptr;  // which is made beside the next one
     for (size_t k = 0; k < frame.spacings.size; ++k) {
@@ -92,11 +94,14 @@ class FrameLevels {
       MeshMemory<Executor> &own_memory = is_coarse ? lanes_.lane(k).memory : memory;
       sink.give_back();
       if (!is_coarse) maker.verify_prepared();
-      own_memory.wait_for_copies();  // of a cancelled mesh, to memory that is given up now
+      own_memory.forget_mesh();
       const bool is_behind = coarser && coarser->facts.size.vertices > kManyVertices;
       if (is_behind) lanes_.go_behind(own_executor, k - 1);
       Level &level = under_way.add(is_behind, shared, own_executor, own_memory, is_beside);
-      level.work.hand_out_others = [&] { under_way.hand_out_others(); };
+      level.work.hand_out_others = [&] {
+        maker.verify_prepared();
+        under_way.hand_out_others();
+      };
       level.begin = before / total;
       level.end = begun / total;
       maker.begin(level, frame.spacings[k], check);
@@ -109,8 +114,10 @@ class FrameLevels {
     under_way.hand_out_all();
   }
 
-  // Memory that only levels beside each other have is given up.
-  void drop_lanes() { lanes_.drop(); }
+  // Memory that only levels beside each other have is given up. False: there was none.
+  bool drop_lanes() { return lanes_.drop(); }
+  // They wait for what they count in the next frame.
+  void forget_frames_of_lanes() { lanes_.forget_frames(); }
 
  private:
   // Beside a level of more vertices, which leaves little of the GPU, the next one would only be in its way.
@@ -141,6 +148,7 @@ class FrameLevels {
     Work work;
     decltype(std::declval<Executor &>().arena().mark()) start;
     MeshMemoryView mesh{};
+    float spacing = 0;
     double begin = 0, end = 0;  // of it, as fractions of all levels
   };
 
@@ -152,7 +160,7 @@ class FrameLevels {
     LevelSink &sink;
     bool is_verified;  // what is prepared for all levels; one after the other verify it with their own counts
 
-    // What is counted of the finest level is sent by the same executor, later.
+    // Before anything that rests on it is looked at; and before the same executor sends counts of the finest level.
     void verify_prepared() {
       if (!is_verified) levels.executor.verify_counts();
       is_verified = true;
@@ -162,7 +170,7 @@ class FrameLevels {
       Work &work = level.work;
       levels.progress.enter(level.begin, level.end);
       levels.progress.report(0.0);
-      level.out.on_host.spacing = spacing;
+      level.spacing = spacing;
       if (frame.in.atoms.count == 0) return;
       if (work.makes_mesh) {
         enter_level(work, spacing);
@@ -172,6 +180,7 @@ class FrameLevels {
       level.mesh = begin_level(work);
     }
     void end(Level &level) {
+      verify_prepared();
       Work &work = level.work;
       level.out.report.measured_by = measured_by(frame.in);
       levels.progress.enter(level.begin, level.end);
@@ -181,22 +190,20 @@ class FrameLevels {
       work.memory.send(&level.mesh);
     }
     void hand_out(Level &level) {
-      verify_prepared();
       Work &work = level.work;
       FinishedMesh &out = level.out;
-      const float spacing = out.on_host.spacing;
       work.memory.finish(level.mesh, frame.in.settings, &out);
       levels.timer.end();
       work.executor.verify_counts();
-      out.on_host.spacing = out.on_device.mesh.spacing = spacing;
+      out.on_host.spacing = out.on_device.mesh.spacing = level.spacing;
       out.report.attempts = course->attempts;
       out.report.compute_ms = milliseconds_since(course->start);
       course->start = std::chrono::steady_clock::now();
       levels.complete(level.mesh, frame, &out.report);
       levels.timer.reset();
       work.executor.arena().rewind(level.start);
+      levels.progress.enter(level.begin, level.end);
       levels.progress.report(1.0);
-      sink.give_back();
       sink.finished(std::move(out));
       ++course->next;
       course->attempts = 1;

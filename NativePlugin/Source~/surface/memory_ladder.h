@@ -44,7 +44,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
                             learnt_.is_proven && learnt_.milliseconds < kShortFrame);
       try {
         is_beside_ = may_be_beside(in, plan, spacings);
-        const PlannedFrame frame{in, plan, spacings, is_beside_ ? kind_of(in) : 0, atoms_.bytes()};
+        const PlannedFrame frame{in, plan, spacings, is_beside_, kind_of(in), atoms_.bytes()};
         levels_.make(frame, &course, sink, [&](Work &work, float spacing) {
           spacing_ = spacing;
           if (work.makes_mesh) check_forecast(work, in);
@@ -111,8 +111,6 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   static constexpr uint64_t kUnlimited = ~uint64_t(0) >> 1;
   // The next one may be queued as a whole: nobody who cancels it waits longer.
   static constexpr double kShortFrame = 100;  // ms
-  // Its levels leave the GPU idle enough to be made beside each other, and are small enough for memory of their own.
-  static constexpr double kShortLadder = 3;  // ms
   // Of predictions that rest on a predicted size: sizes are known to some per cent.
   static constexpr double kMargin = 1.02;
   static constexpr uint64_t kSpareBytes = 32768;
@@ -126,20 +124,23 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     const typename Executor::RunScope run_scope(executor_, stop);
     memory_.deliver_to(in.settings);
     executor_.arena().reset();  // what is free is asked anew
-    is_beside_ = false;
     for (size_t step = first_step(in);; executor_.arena().reset()) {
       levels_.timer.reset();
       facts_ = {};
       facts_.atoms = in.atoms.count;
       spacing_ = in.settings.spacing;
+      is_beside_ = false;
       try {
         attempt(kMemoryPlans[step]);
         return;
-      } catch (const AnticipatedTooLittle &) {  // the same again: it waits for all counts now
+      } catch (const AnticipatedTooLittle &) {  // the same again: who anticipated too little waits for all counts now
+        levels_.forget_frames_of_lanes();       // which may rest on that
       } catch (const MemoryRefused &refused) {
-        levels_.drop_lanes();
+        const bool had_lanes = levels_.drop_lanes();
         if (is_beside_)
           note_loneliness();  // the same again, one level after the other
+        else if (had_lanes)
+          learnt_.is_settled = false;  // the same again, with what they had
         else if (executor_.has_anticipated())
           note_tightness();  // the same again, without the room for more than there is
         else if (!refused.again())
@@ -162,7 +163,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   // Whether the levels of a ladder are made beside each other: where none is expected to wait.
   bool may_be_beside(const FrameInput &in, const MemoryPlan &plan, Span<const float> spacings) {
     return Executor::kIsCuda && spacings.size > 1 && in.atoms.count > 0 && !takes_times_ && may_anticipate(in, plan) &&
-           learnt_.is_settled && !learnt_.is_lone && learnt_.milliseconds < kShortLadder;
+           learnt_.is_settled && !learnt_.is_lone && learnt_.milliseconds < short_ladder;
   }
   // What frames have in common whose counts are much the same. Never 0.
   uint64_t kind_of(const FrameInput &in) const {
@@ -197,6 +198,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   }
 
   void note_loneliness() {
+    executor_.arena().reset();  // what is free is asked anew
     learnt_.is_lone = true;
     learnt_.share = executor_.arena().share();
   }

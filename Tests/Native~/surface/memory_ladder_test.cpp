@@ -235,6 +235,21 @@ TEST(ArenaLimit, IsWhatIsFreeWhenAComputationStarts) {
   EXPECT_NO_THROW(arena.allocate(held));
 }
 
+// What is left to others is not taken off what was had before.
+TEST(ArenaLimit, WhatWasGivenUpMayBeHadAgain) {
+  constexpr uint64_t kMiB = 1 << 20;
+  quickses::Arena<ChangingMemory> arena;
+  ChangingMemory::free = 8 * kMiB;
+  arena.allocate(4 * kMiB);
+  const uint64_t held = arena.held();
+  ChangingMemory::free = 1;
+  arena.release();
+  arena.reset();
+  EXPECT_EQ(arena.limit(), held);
+  EXPECT_THROW(arena.allocate(held + kMiB), quickses::MemoryRefused);
+  EXPECT_NO_THROW(arena.allocate(held));
+}
+
 TEST(ArenaLimit, NobodyAsksWhereNothingGrows) {
   quickses::Arena<ChangingMemory> arena;
   ChangingMemory::free = uint64_t(1) << 30;

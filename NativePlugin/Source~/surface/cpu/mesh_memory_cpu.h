@@ -14,7 +14,8 @@ class MeshMemory<CpuKernelExecutor> {
  public:
   explicit MeshMemory(CpuKernelExecutor &) : mesh_(MeshPool::source<HostMemory>()) {}
 
-  void wait_for_copies() {}
+  // One that was begun and given up.
+  void forget_mesh() { mesh_.forget(); }
   uint64_t host_bytes() const { return mesh_.bytes(); }
   // Bytes of work that are not in the arena; those that are taken off a budget for it at first; and those that it would
   // have to leave as far as is known, where the pool of features is in the arena.
@@ -42,7 +43,7 @@ class MeshMemory<CpuKernelExecutor> {
 
   void save(CpuKernelExecutor &, const MeshMemoryView &, const MeshView &, size_t, size_t) {}  // never in pieces
 
-  void deliver_to(const qses_settings &) {}
+  void deliver_to(const qses_settings &) { forget_mesh(); }
   void note_triangles(CpuKernelExecutor &) {}
   void bring_triangles(const MeshMemoryView &, MeshPurpose) {}
   void bring_vertices(CpuKernelExecutor &, const MeshMemoryView &) {}

@@ -130,8 +130,8 @@ static __global__ __launch_bounds__(kArcThreads) void find_arcs_kernel(QueuedIte
   }
 }
 
-constexpr uint32_t kCutSteps = 4;       // of one cap of a circle
-constexpr uint32_t kCutAnewSteps = 64;  // in double precision
+constexpr uint32_t kCutSteps = 4;        // of one cap of a circle
+constexpr uint32_t kCutAnewSteps = 256;  // in double precision
 
 // The circles that are unclear. A lane each; those that have more intervals than it holds are left to
 // find_long_circle_arcs.
@@ -304,7 +304,7 @@ ArcSearch find_arcs(E &executor, CircleJob job, float max_radius) {
   }
   if (job.exactly)
     executor.launch("find_unclear_arcs", find_unclear_arcs_kernel, room.circles,
-                    LaunchShape{kWarp, kWarp, (kCutSteps + kCutAnewSteps) * caps, processors * 4}, job);
+                    LaunchShape{kWarp, kWarp, (kCutSteps + kCutAnewSteps) * caps, processors * 32}, job);
   ArcSearch search{job, max_radius, arc_count, arc_first, {}, {}};
   if (room.intervals > 0) {
     search.long_memory = executor.template allocate<Interval>(kLongCircleThreads * room.intervals);

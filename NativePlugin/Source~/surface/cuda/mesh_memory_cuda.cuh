@@ -43,11 +43,11 @@ inline MeshPool::Source page_locked_meshes() {
 template <>
 class MeshMemory<CudaExecutor> {
  public:
-  explicit MeshMemory(CudaExecutor &executor) : MeshMemory(executor, executor) {}
-  // main: the one that the context is said to have.
-  MeshMemory(CudaExecutor &executor, const CudaExecutor &main)
+  explicit MeshMemory(CudaExecutor &executor) : MeshMemory(executor, executor.stream()) {}
+  // told: the stream that callers are told of.
+  MeshMemory(CudaExecutor &executor, cudaStream_t told)
       : executor_(executor),
-        stream_(main.stream()),
+        told_stream_(told),
         host_mesh_(page_locked_meshes()),
         device_mesh_(device_meshes_of(executor.device())) {}
   ~MeshMemory() {
@@ -66,14 +66,16 @@ class MeshMemory<CudaExecutor> {
     }
   }
 
-  // Until no mesh is on its way to the host any more, also one that was given up.
-  void wait_for_copies() {
-    if (sends_triangles_) check_cuda(cudaStreamSynchronize(copies_), "cudaStreamSynchronize");
-    sends_triangles_ = sends_vertices_ = false;
+  // One that was begun and given up, once nothing of it is on its way to the host any more.
+  void forget_mesh() {
+    wait_for_copies();
+    host_mesh_.forget();
+    device_mesh_.forget();
   }
   // Where meshes that are handed out are wanted. What was given back since the last computation is the arena's again,
   // within a budget.
   void deliver_to(const qses_settings &settings) {
+    forget_mesh();
     keep_ = wants_device(settings);
     to_host_ = wants_host(settings);
     if (!executor_.arena().has_budget()) return;
@@ -173,7 +175,7 @@ class MeshMemory<CudaExecutor> {
     out->boxes = brought_.boxes;
     qses_device_mesh_init(&out->on_device);
     out->on_device.device = executor_.device();
-    out->on_device.stream = stream_;
+    out->on_device.stream = told_stream_;
     describe_mesh(built, keep_ ? &built.view : nullptr, settings, &out->on_device.mesh);
     out->delivery = settings.delivery;
     out->shape = built.shape;
@@ -190,6 +192,10 @@ class MeshMemory<CudaExecutor> {
   }
 
  private:
+  void wait_for_copies() {
+    if (sends_triangles_) check_cuda(cudaStreamSynchronize(copies_), "cudaStreamSynchronize");
+    sends_triangles_ = sends_vertices_ = false;
+  }
   // Room for a mesh that stays on the device. A budget covers it.
   void *keep(CudaExecutor &executor, const MeshArrays &arrays, bool in_pieces) {
     if (in_pieces) throw MemoryRefused("the mesh does not fit on the device, where it is wanted");
@@ -247,7 +253,7 @@ class MeshMemory<CudaExecutor> {
   }
 
   CudaExecutor &executor_;
-  const cudaStream_t stream_;
+  const cudaStream_t told_stream_;
   PooledMesh host_mesh_, device_mesh_;
   bool keep_ = false, to_host_ = false;
   cudaEvent_t triangles_made_ = nullptr, vertices_made_ = nullptr;

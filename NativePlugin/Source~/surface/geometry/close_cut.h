@@ -27,7 +27,7 @@ QSES_FN ExactPlane exact_plane(const Sphere &sphere, const Sphere &neighbor) {
 // Then all three spheres pass through one circle.
 constexpr double kOnePlane = 1e-10;  // no plane is farther from another that is the same; rounding is a millionth of it
 QSES_FN bool share_sphere(const ExactPlane &a, const ExactPlane &b) {
-  const double sine2 = 1.0 - a.cosine * a.cosine, gap = a.cosine + b.cosine;
+  const double sine2 = 1.0 + a.cosine * b.cosine, gap = a.cosine + b.cosine;
   return length_squared(a.axis + b.axis) * sine2 + gap * gap <= kOnePlane * kOnePlane;
 }
 

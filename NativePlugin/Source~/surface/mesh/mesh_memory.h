@@ -146,6 +146,8 @@ class PooledMesh {
     mesh->components.data = own(MeshLease::kComponents, mesh->components);
     mesh->atom_areas.data = own(MeshLease::kAtomAreas, mesh->atom_areas);
   }
+  // It won't be finished.
+  void forget() { lease_.give_back(); }
   // Of the mesh that is finished.
   MeshLease take() { return std::move(lease_); }
   MeshLease &lease() { return lease_; }

@@ -4,11 +4,12 @@
 //
 // The part of a unit sphere that lies left of a closed border has the area of the integral of (1 - cos(theta)) dphi
 // along the border, about any pole whose opposite point the part does not contain (Stokes). The axis of the atom's
-// largest cap is such a point: it is covered, and no border comes near it. So it need not be known how arcs join to
-// borders, nor how many there are, as the formula of Gauss and Bonnet asks for. Volume by the divergence theorem.
+// largest cap is such a point: it is covered, and no border comes near it, unless that cap is tiny. So it need not be
+// known how arcs join to borders, nor how many there are, as the formula of Gauss and Bonnet asks for. Volume by the
+// divergence theorem.
 //
-// Where that cap is tiny, its border does come near: ends of its arcs that are off by little would count for much. Then
-// the pole is the axis itself, and the integral is less by the whole sphere where the opposite point is exposed.
+// Where it is, ends of its arcs that are off by little would count for much. Then the pole is the axis itself, and the
+// integral is less by the whole sphere where the opposite point is exposed.
 #pragma once
 
 #include "parallel/atomics.h"
@@ -150,8 +151,9 @@ struct AreaOfAtom {
     if (range.count == kBuriedAtom) return 0.0;
     const double r = static_cast<double>(atoms[i].radius);
     double sum = static_cast<double>(solid_angles[i]) / kSolidAngleUnits;
-    // More than half is exposed then: it shows whether the opposite point is.
-    if (range.count > 0 && has_tiny_caps(range, load(caps + range.first)) && sum < 0.5 * kWholeSphere)
+    // More than half is exposed then, so that it is above half the sphere, or below nothing where the opposite point
+    // is.
+    if (range.count > 0 && has_tiny_caps(range, load(caps + range.first)) && sum < 0.25 * kWholeSphere)
       sum += kWholeSphere;
     const double solid_angle = range.count == 0 || sum > kWholeSphere ? kWholeSphere : sum < 0.0 ? 0.0 : sum;
     return rounded_product(rounded_product(r, r), solid_angle);

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: MIT
+// A CUDA stream, and a second one beside it: kernels in launches that are short on the smallest GPU (cuda_launch.cuh),
+// copies, and waiting for them.
+#pragma once
+
+#include "parallel/cuda_launch.cuh"
+#include "parallel/cuda_memory.h"
+#include "parallel/error.h"
+
+#include <algorithm>
+#include <atomic>
+#include <type_traits>
+#include <utility>
+
+namespace quickses {
+
+// Use from one thread at a time, with its device selected (DeviceGuard). Functions that fail throw Error.
+class CudaQueue {
+ public:
+  // While it lives, nothing more is asked of the device once the flag is set: Cancelled is thrown instead. However the
+  // computation ends, what was to be uploaded is with the device then.
+  class RunScope {
+   public:
+    RunScope(CudaQueue &queue, const std::atomic<bool> &flag) : queue_(queue) { queue.stop_ = &flag; }
+    ~RunScope() {
+      queue_.stop_ = nullptr;
+      queue_.wait_for_uploads();
+    }
+    RunScope(const RunScope &) = delete;
+    RunScope &operator=(const RunScope &) = delete;
+
+   private:
+    CudaQueue &queue_;
+  };
+  // Held while a computation runs: keeps the device selected.
+  struct CallScope {
+    explicit CallScope(const CudaQueue &queue) : guard(queue.device_) {}
+    DeviceGuard guard;
+  };
+
+  // goes_first: its kernels, before those of others.
+  CudaQueue(int device, bool goes_first) : CudaQueue(device) {
+    const DeviceGuard guard(device);
+    int value = 0;
+    check_cuda(cudaDeviceGetAttribute(&value, cudaDevAttrMultiProcessorCount, device), "cudaDeviceGetAttribute");
+    multiprocessors_ = static_cast<unsigned>(value);
+    if (LaunchObserver::current) multiprocessors_ = LaunchObserver::current->multiprocessors(multiprocessors_);
+    check_cuda(cudaStreamCreateWithPriority(&stream_, cudaStreamNonBlocking, goes_first ? kHighestPriority : 0),
+               "cudaStreamCreateWithPriority");
+    for (cudaEvent_t *event : {&joined_, &uploaded_})
+      check_cuda(cudaEventCreateWithFlags(event, cudaEventDisableTiming), "cudaEventCreateWithFlags");
+  }
+  // Does not wait: what kernels still use must not be given up before wait_for_all().
+  ~CudaQueue() {
+    try {
+      const DeviceGuard guard(device_);
+      if (!may_hand_back()) return;
+      for (cudaEvent_t event : {launched_[0], launched_[1], joined_, uploaded_})
+        if (event) cudaEventDestroy(event);
+      for (cudaStream_t stream : {stream_, second_stream_})
+        if (stream) cudaStreamDestroy(stream);
+      cudaGetLastError();
+    } catch (...) {  // the device is lost
+    }
+  }
+  CudaQueue(const CudaQueue &) = delete;
+  CudaQueue &operator=(const CudaQueue &) = delete;
+
+  int device() const { return device_; }
+  unsigned multiprocessors() const { return multiprocessors_; }
+  cudaStream_t stream() const { return stream_; }
+
+  // How many items a launch is given, and how many launches that makes. Known before anything is launched.
+  size_t items_per_launch(const LaunchShape &shape) const { return most_items_of_launch(shape, multiprocessors_); }
+  size_t launches_of(size_t items, const LaunchShape &shape) const {
+    const size_t most = items_per_launch(shape);
+    return items / most + (items % most > 0 ? 1 : 0);
+  }
+
+  // So few that to know more about the items is not worth a wait.
+  bool is_few_launches(size_t items, const LaunchShape &shape) const { return launches_of(items, shape) <= 4; }
+
+  // A kernel on this stream, for all items, in as many launches as that takes: kernel(QueuedItems, arguments...). Of
+  // several, no more than two are queued at a time, since what is queued can't be cancelled; but in a frame that is
+  // known to be short. No items: nothing to do.
+  template <class... Parameters>
+  void launch(const char *name, void (*kernel)(QueuedItems, Parameters...), size_t items, const LaunchShape &shape,
+              std::common_type_t<Parameters>... arguments) {
+    if (items == 0) return;
+    const size_t launches = launches_of(items, shape);
+    const size_t even = (items + launches - 1) / launches;
+    const size_t length = (even + shape.items_per_block - 1) / shape.items_per_block * shape.items_per_block;
+    for (size_t first = 0; first < items; first += length) {
+      const size_t last = std::min(items, first + length);
+      const size_t wanted = (last - first + shape.items_per_block - 1) / shape.items_per_block;
+      const size_t blocks = shape.most_blocks ? std::min(shape.most_blocks, wanted) : wanted;
+      stop_if_asked();
+      const LaunchWatch watch(name, blocks, wanted, shape, multiprocessors_, stream_);
+      QueuedItems queued(first, last);
+      void *parameters[] = {&queued, &arguments...};
+      check_cuda(launch_queued(reinterpret_cast<const void *>(kernel), blocks, shape, parameters), name);
+      if (launches > 1 && !runs_ahead_) wait_for_launch_before();
+    }
+  }
+
+  // A frame begins: whether all of it may be queued, since it is known to be short.
+  void run_ahead(bool runs_ahead) { runs_ahead_ = runs_ahead; }
+  bool runs_ahead() const { return runs_ahead_; }
+
+  // Between parts of a long work: waits for the part before the last one, so that little is queued that can't be
+  // cancelled. In a frame that is known to be short nothing waits.
+  void keep_pace() {
+    if (!runs_ahead_) wait_for_launch_before();
+  }
+
+  // From page-locked memory the copy goes on after the call returns: leave the memory alone until something waits.
+  template <class T>
+  void upload(T *destination, const T *host, size_t n) {
+    if (n == 0) return;
+    is_uploading_ = true;
+    check_cuda(cudaMemcpyAsync(destination, host, n * sizeof(T), cudaMemcpyHostToDevice, stream_), "cudaMemcpyAsync");
+    check_cuda(cudaEventRecord(uploaded_, stream_), "cudaEventRecord");
+  }
+  // Into page-locked memory the values are there after the next wait.
+  template <class T>
+  void download(T *host, const T *source, size_t n) {
+    if (n == 0) return;
+    check_cuda(cudaMemcpyAsync(host, source, n * sizeof(T), cudaMemcpyDeviceToHost, stream_), "cudaMemcpyAsync");
+  }
+  void wait() {
+    check_cuda(cudaStreamSynchronize(stream_), "cudaStreamSynchronize");
+    is_uploading_ = false;
+  }
+
+  // ---- a second stream (SecondStream) -----------------------------------------------------------------------------
+
+  void open_second_stream() {
+    if (!second_stream_)
+      check_cuda(cudaStreamCreateWithPriority(&second_stream_, cudaStreamNonBlocking, kHighestPriority),
+                 "cudaStreamCreateWithPriority");
+  }
+  // What is given from now on goes to the other stream, or to this one again.
+  void turn_streams() { std::swap(stream_, second_stream_); }
+  // What the second stream is given from now on comes behind all that this one has.
+  void lead_second_stream() { check_cuda(follow(second_stream_, stream_), "cudaStreamWaitEvent"); }
+  // The other way round.
+  void join_second_stream() {
+    if (follow(stream_, second_stream_) != cudaSuccess) cudaStreamSynchronize(second_stream_);
+  }
+
+  // What this is given from now on comes behind all that the other one has, also where that fails.
+  void go_behind(CudaQueue &other) noexcept {
+    if (other.follow(stream_, other.stream_) != cudaSuccess) cudaStreamSynchronize(other.stream_);
+  }
+
+ protected:
+  // Whatever it has been given. Failures are ignored.
+  void wait_for_all() noexcept {
+    for (cudaStream_t stream : {stream_, second_stream_})
+      if (stream) cudaStreamSynchronize(stream);
+  }
+  void stop_if_asked() const {
+    if (stop_ && stop_->load(std::memory_order_relaxed)) throw Cancelled{};
+  }
+
+ private:
+  explicit CudaQueue(int device) : device_(device) {}  // so that whatever is made after it is given back
+
+  static constexpr int kHighestPriority = -1000;  // the driver takes the highest there is
+
+  cudaError_t follow(cudaStream_t behind, cudaStream_t ahead) {
+    const cudaError_t error = cudaEventRecord(joined_, ahead);
+    return error == cudaSuccess ? cudaStreamWaitEvent(behind, joined_, 0) : error;
+  }
+
+  void wait_for_uploads() noexcept {
+    if (is_uploading_) cudaEventSynchronize(uploaded_);
+    is_uploading_ = false;
+  }
+
+  // A kernel that waits for what is queued before it by itself (QueuedItems).
+  cudaError_t launch_queued(const void *kernel, size_t blocks, const LaunchShape &shape, void **parameters) {
+    cudaLaunchAttribute early{};
+    early.id = cudaLaunchAttributeProgrammaticStreamSerialization;
+    early.val.programmaticStreamSerializationAllowed = 1;
+    cudaLaunchConfig_t config{};
+    config.gridDim = dim3(static_cast<unsigned>(blocks));
+    config.blockDim = dim3(static_cast<unsigned>(shape.threads));
+    config.dynamicSmemBytes = shape.shared_bytes;
+    config.stream = stream_;
+    config.attrs = &early;
+    config.numAttrs = 1;
+    return cudaLaunchKernelExC(&config, kernel, parameters);
+  }
+
+  void wait_for_launch_before() {
+    cudaEvent_t &event = launched_[0];
+    if (event) check_cuda(cudaEventSynchronize(event), "cudaEventSynchronize");
+    if (!event) check_cuda(cudaEventCreateWithFlags(&event, cudaEventDisableTiming), "cudaEventCreateWithFlags");
+    check_cuda(cudaEventRecord(event, stream_), "cudaEventRecord");
+    std::swap(launched_[0], launched_[1]);
+  }
+
+  int device_;
+  unsigned multiprocessors_ = 0;
+  cudaStream_t stream_ = nullptr, second_stream_ = nullptr;
+  const std::atomic<bool> *stop_ = nullptr;
+  cudaEvent_t launched_[2] = {};  // the next to be used: the launch before last
+  cudaEvent_t joined_ = nullptr, uploaded_ = nullptr;
+  bool runs_ahead_ = false, is_uploading_ = false;
+};
+
+}  // namespace quickses
