@@ -4,6 +4,7 @@
 #include "surface/surface_fixture.h"
 
 #include "surface/cuda/cuda_backend.cuh"
+#include "surface/engine.h"
 #include "surface/stages/atoms.h"
 
 #include <gtest/gtest.h>
