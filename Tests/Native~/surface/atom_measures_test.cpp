@@ -332,15 +332,16 @@ TEST(AtomMeasures, BallsThatBarelyMeet) {
 
 // Of three balls that just close at one point, each lacks so little of a circle that one precision has no digit of it.
 TEST(AtomMeasures, RingsThatJustClose) {
-  for (int k = 0; k < 50; ++k) {
-    const Atoms atoms = turned(ring(3, 2.92, 1.52), 0.1 * k, 0.3 * k, -0.2 * k);
-    const Numbers n = numbers(atoms, numbers_only(QSES_SURFACE_SAS));
-    const Numbers wider = numbers(turned(ring(3, 2.92, 1.52001)), numbers_only(QSES_SURFACE_SAS));
-    for (double area : n.areas) ASSERT_NEAR(area, wider.areas[0], 2e-3) << k;
-  }
+  for (const double reach : {2.92, 12.0, 29.2})
+    for (int k = 0; k < 50; ++k) {
+      SCOPED_TRACE(testing::Message() << "reach " << reach << " ring " << k);
+      const double radius = reach - 1.4;
+      const Atoms atoms = turned(ring(3, reach, radius), 0.1 * k, 0.3 * k, -0.2 * k);
+      const Numbers n = numbers(atoms, numbers_only(QSES_SURFACE_SAS));
+      const Numbers wider = numbers(turned(ring(3, reach, radius + 4e-6 * reach)), numbers_only(QSES_SURFACE_SAS));
+      for (double area : n.areas) ASSERT_NEAR(area, wider.areas[0], 2.5e-4 * reach * reach);
+    }
 }
-
-// ---- invariance
 
 TEST(AtomMeasures, SameWhereverTheAtomsAre) {
   const Context context;

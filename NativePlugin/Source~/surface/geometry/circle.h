@@ -54,10 +54,11 @@ QSES_FN auto same_circle(const Circle &circle, const HalfPlane<T> &h) -> decltyp
 }
 // Does the ball's surface come so near to touching the circle, or to running along it, that it depends on rounding what
 // it covers? That is so of every circle that is the same.
-constexpr float kUnclearTimes = 128.f;  // by how much more than what is the same
+constexpr float kUnclearTimes = 128.f, kUnclearLeast = 2e-5f;  // more than what is the same; however large the circle
 template <class T>
 QSES_FN auto is_unclear(const Circle &circle, const HalfPlane<T> &h) -> decltype(h.a <= h.b) {
-  return absolute(h.a * h.a + h.b * h.b - h.c * h.c) <= T(circle.same2 * (kUnclearTimes * kUnclearTimes));
+  return absolute(h.a * h.a + h.b * h.b - h.c * h.c) <=
+         T(circle.same2 * (kUnclearTimes * kUnclearTimes) + kUnclearLeast);
 }
 // The whole circle is covered, or nothing of it, where the line a x + b y = c misses it.
 template <class T>
