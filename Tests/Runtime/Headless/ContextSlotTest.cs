@@ -27,6 +27,8 @@ namespace QuickSes.Tests
                         Interlocked.Increment(ref done);
                     });
                 }
+                while (Volatile.Read(ref blocked) < threads) // so many begin at once
+                    Thread.Sleep(1);
                 TestHost host = null;
                 int left;
                 try
