@@ -53,9 +53,9 @@ class FrameLevels {
   Progress progress;
   WorkFacts facts{};  // of the level that is being made; of those beside each other, of what they share
 
+  // Of all levels, to be prepared.
   Work work_of(const FrameInput &in, const MemoryPlan &plan, qses_report *report) {
-    return {{},      executor,    timer, memory, components, rooms,        progress,
-            table(), in.settings, plan,  &facts, report,     &area_memory_};
+    return work_of(in.settings, plan, executor, memory, &facts, report);
   }
   // Tables of marching cubes, uploaded once.
   const TableView &table() {
@@ -97,7 +97,7 @@ class FrameLevels {
       own_memory.forget_mesh();
       const bool is_behind = coarser && coarser->facts.size.vertices > kManyVertices;
       if (is_behind) lanes_.go_behind(own_executor, k - 1);
-      Level &level = under_way.add(is_behind, shared, own_executor, own_memory, is_beside);
+      Level &level = under_way.add(is_behind, *this, shared, own_executor, own_memory, is_beside);
       level.work.hand_out_others = [&] {
         maker.verify_prepared();
         under_way.hand_out_others();
@@ -125,22 +125,13 @@ class FrameLevels {
 
   // A level that is under way.
   struct Level {
-    Level(const Work &frame, Executor &executor, MeshMemory<Executor> &memory, bool is_beside)
-        : facts(*frame.facts),
-          work{frame,
-               executor,
-               frame.timer,
-               memory,
-               frame.components,
-               frame.rooms,
-               frame.progress,
-               frame.table,
-               frame.settings,
-               frame.plan,
-               is_beside ? &facts : frame.facts,
-               &out.report,
-               frame.area_memory},
+    // shared: the work on all levels; the executor and memory are those of the level.
+    Level(FrameLevels &levels, const Work &shared, Executor &executor, MeshMemory<Executor> &memory, bool is_beside)
+        : facts(levels.facts),
+          work(levels.work_of(shared.settings, shared.plan, executor, memory, is_beside ? &facts : &levels.facts,
+                              &out.report)),
           start(executor.arena().mark()) {
+      static_cast<PreparedFrame &>(work) = shared;
       qses_report_init(&out.report);
     }
     FinishedMesh out{};
@@ -209,6 +200,12 @@ class FrameLevels {
       course->attempts = 1;
     }
   };
+
+  Work work_of(const qses_settings &settings, const MemoryPlan &plan, Executor &own_executor,
+               MeshMemory<Executor> &own_memory, WorkFacts *own_facts, qses_report *report) {
+    return {{},      own_executor, timer, own_memory, components, rooms,        progress,
+            table(), settings,     plan,  own_facts,  report,     &area_memory_};
+  }
 
   // The work of a level grows with the number of its lattice points at the surface.
   static double cost_of(float spacing) { return 1.0 / (static_cast<double>(spacing) * static_cast<double>(spacing)); }

@@ -195,22 +195,17 @@ MeshMemoryView begin_level(Work &work) {
                                                         : build_exact_surface(work);
 }
 
-// Of a mesh that is painted and complete nothing is left but to bring it to where it is wanted: that is all that is
-// waited for, if what is measured is on its way as well.
-template <class Work>
-bool measures_come_later(Work &work, const MeshCounts &counts, const double *middle, MeshMemoryView *mesh) {
+// Sums of the mesh. Of one that is painted and complete nothing is left but to bring it to where it is wanted: on a GPU
+// its sums are on their way as well, and that is all that is waited for.
+template <class Work, class Load>
+Measures sum_up(Work &work, const Load &load, MeshMemoryView *mesh) {
   using Executor = std::decay_t<decltype(work.executor)>;
   if constexpr (Executor::kIsCuda && !Executor::kCounts) {
-    if (!work.paints_early() || work.settings.atom_areas || work.shape.boxes ||
-        work.report->measured_by == QSES_MEASURED_BY_ATOMS)
-      return false;
-    const bool bent = work.report->measured_by == QSES_MEASURED_BY_NORMALS;
-    return work.settings.measure
-               ? send_sums(work.executor, measured_sums(mesh->view, counts, bent, middle, mesh->unplaced),
-                           &mesh->coming)
-               : send_sums(work.executor, bound_sums(mesh->view, counts, mesh->unplaced), &mesh->coming);
+    const bool is_complete = work.paints_early() && !work.settings.atom_areas && !work.shape.boxes &&
+                             work.report->measured_by != QSES_MEASURED_BY_ATOMS;
+    if (is_complete && send_sums(work.executor, load, &mesh->coming)) return {};
   }
-  return false;
+  return sum_mesh(work.executor, load, &work.report->unplaced_vertices);
 }
 
 // It is measured; then what is shown of it, with hard edges if they are asked for.
@@ -235,13 +230,10 @@ MeshMemoryView measure_and_cut(Work &work, MeshMemoryView mesh) {
   } else {
     work.timer.begin("measure");
     const double middle[3] = {work.lattice.center_x, work.lattice.center_y, work.lattice.center_z};
-    uint64_t *const unplaced = &work.report->unplaced_vertices;
-    if (measures_come_later(work, counts, middle, &mesh)) return mesh;
-    if (work.settings.measure)
-      measures = measure(executor, mesh.view, counts, work.report->measured_by == QSES_MEASURED_BY_NORMALS, middle,
-                         mesh.unplaced, unplaced);
-    else
-      measures.bounds = find_bounds(executor, mesh.view, counts, mesh.unplaced, unplaced);
+    const bool bent = work.report->measured_by == QSES_MEASURED_BY_NORMALS;
+    measures = work.settings.measure
+                   ? sum_up(work, measured_sums(mesh.view, counts, bent, middle, mesh.unplaced), &mesh)
+                   : sum_up(work, bound_sums(mesh.view, counts, mesh.unplaced), &mesh);
   }
   mesh.bounds = measures.bounds;
   if (work.settings.measure) note_measures(measures.sums, work.report);

@@ -18,11 +18,6 @@ namespace {
 #define REQUIRE_DEVICE() \
   if (!quickses::describe_cuda_device(0).available) GTEST_SKIP() << "no CUDA device"
 
-Atoms scaled(const Atoms &atoms, double factor) {
-  Atoms out = atoms;
-  for (float &x : out.positions) x *= static_cast<float>(factor);
-  return out;
-}
 // Atoms about the points of a lattice, so long along an axis.
 Atoms rod(int axis) {
   constexpr int kLength = 64;

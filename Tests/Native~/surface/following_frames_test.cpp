@@ -18,15 +18,6 @@ void expect_same(const Surface &a, const Surface &b) {
   EXPECT_EQ(a.report.attempts, b.report.attempts);
 }
 
-Atoms scaled(const Atoms &atoms, double factor) {
-  Atoms out;
-  for (size_t i = 0; i < atoms.size(); ++i) {
-    const auto p = atoms.center(i);
-    out.add(factor * p[0], factor * p[1], factor * p[2], static_cast<double>(atoms.radii[i]));
-  }
-  return out;
-}
-
 // Breathing, then bursting apart, collapsing to almost a point, and as at first.
 std::vector<Atoms> frames_of(const Atoms &atoms) {
   std::vector<Atoms> frames;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Each level of a ladder is what it is by itself, however the frames before it were, and whether or not the levels are
 // made beside each other.
+#include "capi/atoms_in.h"
 #include "surface/engine.h"
 #include "surface/levels.h"
 #include "surface/surface_checks.h"
@@ -60,15 +61,8 @@ class Levels : public quickses::LevelSink {
 
 std::shared_ptr<quickses::AtomSet> atoms_of(quickses::SurfaceEngine &engine, const Atoms &atoms) {
   auto set = engine.make_atoms(atoms.size());
-  quickses::AtomBounds &bounds = set->bounds;
-  bounds = {glm::vec3(1e9f), glm::vec3(-1e9f), 0.f};
-  for (size_t i = 0; i < atoms.size(); ++i) {
-    const glm::vec3 center(atoms.positions[3 * i], atoms.positions[3 * i + 1], atoms.positions[3 * i + 2]);
-    set->atoms[i] = quickses::Sphere{center, atoms.radii[i]};
-    bounds.low = glm::min(bounds.low, center);
-    bounds.high = glm::max(bounds.high, center);
-    bounds.max_radius = std::max(bounds.max_radius, atoms.radii[i]);
-  }
+  set->bounds = quickses::copy_atoms(atoms.positions.data(), 0, atoms.radii.data(), atoms.size(), set->atoms);
+  set->bounds.max_radius = quickses::check_radii(atoms.radii.data(), atoms.size());
   return set;
 }
 
@@ -133,15 +127,6 @@ void expect_as_by_themselves(const Levels &found, const Atoms &atoms, const qses
     SCOPED_TRACE("level " + std::to_string(k));
     expect_same(found.meshes[k], (*alone)[k]);
   }
-}
-
-Atoms scaled(const Atoms &atoms, double factor) {
-  Atoms out;
-  for (size_t i = 0; i < atoms.size(); ++i) {
-    const auto p = atoms.center(i);
-    out.add(factor * p[0], factor * p[1], factor * p[2], static_cast<double>(atoms.radii[i]));
-  }
-  return out;
 }
 
 using Change = void (*)(qses_settings *);

@@ -59,6 +59,16 @@ inline Atoms shifted(const Atoms &atoms, double dx, double dy, double dz) {
   return out;
 }
 
+// Apart by so much more; the radii are the same.
+inline Atoms scaled(const Atoms &atoms, double factor) {
+  Atoms out;
+  for (size_t i = 0; i < atoms.size(); ++i) {
+    const auto p = atoms.center(i);
+    out.add(factor * p[0], factor * p[1], factor * p[2], static_cast<double>(atoms.radii[i]));
+  }
+  return out;
+}
+
 // A compact cluster whose atoms overlap about as much as those of a protein.
 inline Atoms cluster(size_t count, unsigned seed) {
   std::mt19937 random(seed);

@@ -74,7 +74,7 @@ void settle_mesh(Work &work, MeshMemoryView *mesh) {
 // The same in the midst of making it.
 template <class Work>
 void wait_for_size(Work &work, MeshMemoryView *mesh) {
-  if (work.hand_out_others) work.hand_out_others();
+  work.hand_out_others();
   settle_mesh(work, mesh);
 }
 

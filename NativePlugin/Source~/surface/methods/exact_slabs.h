@@ -69,7 +69,7 @@ MeshMemoryView build_in_slabs(Work &work, const BrickSet &bricks, const Slabs &s
   using Executor = std::remove_reference_t<decltype(executor)>;
   using B = Backend<Executor>;
   const FeatureView &features = work.features;
-  if (work.hand_out_others) work.hand_out_others();
+  work.hand_out_others();
   const bool has_walls = work.parameters.has_thin_walls();
   const size_t leaves = size_t(bricks.count) * kLeavesPerBrick;
   const Span<uint64_t> signs = executor.template allocate<uint64_t>(leaves);

@@ -65,8 +65,8 @@ struct LevelWork : PreparedFrame {
   qses_report *report;
   GrowingBuffer<HostMemory> *area_memory = nullptr;  // of the areas of atoms
   UntoldSize untold{};                               // of the mesh as it is made (closed_layout.h)
-  // Called before the host waits for this level: levels under way beside it go out first. Empty: there are none.
-  std::function<void()> hand_out_others{};
+  // Called before the host waits for this level: levels under way beside it go out first.
+  std::function<void()> hand_out_others = [] {};
 
   // Whether the mesh, as it is made, has the vertices and normals that will be delivered: then they are painted before
   // anything waits for what is measured.
