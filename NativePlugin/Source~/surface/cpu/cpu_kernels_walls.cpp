@@ -171,10 +171,10 @@ void find_all_probes(const WallField &field, ProbedPoints<kRoom> &points, int be
 void walk_edges(const WallField &field, const BrickSet &bricks, uint32_t brick, int count, WallWork &w,
                 uint64_t *marks) {
   const SurfaceParameters &p = field.f.parameters;
-  for (int round = 0; count > 0 && round < kMostWallSteps; ++round) {
+  for (int look = 0; count > 0 && look < kMostWallLooks; ++look) {
     for (int q = 0; q < count; ++q) {
       const Walk &walk = w.walks[q];
-      w.walked.set(q, w.ends.point(walk.edge.first) + wall_direction(walk.edge.step) * (walk.state.at + kWallStep));
+      w.walked.set(q, w.ends.point(walk.edge.first) + wall_direction(walk.edge.step) * walk.state.next(look));
     }
     find_all_probes(field, w.walked, 0, count);
     int left = 0;
@@ -187,7 +187,7 @@ void walk_edges(const WallField &field, const BrickSet &bricks, uint32_t brick, 
         mark_wall(bricks, brick, first ? at : at + wall_step(walk.edge.step), marks);
         continue;
       }
-      walk.state.at += kWallStep + way_out(p, probe, w.walked.point(q), wall_direction(walk.edge.step));
+      walk_through(p, probe, w.walked.point(q), walk.edge.step, walk.state.next(look), &walk.state);
       if (!walk.state.is_open()) w.walks[left++] = walk;
     }
     count = left;

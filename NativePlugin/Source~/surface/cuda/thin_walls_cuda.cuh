@@ -40,8 +40,9 @@ __device__ __forceinline__ void walk_edge(const WallJob &job, const uint64_t *it
   WallWalk walk = begin_wall_walk(p, e.step, a, probe_a, b, probe_b);
   if (!on) walk = {0.f, 0.f};
   const Vec3<float> direction = wall_direction(e.step);
-  for (int round = 0; round < kMostWallSteps && __any_sync(kFullWarp, !walk.is_open()); ++round) {
-    const Vec3<float> x = a + direction * (walk.at + kWallStep);
+  for (int look = 0; look < kMostWallLooks && __any_sync(kFullWarp, !walk.is_open()); ++look) {
+    const float at = walk.next(look);
+    const Vec3<float> x = a + direction * at;
     const NearestProbe probe = nearest_probe_if(!walk.is_open(), f, near, x);
     if (walk.is_open()) continue;
     if (probe.distance > p.depth) {
@@ -51,7 +52,7 @@ __device__ __forceinline__ void walk_edge(const WallJob &job, const uint64_t *it
       }
       walk = {0.f, 0.f};
     } else {
-      walk.at += kWallStep + way_out(p, probe, x, direction);
+      walk_through(p, probe, x, e.step, at, &walk);
     }
   }
 }
@@ -162,7 +163,7 @@ void mark_thin_walls(E &executor, const FeatureView &features, const BrickSet &b
   const auto walk = [&](size_t lanes, auto kernel) {
     executor.launch("walk_edges", kernel, static_cast<size_t>(found.walks),
                     LaunchShape{kWallThreads, kWallThreads / lanes,
-                                look / kWarp + (2 + kMostWallSteps) * (64 + look / lanes), blocks_in_turns(executor)},
+                                look / kWarp + (2 + kMostWallLooks) * (64 + look / lanes), blocks_in_turns(executor)},
                     job);
   };
   // Few edges leave a GPU idle with few lanes each; of many edges' lanes fewer are idle then.

@@ -150,12 +150,25 @@ QSES_FN float way_out(const SurfaceParameters &p, const NearestProbe &probe, con
 }
 
 // An edge on its way through balls of probes: how far from the first end it is open, and from where on to the second.
-// So far behind a ball the next point is looked at, in Å; an edge with more balls than so many is open.
+// So far behind a ball the next point is looked at, in Å, so that a shorter wall may be passed over. An edge with more
+// balls than so many is open.
 constexpr float kWallStep = 1e-3f;
 constexpr int kMostWallSteps = 12;
+// Before the first two, the middle of what is left: its probe covers all of that on most edges that are open.
+constexpr int kMiddleLooks = 2, kMostWallLooks = kMostWallSteps + kMiddleLooks;
 struct WallWalk {
   float at, end;
-  QSES_FN bool is_open() const { return !(at < end); }
+  QSES_FN bool is_open() const { return !(at + kWallStep < end); }
+  // Where to look next.
+  QSES_FN float next(int look) const {
+    const bool middle = look < 2 * kMiddleLooks && look % 2 == 0;
+    return middle ? 0.5f * (at + end) : at + kWallStep;
+  }
+  // A probe covers it from one place to another, between which the last look was.
+  QSES_FN void open(float from, float to) {
+    if (to >= end) end = minimum(end, from);
+    if (from <= at + kWallStep) at = maximum(at, to);
+  }
 };
 
 // By the probes of both ends, of which that of the first does not cover the second.
@@ -174,6 +187,13 @@ struct WallRest {
 QSES_FN WallRest rest_of_walk(const WallWalk &walk, int step, const Vec3<float> &a) {
   const Vec3<float> direction = wall_direction(step);
   return {a + direction * walk.at, a + direction * walk.end};
+}
+// By the probe of the point that was looked at, which it covers.
+QSES_FN void walk_through(const SurfaceParameters &p, const NearestProbe &probe, const Vec3<float> &x, int step,
+                          float at, WallWalk *walk) {
+  const Vec3<float> direction = wall_direction(step);
+  const float before = way_out(p, probe, x, direction * -1.f), behind = way_out(p, probe, x, direction);
+  walk->open(at - maximum(0.f, before), at + maximum(0.f, behind));  // never without x itself
 }
 // Is that in the ball of a probe that is known from another point? Not by a hair, so that a walk would find no wall
 // either.
