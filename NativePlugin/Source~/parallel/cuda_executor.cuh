@@ -93,17 +93,16 @@ class CudaExecutor : public CudaQueue {
 
   template <class Load, class T>
   void exclusive_scan(size_t n, Load load, Span<T> out) {
-    if (n <= gpu::kFewItems) {
-      launch("scan_few", gpu::scan_few_kernel<Load, T>, 1, few_shape(), load, n, out.data);
-      return;
-    }
-    scan_all(n, load, out, T{});
+    if (n <= gpu::kSomeItems)
+      scan_some(gpu::scan_some_kernel<Load, T, false>, n, load, out);
+    else
+      scan_all(n, load, out, T{});
   }
   // The same behind sums that are there already: out[0] is the last of them.
   template <class Load, class T>
   void go_on_scanning(size_t n, Load load, Span<T> out) {
-    if (n <= gpu::kFewItems)
-      launch("scan_few", gpu::go_on_scanning_few_kernel<Load, T>, 1, few_shape(), load, n, out.data);
+    if (n <= gpu::kSomeItems)
+      scan_some(gpu::scan_some_kernel<Load, T, true>, n, load, out);
     else
       scan_all(n, load, out, cub::FutureValue<T>(out.data));
   }
@@ -112,7 +111,7 @@ class CudaExecutor : public CudaQueue {
   // each tile of 128 items or more, two sums and a status.
   template <class T>
   size_t scan_bytes(size_t n) const {
-    return n <= gpu::kFewItems ? 0 : (n / 128 + 33) * (2 * sizeof(T) + 8) + 1024;
+    return n <= gpu::kSomeItems ? 0 : (n / 128 + 33) * (2 * sizeof(T) + 8) + 1024;
   }
   template <class Key, class Value>
   size_t sort_bytes(size_t n) const {
@@ -320,6 +319,11 @@ class CudaExecutor : public CudaQueue {
                                                  gpu::IsLess{}, stream());
   }
 
+  template <class Kernel, class Load, class T>
+  void scan_some(Kernel kernel, size_t n, const Load &load, Span<T> out) {
+    launch("scan_some", kernel, n / gpu::kFewThreads + 1,
+           {gpu::kFewThreads, 1, (n / gpu::kFewThreads + 2) * kPlainSumSteps}, load, n, out.data);
+  }
   template <class Load, class T, class Start>
   void scan_all(size_t n, Load load, Span<T> out, Start start) {
     check_count(n + 1, "exclusive_scan");

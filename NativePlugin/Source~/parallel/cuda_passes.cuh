@@ -73,7 +73,7 @@ using Sum = cub::Sum;
 #endif
 
 // Few items are scanned, or chosen, by one block, a tile of as many as it has threads after the other. CUB's passes
-// over the whole device take two launches, of which each waits for what was queued before it.
+// over the whole device take two launches, of which each waits until all is done that was queued before it.
 constexpr int kFewThreads = 1024;
 constexpr size_t kFewItems = 8 * kFewThreads;
 constexpr uint64_t kFewSteps = kFewItems / kFewThreads * kPlainSumSteps;  // of a thread, for those
@@ -121,23 +121,29 @@ __device__ __forceinline__ T for_sums(size_t n, const Load &load, const T &start
 }
 
 template <class Load, class T>
-__device__ __forceinline__ void scan_few(const Load &load, size_t n, T *out, const T &start = T{}) {
-  const T total = for_sums(n, load, start, [&](size_t i, const T &, const T &before) { out[i] = before; });
+__device__ __forceinline__ void scan_few(const Load &load, size_t n, T *out) {
+  const T total = for_sums(n, load, T{}, [&](size_t i, const T &, const T &before) { out[i] = before; });
   if (threadIdx.x == 0) out[n] = total;
 }
-template <class Load, class T>
-__global__ __launch_bounds__(kFewThreads) void scan_few_kernel(QueuedItems queued, Load load, size_t n, T *out) {
-  queued.in_turn();
-  scan_few(load, n, out);
-}
-// out[0] holds the start.
-template <class Load, class T>
-__global__ __launch_bounds__(kFewThreads) void go_on_scanning_few_kernel(QueuedItems queued, Load load, size_t n,
-                                                                         T *out) {
-  queued.in_turn();
-  const T start = *out;
-  __syncthreads();
-  scan_few(load, n, out, start);
+
+// Some items are scanned in one launch, too, by a block for each tile, which adds up all that is before it by itself,
+// so that none waits for another. kGoesOn: out[0] holds the start, which the first block leaves there.
+constexpr size_t kSomeItems = 64 * kFewThreads;
+template <class Load, class T, bool kGoesOn>
+__global__ __launch_bounds__(kFewThreads) void scan_some_kernel(QueuedItems queued, Load load, size_t n, T *out) {
+  __shared__ __align__(16) unsigned char memory[2][sizeof(TileMemory<T>)];
+  const auto sum_of_block = [&](int k, const T &own, T *total) {
+    return sum_before(*reinterpret_cast<TileMemory<T> *>(memory[k]), own, total);
+  };
+  const size_t tile = queued.in_turn().first + blockIdx.x, first = tile * kFewThreads, i = first + threadIdx.x;
+  const T own = i < n ? static_cast<T>(load(i)) : T{};
+  T start = kGoesOn && threadIdx.x == 0 ? *out : T{}, total;
+#pragma unroll 8
+  for (size_t k = threadIdx.x; k < first; k += kFewThreads) start = start + static_cast<T>(load(k));
+  sum_of_block(0, start, &start);
+  const T before = start + sum_of_block(1, own, &total);
+  if (i < n) out[i] = before;
+  if (threadIdx.x == 0 && first + kFewThreads >= n) out[n] = start + total;
 }
 
 // Steps of do_in_turn(), by one block: a launch of their own takes each some microseconds. An item for each thread: of

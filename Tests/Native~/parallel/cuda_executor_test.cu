@@ -30,7 +30,18 @@ CudaExecutor *device() {
   executor.arena().reset()
 
 // Also as many as one block scans, and one more.
-const size_t kSizes[] = {1, 31, 128, 129, 5000, gpu::kFewItems - 1, gpu::kFewItems, gpu::kFewItems + 1, 1000003};
+const size_t kSizes[] = {1,
+                         31,
+                         128,
+                         129,
+                         5000,
+                         gpu::kFewItems - 1,
+                         gpu::kFewItems,
+                         gpu::kFewItems + 1,
+                         gpu::kSomeItems - 1,
+                         gpu::kSomeItems,
+                         gpu::kSomeItems + 1,
+                         1000003};
 
 template <class T>
 std::vector<T> to_host(CudaExecutor &executor, Span<T> span) {

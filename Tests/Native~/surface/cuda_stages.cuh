@@ -120,7 +120,7 @@ inline DeviceStages run_device_stages(CudaExecutor &executor, const DeviceTable 
                                          return ArcBoundAt{s.found.arcs.data, nullptr};
                                        });
     Span<Arc> sorted = executor.allocate<Arc>(arcs);
-    executor.for_each(arcs, GatherArcs{s.found.arcs.data, nullptr, f.arc_bounds.order, sorted.data});
+    executor.for_each(arcs, GatherArcs{{s.found.arcs.data, sorted.data}, nullptr, f.arc_bounds.order});
     f.arcs = sorted.data;
   }
   s.features = f;

@@ -85,7 +85,7 @@ MeshMemoryView build_in_slabs(Work &work, const BrickSet &bricks, const Slabs &s
   mesh.is_brought = true;
 
   const auto end_of_mesh = executor.arena().mark();
-  const CountedCells counts(executor, bricks.count);
+  const Span<BrickTotals> owned = executor.template allocate<BrickTotals>(bricks.count);
   TotalsBefore *const told = executor.template take_counts<TotalsBefore>();
   const VertexStarts starts{work.settings.relaxation_steps > 0, nullptr, work.table.ring, &layout.totals->unplaced};
   std::vector<Candidates<Executor>> candidates(slabs.count);
@@ -128,7 +128,8 @@ MeshMemoryView build_in_slabs(Work &work, const BrickSet &bricks, const Slabs &s
     if (has_walls)
       executor.for_each(size_t(final_signs.size()) * kLeavesPerBrick,
                         AddMarks{marks.data + first_leaf, signs.data + first_leaf});
-    count_cells(executor, bricks, layout, work.table.triangle_count, counts, slabs.newly_final(found, Slabs::kCounts));
+    count_cells(executor, bricks, layout, work.table.triangle_count, owned.data,
+                slabs.newly_final(found, Slabs::kCounts));
     executor.for_each(emitted.size(),
                       CountBorderChanges{bricks, layout, emitted.first, slabs.final_bricks(found, Slabs::kCounts)});
     if (found == slabs.count) {

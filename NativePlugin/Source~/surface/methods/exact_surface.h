@@ -61,18 +61,24 @@ FeatureView arrange_features(Work &work, const SolventFeatures &found) {
   if (n > 0) {
     const glm::vec3 reach(work.parameters.max_radius);
     const CellLayout cells = layout_cells(work.low - reach, work.high + reach, kArcCellEdge);
-    f.arc_bounds = build_neighbor_grid(executor, "crowded cell of arcs", n, cells, [&] {
-      return ArcBoundAt{found.arcs.data, found.arc_count};
-    });
-    const auto mark = executor.arena().mark();
-    Span<Arc> sorted = executor.template allocate<Arc>(n);
-    executor.for_each(n, GatherArcs{found.arcs.data, found.arc_count, f.arc_bounds.order, sorted.data});
-    if (work.plan.low_memory || executor.arena().has_budget()) {
-      executor.for_each(n, CopyArcs{sorted.data, found.arcs.data});
+    // Where memory is short they change places in the end, when the work on the grid is given up.
+    const bool changes_places = work.plan.low_memory || executor.arena().has_budget();
+    const auto allocate_sorted = [&] { return executor.template allocate<Arc>(n).data; };
+    const BringArc at_once{found.arcs.data, changes_places ? nullptr : allocate_sorted()};
+    f.arc_bounds = build_neighbor_grid(
+        executor, "crowded cell of arcs", n, cells,
+        [&] {
+          return ArcBoundAt{found.arcs.data, found.arc_count};
+        },
+        at_once);
+    f.arcs = at_once.sorted;
+    if (changes_places) {
+      const auto mark = executor.arena().mark();
+      const BringArc later{found.arcs.data, allocate_sorted()};
+      executor.for_each(n, GatherArcs{later, found.arc_count, f.arc_bounds.order});
+      executor.for_each(n, CopyArcs{later.sorted, found.arcs.data});
       executor.arena().rewind(mark);
       f.arcs = found.arcs.data;
-    } else {
-      f.arcs = sorted.data;
     }
   }
   return f;

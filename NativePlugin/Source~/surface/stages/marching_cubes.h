@@ -66,36 +66,38 @@ QSES_FN BrickTotals rank_brick(const MeshLayout &layout, size_t brick, const Bri
   return {v, t, owning};
 }
 
-// On the GPU a thread per leaf, then one per brick: of those from brick `first` on. Counts and totals are by brick.
-struct CountLeaf {
+// On the GPU by chunks of bricks: a thread per leaf, then one per brick.
+struct CountBrickChunk {
+  static constexpr size_t kChunk = 16;
+  struct Counts {
+    BrickCounts of_brick[kChunk];
+  };
   BrickSet bricks;
   MeshLayout layout;
   const uint8_t *case_triangles;
-  BrickCounts *counts;
-  size_t first;
-  QSES_FN void operator()(size_t i) const {
-    const size_t brick = first + i / kLeavesPerBrick, slot = first * kLeavesPerBrick + i;
-    const int leaf = static_cast<int>(i % kLeavesPerBrick);
-    const UpperBricks upper = upper_bricks(bricks, static_cast<uint32_t>(brick));
-    uint64_t crossing[kAxes];
-    const int triangles = count_leaf(leaf_words(upper, layout.signs, leaf), case_triangles, crossing);
-    for (int axis = 0; axis < kAxes; ++axis) layout.crossing[kAxes * slot + static_cast<size_t>(axis)] = crossing[axis];
-    counts[brick].of_leaf[leaf] = pack_counts(crossing, triangles);
-  }
-};
-struct RankBrick {
-  MeshLayout layout;
-  const BrickCounts *counts;
   BrickTotals *totals;
-  size_t first;
-  QSES_HOST_DEVICE void operator()(size_t i) const {
-    const size_t brick = first + i;
-    const BrickCounts own = counts[brick];
-    totals[brick] = rank_brick(layout, brick, own);
+  BrickRange run;
+  template <class Team>
+  QSES_FN void operator()(const Team &team, Counts &counts, size_t chunk) const {
+    const size_t first = run.first + chunk * kChunk, left = run.first + run.size() - first,
+                 n = left < kChunk ? left : kChunk, rank = static_cast<size_t>(team.rank()),
+                 size = static_cast<size_t>(team.size());
+    for (size_t i = rank; i < n * kLeavesPerBrick; i += size) {
+      const size_t brick = first + i / kLeavesPerBrick;
+      const int leaf = static_cast<int>(i % kLeavesPerBrick);
+      const UpperBricks upper = upper_bricks(bricks, static_cast<uint32_t>(brick));
+      uint64_t crossing[kAxes];
+      const int triangles = count_leaf(leaf_words(upper, layout.signs, leaf), case_triangles, crossing);
+      for (int axis = 0; axis < kAxes; ++axis)
+        layout.crossing[brick * kBrickMasks + static_cast<size_t>(leaf * kAxes + axis)] = crossing[axis];
+      counts.of_brick[i / kLeavesPerBrick].of_leaf[leaf] = pack_counts(crossing, triangles);
+    }
+    team.sync();
+    for (size_t i = rank; i < n; i += size) totals[first + i] = rank_brick(layout, first + i, counts.of_brick[i]);
   }
 };
 
-// On the CPU both at once, by the kernel of the processor (cpu_kernels.h).
+// On the CPU by the kernel of the processor (cpu_kernels.h).
 BrickTotals count_brick(const BrickSet &bricks, const MeshLayout &layout, uint32_t brick,
                         const uint8_t *case_triangles);
 struct CountBrick {
@@ -146,31 +148,22 @@ struct CountBorderChanges {
   }
 };
 
-// What is counted before it is numbered, by brick.
-struct CountedCells {
-  Span<BrickTotals> totals;
-  Span<BrickCounts> counts;  // on the GPU
-  template <class Executor>
-  CountedCells(Executor &executor, size_t bricks) : totals(executor.template allocate<BrickTotals>(bricks)) {
-    if (Executor::kIsCuda) counts = executor.template allocate<BrickCounts>(bricks);
-  }
-};
-
 // Counts what a run of bricks owns, and numbers it behind what those before own. The signs of the run and of the bricks
-// around it must be known.
+// around it must be known. totals: by brick.
 template <class Executor>
 void count_cells(Executor &executor, const BrickSet &bricks, const MeshLayout &layout, const uint8_t *case_triangles,
-                 const CountedCells &counts, BrickRange run) {
+                 BrickTotals *totals, BrickRange run) {
   const size_t n = run.size();
-  const LoadTotals load{counts.totals.data + run.first};
+  const LoadTotals load{totals + run.first};
   const Span<BrickTotals> base{layout.base + run.first, n + 1};
   if constexpr (Executor::kIsCuda) {
-    executor.for_each(n * kLeavesPerBrick, CountLeaf{bricks, layout, case_triangles, counts.counts.data, run.first});
-    executor.for_each(n, RankBrick{layout, counts.counts.data, counts.totals.data, run.first});
+    executor.template for_each_brick<CountBrickChunk::Counts>(
+        (n + CountBrickChunk::kChunk - 1) / CountBrickChunk::kChunk,
+        CountBrickChunk{bricks, layout, case_triangles, totals, run});
     if constexpr (!Executor::kCounts)
       if (run.first > 0) return executor.go_on_scanning(n, load, base);
   } else {
-    executor.for_each(n, CountBrick{bricks, layout, case_triangles, counts.totals.data}, kLeavesPerBrick * kPlainSteps);
+    executor.for_each(n, CountBrick{bricks, layout, case_triangles, totals}, kLeavesPerBrick * kPlainSteps);
   }
   executor.exclusive_scan(n, load, base);
 }
@@ -186,8 +179,8 @@ MeshCounts lay_out_mesh(Executor &executor, const BrickSet &bricks, const uint64
   const size_t n = bricks.count;
   allocate_layout(executor, n, signs, layout);
   const auto mark = executor.arena().mark();
-  const CountedCells counts(executor, n);
-  count_cells(executor, bricks, *layout, case_triangles, counts, {0, bricks.count});
+  const Span<BrickTotals> owned = executor.template allocate<BrickTotals>(n);
+  count_cells(executor, bricks, *layout, case_triangles, owned.data, {0, bricks.count});
   executor.for_each(n, CountBorderChanges{bricks, *layout, 0, n});
   layout->near = kAnyNear;
   const MeshTotals totals =
@@ -196,7 +189,7 @@ MeshCounts lay_out_mesh(Executor &executor, const BrickSet &bricks, const uint64
   // The bases wrap if there are too many; then the true totals are summed up for the message.
   if (!Executor::kCounts && !fits_bases(n)) {
     const auto sum = [&](uint32_t BrickTotals::*which) {
-      return static_cast<uint64_t>(executor.reduce(n, LoadTotal{counts.totals.data, which}));
+      return static_cast<uint64_t>(executor.reduce(n, LoadTotal{owned.data, which}));
     };
     layout->vertex_total = sum(&BrickTotals::vertices);
     layout->triangle_total = sum(&BrickTotals::triangles);

@@ -156,7 +156,11 @@ constexpr size_t kBehindItems = 8;  // kernels load whole packs
 QSES_FN Sphere behind_items() { return {glm::vec3(kFarAway), 0.f}; }
 
 // Puts them in order, and leaves what kernels may load behind the last item. For kBehindItems or all items, whichever
-// are more.
+// are more. bring(place, i): what else is to be in that order.
+struct BringNothing {
+  QSES_FN void operator()(size_t, size_t) const {}
+};
+template <class Bring>
 struct RankItems {
   const uint64_t *keys;
   const uint32_t *starts, *numbers;
@@ -165,6 +169,7 @@ struct RankItems {
   size_t count;
   Sphere *sorted;
   uint32_t *order;
+  Bring bring;
   QSES_HOST_DEVICE void operator()(size_t place) const {
     if (place < kBehindItems) sorted[count + place] = behind_items();
     if (place >= count) return;
@@ -182,6 +187,7 @@ struct RankItems {
       rank = static_cast<uint32_t>(place);
     sorted[rank] = items[i];
     order[rank] = i;
+    bring(rank, i);
   }
 };
 
@@ -203,17 +209,21 @@ struct FindCellStarts {
 };
 
 // Puts items in order, finds where cells start, and leaves what kernels may load behind the last item.
-template <uint64_t kChunk>
+template <uint64_t kChunk, class Bring>
 struct ArrangeItems {
   const Sphere *items;
   const uint32_t *order;
   Sphere *sorted;
   size_t count, chunks;
   FindCellStarts<kChunk> find_starts;
+  Bring bring;
   // As many as there are items, chunks, or spheres behind, whichever is the most.
   size_t size() const { return std::max({count, chunks, kBehindItems}); }
   QSES_HOST_DEVICE void operator()(size_t i) const {
-    if (i < count) sorted[i] = items[order[i]];
+    if (i < count) {
+      sorted[i] = items[order[i]];
+      if (!is_no_item(sorted[i])) bring(i, order[i]);
+    }
     if (i < chunks) find_starts(i);
     if (i < kBehindItems) sorted[count + i] = behind_items();
   }
@@ -299,9 +309,9 @@ uint64_t most_atoms_near(Executor &executor, const NeighborGridView &atoms, floa
 
 // A grid of n items. prepare() returns what makes one from its number; what it allocates is given up again, as is all
 // else but the grid. The cells bound the items' centres. name: of the count of the fullest cell, if it is crowded.
-template <class Executor, class Prepare>
+template <class Executor, class Prepare, class Bring = BringNothing>
 NeighborGridView build_neighbor_grid(Executor &executor, const char *name, size_t n, const CellLayout &cells,
-                                     const Prepare &prepare) {
+                                     const Prepare &prepare, const Bring &bring = {}) {
   Span<Sphere> sorted = executor.template allocate<Sphere>(n + kBehindItems);
   Span<uint32_t> order = executor.template allocate<uint32_t>(n);
   const bool dense = dense_table_pays(cells.cells(), n);
@@ -329,10 +339,11 @@ NeighborGridView build_neighbor_grid(Executor &executor, const char *name, size_
   if (is_counted) {
     const Span<uint32_t> numbers = executor.template allocate<uint32_t>(n);
     const auto arrange = [&](const auto &...before) {
-      do_in_turn(executor, before..., Scan{cells.cells(), LoadCount<uint32_t>{counts.in_cell}, starts},
-                 ForEach{n, CollectNumbers{keys.data, starts.data, counts.slots, cells.cells(), numbers.data}},
-                 ForEach{std::max(n, kBehindItems), RankItems{keys.data, starts.data, numbers.data, items.data,
-                                                              cells.cells(), n, sorted.data, order.data}});
+      do_in_turn(
+          executor, before..., Scan{cells.cells(), LoadCount<uint32_t>{counts.in_cell}, starts},
+          ForEach{n, CollectNumbers{keys.data, starts.data, counts.slots, cells.cells(), numbers.data}},
+          ForEach{std::max(n, kBehindItems), RankItems<Bring>{keys.data, starts.data, numbers.data, items.data,
+                                                              cells.cells(), n, sorted.data, order.data, bring}});
     };
     if (may_be_crowded)
       arrange();
@@ -343,8 +354,8 @@ NeighborGridView build_neighbor_grid(Executor &executor, const char *name, size_
     executor.for_each(n, NumberItems{order.data});
     executor.sort_by_key(keys, order);
     const FindCellStarts<kChunk> find_starts{keys.data, static_cast<uint32_t>(n), cells.cells(), starts.data};
-    const ArrangeItems<kChunk> arrange{items.data, order.data, sorted.data, n, dense ? cells.cells() / kChunk + 1 : 0,
-                                       find_starts};
+    const ArrangeItems<kChunk, Bring> arrange{
+        items.data, order.data, sorted.data, n, dense ? cells.cells() / kChunk + 1 : 0, find_starts, bring};
     executor.for_each(arrange.size(), arrange);
   }
   executor.arena().rewind(mark);

@@ -107,13 +107,20 @@ struct ArcBoundAt {
   }
 };
 
-struct GatherArcs {
+// To where their bounds go.
+struct BringArc {
   const Arc *arcs;
+  Arc *sorted;  // nullptr: later
+  QSES_HOST_DEVICE void operator()(size_t place, size_t i) const {
+    if (sorted) sorted[place] = load(arcs + i);
+  }
+};
+struct GatherArcs {
+  BringArc bring;
   const unsigned long long *count;
   const uint32_t *order;
-  Arc *sorted;
   QSES_HOST_DEVICE void operator()(size_t i) const {
-    if (!count || i < *count) sorted[i] = load(arcs + order[i]);  // those that are not there come last
+    if (!count || i < *count) bring(i, order[i]);  // those that are not there come last
   }
 };
 
