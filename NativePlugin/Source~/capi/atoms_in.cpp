@@ -5,6 +5,7 @@
 #include "capi/barrier.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -67,6 +68,11 @@ struct Met {
       high[d] = p[d] > high[d] ? p[d] : high[d];
     }
   }
+  void add(const Met &other) {
+    all_good &= other.all_good;
+    low = glm::min(low, other.low);
+    high = glm::max(high, other.high);
+  }
 };
 
 #if defined(__SSE2__) || defined(_M_X64)
@@ -124,9 +130,10 @@ size_t copy_in_fours(const float *positions, const float *radii, size_t count, S
   return i;
 }
 
-size_t copy_in_fours(const float *positions, const float *radii, size_t count, Sphere *atoms, Met *met) {
-  constexpr size_t kMany = size_t(1) << 17;  // 2 MB
-  if (count < kMany || reinterpret_cast<uintptr_t>(atoms) % sizeof(__m128) != 0)
+// goes_past: the caches.
+size_t copy_in_fours(const float *positions, const float *radii, size_t count, Sphere *atoms, bool goes_past,
+                     Met *met) {
+  if (!goes_past || reinterpret_cast<uintptr_t>(atoms) % sizeof(__m128) != 0)
     return copy_in_fours(positions, radii, count, atoms, met, Store{});
   const size_t copied = copy_in_fours(positions, radii, count, atoms, met, StorePast{});
   _mm_sfence();
@@ -135,17 +142,40 @@ size_t copy_in_fours(const float *positions, const float *radii, size_t count, S
 
 #else
 
-size_t copy_in_fours(const float *, const float *, size_t, Sphere *, Met *) { return 0; }
+size_t copy_in_fours(const float *, const float *, size_t, Sphere *, bool, Met *) { return 0; }
 
 #endif
 
-// Of the positions at(0) ... at(count - 1), each a pointer to three floats, of which so many are copied already.
+constexpr size_t kManyAtoms = size_t(1) << 17;  // 2 MB
+// So many at a time for each of several threads, of which more would wait for memory.
+constexpr size_t kChunk = size_t(1) << 13, kMostThreads = 8;
+
+// From first to last, of the positions at(i), each a pointer to three floats.
 template <class At>
-AtomBounds copy_rest(size_t copied, size_t count, const At &at, const float *radii, Sphere *atoms, Met met) {
-  for (size_t i = copied; i < count; ++i) {
+void copy_each(size_t first, size_t last, const At &at, const float *radii, Sphere *atoms, Met *met) {
+  for (size_t i = first; i < last; ++i) {
     atoms[i] = {load(at(i)), radii[i]};
-    met.meet(atoms[i].center);
+    met->meet(atoms[i].center);
   }
+}
+
+// copy(first, last, met) for all atoms, by threads that share them out; returns what was met of them.
+template <class Copy>
+AtomBounds copy_all(size_t count, const Sphere *atoms, CpuThreads *threads, const Copy &copy) {
+  const size_t chunks = count / kChunk + 1;
+  const size_t workers = threads && chunks > 2 ? std::min<size_t>({threads->usable(), chunks, kMostThreads}) : 1;
+  Met by_worker[kMostThreads];
+  std::atomic<size_t> next{0};
+  const auto work = [&](size_t worker) {
+    for (size_t k; (k = next.fetch_add(1)) < chunks;)
+      copy(k * kChunk, std::min(count, (k + 1) * kChunk), &by_worker[worker]);
+  };
+  if (workers == 1 || !threads->run(workers, work)) {  // where there was no thread after all, from the start
+    next = 0;
+    work(0);
+  }
+  Met met;
+  for (const Met &own : by_worker) met.add(own);
   for (size_t i = 0; !met.all_good && i < count; ++i)
     if (!is_in_range(atoms[i].center)) bad_position(i, atoms[i].center);
   if (count == 0) met.low = met.high = glm::vec3(0.f);
@@ -158,11 +188,16 @@ const char *position_at(const float *positions, size_t stride, size_t i) {
 
 }  // namespace
 
-AtomBounds copy_atoms(const float *positions, size_t stride, const float *radii, size_t count, Sphere *atoms) {
-  Met met;
-  const size_t copied = stride == 0 || stride == 12 ? copy_in_fours(positions, radii, count, atoms, &met) : 0;
-  return copy_rest(
-      copied, count, [&](size_t i) { return position_at(positions, stride, i); }, radii, atoms, met);
+AtomBounds copy_atoms(const float *positions, size_t stride, const float *radii, size_t count, Sphere *atoms,
+                      CpuThreads *threads) {
+  const bool is_packed = stride == 0 || stride == 12;
+  const auto at = [&](size_t i) { return position_at(positions, stride, i); };
+  return copy_all(count, atoms, threads, [&](size_t first, size_t last, Met *met) {
+    if (is_packed)
+      first +=
+          copy_in_fours(positions + 3 * first, radii + first, last - first, atoms + first, count >= kManyAtoms, met);
+    copy_each(first, last, at, radii, atoms, met);
+  });
 }
 
 void check_indices(const uint32_t *indices, size_t count, size_t position_count) {
@@ -174,8 +209,10 @@ void check_indices(const uint32_t *indices, size_t count, size_t position_count)
 }
 
 AtomBounds copy_indexed_atoms(const float *positions, size_t stride, const uint32_t *indices, const float *radii,
-                              size_t count, Sphere *atoms) {
-  return copy_rest(0, count, [&](size_t i) { return position_at(positions, stride, indices[i]); }, radii, atoms, {});
+                              size_t count, Sphere *atoms, CpuThreads *threads) {
+  const auto at = [&](size_t i) { return position_at(positions, stride, indices[i]); };
+  return copy_all(count, atoms, threads,
+                  [&](size_t first, size_t last, Met *met) { copy_each(first, last, at, radii, atoms, met); });
 }
 
 float check_radii(const float *radii, size_t count) {

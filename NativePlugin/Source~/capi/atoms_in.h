@@ -3,6 +3,7 @@
 // the atom.
 #pragma once
 
+#include "parallel/cpu_threads.h"
 #include "surface/engine.h"
 
 #include <cstddef>
@@ -15,11 +16,12 @@ void check_layout(const float *positions, size_t stride, size_t count);
 float check_radii(const float *radii, size_t count);
 
 // Where they throw, what they were to fill is of no use. They return the box of the positions; its max_radius is left
-// 0.
-AtomBounds copy_atoms(const float *positions, size_t stride, const float *radii, size_t count, Sphere *atoms);
+// 0. threads: that may help with many atoms, or nullptr.
+AtomBounds copy_atoms(const float *positions, size_t stride, const float *radii, size_t count, Sphere *atoms,
+                      CpuThreads *threads);
 // The same for positions[indices[i]]; indices are checked already.
 AtomBounds copy_indexed_atoms(const float *positions, size_t stride, const uint32_t *indices, const float *radii,
-                              size_t count, Sphere *atoms);
+                              size_t count, Sphere *atoms, CpuThreads *threads);
 void check_indices(const uint32_t *indices, size_t count, size_t position_count);
 
 }  // namespace quickses

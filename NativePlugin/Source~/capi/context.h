@@ -5,6 +5,7 @@
 #include "capi/barrier.h"
 
 #include "jobs/surface_job.h"
+#include "parallel/cpu_threads.h"
 
 #include <memory>
 #include <string>
@@ -14,8 +15,9 @@ struct qses_context {
   qses_backend backend = QSES_BACKEND_CPU;
   qses_backend_description description{};
   std::unique_ptr<quickses::SurfaceJob> job;
-  std::shared_ptr<const quickses::AtomSet> atoms;  // of the next computation; null before qses_set_atoms
-  std::vector<float> radii;                        // theirs: here, since reading what a GPU fetches each frame is slow
+  std::unique_ptr<quickses::CpuThreads> copy_threads;  // with CUDA, which waits for the atoms of each frame; else null
+  std::shared_ptr<const quickses::AtomSet> atoms;      // of the next computation; null before qses_set_atoms
+  std::vector<float> radii;  // theirs: here, since reading what a GPU fetches each frame is slow
   std::shared_ptr<const quickses::Appearance> appearance = std::make_shared<quickses::Appearance>();
   std::vector<std::shared_ptr<quickses::Appearance>> appearance_pool;
 };

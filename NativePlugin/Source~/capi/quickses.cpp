@@ -160,6 +160,7 @@ qses_status qses_context_create(const qses_context_options *options, qses_contex
     if (made->backend == QSES_BACKEND_CUDA) {
       made->job = std::make_unique<quickses::SurfaceJob>(quickses::make_cuda_engine(o.device, threads, o.memory_budget),
                                                          in_background);
+      made->copy_threads = std::make_unique<quickses::CpuThreads>(threads);
       // Another context may have been loading the kernels when this one looked.
       made->description.preparing = 0;
       made->description.reason[0] = 0;
@@ -193,7 +194,7 @@ qses_status qses_set_atoms(qses_context *context, const float *positions, size_t
     const std::shared_ptr<quickses::AtomSet> set = context->job->engine().make_atoms(count);
     const float max_radius = quickses::check_radii(radii, count);
     std::vector<float> kept_radii(radii, radii + count);
-    set->bounds = quickses::copy_atoms(positions, stride, radii, count, set->atoms);
+    set->bounds = quickses::copy_atoms(positions, stride, radii, count, set->atoms, context->copy_threads.get());
     set->bounds.max_radius = max_radius;
     if (!context->atoms || context->atoms->count != count)
       context->appearance = std::make_shared<quickses::Appearance>();
@@ -208,7 +209,7 @@ qses_status qses_set_positions(qses_context *context, const float *positions, si
     check_atom_count(*context, count, "qses_set_positions");
     quickses::check_layout(positions, stride, count);
     context->atoms = next_frame(*context, [&](quickses::Sphere *atoms) {
-      return quickses::copy_atoms(positions, stride, context->radii.data(), count, atoms);
+      return quickses::copy_atoms(positions, stride, context->radii.data(), count, atoms, context->copy_threads.get());
     });
   });
 }
@@ -221,7 +222,8 @@ qses_status qses_set_positions_indexed(qses_context *context, const float *posit
     quickses::check_layout(positions, stride, position_count);
     quickses::check_indices(indices, count, position_count);
     context->atoms = next_frame(*context, [&](quickses::Sphere *atoms) {
-      return quickses::copy_indexed_atoms(positions, stride, indices, context->radii.data(), count, atoms);
+      return quickses::copy_indexed_atoms(positions, stride, indices, context->radii.data(), count, atoms,
+                                          context->copy_threads.get());
     });
   });
 }

@@ -28,15 +28,22 @@ struct Given {
   size_t count() const { return radii.size(); }
 };
 
+// Who help with many.
+CpuThreads *threads() {
+  static CpuThreads four(4);
+  return &four;
+}
+
 struct Copied {
   std::vector<Sphere> atoms;
   AtomBounds bounds;
 };
-Copied copy(const Given &given) {
+Copied copy_by(CpuThreads *who, const Given &given) {
   Copied c{std::vector<Sphere>(given.count()), {}};
-  c.bounds = copy_atoms(given.positions.data(), 0, given.radii.data(), given.count(), c.atoms.data());
+  c.bounds = copy_atoms(given.positions.data(), 0, given.radii.data(), given.count(), c.atoms.data(), who);
   return c;
 }
+Copied copy(const Given &given) { return copy_by(threads(), given); }
 // Each position followed by so many other floats, which are no numbers.
 Copied copy_apart(const Given &given, size_t others) {
   std::vector<float> apart;
@@ -45,7 +52,7 @@ Copied copy_apart(const Given &given, size_t others) {
     apart.insert(apart.end(), others, std::numeric_limits<float>::quiet_NaN());
   }
   Copied c{std::vector<Sphere>(given.count()), {}};
-  c.bounds = copy_atoms(apart.data(), 12 + 4 * others, given.radii.data(), given.count(), c.atoms.data());
+  c.bounds = copy_atoms(apart.data(), 12 + 4 * others, given.radii.data(), given.count(), c.atoms.data(), threads());
   return c;
 }
 // From among others, in another order.
@@ -59,7 +66,7 @@ Copied copy_indexed(const Given &given) {
   }
   check_indices(indices.data(), n, 2 * n);
   Copied c{std::vector<Sphere>(n), {}};
-  c.bounds = copy_indexed_atoms(among.data(), 0, indices.data(), given.radii.data(), n, c.atoms.data());
+  c.bounds = copy_indexed_atoms(among.data(), 0, indices.data(), given.radii.data(), n, c.atoms.data(), threads());
   return c;
 }
 
@@ -118,11 +125,11 @@ TEST(AtomsIn, OneWrongCoordinateIsFoundWhereverItIs) {
     }
 }
 
-// So many that they are written past the caches.
+// So many that they are written past the caches, and shared out among threads.
 TEST(AtomsIn, MayBeMany) {
   Given given((size_t(1) << 17) + 5);
   const size_t count = given.count();
-  for (const Copied &copied : {copy(given), copy_apart(given, 1), copy_indexed(given)}) {
+  for (const Copied &copied : {copy(given), copy_by(nullptr, given), copy_apart(given, 1), copy_indexed(given)}) {
     bool are_same = true;
     glm::vec3 low(kInf), high(-kInf);
     for (size_t i = 0; i < count; ++i) {
@@ -138,7 +145,7 @@ TEST(AtomsIn, MayBeMany) {
     EXPECT_EQ(copied.bounds.low, low);
     EXPECT_EQ(copied.bounds.high, high);
   }
-  for (const size_t atom : {count - 1, count - 7, size_t(0)}) {
+  for (const size_t atom : {count - 1, count - 7, count / 2, size_t(0)}) {
     given.positions[3 * atom + 1] = kInf;
     expect_refused(copy, given, atom);
   }
