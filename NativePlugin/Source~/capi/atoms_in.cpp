@@ -5,10 +5,10 @@
 #include "capi/barrier.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <exception>
 #include <limits>
 
 #if defined(__SSE2__) || defined(_M_X64)
@@ -147,33 +147,35 @@ size_t copy_in_fours(const float *, const float *, size_t, Sphere *, bool, Met *
 #endif
 
 constexpr size_t kManyAtoms = size_t(1) << 17;  // 2 MB
-// So many at a time for each of several threads, of which more would wait for memory.
-constexpr size_t kChunk = size_t(1) << 13, kMostThreads = 8;
+constexpr size_t kChunk = size_t(1) << 13;      // for a thread at a time
 
 // From first to last, of the positions at(i), each a pointer to three floats.
 template <class At>
 void copy_each(size_t first, size_t last, const At &at, const float *radii, Sphere *atoms, Met *met) {
+  Met own;  // which stays in registers
   for (size_t i = first; i < last; ++i) {
-    atoms[i] = {load(at(i)), radii[i]};
-    met->meet(atoms[i].center);
+    const glm::vec3 p = load(at(i));
+    atoms[i] = {p, radii[i]};
+    own.meet(p);
   }
+  met->add(own);
 }
 
 // copy(first, last, met) for all atoms, by threads that share them out; returns what was met of them.
 template <class Copy>
 AtomBounds copy_all(size_t count, const Sphere *atoms, CpuThreads *threads, const Copy &copy) {
+  Met by_worker[kMostCopyThreads];
   const size_t chunks = count / kChunk + 1;
-  const size_t workers = threads && chunks > 2 ? std::min<size_t>({threads->usable(), chunks, kMostThreads}) : 1;
-  Met by_worker[kMostThreads];
-  std::atomic<size_t> next{0};
-  const auto work = [&](size_t worker) {
-    for (size_t k; (k = next.fetch_add(1)) < chunks;)
-      copy(k * kChunk, std::min(count, (k + 1) * kChunk), &by_worker[worker]);
+  const auto copy_chunk = [&](size_t worker, size_t chunk) {
+    copy(chunk * kChunk, std::min(count, (chunk + 1) * kChunk), &by_worker[worker]);
   };
-  if (workers == 1 || !threads->run(workers, work)) {  // where there was no thread after all, from the start
-    next = 0;
-    work(0);
-  }
+  bool is_done = false;
+  if (threads && chunks > 2) try {
+      threads->share_out(chunks, nullptr, copy_chunk);
+      is_done = true;
+    } catch (const std::exception &) {  // no thread could be asked: this one does it
+    }
+  if (!is_done) copy(0, count, &by_worker[0]);
   Met met;
   for (const Met &own : by_worker) met.add(own);
   for (size_t i = 0; !met.all_good && i < count; ++i)

@@ -15,8 +15,11 @@ void check_layout(const float *positions, size_t stride, size_t count);
 // The largest radius.
 float check_radii(const float *radii, size_t count);
 
+// More threads would wait for memory.
+constexpr unsigned kMostCopyThreads = 8;
+
 // Where they throw, what they were to fill is of no use. They return the box of the positions; its max_radius is left
-// 0. threads: that may help with many atoms, or nullptr.
+// 0. threads: that help with many atoms, no more than kMostCopyThreads; or nullptr.
 AtomBounds copy_atoms(const float *positions, size_t stride, const float *radii, size_t count, Sphere *atoms,
                       CpuThreads *threads);
 // The same for positions[indices[i]]; indices are checked already.

@@ -398,36 +398,10 @@ class CpuExecutor {
     return low;
   }
 
-  // body(worker, chunk) for all chunks, each taken by the next thread that is free; workers count from 0. Everything
-  // that is done in parallel passes here.
+  // Everything that is done in parallel passes here.
   template <class Body>
   void run_chunks(size_t chunks, const Body &body) {
-    if (chunks == 0) return;
-    // That workers see what was done before them, and the caller what they did, is also said here: the thread sanitizer
-    // knows nothing of what a parallel system makes sure of.
-    std::atomic<size_t> next{0}, ended{0};
-    // What one thread throws (memory that is refused) ends all of them and is thrown again here: not every parallel
-    // system lets exceptions out.
-    std::exception_ptr thrown;
-    std::atomic<bool> failed{false};
-    const std::thread::id caller = std::this_thread::get_id();
-    const auto work = [&](size_t worker) {
-      const WorkScope scope(stop_);
-      try {
-        for (size_t c; !failed && (c = next.fetch_add(1, std::memory_order_acquire)) < chunks;) {
-          if (std::this_thread::get_id() != caller) stand_back(threads_.in_background());
-          look_for_stop();
-          body(worker, c);
-        }
-      } catch (...) {
-        if (!failed.exchange(true)) thrown = std::current_exception();
-      }
-      ended.fetch_add(1, std::memory_order_release);
-    };
-    next.store(0, std::memory_order_release);
-    const size_t workers = std::min<size_t>(chunks > 1 ? threads_.usable() : 1, chunks);
-    if (workers == 1 || !threads_.run(workers, work)) work(0);
-    if (ended.load(std::memory_order_acquire) > 0 && thrown) std::rethrow_exception(thrown);
+    threads_.share_out(chunks, stop_, body);
   }
 
   CpuThreads threads_;

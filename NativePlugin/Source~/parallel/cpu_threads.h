@@ -4,6 +4,7 @@
 #pragma once
 
 #include "parallel/worker_threads.h"
+#include "parallel/working_thread.h"
 
 #if defined(QSES_CPU_SYSTEM_OWN)
 #include "parallel/helper_threads.h"
@@ -20,6 +21,7 @@
 #endif
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <exception>
 #include <thread>
@@ -38,7 +40,38 @@ class CpuThreads {
   }
 
   unsigned count() const { return count_; }
-  bool in_background() const { return in_background_; }
+
+  // body(worker, chunk) for all chunks, each taken by the next thread that is free; workers count from 0, and are no
+  // more than count(). stop: the flag of look_for_stop() meanwhile, or nullptr. What one of them throws is thrown here.
+  template <class Body>
+  void share_out(size_t chunks, const std::atomic<bool> *stop, const Body &body) {
+    if (chunks == 0) return;
+    // That workers see what was done before them, and the caller what they did, is also said here: the thread sanitizer
+    // knows nothing of what a parallel system makes sure of.
+    std::atomic<size_t> next{0}, ended{0};
+    // What one thread throws (memory that is refused) ends all of them and is thrown again here: not every parallel
+    // system lets exceptions out.
+    std::exception_ptr thrown;
+    std::atomic<bool> failed{false};
+    const std::thread::id caller = std::this_thread::get_id();
+    const auto work = [&](size_t worker) {
+      const WorkScope scope(stop);
+      try {
+        for (size_t c; !failed && (c = next.fetch_add(1, std::memory_order_acquire)) < chunks;) {
+          if (std::this_thread::get_id() != caller) stand_back(in_background_);
+          look_for_stop();
+          body(worker, c);
+        }
+      } catch (...) {
+        if (!failed.exchange(true)) thrown = std::current_exception();
+      }
+      ended.fetch_add(1, std::memory_order_release);
+    };
+    next.store(0, std::memory_order_release);
+    const size_t workers = std::min<size_t>(chunks > 1 ? usable() : 1, chunks);
+    if (workers == 1 || !run(workers, work)) work(0);
+    if (ended.load(std::memory_order_acquire) > 0 && thrown) std::rethrow_exception(thrown);
+  }
 
   // How many there are to work. The first call finds out.
   unsigned usable() {
@@ -57,6 +90,7 @@ class CpuThreads {
     return usable_ == 1 ? 1 : count_;
   }
 
+ private:
   // work(worker) for workers from 0 on, by the calling thread and those that help. False if TBB had none to give after
   // all: what was left undone is then to be done by the caller.
   template <class Work>
@@ -76,7 +110,6 @@ class CpuThreads {
     return true;
   }
 
- private:
   unsigned count_;
   bool in_background_;
   unsigned usable_ = 0;  // of them; 0: not known yet

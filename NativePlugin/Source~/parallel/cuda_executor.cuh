@@ -93,7 +93,7 @@ class CudaExecutor : public CudaQueue {
 
   template <class Load, class T>
   void exclusive_scan(size_t n, Load load, Span<T> out) {
-    if (n <= gpu::kSomeItems)
+    if (is_some(n))
       scan_some(gpu::scan_some_kernel<Load, T, false>, n, load, out);
     else
       scan_all(n, load, out, T{});
@@ -101,7 +101,7 @@ class CudaExecutor : public CudaQueue {
   // The same behind sums that are there already: out[0] is the last of them.
   template <class Load, class T>
   void go_on_scanning(size_t n, Load load, Span<T> out) {
-    if (n <= gpu::kSomeItems)
+    if (is_some(n))
       scan_some(gpu::scan_some_kernel<Load, T, true>, n, load, out);
     else
       scan_all(n, load, out, cub::FutureValue<T>(out.data));
@@ -111,7 +111,7 @@ class CudaExecutor : public CudaQueue {
   // each tile of 128 items or more, two sums and a status.
   template <class T>
   size_t scan_bytes(size_t n) const {
-    return n <= gpu::kSomeItems ? 0 : (n / 128 + 33) * (2 * sizeof(T) + 8) + 1024;
+    return is_some(n) ? 0 : (n / 128 + 33) * (2 * sizeof(T) + 8) + 1024;
   }
   template <class Key, class Value>
   size_t sort_bytes(size_t n) const {
@@ -319,9 +319,13 @@ class CudaExecutor : public CudaQueue {
                                                  gpu::IsLess{}, stream());
   }
 
+  // On small GPUs their blocks would wait for each other.
+  bool is_some(size_t n) const {
+    return n <= std::max(gpu::kFewItems, std::min(gpu::kSomeItems, multiprocessors() * size_t(gpu::kFewThreads)));
+  }
   template <class Kernel, class Load, class T>
   void scan_some(Kernel kernel, size_t n, const Load &load, Span<T> out) {
-    launch("scan_some", kernel, n / gpu::kFewThreads + 1,
+    launch("scan_some", kernel, std::max<size_t>(1, (n + gpu::kFewThreads - 1) / gpu::kFewThreads),
            {gpu::kFewThreads, 1, (n / gpu::kFewThreads + 2) * kPlainSumSteps}, load, n, out.data);
   }
   template <class Load, class T, class Start>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The kernels behind the verbs of cuda_executor.cuh: a thread, or a block, for each item; sums of chunks; and passes
-// over few items, which one block does at once.
+// over few items, which one block does, or some that do not wait for each other.
 #pragma once
 
 #include "parallel/cuda_launch.cuh"
@@ -103,11 +103,11 @@ __device__ __forceinline__ T sum_before(TileMemory<T> &memory, const T &own, T *
 }
 
 // use(i, value, sum of those before it) for each of n items, whose values are load(i), in tiles: the next tile is asked
-// for before this one is summed. Returns the sum of all. start: of the sums.
+// for before this one is summed. Returns the sum of all.
 template <class T, class Load, class Use>
-__device__ __forceinline__ T for_sums(size_t n, const Load &load, const T &start, const Use &use) {
+__device__ __forceinline__ T for_sums(size_t n, const Load &load, const Use &use) {
   __shared__ __align__(16) unsigned char memory_of_tiles[2][sizeof(TileMemory<T>)];
-  T sum = start, next = threadIdx.x < n ? static_cast<T>(load(threadIdx.x)) : T{};
+  T sum{}, next = threadIdx.x < n ? static_cast<T>(load(threadIdx.x)) : T{};
   int tile = 0;
   for (size_t i = threadIdx.x; i - threadIdx.x < n; i += kFewThreads, tile ^= 1) {
     const T own = next;
@@ -122,12 +122,12 @@ __device__ __forceinline__ T for_sums(size_t n, const Load &load, const T &start
 
 template <class Load, class T>
 __device__ __forceinline__ void scan_few(const Load &load, size_t n, T *out) {
-  const T total = for_sums(n, load, T{}, [&](size_t i, const T &, const T &before) { out[i] = before; });
+  const T total = for_sums<T>(n, load, [&](size_t i, const T &, const T &before) { out[i] = before; });
   if (threadIdx.x == 0) out[n] = total;
 }
 
 // Some items are scanned in one launch, too, by a block for each tile, which adds up all that is before it by itself,
-// so that none waits for another. kGoesOn: out[0] holds the start, which the first block leaves there.
+// so that none waits for another; if they all run at once. kGoesOn: out[0] holds the start, and is left alone.
 constexpr size_t kSomeItems = 64 * kFewThreads;
 template <class Load, class T, bool kGoesOn>
 __global__ __launch_bounds__(kFewThreads) void scan_some_kernel(QueuedItems queued, Load load, size_t n, T *out) {
@@ -142,7 +142,7 @@ __global__ __launch_bounds__(kFewThreads) void scan_some_kernel(QueuedItems queu
   for (size_t k = threadIdx.x; k < first; k += kFewThreads) start = start + static_cast<T>(load(k));
   sum_of_block(0, start, &start);
   const T before = start + sum_of_block(1, own, &total);
-  if (i < n) out[i] = before;
+  if (i < n && !(kGoesOn && i == 0)) out[i] = before;
   if (threadIdx.x == 0 && first + kFewThreads >= n) out[n] = start + total;
 }
 
@@ -184,8 +184,8 @@ template <class Keep, class T>
 __global__ __launch_bounds__(kFewThreads) void compact_few_kernel(QueuedItems queued, Keep keep, size_t n, T *out,
                                                                   uint64_t *count) {
   queued.in_turn();
-  const uint32_t total = for_sums(
-      n, [&](size_t i) { return keep(i) ? 1u : 0u; }, 0u,
+  const uint32_t total = for_sums<uint32_t>(
+      n, [&](size_t i) { return keep(i) ? 1u : 0u; },
       [&](size_t i, uint32_t kept, uint32_t before) {
         if (kept) out[before] = static_cast<T>(i);
       });

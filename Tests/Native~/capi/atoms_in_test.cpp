@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 #include <random>
 #include <string>
@@ -148,6 +149,27 @@ TEST(AtomsIn, MayBeMany) {
   for (const size_t atom : {count - 1, count - 7, count / 2, size_t(0)}) {
     given.positions[3 * atom + 1] = kInf;
     expect_refused(copy, given, atom);
+  }
+}
+
+TEST(AtomsIn, AreSharedOutInWholeChunksOrNot) {
+  for (const size_t count : {size_t(16383), size_t(16384), size_t(16385), size_t(24576)}) {
+    SCOPED_TRACE(count);
+    Given given(count);
+    const Copied alone = copy_by(nullptr, given);
+    for (const Copied &copied : {copy(given), copy_apart(given, 1), copy_indexed(given)}) {
+      EXPECT_EQ(std::memcmp(copied.atoms.data(), alone.atoms.data(), count * sizeof(Sphere)), 0);
+      EXPECT_EQ(copied.bounds.low, alone.bounds.low);
+      EXPECT_EQ(copied.bounds.high, alone.bounds.high);
+    }
+    for (const size_t atom : {size_t(0), size_t(8191), size_t(8192), count - 1}) {
+      const float right = given.positions[3 * atom];
+      given.positions[3 * atom] = kInf;
+      expect_refused(copy, given, atom);
+      expect_refused([](const Given &g) { return copy_apart(g, 1); }, given, atom);
+      expect_refused(copy_indexed, given, atom);
+      given.positions[3 * atom] = right;
+    }
   }
 }
 

@@ -63,6 +63,20 @@ TEST_F(Backends, MakeTheSameExactSurfaces) {
   }
 }
 
+// So many that with CUDA several threads copy them.
+TEST_F(Backends, MakeTheSameSurfaceOfManyAtoms) {
+  const Atoms one = crambin();
+  Atoms atoms;
+  for (int copy = 0; copy < 64; ++copy)
+    for (size_t i = 0; i < one.size(); ++i) {
+      const auto p = one.center(i);
+      atoms.add(p[0] + 50 * (copy % 4), p[1] + 50 * (copy / 4 % 4), p[2] + 50 * (copy / 16),
+                static_cast<double>(one.radii[i]));
+    }
+  ASSERT_GE(atoms.size(), 16384u);
+  expect_same(atoms, settings(1.0), 64 * 8);
+}
+
 TEST_F(Backends, MakeTheSameGridSurfaces) {
   qses_settings s = settings();
   s.method = QSES_METHOD_GRID;

@@ -45,12 +45,21 @@ std::set<uint32_t> look_up(const NeighborGridView &grid, const glm::vec3 &low, c
   return found;
 }
 
+// Remembers what went where.
+struct Remember {
+  std::vector<uint32_t> *from;
+  void operator()(size_t place, size_t i) const { (*from)[place] = static_cast<uint32_t>(i); }
+};
+
 void check_grid(Items items, float edge, bool dense) {
   for (unsigned threads : {1u, 3u}) {
     CpuExecutor executor(threads);
     const size_t n = items.spheres.size();
-    const NeighborGridView grid =
-        build_neighbor_grid(executor, Span<Sphere>{items.spheres.data(), n}, layout_cells(items.low, items.high, edge));
+    std::vector<uint32_t> from(n, ~uint32_t(0));
+    const NeighborGridView grid = build_neighbor_grid(
+        executor, "crowded cell", n, layout_cells(items.low, items.high, edge),
+        [&] { return LoadItem{items.spheres.data()}; }, Remember{&from});
+    ASSERT_TRUE(std::equal(from.begin(), from.end(), grid.order));
     ASSERT_EQ(grid.starts != nullptr, dense);
     ASSERT_EQ(grid.count, n);
     // A permutation, sorted by cell; within a cell in the order given.

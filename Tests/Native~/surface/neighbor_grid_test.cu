@@ -33,6 +33,12 @@ struct SomeOf {
   QSES_HOST_DEVICE Sphere operator()(size_t i) const { return i < real ? items[i] : no_item(); }
 };
 
+// Remembers what went where.
+struct Remember {
+  uint32_t *from;
+  QSES_HOST_DEVICE void operator()(size_t place, size_t i) const { from[place] = static_cast<uint32_t>(i); }
+};
+
 std::vector<Sphere> random_spheres(size_t count, float extent, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> along(0.f, extent);
@@ -53,12 +59,18 @@ void compare(CudaExecutor &executor, const std::vector<Sphere> &spheres, size_t 
   executor.arena().reset();
   const Span<Sphere> on_device = executor.allocate<Sphere>(n);
   executor.upload(on_device.data, spheres.data(), n);
-  const NeighborGridView grid = build_neighbor_grid(executor, "crowded cell", n, cells, [&] {
-    return SomeOf{on_device.data, real};
-  });
+  const Span<uint32_t> from = executor.allocate<uint32_t>(n);
+  const NeighborGridView grid = build_neighbor_grid(
+      executor, "crowded cell", n, cells,
+      [&] {
+        return SomeOf{on_device.data, real};
+      },
+      Remember{from.data});
   ASSERT_EQ(grid.starts != nullptr, expected.starts != nullptr);
   const std::vector<uint32_t> order = to_host(executor, grid.order, n);
   ASSERT_TRUE(std::equal(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(real), expected.order));
+  const std::vector<uint32_t> brought = to_host(executor, from.data, real);
+  ASSERT_TRUE(std::equal(brought.begin(), brought.end(), order.begin()));
   const std::vector<Sphere> items = to_host(executor, grid.items, n + kBehindItems);
   for (size_t k = 0; k < items.size(); ++k) {
     ASSERT_EQ(items[k].center, expected.items[k].center) << k;

@@ -167,6 +167,57 @@ void check_marks(const Atoms &atoms, const qses_settings &s, size_t *walls) {
   }
 }
 
+// An edge through balls on a line: what the walk takes for solid, against the intervals themselves.
+TEST(WallWalks, FindWhatNoBallCovers) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> along(0.f, 1.f);
+  int walls = 0, open = 0;
+  for (int round = 0; round < 20000; ++round) {
+    struct Interval {
+      float from, to;
+    };
+    std::vector<Interval> balls = {{-1.f, 0.2f * along(random)}, {1.f - 0.2f * along(random), 2.f}};
+    const int more = round % 5;
+    for (int k = 0; k < more; ++k) {
+      const float middle = along(random), half = 1.5f * along(random) / static_cast<float>(more);
+      balls.push_back({middle - half, middle + half});
+    }
+    // The widest gap.
+    std::vector<Interval> sorted = balls;
+    std::sort(sorted.begin(), sorted.end(), [](const Interval &a, const Interval &b) { return a.from < b.from; });
+    float gap = 0.f, covered = sorted[0].to;
+    for (const Interval &ball : sorted) {
+      gap = std::max(gap, ball.from - covered);
+      covered = std::max(covered, ball.to);
+    }
+    WallWalk walk{balls[0].to, balls[1].from};
+    bool solid = false;
+    int looks = 0;
+    for (; looks < kMostWallLooks && !walk.is_open() && !solid; ++looks) {
+      const float at = walk.next(looks);
+      const Interval *ball = nullptr;
+      for (const Interval &b : balls)
+        if (b.from <= at && at <= b.to) ball = &b;
+      if (ball)
+        walk.open(ball->from, ball->to);
+      else
+        solid = true;
+    }
+    SCOPED_TRACE(testing::Message() << "round " << round << ", gap " << gap);
+    if (gap > 1.01f * kWallStep) {
+      EXPECT_TRUE(solid);
+      ++walls;
+    } else if (gap == 0.f) {
+      EXPECT_FALSE(solid);
+      EXPECT_TRUE(walk.is_open());
+      EXPECT_LE(looks, static_cast<int>(balls.size()) + kMiddleLooks);
+      ++open;
+    }
+  }
+  EXPECT_GT(walls, 1000);
+  EXPECT_GT(open, 1000);
+}
+
 TEST(ThinWalls, AreFoundAndNothingElse) {
   size_t walls = 0;
   for (unsigned seed = 1; seed <= 4; ++seed) {

@@ -222,8 +222,8 @@ typedef struct qses_context_options {
   uint32_t struct_size;   /* set by qses_context_options_init */
   qses_backend backend;   /* default AUTO */
   int32_t device;         /* CUDA device ordinal; default 0 */
-  uint32_t threads;       /* CPU threads; 0 (default) = one per hardware thread. With CUDA up to 8 of them help to copy
-                             16,384 atoms or more */
+  uint32_t threads;       /* CPU threads; 0 (default) = one per hardware thread. With CUDA, where background is 0, up to
+                             8 of them, the caller's among them, copy atoms if there are 16,384 or more */
   uint64_t memory_budget; /* bytes; 0 (default): what is free at the time. With CUDA it covers everything on the device:
                              where the mesh does not fit, it leaves the device piece by piece. On the CPU it covers
                              the work; the mesh that is handed out comes on top (qses_report.mesh_bytes). The mesh is
@@ -233,7 +233,7 @@ typedef struct qses_context_options {
                              below normal; Linux: 10 nicer, so a busy thread beside them loses a tenth at most); a
                              caller lends its thread as it is. Kernels of the GPU have the lowest priority in any case,
                              but those that place vertices of large meshes, beside others of the same.
-                             Contexts on the CPU share threads: on Linux, where priorities can't be raised again, those
+                             Contexts share CPU threads: on Linux, where priorities can't be raised again, those
                              of a process that have 0 (default) are slowed down by busy programs too once one has 1 */
   uint32_t reserved;      /* 0 */
 } qses_context_options;

@@ -24,7 +24,7 @@ QSES_FN int most_solid_looks(const SurfaceParameters &p) {
 }
 // Solid next to a lattice point that is marked inside because a wall passes through an edge from it (thin_walls.h):
 // along the edges, from ball to ball, of one edge at as many points as a wall may be away. The point itself if none is
-// found, which rounding may do.
+// found, as by rounding, or of a wall that only the middle of an edge tells of.
 template <class Near>
 QSES_FN Vec3<float> find_solid(const FeatureView &f, const Near &near, const Vec3<float> &x) {
   const SurfaceParameters &p = f.parameters;

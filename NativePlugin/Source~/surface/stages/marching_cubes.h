@@ -159,7 +159,7 @@ void count_cells(Executor &executor, const BrickSet &bricks, const MeshLayout &l
   if constexpr (Executor::kIsCuda) {
     executor.template for_each_brick<CountBrickChunk::Counts>(
         (n + CountBrickChunk::kChunk - 1) / CountBrickChunk::kChunk,
-        CountBrickChunk{bricks, layout, case_triangles, totals, run});
+        CountBrickChunk{bricks, layout, case_triangles, totals, run}, 1, 2 * kPlainSteps);
     if constexpr (!Executor::kCounts)
       if (run.first > 0) return executor.go_on_scanning(n, load, base);
   } else {

@@ -7,7 +7,8 @@
 //
 // Whether an edge passes through solid is asked of probes alone. Where the probe may be, nothing is solid, and its ball
 // is convex: an edge that one probe covers, or two that overlap on it, is open. What is left is walked from ball to
-// ball, and is a wall if a point right behind a ball is farther than depth from all places where the probe may be.
+// ball, and is a wall if a point right behind a ball, or in the middle, is farther than depth from all places where the
+// probe may be.
 #pragma once
 
 #include "surface/stages/marching_cubes.h"
@@ -151,7 +152,7 @@ QSES_FN float way_out(const SurfaceParameters &p, const NearestProbe &probe, con
 
 // An edge on its way through balls of probes: how far from the first end it is open, and from where on to the second.
 // So far behind a ball the next point is looked at, in Å, so that a shorter wall may be passed over. An edge with more
-// balls than so many is open.
+// balls than so many on it is open.
 constexpr float kWallStep = 1e-3f;
 constexpr int kMostWallSteps = 12;
 // Before the first two, the middle of what is left: its probe covers all of that on most edges that are open.
