@@ -15,7 +15,7 @@ struct qses_context {
   qses_backend backend = QSES_BACKEND_CPU;
   qses_backend_description description{};
   std::unique_ptr<quickses::SurfaceJob> job;
-  std::unique_ptr<quickses::CpuThreads> copy_threads;  // with CUDA, where each frame waits for its atoms; or null
+  std::unique_ptr<quickses::CpuThreads> copy_threads;  // with CUDA, where each frame waits for its atoms; else null
   std::shared_ptr<const quickses::AtomSet> atoms;      // of the next computation; null before qses_set_atoms
   std::vector<float> radii;  // theirs: here, since reading what a GPU fetches each frame is slow
   std::shared_ptr<const quickses::Appearance> appearance = std::make_shared<quickses::Appearance>();

@@ -161,10 +161,8 @@ qses_status qses_context_create(const qses_context_options *options, qses_contex
     if (made->backend == QSES_BACKEND_CUDA) {
       made->job = std::make_unique<quickses::SurfaceJob>(quickses::make_cuda_engine(o.device, threads, o.memory_budget),
                                                          in_background);
-      if (!in_background) {  // else the caller would wait for threads that stand back
-        const unsigned there_are = o.threads ? o.threads : std::thread::hardware_concurrency();
-        made->copy_threads = std::make_unique<quickses::CpuThreads>(std::min(there_are, quickses::kMostCopyThreads));
-      }
+      const unsigned there_are = o.threads ? o.threads : std::thread::hardware_concurrency();
+      made->copy_threads = std::make_unique<quickses::CpuThreads>(std::min(there_are, quickses::kMostCopyThreads));
       // Another context may have been loading the kernels when this one looked.
       made->description.preparing = 0;
       made->description.reason[0] = 0;

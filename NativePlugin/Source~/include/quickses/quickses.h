@@ -222,8 +222,9 @@ typedef struct qses_context_options {
   uint32_t struct_size;   /* set by qses_context_options_init */
   qses_backend backend;   /* default AUTO */
   int32_t device;         /* CUDA device ordinal; default 0 */
-  uint32_t threads;       /* CPU threads; 0 (default) = one per hardware thread. With CUDA, where background is 0, up to
-                             8 of them, the caller's among them, copy atoms if there are 16,384 or more */
+  uint32_t threads;       /* CPU threads; 0 (default) = one per hardware thread. With CUDA up to 8 of them, the caller's
+                             among them, copy atoms if there are 16,384 or more; those do not stand back, since the
+                             caller waits for them */
   uint64_t memory_budget; /* bytes; 0 (default): what is free at the time. With CUDA it covers everything on the device:
                              where the mesh does not fit, it leaves the device piece by piece. On the CPU it covers
                              the work; the mesh that is handed out comes on top (qses_report.mesh_bytes). The mesh is
