@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <exception>
 #include <limits>
 
 #if defined(__SSE2__) || defined(_M_X64)
@@ -169,13 +168,10 @@ AtomBounds copy_all(size_t count, const Sphere *atoms, CpuThreads *threads, cons
   const auto copy_chunk = [&](size_t worker, size_t chunk) {
     copy(chunk * kChunk, std::min(count, (chunk + 1) * kChunk), &by_worker[worker]);
   };
-  bool is_done = false;
-  if (threads && chunks > 2) try {
-      threads->share_out(chunks, nullptr, copy_chunk);
-      is_done = true;
-    } catch (const std::exception &) {  // no thread could be asked: this one does it
-    }
-  if (!is_done) copy(0, count, &by_worker[0]);
+  if (threads && chunks > 2)
+    threads->share_out(chunks, nullptr, copy_chunk);
+  else
+    copy(0, count, &by_worker[0]);
   Met met;
   for (const Met &own : by_worker) met.add(own);
   for (size_t i = 0; !met.all_good && i < count; ++i)

@@ -16,10 +16,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cstring>
-#include <exception>
 #include <map>
 #include <memory>
-#include <thread>
 #include <typeindex>
 #include <utility>
 #include <vector>

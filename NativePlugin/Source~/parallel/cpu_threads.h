@@ -73,24 +73,30 @@ class CpuThreads {
     if (ended.load(std::memory_order_acquire) > 0 && thrown) std::rethrow_exception(thrown);
   }
 
-  // How many there are to work. The first call finds out.
+ private:
+  // How many there are to work. The first call finds out; where that itself is refused, the caller is alone this time.
   unsigned usable() {
     if (count_ == 1) return 1;
-    if (usable_ == 0) {
-      // More than the machine has are of no use, and TBB would complain on stderr.
-#if defined(QSES_CPU_SYSTEM_OWN)
-      const unsigned there_are = std::thread::hardware_concurrency();
-      helpers_ = std::make_unique<HelperThreads>((there_are > 0 ? std::min(count_, there_are) : count_) - 1);
-      usable_ = 1 + static_cast<unsigned>(helpers_->count());
-#else
-      usable_ = 1 + count_startable_threads(std::min(count_, there_are_) - 1);
-      if (usable_ > 1) arena_.initialize(static_cast<int>(usable_));
-#endif
+    try {
+      if (usable_ == 0) find_usable();
+    } catch (const std::exception &) {
+      usable_ = 0;
+      return 1;
     }
     return usable_ == 1 ? 1 : count_;
   }
+  void find_usable() {
+    // More than the machine has are of no use, and TBB would complain on stderr.
+#if defined(QSES_CPU_SYSTEM_OWN)
+    const unsigned there_are = std::thread::hardware_concurrency();
+    helpers_ = std::make_unique<HelperThreads>((there_are > 0 ? std::min(count_, there_are) : count_) - 1);
+    usable_ = 1 + static_cast<unsigned>(helpers_->count());
+#else
+    usable_ = 1 + count_startable_threads(std::min(count_, there_are_) - 1);
+    if (usable_ > 1) arena_.initialize(static_cast<int>(usable_));
+#endif
+  }
 
- private:
   // work(worker) for workers from 0 on, by the calling thread and those that help. False if TBB had none to give after
   // all: what was left undone is then to be done by the caller.
   template <class Work>

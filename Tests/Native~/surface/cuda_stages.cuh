@@ -115,12 +115,13 @@ inline DeviceStages run_device_stages(CudaExecutor &executor, const DeviceTable 
   const size_t arcs = s.found.arcs.size;
   if (arcs > 0) {
     const glm::vec3 reach(p.max_radius);
-    f.arc_bounds = build_neighbor_grid(executor, "crowded cell of arcs", arcs,
-                                       layout_cells(low - reach, high + reach, kArcCellEdge), [&] {
-                                         return ArcBoundAt{s.found.arcs.data, nullptr};
-                                       });
-    Span<Arc> sorted = executor.allocate<Arc>(arcs);
-    executor.for_each(arcs, GatherArcs{{s.found.arcs.data, sorted.data}, nullptr, f.arc_bounds.order});
+    const Span<Arc> sorted = executor.allocate<Arc>(arcs);
+    f.arc_bounds = build_neighbor_grid(
+        executor, "crowded cell of arcs", arcs, layout_cells(low - reach, high + reach, kArcCellEdge),
+        [&] {
+          return ArcBoundAt{s.found.arcs.data, nullptr};
+        },
+        BringArc{s.found.arcs.data, sorted.data});
     f.arcs = sorted.data;
   }
   s.features = f;

@@ -79,9 +79,8 @@ struct CountBrickChunk {
   BrickRange run;
   template <class Team>
   QSES_FN void operator()(const Team &team, Counts &counts, size_t chunk) const {
-    const size_t first = run.first + chunk * kChunk, left = run.first + run.size() - first,
-                 n = left < kChunk ? left : kChunk, rank = static_cast<size_t>(team.rank()),
-                 size = static_cast<size_t>(team.size());
+    const size_t first = run.first + chunk * kChunk, left = run.last - first, n = left < kChunk ? left : kChunk,
+                 rank = static_cast<size_t>(team.rank()), size = static_cast<size_t>(team.size());
     for (size_t i = rank; i < n * kLeavesPerBrick; i += size) {
       const size_t brick = first + i / kLeavesPerBrick;
       const int leaf = static_cast<int>(i % kLeavesPerBrick);

@@ -181,6 +181,14 @@ QSES_FN WallWalk begin_wall_walk(const SurfaceParameters &p, int step, const Vec
           wall_step_length(step) * p.spacing - way_out(p, probe_b, b, direction * -1.f)};
 }
 
+// By the probe of the point that was looked at, which it covers.
+QSES_FN void walk_through(const SurfaceParameters &p, const NearestProbe &probe, const Vec3<float> &x, int step,
+                          float at, WallWalk *walk) {
+  const Vec3<float> direction = wall_direction(step);
+  const float before = way_out(p, probe, x, direction * -1.f), behind = way_out(p, probe, x, direction);
+  walk->open(at - maximum(0.f, before), at + maximum(0.f, behind));  // never without x itself
+}
+
 // What no probe at an end of an edge covers: from one point to another.
 struct WallRest {
   Vec3<float> from, to;
@@ -188,13 +196,6 @@ struct WallRest {
 QSES_FN WallRest rest_of_walk(const WallWalk &walk, int step, const Vec3<float> &a) {
   const Vec3<float> direction = wall_direction(step);
   return {a + direction * walk.at, a + direction * walk.end};
-}
-// By the probe of the point that was looked at, which it covers.
-QSES_FN void walk_through(const SurfaceParameters &p, const NearestProbe &probe, const Vec3<float> &x, int step,
-                          float at, WallWalk *walk) {
-  const Vec3<float> direction = wall_direction(step);
-  const float before = way_out(p, probe, x, direction * -1.f), behind = way_out(p, probe, x, direction);
-  walk->open(at - maximum(0.f, before), at + maximum(0.f, behind));  // never without x itself
 }
 // Is that in the ball of a probe that is known from another point? Not by a hair, so that a walk would find no wall
 // either.
