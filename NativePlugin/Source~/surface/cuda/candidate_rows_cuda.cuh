@@ -21,14 +21,15 @@ struct PointBox {
   }
 };
 
-constexpr int kGatherWarps = 4;
+constexpr int kGatherWarps = 4, kMostGatherWarps = 16;
 // Of each kind, in a warp's shared memory; longer rows are gathered twice.
 constexpr uint32_t kGatherRoom = 192, kNarrowRoom = 512;
 
-// The warps that gather for one brick: one, or all of a block where bricks are few. Each goes over a run of the cells.
+// The warps that put one row together: one, or all of a block where rows are few. Each goes over a run of what there
+// is.
 template <int kWarps>
 struct GatherTeam {
-  static_assert(kWarps == 1 || kWarps == kGatherWarps, "a warp or a block");
+  static constexpr int kBlockWarps = kWarps == 1 ? kGatherWarps : kWarps;
   struct Memory {
     uint32_t words[kWarps];
     unsigned long long first;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// GPU driver of the exact field: only signs are found. A warp per active leaf, two lattice points per lane; the sphere
-// a point is deepest in decides about it by its caps, or else the nearest arc.
+// GPU driver of the exact field: only signs are found. A warp per active leaf, two lattice points per lane, or two
+// where leaves are few; the sphere a point is deepest in decides about it by its caps, or else the nearest arc.
 #pragma once
 
 #include "surface/cuda/gather_candidates_cuda.cuh"
@@ -114,7 +114,8 @@ __device__ __forceinline__ DeepestAtom choose_deepest_atoms(const FeatureView &f
 
 enum class LeafKind { kMixed, kInside, kOutside };
 
-template <int kAtoms>
+// kPoints: of each lane. One: a warp has half of a leaf.
+template <int kAtoms, int kPoints>
 static __global__ __launch_bounds__(kSignThreads,
                                     blocks_at_once(kSignThreads, 18)) void evaluate_leaves_kernel(QueuedItems queued,
                                                                                                   SignJob job) {
@@ -122,7 +123,9 @@ static __global__ __launch_bounds__(kSignThreads,
   __shared__ LeafScratch<kAtoms> scratch_memory[kSignWarps];
   const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();
   LeafScratch<kAtoms> &scratch = scratch_memory[warp];
-  const size_t leaf_place = leaves.first + blockIdx.x * kSignWarps + static_cast<uint32_t>(warp);
+  constexpr int kHalves = 2 / kPoints;
+  const size_t leaf_place = leaves.first + (blockIdx.x * kSignWarps + static_cast<uint32_t>(warp)) / kHalves;
+  const int half_of_leaf = warp % kHalves;
   if (leaf_place >= leaves.last || leaf_place >= job.view.counted->leaves) return;
   const FeatureView &f = job.features;
   const CandidateReach &reach = job.reach;
@@ -203,55 +206,77 @@ static __global__ __launch_bounds__(kSignThreads,
       covered |= cap_covers(load(f.caps + range.first + k), offset, length);
     if (__any_sync(kFullWarp, covered)) kind = LeafKind::kInside;
   }
-  bool inside0 = kind == LeafKind::kInside, inside1 = inside0;
-  uint32_t decider0 = far_out ? kOutsideBalls : kNotLookedAt, decider1 = decider0;
+  bool inside[kPoints];
+  uint32_t decider[kPoints];
+#pragma unroll
+  for (int c = 0; c < kPoints; ++c) {
+    inside[c] = kind == LeafKind::kInside;
+    decider[c] = far_out ? kOutsideBalls : kNotLookedAt;
+  }
   if (kind == LeafKind::kMixed) {
-    const int x = first.x + (lane & 3), y = first.y + (lane >> 2 & 3), z = first.z + (lane >> 4);
-    const Vec3<float> p0 = lattice.position(x, y, z), p1 = lattice.position(x, y, z + 2);
-    float depth0 = reach.least_depth, depth1 = reach.least_depth;
-    uint32_t atom0 = 0, atom1 = 0;
+    Vec3<float> p[kPoints];
+    float deepest[kPoints];
+    uint32_t atom[kPoints] = {};
+#pragma unroll
+    for (int c = 0; c < kPoints; ++c) {
+      p[c] = lattice.position(first.x + (lane & 3), first.y + (lane >> 2 & 3),
+                              first.z + (lane >> 4) + 2 * (half_of_leaf + c));
+      deepest[c] = reach.least_depth;
+    }
     const auto meet_ball = [&](const Sphere &ball, uint32_t number) {
-      const float d0 = ball_depth(ball, p0), d1 = ball_depth(ball, p1);
-      atom0 = d0 > depth0 ? number : atom0;
-      depth0 = fmaxf(depth0, d0);
-      atom1 = d1 > depth1 ? number : atom1;
-      depth1 = fmaxf(depth1, d1);
+#pragma unroll
+      for (int c = 0; c < kPoints; ++c) {
+        const float d = ball_depth(ball, p[c]);
+        atom[c] = d > deepest[c] ? number : atom[c];
+        deepest[c] = fmaxf(deepest[c], d);
+      }
     };
     if (atom_count <= kAtoms) {
       for (int k = 0; k < atom_count; ++k) meet_ball(scratch.atom[k], static_cast<uint32_t>(k));
-      if (depth0 > reach.least_depth) atom0 = scratch.atom_number[atom0];
-      if (depth1 > reach.least_depth) atom1 = scratch.atom_number[atom1];
+#pragma unroll
+      for (int c = 0; c < kPoints; ++c)
+        if (deepest[c] > reach.least_depth) atom[c] = scratch.atom_number[atom[c]];
     } else {
       for (uint32_t k = 0; k < row.atom_count; ++k) {
         const uint32_t i = __ldg(atoms + k);
         meet_ball(load(f.atoms.items + i), i);
       }
     }
-    inside0 = depth0 > depth;
-    inside1 = depth1 > depth;
-    bool open0 = depth0 > reach.least_depth && !inside0, open1 = depth1 > reach.least_depth && !inside1;
-    decider0 = depth0 > reach.least_depth ? kOnContact | atom0 : kOutsideBalls;
-    decider1 = depth1 > reach.least_depth ? kOnContact | atom1 : kOutsideBalls;
+    bool open[kPoints], any_open = false;
+#pragma unroll
+    for (int c = 0; c < kPoints; ++c) {
+      inside[c] = deepest[c] > depth;
+      open[c] = deepest[c] > reach.least_depth && !inside[c];
+      decider[c] = deepest[c] > reach.least_depth ? kOnContact | atom[c] : kOutsideBalls;
+    }
+#pragma unroll
+    for (int c = 0; c < kPoints; ++c) {
+      __syncwarp();
+      if (open[c]) open[c] = !projection_exposed(f, atom[c], p[c], deepest[c]);
+      any_open |= open[c];
+    }
     __syncwarp();
-    if (open0) open0 = !projection_exposed(f, atom0, p0, depth0);
-    __syncwarp();
-    if (open1) open1 = !projection_exposed(f, atom1, p1, depth1);
-    __syncwarp();
-    if (__any_sync(kFullWarp, open0 || open1)) {
-      float nearest0 = kFarAway, nearest1 = kFarAway;
+    if (__any_sync(kFullWarp, any_open)) {
+      float nearest[kPoints];
+#pragma unroll
+      for (int c = 0; c < kPoints; ++c) nearest[c] = kFarAway;
       const auto meet_arcs = [&](int count) {
-        int arc0 = -1, arc1 = -1;
+        int place[kPoints];
+#pragma unroll
+        for (int c = 0; c < kPoints; ++c) place[c] = -1;
 #pragma unroll 2
         for (int k = 0; k < count; ++k) {
           const Arc arc = scratch.arc[k];
-          const float d0 = arc_distance2(arc, p0), d1 = arc_distance2(arc, p1);
-          arc0 = d0 < nearest0 ? k : arc0;  // of several, the first, which has the lowest number
-          arc1 = d1 < nearest1 ? k : arc1;
-          nearest0 = fminf(nearest0, d0);
-          nearest1 = fminf(nearest1, d1);
+#pragma unroll
+          for (int c = 0; c < kPoints; ++c) {
+            const float d = arc_distance2(arc, p[c]);
+            place[c] = d < nearest[c] ? k : place[c];  // of several, the first, which has the lowest number
+            nearest[c] = fminf(nearest[c], d);
+          }
         }
-        if (open0 && arc0 >= 0) decider0 = scratch.arc_number[arc0];
-        if (open1 && arc1 >= 0) decider1 = scratch.arc_number[arc1];
+#pragma unroll
+        for (int c = 0; c < kPoints; ++c)
+          if (open[c] && place[c] >= 0) decider[c] = scratch.arc_number[place[c]];
       };
       if (arc_count <= kLeafArcs) {
         meet_arcs(arc_count);
@@ -264,19 +289,26 @@ static __global__ __launch_bounds__(kSignThreads,
           __syncwarp();
         }
       }
-      if (open0) inside0 = nearest0 > depth * depth;
-      if (open1) inside1 = nearest1 > depth * depth;
+#pragma unroll
+      for (int c = 0; c < kPoints; ++c)
+        if (open[c]) inside[c] = nearest[c] > depth * depth;
     }
   }
-  if (job.view.deciders) {
-    uint32_t *const deciders = job.view.deciders + size_t(slot) * 64;
-    deciders[lane] = decider0;
-    deciders[lane + kWarp] = decider1;
+  unsigned words[kPoints];
+#pragma unroll
+  for (int c = 0; c < kPoints; ++c) {
+    if (job.view.deciders)
+      job.view.deciders[size_t(slot) * 64 + static_cast<size_t>((half_of_leaf + c) * kWarp + lane)] = decider[c];
+    words[c] = __ballot_sync(kFullWarp, inside[c]);
   }
-  const unsigned low = __ballot_sync(kFullWarp, inside0), high = __ballot_sync(kFullWarp, inside1);
-  if (lane == 0 && job.signs)
-    job.signs[static_cast<size_t>(job.view.first_brick + b) * kLeavesPerBrick + static_cast<size_t>(leaf)] =
-        static_cast<uint64_t>(high) << 32 | low;
+  if (lane == 0 && job.signs) {
+    uint64_t *const signs =
+        job.signs + static_cast<size_t>(job.view.first_brick + b) * kLeavesPerBrick + static_cast<size_t>(leaf);
+    if constexpr (kPoints == 2)
+      *signs = static_cast<uint64_t>(words[1]) << 32 | words[0];
+    else
+      reinterpret_cast<uint32_t *>(signs)[half_of_leaf] = words[0];
+  }
 }
 
 // Evaluates the active leaves of a slice. deciders: whether what decides about their points is kept for thin walls.
@@ -289,11 +321,18 @@ void evaluate_leaves(E &executor, const FeatureView &features, const BrickSet &b
     candidates.view.deciders = candidates.decider_room.data;
     candidates.have_deciders = true;
   }
-  const bool are_wide = candidates.view.row_shift == kRowOfLeaf;
-  executor.launch("evaluate_leaves",
-                  are_wide ? evaluate_leaves_kernel<kWideLeafAtoms> : evaluate_leaves_kernel<kLeafAtoms>,
-                  candidates.leaves, LaunchShape{kSignThreads, kSignWarps, candidates.look_steps(features)},
-                  SignJob{features, bricks, CandidateReach::of(features.parameters), candidates.view, signs});
+  constexpr size_t kMostWarps = 24;  // of a multiprocessor, that few leaves may have
+  const bool by_halves = candidates.leaves * 2 <= executor.multiprocessors() * kMostWarps;
+  const auto launch = [&](auto kernel) {
+    executor.launch(
+        "evaluate_leaves", kernel, candidates.leaves,
+        LaunchShape{kSignThreads, size_t(kSignWarps) / (by_halves ? 2 : 1), candidates.look_steps(features)},
+        SignJob{features, bricks, CandidateReach::of(features.parameters), candidates.view, signs});
+  };
+  if (candidates.view.row_shift == kRowOfLeaf)
+    launch(by_halves ? evaluate_leaves_kernel<kWideLeafAtoms, 1> : evaluate_leaves_kernel<kWideLeafAtoms, 2>);
+  else
+    launch(by_halves ? evaluate_leaves_kernel<kLeafAtoms, 1> : evaluate_leaves_kernel<kLeafAtoms, 2>);
 }
 
 }  // namespace gpu

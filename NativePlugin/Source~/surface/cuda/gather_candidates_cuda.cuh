@@ -45,17 +45,18 @@ __device__ __forceinline__ bool uniform_leaf_inside(const GatherJob &job, const 
 
 // The rows of one brick.
 template <int kWarps>
-static __global__ __launch_bounds__(kGatherWarps *kWarp,
-                                    blocks_at_once(kGatherWarps *kWarp,
-                                                   9)) void gather_candidates_kernel(QueuedItems queued,
-                                                                                     GatherJob job) {
+static __global__ __launch_bounds__(
+    GatherTeam<kWarps>::kBlockWarps *kWarp,
+    blocks_at_once(GatherTeam<kWarps>::kBlockWarps *kWarp,
+                   36 / GatherTeam<kWarps>::kBlockWarps)) void gather_candidates_kernel(QueuedItems queued,
+                                                                                        GatherJob job) {
   const LaunchItems bricks = queued.in_turn();
-  __shared__ uint32_t near_memory[kGatherWarps][kGatherRoom];
+  constexpr int kBlock = GatherTeam<kWarps>::kBlockWarps;
+  __shared__ uint32_t near_memory[kBlock][kGatherRoom];
   __shared__ typename GatherTeam<kWarps>::Memory team_memory;
   const GatherTeam<kWarps> team{team_memory};
   const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();
-  const uint32_t b =
-      static_cast<uint32_t>(bricks.first) + (blockIdx.x * kGatherWarps + static_cast<uint32_t>(warp)) / kWarps;
+  const uint32_t b = static_cast<uint32_t>(bricks.first) + (blockIdx.x * kBlock + static_cast<uint32_t>(warp)) / kWarps;
   if (b >= bricks.last) return;
   const FeatureView &f = job.features;
   const CandidateReach &reach = job.reach;
@@ -155,13 +156,16 @@ struct NarrowJob {
   RowRoom room;
 };
 
-// The rows of the leaves from those of their bricks. A warp per leaf.
+// The rows of the leaves from those of their bricks.
+template <int kWarps>
 static __global__ __launch_bounds__(kGatherWarps *kWarp) void narrow_candidates_kernel(QueuedItems queued,
                                                                                        NarrowJob job) {
   const LaunchItems leaves = queued.in_turn();
   __shared__ uint32_t near_memory[kGatherWarps][kNarrowRoom];
+  __shared__ typename GatherTeam<kWarps>::Memory team_memory;
+  const GatherTeam<kWarps> team{team_memory};
   const int warp = static_cast<int>(threadIdx.x) / kWarp;
-  const size_t item = leaves.first + blockIdx.x * kGatherWarps + static_cast<uint32_t>(warp);
+  const size_t item = leaves.first + (blockIdx.x * kGatherWarps + static_cast<uint32_t>(warp)) / kWarps;
   if (item >= leaves.last) return;
   const uint32_t slot = static_cast<uint32_t>(item);
   const FeatureView &f = job.features;
@@ -171,22 +175,21 @@ static __global__ __launch_bounds__(kGatherWarps *kWarp) void narrow_candidates_
                            brick_point(static_cast<int>(slot % kLeavesPerBrick), 0);
   const Vec3<float> low = lattice.position(first.x, first.y, first.z);
   const CandidateRow row = job.from.row_of(slot);
-  GatherTeam<1>::Memory none;
-  const GatherTeam<1> team{none};
   uint32_t number = 0;  // of the item whose place in the brick's row is visited
   const auto along = [&](const uint32_t *items, uint32_t count) {
-    return [=, &number](const auto &visit) {
+    return [=, &number, &team](const auto &visit) {
+      const uint32_t rank = static_cast<uint32_t>(team.rank()), end = count * (rank + 1) / kWarps;
       // Asked for some ahead.
       constexpr int kAhead = 4;
-      for (uint32_t k0 = 0; k0 < count; k0 += kAhead * kWarp) {
+      for (uint32_t k0 = count * rank / kWarps; k0 < end; k0 += kAhead * kWarp) {
         uint32_t ahead[kAhead];
         const auto place_of = [&](int c) { return k0 + static_cast<uint32_t>(c * kWarp + lane_id()); };
 #pragma unroll
-        for (int c = 0; c < kAhead; ++c) ahead[c] = place_of(c) < count ? __ldg(items + place_of(c)) : 0;
+        for (int c = 0; c < kAhead; ++c) ahead[c] = place_of(c) < end ? __ldg(items + place_of(c)) : 0;
 #pragma unroll
         for (int c = 0; c < kAhead; ++c) {
           number = ahead[c];
-          if (k0 + static_cast<uint32_t>(c * kWarp) < count) visit(place_of(c), place_of(c) < count);
+          if (k0 + static_cast<uint32_t>(c * kWarp) < end) visit(place_of(c), place_of(c) < end);
         }
       }
     };
@@ -214,7 +217,7 @@ static __global__ __launch_bounds__(kGatherWarps *kWarp) void narrow_candidates_
         job.to.arc_leaves[place] = __ldg(from_leaves + k);
         return __ldg(from_arcs + k);
       });
-  if (lane_id() != 0) return;
+  if (!team.leads()) return;
   // Without room for its rows the leaf has none; all will be done again.
   const bool fits = atoms.fits && arcs.fits;
   job.to.rows[slot] = fits ? CandidateRow{atoms.first, arcs.first, atoms.count, arcs.count} : CandidateRow{0, 0, 0, 0};
@@ -279,10 +282,15 @@ void gather_candidates(E &executor, const FeatureView &features, const BrickSet 
   view.brick_leaves = executor.template allocate<uint8_t>(n).data;
   // All items in the cells around a brick are looked at, at most twice.
   const float extent = 7.f * reach.spacing + 2.f * reach.grown;
-  constexpr size_t kMostWarps = 40;  // of a multiprocessor, that few bricks may have
-  const bool together = size_t(n) * kGatherWarps <= executor.multiprocessors() * kMostWarps;
+  // Where rows are few, several warps work on each, the more the longer they are.
+  const double most_warps = 0.5 * listed_candidates(parameters, kBrickEdge) * executor.multiprocessors();
+  const auto may_have = [&](size_t rows, int warps) {
+    return static_cast<double>(rows * static_cast<size_t>(warps)) <= most_warps;
+  };
+  const int warps = may_have(n, kMostGatherWarps) ? kMostGatherWarps : may_have(n, kGatherWarps) ? kGatherWarps : 1;
   const auto shape = [&](uint64_t near) {
-    return LaunchShape{kGatherWarps * kWarp, together ? size_t(1) : size_t(kGatherWarps), 256 + near / 16};
+    return LaunchShape{std::max(warps, kGatherWarps) * kWarp, warps > 1 ? size_t(1) : size_t(kGatherWarps),
+                       256 + near / 16};
   };
   const auto is_enough = [&](uint64_t items) { return executor.is_few_launches(n, shape(items)); };
   const LaunchShape gather =
@@ -298,8 +306,10 @@ void gather_candidates(E &executor, const FeatureView &features, const BrickSet 
                 room_of(n, kBrickEdge, arcs, &rooms.listed_arcs), leaves, &view, [&](const RowRoom &room) {
                   view.counted = room.counters;
                   executor.launch("gather_candidates",
-                                  together ? gather_candidates_kernel<kGatherWarps> : gather_candidates_kernel<1>, n,
-                                  gather, GatherJob{features, bricks, reach, view, room, signs});
+                                  warps == kMostGatherWarps ? gather_candidates_kernel<kMostGatherWarps>
+                                  : warps == kGatherWarps   ? gather_candidates_kernel<kGatherWarps>
+                                                            : gather_candidates_kernel<1>,
+                                  n, gather, GatherJob{features, bricks, reach, view, room, signs});
                 });
   candidates.leaves = static_cast<size_t>(found.leaves);
   view.leaf_room = found.leaves;
@@ -307,13 +317,16 @@ void gather_candidates(E &executor, const FeatureView &features, const BrickSet 
     const CandidateView of_bricks = view;
     view.rows = executor.template allocate<CandidateRow>(leaves).data;
     view.row_shift = kRowOfLeaf;
-    const LaunchShape narrow{kGatherWarps * kWarp, kGatherWarps,
+    const bool by_blocks = may_have(leaves, kGatherWarps);
+    const LaunchShape narrow{kGatherWarps * kWarp, by_blocks ? size_t(1) : size_t(kGatherWarps),
                              128 + uint64_t(std::max(kUsualRow, found.longest_row)) / 4};
-    found = fill_rows(executor, "candidates of leaves", room_of(leaves, kLeafEdge, atoms, &rooms.leaf_atoms),
-                      room_of(leaves, kLeafEdge, arcs, &rooms.leaf_arcs), 0, &view, [&](const RowRoom &room) {
-                        executor.launch("narrow_candidates", narrow_candidates_kernel, leaves, narrow,
-                                        NarrowJob{features, bricks, reach, of_bricks, view, room});
-                      });
+    found =
+        fill_rows(executor, "candidates of leaves", room_of(leaves, kLeafEdge, atoms, &rooms.leaf_atoms),
+                  room_of(leaves, kLeafEdge, arcs, &rooms.leaf_arcs), 0, &view, [&](const RowRoom &room) {
+                    executor.launch("narrow_candidates",
+                                    by_blocks ? narrow_candidates_kernel<kGatherWarps> : narrow_candidates_kernel<1>,
+                                    leaves, narrow, NarrowJob{features, bricks, reach, of_bricks, view, room});
+                  });
   }
   candidates.longest_row = std::max(kUsualRow, found.longest_row);
   candidates.view = view;

@@ -79,18 +79,26 @@ void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bri
       prepare_vertices(executor, features, bricks, layout, slice, sizes, rooms, candidates, starts, mesh);
   const uint64_t look = vertex_steps(features, candidates.longest_row);
   // Lanes for each of few vertices, or of such that have much to look at; so many for a multiprocessor at most.
-  constexpr size_t kFew = 4, kMostThreads = 3072;
-  const bool are_few = job.count * kFew <= executor.multiprocessors() * kMostThreads,
-             have_much = job.list_words >= kLongList, have_very_much = job.list_words >= 4 * kLongList;
+  constexpr size_t kFew = 4, kMostThreads = 3072, kMostOfLongLists = 8192;
+  const bool have_much = job.list_words >= kLongList, have_very_much = job.list_words >= 4 * kLongList;
+  const auto is_room_for = [&](size_t lanes, size_t most) {
+    return job.count * lanes <= executor.multiprocessors() * most;
+  };
+  const bool are_few = is_room_for(kFew, kMostThreads),
+             are_very_few = is_room_for(kWarp, have_very_much ? kMostOfLongLists : kMostThreads);
   const auto launch_first = [&](const char *name, size_t lanes, auto kernel) {
     executor.launch(name, kernel, job.count, LaunchShape{kVertexThreads, kVertexThreads / lanes, 64 + 2 * look / lanes},
                     job);
   };
-  if (are_few)
+  if (are_very_few)
+    launch_first("project_on_atoms", kWarp, project_on_atoms_kernel<kWarp>);
+  else if (are_few)
     launch_first("project_on_atoms", kFew, project_on_atoms_kernel<kFew>);
   else
     launch_first("project_on_atoms", 1, project_on_atoms_kernel<1>);
-  if (have_very_much)
+  if (are_very_few)
+    launch_first("project_on_arcs", kWarp, project_on_arcs_kernel<kWarp>);
+  else if (have_very_much)
     launch_first("project_on_arcs", 8, project_on_arcs_kernel<8>);
   else if (have_much || are_few)
     launch_first("project_on_arcs", kFew, project_on_arcs_kernel<kFew>);

@@ -147,11 +147,14 @@ void mark_thin_walls(E &executor, const FeatureView &features, const BrickSet &b
     job.walks = executor.template allocate<uint64_t>(static_cast<size_t>(job.walk_room)).data;
     // Of a leaf: first ends and edges for each lane, and as many asked of the others' probes.
     constexpr uint64_t kStarts = 64 / kWarp, kEdges = kStarts * kWallSteps;
-    executor.launch("drop_open_edges", drop_open_edges_kernel, leaves,
-                    LaunchShape{kWallThreads, kWallWarps,
+    // Of leaves half have edges, or fewer.
+    const size_t blocks = blocks_in_turns(executor);
+    const bool by_blocks = leaves <= 2 * blocks;
+    executor.launch("drop_open_edges", by_blocks ? drop_open_edges_kernel<true> : drop_open_edges_kernel<false>, leaves,
+                    LaunchShape{kWallThreads, by_blocks ? size_t(1) : size_t(kWallWarps),
                                 kStarts * (64 + uint64_t(candidates.longest_row)) +
                                     kEdges * (kWarp * 2 + uint64_t(features.most_caps) * 3 / 4),
-                                blocks_in_turns(executor)},
+                                blocks},
                     job);
     found = executor.expect("walls", counters, WallCounters{static_cast<uint32_t>(leaves), job.walk_room});
     if (found.walks <= job.walk_room) break;

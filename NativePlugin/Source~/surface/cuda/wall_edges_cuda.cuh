@@ -171,6 +171,7 @@ struct WallStart {
   uint32_t slot;
   uint8_t leaf, first, count, bit;
 };
+constexpr int kStepUnit = kRoundStarts;
 // What a warp knows of its round.
 struct WallScratch {
   float4 probe[kRoundStarts];  // of each first end
@@ -179,8 +180,13 @@ struct WallScratch {
   uint16_t edge[kRoundStarts * kWallSteps];  // number of the first end, and the step in kStepUnit
   uint32_t leaf_walks[kRoundLeaves];         // edges that are left
   int walk_shift[kRoundLeaves];              // from their place in the round to the one in the list
+
+  __device__ __forceinline__ WallStart start_of(uint32_t k) const { return start[edge[k] % kStepUnit]; }
+  __device__ __forceinline__ uint64_t walk(uint32_t k) const {
+    const WallStart s = start_of(k);
+    return static_cast<uint64_t>(s.slot) * (kWallSteps * 64) + edge[k] / kStepUnit * 64u + s.bit;
+  }
 };
-constexpr int kStepUnit = kRoundStarts;
 static_assert(kStepUnit * kWallSteps <= 0x10000, "two bytes");
 
 // The steps to second ends that the probe of a first end does not cover. That is put into the scratch.
@@ -246,9 +252,10 @@ __device__ __forceinline__ bool is_left_by_probes(const WallJob &job, const Wall
   return left;
 }
 
-// Lists the edges of a round that its probes leave, in its scratch; returns how many.
-__device__ __forceinline__ uint32_t find_edges_to_walk(const WallJob &job, const WallRound &round,
-                                                       WallScratch *scratch) {
+// Lists the edges of a round that its probes leave, in its scratch; returns how many. Of those that one of several
+// warps looks at, where they take the round together.
+__device__ __forceinline__ uint32_t find_edges_to_walk(const WallJob &job, const WallRound &round, uint32_t part,
+                                                       uint32_t parts, WallScratch *scratch) {
   const int lane = lane_id();
   uint32_t edges = 0;
   for (int n0 = 0; n0 < round.starts; n0 += kWarp) {
@@ -273,7 +280,7 @@ __device__ __forceinline__ uint32_t find_edges_to_walk(const WallJob &job, const
   __syncwarp();
 
   uint32_t walks = 0;
-  for (uint32_t e0 = 0; e0 < edges; e0 += kWarp) {
+  for (uint32_t e0 = part * kWarp; e0 < edges; e0 += parts * kWarp) {
     const bool on = e0 + static_cast<uint32_t>(lane) < edges;
     const uint16_t edge = on ? scratch->edge[e0 + static_cast<uint32_t>(lane)] : uint16_t(0);
     const bool left = is_left_by_probes(job, *scratch, edge, on);
@@ -284,10 +291,14 @@ __device__ __forceinline__ uint32_t find_edges_to_walk(const WallJob &job, const
   return walks;
 }
 
+__device__ __forceinline__ void write_walk(const WallJob &job, unsigned long long place, uint64_t walk) {
+  if (place < job.walk_room) job.walks[place] = walk;
+}
+
 // Puts the edges that are left of a round behind those of others: those of a leaf in whole runs.
 __device__ __forceinline__ void list_walks(const WallJob &job, uint32_t walks, WallScratch *scratch) {
   const uint32_t run = job.walk_run, lane = static_cast<uint32_t>(lane_id());
-  const auto start_of = [&](uint32_t w) { return scratch->start[scratch->edge[w] % kStepUnit]; };
+  const auto start_of = [&](uint32_t w) { return scratch->start_of(w); };
   if (lane < kRoundLeaves) scratch->leaf_walks[lane] = 0;
   __syncwarp();
   for (uint32_t w = lane; w < walks; w += kWarp) atomicAdd(&scratch->leaf_walks[start_of(w).leaf], 1u);
@@ -300,14 +311,11 @@ __device__ __forceinline__ void list_walks(const WallJob &job, uint32_t walks, W
   if (lane == kWarp - 1) base = atomicAdd(&job.counters->walks, static_cast<unsigned long long>(places_with));
   base = __shfl_sync(kFullWarp, base, kWarp - 1);
   __syncwarp();
-  const auto write = [&](uint32_t place, uint64_t walk) {
-    if (base + place < job.walk_room) job.walks[base + place] = walk;
-  };
+  const auto write = [&](uint32_t place, uint64_t walk) { write_walk(job, base + place, walk); };
   for (uint32_t w = lane; w < walks; w += kWarp) {
     const WallStart start = start_of(w);
-    const uint32_t step = scratch->edge[w] / kStepUnit,
-                   place = w + static_cast<uint32_t>(scratch->walk_shift[start.leaf]);
-    write(place, static_cast<uint64_t>(start.slot) * (kWallSteps * 64) + step * 64 + start.bit);
+    const uint32_t place = w + static_cast<uint32_t>(scratch->walk_shift[start.leaf]);
+    write(place, scratch->walk(w));
     const bool is_last = w + 1 == walks || start_of(w + 1).leaf != start.leaf;
     if (!is_last) continue;
     const uint32_t filled = scratch->leaf_walks[start.leaf] % run;
@@ -315,29 +323,60 @@ __device__ __forceinline__ void list_walks(const WallJob &job, uint32_t walks, W
   }
 }
 
+// The same for those that the warps of a block have found of one leaf.
+__device__ __forceinline__ void list_walks_of_leaf(const WallJob &job, uint32_t own, const WallScratch &scratch) {
+  __shared__ uint32_t counts[kWallWarps];
+  __shared__ unsigned long long base;
+  const uint32_t warp = threadIdx.x / kWarp;
+  if (lane_id() == 0) counts[warp] = own;
+  __syncthreads();
+  uint32_t before = 0, all = 0;
+#pragma unroll
+  for (uint32_t w = 0; w < kWallWarps; ++w) {
+    before += w < warp ? counts[w] : 0;
+    all += counts[w];
+  }
+  if (all == 0) return;
+  const uint32_t places = (all + job.walk_run - 1) / job.walk_run * job.walk_run;
+  if (threadIdx.x == 0) base = atomicAdd(&job.counters->walks, static_cast<unsigned long long>(places));
+  __syncthreads();
+  for (uint32_t w = static_cast<uint32_t>(lane_id()); w < own; w += kWarp)
+    write_walk(job, base + before + w, scratch.walk(w));
+  for (uint32_t k = all + threadIdx.x; k < places; k += kWallThreads) write_walk(job, base + k, kNoWalk);
+}
+
 // Lists the edges of leaves that the probes nearest to their ends, as far as they are known, do not cover together. A
 // leaf has few first ends, and few edges that are left by the first probe: a warp takes several leaves at a time, so
-// that its lanes are not idle.
+// that its lanes are not idle. Or, where leaves are few, all warps of a block take one.
+template <bool kByBlocks>
 static __global__ __launch_bounds__(kWallThreads,
                                     blocks_at_once(kWallThreads, 10)) void drop_open_edges_kernel(QueuedItems queued,
                                                                                                   WallJob job) {
   const LaunchItems items = queued.in_turn();
   __shared__ WallScratch scratch_memory[kWallWarps];
-  WallScratch &scratch = scratch_memory[threadIdx.x / kWarp];
+  const uint32_t warp = threadIdx.x / kWarp;
+  WallScratch &scratch = scratch_memory[warp];
   const uint32_t first = static_cast<uint32_t>(items.first);
   const uint32_t end = job.counters->leaves < items.last ? job.counters->leaves : static_cast<uint32_t>(items.last);
   if (end <= first) return;
-  const uint32_t warps = gridDim.x * kWallWarps, even = (end - first - 1) / warps + 1,
-                 share = even < kMostWallLeaves ? even : kMostWallLeaves;
-  for (uint32_t own = first + (blockIdx.x * kWallWarps + threadIdx.x / kWarp) * share; own < end;
-       own += warps * share) {
-    const uint32_t own_end = own + share < end ? own + share : end;
-    for (uint32_t next = own; next < own_end;) {
-      const WallRound round(job, next, own_end);
-      const uint32_t walks = find_edges_to_walk(job, round, &scratch);
-      if (walks > 0) list_walks(job, walks, &scratch);
-      next += static_cast<uint32_t>(round.leaves);
-      __syncwarp();  // the scratch is not looked at any more
+  if constexpr (kByBlocks) {
+    for (uint32_t own = first + blockIdx.x; own < end; own += gridDim.x) {
+      const uint32_t walks = find_edges_to_walk(job, WallRound(job, own, own + 1), warp, kWallWarps, &scratch);
+      list_walks_of_leaf(job, walks, scratch);
+      __syncthreads();  // neither scratch nor counts are looked at any more
+    }
+  } else {
+    const uint32_t warps = gridDim.x * kWallWarps, even = (end - first - 1) / warps + 1,
+                   share = even < kMostWallLeaves ? even : kMostWallLeaves;
+    for (uint32_t own = first + (blockIdx.x * kWallWarps + warp) * share; own < end; own += warps * share) {
+      const uint32_t own_end = own + share < end ? own + share : end;
+      for (uint32_t next = own; next < own_end;) {
+        const WallRound round(job, next, own_end);
+        const uint32_t walks = find_edges_to_walk(job, round, 0, 1, &scratch);
+        if (walks > 0) list_walks(job, walks, &scratch);
+        next += static_cast<uint32_t>(round.leaves);
+        __syncwarp();  // the scratch is not looked at any more
+      }
     }
   }
 }
