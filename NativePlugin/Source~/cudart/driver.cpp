@@ -48,6 +48,8 @@ Driver load() {
 #undef QSES_FIND
 #define QSES_FIND(name, ...) d.name = reinterpret_cast<DriverFunction<__VA_ARGS__>>(find(library, #name));
   QSES_DRIVER_NEWER_FUNCTIONS(QSES_FIND)
+  QSES_DRIVER_GRAPH_FUNCTIONS(QSES_FIND)
+  QSES_DRIVER_EDGE_FUNCTIONS(QSES_FIND)
   QSES_DRIVER_GRAPHICS_FUNCTIONS(QSES_FIND)
 #undef QSES_FIND
   int version = 0;

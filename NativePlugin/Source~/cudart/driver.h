@@ -61,10 +61,28 @@ namespace cudart {
   F(cuEventSynchronize, CUresult, CUevent)                                                                      \
   F(cuEventElapsedTime, CUresult, float *, CUevent, CUevent)
 
+// An edge of a graph, as drivers know it from CUDA 12.3 on (CUgraphEdgeData).
+struct GraphEdge {
+  unsigned char from_port, to_port, type, reserved[5];
+};
+
 // Those that a driver need not have: of CUDA 11.8 and 12.0 …
 #define QSES_DRIVER_NEWER_FUNCTIONS(F)                                                \
   F(cuLaunchKernelEx, CUresult, const CUlaunchConfig *, CUfunction, void **, void **) \
   F(cuCtxGetId, CUresult, CUcontext, unsigned long long *)
+
+// … for graphs of kernels, and edges of CUDA 12.3 in them …
+#define QSES_DRIVER_GRAPH_FUNCTIONS(F)                                                                      \
+  F(cuGraphCreate, CUresult, CUgraph *, unsigned)                                                           \
+  F(cuGraphAddKernelNode, CUresult, CUgraphNode *, CUgraph, const CUgraphNode *, size_t,                    \
+    const CUDA_KERNEL_NODE_PARAMS_v1 *)                                                                     \
+  F(cuGraphInstantiateWithFlags, CUresult, CUgraphExec *, CUgraph, unsigned long long)                      \
+  F(cuGraphExecKernelNodeSetParams, CUresult, CUgraphExec, CUgraphNode, const CUDA_KERNEL_NODE_PARAMS_v1 *) \
+  F(cuGraphLaunch, CUresult, CUgraphExec, CUstream)                                                         \
+  F(cuGraphExecDestroy, CUresult, CUgraphExec)                                                              \
+  F(cuGraphDestroy, CUresult, CUgraph)
+#define QSES_DRIVER_EDGE_FUNCTIONS(F) \
+  F(cuGraphAddDependencies_v2, CUresult, CUgraph, const CUgraphNode *, const CUgraphNode *, const GraphEdge *, size_t)
 
 // … and for buffers of graphics APIs.
 #if defined(_WIN32)
@@ -95,10 +113,13 @@ struct Driver {
 #define QSES_DRIVER_MEMBER(name, ...) DriverFunction<__VA_ARGS__> name = nullptr;
   QSES_DRIVER_FUNCTIONS(QSES_DRIVER_MEMBER)
   QSES_DRIVER_NEWER_FUNCTIONS(QSES_DRIVER_MEMBER)
+  QSES_DRIVER_GRAPH_FUNCTIONS(QSES_DRIVER_MEMBER)
+  QSES_DRIVER_EDGE_FUNCTIONS(QSES_DRIVER_MEMBER)
   QSES_DRIVER_GRAPHICS_FUNCTIONS(QSES_DRIVER_MEMBER)
 #undef QSES_DRIVER_MEMBER
-  // Whether it has all that is asked of it for buffers of a graphics API.
+  // Whether it has all that is asked of it for graphs of kernels, or for buffers of a graphics API.
 #define QSES_DRIVER_HAS(name, ...) &&name
+  bool has_graphs() const { return true QSES_DRIVER_GRAPH_FUNCTIONS(QSES_DRIVER_HAS); }
   bool has_opengl() const {
     return true QSES_DRIVER_OPENGL_FUNCTIONS(QSES_DRIVER_HAS) QSES_DRIVER_MAPPING_FUNCTIONS(QSES_DRIVER_HAS);
   }

@@ -2,7 +2,7 @@
 // Kernels: how the compiler makes them known, and how they are launched. The functions with two underscores are those
 // that the host code of clang (clang/lib/CodeGen/CGCUDANV.cpp) and of nvcc (crt/host_runtime.h) calls; the others are
 // the CUDA Runtime API's, "Execution Control" and "Occupancy".
-#include "cudart/current_context.h"
+#include "cudart/loaded_kernel.h"
 
 #include <array>
 #include <atomic>
@@ -48,17 +48,8 @@ Registry &registry() {
   return the_registry;
 }
 
-// A kernel on a device.
-struct LoadedKernel {
-  CUfunction function = nullptr;
-  int architecture = 0;
-  // Whether it may be sent before those queued ahead of it are done. Code for GPUs before Hopper has no way to wait for
-  // them.
-  bool may_overlap() const { return driver().cuLaunchKernelEx && architecture >= 90; }
-};
+}  // namespace
 
-// The kernel behind a stub, on the thread's device. The first kernel of a source loads the device code of all of it;
-// on a GPU newer than the toolkit the driver compiles it then, which takes seconds.
 CUresult find_kernel(const void *stub, LoadedKernel *found_kernel) {
   Registry &r = registry();
   const auto found = r.kernels.find(stub);
@@ -84,6 +75,8 @@ CUresult find_kernel(const void *stub, LoadedKernel *found_kernel) {
   *found_kernel = {function, architecture};
   return result;
 }
+
+namespace {
 
 template <class Call>
 cudaError_t with_kernel(const void *stub, Call call) {

@@ -269,6 +269,7 @@ class CpuExecutor {
   void open_counts(uint64_t, bool = false) {}
   bool has_anticipated() const { return false; }
   void turn_counts_to(float, uint32_t = 0) {}
+  void hand_over() {}
   void keep_pace() {}
   bool runs_ahead() const { return false; }
   void send_counts() {}

@@ -316,7 +316,7 @@ class CudaExecutor : public CudaQueue {
   template <class Key, class Value>
   cudaError_t sort_pairs(void *temporary, size_t &bytes, Span<Key> keys, Span<Value> values) const {
     return cub::DeviceMergeSort::StableSortPairs(temporary, bytes, keys.data, values.data, static_cast<int>(keys.size),
-                                                 gpu::IsLess{}, stream());
+                                                 gpu::IsLess{}, stream_handle());
   }
 
   // On small GPUs their blocks would wait for each other.
@@ -347,7 +347,8 @@ class CudaExecutor : public CudaQueue {
     check_cuda(call(nullptr, bytes), name);
     const auto mark = arena_.mark();
     void *temporary = arena_.allocate(bytes);
-    const LaunchWatch watch(name, stream());
+    hand_over();
+    const LaunchWatch watch(name, stream_handle());
     check_cuda(call(temporary, bytes), name);
     arena_.rewind(mark);
   }

@@ -210,6 +210,25 @@ struct CopyWords {
   QSES_HOST_DEVICE void operator()(size_t i) const { to[i] = from[i]; }
 };
 
+// Several runs of words, as if they were one.
+struct CopyRuns {
+  static constexpr int kMost = 6;
+  CopyWords runs[kMost];
+  size_t ends[kMost];  // of each, counted from the beginning of the first
+  int count = 0;
+  size_t words() const { return count > 0 ? ends[count - 1] : 0; }
+  void add(void *to, const void *from, size_t bytes) {
+    runs[count] = {static_cast<uint32_t *>(to), static_cast<const uint32_t *>(from)};
+    ends[count] = words() + bytes / sizeof(uint32_t);
+    ++count;
+  }
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    int run = 0;
+    while (i >= ends[run]) ++run;
+    runs[run](run > 0 ? i - ends[run - 1] : i);
+  }
+};
+
 // load(i), and 0 for the one element behind the last.
 template <class Load, class T>
 struct LoadOrZero {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 // A CUDA stream, and a second one beside it: kernels in launches that are short on the smallest GPU (cuda_launch.cuh),
-// copies, and waiting for them.
+// copies, and waiting for them. Beside other computations, kernels of short frames are gathered (gathered_launches.h).
 #pragma once
 
+#include "cudart/current_context.h"
 #include "parallel/cuda_launch.cuh"
 #include "parallel/cuda_memory.h"
 #include "parallel/error.h"
+#include "parallel/gathered_launches.h"
 
 #include <algorithm>
 #include <atomic>
@@ -21,9 +23,14 @@ class CudaQueue {
   // computation ends, what was to be uploaded is with the device then.
   class RunScope {
    public:
-    RunScope(CudaQueue &queue, const std::atomic<bool> &flag) : queue_(queue) { queue.stop_ = &flag; }
+    RunScope(CudaQueue &queue, const std::atomic<bool> &flag) : queue_(queue) {
+      queue.stop_ = &flag;
+      ++queue.running();
+    }
     ~RunScope() {
+      --queue_.running();
       queue_.stop_ = nullptr;
+      queue_.gathered_.drop();  // of what broke off
       queue_.wait_for_uploads();
     }
     RunScope(const RunScope &) = delete;
@@ -55,6 +62,7 @@ class CudaQueue {
     try {
       const DeviceGuard guard(device_);
       if (!may_hand_back()) return;
+      gathered_.release();
       for (cudaEvent_t event : {launched_[0], launched_[1], joined_, uploaded_})
         if (event) cudaEventDestroy(event);
       for (cudaStream_t stream : {stream_, second_stream_})
@@ -68,7 +76,13 @@ class CudaQueue {
 
   int device() const { return device_; }
   unsigned multiprocessors() const { return multiprocessors_; }
-  cudaStream_t stream() const { return stream_; }
+  // To give it something else than kernels: behind those that are gathered.
+  cudaStream_t stream() {
+    hand_over();
+    return stream_;
+  }
+  cudaStream_t stream_handle() const { return stream_; }  // only to be told
+  uint64_t graphs() const { return gathered_.graphs(); }  // how often kernels were handed over as one
 
   // How many items a launch is given, and how many launches that makes. Known before anything is launched.
   size_t items_per_launch(const LaunchShape &shape) const { return most_items_of_launch(shape, multiprocessors_); }
@@ -98,14 +112,32 @@ class CudaQueue {
       const LaunchWatch watch(name, blocks, wanted, shape, multiprocessors_, stream_);
       QueuedItems queued(first, last);
       void *parameters[] = {&queued, &arguments...};
-      check_cuda(launch_queued(reinterpret_cast<const void *>(kernel), blocks, shape, parameters), name);
+      const GatheredLaunches::Launch one{reinterpret_cast<const void *>(kernel), static_cast<unsigned>(blocks),
+                                         static_cast<unsigned>(shape.threads), shape.shared_bytes, parameters};
+      if (gathers()) {
+        gathered_.add(one, queued, arguments...);
+        if (gathered_.is_full()) hand_over();
+        continue;
+      }
+      hand_over();
+      check_cuda(launch_queued(one), name);
       if (launches > 1 && !runs_ahead_) wait_for_launch_before();
     }
   }
 
-  // A frame begins: whether all of it may be queued, since it is known to be short.
-  void run_ahead(bool runs_ahead) { runs_ahead_ = runs_ahead; }
+  // A frame begins: whether all of it may be queued, since it is known to be short. Of one that broke off, nothing more
+  // is: its memory may be others' by now.
+  void run_ahead(bool runs_ahead) {
+    gathered_.drop();
+    runs_ahead_ = runs_ahead;
+  }
   bool runs_ahead() const { return runs_ahead_; }
+
+  // What is gathered begins. Whatever else the stream is given, or the host waits for, does that as well.
+  void hand_over() {
+    if (!gathered_.empty())
+      check_cuda(gathered_.hand_over(stream_, [&](const auto &one) { return launch_queued(one); }), "cudaGraphLaunch");
+  }
 
   // Between parts of a long work: waits for the part before the last one, so that little is queued that can't be
   // cancelled. In a frame that is known to be short nothing waits.
@@ -118,17 +150,17 @@ class CudaQueue {
   void upload(T *destination, const T *host, size_t n) {
     if (n == 0) return;
     is_uploading_ = true;
-    check_cuda(cudaMemcpyAsync(destination, host, n * sizeof(T), cudaMemcpyHostToDevice, stream_), "cudaMemcpyAsync");
+    check_cuda(cudaMemcpyAsync(destination, host, n * sizeof(T), cudaMemcpyHostToDevice, stream()), "cudaMemcpyAsync");
     check_cuda(cudaEventRecord(uploaded_, stream_), "cudaEventRecord");
   }
   // Into page-locked memory the values are there after the next wait.
   template <class T>
   void download(T *host, const T *source, size_t n) {
     if (n == 0) return;
-    check_cuda(cudaMemcpyAsync(host, source, n * sizeof(T), cudaMemcpyDeviceToHost, stream_), "cudaMemcpyAsync");
+    check_cuda(cudaMemcpyAsync(host, source, n * sizeof(T), cudaMemcpyDeviceToHost, stream()), "cudaMemcpyAsync");
   }
   void wait() {
-    check_cuda(cudaStreamSynchronize(stream_), "cudaStreamSynchronize");
+    check_cuda(cudaStreamSynchronize(stream()), "cudaStreamSynchronize");
     is_uploading_ = false;
   }
 
@@ -140,16 +172,25 @@ class CudaQueue {
                  "cudaStreamCreateWithPriority");
   }
   // What is given from now on goes to the other stream, or to this one again.
-  void turn_streams() { std::swap(stream_, second_stream_); }
+  void turn_streams() {
+    hand_over();
+    std::swap(stream_, second_stream_);
+  }
   // What the second stream is given from now on comes behind all that this one has.
-  void lead_second_stream() { check_cuda(follow(second_stream_, stream_), "cudaStreamWaitEvent"); }
+  void lead_second_stream() { check_cuda(follow(second_stream_, stream()), "cudaStreamWaitEvent"); }
   // The other way round.
   void join_second_stream() {
     if (follow(stream_, second_stream_) != cudaSuccess) cudaStreamSynchronize(second_stream_);
   }
 
   // What this is given from now on comes behind all that the other one has, also where that fails.
-  void go_behind(CudaQueue &other) noexcept {
+  void go_behind(CudaQueue &other) {
+    hand_over();
+    other.hand_over();
+    follow_end_of(other);
+  }
+  // The same behind one that is given nothing more: what it has only gathered is given up.
+  void follow_end_of(CudaQueue &other) noexcept {
     if (other.follow(stream_, other.stream_) != cudaSuccess) cudaStreamSynchronize(other.stream_);
   }
 
@@ -178,31 +219,43 @@ class CudaQueue {
     is_uploading_ = false;
   }
 
+  // Computations under way on the device.
+  std::atomic<int> &running() const {
+    static std::atomic<int> of_devices[cudart::kMostDevices];
+    return of_devices[device_];
+  }
+  // Alone, each kernel is asked for at once, so that the GPU begins with the first; beside other computations it has
+  // enough to do, and the host is what it waits for.
+  bool gathers() const {
+    return runs_ahead_ && !LaunchObserver::current && running().load(std::memory_order_relaxed) > 1;
+  }
+
   // A kernel that waits for what is queued before it by itself (QueuedItems).
-  cudaError_t launch_queued(const void *kernel, size_t blocks, const LaunchShape &shape, void **parameters) {
+  cudaError_t launch_queued(const GatheredLaunches::Launch &launch) {
     cudaLaunchAttribute early{};
     early.id = cudaLaunchAttributeProgrammaticStreamSerialization;
     early.val.programmaticStreamSerializationAllowed = 1;
     cudaLaunchConfig_t config{};
-    config.gridDim = dim3(static_cast<unsigned>(blocks));
-    config.blockDim = dim3(static_cast<unsigned>(shape.threads));
-    config.dynamicSmemBytes = shape.shared_bytes;
+    config.gridDim = dim3(launch.blocks);
+    config.blockDim = dim3(launch.threads);
+    config.dynamicSmemBytes = launch.shared_bytes;
     config.stream = stream_;
     config.attrs = &early;
     config.numAttrs = 1;
-    return cudaLaunchKernelExC(&config, kernel, parameters);
+    return cudaLaunchKernelExC(&config, launch.kernel, launch.arguments);
   }
 
   void wait_for_launch_before() {
     cudaEvent_t &event = launched_[0];
     if (event) check_cuda(cudaEventSynchronize(event), "cudaEventSynchronize");
     if (!event) check_cuda(cudaEventCreateWithFlags(&event, cudaEventDisableTiming), "cudaEventCreateWithFlags");
-    check_cuda(cudaEventRecord(event, stream_), "cudaEventRecord");
+    check_cuda(cudaEventRecord(event, stream()), "cudaEventRecord");
     std::swap(launched_[0], launched_[1]);
   }
 
   int device_;
   unsigned multiprocessors_ = 0;
+  GatheredLaunches gathered_;  // for the stream
   cudaStream_t stream_ = nullptr, second_stream_ = nullptr;
   const std::atomic<bool> *stop_ = nullptr;
   cudaEvent_t launched_[2] = {};  // the next to be used: the launch before last

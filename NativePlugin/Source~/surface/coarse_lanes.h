@@ -17,7 +17,7 @@ namespace quickses {
 
 template <class Executor>
 struct LevelLane {
-  explicit LevelLane(const Executor &main) : executor(main.device(), true), memory(executor, main.stream()) {}
+  explicit LevelLane(const Executor &main) : executor(main.device(), true), memory(executor, main.stream_handle()) {}
   Executor executor;
   MeshMemory<Executor> memory;
   std::optional<typename Executor::RunScope> run;  // of the frame
@@ -60,13 +60,10 @@ class CoarseLanes {
   }
   size_t count() const { return open_; }
   LevelLane<Executor> &lane(size_t level) { return *lanes_[level]; }
-  // They go on behind what main has been given; another one behind what the lane of a level has been.
+  // They go on behind what main has been given.
   void go_behind(Executor &main) {
     if constexpr (Executor::kIsCuda)
       for (size_t k = 0; k < open_; ++k) lanes_[k]->executor.go_behind(main);
-  }
-  void go_behind(Executor &other, size_t level) {
-    if constexpr (Executor::kIsCuda) other.go_behind(lanes_[level]->executor);
   }
   // Whether all have counted in a frame like this one.
   bool know_frames() const {
@@ -105,7 +102,7 @@ class CoarseLanes {
   void close(Executor &main) noexcept {
     if constexpr (Executor::kIsCuda)
       for (size_t k = 0; k < open_; ++k) {
-        main.go_behind(lanes_[k]->executor);
+        main.follow_end_of(lanes_[k]->executor);
         lanes_[k]->run.reset();
       }
     open_ = 0;

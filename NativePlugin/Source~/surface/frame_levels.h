@@ -84,7 +84,6 @@ class FrameLevels {
     Maker maker{*this, frame, course, sink, !is_beside};
     if (!lanes_.know_frames()) maker.verify_prepared();  // they will wait, and note what they count
     LevelsUnderWay<Level, Maker> under_way(maker);
-    Level *coarser = nullptr;  // which is made beside the next one
     for (size_t k = 0; k < frame.spacings.size; ++k) {
       const double before = begun;
       begun += cost_of(frame.spacings[k]);
@@ -95,9 +94,7 @@ class FrameLevels {
       sink.give_back();
       if (!is_coarse) maker.verify_prepared();
       own_memory.forget_mesh();
-      const bool is_behind = coarser && coarser->facts.size.vertices > kManyVertices;
-      if (is_behind) lanes_.go_behind(own_executor, k - 1);
-      Level &level = under_way.add(is_behind, *this, shared, own_executor, own_memory, is_beside);
+      Level &level = under_way.add(*this, shared, own_executor, own_memory, is_beside);
       level.work.hand_out_others = [&] {
         maker.verify_prepared();
         under_way.hand_out_others();
@@ -106,10 +103,7 @@ class FrameLevels {
       level.end = begun / total;
       maker.begin(level, frame.spacings[k], check);
       under_way.note_begun();
-      if (is_beside)
-        coarser = &level;
-      else
-        under_way.hand_out_all();
+      if (!is_beside) under_way.hand_out_all();
     }
     under_way.hand_out_all();
   }
@@ -120,9 +114,6 @@ class FrameLevels {
   void forget_frames_of_lanes() { lanes_.forget_frames(); }
 
  private:
-  // Beside a level of more vertices, which leaves little of the GPU, the next one would only be in its way.
-  static constexpr double kManyVertices = 30000;
-
   // A level that is under way.
   struct Level {
     // shared: the work on all levels; the executor and memory are those of the level.
@@ -169,6 +160,7 @@ class FrameLevels {
       }
       check(work, spacing);
       level.mesh = begin_level(work);
+      work.executor.hand_over();
     }
     void end(Level &level) {
       verify_prepared();
@@ -179,6 +171,7 @@ class FrameLevels {
       levels.timer.begin("mesh_memory");
       work.executor.send_counts();
       work.memory.send(&level.mesh);
+      work.executor.hand_over();
     }
     void hand_out(Level &level) {
       Work &work = level.work;

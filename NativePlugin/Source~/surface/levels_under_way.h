@@ -20,10 +20,9 @@ class LevelsUnderWay {
   LevelsUnderWay(const LevelsUnderWay &) = delete;
   LevelsUnderWay &operator=(const LevelsUnderWay &) = delete;
 
-  // The next one, which is about to begin: beside the one before, or behind it.
+  // The next one, which is about to begin.
   template <class... Arguments>
-  Level &add(bool is_behind, Arguments &&...arguments) {
-    is_behind_[last_] = is_behind;
+  Level &add(Arguments &&...arguments) {
     begun_ = last_;
     return levels_[last_++].emplace(std::forward<Arguments>(arguments)...);
   }
@@ -38,18 +37,17 @@ class LevelsUnderWay {
   }
 
  private:
-  void end_first() {
-    while (ended_ < begun_ && (ended_ == first_ || !is_behind_[ended_])) maker_.end(*levels_[ended_++]);
+  void end_begun() {
+    while (ended_ < begun_) maker_.end(*levels_[ended_++]);
   }
   void hand_out_first() {
-    end_first();
+    end_begun();
     maker_.hand_out(*levels_[first_]);
     levels_[first_++].reset();
   }
 
   Maker &maker_;
   std::optional<Level> levels_[Levels::kMax];
-  bool is_behind_[Levels::kMax] = {};
   size_t first_ = 0, ended_ = 0, begun_ = 0, last_ = 0;  // those before them are handed out, ended, begun, there
 };
 

@@ -20,8 +20,8 @@ struct Maker {
 };
 using UnderWay = quickses::LevelsUnderWay<Level, Maker>;
 
-void begin(UnderWay &levels, int number, bool is_behind = false) {
-  levels.add(is_behind, number);
+void begin(UnderWay &levels, int number) {
+  levels.add(number);
   levels.note_begun();
 }
 
@@ -43,23 +43,12 @@ TEST(LevelsUnderWay, AreEndedBeforeTheFirstIsWaitedFor) {
   EXPECT_EQ(maker.done, "e0e1e2h0h1h2");
 }
 
-TEST(LevelsUnderWay, AreEndedLaterIfTheyAreBehindTheFirst) {
-  Maker maker;
-  UnderWay levels(maker);
-  begin(levels, 0);
-  begin(levels, 1);
-  begin(levels, 2, true);
-  begin(levels, 3);
-  levels.hand_out_all();
-  EXPECT_EQ(maker.done, "e0e1h0h1e2e3h2h3");
-}
-
 TEST(LevelsUnderWay, LeaveOneThatHasNotBegun) {
   Maker maker;
   UnderWay levels(maker);
   begin(levels, 0);
   begin(levels, 1);
-  levels.add(false, 2);
+  levels.add(2);
   levels.hand_out_others();
   EXPECT_EQ(maker.done, "e0e1h0h1");
   levels.hand_out_others();
