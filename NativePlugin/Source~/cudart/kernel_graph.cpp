@@ -3,8 +3,6 @@
 
 #include "cudart/loaded_kernel.h"
 
-#include <utility>
-
 namespace quickses {
 namespace cudart {
 namespace {
@@ -44,30 +42,16 @@ CUresult add(const Driver &d, CUgraph graph, const KernelLaunch &launch, std::ve
 
 }  // namespace
 
-KernelGraph::KernelGraph(KernelGraph &&other) noexcept
-    : graph_(std::exchange(other.graph_, nullptr)),
-      made_(std::exchange(other.made_, nullptr)),
-      nodes_(std::move(other.nodes_)) {}
-
-KernelGraph &KernelGraph::operator=(KernelGraph &&other) noexcept {
-  std::swap(graph_, other.graph_);
-  std::swap(made_, other.made_);
-  std::swap(nodes_, other.nodes_);
-  return *this;
-}
-
 cudaError_t KernelGraph::make(const std::vector<KernelLaunch> &launches) {
-  release();
+  nodes_.clear();
   nodes_.reserve(launches.size());
-  const cudaError_t error = inside([&](const Driver &d) {
+  return inside([&](const Driver &d) {
     if (!d.has_graphs()) return CUDA_ERROR_NOT_SUPPORTED;
     CUresult result = d.cuGraphCreate(&graph_, 0);
     for (const KernelLaunch &launch : launches)
       if (result == CUDA_SUCCESS) result = add(d, graph_, launch, &nodes_);
     return result == CUDA_SUCCESS ? d.cuGraphInstantiateWithFlags(&made_, graph_, 0) : result;
   });
-  if (error != cudaSuccess) release();
-  return error;
 }
 
 cudaError_t KernelGraph::change(size_t k, const KernelLaunch &launch) {

@@ -12,21 +12,18 @@ namespace quickses {
 namespace cudart {
 
 struct KernelLaunch {
+  const char *name;  // for who tells of errors
   const void *kernel;
   unsigned blocks, threads;
   size_t shared_bytes;
   void **arguments;  // a pointer to each
 };
 
-// Use from one thread at a time, with its device selected. Functions that fail leave the error to cudaGetLastError, as
-// those of the runtime.
+// Use from one thread at a time, with its device selected. make(), change() and launch() leave errors to
+// cudaGetLastError, as the functions of the runtime do. Nothing is given back but by release(): after a fault of the
+// GPU the driver must not be handed what it lost.
 class KernelGraph {
  public:
-  KernelGraph() = default;
-  KernelGraph(KernelGraph &&) noexcept;
-  KernelGraph &operator=(KernelGraph &&) noexcept;
-  ~KernelGraph() { release(); }
-
   // Of kernels that run one after the other; each is sent ahead of its turn, as by cudaLaunchKernelExC, where the
   // driver and the GPU can do that in a graph. cudaErrorNotSupported where there are no graphs.
   cudaError_t make(const std::vector<KernelLaunch> &launches);

@@ -41,6 +41,8 @@ class CudaCounts {
     return {on_device_, kBytes + written_};
   }
   void note_zeros() { written_ = 0; }
+  // That may not have been done.
+  void doubt_zeros() { written_ = kZeroBytes; }
   // Its memory for zeros, or nullptr if there is too little left.
   void *take_zeros(size_t bytes) {
     bytes = padded(bytes);

@@ -206,7 +206,8 @@ class CudaExecutor : public CudaQueue {
   // A frame begins whose counts may be anticipated (anticipation.h); kind 0: none. is_short: the last one of its kind
   // was, so that all of it may be queued.
   void open_counts(uint64_t kind, bool is_short = false) {
-    run_ahead(is_short);
+    run_ahead(is_short, kind != 0);
+    if (has_given_up()) counts_.doubt_zeros();
     const Span<unsigned char> counts = counts_.open(kind);
     if (counts.size == 0) return;
     fill(counts, 0);  // may throw
@@ -280,7 +281,7 @@ class CudaExecutor : public CudaQueue {
       check_cuda(cudaMemsetAsync(bytes, byte, count, stream()), "cudaMemsetAsync");
   }
   // As of the queue; what is counted on the second stream is not there for the other until both are joined.
-  void turn_to_second_stream(bool second) {
+  void turn_to_second_stream(bool second) noexcept {
     turn_streams();
     counts_.anticipation().turn_aside(second);
   }

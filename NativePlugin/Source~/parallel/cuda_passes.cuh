@@ -8,6 +8,7 @@
 
 #include <cub/warp/warp_scan.cuh>
 
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 
@@ -212,12 +213,13 @@ struct CopyWords {
 
 // Several runs of words, as if they were one.
 struct CopyRuns {
-  static constexpr int kMost = 6;
+  static constexpr int kMost = 8;
   CopyWords runs[kMost];
   size_t ends[kMost];  // of each, counted from the beginning of the first
   int count = 0;
   size_t words() const { return count > 0 ? ends[count - 1] : 0; }
   void add(void *to, const void *from, size_t bytes) {
+    assert(count < kMost && bytes % sizeof(uint32_t) == 0);
     runs[count] = {static_cast<uint32_t *>(to), static_cast<const uint32_t *>(from)};
     ends[count] = words() + bytes / sizeof(uint32_t);
     ++count;

@@ -30,7 +30,7 @@ class CudaQueue {
     ~RunScope() {
       --queue_.running();
       queue_.stop_ = nullptr;
-      queue_.gathered_.drop();  // of what broke off
+      queue_.give_up_gathered();  // of what broke off
       queue_.wait_for_uploads();
     }
     RunScope(const RunScope &) = delete;
@@ -81,7 +81,7 @@ class CudaQueue {
     hand_over();
     return stream_;
   }
-  cudaStream_t stream_handle() const { return stream_; }  // only to be told
+  cudaStream_t stream_handle() const { return stream_; }  // to be told, or behind hand_over()
   uint64_t graphs() const { return gathered_.graphs(); }  // how often kernels were handed over as one
 
   // How many items a launch is given, and how many launches that makes. Known before anything is launched.
@@ -112,31 +112,38 @@ class CudaQueue {
       const LaunchWatch watch(name, blocks, wanted, shape, multiprocessors_, stream_);
       QueuedItems queued(first, last);
       void *parameters[] = {&queued, &arguments...};
-      const GatheredLaunches::Launch one{reinterpret_cast<const void *>(kernel), static_cast<unsigned>(blocks),
-                                         static_cast<unsigned>(shape.threads), shape.shared_bytes, parameters};
+      const GatheredLaunches::Launch one{name,
+                                         reinterpret_cast<const void *>(kernel),
+                                         static_cast<unsigned>(blocks),
+                                         static_cast<unsigned>(shape.threads),
+                                         shape.shared_bytes,
+                                         parameters};
       if (gathers()) {
         gathered_.add(one, queued, arguments...);
         if (gathered_.is_full()) hand_over();
         continue;
       }
       hand_over();
-      check_cuda(launch_queued(one), name);
+      launch_queued(one);
       if (launches > 1 && !runs_ahead_) wait_for_launch_before();
     }
   }
 
-  // A frame begins: whether all of it may be queued, since it is known to be short. Of one that broke off, nothing more
-  // is: its memory may be others' by now.
-  void run_ahead(bool runs_ahead) {
-    gathered_.drop();
+  // A frame begins: whether all of it may be queued, since it is known to be short; and whether its kernels may be
+  // gathered then, since they are those of frames before. Of one that broke off, nothing more is asked for: its memory
+  // may be others' by now.
+  void run_ahead(bool runs_ahead, bool may_gather) {
+    give_up_gathered();
     runs_ahead_ = runs_ahead;
+    may_gather_ = runs_ahead && may_gather;
   }
+  // Whether something that was gathered has been given up since this was last asked.
+  bool has_given_up() { return std::exchange(has_given_up_, false); }
   bool runs_ahead() const { return runs_ahead_; }
 
   // What is gathered begins. Whatever else the stream is given, or the host waits for, does that as well.
   void hand_over() {
-    if (!gathered_.empty())
-      check_cuda(gathered_.hand_over(stream_, [&](const auto &one) { return launch_queued(one); }), "cudaGraphLaunch");
+    if (!gathered_.empty()) gathered_.hand_over(stream_, [&](const auto &one) { launch_queued(one); });
   }
 
   // Between parts of a long work: waits for the part before the last one, so that little is queued that can't be
@@ -172,8 +179,9 @@ class CudaQueue {
                  "cudaStreamCreateWithPriority");
   }
   // What is given from now on goes to the other stream, or to this one again.
-  void turn_streams() {
-    hand_over();
+  // (What is gathered must have begun before; it is given up.)
+  void turn_streams() noexcept {
+    give_up_gathered();
     std::swap(stream_, second_stream_);
   }
   // What the second stream is given from now on comes behind all that this one has.
@@ -183,13 +191,13 @@ class CudaQueue {
     if (follow(stream_, second_stream_) != cudaSuccess) cudaStreamSynchronize(second_stream_);
   }
 
-  // What this is given from now on comes behind all that the other one has, also where that fails.
+  // What this is given from now on comes behind all that the other one has.
   void go_behind(CudaQueue &other) {
     hand_over();
     other.hand_over();
     follow_end_of(other);
   }
-  // The same behind one that is given nothing more: what it has only gathered is given up.
+  // The same where the other one is given nothing more, and what it has only gathered is given up.
   void follow_end_of(CudaQueue &other) noexcept {
     if (other.follow(stream_, other.stream_) != cudaSuccess) cudaStreamSynchronize(other.stream_);
   }
@@ -224,14 +232,15 @@ class CudaQueue {
     static std::atomic<int> of_devices[cudart::kMostDevices];
     return of_devices[device_];
   }
-  // Alone, each kernel is asked for at once, so that the GPU begins with the first; beside other computations it has
-  // enough to do, and the host is what it waits for.
+  // Alone, each kernel is asked for at once, so that the GPU begins with the first; beside other computations, also the
+  // other levels of a ladder, it has enough to do, and the host is what it waits for.
   bool gathers() const {
-    return runs_ahead_ && !LaunchObserver::current && running().load(std::memory_order_relaxed) > 1;
+    return may_gather_ && !LaunchObserver::current && running().load(std::memory_order_relaxed) > 1;
   }
+  void give_up_gathered() noexcept { has_given_up_ |= gathered_.drop(); }
 
   // A kernel that waits for what is queued before it by itself (QueuedItems).
-  cudaError_t launch_queued(const GatheredLaunches::Launch &launch) {
+  void launch_queued(const GatheredLaunches::Launch &launch) {
     cudaLaunchAttribute early{};
     early.id = cudaLaunchAttributeProgrammaticStreamSerialization;
     early.val.programmaticStreamSerializationAllowed = 1;
@@ -242,7 +251,7 @@ class CudaQueue {
     config.stream = stream_;
     config.attrs = &early;
     config.numAttrs = 1;
-    return cudaLaunchKernelExC(&config, launch.kernel, launch.arguments);
+    check_cuda(cudaLaunchKernelExC(&config, launch.kernel, launch.arguments), launch.name);
   }
 
   void wait_for_launch_before() {
@@ -260,7 +269,7 @@ class CudaQueue {
   const std::atomic<bool> *stop_ = nullptr;
   cudaEvent_t launched_[2] = {};  // the next to be used: the launch before last
   cudaEvent_t joined_ = nullptr, uploaded_ = nullptr;
-  bool runs_ahead_ = false, is_uploading_ = false;
+  bool runs_ahead_ = false, may_gather_ = false, has_given_up_ = false, is_uploading_ = false;
 };
 
 }  // namespace quickses

@@ -28,33 +28,35 @@ class GatheredLaunches {
     static_assert((std::is_trivially_copyable_v<Arguments> && ...), "as the driver copies them");
     gathered_.add(kernel, {{&arguments, sizeof(Arguments)}...});
   }
-  // What is gathered is given up.
-  void drop() { gathered_.clear(); }
+  // What is gathered is given up. False: nothing was.
+  bool drop() {
+    const bool was_there = !empty();
+    gathered_.clear();
+    return was_there;
+  }
 
   // Hands it over, behind all that the stream has. launch_alone(launch): for those that are few, or that were not
-  // gathered before in this order, or where there are no graphs. Returns an error of CUDA's.
+  // gathered before in this order, or where there is no graph; it may throw.
   template <class LaunchAlone>
-  cudaError_t hand_over(cudaStream_t stream, const LaunchAlone &launch_alone) {
-    cudaError_t error = cudaSuccess;
-    Known *const known = gathered_.launches.size() < kFewest ? nullptr : find();
-    if (known && prepare(known)) {
-      error = known->graph.launch(stream);
-      std::swap(known->last, gathered_);
-      ++graphs_;
-    } else {
-      gathered_.point();
-      for (const Launch &launch : gathered_.launches)
-        if (error == cudaSuccess) error = launch_alone(launch);
-    }
-    drop();
-    return error;
+  void hand_over(cudaStream_t stream, const LaunchAlone &launch_alone) {
+    const struct Drop {
+      ~Drop() { launches.drop(); }
+      GatheredLaunches &launches;
+    } at_the_end{*this};
+    if (gathered_.launches.size() >= kFewest && launch_known(stream)) return;
+    gathered_.point();
+    for (const Launch &launch : gathered_.launches) launch_alone(launch);
   }
   // How often something was handed over as a graph.
   uint64_t graphs() const { return graphs_; }
-  void release() { known_.clear(); }
+  // Gives the graphs back, which the destructor does not.
+  void release() {
+    for (Known &known : known_) known.graph.release();
+    known_.clear();
+  }
 
  private:
-  static constexpr size_t kFewest = 4, kMost = 64, kMostKnown = 12;
+  static constexpr size_t kFewest = 4, kMost = 64, kMostKnown = 24;
 
   struct Argument {
     const void *value;
@@ -70,7 +72,6 @@ class GatheredLaunches {
     std::vector<unsigned char> bytes;
 
     void add(const Launch &kernel, std::initializer_list<Argument> arguments) {
-      launches.push_back(kernel);
       first_bytes.push_back(bytes.size());
       first_arguments.push_back(places.size());
       for (const Argument &argument : arguments) {
@@ -80,6 +81,7 @@ class GatheredLaunches {
         std::memcpy(bytes.data() + place, argument.value, argument.bytes);
         places.push_back(place);
       }
+      launches.push_back(kernel);  // last: where memory is refused, it is not there
     }
     void clear() {
       launches.clear();
@@ -123,17 +125,21 @@ class GatheredLaunches {
         known.used = uses_;
         return &known;
       }
-    if (known_.size() == kMostKnown)
-      known_.erase(std::min_element(known_.begin(), known_.end(),
-                                    [](const Known &a, const Known &b) { return a.used < b.used; }));
+    if (known_.size() == kMostKnown) {
+      const auto oldest = std::min_element(known_.begin(), known_.end(),
+                                           [](const Known &a, const Known &b) { return a.used < b.used; });
+      oldest->graph.release();
+      known_.erase(oldest);
+    }
     known_.emplace_back();
     known_.back().last = gathered_;
     known_.back().used = uses_;
     return nullptr;
   }
-  // Makes its graph that of what is gathered. False: there is none.
-  bool prepare(Known *known) {
-    if (known->has_none) return false;
+  // Launches what is gathered as a graph. False: there is none.
+  bool launch_known(cudaStream_t stream) {
+    Known *const known = find();
+    if (!known || known->has_none) return false;
     gathered_.point();
     cudaError_t error = cudaSuccess;
     if (!known->graph.is_made())
@@ -141,11 +147,15 @@ class GatheredLaunches {
     else
       for (size_t k = 0; k < gathered_.launches.size() && error == cudaSuccess; ++k)
         if (!gathered_.has_launch_of(known->last, k)) error = known->graph.change(k, gathered_.launches[k]);
-    if (error == cudaSuccess) return true;
-    cudaGetLastError();
-    known->graph.release();
-    known->has_none = true;
-    return false;
+    if (error == cudaSuccess) error = known->graph.launch(stream);
+    known->has_none = error != cudaSuccess;  // its launches alone say what is wrong, if something is
+    if (known->has_none) {
+      cudaGetLastError();
+      return false;
+    }
+    std::swap(known->last, gathered_);
+    ++graphs_;
+    return true;
   }
 
   Sequence gathered_;

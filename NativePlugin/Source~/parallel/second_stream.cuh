@@ -22,8 +22,10 @@ class SecondStream {
   // Whatever give() asks of the executor.
   template <class Give>
   void queue(Give give) {
+    executor_.hand_over();
     const Turn turn(executor_);
     give();
+    executor_.hand_over();
   }
 
  private:

@@ -13,7 +13,10 @@
 #include <map>
 #include <mutex>
 
-#undef cuEventElapsedTime  // CUDA 13 means another version of it, which the library does not ask for
+// CUDA 13 means other versions of these, which the library does not ask for.
+#undef cuEventElapsedTime
+#undef cuGraphAddKernelNode
+#undef cuGraphExecKernelNodeSetParams
 
 using namespace fake_driver;
 
@@ -24,7 +27,7 @@ thread_local CUcontext current = nullptr;
 int contexts[FAKE_DEVICES], the_module, the_function;
 std::atomic<int> retained[FAKE_DEVICES];
 std::atomic<unsigned long long> context_id{1};
-std::atomic<int> streams_and_events{0};
+std::atomic<int> handles{0}, graphs_launched{0};
 std::atomic<uintptr_t> last_handle{0};
 
 // Of cuModuleLoadData.
@@ -78,7 +81,7 @@ CUresult make(Handle *handle) {
   bool fails = false;
   const CUresult result = next(&fails);
   if (fails) return result;
-  ++streams_and_events;
+  ++handles;
   *handle = reinterpret_cast<Handle>(++last_handle);
   return result;
 }
@@ -89,7 +92,7 @@ bool is_of_lost_device(CUresult result) {
 }
 
 CUresult end_one() {
-  --streams_and_events;
+  --handles;
   return next();
 }
 
@@ -122,8 +125,10 @@ FAKE_API int fake_driver_toolkit() { return CUDA_VERSION; }
 
 // How often the context of a device was asked for.
 FAKE_API int fake_driver_retained(int device) { return retained[device]; }
-// How many streams and events there are.
-FAKE_API int fake_driver_streams_and_events() { return streams_and_events; }
+// How many streams, events and graphs there are.
+FAKE_API int fake_driver_handles() { return handles; }
+// How many graphs were launched.
+FAKE_API int fake_driver_graphs_launched() { return graphs_launched; }
 // Whether the calling thread has one.
 FAKE_API int fake_driver_has_context() { return current ? 1 : 0; }
 FAKE_API int fake_driver_drop_context() {
@@ -257,6 +262,36 @@ FAKE_API CUresult CUDAAPI cuLaunchKernelEx(const CUlaunchConfig *config, CUfunct
     if (config->attrs[k].id != CU_LAUNCH_ATTRIBUTE_PROGRAMMATIC_STREAM_SERIALIZATION) return CUDA_ERROR_INVALID_VALUE;
   return next();
 }
+
+// ---- graphs of kernels
+FAKE_API CUresult CUDAAPI cuGraphCreate(CUgraph *graph, unsigned) { return make(graph); }
+FAKE_API CUresult CUDAAPI cuGraphAddKernelNode(CUgraphNode *node, CUgraph, const CUgraphNode *, size_t,
+                                               const CUDA_KERNEL_NODE_PARAMS_v1 *) {
+  *node = reinterpret_cast<CUgraphNode>(++last_handle);
+  return next();
+}
+#if CUDA_VERSION >= 12030
+FAKE_API CUresult CUDAAPI cuGraphAddDependencies_v2(CUgraph, const CUgraphNode *, const CUgraphNode *,
+                                                    const CUgraphEdgeData *, size_t) {
+#else
+FAKE_API CUresult CUDAAPI cuGraphAddDependencies_v2(CUgraph, const CUgraphNode *, const CUgraphNode *,
+                                                    const quickses::cudart::GraphEdge *, size_t) {
+#endif
+  return next();
+}
+FAKE_API CUresult CUDAAPI cuGraphInstantiateWithFlags(CUgraphExec *made, CUgraph, unsigned long long) {
+  return make(made);
+}
+FAKE_API CUresult CUDAAPI cuGraphExecKernelNodeSetParams(CUgraphExec, CUgraphNode, const CUDA_KERNEL_NODE_PARAMS_v1 *) {
+  return next();
+}
+FAKE_API CUresult CUDAAPI cuGraphLaunch(CUgraphExec, CUstream) {
+  note_launch();
+  ++graphs_launched;
+  return next();
+}
+FAKE_API CUresult CUDAAPI cuGraphExecDestroy(CUgraphExec) { return end_one(); }
+FAKE_API CUresult CUDAAPI cuGraphDestroy(CUgraph) { return end_one(); }
 
 // ---- memory: zeros, so that what a kernel should have counted is nothing
 FAKE_API CUresult CUDAAPI cuMemAlloc_v2(CUdeviceptr *memory, size_t bytes) {

@@ -121,19 +121,23 @@ bool use_everything() {
     expect_said(status);
     return status == QSES_OK;
   };
-  const bool good = is_good(qses_set_atoms(context, atoms.positions.data(), 0, atoms.radii.data(), atoms.size())) &&
-                    is_good(qses_compute(context, nullptr, nullptr)) &&
-                    is_good(qses_estimate(context, nullptr, &estimate)) && is_good(qses_begin(context, nullptr)) &&
-                    is_good(qses_wait(context, -1, nullptr)) && is_good(qses_poll(context, &progress)) &&
-                    is_good_job(progress) && is_good(qses_collect(context, &mesh));
+  const auto run_job = [&] {
+    return is_good(qses_begin(context, nullptr)) && is_good(qses_wait(context, -1, nullptr)) &&
+           is_good(qses_poll(context, &progress)) && is_good_job(progress) && is_good(qses_collect(context, &mesh));
+  };
+  bool good = is_good(qses_set_atoms(context, atoms.positions.data(), 0, atoms.radii.data(), atoms.size())) &&
+              is_good(qses_compute(context, nullptr, nullptr)) && is_good(qses_estimate(context, nullptr, &estimate));
+  // From the third one on the levels are made beside each other, and then their kernels handed over as graphs.
+  for (int k = 0; k < 6 && good; ++k) good = run_job();
   qses_context_destroy(context);
   return good;
 }
 
-// The oldest that serves, which knows no kernels that are sent ahead and no ids of contexts.
+// The oldest that serves, which knows no kernels that are sent ahead, no graphs of them and no ids of contexts.
 TEST(FakeDriver, OlderOnesServeAsWell) {
   REQUIRE_DRIVER("older");
   EXPECT_TRUE(use_everything());
+  EXPECT_EQ(tell_driver("fake_driver_graphs_launched"), 0);
 }
 
 // Nor is any made a thread's for longer than a call.
@@ -228,10 +232,13 @@ INSTANTIATE_TEST_SUITE_P(First, CompilingDriver, testing::Values(0));  // before
 
 // Errors that a process may survive; negative: of one call only.
 TEST_P(FailingDriver, EveryCallMayFailAndTheNextMayNot) {
+  const int handles = tell_driver("fake_driver_handles");
   fail_after(-1, 0);
   ASSERT_TRUE(use_everything());
   const int calls = fail_after(-1, 0);
   ASSERT_GT(calls, 100);
+  EXPECT_GT(tell_driver("fake_driver_graphs_launched"), 0);
+  EXPECT_EQ(tell_driver("fake_driver_handles"), handles);
   int failed = 0;
   for (int good = 0; good < calls; ++good) {
     SCOPED_TRACE(good);
@@ -290,12 +297,17 @@ TEST_P(ResetDevice, IsFoundBeforeTheDriverIsGivenWhatIsGone) {
         EXPECT_EQ(create(QSES_BACKEND_CUDA, &context), QSES_OK);
         set_atoms(context, water());
         for (int k = 0; k < 3; ++k) EXPECT_EQ(qses_compute(context, nullptr, nullptr), QSES_OK) << qses_last_error();
-        const int handles = tell_driver("fake_driver_streams_and_events");
+        for (int k = 0; k < 6; ++k) {
+          EXPECT_EQ(qses_begin(context, nullptr), QSES_OK) << qses_last_error();
+          EXPECT_EQ(qses_wait(context, -1, nullptr), QSES_OK) << qses_last_error();
+        }
+        EXPECT_GT(tell_driver("fake_driver_graphs_launched"), 0);
+        const int handles = tell_driver("fake_driver_handles");
         tell_driver("fake_driver_reset");
         for (int k = 0; k < GetParam(); ++k)
           expect_error(qses_compute(context, nullptr, nullptr), QSES_DEVICE_ERROR, {"does not recover"});
         qses_context_destroy(context);
-        EXPECT_EQ(tell_driver("fake_driver_streams_and_events"), handles) << "the driver was given one that is gone";
+        EXPECT_EQ(tell_driver("fake_driver_handles"), handles) << "the driver was given one that is gone";
         expect_error(create(QSES_BACKEND_CUDA, &context), QSES_BACKEND_UNAVAILABLE, {"does not recover"});
         expect_the_cpu_takes_over("does not recover");
         std::_Exit(HasFailure() ? 1 : 0);

@@ -100,7 +100,7 @@ TEST_P(FailingGraphics, EveryCallMayFailAndTheNextEventWorks) {
   fail_after(-1, 0);
   ASSERT_TRUE(scene.draw_all());
   const int count = fail_after(-1, 0), end = scene.calls_before_end;
-  int there_were = tell_driver("fake_driver_streams_and_events"), failed = 0, left = 0;
+  int there_were = tell_driver("fake_driver_handles"), failed = 0, left = 0;
   for (int good = 0; good < count; ++good) {
     SCOPED_TRACE(good);
     fail_after(good, error());
@@ -109,7 +109,7 @@ TEST_P(FailingGraphics, EveryCallMayFailAndTheNextEventWorks) {
     stop_failing();
     EXPECT_TRUE(scene.draw_all());
     // What a look needs stays where the driver refuses to end it.
-    const int there_are = tell_driver("fake_driver_streams_and_events");
+    const int there_are = tell_driver("fake_driver_handles");
     EXPECT_LE(there_are - there_were, error() < 0 && good < end ? 0 : 1);
     there_were = there_are;
     left += tell_driver("fake_graphics_drop_registered");
@@ -151,7 +151,7 @@ INSTANTIATE_TEST_SUITE_P(Apis, FirstGraphicsEvent, testing::Values(QSES_GRAPHICS
 TEST_P(FirstGraphicsEvent, MayFailInEveryCall) {
   HandMadeMesh mesh(1, 5, 4, 2);
   draw_on(2);
-  const int there_were = tell_driver("fake_driver_streams_and_events");
+  const int there_were = tell_driver("fake_driver_handles");
   int failed = 0;
   {
     const DrawnSurface surface(api(), 1);
@@ -173,7 +173,7 @@ TEST_P(FirstGraphicsEvent, MayFailInEveryCall) {
   }
   EXPECT_GT(failed, 10);
   draw();
-  EXPECT_EQ(tell_driver("fake_driver_streams_and_events"), there_were + 5)
+  EXPECT_EQ(tell_driver("fake_driver_handles"), there_were + 5)
       << "needed are a stream, two events that measure time, and two that mark the ends of copies in turn";
 }
 

@@ -8,6 +8,7 @@
 
 #include <atomic>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <random>
 #include <thread>
@@ -34,6 +35,11 @@ struct Mix {
   QSES_HOST_DEVICE void operator()(size_t i) const { values[i] = (values[i] ^ a) * b + c + static_cast<uint32_t>(i); }
 };
 
+struct Load {
+  const uint32_t *values;
+  QSES_HOST_DEVICE uint32_t operator()(size_t i) const { return values[i]; }
+};
+
 // An executor that computes beside another one.
 class GatheredLaunches : public testing::Test {
  protected:
@@ -54,7 +60,7 @@ class GatheredLaunches : public testing::Test {
   void begin() {
     run.reset();
     run.emplace(*executor, stop);
-    executor->run_ahead(true);
+    executor->run_ahead(true, true);
     executor->arena().reset();
   }
 
@@ -80,6 +86,7 @@ class GatheredLaunches : public testing::Test {
       EXPECT_EQ(found, host_);
     }
     uint32_t *device() { return device_.data; }
+    uint32_t sum() const { return std::accumulate(host_.begin(), host_.end(), uint32_t(0)); }
 
    private:
     template <class F>
@@ -115,14 +122,32 @@ TEST_F(GatheredLaunches, DoTheSameWithOtherArgumentsAndSizes) {
 TEST_F(GatheredLaunches, KeepTheirOrderWithCopiesAndOtherStreams) {
   for (int frame = 0; frame < 6; ++frame) {
     begin();
-    Chain chain(*executor, 3000);
+    constexpr size_t kMany = 150000;
+    Chain chain(*executor, kMany);
     for (int part = 0; part < 3; ++part) {
       chain.launch({0, 1, 2, 1, 2, 0});
       chain.expect_all();  // a copy
       chain.launch({2, 1, 1, 0, 2});
-      SecondStream second(*executor);
-      second.follow();
-      second.queue([&] { chain.launch({1, 2, 0, 1, 2}); });
+      {
+        SecondStream second(*executor);
+        second.follow();
+        second.queue([&] { chain.launch({1, 2, 0, 1, 2}); });
+      }
+      // Sums by CUB of what is there, a fill by the driver, and an upload.
+      chain.launch({1, 2, 0, 1});
+      const Span<uint32_t> sums = executor->allocate<uint32_t>(kMany + 1);
+      executor->exclusive_scan(kMany, Load{chain.device()}, sums);
+      const Span<uint32_t> large = executor->allocate<uint32_t>(kMany);
+      for (int k = 0; k < 4; ++k) executor->for_each(kMany, Add{large.data, 1});
+      executor->fill(large, 0);
+      for (int k = 0; k < 4; ++k) executor->for_each(kMany, Add{large.data, 1});
+      EXPECT_EQ(executor->fetch(large.data + kMany - 1), 4u);
+      EXPECT_EQ(executor->fetch(sums.data + kMany), chain.sum());
+      const uint32_t told = 5;
+      for (int k = 0; k < 4; ++k) executor->for_each(kMany, Add{large.data, 1});
+      executor->upload(large.data, &told, 1);
+      for (int k = 0; k < 4; ++k) executor->for_each(kMany, Add{large.data, 1});
+      EXPECT_EQ(executor->fetch(large.data), 9u);
     }
     chain.expect_all();
   }
@@ -130,6 +155,7 @@ TEST_F(GatheredLaunches, KeepTheirOrderWithCopiesAndOtherStreams) {
 }
 
 TEST_F(GatheredLaunches, MayBeFewOrVeryMany) {
+  const uint64_t before = executor->graphs();
   for (int frame = 0; frame < 3; ++frame)
     for (const size_t count : {1u, 2u, 3u, 4u, 63u, 64u, 65u, 128u, 300u}) {
       begin();
@@ -137,6 +163,7 @@ TEST_F(GatheredLaunches, MayBeFewOrVeryMany) {
       for (size_t k = 0; k < count; ++k) chain.launch(static_cast<int>(k % 3));
       chain.expect_all();
     }
+  EXPECT_GT(executor->graphs(), before + 10);
 }
 
 TEST_F(GatheredLaunches, MayBeOfMoreKindsThanAreKept) {
@@ -189,18 +216,43 @@ TEST_F(GatheredLaunches, AreGivenUpWithTheComputation) {
   EXPECT_EQ(executor->fetch(chain.device()), first);
 }
 
+// A frame that breaks off may not have had its zeros; the next one has them.
+TEST_F(GatheredLaunches, LeaveZerosAsTheyAre) {
+  constexpr size_t kMany = 90000;
+  executor->open_counts(7, true);
+  executor->fill(executor->allocate_zeros<uint32_t>(kMany), 1);
+  executor->wait();
+  begin();
+  executor->open_counts(7, true);
+  executor->allocate_zeros<uint32_t>(10);
+  begin();  // nothing has begun before
+  executor->open_counts(7, true);
+  const Span<uint32_t> zeros = executor->allocate_zeros<uint32_t>(kMany);
+  std::vector<uint32_t> found(kMany);
+  executor->download(found.data(), zeros.data, kMany);
+  executor->wait();
+  EXPECT_EQ(found, std::vector<uint32_t>(kMany, 0));
+  executor->open_counts(0);
+}
+
 TEST_F(GatheredLaunches, ComeBehindAnotherExecutors) {
-  other->run_ahead(true);
+  other->run_ahead(true, true);
   for (int frame = 0; frame < 5; ++frame) {
     begin();
-    Chain chain(*executor, 100000);
-    chain.launch({0, 1, 2, 2, 1, 0, 2});
-    other->go_behind(*executor);
-    for (int k = 0; k < 6; ++k) other->for_each(100000, Multiply{3, chain.device()});
-    executor->go_behind(*other);
-    for (int k = 0; k < 6; ++k) executor->for_each(100000, Multiply{0xaaaaaaab, chain.device()});  // of 3, the inverse
-    chain.expect_all();
+    constexpr size_t kMany = 100000;
+    const Span<uint32_t> values = executor->allocate<uint32_t>(kMany);
+    executor->fill(values, 0);
+    uint32_t expected = 0;
+    for (uint32_t round = 1; round < 6; ++round) {
+      for (int k = 0; k < 6; ++k, expected += round) executor->for_each(kMany, Add{values.data, round});
+      other->go_behind(*executor);
+      for (int k = 0; k < 6; ++k, expected *= 3) other->for_each(kMany, Multiply{3, values.data});
+      executor->go_behind(*other);
+    }
+    for (const size_t i : {size_t(0), kMany / 2, kMany - 1}) EXPECT_EQ(executor->fetch(values.data + i), expected);
   }
+  EXPECT_GT(executor->graphs(), 10u);
+  EXPECT_GT(other->graphs(), 10u);
 }
 
 TEST_F(GatheredLaunches, OfManyThreadsAtOnce) {
@@ -211,7 +263,7 @@ TEST_F(GatheredLaunches, OfManyThreadsAtOnce) {
       CudaExecutor own(0);
       for (int frame = 0; frame < 40; ++frame) {
         const CudaExecutor::RunScope own_run(own, stop);
-        own.run_ahead(true);
+        own.run_ahead(true, true);
         own.arena().reset();
         Chain chain(own, 800 + 13 * static_cast<size_t>(frame));
         chain.launch({0, 1, 2, 2, 1, 0, 2, 1, 1, 2});

@@ -155,13 +155,14 @@ void expect_same(const Surface &a, const Surface &b, const std::string &name) {
   EXPECT_EQ(std::memcmp(a.mesh.normals.data(), b.mesh.normals.data(), 4 * a.mesh.normals.size()), 0) << name;
 }
 
-// Meshes on this GPU, and with launches as for one with a single multiprocessor.
+// Meshes on this GPU, and with launches as for one with a single multiprocessor, or with very many, for which
+// everything is few.
 TEST(Launches, AreBoundedAndMeshesDoNotDependOnThem) {
   REQUIRE_DEVICE();
   for (const Input &input : crowded_inputs()) {
-    Surface surfaces[2];
-    size_t launches[2];
-    for (const unsigned multiprocessors : {0u, 1u}) {
+    std::map<unsigned, Surface> surfaces;
+    std::map<unsigned, size_t> launches;
+    for (const unsigned multiprocessors : {0u, 1u, 5000u}) {
       LaunchBook book(multiprocessors);
       const Context context(0, 0, QSES_BACKEND_CUDA);
       surfaces[multiprocessors] = compute(context, input.atoms, input.settings);
@@ -174,6 +175,7 @@ TEST(Launches, AreBoundedAndMeshesDoNotDependOnThem) {
     EXPECT_EQ(mesh_checks::manifold_fault(surfaces[0].mesh), "") << input.name;
     EXPECT_GT(surfaces[0].vertex_count(), 100u) << input.name;
     expect_same(surfaces[0], surfaces[1], input.name);
+    expect_same(surfaces[0], surfaces[5000], input.name);
   }
 }
 

@@ -29,6 +29,7 @@ constexpr uint32_t kGatherRoom = 192, kNarrowRoom = 512;
 // is.
 template <int kWarps>
 struct GatherTeam {
+  static_assert(kWarps == 1 || kWarps == kGatherWarps || kWarps == kMostGatherWarps, "a warp or a block");
   static constexpr int kBlockWarps = kWarps == 1 ? kGatherWarps : kWarps;
   struct Memory {
     uint32_t words[kWarps];

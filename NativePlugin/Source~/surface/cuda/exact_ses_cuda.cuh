@@ -9,6 +9,8 @@ namespace quickses {
 namespace gpu {
 
 constexpr int kSignWarps = 2, kSignThreads = kSignWarps * kWarp;
+// Of a multiprocessor, that few leaves may have, two each.
+constexpr int kMostHalfWarps = 24;
 // Atoms of a leaf in shared memory, as a rule, and where spacings are so wide that leaves have rows of their own; more
 // are read from the row. Arcs; of more some are staged at a time.
 constexpr int kLeafAtoms = 64, kWideLeafAtoms = 192, kLeafArcs = 64;
@@ -117,8 +119,10 @@ enum class LeafKind { kMixed, kInside, kOutside };
 // kPoints: of each lane. One: a warp has half of a leaf.
 template <int kAtoms, int kPoints>
 static __global__ __launch_bounds__(kSignThreads,
-                                    blocks_at_once(kSignThreads, 18)) void evaluate_leaves_kernel(QueuedItems queued,
-                                                                                                  SignJob job) {
+                                    blocks_at_once(kSignThreads,
+                                                   kPoints == 1 ? kMostHalfWarps / kSignWarps
+                                                                : 18)) void evaluate_leaves_kernel(QueuedItems queued,
+                                                                                                   SignJob job) {
   const LaunchItems leaves = queued.in_turn();
   __shared__ LeafScratch<kAtoms> scratch_memory[kSignWarps];
   const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();
@@ -321,8 +325,7 @@ void evaluate_leaves(E &executor, const FeatureView &features, const BrickSet &b
     candidates.view.deciders = candidates.decider_room.data;
     candidates.have_deciders = true;
   }
-  constexpr size_t kMostWarps = 24;  // of a multiprocessor, that few leaves may have
-  const bool by_halves = candidates.leaves * 2 <= executor.multiprocessors() * kMostWarps;
+  const bool by_halves = candidates.leaves * 2 <= executor.multiprocessors() * size_t(kMostHalfWarps);
   const auto launch = [&](auto kernel) {
     executor.launch(
         "evaluate_leaves", kernel, candidates.leaves,

@@ -160,6 +160,7 @@ struct NarrowJob {
 template <int kWarps>
 static __global__ __launch_bounds__(kGatherWarps *kWarp) void narrow_candidates_kernel(QueuedItems queued,
                                                                                        NarrowJob job) {
+  static_assert(kWarps == 1 || kWarps == kGatherWarps, "a warp or a block");
   const LaunchItems leaves = queued.in_turn();
   __shared__ uint32_t near_memory[kGatherWarps][kNarrowRoom];
   __shared__ typename GatherTeam<kWarps>::Memory team_memory;
@@ -178,10 +179,11 @@ static __global__ __launch_bounds__(kGatherWarps *kWarp) void narrow_candidates_
   uint32_t number = 0;  // of the item whose place in the brick's row is visited
   const auto along = [&](const uint32_t *items, uint32_t count) {
     return [=, &number, &team](const auto &visit) {
-      const uint32_t rank = static_cast<uint32_t>(team.rank()), end = count * (rank + 1) / kWarps;
+      const uint32_t rank = static_cast<uint32_t>(team.rank()),
+                     end = static_cast<uint32_t>(uint64_t(count) * (rank + 1) / kWarps);
       // Asked for some ahead.
       constexpr int kAhead = 4;
-      for (uint32_t k0 = count * rank / kWarps; k0 < end; k0 += kAhead * kWarp) {
+      for (uint32_t k0 = static_cast<uint32_t>(uint64_t(count) * rank / kWarps); k0 < end; k0 += kAhead * kWarp) {
         uint32_t ahead[kAhead];
         const auto place_of = [&](int c) { return k0 + static_cast<uint32_t>(c * kWarp + lane_id()); };
 #pragma unroll
@@ -282,15 +284,19 @@ void gather_candidates(E &executor, const FeatureView &features, const BrickSet 
   view.brick_leaves = executor.template allocate<uint8_t>(n).data;
   // All items in the cells around a brick are looked at, at most twice.
   const float extent = 7.f * reach.spacing + 2.f * reach.grown;
-  // Where rows are few, several warps work on each, the more the longer they are.
-  const double most_warps = 0.5 * listed_candidates(parameters, kBrickEdge) * executor.multiprocessors();
+  // Where rows are few, several warps work on each, the more the longer they are: so many for a multiprocessor are
+  // worth it, as measured from 0.5 to 2 Å.
+  const double longest = static_cast<double>(features.atoms.count) + static_cast<double>(features.arc_bounds.count),
+               row = std::min(listed_candidates(parameters, kBrickEdge), longest),
+               most_warps = 0.5 * row * executor.multiprocessors();
   const auto may_have = [&](size_t rows, int warps) {
     return static_cast<double>(rows * static_cast<size_t>(warps)) <= most_warps;
   };
   const int warps = may_have(n, kMostGatherWarps) ? kMostGatherWarps : may_have(n, kGatherWarps) ? kGatherWarps : 1;
+  // They share out what they look at.
   const auto shape = [&](uint64_t near) {
     return LaunchShape{std::max(warps, kGatherWarps) * kWarp, warps > 1 ? size_t(1) : size_t(kGatherWarps),
-                       256 + near / 16};
+                       256 + near / (16 * static_cast<uint64_t>(warps))};
   };
   const auto is_enough = [&](uint64_t items) { return executor.is_few_launches(n, shape(items)); };
   const LaunchShape gather =

@@ -347,7 +347,8 @@ __device__ __forceinline__ void list_walks_of_leaf(const WallJob &job, uint32_t 
 
 // Lists the edges of leaves that the probes nearest to their ends, as far as they are known, do not cover together. A
 // leaf has few first ends, and few edges that are left by the first probe: a warp takes several leaves at a time, so
-// that its lanes are not idle. Or, where leaves are few, all warps of a block take one.
+// that its lanes are not idle. Or, where leaves are few, all warps of a block take one: each has all first ends, and
+// looks at a share of the edges that their probes leave.
 template <bool kByBlocks>
 static __global__ __launch_bounds__(kWallThreads,
                                     blocks_at_once(kWallThreads, 10)) void drop_open_edges_kernel(QueuedItems queued,
