@@ -96,7 +96,6 @@ class FrameLevels {
       own_memory.forget_mesh();
       Level &level = under_way.add(*this, shared, own_executor, own_memory, is_beside);
       level.work.hand_out_others = [&] {
-        level.work.executor.hand_over();
         maker.verify_prepared();
         under_way.hand_out_others();
       };

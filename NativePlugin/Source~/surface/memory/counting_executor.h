@@ -116,6 +116,7 @@ class CountingExecutor {
     return false;
   }
   void turn_counts_to(float, uint32_t = 0) {}
+  void hand_over() {}
   void keep_pace() {}
   bool runs_ahead() const { return false; }
   void send_counts() {}

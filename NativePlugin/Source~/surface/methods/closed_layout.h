@@ -74,6 +74,7 @@ void settle_mesh(Work &work, MeshMemoryView *mesh) {
 // The same in the midst of making it.
 template <class Work>
 void wait_for_size(Work &work, MeshMemoryView *mesh) {
+  work.executor.hand_over();  // so that it goes on meanwhile
   work.hand_out_others();
   settle_mesh(work, mesh);
 }

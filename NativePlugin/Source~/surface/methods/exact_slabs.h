@@ -69,6 +69,7 @@ MeshMemoryView build_in_slabs(Work &work, const BrickSet &bricks, const Slabs &s
   using Executor = std::remove_reference_t<decltype(executor)>;
   using B = Backend<Executor>;
   const FeatureView &features = work.features;
+  executor.hand_over();
   work.hand_out_others();
   const bool has_walls = work.parameters.has_thin_walls();
   const size_t leaves = size_t(bricks.count) * kLeavesPerBrick;
