@@ -325,17 +325,16 @@ void evaluate_leaves(E &executor, const FeatureView &features, const BrickSet &b
     candidates.view.deciders = candidates.decider_room.data;
     candidates.have_deciders = true;
   }
-  const bool by_halves = candidates.leaves * 2 <= executor.multiprocessors() * size_t(kMostHalfWarps);
-  const auto launch = [&](auto kernel) {
-    executor.launch(
-        "evaluate_leaves", kernel, candidates.leaves,
-        LaunchShape{kSignThreads, size_t(kSignWarps) / (by_halves ? 2 : 1), candidates.look_steps(features)},
-        SignJob{features, bricks, CandidateReach::of(features.parameters), candidates.view, signs});
-  };
-  if (candidates.view.row_shift == kRowOfLeaf)
-    launch(by_halves ? evaluate_leaves_kernel<kWideLeafAtoms, 1> : evaluate_leaves_kernel<kWideLeafAtoms, 2>);
-  else
-    launch(by_halves ? evaluate_leaves_kernel<kLeafAtoms, 1> : evaluate_leaves_kernel<kLeafAtoms, 2>);
+  // Halves of few leaves, which are wide then.
+  const bool are_wide = candidates.view.row_shift == kRowOfLeaf,
+             by_halves = are_wide && candidates.leaves * 2 <= executor.multiprocessors() * size_t(kMostHalfWarps);
+  executor.launch("evaluate_leaves",
+                  by_halves  ? evaluate_leaves_kernel<kWideLeafAtoms, 1>
+                  : are_wide ? evaluate_leaves_kernel<kWideLeafAtoms, 2>
+                             : evaluate_leaves_kernel<kLeafAtoms, 2>,
+                  candidates.leaves,
+                  LaunchShape{kSignThreads, size_t(kSignWarps) / (by_halves ? 2 : 1), candidates.look_steps(features)},
+                  SignJob{features, bricks, CandidateReach::of(features.parameters), candidates.view, signs});
 }
 
 }  // namespace gpu
