@@ -127,7 +127,8 @@ bool use_everything() {
   };
   bool good = is_good(qses_set_atoms(context, atoms.positions.data(), 0, atoms.radii.data(), atoms.size())) &&
               is_good(qses_compute(context, nullptr, nullptr)) && is_good(qses_estimate(context, nullptr, &estimate));
-  // From the third one on the levels are made beside each other, and then their kernels handed over as graphs.
+  // From the third one on the levels are made beside each other, where they take little time, and then their kernels
+  // handed over as graphs.
   for (int k = 0; k < 6 && good; ++k) good = run_job();
   qses_context_destroy(context);
   return good;
@@ -237,6 +238,7 @@ TEST_P(FailingDriver, EveryCallMayFailAndTheNextMayNot) {
   ASSERT_TRUE(use_everything());
   const int calls = fail_after(-1, 0);
   ASSERT_GT(calls, 100);
+  for (int k = 0; k < 50 && tell_driver("fake_driver_graphs_launched") == 0; ++k) ASSERT_TRUE(use_everything());
   EXPECT_GT(tell_driver("fake_driver_graphs_launched"), 0);
   EXPECT_EQ(tell_driver("fake_driver_handles"), handles);
   int failed = 0;
@@ -272,6 +274,8 @@ TEST_P(LostDevice, IsSaidForGoodAndTheCpuTakesOver) {
         {
           fail_after(good, GetParam());
           const bool survived = use_everything();
+          // How many calls there are depends on time, too: nothing may have failed.
+          if (tell_driver("fake_driver_calls") <= good) std::_Exit(HasFailure() ? 1 : 0);
           qses_backend_description description = empty_description();
           qses_backend_info(QSES_BACKEND_CUDA, &description);
           EXPECT_FALSE(survived && description.available);
@@ -297,7 +301,7 @@ TEST_P(ResetDevice, IsFoundBeforeTheDriverIsGivenWhatIsGone) {
         EXPECT_EQ(create(QSES_BACKEND_CUDA, &context), QSES_OK);
         set_atoms(context, water());
         for (int k = 0; k < 3; ++k) EXPECT_EQ(qses_compute(context, nullptr, nullptr), QSES_OK) << qses_last_error();
-        for (int k = 0; k < 6; ++k) {
+        for (int k = 0; k < 300 && tell_driver("fake_driver_graphs_launched") == 0; ++k) {
           EXPECT_EQ(qses_begin(context, nullptr), QSES_OK) << qses_last_error();
           EXPECT_EQ(qses_wait(context, -1, nullptr), QSES_OK) << qses_last_error();
         }
