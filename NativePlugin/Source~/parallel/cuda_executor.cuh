@@ -252,7 +252,10 @@ class CudaExecutor : public CudaQueue {
     counts_.note_sent(stream());
   }
   // Waits for that. False: all counts were exact. Throws AnticipatedTooLittle.
-  bool verify_counts() { return counts_.verify(); }
+  bool verify_counts() {
+    hand_over();  // so that the rest goes on meanwhile
+    return counts_.verify();
+  }
   // As they were found then.
   template <class T>
   T verified(const T *counts) {

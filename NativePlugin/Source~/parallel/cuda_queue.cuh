@@ -143,7 +143,10 @@ class CudaQueue {
 
   // What is gathered begins. Whatever else the stream is given, or the host waits for, does that as well.
   void hand_over() {
-    if (!gathered_.empty()) gathered_.hand_over(stream_, [&](const auto &one) { launch_queued(one); });
+    if (gathered_.empty()) return;
+    const bool had_given_up = std::exchange(has_given_up_, true);  // unless all of it begins
+    gathered_.hand_over(stream_, [&](const auto &one) { launch_queued(one); });
+    has_given_up_ = had_given_up;
   }
 
   // Between parts of a long work: waits for the part before the last one, so that little is queued that can't be
@@ -179,7 +182,7 @@ class CudaQueue {
                  "cudaStreamCreateWithPriority");
   }
   // What is given from now on goes to the other stream, or to this one again.
-  // (What is gathered must have begun before; it is given up.)
+  // (Hand over before: what is still gathered is given up.)
   void turn_streams() noexcept {
     give_up_gathered();
     std::swap(stream_, second_stream_);

@@ -24,7 +24,7 @@
 //   has_anticipated()              whether this frame went on with anything that the one before told
 //   go_on_scanning(n, load, out), send_all_counts()  of the GPU only, for work in slabs (methods/exact_slabs.h)
 //   runs_ahead()                   whether all of this frame may be queued, since frames like it are short
-//   hand_over()                    called where nothing more is asked for until something else is done
+//   hand_over()                    what was asked for begins, if it was held back: before others are waited for
 //   keep_pace()                    called between parts of a long work, so that it can be cancelled. May wait
 //   upload, download, fill         copies between host and back end, and memset
 //   scan_bytes<T>(n), sort_bytes<Key, Value>(n), reduce_bytes<T>(n), compact_bytes(n)  of the arena, that these verbs

@@ -9,8 +9,6 @@ namespace quickses {
 namespace gpu {
 
 constexpr int kSignWarps = 2, kSignThreads = kSignWarps * kWarp;
-// Of a multiprocessor, that few leaves may have, two each.
-constexpr int kMostHalfWarps = 24;
 // Atoms of a leaf in shared memory, as a rule, and where spacings are so wide that leaves have rows of their own; more
 // are read from the row. Arcs; of more some are staged at a time.
 constexpr int kLeafAtoms = 64, kWideLeafAtoms = 192, kLeafArcs = 64;
@@ -116,20 +114,16 @@ __device__ __forceinline__ DeepestAtom choose_deepest_atoms(const FeatureView &f
 
 enum class LeafKind { kMixed, kInside, kOutside };
 
-// kPoints: of each lane. One: a warp has half of a leaf.
-template <int kAtoms, int kPoints>
+template <int kAtoms>
 static __global__ __launch_bounds__(kSignThreads,
-                                    blocks_at_once(kSignThreads,
-                                                   kPoints == 1 ? kMostHalfWarps / kSignWarps
-                                                                : 18)) void evaluate_leaves_kernel(QueuedItems queued,
-                                                                                                   SignJob job) {
+                                    blocks_at_once(kSignThreads, 18)) void evaluate_leaves_kernel(QueuedItems queued,
+                                                                                                  SignJob job) {
   const LaunchItems leaves = queued.in_turn();
   __shared__ LeafScratch<kAtoms> scratch_memory[kSignWarps];
   const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();
   LeafScratch<kAtoms> &scratch = scratch_memory[warp];
-  constexpr int kHalves = 2 / kPoints;
-  const size_t leaf_place = leaves.first + (blockIdx.x * kSignWarps + static_cast<uint32_t>(warp)) / kHalves;
-  const int half_of_leaf = warp % kHalves;
+  constexpr int kPoints = 2;  // of each lane
+  const size_t leaf_place = leaves.first + blockIdx.x * kSignWarps + static_cast<uint32_t>(warp);
   if (leaf_place >= leaves.last || leaf_place >= job.view.counted->leaves) return;
   const FeatureView &f = job.features;
   const CandidateReach &reach = job.reach;
@@ -223,8 +217,7 @@ static __global__ __launch_bounds__(kSignThreads,
     uint32_t atom[kPoints] = {};
 #pragma unroll
     for (int c = 0; c < kPoints; ++c) {
-      p[c] = lattice.position(first.x + (lane & 3), first.y + (lane >> 2 & 3),
-                              first.z + (lane >> 4) + 2 * (half_of_leaf + c));
+      p[c] = lattice.position(first.x + (lane & 3), first.y + (lane >> 2 & 3), first.z + (lane >> 4) + 2 * c);
       deepest[c] = reach.least_depth;
     }
     const auto meet_ball = [&](const Sphere &ball, uint32_t number) {
@@ -301,18 +294,12 @@ static __global__ __launch_bounds__(kSignThreads,
   unsigned words[kPoints];
 #pragma unroll
   for (int c = 0; c < kPoints; ++c) {
-    if (job.view.deciders)
-      job.view.deciders[size_t(slot) * 64 + static_cast<size_t>((half_of_leaf + c) * kWarp + lane)] = decider[c];
+    if (job.view.deciders) job.view.deciders[size_t(slot) * 64 + static_cast<size_t>(c * kWarp + lane)] = decider[c];
     words[c] = __ballot_sync(kFullWarp, inside[c]);
   }
-  if (lane == 0 && job.signs) {
-    uint64_t *const signs =
-        job.signs + static_cast<size_t>(job.view.first_brick + b) * kLeavesPerBrick + static_cast<size_t>(leaf);
-    if constexpr (kPoints == 2)
-      *signs = static_cast<uint64_t>(words[1]) << 32 | words[0];
-    else
-      reinterpret_cast<uint32_t *>(signs)[half_of_leaf] = words[0];
-  }
+  if (lane == 0 && job.signs)
+    job.signs[static_cast<size_t>(job.view.first_brick + b) * kLeavesPerBrick + static_cast<size_t>(leaf)] =
+        static_cast<uint64_t>(words[1]) << 32 | words[0];
 }
 
 // Evaluates the active leaves of a slice. deciders: whether what decides about their points is kept for thin walls.
@@ -325,15 +312,10 @@ void evaluate_leaves(E &executor, const FeatureView &features, const BrickSet &b
     candidates.view.deciders = candidates.decider_room.data;
     candidates.have_deciders = true;
   }
-  // Halves of few leaves, which are wide then.
-  const bool are_wide = candidates.view.row_shift == kRowOfLeaf,
-             by_halves = are_wide && candidates.leaves * 2 <= executor.multiprocessors() * size_t(kMostHalfWarps);
+  const bool are_wide = candidates.view.row_shift == kRowOfLeaf;
   executor.launch("evaluate_leaves",
-                  by_halves  ? evaluate_leaves_kernel<kWideLeafAtoms, 1>
-                  : are_wide ? evaluate_leaves_kernel<kWideLeafAtoms, 2>
-                             : evaluate_leaves_kernel<kLeafAtoms, 2>,
-                  candidates.leaves,
-                  LaunchShape{kSignThreads, size_t(kSignWarps) / (by_halves ? 2 : 1), candidates.look_steps(features)},
+                  are_wide ? evaluate_leaves_kernel<kWideLeafAtoms> : evaluate_leaves_kernel<kLeafAtoms>,
+                  candidates.leaves, LaunchShape{kSignThreads, kSignWarps, candidates.look_steps(features)},
                   SignJob{features, bricks, CandidateReach::of(features.parameters), candidates.view, signs});
 }
 

@@ -293,10 +293,10 @@ void gather_candidates(E &executor, const FeatureView &features, const BrickSet 
     return static_cast<double>(rows * static_cast<size_t>(warps)) <= most_warps;
   };
   const int warps = may_have(n, kMostGatherWarps) ? kMostGatherWarps : may_have(n, kGatherWarps) ? kGatherWarps : 1;
-  // They share out what they look at.
+  // They share out rows of cells, of which one may have nearly all there is.
   const auto shape = [&](uint64_t near) {
     return LaunchShape{std::max(warps, kGatherWarps) * kWarp, warps > 1 ? size_t(1) : size_t(kGatherWarps),
-                       256 + near / (16 * static_cast<uint64_t>(warps))};
+                       256 + near / 16};
   };
   const auto is_enough = [&](uint64_t items) { return executor.is_few_launches(n, shape(items)); };
   const LaunchShape gather =

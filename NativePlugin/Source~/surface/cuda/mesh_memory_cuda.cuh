@@ -56,6 +56,7 @@ class MeshMemory<CudaExecutor> {
       if (!may_hand_back()) return;
       for (cudaEvent_t event : {triangles_made_, vertices_made_})
         if (event) cudaEventDestroy(event);
+      cudaStreamSynchronize(executor_.stream_handle());  // kernels bring little meshes to memory that is ours
       if (copies_) {
         cudaStreamSynchronize(copies_);
         cudaStreamDestroy(copies_);
@@ -211,6 +212,7 @@ class MeshMemory<CudaExecutor> {
     if (executor.arena().has_budget() && pool.bytes_with(arrays.bytes()) > pool.bytes()) pool.drop_spares();
     executor.arena().set_taken(pool.bytes_with(arrays.bytes()));
     void *const memory = device_mesh_.reserve(arrays.bytes());
+    executor.hand_over();  // may throw, so before the readers are taken
     if (const std::shared_ptr<const StreamMark> readers = device_mesh_.lease().take_readers())
       readers->hold_back(executor.stream());
     return memory;

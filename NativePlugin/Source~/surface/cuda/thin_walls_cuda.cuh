@@ -147,7 +147,7 @@ void mark_thin_walls(E &executor, const FeatureView &features, const BrickSet &b
     job.walks = executor.template allocate<uint64_t>(static_cast<size_t>(job.walk_room)).data;
     // Of a leaf: first ends and edges for each lane, and as many asked of the others' probes.
     constexpr uint64_t kStarts = 64 / kWarp, kEdges = kStarts * kWallSteps;
-    // Of leaves half have edges, or fewer.
+    // By blocks where there is one for each leaf that has edges, which half of them have, or fewer.
     const size_t blocks = blocks_in_turns(executor);
     const bool by_blocks = leaves <= 2 * blocks;
     executor.launch("drop_open_edges", by_blocks ? drop_open_edges_kernel<true> : drop_open_edges_kernel<false>, leaves,
