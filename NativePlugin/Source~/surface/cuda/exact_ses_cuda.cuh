@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// GPU driver of the exact field: only signs are found. A warp per active leaf, two lattice points per lane, or two
-// where leaves are few; the sphere a point is deepest in decides about it by its caps, or else the nearest arc.
+// GPU driver of the exact field: only signs are found. A warp per active leaf, two lattice points per lane; the sphere
+// a point is deepest in decides about it by its caps, or else the nearest arc.
 #pragma once
 
 #include "surface/cuda/gather_candidates_cuda.cuh"

@@ -298,10 +298,9 @@ __device__ __forceinline__ void write_walk(const WallJob &job, unsigned long lon
 // Puts the edges that are left of a round behind those of others: those of a leaf in whole runs.
 __device__ __forceinline__ void list_walks(const WallJob &job, uint32_t walks, WallScratch *scratch) {
   const uint32_t run = job.walk_run, lane = static_cast<uint32_t>(lane_id());
-  const auto start_of = [&](uint32_t w) { return scratch->start_of(w); };
   if (lane < kRoundLeaves) scratch->leaf_walks[lane] = 0;
   __syncwarp();
-  for (uint32_t w = lane; w < walks; w += kWarp) atomicAdd(&scratch->leaf_walks[start_of(w).leaf], 1u);
+  for (uint32_t w = lane; w < walks; w += kWarp) atomicAdd(&scratch->leaf_walks[scratch->start_of(w).leaf], 1u);
   __syncwarp();
   const uint32_t own = lane < kRoundLeaves ? scratch->leaf_walks[lane] : 0, places = (own + run - 1) / run * run;
   const uint32_t with_own = warp_inclusive_sum(own, lane_id()), places_with = warp_inclusive_sum(places, lane_id());
@@ -313,10 +312,10 @@ __device__ __forceinline__ void list_walks(const WallJob &job, uint32_t walks, W
   __syncwarp();
   const auto write = [&](uint32_t place, uint64_t walk) { write_walk(job, base + place, walk); };
   for (uint32_t w = lane; w < walks; w += kWarp) {
-    const WallStart start = start_of(w);
+    const WallStart start = scratch->start_of(w);
     const uint32_t place = w + static_cast<uint32_t>(scratch->walk_shift[start.leaf]);
     write(place, scratch->walk(w));
-    const bool is_last = w + 1 == walks || start_of(w + 1).leaf != start.leaf;
+    const bool is_last = w + 1 == walks || scratch->start_of(w + 1).leaf != start.leaf;
     if (!is_last) continue;
     const uint32_t filled = scratch->leaf_walks[start.leaf] % run;
     for (uint32_t k = filled; k > 0 && k < run; ++k) write(place + 1 + k - filled, kNoWalk);
