@@ -39,6 +39,25 @@ __device__ __forceinline__ bool holds_for_any_team(bool own) {
 // How many of the lanes before this one are in a ballot: the place of this lane among them.
 __device__ __forceinline__ int place_in(unsigned ballot, int lane) { return __popc(ballot & ((1u << lane) - 1u)); }
 
+// Of what the warps of a block have each: the sum of those before the own one, and of all. In shared memory, of which
+// there is a word for each warp, and which is free again behind another __syncthreads().
+struct BlockSum {
+  uint32_t before, all;
+};
+template <int kWarps>
+__device__ __forceinline__ BlockSum sum_of_block(uint32_t own, uint32_t (&words)[kWarps]) {
+  const int warp = static_cast<int>(threadIdx.x) / kWarp;
+  if (lane_id() == 0) words[warp] = own;
+  __syncthreads();
+  BlockSum sum{0, 0};
+#pragma unroll
+  for (int w = 0; w < kWarps; ++w) {
+    sum.before += w < warp ? words[w] : 0;
+    sum.all += words[w];
+  }
+  return sum;
+}
+
 // Appends to a list that the lanes fill together: the place of this lane's item if it has one. count: of the list, the
 // same in all lanes. team: those lanes that fill the same list.
 template <class Count>
@@ -62,21 +81,13 @@ __device__ __forceinline__ void append(uint32_t *list, uint32_t *count, uint32_t
 // The same by all threads of a block: the whole GPU can add to one count only every other clock cycle or so.
 template <int kThreads>
 __device__ __forceinline__ void append_of_block(uint32_t *list, uint32_t *count, uint32_t item, bool has) {
-  constexpr int kWarps = kThreads / kWarp;
-  __shared__ uint32_t counts[kWarps], base;
-  uint32_t own = 0, before = 0, all = 0;
+  __shared__ uint32_t words[kThreads / kWarp], base;
+  uint32_t own = 0;
   const uint32_t place = append_place(has, &own);
-  const int warp = static_cast<int>(threadIdx.x) / kWarp;
-  if (lane_id() == 0) counts[warp] = own;
+  const BlockSum sum = sum_of_block(own, words);
+  if (threadIdx.x == 0 && sum.all > 0) base = atomicAdd(count, sum.all);
   __syncthreads();
-#pragma unroll
-  for (int w = 0; w < kWarps; ++w) {
-    before += w < warp ? counts[w] : 0;
-    all += counts[w];
-  }
-  if (threadIdx.x == 0 && all > 0) base = atomicAdd(count, all);
-  __syncthreads();
-  if (has) list[base + before + place] = item;
+  if (has) list[base + sum.before + place] = item;
 }
 
 // Sum over the lanes up to and including this one.
@@ -148,7 +159,7 @@ __device__ __forceinline__ int32_t warp_maximum(int32_t value) {
 #endif
 }
 
-// A number for a value, in their order, and a value for its number. Not for NaN; 0 comes after -0.
+// A number for a value, in their order, and a value for its number. Not for NaN; -0 comes before 0.
 __device__ __forceinline__ int32_t in_order(int32_t bits) { return bits < 0 ? bits ^ 0x7fffffff : bits; }
 __device__ __forceinline__ int32_t number_in_order(float value) { return in_order(__float_as_int(value)); }
 __device__ __forceinline__ float value_in_order(int32_t number) { return __int_as_float(in_order(number)); }
@@ -171,8 +182,8 @@ struct NumberedValue {
 template <int Lanes = kWarp>
 __device__ __forceinline__ NumberedValue warp_largest(NumberedValue own, unsigned lanes = kFullWarp) {
   if constexpr (Lanes == kWarp) {
-    const int32_t value = number_in_order(own.value), most = warp_maximum(value);
-    return {value_in_order(most), warp_minimum(value == most ? own.number : ~uint32_t(0))};
+    const float most = warp_maximum(own.value);
+    return {most, warp_minimum(own.value == most ? own.number : ~uint32_t(0))};
   } else {
 #pragma unroll
     for (int d = Lanes / 2; d > 0; d >>= 1) {

@@ -207,21 +207,26 @@ static __global__ __launch_bounds__(kWarp) void find_long_circle_arcs_kernel(Que
   states[thread] = state;
 }
 
-// Writes the staged arcs, split, to their places in order.
+// Writes the staged arcs, split, to their places in order. And atoms that are not exposed are marked as buried, once no
+// circle is left: those of later runs are none of theirs, since a circle is the earlier atom's.
 static __global__ __launch_bounds__(128) void write_arcs_kernel(QueuedItems queued, CircleJob job,
                                                                 const uint32_t *arc_first) {
   const LaunchItems items = queued.in_turn();
+  const size_t first = items.first + blockIdx.x * blockDim.x + threadIdx.x, step = gridDim.x * blockDim.x;
+  if (job.counters->unfinished_circles == 0)
+    for (size_t k = first; k < items.last && k < job.run.size(); k += step)
+      if (!job.exposed[job.run.first + k]) job.cap_ranges[job.run.first + k].count = kBuriedAtom;
   if (job.circle_first[job.run.size()] > job.room.circles) return;
   const unsigned long long staged = job.counters->staged;
   const bool fits = (staged >> 32) <= job.room.staged_circles && (staged & 0xffffffffu) <= job.room.staged_arcs;
-  if (items.first + blockIdx.x + threadIdx.x == 0) {
+  if (first == 0) {
     const uint32_t arcs = arc_first[job.room.circles];
     job.counters->arcs = arcs;
     job.counters->written_arcs = fits && arcs <= job.room.arcs ? arcs : 0;
   }
   if (!fits) return;
   const size_t end = (staged >> 32) < items.last ? static_cast<size_t>(staged >> 32) : items.last;
-  for (size_t s = items.first + blockIdx.x * blockDim.x + threadIdx.x; s < end; s += gridDim.x * blockDim.x) {
+  for (size_t s = first; s < end; s += step) {
     const StagedCircle staged_circle = job.staged[s];
     const OpenCircle c = open_circle(job, staged_circle.circle);
     const Sphere atom = load(job.atoms.items + c.atom);
@@ -267,7 +272,7 @@ void write_arcs(E &executor, const ArcSearch &search) {
   const uint64_t intervals = std::max<uint64_t>(kLaneIntervals, room.intervals);
   const uint64_t pieces = static_cast<uint64_t>(6.3f * search.max_radius) + intervals;
   executor.launch(
-      "write_arcs", write_arcs_kernel, room.staged_circles,
+      "write_arcs", write_arcs_kernel, std::max(room.staged_circles, size_t(job.run.size())),
       LaunchShape{128, 128, 32 + 4 * pieces, std::min(job.run.size() / 64 + size_t(1), blocks_in_turns(executor))}, job,
       search.arc_first.data);
 }

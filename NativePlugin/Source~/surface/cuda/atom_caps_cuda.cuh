@@ -25,7 +25,8 @@ struct CapJob {
   FeatureCounters *counters;
   CapRange *cap_ranges;
   Cap *caps;
-  uint32_t *neighbors;     // per cap: the atom behind it; nullptr: of the exposed atoms, only caps are wanted
+  uint32_t *
+      neighbors;  // per cap: the atom behind it; nullptr: only caps are wanted, of the exposed atoms; others are buried
   uint32_t *circle_count;  // per atom of the run: circles it owns
   uint8_t *exposed;        // per atom
   uint32_t *long_atoms;    // those with more neighbours than a warp's rows hold
@@ -276,7 +277,7 @@ __device__ __forceinline__ bool find_caps_of_atom(const CapJob &job, uint32_t i,
   const bool with_circles = job.neighbors != nullptr;
   if (is_skipped(job, i, self)) {
     if (lane == 0) {
-      job.cap_ranges[i] = {0, 0};
+      job.cap_ranges[i] = {0, kBuriedAtom};
       if (with_circles) job.circle_count[i - job.run.first] = 0;
     }
     return true;

@@ -39,16 +39,18 @@ struct GatherTeam {
   __device__ __forceinline__ int rank() const { return kWarps == 1 ? 0 : static_cast<int>(threadIdx.x) / kWarp; }
   __device__ __forceinline__ bool leads() const { return rank() == 0 && lane_id() == 0; }
   __device__ __forceinline__ void sync() const { sync_warps<kWarps>(); }
-  // reduce(rank, word) for the words of all warps. Not again before sync().
-  template <class Reduce>
-  __device__ __forceinline__ void for_each_word(uint32_t own, const Reduce &reduce) const {
-    if constexpr (kWarps == 1) {
-      reduce(0, own);
-    } else {
-      if (lane_id() == 0) memory.words[rank()] = own;
-      __syncthreads();
-      for (int w = 0; w < kWarps; ++w) reduce(w, memory.words[w]);
-    }
+  // Of what the warps have each, the sum, and all bits. Neither again before sync().
+  __device__ __forceinline__ BlockSum sum(uint32_t own) const {
+    if constexpr (kWarps == 1) return {0, own};
+    return sum_of_block(own, memory.words);
+  }
+  __device__ __forceinline__ uint32_t all_bits(uint32_t own) const {
+    if constexpr (kWarps == 1) return own;
+    if (lane_id() == 0) memory.words[rank()] = own;
+    __syncthreads();
+    uint32_t all = 0;
+    for (int w = 0; w < kWarps; ++w) all |= memory.words[w];
+    return all;
   }
   // A number that the one who leads has. Not again before sync().
   __device__ __forceinline__ unsigned long long from_leader(unsigned long long value) const {
@@ -105,16 +107,13 @@ __device__ __forceinline__ GatheredRow gather_row(const GatherTeam<kWarps> &team
       if (near && place < room) to[place] = k;
     });
     if (round == 0) {
-      uint32_t before = 0;
-      team.for_each_word(n, [&](int rank, uint32_t count) {
-        if (rank < team.rank()) before += count;
-        row.count += count;
-      });
+      const BlockSum sum = team.sum(n);
+      row.count = sum.all;
       if (team.leads()) row.first = atomicAdd(memory.counter, static_cast<unsigned long long>(row.count));
       row.first = team.from_leader(row.first);
       row.fits = row.first + row.count <= memory.room;
       if (!row.fits) break;  // all will be done again
-      to = memory.items + row.first + before;
+      to = memory.items + row.first + sum.before;
       room = 0xffffffffu;
       if (n > memory.near_room) continue;
     }

@@ -114,8 +114,7 @@ static __global__ __launch_bounds__(
         return k;
       });
 
-  uint32_t active_leaves = 0;
-  team.for_each_word(warp_or(active), [&](int, uint32_t leaves) { active_leaves |= leaves; });
+  uint32_t active_leaves = team.all_bits(warp_or(active));
   // Without room for its rows the brick has none; all will be done again.
   const bool fits = atoms.fits && arcs.fits;
   if (!fits) active_leaves = 0;

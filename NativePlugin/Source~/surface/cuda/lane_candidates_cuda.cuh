@@ -52,15 +52,21 @@ __device__ __forceinline__ DeepestAtom deepest_atom(const FeatureView &f,
 // The nearest arc of those that each of some lanes has found.
 template <int kLanes>
 __device__ __forceinline__ NearestArc nearest_of_lanes(NearestArc best, unsigned lanes) {
+  if constexpr (kLanes == kWarp) {
+    const NumberedValue nearest = warp_largest({-best.distance2, static_cast<uint32_t>(best.arc)});
+    const int arc = static_cast<int>(nearest.number);
+    return {arc, -nearest.value, -warp_maximum(best.arc == arc ? -best.second2 : -best.distance2)};
+  } else {
 #pragma unroll
-  for (int d = kLanes / 2; d > 0; d >>= 1) {
-    const int arc = __shfl_xor_sync(lanes, best.arc, d);
-    const float distance2 = __shfl_xor_sync(lanes, best.distance2, d);
-    const float second2 = __shfl_xor_sync(lanes, best.second2, d);
-    if (arc >= 0) best.offer(arc, distance2);
-    best.second2 = minimum(best.second2, second2);
+    for (int d = kLanes / 2; d > 0; d >>= 1) {
+      const int arc = __shfl_xor_sync(lanes, best.arc, d);
+      const float distance2 = __shfl_xor_sync(lanes, best.distance2, d);
+      const float second2 = __shfl_xor_sync(lanes, best.second2, d);
+      if (arc >= 0) best.offer(arc, distance2);
+      best.second2 = minimum(best.second2, second2);
+    }
+    return best;
   }
-  return best;
 }
 
 template <int kLanes, bool kTogether, bool kAhead>

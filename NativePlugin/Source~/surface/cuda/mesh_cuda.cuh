@@ -78,8 +78,9 @@ void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bri
   const VertexJob job =
       prepare_vertices(executor, features, bricks, layout, slice, sizes, rooms, candidates, starts, mesh);
   const uint64_t look = vertex_steps(features, candidates.longest_row);
-  // Lanes for each of few vertices, or of such that have much to look at; so many for a multiprocessor at most.
-  constexpr size_t kFew = 4, kMostThreads = 3072, kMostOfLongLists = 8192;
+  // Lanes for each of few vertices, or of such that have much to look at; so many for a multiprocessor at most. Arcs,
+  // of which there are more to look at, are worth more lanes.
+  constexpr size_t kFew = 4, kMostThreads = 3072, kMostOfLongLists = 8192, kMore = 8, kMostForArcs = 2048;
   const bool have_much = job.list_words >= kLongList, have_very_much = job.list_words >= 4 * kLongList;
   const auto is_room_for = [&](size_t lanes, size_t most) {
     return job.count * lanes <= executor.multiprocessors() * most;
@@ -98,8 +99,8 @@ void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bri
     launch_first("project_on_atoms", 1, project_on_atoms_kernel<1>);
   if (are_very_few)
     launch_first("project_on_arcs", kWarp, project_on_arcs_kernel<kWarp>);
-  else if (have_very_much)
-    launch_first("project_on_arcs", 8, project_on_arcs_kernel<8>);
+  else if (have_very_much || is_room_for(kMore, kMostForArcs))
+    launch_first("project_on_arcs", kMore, project_on_arcs_kernel<kMore>);
   else if (have_much || are_few)
     launch_first("project_on_arcs", kFew, project_on_arcs_kernel<kFew>);
   else

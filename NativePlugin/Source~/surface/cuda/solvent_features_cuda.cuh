@@ -13,14 +13,6 @@
 namespace quickses {
 namespace gpu {
 
-struct ExposeAtoms {
-  const uint8_t *exposed;
-  CapRange *cap_ranges;
-  QSES_HOST_DEVICE void operator()(size_t i) const {
-    if (!exposed[i]) cap_ranges[i].count = kBuriedAtom;
-  }
-};
-
 // What one pass over a run of atoms reads and writes besides its results.
 struct FeaturePass {
   NeighborGridView atoms;
@@ -213,7 +205,6 @@ void find_solvent_features(E &executor, const NeighborGridView &atoms, const Sur
     find_features_in_runs(executor, pass, plan, rooms, features);
   else
     find_all_features(executor, pass, rooms, features);
-  executor.for_each(atoms.count, ExposeAtoms{exposed.data, features->cap_ranges.data});
 }
 
 }  // namespace gpu

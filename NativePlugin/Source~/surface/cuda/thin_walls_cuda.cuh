@@ -3,7 +3,7 @@
 // walked by some lanes each.
 #pragma once
 
-#include "surface/cuda/lane_candidates_cuda.cuh"
+#include "surface/cuda/held_candidates_cuda.cuh"
 #include "surface/cuda/wall_edges_cuda.cuh"
 
 namespace quickses {
@@ -24,11 +24,15 @@ __device__ __forceinline__ NearestProbe nearest_probe_if(bool asks, const Featur
   return told ? said : contact ? probe_on_atom(f, deepest, x) : probe_on_arc(f, nearest, x);
 }
 
+__device__ __forceinline__ NearestProbe nearest_probe_if(bool asks, const FeatureView &f, const HeldCandidates &near,
+                                                         const Vec3<float> &x) {
+  return asks ? nearest_probe(f, near, x) : NearestProbe{x, 0.f};
+}
+
 // Walks the edge of an item by a team of lanes, if it is on; all teams of a warp in step.
-template <int kLanes>
+template <class Near>
 __device__ __forceinline__ void walk_edge(const WallJob &job, const uint64_t *item, const WallEdge &e,
-                                          const Vec3<float> &a, const Vec3<float> &b, bool on,
-                                          const LaneCandidates<kLanes, true> &near) {
+                                          const Vec3<float> &a, const Vec3<float> &b, bool on, const Near &near) {
   const FeatureView &f = job.features;
   const SurfaceParameters &p = f.parameters;
   const NearestProbe probe_a = decided_probe(f, first_decider(job, e.slot, e.bit, a), a);
@@ -75,12 +79,14 @@ __device__ __forceinline__ LaneCandidates<kWarp, true> choose_for_run(const Wall
 }
 
 // Some lanes for each edge that is left, so that a warp takes a run of as many as it has teams. They wait for memory:
-// more blocks at a time are worth registers. Where leaves have many edges, as at wide spacings, what can decide about
-// any edge of a run is chosen first, and from that what can decide about each.
+// more blocks at a time are worth registers, but for a warp for each, which few edges have. Where leaves have many
+// edges, as at wide spacings, what can decide about any edge of a run is chosen first, and from that what can decide
+// about each.
 template <int kLanes, bool kChosenTwice>
 static __global__ __launch_bounds__(kWallThreads,
-                                    blocks_at_once(kWallThreads, 8)) void walk_edges_kernel(QueuedItems queued,
-                                                                                            WallJob job) {
+                                    blocks_at_once(kWallThreads,
+                                                   kLanes == kWarp ? 4 : 8)) void walk_edges_kernel(QueuedItems queued,
+                                                                                                    WallJob job) {
   const LaunchItems items = queued.in_turn();
   constexpr int kTeams = kWallThreads / kLanes, kRun = kWarp / kLanes, kRoom = 2560 / kTeams;
   constexpr int kRunRoom = kChosenTwice ? 640 : 1;
@@ -102,6 +108,8 @@ static __global__ __launch_bounds__(kWallThreads,
     };
     if constexpr (kChosenTwice)
       walk_edge(job, item, e, a, b, on, choose(choose_for_run(job, run, count, run_memory[warp], kRunRoom)));
+    else if constexpr (kLanes == kWarp)
+      walk_edge(job, item, e, a, b, on, HeldCandidates(job.features, choose(row_candidates(job.view, e.slot))));
     else
       walk_edge(job, item, e, a, b, on, choose(row_candidates(job.view, e.slot)));
   }

@@ -284,6 +284,7 @@ __device__ __forceinline__ uint32_t find_edges_to_walk(const WallJob &job, const
     const bool on = e0 + static_cast<uint32_t>(lane) < edges;
     const uint16_t edge = on ? scratch->edge[e0 + static_cast<uint32_t>(lane)] : uint16_t(0);
     const bool left = is_left_by_probes(job, *scratch, edge, on);
+    __syncwarp();                                       // each has read its own
     const uint32_t place = append_place(left, &walks);  // never beyond those looked at
     if (left) scratch->edge[place] = edge;
     __syncwarp();
@@ -324,24 +325,16 @@ __device__ __forceinline__ void list_walks(const WallJob &job, uint32_t walks, W
 
 // The same for those that the warps of a block have found of one leaf.
 __device__ __forceinline__ void list_walks_of_leaf(const WallJob &job, uint32_t own, const WallScratch &scratch) {
-  __shared__ uint32_t counts[kWallWarps];
+  __shared__ uint32_t words[kWallWarps];
   __shared__ unsigned long long base;
-  const uint32_t warp = threadIdx.x / kWarp;
-  if (lane_id() == 0) counts[warp] = own;
-  __syncthreads();
-  uint32_t before = 0, all = 0;
-#pragma unroll
-  for (uint32_t w = 0; w < kWallWarps; ++w) {
-    before += w < warp ? counts[w] : 0;
-    all += counts[w];
-  }
-  if (all == 0) return;
-  const uint32_t places = (all + job.walk_run - 1) / job.walk_run * job.walk_run;
+  const BlockSum sum = sum_of_block(own, words);
+  if (sum.all == 0) return;
+  const uint32_t places = (sum.all + job.walk_run - 1) / job.walk_run * job.walk_run;
   if (threadIdx.x == 0) base = atomicAdd(&job.counters->walks, static_cast<unsigned long long>(places));
   __syncthreads();
   for (uint32_t w = static_cast<uint32_t>(lane_id()); w < own; w += kWarp)
-    write_walk(job, base + before + w, scratch.walk(w));
-  for (uint32_t k = all + threadIdx.x; k < places; k += kWallThreads) write_walk(job, base + k, kNoWalk);
+    write_walk(job, base + sum.before + w, scratch.walk(w));
+  for (uint32_t k = sum.all + threadIdx.x; k < places; k += kWallThreads) write_walk(job, base + k, kNoWalk);
 }
 
 // Lists the edges of leaves that the probes nearest to their ends, as far as they are known, do not cover together. A
@@ -363,7 +356,7 @@ static __global__ __launch_bounds__(kWallThreads,
     for (uint32_t own = first + blockIdx.x; own < end; own += gridDim.x) {
       const uint32_t walks = find_edges_to_walk(job, WallRound(job, own, own + 1), warp, kWallWarps, &scratch);
       list_walks_of_leaf(job, walks, scratch);
-      __syncthreads();  // neither scratch nor counts are looked at any more
+      __syncthreads();  // neither scratch nor words are looked at any more
     }
   } else {
     const uint32_t warps = gridDim.x * kWallWarps, even = (end - first - 1) / warps + 1,
