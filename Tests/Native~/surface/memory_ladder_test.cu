@@ -195,9 +195,9 @@ TEST(GpuRooms, AreLearntOnce) {
   }
 }
 
-// Deep in a crowd atoms have no arcs. In runs, arcs get room for as many as there may be, and give back what is too
-// much; they must stay where they are, whatever blocks the arena has.
-TEST(GpuRooms, ArcsStayWhereTheyAreFoundInRuns) {
+// Deep in a crowd atoms have no arcs, and are buried. In runs, arcs get room for as many as there may be, and give back
+// what is too much; they must stay where they are, whatever blocks the arena has. And the caps are found once more.
+TEST(GpuRooms, InRunsArcsStayWhereTheyAreAndBuriedAtomsAreTheSame) {
   REQUIRE_DEVICE();
   using namespace quickses;
   std::vector<Sphere> spheres;
@@ -205,31 +205,54 @@ TEST(GpuRooms, ArcsStayWhereTheyAreFoundInRuns) {
   for (int x = 0; x < kEdge; ++x)
     for (int y = 0; y < kEdge; ++y)
       for (int z = 0; z < kEdge; ++z) spheres.push_back({glm::vec3(1.9f * x, 1.91f * y, 1.89f * z), 3.1f});
+  const uint32_t alone = static_cast<uint32_t>(spheres.size());
+  spheres.push_back({glm::vec3(1.92f * kEdge + 8.f, 0.f, 0.f), 3.1f});
   const SurfaceParameters parameters{1.4f, 1.4f, 0.5f, 3.1f};
-  const auto arcs_with = [&](const MemoryPlan &plan) {
+  struct Found {
+    std::vector<Arc> arcs;
+    std::vector<int32_t> caps;  // of each atom, or kBuriedAtom
+  };
+  const auto find_with = [&](const MemoryPlan &plan) {
     CudaExecutor executor(0);
     const DeviceGuard guard(0);
     CudaRooms rooms;
     Span<Sphere> atoms = executor.allocate<Sphere>(spheres.size());
     executor.upload(atoms.data, spheres.data(), spheres.size());
     const NeighborGridView grid =
-        build_neighbor_grid(executor, atoms, layout_cells(glm::vec3(-1.f), glm::vec3(1.92f * kEdge), 3.1f));
+        build_neighbor_grid(executor, atoms, layout_cells(glm::vec3(-1.f), glm::vec3(1.92f * kEdge + 9.f), 3.1f));
     SolventFeatures features;
     Backend<CudaExecutor>::find_solvent_features(executor, grid, parameters, plan, rooms, &features);
     // What comes behind the features may be written over.
     const Span<char> behind = executor.allocate<char>(size_t(1) << 20);
     executor.fill(behind, 0xff);
-    std::vector<Arc> arcs(features.arcs.size);
-    executor.fetch_all(arcs.data(), features.arcs.data, arcs.size());
-    return arcs;
+    Found found{std::vector<Arc>(features.arcs.size), std::vector<int32_t>(spheres.size())};
+    executor.fetch_all(found.arcs.data(), features.arcs.data, found.arcs.size());
+    std::vector<CapRange> ranges(spheres.size());
+    std::vector<uint32_t> order(spheres.size());
+    executor.fetch_all(ranges.data(), features.cap_ranges.data, ranges.size());
+    executor.fetch_all(order.data(), grid.order, order.size());
+    for (size_t k = 0; k < ranges.size(); ++k) found.caps[order[k]] = ranges[k].count;
+    return found;
   };
-  const std::vector<Arc> expected = arcs_with(kMemoryPlans[0]);
-  ASSERT_GT(expected.size(), 1000u);
+  const Found expected = find_with(kMemoryPlans[0]);
+  ASSERT_GT(expected.arcs.size(), 1000u);
+  // No probe of 1.4 Å gets in between balls that are so near to each other: those within touch none.
+  EXPECT_EQ(expected.caps[alone], 0);
+  for (int x = 0; x < kEdge; ++x)
+    for (int y = 0; y < kEdge; ++y)
+      for (int z = 0; z < kEdge; ++z) {
+        const auto is_within = [](int k) { return k > 1 && k < kEdge - 2; };
+        const bool is_at_face = x == 0 || y == 0 || z == 0 || x == kEdge - 1 || y == kEdge - 1 || z == kEdge - 1;
+        const int32_t caps = expected.caps[static_cast<size_t>((x * kEdge + y) * kEdge + z)];
+        if (is_within(x) && is_within(y) && is_within(z)) ASSERT_EQ(caps, kBuriedAtom) << x << " " << y << " " << z;
+        if (is_at_face) ASSERT_GT(caps, 0) << x << " " << y << " " << z;
+      }
   for (const MemoryPlan &plan : kMemoryPlans) {
     if (!plan.low_memory) continue;
-    const std::vector<Arc> arcs = arcs_with(plan);
-    ASSERT_EQ(arcs.size(), expected.size());
-    EXPECT_EQ(std::memcmp(arcs.data(), expected.data(), arcs.size() * sizeof(Arc)), 0);
+    const Found found = find_with(plan);
+    ASSERT_EQ(found.arcs.size(), expected.arcs.size());
+    EXPECT_EQ(std::memcmp(found.arcs.data(), expected.arcs.data(), found.arcs.size() * sizeof(Arc)), 0);
+    EXPECT_EQ(found.caps, expected.caps);
   }
 }
 
