@@ -25,8 +25,8 @@ struct CapJob {
   FeatureCounters *counters;
   CapRange *cap_ranges;
   Cap *caps;
-  uint32_t *
-      neighbors;  // per cap: the atom behind it; nullptr: only caps are wanted, of the exposed atoms; others are buried
+  // Per cap: the atom behind it. nullptr: only caps are wanted, of the exposed atoms; the others are marked as buried.
+  uint32_t *neighbors;
   uint32_t *circle_count;  // per atom of the run: circles it owns
   uint8_t *exposed;        // per atom
   uint32_t *long_atoms;    // those with more neighbours than a warp's rows hold

@@ -26,7 +26,7 @@ struct CircleJob {
   float max_arc_bound;
   FeatureRoom room;
   FeatureCounters *counters;
-  CapRange *cap_ranges;
+  CapRange *cap_ranges;  // in the end, buried atoms are marked there
   const Cap *caps;
   const uint32_t *neighbors;
   const uint32_t *circle_first;  // per atom of the run

@@ -52,7 +52,7 @@ static __global__ __launch_bounds__(kVertexThreads, 8) void halve_starts_kernel(
   const LaunchItems vertices = queued.in_turn();
   for_edges_of_vertices<false>(
       job, vertices, vertex_count(job), [](uint32_t place) { return place; },
-      [&](uint32_t k, const CutEdge &edge, const NearOfWarp<false> &near, const ListedCandidates &) {
+      [&](uint32_t k, const CutEdge &edge, const auto &near, const ListedCandidates &) {
         const Vec3<float> x = find_sign_change(job.features, near, edge, kStartHalvings);
         if (lane_id() == 0) store_start(job, job.first + k, x);
       });
@@ -63,7 +63,7 @@ static __global__ __launch_bounds__(kVertexThreads, 4) void place_on_edges_kerne
   const LaunchItems vertices = queued.in_turn();
   for_edges_of_vertices<true>(
       job, vertices, job.counts->on_edges.count, [&](uint32_t place) { return job.on_edges[place]; },
-      [&](uint32_t k, const CutEdge &edge, const NearOfWarp<true> &near, const ListedCandidates &all) {
+      [&](uint32_t k, const CutEdge &edge, const auto &near, const ListedCandidates &all) {
         const SurfacePoint s = place_on_edge(job.features, near, edge);
         const uint32_t owner = nearest_atom(job.features, shared<kWarp>(all), s.position);
         if (lane_id() == 0) finish_vertex(job, k, s, owner);

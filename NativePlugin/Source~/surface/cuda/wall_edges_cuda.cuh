@@ -284,8 +284,9 @@ __device__ __forceinline__ uint32_t find_edges_to_walk(const WallJob &job, const
     const bool on = e0 + static_cast<uint32_t>(lane) < edges;
     const uint16_t edge = on ? scratch->edge[e0 + static_cast<uint32_t>(lane)] : uint16_t(0);
     const bool left = is_left_by_probes(job, *scratch, edge, on);
-    __syncwarp();                                       // each has read its own
-    const uint32_t place = append_place(left, &walks);  // never beyond those looked at
+    // Never beyond those looked at, once each lane has read its own.
+    __syncwarp();
+    const uint32_t place = append_place(left, &walks);
     if (left) scratch->edge[place] = edge;
     __syncwarp();
   }
