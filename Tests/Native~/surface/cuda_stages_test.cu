@@ -345,6 +345,46 @@ TEST(CudaStages, SameBytesEveryTimeAndInSlices) {
   }
 }
 
+// Edges are walked by a warp each where they are few, by 8 lanes where they are more, and by 4 where they are many and
+// spacings not wide; from 1 Å on, what they look at is chosen twice. Walls are the same to the last one.
+TEST(CudaStages, WallsAreThoseOfFewAndOfManyEdges) {
+  REQUIRE_DEVICE();
+  const Molecule one = crambin();
+  Molecule many;
+  for (int copy = 0; copy < 125; ++copy)
+    for (const Sphere &a : one.atoms)
+      many.atoms.push_back({a.center + 48.f * glm::vec3(copy % 5, copy / 5 % 5, copy / 25), a.radius});
+  CudaExecutor &executor = *device();
+  const DeviceTable table(executor);
+  CudaStageTimer timer(executor);
+  for (float spacing : {0.5f, 1.f, 1.3f, 3.f}) {
+    SCOPED_TRACE(spacing);
+    const DeviceStages s = run_device_stages(executor, table, timer, many.atoms.data(), many.atoms.size(),
+                                             bounds_of(many), options(spacing));
+    const uint32_t count = s.bricks.count;
+    const auto marks_in_slices = [&](uint32_t slices) {
+      const auto mark = executor.arena().mark();
+      Span<uint64_t> marks = executor.allocate_zeros<uint64_t>(s.signs.size);
+      CudaRooms rooms;
+      for (uint32_t k = 0; k < slices; ++k) {
+        CudaCandidates own;
+        Backend<CudaExecutor>::mark_thin_walls(executor, s.features, s.bricks,
+                                               {count * k / slices, count * (k + 1) / slices}, rooms, own, s.signs.data,
+                                               marks.data);
+      }
+      std::vector<uint64_t> found = to_host(executor, marks.data, marks.size);
+      executor.arena().rewind(mark);
+      return found;
+    };
+    const std::vector<uint64_t> at_once = marks_in_slices(1);
+    int walls = 0;
+    for (uint64_t word : at_once) walls += popcount64(word);
+    EXPECT_GT(walls, 100);
+    EXPECT_EQ(at_once, marks_in_slices(6));
+    EXPECT_EQ(at_once, marks_in_slices(60));
+  }
+}
+
 // Compilers have got this wrong: ptxas 11.8 took (~word & 0xffff) != 0 for (word & 0xffff) != 0.
 TEST(CudaStages, BorderSignsAreThoseOfTheHost) {
   REQUIRE_DEVICE();

@@ -24,26 +24,19 @@ struct HeldCandidates {
 
 __device__ __forceinline__ DeepestAtom deepest_atom(const FeatureView &f, const HeldCandidates &held,
                                                     const Vec3<float> &x) {
-  NumberedValue best{-2.f * kFarAway, kNoAtom};  // its place in the list: of several, the first
-  const int count = held.listed.atom_count(), rank = held.rank();
-  if (rank < count) best = {ball_depth(held.ball, x), static_cast<uint32_t>(rank)};
-  for (int k = rank + kWarp; k < count; k += kWarp) {
-    const float depth = ball_depth(load(f.atoms.items + held.listed.atom(k)), x);
-    if (depth > best.value) best = {depth, static_cast<uint32_t>(k)};
-  }
-  best = warp_largest(best);
-  return {best.number == kNoAtom ? 0u : held.listed.atom(static_cast<int>(best.number)), best.value};
+  const int rank = held.rank();
+  NumberedValue best{kNoDepth, kNoAtom};
+  if (rank < held.listed.atom_count()) best = {ball_depth(held.ball, x), static_cast<uint32_t>(rank)};
+  meet_atoms(f, held.listed, rank + kWarp, x, &best);
+  return deepest_of_lanes(held.listed, best);
 }
 
 __device__ __forceinline__ NearestArc nearest_arc(const FeatureView &f, const HeldCandidates &held,
                                                   const Vec3<float> &x) {
+  const int rank = held.rank();
   NearestArc best;
-  const int count = held.listed.arc_count(), rank = held.rank();
-  if (rank < count) best.offer(static_cast<int>(held.listed.arc(rank)), arc_distance2(held.arc, x));
-  for (int k = rank + kWarp; k < count; k += kWarp) {
-    const int a = static_cast<int>(held.listed.arc(k));
-    best.offer(a, arc_distance2(load(f.arcs + a), x));
-  }
+  if (rank < held.listed.arc_count()) best.offer(static_cast<int>(held.listed.arc(rank)), arc_distance2(held.arc, x));
+  meet_arcs(f, held.listed, rank + kWarp, x, &best);
   return nearest_of_lanes<kWarp>(best, kFullWarp);
 }
 

@@ -11,8 +11,7 @@ namespace gpu {
 
 // kTogether: all lanes of the warp call the functions together. Else those of a team do, while others may be elsewhere;
 // then each team's turn comes after the others', which takes several times as long.
-// kAhead: the lists are in global memory, where numbers are asked for before they are needed.
-template <int kLanes, bool kTogether = false, bool kAhead = false>
+template <int kLanes, bool kTogether = false>
 struct LaneCandidates {
   const uint32_t *atoms;  // in any memory
   const uint32_t *arcs;
@@ -27,29 +26,52 @@ struct LaneCandidates {
 };
 
 // For functions that only some teams of a warp call.
-template <int kLanes, bool kAhead>
-__device__ __forceinline__ LaneCandidates<kLanes, false, kAhead> apart(const LaneCandidates<kLanes, true, kAhead> &c) {
+template <int kLanes>
+__device__ __forceinline__ LaneCandidates<kLanes> apart(const LaneCandidates<kLanes, true> &c) {
   return {c.atoms, c.arcs, c.atom_total, c.arc_total};
 }
 
-template <int kLanes, bool kTogether, bool kAhead>
-__device__ __forceinline__ DeepestAtom deepest_atom(const FeatureView &f,
-                                                    const LaneCandidates<kLanes, kTogether, kAhead> &candidates,
-                                                    const Vec3<float> &x) {
-  NumberedValue best{-2.f * kFarAway, kNoAtom};  // its place in the list: of several, the first
+constexpr float kNoDepth = -2.f * kFarAway;  // where there is no atom
+
+// The deepest atom for one lane, of those from place k on that are its own: of several, the first.
+template <int kLanes, bool kTogether>
+__device__ __forceinline__ void meet_atoms(const FeatureView &f, const LaneCandidates<kLanes, kTogether> &candidates,
+                                           int k, const Vec3<float> &x, NumberedValue *best) {
   const int count = candidates.atom_count();
-  int k = candidates.rank();
-  for (uint32_t next = kAhead && k < count ? candidates.atom(k) : 0; k < count; k += kLanes) {
-    const uint32_t i = kAhead ? next : candidates.atom(k);
-    if (kAhead && k + kLanes < count) next = candidates.atom(k + kLanes);
-    const float depth = ball_depth(load(f.atoms.items + i), x);
-    if (depth > best.value) best = {depth, static_cast<uint32_t>(k)};
+#pragma unroll 4
+  for (; k < count; k += kLanes) {
+    const float depth = ball_depth(load(f.atoms.items + candidates.atom(k)), x);
+    if (depth > best->value) *best = {depth, static_cast<uint32_t>(k)};
   }
+}
+// That of all lanes, by its place.
+template <int kLanes, bool kTogether>
+__device__ __forceinline__ DeepestAtom deepest_of_lanes(const LaneCandidates<kLanes, kTogether> &candidates,
+                                                        NumberedValue best) {
   best = warp_largest<kLanes>(best, candidates.lanes());
   return {best.number == kNoAtom ? 0u : candidates.atom(static_cast<int>(best.number)), best.value};
 }
+template <int kLanes, bool kTogether>
+__device__ __forceinline__ DeepestAtom deepest_atom(const FeatureView &f,
+                                                    const LaneCandidates<kLanes, kTogether> &candidates,
+                                                    const Vec3<float> &x) {
+  NumberedValue best{kNoDepth, kNoAtom};
+  meet_atoms(f, candidates, candidates.rank(), x, &best);
+  return deepest_of_lanes(candidates, best);
+}
 
-// The nearest arc of those that each of some lanes has found.
+// The nearest arc for one lane.
+template <int kLanes, bool kTogether>
+__device__ __forceinline__ void meet_arcs(const FeatureView &f, const LaneCandidates<kLanes, kTogether> &candidates,
+                                          int k, const Vec3<float> &x, NearestArc *best) {
+  const int count = candidates.arc_count();
+#pragma unroll 4
+  for (; k < count; k += kLanes) {
+    const int a = static_cast<int>(candidates.arc(k));
+    best->offer(a, arc_distance2(load(f.arcs + a), x));
+  }
+}
+// That of all lanes.
 template <int kLanes>
 __device__ __forceinline__ NearestArc nearest_of_lanes(NearestArc best, unsigned lanes) {
   if constexpr (kLanes == kWarp) {
@@ -69,24 +91,17 @@ __device__ __forceinline__ NearestArc nearest_of_lanes(NearestArc best, unsigned
   }
 }
 
-template <int kLanes, bool kTogether, bool kAhead>
+template <int kLanes, bool kTogether>
 __device__ __forceinline__ NearestArc nearest_arc(const FeatureView &f,
-                                                  const LaneCandidates<kLanes, kTogether, kAhead> &candidates,
+                                                  const LaneCandidates<kLanes, kTogether> &candidates,
                                                   const Vec3<float> &x) {
   NearestArc best;
-  const int count = candidates.arc_count();
-  int k = candidates.rank();
-  for (uint32_t next = kAhead && k < count ? candidates.arc(k) : 0; k < count; k += kLanes) {
-    const int a = static_cast<int>(kAhead ? next : candidates.arc(k));
-    if (kAhead && k + kLanes < count) next = candidates.arc(k + kLanes);
-    best.offer(a, arc_distance2(load(f.arcs + a), x));
-  }
+  meet_arcs(f, candidates, candidates.rank(), x, &best);
   return nearest_of_lanes<kLanes>(best, candidates.lanes());
 }
 
-template <int kLanes, bool kTogether, bool kAhead>
-__device__ __forceinline__ bool is_on_contact(const FeatureView &f,
-                                              const LaneCandidates<kLanes, kTogether, kAhead> &candidates,
+template <int kLanes, bool kTogether>
+__device__ __forceinline__ bool is_on_contact(const FeatureView &f, const LaneCandidates<kLanes, kTogether> &candidates,
                                               const DeepestAtom &deepest, const Vec3<float> &x) {
   CapRange range{0, kBuriedAtom};
   if (deepest.depth > -kFarAway) range = f.cap_ranges[deepest.atom];

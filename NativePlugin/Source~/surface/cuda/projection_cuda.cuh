@@ -54,7 +54,7 @@ __device__ __forceinline__ auto shared(const Candidates &all) {
   if constexpr (kLanes == 1)
     return all;
   else
-    return LaneCandidates<kLanes, true, true>{all.atoms, all.arcs, all.atom_total, all.arc_total};
+    return LaneCandidates<kLanes, true>{all.atoms, all.arcs, all.atom_total, all.arc_total};
 }
 __device__ __forceinline__ const ListedCandidates &apart(const ListedCandidates &all) { return all; }
 

@@ -17,7 +17,7 @@ __device__ __forceinline__ NearestProbe nearest_probe_if(bool asks, const Featur
   DeepestAtom deepest = deepest_atom(f, near, x);
   const bool told = tells_probe(f.parameters, deepest);
   const NearestProbe said = told_probe(f.parameters, deepest, x);
-  if (told) deepest.depth = -2.f * kFarAway;
+  if (told) deepest.depth = kNoDepth;
   const bool contact = is_on_contact(f, near, deepest, x);
   if (told || contact) near.arc_total = 0;
   const NearestArc nearest = nearest_arc(f, near, x);
@@ -66,22 +66,34 @@ __device__ __forceinline__ float walk_reach(const WallJob &job, int step) {
   return 0.5f * wall_step_length(step) * job.reach.spacing + 2.f * job.reach.slack;
 }
 
-// What can decide about any edge of a run, which are all of one leaf.
-__device__ __forceinline__ LaneCandidates<kWarp, true> choose_for_run(const WallJob &job, const uint64_t *run,
-                                                                      int count, uint32_t *room, int most) {
-  const uint64_t own = run[lane_id() < count ? lane_id() : 0];
-  const WallEdge e = edge_to_walk(job, own == kNoWalk ? run[0] : own);
-  const Vec3<float> middle = (wall_point(job, e.brick, e.first()) + wall_point(job, e.brick, e.second())) * 0.5f;
-  const Vec3<float> low(-warp_maximum(-middle.x), -warp_maximum(-middle.y), -warp_maximum(-middle.z)),
-      high(warp_maximum(middle.x), warp_maximum(middle.y), warp_maximum(middle.z)), center = (low + high) * 0.5f;
-  const float reach = square_root(length_squared(high - center)) + walk_reach(job, kWallSteps - 1) + job.reach.slack;
-  return choose_near<kWarp>(job.features, row_candidates(job.view, e.slot), center, reach, room, most);
+// What can decide about any of the edges, each of which several lanes of a warp have: chosen by all lanes, for those of
+// one row at a time. A choice that there is no room for is the row itself, and takes none.
+__device__ __forceinline__ LaneCandidates<kWarp, true> choose_for_run(const WallJob &job, const WallEdge &e,
+                                                                      const Vec3<float> &middle, uint32_t *room,
+                                                                      int most) {
+  LaneCandidates<kWarp, true> own{};
+  const uint32_t row = e.slot >> job.view.row_shift;
+  for (unsigned left = kFullWarp; left != 0;) {
+    const uint32_t slot = __shfl_sync(kFullWarp, e.slot, lowest_bit32(left));
+    const bool mine = row == slot >> job.view.row_shift;
+    const auto highest = [&](float x) { return warp_maximum(mine ? x : -kFarAway); };
+    const Vec3<float> low(-highest(-middle.x), -highest(-middle.y), -highest(-middle.z)),
+        high(highest(middle.x), highest(middle.y), highest(middle.z)), center = (low + high) * 0.5f;
+    const float reach = square_root(length_squared(high - center)) + walk_reach(job, kWallSteps - 1) + job.reach.slack;
+    const auto chosen = choose_near<kWarp>(job.features, row_candidates(job.view, slot), center, reach, room, most);
+    if (mine) own = chosen;
+    if (chosen.atoms == room) {
+      room += chosen.atom_total + chosen.arc_total;
+      most -= chosen.atom_total + chosen.arc_total;
+    }
+    left &= ~__ballot_sync(kFullWarp, mine);
+  }
+  return own;
 }
 
 // Some lanes for each edge that is left, so that a warp takes a run of as many as it has teams. They wait for memory:
-// more blocks at a time are worth registers, but for a warp for each, which few edges have. Where leaves have many
-// edges, as at wide spacings, what can decide about any edge of a run is chosen first, and from that what can decide
-// about each.
+// more blocks at a time are worth registers, but for a warp for each, which few edges have. Where rows are long, what
+// can decide about any edge of a run is chosen first, and from that what can decide about each.
 template <int kLanes, bool kChosenTwice>
 static __global__ __launch_bounds__(kWallThreads,
                                     blocks_at_once(kWallThreads,
@@ -96,18 +108,16 @@ static __global__ __launch_bounds__(kWallThreads,
   const int team = static_cast<int>(threadIdx.x) / kLanes, warp = team / kRun, n = team % kRun;
   for (size_t first = items.first + (blockIdx.x * size_t(kWallWarps) + static_cast<size_t>(warp)) * kRun; first < total;
        first += size_t(gridDim.x) * kWallWarps * kRun) {
-    const uint64_t *const run = job.walks + first;
-    if (*run == kNoWalk) continue;
-    const int count = total - first < kRun ? static_cast<int>(total - first) : kRun;
-    const bool on = n < count && run[n] != kNoWalk;
-    const uint64_t *const item = run + (on ? n : 0);
+    const bool on = static_cast<size_t>(n) < total - first;
+    const uint64_t *const item = job.walks + first + (on ? n : 0);
     const WallEdge e = edge_to_walk(job, *item);
-    const Vec3<float> a = wall_point(job, e.brick, e.first()), b = wall_point(job, e.brick, e.second());
+    const Vec3<float> a = wall_point(job, e.brick, e.first()), b = wall_point(job, e.brick, e.second()),
+                      middle = (a + b) * 0.5f;
     const auto choose = [&](const auto &all) {
-      return choose_near<kLanes>(job.features, all, (a + b) * 0.5f, walk_reach(job, e.step), edge_memory[team], kRoom);
+      return choose_near<kLanes>(job.features, all, middle, walk_reach(job, e.step), edge_memory[team], kRoom);
     };
     if constexpr (kChosenTwice)
-      walk_edge(job, item, e, a, b, on, choose(choose_for_run(job, run, count, run_memory[warp], kRunRoom)));
+      walk_edge(job, item, e, a, b, on, choose(choose_for_run(job, e, middle, run_memory[warp], kRunRoom)));
     else if constexpr (kLanes == kWarp)
       walk_edge(job, item, e, a, b, on, HeldCandidates(job.features, choose(row_candidates(job.view, e.slot))));
     else
@@ -148,8 +158,6 @@ void mark_thin_walls(E &executor, const FeatureView &features, const BrickSet &b
   WallCounters found{};
   const double usual_walks = walked_edges(features.parameters) * static_cast<double>(leaves);
   job.walk_room = static_cast<unsigned long long>(rooms.walked_edges * usual_walks);
-  constexpr int kLongWalkRun = 8;
-  job.walk_run = walked_edges(features.parameters) > kLongWalkRun ? kLongWalkRun : 1;
   for (;;) {
     const auto before_walks = executor.arena().mark();
     job.walks = executor.template allocate<uint64_t>(static_cast<size_t>(job.walk_room)).data;
@@ -174,19 +182,23 @@ void mark_thin_walls(E &executor, const FeatureView &features, const BrickSet &b
   const auto walk = [&](size_t lanes, auto kernel) {
     executor.launch("walk_edges", kernel, static_cast<size_t>(found.walks),
                     LaunchShape{kWallThreads, kWallThreads / lanes,
-                                look / kWarp + (2 + kMostWallLooks) * (64 + look / lanes), blocks_in_turns(executor)},
+                                look / lanes + (2 + kMostWallLooks) * (64 + look / lanes), blocks_in_turns(executor)},
                     job);
   };
-  // Few edges leave a GPU idle with few lanes each; of many edges' lanes fewer are idle then.
+  // Few edges leave a GPU idle with few lanes each. Of many edges' lanes fewer are idle then, unless rows are so long
+  // that there is much to look at for each. And it pays to choose from a row twice, unless it is short. As the spacing
+  // tells how long they are.
+  constexpr double kLongRow = 100, kVeryLongRow = 500;
+  const bool by_bricks = candidates.view.row_shift == kRowOfBrick;
+  const double row = listed_candidates(features.parameters, by_bricks ? kBrickEdge : kLeafEdge);
+  const bool twice = row > kLongRow;
   const auto are_many = [&](size_t lanes) { return found.walks * lanes > executor.multiprocessors() * kFullThreads; };
   if (!are_many(kWarp))
     walk(kWarp, walk_edges_kernel<kWarp, false>);
-  else if (job.walk_run > 1)
-    walk(kWarp / kLongWalkRun, walk_edges_kernel<kWarp / kLongWalkRun, true>);
-  else if (!are_many(4))
-    walk(8, walk_edges_kernel<8, false>);
+  else if (are_many(4) && row < kVeryLongRow)
+    walk(4, twice ? walk_edges_kernel<4, true> : walk_edges_kernel<4, false>);
   else
-    walk(4, walk_edges_kernel<4, false>);
+    walk(8, twice ? walk_edges_kernel<8, true> : walk_edges_kernel<8, false>);
   executor.arena().rewind(mark);
 }
 

@@ -219,9 +219,9 @@ static __global__ __launch_bounds__(
   const uint32_t slot = job.view.slot_of(leaf.brick, leaf.leaf);
   ListedCandidates all = row_candidates(job.view, slot);
   if (leaf.count == 0) all.atom_total = all.arc_total = 0;
-  // The numbers of the first arcs are asked for before the atoms are looked at.
+  // The numbers of some arcs are asked for ahead, of the first ones before the atoms are looked at.
   const auto arc_number = [&](int k0) { return k0 + rank < all.arc_total ? all.arc(k0 + rank) : 0; };
-  constexpr int kAhead = 2;
+  constexpr int kAhead = kLanes == kWarp ? 4 : 2;
   uint32_t ahead[kAhead];
 #pragma unroll
   for (int c = 0; c < kAhead; ++c) ahead[c] = arc_number(c * kLanes);
@@ -240,24 +240,29 @@ static __global__ __launch_bounds__(
       [&](bool chosen, const Sphere &, uint32_t atom) { put(chosen, atom); });
   const int atoms = listed - 1;
   const float radius = square_root(length_squared(half)), limit = job.reach.start_reach;
-  const auto choose_arc = [&](bool on, uint32_t a) {
-    bool keep = false;
-    if (on) {
-      const Sphere ball = load(f.arc_bounds.items + a);
+  for (int k0 = 0; holds_for_any_team<kLanes>(k0 < all.arc_total); k0 += kAhead * kLanes) {
+    uint32_t arc[kAhead];
+    bool keep[kAhead];
+#pragma unroll
+    for (int c = 0; c < kAhead; ++c) {
+      arc[c] = ahead[c];
+      keep[c] = k0 + c * kLanes + rank < all.arc_total;
+      if (!keep[c]) continue;
+      const Sphere ball = load(f.arc_bounds.items + arc[c]);
       const float near = ball.radius + limit;
       const Vec3<float> d(fmaxf(0.f, absolute(ball.center.x - center.x) - half.x),
                           fmaxf(0.f, absolute(ball.center.y - center.y) - half.y),
                           fmaxf(0.f, absolute(ball.center.z - center.z) - half.z));
-      if (length_squared(d) <= near * near)
-        keep = arc_distance2(load(f.arcs + a), center) <= (limit + radius) * (limit + radius);
+      keep[c] = length_squared(d) <= near * near;
     }
-    put(keep, a);
-  };
 #pragma unroll
-  for (int c = 0; c < kAhead; ++c)
-    if (holds_for_any_team<kLanes>(c * kLanes < all.arc_total)) choose_arc(c * kLanes + rank < all.arc_total, ahead[c]);
-  for (int k0 = kAhead * kLanes; holds_for_any_team<kLanes>(k0 < all.arc_total); k0 += kLanes)
-    choose_arc(k0 + rank < all.arc_total, arc_number(k0));
+    for (int c = 0; c < kAhead; ++c) ahead[c] = arc_number(k0 + (kAhead + c) * kLanes);
+#pragma unroll
+    for (int c = 0; c < kAhead; ++c) {
+      if (keep[c]) keep[c] = arc_distance2(load(f.arcs + arc[c]), center) <= (limit + radius) * (limit + radius);
+      put(keep[c], arc[c]);
+    }
+  }
   if (leaf.count == 0) return;
   const bool fits = listed <= room;
   if (fits && rank == 0) list[0] = static_cast<uint32_t>(atoms) | static_cast<uint32_t>(listed - 1 - atoms) << 16;

@@ -33,10 +33,7 @@ struct WallJob {
   uint64_t *edges;   // by that number, kWallSteps words each: those that may be walls
   uint64_t *walks;   // 64 * kWallSteps * number of the leaf + 64 * step + bit
   unsigned long long walk_room;
-  uint32_t walk_run;  // those of a leaf take whole runs of so many places; kNoWalk in the rest
 };
-
-constexpr uint64_t kNoWalk = ~uint64_t(0);
 
 constexpr int kWallThreads = 128;
 constexpr int kWallWarps = kWallThreads / kWarp;
@@ -166,10 +163,10 @@ struct WallRound {
 };
 static_assert(kRoundStarts >= 64, "there is room for the first ends of any leaf");
 
-// A first end: its leaf, of the round and of the slice, where that one's first ends begin, and its bit.
+// A first end: its leaf, where that one's first ends begin and how many they are, and its bit.
 struct WallStart {
   uint32_t slot;
-  uint8_t leaf, first, count, bit;
+  uint8_t first, count, bit;
 };
 constexpr int kStepUnit = kRoundStarts;
 // What a warp knows of its round.
@@ -178,12 +175,9 @@ struct WallScratch {
   uint32_t decider[kRoundStarts];
   WallStart start[kRoundStarts];
   uint16_t edge[kRoundStarts * kWallSteps];  // number of the first end, and the step in kStepUnit
-  uint32_t leaf_walks[kRoundLeaves];         // edges that are left
-  int walk_shift[kRoundLeaves];              // from their place in the round to the one in the list
 
-  __device__ __forceinline__ WallStart start_of(uint32_t k) const { return start[edge[k] % kStepUnit]; }
   __device__ __forceinline__ uint64_t walk(uint32_t k) const {
-    const WallStart s = start_of(k);
+    const WallStart s = start[edge[k] % kStepUnit];
     return static_cast<uint64_t>(s.slot) * (kWallSteps * 64) + edge[k] / kStepUnit * 64u + s.bit;
   }
 };
@@ -266,7 +260,7 @@ __device__ __forceinline__ uint32_t find_edges_to_walk(const WallJob &job, const
     const int count = popcount64(points), first = __shfl_sync(kFullWarp, round.starts_with, leaf) - count;
     uint32_t left = 0;
     if (n < round.starts) {
-      const WallStart start{slot, static_cast<uint8_t>(leaf), static_cast<uint8_t>(first), static_cast<uint8_t>(count),
+      const WallStart start{slot, static_cast<uint8_t>(first), static_cast<uint8_t>(count),
                             static_cast<uint8_t>(nth_bit64(points, n - first))};
       scratch->start[n] = start;
       left = uncovered_steps(job, start, n, scratch);
@@ -297,31 +291,12 @@ __device__ __forceinline__ void write_walk(const WallJob &job, unsigned long lon
   if (place < job.walk_room) job.walks[place] = walk;
 }
 
-// Puts the edges that are left of a round behind those of others: those of a leaf in whole runs.
-__device__ __forceinline__ void list_walks(const WallJob &job, uint32_t walks, WallScratch *scratch) {
-  const uint32_t run = job.walk_run, lane = static_cast<uint32_t>(lane_id());
-  if (lane < kRoundLeaves) scratch->leaf_walks[lane] = 0;
-  __syncwarp();
-  for (uint32_t w = lane; w < walks; w += kWarp) atomicAdd(&scratch->leaf_walks[scratch->start_of(w).leaf], 1u);
-  __syncwarp();
-  const uint32_t own = lane < kRoundLeaves ? scratch->leaf_walks[lane] : 0, places = (own + run - 1) / run * run;
-  const uint32_t with_own = warp_inclusive_sum(own, lane_id()), places_with = warp_inclusive_sum(places, lane_id());
-  if (lane < kRoundLeaves)
-    scratch->walk_shift[lane] = static_cast<int>(places_with - places) - static_cast<int>(with_own - own);
+// Puts the edges that are left of a round behind those of others.
+__device__ __forceinline__ void list_walks(const WallJob &job, uint32_t walks, const WallScratch &scratch) {
   unsigned long long base = 0;
-  if (lane == kWarp - 1) base = atomicAdd(&job.counters->walks, static_cast<unsigned long long>(places_with));
-  base = __shfl_sync(kFullWarp, base, kWarp - 1);
-  __syncwarp();
-  const auto write = [&](uint32_t place, uint64_t walk) { write_walk(job, base + place, walk); };
-  for (uint32_t w = lane; w < walks; w += kWarp) {
-    const WallStart start = scratch->start_of(w);
-    const uint32_t place = w + static_cast<uint32_t>(scratch->walk_shift[start.leaf]);
-    write(place, scratch->walk(w));
-    const bool is_last = w + 1 == walks || scratch->start_of(w + 1).leaf != start.leaf;
-    if (!is_last) continue;
-    const uint32_t filled = scratch->leaf_walks[start.leaf] % run;
-    for (uint32_t k = filled; k > 0 && k < run; ++k) write(place + 1 + k - filled, kNoWalk);
-  }
+  if (lane_id() == 0) base = atomicAdd(&job.counters->walks, static_cast<unsigned long long>(walks));
+  base = __shfl_sync(kFullWarp, base, 0);
+  for (uint32_t w = static_cast<uint32_t>(lane_id()); w < walks; w += kWarp) write_walk(job, base + w, scratch.walk(w));
 }
 
 // The same for those that the warps of a block have found of one leaf.
@@ -330,12 +305,10 @@ __device__ __forceinline__ void list_walks_of_leaf(const WallJob &job, uint32_t 
   __shared__ unsigned long long base;
   const BlockSum sum = sum_of_block(own, words);
   if (sum.all == 0) return;
-  const uint32_t places = (sum.all + job.walk_run - 1) / job.walk_run * job.walk_run;
-  if (threadIdx.x == 0) base = atomicAdd(&job.counters->walks, static_cast<unsigned long long>(places));
+  if (threadIdx.x == 0) base = atomicAdd(&job.counters->walks, static_cast<unsigned long long>(sum.all));
   __syncthreads();
   for (uint32_t w = static_cast<uint32_t>(lane_id()); w < own; w += kWarp)
     write_walk(job, base + sum.before + w, scratch.walk(w));
-  for (uint32_t k = sum.all + threadIdx.x; k < places; k += kWallThreads) write_walk(job, base + k, kNoWalk);
 }
 
 // Lists the edges of leaves that the probes nearest to their ends, as far as they are known, do not cover together. A
@@ -367,7 +340,7 @@ static __global__ __launch_bounds__(kWallThreads,
       for (uint32_t next = own; next < own_end;) {
         const WallRound round(job, next, own_end);
         const uint32_t walks = find_edges_to_walk(job, round, 0, 1, &scratch);
-        if (walks > 0) list_walks(job, walks, &scratch);
+        if (walks > 0) list_walks(job, walks, scratch);
         next += static_cast<uint32_t>(round.leaves);
         __syncwarp();  // the scratch is not looked at any more
       }
