@@ -7,6 +7,7 @@
 #include <cuda_runtime.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 
 using namespace surface_fixture;
@@ -121,6 +122,31 @@ TEST(DeviceMesh, IsTheSameAsOnTheHost) {
       expect_same_mesh(device, host);
       expect_same_mesh(device, expected);
     }
+  }
+}
+
+// What goes to the host does so array by array, or all in one go where it is at most 1 MiB; triangles apart where they
+// are more than a few thousand.
+TEST(DeviceMesh, IsBroughtWholeWhateverItsSize) {
+  REQUIRE_DEVICE();
+  const Context context(0, 0, QSES_BACKEND_CUDA);
+  set_atoms(context, crambin());
+  for (const qses_vertex_layout layout : {QSES_VERTICES_SEPARATE, QSES_VERTICES_INTERLEAVED, QSES_VERTICES_COMPACT}) {
+    constexpr size_t kOneGo = size_t(1) << 20;
+    size_t least = ~size_t(0), most = 0;
+    for (double spacing = 1.6; spacing > 0.21; spacing *= 0.93) {
+      SCOPED_TRACE(spacing);
+      qses_settings s = settings(spacing);
+      s.vertex_layout = layout;
+      s.delivery = QSES_DELIVERY_BOTH;
+      const qses_mesh host = compute_view(context, s);
+      expect_same_mesh(collect_device(context), host);
+      const size_t bytes = host.vertex_count * (size_t(host.vertex_bytes ? host.vertex_bytes : 24) + sizeof(uint32_t));
+      least = std::min(least, bytes);
+      most = std::max(most, bytes);
+    }
+    EXPECT_LT(least, kOneGo / 4);
+    EXPECT_GT(most, kOneGo + kOneGo / 4);
   }
 }
 
