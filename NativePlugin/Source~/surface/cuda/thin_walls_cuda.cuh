@@ -91,19 +91,20 @@ __device__ __forceinline__ LaneCandidates<kWarp, true> choose_for_run(const Wall
   return own;
 }
 
+constexpr int kRunRoom = 640;  // for what is chosen for a run
+
 // Some lanes for each edge that is left, so that a warp takes a run of as many as it has teams. They wait for memory:
 // more blocks at a time are worth registers, but for a warp for each, which few edges have. Where rows are long, what
 // can decide about any edge of a run is chosen first, and from that what can decide about each.
-template <int kLanes, bool kChosenTwice>
+template <int kLanes>
 static __global__ __launch_bounds__(kWallThreads,
                                     blocks_at_once(kWallThreads,
                                                    kLanes == kWarp ? 4 : 8)) void walk_edges_kernel(QueuedItems queued,
                                                                                                     WallJob job) {
   const LaunchItems items = queued.in_turn();
   constexpr int kTeams = kWallThreads / kLanes, kRun = kWarp / kLanes, kRoom = 2560 / kTeams;
-  constexpr int kRunRoom = kChosenTwice ? 640 : 1;
   __shared__ uint32_t edge_memory[kTeams][kRoom];
-  __shared__ uint32_t run_memory[kWallWarps][kRunRoom];
+  extern __shared__ uint32_t run_memory[];  // run_room for each warp
   const size_t walks = job.counters->walks, total = walks < items.last ? walks : items.last;
   const int team = static_cast<int>(threadIdx.x) / kLanes, warp = team / kRun, n = team % kRun;
   for (size_t first = items.first + (blockIdx.x * size_t(kWallWarps) + static_cast<size_t>(warp)) * kRun; first < total;
@@ -116,12 +117,14 @@ static __global__ __launch_bounds__(kWallThreads,
     const auto choose = [&](const auto &all) {
       return choose_near<kLanes>(job.features, all, middle, walk_reach(job, e.step), edge_memory[team], kRoom);
     };
-    if constexpr (kChosenTwice)
-      walk_edge(job, item, e, a, b, on, choose(choose_for_run(job, e, middle, run_memory[warp], kRunRoom)));
-    else if constexpr (kLanes == kWarp)
+    if constexpr (kLanes == kWarp) {
       walk_edge(job, item, e, a, b, on, HeldCandidates(job.features, choose(row_candidates(job.view, e.slot))));
-    else
-      walk_edge(job, item, e, a, b, on, choose(row_candidates(job.view, e.slot)));
+    } else {
+      const auto near = job.run_room > 0
+                            ? choose(choose_for_run(job, e, middle, run_memory + warp * job.run_room, job.run_room))
+                            : choose(row_candidates(job.view, e.slot));
+      walk_edge(job, item, e, a, b, on, near);
+    }
   }
 }
 
@@ -179,26 +182,24 @@ void mark_thin_walls(E &executor, const FeatureView &features, const BrickSet &b
     rooms.walked_edges = std::max(rooms.walked_edges, kRoomToSpare * static_cast<double>(found.walks) / usual_walks);
     executor.fill(Span<unsigned long long>{&counters->walks, 1}, 0);
   }
-  const auto walk = [&](size_t lanes, auto kernel) {
-    executor.launch("walk_edges", kernel, static_cast<size_t>(found.walks),
-                    LaunchShape{kWallThreads, kWallThreads / lanes,
-                                look / lanes + (2 + kMostWallLooks) * (64 + look / lanes), blocks_in_turns(executor)},
-                    job);
-  };
   // Few edges leave a GPU idle with few lanes each. Of many edges' lanes fewer are idle then, unless rows are so long
   // that there is much to look at for each. And it pays to choose from a row twice, unless it is short. As the spacing
   // tells how long they are.
   constexpr double kLongRow = 100, kVeryLongRow = 500;
   const bool by_bricks = candidates.view.row_shift == kRowOfBrick;
   const double row = listed_candidates(features.parameters, by_bricks ? kBrickEdge : kLeafEdge);
-  const bool twice = row > kLongRow;
   const auto are_many = [&](size_t lanes) { return found.walks * lanes > executor.multiprocessors() * kFullThreads; };
-  if (!are_many(kWarp))
-    walk(kWarp, walk_edges_kernel<kWarp, false>);
-  else if (are_many(4) && row < kVeryLongRow)
-    walk(4, twice ? walk_edges_kernel<4, true> : walk_edges_kernel<4, false>);
-  else
-    walk(8, twice ? walk_edges_kernel<8, true> : walk_edges_kernel<8, false>);
+  const size_t lanes = !are_many(kWarp) ? kWarp : are_many(4) && row < kVeryLongRow ? 4 : 8;
+  job.run_room = lanes < kWarp && row > kLongRow ? kRunRoom : 0;
+  executor.launch(
+      "walk_edges",
+      lanes == kWarp ? walk_edges_kernel<kWarp>
+      : lanes == 8   ? walk_edges_kernel<8>
+                     : walk_edges_kernel<4>,
+      static_cast<size_t>(found.walks),
+      LaunchShape{kWallThreads, kWallThreads / lanes, look / lanes + (2 + kMostWallLooks) * (64 + look / lanes),
+                  blocks_in_turns(executor), kWallWarps * sizeof(uint32_t) * static_cast<size_t>(job.run_room)},
+      job);
   executor.arena().rewind(mark);
 }
 

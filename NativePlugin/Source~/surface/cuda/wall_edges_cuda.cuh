@@ -33,6 +33,7 @@ struct WallJob {
   uint64_t *edges;   // by that number, kWallSteps words each: those that may be walls
   uint64_t *walks;   // 64 * kWallSteps * number of the leaf + 64 * step + bit
   unsigned long long walk_room;
+  int run_room;  // of shared memory for what edges of a warp choose together; 0: they do not
 };
 
 constexpr int kWallThreads = 128;
