@@ -75,7 +75,7 @@ __device__ __forceinline__ DeepestAtom choose_deepest_atoms(const FeatureView &f
     uint32_t number;
   };
   const auto look_at = [&](uint32_t k) {
-    Looked atom{{glm::vec3(0.f), 0.f}, -2.f * kFarAway, kNoAtom};
+    Looked atom{{glm::vec3(0.f), 0.f}, kNoDepth, kNoAtom};
     if (k < count) {
       atom.number = atom_at(k);
       atom.ball = load(f.atoms.items + atom.number);
@@ -87,7 +87,7 @@ __device__ __forceinline__ DeepestAtom choose_deepest_atoms(const FeatureView &f
   constexpr uint32_t kStep = kLanes, kHeld = 2;
   const uint32_t rank = static_cast<uint32_t>(rank_in_team<kLanes>());
   Looked held[kHeld];
-  NumberedValue best{-2.f * kFarAway, kNoAtom};
+  NumberedValue best{kNoDepth, kNoAtom};
   const auto meet = [&](const Looked &atom) {
     if (atom.depth > best.value) best = {atom.depth, atom.number};
   };

@@ -30,7 +30,7 @@ struct GatherJob {
 template <int kLanes>
 __device__ __forceinline__ bool uniform_leaf_inside(const GatherJob &job, const uint32_t *atoms, uint32_t count,
                                                     const Vec3<float> &center) {
-  NumberedValue deepest{-2.f * kFarAway, kNoAtom};
+  NumberedValue deepest{kNoDepth, kNoAtom};
   for (uint32_t k = static_cast<uint32_t>(rank_in_team<kLanes>()); k < count; k += kLanes) {
     const uint32_t i = atoms[k];  // this kernel wrote them
     const float depth = ball_depth(load(job.features.atoms.items + i), center);

@@ -31,8 +31,6 @@ __device__ __forceinline__ LaneCandidates<kLanes> apart(const LaneCandidates<kLa
   return {c.atoms, c.arcs, c.atom_total, c.arc_total};
 }
 
-constexpr float kNoDepth = -2.f * kFarAway;  // where there is no atom
-
 // The deepest atom for one lane, of those from place k on that are its own: of several, the first.
 template <int kLanes, bool kTogether>
 __device__ __forceinline__ void meet_atoms(const FeatureView &f, const LaneCandidates<kLanes, kTogether> &candidates,

@@ -236,7 +236,7 @@ static __global__ __launch_bounds__(
   const float move = kStartReach * job.reach.spacing;
   choose_deepest_atoms<kLanes>(
       f, static_cast<uint32_t>(all.atom_total), [&](uint32_t k) { return all.atom(static_cast<int>(k)); }, center,
-      {half.x + move, half.y + move, half.z + move}, -2.f * kFarAway, job.reach.slack,
+      {half.x + move, half.y + move, half.z + move}, kNoDepth, job.reach.slack,
       [&](bool chosen, const Sphere &, uint32_t atom) { put(chosen, atom); });
   const int atoms = listed - 1;
   const float radius = square_root(length_squared(half)), limit = job.reach.start_reach;

@@ -14,7 +14,7 @@ QSES_FN uint32_t nearest_grid_atom(const GridField &f, const Vec3<float> &x, flo
   const float reach = f.parameters.max_radius + margin;
   const Vec3<float> r(reach, reach, reach);
   const CellBox box = cells_around(f.atoms.cells, x - r, x + r);
-  float depth = met.first > 0 ? ball_depth(f.atoms.items[best], x) : -2.f * kFarAway;
+  float depth = met.first > 0 ? ball_depth(f.atoms.items[best], x) : kNoDepth;
   for (int z = box.z0; z <= box.z1; ++z)
     for (int y = box.y0; y <= box.y1; ++y) {
       const ItemRun run = met.cut(f.atoms.run(box.x0, box.x1, y, z));

@@ -63,13 +63,14 @@ QSES_FN T offset_length(const Sphere &ball, T depth) {
 
 // The atom whose ball the point is deepest in: also the one whose van der Waals surface is nearest. Candidates:
 // atom_count(), atom(k) -> atom number, arc_count(), arc(k) -> arc number.
+constexpr float kNoDepth = -2.f * kFarAway;  // where there is no atom
 struct DeepestAtom {
   uint32_t atom;
   float depth;
 };
 template <class Candidates>
 QSES_FN DeepestAtom deepest_atom(const FeatureView &f, const Candidates &candidates, const Vec3<float> &x) {
-  DeepestAtom best{0, -2.f * kFarAway};
+  DeepestAtom best{0, kNoDepth};
   const int atoms = candidates.atom_count();
   for (int k = 0; k < atoms; ++k) {
     const uint32_t i = candidates.atom(k);
