@@ -267,6 +267,7 @@ class CpuExecutor {
     return false;
   }
   void open_counts(uint64_t, bool = false) {}
+  void close_counts() {}
   bool has_anticipated() const { return false; }
   void turn_counts_to(float, uint32_t = 0) {}
   void hand_over() {}
@@ -292,6 +293,11 @@ class CpuExecutor {
   void fetch_each(const T *const *sources, T *values, size_t n) {
     for (size_t k = 0; k < n; ++k) values[k] = *sources[k];
   }
+  template <class T>
+  const T *lend(const T *host) {
+    return host;
+  }
+  void end_lending() {}
   template <class T>
   void upload(T *destination, const T *host, size_t n) {
     if (n) std::memcpy(destination, host, n * sizeof(T));

@@ -38,23 +38,26 @@ class CudaCounts {
     anticipation_.open(kind);
     if (!anticipation_.is_open()) return {};
     used_ = zeros_used_ = 0;
-    return {on_device_, kBytes + written_};
+    return written();
   }
+  // What is no longer zero.
+  Span<unsigned char> written() const { return {on_device_, written_}; }
   void note_zeros() { written_ = 0; }
   // That may not have been done.
-  void doubt_zeros() { written_ = kZeroBytes; }
+  void doubt_zeros() { written_ = kDeviceBytes; }
   // Its memory for zeros, or nullptr if there is too little left.
   void *take_zeros(size_t bytes) {
     bytes = padded(bytes);
     if (!anticipation_.is_open() || bytes > kZeroBytes - zeros_used_) return nullptr;
     zeros_used_ += bytes;
-    written_ = std::max(written_, zeros_used_);
+    written_ = std::max(written_, kBytes + zeros_used_);
     return on_device_ + kBytes + zeros_used_ - bytes;
   }
   template <class T>
   T *take() {
     if (!anticipation_.is_open() || used_ + Anticipation::kMostBytes > kBytes) return nullptr;
     used_ += padded(sizeof(T));
+    written_ = std::max(written_, used_);
     return reinterpret_cast<T *>(on_device_ + used_ - padded(sizeof(T)));
   }
   // Whether they were taken here.
@@ -101,7 +104,7 @@ class CudaCounts {
   GrowingBuffer<DeviceMemory> memory_;
   unsigned char *on_device_ = nullptr;  // there
   size_t used_ = 0, zeros_used_ = 0;    // by this frame
-  size_t written_ = kZeroBytes;         // behind the counts: so much may not be zero any more
+  size_t written_ = kDeviceBytes;       // so much may not be zero any more
   PinnedBuffer on_host_;
   cudaEvent_t sent_ = nullptr;
   bool is_sent_ = false;

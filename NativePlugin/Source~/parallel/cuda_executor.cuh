@@ -208,10 +208,14 @@ class CudaExecutor : public CudaQueue {
   void open_counts(uint64_t kind, bool is_short = false) {
     run_ahead(is_short, kind != 0);
     if (has_given_up()) counts_.doubt_zeros();
-    const Span<unsigned char> counts = counts_.open(kind);
-    if (counts.size == 0) return;
-    fill(counts, 0);  // may throw
-    counts_.note_zeros();
+    clear(counts_.open(kind));
+  }
+  // A frame ends, of which nothing more is asked for that counts. For the next one all is zero again, while the host
+  // waits for what was asked for before.
+  void close_counts() {
+    if (counts_.written().size == 0) return;
+    end_wait_here();
+    clear(counts_.written());
   }
   bool knows_frames() const { return counts_.anticipation().knows_frames(); }
   void forget_frames() { counts_.anticipation().forget_frames(); }
@@ -297,6 +301,12 @@ class CudaExecutor : public CudaQueue {
   static constexpr size_t kStagingBytes = 32768, kMostStaged = size_t(1) << 20;
   static constexpr size_t kLittleFill = size_t(1) << 19, kLittleFetch = size_t(1) << 22;
   static constexpr size_t kDefaultSharedBytes = 48 * 1024;
+
+  void clear(Span<unsigned char> counts) {
+    if (counts.size == 0) return;
+    fill(counts, 0);  // may throw
+    counts_.note_zeros();
+  }
 
   // All but those of very many chunks: over the bus one by one, which spares a launch.
   template <class T>

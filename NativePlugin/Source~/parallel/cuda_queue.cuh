@@ -54,7 +54,7 @@ class CudaQueue {
     if (LaunchObserver::current) multiprocessors_ = LaunchObserver::current->multiprocessors(multiprocessors_);
     check_cuda(cudaStreamCreateWithPriority(&stream_, cudaStreamNonBlocking, goes_first ? kHighestPriority : 0),
                "cudaStreamCreateWithPriority");
-    for (cudaEvent_t *event : {&joined_, &uploaded_})
+    for (cudaEvent_t *event : {&joined_, &uploaded_, &end_})
       check_cuda(cudaEventCreateWithFlags(event, cudaEventDisableTiming), "cudaEventCreateWithFlags");
   }
   // Does not wait: what kernels still use must not be given up before wait_for_all().
@@ -63,7 +63,7 @@ class CudaQueue {
       const DeviceGuard guard(device_);
       if (!may_hand_back()) return;
       gathered_.release();
-      for (cudaEvent_t event : {launched_[0], launched_[1], joined_, uploaded_})
+      for (cudaEvent_t event : {launched_[0], launched_[1], joined_, uploaded_, end_})
         if (event) cudaEventDestroy(event);
       for (cudaStream_t stream : {stream_, second_stream_})
         if (stream) cudaStreamDestroy(stream);
@@ -134,6 +134,7 @@ class CudaQueue {
   // may be others' by now.
   void run_ahead(bool runs_ahead, bool may_gather) {
     give_up_gathered();
+    has_end_ = false;
     runs_ahead_ = runs_ahead;
     may_gather_ = runs_ahead && may_gather;
   }
@@ -163,6 +164,20 @@ class CudaQueue {
     check_cuda(cudaMemcpyAsync(destination, host, n * sizeof(T), cudaMemcpyHostToDevice, stream()), "cudaMemcpyAsync");
     check_cuda(cudaEventRecord(uploaded_, stream_), "cudaEventRecord");
   }
+  // Page-locked memory that kernels read where it is, without waiting for a copy. Leave it alone as after upload().
+  template <class T>
+  const T *lend(const T *host) noexcept {
+    is_lent_ = true;
+    return host;
+  }
+  // Those asked for so far are all that read it. Whoever breaks off waits for them then; in a frame that is known to be
+  // short, for all of it, since an event would keep kernels from being sent ahead.
+  void end_lending() {
+    if (!is_lent_ || runs_ahead_) return;
+    check_cuda(cudaEventRecord(uploaded_, stream()), "cudaEventRecord");
+    is_lent_ = false;
+    is_uploading_ = true;
+  }
   // Into page-locked memory the values are there after the next wait.
   template <class T>
   void download(T *host, const T *source, size_t n) {
@@ -170,8 +185,18 @@ class CudaQueue {
     check_cuda(cudaMemcpyAsync(host, source, n * sizeof(T), cudaMemcpyDeviceToHost, stream()), "cudaMemcpyAsync");
   }
   void wait() {
-    check_cuda(cudaStreamSynchronize(stream()), "cudaStreamSynchronize");
-    is_uploading_ = false;
+    if (std::exchange(has_end_, false))
+      check_cuda(cudaEventSynchronize(end_), "cudaEventSynchronize");
+    else
+      check_cuda(cudaStreamSynchronize(stream()), "cudaStreamSynchronize");
+    is_uploading_ = is_lent_ = false;
+  }
+  // The next wait() is not for what is asked for from now on. Where kernels are gathered it is, since all begins at
+  // once.
+  void end_wait_here() {
+    if (gathers()) return;
+    check_cuda(cudaEventRecord(end_, stream()), "cudaEventRecord");
+    has_end_ = true;
   }
 
   // ---- a second stream (SecondStream) -----------------------------------------------------------------------------
@@ -226,8 +251,11 @@ class CudaQueue {
   }
 
   void wait_for_uploads() noexcept {
-    if (is_uploading_) cudaEventSynchronize(uploaded_);
-    is_uploading_ = false;
+    if (is_lent_)
+      cudaStreamSynchronize(stream_);
+    else if (is_uploading_)
+      cudaEventSynchronize(uploaded_);
+    is_uploading_ = is_lent_ = false;
   }
 
   // Computations under way on the device.
@@ -271,8 +299,9 @@ class CudaQueue {
   cudaStream_t stream_ = nullptr, second_stream_ = nullptr;
   const std::atomic<bool> *stop_ = nullptr;
   cudaEvent_t launched_[2] = {};  // the next to be used: the launch before last
-  cudaEvent_t joined_ = nullptr, uploaded_ = nullptr;
-  bool runs_ahead_ = false, may_gather_ = false, has_given_up_ = false, is_uploading_ = false;
+  cudaEvent_t joined_ = nullptr, uploaded_ = nullptr, end_ = nullptr;
+  bool runs_ahead_ = false, may_gather_ = false, has_given_up_ = false, is_uploading_ = false, is_lent_ = false,
+       has_end_ = false;
 };
 
 }  // namespace quickses

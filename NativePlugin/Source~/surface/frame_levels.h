@@ -176,6 +176,7 @@ class FrameLevels {
     void hand_out(Level &level) {
       Work &work = level.work;
       FinishedMesh &out = level.out;
+      if (frame.is_beside || course->next + 1 == frame.spacings.size) work.executor.close_counts();
       work.memory.finish(level.mesh, frame.in.settings, &out);
       levels.timer.end();
       work.executor.verify_counts();

@@ -142,13 +142,10 @@ void prepare_frame(Work &work, const FrameInput &in) {
       in.settings.surface == QSES_SURFACE_GAUSSIAN ? work.parameters.max_radius / 3.f : work.parameters.max_radius;
   const CellLayout cells = layout_cells(work.low, work.high, std::max(cell, kSmallestCell));
   work.atoms = build_neighbor_grid(executor, "crowded cell of atoms", set.count, cells, [&] {
-    return CenteredAtomAt{bring(executor, set.atoms, set.count),
-                          work.lattice.center_x,
-                          work.lattice.center_y,
-                          work.lattice.center_z,
-                          work.parameters.scale,
-                          work.parameters.probe};
+    return CenteredAtomAt{executor.lend(set.atoms), work.lattice.center_x, work.lattice.center_y,
+                          work.lattice.center_z,    work.parameters.scale, work.parameters.probe};
   });
+  executor.end_lending();
   if (in.settings.surface == QSES_SURFACE_GAUSSIAN) return;
   remove_contained_atoms(executor, work.atoms, work.parameters.max_radius);
   if (in.settings.method != QSES_METHOD_EXACT) return;

@@ -128,6 +128,11 @@ class CountingExecutor {
   template <class T>
   void upload(T *, const T *, size_t) {}
   template <class T>
+  const T *lend(const T *host) {
+    return host;
+  }
+  void end_lending() {}
+  template <class T>
   void download(T *, const T *, size_t) {}
   template <class T>
   void fill(Span<T>, int) {}

@@ -14,7 +14,7 @@ struct CenteredAtomAt {
   double x, y, z;
   float scale, probe;  // radius times scale, and the probe
   QSES_HOST_DEVICE Sphere operator()(size_t i) const {
-    const Sphere a = given[i];
+    const Sphere a = load(given + i);
     return {glm::vec3(static_cast<float>(static_cast<double>(a.center.x) - x),
                       static_cast<float>(static_cast<double>(a.center.y) - y),
                       static_cast<float>(static_cast<double>(a.center.z) - z)),
