@@ -147,11 +147,12 @@ __global__ __launch_bounds__(kFewThreads) void scan_some_kernel(QueuedItems queu
   if (threadIdx.x == 0 && first + kFewThreads >= n) out[n] = start + total;
 }
 
-// Steps of do_in_turn(), by one block: a launch of their own takes each some microseconds. An item for each thread: of
-// more, one multiprocessor makes more than that.
+// Steps of do_in_turn(), by one block: a launch of their own takes each some microseconds. Two items for each thread:
+// of more, one multiprocessor makes more than that.
+constexpr size_t kFewInTurn = 2;
 template <class F>
 constexpr bool is_few(const ForEach<F> &step) {
-  return step.n <= kFewThreads;
+  return step.n <= kFewInTurn * kFewThreads;
 }
 template <class Load, class T>
 constexpr bool is_few(const Scan<Load, T> &step) {
@@ -159,7 +160,7 @@ constexpr bool is_few(const Scan<Load, T> &step) {
 }
 template <class F>
 constexpr uint64_t steps_of_few(const ForEach<F> &step) {
-  return step.steps;
+  return kFewInTurn * step.steps;
 }
 template <class Load, class T>
 constexpr uint64_t steps_of_few(const Scan<Load, T> &) {
@@ -167,7 +168,7 @@ constexpr uint64_t steps_of_few(const Scan<Load, T> &) {
 }
 template <class F>
 __device__ __forceinline__ void do_by_block(const ForEach<F> &step) {
-  if (threadIdx.x < step.n) step.f(threadIdx.x);
+  for (size_t i = threadIdx.x; i < step.n; i += kFewThreads) step.f(i);
   __syncthreads();
 }
 template <class Load, class T>

@@ -27,6 +27,7 @@
 //   hand_over()                    what was asked for begins, if it was held back: before others are waited for
 //   keep_pace()                    called between parts of a long work, so that it can be cancelled. May wait
 //   upload, download, fill         copies between host and back end, and memset
+//   lend(host), end_lending()      memory of HostSource for passes to read where it is
 //   scan_bytes<T>(n), sort_bytes<Key, Value>(n), reduce_bytes<T>(n), compact_bytes(n)  of the arena, that these verbs
 //                                  take while they work: for forecasts (surface/memory/counting_executor.h)
 // clang-format on
@@ -68,6 +69,17 @@ struct NumberItems {
   uint32_t *numbers;
   QSES_HOST_DEVICE void operator()(size_t i) const { numbers[i] = static_cast<uint32_t>(i); }
 };
+
+// Where several threads share each of few items: which one, and which of its threads.
+struct ThreadOfItem {
+  size_t item;
+  uint32_t rank;
+};
+QSES_FN ThreadOfItem thread_of_item(size_t i, uint32_t threads) {
+  if (threads == 1) return {i, 0};
+  const uint32_t k = static_cast<uint32_t>(i);  // a GPU takes much longer to divide 64 bits
+  return {k / threads, k % threads};
+}
 
 // The usual thing to sum up or scan.
 template <class T>

@@ -186,9 +186,25 @@ struct CountLaunches : LaunchObserver {
   void before(const Launch &) override { ++launches; }
   void after(const Launch &) override {}
 };
+struct AddTo {
+  uint32_t *out;
+  uint32_t value;
+  QSES_HOST_DEVICE void operator()(size_t i) const { out[i] += value; }
+};
+// Takes so many clock cycles.
+struct Spin {
+  long long clocks;
+  QSES_HOST_DEVICE void operator()(size_t) const {
+#if defined(__CUDA_ARCH__)
+    for (const long long start = clock64(); clock64() - start < clocks;) {
+    }
+#endif
+  }
+};
 TEST(CudaExecutor, StepsInTurn) {
   REQUIRE_DEVICE();
-  for (size_t n : {1, 500, gpu::kFewThreads - 1, gpu::kFewThreads, gpu::kFewThreads + 1, 40000}) {
+  constexpr size_t kMost = gpu::kFewInTurn * gpu::kFewThreads;
+  for (size_t n : {size_t(1), size_t(500), size_t(gpu::kFewThreads), kMost - 1, kMost, kMost + 1, size_t(40000)}) {
     Span<uint32_t> digits = executor.allocate<uint32_t>(n);
     Span<uint64_t> sums = executor.allocate<uint64_t>(n + 1), reversed = executor.allocate<uint64_t>(n + 1);
     size_t launches = 0;
@@ -198,7 +214,7 @@ TEST(CudaExecutor, StepsInTurn) {
                  ForEach{n + 1, Reverse{sums.data, n, reversed.data}});
       launches = count.launches;
     }
-    const bool together = n + 1 <= gpu::kFewThreads;
+    const bool together = n + 1 <= kMost;
     EXPECT_EQ(launches == 1, together) << n;
     std::vector<uint64_t> expected(n + 1, 0);
     for (size_t i = 0; i < n; ++i) expected[i + 1] = expected[i] + i % 5;
@@ -213,13 +229,21 @@ TEST(CudaExecutor, StepsInTurn) {
   EXPECT_GE(count.launches, 2u);
 }
 
-// Those of a frame whose counts may be anticipated lie together, as far as there is room, and are filled by one launch.
+// Those of a frame whose counts may be anticipated lie together, as far as there is room, and are filled by one launch:
+// when the frame before is closed, or else at the beginning.
 TEST(CudaExecutor, ZerosAreZerosInEachFrame) {
   REQUIRE_DEVICE();
+  bool is_closed = false;
   for (const uint64_t kind : {uint64_t(0), uint64_t(7)})
-    for (int frame = 0; frame < 3; ++frame) {
+    for (int frame = 0; frame < 6; ++frame) {
       executor.arena().reset();
-      executor.open_counts(kind);
+      size_t launches = 0;
+      {
+        const CountLaunches count;
+        executor.open_counts(kind);
+        launches = count.launches;
+      }
+      if (is_closed) EXPECT_EQ(launches, 0u) << frame;
       std::vector<Span<uint32_t>> all;
       for (size_t n : {size_t(1), size_t(3), size_t(1000), size_t(90000), size_t(60000), size_t(17), size_t(500000)})
         all.push_back(executor.allocate_zeros<uint32_t>(n));
@@ -230,8 +254,59 @@ TEST(CudaExecutor, ZerosAreZerosInEachFrame) {
       // Filled apart: none reaches into another.
       for (size_t k = 0; k < all.size(); ++k)
         for (uint32_t word : to_host(executor, all[k])) ASSERT_EQ(word, 0x01010101u * (static_cast<uint32_t>(k) + 1));
+      is_closed = frame % 2 == 1;
+      if (is_closed) executor.close_counts();
     }
   executor.open_counts(0);
+}
+
+// What was asked for before the counts are closed is there after the next wait.
+TEST(CudaExecutor, ClosedCountsAreNotWaitedFor) {
+  REQUIRE_DEVICE();
+  PinnedBuffer memory;
+  constexpr size_t kMany = 100000;
+  auto *const host = static_cast<uint32_t *>(memory.reserve(kMany * sizeof(uint32_t)));
+  for (uint32_t frame = 1; frame < 20; ++frame) {
+    executor.arena().reset();
+    executor.open_counts(7, true);
+    const Span<uint32_t> zeros = executor.allocate_zeros<uint32_t>(kMany / 2), out = executor.allocate<uint32_t>(kMany);
+    executor.for_each(kMany, Spin{1000});
+    executor.for_each(kMany / 2, AddTo{zeros.data, frame});
+    executor.fill(out, static_cast<int>(frame));
+    executor.download(host, zeros.data, zeros.size);
+    executor.download(host + zeros.size, out.data, zeros.size);
+    executor.close_counts();
+    executor.wait();
+    for (size_t k = 0; k < zeros.size; ++k) ASSERT_EQ(host[k], frame);
+    for (size_t k = zeros.size; k < kMany; ++k) ASSERT_EQ(host[k], frame * 0x01010101u);
+  }
+  executor.open_counts(0);
+}
+
+// Whoever breaks off has its page-locked memory back when that is read by all kernels that were to read it.
+TEST(CudaExecutor, WhatIsLentIsReadBeforeItIsTakenBack) {
+  REQUIRE_DEVICE();
+  PinnedBuffer memory;
+  constexpr size_t kMany = 20000;
+  auto *const host = static_cast<uint32_t *>(memory.reserve(kMany * sizeof(uint32_t)));
+  for (const bool is_short : {false, true}) {
+    executor.arena().reset();
+    std::iota(host, host + kMany, 5u);
+    const std::vector<uint32_t> expected(host, host + kMany);
+    const Span<uint32_t> out = executor.allocate<uint32_t>(kMany);
+    executor.fill(out, 0);
+    {
+      const std::atomic<bool> stop{false};
+      const CudaExecutor::RunScope run(executor, stop);
+      executor.run_ahead(is_short, false);
+      executor.for_each(kMany, Spin{20000000});
+      executor.for_each(kMany, gpu::CopyWords{out.data, executor.lend(host)});
+      executor.end_lending();
+    }
+    std::fill_n(host, kMany, 0u);
+    EXPECT_EQ(to_host(executor, out), expected) << is_short;
+  }
+  executor.run_ahead(false, false);
 }
 
 TEST(CudaExecutor, Reduce) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "surface/cuda/cuda_backend.cuh"
+#include "surface/methods/exact_surface.h"
 
 #include "parallel/cuda_stage_timer.cuh"
 #include "surface/stages/atoms.h"
@@ -98,9 +99,7 @@ inline DeviceStages run_device_stages(CudaExecutor &executor, const DeviceTable 
   s.grid = build_neighbor_grid(executor, "crowded cell of atoms", n, layout_cells(low, high, p.max_radius), [&] {
     return CenteredAtomAt{given.data, lattice.center_x, lattice.center_y, lattice.center_z, 1.f, p.probe};
   });
-  Span<uint8_t> contained = executor.allocate<uint8_t>(n);
-  executor.for_each(n, FindContainedAtoms{s.grid, p.max_radius, contained.data});
-  executor.for_each(n, RemoveContainedAtoms{contained.data, const_cast<Sphere *>(s.grid.items)});
+  remove_contained_atoms(executor, s.grid, p.max_radius);
   timer.begin("solvent_features");
   using B = Backend<CudaExecutor>;
   CudaRooms rooms;

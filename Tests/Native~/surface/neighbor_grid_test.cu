@@ -114,7 +114,7 @@ TEST(NeighborGridCuda, BearsACrowdThatIsNotAnticipated) {
   const DeviceGuard guard(0);
   CudaExecutor executor(0);
   const CellLayout cells = layout_cells(glm::vec3(0.f), glm::vec3(60.f), 3.1f);
-  std::vector<Sphere> spheres = random_spheres(5000, 60.f, 8);
+  std::vector<Sphere> spheres = random_spheres(4 * kCrowd, 60.f, 8);
   for (const bool crowded : {false, true}) {
     for (size_t k = 0; crowded && k < 3 * kCrowd; ++k) spheres[k].center = glm::vec3(1.f, 2.f, 3.f);
     executor.arena().reset();

@@ -14,7 +14,7 @@ namespace quickses {
 template <class Executor>
 void remove_contained_atoms(Executor &executor, const NeighborGridView &atoms, float max_radius) {
   const auto mark = executor.arena().mark();
-  Span<uint8_t> contained = executor.template allocate<uint8_t>(atoms.count);
+  Span<uint8_t> contained = executor.template allocate_zeros<uint8_t>(atoms.count);
   uint64_t near = atoms.count;
   if constexpr (Executor::kIsCuda)
     near = most_atoms_near(executor, atoms, 4.f * max_radius + 1.f, [&](uint64_t items) {
@@ -22,7 +22,9 @@ void remove_contained_atoms(Executor &executor, const NeighborGridView &atoms, f
     });
   const ForEach remove{atoms.count, RemoveContainedAtoms{contained.data, const_cast<Sphere *>(atoms.items)}};
   for_parts_of_met_items(near, Executor::kIsCuda ? kThreadSteps : near, [&](const MetItems &part, bool is_last) {
-    const ForEach find{atoms.count, FindContainedAtoms{atoms, max_radius, contained.data, part},
+    const uint32_t threads = Executor::kIsCuda && atoms.count < kManyItems ? 4 : 1;
+    const ForEach find{atoms.count * size_t(threads),
+                       FindContainedAtoms{atoms, max_radius, contained.data, threads, part},
                        std::max(kPlainSteps, std::min(near, kThreadSteps))};
     if (is_last)
       do_in_turn(executor, find, remove);

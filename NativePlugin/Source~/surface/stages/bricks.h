@@ -65,10 +65,11 @@ struct FlagBricks {
   };
   int layers = 1;  // threads of an item
   QSES_HOST_DEVICE void operator()(size_t i) const {
+    const ThreadOfItem thread = thread_of_item(i, static_cast<uint32_t>(layers));
     RowRange own = rows;
-    own.layer = static_cast<int>(i % static_cast<unsigned>(layers));
+    own.layer = static_cast<int>(thread.rank);
     own.layers = layers;
-    items.visit(i / static_cast<unsigned>(layers), own, Visit{flags});
+    items.visit(thread.item, own, Visit{flags});
   }
 };
 

@@ -104,7 +104,7 @@ QSES_FN bool is_no_item(const Sphere &s) { return s.radius < 0.f; }
 QSES_FN Sphere no_item() { return {glm::vec3(kFarAway), -1.f}; }
 
 // More items in a cell are sorted: counting asks each of a cell's items for its rank among the others.
-constexpr uint32_t kCrowd = 1024;
+constexpr uint32_t kCrowd = 2048;
 // Fewer are not told to the host, so that it does not matter to it that they change.
 constexpr uint32_t kFewInCell = 256;
 // Items in the fullest cell.

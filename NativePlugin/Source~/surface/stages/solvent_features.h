@@ -68,23 +68,25 @@ struct FeatureView {
 struct FindContainedAtoms {
   NeighborGridView atoms;
   float max_radius;
-  uint8_t *contained;
+  uint8_t *contained;    // zeros at first
+  uint32_t threads = 1;  // of an atom
   MetItems part{};
-  QSES_HOST_DEVICE void operator()(size_t i) const {
+  QSES_HOST_DEVICE void operator()(size_t thread) const {
+    const auto [i, rank] = thread_of_item(thread, threads);
     const Sphere self = atoms.items[i];
     const Vec3<float> c(self.center);
     const float reach = containing_reach(self.radius, max_radius);
     const Vec3<float> r(reach, reach, reach);
     const CellBox box = cells_around(atoms.cells, c - r, c + r);
     MetItems met = part;
-    bool found = met.first > 0 && contained[i] != 0;
+    bool found = false;
     for (int z = box.z0; z <= box.z1 && !found; ++z)
       for (int y = box.y0; y <= box.y1 && !found; ++y) {
         const ItemRun run = met.cut(atoms.run(box.x0, box.x1, y, z));
-        for (uint32_t k = run.begin; k < run.end && !found; ++k)
+        for (uint32_t k = run.begin + rank; k < run.end && !found; k += threads)
           found = k != i && contains(atoms.items[k], atoms.order[k], self, atoms.order[i]);
       }
-    contained[i] = found ? 1 : 0;
+    if (found) atomic_set(&contained[i]);
   }
 };
 
