@@ -216,6 +216,7 @@ class CudaExecutor : public CudaQueue {
     if (counts_.written().size == 0) return;
     end_wait_here();
     clear(counts_.written());
+    hand_over();
   }
   bool knows_frames() const { return counts_.anticipation().knows_frames(); }
   void forget_frames() { counts_.anticipation().forget_frames(); }

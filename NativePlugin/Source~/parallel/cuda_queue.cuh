@@ -191,10 +191,8 @@ class CudaQueue {
       check_cuda(cudaStreamSynchronize(stream()), "cudaStreamSynchronize");
     is_uploading_ = is_lent_ = false;
   }
-  // The next wait() is not for what is asked for from now on. Where kernels are gathered it is, since all begins at
-  // once.
+  // The next wait() is not for what is asked for from now on.
   void end_wait_here() {
-    if (gathers()) return;
     check_cuda(cudaEventRecord(end_, stream()), "cudaEventRecord");
     has_end_ = true;
   }

@@ -73,11 +73,11 @@ class FrameLevels {
     Work shared = work_of(frame.in, frame.plan, &report);
     const bool is_beside = frame.is_beside;
     const typename CoarseLanes<Executor>::Scope lanes_scope(lanes_, executor);
-    if (is_beside) lanes_.open(executor, frame.spacings, frame.kind, frame.in.settings, sink.stop_flag());
     if (frame.in.atoms.count > 0) prepare_frame(shared, frame.in);
     if (!course->is_prepared) sink.prepared(milliseconds_since(start));
     course->is_prepared = true;
-    if (is_beside) {
+    if (is_beside) {  // behind that, so that the GPU begins at once
+      lanes_.open(executor, frame.spacings, frame.kind, frame.in.settings, sink.stop_flag());
       executor.send_counts();
       lanes_.go_behind(executor);
     }
@@ -176,7 +176,8 @@ class FrameLevels {
     void hand_out(Level &level) {
       Work &work = level.work;
       FinishedMesh &out = level.out;
-      if (frame.is_beside || course->next + 1 == frame.spacings.size) work.executor.close_counts();
+      // No lane reads what the finest level's executor has counted any more.
+      if (course->next + 1 == frame.spacings.size) work.executor.close_counts();
       work.memory.finish(level.mesh, frame.in.settings, &out);
       levels.timer.end();
       work.executor.verify_counts();
