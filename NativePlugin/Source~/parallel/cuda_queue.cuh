@@ -20,7 +20,7 @@ namespace quickses {
 class CudaQueue {
  public:
   // While it lives, nothing more is asked of the device once the flag is set: Cancelled is thrown instead. However the
-  // computation ends, what was to be uploaded is with the device then.
+  // computation ends, what was to be uploaded is with the device then, and what was lent has been read.
   class RunScope {
    public:
     RunScope(CudaQueue &queue, const std::atomic<bool> &flag) : queue_(queue) {

@@ -21,6 +21,7 @@
 //   verified(counts)               what was counted then
 //   foresee(name, counts, most, out)  what expect() would say without waiting; false, and nothing, where it would wait
 //   open_counts(kind), turn_counts_to(level, part)  which frames, and what of them, have counts that are alike
+//   close_counts()                 the frame counts nothing more. The next wait is for what was asked for before
 //   has_anticipated()              whether this frame went on with anything that the one before told
 //   go_on_scanning(n, load, out), send_all_counts()  of the GPU only, for work in slabs (methods/exact_slabs.h)
 //   runs_ahead()                   whether all of this frame may be queued, since frames like it are short
@@ -70,7 +71,7 @@ struct NumberItems {
   QSES_HOST_DEVICE void operator()(size_t i) const { numbers[i] = static_cast<uint32_t>(i); }
 };
 
-// Where several threads share each of few items: which one, and which of its threads.
+// Where several threads share each of few items, fewer than 2^32 in all: which one, and which of its threads.
 struct ThreadOfItem {
   size_t item;
   uint32_t rank;

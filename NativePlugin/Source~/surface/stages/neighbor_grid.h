@@ -155,6 +155,8 @@ struct CollectNumbers {
 constexpr size_t kBehindItems = 8;  // kernels load whole packs
 QSES_FN Sphere behind_items() { return {glm::vec3(kFarAway), 0.f}; }
 
+static_assert(kCrowd / 4 <= kPlainSteps, "so that ranking is a plain pass: five instructions for each item of a cell");
+
 // Puts them in order, and leaves what kernels may load behind the last item. For kBehindItems or all items, whichever
 // are more. bring(place, i): what else is to be in that order.
 struct BringNothing {
