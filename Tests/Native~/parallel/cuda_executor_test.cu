@@ -203,8 +203,9 @@ struct Spin {
 };
 TEST(CudaExecutor, StepsInTurn) {
   REQUIRE_DEVICE();
-  constexpr size_t kMost = gpu::kFewInTurn * gpu::kFewThreads;
-  for (size_t n : {size_t(1), size_t(500), size_t(gpu::kFewThreads), kMost - 1, kMost, kMost + 1, size_t(40000)}) {
+  constexpr size_t kThreads = gpu::kFewThreads, kMost = gpu::kFewInTurn * kThreads;
+  for (size_t n :
+       {size_t(1), size_t(500), kThreads - 1, kThreads, kThreads + 1, kMost - 1, kMost, kMost + 1, size_t(40000)}) {
     Span<uint32_t> digits = executor.allocate<uint32_t>(n);
     Span<uint64_t> sums = executor.allocate<uint64_t>(n + 1), reversed = executor.allocate<uint64_t>(n + 1);
     size_t launches = 0;

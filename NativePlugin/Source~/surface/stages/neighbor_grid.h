@@ -105,6 +105,7 @@ QSES_FN Sphere no_item() { return {glm::vec3(kFarAway), -1.f}; }
 
 // More items in a cell are sorted: counting asks each of a cell's items for its rank among the others.
 constexpr uint32_t kCrowd = 2048;
+static_assert(kCrowd / 4 <= kPlainSteps, "so that ranking is a plain pass: five instructions for each item of a cell");
 // Fewer are not told to the host, so that it does not matter to it that they change.
 constexpr uint32_t kFewInCell = 256;
 // Items in the fullest cell.
@@ -154,8 +155,6 @@ struct CollectNumbers {
 
 constexpr size_t kBehindItems = 8;  // kernels load whole packs
 QSES_FN Sphere behind_items() { return {glm::vec3(kFarAway), 0.f}; }
-
-static_assert(kCrowd / 4 <= kPlainSteps, "so that ranking is a plain pass: five instructions for each item of a cell");
 
 // Puts them in order, and leaves what kernels may load behind the last item. For kBehindItems or all items, whichever
 // are more. bring(place, i): what else is to be in that order.

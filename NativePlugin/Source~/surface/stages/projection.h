@@ -61,9 +61,10 @@ QSES_FN T offset_length(const Sphere &ball, T depth) {
   return maximum(T(ball.radius) - depth, T(1e-12f));
 }
 
+constexpr float kNoDepth = -2.f * kFarAway;  // where there is no atom
+
 // The atom whose ball the point is deepest in: also the one whose van der Waals surface is nearest. Candidates:
 // atom_count(), atom(k) -> atom number, arc_count(), arc(k) -> arc number.
-constexpr float kNoDepth = -2.f * kFarAway;  // where there is no atom
 struct DeepestAtom {
   uint32_t atom;
   float depth;
