@@ -5,8 +5,6 @@ using System.Collections.Generic;
 using System.Linq;
 using System.Threading;
 using UnityEngine;
-using UnityEngine.TestTools.Constraints;
-using Is = UnityEngine.TestTools.Constraints.Is;
 
 namespace QuickSes.Tests
 {
@@ -383,10 +381,8 @@ namespace QuickSes.Tests
                             Thread.Yield();
                     }
                 };
-                play();
-                Assert.That(play, Is.Not.AllocatingGCMemory());
-                // The runtime allocates where a thread first waits for another, at any time; frames that leave
-                // garbage leave it in every round.
+                Garbage.AssertNone(play);
+                // Nor does the thread that reads.
                 long least = long.MaxValue;
                 for (int round = 0; round < 8 && least != 0; ++round)
                 {
@@ -395,7 +391,7 @@ namespace QuickSes.Tests
                     least = Math.Min(least, Volatile.Read(ref reader.Allocated) - before);
                 }
                 Assert.That(least, Is.EqualTo(0));
-                Assert.That(reader.ReadsSoFar().Length, Is.GreaterThanOrEqualTo(600));
+                Assert.That(reader.ReadsSoFar().Length, Is.GreaterThanOrEqualTo(400));
             }
         }
     }

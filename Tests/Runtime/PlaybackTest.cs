@@ -3,8 +3,6 @@ using NUnit.Framework;
 using System.Collections;
 using UnityEngine;
 using UnityEngine.TestTools;
-using UnityEngine.TestTools.Constraints;
-using Is = UnityEngine.TestTools.Constraints.Is;
 
 namespace QuickSes.Tests
 {
@@ -53,8 +51,7 @@ namespace QuickSes.Tests
                 surface.SetPositions(positions, indices);
                 surface.SetAtoms(positions, radii);
             };
-            feed();
-            Assert.That(feed, Is.Not.AllocatingGCMemory());
+            Garbage.AssertNone(feed);
             yield return _rig.Settle();
         }
     }

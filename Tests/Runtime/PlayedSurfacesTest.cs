@@ -4,8 +4,6 @@ using System.Collections;
 using System.Collections.Generic;
 using UnityEngine;
 using UnityEngine.TestTools;
-using UnityEngine.TestTools.Constraints;
-using Is = UnityEngine.TestTools.Constraints.Is;
 
 namespace QuickSes.Tests
 {
@@ -308,9 +306,8 @@ namespace QuickSes.Tests
                     System.Threading.Thread.Yield();
                 }
             };
-            play();
             int before = _playing.Shown.Count;
-            Assert.That(play, Is.Not.AllocatingGCMemory());
+            Garbage.AssertNone(play);
             Assert.That(_playing.Shown.Count, Is.GreaterThan(before));
         }
     }

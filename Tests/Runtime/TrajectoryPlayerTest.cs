@@ -5,8 +5,6 @@ using System.Linq;
 using System.Text.RegularExpressions;
 using UnityEngine;
 using UnityEngine.TestTools;
-using UnityEngine.TestTools.Constraints;
-using Is = UnityEngine.TestTools.Constraints.Is;
 
 namespace QuickSes.Tests
 {
@@ -359,9 +357,8 @@ namespace QuickSes.Tests
                     System.Threading.Thread.Yield(); // frames are read meanwhile
                 }
             };
-            play();
             int before = _playing.Shown.Count;
-            Assert.That(play, Is.Not.AllocatingGCMemory());
+            Garbage.AssertNone(play);
             Assert.That(_playing.Shown.Count, Is.GreaterThan(before));
         }
 

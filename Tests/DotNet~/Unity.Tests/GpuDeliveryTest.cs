@@ -276,7 +276,7 @@ namespace QuickSes.Tests
             int count = 0, shown = 0;
             Surface.SurfaceUpdated += level => ++shown;
             _gpu.Rig.Levels.Capacity = 100000;
-            Action play = () =>
+            TestDelegate play = () =>
             {
                 for (int until = shown + 20; shown < until;)
                 {

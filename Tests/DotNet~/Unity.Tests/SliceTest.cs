@@ -374,7 +374,7 @@ namespace QuickSes.Tests
             int shown = 0;
             _rig.Surface.SurfaceUpdated += level => ++shown;
             _rig.Levels.Capacity = 100000;
-            Action play = () =>
+            TestDelegate play = () =>
             {
                 for (int until = shown + 6; shown < until;)
                 {
