@@ -125,6 +125,18 @@ QSES_FN int store_lane_numbers(int32_t *dst, uint32_t set, int32_t base) {
                                        _mm256_load_si256(reinterpret_cast<const __m256i *>(kLaneTable.lanes[set]))));
   return popcount64(set);
 }
+QSES_FN void store_lanes(int32_t *dst, uint32_t set, const int32_t *numbers) {
+  const __m256i lanes = _mm256_load_si256(reinterpret_cast<const __m256i *>(kLaneTable.lanes[set]));
+  _mm256_storeu_si256(
+      reinterpret_cast<__m256i *>(dst),
+      _mm256_permutevar8x32_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i *>(numbers)), lanes));
+}
+// The lanes with this number.
+QSES_FN uint32_t lanes_of(const int32_t *numbers, int32_t number) {
+  const __m256i same =
+      _mm256_cmpeq_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i *>(numbers)), _mm256_set1_epi32(number));
+  return static_cast<uint32_t>(_mm256_movemask_ps(_mm256_castsi256_ps(same)));
+}
 QSES_FN float horizontal_minimum(Pack a) {
   __m128 m = _mm_min_ps(_mm256_castps256_ps128(a.v), _mm256_extractf128_ps(a.v, 1));
   m = _mm_min_ps(m, _mm_movehl_ps(m, m));
@@ -271,6 +283,14 @@ QSES_FN int store_lane_numbers(int32_t *dst, uint32_t set, int32_t base) {
   int n = 0;
   for (; set; set &= set - 1) dst[n++] = base + lowest_bit32(set);
   return n;
+}
+QSES_FN void store_lanes(int32_t *dst, uint32_t set, const int32_t *numbers) {
+  for (; set; set &= set - 1) *dst++ = numbers[lowest_bit32(set)];
+}
+QSES_FN uint32_t lanes_of(const int32_t *numbers, int32_t number) {
+  uint32_t lanes = 0;
+  for (int l = 0; l < kPackSize; ++l) lanes |= static_cast<uint32_t>(numbers[l] == number) << l;
+  return lanes;
 }
 #endif
 

@@ -70,6 +70,14 @@ QSES_FN int store_wide_numbers(int32_t *dst, uint32_t set, int32_t base) {
       dst, _mm512_maskz_compress_epi32(static_cast<__mmask16>(set), _mm512_add_epi32(_mm512_set1_epi32(base), lanes)));
   return popcount64(set);
 }
+// The numbers in the lanes of the set, packed together.
+QSES_FN void store_wide_lanes(int32_t *dst, uint32_t set, const int32_t *numbers) {
+  _mm512_storeu_si512(dst, _mm512_maskz_compress_epi32(static_cast<__mmask16>(set), _mm512_loadu_si512(numbers)));
+}
+// The lanes with this number.
+QSES_FN uint32_t wide_lanes_of(const int32_t *numbers, int32_t number) {
+  return _mm512_cmpeq_epi32_mask(_mm512_loadu_si512(numbers), _mm512_set1_epi32(number));
+}
 
 // Rows of four floats, four in each register, turned into four packs: lane 4 k + l of a pack is of the k-th row of
 // register l.
@@ -125,6 +133,8 @@ using WideMask = PackMask;
 QSES_FN WideMask wide_mask(uint32_t bits) { return lane_mask(bits); }
 QSES_FN WidePack load_wide(const float *p) { return load_pack(p); }
 QSES_FN int store_wide_numbers(int32_t *dst, uint32_t set, int32_t base) { return store_lane_numbers(dst, set, base); }
+QSES_FN void store_wide_lanes(int32_t *dst, uint32_t set, const int32_t *numbers) { store_lanes(dst, set, numbers); }
+QSES_FN uint32_t wide_lanes_of(const int32_t *numbers, int32_t number) { return lanes_of(numbers, number); }
 // Whole packs are read: there is something behind the last row.
 QSES_FN void load_wide_rows(const float *p, uint32_t, WidePack *x, WidePack *y, WidePack *z, WidePack *w) {
   load_columns(p, x, y, z, w);

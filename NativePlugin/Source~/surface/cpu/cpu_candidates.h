@@ -4,6 +4,7 @@
 #pragma once
 
 #include "parallel/wide_pack.h"
+#include "surface/cpu/cpu_item_packs.h"
 #include "surface/cpu/cpu_kernels.h"
 
 #include <cstring>
@@ -93,31 +94,31 @@ QSES_FN BrickCandidates gather_atoms(const FeatureView &f, const Vec3<float> &lo
   const Vec3<float> high(low.x + extent, low.y + extent, low.z + extent);
   const PackBox box(low, high);
   const CellBox cells = cells_within(f.atoms.cells, low, high, maximum(0.f, f.parameters.max_radius + atom_reach));
-  for (int z = cells.z0; z <= cells.z1; ++z)
-    for (int y = cells.y0; y <= cells.y1; ++y) {
-      const ItemRun run = f.atoms.run(cells.x0, cells.x1, y, z);
-      for (uint32_t q = run.begin; q < run.end; q += kWideLanes) {
-        WidePack ax, ay, az, radius;
-        load_wide_rows(&f.atoms.items[q].center.x, run.end - q, &ax, &ay, &az, &radius);
-        const WidePack reach = maximum(WidePack(0.f), radius + WidePack(atom_reach));
-        const uint32_t near = first_wide_lanes(run.end - q) & lane_bits(box.distance2(ax, ay, az) < reach * reach);
-        const uint32_t exposed = near & bits_of_bytes(f.exposed + q, run.end - q);
-        const int n = c.atom_count, e = c.exposed_count;
-        if (n + kWideLanes <= scratch.atom_capacity) {
-          store_balls(c.atoms, n, near, ax, ay, az, radius);
-          store_wide_numbers(c.atom_index + n, near, static_cast<int32_t>(q));
-          store_balls(c.exposed, e, exposed, ax, ay, az, radius);
-          store_wide_numbers(c.exposed_index + e, exposed, static_cast<int32_t>(q));
-        }
-        c.atom_count += popcount64(near);
-        c.exposed_count += popcount64(exposed);
-      }
+  for_item_packs(f.atoms, cells, [&](const ItemPack &p) {
+    const WidePack reach = maximum(WidePack(0.f), p.radius + WidePack(atom_reach));
+    const uint32_t near = p.lanes & lane_bits(box.distance2(p.x, p.y, p.z) < reach * reach);
+    const int n = c.atom_count;
+    if (n + kWideLanes <= scratch.atom_capacity) {
+      store_balls(c.atoms, n, near, p.x, p.y, p.z, p.radius);
+      store_wide_lanes(c.atom_index + n, near, p.places);
     }
+    c.atom_count += popcount64(near);
+  });
   if (c.atom_count + kWideLanes > scratch.atom_capacity) {
     c.needs.atoms = c.atom_count + kWideLanes;
     return c;
   }
   end_balls(c.atoms, c.atom_count);
+  for (int q = 0; q < c.atom_count; q += kWideLanes) {
+    const int last = c.atom_count - q < kWideLanes ? c.atom_count - q : kWideLanes;
+    uint32_t exposed = 0;
+    for (int l = 0; l < last; ++l) exposed |= static_cast<uint32_t>(f.exposed[c.atom_index[q + l]] != 0) << l;
+    const int e = c.exposed_count;
+    store_balls(c.exposed, e, exposed, load_wide(c.atoms.x + q), load_wide(c.atoms.y + q), load_wide(c.atoms.z + q),
+                load_wide(c.atoms.radius + q));
+    store_wide_lanes(c.exposed_index + e, exposed, c.atom_index + q);
+    c.exposed_count += popcount64(exposed);
+  }
   end_balls(c.exposed, c.exposed_count);
   return c;
 }
@@ -129,22 +130,16 @@ QSES_FN void gather_arcs(const FeatureView &f, const Vec3<float> &low, float ext
   const PackBox box(low, high);
   if (f.arc_bounds.count > 0) {
     const CellBox cells = cells_within(f.arc_bounds.cells, low, high, arc_reach + f.max_arc_bound);
-    for (int z = cells.z0; z <= cells.z1; ++z)
-      for (int y = cells.y0; y <= cells.y1; ++y) {
-        const ItemRun run = f.arc_bounds.run(cells.x0, cells.x1, y, z);
-        for (uint32_t q = run.begin; q < run.end; q += kWideLanes) {
-          WidePack bx, by, bz, radius;
-          load_wide_rows(&f.arc_bounds.items[q].center.x, run.end - q, &bx, &by, &bz, &radius);
-          const WidePack reach = radius + WidePack(arc_reach);
-          const uint32_t near = first_wide_lanes(run.end - q) & lane_bits(box.distance2(bx, by, bz) < reach * reach);
-          const int n = c->arc_count;
-          if (n + kWideLanes <= scratch.arc_capacity) {
-            store_balls(c->arcs, n, near, bx, by, bz, radius);
-            store_wide_numbers(c->arc_index + n, near, static_cast<int32_t>(q));
-          }
-          c->arc_count += popcount64(near);
-        }
+    for_item_packs(f.arc_bounds, cells, [&](const ItemPack &p) {
+      const WidePack reach = p.radius + WidePack(arc_reach);
+      const uint32_t near = p.lanes & lane_bits(box.distance2(p.x, p.y, p.z) < reach * reach);
+      const int n = c->arc_count;
+      if (n + kWideLanes <= scratch.arc_capacity) {
+        store_balls(c->arcs, n, near, p.x, p.y, p.z, p.radius);
+        store_wide_lanes(c->arc_index + n, near, p.places);
       }
+      c->arc_count += popcount64(near);
+    });
   }
   if (c->arc_count + kWideLanes > scratch.arc_capacity)
     c->needs.arcs = c->arc_count + kWideLanes;

@@ -3,6 +3,7 @@
 #include "parallel/atomics.h"
 #include "parallel/pack.h"
 #include "surface/cpu/cpu_covered_sphere.h"
+#include "surface/cpu/cpu_item_packs.h"
 #include "surface/cpu/cpu_kernels.h"
 #include "surface/geometry/close_cut.h"
 
@@ -47,27 +48,19 @@ int gather_neighbors(const NeighborGridView &atoms, float max_radius, uint32_t i
   const CellBox box = cells_around(atoms.cells, center - r, center + r);
   const WidePack x0(center.x), y0(center.y), z0(center.z), r0(self.radius);
   int n = 0;
-  for (int z = box.z0; z <= box.z1; ++z)
-    for (int y = box.y0; y <= box.y1; ++y) {
-      const ItemRun run = atoms.run(box.x0, box.x1, y, z);
-      for (uint32_t q = run.begin; q < run.end; q += kWideLanes) {
-        WidePack x, yy, zz, radius;
-        load_wide_rows(&atoms.items[q].center.x, run.end - q, &x, &yy, &zz, &radius);
-        x = x - x0, yy = yy - y0, zz = zz - z0;
-        const WidePack sum = radius + r0;
-        uint32_t near = lane_bits(x * x + yy * yy + zz * zz < sum * sum);
-        near &= first_wide_lanes(run.end - q);
-        if (i - q < kWideLanes) near &= ~(1u << (i - q));
-        if (n + kWideLanes <= capacity) {
-          store_lanes(c.x + n, near, x);
-          store_lanes(c.y + n, near, yy);
-          store_lanes(c.z + n, near, zz);
-          store_lanes(c.cosine + n, near, radius);
-          store_wide_numbers(c.index + n, near, static_cast<int32_t>(q));
-        }
-        n += popcount64(near);
-      }
+  for_item_packs(atoms, box, [&](const ItemPack &p) {
+    const WidePack x = p.x - x0, y = p.y - y0, z = p.z - z0, sum = p.radius + r0;
+    const uint32_t near =
+        p.lanes & lane_bits(x * x + y * y + z * z < sum * sum) & ~wide_lanes_of(p.places, static_cast<int32_t>(i));
+    if (n + kWideLanes <= capacity) {
+      store_lanes(c.x + n, near, x);
+      store_lanes(c.y + n, near, y);
+      store_lanes(c.z + n, near, z);
+      store_lanes(c.cosine + n, near, p.radius);
+      store_wide_lanes(c.index + n, near, p.places);
     }
+    n += popcount64(near);
+  });
   return n;
 }
 
