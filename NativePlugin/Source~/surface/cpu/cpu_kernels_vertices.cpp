@@ -12,6 +12,7 @@ namespace QSES_CPU_ISA {
 namespace {
 
 constexpr int kMaxBrickVertices = kBrickPoints * kAxes;
+constexpr PointPlaces<CellCases::kRow, CellCases::kLayer> kCellPlaces;
 
 // Vertices of a brick on their way to the surface.
 struct Points {
@@ -45,50 +46,65 @@ auto near_of(const FeatureView &f, const BrickCandidates &c) {
   };
 }
 
-// Where the brick's vertices start, in the order of their numbers. Returns how many there are.
-int start_vertices(const FeatureView &f, const BrickSet &bricks, const MeshLayout &layout, uint32_t brick,
-                   const VertexStarts &starts, const BrickCandidates &c, Points *p) {
+// Where the sign changes on their edges.
+void start_by_halving(const FeatureView &f, const BrickSet &bricks, const MeshLayout &layout, uint32_t brick, int n,
+                      const BrickCandidates &c, Points *p) {
+  for (int v = 0; v < n; ++v) {
+    const LatticeEdge edge = edge_of_vertex(layout, brick, layout.base[brick].vertices + static_cast<uint32_t>(v));
+    const Vec3<float> start =
+        find_sign_change(f, near_of(f, c), ends_of_edge(bricks, layout, brick, edge), kStartHalvings);
+    p->x[v] = start.x, p->y[v] = start.y, p->z[v] = start.z;
+  }
+}
+
+// Where the brick's vertices start, in the order of their numbers: on their edges, or relaxed from there.
+void start_vertices(const BrickSet &bricks, const MeshLayout &layout, uint32_t brick, const VertexStarts &starts,
+                    Points *p) {
   const Lattice &lattice = bricks.lattice;
   const glm::ivec3 first = lattice.first_point(bricks.place(brick));
-  const float h = lattice.spacing;
-  const bool halve = starts_by_halving(f.parameters);
-  SignRows rows;
-  read_sign_rows(find_near_words(bricks, layout.signs, brick), &rows);
+  const float h = lattice.spacing, along[2] = {vertex_start(false) * h, vertex_start(true) * h};
   CellCases cases;
-  if (starts.relax) read_cell_cases(rows, &cases);
-  // The cells around an edge, from its own one: a step along the other two axes, lower axis first.
-  constexpr int kCellSteps[kAxes][2] = {
-      {CellCases::kRow, CellCases::kLayer}, {1, CellCases::kLayer}, {1, CellCases::kRow}};
-  Vec3<float> places[kBrickEdge];
-  for (int k = 0; k < kBrickEdge; ++k) places[k] = lattice.position(first.x + k, first.y + k, first.z + k);
+  {
+    SignRows rows;
+    read_sign_rows(find_near_words(bricks, layout.signs, brick), &rows);
+    read_cell_cases(rows, &cases);
+  }
+  uint64_t rings[kMaxBrickVertices + kWideLanes];
   int n = 0;
-  for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf)
-    for (int axis = 0; axis < kAxes; ++axis)
-      for (uint64_t w = layout.crossing[(static_cast<size_t>(brick) * kLeavesPerBrick + static_cast<size_t>(leaf)) * 3 +
-                                        static_cast<size_t>(axis)];
-           w; w &= w - 1, ++n) {
+  for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
+    const glm::ivec3 corner = brick_point(leaf, 0);
+    Vec3<float> places[kLeafEdge];
+    for (int k = 0; k < kLeafEdge; ++k)
+      places[k] = lattice.position(first.x + corner.x + k, first.y + corner.y + k, first.z + corner.z + k);
+    const uint8_t *const leaf_cases = cases.at(corner.x, corner.y, corner.z);
+    const uint64_t *const crossing =
+        layout.crossing + (static_cast<size_t>(brick) * kLeavesPerBrick + static_cast<size_t>(leaf)) * kAxes;
+#pragma GCC unroll 3
+    for (int axis = 0; axis < kAxes; ++axis) {
+      // To the cells around an edge, from that of its first point: a step along the other two axes, lower axis first.
+      constexpr int kCellSteps[kAxes] = {1, CellCases::kRow, CellCases::kLayer};
+      const int second_step = kCellSteps[axis == 0 ? 1 : 0], third_step = kCellSteps[axis == 2 ? 1 : 2];
+      for (uint64_t w = crossing[axis]; w; w &= w - 1, ++n) {
         const int bit = lowest_bit64(w);
-        const glm::ivec3 at = brick_point(leaf, bit);
-        Vec3<float> start(places[at.x].x, places[at.y].y, places[at.z].z);
-        if (halve) {
-          start = find_sign_change(f, near_of(f, c), ends_of_edge(bricks, layout, brick, {leaf, axis, bit}),
-                                   kStartHalvings);
-        } else {
-          const float along = vertex_start(*rows.row_of(at.y, at.z) >> (at.x + 1) & 1) * h;
-          (axis == 0 ? start.x : axis == 1 ? start.y : start.z) += along;
-          if (starts.relax) {
-            const uint8_t *const own = cases.at(at.x, at.y, at.z);
-            const auto case_near = [&](int second, int third) {
-              return own[second * kCellSteps[axis][0] + third * kCellSteps[axis][1]];
-            };
-            float mx, my, mz;
-            ring_displacement(edge_ring_of_cells(case_near, axis, starts.ring), &mx, &my, &mz);
-            start = start + Vec3<float>(mx, my, mz) * h;
-          }
-        }
-        p->x[n] = start.x, p->y[n] = start.y, p->z[n] = start.z;
+        const uint8_t *const own = leaf_cases + kCellPlaces.of_bit[bit];
+        const float move = along[*own & 1];  // by the sign of its first point
+        p->x[n] = places[bit & 3].x + (axis == 0 ? move : 0.f);
+        p->y[n] = places[bit >> 2 & 3].y + (axis == 1 ? move : 0.f);
+        p->z[n] = places[bit >> 4].z + (axis == 2 ? move : 0.f);
+        if (starts.relax)
+          rings[n] = edge_ring_of_cells(
+              [&](int second, int third) { return own[second * second_step + third * third_step]; }, axis, starts.ring);
       }
-  return n;
+    }
+  }
+  if (!starts.relax) return;
+  for (int v = n; v < n + kWideLanes; ++v) rings[v] = rings[n - 1];
+  for (int g = 0; g < n; g += kWideLanes)
+    for (int v = g; v < g + kWideLanes; ++v) {
+      float mx, my, mz;
+      ring_displacement(rings[v], &mx, &my, &mz);
+      p->x[v] += mx * h, p->y[v] += my * h, p->z[v] += mz * h;
+    }
 }
 
 QSES_FN void fill_up(Points *p, int n) {
@@ -341,8 +357,10 @@ BrickNeeds emit_brick_vertices(const FeatureView &f, const BrickSet &bricks, con
       const glm::vec3 p = starts.moved[base + static_cast<uint32_t>(v)];
       w.place.x[v] = p.x, w.place.y[v] = p.y, w.place.z[v] = p.z;
     }
+  } else if (starts_by_halving(f.parameters)) {
+    start_by_halving(f, bricks, layout, brick, n, c, &w.place);
   } else {
-    start_vertices(f, bricks, layout, brick, starts, c, &w.place);
+    start_vertices(bricks, layout, brick, starts, &w.place);
   }
   const int open = project_contact(f, c, h, n, &w);
   project_reentrant(f, c, h, open, &w);
