@@ -5,7 +5,6 @@
 
 #include "parallel/pack.h"
 
-#include <cstring>
 #include <initializer_list>
 
 namespace quickses {
@@ -120,11 +119,6 @@ QSES_FN WidePack spread_lanes(Pack a, __m512i numbers) {
 QSES_FN uint64_t join_lanes(WideMask a, WideMask b, WideMask c, WideMask d) {
   return _mm512_kunpackd(_mm512_kunpackw(d.m, c.m), _mm512_kunpackw(b.m, a.m));
 }
-// Which of so many bytes are not zero.
-QSES_FN uint32_t bits_of_bytes(const uint8_t *bytes, uint32_t count) {
-  const __m128i v = _mm_maskz_loadu_epi8(static_cast<__mmask16>(first_wide_lanes(count)), bytes);
-  return _mm_test_epi8_mask(v, v);
-}
 
 #else
 
@@ -138,12 +132,6 @@ QSES_FN uint32_t wide_lanes_of(const int32_t *numbers, int32_t number) { return 
 // Whole packs are read: there is something behind the last row.
 QSES_FN void load_wide_rows(const float *p, uint32_t, WidePack *x, WidePack *y, WidePack *z, WidePack *w) {
   load_columns(p, x, y, z, w);
-}
-// They are 0 or 1.
-QSES_FN uint32_t bits_of_bytes(const uint8_t *bytes, uint32_t) {
-  uint64_t v;
-  std::memcpy(&v, bytes, sizeof v);
-  return static_cast<uint32_t>((v * 0x0102040810204080ull) >> 56);
 }
 
 #endif

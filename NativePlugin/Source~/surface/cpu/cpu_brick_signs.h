@@ -15,23 +15,11 @@ struct NearWords {
   const uint64_t *at[kNeighborhood];
 };
 QSES_FN NearWords find_near_words(const BrickSet &bricks, const uint64_t *signs, uint32_t brick) {
-  const Lattice &lattice = bricks.lattice;
-  const glm::ivec3 place = bricks.place(brick), last = lattice.brick_count - glm::ivec3(1);
-  const bool is_within =
-      place.x > 0 && place.y > 0 && place.z > 0 && place.x < last.x && place.y < last.y && place.z < last.z;
+  int found[kNeighborhood];
+  find_neighborhood(bricks, bricks.place(brick), found);
   NearWords near;
-  const auto set = [&](int k, int found) {
-    near.at[k] = found < 0 ? nullptr : signs + static_cast<size_t>(found) * kLeavesPerBrick;
-  };
-  if (bricks.table && is_within) {
-    const int32_t *const own = bricks.table + lattice.linear(place);
-    const ptrdiff_t row = lattice.brick_count.x, layer = row * lattice.brick_count.y;
-    for (int z = -1, k = 0; z <= 1; ++z)
-      for (int y = -1; y <= 1; ++y)
-        for (int x = -1; x <= 1; ++x, ++k) set(k, own[x + row * y + layer * z]);
-  } else {
-    for (int k = 0; k < kNeighborhood; ++k) set(k, bricks.find(place + neighbor_step(k)));
-  }
+  for (int k = 0; k < kNeighborhood; ++k)
+    near.at[k] = found[k] < 0 ? nullptr : signs + static_cast<size_t>(found[k]) * kLeavesPerBrick;
   return near;
 }
 

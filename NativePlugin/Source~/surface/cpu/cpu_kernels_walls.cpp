@@ -255,10 +255,13 @@ BrickNeeds mark_brick_walls(const FeatureView &f, const BrickSet &bricks, uint32
     for (uint64_t rest = starts.words[leaf]; rest; rest &= rest - 1)
       w.number[place_of(leaf, lowest_bit64(rest))] = number++;
   }
+  Vec3<float> along[kBrickEdge + 2];
+  for (int k = 0; k < kBrickEdge + 2; ++k)
+    along[k] = lattice.position(first.x + k - 1, first.y + k - 1, first.z + k - 1);
   const auto number_at = [&](int place) {
     const int16_t known = w.number[place];
-    const glm::ivec3 at = first + point_of(place);
-    w.ends.set(count, lattice.position(at.x, at.y, at.z));  // behind the last one, for want of a branch
+    // Behind the last one, for want of a branch.
+    w.ends.set(count, {along[place & 15].x, along[place >> 4 & 15].y, along[place >> 8].z});
     const bool is_new = known < 0;
     const int16_t number = is_new ? static_cast<int16_t>(count) : known;
     count += is_new ? 1 : 0;

@@ -14,6 +14,22 @@ namespace quickses {
 constexpr int kNeighborhood = 27, kOwnPlace = 13;
 QSES_FN glm::ivec3 neighbor_step(int place) { return glm::ivec3(place % 3 - 1, place / 3 % 3 - 1, place / 9 - 1); }
 
+// The numbers of the bricks around a place, and of the one there; -1 where none is active.
+QSES_FN void find_neighborhood(const BrickSet &bricks, const glm::ivec3 &place, int *found) {
+#if !defined(__CUDA_ARCH__)
+  const Lattice &lattice = bricks.lattice;
+  if (bricks.table && lattice.has(place - glm::ivec3(1)) && lattice.has(place + glm::ivec3(1))) {
+    const int32_t *const own = bricks.table + lattice.linear(place);
+    const ptrdiff_t row = lattice.brick_count.x, layer = row * lattice.brick_count.y;
+    for (int z = -1, k = 0; z <= 1; ++z)
+      for (int y = -1; y <= 1; ++y)
+        for (int x = -1; x <= 1; ++x, ++k) found[k] = own[x + row * y + layer * z];
+    return;
+  }
+#endif
+  bricks.find_each<kNeighborhood>([&](int k) { return place + neighbor_step(k); }, found);
+}
+
 // Which signs the points of a brick next to each neighbour have: the points of a face, an edge or a corner.
 struct alignas(8) BorderSigns {
   uint32_t inside, outside;  // a bit per neighbour
@@ -70,9 +86,8 @@ QSES_FN uint32_t shared_neighbors(uint32_t bits, const glm::ivec3 &step) {
 // is behind its own, at most.
 QSES_FN uint32_t border_changes(const BrickSet &bricks, const BorderSigns *signs, size_t brick, size_t known,
                                 uint32_t *near_number = nullptr) {
-  const glm::ivec3 place = bricks.place(brick);
   int other[kNeighborhood];
-  bricks.find_each<kNeighborhood>([&](int k) { return place + neighbor_step(k); }, other);
+  find_neighborhood(bricks, bricks.place(brick), other);
   other[kOwnPlace] = static_cast<int>(brick);  // one that stands for none is not found
   BorderSigns near{0, 0};
   uint32_t inactive = 0;
