@@ -7,6 +7,8 @@
 #include "surface/cpu/cpu_kernels.h"
 #include "surface/geometry/close_cut.h"
 
+#include <algorithm>
+
 namespace quickses {
 namespace QSES_CPU_ISA {
 namespace {
@@ -147,6 +149,44 @@ bool cut_exactly(const Circle &circle, const Sphere *atoms, uint32_t i, const in
   return true;
 }
 
+QSES_FN WidePack pseudo_ways(WidePack from, WidePack to) {
+  const WidePack way = to - from;
+  return select(way < WidePack(0.f), way + WidePack(4.f), way);
+}
+
+// Adds an exposed interval. One that it meets is the same but for rounding: what both have is exposed.
+void expose(Interval v, Intervals *intervals) {
+  for (int k = 0; k < intervals->count; ++k) {
+    Interval &known = intervals->interval[k];
+    const bool begins_within = pseudo_way(known.begin, v.begin) < pseudo_way(known.begin, known.end);
+    if (!begins_within && pseudo_way(v.begin, known.begin) >= pseudo_way(v.begin, v.end)) continue;
+    if (begins_within) known.begin = v.begin;
+    if (pseudo_way(known.begin, v.end) < pseudo_way(known.begin, known.end)) known.end = v.end;
+    return;
+  }
+  intervals->interval[intervals->count++] = v;
+}
+
+// The stretches of `lanes` are covered, of a circle that was exposed so far: an exposed interval begins where one ends
+// that lies in no other, and reaches to where the next begins. As ExposedIntervals has it, one after the other.
+void cover_whole(WidePack begin, WidePack end, uint32_t lanes, Intervals *intervals) {
+  alignas(64) float begins[kWideLanes], ends[kWideLanes], lengths[kWideLanes];
+  store_pack(begins, begin);
+  store_pack(ends, end);
+  store_pack(lengths, pseudo_ways(begin, end));
+  WideMask covered = wide_mask(0);
+  for (uint32_t rest = lanes; rest; rest &= rest - 1) {
+    const int l = lowest_bit32(rest);
+    covered = covered | (pseudo_ways(WidePack(begins[l]), end) < WidePack(lengths[l]));
+  }
+  intervals->whole = false;
+  for (uint32_t left = lanes & ~lane_bits(covered); left; left &= left - 1) {
+    const float from = ends[lowest_bit32(left)];
+    const WidePack way = select(wide_mask(lanes), pseudo_ways(WidePack(from), begin), WidePack(kFarAway));
+    expose({from, begins[lowest_bit32(lane_bits(way == WidePack(horizontal_minimum(way))))]}, intervals);
+  }
+}
+
 // The exposed intervals of circle j of the n caps of atom i; false if it is hidden. exactly: as if nothing were
 // rounded.
 bool cut_by_neighbors(const Circle &circle, const Columns &c, int n, int j, const Sphere *atoms, uint32_t i,
@@ -172,6 +212,11 @@ bool cut_by_neighbors(const Circle &circle, const Columns &c, int n, int j, cons
       lanes &= ~points;
     }
     // The largest caps come first: most hidden circles are found to be so before the others are looked at.
+    if (intervals->whole) {
+      if (lanes) cover_whole(begin, end, lanes, intervals);
+      if (intervals->empty()) return false;
+      continue;
+    }
     alignas(32) float begins[kWideLanes], ends[kWideLanes];
     store_pack(begins, begin);
     store_pack(ends, end);
@@ -217,6 +262,9 @@ AtomFeatures find_atom_features(const NeighborGridView &atoms, const SurfacePara
     const Circle circle = make_circle(glm::vec3(c.x[j], c.y[j], c.z[j]), c.cosine[j], self.radius);
     Intervals intervals{c.intervals, scratch.capacity};
     if (!cut_by_neighbors(circle, c, n, j, atoms.items, i, exactly, &intervals)) continue;
+    // In the same order however many caps a pack holds.
+    std::sort(c.intervals, c.intervals + intervals.count,
+              [](const Interval &a, const Interval &b) { return a.begin < b.begin; });
     atomic_set(&exposed[i]);
     atomic_set(&exposed[c.index[j]]);
     const float radius = self.radius * circle.sine;
