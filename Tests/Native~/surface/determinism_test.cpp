@@ -279,12 +279,20 @@ TEST(InstructionSets, GiveTheSameSurface) {
     }
 }
 
-// However many points they take at a time, what is near each of them decides about it.
+Atoms lattice(int n, double edge, double r) {
+  Atoms atoms;
+  for (int k = 0; k < n * n * n; ++k) atoms.add(edge * (k % n), edge * (k / n % n), edge * (k / n / n), r);
+  return atoms;
+}
+
+// However many points they take at a time, what is near each of them decides about it; and in lattices, where many
+// balls meet in a point, rounding does, the same way.
 TEST(InstructionSets, NewerOnesGiveTheSameBytes) {
   using exact_fixture::ExactRun;
   const auto sets = quickses::usable_cpu_kernels();
   if (sets.size < 3) GTEST_SKIP() << "this processor or build has no set of kernels beyond AVX2";
-  for (const Atoms &atoms : {cluster(300, 24), cluster(120, 7), crambin()})
+  for (const Atoms &atoms :
+       {cluster(300, 24), cluster(120, 7), crambin(), lattice(4, 3.95, 1.7), lattice(4, 4, 1.9), lattice(3, 4.6, 1.9)})
     for (qses_surface kind : {QSES_SURFACE_SES, QSES_SURFACE_SAS, QSES_SURFACE_VDW})
       for (double spacing : {0.35, 0.5, 1.3, 3.0})
         for (double probe : {0.4, 1.4, 4.0}) {

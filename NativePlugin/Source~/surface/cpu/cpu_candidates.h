@@ -7,8 +7,6 @@
 #include "surface/cpu/cpu_item_packs.h"
 #include "surface/cpu/cpu_kernels.h"
 
-#include <cstring>
-
 namespace quickses {
 namespace QSES_CPU_ISA {
 

@@ -7,8 +7,6 @@
 #include "surface/cpu/cpu_kernels.h"
 #include "surface/geometry/close_cut.h"
 
-#include <algorithm>
-
 namespace quickses {
 namespace QSES_CPU_ISA {
 namespace {
@@ -149,50 +147,20 @@ bool cut_exactly(const Circle &circle, const Sphere *atoms, uint32_t i, const in
   return true;
 }
 
-QSES_FN WidePack pseudo_ways(WidePack from, WidePack to) {
-  const WidePack way = to - from;
-  return select(way < WidePack(0.f), way + WidePack(4.f), way);
-}
+// What caps that follow each other cover of a circle. With every set of kernels they are so many, since where stretches
+// just touch, rounding decides, and it shall decide alike.
+struct Stretches {
+  static constexpr int kMost = 16, kPacks = kMost / kWideLanes;
+  alignas(64) float begin[kMost] = {}, end[kMost] = {};  // pseudo-angles
+  uint32_t set = 0;                                      // a bit for each that is one
+};
 
-// Adds an exposed interval. One that it meets is the same but for rounding: what both have is exposed.
-void expose(Interval v, Intervals *intervals) {
-  for (int k = 0; k < intervals->count; ++k) {
-    Interval &known = intervals->interval[k];
-    const bool begins_within = pseudo_way(known.begin, v.begin) < pseudo_way(known.begin, known.end);
-    if (!begins_within && pseudo_way(v.begin, known.begin) >= pseudo_way(v.begin, v.end)) continue;
-    if (begins_within) known.begin = v.begin;
-    if (pseudo_way(known.begin, v.end) < pseudo_way(known.begin, known.end)) known.end = v.end;
-    return;
-  }
-  intervals->interval[intervals->count++] = v;
-}
-
-// The stretches of `lanes` are covered, of a circle that was exposed so far: an exposed interval begins where one ends
-// that lies in no other, and reaches to where the next begins. As ExposedIntervals has it, one after the other.
-void cover_whole(WidePack begin, WidePack end, uint32_t lanes, Intervals *intervals) {
-  alignas(64) float begins[kWideLanes], ends[kWideLanes], lengths[kWideLanes];
-  store_pack(begins, begin);
-  store_pack(ends, end);
-  store_pack(lengths, pseudo_ways(begin, end));
-  WideMask covered = wide_mask(0);
-  for (uint32_t rest = lanes; rest; rest &= rest - 1) {
-    const int l = lowest_bit32(rest);
-    covered = covered | (pseudo_ways(WidePack(begins[l]), end) < WidePack(lengths[l]));
-  }
-  intervals->whole = false;
-  for (uint32_t left = lanes & ~lane_bits(covered); left; left &= left - 1) {
-    const float from = ends[lowest_bit32(left)];
-    const WidePack way = select(wide_mask(lanes), pseudo_ways(WidePack(from), begin), WidePack(kFarAway));
-    expose({from, begins[lowest_bit32(lane_bits(way == WidePack(horizontal_minimum(way))))]}, intervals);
-  }
-}
-
-// The exposed intervals of circle j of the n caps of atom i; false if it is hidden. exactly: as if nothing were
-// rounded.
-bool cut_by_neighbors(const Circle &circle, const Columns &c, int n, int j, const Sphere *atoms, uint32_t i,
-                      bool exactly, Intervals *intervals) {
-  for (int q = 0; q < n; q += kWideLanes) {
-    if (q % 64 == 0) look_for_stop();
+// Finds those of the caps from `first` on; false if they hide circle j of the n caps of atom i. exactly: what is
+// unclear is decided as if nothing were rounded, and covered already.
+bool find_stretches(const Circle &circle, const Columns &c, int n, int j, const Sphere *atoms, uint32_t i, bool exactly,
+                    int first, Stretches *stretches, Intervals *intervals) {
+  for (int p = 0; p < Stretches::kMost && first + p < n; p += kWideLanes) {
+    const int q = first + p;
     const Vec3<WidePack> axis(load_wide(c.x + q), load_wide(c.y + q), load_wide(c.z + q));
     const HalfPlane<WidePack> h = cut_circle(circle, axis, load_wide(c.cosine + q));
     uint32_t lanes = first_wide_lanes(static_cast<uint32_t>(n - q));
@@ -211,20 +179,78 @@ bool cut_by_neighbors(const Circle &circle, const Columns &c, int n, int j, cons
       if (lane_bits(h.c < WidePack(0.f)) & points) return false;
       lanes &= ~points;
     }
-    // The largest caps come first: most hidden circles are found to be so before the others are looked at.
-    if (intervals->whole) {
-      if (lanes) cover_whole(begin, end, lanes, intervals);
-      if (intervals->empty()) return false;
-      continue;
+    store_pack(stretches->begin + p, begin);
+    store_pack(stretches->end + p, end);
+    stretches->set |= lanes << p;
+  }
+  return true;
+}
+
+QSES_FN WidePack pseudo_ways(WidePack from, WidePack to) {
+  const WidePack way = to - from;
+  return select(way < WidePack(0.f), way + WidePack(4.f), way);
+}
+
+// Adds an exposed interval. One that it meets is the same but for rounding: what both have is exposed.
+void expose(Interval v, Intervals *intervals) {
+  for (int k = 0; k < intervals->count; ++k) {
+    Interval &known = intervals->interval[k];
+    const bool begins_within = pseudo_way(known.begin, v.begin) < pseudo_way(known.begin, known.end);
+    if (!begins_within && pseudo_way(v.begin, known.begin) >= pseudo_way(v.begin, v.end)) continue;
+    if (begins_within) known.begin = v.begin;
+    if (pseudo_way(known.begin, v.end) < pseudo_way(known.begin, known.end)) known.end = v.end;
+    return;
+  }
+  intervals->interval[intervals->count++] = v;
+}
+
+// Of a circle that was exposed so far: an exposed interval begins where a stretch ends that lies in no other, and
+// reaches to where the next begins. As ExposedIntervals has it, one after the other.
+void cover_at_once(const Stretches &s, Intervals *intervals) {
+  constexpr float kTouching = 5e-7f;  // so far rounding may put stretches apart that touch
+  WideMask covered[Stretches::kPacks];
+  for (WideMask &mask : covered) mask = wide_mask(0);
+  for (uint32_t rest = s.set; rest; rest &= rest - 1) {
+    const int l = lowest_bit32(rest);
+    const WidePack length(pseudo_way(s.begin[l], s.end[l]));
+    for (int p = 0; p < Stretches::kPacks; ++p)
+      covered[p] = covered[p] | (pseudo_ways(WidePack(s.begin[l]), load_wide(s.end + p * kWideLanes)) < length);
+  }
+  uint32_t left = s.set;
+  for (int p = 0; p < Stretches::kPacks; ++p) left &= ~(lane_bits(covered[p]) << p * kWideLanes);
+  intervals->whole = false;
+  for (; left; left &= left - 1) {
+    const float from = s.end[lowest_bit32(left)];
+    float nearest = kFarAway;
+    int next = 0;
+    for (int p = 0; p < Stretches::kPacks; ++p) {
+      const WidePack way = select(wide_mask(s.set >> p * kWideLanes & kAllWideLanes),
+                                  pseudo_ways(WidePack(from), load_wide(s.begin + p * kWideLanes)), WidePack(kFarAway));
+      const float least = horizontal_minimum(way);
+      if (!(least < nearest)) continue;
+      nearest = least;
+      next = p * kWideLanes + lowest_bit32(lane_bits(way == WidePack(least)));
     }
-    alignas(32) float begins[kWideLanes], ends[kWideLanes];
-    store_pack(begins, begin);
-    store_pack(ends, end);
-    for (; lanes; lanes &= lanes - 1) {
-      const int l = lowest_bit32(lanes);
-      intervals->cover(begins[l], ends[l]);
-      if (intervals->empty()) return false;
-    }
+    if (nearest > kTouching) expose({from, s.begin[next]}, intervals);
+  }
+}
+
+// The exposed intervals of circle j of the n caps of atom i; false if it is hidden. exactly: as if nothing were
+// rounded.
+bool cut_by_neighbors(const Circle &circle, const Columns &c, int n, int j, const Sphere *atoms, uint32_t i,
+                      bool exactly, Intervals *intervals) {
+  // The largest caps come first: most hidden circles are found to be so before the others are looked at.
+  for (int first = 0; first < n; first += Stretches::kMost) {
+    if (first % 64 == 0) look_for_stop();
+    Stretches stretches;
+    if (!find_stretches(circle, c, n, j, atoms, i, exactly, first, &stretches, intervals)) return false;
+    if (!stretches.set) continue;
+    if (intervals->whole)
+      cover_at_once(stretches, intervals);
+    else
+      for (uint32_t rest = stretches.set; rest && !intervals->empty(); rest &= rest - 1)
+        intervals->cover(stretches.begin[lowest_bit32(rest)], stretches.end[lowest_bit32(rest)]);
+    if (intervals->empty()) return false;
   }
   return true;
 }
@@ -262,9 +288,6 @@ AtomFeatures find_atom_features(const NeighborGridView &atoms, const SurfacePara
     const Circle circle = make_circle(glm::vec3(c.x[j], c.y[j], c.z[j]), c.cosine[j], self.radius);
     Intervals intervals{c.intervals, scratch.capacity};
     if (!cut_by_neighbors(circle, c, n, j, atoms.items, i, exactly, &intervals)) continue;
-    // In the same order however many caps a pack holds.
-    std::sort(c.intervals, c.intervals + intervals.count,
-              [](const Interval &a, const Interval &b) { return a.begin < b.begin; });
     atomic_set(&exposed[i]);
     atomic_set(&exposed[c.index[j]]);
     const float radius = self.radius * circle.sine;

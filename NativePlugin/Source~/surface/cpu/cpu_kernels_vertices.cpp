@@ -57,9 +57,10 @@ void start_by_halving(const FeatureView &f, const BrickSet &bricks, const MeshLa
   }
 }
 
-// Where the brick's vertices start, in the order of their numbers: on their edges, or relaxed from there.
-void start_vertices(const BrickSet &bricks, const MeshLayout &layout, uint32_t brick, const VertexStarts &starts,
-                    Points *p) {
+// Where the brick's vertices start, in the order of their numbers: on their edges, or relaxed from there. Not inlined:
+// the stack of what comes after it shall not hold its arrays.
+[[gnu::noinline]] void start_vertices(const BrickSet &bricks, const MeshLayout &layout, uint32_t brick,
+                                      const VertexStarts &starts, Points *p) {
   const Lattice &lattice = bricks.lattice;
   const glm::ivec3 first = lattice.first_point(bricks.place(brick));
   const float h = lattice.spacing, along[2] = {vertex_start(false) * h, vertex_start(true) * h};

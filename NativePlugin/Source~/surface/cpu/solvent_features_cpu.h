@@ -267,7 +267,7 @@ struct FeatureArrays {
         atoms_per_chunk(std::max(kMinAtomsPerChunk, std::min(kMaxAtomsPerChunk, n / (size_t(threads) * 8)))),
         chunks((n + atoms_per_chunk - 1) / atoms_per_chunk),
         cap_ranges(room.template allocate<CapRange>(n)),
-        exposed(room.template allocate<uint8_t>(n + 8)),
+        exposed(room.template allocate<uint8_t>(n)),
         table(room.template allocate<FeatureChunk>(chunks)),
         cap_first(room.template allocate<uint64_t>(n + 1)),
         arc_base(room.template allocate<uint64_t>(chunks + 1)) {}

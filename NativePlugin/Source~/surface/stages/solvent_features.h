@@ -43,7 +43,7 @@ struct SolventFeatures {
   Span<Cap> caps;             // cosine with the exposure tolerance, largest cap first
   Span<Arc> arcs;
   Span<ArcAtoms> arc_atoms;  // of each arc, if the surface is that of the balls; else none
-  Span<uint8_t> exposed;     // CPU only: per atom 1 or 0, and 8 bytes more
+  Span<uint8_t> exposed;     // CPU only: per atom 1 or 0
   uint32_t most_caps = 0;    // of an atom; GPU only
   // Where the number of arcs is, if there may be fewer; nullptr: it is exact.
   const unsigned long long *arc_count = nullptr;
@@ -54,7 +54,7 @@ struct FeatureView {
   NeighborGridView atoms;  // inflated spheres; atoms that own no surface are far away
   const CapRange *cap_ranges;
   const Cap *caps;
-  const uint8_t *exposed;       // per atom 1 or 0, readable 8 beyond the last; only the CPU's kernels look at it
+  const uint8_t *exposed;       // per atom 1 or 0; only the CPU's kernels look at it
   NeighborGridView arc_bounds;  // enclosing ball of each arc
   const Arc *arcs;              // in the order of arc_bounds.items
   float max_arc_bound;
