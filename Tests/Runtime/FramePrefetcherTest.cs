@@ -381,7 +381,7 @@ namespace QuickSes.Tests
                             Thread.Yield();
                     }
                 };
-                Garbage.AssertNone(play);
+                Garbage.AssertNoneBesideThreads(play);
                 // Nor does the thread that reads.
                 long least = long.MaxValue;
                 for (int round = 0; round < 8 && least != 0; ++round)
@@ -391,7 +391,7 @@ namespace QuickSes.Tests
                     least = Math.Min(least, Volatile.Read(ref reader.Allocated) - before);
                 }
                 Assert.That(least, Is.EqualTo(0));
-                Assert.That(reader.ReadsSoFar().Length, Is.GreaterThanOrEqualTo(400));
+                Assert.That(reader.ReadsSoFar().Length, Is.GreaterThanOrEqualTo(600));
             }
         }
     }
