@@ -3,17 +3,15 @@
 // between passes, and they wake up late.
 #pragma once
 
-#include <atomic>
-#include <condition_variable>
+#include "parallel/this_process.h"
+
 #include <cstddef>
-#include <mutex>
-#include <thread>
-#include <vector>
+#include <memory>
 
 namespace quickses {
 
 // They wait awake for a little while after they helped, since passes follow each other soon, and then sleep. One caller
-// at a time.
+// at a time. In a forked child, which they are not in, the caller is alone.
 class HelperThreads {
  public:
   // Starts so many, or as many as the system gives.
@@ -22,7 +20,7 @@ class HelperThreads {
   HelperThreads(const HelperThreads &) = delete;
   HelperThreads &operator=(const HelperThreads &) = delete;
 
-  size_t count() const { return threads_.size(); }
+  size_t count() const;
 
   // work(context, worker), which must not throw, for worker 0 by the calling thread, and for others up to workers - 1
   // by the helpers that come before it is through. Nobody waits for those that do not: what is to be done is shared out
@@ -31,24 +29,12 @@ class HelperThreads {
   void run(size_t workers, Work work, const void *context) noexcept;
 
  private:
-  void help();
-  bool is_called() const { return seats_ > 0 || quits_; }
-  void wait_to_be_called();
-  bool take_seat();
+  struct Crew;
+  // Not even to be destroyed in a forked child: there it says that threads wait for it, as they did in the parent.
+  Crew *own_crew() const noexcept { return process_ == this_process() ? crew_.get() : nullptr; }
 
-  // What is to be done; who has a seat may read it.
-  Work work_ = nullptr;
-  const void *context_ = nullptr;
-  std::atomic<size_t> next_worker_{1};
-
-  // A helper counts itself in before it takes a seat, and who calls takes back the seats before it looks whether any
-  // is in: so one of them always sees the other. (All in one order, as atomics have them by default.)
-  std::atomic<size_t> seats_{0}, at_work_{0};
-  std::atomic<bool> quits_{false};
-  std::atomic<size_t> asleep_{0};
-  std::mutex mutex_;
-  std::condition_variable called_;
-  std::vector<std::thread> threads_;
+  long process_ = this_process();  // that has them
+  std::unique_ptr<Crew> crew_;
 };
 
 }  // namespace quickses

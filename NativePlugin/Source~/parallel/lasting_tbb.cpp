@@ -2,29 +2,31 @@
 #include "parallel/lasting_tbb.h"
 
 #if !defined(QSES_CPU_SYSTEM_OWN)
+#include "parallel/work_before_exit.h"
+
 #include <tbb/task_arena.h>
 
-#include <atomic>
 #include <cstdlib>
 #include <exception>
 
 namespace quickses {
 namespace {
 
-std::atomic<bool> process_ends{false};
-// TBB is there before this library is, so that its settings go after this is called. (It only tells: a child that was
-// forked while a thread held a lock would wait for it here.)
-const int registered = std::atexit([] { process_ends = true; });
+WorkBeforeExit beginning;
+// TBB is there before this library is, so that its settings go after this is called.
+const int registered = std::atexit([] { beginning.end(); });
 
 unsigned begin_tbb() noexcept {
-  if (process_ends) return 1;
-  try {
-    static tbb::task_arena &held = *new tbb::task_arena;  // never destroyed
-    held.initialize();
-    return static_cast<unsigned>(held.max_concurrency());
-  } catch (const std::exception &) {
-    return 1;
-  }
+  unsigned threads = 1;
+  beginning.run([&] {
+    try {
+      static tbb::task_arena &held = *new tbb::task_arena;  // never destroyed
+      held.initialize();
+      threads = static_cast<unsigned>(held.max_concurrency());
+    } catch (const std::exception &) {
+    }
+  });
+  return threads;
 }
 
 }  // namespace

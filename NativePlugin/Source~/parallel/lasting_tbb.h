@@ -7,8 +7,8 @@ namespace quickses {
 // How many threads TBB has, with the one that calls; 1: it must not be used. The first call begins it, and from then on
 // it is held for good: where nobody holds it, as while nobody computes, it ends, and would be begun anew, by settings
 // that are gone while the process ends (oneTBB 2021.8 dies of that: "pure virtual method called"). So it is not begun
-// any more when the process is known to end; nor where that failed once, since a second attempt would wait for the
-// first for ever. Any thread.
+// any more when the process ends, which waits for a thread that begins it just then; nor where that failed once, since
+// a second attempt would wait for the first for ever. Any thread.
 unsigned threads_of_tbb() noexcept;
 
 }  // namespace quickses

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "parallel/later_release.h"
 
+#include "parallel/work_before_exit.h"
+
 #include <chrono>
-#include <condition_variable>
 #include <cstdlib>
 #include <mutex>
 #include <thread>
@@ -11,13 +12,14 @@
 namespace quickses {
 namespace {
 
+WorkBeforeExit releasing;  // drivers must not end meanwhile
+
 class LaterReleases {
  public:
   // False: it is the caller's still.
   bool take(void (*release)(void *), void *memory) noexcept {
     try {
       const std::lock_guard<std::mutex> lock(mutex_);
-      if (is_ending_) return true;  // the system has it in a moment
       waiting_.push_back({release, memory});
       if (is_working_) return true;
       try {
@@ -33,14 +35,6 @@ class LaterReleases {
     }
   }
 
-  // Waits for the one that is being released: drivers must not end meanwhile.
-  void end() {
-    std::unique_lock<std::mutex> lock(mutex_);
-    is_ending_ = true;
-    done_.notify_all();
-    done_.wait(lock, [this] { return !is_working_; });
-  }
-
  private:
   struct Item {
     void (*release)(void *);
@@ -50,30 +44,28 @@ class LaterReleases {
   // The thread ends when there is nothing left. Drivers do one thing at a time: whoever gave the memory up is likely to
   // give up more, and should not have to wait for this.
   void work() {
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
     std::unique_lock<std::mutex> lock(mutex_);
-    done_.wait_for(lock, std::chrono::milliseconds(200), [this] { return is_ending_; });
-    while (!waiting_.empty() && !is_ending_) {
+    while (!waiting_.empty()) {
       const Item item = waiting_.back();
       waiting_.pop_back();
       lock.unlock();
-      item.release(item.memory);
+      releasing.run([&] { item.release(item.memory); });
       lock.lock();
     }
     is_working_ = false;
-    done_.notify_all();
   }
 
   std::mutex mutex_;
-  std::condition_variable done_;
   std::vector<Item> waiting_;
-  bool is_working_ = false, is_ending_ = false;
+  bool is_working_ = false;
 };
 
 LaterReleases &later_releases() {
   static LaterReleases &all = *new LaterReleases;  // never destroyed: the thread may be late
 #if !defined(_WIN32)
   // Whatever the driver registers was registered before. (Windows ends all threads before anything else.)
-  static const int registered = std::atexit([] { later_releases().end(); });
+  static const int registered = std::atexit([] { releasing.end(); });
   (void)registered;
 #endif
   return all;

@@ -1,32 +1,21 @@
 // SPDX-License-Identifier: MIT
 // A process that ends while threads compute, begin and end: it does end, and with its own status.
+#include "parallel/forked_child.h"
 #include "surface/surface_fixture.h"
 
 #include <gtest/gtest.h>
-
-#if defined(__linux__)
-#include <sys/wait.h>
-#include <unistd.h>
-#endif
 
 #include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <memory>
 #include <string>
 #include <system_error>
 #include <thread>
 
 using namespace surface_fixture;
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define QSES_TEST_SANITIZED
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define QSES_TEST_SANITIZED
-#endif
-#endif
 
 #if defined(__linux__) && !defined(QSES_TEST_SANITIZED)
 // What is registered before any library begins is done after all of them have ended: the process lasts a little then,
@@ -135,33 +124,47 @@ TEST_F(ProcessEnd, DoesNotWaitForAThread) { end_processes(1); }
 TEST_F(ProcessEnd, BeforeTheFirstSurface) {
   tested_backend();
   for (int k = 0; k < kProcesses; ++k)
-    EXPECT_EXIT(end_before_the_first_surface(k % 2 == 0, 1 + k / 2 % 5), testing::ExitedWithCode(0), "")
-        << "process " << k;
+    EXPECT_EXIT(end_before_the_first_surface(k % 2 == 0, k / 2 % 6), testing::ExitedWithCode(0), "") << "process " << k;
 }
 
-#if defined(__linux__) && !defined(QSES_TEST_SANITIZED)
+#if defined(QSES_TEST_FORKS)
 // Threads of the parent hold whatever they hold as it forks; the child ends all the same.
-[[noreturn]] void fork_while_a_thread_computes() {
+[[noreturn]] void fork_while_a_thread_computes(int first_surfaces) {
   std::thread(compute_for_ever).detach();
-  while (surfaces < 20) std::this_thread::yield();
-  for (int k = 0; k < 400; ++k) {
-    const pid_t child = fork();
-    if (child == 0) {
-      alarm(60);
-      std::exit(0);
+  while (surfaces < first_surfaces) std::this_thread::yield();
+  for (int k = 0; k < 400; ++k)
+    if (!forked_child_ends([] {})) {
+      std::fprintf(stderr, "child %d\n", k);
+      std::_Exit(1);
     }
-    if (child < 0) continue;  // the machine refuses it just now
-    int status = 0;
-    if (waitpid(child, &status, 0) == child && status == 0) continue;
-    std::fprintf(stderr, "child %d ended with status %d\n", k, status);
-    std::_Exit(1);
-  }
   std::_Exit(0);
 }
 
 TEST_F(ProcessEnd, OfForkedChildren) {
   if (tested_backend() != QSES_BACKEND_CPU) GTEST_SKIP() << "drivers do not survive a fork";
-  EXPECT_EXIT(fork_while_a_thread_computes(), testing::ExitedWithCode(0), "");
+  for (const int first_surfaces : {20, 0})
+    EXPECT_EXIT(fork_while_a_thread_computes(first_surfaces), testing::ExitedWithCode(0), "") << first_surfaces;
+}
+
+// Forked while nothing runs, a child may compute, also in what its parent made, and give that up.
+[[noreturn]] void compute_in_forked_children() {
+  const auto positions_of = [](Context &context) { return compute(context, crambin(), settings()).mesh.positions; };
+  auto context = std::make_unique<Context>(kHelpers);
+  const auto expected = positions_of(*context);
+  for (int k = 0; k < 20; ++k) {
+    const bool ends = forked_child_ends([&] {
+      Context own(kHelpers);
+      if (positions_of(own) != expected || positions_of(*context) != expected) std::_Exit(1);
+      context.reset();
+    });
+    if (!ends || positions_of(*context) != expected) std::_Exit(1);
+  }
+  std::_Exit(0);
+}
+
+TEST_F(ProcessEnd, ForkedChildrenMayCompute) {
+  if (tested_backend() != QSES_BACKEND_CPU) GTEST_SKIP() << "drivers do not survive a fork";
+  EXPECT_EXIT(compute_in_forked_children(), testing::ExitedWithCode(0), "");
 }
 #endif
 

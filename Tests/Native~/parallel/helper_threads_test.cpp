@@ -2,10 +2,14 @@
 // Threads that help: who comes does all of its work before the call returns, and nobody waits for who does not.
 #include "parallel/helper_threads.h"
 
+#include "parallel/forked_child.h"
+
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <chrono>
+#include <cstdlib>
+#include <memory>
 #include <thread>
 #include <vector>
 
@@ -85,5 +89,25 @@ TEST(HelperThreads, EndAtOnceAndWithoutWork) {
     if (trial % 2) run_often(&threads, 3, 1);
   }
 }
+
+#if defined(QSES_TEST_FORKS)
+[[noreturn]] void fork_while_they(bool sleep) {
+  auto threads = std::make_unique<HelperThreads>(3);
+  run_often(threads.get(), 4);
+  if (sleep) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  const bool child_ends = forked_child_ends([&threads] {
+    if (threads->count() != 0) std::_Exit(1);
+    run_often(threads.get(), 4);
+    threads.reset();
+  });
+  run_often(threads.get(), 4);
+  threads.reset();
+  std::_Exit(child_ends && !testing::Test::HasFailure() ? 0 : 1);
+}
+TEST(HelperThreads, AreNotWaitedForInAForkedChild) {
+  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  for (const bool sleep : {true, false}) EXPECT_EXIT(fork_while_they(sleep), testing::ExitedWithCode(0), "") << sleep;
+}
+#endif
 
 }  // namespace

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Memory that nobody waits for is given back all the same, once, and not by whoever hands it over.
+// Memory that nobody waits for is given back all the same, once, and not by whoever hands it over; also while the
+// process ends, or a child of it.
 #include "parallel/later_release.h"
+
+#include "parallel/forked_child.h"
 
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <chrono>
+#include <cstdlib>
 #include <thread>
 #include <vector>
 
@@ -68,6 +72,50 @@ TEST(LaterRelease, TakesItemsFromAllThreads) {
   for (const Item &item : items) wait_for(item);
   for (const Item &item : items) EXPECT_EQ(item.releases, 1);
 }
+
+#if !defined(_WIN32)  // which ends all threads first
+std::atomic<bool> has_begun{false}, is_ending{false};
+void release_slowly(void *memory) {
+  has_begun = true;
+  while (!is_ending) std::this_thread::yield();
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  release_item(memory);
+}
+void wait_until_begun() {
+  while (!has_begun) std::this_thread::yield();
+}
+
+class LaterReleaseAtTheEnd : public testing::Test {
+ protected:
+  // Each is a fresh process: threads do not survive a fork.
+  void SetUp() override { testing::FLAGS_gtest_death_test_style = "threadsafe"; }
+};
+
+[[noreturn]] void end_while_one_is_released() {
+  static Item begun, not_begun;
+  std::atexit([] { std::_Exit(begun.releases == 1 && not_begun.releases == 0 ? 0 : 1); });
+  release_later(release_slowly, &begun);
+  wait_until_begun();
+  release_later(release_item, &not_begun);
+  std::atexit([] { is_ending = true; });  // just before the library waits
+  std::exit(2);
+}
+TEST_F(LaterReleaseAtTheEnd, IsWaitedForOnceBegun) {
+  EXPECT_EXIT(end_while_one_is_released(), testing::ExitedWithCode(0), "");
+}
+
+#if defined(QSES_TEST_FORKS)
+[[noreturn]] void fork_while_one_is_released() {
+  static Item item;
+  release_later(release_slowly, &item);
+  wait_until_begun();
+  std::_Exit(forked_child_ends([] { is_ending = true; }) ? 0 : 1);
+}
+TEST_F(LaterReleaseAtTheEnd, IsNotWaitedForInAForkedChild) {
+  EXPECT_EXIT(fork_while_one_is_released(), testing::ExitedWithCode(0), "");
+}
+#endif
+#endif
 
 }  // namespace
 }  // namespace quickses

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+#include "parallel/work_before_exit.h"
+
+#include <chrono>
+#include <thread>
+
+namespace quickses {
+
+// A thread says that it has begun before it asks whether all is over, and who ends says so before it asks for a thread:
+// so one of them always sees the other.
+void WorkBeforeExit::end() noexcept {
+  is_over_ = true;
+  while (begun_in_ == this_process()) std::this_thread::sleep_for(std::chrono::microseconds(50));
+}
+
+}  // namespace quickses
