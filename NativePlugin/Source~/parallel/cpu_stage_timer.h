@@ -15,6 +15,7 @@ class CpuStageTimer {
   explicit CpuStageTimer(Executor &) {}
 
   void enable(bool enabled) { enabled_ = enabled; }
+  bool is_enabled() const { return enabled_; }
   void reset() {
     times_.clear();
     open_ = false;

@@ -27,6 +27,7 @@ class CudaStageTimer {
   CudaStageTimer &operator=(const CudaStageTimer &) = delete;
 
   void enable(bool enabled) { enabled_ = enabled; }
+  bool is_enabled() const { return enabled_; }
   void reset() { marks_.clear(); }
 
   // Ends the stage before, and starts one. A name that has been there before goes on adding to it.

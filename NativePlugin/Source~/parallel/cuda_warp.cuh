@@ -30,6 +30,10 @@ template <int kLanes>
 __device__ __forceinline__ unsigned lanes_of_team() {
   return (kFullWarp >> (kWarp - kLanes)) << (lane_id() / kLanes * kLanes);
 }
+template <int kLanes>
+__device__ __forceinline__ unsigned ballot_of_team(bool own) {
+  return __ballot_sync(kFullWarp, own) & lanes_of_team<kLanes>();
+}
 // Whether something that is the same in all lanes of a team holds for any team.
 template <int kLanes>
 __device__ __forceinline__ bool holds_for_any_team(bool own) {

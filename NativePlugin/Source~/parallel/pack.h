@@ -84,6 +84,7 @@ QSES_FN PackMask operator<=(Pack a, Pack b) { return {_mm256_cmp_ps(a.v, b.v, _C
 QSES_FN PackMask operator==(Pack a, Pack b) { return {_mm256_cmp_ps(a.v, b.v, _CMP_EQ_OQ)}; }
 QSES_FN PackMask operator&(PackMask a, PackMask b) { return {_mm256_and_ps(a.v, b.v)}; }
 QSES_FN PackMask operator|(PackMask a, PackMask b) { return {_mm256_or_ps(a.v, b.v)}; }
+QSES_FN PackMask operator^(PackMask a, PackMask b) { return {_mm256_xor_ps(a.v, b.v)}; }
 QSES_FN Pack select(PackMask m, Pack yes, Pack no) { return _mm256_blendv_ps(no.v, yes.v, m.v); }
 QSES_FN uint32_t lane_bits(PackMask m) { return static_cast<uint32_t>(_mm256_movemask_ps(m.v)); }
 // Of four rows of lanes: the lower halves one after the other, and then the upper ones.
@@ -181,6 +182,7 @@ QSES_FN PackMask operator<=(Pack a, Pack b) { return {_mm_cmple_ps(a.l, b.l), _m
 QSES_FN PackMask operator==(Pack a, Pack b) { return {_mm_cmpeq_ps(a.l, b.l), _mm_cmpeq_ps(a.h, b.h)}; }
 QSES_FN PackMask operator&(PackMask a, PackMask b) { return {_mm_and_ps(a.l, b.l), _mm_and_ps(a.h, b.h)}; }
 QSES_FN PackMask operator|(PackMask a, PackMask b) { return {_mm_or_ps(a.l, b.l), _mm_or_ps(a.h, b.h)}; }
+QSES_FN PackMask operator^(PackMask a, PackMask b) { return {_mm_xor_ps(a.l, b.l), _mm_xor_ps(a.h, b.h)}; }
 QSES_FN Pack select(PackMask m, Pack yes, Pack no) {
   return {_mm_or_ps(_mm_and_ps(m.l, yes.l), _mm_andnot_ps(m.l, no.l)),
           _mm_or_ps(_mm_and_ps(m.h, yes.h), _mm_andnot_ps(m.h, no.h))};
@@ -250,6 +252,7 @@ QSES_FN PackMask operator<=(Pack a, Pack b) { PackMask m; QSES_EACH_LANE m.v[i] 
 QSES_FN PackMask operator==(Pack a, Pack b) { PackMask m; QSES_EACH_LANE m.v[i] = a.v[i] == b.v[i]; return m; }
 QSES_FN PackMask operator&(PackMask a, PackMask b) { QSES_EACH_LANE a.v[i] = a.v[i] && b.v[i]; return a; }
 QSES_FN PackMask operator|(PackMask a, PackMask b) { QSES_EACH_LANE a.v[i] = a.v[i] || b.v[i]; return a; }
+QSES_FN PackMask operator^(PackMask a, PackMask b) { QSES_EACH_LANE a.v[i] = a.v[i] != b.v[i]; return a; }
 QSES_FN Pack select(PackMask m, Pack yes, Pack no) { QSES_EACH_LANE no.v[i] = m.v[i] ? yes.v[i] : no.v[i]; return no; }
 QSES_FN uint32_t lane_bits(PackMask m) { uint32_t b = 0; QSES_EACH_LANE b |= uint32_t(m.v[i]) << i; return b; }
 QSES_FN PackMask lane_mask(uint32_t bits) { PackMask m; QSES_EACH_LANE m.v[i] = bits >> i & 1; return m; }

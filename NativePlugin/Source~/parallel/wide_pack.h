@@ -52,6 +52,7 @@ QSES_FN WideMask operator>(WidePack a, WidePack b) { return b < a; }
 QSES_FN WideMask operator>=(WidePack a, WidePack b) { return b <= a; }
 QSES_FN WideMask operator&(WideMask a, WideMask b) { return {static_cast<__mmask16>(a.m & b.m)}; }
 QSES_FN WideMask operator|(WideMask a, WideMask b) { return {static_cast<__mmask16>(a.m | b.m)}; }
+QSES_FN WideMask operator^(WideMask a, WideMask b) { return {static_cast<__mmask16>(a.m ^ b.m)}; }
 QSES_FN WidePack select(WideMask m, WidePack yes, WidePack no) { return _mm512_mask_blend_ps(m.m, no.v, yes.v); }
 QSES_FN WidePack reciprocal_root(WidePack a) { return WidePack(1.f) / square_root(a); }
 QSES_FN uint32_t lane_bits(WideMask m) { return m.m; }

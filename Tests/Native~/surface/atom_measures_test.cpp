@@ -166,20 +166,6 @@ void expect_slices_everywhere(const Atoms &atoms) {
   }
 }
 
-Atoms ring(size_t count, double radius, double r) {
-  Atoms atoms;
-  for (size_t k = 0; k < count; ++k) {
-    const double a = 2 * kPi * static_cast<double>(k) / static_cast<double>(count);
-    atoms.add(radius * std::cos(a), radius * std::sin(a), 0, r);
-  }
-  return atoms;
-}
-Atoms lattice(int n, double edge, double r) {
-  Atoms atoms;
-  for (int k = 0; k < n * n * n; ++k) atoms.add(edge * (k % n), edge * (k / n % n), edge * (k / n / n), r);
-  return atoms;
-}
-
 TEST(AtomMeasures, BallsThatTouch) {
   expect_slices_everywhere(Atoms().add(0, 0, 0, 1.5).add(3, 0, 0, 1.5).add(0, 3.5, 0, 2));
   expect_slices_everywhere(Atoms().add(0, 0, 0, 1.5).add(5.8, 0, 0, 1.5));

@@ -283,8 +283,10 @@ TEST(CudaStages, StartsOfVertices) {
   CudaCandidates candidates;
   CudaRooms rooms;
   const BrickRange all{0, s.bricks.count};
-  gpu::prepare_vertices(executor, s.features, s.bricks, s.layout, all, slice_sizes(executor, s.bricks, s.layout, all),
-                        rooms, candidates, {true, nullptr, table.view.ring, &s.layout.totals->unplaced}, s.mesh);
+  const SliceSizes sizes = slice_sizes(executor, s.bricks, s.layout, all);
+  const gpu::VertexJob job = gpu::open_vertices(executor, s.features, s.bricks, s.layout, all, sizes, rooms, candidates,
+                                                {true, nullptr, table.view.ring, &s.layout.totals->unplaced}, s.mesh);
+  gpu::prepare_vertices(executor, job, sizes.leaves, candidates.longest_row);
   const std::vector<float> starts = to_host(executor, s.mesh.positions, s.counts.vertices * 3);
 
   const BrickSet bricks{r.lattice, r.bricks.data(), nullptr, static_cast<uint32_t>(r.bricks.size())};

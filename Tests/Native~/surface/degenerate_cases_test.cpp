@@ -7,27 +7,10 @@ namespace {
 
 using namespace surface_checks;
 
-Atoms ring(size_t count, double radius, double r) {
-  Atoms atoms;
-  for (size_t k = 0; k < count; ++k) {
-    const double a = 2 * std::acos(-1.0) * static_cast<double>(k) / static_cast<double>(count);
-    atoms.add(radius * std::cos(a), radius * std::sin(a), 0, r);
-  }
-  return atoms;
-}
-
 Atoms with(Atoms a, const Atoms &b) {
   a.positions.insert(a.positions.end(), b.positions.begin(), b.positions.end());
   a.radii.insert(a.radii.end(), b.radii.begin(), b.radii.end());
   return a;
-}
-
-Atoms lattice(int n, double edge, double r) {
-  Atoms atoms;
-  for (int z = 0; z < n; ++z)
-    for (int y = 0; y < n; ++y)
-      for (int x = 0; x < n; ++x) atoms.add(edge * x, edge * y, edge * z, r);
-  return atoms;
 }
 
 // Vertices of the truncated icosahedron.

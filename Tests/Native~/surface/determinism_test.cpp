@@ -279,12 +279,6 @@ TEST(InstructionSets, GiveTheSameSurface) {
     }
 }
 
-Atoms lattice(int n, double edge, double r) {
-  Atoms atoms;
-  for (int k = 0; k < n * n * n; ++k) atoms.add(edge * (k % n), edge * (k / n % n), edge * (k / n / n), r);
-  return atoms;
-}
-
 // However many points they take at a time, what is near each of them decides about it; and in lattices, where many
 // balls meet in a point, rounding does, the same way.
 TEST(InstructionSets, NewerOnesGiveTheSameBytes) {

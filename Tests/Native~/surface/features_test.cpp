@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bitset>
 
 namespace {
@@ -81,6 +82,72 @@ TEST(ExposedIntervals, AgainstABitmap) {
   }
   EXPECT_GT(several, 100u);
   EXPECT_GT(covered, 100u);
+}
+
+// Ends that are the same, or next to each other, as many stretches of a lattice's circles have: what is left is that of
+// whole numbers, whatever the order.
+TEST(ExposedIntervals, OfEndsThatNearlyMeetInAnyOrder) {
+  std::mt19937 random(2);
+  size_t covered = 0, slivers = 0, over_zero = 0;
+  for (int trial = 0; trial < 4000; ++trial) {
+    std::vector<float> ends;
+    for (const float p : {0.f, 0.7f, 1.f, 2.5f, 3.3f}) {
+      const float next = std::nextafter(p, 4.f);
+      for (const float q : {p, next, std::nextafter(next, 4.f)}) ends.push_back(q);
+    }
+    ends.push_back(std::nextafter(4.f, 0.f));
+    const size_t n = ends.size(), stretches = 1 + random() % 6;
+    std::vector<std::pair<size_t, size_t>> given;  // by number of the end
+    while (given.size() < stretches) {
+      const size_t begin = random() % n, end = random() % n;
+      if (begin != end) given.emplace_back(begin, end);
+    }
+    // Whether what begins at an end is free, up to the next one.
+    std::vector<bool> free(n, true);
+    for (const auto &stretch : given)
+      for (size_t k = stretch.first; k != stretch.second; k = (k + 1) % n) free[k] = false;
+    std::vector<std::pair<float, float>> expected;
+    bool is_any_free = false;
+    for (size_t k = 0; k < n; ++k) {
+      is_any_free = is_any_free || free[k];
+      if (!free[k] || free[(k + n - 1) % n]) continue;
+      size_t end = k;
+      while (free[end]) end = (end + 1) % n;
+      const double way = static_cast<double>(ends[end]) - static_cast<double>(ends[k]) + (end < k ? 4 : 0);
+      if (way > 5e-7) expected.emplace_back(ends[k], ends[end]);
+      slivers += way > 5e-7 ? 0 : 1;
+      over_zero += end < k ? 1 : 0;
+    }
+    covered += is_any_free ? 0 : 1;
+    for (int order = 0; order < 3; ++order) {
+      std::shuffle(given.begin(), given.end(), random);
+      Interval storage[16];
+      ExposedIntervals<Interval *> exposed{storage, 16};
+      for (const auto &stretch : given) exposed.cover(ends[stretch.first], ends[stretch.second]);
+      ASSERT_FALSE(exposed.overflow);
+      ASSERT_EQ(exposed.empty(), !is_any_free);
+      exposed.settle();
+      std::vector<std::pair<float, float>> found;
+      for (int k = 0; k < exposed.count; ++k) found.emplace_back(storage[k].begin, storage[k].end);
+      ASSERT_EQ(found, expected) << trial;
+    }
+  }
+  EXPECT_GT(covered, 100u);
+  EXPECT_GT(slivers, 100u);
+  EXPECT_GT(over_zero, 100u);
+}
+
+// The way around is rounded to a whole turn there.
+TEST(ExposedIntervals, OfAllButAPoint) {
+  Interval storage[4];
+  ExposedIntervals<Interval *> exposed{storage, 4};
+  exposed.cover(0.5f, 0.75f);
+  exposed.cover(std::nextafter(1.f, 2.f), 1.f);
+  ASSERT_EQ(exposed.count, 1);
+  EXPECT_EQ(storage[0].begin, 1.f);
+  EXPECT_EQ(storage[0].end, std::nextafter(1.f, 2.f));
+  exposed.settle();
+  EXPECT_TRUE(exposed.empty());
 }
 
 TEST(ExposedIntervals, OverflowIsTold) {

@@ -143,6 +143,8 @@ std::vector<Input> crowded_inputs() {
       {"a giant and 3,000 small ones", giant_with(3000), settings(2)},
       {"a giant and 3,000 small ones, edges wider than two probes", giant_with(3000), settings(4)},
       {"crambin, edges wider than two probes", crambin(), settings(4)},
+      {"lattice", lattice(5, 3.95, 1.7), settings()},
+      {"lattice of probes", lattice(5, 4, 1.9), settings(0.5, 1.4, QSES_SURFACE_SAS)},
       {"a giant at a fine spacing", giant_with(0), settings(0.2)},
       {"800 beads on a circle", beads_on_a_circle(800), settings(2, 0.1)}};
 }

@@ -88,6 +88,22 @@ inline Atoms cluster(size_t count, unsigned seed) {
   return atoms;
 }
 
+// Balls whose centres are those of a regular polygon.
+inline Atoms ring(size_t count, double radius, double r) {
+  Atoms atoms;
+  for (size_t k = 0; k < count; ++k) {
+    const double a = 2 * std::acos(-1.0) * static_cast<double>(k) / static_cast<double>(count);
+    atoms.add(radius * std::cos(a), radius * std::sin(a), 0, r);
+  }
+  return atoms;
+}
+// n x n x n balls, of which many meet in a point.
+inline Atoms lattice(int n, double edge, double r) {
+  Atoms atoms;
+  for (int k = 0; k < n * n * n; ++k) atoms.add(edge * (k % n), edge * (k / n % n), edge * (k / n / n), r);
+  return atoms;
+}
+
 // The ATOM records of a PDB file.
 inline Atoms read_pdb(const std::string &path) {
   std::ifstream file(path);

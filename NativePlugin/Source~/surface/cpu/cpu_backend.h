@@ -47,6 +47,15 @@ struct Backend<CpuKernelExecutor> {
                              const TableView &table, const MeshView &mesh) {
     if constexpr (!E::kCounts) quickses::emit_triangles(executor, bricks, layout, slice, table, mesh);
   }
+  template <class E, class TrianglesMade>
+  static void emit_mesh(E &executor, const FeatureView &features, const BrickSet &bricks, const MeshLayout &layout,
+                        BrickRange slice, const SliceSizes &sizes, LearntRooms &rooms, Candidates &candidates,
+                        const VertexStarts &starts, const TableView &table, const MeshView &mesh,
+                        const TrianglesMade &triangles_made) {
+    emit_triangles(executor, bricks, layout, slice, table, mesh);
+    triangles_made();
+    emit_vertices(executor, features, bricks, layout, slice, sizes, rooms, candidates, starts, mesh);
+  }
   template <class E, class Slices>
   static void evaluate_density(E &executor, const GaussianDensity &density, const BrickSet &bricks,
                                const Slices &slices, uint64_t *signs) {

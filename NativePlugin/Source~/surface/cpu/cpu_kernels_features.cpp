@@ -147,8 +147,7 @@ bool cut_exactly(const Circle &circle, const Sphere *atoms, uint32_t i, const in
   return true;
 }
 
-// What caps that follow each other cover of a circle. With every set of kernels they are so many, since where stretches
-// just touch, rounding decides, and it shall decide alike.
+// What caps that follow each other cover of a circle.
 struct Stretches {
   static constexpr int kMost = 16, kPacks = kMost / kWideLanes;
   alignas(64) float begin[kMost] = {}, end[kMost] = {};  // pseudo-angles
@@ -186,52 +185,34 @@ bool find_stretches(const Circle &circle, const Columns &c, int n, int j, const 
   return true;
 }
 
-QSES_FN WidePack pseudo_ways(WidePack from, WidePack to) {
-  const WidePack way = to - from;
-  return select(way < WidePack(0.f), way + WidePack(4.f), way);
-}
-
-// Adds an exposed interval. One that it meets is the same but for rounding: what both have is exposed.
-void expose(Interval v, Intervals *intervals) {
-  for (int k = 0; k < intervals->count; ++k) {
-    Interval &known = intervals->interval[k];
-    const bool begins_within = pseudo_way(known.begin, v.begin) < pseudo_way(known.begin, known.end);
-    if (!begins_within && pseudo_way(v.begin, known.begin) >= pseudo_way(v.begin, v.end)) continue;
-    if (begins_within) known.begin = v.begin;
-    if (pseudo_way(known.begin, v.end) < pseudo_way(known.begin, known.end)) known.end = v.end;
-    return;
-  }
-  intervals->interval[intervals->count++] = v;
-}
-
 // Of a circle that was exposed so far: an exposed interval begins where a stretch ends that lies in no other, and
 // reaches to where the next begins. As ExposedIntervals has it, one after the other.
 void cover_at_once(const Stretches &s, Intervals *intervals) {
-  constexpr float kTouching = 5e-7f;  // so far rounding may put stretches apart that touch
+  const auto of_pack = [&](int p, uint32_t lanes) { return lanes >> p * kWideLanes & kAllWideLanes; };
   WideMask covered[Stretches::kPacks];
   for (WideMask &mask : covered) mask = wide_mask(0);
   for (uint32_t rest = s.set; rest; rest &= rest - 1) {
     const int l = lowest_bit32(rest);
-    const WidePack length(pseudo_way(s.begin[l], s.end[l]));
+    const WidePack begin(s.begin[l]), end(s.end[l]);
     for (int p = 0; p < Stretches::kPacks; ++p)
-      covered[p] = covered[p] | (pseudo_ways(WidePack(s.begin[l]), load_wide(s.end + p * kWideLanes)) < length);
+      covered[p] = covered[p] | comes_before(begin, load_wide(s.end + p * kWideLanes), end);
   }
   uint32_t left = s.set;
   for (int p = 0; p < Stretches::kPacks; ++p) left &= ~(lane_bits(covered[p]) << p * kWideLanes);
   intervals->whole = false;
-  for (; left; left &= left - 1) {
+  while (left) {
     const float from = s.end[lowest_bit32(left)];
-    float nearest = kFarAway;
-    int next = 0;
+    left &= left - 1;  // and all that end there
+    // The first one ahead, or of all.
+    float ahead = kFarAway, first = kFarAway;
     for (int p = 0; p < Stretches::kPacks; ++p) {
-      const WidePack way = select(wide_mask(s.set >> p * kWideLanes & kAllWideLanes),
-                                  pseudo_ways(WidePack(from), load_wide(s.begin + p * kWideLanes)), WidePack(kFarAway));
-      const float least = horizontal_minimum(way);
-      if (!(least < nearest)) continue;
-      nearest = least;
-      next = p * kWideLanes + lowest_bit32(lane_bits(way == WidePack(least)));
+      const WidePack none(kFarAway), begin = load_wide(s.begin + p * kWideLanes);
+      const WideMask set = wide_mask(of_pack(p, s.set));
+      first = minimum(first, horizontal_minimum(select(set, begin, none)));
+      ahead = minimum(ahead, horizontal_minimum(select(set & (begin >= WidePack(from)), begin, none)));
+      left &= ~((lane_bits(load_wide(s.end + p * kWideLanes) == WidePack(from)) & of_pack(p, s.set)) << p * kWideLanes);
     }
-    if (nearest > kTouching) expose({from, s.begin[next]}, intervals);
+    intervals->interval[intervals->count++] = {from, ahead < kFarAway ? ahead : first};
   }
 }
 
@@ -252,7 +233,8 @@ bool cut_by_neighbors(const Circle &circle, const Columns &c, int n, int j, cons
         intervals->cover(stretches.begin[lowest_bit32(rest)], stretches.end[lowest_bit32(rest)]);
     if (intervals->empty()) return false;
   }
-  return true;
+  intervals->settle();
+  return !intervals->empty();
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // GPU driver of the arcs: each lane of a warp finds those of one circle; lanes that are done are given new circles
-// together, since most circles are covered after a few balls and some need many. Of few circles, a few lanes find those
-// of each.
+// together, since most circles are covered after a few balls and some need many. Of few circles, a team of lanes finds
+// those of each.
 #pragma once
 
 #include "surface/cuda/circles_cuda.cuh"
@@ -11,42 +11,130 @@
 namespace quickses {
 namespace gpu {
 
-// Where there are few circles, which leave a GPU idle with a lane for each: so many lanes cut each by as many caps at a
-// time.
-constexpr int kArcLanes = 4;
-static __global__ __launch_bounds__(kArcThreads) void find_few_arcs_kernel(QueuedItems queued, CircleJob job) {
+// Where there are few circles, which leave a GPU idle with a lane for each, a team of lanes cuts each by as many caps
+// at a time. What is exposed of it, as ExposedIntervals has it.
+constexpr int kArcLanes = 16;
+constexpr size_t kFewTurns = 4;  // of teams that fill the GPU: more circles are many
+struct TeamIntervals {
+  struct Memory {
+    Interval stretch[kArcLanes], exposed[kArcLanes];
+  };
+  Memory &memory;
+  int count = 0;
+  bool whole = true;
+
+  __device__ __forceinline__ bool empty() const { return !whole && count == 0; }
+
+  // Covers a stretch for each lane that has one: what is left begins where an interval does or a stretch ends that some
+  // interval has, unless a stretch has that too, and reaches to where the next stretch begins or the interval ends. By
+  // all teams of a warp together. False if more are left than lanes.
+  __device__ __forceinline__ bool cover(bool has_stretch, const Interval &stretch) {
+    const int rank = rank_in_team<kArcLanes>();
+    const unsigned team = lanes_of_team<kArcLanes>();
+    int stretches = 0, left = 0;
+    const int own_place = append_place(has_stretch, &stretches, team);
+    if (has_stretch) memory.stretch[own_place] = stretch;
+    __syncwarp();
+    bool has_first = rank < count, has_second = has_stretch;
+    Interval first{0.f, 0.f}, second{stretch.end, stretch.begin};
+    for (int r = 0; r < stretches; ++r) {
+      const Interval other = memory.stretch[r];
+      has_second &=
+          !(comes_before(other.begin, second.begin, other.end) || (r < own_place && other.end == second.begin));
+    }
+    if (count > 0) {  // few rounds come here: their loops are kept short
+      first = memory.exposed[rank];
+      bool within = false;
+#pragma unroll 1
+      for (int r = 0; r < count; ++r) {
+        const Interval other = memory.exposed[r];
+        if (other.begin == second.begin || !comes_before(other.begin, second.begin, other.end)) continue;
+        within = true;
+        second.end = other.end;
+      }
+      has_second &= within;
+#pragma unroll 1
+      for (int r = 0; r < stretches; ++r) {
+        const Interval other = memory.stretch[r];
+        has_first &= !comes_before(other.begin, first.begin, other.end);
+        if (comes_before(first.begin, other.begin, first.end)) first.end = other.begin;
+      }
+    }
+    __syncwarp();
+    const int first_place = append_place(has_first, &left, team), second_place = append_place(has_second, &left, team);
+    whole &= stretches == 0;
+    count = left <= kArcLanes ? left : 0;
+    if (count > 0) {
+#pragma unroll 1
+      for (int r = 0; r < stretches; ++r) {
+        const float begin = memory.stretch[r].begin;
+        if (comes_before(second.begin, begin, second.end)) second.end = begin;
+      }
+      if (has_first) memory.exposed[first_place] = first;
+      if (has_second) memory.exposed[second_place] = second;
+    }
+    __syncwarp();
+    return left <= kArcLanes;
+  }
+};
+
+// What a team has found.
+__device__ __forceinline__ void stage_circle_of_team(const CircleJob &job, bool found, const OpenCircle &c,
+                                                     const TeamIntervals &exposed) {
+  if (!__any_sync(kFullWarp, found)) return;
+  const int rank = rank_in_team<kArcLanes>();
+  Interval own{0.f, 0.f};
+  if (rank < exposed.count) own = exposed.memory.exposed[rank];
+  const bool has = exposed.whole ? rank == 0 : rank < exposed.count && !is_sliver(own);
+  const unsigned kept = ballot_of_team<kArcLanes>(has);
+  const uint32_t arcs = static_cast<uint32_t>(__popc(kept));
+  uint32_t order = 0;
+  for (unsigned rest = kept; rest; rest &= rest - 1)
+    order += exposed.memory.exposed[lowest_bit32(rest) % kArcLanes].begin < own.begin && !exposed.whole ? 1 : 0;
+  __syncwarp();
+  found = found && arcs > 0;
+  StagedPlace place = places_to_stage(job, found && rank == 0, arcs);
+  place.slot = __shfl_sync(kFullWarp, place.slot, 0, kArcLanes);
+  place.first = __shfl_sync(kFullWarp, place.first, 0, kArcLanes);
+  const bool fits = found && begin_circle(job, c, place, arcs);
+  uint32_t pieces = 0;
+  if (fits && has) pieces = stage_arc(job, c, exposed.whole ? nullptr : &own, place.first + order);
+  __syncwarp();
+  pieces = fold_lanes<kArcLanes>(pieces, [](uint32_t a, uint32_t b) { return a + b; });
+  if (fits && rank == 0) job.arc_count[c.number] = pieces;
+}
+
+static __global__ __launch_bounds__(kArcThreads,
+                                    blocks_at_once(kArcThreads, 10)) void find_few_arcs_kernel(QueuedItems queued,
+                                                                                               CircleJob job) {
   const LaunchItems circles = queued.in_turn();
   constexpr int kTeams = kArcThreads / kArcLanes;
-  __shared__ Interval memory[kLaneIntervals * kTeams];
+  __shared__ TeamIntervals::Memory memory[kTeams];
   const uint32_t listed = job.circle_first[job.run.size()];
   if (listed > job.room.circles) return;  // all will be done again
   const size_t total = listed < circles.last ? listed : circles.last;
-  const int team = static_cast<int>(threadIdx.x) / kArcLanes, lane = lane_id(), rank = rank_in_team<kArcLanes>();
-  const size_t first = circles.first + blockIdx.x * size_t(kTeams) + static_cast<size_t>(team);
-  if (first - static_cast<size_t>(lane / kArcLanes) >= total) return;
+  const int team = static_cast<int>(threadIdx.x) / kArcLanes, rank = rank_in_team<kArcLanes>();
+  const size_t number = circles.first + blockIdx.x * size_t(kTeams) + static_cast<size_t>(team);
+  if (number - static_cast<size_t>(lane_id() / kArcLanes) >= total) return;
+  bool open = number < total;  // not known to be covered, nor left to another kernel
   OpenCircle c{};
-  if (first < total) c = open_circle(job, static_cast<uint32_t>(first));
-  ExposedIntervals<StridedIntervals> intervals{StridedIntervals{memory + team, kTeams}, kLaneIntervals};
-  bool open = first < total;  // of rank 0: not known to be covered
-  for (int k0 = 0; __any_sync(kFullWarp, open && rank == 0 && k0 < c.cap_count); k0 += kArcLanes) {
+  if (open) c = open_circle(job, static_cast<uint32_t>(number));
+  TeamIntervals exposed{memory[team]};
+  for (int k0 = 0; __any_sync(kFullWarp, open && k0 < c.cap_count); k0 += kArcLanes) {
     CutKind cut = CutKind::kNone;
-    float begin = 0.f, end = 0.f;
+    Interval stretch{0.f, 0.f};
     const int k = k0 + rank;
-    if (k < c.cap_count && k != c.rank) cut = cut_by_cap(job, c, cap_of(job, c, k), &begin, &end);
+    if (open && k < c.cap_count && k != c.rank)
+      cut = cut_by_cap(job, c, cap_of(job, c, k), &stretch.begin, &stretch.end);
     __syncwarp();
-#pragma unroll
-    for (int r = 0; r < kArcLanes; ++r) {
-      const CutKind kind = static_cast<CutKind>(__shfl_sync(kFullWarp, static_cast<int>(cut), r, kArcLanes));
-      const float from = __shfl_sync(kFullWarp, begin, r, kArcLanes), to = __shfl_sync(kFullWarp, end, r, kArcLanes);
-      if (rank == 0 && open && !intervals.overflow && kind != CutKind::kNone) {
-        if (kind == CutKind::kPart) intervals.cover(from, to);
-        if (kind == CutKind::kUnclear) intervals.overflow = true;
-        if (kind == CutKind::kAll || (!intervals.overflow && intervals.empty())) open = false;
-      }
-      __syncwarp();
-    }
+    const bool hidden = ballot_of_team<kArcLanes>(cut == CutKind::kAll) != 0;
+    const bool unclear = ballot_of_team<kArcLanes>(cut == CutKind::kUnclear) != 0;
+    open &= !hidden && !unclear;
+    const bool fits = exposed.cover(open && cut == CutKind::kPart, stretch);
+    if (rank == 0 && !hidden && (unclear || (open && !fits))) leave_circle(job, c.number);
+    open &= fits && !exposed.empty();
   }
-  stage_circles(job, open && rank == 0, c, intervals);
+  stage_circle_of_team(job, open, c, exposed);
 }
 
 static __global__ __launch_bounds__(kArcThreads) void find_arcs_kernel(QueuedItems queued, CircleJob job,
@@ -78,7 +166,7 @@ static __global__ __launch_bounds__(kArcThreads) void find_arcs_kernel(QueuedIte
     for (;;) {
       const unsigned idle = __ballot_sync(kFullWarp, state != State::kActive);
       if (idle == kFullWarp || (next < end && __popc(idle) >= kIdleLanes)) {
-        stage_circles(job, state == State::kDone, c, intervals);
+        stage_circles(job, state == State::kDone, c, &intervals);
         __syncwarp();
         if (idle == kFullWarp && next >= end) break;
         if (state != State::kActive) {
@@ -153,7 +241,7 @@ static __global__ __launch_bounds__(kWarp) void find_unclear_arcs_kernel(QueuedI
     if (intervals.overflow)
       job.long_circles[atomicAdd(&job.counters->long_circles, 1u)] = c.number;
     else if (!hidden)
-      stage_circle(job, c, intervals, atomicAdd(&job.counters->staged, (1ull << 32) + arcs_of(intervals)));
+      stage_circle(job, c, &intervals);
   }
 }
 
@@ -165,6 +253,7 @@ struct LongCircleState {
   uint32_t is_partly;  // covered already
 };
 constexpr uint32_t kLongCircleThreads = 512;
+constexpr uint32_t kSortSteps = 32;  // of an interval, in the end
 // Each cap can cost as much as there are intervals: a thread that has taken so many steps leaves the rest to the next
 // launch.
 constexpr uint32_t kLongCircleSteps = 1u << 18;
@@ -202,7 +291,10 @@ static __global__ __launch_bounds__(kWarp) void find_long_circle_arcs_kernel(Que
       atomicAdd(&job.counters->unfinished_circles, 1u);
       break;
     }
-    if (!hidden) stage_circle(job, c, intervals, atomicAdd(&job.counters->staged, (1ull << 32) + arcs_of(intervals)));
+    if (!hidden) {
+      stage_circle(job, c, &intervals);
+      steps += kSortSteps * static_cast<uint32_t>(intervals.count);
+    }
   }
   states[thread] = state;
 }
@@ -269,7 +361,7 @@ void write_arcs(E &executor, const ArcSearch &search) {
   executor.exclusive_scan(room.circles, LoadCount<uint32_t>{search.arc_count.data}, search.arc_first);
   // A circle's arcs are split into no more pieces than its length in Å, and one for each: max_arc_bound() is 1 Å or
   // more.
-  const uint64_t intervals = std::max<uint64_t>(kLaneIntervals, room.intervals);
+  const uint64_t intervals = std::max({uint64_t(kLaneIntervals), uint64_t(kArcLanes), uint64_t(room.intervals)});
   const uint64_t pieces = static_cast<uint64_t>(6.3f * search.max_radius) + intervals;
   executor.launch(
       "write_arcs", write_arcs_kernel, std::max(room.staged_circles, size_t(job.run.size())),
@@ -294,7 +386,7 @@ ArcSearch find_arcs(E &executor, CircleJob job, float max_radius) {
 
   executor.launch("list_circles", list_circles_kernel, job.run.size(),
                   LaunchShape{128, 4, 8 + caps / 8, processors * 32}, job);
-  if (room.circles * kArcLanes <= processors * kFullThreads) {
+  if (room.circles * kArcLanes <= kFewTurns * processors * kFullThreads) {
     executor.launch("find_few_arcs", find_few_arcs_kernel, room.circles,
                     LaunchShape{kArcThreads, kArcThreads / kArcLanes, kCutSteps * caps}, job);
   } else {

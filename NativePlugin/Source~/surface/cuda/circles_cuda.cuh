@@ -42,7 +42,7 @@ struct CircleJob {
   // Circles left to find_unclear_arcs, since single precision can't tell what some cap covers of them; nullptr: none
   // is.
   uint32_t *unclear_circles = nullptr;
-  uint32_t *long_circles = nullptr;  // circles that need more intervals than a lane holds
+  uint32_t *long_circles = nullptr;  // circles that need more intervals than a lane, or a team of them, holds
 };
 
 constexpr int kArcThreads = 128;
@@ -143,47 +143,85 @@ __device__ __forceinline__ uint32_t arcs_of(const ExposedIntervals<Storage> &int
   return intervals.whole ? 1u : static_cast<uint32_t>(intervals.count);
 }
 
-// Stages a circle's arcs at a place in both lists, and marks its atoms as exposed.
-template <class Storage>
-__device__ __forceinline__ void stage_circle(const CircleJob &job, const OpenCircle &c,
-                                             const ExposedIntervals<Storage> &intervals, unsigned long long place) {
+// Where the arcs of a circle go that is staged.
+struct StagedPlace {
+  uint32_t slot, first;  // in both lists
+  __device__ __forceinline__ explicit StagedPlace(unsigned long long taken)
+      : slot(static_cast<uint32_t>(taken >> 32)), first(static_cast<uint32_t>(taken)) {}
+  static __device__ __forceinline__ unsigned long long taken(uint32_t arcs) { return (1ull << 32) + arcs; }
+};
+
+// Marks a circle's atoms as exposed; false if there is no room for its arcs.
+__device__ __forceinline__ bool begin_circle(const CircleJob &job, const OpenCircle &c, const StagedPlace &place,
+                                             uint32_t arcs) {
   job.exposed[c.atom] = 1;
   job.exposed[c.other] = 1;
-  const uint32_t slot = static_cast<uint32_t>(place >> 32), first = static_cast<uint32_t>(place);
+  if (place.slot >= job.room.staged_circles || place.first + size_t(arcs) > job.room.staged_arcs) return false;
+  job.staged[place.slot] = {c.number, place.first, arcs};
+  return true;
+}
+// The arc over an interval, or all of the circle; returns into how many pieces it is split.
+__device__ __forceinline__ uint32_t stage_arc(const CircleJob &job, const OpenCircle &c, const Interval *interval,
+                                              uint32_t place) {
+  const ExposedArc arc = exposed_arc(interval, c.radius, job.max_arc_bound, job.exactly);
+  job.staged_arcs[place] = arc;
+  return 1u << arc.halvings;
+}
+
+// Stages a circle's arcs.
+template <class Storage>
+__device__ __forceinline__ void stage_circle(const CircleJob &job, const OpenCircle &c,
+                                             const ExposedIntervals<Storage> &intervals, const StagedPlace &place) {
   const uint32_t count = arcs_of(intervals);
-  if (slot >= job.room.staged_circles || first + size_t(count) > job.room.staged_arcs) return;
-  job.staged[slot] = {c.number, first, count};
+  if (!begin_circle(job, c, place, count)) return;
   uint32_t pieces = 0;
   for (uint32_t k = 0; k < count; ++k) {
     Interval interval{0.f, 0.f};
     if (!intervals.whole) interval = intervals.interval[static_cast<int>(k)];
-    const ExposedArc arc = exposed_arc(intervals.whole ? nullptr : &interval, c.radius, job.max_arc_bound, job.exactly);
-    job.staged_arcs[first + k] = arc;
-    pieces += 1u << arc.halvings;
+    pieces += stage_arc(job, c, intervals.whole ? nullptr : &interval, place.first + k);
   }
   job.arc_count[c.number] = pieces;
+}
+// The same of a lane that has one alone.
+template <class Storage>
+__device__ __forceinline__ void stage_circle(const CircleJob &job, const OpenCircle &c,
+                                             ExposedIntervals<Storage> *intervals) {
+  intervals->settle();
+  if (intervals->empty()) return;
+  stage_circle(job, c, *intervals,
+               StagedPlace(atomicAdd(&job.counters->staged, StagedPlace::taken(arcs_of(*intervals)))));
+}
+
+// Leaves a circle to another kernel: it is unclear, or has more intervals than there is room for.
+__device__ __forceinline__ void leave_circle(const CircleJob &job, uint32_t number) {
+  if (job.exactly)
+    job.unclear_circles[atomicAdd(&job.counters->unclear_circles, 1u)] = number;
+  else
+    job.long_circles[atomicAdd(&job.counters->long_circles, 1u)] = number;
+}
+
+// Places for what lanes of a warp stage, of which some have a circle with so many arcs. All of them call this.
+__device__ __forceinline__ StagedPlace places_to_stage(const CircleJob &job, bool has, uint32_t arcs) {
+  const int lane = lane_id();
+  const unsigned long long own = has ? StagedPlace::taken(arcs) : 0, sum = warp_inclusive_sum(own, lane);
+  unsigned long long place = 0;
+  if (lane == kWarp - 1 && sum > 0) place = atomicAdd(&job.counters->staged, sum);
+  return StagedPlace(__shfl_sync(kFullWarp, place, kWarp - 1) + sum - own);
 }
 
 // Stages what the lanes of a warp have found of a circle each, of which some have one; what overflows, by number or as
 // unclear, is left to another kernel.
 template <class Storage>
 __device__ __forceinline__ void stage_circles(const CircleJob &job, bool found, const OpenCircle &c,
-                                              const ExposedIntervals<Storage> &intervals) {
+                                              ExposedIntervals<Storage> *intervals) {
   if (!__any_sync(kFullWarp, found)) return;
-  const int lane = lane_id();
-  const bool keep = found && !intervals.overflow;
-  if (found && intervals.overflow) {
-    if (job.exactly)
-      job.unclear_circles[atomicAdd(&job.counters->unclear_circles, 1u)] = c.number;
-    else
-      job.long_circles[atomicAdd(&job.counters->long_circles, 1u)] = c.number;
-  }
-  const unsigned long long own = keep ? (1ull << 32) + arcs_of(intervals) : 0;
-  const unsigned long long sum = warp_inclusive_sum(own, lane);
-  unsigned long long place = 0;
-  if (lane == kWarp - 1 && sum > 0) place = atomicAdd(&job.counters->staged, sum);
-  place = __shfl_sync(kFullWarp, place, kWarp - 1) + sum - own;
-  if (keep) stage_circle(job, c, intervals, place);
+  if (found && intervals->overflow) leave_circle(job, c.number);
+  bool keep = found && !intervals->overflow;
+  if (keep) intervals->settle();
+  keep = keep && !intervals->empty();
+  __syncwarp();
+  const StagedPlace place = places_to_stage(job, keep, arcs_of(*intervals));
+  if (keep) stage_circle(job, c, *intervals, place);
 }
 
 }  // namespace gpu

@@ -56,6 +56,14 @@ struct Backend<CudaExecutor> {
                              const TableView &table, const MeshView &mesh) {
     gpu::emit_triangles(executor, bricks, layout, slice, table, mesh);
   }
+  template <class E, class TrianglesMade>
+  static void emit_mesh(E &executor, const FeatureView &features, const BrickSet &bricks, const MeshLayout &layout,
+                        BrickRange slice, const SliceSizes &sizes, LearntRooms &rooms, Candidates &candidates,
+                        const VertexStarts &starts, const TableView &table, const MeshView &mesh,
+                        const TrianglesMade &triangles_made) {
+    gpu::emit_mesh(executor, features, bricks, layout, slice, sizes, rooms, candidates, starts, table, mesh,
+                   triangles_made);
+  }
   template <class E, class Slices>
   static void evaluate_density(E &executor, const GaussianDensity &density, const BrickSet &bricks,
                                const Slices &slices, uint64_t *signs) {

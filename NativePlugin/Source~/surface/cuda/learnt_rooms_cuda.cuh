@@ -24,7 +24,7 @@ struct FeatureCounters {
   uint32_t long_atoms;              // number of those atoms
   uint32_t longest_row;             // most caps of an atom
   uint32_t unclear_circles;         // circles that single precision can't tell about
-  uint32_t long_circles;            // circles with more exposed intervals than a lane holds
+  uint32_t long_circles;            // circles with more exposed intervals than a lane, or a team of them, holds
   uint32_t unfinished_circles;      // those of them that need another launch
 
   // Of what there is room for, all may be taken: only arcs are gone through by their number.

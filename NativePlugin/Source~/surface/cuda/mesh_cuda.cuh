@@ -23,11 +23,12 @@ LaunchShape edge_shape(const E &executor, const FeatureView &features, uint64_t 
   return {kVertexThreads, kEdgeWarps, steps, blocks_in_turns(executor)};
 }
 
-// Starts and candidates of the vertices of a slice; what they need is allocated here. No vertices: count is 0.
+// What the vertices of a slice need is allocated here; they start by halving here, where they do. No vertices: count is
+// 0.
 template <class E>
-VertexJob prepare_vertices(E &executor, const FeatureView &features, const BrickSet &bricks, const MeshLayout &layout,
-                           BrickRange slice, const SliceSizes &sizes, CudaRooms &rooms, CudaCandidates &candidates,
-                           const VertexStarts &starts, const MeshView &mesh) {
+VertexJob open_vertices(E &executor, const FeatureView &features, const BrickSet &bricks, const MeshLayout &layout,
+                        BrickRange slice, const SliceSizes &sizes, CudaRooms &rooms, CudaCandidates &candidates,
+                        const VertexStarts &starts, const MeshView &mesh) {
   VertexJob job{};
   job.slice = slice;
   job.first = sizes.first_vertex;
@@ -43,8 +44,7 @@ VertexJob prepare_vertices(E &executor, const FeatureView &features, const Brick
   job.halved = !starts.moved && starts_by_halving(features.parameters);
   job.mesh = mesh;
   job.list_words = leaf_list_words(features.parameters);
-  const size_t count = job.count, leaves = sizes.leaves;
-  const size_t words = CudaCandidates::vertex_words(features.parameters, count, leaves);
+  const size_t count = job.count, words = CudaCandidates::vertex_words(features.parameters, count, sizes.leaves);
   uint32_t *const room =
       candidates.vertex_room.size > 0 ? candidates.vertex_room.data : executor.template allocate<uint32_t>(words).data;
   job.list_of = room;
@@ -58,25 +58,74 @@ VertexJob prepare_vertices(E &executor, const FeatureView &features, const Brick
   if (job.halved)
     executor.launch("halve_starts", halve_starts_kernel, count, edge_shape(executor, features, row, kStartHalvings),
                     job);
-  constexpr size_t kManyLeaves = 64;  // of a multiprocessor
-  const bool by_halves = leaves > executor.multiprocessors() * kManyLeaves && job.list_words < kLongList;
-  const size_t lanes = by_halves ? kWarp / 2 : kWarp;
-  executor.launch("prepare_vertices", by_halves ? prepare_vertices_kernel<kWarp / 2> : prepare_vertices_kernel<kWarp>,
-                  leaves, LaunchShape{kLeafWarps * kWarp, kLeafWarps * kWarp / lanes, 128 + row * 8 / lanes}, job);
   return job;
 }
 
-// Vertices are numbered over all slices: mesh.positions[0] is that of the very first. Waits once or twice if there are
-// more than a few launches can place.
+inline LaunchShape leaf_shape(size_t lanes, uint64_t row) {
+  return {kLeafWarps * kWarp, kLeafWarps * kWarp / lanes, 128 + row * 8 / lanes};
+}
+// Starts and candidates of the vertices.
 template <class E>
-void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bricks, const MeshLayout &layout,
-                   BrickRange slice, const SliceSizes &sizes, CudaRooms &rooms, CudaCandidates &candidates,
-                   const VertexStarts &starts, const MeshView &mesh) {
+void prepare_vertices(E &executor, const VertexJob &job, size_t leaves, uint64_t row) {
+  if (job.count > 0)
+    executor.launch("prepare_vertices", prepare_vertices_kernel, leaves, leaf_shape(kHalfWarp, row), job);
+}
+
+template <class E>
+void emit_triangles(E &executor, const BrickSet &bricks, const MeshLayout &layout, BrickRange slice,
+                    const TableView &table, const MeshView &mesh) {
+  executor.launch("emit_triangles", emit_triangles_kernel, slice.size(),
+                  LaunchShape{kTriangleWarps * kWarp, kTriangleWarps, kTriangleSteps, blocks_in_turns(executor)},
+                  TriangleJob{bricks, layout, table, mesh, slice});
+}
+
+// Both side by side, where few leaves leave a GPU idle, or have long lists: the first blocks take bricks, the others
+// leaves, a warp for each.
+template <class E>
+bool pay_side_by_side(const E &executor, const VertexJob &job, size_t leaves) {
+  constexpr size_t kFew = 64;  // of a multiprocessor
+  return leaves <= executor.multiprocessors() * kFew || job.list_words >= kLongList;
+}
+static __global__ __launch_bounds__(kLeafWarps *kWarp,
+                                    blocks_at_once(kLeafWarps *kWarp,
+                                                   9)) void prepare_beside_triangles_kernel(QueuedItems queued,
+                                                                                            TriangleJob triangles,
+                                                                                            VertexJob vertices,
+                                                                                            uint32_t triangle_blocks) {
+  const LaunchItems items = queued.in_turn();
+  const uint32_t block = static_cast<uint32_t>(items.first / kLeafWarps) + blockIdx.x;
+  if (block < triangle_blocks) {
+    const uint32_t first = block * kTriangleWarps, last = first + kTriangleWarps, all = triangles.slice.size();
+    emit_triangles_of(triangles, first, last < all ? last : all, kTriangleWarps);
+  } else {
+    prepare_vertices_of<kWarp>(vertices, size_t(block - triangle_blocks) * kLeafWarps,
+                               items.last - size_t(triangle_blocks) * kLeafWarps);
+  }
+}
+static_assert(kTriangleWarps == kLeafWarps, "blocks of one size");
+template <class E>
+void prepare_beside_triangles(E &executor, const TriangleJob &triangles, const VertexJob &job, size_t leaves,
+                              uint64_t row) {
+  LaunchShape shape = leaf_shape(kWarp, row);
+  shape.steps = std::max(shape.steps, kTriangleSteps);
+  const uint32_t blocks = (triangles.slice.size() + kTriangleWarps - 1) / kTriangleWarps;
+  executor.launch("prepare_beside_triangles", prepare_beside_triangles_kernel, size_t(blocks) * kLeafWarps + leaves,
+                  shape, triangles, job, blocks);
+}
+
+// Vertices are numbered over all slices: mesh.positions[0] is that of the very first. prepare(job): their starts and
+// candidates. Waits once or twice if there are more than a few launches can place.
+template <class E, class Prepare>
+void emit_vertices_once_prepared(E &executor, const FeatureView &features, const BrickSet &bricks,
+                                 const MeshLayout &layout, BrickRange slice, const SliceSizes &sizes, CudaRooms &rooms,
+                                 CudaCandidates &candidates, const VertexStarts &starts, const MeshView &mesh,
+                                 const Prepare &prepare) {
   if (slice.size() == 0) return;
   const auto mark = executor.arena().mark();
   const bool gives_back = candidates.are_of(slice) && candidates.vertex_room.size == 0;
   const VertexJob job =
-      prepare_vertices(executor, features, bricks, layout, slice, sizes, rooms, candidates, starts, mesh);
+      open_vertices(executor, features, bricks, layout, slice, sizes, rooms, candidates, starts, mesh);
+  prepare(job);
   const uint64_t look = vertex_steps(features, candidates.longest_row);
   // Lanes for each of few vertices, or of such that have much to look at; so many for a multiprocessor at most. Arcs,
   // of which there are more to look at, are worth more lanes.
@@ -123,14 +172,32 @@ void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bri
               edge_shape(executor, features, candidates.longest_row, kPlaceHalvings), &VertexCounts::on_edges);
   if (gives_back) executor.arena().rewind(mark);
 }
-
 template <class E>
-void emit_triangles(E &executor, const BrickSet &bricks, const MeshLayout &layout, BrickRange slice,
-                    const TableView &table, const MeshView &mesh) {
-  constexpr uint64_t kSteps = 2048;  // of a brick that is full of triangles
-  executor.launch("emit_triangles", emit_triangles_kernel, slice.size(),
-                  LaunchShape{kTriangleWarps * kWarp, kTriangleWarps, kSteps, blocks_in_turns(executor)},
-                  TriangleJob{bricks, layout, table, mesh, slice});
+void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bricks, const MeshLayout &layout,
+                   BrickRange slice, const SliceSizes &sizes, CudaRooms &rooms, CudaCandidates &candidates,
+                   const VertexStarts &starts, const MeshView &mesh) {
+  emit_vertices_once_prepared(
+      executor, features, bricks, layout, slice, sizes, rooms, candidates, starts, mesh,
+      [&](const VertexJob &job) { prepare_vertices(executor, job, sizes.leaves, candidates.longest_row); });
+}
+// Both. triangles_made(): all that makes the triangles is given.
+template <class E, class TrianglesMade>
+void emit_mesh(E &executor, const FeatureView &features, const BrickSet &bricks, const MeshLayout &layout,
+               BrickRange slice, const SliceSizes &sizes, CudaRooms &rooms, CudaCandidates &candidates,
+               const VertexStarts &starts, const TableView &table, const MeshView &mesh,
+               const TrianglesMade &triangles_made) {
+  emit_vertices_once_prepared(
+      executor, features, bricks, layout, slice, sizes, rooms, candidates, starts, mesh, [&](const VertexJob &job) {
+        const uint64_t row = candidates.longest_row;
+        if (job.count > 0 && pay_side_by_side(executor, job, sizes.leaves)) {
+          prepare_beside_triangles(executor, TriangleJob{bricks, layout, table, mesh, slice}, job, sizes.leaves, row);
+          triangles_made();
+          return;
+        }
+        emit_triangles(executor, bricks, layout, slice, table, mesh);
+        triangles_made();
+        prepare_vertices(executor, job, sizes.leaves, row);
+      });
 }
 
 }  // namespace gpu

@@ -12,6 +12,7 @@ namespace quickses {
 namespace gpu {
 
 constexpr int kTriangleWarps = 4;
+constexpr uint64_t kTriangleSteps = 2048;                              // of a brick that is full of triangles
 constexpr int kTriangleItems = 256;                                    // triangles of a brick listed at a time
 constexpr uint32_t kMostTrianglesOfWarp = kWarp * kMostCaseTriangles;  // of a cell for each lane
 static_assert(kMostTrianglesOfWarp <= kTriangleItems, "they are listed together");
@@ -46,9 +47,9 @@ __device__ __forceinline__ uint32_t sum_of_bytes(uint32_t packed) {
   return (packed & 0x030303) * (kOfZ | kOfY << 8 | kOfX << 16) >> 16 & 0xff;
 }
 
-static __global__ __launch_bounds__(kTriangleWarps *kWarp) void emit_triangles_kernel(QueuedItems queued,
-                                                                                      TriangleJob job) {
-  const LaunchItems items = queued.in_turn();
+// By a block, of the bricks of a slice from `first` on, a warp each: they go on with those `step` behind.
+__device__ __forceinline__ void emit_triangles_of(const TriangleJob &job, uint32_t first, uint32_t last,
+                                                  uint32_t step) {
   __shared__ TriangleScratch scratch_memory[kTriangleWarps];
   __shared__ __align__(16) uint8_t edges[kCellCases][16];
   __shared__ uint8_t triangle_count[kCellCases];
@@ -65,10 +66,8 @@ static __global__ __launch_bounds__(kTriangleWarps *kWarp) void emit_triangles_k
   const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();
   TriangleScratch &scratch = scratch_memory[warp];
   const MeshLayout &layout = job.layout;
-  const uint32_t last = job.slice.first + static_cast<uint32_t>(items.last);
-  for (uint32_t b = job.slice.first + static_cast<uint32_t>(items.first) + blockIdx.x * kTriangleWarps +
-                    static_cast<uint32_t>(warp);
-       b < last; b += gridDim.x * kTriangleWarps) {
+  const uint32_t end = job.slice.first + last;
+  for (uint32_t b = job.slice.first + first + static_cast<uint32_t>(warp); b < end; b += step) {
     const uint32_t base = layout.base[b].triangles;
     if (layout.base[b + 1].triangles == base) continue;
     const int brick = static_cast<int>(b);
@@ -147,6 +146,13 @@ static __global__ __launch_bounds__(kTriangleWarps *kWarp) void emit_triangles_k
       __syncwarp();
     }
   }
+}
+
+static __global__ __launch_bounds__(kTriangleWarps *kWarp) void emit_triangles_kernel(QueuedItems queued,
+                                                                                      TriangleJob job) {
+  const LaunchItems items = queued.in_turn();
+  emit_triangles_of(job, static_cast<uint32_t>(items.first) + blockIdx.x * kTriangleWarps,
+                    static_cast<uint32_t>(items.last), gridDim.x * kTriangleWarps);
 }
 
 }  // namespace gpu

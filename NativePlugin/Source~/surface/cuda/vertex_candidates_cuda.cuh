@@ -161,23 +161,18 @@ __device__ __forceinline__ void fill_window(const VertexJob &job, const VertexLe
   __syncwarp();
 }
 
-// Starts and candidates of the leaves that own vertices. So many lanes for each: of many leaves two share a warp, since
-// most have no more than 20 vertices.
+// By a block: starts and candidates of the leaves that own vertices from the first on, so many lanes for each.
 template <int kLanes>
-static __global__ __launch_bounds__(
-    kLeafWarps *kWarp,
-    blocks_at_once(kLeafWarps *kWarp, kLanes == kWarp ? 11 : 10)) void prepare_vertices_kernel(QueuedItems queued,
-                                                                                               VertexJob job) {
-  const LaunchItems leaves = queued.in_turn();
+__device__ __forceinline__ void prepare_vertices_of(const VertexJob &job, size_t first, size_t last) {
   constexpr int kTeams = kLeafWarps * kWarp / kLanes;
   __shared__ uint8_t edge_memory[kTeams][kMostLeafVertices];
   __shared__ SignWindow window_memory[kTeams];
   const int team = static_cast<int>(threadIdx.x) / kLanes, rank = rank_in_team<kLanes>();
   const unsigned lanes = lanes_of_team<kLanes>();
-  const size_t number = leaves.first + blockIdx.x * kTeams + static_cast<uint32_t>(team);
+  const size_t number = first + static_cast<uint32_t>(team);
   const uint8_t *const edges = edge_memory[team];
   VertexLeaf leaf;
-  if (!open_leaf<kLanes>(job, number, leaves.last, &leaf, edge_memory[team])) return;
+  if (!open_leaf<kLanes>(job, number, last, &leaf, edge_memory[team])) return;
   const Lattice &lattice = job.bricks.lattice;
   const bool ring = job.starts.relax && !job.halved && !job.starts.moved;
   if (ring) fill_window<kLanes>(job, leaf, &window_memory[team]);
@@ -269,6 +264,17 @@ static __global__ __launch_bounds__(
   for (int k = rank; k < leaf.count; k += kLanes)
     job.list_of[leaf.first - job.first + static_cast<uint32_t>(k)] =
         fits ? static_cast<uint32_t>(number) : kRowCandidates | slot;
+}
+
+// Half a warp for each leaf, since most have no more than 20 vertices.
+constexpr int kHalfWarp = kWarp / 2;
+static __global__ __launch_bounds__(kLeafWarps *kWarp,
+                                    blocks_at_once(kLeafWarps *kWarp,
+                                                   10)) void prepare_vertices_kernel(QueuedItems queued,
+                                                                                     VertexJob job) {
+  const LaunchItems leaves = queued.in_turn();
+  constexpr size_t kLeaves = kLeafWarps * kWarp / kHalfWarp;
+  prepare_vertices_of<kHalfWarp>(job, leaves.first + blockIdx.x * kLeaves, leaves.last);
 }
 
 }  // namespace gpu

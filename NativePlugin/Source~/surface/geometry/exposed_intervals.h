@@ -27,15 +27,26 @@ QSES_FN glm::vec2 pseudo_direction(float p) {
   return glm::vec2(x * k, y * k);
 }
 
-// Counter-clockwise way from one pseudo-angle to another, in [0, 4).
+// Counter-clockwise way from one pseudo-angle to another, in [0, 4].
 QSES_FN float pseudo_way(float from, float to) {
   const float way = to - from;
   return way < 0.f ? way + 4.f : way;
 }
+// Counter-clockwise from a pseudo-angle, does a come before b? Itself comes first. Told without ways, which are
+// rounded, so that it does not depend on the order of stretches what they leave.
+template <class T>
+QSES_FN auto comes_before(T from, T a, T b) -> decltype(a < b) {
+  return (a < b) ^ (a >= from) ^ (b >= from);
+}
 
+// From its begin counter-clockwise to its end, which is not part of it. Not empty.
 struct Interval {
-  float begin, end;  // pseudo-angles, counter-clockwise
+  float begin, end;  // pseudo-angles
 };
+
+// Rounding may put stretches apart that touch, by no more than this: what is left between them is none.
+constexpr float kSliver = 5e-7f;
+QSES_FN bool is_sliver(const Interval &v) { return pseudo_way(v.begin, v.end) <= kSliver; }
 
 // The exposed intervals of one circle. Storage for the intervals is the caller's (registers, scratch or global memory).
 template <class Storage>
@@ -58,27 +69,42 @@ struct ExposedIntervals {
     }
     for (int k = 0; k < count; ++k) {
       const Interval v = interval[k];
-      const float length = pseudo_way(v.begin, v.end);
-      const float from = pseudo_way(v.begin, begin), to = pseudo_way(v.begin, end);
       // What stays before the stretch, or, if it contains v.begin, between its end and its begin; and what stays behind
       // it. Written without branches, since none could be foreseen but the rare ones.
-      const bool wraps = from > to, has_rest = to < length;
-      const bool has_first = wraps ? has_rest : (from > 0.f) | (from >= length), has_second = !wraps & has_rest;
-      const Interval first{wraps ? end : v.begin, from < length ? begin : v.end}, second{end, v.end};
-      if (!(has_first | has_second)) {
+      const bool begins_within = comes_before(v.begin, begin, v.end), ends_within = comes_before(v.begin, end, v.end);
+      const bool contains_begin = comes_before(begin, v.begin, end);
+      const bool has_first = !contains_begin | ends_within;
+      const bool has_second = !contains_begin & begins_within & ends_within & (end != v.begin);
+      if (!has_first) {
         interval[k--] = interval[--count];
         continue;
       }
-      interval[k].begin = has_first ? first.begin : second.begin;
-      interval[k].end = has_first ? first.end : second.end;
-      if (has_first & has_second) {
+      interval[k] = {contains_begin ? end : v.begin, begins_within && begin != v.begin ? begin : v.end};
+      if (has_second) {
         if (count == capacity) {
           overflow = true;
           return;
         }
-        interval[count++] = second;  // disjoint from the stretch: looked at again without effect
+        interval[count++] = {end, v.end};  // disjoint from the stretch: looked at again without effect
       }
     }
+  }
+
+  // Once all is covered that is: without slivers, and in the order of where they begin.
+  QSES_FN void settle() {
+    int kept = 0;
+    for (int k = 0; k < count; ++k)
+      if (!is_sliver(interval[k])) interval[kept++] = interval[k];
+    count = kept;
+    int gap = 1;
+    while (3 * gap < count) gap = 3 * gap + 1;  // Knuth's, for Shell's sort
+    for (; gap > 0; gap /= 3)
+      for (int k = gap; k < count; ++k) {
+        const Interval v = interval[k];
+        int to = k;
+        for (; to >= gap && interval[to - gap].begin > v.begin; to -= gap) interval[to] = interval[to - gap];
+        interval[to] = v;
+      }
   }
 };
 

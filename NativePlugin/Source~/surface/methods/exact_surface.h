@@ -202,20 +202,26 @@ MeshMemoryView build_exact_surface(Work &work) {
   MeshMemoryView mesh = begin_mesh(work, counts);
   const auto end_of_mesh = executor.arena().mark();
   VertexStarts starts{work.settings.relaxation_steps > 0, nullptr, work.table.ring, &layout.totals->unplaced};
-  if (!mesh.in_pieces) {  // they may go out while the vertices are made
+  // In a short frame triangles and vertices may be made side by side; but for stages, whose times are to be told apart.
+  const bool together = share && !mesh.in_pieces && executor.runs_ahead() && !work.timer.is_enabled();
+  const auto note_triangles = [&] { work.memory.note_triangles(executor); };  // they may go out meanwhile
+  if (!mesh.in_pieces && !together) {
     B::emit_triangles(executor, bricks, layout, BrickRange{0, bricks.count}, work.table, mesh.view);
-    work.memory.note_triangles(executor);
+    note_triangles();
   }
-  // Without pieces only the vertices are left.
   const auto emit_slice = [&](auto &any_executor, BrickRange slice, bool with_triangles) {
     Candidates<Executor> own{};
     MeshPart part{mesh.view, 0, 0};
     const SliceSizes sizes = slice_sizes(any_executor, bricks, layout, slice);
     if (mesh.in_pieces) part = open_part(work, any_executor, sizes);
+    if (with_triangles && together) {
+      B::emit_mesh(any_executor, features, bricks, layout, slice, sizes, work.rooms, share ? shared : own, starts,
+                   work.table, part.view, note_triangles);
+      return part;
+    }
     B::emit_vertices(any_executor, features, bricks, layout, slice, sizes, work.rooms, share ? shared : own, starts,
                      part.view);
-    if (!mesh.in_pieces) return part;
-    if (with_triangles) B::emit_triangles(any_executor, bricks, layout, slice, work.table, part.view);
+    if (with_triangles && mesh.in_pieces) B::emit_triangles(any_executor, bricks, layout, slice, work.table, part.view);
     return part;
   };
   const auto emit = [&](double begin, double end, bool with_triangles) {

@@ -44,6 +44,9 @@ struct TableView {
 //   emit_vertices(E, features, bricks, layout, slice, sizes, rooms, candidates, starts, mesh)
 //       sizes: what the slice owns, or at most if it is all of the bricks
 //   emit_triangles(E, bricks, layout, slice, table, mesh)
+//   emit_mesh(E, features, bricks, layout, slice, sizes, rooms, candidates, starts, table, mesh, triangles_made)
+//       both, of a slice that is not empty, side by side where that is quicker; triangles_made() is called once all is
+//       given that makes the triangles
 //   evaluate_density(E, density, bricks, slices, signs)
 //       signs of a Gaussian surface; slices(work_on) calls work_on(slice) for runs of bricks
 //   emit_density_vertices(E, density, bricks, layout, mesh)
@@ -89,6 +92,10 @@ struct BackendContract {
   static_assert(has<decltype(&B::template emit_triangles<Executor>), const BrickSet &, const MeshLayout &, BrickRange,
                     const TableView &, const MeshView &>,
                 "emit_triangles");
+  static_assert(has<decltype(&B::template emit_mesh<Executor, void (*)()>), const FeatureView &, const BrickSet &,
+                    const MeshLayout &, BrickRange, const SliceSizes &, typename B::LearntRooms &,
+                    typename B::Candidates &, const VertexStarts &, const TableView &, const MeshView &, void (*)()>,
+                "emit_mesh");
   static_assert(has<decltype(&B::template evaluate_density<Executor, NoSlices>), const GaussianDensity &,
                     const BrickSet &, const NoSlices &, uint64_t *>,
                 "evaluate_density");
