@@ -100,7 +100,7 @@ qses_mesh held_mesh(const qses_context &context) {
 quickses::SurfaceRequest make_request(const qses_context &context, const qses_settings &settings, bool ladder,
                                       const char *function) {
   check_settings(settings);
-  if (quickses::wants_device(settings) && context.backend != QSES_BACKEND_CUDA)
+  if (quickses::is_for_device(settings.delivery) && context.backend != QSES_BACKEND_CUDA)
     invalid("settings.delivery asks for a mesh on the device, but this context computes on the CPU");
   quickses::require_atoms(context, function);
   quickses::SurfaceRequest request;
@@ -306,12 +306,9 @@ qses_status qses_collect_device(qses_context *context, qses_device_mesh *mesh) {
     require(context, "context");
     require(mesh, "mesh");
     check_struct(mesh, "qses_device_mesh");
-    context->job->collect(nullptr, nullptr);
-    qses_device_mesh held;
-    if (!context->job->held_on_device(&held)) throw quickses::Error(QSES_NO_RESULT, kNothingComputed);
-    if (held.mesh.vertex_count > 0 && !held.mesh.positions)
-      invalid("the mesh was made with another settings.delivery than DEVICE or BOTH: it is not on the device");
-    write_struct(mesh, held, "qses_device_mesh");
+    qses_device_mesh collected;
+    if (!context->job->collect_on_device(&collected)) throw quickses::Error(QSES_NO_RESULT, kNothingComputed);
+    write_struct(mesh, collected, "qses_device_mesh");
   });
 }
 

@@ -20,7 +20,7 @@ template <class T>
 void check_struct(const T *given, const char *name) {
   constexpr uint32_t kSmallest = 8, kLargest = 4096;
   const uint32_t size = given->struct_size;
-  if (size < kSmallest || size > kLargest || size % sizeof(uint32_t) != 0)
+  if (size < kSmallest || size > kLargest || size % alignof(T) != 0)
     invalid(std::string(name) + ".struct_size is " + std::to_string(size) + ": use " + name +
             "_init of the header first");
 }

@@ -142,7 +142,7 @@ qses_status qses_trajectory_unwrap(qses_trajectory *trajectory, const uint8_t *e
     if (!box) throw quickses::Error(QSES_NO_BOX, io::unwrap_sentence(io::UnwrapStatus::kNoBox));
     std::vector<float> xyz(3 * count);
     trajectory->frames.read_frame(0, xyz.data());
-    trajectory->unwrapper.emplace(elements, xyz.data(), count, box);
+    trajectory->unwrapper = io::Unwrapper(elements, xyz.data(), count, box);  // if that fails, the one before stays
   });
 }
 

@@ -68,11 +68,15 @@ std::string read_to_end(std::FILE *file, size_t size, const std::string &name) {
   const uint64_t limit = input_limit();
   std::string bytes;
   bytes.reserve(size + kPiece);
-  for (size_t count = kPiece, read = 0; count > 0;) {
+  for (size_t read = 0;;) {
     bytes.resize(read + kPiece);
-    count = std::fread(&bytes[read], 1, kPiece, file);
+    errno = 0;
+    const size_t count = std::fread(&bytes[read], 1, kPiece, file);
+    const bool is_interrupted = std::ferror(file) && errno == EINTR;  // by a signal, while it waited for a pipe
+    if (is_interrupted) std::clearerr(file);
     bytes.resize(read += count);
     if (read > limit) fail_too_large(name, limit);
+    if (count == 0 && !is_interrupted) break;
   }
   if (std::ferror(file)) fail_input("'" + name + "' can't be read: " + std::strerror(errno));
   if (bytes.empty()) fail_input("'" + name + "' is empty");

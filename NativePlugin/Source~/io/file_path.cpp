@@ -3,6 +3,7 @@
 // bytes.
 #include "io/file_path.h"
 
+#include <cerrno>
 #include <system_error>
 
 #include "io/error.h"
@@ -32,7 +33,12 @@ std::filesystem::path path_of(const std::string &utf8) { return utf8; }
 
 std::string utf8_of(const std::filesystem::path &path) { return path.string(); }
 
-std::FILE *open_stdio(const std::filesystem::path &path, const char *mode) { return std::fopen(path.c_str(), mode); }
+std::FILE *open_stdio(const std::filesystem::path &path, const char *mode) {
+  for (;;) {
+    std::FILE *const file = std::fopen(path.c_str(), mode);
+    if (file || errno != EINTR) return file;  // by a signal, while it waited for the other end of a pipe
+  }
+}
 
 #endif
 

@@ -236,9 +236,14 @@ bool SurfaceJob::held(qses_mesh *mesh, qses_report *report) const {
   return true;
 }
 
-bool SurfaceJob::held_on_device(qses_device_mesh *mesh) const {
+bool SurfaceJob::collect_on_device(qses_device_mesh *mesh) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (!held_.is_there) return false;
+  const Level &newest = ready_.is_there ? ready_ : held_;
+  if (!newest.is_there) return false;
+  if (!is_for_device(newest.mesh.delivery))
+    throw Error(QSES_INVALID_ARGUMENT,
+                "the mesh was made with another settings.delivery than DEVICE or BOTH: it is not on the device");
+  if (ready_.is_there) hold_what_is_ready();
   *mesh = held_.mesh.on_device;
   return true;
 }
@@ -249,7 +254,7 @@ void SurfaceJob::keep(KeptMesh *kept) {
   FinishedMesh &mesh = held_.mesh;
   if (mesh.delivery == QSES_DELIVERY_NONE)
     throw Error(QSES_INVALID_ARGUMENT, "the mesh was made with settings.delivery NONE: there is none to be kept");
-  const bool is_on_device = mesh.delivery != QSES_DELIVERY_HOST;
+  const bool is_on_device = is_for_device(mesh.delivery);
   const auto on_device = is_on_device ? std::make_shared<DeviceMesh>() : nullptr;
   kept->clear();
   if (is_on_device) {

@@ -50,7 +50,9 @@ class SurfaceJob : private LevelSink {
   bool collect(qses_mesh *mesh, qses_report *report);
   // The mesh collected or computed last; false if there is none.
   bool held(qses_mesh *mesh, qses_report *report) const;
-  bool held_on_device(qses_device_mesh *mesh) const;
+  // The finest level finished since the last call, or else the mesh collected or computed last; false if there is
+  // neither. Throws Error if it is not on the device, and leaves it where it is.
+  bool collect_on_device(qses_device_mesh *mesh);
   // Moves what is held out of here, with its memory. Throws Error; the other one is as it was then.
   void keep(KeptMesh *kept);
   // Until no job runs or waits, or the time is over (negative: no limit). True if none runs or waits.

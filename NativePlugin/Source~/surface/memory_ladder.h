@@ -12,6 +12,7 @@ namespace quickses {
 
 // Where the pipeline is only counted, nobody is told the time.
 struct NoTimer {
+  bool is_enabled() const { return false; }
   void begin(const char *) {}
 };
 
@@ -47,7 +48,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
         const PlannedFrame frame{in, plan, spacings, is_beside_, kind_of(in), atoms_.bytes()};
         levels_.make(frame, &course, sink, [&](Work &work, float spacing) {
           spacing_ = spacing;
-          if (work.makes_mesh) check_forecast(work, in);
+          if (work.makes_mesh) check_forecast(work, in, &plan == kMemoryPlans + kMemoryPlanCount - 1);
         });
       } catch (const AnticipatedTooLittle &) {
         course.attempts = attempts;
@@ -147,7 +148,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
           step = next_step(in, step);
         if (step < kMemoryPlanCount) continue;
         // The last plan takes least, but can't leave a mesh on the device: it is not where the next one should begin.
-        if (wants_device(in.settings)) learnt_ = {};
+        if (is_for_device(in.settings.delivery)) learnt_ = {};
         name_smallest_budget(in);
         throw;
       }
@@ -220,13 +221,19 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
 
   // Before time is spent on a plan that won't do, or on a spacing that is hopelessly fine. Where a plan did for such
   // atoms before, nothing is predicted.
-  void check_forecast(Work &work, const FrameInput &in) {
+  void check_forecast(Work &work, const FrameInput &in, bool is_last) {
     auto &arena = executor_.arena();
     const bool is_fine = work.parameters.spacing < kCheckedSpacing, is_short = arena.has_budget() || learnt_.share > 0;
     if (learnt_.is_proven || !is_exact(in.settings) || !(is_fine || is_short)) return;
+    const auto is_too_large = [&] {
+      return forecast(in, work.plan, arena.limit()) > kMemoryCertainty * static_cast<double>(arena.limit());
+    };
     facts_.size = predict_size(work);
-    if (is_short && forecast(in, work.plan, arena.limit()) > kMemoryCertainty * static_cast<double>(arena.limit()))
-      throw MemoryRefused("the surface is forecast not to fit into what there is");
+    if (is_short && is_too_large()) {
+      // So roughly predicted, an atom alone among large probes has far too much surface: there is no further plan.
+      if (is_last) facts_.size = estimate_size(work);
+      if (!is_last || is_too_large()) throw MemoryRefused("the surface is forecast not to fit into what there is");
+    }
     if (!is_fine) return;
     const MeshArrays mesh(static_cast<size_t>(facts_.size.vertices), static_cast<size_t>(facts_.size.triangles),
                           work.shape);

@@ -127,6 +127,45 @@ TEST(Delivery, OfTheCpuIsHostMemory) {
   expect_error(qses_collect_device(context, nullptr), QSES_INVALID_ARGUMENT, {"mesh"});
 }
 
+// Also where there is nothing to be on the device.
+TEST(Delivery, OfAnEmptyMeshIsWhereItWasWanted) {
+  const Context context(1);
+  set_atoms(context, Atoms());
+  qses_device_mesh mesh;
+  qses_device_mesh_init(&mesh);
+  for (const qses_delivery delivery : {QSES_DELIVERY_HOST, QSES_DELIVERY_NONE}) {
+    qses_settings s = settings();
+    s.delivery = delivery;
+    ASSERT_EQ(qses_compute(context, &s, nullptr), QSES_OK);
+    expect_error(qses_collect_device(context, &mesh), QSES_INVALID_ARGUMENT, {"DEVICE or BOTH"});
+  }
+}
+
+// Who asks for it in the wrong place has lost neither what is new nor what is held.
+TEST(Delivery, WhatIsNotOnTheDeviceCanStillBeCollected) {
+  const Context context(1);
+  const qses_settings s = settings();
+  set_atoms(context, crambin());
+  qses_mesh held = empty_mesh(), collected = empty_mesh();
+  expect_ok(qses_compute(context, &s, &held));
+  const std::vector<float> positions(held.positions, held.positions + 3 * held.vertex_count);
+  const auto is_unchanged = [&] { return std::equal(positions.begin(), positions.end(), held.positions); };
+
+  set_atoms(context, water());
+  const auto run = [&] {
+    expect_ok(qses_begin(context, &s));
+    expect_ok(qses_wait(context, -1, nullptr));
+  };
+  run();
+  qses_device_mesh mesh;
+  qses_device_mesh_init(&mesh);
+  expect_error(qses_collect_device(context, &mesh), QSES_INVALID_ARGUMENT, {"DEVICE or BOTH"});
+  run();  // into whatever memory was given up
+  EXPECT_TRUE(is_unchanged());
+  expect_ok(qses_collect(context, &collected));
+  EXPECT_LT(collected.vertex_count, held.vertex_count);
+}
+
 TEST(Memory, ATooSmallBudgetIsRefusedAndLeavesTheContextUsable) {
   const Context context(2, uint64_t(3) << 20);
   const Surface small = compute(context, water(), settings());

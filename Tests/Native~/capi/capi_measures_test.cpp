@@ -301,6 +301,24 @@ TEST(DeliveryNone, IsEstimated) {
   }
 }
 
+// Its surface is much smaller than that of its inflated ball.
+TEST(SmallestBudget, DoesForAnAtomAndALargeProbe) {
+  const Atoms atom = Atoms().add(0, 0, 0, 1.5);
+  for (const double probe : {3.0, 10.0, 30.0}) {
+    const qses_settings s = settings(0.3, probe);
+    const Context any(1);
+    set_atoms(any, atom);
+    qses_size_estimate estimate;
+    qses_size_estimate_init(&estimate);
+    expect_ok(qses_estimate(any, &s, &estimate));
+    const Context small(1, estimate.smallest_budget);
+    set_atoms(small, atom);
+    expect_ok(qses_estimate(small, &s, &estimate));
+    EXPECT_EQ(estimate.fits, 1);
+    EXPECT_EQ(compute(small, atom, s).mesh.positions, compute(any, atom, s).mesh.positions) << probe;
+  }
+}
+
 // ---- lifetime
 
 TEST(AtomAreas, LiveAsLongAsTheMesh) {

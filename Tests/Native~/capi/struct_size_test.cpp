@@ -7,6 +7,7 @@
 #include <cstring>
 #include <functional>
 #include <type_traits>
+#include <vector>
 
 namespace {
 
@@ -77,6 +78,12 @@ class Room {
 template <class T>
 using Call = std::function<qses_status(T *)>;
 
+// The last one may cut a pointer in two.
+template <class T>
+std::vector<uint32_t> impossible_sizes() {
+  return {0u, 1u, 3u, 4u, 7u, 9u, 4100u, 0xccccccccu, static_cast<uint32_t>(sizeof(T) - alignof(T) / 2)};
+}
+
 // A structure that the library fills in, for callers with every length from the least on.
 template <class T>
 void check_output(const char *name, void (*init)(T *), const Call<T> &fill) {
@@ -85,7 +92,7 @@ void check_output(const char *name, void (*init)(T *), const Call<T> &fill) {
   ASSERT_EQ(fill(whole.get()), QSES_OK) << qses_last_error();
   EXPECT_TRUE(whole.canaries_live());
   EXPECT_NE(std::memcmp(whole.bytes(), Room<T>(sizeof(T), init).bytes(), sizeof(T)), 0) << "nothing was filled in";
-  for (size_t size = 8; size <= sizeof(T) + kMore; size += 4) {
+  for (size_t size = 8; size <= sizeof(T) + kMore; size += alignof(T)) {
     Room<T> room(size, init);
     ASSERT_EQ(fill(room.get()), QSES_OK) << size << ": " << qses_last_error();
     EXPECT_TRUE(room.canaries_live()) << size;
@@ -93,7 +100,7 @@ void check_output(const char *name, void (*init)(T *), const Call<T> &fill) {
     EXPECT_EQ(std::memcmp(room.bytes() + 4, whole.bytes() + 4, std::min(size, sizeof(T)) - 4), 0) << size;
     for (size_t k = sizeof(T); k < size; ++k) EXPECT_EQ(room[k], 0) << k << ": not the library's to write";
   }
-  for (uint32_t size : {0u, 1u, 3u, 4u, 7u, 9u, 4100u, 0xccccccccu}) {
+  for (const uint32_t size : impossible_sizes<T>()) {
     Room<T> room(sizeof(T), init), before = room;
     room.set_size(size);
     before.set_size(size);
@@ -162,7 +169,7 @@ TEST(StructSize, OfTheMeshThatIsComputed) {
 template <class T>
 void check_input(const char *name, void (*init)(T *), const Call<T> &use) {
   SCOPED_TRACE(name);
-  for (size_t size = 8; size <= sizeof(T) + kMore; size += 4) {
+  for (size_t size = 8; size <= sizeof(T) + kMore; size += alignof(T)) {
     Room<T> room(size, init);
     EXPECT_EQ(use(room.get()), QSES_OK) << size << ": " << qses_last_error();  // the canaries would be absurd
     for (size_t k = sizeof(T); k < size; ++k) {
@@ -171,7 +178,7 @@ void check_input(const char *name, void (*init)(T *), const Call<T> &use) {
       room[k] = 0;
     }
   }
-  for (uint32_t size : {0u, 1u, 3u, 4u, 7u, 9u, 4100u, 0xccccccccu}) {
+  for (const uint32_t size : impossible_sizes<T>()) {
     Room<T> room(sizeof(T), init);
     room.set_size(size);
     expect_error(use(room.get()), QSES_INVALID_ARGUMENT, {name, "struct_size", std::to_string(size).c_str()});

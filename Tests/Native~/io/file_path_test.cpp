@@ -3,7 +3,16 @@
 // UTF-16 here, so that the system, and not the code under test, decides what they are.
 #include "io/file_path.h"
 
+#if !defined(_WIN32)
+#include <pthread.h>
+#include <signal.h>
+#include <sys/stat.h>
+#endif
+
+#include <atomic>
+#include <chrono>
 #include <fstream>
+#include <thread>
 
 #include "io/atomic_file.h"
 #include "io/byte_source.h"
@@ -80,6 +89,37 @@ TEST_F(FilePathTest, ErrorsNameTheFileAsItWasGiven) {
 TEST_F(FilePathTest, WhatIsNotUtf8IsRefused) {
   EXPECT_EQ(error_of(ErrorKind::kInput, [] { read_structure("\xff.pdb", ReadOptions()); }),
             "'\xff.pdb' is no path: it is not UTF-8");
+}
+#endif
+
+#if !defined(_WIN32)
+// Whoever waits for a pipe goes on waiting after a signal.
+TEST_F(FilePathTest, PipesAreReadThroughSignals) {
+  const std::string pipe = utf8_of(folder_) + "/pipe.pdb";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  using Action = struct sigaction;
+  Action interrupts = {}, before = {};
+  interrupts.sa_handler = [](int) {};  // without SA_RESTART
+  ASSERT_EQ(sigaction(SIGUSR1, &interrupts, &before), 0);
+  const auto handles_broken_pipe = signal(SIGPIPE, SIG_IGN);  // of a reader that gave up
+  std::atomic<bool> ends{false};
+  std::thread signals([&, reader = pthread_self()] {
+    for (; !ends; std::this_thread::sleep_for(std::chrono::milliseconds(1))) pthread_kill(reader, SIGUSR1);
+  });
+  std::thread writer([&] {
+    const auto rest = [] { std::this_thread::sleep_for(std::chrono::milliseconds(20)); };
+    rest();  // the reader waits for this end
+    std::ofstream out(pipe, std::ios::binary);
+    for (int k = 0; k < 5; ++k, rest()) out << kAtom << std::flush;
+  });
+  size_t atoms = 0;
+  EXPECT_NO_THROW(atoms = read_structure(pipe, ReadOptions()).models.at(0).atoms.size());
+  ends = true;
+  signals.join();
+  writer.join();
+  signal(SIGPIPE, handles_broken_pipe);
+  sigaction(SIGUSR1, &before, nullptr);
+  EXPECT_EQ(atoms, 5u);
 }
 #endif
 

@@ -154,8 +154,8 @@ class LaunchCounter : public quickses::CudaExecutor {
   }
 };
 
-// Atoms with more neighbours than a warp's rows hold, and circles with more intervals than a lane's: the stage begins
-// anew for the first frame only, and no frame after it goes on with too little.
+// Atoms with more neighbours than a warp's rows hold, and a circle with more intervals than the lanes that find them:
+// the stage begins anew for the first frame only, and no frame after it goes on with too little.
 TEST(GpuRooms, AreLearntOnce) {
   REQUIRE_DEVICE();
   using namespace quickses;
@@ -168,8 +168,8 @@ TEST(GpuRooms, AreLearntOnce) {
       for (int z = 0; z < 7; ++z) spheres.push_back({glm::vec3(0.9f * x, 0.91f * y, 0.89f * z), 2.9f});
   spheres.push_back({glm::vec3(40.f, 0.f, -1.f), 3.2f});
   spheres.push_back({glm::vec3(40.f, 0.f, 1.f), 3.2f});
-  for (int k = 0; k < 12; ++k)
-    spheres.push_back({glm::vec3(40.f + 3.f * std::cos(0.5236f * k), 3.f * std::sin(0.5236f * k), 0.f), 0.5f});
+  for (int k = 0; k < 20; ++k)
+    spheres.push_back({glm::vec3(40.f + 3.f * std::cos(0.31416f * k), 3.f * std::sin(0.31416f * k), 0.f), 0.3f});
   std::vector<size_t> arcs;
   for (int frame = 0; frame < 4; ++frame) {
     executor.arena().reset();

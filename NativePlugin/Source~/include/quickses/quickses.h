@@ -48,7 +48,8 @@
  *   - a structure shorter than the library's: what it lacks has its default, and is not filled in;
  *   - one that is longer: what the library does not know is left as it is in what it fills in; in options and settings
  *     it must be 0, else INVALID_ARGUMENT: what was asked for there would not be done.
- *   A struct_size that no header can have (below 8, above 4096, no multiple of 4) is INVALID_ARGUMENT.
+ *   A struct_size that no header can have (below 8, above 4096, no multiple of the structure's alignment) is
+ * INVALID_ARGUMENT.
  *   qses_component and qses_stage_time have no size since they are elements of arrays: they never grow.
  *
  * Errors
@@ -69,7 +70,8 @@
  *   context may be called from any thread at any time; kept meshes, structures and trajectories have rules of their
  * own, below. Calls that compute look at least every 20 ms whether qses_cancel was called, as a rule; on a GPU, between
  * kernels. A stack of 64 KiB suffices for every call on the CPU. Where the machine refuses threads, a context makes do
- * with those there are, down to the calling thread.
+ * with those there are, down to the calling thread. A thread that is in a call must not be ended from outside
+ * (pthread_cancel, TerminateThread): qses_cancel is there for that.
  *   After a fork while nothing of the library ran, the child may make contexts on the CPU and compute in them; contexts
  * that had jobs (qses_begin) before must be neither used nor destroyed there. Where CUDA was used, no child can use it.
  */
@@ -268,8 +270,8 @@ QSES_API qses_status qses_context_info(const qses_context *context, qses_backend
  *              stride 0 means tightly packed (12 bytes); else a multiple of 4, at least 12
  *   radii      count van der Waals radii in Å, above 0 and at most 100
  *   count      number of atoms; 0 is allowed and gives an empty mesh
- * Two atoms at the same place count as the larger of them (of equals, as the first). An atom inside another one owns
- * no vertex.
+ * Two atoms at the same place count as the larger of them (of equals, as the first), but in the density of GAUSSIAN,
+ * which adds up all there are. An atom inside another one owns no vertex.
  * Errors: INVALID_ARGUMENT (NULL, stride, a position that is NaN or infinite or beyond 1e6 Å, a radius out of range:
  * the message names the atom's index), OUT_OF_MEMORY, DEVICE_ERROR. The atoms set before stay in place after an error.
  */
@@ -384,7 +386,8 @@ typedef struct qses_settings {
                              Not with GRID */
   qses_bool hard_edges;   /* 1: a vertex on a crease is there once per side, each time with the normal of that side, so
                              that light breaks where the surface does. The mesh is then closed once vertices at the same
-                             place are taken for one. Default 0: one vertex, with the mean normal. Not with GRID */
+                             place are taken for one. Default 0: one vertex, with the mean normal. GRID knows no creases,
+                             so that each is there once */
   qses_bool component_ids; /* 1: qses_mesh.component_ids is filled, and the components; default 0 */
   qses_bool outer_only;    /* 1: the walls of cavities are left out of the mesh, not of area, volume and components,
                               which are filled; the outer surface of what lies within a cavity stays. Default 0 */
@@ -435,10 +438,10 @@ typedef struct qses_component {
   float bounds_max[3];
 } qses_component;
 
-/* A view of a mesh in memory of the context: valid until the next qses_compute, qses_collect or qses_keep that succeeds
- * on the same context, or qses_context_destroy; also while jobs run. (Page-locked memory with CUDA.) That of a kept
- * mesh is valid until something else is kept there, qses_kept_mesh_clear or qses_kept_mesh_destroy. Nothing here may be
- * written or freed by the caller. */
+/* A view of a mesh in memory of the context: valid until the next qses_compute, qses_collect, qses_collect_device or
+ * qses_keep that succeeds on the same context, or qses_context_destroy; also while jobs run. (Page-locked memory with
+ * CUDA.) That of a kept mesh is valid until something else is kept there, qses_kept_mesh_clear or
+ * qses_kept_mesh_destroy. Nothing here may be written or freed by the caller. */
 typedef struct qses_mesh {
   uint32_t struct_size;    /* set by qses_mesh_init */
   uint32_t vertex_count;   /* V */
@@ -607,7 +610,7 @@ QSES_API qses_status qses_set_progress_callback(qses_context *context, qses_prog
 QSES_API qses_status qses_begin(qses_context *context, const qses_settings *settings);
 
 typedef enum qses_job_state {
-  QSES_JOB_IDLE = 0,      /* none was begun */
+  QSES_JOB_IDLE = 0,      /* none was begun, nor was qses_compute called, which shows as a job does */
   QSES_JOB_RUNNING = 1,   /* or waiting to run */
   QSES_JOB_FINISHED = 2,  /* all levels */
   QSES_JOB_CANCELLED = 3, /* by qses_cancel, before the last level was finished */
@@ -618,7 +621,7 @@ typedef struct qses_progress {
   uint32_t struct_size; /* set by qses_progress_init */
   qses_job_state state;
   uint32_t tag;             /* of the settings of the job that runs, or ran last */
-  uint32_t tag_requested;   /* of the newest qses_begin */
+  uint32_t tag_requested;   /* of the newest qses_begin or qses_compute */
   uint32_t levels_finished; /* of this job */
   uint32_t level_count;     /* that this job computes: 1 with a frame budget */
   float fraction;           /* of this job's work: from 0 to 1, never falls */
@@ -635,8 +638,8 @@ static inline void qses_progress_init(qses_progress *progress) { qses_clear(prog
 QSES_API qses_status qses_poll(const qses_context *context, qses_progress *progress);
 
 /* The finest level that was finished since the last call. Its memory stays valid until the next qses_collect,
- * qses_compute or qses_keep that succeeds, or qses_context_destroy, also while further levels and jobs are computed.
- * Asking often is cheap. Errors: NOTHING_NEW (not an error in itself), INVALID_ARGUMENT. */
+ * qses_collect_device, qses_compute or qses_keep that succeeds, or qses_context_destroy, also while further levels and
+ * jobs are computed. Asking often is cheap. Errors: NOTHING_NEW (not an error in itself), INVALID_ARGUMENT. */
 QSES_API qses_status qses_collect(qses_context *context, qses_mesh *mesh);
 
 /* A mesh on a CUDA device, made with settings.delivery DEVICE or BOTH. It is finished: who reads it waits for nothing.
@@ -659,7 +662,8 @@ static inline void qses_device_mesh_init(qses_device_mesh *mesh) {
 /* As qses_collect, but the mesh on the device. Where nothing is new it is the mesh of the last qses_compute,
  * qses_collect or qses_collect_device that succeeded: with delivery BOTH, ask for the one and then for the other. Its
  * memory stays valid as long as that of qses_collect. Nothing is copied, and nothing waits for the device.
- * Errors: NO_RESULT (nothing was made yet), INVALID_ARGUMENT (also: the mesh was made for HOST or NONE). */
+ * Errors: NO_RESULT (nothing was made yet), INVALID_ARGUMENT (also: the mesh was made for HOST or NONE; what is new can
+ * still be collected then). */
 QSES_API qses_status qses_collect_device(qses_context *context, qses_device_mesh *mesh);
 
 /* Ends the job that runs as soon as it can (levels finished before stay collectable) and drops the one that waits.
@@ -831,7 +835,7 @@ static inline void qses_structure_options_init(qses_structure_options *options) 
 /* Reads a structure from a file, gzipped or not. path is UTF-8. options may be NULL (defaults). On success *structure
  * is the caller's, who ends it with qses_structure_close; on failure it is NULL. Errors: INVALID_ARGUMENT (options; a
  * selection that can't be understood; no such model or assembly), FILE_ERROR (the message names file and line; also
- * more than qses_input_set_limit allows), OUT_OF_MEMORY. */
+ * more than qses_input_set_limit allows, and if no atom is left, or selected), OUT_OF_MEMORY. */
 QSES_API qses_status qses_structure_open(const char *path, const qses_structure_options *options,
                                          qses_structure **structure);
 

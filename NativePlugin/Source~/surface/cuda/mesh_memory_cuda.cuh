@@ -77,8 +77,8 @@ class MeshMemory<CudaExecutor> {
   // within a budget.
   void deliver_to(const qses_settings &settings) {
     forget_mesh();
-    keep_ = wants_device(settings);
-    to_host_ = wants_host(settings);
+    keep_ = is_for_device(settings.delivery);
+    to_host_ = is_for_host(settings.delivery);
     if (!executor_.arena().has_budget()) return;
     if (!keep_) device_mesh_.pool().drop_spares();
     executor_.arena().set_taken(device_mesh_.bytes());

@@ -20,12 +20,8 @@ inline bool is_exact(const qses_settings &s) {
   return s.method == QSES_METHOD_EXACT && s.surface != QSES_SURFACE_GAUSSIAN;
 }
 
-inline bool wants_host(const qses_settings &s) {
-  return s.delivery == QSES_DELIVERY_HOST || s.delivery == QSES_DELIVERY_BOTH;
-}
-inline bool wants_device(const qses_settings &s) {
-  return s.delivery == QSES_DELIVERY_DEVICE || s.delivery == QSES_DELIVERY_BOTH;
-}
+inline bool is_for_host(qses_delivery d) { return d == QSES_DELIVERY_HOST || d == QSES_DELIVERY_BOTH; }
+inline bool is_for_device(qses_delivery d) { return d == QSES_DELIVERY_DEVICE || d == QSES_DELIVERY_BOTH; }
 
 inline MeshShape shape_of(const qses_settings &s, bool has_colors) {
   MeshShape shape;
