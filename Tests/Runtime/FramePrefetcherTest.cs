@@ -255,7 +255,7 @@ namespace QuickSes.Tests
         // Its reader waits at the gate, and a timer would open it if somebody waited for that.
         private static void DisposeAtTheClosedGate(FramePrefetcher prefetcher, CountingReader reader)
         {
-            using (new Timer(_ => reader.Gate.Set(), null, 3000, Timeout.Infinite))
+            using (new Timer(_ => reader.Gate.Set(), null, 60000, Timeout.Infinite))
                 prefetcher.Dispose();
             Assert.That(reader.Gate.IsSet || prefetcher.HasLeft || reader.IsDisposed, Is.False);
         }

@@ -9,7 +9,7 @@ namespace QuickSes.Tests
 {
     public sealed class JobTest
     {
-        // Long enough (about a second of one core) that it never ends before the next statement.
+        // Long enough for one core (about a second) that it never ends before the next statement.
         private static SurfaceSettings LongWork
         {
             get
@@ -19,6 +19,12 @@ namespace QuickSes.Tests
                 settings.SetLevels(default);
                 return settings;
             }
+        }
+
+        private static SurfaceContext ContextOfOneCore()
+        {
+            using Structure structure = Meshes.Crambin();
+            return Meshes.ContextOf(structure, new SurfaceContextOptions { Backend = SurfaceBackend.Cpu, Threads = 1 });
         }
 
         [Test]
@@ -142,7 +148,7 @@ namespace QuickSes.Tests
         [Test]
         public void CancelledJobLeavesTheContextUsable()
         {
-            using SurfaceContext context = Meshes.CrambinContext();
+            using SurfaceContext context = ContextOfOneCore();
             context.Begin(LongWork);
             context.Cancel();
             Assert.That(context.Wait(), Is.True);
@@ -177,7 +183,7 @@ namespace QuickSes.Tests
         [Test]
         public void DisposeEndsARunningJob()
         {
-            SurfaceContext context = Meshes.CrambinContext();
+            SurfaceContext context = ContextOfOneCore();
             SurfaceMeshView mesh = Meshes.Compute(context, SurfaceSettings.Default);
             context.Begin(LongWork);
             context.Dispose();
@@ -194,7 +200,7 @@ namespace QuickSes.Tests
         [Test]
         public void DisposeEndsAComputationOnAnotherThread()
         {
-            SurfaceContext context = Meshes.CrambinContext();
+            SurfaceContext context = ContextOfOneCore();
             QuickSesStatus status = QuickSesStatus.Ok;
             var thread = new Thread(() => status = context.Compute(LongWork, out _));
             thread.Start();
@@ -235,7 +241,7 @@ namespace QuickSes.Tests
         [MethodImpl(MethodImplOptions.NoInlining)]
         private static WeakReference Abandon()
         {
-            SurfaceContext context = Meshes.CrambinContext();
+            SurfaceContext context = ContextOfOneCore();
             context.Begin(LongWork);
             FieldInfo handle = typeof(SurfaceContext).GetField("_handle",
                 BindingFlags.Instance | BindingFlags.NonPublic);

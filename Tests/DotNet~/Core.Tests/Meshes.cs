@@ -16,9 +16,9 @@ namespace QuickSes.Tests
             return structure;
         }
 
-        public static SurfaceContext ContextOf(Structure structure)
+        public static SurfaceContext ContextOf(Structure structure, SurfaceContextOptions options = default)
         {
-            var context = new SurfaceContext();
+            var context = new SurfaceContext(options);
             Assert.That(context.SetAtoms(structure.Positions, structure.Radii), Is.EqualTo(QuickSesStatus.Ok));
             return context;
         }

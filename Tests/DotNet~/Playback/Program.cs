@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+using QuickSes.Interop;
 using QuickSes.Tests;
 using System;
 using System.Globalization;
@@ -29,6 +30,8 @@ namespace QuickSes.Playback
             IntPtr library = NativeLibrary.Load(arguments[0]);
             NativeLibrary.SetDllImportResolver(typeof(SurfaceContext).Assembly,
                 (name, assembly, path) => name == "quickses" ? library : IntPtr.Zero);
+            // Else the resolver is told the name, in a new string, when a function is called for the first time.
+            Marshal.PrelinkAll(typeof(NativeMethods));
             if (arguments[1] == "frames")
                 return LongPlay.Run(Path.GetFullPath(arguments[2]), int.Parse(arguments[3]));
             if (arguments[1] == "many")

@@ -294,6 +294,12 @@ class TwoAtATime(FilesTest):
         self.assertEqual(list(self.folder.glob(".*")), [])
 
 
+def listen_to_signals():
+    """Also where these tests were begun with nohup, say, whose children ignore what it ignores."""
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.SIG_DFL)
+
+
 @unittest.skipIf(IS_WINDOWS, "no signals")
 class Stopped(FilesTest):
     def start(self, **keywords):
@@ -301,6 +307,7 @@ class Stopped(FilesTest):
         atoms = "".join(line for line in CRAMBIN.read_text().splitlines(True) if line.startswith("ATOM"))
         self.write("long.pdb", 2000 * f"MODEL        1\n{atoms}ENDMDL\n")
         self.write("t.csv", "old")
+        keywords.setdefault("preexec_fn", listen_to_signals)
         process = subprocess.Popen(
             [cli_test.PROGRAM, "p.pdb", "--trajectory", "long.pdb", "-v", "0.2", "--backend", "cpu", "--quiet",
              "--csv", "t.csv", "--json", "t.json", "-o", "f%d.obj"], cwd=self.folder, **keywords)

@@ -180,7 +180,7 @@ class TestInUnityTest(unittest.TestCase):
         self.assert_fails("crash", "EditMode: no results (the Editor ended with -6)", "the last line of EditMode")
 
     def test_editor_that_hangs(self):
-        self.assert_fails("hang", "the Editor did not end within 1 s", "the last line of EditMode", options=("--timeout", "1"))
+        self.assert_fails("hang", "the Editor did not end within 5 s", "the last line of EditMode", options=("--timeout", "5"))
 
     def test_nographics(self):
         status, text = self.run_tests("pass nographics", "--nographics")
