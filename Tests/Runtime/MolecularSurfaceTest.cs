@@ -145,20 +145,6 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
-        public IEnumerator AMoleculeThatWasNeverShownHasAllItsLevels()
-        {
-            _rig = SurfaceRig.WithBlob(30, 16);
-            yield return _rig.Settle();
-            TestMolecules.Blob(12000, 17, out Vector3[] positions, out float[] radii);
-            _rig.Surface.SetAtoms(positions, radii);
-            _rig.Surface.Cancel();
-            _rig.Levels.Clear();
-            _rig.Surface.Recompute();
-            yield return _rig.Settle();
-            Assert.That(_rig.Levels[0].IsFinest, Is.False);
-        }
-
-        [UnityTest]
         public IEnumerator TextureCoordinatesAreThoseOfTheAtoms()
         {
             _rig = SurfaceRig.WithBlob(20, 7);

@@ -300,9 +300,10 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     const bool is_counted = knows_size() && spacing_ == in.settings.spacing;
     guess_facts(in);
     const uint64_t least = least_bytes(in) / 10 * (is_counted ? 10 : 11) + memory_.needed_outside(executor_);
-    throw Error(QSES_OUT_OF_MEMORY,
-                "the memory budget of " + describe_bytes(budget_) + " does not suffice for this surface: about " +
-                    describe_bytes(std::max(least, budget_ + budget_ / 8)) + " would do, or a larger spacing");
+    throw Error(QSES_OUT_OF_MEMORY, "the memory budget of " + describe_bytes(budget_) +
+                                        " does not suffice for this surface: about " +
+                                        describe_bytes(std::max(least, budget_ + budget_ / 8)) +
+                                        (is_counted ? " would" : " may") + " do, or a larger spacing");
   }
 
   FrameLevels<Executor, Timer> levels_;

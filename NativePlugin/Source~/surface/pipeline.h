@@ -152,7 +152,9 @@ void prepare_frame(Work &work, const FrameInput &in) {
   const SolventFeatures features = list_features(work);
   if (work.parameters.is_of_balls() && (in.settings.measure || in.settings.atom_areas))
     measure_by_atoms(work, features);
-  if (work.makes_mesh) work.features = arrange_features(work, features);
+  if (!work.makes_mesh) return;
+  work.features = arrange_features(work, features);
+  if (in.settings.creases && !work.parameters.is_of_balls()) sum_arcs(work);
 }
 
 // The work turns to the level with this spacing.

@@ -86,6 +86,18 @@ std::vector<Case> cases() {
       s.hard_edges = 1;
       add("hard edges" + name, one, s);
     }
+  // Few atoms that a probe fits between have more creases than many that touch.
+  const std::pair<std::string, Atoms> thin[] = {{"alpha carbons", alpha_carbons()},
+                                                {"40 Å³", sparse(300, 40, 1)},
+                                                {"64 Å³", sparse(300, 64, 2)},
+                                                {"200 Å³", sparse(200, 200, 3)}};
+  for (const auto &[name, atoms] : thin)
+    for (const auto &[spacing, probe] : {std::pair(0.25, 1.4), {0.5, 1.4}, {1.0, 1.4}, {0.5, 0.7}, {0.5, 3.0}}) {
+      s = settings(spacing, probe);
+      s.creases = 1;
+      s.hard_edges = spacing == 0.5 && probe == 1.4;
+      add("creases of " + name + " at " + std::to_string(spacing) + ", probe " + std::to_string(probe), atoms, s);
+    }
   s = settings(0.5);
   s.method = QSES_METHOD_GRID;
   add("grid", many, s);
@@ -256,6 +268,16 @@ TEST(Budget, TheEstimateKnowsIt) {
   expect_close(e.work_bytes, report_of(context).work_bytes_peak, "work");
 }
 
+// Bytes that a refusal names.
+double named_budget(const std::string &message) {
+  const size_t about = message.find("about ");
+  char unit = 0;
+  double value = 0;
+  if (about == std::string::npos || std::sscanf(message.c_str() + about, "about %lf %ciB", &value, &unit) != 2)
+    ADD_FAILURE() << message;
+  return value * (unit == 'K' ? 1024.0 : unit == 'M' ? 1048576.0 : 1073741824.0);
+}
+
 TEST(Budget, TooSmallIsRefusedWithOneThatWouldDo) {
   const Context unbounded;
   for (const Case &c : cases()) {
@@ -268,17 +290,21 @@ TEST(Budget, TooSmallIsRefusedWithOneThatWouldDo) {
       const qses_status status = qses_compute(context, &c.settings, nullptr);
       if (budget > smallest / 2 && status == QSES_OK) continue;  // it is only promised that the smallest works
       ASSERT_EQ(status, QSES_OUT_OF_MEMORY) << what;
-      const std::string message = qses_last_error();
-      const size_t about = message.find("about ");
-      ASSERT_NE(about, std::string::npos) << message;
-      char unit = 0;
-      double value = 0;
-      ASSERT_EQ(std::sscanf(message.c_str() + about, "about %lf %ciB", &value, &unit), 2) << message;
-      const double named = value * (unit == 'K' ? 1024.0 : unit == 'M' ? 1048576.0 : 1073741824.0);
-      const Context enough(2, static_cast<uint64_t>(named));
-      set_atoms(enough, c.atoms);
-      EXPECT_EQ(qses_compute(enough, &c.settings, nullptr), QSES_OK)
-          << what << ": " << message << " / " << qses_last_error();
+      std::string message = qses_last_error();
+      double named = named_budget(message);
+      const auto retry = [&] {
+        const Context enough(2, static_cast<uint64_t>(named));
+        set_atoms(enough, c.atoms);
+        const bool fits = qses_compute(enough, &c.settings, nullptr) == QSES_OK;
+        if (!fits) message += std::string(" / ") + qses_last_error();
+        return fits;
+      };
+      bool fits = retry();
+      if (!fits && message.find("may do") != std::string::npos) {  // it was a guess; the next one is none
+        named = named_budget(qses_last_error());
+        fits = retry();
+      }
+      EXPECT_TRUE(fits) << what << ": " << message;
       // What is known by then tells more where the budget is nearly enough.
       EXPECT_LE(named, (budget > smallest / 2 ? 2.0 : 3.0) * static_cast<double>(smallest) + 1e6)
           << what << ": " << message;

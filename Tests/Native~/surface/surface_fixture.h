@@ -104,13 +104,26 @@ inline Atoms lattice(int n, double edge, double r) {
   return atoms;
 }
 
-// The ATOM records of a PDB file.
-inline Atoms read_pdb(const std::string &path) {
+// Random atoms with so much room for each, as sparse as no molecule is from some 60 Å³ on.
+inline Atoms sparse(size_t count, double volume, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> place(0.0, std::cbrt(static_cast<double>(count) * volume));
+  const double radii[] = {1.52, 1.7, 1.8};
+  Atoms atoms;
+  for (size_t k = 0; k < count; ++k) {
+    const double x = place(random), y = place(random), z = place(random);
+    atoms.add(x, y, z, radii[random() % 3]);
+  }
+  return atoms;
+}
+
+// The ATOM records of a PDB file, or those of this name.
+inline Atoms read_pdb(const std::string &path, const std::string &name = "") {
   std::ifstream file(path);
   if (!file) throw std::runtime_error("can't open " + path);
   Atoms atoms;
   for (std::string line; std::getline(file, line);) {
-    if (line.compare(0, 4, "ATOM") != 0) continue;
+    if (line.compare(0, 4, "ATOM") != 0 || (!name.empty() && line.compare(12, 4, name) != 0)) continue;
     const char element = line.at(13);
     atoms.add(std::stod(line.substr(30, 8)), std::stod(line.substr(38, 8)), std::stod(line.substr(46, 8)),
               element == 'O'   ? 1.52
@@ -122,6 +135,7 @@ inline Atoms read_pdb(const std::string &path) {
 }
 
 inline Atoms crambin() { return read_pdb(std::string(QUICKSES_TEST_DATA_DIR) + "/1CRN.pdb"); }
+inline Atoms alpha_carbons() { return read_pdb(std::string(QUICKSES_TEST_DATA_DIR) + "/1CRN.pdb", " CA "); }
 
 inline qses_settings settings(double spacing = 0.5, double probe = 1.4, qses_surface surface = QSES_SURFACE_SES) {
   qses_settings s;

@@ -231,6 +231,22 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void AMoleculeThatWasNeverShownHasAllItsLevels()
+        {
+            _host = TestHost.WithAtom(Vector3.Zero, 1.5f);
+            _host.Settle();
+            _host.SetAtoms(TestHost.Row(Many, 0), TestHost.Radii(Many));
+            _host.Session.Stop();
+            _host.Session.Change(SurfaceChange.None, 0);
+            ContextSlot slot = SurfaceScheduler.PoolOf(SurfaceBackend.Cpu).LendNow(_host.Session, null, out _);
+            _host.Session.Start(slot);
+            slot.Context.Poll(out SurfaceProgress progress);
+            Assert.That(progress.LevelCount, Is.EqualTo(3), "not those finer than what is shown, of other atoms");
+            _host.Settle();
+            Assert.That(_host.Session.CurrentLevel.IsFinest);
+        }
+
+        [Test]
         public void WhatWasDroppedGoesOnLater()
         {
             _host = TestHost.WithRow(Many);

@@ -13,7 +13,7 @@ namespace QuickSes.Tests
     /// </summary>
     internal sealed class TestHost : ISurfaceHost, IDisposable
     {
-        private const double Patience = 60; // s
+        private const double Patience = 150; // s
 
         public readonly SurfaceSession Session;
         public readonly List<SurfaceLevel> Levels = new List<SurfaceLevel>();
@@ -126,9 +126,9 @@ namespace QuickSes.Tests
         }
 
         /// <summary>What is shown is a sphere: the surface of a single atom.</summary>
-        public void AssertShowsAtom(Vector3 position, float radius)
+        /// <param name="tolerance">Vertices lie on the sphere, but none at its poles.</param>
+        public void AssertShowsAtom(Vector3 position, float radius, float tolerance = 0.02f)
         {
-            const float tolerance = 0.02f; // vertices lie on the sphere, but none at its poles
             Assert.That(Session.CurrentLevel.VertexCount, Is.GreaterThan(0));
             AssertSide(_low, position - new Vector3(radius), tolerance);
             AssertSide(_high, position + new Vector3(radius), tolerance);

@@ -585,7 +585,7 @@ static inline void qses_size_estimate_init(qses_size_estimate *estimate) { qses_
  * the features of the atoms are computed, and signs on lattices that are coarse enough to be cheap. All
  * numbers are within 25 % of the truth as a rule, and rarely more than 10 % below. Waits for a running job. The last
  * mesh stays valid. settings may be NULL (defaults). Errors: as of qses_compute; also OUT_OF_MEMORY if the budget does
- * not even suffice for the estimate (the message names one that would do). */
+ * not even suffice for the estimate (the message names one that may do). */
 QSES_API qses_status qses_estimate(qses_context *context, const qses_settings *settings, qses_size_estimate *estimate);
 
 /* Switches the timing of the single stages on (1) or off (0, the default). With CUDA it costs some tens of microseconds

@@ -14,7 +14,10 @@ struct SurfaceSize {
 
 struct WorkFacts {
   uint64_t atoms = 0;
-  uint64_t caps = 0, arcs = 0;                   // of exposed atoms
+  uint64_t caps = 0, arcs = 0;  // of exposed atoms
+  // Of arcs, where creases are split: turns of those whose circle is smaller than the probe, so that its torus would go
+  // through its own axis; and Å of all.
+  double spindle_turns = 0, arc_length = 0;
   uint64_t brick_entries = 0, brick_visits = 0;  // of the table of bricks, 0 if the set is sparse; listed visits
   SurfaceSize size{};
 };

@@ -3,7 +3,7 @@
 // border. What comes out is all that emission needs, and all that it may rely on.
 #pragma once
 
-#include "surface/methods/level_work.h"
+#include "surface/methods/expected_splits.h"
 
 namespace quickses {
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "parallel/atomics.h"
-#include "surface/methods/level_work.h"
+#include "surface/methods/expected_splits.h"
 #include "surface/stages/ranked_set.h"
 
 namespace quickses {

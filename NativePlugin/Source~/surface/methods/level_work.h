@@ -81,29 +81,6 @@ bool splits_creases(const Work &work) {
   return work.settings.creases != 0 && is_exact(work.settings) && work.parameters.spacing <= work.settings.spacing;
 }
 
-// What splits of creases will find of a mesh, before anybody knows: how many arcs there are for a vertex tells how
-// close creases are, in edges. As measured on proteins at spacings from .25 to 2 Å, generously.
-struct ExpectedSplits {
-  double creases;                                                               // for an edge
-  double near_part(int round) const { return 1 - std::exp(-round * creases); }  // of the triangles, from round 1 on
-  double new_part() const { return std::min(1.0, creases); }                    // so many more of all
-  double hard_part() const { return 1 - std::exp(-new_part()); }                // of the vertices, once per side
-};
-template <class Work>
-ExpectedSplits expected_splits(const Work &work) {
-  const double arcs = static_cast<double>(work.facts->arcs),
-               per_edge = std::sqrt(arcs / std::max(1.0, work.facts->size.vertices));
-  // Of probes' creases, fine meshes show the sharp ones only.
-  return {work.parameters.is_of_balls() ? 1.2 * per_edge : 2.3 * per_edge * per_edge * per_edge};
-}
-
-// Room for so many vertices or triangles, and for those that splits of creases add behind them.
-template <class Work>
-size_t with_spare_room(const Work &work, size_t n) {
-  if (!work.will_be_split) return n;
-  return n + static_cast<size_t>(expected_splits(work).new_part() * static_cast<double>(n));
-}
-
 // While a mesh is made it has the normals that later stages read, in memory that is given up with the level's: floats
 // where the layout has packed ones, and those of the second sheet. allocate(n) returns room for n vectors.
 template <class Allocate>

@@ -158,6 +158,8 @@ inline void guess_unknown(const SurfaceParameters &parameters, bool exact, doubl
     const double wide = std::max(1.0, static_cast<double>(parameters.max_radius) / 3.2);
     facts->caps = static_cast<uint64_t>(18 * atoms * std::min(wide * wide, atoms / 18 + 1));
     facts->arcs = static_cast<uint64_t>(usual_arcs(parameters) * atoms * wide);
+    facts->spindle_turns = 0.1 * atoms;
+    facts->arc_length = 2 * static_cast<double>(facts->arcs);
   }
   if (facts->size.bricks == 0) {
     const double pairs = guess_pairs(*facts, parameters, exact, h);
