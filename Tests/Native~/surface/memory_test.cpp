@@ -92,10 +92,10 @@ std::vector<Case> cases() {
                                                 {"64 Å³", sparse(300, 64, 2)},
                                                 {"200 Å³", sparse(200, 200, 3)}};
   for (const auto &[name, atoms] : thin)
-    for (const auto &[spacing, probe] : {std::pair(0.25, 1.4), {0.5, 1.4}, {1.0, 1.4}, {0.5, 0.7}, {0.5, 3.0}}) {
+    for (const auto &[spacing, probe] : {std::pair(0.25, 1.4), {0.5, 1.4}, {0.5, 0.7}, {0.5, 3.0}}) {
       s = settings(spacing, probe);
       s.creases = 1;
-      s.hard_edges = spacing == 0.5 && probe == 1.4;
+      s.hard_edges = probe == 1.4;
       add("creases of " + name + " at " + std::to_string(spacing) + ", probe " + std::to_string(probe), atoms, s);
     }
   s = settings(0.5);
@@ -290,24 +290,23 @@ TEST(Budget, TooSmallIsRefusedWithOneThatWouldDo) {
       const qses_status status = qses_compute(context, &c.settings, nullptr);
       if (budget > smallest / 2 && status == QSES_OK) continue;  // it is only promised that the smallest works
       ASSERT_EQ(status, QSES_OUT_OF_MEMORY) << what;
-      std::string message = qses_last_error();
-      double named = named_budget(message);
-      const auto retry = [&] {
+      // A guess comes nearer with each try, until it is counted.
+      std::string messages;
+      double named = 0;
+      bool fits = false, was_guess = true;
+      for (int tries = 0; tries < 4 && !fits && was_guess; ++tries) {
+        const std::string message = qses_last_error();
+        messages += "\n" + message;
+        named = named_budget(message);
+        was_guess = message.find("may do") != std::string::npos;
         const Context enough(2, static_cast<uint64_t>(named));
         set_atoms(enough, c.atoms);
-        const bool fits = qses_compute(enough, &c.settings, nullptr) == QSES_OK;
-        if (!fits) message += std::string(" / ") + qses_last_error();
-        return fits;
-      };
-      bool fits = retry();
-      if (!fits && message.find("may do") != std::string::npos) {  // it was a guess; the next one is none
-        named = named_budget(qses_last_error());
-        fits = retry();
+        fits = qses_compute(enough, &c.settings, nullptr) == QSES_OK;
       }
-      EXPECT_TRUE(fits) << what << ": " << message;
+      EXPECT_TRUE(fits) << what << ":" << messages << "\n" << qses_last_error();
       // What is known by then tells more where the budget is nearly enough.
       EXPECT_LE(named, (budget > smallest / 2 ? 2.0 : 3.0) * static_cast<double>(smallest) + 1e6)
-          << what << ": " << message;
+          << what << ":" << messages;
       // The context that refused still works on something smaller.
       if (budget < 1000000) continue;
       Atoms atom;
