@@ -129,21 +129,26 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
       levels_.timer.reset();
       facts_ = {};
       facts_.atoms = in.atoms.count;
+      facts_.found = learnt_.found;
       spacing_ = in.settings.spacing;
       is_beside_ = false;
       try {
         attempt(kMemoryPlans[step]);
+        note_splits();
         return;
       } catch (const AnticipatedTooLittle &) {  // the same again: who anticipated too little waits for all counts now
         levels_.forget_frames_of_lanes();       // which may rest on that
       } catch (const MemoryRefused &refused) {
-        const bool had_lanes = levels_.drop_lanes();
+        const bool had_lanes = levels_.drop_lanes(), lacked_room = facts_.found.lacked_room;
+        note_splits();
         if (is_beside_)
           note_loneliness();  // the same again, one level after the other
         else if (had_lanes)
           learnt_.is_settled = false;  // the same again, with what they had
         else if (executor_.has_anticipated())
           note_tightness();  // the same again, without the room for more than there is
+        else if (lacked_room)
+          ;  // the same again, with as much behind the mesh as splits of creases need
         else if (!refused.again())
           step = next_step(in, step);
         if (step < kMemoryPlanCount) continue;
@@ -183,7 +188,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     const SurfaceParameters p = parameters_of(in);
     if (in.atoms.count != learnt_.atoms || p.max_radius != learnt_.reach) levels_.rooms.forget();
     if (in.atoms.count != learnt_.atoms || p.max_radius != learnt_.reach || p.spacing != learnt_.spacing)
-      learnt_ = {in.atoms.count, p.max_radius, p.spacing, 0, 0, false, false, false, false, 0};
+      learnt_ = {in.atoms.count, p.max_radius, p.spacing, 0, 0, false, false, false, false, 0, {}};
     const bool had_too_little = learnt_.step > 0 || learnt_.is_tight || learnt_.is_lone;
     if (had_too_little && executor_.arena().share() > learnt_.share / 4 * 5) {
       learnt_.step = 0;
@@ -196,6 +201,11 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     executor_.arena().release();
     learnt_.is_tight = true;
     learnt_.share = executor_.arena().share();
+  }
+
+  void note_splits() {
+    learnt_.found = facts_.found;
+    learnt_.found.lacked_room = false;
   }
 
   void note_loneliness() {
@@ -252,7 +262,8 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     ComponentFinder components(1);
     NoTimer timer;
     Progress progress;
-    WorkFacts facts;
+    WorkFacts facts;  // the work finds out the others
+    facts.found = facts_.found;
     qses_report report;
     qses_report_init(&report);
     const TableView no_table{};
@@ -297,7 +308,9 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   // No plan was left. With a budget the user is told which one would do, as far as that is known by now.
   void name_smallest_budget(const FrameInput &in) {
     if (budget_ == 0) return;
-    const bool is_counted = knows_size() && spacing_ == in.settings.spacing;
+    const FoundSplits &found = facts_.found;
+    const bool knows_splits = !in.settings.creases || (found.near > 0 && (!in.settings.hard_edges || found.crest > 0));
+    const bool is_counted = knows_size() && spacing_ == in.settings.spacing && knows_splits;
     guess_facts(in);
     const uint64_t least = least_bytes(in) / 10 * (is_counted ? 10 : 11) + memory_.needed_outside(executor_);
     throw Error(QSES_OUT_OF_MEMORY, "the memory budget of " + describe_bytes(budget_) +
@@ -316,7 +329,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   bool is_beside_ = false;    // whether those of this frame are
   // Of the last computation of so many atoms with this largest inflated radius and finest spacing: where the ladder
   // ended, with how much memory, whether there was too little for what frames anticipate, or for levels beside each
-  // other, whether that did, and did again, so that memory is held as it will be.
+  // other, whether that did, and did again, so that memory is held as it will be; and what splits of creases found.
   struct {
     size_t atoms;
     float reach, spacing;
@@ -324,6 +337,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     uint64_t share;
     bool is_tight, is_lone, is_proven, is_settled;
     double milliseconds;
+    FoundSplits found;
   } learnt_{};
   float spacing_ = 0;  // of the level that is being made
 };

@@ -278,6 +278,21 @@ double named_budget(const std::string &message) {
   return value * (unit == 'K' ? 1024.0 : unit == 'M' ? 1048576.0 : 1073741824.0);
 }
 
+// After a refusal: does what it names do? A guess ("may") comes nearer with each try, until it is counted ("would").
+bool follow_refusals(const Case &c, double *named, std::string *messages) {
+  bool fits = false, was_guess = true;
+  for (int tries = 0; tries < 4 && !fits && was_guess; ++tries) {
+    const std::string message = qses_last_error();
+    *messages += "\n" + message;
+    *named = named_budget(message);
+    was_guess = message.find("may do") != std::string::npos;
+    const Context enough(2, static_cast<uint64_t>(*named));
+    set_atoms(enough, c.atoms);
+    fits = qses_compute(enough, &c.settings, nullptr) == QSES_OK;
+  }
+  return fits;
+}
+
 TEST(Budget, TooSmallIsRefusedWithOneThatWouldDo) {
   const Context unbounded;
   for (const Case &c : cases()) {
@@ -290,19 +305,9 @@ TEST(Budget, TooSmallIsRefusedWithOneThatWouldDo) {
       const qses_status status = qses_compute(context, &c.settings, nullptr);
       if (budget > smallest / 2 && status == QSES_OK) continue;  // it is only promised that the smallest works
       ASSERT_EQ(status, QSES_OUT_OF_MEMORY) << what;
-      // A guess comes nearer with each try, until it is counted.
       std::string messages;
       double named = 0;
-      bool fits = false, was_guess = true;
-      for (int tries = 0; tries < 4 && !fits && was_guess; ++tries) {
-        const std::string message = qses_last_error();
-        messages += "\n" + message;
-        named = named_budget(message);
-        was_guess = message.find("may do") != std::string::npos;
-        const Context enough(2, static_cast<uint64_t>(named));
-        set_atoms(enough, c.atoms);
-        fits = qses_compute(enough, &c.settings, nullptr) == QSES_OK;
-      }
+      const bool fits = follow_refusals(c, &named, &messages);
       EXPECT_TRUE(fits) << what << ":" << messages << "\n" << qses_last_error();
       // What is known by then tells more where the budget is nearly enough.
       EXPECT_LE(named, (budget > smallest / 2 ? 2.0 : 3.0) * static_cast<double>(smallest) + 1e6)
@@ -315,6 +320,38 @@ TEST(Budget, TooSmallIsRefusedWithOneThatWouldDo) {
       EXPECT_EQ(qses_compute(context, nullptr, nullptr), QSES_OK) << what << ": " << qses_last_error();
     }
   }
+}
+
+// How much creases add to flat, regular or isolated atoms is a guess, until such a surface was made.
+TEST(Budget, WhatCreasesAddIsKnownOnceItWasFound) {
+  Atoms sheet, ions;
+  for (int k = 0; k < 120; ++k) sheet.add(3.4 * (k % 12), 4.8 * (k / 12), 0, 1.7);
+  for (int k = 0; k < 27; ++k) ions.add(9.0 * (k % 3), 9.0 * (k / 3 % 3), 9.0 * (k / 9), k % 2 ? 1.02 : 1.81);
+  for (const auto &[name, atoms] :
+       {std::pair<std::string, Atoms>("sheet", sheet), {"ions", ions}, {"lattice", lattice(6, 4.69, 1.7)}})
+    for (const double spacing : {0.5, 1.0}) {
+      Case c{name + " at " + std::to_string(spacing), atoms, settings(spacing)};
+      c.settings.creases = c.settings.hard_edges = 1;
+      const Context unbounded(2);
+      set_atoms(unbounded, atoms);
+      const qses_mesh expected = compute_view(unbounded, c.settings);
+      const uint64_t smallest = estimate(unbounded, c.settings).smallest_budget;
+      const Context bounded(2, smallest);
+      set_atoms(bounded, atoms);
+      qses_mesh mesh;
+      qses_mesh_init(&mesh);
+      ASSERT_EQ(qses_compute(bounded, &c.settings, &mesh), QSES_OK) << c.name << ": " << qses_last_error();
+      expect_same_bytes(mesh, expected, c.name);
+      EXPECT_LE(report_of(bounded).work_bytes_peak, smallest) << c.name;
+      for (const uint64_t budget : {uint64_t(1), smallest / 2}) {
+        const Context context(2, budget);
+        set_atoms(context, atoms);
+        ASSERT_EQ(qses_compute(context, &c.settings, nullptr), QSES_OUT_OF_MEMORY) << c.name;
+        std::string messages;
+        double named = 0;
+        EXPECT_TRUE(follow_refusals(c, &named, &messages)) << c.name << ":" << messages << "\n" << qses_last_error();
+      }
+    }
 }
 
 TEST(Budget, LaddersAndFramesKeepIt) {

@@ -583,9 +583,10 @@ static inline void qses_size_estimate_init(qses_size_estimate *estimate) { qses_
 
 /* Predicts the size of the mesh of settings.spacing (not of coarser levels), and the memory for it, without making it:
  * the features of the atoms are computed, and signs on lattices that are coarse enough to be cheap. All
- * numbers are within 25 % of the truth as a rule, and rarely more than 10 % below. Waits for a running job. The last
- * mesh stays valid. settings may be NULL (defaults). Errors: as of qses_compute; also OUT_OF_MEMORY if the budget does
- * not even suffice for the estimate (the message names one that may do). */
+ * numbers are within 25 % of the truth as a rule, and rarely more than 10 % below. What creases add to flat, regular or
+ * isolated atoms is a guess, often too low by half, until the context has made such a surface. Waits for a running
+ * job. The last mesh stays valid. settings may be NULL (defaults). Errors: as of qses_compute; also OUT_OF_MEMORY if
+ * the budget does not even suffice for the estimate (the message names one that may do). */
 QSES_API qses_status qses_estimate(qses_context *context, const qses_settings *settings, qses_size_estimate *estimate);
 
 /* Switches the timing of the single stages on (1) or off (0, the default). With CUDA it costs some tens of microseconds

@@ -34,8 +34,16 @@ template <class Sheets, class Work>
 void make_room(Work &work, size_t vertices, size_t triangles, GrowingMesh *mesh) {
   auto &executor = work.executor;
   const size_t v = mesh->whole.vertices, t = mesh->whole.triangles;
-  if (!std::decay_t<decltype(executor)>::kCounts) check_mesh_size({v + vertices, t + triangles});
+  FoundSplits &found = work.facts->found;
+  if (!std::decay_t<decltype(executor)>::kCounts) {
+    check_mesh_size({v + vertices, t + triangles});
+    const SurfaceSize &before = work.facts->size;
+    const double v_part = static_cast<double>(v + vertices) / before.vertices,
+                 t_part = static_cast<double>(t + triangles) / before.triangles;
+    found.added = std::max(v_part, t_part) - 1;
+  }
   if (v + vertices <= mesh->vertex_room && t + triangles <= mesh->triangle_room) return;
+  found.lacked_room = true;
   const size_t vertex_room = v + vertices + v / 8, triangle_room = t + triangles + t / 8;
   MeshMemoryView larger = work.memory.allocate_mesh(executor, vertex_room, triangle_room, mesh->whole.shape,
                                                     MeshPurpose::kWork, work.plan.mesh_in_pieces);
@@ -159,7 +167,10 @@ GrowingMesh split_at(Work &work, const Sheets &sheets, const MeshMemoryView &pla
   executor.for_each(triangles, MarkNearTriangles<Sheets>{mesh.view, sheets, false});
   const Span<uint32_t> near = mesh_room<uint32_t>(work, mesh, triangles);
   size_t listed = executor.compact(triangles, IsMarked{mesh.view.near_marks}, near);
-  if (std::decay_t<decltype(executor)>::kCounts) listed = expected_near(work, 1, triangles);
+  if (std::decay_t<decltype(executor)>::kCounts)
+    listed = expected_near(work, 1, triangles);
+  else
+    work.facts->found.near = exponent_of_part(static_cast<double>(listed) / static_cast<double>(triangles));
   NearTriangles list{near.data, static_cast<uint32_t>(listed), 0};
   split_round(work, sheets, SplitRound{true, false}, &mesh, &list, &listed, false);
   split_round(work, sheets, SplitRound{false, true}, &mesh, &list, &listed, true);

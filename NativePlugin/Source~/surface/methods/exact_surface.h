@@ -43,6 +43,7 @@ SolventFeatures list_features(Work &work) {
   Backend<Executor>::find_solvent_features(work.executor, work.atoms, work.parameters, work.plan, work.rooms, &found);
   work.facts->caps = found.caps.size;
   work.facts->arcs = found.arcs.size;
+  work.facts->knows_arcs = true;
   return found;
 }
 

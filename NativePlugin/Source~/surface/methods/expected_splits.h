@@ -41,19 +41,23 @@ void sum_arcs(Work &work) {
 }
 
 // Numbers for a vertex of the mesh before splits. Measured with proteins, their alpha carbons alone, and random atoms
-// from 20 to 500 Å³ each, at spacings from .25 to 2 Å, with probes from .3 to 6 Å; generously.
+// from 20 to 500 Å³ each, at spacings from .25 to 2 Å, with probes from .3 to 6 Å; generously. Of flat or regular
+// molecules through which probes meet from both sides it is a guess.
 struct ExpectedSplits {
   double added;  // vertices, and as large a part of the triangles, once some are merged again
-  double near;   // triangles beside creases, half of them
+  double near;   // triangles beside creases, of which a vertex has two
   double crest;  // vertices on creases
 
-  double new_part() const { return std::min(1.3, added); }                   // of vertices and triangles
-  double room_part() const { return 1.2 * new_part(); }                      // as long as nothing is merged
+  double new_part() const { return added; }                                  // of vertices and triangles
+  double room_part() const { return 1.2 * added; }                           // as long as nothing is merged
   double near_part(int round) const { return 1 - std::exp(-round * near); }  // of the triangles, from round 1 on
   double hard_part() const { return 1 - std::exp(-crest); }                  // of the vertices, once per side
 };
+inline double exponent_of_part(double part) { return -std::log1p(-std::min(part, 0.999)); }
+
+// From the arcs alone.
 template <class Work>
-ExpectedSplits expected_splits(const Work &work) {
+ExpectedSplits predict_splits(const Work &work) {
   const WorkFacts &facts = *work.facts;
   const SurfaceParameters &parameters = work.parameters;
   const double vertices = std::max(1.0, facts.size.vertices);
@@ -62,15 +66,27 @@ ExpectedSplits expected_splits(const Work &work) {
     return {std::min(1.0, creases), creases, std::min(1.0, creases)};
   }
   const double h = static_cast<double>(parameters.spacing), probe = static_cast<double>(parameters.probe),
-               ball = static_cast<double>(parameters.max_radius) - probe;
+               ball = std::max(h / 1.5, static_cast<double>(parameters.max_radius) - probe);
   // Sharp at any spacing: a torus that would go through its own axis ends there in two points, each with as many edges
   // around it whatever their length; and creases of probes, along which edges are counted, begin at many of them.
   const double tips = facts.spindle_turns / vertices, along = 4 * probe / h;
-  // Sharp for a coarse mesh: grooves along arcs, as narrow as the probe, and the balls of atoms between them.
-  const double grooves = facts.arc_length / (h * vertices);
-  const double coarse = 1.15 * grooves * (1 - std::exp(-0.6 * (h / probe) * (h / probe))) +
-                        std::pow(h / ball, 4) * std::max(0.0, 1 - 1.2 * grooves) * std::min(3.0, 1.4 / probe);
-  return {1 - std::exp(-33 * tips) + coarse, (33 + along) * tips + coarse, (20 + along) * tips + 0.7 * coarse};
+  // Sharp for a coarse mesh: grooves along arcs, as narrow as the probe, and balls, as far as no torus covers them.
+  const double arcs = facts.arc_length / (h * vertices);
+  const double grooves = 1.15 * arcs * (1 - std::exp(-0.6 * (h / probe) * (h / probe)));
+  const double balls = std::max(0.0, 2.7 * (h / ball - 0.57)) * std::max(0.0, 1 - 1.7 * arcs * probe / h);
+  return {std::max(balls, std::min(1.3, 1 - std::exp(-33 * tips) + grooves + balls)),
+          (33 + along) * tips + grooves + balls, (20 + along) * tips + 0.7 * grooves + std::log1p(balls)};
+}
+
+// With what is known of a mesh like it.
+template <class Work>
+ExpectedSplits expected_splits(const Work &work) {
+  ExpectedSplits expected = predict_splits(work);
+  const FoundSplits &found = work.facts->found;
+  expected.added = std::max(expected.added, found.added);
+  expected.near = std::max(expected.near, found.near);
+  expected.crest = std::max(expected.crest, found.crest);
+  return expected;
 }
 
 // Room for so many vertices or triangles, and for those that splits of creases add behind them.

@@ -105,6 +105,8 @@ MeshMemoryView harden_edges(Work &work, const MeshMemoryView &smooth) {
     repeated = static_cast<size_t>(expected_hard_part(work) * static_cast<double>(n));
   else
     check_mesh_size({n + repeated, smooth.triangles});
+  if (!std::decay_t<decltype(executor)>::kCounts && splits_creases(work) && n > 0)
+    work.facts->found.crest = exponent_of_part(static_cast<double>(repeated) / static_cast<double>(n));
   MeshShape shape = work.shape;
   shape.repeated = repeated;
   MeshMemoryView hard = work.memory.allocate_mesh(executor, n + repeated, smooth.triangles, shape,

@@ -153,12 +153,14 @@ uint64_t count_kept_caps(const Work &work) {
 inline void guess_unknown(const SurfaceParameters &parameters, bool exact, double most_bricks, WorkFacts *facts) {
   const double atoms = static_cast<double>(facts->atoms), h = static_cast<double>(parameters.spacing),
                area = usual_area(parameters) * atoms;
-  if (facts->arcs == 0) {
+  if (!facts->knows_arcs) {
     // Larger spheres have more neighbours.
     const double wide = std::max(1.0, static_cast<double>(parameters.max_radius) / 3.2);
     facts->caps = static_cast<uint64_t>(18 * atoms * std::min(wide * wide, atoms / 18 + 1));
     facts->arcs = static_cast<uint64_t>(usual_arcs(parameters) * atoms * wide);
-    facts->spindle_turns = 0.1 * atoms;
+  }
+  if (facts->arc_length == 0) {
+    facts->spindle_turns = 0.025 * static_cast<double>(facts->arcs);
     facts->arc_length = 2 * static_cast<double>(facts->arcs);
   }
   if (facts->size.bricks == 0) {
