@@ -8,8 +8,6 @@
 
 #if defined(QSES_CPU_SYSTEM_OWN)
 #include "parallel/helper_threads.h"
-
-#include <memory>
 #else
 #include "parallel/lasting_tbb.h"
 #include "parallel/startable_threads.h"
@@ -24,6 +22,7 @@
 #include <atomic>
 #include <cstddef>
 #include <exception>
+#include <memory>
 #include <thread>
 
 namespace quickses {
@@ -38,6 +37,11 @@ class CpuThreads {
     if (count_ > 1) there_are_ = threads_of_tbb();
 #endif
   }
+#if !defined(QSES_CPU_SYSTEM_OWN)
+  ~CpuThreads() {
+    if (arena_ && !is_tbb_of_this_process()) arena_.release();
+  }
+#endif
 
   unsigned count() const { return count_; }
 
@@ -77,6 +81,9 @@ class CpuThreads {
   // How many there are to work. The first call finds out; where that itself is refused, the caller is alone this time.
   unsigned usable() {
     if (count_ == 1) return 1;
+#if !defined(QSES_CPU_SYSTEM_OWN)
+    if (!is_tbb_of_this_process()) return 1;
+#endif
     try {
       if (usable_ == 0) find_usable();
     } catch (const std::exception &) {
@@ -93,7 +100,9 @@ class CpuThreads {
     usable_ = 1 + static_cast<unsigned>(helpers_->count());
 #else
     usable_ = 1 + count_startable_threads(std::min(count_, there_are_) - 1);
-    if (usable_ > 1) arena_.initialize(static_cast<int>(usable_));
+    if (usable_ == 1) return;
+    arena_ = std::make_unique<tbb::task_arena>(static_cast<int>(usable_));
+    arena_->initialize();
 #endif
   }
 
@@ -107,7 +116,7 @@ class CpuThreads {
 #else
     const thrust::counting_iterator<size_t> first(0), last(workers);
     try {
-      arena_.execute([&] { thrust::for_each(thrust::tbb::par, first, last, work); });
+      arena_->execute([&] { thrust::for_each(thrust::tbb::par, first, last, work); });
     } catch (const std::exception &) {
       usable_ = 1;
       return false;
@@ -123,7 +132,7 @@ class CpuThreads {
   std::unique_ptr<HelperThreads> helpers_;
 #else
   unsigned there_are_ = 1;  // of TBB's
-  tbb::task_arena arena_;
+  std::unique_ptr<tbb::task_arena> arena_;
 #endif
 };
 

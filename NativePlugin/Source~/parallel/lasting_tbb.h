@@ -11,4 +11,8 @@ namespace quickses {
 // a second attempt would wait for the first for ever. Any thread.
 unsigned threads_of_tbb() noexcept;
 
+// Whether TBB was begun by this process. Not in a forked child: what TBB's threads held as it forked (they look for
+// work for a while after there was some) is held there for ever, so that it must not even be given up.
+bool is_tbb_of_this_process() noexcept;
+
 }  // namespace quickses

@@ -171,7 +171,9 @@ TEST(Jobs, FramesFasterThanLevelsNeverStarveThePicture) {
   }
   wait_for_all(context);
   qses_mesh_init(&m);
-  if (qses_collect(context, &m) != QSES_NOTHING_NEW) EXPECT_GT(std::pair(m.tag, m.level), last);
+  if (qses_collect(context, &m) != QSES_NOTHING_NEW) {
+    EXPECT_GT(std::pair(m.tag, m.level), last);
+  }
   expect_ok(qses_context_mesh(context, &m));
   EXPECT_EQ(m.tag, frame);
   EXPECT_EQ(m.level + 1, m.level_count);

@@ -72,8 +72,9 @@
  * kernels. A stack of 64 KiB suffices for every call on the CPU. Where the machine refuses threads, a context makes do
  * with those there are, down to the calling thread. A thread that is in a call must not be ended from outside
  * (pthread_cancel, TerminateThread): qses_cancel is there for that.
- *   After a fork while nothing of the library ran, the child may make contexts on the CPU and compute in them; contexts
- * that had jobs (qses_begin) before must be neither used nor destroyed there. Where CUDA was used, no child can use it.
+ *   After a fork while nothing of the library ran, the child may make contexts on the CPU and compute in them, with its
+ * calling thread alone if TBB's were used before; contexts that had jobs (qses_begin) before must be neither used nor
+ * destroyed there. Where CUDA was used, no child can use it.
  */
 #ifndef QUICKSES_QUICKSES_H
 #define QUICKSES_QUICKSES_H
