@@ -113,7 +113,7 @@ namespace QuickSes.Tests
             {
                 settings.Tag = frame;
                 context.Begin(settings);
-                if (context.TryCollect(out SurfaceMeshView early))
+                if (frame < 50 && context.TryCollect(out SurfaceMeshView early)) // the last one is collected below
                 {
                     Assert.That(early.Tag, Is.InRange(lastFrame, frame), "frames never run backwards");
                     lastFrame = early.Tag;

@@ -16,6 +16,7 @@ namespace QuickSes.Playback
             var surface = scene.AddComponent<MolecularSurface>();
             var player = scene.AddComponent<TrajectoryPlayer>();
             surface.FrameBudget = 1; // the coarsest level: what is asked about are frames, not fineness
+            surface.RestDelay = float.PositiveInfinity; // frames that are read late are no rest, by a clock that runs ahead
             player.StructureSource.SetFile(file);
             player.FramesPerSecond = 60;
             player.Mode = PlaybackMode.PingPong;
