@@ -81,7 +81,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
         enter_level(work, settings.spacing);
         if (is_exact(settings)) facts_.caps = count_kept_caps(work);
         facts_.size = estimate_size(work);
-        if (splits_creases(work)) growth += expected_splits(work).new_part();
+        if (splits_creases(work)) growth += expected_splits(work).added;
         if (work.hard_edges) hard_part = expected_hard_part(work);
       }
       executor_.arena().reset();

@@ -106,6 +106,7 @@ namespace QuickSes.Tests
             _hosts[1].Session.Start(slot);
             _hosts[1].Settle();
             Assert.That(_hosts[1].Levels, Is.Not.Empty);
+            _hosts[1].AssertShowsAtom(Place(1, 0), Radius(1));
         }
 
         [Test]

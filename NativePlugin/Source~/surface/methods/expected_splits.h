@@ -48,7 +48,6 @@ struct ExpectedSplits {
   double near;   // triangles beside creases, of which a vertex has two
   double crest;  // vertices on creases
 
-  double new_part() const { return added; }                                  // of vertices and triangles
   double room_part() const { return 1.2 * added; }                           // as long as nothing is merged
   double near_part(int round) const { return 1 - std::exp(-round * near); }  // of the triangles, from round 1 on
   double hard_part() const { return 1 - std::exp(-crest); }                  // of the vertices, once per side
