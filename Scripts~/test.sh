@@ -112,11 +112,15 @@ if [ "$with_windows" = yes ]; then
   if [ "${presets[-1]}" = cuda ]; then windows=windows-cuda options=("-DQUICKSES_CUDA_ARCHITECTURES=$architecture"); fi
   echo "==== $windows: configure"
   cmake --preset "$windows" "${options[@]}"
+  # What fails gets one more chance with Wine started anew, tests alone: it may be Wine that failed.
   echo "==== $windows: build"
-  cmake --build --preset "$windows" --parallel "$(nproc)"
+  if ! cmake --build --preset "$windows" --parallel "$(nproc)"; then
+    echo "==== $windows: build once more"
+    start_wine
+    cmake --build --preset "$windows"
+  fi
   echo "==== $windows: test"
-  # Now and then Wine fails to start a program at all. What fails three times gets one more chance with Wine started anew.
-  if ! ctest --preset "$windows" --parallel "$(nproc)" --repeat until-pass:3; then
+  if ! ctest --preset "$windows" --parallel "$(nproc)"; then
     echo "==== $windows: test what failed once more"
     start_wine
     ctest --preset "$windows" --rerun-failed
