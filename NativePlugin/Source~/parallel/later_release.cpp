@@ -63,11 +63,9 @@ class LaterReleases {
 
 LaterReleases &later_releases() {
   static LaterReleases &all = *new LaterReleases;  // never destroyed: the thread may be late
-#if !defined(_WIN32)
-  // Whatever the driver registers was registered before. (Windows ends all threads before anything else.)
+  // Whatever the driver registers was registered before.
   static const int registered = std::atexit([] { releasing.end(); });
   (void)registered;
-#endif
   return all;
 }
 

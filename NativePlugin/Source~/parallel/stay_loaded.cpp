@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "parallel/stay_loaded.h"
 
+#include "parallel/work_before_exit.h"
+
+#include <cstdlib>
+
 #if defined(_WIN32)
 #ifndef NOMINMAX
 #define NOMINMAX
@@ -15,23 +19,27 @@ namespace {
 
 char in_this_library;
 
-bool pin() {
+// Does nothing in a program, which nobody unloads.
+void pin() noexcept {
 #if defined(_WIN32)
   HMODULE library = nullptr;
-  return GetModuleHandleExW(GET_MODULE_HANDLE_EX_FLAG_PIN | GET_MODULE_HANDLE_EX_FLAG_FROM_ADDRESS,
-                            reinterpret_cast<LPCWSTR>(&in_this_library), &library) != 0;
+  GetModuleHandleExW(GET_MODULE_HANDLE_EX_FLAG_PIN | GET_MODULE_HANDLE_EX_FLAG_FROM_ADDRESS,
+                     reinterpret_cast<LPCWSTR>(&in_this_library), &library);
 #else
   Dl_info library{};
-  if (dladdr(&in_this_library, &library) == 0 || !library.dli_fname) return false;
-  return dlopen(library.dli_fname, RTLD_NOW | RTLD_NOLOAD | RTLD_NODELETE) != nullptr;
+  if (dladdr(&in_this_library, &library) != 0 && library.dli_fname)
+    dlopen(library.dli_fname, RTLD_NOW | RTLD_NOLOAD | RTLD_NODELETE);
 #endif
 }
+
+WorkBeforeExit pinning;
+const int registered = std::atexit([] { pinning.end(); });
 
 }  // namespace
 
 void stay_loaded() {
-  static const bool is_pinned = pin();
-  (void)is_pinned;  // false in a program, which nobody unloads
+  static const bool was_pinned = (pinning.run(pin), true);
+  (void)was_pinned;
 }
 
 }  // namespace quickses

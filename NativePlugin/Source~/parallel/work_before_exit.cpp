@@ -10,7 +10,9 @@ namespace quickses {
 // so one of them always sees the other.
 void WorkBeforeExit::end() noexcept {
   is_over_ = true;
+#if !defined(_WIN32)  // which ends all other threads first
   while (begun_in_ == this_process()) std::this_thread::sleep_for(std::chrono::microseconds(50));
+#endif
 }
 
 }  // namespace quickses

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a thread must not be in the midst of as the process ends, since it needs what other libraries give up then.
+// What a thread must not be in the midst of as the process ends: what needs what other libraries give up then; and what
+// loads libraries, since a process of glibc 2.36 that ended meanwhile was seen to do so with 127 (dl-sort-maps.c).
 #pragma once
 
 #include "parallel/this_process.h"
