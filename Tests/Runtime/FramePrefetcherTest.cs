@@ -318,8 +318,15 @@ namespace QuickSes.Tests
             var idle = new CountingReader(10);
             var third = new FramePrefetcher(idle, 5);
             WaitUntilOpen(third);
-            using (new Timer(_ => { opening.Gate.Set(); reading.Gate.Set(); }, null, 50, Timeout.Infinite))
-                BackgroundThread.SendAllAway();
+            var opener = new Thread(() =>
+            {
+                Thread.Sleep(50);
+                opening.Gate.Set();
+                reading.Gate.Set();
+            });
+            opener.Start();
+            BackgroundThread.SendAllAway();
+            opener.Join();
             Assert.That(first.HasLeft && second.HasLeft && third.HasLeft, Is.True);
             Assert.That(opening.IsDisposed && reading.IsDisposed && idle.IsDisposed, Is.True);
             AssertLeaves(second, reading, 0);

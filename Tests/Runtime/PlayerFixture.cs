@@ -58,7 +58,7 @@ namespace QuickSes.Tests
             Stopwatch waited = Stopwatch.StartNew();
             while (!condition())
             {
-                if (waited.Elapsed.TotalSeconds > 20)
+                if (waited.Elapsed.TotalSeconds > SurfaceRig.Patience)
                     Assert.Fail("waited in vain until {0}; {1}", what, Player.LastError);
                 Player.Tick(0);
                 Thread.Yield();

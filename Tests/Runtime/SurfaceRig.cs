@@ -12,7 +12,7 @@ namespace QuickSes.Tests
     /// <summary>A surface in the scene, and what it has told.</summary>
     internal sealed class SurfaceRig : IDisposable
     {
-        private const double Patience = 150; // s
+        public const double Patience = 150; // s
 
         public readonly GameObject GameObject;
         public readonly MolecularSurface Surface;

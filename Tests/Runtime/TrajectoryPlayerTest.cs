@@ -331,12 +331,8 @@ namespace QuickSes.Tests
             Player.FrameShown += _ => Object.DestroyImmediate(_playing.GameObject);
             Player.Play();
             TrajectoryPlayer player = Player;
-            for (int tick = 0; tick < 2000 && player != null; ++tick)
-            {
-                player.Tick(0.1f);
-                System.Threading.Thread.Sleep(1);
-            }
-            Assert.That(player == null, Is.True);
+            player.Tick(0.1f);
+            _playing.TickUntil(() => player == null, "it is gone");
             Assert.That(_playing.Finishes, Is.EqualTo(0)); // of something that is gone
         }
 
@@ -384,12 +380,8 @@ namespace QuickSes.Tests
             Player.FramesPerSecond = 1000;
             Assert.That(Player.Load(), Is.True);
             Player.Play();
-            for (int i = 0; i < 2000 && (_playing.Loops == 0 || _playing.Surface.Mesh.vertexCount == 0); ++i)
-                yield return null;
-            if (Application.isPlaying)
-                Assert.That(_playing.Loops, Is.GreaterThan(0));
-            Assert.That(_playing.Shown, Is.Not.Empty);
-            Assert.That(_playing.Surface.Mesh.vertexCount, Is.GreaterThan(0));
+            yield return SurfaceRig.Until(() => (_playing.Loops > 0 || !Application.isPlaying) &&
+                _playing.Shown.Count > 0 && _playing.Surface.Mesh.vertexCount > 0);
             Assert.That(_playing.Failures, Is.Empty);
         }
     }

@@ -167,6 +167,7 @@ namespace QuickSes
             _slots.Clear();
             Clear(_urgent);
             Clear(_refining);
+            _urgentInARow = 0;
         }
 
         /// <summary>Waits until what was taken back is freed.</summary>
@@ -247,9 +248,6 @@ namespace QuickSes
         {
             isHopeless = false;
             error = default;
-            ContextSlot idle = FindIdle(session);
-            if (idle != null && idle.SentBy == session.Atoms)
-                return idle;
             int usable = 0;
             bool isOneMade = false;
             ContextSlot failed = null;
@@ -259,6 +257,9 @@ namespace QuickSes
                 isOneMade |= !slot.IsReady;
                 failed = slot.HasFailed ? slot : failed;
             }
+            ContextSlot idle = FindIdle(session); // after that: one that gets ready meanwhile is found
+            if (idle != null && idle.SentBy == session.Atoms)
+                return idle;
             if (failed != null)
             {
                 isHopeless = usable == 0; // else the others go on with what there is
