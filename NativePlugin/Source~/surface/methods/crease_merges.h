@@ -20,7 +20,7 @@ KeptParts merge_at_creases(Work &work, const GrowingMesh &mesh, size_t *merged) 
   const auto room = [&](auto kind, size_t n) { return mesh_room<decltype(kind)>(work, mesh, n); };
   const KeptParts kept{allocate_full_set(executor, vertices), allocate_full_set(executor, triangles)};
   const Span<uint32_t> poor = room(uint32_t{}, triangles), slots = room(uint32_t{}, vertices),
-                       around_counts = room(uint32_t{}, 2 * listed);
+                       around = room(uint32_t{}, 4 * listed);  // counts, then rounds
   const Span<uint64_t> poor_count = room(uint64_t{}, 1), claims = room(uint64_t{}, triangles);
   const EdgeMerges merges{mesh.view,
                           work.lattice,
@@ -28,8 +28,9 @@ KeptParts merge_at_creases(Work &work, const GrowingMesh &mesh, size_t *merged) 
                           poor_count.data,
                           static_cast<uint32_t>(listed),
                           slots.data,
-                          around_counts.data,
+                          around.data,
                           room(uint32_t{}, 2 * listed * kMostAround).data,
+                          around.data + 2 * listed,
                           claims.data,
                           room(uint64_t{}, listed).data,
                           room(uint32_t{}, listed).data,
@@ -38,15 +39,19 @@ KeptParts merge_at_creases(Work &work, const GrowingMesh &mesh, size_t *merged) 
   executor.for_each(triangles, MarkPoorTriangles{merges});
   executor.compact(triangles, IsMarked{mesh.view.near_marks}, poor, poor_count.data);
   executor.fill(slots, 0xff);
-  executor.fill(around_counts, 0);
+  executor.fill(around, 0);
   executor.fill(claims, 0xff);
   executor.for_each(listed, ChooseSlots{merges});
   executor.for_each(triangles, CollectAround{merges});
+  // Most of those that there is room for are none: few teams take turns, since each costs time before it does anything.
+  constexpr size_t kTeams = 512, kMostTurns = 64;
+  const size_t groups = (listed + MergedEdges::kCount - 1) / MergedEdges::kCount;
+  const size_t teams = std::min(groups, std::max(kTeams, groups / kMostTurns));
   for (int round = 0; round < kMergeRounds; ++round) {
-    const size_t groups = (listed + MergedEdges::kCount - 1) / MergedEdges::kCount;
-    executor.template for_each_brick<MergedEdges>(groups, ProposeMerges{merges, round}, 8, kMergeSteps);
+    executor.template for_each_brick<MergedEdges>(teams, ProposeMerges{merges, round, teams}, 8,
+                                                  kMergeSteps * ((groups + teams - 1) / teams));
     executor.for_each(listed, ChooseMerges{merges});
-    executor.for_each(listed, MergeEdges{merges});
+    executor.for_each(listed, MergeEdges{merges, round});
   }
   count_before(executor, kept.triangles, triangles);
   const uint32_t vertices_kept = rank_set(executor, kept.vertices, vertices);

@@ -53,11 +53,13 @@ struct EdgeMerges {
   uint32_t *slots;          // [vertex]: of the ends of such edges, of which each triangle has two; else kNoNumber
   uint32_t *around_counts;  // [slot]: triangles around the end; more than kMostAround: they are too many to be known
   uint32_t *around;         // kMostAround of each slot, in any order; some may be gone
+  uint32_t *changed;        // [slot]: the last round that changed a triangle around the end, from 1 on; 0: none did
   uint64_t *claims;         // [triangle]: the best merge that concerns it
   uint64_t *keys;           // [poor]: of its merge, in the order from the best to the worst,
-  uint32_t *leaving;        // the end that goes, or kNoNumber: it wants no merge,
+  uint32_t *leaving;        // the end that goes; kNoNumber: it wants no merge; kLater: another one was better,
   uint32_t *staying;        // and the other one
   KeptParts kept;
+  static constexpr uint32_t kLater = kNoNumber - 1;
 
   QSES_FN uint32_t listed() const { return *poor_count < room ? static_cast<uint32_t>(*poor_count) : room; }
   QSES_FN bool is_gone(const uint32_t *t) const { return t[0] == kNoNumber; }
@@ -85,6 +87,16 @@ struct EdgeMerges {
       if (length2 < least2) least2 = length2, shortest = k;
     }
     return shortest;
+  }
+
+  // Does that round find what the one before found, which was that there is nothing to merge?
+  QSES_FN bool is_settled(size_t i, int round) const {
+    if (round == 0 || leaving[i] != kNoNumber) return false;
+    const uint32_t *const t = mesh.triangle(poor[i]);
+    if (is_gone(t)) return true;
+    for (int k = 0; k < 3; ++k)
+      if (slots[t[k]] != kNoNumber && changed[slots[t[k]]] == static_cast<uint32_t>(round)) return false;
+    return true;
   }
 
   QSES_FN bool is_known(uint32_t v) const { return slots[v] != kNoNumber && around_counts[slots[v]] <= kMostAround; }
@@ -153,14 +165,16 @@ struct MergedEdge {
   bool may_go[2];      // not off a crease
   uint32_t counts[2];  // around the ends; 0 where no merge can be
   uint32_t poor;
+  bool is_settled;
   uint64_t key;
   Around around[kRoom];  // the first half around the first end
 
   QSES_FN static int end_of(int k) { return k < int(kMostAround) ? 0 : 1; }
 
-  QSES_FN void find(const EdgeMerges &m, size_t i) {
+  QSES_FN void find(const EdgeMerges &m, size_t i, int round) {
     counts[0] = counts[1] = 0;
-    if (i >= m.listed()) return;
+    is_settled = i >= m.listed() || m.is_settled(i, round);
+    if (is_settled) return;
     poor = m.poor[i];
     const uint32_t *const t = m.mesh.triangle(poor);
     if (m.is_gone(t)) return;
@@ -248,7 +262,7 @@ struct MergedEdge {
   }
 };
 struct MergedEdges {
-  static constexpr int kCount = 8;
+  static constexpr int kCount = 16;
   MergedEdge edges[kCount];
 };
 
@@ -256,11 +270,17 @@ struct MergedEdges {
 struct ProposeMerges {
   EdgeMerges merges;
   int round;
+  size_t teams;  // which take turns
   template <class Team>
-  QSES_HOST_DEVICE void operator()(const Team &team, MergedEdges &near, size_t group) const {
+  QSES_HOST_DEVICE void operator()(const Team &team, MergedEdges &near, size_t number) const {
+    constexpr size_t kEdges = MergedEdges::kCount;
+    for (size_t first = number * kEdges; first < merges.listed(); first += teams * kEdges) propose(team, near, first);
+  }
+
+ private:
+  template <class Team>
+  QSES_FN void propose(const Team &team, MergedEdges &near, size_t first) const {
     constexpr int kEdges = MergedEdges::kCount, kRoom = MergedEdge::kRoom;
-    const size_t first = group * kEdges;
-    if (first >= merges.listed()) return;
     const auto for_edges = [&](const auto &use) {
       for (int e = team.rank(); e < kEdges; e += team.size()) use(near.edges[e], first + static_cast<size_t>(e));
       team.sync();
@@ -270,7 +290,7 @@ struct ProposeMerges {
         if (near.edges[k / kRoom].counts[0] > 0) use(near.edges[k / kRoom], k % kRoom);
       team.sync();
     };
-    for_edges([&](MergedEdge &edge, size_t i) { edge.find(merges, i); });
+    for_edges([&](MergedEdge &edge, size_t i) { edge.find(merges, i, round); });
     for_all_around([&](MergedEdge &edge, int k) { edge.judge(merges, k); });
     for_all_around([&](MergedEdge &edge, int k) { edge.find_common_neighbor(k); });
     for_edges([&](MergedEdge &edge, size_t i) { choose(&edge, i); });
@@ -278,10 +298,8 @@ struct ProposeMerges {
       if (edge.around[k].is_there) atomic_min(merges.claims + edge.triangle(merges, k), edge.key);
     });
   }
-
- private:
   QSES_FN void choose(MergedEdge *edge, size_t i) const {
-    if (i >= merges.listed()) return;
+    if (edge->is_settled) return;
     const float of_first = edge->gain(0), of_second = edge->gain(1), gain = maximum(of_first, of_second);
     const int leaving = of_first >= of_second ? 0 : 1;
     if (!(gain > kLeastMergeGain)) {
@@ -305,18 +323,20 @@ struct ChooseMerges {
     bool wins = true;
     for (const uint32_t end : {merges.leaving[i], merges.staying[i]})
       merges.for_around(end, [&](uint32_t triangle) { wins &= merges.claims[triangle] == merges.keys[i]; });
-    if (!wins) merges.leaving[i] = kNoNumber;
+    if (!wins) merges.leaving[i] = EdgeMerges::kLater;
   }
 };
 struct MergeEdges {
   EdgeMerges merges;
+  int round;
   QSES_FN void operator()(size_t i) const {
     const EdgeMerges &m = merges;
-    if (i >= m.listed() || m.leaving[i] == kNoNumber) return;
+    if (i >= m.listed() || m.leaving[i] >= EdgeMerges::kLater) return;
     const uint32_t leaving = m.leaving[i], staying = m.staying[i], slot = m.slots[staying];
     uint32_t count = m.around_counts[slot];
     m.for_around(leaving, [&](uint32_t triangle) {
       uint32_t *const t = m.mesh.triangle(triangle);
+      for (int k = 0; k < 3; ++k) mark_changed(t[k]);
       if (has_corner(t, staying)) {
         t[0] = t[1] = t[2] = kNoNumber;
         m.kept.triangles.drop(triangle);
@@ -329,6 +349,12 @@ struct MergeEdges {
     });
     m.around_counts[slot] = count;
     m.kept.vertices.drop(leaving);
+  }
+
+ private:
+  QSES_FN void mark_changed(uint32_t v) const {
+    const uint32_t slot = merges.slots[v];
+    if (slot != kNoNumber) atomic_store(merges.changed + slot, static_cast<uint32_t>(round + 1));
   }
 };
 
