@@ -151,6 +151,7 @@ void mark_thin_walls(E &executor, const FeatureView &features, const BrickSet &b
   job.view = candidates.view;
   job.signs = signs;
   job.marks = marks;
+  job.has_short_cuts = short_cuts_hold(bricks.lattice);
   WallCounters *const counters = executor.template take_counts<WallCounters>();
   job.counters = counters;
   job.leaves = executor.template allocate<uint32_t>(leaves).data;

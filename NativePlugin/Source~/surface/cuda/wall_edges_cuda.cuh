@@ -7,6 +7,8 @@
 #include "surface/cuda/vertex_candidates_cuda.cuh"
 #include "surface/stages/thin_walls.h"
 
+#include <algorithm>
+
 namespace quickses {
 namespace gpu {
 
@@ -33,8 +35,18 @@ struct WallJob {
   uint64_t *edges;   // by that number, kWallSteps words each: those that may be walls
   uint64_t *walks;   // 64 * kWallSteps * number of the leaf + 64 * step + bit
   unsigned long long walk_room;
-  int run_room;  // of shared memory for what edges of a warp choose together; 0: they do not
+  int run_room;         // of shared memory for what edges of a warp choose together; 0: they do not
+  bool has_short_cuts;  // whether what rules edges out without a walk is what walks would find
 };
+
+// Where coordinates are coarse beside the steps of a walk it may not be. An edge between two slices is walked for lack
+// of knowledge, and would be a wall there that is none in a mesh made as a whole.
+inline bool short_cuts_hold(const Lattice &lattice) {
+  constexpr float kRounding = 0x1p-24f;
+  const glm::ivec3 first = glm::abs(lattice.first_brick), last = glm::abs(lattice.first_brick + lattice.brick_count);
+  const int farthest = std::max({first.x, first.y, first.z, last.x, last.y, last.z});
+  return static_cast<float>(farthest) * lattice.brick_size() * kRounding < 0.25f * kWallStep;
+}
 
 constexpr int kWallThreads = 128;
 constexpr int kWallWarps = kWallThreads / kWarp;
@@ -229,7 +241,9 @@ __device__ __forceinline__ bool is_left_by_probes(const WallJob &job, const Wall
       const bool same_atom = decider == scratch.decider[n] && (decider & kOnContact) && decider < kNotLookedAt;
       const WallWalk walk =
           begin_wall_walk(f.parameters, step, a, {{v.x, v.y, v.z}, v.w}, b, decided_probe(f, decider, b));
-      left = rests = !walk.is_open() && !(same_atom && rolls_over(f, decider & ~kOnContact, a, b));
+      left = !walk.is_open();
+      rests = left && job.has_short_cuts;
+      if (rests && same_atom) left = rests = !rolls_over(f, decider & ~kOnContact, a, b);
       rest = rest_of_walk(walk, step, a);
     }
   }
