@@ -42,6 +42,16 @@ inline std::vector<Regression> regressions() {
        1,
        0,
        {{2, -1, 4.1, 1.55}, {-645618, -412593, -631546, 1}}},
+      // A vertex that starts farther from its atom than it may be moved, which an arc took.
+      {"StartOutOfReach",
+       kSes,
+       kExact,
+       3,
+       3.26999998,
+       0,
+       0,
+       {{-5.5999999, -30, -25.7999992, 1.39999998}, {-9, -28, -25, 2}},
+       1},
       // Coordinates that are coarse beside the steps of a walk.
       {"FarBallInSlices",
        kSes,

@@ -156,8 +156,14 @@ int project_contact(const FeatureView &f, const BrickCandidates &c, float spacin
     const Vec3<WidePack> p = load_points(w->place.x + g, w->place.y + g, w->place.z + g);
     const uint32_t used = first_wide_lanes(static_cast<uint32_t>(n - g));
     const PackBox box = box_around(p);
-    const int near = choose_balls(c.exposed, c.exposed_count, box, reach, c.near_list);
-    const Deepest deepest = deepest_ball(c.exposed, c.near_list, near, p, -reach);
+    const auto deepest_within = [&](float reach) {
+      return deepest_ball(c.exposed, c.near_list, choose_balls(c.exposed, c.exposed_count, box, reach, c.near_list), p,
+                          -reach);
+    };
+    Deepest deepest = deepest_within(reach);
+    // What starts beyond its reach, as where a wall's end stands for solid farther away, has no place on an arc if it
+    // is before an exposed part.
+    if (reach < 0.f && (used & lane_bits(deepest.number < WidePack(0.f))) != 0) deepest = deepest_within(0.f);
     Vec3<WidePack> place = p, normal = p;
     uint32_t done = 0;
     const WidePack way_in = WidePack(depth) - deepest.depth;
