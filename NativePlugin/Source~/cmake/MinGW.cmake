@@ -8,13 +8,12 @@ set(CMAKE_CXX_COMPILER x86_64-w64-mingw32-g++-posix)
 set(CMAKE_RC_COMPILER x86_64-w64-mingw32-windres)
 find_program(QUICKSES_WINE NAMES wine64 wine PATHS /usr/lib/wine DOC "Runs Windows programs")
 if(QUICKSES_WINE)
+  set(CMAKE_CROSSCOMPILING_EMULATOR "${QUICKSES_WINE}")
   # At addresses that are not random: Wine 8 needs 0x7ffe0000, where Linux may put the heap of its loader. One program of some
   # ten thousand would end at once, with 1 ("failed to map the shared user data"). Not every container allows it.
   execute_process(COMMAND setarch --addr-no-randomize true RESULT_VARIABLE _refused OUTPUT_QUIET ERROR_QUIET)
-  if(_refused)
-    set(CMAKE_CROSSCOMPILING_EMULATOR "${QUICKSES_WINE}")
-  else()
-    set(CMAKE_CROSSCOMPILING_EMULATOR "setarch;--addr-no-randomize;${QUICKSES_WINE}")
+  if(NOT _refused)
+    list(PREPEND CMAKE_CROSSCOMPILING_EMULATOR setarch --addr-no-randomize)
   endif()
 endif()
 

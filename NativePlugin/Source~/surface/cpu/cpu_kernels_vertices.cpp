@@ -156,9 +156,9 @@ int project_contact(const FeatureView &f, const BrickCandidates &c, float spacin
     const Vec3<WidePack> p = load_points(w->place.x + g, w->place.y + g, w->place.z + g);
     const uint32_t used = first_wide_lanes(static_cast<uint32_t>(n - g));
     const PackBox box = box_around(p);
-    const auto deepest_within = [&](float reach) {
-      return deepest_ball(c.exposed, c.near_list, choose_balls(c.exposed, c.exposed_count, box, reach, c.near_list), p,
-                          -reach);
+    const auto deepest_within = [&](float distance) {
+      const int near = choose_balls(c.exposed, c.exposed_count, box, distance, c.near_list);
+      return deepest_ball(c.exposed, c.near_list, near, p, -distance);
     };
     Deepest deepest = deepest_within(reach);
     // What starts beyond its reach, as where a wall's end stands for solid farther away, has no place on an arc if it

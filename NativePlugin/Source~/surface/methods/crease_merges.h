@@ -20,7 +20,7 @@ KeptParts merge_at_creases(Work &work, const GrowingMesh &mesh, size_t *merged) 
   const auto room = [&](auto kind, size_t n) { return mesh_room<decltype(kind)>(work, mesh, n); };
   const KeptParts kept{allocate_full_set(executor, vertices), allocate_full_set(executor, triangles)};
   const Span<uint32_t> poor = room(uint32_t{}, triangles), slots = room(uint32_t{}, vertices),
-                       around = room(uint32_t{}, 4 * listed);  // counts, then rounds
+                       of_slots = room(uint32_t{}, 4 * listed);  // counts, then rounds
   const Span<uint64_t> poor_count = room(uint64_t{}, 1), claims = room(uint64_t{}, triangles);
   const EdgeMerges merges{mesh.view,
                           work.lattice,
@@ -28,9 +28,9 @@ KeptParts merge_at_creases(Work &work, const GrowingMesh &mesh, size_t *merged) 
                           poor_count.data,
                           static_cast<uint32_t>(listed),
                           slots.data,
-                          around.data,
+                          of_slots.data,
                           room(uint32_t{}, 2 * listed * kMostAround).data,
-                          around.data + 2 * listed,
+                          of_slots.data + 2 * listed,
                           claims.data,
                           room(uint64_t{}, listed).data,
                           room(uint32_t{}, listed).data,
@@ -39,7 +39,7 @@ KeptParts merge_at_creases(Work &work, const GrowingMesh &mesh, size_t *merged) 
   executor.for_each(triangles, MarkPoorTriangles{merges});
   executor.compact(triangles, IsMarked{mesh.view.near_marks}, poor, poor_count.data);
   executor.fill(slots, 0xff);
-  executor.fill(around, 0);
+  executor.fill(of_slots, 0);
   executor.fill(claims, 0xff);
   executor.for_each(listed, ChooseSlots{merges});
   executor.for_each(triangles, CollectAround{merges});
