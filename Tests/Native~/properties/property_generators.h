@@ -124,15 +124,15 @@ inline Atoms place(Random &random, const Draft &draft, double probe) {
     shift = random.in_box(where < 0.85 ? 50 : where < 0.96 ? 1000 : random.log_uniform(1e3, 9e5));
   }
   const bool decimals = draft.three_decimals || random.chance(0.1);
+  const auto within = [](double x) { return std::min(1e6, std::max(-1e6, x)); };  // the largest that are taken
   Atoms placed;
   for (const Ball &b : draft.balls) {
     Point p = rotation(b.center) + shift;
     if (decimals) p = {std::round(p.x * 1000) / 1000, std::round(p.y * 1000) / 1000, std::round(p.z * 1000) / 1000};
-    const auto within = [](double x) { return std::min(1e6, std::max(-1e6, x)); };
     placed.add(within(p.x), within(p.y), within(p.z), std::min(100.0, std::max(1e-4, b.radius)));
   }
   if (random.chance(0.1))
-    for (float &p : placed.positions) p = stepped(p, random.ulps());
+    for (float &p : placed.positions) p = static_cast<float>(within(static_cast<double>(stepped(p, random.ulps()))));
   for (const Tie &tie : draft.ties) {
     const Point c = exact_reference::point(placed.center(tie.ball));
     double radius = 0;

@@ -52,6 +52,16 @@ inline std::vector<Regression> regressions() {
        0,
        {{-5.5999999, -30, -25.7999992, 1.39999998}, {-9, -28, -25, 2}},
        1},
+      // A vertex that starts outside of all balls, from where an arc led it off.
+      {"StartOutside",
+       kSes,
+       kExact,
+       1.39999998,
+       1.75999999,
+       0,
+       0,
+       {{15, -40.5, -11.3999996, 2}, {16.7999992, -38.9000015, -12.8999996, 0.300000012}},
+       1},
       // Coordinates that are coarse beside the steps of a walk.
       {"FarBallInSlices",
        kSes,

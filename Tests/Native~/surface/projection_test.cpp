@@ -78,6 +78,9 @@ struct Outcome {
 Outcome project(const Scene &scene, const Vec3<float> &start) {
   const FeatureView f = scene.view();
   const Everything all = scene.candidates();
+  const Vec3<float> up(0.f, 0.f, 1.f);
+  if (starts_outside(f.parameters, deepest_atom(f, all, start)))
+    return {{{start, up, up, QSES_PATCH_REENTRANT, false}, ProjectionState::kOnEdge, 0}};
   Outcome o{project_on_arc(f, nearest_arc(f, all, start), start)};
   while (o.projection.state == ProjectionState::kReproject) {
     o.projection = reproject(f, all, nearest_arc(f, all, o.projection.point.position), o.projection);
@@ -132,14 +135,19 @@ TEST(Projection, AVertexThatLeftAProbeIsNotPlacedOverAContactPatch) {
   EXPECT_GT(on_patch, 0);
 }
 
-// Where no ball is, a probe may be anywhere: a vertex that looked away from the circle's axis is not where it seems.
+// Where no ball is, a probe may be anywhere, and the way along an arc would lead off.
 TEST(Projection, OutsideOfAllBallsTheEdgeDecides) {
   Scene scene(1, true);
   scene.arcs.assign(1, {glm::vec3(0.f), 1.f, glm::vec3(1, 0, 0), -1.f, glm::vec3(0, 1, 0), 0.f});
   scene.atom = {glm::vec3(0.f, 0.f, 20.f), 3.f};
-  EXPECT_EQ(project(scene, Vec3<float>(1.8f, 0.f, 0.f)).projection.state, ProjectionState::kOnEdge);
+  for (const Vec3<float> &start : {Vec3<float>(1.8f, 0.f, 0.f), {0.6f, 0.f, 0.8f}})
+    EXPECT_EQ(project(scene, start).projection.state, ProjectionState::kOnEdge);
   scene.atom = {glm::vec3(0.f), 50.f};
   EXPECT_EQ(project(scene, Vec3<float>(0.6f, 0.f, 0.8f)).projection.state, ProjectionState::kPlaced);
+  const SurfaceParameters ses{kProbe, kProbe, 0.5f, 3.f}, sas{kProbe, 0.f, 0.5f, 3.f};
+  EXPECT_TRUE(starts_outside(ses, {0, -0.01f}));
+  EXPECT_FALSE(starts_outside(ses, {0, 0.f}));     // within rounding of where the probe may be
+  EXPECT_FALSE(starts_outside(sas, {0, -0.01f}));  // half of all starts of the balls themselves
 }
 
 TEST(Projection, WithoutAnArcTheEdgeDecides) {

@@ -107,10 +107,8 @@ QSES_FN PackedProjection project_on_arcs(const SurfaceParameters &p, const Packe
   const uint32_t may_be_covered =
       lane_bits((y.distance < WidePack(p.depth - kProjectionTolerance)) &
                 ((square_root(second2) < WidePack(2.f * p.depth) - y.distance) | beyond_axis));
-  const WideMask may_be_outside = dot_as_of_floats(x - y.position, arc.center - y.position) <= WidePack(0.f);
   const uint32_t on = out.point.near & ~out.lost;
-  out.from_afar =
-      on & lane_bits((WidePack(p.depth) - y.distance > WidePack(kLongestWayIn * p.spacing)) | may_be_outside);
+  out.from_afar = on & lane_bits(WidePack(p.depth) - y.distance > WidePack(kLongestWayIn * p.spacing));
   out.reprojected = out.from_afar | (on & may_be_covered);
   out.placed = on & ~out.reprojected;
   return out;

@@ -145,7 +145,19 @@ struct Work {
 };
 static_assert(sizeof(Work) <= BrickScratch::kVertexBytes, "the scratch of a thread has room for it");
 
-// Vertices on the convex part: projected radially on their deepest atom. The others are packed into w->open.
+// Of the points in `lanes`, with what is deepest of the exposed balls, those that start outside of all balls.
+uint32_t starts_outside(const SurfaceParameters &s, const BrickCandidates &c, const Vec3<WidePack> &p,
+                        const Deepest &of_exposed, uint32_t lanes) {
+  const float least = s.least_depth();
+  const uint32_t of_none =
+      lanes & lane_bits((of_exposed.number < WidePack(0.f)) | (of_exposed.depth <= WidePack(least)));
+  if (s.depth == 0.f || of_none == 0) return 0;
+  const int near = choose_balls(c.atoms, c.atom_count, box_around(p), -least, c.near_list);
+  return of_none & lane_bits(deepest_ball(c.atoms, c.near_list, near, p, least).number < WidePack(0.f));
+}
+
+// Vertices on the convex part: projected radially on their deepest atom. The others are packed into w->open, but for
+// those that start outside.
 int project_contact(const FeatureView &f, const BrickCandidates &c, float spacing, int n, Work *w) {
   const float depth = f.parameters.depth;
   const float reach = kStartReach * spacing - depth;
@@ -182,7 +194,8 @@ int project_contact(const FeatureView &f, const BrickCandidates &c, float spacin
         w->placed[g + lowest_bit32(l)] = (trusted >> lowest_bit32(l) & 1) != 0;
       }
     });
-    const uint32_t left = used & ~done;
+    const uint32_t outside = starts_outside(f.parameters, c, p, deepest, used & ~done), left = used & ~done & ~outside;
+    for (uint32_t l = outside; l; l &= l - 1) w->placed[g + lowest_bit32(l)] = false;
     const WideMask mask = wide_mask(done);
     store_pack(w->place.x + g, select(mask, place.x, p.x));
     store_pack(w->place.y + g, select(mask, place.y, p.y));

@@ -74,7 +74,7 @@ struct VertexTeam {
   }
 };
 
-// Vertex k, if it is on a contact patch. True if it is on another, as its first lane says.
+// Vertex k, if it is on a contact patch, or starts outside. True if it is on another patch, as its first lane says.
 template <int kLanes>
 __device__ __forceinline__ bool project_on_atoms(const VertexJob &job, const VertexTeam<kLanes> &team, uint32_t k) {
   const FeatureView &f = job.features;
@@ -85,12 +85,13 @@ __device__ __forceinline__ bool project_on_atoms(const VertexJob &job, const Ver
   const Sphere ball = load(f.atoms.items + deepest.atom);
   const bool contact = is_on_contact(f, candidates, deepest, x);
   const Projection v = project_on_atom(f.parameters, ball, deepest.depth, x);
-  const bool done = v.state == ProjectionState::kPlaced;
+  const bool done = contact && v.state == ProjectionState::kPlaced,
+             on_edge = contact ? !done : starts_outside(f.parameters, deepest);
   __syncwarp();
-  append(job.on_edges, &job.counts->on_edges.count, k, team.writes && contact && !done);
-  if (team.writes && contact && !done) leave_start(job, k);
-  if (team.writes && contact && done) finish_vertex(job, k, v.point, deepest.atom);
-  return team.writes && !contact;
+  append(job.on_edges, &job.counts->on_edges.count, k, team.writes && on_edge);
+  if (team.writes && on_edge) leave_start(job, k);
+  if (team.writes && done) finish_vertex(job, k, v.point, deepest.atom);
+  return team.writes && !done && !on_edge;
 }
 
 template <int kLanes>

@@ -206,11 +206,12 @@ QSES_FN void settle_normals(const FeatureView &f, uint32_t owner, SurfacePoint *
 //
 //   first     on the contact patch of the ball it is deepest in, if the radial projection on that is exposed:
 //             project_on_atom(). Else from the nearest arc: project_on_arc(), round 1
+//             A start outside of all balls is none of these: from there the way along an arc would lead off
 //   then      while another probe may cover it, from the arc that is nearest to where it is now: reproject(), rounds 2
 //             to kMaxProjections. Where another probe does, it jumps to the crest, where the spheres of both probes
 //             meet; where none does, it is placed
-//   at last   where the sign changes on its lattice edge: place_on_edge(), if it has no arc, moved further than can be
-//             trusted, or is covered still after the last round
+//   at last   where the sign changes on its lattice edge: place_on_edge(), if it starts outside or has no arc, moved
+//             further than can be trusted, or is covered still after the last round
 enum class ProjectionState : uint32_t { kOnEdge, kReproject, kPlaced };
 
 struct Projection {
@@ -227,6 +228,11 @@ QSES_FN Projection project_on_atom(const SurfaceParameters &p, const Sphere &bal
   return {{position, outward, outward, QSES_PATCH_CONTACT, near},
           near ? ProjectionState::kPlaced : ProjectionState::kOnEdge,
           0};
+}
+
+// Next to a lattice point that stands for a wall a start may be outside of all balls: as told by the deepest of all.
+QSES_FN bool starts_outside(const SurfaceParameters &p, const DeepestAtom &deepest) {
+  return p.depth > 0.f && deepest.depth <= p.least_depth();
 }
 
 QSES_FN Projection project_on_arc(const FeatureView &f, const NearestArc &nearest, const Vec3<float> &x) {
@@ -246,11 +252,9 @@ QSES_FN Projection project_on_arc(const FeatureView &f, const NearestArc &neares
   const bool may_be_covered = y.distance < p.depth - kProjectionTolerance &&
                               (square_root(nearest.second2) < 2.f * p.depth - y.distance || beyond_axis);
   if (!s.placed) return {s, ProjectionState::kOnEdge, 1};
-  // On its way to a wall it may also get to where a probe is that touches a single atom. And next to a lattice point
-  // that stands for a wall, a start may be outside of all balls, from where the way would lead off: of those in a ball
-  // that y is on, none is farther from the axis than y. Both are looked at as from round 2 on.
-  const bool may_be_outside = dot(x - y.position, center - y.position) <= 0.f;
-  if (p.depth - y.distance > kLongestWayIn * p.spacing || may_be_outside) return {s, ProjectionState::kReproject, 2};
+  // On its way to a wall it may also get to where a probe is that touches a single atom, as is looked at from round 2
+  // on.
+  if (p.depth - y.distance > kLongestWayIn * p.spacing) return {s, ProjectionState::kReproject, 2};
   return {s, may_be_covered ? ProjectionState::kReproject : ProjectionState::kPlaced, 1};
 }
 
