@@ -50,8 +50,9 @@ qses_status qses_component_atoms(const qses_mesh *mesh, uint32_t *starts, uint32
     require(mesh, "mesh");
     require(starts, "starts");
     const qses_mesh m = quickses::read_struct(mesh, qses_mesh_init, "qses_mesh");
-    if (m.vertex_count > 0 && !(m.component_ids && m.owners))
+    if (m.vertex_count > 0 && !m.component_ids)
       invalid("mesh has no component_ids in host memory: settings.component_ids asks for them");
+    if (m.vertex_count > 0 && !m.owners) invalid("mesh has no owners: settings.without_owners left them out");
     const Lining lining = find_lining(m);
     std::copy(lining.starts.begin(), lining.starts.end(), starts);
     if (!atoms) return;

@@ -19,6 +19,12 @@ void check_on_host(const KeptMesh &kept) {
   if (kept.is_elsewhere()) invalid("the mesh is on the device only: call qses_kept_mesh_download first");
 }
 
+void check_owners(const KeptMesh &kept) {
+  check_on_host(kept);
+  if (kept.mesh.vertex_count > 0 && !kept.mesh.owners)
+    invalid("the mesh has no owners: settings.without_owners left them out");
+}
+
 // name: of what there are `total`.
 void check_run(const char *name, uint32_t first, uint32_t count, uint32_t total) {
   if (first > total || count > total - first)
@@ -105,7 +111,7 @@ qses_status qses_kept_mesh_paint(const qses_kept_mesh *kept, const void *per_ato
     require(kept, "kept");
     if (value_bytes % 4 != 0 || value_bytes < 4 || value_bytes > 16)
       invalid("value_bytes is " + std::to_string(value_bytes) + ": it must be 4, 8, 12 or 16");
-    check_on_host(kept->held);
+    check_owners(kept->held);
     check_atoms(kept->held, atom_count);
     check_run("vertices", first, count, kept->held.mesh.vertex_count);
     if (count == 0) return;
@@ -121,7 +127,7 @@ qses_status qses_kept_mesh_filter(const qses_kept_mesh *kept, const uint8_t *vis
   return guarded([&] {
     require(kept, "kept");
     require(kept_triangles, "kept_triangles");
-    check_on_host(kept->held);
+    check_owners(kept->held);
     check_atoms(kept->held, atom_count);
     check_run("triangles", first, count, kept->held.mesh.triangle_count);
     if (count == 0) return;
@@ -138,7 +144,7 @@ qses_status qses_kept_mesh_pick(const qses_kept_mesh *kept, const float origin[3
     require(hit, "hit");
     check_struct(hit, "qses_hit");
     check_ray(origin, direction);
-    check_on_host(kept->held);
+    check_owners(kept->held);
     if (visible) check_atoms(kept->held, atom_count);
     const KeptMesh &held = kept->held;
     write_struct(hit, quickses::pick(held.mesh, held.boxes, origin, direction, visible), "qses_hit");

@@ -152,6 +152,7 @@ void run_bench(const Options &options) {
   if (options.json.empty()) return;
   Json settings = settings_json(options.compute);
   settings["layout"] = name_of(bench.layout);
+  if (bench.without_owners) settings["owners"] = false;
   const Json json = {{"schema", kReportSchema},  {"version", qses_version()}, {"backend", name_of(first.backend())},
                      {"device", first.device()}, {"settings", settings},      {"copies", bench.copies},
                      {"repeat", bench.repeat},   {"structures", structures}};

@@ -29,6 +29,7 @@ void add_bench_options(CLI::App *app, BenchOptions &options) {
       ->type_name("host|device|both");
   add_choice(app, "--layout", options.layout, kLayouts,
              "Bytes of a vertex: 24 in two arrays (separate) or one (interleaved), or 16 with rounded normals");
+  app->add_flag("--no-owners", options.without_owners, "Without the atom of each vertex, 4 bytes, in host memory");
   add_count(app, "--copies", "--copies", options.copies, 1, 10000,
             "Copies of each structure side by side on a grid, to see how times grow; default 1");
   app->add_flag("--measure", options.measure, "With area and volume");
@@ -47,7 +48,7 @@ void check_bench(const Options &options, const std::function<bool(const char *)>
   if (bench.small > 0 && given("--copies"))
     throw Failure(kUsage, "--copies: --small cuts surfaces out of one molecule, and copies have the same ones");
   if (bench.jobs || bench.small > 0)
-    for (const char *flag : {"--delivery", "--layout", "--measure", "--stages"})
+    for (const char *flag : {"--delivery", "--layout", "--no-owners", "--measure", "--stages"})
       if (given(flag)) throw Failure(kUsage, std::string(flag) + ": not with --jobs and --small");
   const bool is_cpu = options.compute.backend == QSES_BACKEND_CPU;
   if (is_cpu && (bench.deliveries == Deliveries::kDevice || bench.deliveries == Deliveries::kBoth))

@@ -16,6 +16,7 @@ qses_settings bench_settings(const Options &options, qses_delivery delivery) {
   qses_settings settings = settings_of(options.compute);
   settings.measure = options.bench.measure;
   settings.vertex_layout = options.bench.layout;
+  settings.without_owners = options.bench.without_owners;
   settings.delivery = delivery;
   return settings;
 }

@@ -52,6 +52,7 @@ struct BenchOptions {
   unsigned copies = 1;  // of each structure, side by side
   Deliveries deliveries = Deliveries::kDefault;
   qses_vertex_layout layout = QSES_VERTICES_SEPARATE;
+  bool without_owners = false;
   bool measure = false;  // area and volume as well
   bool stages = false;
   unsigned small = 0;  // atoms per surface; 0 = the whole

@@ -91,6 +91,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     if (whole > limit) whole = std::max(least, limit);
     MeshShape shape = shape_of(settings, !appearance.colors.empty());
     shape.repeated = static_cast<size_t>(hard_part * growth * facts_.size.vertices);
+    if (Executor::kIsCuda) shape.owners = !leaves_owners(settings);
     out.vertices = static_cast<uint64_t>(growth * facts_.size.vertices) + shape.repeated;
     out.triangles = static_cast<uint64_t>(growth * facts_.size.triangles);
     if (settings.delivery != QSES_DELIVERY_NONE)

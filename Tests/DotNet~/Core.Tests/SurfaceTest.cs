@@ -225,6 +225,22 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void OwnersMayBeLeftOut()
+        {
+            using var context = new SurfaceContext();
+            context.SetAtoms(new float[] { 0, 0, 0, 3, 0, 0 }, new float[] { 1.5f, 2 });
+            SurfaceSettings settings = SurfaceSettings.Default;
+            Assert.That(settings.WithoutOwners, Is.False);
+            SurfaceMeshView mesh = Meshes.Compute(context, settings);
+            Assert.That(mesh.Owners.Length, Is.EqualTo(mesh.VertexCount));
+            float[] positions = mesh.Positions.ToArray();
+            settings.WithoutOwners = true;
+            mesh = Meshes.Compute(context, settings);
+            Assert.That(mesh.Owners.IsEmpty, Is.True);
+            Assert.That(mesh.Positions.ToArray(), Is.EqualTo(positions));
+        }
+
+        [Test]
         public void ComponentsHavePlacesAndVerticesTheirNumbers()
         {
             using var context = new SurfaceContext();

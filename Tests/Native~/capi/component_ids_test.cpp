@@ -327,4 +327,15 @@ TEST(ComponentAtoms, RefuseWhatHasNoIds) {
   EXPECT_EQ(starts[0], 0u);
 }
 
+TEST(ComponentAtoms, RefuseWhatHasNoOwners) {
+  const Context context;
+  set_atoms(context, crambin());
+  qses_settings s = settings(1);
+  s.component_ids = s.without_owners = 1;
+  const qses_mesh mesh = compute_view(context, s);
+  ASSERT_NE(mesh.component_ids, nullptr);
+  std::vector<uint32_t> starts(mesh.component_count + 1);
+  expect_error(qses_component_atoms(&mesh, starts.data(), nullptr, 0), QSES_INVALID_ARGUMENT, {"without_owners"});
+}
+
 }  // namespace

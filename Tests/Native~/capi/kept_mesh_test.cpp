@@ -407,4 +407,30 @@ TEST(KeptMesh, AnotherThreadLooksAndGivesBack) {
   EXPECT_EQ(looked_at, expected);
 }
 
+TEST(KeptMesh, WithoutOwnersIsOnlyShown) {
+  const Context context;
+  const Atoms atoms = crambin();
+  set_atoms(context, atoms);
+  qses_settings s = settings(1);
+  s.without_owners = 1;
+  const Kept kept;
+  compute_view(context, s);
+  expect_ok(qses_keep(context, kept));
+  const qses_mesh mesh = kept.view();
+  ASSERT_GT(mesh.vertex_count, 0u);
+  EXPECT_EQ(mesh.owners, nullptr);
+  const std::vector<uint32_t> colors(atoms.size());
+  const std::vector<uint8_t> visible(atoms.size(), 1);
+  std::vector<uint32_t> room(3 * size_t(mesh.triangle_count));
+  const float from[3] = {0, 0, 0}, along[3] = {1, 0, 0};
+  uint32_t count;
+  qses_hit hit;
+  qses_hit_init(&hit);
+  expect_error(qses_kept_mesh_paint(kept, colors.data(), 4, atoms.size(), 0, mesh.vertex_count, room.data()),
+               QSES_INVALID_ARGUMENT, {"without_owners"});
+  expect_error(qses_kept_mesh_filter(kept, visible.data(), atoms.size(), 0, mesh.triangle_count, room.data(), &count),
+               QSES_INVALID_ARGUMENT, {"without_owners"});
+  expect_error(qses_kept_mesh_pick(kept, from, along, nullptr, 0, &hit), QSES_INVALID_ARGUMENT, {"without_owners"});
+}
+
 }  // namespace

@@ -263,6 +263,7 @@ TEST(Init, WritesDefaultsAndNothingBehind) {
   EXPECT_EQ(s[0].occlusion, 0);
   EXPECT_EQ(s[0].gaussian_radius_scale, 1.f);
   EXPECT_EQ(s[0].gaussian_isovalue, 0.5f);
+  EXPECT_EQ(s[0].without_owners, 0);
   EXPECT_EQ(*reinterpret_cast<unsigned char *>(&s[1]), kCanary);
   qses_settings_init(nullptr);
   qses_mesh_init(nullptr);
@@ -278,7 +279,7 @@ constexpr bool is_without_padding(size_t end_of_last_field) {
 #define END(type, field) (offsetof(type, field) + sizeof(type::field))
 static_assert(is_without_padding<qses_backend_description>(END(qses_backend_description, reserved)), "");
 static_assert(is_without_padding<qses_context_options>(END(qses_context_options, reserved)), "");
-static_assert(is_without_padding<qses_settings>(END(qses_settings, gaussian_isovalue)), "");
+static_assert(is_without_padding<qses_settings>(END(qses_settings, without_owners)), "");
 static_assert(is_without_padding<qses_component>(END(qses_component, bounds_max)), "");
 static_assert(is_without_padding<qses_mesh>(END(qses_mesh, reserved2)), "");
 static_assert(is_without_padding<qses_device_mesh>(END(qses_device_mesh, mesh)), "");

@@ -175,6 +175,84 @@ TEST(VertexLayout, SeparateHasOnlyWhatIsAskedFor) {
   EXPECT_EQ(mesh.texcoords[0], 1.f);
 }
 
+// Small meshes and large ones, which go to the host in other ways, levels of jobs, and meshes that were made anew.
+TEST(WithoutOwners, AllElseIsTheSame) {
+  using Change = void (*)(qses_settings *);
+  const Change changes[] = {
+      [](qses_settings *) {},
+      [](qses_settings *s) { s->spacing = 2; },
+      [](qses_settings *s) { s->spacing = 0.25f, s->texcoords = s->component_ids = s->pickable = 1; },
+      [](qses_settings *s) { s->vertex_layout = QSES_VERTICES_COMPACT; },
+      [](qses_settings *s) { s->vertex_layout = QSES_VERTICES_INTERLEAVED, s->patch_types = 1; },
+      [](qses_settings *s) { s->creases = s->hard_edges = s->atom_areas = 1; },
+      [](qses_settings *s) { s->method = QSES_METHOD_GRID, s->outer_only = 1; },
+      [](qses_settings *s) { s->surface = QSES_SURFACE_GAUSSIAN, s->occlusion = 1; },
+  };
+  const Atoms atoms = crambin();
+  const std::vector<uint32_t> colors = some_colors(atoms.size());
+  std::vector<uint8_t> visible(atoms.size(), 1);
+  std::fill(visible.begin(), visible.begin() + 50, uint8_t(0));
+  for (bool some_hidden : {false, true})
+    for (size_t k = 0; k < std::size(changes); ++k) {
+      SCOPED_TRACE(testing::Message() << "change " << k << (some_hidden ? ", some hidden" : ""));
+      const Context context;
+      set_atoms(context, atoms);
+      expect_ok(qses_set_colors(context, bytes(colors), atoms.size()));
+      if (some_hidden) expect_ok(qses_set_visible(context, visible.data(), visible.size()));
+      qses_settings with = settings(0.5), without = with;
+      changes[k](&with);
+      changes[k](&without);
+      without.without_owners = 1;
+      const auto mesh_of = [&](const qses_settings &s, bool as_job) {
+        if (!as_job) return compute_view(context, s);
+        expect_ok(qses_begin(context, &s));
+        expect_ok(qses_wait(context, -1, nullptr));
+        qses_mesh mesh;
+        qses_mesh_init(&mesh);
+        expect_ok(qses_collect(context, &mesh));
+        return mesh;
+      };
+      for (int frame = 0; frame < 3; ++frame) {  // the first waits for counts, the others go on with them
+        Copy expected = copy(mesh_of(with, frame == 2));
+        const qses_report report = report_of(context);
+        const qses_mesh mesh = mesh_of(without, frame == 2);
+        EXPECT_EQ(mesh.owners, nullptr);
+        ASSERT_EQ(expected.owners.size(), expected.vertices);
+        expected.owners.clear();
+        expect_equal(copy(mesh), expected);
+        EXPECT_EQ(report_of(context).area, report.area);
+        // On the CPU they are made where the mesh is.
+        const uint64_t left = tested_backend() == QSES_BACKEND_CUDA ? 4 * uint64_t(expected.vertices) : 0;
+        EXPECT_EQ(report_of(context).mesh_bytes, report.mesh_bytes - left);
+      }
+      qses_size_estimate more, less;
+      qses_size_estimate_init(&more);
+      qses_size_estimate_init(&less);
+      expect_ok(qses_estimate(context, &with, &more));
+      expect_ok(qses_estimate(context, &without, &less));
+      EXPECT_EQ(less.vertices, more.vertices);
+      EXPECT_EQ(less.mesh_bytes,
+                more.mesh_bytes - (tested_backend() == QSES_BACKEND_CUDA ? 4 * uint64_t(more.vertices) : 0));
+    }
+}
+
+TEST(WithoutOwners, WithinASmallBudget) {
+  const Context unbounded;
+  set_atoms(unbounded, crambin());
+  qses_settings s = settings(0.25);
+  const Copy with = copy(compute_view(unbounded, s));
+  s.without_owners = 1;
+  qses_size_estimate e;
+  qses_size_estimate_init(&e);
+  expect_ok(qses_estimate(unbounded, &s, &e));
+  const Context context(2, e.smallest_budget);
+  set_atoms(context, crambin());
+  Copy without = copy(compute_view(context, s));
+  EXPECT_TRUE(without.owners.empty());
+  without.owners = with.owners;
+  expect_equal(without, with);
+}
+
 TEST(VertexLayout, UnknownIsRefused) {
   const Context context;
   set_atoms(context, crambin());

@@ -95,6 +95,7 @@ TEST(ExactSlabs, AreTheMeshByteForByte) {
       [](qses_settings *s) { s->components = s->component_ids = s->pickable = s->texcoords = 1; },
       [](qses_settings *s) { s->winding = QSES_WINDING_REVERSED, s->measure = 1, s->relaxation_steps = 0; },
       [](qses_settings *s) { s->probe_radius = 0.5f; },
+      [](qses_settings *s) { s->without_owners = 1; },
   };
   const Atoms atoms = rod(2);
   for (size_t k = 0; k < std::size(changes); ++k) {

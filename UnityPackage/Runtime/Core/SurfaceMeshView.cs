@@ -110,7 +110,7 @@ namespace QuickSes
 
         /// <summary>
         /// V: the atom whose van der Waals surface is nearest, a 0-based index into the positions given to
-        /// <see cref="SurfaceContext.SetAtoms"/>, always in range.
+        /// <see cref="SurfaceContext.SetAtoms"/>, always in range; empty with <see cref="SurfaceSettings.WithoutOwners"/>.
         /// </summary>
         public ReadOnlySpan<uint> Owners => Attribute<uint>(_native.Owners, 1);
 

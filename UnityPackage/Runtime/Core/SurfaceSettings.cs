@@ -176,6 +176,13 @@ namespace QuickSes
         /// <summary>Of <see cref="SurfaceKind.Gaussian"/>, 0.01 to 1000: the density on the surface.</summary>
         public float GaussianIsovalue { get => Native.GaussianIsovalue; set => Native.GaussianIsovalue = value; }
 
+        /// <summary>
+        /// Whether a mesh of <see cref="MeshDelivery.Host"/> goes out without <see cref="SurfaceMeshView.Owners"/>, which
+        /// are empty then: large meshes come sooner from a GPU. Atoms of components, and painting, filtering and picking
+        /// of a <see cref="KeptMesh"/>, need them.
+        /// </summary>
+        public bool WithoutOwners { get => Native.WithoutOwners != 0; set => Native.WithoutOwners = value ? 1 : 0; }
+
         /// <summary>How many coarser levels come before <see cref="Spacing"/> in a job.</summary>
         public int LevelCount => (int)Native.LevelCount;
 

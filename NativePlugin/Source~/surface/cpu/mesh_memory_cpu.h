@@ -51,7 +51,9 @@ class MeshMemory<CpuKernelExecutor> {
   void send(MeshMemoryView *built) { mesh_.own_numbers(built); }
   // Hands it out: all but the report.
   void finish(const MeshMemoryView &built, const qses_settings &settings, FinishedMesh *out) {
-    describe_mesh(built, settings.delivery == QSES_DELIVERY_NONE ? nullptr : &built.view, settings, &out->on_host);
+    MeshView arrays = built.view;
+    if (leaves_owners(settings)) arrays.owners = nullptr;
+    describe_mesh(built, settings.delivery == QSES_DELIVERY_NONE ? nullptr : &arrays, settings, &out->on_host);
     out->boxes = built.view.boxes;
     qses_device_mesh_init(&out->on_device);
     describe_mesh(built, nullptr, settings, &out->on_device.mesh);

@@ -79,6 +79,7 @@ class MeshMemory<CudaExecutor> {
     forget_mesh();
     keep_ = is_for_device(settings.delivery);
     to_host_ = is_for_host(settings.delivery);
+    leaves_owners_ = leaves_owners(settings);
     if (!executor_.arena().has_budget()) return;
     if (!keep_) device_mesh_.pool().drop_spares();
     executor_.arena().set_taken(device_mesh_.bytes());
@@ -161,10 +162,13 @@ class MeshMemory<CudaExecutor> {
   // A mesh that is complete gets memory for all that goes out with it; and goes to the host, if it is wanted there, as
   // far as it is not on its way.
   void send(MeshMemoryView *built) {
-    if (built->vertices == 0 || !to_host_ || built->in_pieces)
+    if (built->vertices == 0 || !to_host_ || built->in_pieces) {
       brought_ = built->view;
-    else
+      if (leaves_owners_) brought_.owners = nullptr;
+    } else {
       bring(*built);
+      if (leaves_owners_) built->bytes -= built->vertices * sizeof *built->view.owners;
+    }
     host_mesh_.own_numbers(built);
   }
   // Then hands it out, without the report but for sums that come along. Waits.
@@ -229,18 +233,22 @@ class MeshMemory<CudaExecutor> {
     check_cuda(cudaStreamWaitEvent(copies_, made, 0), "cudaStreamWaitEvent");
     copy_beside(to, from, bytes);
   }
-  // Room on the host, and a stream.
-  void make_room_for(const MeshMemoryView &mesh, const MeshShape &shape) {
+  // Where it is brought to.
+  void reserve_on_host(const MeshMemoryView &mesh, MeshShape shape) {
+    shape.owners = !leaves_owners_;
     const MeshArrays arrays(mesh.vertices, mesh.triangles, shape);
     brought_ = arrays.view(host_mesh_.reserve(arrays.bytes()));
+  }
+  // Room on the host, and a stream.
+  void make_room_for(const MeshMemoryView &mesh, const MeshShape &shape) {
+    reserve_on_host(mesh, shape);
     if (!copies_) check_cuda(cudaStreamCreateWithFlags(&copies_, cudaStreamNonBlocking), "cudaStreamCreateWithFlags");
     sends_triangles_ = true;
   }
 
   // The arrays of a whole mesh, without what is spare; triangles and vertices may be on their way already.
   void bring(const MeshMemoryView &mesh) {
-    const MeshArrays arrays(mesh.vertices, mesh.triangles, without_spare(mesh.shape));
-    if (!sends_triangles_) brought_ = arrays.view(host_mesh_.reserve(arrays.bytes()));
+    if (!sends_triangles_) reserve_on_host(mesh, without_spare(mesh.shape));
     const auto copy = [&](void *to, const void *from, size_t bytes) {
       executor_.download(static_cast<char *>(to), static_cast<const char *>(from), bytes);
     };
@@ -270,7 +278,7 @@ class MeshMemory<CudaExecutor> {
   CudaExecutor &executor_;
   const cudaStream_t told_stream_;
   PooledMesh host_mesh_, device_mesh_;
-  bool keep_ = false, to_host_ = false;
+  bool keep_ = false, to_host_ = false, leaves_owners_ = false;
   cudaEvent_t triangles_made_ = nullptr, vertices_made_ = nullptr;
   cudaStream_t copies_ = nullptr;
   bool sends_triangles_ = false, sends_vertices_ = false;  // they are on their way, to here:

@@ -11,6 +11,7 @@ namespace quickses {
 struct MeshShape {
   qses_vertex_layout layout = QSES_VERTICES_SEPARATE;
   bool colors = false, texcoords = false, patches = false, reversed = false, boxes = false, component_ids = false;
+  bool owners = true;                              // as every mesh has while it is made
   size_t repeated = 0;                             // vertices that stand for others (methods/hard_edges.h)
   size_t spare_vertices = 0, spare_triangles = 0;  // that there is room for behind the last
 };
@@ -22,6 +23,8 @@ inline bool is_exact(const qses_settings &s) {
 
 inline bool is_for_host(qses_delivery d) { return d == QSES_DELIVERY_HOST || d == QSES_DELIVERY_BOTH; }
 inline bool is_for_device(qses_delivery d) { return d == QSES_DELIVERY_DEVICE || d == QSES_DELIVERY_BOTH; }
+
+inline bool leaves_owners(const qses_settings &s) { return s.without_owners && s.delivery == QSES_DELIVERY_HOST; }
 
 inline MeshShape shape_of(const qses_settings &s, bool has_colors) {
   MeshShape shape;
@@ -49,7 +52,7 @@ class MeshArrays {
     normals_ = is_separate ? next(vertices * 12) : positions_ + 12;
     if (shape.colors) colors_ = next(vertices * 4);
     if (shape.texcoords) texcoords_ = next(vertices * 8);
-    owners_ = next(vertices * 4);
+    if (shape.owners) owners_ = next(vertices * 4);
     if (shape.component_ids) component_ids_ = next(vertices * 4);
     indices_ = next(triangles * 12);
     repeated_ = next(shape.repeated * 4);
@@ -73,7 +76,7 @@ class MeshArrays {
     if (shape_.colors) v.colors = reinterpret_cast<uint32_t *>(base + colors_);
     if (shape_.texcoords) v.texcoords = reinterpret_cast<float *>(base + texcoords_);
     if (shape_.component_ids) v.component_ids = reinterpret_cast<uint32_t *>(base + component_ids_);
-    v.owners = reinterpret_cast<uint32_t *>(base + owners_);
+    if (shape_.owners) v.owners = reinterpret_cast<uint32_t *>(base + owners_);
     if (shape_.patches) v.patches = reinterpret_cast<uint8_t *>(base + patches_);
     v.indices = reinterpret_cast<uint32_t *>(base + indices_);
     if (shape_.repeated) v.repeated = reinterpret_cast<uint32_t *>(base + repeated_);
@@ -107,7 +110,7 @@ void for_each_array(const MeshView &to, const MeshView &from, size_t vertices, s
     if (from.second_normals && to.second_normals) copy(to.second_normal(v), from.second_normals, vertices * 12);
     if (from.colors) copy(to.color(v), from.colors, vertices * 4);
     if (from.texcoords) copy(to.texcoord(v), from.texcoords, vertices * 8);
-    copy(&to.owner(v), from.owners, vertices * 4);
+    if (to.owners) copy(&to.owner(v), from.owners, vertices * 4);
     if (from.patches) copy(&to.patch(v), from.patches, vertices);
   }
   if (triangles > 0) copy(to.triangle(from.first_triangle), from.indices, triangles * 12);

@@ -64,6 +64,7 @@ namespace QuickSes.Interop
         public int Occlusion;
         public float GaussianRadiusScale;
         public float GaussianIsovalue;
+        public int WithoutOwners;
     }
 
     [StructLayout(LayoutKind.Sequential)]
