@@ -145,8 +145,9 @@ size_t copy_in_fours(const float *, const float *, size_t, Sphere *, bool, Met *
 
 #endif
 
-constexpr size_t kManyAtoms = size_t(1) << 17;  // 2 MB
-constexpr size_t kChunk = size_t(1) << 13;      // for a thread at a time
+constexpr size_t kChunk = size_t(1) << 13;  // for a thread at a time
+// So many go past the caches: what a GPU fetches is in none, and to get it there takes longer than to write it.
+constexpr size_t kManyForGpu = 2 * kChunk, kManyForCpu = size_t(1) << 17;  // 2 MB
 
 // From first to last, of the positions at(i), each a pointer to three floats.
 template <class At>
@@ -189,11 +190,11 @@ const char *position_at(const float *positions, size_t stride, size_t i) {
 AtomBounds copy_atoms(const float *positions, size_t stride, const float *radii, size_t count, Sphere *atoms,
                       CpuThreads *threads) {
   const bool is_packed = stride == 0 || stride == 12;
+  const bool goes_past = count >= (threads ? kManyForGpu : kManyForCpu);
   const auto at = [&](size_t i) { return position_at(positions, stride, i); };
   return copy_all(count, atoms, threads, [&](size_t first, size_t last, Met *met) {
     if (is_packed)
-      first +=
-          copy_in_fours(positions + 3 * first, radii + first, last - first, atoms + first, count >= kManyAtoms, met);
+      first += copy_in_fours(positions + 3 * first, radii + first, last - first, atoms + first, goes_past, met);
     copy_each(first, last, at, radii, atoms, met);
   });
 }

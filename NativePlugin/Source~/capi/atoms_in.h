@@ -19,7 +19,7 @@ float check_radii(const float *radii, size_t count);
 constexpr unsigned kMostCopyThreads = 8;
 
 // Where they throw, what they were to fill is of no use. They return the box of the positions; its max_radius is left
-// 0. threads: that help with many atoms, no more than kMostCopyThreads; or nullptr.
+// 0. threads: that help with many atoms for a GPU, no more than kMostCopyThreads; or nullptr, for a CPU.
 AtomBounds copy_atoms(const float *positions, size_t stride, const float *radii, size_t count, Sphere *atoms,
                       CpuThreads *threads);
 // The same for positions[indices[i]]; indices are checked already.
