@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A mesh while its edges are split at creases.
+// A mesh while its edges are split at creases. Whatever winding is wanted, its triangles are not reversed yet.
 #pragma once
 
 #include "surface/mesh/mesh_view.h"

@@ -189,11 +189,11 @@ float farthest_coordinate(const Work &work) {
   return static_cast<float>(far);
 }
 
-// The shape of a mesh whose edges are to be split: what else there is to vertices comes when it is finished.
+// The shape of a mesh whose edges are to be split: what else there is to vertices comes when it is finished, and it is
+// turned then, so that the winding does not matter to where it is split.
 inline MeshShape shape_before_splits(const MeshShape &wanted) {
   MeshShape shape;
   shape.patches = wanted.patches;
-  shape.reversed = wanted.reversed;
   return shape;
 }
 

@@ -67,7 +67,7 @@ struct EdgeMerges {
   QSES_FN CreaseEnd end(uint32_t v) const { return end_of_vertex(mesh, lattice, v); }
 
   QSES_FN float quality(const CreaseEnd &a, const CreaseEnd &b, const CreaseEnd &c) const {
-    const Vec3<float> normal = cross(b.position - a.position, c.position - a.position) * (mesh.reversed ? -1.f : 1.f);
+    const Vec3<float> normal = cross(b.position - a.position, c.position - a.position);
     const float length2 = length_squared(normal);
     if (!(length2 > 1e-20f)) return -kSlimWeight;
     const auto facing = [&](const CreaseEnd &end) {

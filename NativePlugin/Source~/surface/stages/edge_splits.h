@@ -223,12 +223,11 @@ struct RefuseSplits {
     if (s.within) corner[6] = end_of_point(find.corners[i]);
     const Pieces pieces = cut_triangle(s.edge[0] != kNoNumber, s.edge[1] != kNoNumber, s.edge[2] != kNoNumber, s.within,
                                        [&](int k) { return corner[k].position; });
-    const float sign = find.mesh.reversed ? -1.f : 1.f;
     bool bad = false;
     for (int p = 0; p < pieces.count && !bad; ++p) {
       const CreaseEnd *const c[3] = {corner + pieces.corner[p][0], corner + pieces.corner[p][1],
                                      corner + pieces.corner[p][2]};
-      const Vec3<float> normal = cross(c[1]->position - c[0]->position, c[2]->position - c[0]->position) * sign;
+      const Vec3<float> normal = cross(c[1]->position - c[0]->position, c[2]->position - c[0]->position);
       bad = least_cosine_of_angles(c[0]->position, c[1]->position, c[2]->position) > Sheets::kFlatCosine ||
             sheets.is_folded(c, normal);
     }

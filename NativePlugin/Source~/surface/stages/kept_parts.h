@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Makes a mesh of some of the vertices and triangles of another one. What stays keeps its order.
+// Makes a mesh of some of the vertices and triangles of another one, which may have the other winding. What stays keeps
+// its order.
 #pragma once
 
 #include "surface/mesh/mesh_view.h"
@@ -23,7 +24,10 @@ struct KeepMesh {
     if (i >= triangles || !kept.triangles.has(number)) return;
     const uint32_t *const t = from.triangle(number);
     uint32_t *const out = to.triangle(kept.triangles.rank(number));
-    for (int corner = 0; corner < 3; ++corner) out[corner] = kept.vertices.rank(t[corner]);
+    const bool turned = from.reversed != to.reversed;
+    out[0] = kept.vertices.rank(t[0]);
+    out[turned ? 2 : 1] = kept.vertices.rank(t[1]);
+    out[turned ? 1 : 2] = kept.vertices.rank(t[2]);
   }
 };
 
