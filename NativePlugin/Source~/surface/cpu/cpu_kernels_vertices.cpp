@@ -180,7 +180,9 @@ int project_contact(const FeatureView &f, const BrickCandidates &c, float spacin
     uint32_t done = 0;
     const WidePack way_in = WidePack(depth) - deepest.depth;
     const uint32_t trusted = lane_bits(is_short_move(f.parameters, way_in, way_in * way_in));
-    for_exposed_projections(f, c, p, deepest, used, [&](const Sphere &atom_ball, uint32_t atom, uint32_t exposed) {
+    const uint32_t outside = starts_outside(f.parameters, c, p, deepest, used), within = used & ~outside;
+    for (uint32_t l = outside; l; l &= l - 1) w->placed[g + lowest_bit32(l)] = false;
+    for_exposed_projections(f, c, p, deepest, within, [&](const Sphere &atom_ball, uint32_t atom, uint32_t exposed) {
       done |= exposed;
       const WideMask here = wide_mask(exposed);
       const Vec3<WidePack> outward = sphere_normal(atom_ball, p);
@@ -194,8 +196,7 @@ int project_contact(const FeatureView &f, const BrickCandidates &c, float spacin
         w->placed[g + lowest_bit32(l)] = (trusted >> lowest_bit32(l) & 1) != 0;
       }
     });
-    const uint32_t outside = starts_outside(f.parameters, c, p, deepest, used & ~done), left = used & ~done & ~outside;
-    for (uint32_t l = outside; l; l &= l - 1) w->placed[g + lowest_bit32(l)] = false;
+    const uint32_t left = within & ~done;
     const WideMask mask = wide_mask(done);
     store_pack(w->place.x + g, select(mask, place.x, p.x));
     store_pack(w->place.y + g, select(mask, place.y, p.y));

@@ -83,10 +83,10 @@ __device__ __forceinline__ bool project_on_atoms(const VertexJob &job, const Ver
   const DeepestAtom deepest = deepest_atom(f, candidates, x);
   __syncwarp();
   const Sphere ball = load(f.atoms.items + deepest.atom);
-  const bool contact = is_on_contact(f, candidates, deepest, x);
+  const bool exposed = is_on_contact(f, candidates, deepest, x);  // asked by all lanes of a warp
+  const bool outside = starts_outside(f.parameters, deepest), contact = exposed && !outside;
   const Projection v = project_on_atom(f.parameters, ball, deepest.depth, x);
-  const bool done = contact && v.state == ProjectionState::kPlaced,
-             on_edge = contact ? !done : starts_outside(f.parameters, deepest);
+  const bool done = contact && v.state == ProjectionState::kPlaced, on_edge = outside || (contact && !done);
   __syncwarp();
   append(job.on_edges, &job.counts->on_edges.count, k, team.writes && on_edge);
   if (team.writes && on_edge) leave_start(job, k);

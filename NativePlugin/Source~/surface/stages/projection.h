@@ -205,8 +205,8 @@ QSES_FN void settle_normals(const FeatureView &f, uint32_t owner, SurfacePoint *
 // The way of a vertex to the surface: one rule for all loops over vertices.
 //
 //   first     on the contact patch of the ball it is deepest in, if the radial projection on that is exposed:
-//             project_on_atom(). Else from the nearest arc: project_on_arc(), round 1
-//             A start outside of all balls is none of these: from there the way along an arc would lead off
+//             project_on_atom(). Else from the nearest arc: project_on_arc(), round 1. But from outside of all balls
+//             either way would lead off
 //   then      while another probe may cover it, from the arc that is nearest to where it is now: reproject(), rounds 2
 //             to kMaxProjections. Where another probe does, it jumps to the crest, where the spheres of both probes
 //             meet; where none does, it is placed
@@ -220,6 +220,11 @@ struct Projection {
   int rounds;  // of arcs so far; one more for a long way in the first
 };
 
+// Next to a lattice point that stands for a wall a start may be outside of all balls: as told by the deepest of all.
+QSES_FN bool starts_outside(const SurfaceParameters &p, const DeepestAtom &deepest) {
+  return p.depth > 0.f && deepest.depth <= p.least_depth();
+}
+
 // From the centre outward: from where the probe may be, which may be x itself, the way would be lost in rounding.
 QSES_FN Projection project_on_atom(const SurfaceParameters &p, const Sphere &ball, float depth, const Vec3<float> &x) {
   const Vec3<float> outward = sphere_normal(ball, x),
@@ -228,11 +233,6 @@ QSES_FN Projection project_on_atom(const SurfaceParameters &p, const Sphere &bal
   return {{position, outward, outward, QSES_PATCH_CONTACT, near},
           near ? ProjectionState::kPlaced : ProjectionState::kOnEdge,
           0};
-}
-
-// Next to a lattice point that stands for a wall a start may be outside of all balls: as told by the deepest of all.
-QSES_FN bool starts_outside(const SurfaceParameters &p, const DeepestAtom &deepest) {
-  return p.depth > 0.f && deepest.depth <= p.least_depth();
 }
 
 QSES_FN Projection project_on_arc(const FeatureView &f, const NearestArc &nearest, const Vec3<float> &x) {
