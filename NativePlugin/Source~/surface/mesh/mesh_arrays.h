@@ -24,6 +24,7 @@ inline bool is_exact(const qses_settings &s) {
 inline bool is_for_host(qses_delivery d) { return d == QSES_DELIVERY_HOST || d == QSES_DELIVERY_BOTH; }
 inline bool is_for_device(qses_delivery d) { return d == QSES_DELIVERY_DEVICE || d == QSES_DELIVERY_BOTH; }
 
+// Whether owners stay behind where the mesh is made.
 inline bool leaves_owners(const qses_settings &s) { return s.without_owners && s.delivery == QSES_DELIVERY_HOST; }
 
 inline MeshShape shape_of(const qses_settings &s, bool has_colors) {
