@@ -37,4 +37,9 @@ inline void require(const void *pointer, const char *name) {
   if (!pointer) invalid(std::string(name) + " is NULL");
 }
 
+// In host memory.
+inline void require_owners(const qses_mesh &mesh) {
+  if (mesh.vertex_count > 0 && !mesh.owners) invalid("the mesh has no owners: settings.without_owners left them out");
+}
+
 }  // namespace quickses

@@ -9,6 +9,7 @@
 using quickses::guarded;
 using quickses::invalid;
 using quickses::require;
+using quickses::require_owners;
 
 namespace {
 
@@ -52,7 +53,7 @@ qses_status qses_component_atoms(const qses_mesh *mesh, uint32_t *starts, uint32
     const qses_mesh m = quickses::read_struct(mesh, qses_mesh_init, "qses_mesh");
     if (m.vertex_count > 0 && !m.component_ids)
       invalid("mesh has no component_ids in host memory: settings.component_ids asks for them");
-    if (m.vertex_count > 0 && !m.owners) invalid("mesh has no owners: settings.without_owners left them out");
+    require_owners(m);
     const Lining lining = find_lining(m);
     std::copy(lining.starts.begin(), lining.starts.end(), starts);
     if (!atoms) return;

@@ -13,6 +13,7 @@ using quickses::guarded;
 using quickses::invalid;
 using quickses::KeptMesh;
 using quickses::require;
+using quickses::require_owners;
 using quickses::write_struct;
 
 void check_on_host(const KeptMesh &kept) {
@@ -21,8 +22,7 @@ void check_on_host(const KeptMesh &kept) {
 
 void check_owners(const KeptMesh &kept) {
   check_on_host(kept);
-  if (kept.mesh.vertex_count > 0 && !kept.mesh.owners)
-    invalid("the mesh has no owners: settings.without_owners left them out");
+  require_owners(kept.mesh);
 }
 
 // name: of what there are `total`.

@@ -186,6 +186,14 @@ QSES_FN Deepest deepest_ball(const BallColumns &c, const int32_t *list, int n, c
   return best;
 }
 
+// Which of a pack of points are in no ball of all atoms by more than `least`. reach: of the balls that are looked at,
+// at least -least.
+QSES_FN WideMask are_outside_balls(const BrickCandidates &c, const PackBox &box, const Vec3<WidePack> &p, float least,
+                                   float reach) {
+  const int near = choose_balls(c.atoms, c.atom_count, box, reach, c.near_list);
+  return deepest_ball(c.atoms, c.near_list, near, p, least).number < WidePack(0.f);
+}
+
 // Of the points in `lanes`, all nearest to one atom: which have their radial projection on it exposed?
 QSES_FN uint32_t exposed_lanes(const FeatureView &f, uint32_t atom, const Vec3<WidePack> &offset, WidePack length,
                                uint32_t lanes) {

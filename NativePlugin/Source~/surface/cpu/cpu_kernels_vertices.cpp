@@ -145,15 +145,14 @@ struct Work {
 };
 static_assert(sizeof(Work) <= BrickScratch::kVertexBytes, "the scratch of a thread has room for it");
 
-// Of the points in `lanes`, with what is deepest of the exposed balls, those that start outside of all balls.
-uint32_t starts_outside(const SurfaceParameters &s, const BrickCandidates &c, const Vec3<WidePack> &p,
-                        const Deepest &of_exposed, uint32_t lanes) {
+// The rule of starts_outside(), for those of the points in `lanes` that are in no exposed ball: most are in one.
+uint32_t starts_outside(const SurfaceParameters &s, const BrickCandidates &c, const PackBox &box,
+                        const Vec3<WidePack> &p, const Deepest &of_exposed, uint32_t lanes) {
   const float least = s.least_depth();
   const uint32_t of_none =
       lanes & lane_bits((of_exposed.number < WidePack(0.f)) | (of_exposed.depth <= WidePack(least)));
   if (s.depth == 0.f || of_none == 0) return 0;
-  const int near = choose_balls(c.atoms, c.atom_count, box_around(p), -least, c.near_list);
-  return of_none & lane_bits(deepest_ball(c.atoms, c.near_list, near, p, least).number < WidePack(0.f));
+  return of_none & lane_bits(are_outside_balls(c, box, p, least, -least));
 }
 
 // Vertices on the convex part: projected radially on their deepest atom. The others are packed into w->open, but for
@@ -180,7 +179,7 @@ int project_contact(const FeatureView &f, const BrickCandidates &c, float spacin
     uint32_t done = 0;
     const WidePack way_in = WidePack(depth) - deepest.depth;
     const uint32_t trusted = lane_bits(is_short_move(f.parameters, way_in, way_in * way_in));
-    const uint32_t outside = starts_outside(f.parameters, c, p, deepest, used), within = used & ~outside;
+    const uint32_t outside = starts_outside(f.parameters, c, box, p, deepest, used), within = used & ~outside;
     for (uint32_t l = outside; l; l &= l - 1) w->placed[g + lowest_bit32(l)] = false;
     for_exposed_projections(f, c, p, deepest, within, [&](const Sphere &atom_ball, uint32_t atom, uint32_t exposed) {
       done |= exposed;

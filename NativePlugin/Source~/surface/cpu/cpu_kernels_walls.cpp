@@ -105,9 +105,7 @@ void find_probes(const WallField &field, ProbedPoints<kRoom> &points, int begin,
     Vec3<WidePack> center = p;
     WidePack distance(kFarAway);
     if (field.looks_out) {
-      const int near = choose_balls(c.atoms, c.atom_count, box, field.slack, c.near_list);
-      const WideMask outside =
-          deepest_ball(c.atoms, c.near_list, near, p, -kFarAway).depth <= WidePack(f.parameters.least_depth());
+      const WideMask outside = are_outside_balls(c, box, p, f.parameters.least_depth(), field.slack);
       distance = select(outside, WidePack(0.f), distance);
       lanes &= ~lane_bits(outside);
     }

@@ -252,8 +252,7 @@ QSES_FN Projection project_on_arc(const FeatureView &f, const NearestArc &neares
   const bool may_be_covered = y.distance < p.depth - kProjectionTolerance &&
                               (square_root(nearest.second2) < 2.f * p.depth - y.distance || beyond_axis);
   if (!s.placed) return {s, ProjectionState::kOnEdge, 1};
-  // On its way to a wall it may also get to where a probe is that touches a single atom, as is looked at from round 2
-  // on.
+  // On its way to a wall it may also get to where a probe is that touches a single atom: looked at from round 2 on.
   if (p.depth - y.distance > kLongestWayIn * p.spacing) return {s, ProjectionState::kReproject, 2};
   return {s, may_be_covered ? ProjectionState::kReproject : ProjectionState::kPlaced, 1};
 }
