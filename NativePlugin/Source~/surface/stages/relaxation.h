@@ -161,12 +161,11 @@ void tangential_starts(Executor &executor, const BrickSet &bricks, const MeshLay
 
 struct AddTriangleNormals {
   MeshView mesh;
-  float scale;  // 1 / spacing², negative for reversed triangles
+  float scale;  // 1 / spacing²
   RingSum *sums;
   QSES_HOST_DEVICE void operator()(size_t triangle) const {
     const uint32_t *t = mesh.triangle(triangle);
-    const Vec3<float> a = load_vec3(mesh.position(t[0]));
-    const Vec3<float> n = cross(load_vec3(mesh.position(t[1])) - a, load_vec3(mesh.position(t[2])) - a);
+    const Vec3<float> n = face_normal(mesh, t);  // to the last bit the same, whatever the winding
     const int32_t x = ring_term(n.x, scale), y = ring_term(n.y, scale), z = ring_term(n.z, scale);
     for (int k = 0; k < 3; ++k) add_to_ring(sums + t[k], x, y, z, 1);
   }
@@ -191,8 +190,7 @@ void compute_normals(Executor &executor, const MeshView &mesh, const MeshCounts 
                      Span<RingSum> sums) {
   if (counts.vertices == 0) return;
   executor.fill(sums, 0);
-  const float scale = (mesh.reversed ? -1.f : 1.f) / (spacing * spacing);
-  executor.for_each(counts.triangles, AddTriangleNormals{mesh, scale, sums.data});
+  executor.for_each(counts.triangles, AddTriangleNormals{mesh, 1.f / (spacing * spacing), sums.data});
   executor.for_each(counts.vertices, NormalizeSums{sums.data, mesh});
 }
 
