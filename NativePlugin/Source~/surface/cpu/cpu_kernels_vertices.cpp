@@ -216,7 +216,7 @@ int project_contact(const FeatureView &f, const BrickCandidates &c, float spacin
 
 // Vertices on the saddle and concave parts: projected from the nearest arc, and again while another probe may cover
 // them.
-void project_reentrant(const FeatureView &f, const BrickCandidates &c, float spacing, int open, Work *w) {
+void project_reentrant(const FeatureView &f, const BrickCandidates &c, int open, Work *w) {
   const float depth = f.parameters.depth;
   for (int rounds = 0; open > 0; ++rounds) {
     fill_up(&w->open, open);
@@ -225,7 +225,7 @@ void project_reentrant(const FeatureView &f, const BrickCandidates &c, float spa
       if (c.arc_count > kManyArcs) look_for_stop();
       const Vec3<WidePack> p = load_points(w->open.x + g, w->open.y + g, w->open.z + g);
       const PackBox box = box_around(p);
-      const float reach = depth + (rounds > 0 ? 1e-3f : kStartReach * spacing);
+      const float reach = rounds > 0 ? depth + 1e-3f : start_reach(f.parameters);
       const int arcs = choose_balls(c.arcs, c.arc_count, box, reach, c.arc_list);
       WidePack best(kFarAway), second(kFarAway), number(-1.f);
       for (int k = 0; k < arcs; ++k) {
@@ -235,7 +235,7 @@ void project_reentrant(const FeatureView &f, const BrickCandidates &c, float spa
         best = select(nearer, d2, best);
         number = select(nearer, WidePack(static_cast<float>(k)), number);
       }
-      // What is farther from a point than that is another point's.
+      // What is farther from a point than that is another point's, and in round 0 decides nothing (start_reach()).
       const WidePack reach2(reach * reach);
       number = select(best <= reach2, number, WidePack(-1.f));
       second = select(second <= reach2, second, WidePack(kFarAway));
@@ -368,8 +368,8 @@ BrickNeeds emit_brick_vertices(const FeatureView &f, const BrickSet &bricks, con
   const float h = lattice.spacing, overhang = kStartOverhang * h;
   const glm::ivec3 first = lattice.first_point(bricks.place(brick));
   const Vec3<float> low = lattice.position(first.x, first.y, first.z) - Vec3<float>(overhang, overhang, overhang);
-  const BrickCandidates c = gather_candidates(f, low, 7.f * h + 2.f * overhang, kStartReach * h,
-                                              f.parameters.depth + kStartReach * h, scratch);
+  const BrickCandidates c =
+      gather_candidates(f, low, 7.f * h + 2.f * overhang, kStartReach * h, start_reach(f.parameters), scratch);
   if (c.needs.atoms || c.needs.arcs) return c.needs;
   Work &w = *new (scratch.vertex_memory) Work;
   if (starts.moved) {
@@ -383,7 +383,7 @@ BrickNeeds emit_brick_vertices(const FeatureView &f, const BrickSet &bricks, con
     start_vertices(bricks, layout, brick, starts, &w.place);
   }
   const int open = project_contact(f, c, h, n, &w);
-  project_reentrant(f, c, h, open, &w);
+  project_reentrant(f, c, open, &w);
   place_on_edges(f, bricks, layout, brick, c, n, &w);
   find_owners(f, c, n, &w);
   write_vertices(f, lattice, starts, mesh, base, n, w);

@@ -17,7 +17,7 @@ struct CandidateReach {
   float overhang;     // of vertex starts around the points of a brick or leaf
   float grown;        // of vertices around them: a start moves by up to kStartReach when it is projected
   float leaf_radius;  // ball around the points of a leaf
-  float start_reach;  // arcs this near to a start decide about it
+  float start_reach;  // start_reach(), and some
   float sign_arcs2;   // squared: arcs this near to a leaf's centre can be within depth of one of its points
   float slack;
   float least_depth;  // of a point that may be inside
@@ -32,7 +32,7 @@ struct CandidateReach {
     r.overhang = kStartOverhang * h;
     r.grown = (kStartOverhang + kStartReach) * h;
     r.leaf_radius = 1.5f * kRoot3 * h;
-    r.start_reach = d + kStartReach * h + r.slack;
+    r.start_reach = quickses::start_reach(p) + r.slack;
     const float sign = d + r.leaf_radius + r.slack;
     r.sign_arcs2 = sign * sign;
     return r;

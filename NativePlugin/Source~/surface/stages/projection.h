@@ -14,6 +14,9 @@ namespace quickses {
 // A vertex start is at most this far from the surface, in units of the spacing, if the spacing is at most two probe
 // radii; candidates are gathered accordingly.
 constexpr float kStartReach = 0.9f;
+// So far from a start, arcs decide about it: what is farther has nothing to do with the surface near it, and is listed
+// for it or not as it comes.
+QSES_FN float start_reach(const SurfaceParameters &p) { return p.depth + kStartReach * p.spacing; }
 // How far, in units of the spacing, a start may lie outside the box of the lattice points that own the edges: half an
 // edge and a relaxation step.
 constexpr float kStartOverhang = 1.2f;
@@ -104,6 +107,12 @@ struct NearestArc {
     second2 = minimum(second2, maximum(d2, distance2));
     distance2 = minimum(distance2, d2);
     arc = nearer ? a : arc;
+  }
+
+  // Of those not farther than that.
+  QSES_FN NearestArc within(float reach) const {
+    const float reach2 = reach * reach;
+    return {distance2 <= reach2 ? arc : -1, distance2, second2 <= reach2 ? second2 : kFarAway};
   }
 };
 template <class Candidates>
@@ -235,10 +244,11 @@ QSES_FN Projection project_on_atom(const SurfaceParameters &p, const Sphere &bal
           0};
 }
 
-QSES_FN Projection project_on_arc(const FeatureView &f, const NearestArc &nearest, const Vec3<float> &x) {
+QSES_FN Projection project_on_arc(const FeatureView &f, const NearestArc &of_all, const Vec3<float> &x) {
   const Vec3<float> up(0.f, 0.f, 1.f);
-  if (nearest.arc < 0) return {{x, up, up, QSES_PATCH_REENTRANT, false}, ProjectionState::kOnEdge, 1};
   const SurfaceParameters &p = f.parameters;
+  const NearestArc nearest = of_all.within(start_reach(p));
+  if (nearest.arc < 0) return {{x, up, up, QSES_PATCH_REENTRANT, false}, ProjectionState::kOnEdge, 1};
   const Arc arc = load(f.arcs + nearest.arc);
   const BoundaryPoint y = boundary_on_arc(arc, x);
   // Where the probe's centre may be itself, rounding would say which way the surface is.
