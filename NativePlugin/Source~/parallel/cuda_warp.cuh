@@ -72,14 +72,16 @@ __device__ __forceinline__ Count append_place(bool has, Count *count, unsigned t
   return place;
 }
 
-// The same for a list that all warps fill.
-__device__ __forceinline__ void append(uint32_t *list, uint32_t *count, uint32_t item, bool has) {
-  uint32_t own = 0;
+// The same of a list that all warps fill, whose count is in memory.
+__device__ __forceinline__ uint32_t append_place_of_all(bool has, uint32_t *count) {
+  uint32_t own = 0, base = 0;
   const uint32_t place = append_place(has, &own);
-  uint32_t base = 0;
   if (lane_id() == 0 && own > 0) base = atomicAdd(count, own);
-  base = __shfl_sync(kFullWarp, base, 0);
-  if (has) list[base + place] = item;
+  return __shfl_sync(kFullWarp, base, 0) + place;
+}
+__device__ __forceinline__ void append(uint32_t *list, uint32_t *count, uint32_t item, bool has) {
+  const uint32_t place = append_place_of_all(has, count);
+  if (has) list[place] = item;
 }
 
 // The same by all threads of a block: the whole GPU can add to one count only every other clock cycle or so.
@@ -182,6 +184,12 @@ __device__ __forceinline__ float warp_maximum(float value) {
 struct NumberedValue {
   float value;
   uint32_t number;
+  // Without || and &&, which a GPU would branch for.
+  __device__ __forceinline__ void offer(const NumberedValue &other) {
+    const bool is_better = (other.value > value) | ((other.value == value) & (other.number < number));
+    value = is_better ? other.value : value;
+    number = is_better ? other.number : number;
+  }
 };
 template <int Lanes = kWarp>
 __device__ __forceinline__ NumberedValue warp_largest(NumberedValue own, unsigned lanes = kFullWarp) {
@@ -191,9 +199,7 @@ __device__ __forceinline__ NumberedValue warp_largest(NumberedValue own, unsigne
   } else {
 #pragma unroll
     for (int d = Lanes / 2; d > 0; d >>= 1) {
-      const float value = __shfl_xor_sync(lanes, own.value, d);
-      const uint32_t number = __shfl_xor_sync(lanes, own.number, d);
-      if (value > own.value || (value == own.value && number < own.number)) own = {value, number};
+      own.offer({__shfl_xor_sync(lanes, own.value, d), __shfl_xor_sync(lanes, own.number, d)});
     }
     return own;
   }

@@ -3,10 +3,12 @@
 #pragma once
 
 #include "parallel/second_stream.cuh"
+#include "surface/cuda/gather_candidates_cuda.cuh"
 #include "surface/cuda/gaussian_density_cuda.cuh"
 #include "surface/cuda/local_features_cuda.cuh"
 #include "surface/cuda/mesh_cuda.cuh"
 #include "surface/cuda/mesh_memory_cuda.cuh"
+#include "surface/cuda/sign_leaves_cuda.cuh"
 #include "surface/cuda/solvent_features_cuda.cuh"
 #include "surface/cuda/thin_walls_cuda.cuh"
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "parallel/cuda_warp.cuh"
-#include "surface/cuda/exact_ses_cuda.cuh"
+#include "surface/cuda/deepest_atoms_cuda.cuh"
 
 namespace quickses {
 namespace gpu {

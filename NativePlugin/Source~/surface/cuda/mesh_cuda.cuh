@@ -4,6 +4,7 @@
 #pragma once
 
 #include "surface/cuda/edge_placement_cuda.cuh"
+#include "surface/cuda/gather_candidates_cuda.cuh"
 #include "surface/cuda/triangles_cuda.cuh"
 #include "surface/stages/edge_placement.h"
 

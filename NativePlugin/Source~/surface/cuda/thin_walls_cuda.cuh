@@ -4,6 +4,7 @@
 #pragma once
 
 #include "surface/cuda/held_candidates_cuda.cuh"
+#include "surface/cuda/sign_leaves_cuda.cuh"
 #include "surface/cuda/wall_edges_cuda.cuh"
 
 namespace quickses {

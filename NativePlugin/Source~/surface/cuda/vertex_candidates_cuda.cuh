@@ -3,7 +3,7 @@
 // list of numbers per leaf, so that a thread per vertex has little to look at.
 #pragma once
 
-#include "surface/cuda/exact_ses_cuda.cuh"
+#include "surface/cuda/deepest_atoms_cuda.cuh"
 
 namespace quickses {
 namespace gpu {
