@@ -49,7 +49,7 @@
  *   - one that is longer: what the library does not know is left as it is in what it fills in; in options and settings
  *     it must be 0, else INVALID_ARGUMENT: what was asked for there would not be done.
  *   A struct_size that no header can have (below 8, above 4096, no multiple of the structure's alignment) is
- * INVALID_ARGUMENT.
+ *   INVALID_ARGUMENT.
  *   qses_component and qses_stage_time have no size since they are elements of arrays: they never grow.
  *
  * Errors
@@ -60,21 +60,22 @@
  *   from which CUDA does not recover within the process (a kernel of this or another library that reads or writes a
  *   wrong address, a failed assertion, an uncorrectable error of its memory ...), or a cudaDeviceReset by other code of
  *   the process. A fault ends all use of CUDA in the process, also by other libraries. From then on all contexts with
- * CUDA, on any GPU, give DEVICE_ERROR for whatever needs a GPU, with a sentence that says so, until they are destroyed,
- * which works as usual; their last meshes in host memory stay valid, after a reset on Linux only. New contexts with
- * CUDA are refused with BACKEND_UNAVAILABLE until the process ends; AUTO takes the CPU. Contexts on the CPU live on.
+ *   CUDA, on any GPU, give DEVICE_ERROR for whatever needs a GPU, with a sentence that says so, until they are
+ *   destroyed, which works as usual; their last meshes in host memory stay valid, after a reset on Linux only. New
+ *   contexts with CUDA are refused with BACKEND_UNAVAILABLE until the process ends; AUTO takes the CPU. Contexts on the
+ *   CPU live on.
  *
  * Threads
  *   A context may be used by one thread at a time, but for qses_poll and qses_cancel, which may be called from any
  *   thread while another one uses the context. Different contexts are independent of each other. Functions without a
  *   context may be called from any thread at any time; kept meshes, structures and trajectories have rules of their
- * own, below. Calls that compute look at least every 20 ms whether qses_cancel was called, as a rule; on a GPU, between
- * kernels. A stack of 64 KiB suffices for every call on the CPU. Where the machine refuses threads, a context makes do
- * with those there are, down to the calling thread. A thread that is in a call must not be ended from outside
- * (pthread_cancel, TerminateThread): qses_cancel is there for that.
+ *   own, below. Calls that compute look at least every 20 ms whether qses_cancel was called, as a rule; on a GPU,
+ *   between kernels. A stack of 64 KiB suffices for every call on the CPU. Where the machine refuses threads, a context
+ *   makes do with those there are, down to the calling thread. A thread that is in a call must not be ended from
+ *   outside (pthread_cancel, TerminateThread): qses_cancel is there for that.
  *   After a fork while nothing of the library ran, the child may make contexts on the CPU and compute in them, with its
- * calling thread alone if TBB's were used before; contexts that had jobs (qses_begin) before must be neither used nor
- * destroyed there. Where CUDA was used, no child can use it.
+ *   calling thread alone if TBB's were used before; contexts that had jobs (qses_begin) before must be neither used nor
+ *   destroyed there. Where CUDA was used, no child can use it.
  */
 #ifndef QUICKSES_QUICKSES_H
 #define QUICKSES_QUICKSES_H
@@ -358,16 +359,16 @@ typedef struct qses_settings {
   qses_bool texcoords;              /* 1: vertices have texture coordinates (see qses_set_texcoords, and occlusion
                                        below); default 0 */
   float frame_budget_ms;  /* for qses_begin: 0 (default): all levels one after the other. Above 0, at most 60000: one
-                             level only, the finest of them (`spacing` being the last) that is expected to take no longer
-                             than this, ms, or the coarsest if none is. Expected is what the last frames of the series
-                             (below) say: the time from the start of the work to the mesh in host memory, and what
-                             show_ms_per_mb (below) adds. The first frame
-                             is the coarsest; what was learnt is forgotten when the number of atoms, surface, method,
-                             probe_radius, relaxation_steps, slice_size, creases, hard_edges, spacing or levels change
-                             within a series. Now and then a frame takes longer, when a finer level is tried: so a
-                             surface that became cheaper gets finer again. Which level it was is in qses_mesh.level and
-                             .spacing. Like everything that depends on time, the choice of the level is not the same in
-                             every run; the mesh of a level is */
+                             level only, the finest of them (`spacing` being the last) that is expected to take no
+                             longer than this, ms, or the coarsest if none is. Expected is what the last frames of the
+                             series (below) say: the time from the start of the work to the mesh in host memory, and
+                             what show_ms_per_mb (below) adds. The first frame is the coarsest; what was learnt is
+                             forgotten when the number of atoms, surface, method, probe_radius, relaxation_steps,
+                             slice_size, creases, hard_edges, spacing or levels change within a series. Now and then
+                             a frame takes longer, when a finer level is tried: so a surface that became cheaper gets
+                             finer again. Which level it was is in qses_mesh.level and .spacing. Like everything that
+                             depends on time, the choice of the level is not the same in every run; the mesh of a
+                             level is */
   qses_bool components;   /* 1: qses_mesh.components is filled; default 0, which costs nothing */
   uint32_t series;        /* which series of frames a job belongs to: any number; default 0. For callers who let one
                              context compute several molecules in turn: frame_budget_ms learns from each series apart.
@@ -387,8 +388,8 @@ typedef struct qses_settings {
                              Not with GRID */
   qses_bool hard_edges;   /* 1: a vertex on a crease is there once per side, each time with the normal of that side, so
                              that light breaks where the surface does. The mesh is then closed once vertices at the same
-                             place are taken for one. Default 0: one vertex, with the mean normal. GRID knows no creases,
-                             so that each is there once */
+                             place are taken for one. Default 0: one vertex, with the mean normal. GRID knows no
+                             creases, so that each is there once */
   qses_bool component_ids; /* 1: qses_mesh.component_ids is filled, and the components; default 0 */
   qses_bool outer_only;    /* 1: the walls of cavities are left out of the mesh, not of area, volume and components,
                               which are filled; the outer surface of what lies within a cavity stays. Default 0 */
@@ -406,12 +407,12 @@ typedef struct qses_settings {
                                   radius times this scale; atoms farther than 4 s add nothing. (Radius scale of
                                   QuickSurf, Krone and others 2012; its grid spacing is `spacing`, 1 in VMD) */
   float gaussian_isovalue;     /* the surface is where the density has this value, 0.01 to 1000; default 0.5, as in VMD.
-                                  Vertices are at it within a thousandth of the spacing, normals along the density's exact
-                                  gradient. No smoothing steps, creases, hard edges or kinds of patch; area and volume
-                                  through the normals */
+                                  Vertices are at it within a thousandth of the spacing, normals along the density's
+                                  exact gradient. No smoothing steps, creases, hard edges or kinds of patch; area and
+                                  volume through the normals */
   qses_bool without_owners;    /* 1: a mesh of delivery HOST has no owners: qses_mesh.owners is NULL, and
-                                  qses_component_atoms, qses_kept_mesh_paint, _filter and _pick are INVALID_ARGUMENT. From
-                                  a GPU a large mesh comes 4 to 7 % sooner. Default 0 */
+                                  qses_component_atoms, qses_kept_mesh_paint, _filter and _pick are INVALID_ARGUMENT.
+                                  From a GPU a large mesh comes 4 to 7 % sooner. Default 0 */
 } qses_settings;
 
 /* The defaults, with struct_size set. NULL is ignored. */
@@ -458,8 +459,8 @@ typedef struct qses_mesh {
   const uint8_t *colors;  /* V x 4, tightly packed, or NULL if there are none */
   const float *texcoords; /* V x 2, tightly packed, or NULL if not asked for */
   uint32_t vertex_bytes;  /* INTERLEAVED (24) and COMPACT (16), wherever the mesh is: bytes from one vertex to the next
-                             in the vertices that  positions points to, V * vertex_bytes bytes of memory. SEPARATE: 0,
-                             positions and normals  are tightly packed */
+                             in the vertices that positions points to, V * vertex_bytes bytes of memory. SEPARATE: 0,
+                             positions and normals are tightly packed */
   uint32_t reserved;      /* 0 */
   const uint32_t *owners; /* V, the atom whose van der Waals surface is nearest to the vertex; with GRID, to where it
                              was before it was smoothed. NULL with settings.without_owners */
@@ -500,10 +501,14 @@ QSES_API qses_status qses_compute(qses_context *context, const qses_settings *se
 
 /* Which atoms line each component of a mesh: those that own its vertices. (With qses_structure_description.residues
  * they tell the residues of a cavity.) What is left out of the mesh, hidden or by settings.outer_only, counts for
- * nothing. mesh    made with settings.component_ids, in host memory starts  room for component_count + 1 numbers atoms
- * the atoms of component k become atoms[starts[k]] to atoms[starts[k + 1] - 1], rising; NULL: only starts is written,
- * whose last number tells how much room atoms needs room    of atoms; with NULL it is ignored Errors: INVALID_ARGUMENT
- * (also: no component_ids; too little room, after which only starts is written), OUT_OF_MEMORY. */
+ * nothing.
+ *   mesh    made with settings.component_ids, in host memory
+ *   starts  room for component_count + 1 numbers, of which the first becomes 0
+ *   atoms   the atoms of component k become atoms[starts[k]] to atoms[starts[k + 1] - 1], rising; NULL: only starts is
+ *           written, whose last number tells how much room atoms needs
+ *   room    of atoms, in numbers; with NULL it is ignored
+ * Errors: INVALID_ARGUMENT (also: no component_ids; no owners; too little room, after which only starts is written),
+ * OUT_OF_MEMORY. */
 QSES_API qses_status qses_component_atoms(const qses_mesh *mesh, uint32_t *starts, uint32_t *atoms, size_t room);
 
 /* The mesh of the last qses_compute or qses_collect that succeeded. Errors: INVALID_ARGUMENT, NO_RESULT. */
@@ -586,11 +591,11 @@ typedef struct qses_size_estimate {
 static inline void qses_size_estimate_init(qses_size_estimate *estimate) { qses_clear(estimate, sizeof *estimate); }
 
 /* Predicts the size of the mesh of settings.spacing (not of coarser levels), and the memory for it, without making it:
- * the features of the atoms are computed, and signs on lattices that are coarse enough to be cheap. All
- * numbers are within 25 % of the truth as a rule, and rarely more than 10 % below. What creases add to flat, regular or
- * isolated atoms is a guess, often too low by half, until the context has made such a surface. Waits for a running
- * job. The last mesh stays valid. settings may be NULL (defaults). Errors: as of qses_compute; also OUT_OF_MEMORY if
- * the budget does not even suffice for the estimate (the message names one that may do). */
+ * the features of the atoms are computed, and signs on lattices that are coarse enough to be cheap. All numbers are
+ * within 25 % of the truth as a rule, and rarely more than 10 % below. What creases add to flat, regular or isolated
+ * atoms is a guess, often too low by half, until the context has made such a surface. Waits for a running job. The last
+ * mesh stays valid. settings may be NULL (defaults). Errors: as of qses_compute; also OUT_OF_MEMORY if the budget does
+ * not even suffice for the estimate (the message names one that may do). */
 QSES_API qses_status qses_estimate(qses_context *context, const qses_settings *settings, qses_size_estimate *estimate);
 
 /* Switches the timing of the single stages on (1) or off (0, the default). With CUDA it costs some tens of microseconds
@@ -790,17 +795,30 @@ typedef enum qses_structure_format {
 } qses_structure_format;
 
 /* Selections are words, with names of the file behind some of them. Words may be in capitals or not, names are as in
- * the file, and several have blanks or commas between them. all, none protein, nucleic, ligand, ions, water (or
- * solvent)  residues: each is of exactly one of these kinds. Of protein and nucleic are modified residues in the chain
- * too; an ion is one atom of a metal or a halogen; a ligand is whatever is none of the others backbone, sidechain  of
- * protein and nucleic: N, CA, C, O and their hydrogens, or phosphate and sugar; and the rest hydrogen, hetero hydrogen
- * and deuterium; HETATM records chain A B, resname HEM ATP (or resn), name CA CB, altloc A resid -5-40 52A (or resi)
- * residue numbers and ranges of them, with insertion codes: 52 is not 52A, 52-53 is both element C FE               D
- * is deuterium, H is not index 0-99                 places among the atom records of the model, from 0, as file_indices
- *   within 5 of X              atoms at most 5 Å from one of X, centre to centre, those of X too
- *   same residue as X          all atoms of residues that X has an atom of
- *   not X, X and X, X or X, (X)   `not` binds before `and`, and `and` before `or`; X behind `not`, `of` and `as` is the
- *              one word, with its names, or parenthesis that follows
+ * the file, and several have blanks or commas between them.
+ *   all, none
+ *   protein, nucleic, ligand, ions, water (or solvent)
+ *       residues: each is of exactly one of these kinds. Of protein and nucleic are modified residues in the chain too;
+ *       an ion is one atom of a metal or a halogen; a ligand is whatever is none of the others
+ *   backbone, sidechain
+ *       of protein and nucleic: N, CA, C, O and their hydrogens, or phosphate and sugar; and the rest
+ *   hydrogen, hetero
+ *       hydrogen and deuterium; HETATM records
+ *   chain A B, resname HEM ATP (or resn), name CA CB, altloc A
+ *       chains, residue names, atom names, alternate locations
+ *   resid -5-40 52A (or resi)
+ *       residue numbers and ranges of them, with insertion codes: 52 is not 52A, 52-53 is both
+ *   element C FE
+ *       D is deuterium, H is not
+ *   index 0-99
+ *       places among the atom records of the model, from 0, as file_indices
+ *   within 5 of X
+ *       atoms at most 5 Å from one of X, centre to centre, those of X too
+ *   same residue as X
+ *       all atoms of residues that X has an atom of
+ *   not X, X and X, X or X, (X)
+ *       `not` binds before `and`, and `and` before `or`; X behind `not`, `of` and `as` is the one word, with its names,
+ *       or parenthesis that follows
  * Terms in the CID syntax of gemmi, without blanks, may stand wherever X may: "within 5 of (HEM) and not //B". What was
  * CID before there were words still is: a single word names a chain, and a single word in parentheses a residue, if the
  * structure has one of this name ("//all" and "resname ALL" leave no doubt). A word that nobody knows is an error. */

@@ -24,12 +24,12 @@
  * When it can't be done
  *   Every failure is a status of the target (qses_gpu_target_status) with a sentence. The mesh is still kept:
  *   qses_kept_mesh_download brings it to host memory, from where it is shown as any other. What the buffers hold then
- * is undefined.
+ *   is undefined.
  *
  * Graphics APIs
  *   OpenGL on Linux and Windows; Direct3D 11 on Windows, which nobody has run yet on a GPU: its order of calls is
- * tested against stand-ins. Vulkan and Direct3D 12 would need memory that both sides import:
- * Documentation~/gpu-delivery.md.
+ *   tested against stand-ins. Vulkan and Direct3D 12 would need memory that both sides import:
+ *   Documentation~/gpu-delivery.md.
  */
 #ifndef QUICKSES_QUICKSES_GPU_H
 #define QUICKSES_QUICKSES_GPU_H
