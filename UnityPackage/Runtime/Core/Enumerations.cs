@@ -122,7 +122,7 @@ namespace QuickSes
         Nothing = 0,
         /// <summary>Sums over flat triangles: the grid method.</summary>
         Triangles = 1,
-        /// <summary>Triangles bent along the exact normals of their corners: SES.</summary>
+        /// <summary>Triangles bent along the exact normals of their corners: SES and Gaussian.</summary>
         Normals = 2,
         /// <summary>Exact, from what each atom leaves free of the others: SAS and VDW.</summary>
         Atoms = 3

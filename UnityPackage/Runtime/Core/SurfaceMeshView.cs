@@ -9,8 +9,8 @@ namespace QuickSes
     /// the next <see cref="SurfaceContext.TryCollect"/>, <see cref="SurfaceContext.Compute"/> or
     /// <see cref="SurfaceContext.Keep"/> that succeeds there, and with Dispose: asking an ended view for memory throws.
     /// Spans and pointers that were taken before can't tell, so don't keep them; and keep the context or kept mesh
-    /// itself alive while they are used. <c>default</c> is an empty mesh. V is the number of vertices, T that of triangles; lengths are in Å, in the coordinates the atoms were
-    /// given in.
+    /// itself alive while they are used. <c>default</c> is an empty mesh. V is the number of vertices, T that of triangles;
+    /// lengths are in Å, in the coordinates the atoms were given in.
     /// </summary>
     public readonly unsafe struct SurfaceMeshView
     {
@@ -175,8 +175,8 @@ namespace QuickSes
         /// <summary>
         /// Å² of the surface that belong to each of the atoms, in the order they were given in; empty unless
         /// <see cref="SurfaceSettings.AtomAreas"/>. They add up to <see cref="SurfaceReport.Area"/>. Of SAS and VDW they
-        /// are exact; of SES, what of each triangle is nearest to the atom. Those of the whole surface where atoms are
-        /// hidden.
+        /// are exact; of SES and Gaussian surfaces, what of each triangle is nearest to the atom. Those of the whole
+        /// surface where atoms are hidden.
         /// </summary>
         public ReadOnlySpan<double> AtomAreas =>
             new ReadOnlySpan<double>(Valid(_native.AtomAreas), checked((int)_native.AtomCount));

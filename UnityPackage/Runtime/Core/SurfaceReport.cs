@@ -40,7 +40,7 @@ namespace QuickSes
         /// </summary>
         public ulong WorkBytesPeak => _native.WorkBytesPeak;
 
-        /// <summary>Bytes of the mesh.</summary>
+        /// <summary>Bytes of the mesh, without its components; 0 with <see cref="MeshDelivery.None"/>.</summary>
         public ulong MeshBytes => _native.MeshBytes;
 
         /// <summary>Bytes of host memory of the context, the mesh included.</summary>
@@ -53,10 +53,13 @@ namespace QuickSes
         /// while it is made.</summary>
         public ulong SliceCount => _native.SliceCount;
 
-        /// <summary>Vertices that were dropped since their atoms are hidden.</summary>
+        /// <summary>
+        /// Vertices that are left out of the mesh: their atoms are hidden, or they are of a cavity
+        /// (<see cref="SurfaceSettings.OuterOnly"/>).
+        /// </summary>
         public uint HiddenVertices => _native.HiddenVertices;
 
-        /// <summary>Triangles that were dropped since atoms are hidden.</summary>
+        /// <summary>Triangles that are left out for the same reasons.</summary>
         public uint HiddenTriangles => _native.HiddenTriangles;
 
         /// <summary>
@@ -72,7 +75,8 @@ namespace QuickSes
         public ulong UnplacedVertices => _native.UnplacedVertices;
 
         /// <summary>
-        /// How often the work was begun: more than once only where memory was refused, and less of it did.
+        /// How often the work was begun: more than once only where memory was refused, and it was done again in a way
+        /// that takes less.
         /// </summary>
         public ulong Attempts => _native.Attempts;
 

@@ -57,7 +57,7 @@ namespace QuickSes
         /// <summary>How it is computed.</summary>
         public SurfaceMethod Method { get => Native.Method; set => Native.Method = value; }
 
-        /// <summary>Å, 0 to 100; 1.4 is water. Below 0.05 the SES is the VDW surface. Ignored by VDW.</summary>
+        /// <summary>Å, 0 to 100; 1.4 is water. Below 0.05 the SES is the VDW surface. Ignored by VDW and Gaussian.</summary>
         public float ProbeRadius { get => Native.ProbeRadius; set => Native.ProbeRadius = value; }
 
         /// <summary>Å between lattice points, 0.001 to 100: how fine the mesh is.</summary>
@@ -75,7 +75,9 @@ namespace QuickSes
         /// <summary>The order of a triangle's vertices.</summary>
         public SurfaceWinding Winding { get => Native.Winding; set => Native.Winding = value; }
 
-        /// <summary>Whether <see cref="SurfaceMeshView.Patches"/> is filled. Not with the grid method.</summary>
+        /// <summary>
+        /// Whether <see cref="SurfaceMeshView.Patches"/> is filled. Not with the grid method, nor of Gaussian surfaces.
+        /// </summary>
         public bool PatchTypes { get => Native.PatchTypes != 0; set => Native.PatchTypes = value ? 1 : 0; }
 
         /// <summary>Whether area and volume are computed: see <see cref="SurfaceReport.MeasuredBy"/>.</summary>
@@ -141,13 +143,14 @@ namespace QuickSes
 
         /// <summary>
         /// Whether edges of triangles that cut across a crease are split on it: sharp rims, some more triangles. Not with
-        /// the grid method.
+        /// the grid method, nor of Gaussian surfaces.
         /// </summary>
         public bool Creases { get => Native.Creases != 0; set => Native.Creases = value ? 1 : 0; }
 
         /// <summary>
         /// Whether a vertex on a crease is there once per side, each time with the normal of that side; with
-        /// <see cref="SurfaceMeshView.Repeated"/> taken for one the mesh is closed. Not with the grid method.
+        /// <see cref="SurfaceMeshView.Repeated"/> taken for one the mesh is closed. The grid method knows no
+        /// creases, so that each is there once; not of Gaussian surfaces.
         /// </summary>
         public bool HardEdges { get => Native.HardEdges != 0; set => Native.HardEdges = value ? 1 : 0; }
 

@@ -332,8 +332,8 @@ typedef struct qses_settings {
   uint32_t struct_size; /* set by qses_settings_init */
   qses_surface surface; /* default SES */
   qses_method method;   /* default EXACT */
-  float probe_radius; /* Å, 0 to 100; default 1.4 (water). Ignored by VDW. With method EXACT, the SES of a probe below
-                         0.05 Å is computed as the VDW surface, from which it hardly differs */
+  float probe_radius; /* Å, 0 to 100; default 1.4 (water). Ignored by VDW and GAUSSIAN. With method EXACT, the SES of a
+                         probe below 0.05 Å is computed as the VDW surface, from which it hardly differs */
   float spacing;      /* Å between the points of the lattice on whose edges vertices begin (the paper's "voxel size"):
                          how fine the mesh is. What lies between its points is missing: at 2 Å, an ion that touches
                          nothing may be. 0.001 to 100; default 0.5 */
@@ -343,7 +343,7 @@ typedef struct qses_settings {
                             most slice_size³ lattice points; the mesh is the same byte for byte. Smaller slices need
                             less memory with CUDA; on the CPU they change little */
   qses_winding winding;  /* default OUTWARD */
-  qses_bool patch_types; /* 1: qses_mesh.patches is filled; default 0. Not with GRID */
+  qses_bool patch_types; /* 1: qses_mesh.patches is filled; default 0. Not with GRID, nor of GAUSSIAN */
   qses_bool measure;     /* 1 (default): qses_report.area and .volume are computed (see qses_measured_by); 0: they are
                             0 */
   uint32_t tag;          /* any number; comes back in qses_mesh.tag and qses_progress.tag */
@@ -385,16 +385,16 @@ typedef struct qses_settings {
                              angle, are split on it: sharp rims, a few per cent more triangles, and area along the
                              normals to a thousandth. At `spacing` only, not at the coarser levels. And normals that
                              would point against a triangle of their vertex are turned, also by hard_edges. Default 0.
-                             Not with GRID */
+                             Not with GRID, nor of GAUSSIAN */
   qses_bool hard_edges;   /* 1: a vertex on a crease is there once per side, each time with the normal of that side, so
                              that light breaks where the surface does. The mesh is then closed once vertices at the same
                              place are taken for one. Default 0: one vertex, with the mean normal. GRID knows no
-                             creases, so that each is there once */
+                             creases, so that each is there once. Not of GAUSSIAN */
   qses_bool component_ids; /* 1: qses_mesh.component_ids is filled, and the components; default 0 */
   qses_bool outer_only;    /* 1: the walls of cavities are left out of the mesh, not of area, volume and components,
                               which are filled; the outer surface of what lies within a cavity stays. Default 0 */
   qses_bool atom_areas;    /* 1: qses_mesh.atom_areas is filled; default 0. Of SAS and VDW it costs next to nothing, of
-                              SES as much as to measure it. Not with GRID */
+                              SES and GAUSSIAN as much as to measure them. Not with GRID */
   qses_bool occlusion; /* 1: ambient occlusion. Vertices have texture coordinates, and the first number of each is how
                           open the surface is there: the part of the light of an even sky that arrives, from 0
                           (closed in) to 1 (a plain), whatever is farther than 20 Å left aside. The second is 1, so
@@ -477,9 +477,9 @@ typedef struct qses_mesh {
                                        qses_report, if that comes from the normals */
   const uint32_t *component_ids;    /* V, the number of the vertex's component, or NULL if not asked for */
   const double *atom_areas; /* atom_count, Å²: how much of the surface belongs to each of the caller's atoms; they add
-                               up to qses_report.area. SAS and VDW: exactly, from the atoms. SES: what of each triangle
-                               is nearest to the atom, a third for each corner. In host memory with any delivery. Those
-                               of the whole surface where atoms are hidden. NULL if not asked for */
+                               up to qses_report.area. SAS and VDW: exactly, from the atoms. SES and GAUSSIAN: what of
+                               each triangle is nearest to the atom, a third for each corner. In host memory with any
+                               delivery. Those of the whole surface where atoms are hidden. NULL if not asked for */
   uint64_t atom_count;      /* 0 if atom_areas is NULL */
   const uint32_t *repeated; /* with settings.hard_edges: of the last repeated_count vertices, which vertex each of them
                                stands for on the other side of its crease, in ascending order. With these taken for one
@@ -530,9 +530,9 @@ typedef struct qses_stage_time {
 typedef enum qses_measured_by {
   QSES_MEASURED_BY_NOTHING = 0,   /* not asked for */
   QSES_MEASURED_BY_TRIANGLES = 1, /* sums over flat triangles (method GRID) */
-  QSES_MEASURED_BY_NORMALS = 2,   /* triangles bent along the exact normals of their corners: SES. What is left falls
-                                       with the square of the spacing, but for creases that triangles cut across
-                                       (settings.creases) */
+  QSES_MEASURED_BY_NORMALS = 2,   /* triangles bent along the exact normals of their corners: SES and GAUSSIAN. What is
+                                       left falls with the square of the spacing, but for creases that triangles cut
+                                       across (settings.creases) */
   QSES_MEASURED_BY_ATOMS = 3 /* exact, from what the others leave free of each atom, the same at every spacing: SAS and
                                 VDW, and the SES of a probe below 0.05 Å. A molecule that is turned or moved has the
                                 same within 1e-6 */

@@ -23,7 +23,7 @@ namespace QuickSes
             set => Set(ref _method, Known(value, value <= SurfaceMethod.Grid && value >= 0));
         }
 
-        /// <summary>Å, 0 to 100; default 1.4, water.</summary>
+        /// <summary>Å, 0 to 100; default 1.4, water. Not used by Vdw and Gaussian.</summary>
         public float ProbeRadius
         {
             get => _probeRadius;
@@ -55,7 +55,7 @@ namespace QuickSes
             set => Set(ref _spacing, Spaced(value));
         }
 
-        /// <summary>Smoothing steps, 0 to 100; default 1.</summary>
+        /// <summary>Smoothing steps, 0 to 100; default 1. Not used by Gaussian.</summary>
         public int RelaxationSteps
         {
             get => _relaxationSteps;
@@ -67,7 +67,7 @@ namespace QuickSes
         /// with vertices for each side, so that light breaks there (<see cref="SurfaceSettings.Creases"/>,
         /// <see cref="SurfaceSettings.HardEdges"/>); default yes. New atoms and settings count as rest, new positions
         /// do not until <see cref="RestDelay"/> is over. Which vertex each of the others stands for: <see
-        /// cref="Repeated"/>. Not with the grid method.
+        /// cref="Repeated"/>. Not with the grid method, nor of Gaussian surfaces.
         /// </summary>
         public bool SharpCreases
         {

@@ -52,7 +52,7 @@ namespace QuickSes
             "exact surface.")]
         private int _relaxationSteps = 1;
         [SerializeField, Tooltip("When atoms rest, triangles of the finest level follow the creases where sheets of the " +
-            "surface meet, and light breaks there. Not while atoms move, nor with the grid method.")]
+            "surface meet, and light breaks there. Not while atoms move, nor with the grid method or of Gaussian surfaces.")]
         private bool _sharpCreases = true;
         [SerializeField, Tooltip("Less light where the surface is closed in, computed with it, also while atoms move: " +
             "texture coordinate 1, which the package's shaders read.")]
