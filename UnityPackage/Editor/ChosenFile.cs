@@ -17,7 +17,7 @@ namespace QuickSes.Editor
 
         private static readonly string[] s_trajectories =
         {
-            "Trajectories", "dcd,xtc,trr,nc,ncdf,ncrst,pdb,ent,gz,bytes", "All files", "*"
+            "Trajectories", "dcd,xtc,trr,nc,ncdf,ncrst,pdb,ent,brk,gz,bytes", "All files", "*"
         };
 
         private ChosenFile(MoleculeSourceKind kind, Object asset, string path)

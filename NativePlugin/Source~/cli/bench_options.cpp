@@ -35,7 +35,7 @@ void add_bench_options(CLI::App *app, BenchOptions &options) {
   app->add_flag("--measure", options.measure, "With area and volume");
   app->add_flag("--stages", options.stages, "The time of each stage as well, in as many calls of their own");
   add_count(app, "--small", "--small", options.small, 1, 1000000,
-            "Time 100 surfaces of at least N atoms each instead, cut between residues, one after the other");
+            "Time 100 surfaces of at least N atoms each instead, cut between residues, several at a time");
   app->add_flag("--jobs", options.jobs,
                 "Time jobs instead: begin, cancel, destroy, the first level, and all levels against the finest alone");
   put_rest_into_group(app, "Timing");

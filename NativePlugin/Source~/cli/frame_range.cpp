@@ -53,7 +53,7 @@ FrameSelection FrameRange::select(size_t frame_count, const std::string &quoted_
   if (is_single_) {
     const int64_t frame = from_start(*begin_);
     if (frame < 0 || frame >= count)
-      throw Failure(kUsage, "--frames: " + quoted_trajectory + " has no frame " + text_ + ": there are " + frames +
+      throw Failure(kUsage, "--frames: " + quoted_trajectory + " has no frame " + text_ + ": only " + frames +
                                 ", 0 to " + std::to_string(count - 1));
     return {static_cast<size_t>(frame), 1, 1};
   }

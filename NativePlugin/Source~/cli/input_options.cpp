@@ -19,7 +19,8 @@ const std::map<std::string, io::StructureFormat> kInputFormats = {{"pdb", io::St
                                                                   {"xyzr", io::StructureFormat::kXyzr},
                                                                   {"gro", io::StructureFormat::kGro}};
 
-const char kInputHelp[] = "Structure: .pdb .ent .cif .mmcif .pqr .xyzr .gro, each also as .gz; - for standard input";
+const char kInputHelp[] =
+    "Structure: .pdb .ent .brk .cif .mmcif .pqr .xyzr .xyzrn .gro, each also as .gz; - for standard input";
 
 void add_structure_options(CLI::App *app, Options &options, const std::string &input_help, const char *model_help) {
   app->add_option("-i,--input,INPUT", options.inputs, input_help)->type_name("FILE");

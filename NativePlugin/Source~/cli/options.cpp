@@ -87,7 +87,7 @@ void add_creases(CLI::App *app, ComputeOptions &options) {
   add_switch(
       app, "--creases", options.creases,
       "on: edges of triangles that cut across a crease are split on it, for sharp rims and for numbers. Default: "
-      "on, but off for trajectories and bench");
+      "on where there are creases, but off for trajectories and bench");
 }
 
 void add_surface_choice(CLI::App *app, ComputeOptions &options) {
@@ -135,9 +135,8 @@ void add_area_options(CLI::App *app, Options &options) {
 
 void add_trajectory_options(CLI::App *app, Options &options, const char *csv_help) {
   app->add_option("--trajectory", options.trajectories,
-                  "Frames of the atoms of INPUT: .dcd .xtc .trr .nc .ncdf .ncrst, or .pdb with several models, each "
-                  "also as .gz. "
-                  "Given several times: files in a row, their frames numbered through")
+                  "Frames of the atoms of INPUT: .dcd .xtc .trr .nc .ncdf .ncrst, or .pdb .ent .brk with several "
+                  "models, each also as .gz. Given several times: files in a row, their frames numbered through")
       ->type_name("FILE")
       ->allow_extra_args(false);  // INPUT may come next
   app->add_option_function<std::string>(

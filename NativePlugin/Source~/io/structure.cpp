@@ -63,8 +63,8 @@ StructureFormat find_format(const std::string &path, const std::string &text) {
   if (extension == ".gro") return StructureFormat::kGro;
   StructureFormat format;
   if (!format_of_content(text, format))
-    fail_input("'" + path + "': its name and content tell no format; known are .pdb .ent .cif .mmcif .pqr .xyzr .gro" +
-               ", each also as .gz; of others the format has to be given");
+    fail_input("'" + path + "': its name and content tell no format; known are .pdb .ent .brk .cif .mmcif .pqr .xyzr " +
+               ".xyzrn .gro, each also as .gz; of others the format has to be given");
   return format;
 }
 

@@ -112,7 +112,7 @@ const Trajectory::Part &Trajectory::part_of(size_t frame) const {
     const size_t others = parts_.size() - 1;
     fail_usage("'" + parts_.front().reader->name() + "'" +
                (others == 0 ? " has" : " and " + std::to_string(others) + " more have") + " no frame " +
-               std::to_string(frame) + ": the frames are 0 to " + std::to_string(frame_count_ - 1));
+               std::to_string(frame) + ": the last is " + std::to_string(frame_count_ - 1));
   }
   const auto starts_behind = [](size_t number, const Part &part) { return number < part.first; };
   return *std::prev(std::upper_bound(parts_.begin(), parts_.end(), frame, starts_behind));

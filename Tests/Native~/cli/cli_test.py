@@ -185,7 +185,7 @@ class Errors(ProgramTest):
 
     def test_input_has_an_unknown_extension(self):
         self.write("notes.txt", "Dear diary\n")
-        self.assert_fails(INPUT, ["notes.txt", ".pdb", ".cif", ".xyzr"], "notes.txt")
+        self.assert_fails(INPUT, ["notes.txt", ".pdb", ".brk", ".cif", ".xyzr", ".xyzrn"], "notes.txt")
 
     def test_no_such_model(self):
         self.assert_fails(USAGE, ["1 model", "7"], CRAMBIN, "--model", "7")

@@ -250,7 +250,7 @@ TEST_F(TrajectoryTest, FramesOutOfRange) {
     float xyz[15];
     for (size_t frame : {size_t{3}, SIZE_MAX}) {
       EXPECT_HAS(error_of(ErrorKind::kUsage, [&] { trajectory.read_frame(frame, xyz); }),
-                 "has no frame " + std::to_string(frame) + ": the frames are 0 to 2");
+                 "has no frame " + std::to_string(frame) + ": the last is 2");
       error_of(ErrorKind::kUsage, [&] { trajectory.box(frame); });
       error_of(ErrorKind::kUsage, [&] { trajectory.time(frame); });
     }
@@ -274,8 +274,8 @@ TEST_F(TrajectoryTest, FilesInARowAreNumberedThrough) {
   EXPECT_EQ(trajectory.format(), Trajectory::open(files[0]).format());
   for (size_t k = 0; k < all.size(); ++k) EXPECT_EQ(trajectory.file_of(k), file_of_frame[k]);
   const std::string last = std::to_string(all.size() - 1);
-  EXPECT_HAS(error_of(ErrorKind::kUsage, [&] { frame_of(trajectory, all.size()); }), "the frames are 0 to " + last);
-  EXPECT_HAS(error_of(ErrorKind::kUsage, [&] { trajectory.file_of(SIZE_MAX); }), "the frames are 0 to " + last);
+  EXPECT_HAS(error_of(ErrorKind::kUsage, [&] { frame_of(trajectory, all.size()); }), ": the last is " + last);
+  EXPECT_HAS(error_of(ErrorKind::kUsage, [&] { trajectory.file_of(SIZE_MAX); }), ": the last is " + last);
   EXPECT_HAS(error_of(ErrorKind::kUsage, [&] { Trajectory::open_all({}); }), "no trajectories");
 }
 
