@@ -59,8 +59,7 @@ const FormatTraits &format_traits_of(MeshFormat format);
 //         is written once, so that the mesh is closed by its numbers also where vertices are repeated. Colours are
 //         three numbers from 0 to 1 behind the position: an extension that many programs read
 //   PLY   binary little-endian, or text; float x y z nx ny nz, uchar red green blue (and alpha, where one is below
-//   255),
-//         int owner, int component, uchar patch, float occlusion where there are any; uchar/uint vertex_indices
+//         255), int owner, int component, uchar patch, float occlusion where there are any; uchar/uint vertex_indices
 //   STL   binary; the plane's normal per triangle; vertices are repeated, no owners
 //   GLB   binary glTF 2.0 in one file of 4 GiB at most; POSITION, NORMAL, COLOR_0 (linear, as glTF wants it), and as
 //         float32 _ATOM, _COMPONENT (each if all numbers are below 2^24, which float32 can tell apart) and _OCCLUSION
