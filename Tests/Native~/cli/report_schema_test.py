@@ -57,6 +57,10 @@ class Schema(ProgramTest):
         self.check("surface", CRAMBIN, "-v", "2", "-o", "a.obj", "--outer", "--slice", "64", "--memory", "1G", "--threads", "1")
         self.check("surface", CRAMBIN, "-v", "2", "--surface", "sas")
         self.check("surface", CRAMBIN, "-v", "2", "--method", "grid")
+        self.check("surface", CRAMBIN, "-v", "2", "--surface", "gaussian", "--radius-scale", "1.5", "-o", "a.ply", "--occlusion", "on")
+        self.check("surface", CRAMBIN, "-v", "2", "-o", "a.ply", "--color", "element", "--sharp-colors", "--center", "--scale", "2")
+        self.check("surface", CRAMBIN, "-v", "2", "-o", "a.glb", "--color", "#C08000")
+        self.check("surface", CRAMBIN, "-v", "2", "-o", "a.png", "--size", "32x32", "--samples", "1")
         self.assertEqual(len(self.check("surface", self.models(), "-v", "2", "--model", "all")), 3)
 
     def test_frames(self):
