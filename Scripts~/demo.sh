@@ -3,8 +3,16 @@
 # Installs what is missing, builds the quickses program for the CPU, computes the surface of crambin (PDB entry 1CRN), draws
 # it, and says what it made and where.
 #   bash Scripts~/demo.sh
+# Results are left in .build/demo, the program in .build/cpu/bin.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+for argument in "$@"; do
+  case "$argument" in
+    -h | --help) sed -n '3,6s/^# //p' Scripts~/demo.sh; exit 0 ;;
+    *) echo "demo.sh: unknown option $argument (there is none but --help)" >&2; exit 2 ;;
+  esac
+done
 
 bash Scripts~/setup.sh
 mkdir -p .build/demo

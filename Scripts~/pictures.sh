@@ -5,6 +5,7 @@
 # FOLDER holds 3EAM.pdb.gz and 1AON.pdb.gz of the Protein Data Bank (https://files.rcsb.org/download/3EAM.pdb.gz and
 # .../1AON.pdb.gz). Takes a minute. Needs pngquant and optipng, which make the files small.
 set -euo pipefail
+if [ "${1:-}" = -h ] || [ "${1:-}" = --help ]; then sed -n '3,6s/^# //p' "$0"; exit 0; fi
 if [ $# -ne 1 ] || [ ! -d "$1" ]; then
   sed -n '3,6s/^# //p' "$0" >&2
   exit 2
