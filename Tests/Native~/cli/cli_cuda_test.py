@@ -22,7 +22,7 @@ TABLES = ["--csv", "--per-atom", "--per-residue"]
 def count_devices():
     """How many there are, and what the program says of one that can't be there."""
     result = subprocess.run([cli_test.PROGRAM, CRAMBIN, "-v", "2", "--backend", "cuda", "--device", "9999"],
-                            capture_output=True, encoding="utf-8", timeout=120)
+                            capture_output=True, encoding="utf-8", timeout=cli_test.PATIENCE)
     found = re.search(r"there (?:is|are) (\d+) CUDA device", result.stderr)
     return int(found.group(1)) if found else 0, result.stderr.strip()
 

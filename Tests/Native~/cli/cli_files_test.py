@@ -193,7 +193,7 @@ class Replacing(FilesTest):
             self.addCleanup(reader.wait)
             self.addCleanup(reader.kill)
             self.run_cpu("p.pdb", "-v", "2", *arguments)
-            reader.wait(timeout=60)
+            reader.wait(timeout=cli_test.PATIENCE)
             content = (self.folder / "read").read_bytes()
             if name == "pipe.json":
                 self.assertEqual(json.loads(content)["atoms"], 327)
@@ -255,7 +255,7 @@ class Names(FilesTest):
                 environment = {**os.environ, "LC_ALL": locale}
                 def run(*arguments):
                     result = subprocess.run([cli_test.PROGRAM, *arguments, "--backend", "cpu", "-v", "1"], cwd=folder,
-                                            env=environment, capture_output=True, encoding="utf-8", timeout=120)
+                                            env=environment, capture_output=True, encoding="utf-8", timeout=cli_test.PATIENCE)
                     self.assertEqual(result.returncode, OK, result.stderr)
                     return result
                 run("Krambin ü.pdb", "-o", "Fläche 溶媒.ply")
@@ -265,7 +265,7 @@ class Names(FilesTest):
                 run("Krambin ü.pdb", "--trajectory", "Läufe.pdb", "-o", "ü%d.obj", "--csv", "Läufe.csv")
                 self.assertEqual(len(list(folder.glob("ü*.obj"))), MODELS)
                 result = subprocess.run([cli_test.PROGRAM, "nicht da ü.pdb"], cwd=folder, env=environment,
-                                        capture_output=True, encoding="utf-8", timeout=120)
+                                        capture_output=True, encoding="utf-8", timeout=cli_test.PATIENCE)
                 self.assertEqual(result.returncode, INPUT)
                 self.assertIn("nicht da ü.pdb", result.stderr)
                 for made in folder.iterdir():
@@ -324,7 +324,7 @@ class Stopped(FilesTest):
             with self.subTest(signal=number):
                 process = self.start(stderr=subprocess.PIPE)
                 process.send_signal(number)
-                self.assertEqual(process.communicate(), (None, b""))
+                self.assertEqual(process.communicate(timeout=cli_test.PATIENCE), (None, b""))
                 self.assertEqual(process.returncode, -number)
                 self.assertEqual([path.name for path in self.folder.glob(".*")], [])
                 self.assertEqual((self.folder / "t.csv").read_text(), "old")
@@ -336,15 +336,16 @@ class Stopped(FilesTest):
     def test_a_signal_that_is_ignored_does_not_stop_it(self):
         process = self.start(preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
         process.send_signal(signal.SIGHUP)
-        self.wait_for_another_mesh()
+        self.wait_for_another_mesh(process)
         self.assertIsNone(process.poll())
         process.send_signal(signal.SIGTERM)
-        self.assertEqual(process.wait(), -signal.SIGTERM)
+        self.assertEqual(process.wait(timeout=cli_test.PATIENCE), -signal.SIGTERM)
         self.assertEqual([path.name for path in self.folder.glob(".*")], [])
 
-    def wait_for_another_mesh(self):
+    def wait_for_another_mesh(self, process):
         count = len(list(self.folder.glob("f*.obj")))
         while len(list(self.folder.glob("f*.obj"))) < count + 2:
+            self.assertIsNone(process.poll())
             time.sleep(0.01)
 
 

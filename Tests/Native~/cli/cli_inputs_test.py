@@ -109,7 +109,7 @@ class SeveralStructures(InputTest):
 class StandardInput(InputTest):
     def run_with(self, content, *arguments, code=OK):
         result = subprocess.run([cli_test.PROGRAM, *map(str, arguments), "--backend", "cpu"], input=content,
-                                capture_output=True, cwd=self.folder, timeout=120)
+                                capture_output=True, cwd=self.folder, timeout=cli_test.PATIENCE)
         self.assertEqual(result.returncode, code, result.stderr)
         return result
 
@@ -149,7 +149,7 @@ class StandardInput(InputTest):
         path = self.folder / self.names[0]
         with path.open("rb") as file:
             result = subprocess.run([cli_test.PROGRAM, "-", "--json", self.names[0]], stdin=file, capture_output=True,
-                                    cwd=self.folder, encoding="utf-8", timeout=120)
+                                    cwd=self.folder, encoding="utf-8", timeout=cli_test.PATIENCE)
         self.assertEqual(result.returncode, USAGE)
         self.assertIn("would be overwritten", result.stderr)
 
@@ -157,7 +157,7 @@ class StandardInput(InputTest):
 class StandardOutput(InputTest):
     def run_bytes(self, *arguments, stdin=b""):
         result = subprocess.run([cli_test.PROGRAM, *map(str, arguments), "--backend", "cpu"], input=stdin,
-                                capture_output=True, cwd=self.folder, timeout=120)
+                                capture_output=True, cwd=self.folder, timeout=cli_test.PATIENCE)
         self.assertEqual(result.returncode, OK, result.stderr)
         return result.stdout
 

@@ -30,7 +30,7 @@ class MpiTest(ProgramTest):
         result = subprocess.run(
             [MPIRUN, "--allow-run-as-root", "--oversubscribe", "-n", str(count), cli_test.PROGRAM, *map(str, arguments),
              "--backend", "cpu"], stdin=subprocess.DEVNULL, capture_output=True, cwd=self.folder, encoding="utf-8",
-            timeout=300)
+            timeout=cli_test.PATIENCE)
         self.assertEqual(result.returncode, code, result.stderr + result.stdout)
         return result
 

@@ -24,6 +24,8 @@ IS_WINDOWS = os.name == "nt" or os.environ.get("QUICKSES_TEST_SYSTEM") == "Windo
 
 OK, USAGE, INPUT, OUTPUT, COMPUTE, BACKEND = range(6)
 
+PATIENCE = 150  # s: a program that takes longer hangs
+
 # The surface of 1CRN at probe 1.4, by quadrature of the exact patches.
 CRAMBIN_AREA = 2319.07
 CRAMBIN_VOLUME = 4664.9
@@ -123,7 +125,7 @@ class ProgramTest(unittest.TestCase):
 
     def run_program(self, *arguments, code=OK, **keywords):
         result = subprocess.run([PROGRAM, *map(str, arguments)], stdin=subprocess.DEVNULL, capture_output=True,
-                                cwd=self.folder, encoding="utf-8", timeout=120, **keywords)
+                                cwd=self.folder, encoding="utf-8", timeout=PATIENCE, **keywords)
         self.assertEqual(result.returncode, code, result.stderr + result.stdout)
         return result
 

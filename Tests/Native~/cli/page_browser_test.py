@@ -31,7 +31,7 @@ def browse(browser, page, folder, *arguments):
          "--enable-unsafe-swiftshader", "--hide-scrollbars", "--force-device-scale-factor=1", "--no-first-run",
          "--proxy-server=127.0.0.1:1", f"--user-data-dir={folder}/profile", "--window-size=%d,%d" % SIZE,
          "--virtual-time-budget=5000", *arguments, page],
-        stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, encoding="utf-8", timeout=120).stdout
+        stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, encoding="utf-8", timeout=cli_test.PATIENCE).stdout
 
 
 def why_not(browser, program):

@@ -5,6 +5,8 @@
 // (-DcuMemAlloc_v2=left_out).
 #include "fake_driver.h"
 
+#include "../parallel/patience.h"
+
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -149,10 +151,10 @@ FAKE_API int fake_driver_hold(int hold) {
   changed.notify_all();
   return 0;
 }
-// Returns 1 while the driver compiles; 0 if it does not within ten seconds.
+// Returns 1 while the driver compiles; 0 if it does not for as long as tests wait.
 FAKE_API int fake_driver_wait_for_compiling() {
   std::unique_lock<std::mutex> lock(mutex);
-  return changed.wait_for(lock, std::chrono::seconds(10), [] { return is_compiling; }) ? 1 : 0;
+  return changed.wait_for(lock, kPatience, [] { return is_compiling; }) ? 1 : 0;
 }
 
 FAKE_API CUresult CUDAAPI cuInit(unsigned) { return static_cast<CUresult>(FAKE_START); }

@@ -3,6 +3,7 @@
 // library's own. What was drawn is the mesh of the frame, byte for byte.
 #include "graphics/graphics_fixture.h"
 #include "graphics/render_thread.h"
+#include "parallel/patience.h"
 
 #include <atomic>
 #include <chrono>
@@ -184,7 +185,7 @@ class Film {
   bool has_mesh_ = false;
   uint32_t next_ = 0, shown_ = 0;
   // Should no frame be drawn any more, the test ends all the same.
-  const std::chrono::steady_clock::time_point last_moment_ = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  const std::chrono::steady_clock::time_point last_moment_ = std::chrono::steady_clock::now() + kPatience;
   std::mutex mutex_;
   std::map<int32_t, uint32_t> submitted_;  // event, frame
 };

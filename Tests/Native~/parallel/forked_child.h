@@ -14,6 +14,8 @@
 #if defined(__linux__) && !defined(QSES_TEST_SANITIZED)
 #define QSES_TEST_FORKS
 
+#include "parallel/patience.h"
+
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -24,7 +26,7 @@ template <class Work>
 bool forked_child_ends(const Work &work) {
   const pid_t child = fork();
   if (child == 0) {
-    alarm(60);
+    alarm(kPatience.count());
     work();
     std::exit(0);
   }

@@ -4,6 +4,7 @@
 // they run in this process.
 #pragma once
 
+#include "parallel/patience.h"
 #include "properties/property_checker.h"
 
 #include <csignal>
@@ -64,10 +65,12 @@ class Runner {
 #endif
   }
 
+  static constexpr unsigned kSeconds = static_cast<unsigned>(kPatience.count());
+
   // How many cases keep all processes busy.
   size_t batch() const { return 500 * std::max(1u, processes_); }
 
-  std::vector<Verdict> run(const std::vector<Case> &cases, unsigned seconds_per_case = 60) {
+  std::vector<Verdict> run(const std::vector<Case> &cases, unsigned seconds_per_case = kSeconds) {
     std::vector<Verdict> verdicts(cases.size());
     if (processes_ > 0) {
       run_apart(cases, verdicts, seconds_per_case);
@@ -82,7 +85,7 @@ class Runner {
     return verdicts;
   }
 
-  Verdict run(const Case &c, unsigned seconds = 60) { return run(std::vector<Case>{c}, seconds)[0]; }
+  Verdict run(const Case &c, unsigned seconds = kSeconds) { return run(std::vector<Case>{c}, seconds)[0]; }
 
  private:
 #ifdef _WIN32
