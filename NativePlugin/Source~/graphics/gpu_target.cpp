@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "graphics/gpu_target.h"
 
+#include "graphics/gpu_patience.h"
 #include "parallel/error.h"
 
 #include <cstdio>
 
 namespace quickses {
 namespace {
-
-constexpr std::chrono::milliseconds kPatience(QSES_GPU_PATIENCE_MS);
 
 [[noreturn]] void invalid(const std::string &message) { throw Error(QSES_INVALID_ARGUMENT, message); }
 
@@ -103,7 +102,7 @@ void GpuTarget::note_times(float event_ms, float copy_ms) {
 
 // Memory is not held for events that may never come.
 void GpuTarget::look_at_clock() const {
-  if (waiting_.empty() || std::chrono::steady_clock::now() - waiting_.front().since < kPatience) return;
+  if (waiting_.empty() || std::chrono::steady_clock::now() - waiting_.front().since < gpu_patience.load()) return;
   waiting_.clear();
   status_.stopped = 1;
 }

@@ -6,6 +6,7 @@
 #include "capi/capi_fixture.h"
 #include "capi/context.h"
 #include "cudart/fake_driver_functions.h"
+#include "graphics/long_gpu_patience.h"
 #include "parallel/cuda_memory.h"
 #include "quickses/quickses_gpu.h"
 #include "surface/mesh/mesh_memory.h"
@@ -372,6 +373,7 @@ class GraphicsTest : public testing::TestWithParam<Parameter> {
   virtual qses_graphics api() const = 0;
 
  private:
+  const LongGpuPatience patience_;
   bool is_loaded_ = false;
 };
 

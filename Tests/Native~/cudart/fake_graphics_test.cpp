@@ -372,6 +372,7 @@ TEST_P(GraphicsEvent, GivesUpMeshesWhoseEventsDoNotCome) {
   HandMadeMesh waits(1);
   const HandMadeMesh mesh(100);
   DrawnSurface surface(api(), 1);
+  LongGpuPatience::end();
   expect_ok(surface.submit(waits));
   waits.let_go();
   int32_t lost = 0;
@@ -381,6 +382,7 @@ TEST_P(GraphicsEvent, GivesUpMeshesWhoseEventsDoNotCome) {
   EXPECT_EQ(surface.status().stopped, 1);
   EXPECT_EQ(surface.status().waiting, 0u);
   EXPECT_FALSE(waits.is_held());
+  LongGpuPatience::begin();
   expect_error(surface.submit(mesh), QSES_BUSY, {"wait"});
   EXPECT_GT(draw(), 0) << "one to try with";
   EXPECT_EQ(surface.status().stopped, 0);

@@ -40,6 +40,11 @@ class GpuEvents : public Graphics {
     return qses_gpu_target_submit(*target_, *kept_[frame], &buffers_.told, event);
   }
   void expect_frame(size_t frame) { expect_holds(buffers_, expected_[frame]); }
+  // Longer than the library waits for an event where no test tells it to.
+  static void lose_patience() {
+    LongGpuPatience::end();
+    std::this_thread::sleep_for(std::chrono::milliseconds(QSES_GPU_PATIENCE_MS + 100));
+  }
   void expect_works(size_t frame) {
     submit(frame);
     run_next_event();
@@ -120,7 +125,7 @@ TEST_F(GpuEvents, MeshesAreLetGoWhenNoneComes) {
   next_event();
   const int32_t last = submit(1);
   next_event();
-  std::this_thread::sleep_for(std::chrono::milliseconds(QSES_GPU_PATIENCE_MS + 100));
+  lose_patience();
   EXPECT_TRUE(target_->status().stopped);
   EXPECT_EQ(target_->status().waiting, 0u);
   expect_error(try_submit(2), QSES_BUSY, {"wait"});
@@ -143,7 +148,7 @@ TEST_F(GpuEvents, MemoryThatWaitedInVainIsTakenAgain) {
   kept.clear();
   EXPECT_LT(keep_until_refused(context, s, &kept), room);
   kept.clear();
-  std::this_thread::sleep_for(std::chrono::milliseconds(QSES_GPU_PATIENCE_MS + 100));
+  lose_patience();
   EXPECT_TRUE(target_->status().stopped);
   EXPECT_EQ(keep_until_refused(context, s, &kept), room);
 }
@@ -151,7 +156,7 @@ TEST_F(GpuEvents, MemoryThatWaitedInVainIsTakenAgain) {
 TEST_F(GpuEvents, ThereAreSomeToTryWith) {
   submit(0);
   next_event();
-  std::this_thread::sleep_for(std::chrono::milliseconds(QSES_GPU_PATIENCE_MS + 100));
+  lose_patience();
   const int32_t one = next_event(), another = next_event();
   EXPECT_NE(one, 0);
   EXPECT_NE(another, 0);

@@ -4,6 +4,7 @@
 
 #include "capi/device_mesh_fixture.h"
 #include "graphics/gl_without_window.h"
+#include "graphics/long_gpu_patience.h"
 
 #include "quickses/quickses_gpu.h"
 
@@ -177,6 +178,9 @@ class Graphics : public testing::Test {
   }
 
   std::unique_ptr<gl_without_window::Context> drawing_;
+
+ private:
+  const LongGpuPatience patience_;
 };
 
 }  // namespace graphics_fixture
