@@ -2,6 +2,7 @@
 // The C API: trajectories from files and from memory.
 #include "capi/capi_fixture.h"
 #include "io/netcdf_fixture.h"
+#include "io/own_folder.h"
 
 #include <atomic>
 #include <thread>
@@ -118,13 +119,12 @@ TEST(Trajectory, FormatsByNumberAndByContent) {
 TEST(Trajectory, GzippedBuffersAndUnknownFormats) {
   const std::vector<Positions> frames = some_frames(3);
   const std::string plain = dcd(frames);
-  const auto *info = testing::UnitTest::GetInstance()->current_test_info();
-  const std::string path = testing::TempDir() + "quickses_" + info->name() + ".gz";
+  const OwnFolder folder;
+  const std::string path = folder.path("a.gz");
   gzFile file = gzopen(path.c_str(), "wb");
   gzwrite(file, plain.data(), static_cast<unsigned>(plain.size()));
   gzclose(file);
   const std::string packed = quickses::io::slurp(path);
-  std::remove(path.c_str());
   ASSERT_NE(packed, plain);
   for (const std::string &bytes : {plain, packed})
     for (const auto format : {QSES_TRAJECTORY_DCD, QSES_TRAJECTORY_AUTO}) {

@@ -38,10 +38,6 @@ class FilePathTest : public IoTest {
     file_ = folder_ / std::filesystem::path(kFile);
     name_ = utf8_of(folder_.parent_path()) + "/" + kUtf8;
   }
-  void TearDown() override {
-    folder_ = folder_.parent_path();
-    IoTest::TearDown();
-  }
   void write_atom() const { std::ofstream(file_, std::ios::binary) << "MODEL        1\n" << kAtom << "ENDMDL\n"; }
 
   std::filesystem::path file_;  // by UTF-16

@@ -13,22 +13,12 @@
 #include <string>
 
 #include "io/error.h"
+#include "io/own_folder.h"
 
 namespace quickses::io {
 
 class IoTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    const auto *info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::path(::testing::TempDir()) /
-              (std::string("quickses_io_") + info->test_suite_name() + "_" + info->name() + "_" +
-               std::to_string(reinterpret_cast<uintptr_t>(this) & 0xffffff) + "_" +
-               std::to_string(::testing::UnitTest::GetInstance()->random_seed()));
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   std::string path(const std::string &name) const { return (folder_ / name).string(); }
 
   std::string write(const std::string &name, const std::string &content) const {
@@ -47,7 +37,8 @@ class IoTest : public ::testing::Test {
     return std::distance(std::filesystem::directory_iterator(folder_), std::filesystem::directory_iterator());
   }
 
-  std::filesystem::path folder_;
+  const OwnFolder own_;
+  std::filesystem::path folder_ = own_.path();
 };
 
 inline std::string slurp(const std::string &path) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A machine that refuses threads or memory, and callers with little stack: this program has functions of the C library
 // of its own, which refuse what they are told to.
+#include "io/own_folder.h"
 #include "surface/surface_fixture.h"
 
 #include <gtest/gtest.h>
@@ -218,6 +219,7 @@ TEST(SmallStack, SufficesForStructuresAndTrajectories) {
       if (line.compare(0, 4, "ATOM") == 0) many_models += line + "\n";
     many_models += "ENDMDL\n";
   }
+  const OwnFolder folder;
   struct File {
     const char *name;
     std::string bytes;
@@ -225,7 +227,7 @@ TEST(SmallStack, SufficesForStructuresAndTrajectories) {
   for (const File &file :
        {File{"a.pdb.gz", packed(pdb)}, File{"a.cif.gz", packed(cif())}, File{"a.cif", cif()}, File{"a.pdb", pdb}}) {
     SCOPED_TRACE(file.name);
-    const std::string path = testing::TempDir() + "small_stack_" + file.name;
+    const std::string path = folder.path(file.name);
     std::ofstream(path, std::ios::binary) << file.bytes;
     qses_status from_file = QSES_INTERNAL_ERROR, from_memory = QSES_INTERNAL_ERROR;
     on_small_stack([&] {
@@ -240,7 +242,6 @@ TEST(SmallStack, SufficesForStructuresAndTrajectories) {
     });
     EXPECT_EQ(from_file, QSES_OK);
     EXPECT_EQ(from_memory, QSES_OK);
-    std::remove(path.c_str());
   }
   const std::string trajectory_bytes = packed(many_models);
   qses_status opened = QSES_INTERNAL_ERROR, read = QSES_INTERNAL_ERROR;
