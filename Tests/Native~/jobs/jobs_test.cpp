@@ -65,9 +65,52 @@ Atoms block(int edge) {
   return atoms;
 }
 
+// Holds whatever is computed when it first tells how far it is: so it is not over before the gate opens. Lives longer
+// than the context.
+class Gate {
+ public:
+  void place_in(qses_context *context) { expect_ok(qses_set_progress_callback(context, stop_at, this)); }
+  void wait_until_reached() const {
+    while (!is_reached_) std::this_thread::yield();
+  }
+  void open() { is_open_ = true; }
+
+ private:
+  static void stop_at(void *gate, double) {
+    Gate &self = *static_cast<Gate *>(gate);
+    self.is_reached_ = true;
+    while (!self.is_open_) std::this_thread::yield();
+  }
+  std::atomic<bool> is_reached_{false}, is_open_{false};
+};
+
+// Cancels again and again. Whatever is computed stands still until it was cancelled.
+class Cancels {
+ public:
+  void place_in(qses_context *context) {
+    context_ = context;
+    expect_ok(qses_set_progress_callback(context, wait_for_the_next, this));
+  }
+  void cancel() {
+    expect_ok(qses_cancel(context_));
+    ++count_;
+  }
+
+ private:
+  static void wait_for_the_next(void *cancels, double) {
+    const Cancels &self = *static_cast<Cancels *>(cancels);
+    const int before = self.count_;
+    while (self.count_ < before + 2) std::this_thread::yield();  // one of them may have been before this
+  }
+  qses_context *context_ = nullptr;
+  std::atomic<int> count_{0};
+};
+
 TEST(Jobs, CancelEndsAComputeThatWaitsForAJob) {
+  Cancels cancels;
   const Context context;
   set_atoms(context, block(20));
+  cancels.place_in(context);
   begin(context, settings(0.2));
   std::atomic<bool> entered{false}, has_ended{false};
   qses_status status = QSES_OK;
@@ -78,14 +121,15 @@ TEST(Jobs, CancelEndsAComputeThatWaitsForAJob) {
     has_ended = true;
   });
   while (!entered) std::this_thread::yield();
-  // The job is long: compute waits for it by then, or computes itself. Either is to be ended; if it has not even begun,
-  // the next cancel does it.
+  // Compute waits for the job by then, or computes itself. Either is to be ended; if it has not even begun, the next
+  // cancel does it.
   do {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    expect_ok(qses_cancel(context));
+    cancels.cancel();
   } while (!has_ended);
   other.join();
   EXPECT_EQ(status, QSES_CANCELLED);
+  expect_ok(qses_set_progress_callback(context, nullptr, nullptr));
   const qses_settings s = settings(2.0);
   EXPECT_EQ(qses_compute(context, &s, nullptr), QSES_OK);
 }
@@ -219,34 +263,39 @@ TEST(Jobs, CollectedMemoryStaysWhileOthersAreComputed) {
 }
 
 TEST(Jobs, CancelEndsTheJobAndTheContextGoesOn) {
-  const Context context;
-  set_atoms(context, block(31));
-  begin(context, settings(0.25), 1);
-  std::thread other([&] { qses_cancel(context); });
-  other.join();
-  wait_for_all(context);
-  const qses_progress p = poll(context);
-  EXPECT_EQ(p.state, QSES_JOB_CANCELLED);
-  EXPECT_LT(p.levels_finished, p.level_count);
-  const Surface small = compute(context, cluster(50, 1), settings(1.0));
-  EXPECT_EQ(mesh_checks::manifold_fault(small.mesh), "");
+  for (const bool has_begun : {false, true}) {
+    Gate gate;
+    const Context context;
+    set_atoms(context, block(31));
+    gate.place_in(context);
+    begin(context, settings(0.25), 1);
+    if (has_begun) gate.wait_until_reached();
+    std::thread other([&] { qses_cancel(context); });
+    other.join();
+    gate.open();
+    wait_for_all(context);
+    const qses_progress p = poll(context);
+    EXPECT_EQ(p.state, QSES_JOB_CANCELLED);
+    EXPECT_LT(p.levels_finished, p.level_count);
+    const Surface small = compute(context, cluster(50, 1), settings(1.0));
+    EXPECT_EQ(mesh_checks::manifold_fault(small.mesh), "");
+  }
 }
 
 TEST(Jobs, CancelEndsACompute) {
+  Gate gate;
   const Context context;
   set_atoms(context, block(31));
-  std::atomic<bool> done{false};
+  gate.place_in(context);
   qses_status status = QSES_OK;
   std::thread computing([&] {
     const qses_settings s = settings(0.2);
     status = qses_compute(context, &s, nullptr);
-    done = true;
   });
-  while (poll(context).state != QSES_JOB_RUNNING && !done) std::this_thread::yield();
-  while (!done) {
-    qses_cancel(context);
-    std::this_thread::yield();
-  }
+  gate.wait_until_reached();
+  EXPECT_EQ(poll(context).state, QSES_JOB_RUNNING);
+  expect_ok(qses_cancel(context));
+  gate.open();
   computing.join();
   EXPECT_EQ(status, QSES_CANCELLED);
 }
@@ -326,30 +375,42 @@ TEST(Jobs, AFrameBudgetGivesOneLevel) {
   EXPECT_EQ(m.level, 0u);
 }
 
-TEST(Jobs, SeriesThatShareAContextEachKeepTheirLevel) {
+// The levels of some frames of two series that share a context, and last of changing atoms within a series. False: the
+// machine stood still in a coarse one, so that finer ones seem to cost more than fits.
+bool learn_levels(std::vector<uint32_t> *levels) {
   const Context context;
   const Atoms molecules[2] = {cluster(300, 3), cluster(900, 4)};
   qses_settings s = settings(0.5);
   s.frame_budget_ms = 60000;  // everything fits, once a first frame has told so
-  const auto level_of = [&](const Atoms &atoms) {
+  bool is_learnt = true;
+  const auto note_level_of = [&](const Atoms &atoms) {
     set_atoms(context, atoms);
+    const auto start = std::chrono::steady_clock::now();
     begin(context, s);
     wait_for_all(context);
+    const bool took_long = std::chrono::steady_clock::now() - start > std::chrono::seconds(2);
     qses_mesh m;
     qses_mesh_init(&m);
     expect_ok(qses_collect(context, &m));
-    return m.level;
+    levels->push_back(m.level);
+    if (m.level == 0 && took_long) is_learnt = false;
   };
+  levels->clear();
   for (int frame = 0; frame < 4; ++frame)
     for (uint32_t k : {0u, 1u}) {
       s.series = 4000000000u * k;
-      EXPECT_EQ(level_of(molecules[k]), frame == 0 ? 0u : 2u);
+      note_level_of(molecules[k]);
     }
-  // Within one series every change of the atoms begins anew.
   s.series = 0;
-  EXPECT_EQ(level_of(molecules[0]), 2u);
-  EXPECT_EQ(level_of(molecules[1]), 0u);
-  EXPECT_EQ(level_of(molecules[0]), 0u);
+  for (const size_t k : {0, 1, 0}) note_level_of(molecules[k]);
+  return is_learnt;
+}
+
+TEST(Jobs, SeriesThatShareAContextEachKeepTheirLevel) {
+  std::vector<uint32_t> levels;
+  for (int attempts = 1; !learn_levels(&levels); ++attempts) ASSERT_LT(attempts, 20);
+  // Within one series every change of the atoms begins anew.
+  EXPECT_EQ(levels, (std::vector<uint32_t>{0, 0, 2, 2, 2, 2, 2, 2, 2, 0, 0}));
 }
 
 TEST(Jobs, BadRequestsAreRefusedAtOnce) {
