@@ -61,14 +61,15 @@ static int is_loaded(const char *path) {
 
 static void make_folder(const char *path) { mkdir(path, 0777); }
 static FILE *open_file(const char *path, const char *mode) { return fopen(path, mode); }
+/* Its own, wherever that is: how much of files is in memory is the system's business. */
 static unsigned long memory_in_use(void) {
-  unsigned long size = 0, resident = 0;
-  FILE *file = fopen("/proc/self/statm", "r");
-  if (file) {
-    if (fscanf(file, "%lu %lu", &size, &resident) != 2) resident = 0;
-    fclose(file);
-  }
-  return resident * ((unsigned long)sysconf(_SC_PAGESIZE) >> 10);
+  unsigned long sum = 0, part = 0;
+  char line[256];
+  FILE *file = fopen("/proc/self/status", "r");
+  while (file && fgets(line, sizeof line, file))
+    if (sscanf(line, "RssAnon: %lu kB", &part) == 1 || sscanf(line, "VmSwap: %lu kB", &part) == 1) sum += part;
+  if (file) fclose(file);
+  return sum;
 }
 static unsigned long entries_of(const char *folder) {
   unsigned long count = 0;
