@@ -3,12 +3,16 @@ using NUnit.Framework;
 using QuickSes.EngineDouble;
 using System;
 using System.Collections;
+using System.Collections.Generic;
 using UnityEngine;
 using UnityEngine.TestTools;
 
 namespace QuickSes.Tests
 {
-    /// <summary>Whatever is done to some surfaces in whatever order: in the end each shows its own atoms, finest.</summary>
+    /// <summary>
+    /// Whatever is done to some surfaces in whatever order: in the end each shows its own atoms, finest. What a step does,
+    /// and what a surface's handler does the n-th time, is a matter of the seed alone; when meshes come is not.
+    /// </summary>
     internal sealed class RandomUseTest
     {
         private const int Count = 8;
@@ -17,7 +21,16 @@ namespace QuickSes.Tests
         private readonly SurfaceRig[] _rigs = new SurfaceRig[Count];
         private readonly Vector3[][] _positions = new Vector3[Count][]; // null: no atoms
         private readonly float[][] _radii = new float[Count][];
+        private readonly List<string> _done = new List<string>();
+        private int _seed;
         private bool _isOver;
+
+        [TearDown]
+        public void TellWhatWasDone()
+        {
+            if (TestContext.CurrentContext.Result.Outcome.Status == NUnit.Framework.Interfaces.TestStatus.Failed)
+                TestContext.Out.WriteLine(string.Join("\n", _done));
+        }
 
         [UnityTest]
         public IEnumerator EachShowsItsOwnInTheEnd([Values(1, 2, 3, 4, 5, 6)] int seed) => UseAtRandom(seed);
@@ -42,17 +55,20 @@ namespace QuickSes.Tests
         private IEnumerator UseAtRandom(int seed)
         {
             _isOver = false;
+            _seed = seed;
+            _done.Clear();
             int most = SurfaceScheduler.MaxContexts;
             double budget = SurfaceScheduler.UploadBudget;
             SurfaceScheduler.ReleaseContexts();
             SurfaceScheduler.MaxContexts = 1 + seed % 3;
-            var random = new System.Random(seed);
             for (int k = 0; k < Count; ++k)
-                Renew(k, random);
-            for (int step = 0; step < Steps; ++step)
+                Renew(k, 0);
+            for (int step = 1; step <= Steps; ++step)
             {
-                DoSomething(random.Next(Count), random);
-                if (random.Next(2) > 0)
+                System.Random random = RandomOf(step, 0);
+                bool isFrame = random.Next(2) > 0;
+                DoSomething(random.Next(Count), random, step, $"step {step}");
+                if (isFrame)
                     yield return null;
             }
             SurfaceScheduler.UploadBudget = budget;
@@ -93,8 +109,12 @@ namespace QuickSes.Tests
             SurfaceScheduler.UploadBudget = budget;
         }
 
-        private void Renew(int k, System.Random random)
+        // A sequence of its own for each: how many numbers are drawn in between is a matter of time.
+        private System.Random RandomOf(int step, int number) => new System.Random((_seed * 1000 + step) * 1000 + number);
+
+        private void Renew(int k, int step)
         {
+            int calls = 0;
             var rig = new SurfaceRig("surface " + k);
             _rigs[k] = rig;
             _positions[k] = null;
@@ -102,8 +122,11 @@ namespace QuickSes.Tests
             rig.Surface.ClearAtoms();
             rig.Surface.SurfaceUpdated += level => // handlers may do anything, too
             {
-                if (!_isOver && random.Next(6) == 0)
-                    DoSomething(k, random);
+                if (_isOver)
+                    return;
+                System.Random random = RandomOf(step, 1 + k + Count * ++calls);
+                if (random.Next(6) == 0)
+                    DoSomething(k, random, step, $"handler of {k}, call {calls}");
             };
         }
 
@@ -131,10 +154,12 @@ namespace QuickSes.Tests
                 Assert.That(painted[v], Is.EqualTo(expected[surface.OwnerAtomAt(v)]));
         }
 
-        private void DoSomething(int k, System.Random random)
+        private void DoSomething(int k, System.Random random, int step, string who)
         {
             MolecularSurface surface = _rigs[k].Surface;
-            switch (random.Next(22))
+            int what = random.Next(22);
+            _done.Add($"{who}: {what} of surface {k}, which has {surface.AtomCount} atoms");
+            switch (what)
             {
                 case 0:
                 case 1:
@@ -217,7 +242,7 @@ namespace QuickSes.Tests
                     if (random.Next(4) > 0)
                         break;
                     Retire(_rigs[k]);
-                    Renew(k, random);
+                    Renew(k, step);
                     break;
                 case 20:
                     surface.BeginLoadSource();
