@@ -112,13 +112,17 @@ namespace QuickSes.Tests
         /// <summary>Frames until nothing is left to do.</summary>
         public void Settle() => Until(() => Session.IsUpToDate, this);
 
-        public static void Until(Func<bool> condition, params TestHost[] hosts)
+        public static void Until(Func<bool> condition, params TestHost[] hosts) => Until(condition, null, hosts);
+
+        /// <summary>The same, with something that is done at the beginning of each frame.</summary>
+        public static void Until(Func<bool> condition, Action before, params TestHost[] hosts)
         {
             Stopwatch clock = Stopwatch.StartNew();
             do
             {
                 Assert.That(clock.Elapsed.TotalSeconds, Is.LessThan(Patience), "still waiting");
                 Thread.Sleep(1);
+                before?.Invoke();
                 foreach (TestHost host in hosts)
                     if (!host.Session.IsDisposed)
                         host.Tick();
