@@ -73,7 +73,7 @@ namespace QuickSes.Tests
 
         private static void WaitUntil(Func<bool> condition, string what)
         {
-            if (!SpinWait.SpinUntil(condition, 20000))
+            if (!SpinWait.SpinUntil(condition, TimeSpan.FromSeconds(SurfaceRig.Patience)))
                 Assert.Fail("waited in vain until " + what);
         }
 
@@ -255,7 +255,8 @@ namespace QuickSes.Tests
         // Its reader waits at the gate, and a timer would open it if somebody waited for that.
         private static void DisposeAtTheClosedGate(FramePrefetcher prefetcher, CountingReader reader)
         {
-            using (new Timer(_ => reader.Gate.Set(), null, 60000, Timeout.Infinite))
+            TimeSpan patience = TimeSpan.FromSeconds(SurfaceRig.Patience);
+            using (new Timer(_ => reader.Gate.Set(), null, patience, Timeout.InfiniteTimeSpan))
                 prefetcher.Dispose();
             Assert.That(reader.Gate.IsSet || prefetcher.HasLeft || reader.IsDisposed, Is.False);
         }

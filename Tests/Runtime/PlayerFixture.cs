@@ -74,6 +74,19 @@ namespace QuickSes.Tests
             TickUntil(() => !Player.IsWaiting, "the frame is there");
         }
 
+        /// <summary>Plays, without garbage, until so many frames were shown.</summary>
+        public void PlayUntilShown(int count)
+        {
+            long begin = Stopwatch.GetTimestamp();
+            while (Shown.Count < count)
+            {
+                Player.Tick(0.04f);
+                Thread.Yield(); // frames are read meanwhile
+                if (Stopwatch.GetTimestamp() - begin > SurfaceRig.Patience * Stopwatch.Frequency)
+                    throw new TimeoutException("waited in vain until frames are shown");
+            }
+        }
+
         public void AssertShows(int frame)
         {
             Assert.That(Player.ShownFrame, Is.EqualTo(frame));

@@ -70,6 +70,8 @@ namespace QuickSes.Tests
         {
             for (int ticks = 0; ticks < 4; ++ticks)
             {
+                DestroyPlayer();
+                MakePlayer();
                 _playing.UseEnsemble(3);
                 Assert.That(Player.Load(), Is.True);
                 for (int k = 0; k < ticks && !Player.IsReady; ++k)
@@ -77,7 +79,7 @@ namespace QuickSes.Tests
                     Player.Tick(0);
                     System.Threading.Thread.Sleep(5);
                 }
-                if (Player.IsReady)
+                if (Player.IsReady) // too late to cancel it
                     continue;
                 Player.CancelLoading();
                 Assert.That(Player.IsLoading || _playing.Surface.IsPlayed || Player.Structure != null, Is.False);
@@ -346,12 +348,7 @@ namespace QuickSes.Tests
             Player.Play();
             TestDelegate play = () =>
             {
-                int goal = _playing.Shown.Count + 20;
-                for (int tick = 0; tick < 1000000 && _playing.Shown.Count < goal; ++tick)
-                {
-                    Player.Tick(0.04f);
-                    System.Threading.Thread.Yield(); // frames are read meanwhile
-                }
+                _playing.PlayUntilShown(_playing.Shown.Count + 20);
             };
             play();
             int before = _playing.Shown.Count;

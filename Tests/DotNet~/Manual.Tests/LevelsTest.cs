@@ -109,12 +109,14 @@ internal sealed class LevelsTest
             Assert.That(shown[v], Is.EqualTo(ofAtoms[owners[v]]));
     }
 
+    internal const double Patience = 150; // s
+
     internal static IEnumerator Settle(MolecularSurface surface)
     {
         var clock = System.Diagnostics.Stopwatch.StartNew();
         do
         {
-            Assert.That(clock.Elapsed.TotalSeconds, Is.LessThan(60), "still waiting");
+            Assert.That(clock.Elapsed.TotalSeconds, Is.LessThan(Patience), "still waiting");
             yield return null;
         } while (surface.IsBusy);
     }

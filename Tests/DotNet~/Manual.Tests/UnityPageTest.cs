@@ -115,7 +115,7 @@ internal sealed class UnityPageTest
         var clock = System.Diagnostics.Stopwatch.StartNew();
         while (!condition())
         {
-            Assert.That(clock.Elapsed.TotalSeconds, Is.LessThan(60), "still waiting");
+            Assert.That(clock.Elapsed.TotalSeconds, Is.LessThan(LevelsTest.Patience), "still waiting");
             yield return null;
         }
     }

@@ -2,6 +2,7 @@
 using NUnit.Framework;
 using QuickSes.EngineDouble;
 using System.Collections;
+using System.Diagnostics;
 using UnityEngine;
 using UnityEngine.TestTools;
 
@@ -75,8 +76,10 @@ namespace QuickSes.Tests
         {
             Player.FramesPerSecond = 100;
             Player.Play();
-            for (int k = 0; k < 10 || (k < 5000 && Player.ShownFrame != 12); ++k)
+            Stopwatch waited = Stopwatch.StartNew();
+            for (int k = 0; k < 10 || Player.ShownFrame != 12; ++k)
             {
+                Assert.That(waited.Elapsed.TotalSeconds, Is.LessThan(SurfaceRig.Patience), "still waiting");
                 FrameAt(12);
                 Assert.That(Player.Frame, Is.EqualTo(12));
                 System.Threading.Thread.Sleep(1); // while a frame is read, playing waits for it

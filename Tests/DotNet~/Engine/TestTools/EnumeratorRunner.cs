@@ -12,7 +12,7 @@ namespace QuickSes.EngineDouble
     /// </summary>
     internal static class EnumeratorRunner
     {
-        private static readonly TimeSpan TimeLimit = TimeSpan.FromSeconds(180);
+        private static readonly TimeSpan TimeLimit = TimeSpan.FromSeconds(450);
 
         public static void Run(IEnumerator test)
         {
