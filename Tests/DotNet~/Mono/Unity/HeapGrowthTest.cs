@@ -13,8 +13,11 @@ namespace QuickSes.Tests
     /// </summary>
     internal sealed class HeapGrowthTest
     {
-        private const int Surfaces = 300, Attempts = 5, Block = 4096; // Boehm's collector hands out whole blocks of memory
+        private const int Surfaces = 300, Block = 4096; // Boehm's collector hands out whole blocks of memory
+        private const int Attempts = 3, MostAttempts = 15; // without collections in between; at all
+        private const int Little = 4 * Block;
         private static object s_garbage;
+        private object[] _ballast;
 
         [OneTimeSetUp]
         public void AskWhereNothingElseTells()
@@ -23,15 +26,21 @@ namespace QuickSes.Tests
             s_garbage = new object();
             if (GC.GetAllocatedBytesForCurrentThread() > before)
                 Assert.Ignore("This collector counts what threads allocate, which the other tests ask for.");
+            // The collector comes when a part of what the heap has was allocated anew: not in a round, whatever ran before.
+            _ballast = new object[4 << 20];
         }
 
+        [OneTimeTearDown]
+        public void LetGo() => _ballast = null;
+
         [Test]
-        public void PlayingDoesNotGrowTheHeap() => Assert.That(Play(() => { }), Is.LessThan(4 * Block));
+        public void PlayingDoesNotGrowTheHeap() => Assert.That(Play(() => { }), Is.LessThan(Little));
 
         [Test]
         public void GarbageWouldBeSeen() =>
             Assert.That(Play(() => s_garbage = new byte[Block]), Is.GreaterThan((Surfaces - 1) * Block));
 
+        // The least of some attempts: frames that leave garbage leave it in each, and what else the runtime does comes and goes.
         private static long Play(Action garbage)
         {
             TestMolecules.Blob(60, 1, out Vector3[] start, out float[] radii);
@@ -44,8 +53,9 @@ namespace QuickSes.Tests
             surface.Failed += error => throw new InvalidOperationException(error.Message);
             surface.SetAtoms(start, radii);
             surface.Spacing = 1;
-            long growth = 0;
-            for (int attempt = -1; attempt < Attempts; ++attempt) // first to compile, and for memory that grows
+            long least = long.MaxValue;
+            int measured = 0;
+            for (int attempt = -1; attempt < MostAttempts && measured < Attempts; ++attempt) // first to compile, and to grow
             {
                 GC.Collect();
                 int collections = GC.CollectionCount(0);
@@ -61,11 +71,16 @@ namespace QuickSes.Tests
                     }
                     garbage();
                 }
-                growth = GC.GetTotalMemory(false) - before;
-                if (attempt >= 0 && GC.CollectionCount(0) == collections)
-                    return growth;
+                long growth = GC.GetTotalMemory(false) - before;
+                if (attempt < 0 || GC.CollectionCount(0) != collections)
+                    continue;
+                ++measured;
+                least = Math.Min(least, growth);
+                if (least < Little)
+                    break;
             }
-            throw new InvalidOperationException("collections came in between each time");
+            Assert.That(measured, Is.GreaterThan(0), "collections came in between each time");
+            return least;
         }
     }
 }
