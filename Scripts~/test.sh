@@ -174,7 +174,9 @@ elif ! for_each_dotnet_test dotnet restore; then
   echo "The C# tests are skipped."
 else
   export QUICKSES_NATIVE="$PWD/UnityPackage/Plugins/linux-x86_64/libquickses.so"
-  for_each_dotnet_test dotnet test --no-restore
+  # A test that hangs ends the run, which then says which one it was.
+  for_each_dotnet_test dotnet test --no-restore --blame-hang-timeout 10m --blame-hang-dump-type none \
+    --results-directory .build/dotnet
   # The runtime that Unity has is a Mono, with another collector; IL2CPP compiles everything beforehand.
   echo "==== mono: test"
   has_mono() {

@@ -10,11 +10,13 @@ namespace QuickSes.MonoRunner
     {
         private readonly TextWriter _output;
         private readonly ExpectedFailures _expected;
+        private readonly HangGuard _guard;
 
         public Listener(TextWriter output, ExpectedFailures expected)
         {
             _output = output;
             _expected = expected;
+            _guard = new HangGuard(output);
         }
 
         public int Passed { get; private set; }
@@ -24,10 +26,13 @@ namespace QuickSes.MonoRunner
 
         public void TestStarted(ITest test)
         {
+            if (!test.IsSuite)
+                _guard.Begin(test.FullName);
         }
 
         public void TestFinished(ITestResult result)
         {
+            _guard.End();
             if (result.Test.IsSuite)
             {
                 // What goes wrong before and after all tests of a class; else only the sum of its tests.
