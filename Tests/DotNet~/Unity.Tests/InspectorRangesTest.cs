@@ -36,6 +36,33 @@ namespace QuickSes.Tests
             yield return null;
         }
 
+        [UnityTest]
+        public IEnumerator GaussianSettingsToo()
+        {
+            Engine.EnterEditMode();
+            var rig = new SurfaceRig();
+            MolecularSurface surface = rig.Surface;
+            foreach (float low in new[] { 0, -1, float.NaN, float.NegativeInfinity })
+            {
+                Edit(surface, "_gaussianRadiusScale", low);
+                Edit(surface, "_gaussianIsovalue", low);
+                Assert.That((surface.GaussianRadiusScale, surface.GaussianIsovalue),
+                    Is.EqualTo((SurfaceSettings.MinGaussianRadiusScale, SurfaceSettings.MinGaussianIsovalue)));
+            }
+            foreach (float high in new[] { 1e9f, float.PositiveInfinity })
+            {
+                Edit(surface, "_gaussianRadiusScale", high);
+                Edit(surface, "_gaussianIsovalue", high);
+                Assert.That((surface.GaussianRadiusScale, surface.GaussianIsovalue),
+                    Is.EqualTo((SurfaceSettings.MaxGaussianRadiusScale, SurfaceSettings.MaxGaussianIsovalue)));
+            }
+            Edit(surface, "_gaussianRadiusScale", 2f);
+            Edit(surface, "_gaussianIsovalue", 3f);
+            Assert.That((surface.GaussianRadiusScale, surface.GaussianIsovalue), Is.EqualTo((2f, 3f)));
+            rig.Dispose();
+            yield return null;
+        }
+
         private static void Edit(MolecularSurface surface, string field, object value)
         {
             typeof(MolecularSurface).GetField(field, Own).SetValue(surface, value);

@@ -196,6 +196,10 @@ namespace QuickSes
         private void LimitSettings()
         {
             _probeRadius = Limited(_probeRadius, 0, SurfaceSettings.MaxProbeRadius);
+            _gaussianRadiusScale = Limited(_gaussianRadiusScale, SurfaceSettings.MinGaussianRadiusScale,
+                SurfaceSettings.MaxGaussianRadiusScale);
+            _gaussianIsovalue = Limited(
+                _gaussianIsovalue, SurfaceSettings.MinGaussianIsovalue, SurfaceSettings.MaxGaussianIsovalue);
             _spacing = Limited(_spacing, SurfaceSettings.MinSpacing, SurfaceSettings.MaxSpacing);
             _relaxationSteps = Math.Min(Math.Max(_relaxationSteps, 0), SurfaceSettings.MaxRelaxationSteps);
             _frameBudget = Limited(_frameBudget, 0, SurfaceSettings.MaxFrameBudget);
