@@ -25,7 +25,8 @@ bool LevelChooser::Subject::operator==(const Subject &other) const {
   return atoms == other.atoms && surface == other.surface && method == other.method &&
          probe_radius == other.probe_radius && relaxation_steps == other.relaxation_steps &&
          slice_size == other.slice_size && ladder == other.ladder && creases == other.creases &&
-         hard_edges == other.hard_edges;
+         hard_edges == other.hard_edges && occlusion == other.occlusion &&
+         gaussian_radius_scale == other.gaussian_radius_scale && gaussian_isovalue == other.gaussian_isovalue;
 }
 
 void LevelChooser::Level::add(double cost_ms, double shared_ms) {

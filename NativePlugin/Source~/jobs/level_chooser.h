@@ -33,7 +33,8 @@ class LevelChooser {
     float probe_radius = 0;
     uint32_t relaxation_steps = 0, slice_size = 0;
     Levels ladder;
-    qses_bool creases = 0, hard_edges = 0;
+    qses_bool creases = 0, hard_edges = 0, occlusion = 0;
+    float gaussian_radius_scale = 1, gaussian_isovalue = 0.5f;
 
     bool operator==(const Subject &other) const;
   };

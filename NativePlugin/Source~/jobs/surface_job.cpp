@@ -72,9 +72,9 @@ void SurfaceJob::choose_levels(const SurfaceRequest &request) {
   chooser_ = nullptr;
   if (request.frame_budget_ms <= 0) return;
   const qses_settings &s = request.settings;
-  const LevelChooser::Subject subject = {request.atoms->count, s.surface,          s.method,
-                                         s.probe_radius,       s.relaxation_steps, s.slice_size,
-                                         request.ladder,       s.creases,          s.hard_edges};
+  const LevelChooser::Subject subject = {
+      request.atoms->count, s.surface, s.method,     s.probe_radius, s.relaxation_steps,      s.slice_size,
+      request.ladder,       s.creases, s.hard_edges, s.occlusion,    s.gaussian_radius_scale, s.gaussian_isovalue};
   chooser_ = &choosers_.of(s.series);
   first_level_ = chooser_->choose(subject, request.frame_budget_ms, static_cast<double>(s.show_ms_per_mb));
 }

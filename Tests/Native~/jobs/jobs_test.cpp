@@ -375,42 +375,84 @@ TEST(Jobs, AFrameBudgetGivesOneLevel) {
   EXPECT_EQ(m.level, 0u);
 }
 
-// The levels of some frames of two series that share a context, and last of changing atoms within a series. False: the
-// machine stood still in a coarse one, so that finer ones seem to cost more than fits.
-bool learn_levels(std::vector<uint32_t> *levels) {
-  const Context context;
-  const Atoms molecules[2] = {cluster(300, 3), cluster(900, 4)};
-  qses_settings s = settings(0.5);
-  s.frame_budget_ms = 60000;  // everything fits, once a first frame has told so
-  bool is_learnt = true;
-  const auto note_level_of = [&](const Atoms &atoms) {
-    set_atoms(context, atoms);
+// The levels of frames within a budget that everything fits into, once a first frame has told so.
+class LevelsOfFrames {
+ public:
+  explicit LevelsOfFrames(const Context &context) : context_(context) { settings_.frame_budget_ms = 60000; }
+
+  void add(const qses_settings &s) {
     const auto start = std::chrono::steady_clock::now();
-    begin(context, s);
-    wait_for_all(context);
+    begin(context_, s);
+    wait_for_all(context_);
     const bool took_long = std::chrono::steady_clock::now() - start > std::chrono::seconds(2);
     qses_mesh m;
     qses_mesh_init(&m);
-    expect_ok(qses_collect(context, &m));
-    levels->push_back(m.level);
-    if (m.level == 0 && took_long) is_learnt = false;
+    expect_ok(qses_collect(context_, &m));
+    levels_.push_back(m.level);
+    if (m.level == 0 && took_long) stood_still_ = true;
+  }
+  const qses_settings &settings_of_all() const { return settings_; }
+  const std::vector<uint32_t> &levels() const { return levels_; }
+  // The machine did in a coarse frame, so that finer ones seem to cost more than fits.
+  bool stood_still() const { return stood_still_; }
+
+ private:
+  const Context &context_;
+  qses_settings settings_ = settings(0.5);
+  std::vector<uint32_t> levels_;
+  bool stood_still_ = false;
+};
+
+// What a course of frames is given, in a context of its own; once more while the machine stands still.
+template <class Course>
+std::vector<uint32_t> levels_of(const Course &course) {
+  for (int attempt = 0; attempt < 20; ++attempt) {
+    const Context context;
+    LevelsOfFrames frames(context);
+    course(context, &frames);
+    if (!frames.stood_still()) return frames.levels();
+  }
+  return {};
+}
+
+TEST(Jobs, SettingsThatChangeWhatALevelCostsBeginAnew) {
+  const auto twice_after_each_change = [](qses_context *context, LevelsOfFrames *frames) {
+    set_atoms(context, cluster(300, 3));
+    qses_settings s = frames->settings_of_all();
+    const auto add_two = [&] {
+      for (int k = 0; k < 2; ++k) frames->add(s);
+    };
+    add_two();
+    s.occlusion = 1;
+    add_two();
+    s.surface = QSES_SURFACE_GAUSSIAN;
+    add_two();
+    s.gaussian_radius_scale = 1.2f;
+    add_two();
+    s.gaussian_isovalue = 0.8f;
+    add_two();
   };
-  levels->clear();
-  for (int frame = 0; frame < 4; ++frame)
-    for (uint32_t k : {0u, 1u}) {
-      s.series = 4000000000u * k;
-      note_level_of(molecules[k]);
-    }
-  s.series = 0;
-  for (const size_t k : {0, 1, 0}) note_level_of(molecules[k]);
-  return is_learnt;
+  EXPECT_EQ(levels_of(twice_after_each_change), (std::vector<uint32_t>{0, 2, 0, 2, 0, 2, 0, 2, 0, 2}));
 }
 
 TEST(Jobs, SeriesThatShareAContextEachKeepTheirLevel) {
-  std::vector<uint32_t> levels;
-  for (int attempts = 1; !learn_levels(&levels); ++attempts) ASSERT_LT(attempts, 20);
+  const auto two_molecules = [](qses_context *context, LevelsOfFrames *frames) {
+    const Atoms molecules[2] = {cluster(300, 3), cluster(900, 4)};
+    qses_settings s = frames->settings_of_all();
+    const auto add_frame_of = [&](const Atoms &atoms) {
+      set_atoms(context, atoms);
+      frames->add(s);
+    };
+    for (int frame = 0; frame < 4; ++frame)
+      for (uint32_t k : {0u, 1u}) {
+        s.series = 4000000000u * k;
+        add_frame_of(molecules[k]);
+      }
+    s.series = 0;
+    for (const size_t k : {0, 1, 0}) add_frame_of(molecules[k]);
+  };
   // Within one series every change of the atoms begins anew.
-  EXPECT_EQ(levels, (std::vector<uint32_t>{0, 0, 2, 2, 2, 2, 2, 2, 2, 0, 0}));
+  EXPECT_EQ(levels_of(two_molecules), (std::vector<uint32_t>{0, 0, 2, 2, 2, 2, 2, 2, 2, 0, 0}));
 }
 
 TEST(Jobs, BadRequestsAreRefusedAtOnce) {

@@ -155,6 +155,11 @@ TEST(LevelChooser, ForgetsWhenTheSubjectChanges) {
       [](LevelChooser::Subject &c) { c.probe_radius = 1.5f; },
       [](LevelChooser::Subject &c) { c.relaxation_steps = 3; },
       [](LevelChooser::Subject &c) { c.slice_size = 64; },
+      [](LevelChooser::Subject &c) { c.creases = 1; },
+      [](LevelChooser::Subject &c) { c.hard_edges = 1; },
+      [](LevelChooser::Subject &c) { c.occlusion = 1; },
+      [](LevelChooser::Subject &c) { c.gaussian_radius_scale = 1.5f; },
+      [](LevelChooser::Subject &c) { c.gaussian_isovalue = 1; },
       [](LevelChooser::Subject &c) { c.ladder.spacings[1] = 1.1f; },
       [](LevelChooser::Subject &c) { c.ladder.add(0.1f); }};
   for (const auto &change : all) {

@@ -364,11 +364,11 @@ typedef struct qses_settings {
                              series (below) say: the time from the start of the work to the mesh in host memory, and
                              what show_ms_per_mb (below) adds. The first frame is the coarsest; what was learnt is
                              forgotten when the number of atoms, surface, method, probe_radius, relaxation_steps,
-                             slice_size, creases, hard_edges, spacing or levels change within a series. Now and then
-                             a frame takes longer, when a finer level is tried: so a surface that became cheaper gets
-                             finer again. Which level it was is in qses_mesh.level and .spacing. Like everything that
-                             depends on time, the choice of the level is not the same in every run; the mesh of a
-                             level is */
+                             slice_size, creases, hard_edges, occlusion, gaussian_radius_scale, gaussian_isovalue,
+                             spacing or levels change within a series. Now and then a frame takes longer, when a finer
+                             level is tried: so a surface that became cheaper gets finer again. Which level it was is in
+                             qses_mesh.level and .spacing. Like everything that depends on time, the choice of the level
+                             is not the same in every run; the mesh of a level is */
   qses_bool components;   /* 1: qses_mesh.components is filled; default 0, which costs nothing */
   uint32_t series;        /* which series of frames a job belongs to: any number; default 0. For callers who let one
                              context compute several molecules in turn: frame_budget_ms learns from each series apart.
