@@ -182,9 +182,6 @@ bool needs_patches(const Options &options) {
          (!options.output.empty() && io::mesh_format_of(options.output) == io::MeshFormat::kMsms);
 }
 
-const char *name_of(MeshColors colors) {
-  if (colors == MeshColors::kDefault) return "none";
-  return colors == MeshColors::kOne ? "one" : find_name(kColors, colors);
-}
+const char *name_of(MeshColors colors) { return colors == MeshColors::kOne ? "one" : find_name(kColors, colors); }
 
 }  // namespace quickses::cli

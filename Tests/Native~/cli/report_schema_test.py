@@ -60,6 +60,13 @@ class Schema(ProgramTest):
         self.check("surface", CRAMBIN, "-v", "2", "--surface", "gaussian", "--radius-scale", "1.5", "-o", "a.ply", "--occlusion", "on")
         self.check("surface", CRAMBIN, "-v", "2", "-o", "a.ply", "--color", "element", "--sharp-colors", "--center", "--scale", "2")
         self.check("surface", CRAMBIN, "-v", "2", "-o", "a.glb", "--color", "#C08000")
+        for output, arguments, color in (("a.png", [], "element"), ("a.html", [], "element"), ("a.html", ["--color", "none"], None),
+                                         ("a.ply", [], None)):
+            (report,) = self.check("surface", CRAMBIN, "-v", "2", "-o", output, *arguments)
+            self.assertEqual(report["settings"].get("color"), color)
+        models = self.models()
+        for report in self.check("surface_of_frame", models, "--trajectory", models, "-v", "2", "-o", "b.html"):
+            self.assertEqual(report["settings"]["color"], "element")
         self.check("surface", CRAMBIN, "-v", "2", "-o", "a.png", "--size", "32x32", "--samples", "1")
         self.assertEqual(len(self.check("surface", self.models(), "-v", "2", "--model", "all")), 3)
 
