@@ -3,6 +3,7 @@
 #include "capi/atoms_in.h"
 
 #include "capi/barrier.h"
+#include "io/text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -203,8 +204,8 @@ void check_indices(const uint32_t *indices, size_t count, size_t position_count)
   if (count > 0) require(indices, "indices");
   for (size_t i = 0; i < count; ++i)
     if (indices[i] >= position_count)
-      invalid("indices[" + std::to_string(i) + "] is " + std::to_string(indices[i]) + " but there are " +
-              std::to_string(position_count) + " positions");
+      invalid("indices[" + std::to_string(i) + "] is " + std::to_string(indices[i]) + " but " +
+              io::there_are(position_count, "position"));
 }
 
 AtomBounds copy_indexed_atoms(const float *positions, size_t stride, const uint32_t *indices, const float *radii,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "capi/backends.h"
+#include "io/text.h"
 
 #include "parallel/host_memory.h"
 #include "surface/cpu/cpu_kernels.h"
@@ -19,8 +20,8 @@ namespace {
 qses_backend_description describe_cpu() {
   qses_backend_description d{};
   d.available = 1;
-  std::snprintf(d.device, sizeof d.device, "CPU (%s, %u threads)", cpu_kernels().name,
-                std::max(1u, std::thread::hardware_concurrency()));
+  std::snprintf(d.device, sizeof d.device, "CPU (%s, %s)", cpu_kernels().name,
+                io::counted(std::max(1u, std::thread::hardware_concurrency()), "thread").c_str());
   const HostMemoryStatus memory = describe_host_memory();
   d.total_memory = memory.total;
   d.free_memory = memory.free;

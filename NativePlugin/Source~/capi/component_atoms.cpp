@@ -2,6 +2,7 @@
 // The part of the C API that tells which atoms line the components of a mesh.
 #include "capi/barrier.h"
 #include "capi/structs.h"
+#include "io/text.h"
 
 #include <algorithm>
 #include <vector>
@@ -58,8 +59,8 @@ qses_status qses_component_atoms(const qses_mesh *mesh, uint32_t *starts, uint32
     std::copy(lining.starts.begin(), lining.starts.end(), starts);
     if (!atoms) return;
     if (room < lining.atoms.size())
-      invalid("room is " + std::to_string(room) + " but the components have " + std::to_string(lining.atoms.size()) +
-              " atoms");
+      invalid("room is " + std::to_string(room) + " but the components have " +
+              quickses::io::counted(lining.atoms.size(), "atom"));
     std::copy(lining.atoms.begin(), lining.atoms.end(), atoms);
   });
 }

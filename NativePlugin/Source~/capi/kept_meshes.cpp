@@ -2,6 +2,7 @@
 // The part of the C API about kept meshes.
 #include "capi/context.h"
 #include "capi/structs.h"
+#include "io/text.h"
 #include "kept/kept_mesh.h"
 
 #include <cmath>
@@ -25,17 +26,17 @@ void check_owners(const KeptMesh &kept) {
   require_owners(kept.mesh);
 }
 
-// name: of what there are `total`.
-void check_run(const char *name, uint32_t first, uint32_t count, uint32_t total) {
+// one, many: of what there are `total`.
+void check_run(const char *one, const char *many, uint32_t first, uint32_t count, uint32_t total) {
   if (first > total || count > total - first)
-    invalid("first is " + std::to_string(first) + " and count is " + std::to_string(count) + ", but there are " +
-            std::to_string(total) + " " + name);
+    invalid("first is " + std::to_string(first) + " and count is " + std::to_string(count) + ", but " +
+            quickses::io::there_are(total, one, many));
 }
 
 void check_atoms(const KeptMesh &kept, size_t atom_count) {
   if (atom_count != kept.atom_count)
     invalid("atom_count is " + std::to_string(atom_count) + " but the mesh was made of " +
-            std::to_string(kept.atom_count) + " atoms");
+            quickses::io::counted(kept.atom_count, "atom"));
 }
 
 void check_ray(const float origin[3], const float direction[3]) {
@@ -113,7 +114,7 @@ qses_status qses_kept_mesh_paint(const qses_kept_mesh *kept, const void *per_ato
       invalid("value_bytes is " + std::to_string(value_bytes) + ": it must be 4, 8, 12 or 16");
     check_owners(kept->held);
     check_atoms(kept->held, atom_count);
-    check_run("vertices", first, count, kept->held.mesh.vertex_count);
+    check_run("vertex", "vertices", first, count, kept->held.mesh.vertex_count);
     if (count == 0) return;
     require(per_atom, "per_atom");
     require(per_vertex, "per_vertex");
@@ -129,7 +130,7 @@ qses_status qses_kept_mesh_filter(const qses_kept_mesh *kept, const uint8_t *vis
     require(kept_triangles, "kept_triangles");
     check_owners(kept->held);
     check_atoms(kept->held, atom_count);
-    check_run("triangles", first, count, kept->held.mesh.triangle_count);
+    check_run("triangle", "triangles", first, count, kept->held.mesh.triangle_count);
     if (count == 0) return;
     require(visible, "visible");
     require(indices, "indices");

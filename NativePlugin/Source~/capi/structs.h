@@ -3,6 +3,7 @@
 #pragma once
 
 #include "capi/barrier.h"
+#include "io/text.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -64,11 +65,10 @@ void check_choice(const char *name, const Choice &given, Choice last) {
     invalid(std::string(name) + " is " + std::to_string(value) + ", which names nothing in the header");
 }
 
-// The k-th of some things.
+// The k-th of some things. name: of one.
 template <class T>
 const T &pick(const std::vector<T> &things, uint32_t k, const char *name) {
-  if (k >= things.size())
-    invalid("k is " + std::to_string(k) + " but there are " + std::to_string(things.size()) + " " + name);
+  if (k >= things.size()) invalid("k is " + std::to_string(k) + " but " + io::there_are(things.size(), name));
   return things[k];
 }
 

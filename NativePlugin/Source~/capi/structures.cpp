@@ -5,6 +5,7 @@
 #include "io/file_bytes.h"
 #include "io/radii.h"
 #include "io/structure.h"
+#include "io/text.h"
 #include "quickses/quickses.h"
 
 #include <functional>
@@ -86,8 +87,7 @@ io::ColorScheme scheme_of(qses_color_scheme scheme) {
 // count: of a caller's array of atoms.
 void check_atom_count(const io::Structure &model, size_t count) {
   if (count != model.atoms.size())
-    invalid("count is " + std::to_string(count) + " but the structure has " + std::to_string(model.atoms.size()) +
-            " atoms");
+    invalid("count is " + std::to_string(count) + " but the structure has " + io::counted(model.atoms.size(), "atom"));
 }
 
 io::ReadOptions read_options_of(const qses_structure_options &options) {
@@ -181,7 +181,7 @@ qses_status qses_structure_atom(const qses_structure *structure, uint32_t k, qse
   return guarded([&] {
     require(structure, "structure");
     require(atom, "atom");
-    const io::AtomInfo &from = quickses::pick(structure->model().atoms, k, "atoms");
+    const io::AtomInfo &from = quickses::pick(structure->model().atoms, k, "atom");
     qses_atom value;
     qses_atom_init(&value);
     value.name = from.name.c_str();
@@ -227,7 +227,7 @@ qses_status qses_structure_warning(const qses_structure *structure, uint32_t k, 
   return guarded([&] {
     require(structure, "structure");
     require(sentence, "sentence");
-    *sentence = quickses::pick(structure->file.warnings, k, "warnings").c_str();
+    *sentence = quickses::pick(structure->file.warnings, k, "warning").c_str();
   });
 }
 

@@ -2,6 +2,7 @@
 // The C API: trajectories from files and from memory.
 #include "capi/atoms_in.h"
 #include "capi/structs.h"
+#include "io/text.h"
 #include "io/trajectory.h"
 #include "io/unwrap.h"
 #include "quickses/quickses.h"
@@ -70,7 +71,7 @@ qses_trajectory_format format_of(io::TrajectoryFormat format) {
 void check_atom_count(const qses_trajectory &trajectory, size_t count) {
   if (count != trajectory.frames.atom_count())
     invalid("count is " + std::to_string(count) + " but the trajectory has " +
-            std::to_string(trajectory.frames.atom_count()) + " atoms");
+            io::counted(trajectory.frames.atom_count(), "atom"));
 }
 
 // The positions of a frame, packed; true if molecules were made whole.
@@ -129,7 +130,7 @@ qses_status qses_trajectory_warning(const qses_trajectory *trajectory, uint32_t 
   return guarded([&] {
     require(trajectory, "trajectory");
     require(sentence, "sentence");
-    *sentence = quickses::pick(trajectory->frames.warnings(), k, "warnings").c_str();
+    *sentence = quickses::pick(trajectory->frames.warnings(), k, "warning").c_str();
   });
 }
 
@@ -155,7 +156,7 @@ qses_status qses_trajectory_read_frame(const qses_trajectory *trajectory, uint64
     if (frame) quickses::check_struct(frame, "qses_frame");
     if (index >= trajectory->frames.frame_count())
       invalid("index is " + std::to_string(index) + " but the trajectory has " +
-              std::to_string(trajectory->frames.frame_count()) + " frames");
+              io::counted(trajectory->frames.frame_count(), "frame"));
     const size_t k = static_cast<size_t>(index);
     qses_frame value;
     qses_frame_init(&value);

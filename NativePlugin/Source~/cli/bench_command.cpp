@@ -14,6 +14,7 @@
 #include "cli/exit_code.h"
 #include "cli/input.h"
 #include "cli/text_output.h"
+#include "io/text.h"
 
 namespace quickses::cli {
 namespace {
@@ -145,7 +146,8 @@ void run_bench(const Options &options) {
     const std::string text = measure(subject, &entry);
     structures.push_back(entry);
     if (!options.quiet && options.json != "-") {
-      std::printf("%s: %zu atoms, %s\n", options.inputs[i].c_str(), structure.atoms.size(), text.c_str());
+      std::printf("%s: %s, %s\n", options.inputs[i].c_str(), io::counted(structure.atoms.size(), "atom").c_str(),
+                  text.c_str());
       flush_standard_output();
     }
   }

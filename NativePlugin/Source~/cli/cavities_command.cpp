@@ -14,6 +14,7 @@
 #include "cli/progress.h"
 #include "cli/report.h"
 #include "cli/text_output.h"
+#include "io/text.h"
 
 namespace quickses::cli {
 namespace {
@@ -113,8 +114,8 @@ void print_cavities(const Options &options, const std::vector<Cavity> &cavities,
     std::printf("%s: no cavities (%s)\n", options.input.c_str(), surface);
     return;
   }
-  std::printf("%s: %zu %s, %.2f Å³ (%s)\n", options.input.c_str(), cavities.size(),
-              cavities.size() == 1 ? "cavity" : "cavities", volume, surface);
+  std::printf("%s: %s, %.2f Å³ (%s)\n", options.input.c_str(),
+              io::counted(cavities.size(), "cavity", "cavities").c_str(), volume, surface);
   std::printf("component  volume Å³    area Å²   centre x, y, z Å             lining residues\n");
   for (const Cavity &cavity : cavities) {
     const qses_component &c = cavity.component;

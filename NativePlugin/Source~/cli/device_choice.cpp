@@ -33,11 +33,8 @@ std::vector<int> DeviceChoice::select(unsigned device_count, unsigned nth) const
   }
   for (const int number : numbers_)
     if (device_count > 0 && static_cast<unsigned>(number) >= device_count)
-      throw Failure(
-          kBackendUnavailable,
-          "--device " + text_ + ": there " +
-              (device_count == 1 ? "is 1 CUDA device" : "are " + std::to_string(device_count) + " CUDA devices") +
-              ", from 0 on");
+      throw Failure(kBackendUnavailable,
+                    "--device " + text_ + ": " + io::there_are(device_count, "CUDA device") + ", from 0 on");
   return numbers_;
 }
 

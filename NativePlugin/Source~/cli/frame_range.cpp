@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cli/exit_code.h"
+#include "io/text.h"
 
 namespace quickses::cli {
 namespace {
@@ -48,7 +49,7 @@ FrameRange::FrameRange(const std::string &text) : text_(text) {
 
 FrameSelection FrameRange::select(size_t frame_count, const std::string &quoted_trajectory) const {
   const int64_t count = static_cast<int64_t>(frame_count);
-  const std::string frames = std::to_string(frame_count) + (frame_count == 1 ? " frame" : " frames");
+  const std::string frames = io::counted(frame_count, "frame");
   const auto from_start = [count](int64_t frame) { return frame < 0 ? frame + count : frame; };
   if (is_single_) {
     const int64_t frame = from_start(*begin_);

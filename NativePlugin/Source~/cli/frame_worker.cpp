@@ -12,6 +12,7 @@
 #include "cli/report.h"
 #include "cli/shown_output.h"
 #include "io/error.h"
+#include "io/text.h"
 
 namespace quickses::cli {
 
@@ -42,8 +43,8 @@ std::string label_of(uint64_t frame, std::optional<double> time) {
 
 void check_atom_counts(const Options &options, const io::Structure &structure, const io::Trajectory &trajectory) {
   if (structure.file_atom_count == trajectory.atom_count()) return;
-  throw Failure(kInputUnreadable, "'" + options.input + "' has " + std::to_string(structure.file_atom_count) +
-                                      " atoms, but '" + options.trajectories.front() + "' has " +
+  throw Failure(kInputUnreadable, "'" + options.input + "' has " + io::counted(structure.file_atom_count, "atom") +
+                                      ", but '" + options.trajectories.front() + "' has " +
                                       std::to_string(trajectory.atom_count()) + ": they must be of the same atoms");
 }
 

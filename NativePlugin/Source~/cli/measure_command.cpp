@@ -10,6 +10,7 @@
 #include "cli/input.h"
 #include "cli/measuring.h"
 #include "cli/text_output.h"
+#include "io/text.h"
 
 namespace quickses::cli {
 namespace {
@@ -17,8 +18,9 @@ namespace {
 void print_table(const Options &options, const io::Structure &structure, const Engine &engine,
                  const Measurement &measurement) {
   const std::string model = options.read.model == 0 ? ", model " + std::to_string(structure.model) : "";
-  std::printf("%s%s: %zu atoms, probe %g Å, %s, %.2f ms\n", options.input.c_str(), model.c_str(),
-              structure.atoms.size(), options.compute.probe, name_of(engine.backend()), measurement.milliseconds);
+  std::printf("%s%s: %s, probe %g Å, %s, %.2f ms\n", options.input.c_str(), model.c_str(),
+              io::counted(structure.atoms.size(), "atom").c_str(), options.compute.probe, name_of(engine.backend()),
+              measurement.milliseconds);
   std::printf("surface          area Å²        volume Å³  measured by\n");
   for (const SurfaceNumbers &numbers : measurement.surfaces) {
     const bool is_exact = numbers.report.measured_by == QSES_MEASURED_BY_ATOMS;

@@ -19,6 +19,7 @@
 #include "cli/text_output.h"
 #include "cli/used_files.h"
 #include "io/file_path.h"
+#include "io/text.h"
 
 namespace quickses::cli {
 namespace {
@@ -37,9 +38,10 @@ void print_summary(const Options &options, const io::Structure &structure, const
                    const qses_report &report) {
   const auto vertices = static_cast<uint32_t>(mesh.vertex_count - mesh.repeated_count);
   if (options.has_several_inputs()) std::printf("%s: ", options.input.c_str());
-  std::printf("%zu atoms, %u vertices, %u triangles, area %.2f Å², volume %.2f Å³, %s, %.2f ms%s%s\n",
-              structure.atoms.size(), vertices, mesh.triangle_count, report.area, report.volume,
-              name_of(engine.backend()), report.compute_ms, options.output.empty() ? "" : ", ", options.output.c_str());
+  std::printf("%s, %u vertices, %u triangles, area %.2f Å², volume %.2f Å³, %s, %.2f ms%s%s\n",
+              io::counted(structure.atoms.size(), "atom").c_str(), vertices, mesh.triangle_count, report.area,
+              report.volume, name_of(engine.backend()), report.compute_ms, options.output.empty() ? "" : ", ",
+              options.output.c_str());
 }
 
 // The surfaces of structures, one after the other, with one engine.

@@ -18,6 +18,7 @@
 #include "cli/shown_output.h"
 #include "cli/text_output.h"
 #include "cli/used_files.h"
+#include "io/text.h"
 
 namespace quickses::cli {
 namespace {
@@ -97,7 +98,10 @@ class ResultWriter {
   void finish() {
     progress_.clear();
     if (failed_ > kMostMessages)
-      std::fprintf(stderr, "quickses: %zu more messages of failed frames are not shown\n", failed_ - kMostMessages);
+      std::fprintf(
+          stderr, "quickses: %s not shown\n",
+          io::counted(failed_ - kMostMessages, "more message of failed frames is", "more messages of failed frames are")
+              .c_str());
     if (page_) {
       page_->finish();
       hint_at_size(*page_, options_);
@@ -194,12 +198,13 @@ class Run {
     writer_->finish();
     const Options &options = inputs_.options;
     if (!options.quiet && !options.prints_data())
-      std::printf("%zu frames of %zu atoms, %s, %s%llu at a time, %.2f s, %.1f frames/s%s%s\n", frames_.count,
-                  inputs_.structure().atoms.size(), name_of(share_.compute.backend), devices_text().c_str(),
-                  static_cast<unsigned long long>(all_engines), seconds, rate, options.csv.empty() ? "" : ", ",
-                  options.csv.c_str());
+      std::printf("%s of %s, %s, %s%llu at a time, %.2f s, %.1f frames/s%s%s\n",
+                  io::counted(frames_.count, "frame").c_str(),
+                  io::counted(inputs_.structure().atoms.size(), "atom").c_str(), name_of(share_.compute.backend),
+                  devices_text().c_str(), static_cast<unsigned long long>(all_engines), seconds, rate,
+                  options.csv.empty() ? "" : ", ", options.csv.c_str());
     if (const size_t failed = ledger.failed_count())
-      throw Failure(kSomeFailed, std::to_string(failed) + " of " + std::to_string(frames_.count) + " frames failed");
+      throw Failure(kSomeFailed, std::to_string(failed) + " of " + io::counted(frames_.count, "frame") + " failed");
   }
 
   // Several of this process.

@@ -3,6 +3,8 @@
 
 #include <cstdio>
 
+#include "io/text.h"
+
 namespace quickses::cli {
 
 void hint_at_water(const Options &options, const io::Structure &structure) {
@@ -13,8 +15,9 @@ void hint_at_water(const Options &options, const io::Structure &structure) {
   for (size_t i = 0; i < residues.size(); ++i)
     if (structure.atoms[i].water && (i == 0 || residues[i] != residues[i - 1])) ++molecules;
   if (molecules != 0)
-    std::fprintf(stderr, "quickses: %zu water %s part of the surface; --no-water leaves %s out\n", molecules,
-                 molecules == 1 ? "molecule is" : "molecules are", molecules == 1 ? "it" : "them");
+    std::fprintf(stderr, "quickses: %s part of the surface; --no-water leaves %s out\n",
+                 io::counted(molecules, "water molecule is", "water molecules are").c_str(),
+                 molecules == 1 ? "it" : "them");
 }
 
 }  // namespace quickses::cli

@@ -241,8 +241,9 @@ class DcdReader : public TrajectoryReader {
     if (frame_count == 0) fail("it has no frames");
     if (announced_ > 0 && static_cast<uint64_t>(announced_) > frame_count) {
       incomplete = true;
-      warnings.push_back(quoted_name() + ": its header announces " + std::to_string(announced_) +
-                         " frames, but it ends after " + std::to_string(frame_count));
+      warnings.push_back(quoted_name() + ": its header announces " +
+                         counted(static_cast<uint64_t>(announced_), "frame") + ", but it ends after " +
+                         std::to_string(frame_count));
     }
   }
 
@@ -268,7 +269,7 @@ class DcdReader : public TrajectoryReader {
     if (length == expected) return true;
     if (length != 0 && length % 4 == 0 && has_record(axis, length) && is_record(axis, length)) {
       if (frame == 0)
-        fail("frame 0 has " + std::to_string(length / 4) + " atoms, but the header says " + std::to_string(atom_count));
+        fail("frame 0 has " + counted(length / 4, "atom") + ", but the header says " + std::to_string(atom_count));
       fail_atom_count(frame, length / 4 + (atom_count - free_count_));
     }
     end_at(frame, "is damaged: its coordinates do not start where they should");

@@ -22,6 +22,7 @@
 
 #include "io/error.h"
 #include "io/file_path.h"
+#include "io/text.h"
 
 namespace quickses::io {
 namespace {
@@ -52,12 +53,9 @@ bool append_within(uint64_t limit, const char *data, size_t count, std::string &
 }
 
 [[noreturn]] void fail_above_limit(const std::string &name, const char *verb, uint64_t limit) {
-  char size[32];
-  if (limit < kMiB)
-    std::snprintf(size, sizeof size, "%llu bytes", static_cast<unsigned long long>(limit));
-  else
-    std::snprintf(size, sizeof size, "%.6g MiB", static_cast<double>(limit) / kMiB);
-  fail_input("'" + name + "' " + verb + " more than " + size +
+  char large[32];
+  std::snprintf(large, sizeof large, "%.6g MiB", static_cast<double>(limit) / kMiB);
+  fail_input("'" + name + "' " + verb + " more than " + (limit < kMiB ? counted(limit, "byte") : large) +
              ", the most that is taken into memory; --max-input (in the library qses_input_set_limit) allows more");
 }
 

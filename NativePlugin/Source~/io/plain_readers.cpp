@@ -190,8 +190,8 @@ RawFile read_gro_text(const std::string &text, const std::string &path, int mode
     for (int i = 0; i < count; ++i) {
       ++number;
       if (!next_line(rest, line))
-        fail_input("'" + path + "' is cut off: it ends after " + std::to_string(i) + " of " + std::to_string(count) +
-                   " atoms");
+        fail_input("'" + path + "' is cut off: it ends after " + std::to_string(i) + " of " +
+                   counted(static_cast<uint64_t>(count), "atom"));
       if (!wanted) continue;
       if (width == 0) {
         const size_t first = line.find('.', 20);

@@ -221,10 +221,6 @@ void leave_out(Structure &structure, const Filter &filter, const std::string &pa
   structure.radii.shrink_to_fit();
 }
 
-std::string count_of(size_t count, const char *one, const char *many) {
-  return std::to_string(count) + " " + (count == 1 ? one : many);
-}
-
 }  // namespace
 
 bool is_water_name(const std::string &residue_name) {
@@ -247,8 +243,8 @@ StructureFile parse_text(std::string text, const std::string &path, std::optiona
   file.model_count = raw_file.model_count;
   if (file.model_count == 0) fail_input("'" + path + "' has no atoms");
   if (options.model < 0 || options.model > file.model_count)
-    fail_usage("'" + path + "' has " + count_of(file.model_count, "model", "models") + ": there is no model " +
-               std::to_string(options.model));
+    fail_usage("'" + path + "' has " + counted(static_cast<uint64_t>(file.model_count), "model") +
+               ": there is no model " + std::to_string(options.model));
 
   build_assembly(raw_file, file.format, text, path, options.assembly);
   size_t radius_zero_count = 0;
@@ -269,12 +265,10 @@ StructureFile parse_text(std::string text, const std::string &path, std::optiona
     fail_input("no atoms of " + which + "'" + path + "' are left after " + why);
   }
   if (raw_file.inferred_elements != 0)
-    file.warnings.push_back("'" + path + "': the element of " +
-                            count_of(raw_file.inferred_elements, "atom was", "atoms was") +
-                            " missing and was inferred from residue and atom name");
+    file.warnings.push_back("'" + path + "': the element of " + counted(raw_file.inferred_elements, "atom") +
+                            " was missing and was inferred from residue and atom name");
   if (radius_zero_count != 0)
-    file.warnings.push_back("'" + path + "': " + count_of(radius_zero_count, "atom", "atoms") +
-                            " of radius 0 left out");
+    file.warnings.push_back("'" + path + "': " + counted(radius_zero_count, "atom") + " of radius 0 left out");
   return file;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -77,6 +78,16 @@ inline bool parse_integer(std::string_view text, int &value) {
   text = trim(text);
   const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
   return result.ec == std::errc() && result.ptr == text.data() + text.size();
+}
+
+// "1 atom", "2 atoms". many: where it is not the one with an s.
+inline std::string counted(uint64_t count, const std::string &one, const std::string &many = "") {
+  return std::to_string(count) + " " + (count == 1 ? one : many.empty() ? one + "s" : many);
+}
+
+// "there is 1 atom", "there are 2 atoms"
+inline std::string there_are(uint64_t count, const std::string &one, const std::string &many = "") {
+  return (count == 1 ? "there is " : "there are ") + counted(count, one, many);
 }
 
 }  // namespace quickses::io

@@ -85,8 +85,8 @@ Trajectory Trajectory::open_all(const std::vector<std::string> &paths) {
   for (size_t k = 1; k < paths.size(); ++k) {
     Trajectory next = open(paths[k]);
     if (next.atom_count() != all.atom_count())
-      fail_input("'" + paths[k] + "' has " + std::to_string(next.atom_count()) + " atoms, but '" + paths.front() +
-                 "' has " + std::to_string(all.atom_count()) + ": trajectories in a row must be of the same atoms");
+      fail_input("'" + paths[k] + "' has " + counted(next.atom_count(), "atom") + ", but '" + paths.front() + "' has " +
+                 std::to_string(all.atom_count()) + ": trajectories in a row must be of the same atoms");
     next.parts_.front().first = all.frame_count_;
     all.frame_count_ += next.frame_count_;
     all.parts_.push_back(std::move(next.parts_.front()));

@@ -11,6 +11,7 @@
 #include "io/box.h"
 #include "io/byte_source.h"
 #include "io/error.h"
+#include "io/text.h"
 
 namespace quickses::io {
 
@@ -42,7 +43,7 @@ class TrajectoryReader {
   }
 
   [[noreturn]] void fail_atom_count(size_t frame, uint64_t count) const {
-    fail_frame(frame, "has " + std::to_string(count) + " atoms, but frame 0 has " + std::to_string(atom_count));
+    fail_frame(frame, "has " + counted(count, "atom") + ", but frame 0 has " + std::to_string(atom_count));
   }
 
   // Nothing can be read from `frame` on: an error for the first frame, a warning later.

@@ -220,6 +220,17 @@ TEST_F(StructureFiles, Errors) {
   qses_structure_options_init(nullptr);
 }
 
+TEST(Structure, OneIsSingular) {
+  const StructurePointer structure = open_text("0 0 0 1\n", read_options(QSES_STRUCTURE_XYZR));
+  qses_atom atom;
+  qses_atom_init(&atom);
+  EXPECT_EQ(qses_structure_atom(structure.get(), 1, &atom), QSES_INVALID_ARGUMENT);
+  EXPECT_STREQ(qses_last_error(), "k is 1 but there is 1 atom");
+  const char *sentence = nullptr;
+  EXPECT_EQ(qses_structure_warning(structure.get(), 0, &sentence), QSES_INVALID_ARGUMENT);
+  EXPECT_STREQ(qses_last_error(), "k is 0 but there are 0 warnings");
+}
+
 TEST(Devices, AreCounted) {
   uint32_t count = 99;
   ASSERT_EQ(qses_device_count(&count), QSES_OK);

@@ -218,6 +218,17 @@ TEST_F(WithMesh, SetPositionsErrors) {
   expect_usable();
 }
 
+TEST(Atoms, OneIsSingular) {
+  const Context context;
+  set_atoms(context, Atoms().add(0, 0, 0, 1));
+  const float xyz[6] = {};
+  const uint32_t index = 1;
+  EXPECT_EQ(qses_set_positions(context, xyz, 0, 2), QSES_INVALID_ARGUMENT);
+  EXPECT_STREQ(qses_last_error(), "count is 2 but the context has 1 atom");
+  EXPECT_EQ(qses_set_positions_indexed(context, xyz, 0, 1, &index, 1), QSES_INVALID_ARGUMENT);
+  EXPECT_STREQ(qses_last_error(), "indices[0] is 1 but there is 1 position");
+}
+
 TEST(Atoms, AreCopied) {
   const Context context;
   auto atoms = std::make_unique<Atoms>(water());

@@ -307,6 +307,16 @@ TEST(KeptMesh, FilterLeavesTrianglesOfVisibleAtoms) {
 
 // ---- errors
 
+TEST(KeptMesh, OneIsSingular) {
+  const Context context;
+  const Atoms atoms = Atoms().add(0, 0, 0, 1);
+  const KeptSurface kept(atoms);
+  const uint8_t visible[2] = {1, 1};
+  uint32_t triangles = 0, room[3];
+  EXPECT_EQ(qses_kept_mesh_filter(kept, visible, 2, 0, 0, room, &triangles), QSES_INVALID_ARGUMENT);
+  EXPECT_STREQ(qses_last_error(), "atom_count is 2 but the mesh was made of 1 atom");
+}
+
 TEST(KeptMesh, WrongArgumentsAreNamed) {
   const Context context;
   const Atoms atoms = water();

@@ -8,6 +8,7 @@ import unittest
 
 import cli_test
 from cli_test import CRAMBIN, INPUT, USAGE, ProgramTest, program_to_test
+from trajectory_files import chain_of, dcd_bytes, pdb_text
 
 COMMANDS = ("", "measure", "cavities", "bench")
 
@@ -72,6 +73,22 @@ class Hints(ProgramTest):
         self.assertEqual(self.hint_of("one.pdb"),
                          "quickses: 1 water molecule is part of the surface; --no-water leaves it out\n")
         self.assertEqual(self.hint_of(CRAMBIN), "")
+
+    def test_one_is_singular(self):
+        atoms, positions = chain_of(2)
+        self.write("one.pdb", pdb_text(atoms[:1], positions[:1]))
+        self.write("two.pdb", pdb_text(atoms, positions))
+        self.write("t.dcd", dcd_bytes([positions[:1]]))
+        frames = ("one.pdb", "--trajectory", "t.dcd", "-v", "1")
+        self.assertRegex(self.run_cpu(*frames, "--csv", "a.csv").stdout, "^1 frame of 1 atom, ")
+        self.assertRegex(self.run_cpu("one.pdb", "-v", "1").stdout, "^1 atom, ")
+        self.assertRegex(self.run_cpu("two.pdb", "-v", "1").stdout, "^2 atoms, ")
+        self.assertRegex(self.run_cpu("measure", "one.pdb").stdout, "^one.pdb: 1 atom, ")
+        self.assertRegex(self.run_cpu("bench", "one.pdb", "-v", "1", "--repeat", "1").stdout, "^one.pdb: 1 atom, ")
+        self.assert_fails(INPUT, ["'one.pdb' has 1 atom, but 'two.dcd' has 2:"], "one.pdb", "--trajectory",
+                          self.write("two.dcd", dcd_bytes([positions])).name, "--csv", "a.csv", "--backend", "cpu")
+        self.assertRegex(self.run_cpu(*frames, "--memory", "1K", "--csv", "b.csv", code=6).stderr, "1 of 1 frame failed\n$")
+        self.assert_fails(INPUT, ["'one.pdb' has more than 1 byte,"], "one.pdb", "--max-input", "1")
 
     def test_cuda_is_not_spoken_of_where_it_was_not_built(self):
         refused = subprocess.run([cli_test.PROGRAM, CRAMBIN, "--backend", "cuda"], capture_output=True, encoding="utf-8",

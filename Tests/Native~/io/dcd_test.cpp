@@ -264,7 +264,7 @@ TEST(DcdTest, RefusesAbsurdCounts) {
     EXPECT_HAS(error_of_bytes(writer.header(count) + frame), "its number of atoms, " + std::to_string(count));
   // As many as fit in a record, but not in the file: nothing is allocated for them.
   EXPECT_HAS(error_of_bytes(writer.header(0x7fffffff / 4) + frame), "frame 0");
-  EXPECT_HAS(error_of_bytes(writer.header(2) + frame), "frame 0 has 1 atoms, but the header says 2");
+  EXPECT_HAS(error_of_bytes(writer.header(2) + frame), "frame 0 has 1 atom, but the header says 2");
 
   writer.free_atoms = {1, 2, 3};
   const auto with_header_number = [&](size_t i, int32_t value) {

@@ -118,6 +118,8 @@ TEST_F(TrajectoryTest, PdbErrors) {
   const Positions three = rounded_positions(3, 1), four = rounded_positions(4, 1);
   EXPECT_HAS(pdb_error(pdb_model(1, three) + pdb_model(2, four)), "frame 1 has 4 atoms, but frame 0 has 3");
   EXPECT_HAS(pdb_error(pdb_model(1, four) + pdb_model(2, three)), "frame 1 has 3 atoms, but frame 0 has 4");
+  EXPECT_HAS(pdb_error(pdb_model(1, three) + pdb_model(2, rounded_positions(1, 1))),
+             "frame 1 has 1 atom, but frame 0 has 3");
   EXPECT_HAS(pdb_error("ATOM      1  CA\n" + pdb_atoms(three)), "'test.pdb', line 1: ");
   const std::string atoms = pdb_atoms(three);
   EXPECT_HAS(pdb_error(atoms.substr(0, 51) + atoms.substr(atoms.find('\n'))), "columns 31 to 54");
@@ -314,6 +316,11 @@ TEST_F(TrajectoryTest, FilesInARowWithFaults) {
   const std::string other = write("other.dcd", dcd.header(2) + dcd.frame({1, 2, 3, 4, 5, 6}, true));
   const std::string message = error_of(ErrorKind::kInput, [&] { Trajectory::open_all({first, cut, other}); });
   EXPECT_HAS(message, other + "' has 2 atoms, but '" + first + "' has 1");
+  EXPECT_HAS(error_of(ErrorKind::kInput,
+                      [&] {
+                        Trajectory::open_all({other, first});
+                      }),
+             first + "' has 1 atom, but '" + other + "' has 2");
   EXPECT_HAS(error_of(ErrorKind::kInput, [&] { Trajectory::open_all({first, path("none.dcd")}); }), "none.dcd");
 }
 
