@@ -75,6 +75,7 @@ void add_input_options(CLI::App *app, Options &options, const char *model_help) 
 
 void add_single_input_options(CLI::App *app, Options &options, const char *model_help) {
   add_structure_options(app, options, kInputHelp, model_help);
+  app->get_option("--model")->type_name("N");
 }
 
 void check_inputs(const Options &options) {

@@ -281,6 +281,17 @@ class Cavities(TablesTest):
         self.assertEqual(len(self.run_cpu("cavities", "one.pdb", "--csv", "-").stdout.splitlines()), 1)
         self.assertEqual(self.run_cpu("cavities", "one.pdb", "--quiet").stdout, "")
 
+    def test_of_one_model(self):
+        text = "MODEL        1\n" + pdb_text([("ATOM", "C", "ALA", 1)], [(0, 0, 0)]).replace("END\n", "ENDMDL\n")
+        self.write("two.pdb", text + "MODEL        2\n" + (self.folder / "shells.pdb").read_text().replace("END\n", "ENDMDL\n"))
+        expected = json.loads(self.run_cpu("cavities", "shells.pdb", "--json", "-").stdout)["cavities"]
+        self.assertEqual(len(expected), 2)
+        for number, cavities in ((1, []), (2, expected)):
+            report = json.loads(self.run_cpu("cavities", "two.pdb", "--model", number, "--json", "-").stdout)
+            self.assertEqual((report["model"], report["cavities"]), (number, cavities))
+        self.assert_fails(USAGE, ["2 models", "no model 3"], "cavities", "two.pdb", "--model", "3")
+        self.assertRegex(self.run_program("cavities", "--help").stdout, r"--model N\s")
+
     def test_without_names(self):
         self.write("shell.xyzr", "".join("%.3f %.3f %.3f 1.7\n" % p for p in self.positions[:900]))
         (cavity,) = json.loads(self.run_cpu("cavities", "shell.xyzr", "--json", "-").stdout)["cavities"]
