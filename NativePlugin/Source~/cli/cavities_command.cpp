@@ -108,8 +108,8 @@ void print_cavities(const Options &options, const std::vector<Cavity> &cavities,
   double volume = 0;
   for (const Cavity &cavity : cavities) volume += volume_of(cavity);
   char surface[96];
-  std::snprintf(surface, sizeof surface, "%s surface, probe %g Å, spacing %g Å", name_of(options.compute.surface),
-                options.compute.probe, options.compute.spacing);
+  std::snprintf(surface, sizeof surface, "%s surface, %sspacing %g Å", name_of(options.compute.surface),
+                probe_text({options.compute.surface}, options.compute.probe).c_str(), options.compute.spacing);
   if (cavities.empty()) {
     std::printf("%s: no cavities (%s)\n", options.input.c_str(), surface);
     return;

@@ -18,8 +18,9 @@ namespace {
 void print_table(const Options &options, const io::Structure &structure, const Engine &engine,
                  const Measurement &measurement) {
   const std::string model = options.read.model == 0 ? ", model " + std::to_string(structure.model) : "";
-  std::printf("%s%s: %s, probe %g Å, %s, %.2f ms\n", options.input.c_str(), model.c_str(),
-              io::counted(structure.atoms.size(), "atom").c_str(), options.compute.probe, name_of(engine.backend()),
+  std::printf("%s%s: %s, %s%s, %.2f ms\n", options.input.c_str(), model.c_str(),
+              io::counted(structure.atoms.size(), "atom").c_str(),
+              probe_text(options.measured, options.compute.probe).c_str(), name_of(engine.backend()),
               measurement.milliseconds);
   std::printf("surface          area Å²        volume Å³  measured by\n");
   for (const SurfaceNumbers &numbers : measurement.surfaces) {

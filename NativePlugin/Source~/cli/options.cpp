@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdio>
 #include <functional>
 #include <map>
 
@@ -241,6 +242,13 @@ void check(const Options &options, const std::function<bool(const char *)> &give
 }
 
 }  // namespace
+
+std::string probe_text(const std::vector<qses_surface> &surfaces, double probe) {
+  if (std::none_of(surfaces.begin(), surfaces.end(), uses_probe)) return "";
+  char text[40];
+  std::snprintf(text, sizeof text, "probe %g Å, ", probe);
+  return text;
+}
 
 const char *name_of(qses_surface surface) { return find_name(kSurfaces, surface); }
 const char *name_of(qses_method method) { return find_name(kMethods, method); }

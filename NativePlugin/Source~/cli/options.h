@@ -44,6 +44,9 @@ inline bool knows_creases(const ComputeOptions &options) {
   return options.method == QSES_METHOD_EXACT && options.surface != QSES_SURFACE_GAUSSIAN;
 }
 
+// Whether the radius of the probe matters to the surface.
+inline bool uses_probe(qses_surface surface) { return surface == QSES_SURFACE_SES || surface == QSES_SURFACE_SAS; }
+
 // Which meshes bench times: those in host memory, those that stay on the device. Not given: those there are.
 enum class Deliveries { kDefault, kHost, kDevice, kBoth };
 
@@ -141,6 +144,9 @@ bool has_hard_edges(const Options &options);
 
 // Whether the mesh file tells on what kind of patch vertices are. The output, if there is one, has a known extension.
 bool needs_patches(const Options &options);
+
+// "probe 1.4 Å, ", or nothing where no surface has one.
+std::string probe_text(const std::vector<qses_surface> &surfaces, double probe);
 
 const char *name_of(MeshColors colors);
 const char *name_of(qses_surface surface);

@@ -292,6 +292,14 @@ class Cavities(TablesTest):
         self.assert_fails(USAGE, ["2 models", "no model 3"], "cavities", "two.pdb", "--model", "3")
         self.assertRegex(self.run_program("cavities", "--help").stdout, r"--model N\s")
 
+    def test_the_probe_is_told_where_there_is_one(self):
+        for surface, has_probe in (("ses", True), ("sas", True), ("vdw", False), ("gaussian", False)):
+            line = self.run_cpu("cavities", "shells.pdb", "-v", "1", "--surface", surface).stdout.splitlines()[0]
+            self.assertIn(f"({surface} surface, {'probe 1.4 Å, ' * has_probe}spacing 1 Å)", line)
+        for surfaces, has_probe in (("vdw", False), ("sas", True), ("vdw,sas", True)):
+            line = self.run_cpu("measure", "shells.pdb", "--surface", surfaces).stdout.splitlines()[0]
+            self.assertIn(f" atoms, {'probe 1.4 Å, ' * has_probe}cpu, ", line)
+
     def test_without_names(self):
         self.write("shell.xyzr", "".join("%.3f %.3f %.3f 1.7\n" % p for p in self.positions[:900]))
         (cavity,) = json.loads(self.run_cpu("cavities", "shell.xyzr", "--json", "-").stdout)["cavities"]
