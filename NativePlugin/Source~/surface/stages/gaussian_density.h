@@ -124,15 +124,19 @@ struct IsovaluePlace {
 template <class At>
 QSES_FN IsovaluePlace find_isovalue(const CutEdge &edge, float isovalue, const At &at) {
   const Vec3<float> along = edge.outside - edge.inside;
-  float inner = 0.f, outer = 1.f;
+  float inner = 0.f, outer = 1.f, before = 0.f;
+  bool halves = false;
   IsovaluePlace place{0.5f, {}};
   for (int step = 0; step < GaussianDensity::kMostLooks;
        ++step) {  // Newton's, between what is known to be inside and outside
     float &t = place.part;
     place.found = at(edge.inside + along * t);
     const float above = place.found.density - isovalue, slope = dot(place.found.gradient, along);
+    // Where an atom's density ends, the sum falls at once: Newton's steps go to and fro across that.
+    halves = halves || (above * before < 0.f && absolute(above) > 0.5f * absolute(before));
+    before = above;
     (above > 0.f ? inner : outer) = t;
-    const float next = t - above / slope;
+    const float next = halves ? 0.5f * (inner + outer) : t - above / slope;
     if (absolute(next - t) < 1e-3f) {  // the next step would be a thousandth of this one
       t = minimum(1.f, maximum(0.f, next));
       break;
@@ -155,7 +159,7 @@ QSES_FN void place_density_vertex(const GaussianDensity &density, const BrickSet
   mesh.owner(vertex) = density.atoms.order[owner(x)];
   store_vec3(mesh.position(vertex), Vec3<float>(bricks.lattice.to_caller(x)));
   store_vec3(mesh.normal(vertex), steepness2 > 1e-20f ? gradient * (-1.f / square_root(steepness2))
-                                                      : along * (1.f / bricks.lattice.spacing));
+                                                      : along * (1.f / square_root(dot(along, along))));
 }
 
 }  // namespace quickses
