@@ -3,7 +3,9 @@
 // after set.
 #pragma once
 
-#include "properties/property_checks.h"
+#include "properties/property_form_checks.h"
+#include "properties/property_gaussian.h"
+#include "properties/property_kept.h"
 
 #include <chrono>
 #include <thread>
@@ -21,6 +23,9 @@ inline const char *difference(const Result &a, const Result &b) {
   if (!same(a.surface.mesh.normals, b.surface.mesh.normals)) return "normals";
   if (!same(a.surface.mesh.owners, b.surface.mesh.owners)) return "owners";
   if (!same(a.surface.patches, b.surface.patches)) return "patches";
+  if (!same(a.texcoords, b.texcoords)) return "texture coordinates";
+  if (!same(a.component_ids, b.component_ids)) return "component ids";
+  if (!same(a.atom_areas, b.atom_areas)) return "areas of atoms";
   if (a.surface.report.area != b.surface.report.area || a.surface.report.volume != b.surface.report.volume)
     return "measures";
   return nullptr;
@@ -30,7 +35,9 @@ class Checker {
  public:
   Checker() : context_(2), one_thread_(1) {}
 
-  Verdict check(const Case &c) {
+  Verdict check(const Case &wanted) {
+    Case c = wanted;
+    c.settings = settings_of_first(wanted.settings, wanted.form);
     const auto start = std::chrono::steady_clock::now();
     Verdict v;
     Result r;
@@ -42,7 +49,10 @@ class Checker {
       if (v.good()) check_bounds(r, v);
       if (v.good()) check_measures(c, r, v);
       if (v.good()) check_owners(c, r, v);
-      if (v.good() && c.settings.method == QSES_METHOD_EXACT) {
+      if (v.good()) check_additions(r, v);
+      if (v.good() && c.settings.surface == QSES_SURFACE_GAUSSIAN) {
+        check_gaussian(c, r, v);
+      } else if (v.good() && c.settings.method == QSES_METHOD_EXACT) {
         const ExactSurface exact(c);
         check_distances(c, r, exact, v);
         if (v.good()) check_edges(c, r, v);
@@ -59,18 +69,28 @@ class Checker {
   // False if there is no mesh, which is a fault unless it is what the manual says.
   static bool compute(qses_context *context, const Atoms &atoms, const qses_settings &s, const Case &c, Verdict &v,
                       Result &r) {
-    qses_status status = qses_set_atoms(context, atoms.positions.data(), 0, atoms.radii.data(), atoms.size());
+    return is_done(set_atoms(context, atoms), c, v) && compute_again(context, s, c, v, r);
+  }
+
+  static qses_status set_atoms(qses_context *context, const Atoms &atoms) {
+    return qses_set_atoms(context, atoms.positions.data(), 0, atoms.radii.data(), atoms.size());
+  }
+
+  // Of the atoms that the context has.
+  static bool compute_again(qses_context *context, const qses_settings &s, const Case &c, Verdict &v, Result &r) {
     qses_mesh mesh;
     qses_mesh_init(&mesh);
-    if (status == QSES_OK) status = qses_compute(context, &s, &mesh);
-    if (status == QSES_OK) {
-      r = result_of(mesh, surface_fixture::report_of(context));
-      return true;
-    }
+    if (!is_done(qses_compute(context, &s, &mesh), c, v)) return false;
+    r = result_of(mesh, surface_fixture::report_of(context));
+    return true;
+  }
+
+  static bool is_done(qses_status status, const Case &c, Verdict &v) {
+    if (status == QSES_OK) return true;
     // Float32 can't tell places apart that are 2^21 spacings from the middle; nobody can ask for half of that for
     // certain.
     const bool may_refuse =
-        status == QSES_TOO_FINE && half_extent(c.atoms) > static_cast<double>(s.spacing) * std::ldexp(1.0, 20);
+        status == QSES_TOO_FINE && half_extent(c.atoms) > static_cast<double>(c.settings.spacing) * std::ldexp(1.0, 20);
     if (!may_refuse) blame(v, Fault::kStatus, "status %d: %s", static_cast<int>(status), qses_last_error());
     return false;
   }
@@ -97,6 +117,44 @@ class Checker {
     if (c.comparisons & kBudget) compare_with_budget(c, r, v);
     if (c.comparisons & kLevels) compare_with_job(c, r, v);
     if (c.comparisons & kPermuted) compare_in_another_order(c, r, v);
+    if (c.comparisons & kFrames) compare_after_another_frame(c, r, v);
+    if (c.form && v.good()) compare_in_another_form(c, r, v);
+  }
+
+  void compare_in_another_form(const Case &c, const Result &first, Verdict &v) {
+    const qses_settings s = settings_of_form(c.settings, c.form);
+    const Look look(c.atoms.size(), c.form), plain(c.atoms.size(), 0);
+    Result other;
+    if (set_atoms(context_, c.atoms) != QSES_OK || look.set(context_, c.atoms.size()) != QSES_OK)
+      return blame(v, Fault::kStatus, "look: %s", qses_last_error());
+    if (compute_again(context_, s, c, v, other)) {
+      if (s.delivery == QSES_DELIVERY_DEVICE) {
+        if (!other.surface.mesh.positions.empty() || !other.surface.mesh.indices.empty())
+          blame(v, Fault::kForm, "a mesh on the device only is in host memory");
+        other = Kept(context_).download();
+      }
+      if (v.good()) FormComparison(c, first, other, v).run();
+      // The mesh on the device has gone, and numbers are no mesh.
+      if (v.good() && s.pickable && s.delivery == QSES_DELIVERY_HOST && !s.without_owners)
+        check_picks(c, other, Kept(context_), v);
+    }
+    plain.set(context_, c.atoms.size());
+  }
+
+  // Each atom moved its own way; what a context has learnt of one frame must not matter to the next one.
+  void compare_after_another_frame(const Case &c, const Result &first, Verdict &v) {
+    Atoms before = c.atoms;
+    for (size_t k = 0; k < before.positions.size(); ++k) {
+      const double way = static_cast<double>((k + 1) * 2654435761u % 1024) / 512 - 1;
+      before.positions[k] =
+          static_cast<float>(std::min(1e6, std::max(-1e6, static_cast<double>(before.positions[k]) + 3 + way)));
+    }
+    const Context context(2);
+    Result r;
+    if (!compute(context, before, c.settings, c, v, r)) return;
+    const qses_status status = qses_set_positions(context, c.atoms.positions.data(), 0, c.atoms.size());
+    if (!is_done(status, c, v) || !compute_again(context, c.settings, c, v, r)) return;
+    if (const char *what = difference(first, r)) blame(v, Fault::kFrame, "other %s after another frame", what);
   }
 
   void compare_with_budget(const Case &c, const Result &r, Verdict &v) {
@@ -107,7 +165,7 @@ class Checker {
     const Context context(2, estimate.smallest_budget + estimate.smallest_budget / 2);
     qses_mesh mesh;
     qses_mesh_init(&mesh);
-    qses_status status = qses_set_atoms(context, c.atoms.positions.data(), 0, c.atoms.radii.data(), c.atoms.size());
+    qses_status status = set_atoms(context, c.atoms);
     if (status == QSES_OK) status = qses_compute(context, &c.settings, &mesh);
     if (status == QSES_OUT_OF_MEMORY) return;  // the estimate is one
     if (status != QSES_OK)
@@ -119,8 +177,7 @@ class Checker {
   // The mesh of a job's last level; all levels must be closed. The context stays with it.
   static Result run_job(qses_context *context, const Case &c, const qses_settings &s, Verdict &v) {
     Result last;
-    if (qses_set_atoms(context, c.atoms.positions.data(), 0, c.atoms.radii.data(), c.atoms.size()) != QSES_OK ||
-        qses_begin(context, &s) != QSES_OK) {
+    if (set_atoms(context, c.atoms) != QSES_OK || qses_begin(context, &s) != QSES_OK) {
       blame(v, Fault::kStatus, "begin: %s", qses_last_error());
       return last;
     }

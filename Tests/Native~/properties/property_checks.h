@@ -3,12 +3,9 @@
 #pragma once
 
 #include "properties/property_closed_forms.h"
-
-#include <cstring>
+#include "properties/property_result.h"
 
 namespace properties {
-
-using surface_fixture::Surface;
 
 enum class Fault : int {
   kNone,
@@ -28,13 +25,16 @@ enum class Fault : int {
   kClosedForm,
   kBytes,
   kOrder,
+  kForm,   // asked for in another form
+  kFrame,  // after another frame
   kCount
 };
 
 inline const char *name_of(Fault fault) {
-  constexpr const char *names[] = {"none",      "crash",     "hang",        "status",     "open",   "not finite",
-                                   "normals",   "owners",    "bounds",      "components", "report", "off surface",
-                                   "stretched", "misplaced", "closed form", "bytes",      "order"};
+  constexpr const char *names[] = {"none",       "crash",       "hang",      "status",    "open",
+                                   "not finite", "normals",     "owners",    "bounds",    "components",
+                                   "report",     "off surface", "stretched", "misplaced", "closed form",
+                                   "bytes",      "order",       "form",      "frame"};
   static_assert(sizeof names / sizeof *names == static_cast<size_t>(Fault::kCount), "one name for each");
   return names[static_cast<int>(fault)];
 }
@@ -57,29 +57,6 @@ void blame(Verdict &verdict, Fault fault, const char *format, Values... values) 
   if (!verdict.good()) return;
   verdict.fault = fault;
   std::snprintf(verdict.sentence, sizeof verdict.sentence, format, values...);
-}
-
-struct Result {
-  Surface surface;
-  std::array<float, 3> low{}, high{};
-  std::vector<qses_component> components;
-};
-
-inline Result result_of(const qses_mesh &m, const qses_report &report) {
-  Result r;
-  const size_t v = m.vertex_count, t = m.triangle_count;
-  if (v > 0) {
-    r.surface.mesh.positions.assign(m.positions, m.positions + 3 * v);
-    r.surface.mesh.normals.assign(m.normals, m.normals + 3 * v);
-    r.surface.mesh.owners.assign(m.owners, m.owners + v);
-    r.surface.mesh.indices.assign(m.indices, m.indices + 3 * t);
-    if (m.patches) r.surface.patches.assign(m.patches, m.patches + v);
-  }
-  r.surface.report = report;
-  std::copy(m.bounds_min, m.bounds_min + 3, r.low.begin());
-  std::copy(m.bounds_max, m.bounds_max + 3, r.high.begin());
-  r.components.assign(m.components, m.components + m.component_count);
-  return r;
 }
 
 // Spacings. D is 1-Lipschitz, so a vertex is moved by at most a spacing from its lattice edge onto the surface; two of
@@ -140,6 +117,13 @@ class Windings {
   Point axes_[3];
   std::vector<Point> corners_;
 };
+
+inline void expect_inside(const Windings &windings, const Point &x, bool inside, Verdict &v) {
+  const int found = windings.at(x);
+  if (found != (inside ? 1 : 0))
+    blame(v, Fault::kMisplaced, "(%.9g %.9g %.9g), %s the surface, is within %d surfaces of the mesh", x.x, x.y, x.z,
+          inside ? "inside" : "outside", found);
+}
 
 inline void check_connection(const Result &r, Verdict &v) {
   const mesh_checks::Mesh &mesh = r.surface.mesh;
@@ -346,11 +330,7 @@ inline void check_sides(const Case &c, const Result &r, const ExactSurface &exac
       most = d.most - p;
     }
     if (least <= margin && most >= -margin) continue;
-    const int expected = least > margin ? 1 : 0, found = windings.at(x);
-    if (found != expected)
-      return blame(v, Fault::kMisplaced,
-                   "(%.9g %.9g %.9g), %g Å %s the exact surface, is within %d surfaces of the mesh", x.x, x.y, x.z,
-                   expected ? least : -most, expected ? "inside" : "outside", found);
+    expect_inside(windings, x, least > margin, v);
   }
 }
 

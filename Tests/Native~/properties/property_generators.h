@@ -4,6 +4,7 @@
 #pragma once
 
 #include "properties/property_families.h"
+#include "properties/property_forms.h"
 
 namespace properties {
 
@@ -16,7 +17,9 @@ enum Comparison : unsigned {
   kBudget = 4,      // with a memory budget
   kStageTimes = 8,  // with the times of stages
   kLevels = 16,     // with the last level of a job
-  kPermuted = 32    // the atoms in another order: the same surface, not the same bytes
+  kPermuted = 32,   // the atoms in another order: the same surface, not the same bytes
+  kFrames = 64,     // after another frame, in a new context
+  kPastComparisons = 128
 };
 
 struct Case {
@@ -25,12 +28,13 @@ struct Case {
   Atoms atoms;
   qses_settings settings;
   unsigned comparisons = 0;
+  unsigned form = 0;  // in which it is asked for once more
 };
 
 // The probe by which atoms are inflated: none for the VDW surface, nor for an SES whose probe counts as none.
 inline double inflation(const qses_settings &s) {
   const bool vdw = s.surface == QSES_SURFACE_VDW || (s.surface == QSES_SURFACE_SES && s.probe_radius < 0.05f);
-  return vdw ? 0.0 : static_cast<double>(s.probe_radius);
+  return vdw || s.surface == QSES_SURFACE_GAUSSIAN ? 0.0 : static_cast<double>(s.probe_radius);
 }
 
 inline double largest_coordinate(const Atoms &atoms) {
@@ -168,6 +172,44 @@ inline const Family &family_of(uint64_t seed) {
   return kFamilies[0];
 }
 
+// Lattice points in balls that reach so many radii and a probe farther, each ball by itself.
+inline double points_in_balls(const Atoms &atoms, double radii, double probe, double spacing) {
+  double volume = 0;
+  for (float r : atoms.radii) volume += std::pow(2 * (radii * static_cast<double>(r) + probe), 3);
+  return volume / (spacing * spacing * spacing);
+}
+
+// So many are looked at in milliseconds.
+constexpr double kMostPoints = 1e6;
+
+inline void make_gaussian(Random &random, Case &c) {
+  qses_settings &s = c.settings;
+  s.surface = QSES_SURFACE_GAUSSIAN;
+  s.method = QSES_METHOD_EXACT;
+  s.patch_types = s.creases = 0;
+  // Of smaller ones, owners may be atoms that are not the nearest: those are looked for where densities reach.
+  constexpr double kLeastScale = 0.25;
+  s.gaussian_radius_scale = random.chance(0.5) ? 1.f : static_cast<float>(random.log_uniform(kLeastScale, 10));
+  s.gaussian_isovalue = random.chance(0.5) ? 0.5f : static_cast<float>(random.log_uniform(0.01, 5));
+  const double scale = static_cast<double>(s.gaussian_radius_scale),
+               wanted = choose_spacing(random, scale * scale * rough_area(c.atoms, 0)),
+               finest = std::cbrt(points_in_balls(c.atoms, 4 * scale, 0, 1) / kMostPoints);
+  s.spacing = static_cast<float>(std::min(100.0, std::max(wanted, finest)));
+}
+
+// Of numbers of its own, so that all else of a seed is what it was without.
+inline void choose_more(uint64_t seed, Case &c) {
+  Random random(seed * 0xbf58476d1ce4e5b9ull + 2);
+  if (random.chance(0.06)) make_gaussian(random, c);
+  if (random.chance(0.1)) c.comparisons |= kFrames;
+  c.form = choose_form(random);
+  // Ambient occlusion has a lattice of 1 Å, whatever the spacing is.
+  const bool gaussian = c.settings.surface == QSES_SURFACE_GAUSSIAN;
+  const double radii = gaussian ? 4 * static_cast<double>(c.settings.gaussian_radius_scale) : 1;
+  if (points_in_balls(c.atoms, radii, inflation(c.settings), 1) > kMostPoints)
+    c.form &= ~static_cast<unsigned>(kOcclusion);
+}
+
 inline Case make_case(uint64_t seed) {
   Random random(seed * 0x9e3779b97f4a7c15ull + 1);
   const Family &family = family_of(seed);
@@ -189,6 +231,7 @@ inline Case make_case(uint64_t seed) {
   if (random.chance(0.05)) c.comparisons |= kStageTimes;
   if (random.chance(0.06)) c.comparisons |= kLevels;
   if (random.chance(0.1)) c.comparisons |= kPermuted;
+  choose_more(seed, c);
   return c;
 }
 

@@ -6,7 +6,8 @@
 
 namespace properties {
 
-constexpr qses_surface kSes = QSES_SURFACE_SES, kSas = QSES_SURFACE_SAS, kVdw = QSES_SURFACE_VDW;
+constexpr qses_surface kSes = QSES_SURFACE_SES, kSas = QSES_SURFACE_SAS, kVdw = QSES_SURFACE_VDW,
+                       kGaussian = QSES_SURFACE_GAUSSIAN;
 constexpr qses_method kExact = QSES_METHOD_EXACT, kGrid = QSES_METHOD_GRID;
 
 struct Regression {
@@ -18,6 +19,8 @@ struct Regression {
   unsigned comparisons;
   std::vector<std::array<double, 4>> atoms;  // x, y, z, r
   qses_bool creases = 0;
+  unsigned form = 0;
+  double gaussian_radius_scale = 1, gaussian_isovalue = 0.5;
 };
 
 inline void PrintTo(const Regression &r, std::ostream *out) { *out << r.name; }
@@ -548,6 +551,35 @@ inline std::vector<Regression> regressions() {
        1},
       // Area and volume of the atoms.
       {"LargeProbe", kSas, kExact, 95, 2, 0, 0, {{0, 0, 0, 2}, {0, 1, 0, 2}}},
+      // A density that falls at the level, where an atom's part ends: steps went to and fro across that.
+      {"DensityFallsAtTheLevel",
+       kGaussian,
+       kExact,
+       1,
+       0.539822102,
+       0,
+       0,
+       {{1.99899995, 5.03599977, -5.41300011, 2.06926489},
+        {-3.61599994, -2.64924216, -9.27000046, 1.54999995},
+        {-3.70000005, -4.39300013, -5.46999979, 2.06926489}},
+       0,
+       0,
+       1,
+       0.0224386454},
+      {"NormalWhereADensityFalls",
+       kGaussian,
+       kExact,
+       1,
+       0.23972182,
+       0,
+       0,
+       {{24.3649998, 43.4560013, 14.5179996, 1.20000005},
+        {23.3999996, 43.5, 17.3600006, 1.20000005},
+        {23.2520008, 42.1110001, 15.7229996, 1.20000005}},
+       0,
+       0,
+       1,
+       0.0394643396},
   };
 }
 
@@ -559,7 +591,10 @@ inline Case case_of(const Regression &r) {
   c.settings.relaxation_steps = r.relaxation_steps;
   c.settings.components = 1;
   c.settings.creases = r.creases;
+  c.settings.gaussian_radius_scale = static_cast<float>(r.gaussian_radius_scale);
+  c.settings.gaussian_isovalue = static_cast<float>(r.gaussian_isovalue);
   c.comparisons = r.comparisons;
+  c.form = r.form;
   for (const auto &a : r.atoms) c.atoms.add(a[0], a[1], a[2], a[3]);
   return c;
 }

@@ -66,14 +66,20 @@ class Shrinker {
     Case candidate = best;
     apply(candidate);
     if (std::memcmp(&candidate.settings, &best.settings, sizeof best.settings) != 0 ||
-        candidate.comparisons != best.comparisons || candidate.atoms.positions != best.atoms.positions ||
-        candidate.atoms.radii != best.atoms.radii)
+        candidate.comparisons != best.comparisons || candidate.form != best.form ||
+        candidate.atoms.positions != best.atoms.positions || candidate.atoms.radii != best.atoms.radii)
       keeps(best, verdict, candidate);
   }
 
   void plainer_settings(Case &best, Verdict &verdict) {
     change(best, verdict, [](Case &c) { c.comparisons = 0; });
-    for (unsigned bit = 1; bit < 64; bit *= 2) change(best, verdict, [bit](Case &c) { c.comparisons &= ~bit; });
+    for (unsigned bit = 1; bit < kPastComparisons; bit *= 2)
+      change(best, verdict, [bit](Case &c) { c.comparisons &= ~bit; });
+    change(best, verdict, [](Case &c) { c.form = 0; });
+    for (unsigned bit = 1; bit < kPastForms; bit *= 2) change(best, verdict, [bit](Case &c) { c.form &= ~bit; });
+    change(best, verdict, [](Case &c) { c.settings.creases = 0; });
+    change(best, verdict, [](Case &c) { c.settings.gaussian_radius_scale = 1; });
+    change(best, verdict, [](Case &c) { c.settings.gaussian_isovalue = 0.5f; });
     change(best, verdict, [](Case &c) { c.settings.patch_types = 0; });
     change(best, verdict, [](Case &c) { c.settings.relaxation_steps = 0; });
     change(best, verdict, [](Case &c) { c.settings.relaxation_steps = std::min(c.settings.relaxation_steps, 1u); });
@@ -121,7 +127,7 @@ inline std::string number(float value) {
 }
 
 inline std::string row_of(const Case &c) {
-  constexpr const char *surfaces[] = {"kSes", "kSas", "kVdw"};
+  constexpr const char *surfaces[] = {"kSes", "kSas", "kVdw", "kGaussian"};
   std::string row = "{\"" + c.family + "\", " + surfaces[c.settings.surface] + ", " +
                     (c.settings.method == QSES_METHOD_GRID ? "kGrid" : "kExact") + ", " +
                     number(c.settings.probe_radius) + ", " + number(c.settings.spacing) + ", " +
@@ -132,7 +138,11 @@ inline std::string row_of(const Case &c) {
     for (size_t d = 0; d < 3; ++d) row += number(c.atoms.positions[3 * i + d]) + ", ";
     row += number(c.atoms.radii[i]) + "}";
   }
-  return row + (c.settings.creases ? "}, 1}," : "}},");
+  row += c.settings.creases ? "}, 1" : "}";
+  const bool gaussian = c.settings.surface == QSES_SURFACE_GAUSSIAN;
+  if (c.form || gaussian) row += (c.settings.creases ? ", " : ", 0, ") + std::to_string(c.form);
+  if (gaussian) row += ", " + number(c.settings.gaussian_radius_scale) + ", " + number(c.settings.gaussian_isovalue);
+  return row + "},";
 }
 
 }  // namespace properties

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Random sets of atoms of every degenerate kind: no input may crash, every mesh must be closed and where the exact
-// surface is. Faults are shrunk and printed; keep them in property_regressions.h.
+// surface is, and the same one in whatever form it is asked for. Faults are shrunk and printed; keep them in
+// property_regressions.h.
 //   QUICKSES_PROPERTY_SETS        number of sets; default 2000
 //   QUICKSES_PROPERTY_SEED        the first of their seeds; default 1. A seed gives the same set everywhere
 //   QUICKSES_PROPERTY_FAMILY      only sets of this family
