@@ -404,8 +404,9 @@ typedef struct qses_settings {
                           bright. Default 0 */
   float gaussian_radius_scale; /* of SURFACE_GAUSSIAN, 0.05 to 10; default 1: the density at a place is the sum of
                                   exp(-d² / 2s²) over the atoms, where d is the distance of the atom's centre and s its
-                                  radius times this scale; atoms farther than 4 s add nothing. (Radius scale of
-                                  QuickSurf, Krone and others 2012; its grid spacing is `spacing`, 1 in VMD) */
+                                  radius times this scale; atoms farther than 4 s add nothing. With a scale
+                                  below 0.25 they own no vertices, either, even where they are the nearest. (Radius
+                                  scale of QuickSurf, Krone and others 2012; its grid spacing is `spacing`, 1 in VMD) */
   float gaussian_isovalue;     /* the surface is where the density has this value, 0.01 to 1000; default 0.5, as in VMD.
                                   Vertices are at it within a thousandth of the spacing, normals along the density's
                                   exact gradient. No smoothing steps, creases, hard edges or kinds of patch; area and
