@@ -185,8 +185,8 @@ class CheckPackageTest(unittest.TestCase):
 
     def test_archive_that_is_too_large(self):
         files = self.right_package()
-        files["Documentation~/noise.png"] = os.urandom(16_000_000)
-        self.assert_fault(files, " bytes; 16,000,000 are allowed")
+        files["Documentation~/noise.png"] = os.urandom(17_000_000)
+        self.assert_fault(files, " bytes; 17,000,000 are allowed")
 
     def test_sums(self):
         with tempfile.TemporaryDirectory() as folder:
