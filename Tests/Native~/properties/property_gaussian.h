@@ -6,8 +6,6 @@
 
 namespace properties {
 
-constexpr double kReachOfGaussians = 4;  // standard deviations
-
 inline double width_scale(const Case &c) { return static_cast<double>(c.settings.gaussian_radius_scale); }
 
 // Å, of a vertex: by how much its place is rounded.

@@ -182,6 +182,8 @@ inline double points_in_balls(const Atoms &atoms, double radii, double probe, do
 // So many are looked at in milliseconds.
 constexpr double kMostPoints = 1e6;
 
+constexpr double kReachOfGaussians = 4;  // standard deviations
+
 inline void make_gaussian(Random &random, Case &c) {
   qses_settings &s = c.settings;
   s.surface = QSES_SURFACE_GAUSSIAN;
@@ -193,7 +195,7 @@ inline void make_gaussian(Random &random, Case &c) {
   s.gaussian_isovalue = random.chance(0.5) ? 0.5f : static_cast<float>(random.log_uniform(0.01, 5));
   const double scale = static_cast<double>(s.gaussian_radius_scale),
                wanted = choose_spacing(random, scale * scale * rough_area(c.atoms, 0)),
-               finest = std::cbrt(points_in_balls(c.atoms, 4 * scale, 0, 1) / kMostPoints);
+               finest = std::cbrt(points_in_balls(c.atoms, kReachOfGaussians * scale, 0, 1) / kMostPoints);
   s.spacing = static_cast<float>(std::min(100.0, std::max(wanted, finest)));
 }
 
@@ -205,7 +207,7 @@ inline void choose_more(uint64_t seed, Case &c) {
   c.form = choose_form(random);
   // Ambient occlusion has a lattice of 1 Å, whatever the spacing is.
   const bool gaussian = c.settings.surface == QSES_SURFACE_GAUSSIAN;
-  const double radii = gaussian ? 4 * static_cast<double>(c.settings.gaussian_radius_scale) : 1;
+  const double radii = gaussian ? kReachOfGaussians * static_cast<double>(c.settings.gaussian_radius_scale) : 1;
   if (points_in_balls(c.atoms, radii, inflation(c.settings), 1) > kMostPoints)
     c.form &= ~static_cast<unsigned>(kOcclusion);
 }
