@@ -112,13 +112,6 @@ constexpr uint32_t kOnContact = 0x80000000u, kOutsideBalls = 0xffffffffu, kNotLo
 
 constexpr uint32_t kNoAtom = 0xffffffffu;
 
-// Whether the radial projection of a point on the ball it is deepest in is exposed.
-__device__ __forceinline__ bool projection_exposed(const FeatureView &f, uint32_t atom, const Vec3<float> &x,
-                                                   float depth) {
-  const Sphere ball = load(f.atoms.items + atom);
-  return is_exposed(f, atom, x - Vec3<float>(ball.center), offset_length(ball, depth));
-}
-
 __device__ __forceinline__ Vec3<float> leaf_center(const Vec3<float> &low, int leaf, float h) {
   return {low.x + (static_cast<float>(4 * (leaf & 1)) + 1.5f) * h,
           low.y + (static_cast<float>(4 * (leaf >> 1 & 1)) + 1.5f) * h,

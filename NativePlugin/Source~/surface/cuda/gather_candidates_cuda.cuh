@@ -40,7 +40,7 @@ __device__ __forceinline__ bool uniform_leaf_inside(const GatherJob &job, const 
   deepest = warp_largest<kLanes>(deepest);
   if (deepest.value <= job.reach.least_depth) return false;
   if (deepest.value > job.reach.depth) return true;
-  return !projection_exposed(job.features, deepest.number, center, deepest.value);
+  return !is_on_contact(job.features, {deepest.number, deepest.value}, center);
 }
 
 // The rows of one brick.

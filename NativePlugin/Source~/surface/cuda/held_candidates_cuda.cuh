@@ -50,17 +50,12 @@ __device__ __forceinline__ NearestProbe nearest_probe(const FeatureView &f, cons
                                                       const Vec3<float> &x) {
   const DeepestAtom deepest = deepest_atom(f, held, x);
   if (tells_probe(f.parameters, deepest)) return told_probe(f.parameters, deepest, x);
-  const Sphere ball = load(f.atoms.items + deepest.atom);
-  const CapRange range = f.cap_ranges[deepest.atom];
-  const bool has_cap = held.rank() < range.count;
+  const CoveringCaps caps(f, deepest, x);
+  const bool has_cap = held.rank() < caps.range.count;
   Cap cap{};
-  if (has_cap) cap = load(f.caps + range.first + held.rank());
+  if (has_cap) cap = load(caps.caps + held.rank());
   const NearestArc nearest = nearest_arc(f, held, x);
-  const Vec3<float> offset = x - Vec3<float>(ball.center);
-  const float length = offset_length(ball, deepest.depth);
-  bool covered = range.count == kBuriedAtom || (has_cap && cap_covers(cap, offset, length));
-  for (int32_t k = held.rank() + kWarp; k < range.count && !covered; k += kWarp)
-    covered = cap_covers(load(f.caps + range.first + k), offset, length);
+  const bool covered = (has_cap && caps.covers(cap)) || caps.are_covering<kWarp>(held.rank() + kWarp);
   return __any_sync(kFullWarp, covered) ? probe_on_arc(f, nearest, x) : probe_on_atom(f, deepest, x);
 }
 

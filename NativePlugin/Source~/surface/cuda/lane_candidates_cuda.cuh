@@ -4,6 +4,7 @@
 #pragma once
 
 #include "parallel/cuda_warp.cuh"
+#include "surface/cuda/covering_caps_cuda.cuh"
 #include "surface/cuda/deepest_atoms_cuda.cuh"
 
 namespace quickses {
@@ -101,14 +102,7 @@ __device__ __forceinline__ NearestArc nearest_arc(const FeatureView &f,
 template <int kLanes, bool kTogether>
 __device__ __forceinline__ bool is_on_contact(const FeatureView &f, const LaneCandidates<kLanes, kTogether> &candidates,
                                               const DeepestAtom &deepest, const Vec3<float> &x) {
-  CapRange range{0, kBuriedAtom};
-  if (deepest.depth > -kFarAway) range = f.cap_ranges[deepest.atom];
-  const Sphere ball = load(f.atoms.items + deepest.atom);
-  const Vec3<float> offset = x - Vec3<float>(ball.center);
-  const float length = offset_length(ball, deepest.depth);
-  bool covered = range.count == kBuriedAtom;
-  for (int32_t k = candidates.rank(); k < range.count && !covered; k += kLanes)
-    covered = cap_covers(load(f.caps + range.first + k), offset, length);
+  const bool covered = CoveringCaps(f, deepest, x).are_covering<kLanes>(candidates.rank());
   return (__ballot_sync(candidates.lanes(), covered) & candidates.team()) == 0;
 }
 

@@ -2,6 +2,7 @@
 // GPU: what is done alike for the signs of a leaf, whether a warp finds them or a block.
 #pragma once
 
+#include "surface/cuda/covering_caps_cuda.cuh"
 #include "surface/cuda/deepest_atoms_cuda.cuh"
 
 namespace quickses {
@@ -30,21 +31,6 @@ struct SignLeaf {
     return k < row.arc_count ? ListedArc{__ldg(arcs + k), __ldg(arc_leaves + k)} : ListedArc{0, 0};
   }
 };
-
-// Whether the ball that a point is deepest in has it covered, as far as a thread can tell that looks at every
-// kThreads-th cap only.
-template <int kThreads>
-__device__ __forceinline__ bool is_covered(const FeatureView &f, const DeepestAtom &deepest, const Vec3<float> &x,
-                                           int thread) {
-  const CapRange range = f.cap_ranges[deepest.atom];
-  const Sphere ball = load(f.atoms.items + deepest.atom);
-  const Vec3<float> offset = x - Vec3<float>(ball.center);
-  const float length = offset_length(ball, deepest.depth);
-  bool covered = range.count == kBuriedAtom;
-  for (int32_t k = thread; k < range.count; k += kThreads)
-    covered |= cap_covers(load(f.caps + range.first + k), offset, length);
-  return covered;
-}
 
 enum class LeafKind { kMixed, kInside, kOutside, kFarOutside };
 

@@ -74,7 +74,7 @@ static __global__ __launch_bounds__(kSignThreads,
   __syncwarp();
   if (kind == LeafKind::kMixed && arc_count == 0 && best.depth > 0.f && best.depth < depth) {
     // No arc is within depth of a point. If the centre is not on an exposed part, none of the points is.
-    if (__any_sync(kFullWarp, is_covered<kWarp>(f, best, leaf.center, lane))) kind = LeafKind::kInside;
+    if (__any_sync(kFullWarp, CoveringCaps(f, best, leaf.center).are_covering<kWarp>(lane))) kind = LeafKind::kInside;
   }
   LaneSigns found(kind);
   if (kind == LeafKind::kMixed) {
@@ -111,7 +111,7 @@ static __global__ __launch_bounds__(kSignThreads,
 #pragma unroll
     for (int c = 0; c < kLanePoints; ++c) {
       __syncwarp();
-      if (open[c]) open[c] = !projection_exposed(f, atom[c], p[c], deepest[c]);
+      if (open[c]) open[c] = !is_on_contact(f, {atom[c], deepest[c]}, p[c]);
       any_open |= open[c];
     }
     __syncwarp();

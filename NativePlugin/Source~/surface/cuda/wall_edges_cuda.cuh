@@ -176,10 +176,10 @@ struct WallRound {
 };
 static_assert(kRoundStarts >= 64, "there is room for the first ends of any leaf");
 
-// A first end: its leaf, where that one's first ends begin and how many they are, and its bit.
+// A first end: its leaf, and its bit.
 struct WallStart {
   uint32_t slot;
-  uint8_t first, count, bit;
+  int bit;
 };
 constexpr int kStepUnit = kRoundStarts;
 // What a warp knows of its round.
@@ -191,7 +191,7 @@ struct WallScratch {
 
   __device__ __forceinline__ uint64_t walk(uint32_t k) const {
     const WallStart s = start[edge[k] % kStepUnit];
-    return static_cast<uint64_t>(s.slot) * (kWallSteps * 64) + edge[k] / kStepUnit * 64u + s.bit;
+    return static_cast<uint64_t>(s.slot) * (kWallSteps * 64) + edge[k] / kStepUnit * 64u + static_cast<uint32_t>(s.bit);
   }
 };
 static_assert(kStepUnit * kWallSteps <= 0x10000, "two bytes");
@@ -220,45 +220,33 @@ __device__ __forceinline__ uint32_t uncovered_steps(const WallJob &job, const Wa
   return left;
 }
 
-__device__ __forceinline__ Vec3<float> from_lane(const Vec3<float> &v, int lane) {
-  return {__shfl_sync(kFullWarp, v.x, lane), __shfl_sync(kFullWarp, v.y, lane), __shfl_sync(kFullWarp, v.z, lane)};
+// Does the probe of an end, when it rolls on along its arc or atom to where it is nearest to the middle of a rest,
+// cover all of that? A quick answer for many edges: no means nothing.
+__device__ __forceinline__ bool rolls_over(const FeatureView &f, uint32_t decider, const WallRest &rest) {
+  const Vec3<float> middle = (rest.from + rest.to) * 0.5f;
+  if (!(decider & kOnContact))
+    return covers_rest(f.parameters, nearest_on_arc(load(f.arcs + decider), middle).position, rest);
+  if (decider >= kNotLookedAt) return false;
+  const uint32_t atom = decider & ~kOnContact;
+  const DeepestAtom on{atom, ball_depth(load(f.atoms.items + atom), middle)};
+  return covers_rest(f.parameters, probe_on_atom(f, on, middle).center, rest) && is_on_contact(f, on, middle);
 }
 
-// Which of a warp's edges, one to each lane, are left by the probes of both ends, and those of the other first ends of
-// the same leaf.
-__device__ __forceinline__ bool is_left_by_probes(const WallJob &job, const WallScratch &scratch, int number, bool on) {
+// Do the probes of both ends leave something of an edge, as they are and when they roll on?
+__device__ __forceinline__ bool is_left_by_probes(const WallJob &job, const WallScratch &scratch, int number) {
   const FeatureView &f = job.features;
   const int n = number % kStepUnit, step = number / kStepUnit;
-  bool left = on, rests = false;
-  WallRest rest{};
-  if (on) {
-    const WallStart start = scratch.start[n];
-    const WallEdge e = wall_edge(job, start.slot, step, start.bit);
-    const uint32_t decider = decider_at(job, e.brick, e.second());
-    if (decider != kNotLookedAt) {
-      const float4 v = scratch.probe[n];
-      const Vec3<float> a = wall_point(job, e.brick, e.first()), b = wall_point(job, e.brick, e.second());
-      const bool same_atom = decider == scratch.decider[n] && (decider & kOnContact) && decider < kNotLookedAt;
-      const WallWalk walk =
-          begin_wall_walk(f.parameters, step, a, {{v.x, v.y, v.z}, v.w}, b, decided_probe(f, decider, b));
-      left = !walk.is_open();
-      rests = left && job.has_short_cuts;
-      if (rests && same_atom) left = rests = !rolls_over(f, decider & ~kOnContact, a, b);
-      rest = rest_of_walk(walk, step, a);
-    }
-  }
-  for (unsigned open = __ballot_sync(kFullWarp, rests); open; open &= open - 1) {
-    const int asking = lowest_bit32(open);
-    const WallRest asked{from_lane(rest.from, asking), from_lane(rest.to, asking)};
-    const WallStart start = scratch.start[__shfl_sync(kFullWarp, n, asking)];
-    bool covered = false;
-    for (int k = lane_id(); k < start.count; k += kWarp) {
-      const float4 v = scratch.probe[start.first + k];
-      covered |= v.w <= f.parameters.depth && covers_rest(f.parameters, {v.x, v.y, v.z}, asked);
-    }
-    if (__any_sync(kFullWarp, covered) && lane_id() == asking) left = false;
-  }
-  return left;
+  const WallStart start = scratch.start[n];
+  const WallEdge e = wall_edge(job, start.slot, step, start.bit);
+  const uint32_t first = scratch.decider[n], second = decider_at(job, e.brick, e.second());
+  if (second == kNotLookedAt) return true;
+  const float4 v = scratch.probe[n];
+  const Vec3<float> a = wall_point(job, e.brick, e.first()), b = wall_point(job, e.brick, e.second());
+  const WallWalk walk = begin_wall_walk(f.parameters, step, a, {{v.x, v.y, v.z}, v.w}, b, decided_probe(f, second, b));
+  if (walk.is_open()) return false;
+  if (!job.has_short_cuts) return true;
+  const WallRest rest = rest_of_walk(walk, step, a);
+  return !rolls_over(f, second, rest) && (first == second || !rolls_over(f, first, rest));
 }
 
 // Lists the edges of a round that its probes leave, in its scratch; returns how many. Of those that one of several
@@ -272,11 +260,10 @@ __device__ __forceinline__ uint32_t find_edges_to_walk(const WallJob &job, const
     const int leaf = lane_beyond<kRoundLeaves>(round.starts_with, n);
     const uint32_t slot = __shfl_sync(kFullWarp, round.slot, leaf);
     const uint64_t points = __shfl_sync(kFullWarp, round.points, leaf);
-    const int count = popcount64(points), first = __shfl_sync(kFullWarp, round.starts_with, leaf) - count;
+    const int first = __shfl_sync(kFullWarp, round.starts_with, leaf) - popcount64(points);
     uint32_t left = 0;
     if (n < round.starts) {
-      const WallStart start{slot, static_cast<uint8_t>(first), static_cast<uint8_t>(count),
-                            static_cast<uint8_t>(nth_bit64(points, n - first))};
+      const WallStart start{slot, nth_bit64(points, n - first)};
       scratch->start[n] = start;
       left = uncovered_steps(job, start, n, scratch);
     }
@@ -292,7 +279,7 @@ __device__ __forceinline__ uint32_t find_edges_to_walk(const WallJob &job, const
   for (uint32_t e0 = part * kWarp; e0 < edges; e0 += parts * kWarp) {
     const bool on = e0 + static_cast<uint32_t>(lane) < edges;
     const uint16_t edge = on ? scratch->edge[e0 + static_cast<uint32_t>(lane)] : uint16_t(0);
-    const bool left = is_left_by_probes(job, *scratch, edge, on);
+    const bool left = on && is_left_by_probes(job, *scratch, edge);
     // Never beyond those looked at, once each lane has read its own.
     __syncwarp();
     const uint32_t place = append_place(left, &walks);

@@ -97,7 +97,8 @@ static __global__ __launch_bounds__(kWideSignThreads,
   const uint32_t atoms = scratch.atoms, arcs = scratch.arcs;
   if (kind == LeafKind::kMixed && arcs == 0 && best.depth > 0.f && best.depth < depth) {
     // No arc is within depth of a point. If the centre is not on an exposed part, none of the points is.
-    if (__syncthreads_or(is_covered<kWideSignThreads>(f, best, leaf.center, static_cast<int>(threadIdx.x))))
+    if (__syncthreads_or(
+            CoveringCaps(f, best, leaf.center).are_covering<kWideSignThreads>(static_cast<int>(threadIdx.x))))
       kind = LeafKind::kInside;
   }
   LaneSigns signs(kind);
@@ -129,7 +130,7 @@ static __global__ __launch_bounds__(kWideSignThreads,
     for (int c = 0; c < kLanePoints; ++c) {
       const DeepestAtom of_point{deepest[c].number, deepest[c].value};
       open[c] = signs.settle_by_ball(c, reach, of_point);
-      const bool covers = open[c] && is_covered<kWideWarps>(f, of_point, p[c], warp);
+      const bool covers = open[c] && CoveringCaps(f, of_point, p[c]).are_covering<kWideWarps>(warp);
       const unsigned covered = __ballot_sync(kFullWarp, covers);
       if (lane == 0 && covered) atomicOr(&scratch.covered[c], covered);
     }

@@ -204,33 +204,6 @@ QSES_FN bool covers_rest(const SurfaceParameters &p, const Vec3<float> &probe, c
   return length_squared(rest.from - probe) < clear * clear && length_squared(rest.to - probe) < clear * clear;
 }
 
-// Does the probe that rolls over an atom, from where it is nearest to a to where it is nearest to b, cover all between
-// them? Both are projected on the exposed part of that atom. A quick answer for most edges: no means nothing.
-QSES_FN bool rolls_over(const FeatureView &f, uint32_t atom, const Vec3<float> &a, const Vec3<float> &b) {
-  const Sphere ball = load(f.atoms.items + atom);
-  const Vec3<float> from(ball.center), to_a = a - from, to_b = b - from, along = b - a;
-  const float t = minimum(1.f, maximum(0.f, quotient(-dot(to_a, along), length_squared(along))));
-  const float surface = ball.radius - f.parameters.depth + 1e-4f;
-  if (length_squared(to_a + along * t) < surface * surface) return false;  // the edge cuts through the atom itself
-  // The directions between are within half an angle of the middle one.
-  const Vec3<float> sum = to_a * reciprocal_root(length_squared(to_a)) + to_b * reciprocal_root(length_squared(to_b));
-  const float length2 = length_squared(sum), half_cosine = 0.5f * square_root(length2),
-              half_sine = square_root(maximum(0.f, 1.f - half_cosine * half_cosine));
-  const Vec3<float> middle = sum * reciprocal_root(length2);
-  const CapRange range = f.cap_ranges[atom];
-  bool free = range.count != kBuriedAtom;
-  constexpr int32_t kTogether = 4;  // so that a GPU waits for their loads together
-  for (int32_t first = 0; first < range.count && free; first += kTogether)
-    for (int32_t j = 0; j < kTogether; ++j) {
-      const int32_t k = first + j < range.count ? first + j : first;
-      const Cap cap = load(f.caps + range.first + k);
-      const float cosine = dot(middle, Vec3<float>(cap.axis)), sine = square_root(maximum(0.f, 1.f - cosine * cosine));
-      const float nearest = cosine < half_cosine ? cosine * half_cosine + sine * half_sine : 1.f;
-      free &= nearest + 1e-5f < cap.cosine;
-    }
-  return free;
-}
-
 // Which end of a wall is marked: the deeper one; of two that are as deep but for rounding, the first.
 QSES_FN bool marks_first_end(const NearestProbe &probe_a, const NearestProbe &probe_b) {
   return probe_a.distance >= probe_b.distance - 1e-4f;
