@@ -35,9 +35,9 @@ class Kept {
   qses_kept_mesh *kept_ = nullptr;
 };
 
-// How far along a ray (in lengths of the direction) the first triangle is that it meets well within its borders.
-inline double first_on_ray(const mesh_checks::Mesh &mesh, const Point &origin, const Point &direction) {
-  constexpr double kBorder = 1e-3;
+// How far along a ray (in lengths of the direction) the first triangle is that it meets farther from their borders than
+// `clear` (Å), as seen along the ray: nearer to them, and in slivers, rounding decides.
+inline double first_on_ray(const mesh_checks::Mesh &mesh, const Point &origin, const Point &direction, double clear) {
   double first = std::numeric_limits<double>::infinity();
   for (size_t t = 0; t < mesh.triangle_count(); ++t) {
     const uint32_t *const corner = &mesh.indices[3 * t];
@@ -48,7 +48,12 @@ inline double first_on_ray(const mesh_checks::Mesh &mesh, const Point &origin, c
     if (det == 0) continue;
     const double v = exact_reference::dot(origin - a, p) / det, w = exact_reference::dot(direction, q) / det,
                  distance = exact_reference::dot(ac, q) / det;
-    if (v >= kBorder && w >= kBorder && v + w <= 1 - kBorder && distance >= 0) first = std::min(first, distance);
+    // A weight is the distance from the edge across over the height; twice the area is that by the edge's length.
+    const auto is_clear = [&](double weight, const Point &edge) {
+      return weight * std::abs(det) > clear * length(exact_reference::cross(direction, edge));
+    };
+    const bool is_met = is_clear(v, ac) && is_clear(w, ab) && is_clear(1 - v - w, ac - ab);
+    if (is_met && distance >= 0) first = std::min(first, distance);
   }
   return first;
 }
@@ -57,8 +62,7 @@ inline double first_on_ray(const mesh_checks::Mesh &mesh, const Point &origin, c
 inline void check_picks(const Case &c, const Result &r, const Kept &kept, Verdict &v) {
   const mesh_checks::Mesh &mesh = r.surface.mesh;
   const double rounding = rounding_of_positions(c);
-  // Of triangles that are not large against the rounding of a ray nobody can tell whether it meets them.
-  if (mesh.triangle_count() == 0 || static_cast<double>(c.settings.spacing) < 2000 * rounding) return;
+  if (mesh.triangle_count() == 0) return;
   Random random(c.seed + 99);
   for (int n = 0; n < 4; ++n) {
     const uint32_t *const target = &mesh.indices[3 * static_cast<size_t>(random.below(mesh.triangle_count()))];
@@ -69,7 +73,9 @@ inline void check_picks(const Case &c, const Result &r, const Kept &kept, Verdic
     const Point exact{double(origin[0]), double(origin[1]), double(origin[2])}, way = middle - exact;
     const float direction[3] = {float(way.x), float(way.y), float(way.z)};
     const Point along{double(direction[0]), double(direction[1]), double(direction[2])};
-    const double distance = first_on_ray(mesh, exact, along), play = 1e-4 + 16 * rounding / length(along);
+    // Both work with doubles.
+    const double clear = 1e-10 * (length(exact) + length(along)), distance = first_on_ray(mesh, exact, along, clear),
+                 play = 1e-4 + 16 * rounding / length(along);
     qses_hit hit;
     qses_hit_init(&hit);
     if (qses_kept_mesh_pick(kept, origin, direction, nullptr, 0, &hit) != QSES_OK)
