@@ -11,12 +11,29 @@ namespace QuickSes.Editor
     /// </summary>
     internal static class MoleculeDrop
     {
+#if UNITY_6000_3_OR_NEWER // objects have an EntityId; from 6000.5 on the other handlers don't compile
+        [InitializeOnLoadMethod]
+        private static void Register()
+        {
+            DragAndDrop.AddDropHandlerV2((DragAndDrop.SceneDropHandler)DropIntoScene);
+            DragAndDrop.AddDropHandlerV2((DragAndDrop.HierarchyDropHandlerV2)DropIntoHierarchy);
+        }
+
+        private static DragAndDropVisualMode DropIntoHierarchy(EntityId target, HierarchyDropFlags dropMode,
+            Transform parentForDraggedObjects, bool perform) =>
+            DropIntoHierarchy(EditorUtility.EntityIdToObject(target), dropMode, parentForDraggedObjects, perform);
+#else
         [InitializeOnLoadMethod]
         private static void Register()
         {
             DragAndDrop.AddDropHandler((DragAndDrop.SceneDropHandler)DropIntoScene);
             DragAndDrop.AddDropHandler((DragAndDrop.HierarchyDropHandler)DropIntoHierarchy);
         }
+
+        private static DragAndDropVisualMode DropIntoHierarchy(int target, HierarchyDropFlags dropMode,
+            Transform parentForDraggedObjects, bool perform) =>
+            DropIntoHierarchy(EditorUtility.InstanceIDToObject(target), dropMode, parentForDraggedObjects, perform);
+#endif
 
         private static DragAndDropVisualMode DropIntoScene(Object dropUpon, Vector3 worldPosition,
             Vector2 viewportPosition, Transform parentForDraggedObjects, bool perform)
@@ -27,11 +44,11 @@ namespace QuickSes.Editor
             return mode;
         }
 
-        private static DragAndDropVisualMode DropIntoHierarchy(int dropTargetInstanceID, HierarchyDropFlags dropMode,
+        private static DragAndDropVisualMode DropIntoHierarchy(Object target, HierarchyDropFlags dropMode,
             Transform parentForDraggedObjects, bool perform)
         {
             GameObject parent = (dropMode & HierarchyDropFlags.DropUpon) != 0
-                ? EditorUtility.InstanceIDToObject(dropTargetInstanceID) as GameObject
+                ? target as GameObject
                 : ParentOf(parentForDraggedObjects);
             return Drop(parent, perform, out _);
         }
