@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 using NUnit.Framework;
 using QuickSes.Editor;
+using System.Collections;
 using UnityEditor;
 using UnityEngine;
+using UnityEngine.TestTools;
 
 namespace QuickSes.Tests
 {
@@ -28,6 +30,26 @@ namespace QuickSes.Tests
             Assert.That(surface.AtomCount, Is.EqualTo(0));
             Undo.PerformUndo();
             Assert.That(made == null, Is.True);
+        }
+
+        [UnityTest]
+        public IEnumerator OnlyASurfaceThatIsAddedByHandShowsTheDemo()
+        {
+            EditorApplication.ExecuteMenuItem(MolecularMenu.Empty);
+            MolecularSurface ofMenu = _created.Keep(Selection.activeGameObject.GetComponent<MolecularSurface>());
+            MolecularSurface empty = _created.Keep(SurfaceCreator.CreateEmpty(null));
+            MolecularSurface unset = _created.Keep(SurfaceCreator.Create(new MoleculeSource(), null));
+            MolecularSurface added = _created.Keep(new GameObject("added").AddComponent<MolecularSurface>());
+            bool isDemoDue = false;
+            EditorApplication.delayCall += () => isDemoDue = true; // after those of the surfaces
+            while (!isDemoDue)
+                yield return null;
+            Assert.That(added.Source.IsSet, Is.True);
+            foreach (MolecularSurface surface in new[] { ofMenu, empty, unset })
+            {
+                Assert.That(surface.Source.IsSet, Is.False);
+                Assert.That(surface.AtomCount, Is.EqualTo(0));
+            }
         }
 
         [Test]
@@ -69,7 +91,7 @@ namespace QuickSes.Tests
             var structure = new MoleculeSource();
             structure.SetAsset(new TextAsset("none"));
             var trajectory = new TrajectorySource { Kind = MoleculeSourceKind.StreamingAssets, Path = "md.xtc" };
-            UnityEngine.TestTools.LogAssert.ignoreFailingMessages = true; // neither can be read
+            LogAssert.ignoreFailingMessages = true; // neither can be read
             TrajectoryPlayer player = _created.Keep(SurfaceCreator.Create(structure, trajectory, null));
             Assert.That(player.StructureSource.IsSameAs(structure), Is.True);
             Assert.That(player.TrajectorySource.IsSameAs(trajectory), Is.True);

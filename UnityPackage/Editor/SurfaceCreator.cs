@@ -61,7 +61,7 @@ namespace QuickSes.Editor
                 StageUtility.PlaceGameObjectInCurrentStage(made);
             GameObjectUtility.EnsureUniqueNameForSibling(made);
             var surface = made.AddComponent<MolecularSurface>();
-            surface.Source.CopyFrom(new MoleculeSource()); // instead of the demo molecule
+            surface.ForgoDemo();
             return surface;
         }
 

@@ -158,6 +158,9 @@ namespace QuickSes
             EditorApplication.delayCall += ShowDemoUnlessFed;
         }
 
+        /// <summary>Of a surface that was just added, and is to stay without atoms.</summary>
+        internal void ForgoDemo() => EditorApplication.delayCall -= ShowDemoUnlessFed;
+
         private void ShowDemoUnlessFed()
         {
             if (this == null || _isScriptFed || _source.IsSet || _atomsRequested.IsAny || IsPlayed ||
