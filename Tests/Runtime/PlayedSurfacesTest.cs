@@ -168,6 +168,25 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void NamesStayWhileTheyArePlayed()
+        {
+            _playing.Load();
+            Structure structure = _water.Surface.Structure;
+            Assert.That(structure.GetAtom(0).ResidueName, Is.EqualTo("HOH"));
+            _water.Surface.CloseStructure();
+            Assert.That(_water.Surface.Structure, Is.SameAs(structure));
+            _water.Surface.enabled = false;
+            Assert.That(_water.Surface.Structure, Is.SameAs(structure));
+            _water.Surface.enabled = true;
+            Player.Frame = 1;
+            _playing.WaitUntilShown(1);
+            Assert.That(_water.Surface.Structure, Is.SameAs(structure));
+            Assert.That(_water.Surface.SetVisible("(HOH)"), Is.True, _water.Surface.VisibleSelectionError);
+            Player.Unload();
+            Assert.That(_water.Surface.Structure, Is.Null);
+        }
+
+        [Test]
         public void OthersGoOnWhereOneIsDestroyed()
         {
             _playing.Load();

@@ -46,7 +46,7 @@ namespace QuickSes
         private void OnDestroy()
         {
             _isDestroyed = true;
-            CloseStructure();
+            LoseStructure();
             CancelLoading();
             _session?.Dispose();
             _session = null;

@@ -19,8 +19,8 @@ namespace QuickSes
         /// <para>The first question reads the file again, which blocks; from then on the structure stays open, and is
         /// exchanged when the source is read anew, until other atoms are set, the component is disabled or destroyed,
         /// or <see cref="CloseStructure"/>. <see cref="Structure.MemoryBytes"/> tells what that costs: about 200 bytes
-        /// per atom. Of atoms that a <see cref="TrajectoryPlayer"/> brings, it is the player's, which is open
-        /// anyway.</para>
+        /// per atom. Of atoms that a <see cref="TrajectoryPlayer"/> brings, it is the player's, which is open as long as
+        /// the player has them.</para>
         /// </summary>
         public Structure Structure
         {
@@ -34,10 +34,13 @@ namespace QuickSes
             }
         }
 
-        /// <summary>Frees what <see cref="Structure"/> opened, until somebody asks again.</summary>
+        /// <summary>
+        /// Frees what <see cref="Structure"/> opened, until somebody asks again. A player's is left alone.
+        /// </summary>
         public void CloseStructure()
         {
-            ForgetStructure();
+            if (_ownsStructure)
+                ForgetStructure();
             _keepsStructure = false;
         }
 
