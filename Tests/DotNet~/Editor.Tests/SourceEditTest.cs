@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 using NUnit.Framework;
 using System.IO;
-using System.Reflection;
 using UnityEngine;
 using QuickSes.EngineDouble;
 
@@ -99,9 +98,8 @@ namespace QuickSes.Tests
             ReadFile();
             Settle();
             var red = new Color32(255, 0, 0, 255);
-            typeof(MolecularSurface).GetField("_baseColor", BindingFlags.Instance | BindingFlags.NonPublic)
-                .SetValue(_surface, red);
-            Edit();
+            Inspector.Set(_surface, "_baseColor", red);
+            Engine.Frame();
             Settle();
             Assert.That(_surface.Mesh.colors32, Is.Not.Empty.And.All.EqualTo(red));
         }
@@ -125,8 +123,7 @@ namespace QuickSes.Tests
 
         private void Edit()
         {
-            typeof(MolecularSurface).GetMethod("OnValidate", BindingFlags.Instance | BindingFlags.NonPublic)
-                .Invoke(_surface, null);
+            Inspector.Validate(_surface);
             Engine.Frame();
         }
 

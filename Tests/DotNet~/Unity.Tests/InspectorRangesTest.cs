@@ -2,7 +2,6 @@
 using NUnit.Framework;
 using QuickSes.EngineDouble;
 using System.Collections;
-using System.Reflection;
 using UnityEngine;
 using UnityEngine.TestTools;
 
@@ -11,26 +10,24 @@ namespace QuickSes.Tests
     /// <summary>What the inspector, or a file, says out of range is brought into the range that setters take.</summary>
     internal sealed class InspectorRangesTest
     {
-        private const BindingFlags Own = BindingFlags.Instance | BindingFlags.NonPublic;
-
         [UnityTest]
         public IEnumerator WhatIsEditedIsLimited()
         {
             Engine.EnterEditMode();
             var rig = new SurfaceRig();
             MolecularSurface surface = rig.Surface;
-            Edit(surface, "_probeRadius", -3f);
-            Edit(surface, "_relaxationSteps", 500);
-            Edit(surface, "_frameBudget", float.NaN);
-            Edit(surface, "_restDelay", -1f);
+            Inspector.Set(surface, "_probeRadius", -3f);
+            Inspector.Set(surface, "_relaxationSteps", 500);
+            Inspector.Set(surface, "_frameBudget", float.NaN);
+            Inspector.Set(surface, "_restDelay", -1f);
             Assert.That((surface.ProbeRadius, surface.RelaxationSteps, surface.FrameBudget, surface.RestDelay),
                 Is.EqualTo((0f, SurfaceSettings.MaxRelaxationSteps, 0f, 0f)));
-            Edit(surface, "_probeRadius", 1e9f);
-            Edit(surface, "_spacing", 0f);
+            Inspector.Set(surface, "_probeRadius", 1e9f);
+            Inspector.Set(surface, "_spacing", 0f);
             Assert.That((surface.ProbeRadius, surface.Spacing),
                 Is.EqualTo((SurfaceSettings.MaxProbeRadius, SurfaceSettings.MinSpacing)));
             surface.ProbeRadius = 10;
-            Edit(surface, "_spacing", 0.5f);
+            Inspector.Set(surface, "_spacing", 0.5f);
             Assert.That((surface.ProbeRadius, surface.Spacing), Is.EqualTo((10f, 0.5f)));
             rig.Dispose();
             yield return null;
@@ -44,29 +41,23 @@ namespace QuickSes.Tests
             MolecularSurface surface = rig.Surface;
             foreach (float low in new[] { 0, -1, float.NaN, float.NegativeInfinity })
             {
-                Edit(surface, "_gaussianRadiusScale", low);
-                Edit(surface, "_gaussianIsovalue", low);
+                Inspector.Set(surface, "_gaussianRadiusScale", low);
+                Inspector.Set(surface, "_gaussianIsovalue", low);
                 Assert.That((surface.GaussianRadiusScale, surface.GaussianIsovalue),
                     Is.EqualTo((SurfaceSettings.MinGaussianRadiusScale, SurfaceSettings.MinGaussianIsovalue)));
             }
             foreach (float high in new[] { 1e9f, float.PositiveInfinity })
             {
-                Edit(surface, "_gaussianRadiusScale", high);
-                Edit(surface, "_gaussianIsovalue", high);
+                Inspector.Set(surface, "_gaussianRadiusScale", high);
+                Inspector.Set(surface, "_gaussianIsovalue", high);
                 Assert.That((surface.GaussianRadiusScale, surface.GaussianIsovalue),
                     Is.EqualTo((SurfaceSettings.MaxGaussianRadiusScale, SurfaceSettings.MaxGaussianIsovalue)));
             }
-            Edit(surface, "_gaussianRadiusScale", 2f);
-            Edit(surface, "_gaussianIsovalue", 3f);
+            Inspector.Set(surface, "_gaussianRadiusScale", 2f);
+            Inspector.Set(surface, "_gaussianIsovalue", 3f);
             Assert.That((surface.GaussianRadiusScale, surface.GaussianIsovalue), Is.EqualTo((2f, 3f)));
             rig.Dispose();
             yield return null;
-        }
-
-        private static void Edit(MolecularSurface surface, string field, object value)
-        {
-            typeof(MolecularSurface).GetField(field, Own).SetValue(surface, value);
-            typeof(MolecularSurface).GetMethod("OnValidate", Own).Invoke(surface, null);
         }
     }
 }

@@ -35,12 +35,8 @@ namespace QuickSes
         /// <param name="radii">N van der Waals radii in Å, above 0 and at most 100.</param>
         public void SetAtoms(ReadOnlySpan<Vector3> positions, ReadOnlySpan<float> radii)
         {
-            bool haveMoved = Session.Atoms.SetAtoms(Numbers(positions), radii);
-            CancelLoading();
+            TakeAtoms(positions, radii);
             _isScriptFed = true;
-            if (!haveMoved)
-                LoseStructure();
-            Changed(haveMoved ? SurfaceChange.Positions : SurfaceChange.Shape);
         }
 
         /// <inheritdoc cref="SetAtoms(ReadOnlySpan{Vector3}, ReadOnlySpan{float})"/>
@@ -121,6 +117,16 @@ namespace QuickSes
             Clear();
             CancelLoading();
             _isScriptFed = true;
+        }
+
+        // Of a script, a file or a player.
+        private void TakeAtoms(ReadOnlySpan<Vector3> positions, ReadOnlySpan<float> radii)
+        {
+            bool haveMoved = Session.Atoms.SetAtoms(Numbers(positions), radii);
+            CancelLoading();
+            if (!haveMoved)
+                LoseStructure();
+            Changed(haveMoved ? SurfaceChange.Positions : SurfaceChange.Shape);
         }
 
         private void Clear()

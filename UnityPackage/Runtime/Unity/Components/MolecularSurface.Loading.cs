@@ -11,7 +11,7 @@ namespace QuickSes
         [NonSerialized] private bool _loadsAtoms; // not only their colours
         [NonSerialized] private TrajectoryPlayer _player;
         [NonSerialized] private bool _isLoadDeferred; // until it is enabled
-        [NonSerialized] private MoleculeSource _loadedSource; // as it was when it was read; null: it was not
+        [NonSerialized] private MoleculeSource _loadedSource; // edits are measured by it: as it was read; null: it was not
 
         /// <summary>The atoms of the source are there, and their colours. Not raised for atoms of scripts.</summary>
         public event Action Loaded
@@ -81,7 +81,7 @@ namespace QuickSes
         {
             bool isSameFile = _loadedSource != null && _source.IsSameAs(_loadedSource);
             if (!isSameFile || _source.ColorScheme != _loadedSource.ColorScheme)
-                BeginLoad(!isSameFile || _loadsAtoms || !Session.Atoms.IsSet);
+                BeginLoad(!isSameFile || _loadsAtoms || !_areAtomsOfSource);
         }
 
         private void BeginLoad(bool withAtoms)
@@ -151,7 +151,6 @@ namespace QuickSes
                 SetAtomsOf(loaded);
             else
                 ColorAtomsOf(loaded);
-            _isScriptFed = false;
             TakeStructure(loaded);
             _loaded.Tell(this);
             if (this != null)
@@ -169,7 +168,8 @@ namespace QuickSes
         /// <summary>The atoms of a file, and their colours; its structure is borrowed.</summary>
         internal void SetAtomsOf(LoadedStructure loaded)
         {
-            SetAtoms(loaded.Positions, loaded.Radii);
+            TakeAtoms(loaded.Positions, loaded.Radii);
+            _isScriptFed = false;
             BorrowStructure(loaded.Structure);
             ShowSelectionOfNew(loaded.Structure);
             ColorAtomsOf(loaded);

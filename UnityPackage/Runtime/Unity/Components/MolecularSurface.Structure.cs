@@ -52,11 +52,17 @@ namespace QuickSes
             _areAtomsOfSource = false;
         }
 
-        /// <summary>Its owner closes it.</summary>
-        internal void GiveBackStructure(Structure structure)
+        /// <summary>
+        /// The player closes it. The atoms it brought stay, without names, until the source is edited from now on.
+        /// </summary>
+        /// <param name="structure">That which the player lent.</param>
+        /// <param name="source">The surface's source, as the player read it; null: it read another one.</param>
+        internal void GiveBackStructure(Structure structure, MoleculeSource source)
         {
-            if (_structure == structure && !_ownsStructure)
-                _structure = null;
+            if (_structure != structure || _ownsStructure)
+                return;
+            _structure = null;
+            _loadedSource = source ?? (_source.IsSet ? _source.Copy() : null);
         }
 
         /// <summary>The atoms there are now are of the source; nobody else closes its structure.</summary>

@@ -197,10 +197,11 @@ namespace QuickSes
                     Fail("surfaces", error);
                 return;
             }
+            MoleculeSource ofSurface = _structureSource.Kind == MoleculeSourceKind.None ? _loadedStructureSource : null;
             _played = new PlayedAtoms[structures.Length];
-            for (int k = 0; k < structures.Length; ++k)
-                _played[k] = new PlayedAtoms(
-                    k == 0 ? _surface : _loadedSurfaces[k - 1].Surface, structures[k], ShowAgain);
+            _played[0] = new PlayedAtoms(_surface, structures[0], ofSurface, ShowAgain);
+            for (int k = 1; k < structures.Length; ++k)
+                _played[k] = new PlayedAtoms(_loadedSurfaces[k - 1].Surface, structures[k], null, ShowAgain);
             ShowAgain();
             OpenFrames(file);
         }

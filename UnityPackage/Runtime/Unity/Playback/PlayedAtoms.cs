@@ -11,17 +11,21 @@ namespace QuickSes
     internal sealed class PlayedAtoms : IDisposable
     {
         private readonly LoadedStructure _loaded;
+        private readonly MoleculeSource _surfaceSource;
         private readonly Action _onAsked;
 
         /// <param name="surface">
         /// Which gets the atoms, now and whenever it asks. It may be destroyed at any time, also before.
         /// </param>
         /// <param name="loaded">Taken over.</param>
+        /// <param name="surfaceSource">The surface's source, as it was read; null: they are of another one.</param>
         /// <param name="onAsked">The surface asked, and got the atoms where the structure has them.</param>
-        public PlayedAtoms(MolecularSurface surface, LoadedStructure loaded, Action onAsked)
+        public PlayedAtoms(
+            MolecularSurface surface, LoadedStructure loaded, MoleculeSource surfaceSource, Action onAsked)
         {
             Surface = surface;
             _loaded = loaded;
+            _surfaceSource = surfaceSource;
             _onAsked = onAsked;
             SendAtoms();
             Surface.AtomsRequested += Answer;
@@ -57,7 +61,7 @@ namespace QuickSes
         public void Dispose()
         {
             Surface.AtomsRequested -= Answer;
-            Surface.GiveBackStructure(Structure);
+            Surface.GiveBackStructure(Structure, _surfaceSource);
             _loaded.DisposeInBackground();
         }
 

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+using NUnit.Framework;
+using QuickSes.EngineDouble;
+using System;
+using System.IO;
+using System.Text;
+using UnityEngine;
+using Object = UnityEngine.Object;
+
+namespace QuickSes.Tests
+{
+    /// <summary>What edits of a surface's source do where a player brings its atoms, or did.</summary>
+    public sealed class PlayedSourceEditTest
+    {
+        private const int MostFrames = 1000000;
+
+        private string _folder;
+        private MolecularSurface _surface;
+        private TrajectoryPlayer _player;
+
+        [SetUp]
+        public void MakePlayer()
+        {
+            Engine.Reset();
+            _folder = Directory.CreateDirectory(Path.Combine(Path.GetTempPath(), Path.GetRandomFileName())).FullName;
+            _player = new GameObject("molecule").AddComponent<TrajectoryPlayer>();
+            _surface = _player.GetComponent<MolecularSurface>();
+            Engine.Frame();
+        }
+
+        [TearDown]
+        public void Destroy()
+        {
+            Object.DestroyImmediate(_surface.gameObject);
+            Directory.Delete(_folder, true);
+        }
+
+        [Test]
+        public void OncePlayedASurfaceFollowsItsSourceAgain([Values] bool isRemoved, [Values] bool isSourceSet)
+        {
+            if (isSourceSet)
+                _surface.Source.SetFile(Ensemble(2, 1));
+            _player.StructureSource.SetFile(Ensemble(3, 2));
+            PlayUntil(3);
+            if (isRemoved)
+                Object.DestroyImmediate(_player);
+            else
+                _player.enabled = false;
+            Edit();
+            Settle();
+            Assert.That(_surface.AtomCount, Is.EqualTo(3), "the source was not edited");
+            EditSource(4, 1);
+            Assert.That(_surface.AtomCount, Is.EqualTo(4));
+            Assert.That(_surface.Structure.AtomCount, Is.EqualTo(4));
+        }
+
+        [Test]
+        public void AnEditWhileAnotherSourceIsPlayedIsNotFollowedLater()
+        {
+            _player.StructureSource.SetFile(Ensemble(3, 2));
+            PlayUntil(3);
+            EditSource(4, 1);
+            Assert.That(_surface.AtomCount, Is.EqualTo(3));
+            _player.enabled = false;
+            Edit();
+            Settle();
+            Assert.That(_surface.AtomCount, Is.EqualTo(3));
+        }
+
+        [Test]
+        public void AtomsOfAScriptThatCameAfterAPlayersStay()
+        {
+            _player.StructureSource.SetFile(Ensemble(3, 2));
+            PlayUntil(3);
+            _player.enabled = false;
+            _surface.SetAtoms(new Vector3[5], new float[] { 1, 1, 1, 1, 1 });
+            EditSource(4, 1);
+            Assert.That(_surface.AtomCount, Is.EqualTo(5));
+        }
+
+        private void PlayUntil(int atoms)
+        {
+            Assert.That(_player.Load(), Is.True, _player.LastError.ToString());
+            FramesUntil(() => _player.ShownFrame >= 0);
+            Assert.That(_surface.AtomCount, Is.EqualTo(atoms));
+        }
+
+        private void EditSource(int atoms, int models)
+        {
+            _surface.Source.SetFile(Ensemble(atoms, models));
+            Edit();
+            Settle();
+        }
+
+        private void Edit() => Inspector.Validate(_surface);
+
+        // A frame more, in which the player hears of an edit.
+        private void Settle()
+        {
+            Engine.Frame();
+            Engine.Frame();
+            FramesUntil(() => !_surface.IsBusy && !_player.IsLoading);
+        }
+
+        private static void FramesUntil(Func<bool> condition)
+        {
+            for (int frame = 0; frame < MostFrames && !condition(); ++frame)
+                Engine.Frame();
+            Assert.That(condition(), Is.True);
+        }
+
+        private string Ensemble(int atoms, int models)
+        {
+            var text = new StringBuilder();
+            for (int model = 1; model <= models; ++model)
+            {
+                text.Append(FormattableString.Invariant($"MODEL     {model,4}\n"));
+                for (int i = 1; i <= atoms; ++i)
+                    text.Append(FormattableString.Invariant(
+                        $"ATOM  {i,5}  CA  ALA A{i,4}    {3 * i,8:0.000}{model,8:0.000}   0.000  1.00  0.00           C\n"));
+                text.Append("ENDMDL\n");
+            }
+            string path = Path.Combine(_folder, $"{atoms}x{models}.pdb");
+            File.WriteAllText(path, text.Append("END\n").ToString());
+            return path;
+        }
+    }
+}
