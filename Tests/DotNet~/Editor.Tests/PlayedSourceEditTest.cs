@@ -24,6 +24,7 @@ namespace QuickSes.Tests
             Engine.Reset();
             _folder = Directory.CreateDirectory(Path.Combine(Path.GetTempPath(), Path.GetRandomFileName())).FullName;
             _player = new GameObject("molecule").AddComponent<TrajectoryPlayer>();
+            _player.Pause();
             _surface = _player.GetComponent<MolecularSurface>();
             Engine.Frame();
         }
@@ -76,6 +77,56 @@ namespace QuickSes.Tests
             _surface.SetAtoms(new Vector3[5], new float[] { 1, 1, 1, 1, 1 });
             EditSource(4, 1);
             Assert.That(_surface.AtomCount, Is.EqualTo(5));
+        }
+
+        [Test]
+        public void ThePlayerFollowsTheSourceThatItPlays()
+        {
+            EditSource(3, 2);
+            AssertPlays(3);
+            Edit();
+            Engine.Frame();
+            Engine.Frame();
+            Assert.That(_player.IsLoading, Is.False, "the source was not edited");
+            EditSource(4, 2);
+            AssertPlays(4);
+            EditSource(5, 1); // nothing to play
+            Assert.That(_player.IsReady || _surface.IsPlayed, Is.False);
+            Assert.That(_surface.AtomCount, Is.EqualTo(5));
+            EditSource(6, 2);
+            AssertPlays(6);
+        }
+
+        [Test]
+        public void ASourceThatIsTakenFromAPlayerTakesTheAtomsAlong()
+        {
+            EditSource(3, 2);
+            AssertPlays(3);
+            _surface.Source.Kind = MoleculeSourceKind.None;
+            Edit();
+            Settle();
+            Assert.That(_surface.IsPlayed, Is.False);
+            Assert.That(_surface.AtomCount, Is.EqualTo(0));
+        }
+
+        [Test]
+        public void ColoursOfTheSourceArePlayed()
+        {
+            _surface.Coloring = AtomColoring.Vertices;
+            _surface.Source.ColorScheme = AtomColorScheme.Uniform;
+            EditSource(3, 2);
+            Assert.That(_surface.Mesh.colors32, Is.Not.Empty.And.All.EqualTo(_surface.BaseColor));
+            _surface.Source.ColorScheme = AtomColorScheme.Residue;
+            Edit();
+            Settle();
+            AssertPlays(3);
+            Assert.That(_surface.Mesh.colors32, Has.None.EqualTo(_surface.BaseColor));
+        }
+
+        private void AssertPlays(int atoms)
+        {
+            Assert.That(_player.IsReady && _surface.IsPlayed, Is.True);
+            Assert.That(_surface.AtomCount, Is.EqualTo(atoms));
         }
 
         private void PlayUntil(int atoms)

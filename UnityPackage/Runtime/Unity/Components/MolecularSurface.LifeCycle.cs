@@ -123,6 +123,13 @@ namespace QuickSes
             _surface, _method, _probeRadius, _gaussianRadiusScale, _gaussianIsovalue, _spacing, _levels, _relaxationSteps, _sharpCreases,
             _ambientOcclusion, _measureComponents, _compactVertices, _backend);
 
+        /// <summary>The player beside it leaves the source to it, which may have been edited meanwhile.</summary>
+        internal void FollowSourceSoon()
+        {
+            _isEdited = true;
+            QueueEditorUpdate();
+        }
+
         // The inspector, Undo and changed prefabs write serialised fields, also that of the filter beside this
         // component, whose mesh is in no file.
         private void FollowEdits()
@@ -130,7 +137,10 @@ namespace QuickSes
             AttachMeshUnlessBaked();
             if (VisibleSelection != (_followedVisible ?? ""))
                 FollowVisible();
-            if (_isScriptFed || IsPlayed)
+            if (_isScriptFed && !IsPlayed)
+                return;
+            var player = GetComponent<TrajectoryPlayer>();
+            if ((player != null && player.FollowSurfaceSource()) || IsPlayed)
                 return;
             if (_source.IsSet)
             {
@@ -168,8 +178,7 @@ namespace QuickSes
                 return;
             _source.SetAsset(AssetDatabase.LoadAssetAtPath<TextAsset>(AssetDatabase.GUIDToAssetPath(DemoMolecule)));
             EditorUtility.SetDirty(this);
-            _isEdited = true;
-            QueueEditorUpdate();
+            FollowSourceSoon();
         }
 
         // What the Editor gives new renderers, which shows no colours of vertices.

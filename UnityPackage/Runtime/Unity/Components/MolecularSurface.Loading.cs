@@ -36,10 +36,14 @@ namespace QuickSes
             set
             {
                 _player = value;
-                if (IsPlayed)
-                    CancelLoading();
-                else
+                if (!IsPlayed)
+                {
                     AskForAtoms();
+                    return;
+                }
+                if (IsLoading)
+                    _loadedSource = null; // it was not
+                CancelLoading();
             }
         }
 

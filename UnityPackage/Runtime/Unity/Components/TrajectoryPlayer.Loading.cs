@@ -77,7 +77,8 @@ namespace QuickSes
                 return;
             }
             Unload();
-            BeginLoading(); // nothing: the surface tells
+            BeginLoading(); // nothing
+            LeaveToSurface();
         }
 
         private void BeginLoading()
@@ -137,6 +138,13 @@ namespace QuickSes
             _claimed.Clear();
         }
 
+        // There is nothing to play: the surface reads its source, and tells what is wrong with it.
+        private void LeaveToSurface()
+        {
+            ReleaseSurfaces();
+            _surface.FollowSourceSoon();
+        }
+
         // One per surface, its own first.
         private bool TryMakeSources(MoleculeSource structure, out MoleculeSource[] sources, out QuickSesError error)
         {
@@ -174,7 +182,7 @@ namespace QuickSes
             if (load.TryTake(out LoadedStructure[] structures, out error))
                 TakeStructures(structures, load.File);
             else if (_isWish)
-                ReleaseSurfaces(); // the surface tells
+                LeaveToSurface();
             else
                 Fail(load.FailedSource > 0 ? NameOf(_loadedSurfaces[load.FailedSource - 1].Surface) : "structure", error);
         }
@@ -192,7 +200,7 @@ namespace QuickSes
                     each.DisposeInBackground();
                 file.Dispose();
                 if (isNothing)
-                    ReleaseSurfaces(); // the surface tells
+                    LeaveToSurface();
                 else
                     Fail("surfaces", error);
                 return;

@@ -183,11 +183,28 @@ namespace QuickSes
                 _isLoadRequested = true; // not here: a mesh must not change while values are validated
             else
                 FollowFrame();
-            if (_played.Length > 0 && _loadedStructureSource.ColorScheme != ActiveStructureSource.ColorScheme)
-                _areColorsRequested = true;
+            FollowColorScheme();
             RequestUpdate();
         }
 #endif
+
+        /// <summary>The source of the surface beside it may have been edited.</summary>
+        /// <returns>Whether the player reads it, or will look into it, so that the surface leaves it alone.</returns>
+        internal bool FollowSurfaceSource()
+        {
+            if (!_isEnabled || _structureSource.Kind != MoleculeSourceKind.None || _loadedStructureSource == null)
+                return false;
+            _isLoadRequested |= !_loadedStructureSource.IsSameAs(_surface.Source);
+            FollowColorScheme();
+            RequestUpdate();
+            return _isLoadRequested;
+        }
+
+        private void FollowColorScheme()
+        {
+            if (_played.Length > 0 && _loadedStructureSource.ColorScheme != ActiveStructureSource.ColorScheme)
+                _areColorsRequested = true;
+        }
 
         private MoleculeSource ActiveStructureSource =>
             _structureSource.Kind != MoleculeSourceKind.None || _surface == null ? _structureSource : _surface.Source;
