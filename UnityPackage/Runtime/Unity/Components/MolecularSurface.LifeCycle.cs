@@ -112,10 +112,8 @@ namespace QuickSes
                 return;
             _isEdited = true; // the rest later: files are not read and meshes not set while values are validated
             _session.Atoms.SetBaseColor(Number(_baseColor));
-            SurfaceShapeSettings edited = ShapeSettings();
-            if (!edited.Equals(_editedFrom))
-                Changed(SurfaceChange.Shape);
-            _editedFrom = edited;
+            if (!ShapeSettings().Equals(_editedFrom))
+                ShapeSettingChanged();
             QueueEditorUpdate();
         }
 

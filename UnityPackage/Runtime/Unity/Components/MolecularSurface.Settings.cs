@@ -106,7 +106,7 @@ namespace QuickSes
                 if (value.AsSpan().SequenceEqual(_levels))
                     return;
                 _levels = (float[])value.Clone();
-                Changed(SurfaceChange.Shape);
+                ShapeSettingChanged();
             }
         }
 
@@ -213,6 +213,13 @@ namespace QuickSes
             if (EqualityComparer<T>.Default.Equals(field, value))
                 return;
             field = value;
+            ShapeSettingChanged();
+        }
+
+        // By a script or an edit: the next edit is measured by it.
+        private void ShapeSettingChanged()
+        {
+            _editedFrom = ShapeSettings();
             Changed(SurfaceChange.Shape);
         }
     }

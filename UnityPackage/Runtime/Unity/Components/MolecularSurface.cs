@@ -95,7 +95,7 @@ namespace QuickSes
         [NonSerialized] private bool _isScriptFed;
         [NonSerialized] private bool _asksForAtoms;
         [NonSerialized] private bool _isEdited; // in the inspector, by Undo, by a prefab
-        [NonSerialized] private SurfaceShapeSettings _editedFrom; // the settings before they were edited
+        [NonSerialized] private SurfaceShapeSettings _editedFrom; // the settings as they changed last
         [NonSerialized] private bool _isDestroyed;
 
         private readonly Listeners<SurfaceLevel> _updated = new Listeners<SurfaceLevel>();

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+using NUnit.Framework;
+using System.Collections;
+using UnityEngine.TestTools;
+
+namespace QuickSes.Tests
+{
+    /// <summary>Which edits compute the surface again: by the inspector, Undo and Revert, which all write fields.</summary>
+    internal sealed class InspectorEditTest
+    {
+        private SurfaceRig _rig;
+
+        [SetUp]
+        public void MakeSurface() => _rig = SurfaceRig.WithBlob(40, 1);
+
+        [TearDown]
+        public void Destroy() => _rig.Dispose();
+
+        [UnityTest]
+        public IEnumerator WhatAScriptSetAndUndoTookBackIsComputedAgain()
+        {
+            float[] levels = _rig.Surface.Levels;
+            yield return _rig.Settle();
+            _rig.Surface.Spacing = 0.8f;
+            _rig.Surface.Levels = new[] { 3f };
+            yield return _rig.Settle();
+            Assert.That(_rig.Surface.CurrentLevel.LevelCount, Is.EqualTo(2));
+            Inspector.Set(_rig.Surface, "_spacing", 0.5f);
+            Assert.That(_rig.Surface.IsBusy, Is.True);
+            yield return _rig.Settle();
+            Assert.That(_rig.Surface.CurrentLevel.Spacing, Is.EqualTo(0.5f));
+            Inspector.Set(_rig.Surface, "_levels", levels);
+            yield return _rig.Settle();
+            Assert.That(_rig.Surface.CurrentLevel.LevelCount, Is.EqualTo(3));
+        }
+
+        [UnityTest]
+        public IEnumerator EditsOfOtherThingsComputeNothing()
+        {
+            yield return _rig.Settle();
+            _rig.Surface.Spacing = 0.8f;
+            _rig.Surface.Levels = new[] { 3f };
+            yield return _rig.Settle();
+            int updates = _rig.Levels.Count;
+            Inspector.Set(_rig.Surface, "_frameBudget", 10f);
+            Assert.That(_rig.Surface.IsBusy, Is.False);
+            yield return SurfaceRig.Frames(3);
+            yield return _rig.Settle();
+            Assert.That(_rig.Levels.Count, Is.EqualTo(updates));
+        }
+    }
+}
