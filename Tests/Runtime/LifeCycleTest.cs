@@ -101,6 +101,44 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
+        public IEnumerator WhatNeverRestsIsNotBusyWithTheLevelThatFits()
+        {
+            TestMolecules.Blob(300, 10, out Vector3[] positions, out float[] radii);
+            _rig = new SurfaceRig();
+            _rig.Surface.RestDelay = float.PositiveInfinity;
+            _rig.Surface.FrameBudget = 1e-3f; // for the coarsest only
+            _rig.Surface.SetAtoms(positions, radii);
+            yield return _rig.Settle();
+            Assert.That(_rig.Surface.CurrentLevel.IsFinest, "other atoms count as rest");
+            int finished = _rig.Finished;
+            _rig.Surface.SetPositions(TestMolecules.Moved(positions, 1));
+            Assert.That(_rig.Surface.IsBusy);
+            yield return _rig.Settle();
+            Assert.That(_rig.Surface.CurrentLevel.IsOfNewestAtoms && !_rig.Surface.CurrentLevel.IsFinest);
+            Assert.That(_rig.Finished, Is.EqualTo(finished), "it may still be refined");
+            _rig.Surface.RestDelay = 0;
+            Assert.That(_rig.Surface.IsBusy);
+            yield return _rig.Settle();
+            Assert.That(_rig.Surface.CurrentLevel.IsFinest);
+            Assert.That(_rig.Finished, Is.EqualTo(finished + 1));
+        }
+
+        // What was under way when it was disabled is not left coarse.
+        [UnityTest]
+        public IEnumerator WhatNeverRestsIsFinishedAfterItWasDisabled()
+        {
+            TestMolecules.Blob(300, 11, out Vector3[] positions, out float[] radii);
+            _rig = new SurfaceRig();
+            _rig.Surface.RestDelay = float.PositiveInfinity;
+            _rig.Surface.SetAtoms(positions, radii);
+            yield return SurfaceRig.Until(() => _rig.Levels.Count > 0);
+            _rig.Surface.enabled = false;
+            _rig.Surface.enabled = true;
+            yield return _rig.Settle();
+            Assert.That(_rig.Surface.CurrentLevel.IsFinest);
+        }
+
+        [UnityTest]
         public IEnumerator ParentAndChildHaveSurfacesOfTheirOwn()
         {
             TestMolecules.Blob(40, 8, out Vector3[] outer, out float[] outerRadii);

@@ -126,7 +126,11 @@ namespace QuickSes
         public float RestDelay
         {
             get => _restDelay;
-            set => _restDelay = InRange(value, 0, float.PositiveInfinity, "s");
+            set
+            {
+                _restDelay = InRange(value, 0, float.PositiveInfinity, "s");
+                QueueEditorUpdate(); // what was left coarse may become finer
+            }
         }
 
         /// <summary>Whether <see cref="Components"/> is filled; default no.</summary>

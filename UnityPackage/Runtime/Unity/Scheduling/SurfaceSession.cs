@@ -64,17 +64,21 @@ namespace QuickSes
         public bool IsOrphan => _host.IsGone;
 
         /// <summary>
-        /// Whether nothing is left to do: the best surface of the newest atoms is shown as they look now, or failed, or
-        /// was cancelled, or there are no atoms.
+        /// Whether nothing is left to do: the best surface of the newest atoms that there will be is shown as they look
+        /// now, or failed, or was cancelled, or there are no atoms.
         /// </summary>
         public bool IsUpToDate => IsComputed && !_host.HasUpload && !_host.HasDelivery;
 
         /// <summary>Whether <see cref="Tick"/> has something to wait for.</summary>
         public bool IsWaiting => !IsUpToDate || (_isHeldReady && !double.IsInfinity(_host.RestDelay));
 
-        private bool IsComputed => !Atoms.IsSet || (_slot == null && !_hasArrival && (_isStopped || IsDone));
+        private bool IsComputed =>
+            !Atoms.IsSet || (_slot == null && !_hasArrival && (_isStopped || IsDone || IsLeftCoarse));
 
         private bool IsDone => _isShown && IsBest(CurrentLevel);
+
+        // What never rests is not refined.
+        private bool IsLeftCoarse => _isShown && _isTried && double.IsInfinity(_host.RestDelay);
 
         /// <summary>Something is new: what is shown will be replaced.</summary>
         public void Change(SurfaceChange change, double now)
@@ -227,7 +231,7 @@ namespace QuickSes
         /// <summary>After <see cref="Drop"/>: what was not finished begins again.</summary>
         public void Resume()
         {
-            if (!IsComputed)
+            if (Atoms.IsSet && !_isStopped && !IsDone)
                 BeginAgain(SurfaceChange.Shape);
         }
 
