@@ -253,8 +253,8 @@ namespace QuickSes
         }
 
         /// <summary>
-        /// Lets go of structure and trajectory; the surfaces keep what they show. Does not wait: the threads that read
-        /// close their files after what they are at. Disabling the component does the same.
+        /// Lets go of structure and trajectory; the surfaces keep what they show, until their own sources are edited. Does
+        /// not wait: the threads that read close their files after what they are at. Disabling the component does the same.
         /// </summary>
         public void Unload()
         {
