@@ -11,7 +11,8 @@ PdbRecord pdb_record_of(std::string_view line) {
   char columns[6];
   for (size_t i = 0; i < 6; ++i) columns[i] = i < line.size() ? to_upper(line[i]) : ' ';
   const std::string_view name(columns, 6);
-  if (name == "ATOM  ") return PdbRecord::kAtom;
+  // The serial number may begin in column 5 or 6, as Chimera writes it from 100000 on. "ATOMS" is a word.
+  if (name.substr(0, 4) == "ATOM" && (name[4] < 'A' || name[4] > 'Z')) return PdbRecord::kAtom;
   if (name == "HETATM") return PdbRecord::kHetatm;
   if (name == "MODEL ") return PdbRecord::kModel;
   if (name == "ENDMDL" || name == "END   ") return PdbRecord::kEnd;
@@ -20,7 +21,8 @@ PdbRecord pdb_record_of(std::string_view line) {
 }
 
 bool begins_pdb(std::string_view line) {
-  return is_one_of(line.substr(0, 6), {"HEADER", "TITLE ", "REMARK", "CRYST1", "MODEL ", "ATOM  ", "HETATM", "COMPND"});
+  return is_one_of(line.substr(0, 6), {"HEADER", "TITLE ", "REMARK", "CRYST1", "MODEL ", "HETATM", "COMPND"}) ||
+         (line.substr(0, 4) == "ATOM" && is_atom(pdb_record_of(line)));
 }
 
 void check_pdb_position(std::string_view line, const std::string &path, size_t number) {

@@ -10,7 +10,7 @@ namespace quickses::io {
 
 enum class PdbRecord { kAtom, kHetatm, kModel, kEnd, kTer, kCell, kOther };
 
-// By the first six columns, in any case. kEnd: ENDMDL or END.
+// By the first six columns, in any case; serial numbers of ATOM records may reach into them. kEnd: ENDMDL or END.
 PdbRecord pdb_record_of(std::string_view line);
 inline bool is_atom(PdbRecord record) { return record == PdbRecord::kAtom || record == PdbRecord::kHetatm; }
 

@@ -1,138 +1,200 @@
 // SPDX-License-Identifier: MIT
-// PDB files. gemmi reads the records; before that each model is cut out of the text and cleaned: coordinates that are
-// no numbers are refused, elements are filled in, and serial numbers are replaced by the place in the file, because
-// gemmi regroups atoms by chain and residue.
+// PDB files: the columns of the format (wwPDB, version 3.3), and what programs write where it has no room.
 #include "io/readers.h"  // first: settles how gemmi formats numbers
 
 #include <algorithm>
-#include <gemmi/pdb.hpp>
+#include <charconv>
+#include <gemmi/resinfo.hpp>
 #include <string_view>
+#include <unordered_set>
 
 #include "io/elements.h"
 #include "io/error.h"
 #include "io/pdb_lines.h"
+#include "io/simulation_names.h"
 #include "io/text.h"
 
 namespace quickses::io {
 namespace {
 
-// Serial number in five columns: decimal, then base 36 from A0000 on (hybrid-36).
-void write_serial(uint32_t serial, char *columns) {
-  static const char kDigits[] = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZ";
-  const bool decimal = serial < 100'000;
-  const uint32_t base = decimal ? 10 : 36;
-  uint32_t rest = decimal ? serial : serial - 100'000 + 10 * 36 * 36 * 36 * 36;
-  for (int i = 4; i >= 0; --i, rest /= base) columns[i] = rest == 0 && i != 4 ? ' ' : kDigits[rest % base];
-}
+// An atom's record, blank behind its end. Columns count from 1, as in the format.
+class AtomRecord {
+ public:
+  explicit AtomRecord(std::string_view line) {
+    line = line.substr(0, kColumns);
+    std::fill(std::begin(text_), std::end(text_), ' ');
+    std::transform(line.begin(), line.end(), text_, [](char c) { return c == '\0' || c == '\t' ? ' ' : to_ascii(c); });
+  }
 
-struct ModelText {
-  int number;
-  std::string name;
-  std::string text;
-  uint32_t atom_count;
+  char column(size_t place) const { return text_[place - 1]; }
+  std::string columns(size_t first, size_t last) const { return std::string(text_ + first - 1, text_ + last); }
+  std::string word(size_t first, size_t last) const { return std::string(trim(columns(first, last))); }
+  double number(size_t first, size_t last, double otherwise) const {
+    double value = 0;
+    return parse_number(columns(first, last), value) ? value : otherwise;
+  }
+
+  // From 10000 on, five digits and more reach into the column of the insertion code, which is a letter, or four are
+  // hybrid-36: A000 and so on.
+  gemmi::SeqId residue_number() const {
+    const char *first = text_ + 22, *last = first + 4;
+    const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+    if (std::all_of(first, last, is_digit) && is_digit(*last)) {
+      last = std::find_if_not(last, static_cast<const char *>(text_ + 30), is_digit);
+      gemmi::SeqId id(0, ' ');
+      std::from_chars(first, last, *id.num);
+      return id;
+    }
+    gemmi::SeqId id;
+    id.icode = *last;
+    first = std::find_if_not(first, last, is_blank);
+    int number = 0;
+    const bool is_hybrid = last - first == 4 && to_upper(*first) >= 'A' && to_upper(*first) <= 'Z';
+    if (std::from_chars(first, last, number, is_hybrid ? 36 : 10).ec == std::errc())
+      id.num = is_hybrid ? number - 10 * 36 * 36 * 36 + 10'000 : number;
+    return id;
+  }
+
+ private:
+  static constexpr size_t kColumns = 80;
+  char text_[kColumns];
 };
 
-class Splitter {
- public:
-  Splitter(const std::string &path, int wanted) : path_(path), wanted_(wanted) {}
+// Column 21 is blank by the format. CHARMM, NAMD and Amber have the fourth letter of a residue's name there (TIP3,
+// POPC, NALA), gemmi and Phenix the first one of a chain of two. Amino acids and nucleotides of three letters before it
+// tell which: "ALAAB" is in chain AB.
+bool has_chains_of_two_letters(std::string_view text) {
+  std::string_view line;
+  while (next_line(text, line)) {
+    if (line.size() < 21 || is_blank(line[17]) || is_blank(line[20]) || !is_atom(pdb_record_of(line))) continue;
+    const AtomRecord record(line);
+    if (gemmi::find_tabulated_residue(record.columns(18, 20)).is_standard() &&
+        !find_simulated_residue(record.columns(18, 21)).is_known())
+      return true;
+  }
+  return false;
+}
 
-  void run(std::string_view text) {
+class Reader {
+ public:
+  Reader(const std::string &path, int wanted) : path_(path), wanted_(wanted) {}
+
+  RawFile run(std::string_view text) {
+    has_chains_of_two_letters_ = has_chains_of_two_letters(text);
+    file_.has_model_records = false;
     std::string_view line;
     while (next_line(text, line)) {
       ++line_number_;
       const PdbRecord record = pdb_record_of(line);
       if (is_atom(record)) {
-        atom(line, record == PdbRecord::kAtom ? "ATOM  " : "HETATM");
+        atom(line, record == PdbRecord::kHetatm);
       } else if (record == PdbRecord::kModel) {
+        file_.has_model_records = true;
         int number = 0;
         const bool has_number = line.size() > 6 && parse_integer(line.substr(6), number);
         begin_model(has_number ? std::to_string(number) : "");
       } else if (record == PdbRecord::kEnd) {
-        open_ = false;
+        is_open_ = false;
       } else if (record == PdbRecord::kTer) {
-        if (open_ && is_wanted()) models.back().text += "TER\n";
+        if (is_open_ && is_wanted()) end_polymer();
       }
     }
+    return std::move(file_);
   }
-
-  int model_count = 0;
-  std::vector<ModelText> models;
-  size_t inferred_elements = 0;
 
  private:
-  bool is_wanted() const { return wanted_ == 0 || wanted_ == model_count; }
+  bool is_wanted() const { return wanted_ == 0 || wanted_ == file_.model_count; }
 
   void begin_model(const std::string &name) {
-    ++model_count;
-    open_ = true;
-    if (is_wanted()) models.push_back({model_count, name.empty() ? std::to_string(model_count) : name, "", 0});
+    ++file_.model_count;
+    is_open_ = true;
+    if (!is_wanted()) return;
+    RawModel raw;
+    raw.number = file_.model_count;
+    raw.model.name = name.empty() ? std::to_string(file_.model_count) : name;
+    file_.models.push_back(std::move(raw));
+    chain_count_ = 0;
+    ended_chains_.clear();
   }
 
-  void atom(std::string_view line, const char *record) {
-    if (!open_) begin_model("");
+  void atom(std::string_view line, bool is_hetero) {
+    if (!is_open_) begin_model("");
     if (!is_wanted()) return;
+    RawModel &raw = file_.models.back();
+    if (++raw.atom_count > kMostAtoms)
+      fail_input("'" + path_ + "' has more than " + std::to_string(kMostAtoms) + " atoms in one model");
     double position[3];
     read_pdb_position(line, path_, line_number_, position);
-    ModelText &model = models.back();
-    if (++model.atom_count > kMostAtoms)
-      fail_input("'" + path_ + "' has more than " + std::to_string(kMostAtoms) + " atoms in one model");
 
-    char columns[79];
-    std::fill(columns, columns + 78, ' ');
-    std::copy_n(line.data(), std::min<size_t>(line.size(), 78), columns);
-    for (char *c = columns; c != columns + 78; ++c) *c = *c == '\0' || *c == '\t' ? ' ' : to_ascii(*c);
-    columns[78] = '\n';
-    std::copy_n(record, 6, columns);
-    write_serial(model.atom_count, columns + 6);
-    write_element(columns);
-    model.text.append(columns, sizeof columns);
+    const AtomRecord record(line);
+    const bool has_fourth_letter =
+        !has_chains_of_two_letters_ && !is_blank(record.column(18)) && !is_blank(record.column(21));
+    const size_t chain_column = has_fourth_letter ? 22 : 21;
+    const std::string residue = record.word(18, chain_column - 1);
+    gemmi::Atom atom;
+    atom.serial = static_cast<int>(raw.atom_count);
+    atom.name = record.word(13, 16);
+    atom.altloc = record.column(17) == ' ' ? '\0' : record.column(17);
+    atom.pos = gemmi::Position(position[0], position[1], position[2]);
+    atom.occ = static_cast<float>(record.number(55, 60, 1));
+    atom.b_iso = static_cast<float>(record.number(61, 66, 0));
+    atom.element = element_of(record, residue);
+    ModelBuilder(raw.model).add(record.word(chain_column, 22), residue, record.residue_number(), is_hetero,
+                                std::move(atom));
+
+    gemmi::Chain &chain = raw.model.chains.back();
+    if (raw.model.chains.size() != chain_count_) {
+      chain_count_ = raw.model.chains.size();
+      polymer_end_ = 0;
+      has_ended_ = ended_chains_.count(chain.name) != 0;
+    }
+    gemmi::Residue &last = chain.residues.back();
+    if (has_ended_ && is_hetero && last.atoms.size() == 1)
+      last.entity_type = last.is_water() ? gemmi::EntityType::Water : gemmi::EntityType::NonPolymer;
   }
 
-  void write_element(char *columns) {
-    const std::string_view given = trim(std::string_view(columns + 76, 2));
-    gemmi::El element = parse_element(std::string(given));
-    if (element == gemmi::El::X && given != "X") {
-      element = infer_element(std::string(columns + 17, 3), std::string(columns + 12, 4));
-      ++inferred_elements;
-    }
-    const char *symbol = gemmi::element_uppercase_name(element);
-    columns[76] = symbol[1] == '\0' ? ' ' : symbol[0];
-    columns[77] = symbol[1] == '\0' ? symbol[0] : symbol[1];
+  // TER ends a polymer; HETATM records behind it are apart. ATOM records may be another polymer: Amber writes TER
+  // behind every molecule, and no chains.
+  void end_polymer() {
+    if (chain_count_ == 0) return;
+    gemmi::Chain &chain = file_.models.back().model.chains.back();
+    const auto begin =
+        std::find_if(chain.residues.begin() + static_cast<std::ptrdiff_t>(polymer_end_), chain.residues.end(),
+                     [](const gemmi::Residue &residue) { return residue.entity_type == gemmi::EntityType::Unknown; });
+    std::for_each(begin, chain.residues.end(),
+                  [](gemmi::Residue &residue) { residue.entity_type = gemmi::EntityType::Polymer; });
+    polymer_end_ = chain.residues.size();
+    has_ended_ = true;
+    ended_chains_.insert(chain.name);
+  }
+
+  gemmi::El element_of(const AtomRecord &record, const std::string &residue) {
+    const std::string given = record.word(77, 78);
+    gemmi::El element = parse_element(given);
+    if (element != gemmi::El::X || given == "X") return element;
+    element = infer_element(residue, record.columns(13, 16));
+    if (element != gemmi::El::X) ++file_.inferred_elements;
+    return element;
   }
 
   const std::string &path_;
   const int wanted_;
+  RawFile file_;
   size_t line_number_ = 0;
-  bool open_ = false;
+  bool is_open_ = false;  // a model
+  bool has_chains_of_two_letters_ = false;
+  // Of the model: its chains so far, those that a TER ended, and of the last one whether it is one of them, and how
+  // many of its residues are before the last TER.
+  size_t chain_count_ = 0;
+  std::unordered_set<std::string> ended_chains_;
+  bool has_ended_ = false;
+  size_t polymer_end_ = 0;
 };
 
 }  // namespace
 
 RawFile read_pdb_text(const std::string &text, const std::string &path, int model) {
-  Splitter splitter(path, model);
-  splitter.run(text);
-  RawFile file;
-  file.model_count = splitter.model_count;
-  file.inferred_elements = splitter.inferred_elements;
-  for (ModelText &part : splitter.models) {
-    RawModel raw;
-    raw.number = part.number;
-    raw.atom_count = part.atom_count;
-    if (part.atom_count != 0) {
-      try {
-        gemmi::Structure structure = gemmi::read_pdb_from_memory(part.text.data(), part.text.size(), path);
-        raw.model = std::move(structure.models.at(0));
-      } catch (const std::bad_alloc &) {
-        throw;
-      } catch (const std::exception &error) {
-        fail_input("'" + path + "' can't be read as PDB: " + error.what());
-      }
-    }
-    raw.model.name = part.name;
-    part.text = std::string();
-    file.models.push_back(std::move(raw));
-  }
-  return file;
+  return Reader(path, model).run(text);
 }
 
 }  // namespace quickses::io

@@ -13,7 +13,7 @@
 
 namespace quickses::io {
 
-// Of one model: what five characters of hybrid-36 can number, in capitals.
+// Of one model: far more than any structure has.
 constexpr uint32_t kMostAtoms = 43'770'000;
 
 struct RawModel {
@@ -26,8 +26,9 @@ struct RawModel {
 
 struct RawFile {
   int model_count = 0;
+  bool has_model_records = true;
   std::vector<RawModel> models;  // those that were asked for
-  size_t inferred_elements = 0;  // atoms of those models whose element had to be inferred
+  size_t inferred_elements = 0;  // atoms of those models whose element was inferred
 };
 
 // model: place in the file, from 1; 0 = all. path is for messages only. All throw Error (kInput).

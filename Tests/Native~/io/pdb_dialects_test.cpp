@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+// PDB files as programs write them where the format has no room: many atoms and residues, long names, no chains.
+#include "io/io_fixture.h"
+#include "io/structure.h"
+#include "io/trajectory.h"
+
+namespace quickses::io {
+namespace {
+
+StructureFile parse(const std::string &text, const ReadOptions &options = ReadOptions()) {
+  return parse_structure(text, StructureFormat::kPdb, options, "test.pdb");
+}
+
+// "chain/number+code/name" of each atom's residue.
+std::vector<std::string> residues_in(const std::string &text) {
+  std::vector<std::string> residues;
+  const StructureFile file = parse(text);
+  for (const AtomInfo &atom : file.models.at(0).atoms)
+    residues.push_back(atom.chain + "/" + std::to_string(atom.residue_number) +
+                       (atom.insertion_code == ' ' ? "" : std::string(1, atom.insertion_code)) + "/" +
+                       atom.residue_name);
+  return residues;
+}
+
+using Words = std::vector<std::string>;
+
+// ---- serial numbers
+
+// https://www.cgl.ucsf.edu/chimera/docs/UsersGuide/tutorials/pdbintro.html: columns 6 to 11 of ATOM records.
+const char kManyAtoms[] =
+    "ATOM  99999  N   ALA A   9       1.000   0.000   0.000  1.00  0.00           N\n"
+    "ATOM 100000  CA  ALA A   9       2.000   0.000   0.000  1.00  0.00           C\n"
+    "ATOM1000000  C   ALA A   9       3.000   0.000   0.000  1.00  0.00           C\n"
+    "HETATM99999  C1  LIG A  10       4.000   0.000   0.000  1.00  0.00           C\n"
+    "HETATM100000 C2  LIG A  10       5.000   0.000   0.000  1.00  0.00           C\n"
+    "ATOM  186a0  O   HOH A  11       6.000   0.000   0.000  1.00  0.00           O\n"
+    "ATOM  A0000  O   HOH A  12       7.000   0.000   0.000  1.00  0.00           O\n"
+    "ATOM  *****  O   HOH A  13       8.000   0.000   0.000  1.00  0.00           O\n"
+    "ATOMS of other programs are none\n";
+
+TEST(PdbSerialNumbers, OfAnyLengthAreThoseOfAtoms) {
+  const Structure structure = parse(kManyAtoms).models.at(0);
+  ASSERT_EQ(structure.atoms.size(), 8u);
+  for (size_t i = 0; i < 8; ++i) {
+    EXPECT_EQ(structure.positions[3 * i], static_cast<float>(i + 1));
+    EXPECT_EQ(structure.atoms[i].file_index, i);
+    EXPECT_EQ(structure.atoms[i].hetero, i == 3 || i == 4) << i;
+  }
+  EXPECT_EQ(structure.atoms[1].name, "CA");
+  EXPECT_EQ(structure.atoms[4].name, "C2");
+}
+
+TEST(PdbSerialNumbers, OfAnyLengthAreThoseOfAtomsInTrajectories) {
+  const std::string frame = std::string(kManyAtoms) + "END\n";
+  const Trajectory trajectory = Trajectory::from_memory(frame + frame, TrajectoryFormat::kPdb, "test.pdb");
+  ASSERT_EQ(trajectory.atom_count(), 8u);
+  EXPECT_EQ(trajectory.frame_count(), 2u);
+}
+
+TEST(PdbSerialNumbers, AFileMayBeginWithALongOne) {
+  const std::string atom = "ATOM 100000  CA  ALA A   9       2.000   0.000   0.000  1.00  0.00           C\n";
+  EXPECT_EQ(parse_structure(atom, std::nullopt).models.at(0).atoms.size(), 1u);
+}
+
+// ---- residue numbers
+
+TEST(PdbResidueNumbers, OfMoreThanFourDigits) {
+  EXPECT_EQ(residues_in("ATOM      1  CA  ALA A9999       1.000   0.000   0.000  1.00  0.00           C\n"
+                        "ATOM      2  CA  ALA A10000      2.000   0.000   0.000  1.00  0.00           C\n"
+                        "ATOM      3  CA  ALA A123456     3.000   0.000   0.000  1.00  0.00           C\n"
+                        "ATOM      4  CA  ALA A1000A      4.000   0.000   0.000  1.00  0.00           C\n"
+                        "ATOM      5  CA  ALA A  52A      5.000   0.000   0.000  1.00  0.00           C\n"
+                        "ATOM      6  CA  ALA A -12       6.000   0.000   0.000  1.00  0.00           C\n"
+                        "ATOM      7  CA  ALA AA000       7.000   0.000   0.000  1.00  0.00           C\n"
+                        "ATOM      8  CA  ALA AA00Z       8.000   0.000   0.000  1.00  0.00           C\n"),
+            (Words{"A/9999/ALA", "A/10000/ALA", "A/123456/ALA", "A/1000A/ALA", "A/52A/ALA", "A/-12/ALA", "A/10000/ALA",
+                   "A/10035/ALA"}));
+}
+
+// ---- residue names of four letters, chains of two
+
+TEST(PdbResidueNames, MayHaveFourLetters) {
+  EXPECT_EQ(residues_in("ATOM      1  CA  GLY C   1       1.000   0.000   0.000  1.00  0.00      PROC\n"
+                        "ATOM      2  CA  NALAA   2       2.000   0.000   0.000  1.00  0.00      PROC\n"
+                        "ATOM      3  P   POPC    1       3.000   0.000   0.000  1.00  0.00      MEMB\n"
+                        "ATOM      4  OH2 TIP3W4687       4.000   0.000   0.000  1.00  0.00      WT1 \n"
+                        "ATOM      5  OH2 TIP3W10000      5.000   0.000   0.000  1.00  0.00      WT1 \n"
+                        "ATOM      6 SOD  SOD I   1       6.000   0.000   0.000  1.00  0.00      ION \n"),
+            (Words{"C/1/GLY", "A/2/NALA", "/1/POPC", "W/4687/TIP3", "W/10000/TIP3", "I/1/SOD"}));
+}
+
+TEST(PdbResidueNames, OfFourLettersTellElements) {
+  const Structure structure = parse(
+                                  "ATOM      1 HD11 NLEU    1       1.000   0.000   0.000\n"
+                                  "ATOM      2  CA  NALA    2       2.000   0.000   0.000\n"
+                                  "ATOM      3  OH2 TIP3W   3       3.000   0.000   0.000\n"
+                                  "ATOM      4 CA   CGLY    4       4.000   0.000   0.000\n")
+                                  .models.at(0);
+  EXPECT_EQ(structure.atoms[0].element, 1);
+  EXPECT_EQ(structure.atoms[1].element, 6);
+  EXPECT_EQ(structure.atoms[2].element, 8);
+  EXPECT_EQ(structure.atoms[3].element, 6);  // of glycine at the end of a chain, in the columns of calcium
+  EXPECT_TRUE(structure.atoms[2].water);
+  EXPECT_EQ(structure.atoms[1].kind, ResidueKind::kProtein);
+}
+
+// As gemmi and Phenix write them.
+TEST(PdbChains, OfTwoLettersAreToldByResiduesOfThePdb) {
+  EXPECT_EQ(residues_in("ATOM      1  P     AAA   1       1.000   0.000   0.000  1.00  0.00           P\n"
+                        "ATOM      2  P    DAAB   2       2.000   0.000   0.000  1.00  0.00           P\n"
+                        "ATOM      3  CA  ALAAC   3       3.000   0.000   0.000  1.00  0.00           C\n"
+                        "HETATM    4  P   POPAD   4       4.000   0.000   0.000  1.00  0.00           P\n"
+                        "ATOM      5  CA  ALA A   5       5.000   0.000   0.000  1.00  0.00           C\n"),
+            (Words{"AA/1/A", "AB/2/DA", "AC/3/ALA", "AD/4/POP", "A/5/ALA"}));
+}
+
+// ---- TER
+
+const std::string kinds_in(const std::string &text) {
+  std::string kinds;
+  const StructureFile file = parse(text);
+  for (const AtomInfo &atom : file.models.at(0).atoms) {
+    const char letter = "LPNWI"[static_cast<int>(atom.kind)];
+    kinds += letter;
+  }
+  return kinds;
+}
+
+std::string atom(const std::string &record, const std::string &name, const std::string &residue, char chain,
+                 int number) {
+  char line[82];
+  std::snprintf(line, sizeof line, "%-6s%5d  %-3s %3s %c%4d    %8.3f%8.3f%8.3f  1.00  0.00           %c\n",
+                record.c_str(), number, name.c_str(), residue.c_str(), chain, number, number * 5.0, 0.0, 0.0, name[0]);
+  return line;
+}
+
+TEST(PdbTer, BehindEveryMoleculeAsAmberWritesIt) {
+  for (const char chain : {' ', 'A'}) {
+    const auto one = [&](const char *name, const char *residue, int number) {
+      return atom("ATOM", name, residue, chain, number);
+    };
+    EXPECT_EQ(kinds_in(one("CA", "ALA", 1) + "TER\n" + one("CA", "CYX", 2) + one("CA", "GLY", 3) + "TER\n" +
+                       one("P", "DA5", 4) + one("P", "DA3", 5) + "TER\n" + one("C1", "LIG", 6) + "TER\n" +
+                       one("O", "WAT", 7) + "TER\n" + one("O", "WAT", 8) + "TER\nEND\n"),
+              "PPPNNLWW");
+    EXPECT_EQ(kinds_in(one("CA", "ALA", 1) + "TER\n" + one("CA", "ALA", 2)), "PP");  // nothing ends the second one
+  }
+}
+
+TEST(PdbTer, WhatIsBehindItInHetatmRecordsIsApart) {
+  const std::string chain = atom("ATOM", "CA", "ALA", 'A', 1) + "TER\n";
+  const std::string ligand = atom("HETATM", "CA", "GLY", 'A', 2);
+  EXPECT_EQ(kinds_in(chain + ligand), "PL");
+  EXPECT_EQ(kinds_in(chain + ligand + "TER\n"), "PL");
+  EXPECT_EQ(kinds_in(chain + atom("ATOM", "CA", "ALA", 'B', 3) + "TER\n" + ligand), "PPL");
+  // A modified amino acid in a second chain is not; a ligand before that chain is.
+  EXPECT_EQ(kinds_in(chain + ligand + atom("ATOM", "CA", "ALA", 'A', 3) + atom("HETATM", "CA", "MSE", 'A', 4) +
+                     atom("ATOM", "CA", "ALA", 'A', 5) + "TER\n"),
+            "PLPPP");
+}
+
+}  // namespace
+}  // namespace quickses::io
