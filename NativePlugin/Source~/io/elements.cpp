@@ -79,6 +79,12 @@ gemmi::El parse_element(const std::string &symbol) {
   return letters.empty() || letters.size() > 2 ? El::X : gemmi::find_element(letters.c_str());
 }
 
+bool is_virtual_site(const std::string &residue_name, const std::string &atom_name) {
+  if (!is_water_name(residue_name)) return false;
+  const std::string letters = leading_letters(upper_trimmed(atom_name));
+  return letters == "OM" || (!letters.empty() && !is_one_of(letters.substr(0, 1), {"O", "H", "D"}));
+}
+
 gemmi::El infer_element(const std::string &residue_name, const std::string &atom_name) {
   const std::string residue = upper_trimmed(residue_name);
   const std::string name = upper_trimmed(atom_name);

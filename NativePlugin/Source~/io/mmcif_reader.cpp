@@ -153,7 +153,7 @@ class TableReader {
     gemmi::El element = parse_element(given);
     if (element == gemmi::El::X && given != "X") {
       element = infer_element(cif::as_string(residue), cif::as_string(atom));
-      ++inferred_elements;
+      if (element != gemmi::El::X) ++inferred_elements;
     }
     return gemmi::element_name(element);
   }

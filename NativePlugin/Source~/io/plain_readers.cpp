@@ -212,6 +212,7 @@ RawFile read_gro_text(const std::string &text, const std::string &path, int mode
       atom.pos.z = 10 * number_at_line(line.substr(20 + 2 * width, width), axis_name(2), path, number);
       // Four letters would be taken for the columns of PDB.
       atom.element = infer_element(residue, atom.name.size() == 4 ? atom.name + " " : atom.name);
+      if (atom.element != gemmi::El::X) ++file.inferred_elements;
       atom.serial = static_cast<int>(++raw.atom_count);
       builder.add("", residue, gemmi::SeqId(residue_number, ' '), false, std::move(atom));
     }

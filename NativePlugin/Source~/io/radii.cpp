@@ -3,6 +3,7 @@
 #include "io/radii.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <gemmi/elem.hpp>
 #include <string_view>
@@ -105,14 +106,13 @@ RadiusTable bondi_radii() {
 
 bool is_radius_set(const std::string &name) { return name == "quickses" || name == "bondi"; }
 
-float Radii::of(const AtomInfo &atom) const {
-  if (!by_name.empty()) {
-    const std::pair<std::string_view, std::string_view> names[] = {
-        {atom.residue_name, atom.name}, {atom.residue_name, "*"}, {"*", atom.name}};
-    for (const auto &[residue, name] : names)
-      if (const auto found = by_name.find(name_of(residue, name)); found != by_name.end()) return found->second;
-  }
-  return by_element[atom.element];
+std::optional<float> Radii::of_names(const AtomInfo &atom) const {
+  if (by_name.empty()) return std::nullopt;
+  const std::pair<std::string_view, std::string_view> names[] = {
+      {atom.residue_name, atom.name}, {atom.residue_name, "*"}, {"*", atom.name}};
+  for (const auto &[residue, name] : names)
+    if (const auto found = by_name.find(name_of(residue, name)); found != by_name.end()) return found->second;
+  return std::nullopt;
 }
 
 Radii find_radii(const std::string &name_or_path) {
@@ -140,7 +140,19 @@ void assign_radii(StructureFile &file, const std::string &radius_set) {
     return;
   }
   const Radii radii = find_radii(radius_set.empty() ? "quickses" : radius_set);
-  for (Structure &structure : file.models) assign_radii(structure, radii);
+  size_t unknown = 0;
+  for (Structure &structure : file.models) {
+    assign_radii(structure, radii);
+    unknown +=
+        static_cast<size_t>(std::count_if(structure.atoms.begin(), structure.atoms.end(), [&](const AtomInfo &atom) {
+          return atom.element == 0 && !radii.of_names(atom);
+        }));
+  }
+  if (unknown == 0) return;
+  char radius[32];
+  std::snprintf(radius, sizeof radius, "%.2f", static_cast<double>(radii.by_element[0]));
+  file.warnings.push_back("'" + file.name + "': the element of " + counted(unknown, "atom") +
+                          " is unknown; the radius of such atoms is " + radius + " Å");
 }
 
 }  // namespace quickses::io

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <unordered_map>
 
@@ -19,7 +20,8 @@ struct Radii {
   std::unordered_map<std::string, float> by_name;
 
   // The most specific of: residue and atom, the residue's atoms, atoms of that name, the element.
-  float of(const AtomInfo &atom) const;
+  float of(const AtomInfo &atom) const { return of_names(atom).value_or(by_element[atom.element]); }
+  std::optional<float> of_names(const AtomInfo &atom) const;  // all but the last
 };
 
 // The set of the QuickSES program: O 1.52, C 1.70, N 1.55, H 1.20, S 1.80, P 1.80, others 1.40.
@@ -44,7 +46,8 @@ void assign_radii(Structure &structure, const Radii &radii);
 // PQR and XYZR files say how large their atoms are.
 bool has_own_radii(StructureFormat format);
 
-// Fills the radii of all models from a set (see find_radii); empty: those of the file, or else the quickses set.
+// Fills the radii of all models from a set (see find_radii); empty: those of the file, or else the quickses set. Atoms
+// of unknown element are warned of in file.warnings.
 // Throws Error: kUsage (a set was asked for, but the file has radii of its own), kInput (as find_radii).
 void assign_radii(StructureFile &file, const std::string &radius_set);
 

@@ -10,6 +10,7 @@
 
 #include "io/alternate_locations.h"
 #include "io/assembly.h"
+#include "io/elements.h"
 #include "io/error.h"
 #include "io/file_bytes.h"
 #include "io/file_path.h"
@@ -181,10 +182,15 @@ Structure flatten(const RawModel &raw, const Filter &filter) {
   return structure;
 }
 
-// Leaves out what the filters and the selection do, and atoms of radius 0, which are counted. The selection looks at
+// What has no surface, whatever the filters.
+struct NoAtoms {
+  size_t radius_zero = 0, virtual_sites = 0;
+};
+
+// Leaves out what the filters and the selection do, and what has no surface, which is counted. The selection looks at
 // all the atoms: what filters leave out may still be what others are near to.
 void leave_out(Structure &structure, const Filter &filter, const std::string &path, const std::string &which,
-               size_t &radius_zero_count) {
+               NoAtoms &no_atoms) {
   const bool selects = !filter.selection.is_everything();
   const std::vector<uint8_t> mask = selects ? filter.selection.select(structure) : std::vector<uint8_t>();
   if (selects && std::find(mask.begin(), mask.end(), 1) == mask.end())
@@ -199,10 +205,13 @@ void leave_out(Structure &structure, const Filter &filter, const std::string &pa
     if ((selects && !mask[i]) || !filter.keep(info)) continue;
     if (!structure.radii.empty()) {
       if (structure.radii[i] == 0) {
-        ++radius_zero_count;
+        ++no_atoms.radius_zero;
         continue;
       }
       structure.radii[kept] = structure.radii[i];
+    } else if (is_virtual_site(info.residue_name, info.name)) {
+      ++no_atoms.virtual_sites;
+      continue;
     }
     for (size_t axis = 0; axis < 3; ++axis) {
       const float x = structure.positions[3 * i + axis];
@@ -238,6 +247,7 @@ StructureFile parse_text(std::string text, const std::string &path, std::optiona
   refuse_web_page(path, text);
   const Filter filter{options, Selection(options.selection)};
   StructureFile file;
+  file.name = path;
   file.format = format ? *format : find_format(path, text);
   RawFile raw_file = read_raw(file.format, text, path, options.model);
   file.model_count = raw_file.model_count;
@@ -247,7 +257,7 @@ StructureFile parse_text(std::string text, const std::string &path, std::optiona
                ": there is no model " + std::to_string(options.model));
 
   build_assembly(raw_file, file.format, text, path, options.assembly);
-  size_t radius_zero_count = 0;
+  NoAtoms no_atoms;
   for (RawModel &raw : raw_file.models) {
     const std::string which = file.model_count == 1 ? "" : "model " + std::to_string(raw.number) + " of ";
     if (raw.atom_count == 0) fail_input(which + "'" + path + "' has no atoms");
@@ -255,20 +265,25 @@ StructureFile parse_text(std::string text, const std::string &path, std::optiona
       fail_usage("'" + path + "' has no names, so nothing can be selected from it or left out");
     file.models.push_back(flatten(raw, filter));
     raw.model = gemmi::Model(raw.model.name);
-    const size_t zero_before = radius_zero_count;
-    leave_out(file.models.back(), filter, path, which, radius_zero_count);
+    const NoAtoms before = no_atoms;
+    leave_out(file.models.back(), filter, path, which, no_atoms);
     if (!file.models.back().atoms.empty()) continue;
-    const bool had_radii = radius_zero_count > zero_before;
-    const std::string why = std::string(filter.is_any() ? "the filters" : "") +
-                            (filter.is_any() && had_radii ? ", and " : "") +
-                            (had_radii ? "those of radius 0 were left out" : "");
+    const char *const without = no_atoms.radius_zero > before.radius_zero ? "those of radius 0 were left out"
+                                : no_atoms.virtual_sites > before.virtual_sites
+                                    ? "sites that are no atoms were left out"
+                                    : "";
+    const std::string why =
+        std::string(filter.is_any() ? "the filters" : "") + (filter.is_any() && *without ? ", and " : "") + without;
     fail_input("no atoms of " + which + "'" + path + "' are left after " + why);
   }
   if (raw_file.inferred_elements != 0)
     file.warnings.push_back("'" + path + "': the element of " + counted(raw_file.inferred_elements, "atom") +
                             " was missing and was inferred from residue and atom name");
-  if (radius_zero_count != 0)
-    file.warnings.push_back("'" + path + "': " + counted(radius_zero_count, "atom") + " of radius 0 left out");
+  if (no_atoms.radius_zero != 0)
+    file.warnings.push_back("'" + path + "': " + counted(no_atoms.radius_zero, "atom") + " of radius 0 left out");
+  if (no_atoms.virtual_sites != 0)
+    file.warnings.push_back("'" + path + "': " + counted(no_atoms.virtual_sites, "site") + " of water left out that " +
+                            (no_atoms.virtual_sites == 1 ? "is no atom" : "are no atoms") + ", such as MW of TIP4P");
   return file;
 }
 
@@ -292,7 +307,7 @@ uint64_t memory_of(const StructureFile &file) {
   const auto outside = [](const std::string &text) {
     return text.capacity() <= std::string().capacity() ? 0 : text.capacity() + 1;
   };
-  uint64_t bytes = sizeof file;
+  uint64_t bytes = sizeof file + outside(file.name);
   for (const Structure &model : file.models) {
     bytes += sizeof model + model.atoms.capacity() * sizeof(AtomInfo) + model.file_elements.capacity() +
              (model.positions.capacity() + model.radii.capacity()) * sizeof(float);

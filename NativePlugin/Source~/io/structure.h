@@ -60,6 +60,7 @@ struct ReadOptions {
 };
 
 struct StructureFile {
+  std::string name;  // as given, for messages
   StructureFormat format = StructureFormat::kPdb;
   int model_count = 0;                // models in the file
   std::vector<Structure> models;      // those that were asked for; each has at least one atom
@@ -70,8 +71,9 @@ struct StructureFile {
 // Of alternate locations those without a label and one label of each residue are kept, unless the selection asks for
 // locations itself. Of an assembly, places in the file are places among its atoms. Elements that the file leaves out
 // are inferred from residue and atom name, with one warning. In PDB files, END and ENDMDL both end a model. Atoms of
-// radius 0 (PQR, XYZR) are left out with a warning. Throws Error: kInput (file, syntax, no atoms; the message has file
-// and line), kUsage (selection; no such model, no such assembly; filters on a file without names).
+// radius 0 (PQR, XYZR) and sites of water models that are no atoms are left out with a warning. Throws Error: kInput
+// (file, syntax, no atoms; the message has file and line), kUsage (selection; no such model, no such assembly; filters
+// on a file without names).
 StructureFile read_structure(const std::string &path, const ReadOptions &options = ReadOptions());
 StructureFile read_structure(const std::string &path, StructureFormat format, const ReadOptions &options);
 

@@ -469,6 +469,9 @@ TEST_F(IoTest, GroIsReadInAngstrom) {
   EXPECT_EQ(structure.positions, (std::vector<float>{1.25f, 10, -20, 2.5f, 15, 20}));
   EXPECT_EQ(structure.atoms[0].element, 6);
   EXPECT_TRUE(structure.atoms[1].water);
+  const std::vector<std::string> warnings = read_structure(path("a.gro")).warnings;
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_HAS(warnings[0], "the element of 2 atoms was missing");  // the format has none
   EXPECT_HAS(input_error(write("b.gro", text.substr(0, 59))), "cut off");
   // More decimals widen the columns.
   const Structure fine =
@@ -476,6 +479,49 @@ TEST_F(IoTest, GroIsReadInAngstrom) {
   EXPECT_EQ(fine.positions, (std::vector<float>{1.25f, 10, -20}));
   for (const char *end : {"\r\n\r\n\r\n\r\n", "\n\n \n\n", " \n\t\n\n"})
     EXPECT_EQ(only_model(write("d.gro", text + end)).positions, structure.positions);
+}
+
+// ---- sites of water that are no atoms
+
+struct WaterCase {
+  const char *residue;
+  const char *atom;
+  bool is_virtual;
+};
+
+class WaterSiteTest : public ::testing::TestWithParam<WaterCase> {};
+
+TEST_P(WaterSiteTest, IsAnAtomIfItIsOxygenOrHydrogen) {
+  const WaterCase &c = GetParam();
+  EXPECT_EQ(is_virtual_site(c.residue, c.atom), c.is_virtual) << c.residue << " '" << c.atom << "'";
+}
+
+// TIP4P of GROMACS, Amber and CHARMM, TIP5P.
+INSTANTIATE_TEST_SUITE_P(Models, WaterSiteTest,
+                         ::testing::Values(WaterCase{"SOL", "MW", true}, WaterCase{"WAT", "EPW", true},
+                                           WaterCase{"TIP4", " OM ", true}, WaterCase{"TIP4", "M", true},
+                                           WaterCase{"SOL", "LP1", true}, WaterCase{"WAT", "EP2", true},
+                                           WaterCase{"SOL", "OW", false}, WaterCase{"SOL", "HW1", false},
+                                           WaterCase{"HOH", " O  ", false}, WaterCase{"DOD", " D1 ", false},
+                                           WaterCase{"WAT", "1H  ", false}, WaterCase{"LIG", "LP1", false},
+                                           WaterCase{"MET", "MW", false}));
+
+TEST_F(IoTest, SitesOfWaterThatAreNoAtomsAreLeftOut) {
+  const std::string text =
+      "TIP5P\n    6\n    1SOL     OW    1   0.000   0.000   0.000\n    1SOL    HW1    2   0.096   0.000   0.000\n"
+      "    1SOL    HW2    3  -0.024   0.093   0.000\n    1SOL    LP1    4  -0.023  -0.033   0.057\n"
+      "    1SOL    LP2    5  -0.023  -0.033  -0.057\n    2ALA     CA    6   1.000   0.000   0.000\n 5 5 5\n";
+  const StructureFile file = read_structure(write("a.gro", text));
+  EXPECT_EQ(indices_of(file.models.at(0)), (Indices{0, 1, 2, 5}));
+  EXPECT_EQ(file.models[0].file_atom_count, 6u);  // as trajectories have
+  ASSERT_EQ(file.warnings.size(), 2u);
+  EXPECT_HAS(file.warnings[0], "4 atoms");
+  EXPECT_HAS(file.warnings[1], "2 sites of water left out that are no atoms");
+  ReadOptions options;
+  options.selection = "name LP1";
+  EXPECT_HAS(input_error(path("a.gro"), options), "sites that are no atoms");
+  // Files with radii of their own say themselves what has a surface.
+  EXPECT_EQ(only_model(write("a.pqr", "ATOM 1 MW SOL 1 1 2 3 -1.0 0.5\n")).atoms.size(), 1u);
 }
 
 // ---- radii

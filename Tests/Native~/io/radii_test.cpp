@@ -77,6 +77,25 @@ TEST_F(RadiiTest, ReachTheAtomsOfAStructure) {
   EXPECT_EQ(file.models[0].radii, (std::vector<float>{1.55f, 2.0f, 1.7f}));
 }
 
+TEST_F(RadiiTest, AtomsOfUnknownElementAreCounted) {
+  const std::string pdb = write("a.pdb",
+                                "ATOM      1  N   ALA A   1       0.000   0.000   0.000  1.00  0.00           N\n"
+                                "HETATM    2  X1  UNX A   2       5.000   0.000   0.000  1.00  0.00           X\n"
+                                "HETATM    3  X2  UNX A   3       9.000   0.000   0.000  1.00  0.00           X\n");
+  const auto warnings_with = [&](const std::string &set) {
+    StructureFile file = read_structure(pdb);
+    assign_radii(file, set);
+    return file.warnings;
+  };
+  ASSERT_EQ(warnings_with("bondi").size(), 1u);
+  EXPECT_HAS(warnings_with("bondi")[0],
+             "a.pdb': the element of 2 atoms is unknown; the radius of such atoms is 2.00 Å");
+  EXPECT_HAS(warnings_with("")[0], "1.40 Å");
+  EXPECT_HAS(warnings_with(write("one.txt", "UNX X1 3\nX 1.1\n")).at(0),
+             "1 atom is unknown; the radius of such atoms is 1.10");
+  EXPECT_TRUE(warnings_with(write("all.txt", "UNX * 3\n")).empty());
+}
+
 TEST_F(RadiiTest, ErrorsNameFileAndLine) {
   const struct {
     const char *text;
