@@ -29,6 +29,13 @@ bool has_one_chain(const io::Structure &structure) {
                      [&](const io::AtomInfo &atom) { return atom.chain == structure.atoms.front().chain; });
 }
 
+// The frames of a trajectory are taken whatever models the structure has.
+void hint_at_models(const Options &options, const io::StructureFile &file) {
+  if (file.model_count == 1 || options.model_given || !options.trajectories.empty()) return;
+  std::fprintf(stderr, "quickses: '%s': model 1 of %d is used%s; --model N chooses another\n", options.input.c_str(),
+               file.model_count, file.has_model_records ? "" : " (END and ENDMDL end a model)");
+}
+
 }  // namespace
 
 io::StructureFile load(const std::string &path, const Options &options, bool quiet) {
@@ -49,7 +56,10 @@ Input::Input(const Options &given, bool quiet) : options(given) {
   if (io::has_own_radii(file.format)) options.compute.radii = "file";
   if (options.mesh.colors == MeshColors::kDefault && makes_shown(options))
     options.mesh.colors = has_one_chain(file.models.front()) ? MeshColors::kElement : MeshColors::kChain;
-  if (!quiet) hint_at_water(options, file.models.front());
+  if (!quiet) {
+    hint_at_models(options, file);
+    hint_at_water(options, file.models.front());
+  }
   for (const io::Structure &structure : file.models) check_has_residues(options, structure);
 }
 

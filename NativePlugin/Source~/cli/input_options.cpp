@@ -47,6 +47,7 @@ void add_structure_options(CLI::App *app, Options &options, const std::string &i
   app->add_option_function<std::string>(
          "--model",
          [&options](const std::string &text) {
+           options.model_given = true;
            if (text == "all") {
              options.read.model = 0;
            } else if (!io::parse_integer(text, options.read.model) || options.read.model < 1) {

@@ -103,6 +103,7 @@ struct Options {
   enum class Command { kSurface, kMeasure, kCavities, kBench, kNone } command = Command::kSurface;
   ComputeOptions compute;
   io::ReadOptions read;
+  bool model_given = false;
   std::optional<io::StructureFormat> input_format;  // nothing: name and content tell
   std::vector<std::string> inputs;                  // structures; "-" is standard input
   std::string input;                                // the one of them that these options are for, or the first

@@ -251,6 +251,7 @@ StructureFile parse_text(std::string text, const std::string &path, std::optiona
   file.format = format ? *format : find_format(path, text);
   RawFile raw_file = read_raw(file.format, text, path, options.model);
   file.model_count = raw_file.model_count;
+  file.has_model_records = raw_file.has_model_records;
   if (file.model_count == 0) fail_input("'" + path + "' has no atoms");
   if (options.model < 0 || options.model > file.model_count)
     fail_usage("'" + path + "' has " + counted(static_cast<uint64_t>(file.model_count), "model") +

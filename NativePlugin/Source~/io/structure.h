@@ -63,6 +63,7 @@ struct StructureFile {
   std::string name;  // as given, for messages
   StructureFormat format = StructureFormat::kPdb;
   int model_count = 0;                // models in the file
+  bool has_model_records = true;      // false: a PDB file in which END or ENDMDL alone end models
   std::vector<Structure> models;      // those that were asked for; each has at least one atom
   std::vector<std::string> warnings;  // sentences for the user
 };

@@ -74,6 +74,21 @@ class Hints(ProgramTest):
                          "quickses: 1 water molecule is part of the surface; --no-water leaves it out\n")
         self.assertEqual(self.hint_of(CRAMBIN), "")
 
+    def test_models(self):
+        atoms, positions = chain_of(2)
+        text = pdb_text(atoms, positions)
+        marked = "".join(f"MODEL     {k:4d}\n{text}ENDMDL\n" for k in (1, 2, 3))
+        self.write("m.pdb", marked)
+        self.write("end.pdb", (text + "END\n") * 2)
+        hint = "quickses: 'm.pdb': model 1 of 3 is used; --model N chooses another\n"
+        self.assertEqual(self.hint_of("m.pdb"), hint)
+        self.assertEqual(self.run_cpu("measure", "m.pdb").stderr, hint)
+        self.assertEqual(self.hint_of("end.pdb"),
+                         "quickses: 'end.pdb': model 1 of 2 is used (END and ENDMDL end a model); "
+                         "--model N chooses another\n")
+        for flags in (["--model", "1"], ["--model", "all"], ["--quiet"], ["--trajectory", "m.pdb"]):
+            self.assertEqual(self.hint_of("m.pdb", *flags), "", flags)
+
     def test_one_is_singular(self):
         atoms, positions = chain_of(2)
         self.write("one.pdb", pdb_text(atoms[:1], positions[:1]))

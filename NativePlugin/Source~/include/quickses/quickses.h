@@ -827,7 +827,7 @@ typedef enum qses_structure_format {
 typedef struct qses_structure_options {
   uint32_t struct_size; /* set by qses_structure_options_init */
   qses_structure_format format;
-  int32_t model;         /* place of the model in the file, from 1 (default) */
+  int32_t model;         /* place of the model in the file, from 1 (default); in PDB files END ends one too */
   qses_bool water;       /* 1 (default): waters are kept; 0: they are left out */
   qses_bool hetero;      /* the same for HETATM records, which waters mostly are too */
   qses_bool hydrogen;    /* the same for hydrogen and deuterium */
