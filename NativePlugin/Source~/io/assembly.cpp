@@ -2,6 +2,7 @@
 #include "io/assembly.h"
 
 #include <algorithm>
+#include <array>
 #include <gemmi/assembly.hpp>
 #include <gemmi/cif.hpp>
 #include <gemmi/numb.hpp>
@@ -141,18 +142,52 @@ uint64_t count_atoms(const gemmi::Assembly &assembly, const gemmi::Model &model)
   return count;
 }
 
-void name_copies(gemmi::Model &model) {
-  std::unordered_set<std::string> used, seen;
-  std::unordered_map<std::string, int> copies;
-  for (const gemmi::Chain &chain : model.chains) used.insert(chain.name);
-  for (gemmi::Chain &chain : model.chains) {
-    if (seen.insert(chain.name).second) continue;
-    int &copy = copies.emplace(chain.name, 1).first->second;
-    std::string name;
-    do name = chain.name + std::to_string(++copy);
-    while (!used.insert(name).second);
-    chain.name = name;
+// Names of copies: A, A2, A3. What one operation makes of a chain has one name, also where an assembly lists parts of
+// the chain one by one, as mmCIF files do.
+class CopyNames {
+ public:
+  explicit CopyNames(const gemmi::Model &model) {
+    for (const gemmi::Chain &chain : model.chains) used_.insert(chain.name);
   }
+
+  const std::string &name(const std::string &chain, const gemmi::Transform &transform) {
+    std::array<double, 12> numbers;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 4; ++j)
+        numbers[static_cast<size_t>(4 * i + j)] = j < 3 ? transform.mat[i][j] : transform.vec.at(i);
+    const auto [copy, is_new] = names_.try_emplace({chain, numbers});
+    if (is_new) copy->second = new_name(chain);
+    return copy->second;
+  }
+
+ private:
+  std::string new_name(const std::string &chain) {
+    int &count = counts_[chain];
+    std::string name = chain;
+    if (++count == 1) return name;
+    while (!used_.insert(name = chain + std::to_string(count)).second) ++count;
+    return name;
+  }
+
+  std::unordered_set<std::string> used_;
+  std::unordered_map<std::string, int> counts_;
+  std::map<std::pair<std::string, std::array<double, 12>>, std::string> names_;
+};
+
+gemmi::Model make_copies(const gemmi::Assembly &assembly, const gemmi::Model &model) {
+  gemmi::Model copies(model.name);
+  CopyNames names(model);
+  for (const gemmi::Assembly::Gen &generator : assembly.generators)
+    for (const gemmi::Assembly::Operator &oper : generator.operators) {
+      gemmi::Assembly one(assembly.name);
+      one.generators.push_back({generator.chains, generator.subchains, {oper}});
+      // No stream or logger, whichever this version of gemmi writes its progress to.
+      for (gemmi::Chain &chain : gemmi::make_assembly(one, model, gemmi::HowToNameCopiedChain::Dup, {}).chains) {
+        chain.name = names.name(chain.name, oper.transform);
+        copies.chains.push_back(std::move(chain));
+      }
+    }
+  return copies;
 }
 
 // Atoms with the same serial number are copies of the same one.
@@ -233,9 +268,7 @@ void build_assembly(const gemmi::Assembly &assembly, RawModel &raw, const std::s
   if (count > kMostAtoms || operators > kMostOperators) fail_large(path, assembly.name);
   if (count == 0) fail_input("'" + path + "': assembly " + assembly.name + " is made of chains that have no atoms");
   raw.model.merge_chain_parts();  // PDB files have ligands and water of a chain behind other chains
-  // No stream or logger, whichever this version of gemmi writes its progress to.
-  raw.model = gemmi::make_assembly(assembly, raw.model, gemmi::HowToNameCopiedChain::Dup, {});
-  name_copies(raw.model);
+  raw.model = make_copies(assembly, raw.model);
   leave_out_doubles(raw.model);
   int serial = 0;
   for (gemmi::Chain &chain : raw.model.chains)

@@ -162,6 +162,15 @@ TEST(Assembly, OfMmcifFiles) {
   EXPECT_EQ(chains_of(structure), (Names{"X", "X"}));
 }
 
+// mmCIF files list the protein and the ligands of one chain apart, in one row or in several.
+TEST(Assembly, PartsOfAChainMovedAlikeAreOneChain) {
+  std::string text = cif_file("1,2");
+  text.insert(text.find("PAU P"), "1 1,2,3 B\n");
+  const Structure structure = parse(text, assembly_named("1"), StructureFormat::kMmcif);
+  EXPECT_EQ(structure.positions, (std::vector<float>{1, 2, 3, 11, 2, 3, 0, 0, 5, 10, 0, 5, 20, 0, 5}));
+  EXPECT_EQ(chains_of(structure), (Names{"X", "X2", "X", "X2", "X3"}));
+}
+
 TEST(Assembly, Errors) {
   const auto usage = [](const std::string &text, const std::string &name, StructureFormat format) {
     return error_of(ErrorKind::kUsage, [&] { parse(text, assembly_named(name), format); });
