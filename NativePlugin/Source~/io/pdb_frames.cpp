@@ -35,7 +35,7 @@ class PdbFrames : public TrajectoryReader {
  public:
   explicit PdbFrames(std::unique_ptr<ByteSource> source) : TrajectoryReader(source->name()) {
     text_ = source->take_all();
-    drop_byte_order_mark(text_);
+    unify_text(text_);
     index_frames();
     drop_cut_off_frame();
     if (frames_.empty()) fail("it has no atoms");

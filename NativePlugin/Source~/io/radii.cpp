@@ -33,7 +33,8 @@ std::string name_of(std::string_view residue, std::string_view atom) {
 }
 
 Radii read_radii(const std::string &path) {
-  const std::string text = read_file_bytes(path);
+  std::string text = read_file_bytes(path);
+  unify_text(text);
   Radii radii;
   radii.by_element = quickses_radii();
   std::array<bool, std::tuple_size<RadiusTable>::value> named = {};

@@ -243,7 +243,7 @@ namespace {
 // text: unpacked. path: as given, or any name for messages.
 StructureFile parse_text(std::string text, const std::string &path, std::optional<StructureFormat> format,
                          const ReadOptions &options) {
-  drop_byte_order_mark(text);
+  unify_text(text);
   refuse_web_page(path, text);
   const Filter filter{options, Selection(options.selection)};
   StructureFile file;

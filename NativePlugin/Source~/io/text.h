@@ -34,8 +34,11 @@ inline std::string_view trim(std::string_view text) {
 
 // Editors of Windows put it before a text.
 inline bool has_byte_order_mark(std::string_view text) { return text.substr(0, 3) == "\xef\xbb\xbf"; }
-inline void drop_byte_order_mark(std::string &text) {
+
+// Of a text as editors write it: without that mark, and with the line ends that next_line knows where it has CR alone.
+inline void unify_text(std::string &text) {
   if (has_byte_order_mark(text)) text.erase(0, 3);
+  if (text.find('\n') == std::string::npos) std::replace(text.begin(), text.end(), '\r', '\n');
 }
 
 // Takes the first line off the text, without its end. False at the end of the text.

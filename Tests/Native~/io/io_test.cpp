@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Readers and radii, on small files that the tests write themselves.
+#include <algorithm>
 #include <cstdio>
 #include <gemmi/elem.hpp>
 #include <sstream>
@@ -439,6 +440,19 @@ TEST_F(IoTest, PqrModelsAndInsertionCodes) {
   options.model = 1;
   options.selection = "resid 52A";
   EXPECT_EQ(only_model(file, options).positions, (std::vector<float>{2, 0, 0}));
+}
+
+// As Macs had them.
+TEST_F(IoTest, LinesMayEndWithCarriageReturns) {
+  const auto mac = [](std::string text) {
+    std::replace(text.begin(), text.end(), '\n', '\r');
+    return text;
+  };
+  const std::string atom = pdb_atom(" N  ", ' ', "GLY", 'A', 1, 1, "N");
+  EXPECT_EQ(only_model(write("a.pdb", mac("HEADER    X\n" + atom + atom + "END\n"))).atoms.size(), 2u);
+  EXPECT_EQ(only_model(write("a", mac(atom + atom))).atoms.size(), 2u);
+  EXPECT_EQ(only_model(write("a.xyzr", "1 2 3 1\r4 5 6 1\r")).atoms.size(), 2u);
+  EXPECT_EQ(find_radii(write("r.txt", "C 1\rN 2")).by_element[7], 2.0f);
 }
 
 // Editors of Windows begin a text with it.
