@@ -159,7 +159,8 @@ void check_mesh_options(const Options &options) {
 
 void resolve_output(Options &options) {
   const std::string &format = options.output_format;
-  if (io::is_standard_output(options.output)) options.output = "./" + options.output;  // a file that is called so
+  for (std::string *name : {&options.output, &options.csv, &options.per_atom, &options.per_residue, &options.json})
+    if (io::is_standard_output(*name)) *name = "./" + *name;  // a file that is called so
   if (options.output != "-") {
     if (!format.empty())
       throw Failure(kUsage, "--output-format: is for standard output (-o -); a file's extension names its format");

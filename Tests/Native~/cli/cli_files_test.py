@@ -214,6 +214,15 @@ class StandardOutput(FilesTest):
         self.assertIn(b"standard output can't be written", result.stderr)
 
     @unittest.skipUnless(os.path.exists("/dev/full"), "there is no device that is always full")
+    def test_other_names_that_begin_like_it_are_files(self):
+        names = ["-.csv", "-.csv.gz", "-.json"]
+        flags = ["--per-atom", "--per-residue", "--json"]
+        arguments = [word for flag, name in zip(flags, names) for word in (flag + "=" + name,)]
+        result = self.run_cpu("measure", "p.pdb", "--surface", "sas", *arguments)
+        self.assertEqual(len(result.stdout.splitlines()), 3, result.stdout)  # the summary
+        for name in names:
+            self.assertTrue((self.folder / name).is_file(), name)
+
     def test_it_is_full(self):
         for arguments in self.PRINTING:
             with self.subTest(arguments=arguments), open("/dev/full", "w") as full:
