@@ -33,13 +33,17 @@ std::string output_of_input(const std::string &output, const std::string &input)
   return name;
 }
 
+std::string output_of_input(const Options &options, const std::string &input) {
+  return options.has_several_inputs() ? output_of_input(options.output, input) : options.output;
+}
+
 size_t for_each_input(const Options &options, const std::function<void(const Options &one)> &action,
                       const std::function<void(const Options &one, const Failure &failure)> &failed) {
   size_t failed_count = 0;
   Options one = options;
   for (const std::string &input : options.inputs) {
     one.input = input;
-    one.output = output_of_input(options.output, input);
+    one.output = output_of_input(options, input);
     if (!options.has_several_inputs()) {
       action(one);
       continue;

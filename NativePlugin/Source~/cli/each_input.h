@@ -15,6 +15,9 @@ namespace quickses::cli {
 // and extensions: of a/1crn.pdb.gz it is 1crn, of standard input stdin.
 std::string output_of_input(const std::string &output, const std::string &input);
 
+// The same of one of the structures of options whose output is resolved.
+std::string output_of_input(const Options &options, const std::string &input);
+
 // Calls action with the options of each: input and output are its own. What a single one throws, goes on. Of several,
 // one that fails does not stop the others: its message is printed, and failed is called, then. Gives how many failed.
 size_t for_each_input(const Options &options, const std::function<void(const Options &one)> &action,

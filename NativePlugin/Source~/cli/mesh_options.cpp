@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "cli/each_input.h"
 #include "cli/exit_code.h"
 #include "cli/help_format.h"
 #include "cli/mesh_output.h"
@@ -161,6 +162,7 @@ void resolve_output(Options &options) {
   const std::string &format = options.output_format;
   for (std::string *name : {&options.output, &options.csv, &options.per_atom, &options.per_residue, &options.json})
     if (io::is_standard_output(*name)) *name = "./" + *name;  // a file that is called so
+  if (!options.has_several_inputs()) options.output = output_of_input(options.output, options.input);
   if (options.output != "-") {
     if (!format.empty())
       throw Failure(kUsage, "--output-format: is for standard output (-o -); a file's extension names its format");

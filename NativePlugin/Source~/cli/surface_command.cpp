@@ -129,7 +129,7 @@ class SurfaceRun {
 
 void run_surface(const Options &options) {
   // Before anything takes time: can the results be written?
-  if (!options.output.empty()) check_mesh_writable(output_of_input(options.output, options.inputs.front()));
+  if (!options.output.empty()) check_mesh_writable(output_of_input(options, options.inputs.front()));
   check_text_output(options.json);
   SurfaceRun run(options);
   const size_t failed_count = for_each_input(

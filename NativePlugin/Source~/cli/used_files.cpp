@@ -73,14 +73,13 @@ void UsedFiles::add_input(const char *flag, const std::string &name) {
 void UsedFiles::add_meshes(const Options &options) {
   if (!options.has_several_inputs()) {
     if (options.read.model == 0 && !makes_page(options)) return;
-    for (const std::string &name : io::mesh_files_of(output_of_input(options.output, options.input)))
-      add_output(kOutputFlag, name);
+    for (const std::string &name : io::mesh_files_of(options.output)) add_output(kOutputFlag, name);
     return;
   }
   std::map<fs::path::string_type, const std::string *> inputs, meshes;  // by place
   for (const File &file : files_) inputs.emplace(comparable(file.place), &file.name);
   for (const std::string &input : options.inputs)
-    for (const std::string &name : io::mesh_files_of(output_of_input(options.output, input))) {
+    for (const std::string &name : io::mesh_files_of(output_of_input(options, input))) {
       const File file = file_of(kOutputFlag, name, true);
       const auto [other, is_new] = meshes.emplace(comparable(file.place), &input);
       if (!is_new)

@@ -138,6 +138,12 @@ class OneFileForTwoThings(FilesTest):
         if not IS_WINDOWS:
             self.run_cpu("many.pdb", "--trajectory", "many.pdb", "-v", "2", "--csv", "/dev/null", "--json", "/dev/null")
 
+    def test_names_made_of_the_input(self):
+        self.assert_refused(["--output (-o)", "p.html", "--csv"], "p.pdb", "--trajectory", "many.pdb", "-o", "%s.html",
+                            "--csv", "p.html")
+        self.assert_refused(["--output (-o)", "p_1.ply", "--csv"], "p.pdb", "--trajectory", "many.pdb", "-o",
+                            "%s_%d.ply", "--csv", "p_1.ply")
+
     @unittest.skipIf(IS_WINDOWS, "standard output has no name")
     def test_standard_output_is_a_file_too(self):
         with open(self.folder / "a.obj", "w") as file:

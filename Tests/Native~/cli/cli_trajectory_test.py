@@ -264,7 +264,10 @@ class Faults(TrajectoryTest):
         self.run_frames("--frames", "5:", "-o", "50%%_%4d_x.obj")
         self.assertTrue((self.folder / "50%_   5_x.obj").is_file())
         self.assertTrue((self.folder / "50%_   6_x.obj").is_file())
-        for name in ("f.ply", "f%s.ply", "f%.ply", "f%d_%d.ply", "f%5.2d.ply", "f%-5d.ply", "f%0999d.ply", "f%n.ply",
+        self.run_frames("--frames", "5", "-o", "%s_%d.ply")
+        self.assertTrue((self.folder / "top_5.ply").is_file())
+        self.assert_frames_fail(USAGE, ["--output (-o)", "ftop.ply"], "-o", "f%s.ply")  # all frames in one file
+        for name in ("f.ply", "f%.ply", "f%d_%d.ply", "f%5.2d.ply", "f%-5d.ply", "f%0999d.ply", "f%n.ply",
                      "f%ld.ply"):
             self.assert_frames_fail(USAGE, ["--output (-o)", name], "-o", name)
         self.assert_frames_fail(USAGE, ["--output (-o)", ".ply"], "-o", "f%d.gif")
