@@ -2,6 +2,7 @@
 #include "io/alternate_locations.h"
 
 #include <algorithm>
+#include <set>
 
 #include "io/error.h"
 
@@ -24,27 +25,54 @@ AlternateLocations::AlternateLocations(const std::string &choice) {
 
 void AlternateLocations::see(const gemmi::Chain &chain, const gemmi::Residue &residue, const gemmi::Atom &atom) {
   if (atom.altloc == '\0') return;
-  std::vector<Location> &locations = locations_[key_of(chain, residue)];
-  auto location =
-      std::find_if(locations.begin(), locations.end(), [&](const Location &l) { return l.label == atom.altloc; });
-  if (location == locations.end()) location = locations.insert(location, {atom.altloc, 0, 0});
+  const std::string key = key_of(chain, residue);
+  Locations &locations = locations_[key];
+  const auto find = [&](char label) {
+    return std::find_if(locations.begin(), locations.end(), [&](const Location &l) { return l.label == label; });
+  };
+  if (find(atom.altloc) == locations.end()) locations.push_back({atom.altloc, 0, 0, residue.name, locations.size()});
+  const auto location = find(atom.altloc);
   location->occupancies += static_cast<double>(atom.occ);
   ++location->count;
+
+  const auto join = [&](size_t group) {
+    for (Location &other : locations)
+      if (other.group == group) other.group = location->group;
+  };
+  join(find(first_labels_.emplace(key + '/' + atom.name, atom.altloc).first->second)->group);
+  for (const Location &other : locations)
+    if (other.residue != residue.name) join(other.group);
 }
 
 bool AlternateLocations::keep(const gemmi::Chain &chain, const gemmi::Residue &residue, const gemmi::Atom &atom) const {
-  return atom.altloc == '\0' || atom.altloc == chosen_of(locations_.at(key_of(chain, residue)));
+  if (atom.altloc == '\0') return true;
+  const Locations &locations = locations_.at(key_of(chain, residue));
+  const auto location =
+      std::find_if(locations.begin(), locations.end(), [&](const Location &l) { return l.label == atom.altloc; });
+  return atom.altloc == chosen_of(locations, location->group);
 }
 
-char AlternateLocations::chosen_of(const std::vector<Location> &locations) const {
+char AlternateLocations::chosen_of(const Locations &locations, size_t group) const {
   const auto mean = [](const Location &l) { return l.occupancies / static_cast<double>(l.count); };
-  if (takes_highest_)
-    return std::max_element(locations.begin(), locations.end(),
-                            [&](const Location &a, const Location &b) { return mean(a) < mean(b); })
-        ->label;
-  const bool has_wanted =
-      std::any_of(locations.begin(), locations.end(), [&](const Location &l) { return l.label == wanted_; });
-  return has_wanted ? wanted_ : locations.front().label;
+  const Location *chosen = nullptr;
+  for (const Location &location : locations) {
+    if (location.group != group) continue;
+    const bool is_better = !chosen || location.label == wanted_ || (takes_highest_ && mean(location) > mean(*chosen));
+    if (is_better) chosen = &location;
+  }
+  return chosen->label;
+}
+
+std::string AlternateLocations::warning() const {
+  if (wanted_ == '\0') return "";
+  std::set<char> labels;
+  for (const auto &[residue, locations] : locations_)
+    for (const Location &location : locations) labels.insert(location.label);
+  if (labels.count(wanted_) != 0) return "";
+  std::string sentence = std::string("no residue has the alternate location '") + wanted_ + "'";
+  for (const char label : labels)
+    sentence += (label == *labels.begin() ? "; there are " : ", ") + std::string(1, label);
+  return sentence + (labels.empty() ? "; there are none" : "");
 }
 
 }  // namespace quickses::io

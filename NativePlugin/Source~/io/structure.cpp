@@ -159,7 +159,7 @@ void build_assembly(RawFile &file, StructureFormat format, const std::string &te
 }
 
 // All atoms of the model but those at locations that are not taken.
-Structure flatten(const RawModel &raw, const Filter &filter) {
+Structure flatten(const RawModel &raw, const Filter &filter, std::string &warning) {
   Structure structure;
   structure.model = raw.number;
   structure.model_name = raw.model.name;
@@ -170,6 +170,7 @@ Structure flatten(const RawModel &raw, const Filter &filter) {
   AlternateLocations locations(filter.options.altloc);
   for (const AtomRef &ref : refs) locations.see(*ref.chain, *ref.residue, *ref.atom);
   const bool takes_all = filter.selection.asks_for_locations();
+  if (!takes_all) warning = locations.warning();
   for (const AtomRef &ref : refs) {
     structure.file_elements[static_cast<size_t>(ref.atom->serial - 1)] = atomic_number(*ref.atom);
     if (!takes_all && !locations.keep(*ref.chain, *ref.residue, *ref.atom)) continue;
@@ -264,7 +265,9 @@ StructureFile parse_text(std::string text, const std::string &path, std::optiona
     if (raw.atom_count == 0) fail_input(which + "'" + path + "' has no atoms");
     if (!raw.has_names && filter.is_any())
       fail_usage("'" + path + "' has no names, so nothing can be selected from it or left out");
-    file.models.push_back(flatten(raw, filter));
+    std::string warning;
+    file.models.push_back(flatten(raw, filter, warning));
+    if (!warning.empty() && file.models.size() == 1) file.warnings.push_back(which + "'" + path + "': " + warning);
     raw.model = gemmi::Model(raw.model.name);
     const NoAtoms before = no_atoms;
     leave_out(file.models.back(), filter, path, which, no_atoms);

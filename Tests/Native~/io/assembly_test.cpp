@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Biological assemblies of PDB and mmCIF files, and alternate locations.
+// Biological assemblies of PDB and mmCIF files.
 #include "io/assembly.h"
 
 #include <cstdio>
@@ -215,39 +215,6 @@ TEST(Assembly, DamagedRemarks) {
     } catch (const Error &) {
     }
   }
-}
-
-// ---- alternate locations
-
-std::string locations() {
-  return pdb_atom(" N  ", ' ', "ALA", 'A', 1, 1, 0) + pdb_atom(" CA ", 'A', "ALA", 'A', 1, 2, 0, 0.3) +
-         pdb_atom(" CA ", 'B', "ALA", 'A', 1, 3, 0, 0.7) + pdb_atom(" CB ", 'B', "ALA", 'A', 1, 4, 0, 0.6) +
-         pdb_atom(" CA ", 'A', "GLY", 'A', 2, 5, 0, 0.5) + pdb_atom(" CA ", 'C', "GLY", 'A', 2, 6, 0, 0.5) +
-         pdb_atom(" CA ", 'B', "SER", 'B', 1, 7, 0, 0.1) + pdb_atom(" CA ", 'A', "SER", 'B', 1, 8, 0, 0.9);
-}
-
-std::vector<float> taken(const std::string &altloc, const std::string &selection = "") {
-  ReadOptions options;
-  options.altloc = altloc;
-  options.selection = selection;
-  const Structure structure = parse(locations(), options);
-  std::vector<float> x;
-  for (size_t i = 0; i < structure.atoms.size(); ++i) x.push_back(structure.positions[3 * i]);
-  return x;
-}
-
-TEST(AlternateLocations, AreChosen) {
-  using X = std::vector<float>;
-  EXPECT_EQ(taken(""), (X{1, 2, 5, 7}));
-  EXPECT_EQ(taken("first"), (X{1, 2, 5, 7}));
-  EXPECT_EQ(taken("highest"), (X{1, 3, 4, 5, 8}));  // of two alike the first
-  EXPECT_EQ(taken("A"), (X{1, 2, 5, 8}));
-  EXPECT_EQ(taken("B"), (X{1, 3, 4, 5, 7}));  // GLY has none
-  EXPECT_EQ(taken("C"), (X{1, 2, 6, 7}));
-  EXPECT_EQ(taken("b"), (X{1, 2, 5, 7}));
-  EXPECT_EQ(taken("B", "resname GLY or name N"), (X{1, 5}));
-  EXPECT_EQ(taken("B", "altloc A"), (X{2, 5, 8}));  // who asks for locations finds all
-  for (const char *wrong : {"AB", "Highest"}) EXPECT_HAS(error_of(ErrorKind::kUsage, [&] { taken(wrong); }), wrong);
 }
 
 }  // namespace

@@ -845,7 +845,7 @@ typedef struct qses_structure_options {
                             = the atoms of the file */
   const char *altloc;    /* which alternate locations are taken, with the atoms that have none: "first", in each residue
                             the label met first; "highest", that of the greatest mean occupancy; or a label, such as
-                            "B", where a residue has it, else the first. NULL (default) = "first" */
+                            "B", where a residue has it (a warning tells if none has), else the first. NULL = "first" */
 } qses_structure_options;
 
 /* The defaults, with struct_size set. NULL is ignored. */
