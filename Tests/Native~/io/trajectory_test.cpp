@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Trajectories: PDB files with several models, choice of the format, access from several threads.
+#include <algorithm>
 #include <cstdio>
 #include <thread>
 
@@ -124,6 +125,9 @@ TEST_F(TrajectoryTest, PdbErrors) {
   const std::string atoms = pdb_atoms(three);
   EXPECT_HAS(pdb_error(atoms.substr(0, 51) + atoms.substr(atoms.find('\n'))), "columns 31 to 54");
   EXPECT_EQ(frame_of(open_pdb("\xef\xbb\xbf" + atoms), 0), three);
+  std::string mac = atoms;
+  std::replace(mac.begin(), mac.end(), '\n', '\r');
+  EXPECT_EQ(frame_of(open_pdb(mac), 0), three);
 
   std::string text = pdb_model(1, three) + pdb_model(2, three);
   text.replace(text.rfind("ATOM") + 30, 8, "  1.2z3 ");
