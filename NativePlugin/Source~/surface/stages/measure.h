@@ -80,14 +80,24 @@ struct LoadMeshSums {
         for (size_t k = 0; k < run; ++k) static_cast<TriangleSums &>(*sum) += measured[k];
       }
     }
-    MeshSums<false> box;
-    for (size_t v = begin; v < std::min(end, vertices); ++v)
-      box += LoadMeshSums<false>{mesh, vertices, 0, {}, extra}(v);
-    for (int d = 0; d < 3; ++d) {
-      sum->low[d] = std::min(sum->low[d], box.low[d]);
-      sum->high[d] = std::max(sum->high[d], box.high[d]);
+    const size_t last = std::min(end, vertices);
+    if (begin < last) {
+      float low[3], high[3];
+      std::memcpy(low, mesh.position(static_cast<uint32_t>(begin)), sizeof low);
+      std::memcpy(high, low, sizeof high);
+      for (size_t v = begin + 1; v < last; ++v) {
+        const float *const p = mesh.position(static_cast<uint32_t>(v));
+        for (int d = 0; d < 3; ++d) {
+          low[d] = std::min(low[d], p[d]);
+          high[d] = std::max(high[d], p[d]);
+        }
+      }
+      for (int d = 0; d < 3; ++d) {
+        sum->low[d] = std::min(sum->low[d], ordered_bits(low[d]));
+        sum->high[d] = std::max(sum->high[d], ordered_bits(high[d]));
+      }
     }
-    sum->extra += box.extra;
+    if (begin == 0 && extra) sum->extra += *extra;
   }
 };
 
@@ -103,8 +113,9 @@ template <bool kMeasured>
 Bounds bounds_of(const MeshSums<kMeasured> &found) {
   Bounds bounds;
   for (int d = 0; d < 3; ++d) {
-    bounds.min[d] = from_ordered_bits(found.low[d]);
-    bounds.max[d] = from_ordered_bits(found.high[d]);
+    // Of two zeros, either may have been found.
+    bounds.min[d] = from_ordered_bits(found.low[d]) + 0.f;
+    bounds.max[d] = from_ordered_bits(found.high[d]) + 0.f;
   }
   return bounds;
 }
