@@ -46,8 +46,9 @@ Radii read_radii(const std::string &path) {
     if (words.empty()) continue;
     if (words.size() != 2 && words.size() != 3)
       fail_input(at_line(path, number) + "expected an element and its radius, or a residue, an atom and its radius");
-    double radius = 0;
-    if (!parse_number(words.back(), radius) || !(radius > 0) || radius > 100)
+    double number_there = 0;
+    const float radius = parse_number(words.back(), number_there) ? static_cast<float>(number_there) : 0.f;
+    if (!(radius > 0) || radius > 100)
       fail_input(at_line(path, number) + "the radius '" + std::string(words.back()) +
                  "' is no number above 0 and up to 100 Å");
     if (words[0] == "*" && (words.size() == 2 || words[1] == "*")) {
@@ -55,7 +56,7 @@ Radii read_radii(const std::string &path) {
       continue;
     }
     if (words.size() == 3) {
-      radii.by_name[name_of(words[0], words[1])] = static_cast<float>(radius);
+      radii.by_name[name_of(words[0], words[1])] = radius;
       continue;
     }
     const std::string symbol(words[0]);

@@ -109,6 +109,7 @@ TEST_F(RadiiTest, ErrorsNameFileAndLine) {
               {"ALA CB x\n", "line 1: the radius 'x'"},
               {"ALA CB -1\n", "line 1: the radius '-1'"},
               {"\n\nALA * 101\n", "line 3: the radius '101'"},
+              {"* 1e-50\n", "line 1: the radius '1e-50'"},
               {"* * nan\n", "line 1: the radius 'nan'"}};
   for (const auto &bad : kBad)
     EXPECT_HAS(error_of(ErrorKind::kInput, [&] { find_radii(write("bad.txt", bad.text)); }), bad.part);
