@@ -77,7 +77,9 @@ void check_atom_count(const qses_trajectory &trajectory, size_t count) {
 // The positions of a frame, packed; true if molecules were made whole.
 bool read_positions(const qses_trajectory &trajectory, size_t index, const std::optional<io::Box> &box, float *xyz) {
   trajectory.frames.read_frame(index, xyz);
-  return trajectory.unwrapper && trajectory.unwrapper->apply(box, xyz) == io::UnwrapStatus::kDone;
+  if (!trajectory.unwrapper || trajectory.unwrapper->apply(box, xyz) != io::UnwrapStatus::kDone) return false;
+  trajectory.frames.check_positions(index, xyz);
+  return true;
 }
 
 }  // namespace

@@ -123,6 +123,11 @@ const std::string &Trajectory::file_of(size_t frame) const { return part_of(fram
 void Trajectory::read_frame(size_t frame, float *xyz) const {
   const Part &part = part_of(frame);
   part.reader->read_frame(frame - part.first, xyz);
+  check_positions(frame, xyz);
+}
+
+void Trajectory::check_positions(size_t frame, const float *xyz) const {
+  const Part &part = part_of(frame);
   const size_t count = 3 * atom_count();
   const float *bad = std::find_if(xyz, xyz + count, [](float x) { return !(std::abs(x) <= kMaxCoordinate); });
   if (bad == xyz + count) return;

@@ -59,6 +59,9 @@ class Trajectory {
   // of a damaged frame names its file, and counts from 0 in there.
   void read_frame(size_t frame, float *xyz) const;
 
+  // What read_frame promises, of positions that something was done to since. Throws as it does.
+  void check_positions(size_t frame, const float *xyz) const;
+
   // The periodic box of a frame, if it has one. Throws as read_frame.
   std::optional<Box> box(size_t frame) const;
 

@@ -189,6 +189,17 @@ TEST(Trajectory, UnwrappedFramesHaveWholeMolecules) {
   EXPECT_EQ(wide[15], -7.f);
 }
 
+// Whole molecules may end where no surface could be computed.
+TEST(Trajectory, UnwrappedPositionsAreWithinBoundsToo) {
+  const Positions torn = {999'999.5f, 0, 0, -999'999.f, 0, 0};
+  const TrajectoryPointer trajectory = open_bytes(dcd({torn}, {1'999'999, 10, 10}));
+  EXPECT_EQ(read_frame(trajectory, 0), torn);
+  ASSERT_EQ(qses_trajectory_unwrap(trajectory.get(), kCarbons, 2), QSES_OK) << qses_last_error();
+  Positions positions(6);
+  expect_error(qses_trajectory_read_frame(trajectory.get(), 0, positions.data(), 0, 2, nullptr), QSES_FILE_ERROR,
+               {"frame 0", "atom 2", "1,000,000"});
+}
+
 TEST(Trajectory, WithoutABoxThereIsNothingToUnwrap) {
   const TrajectoryPointer trajectory = open_bytes(dcd({kTorn}));
   expect_error(qses_trajectory_unwrap(trajectory.get(), kCarbons, 4), QSES_NO_BOX, {"box"});
