@@ -4,10 +4,13 @@
 #if defined(_WIN32)
 #include <windows.h>
 #else
-#include <fcntl.h>
+#include <algorithm>
+#include <cstring>
+
 #include <unistd.h>
 
-#include <cstring>
+#include "parallel/control_groups.h"
+#include "parallel/small_file.h"
 #endif
 
 namespace quickses {
@@ -16,14 +19,8 @@ namespace {
 #if !defined(_WIN32)
 // A line of /proc/meminfo, in bytes; 0 where there is none. Nothing is taken from the heap.
 uint64_t read_meminfo(const char *name) {
-  const int file = open("/proc/meminfo", O_RDONLY | O_CLOEXEC);
-  if (file < 0) return 0;
-  char text[4096];
-  const ssize_t length = read(file, text, sizeof text - 1);
-  close(file);
-  if (length <= 0) return 0;
-  text[length] = '\0';
-  const char *const line = std::strstr(text, name);
+  const SmallFile<4096> meminfo("/proc/meminfo");
+  const char *const line = std::strstr(meminfo.text(), name);
   return line ? std::strtoull(line + std::strlen(name), nullptr, 10) * 1024 : 0;
 }
 
@@ -46,6 +43,9 @@ HostMemoryStatus describe_host_memory() {
 #if defined(_SC_AVPHYS_PAGES)
   if (status.free == 0) status.free = pages(_SC_AVPHYS_PAGES);
 #endif
+  const ControlGroupMemory group = read_control_groups("/proc/self/cgroup", "/sys/fs/cgroup");
+  if (group.limit < status.total) status.total = group.limit;
+  if (group.free < status.free) status.free = std::max<uint64_t>(1, group.free);  // 0: not known
   return status;
 #endif
 }

@@ -13,7 +13,8 @@
 
 namespace quickses {
 
-// Bytes of the machine; 0: not known. free: what it could still give, file caches given back.
+// Bytes of the machine, or of what a container or a batch system leaves to the program; 0: not known. free: what could
+// still be given, file caches given back.
 struct HostMemoryStatus {
   uint64_t total, free;
 };
