@@ -11,6 +11,8 @@ namespace {
 constexpr size_t kMostSpares = 12;
 // A small mesh must not carry a large buffer away: how many times too large one may be, and what is small anyway.
 constexpr size_t kMostTooLarge = 8, kSmall = size_t(1) << 20;
+// A spare that so many meshes did not take won't be: they have become smaller, or fewer are in use at a time.
+constexpr uint64_t kMostPassedBy = 32;
 
 }  // namespace
 
@@ -39,6 +41,7 @@ std::unique_ptr<MeshBuffer> MeshPool::take(size_t bytes) {
 
 std::unique_ptr<MeshBuffer> MeshPool::take_spare(size_t bytes) {
   const std::lock_guard<std::mutex> lock(mutex_);
+  ++takes_;
   const auto best = spares_.begin() + (best_spare(bytes) - spares_.cbegin());
   if (best == spares_.end()) return nullptr;
   std::unique_ptr<MeshBuffer> buffer = std::move(*best);
@@ -67,6 +70,7 @@ void MeshPool::give_back(std::unique_ptr<MeshBuffer> buffer) noexcept {
   std::unique_ptr<MeshBuffer> surplus[kMostSpares + 1];  // released outside of the lock: drivers take their time
   {
     const std::lock_guard<std::mutex> lock(mutex_);
+    buffer->last_take = takes_;
     spares_.push_back(std::move(buffer));
     size_t k = 0;
     while (has_surplus()) {
@@ -84,7 +88,9 @@ bool MeshPool::has_surplus() const {
     sum += spare->size;
     largest = std::max(largest, spare->size);
   }
-  return is_closed_ ? !spares_.empty() : spares_.size() > kMostSpares || sum > source_.most_of_the_largest * largest;
+  if (spares_.empty()) return false;
+  return is_closed_ || spares_.size() > kMostSpares || sum > source_.most_of_the_largest * largest ||
+         takes_ - spares_.front()->last_take > kMostPassedBy;
 }
 
 void MeshPool::close() noexcept {

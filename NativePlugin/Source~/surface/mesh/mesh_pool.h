@@ -20,6 +20,7 @@ class StreamMark;
 struct MeshBuffer {
   void *memory = nullptr;
   size_t size = 0;
+  uint64_t last_take = 0;  // of those of the pool: when somebody had it last
   GrowingBuffer<HostMemory> components, atom_areas;
   std::shared_ptr<const StreamMark> readers;  // on a device: streams read it until then; null: none does
 };
@@ -60,7 +61,7 @@ class MeshPool {
  private:
   using Spares = std::vector<std::unique_ptr<MeshBuffer>>;
   void release(MeshBuffer &buffer) noexcept;
-  bool has_surplus() const;                               // the mutex is held, for the next too
+  bool has_surplus() const;                               // the mutex is held, for the next two too
   Spares::const_iterator best_spare(size_t bytes) const;  // end: none fits
   std::unique_ptr<MeshBuffer> take_spare(size_t bytes);
   std::unique_ptr<MeshBuffer> oldest_spare();  // out of the list; null if there is none
@@ -68,7 +69,7 @@ class MeshPool {
   const Source source_;
   mutable std::mutex mutex_;
   Spares spares_;  // least lately used first; room for one too many
-  uint64_t bytes_ = 0;
+  uint64_t bytes_ = 0, takes_ = 0;
   bool is_closed_ = false;
 };
 
