@@ -246,8 +246,21 @@ struct LightVertices {
 // Bricks for that, of 8 Å, are where the atoms are.
 struct OcclusionBricks : BallBricks {};
 inline ExpectedBricks expected_bricks(const WorkFacts &, const OcclusionBricks &items) {
-  // Folded molecules have some quarter of a brick for an atom, single atoms up to 27.
-  return {std::min<uint64_t>(items.lattice.table_size(), 1024 + items.atoms.count / 2), 0, 0};
+  // Atoms overlap: folded molecules have some quarter of a brick for one, single ones up to 27. Balls that are larger
+  // than atoms, as those of coarse-grained models, may each need all of their own.
+  constexpr double kAtom = 4;  // Å, of the inflated ball
+  const auto bricks_of_ball = [&](double radius) {
+    const double across =
+        (radius + static_cast<double>(kNodeReach * kOcclusionPoint)) / static_cast<double>(items.lattice.brick_size()) +
+        0.9;
+    return 4.19 * across * across * across;
+  };
+  const double of_one =
+      0.5 + bricks_of_ball(std::max(kAtom, static_cast<double>(items.max_radius))) - bricks_of_ball(kAtom);
+  const double all = 1024 + of_one * items.atoms.count;
+  return {
+      all < static_cast<double>(items.lattice.table_size()) ? static_cast<uint64_t>(all) : items.lattice.table_size(),
+      0, 0};
 }
 
 // A GPU looks from so many bricks at a time: where the box has no more, to find out which are needed takes longer than
