@@ -41,6 +41,11 @@ SolventFeatures list_features(Work &work) {
   work.timer.begin("solvent_features");
   SolventFeatures found;
   Backend<Executor>::find_solvent_features(work.executor, work.atoms, work.parameters, work.plan, work.rooms, &found);
+  if (found.caps.size > kMostNumbered || found.arcs.size > kMostNumbered)
+    throw Error(
+        QSES_OUT_OF_MEMORY,
+        "the inflated atoms have more circles with each other than 32-bit numbers can name: use a smaller probe, "
+        "smaller radii or fewer atoms");
   work.facts->caps = found.caps.size;
   work.facts->arcs = found.arcs.size;
   work.facts->knows_arcs = true;

@@ -153,10 +153,12 @@ inline uint32_t asked_slice(const qses_settings &settings, uint32_t brick_count,
   return static_cast<uint32_t>(std::max<uint64_t>(1, std::min<uint64_t>(n, brick_count)));
 }
 
+// So many things can be told apart by 32-bit numbers.
+constexpr uint64_t kMostNumbered = 0xffffffffu;
+
 // Throws if the mesh needs more numbers than 32 bits hold.
 inline void check_mesh_size(const MeshCounts &counts) {
-  constexpr uint64_t kMost = 0xffffffffu;
-  if (counts.vertices >= kMost || counts.triangles >= kMost)
+  if (counts.vertices >= kMostNumbered || counts.triangles >= kMostNumbered)
     throw Error(QSES_TOO_FINE, "the spacing is too fine for this structure: the mesh would have " +
                                    std::to_string(counts.vertices) + " vertices and " +
                                    std::to_string(counts.triangles) + " triangles, more than 32-bit indices can name");

@@ -56,7 +56,7 @@ SurfaceSize predict_size(Work &work) {
 // available: bytes; 0: not known. needed: of them, if the surface has the predicted size.
 inline void refuse_hopeless_spacing(double spacing, const SurfaceSize &predicted, double needed, double available) {
   char text[240];
-  constexpr double kMostTriangles = 4294967295.0;
+  constexpr auto kMostTriangles = static_cast<double>(kMostNumbered);
   if (predicted.triangles > kCertainty * kMostTriangles) {
     std::snprintf(text, sizeof text,
                   "spacing %g Å is too fine for this structure: about %.2g triangles, more than 32-bit indices can "
