@@ -126,8 +126,9 @@ class Arena {
   }
 
   uint64_t used() const { return used_; }
-  uint64_t peak() const { return peak_; }  // most bytes in use since the last reset
-  uint64_t held() const { return held_; }  // bytes of all blocks
+  uint64_t peak() const { return peak_; }                   // most bytes in use since the last reset
+  uint64_t held() const { return held_; }                   // bytes of all blocks
+  uint64_t untouched() const { return held_ - touched(); }  // of these, what was never allocated
 
   void release() {
     for (const Block &b : blocks_) Source::release(b.memory);

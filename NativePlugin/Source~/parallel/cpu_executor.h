@@ -105,6 +105,15 @@ class CpuExecutor {
     take_off_budget();
   }
 
+  // Gives up what has grown beyond the allowance, as in a crowded frame before this one. False if nothing has. Not
+  // while a pass works.
+  bool drop_grown_scratch() {
+    if (scratch_bytes() <= scratch_allowance()) return false;
+    scratch_pools_.clear();
+    take_off_budget();
+    return true;
+  }
+
   // grain: items a thread takes at a time. Each thread that works has a scratch of its own.
   template <class Scratch, class F>
   void for_each_brick(size_t n, F f, size_t grain = 8, uint64_t /*steps*/ = 0) {

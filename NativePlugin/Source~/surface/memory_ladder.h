@@ -98,7 +98,10 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
       out.mesh_bytes = MeshArrays(out.vertices, out.triangles, shape).bytes();
     out.work_bytes = whole + memory_.outside_arena(executor_);
     out.smallest_budget = least + memory_.needed_outside(executor_);
-    out.fits = budget_ == 0 || out.smallest_budget <= budget_ ? 1 : 0;
+    // Without a budget a mesh on the CPU takes of what is free as well.
+    const uint64_t beside = budget_ > 0 || Executor::kIsCuda ? 0 : out.mesh_bytes;
+    const bool can_be_numbered = out.vertices <= kMostNumbered && out.triangles <= kMostNumbered;
+    out.fits = can_be_numbered && out.smallest_budget + beside <= (budget_ > 0 ? budget_ : limit) ? 1 : 0;
     return out;
   }
 
@@ -126,6 +129,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     const typename Executor::RunScope run_scope(executor_, stop);
     memory_.deliver_to(in.settings);
     executor_.arena().reset();  // what is free is asked anew
+    bool has_dropped = false;
     for (size_t step = first_step(in);; executor_.arena().reset()) {
       levels_.timer.reset();
       facts_ = {};
@@ -150,6 +154,8 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
           note_tightness();  // the same again, without the room for more than there is
         else if (lacked_room)
           ;  // the same again, with as much behind the mesh as splits of creases need
+        else if (!has_dropped && (has_dropped = memory_.drop_kept_outside(executor_)))
+          ;  // the same again, without what a crowded frame before it has left
         else if (!refused.again())
           step = next_step(in, step);
         if (step < kMemoryPlanCount) continue;

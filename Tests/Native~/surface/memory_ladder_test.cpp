@@ -182,6 +182,22 @@ TEST(MemoryLadder, BudgetsHoldWhereScratchGrows) {
   }
 }
 
+// A frame that is too crowded for the budget is refused, and leaves it to those that come after.
+TEST(MemoryLadder, ACrowdedFrameTakesNothingFromOthers) {
+  if (tested_backend() != QSES_BACKEND_CPU) GTEST_SKIP() << "the scratch is that of the CPU's threads";
+  const Context context(64, 64'000'000);
+  const Atoms crowd = cluster(8000, 5);
+  for (int round = 0; round < 2; ++round) {
+    set_atoms(context, crambin());
+    const qses_settings usual = settings(0.5);
+    ASSERT_EQ(qses_compute(context, &usual, nullptr), QSES_OK) << qses_last_error();
+    EXPECT_LE(report_of(context).work_bytes_peak, uint64_t(64'000'000));
+    set_atoms(context, crowd);
+    const qses_settings wide = settings(4, 100);
+    EXPECT_EQ(qses_compute(context, &wide, nullptr), QSES_OUT_OF_MEMORY);
+  }
+}
+
 // Where there is plenty, scratch that grows comes out of it: no work is done twice, on however many threads.
 TEST(MemoryLadder, ScratchThatGrowsInPlentyStopsNobody) {
   if (tested_backend() != QSES_BACKEND_CPU) GTEST_SKIP() << "the scratch is that of the CPU's threads";

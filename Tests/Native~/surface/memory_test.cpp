@@ -268,6 +268,39 @@ TEST(Budget, TheEstimateKnowsIt) {
   expect_close(e.work_bytes, report_of(context).work_bytes_peak, "work");
 }
 
+// What can't be done is not said to fit, whether it is memory or numbers that are lacking.
+TEST(Estimate, WithoutABudgetKnowsWhatTheMachineHas) {
+  const Context context;
+  set_atoms(context, crambins(12));
+  EXPECT_EQ(estimate(context, settings(0.5)).fits, 1);
+  EXPECT_EQ(estimate(context, settings(0.002)).fits, 0);
+  Atoms apart;
+  for (int k = 0; k < 400; ++k) apart.add(10.0 * (k % 20), 10.0 * (k / 20), 0, 1.7);
+  set_atoms(context, apart);
+  const qses_size_estimate e = estimate(context, settings(0.002, 1.4, QSES_SURFACE_VDW));
+  EXPECT_GT(e.triangles, uint64_t(0xffffffff));
+  EXPECT_EQ(e.fits, 0);
+}
+
+// Beads of coarse-grained models have more of the box around them to look into than atoms have.
+TEST(Budget, OfOcclusionKnowsLargeBeads) {
+  for (const double radius : {1.7, 5.0, 10.0, 20.0, 50.0}) {
+    SCOPED_TRACE(radius);
+    Atoms beads;
+    for (int k = 0; k < 30; ++k) beads.add(1.5 * radius * (k % 5), 1.5 * radius * (k / 5), 0.1 * k, radius);
+    qses_settings s = settings(0.25 * radius);
+    s.occlusion = 1;
+    const Context unbounded;
+    set_atoms(unbounded, beads);
+    const qses_size_estimate e = estimate(unbounded, s);
+    compute_view(unbounded, s);
+    EXPECT_GE(static_cast<double>(e.work_bytes), 0.9 * static_cast<double>(report_of(unbounded).work_bytes_peak));
+    const Context context(2, e.smallest_budget);
+    set_atoms(context, beads);
+    EXPECT_EQ(qses_compute(context, &s, nullptr), QSES_OK) << qses_last_error();
+  }
+}
+
 // Bytes that a refusal names.
 double named_budget(const std::string &message) {
   const size_t about = message.find("about ");

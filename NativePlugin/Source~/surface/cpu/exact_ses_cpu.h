@@ -21,10 +21,18 @@ struct BrickColumns {
             static_cast<float *>(arc_memory.reserve(arcs * sizeof(float))), atom_capacity, arc_capacity, vertex_memory};
   }
   uint64_t bytes() const { return atom_memory.size() + arc_memory.size(); }
-  // True if the brick must be done again.
+  // True if the brick must be done again. What is refused is not asked for again by bricks that need less.
   bool grow(const BrickNeeds &needs) {
+    const int atoms = atom_capacity, arcs = arc_capacity;
     if (needs.atoms > 0) atom_capacity = needs.atoms + needs.atoms / 2;
     if (needs.arcs > 0) arc_capacity = needs.arcs + needs.arcs / 2;
+    try {
+      scratch();
+    } catch (...) {
+      atom_capacity = atoms;
+      arc_capacity = arcs;
+      throw;
+    }
     return needs.atoms > 0 || needs.arcs > 0;
   }
   // As much room as another thread needed: who meets the most crowded brick differs from surface to surface.

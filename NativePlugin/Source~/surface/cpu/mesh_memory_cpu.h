@@ -26,13 +26,21 @@ class MeshMemory<CpuKernelExecutor> {
     return std::max(allowed_outside(executor), outside_arena(executor) - pool);
   }
 
+  // Of that, what is only kept from frame to frame: false if there is none.
+  bool drop_kept_outside(CpuKernelExecutor &executor) { return executor.drop_grown_scratch(); }
+
   void forget_spills() {}
 
   MeshMemoryView allocate_mesh(CpuKernelExecutor &executor, size_t vertices, size_t triangles, const MeshShape &shape,
                                MeshPurpose purpose, bool in_pieces) {
     const MeshArrays arrays(vertices, triangles, shape);
-    void *const memory = mesh_is_in_arena(false, purpose, in_pieces) ? executor.allocate<char>(arrays.bytes()).data
-                                                                     : mesh_.reserve(arrays.bytes());
+    void *memory;
+    if (mesh_is_in_arena(false, purpose, in_pieces)) {
+      memory = executor.allocate<char>(arrays.bytes()).data;
+    } else {
+      check_free_memory(executor, arrays.bytes());
+      memory = mesh_.reserve(arrays.bytes());
+    }
     return describe_memory(arrays, vertices, triangles, shape, false, memory);
   }
 
@@ -67,6 +75,23 @@ class MeshMemory<CpuKernelExecutor> {
   }
 
  private:
+  // The machine gives what it does not have, and ends the program once that is written to. So a large mesh is refused
+  // if there is no room for it beside what the arena has yet to write to.
+  void check_free_memory(CpuKernelExecutor &executor, uint64_t bytes) {
+    constexpr uint64_t kLarge = uint64_t(32) << 20;  // to ask takes some 20 microseconds
+    const auto &arena = executor.arena();
+    if (bytes < kLarge || arena.has_budget()) return;
+    mesh_.forget();
+    if (mesh_.pool().bytes_with(bytes) == mesh_.bytes()) return;  // there is one
+    const uint64_t free = HostMemory::free_bytes();
+    if (free == 0 || bytes + arena.untouched() <= free) return;
+    mesh_.pool().drop_spares();
+    const uint64_t now_free = HostMemory::free_bytes();
+    if (bytes + arena.untouched() > now_free)
+      throw MemoryRefused("the machine has " + describe_bytes(now_free) + " left, and the mesh takes " +
+                          describe_bytes(bytes));
+  }
+
   PooledMesh mesh_;
 };
 

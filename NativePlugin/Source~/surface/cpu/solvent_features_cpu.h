@@ -31,6 +31,11 @@ struct FeatureStaging {
     const size_t needed = AtomScratch::kColumns * (static_cast<size_t>(capacity) + 16);
     return {static_cast<float *>(memory.reserve(needed * sizeof(float))), capacity};
   }
+  // What is refused is not asked for again by atoms that need less.
+  void grow_neighbors(int n) {
+    memory.reserve(AtomScratch::kColumns * (static_cast<size_t>(n) + 16) * sizeof(float));
+    capacity = n;
+  }
   // At least n, and no more, which resize() alone would not keep to.
   template <class T>
   static void grow(std::vector<T> &items, size_t n) {
@@ -59,8 +64,7 @@ struct FeatureStaging {
     const auto with_spare_room = [](size_t size, size_t most) {
       return size < most + most / 4 + kRoomPerAtom ? most + most / 2 + kRoomPerAtom : size;
     };
-    capacity = std::max(capacity, other.capacity);
-    scratch();
+    grow_neighbors(std::max(capacity, other.capacity));
     most_caps = std::max(most_caps, other.most_caps);
     most_arcs = std::max(most_arcs, other.most_arcs);
     grow(caps, with_spare_room(std::max(caps.size(), other.caps.size()), most_caps));
@@ -113,7 +117,7 @@ AtomFeatures find_features_of(const CpuKernels &kernels, const NeighborGridView 
         kernels.find_atom_features(atoms, parameters, static_cast<uint32_t>(i), s.scratch(), room.caps(s),
                                    room.cap_room(s), room.arcs(s), room.arc_atoms(s), room.arc_room(s), exposed);
     if (found.neighbors_needed > 0)
-      s.capacity = found.neighbors_needed + found.neighbors_needed / 2;
+      s.grow_neighbors(found.neighbors_needed + found.neighbors_needed / 2);
     else if (found.cap_count > room.cap_room(s))
       FeatureStaging::grow(s.caps, s.cap_count + 2 * static_cast<size_t>(found.cap_count));
     else if (found.arc_count > room.arc_room(s))

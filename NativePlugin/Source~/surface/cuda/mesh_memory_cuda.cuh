@@ -100,6 +100,7 @@ class MeshMemory<CudaExecutor> {
     return sizeof(MarchingCubesTable) + CudaExecutor::kFixedBytes;
   }
   uint64_t needed_outside(const CudaExecutor &executor) const { return outside_arena(executor); }
+  static bool drop_kept_outside(const CudaExecutor &) { return false; }
 
   MeshMemoryView allocate_mesh(CudaExecutor &executor, size_t vertices, size_t triangles, const MeshShape &shape,
                                MeshPurpose purpose, bool in_pieces) {
