@@ -37,10 +37,12 @@ namespace QuickSes
         /// </summary>
         public string Reason { get; }
 
-        /// <summary>Bytes of the device, or of the machine.</summary>
+        /// <summary>
+        /// Bytes of the device, or of the machine; on Linux no more than a container or a batch job may have.
+        /// </summary>
         public ulong TotalMemory { get; }
 
-        /// <summary>Bytes that were free when it was asked for.</summary>
+        /// <summary>Bytes of <see cref="TotalMemory"/> that were free when it was asked for.</summary>
         public ulong FreeMemory { get; }
     }
 }

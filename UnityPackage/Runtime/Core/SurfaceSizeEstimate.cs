@@ -13,7 +13,7 @@ namespace QuickSes
 
         private readonly NativeSizeEstimate _native;
 
-        /// <summary>Whether it can be done within the context's memory budget.</summary>
+        /// <summary>Whether it can be done within the context's memory budget, or else in the memory that is free.</summary>
         public bool Fits => _native.Fits != 0;
 
         /// <summary>Vertices of the mesh.</summary>

@@ -193,8 +193,9 @@ typedef struct qses_backend_description {
   qses_bool available;  /* whether qses_context_create with this back end can succeed */
   char device[128];     /* what computes: the GPU's name, or the CPU's instruction set and thread count */
   char reason[256]; /* if not available: why; with AUTO, why it is not CUDA; if preparing: what is done; else empty */
-  uint64_t total_memory; /* bytes of the device, or of the machine */
-  uint64_t free_memory;  /* bytes free at the time of the call; if preparing: before that */
+  uint64_t total_memory; /* bytes of the device, or of the machine; on Linux no more than the control groups of the
+                            process may have, as in a container or a batch job */
+  uint64_t free_memory;  /* bytes free at the time of the call, of total_memory; if preparing: before that */
   qses_bool preparing; /* whether the first qses_context_create for this GPU is loading the kernels, on another thread.
                           For a GPU newer than this library the driver compiles them then, for up to a minute, once
                           per driver version. 0 from a library that does not know the field */
@@ -229,7 +230,8 @@ typedef struct qses_context_options {
   uint32_t threads;       /* CPU threads; 0 (default) = one per hardware thread. With CUDA up to 8 of them, the caller's
                              among them, copy atoms if there are 16,384 or more; those do not stand back, since the
                              caller waits for them */
-  uint64_t memory_budget; /* bytes; 0 (default): what is free at the time. With CUDA it covers everything on the device:
+  uint64_t memory_budget; /* bytes; 0 (default): what is free at the time (see qses_backend_description.free_memory),
+                             on the CPU for the mesh as well. With CUDA it covers everything on the device:
                              where the mesh does not fit, it leaves the device piece by piece. On the CPU it covers
                              the work; the mesh that is handed out comes on top (qses_report.mesh_bytes). The mesh is
                              the same byte for byte; only the time grows. qses_estimate tells what is needed. The
@@ -580,7 +582,8 @@ QSES_API qses_status qses_context_report(const qses_context *context, qses_repor
 /* What a computation would give and need. */
 typedef struct qses_size_estimate {
   uint32_t struct_size; /* set by qses_size_estimate_init */
-  qses_bool fits;       /* whether it can be done within the budget of the context */
+  qses_bool fits;       /* whether it can be done: within the budget of the context, or else within what is free, on
+                           the CPU with the mesh; and by 32-bit numbers of vertices and triangles */
   uint64_t vertices, triangles;
   uint64_t mesh_bytes; /* of the mesh, in host memory; of the whole one if atoms are hidden; 0 with delivery NONE, as
                           are vertices and triangles if no mesh is made */
