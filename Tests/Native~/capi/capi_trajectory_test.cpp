@@ -191,7 +191,7 @@ TEST(Trajectory, UnwrappedFramesHaveWholeMolecules) {
 
 // Whole molecules may end where no surface could be computed.
 TEST(Trajectory, UnwrappedPositionsAreWithinBoundsToo) {
-  const Positions torn = {999'999.5f, 0, 0, -999'999.f, 0, 0};
+  const Positions torn = {999'999.5f, 0, 0, -999'998.f, 0, 0};
   const TrajectoryPointer trajectory = open_bytes(dcd({torn}, {1'999'999, 10, 10}));
   EXPECT_EQ(read_frame(trajectory, 0), torn);
   ASSERT_EQ(qses_trajectory_unwrap(trajectory.get(), kCarbons, 2), QSES_OK) << qses_last_error();
