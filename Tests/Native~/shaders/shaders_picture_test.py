@@ -25,6 +25,8 @@ BACKGROUND = (0.2, 0.4, 0.6, 1.0)
 RED, GREEN, BLUE = (200, 30, 20, 255), (40, 180, 60, 255), (25, 50, 220, 255)
 LEFT, RIGHT = (-0.5, 0.0), (0.5, 0.0)
 SIZE = 64
+SHADED = ("DepthOfNearestLayer", "ForwardLit", "ForwardBase")
+IDENTITY = (1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1)
 
 
 class Scene:
@@ -54,7 +56,7 @@ class Scene:
             self._programs[one] = self.picture.program(*texts)
         return self._programs[one]
 
-    def draw(self, shader, colors, by_texture, tint=(1, 1, 1, 1), far_first=False, skip=()):
+    def draw(self, shader, colors, by_texture, tint=(1, 1, 1, 1), far_first=False, skip=(), passes=SHADED, uniforms=()):
         """Left and right pixel."""
         self.picture.clear(BACKGROUND)
         self.picture.texture(2, 2, b"".join(bytes(color) for color in colors) + bytes(4))
@@ -69,12 +71,11 @@ class Scene:
             "owner": (1, software_gl.UNSIGNED_INT, struct.pack(f"{count}I", *(self._owners if by_texture else [0] * count))),
         }
         attributes["vertex"], attributes["normal"] = attributes["positionOS"], attributes["normalOS"]
-        identity = (1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1)
         uniforms = {"_Color": tint, "_BaseColor": (1, 1, 1, 1), "_QuickSesAtomColorsWidth": (2.0 if by_texture else 0.0,),
-                    "unity_ObjectToWorld": identity, "unity_MatrixVP": identity, "_LightColor0": (0.8, 0.8, 0.8, 1),
-                    "_WorldSpaceLightPos0": (0, 0.6, -0.8, 0), "_WorldSpaceCameraPos": (0, 0, -5, 1)}
+                    "unity_ObjectToWorld": IDENTITY, "unity_MatrixVP": IDENTITY, "_LightColor0": (0.8, 0.8, 0.8, 1),
+                    "_WorldSpaceLightPos0": (0, 0.6, -0.8, 0), "_WorldSpaceCameraPos": (0, 0, -5, 1), **dict(uniforms)}
         for one in shaders_test.SHADERS[shader][2]:
-            if one.pipeline == self.pipeline and one.name in ("DepthOfNearestLayer", "ForwardLit", "ForwardBase"):
+            if one.pipeline == self.pipeline and one.name in passes:
                 if one.name not in skip:
                     self.picture.draw(self._program(one), attributes, sum(quads, []), uniforms, one.state)
         return [self.picture.pixel(*place) for place in (LEFT, RIGHT)]
@@ -139,6 +140,16 @@ class PictureTest(unittest.TestCase):
                 # Too little to be seen hides nothing.
                 left, _ = scene.draw(TRANSPARENT, (RED[:3] + (1,), GREEN, BLUE), by_texture)
                 self.assertGreater(left[2], 3 * left[0])
+
+    def test_motion_is_that_of_the_object_without_hidden_atoms(self):
+        scene = Scene(software_gl.Picture(SIZE), "universal")
+        moved = list(IDENTITY)
+        moved[12:14] = -0.5, -0.25  # the columns come one after the other
+        uniforms = {"unity_MatrixPreviousM": moved, "_NonJitteredViewProjMatrix": IDENTITY, "_PrevViewProjMatrix": IDENTITY,
+                    "unity_MotionVectorsParams": (0, 1, 0, 0)}
+        left, right = scene.draw(OPAQUE, (RED, (0, 0, 0, 0), (0, 0, 0, 0)), True, passes=("MotionVectors",), uniforms=uniforms)
+        self.assert_pixel(left, (0.25 * 255, 0.125 * 255, 0))
+        self.assert_pixel(right, [255 * one for one in BACKGROUND[:3]])
 
 
 def is_missing():

@@ -98,6 +98,16 @@ class ShadersTest(unittest.TestCase):
                 self.assertRegex(code.split("Fragment(")[-1], r"\bSurfaceAlpha\(", f"{file}: {one.name}")
                 self.assertEqual("#define QUICKSES_TRANSPARENT" in one.code, "Transparent" in file, f"{file}: {one.name}")
 
+    def test_motion_is_drawn_by_pipelines_that_have_its_include_file(self):
+        for file, (_, _, passes) in SHADERS.items():
+            for one in passes:
+                included = set()
+                flatten(one.code, [FOLDER, STAND_INS], included)
+                needs_it = any(path.endswith("MotionVectorsCommon.hlsl") for path in included)
+                self.assertEqual(needs_it, one.light_mode == "MotionVectors", f"{file}: {one.name}")
+                self.assertEqual(needs_it, '"com.unity.render-pipelines.universal": "16.0"' in one.state, f"{file}: {one.name}")
+        self.assertIn("MotionVectors", [one.light_mode for one in SHADERS["MolecularSurface.shader"][2]])
+
     def test_nearest_layer_comes_first(self):
         _, _, passes = SHADERS["MolecularSurfaceTransparent.shader"]
         for pipeline, modes in (("universal", ["SRPDefaultUnlit", "UniversalForwardOnly"]), ("built-in", ["Always", "ForwardBase"])):

@@ -117,6 +117,30 @@ Shader "QuickSES/Molecular Surface"
             #include "UniversalDepthPass.hlsl"
             ENDHLSL
         }
+
+        Pass
+        {
+            // Of objects that move, for temporal anti-aliasing and motion blur. Pipelines before 16 (Unity 2023.2) draw it with a
+            // shader of their own, and don't have what this one includes.
+            PackageRequirements
+            {
+                "com.unity.render-pipelines.universal": "16.0"
+            }
+
+            Name "MotionVectors"
+            Tags { "LightMode" = "MotionVectors" }
+
+            ColorMask RG
+
+            HLSLPROGRAM
+            #pragma target 3.5
+            #pragma vertex Vertex
+            #pragma fragment Fragment
+            #pragma multi_compile_instancing
+
+            #include "UniversalMotionPass.hlsl"
+            ENDHLSL
+        }
     }
 
     SubShader

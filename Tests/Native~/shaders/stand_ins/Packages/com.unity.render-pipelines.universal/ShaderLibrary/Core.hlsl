@@ -34,10 +34,17 @@ static uint unity_InstanceID;
 cbuffer Engine
 {
     float4x4 unity_ObjectToWorld;
+    float4x4 unity_MatrixPreviousM;
     float4x4 unity_MatrixVP;
+    float4x4 _NonJitteredViewProjMatrix;
+    float4x4 _PrevViewProjMatrix;
+    float4 unity_MotionVectorsParams;
     float4 _WorldSpaceCameraPos;
     float4 unity_FogColor;
 };
+
+#define UNITY_MATRIX_M unity_ObjectToWorld
+#define UNITY_PREV_MATRIX_M unity_MatrixPreviousM
 
 struct VertexPositionInputs { float3 positionWS; float3 positionVS; float4 positionCS; float4 positionNDC; };
 
