@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 using NUnit.Framework;
+using QuickSes.Interop;
 using System;
 using UnityEngine;
 
@@ -65,6 +66,31 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void WhatIsHandedOutNowhereIsNotCopied()
+        {
+            using (var context = new SurfaceContext())
+            {
+                context.SetAtoms(new[] { Vector3.zero }, new[] { 1.5f }, 1);
+                SurfaceSettings settings = SurfaceSettings.Default;
+                settings.Delivery = MeshDelivery.None;
+                Assert.That(context.Compute(settings, out SurfaceMeshView view), Is.EqualTo(QuickSesStatus.Ok));
+                AssertIsNotCopied(view);
+            }
+        }
+
+        // As on a CUDA device only.
+        [TestCase(24u)]
+        [TestCase(16u)]
+        public void WhatIsNotInHostMemoryIsNotCopied(uint vertexBytes)
+        {
+            NativeMesh mesh = NativeDefaults.Mesh();
+            mesh.VertexCount = 100;
+            mesh.TriangleCount = 196;
+            mesh.VertexBytes = vertexBytes;
+            AssertIsNotCopied(new SurfaceMeshView(null, 0, mesh));
+        }
+
+        [Test]
         public void WithoutColoursAllIsWhite()
         {
             using (var context = new SurfaceContext())
@@ -80,6 +106,24 @@ namespace QuickSes.Tests
         {
             context.TryGetMesh(out SurfaceMeshView view);
             copy(view);
+        }
+
+        private static void AssertIsNotCopied(SurfaceMeshView view)
+        {
+            Assert.That(view.VertexCount, Is.GreaterThan(0));
+            var vectors = new Vector3[view.VertexCount];
+            var colors = new Color32[view.VertexCount];
+            var numbers = new int[3 * Math.Max(view.VertexCount, view.TriangleCount)];
+            Assert.Throws<InvalidOperationException>(() => view.CopyPositions(vectors));
+            Assert.Throws<InvalidOperationException>(() => view.CopyNormals(vectors));
+            Assert.Throws<InvalidOperationException>(() => view.CopyColors(colors));
+            Assert.Throws<InvalidOperationException>(() => view.CopyOwners(numbers));
+            Assert.Throws<InvalidOperationException>(() => view.CopyTriangles(numbers));
+            var mesh = new Mesh { vertices = new[] { Vector3.zero } };
+            using (var uploader = new SurfaceMeshUploader())
+                Assert.Throws<InvalidOperationException>(() => uploader.Upload(view, mesh));
+            Assert.That(mesh.vertexCount, Is.EqualTo(1));
+            UnityEngine.Object.DestroyImmediate(mesh);
         }
 
         private static Arrays Compute(SurfaceContext context, SurfaceVertexLayout layout)

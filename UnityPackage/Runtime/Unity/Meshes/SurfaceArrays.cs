@@ -8,7 +8,8 @@ namespace QuickSes
     /// <summary>
     /// The engine's arrays in and out of <see cref="SurfaceContext"/>, for programs that use it without
     /// <see cref="MolecularSurface"/>. Arrays may be longer than what is used of them: counts are given. No garbage.
-    /// Threads, errors and results are those of the methods of the same name that take spans.
+    /// Threads, errors and results are those of the methods of the same name that take spans. Copies are of meshes in host
+    /// memory: of one that is not (<see cref="SurfaceMeshView.IsInHostMemory"/>) they throw InvalidOperationException.
     /// </summary>
     public static class SurfaceArrays
     {
@@ -35,7 +36,7 @@ namespace QuickSes
         /// <summary>Copies positions, V of them, in Å. Throws if the array is shorter.</summary>
         public static void CopyPositions(this in SurfaceMeshView view, Vector3[] positions)
         {
-            Span<Vector3> room = Room(positions, view.VertexCount, nameof(positions));
+            Span<Vector3> room = Room(view, positions, view.VertexCount, nameof(positions));
             if (view.VertexLayout != SurfaceVertexLayout.Separate)
                 CopyStrided(view, 0, room);
             else
@@ -45,7 +46,7 @@ namespace QuickSes
         /// <summary>Copies normals, V of them. Throws if the array is shorter.</summary>
         public static unsafe void CopyNormals(this in SurfaceMeshView view, Vector3[] normals)
         {
-            Span<Vector3> room = Room(normals, view.VertexCount, nameof(normals));
+            Span<Vector3> room = Room(view, normals, view.VertexCount, nameof(normals));
             if (view.VertexLayout == SurfaceVertexLayout.Interleaved)
                 CopyStrided(view, sizeof(Vector3), room);
             else if (view.VertexLayout == SurfaceVertexLayout.Compact)
@@ -57,7 +58,7 @@ namespace QuickSes
         /// <summary>Copies colours, V of them; white if the atoms have none. Throws if the array is shorter.</summary>
         public static void CopyColors(this in SurfaceMeshView view, Color32[] colors)
         {
-            Span<Color32> room = Room(colors, view.VertexCount, nameof(colors));
+            Span<Color32> room = Room(view, colors, view.VertexCount, nameof(colors));
             if (view.HasColors)
                 MemoryMarshal.Cast<byte, Color32>(view.Colors).CopyTo(room);
             else
@@ -67,14 +68,14 @@ namespace QuickSes
         /// <summary>Copies the vertex numbers of triangles, 3 T of them. Throws if the array is shorter.</summary>
         public static void CopyTriangles(this in SurfaceMeshView view, int[] triangles) =>
             MemoryMarshal.Cast<uint, int>(view.Indices)
-                .CopyTo(Room(triangles, checked(3 * view.TriangleCount), nameof(triangles)));
+                .CopyTo(Room(view, triangles, checked(3 * view.TriangleCount), nameof(triangles)));
 
         /// <summary>
         /// Copies the atom of each vertex, V of them: 0-based, in the order the atoms were given, always in range.
         /// Throws if the array is shorter.
         /// </summary>
         public static void CopyOwners(this in SurfaceMeshView view, int[] atoms) =>
-            MemoryMarshal.Cast<uint, int>(view.Owners).CopyTo(Room(atoms, view.VertexCount, nameof(atoms)));
+            MemoryMarshal.Cast<uint, int>(view.Owners).CopyTo(Room(view, atoms, view.VertexCount, nameof(atoms)));
 
         internal static ReadOnlySpan<float> Floats(ReadOnlySpan<Vector3> vectors) =>
             MemoryMarshal.Cast<Vector3, float>(vectors);
@@ -89,8 +90,17 @@ namespace QuickSes
             return new ReadOnlySpan<T>(array, 0, count);
         }
 
-        private static Span<T> Room<T>(T[] array, int count, string argument)
+        /// <summary>Whoever reads a mesh's memory says so first: where there is none, nothing would be read, or null.</summary>
+        internal static void ThrowUnlessInHostMemory(in SurfaceMeshView view)
         {
+            if (!view.IsInHostMemory)
+                throw new InvalidOperationException("The mesh is not in host memory: compute it with Delivery = " +
+                    "MeshDelivery.Host. One on a CUDA device can be kept (SurfaceContext.Keep) and brought by KeptMesh.Download.");
+        }
+
+        private static Span<T> Room<T>(in SurfaceMeshView view, T[] array, int count, string argument)
+        {
+            ThrowUnlessInHostMemory(view);
             if (array == null)
                 throw new ArgumentNullException(argument);
             if (array.Length < count)

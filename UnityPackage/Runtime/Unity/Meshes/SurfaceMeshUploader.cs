@@ -28,8 +28,8 @@ namespace QuickSes
 
         /// <summary>Replaces the content of a mesh.</summary>
         /// <param name="view">
-        /// Of the layout <see cref="SurfaceVertexLayout.Interleaved"/> or <see cref="SurfaceVertexLayout.Compact"/>; may
-        /// be empty.
+        /// Of the layout <see cref="SurfaceVertexLayout.Interleaved"/> or <see cref="SurfaceVertexLayout.Compact"/>, in
+        /// host memory (else InvalidOperationException, and the mesh stays as it is); may be empty.
         /// </param>
         /// <param name="mesh">Readable (its default).</param>
         /// <param name="padBuffers">
@@ -40,6 +40,7 @@ namespace QuickSes
         {
             if (mesh == null)
                 throw new ArgumentNullException(nameof(mesh));
+            SurfaceArrays.ThrowUnlessInHostMemory(view);
             int vertexCount = view.VertexCount, indexCount = checked(3 * view.TriangleCount);
             if (vertexCount > 0 && view.VertexLayout == SurfaceVertexLayout.Separate)
                 throw new ArgumentException("must have interleaved or compact vertices", nameof(view));
