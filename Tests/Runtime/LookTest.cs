@@ -171,6 +171,51 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
+        public IEnumerator AMeshOfSomebodyElsesHasItsOwnColours([Values] bool isDisabledAtOnce)
+        {
+            yield return Show(AtomColoring.Texture);
+            AssertTexels(null, null);
+            var filter = _rig.GameObject.GetComponent<MeshFilter>();
+            Mesh own = filter.sharedMesh;
+            var theirs = new Mesh { vertices = new[] { Vector3.zero, Vector3.right, Vector3.up }, triangles = new[] { 0, 2, 1 } };
+            filter.sharedMesh = theirs;
+            if (isDisabledAtOnce)
+                _rig.Surface.enabled = false;
+            yield return null;
+            yield return null;
+            Assert.That(filter.sharedMesh, Is.SameAs(theirs));
+            Assert.That(Block().GetFloat(s_width), Is.EqualTo(0));
+            if (isDisabledAtOnce)
+            {
+                _rig.Surface.enabled = true; // puts its own there
+            }
+            else
+            {
+                _rig.Surface.SetColors(SomeColors(3));
+                yield return _rig.Settle();
+                Assert.That(Block().GetFloat(s_width), Is.EqualTo(0));
+                filter.sharedMesh = own;
+            }
+            yield return null;
+            yield return null;
+            Assert.That(filter.sharedMesh, Is.SameAs(own));
+            AssertTexels(isDisabledAtOnce ? null : SomeColors(3), null);
+            UnityEngine.Object.DestroyImmediate(theirs);
+        }
+
+        [UnityTest]
+        public IEnumerator SwitchedOffItKeepsItsColours()
+        {
+            yield return Show(AtomColoring.Texture);
+            _rig.Surface.SetColors(SomeColors(1));
+            yield return null;
+            yield return _rig.Settle();
+            _rig.Surface.enabled = false;
+            yield return null;
+            AssertTexels(SomeColors(1), null);
+        }
+
+        [UnityTest]
         public IEnumerator HiddenAtomsAreLeftOutAsTheLibraryDoes([Values(1e-6, 0)] double budget)
         {
             yield return Show(AtomColoring.Vertices);

@@ -176,6 +176,26 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
+        public IEnumerator AMeshOfSomebodyElsesHasItsOwnBounds()
+        {
+            SurfaceScheduler.GpuMeshPlan = GpuMeshPlan.WholeBuffers;
+            yield return _gpu.ShowFirst();
+            Assert.That(_gpu.Renderer.HasOwnBounds);
+            var filter = Surface.GetComponent<MeshFilter>();
+            var theirs = new Mesh { vertices = new[] { Vector3.zero, Vector3.right, Vector3.up }, triangles = new[] { 0, 2, 1 } };
+            filter.sharedMesh = theirs;
+            yield return SurfaceRig.Frames(2);
+            Assert.That(_gpu.Renderer.HasOwnBounds, Is.False);
+            yield return _gpu.Show(_gpu.Moved(1));
+            Assert.That(filter.sharedMesh, Is.SameAs(theirs));
+            Assert.That(_gpu.Renderer.HasOwnBounds, Is.False);
+            filter.sharedMesh = Surface.Mesh;
+            yield return SurfaceRig.Frames(2);
+            GpuRig.AssertDrawn(Surface);
+            Object.DestroyImmediate(theirs);
+        }
+
+        [UnityTest]
         public IEnumerator NothingComesHomeUntilSomebodyAsks()
         {
             yield return _gpu.ShowFirst();

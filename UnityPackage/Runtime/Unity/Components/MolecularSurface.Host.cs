@@ -123,14 +123,27 @@ namespace QuickSes
             ShowColors();
         }
 
-        // A mesh that tells nothing of its own.
+        // What the renderer is told of the component's own mesh holds for no other that somebody puts into the filter.
+        private void FollowFilter()
+        {
+            if (_hasRendererBounds != BoundsForRenderer.HasValue)
+                FollowBounds();
+            ShowColors();
+        }
+
+        private bool ShowsOwnMesh =>
+            _shown.MeshIfMade is Mesh mesh && GetComponent<MeshFilter>().sharedMesh == mesh;
+
+        // Of a mesh that tells nothing of its own.
+        private Bounds? BoundsForRenderer => _shown.RendererBounds.HasValue && ShowsOwnMesh ? _shown.RendererBounds : null;
+
         private void FollowBounds()
         {
-            if (_shown.RendererBounds is Bounds bounds)
+            if (BoundsForRenderer is Bounds bounds)
                 OwnRenderer.localBounds = bounds;
             else if (_hasRendererBounds)
                 OwnRenderer.ResetLocalBounds();
-            _hasRendererBounds = _shown.RendererBounds.HasValue;
+            _hasRendererBounds = BoundsForRenderer.HasValue;
         }
 
         // The filter of a component that was never enabled may have somebody else's mesh, and scripts may have given it
@@ -147,7 +160,7 @@ namespace QuickSes
         private void ShowColors()
         {
             _shown.UsesTexture = UsesTexture();
-            if (_shown.HasAtoms)
+            if (_shown.HasAtoms && ShowsOwnMesh)
             {
                 long begin = Stopwatch.GetTimestamp();
                 _texture ??= new AtomColorTexture();

@@ -34,13 +34,15 @@ namespace QuickSes
             QueueEditorUpdate();
         }
 
-        // The picture stays, as that of other components that are switched off.
+        // The picture stays, as that of other components that are switched off, also where it is somebody else's.
         private void OnDisable()
         {
             CloseStructure();
             SuspendLoading();
-            if (_session != null && !_session.IsDisposed)
-                _session.Drop();
+            if (_session == null || _session.IsDisposed)
+                return;
+            _session.Drop();
+            FollowFilter();
         }
 
         private void OnDestroy()
@@ -73,7 +75,7 @@ namespace QuickSes
             if (!IsAlive)
                 return;
             SurfaceSession session = Session;
-            ShowColors();
+            FollowFilter();
             session.Tick(Time.realtimeSinceStartupAsDouble);
             if (session.IsWaiting)
                 QueueEditorUpdate();
