@@ -158,10 +158,12 @@ namespace QuickSes
         public static bool IsSupported(out string reason) => SurfaceContext.IsSupported(out reason);
 
         /// <summary>
-        /// The mesh that is shown. The component's: it changes with every surface and goes with the component, so copy
-        /// it (Instantiate) to keep it. Surfaces too large for one frame (<see cref="SurfaceScheduler.UploadBudget"/>) are
-        /// made ready in a second mesh, which takes its place in the MeshFilter beside the component: who holds the mesh
-        /// asks for it again in <see cref="SurfaceUpdated"/>. Never saved with scenes.
+        /// The mesh that is shown. The component's: it changes with every surface and goes with the component. To keep it,
+        /// use <see cref="CopyTo"/>: a copy of the engine's (Instantiate) may have numbers of atoms instead of colours, has
+        /// hidden atoms then, and zeros where the surface is on the GPU. Surfaces too large for one frame
+        /// (<see cref="SurfaceScheduler.UploadBudget"/>) are made ready in a second mesh, which takes its place in the
+        /// MeshFilter beside the component: who holds the mesh asks for it again in <see cref="SurfaceUpdated"/>. Never
+        /// saved with scenes.
         /// </summary>
         public Mesh Mesh => Shown.Mesh;
 
