@@ -101,7 +101,10 @@ namespace QuickSes
         public void SetColors(Color32[] colors) => SetColors(NotNull(colors, nameof(colors)));
 
         /// <summary>Texture coordinate 1 of the atoms, for their vertices.</summary>
-        /// <param name="texcoords">N; empty: the mesh has none.</param>
+        /// <param name="texcoords">
+        /// N; empty: the mesh has none, or <see cref="AmbientOcclusion"/>. The package's shaders take x for occlusion, from
+        /// 0 (closed in) to 1 (open), and 0, 0 for a mesh without: let y be 1.
+        /// </param>
         public void SetTexcoords(ReadOnlySpan<Vector2> texcoords)
         {
             Session.Atoms.SetTexcoords(MemoryMarshal.Cast<Vector2, System.Numerics.Vector2>(texcoords));

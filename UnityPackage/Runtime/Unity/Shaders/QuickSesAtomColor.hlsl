@@ -36,8 +36,8 @@ float4 QuickSesVertexColor(Texture2D colors, float width, uint owner, float4 ver
     return color;
 }
 
-// What ambient occlusion leaves of the light, from texture coordinate 1: x from 0 (closed in) to 1 (open). Where there is none,
-// 0, 0 is read, and nothing is taken.
+// What ambient occlusion leaves of the light, from texture coordinate 1: x from 0 (closed in) to 1 (open), y anything but 0. Where
+// there is none, 0, 0 is read, and nothing is taken.
 float QuickSesOcclusion(float2 texcoord, float strength)
 {
     return texcoord.x == 0 && texcoord.y == 0 ? 1.0 : lerp(1.0, saturate(texcoord.x), strength);
