@@ -12,6 +12,8 @@ namespace QuickSes
         /// not possible or fails, surfaces come by host memory as ever, and <see cref="MolecularSurface.DeliveryReason"/>
         /// says why. Setting it lets surfaces for which it failed try again. In C# the mesh of a surface that stays on the
         /// GPU is not filled: see <see cref="MolecularSurface.UsedDelivery"/>.</para>
+        /// <para>Host holds from the next LateUpdate on: surfaces on the GPU are downloaded there, which blocks, and
+        /// uploaded. The others hold from the next computation on.</para>
         /// </summary>
         public static SurfaceDelivery Delivery
         {
