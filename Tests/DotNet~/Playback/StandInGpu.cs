@@ -151,6 +151,7 @@ namespace QuickSes.Tests
             private readonly UnmanagedBuffer<byte> _visible = new UnmanagedBuffer<byte>();
             private uint _generation;
             private QuickSesError _error;
+            private int _submitted;
             private int _done;
             private bool _isDisposed;
 
@@ -183,7 +184,7 @@ namespace QuickSes.Tests
                 if ((ulong)view.VertexCount > buffers.VertexCapacity || 3ul * (ulong)view.TriangleCount > buffers.IndexCapacity)
                     return new QuickSesError(QuickSesStatus.InvalidArgument, "buffers too small");
                 Submission submission = _unused.Count > 0 ? _unused.Pop() : new Submission();
-                submission.Event = gpuEvent = _gpu._issued + 1;
+                submission.Event = _submitted = gpuEvent = _gpu._issued + 1;
                 submission.Buffers = buffers;
                 long begin = Stopwatch.GetTimestamp();
                 submission.Take(view, _colors.Span, _texcoords.Span, _visible.Span);
@@ -194,7 +195,8 @@ namespace QuickSes.Tests
                 return default;
             }
 
-            public GpuTargetStatus GetStatus() => new GpuTargetStatus(_error, _done, _waiting.Count, IsStopped);
+            public GpuTargetStatus GetStatus() =>
+                new GpuTargetStatus(_error, _submitted, _done, _waiting.Count, IsStopped);
 
             public void Dispose()
             {

@@ -100,6 +100,28 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
+        public IEnumerator WhatWasLetGoIsSubmittedAgainWhereEventsHaveComeBackUnseen([Values] bool isFirst)
+        {
+            if (!isFirst)
+                yield return _gpu.ShowFirst();
+            RenderThread.IsRunning = false;
+            Engine.ChecksMeshes = false;
+            int submissions = _gpu.Gpu.Submissions;
+            Surface.SetAtoms(_gpu.Moved(1), _gpu.Radii);
+            yield return SurfaceRig.Until(() => _gpu.Gpu.Submissions > submissions);
+            _gpu.Gpu.LosePatience();
+            GpuDelivery.Issue();
+            RenderThread.IsRunning = true;
+            RenderThread.Run(); // all of it within a frame
+            yield return SurfaceRig.Frames(3);
+            yield return _gpu.Rig.Settle();
+            Engine.ChecksMeshes = true;
+            AssertOnGpu();
+            Assert.That(_gpu.Gpu.Submissions, Is.EqualTo(submissions + 2));
+            SurfaceMeshes.AssertShows(Surface, _gpu.Moved(1), _gpu.Radii, true);
+        }
+
+        [UnityTest]
         public IEnumerator WhileTooManyWaitNothingNewerIsTaken()
         {
             yield return _gpu.ShowFirst();

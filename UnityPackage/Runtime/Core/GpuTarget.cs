@@ -52,7 +52,8 @@ namespace QuickSes
             QuickSesError error = native.Status == QuickSesStatus.Ok
                 ? default
                 : new QuickSesError(native.Status, NativeText.Read(native.Message));
-            return new GpuTargetStatus(error, native.Done, (int)native.Waiting, native.Stopped != 0);
+            return new GpuTargetStatus(
+                error, native.Submitted, native.Done, (int)native.Waiting, native.Stopped != 0);
         }
 
         public void Dispose() => _handle.Dispose();

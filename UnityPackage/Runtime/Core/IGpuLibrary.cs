@@ -59,9 +59,12 @@ namespace QuickSes
     /// <summary>How a target stands: qses_gpu_status.</summary>
     internal readonly struct GpuTargetStatus
     {
-        public GpuTargetStatus(in QuickSesError error, int done, int waiting, bool isStopped)
+        private readonly int _submitted;
+
+        public GpuTargetStatus(in QuickSesError error, int submitted, int done, int waiting, bool isStopped)
         {
             Error = error;
+            _submitted = submitted;
             Done = done;
             Waiting = waiting;
             IsStopped = isStopped;
@@ -75,6 +78,11 @@ namespace QuickSes
 
         /// <summary>Meshes that wait for their event.</summary>
         public int Waiting { get; }
+
+        /// <summary>
+        /// The newest mesh was let go before its event ran: it is in no buffer. Also when events run again.
+        /// </summary>
+        public bool IsNewestLost => Waiting == 0 && unchecked(_submitted - Done) > 0; // event numbers may wrap round
 
         /// <summary>Events have not run for so long that meshes were let go.</summary>
         public bool IsStopped { get; }

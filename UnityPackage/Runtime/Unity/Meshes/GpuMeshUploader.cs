@@ -35,6 +35,7 @@ namespace QuickSes
         private int _done; // the last event that is known to have run
         private bool _isBusy; // what was to be submitted has to wait
         private bool _isFollowing; // events have not run yet
+        private bool _isFrontLost; // what is shown was let go on its way into the buffers
         private bool _isStopped;
         private string _reason = "";
         private uint _version; // of GpuDelivery, that the reason is of
@@ -70,11 +71,12 @@ namespace QuickSes
             _done = status.Done;
             if (status.Error.Status != QuickSesStatus.Ok && hasRun)
                 Refuse(status.Error.Message);
-            else if (_isStopped)
-                Forget();
+            else if (_isStopped || status.IsNewestLost)
+                Forget(); // who wants it still submits it again
             else if (!_isFollowing && !IsWaiting)
                 FreeBack();
             _isBackDone = _awaited != null && !_isFollowing; // it was the last
+            _isFrontLost |= IsShown && status.IsNewestLost;
         }
 
         /// <summary>Shows a surface, or the one that is shown as it looks now.</summary>
@@ -114,7 +116,7 @@ namespace QuickSes
         }
 
         /// <summary>Whether what is shown looks as it should, in buffers as they should be.</summary>
-        public bool IsAsItShouldBe(MeshStyle style) => _front.FitsTo(style, SurfaceScheduler.GpuMeshPlan) &&
+        public bool IsAsItShouldBe(MeshStyle style) => !_isFrontLost && _front.FitsTo(style, SurfaceScheduler.GpuMeshPlan) &&
             _front.Given.Equals(new GivenLook(_front.Look, style.HasAtoms));
 
         /// <summary>What waits is not wanted any more; what is shown stays.</summary>
@@ -211,6 +213,7 @@ namespace QuickSes
             if (mesh == _back)
                 (_front, _back) = (_back, _front);
             IsShown = true;
+            _isFrontLost = false;
             _front.Draw(view, look, given);
             return GpuStep.Shown;
         }
@@ -235,7 +238,7 @@ namespace QuickSes
             FreeBack();
             _front?.Dispose();
             _front = null;
-            _isFollowing = _isStopped = false;
+            _isFollowing = _isStopped = _isFrontLost = false;
         }
     }
 }
