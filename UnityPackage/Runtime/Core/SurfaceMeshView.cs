@@ -182,11 +182,12 @@ namespace QuickSes
             new ReadOnlySpan<double>(Valid(_native.AtomAreas), checked((int)_native.AtomCount));
 
         /// <summary>
-        /// The first vertex's position, for copies without spans. In all layouts; null for an empty mesh.
+        /// The first vertex's position, for copies without spans. In all layouts; null for an empty mesh, and for one that is
+        /// not in host memory.
         /// </summary>
         public float* PositionsPointer => (float*)Valid(_native.Positions);
 
-        /// <summary>The first index; null for an empty mesh.</summary>
+        /// <summary>The first index; null where <see cref="PositionsPointer"/> is.</summary>
         public uint* IndicesPointer => (uint*)Valid(_native.Indices);
 
         private ReadOnlySpan<float> Separate(float* first)
