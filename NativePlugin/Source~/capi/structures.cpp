@@ -189,7 +189,7 @@ qses_status qses_structure_atom(const qses_structure *structure, uint32_t k, qse
     value.chain = from.chain.c_str();
     value.residue_number = from.residue_number;
     value.is_hetero = from.hetero;
-    value.is_water = from.water;
+    value.is_water = from.is_water();
     value.is_hydrogen = from.hydrogen;
     value.element = from.element;
     value.insertion_code = from.insertion_code;

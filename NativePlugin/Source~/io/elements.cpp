@@ -6,7 +6,6 @@
 #include <gemmi/resinfo.hpp>
 
 #include "io/simulation_names.h"
-#include "io/structure.h"
 #include "io/text.h"
 
 namespace quickses::io {
@@ -79,10 +78,10 @@ gemmi::El parse_element(const std::string &symbol) {
   return letters.empty() || letters.size() > 2 ? El::X : gemmi::find_element(letters.c_str());
 }
 
-bool is_virtual_site(const std::string &residue_name, const std::string &atom_name) {
-  if (!is_water_name(residue_name)) return false;
+bool is_site_of_water(const std::string &atom_name) {
   const std::string letters = leading_letters(upper_trimmed(atom_name));
-  return letters == "OM" || (!letters.empty() && !is_one_of(letters.substr(0, 1), {"O", "H", "D"}));
+  if (letters.empty()) return false;
+  return letters == "OM" || !is_one_of(letters.substr(0, 1), {"O", "H", "D", "C", "N", "P", "S"});
 }
 
 gemmi::El infer_element(const std::string &residue_name, const std::string &atom_name) {

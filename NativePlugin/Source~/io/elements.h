@@ -21,8 +21,8 @@ gemmi::El parse_element(const std::string &symbol);
 // El::X where the names tell nothing.
 gemmi::El infer_element(const std::string &residue_name, const std::string &atom_name);
 
-// Whether it is a site of a water model of four or five that is no atom: MW (GROMACS), OM (CHARMM), EPW (Amber), LP1.
-// Of water, all but O, H and D are.
-bool is_virtual_site(const std::string &residue_name, const std::string &atom_name);
+// Whether it is the name of what a water model of four or five sites has beside its atoms: MW (GROMACS), OM (CHARMM),
+// EPW (Amber), LP1. To be asked of water only, in which it is all but names of O, H, D, C, N, P and S.
+bool is_site_of_water(const std::string &atom_name);
 
 }  // namespace quickses::io

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <gemmi/resinfo.hpp>
 
+#include "io/elements.h"
 #include "io/simulation_names.h"
 #include "io/structure.h"
 #include "io/text.h"
@@ -31,9 +32,20 @@ struct Residue {
   }
 };
 
+// One oxygen, hydrogens and sites of water models: of T3P and OPC, thymidine-3'-phosphate and a lipid are residues too.
+bool is_water(const Residue &residue) {
+  if (!is_water_name(residue.first->residue_name)) return false;
+  const AtomInfo *oxygen = nullptr;  // maybe at several locations
+  return std::all_of(residue.first, residue.last, [&](const AtomInfo &atom) {
+    if (atom.hydrogen || is_site_of_water(atom.name)) return true;
+    if (!oxygen) oxygen = &atom;
+    return atom.element == static_cast<uint8_t>(gemmi::El::O) && atom.name == oxygen->name;
+  });
+}
+
 ResidueKind kind_of(const Residue &residue) {
   const AtomInfo &atom = *residue.first;
-  if (atom.water) return ResidueKind::kWater;
+  if (is_water(residue)) return ResidueKind::kWater;
   const auto element = static_cast<gemmi::El>(atom.element);
   if (residue.is_one_atom() && (gemmi::is_metal(element) || is_halogen(element))) return ResidueKind::kIon;
 

@@ -13,7 +13,7 @@ enum class ResidueKind : uint8_t {
   kLigand,   // whatever is none of the others: ligands, sugars, lipids, polyatomic ions such as sulphate
   kProtein,  // amino acids, modified ones and caps of chains too
   kNucleic,  // nucleotides, modified ones too
-  kWater,    // by is_water_name
+  kWater,    // by its name, if its atoms are those of water
   kIon,      // one atom, of a metal or a halogen
 };
 

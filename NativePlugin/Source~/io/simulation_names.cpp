@@ -48,4 +48,9 @@ SimulatedResidue find_simulated_residue(const std::string &name) {
   return {amino_acid_of(name), base_of(name), is_one_of(name, {"ACE", "NME", "NMA", "NH2", "FOR"})};
 }
 
+bool is_water_name(const std::string &name) {
+  return is_one_of(name, {"HOH", "DOD", "WAT", "H2O",  "SOL", "TIP", "TP3", "TIP3", "TIP4", "TIP5",
+                          "T3P", "T4P", "SPC", "SPCE", "OPC", "HHO", "OHH", "OH2",  "TP4",  "TP5"});
+}
+
 }  // namespace quickses::io

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Names that Amber, CHARMM and GROMACS give to residues and the PDB does not: of protonation states, of cysteines in
-// bridges, of the ends of chains and strands, of caps.
+// bridges, of the ends of chains and strands, of caps, of water.
 #pragma once
 
 #include <string>
@@ -17,5 +17,8 @@ struct SimulatedResidue {
 
 // Names in capitals.
 SimulatedResidue find_simulated_residue(const std::string &name);
+
+// Of water in the PDB and of water models. Some are of ligands of the PDB too: T3P, OPC.
+bool is_water_name(const std::string &name);
 
 }  // namespace quickses::io

@@ -107,7 +107,6 @@ AtomInfo describe(const AtomRef &ref) {
   info.insertion_code = ref.residue->seqid.icode;
   info.element = atomic_number(*ref.atom);
   info.hetero = ref.residue->het_flag == 'H';
-  info.water = is_water_name(ref.residue->name);
   info.hydrogen = ref.atom->element.is_hydrogen();
   info.file_index = static_cast<uint32_t>(ref.atom->serial - 1);
   info.occupancy = ref.atom->occ;
@@ -123,7 +122,7 @@ struct Filter {
   const Selection selection;
 
   bool keep(const AtomInfo &info) const {
-    if (!options.water && info.water) return false;
+    if (!options.water && info.is_water()) return false;
     if (!options.hetero && info.hetero) return false;
     return options.hydrogen || !info.hydrogen;
   }
@@ -210,7 +209,7 @@ void leave_out(Structure &structure, const Filter &filter, const std::string &pa
         continue;
       }
       structure.radii[kept] = structure.radii[i];
-    } else if (is_virtual_site(info.residue_name, info.name)) {
+    } else if (info.is_water() && is_site_of_water(info.name)) {
       ++no_atoms.virtual_sites;
       continue;
     }
@@ -230,16 +229,6 @@ void leave_out(Structure &structure, const Filter &filter, const std::string &pa
   structure.positions.shrink_to_fit();
   structure.radii.shrink_to_fit();
 }
-
-}  // namespace
-
-bool is_water_name(const std::string &residue_name) {
-  static const char *const kNames[] = {"HOH", "DOD", "WAT", "H2O",  "SOL", "TIP", "TP3", "TIP3", "TIP4", "TIP5",
-                                       "T3P", "T4P", "SPC", "SPCE", "OPC", "HHO", "OHH", "OH2",  "TP4",  "TP5"};
-  return std::any_of(std::begin(kNames), std::end(kNames), [&](const char *name) { return residue_name == name; });
-}
-
-namespace {
 
 // text: unpacked. path: as given, or any name for messages.
 StructureFile parse_text(std::string text, const std::string &path, std::optional<StructureFormat> format,

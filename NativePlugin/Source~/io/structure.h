@@ -22,7 +22,6 @@ struct AtomInfo {
   char insertion_code = ' ';
   uint8_t element = 0;      // atomic number; 0 = unknown; deuterium counts as hydrogen
   bool hetero = false;      // HETATM
-  bool water = false;       // residue of water
   bool hydrogen = false;    // H or D
   uint32_t file_index = 0;  // 0-based place among the atom records of its model, before any filter
 
@@ -34,6 +33,8 @@ struct AtomInfo {
   bool deuterium = false;
   bool has_residue_number = false;
   ResidueKind kind = ResidueKind::kLigand;  // of the residue
+
+  bool is_water() const { return kind == ResidueKind::kWater; }
 };
 
 // The atoms of one model that were kept, in the order of the file.
@@ -93,8 +94,5 @@ std::vector<uint32_t> residues_of(const Structure &structure);
 
 // Bytes of memory that it takes.
 uint64_t memory_of(const StructureFile &file);
-
-// True for residue names of water in the PDB and in common molecular-dynamics packages.
-bool is_water_name(const std::string &residue_name);
 
 }  // namespace quickses::io

@@ -105,9 +105,9 @@ TEST_F(IoTest, PdbGivesWhatItsColumnsSay) {
   EXPECT_EQ(zinc.residue_number, 901);
   EXPECT_EQ(zinc.element, 30);
   EXPECT_TRUE(zinc.hetero);
-  EXPECT_FALSE(zinc.water);
+  EXPECT_FALSE(zinc.is_water());
   EXPECT_FALSE(structure.atoms[0].hetero);
-  EXPECT_TRUE(structure.atoms[2].water);
+  EXPECT_TRUE(structure.atoms[2].is_water());
 }
 
 TEST_F(IoTest, BundledStructureHasAllItsAtoms) {

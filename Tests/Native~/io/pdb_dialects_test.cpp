@@ -100,7 +100,7 @@ TEST(PdbResidueNames, OfFourLettersTellElements) {
   EXPECT_EQ(structure.atoms[1].element, 6);
   EXPECT_EQ(structure.atoms[2].element, 8);
   EXPECT_EQ(structure.atoms[3].element, 6);  // of glycine at the end of a chain, in the columns of calcium
-  EXPECT_TRUE(structure.atoms[2].water);
+  EXPECT_TRUE(structure.atoms[2].is_water());
   EXPECT_EQ(structure.atoms[1].kind, ResidueKind::kProtein);
 }
 

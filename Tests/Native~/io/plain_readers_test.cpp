@@ -89,7 +89,7 @@ TEST_F(PlainReadersTest, GroIsReadInAngstrom) {
   const Structure structure = only_model(write("a.gro", text));
   EXPECT_EQ(structure.positions, (std::vector<float>{1.25f, 10, -20, 2.5f, 15, 20}));
   EXPECT_EQ(structure.atoms[0].element, 6);
-  EXPECT_TRUE(structure.atoms[1].water);
+  EXPECT_TRUE(structure.atoms[1].is_water());
   const std::vector<std::string> warnings = read_structure(path("a.gro")).warnings;
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_HAS(warnings[0], "the element of 2 atoms was missing");  // the format has none
@@ -105,7 +105,6 @@ TEST_F(PlainReadersTest, GroIsReadInAngstrom) {
 // ---- sites of water that are no atoms
 
 struct WaterCase {
-  const char *residue;
   const char *atom;
   bool is_virtual;
 };
@@ -114,18 +113,44 @@ class WaterSiteTest : public ::testing::TestWithParam<WaterCase> {};
 
 TEST_P(WaterSiteTest, IsAnAtomIfItIsOxygenOrHydrogen) {
   const WaterCase &c = GetParam();
-  EXPECT_EQ(is_virtual_site(c.residue, c.atom), c.is_virtual) << c.residue << " '" << c.atom << "'";
+  EXPECT_EQ(is_site_of_water(c.atom), c.is_virtual) << "'" << c.atom << "'";
 }
 
 // TIP4P of GROMACS, Amber and CHARMM, TIP5P.
 INSTANTIATE_TEST_SUITE_P(Models, WaterSiteTest,
-                         ::testing::Values(WaterCase{"SOL", "MW", true}, WaterCase{"WAT", "EPW", true},
-                                           WaterCase{"TIP4", " OM ", true}, WaterCase{"TIP4", "M", true},
-                                           WaterCase{"SOL", "LP1", true}, WaterCase{"WAT", "EP2", true},
-                                           WaterCase{"SOL", "OW", false}, WaterCase{"SOL", "HW1", false},
-                                           WaterCase{"HOH", " O  ", false}, WaterCase{"DOD", " D1 ", false},
-                                           WaterCase{"WAT", "1H  ", false}, WaterCase{"LIG", "LP1", false},
-                                           WaterCase{"MET", "MW", false}));
+                         ::testing::Values(WaterCase{"MW", true}, WaterCase{"EPW", true}, WaterCase{" OM ", true},
+                                           WaterCase{"M", true}, WaterCase{"LP1", true}, WaterCase{"EP2", true},
+                                           WaterCase{"OW", false}, WaterCase{"HW1", false}, WaterCase{" O  ", false},
+                                           WaterCase{" D1 ", false}, WaterCase{"1H  ", false}, WaterCase{"C1", false},
+                                           WaterCase{"N3", false}, WaterCase{" P  ", false}));
+
+// Components of the PDB have names of water models: thymidine-3'-phosphate T3P, a lipid OPC.
+TEST_F(PlainReadersTest, LigandsNamedAsWaterModelsKeepTheirAtoms) {
+  const auto kept = [this](const std::string &residue, std::initializer_list<const char *> names) {
+    std::string text = "t\n" + std::to_string(names.size()) + "\n";
+    int count = 0;
+    for (const char *name : names) {
+      char line[64];
+      ++count;
+      std::snprintf(line, sizeof line, "    1%-5s%5s%5d%8.3f   0.000   0.000\n", residue.c_str(), name, count,
+                    0.1 * count);
+      text += line;
+    }
+    std::string result;
+    const Structure structure = only_model(write("a.gro", text + "5 5 5\n"));
+    for (const AtomInfo &atom : structure.atoms) {
+      EXPECT_EQ(atom.is_water(), structure.atoms[0].is_water());
+      result += (atom.is_water() ? "water " : "ligand ") + atom.name + " ";
+    }
+    return result;
+  };
+  EXPECT_EQ(kept("OPC", {"C1", "P", "MC"}), "ligand C1 ligand P ligand MC ");
+  EXPECT_EQ(kept("T3P", {"O5'", "O4'"}), "ligand O5' ligand O4' ");
+  EXPECT_EQ(kept("OPC", {"OW", "HW1", "HW2", "MW"}), "water OW water HW1 water HW2 ");
+  EXPECT_EQ(kept("T3P", {"OH2", "H1", "OM"}), "water OH2 water H1 ");
+  EXPECT_EQ(kept("HOH", {"O"}), "water O ");
+  EXPECT_EQ(kept("LIG", {"O", "H1", "MW"}), "ligand O ligand H1 ligand MW ");
+}
 
 TEST_F(PlainReadersTest, SitesOfWaterThatAreNoAtomsAreLeftOut) {
   const std::string text =
