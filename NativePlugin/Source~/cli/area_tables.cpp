@@ -12,7 +12,7 @@ constexpr int kDigits = 6;  // so that a table adds up to its total
 
 std::string residue_fields(const io::Structure &structure, const io::AtomInfo &atom) {
   if (!structure.has_names) return ",,,";
-  return csv_field(atom.chain) + "," + std::to_string(atom.residue_number) + "," +
+  return csv_field(atom.chain) + "," + (atom.has_residue_number() ? std::to_string(atom.residue_number) : "") + "," +
          csv_field(atom.insertion_code == ' ' ? "" : std::string(1, atom.insertion_code)) + "," +
          csv_field(atom.residue_name);
 }

@@ -51,7 +51,8 @@ std::vector<uint32_t> lining_residues(const Cavity &cavity, const std::vector<ui
 // As A:ALA10, with its insertion code behind; chain and colon only if there is one.
 std::string name_of_residue(const io::AtomInfo &atom) {
   std::string name = atom.chain.empty() ? "" : atom.chain + ":";
-  name += atom.residue_name + std::to_string(atom.residue_number);
+  name += atom.residue_name;
+  if (atom.has_residue_number()) name += std::to_string(atom.residue_number);
   if (atom.insertion_code != ' ') name += atom.insertion_code;
   return name;
 }
@@ -92,7 +93,7 @@ Json cavities_json(const std::vector<Cavity> &cavities, const io::Structure &str
       if (!structure.has_names) break;
       const io::AtomInfo &atom = structure.atoms[first];
       lining.push_back({{"chain", atom.chain},
-                        {"residue_number", atom.residue_number},
+                        {"residue_number", atom.has_residue_number() ? Json(atom.residue_number) : Json()},
                         {"insertion_code", atom.insertion_code == ' ' ? "" : std::string(1, atom.insertion_code)},
                         {"residue_name", atom.residue_name}});
     }

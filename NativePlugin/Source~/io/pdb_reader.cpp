@@ -17,6 +17,29 @@
 namespace quickses::io {
 namespace {
 
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+// Numbers from 10000 on in four columns. VMD writes them in base 16 and small letters, 2a00. Hybrid-36
+// (cci.lbl.gov/hybrid_36) begins with a letter, A000 for 10000 to ZZZZ, and then from 1,223,056 on with a small one;
+// what both could have written is taken for VMD's.
+bool parse_letters(std::string_view digits, int &number) {
+  constexpr int kLeast = 10'000, kOfLetters = 26 * 36 * 36 * 36;
+  if (digits.size() != 4) return false;
+  const auto all = [&](auto &&holds) { return std::all_of(digits.begin(), digits.end(), holds); };
+  const auto is_between = [](char c, char first, char last) { return c >= first && c <= last; };
+  const auto read = [&](int base) {
+    std::from_chars(digits.data(), digits.data() + digits.size(), number, base);
+    return true;
+  };
+  if (all([&](char c) { return is_digit(c) || is_between(c, 'a', 'f'); })) return read(16);
+  if (is_digit(digits[0])) return false;
+  const bool is_small = all([&](char c) { return is_digit(c) || is_between(c, 'a', 'z'); });
+  if (!is_small && !all([&](char c) { return is_digit(c) || is_between(c, 'A', 'Z'); })) return false;
+  read(36);
+  number += kLeast - 10 * 36 * 36 * 36 + (is_small ? kOfLetters : 0);
+  return true;
+}
+
 // An atom's record, blank behind its end. Columns count from 1, as in the format.
 class AtomRecord {
  public:
@@ -34,24 +57,23 @@ class AtomRecord {
     return parse_number(columns(first, last), value) ? value : otherwise;
   }
 
-  // From 10000 on, five digits and more reach into the column of the insertion code, which is a letter, or four are
-  // hybrid-36: A000 and so on.
+  // What there is between the chain and the coordinates.
+  std::string place() const { return columns(23, 27); }
+
+  // From 10000 on, five digits and more reach into the column of the insertion code, which is a letter, or the four
+  // columns have other digits. None where they are no number: of VMD's residues from 65536 on they are ****.
   gemmi::SeqId residue_number() const {
-    const char *first = text_ + 22, *last = first + 4;
-    const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+    const char *const first = text_ + 22, *const last = first + 4;
     if (std::all_of(first, last, is_digit) && is_digit(*last)) {
-      last = std::find_if_not(last, static_cast<const char *>(text_ + 30), is_digit);
       gemmi::SeqId id(0, ' ');
-      std::from_chars(first, last, *id.num);
+      std::from_chars(first, std::find_if_not(last, static_cast<const char *>(text_ + 30), is_digit), *id.num);
       return id;
     }
     gemmi::SeqId id;
     id.icode = *last;
-    first = std::find_if_not(first, last, is_blank);
+    const std::string digits = word(23, 26);
     int number = 0;
-    const bool is_hybrid = last - first == 4 && to_upper(*first) >= 'A' && to_upper(*first) <= 'Z';
-    if (std::from_chars(first, last, number, is_hybrid ? 36 : 10).ec == std::errc())
-      id.num = is_hybrid ? number - 10 * 36 * 36 * 36 + 10'000 : number;
+    if (parse_integer(digits, number) || parse_letters(digits, number)) id.num = number;
     return id;
   }
 
@@ -139,8 +161,10 @@ class Reader {
     atom.occ = static_cast<float>(record.number(55, 60, 1));
     atom.b_iso = static_cast<float>(record.number(61, 66, 0));
     atom.element = element_of(record, residue);
-    ModelBuilder(raw.model).add(record.word(chain_column, 22), residue, record.residue_number(), is_hetero,
-                                std::move(atom));
+    const gemmi::SeqId number = record.residue_number();
+    const bool begins_residue = !number.num && begins_residue_without_number(record, atom);
+    ModelBuilder(raw.model).add(record.word(chain_column, 22), residue, number, is_hetero, std::move(atom),
+                                begins_residue);
 
     gemmi::Chain &chain = raw.model.chains.back();
     if (raw.model.chains.size() != chain_count_) {
@@ -151,6 +175,17 @@ class Reader {
     gemmi::Residue &last = chain.residues.back();
     if (has_ended_ && is_hetero && last.atoms.size() == 1)
       last.entity_type = last.is_water() ? gemmi::EntityType::Water : gemmi::EntityType::NonPolymer;
+  }
+
+  // What is no number tells residues apart as it is; of many with the same **** a name that comes again does.
+  bool begins_residue_without_number(const AtomRecord &record, const gemmi::Atom &atom) {
+    const bool is_overflow = record.column(23) == '*';
+    const bool is_repeated = is_overflow && atom.altloc == '\0' && names_in_residue_.count(atom.name) != 0;
+    const bool begins = record.place() != place_ || is_repeated;
+    place_ = record.place();
+    if (begins) names_in_residue_.clear();
+    if (is_overflow && atom.altloc == '\0') names_in_residue_.insert(atom.name);
+    return begins;
   }
 
   // TER ends a polymer; HETATM records behind it are apart. ATOM records may be another polymer: Amber writes TER
@@ -189,6 +224,9 @@ class Reader {
   std::unordered_set<std::string> ended_chains_;
   bool has_ended_ = false;
   size_t polymer_end_ = 0;
+  // Of the last residue without a number: what there is instead, and the names of its atoms.
+  std::string place_;
+  std::unordered_set<std::string> names_in_residue_;
 };
 
 }  // namespace

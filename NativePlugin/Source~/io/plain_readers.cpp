@@ -87,13 +87,13 @@ bool split_pqr_line(std::string_view line, PqrLine &out) {
 }  // namespace
 
 void ModelBuilder::add(const std::string &chain, const std::string &residue, gemmi::SeqId number, bool hetero,
-                       gemmi::Atom atom) {
+                       gemmi::Atom atom, bool begins_residue) {
   if (model_.chains.empty() || model_.chains.back().name != chain) model_.chains.emplace_back(chain);
   std::vector<gemmi::Residue> &residues = model_.chains.back().residues;
   gemmi::ResidueId id;
   id.seqid = number;
   id.name = residue;
-  if (residues.empty() || !residues.back().matches(id)) {
+  if (begins_residue || residues.empty() || !residues.back().matches(id)) {
     residues.emplace_back(id);
     residues.back().het_flag = hetero ? 'H' : 'A';
   }

@@ -42,7 +42,9 @@ RawFile read_gro_text(const std::string &text, const std::string &path, int mode
 class ModelBuilder {
  public:
   explicit ModelBuilder(gemmi::Model &model) : model_(model) {}
-  void add(const std::string &chain, const std::string &residue, gemmi::SeqId number, bool hetero, gemmi::Atom atom);
+  // begins_residue: even if chain, residue and number are those of the atom before.
+  void add(const std::string &chain, const std::string &residue, gemmi::SeqId number, bool hetero, gemmi::Atom atom,
+           bool begins_residue = false);
 
  private:
   gemmi::Model &model_;

@@ -35,7 +35,7 @@ class Matcher {
  private:
   bool residue_matches(const AtomInfo &info) {
     gemmi::SeqId place;
-    if (info.has_residue_number) place.num = info.residue_number;
+    if (info.has_residue_number()) place.num = info.residue_number;
     place.icode = info.insertion_code;
     const auto kind = static_cast<gemmi::EntityType>(info.entity);
     if (!residue_is_known_ || !(residue_.seqid.num == place.num) || residue_.seqid.icode != place.icode ||
@@ -183,7 +183,7 @@ class Evaluation {
       }
       case Kind::kResidueNumbers: {
         const ResiduePlace place(atom.residue_number, atom.insertion_code);
-        return atom.has_residue_number && std::any_of(term.places.begin(), term.places.end(), [&](const auto &range) {
+        return atom.has_residue_number() && std::any_of(term.places.begin(), term.places.end(), [&](const auto &range) {
                  return range.first <= place && place <= range.second;
                });
       }

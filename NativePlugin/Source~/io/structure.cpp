@@ -102,8 +102,7 @@ AtomInfo describe(const AtomRef &ref) {
   info.name = ref.atom->name;
   info.residue_name = ref.residue->name;
   info.chain = ref.chain->name;
-  info.has_residue_number = ref.residue->seqid.num.has_value();
-  if (info.has_residue_number) info.residue_number = *ref.residue->seqid.num;
+  if (ref.residue->seqid.num) info.residue_number = *ref.residue->seqid.num;
   info.insertion_code = ref.residue->seqid.icode;
   info.element = atomic_number(*ref.atom);
   info.hetero = ref.residue->het_flag == 'H';
@@ -168,12 +167,19 @@ Structure flatten(const RawModel &raw, const Filter &filter, std::string &warnin
   const std::vector<AtomRef> refs = in_file_order(raw.model);
   AlternateLocations locations(filter.options.altloc);
   for (const AtomRef &ref : refs) locations.see(*ref.chain, *ref.residue, *ref.atom);
+  const gemmi::Residue *last_unnumbered = nullptr;
+  uint32_t unnumbered_count = 0;
   const bool takes_all = filter.selection.asks_for_locations();
   if (!takes_all) warning = locations.warning();
   for (const AtomRef &ref : refs) {
     structure.file_elements[static_cast<size_t>(ref.atom->serial - 1)] = atomic_number(*ref.atom);
     if (!takes_all && !locations.keep(*ref.chain, *ref.residue, *ref.atom)) continue;
     structure.atoms.push_back(describe(ref));
+    if (!ref.residue->seqid.num && ref.residue != last_unnumbered) {
+      last_unnumbered = ref.residue;
+      ++unnumbered_count;
+    }
+    if (!ref.residue->seqid.num) structure.atoms.back().unnumbered_residue = unnumbered_count;
     for (double x : {ref.atom->pos.x, ref.atom->pos.y, ref.atom->pos.z})
       structure.positions.push_back(is_near(x) ? static_cast<float>(x) : std::numeric_limits<float>::infinity());
     if (!raw.radii.empty()) structure.radii.push_back(raw.radii[structure.atoms.back().file_index]);
@@ -284,8 +290,8 @@ StructureFile parse_text(std::string text, const std::string &path, std::optiona
 
 std::vector<uint32_t> residues_of(const Structure &structure) {
   const auto are_of_one = [](const AtomInfo &a, const AtomInfo &b) {
-    return a.residue_number == b.residue_number && a.insertion_code == b.insertion_code &&
-           a.residue_name == b.residue_name && a.chain == b.chain;
+    return a.residue_number == b.residue_number && a.unnumbered_residue == b.unnumbered_residue &&
+           a.insertion_code == b.insertion_code && a.residue_name == b.residue_name && a.chain == b.chain;
   };
   std::vector<uint32_t> residues(structure.atoms.size());
   for (size_t k = 1; k < residues.size(); ++k) {

@@ -31,9 +31,10 @@ struct AtomInfo {
   char alternate_location = '\0';  // '\0' = none
   uint8_t entity = 0;              // gemmi's EntityType of the residue
   bool deuterium = false;
-  bool has_residue_number = false;
+  uint32_t unnumbered_residue = 0;          // which of the residues without a number, from 1; 0: it has one
   ResidueKind kind = ResidueKind::kLigand;  // of the residue
 
+  bool has_residue_number() const { return unnumbered_residue == 0; }
   bool is_water() const { return kind == ResidueKind::kWater; }
 };
 
@@ -88,8 +89,9 @@ StructureFile parse_structure(const std::string &bytes, std::optional<StructureF
 // structure has no names.
 uint32_t select_atoms(const Structure &structure, const std::string &text, uint8_t *mask);
 
-// Which residue each atom is of, from 0. Neighbours of the same chain, residue number, insertion code and residue name
-// are of one; where there are no names each atom is one by itself.
+// Which residue each atom is of, from 0. Neighbours of the same chain, residue number (or place in
+// the file, if there is no number), insertion code and residue name are of one; where there are no names each atom is
+// one by itself.
 std::vector<uint32_t> residues_of(const Structure &structure);
 
 // Bytes of memory that it takes.

@@ -77,6 +77,51 @@ TEST(PdbResidueNumbers, OfMoreThanFourDigits) {
                    "A/10035/ALA"}));
 }
 
+// A water of three atoms behind each other, with that in columns 23 to 26.
+std::string water_at(const std::string &number) {
+  std::string text;
+  for (const char *name : {"OH2", "H1 ", "H2 "})
+    text += "ATOM      1  " + std::string(name) + " TIP3W" + number +
+            "       1.000   0.000   0.000  1.00  0.00      WT1   " + name[0] + "\n";
+  return text;
+}
+
+TEST(PdbResidueNumbers, InBaseSixteenAsVmdWritesThem) {
+  const auto number = [](const std::string &columns) {
+    const AtomInfo atom = parse(water_at(columns)).models.at(0).atoms.at(0);
+    return atom.has_residue_number() ? std::to_string(atom.residue_number) : "none";
+  };
+  EXPECT_EQ(number("271a"), "10010");
+  EXPECT_EQ(number("2a00"), "10752");
+  EXPECT_EQ(number("9fff"), "40959");
+  EXPECT_EQ(number("a000"), "40960");
+  EXPECT_EQ(number("ffff"), "65535");
+  EXPECT_EQ(number("ZZZZ"), "1223055");  // hybrid-36
+  EXPECT_EQ(number("a00z"), "1223091");
+  EXPECT_EQ(number("zzzz"), "2436111");
+  EXPECT_EQ(number("  -7"), "-7");
+  for (const char *none : {"****", "2A00", "2g00", "Aa00", "    ", "  1x", " 2a0", "1-2 "})
+    EXPECT_EQ(number(none), "none") << none;
+}
+
+TEST(PdbResidueNumbers, ThatAreNoneDoNotMergeResidues) {
+  const auto residues = [](const std::string &text, const ReadOptions &options = ReadOptions()) {
+    return residues_of(parse(text, options).models.at(0));
+  };
+  using Residues = std::vector<uint32_t>;
+  EXPECT_EQ(residues(water_at("2a00") + water_at("2a01")), (Residues{0, 0, 0, 1, 1, 1}));
+  EXPECT_EQ(residues(water_at("****") + water_at("****")), (Residues{0, 0, 0, 1, 1, 1}));
+  EXPECT_EQ(residues(water_at("2g00") + water_at("2g01")), (Residues{0, 0, 0, 1, 1, 1}));
+  EXPECT_EQ(residues(water_at("   0") + water_at("****")), (Residues{0, 0, 0, 1, 1, 1}));
+  EXPECT_EQ(residues(water_at("    ") + water_at("    ")), Residues(6));  // nothing tells
+  ReadOptions hydrogens;
+  hydrogens.selection = "name H2";  // what told them apart is left out
+  EXPECT_EQ(residues(water_at("****") + water_at("****"), hydrogens), (Residues{0, 1}));
+  std::string alternatives = water_at("****");
+  alternatives[16] = 'A';
+  EXPECT_EQ(residues(alternatives + alternatives.substr(0, 81).replace(16, 1, "B")), (Residues{0, 0, 0}));
+}
+
 // ---- residue names of four letters, chains of two
 
 TEST(PdbResidueNames, MayHaveFourLetters) {
