@@ -6,6 +6,7 @@
 #include <charconv>
 #include <gemmi/resinfo.hpp>
 #include <string_view>
+#include <unordered_map>
 #include <unordered_set>
 
 #include "io/elements.h"
@@ -83,18 +84,21 @@ class AtomRecord {
 };
 
 // Column 21 is blank by the format. CHARMM, NAMD and Amber have the fourth letter of a residue's name there (TIP3,
-// POPC, NALA), gemmi and Phenix the first one of a chain of two. Amino acids and nucleotides of three letters before it
-// tell which: "ALAAB" is in chain AB.
+// POPC, NALA), gemmi and Phenix the first one of a chain of two ("ALAAB" is in chain AB): then several amino acids and
+// nucleotides of the PDB are before the same letter. One or two may be names that begin so, as CHARMM's CYSP and GLYM.
 bool has_chains_of_two_letters(std::string_view text) {
+  std::unordered_map<char, std::unordered_set<std::string>> residues;  // by the letter behind them
   std::string_view line;
   while (next_line(text, line)) {
-    if (line.size() < 21 || is_blank(line[17]) || is_blank(line[20]) || !is_atom(pdb_record_of(line))) continue;
+    if (line.size() < 21 || is_blank(line[20]) || !is_atom(pdb_record_of(line))) continue;
     const AtomRecord record(line);
-    if (gemmi::find_tabulated_residue(record.columns(18, 20)).is_standard() &&
-        !find_simulated_residue(record.columns(18, 21)).is_known())
-      return true;
+    const std::string residue = record.word(18, 20), name = record.word(18, 21);
+    if (is_one_of(name, {"TIP3", "TIP4", "TIP5"})) return false;
+    if (!gemmi::find_tabulated_residue(residue).is_standard() || find_simulated_residue(name).is_known()) continue;
+    residues[record.column(21)].insert(residue);
   }
-  return false;
+  return std::any_of(residues.begin(), residues.end(),
+                     [](const auto &of_letter) { return of_letter.second.size() >= 3; });
 }
 
 class Reader {

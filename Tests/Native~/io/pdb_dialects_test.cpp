@@ -159,6 +159,24 @@ TEST(PdbChains, OfTwoLettersAreToldByResiduesOfThePdb) {
             (Words{"AA/1/A", "AB/2/DA", "AC/3/ALA", "AD/4/POP", "A/5/ALA"}));
 }
 
+std::string residue_at(const std::string &columns) {  // 18 to 22
+  return "ATOM      1  CA  " + columns + "   1       1.000   0.000   0.000  1.00  0.00           C\n";
+}
+
+TEST(PdbChains, OfTwoLettersAreNotToldByOneNameThatBeginsAsAnAminoAcid) {
+  // CHARMM's cysteine with palmitoyl and glycine with myristoyl, ends of chains of Amber.
+  for (const char *name : {"CYSP", "CYSF", "GLYM", "ALAD", "NALA", "CHIE", "HISD"})
+    EXPECT_EQ(residues_in(residue_at(std::string(name) + "A") + residue_at("ALA A") + residue_at("POPCM") +
+                          residue_at("POPEM")),
+              (Words{"A/1/" + std::string(name), "A/1/ALA", "M/1/POPC", "M/1/POPE"}));
+  EXPECT_EQ(residues_in(residue_at("CYSPA") + residue_at("SERPA") + residue_at("THRPA") + residue_at("TIP3W")),
+            (Words{"A/1/CYSP", "A/1/SERP", "A/1/THRP", "W/1/TIP3"}));
+  // One-letter chains and a ligand beside them.
+  EXPECT_EQ(residues_in(residue_at("ALA P") + residue_at("ALAAP") + residue_at("GLYAP") + residue_at("SERAP") +
+                        residue_at("CYSPA") + residue_at("HEMAP")),
+            (Words{"P/1/ALA", "AP/1/ALA", "AP/1/GLY", "AP/1/SER", "PA/1/CYS", "AP/1/HEM"}));
+}
+
 // ---- TER
 
 const std::string kinds_in(const std::string &text) {
