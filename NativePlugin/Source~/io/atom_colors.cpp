@@ -72,14 +72,14 @@ void color_by_chain(const Structure &structure, uint8_t *rgba) {
   }
 }
 
-// action(atom, traits) for each atom.
+// action(atom, traits) for each atom. Ligands have none, whatever their name.
 template <class Action>
 void for_each_residue_name(const Structure &structure, const Action &action) {
   ResidueTraits traits;
   for (size_t i = 0; i < structure.atoms.size(); ++i) {
-    const std::string &name = structure.atoms[i].residue_name;
-    if (i == 0 || name != structure.atoms[i - 1].residue_name) traits = traits_of(name);
-    action(i, traits);
+    const AtomInfo &atom = structure.atoms[i];
+    if (i == 0 || atom.residue_name != structure.atoms[i - 1].residue_name) traits = traits_of(atom.residue_name);
+    action(i, atom.kind == ResidueKind::kProtein || atom.kind == ResidueKind::kNucleic ? traits : ResidueTraits());
   }
 }
 

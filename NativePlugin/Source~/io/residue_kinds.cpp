@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// gemmi's table knows the common residues of the PDB, and simulation_names.h those of molecular dynamics; of other
-// residues the atoms tell.
+// gemmi's table knows the common residues of the PDB, and simulation_names.h those of molecular dynamics. But for the
+// standard ones their atoms have to agree, since names are used again; of other residues atoms and bonds tell.
 #include "io/residue_kinds.h"
 
 #include "io/readers.h"  // before other gemmi headers: settles how gemmi formats numbers
 
 #include <algorithm>
+#include <cmath>
 #include <gemmi/resinfo.hpp>
 
 #include "io/elements.h"
@@ -24,9 +25,12 @@ bool is_halogen(gemmi::El element) {
 struct Residue {
   const AtomInfo *first, *last;
 
-  bool has(const char *atom_name) const {
-    return std::any_of(first, last, [&](const AtomInfo &atom) { return atom.name == atom_name; });
+  const AtomInfo *find(const char *atom_name) const {  // null: it has none
+    const AtomInfo *const atom =
+        std::find_if(first, last, [&](const AtomInfo &some) { return some.name == atom_name; });
+    return atom == last ? nullptr : atom;
   }
+  bool has(const char *atom_name) const { return find(atom_name) != nullptr; }
   bool is_one_atom() const {  // maybe at several locations
     return std::all_of(first, last, [&](const AtomInfo &atom) { return atom.name == first->name; });
   }
@@ -43,7 +47,42 @@ bool is_water(const Residue &residue) {
   });
 }
 
-ResidueKind kind_of(const Residue &residue) {
+// The residues of a structure, one after the other.
+class ResidueSequence {
+ public:
+  explicit ResidueSequence(const Structure &structure) : structure_(structure) {
+    const std::vector<uint32_t> numbers = residues_of(structure);
+    const AtomInfo *const atoms = structure.atoms.data();
+    for (size_t i = 0; i < numbers.size(); ++i) {
+      if (i == 0 || numbers[i] != numbers[i - 1]) residues_.push_back({atoms + i, atoms + i});
+      ++residues_.back().last;
+    }
+  }
+
+  size_t count() const { return residues_.size(); }
+  const Residue &operator[](size_t k) const { return residues_[k]; }
+
+  // Whether a bond between such atoms joins the residue to the one before or behind it in the file.
+  bool is_joined(size_t k, const char *end, const char *begin) const {
+    return (k > 0 && are_bonded(residues_[k - 1].find(end), residues_[k].find(begin))) ||
+           (k + 1 < count() && are_bonded(residues_[k].find(end), residues_[k + 1].find(begin)));
+  }
+
+ private:
+  bool are_bonded(const AtomInfo *a, const AtomInfo *b) const {
+    constexpr float kLongestBond = 2;  // Å; C-N has 1.3, O-P 1.6
+    if (!a || !b) return false;
+    const float *const p = structure_.positions.data() + 3 * (a - structure_.atoms.data());
+    const float *const q = structure_.positions.data() + 3 * (b - structure_.atoms.data());
+    return std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]) < kLongestBond;
+  }
+
+  const Structure &structure_;
+  std::vector<Residue> residues_;
+};
+
+ResidueKind kind_of(const ResidueSequence &residues, size_t k) {
+  const Residue &residue = residues[k];
   const AtomInfo &atom = *residue.first;
   if (is_water(residue)) return ResidueKind::kWater;
   const auto element = static_cast<gemmi::El>(atom.element);
@@ -54,19 +93,25 @@ ResidueKind kind_of(const Residue &residue) {
   const bool is_apart = !in_chain && entity != gemmi::EntityType::Unknown;
   const std::string &name = atom.residue_name;
   const auto &known = gemmi::find_tabulated_residue(name);
+  const bool is_standard = known.found() && known.is_standard();
+  const bool has_alpha = residue.has("CA");
+  const bool has_sugar = residue.has("C1'") || residue.has("C1*");
   // An amino acid or nucleotide of the twenty-odd that is a HETATM record was bound or added as such, which gemmi takes
   // for granted too. A modified one is a part of a chain, unless the file says otherwise.
-  const bool may_be_linked = in_chain || (!is_apart && !(atom.hetero && known.found() && known.is_standard()));
-  if (may_be_linked) {
+  if (in_chain || (!is_apart && !(atom.hetero && is_standard))) {
     const SimulatedResidue simulated = find_simulated_residue(name);
-    if (known.is_amino_acid() || simulated.is_cap || simulated.amino_acid != '\0') return ResidueKind::kProtein;
-    if (known.is_nucleic_acid() || simulated.base != '\0') return ResidueKind::kNucleic;
+    if (simulated.is_cap) return ResidueKind::kProtein;
+    if ((known.is_amino_acid() || simulated.amino_acid != '\0') && (is_standard || has_alpha))
+      return ResidueKind::kProtein;
+    const bool is_phosphate_only = residue.is_one_atom() && residue.has("P");
+    if ((known.is_nucleic_acid() || simulated.base != '\0') && (is_standard || has_sugar || is_phosphate_only))
+      return ResidueKind::kNucleic;
   }
   if (!known.found() && (in_chain || (!is_apart && !atom.hetero))) {
-    if (residue.has("CA") && ((residue.has("N") && residue.has("C")) || (in_chain && residue.is_one_atom())))
-      return ResidueKind::kProtein;
-    if (residue.has("C1'") && residue.has("C4'") && residue.has("O3'")) return ResidueKind::kNucleic;
-    if (residue.has("C1*") && residue.has("C4*") && residue.has("O3*")) return ResidueKind::kNucleic;
+    if (has_alpha && in_chain && residue.is_one_atom()) return ResidueKind::kProtein;
+    if (has_alpha && residues.is_joined(k, "C", "N")) return ResidueKind::kProtein;
+    if (has_sugar && (residues.is_joined(k, "O3'", "P") || residues.is_joined(k, "O3*", "P")))
+      return ResidueKind::kNucleic;
   }
   return ResidueKind::kLigand;
 }
@@ -75,19 +120,19 @@ ResidueKind kind_of(const Residue &residue) {
 
 void find_residue_kinds(Structure &structure) {
   if (!structure.has_names) return;
-  const std::vector<uint32_t> residues = residues_of(structure);
+  const ResidueSequence residues(structure);
   AtomInfo *const atoms = structure.atoms.data();
-  for (size_t first = 0, last = 0; first < residues.size(); first = last) {
-    while (last < residues.size() && residues[last] == residues[first]) ++last;
-    const ResidueKind kind = kind_of({atoms + first, atoms + last});
-    for (size_t i = first; i < last; ++i) atoms[i].kind = kind;
+  for (size_t k = 0; k < residues.count(); ++k) {
+    const ResidueKind kind = kind_of(residues, k);
+    for (auto i = residues[k].first - atoms; i < residues[k].last - atoms; ++i) atoms[i].kind = kind;
   }
 }
 
 bool is_backbone_name(ResidueKind kind, const std::string &name) {
   if (kind == ResidueKind::kProtein)
-    return is_one_of(name, {"N",  "CA", "C",  "O",  "OXT", "OT",  "OT1", "OT2", "O1",  "O2",  "H",  "HN", "D",
-                            "H1", "H2", "H3", "HA", "HA1", "HA2", "HA3", "HT1", "HT2", "HT3", "DA", "HXT"});
+    return is_one_of(name, {"N",   "CA",  "C",  "O",   "OXT", "OT",  "OT1", "OT2", "O1",  "O2", "OC1",
+                            "OC2", "H",   "HN", "D",   "H1",  "H2",  "H3",  "1H",  "2H",  "3H", "HN1",
+                            "HN2", "HN3", "HA", "HA1", "HA2", "HA3", "HT1", "HT2", "HT3", "DA", "HXT"});
   if (kind != ResidueKind::kNucleic) return false;
   if (name.find_first_of("'*") != std::string::npos) return true;  // of the sugar
   return is_one_of(name, {"P", "OP1", "OP2", "OP3", "O1P", "O2P", "O3P", "HOP2", "HOP3", "H5T", "H3T"});

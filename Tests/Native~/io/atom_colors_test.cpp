@@ -29,11 +29,13 @@ std::vector<Rgba> colors_of(const std::vector<Named> &named, ColorScheme scheme)
   for (const Named &from : named) {
     AtomInfo atom;
     atom.element = from.element;
+    atom.name = "CA";
     atom.residue_name = from.residue;
     atom.chain = from.chain;
     atom.residue_number = from.number;
     structure.atoms.push_back(atom);
   }
+  find_residue_kinds(structure);
   std::vector<Rgba> colors(named.size() + 1, Rgba{9, 9, 9, 9});
   color_atoms(structure, scheme, kUniform, colors[0].data());
   EXPECT_EQ(colors.back(), (Rgba{9, 9, 9, 9}));
@@ -70,7 +72,8 @@ ResidueKind kind_of_residue(const char *name) {
   Structure structure;
   structure.atoms.resize(2);
   for (AtomInfo &atom : structure.atoms) atom.residue_name = name, atom.element = 6;
-  structure.atoms[1].name = "X";
+  structure.atoms[0].name = "CA";
+  structure.atoms[1].name = "C1'";
   find_residue_kinds(structure);
   return structure.atoms[0].kind;
 }
@@ -164,7 +167,8 @@ TEST(AtomColors, ResiduesHaveTheColourOfTheirClass) {
                                               {6, "DA", "B", 1},
                                               {6, "U", "B", 2},
                                               {8, "HOH", "A", 7},
-                                              {6, "HEM", "A", 8}},
+                                              {6, "HEM", "A", 8},
+                                              {6, "DAN", "A", 9}},  // which has no C1', so that it is no adenosine
                                              ColorScheme::kResidue);
   EXPECT_EQ(colors[0], colors[1]);
   EXPECT_EQ(colors[2], colors[3]);
@@ -172,6 +176,7 @@ TEST(AtomColors, ResiduesHaveTheColourOfTheirClass) {
   EXPECT_GT(colors[2][2], 2 * colors[2][0]);  // blue
   EXPECT_EQ(colors[8], kUniform);
   EXPECT_EQ(colors[9], kUniform);
+  EXPECT_EQ(colors[10], kUniform);
   EXPECT_EQ(std::set<Rgba>(colors.begin(), colors.end()).size(), 7u);
 }
 

@@ -26,8 +26,8 @@ const char kPdb[] =
     "ATOM      5  CB  ALA A  -1       3.000   0.000   0.000  1.00 20.00           C\n"
     "ATOM      6  HA  ALA A  -1       4.000   0.000   0.000  1.00  5.00           H\n"
     "HETATM    7 SE   MSE A  52       5.000   0.000   0.000  1.00  5.00          SE\n"
-    "HETATM    8  O   MSE A  52       6.000   0.000   0.000  1.00  5.00           O\n"
-    "ATOM      9  CA  GLY A  52A      7.000   0.000   0.000  1.00  5.00           C\n"
+    "HETATM    8  CA  MSE A  52       6.000   0.000   0.000  1.00  5.00           C\n"
+    "ATOM      9  C   GLY A  52A      7.600   0.000   0.000  1.00  5.00           C\n"
     "ATOM     10  D   GLY A  52A      8.000   0.000   0.000  1.00  5.00           D\n"
     "HETATM   11  N   XYZ A  53       9.000   0.000   0.000  1.00  5.00           N\n"
     "HETATM   12  CA  XYZ A  53      10.000   0.000   0.000  1.00  5.00           C\n"
@@ -96,8 +96,8 @@ TEST(SelectionWords, NameWhatTheFileCallsIt) {
   EXPECT_EQ(select("chain b"), Indices{});  // names are as in the file
   EXPECT_EQ(select("resname HEM"), (Indices{17, 18}));
   EXPECT_EQ(select("resn HEM CA"), (Indices{17, 18, 19}));
-  EXPECT_EQ(select("name CA"), (Indices{3, 9, 12, 19, 22}));
-  EXPECT_EQ(select("name CA C1'"), (Indices{3, 9, 12, 15, 19, 22}));
+  EXPECT_EQ(select("name CA"), (Indices{3, 8, 12, 19, 22}));
+  EXPECT_EQ(select("name CA C1'"), (Indices{3, 8, 12, 15, 19, 22}));
   EXPECT_EQ(select("element CA Fe se"), (Indices{7, 17, 19}));
   EXPECT_EQ(select("element H"), (Indices{6, 26}));
   EXPECT_EQ(select("element D"), (Indices{10}));
@@ -124,7 +124,7 @@ TEST(SelectionWords, AreJoined) {
   EXPECT_EQ(select("not (water or protein or ligand)"), (Indices{14, 15, 16, 19, 20}));
   EXPECT_EQ(select("NOT(Water OR protein or LIGAND)"), (Indices{14, 15, 16, 19, 20}));
   EXPECT_EQ(select("not not ions"), (Indices{19, 20}));
-  EXPECT_EQ(select("chain A and name CA and not (ligand or ions)"), (Indices{3, 9, 12}));
+  EXPECT_EQ(select("chain A and name CA and not (ligand or ions)"), (Indices{3, 8, 12}));
   EXPECT_EQ(select("same residue as name N9"), (Indices{14, 15, 16}));
   EXPECT_EQ(select("same residue as within 1.5 of resname HEM and element N"), (Indices{18}));
   EXPECT_EQ(select("same residue as (within 1.5 of resname HEM and element N)"), (Indices{17, 18}));
