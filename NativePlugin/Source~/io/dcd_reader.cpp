@@ -35,21 +35,23 @@ bool is_positive_definite(const std::array<std::array<double, 3>, 3> &m) {  // s
 //   A, cos gamma, B, cos beta, cos alpha, C    NAMD, VMD and others; all cosines within -1 and 1
 //   A, gamma, B, beta, alpha, C                in degrees, old CHARMM and others
 //   a11, a21, a22, a31, a32, a33               CHARMM since version 22: the symmetric matrix of the cell, lower half
-// Nothing tells the last two apart for certain. CHARMM itself gives its version in the header, all others say 24.
+// Nothing tells the last from the others for certain. CHARMM itself gives its version in the header, all others say 24:
+// of a later one, small numbers off the diagonal are of a cell that is tilted a little, not cosines.
 std::optional<Box> box_of_cell(const double *cell, int32_t version) {
   if (!std::all_of(cell, cell + 6, [](double x) { return std::isfinite(x); })) return std::nullopt;
   const double angles[3] = {cell[4], cell[3], cell[1]};  // alpha, beta, gamma
   const auto all = [&](auto &&holds) { return std::all_of(angles, angles + 3, holds); };
+  const std::array<std::array<double, 3>, 3> matrix = {
+      {{cell[0], cell[1], cell[3]}, {cell[1], cell[2], cell[4]}, {cell[3], cell[4], cell[5]}}};
+  const bool may_be_matrix = is_positive_definite(matrix);
 
   if (all([](double x) { return std::abs(x) <= 1; })) {
+    if (version > 24 && may_be_matrix) return box_from_vectors(matrix);  // of a right box it is the same
     double degrees[3];
     for (int i = 0; i < 3; ++i) degrees[i] = angles[i] == 0 ? 90 : std::acos(angles[i]) * 57.29577951308232;
     return box_from_edges(cell[0], cell[2], cell[5], degrees[0], degrees[1], degrees[2]);
   }
-  const std::array<std::array<double, 3>, 3> matrix = {
-      {{cell[0], cell[1], cell[3]}, {cell[1], cell[2], cell[4]}, {cell[3], cell[4], cell[5]}}};
   const std::optional<Box> of_angles = box_from_edges(cell[0], cell[2], cell[5], angles[0], angles[1], angles[2]);
-  const bool may_be_matrix = is_positive_definite(matrix);
   const bool has_right_angle = !all([](double x) { return x != 90; });
   if (of_angles && (version <= 24 || has_right_angle || !may_be_matrix)) return of_angles;
   return may_be_matrix ? box_from_vectors(matrix) : std::nullopt;

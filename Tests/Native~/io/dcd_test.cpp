@@ -154,6 +154,16 @@ TEST(DcdCellTest, SymmetricMatrix) {
   EXPECT_EQ(dodecahedron->vectors[2], (std::array<double, 3>{14, 2, 58}));
 }
 
+TEST(DcdCellTest, ASlightlyTiltedMatrixIsNoneOfCosines) {
+  const std::array<std::array<double, 3>, 3> matrix = {{{60, 0.5, 0}, {0.5, 60, 0}, {0, 0, 60}}};
+  const std::optional<Box> box = box_of({60, 0.5, 60, 0, 0, 60}, 41);
+  ASSERT_TRUE(box);
+  EXPECT_EQ(box->vectors, matrix);
+  expect_cell(box_of({60, 0.5, 60, 0, 0, 60}), 60, 60, 60, 90, 90, 60);  // of a program that is not CHARMM
+  expect_cell(box_of({60, 0, 70, 0, 0, 80}, 41), 60, 70, 80, 90, 90, 90);
+  expect_cell(box_of({0.4, 0.5, 0.4, 0, 0, 60}, 41), 0.4, 0.4, 60, 90, 90, 60);  // no matrix of a cell
+}
+
 TEST(DcdCellTest, NoBox) {
   EXPECT_FALSE(box_of({0, 0, 0, 0, 0, 0}));
   EXPECT_FALSE(box_of({0, 90, 0, 90, 90, 0}));
