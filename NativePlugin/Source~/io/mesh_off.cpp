@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Meshes as Geomview's OFF.
+// Meshes as Geomview's OFF. Colours are from 0 to 255, as MeshLab and CGAL read them; Geomview itself has 0 to 1.
 #include "io/mesh_formats.h"
 #include "io/mesh_rows.h"
 

@@ -117,7 +117,22 @@ class Evaluation {
         return is_any(residue) ? residue : select(term.operands[0]);
       }
       default:
+        check_wildcards(term);
         return where([&](const AtomInfo &atom) { return matches(term, atom); });
+    }
+  }
+
+  // * and ? are parts of names: the sugars of nucleotides had C1* before they had C1'.
+  void check_wildcards(const SelectionTerm &term) const {
+    for (const std::string &name : term.names) {
+      if (name.find_first_of("*?") == std::string::npos) continue;
+      SelectionTerm alone(term.kind);
+      alone.names = {name};
+      if (std::none_of(structure_.atoms.begin(), structure_.atoms.end(),
+                       [&](const AtomInfo &atom) { return matches(alone, atom); }))
+        fail_usage("nothing has the name '" + name +
+                   "': selections know no wildcards; several names are put side by side, as in 'name CA CB', and " +
+                   "elements have a word of their own, as in 'element H'");
     }
   }
 

@@ -346,6 +346,8 @@ class Parser {
   }
 
   void add_name(SelectionTerm &term, const std::string &name, size_t place) const {
+    if (name[0] == '"' || name[0] == '\'')
+      fail_at(place, "names are without quotation marks, as in '" + std::string(example_of(term.kind)) + "'");
     std::string_view rest = name;
     if (term.kind == Kind::kResidueNumbers) {
       std::pair<ResiduePlace, ResiduePlace> range;

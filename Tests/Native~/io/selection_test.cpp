@@ -278,11 +278,22 @@ TEST(SelectionWords, ErrorsPointAtTheWord) {
   refused("index 5-2", {"backwards"});
   refused("element Qq", {"'Qq'"});
   refused("altloc AB", {"'AB'"});
+  refused("not name \"CA\"", {"without quotation marks", "character 10"});
+  refused("name 'CA CB'", {"without quotation marks", "character 6"});
+  refused("chain A,\"B\"", {"without quotation marks"});
   refused("water and //[[", {"[["});
   refused(std::string(2000, '(') + "all" + std::string(2000, ')'), {"in each other"});
   std::string nots;
   for (int k = 0; k < 1000; ++k) nots += "not ";
   refused(nots + "all", {"in each other"});
+}
+
+TEST(SelectionWords, WildcardsAreRefusedUnlessTheyAreNames) {
+  for (const char *selection : {"not name H*", "name CA H*", "resname H?M", "chain *", "water or not chain A,?"})
+    EXPECT_HAS(error_of(ErrorKind::kUsage, [&] { select(selection); }), "wildcards") << selection;
+  std::string text = kPdb;
+  text.replace(text.find("C1'"), 3, "C1*");
+  EXPECT_EQ(numbers_of(parse(text), "name C1* N9"), (Indices{15, 16}));
 }
 
 TEST(SelectionWords, NothingNamedIsExplained) {
