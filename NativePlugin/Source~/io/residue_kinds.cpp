@@ -101,7 +101,8 @@ ResidueKind kind_of(const ResidueSequence &residues, size_t k) {
   if (in_chain || (!is_apart && !(atom.hetero && is_standard))) {
     const SimulatedResidue simulated = find_simulated_residue(name);
     if (simulated.is_cap) return ResidueKind::kProtein;
-    if ((known.is_amino_acid() || simulated.amino_acid != '\0') && (is_standard || has_alpha))
+    // HID and the like are standard ones by another name.
+    if (simulated.amino_acid != '\0' || (known.is_amino_acid() && (is_standard || has_alpha)))
       return ResidueKind::kProtein;
     const bool is_phosphate_only = residue.is_one_atom() && residue.has("P");
     if ((known.is_nucleic_acid() || simulated.base != '\0') && (is_standard || has_sugar || is_phosphate_only))
