@@ -10,8 +10,6 @@
 #include <fstream>
 #include <string>
 
-#if !defined(_WIN32)
-
 namespace {
 
 namespace fs = std::filesystem;
@@ -81,5 +79,3 @@ TEST_F(ControlGroups, InAContainer) {
 }
 
 }  // namespace
-
-#endif
