@@ -23,20 +23,23 @@ struct Files {
 constexpr Files kVersion2{"", "memory.max", "memory.current", "\ninactive_file "};
 constexpr Files kVersion1{"/memory", "memory.limit_in_bytes", "memory.usage_in_bytes", "\ntotal_inactive_file "};
 
-// A number in a file of a group; false if there is none, as "max".
-bool read_number(const char *folder, const char *name, uint64_t *number) {
+template <size_t kRoom>
+SmallFile<kRoom> file_in(const char *folder, const char *name) {
   char path[kPath + 64];
   std::snprintf(path, sizeof path, "%s/%s", folder, name);
-  const SmallFile<64> file(path);
+  return SmallFile<kRoom>(path);
+}
+
+// A number in a file of a group; false if there is none, as "max".
+bool read_number(const char *folder, const char *name, uint64_t *number) {
+  const auto file = file_in<64>(folder, name);
   char *end = nullptr;
   *number = std::strtoull(file.text(), &end, 10);
   return end != file.text();
 }
 
 uint64_t read_cache(const char *folder, const Files &files) {
-  char path[kPath + 64];
-  std::snprintf(path, sizeof path, "%s/memory.stat", folder);
-  const SmallFile<8192> file(path);
+  const auto file = file_in<8192>(folder, "memory.stat");
   const char *const line = std::strstr(file.text(), files.cache);
   return line ? std::strtoull(line + std::strlen(files.cache), nullptr, 10) : 0;
 }

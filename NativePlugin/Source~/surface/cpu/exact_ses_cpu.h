@@ -14,32 +14,32 @@ struct BrickColumns {
   GrowingBuffer<HostMemory> atom_memory, arc_memory;
   int atom_capacity = 512, arc_capacity = 1024;
 
+  // What is refused is not asked for again by bricks that need less.
+  void grow_atoms(int n) {
+    atom_memory.reserve(BrickScratch::kAtomColumns * (static_cast<size_t>(n) + 16) * sizeof(float));
+    atom_capacity = n;
+  }
+  void grow_arcs(int n) {
+    arc_memory.reserve(BrickScratch::kArcColumns * (static_cast<size_t>(n) + 16) * sizeof(float));
+    arc_capacity = n;
+  }
   BrickScratch scratch() {
-    const size_t atoms = BrickScratch::kAtomColumns * (static_cast<size_t>(atom_capacity) + 16);
-    const size_t arcs = BrickScratch::kArcColumns * (static_cast<size_t>(arc_capacity) + 16);
-    return {static_cast<float *>(atom_memory.reserve(atoms * sizeof(float))),
-            static_cast<float *>(arc_memory.reserve(arcs * sizeof(float))), atom_capacity, arc_capacity, vertex_memory};
+    grow_atoms(atom_capacity);
+    grow_arcs(arc_capacity);
+    return {static_cast<float *>(atom_memory.data()), static_cast<float *>(arc_memory.data()), atom_capacity,
+            arc_capacity, vertex_memory};
   }
   uint64_t bytes() const { return atom_memory.size() + arc_memory.size(); }
-  // True if the brick must be done again. What is refused is not asked for again by bricks that need less.
+  // True if the brick must be done again.
   bool grow(const BrickNeeds &needs) {
-    const int atoms = atom_capacity, arcs = arc_capacity;
-    if (needs.atoms > 0) atom_capacity = needs.atoms + needs.atoms / 2;
-    if (needs.arcs > 0) arc_capacity = needs.arcs + needs.arcs / 2;
-    try {
-      scratch();
-    } catch (...) {
-      atom_capacity = atoms;
-      arc_capacity = arcs;
-      throw;
-    }
+    if (needs.atoms > 0) grow_atoms(needs.atoms + needs.atoms / 2);
+    if (needs.arcs > 0) grow_arcs(needs.arcs + needs.arcs / 2);
     return needs.atoms > 0 || needs.arcs > 0;
   }
   // As much room as another thread needed: who meets the most crowded brick differs from surface to surface.
   void match(const BrickColumns &other) {
-    atom_capacity = std::max(atom_capacity, other.atom_capacity);
-    arc_capacity = std::max(arc_capacity, other.arc_capacity);
-    scratch();
+    grow_atoms(std::max(atom_capacity, other.atom_capacity));
+    grow_arcs(std::max(arc_capacity, other.arc_capacity));
   }
 };
 

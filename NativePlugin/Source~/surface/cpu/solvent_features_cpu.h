@@ -28,8 +28,8 @@ struct FeatureStaging {
   size_t most_caps = 0, most_arcs = 0;  // of any chunk so far
 
   AtomScratch scratch() {
-    const size_t needed = AtomScratch::kColumns * (static_cast<size_t>(capacity) + 16);
-    return {static_cast<float *>(memory.reserve(needed * sizeof(float))), capacity};
+    grow_neighbors(capacity);
+    return {static_cast<float *>(memory.data()), capacity};
   }
   // What is refused is not asked for again by atoms that need less.
   void grow_neighbors(int n) {
