@@ -140,5 +140,72 @@ namespace QuickSes.Tests
             yield return SurfaceRig.Until(() => doomed == null);
             yield return SurfaceRig.Frames(2);
         }
+
+        [UnityTest]
+        public IEnumerator WhoTriesAgainInFailedIsToldAgainInALaterFrame([Values] bool atOnce)
+        {
+            _rig = new SurfaceRig();
+            int nesting = 0, deepest = 0;
+            _rig.Surface.Failed += error =>
+            {
+                deepest = Math.Max(deepest, ++nesting);
+                if (atOnce && _rig.Failures.Count < 100)
+                    _rig.Surface.LoadSource();
+                else if (_rig.Failures.Count < 100)
+                    _rig.Surface.BeginLoadSource();
+                --nesting;
+            };
+            _rig.Surface.Source.SetFile("/no/such/file.pdb");
+            _rig.Surface.BeginLoadSource();
+            Assert.That(_rig.Failures.Count, Is.EqualTo(1));
+            yield return SurfaceRig.Until(() => _rig.Failures.Count == 3);
+            Assert.That(deepest, Is.EqualTo(1));
+        }
+
+        [UnityTest]
+        public IEnumerator WhoLoadsAgainInFailedOfAPlayerIsToldAgainInTheNextTick()
+        {
+            using (var playing = new PlayerFixture())
+            {
+                playing.Player.Failed += (frame, error) =>
+                {
+                    if (playing.Failures.Count < 100)
+                        playing.Player.Load();
+                };
+                playing.Player.StructureSource.SetFile("/no/such/file.pdb");
+                Assert.That(playing.Player.Load(), Is.False);
+                Assert.That(playing.Failures.Count, Is.EqualTo(1));
+                yield return SurfaceRig.Until(() => playing.Failures.Count == 3);
+                Assert.That(playing.FailedFrames, Is.All.EqualTo(-1));
+            }
+        }
+
+        [UnityTest]
+        public IEnumerator AHandlerOfFailedMayTakeAnotherFile()
+        {
+            using (var folder = new TestFolder())
+            using (var playing = new PlayerFixture())
+            {
+                string file = folder.Write("small.pdb", TestFrames.Pdb(2));
+                _rig = new SurfaceRig();
+                _rig.Surface.Failed += error =>
+                {
+                    _rig.Surface.Source.SetFile(file);
+                    _rig.Surface.BeginLoadSource();
+                };
+                _rig.Surface.Source.SetFile("/no/such/file.pdb");
+                _rig.Surface.BeginLoadSource();
+                playing.Player.Failed += (frame, error) =>
+                {
+                    playing.Player.StructureSource.SetFile(file);
+                    playing.Player.Load();
+                };
+                playing.Player.StructureSource.SetFile("/no/such/file.pdb");
+                playing.Player.Load();
+                yield return SurfaceRig.Until(() => _rig.Surface.AtomCount > 0 && playing.Player.ShownFrame == 0);
+                yield return SurfaceRig.Frames(3);
+                Assert.That((_rig.Failures.Count, playing.Failures.Count), Is.EqualTo((1, 1)));
+            }
+        }
     }
 }

@@ -166,6 +166,7 @@ namespace QuickSes
         {
             Session.FailToBegin(error);
             Session.RaiseEvents();
+            QueueEditorUpdate(); // for what was found by a handler of Failed
             return false;
         }
 

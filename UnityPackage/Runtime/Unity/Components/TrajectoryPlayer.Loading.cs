@@ -291,7 +291,7 @@ namespace QuickSes
             _prefetcher = null;
             _between?.Dispose();
             _between = null;
-            IsReady = _isWaiting = _isNewFrameUntold = false;
+            IsReady = _isWaiting = _isNewFrameUntold = _isFailureUntold = false;
             _untold = PlayHeadEvents.None;
             _shown = s_nothing;
             _damagedFrame = -1;

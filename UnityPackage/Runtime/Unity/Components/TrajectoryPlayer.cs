@@ -26,6 +26,7 @@ namespace QuickSes
         // Told at the end of a tick, or of the next one if a handler throws.
         [NonSerialized] private bool _isNewFrameUntold;
         [NonSerialized] private PlayHeadEvents _untold;
+        [NonSerialized] private bool _isFailureUntold, _isTellingFailure;
 
         // What the surface shows: _shown.From is -1 before the first frame, and where it has to be sent anew.
         private static readonly FrameBlend s_nothing = new FrameBlend(-1, -1, 0);
@@ -112,11 +113,16 @@ namespace QuickSes
             return _shown.From >= 0 && _shownInfo.HasTime;
         }
 
-        /// <summary>Plays from where it is; from the beginning if it was played once.</summary>
+        /// <summary>
+        /// Plays from where it is; from the beginning, with a negative rate the last frame, if it was played once.
+        /// </summary>
         public void Play()
         {
             _isPlaying = true;
-            if (IsReady && _head.IsAtEnd)
+            if (!IsReady)
+                return;
+            SteerHead();
+            if (_head.IsAtEnd)
                 _head.Rewind();
         }
 
@@ -127,6 +133,7 @@ namespace QuickSes
         public void Stop()
         {
             _isPlaying = false;
+            SteerHead();
             _head.Rewind();
             SetPlace(IsReady ? _head.Position : 0);
             _chosenFrame = -1;
@@ -192,11 +199,17 @@ namespace QuickSes
                 TickFrames(seconds);
         }
 
-        private void TickFrames(float seconds)
+        // The way it is to go, which the inspector may have changed as well.
+        private void SteerHead()
         {
             _head.SetMode(_mode);
             if (_framesPerSecond != 0)
                 _head.SetSign(_framesPerSecond > 0 ? 1 : -1);
+        }
+
+        private void TickFrames(float seconds)
+        {
+            SteerHead();
             if (_isPlaying && !_isWaiting)
             {
                 PlayHeadEvents passed = _head.Advance(seconds * Math.Abs((double)_framesPerSecond));
@@ -213,6 +226,7 @@ namespace QuickSes
         // finished as long as it waits for the last frame.
         private void TellAll()
         {
+            TellFailure();
             if (_isNewFrameUntold)
             {
                 _isNewFrameUntold = false;
@@ -244,8 +258,7 @@ namespace QuickSes
             if (_prefetcher.Warning != null)
                 Debug.LogWarning($"{name}: {_prefetcher.Warning}", this);
             _head = new PlayHead(_prefetcher.FrameCount, _mode);
-            if (_framesPerSecond < 0)
-                _head.SetSign(-1);
+            SteerHead();
             _head.MoveTo(_frame);
             if (_isPlaying && _head.IsAtEnd)
                 _head.Rewind();
@@ -322,8 +335,27 @@ namespace QuickSes
             if (_played.Length == 0)
                 ReleaseSurfaces();
             LastError = new QuickSesError(error.Status, $"{what}: {error.Message}");
-            RaiseFailed(-1);
+            _isFailureUntold = true;
+            TellFailure();
+            RequestUpdate();
             return false;
+        }
+
+        // What fails at once when a handler tries again is told in the next tick, or that would never end.
+        private void TellFailure()
+        {
+            if (!_isFailureUntold || _isTellingFailure)
+                return;
+            _isFailureUntold = false;
+            _isTellingFailure = true;
+            try
+            {
+                RaiseFailed(-1);
+            }
+            finally
+            {
+                _isTellingFailure = false;
+            }
         }
 
         private bool AreAtomsInPlace()

@@ -25,6 +25,7 @@ namespace QuickSes
         private bool _updated; // events to be raised
         private bool _finished;
         private bool _failed;
+        private bool _isTellingFailure;
 
         public SurfaceSession(ISurfaceHost host)
         {
@@ -129,7 +130,7 @@ namespace QuickSes
 
         /// <summary>
         /// Raises what happened since the last time and is still so. Handlers may do anything; what one that throws
-        /// leaves is raised the next time.
+        /// leaves is raised the next time. So is what fails at once when a handler tries again, or that would never end.
         /// </summary>
         public void RaiseEvents()
         {
@@ -144,11 +145,24 @@ namespace QuickSes
                 if (IsDone && Atoms.IsSet)
                     _host.OnFinished();
             }
-            if (_failed && !IsDisposed)
+            if (_failed && !IsDisposed && !_isTellingFailure)
             {
                 _failed = false;
                 if (LastError.Status != QuickSesStatus.Ok)
-                    _host.OnFailed(LastError);
+                    TellFailure();
+            }
+        }
+
+        private void TellFailure()
+        {
+            _isTellingFailure = true;
+            try
+            {
+                _host.OnFailed(LastError);
+            }
+            finally
+            {
+                _isTellingFailure = false;
             }
         }
 
