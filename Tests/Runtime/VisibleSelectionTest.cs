@@ -121,6 +121,33 @@ namespace QuickSes.Tests
             Assert.That(Surface.VisibleSelectionError, Does.Contain("//[["));
         }
 
+        [UnityTest]
+        public IEnumerator WhatCantBeUnderstoodOfAtomsThatAreReadAgainHidesNone()
+        {
+            Load(Chains);
+            yield return _rig.Settle();
+            int all = Triangles();
+            Surface.SetVisible("//B");
+            Surface.SetVisible("//[[");
+            LogAssert.Expect(LogType.Warning, new Regex("all atoms are shown.*//\\[\\["));
+            Load(Chains); // as many atoms, with the same radii
+            yield return _rig.Settle();
+            Assert.That(Triangles(), Is.EqualTo(all));
+        }
+
+        [Test]
+        public void ASelectionThatNamesNoAtomIsTold()
+        {
+            Load(Chains);
+            Assert.That(Surface.SetVisible("chain C"), Is.True, "it is understood");
+            Assert.That(Surface.VisibleSelectionError, Does.Contain("'chain C'").And.Contain("chains A, B"));
+            Surface.VisibleSelection = "chain B";
+            Assert.That(Surface.VisibleSelectionError, Is.Empty);
+            LogAssert.Expect(LogType.Warning, new Regex("no atom.*'chain B'.*chain A$"));
+            Load(Chains.Replace(" B ", " A "));
+            Assert.That(Surface.VisibleSelectionError, Does.Contain("names none"));
+        }
+
         [Test]
         public void TheStructureStaysOpenWhileSomebodyAsks()
         {

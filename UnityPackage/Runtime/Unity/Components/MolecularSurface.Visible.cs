@@ -3,12 +3,15 @@
 // rest. What was set last counts; a selection is looked at again whenever a file is read.
 using System;
 using System.Buffers;
+using System.Collections.Generic;
 using UnityEngine;
 
 namespace QuickSes
 {
     public sealed partial class MolecularSurface
     {
+        private const int MostNamedChains = 12;
+
         [NonSerialized] private string _followedVisible; // what _visible was when it was looked at last
         [NonSerialized] private string _visibleError;
 
@@ -23,7 +26,8 @@ namespace QuickSes
         }
 
         /// <summary>
-        /// Why <see cref="VisibleSelection"/> hides nothing, as of the last time it was looked at; "" if it does.
+        /// Why <see cref="VisibleSelection"/> hides nothing, or everything since it names no atom, as of the last time it
+        /// was looked at; else "".
         /// </summary>
         public string VisibleSelectionError => _visibleError ?? "";
 
@@ -42,11 +46,13 @@ namespace QuickSes
         /// Shows the atoms that a selection names, and hides all others; the surface is that of all atoms, cut open where
         /// they are hidden. It is kept (<see cref="VisibleSelection"/>), and holds for atoms of files that are read
         /// later as well. Atoms must be of a file: those of scripts have no names. Reads the file again, if it is not
-        /// open: see <see cref="Structure"/>.
+        /// open: see <see cref="Structure"/>. Distances are between places in the file, also where atoms have moved since:
+        /// <see cref="AtomCuts"/> goes by <see cref="Positions"/>.
         /// </summary>
         /// <param name="selection">Words or CID: "protein", "within 5 of ligand", "//A/10-40"; "": all.</param>
         /// <returns>
-        /// False: <see cref="VisibleSelectionError"/> says why; what was shown stays. True where there are no atoms yet.
+        /// False: <see cref="VisibleSelectionError"/> says why; what was shown stays. True where there are no atoms yet,
+        /// and where it names none of them, which VisibleSelectionError tells too.
         /// </returns>
         public bool SetVisible(string selection)
         {
@@ -77,8 +83,14 @@ namespace QuickSes
         {
             _followedVisible = VisibleSelection;
             _visibleError = "";
-            if (VisibleSelection.Length > 0 && !ShowSelectionOf(structure))
-                Debug.LogWarning($"{name}: all atoms are shown, since {_visibleError}", this);
+            if (VisibleSelection.Length == 0)
+                return;
+            bool isUnderstood = ShowSelectionOf(structure);
+            if (!isUnderstood)
+                SetVisible(default(ReadOnlySpan<bool>));
+            if (_visibleError.Length > 0)
+                Debug.LogWarning(
+                    isUnderstood ? $"{name}: {_visibleError}" : $"{name}: all atoms are shown, since {_visibleError}", this);
         }
 
         private bool ShowSelectionOf(Structure structure)
@@ -86,12 +98,33 @@ namespace QuickSes
             int count = structure.AtomCount;
             bool[] rented = ArrayPool<bool>.Shared.Rent(count);
             Span<bool> mask = rented.AsSpan(0, count);
-            bool isUnderstood = structure.TrySelect(VisibleSelection, mask, out _, out QuickSesError error);
+            bool isUnderstood = structure.TrySelect(VisibleSelection, mask, out int named, out QuickSesError error);
             if (isUnderstood)
                 SetVisible(mask);
             ArrayPool<bool>.Shared.Return(rented);
-            _visibleError = error.Message;
+            _visibleError = !isUnderstood || named > 0 || count == 0 ? error.Message
+                : $"no atom is shown: the selection '{VisibleSelection}' names none; the structure has " +
+                    ChainsOf(structure);
             return isUnderstood;
+        }
+
+        // The first of them, for a sentence.
+        private static string ChainsOf(Structure structure)
+        {
+            var chains = new List<string>();
+            ReadOnlySpan<uint> residues = structure.Residues;
+            for (int i = 0; i < residues.Length; ++i)
+            {
+                if (i > 0 && residues[i] == residues[i - 1])
+                    continue;
+                string chain = structure.GetAtom(i).Chain;
+                if (chain.Length == 0 || chains.Contains(chain))
+                    continue;
+                if (chains.Count == MostNamedChains)
+                    return $"chains {string.Join(", ", chains)}, ...";
+                chains.Add(chain);
+            }
+            return chains.Count == 0 ? "no chains" : (chains.Count == 1 ? "chain " : "chains ") + string.Join(", ", chains);
         }
     }
 }
