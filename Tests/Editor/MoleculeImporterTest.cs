@@ -2,10 +2,12 @@
 using NUnit.Framework;
 using QuickSes.Editor;
 using System;
+using System.Collections;
 using System.IO;
 using UnityEditor;
 using UnityEditor.AssetImporters;
 using UnityEngine;
+using UnityEngine.TestTools;
 
 namespace QuickSes.Tests
 {
@@ -13,6 +15,7 @@ namespace QuickSes.Tests
     public sealed class MoleculeImporterTest
     {
         private const string Folder = "Assets/QuickSes importer test";
+        private const int MostFrames = 100000;
         private const string Pdb =
             "ATOM      1  CA  ALA A   1      11.639   6.071  -5.147  1.00  0.00           C\n";
 
@@ -60,6 +63,20 @@ namespace QuickSes.Tests
             Assert.That(surface.name, Is.EqualTo("a"));
             Assert.That(surface.LoadSource(), Is.True, surface.LastError.Message);
             Assert.That(surface.AtomCount, Is.EqualTo(1));
+        }
+
+        [UnityTest]
+        public IEnumerator WhatIsImportedAnewIsShown()
+        {
+            var source = new MoleculeSource();
+            source.SetAsset(Import("a.pdb", Pdb));
+            MolecularSurface surface = _created.Keep(SurfaceCreator.Create(source, null));
+            Assert.That(surface.LoadSource(), Is.True, surface.LastError.Message);
+            Assert.That(surface.AtomCount, Is.EqualTo(1));
+            Import("a.pdb", Pdb + Pdb.Replace("ALA A   1      11", "ALA A   2      15"));
+            for (int frame = 0; frame < MostFrames && surface.AtomCount != 2; ++frame)
+                yield return null;
+            Assert.That(surface.AtomCount, Is.EqualTo(2));
         }
 
         [Test]

@@ -195,7 +195,7 @@ namespace QuickSes.Tests
         }
 
         [Test]
-        public void AFileThatBecameAnotherIsToldOnce()
+        public void AFileThatBecameAnotherIsToldOnce([Values] bool isAsLong)
         {
             string path = System.IO.Path.GetTempFileName();
             try
@@ -204,8 +204,9 @@ namespace QuickSes.Tests
                 Surface.Source.SetFile(path);
                 Surface.Source.Format = StructureFormat.Pdb;
                 Assert.That(Surface.LoadSource(), Is.True, Surface.LastError.ToString());
-                System.IO.File.WriteAllText(path, Chains.Substring(Chains.IndexOf('\n') + 1));
-                LogAssert.Expect(LogType.Warning, new Regex("4 atoms now, not 5"));
+                System.IO.File.WriteAllText(path, isAsLong ? Chains.Replace("  15.000", "  25.000")
+                    : Chains.Substring(Chains.IndexOf('\n') + 1));
+                LogAssert.Expect(LogType.Warning, new Regex(isAsLong ? "other atoms now" : "4 atoms now, not 5"));
                 Assert.That(Surface.Structure, Is.Null);
                 Assert.That(Surface.Structure, Is.Null);
                 Assert.That(Surface.SetVisible("//A"), Is.False);

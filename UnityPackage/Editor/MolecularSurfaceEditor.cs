@@ -124,6 +124,11 @@ namespace QuickSes.Editor
                     if (GUILayout.Button(new GUIContent("Compute", "Computes the surface again.")))
                         Compute();
                 }
+                using (new EditorGUI.DisabledScope(!CanAnyReload()))
+                {
+                    if (GUILayout.Button(new GUIContent("Reload", "Reads the source again.")))
+                        Reload();
+                }
                 using (new EditorGUI.DisabledScope(!IsAnyBusy()))
                 {
                     if (GUILayout.Button(new GUIContent("Cancel", "Ends the computation. What is shown stays.")))
@@ -161,6 +166,20 @@ namespace QuickSes.Editor
             }
         }
 
+        // What a player brings, it reads again itself.
+        private static bool CanReload(MolecularSurface surface) =>
+            IsLive(surface) && surface.Source.IsSet && !surface.IsPlayed;
+
+        private void Reload()
+        {
+            foreach (Object each in targets)
+            {
+                var surface = (MolecularSurface)each;
+                if (CanReload(surface))
+                    surface.BeginLoadSource();
+            }
+        }
+
         private void Cancel()
         {
             foreach (Object each in targets)
@@ -178,6 +197,16 @@ namespace QuickSes.Editor
             foreach (Object each in targets)
             {
                 if (IsLive((MolecularSurface)each))
+                    return true;
+            }
+            return false;
+        }
+
+        private bool CanAnyReload()
+        {
+            foreach (Object each in targets)
+            {
+                if (CanReload((MolecularSurface)each))
                     return true;
             }
             return false;

@@ -123,7 +123,7 @@ namespace QuickSes
             _surface, _method, _probeRadius, _gaussianRadiusScale, _gaussianIsovalue, _spacing, _levels, _relaxationSteps, _sharpCreases,
             _ambientOcclusion, _measureComponents, _compactVertices, _backend);
 
-        /// <summary>The player beside it leaves the source to it, which may have been edited meanwhile.</summary>
+        /// <summary>The source may be another one: it was left to a player, or its asset was imported anew.</summary>
         internal void FollowSourceSoon()
         {
             _isEdited = true;

@@ -12,6 +12,7 @@ namespace QuickSes
         [NonSerialized] private bool _keepsStructure; // somebody asked for it
         [NonSerialized] private bool _areAtomsOfSource;
         [NonSerialized] private MoleculeSource _atomsSource; // then: as it was when it was read
+        [NonSerialized] private int _atomsHash; // then: what was read
 
         /// <summary>
         /// What the file says about the atoms, in their order: names, residues, chains, selections. null if they are not of
@@ -19,7 +20,7 @@ namespace QuickSes
         /// <para>The first question reads the file again, which blocks; from then on the structure stays open, and is
         /// exchanged when the source is read anew, until other atoms are set, the component is disabled or destroyed,
         /// or <see cref="CloseStructure"/>. <see cref="Structure.MemoryBytes"/> tells what that costs: about 200 bytes
-        /// per atom. Of atoms that a <see cref="TrajectoryPlayer"/> brings, it is the player's, which is open as long as
+        /// per atom. If the file has other atoms by then, or at other places, it is null, with a warning. Of atoms that a <see cref="TrajectoryPlayer"/> brings, it is the player's, which is open as long as
         /// the player has them.</para>
         /// </summary>
         public Structure Structure
@@ -71,6 +72,7 @@ namespace QuickSes
             ForgetStructure();
             _areAtomsOfSource = true;
             _atomsSource = _loadedSource;
+            _atomsHash = loaded.AtomsHash;
             _ownsStructure = _keepsStructure;
             if (_keepsStructure)
                 _structure = loaded.TakeStructure();
@@ -100,6 +102,8 @@ namespace QuickSes
                 fault = error.Message;
             else if (structure.AtomCount != AtomCount)
                 fault = $"it has {structure.AtomCount} atoms now, not {AtomCount}";
+            else if (LoadedStructure.HashOfAtoms(structure) != _atomsHash)
+                fault = "it has other atoms now, or at other places";
             if (fault == null)
             {
                 _structure = structure;

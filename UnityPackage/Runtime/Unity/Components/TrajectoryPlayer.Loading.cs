@@ -268,6 +268,7 @@ namespace QuickSes
             _played = Array.Empty<PlayedAtoms>();
             ReleaseSurfaces();
             _loadedStructureSource = null;
+            _loadedTrajectorySource = null;
             _loadedSurfaces.Clear();
             _isLoadRequested = _isLoadDeferred = _areColorsRequested = _isWish = false;
         }

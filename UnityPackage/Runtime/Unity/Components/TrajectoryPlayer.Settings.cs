@@ -175,7 +175,11 @@ namespace QuickSes
         }
 
 #if UNITY_EDITOR
-        private void OnValidate()
+        private void OnValidate() => FollowEdits();
+#endif
+
+        /// <summary>The inspector, Undo or a prefab wrote its fields, or an asset was imported anew.</summary>
+        internal void FollowEdits()
         {
             if (!isActiveAndEnabled)
                 return;
@@ -186,7 +190,6 @@ namespace QuickSes
             FollowColorScheme();
             RequestUpdate();
         }
-#endif
 
         /// <summary>The source of the surface beside it may have been edited.</summary>
         /// <returns>Whether the player reads it, or will look into it, so that the surface leaves it alone.</returns>

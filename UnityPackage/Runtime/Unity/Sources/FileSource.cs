@@ -19,6 +19,7 @@ namespace QuickSes
         private MoleculeAsset _molecule;
         [SerializeField, Tooltip("Absolute, or relative to Assets/StreamingAssets.")]
         private string _path = "";
+        [NonSerialized] private byte[] _keptContent; // of the molecule, by copies of a source
 
         private protected FileSource()
         {
@@ -67,7 +68,7 @@ namespace QuickSes
         }
 
         internal bool TryFind(out MoleculeFile file, out QuickSesError error) =>
-            MoleculeFile.TryFind(_kind, _asset, _molecule, _path, out file, out error);
+            MoleculeFile.TryFind(_kind, _asset, _molecule, Content, _path, out file, out error);
 
         private protected void CopyFileFrom(FileSource other)
         {
@@ -79,5 +80,14 @@ namespace QuickSes
 
         private protected bool HasSameFileAs(FileSource other) =>
             _kind == other._kind && _asset == other._asset && _molecule == other._molecule && Path == other.Path;
+
+        /// <summary>Of a copy: a new import of the molecule does not change what is in it.</summary>
+        private protected void KeepContent() => _keptContent = Content;
+
+        /// <summary>Also that the molecule was not imported anew since one of them was copied.</summary>
+        private protected bool HasSameContentAs(FileSource other) => HasSameFileAs(other) &&
+            (_kind != MoleculeSourceKind.MoleculeAsset || _molecule == null || Content == other.Content);
+
+        private byte[] Content => _keptContent ?? (_molecule != null ? _molecule.Content : null);
     }
 }

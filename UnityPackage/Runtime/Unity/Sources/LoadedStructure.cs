@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 using System;
+using System.Runtime.InteropServices;
 using UnityEngine;
 
 namespace QuickSes
@@ -37,11 +38,26 @@ namespace QuickSes
         {
             Structure = structure;
             UnitySpace.FromFile(structure.Positions, _positions.Resize(structure.AtomCount));
+            AtomsHash = HashOfAtoms(structure);
             Color(colorScheme);
         }
 
         /// <summary>Open until Dispose, unless somebody else took it: null then.</summary>
         public Structure Structure { get; private set; }
+
+        /// <summary><see cref="HashOfAtoms"/> of the structure.</summary>
+        public int AtomsHash { get; }
+
+        /// <summary>The same for the same atoms at the same places, as long as the program runs.</summary>
+        public static int HashOfAtoms(Structure structure)
+        {
+            var hash = new HashCode();
+            foreach (int bits in MemoryMarshal.Cast<float, int>(structure.Positions))
+                hash.Add(bits);
+            foreach (int bits in MemoryMarshal.Cast<float, int>(structure.Radii))
+                hash.Add(bits);
+            return hash.ToHashCode();
+        }
 
         /// <summary>From now on it is the caller's to dispose of.</summary>
         public Structure TakeStructure()

@@ -83,9 +83,11 @@ namespace QuickSes
         /// <summary>Frees the copy, if there is one.</summary>
         public void Dispose() => _copy?.Dispose();
 
-        /// <summary>false: <paramref name="error"/> names what is missing.</summary>
-        public static bool TryFind(MoleculeSourceKind kind, TextAsset asset, MoleculeAsset molecule, string path,
-            out MoleculeFile file, out QuickSesError error)
+        /// <summary>
+        /// <paramref name="content"/> is that of the molecule. false: <paramref name="error"/> names what is missing.
+        /// </summary>
+        public static bool TryFind(MoleculeSourceKind kind, TextAsset asset, MoleculeAsset molecule, byte[] content,
+            string path, out MoleculeFile file, out QuickSesError error)
         {
             file = null;
             switch (kind)
@@ -95,7 +97,7 @@ namespace QuickSes
                 case MoleculeSourceKind.TextAsset:
                     return TryFindText(asset, out file, out error);
                 case MoleculeSourceKind.MoleculeAsset:
-                    return TryFindMolecule(molecule, out file, out error);
+                    return TryFindMolecule(molecule, content, out file, out error);
                 case MoleculeSourceKind.StreamingAssets:
                     return TryFindStreamed(Application.streamingAssetsPath, path, out file, out error);
                 case MoleculeSourceKind.File:
@@ -136,14 +138,15 @@ namespace QuickSes
             return true;
         }
 
-        private static bool TryFindMolecule(MoleculeAsset asset, out MoleculeFile file, out QuickSesError error)
+        private static bool TryFindMolecule(MoleculeAsset asset, byte[] content, out MoleculeFile file,
+            out QuickSesError error)
         {
             file = null;
             if (asset == null)
                 return Fail(QuickSesStatus.InvalidArgument, "no molecule asset is chosen", out error);
-            if (asset.Size == 0)
+            if (content.Length == 0)
                 return Fail(QuickSesStatus.FileError, $"the molecule asset '{asset.FileName}' is empty", out error);
-            file = new MoleculeFile(asset.FileName, null, null, asset.Content);
+            file = new MoleculeFile(asset.FileName, null, null, content);
             error = default;
             return true;
         }

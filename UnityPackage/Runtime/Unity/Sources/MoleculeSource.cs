@@ -91,7 +91,13 @@ namespace QuickSes
             return source;
         }
 
-        internal MoleculeSource Copy() => (MoleculeSource)MemberwiseClone();
+        /// <summary>As it is now, also if its asset is imported anew later.</summary>
+        internal MoleculeSource Copy()
+        {
+            var copy = (MoleculeSource)MemberwiseClone();
+            copy.KeepContent();
+            return copy;
+        }
 
         internal void CopyFrom(MoleculeSource other)
         {
@@ -109,7 +115,7 @@ namespace QuickSes
         }
 
         /// <summary>Whether the other would read the same atoms; colours may differ.</summary>
-        internal bool IsSameAs(MoleculeSource other) => HasSameFileAs(other) && _format == other._format &&
+        internal bool IsSameAs(MoleculeSource other) => HasSameContentAs(other) && _format == other._format &&
             _model == other._model && Assembly == other.Assembly && AlternateLocation == other.AlternateLocation &&
             _skipWater == other._skipWater && _skipHydrogen == other._skipHydrogen &&
             _skipHetero == other._skipHetero && Selection == other.Selection && Radii == other.Radii;

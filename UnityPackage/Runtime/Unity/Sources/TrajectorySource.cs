@@ -28,7 +28,13 @@ namespace QuickSes
 
         internal bool HasFileOf(FileSource source) => HasSameFileAs(source);
 
-        internal TrajectorySource Copy() => (TrajectorySource)MemberwiseClone();
+        /// <summary>As it is now, also if its asset is imported anew later.</summary>
+        internal TrajectorySource Copy()
+        {
+            var copy = (TrajectorySource)MemberwiseClone();
+            copy.KeepContent();
+            return copy;
+        }
 
         internal void CopyFrom(TrajectorySource other)
         {
@@ -36,6 +42,6 @@ namespace QuickSes
             _format = other._format;
         }
 
-        internal bool IsSameAs(TrajectorySource other) => HasSameFileAs(other) && _format == other._format;
+        internal bool IsSameAs(TrajectorySource other) => HasSameContentAs(other) && _format == other._format;
     }
 }
