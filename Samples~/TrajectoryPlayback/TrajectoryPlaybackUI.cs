@@ -95,7 +95,7 @@ namespace QuickSes.Samples
 
             float frame = (float)_player.Frame;
             float last = Mathf.Max(1, _player.FrameCount - 1);
-            float wanted = Slider($"Model {Mathf.FloorToInt(frame) + 1} of {_player.FrameCount}", frame, 0, last);
+            float wanted = Slider($"Model {_player.ShownFrame + 1} of {_player.FrameCount}", frame, 0, last);
             if (wanted != frame)
                 _player.Frame = wanted;
             _player.FramesPerSecond =

@@ -34,6 +34,21 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
+        public IEnumerator LevelsToo()
+        {
+            Engine.EnterEditMode();
+            var rig = new SurfaceRig();
+            Inspector.Set(rig.Surface, "_levels", new[] { 150, 1, -5, float.NaN });
+            Assert.That(rig.Surface.Levels, Is.EqualTo(new[]
+                { SurfaceSettings.MaxSpacing, 1, SurfaceSettings.MinSpacing, SurfaceSettings.MinSpacing }));
+            Inspector.Set(rig.Surface, "_levels", new float[SurfaceSettings.MaxLevels + 2]);
+            Assert.That(rig.Surface.Levels.Length, Is.EqualTo(SurfaceSettings.MaxLevels));
+            Assert.That(() => rig.Surface.Levels = rig.Surface.Levels, Throws.Nothing);
+            rig.Dispose();
+            yield return null;
+        }
+
+        [UnityTest]
         public IEnumerator GaussianSettingsToo()
         {
             Engine.EnterEditMode();

@@ -56,6 +56,18 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
+        public IEnumerator TheModelThatIsShownIsNamedOnTheWayBackToo()
+        {
+            yield return SurfaceRig.Until(() => _player.ShownFrame >= 0);
+            _player.Pause();
+            _player.FramesPerSecond = -1;
+            yield return null;
+            _player.Frame = 3.2;
+            yield return SurfaceRig.Until(() => _player.ShownFrame == 4);
+            Assert.That(Engine.Gui(), Has.Member("Model 5 of 116"));
+        }
+
+        [UnityTest]
         public IEnumerator TheMouseTurnsTheCamera()
         {
             yield return SurfaceRig.Until(() => _surface.CurrentLevel.LevelCount > 0);

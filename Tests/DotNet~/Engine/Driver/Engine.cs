@@ -113,15 +113,18 @@ namespace QuickSes.EngineDouble
         /// <summary>
         /// OnGUI of all scripts, for one event of each of the given types, or for Layout and Repaint.
         /// </summary>
-        public static void Gui(params EventType[] types)
+        /// <returns>The labels of the last one.</returns>
+        public static IReadOnlyList<string> Gui(params EventType[] types)
         {
             foreach (EventType type in types.Length > 0 ? types : new[] { EventType.Layout, EventType.Repaint })
             {
                 Event.current = new Event { type = type };
+                GUILayout.Labels.Clear();
                 Lifecycle.Broadcast(Message.OnGUI);
             }
 
             Event.current = null;
+            return GUILayout.Labels;
         }
 
         /// <summary>

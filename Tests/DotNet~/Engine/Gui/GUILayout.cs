@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+using System.Collections.Generic;
 
 namespace UnityEngine
 {
@@ -40,6 +41,9 @@ namespace UnityEngine
     {
         private static readonly GUILayoutOption s_option = new GUILayoutOption();
 
+        /// <summary>Of the last event, in order.</summary>
+        internal static readonly List<string> Labels = new List<string>();
+
         public static GUILayoutOption Width(float width) => s_option;
 
         public static void BeginArea(Rect screenRect, GUIStyle style)
@@ -62,9 +66,7 @@ namespace UnityEngine
         {
         }
 
-        public static void Label(string text, params GUILayoutOption[] options)
-        {
-        }
+        public static void Label(string text, params GUILayoutOption[] options) => Labels.Add(text);
 
         public static bool Button(string text, params GUILayoutOption[] options) => false;
 

@@ -109,10 +109,19 @@ namespace QuickSes
 
         private void OnValidate()
         {
+            FollowSettings();
+            if (_session != null && !_session.IsDisposed)
+                _isEdited = true; // the rest later: files are not read and meshes not set while values are validated
+        }
+
+        // The engine calls it after an animation, or its preview in the Editor, wrote serialised fields.
+        private void OnDidApplyAnimationProperties() => FollowSettings();
+
+        private void FollowSettings()
+        {
             LimitSettings();
             if (_session == null || _session.IsDisposed)
                 return;
-            _isEdited = true; // the rest later: files are not read and meshes not set while values are validated
             _session.Atoms.SetBaseColor(Number(_baseColor));
             if (!ShapeSettings().Equals(_editedFrom))
                 ShapeSettingChanged();

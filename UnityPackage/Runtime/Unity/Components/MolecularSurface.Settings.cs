@@ -196,7 +196,7 @@ namespace QuickSes
             ? value
             : throw new ArgumentOutOfRangeException(nameof(value), value, $"there is no such {typeof(T).Name}");
 
-        // What the inspector takes, and files may hold.
+        // What the inspector takes, animations write, and files may hold.
         private void LimitSettings()
         {
             _probeRadius = Limited(_probeRadius, 0, SurfaceSettings.MaxProbeRadius);
@@ -205,6 +205,10 @@ namespace QuickSes
             _gaussianIsovalue = Limited(
                 _gaussianIsovalue, SurfaceSettings.MinGaussianIsovalue, SurfaceSettings.MaxGaussianIsovalue);
             _spacing = Limited(_spacing, SurfaceSettings.MinSpacing, SurfaceSettings.MaxSpacing);
+            if (_levels.Length > SurfaceSettings.MaxLevels)
+                Array.Resize(ref _levels, SurfaceSettings.MaxLevels);
+            for (int i = 0; i < _levels.Length; ++i)
+                _levels[i] = Limited(_levels[i], SurfaceSettings.MinSpacing, SurfaceSettings.MaxSpacing);
             _relaxationSteps = Math.Min(Math.Max(_relaxationSteps, 0), SurfaceSettings.MaxRelaxationSteps);
             _frameBudget = Limited(_frameBudget, 0, SurfaceSettings.MaxFrameBudget);
             _restDelay = Limited(_restDelay, 0, float.PositiveInfinity);

@@ -103,7 +103,9 @@ namespace QuickSes
         /// <summary>0 until it is loaded.</summary>
         public int FrameCount => IsReady ? _head.FrameCount : 0;
 
-        /// <summary>The frame the surface was given last, or a place right behind it; -1: none yet.</summary>
+        /// <summary>
+        /// The frame the surface was given last, or a place right behind it in playing direction; -1: none yet.
+        /// </summary>
         public int ShownFrame => _shown.From;
 
         /// <summary>Picoseconds at <see cref="ShownFrame"/>, if the file tells.</summary>
