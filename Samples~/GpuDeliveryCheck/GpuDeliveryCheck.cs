@@ -23,7 +23,10 @@ namespace QuickSes.Samples
         private Vector3[] _start;
         private Vector3[] _positions;
         private int _shown;
+        private bool _isStuck; // nothing more will be shown
         private string _doing = "";
+        private SurfaceDelivery _deliveryBefore;
+        private GpuMeshPlan _planBefore;
 
         /// <summary>Whether nothing more will come.</summary>
         public bool IsDone { get; private set; }
@@ -40,14 +43,16 @@ namespace QuickSes.Samples
         private void OnEnable()
         {
             _surface.SurfaceUpdated += CountSurface;
+            _deliveryBefore = SurfaceScheduler.Delivery;
+            _planBefore = SurfaceScheduler.GpuMeshPlan;
             StartCoroutine(Check());
         }
 
         private void OnDisable()
         {
             _surface.SurfaceUpdated -= CountSurface;
-            SurfaceScheduler.Delivery = SurfaceDelivery.Host;
-            SurfaceScheduler.GpuMeshPlan = GpuMeshPlan.SubMeshPerFrame;
+            SurfaceScheduler.Delivery = _deliveryBefore;
+            SurfaceScheduler.GpuMeshPlan = _planBefore;
         }
 
         private void CountSurface(SurfaceLevel level) => ++_shown;
@@ -64,24 +69,32 @@ namespace QuickSes.Samples
             yield return Rest();
             foreach (GpuMeshPlan plan in new[] { GpuMeshPlan.SubMeshPerFrame, GpuMeshPlan.WholeBuffers })
             {
-                SurfaceScheduler.GpuMeshPlan = plan;
-                SurfaceScheduler.Delivery = SurfaceDelivery.Device; // what failed is tried again
-                for (int frame = 0; frame < MovedFrames; ++frame)
-                    yield return Move(plan, frame);
-                yield return Rest();
-                Compare(plan + ", after moving");
-                for (int frame = 0; frame < RestedFrames; ++frame)
-                    yield return null;
-                Compare(plan + ", some frames later");
-                _surface.SetColors(Array.ConvertAll(_start, place => new Color32((byte)(4 * place.x), 90, 200, 255)));
-                yield return Rest();
-                Compare(plan + ", in other colours");
+                if (!_isStuck)
+                    yield return Try(plan);
             }
             _doing = "Please report these lines, and whether the molecule was to be seen all the time.";
             IsDone = true;
         }
 
-        // Until a surface of it is shown.
+        private IEnumerator Try(GpuMeshPlan plan)
+        {
+            SurfaceScheduler.GpuMeshPlan = plan;
+            SurfaceScheduler.Delivery = SurfaceDelivery.Device; // what failed is tried again
+            for (int frame = 0; frame < MovedFrames && !_isStuck; ++frame)
+                yield return Move(plan, frame);
+            if (_isStuck)
+                yield break;
+            yield return Rest();
+            Compare(plan + ", after moving");
+            for (int frame = 0; frame < RestedFrames; ++frame)
+                yield return null;
+            Compare(plan + ", some frames later");
+            _surface.SetColors(Array.ConvertAll(_start, place => new Color32((byte)(4 * place.x), 90, 200, 255)));
+            yield return Rest();
+            Compare(plan + ", in other colours");
+        }
+
+        // Until a surface of it is shown, or none will be.
         private IEnumerator Move(GpuMeshPlan plan, int frame)
         {
             _doing = $"{plan}: surface {frame + 1} of {MovedFrames}";
@@ -89,8 +102,10 @@ namespace QuickSes.Samples
                 _positions[i] = _start[i] + 0.4f * Mathf.Sin(0.2f * frame + i) * Vector3.up;
             int before = _shown;
             _surface.SetPositions(_positions);
-            for (double end = Now + Patience; _shown == before && Now < end;)
+            for (double end = Now + Patience; _shown == before && !HasFailed && Now < end;)
                 yield return null;
+            if (_shown == before)
+                GiveUp($"{_doing} was not shown");
         }
 
         private IEnumerator Rest()
@@ -99,8 +114,16 @@ namespace QuickSes.Samples
                 yield return null;
             for (int frame = 0; frame < 3; ++frame)
                 yield return null;
-            if (_surface.LastError.Status != QuickSesStatus.Ok)
-                Note(_surface.LastError.Message, false);
+            if (HasFailed)
+                GiveUp("no surface");
+        }
+
+        private bool HasFailed => _surface.LastError.Status != QuickSesStatus.Ok;
+
+        private void GiveUp(string what)
+        {
+            _isStuck = true;
+            Note(HasFailed ? $"{what}: {_surface.LastError.Message}" : what, false);
         }
 
         private void Compare(string when)

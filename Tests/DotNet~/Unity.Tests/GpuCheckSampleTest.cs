@@ -45,6 +45,27 @@ namespace QuickSes.Tests
             Assert.That(_check.Outcome, Does.Contain("another GPU draws").And.Not.Contain("good"));
         }
 
+        [UnityTest]
+        public IEnumerator ItEndsWhereNothingCanBeComputed()
+        {
+            _gpu.Surface.Spacing = SurfaceSettings.MinSpacing; // too fine
+            yield return Run();
+            Assert.That(_check.IsGood, Is.False);
+            Assert.That(_check.Outcome, Does.Contain("too fine"));
+            Assert.That(_check.Outcome.Split('\n').Length, Is.EqualTo(1), _check.Outcome);
+        }
+
+        [UnityTest]
+        public IEnumerator WhatTheProjectSetComesBack()
+        {
+            SurfaceScheduler.Delivery = SurfaceDelivery.Auto;
+            SurfaceScheduler.GpuMeshPlan = GpuMeshPlan.WholeBuffers;
+            yield return Run();
+            _check.enabled = false;
+            Assert.That((SurfaceScheduler.Delivery, SurfaceScheduler.GpuMeshPlan),
+                Is.EqualTo((SurfaceDelivery.Auto, GpuMeshPlan.WholeBuffers)));
+        }
+
         // As an engine would that has a copy of its own.
         [UnityTest]
         public IEnumerator WhatTheEngineOverwritesIsSeen()
