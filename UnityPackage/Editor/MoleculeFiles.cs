@@ -17,9 +17,13 @@ namespace QuickSes.Editor
         private const string StreamingAssets = "Assets/StreamingAssets/";
         private const int HeadBytes = 4096;
 
+        // A file may begin with many lines of any of them.
         private static readonly string[] s_records =
         {
-            "ATOM  ", "HETATM", "HEADER", "TITLE ", "REMARK", "CRYST1", "MODEL ", "COMPND"
+            "ATOM  ", "AUTHOR", "CAVEAT", "CISPEP", "COMPND", "CRYST1", "DBREF ", "EXPDTA", "FORMUL", "HEADER",
+            "HELIX ", "HET   ", "HETATM", "HETNAM", "HETSYN", "JRNL  ", "KEYWDS", "LINK  ", "MDLTYP", "MODEL ",
+            "MODRES", "MTRIX1", "NUMMDL", "ORIGX1", "REMARK", "REVDAT", "SCALE1", "SEQADV", "SEQRES", "SHEET ",
+            "SITE  ", "SOURCE", "SPRSDE", "SSBOND", "TITLE ", "USER  "
         };
 
         /// <summary>Whether a name is that of a trajectory and of nothing else.</summary>

@@ -8,6 +8,7 @@ namespace QuickSes.Editor
     internal static class SurfaceStatusPanel
     {
         private static readonly BackendInquiry s_cuda = new BackendInquiry(SurfaceBackend.Cuda);
+        private static string s_startNote; // null: none
 
         public static void Draw(MolecularSurface surface)
         {
@@ -21,8 +22,11 @@ namespace QuickSes.Editor
                     surface.IsLoading ? surface.LoadProgress : surface.Progress, state);
             else
                 Row("State", state);
-            if (surface.IsStarting)
-                DrawStart(surface);
+            // Other threads start it: all events of a frame must see the same controls.
+            if (Event.current.type == EventType.Layout)
+                s_startNote = StartNoteOf(surface);
+            if (s_startNote != null)
+                EditorGUILayout.HelpBox(s_startNote, MessageType.Info);
             if (hasFailed)
                 EditorGUILayout.HelpBox(surface.LastError.Message, MessageType.Error);
             Row("Atoms", SurfaceStatus.Count(surface.AtomCount));
@@ -79,13 +83,13 @@ namespace QuickSes.Editor
         }
 
         // The driver may compile for a minute, which the user should know.
-        private static void DrawStart(MolecularSurface surface)
+        private static string StartNoteOf(MolecularSurface surface)
         {
-            if (surface.Backend == SurfaceBackend.Cpu)
-                return;
+            if (!surface.IsStarting || surface.Backend == SurfaceBackend.Cpu)
+                return null;
             s_cuda.Ask();
-            if (s_cuda.TryGetAnswer(out BackendDescription cuda) && cuda.IsPreparing)
-                EditorGUILayout.HelpBox(SurfaceStatus.Preparing(cuda.Device, cuda.Reason), MessageType.Info);
+            return s_cuda.TryGetAnswer(out BackendDescription cuda) && cuda.IsPreparing
+                ? SurfaceStatus.Preparing(cuda.Device, cuda.Reason) : null;
         }
 
         private static void DrawBackend(MolecularSurface surface)

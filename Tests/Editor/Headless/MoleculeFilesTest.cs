@@ -57,6 +57,19 @@ namespace QuickSes.Tests
             Assert.That(IsMolecule("md.xtc.gz", Gzipped(new byte[] { 0, 0, 7, 203 })), Is.True);
         }
 
+        // As Chimera writes large proteins: the first atom is far behind.
+        [TestCase("HELIX    1   1 ALA A   10  ALA A   16  1")]
+        [TestCase("SHEET    1   A 2 LEU A   5  SER A   9  0")]
+        [TestCase("SEQRES   1 A   46  THR THR CYS CYS PRO SER ILE VAL ALA")]
+        [TestCase("SSBOND   1 CYS A    3    CYS A   40")]
+        public void WhatComesBeforeTheAtomsOfAStructureIsKnown(string line)
+        {
+            var text = new StringBuilder();
+            for (int k = 0; k < 200; ++k)
+                text.Append(line.PadRight(80)).Append('\n');
+            Assert.That(IsMolecule("a.pdb", text + Pdb), Is.True);
+        }
+
         [Test]
         public void DebugDatabasesAreNone()
         {
