@@ -133,6 +133,17 @@ namespace QuickSes.Tests
             SurfaceMeshes.AssertShows(_rig.Surface, picked, radii);
         }
 
+        [Test]
+        public void PositionsMayBePickedOutOfItsOwn()
+        {
+            TestMolecules.Blob(3, 4, out Vector3[] positions, out float[] radii);
+            _rig = new SurfaceRig();
+            _rig.Surface.SetAtoms(positions, radii);
+            _rig.Surface.SetPositions(_rig.Surface.Positions, new[] { 1, 2, 0 });
+            Assert.That(_rig.Surface.Positions.ToArray(),
+                Is.EqualTo(new[] { positions[1], positions[2], positions[0] }));
+        }
+
         [UnityTest]
         public IEnumerator ColoursDontMakeALevelCoarser()
         {

@@ -63,6 +63,8 @@ namespace QuickSes
                     throw new ArgumentOutOfRangeException(nameof(indices), indices[i],
                         $"index {i} points out of the {frame.Length} positions");
             Span<Vector3> picked = _positions.Span;
+            if (frame.Overlaps(picked)) // Positions themselves
+                frame = frame.ToArray();
             for (int i = 0; i < indices.Length; ++i)
                 picked[i] = frame[indices[i]];
             ++_positionsVersion;
