@@ -303,6 +303,19 @@ namespace QuickSes.Tests
             _playing.AssertShows(4);
         }
 
+        [Test]
+        public void AnAssemblyIsNamedWhereItFitsNoTrajectory()
+        {
+            string operations = "REMARK 350 BIOMOLECULE: 1\nREMARK 350 APPLY THE FOLLOWING TO CHAINS: A\n";
+            for (int copy = 1; copy <= 2; ++copy)
+                for (int axis = 1; axis <= 3; ++axis)
+                    operations += $"REMARK 350   BIOMT{axis}{copy,4}  {(axis == 1 ? 1 : 0)}.000000  " +
+                        $"{(axis == 2 ? 1 : 0)}.000000  {(axis == 3 ? 1 : 0)}.000000       {30 * copy}.00000\n";
+            Player.StructureSource.SetFile(_folder.Write("pair.pdb", TestFrames.Pdb(2, operations)));
+            Player.StructureSource.Assembly = "1";
+            Assert.That(FailToLoad(), Does.Contain("assembly '1'").And.Contain($" {2 * TestFrames.AtomCount}"));
+        }
+
         [TestCase(null)]
         [TestCase("HEADER")]
         [TestCase("one model")]

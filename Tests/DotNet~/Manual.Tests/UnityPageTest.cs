@@ -70,9 +70,9 @@ internal sealed class UnityPageTest
         string ligand = "HETATM    2  C   LIG B   2       9.000   0.000   0.000  1.00  0.00           C\nENDMDL\n";
         File.WriteAllText(file, (Model(1, 0) + Model(2, 5)).Replace("ENDMDL\n", ligand) + "END\n");
         var script = new GameObject().AddComponent<PlayComplex>();
+        script.complex = file;
         script.ligand = new GameObject().AddComponent<MolecularSurface>();
         script.player = new GameObject().AddComponent<TrajectoryPlayer>();
-        script.player.StructureSource.SetFile(file);
         yield return Until(() => script.player.ShownFrame >= 0);
         Assert.That(script.player.GetComponent<MolecularSurface>().AtomCount, Is.EqualTo(1));
         yield return Until(() => script.ligand.CurrentLevel.VertexCount > 0);

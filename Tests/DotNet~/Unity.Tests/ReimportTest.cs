@@ -82,7 +82,8 @@ namespace QuickSes.Tests
         {
             var text = new StringBuilder();
             for (int i = 1; i <= atoms; ++i)
-                text.Append($"ATOM  {i,5}  CA  {residue} A{i,4}    {4 * i,4}.000   0.000   0.000  1.00  0.00           C\n");
+                text.Append($"ATOM  {i,5}  CA  {residue} A{i,4}    {4 * i,4}.000   0.000   0.000  1.00  0.00")
+                    .Append("           C\n");
             return Encoding.ASCII.GetBytes(text.Append("END\n").ToString());
         }
     }

@@ -20,8 +20,9 @@ namespace QuickSes
         /// <para>The first question reads the file again, which blocks; from then on the structure stays open, and is
         /// exchanged when the source is read anew, until other atoms are set, the component is disabled or destroyed,
         /// or <see cref="CloseStructure"/>. <see cref="Structure.MemoryBytes"/> tells what that costs: about 200 bytes
-        /// per atom. If the file has other atoms by then, or at other places, it is null, with a warning. Of atoms that a
-        /// <see cref="TrajectoryPlayer"/> brings, it is the player's, which is open as long as the player has them.</para>
+        /// per atom. If the file has other atoms by then, or at other places, it is null, with a warning. Of atoms that
+        /// a <see cref="TrajectoryPlayer"/> brings, it is the player's, which is open as long as the player has
+        /// them.</para>
         /// </summary>
         public Structure Structure
         {

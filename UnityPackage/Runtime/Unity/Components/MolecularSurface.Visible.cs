@@ -26,8 +26,8 @@ namespace QuickSes
         }
 
         /// <summary>
-        /// Why <see cref="VisibleSelection"/> hides nothing, or everything since it names no atom, as of the last time it
-        /// was looked at; else "".
+        /// Why <see cref="VisibleSelection"/> hides nothing, or everything since it names no atom, as of the last time
+        /// it was looked at; else "".
         /// </summary>
         public string VisibleSelectionError => _visibleError ?? "";
 
@@ -46,13 +46,13 @@ namespace QuickSes
         /// Shows the atoms that a selection names, and hides all others; the surface is that of all atoms, cut open where
         /// they are hidden. It is kept (<see cref="VisibleSelection"/>), and holds for atoms of files that are read
         /// later as well. Atoms must be of a file: those of scripts have no names. Reads the file again, if it is not
-        /// open: see <see cref="Structure"/>. Distances are between places in the file, also where atoms have moved since:
-        /// <see cref="AtomCuts"/> goes by <see cref="Positions"/>.
+        /// open: see <see cref="Structure"/>. Distances are between places in the file, also where atoms have moved
+        /// since: <see cref="AtomCuts"/> goes by <see cref="Positions"/>.
         /// </summary>
         /// <param name="selection">Words or CID: "protein", "within 5 of ligand", "//A/10-40"; "": all.</param>
         /// <returns>
-        /// False: <see cref="VisibleSelectionError"/> says why; what was shown stays. True where there are no atoms yet,
-        /// and where it names none of them, which VisibleSelectionError tells too.
+        /// False: <see cref="VisibleSelectionError"/> says why; what was shown stays. True where there are no atoms
+        /// yet, and where it names none of them, which VisibleSelectionError tells too.
         /// </returns>
         public bool SetVisible(string selection)
         {
@@ -85,12 +85,14 @@ namespace QuickSes
             _visibleError = "";
             if (VisibleSelection.Length == 0)
                 return;
-            bool isUnderstood = ShowSelectionOf(structure);
-            if (!isUnderstood)
+            string consequence = "";
+            if (!ShowSelectionOf(structure))
+            {
                 SetVisible(default(ReadOnlySpan<bool>));
+                consequence = "all atoms are shown, since ";
+            }
             if (_visibleError.Length > 0)
-                Debug.LogWarning(
-                    isUnderstood ? $"{name}: {_visibleError}" : $"{name}: all atoms are shown, since {_visibleError}", this);
+                Debug.LogWarning($"{name}: {consequence}{_visibleError}", this);
         }
 
         private bool ShowSelectionOf(Structure structure)
@@ -124,7 +126,8 @@ namespace QuickSes
                     return $"chains {string.Join(", ", chains)}, ...";
                 chains.Add(chain);
             }
-            return chains.Count == 0 ? "no chains" : (chains.Count == 1 ? "chain " : "chains ") + string.Join(", ", chains);
+            string all = string.Join(", ", chains);
+            return chains.Count == 0 ? "no chains" : chains.Count == 1 ? $"chain {all}" : $"chains {all}";
         }
     }
 }

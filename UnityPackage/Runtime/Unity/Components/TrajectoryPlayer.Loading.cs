@@ -231,8 +231,11 @@ namespace QuickSes
                 Fail("trajectory", error);
                 return;
             }
+            string assembly = _loadedStructureSource.Assembly;
+            string structure = string.IsNullOrWhiteSpace(assembly) ? "the file of the structure"
+                : $"assembly '{assembly}' of the structure, which fits no trajectory,";
             _prefetcher = new FramePrefetcher(new TrajectoryFrameReader(file, format, IndicesOfAll(),
-                Structure.FileElements.ToArray(), _unwrap), _prefetchFrames);
+                Structure.FileElements.ToArray(), structure, _unwrap), _prefetchFrames);
             RequestUpdate();
         }
 

@@ -7,7 +7,7 @@ namespace QuickSes
 {
     public sealed partial class TrajectoryPlayer
     {
-        [SerializeField, Tooltip("Which atoms. None: the source of the Molecular Surface.")]
+        [SerializeField, Tooltip("Which atoms. None: the source of the Molecular Surface, with its filters.")]
         private MoleculeSource _structureSource = new MoleculeSource();
         [SerializeField, Tooltip("Where they are in each frame. None: the models of the structure's own PDB file.")]
         private TrajectorySource _trajectorySource = new TrajectorySource();
@@ -37,8 +37,8 @@ namespace QuickSes
         private const int MostPrefetchFrames = 256;
 
         /// <summary>
-        /// Which atoms; of kind None (default): those of <see cref="MolecularSurface.Source"/>. Takes effect with
-        /// <see cref="Load"/>.
+        /// Which atoms; of kind None (default): those of <see cref="MolecularSurface.Source"/>, with its filters: those
+        /// here are not looked at. Takes effect with <see cref="Load"/>.
         /// </summary>
         public MoleculeSource StructureSource => _structureSource;
 
@@ -143,7 +143,10 @@ namespace QuickSes
             }
         }
 
-        /// <summary>The same from 0 (first frame) to 1 (last frame).</summary>
+        /// <summary>
+        /// The same from 0 (first frame) to 1 (last frame). Only once frames are there: before, it is 0, also when it is
+        /// set.
+        /// </summary>
         public double NormalizedTime
         {
             get => FrameCount > 1 ? Frame / (FrameCount - 1) : 0;

@@ -10,6 +10,7 @@ namespace QuickSes
         private readonly TrajectoryFormat _format;
         private readonly uint[] _indices;
         private readonly byte[] _elements;
+        private readonly string _elementsOf;
         private readonly bool _unwrap;
         private readonly MoleculeFile _file;
         private Trajectory _trajectory;
@@ -20,14 +21,16 @@ namespace QuickSes
         /// <param name="format">Auto: by the name, else by the content.</param>
         /// <param name="indices">Which atoms, in which order; an atom may come more than once. Taken over.</param>
         /// <param name="elements">Atomic numbers of all that each frame has. Taken over.</param>
+        /// <param name="elementsOf">What has these, for messages.</param>
         /// <param name="unwrap">Whether molecules are put together if there is a periodic box.</param>
         public TrajectoryFrameReader(MoleculeFile file, TrajectoryFormat format, uint[] indices, byte[] elements,
-            bool unwrap)
+            string elementsOf, bool unwrap)
         {
             _file = file;
             _format = format == TrajectoryFormat.Auto ? MoleculeFile.TrajectoryFormatOf(file.Name) : format;
             _indices = indices;
             _elements = elements;
+            _elementsOf = elementsOf;
             _unwrap = unwrap;
         }
 
@@ -51,8 +54,8 @@ namespace QuickSes
             string name = _file.Name;
             _file.Dispose(); // its bytes are copied
             if (_trajectory.AtomCount != _elements.Length)
-                return Fail($"'{name}' has {_trajectory.AtomCount} atoms per frame, but the file of the structure " +
-                    $"has {_elements.Length}", out error);
+                return Fail($"'{name}' has {_trajectory.AtomCount} atoms per frame, but {_elementsOf} has " +
+                    $"{_elements.Length}", out error);
             if (_trajectory.FrameCount > int.MaxValue)
                 return Fail($"'{name}' has more than {int.MaxValue} frames", out error);
             for (int k = 0; k < _trajectory.WarningCount; ++k)

@@ -130,7 +130,8 @@ namespace QuickSes
 
         /// <summary>
         /// Raises what happened since the last time and is still so. Handlers may do anything; what one that throws
-        /// leaves is raised the next time. So is what fails at once when a handler tries again, or that would never end.
+        /// leaves is raised the next time. So is what fails at once when a handler of a failure tries again, or that would
+        /// never end.
         /// </summary>
         public void RaiseEvents()
         {

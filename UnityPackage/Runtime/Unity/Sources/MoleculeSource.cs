@@ -31,8 +31,8 @@ namespace QuickSes
         [SerializeField, Tooltip("Which atoms: words such as protein, or CID such as //A/10-40. Empty: all.")]
         private string _selection = "";
         [SerializeField, Tooltip(
-            "quickses, bondi, or the path of a text file with lines ELEMENT radius or RESIDUE ATOM radius (Å). Empty: " +
-            "the file's own radii (PQR, XYZR), else quickses.")]
+            "quickses, bondi, or the absolute path of a text file with lines ELEMENT radius or RESIDUE ATOM radius " +
+            "(Å). Empty: the file's own radii (PQR, XYZR), else quickses.")]
         private string _radii = "";
         [SerializeField, Tooltip("How atoms are coloured.")]
         private AtomColorScheme _colorScheme = AtomColorScheme.Element;
@@ -61,7 +61,11 @@ namespace QuickSes
         /// <summary>Which atoms: words such as "chain A", or CID such as "//A"; "": all. Never null.</summary>
         public string Selection { get => _selection ?? ""; set => _selection = value; }
 
-        /// <summary>As <see cref="StructureOptions.Radii"/>; "": the default. Never null.</summary>
+        /// <summary>
+        /// As <see cref="StructureOptions.Radii"/>; "": the default. Never null. A path should be absolute, such as
+        /// below Application.streamingAssetsPath: others are below the working folder of the process, which is the
+        /// project in the Editor, and any folder in players.
+        /// </summary>
         public string Radii { get => _radii ?? ""; set => _radii = value; }
 
         /// <summary>How atoms are coloured; default by element.</summary>
