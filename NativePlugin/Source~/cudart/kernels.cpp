@@ -59,12 +59,15 @@ CUresult find_kernel(const void *stub, LoadedKernel *found_kernel) {
   Kernel &kernel = found->second;
   std::atomic<CUfunction> &slot = kernel.function[static_cast<size_t>(device)];
   int &architecture = kernel.architecture[static_cast<size_t>(device)];
-  CUfunction function = slot.load(std::memory_order_acquire);
-  if (function) {
-    *found_kernel = {function, architecture};
-    return CUDA_SUCCESS;
-  }
+  const auto is_there = [&] {
+    const CUfunction function = slot.load(std::memory_order_acquire);
+    if (function) *found_kernel = {function, architecture};
+    return function != nullptr;
+  };
+  if (is_there()) return CUDA_SUCCESS;
   const std::lock_guard<std::mutex> lock(r.loading[static_cast<size_t>(device)]);
+  if (is_there()) return CUDA_SUCCESS;  // another thread was first
+  CUfunction function = nullptr;
   CUmodule &module = kernel.module->loaded[static_cast<size_t>(device)];
   CUresult result = CUDA_SUCCESS;
   if (!module) result = driver().cuModuleLoadData(&module, kernel.module->image);

@@ -77,7 +77,6 @@ void RenderQueue::run(int32_t event) noexcept try {
     const std::lock_guard<std::mutex> lock(mutex_);
     targets = targets_;
     ended = ended_;
-    ended_.clear();  // which keeps what it has reserved
   }
   std::vector<Arrival> arrivals;
   std::map<int, Arrivals> by_device;
@@ -98,6 +97,7 @@ void RenderQueue::run(int32_t event) noexcept try {
   }
 } catch (...) {  // no memory for a list of a few pointers
   const std::lock_guard<std::mutex> lock(mutex_);
+  has_work_ = has_work_ || !ended_.empty();
   for (const std::shared_ptr<GpuTarget> &target : targets_) target->note_interruption(event);
 }
 
@@ -234,10 +234,12 @@ void RenderQueue::forget_buffers(GpuTarget &target) {
 void RenderQueue::forget_ended(const std::vector<std::shared_ptr<GpuTarget>> &ended) {
   for (const std::shared_ptr<GpuTarget> &target : ended) {
     Arrival outcome;
-    if (attempt(outcome, [&] { forget_buffers(*target); }) || !may_hand_back()) continue;
+    const bool stays = !attempt(outcome, [&] { forget_buffers(*target); }) && may_hand_back();
     const std::lock_guard<std::mutex> lock(mutex_);
-    ended_.push_back(target);
-    has_work_ = true;
+    if (stays)
+      has_work_ = true;
+    else
+      ended_.erase(std::remove(ended_.begin(), ended_.end(), target), ended_.end());  // which keeps what it has reserved
   }
 }
 

@@ -27,21 +27,25 @@ inline std::string describe_bytes(uint64_t bytes) {
   return text;
 }
 
+// What an allocation takes of an arena: whole units, and one at least.
+constexpr uint64_t kArenaUnit = 256;
+constexpr uint64_t arena_bytes(uint64_t bytes) {
+  return bytes == 0 ? kArenaUnit : (bytes + kArenaUnit - 1) / kArenaUnit * kArenaUnit;
+}
+
 // Source: three static functions: void *acquire(size_t) (nullptr when refused), void release(void *), and uint64_t
 // free_bytes(), what could be acquired now, or 0 if that is not known. And, where set_taken is called, kTakenUntouched:
 // whether memory takes room before anything is written to it.
 template <class Source>
 class Arena {
  public:
-  static constexpr size_t kAlignment = 256;
-
   Arena() = default;
   Arena(const Arena &) = delete;
   Arena &operator=(const Arena &) = delete;
   ~Arena() { release(); }
 
   // Bytes that may be held in all; 0: no budget.
-  void set_budget(uint64_t bytes) { budget_ = bytes / kAlignment * kAlignment; }
+  void set_budget(uint64_t bytes) { budget_ = bytes / kArenaUnit * kArenaUnit; }
   uint64_t budget() const { return budget_; }
   // True if work should be cut into pieces that fit.
   bool has_budget() const { return budget_ > 0; }
@@ -74,8 +78,7 @@ class Arena {
   uint64_t available() { return limit() - std::min(limit(), used_ + taken_); }
 
   void *allocate(size_t bytes) {
-    bytes = (bytes + kAlignment - 1) / kAlignment * kAlignment;
-    if (bytes == 0) bytes = kAlignment;
+    bytes = arena_bytes(bytes);
     if (taken_ > 0 && bytes > available()) refuse(used_ + taken_ + bytes);
     size_t block = current_, offset = offset_;
     while (block < blocks_.size() && blocks_[block].size - offset < bytes) {

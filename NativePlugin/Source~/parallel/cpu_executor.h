@@ -24,7 +24,7 @@
 
 namespace quickses {
 
-class CpuExecutor {
+class CpuExecutor : public NothingQueued {
  public:
   static constexpr bool kIsCuda = false, kCounts = false;
   using HostSource = HostMemory;  // of memory that the host shares with it
@@ -134,7 +134,7 @@ class CpuExecutor {
   size_t sort_bytes(size_t n) const {
     const SortRuns runs(n, threads());
     return std::max(runs.room_bytes<Key, Value>(threads()),
-                    runs.count > 1 ? n * (sizeof(Key) + sizeof(Value)) + 2 * Arena<HostMemory>::kAlignment : 0);
+                    runs.count > 1 ? n * (sizeof(Key) + sizeof(Value)) + 2 * kArenaUnit : 0);
   }
   template <class T>
   size_t reduce_bytes(size_t n) const {
@@ -272,19 +272,6 @@ class CpuExecutor {
     return *counts;
   }
   template <class T>
-  bool foresee(const char *, const void *, const T &, T *) const {
-    return false;
-  }
-  void open_counts(uint64_t, bool = false) {}
-  void close_counts() {}
-  bool has_anticipated() const { return false; }
-  void turn_counts_to(float, uint32_t = 0) {}
-  void hand_over() {}
-  void keep_pace() {}
-  bool runs_ahead() const { return false; }
-  void send_counts() {}
-  bool verify_counts() { return false; }
-  template <class T>
   T verified(const T *counts) {
     return *counts;
   }
@@ -303,11 +290,6 @@ class CpuExecutor {
     for (size_t k = 0; k < n; ++k) values[k] = *sources[k];
   }
   template <class T>
-  const T *lend(const T *host) {
-    return host;
-  }
-  void end_lending() {}
-  template <class T>
   void upload(T *destination, const T *host, size_t n) {
     if (n) std::memcpy(destination, host, n * sizeof(T));
   }
@@ -323,7 +305,6 @@ class CpuExecutor {
       std::memset(memory + c * kFilledPiece, byte, std::min(kFilledPiece, bytes - c * kFilledPiece));
     });
   }
-  void wait() {}
 
  private:
   // A load may know how to find what a run of them adds.

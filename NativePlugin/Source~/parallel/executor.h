@@ -27,6 +27,7 @@
 //   runs_ahead()                   whether all of this frame may be queued, since frames like it are short
 //   hand_over()                    what was asked for begins, if it was held back: before others are waited for
 //   keep_pace()                    called between parts of a long work, so that it can be cancelled. May wait
+//   wait()                         until all that was asked for is done
 //   upload, download, fill         copies between host and back end, and memset
 //   lend(host), end_lending()      memory of HostSource for passes to read where it is
 //   scan_bytes<T>(n), sort_bytes<Key, Value>(n), reduce_bytes<T>(n), compact_bytes(n)  of the arena, that these verbs
@@ -50,6 +51,30 @@
 #include <cstdint>
 
 namespace quickses {
+
+// The verbs that only say when a queue's work is to begin or to have ended, and what the frame before tells: of executors
+// whose work is done when a verb returns.
+struct NothingQueued {
+  template <class T>
+  bool foresee(const char *, const void *, const T &, T *) const {
+    return false;
+  }
+  void open_counts(uint64_t, bool = false) {}
+  void close_counts() {}
+  bool has_anticipated() const { return false; }
+  void turn_counts_to(float, uint32_t = 0) {}
+  void send_counts() {}
+  bool verify_counts() { return false; }
+  bool runs_ahead() const { return false; }
+  void hand_over() {}
+  void keep_pace() {}
+  template <class T>
+  const T *lend(const T *host) {
+    return host;
+  }
+  void end_lending() {}
+  void wait() {}
+};
 
 // Items per chunk of reduce(): part of the result's definition, since float sums depend on the order. Few items are
 // enough chunks for a GPU, many not too many for the host, which adds them up.

@@ -20,7 +20,7 @@ struct SerialMemory {
   static void release(void *memory) { quickses::HostMemory::release(memory); }
 };
 
-class SerialExecutor {
+class SerialExecutor : public quickses::NothingQueued {
  public:
   static constexpr bool kIsCuda = false, kCounts = false;
   explicit SerialExecutor(unsigned = 1) {}
@@ -91,14 +91,9 @@ class SerialExecutor {
   void fetch_all(T *values, const T *source, size_t n) {
     if (values != source) std::copy(source, source + n, values);
   }
-  void send_counts() {}
   template <class T>
   T *take_counts() {
     return allocate_zeros<T>(1).data;
-  }
-  template <class T>
-  bool foresee(const char *, const void *, const T &, T *) const {
-    return false;
   }
   template <class T>
   T expect(const char *, const T *counts, const T &) {
@@ -120,7 +115,6 @@ class SerialExecutor {
   void fill(quickses::Span<T> span, int byte) {
     std::memset(static_cast<void *>(span.data), byte, span.size * sizeof(T));
   }
-  void wait() {}
 
  private:
   quickses::Arena<SerialMemory> arena_;

@@ -82,9 +82,18 @@ namespace QuickSes
         /// <summary>
         /// The newest mesh was let go before its event ran: it is in no buffer. Also when events run again.
         /// </summary>
-        public bool IsNewestLost => Waiting == 0 && unchecked(_submitted - Done) > 0; // event numbers may wrap round
+        public bool IsNewestLost => Waiting == 0 && IsLater(_submitted, Done);
 
         /// <summary>Events have not run for so long that meshes were let go.</summary>
         public bool IsStopped { get; }
+
+        // Events are numbered in turn, and 1 follows int.MaxValue. 0 comes before all.
+        private static bool IsLater(int number, int than)
+        {
+            if (than == 0)
+                return number != 0;
+            int steps = unchecked(number - than) & int.MaxValue;
+            return steps > 0 && steps < 1 << 30;
+        }
     }
 }

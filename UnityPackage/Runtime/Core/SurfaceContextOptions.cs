@@ -20,8 +20,8 @@ namespace QuickSes
         public ulong MemoryBudget { get; set; }
 
         /// <summary>
-        /// Whether the threads that compute stand back behind others of normal priority, and so do kernels of the GPU.
-        /// A caller of <see cref="SurfaceContext.Compute"/> lends its thread as it is.
+        /// Whether the threads that compute stand back behind others of normal priority. Kernels of the GPU have the
+        /// lowest priority in any case. A caller of <see cref="SurfaceContext.Compute"/> lends its thread as it is.
         /// </summary>
         public bool Background { get; set; }
     }

@@ -238,8 +238,9 @@ typedef struct qses_context_options {
                              first computation takes the budget in one piece, however small the surface */
   qses_bool background;   /* 1: threads of the library that compute stand back behind those of normal priority (Windows:
                              below normal; Linux: 10 nicer, so a busy thread beside them loses a tenth at most); a
-                             caller lends its thread as it is. Kernels of the GPU have the lowest priority in any case,
-                             but those that place vertices of large meshes, beside others of the same.
+                             caller lends its thread as it is. Kernels of the GPU have the lowest priority in any case;
+                             only those of coarser levels, and those that place vertices of large meshes, come before
+                             the others of the library.
                              Contexts share CPU threads: on Linux, where priorities can't be raised again, those
                              of a process that have 0 (default) are slowed down by busy programs too once one has 1 */
   uint32_t reserved;      /* 0 */

@@ -129,7 +129,7 @@ void find_features_in_runs(E &executor, const FeaturePass &pass, const MemoryPla
     const auto work_bytes = [&] { return run_bytes(executor, pass, atoms_per_run, room_of(atoms_per_run)); };
     while (atoms_per_run > kLeastRun && work_bytes() > arena.available() / 4)
       atoms_per_run = std::max(kLeastRun, atoms_per_run / 2);
-    const uint64_t work = work_bytes() + 2 * Arena<DeviceMemory>::kAlignment;  // both arrays of arcs are rounded up
+    const uint64_t work = work_bytes() + 2 * kArenaUnit;  // both arrays of arcs are rounded up
     const uint64_t left = arena.available() > work ? (arena.available() - work) / arc_bytes : 0;
     const uint64_t expected = std::max({rooms.features.arcs, rooms.runs.arcs, FeatureRoom::guess(n).arcs});
     const size_t arc_room = E::kCounts ? features->arcs.size : static_cast<size_t>(std::min(left, expected));

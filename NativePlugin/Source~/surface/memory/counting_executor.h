@@ -3,11 +3,11 @@
 // of what the pipeline takes: both are one piece of code, so that they can't differ.
 #pragma once
 
+#include "parallel/arena.h"
 #include "parallel/executor.h"
 #include "surface/memory/work_facts.h"
 
 #include <algorithm>
-#include <atomic>
 
 namespace quickses {
 
@@ -22,10 +22,9 @@ class CountingArena {
   using Mark = uint64_t;
   explicit CountingArena(uint64_t limit, bool has_budget) : limit_(limit), has_budget_(has_budget) {}
   void take(uint64_t bytes) {
-    used_ += std::max<uint64_t>(kAlignment, (bytes + kAlignment - 1) / kAlignment * kAlignment);
+    used_ += arena_bytes(bytes);
     peak_ = std::max(peak_, used_);
   }
-  static constexpr size_t kAlignment = 256;  // as Arena
   Mark mark() const { return used_; }
   void rewind(Mark mark) { used_ = mark; }
   uint64_t used() const { return used_; }
@@ -41,7 +40,7 @@ class CountingArena {
 
 // Executor: the one that would do the work.
 template <class Executor>
-class CountingExecutor {
+class CountingExecutor : public NothingQueued {
  public:
   static constexpr bool kIsCuda = Executor::kIsCuda, kCounts = true;
 
@@ -112,31 +111,15 @@ class CountingExecutor {
     return fetch(counts);
   }
   template <class T>
-  bool foresee(const char *, const void *, const T &, T *) const {
-    return false;
-  }
-  void turn_counts_to(float, uint32_t = 0) {}
-  void hand_over() {}
-  void keep_pace() {}
-  bool runs_ahead() const { return false; }
-  void send_counts() {}
-  bool verify_counts() { return false; }
-  template <class T>
   T verified(const T *) const {
     return T{};
   }
   template <class T>
   void upload(T *, const T *, size_t) {}
   template <class T>
-  const T *lend(const T *host) {
-    return host;
-  }
-  void end_lending() {}
-  template <class T>
   void download(T *, const T *, size_t) {}
   template <class T>
   void fill(Span<T>, int) {}
-  void wait() {}
 
  private:
   void take_for_a_while(uint64_t bytes) {

@@ -32,15 +32,18 @@ namespace QuickSes
             _plan = plan;
             _vertexCapacity = MeshWriter.WithRoom(view.VertexCount);
             _indexCapacity = checked(3 * MeshWriter.WithRoom(view.TriangleCount));
-            _mesh = SurfaceMesh.MakeMesh("Molecular Surface (GPU)"); // not dynamic: Direct3D would share it with the CPU
-            _mesh.vertexBufferTarget |= GraphicsBuffer.Target.Raw; // of default usage, so that CUDA can write it
-            _mesh.indexBufferTarget |= GraphicsBuffer.Target.Raw;
-            _mesh.SetVertexBufferParams(_vertexCapacity, style.Layout);
-            _mesh.SetIndexBufferParams(_indexCapacity, IndexFormat.UInt32);
             _indexCount = plan == GpuMeshPlan.WholeBuffers ? _indexCapacity : 0;
-            MeshWriter.SetSubMesh(_mesh, SurfaceMeshUploader.BoundsOf(view), _vertexCapacity, _indexCount);
-            _mesh.UploadMeshData(false); // the buffers are there from now on
-            _buffers = Describe();
+            _mesh = SurfaceMesh.MakeMesh("Molecular Surface (GPU)"); // not dynamic: Direct3D would share it with the CPU
+            try
+            {
+                MakeBuffers(SurfaceMeshUploader.BoundsOf(view));
+                _buffers = Describe();
+            }
+            catch // the engine has no such buffers, or no memory for them
+            {
+                SurfaceMesh.DestroyMesh(_mesh);
+                throw;
+            }
         }
 
         /// <summary>null: somebody destroyed it.</summary>
@@ -100,6 +103,16 @@ namespace QuickSes
         {
             SurfaceMesh.DestroyMesh(_mesh);
             Look = null;
+        }
+
+        private void MakeBuffers(Bounds bounds)
+        {
+            _mesh.vertexBufferTarget |= GraphicsBuffer.Target.Raw; // of default usage, so that CUDA can write it
+            _mesh.indexBufferTarget |= GraphicsBuffer.Target.Raw;
+            _mesh.SetVertexBufferParams(_vertexCapacity, _style.Layout);
+            _mesh.SetIndexBufferParams(_indexCapacity, IndexFormat.UInt32);
+            MeshWriter.SetSubMesh(_mesh, bounds, _vertexCapacity, _indexCount);
+            _mesh.UploadMeshData(false); // the buffers are there from now on
         }
 
         // Asking for the buffers waits for the thread that draws, so it is done once.
