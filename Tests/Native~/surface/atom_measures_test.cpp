@@ -224,6 +224,37 @@ TEST(AtomMeasures, BallThatManySmallOnesCover) {
   }
 }
 
+// Two that meet on a large ball's sphere just opposite to its largest cap, which is tiny.
+TEST(AtomMeasures, BallWithABorderOppositeToItsLargestCap) {
+  for (const double off : {0.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2}) {
+    const Atoms atoms = Atoms().add(0, 0, 0, 10).add(0, off, 10.2, 1).add(0.3, 0.4, -10, 0.5).add(0.4, -0.3, -10, 0.5);
+    for (const Atoms &set : {atoms, turned(atoms), turned(shifted(atoms, 0.3, 0, 0), 33.3, -87.1, 61.7)}) {
+      const Numbers n = numbers(set, numbers_only(QSES_SURFACE_VDW));
+      const std::vector<double> expected = lee_richards::exposed_areas(set, 0, 40000);
+      for (size_t i = 0; i < set.size(); ++i) ASSERT_NEAR(n.areas[i], expected[i], 5e-6 * sphere_area(10)) << off;
+    }
+  }
+}
+
+// Beads on a ball: wherever borders lie, areas do not depend on how all is turned.
+TEST(AtomMeasures, TurnedBeadsHaveTheSameAreas) {
+  std::mt19937 random(13);
+  std::normal_distribution<double> normal;
+  for (int k = 0; k < 40; ++k) {
+    Atoms atoms = Atoms().add(0, 0, 0, 30);
+    for (int i = 0; i < 40 + 5 * k; ++i) {
+      const double x = normal(random), y = normal(random), z = normal(random), scale = 30.5 / std::hypot(x, y, z);
+      atoms.add(x * scale, y * scale, z * scale, 2 + 0.1 * (i % 11));
+    }
+    const Numbers first = numbers(atoms, numbers_only(QSES_SURFACE_VDW));
+    for (int turn = 1; turn < 5; ++turn) {
+      const Numbers n = numbers(turned(atoms, 71.0 * turn, 40.0 + turn, 13.0 * turn), numbers_only(QSES_SURFACE_VDW));
+      ASSERT_NEAR(n.areas[0], first.areas[0], 3e-6 * sphere_area(30)) << k << " " << turn;
+      ASSERT_NEAR(n.report.area, first.report.area, 3e-6 * first.report.area) << k << " " << turn;
+    }
+  }
+}
+
 // ---- circles that nearly coincide
 
 // Areas of all together, and of each from this one on: of atoms that are next to each other, rounding of their

@@ -21,7 +21,7 @@ namespace QuickSes
 
         /// <summary>
         /// Whether the threads that compute stand back behind others of normal priority. Kernels of the GPU have the
-        /// lowest priority in any case. A caller of <see cref="SurfaceContext.Compute"/> lends its thread as it is.
+        /// lowest priority either way. A caller of <see cref="SurfaceContext.Compute"/> lends its thread as it is.
         /// </summary>
         public bool Background { get; set; }
     }

@@ -238,9 +238,8 @@ typedef struct qses_context_options {
                              first computation takes the budget in one piece, however small the surface */
   qses_bool background;   /* 1: threads of the library that compute stand back behind those of normal priority (Windows:
                              below normal; Linux: 10 nicer, so a busy thread beside them loses a tenth at most); a
-                             caller lends its thread as it is. Kernels of the GPU have the lowest priority in any case;
-                             only those of coarser levels, and those that place vertices of large meshes, come before
-                             the others of the library.
+                             caller lends its thread as it is. Kernels of the GPU have the lowest priority either way,
+                             but for those of coarser levels and those that place vertices of large meshes.
                              Contexts share CPU threads: on Linux, where priorities can't be raised again, those
                              of a process that have 0 (default) are slowed down by busy programs too once one has 1 */
   uint32_t reserved;      /* 0 */
@@ -539,7 +538,8 @@ typedef enum qses_measured_by {
                                        across (settings.creases) */
   QSES_MEASURED_BY_ATOMS = 3 /* exact, from what the others leave free of each atom, the same at every spacing: SAS and
                                 VDW, and the SES of a probe below 0.05 Å. A molecule that is turned or moved has the
-                                same within 1e-6 */
+                                same within 1e-6, many small balls on a large one within 3e-6; where balls touch or
+                                just close, as in ideal lattices, 2e-4 */
 } qses_measured_by;
 
 /* What was done for one mesh. */

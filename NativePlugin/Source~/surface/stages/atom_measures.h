@@ -8,8 +8,8 @@
 // known how arcs join to borders, nor how many there are, as the formula of Gauss and Bonnet asks for. Volume by the
 // divergence theorem.
 //
-// Where it is, ends of its arcs that are off by little would count for much. Then the pole is the axis itself, and the
-// integral is less by the whole sphere where the opposite point is exposed.
+// Where it is, ends of its arcs that are off by little would count for much. Then the opposite point is one that is
+// exposed, far from all caps, and the integral is less by the whole sphere.
 #pragma once
 
 #include "parallel/atomics.h"
@@ -36,6 +36,28 @@ QSES_FN bool has_tiny_caps(const CapRange &range, const Cap &largest) {
   return largest.cosine > 0.99f && static_cast<float>(range.count) * (1.f - largest.cosine) < 1.f;
 }
 
+// Of the directions of a cube's faces, edges and corners, that which is farthest from the caps; the axis of the first
+// one, if they cover all.
+constexpr int kDirections = 27;  // one of them is none
+QSES_FN Vec3<float> farthest_from_caps(const Cap *caps, int32_t count) {
+  Vec3<float> best(load(caps).axis);
+  float farthest = 0.f;
+  for (int k = 0; k < kDirections; ++k) {
+    const Vec3<float> way(static_cast<float>(k % 3 - 1), static_cast<float>(k / 3 % 3 - 1),
+                          static_cast<float>(k / 9 - 1));
+    if (k == kDirections / 2) continue;
+    const Vec3<float> direction = way * reciprocal_root(length_squared(way));
+    const auto chord_to = [](float cosine) { return square_root(maximum(0.f, 2.f - 2.f * cosine)); };
+    float least = 2.f;
+    for (int32_t j = 0; j < count && least > farthest; ++j) {
+      const Cap cap = load(caps + j);
+      least = minimum(least, chord_to(dot(direction, Vec3<float>(cap.axis))) - chord_to(cap.cosine));
+    }
+    if (least > farthest) farthest = least, best = direction;
+  }
+  return best;
+}
+
 // Area of the triangle of great circles, positive if a, b, c come counter-clockwise seen from outside (van Oosterom &
 // Strackee 1983). All three of unit length.
 QSES_FN double spherical_triangle(const Vec3<double> &a, const Vec3<double> &b, const Vec3<double> &c) {
@@ -55,7 +77,7 @@ struct SphereArc {
 
 // Integral of (1 - cos(theta)) dphi along the arc. Piece by piece of at most a quarter of a turn: the triangle of the
 // pole and the chord, and what lies between chord and arc. The pole's opposite point is not in there, since it is no
-// nearer to any arc than the arc's own cap is wide.
+// nearer to any arc than the arc's own cap is wide, or beyond all caps.
 QSES_FN double integrate_about(const Vec3<double> &pole, const SphereArc &arc) {
   int pieces = 1;
   double c = arc.cos_half, s = arc.sin_half;  // of half a piece
@@ -80,11 +102,25 @@ QSES_FN double integrate_about(const Vec3<double> &pole, const SphereArc &arc) {
   return sum;
 }
 
+// The point opposite to the pole of each atom that has caps.
+struct ChooseOpposite {
+  const CapRange *cap_ranges;
+  const Cap *caps;
+  glm::vec3 *opposites;
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    const CapRange range = cap_ranges[i];
+    if (range.count <= 0) return;
+    const Cap *const own = caps + range.first;
+    const Cap largest = load(own);
+    opposites[i] = has_tiny_caps(range, largest) ? to_glm(farthest_from_caps(own, range.count)) : largest.axis;
+  }
+};
+
 // Adds what the arcs bring to the areas of their two atoms, and notes what they bring to the volume.
 struct MeasureArc {
   const Sphere *atoms;
   const CapRange *cap_ranges;
-  const Cap *caps;
+  const glm::vec3 *opposites;
   const Arc *arcs;
   const ArcAtoms *arc_atoms;
   int64_t *solid_angles;  // per atom
@@ -123,15 +159,11 @@ struct MeasureArc {
   // Of the atom whose neighbour is in the direction of the arc's axis. What is exposed lies right of the arc.
   QSES_FN double measure_side(uint32_t atom, const Vec3<double> &center, double atom_radius, double along,
                               double circle_radius, SphereArc &arc) const {
-    const CapRange range = cap_ranges[atom];
-    if (range.count <= 0) return 0.0;
+    if (cap_ranges[atom].count <= 0) return 0.0;
     arc.cosine = along / atom_radius;
     arc.sine = circle_radius / atom_radius;
-    const Cap largest = load(caps + range.first);
-    const Vec3<double> covered = to_double(largest.axis);
-    const double way = has_tiny_caps(range, largest) ? 1.0 : -1.0;
-    const Vec3<double> pole = covered * (way / sqrt(length_squared(covered)));
-    const double solid_angle = -integrate_about(pole, arc);
+    const Vec3<double> opposite = to_double(opposites[atom]);
+    const double solid_angle = -integrate_about(opposite * (-1.0 / sqrt(length_squared(opposite))), arc);
     atomic_add(solid_angles + atom, static_cast<int64_t>(floor(solid_angle * kSolidAngleUnits + 0.5)));
     // Half the integral of x cross dx along the arc, from the atom's centre.
     const Vec3<double> vector_area =
@@ -193,8 +225,11 @@ AtomMeasures measure_atoms(Executor &executor, const NeighborGridView &atoms, co
   const size_t n = atoms.count, arcs = features.arcs.size;
   const Span<int64_t> solid_angles = executor.template allocate_zeros<int64_t>(n);
   const Span<double> volumes = executor.template allocate<double>(arcs);
+  const Span<glm::vec3> opposites = executor.template allocate<glm::vec3>(n);
+  executor.for_each(n, ChooseOpposite{features.cap_ranges.data, features.caps.data, opposites.data},
+                    std::min(kThreadSteps, kPlainSteps + kDirections * uint64_t(features.most_caps)));
   executor.for_each(arcs,
-                    MeasureArc{atoms.items, features.cap_ranges.data, features.caps.data, features.arcs.data,
+                    MeasureArc{atoms.items, features.cap_ranges.data, opposites.data, features.arcs.data,
                                features.arc_atoms.data, solid_angles.data, volumes.data},
                     kArcMeasureSteps);
   const AreaOfAtom area{atoms.items, features.cap_ranges.data, features.caps.data, solid_angles.data};
