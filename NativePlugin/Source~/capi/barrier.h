@@ -31,8 +31,6 @@ qses_status guarded(const Call &call) noexcept {
   return outcome;
 }
 
-[[noreturn]] inline void invalid(const std::string &message) { throw Error(QSES_INVALID_ARGUMENT, message); }
-
 inline void require(const void *pointer, const char *name) {
   if (!pointer) invalid(std::string(name) + " is NULL");
 }

@@ -90,10 +90,10 @@ std::shared_ptr<quickses::AtomSet> next_frame(const qses_context &context, const
 
 constexpr const char *kNothingComputed = "nothing has been computed yet";
 
-qses_mesh held_mesh(const qses_context &context) {
-  qses_mesh mesh;
-  if (!context.job->held(&mesh, nullptr)) throw quickses::Error(QSES_NO_RESULT, kNothingComputed);
-  return mesh;
+const quickses::FinishedMesh &held_mesh(const qses_context &context) {
+  const quickses::FinishedMesh *const held = context.job->held();
+  if (!held) throw quickses::Error(QSES_NO_RESULT, kNothingComputed);
+  return *held;
 }
 
 // What to compute: one level for qses_compute, the ladder for qses_begin.
@@ -236,7 +236,7 @@ qses_status qses_compute(qses_context *context, const qses_settings *settings, q
     if (mesh) check_struct(mesh, "qses_mesh");  // before the last mesh is replaced
     const qses_settings s = read_struct(settings, qses_settings_init, "qses_settings");
     context->job->compute(make_request(*context, s, false, "qses_compute"));
-    if (mesh) write_struct(mesh, held_mesh(*context), "qses_mesh");
+    if (mesh) write_struct(mesh, held_mesh(*context).on_host, "qses_mesh");
   });
 }
 
@@ -244,7 +244,7 @@ qses_status qses_context_mesh(const qses_context *context, qses_mesh *mesh) {
   return guarded([&] {
     require(context, "context");
     require(mesh, "mesh");
-    write_struct(mesh, held_mesh(*context), "qses_mesh");
+    write_struct(mesh, held_mesh(*context).on_host, "qses_mesh");
   });
 }
 
@@ -252,9 +252,7 @@ qses_status qses_context_report(const qses_context *context, qses_report *report
   return guarded([&] {
     require(context, "context");
     require(report, "report");
-    qses_report held;
-    if (!context->job->held(nullptr, &held)) throw quickses::Error(QSES_NO_RESULT, kNothingComputed);
-    write_struct(report, held, "qses_report");
+    write_struct(report, held_mesh(*context).report, "qses_report");
   });
 }
 
@@ -291,9 +289,8 @@ qses_status qses_collect(qses_context *context, qses_mesh *mesh) {
     require(context, "context");
     require(mesh, "mesh");
     check_struct(mesh, "qses_mesh");
-    qses_mesh collected;
-    found = context->job->collect(&collected, nullptr);
-    if (found) write_struct(mesh, collected, "qses_mesh");
+    found = context->job->collect();
+    if (found) write_struct(mesh, held_mesh(*context).on_host, "qses_mesh");
   });
   // Callers ask in every frame: an exception would be too dear an answer.
   if (status == QSES_OK && !found)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The C API: structures from files and from memory.
+#include "capi/choices.h"
 #include "capi/structs.h"
 #include "io/atom_colors.h"
 #include "io/file_bytes.h"
@@ -15,6 +16,8 @@
 using quickses::check_choice;
 using quickses::guarded;
 using quickses::invalid;
+using quickses::own_choice;
+using quickses::public_choice;
 using quickses::read_struct;
 using quickses::require;
 using quickses::write_struct;
@@ -32,57 +35,10 @@ struct qses_structure {
 
 namespace {
 
-std::optional<io::StructureFormat> format_of(qses_structure_format format) {
-  switch (format) {
-    case QSES_STRUCTURE_PDB:
-      return io::StructureFormat::kPdb;
-    case QSES_STRUCTURE_MMCIF:
-      return io::StructureFormat::kMmcif;
-    case QSES_STRUCTURE_PQR:
-      return io::StructureFormat::kPqr;
-    case QSES_STRUCTURE_XYZR:
-      return io::StructureFormat::kXyzr;
-    case QSES_STRUCTURE_GRO:
-      return io::StructureFormat::kGro;
-    default:
-      return std::nullopt;
-  }
-}
-
-qses_structure_format format_of(io::StructureFormat format) {
-  switch (format) {
-    case io::StructureFormat::kPdb:
-      return QSES_STRUCTURE_PDB;
-    case io::StructureFormat::kMmcif:
-      return QSES_STRUCTURE_MMCIF;
-    case io::StructureFormat::kPqr:
-      return QSES_STRUCTURE_PQR;
-    case io::StructureFormat::kXyzr:
-      return QSES_STRUCTURE_XYZR;
-    case io::StructureFormat::kGro:
-      return QSES_STRUCTURE_GRO;
-  }
-  return QSES_STRUCTURE_AUTO;
-}
-
-io::ColorScheme scheme_of(qses_color_scheme scheme) {
-  check_choice("scheme", scheme, QSES_COLOR_SEQUENCE);
-  switch (scheme) {
-    case QSES_COLOR_UNIFORM:
-      break;
-    case QSES_COLOR_ELEMENT:
-      return io::ColorScheme::kElement;
-    case QSES_COLOR_CHAIN:
-      return io::ColorScheme::kChain;
-    case QSES_COLOR_RESIDUE:
-      return io::ColorScheme::kResidue;
-    case QSES_COLOR_HYDROPHOBICITY:
-      return io::ColorScheme::kHydrophobicity;
-    case QSES_COLOR_SEQUENCE:
-      return io::ColorScheme::kSequence;
-  }
-  return io::ColorScheme::kUniform;
-}
+constexpr qses_structure_format kFormats[] = {QSES_STRUCTURE_PDB, QSES_STRUCTURE_MMCIF, QSES_STRUCTURE_PQR,
+                                              QSES_STRUCTURE_XYZR, QSES_STRUCTURE_GRO};
+constexpr qses_color_scheme kSchemes[] = {QSES_COLOR_UNIFORM, QSES_COLOR_ELEMENT,        QSES_COLOR_CHAIN,
+                                          QSES_COLOR_RESIDUE, QSES_COLOR_HYDROPHOBICITY, QSES_COLOR_SEQUENCE};
 
 // count: of a caller's array of atoms.
 void check_atom_count(const io::Structure &model, size_t count) {
@@ -110,7 +66,7 @@ void open_structure(const Read &read, const qses_structure_options *options, qse
   const qses_structure_options o = read_struct(options, qses_structure_options_init, "qses_structure_options");
   auto opened = std::make_unique<qses_structure>();
   const io::ReadOptions read_options = read_options_of(o);
-  opened->file = read(format_of(o.format), read_options);
+  opened->file = read(own_choice<io::StructureFormat>(kFormats, o.format), read_options);
   io::assign_radii(opened->file, o.radii ? o.radii : "");
   for (const io::AtomInfo &atom : opened->model().atoms) opened->file_indices.push_back(atom.file_index);
   opened->residues = io::residues_of(opened->model());
@@ -161,7 +117,7 @@ qses_status qses_structure_info(const qses_structure *structure, qses_structure_
     const io::Structure &model = structure->model();
     qses_structure_description value;
     qses_structure_description_init(&value);
-    value.format = format_of(structure->file.format);
+    value.format = public_choice(kFormats, structure->file.format);
     value.model = model.model;
     value.model_count = structure->file.model_count;
     value.atom_count = static_cast<uint32_t>(model.atoms.size());
@@ -216,7 +172,8 @@ qses_status qses_structure_colors(const qses_structure *structure, qses_color_sc
     require(structure, "structure");
     require(uniform_rgba, "uniform_rgba");
     require(rgba, "rgba");
-    const io::ColorScheme chosen = scheme_of(scheme);
+    check_choice("scheme", scheme, QSES_COLOR_SEQUENCE);
+    const io::ColorScheme chosen = *own_choice<io::ColorScheme>(kSchemes, scheme);
     check_atom_count(structure->model(), count);
     const io::Rgba uniform = {uniform_rgba[0], uniform_rgba[1], uniform_rgba[2], uniform_rgba[3]};
     io::color_atoms(structure->model(), chosen, uniform, rgba);

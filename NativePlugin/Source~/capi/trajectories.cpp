@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: MIT
 // The C API: trajectories from files and from memory.
 #include "capi/atoms_in.h"
+#include "capi/choices.h"
 #include "capi/structs.h"
 #include "io/text.h"
 #include "io/trajectory.h"
 #include "io/unwrap.h"
 #include "quickses/quickses.h"
 
-#include <memory>
+#include <cstring>
 #include <optional>
 #include <vector>
 
 using quickses::check_choice;
 using quickses::guarded;
 using quickses::invalid;
+using quickses::own_choice;
+using quickses::public_choice;
 using quickses::require;
 using quickses::write_struct;
 namespace io = quickses::io;
@@ -33,39 +36,13 @@ struct qses_trajectory {
 
 namespace {
 
+constexpr qses_trajectory_format kFormats[] = {QSES_TRAJECTORY_DCD, QSES_TRAJECTORY_XTC, QSES_TRAJECTORY_PDB,
+                                               QSES_TRAJECTORY_TRR, QSES_TRAJECTORY_NETCDF};
+
 // By reference: a number that names no format must not be looked at as one before it is checked.
 std::optional<io::TrajectoryFormat> format_of(const qses_trajectory_format &format) {
   check_choice("format", format, QSES_TRAJECTORY_NETCDF);
-  switch (format) {
-    case QSES_TRAJECTORY_DCD:
-      return io::TrajectoryFormat::kDcd;
-    case QSES_TRAJECTORY_XTC:
-      return io::TrajectoryFormat::kXtc;
-    case QSES_TRAJECTORY_PDB:
-      return io::TrajectoryFormat::kPdb;
-    case QSES_TRAJECTORY_TRR:
-      return io::TrajectoryFormat::kTrr;
-    case QSES_TRAJECTORY_NETCDF:
-      return io::TrajectoryFormat::kNetcdf;
-    default:
-      return std::nullopt;
-  }
-}
-
-qses_trajectory_format format_of(io::TrajectoryFormat format) {
-  switch (format) {
-    case io::TrajectoryFormat::kDcd:
-      return QSES_TRAJECTORY_DCD;
-    case io::TrajectoryFormat::kXtc:
-      return QSES_TRAJECTORY_XTC;
-    case io::TrajectoryFormat::kPdb:
-      return QSES_TRAJECTORY_PDB;
-    case io::TrajectoryFormat::kTrr:
-      return QSES_TRAJECTORY_TRR;
-    case io::TrajectoryFormat::kNetcdf:
-      return QSES_TRAJECTORY_NETCDF;
-  }
-  return QSES_TRAJECTORY_AUTO;
+  return own_choice<io::TrajectoryFormat>(kFormats, format);
 }
 
 void check_atom_count(const qses_trajectory &trajectory, size_t count) {
@@ -117,7 +94,7 @@ qses_status qses_trajectory_info(const qses_trajectory *trajectory, qses_traject
     require(description, "description");
     qses_trajectory_description value;
     qses_trajectory_description_init(&value);
-    value.format = format_of(trajectory->frames.format());
+    value.format = public_choice(kFormats, trajectory->frames.format());
     value.frame_count = trajectory->frames.frame_count();
     value.atom_count = static_cast<uint32_t>(trajectory->frames.atom_count());
     value.has_box = trajectory->has_box ? 1 : 0;

@@ -2,7 +2,6 @@
 // Where workers get their frames from and bring their results to.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <optional>

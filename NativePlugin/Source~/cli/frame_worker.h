@@ -2,7 +2,6 @@
 // From a frame of a trajectory to its result, for a thread that does one after the other.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <vector>
 

@@ -2,7 +2,6 @@
 // The quickses program: molecular surfaces from the command line, by the C API and nothing else.
 #include <cstdio>
 #include <iostream>
-#include <string>
 
 #include "cli/commands.h"
 #include "cli/exit_code.h"

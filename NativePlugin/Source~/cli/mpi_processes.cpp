@@ -113,7 +113,6 @@ class MpiProcesses : public Processes {
   int rank() const override { return rank_; }
   int count() const override { return count_; }
   int local_rank() const override { return local_rank_; }
-  int local_count() const override { return local_count_; }
   unsigned threads() const override { return threads_; }
 
   uint64_t sum(uint64_t value) const override {

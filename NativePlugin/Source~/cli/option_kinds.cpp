@@ -2,7 +2,6 @@
 // Kinds of options.
 #include "cli/option_kinds.h"
 
-#include <cmath>
 #include <cstdio>
 
 #include "io/text.h"

@@ -16,9 +16,8 @@ class Processes {
 
   virtual int rank() const { return 0; }
   virtual int count() const { return 1; }
-  virtual int local_rank() const { return 0; }   // among those on the same machine
-  virtual int local_count() const { return 1; }  // on the same machine
-  virtual unsigned threads() const;              // this process's share of the processors it may run on
+  virtual int local_rank() const { return 0; }  // among those on the same machine
+  virtual unsigned threads() const;             // this process's share of the processors it may run on
   virtual uint64_t sum(uint64_t value) const { return value; }
   bool is_first() const { return rank() == 0; }
 

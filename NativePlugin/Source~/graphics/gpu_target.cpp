@@ -9,8 +9,6 @@
 namespace quickses {
 namespace {
 
-[[noreturn]] void invalid(const std::string &message) { throw Error(QSES_INVALID_ARGUMENT, message); }
-
 void check_room(const char *of, uint64_t capacity, uint64_t needed) {
   if (capacity < needed)
     invalid("buffers." + std::string(of) + "_capacity is " + std::to_string(capacity) + ", but the mesh needs " +

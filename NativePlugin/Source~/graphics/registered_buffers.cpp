@@ -34,8 +34,7 @@ void require_same_device(const GraphicsApi &api, const qses_gpu_buffers &buffers
 const GraphicsApi &graphics_api(qses_graphics graphics) {
   if (graphics == QSES_GRAPHICS_OPENGL) return opengl();
   if (graphics == QSES_GRAPHICS_D3D11) return direct3d11();
-  throw Error(QSES_INVALID_ARGUMENT,
-              "graphics is " + std::to_string(static_cast<int>(graphics)) + ", which names nothing in the header");
+  invalid("graphics is " + std::to_string(static_cast<int>(graphics)) + ", which names nothing in the header");
 }
 
 void require_graphics(qses_graphics graphics) {
@@ -85,8 +84,7 @@ void *RegisteredBuffers::address(Which which, size_t bytes) const {
   check_cuda(cudaGraphicsResourceGetMappedPointer(&address, &room, resources_[static_cast<size_t>(place)]),
              "cudaGraphicsResourceGetMappedPointer");
   if (room < bytes)
-    throw Error(QSES_INVALID_ARGUMENT,
-                "a buffer has " + std::to_string(room) + " bytes, but " + std::to_string(bytes) + " are to be written");
+    invalid("a buffer has " + std::to_string(room) + " bytes, but " + std::to_string(bytes) + " are to be written");
   return address;
 }
 

@@ -219,30 +219,21 @@ void SurfaceJob::finished(FinishedMesh mesh) {
 
 void SurfaceJob::advance(double fraction) { fraction_.store(static_cast<float>(fraction), std::memory_order_relaxed); }
 
-bool SurfaceJob::collect(qses_mesh *mesh, qses_report *report) {
+bool SurfaceJob::collect() {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (!ready_.is_there) return false;
   hold_what_is_ready();
-  if (mesh) *mesh = held_.mesh.on_host;
-  if (report) *report = held_.mesh.report;
   return true;
 }
 
-bool SurfaceJob::held(qses_mesh *mesh, qses_report *report) const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (!held_.is_there) return false;
-  if (mesh) *mesh = held_.mesh.on_host;
-  if (report) *report = held_.mesh.report;
-  return true;
-}
+const FinishedMesh *SurfaceJob::held() const { return held_.is_there ? &held_.mesh : nullptr; }
 
 bool SurfaceJob::collect_on_device(qses_device_mesh *mesh) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const Level &newest = ready_.is_there ? ready_ : held_;
   if (!newest.is_there) return false;
   if (!is_for_device(newest.mesh.delivery))
-    throw Error(QSES_INVALID_ARGUMENT,
-                "the mesh was made with another settings.delivery than DEVICE or BOTH: it is not on the device");
+    invalid("the mesh was made with another settings.delivery than DEVICE or BOTH: it is not on the device");
   if (ready_.is_there) hold_what_is_ready();
   *mesh = held_.mesh.on_device;
   return true;
@@ -253,7 +244,7 @@ void SurfaceJob::keep(KeptMesh *kept) {
   if (!held_.is_there) throw Error(QSES_NO_RESULT, "nothing has been computed or collected that could be kept");
   FinishedMesh &mesh = held_.mesh;
   if (mesh.delivery == QSES_DELIVERY_NONE)
-    throw Error(QSES_INVALID_ARGUMENT, "the mesh was made with settings.delivery NONE: there is none to be kept");
+    invalid("the mesh was made with settings.delivery NONE: there is none to be kept");
   const bool is_on_device = is_for_device(mesh.delivery);
   const auto on_device = is_on_device ? std::make_shared<DeviceMesh>() : nullptr;
   kept->clear();

@@ -11,7 +11,6 @@
 #include <condition_variable>
 #include <memory>
 #include <mutex>
-#include <string>
 #include <thread>
 
 namespace quickses {
@@ -47,9 +46,9 @@ class SurfaceJob : private LevelSink {
   qses_size_estimate estimate(const SurfaceRequest &request);
   // The finest level finished since the last call; false if there is none. Its memory stays until the next call that
   // returns true, or a compute.
-  bool collect(qses_mesh *mesh, qses_report *report);
-  // The mesh collected or computed last; false if there is none.
-  bool held(qses_mesh *mesh, qses_report *report) const;
+  bool collect();
+  // The mesh collected or computed last; nullptr if there is none.
+  const FinishedMesh *held() const;
   // The finest level finished since the last call, or else the mesh collected or computed last; false if there is
   // neither. Throws Error if it is not on the device, and leaves it where it is.
   bool collect_on_device(qses_device_mesh *mesh);

@@ -19,6 +19,8 @@ class Error : public std::runtime_error {
   qses_status status_;
 };
 
+[[noreturn]] inline void invalid(const std::string &message) { throw Error(QSES_INVALID_ARGUMENT, message); }
+
 // Memory that the budget or the machine refused. The engine then tries with less (surface/memory_ladder.h); else it is
 // the caller's error. again: what was asked for is accounted for by now, and the same once more may do.
 class MemoryRefused : public Error {

@@ -52,8 +52,8 @@
 
 namespace quickses {
 
-// The verbs that only say when a queue's work is to begin or to have ended, and what the frame before tells: of executors
-// whose work is done when a verb returns.
+// The verbs that only say when a queue's work is to begin or to have ended, and what the frame before tells: of
+// executors whose work is done when a verb returns.
 struct NothingQueued {
   template <class T>
   bool foresee(const char *, const void *, const T &, T *) const {
@@ -95,6 +95,9 @@ struct NumberItems {
   uint32_t *numbers;
   QSES_HOST_DEVICE void operator()(size_t i) const { numbers[i] = static_cast<uint32_t>(i); }
 };
+
+// So many keep a GPU busy with a thread for each.
+constexpr size_t kManyItems = size_t(1) << 15;
 
 // Where several threads share each of few items, fewer than 2^32 in all: which one, and which of its threads.
 struct ThreadOfItem {

@@ -155,7 +155,7 @@ class FrameLevels {
       level.spacing = spacing;
       if (frame.in.atoms.count == 0) return;
       if (work.makes_mesh) {
-        enter_level(work, spacing);
+        work.enter_level(spacing);
         work.executor.turn_counts_to(spacing);
       }
       check(work, spacing);

@@ -78,9 +78,9 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
       Work work = levels_.work_of(in, plan, &report);
       prepare_frame(work, in);
       if (work.makes_mesh) {
-        enter_level(work, settings.spacing);
+        work.enter_level(settings.spacing);
         if (is_exact(settings)) facts_.caps = count_kept_caps(work);
-        facts_.size = estimate_size(work);
+        count(work);
         if (splits_creases(work)) growth += expected_splits(work).added;
         if (work.hard_edges) hard_part = expected_hard_part(work);
       }
@@ -194,8 +194,12 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   size_t first_step(const FrameInput &in) {
     const SurfaceParameters p = parameters_of(in);
     if (in.atoms.count != learnt_.atoms || p.max_radius != learnt_.reach) levels_.rooms.forget();
-    if (in.atoms.count != learnt_.atoms || p.max_radius != learnt_.reach || p.spacing != learnt_.spacing)
-      learnt_ = {in.atoms.count, p.max_radius, p.spacing, 0, 0, false, false, false, false, 0, {}};
+    if (in.atoms.count != learnt_.atoms || p.max_radius != learnt_.reach || p.spacing != learnt_.spacing) {
+      learnt_ = {};
+      learnt_.atoms = in.atoms.count;
+      learnt_.reach = p.max_radius;
+      learnt_.spacing = p.spacing;
+    }
     const bool had_too_little = learnt_.step > 0 || learnt_.is_tight || learnt_.is_lone;
     if (had_too_little && executor_.arena().share() > learnt_.share / 4 * 5) {
       learnt_.step = 0;
@@ -248,7 +252,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     facts_.size = predict_size(work);
     if (is_short && is_too_large()) {
       // So roughly predicted, an atom alone among large probes has far too much surface: there is no further plan.
-      if (is_last) facts_.size = estimate_size(work);
+      if (is_last) count(work);
       if (!is_last || is_too_large()) throw MemoryRefused("the surface is forecast not to fit into what there is");
     }
     if (!is_fine) return;
@@ -257,6 +261,14 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     const uint64_t whole = forecast(in, kMemoryPlans[0], kUnlimited) + (Executor::kIsCuda ? 0 : mesh.bytes());
     refuse_hopeless_spacing(static_cast<double>(work.parameters.spacing), facts_.size, static_cast<double>(whole),
                             arena.has_budget() ? 0.0 : static_cast<double>(arena.limit()));
+  }
+
+  void count(Work &work) {
+    facts_.size = estimate_size(work);
+    if (!work.settings.occlusion) return;
+    const auto mark = executor_.arena().mark();
+    facts_.occlusion_bricks = find_occlusion_bricks(work).count;
+    executor_.arena().rewind(mark);
   }
 
   bool knows_size() const { return facts_.size.vertices > 0; }
@@ -277,7 +289,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     LevelWork<Counting, NoTimer> work{{},       counted,  timer,       memory, components, levels_.rooms,
                                       progress, no_table, in.settings, plan,   &facts,     &report};
     prepare_frame(work, in);
-    if (work.makes_mesh) enter_level(work, spacing_);
+    if (work.makes_mesh) work.enter_level(spacing_);
     end_level(work, quickses::begin_level(work));
     return counted.arena().peak();
   }
@@ -337,15 +349,15 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   // Of the last computation of so many atoms with this largest inflated radius and finest spacing: where the ladder
   // ended, with how much memory, whether there was too little for what frames anticipate, or for levels beside each
   // other, whether that did, and did again, so that memory is held as it will be; and what splits of creases found.
-  struct {
-    size_t atoms;
-    float reach, spacing;
-    size_t step;
-    uint64_t share;
-    bool is_tight, is_lone, is_proven, is_settled;
-    double milliseconds;
-    FoundSplits found;
-  } learnt_{};
+  struct Learnt {
+    size_t atoms = 0;
+    float reach = 0, spacing = 0;
+    size_t step = 0;
+    uint64_t share = 0;
+    bool is_tight = false, is_lone = false, is_proven = false, is_settled = false;
+    double milliseconds = 0;
+    FoundSplits found{};
+  } learnt_;
   float spacing_ = 0;  // of the level that is being made
 };
 

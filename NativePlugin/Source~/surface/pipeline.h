@@ -44,7 +44,6 @@ inline SurfaceParameters parameters_of(const FrameInput &in) {
   if (s.surface == QSES_SURFACE_GAUSSIAN) {
     p.probe = 0.f;
     p.scale = kGaussianReach * s.gaussian_radius_scale;
-    p.inner_part = inner_part(s.gaussian_isovalue);
   }
   p.max_radius = p.scale * in.atoms.bounds.max_radius + p.probe;
   return p;
@@ -155,14 +154,6 @@ void prepare_frame(Work &work, const FrameInput &in) {
   if (!work.makes_mesh) return;
   work.features = arrange_features(work, features);
   if (in.settings.creases && !work.parameters.is_of_balls()) sum_arcs(work);
-}
-
-// The work turns to the level with this spacing.
-template <class Work>
-void enter_level(Work &work, float spacing) {
-  work.parameters.spacing = work.lattice.spacing = spacing;
-  work.features.parameters = work.parameters;
-  work.lattice = layout_lattice(work.lattice, work.low, work.high, work.parameters.max_radius);
 }
 
 // What is shown of the mesh of all atoms.

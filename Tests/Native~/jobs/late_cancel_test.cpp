@@ -106,7 +106,7 @@ TEST(LateCancel, OfAComputeWithItsMeshFinished) {
   stopped.request.ladder.add(0.5f);
   EXPECT_NO_THROW(stopped.job->compute(stopped.request));
   EXPECT_TRUE(stopped.job->held(nullptr, nullptr));
-  EXPECT_FALSE(stopped.job->collect(nullptr, nullptr));
+  EXPECT_FALSE(stopped.job->collect());
   EXPECT_EQ(stopped.job->progress().state, QSES_JOB_FINISHED);
 }
 
@@ -115,7 +115,7 @@ TEST(LateCancel, OfAComputeBefore) {
   stopped.request.ladder.add(0.5f);
   EXPECT_THROW(stopped.job->compute(stopped.request), quickses::Cancelled);
   EXPECT_FALSE(stopped.job->held(nullptr, nullptr));
-  EXPECT_FALSE(stopped.job->collect(nullptr, nullptr));
+  EXPECT_FALSE(stopped.job->collect());
   EXPECT_EQ(stopped.job->progress().state, QSES_JOB_CANCELLED);
 }
 
@@ -127,7 +127,7 @@ TEST(LateCancel, OfAJob) {
     stopped.job->begin(stopped.request);
     EXPECT_TRUE(stopped.job->wait(-1));
     EXPECT_EQ(stopped.job->progress().state, finished == 2 ? QSES_JOB_FINISHED : QSES_JOB_CANCELLED);
-    EXPECT_EQ(stopped.job->collect(nullptr, nullptr), finished > 0);
+    EXPECT_EQ(stopped.job->collect(), finished > 0);
   }
 }
 

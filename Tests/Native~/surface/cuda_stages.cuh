@@ -134,7 +134,7 @@ inline DeviceStages run_device_stages(CudaExecutor &executor, const DeviceTable 
   for (uint32_t first = 0; first < count; first += per_slice) {
     const BrickRange slice{first, std::min(count, first + per_slice)};
     CudaCandidates own;
-    B::evaluate_signs(executor, f, s.bricks, slice, rooms, per_slice >= count ? shared : own, s.signs.data);
+    B::evaluate_signs(executor, {f, s.bricks, slice, rooms, per_slice >= count ? shared : own}, s.signs.data);
   }
   timer.begin("marching_cubes");
   s.counts = lay_out_mesh(executor, s.bricks, s.signs.data, table.view.triangle_count, &s.layout);
@@ -147,8 +147,8 @@ inline DeviceStages run_device_stages(CudaExecutor &executor, const DeviceTable 
   for (uint32_t first = 0; first < count; first += per_slice) {
     const BrickRange slice{first, std::min(count, first + per_slice)};
     CudaCandidates own;
-    B::emit_vertices(executor, f, s.bricks, s.layout, slice, slice_sizes(executor, s.bricks, s.layout, slice), rooms,
-                     per_slice >= count ? shared : own, starts, s.mesh);
+    B::emit_vertices(executor, {f, s.bricks, slice, rooms, per_slice >= count ? shared : own},
+                     {s.layout, slice_sizes(executor, s.bricks, s.layout, slice), starts, s.mesh});
   }
   timer.begin("triangles");
   for (uint32_t first = 0; first < count; first += per_slice)

@@ -370,8 +370,8 @@ TEST(CudaStages, WallsAreThoseOfFewAndOfManyEdges) {
       CudaRooms rooms;
       for (uint32_t k = 0; k < slices; ++k) {
         CudaCandidates own;
-        Backend<CudaExecutor>::mark_thin_walls(executor, s.features, s.bricks,
-                                               {count * k / slices, count * (k + 1) / slices}, rooms, own, s.signs.data,
+        const BrickRange slice{count * k / slices, count * (k + 1) / slices};
+        Backend<CudaExecutor>::mark_thin_walls(executor, {s.features, s.bricks, slice, rooms, own}, s.signs.data,
                                                marks.data);
       }
       std::vector<uint64_t> found = to_host(executor, marks.data, marks.size);

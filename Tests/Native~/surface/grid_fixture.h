@@ -130,7 +130,7 @@ struct GridRunOn {
     lattice = layout_lattice(lattice, low, high, max_radius);
     const NeighborGridView grid = build_neighbor_grid(executor, Span<Sphere>{spheres.data(), spheres.size()},
                                                       layout_cells(low, high, max_radius));
-    const BrickSet bricks = find_grid_bricks(executor, grid, parameters, lattice);
+    const BrickSet bricks = collect_ball_bricks(executor, grid, parameters.max_radius, lattice);
     field = classify_grid_points(executor, grid, parameters, bricks);
     signs.assign(size_t(bricks.count) * kLeavesPerBrick, ~uint64_t(0));
     for (const BrickRange &range : slices(slice)) evaluate_grid_signs(executor, field, range, signs.data());

@@ -47,7 +47,7 @@ void compare(const std::vector<Atom> &atoms, float probe, float spacing) {
   CudaExecutor executor(0);
   const Span<Sphere> spheres = to_device(executor, serial.spheres.data(), serial.spheres.size());
   const NeighborGridView grid = build_neighbor_grid(executor, spheres, serial.field.atoms.cells);
-  const BrickSet bricks = find_grid_bricks(executor, grid, serial.parameters, serial.lattice);
+  const BrickSet bricks = collect_ball_bricks(executor, grid, serial.parameters.max_radius, serial.lattice);
   ASSERT_EQ(bricks.count, host_bricks.count);
   EXPECT_EQ(to_host(executor, bricks.places, bricks.count),
             std::vector<uint64_t>(host_bricks.places, host_bricks.places + host_bricks.count));

@@ -145,6 +145,31 @@ TEST(Occlusion, DarkensWhatIsClosedIn) {
   EXPECT_GE(mean(outer), 0.85);
 }
 
+// However small the part of an atom is that it fills by itself.
+TEST(Occlusion, DarkensWhatAGaussianSurfaceClosesIn) {
+  Atoms box;  // of atoms 2.5 Å apart, without the 27 in the middle
+  for (int k = 0; k < 7 * 7 * 7; ++k) {
+    const int x = k % 7 - 3, y = k / 7 % 7 - 3, z = k / 49 - 3;
+    if (std::max({std::abs(x), std::abs(y), std::abs(z)}) > 1) box.add(2.5 * x, 2.5 * y, 2.5 * z, 1.7);
+  }
+  for (const float isovalue : {0.5f, 0.9f, 1.f, 1.3f}) {
+    SCOPED_TRACE(isovalue);
+    qses_settings s = settings(0.5, 1.4, QSES_SURFACE_GAUSSIAN);
+    s.gaussian_isovalue = isovalue;
+    const Lit lit_box = light(box, s);
+    std::vector<float> inner, outer;
+    for (size_t v = 0; v < lit_box.openness.size(); ++v) {
+      const float *const p = &lit_box.surface.mesh.positions[3 * v];
+      (std::max({std::fabs(p[0]), std::fabs(p[1]), std::fabs(p[2])}) < 5 ? inner : outer)
+          .push_back(lit_box.openness[v]);
+    }
+    ASSERT_GT(inner.size(), 100u);
+    EXPECT_LE(*std::max_element(inner.begin(), inner.end()), 0.01f) << "no light comes into a cavity";
+    EXPECT_GE(mean(outer), 0.6);
+    expect_in_range(lit_box.openness);
+  }
+}
+
 TEST(Occlusion, DarkensTheGapBetweenTwoPlates) {
   Atoms plates;
   add_plate(&plates, 9, -5);
@@ -247,6 +272,33 @@ TEST(Occlusion, OfAnyKindOfSurfaceIsInRange) {
     expect_in_range(light(atoms, grid).openness);
   }
   EXPECT_TRUE(light(Atoms(), settings()).openness.empty());
+}
+
+// Atoms of a gas need up to 27 bricks each: the forecast knows.
+TEST(Occlusion, FitsIntoTheSmallestBudgetOfAnEstimate) {
+  std::mt19937 random(12);
+  for (const int count : {200, 1000}) {
+    Atoms gas;
+    const double edge = std::cbrt(8640.0 * count);
+    for (int k = 0; k < count; ++k) {
+      double at[3];
+      for (double &x : at) x = edge * static_cast<double>(random()) / 4294967296.0;
+      gas.add(at[0], at[1], at[2], 1.7);
+    }
+    for (const qses_surface surface : {QSES_SURFACE_SES, QSES_SURFACE_SAS}) {
+      const qses_settings s = lit(settings(1.5, 1.4, surface));
+      const Context context(2);
+      set_atoms(context, gas);
+      qses_size_estimate estimate;
+      qses_size_estimate_init(&estimate);
+      expect_ok(qses_estimate(context, &s, &estimate));
+      const Context small(2, estimate.smallest_budget);
+      set_atoms(small, gas);
+      qses_mesh mesh;
+      qses_mesh_init(&mesh);
+      EXPECT_EQ(qses_compute(small, &s, &mesh), QSES_OK) << count << ": " << qses_last_error();
+    }
+  }
 }
 
 // What is 50,000 Å away takes no light, whatever it does to the tables.

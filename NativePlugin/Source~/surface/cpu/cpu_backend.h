@@ -17,6 +17,7 @@ struct Backend<CpuKernelExecutor> {
   struct LearntRooms {
     void forget() {}
   };
+  using Slice = SliceWork<LearntRooms, Candidates>;
 
   template <class E>
   static void find_solvent_features(E &executor, const NeighborGridView &atoms, const SurfaceParameters &parameters,
@@ -24,23 +25,19 @@ struct Backend<CpuKernelExecutor> {
     quickses::find_solvent_features(executor, atoms, parameters, plan.low_memory, features);
   }
   template <class E>
-  static void gather_candidates(E &, const FeatureView &, const BrickSet &, BrickRange, LearntRooms &, Candidates &,
-                                uint64_t *) {}
+  static void gather_candidates(E &, const Slice &, uint64_t *) {}
   template <class E>
-  static void evaluate_signs(E &executor, const FeatureView &features, const BrickSet &bricks, BrickRange slice,
-                             LearntRooms &, Candidates &, uint64_t *signs) {
-    if constexpr (!E::kCounts) quickses::evaluate_signs(executor, features, bricks, slice, signs);
+  static void evaluate_signs(E &executor, const Slice &s, uint64_t *signs) {
+    if constexpr (!E::kCounts) quickses::evaluate_signs(executor, s.features, s.bricks, s.slice, signs);
   }
   template <class E>
-  static void mark_thin_walls(E &executor, const FeatureView &features, const BrickSet &bricks, BrickRange slice,
-                              LearntRooms &, Candidates &, const uint64_t *signs, uint64_t *marks) {
-    if constexpr (!E::kCounts) quickses::mark_thin_walls(executor, features, bricks, slice, signs, marks);
+  static void mark_thin_walls(E &executor, const Slice &s, const uint64_t *signs, uint64_t *marks) {
+    if constexpr (!E::kCounts) quickses::mark_thin_walls(executor, s.features, s.bricks, s.slice, signs, marks);
   }
   template <class E>
-  static void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bricks, const MeshLayout &layout,
-                            BrickRange slice, const SliceSizes &, LearntRooms &, Candidates &,
-                            const VertexStarts &starts, const MeshView &mesh) {
-    if constexpr (!E::kCounts) quickses::emit_vertices(executor, features, bricks, layout, slice, starts, mesh);
+  static void emit_vertices(E &executor, const Slice &s, const VertexWork &v) {
+    if constexpr (!E::kCounts)
+      quickses::emit_vertices(executor, s.features, s.bricks, v.layout, s.slice, v.starts, v.mesh);
   }
   template <class E>
   static void emit_triangles(E &executor, const BrickSet &bricks, const MeshLayout &layout, BrickRange slice,
@@ -48,13 +45,11 @@ struct Backend<CpuKernelExecutor> {
     if constexpr (!E::kCounts) quickses::emit_triangles(executor, bricks, layout, slice, table, mesh);
   }
   template <class E, class TrianglesMade>
-  static void emit_mesh(E &executor, const FeatureView &features, const BrickSet &bricks, const MeshLayout &layout,
-                        BrickRange slice, const SliceSizes &sizes, LearntRooms &rooms, Candidates &candidates,
-                        const VertexStarts &starts, const TableView &table, const MeshView &mesh,
+  static void emit_mesh(E &executor, const Slice &s, const VertexWork &v, const TableView &table,
                         const TrianglesMade &triangles_made) {
-    emit_triangles(executor, bricks, layout, slice, table, mesh);
+    emit_triangles(executor, s.bricks, v.layout, s.slice, table, v.mesh);
     triangles_made();
-    emit_vertices(executor, features, bricks, layout, slice, sizes, rooms, candidates, starts, mesh);
+    emit_vertices(executor, s, v);
   }
   template <class E, class Slices>
   static void evaluate_density(E &executor, const GaussianDensity &density, const BrickSet &bricks,

@@ -18,6 +18,7 @@ template <>
 struct Backend<CudaExecutor> {
   using Candidates = CudaCandidates;
   using LearntRooms = CudaRooms;
+  using Slice = CudaSlice;
   using SecondStream = quickses::SecondStream;
 
   template <class E>
@@ -29,29 +30,23 @@ struct Backend<CudaExecutor> {
   }
   // The candidates live in the executor's arena: they are there until it is rewound.
   template <class E>
-  static void gather_candidates(E &executor, const FeatureView &features, const BrickSet &bricks, BrickRange slice,
-                                LearntRooms &rooms, Candidates &candidates, uint64_t *signs) {
-    if (slice.size() > 0) gpu::gather_candidates(executor, features, bricks, slice, rooms, candidates, signs);
+  static void gather_candidates(E &executor, const Slice &s, uint64_t *signs) {
+    if (s.slice.size() > 0) gpu::gather_candidates(executor, s, signs);
   }
   template <class E>
-  static void evaluate_signs(E &executor, const FeatureView &features, const BrickSet &bricks, BrickRange slice,
-                             LearntRooms &rooms, Candidates &candidates, uint64_t *signs) {
-    if (slice.size() == 0) return;
-    const bool are_shared = candidates.are_of(slice);
-    if (!are_shared) gpu::gather_candidates(executor, features, bricks, slice, rooms, candidates, signs);
-    gpu::evaluate_leaves(executor, features, bricks, candidates, are_shared && features.parameters.has_thin_walls(),
-                         signs);
+  static void evaluate_signs(E &executor, const Slice &s, uint64_t *signs) {
+    if (s.slice.size() == 0) return;
+    const bool are_shared = s.candidates.are_of(s.slice);
+    if (!are_shared) gpu::gather_candidates(executor, s, signs);
+    gpu::evaluate_leaves(executor, s, are_shared && s.features.parameters.has_thin_walls(), signs);
   }
   template <class E>
-  static void mark_thin_walls(E &executor, const FeatureView &features, const BrickSet &bricks, BrickRange slice,
-                              LearntRooms &rooms, Candidates &candidates, const uint64_t *signs, uint64_t *marks) {
-    gpu::mark_thin_walls(executor, features, bricks, slice, rooms, candidates, signs, marks);
+  static void mark_thin_walls(E &executor, const Slice &s, const uint64_t *signs, uint64_t *marks) {
+    if (s.slice.size() > 0) gpu::mark_thin_walls(executor, s, signs, marks);
   }
   template <class E>
-  static void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bricks, const MeshLayout &layout,
-                            BrickRange slice, const SliceSizes &sizes, LearntRooms &rooms, Candidates &candidates,
-                            const VertexStarts &starts, const MeshView &mesh) {
-    gpu::emit_vertices(executor, features, bricks, layout, slice, sizes, rooms, candidates, starts, mesh);
+  static void emit_vertices(E &executor, const Slice &s, const VertexWork &v) {
+    if (s.slice.size() > 0) gpu::emit_vertices(executor, s, v);
   }
   template <class E>
   static void emit_triangles(E &executor, const BrickSet &bricks, const MeshLayout &layout, BrickRange slice,
@@ -59,12 +54,9 @@ struct Backend<CudaExecutor> {
     gpu::emit_triangles(executor, bricks, layout, slice, table, mesh);
   }
   template <class E, class TrianglesMade>
-  static void emit_mesh(E &executor, const FeatureView &features, const BrickSet &bricks, const MeshLayout &layout,
-                        BrickRange slice, const SliceSizes &sizes, LearntRooms &rooms, Candidates &candidates,
-                        const VertexStarts &starts, const TableView &table, const MeshView &mesh,
+  static void emit_mesh(E &executor, const Slice &s, const VertexWork &v, const TableView &table,
                         const TrianglesMade &triangles_made) {
-    gpu::emit_mesh(executor, features, bricks, layout, slice, sizes, rooms, candidates, starts, table, mesh,
-                   triangles_made);
+    gpu::emit_mesh(executor, s, v, table, triangles_made);
   }
   template <class E, class Slices>
   static void evaluate_density(E &executor, const GaussianDensity &density, const BrickSet &bricks,

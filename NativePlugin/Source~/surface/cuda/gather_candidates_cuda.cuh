@@ -5,9 +5,12 @@
 
 #include "surface/cuda/candidate_rows_cuda.cuh"
 #include "surface/cuda/learnt_rooms_cuda.cuh"
-#include "surface/memory/work_facts.h"
+#include "surface/stages/hot_stages.h"
 
 namespace quickses {
+
+using CudaSlice = SliceWork<CudaRooms, CudaCandidates>;
+
 namespace gpu {
 
 // Where rows are counted, and room for so many items of all of them.
@@ -268,8 +271,10 @@ CandidateCounters fill_rows(E &executor, const char *name, ListRoom atoms, ListR
 // Gathers the candidates of a slice, and finds the signs of its inactive leaves unless signs is nullptr. Waits once, or
 // more often if the guess of their number was too small.
 template <class E>
-void gather_candidates(E &executor, const FeatureView &features, const BrickSet &bricks, BrickRange slice,
-                       CudaRooms &rooms, CudaCandidates &candidates, uint64_t *signs) {
+void gather_candidates(E &executor, const CudaSlice &s, uint64_t *signs) {
+  const FeatureView &features = s.features;
+  const BrickRange slice = s.slice;
+  CudaRooms &rooms = s.rooms;
   const uint32_t n = slice.size();
   const size_t leaves = size_t(n) * kLeavesPerBrick;
   const SurfaceParameters &parameters = features.parameters;
@@ -314,8 +319,9 @@ void gather_candidates(E &executor, const FeatureView &features, const BrickSet 
                                   warps == kMostGatherWarps ? gather_candidates_kernel<kMostGatherWarps>
                                   : warps == kGatherWarps   ? gather_candidates_kernel<kGatherWarps>
                                                             : gather_candidates_kernel<1>,
-                                  n, gather, GatherJob{features, bricks, reach, view, room, signs});
+                                  n, gather, GatherJob{features, s.bricks, reach, view, room, signs});
                 });
+  CudaCandidates &candidates = s.candidates;
   candidates.leaves = static_cast<size_t>(found.leaves);
   view.leaf_room = found.leaves;
   if (parameters.spacing >= kSpacingOfLeafRows) {
@@ -330,7 +336,7 @@ void gather_candidates(E &executor, const FeatureView &features, const BrickSet 
                   room_of(leaves, kLeafEdge, arcs, &rooms.leaf_arcs), 0, &view, [&](const RowRoom &room) {
                     executor.launch("narrow_candidates",
                                     by_blocks ? narrow_candidates_kernel<kGatherWarps> : narrow_candidates_kernel<1>,
-                                    leaves, narrow, NarrowJob{features, bricks, reach, of_bricks, view, room});
+                                    leaves, narrow, NarrowJob{features, s.bricks, reach, of_bricks, view, room});
                   });
   }
   candidates.longest_row = std::max(kUsualRow, found.longest_row);

@@ -27,32 +27,32 @@ LaunchShape edge_shape(const E &executor, const FeatureView &features, uint64_t 
 // What the vertices of a slice need is allocated here; they start by halving here, where they do. No vertices: count is
 // 0.
 template <class E>
-VertexJob open_vertices(E &executor, const FeatureView &features, const BrickSet &bricks, const MeshLayout &layout,
-                        BrickRange slice, const SliceSizes &sizes, CudaRooms &rooms, CudaCandidates &candidates,
-                        const VertexStarts &starts, const MeshView &mesh) {
+VertexJob open_vertices(E &executor, const CudaSlice &s, const VertexWork &v) {
+  const FeatureView &features = s.features;
+  const CudaCandidates &candidates = s.candidates;
   VertexJob job{};
-  job.slice = slice;
-  job.first = sizes.first_vertex;
-  job.count = sizes.vertices;
+  job.slice = s.slice;
+  job.first = v.sizes.first_vertex;
+  job.count = v.sizes.vertices;
   if (job.count == 0) return job;
-  if (!candidates.are_of(slice)) gather_candidates(executor, features, bricks, slice, rooms, candidates, nullptr);
+  if (!candidates.are_of(s.slice)) gather_candidates(executor, s, nullptr);
   job.features = features;
-  job.bricks = bricks;
-  job.layout = layout;
+  job.bricks = s.bricks;
+  job.layout = v.layout;
   job.reach = CandidateReach::of(features.parameters);
   job.view = candidates.view;
-  job.starts = starts;
-  job.halved = !starts.moved && starts_by_halving(features.parameters);
-  job.mesh = mesh;
+  job.starts = v.starts;
+  job.halved = !v.starts.moved && starts_by_halving(features.parameters);
+  job.mesh = v.mesh;
   job.list_words = leaf_list_words(features.parameters);
-  const size_t count = job.count, words = CudaCandidates::vertex_words(features.parameters, count, sizes.leaves);
+  const size_t count = job.count, words = CudaCandidates::vertex_words(features.parameters, count, v.sizes.leaves);
   uint32_t *const room =
       candidates.vertex_room.size > 0 ? candidates.vertex_room.data : executor.template allocate<uint32_t>(words).data;
   job.list_of = room;
   job.open = room + count;
   job.unfinished = room + 2 * count;
   job.on_edges = room + 3 * count;
-  job.first_leaf = sizes.first_leaf;
+  job.first_leaf = v.sizes.first_leaf;
   job.lists = room + 4 * count;
   job.counts = executor.template take_counts<VertexCounts>();
   const uint64_t row = candidates.longest_row;
@@ -117,15 +117,12 @@ void prepare_beside_triangles(E &executor, const TriangleJob &triangles, const V
 // Vertices are numbered over all slices: mesh.positions[0] is that of the very first. prepare(job): their starts and
 // candidates. Waits once or twice if there are more than a few launches can place.
 template <class E, class Prepare>
-void emit_vertices_once_prepared(E &executor, const FeatureView &features, const BrickSet &bricks,
-                                 const MeshLayout &layout, BrickRange slice, const SliceSizes &sizes, CudaRooms &rooms,
-                                 CudaCandidates &candidates, const VertexStarts &starts, const MeshView &mesh,
-                                 const Prepare &prepare) {
-  if (slice.size() == 0) return;
+void emit_vertices_once_prepared(E &executor, const CudaSlice &s, const VertexWork &v, const Prepare &prepare) {
+  const FeatureView &features = s.features;
+  const CudaCandidates &candidates = s.candidates;
   const auto mark = executor.arena().mark();
-  const bool gives_back = candidates.are_of(slice) && candidates.vertex_room.size == 0;
-  const VertexJob job =
-      open_vertices(executor, features, bricks, layout, slice, sizes, rooms, candidates, starts, mesh);
+  const bool gives_back = candidates.are_of(s.slice) && candidates.vertex_room.size == 0;
+  const VertexJob job = open_vertices(executor, s, v);
   prepare(job);
   const uint64_t look = vertex_steps(features, candidates.longest_row);
   // Lanes for each of few vertices, or of such that have much to look at; so many for a multiprocessor at most. Arcs,
@@ -174,31 +171,27 @@ void emit_vertices_once_prepared(E &executor, const FeatureView &features, const
   if (gives_back) executor.arena().rewind(mark);
 }
 template <class E>
-void emit_vertices(E &executor, const FeatureView &features, const BrickSet &bricks, const MeshLayout &layout,
-                   BrickRange slice, const SliceSizes &sizes, CudaRooms &rooms, CudaCandidates &candidates,
-                   const VertexStarts &starts, const MeshView &mesh) {
-  emit_vertices_once_prepared(
-      executor, features, bricks, layout, slice, sizes, rooms, candidates, starts, mesh,
-      [&](const VertexJob &job) { prepare_vertices(executor, job, sizes.leaves, candidates.longest_row); });
+void emit_vertices(E &executor, const CudaSlice &s, const VertexWork &v) {
+  emit_vertices_once_prepared(executor, s, v, [&](const VertexJob &job) {
+    prepare_vertices(executor, job, v.sizes.leaves, s.candidates.longest_row);
+  });
 }
 // Both. triangles_made(): all that makes the triangles is given.
 template <class E, class TrianglesMade>
-void emit_mesh(E &executor, const FeatureView &features, const BrickSet &bricks, const MeshLayout &layout,
-               BrickRange slice, const SliceSizes &sizes, CudaRooms &rooms, CudaCandidates &candidates,
-               const VertexStarts &starts, const TableView &table, const MeshView &mesh,
+void emit_mesh(E &executor, const CudaSlice &s, const VertexWork &v, const TableView &table,
                const TrianglesMade &triangles_made) {
-  emit_vertices_once_prepared(
-      executor, features, bricks, layout, slice, sizes, rooms, candidates, starts, mesh, [&](const VertexJob &job) {
-        const uint64_t row = candidates.longest_row;
-        if (job.count > 0 && pay_side_by_side(executor, job, sizes.leaves)) {
-          prepare_beside_triangles(executor, TriangleJob{bricks, layout, table, mesh, slice}, job, sizes.leaves, row);
-          triangles_made();
-          return;
-        }
-        emit_triangles(executor, bricks, layout, slice, table, mesh);
-        triangles_made();
-        prepare_vertices(executor, job, sizes.leaves, row);
-      });
+  emit_vertices_once_prepared(executor, s, v, [&](const VertexJob &job) {
+    const uint64_t row = s.candidates.longest_row;
+    if (job.count > 0 && pay_side_by_side(executor, job, v.sizes.leaves)) {
+      prepare_beside_triangles(executor, TriangleJob{s.bricks, v.layout, table, v.mesh, s.slice}, job, v.sizes.leaves,
+                               row);
+      triangles_made();
+      return;
+    }
+    emit_triangles(executor, s.bricks, v.layout, s.slice, table, v.mesh);
+    triangles_made();
+    prepare_vertices(executor, job, v.sizes.leaves, row);
+  });
 }
 
 }  // namespace gpu

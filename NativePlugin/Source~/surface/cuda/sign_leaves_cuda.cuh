@@ -158,16 +158,16 @@ static __global__ __launch_bounds__(kSignThreads,
 
 // Evaluates the active leaves of a slice. deciders: whether what decides about their points is kept for thin walls.
 template <class E>
-void evaluate_leaves(E &executor, const FeatureView &features, const BrickSet &bricks, CudaCandidates &candidates,
-                     bool deciders, uint64_t *signs) {
+void evaluate_leaves(E &executor, const CudaSlice &s, bool deciders, uint64_t *signs) {
+  CudaCandidates &candidates = s.candidates;
   if (deciders) {
     if (candidates.decider_room.size == 0)
       candidates.decider_room = executor.template allocate<uint32_t>(size_t(candidates.slice.size()) * kBrickPoints);
     candidates.view.deciders = candidates.decider_room.data;
     candidates.have_deciders = true;
   }
-  const SignJob job{features, bricks, CandidateReach::of(features.parameters), candidates.view, signs};
-  const uint64_t steps = candidates.look_steps(features);
+  const SignJob job{s.features, s.bricks, CandidateReach::of(s.features.parameters), candidates.view, signs};
+  const uint64_t steps = candidates.look_steps(s.features);
   if (candidates.view.row_shift == kRowOfLeaf)
     executor.launch("evaluate_leaves", evaluate_wide_leaves_kernel, candidates.leaves,
                     LaunchShape{kWideSignThreads, 1, steps}, job);

@@ -138,21 +138,22 @@ inline double walked_edges(const SurfaceParameters &p) {
 
 // Waits once if nothing is anticipated, or twice if there are far more edges to walk than is usual.
 template <class E>
-void mark_thin_walls(E &executor, const FeatureView &features, const BrickSet &bricks, BrickRange slice,
-                     CudaRooms &rooms, CudaCandidates &candidates, const uint64_t *signs, uint64_t *marks) {
-  if (slice.size() == 0) return;
-  const size_t leaves = static_cast<size_t>(slice.size()) * kLeavesPerBrick;
-  if (!candidates.are_of(slice)) gather_candidates(executor, features, bricks, slice, rooms, candidates, nullptr);
-  if (!candidates.have_deciders) evaluate_leaves(executor, features, bricks, candidates, true, nullptr);
+void mark_thin_walls(E &executor, const CudaSlice &s, const uint64_t *signs, uint64_t *marks) {
+  const FeatureView &features = s.features;
+  CudaRooms &rooms = s.rooms;
+  const CudaCandidates &candidates = s.candidates;
+  const size_t leaves = static_cast<size_t>(s.slice.size()) * kLeavesPerBrick;
+  if (!candidates.are_of(s.slice)) gather_candidates(executor, s, nullptr);
+  if (!candidates.have_deciders) evaluate_leaves(executor, s, true, nullptr);
   const auto mark = executor.arena().mark();
   WallJob job{};
   job.features = features;
-  job.bricks = bricks;
+  job.bricks = s.bricks;
   job.reach = CandidateReach::of(features.parameters);
   job.view = candidates.view;
   job.signs = signs;
   job.marks = marks;
-  job.has_short_cuts = short_cuts_hold(bricks.lattice);
+  job.has_short_cuts = short_cuts_hold(s.bricks.lattice);
   WallCounters *const counters = executor.template take_counts<WallCounters>();
   job.counters = counters;
   job.leaves = executor.template allocate<uint32_t>(leaves).data;

@@ -113,17 +113,11 @@ __device__ __forceinline__ uint32_t decider_at(const WallJob &job, uint32_t slot
   return job.view.deciders[size_t(slot) * 64 + size_t(bit)];
 }
 __device__ __forceinline__ uint32_t decider_at(const WallJob &job, uint32_t brick, const glm::ivec3 &p) {
-  if ((p.x | p.y | p.z) & ~7) {
-    const glm::ivec3 place = job.bricks.place(brick);
-    const int found = job.bricks.find(place + glm::ivec3(p.x >> 3, p.y >> 3, p.z >> 3));
-    if (found < 0) return kNotLookedAt;
-    brick = static_cast<uint32_t>(found);
-  }
-  brick -= job.view.first_brick;  // of the slice
-  if (brick >= job.view.bricks) return kNotLookedAt;
-  const int x = p.x & 7, y = p.y & 7, z = p.z & 7;
-  return decider_at(job, brick * kLeavesPerBrick + static_cast<uint32_t>(leaf_of(x, y, z)),
-                    leaf_bit(x & 3, y & 3, z & 3));
+  const LocatedPoint at = job.bricks.locate(brick, p);
+  if (at.brick < 0) return kNotLookedAt;
+  const uint32_t of_slice = static_cast<uint32_t>(at.brick) - job.view.first_brick;
+  if (of_slice >= job.view.bricks) return kNotLookedAt;
+  return decider_at(job, of_slice * kLeavesPerBrick + static_cast<uint32_t>(at.leaf), at.bit);
 }
 
 // That of a first end. It is not known in leaves that no feature's part of the surface may pass: to be outside there is

@@ -27,6 +27,7 @@ struct WorkFacts {
   double spindle_turns = 0, arc_length = 0;
   FoundSplits found{};
   uint64_t brick_entries = 0, brick_visits = 0;  // of the table of bricks, 0 if the set is sparse; listed visits
+  uint64_t occlusion_bricks = 0;                 // 0: not known
   SurfaceSize size{};
 };
 

@@ -6,7 +6,6 @@
 
 #include "parallel/growing_buffer.h"
 #include "parallel/host_memory.h"
-#include "parallel/span.h"
 
 #include <functional>
 #include <memory>

@@ -68,7 +68,6 @@ MeshMemoryView build_in_slabs(Work &work, const BrickSet &bricks, const Slabs &s
   auto &executor = work.executor;
   using Executor = std::remove_reference_t<decltype(executor)>;
   using B = Backend<Executor>;
-  const FeatureView &features = work.features;
   executor.hand_over();
   work.hand_out_others();
   const bool has_walls = work.parameters.has_thin_walls();
@@ -104,20 +103,21 @@ MeshMemoryView build_in_slabs(Work &work, const BrickSet &bricks, const Slabs &s
     executor.turn_counts_to(work.parameters.spacing, slabs.count << 8 | (slab + 1));
   };
 
+  const auto work_on = [&](uint32_t slab) {
+    return typename B::Slice{work.features, bricks, slabs.range(slab), work.rooms, candidates[slab]};
+  };
   const auto find_signs = [&](uint32_t slab) {
     work.timer.begin("exact_ses");
     turn_to_slab(slab);
-    Candidates<Executor> &own = candidates[slab];
-    B::gather_candidates(executor, features, bricks, slabs.range(slab), work.rooms, own, signs.data);
-    own.decider_room = deciders[slab % 2];
-    B::evaluate_signs(executor, features, bricks, slabs.range(slab), work.rooms, own, signs.data);
+    B::gather_candidates(executor, work_on(slab), signs.data);
+    candidates[slab].decider_room = deciders[slab % 2];
+    B::evaluate_signs(executor, work_on(slab), signs.data);
   };
   const auto find_walls = [&](uint32_t slab) {
     if (!has_walls) return;
     work.timer.begin("thin_walls");
     turn_to_slab(slab);
-    B::mark_thin_walls(executor, features, bricks, slabs.range(slab), work.rooms, candidates[slab], signs.data,
-                       marks.data);
+    B::mark_thin_walls(executor, work_on(slab), signs.data, marks.data);
   };
   // When walls of so many slabs are found. What is emitted then, and vertices of slabs behind which all is final, are
   // told of.
@@ -156,8 +156,7 @@ MeshMemoryView build_in_slabs(Work &work, const BrickSet &bricks, const Slabs &s
     }
     candidates[slab].vertex_room = vertex_room;
     second->queue([&] {
-      B::emit_vertices(executor, features, bricks, layout, slabs.range(slab), sizes, work.rooms, candidates[slab],
-                       starts, mesh.view);
+      B::emit_vertices(executor, work_on(slab), VertexWork{layout, sizes, starts, mesh.view});
       const MeshView part = view_from(mesh.view, sizes.first_vertex, 0);
       paint(work, part, sizes.vertices);
       work.memory.send_vertices(executor, part, sizes.vertices);

@@ -10,30 +10,6 @@
 
 namespace quickses {
 
-// What is found of the atoms serves every spacing.
-template <class Executor>
-void remove_contained_atoms(Executor &executor, const NeighborGridView &atoms, float max_radius) {
-  const auto mark = executor.arena().mark();
-  Span<uint8_t> contained = executor.template allocate_zeros<uint8_t>(atoms.count);
-  uint64_t near = atoms.count;
-  if constexpr (Executor::kIsCuda)
-    near = most_atoms_near(executor, atoms, 4.f * max_radius + 1.f, [&](uint64_t items) {
-      return items <= kThreadSteps && executor.is_few_launches(atoms.count, executor.for_each_shape(items));
-    });
-  const ForEach remove{atoms.count, RemoveContainedAtoms{contained.data, const_cast<Sphere *>(atoms.items)}};
-  for_parts_of_met_items(near, Executor::kIsCuda ? kThreadSteps : near, [&](const MetItems &part, bool is_last) {
-    const uint32_t threads = Executor::kIsCuda && atoms.count < kManyItems ? 4 : 1;
-    const ForEach find{atoms.count * size_t(threads),
-                       FindContainedAtoms{atoms, max_radius, contained.data, threads, part},
-                       std::max(kPlainSteps, std::min(near, kThreadSteps))};
-    if (is_last)
-      do_in_turn(executor, find, remove);
-    else
-      do_in_turn(executor, find);
-  });
-  executor.arena().rewind(mark);
-}
-
 // Caps and arcs of the atoms.
 template <class Work>
 SolventFeatures list_features(Work &work) {
@@ -115,7 +91,7 @@ uint32_t sign_slice(Work &work, const BrickSet &bricks) {
   using B = Backend<std::remove_reference_t<decltype(work.executor)>>;
   return slice_of(work, bricks.count, [&](auto &counted, BrickRange slice) {
     typename B::Candidates own{};
-    B::evaluate_signs(counted, work.features, bricks, slice, work.rooms, own, nullptr);
+    B::evaluate_signs(counted, {work.features, bricks, slice, work.rooms, own}, nullptr);
   });
 }
 
@@ -135,7 +111,7 @@ void mend_thin_walls(Work &work, const BrickSet &bricks,
       in_place ? Span<uint64_t>{signs, leaves} : executor.template allocate_zeros<uint64_t>(leaves);
   const auto mark_slice = [&](auto &any_executor, BrickRange slice) {
     typename B::Candidates own{};
-    B::mark_thin_walls(any_executor, work.features, bricks, slice, work.rooms, shared ? *shared : own, signs,
+    B::mark_thin_walls(any_executor, {work.features, bricks, slice, work.rooms, shared ? *shared : own}, signs,
                        marks.data);
   };
   const uint32_t slice_size = shared ? bricks.count : slice_of(work, bricks.count, mark_slice);
@@ -192,12 +168,12 @@ MeshMemoryView build_exact_surface(Work &work) {
     const uint32_t slice_size = sign_slice(work, set);
     share = slice_size >= set.count && work.plan.single_slice;
     shared = {};
-    if (share) B::gather_candidates(executor, features, set, {0, set.count}, work.rooms, shared, signs);
+    if (share) B::gather_candidates(executor, {features, set, {0, set.count}, work.rooms, shared}, signs);
     if (holds) channels = executor.template allocate<uint64_t>(size_t(set.count) * kLeavesPerBrick);
     const auto mark = executor.arena().mark();
     for_each_slice(work, set.count, slice_size, 0.1, 0.45, [&](BrickRange slice) {
       Candidates<Executor> own{};
-      B::evaluate_signs(executor, features, set, slice, work.rooms, share ? shared : own, signs);
+      B::evaluate_signs(executor, {features, set, slice, work.rooms, share ? shared : own}, signs);
     });
     if (holds) open_thin_channels(work, set, signs, channels);
     if (work.parameters.has_thin_walls()) mend_thin_walls(work, set, share ? &shared : nullptr, signs);
@@ -220,13 +196,13 @@ MeshMemoryView build_exact_surface(Work &work) {
     MeshPart part{mesh.view, 0, 0};
     const SliceSizes sizes = slice_sizes(any_executor, bricks, layout, slice);
     if (mesh.in_pieces) part = open_part(work, any_executor, sizes);
+    const typename B::Slice slice_work{features, bricks, slice, work.rooms, share ? shared : own};
+    const VertexWork vertices{layout, sizes, starts, part.view};
     if (with_triangles && together) {
-      B::emit_mesh(any_executor, features, bricks, layout, slice, sizes, work.rooms, share ? shared : own, starts,
-                   work.table, part.view, note_triangles);
+      B::emit_mesh(any_executor, slice_work, vertices, work.table, note_triangles);
       return part;
     }
-    B::emit_vertices(any_executor, features, bricks, layout, slice, sizes, work.rooms, share ? shared : own, starts,
-                     part.view);
+    B::emit_vertices(any_executor, slice_work, vertices);
     if (with_triangles && mesh.in_pieces) B::emit_triangles(any_executor, bricks, layout, slice, work.table, part.view);
     return part;
   };

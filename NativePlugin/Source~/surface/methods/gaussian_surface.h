@@ -8,20 +8,6 @@
 
 namespace quickses {
 
-// The part of the radius where an atom's density ends within which it alone has the isovalue.
-inline float inner_part(float isovalue) { return isovalue < 1.f ? std::sqrt(-std::log(isovalue) / kHalfReach2) : 0.f; }
-
-template <class Work>
-GaussianDensity density_of(const Work &work) {
-  return {work.atoms, work.parameters.max_radius, work.settings.gaussian_isovalue,
-          1.f / (kGaussianReach * work.settings.gaussian_radius_scale)};
-}
-
-template <class Work>
-BrickSet find_density_bricks(Work &work, WorkFacts *facts) {
-  return collect_ball_bricks(work.executor, work.atoms, work.parameters.max_radius, work.lattice, &facts->brick_visits);
-}
-
 // The signs of all points. slices(work_on): calls work_on(slice) for runs of bricks.
 template <class Work, class Slices>
 void evaluate_density_signs(Work &work, const BrickSet &bricks, const Slices &slices, uint64_t *signs) {
@@ -35,7 +21,8 @@ MeshMemoryView build_gaussian_surface(Work &work) {
   using Executor = std::remove_reference_t<decltype(executor)>;
   work.memory.forget_spills();
   work.timer.begin("bricks");
-  BrickSet bricks = find_density_bricks(work, work.facts);
+  BrickSet bricks =
+      collect_ball_bricks(executor, work.atoms, work.parameters.max_radius, work.lattice, &work.facts->brick_visits);
   note_bricks(work, bricks);
   work.progress.report(0.1);
 

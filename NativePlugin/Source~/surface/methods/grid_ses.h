@@ -24,15 +24,6 @@ inline GridParameters make_grid_parameters(float probe, float spacing, float max
   return g;
 }
 
-// ---- bricks ----------------------------------------------------------------------------------------------------
-
-// Grown by one spacing: the field is positive everywhere else.
-template <class Executor>
-BrickSet find_grid_bricks(Executor &executor, const NeighborGridView &atoms, const GridParameters &parameters,
-                          const Lattice &lattice, uint64_t *listed = nullptr) {
-  return collect_ball_bricks(executor, atoms, parameters.max_radius, lattice, listed);
-}
-
 // ---- classes ---------------------------------------------------------------------------------------------------
 
 // The paper tells points in an atom ("inside") and those in an inflated ball only ("border") apart; refined at every

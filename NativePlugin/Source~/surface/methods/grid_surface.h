@@ -17,7 +17,8 @@ MeshMemoryView build_grid_surface(Work &work) {
   work.timer.begin("bricks");
   const GridParameters parameters =
       make_grid_parameters(work.parameters.probe, work.parameters.spacing, work.parameters.max_radius);
-  BrickSet bricks = find_grid_bricks(executor, work.atoms, parameters, work.lattice, &work.facts->brick_visits);
+  BrickSet bricks =
+      collect_ball_bricks(executor, work.atoms, parameters.max_radius, work.lattice, &work.facts->brick_visits);
   note_bricks(work, bricks);
   work.progress.report(0.1);
 

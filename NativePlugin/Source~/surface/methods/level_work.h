@@ -16,7 +16,6 @@
 #include "surface/stages/side_normals.h"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 
 namespace quickses {
@@ -28,7 +27,7 @@ struct UntoldSize {
   uint64_t most_bricks = 0;
 };
 
-// What prepare_frame makes for all levels of a frame, and enter_level (pipeline.h) turns to one of them.
+// What prepare_frame (pipeline.h) makes for all levels of a frame.
 struct PreparedFrame {
   SurfaceParameters parameters{};
   Lattice lattice{};
@@ -48,6 +47,13 @@ struct PreparedFrame {
   bool makes_mesh = true;
   AtomMeasures atom_measures{};     // where the surface is that of the balls, and measured
   Span<const double> atom_areas{};  // in host memory; of all levels
+
+  // Turns to the level with this spacing.
+  void enter_level(float spacing) {
+    parameters.spacing = lattice.spacing = spacing;
+    features.parameters = parameters;
+    lattice = layout_lattice(lattice, low, high, parameters.max_radius);
+  }
 };
 
 template <class Executor, class Timer>
@@ -99,6 +105,13 @@ void add_normals(Work &work, MeshMemoryView *mesh) {
   add_normals(work, work.side_normals, mesh);
 }
 
+// Of a Gaussian surface.
+template <class Work>
+GaussianDensity density_of(const Work &work) {
+  return {work.atoms, work.parameters.max_radius, work.settings.gaussian_isovalue,
+          1.f / (kGaussianReach * work.settings.gaussian_radius_scale)};
+}
+
 // Colours, texture coordinates and packed normals of vertices that have their places, owners and normals.
 template <class Work>
 void paint(Work &work, const MeshView &mesh, size_t vertices) {
@@ -106,11 +119,25 @@ void paint(Work &work, const MeshView &mesh, size_t vertices) {
   pack_normals(work.executor, mesh, vertices);
 }
 template <class Work>
+BrickSet find_occlusion_bricks(const Work &work) {
+  return find_occlusion_bricks(work.executor, work.atoms, work.parameters.max_radius, work.lattice, work.low,
+                               work.high);
+}
+template <class Work>
 void paint_and_light(Work &work, const MeshMemoryView &mesh) {
   paint(work, mesh.view, mesh.vertices);
-  if (work.settings.occlusion && mesh.vertices > 0)
-    find_openness(work.executor, work.atoms, work.parameters, work.lattice, work.low, work.high, mesh.view,
-                  mesh.vertices, !work.appearance.texcoords);
+  if (!work.settings.occlusion || mesh.vertices == 0) return;
+  const auto mark = work.executor.arena().mark();
+  const BrickSet bricks = find_occlusion_bricks(work);
+  work.facts->occlusion_bricks = bricks.count;
+  const auto find = [&](const auto &fill) {
+    find_openness(work.executor, bricks, fill, mesh.view, mesh.vertices, !work.appearance.texcoords);
+  };
+  if (work.settings.surface == QSES_SURFACE_GAUSSIAN)
+    find(FillWithDensity{density_of(work)});
+  else
+    find(FillWithAtoms{work.atoms, work.parameters});
+  work.executor.arena().rewind(mark);
 }
 
 // What is left to do for a mesh whose vertices have their places, owners, and normals of each side.

@@ -38,27 +38,29 @@ SurfaceSize count_size(Work &work, WorkFacts *facts) {
     return SurfaceSize{static_cast<double>(bricks.count), static_cast<double>(counts.vertices),
                        static_cast<double>(counts.triangles), static_cast<double>(layout.leaf_total)};
   };
+  const auto find_ball_bricks = [&] {
+    return collect_ball_bricks(executor, work.atoms, work.parameters.max_radius, work.lattice, &facts->brick_visits);
+  };
   if (work.settings.surface == QSES_SURFACE_GAUSSIAN)
-    return count(find_density_bricks(work, facts), [&](const BrickSet &bricks, uint64_t *signs) {
+    return count(find_ball_bricks(), [&](const BrickSet &bricks, uint64_t *signs) {
       const auto at_once = [&](const auto &work_on) { work_on(BrickRange{0, bricks.count}); };
       if (bricks.count > 0) evaluate_density_signs(work, bricks, at_once, signs);
     });
   if (work.settings.method == QSES_METHOD_GRID) {
     const GridParameters parameters =
         make_grid_parameters(work.parameters.probe, work.parameters.spacing, work.parameters.max_radius);
-    return count(find_grid_bricks(executor, work.atoms, parameters, work.lattice, &facts->brick_visits),
-                 [&](const BrickSet &bricks, uint64_t *signs) {
-                   if (bricks.count == 0) return;
-                   const GridField field = classify_grid_points(executor, work.atoms, parameters, bricks);
-                   evaluate_grid_signs(executor, field, BrickRange{0, bricks.count}, signs);
-                 });
+    return count(find_ball_bricks(), [&](const BrickSet &bricks, uint64_t *signs) {
+      if (bricks.count == 0) return;
+      const GridField field = classify_grid_points(executor, work.atoms, parameters, bricks);
+      evaluate_grid_signs(executor, field, BrickRange{0, bricks.count}, signs);
+    });
   }
   return count(find_bricks(executor, work.features, work.lattice, &facts->brick_visits),
                [&](const BrickSet &bricks, uint64_t *signs) {
                  if (bricks.count == 0) return;
                  for_each_slice(work, bricks.count, sign_slice(work, bricks), 0, 0, [&](BrickRange slice) {
                    Candidates<Executor> own{};
-                   Backend<Executor>::evaluate_signs(executor, work.features, bricks, slice, work.rooms, own, signs);
+                   Backend<Executor>::evaluate_signs(executor, {work.features, bricks, slice, work.rooms, own}, signs);
                  });
                  if (work.parameters.has_thin_walls()) mend_thin_walls(work, bricks, nullptr, signs);
                });
@@ -114,9 +116,7 @@ SurfaceSize estimate_size(const Work &wanted) {
   const double spacing = static_cast<double>(wanted.parameters.spacing);
   const auto count_at = [&](double h, WorkFacts *facts) {
     Work work = wanted;
-    work.parameters.spacing = work.lattice.spacing = static_cast<float>(h);
-    work.features.parameters = work.parameters;
-    work.lattice = layout_lattice(work.lattice, work.low, work.high, work.parameters.max_radius);
+    work.enter_level(static_cast<float>(h));
     return count_size(work, facts);
   };
   double h = spacing;

@@ -12,8 +12,7 @@ struct Balls {
   NeighborGridView atoms;
   float max_radius;  // of the grid's
   float inset;
-  float part = 1.f;
-  QSES_FN float radius(float of_grid) const { return part * of_grid - inset; }
+  QSES_FN float radius(float of_grid) const { return of_grid - inset; }
 };
 
 // Bricks that hold a lattice point of a ball of the grid, grown by `margin` spacings.
@@ -38,7 +37,7 @@ struct BallBricks {
 // Those bricks, grown by one spacing.
 template <class Executor>
 BrickSet collect_ball_bricks(Executor &executor, const NeighborGridView &atoms, float max_radius,
-                             const Lattice &lattice, uint64_t *listed) {
+                             const Lattice &lattice, uint64_t *listed = nullptr) {
   const double reach = static_cast<double>(max_radius) / static_cast<double>(lattice.brick_size());
   if (atoms.count > 0 && 4.0 / 3.0 * 3.14159265358979 * reach * reach * reach > static_cast<double>(kMaxBricks))
     throw Error(QSES_TOO_FINE,

@@ -16,6 +16,13 @@ namespace quickses {
 // Bricks are numbered by signed 32-bit integers.
 constexpr uint64_t kMaxBricks = 0x7fffffff;
 
+// Where the words of bricks have a lattice point.
+struct LocatedPoint {
+  int brick;  // -1: in none that is active
+  int leaf, bit;
+  QSES_FN size_t word() const { return static_cast<size_t>(brick) * kLeavesPerBrick + static_cast<size_t>(leaf); }
+};
+
 // Active bricks as kernels see them.
 struct BrickSet {
   Lattice lattice;
@@ -36,7 +43,14 @@ struct BrickSet {
     const uint32_t k = lower_bound(places, count, key);
     return k < count && places[k] == key ? static_cast<int>(k) : -1;
   }
-  // The same for several at once: found[k] of place_of(k). With a table nothing depends on what was found before, so
+  // Of a point that is counted from the first one of an active brick.
+  QSES_FN LocatedPoint locate(uint32_t brick, const glm::ivec3 &p) const {
+    const bool is_own = ((p.x | p.y | p.z) & ~7) == 0;
+    const int x = p.x & 7, y = p.y & 7, z = p.z & 7;
+    return {is_own ? static_cast<int>(brick) : find(place(brick) + glm::ivec3(p.x >> 3, p.y >> 3, p.z >> 3)),
+            leaf_of(x, y, z), leaf_bit(x & 3, y & 3, z & 3)};
+  }
+  // As find() for several at once: found[k] of place_of(k). With a table nothing depends on what was found before, so
   // that a GPU waits for all of them together.
   template <int kCount, class PlaceOf>
   QSES_FN void find_each(const PlaceOf &place_of, int *found) const {

@@ -193,9 +193,6 @@ void for_rows_of_bricks(const Items &items, const Pass &pass) {
   }
 }
 
-// So many keep a GPU busy with a thread for each.
-constexpr size_t kManyItems = size_t(1) << 15;
-
 template <class Executor, class Items>
 BrickSet flag_bricks(Executor &executor, const Items &items, const Lattice &lattice, const char *name) {
   const uint64_t entries = lattice.table_size();

@@ -7,8 +7,6 @@
 #include "surface/stages/measure.h"
 #include "surface/stages/triangle_measures.h"
 
-#include <cmath>
-
 namespace quickses {
 
 struct IsRoot {

@@ -28,23 +28,40 @@ struct TableView {
   const uint64_t (*ring)[kCellEdges];  // [256]
 };
 
+// What stages of a slice of bricks work on. Candidates: what signs, walls and vertices may share; Rooms: how much room
+// the last surface of so many atoms took, where that is not known beforehand.
+template <class Rooms, class Candidates>
+struct SliceWork {
+  const FeatureView &features;
+  const BrickSet &bricks;
+  BrickRange slice;
+  Rooms &rooms;
+  Candidates &candidates;
+};
+
+// And its vertices. sizes: what the slice owns, or at most if it is all of the bricks.
+struct VertexWork {
+  const MeshLayout &layout;
+  const SliceSizes &sizes;
+  const VertexStarts &starts;
+  const MeshView &mesh;
+};
+
 // What a back end must offer, as static functions; BackendContract lets the compiler check it. Where E stands, they
 // also take a CountingExecutor of theirs, and then only ask for memory.
 //
-//   Candidates     what signs, walls and vertices may share for a slice of bricks
-//   LearntRooms    how much room the last surface of so many atoms took, where that is not known beforehand
+//   Candidates, LearntRooms, and Slice, which is SliceWork of both
 //   find_solvent_features(E, atoms, parameters, plan, rooms, features)
-//   gather_candidates(E, features, bricks, slice, rooms, candidates, signs)
+//   gather_candidates(E, slice, signs)
 //       for stages that share them, to be called first then; some signs may be known with that
-//   evaluate_signs(E, features, bricks, slice, rooms, candidates, signs)
+//   evaluate_signs(E, slice, signs)
 //       signs[8 * brick + leaf] for the bricks of the slice: bit set = farther than depth inside the boundary
-//   mark_thin_walls(E, features, bricks, slice, rooms, candidates, signs, marks)
+//   mark_thin_walls(E, slice, signs, marks)
 //       of the signs of all bricks: sets the bits in marks, which are numbered like signs, of the points that are to be
 //       inside because of edges of the slice's bricks (thin_walls.h)
-//   emit_vertices(E, features, bricks, layout, slice, sizes, rooms, candidates, starts, mesh)
-//       sizes: what the slice owns, or at most if it is all of the bricks
+//   emit_vertices(E, slice, vertices)
 //   emit_triangles(E, bricks, layout, slice, table, mesh)
-//   emit_mesh(E, features, bricks, layout, slice, sizes, rooms, candidates, starts, table, mesh, triangles_made)
+//   emit_mesh(E, slice, vertices, table, triangles_made)
 //       both, of a slice that is not empty, side by side where that is quicker; triangles_made() is called once all is
 //       given that makes the triangles
 //   evaluate_density(E, density, bricks, slices, signs)
@@ -76,25 +93,19 @@ struct BackendContract {
   static_assert(has<decltype(&B::template find_solvent_features<Executor>), const NeighborGridView &,
                     const SurfaceParameters &, const MemoryPlan &, typename B::LearntRooms &, SolventFeatures *>,
                 "find_solvent_features");
-  static_assert(has<decltype(&B::template gather_candidates<Executor>), const FeatureView &, const BrickSet &,
-                    BrickRange, typename B::LearntRooms &, typename B::Candidates &, uint64_t *>,
+  using Slice = SliceWork<typename B::LearntRooms, typename B::Candidates>;
+  static_assert(has<decltype(&B::template gather_candidates<Executor>), const Slice &, uint64_t *>,
                 "gather_candidates");
-  static_assert(has<decltype(&B::template evaluate_signs<Executor>), const FeatureView &, const BrickSet &, BrickRange,
-                    typename B::LearntRooms &, typename B::Candidates &, uint64_t *>,
-                "evaluate_signs");
-  static_assert(has<decltype(&B::template mark_thin_walls<Executor>), const FeatureView &, const BrickSet &, BrickRange,
-                    typename B::LearntRooms &, typename B::Candidates &, const uint64_t *, uint64_t *>,
+  static_assert(has<decltype(&B::template evaluate_signs<Executor>), const Slice &, uint64_t *>, "evaluate_signs");
+  static_assert(has<decltype(&B::template mark_thin_walls<Executor>), const Slice &, const uint64_t *, uint64_t *>,
                 "mark_thin_walls");
-  static_assert(has<decltype(&B::template emit_vertices<Executor>), const FeatureView &, const BrickSet &,
-                    const MeshLayout &, BrickRange, const SliceSizes &, typename B::LearntRooms &,
-                    typename B::Candidates &, const VertexStarts &, const MeshView &>,
+  static_assert(has<decltype(&B::template emit_vertices<Executor>), const Slice &, const VertexWork &>,
                 "emit_vertices");
   static_assert(has<decltype(&B::template emit_triangles<Executor>), const BrickSet &, const MeshLayout &, BrickRange,
                     const TableView &, const MeshView &>,
                 "emit_triangles");
-  static_assert(has<decltype(&B::template emit_mesh<Executor, void (*)()>), const FeatureView &, const BrickSet &,
-                    const MeshLayout &, BrickRange, const SliceSizes &, typename B::LearntRooms &,
-                    typename B::Candidates &, const VertexStarts &, const TableView &, const MeshView &, void (*)()>,
+  static_assert(has<decltype(&B::template emit_mesh<Executor, void (*)()>), const Slice &, const VertexWork &,
+                    const TableView &, void (*)()>,
                 "emit_mesh");
   static_assert(has<decltype(&B::template evaluate_density<Executor, NoSlices>), const GaussianDensity &,
                     const BrickSet &, const NoSlices &, uint64_t *>,

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Ambient occlusion: how much of an even sky a vertex sees, if what is beyond 20 Å does not count. Balls about the
-// atoms fill a lattice of 1 Å. From nodes 2 Å apart around them, rays look in 48 directions which of them are free. A
-// node keeps two moments of that, from which follows the light on a plane with any normal (the first two orders of the
-// cosine lobe's spherical harmonics: Ramamoorthi and Hanrahan 2001); vertices take it from the eight nodes around them.
+// atoms, or what a Gaussian surface encloses, fill a lattice of 1 Å. From nodes 2 Å apart around them, rays look in 48
+// directions which of them are free. A node keeps two moments of that, from which follows the light on a plane with any
+// normal (the first two orders of the cosine lobe's spherical harmonics: Ramamoorthi and Hanrahan 2001); vertices take
+// it from the eight nodes around them.
 #pragma once
 
 #include "parallel/atomics.h"
 #include "surface/mesh/mesh_view.h"
 #include "surface/stages/ball_points.h"
+#include "surface/stages/hot_stages.h"
 #include "surface/stages/sky_directions.h"
 
 namespace quickses {
@@ -245,7 +247,8 @@ struct LightVertices {
 
 // Bricks for that, of 8 Å, are where the atoms are.
 struct OcclusionBricks : BallBricks {};
-inline ExpectedBricks expected_bricks(const WorkFacts &, const OcclusionBricks &items) {
+inline ExpectedBricks expected_bricks(const WorkFacts &facts, const OcclusionBricks &items) {
+  if (facts.occlusion_bricks > 0) return {facts.occlusion_bricks, 0, 0};
   // Atoms overlap: folded molecules have some quarter of a brick for one, single ones up to 27. Balls that are larger
   // than atoms, as those of coarse-grained models, may each need all of their own.
   constexpr double kAtom = 4;  // Å, of the inflated ball
@@ -267,31 +270,71 @@ inline ExpectedBricks expected_bricks(const WorkFacts &, const OcclusionBricks &
 // to work on the others as well.
 constexpr uint64_t kBricksAtATime = 2048;
 
-// Writes how open the surface is at vertices, from 0 to 1, into the first of their texture coordinates. Positions and
-// normals are finished.
-//   frame, low, high  the centred frame's origin is that of frame; bounds of the atoms' centres in it
-//   marks             see LightVertices
+// frame, low, high: the centred frame's origin is that of frame; bounds of the atoms' centres in it.
 template <class Executor>
-void find_openness(Executor &executor, const NeighborGridView &atoms, const SurfaceParameters &parameters,
-                   const Lattice &frame, const glm::vec3 &low, const glm::vec3 &high, const MeshView &mesh,
-                   size_t vertices, bool marks) {
-  const auto mark = executor.arena().mark();
+BrickSet find_occlusion_bricks(Executor &executor, const NeighborGridView &atoms, float max_radius,
+                               const Lattice &frame, const glm::vec3 &low, const glm::vec3 &high) {
   Lattice lattice = frame;
   lattice.spacing = kOcclusionPoint;
-  lattice = layout_lattice(lattice, low, high, parameters.max_radius + kNodeReach * kOcclusionPoint);
-  const OcclusionBricks items{{atoms, lattice, parameters.max_radius, kNodeReach}};
-  const BrickSet bricks = Executor::kIsCuda && lattice.table_size() <= kBricksAtATime
-                              ? all_bricks(executor, lattice)
-                              : collect_bricks(executor, items, lattice, "occlusion bricks");
+  lattice = layout_lattice(lattice, low, high, max_radius + kNodeReach * kOcclusionPoint);
+  if (Executor::kIsCuda && lattice.table_size() <= kBricksAtATime) return all_bricks(executor, lattice);
+  return collect_bricks(executor, OcclusionBricks{{atoms, lattice, max_radius, kNodeReach}}, lattice,
+                        "occlusion bricks");
+}
+
+// What fills a field: the atoms, somewhat enlarged.
+struct FillWithAtoms {
+  NeighborGridView atoms;
+  SurfaceParameters parameters;
+  template <class Executor>
+  void operator()(Executor &executor, const OpennessField &field) const {
+    executor.fill(Span<uint64_t>{field.outside, size_t(field.bricks.count) * kLeavesPerBrick}, 0xff);
+    const Balls balls{atoms, parameters.max_radius, parameters.depth - kFilledGap};
+    const int planes = static_cast<int>(2.f * balls.radius(balls.max_radius) / kOcclusionPoint) + 1;
+    executor.for_each(size_t(atoms.count) * static_cast<size_t>(planes), FillBalls{balls, field, planes},
+                      kPlainSteps + static_cast<uint64_t>(planes) * static_cast<uint64_t>(planes));
+  }
+};
+
+// Or what is within the isovalue. Signs of its points are found leaf by leaf, where the field's words are then.
+struct TurnSigns {
+  uint64_t *words;
+  QSES_HOST_DEVICE void operator()(size_t brick) const {
+    uint64_t *const own = words + brick * kLeavesPerBrick, signs[kLeavesPerBrick];
+    for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) signs[leaf] = own[leaf];
+    for (int word = 0; word < kLeavesPerBrick; ++word) {
+      uint64_t outside = 0;
+      for (int bit = 0; bit < 64; ++bit) {
+        const int x = 2 * (bit & 3) + (word & 1), y = 2 * (bit >> 2 & 3) + (word >> 1 & 1),
+                  z = 2 * (bit >> 4) + (word >> 2);
+        outside |= (~signs[leaf_of(x, y, z)] >> leaf_bit(x & 3, y & 3, z & 3) & 1) << bit;
+      }
+      own[word] = outside;
+    }
+  }
+};
+struct FillWithDensity {
+  GaussianDensity density;
+  template <class Executor>
+  void operator()(Executor &executor, const OpennessField &field) const {
+    const auto at_once = [&](const auto &work_on) { work_on(BrickRange{0, field.bricks.count}); };
+    if (field.bricks.count > 0)
+      Backend<Executor>::evaluate_density(executor, density, field.bricks, at_once, field.outside);
+    executor.for_each(field.bricks.count, TurnSigns{field.outside}, kPlainTeamSteps);
+  }
+};
+
+// Writes how open the surface is at vertices, from 0 to 1, into the first of their texture coordinates. Positions and
+// normals are finished. marks: see LightVertices.
+template <class Executor, class Fill>
+void find_openness(Executor &executor, const BrickSet &bricks, const Fill &fill, const MeshView &mesh, size_t vertices,
+                   bool marks) {
+  const auto mark = executor.arena().mark();
   const Span<uint64_t> outside = executor.template allocate<uint64_t>(size_t(bricks.count) * kLeavesPerBrick);
   const Span<Openness> nodes = executor.template allocate<Openness>(size_t(bricks.count) * kBrickNodes);
   const Span<int32_t> behind = executor.template allocate<int32_t>(size_t(bricks.count) * 8);
   const OpennessField field{bricks, outside.data, nodes.data, behind.data};
-  executor.fill(outside, 0xff);
-  const Balls balls{atoms, parameters.max_radius, parameters.depth - kFilledGap, parameters.inner_part};
-  const int planes = static_cast<int>(2.f * balls.radius(balls.max_radius) / kOcclusionPoint) + 1;
-  executor.for_each(size_t(atoms.count) * static_cast<size_t>(planes), FillBalls{balls, field, planes},
-                    kPlainSteps + static_cast<uint64_t>(planes) * static_cast<uint64_t>(planes));
+  fill(executor, field);
   executor.template for_each_brick<SkyScratch>(bricks.count, OpenNodes{field, SkyDirections()}, 8, kPlainTeamSteps);
   executor.for_each(vertices, LightVertices{field, mesh, marks});
   executor.arena().rewind(mark);

@@ -5,8 +5,6 @@
 #include "parallel/atomics.h"
 #include "surface/stages/triangle_measures.h"
 
-#include <cmath>
-
 namespace quickses {
 
 // Sums as integers, so that they do not depend on the order.

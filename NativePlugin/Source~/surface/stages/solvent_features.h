@@ -16,9 +16,8 @@ struct SurfaceParameters {
   float probe;
   float depth;
   float spacing;
-  float max_radius;        // largest inflated radius
-  float scale = 1.f;       // of atoms' radii, before the probe inflates them
-  float inner_part = 1.f;  // of an inflated ball, what is inside whatever else there is, but for the depth
+  float max_radius;   // largest inflated radius
+  float scale = 1.f;  // of atoms' radii, before the probe inflates them
 
   // A point that is no deeper than this in any ball is outside. Where a surface is looked for further inside, a point
   // on the boundary within rounding is outside only if a feature says so: else it would be a hole of its own.
@@ -97,6 +96,30 @@ struct RemoveContainedAtoms {
     if (contained[i]) atoms[i] = {glm::vec3(kFarAway), 0.f};
   }
 };
+
+// What is found of the atoms serves every spacing.
+template <class Executor>
+void remove_contained_atoms(Executor &executor, const NeighborGridView &atoms, float max_radius) {
+  const auto mark = executor.arena().mark();
+  Span<uint8_t> contained = executor.template allocate_zeros<uint8_t>(atoms.count);
+  uint64_t near = atoms.count;
+  if constexpr (Executor::kIsCuda)
+    near = most_atoms_near(executor, atoms, 4.f * max_radius + 1.f, [&](uint64_t items) {
+      return items <= kThreadSteps && executor.is_few_launches(atoms.count, executor.for_each_shape(items));
+    });
+  const ForEach remove{atoms.count, RemoveContainedAtoms{contained.data, const_cast<Sphere *>(atoms.items)}};
+  for_parts_of_met_items(near, Executor::kIsCuda ? kThreadSteps : near, [&](const MetItems &part, bool is_last) {
+    const uint32_t threads = Executor::kIsCuda && atoms.count < kManyItems ? 4 : 1;
+    const ForEach find{atoms.count * size_t(threads),
+                       FindContainedAtoms{atoms, max_radius, contained.data, threads, part},
+                       std::max(kPlainSteps, std::min(near, kThreadSteps))};
+    if (is_last)
+      do_in_turn(executor, find, remove);
+    else
+      do_in_turn(executor, find);
+  });
+  executor.arena().rewind(mark);
+}
 
 struct ArcBoundAt {
   const Arc *arcs;

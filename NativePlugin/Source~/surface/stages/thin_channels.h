@@ -80,12 +80,8 @@ QSES_FN Vec3<float> axis_way(int k, float h) {
 
 // The sign of a point counted from the first one of a brick; `missing` where there is no brick.
 QSES_FN bool sign_at(const BrickSet &bricks, uint32_t brick, const glm::ivec3 &p, const uint64_t *signs, bool missing) {
-  const glm::ivec3 away(p.x >> 3, p.y >> 3, p.z >> 3);
-  const int owner = (p.x | p.y | p.z) & ~7 ? bricks.find(bricks.place(brick) + away) : static_cast<int>(brick);
-  if (owner < 0) return missing;
-  const int x = p.x & 7, y = p.y & 7, z = p.z & 7;
-  const uint64_t word = signs[static_cast<size_t>(owner) * kLeavesPerBrick + static_cast<size_t>(leaf_of(x, y, z))];
-  return (word >> leaf_bit(x & 3, y & 3, z & 3) & 1) != 0;
+  const LocatedPoint at = bricks.locate(brick, p);
+  return at.brick < 0 ? missing : (signs[at.word()] >> at.bit & 1) != 0;
 }
 
 // The balls that come near the lattice points of a brick, in any order.

@@ -211,12 +211,8 @@ QSES_FN bool marks_first_end(const NearestProbe &probe_a, const NearestProbe &pr
 
 // Marks a point, counted from the first one of a brick, in the words of its brick.
 QSES_FN void mark_wall(const BrickSet &bricks, uint32_t brick, const glm::ivec3 &p, uint64_t *marks) {
-  const glm::ivec3 away(p.x >> 3, p.y >> 3, p.z >> 3);
-  const int owner = (p.x | p.y | p.z) & ~7 ? bricks.find(bricks.place(brick) + away) : static_cast<int>(brick);
-  if (owner < 0) return;
-  const int x = p.x & 7, y = p.y & 7, z = p.z & 7;
-  atomic_or(marks + static_cast<size_t>(owner) * kLeavesPerBrick + leaf_of(x, y, z),
-            uint64_t(1) << leaf_bit(x & 3, y & 3, z & 3));
+  const LocatedPoint at = bricks.locate(brick, p);
+  if (at.brick >= 0) atomic_or(marks + at.word(), uint64_t(1) << at.bit);
 }
 
 struct AddMarks {
