@@ -5,9 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <string>
-#include <unordered_map>
-#include <vector>
 
 #include "io/residue_table.h"
 
@@ -65,10 +62,9 @@ void color_by_element(const Structure &structure, uint8_t *rgba) {
 }
 
 void color_by_chain(const Structure &structure, uint8_t *rgba) {
-  std::unordered_map<std::string, size_t> chains;  // in the order of the file
   for (size_t i = 0; i < structure.atoms.size(); ++i) {
-    const std::string &chain = structure.atoms[i].chain;
-    if (!chain.empty()) put(distinct_color(chains.emplace(chain, chains.size()).first->second), i, rgba);
+    const AtomInfo &atom = structure.atoms[i];
+    if (!atom.chain.empty()) put(distinct_color(atom.chain_place), i, rgba);
   }
 }
 
@@ -79,7 +75,7 @@ void for_each_residue_name(const Structure &structure, const Action &action) {
   for (size_t i = 0; i < structure.atoms.size(); ++i) {
     const AtomInfo &atom = structure.atoms[i];
     if (i == 0 || atom.residue_name != structure.atoms[i - 1].residue_name) traits = traits_of(atom.residue_name);
-    action(i, atom.kind == ResidueKind::kProtein || atom.kind == ResidueKind::kNucleic ? traits : ResidueTraits());
+    action(i, atom.is_of_polymer() ? traits : ResidueTraits());
   }
 }
 
@@ -112,31 +108,10 @@ void color_by_hydropathy(const Structure &structure, uint8_t *rgba) {
   });
 }
 
-// Where an atom's residue is in its chain.
-struct ChainPlace {
-  size_t chain = 0, residue = 0;
-  bool is_any = false;  // none: it is neither of a protein nor of a nucleic acid
-};
-
 void color_by_sequence(const Structure &structure, uint8_t *rgba) {
-  const std::vector<uint32_t> residues = residues_of(structure);
-  std::unordered_map<std::string, size_t> chains;
-  std::vector<size_t> lengths;  // of the chains, in residues
-  std::vector<ChainPlace> places(structure.atoms.size());
-  uint32_t last_residue = UINT32_MAX;
-  for_each_residue_name(structure, [&](size_t i, const ResidueTraits &traits) {
-    if (traits.residue_class == ResidueClass::kOther) return;
-    const size_t chain = chains.emplace(structure.atoms[i].chain, chains.size()).first->second;
-    if (chain == lengths.size()) lengths.push_back(0);
-    if (residues[i] != last_residue) ++lengths[chain];
-    last_residue = residues[i];
-    places[i] = {chain, lengths[chain] - 1, true};
-  });
-  for (size_t i = 0; i < places.size(); ++i) {
-    if (!places[i].is_any) continue;
-    const size_t length = lengths[places[i].chain];
-    const double along = length > 1 ? static_cast<double>(places[i].residue) / static_cast<double>(length - 1) : 0;
-    put(from_hue((1 - along) * 2 / 3, 0.85), i, rgba);  // from blue to red
+  for (size_t i = 0; i < structure.atoms.size(); ++i) {
+    const double along = static_cast<double>(structure.atoms[i].along_chain);
+    if (along >= 0) put(from_hue((1 - along) * 2 / 3, 0.85), i, rgba);  // from blue to red
   }
 }
 

@@ -162,7 +162,7 @@ class Evaluation {
 
   // Of the terms that look at one atom only.
   static bool matches(const SelectionTerm &term, const AtomInfo &atom) {
-    const bool is_chain_atom = atom.kind == ResidueKind::kProtein || atom.kind == ResidueKind::kNucleic;
+    const bool is_chain_atom = atom.is_of_polymer();
     switch (term.kind) {
       case Kind::kAll:
         return true;

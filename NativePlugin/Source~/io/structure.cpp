@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <unordered_map>
 
 #include "io/alternate_locations.h"
 #include "io/assembly.h"
@@ -185,6 +186,7 @@ Structure flatten(const RawModel &raw, const Filter &filter, std::string &warnin
     if (!raw.radii.empty()) structure.radii.push_back(raw.radii[structure.atoms.back().file_index]);
   }
   find_residue_kinds(structure);
+  find_chain_places(structure);
   return structure;
 }
 
@@ -299,6 +301,30 @@ std::vector<uint32_t> residues_of(const Structure &structure) {
     residues[k] = residues[k - 1] + (is_same ? 0 : 1);
   }
   return residues;
+}
+
+void find_chain_places(Structure &structure) {
+  const std::vector<uint32_t> residues = residues_of(structure);
+  std::unordered_map<std::string, uint32_t> chains;
+  std::vector<uint32_t> lengths;                  // of the chains, in residues of protein and nucleic
+  std::vector<uint32_t> places(residues.size());  // in their chains
+  uint32_t last_residue = UINT32_MAX;
+  for (size_t i = 0; i < residues.size(); ++i) {
+    AtomInfo &atom = structure.atoms[i];
+    atom.chain_place = chains.emplace(atom.chain, static_cast<uint32_t>(chains.size())).first->second;
+    if (atom.chain_place == lengths.size()) lengths.push_back(0);
+    if (!atom.is_of_polymer()) continue;
+    uint32_t &length = lengths[atom.chain_place];
+    if (residues[i] != last_residue) ++length;
+    last_residue = residues[i];
+    places[i] = length - 1;
+  }
+  for (size_t i = 0; i < residues.size(); ++i) {
+    AtomInfo &atom = structure.atoms[i];
+    if (!atom.is_of_polymer()) continue;
+    const uint32_t steps = lengths[atom.chain_place] - 1;
+    atom.along_chain = steps > 0 ? static_cast<float>(places[i]) / static_cast<float>(steps) : 0;
+  }
 }
 
 uint64_t memory_of(const StructureFile &file) {

@@ -34,8 +34,13 @@ struct AtomInfo {
   uint32_t unnumbered_residue = 0;          // which of the residues without a number, from 1; 0: it has one
   ResidueKind kind = ResidueKind::kLigand;  // of the residue
 
+  // Where it is in its model, before any filter: so colours of a part are those of the whole.
+  uint32_t chain_place = 0;  // of its chain, in the order of the file
+  float along_chain = -1;  // 0 to 1: of its residue among those of protein and nucleic in its chain; -1: it is neither
+
   bool has_residue_number() const { return unnumbered_residue == 0; }
   bool is_water() const { return kind == ResidueKind::kWater; }
+  bool is_of_polymer() const { return kind == ResidueKind::kProtein || kind == ResidueKind::kNucleic; }
 };
 
 // The atoms of one model that were kept, in the order of the file.
@@ -93,6 +98,9 @@ uint32_t select_atoms(const Structure &structure, const std::string &text, uint8
 // the file, if there is no number), insertion code and residue name are of one; where there are no names each atom is
 // one by itself.
 std::vector<uint32_t> residues_of(const Structure &structure);
+
+// Sets chain_place and along_chain of the atoms, which are all of the model and have their kinds.
+void find_chain_places(Structure &structure);
 
 // Bytes of memory that it takes.
 uint64_t memory_of(const StructureFile &file);

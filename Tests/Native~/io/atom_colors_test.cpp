@@ -3,6 +3,7 @@
 #include "io/atom_colors.h"
 
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <set>
 #include <vector>
@@ -36,6 +37,7 @@ std::vector<Rgba> colors_of(const std::vector<Named> &named, ColorScheme scheme)
     structure.atoms.push_back(atom);
   }
   find_residue_kinds(structure);
+  find_chain_places(structure);
   std::vector<Rgba> colors(named.size() + 1, Rgba{9, 9, 9, 9});
   color_atoms(structure, scheme, kUniform, colors[0].data());
   EXPECT_EQ(colors.back(), (Rgba{9, 9, 9, 9}));
@@ -210,6 +212,50 @@ TEST(AtomColors, SequenceGoesFromBlueToRedInEachChain) {
   EXPECT_EQ(colors[10], kUniform);
   EXPECT_EQ(colors[11], colors[0]);
   EXPECT_EQ(colors[12], colors[9]);
+}
+
+// A residue of which the table of classes knows nothing is one of the chain all the same.
+TEST(AtomColors, SequenceCountsUnknownResidues) {
+  std::vector<Named> known, unknown;
+  const char *const kNames[] = {"ALA", "UNK", "GLX", "ALA", "ASX"};
+  for (int number = 1; number <= 5; ++number) {
+    known.push_back({6, "ALA", "A", number});
+    unknown.push_back({6, kNames[number - 1], "A", number});
+  }
+  EXPECT_EQ(colors_of(unknown, ColorScheme::kSequence), colors_of(known, ColorScheme::kSequence));
+}
+
+std::vector<Rgba> colors_in(const StructureFile &file, ColorScheme scheme) {
+  std::vector<Rgba> colors(file.models[0].atoms.size());
+  color_atoms(file.models[0], scheme, kUniform, colors[0].data());
+  return colors;
+}
+
+// Chains and places in them are those of the file, whatever is left out.
+TEST(AtomColors, APartHasTheColoursOfTheWhole) {
+  std::string text;
+  for (const char chain : {'A', 'B', 'C'})
+    for (int number = 1; number <= 6; ++number) {
+      char line[96];
+      std::snprintf(line, sizeof line, "%-6s%5d  CA  %s %c%4d    %8.3f%8.3f%8.3f  1.00  0.00           C\n",
+                    number < 6 ? "ATOM" : "HETATM", number, number < 6 ? "ALA" : "MSE", chain, number, 3.0 * number,
+                    10.0 * (chain - 'A'), 0.0);
+      text += line;
+    }
+  ReadOptions part, without_hetero;
+  part.selection = "chain B C and resid 2-4";
+  without_hetero.hetero = false;
+  const auto read = [&](const ReadOptions &options) { return parse_structure(text, StructureFormat::kPdb, options); };
+  const StructureFile whole = read({});
+  for (const ReadOptions &options : {part, without_hetero}) {
+    const StructureFile some = read(options);
+    ASSERT_LT(some.models[0].atoms.size(), whole.models[0].atoms.size());
+    for (const ColorScheme scheme : {ColorScheme::kChain, ColorScheme::kSequence}) {
+      const std::vector<Rgba> of_some = colors_in(some, scheme), of_whole = colors_in(whole, scheme);
+      for (size_t i = 0; i < of_some.size(); ++i)
+        EXPECT_EQ(of_some[i], of_whole[some.models[0].atoms[i].file_index]) << i;
+    }
+  }
 }
 
 TEST(AtomColors, WithoutNames) {
