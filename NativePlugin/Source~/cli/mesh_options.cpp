@@ -162,6 +162,8 @@ void resolve_output(Options &options) {
   const std::string &format = options.output_format;
   for (std::string *name : {&options.output, &options.csv, &options.per_atom, &options.per_residue, &options.json})
     if (io::is_standard_output(*name)) *name = "./" + *name;  // a file that is called so
+  for (std::string *name : {&options.csv, &options.per_atom, &options.per_residue, &options.json})
+    if (io::descriptor_of(*name) == 1) *name = "-";  // as /dev/stdout
   if (!options.has_several_inputs()) options.output = output_of_input(options.output, options.input);
   if (options.output != "-") {
     if (!format.empty())

@@ -255,7 +255,8 @@ const char *name_of(qses_method method) { return find_name(kMethods, method); }
 const char *name_of(qses_backend backend) { return find_name(kBackends, backend); }
 
 bool Options::prints_data() const {
-  return csv == "-" || json == "-" || per_atom == "-" || per_residue == "-" || io::is_standard_output(output);
+  return csv == "-" || json == "-" || per_atom == "-" || per_residue == "-" || io::is_standard_output(output) ||
+         io::descriptor_of(output) == 1;
 }
 
 std::string Options::quoted_trajectories() const {

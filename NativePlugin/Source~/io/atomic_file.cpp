@@ -3,6 +3,7 @@
 #include "io/atomic_file.h"
 
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <mutex>
 #include <set>
@@ -111,6 +112,17 @@ std::FILE *create_new(const fs::path &name, const fs::path &like) {
   return file;
 }
 
+// Null with errno set if the descriptor is not open for writing. Both have one place in the file.
+std::FILE *open_copy(int descriptor) {
+  const int copy = ::fcntl(descriptor, F_DUPFD_CLOEXEC, 0);
+  std::FILE *const file = copy < 0 ? nullptr : ::fdopen(copy, "wb");
+  if (file || copy < 0) return file;
+  const int error_number = errno;
+  ::close(copy);
+  errno = error_number;
+  return nullptr;
+}
+
 #endif
 
 struct Target {
@@ -152,6 +164,29 @@ bool is_standard_output(const std::string &path) {
   return path.compare(0, 2, "-.") == 0 && path_of(path).filename() == path_of(path);
 }
 
+int descriptor_of([[maybe_unused]] const std::string &path) {
+#if !defined(_WIN32)
+  constexpr int kMostLinks = 40;  // as many as Linux follows
+  std::error_code error;
+  fs::path place = path;
+  for (int links = 0; links <= kMostLinks; ++links) {
+    const fs::path folder = fs::canonical(place.has_parent_path() ? place.parent_path() : ".", error);
+    if (error) return -1;
+    for (const char *const descriptors : {"/proc/self/fd", "/dev/fd"}) {
+      if (folder != fs::canonical(descriptors, error)) continue;
+      const std::string digits = place.filename();
+      int descriptor = -1;
+      const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), descriptor);
+      return problem == std::errc() && end == digits.data() + digits.size() ? descriptor : -1;
+    }
+    const fs::path target = fs::read_symlink(place, error);
+    if (error) return -1;  // it is no link
+    place = place.parent_path() / target;
+  }
+#endif
+  return -1;
+}
+
 AtomicFile::AtomicFile(const std::string &path)
     : path_(path), to_standard_output_(is_standard_output(path)), buffer_(kBufferSize) {
   if (to_standard_output_) {
@@ -166,6 +201,14 @@ AtomicFile::AtomicFile(const std::string &path)
 }
 
 void AtomicFile::open_target() {
+#if !defined(_WIN32)
+  if (const int descriptor = descriptor_of(path_); descriptor >= 0) {
+    file_ = open_copy(descriptor);
+    if (!file_) fail(errno);
+    std::setvbuf(file_, nullptr, _IONBF, 0);
+    return;
+  }
+#endif
   const Target target = find_target(path_);
   target_ = target.place;
   if (target.is_replaced)
@@ -254,8 +297,9 @@ void AtomicFile::publish() {
 }
 
 void check_writable(const std::string &path) {
+  if (is_standard_output(path)) return;
   // To open a pipe and to close it would be its end for whoever reads it.
-  if (is_standard_output(path) || find_target(path).is_pipe) return;
+  if (descriptor_of(path) < 0 && find_target(path).is_pipe) return;
   AtomicFile probe(path);  // never committed: its temporary file goes with it
 }
 

@@ -12,10 +12,13 @@ namespace quickses::io {
 // Names such as "-.ply" stand for standard output, and say what is written there.
 bool is_standard_output(const std::string &path);
 
+// The descriptor of this process that a name stands for, as /dev/stdout, /dev/fd/3 and links to them do; -1: none.
+int descriptor_of(const std::string &path);
+
 // Buffered output that goes to a temporary name in the folder of the target. commit() renames it over the target, with
 // the rights that the target had; without it the destructor removes it, and whatever the target was before stays as it
-// was. Devices and pipes (/dev/stdout) are opened once and written directly, and so is standard output, as bytes. All
-// but the destructor throw Error (kOutput), naming the target.
+// was. Devices and pipes are opened once and written directly; what a descriptor leads to, such as standard output,
+// goes on where it is, as bytes. All but the destructor throw Error (kOutput), naming the target.
 class AtomicFile {
  public:
   explicit AtomicFile(const std::string &path);

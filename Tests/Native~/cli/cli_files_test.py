@@ -254,6 +254,55 @@ class StandardOutput(FilesTest):
         self.assertEqual(sorted(self.content()), ["many.pdb", "p.pdb", "radii.txt"])
 
 
+@unittest.skipIf(IS_WINDOWS, "descriptors have no names there")
+class Descriptors(FilesTest):
+    """What a shell leads /dev/stdout, /dev/stderr and /dev/fd/N to is written on, not replaced."""
+    TABLE = ["p.pdb", "--per-atom", "/dev/stdout", "--quiet"]
+
+    def setUp(self):
+        super().setUp()
+        self.run_cpu("p.pdb", "--per-atom", "t.csv", "--quiet")
+        self.table = (self.folder / "t.csv").read_text()
+
+    def shell(self, script):
+        result = subprocess.run(["sh", "-c", script, "sh", cli_test.PROGRAM], cwd=self.folder, capture_output=True,
+                                encoding="utf-8", timeout=cli_test.PATIENCE)
+        self.assertEqual(result.stderr, "")
+        return result.stdout
+
+    def test_what_is_before_and_behind_stays(self):
+        (self.folder / "link").symlink_to("/dev/stdout")
+        for name in ("/dev/stdout", "/dev/fd/1", "/proc/self/fd/1", "link"):
+            for begin in (">", ">>"):
+                with self.subTest(name=name, begin=begin):
+                    self.write("out.txt", "old\n")
+                    self.shell(f'{{ echo header; "$1" p.pdb --per-atom {name} --quiet; echo footer; }} {begin} out.txt')
+                    expected = f"header\n{self.table}footer\n"
+                    self.assertEqual((self.folder / "out.txt").read_text(), ("old\n" if begin == ">>" else "") + expected)
+
+    def test_other_descriptors(self):
+        for number in (2, 3):
+            self.shell(f'{{ echo header >&{number}; "$1" p.pdb --per-atom /dev/fd/{number}; "$1" nowhere.pdb 2>&{number}; }} '
+                       f'{number}> out.txt')
+            text = (self.folder / "out.txt").read_text()
+            self.assertTrue(text.startswith(f"header\n{self.table}"))
+            self.assertIn("nowhere.pdb", text)
+        self.assert_fails(OUTPUT, ["/dev/fd/77"], "p.pdb", "--per-atom", "/dev/fd/77")
+
+    def test_meshes(self):
+        self.run_cpu("p.pdb", "-v", "2", "-o", "a.ply")
+        (self.folder / "out.ply").symlink_to("/dev/stdout")
+        self.shell('{ echo header; "$1" p.pdb -v 2 -o out.ply; } > out.txt')
+        self.assertEqual((self.folder / "out.txt").read_bytes(), b"header\n" + (self.folder / "a.ply").read_bytes())
+        self.assertTrue((self.folder / "out.ply").is_symlink())
+
+    def test_nothing_else_is_printed_there(self):
+        json.loads(self.shell('"$1" p.pdb --json /dev/stdout | cat'))
+        self.assertEqual(self.shell('"$1" p.pdb --per-atom /dev/stdout | cat'), self.table)
+        self.assert_fails(USAGE, ["--per-atom", "--json", "standard output"], "p.pdb", "--per-atom", "-", "--json",
+                          "/dev/stdout")
+
+
 class Names(FilesTest):
     """A user may be called anything, and the system's locale may know nothing of it."""
     def test_they_have_letters_of_all_kinds(self):
