@@ -95,16 +95,6 @@ FrameInputs::FrameInputs(const Options &given, bool quiet)
       std::fprintf(stderr, "quickses: warning: --unwrap: '%s': %s\n", options.trajectories.front().c_str(),
                    io::unwrap_sentence(io::UnwrapStatus::kNoBox));
   }
-  if (makes_shown(options)) look_at_first_frame();
-}
-
-// All frames are seen the same way.
-void FrameInputs::look_at_first_frame() {
-  const FrameSelection frames = options.frames.select(trajectory.frame_count(), options.quoted_trajectories());
-  std::vector<float> xyz(3 * trajectory.atom_count());
-  trajectory.read_frame(frames.first, xyz.data());
-  if (unwrapper) unwrapper->apply(trajectory.box(frames.first), xyz.data());
-  mesh_output.look_at(centers(xyz).data());
 }
 
 std::vector<float> FrameInputs::centers(const std::vector<float> &xyz) const {
@@ -126,6 +116,18 @@ FrameWorker::FrameWorker(const FrameInputs &inputs, EnginePool &engines, qses_ba
       needs_mesh_(needs_mesh(inputs.options, backend)),
       settings_(frame_settings(inputs.options, needs_mesh_)),
       xyz_(3 * inputs.trajectory.atom_count()) {}
+
+render::Camera FrameWorker::camera(const FrameTask &task) {
+  read(task);
+  render::Camera camera;
+  if (!inputs_.mesh_output.camera_needs_mesh()) return inputs_.mesh_output.camera_for(centers().data(), nullptr);
+  engines_.run([&](Engine &engine) {
+    set_frame(engine);
+    const qses_mesh mesh = engine.compute(settings_);
+    camera = inputs_.mesh_output.camera_for(centers().data(), &mesh);
+  });
+  return camera;
+}
 
 FrameResult FrameWorker::run(const FrameTask &task) {
   FrameResult result;

@@ -35,9 +35,6 @@ struct FrameInputs : Input {
 
   // The only one.
   const io::Structure &structure() const { return file.models.front(); }
-
- private:
-  void look_at_first_frame();
 };
 
 // An engine as it must be before workers borrow it: with the atoms of the structure. Throws Failure.
@@ -49,6 +46,9 @@ class FrameWorker {
   // engines: prepared, all of the back end. shared_by: how many of them share the memory of the options. inputs and
   // engines must outlive the worker. Throws Failure.
   FrameWorker(const FrameInputs &inputs, EnginePool &engines, qses_backend backend, unsigned shared_by);
+
+  // From where all frames are seen if this one fills the picture. Throws Failure, io::Error.
+  render::Camera camera(const FrameTask &task);
 
   // Never fails: what goes wrong is part of the result.
   FrameResult run(const FrameTask &task);

@@ -145,20 +145,23 @@ MeshOutput::MeshOutput(const Options &options, const io::Structure &structure)
       picture_(options.picture),
       is_shown_(makes_shown(options)),
       is_series_(options.is_series()),
+      camera_needs_mesh_(options.compute.surface == QSES_SURFACE_GAUSSIAN ||
+                         options.compute.method == QSES_METHOD_GRID),
       title_(title_of(options.input)),
       threads_(drawing_threads(options)),
       probe_radius_(static_cast<float>(options.compute.probe * options.mesh.scale)),
       added_radius_(options.compute.surface == QSES_SURFACE_SAS ? static_cast<float>(options.compute.probe) : 0),
-      atom_colors_(atom_colors_of(options.mesh, structure)) {
-  if (is_shown_) look_at(structure.positions.data());
-}
+      atom_colors_(atom_colors_of(options.mesh, structure)) {}
 
 render::Balls MeshOutput::balls(const float *centers) const {
   return {centers, structure_.radii.data(), structure_.atoms.size(), added_radius_};
 }
 
-void MeshOutput::look_at(const float *centers) {
-  camera_ = render::Camera(balls(centers), view_of(picture_, is_series_), picture_.height > picture_.width);
+render::Camera MeshOutput::camera_for(const float *centers, const qses_mesh *mesh) const {
+  const render::Balls atoms = balls(centers);
+  const bool is_of_mesh = mesh && mesh->vertex_count != 0;
+  return {atoms, is_of_mesh ? render::Balls{mesh->positions, nullptr, mesh->vertex_count} : atoms,
+          view_of(picture_, is_series_), picture_.height > picture_.width};
 }
 
 std::vector<uint8_t> MeshOutput::colors_of(const qses_mesh &mesh) const {

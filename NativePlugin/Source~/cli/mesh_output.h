@@ -24,17 +24,23 @@ std::optional<io::ColorScheme> scheme_of(MeshColors colors);
 // What there is to do with the meshes of a structure, in one conformation or many. Any number of threads may use it.
 class MeshOutput {
  public:
-  // The structure must outlive it. Pictures are seen so that its atoms, where they are then, fill them.
+  // The structure must outlive it.
   MeshOutput(const Options &options, const io::Structure &structure);
 
-  // Of a series: pictures are seen so that these atoms fill them, of which there are as many.
-  void look_at(const float *centers);
+  // So that a surface fills the picture. centers: of the structure's atoms when it was made. mesh: null unless
+  // camera_needs_mesh().
+  render::Camera camera_for(const float *centers, const qses_mesh *mesh) const;
+  // Whether the surface lies outside of its atoms, as they are seen, so that they don't tell its extent.
+  bool camera_needs_mesh() const { return camera_needs_mesh_; }
+  // Before anything is shown.
+  void look(const render::Camera &camera) { camera_ = camera; }
 
   // Takes the surface of all atoms for good, and writes it, with owners as places in the structure's file; an empty
   // path: writes nothing. centers: of the structure's atoms when the mesh was made, only looked at if needs_centers().
   // Throws as accept_surface, before anything is written; io::Error (output).
   void accept(const std::string &path, const qses_mesh &mesh, const float *centers) const;
   bool needs_centers() const { return options_.sharp || is_shown_; }
+  bool is_shown() const { return is_shown_; }
 
   // The same for a page of many: what Page::add takes.
   std::string page_mesh(const qses_mesh &mesh, const float *centers, const std::string &label) const;
@@ -51,7 +57,7 @@ class MeshOutput {
   const io::Structure &structure_;
   const MeshFileOptions options_;
   const PictureOptions picture_;
-  const bool is_shown_, is_series_;
+  const bool is_shown_, is_series_, camera_needs_mesh_;
   const std::string title_;
   const unsigned threads_;
   const float probe_radius_, added_radius_;

@@ -58,19 +58,16 @@ class SurfaceRun {
     if (has_all_models() && !options.output.empty() && !makes_page(options))
       for (const io::Structure &structure : input.file.models)
         files_.check_mesh(output_of_model(options, structure.model));
-    const io::Structure &first = input.file.models.front();
-    std::unique_ptr<render::Page> page;
-    if (makes_page(options)) page = MeshOutput(input.options, first).begin_page(options.output);
+    Shown shown;
+    shown.to_come = input.file.models.size();
     for (const io::Structure &structure : input.file.models) {
       Options model_options = input.options;
       model_options.output = output_of_model(options, structure.model);
-      MeshOutput output(model_options, structure);
-      if (structure.atoms.size() == first.atoms.size()) output.look_at(first.positions.data());
-      run(model_options, structure, output, page.get());
+      run(model_options, structure, shown);
     }
-    if (!page) return;
-    page->finish();
-    hint_at_size(*page, options);
+    if (!shown.page) return;
+    shown.page->finish();
+    hint_at_size(*shown.page, options);
   }
 
   void add_failure(const Options &options, const Failure &failure) {
@@ -83,6 +80,13 @@ class SurfaceRun {
   }
 
  private:
+  // What the models of a structure share.
+  struct Shown {
+    std::optional<render::Camera> camera;  // of the first
+    std::unique_ptr<render::Page> page;
+    size_t to_come = 0;
+  };
+
   bool has_all_models() const { return options_.read.model == 0; }
 
   // Once something could be read.
@@ -92,7 +96,8 @@ class SurfaceRun {
   }
 
   // options: of this model.
-  void run(const Options &options, const io::Structure &structure, const MeshOutput &output, render::Page *page) {
+  void run(const Options &options, const io::Structure &structure, Shown &shown) {
+    MeshOutput output(options, structure);
     const qses_settings settings = mesh_settings_of(options);
     engine_->set_atoms(structure, options.input);
     qses_mesh mesh;
@@ -103,8 +108,16 @@ class SurfaceRun {
     const qses_report report = engine_->report();
     const auto write_start = Clock::now();
     const float *const centers = structure.positions.data();
-    if (page)
-      page->add(output.page_mesh(mesh, centers, has_all_models() ? "model " + std::to_string(structure.model) : ""));
+    if (output.is_shown()) {
+      if (!shown.camera) shown.camera = output.camera_for(centers, output.camera_needs_mesh() ? &mesh : nullptr);
+      output.look(*shown.camera);
+      if (makes_page(options) && !shown.page) shown.page = output.begin_page(options.output);
+    }
+    --shown.to_come;
+    if (shown.page)
+      shown.page->add(
+          output.page_mesh(mesh, centers, has_all_models() ? "model " + std::to_string(structure.model) : ""),
+          shown.to_come);
     else
       output.accept(options.output, mesh, centers);
     tables_.write(

@@ -18,6 +18,7 @@
 #include "cli/shown_output.h"
 #include "cli/text_output.h"
 #include "cli/used_files.h"
+#include "io/error.h"
 #include "io/text.h"
 
 namespace quickses::cli {
@@ -72,6 +73,7 @@ class ResultWriter {
  public:
   ResultWriter(const Options &options, size_t frame_count, std::unique_ptr<render::Page> page)
       : options_(options),
+        frame_count_(frame_count),
         page_(std::move(page)),
         csv_(options.csv),
         json_(options.json),
@@ -83,7 +85,7 @@ class ResultWriter {
   void begin() { progress_.begin(); }
 
   void write(const FrameResult &result) {
-    if (page_) page_->add(result.page);
+    if (page_ && !result.page.empty()) add_to_page(result);
     csv_.write(result.csv);
     json_.write(result.json);
     areas_.write({result.per_atom, result.per_residue});
@@ -102,13 +104,13 @@ class ResultWriter {
           stderr, "quickses: %s not shown\n",
           io::counted(failed_ - kMostMessages, "more message of failed frames is", "more messages of failed frames are")
               .c_str());
-    if (page_) {
-      page_->finish();
-      hint_at_size(*page_, options_);
-    }
     csv_.finish();
     json_.finish();
     areas_.finish();
+    if (!makes_page(options_)) return;
+    if (!page_) throw Failure(kOutputUnwritable, "'" + options_.output + "' was not written");
+    page_->finish();
+    hint_at_size(*page_, options_);
   }
 
   const FrameProgress &progress() const { return progress_; }
@@ -119,8 +121,21 @@ class ResultWriter {
     return {options.compute.surface};
   }
 
+  // A page that gets too large does not take the tables with it.
+  void add_to_page(const FrameResult &result) {
+    try {
+      page_->add(result.page, frame_count_ - 1 - static_cast<size_t>(result.place));
+    } catch (const io::Error &error) {
+      if (options_.csv.empty() && options_.json.empty() && !options_.wants_areas()) throw;
+      progress_.clear();
+      std::fprintf(stderr, "quickses: %s; the rest is done without it\n", error.what());
+      page_.reset();
+    }
+  }
+
   const Options &options_;
-  std::unique_ptr<render::Page> page_;  // null: there is none
+  const size_t frame_count_;
+  std::unique_ptr<render::Page> page_;  // null: there is none, or no more
   TextOutput csv_, json_;
   AreaTables areas_;
   FrameProgress progress_;
@@ -142,16 +157,21 @@ class Run {
         inputs_(options, options.quiet || !processes.is_first()),
         frames_(options.frames.select(inputs_.trajectory.frame_count(), options.quoted_trajectories())),
         share_(divide(inputs_.options, processes, frames_.count)) {
+    const Options &used = inputs_.options;
     if (processes.is_first()) {
-      if (inputs_.pattern) check_meshes();
-      const Options &used = inputs_.options;
-      writer_ = std::make_unique<ResultWriter>(
-          used, frames_.count, makes_page(used) ? inputs_.mesh_output.begin_page(used.output) : nullptr);
+      if (inputs_.pattern)
+        check_meshes();
+      else
+        check_mesh_writable(used.output);
     }
     engines_ = std::make_unique<EnginePool>(share_.compute, share_.devices,
                                             [this](Engine &engine) { prepare_engine(engine, inputs_); });
     for (unsigned k = 0; k < share_.threads; ++k)
       workers_.push_back(std::make_unique<FrameWorker>(inputs_, *engines_, share_.compute.backend, share_.shared_by));
+    if (makes_shown(used)) look_at_first_frame();
+    if (processes.is_first())
+      writer_ = std::make_unique<ResultWriter>(
+          used, frames_.count, makes_page(used) ? inputs_.mesh_output.begin_page(used.output) : nullptr);
   }
 
   // Computes all frames, with the other processes.
@@ -185,6 +205,17 @@ class Run {
   }
 
  private:
+  // All are seen as the first that can be shown.
+  void look_at_first_frame() {
+    for (size_t place = 0; place < frames_.count; ++place) {
+      try {
+        inputs_.mesh_output.look(workers_.front()->camera({place, frames_.frame(place)}));
+        return;
+      } catch (const std::exception &) {  // which is told when it is that frame's turn
+      }
+    }
+  }
+
   void check_meshes() const {
     const UsedFiles files(inputs_.options);
     for (size_t place = 0; place < frames_.count; ++place)
@@ -214,7 +245,7 @@ class Run {
   }
 
   Processes &processes_;
-  const FrameInputs inputs_;
+  FrameInputs inputs_;
   const FrameSelection frames_;
   const Share share_;
   std::unique_ptr<ResultWriter> writer_;  // of the first process

@@ -77,7 +77,7 @@ float reach(float across, float near, float radius, float distance) {
 
 }  // namespace
 
-Camera::Camera(const Balls &balls, const View &view, bool is_tall) : filled_(view.fill * view.zoom) {
+Camera::Camera(const Balls &atoms, const Balls &seen, const View &view, bool is_tall) : filled_(view.fill * view.zoom) {
   if (view.toward) {
     toward = glm::normalize(*view.toward);
     for (const vec3 vertical : {view.up ? glm::normalize(*view.up) : vec3(0, 0, 1), vec3(0, 0, 1), vec3(0, 1, 0)}) {
@@ -85,11 +85,13 @@ Camera::Camera(const Balls &balls, const View &view, bool is_tall) : filled_(vie
       if (!are_parallel(up, toward)) break;
     }
   } else {
-    const glm::dmat3 axes = principal_axes(balls);
-    toward = axes[2], up = axes[is_tall ? 0 : 1];
+    const glm::dmat3 axes = principal_axes(atoms);
+    toward = axes[2], up = axes[1];
     if (view.up) {
       up = glm::normalize(*view.up);
       if (are_parallel(up, toward)) toward = axes[1];
+    } else if (is_tall) {
+      toward = -axes[2], up = axes[0];  // the second goes to the right then
     }
   }
   if (view.toward) {
@@ -107,30 +109,30 @@ Camera::Camera(const Balls &balls, const View &view, bool is_tall) : filled_(vie
   up = up * std::cos(nod) - spun * std::sin(nod);
 
   vec3 low(1e30f), high(-1e30f);
-  const vec3 mean(mean_of(balls));
-  const auto seen = [&](size_t i, vec3 from) {
-    const vec3 d = center_of(balls, i) - from;
+  const vec3 mean(mean_of(atoms));
+  const auto place = [&](size_t i, vec3 from) {
+    const vec3 d = center_of(seen, i) - from;
     return vec3(glm::dot(d, right), glm::dot(d, up), glm::dot(d, toward));
   };
-  for (size_t i = 0; i < balls.count; ++i) {
-    const vec3 at = seen(i, mean), radius(balls.radii[i] + balls.more);
+  for (size_t i = 0; i < seen.count; ++i) {
+    const vec3 at = place(i, mean), radius(seen.radius(i));
     low = glm::min(low, at - radius), high = glm::max(high, at + radius);
   }
   const vec3 box = (low + high) * 0.5f;
   offset_ = right * box.x + up * box.y + toward * box.z;
   float radius = 1e-3f;
-  for (size_t i = 0; i < balls.count; ++i)
-    radius = std::max(radius, glm::length(seen(i, mean + offset_)) + balls.radii[i] + balls.more);
+  for (size_t i = 0; i < seen.count; ++i)
+    radius = std::max(radius, glm::length(place(i, mean + offset_)) + seen.radius(i));
   distance = kDistance * radius;
   half = glm::vec2(1e-3f);
-  for (size_t i = 0; i < balls.count; ++i) {
-    const vec3 at = seen(i, mean + offset_);
+  for (size_t i = 0; i < seen.count; ++i) {
+    const vec3 at = place(i, mean + offset_);
     for (int axis = 0; axis < 2; ++axis)
-      half[axis] = std::max(half[axis], reach(at[axis], at.z, balls.radii[i] + balls.more, distance));
+      half[axis] = std::max(half[axis], reach(at[axis], at.z, seen.radius(i), distance));
   }
 }
 
-vec3 Camera::middle(const Balls &balls) const { return vec3(mean_of(balls)) + offset_; }
+vec3 Camera::middle(const Balls &atoms) const { return vec3(mean_of(atoms)) + offset_; }
 
 float Camera::pixels_per_angstrom(glm::vec2 size) const {
   return 0.5f * filled_ * std::min(size.x / half.x, size.y / half.y);

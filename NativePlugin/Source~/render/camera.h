@@ -8,12 +8,14 @@
 
 namespace quickses::render {
 
-// The atoms, as the surface sees them.
+// Atoms, as the surface sees them, or points.
 struct Balls {
   const float *centers = nullptr;  // count x 3
-  const float *radii = nullptr;
+  const float *radii = nullptr;    // null: 0
   size_t count = 0;
   float more = 0;  // to each radius: the probe of a solvent-accessible surface
+
+  float radius(size_t i) const { return (radii ? radii[i] : 0) + more; }
 };
 
 // What is asked for.
@@ -25,20 +27,21 @@ struct View {
   float fill = 0.97f;  // of the picture, by the molecule
 };
 
-// A perspective from afar, in which the balls fill the picture. The eye looks along -toward.
+// A perspective from afar, in which what is seen fills the picture. The eye looks along -toward.
 class Camera {
  public:
   Camera() = default;
-  // Without a direction, the longest of the principal axes lies along the longer side of the picture, and the
-  // shortest points at the eye. There is at least one ball.
-  Camera(const Balls &balls, const View &view, bool is_tall);
+  // Without a direction, the longest of the principal axes of the atoms lies along the longer side of the picture, and
+  // the shortest points at the eye. There is at least one atom. seen: what has to be in the picture, at least one of
+  // them: the atoms, or the surface's vertices where it lies outside of the atoms.
+  Camera(const Balls &atoms, const Balls &seen, const View &view, bool is_tall);
 
   glm::vec3 right{1, 0, 0}, up{0, 1, 0}, toward{0, 0, 1};  // orthonormal, right-handed
   float distance = 6;                                      // of the eye from the middle
   glm::vec2 half{1, 1};                                    // of what has to be seen, in the plane through the middle
 
   // What the eye looks at: the same place of the molecule wherever its atoms have gone.
-  glm::vec3 middle(const Balls &balls) const;
+  glm::vec3 middle(const Balls &atoms) const;
   // Of the plane through the middle.
   float pixels_per_angstrom(glm::vec2 size) const;
   // How much larger than the part that has to be seen it is shown; 1 fills the picture.

@@ -2,6 +2,7 @@
 // The file of a page.
 #include "render/page.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "io/error.h"
@@ -37,6 +38,8 @@ std::string grouped(size_t number) {
 }
 
 std::string script(std::string_view text) { return "<script>\n" + std::string(text) + "\n</script>\n"; }
+
+std::string page_end() { return script(kPageScript) + "</body>\n</html>\n"; }
 
 }  // namespace
 
@@ -80,16 +83,27 @@ Page::Page(const std::string &path, const PageSettings &settings, uint64_t most_
 
 void Page::write(const std::string &text) {
   size_ += text.size();
-  if (size_ > most_bytes_)
-    io::fail_output("the page '" + file_.path() + "' would have more than " + std::to_string(most_bytes_ / 1'000'000) +
-                    " MB, which browsers don't bear: a larger --spacing, or fewer --frames, make it smaller");
   file_.write(text);
 }
 
-void Page::add(const std::string &mesh) { write(mesh); }
+void Page::add(const std::string &mesh, size_t more) {
+  const double size = static_cast<double>(mesh.size());
+  const double room = static_cast<double>(most_bytes_) - static_cast<double>(size_ + page_end().size());
+  if (room < size * (1 + 0.9 * static_cast<double>(more))) {
+    const size_t count = mesh_count_ + 1 + more;
+    const auto fitting = mesh_count_ + static_cast<size_t>(std::max(0.0, room / size));
+    io::fail_output("the page '" + file_.path() + "' would have more than " + std::to_string(most_bytes_ / 1'000'000) +
+                    " MB, which browsers don't bear: " +
+                    (count > 1 ? "about " + std::to_string(fitting) + " of its " + std::to_string(count) +
+                                     " surfaces fit; a larger --spacing makes them smaller"
+                               : "a larger --spacing makes it smaller"));
+  }
+  write(mesh);
+  ++mesh_count_;
+}
 
 void Page::finish() {
-  write(script(kPageScript) + "</body>\n</html>\n");
+  write(page_end());
   file_.commit();
 }
 

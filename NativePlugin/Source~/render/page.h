@@ -37,8 +37,9 @@ class Page {
 
   Page(const std::string &path, const PageSettings &settings, uint64_t most_bytes = kMostBytes);
 
-  // The next frame. If the page would become larger than may be, the error says so, and there will be no file.
-  void add(const std::string &mesh);
+  // The next frame; more: how many of about its size are to come. If the page would become larger than may be, with
+  // those less a tenth, since sizes differ, the error says so and how many fit, and there will be no file.
+  void add(const std::string &mesh, size_t more);
   void finish();
 
   uint64_t size() const { return size_; }
@@ -49,6 +50,7 @@ class Page {
   io::AtomicFile file_;
   const uint64_t most_bytes_;
   uint64_t size_ = 0;
+  size_t mesh_count_ = 0;
 };
 
 }  // namespace quickses::render

@@ -60,6 +60,45 @@ class Pictures(PictureTest):
                         self.assertEqual(seen.pixel(x, y), (0, 0, 0, 0))
             self.assertAlmostEqual(covered, math.pi * radius ** 2, delta=0.01 * covered)
 
+    def test_surfaces_that_lie_outside_of_their_atoms(self):
+        """They fill the picture and are not cut off."""
+        sphere, pair = atom(1, "C", 7, -3, 20), TWO_ATOMS
+        for content, arguments in ((sphere, ["--surface", "gaussian"]), (pair, ["--surface", "gaussian"]),
+                                   (sphere, ["--surface", "gaussian", "--radius-scale", "2"]),
+                                   (pair, ["--surface", "gaussian", "--isovalue", "0.1"]),
+                                   (sphere, ["--method", "grid", "-v", "1"])):
+            with self.subTest(arguments=arguments):
+                seen = self.picture(content, "--size", "80x60", "--background", "transparent", *arguments)
+                rows = seen.alphas()
+                self.assertEqual(max(rows[0] + rows[-1] + [row[x] for row in rows for x in (0, -1)]), 0)
+                columns = [x for x in range(80) if any(row[x] for row in rows)]
+                lines = [y for y in range(60) if any(rows[y])]
+                filled = max((columns[-1] - columns[0] + 1) / 80, (lines[-1] - lines[0] + 1) / 60)
+                self.assertAlmostEqual(filled, FILL, delta=0.03)
+        # In frames, the first one leaves some room.
+        self.write("m.pdb", "".join("MODEL     %4d\n%sENDMDL\n" % (number, pair) for number in (1, 2)))
+        self.run_cpu("m.pdb", "--trajectory", "m.pdb", "-o", "f%d.png", "--surface", "gaussian", "--radius-scale", "2",
+                     "--size", "80x60", "--background", "transparent")
+        for k in (0, 1):
+            rows = Picture(self.folder / f"f{k}.png").alphas()
+            self.assertEqual(max(rows[0] + rows[-1] + [row[x] for row in rows for x in (0, -1)]), 0)
+
+    def test_longer_tails_go_to_the_right_and_up(self):
+        """A long arm and a short one, from a corner: O is at the end of the long one, N at that of the other."""
+        content = "".join(atom(k, "O" if k == 9 else "C", 2 * k, 0, 0) for k in range(10)) + "".join(
+            atom(10 + k, "N" if k == 4 else "C", 0, 2 * k, 0) for k in range(1, 5))
+        for size, (up, right) in (((160, 80), "NO"), ((80, 160), "ON")):
+            seen = self.picture(content, "-v", "1", "--color", "element", "--size", "%dx%d" % size, "--background",
+                                "transparent")
+            places = {}
+            for name, channel in (("O", RED), ("N", BLUE)):
+                found = [(x, y) for y in range(seen.height) for x in range(seen.width)
+                         if seen.pixel(x, y)[channel] > 60 + max(seen.pixel(x, y)[other] for other in range(3)
+                                                                 if other != channel) and seen.pixel(x, y)[3]]
+                places[name] = [sum(at[k] for at in found) / len(found) for k in range(2)]
+            self.assertLess(places[up][1], places[right][1])
+            self.assertGreater(places[right][0], places[up][0])
+
     def test_zoom_and_the_number_of_samples(self):
         covered = {}
         for samples in (1, 3):
@@ -210,6 +249,24 @@ class Pictures(PictureTest):
                 columns = [x for x in range(64) if any(seen.pixel(x, y)[:3] != (255,) * 3 for y in range(48))]
                 widths.append(columns[-1] - columns[0])
             self.assertGreater(widths[1], widths[0] * 1.1)
+
+    def test_models_of_other_atoms_are_seen_from_the_same_side(self):
+        first = [("C", 3 * k, 0, 0) for k in range(8)] + [("O", 0, 3 * k, 0) for k in range(1, 4)]
+        second = first + [("O", 0, 3 * k, 0) for k in range(4, 16)]
+        self.write("m.pdb", "".join("MODEL     %4d\n%sENDMDL\n" % (
+            number, "".join(atom(k, *of_one) for k, of_one in enumerate(atoms))) for number, atoms in
+            ((1, first), (2, second))))
+        self.run_cpu("m.pdb", "--model", "all", "-v", "1", "-o", "m.png", "--size", "90x90", "--background", "transparent",
+                     "--color", "element", "--zoom", "0.5")
+        widths = []
+        for number in (1, 2):
+            seen = Picture(self.folder / f"m_000{number}.png")
+            grey = [(x, y) for y in range(90) for x in range(90) if seen.pixel(x, y)[3] == 255
+                    and max(seen.pixel(x, y)[:3]) - min(seen.pixel(x, y)[:3]) < 30]
+            across, down = (max(at[k] for at in grey) - min(at[k] for at in grey) for k in range(2))
+            self.assertGreater(across, 2 * down)  # the arm of carbon
+            widths.append(across)
+        self.assertAlmostEqual(widths[0], widths[1], delta=3)
 
     def test_standard_output(self):
         self.run_cpu(CRAMBIN, "-v", "1", "-o", "a.png", "--size", "50x40")

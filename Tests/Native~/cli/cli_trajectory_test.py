@@ -6,11 +6,13 @@ usage: cli_trajectory_test.py PROGRAM [unittest options]      (or QUICKSES_PROGR
 import csv
 import gzip
 import json
+import subprocess
 import sys
 import unittest
 
 import cli_test
 from cli_test import CRAMBIN, INPUT, OK, OUTPUT, USAGE, ProgramTest, can_refuse_threads, read_ply, refuse_threads
+from page_files import Page
 from trajectory_files import chain_of, dcd_bytes, moving, pdb_text, with_nan
 
 FRAMES_FAILED = 6
@@ -25,8 +27,8 @@ class TrajectoryTest(ProgramTest):
         self.write("top.pdb", pdb_text(self.atoms, positions))
         self.write("t.dcd", dcd_bytes(self.frames))
 
-    def run_frames(self, *arguments, trajectory="t.dcd", top="top.pdb", **keywords):
-        return self.run_cpu(top, "--trajectory", trajectory, "-v", "0.8", *arguments, **keywords)
+    def run_frames(self, *arguments, trajectory="t.dcd", top="top.pdb", spacing=0.8, **keywords):
+        return self.run_cpu(top, "--trajectory", trajectory, "-v", spacing, *arguments, **keywords)
 
     def table(self, *arguments, **keywords):
         """The rows of the table as dictionaries."""
@@ -200,6 +202,39 @@ class Frames(TrajectoryTest):
 
 
 class Faults(TrajectoryTest):
+    def make_page(self, *arguments, **keywords):
+        probe = subprocess.run([cli_test.PROGRAM, "top.pdb", "-o", "probe.html", "--backend", "cpu"], cwd=self.folder,
+                               capture_output=True, encoding="utf-8")
+        if probe.returncode == USAGE and "three.js" in probe.stderr:
+            self.skipTest("this build has no three.js")
+        return self.run_frames("-o", "a.html", *arguments, **keywords)
+
+    def test_a_damaged_first_frame_does_not_lose_pictures_and_pages(self):
+        self.write("bad.dcd", dcd_bytes(with_nan(self.frames, 2, 10)))
+        for surface in ("ses", "gaussian"):  # whose camera needs a mesh
+            small = ["--size", "60x40", "--surface", surface]
+            result = self.run_frames("--frames", "2:5", "-o", "bad%d.png", *small, trajectory="bad.dcd", code=FRAMES_FAILED)
+            self.assertIn("frame 2 failed", result.stderr)
+            self.run_frames("--frames", "3:5", "-o", "good%d.png", *small)
+            for k in (3, 4):
+                self.assertEqual((self.folder / f"bad{k}.png").read_bytes(), (self.folder / f"good{k}.png").read_bytes())
+            self.assertFalse((self.folder / "bad2.png").exists())
+        self.make_page("--frames", "2:5", trajectory="bad.dcd", code=FRAMES_FAILED)
+        self.assertEqual([mesh.label.split(",")[0] for mesh in Page(self.folder / "a.html").meshes], ["frame 3", "frame 4"])
+
+    def test_a_page_that_would_be_too_large(self):
+        """It is said after the first frame how many fit; tables are not lost."""
+        apart = [(20.0 * k, 0, 0) for k in range(24)]  # the others are far smaller, which nobody can know
+        self.write("long.dcd", dcd_bytes([apart] + [[(0.01 * k, 0, 0) for k in range(24)]] * 999))
+
+        def assert_said(result):
+            self.assertRegex(result.stderr, r"500 MB.* about [1-9][0-9]* of its 1000 surfaces fit")
+            self.assertFalse((self.folder / "a.html").exists())
+        assert_said(self.make_page(trajectory="long.dcd", spacing=0.15, code=OUTPUT))
+        self.assertFalse((self.folder / "a.csv").exists())
+        assert_said(self.make_page("--csv", "a.csv", trajectory="long.dcd", spacing=0.15, code=OUTPUT))
+        self.assertEqual(len((self.folder / "a.csv").read_text().splitlines()), 1001)
+
     def test_a_damaged_frame_does_not_lose_the_others(self):
         expected = self.table("-o", "good%d.ply")
         self.write("bad.dcd", dcd_bytes(with_nan(self.frames, 3, 10)))

@@ -29,7 +29,7 @@ class PageTest : public io::IoTest {
 TEST_F(PageTest, HoldsWhatItMay) {
   const std::string mesh(100'000, 'x');
   Page page(path("a.html"), {}, empty_size_ + 3 * mesh.size());
-  for (int frame = 0; frame < 3; ++frame) page.add(mesh);
+  for (int frame = 0; frame < 3; ++frame) page.add(mesh, 2 - frame);
   page.finish();
   EXPECT_EQ(page.size(), empty_size_ + 3 * mesh.size());
   EXPECT_EQ(io::slurp(path("a.html")).size(), page.size());
@@ -42,7 +42,7 @@ TEST_F(PageTest, IsNotThereIfItWouldBeTooLarge) {
   for (const uint64_t most : {empty_size_ + 2 * mesh.size() - 1, empty_size_ + mesh.size() - 1, empty_size_ / 2}) {
     const std::string message = io::error_of(io::ErrorKind::kOutput, [&] {
       Page page(path("a.html"), {}, most);
-      for (int frame = 0; frame < 2; ++frame) page.add(mesh);
+      for (int frame = 0; frame < 2; ++frame) page.add(mesh, 0);  // which frames come is not known
       page.finish();
     });
     EXPECT_HAS(message, "more than " + std::to_string(most / 1'000'000) + " MB");
@@ -50,6 +50,22 @@ TEST_F(PageTest, IsNotThereIfItWouldBeTooLarge) {
     EXPECT_EQ(io::slurp(path("a.html")), "old");
     EXPECT_EQ(file_count(), 1u);
   }
+}
+
+// As soon as it is clear, and not for what may still fit.
+TEST_F(PageTest, TellsFromTheFirstHowManyFit) {
+  const std::string mesh(1'000'000, 'x');
+  const uint64_t most = empty_size_ + 10 * mesh.size();
+  Page full(path("full.html"), {}, most), larger(path("larger.html"), {}, most), few(path("few.html"), {}, most);
+  full.add(mesh, 9);
+  larger.add(mesh, 10);  // a tenth more: the others may be smaller
+  const std::string message = io::error_of(io::ErrorKind::kOutput, [&] { few.add(mesh, 11); });
+  EXPECT_HAS(message, "about 10 of its 12 surfaces fit");
+  EXPECT_HAS(message, "more than " + std::to_string(most / 1'000'000) + " MB");
+  // Later ones may tell it, too.
+  const std::string larger_mesh(2'000'000, 'x');
+  EXPECT_HAS(io::error_of(io::ErrorKind::kOutput, [&] { larger.add(larger_mesh, 9); }),
+             "about 5 of its 11 surfaces fit");
 }
 
 }  // namespace
