@@ -15,7 +15,8 @@ namespace {
 
 using glm::vec3;
 
-constexpr int kBandHeight = 16;  // pixels that are drawn together
+constexpr int kBandRows = 64;                         // of samples that are drawn together, in whole pixels
+constexpr size_t kMostBandBytes = size_t(256) << 20;  // of all threads, but for the first
 constexpr int64_t kSubpixels = 256;
 constexpr uint32_t kNothing = ~uint32_t(0);
 
@@ -47,7 +48,8 @@ class Painter {
       : mesh_(mesh),
         settings_(settings),
         columns_(settings.width * settings.samples),
-        rows_(settings.height * settings.samples) {
+        rows_(settings.height * settings.samples),
+        band_height_(std::max(1, kBandRows / settings.samples)) {
     for (size_t byte = 0; byte < pigments_.size(); ++byte) pigments_[byte] = pigment_of(static_cast<uint8_t>(byte));
     turn(camera, middle);
     lamp_ = glm::normalize(kLamp);
@@ -59,12 +61,14 @@ class Painter {
   Image paint() const {
     Image image{settings_.width, settings_.height, std::vector<uint8_t>(4 * pixel(0, settings_.height))};
     std::atomic<int> next{0};
-    run_on_threads(settings_.threads, [&] {
+    const size_t in_band = static_cast<size_t>(end_row(0) - first_row(0)) * static_cast<size_t>(columns_);
+    const size_t affordable = kMostBandBytes / (in_band * (sizeof(float) + sizeof(uint32_t)));
+    run_on_threads(static_cast<unsigned>(std::clamp<size_t>(affordable, 1, settings_.threads)), [&] {
       Band band;
       for (int k; (k = next++) < band_count();) {
         draw_band(k, band);
-        const int end = std::min(settings_.height, (k + 1) * kBandHeight);
-        for (int y = k * kBandHeight; y < end; ++y)
+        const int end = std::min(settings_.height, (k + 1) * band_height_);
+        for (int y = k * band_height_; y < end; ++y)
           for (int x = 0; x < settings_.width; ++x) resolve(band, x, y, &image.rgba[4 * pixel(x, y)]);
       }
     });
@@ -75,10 +79,10 @@ class Painter {
   size_t pixel(int x, int y) const {
     return static_cast<size_t>(y) * static_cast<size_t>(settings_.width) + static_cast<size_t>(x);
   }
-  int band_count() const { return (settings_.height + kBandHeight - 1) / kBandHeight; }
+  int band_count() const { return (settings_.height + band_height_ - 1) / band_height_; }
   // With a pixel above and below, for the outlines.
-  int first_row(int band) const { return std::max(0, (band * kBandHeight - 1) * settings_.samples); }
-  int end_row(int band) const { return std::min(rows_, ((band + 1) * kBandHeight + 1) * settings_.samples); }
+  int first_row(int band) const { return std::max(0, (band * band_height_ - 1) * settings_.samples); }
+  int end_row(int band) const { return std::min(rows_, ((band + 1) * band_height_ + 1) * settings_.samples); }
 
   void turn(const Camera &camera, vec3 middle) {
     const auto turned = [&](vec3 p) {
@@ -128,7 +132,7 @@ class Painter {
     const auto for_each_band = [&](size_t t, const auto &action) {
       const auto [low, high] = rows_of(t);
       if (low >= high || area_of(t) <= 0) return;
-      const int in_band = kBandHeight * settings_.samples;
+      const int in_band = band_height_ * settings_.samples;
       const int last = std::min(band_count() - 1, (high - 1 + settings_.samples) / in_band);
       for (int band = std::max(0, (low - settings_.samples) / in_band); band <= last; ++band)
         action(static_cast<size_t>(band));
@@ -288,6 +292,7 @@ class Painter {
   const io::MeshView &mesh_;
   const PictureSettings &settings_;
   const int columns_, rows_;  // of samples
+  const int band_height_;     // pixels
   std::array<float, 256> pigments_;
   SeenMesh seen_;
   vec3 lamp_;

@@ -6,6 +6,7 @@ usage: cli_picture_test.py PROGRAM [unittest options]      (or QUICKSES_PROGRAM 
 import colorsys
 import json
 import math
+import os
 import subprocess
 import unittest
 
@@ -190,6 +191,17 @@ class Pictures(PictureTest):
             self.run_cpu(CRAMBIN, "-v", "1", "-o", "a.png", "--size", "200x150", "--threads", threads)
             files.append((self.folder / "a.png").read_bytes())
         self.assertEqual(len(set(files)), 1)
+
+    @unittest.skipIf(IS_WINDOWS or os.environ.get("QUICKSES_TEST_SANITIZE"), "memory is counted otherwise")
+    def test_memory_does_not_grow_with_samples_and_threads(self):
+        self.write("in.pdb", atom(1, "C", 0, 0, 0))
+        process = subprocess.Popen([cli_test.PROGRAM, "in.pdb", "-o", "a.png", "--size", "16384x16", "--samples", "16",
+                                    "--threads", "8", "--backend", "cpu", "--quiet"], cwd=self.folder)
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = status
+        self.assertEqual(status, 0)
+        # A sample takes 8 bytes, so the whole picture would take 537 MB.
+        self.assertLess(usage.ru_maxrss * 1024, 400e6)
 
     def test_a_part_of_a_large_picture_is_like_a_small_one(self):
         """Bands that are drawn apart fit together: a closed surface has no holes."""
