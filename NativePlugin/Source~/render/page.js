@@ -176,7 +176,8 @@
     });
     play.addEventListener('click', () => setPlaying(!playing));
     window.addEventListener('keydown', (event) => {
-      if (event.target !== document.body) return;
+      // The slider has keys of its own, and so has a button that was clicked.
+      if (event.target === byId('slider') || (event.target === play && event.key === ' ')) return;
       if (event.key === ' ') setPlaying(!playing);
       else if (event.key === 'ArrowRight') step(1);
       else if (event.key === 'ArrowLeft') step(-1);

@@ -166,6 +166,25 @@ class Browser(ProgramTest):
         title = re.search("<title>(.*)</title>", self.open("", "--dump-dom"))
         self.assertEqual(title[1], "model 2,model 3,model 4,model 5,model 1")
 
+    def test_keys_after_a_click(self):
+        """The button that was clicked has the focus then."""
+        self.write("m.pdb", "".join("MODEL     %4d\n%sENDMDL\n" % (k, atom(1, "O", 0, 0, 0)) for k in range(1, 6)))
+        self.run_cpu("m.pdb", "--model", "all", "-v", "1", "-o", "a.html")
+        page = self.folder / "a.html"
+        press = """<script>
+          const play = document.getElementById('play'), label = document.getElementById('label');
+          play.click();
+          play.click();
+          play.focus();
+          const press = (key) => {
+            document.activeElement.dispatchEvent(new KeyboardEvent('keydown', {key, bubbles: true}));
+            return label.textContent;
+          };
+          document.title = [press('ArrowRight'), press('ArrowRight'), press('ArrowLeft')].join();
+        </script></body>"""
+        page.write_text(page.read_text().replace("</body>", press))
+        self.assertEqual(re.search("<title>(.*)</title>", self.open("", "--dump-dom"))[1], "model 2,model 3,model 2")
+
     @unittest.skipIf(os.name == "nt", "no such names there")
     def test_names_do_not_run(self):
         self.write("<img src=x onerror=document.title='ran'>.pdb", TWO_ATOMS)
