@@ -20,11 +20,13 @@ std::string stem_of(const std::string &input) {
 
 }  // namespace
 
-std::string output_of_input(const std::string &output, const std::string &input) {
+std::string output_of_input(const std::string &output, const std::string &input, bool is_pattern) {
+  std::string stem;
+  for (const char c : stem_of(input)) stem += is_pattern && c == '%' ? "%%" : std::string(1, c);
   std::string name;
   for (size_t i = 0; i < output.size(); ++i) {
     if (output.compare(i, 2, "%s") == 0) {
-      name += stem_of(input);
+      name += stem;
       ++i;
     } else {
       name += output[i];
@@ -34,7 +36,7 @@ std::string output_of_input(const std::string &output, const std::string &input)
 }
 
 std::string output_of_input(const Options &options, const std::string &input) {
-  return options.has_several_inputs() ? output_of_input(options.output, input) : options.output;
+  return options.has_several_inputs() ? output_of_input(options.output, input, false) : options.output;
 }
 
 size_t for_each_input(const Options &options, const std::function<void(const Options &one)> &action,

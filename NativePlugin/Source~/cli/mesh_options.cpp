@@ -90,6 +90,8 @@ void check_format(const Options &options) {
     refuse("--center", "a picture or page has the middle in the middle anyway");
   if (mesh.scale != 1 && io::format_traits_of(format).is_shown)
     refuse("--scale", "a picture or page has no unit (there is --zoom)");
+  if (mesh.scale < 0.01 && format == io::MeshFormat::kMsms)
+    refuse("--scale", "MSMS files have six digits behind the point, which are too few below 0.01");
   if (mesh.sharp && !differ_by_atom(mesh.colors) && mesh.colors != MeshColors::kDefault)
     throw Failure(
         kUsage,
@@ -164,7 +166,9 @@ void resolve_output(Options &options) {
     if (io::is_standard_output(*name)) *name = "./" + *name;  // a file that is called so
   for (std::string *name : {&options.csv, &options.per_atom, &options.per_residue, &options.json})
     if (io::descriptor_of(*name) == 1) *name = "-";  // as /dev/stdout
-  if (!options.has_several_inputs()) options.output = output_of_input(options.output, options.input);
+  if (!options.has_several_inputs())
+    options.output =
+        output_of_input(options.output, options.input, !options.trajectories.empty() && !makes_page(options));
   if (options.output != "-") {
     if (!format.empty())
       throw Failure(kUsage, "--output-format: is for standard output (-o -); a file's extension names its format");

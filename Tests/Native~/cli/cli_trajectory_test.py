@@ -6,7 +6,6 @@ usage: cli_trajectory_test.py PROGRAM [unittest options]      (or QUICKSES_PROGR
 import csv
 import gzip
 import json
-import subprocess
 import sys
 import unittest
 
@@ -203,8 +202,7 @@ class Frames(TrajectoryTest):
 
 class Faults(TrajectoryTest):
     def make_page(self, *arguments, **keywords):
-        probe = subprocess.run([cli_test.PROGRAM, "top.pdb", "-o", "probe.html", "--backend", "cpu"], cwd=self.folder,
-                               capture_output=True, encoding="utf-8")
+        probe = self.run_cpu("top.pdb", "-o", "probe.html", code=None)
         if probe.returncode == USAGE and "three.js" in probe.stderr:
             self.skipTest("this build has no three.js")
         return self.run_frames("-o", "a.html", *arguments, **keywords)
@@ -301,6 +299,10 @@ class Faults(TrajectoryTest):
         self.assertTrue((self.folder / "50%_   6_x.obj").is_file())
         self.run_frames("--frames", "5", "-o", "%s_%d.ply")
         self.assertTrue((self.folder / "top_5.ply").is_file())
+        for name in ("50%.pdb", "a%d.pdb", "100%%.pdb"):  # percent signs of the input's name are no place of a number
+            self.write(name, (self.folder / "top.pdb").read_bytes())
+            self.run_frames("--frames", "5", "-o", "%s_%d.ply", top=name)
+            self.assertTrue((self.folder / f"{name[:-4]}_5.ply").exists())
         self.assert_frames_fail(USAGE, ["--output (-o)", "ftop.ply"], "-o", "f%s.ply")  # all frames in one file
         for name in ("f.ply", "f%.ply", "f%d_%d.ply", "f%5.2d.ply", "f%-5d.ply", "f%0999d.ply", "f%n.ply",
                      "f%ld.ply"):
