@@ -83,8 +83,7 @@ Json cavities_json(const std::vector<Cavity> &cavities, const io::Structure &str
                    const std::vector<uint32_t> &residues) {
   Json list = Json::array();
   for (const Cavity &cavity : cavities) {
-    Json entry = {{"component", cavity.id}};
-    entry.update(component_json(cavity.component));
+    Json entry = component_json(cavity.id, cavity.component);
     entry.erase("cavity");
     entry["volume"] = volume_of(cavity);
     Json atoms = Json::array(), lining = Json::array();

@@ -114,7 +114,7 @@ qses_settings mesh_settings_of(const Options &options) {
   settings.components = !options.csv.empty() || !options.json.empty();
   settings.component_ids = options.mesh.component_ids || options.mesh.colors == MeshColors::kComponent;
   settings.patch_types = needs_patches(options);
-  settings.outer_only = options.outer || makes_shown(options);  // nobody sees walls of cavities
+  settings.outer_only = has_outer_only(options);
   settings.hard_edges = has_hard_edges(options);
   settings.atom_areas = options.wants_areas();
   return settings;

@@ -239,14 +239,14 @@ void FrameWorker::fill_mesh(const FrameTask &task, Read read, FrameResult &resul
   Options frame_options = options;
   if (inputs_.pattern) frame_options.output = inputs_.pattern->name(task.frame);
   const auto write_start = Clock::now();
-  if (makes_page(options))
-    result.page = inputs_.mesh_output.page_mesh(mesh, centers().data(), label_of(task.frame, read.time));
-  else
-    inputs_.mesh_output.accept(frame_options.output, mesh, centers().data());
+  const MeshOutput &output = inputs_.mesh_output;
+  const MeshSize written = makes_page(options)
+                               ? output.page_mesh(mesh, centers().data(), label_of(task.frame, read.time), &result.page)
+                               : output.accept(frame_options.output, mesh, centers().data());
   read.timings.write = ms_since(write_start);
   if (options.json.empty()) return;
   Json json = frame_json(task, read.time);
-  json.update(surface_json(frame_options, inputs_.structure(), *computed_by, mesh, report, read.timings));
+  json.update(surface_json(frame_options, inputs_.structure(), *computed_by, mesh, written, report, read.timings));
   result.json = dump(json, true);
 }
 

@@ -29,6 +29,14 @@ bool has_one_chain(const io::Structure &structure) {
                      [&](const io::AtomInfo &atom) { return atom.chain == structure.atoms.front().chain; });
 }
 
+// The number that the file gives it may be another one.
+void hint_at_number(const Options &options, const io::Structure &structure) {
+  if (!options.model_given || options.read.model == 0 || structure.model_name == std::to_string(structure.model))
+    return;
+  std::fprintf(stderr, "quickses: '%s': --model %d is the model that the file gives the number %s\n",
+               options.input.c_str(), structure.model, structure.model_name.c_str());
+}
+
 // The frames of a trajectory are taken whatever models the structure has.
 void hint_at_models(const Options &options, const io::StructureFile &file) {
   if (file.model_count == 1 || options.model_given || !options.trajectories.empty()) return;
@@ -58,6 +66,7 @@ Input::Input(const Options &given, bool quiet) : options(given) {
     options.mesh.colors = has_one_chain(file.models.front()) ? MeshColors::kElement : MeshColors::kChain;
   if (!quiet) {
     hint_at_models(options, file);
+    hint_at_number(options, file.models.front());
     hint_at_water(options, file.models.front());
   }
   for (const io::Structure &structure : file.models) check_has_residues(options, structure);

@@ -213,9 +213,9 @@ void MeshOutput::prepare(const qses_mesh &mesh, io::MeshFormat format, const flo
   }
 }
 
-void MeshOutput::accept(const std::string &path, const qses_mesh &mesh, const float *centers) const {
+MeshSize MeshOutput::accept(const std::string &path, const qses_mesh &mesh, const float *centers) const {
   accept_surface(mesh);
-  if (path.empty()) return;
+  if (path.empty()) return {};
   const io::MeshFormat format = io::mesh_format_of(path);
   Prepared prepared;
   prepare(mesh, format, centers, prepared);
@@ -223,6 +223,7 @@ void MeshOutput::accept(const std::string &path, const qses_mesh &mesh, const fl
     draw(path, prepared.view, centers);
   else
     io::write_mesh(path, prepared.view, format, options_.text);
+  return {prepared.view.vertex_count, prepared.view.triangle_count};
 }
 
 void MeshOutput::draw(const std::string &path, const io::MeshView &view, const float *centers) const {
@@ -235,11 +236,13 @@ void MeshOutput::draw(const std::string &path, const io::MeshView &view, const f
   render::write_png(path, render::draw(view, camera_, camera_.middle(balls(centers)), settings));
 }
 
-std::string MeshOutput::page_mesh(const qses_mesh &mesh, const float *centers, const std::string &label) const {
+MeshSize MeshOutput::page_mesh(const qses_mesh &mesh, const float *centers, const std::string &label,
+                               std::string *text) const {
   accept_surface(mesh);
   Prepared prepared;
   prepare(mesh, io::MeshFormat::kHtml, centers, prepared);
-  return render::page_mesh(prepared.view, camera_.middle(balls(centers)), label);
+  *text = render::page_mesh(prepared.view, camera_.middle(balls(centers)), label);
+  return {prepared.view.vertex_count, prepared.view.triangle_count};
 }
 
 std::unique_ptr<render::Page> MeshOutput::begin_page(const std::string &path) const {

@@ -21,6 +21,11 @@ void accept_surface(const qses_mesh &mesh);
 // How atoms are coloured; of colours that are not those of atoms: nothing.
 std::optional<io::ColorScheme> scheme_of(MeshColors colors);
 
+// Of a mesh as it was written.
+struct MeshSize {
+  uint32_t vertices = 0, triangles = 0;
+};
+
 // What there is to do with the meshes of a structure, in one conformation or many. Any number of threads may use it.
 class MeshOutput {
  public:
@@ -38,12 +43,12 @@ class MeshOutput {
   // Takes the surface of all atoms for good, and writes it, with owners as places in the structure's file; an empty
   // path: writes nothing. centers: of the structure's atoms when the mesh was made, only looked at if needs_centers().
   // Throws as accept_surface, before anything is written; io::Error (output).
-  void accept(const std::string &path, const qses_mesh &mesh, const float *centers) const;
+  MeshSize accept(const std::string &path, const qses_mesh &mesh, const float *centers) const;
   bool needs_centers() const { return options_.sharp || is_shown_; }
   bool is_shown() const { return is_shown_; }
 
-  // The same for a page of many: what Page::add takes.
-  std::string page_mesh(const qses_mesh &mesh, const float *centers, const std::string &label) const;
+  // The same for a page of many: text becomes what Page::add takes.
+  MeshSize page_mesh(const qses_mesh &mesh, const float *centers, const std::string &label, std::string *text) const;
   std::unique_ptr<render::Page> begin_page(const std::string &path) const;
 
  private:

@@ -3,8 +3,10 @@
 #include "cli/report.h"
 
 #include <algorithm>
+#include <numeric>
 #include <vector>
 
+#include "cli/shown_output.h"
 #include "io/atomic_file.h"
 
 namespace quickses::cli {
@@ -12,11 +14,12 @@ namespace {
 
 // The largest area first.
 Json components_json(const qses_mesh &mesh) {
-  std::vector<qses_component> components(mesh.components, mesh.components + mesh.component_count);
-  std::stable_sort(components.begin(), components.end(),
-                   [](const qses_component &a, const qses_component &b) { return a.area > b.area; });
+  std::vector<uint32_t> order(mesh.component_count);
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](uint32_t a, uint32_t b) { return mesh.components[a].area > mesh.components[b].area; });
   Json list = Json::array();
-  for (const qses_component &component : components) list.push_back(component_json(component));
+  for (const uint32_t k : order) list.push_back(component_json(k, mesh.components[k]));
   return list;
 }
 
@@ -71,7 +74,7 @@ Json report_head_json(const Options &options, const io::Structure &structure, co
   json["model"] = structure.model;
   json["atoms"] = structure.atoms.size();
   json["settings"] = settings_json(options.compute);
-  if (options.outer) json["settings"]["outer"] = true;
+  if (has_outer_only(options)) json["settings"]["outer"] = true;
   json["backend"] = name_of(engine.backend());
   json["device"] = engine.device();
   return json;
@@ -94,8 +97,9 @@ Json memory_json(const qses_report &report, qses_backend backend) {
   return memory;
 }
 
-Json component_json(const qses_component &component) {
-  return {{"triangles", component.triangles},
+Json component_json(uint32_t number, const qses_component &component) {
+  return {{"component", number},
+          {"triangles", component.triangles},
           {"area", component.area},
           {"volume", component.volume},
           {"cavity", component.is_cavity != 0},
@@ -104,7 +108,7 @@ Json component_json(const qses_component &component) {
 }
 
 Json surface_json(const Options &options, const io::Structure &structure, const Engine &engine, const qses_mesh &mesh,
-                  const qses_report &report, const Timings &timings) {
+                  const MeshSize &written, const qses_report &report, const Timings &timings) {
   Json json = report_head_json(options, structure, engine);
   json["settings"]["hard_edges"] = has_hard_edges(options);
   if (options.mesh.colors != MeshColors::kNone) json["settings"]["color"] = name_of(options.mesh.colors);
@@ -116,6 +120,7 @@ Json surface_json(const Options &options, const io::Structure &structure, const 
                   {"triangles", mesh.triangle_count},
                   {"closed", true},
                   {"bounds", bounds_json(mesh.bounds_min, mesh.bounds_max)}};
+  if (options.mesh.sharp) json["cut"] = {{"vertices", written.vertices}, {"triangles", written.triangles}};
   json.update(measures_json(report));
   json["components"] = components_json(mesh);
   Json stages = Json::object();

@@ -7,6 +7,7 @@
 
 #include "cli/engine.h"
 #include "cli/exit_code.h"
+#include "cli/mesh_output.h"
 #include "cli/options.h"
 
 namespace quickses::cli {
@@ -36,13 +37,13 @@ Json report_head_json(const Options &options, const io::Structure &structure, co
 Json measures_json(const qses_report &report);
 // memory of a report: peak_device (CUDA), peak_host, mesh.
 Json memory_json(const qses_report &report, qses_backend backend);
-// Of a component: triangles, area, volume, cavity, center, bounds.
-Json component_json(const qses_component &component);
+// Of a component, with its number: component, triangles, area, volume, cavity, center, bounds.
+Json component_json(uint32_t number, const qses_component &component);
 
 // The report of one surface, which is closed (see accept_surface). The mesh must have been computed with its
-// components.
+// components. written: of what was written of it.
 Json surface_json(const Options &options, const io::Structure &structure, const Engine &engine, const qses_mesh &mesh,
-                  const qses_report &report, const Timings &timings);
+                  const MeshSize &written, const qses_report &report, const Timings &timings);
 
 // Text of a report; names that are no UTF-8 are made so.
 std::string dump(const Json &json, bool one_line);

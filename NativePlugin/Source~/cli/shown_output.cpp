@@ -13,4 +13,6 @@ bool makes_shown(const Options &options) {
 
 bool makes_page(const Options &options) { return io::find_mesh_format(options.output) == io::MeshFormat::kHtml; }
 
+bool has_outer_only(const Options &options) { return options.outer || makes_shown(options); }
+
 }  // namespace quickses::cli

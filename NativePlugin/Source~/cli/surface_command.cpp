@@ -35,13 +35,14 @@ std::string output_of_model(const Options &options, int model) {
 }
 
 void print_summary(const Options &options, const io::Structure &structure, const Engine &engine, const qses_mesh &mesh,
-                   const qses_report &report) {
+                   const MeshSize &written, const qses_report &report) {
   const auto vertices = static_cast<uint32_t>(mesh.vertex_count - mesh.repeated_count);
   if (options.has_several_inputs()) std::printf("%s: ", options.input.c_str());
-  std::printf("%s, %u vertices, %u triangles, area %.2f Å², volume %.2f Å³, %s, %.2f ms%s%s\n",
-              io::counted(structure.atoms.size(), "atom").c_str(), vertices, mesh.triangle_count, report.area,
-              report.volume, name_of(engine.backend()), report.compute_ms, options.output.empty() ? "" : ", ",
-              options.output.c_str());
+  const std::string cut = options.mesh.sharp ? " (cut: " + std::to_string(written.triangles) + ")" : "";
+  std::printf("%s, %u vertices, %u triangles%s, area %.2f Å², volume %.2f Å³, %s, %.2f ms%s%s\n",
+              io::counted(structure.atoms.size(), "atom").c_str(), vertices, mesh.triangle_count, cut.c_str(),
+              report.area, report.volume, name_of(engine.backend()), report.compute_ms,
+              options.output.empty() ? "" : ", ", options.output.c_str());
 }
 
 // The surfaces of structures, one after the other, with one engine.
@@ -106,6 +107,9 @@ class SurfaceRun {
       mesh = engine_->compute(settings);
     }
     const qses_report report = engine_->report();
+    if (mesh.triangle_count == 0 && !options.quiet)
+      std::fprintf(stderr, "quickses: '%s': the density is nowhere as high as --isovalue %g, so there is no surface\n",
+                   options.input.c_str(), options.compute.isovalue);
     const auto write_start = Clock::now();
     const float *const centers = structure.positions.data();
     if (output.is_shown()) {
@@ -114,20 +118,23 @@ class SurfaceRun {
       if (makes_page(options) && !shown.page) shown.page = output.begin_page(options.output);
     }
     --shown.to_come;
-    if (shown.page)
-      shown.page->add(
-          output.page_mesh(mesh, centers, has_all_models() ? "model " + std::to_string(structure.model) : ""),
-          shown.to_come);
-    else
-      output.accept(options.output, mesh, centers);
+    MeshSize written;
+    if (shown.page) {
+      std::string text;
+      written =
+          output.page_mesh(mesh, centers, has_all_models() ? "model " + std::to_string(structure.model) : "", &text);
+      shown.page->add(text, shown.to_come);
+    } else {
+      written = output.accept(options.output, mesh, centers);
+    }
     tables_.write(
         make_area_rows(options, first_columns(options, structure), structure, areas_of(options.compute.surface, mesh)));
     timings_.write = ms_since(write_start);
     if (!options.json.empty()) {
-      const Json json = surface_json(options, structure, *engine_, mesh, report, timings_);
+      const Json json = surface_json(options, structure, *engine_, mesh, written, report, timings_);
       reports_ += dump(json, has_all_models() || options.has_several_inputs());  // of several: one line each
     }
-    if (!options.quiet && !options.prints_data()) print_summary(options, structure, *engine_, mesh, report);
+    if (!options.quiet && !options.prints_data()) print_summary(options, structure, *engine_, mesh, written, report);
   }
 
   const Options &options_;

@@ -253,7 +253,8 @@ StructureFile parse_text(std::string text, const std::string &path, std::optiona
   if (file.model_count == 0) fail_input("'" + path + "' has no atoms");
   if (options.model < 0 || options.model > file.model_count)
     fail_usage("'" + path + "' has " + counted(static_cast<uint64_t>(file.model_count), "model") +
-               ": there is no model " + std::to_string(options.model));
+               ": there is no model " + std::to_string(options.model) +
+               " (they are counted from 1, whatever numbers the file gives them)");
 
   build_assembly(raw_file, file.format, text, path, options.assembly);
   NoAtoms no_atoms;

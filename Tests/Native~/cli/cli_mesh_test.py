@@ -111,6 +111,7 @@ class Colors(MeshTest):
                 (["-o", "a.ply", "--scale", "0"], ["--scale", "0"]),
                 (["-o", "a.ply", "--scale", "-1"], ["--scale", "-1"]),
                 (["-o", "a.ply", "--scale", "nan"], ["--scale", "nan"]),
+                (["-o", "a.vert", "--scale", "0.001"], ["--scale", "six digits", "a.vert"]),
                 (["-o", "a.off", "--hard-edges", "on"], ["--hard-edges", ".glb"]),
                 (["-o", "a.vert", "--hard-edges", "on"], ["--hard-edges", ".glb"])):
             with self.subTest(arguments=arguments):
@@ -155,6 +156,22 @@ class SharpColors(MeshTest):
         places = [tuple(row[1:]) for row in rows if row[0] == "v"]
         faces = [tuple(int(word.split("//")[0]) - 1 for word in row[1:]) for row in rows if row[0] == "f"]
         self.assert_sharp([place[:3] for place in places], [place[3:] for place in places], faces)
+
+    def test_the_report_has_the_numbers_of_the_file(self):
+        for name in ("a.ply", "a.html"):
+            result = self.run_cpu(CRAMBIN, "-v", "1", "-o", name, "--color", "element", "--sharp-colors", "--outer",
+                                  "--occlusion", "on", "--json", "a.json", code=None)
+            if result.returncode == USAGE and "three.js" in result.stderr:
+                continue
+            report = json.loads((self.folder / "a.json").read_text())
+            self.assertIs(report["settings"]["outer"], True)
+            if name == "a.ply":
+                ply = read_any_ply(self.folder / name)
+            self.assertEqual(report["cut"], {"vertices": len(ply.vertices), "triangles": len(ply.faces)})
+            self.assertGreater(report["cut"]["triangles"], report["mesh"]["triangles"])
+            self.assertIn(f"{report['mesh']['triangles']} triangles (cut: {report['cut']['triangles']})", result.stdout)
+        self.make("a.ply", "--color", "element", "--json", "a.json")
+        self.assertNotIn("cut", json.loads((self.folder / "a.json").read_text()))
 
     def test_frames_have_atoms_of_their_own(self):
         moved = [f"{line[:30]}{float(line[30:38]) + 50:8.3f}{line[38:]}" for line in ATOMS]

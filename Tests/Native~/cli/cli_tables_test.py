@@ -337,9 +337,13 @@ class Cavities(TablesTest):
         self.assertEqual(ids, [numbers[root(v)] for v in range(len(vertices))])
         report = json.loads((self.folder / "a.json").read_text())
         self.assertEqual(len(report["components"]), len(numbers))
+        self.assertEqual({piece["component"] for piece in report["components"]}, set(ids))
         for piece in report["components"]:
-            self.assertTrue(any(all(abs(min(v[k] for v, n in zip(vertices, ids) if n == number) - piece["bounds"][0][k])
-                                    < 1e-4 for k in range(3)) for number in range(len(numbers))))
+            of_piece = [v for v, number in zip(vertices, ids) if number == piece["component"]]
+            self.assertEqual(sum(ids[face[0]] == piece["component"] for face in faces), piece["triangles"])
+            for k in range(3):
+                self.assertAlmostEqual(min(v[k] for v in of_piece), piece["bounds"][0][k], delta=1e-4)
+                self.assertAlmostEqual(max(v[k] for v in of_piece), piece["bounds"][1][k], delta=1e-4)
 
     def test_outer_shells_only(self):
         whole = json.loads(self.run_cpu("shells.pdb", "-o", "a.ply", "--component-ids", "--json", "-").stdout)

@@ -126,7 +126,8 @@ class ProgramTest(unittest.TestCase):
     def run_program(self, *arguments, code=OK, **keywords):
         result = subprocess.run([PROGRAM, *map(str, arguments)], stdin=subprocess.DEVNULL, capture_output=True,
                                 cwd=self.folder, encoding="utf-8", timeout=PATIENCE, **keywords)
-        self.assertEqual(result.returncode, code, result.stderr + result.stdout)
+        if code is not None:
+            self.assertEqual(result.returncode, code, result.stderr + result.stdout)
         return result
 
     def run_cpu(self, *arguments, code=OK, **keywords):
@@ -188,6 +189,21 @@ class Errors(ProgramTest):
     def test_input_has_an_unknown_extension(self):
         self.write("notes.txt", "Dear diary\n")
         self.assert_fails(INPUT, ["notes.txt", ".pdb", ".brk", ".cif", ".xyzr", ".xyzrn"], "notes.txt")
+
+    def test_models_are_counted_whatever_their_numbers(self):
+        atoms = [line for line in CRAMBIN.read_text().splitlines() if line.startswith("ATOM")]
+        self.write("m.pdb", "".join("MODEL     %4d\n%s\nENDMDL\n" % (number, "\n".join(atoms[:number]))
+                                    for number in (10, 11, 12)))
+        result = self.run_cpu("m.pdb", "--model", "2", "--json", "a.json")
+        self.assertEqual(json.loads((self.folder / "a.json").read_text())["atoms"], 11)
+        self.assertIn("--model 2 is the model that the file gives the number 11", result.stderr)
+        self.assertEqual(self.run_cpu("m.pdb", "--model", "2", "--quiet").stderr, "")
+        self.assert_fails(USAGE, ["3 models", "no model 11", "counted from 1"], "m.pdb", "--model", "11")
+
+    def test_no_surface(self):
+        result = self.run_cpu(CRAMBIN, "--surface", "gaussian", "--isovalue", "1000")
+        self.assertIn("--isovalue 1000", result.stderr)
+        self.assertIn("0 triangles", result.stdout)
 
     def test_no_such_model(self):
         self.assert_fails(USAGE, ["1 model", "7"], CRAMBIN, "--model", "7")
