@@ -12,8 +12,8 @@
 namespace quickses::cli {
 
 // The file of a structure's mesh: the name of --output, in which %s stands for the name of the input without its folder
-// and extensions: of a/1crn.pdb.gz it is 1crn, of standard input stdin. is_pattern: the result is one of OutputPattern, so percent
-// signs of that name are doubled.
+// and extensions: of a/1crn.pdb.gz it is 1crn, of standard input stdin. is_pattern: the result is one of OutputPattern,
+// so percent signs of that name are doubled.
 std::string output_of_input(const std::string &output, const std::string &input, bool is_pattern);
 
 // The same of one of the structures of options whose output is resolved.
