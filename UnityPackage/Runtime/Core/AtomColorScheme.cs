@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 namespace QuickSes
 {
-    /// <summary>How the atoms of a structure are coloured.</summary>
+    /// <summary>
+    /// How the atoms of a structure are coloured. Chains and places in them are those of the file, whatever was left out
+    /// when the structure was opened.
+    /// </summary>
     public enum AtomColorScheme
     {
         /// <summary>One colour for all.</summary>

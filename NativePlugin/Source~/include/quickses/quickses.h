@@ -959,8 +959,9 @@ typedef enum qses_color_scheme {
  *                 of residues; its alpha goes along. The other colours are opaque
  *   rgba          room for 4 count bytes
  *   count         must be atom_count
- * Modified residues have the colour of those they were made of. Errors: INVALID_ARGUMENT (also: an unknown scheme),
- * after which rgba is as it was; OUT_OF_MEMORY. */
+ * Modified residues have the colour of those they were made of. Chains and places in them are those of the model before
+ * any filter of qses_structure_options, so that a part has the colours that it has in the whole. Errors:
+ * INVALID_ARGUMENT (also: an unknown scheme), after which rgba is as it was; OUT_OF_MEMORY. */
 QSES_API qses_status qses_structure_colors(const qses_structure *structure, qses_color_scheme scheme,
                                            const uint8_t uniform_rgba[4], uint8_t *rgba, size_t count);
 
