@@ -32,7 +32,6 @@ needs=(
   "python3-yaml python:yaml"
   "zlib1g-dev zlib.h"
   "libthrust-dev thrust/version.h"
-  "libtbb-dev tbb/parallel_for.h"
   "libglm-dev glm/glm.hpp"
   "gemmi-dev gemmi/version.hpp"
   "gemmi gemmi" # the program, which the CMake files of Debian 13's gemmi-dev insist on
@@ -41,7 +40,6 @@ needs=(
   "libstb-dev stb/stb_image_write.h"
   "nlohmann-json3-dev nlohmann/json.hpp"
   "libgtest-dev gtest/gtest.h"
-  "patchelf patchelf"
   "pigz pigz"
 )
 
@@ -141,8 +139,8 @@ fi
 if ! command -v apt-get >/dev/null; then
   fail "can install on Debian and Ubuntu only, and $system has no apt-get.
 Missing here (Debian's package names): ${missing[*]}
-Needed in all: CMake 3.22, Ninja, a C++17 compiler, Python 3, zlib, Thrust 1.15, oneTBB, GLM, gemmi (and PEGTL with
-gemmi 0.5), CLI11, nlohmann-json, stb, GoogleTest, PyYAML, patchelf, pigz; for the GPU the CUDA Toolkit 11.8 or later and Clang 18
+Needed in all: CMake 3.22, Ninja, a C++17 compiler, Python 3, zlib, Thrust 1.15, GLM, gemmi (and PEGTL with
+gemmi 0.5), CLI11, nlohmann-json, stb, GoogleTest, PyYAML, pigz; for the GPU the CUDA Toolkit 11.8 or later and Clang 18
 or later; for many processes an MPI library."
 fi
 as_root=()

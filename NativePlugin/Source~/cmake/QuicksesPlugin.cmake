@@ -18,67 +18,32 @@ elseif(NOT BUILD_SHARED_LIBS OR QUICKSES_SANITIZE)
   return()
 endif()
 
-set(_remove_stale "")
 if(WIN32)
   # quickses.dll is the plug-in as it is: MinGW puts everything into it. Its table of symbols would be a third of it.
   target_link_options(quickses PRIVATE -Wl,-s)
-  set(_platform windows-x86_64)
   set(_plugin quickses)
-  set(_files "$<TARGET_FILE:quickses>")
-  set(_file_metas quickses.dll.meta)
+  set(_folder windows-x86_64)
+  set(_meta quickses.dll.meta)
 else()
-  set(_platform linux-x86_64)
-  set(_plugin quickses_plugin)
-  set(_files "$<TARGET_FILE:quickses_plugin>")
-  set(_file_metas libquickses.so.meta)
-  set(_folder "${PROJECT_BINARY_DIR}/plugin")
-  set(_system_library ${QUICKSES_CPU_LIBRARY})
-  # A shared TBB travels along. Unity copies only names that end in .so, hence a name, and a soname, of our own; it is
-  # also why no other TBB in the process is mistaken for it.
-  set(_tbb_type none)
-  if(QUICKSES_CPU_SYSTEM_FOUND STREQUAL "TBB")
-    get_target_property(_tbb_type TBB::tbb TYPE)
-  endif()
-  if(_tbb_type STREQUAL "SHARED_LIBRARY")
-    find_program(QUICKSES_PATCHELF patchelf DOC "Gives the copy of TBB that travels with the plug-in its name")
-    mark_as_advanced(QUICKSES_PATCHELF)
-    if(NOT QUICKSES_PATCHELF)
-      quickses_no_plugin("patchelf was not found (bash Scripts~/setup.sh installs it)")
-      return()
-    endif()
-    set(_system_library "${_folder}/libquickses_tbb.so")
-    add_custom_command(OUTPUT "${_system_library}"
-      COMMAND "${CMAKE_COMMAND}" -E copy "$<TARGET_FILE:TBB::tbb>" "${_system_library}"
-      COMMAND "${QUICKSES_PATCHELF}" --remove-rpath --set-soname libquickses_tbb.so "${_system_library}"
-      DEPENDS "$<TARGET_FILE:TBB::tbb>" VERBATIM)
-    add_custom_target(quickses_tbb DEPENDS "${_system_library}")
-    list(APPEND _files "${_system_library}")
-    list(APPEND _file_metas libquickses_tbb.so.meta)
-  else() # one may lie there, from a build with it
-    set(_stale "${QUICKSES_PLUGINS_DIR}/${_platform}/libquickses_tbb.so")
-    set(_remove_stale COMMAND "${CMAKE_COMMAND}" -E rm -f "${_stale}" "${_stale}.meta")
-  endif()
-
-  # The same objects as libquickses.so, linked so that nothing but the C library and libgcc_s is asked of the machine (of TBB beside it also libstdc++).
+  # The same objects as libquickses.so, linked so that nothing but the C library and libgcc_s is asked of the machine.
   add_library(quickses_plugin SHARED ${_objects})
-  quickses_link_library(quickses_plugin ${_system_library})
-  set_target_properties(quickses_plugin PROPERTIES OUTPUT_NAME quickses LIBRARY_OUTPUT_DIRECTORY "${_folder}"
-    BUILD_WITH_INSTALL_RPATH ON INSTALL_RPATH "$ORIGIN")
+  quickses_link_library(quickses_plugin)
+  set_target_properties(quickses_plugin PROPERTIES OUTPUT_NAME quickses LIBRARY_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/plugin"
+    SKIP_BUILD_RPATH ON)
   # What nobody calls goes: in the static libstdc++ of Debian 12 alone that is what asks for glibc 2.36 (arc4random).
   target_link_options(quickses_plugin PRIVATE -static-libstdc++ -Wl,--gc-sections -Wl,-s)
-  if(TARGET quickses_tbb)
-    add_dependencies(quickses_plugin quickses_tbb)
-  endif()
+  set(_plugin quickses_plugin)
+  set(_folder linux-x86_64)
+  set(_meta libquickses.so.meta)
 endif()
 
 # Placed by every build, even if nothing had to be compiled: of several presets, the one that was built last is in place.
 set(_metas "${PROJECT_SOURCE_DIR}/NativePlugin/Source~/plugin_metas")
-list(TRANSFORM _file_metas PREPEND "${_metas}/${_platform}/")
 add_custom_target(plugin ALL
-  COMMAND "${CMAKE_COMMAND}" -E make_directory "${QUICKSES_PLUGINS_DIR}/${_platform}"
-  ${_remove_stale}
-  COMMAND "${CMAKE_COMMAND}" -E copy_if_different ${_files} ${_file_metas} "${QUICKSES_PLUGINS_DIR}/${_platform}"
-  COMMAND "${CMAKE_COMMAND}" -E copy_if_different "${_metas}/${_platform}.meta" "${QUICKSES_PLUGINS_DIR}"
+  COMMAND "${CMAKE_COMMAND}" -E make_directory "${QUICKSES_PLUGINS_DIR}/${_folder}"
+  COMMAND "${CMAKE_COMMAND}" -E copy_if_different "$<TARGET_FILE:${_plugin}>" "${_metas}/${_folder}/${_meta}"
+    "${QUICKSES_PLUGINS_DIR}/${_folder}"
+  COMMAND "${CMAKE_COMMAND}" -E copy_if_different "${_metas}/${_folder}.meta" "${QUICKSES_PLUGINS_DIR}"
   COMMAND "${CMAKE_COMMAND}" -E copy_if_different "${_metas}/Plugins.meta" "${QUICKSES_PLUGINS_DIR}.meta"
   DEPENDS ${_plugin} VERBATIM)
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The few verbs every pass is written in. There are two back ends with the same members: CpuExecutor (TBB, or threads
-// of its own) and CudaExecutor (Thrust/CUB on a stream). Stages are templates over the executor and know neither.
+// The few verbs every pass is written in. There are two back ends with the same members: CpuExecutor (threads of
+// its own) and CudaExecutor (Thrust/CUB on a stream). Stages are templates over the executor and know neither.
 //
 // clang-format off
 //   Span<T> allocate<T>(n)         memory of the back end, uninitialised, valid until the arena is rewound

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Threads that help another one, where there is no TBB: as on Windows, where MinGW's OpenMP lets its threads sleep
-// between passes, and they wake up late.
+// Threads that help another one. OpenMP's sleep between passes, and wake up late; those of oneTBB are no faster, and a
+// plug-in would share them with whoever else in the process has a oneTBB.
 #pragma once
 
 #include "parallel/this_process.h"

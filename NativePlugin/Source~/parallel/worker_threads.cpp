@@ -7,12 +7,16 @@
 #endif
 #include <windows.h>
 #elif defined(__linux__)
+#include <sched.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
 #include <cerrno>
 #endif
+
+#include <algorithm>
+#include <thread>
 
 namespace quickses {
 namespace {
@@ -67,6 +71,15 @@ thread_local bool stands_back = false, is_known = false;
 thread_local Priority priority;
 
 }  // namespace
+
+unsigned processors() noexcept {
+#if defined(__linux__)
+  // hardware_concurrency() counts the machine's.
+  cpu_set_t set;
+  if (sched_getaffinity(0, sizeof set, &set) == 0) return static_cast<unsigned>(std::max(1, CPU_COUNT(&set)));
+#endif
+  return std::max(1u, std::thread::hardware_concurrency());
+}
 
 void stand_back(bool in_background) noexcept {
   if (in_background == stands_back) return;

@@ -55,7 +55,7 @@ size_t nicer_threads(bool background) {
 TEST(Background, OnlyWhereItIsAskedForAndNotForTheCaller) {
   if (getpriority(PRIO_PROCESS, 0) > 0) GTEST_SKIP() << "this process stands back already";
   EXPECT_EQ(nicer_threads(false), 0u);
-  EXPECT_GE(nicer_threads(true), 1u);  // the job's, and those of the parallel system as far as they came to work
+  EXPECT_GE(nicer_threads(true), 1u);  // the job's, and its helpers as far as they came to work
 }
 
 #endif

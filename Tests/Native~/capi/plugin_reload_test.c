@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The plug-in in a host that loads it from two places, takes it away and loads it again.
- *   plugin_reload_test STRUCTURE FOLDER FILE...
- * STRUCTURE is 1CRN.pdb, the first FILE the plug-in, others what it needs beside it. FOLDER is there; copies are made
- * in it, in folders that are called as people are. */
+ *   plugin_reload_test STRUCTURE FOLDER PLUGIN
+ * STRUCTURE is 1CRN.pdb. FOLDER is there; copies are made in it, in folders that are called as people are. */
 #include "capi/plugin.h"
 
 #include <stdlib.h>
@@ -106,20 +105,15 @@ static int copy_file(const char *from, const char *to) {
   return fclose(out);
 }
 
-/* Copies the files and the structure to FOLDER/name; gives the path of the plug-in there and of the structure. */
-static int copy_all(char **arguments, int count, const char *name, char *plugin, char *structure) {
-  char folder[kPath], path[kPath];
-  int i;
+/* Copies the plug-in and the structure to FOLDER/name; gives their paths there. */
+static int copy_both(char **arguments, const char *name, char *plugin, char *structure) {
+  char folder[kPath];
   if (strlen(arguments[2]) > kPath / 2) return fprintf(stderr, "the folder's name is too long\n"), 1;
   snprintf(folder, kPath, "%.500s/%s", arguments[2], name);
   make_folder(folder);
-  for (i = 3; i < count; ++i) {
-    snprintf(path, kPath, "%.700s/%.200s", folder, name_of(arguments[i]));
-    if (copy_file(arguments[i], path)) return 1;
-    if (i == 3) memcpy(plugin, path, kPath);
-  }
+  snprintf(plugin, kPath, "%.700s/%.200s", folder, name_of(arguments[3]));
   snprintf(structure, kPath, "%.700s/%.200s", folder, name_of(arguments[1]));
-  return copy_file(arguments[1], structure);
+  return copy_file(arguments[3], plugin) || copy_file(arguments[1], structure);
 }
 
 /* ---- what is done with a copy -------------------------------------------------------------------------------- */
@@ -196,8 +190,8 @@ int main(int argc, char **argv) {
   unsigned long memory = 0, handles = 0;
   int round;
   use_utf8_arguments(&argc, &argv);
-  if (argc < 4) return fprintf(stderr, "usage: plugin_reload_test STRUCTURE FOLDER FILE...\n"), 2;
-  if (copy_all(argv, argc, FIRST, first, structure) || copy_all(argv, argc, SECOND, second, another)) return 1;
+  if (argc != 4) return fprintf(stderr, "usage: plugin_reload_test STRUCTURE FOLDER PLUGIN\n"), 2;
+  if (copy_both(argv, FIRST, first, structure) || copy_both(argv, SECOND, second, another)) return 1;
   if (compute_with_both(first, second, structure)) return 1;
   for (round = 0; round < kWarmRounds + kRounds; ++round) {
     if (compute_and_unload(first, another, 0) || compute_and_unload(first, structure, 1) ||

@@ -151,7 +151,7 @@ TEST_F(ProcessEnd, OfForkedChildren) {
   const auto positions_of = [](Context &context) { return compute(context, crambin(), settings()).mesh.positions; };
   auto context = std::make_unique<Context>(kHelpers);
   const auto expected = positions_of(*context);
-  for (int k = 0; k < 100; ++k) {  // TBB's threads of the parent look for work for a while, with something held
+  for (int k = 0; k < 100; ++k) {  // the parent's threads wait awake for a while
     const bool ends = forked_child_ends([&] {
       Context own(kHelpers);
       if (positions_of(own) != expected || positions_of(*context) != expected) std::_Exit(1);

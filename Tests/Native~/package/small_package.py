@@ -81,8 +81,7 @@ class SmallPackage:
                 names += re.findall(r"QSES_API [^;(]*[ *](qses_[a-z0-9_]+)\(", file.read())
         self.source = "".join(f"void {name}(void) {{}}\n" for name in names)
         self.linux = ("-fPIC", "-nostartfiles", "-Wl,-soname,libquickses.so")
-        self.tbb = built(compiler, "void tbb(void) {}", "-fPIC", "-Wl,-soname,libquickses_tbb.so")
-        self.good = self.built_beside(self.tbb, "libquickses_tbb.so", self.source, *self.linux, "-Wl,-rpath,$ORIGIN")
+        self.good = built(compiler, self.source, *self.linux)
         self.dll = built(mingw, self.source) if mingw else None
 
     def built_beside(self, other, name, source, *options):
@@ -101,9 +100,8 @@ class SmallPackage:
 
         files = {**sources(), "UnityPackage/Plugins.meta": template("Plugins.meta"),
                  "UnityPackage/Plugins/linux-x86_64.meta": template("linux-x86_64.meta"),
-                 LINUX + "libquickses.so": self.good, LINUX + "libquickses_tbb.so": self.tbb,
-                 LINUX + "libquickses.so.meta": template("linux-x86_64/libquickses.so.meta"),
-                 LINUX + "libquickses_tbb.so.meta": template("linux-x86_64/libquickses_tbb.so.meta")}
+                 LINUX + "libquickses.so": self.good,
+                 LINUX + "libquickses.so.meta": template("linux-x86_64/libquickses.so.meta")}
         if self.dll:
             files["UnityPackage/Plugins/windows-x86_64.meta"] = template("windows-x86_64.meta")
             files[WINDOWS + "quickses.dll"] = self.dll

@@ -5,8 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cstring>
-
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define CAN_COUNT_ALLOCATIONS 1
 #include <dlfcn.h>
@@ -47,11 +45,9 @@ class Count {
   }
   ~Count() { counting = false; }
 
-  // oneTBB keeps the objects of its tasks in pools of its own. When one of those grows is up to which thread took which
-  // task, so its allocations are told apart, and reported.
   struct Result {
-    size_t total = 0, by_tbb = 0;
-    std::string others;  // where they come from
+    size_t total = 0;
+    std::string callers;
   };
   Result end() {
     counting = false;
@@ -61,17 +57,13 @@ class Count {
     for (size_t k = 0; k < std::min(result.total, kRemembered); ++k) {
       Dl_info info{};
       const bool found = dladdr(callers[k], &info) != 0 && info.dli_fname;
-      if (found && std::strstr(info.dli_fname, "libtbb")) {
-        ++result.by_tbb;
-      } else {
-        char text[400];
-        std::snprintf(text, sizeof text, "%s+0x%zx (%s)\n", found ? info.dli_fname : "?",
-                      found ? static_cast<size_t>(static_cast<const char *>(callers[k]) -
-                                                  static_cast<const char *>(info.dli_fbase))
-                            : 0,
-                      found && info.dli_sname ? info.dli_sname : "");
-        result.others += text;
-      }
+      char text[400];
+      std::snprintf(
+          text, sizeof text, "%s+0x%zx (%s)\n", found ? info.dli_fname : "?",
+          found ? static_cast<size_t>(static_cast<const char *>(callers[k]) - static_cast<const char *>(info.dli_fbase))
+                : 0,
+          found && info.dli_sname ? info.dli_sname : "");
+      result.callers += text;
     }
 #endif
     return result;
@@ -114,7 +106,7 @@ int posix_memalign(void **p, size_t alignment, size_t n) {
   *p = __libc_memalign(alignment, n);
   return *p ? 0 : ENOMEM;
 }
-// What libraries map on their own account, such as oneTBB's allocator; the C library's own calls do not pass here.
+// What libraries map on their own account; the C library's own calls do not pass here.
 void *mmap(void *address, size_t n, int protection, int flags, int file, off_t offset) {
   note(CALLER);
   return reinterpret_cast<void *>(syscall(SYS_mmap, address, n, protection, flags, file, offset));
@@ -158,9 +150,7 @@ void expect_no_allocation(const Atoms &atoms, const Frame &frame, int frames = 3
   Count count;
   for (int k = 0; k < frames; ++k) frame(trajectory.next());
   const Count::Result found = count.end();
-  EXPECT_EQ(found.total - found.by_tbb, 0u) << found.others;
-  testing::Test::RecordProperty("allocations_by_tbb", static_cast<int>(found.by_tbb));
-  if (found.by_tbb > 0) std::printf("oneTBB allocated %zu times in %d frames\n", found.by_tbb, frames);
+  EXPECT_EQ(found.total, 0u) << found.callers;
 }
 
 TEST(Allocations, AreCounted) {

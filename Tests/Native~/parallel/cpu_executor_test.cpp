@@ -5,10 +5,15 @@
 
 #include <gtest/gtest.h>
 
+#if defined(__linux__)
+#include <sched.h>
+#endif
+
 #include <algorithm>
 #include <atomic>
 #include <numeric>
 #include <random>
+#include <thread>
 #include <vector>
 
 using namespace quickses;
@@ -123,5 +128,29 @@ TEST(CpuExecutor, FinishesInASecondStepWhatIsLeft) {
     }
   }
 }
+
+#if defined(__linux__)
+// As a batch system or taskset says it, whatever the machine has.
+TEST(CpuExecutor, StartsNoMoreThreadsThanItMayHaveProcessors) {
+  std::thread([] {
+    cpu_set_t all, one;
+    ASSERT_EQ(sched_getaffinity(0, sizeof all, &all), 0);
+    CPU_ZERO(&one);
+    for (int cpu = 0; CPU_COUNT(&one) == 0; ++cpu)
+      if (CPU_ISSET(cpu, &all)) CPU_SET(cpu, &one);
+    ASSERT_EQ(sched_setaffinity(0, sizeof one, &one), 0);
+    CpuExecutor executor(8);
+    const std::thread::id caller = std::this_thread::get_id();
+    std::atomic<int> done{0}, by_others{0};
+    for (int pass = 0; pass < 100; ++pass)
+      executor.for_each(100000, [&](size_t) {
+        ++done;
+        if (std::this_thread::get_id() != caller) ++by_others;
+      });
+    EXPECT_EQ(done, 100 * 100000);
+    EXPECT_EQ(by_others, 0);
+  }).join();
+}
+#endif
 
 }  // namespace

@@ -60,7 +60,6 @@ void expect_same(const Surface &a, const Surface &b) {
   EXPECT_EQ(a.report.area, b.report.area);
 }
 
-// These come first: later the parallel system has its threads.
 TEST(FewThreads, ComputeMakesDoWithTheCallers) {
   const Atoms atoms = cluster(2000, 3);
   Surface alone;

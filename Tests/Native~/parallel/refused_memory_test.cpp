@@ -121,7 +121,6 @@ struct CountedScratch {
 };
 
 TEST(RefusedMemory, ExecutorsLoseNoScratch) {
-  const CpuExecutor first(2);  // begins TBB, once; where memory for that is refused, executors do without
   const int failures = refuse_each(
       [] {
         CpuExecutor executor(20);

@@ -34,7 +34,7 @@ ROOMS = {
     "cli": "include io render",
 }
 # What only the CPU's side may see.
-CPU_HEADERS = re.compile(r"tbb/|thrust/system/tbb/")
+CPU_HEADERS = re.compile(r"thrust/system/cpp/")
 
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*(?:"([^"]+)"|<([^>]+)>)', re.MULTILINE)
 
@@ -171,9 +171,9 @@ class Faults(unittest.TestCase):
         self.write(f"{SOURCES}/io/box.h", '#include "io/unwrap.h"\n')
         self.assertIn("a cycle: io/box.h -> io/unwrap.h -> io/box.h", faults(self.copy))
 
-    def test_tbb_in_the_cuda_unit(self):
+    def test_the_cpus_executor_in_the_cuda_unit(self):
         self.write(f"{SOURCES}/surface/stages/components.h", '#include "parallel/cpu_executor.h"\n')
-        self.assertTrue(any(fault.startswith("surface/cuda_engine.cu sees <tbb/") for fault in faults(self.copy)))
+        self.assertTrue(any(fault.startswith("surface/cuda_engine.cu sees <thrust/system/cpp/") for fault in faults(self.copy)))
 
     def test_a_folder_that_is_no_room(self):
         os.mkdir(os.path.join(self.copy, SOURCES, "misc"))

@@ -73,9 +73,9 @@
  *   between kernels. A stack of 64 KiB suffices for every call on the CPU. Where the machine refuses threads, a context
  *   makes do with those there are, down to the calling thread. A thread that is in a call must not be ended from
  *   outside (pthread_cancel, TerminateThread): qses_cancel is there for that.
- *   After a fork while nothing of the library ran, the child may make contexts on the CPU and compute in them, with its
- *   calling thread alone if TBB's were used before; contexts that had jobs (qses_begin) before must be neither used nor
- *   destroyed there. Where CUDA was used, no child can use it.
+ *   After a fork while nothing of the library ran, the child may make contexts on the CPU and compute in them, and in
+ *   those that were made before, with its calling thread alone; contexts that had jobs (qses_begin) before must be
+ *   neither used nor destroyed there. Where CUDA was used, no child can use it.
  */
 #ifndef QUICKSES_QUICKSES_H
 #define QUICKSES_QUICKSES_H
@@ -253,7 +253,7 @@ static inline void qses_context_options_init(qses_context_options *options) { qs
  * With CUDA the first one of a process takes as long as CUDA needs to start, up to a second, and for a GPU newer than
  * this library up to a minute more (qses_backend_description.preparing): make it on a thread that may wait. Later ones
  * take milliseconds. From then on, or once CUDA was asked about, the library stays in the process: a host that unloads
- * it gets the same one when it loads it again, since threads of TBB and the driver end later than contexts.
+ * it gets the same one when it loads it again, since threads of it and of the driver end later than contexts.
  * Errors: INVALID_ARGUMENT, BACKEND_UNAVAILABLE, OUT_OF_MEMORY, DEVICE_ERROR. */
 QSES_API qses_status qses_context_create(const qses_context_options *options, qses_context **context);
 

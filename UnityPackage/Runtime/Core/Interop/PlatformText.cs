@@ -59,7 +59,7 @@ namespace QuickSes.Interop
                 return $"{NoLibraryFor(name)} ({reason})";
             string text = $"The native library {Library} can't be loaded on {name}: it is missing, or " +
                 $"made for another system, or something that it needs is missing ({Supported} are " +
-                "supported; on Linux, glibc 2.35 or later is needed, as in Ubuntu 22.04). ";
+                "supported; on Linux, glibc 2.34 or later is needed, as in Ubuntu 22.04). ";
             if (isForDevelopers)
                 text += "A checkout of the project has none until it is built (Documentation~/building.md). The " +
                     "package with its libraries: Package Manager > + > Add package from git URL > " +
