@@ -4,6 +4,7 @@
 #   bash Scripts~/setup.sh [--with-cuda] [--with-mpi] [--with-windows]
 # Does nothing, and needs no network and no rights, where everything is there. Uses sudo where it isn't root.
 set -euo pipefail
+export LC_ALL=C # apt's words are read below
 
 with_cuda=no
 with_mpi=no
