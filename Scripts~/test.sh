@@ -58,7 +58,7 @@ for preset in "${presets[@]}"; do
   # What has nothing to do with the back end was tested with the first preset.
   others=()
   if [ "$preset" != cpu ]; then
-    others=(--exclude-regex '^(check_.*|consumer_add_subdirectory|make_package_.*|measure_scripts|page_browser_test|release_scripts|script_help|setup|shaders|test_in_unity)$')
+    others=(--exclude-regex '^(check_.*|configure|consumer_add_subdirectory|make_package_.*|measure_scripts|page_browser_test|release_scripts|script_help|setup|shaders|test_in_unity)$')
   fi
   ctest --preset "$preset" --parallel "$(nproc)" "${others[@]}"
   # Those of the CPU back end, which is the same in all of them. With another compiler nothing is judged, which is then said.

@@ -57,9 +57,9 @@ foreach(_architecture IN LISTS QUICKSES_CUDA_ARCHITECTURES)
     list(APPEND _flags --cuda-include-ptx=sm_${_number})
   endif()
 endforeach()
-string(TOUPPER "${CMAKE_BUILD_TYPE}" _config)
+string(TOUPPER "${CMAKE_BUILD_TYPE}" _config) # empty for generators of several configurations
 separate_arguments(_config UNIX_COMMAND "${CMAKE_CXX_FLAGS_${_config}}")
-list(APPEND _flags -Xcuda-fatbinary --compress-all -std=c++17 ${_config}
+list(APPEND _flags -Xcuda-fatbinary --compress-all -std=c++17 -O3 ${_config}
   # On the device a*b+c is one operation where an expression says so, whatever the optimizer sees beyond it: so all
   # versions of Clang give the same bytes, and functions can be taken apart. On the host nothing is contracted (see
   # QuicksesTargets.cmake).

@@ -2,6 +2,11 @@
 # Install rules: the library, its headers, the program, and what find_package and pkg-config read.
 include(CMakePackageConfigHelpers)
 
+if(NOT BUILD_SHARED_LIBS AND TARGET gemmi_cpp)
+  message(FATAL_ERROR "A static library can't be installed with a gemmi that was fetched, which nobody could link it with: "
+    "install gemmi, or set BUILD_SHARED_LIBS=ON, or QUICKSES_INSTALL=OFF.")
+endif()
+
 install(TARGETS quickses EXPORT quicksesTargets
   LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}"
   ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}"
@@ -9,6 +14,8 @@ install(TARGETS quickses EXPORT quicksesTargets
 install(FILES include/quickses/quickses.h include/quickses/quickses_gpu.h DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/quickses")
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE.md" "${PROJECT_SOURCE_DIR}/Third Party Notices.md"
   DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+install(FILES "${PROJECT_SOURCE_DIR}/Documentation~/licenses/Apache-2.0.txt" # where the notices refer to it
+  DESTINATION "${CMAKE_INSTALL_DOCDIR}/Documentation~/licenses")
 if(TARGET quickses_cli)
   install(TARGETS quickses_cli RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
   # The manual page and the completion are written by the program itself, from its table of options.
@@ -16,10 +23,9 @@ if(TARGET quickses_cli)
     set(_page "${PROJECT_BINARY_DIR}/share/quickses.1")
     set(_completion "${PROJECT_BINARY_DIR}/share/quickses")
     file(MAKE_DIRECTORY "${PROJECT_BINARY_DIR}/share")
-    add_custom_command(OUTPUT "${_page}" "${_completion}" VERBATIM DEPENDS quickses_cli
+    add_custom_command(TARGET quickses_cli POST_BUILD BYPRODUCTS "${_page}" "${_completion}" VERBATIM
       COMMAND sh -c "\"$0\" --help-man > \"$1\" && \"$0\" --help-completion > \"$2\""
         "$<TARGET_FILE:quickses_cli>" "${_page}" "${_completion}")
-    add_custom_target(quickses_manual ALL DEPENDS "${_page}" "${_completion}")
     install(FILES "${_page}" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
     install(FILES "${_completion}" DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions")
   endif()

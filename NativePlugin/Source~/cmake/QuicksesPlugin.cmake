@@ -47,8 +47,6 @@ add_custom_target(plugin ALL
   COMMAND "${CMAKE_COMMAND}" -E copy_if_different "${_metas}/Plugins.meta" "${QUICKSES_PLUGINS_DIR}.meta"
   DEPENDS ${_plugin} VERBATIM)
 
-find_program(QUICKSES_PYTHON python3 DOC "Packs the package; runs the tests of the program and of the package's files")
-mark_as_advanced(QUICKSES_PYTHON)
 if(QUICKSES_PYTHON)
   add_custom_target(upm
     COMMAND "${QUICKSES_PYTHON}" -B "${PROJECT_SOURCE_DIR}/Scripts~/package/make-package" "${PROJECT_BINARY_DIR}"
