@@ -8,6 +8,7 @@ PACKAGE is one made by make-package; without it, that test is left out.
 
 import io
 import os
+import shutil
 import stat
 import subprocess
 import sys
@@ -63,6 +64,9 @@ elif wanted == "fail" and platform == "PlayMode":
     result(PASSED + '<test-case fullname="A.Wrong" result="Failed"><failure><message><![CDATA[Expected: 1\nBut was: 2]]>'
            '</message></failure></test-case>', 'result="Failed(Child)"')
     sys.exit(2)
+elif wanted == "foreign":
+    result('<test-case fullname="A.W\u00e4rme" result="Failed"><failure><message>1 \u00c5, \u6e29\u5ea6 \ufffd</message>'
+           '</failure></test-case>', 'result="Failed(Child)"')
 elif wanted == "teardown":
     result(PASSED + '<test-suite fullname="A" result="Failed" site="TearDown"><failure><message>left over</message>'
            '</failure></test-suite>', 'result="Failed(Child)"')
@@ -117,7 +121,7 @@ class TestInUnityTest(unittest.TestCase):
         environment = dict(os.environ, STAND_IN=wanted, TMPDIR=os.path.join(self.folder, "temporary"),
                            **{"DISPLAY": ":9", **environment})
         done = subprocess.run(["bash", os.path.join(REPOSITORY, "Scripts~/test-in-unity.sh"), *options], env=environment,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False, timeout=PATIENCE)
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, encoding="utf-8", check=False, timeout=PATIENCE)
         return done.returncode, done.stdout
 
     def run_tests(self, wanted, *options, **environment):
@@ -158,6 +162,39 @@ class TestInUnityTest(unittest.TestCase):
 
     def test_failure_after_the_tests_of_a_class(self):
         self.assert_fails("teardown", "EditMode: 1 passed, 1 failed", "FAILED A\n    left over")
+
+    def test_messages_in_any_language_whatever_the_encoding_of_the_console(self):
+        for encoding in ("cp1252", "ascii", "utf-8"):
+            self.assert_fails("foreign", "FAILED A.W\u00e4rme\n    1 \u00c5, \u6e29\u5ea6 \ufffd", "PlayMode: 0 passed, 1 failed",
+                              PYTHONIOENCODING=encoding)
+
+    def programs(self, **texts):
+        """A folder of them, and of what the script needs else."""
+        folder = os.path.join(self.folder, "programs")
+        os.mkdir(folder)
+        for name in ("bash", "dirname", "env"):
+            os.symlink(shutil.which(name), os.path.join(folder, name))
+        for name, text in texts.items():
+            with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
+                file.write(text)
+            os.chmod(file.name, stat.S_IRWXU)
+        return folder
+
+    def test_python_by_any_name(self):
+        shop = "#!/bin/sh\necho 'Python was not found; run without arguments to install from the Store'\nexit 49\n"
+        works = f'#!/bin/sh\nexec "{sys.executable}" "$@"\n'
+        launcher = f'#!/bin/sh\n[ "$1" = -3 ] && shift && exec "{sys.executable}" "$@"\n'
+        for names in ({"python3": works}, {"python3": shop, "python": works}, {"python": works},
+                      {"python3": shop, "python": shop, "py": launcher}):
+            with self.subTest(names):
+                folder = self.programs(**names)
+                status, text = self.run_tests("pass", PATH=folder)
+                self.assertEqual(status, 0, text)
+                self.assertNotIn("Store", text)
+                shutil.rmtree(folder)
+        status, text = self.run_tests("pass", PATH=self.programs(python3=shop))
+        self.assertEqual(status, 2, text)
+        self.assertIn("there is no Python 3", text)
 
     def test_run_that_failed_by_itself(self):
         self.assert_fails("failed-run", "FAILED <test-run>\n    Failed(Child)")
