@@ -5,7 +5,6 @@
 #include "capi/structs.h"
 #include "io/text.h"
 #include "io/trajectory.h"
-#include "io/unwrap.h"
 #include "quickses/quickses.h"
 
 #include <cstring>
@@ -30,7 +29,6 @@ struct qses_trajectory {
   }
 
   io::Trajectory frames;
-  std::optional<io::Unwrapper> unwrapper;
   bool has_box = false;
 };
 
@@ -49,14 +47,6 @@ void check_atom_count(const qses_trajectory &trajectory, size_t count) {
   if (count != trajectory.frames.atom_count())
     invalid("count is " + std::to_string(count) + " but the trajectory has " +
             io::counted(trajectory.frames.atom_count(), "atom"));
-}
-
-// The positions of a frame, packed; true if molecules were made whole.
-bool read_positions(const qses_trajectory &trajectory, size_t index, const std::optional<io::Box> &box, float *xyz) {
-  trajectory.frames.read_frame(index, xyz);
-  if (!trajectory.unwrapper || trajectory.unwrapper->apply(box, xyz) != io::UnwrapStatus::kDone) return false;
-  trajectory.frames.check_positions(index, xyz);
-  return true;
 }
 
 }  // namespace
@@ -98,7 +88,7 @@ qses_status qses_trajectory_info(const qses_trajectory *trajectory, qses_traject
     value.frame_count = trajectory->frames.frame_count();
     value.atom_count = static_cast<uint32_t>(trajectory->frames.atom_count());
     value.has_box = trajectory->has_box ? 1 : 0;
-    value.is_unwrapped = trajectory->unwrapper ? 1 : 0;
+    value.is_unwrapped = trajectory->frames.is_unwrapped() ? 1 : 0;
     value.incomplete = trajectory->frames.incomplete() ? 1 : 0;
     value.warning_count = static_cast<uint32_t>(trajectory->frames.warnings().size());
     write_struct(description, value, "qses_trajectory_description");
@@ -118,11 +108,8 @@ qses_status qses_trajectory_unwrap(qses_trajectory *trajectory, const uint8_t *e
     require(trajectory, "trajectory");
     require(elements, "elements");
     check_atom_count(*trajectory, count);
-    const std::optional<io::Box> box = trajectory->frames.box(0);
-    if (!box) throw quickses::Error(QSES_NO_BOX, io::unwrap_sentence(io::UnwrapStatus::kNoBox));
-    std::vector<float> xyz(3 * count);
-    trajectory->frames.read_frame(0, xyz.data());
-    trajectory->unwrapper = io::Unwrapper(elements, xyz.data(), count, box);  // if that fails, the one before stays
+    if (!trajectory->frames.unwrap(elements))
+      throw quickses::Error(QSES_NO_BOX, "no frame has a periodic box: molecules are left as they are");
   });
 }
 
@@ -147,10 +134,10 @@ qses_status qses_trajectory_read_frame(const qses_trajectory *trajectory, uint64
       value.time = *time;
     }
     if (stride == 0 || stride == 12) {
-      value.is_unwrapped = read_positions(*trajectory, k, box, positions) ? 1 : 0;
+      value.is_unwrapped = trajectory->frames.read_frame(k, positions) ? 1 : 0;
     } else {
       std::vector<float> packed(3 * count);
-      value.is_unwrapped = read_positions(*trajectory, k, box, packed.data()) ? 1 : 0;
+      value.is_unwrapped = trajectory->frames.read_frame(k, packed.data()) ? 1 : 0;
       for (size_t i = 0; i < count; ++i)
         std::memcpy(reinterpret_cast<char *>(positions) + i * stride, &packed[3 * i], 12);
     }

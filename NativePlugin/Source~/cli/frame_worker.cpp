@@ -48,14 +48,13 @@ void check_atom_counts(const Options &options, const io::Structure &structure, c
                                       std::to_string(trajectory.atom_count()) + ": they must be of the same atoms");
 }
 
-// Molecules as they are bonded in the first frame.
-io::Unwrapper make_unwrapper(const io::Structure &structure, const io::Trajectory &trajectory) {
-  std::vector<float> xyz(3 * trajectory.atom_count());
-  trajectory.read_frame(0, xyz.data());
+void unwrap(const Options &options, const io::Structure &structure, bool quiet, io::Trajectory &trajectory) {
   try {
-    return io::Unwrapper(structure.file_elements.data(), xyz.data(), trajectory.atom_count(), trajectory.box(0));
+    if (!trajectory.unwrap(structure.file_elements.data()) && !quiet)
+      std::fprintf(stderr, "quickses: warning: --unwrap: no frame of %s has a periodic box: all stay as they are\n",
+                   options.quoted_trajectories().c_str());
   } catch (const io::Error &error) {
-    throw io::Error(error.kind(), "--unwrap: '" + trajectory.file_of(0) + "': " + error.what());
+    throw io::Error(error.kind(), std::string("--unwrap: ") + error.what());
   }
 }
 
@@ -88,13 +87,7 @@ FrameInputs::FrameInputs(const Options &given, bool quiet)
   if (!quiet)
     for (const std::string &warning : trajectory.warnings())
       std::fprintf(stderr, "quickses: warning: %s\n", warning.c_str());
-  if (options.unwrap) {
-    if (trajectory.box(0))
-      unwrapper = make_unwrapper(structure(), trajectory);
-    else if (!quiet)
-      std::fprintf(stderr, "quickses: warning: --unwrap: '%s': %s\n", options.trajectories.front().c_str(),
-                   io::unwrap_sentence(io::UnwrapStatus::kNoBox));
-  }
+  if (options.unwrap) unwrap(options, structure(), quiet, trajectory);
 }
 
 std::vector<float> FrameInputs::centers(const std::vector<float> &xyz) const {
@@ -172,9 +165,9 @@ FrameWorker::Read FrameWorker::read(const FrameTask &task) {
   const io::Trajectory &trajectory = inputs_.trajectory;
   Read read;
   const auto start = Clock::now();
-  trajectory.read_frame(task.frame, xyz_.data());
+  if (!trajectory.read_frame(task.frame, xyz_.data()) && trajectory.is_unwrapped())
+    throw io::Error(io::ErrorKind::kInput, "--unwrap: '" + file_of(task) + "': this frame has no periodic box");
   read.time = trajectory.time(task.frame);
-  if (inputs_.unwrapper) inputs_.unwrapper->apply(trajectory.box(task.frame), xyz_.data());
   read.timings.read = ms_since(start);
   return read;
 }

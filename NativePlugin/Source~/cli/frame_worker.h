@@ -14,7 +14,6 @@
 #include "cli/output_pattern.h"
 #include "cli/report.h"
 #include "io/trajectory.h"
-#include "io/unwrap.h"
 
 namespace quickses::cli {
 
@@ -26,7 +25,6 @@ struct FrameInputs : Input {
 
   io::Trajectory trajectory;
   std::vector<uint32_t> file_indices;  // of the atoms of the structure
-  std::optional<io::Unwrapper> unwrapper;
   std::optional<OutputPattern> pattern;
   MeshOutput mesh_output;
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <exception>
 #include <iterator>
 
 #include "io/dcd_reader.h"
@@ -120,7 +120,41 @@ const Trajectory::Part &Trajectory::part_of(size_t frame) const {
 
 const std::string &Trajectory::file_of(size_t frame) const { return part_of(frame).reader->name(); }
 
-void Trajectory::read_frame(size_t frame, float *xyz) const {
+bool Trajectory::unwrap(const uint8_t *elements) {
+  std::vector<float> xyz(3 * atom_count());
+  std::exception_ptr damaged;
+  for (size_t frame = 0; frame < frame_count_; ++frame) {
+    std::optional<Box> found;
+    try {
+      if (found = box(frame); !found) continue;
+      read_as_it_is(frame, xyz.data());
+    } catch (const Error &) {
+      if (!damaged) damaged = std::current_exception();
+      continue;
+    }
+    try {
+      unwrapper_ = Unwrapper(elements, xyz.data(), atom_count(), *found);
+    } catch (const Error &error) {
+      const Part &part = part_of(frame);
+      fail_input("'" + part.reader->name() + "': frame " + std::to_string(frame - part.first) + ": " + error.what());
+    }
+    return true;
+  }
+  if (damaged) std::rethrow_exception(damaged);
+  return false;
+}
+
+bool Trajectory::read_frame(size_t frame, float *xyz) const {
+  read_as_it_is(frame, xyz);
+  if (!unwrapper_) return false;
+  const std::optional<Box> found = box(frame);
+  if (!found) return false;
+  unwrapper_->apply(*found, xyz);
+  check_positions(frame, xyz);  // a molecule in one piece may reach out
+  return true;
+}
+
+void Trajectory::read_as_it_is(size_t frame, float *xyz) const {
   const Part &part = part_of(frame);
   part.reader->read_frame(frame - part.first, xyz);
   check_positions(frame, xyz);

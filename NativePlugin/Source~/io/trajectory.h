@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "io/box.h"
+#include "io/unwrap.h"
 
 namespace quickses::io {
 
@@ -54,13 +55,19 @@ class Trajectory {
   bool incomplete() const;
   const std::vector<std::string> &warnings() const { return warnings_; }  // sentences for the user
 
+  // From now on frames with a box have each molecule in one piece (see Unwrapper). Which atoms are bonded is taken from
+  // the first frame with a box that can be read. elements: atom_count() atomic numbers, 0 = unknown; not kept.
+  // False: no frame has a box, so all come as before. No other thread may use the trajectory meanwhile.
+  // Throws Error (kInput), and all come as before: no frame with a box can be read, or the atoms of the first one lie
+  // on top of each other.
+  bool unwrap(const uint8_t *elements);
+  bool is_unwrapped() const { return unwrapper_.has_value(); }
+
   // The positions of a frame in Å: atom_count() x 3 numbers, all finite and within 1e6 Å of the origin per axis.
+  // True: molecules are in one piece; false: unwrap() was not called, or this frame has no box.
   // Throws Error: kUsage (no such frame), kInput (the frame is damaged; what xyz holds is then undefined). What is said
   // of a damaged frame names its file, and counts from 0 in there.
-  void read_frame(size_t frame, float *xyz) const;
-
-  // What read_frame promises, of positions that something was done to since. Throws as it does.
-  void check_positions(size_t frame, const float *xyz) const;
+  bool read_frame(size_t frame, float *xyz) const;
 
   // The periodic box of a frame, if it has one. Throws as read_frame.
   std::optional<Box> box(size_t frame) const;
@@ -77,11 +84,14 @@ class Trajectory {
 
   Trajectory(TrajectoryFormat format, std::unique_ptr<TrajectoryReader> reader);
   const Part &part_of(size_t frame) const;
+  void read_as_it_is(size_t frame, float *xyz) const;
+  void check_positions(size_t frame, const float *xyz) const;
 
   TrajectoryFormat format_;
   std::vector<Part> parts_;
   size_t frame_count_ = 0;
   std::vector<std::string> warnings_;
+  std::optional<Unwrapper> unwrapper_;
 };
 
 }  // namespace quickses::io

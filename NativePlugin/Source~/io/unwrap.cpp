@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Molecules made whole across periodic boundaries: bonds of the first frame by distance, found with a periodic cell
+// Molecules made whole across periodic boundaries: bonds of one frame by distance, found with a periodic cell
 // grid; a spanning tree of each molecule; in every frame each atom is put next to its parent in the tree.
 #include "io/unwrap.h"
 
@@ -169,15 +169,10 @@ class BondFinder {
 
 }  // namespace
 
-const char *unwrap_sentence(UnwrapStatus status) {
-  return status == UnwrapStatus::kDone ? "molecules were made whole across the boundaries of the box"
-                                       : "there is no periodic box: molecules were left as they are";
-}
-
-Unwrapper::Unwrapper(const uint8_t *elements, const float *positions, size_t atom_count, const std::optional<Box> &box)
-    : molecule_count_(atom_count), has_box_(box.has_value()) {
-  if (!box || atom_count == 0) return;
-  std::vector<Bond> bonds = BondFinder(elements, positions, atom_count, *box).run();
+Unwrapper::Unwrapper(const uint8_t *elements, const float *positions, size_t atom_count, const Box &box)
+    : molecule_count_(atom_count) {
+  if (atom_count == 0) return;
+  std::vector<Bond> bonds = BondFinder(elements, positions, atom_count, box).run();
   bond_count_ = bonds.size();
 
   // The shortest tree, bonds of metals last: what only seems bonded, or bonded to an ion that will leave, never takes
@@ -215,9 +210,8 @@ Unwrapper::Unwrapper(const uint8_t *elements, const float *positions, size_t ato
   }
 }
 
-UnwrapStatus Unwrapper::apply(const std::optional<Box> &box, float *positions) const {
-  if (!box || !has_box_) return UnwrapStatus::kNoBox;
-  const Lattice lattice(*box);
+void Unwrapper::apply(const Box &box, float *positions) const {
+  const Lattice lattice(box);
   for (const Link &link : links_) {
     float *x = positions + 3 * link.atom;
     const float *parent = positions + 3 * link.parent;
@@ -227,7 +221,6 @@ UnwrapStatus Unwrapper::apply(const std::optional<Box> &box, float *positions) c
     if (nearest == d) continue;  // most atoms: keep their bits
     for (int axis = 0; axis < 3; ++axis) x[axis] = static_cast<float>(parent[axis] + nearest[axis]);
   }
-  return UnwrapStatus::kDone;
 }
 
 }  // namespace quickses::io

@@ -38,15 +38,16 @@ Positions read_frame(const TrajectoryPointer &trajectory, uint64_t k, qses_frame
   return positions;
 }
 
-// A DCD file; cell: edges a, b, c of an orthogonal box, or none.
-std::string dcd(const std::vector<Positions> &frames, const std::vector<double> &edges = {}) {
+// A DCD file; edges a, b, c of an orthogonal box, which is 0 in frame `boxless`, or none.
+std::string dcd(const std::vector<Positions> &frames, const std::vector<double> &edges = {}, size_t boxless = ~0u) {
   DcdWriter writer;
   writer.announced = static_cast<int32_t>(frames.size());
   writer.announces_cell = !edges.empty();
   std::vector<double> cell;
   if (!edges.empty()) cell = {edges[0], 90, edges[1], 90, 90, edges[2]};
   std::string bytes = writer.header(static_cast<int32_t>(frames[0].size() / 3));
-  for (size_t k = 0; k < frames.size(); ++k) bytes += writer.frame(frames[k], k == 0, cell);
+  for (size_t k = 0; k < frames.size(); ++k)
+    bytes += writer.frame(frames[k], k == 0, k == boxless ? std::vector<double>(6) : cell);
   return bytes;
 }
 
@@ -187,6 +188,30 @@ TEST(Trajectory, UnwrappedFramesHaveWholeMolecules) {
   ASSERT_EQ(qses_trajectory_read_frame(trajectory.get(), 0, wide.data(), 16, 4, nullptr), QSES_OK);
   EXPECT_EQ(wide[12], kWhole[9]);
   EXPECT_EQ(wide[15], -7.f);
+}
+
+TEST(Trajectory, UnwrappedFramesTellThatTheyHaveNoBox) {
+  for (const size_t boxless : {0, 1}) {
+    const TrajectoryPointer trajectory = open_bytes(dcd({kTorn, kTorn}, {10, 10, 10}, boxless));
+    ASSERT_EQ(qses_trajectory_unwrap(trajectory.get(), kCarbons, 4), QSES_OK) << qses_last_error();
+    qses_frame frame;
+    qses_frame_init(&frame);
+    EXPECT_EQ(read_frame(trajectory, boxless, &frame), kTorn);
+    EXPECT_EQ(frame.is_unwrapped, 0);
+    EXPECT_EQ(read_frame(trajectory, 1 - boxless, &frame), kWhole);
+    EXPECT_EQ(frame.is_unwrapped, 1);
+  }
+}
+
+TEST(Trajectory, ADamagedFirstFrameDoesNotHideBonds) {
+  Positions damaged = kTorn;
+  damaged[4] = kNan;
+  const TrajectoryPointer trajectory = open_bytes(dcd({damaged, kTorn}, {10, 10, 10}));
+  ASSERT_EQ(qses_trajectory_unwrap(trajectory.get(), kCarbons, 4), QSES_OK) << qses_last_error();
+  EXPECT_EQ(read_frame(trajectory, 1), kWhole);
+  const TrajectoryPointer hopeless = open_bytes(dcd({damaged, damaged}, {10, 10, 10}));
+  expect_error(qses_trajectory_unwrap(hopeless.get(), kCarbons, 4), QSES_FILE_ERROR, {"frame 0", "atom 2", "finite"});
+  EXPECT_EQ(info_of(hopeless).is_unwrapped, 0);
 }
 
 // Whole molecules may end where no surface could be computed.

@@ -371,6 +371,31 @@ class Unwrap(TrajectoryTest):
         self.assertIn("warning: --unwrap", result.stderr)
         self.assertIn("box", result.stderr)
 
+    def test_a_frame_without_a_box_is_not_measured_as_it_is(self):
+        expected = self.table("--unwrap", trajectory="torn.dcd")
+        cell = [self.EDGE] * 3
+        for k in (0, 3):
+            self.write("boxless.dcd", dcd_bytes(self.torn, cell, boxless=[k]))
+            rows = self.table("--unwrap", "--json", "a.json", trajectory="boxless.dcd", code=FRAMES_FAILED)
+            others = [other for other in range(7) if other != k]
+            self.assertEqual(self.sizes([rows[other] for other in others]), self.sizes([expected[other] for other in others]))
+            self.assertEqual([rows[k][column] for column in COLUMNS[1:7]], [""] * 6)
+            self.assertRegex(rows[k]["error"], "--unwrap: 'boxless.dcd': .*no periodic box")
+            self.assertEqual(json.loads((self.folder / "a.json").read_text().splitlines()[k])["error"], rows[k]["error"])
+        result = self.run_cpu("top.pdb", "--trajectory", "torn.dcd", "--trajectory", "t.dcd", "--unwrap", "-v", "0.8", "--csv", "-",
+                              code=FRAMES_FAILED)  # the second has no boxes
+        rows = list(csv.DictReader(result.stdout.splitlines()))
+        self.assertEqual([bool(row["error"]) for row in rows], [False] * 7 + [True] * 7)
+
+    def test_bonds_are_those_of_the_first_frame_that_can_be_read(self):
+        expected = self.table("--unwrap", trajectory="torn.dcd")
+        self.write("bad.dcd", dcd_bytes(with_nan(self.torn, 0, 10), [self.EDGE] * 3))
+        rows = self.table("--unwrap", "--frames", "1:", trajectory="bad.dcd")
+        self.assertEqual(self.sizes(rows), self.sizes(expected[1:]))
+        self.write("all_bad.dcd", dcd_bytes(with_nan(self.torn[:1], 0, 10), [self.EDGE] * 3))
+        self.assert_fails(INPUT, ["--unwrap", "all_bad.dcd", "frame 0", "atom 11"], "top.pdb", "--trajectory", "all_bad.dcd", "--unwrap",
+                          "--csv", "a.csv", "--backend", "cpu")
+
 
 if __name__ == "__main__":
     cli_test.PROGRAM = cli_test.program_to_test(cli_test.PROGRAM, __doc__)

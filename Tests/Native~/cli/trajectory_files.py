@@ -13,8 +13,8 @@ def pdb_text(atoms, positions):
     return "".join(lines) + "END\n"
 
 
-def dcd_bytes(frames, cell=None, announced=None):
-    """A CHARMM DCD file. cell: edges a, b, c of an orthogonal box."""
+def dcd_bytes(frames, cell=None, announced=None, boxless=()):
+    """A CHARMM DCD file. cell: edges a, b, c of an orthogonal box, which is 0 in the frames boxless."""
     def record(content):
         return struct.pack("<i", len(content)) + content + struct.pack("<i", len(content))
 
@@ -25,9 +25,9 @@ def dcd_bytes(frames, cell=None, announced=None):
     icntrl[19] = 24
     data = record(b"CORD" + struct.pack("<20i", *icntrl)) + record(struct.pack("<i", 1) + b" " * 80)
     data += record(struct.pack("<i", len(frames[0])))
-    for frame in frames:
+    for k, frame in enumerate(frames):
         if cell:
-            a, b, c = cell
+            a, b, c = (0, 0, 0) if k in boxless else cell
             data += record(struct.pack("<6d", a, 0.0, b, 0.0, 0.0, c))  # cosines of the angles between the edges
         for axis in range(3):
             data += record(struct.pack(f"<{len(frame)}f", *(position[axis] for position in frame)))

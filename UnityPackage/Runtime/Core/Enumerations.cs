@@ -27,7 +27,7 @@ namespace QuickSes
         Cancelled = 8,
         /// <summary>A file or buffer can't be read, or what is in it can't be used.</summary>
         FileError = 9,
-        /// <summary>The trajectory has no periodic box, so there is nothing to unwrap.</summary>
+        /// <summary>No frame of the trajectory has a periodic box, so there is nothing to unwrap.</summary>
         NoBox = 10,
         /// <summary>The context has no atoms yet.</summary>
         NoAtoms = 11,

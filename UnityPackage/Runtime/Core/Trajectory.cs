@@ -75,8 +75,9 @@ namespace QuickSes
         }
 
         /// <summary>
-        /// From now on frames come with every molecule in one piece instead of torn by the borders of the box. No other
-        /// thread may use the trajectory meanwhile.
+        /// From now on frames come with every molecule in one piece instead of torn by the borders of the box; those
+        /// without a box come as they are (<see cref="TrajectoryFrame.IsUnwrapped"/>). No other thread may use the
+        /// trajectory meanwhile.
         /// </summary>
         /// <param name="elements">
         /// Atomic numbers (0: unknown) of all atoms, such as <see cref="Structure.FileElements"/>.

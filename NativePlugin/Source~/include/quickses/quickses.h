@@ -116,7 +116,7 @@ typedef enum qses_status {
   QSES_INTERNAL_ERROR = 7,      /* a broken invariant of the library: please report it with the input */
   QSES_CANCELLED = 8,           /* qses_cancel was called meanwhile */
   QSES_FILE_ERROR = 9,          /* a file or buffer can't be read, or what is in it can't be used */
-  QSES_NO_BOX = 10,             /* the trajectory has no periodic box, so there is nothing to unwrap */
+  QSES_NO_BOX = 10,             /* no frame of the trajectory has a periodic box, so there is nothing to unwrap */
   QSES_NO_ATOMS = 11,           /* qses_set_atoms has not been called for this context */
   QSES_NOTHING_NEW = 12,        /* qses_collect: no level was finished since the last call. Not an error in itself */
   QSES_BUSY = 13 /* what is there already has to be done first: try again later. Not an error in itself */
@@ -1020,9 +1020,10 @@ QSES_API qses_status qses_trajectory_warning(const qses_trajectory *trajectory, 
 /* From now on frames come with every molecule in one piece, around its first atom, instead of torn by the borders of
  * the periodic box. elements are the atomic numbers (0 = unknown) of all count atoms of the trajectory, such as
  * qses_structure_description.file_elements; they are only read during the call. Atoms are bonded if they are in the
- * first frame. No other thread may use the trajectory meanwhile. Errors: NO_BOX (the first frame has no box; frames
- * come as before), INVALID_ARGUMENT (count is not the number of atoms), FILE_ERROR (the first frame is damaged, or its
- * atoms lie on top of each other), OUT_OF_MEMORY. */
+ * first frame with a box that can be read. Frames without a box still come as they are, perhaps torn:
+ * qses_frame.is_unwrapped tells. No other thread may use the trajectory meanwhile. Errors, after which frames come as
+ * before: NO_BOX (no frame has one), INVALID_ARGUMENT (count is not the number of atoms), FILE_ERROR (no frame with a
+ * box can be read, or the atoms of the first one lie on top of each other), OUT_OF_MEMORY. */
 QSES_API qses_status qses_trajectory_unwrap(qses_trajectory *trajectory, const uint8_t *elements, size_t count);
 
 /* What a file says about one frame, besides positions. */
