@@ -60,6 +60,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     learnt_.milliseconds = milliseconds_since(start);
     learnt_.is_settled = learnt_.is_proven;
     learnt_.is_proven = true;
+    if (makes_mesh(in) && is_exact(settings)) learnt_.has_made_mesh = true;
   }
 
   qses_size_estimate estimate(const AtomSet &atoms, const Appearance &appearance, const qses_settings &settings,
@@ -234,26 +235,31 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
       if (forecast(in, kMemoryPlans[step], limit) <= limit) break;
     learnt_.step = std::min(step, kMemoryPlanCount - 1);
     learnt_.share = executor_.arena().share();
-    learnt_.is_proven = learnt_.is_settled = false;
+    learnt_.is_proven = learnt_.is_settled = learnt_.has_made_mesh = false;
     return step;
   }
 
   // ---- forecasts -----------------------------------------------------------------------------------------------
 
-  // Before time is spent on a plan that won't do, or on a spacing that is hopelessly fine. Where a plan did for such
-  // atoms before, nothing is predicted.
+  // Before time is spent on a plan that won't do, or on a spacing that is hopelessly fine. Where a plan did for a mesh
+  // of such atoms before, nothing is predicted.
   void check_forecast(Work &work, const FrameInput &in, bool is_last) {
     auto &arena = executor_.arena();
     const bool is_fine = work.parameters.spacing < kCheckedSpacing, is_short = arena.has_budget() || learnt_.share > 0;
-    if (learnt_.is_proven || !is_exact(in.settings) || !(is_fine || is_short)) return;
+    if (learnt_.has_made_mesh || !is_exact(in.settings) || !(is_fine || is_short)) return;
+    uint64_t needed = 0;
     const auto is_too_large = [&] {
-      return forecast(in, work.plan, arena.limit()) > kMemoryCertainty * static_cast<double>(arena.limit());
+      needed = forecast(in, work.plan, arena.limit());
+      return static_cast<double>(needed) > kMemoryCertainty * static_cast<double>(arena.limit());
     };
     facts_.size = predict_size(work);
     if (is_short && is_too_large()) {
       // So roughly predicted, an atom alone among large probes has far too much surface: there is no further plan.
       if (is_last) count(work);
-      if (!is_last || is_too_large()) throw MemoryRefused("the surface is forecast not to fit into what there is");
+      if (!is_last || is_too_large())
+        throw MemoryRefused("the surface is forecast to need about " + describe_bytes(needed) +
+                            " of memory for the work, but " + describe_bytes(arena.limit()) +
+                            " are available: a larger spacing needs less");
     }
     if (!is_fine) return;
     const MeshArrays mesh(static_cast<size_t>(facts_.size.vertices), static_cast<size_t>(facts_.size.triangles),
@@ -348,13 +354,14 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   bool is_beside_ = false;    // whether those of this frame are
   // Of the last computation of so many atoms with this largest inflated radius and finest spacing: where the ladder
   // ended, with how much memory, whether there was too little for what frames anticipate, or for levels beside each
-  // other, whether that did, and did again, so that memory is held as it will be; and what splits of creases found.
+  // other, whether that did, and did again, so that memory is held as it will be, and did for an exact mesh; and what
+  // splits of creases found.
   struct Learnt {
     size_t atoms = 0;
     float reach = 0, spacing = 0;
     size_t step = 0;
     uint64_t share = 0;
-    bool is_tight = false, is_lone = false, is_proven = false, is_settled = false;
+    bool is_tight = false, is_lone = false, is_proven = false, is_settled = false, has_made_mesh = false;
     double milliseconds = 0;
     FoundSplits found{};
   } learnt_;

@@ -5,6 +5,7 @@
 
 #include "parallel/arena.h"
 #include "parallel/host_memory.h"
+#include "surface/methods/size_check.h"
 
 #include <gtest/gtest.h>
 
@@ -132,6 +133,41 @@ TEST(MemoryLadder, RefusedBeforeAnythingWasMade) {
   const qses_mesh after = compute_view(context, settings(0.5));
   ASSERT_EQ(after.vertex_count * size_t(3), positions.size());
   EXPECT_EQ(std::memcmp(after.positions, positions.data(), 4 * positions.size()), 0);
+}
+
+// Areas from the atoms need no mesh: that they could be had at a spacing says nothing of meshes.
+TEST(MemoryLadder, HopelessSpacingsAreRefusedAfterFramesWithoutAMesh) {
+  const Context context(2);
+  set_atoms(context, crambin());
+  qses_settings numbers = settings(0.001, 1.4, QSES_SURFACE_SAS);
+  numbers.delivery = QSES_DELIVERY_NONE;
+  expect_ok(qses_compute(context, &numbers, nullptr));
+  const qses_settings mesh = settings(0.001);
+  EXPECT_EQ(qses_compute(context, &mesh, nullptr), QSES_TOO_FINE);
+  EXPECT_NE(std::string(qses_last_error()).find("Å would do"), std::string::npos) << qses_last_error();
+}
+
+// A spacing that is named in a refusal is not refused in turn, whatever there is least of.
+TEST(HopelessSpacing, AnotherIsNamedThatWouldDo) {
+  const auto refusal = [](double spacing, double available) {
+    quickses::SurfaceSize size{};
+    size.triangles = 1e4 / (spacing * spacing);
+    try {
+      quickses::refuse_hopeless_spacing(spacing, size, 250 * size.triangles, available);
+    } catch (const quickses::Error &error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  for (const double available : {0.0, 2e10, 1e15})
+    for (const double spacing : {0.0001, 0.001}) {
+      const std::string said = refusal(spacing, available);
+      const size_t about = said.rfind("about ");
+      ASSERT_NE(about, std::string::npos) << said;
+      const double named = std::stod(said.substr(about + 6));
+      EXPECT_GT(named, spacing);
+      EXPECT_EQ(refusal(named, available), "") << said;
+    }
 }
 
 // Estimates before anything was computed say what the computation then takes: the one is the other, only counted.

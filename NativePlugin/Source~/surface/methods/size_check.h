@@ -5,6 +5,7 @@
 
 #include "surface/methods/level_work.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace quickses {
@@ -57,11 +58,13 @@ SurfaceSize predict_size(Work &work) {
 inline void refuse_hopeless_spacing(double spacing, const SurfaceSize &predicted, double needed, double available) {
   char text[240];
   constexpr auto kMostTriangles = static_cast<double>(kMostNumbered);
+  const double would_do =
+      spacing * std::sqrt(std::max(predicted.triangles / kMostTriangles, available > 0 ? needed / available : 0.0));
   if (predicted.triangles > kCertainty * kMostTriangles) {
     std::snprintf(text, sizeof text,
                   "spacing %g Å is too fine for this structure: about %.2g triangles, more than 32-bit indices can "
                   "name; about %.2g Å would do",
-                  spacing, predicted.triangles, spacing * std::sqrt(predicted.triangles / kMostTriangles));
+                  spacing, predicted.triangles, would_do);
     throw Error(QSES_TOO_FINE, text);
   }
   if (available > 0 && needed > kMemoryCertainty * available) {
@@ -69,7 +72,7 @@ inline void refuse_hopeless_spacing(double spacing, const SurfaceSize &predicted
                   "spacing %g Å needs about %s of memory for this structure, but %s are available; about %.2g Å "
                   "would do",
                   spacing, describe_bytes(static_cast<uint64_t>(needed)).c_str(),
-                  describe_bytes(static_cast<uint64_t>(available)).c_str(), spacing * std::sqrt(needed / available));
+                  describe_bytes(static_cast<uint64_t>(available)).c_str(), would_do);
     throw Error(QSES_OUT_OF_MEMORY, text);
   }
 }
