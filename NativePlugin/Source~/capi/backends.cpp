@@ -19,8 +19,7 @@ namespace {
 qses_backend_description describe_cpu() {
   qses_backend_description d{};
   d.available = 1;
-  std::snprintf(d.device, sizeof d.device, "CPU (%s, %s)", cpu_kernels().name,
-                io::counted(std::max(1u, std::thread::hardware_concurrency()), "thread").c_str());
+  name_cpu(std::max(1u, std::thread::hardware_concurrency()), &d);
   const HostMemoryStatus memory = describe_host_memory();
   d.total_memory = memory.total;
   d.free_memory = memory.free;
@@ -28,6 +27,11 @@ qses_backend_description describe_cpu() {
 }
 
 }  // namespace
+
+void name_cpu(unsigned threads, qses_backend_description *description) {
+  std::snprintf(description->device, sizeof description->device, "CPU (%s, %s)", cpu_kernels().name,
+                io::counted(threads, "thread").c_str());
+}
 
 qses_backend_description describe_backend(qses_backend backend, int device) {
   if (backend == QSES_BACKEND_CPU) return describe_cpu();

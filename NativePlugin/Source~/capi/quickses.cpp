@@ -88,7 +88,7 @@ std::shared_ptr<quickses::AtomSet> next_frame(const qses_context &context, const
   return set;
 }
 
-constexpr const char *kNothingComputed = "nothing has been computed yet";
+constexpr const char *kNothingComputed = "nothing has been computed yet, or it was kept (qses_keep)";
 
 const quickses::FinishedMesh &held_mesh(const qses_context &context) {
   const quickses::FinishedMesh *const held = context.job->held();
@@ -168,9 +168,11 @@ qses_status qses_context_create(const qses_context_options *options, qses_contex
       made->description.reason[0] = 0;
     }
 #endif
-    if (!made->job)
+    if (!made->job) {
       made->job =
           std::make_unique<quickses::SurfaceJob>(quickses::make_cpu_engine(threads, o.memory_budget), in_background);
+      quickses::name_cpu(quickses::CpuThreads(threads).at_a_time(), &made->description);
+    }
     *context = made.release();
   });
 }
@@ -305,7 +307,7 @@ qses_status qses_collect_device(qses_context *context, qses_device_mesh *mesh) {
     check_struct(mesh, "qses_device_mesh");
     qses_device_mesh collected;
     if (!context->job->collect_on_device(&collected)) throw quickses::Error(QSES_NO_RESULT, kNothingComputed);
-    write_struct(mesh, collected, "qses_device_mesh");
+    quickses::write_device_mesh(mesh, collected);
   });
 }
 

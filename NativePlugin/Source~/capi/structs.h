@@ -6,6 +6,7 @@
 #include "io/text.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -53,6 +54,14 @@ void write_struct(T *out, const T &value, const char *name) {
   constexpr size_t kSize = sizeof out->struct_size;
   std::memcpy(reinterpret_cast<char *>(out) + kSize, reinterpret_cast<const char *>(&value) + kSize,
               std::min<size_t>(out->struct_size, sizeof(T)) - kSize);
+}
+
+// Its mesh has a size of its own, which stays the caller's too.
+inline void write_device_mesh(qses_device_mesh *out, qses_device_mesh value) {
+  check_struct(out, "qses_device_mesh");
+  if (out->struct_size >= offsetof(qses_device_mesh, mesh) + sizeof out->mesh.struct_size)
+    value.mesh.struct_size = out->mesh.struct_size;
+  write_struct(out, value, "qses_device_mesh");
 }
 
 // A C caller may put any number into an enumeration: it is looked at as a number before it is used as one.

@@ -23,6 +23,8 @@ class CpuThreads {
         in_background_(threads.in_background) {}
 
   unsigned count() const { return count_; }
+  // How many of them work at a time: more than there are processors are of no use.
+  unsigned at_a_time() const { return std::min(count_, processors()); }
 
   // body(worker, chunk) for all chunks, each taken by the next thread that is free; workers count from 0, and are no
   // more than count(). stop: the flag of look_for_stop() meanwhile, or nullptr. What one of them throws is thrown here.
@@ -57,11 +59,11 @@ class CpuThreads {
 
  private:
   // How many there are to work. The first call starts them; where memory for that is refused, the caller is alone this
-  // time. More than there are processors are of no use.
+  // time.
   unsigned usable() {
     if (count_ == 1) return 1;
     try {
-      if (!helpers_) helpers_ = std::make_unique<HelperThreads>(std::min(count_, processors()) - 1);
+      if (!helpers_) helpers_ = std::make_unique<HelperThreads>(at_a_time() - 1);
     } catch (const std::bad_alloc &) {
       return 1;
     }

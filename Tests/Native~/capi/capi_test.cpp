@@ -3,6 +3,7 @@
 // it says about every bad argument.
 #include "capi/capi_fixture.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -130,6 +131,18 @@ TEST(Create, DefaultsAreFilledIn) {
   expect_error(qses_context_info(nullptr, &backend, &d), QSES_INVALID_ARGUMENT, {"context"});
   qses_context_destroy(context);
   qses_context_destroy(nullptr);
+}
+
+TEST(Create, TheCpuIsNamedWithTheThreadsOfTheContext) {
+  for (const uint32_t threads : {1u, 4096u}) {
+    const Context context(threads, 0, QSES_BACKEND_CPU);
+    qses_backend_description d = empty_description();
+    ASSERT_EQ(qses_context_info(context, nullptr, &d), QSES_OK);
+    unsigned named = 0;
+    ASSERT_EQ(std::sscanf(d.device, "CPU (%*[^,], %u thread", &named), 1) << d.device;
+    EXPECT_GE(named, 1u);
+    EXPECT_LE(named, std::min(threads, std::max(1u, std::thread::hardware_concurrency())));
+  }
 }
 
 TEST(Create, CudaUnavailableSaysWhy) {

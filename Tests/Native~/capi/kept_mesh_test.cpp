@@ -63,7 +63,7 @@ TEST(KeptMesh, IsTheMeshThatWasComputed) {
   EXPECT_EQ(kept_report.mesh_bytes, report.mesh_bytes);
 
   qses_mesh none = empty_mesh();
-  expect_error(qses_context_mesh(context, &none), QSES_NO_RESULT, {});
+  expect_error(qses_context_mesh(context, &none), QSES_NO_RESULT, {"kept"});
   expect_error(qses_context_report(context, &kept_report), QSES_NO_RESULT, {});
   expect_error(qses_keep(context, kept), QSES_NO_RESULT, {"kept"});
   EXPECT_EQ(kept.view().positions, mesh.positions) << "an error takes nothing away";

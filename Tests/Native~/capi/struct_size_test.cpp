@@ -2,6 +2,7 @@
 // Callers that were compiled with an older header than the library, whose structures are shorter, or with a newer one,
 // whose structures are longer: nothing behind a caller's structure is read or written, and defaults are the caller's.
 #include "capi/capi_fixture.h"
+#include "capi/structs.h"
 
 #include <cstddef>
 #include <cstring>
@@ -134,6 +135,28 @@ TEST(StructSize, OfWhatIsFilledIn) {
     float xyz[3];
     return qses_trajectory_read_frame(library.trajectory, 0, xyz, 0, 1, f);
   });
+}
+
+// A structure in a structure: the sizes of both stay the caller's. (A mesh on a device is there with CUDA only.)
+TEST(StructSize, OfAMeshOnADevice) {
+  qses_device_mesh filled;
+  qses_device_mesh_init(&filled);
+  filled.device = 3;
+  filled.mesh.vertex_count = 7;
+  filled.mesh.positions = reinterpret_cast<const float *>(&filled);
+  const auto fill = [&](qses_device_mesh *mesh) {
+    return quickses::guarded([&] { quickses::write_device_mesh(mesh, filled); });
+  };
+  check_output<qses_device_mesh>("qses_device_mesh", qses_device_mesh_init, fill);
+  for (const size_t more : {size_t(0), kMore}) {
+    qses_device_mesh mesh;
+    qses_device_mesh_init(&mesh);
+    const auto inner = static_cast<uint32_t>(more ? sizeof mesh.mesh + more : offsetof(qses_mesh, indices));
+    mesh.mesh.struct_size = inner;
+    expect_ok(fill(&mesh));
+    EXPECT_EQ(mesh.mesh.struct_size, inner);
+    EXPECT_EQ(mesh.mesh.vertex_count, 7u);
+  }
 }
 
 const float *held_positions(qses_context *context) {

@@ -38,7 +38,7 @@
  *   The same input, back end and settings give the same bytes, also with a slice size or a memory budget. (The CPU back
  *   end rounds differently on processors without AVX2 and FMA; qses_backend_info names the instruction set in use.)
  *   qses_compute gives the bytes that a job with the same settings ends with. The rounding mode of the calling thread,
- *   and how it treats denormal numbers, change nothing, and are left as they are.
+ *   and how it treats denormal numbers, change nothing but digits in messages, and are left as they are.
  *
  * Structures
  *   A structure that begins with struct_size is prepared by its qses_..._init before a function gets it. That function
@@ -73,6 +73,10 @@
  *   between kernels. A stack of 64 KiB suffices for every call on the CPU. Where the machine refuses threads, a context
  *   makes do with those there are, down to the calling thread. A thread that is in a call must not be ended from
  *   outside (pthread_cancel, TerminateThread): qses_cancel is there for that.
+ *   On Linux, threads of the library inherit the processors that the thread is bound to which first computes in a
+ *   context, or begins a job there, and are no more than these: let it be one that is not bound. A program of OpenMP with
+ *   OMP_PROC_BIND or OMP_PLACES has its main thread bound to one processor. qses_context_info tells how many there are
+ *   where the context is made.
  *   After a fork while nothing of the library ran, the child may make contexts on the CPU and compute in them, and in
  *   those that were made before, with its calling thread alone; contexts that had jobs (qses_begin) before must be
  *   neither used nor destroyed there. Where CUDA was used, no child can use it.
@@ -191,7 +195,8 @@ QSES_API uint32_t qses_abi_version(void);
 typedef struct qses_backend_description {
   uint32_t struct_size; /* set by qses_backend_description_init */
   qses_bool available;  /* whether qses_context_create with this back end can succeed */
-  char device[128];     /* what computes: the GPU's name, or the CPU's instruction set and thread count */
+  char device[128];     /* what computes: the GPU's name, or the CPU's instruction set and thread count (the
+                           machine's; from qses_context_info, how many of the context work at a time) */
   char reason[256]; /* if not available: why; with AUTO, why it is not CUDA; if preparing: what is done; else empty */
   uint64_t total_memory; /* bytes of the device, or of the machine; on Linux no more than the control groups of the
                             process may have, as in a container or a batch job */
@@ -557,7 +562,8 @@ typedef struct qses_report {
   uint64_t slice_count;     /* parts it was made in: of little memory several, and of a large mesh that leaves the GPU
                                while it is made */
   uint32_t hidden_vertices; /* what of the whole surface is left out of the mesh, since its atoms are hidden
-                               (qses_set_visible) or it is of a cavity (settings.outer_only); else 0 */
+                               (qses_set_visible) or it is of a cavity (settings.outer_only); else 0. Vertices are
+                               counted before those on edges are repeated (settings.hard_edges) */
   uint32_t hidden_triangles;
   qses_stage_time stages[QSES_MAX_STAGES]; /* stage_count of them, in order; filled if asked for by
                                               qses_set_stage_times */
@@ -667,7 +673,7 @@ typedef struct qses_device_mesh {
                            indices point to memory of the device; components, if any, to host memory */
 } qses_device_mesh;
 
-/* Empty view with struct_size set, its own and that of its mesh. NULL is ignored. */
+/* Empty view with struct_size set, its own and that of its mesh, which both stay as they are. NULL is ignored. */
 static inline void qses_device_mesh_init(qses_device_mesh *mesh) {
   if (!mesh) return;
   qses_clear(mesh, sizeof *mesh);
