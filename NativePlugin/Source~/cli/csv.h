@@ -19,7 +19,7 @@ inline std::string csv_field(const std::string &text) {
 }
 
 inline std::string csv_number(double value, int digits) {
-  char text[64];
+  char text[400];  // the largest double has 309 digits before the point
   std::snprintf(text, sizeof text, "%.*f", digits, value);
   return text;
 }

@@ -26,19 +26,14 @@ std::string csv_row(uint64_t frame, std::optional<double> time, const qses_repor
       ++cavities;
       cavity_volume -= mesh.components[k].volume;
     }
-  char row[256];
-  std::snprintf(row, sizeof row, "%llu,%.4f,%.4f,%u,%u,%.4f,", static_cast<unsigned long long>(frame), report.area,
-                report.volume, mesh.component_count, cavities, cavity_volume);
-  char time_text[32] = "";
-  if (time) std::snprintf(time_text, sizeof time_text, "%.3f", *time);
-  return std::string(row) + time_text + ",\n";
+  return std::to_string(frame) + "," + csv_number(report.area, 4) + "," + csv_number(report.volume, 4) + "," +
+         std::to_string(mesh.component_count) + "," + std::to_string(cavities) + "," + csv_number(cavity_volume, 4) +
+         "," + (time ? csv_number(*time, 3) : "") + ",\n";
 }
 
 // "frame 7, 14.00 ps", in a page
 std::string label_of(uint64_t frame, std::optional<double> time) {
-  char time_text[32] = "";
-  if (time) std::snprintf(time_text, sizeof time_text, ", %.2f ps", *time);
-  return "frame " + std::to_string(frame) + time_text;
+  return "frame " + std::to_string(frame) + (time ? ", " + csv_number(*time, 2) + " ps" : "");
 }
 
 void check_atom_counts(const Options &options, const io::Structure &structure, const io::Trajectory &trajectory) {

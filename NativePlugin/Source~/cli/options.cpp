@@ -21,6 +21,7 @@
 #include "cli/suggestions.h"
 #include "cli/used_files.h"
 #include "io/atomic_file.h"
+#include "io/file_path.h"
 #include "io/text.h"
 
 namespace quickses::cli {
@@ -160,14 +161,22 @@ void add_file_options(CLI::App *app, Options &options) {
   put_rest_into_group(app, "Report");
 }
 
+// How to get numbers of all models of the input.
+std::string hint_at_models(const Options &options) {
+  const std::string extension =
+      options.inputs.empty() ? "" : io::lower_extension_of_content(io::path_of(options.inputs.front()));
+  if (extension == ".pdb" || extension == ".ent" || extension == ".brk")
+    return " (a PDB file with several models is one: quickses FILE --trajectory FILE)";
+  return " (numbers of all models of a file: --model all --json FILE)";
+}
+
 // given: whether a flag was on the command line.
 void check_trajectory(const Options &options, const std::function<bool(const char *)> &given) {
   if (options.trajectories.empty()) {
     for (const char *flag : {"--frames", "--unwrap", "--csv", "--workers"})
       if (given(flag))
-        throw Failure(kUsage, std::string(flag) +
-                                  " is for trajectories, and there is no --trajectory (a PDB file with " +
-                                  "several models is one: quickses FILE --trajectory FILE)");
+        throw Failure(
+            kUsage, std::string(flag) + " is for trajectories, and there is no --trajectory" + hint_at_models(options));
     return;
   }
   if (options.read.model == 0)

@@ -23,7 +23,9 @@ TextOutput::TextOutput(const std::string &path) : to_standard_output_(path == "-
 
 void TextOutput::write(const std::string &text) {
   if (file_) file_->write(text);
-  if (to_standard_output_ && std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) flush_standard_output();
+  if (!to_standard_output_ || text.empty()) return;
+  std::fwrite(text.data(), 1, text.size(), stdout);
+  flush_standard_output();  // what there is stays if the program is stopped
 }
 
 void TextOutput::finish() {

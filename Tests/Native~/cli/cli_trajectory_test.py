@@ -6,11 +6,15 @@ usage: cli_trajectory_test.py PROGRAM [unittest options]      (or QUICKSES_PROGR
 import csv
 import gzip
 import json
+import os
+import struct
+import subprocess
 import sys
+import threading
 import unittest
 
 import cli_test
-from cli_test import CRAMBIN, INPUT, OK, OUTPUT, USAGE, ProgramTest, can_refuse_threads, read_ply, refuse_threads
+from cli_test import CRAMBIN, INPUT, IS_WINDOWS, OK, OUTPUT, USAGE, ProgramTest, can_refuse_threads, read_ply, refuse_threads
 from page_files import Page
 from trajectory_files import chain_of, dcd_bytes, moving, pdb_text, with_nan
 
@@ -77,7 +81,7 @@ class Results(TrajectoryTest):
             self.run_frames("--workers", workers, "--csv", "a.csv", "--json", "a.json", "-o", "f%d.ply", *more)
             reports = [json.loads(line) for line in (self.folder / "a.json").read_text().splitlines()]
             for report in reports:
-                del report["time_ms"], report["memory"]
+                del report["time_ms"], report["memory"], report["device"]  # which has the threads of a frame
                 report["settings"].pop("threads", None)
                 report["settings"].pop("memory", None)
             meshes = [(self.folder / f"f{k}.ply").read_bytes() for k in range(7)]
@@ -171,6 +175,28 @@ class Results(TrajectoryTest):
             self.assertIn("time_ps", report)
             self.assertTrue(report["mesh"]["closed"])
             self.assertEqual(sum(piece["triangles"] for piece in report["components"]), report["mesh"]["triangles"])
+
+    def test_times_have_all_their_digits(self):
+        data = bytearray(dcd_bytes(self.frames))
+        struct.pack_into("<f", data, 44, 3e38)  # the step
+        self.write("odd.dcd", bytes(data))
+        for command in ([], ["measure"]):
+            result = self.run_cpu(*command, "top.pdb", "--trajectory", "odd.dcd", "-v", "0.8", "--frames", "1:3", "--csv", "-")
+            one, two = [float(row["time_ps"]) for row in csv.DictReader(result.stdout.splitlines())]
+            self.assertAlmostEqual(one / (3e38 * 0.0488882), 1, places=5)
+            self.assertAlmostEqual(two / one, 2, places=9)
+
+    @unittest.skipIf(IS_WINDOWS, "no named pipes")
+    def test_rows_are_there_if_the_program_is_stopped(self):
+        os.mkfifo(self.folder / "f6.ply")  # nobody reads it: the last frame does not end
+        with subprocess.Popen([cli_test.PROGRAM, "top.pdb", "--trajectory", "t.dcd", "-v", "0.8", "--backend", "cpu", "--csv", "-",
+                               "-o", "f%d.ply"], cwd=self.folder, stdout=subprocess.PIPE, encoding="utf-8") as program:
+            patience = threading.Timer(cli_test.PATIENCE, program.kill)
+            patience.start()
+            rows = [program.stdout.readline() for _ in range(7)]
+            program.terminate()
+            patience.cancel()
+        self.assertEqual([row.split(",")[0] for row in rows], ["frame", "0", "1", "2", "3", "4", "5"])
 
     def test_summary(self):
         self.assertIn("7 frames of 24 atoms", self.run_frames("--csv", "a.csv").stdout)
@@ -312,6 +338,8 @@ class Faults(TrajectoryTest):
     def test_flags_that_do_not_go_together(self):
         for flags in (["--frames", "1:2"], ["--unwrap"], ["--csv", "a.csv"], ["--workers", "2"]):
             self.assert_fails(USAGE, [flags[0], "--trajectory"], CRAMBIN, *flags)
+        for name, hint in (("a.pdb.gz", "quickses FILE --trajectory FILE"), ("a.cif", "--model all --json")):
+            self.assert_fails(USAGE, ["--csv", hint], name, "--csv", "-")
         self.assert_frames_fail(USAGE, ["--model"], "--model", "all")
         self.assert_frames_fail(USAGE, ["--csv", "--json"], "--csv", "-", "--json", "-")
         self.assert_frames_fail(USAGE, ["--csv", "--json"], "--csv", "a", "--json", "a")
