@@ -55,7 +55,7 @@ namespace QuickSes
 
         /// <summary>
         /// Vertices that are left out of the mesh: their atoms are hidden, or they are of a cavity
-        /// (<see cref="SurfaceSettings.OuterOnly"/>).
+        /// (<see cref="SurfaceSettings.OuterOnly"/>). Counted before vertices on edges are repeated.
         /// </summary>
         public uint HiddenVertices => _native.HiddenVertices;
 
