@@ -309,7 +309,8 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   void guess_facts(const FrameInput &in) {
     SurfaceParameters parameters = parameters_of(in);
     Lattice lattice = center_lattice(in.atoms.bounds, frame_spacing(levels_of(in.settings)));
-    const glm::vec3 low = to_centered(lattice, in.atoms.bounds.low), high = to_centered(lattice, in.atoms.bounds.high);
+    const glm::vec3 low = to_glm(lattice.from_caller(&in.atoms.bounds.low.x)),
+                    high = to_glm(lattice.from_caller(&in.atoms.bounds.high.x));
     lattice.spacing = parameters.spacing;
     lattice = layout_lattice(lattice, low, high, parameters.max_radius);
     if (spacing_ != in.settings.spacing) facts_.size = {};  // those of a coarser level

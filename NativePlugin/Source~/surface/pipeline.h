@@ -130,8 +130,8 @@ void prepare_frame(Work &work, const FrameInput &in) {
   work.made_shape = work.shape;
   work.made_shape.component_ids |= in.settings.outer_only && is_delivered;
   work.lattice = center_lattice(set.bounds, frame_spacing(levels_of(in.settings)));
-  work.low = to_centered(work.lattice, set.bounds.low);
-  work.high = to_centered(work.lattice, set.bounds.high);
+  work.low = to_glm(work.lattice.from_caller(&set.bounds.low.x));
+  work.high = to_glm(work.lattice.from_caller(&set.bounds.high.x));
   work.side_normals = needs_side_normals(in);
   work.appearance = {bring(executor, look.visible.data(), look.visible.size()),
                      bring(executor, look.colors.data(), look.colors.size()),

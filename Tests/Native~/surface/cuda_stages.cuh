@@ -92,7 +92,7 @@ inline DeviceStages run_device_stages(CudaExecutor &executor, const DeviceTable 
   const SurfaceParameters &p = s.parameters;
   timer.begin("neighbor_grid");
   Lattice lattice = center_lattice(bounds, options.spacing);
-  const glm::vec3 low = to_centered(lattice, bounds.low), high = to_centered(lattice, bounds.high);
+  const glm::vec3 low = to_glm(lattice.from_caller(&bounds.low.x)), high = to_glm(lattice.from_caller(&bounds.high.x));
   s.lattice = lattice = layout_lattice(lattice, low, high, p.max_radius);
   Span<Sphere> given = executor.allocate<Sphere>(n);
   executor.upload(given.data, host_atoms, n);

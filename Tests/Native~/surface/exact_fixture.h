@@ -50,8 +50,8 @@ struct ExactRun {
     parameters.spacing = s.spacing;
     parameters.max_radius = bounds.max_radius + parameters.probe;
     lattice = center_lattice(bounds, s.spacing);
-    low = to_centered(lattice, bounds.low);
-    high = to_centered(lattice, bounds.high);
+    low = to_glm(lattice.from_caller(&bounds.low.x));
+    high = to_glm(lattice.from_caller(&bounds.high.x));
     lattice = layout_lattice(lattice, low, high, parameters.max_radius);
     atoms = build_neighbor_grid(
         executor, "crowded cell of atoms", given.size(), layout_cells(low, high, parameters.max_radius), [&] {

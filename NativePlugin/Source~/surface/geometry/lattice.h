@@ -51,6 +51,11 @@ struct Lattice {
   QSES_FN Vec3<float> position(int x, int y, int z) const {
     return {static_cast<float>(x) * spacing, static_cast<float>(y) * spacing, static_cast<float>(z) * spacing};
   }
+  QSES_FN Vec3<float> from_caller(const float *p) const {
+    return {static_cast<float>(static_cast<double>(p[0]) - center_x),
+            static_cast<float>(static_cast<double>(p[1]) - center_y),
+            static_cast<float>(static_cast<double>(p[2]) - center_z)};
+  }
   QSES_FN glm::vec3 to_caller(const Vec3<float> &p) const {
     return glm::vec3(static_cast<float>(static_cast<double>(p.x) + center_x),
                      static_cast<float>(static_cast<double>(p.y) + center_y),

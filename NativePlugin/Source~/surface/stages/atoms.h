@@ -37,9 +37,4 @@ inline Lattice center_lattice(const AtomBounds &bounds, float spacing) {
   return lattice;
 }
 
-inline glm::vec3 to_centered(const Lattice &lattice, const glm::vec3 &p) {
-  return glm::vec3(static_cast<float>(p.x - lattice.center_x), static_cast<float>(p.y - lattice.center_y),
-                   static_cast<float>(p.z - lattice.center_z));
-}
-
 }  // namespace quickses

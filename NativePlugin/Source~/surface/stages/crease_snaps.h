@@ -77,7 +77,7 @@ struct RefuseSnaps {
     mesh.near_marks[triangle] = 1;
     Vec3<float> before[3], after[3];
     for (int k = 0; k < 3; ++k) {
-      before[k] = after[k] = centered_position(lattice, mesh.position(t[k]));
+      before[k] = after[k] = lattice.from_caller(mesh.position(t[k]));
       if (wanted[k]) after[k] = snaps.edges.points[snaps.edge(t[k])].position;
     }
     const Vec3<float> old = cross(before[1] - before[0], before[2] - before[0]);

@@ -42,16 +42,9 @@ struct CreaseEnd {
   QSES_FN bool on_crease() const { return normal != second_normal; }
 };
 
-// Of a vertex of the mesh, in the frame in which numbers are small.
-QSES_FN Vec3<float> centered_position(const Lattice &lattice, const float *position) {
-  return {static_cast<float>(static_cast<double>(position[0]) - lattice.center_x),
-          static_cast<float>(static_cast<double>(position[1]) - lattice.center_y),
-          static_cast<float>(static_cast<double>(position[2]) - lattice.center_z)};
-}
-
 QSES_FN CreaseEnd end_of_vertex(const CreasedMesh &mesh, const Lattice &lattice, uint32_t v) {
   const bool has_second = mesh.second_owners && mesh.on_crease(v);
-  return {centered_position(lattice, mesh.position(v)), load_vec3(mesh.normal(v)), load_vec3(mesh.second_normal(v)),
+  return {lattice.from_caller(mesh.position(v)), load_vec3(mesh.normal(v)), load_vec3(mesh.second_normal(v)),
           mesh.owner(v), has_second ? mesh.second_owners[v] : mesh.owner(v)};
 }
 QSES_FN CreaseEnd end_of_point(const CreasePoint &p) {

@@ -152,7 +152,7 @@ struct MarkTurnedVertices {
     Vec3<float> now[3], exit[3];
     bool any = false;
     for (int k = 0; k < 3; ++k) {
-      now[k] = exit[k] = centered_position(lattice, mesh.position(t[k]));
+      now[k] = exit[k] = lattice.from_caller(mesh.position(t[k]));
       if (!vertices.near[t[k]] || !vertices.exits[t[k]].found) continue;
       exit[k] = vertices.exits[t[k]].position;
       any |= !vertices.held[t[k]];

@@ -63,7 +63,7 @@ struct EdgeMerges {
 
   QSES_FN uint32_t listed() const { return *poor_count < room ? static_cast<uint32_t>(*poor_count) : room; }
   QSES_FN bool is_gone(const uint32_t *t) const { return t[0] == kNoNumber; }
-  QSES_FN Vec3<float> position(uint32_t v) const { return centered_position(lattice, mesh.position(v)); }
+  QSES_FN Vec3<float> position(uint32_t v) const { return lattice.from_caller(mesh.position(v)); }
   QSES_FN CreaseEnd end(uint32_t v) const { return end_of_vertex(mesh, lattice, v); }
 
   QSES_FN float quality(const CreaseEnd &a, const CreaseEnd &b, const CreaseEnd &c) const {

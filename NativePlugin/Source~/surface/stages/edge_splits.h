@@ -164,7 +164,7 @@ QSES_FN void find_corner(const FindSplits &find, const Sheets &sheets, const Lat
   Vec3<float> place[kPoints], ends[3];
   count = 0;
   for (int k = 0; k < kPoints; ++k) {
-    if (k < 3) ends[k] = centered_position(lattice, find.mesh.position(t[k]));
+    if (k < 3) ends[k] = lattice.from_caller(find.mesh.position(t[k]));
     if (pairs[k] == kNoPair) continue;
     place[count] = k < 3 ? ends[k] : find.edges.points[s.edge[k - 3]].position;
     pair[count][0] = static_cast<uint32_t>(pairs[k] >> 32);
@@ -288,7 +288,7 @@ struct AddTriangles {
     uint32_t *const t = find.mesh.triangle(find.list(i));
     const uint32_t own[3] = {t[0], t[1], t[2]};
     const auto position = [&](int corner) {
-      if (corner < 3) return centered_position(lattice, find.mesh.position(own[corner]));
+      if (corner < 3) return lattice.from_caller(find.mesh.position(own[corner]));
       return find.edges.points[s.edge[corner - 3]].position;
     };
     const Pieces pieces =

@@ -88,10 +88,7 @@ struct NodeStep {
 // The cell between eight nodes that a vertex looks from.
 struct Lookout {
   NodeStep x, y, z;
-  QSES_FN Lookout(const Lattice &lattice, const float *p, const float *n)
-      : x(static_cast<float>(static_cast<double>(p[0]) - lattice.center_x) + kLookout * n[0]),
-        y(static_cast<float>(static_cast<double>(p[1]) - lattice.center_y) + kLookout * n[1]),
-        z(static_cast<float>(static_cast<double>(p[2]) - lattice.center_z) + kLookout * n[2]) {}
+  QSES_FN explicit Lookout(const Vec3<float> &p) : x(p.x), y(p.y), z(p.z) {}
   QSES_FN glm::ivec3 brick() const { return glm::ivec3(x.brick(), y.brick(), z.brick()); }
   // Along the axes of these bits, the nodes behind the cell are in another brick.
   QSES_FN int crossed() const {
@@ -214,7 +211,8 @@ struct LightVertices {
   QSES_HOST_DEVICE void operator()(size_t i) const {
     const uint32_t vertex = mesh.first_vertex + static_cast<uint32_t>(i);
     const float *const n = mesh.normal(vertex);
-    const Lookout at(field.bricks.lattice, mesh.position(vertex), n);
+    const Vec3<float> x = field.bricks.lattice.from_caller(mesh.position(vertex));
+    const Lookout at(x + load_vec3(n) * kLookout);
     const int brick = field.find(at.brick());
     const float light = brick < 0 ? 0.f : open_to(n, at, field.behind + 8 * static_cast<size_t>(brick));
     float *const texcoord = mesh.texcoord(vertex);

@@ -125,9 +125,7 @@ struct TangentialStarts {
     for (uint32_t v = base[brick].vertices + static_cast<uint32_t>(team.rank()); v < end;
          v += static_cast<uint32_t>(team.size())) {
       const Vec3<float> n = shared_normal(mesh, v);
-      const float *const position = mesh.position(v);
-      const Vec3<float> x = {centred(position[0], lattice.center_x), centred(position[1], lattice.center_y),
-                             centred(position[2], lattice.center_z)};
+      const Vec3<float> x = lattice.from_caller(mesh.position(v));
       const Vec3<float> d = mean_offset(sums[v], h);
       Vec3<float> step = (d - n * dot(d, n)) * kRelaxationWeight;
       const float length2 = length_squared(step), longest = kMaxTangentialStep * h;
@@ -140,9 +138,6 @@ struct TangentialStarts {
   }
 
  private:
-  QSES_FN static float centred(float caller, double center) {
-    return static_cast<float>(static_cast<double>(caller) - center);
-  }
   QSES_FN static float limited(float v, float low, float high) { return minimum(high, maximum(low, v)); }
 };
 

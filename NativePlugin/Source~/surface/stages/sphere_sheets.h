@@ -97,8 +97,8 @@ struct SphereSheets {
   // May an edge cross a crease? At a glance; solve() decides.
   QSES_FN bool may_cross(const CreasedMesh &mesh, uint32_t u, uint32_t v) const {
     const uint32_t of_u = mesh.owner(u), of_v = mesh.owner(v);
-    return of_u != of_v && !is_on(sphere_of(of_v), centered_position(lattice, mesh.position(u))) &&
-           !is_on(sphere_of(of_u), centered_position(lattice, mesh.position(v)));
+    return of_u != of_v && !is_on(sphere_of(of_v), lattice.from_caller(mesh.position(u))) &&
+           !is_on(sphere_of(of_u), lattice.from_caller(mesh.position(v)));
   }
 
   // Is a piece of a triangle turned away from the sheet that its corners have in common, or has it no area? normal:
