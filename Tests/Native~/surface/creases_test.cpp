@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Edges split at creases: where the new vertices are, against spheres in double precision, and what the mesh becomes.
+#include "surface/exact_reference.h"
 #include "surface/surface_fixture.h"
 
 #include <gtest/gtest.h>
@@ -131,6 +132,47 @@ TEST_P(BallCreases, AreaAndVolumeOfTwoBallsConverge) {
     }
     before = error;
   }
+}
+
+// Around a vertex within a triangle, where three creases meet, as around any other: each piece looks away from a sphere
+// that its corners have in common, and has angles.
+TEST_P(BallCreases, TrianglesAroundCornersAreNeitherFoldedNorFlat) {
+  using exact_reference::cross, exact_reference::dot, exact_reference::length, exact_reference::point;
+  constexpr double kLeastTurn = 0.29, kFlatCosine = 0.9991;  // and what float32 leaves of their limits
+  const Atoms atoms = crambin();
+  const double p = inflation(settings(1, 1.4, GetParam()));
+  size_t corners = 0;
+  for (double h : {0.5, 0.8, 1.0, 1.5}) {
+    const Surface surface = compute(atoms, creased(settings(h, 1.4, GetParam())));
+    std::vector<std::vector<uint32_t>> triangles(surface.vertex_count());
+    for (size_t k = 0; k < surface.mesh.indices.size(); ++k)
+      triangles[surface.mesh.indices[k]].push_back(static_cast<uint32_t>(k / 3));
+    for (size_t v = 0; v < surface.vertex_count(); ++v) {
+      if (triangles[v].size() != 3 || spheres_at(atoms, p, surface.mesh.position(v)).size() < 3) continue;
+      ++corners;
+      for (uint32_t t : triangles[v]) {
+        const uint32_t *const c = surface.mesh.indices.data() + 3 * size_t(t);
+        const exact_reference::Point x[3] = {point(surface.mesh.position(c[0])), point(surface.mesh.position(c[1])),
+                                             point(surface.mesh.position(c[2]))};
+        const auto normal = cross(x[1] - x[0], x[2] - x[0]), middle = (1.0 / 3) * (x[0] + x[1] + x[2]);
+        bool is_shared = false, looks_away = false;
+        for (size_t i : spheres_at(atoms, p, surface.mesh.position(v))) {
+          bool on_all = true;
+          for (int k = 0; k < 3; ++k) on_all &= spheres_at(atoms, p, surface.mesh.position(c[k])).count(i) > 0;
+          if (!on_all) continue;
+          is_shared = true;
+          looks_away |= dot(normal, middle - point(atoms.center(i))) >
+                        kLeastTurn * length(normal) * (static_cast<double>(atoms.radii[i]) + p);
+        }
+        EXPECT_TRUE(looks_away || !is_shared) << "spacing " << h << ", triangle " << t << " is folded";
+        for (int k = 0; k < 3; ++k) {
+          const auto a = x[(k + 1) % 3] - x[k], b = x[(k + 2) % 3] - x[k];
+          EXPECT_LT(dot(a, b), kFlatCosine * length(a) * length(b)) << "spacing " << h << ", triangle " << t;
+        }
+      }
+    }
+  }
+  EXPECT_GT(corners, 30u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Surfaces, BallCreases, testing::Values(QSES_SURFACE_SAS, QSES_SURFACE_VDW));

@@ -108,6 +108,7 @@ struct FindSplits {
     }
     return false;
   }
+  QSES_FN void leave_out_corner(size_t i) const { chosen[i] &= static_cast<uint8_t>(~kHasCorner); }
   // The listed edges of a triangle.
   QSES_FN void find_edges(size_t i) const {
     const uint32_t *const t = mesh.triangle(list(i));
@@ -126,9 +127,8 @@ struct FindSplits {
 // A triangle over a place where three creases meet gets a vertex there: one that has points on all three of them.
 template <class Sheets>
 QSES_FN void find_corner(const FindSplits &find, const Sheets &sheets, const Lattice &lattice, size_t i) {
-  const uint8_t chosen = find.chosen[i] & static_cast<uint8_t>(~kHasCorner);
-  find.chosen[i] = chosen;
-  if (!(chosen & kStillNear)) return;
+  find.leave_out_corner(i);
+  if (!(find.chosen[i] & kStillNear)) return;
   const uint32_t *const t = find.mesh.triangle(find.list(i));
   int creases = 0;
   for (int k = 0; k < 3; ++k) creases += int(find.edge_of(i, k) != kNoNumber) + int(find.mesh.on_crease(t[k]));
@@ -190,14 +190,39 @@ QSES_FN void find_corner(const FindSplits &find, const Sheets &sheets, const Lat
           if (length_squared(place[k] - p.position) < least2) return;  // it has one there
         if (p.kind == CreasePoint::kNone) return;
         find.corners[i] = p;
-        find.chosen[i] = chosen | kHasCorner;
+        find.chosen[i] |= kHasCorner;
         return;
       }
     }
 }
 
-// Where splits would fold a triangle, its edges are left as they are. The first pass looks at all triangles, the others
-// at those that the one before has refused something, which are few.
+// Would a piece of the triangle be folded, or flat?
+template <class Sheets>
+QSES_FN bool spoils(const FindSplits &find, const Sheets &sheets, const Lattice &lattice, size_t i,
+                    const TriangleSplits &s) {
+  const uint32_t *const t = find.mesh.triangle(find.list(i));
+  CreaseEnd corner[7];
+  for (int k = 0; k < 3; ++k) {
+    corner[k] = end_of_vertex(find.mesh, lattice, t[k]);
+    if (s.edge[k] != kNoNumber) corner[3 + k] = end_of_point(find.edges.points[s.edge[k]]);
+  }
+  if (s.within) corner[6] = end_of_point(find.corners[i]);
+  const Pieces pieces = cut_triangle(s.edge[0] != kNoNumber, s.edge[1] != kNoNumber, s.edge[2] != kNoNumber, s.within,
+                                     [&](int k) { return corner[k].position; });
+  for (int p = 0; p < pieces.count; ++p) {
+    const CreaseEnd *const c[3] = {corner + pieces.corner[p][0], corner + pieces.corner[p][1],
+                                   corner + pieces.corner[p][2]};
+    const Vec3<float> normal = cross(c[1]->position - c[0]->position, c[2]->position - c[0]->position);
+    if (least_cosine_of_angles(c[0]->position, c[1]->position, c[2]->position) > Sheets::kFlatCosine ||
+        sheets.is_folded(c, normal))
+      return true;
+  }
+  return false;
+}
+
+// Where splits would fold a triangle, it gets no vertex within; and if its edges alone would, too, they are left as
+// they are. The first pass looks at all triangles, the others at those that the one before has refused something, which
+// are few.
 template <class Sheets>
 struct RefuseSplits {
   FindSplits find;
@@ -207,33 +232,23 @@ struct RefuseSplits {
     if (find.pass == 1) find.find_edges(i);
     if (find.pass > 1 && !find.had_refusal(i, find.pass - 1)) return true;
     if constexpr (Sheets::kHasCorners) find_corner(find, sheets, lattice, i);
-    return find(i).edges() == 0;
+    const TriangleSplits s = find(i);
+    return s.edges() == 0 && !s.within;
   }
   QSES_FN void operator()(size_t i) const {
     if (!is_done_at_a_glance(i)) finish(i);
   }
   QSES_FN void finish(size_t i) const {
-    const TriangleSplits s = find(i);
-    const uint32_t *const t = find.mesh.triangle(find.list(i));
-    CreaseEnd corner[7];
-    for (int k = 0; k < 3; ++k) {
-      corner[k] = end_of_vertex(find.mesh, lattice, t[k]);
-      if (s.edge[k] != kNoNumber) corner[3 + k] = end_of_point(find.edges.points[s.edge[k]]);
+    TriangleSplits s = find(i);
+    while (spoils(find, sheets, lattice, i, s)) {
+      if (!s.within) {
+        for (int k = 0; k < 3; ++k)
+          if (s.edge[k] != kNoNumber) atomic_store(find.edges.refused + s.edge[k], find.pass);
+        return;
+      }
+      find.leave_out_corner(i);
+      s.within = false;
     }
-    if (s.within) corner[6] = end_of_point(find.corners[i]);
-    const Pieces pieces = cut_triangle(s.edge[0] != kNoNumber, s.edge[1] != kNoNumber, s.edge[2] != kNoNumber, s.within,
-                                       [&](int k) { return corner[k].position; });
-    bool bad = false;
-    for (int p = 0; p < pieces.count && !bad; ++p) {
-      const CreaseEnd *const c[3] = {corner + pieces.corner[p][0], corner + pieces.corner[p][1],
-                                     corner + pieces.corner[p][2]};
-      const Vec3<float> normal = cross(c[1]->position - c[0]->position, c[2]->position - c[0]->position);
-      bad = least_cosine_of_angles(c[0]->position, c[1]->position, c[2]->position) > Sheets::kFlatCosine ||
-            sheets.is_folded(c, normal);
-    }
-    if (!bad) return;
-    for (int k = 0; k < 3; ++k)
-      if (s.edge[k] != kNoNumber) atomic_store(find.edges.refused + s.edge[k], find.pass);
   }
 };
 
@@ -245,7 +260,12 @@ struct CountNew {
   Lattice lattice;
   uint64_t *counts;  // [list]
   QSES_FN void operator()(size_t i) const {
-    if (Sheets::kHasCorners && find.had_refusal(i, kRefusals)) find_corner(find, sheets, lattice, i);
+    if constexpr (Sheets::kHasCorners)
+      if (find.had_refusal(i, kRefusals)) {
+        find_corner(find, sheets, lattice, i);
+        const TriangleSplits left = find(i);
+        if (left.within && spoils(find, sheets, lattice, i, left)) find.leave_out_corner(i);
+      }
     const TriangleSplits s = find(i);
     uint64_t vertices = s.within ? 1 : 0;
     const uint32_t *const t = find.mesh.triangle(find.list(i));
