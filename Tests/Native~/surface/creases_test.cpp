@@ -175,6 +175,21 @@ TEST_P(BallCreases, TrianglesAroundCornersAreNeitherFoldedNorFlat) {
   EXPECT_GT(corners, 30u);
 }
 
+TEST_P(BallCreases, VerticesOnOneSphereAreOfContactPatches) {
+  const Atoms atoms = crambin();
+  qses_settings s = creased(settings(0.5, 1.4, GetParam()));
+  s.patch_types = 1;
+  const Surface surface = compute(atoms, s);
+  ASSERT_EQ(surface.patches.size(), surface.vertex_count());
+  size_t others = 0;
+  for (size_t v = 0; v < surface.vertex_count(); ++v) {
+    if (surface.patches[v] == QSES_PATCH_CONTACT) continue;
+    ++others;
+    EXPECT_GT(spheres_at(atoms, inflation(s), surface.mesh.position(v)).size(), 1u) << "vertex " << v;
+  }
+  EXPECT_GT(others, 100u);
+}
+
 INSTANTIATE_TEST_SUITE_P(Surfaces, BallCreases, testing::Values(QSES_SURFACE_SAS, QSES_SURFACE_VDW));
 
 bool same_bytes(const Surface &a, const Surface &b) {

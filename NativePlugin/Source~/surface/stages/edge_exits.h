@@ -177,6 +177,7 @@ struct HoldVertices {
     store_vec3(mesh.position(vertex), Vec3<float>(lattice.to_caller(exit.position)));
     store_normals(mesh, vertex, exit.normal, exit.normal);
     mesh.owner(vertex) = exit.owner;
+    if (mesh.patches) mesh.patch(vertex) = QSES_PATCH_CONTACT;  // of one ball's surface
   }
 };
 
