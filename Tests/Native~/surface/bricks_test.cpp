@@ -188,6 +188,25 @@ TEST(Signs, OnASparseSetOfBricks) {
   EXPECT_EQ(bricks.find(run.lattice.brick_count), -1);
 }
 
+// A table too large to be made unasked, but smaller than the list of all visits, which are counted first: what that
+// takes is free again.
+TEST(Bricks, CountedVisitsLeaveNoMemoryBehind) {
+  Atoms atoms;
+  std::mt19937 random(35);
+  std::uniform_real_distribution<double> along(0, 140);
+  for (int k = 0; k < 2000; ++k) atoms.add(along(random), along(random), along(random), 10);
+  ExactRun run(atoms, settings(0.1, 1.4, QSES_SURFACE_VDW));
+  const FeatureView features = run.features();
+  ASSERT_GT(run.lattice.table_size(), kSmallTable);
+  const auto mark = run.executor.arena().mark();
+  const uint64_t before = run.executor.arena().used();
+  ASSERT_NE(find_bricks(run.executor, features, run.lattice).table, nullptr);
+  const uint64_t taken = run.executor.arena().used() - before;
+  run.executor.arena().rewind(mark);
+  flag_bricks(run.executor, FeatureBricks{features, run.lattice}, run.lattice, "bricks");
+  EXPECT_EQ(taken, run.executor.arena().used() - before);
+}
+
 // Rows of bricks that a shell passes, whether they are short or long, hollow or not, and cut by the border of the
 // table.
 TEST(Places, ArePackedInTheOrderOfLinearIndices) {

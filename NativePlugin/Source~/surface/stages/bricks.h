@@ -255,6 +255,7 @@ BrickSet collect_bricks(Executor &executor, const Items &items, const Lattice &l
     throw MemoryRefused("the work needs at least " + describe_bytes(static_cast<uint64_t>(fewest)) +
                         " for the bricks of the SES grid, but " + describe_bytes(executor.arena().available()) +
                         " are available: use a larger spacing");
+  const auto before = executor.arena().mark();
   Span<uint64_t> first = executor.template allocate<uint64_t>(n + 1);
   const auto mark = executor.arena().mark();
   const Span<uint64_t> counts = executor.template allocate<uint64_t>(n);
@@ -264,8 +265,10 @@ BrickSet collect_bricks(Executor &executor, const Items &items, const Lattice &l
   executor.exclusive_scan(n, LoadCount<uint64_t>{counts.data}, first);
   executor.arena().rewind(mark);
   const uint64_t visits = executor.fetch(first.data + n);
-  if (entries <= kMaxDenseCells && entries * kDenseEntryBytes <= visits * kVisitBytes)
+  if (entries <= kMaxDenseCells && entries * kDenseEntryBytes <= visits * kVisitBytes) {
+    executor.arena().rewind(before);
     return flag_bricks(executor, items, lattice, name);
+  }
   if (listed) *listed = visits;
   return sort_bricks(executor, items, lattice, first, visits);
 }
