@@ -17,7 +17,8 @@ SolventFeatures list_features(Work &work) {
   work.timer.begin("solvent_features");
   SolventFeatures found;
   Backend<Executor>::find_solvent_features(work.executor, work.atoms, work.parameters, work.plan, work.rooms, &found);
-  if (found.caps.size > kMostNumbered || found.arcs.size > kMostNumbered)
+  constexpr uint64_t kMostArcs = 0x7fffffffu;  // their numbers are signed (NearestArc): -1 is none
+  if (found.caps.size > kMostNumbered || found.arcs.size > kMostArcs)
     throw Error(
         QSES_OUT_OF_MEMORY,
         "the inflated atoms have more circles with each other than 32-bit numbers can name: use a smaller probe, "
