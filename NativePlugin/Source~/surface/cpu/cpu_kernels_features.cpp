@@ -243,7 +243,7 @@ AtomFeatures find_atom_features(const NeighborGridView &atoms, const SurfacePara
                                 const AtomScratch &scratch, Cap *caps, int cap_room, Arc *arcs, ArcAtoms *arc_atoms,
                                 int64_t arc_room, uint8_t *exposed) {
   const Sphere self = atoms.items[i];
-  if (self.center.x >= 0.5f * kFarAway) return {0, 0, 0};  // another atom contains it
+  if (is_removed(self)) return {0, 0, 0};  // another atom contains it
   const Columns c = cut_columns(scratch);
   const int near = gather_neighbors(atoms, parameters.max_radius, i, c, scratch.capacity);
   if (near + kWideLanes > scratch.capacity) return {near + kWideLanes, 0, 0};

@@ -266,7 +266,7 @@ __device__ __forceinline__ void count_of_block(const CapJob &job, const CapTally
 
 // Atoms that others contain are far away; others' caps nobody asks for.
 __device__ __forceinline__ bool is_skipped(const CapJob &job, uint32_t i, const Sphere &self) {
-  return self.center.x >= 0.5f * kFarAway || (!job.neighbors && !job.exposed[i]);
+  return is_removed(self) || (!job.neighbors && !job.exposed[i]);
 }
 
 // All about the caps of atom i. False if it has more neighbours than the rows hold.

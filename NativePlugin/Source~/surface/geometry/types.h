@@ -74,6 +74,8 @@ constexpr int32_t kBuriedAtom = -1;
 
 // What atoms look like that must not be found any more: contained in another one, or its duplicate.
 constexpr float kFarAway = 1e8f;
+QSES_FN Sphere removed_atom() { return {glm::vec3(kFarAway), 0.f}; }
+QSES_FN bool is_removed(const Sphere &atom) { return atom.center.x >= 0.5f * kFarAway; }
 
 // Tolerance of exposure tests, Å: within this of a ball's surface, rounding decides on which side a point is. One value
 // on both back ends.

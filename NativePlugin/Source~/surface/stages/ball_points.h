@@ -26,11 +26,12 @@ struct BallBricks {
   template <class Visit>
   QSES_FN void visit(size_t i, const RowRange &rows, const Visit &visit_brick) const {
     const Sphere atom = atoms.items[i];
+    if (is_removed(atom)) return;
     visit_bricks_of_shell(lattice, atom.center, 0.f, atom.radius, margin, rows, visit_brick);
   }
   QSES_FN double fewest(size_t i) const {
-    const float radius = atoms.items[i].radius;
-    return atoms.items[i].center.x >= 0.5f * kFarAway ? 0.0 : fewest_bricks_of_ball(lattice, radius);
+    const Sphere atom = atoms.items[i];
+    return is_removed(atom) ? 0.0 : fewest_bricks_of_ball(lattice, atom.radius);
   }
 };
 

@@ -45,7 +45,7 @@ struct FillBalls {
     const size_t count = static_cast<size_t>(planes);
     const Sphere atom = balls.atoms.items[i / count];
     const float r = balls.radius(atom.radius) / kOcclusionPoint;
-    if (atom.center.x >= 0.5f * kFarAway || r <= 0.f) return;
+    if (is_removed(atom) || r <= 0.f) return;
     const Vec3<float> c = Vec3<float>(atom.center) * (1.f / kOcclusionPoint);
     const int z = static_cast<int>(ceilf(c.z - r)) + static_cast<int>(i % count);
     const float dz = static_cast<float>(z) - c.z, rest = r * r - dz * dz;

@@ -93,7 +93,7 @@ struct RemoveContainedAtoms {
   const uint8_t *contained;
   Sphere *atoms;
   QSES_HOST_DEVICE void operator()(size_t i) const {
-    if (contained[i]) atoms[i] = {glm::vec3(kFarAway), 0.f};
+    if (contained[i]) atoms[i] = removed_atom();
   }
 };
 
