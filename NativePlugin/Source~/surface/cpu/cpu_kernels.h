@@ -43,7 +43,6 @@ struct BrickNeeds {
 struct LocalColumns {
   static constexpr int kArcRoom = LocalReach::kMostArcs + 16, kArcColumns = 12;
   uint32_t atoms[LocalReach::kMostAtoms + 8], arcs[kArcRoom];
-  float depths[LocalReach::kMostAtoms + 8];  // of the place in the balls of the atoms
   float arc_columns[kArcColumns][kArcRoom];
   int atom_number, arc_number;
 };

@@ -43,40 +43,30 @@ QSES_FN bool for_each_met(const NeighborGridView &grid, const CellBox &box, uint
   return true;
 }
 
-void forget_shallow(LocalColumns *c, float least) {
-  int kept = 0;
-  for (int k = 0; k < c->atom_number; ++k) {
-    if (c->depths[k] < least) continue;
-    c->depths[kept] = c->depths[k];
-    c->atoms[kept++] = c->atoms[k];
-  }
-  c->atom_number = kept;
-}
-
 }  // namespace
 
 bool gather_local_features(const FeatureView &f, const Vec3<float> &place, float around, LocalColumns *out) {
   const LocalReach reach(f, place, around);
   const Vec3<Pack> x{Pack(place.x), Pack(place.y), Pack(place.z)};
-  uint32_t met = 0;
+  uint32_t met = 0, met_again = 0;
   out->atom_number = out->arc_number = 0;
-  float deepest = -kFarAway;
-  const bool atoms_fit = for_each_met(
-      f.atoms, reach.box(f.atoms, reach.atom_reach), &met, [&](uint32_t i, const PackedBall &balls, uint32_t lanes) {
-        const Pack depth = ball_depth(balls, x);
-        uint32_t near = lanes & lane_bits(depth >= Pack(deepest - reach.slack));
-        if (!near) return true;
-        deepest = maximum(deepest, horizontal_maximum(select(lane_mask(near), depth, Pack(-kFarAway))));
-        near &= lane_bits(depth >= Pack(deepest - reach.slack));
-        if (out->atom_number + popcount64(near) > LocalReach::kMostAtoms) forget_shallow(out, deepest - reach.slack);
+  const CellBox atom_box = reach.box(f.atoms, reach.atom_reach);
+  Pack deepest(-kFarAway);
+  const bool few_met = for_each_met(f.atoms, atom_box, &met, [&](uint32_t, const PackedBall &balls, uint32_t lanes) {
+    deepest = maximum(deepest, select(lane_mask(lanes), ball_depth(balls, x), Pack(-kFarAway)));
+    return true;
+  });
+  if (!few_met) return false;
+  const Pack least(horizontal_maximum(deepest) - reach.slack);
+  const bool atoms_fit =
+      for_each_met(f.atoms, atom_box, &met_again, [&](uint32_t i, const PackedBall &balls, uint32_t lanes) {
+        const uint32_t near = lanes & lane_bits(ball_depth(balls, x) >= least);
         if (out->atom_number + popcount64(near) > LocalReach::kMostAtoms) return false;
-        store_lanes(out->depths + out->atom_number, near, depth);
         out->atom_number += store_lane_numbers(reinterpret_cast<int32_t *>(out->atoms) + out->atom_number, near,
                                                static_cast<int32_t>(i));
         return true;
       });
   if (!atoms_fit) return false;
-  forget_shallow(out, deepest - reach.slack);
   const bool arcs_fit =
       f.arc_bounds.count == 0 || for_each_met(f.arc_bounds, reach.box(f.arc_bounds, reach.arc_reach), &met,
                                               [&](uint32_t i, const PackedBall &bounds, uint32_t lanes) {
