@@ -70,19 +70,6 @@ struct WallField {
   bool looks_out;  // points may lie outside all balls
 };
 
-// Those of a pack of arcs, one to each lane, as nearest_on_arc() has them.
-QSES_FN Vec3<WidePack> nearest_on_arcs(const PackedArc &arc, const Vec3<WidePack> &x) {
-  const Vec3<WidePack> t = x - arc.center;
-  const WidePack along_middle = dot(t, arc.middle), along_side = dot(t, arc.side);
-  const WidePack in_plane = square_root(along_middle * along_middle + along_side * along_side);
-  const WideMask on_arc = along_middle >= arc.cos_half * in_plane, off_axis = in_plane > WidePack(1e-6f) * arc.radius;
-  const WidePack inverse = WidePack(1.f) / maximum(in_plane, WidePack(1e-30f));
-  const WidePack end_sine = select(along_side < WidePack(0.f), -arc.sin_half, arc.sin_half);
-  const WidePack cosine = select(on_arc, select(off_axis, along_middle * inverse, WidePack(1.f)), arc.cos_half);
-  const WidePack sine = select(on_arc, select(off_axis, along_side * inverse, WidePack(0.f)), end_sine);
-  return arc.center + arc.middle * (arc.radius * cosine) + arc.side * (arc.radius * sine);
-}
-
 constexpr int kGroup = 64;  // points whose probes are found together
 
 // The rule of nearest_probe(), for the points from begin to end, which are at most a group. There is room for a
@@ -147,7 +134,7 @@ void find_probes(const WallField &field, ProbedPoints<kRoom> &points, int begin,
     store_pack(number, place);
     const PackedArc nearest_arcs =
         load_arcs([&](int l) { return f.arcs + c.arc_index[c.arc_list[static_cast<int>(number[l])]]; });
-    const Vec3<WidePack> on = nearest_on_arcs(nearest_arcs, p);
+    const Vec3<WidePack> on = boundary_on_arcs(nearest_arcs, p).position;
     alignas(32) float x[kWideLanes], y[kWideLanes], z[kWideLanes], distance[kWideLanes];
     store_pack(x, on.x);
     store_pack(y, on.y);
