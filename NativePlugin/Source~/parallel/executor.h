@@ -76,6 +76,9 @@ struct NothingQueued {
   void wait() {}
 };
 
+// Of a pass of for_each_brick() that needs none.
+struct NoScratch {};
+
 // Items per chunk of reduce(): part of the result's definition, since float sums depend on the order. Few items are
 // enough chunks for a GPU, many not too many for the host, which adds them up.
 QSES_FN constexpr size_t reduce_chunk(size_t n) { return n <= (size_t(1) << 18) ? 512 : 2048; }

@@ -60,7 +60,7 @@ struct ExactRun {
     remove_contained_atoms(executor, atoms, parameters.max_radius);
   }
 
-  FeatureView features() { return find_features(*this); }
+  FeatureView features() { return arrange_features(*this, list_features(*this)); }
 
   std::vector<uint64_t> signs(const FeatureView &f, const BrickSet &bricks) {
     std::vector<uint64_t> words(size_t(bricks.count) * kLeavesPerBrick);
@@ -69,7 +69,7 @@ struct ExactRun {
   }
 
   // The whole method; with features of one's own, the rest of it.
-  mesh_checks::Mesh mesh() { return mesh(find_features(*this)); }
+  mesh_checks::Mesh mesh() { return mesh(features()); }
   mesh_checks::Mesh mesh(const FeatureView &features) {
     const MarchingCubesTable &table = marching_cubes_table();
     const TableView view{table.triangle_count, table.edges, table.ring};

@@ -51,7 +51,7 @@ bool on_face(int edge, int axis, int side) {
 TEST(Table, HasAVertexOnEveryCutEdgeAndNowhereElse) {
   const MarchingCubesTable &table = marching_cubes_table();
   for (int code = 0; code < kCellCases; ++code) {
-    ASSERT_LE(table.triangle_count[code], kMaxCellTriangles);
+    ASSERT_LE(table.triangle_count[code], kMostCaseTriangles);
     std::set<int> used(table.edges[code], table.edges[code] + 3 * table.triangle_count[code]);
     for (int e = 0; e < kCellEdges; ++e) {
       const std::array<int, 2> c = corners_of(e);

@@ -23,10 +23,8 @@ struct EdgeOffsets {
 };
 constexpr EdgeOffsets make_edge_offsets() {
   EdgeOffsets o{};
-  for (int e = 0; e < kCellEdges; ++e) {
-    const int x = e < 4 ? 0 : e & 1, y = e < 4 ? e & 1 : e < 8 ? 0 : e >> 1 & 1, z = e < 8 ? e >> 1 & 1 : 0;
-    o.at[e] = (e >> 2) * kSide * kSide * kSide + kPlaces.of(x, y, z);
-  }
+  for (int e = 0; e < kCellEdges; ++e)
+    o.at[e] = edge_axis(e) * kSide * kSide * kSide + kPlaces.of(edge_origin_x(e), edge_origin_y(e), edge_origin_z(e));
   return o;
 }
 constexpr EdgeOffsets kEdgeOffsets = make_edge_offsets();

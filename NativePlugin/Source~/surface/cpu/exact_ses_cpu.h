@@ -84,15 +84,15 @@ struct EmitBrickTriangles {
   const TableView *table;
   const MeshView *mesh;
   uint32_t first;
-  void operator()(SoloTeam, char &, size_t i) const {
+  void operator()(SoloTeam, NoScratch &, size_t i) const {
     kernels->emit_brick_triangles(*bricks, *layout, first + static_cast<uint32_t>(i), *table, *mesh);
   }
 };
 
 inline void emit_triangles(CpuKernelExecutor &executor, const BrickSet &bricks, const MeshLayout &layout,
                            BrickRange slice, const TableView &table, const MeshView &mesh) {
-  executor.for_each_brick<char>(slice.size(),
-                                EmitBrickTriangles{&executor.kernels(), &bricks, &layout, &table, &mesh, slice.first});
+  executor.for_each_brick<NoScratch>(
+      slice.size(), EmitBrickTriangles{&executor.kernels(), &bricks, &layout, &table, &mesh, slice.first});
 }
 
 }  // namespace quickses

@@ -106,8 +106,8 @@ struct FeatureChunk {
   size_t first_cap, cap_count, first_arc, arc_count;
 };
 
-// Finds the features of atom i, with as much room as they need. place_caps() and place_arcs() tell where it is, and how
-// much, and are asked again after more room was made.
+// Finds the features of atom i, with as much room as they need. room tells where it is, and how much, and is asked
+// again after more was made.
 template <class Room>
 AtomFeatures find_features_of(const CpuKernels &kernels, const NeighborGridView &atoms,
                               const SurfaceParameters &parameters, size_t i, FeatureStaging &s, uint8_t *exposed,

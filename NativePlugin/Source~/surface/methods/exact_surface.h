@@ -69,11 +69,6 @@ FeatureView arrange_features(Work &work, const SolventFeatures &found) {
   return f;
 }
 
-template <class Work>
-FeatureView find_features(Work &work) {
-  return arrange_features(work, list_features(work));
-}
-
 // Bricks per slice: those that are asked for, or, by a plan with several slices, as many as fit into what is left. What
 // they take is counted: work_on(counting executor, slice). A bit is kept back, since bricks differ.
 template <class Work, class WorkOn>

@@ -7,7 +7,7 @@
 
 namespace quickses {
 
-// Balls about the atoms of a grid: of `part` of the radii that it has, less `inset`, Å.
+// Balls about the atoms of a grid: of the radii that it has, less `inset`, Å.
 struct Balls {
   NeighborGridView atoms;
   float max_radius;  // of the grid's
@@ -126,10 +126,10 @@ struct ClassifyBrick {
                               const glm::ivec3 &first) const {
     // A thread has so many points of a row, in registers.
     constexpr int kRows = kBrickEdge * kBrickEdge;
-    const int parts = team.size() > kRows ? team.size() / kRows : 1, points = kBrickEdge / parts;
+    const int shares = team.size() > kRows ? team.size() / kRows : 1, points = kBrickEdge / shares;
     const float h = bricks.lattice.spacing;
-    for (int part = team.rank(); part < kRows * parts; part += team.size()) {
-      const int row = part / parts, first_x = part % parts * points;
+    for (int share = team.rank(); share < kRows * shares; share += team.size()) {
+      const int row = share / shares, first_x = share % shares * points;
       const float py = static_cast<float>(first.y + row % kBrickEdge) * h;
       const float pz = static_cast<float>(first.z + row / kBrickEdge) * h;
       float *const in_brick = scratch.beyond_ball + row * kBrickEdge + first_x;

@@ -13,12 +13,11 @@ namespace quickses {
 constexpr int kCellCases = 256;
 constexpr int kMostCaseTriangles = 5;
 constexpr int kCellEdges = 12;
-constexpr int kMaxCellTriangles = 5;
 
-QSES_FN int edge_axis(int edge) { return edge >> 2; }
-QSES_FN int edge_origin_x(int edge) { return edge < 4 ? 0 : edge & 1; }
-QSES_FN int edge_origin_y(int edge) { return edge < 4 ? edge & 1 : edge < 8 ? 0 : edge >> 1 & 1; }
-QSES_FN int edge_origin_z(int edge) { return edge < 8 ? edge >> 1 & 1 : 0; }
+QSES_FN constexpr int edge_axis(int edge) { return edge >> 2; }
+QSES_FN constexpr int edge_origin_x(int edge) { return edge < 4 ? 0 : edge & 1; }
+QSES_FN constexpr int edge_origin_y(int edge) { return edge < 4 ? edge & 1 : edge < 8 ? 0 : edge >> 1 & 1; }
+QSES_FN constexpr int edge_origin_z(int edge) { return edge < 8 ? edge >> 1 & 1 : 0; }
 
 // Where a vertex starts on its edge, in units of the spacing from the inside end: a little outside of the middle, from
 // where the projection reaches further into crevices.

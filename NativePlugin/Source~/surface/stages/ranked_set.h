@@ -8,8 +8,8 @@
 
 namespace quickses {
 
-// A set of numbers as bits, with the count of those before each word: an eighth of the memory that a table of new
-// numbers would take.
+// A set of numbers as bits, with the count of those before each word: a sixteenth of the memory that a table of
+// new numbers would take.
 struct RankedSet {
   uint32_t *words = nullptr;   // or nullptr: all
   uint32_t *before = nullptr;  // words + 1 of them

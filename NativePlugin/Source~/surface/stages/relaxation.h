@@ -104,8 +104,6 @@ void smooth_laplacian(Executor &executor, const MeshView &mesh, const MeshCounts
 // Longest tangential step, in units of the spacing. With the reach of a projection it keeps a start within kStartReach.
 constexpr float kMaxTangentialStep = 0.6f;
 
-struct NoScratch {};
-
 // Starts of the next projection for the vertices of a brick: towards the mean of the neighbours, but only along the
 // surface, and never further from the brick than the projection looks for atoms and arcs.
 struct TangentialStarts {
