@@ -3,7 +3,7 @@
 // Marching cubes only sees cells of active bricks. If all lattice points that an inactive brick's active neighbours
 // have next to it are of one sign, then no cell that reaches into it is cut, and every cut cell finds all its corners,
 // hence all its vertices, in active bricks. Where signs differ, the surface goes on behind the border: that brick is
-// added, and so on until there is none. Where the features are right, there is none from the beginning.
+// added, and so on until there is none. Where the features are right, only channels that are opened may need one.
 #pragma once
 
 #include "surface/stages/bricks.h"

@@ -61,7 +61,7 @@ QSES_FN bool nearest_corner(const SphereCircle &circle, const Sphere &third, con
 
 // ---- the sheets of SAS and VDW ---------------------------------------------------------------------------------
 
-// The atoms whose spheres come near an edge or a triangle. Few, but where atoms crowd: there nothing is sharpened.
+// The atoms whose spheres come near an edge. Where there are more, as near most edges of 2 Å, it stays as it is.
 struct NearSpheres {
   static constexpr int kMost = 24;
   static constexpr uint32_t kMostMet = 1 << 14;
