@@ -239,7 +239,8 @@ void RenderQueue::forget_ended(const std::vector<std::shared_ptr<GpuTarget>> &en
     if (stays)
       has_work_ = true;
     else
-      ended_.erase(std::remove(ended_.begin(), ended_.end(), target), ended_.end());  // which keeps what it has reserved
+      ended_.erase(std::remove(ended_.begin(), ended_.end(), target),
+                   ended_.end());  // which keeps what it has reserved
   }
 }
 

@@ -74,12 +74,11 @@
  *   makes do with those there are, down to the calling thread. A thread that is in a call must not be ended from
  *   outside (pthread_cancel, TerminateThread): qses_cancel is there for that.
  *   On Linux, threads of the library inherit the processors that the thread is bound to which first computes in a
- *   context, or begins a job there, and are no more than these: let it be one that is not bound. A program of OpenMP with
- *   OMP_PROC_BIND or OMP_PLACES has its main thread bound to one processor. qses_context_info tells how many there are
- *   where the context is made.
- *   After a fork while nothing of the library ran, the child may make contexts on the CPU and compute in them, and in
- *   those that were made before, with its calling thread alone; contexts that had jobs (qses_begin) before must be
- *   neither used nor destroyed there. Where CUDA was used, no child can use it.
+ *   context, or begins a job there, and are no more than these: let it be one that is not bound. A program of OpenMP
+ * with OMP_PROC_BIND or OMP_PLACES has its main thread bound to one processor. qses_context_info tells how many there
+ * are where the context is made. After a fork while nothing of the library ran, the child may make contexts on the CPU
+ * and compute in them, and in those that were made before, with its calling thread alone; contexts that had jobs
+ * (qses_begin) before must be neither used nor destroyed there. Where CUDA was used, no child can use it.
  */
 #ifndef QUICKSES_QUICKSES_H
 #define QUICKSES_QUICKSES_H
@@ -543,7 +542,7 @@ typedef enum qses_measured_by {
                                        across (settings.creases) */
   QSES_MEASURED_BY_ATOMS = 3 /* exact, from what the others leave free of each atom, the same at every spacing: SAS and
                                 VDW, and the SES of a probe below 0.05 Å. A molecule that is turned or moved has the
-                                same within 1e-6, many small balls on a large one within 3e-6; where balls touch or
+                                same within 1e-6, many small balls on a large one within 5e-6; where balls touch or
                                 just close, as in ideal lattices, 2e-4 */
 } qses_measured_by;
 

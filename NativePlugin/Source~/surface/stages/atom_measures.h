@@ -36,15 +36,15 @@ QSES_FN bool has_tiny_caps(const CapRange &range, const Cap &largest) {
   return largest.cosine > 0.99f && static_cast<float>(range.count) * (1.f - largest.cosine) < 1.f;
 }
 
-// Of the directions of a cube's faces, edges and corners, that which is farthest from the caps; the axis of the first
-// one, if they cover all.
-constexpr int kDirections = 27;  // one of them is none
+// Of the directions to the points of a lattice about the centre, that which is farthest from the caps; the axis of the
+// first one, if they cover all.
+constexpr int kDirections = 5 * 5 * 5;  // one of them is none
 QSES_FN Vec3<float> farthest_from_caps(const Cap *caps, int32_t count) {
   Vec3<float> best(load(caps).axis);
   float farthest = 0.f;
   for (int k = 0; k < kDirections; ++k) {
-    const Vec3<float> way(static_cast<float>(k % 3 - 1), static_cast<float>(k / 3 % 3 - 1),
-                          static_cast<float>(k / 9 - 1));
+    const Vec3<float> way(static_cast<float>(k % 5 - 2), static_cast<float>(k / 5 % 5 - 2),
+                          static_cast<float>(k / 25 - 2));
     if (k == kDirections / 2) continue;
     const Vec3<float> direction = way * reciprocal_root(length_squared(way));
     const auto chord_to = [](float cosine) { return square_root(maximum(0.f, 2.f - 2.f * cosine)); };
