@@ -284,8 +284,9 @@ TEST(CudaStages, StartsOfVertices) {
   CudaRooms rooms;
   const BrickRange all{0, s.bricks.count};
   const SliceSizes sizes = slice_sizes(executor, s.bricks, s.layout, all);
-  const gpu::VertexJob job = gpu::open_vertices(executor, s.features, s.bricks, s.layout, all, sizes, rooms, candidates,
-                                                {true, nullptr, table.view.ring, &s.layout.totals->unplaced}, s.mesh);
+  const VertexStarts from{true, nullptr, table.view.ring, &s.layout.totals->unplaced};
+  const gpu::VertexJob job =
+      gpu::open_vertices(executor, {s.features, s.bricks, all, rooms, candidates}, {s.layout, sizes, from, s.mesh});
   gpu::prepare_vertices(executor, job, sizes.leaves, candidates.longest_row);
   const std::vector<float> starts = to_host(executor, s.mesh.positions, s.counts.vertices * 3);
 
