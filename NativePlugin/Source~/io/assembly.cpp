@@ -57,9 +57,9 @@ std::vector<std::string> read_identifiers(const std::string &text, const std::st
   return identifiers;
 }
 
-// "1,2" or "(1-3)" or "(X0)(1-60)": of several parentheses the last is applied first.
+// "1,2" or "(1-3)" or "(X0)(1-60)": of several parentheses the last is applied first. Not more than most of them.
 Operators read_operators(const std::string &expression, const std::map<std::string, gemmi::Transform> &known,
-                         const std::string &path, const std::string &name) {
+                         size_t most, const std::string &path, const std::string &name) {
   if (trim(expression).empty() || expression == "?" || expression == ".")
     fail_input("'" + path + "': assembly " + name + " names no operation");
   Operators product(1);
@@ -73,7 +73,7 @@ Operators read_operators(const std::string &expression, const std::map<std::stri
     const std::string list = expression.substr(begin, end == std::string::npos ? end : end - begin);
     at = end == std::string::npos ? expression.size() : end + (is_group ? 1 : 0);
     const std::vector<std::string> identifiers = read_identifiers(list, path, name);
-    if (product.size() * identifiers.size() > kMostOperators) fail_large(path, name);
+    if (product.size() * identifiers.size() > most) fail_large(path, name);
     Operators longer;
     for (const auto &left : product)
       for (const std::string &identifier : identifiers) {
@@ -112,6 +112,7 @@ gemmi::Assembly find_in_block(cif::Block &block, const std::string &path, const 
   const auto transforms = read_transforms(block, path);
   gemmi::Assembly assembly(name);
   std::vector<std::string> names;
+  size_t left = kMostOperators;
   for (cif::Table::Row row :
        block.find("_pdbx_struct_assembly_gen.", {"assembly_id", "oper_expression", "asym_id_list"})) {
     if (std::find(names.begin(), names.end(), row.str(0)) == names.end()) names.push_back(row.str(0));
@@ -119,7 +120,8 @@ gemmi::Assembly find_in_block(cif::Block &block, const std::string &path, const 
     assembly.generators.emplace_back();
     gemmi::Assembly::Gen &generator = assembly.generators.back();
     for (const std::string &chain : split(row.str(2), ',')) generator.subchains.emplace_back(trim(chain));
-    generator.operators = read_operators(row.str(1), transforms, path, name);
+    generator.operators = read_operators(row.str(1), transforms, left, path, name);
+    left -= generator.operators.size();
   }
   if (assembly.generators.empty()) fail_unknown(path, name, names);
   return assembly;
@@ -228,7 +230,7 @@ gemmi::Assembly find_pdb_assembly(const std::string &text, const std::string &pa
   while (next_line(rest, line)) {
     if (line.substr(0, 10) != "REMARK 350") continue;
     std::string clean(line.substr(0, 80));
-    for (char &c : clean) c = c == '\0' || c == '\t' ? ' ' : to_ascii(c);
+    for (char &c : clean) c = c == '\0' || is_blank(c) ? ' ' : to_ascii(c);
     clean.resize(80, ' ');
     remarks += clean + "\n";
   }

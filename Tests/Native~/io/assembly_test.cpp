@@ -188,6 +188,13 @@ TEST(Assembly, Errors) {
   EXPECT_HAS(input("(1-999999999)"), "more than");
   EXPECT_HAS(input("(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)"),
              "more than");
+  // Of all rows together, before they are made.
+  std::string rows = cif_file("1");
+  std::string more;
+  for (int k = 0; k < 500; ++k) more += "1 (1-3)(1-3)(1-3)(1-3)(1-3)(1-3)(1-3)(1-3)(1-3)(1-3) A\n";
+  rows.insert(rows.find("PAU P"), more);
+  EXPECT_HAS(error_of(ErrorKind::kInput, [&] { parse(rows, assembly_named("1"), StructureFormat::kMmcif); }),
+             "more than 100000 operations");
   std::string many;
   for (int k = 0; k < 100001; ++k) many += "1,";
   EXPECT_HAS(input("(" + many + "1-999999999)"), "more than");
