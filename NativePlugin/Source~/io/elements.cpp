@@ -13,9 +13,6 @@ namespace {
 
 using gemmi::El;
 
-bool is_letter(char c) { return c >= 'A' && c <= 'Z'; }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
 std::string upper_trimmed(const std::string &text) {
   const size_t first = text.find_first_not_of(' ');
   if (first == std::string::npos) return "";

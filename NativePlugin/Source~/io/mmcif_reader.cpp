@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-// mmCIF files. gemmi reads the syntax and builds the model; in between, the atom table is copied with the columns that
-// gemmi insists on, so that files of other programs, which leave some out, can be read too.
+// mmCIF files, also those of other programs, which leave out columns. gemmi reads the syntax; the model is built here,
+// as gemmi insists on more columns and looks for each residue among all those of its chain.
 #include "io/readers.h"  // first: settles how gemmi formats numbers
 
-#include <algorithm>
 #include <gemmi/cif.hpp>
-#include <gemmi/mmcif.hpp>
+#include <gemmi/enumstr.hpp>
 #include <gemmi/numb.hpp>
 #include <unordered_map>
 
@@ -18,7 +17,7 @@ namespace {
 
 namespace cif = gemmi::cif;
 
-enum Column {  // gemmi wants one that must be there first
+enum Column {  // those that must be there are first, as gemmi wants it
   kX,
   kY,
   kZ,
@@ -62,137 +61,108 @@ std::vector<std::string> column_names() {
           "?pdbx_PDB_model_num"};
 }
 
-std::string value_or(cif::Table::Row &row, Column column, const char *otherwise) {
-  return row.has2(column) ? row[column] : otherwise;
+// The first of two values that is there, without quotes.
+std::string first_there(cif::Table::Row &row, Column first, Column second, const char *otherwise) {
+  return row.has2(first) ? row.str(first) : row.has2(second) ? row.str(second) : otherwise;
 }
 
-// The author's name where there is one, as PDB files have it, else the label.
-std::string first_of(cif::Table::Row &row, Column author, Column label, const char *otherwise) {
-  return row.has2(author) ? row[author] : value_or(row, label, otherwise);
+double number_in(cif::Table::Row &row, Column column, double otherwise) {
+  return row.has(column) ? cif::as_number(row[column], otherwise) : otherwise;
 }
 
-// The block of one model, as gemmi wants it.
-struct ModelBlock {
-  std::string name;
-  cif::Block block{"model"};
-  uint32_t atom_count = 0;
-};
+char letter_in(cif::Table::Row &row, Column column, char otherwise) {
+  return row.has(column) ? cif::as_char(row[column], otherwise) : otherwise;
+}
 
 class TableReader {
  public:
   TableReader(cif::Block &source, const std::string &path, int wanted) : path_(path), wanted_(wanted) {
-    cif::Table table = source.find("_atom_site.", column_names());
+    for (cif::Table::Row row : source.find("_entity.", {"id", "type"}))
+      entities_[row.str(0)] = gemmi::entity_type_from_string(row.str(1));
     size_t row_number = 0;
-    for (cif::Table::Row row : table) add(row, ++row_number);
-    cif::Table entities = source.find("_entity.", {"id", "type"});
-    for (ModelBlock &model : models) {
-      cif::Loop &loop = model.block.init_loop("_entity.", {"id", "type"});
-      for (cif::Table::Row row : entities) loop.add_row({row[0], row[1]});
-    }
+    for (cif::Table::Row row : source.find("_atom_site.", column_names())) add(row, ++row_number);
+    file.model_count = static_cast<int>(places_.size());
   }
 
-  std::vector<ModelBlock> models;  // all of the file; those not wanted stay without rows
-  size_t inferred_elements = 0;
+  RawFile file;
 
  private:
   void add(cif::Table::Row &row, size_t row_number) {
-    const std::string name = row.has2(kModel) ? row.str(kModel) : "1";
-    if (models.empty() || models[current_].name != name) {
-      const auto found = index_.emplace(name, models.size());
-      current_ = found.first->second;
-      if (found.second) {
-        models.emplace_back();
-        models.back().name = name;
-        models.back().block.init_loop(
-            "_atom_site.", {"id", "group_PDB", "type_symbol", "label_atom_id", "label_alt_id", "label_comp_id",
-                            "label_asym_id", "label_entity_id", "label_seq_id", "pdbx_PDB_ins_code", "Cartn_x",
-                            "Cartn_y", "Cartn_z", "occupancy", "B_iso_or_equiv", "auth_seq_id", "auth_asym_id"});
-      }
-    }
-    if (wanted_ != 0 && static_cast<size_t>(wanted_) != current_ + 1) return;
+    const std::string model = row.has2(kModel) ? row.str(kModel) : "1";
+    if (row_number == 1 || model != model_) begin_model(model);
+    if (!raw_) return;
+    const auto fail = [&](const std::string &what) {
+      fail_input("'" + path_ + "', atom " + std::to_string(row_number) + " of _atom_site: the " + what);
+    };
     for (Column axis : {kX, kY, kZ})
       if (!cif::is_numb(row[axis]))
-        fail_input("'" + path_ + "', atom " + std::to_string(row_number) + " of _atom_site: the " + "xyz"[axis - kX] +
-                   " coordinate '" + row[axis] + "' is no number");
-    const std::string number = first_of(row, kAuthNumber, kLabelNumber, "?");
-    const std::string label_number = value_or(row, kLabelNumber, "?");
-    for (const std::string &text : {number, label_number}) check_residue_number(text, row_number);
-    ModelBlock &model = models[current_];
-    std::vector<std::string> &values = model.block.items.front().loop.values;
-    std::string residue = first_of(row, kAuthResidue, kLabelResidue, "UNK");
-    std::transform(residue.begin(), residue.end(), residue.begin(), to_ascii);
-    const std::string atom = first_of(row, kAuthAtom, kLabelAtom, "X");
-    const std::string chain = first_of(row, kLabelChain, kAuthChain, "A");
-    values.push_back(std::to_string(++model.atom_count));
-    values.push_back(value_or(row, kGroup, "ATOM"));
-    values.push_back(element_symbol(row, residue, atom));
-    values.push_back(atom);
-    values.push_back(value_or(row, kAltLoc, "."));
-    values.push_back(residue);
-    values.push_back(chain);
-    values.push_back(value_or(row, kEntity, "?"));
-    values.push_back(label_number);
-    values.push_back(value_or(row, kInsertion, "?"));
-    for (Column axis : {kX, kY, kZ}) values.push_back(row[axis]);
-    values.push_back(value_or(row, kOccupancy, "1"));
-    values.push_back(value_or(row, kBFactor, "0"));
-    values.push_back(number);
-    values.push_back(row.has2(kAuthChain) ? row[kAuthChain] : chain);
+        fail(std::string(1, "xyz"[axis - kX]) + " coordinate '" + row[axis] + "' is no number");
+    // The author's names where there are some, as PDB files have them.
+    const std::string residue = first_there(row, kAuthResidue, kLabelResidue, "UNK");
+    const std::string chain = first_there(row, kAuthChain, kLabelChain, "A");
+    gemmi::SeqId number;
+    const std::string digits = first_there(row, kAuthNumber, kLabelNumber, "");
+    if (!digits.empty() && !parse_residue_number(digits, number))
+      fail("residue number '" + digits + "' is no whole number, or too large");
+    if (number.icode == ' ') number.icode = letter_in(row, kInsertion, ' ');
+    gemmi::Atom atom;
+    atom.name = first_there(row, kAuthAtom, kLabelAtom, "X");
+    atom.altloc = letter_in(row, kAltLoc, '\0');
+    atom.element = element_of(row, residue, atom.name);
+    atom.pos = gemmi::Position(cif::as_number(row[kX]), cif::as_number(row[kY]), cif::as_number(row[kZ]));
+    atom.occ = static_cast<float>(number_in(row, kOccupancy, 1));
+    atom.b_iso = static_cast<float>(number_in(row, kBFactor, 0));
+    const bool hetero = row.has2(kGroup) && to_upper(row.str(kGroup)[0]) == 'H';
+    gemmi::Residue &last = add_atom(*raw_, path_, {chain, residue, number, hetero}, std::move(atom));
+    if (last.atoms.size() != 1) return;
+    last.subchain = first_there(row, kLabelChain, kAuthChain, "A");  // what assemblies name
+    const auto entity = entities_.find(row.has2(kEntity) ? row.str(kEntity) : "");
+    if (entity != entities_.end()) last.entity_type = entity->second;
   }
 
-  // gemmi finds what is no number, but not what an int can't hold.
-  void check_residue_number(const std::string &text, size_t row_number) const {
-    constexpr ptrdiff_t kMostDigits = 9;
-    if (std::count_if(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; }) > kMostDigits)
-      fail_input("'" + path_ + "', atom " + std::to_string(row_number) + " of _atom_site: the residue number '" + text +
-                 "' has more than 9 digits");
+  // Or goes on with it, where rows of models alternate.
+  void begin_model(const std::string &name) {
+    model_ = name;
+    const auto [found, is_new] = places_.emplace(name, places_.size());
+    const size_t place = found->second;
+    const bool is_wanted = wanted_ == 0 || place + 1 == static_cast<size_t>(wanted_);
+    raw_ = nullptr;
+    if (!is_wanted) return;
+    if (is_new) {
+      file.models.emplace_back();
+      file.models.back().number = static_cast<int>(place) + 1;
+      file.models.back().model.name = name;
+    }
+    raw_ = wanted_ == 0 ? &file.models[place] : &file.models.front();
   }
 
-  std::string element_symbol(cif::Table::Row &row, const std::string &residue, const std::string &atom) {
+  gemmi::El element_of(cif::Table::Row &row, const std::string &residue, const std::string &atom) {
     const std::string given = row.has2(kSymbol) ? row.str(kSymbol) : "";
     gemmi::El element = parse_element(given);
-    if (element == gemmi::El::X && given != "X") {
-      element = infer_element(cif::as_string(residue), cif::as_string(atom));
-      if (element != gemmi::El::X) ++inferred_elements;
-    }
-    return gemmi::element_name(element);
+    if (element != gemmi::El::X || given == "X") return element;
+    element = infer_element(residue, atom);
+    if (element != gemmi::El::X) ++file.inferred_elements;
+    return element;
   }
 
   const std::string &path_;
   const int wanted_;
-  size_t current_ = 0;
-  std::unordered_map<std::string, size_t> index_;
+  std::unordered_map<std::string, gemmi::EntityType> entities_;
+  std::unordered_map<std::string, size_t> places_;  // of the models
+  std::string model_;                               // the name of the current one
+  RawModel *raw_ = nullptr;                         // the current one; null: it is not wanted
 };
 
 }  // namespace
 
 RawFile read_mmcif_text(const std::string &text, const std::string &path, int model) {
   try {
-    RawFile file;
-    std::vector<ModelBlock> parts;
-    {
-      cif::Document document = cif::read_memory(text.data(), text.size(), path.c_str());
-      for (cif::Block &block : document.blocks) {
-        TableReader table(block, path, model);
-        if (table.models.empty()) continue;
-        file.inferred_elements = table.inferred_elements;
-        parts = std::move(table.models);
-        break;  // the first block with atoms is the structure
-      }
+    cif::Document document = cif::read_memory(text.data(), text.size(), path.c_str());
+    for (cif::Block &block : document.blocks) {
+      TableReader table(block, path, model);
+      if (table.file.model_count != 0) return std::move(table.file);  // the first block with atoms is the structure
     }
-    file.model_count = static_cast<int>(parts.size());
-    for (size_t i = 0; i < parts.size(); ++i) {
-      if (parts[i].atom_count == 0) continue;
-      RawModel raw;
-      raw.number = static_cast<int>(i) + 1;
-      raw.atom_count = parts[i].atom_count;
-      gemmi::Structure structure = gemmi::make_structure_from_block(parts[i].block);
-      raw.model = std::move(structure.models.at(0));
-      raw.model.name = parts[i].name;
-      parts[i].block = cif::Block();
-      file.models.push_back(std::move(raw));
-    }
-    return file;
+    return RawFile();
   } catch (const Error &) {
     throw;
   } catch (const std::bad_alloc &) {

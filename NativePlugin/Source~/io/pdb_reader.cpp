@@ -18,8 +18,6 @@
 namespace quickses::io {
 namespace {
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
 // Numbers from 10000 on in four columns. VMD writes them in base 16 and small letters, 2a00. Hybrid-36
 // (cci.lbl.gov/hybrid_36) begins with a letter, A000 for 10000 to ZZZZ, and then from 1,223,056 on with a small one;
 // what both could have written is taken for VMD's.
@@ -47,7 +45,8 @@ class AtomRecord {
   explicit AtomRecord(std::string_view line) {
     line = line.substr(0, kColumns);
     std::fill(std::begin(text_), std::end(text_), ' ');
-    std::transform(line.begin(), line.end(), text_, [](char c) { return c == '\0' || c == '\t' ? ' ' : to_ascii(c); });
+    std::transform(line.begin(), line.end(), text_,
+                   [](char c) { return c == '\0' || is_blank(c) ? ' ' : to_ascii(c); });
   }
 
   char column(size_t place) const { return text_[place - 1]; }
@@ -58,8 +57,8 @@ class AtomRecord {
     return parse_number(columns(first, last), value) ? value : otherwise;
   }
 
-  // What there is between the chain and the coordinates.
-  std::string place() const { return columns(23, 27); }
+  // The residue's name, chain and what there is in place of its number.
+  std::string place() const { return columns(18, 27); }
 
   // From 10000 on, five digits and more reach into the column of the insertion code, which is a letter, or the four
   // columns have other digits. None where they are no number: of VMD's residues from 65536 on they are ****.
@@ -147,8 +146,6 @@ class Reader {
     if (!is_open_) begin_model("");
     if (!is_wanted()) return;
     RawModel &raw = file_.models.back();
-    if (++raw.atom_count > kMostAtoms)
-      fail_input("'" + path_ + "' has more than " + std::to_string(kMostAtoms) + " atoms in one model");
     double position[3];
     read_pdb_position(line, path_, line_number_, position);
 
@@ -158,7 +155,6 @@ class Reader {
     const size_t chain_column = has_fourth_letter ? 22 : 21;
     const std::string residue = record.word(18, chain_column - 1);
     gemmi::Atom atom;
-    atom.serial = static_cast<int>(raw.atom_count);
     atom.name = record.word(13, 16);
     atom.altloc = record.column(17) == ' ' ? '\0' : record.column(17);
     atom.pos = gemmi::Position(position[0], position[1], position[2]);
@@ -167,16 +163,15 @@ class Reader {
     atom.element = element_of(record, residue);
     const gemmi::SeqId number = record.residue_number();
     const bool begins_residue = !number.num && begins_residue_without_number(record, atom);
-    ModelBuilder(raw.model).add(record.word(chain_column, 22), residue, number, is_hetero, std::move(atom),
-                                begins_residue);
+    const std::string chain_name = record.word(chain_column, 22);
+    gemmi::Residue &last =
+        add_atom(raw, path_, {chain_name, residue, number, is_hetero, begins_residue}, std::move(atom));
 
-    gemmi::Chain &chain = raw.model.chains.back();
     if (raw.model.chains.size() != chain_count_) {
       chain_count_ = raw.model.chains.size();
       polymer_end_ = 0;
-      has_ended_ = ended_chains_.count(chain.name) != 0;
+      has_ended_ = ended_chains_.count(chain_name) != 0;
     }
-    gemmi::Residue &last = chain.residues.back();
     if (has_ended_ && is_hetero && last.atoms.size() == 1)
       last.entity_type = last.is_water() ? gemmi::EntityType::Water : gemmi::EntityType::NonPolymer;
   }

@@ -3,6 +3,7 @@
 // (GROMACS, nm).
 #include "io/readers.h"  // first: settles how gemmi formats numbers
 
+#include <algorithm>
 #include <string_view>
 
 #include "io/elements.h"
@@ -33,21 +34,6 @@ const char *axis_name(int axis) {
   return kNames[axis];
 }
 
-bool is_letter(char c) { return to_upper(c) >= 'A' && to_upper(c) <= 'Z'; }
-
-// A residue number with a possible insertion code behind: "52A".
-bool parse_residue_number(std::string_view word, gemmi::SeqId &id) {
-  char code = ' ';
-  if (!word.empty() && is_letter(word.back())) {
-    code = word.back();
-    word.remove_suffix(1);
-  }
-  int number = 0;
-  if (!parse_integer(word, number)) return false;
-  id = gemmi::SeqId(number, code);
-  return true;
-}
-
 // What an atom's line of a PQR file says.
 struct PqrLine {
   bool is_hetero;
@@ -61,8 +47,7 @@ bool split_pqr_line(std::string_view line, PqrLine &out) {
   size_t begin = 0;
   for (const char *record : {"ATOM", "HETATM"})
     if (const std::string_view name = record; line.substr(0, name.size()) == name) begin = name.size();
-  if (begin == 0 || (begin < line.size() && !is_blank(line[begin]) && (line[begin] < '0' || line[begin] > '9')))
-    return false;
+  if (begin == 0 || (begin < line.size() && !is_blank(line[begin]) && !is_digit(line[begin]))) return false;
   out.is_hetero = line[0] == 'H';
   split_words(line.substr(begin), out.words);
   std::vector<std::string_view> &words = out.words;
@@ -70,9 +55,10 @@ bool split_pqr_line(std::string_view line, PqrLine &out) {
     words.insert(words.begin() + static_cast<std::ptrdiff_t>(k) + 1, words[k].substr(place));
     words[k] = words[k].substr(0, place);
   };
-  for (size_t k = 3; k < words.size(); ++k)
+  constexpr size_t kMostWords = 10;  // what is behind them is not read
+  for (size_t k = 3; k < std::min(words.size(), kMostWords); ++k)
     for (size_t sign = 1; sign < words[k].size(); ++sign)
-      if (words[k][sign] == '-' && words[k][sign - 1] >= '0' && words[k][sign - 1] <= '9') {
+      if (words[k][sign] == '-' && is_digit(words[k][sign - 1])) {
         split_at(k, sign);
         break;
       }
@@ -86,25 +72,10 @@ bool split_pqr_line(std::string_view line, PqrLine &out) {
 
 }  // namespace
 
-void ModelBuilder::add(const std::string &chain, const std::string &residue, gemmi::SeqId number, bool hetero,
-                       gemmi::Atom atom, bool begins_residue) {
-  if (model_.chains.empty() || model_.chains.back().name != chain) model_.chains.emplace_back(chain);
-  std::vector<gemmi::Residue> &residues = model_.chains.back().residues;
-  gemmi::ResidueId id;
-  id.seqid = number;
-  id.name = residue;
-  if (begins_residue || residues.empty() || !residues.back().matches(id)) {
-    residues.emplace_back(id);
-    residues.back().het_flag = hetero ? 'H' : 'A';
-  }
-  residues.back().atoms.push_back(std::move(atom));
-}
-
 RawFile read_xyzr_text(const std::string &text, const std::string &path) {
   RawFile file;
   RawModel raw;
   raw.has_names = false;
-  ModelBuilder builder(raw.model);
   std::string_view rest = text, line;
   std::vector<std::string_view> words;
   for (size_t number = 1; next_line(rest, line); ++number) {
@@ -115,9 +86,8 @@ RawFile read_xyzr_text(const std::string &text, const std::string &path) {
     atom.pos.x = number_at_line(words[0], axis_name(0), path, number);
     atom.pos.y = number_at_line(words[1], axis_name(1), path, number);
     atom.pos.z = number_at_line(words[2], axis_name(2), path, number);
-    atom.serial = static_cast<int>(++raw.atom_count);
     raw.radii.push_back(radius_at_line(words[3], path, number));
-    builder.add("", "", gemmi::SeqId(0, ' '), false, std::move(atom));
+    add_atom(raw, path, {"", "", gemmi::SeqId(0, ' ')}, std::move(atom));
   }
   file.model_count = raw.atom_count != 0;
   if (raw.atom_count != 0) file.models.push_back(std::move(raw));
@@ -149,7 +119,7 @@ RawFile read_pqr_text(const std::string &text, const std::string &path, int mode
     if (words.size() < 9)
       fail_input(at_line(path, number) + "expected ATOM serial name residue [chain] number x y z charge radius");
     const bool has_chain = words.size() > 9;
-    const std::string residue(words[2]), chain(has_chain ? std::string(words[3]) : std::string());
+    const std::string_view chain = has_chain ? words[3] : "";
     const std::string_view *field = words.data() + (has_chain ? 4 : 3);
     gemmi::SeqId residue_number;
     if (!parse_residue_number(field[0], residue_number))
@@ -159,11 +129,10 @@ RawFile read_pqr_text(const std::string &text, const std::string &path, int mode
     atom.pos.x = number_at_line(field[1], axis_name(0), path, number);
     atom.pos.y = number_at_line(field[2], axis_name(1), path, number);
     atom.pos.z = number_at_line(field[3], axis_name(2), path, number);
-    atom.element = infer_element(residue, atom.name);  // PQR has no elements: nothing to warn of
+    atom.element = infer_element(std::string(words[2]), atom.name);  // PQR has no elements: nothing to warn of
     RawModel &raw = file.models.back();
-    atom.serial = static_cast<int>(++raw.atom_count);
     raw.radii.push_back(radius_at_line(field[5], path, number));
-    ModelBuilder(raw.model).add(chain, residue, residue_number, atom_line.is_hetero, std::move(atom));
+    add_atom(raw, path, {chain, words[2], residue_number, atom_line.is_hetero}, std::move(atom));
   }
   return file;
 }
@@ -185,7 +154,6 @@ RawFile read_gro_text(const std::string &text, const std::string &path, int mode
     RawModel raw;
     raw.number = file.model_count;
     raw.model.name = std::to_string(file.model_count);
-    ModelBuilder builder(raw.model);
     size_t width = 0;  // of a coordinate: the distance between decimal points, as GROMACS itself reads it
     for (int i = 0; i < count; ++i) {
       ++number;
@@ -213,8 +181,7 @@ RawFile read_gro_text(const std::string &text, const std::string &path, int mode
       // Four letters would be taken for the columns of PDB.
       atom.element = infer_element(residue, atom.name.size() == 4 ? atom.name + " " : atom.name);
       if (atom.element != gemmi::El::X) ++file.inferred_elements;
-      atom.serial = static_cast<int>(++raw.atom_count);
-      builder.add("", residue, gemmi::SeqId(residue_number, ' '), false, std::move(atom));
+      add_atom(raw, path, {"", residue, gemmi::SeqId(residue_number, ' ')}, std::move(atom));
     }
     ++number;
     if (!next_line(rest, line)) fail_input("'" + path + "' is cut off: the line of the box is missing");

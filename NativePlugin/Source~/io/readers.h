@@ -9,6 +9,7 @@
 #endif
 #include <gemmi/model.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace quickses::io {
@@ -38,16 +39,19 @@ RawFile read_pqr_text(const std::string &text, const std::string &path, int mode
 RawFile read_xyzr_text(const std::string &text, const std::string &path);
 RawFile read_gro_text(const std::string &text, const std::string &path, int model);
 
-// Adds atoms to a gemmi model in the order they come.
-class ModelBuilder {
- public:
-  explicit ModelBuilder(gemmi::Model &model) : model_(model) {}
-  // begins_residue: even if chain, residue and number are those of the atom before.
-  void add(const std::string &chain, const std::string &residue, gemmi::SeqId number, bool hetero, gemmi::Atom atom,
-           bool begins_residue = false);
-
- private:
-  gemmi::Model &model_;
+// Where an atom is in its model, in the words of the file.
+struct AtomPlace {
+  std::string_view chain, residue;
+  gemmi::SeqId number;
+  bool hetero = false;
+  bool begins_residue = false;  // even if chain, residue and number are those of the atom before
 };
+
+// Appends an atom and gives its residue. Of the names only printable ASCII stays: they are written to terminals. Throws
+// Error (kInput): more than kMostAtoms.
+gemmi::Residue &add_atom(RawModel &raw, const std::string &path, const AtomPlace &place, gemmi::Atom atom);
+
+// A residue number with a possible insertion code behind: "52A".
+bool parse_residue_number(std::string_view word, gemmi::SeqId &id);
 
 }  // namespace quickses::io

@@ -75,9 +75,7 @@ ResidueTraits nucleotide(char letter) {
 
 }  // namespace
 
-ResidueTraits traits_of(const std::string &residue_name) {
-  std::string name = residue_name;
-  for (char &c : name) c = to_ascii(c);
+ResidueTraits traits_of(const std::string &name) {
   // Before gemmi, which knows the names of the PDB: there, HSE is homoserine.
   const SimulatedResidue simulated = find_simulated_residue(name);
   if (simulated.amino_acid != '\0') return amino_acid(simulated.amino_acid);

@@ -166,6 +166,8 @@ Structure flatten(const RawModel &raw, const Filter &filter, std::string &warnin
   structure.file_atom_count = raw.atom_count;
   structure.file_elements.resize(raw.atom_count);
   const std::vector<AtomRef> refs = in_file_order(raw.model);
+  structure.atoms.reserve(refs.size());
+  structure.positions.reserve(3 * refs.size());
   AlternateLocations locations(filter.options.altloc);
   for (const AtomRef &ref : refs) locations.see(*ref.chain, *ref.residue, *ref.atom);
   const gemmi::Residue *last_unnumbered = nullptr;

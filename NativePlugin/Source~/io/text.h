@@ -16,6 +16,8 @@ namespace quickses::io {
 inline bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
 
 // ASCII only, whatever the locale.
+inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
+inline bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 inline char to_upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
 inline char to_lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
@@ -23,8 +25,9 @@ inline bool is_one_of(std::string_view word, std::initializer_list<std::string_v
   return std::find(list.begin(), list.end(), word) != list.end();
 }
 
-// Names in structures are ASCII; gemmi shifts their characters as signed numbers.
-inline char to_ascii(char c) { return static_cast<unsigned char>(c) < 0x80 ? c : '?'; }
+// Names in structures are printable ASCII: they must not steer a terminal, and gemmi shifts their characters as signed
+// numbers.
+inline char to_ascii(char c) { return c >= ' ' && c <= '~' ? c : '?'; }
 
 inline std::string_view trim(std::string_view text) {
   while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);

@@ -122,6 +122,14 @@ TEST(PdbResidueNumbers, ThatAreNoneDoNotMergeResidues) {
   EXPECT_EQ(residues(alternatives + alternatives.substr(0, 81).replace(16, 1, "B")), (Residues{0, 0, 0}));
 }
 
+// Atoms of the residue before, which has another name, do not count as those of this one.
+TEST(PdbResidueNumbers, ThatAreNoneDoNotSplitResidues) {
+  std::string text;
+  for (const char *atom_of : {"N   AAA", "C1  AAA", "C2  AAA", "C3  BBB", "C1  BBB", "C4  BBB"})
+    text += "ATOM      1  " + std::string(atom_of) + " A****       1.000   0.000   0.000  1.00  0.00           C\n";
+  EXPECT_EQ(residues_of(parse(text).models.at(0)), (std::vector<uint32_t>{0, 0, 0, 1, 1, 1}));
+}
+
 // ---- residue names of four letters, chains of two
 
 TEST(PdbResidueNames, MayHaveFourLetters) {

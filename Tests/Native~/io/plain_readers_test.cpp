@@ -58,6 +58,15 @@ TEST_F(PlainReadersTest, PqrWordsThatColumnsJoin) {
   EXPECT_EQ(last.chain + std::to_string(last.residue_number), "12");
 }
 
+// Splitting all of them would take days.
+TEST_F(PlainReadersTest, PqrWordsBehindTheRadiusAreNotRead) {
+  std::string line = "ATOM 1 CA ALA A 1 1 2 3 0.1 1.5 ";
+  for (int k = 0; k < 1000000; ++k) line += "1-1 ";
+  const Structure structure = only_model(write("a.pqr", line + "\n"));
+  EXPECT_EQ(structure.positions, (std::vector<float>{1, 2, 3}));
+  EXPECT_EQ(structure.radii, (std::vector<float>{1.5f}));
+}
+
 TEST_F(PlainReadersTest, PqrModelsAndInsertionCodes) {
   const auto atom = [](const char *number, int x) {
     return "ATOM 1 CA ALA A " + std::string(number) + " " + std::to_string(x) + " 0 0 0.1 1.5\n";
