@@ -3,13 +3,22 @@
 #include "cli/frame_ledger.h"
 
 namespace quickses::cli {
+namespace {
 
-FrameLedger::FrameLedger(const FrameSelection &frames, size_t window, std::function<void(const FrameResult &)> sink)
-    : frames_(frames), window_(window), sink_(std::move(sink)) {}
+size_t size_of(const FrameResult &result) {
+  return result.csv.size() + result.json.size() + result.page.size() + result.per_atom.size() +
+         result.per_residue.size() + result.error.size();
+}
+
+}  // namespace
+
+FrameLedger::FrameLedger(const FrameSelection &frames, size_t window, std::function<void(const FrameResult &)> sink,
+                         size_t most_kept)
+    : frames_(frames), window_(window), most_kept_(most_kept), sink_(std::move(sink)) {}
 
 FrameLedger::Answer FrameLedger::take(FrameTask &task) {
   if (why_ended_ || handed_out_ == frames_.count) return Answer::kNoMore;
-  if (handed_out_ >= passed_on_ + window_) return Answer::kLater;
+  if (handed_out_ >= passed_on_ + window_ || kept_ > most_kept_) return Answer::kLater;
   task = {handed_out_, frames_.frame(handed_out_)};
   ++handed_out_;
   return Answer::kTask;
@@ -36,6 +45,7 @@ void FrameLedger::deliver(FrameResult result) {
   if (!result.error.empty()) ++failed_count_;
   try {
     const uint64_t place = result.place;
+    kept_ += size_of(result);
     early_.emplace(place, std::move(result));
     if (is_passing_on_) return;
     is_passing_on_ = true;
@@ -45,6 +55,7 @@ void FrameLedger::deliver(FrameResult result) {
       sink_(next.mapped());
       lock.lock();
       ++passed_on_;
+      kept_ -= size_of(next.mapped());
       changed_.notify_all();
     }
   } catch (...) {

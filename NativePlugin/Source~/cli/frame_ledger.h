@@ -15,8 +15,10 @@ namespace quickses::cli {
 class FrameLedger : public FrameSupply {
  public:
   // sink: called with one result after the other, from any thread but never from two at a time. What it throws ends the
-  // run. window: how many frames may be handed out beyond the oldest one that is missing; it bounds what is kept.
-  FrameLedger(const FrameSelection &frames, size_t window, std::function<void(const FrameResult &)> sink);
+  // run. window: how many frames may be handed out beyond the oldest one that is missing; most_kept: none while results
+  // of more bytes wait for an older one.
+  FrameLedger(const FrameSelection &frames, size_t window, std::function<void(const FrameResult &)> sink,
+              size_t most_kept = size_t(256) << 20);
 
   std::optional<FrameTask> next() override;
   void deliver(FrameResult result) override;
@@ -35,12 +37,13 @@ class FrameLedger : public FrameSupply {
   Answer take(FrameTask &task);
 
   const FrameSelection frames_;
-  const size_t window_;
+  const size_t window_, most_kept_;
   const std::function<void(const FrameResult &)> sink_;
   std::mutex mutex_;
   std::condition_variable changed_;
   size_t handed_out_ = 0, passed_on_ = 0, failed_count_ = 0;
   std::map<uint64_t, FrameResult> early_;  // by place, waiting for those before
+  size_t kept_ = 0;                        // bytes of those, and of the one that is being passed on
   bool is_passing_on_ = false;             // one of those who deliver
   std::exception_ptr why_ended_;
 };

@@ -72,6 +72,24 @@ TEST(FrameLedger, HoldsFramesBackWhileAnOldOneIsMissing) {
   EXPECT_EQ(ledger.try_next(task), FrameLedger::Answer::kLater);
 }
 
+TEST(FrameLedger, HoldsFramesBackWhileLargeResultsWait) {
+  FrameLedger ledger(
+      {0, 1, 10}, 10, [](const FrameResult &) {}, 100);
+  std::vector<FrameTask> tasks(3);
+  for (FrameTask &task : tasks) ASSERT_EQ(ledger.try_next(task), FrameLedger::Answer::kTask);
+  FrameResult large = result_of(tasks[2]);
+  large.per_atom = std::string(60, 'a');
+  large.page = std::string(60, 'p');
+  ledger.deliver(large);
+  FrameTask task;
+  EXPECT_EQ(ledger.try_next(task), FrameLedger::Answer::kLater);
+  ledger.deliver(result_of(tasks[0]));
+  EXPECT_EQ(ledger.try_next(task), FrameLedger::Answer::kLater);
+  ledger.deliver(result_of(tasks[1]));
+  EXPECT_EQ(ledger.try_next(task), FrameLedger::Answer::kTask);
+  EXPECT_EQ(task.place, 3u);
+}
+
 TEST(FrameLedger, ManyWorkers) {
   constexpr size_t kFrames = 2000;
   constexpr size_t kWindow = 6;
