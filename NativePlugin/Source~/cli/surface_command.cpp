@@ -138,7 +138,7 @@ class SurfaceRun {
   }
 
   const Options &options_;
-  const UsedFiles files_;
+  UsedFiles files_;
   AreaTables tables_;
   std::optional<Engine> engine_;
   Timings timings_;

@@ -217,7 +217,7 @@ class Run {
   }
 
   void check_meshes() const {
-    const UsedFiles files(inputs_.options);
+    UsedFiles files(inputs_.options);
     for (size_t place = 0; place < frames_.count; ++place)
       files.check_mesh(inputs_.pattern->name(frames_.frame(place)));
     check_mesh_writable(inputs_.pattern->name(frames_.first));

@@ -2,8 +2,8 @@
 // The files of a run, and that none is written over another one.
 #include "cli/used_files.h"
 
-#include <map>
 #include <system_error>
+#include <utility>
 
 #include "cli/each_input.h"
 #include "cli/exit_code.h"
@@ -14,7 +14,10 @@
 #include "io/radii.h"
 
 #if defined(_WIN32)
-#include <cwctype>
+#ifndef NOMINMAX
+#define NOMINMAX
+#endif
+#include <windows.h>
 #endif
 
 namespace quickses::cli {
@@ -23,17 +26,6 @@ namespace {
 namespace fs = std::filesystem;
 
 const char kOutputFlag[] = "--output (-o)";
-
-// Two places are one if these are equal.
-fs::path::string_type comparable(const fs::path &place) {
-  fs::path::string_type text = place.native();
-#if defined(_WIN32)
-  for (wchar_t &c : text) c = static_cast<wchar_t>(std::towlower(c));
-#endif
-  return text;
-}
-
-bool is_same_place(const fs::path &a, const fs::path &b) { return comparable(a) == comparable(b); }
 
 }  // namespace
 
@@ -45,14 +37,33 @@ UsedFiles::File UsedFiles::file_of(const char *flag, const std::string &name, bo
   const char *const standard = is_output ? "/dev/stdout" : "/dev/stdin";  // what a shell leads there may be a file
 #endif
   const fs::path path = is_standard ? fs::path(standard) : io::path_of(name);
-  return {flag, is_standard ? "-" : name, is_output, path, io::place_of(path)};
+  return {flag, is_standard ? "-" : name, is_output, path, place_of(path)};
+}
+
+// As io::place_of, which asks about every folder of the path; of many files of one folder once.
+fs::path UsedFiles::place_of(const fs::path &path) {
+  std::error_code error;
+  if (fs::is_symlink(path, error)) return io::place_of(path);
+  const auto [folder, is_new] = folders_.try_emplace(path.parent_path());
+  if (is_new) folder->second = io::place_of(path).parent_path();
+  return folder->second / path.filename();
+}
+
+UsedFiles::Key UsedFiles::key_of(const File &file) {
+  Key key = file.place.native();
+#if defined(_WIN32)
+  // Of all alphabets, as file systems compare there.
+  const int size = static_cast<int>(key.size());
+  LCMapStringEx(LOCALE_NAME_INVARIANT, LCMAP_UPPERCASE, key.data(), size, &key[0], size, nullptr, nullptr, 0);
+#endif
+  return key;
 }
 
 bool UsedFiles::is_same(const File &a, const File &b) {
   std::error_code error;
   const fs::file_status status_a = fs::status(a.path, error), status_b = fs::status(b.path, error);
   if (fs::exists(status_a) != fs::exists(status_b)) return false;
-  if (!fs::exists(status_a)) return is_same_place(a.place, b.place);
+  if (!fs::exists(status_a)) return key_of(a) == key_of(b);
   return fs::is_regular_file(status_a) && fs::equivalent(a.path, b.path, error);
 }
 
@@ -64,30 +75,38 @@ void UsedFiles::check(const File &output) const {
                                                 : "one of the inputs (" + file.flag + ") and would be overwritten"));
 }
 
-void UsedFiles::add_input(const char *flag, const std::string &name) {
-  if (!name.empty()) files_.push_back(file_of(flag, name, false));
+// Of meshes, which may be many, only those at the place of another file are compared. Hard links don't matter: a mesh
+// takes the place of a name, not of what is in the file.
+void UsedFiles::check_place(const File &mesh) const {
+  if (places_.count(key_of(mesh)) != 0) check(mesh);
 }
 
-// There may be thousands, so they are not compared two by two. Hard links don't matter: a mesh takes the place of a
-// name, not of what is in the file.
+void UsedFiles::add(File file) {
+  places_.insert(key_of(file));
+  files_.push_back(std::move(file));
+}
+
+void UsedFiles::add_input(const char *flag, const std::string &name) {
+  if (!name.empty()) add(file_of(flag, name, false));
+}
+
 void UsedFiles::add_meshes(const Options &options) {
   if (!options.has_several_inputs()) {
     if (options.read.model == 0 && !makes_page(options)) return;
     for (const std::string &name : io::mesh_files_of(options.output)) add_output(kOutputFlag, name);
     return;
   }
-  std::map<fs::path::string_type, const std::string *> inputs, meshes;  // by place
-  for (const File &file : files_) inputs.emplace(comparable(file.place), &file.name);
+  std::map<Key, const std::string *> meshes;  // the inputs that they are of
   for (const std::string &input : options.inputs)
     for (const std::string &name : io::mesh_files_of(output_of_input(options, input))) {
       const File file = file_of(kOutputFlag, name, true);
-      const auto [other, is_new] = meshes.emplace(comparable(file.place), &input);
+      const auto [other, is_new] = meshes.emplace(key_of(file), &input);
       if (!is_new)
         throw Failure(kUsage, file.flag + ": '" + *other->second + "' and '" + input + "' would both be written to '" +
                                   file.name + "'");
       if (options.read.model == 0 && !makes_page(options)) continue;  // its meshes have names that are made of this one
-      if (inputs.count(comparable(file.place)) != 0) check(file);
-      files_.push_back(file);
+      check_place(file);
+      add(file);
     }
 }
 
@@ -95,7 +114,7 @@ void UsedFiles::add_output(const char *flag, const std::string &name) {
   if (name.empty()) return;
   const File file = file_of(flag, name, true);
   check(file);
-  files_.push_back(file);
+  add(file);
 }
 
 UsedFiles::UsedFiles(const Options &options) {
@@ -109,8 +128,8 @@ UsedFiles::UsedFiles(const Options &options) {
   add_output("--json", options.json);
 }
 
-void UsedFiles::check_mesh(const std::string &path) const {
-  for (const std::string &name : io::mesh_files_of(path)) check(file_of(kOutputFlag, name, true));
+void UsedFiles::check_mesh(const std::string &path) {
+  for (const std::string &name : io::mesh_files_of(path)) check_place(file_of(kOutputFlag, name, true));
 }
 
 }  // namespace quickses::cli

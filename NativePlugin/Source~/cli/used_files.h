@@ -3,6 +3,8 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -18,8 +20,9 @@ class UsedFiles {
   // files as well.
   explicit UsedFiles(const Options &options);
 
-  // The same for a mesh whose name is made of that of --output: of one model of many, or of a frame.
-  void check_mesh(const std::string &path) const;
+  // The same for a mesh whose name is made of that of --output: of one model of many, or of a frame. There may be
+  // millions of them.
+  void check_mesh(const std::string &path);
 
  private:
   struct File {
@@ -28,14 +31,22 @@ class UsedFiles {
     std::filesystem::path path, place;
   };
 
-  static File file_of(const char *flag, const std::string &name, bool is_output);
+  using Key = std::filesystem::path::string_type;
+
+  File file_of(const char *flag, const std::string &name, bool is_output);
+  std::filesystem::path place_of(const std::filesystem::path &path);
+  static Key key_of(const File &file);
   static bool is_same(const File &a, const File &b);
   void check(const File &output) const;
+  void check_place(const File &mesh) const;
+  void add(File file);
   void add_meshes(const Options &options);
   void add_input(const char *flag, const std::string &name);
   void add_output(const char *flag, const std::string &name);
 
   std::vector<File> files_;
+  std::set<Key> places_;                                            // of the files: two are one if these are equal
+  std::map<std::filesystem::path, std::filesystem::path> folders_;  // where they are
 };
 
 }  // namespace quickses::cli
