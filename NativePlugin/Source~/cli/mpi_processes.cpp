@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <climits>
 #include <cstdio>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -55,6 +56,13 @@ FrameResult unpack(const std::vector<uint8_t> &bytes) {
       packed.at(0).get<uint64_t>(), packed.at(1).get<uint64_t>(), text(2), text(3), text(4), text(5), text(6), text(7)};
 }
 
+// Of a process that can't go on: the frames it has would be missing for ever, and others wait for its answers.
+void abort_all(std::exception_ptr why) {
+  const Failure failure = failure_of(why);
+  std::fprintf(stderr, "quickses: %s\n", failure.what());
+  MPI_Abort(MPI_COMM_WORLD, failure.code());
+}
+
 // Workers of this process take turns at talking to the first process.
 class RemoteSupply : public FrameSupply {
  public:
@@ -75,16 +83,14 @@ class RemoteSupply : public FrameSupply {
 
   void deliver(FrameResult result) override {
     const std::vector<uint8_t> bytes = pack(result);
+    if (bytes.size() > INT_MAX)
+      throw Failure(kComputingFailed, "frame " + std::to_string(result.frame) + ": the result has more than " +
+                                          std::to_string(INT_MAX) + " bytes, which MPI does not send");
     const std::lock_guard<std::mutex> lock(mutex_);
     MPI_Send(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, kFirst, kResult, MPI_COMM_WORLD);
   }
 
-  // The frames this process has would be missing for ever.
-  void give_up(std::exception_ptr why) override {
-    const Failure failure = failure_of(why);
-    std::fprintf(stderr, "quickses: %s\n", failure.what());
-    MPI_Abort(MPI_COMM_WORLD, failure.code());
-  }
+  void give_up(std::exception_ptr why) override { abort_all(why); }
 
  private:
   std::mutex mutex_;
@@ -140,27 +146,35 @@ class MpiProcesses : public Processes {
   }
 
   void serve(FrameLedger &ledger) override {
-    for (int working = count_ - 1; working > 0;) {
-      int is_there = 0;
-      MPI_Status status;
-      MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &is_there, &status);
-      if (!is_there) {
-        std::this_thread::sleep_for(kPollingInterval);
-        continue;
+    try {
+      for (int working = count_ - 1; working > 0;) {
+        int is_there = 0;
+        MPI_Status status;
+        MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &is_there, &status);
+        if (!is_there)
+          std::this_thread::sleep_for(kPollingInterval);
+        else if (serve(ledger, status) == kDone)
+          --working;
       }
-      int size = 0;
-      MPI_Get_count(&status, MPI_BYTE, &size);
-      std::vector<uint8_t> bytes(static_cast<size_t>(size));
-      MPI_Recv(bytes.data(), size, MPI_BYTE, status.MPI_SOURCE, status.MPI_TAG, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
-      if (status.MPI_TAG == kDone) --working;
-      if (status.MPI_TAG == kResult) ledger.deliver(unpack(bytes));
-      if (status.MPI_TAG == kRequest) answer(ledger, status.MPI_SOURCE);
+    } catch (...) {
+      abort_all(std::current_exception());
     }
   }
 
   void say_done() override { MPI_Send(nullptr, 0, MPI_BYTE, kFirst, kDone, MPI_COMM_WORLD); }
 
  private:
+  // Gives the kind of the message.
+  static int serve(FrameLedger &ledger, const MPI_Status &status) {
+    int size = 0;
+    MPI_Get_count(&status, MPI_BYTE, &size);
+    std::vector<uint8_t> bytes(static_cast<size_t>(size));
+    MPI_Recv(bytes.data(), size, MPI_BYTE, status.MPI_SOURCE, status.MPI_TAG, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    if (status.MPI_TAG == kResult) ledger.deliver(unpack(bytes));
+    if (status.MPI_TAG == kRequest) answer(ledger, status.MPI_SOURCE);
+    return status.MPI_TAG;
+  }
+
   static void answer(FrameLedger &ledger, int asker) {
     FrameTask task;
     const FrameLedger::Answer answer = ledger.try_next(task);

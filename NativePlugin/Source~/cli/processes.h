@@ -27,7 +27,8 @@ class Processes {
 
   // Where the workers of a process other than the first get their frames. Null in the first, which has the ledger.
   virtual std::unique_ptr<FrameSupply> remote_supply() { return nullptr; }
-  // In the first process: hands frames of the ledger to the others until all have said that they are done.
+  // In the first process: hands frames of the ledger to the others until all have said that they are done. If it can't
+  // go on, all processes are ended: the others wait for its answers.
   virtual void serve(FrameLedger &) {}
   // In the others, after their workers are done.
   virtual void say_done() {}

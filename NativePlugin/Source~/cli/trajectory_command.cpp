@@ -188,16 +188,9 @@ class Run {
       for (const auto &worker : workers_) threads.emplace_back([&] { work(*worker, supply); });
     } catch (const std::exception &) {  // there are no more to be had: these do, or this one
     }
-    std::exception_ptr failed;
-    try {
-      if (!remote) processes_.serve(ledger);
-    } catch (...) {
-      failed = std::current_exception();
-      ledger.give_up(failed);
-    }
+    if (!remote) processes_.serve(ledger);
     if (threads.empty()) work(*workers_.front(), supply);
     for (std::thread &thread : threads) thread.join();
-    if (failed) std::rethrow_exception(failed);
     if (remote)
       processes_.say_done();
     else
