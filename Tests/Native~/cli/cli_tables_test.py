@@ -272,6 +272,14 @@ class Cavities(TablesTest):
             self.assertEqual(line.split()[0], row["component"])
             self.assertEqual(line.split()[-len(names):], names)
 
+    def test_names_do_not_steer_the_terminal(self):
+        escape = shell_pdb()[0].replace("ALA", "\x1b[2")
+        self.write("escape.pdb", escape)
+        for arguments in (["cavities", "escape.pdb"], ["measure", "escape.pdb", "--per-residue", "-"]):
+            text = self.run_cpu(*arguments).stdout
+            self.assertIn("?[2", text)
+            self.assertNotIn("\x1b", text)
+
     def test_none(self):
         self.write("one.pdb", pdb_text([("ATOM", "C", "ALA", 1)], [(0, 0, 0)]))
         text = self.run_cpu("cavities", "one.pdb").stdout
