@@ -8,11 +8,10 @@
 #include <limits>
 
 #include "cli/exit_code.h"
+#include "io/limits.h"
 
 namespace quickses::cli {
 namespace {
-
-constexpr double kFarthest = 1e6;  // Å, as of qses_set_atoms
 
 using Counts = std::array<unsigned, 3>;
 using Vector = std::array<double, 3>;
@@ -60,7 +59,7 @@ io::Structure make_copies(io::Structure structure, unsigned copies, float spacin
   for (int k = 0; k < 3; ++k) {
     const double width = (grid[k] - 1) * period[k];
     first[k] = -h * std::round(0.5 * (box.low[k] + box.high[k] + width) / h);
-    if (box.low[k] + first[k] < -kFarthest || box.high[k] + first[k] + width > kFarthest)
+    if (box.low[k] + first[k] < -io::kFarthest || box.high[k] + first[k] + width > io::kFarthest)
       throw Failure(kUsage, "--copies: " + std::to_string(copies) + " reach beyond 10^6 angstrom from the origin");
   }
 

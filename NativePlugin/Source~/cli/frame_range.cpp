@@ -3,7 +3,6 @@
 #include "cli/frame_range.h"
 
 #include <algorithm>
-#include <charconv>
 #include <vector>
 
 #include "cli/exit_code.h"
@@ -14,28 +13,15 @@ namespace {
 
 int64_t parse_part(const std::string &part, const std::string &text) {
   int64_t value = 0;
-  const char *const end = part.data() + part.size();
-  const auto result = std::from_chars(part.data(), end, value);
-  if (result.ec != std::errc() || result.ptr != end)
+  if (part != io::trim(part) || !io::parse_integer(part, value))
     throw Failure(kUsage, "--frames: '" + text + "' is no range of frames such as 10, 0:100, 0:100:5 or -20:");
   return value;
-}
-
-std::vector<std::string> split_at_colons(const std::string &text) {
-  std::vector<std::string> parts(1);
-  for (char c : text) {
-    if (c == ':')
-      parts.emplace_back();
-    else
-      parts.back() += c;
-  }
-  return parts;
 }
 
 }  // namespace
 
 FrameRange::FrameRange(const std::string &text) : text_(text) {
-  const std::vector<std::string> parts = split_at_colons(text);
+  const std::vector<std::string> parts = io::split(text, ':');
   if (parts.size() > 3) throw Failure(kUsage, "--frames: '" + text + "' has more than the three parts A:B:STEP");
   is_single_ = parts.size() == 1;
   if (is_single_ || !parts[0].empty()) begin_ = parse_part(parts[0], text);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The quickses program: molecular surfaces from the command line, by the C API and nothing else.
+// The quickses program: molecular surfaces from the command line: files are read and written by io/, surfaces computed
+// by the C API.
 #include <cstdio>
 #include <iostream>
 

@@ -63,11 +63,10 @@ void add_size(CLI::App *app, const char *flag, uint64_t &value, const char *help
 
 bool parse_size(const std::string &text, uint64_t &bytes) {
   size_t digits = 0;
-  while (digits < text.size() && ((text[digits] >= '0' && text[digits] <= '9') || text[digits] == '.')) ++digits;
+  while (digits < text.size() && (io::is_digit(text[digits]) || text[digits] == '.')) ++digits;
   double number = 0;
   if (!io::parse_number(text.substr(0, digits), number)) return false;
-  std::string unit = text.substr(digits);
-  for (char &c : unit) c = io::to_upper(c);
+  std::string unit = io::raised(text.substr(digits));
   if (unit.size() > 1 && unit.back() == 'B') unit.pop_back();
   if (unit.size() > 1 && unit.back() == 'I') unit.pop_back();
   if (unit == "B") unit.clear();

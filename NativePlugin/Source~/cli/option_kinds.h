@@ -20,11 +20,11 @@ const char *find_name(const std::map<std::string, Enum> &names, Enum value) {
   return "unknown";
 }
 
-// "auto|cuda|cpu", for --help.
+// "auto|cuda|cpu"
 template <typename Enum>
-std::string joined_names(const std::map<std::string, Enum> &names) {
+std::string joined_names(const std::map<std::string, Enum> &names, const char *separator) {
   std::string list;
-  for (const auto &entry : names) list += (list.empty() ? "" : "|") + entry.first;
+  for (const auto &entry : names) list += (list.empty() ? "" : separator) + entry.first;
   return list;
 }
 
@@ -33,9 +33,7 @@ template <typename Enum>
 Enum look_up(const std::string &flag, const std::map<std::string, Enum> &names, const std::string &text) {
   const auto found = names.find(text);
   if (found != names.end()) return found->second;
-  std::string list;
-  for (const auto &entry : names) list += (list.empty() ? "" : ", ") + entry.first;
-  throw Failure(kUsage, flag + ": '" + text + "' is not one of " + list);
+  throw Failure(kUsage, flag + ": '" + text + "' is not one of " + joined_names(names, ", "));
 }
 
 template <typename Enum>
@@ -43,7 +41,7 @@ void add_choice(CLI::App *app, const char *flag, Enum &value, const std::map<std
                 const char *help) {
   app->add_option_function<std::string>(
          flag, [&value, &names, flag](const std::string &text) { value = look_up(flag, names, text); }, help)
-      ->type_name(joined_names(names))
+      ->type_name(joined_names(names, "|"))
       ->default_str(find_name(names, value));
 }
 

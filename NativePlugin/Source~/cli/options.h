@@ -20,7 +20,7 @@ namespace quickses::cli {
 // A flag with the values on and off, or not given.
 enum class Switch { kDefault, kOff, kOn };
 
-// How to compute: flags that both commands share.
+// How to compute: flags that all commands share.
 struct ComputeOptions {
   qses_backend backend = QSES_BACKEND_AUTO;
   DeviceChoice devices;

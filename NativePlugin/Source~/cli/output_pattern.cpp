@@ -3,6 +3,7 @@
 #include "cli/output_pattern.h"
 
 #include "cli/exit_code.h"
+#include "io/text.h"
 
 namespace quickses::cli {
 namespace {
@@ -12,8 +13,6 @@ constexpr size_t kMaxWidth = 20;
 [[noreturn]] void fail(const std::string &text, const std::string &what) {
   throw Failure(kUsage, "--output (-o): '" + text + "' " + what);
 }
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 }  // namespace
 
@@ -33,7 +32,7 @@ OutputPattern::OutputPattern(const std::string &text) {
     const size_t start = i++;
     if (has_number) fail(text, "has two places for the frame's number: one %d is needed, and %% for a percent sign");
     if (i < text.size() && text[i] == '0') fill_ = '0';
-    for (; i < text.size() && is_digit(text[i]) && width_ <= kMaxWidth; ++i)
+    for (; i < text.size() && io::is_digit(text[i]) && width_ <= kMaxWidth; ++i)
       width_ = 10 * width_ + static_cast<size_t>(text[i] - '0');
     if (i == text.size() || text[i] != 'd' || width_ > kMaxWidth)
       fail(text,

@@ -9,6 +9,7 @@
 #include "io/file_path.h"
 #include "io/mesh_writer.h"
 #include "io/nearest_word.h"
+#include "io/text.h"
 
 namespace quickses::cli {
 namespace {
@@ -21,11 +22,10 @@ std::vector<std::string> long_flags(const CLI::App &command) {
   return flags;
 }
 
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
-
 // "spacing" of "-spacing" and "-spacing=0.3"; "" where it is something else, as -v0.3 is.
 std::string word_behind_dash(const std::string &argument) {
-  if (argument.size() < 4 || argument[0] != '-' || !is_letter(argument[1]) || !is_letter(argument[2])) return "";
+  if (argument.size() < 4 || argument[0] != '-' || !io::is_letter(argument[1]) || !io::is_letter(argument[2]))
+    return "";
   return argument.substr(1, argument.find('=') - 1);
 }
 

@@ -13,6 +13,7 @@
 #include <unordered_set>
 
 #include "io/error.h"
+#include "io/limits.h"
 #include "io/text.h"
 
 namespace quickses::io {
@@ -26,10 +27,9 @@ constexpr double kSamePlace = 0.2;          // Å
 
 [[noreturn]] void fail_unknown(const std::string &path, const std::string &name,
                                const std::vector<std::string> &names) {
-  std::string list;
-  for (size_t k = 0; k < names.size(); ++k) list += (k == 0 ? "" : k + 1 == names.size() ? " and " : ", ") + names[k];
   fail_usage("'" + path + "' has no assembly '" + name + "'; " +
-             (names.empty() ? "it describes none" : "there " + std::string(names.size() == 1 ? "is " : "are ") + list));
+             (names.empty() ? "it describes none"
+                            : "there " + std::string(names.size() == 1 ? "is " : "are ") + list_of(names)));
 }
 
 [[noreturn]] void fail_large(const std::string &path, const std::string &name) {

@@ -56,11 +56,7 @@ std::filesystem::path place_of(const std::filesystem::path &path) {
   return error ? place : folder / place.filename();
 }
 
-std::string lower_extension(const std::filesystem::path &path) {
-  std::string extension = utf8_of(path.extension());
-  for (char &c : extension) c = to_lower(c);
-  return extension;
-}
+std::string lower_extension(const std::filesystem::path &path) { return lowered(utf8_of(path.extension())); }
 
 std::string lower_extension_of_content(const std::filesystem::path &path) {
   const std::string extension = lower_extension(path);

@@ -9,10 +9,11 @@
 #include <cstddef>
 #include <unordered_map>
 
+#include "io/limits.h"
+
 namespace quickses::io {
 namespace {
 
-constexpr double kFarthest = 1e6;    // Å
 constexpr double kSmallestCell = 4;  // Å: some atoms per cell, and numbers of cells in 21 bits per axis
 constexpr int kCellsPerSphere = 4;   // of its radius: a compromise between cells and atoms to look at
 constexpr double kRounding = 1e-6;   // Å, of the borders of cells

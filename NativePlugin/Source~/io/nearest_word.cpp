@@ -10,11 +10,6 @@ namespace {
 
 constexpr size_t kLongest = 64;  // a longer word is no slip of the finger
 
-std::string lower(std::string word) {
-  for (char &c : word) c = to_lower(c);
-  return word;
-}
-
 // Optimal string alignment: insertions, deletions, substitutions and swaps of neighbours, a letter in one of them only.
 size_t edit_distance(const std::string &a, const std::string &b) {
   std::vector<size_t> before_last, last(b.size() + 1), row(b.size() + 1);
@@ -36,18 +31,18 @@ size_t edit_distance(const std::string &a, const std::string &b) {
 
 std::string nearest_word(const std::string &word, const std::vector<std::string> &known) {
   if (word.empty() || word.size() > kLongest) return "";
-  const std::string given = lower(word);
+  const std::string given = lowered(word);
   size_t smallest = std::max<size_t>(1, word.size() / 3) + 1;
   std::string nearest;
   for (const std::string &candidate : known) {
-    const size_t distance = edit_distance(given, lower(candidate));
+    const size_t distance = edit_distance(given, lowered(candidate));
     if (distance >= smallest || distance >= candidate.size()) continue;
     smallest = distance;
     nearest = candidate;
   }
   if (!nearest.empty() || given.size() < 3) return nearest;
   for (const std::string &candidate : known)
-    if (lower(candidate).compare(0, given.size(), given) == 0) {
+    if (lowered(candidate).compare(0, given.size(), given) == 0) {
       if (!nearest.empty()) return "";
       nearest = candidate;
     }

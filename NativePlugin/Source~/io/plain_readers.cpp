@@ -8,12 +8,11 @@
 
 #include "io/elements.h"
 #include "io/error.h"
+#include "io/limits.h"
 #include "io/text.h"
 
 namespace quickses::io {
 namespace {
-
-constexpr double kMaxRadius = 100;  // Å, what the surface library takes
 
 double number_at_line(std::string_view text, const char *what, const std::string &path, size_t line) {
   double value = 0;
@@ -24,7 +23,7 @@ double number_at_line(std::string_view text, const char *what, const std::string
 
 float radius_at_line(std::string_view text, const std::string &path, size_t line) {
   const double radius = number_at_line(text, "the radius", path, line);
-  if (radius < 0 || radius > kMaxRadius)
+  if (radius < 0 || radius > kLargestRadius)
     fail_input(at_line(path, line) + "the radius '" + std::string(trim(text)) + "' is not between 0 and 100 Å");
   return static_cast<float>(radius);
 }

@@ -13,6 +13,7 @@
 #include "io/error.h"
 #include "io/file_bytes.h"
 #include "io/file_path.h"
+#include "io/limits.h"
 #include "io/readers.h"
 #include "io/text.h"
 
@@ -24,13 +25,7 @@ struct ElementRadius {
   float radius;
 };
 
-std::string name_of(std::string_view residue, std::string_view atom) {
-  std::string name(residue);
-  name += ' ';
-  name += atom;
-  for (char &c : name) c = to_upper(c);
-  return name;
-}
+std::string name_of(std::string_view residue, std::string_view atom) { return raised(residue) + ' ' + raised(atom); }
 
 Radii read_radii(const std::string &path) {
   std::string text = read_file_bytes(path);
@@ -38,7 +33,7 @@ Radii read_radii(const std::string &path) {
   Radii radii;
   radii.by_element = quickses_radii();
   std::array<bool, std::tuple_size<RadiusTable>::value> named = {};
-  double others = 0;
+  float others = 0;
   std::string_view rest = text, line;
   std::vector<std::string_view> words;
   for (size_t number = 1; next_line(rest, line); ++number) {
@@ -48,7 +43,7 @@ Radii read_radii(const std::string &path) {
       fail_input(at_line(path, number) + "expected an element and its radius, or a residue, an atom and its radius");
     double number_there = 0;
     const float radius = parse_number(words.back(), number_there) ? static_cast<float>(number_there) : 0.f;
-    if (!(radius > 0) || radius > 100)
+    if (!(radius > 0) || radius > kLargestRadius)
       fail_input(at_line(path, number) + "the radius '" + std::string(words.back()) +
                  "' is no number above 0 and up to 100 Å");
     if (words[0] == "*" && (words.size() == 2 || words[1] == "*")) {
@@ -61,15 +56,15 @@ Radii read_radii(const std::string &path) {
     }
     const std::string symbol(words[0]);
     // "C1" is an atom whose residue was forgotten.
-    const bool has_digit = std::any_of(symbol.begin(), symbol.end(), [](char c) { return c >= '0' && c <= '9'; });
+    const bool has_digit = std::any_of(symbol.begin(), symbol.end(), is_digit);
     const gemmi::Element element(has_digit ? gemmi::El::X : parse_element(symbol));
     if (element == gemmi::El::X && symbol != "X") fail_input(at_line(path, number) + "'" + symbol + "' is no element");
-    radii.by_element[element.atomic_number()] = static_cast<float>(radius);
+    radii.by_element[element.atomic_number()] = radius;
     named[element.atomic_number()] = true;
   }
   if (others > 0)
     for (size_t i = 0; i < named.size(); ++i)
-      if (!named[i]) radii.by_element[i] = static_cast<float>(others);
+      if (!named[i]) radii.by_element[i] = others;
   return radii;
 }
 

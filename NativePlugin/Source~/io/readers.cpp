@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "io/error.h"
+#include "io/limits.h"
 #include "io/text.h"
 
 namespace quickses::io {

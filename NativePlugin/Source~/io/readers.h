@@ -14,9 +14,6 @@
 
 namespace quickses::io {
 
-// Of one model: far more than any structure has.
-constexpr uint32_t kMostAtoms = 43'770'000;
-
 struct RawModel {
   int number = 1;            // place in the file, from 1
   gemmi::Model model{"1"};   // its name is the number the file gives it

@@ -220,16 +220,6 @@ bool asks_for_locations_in(const SelectionTerm &term) {
          std::any_of(term.operands.begin(), term.operands.end(), asks_for_locations_in);
 }
 
-// "HEM, NAG and 3 more".
-std::string list_of(const std::vector<std::string> &names) {
-  constexpr size_t kMost = 8;
-  const size_t shown = names.size() > kMost + 1 ? kMost : names.size();
-  std::string list;
-  for (size_t k = 0; k < shown; ++k)
-    list += (k == 0 ? "" : k + 1 == names.size() ? " and " : ", ") + (names[k].empty() ? "''" : names[k]);
-  return shown == names.size() ? list : list + " and " + std::to_string(names.size() - shown) + " more";
-}
-
 void add_once(std::vector<std::string> &names, const std::string &name) {
   if ((names.empty() || names.back() != name) && !has(names, name)) names.push_back(name);
 }

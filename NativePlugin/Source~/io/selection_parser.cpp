@@ -49,12 +49,6 @@ const KnownWord *find_word(const KnownWord (&words)[kCount], std::string_view te
   return word == end ? nullptr : word;
 }
 
-std::string lower(std::string_view word) {
-  std::string text(word);
-  for (char &c : text) c = to_lower(c);
-  return text;
-}
-
 bool is_joining_word(const std::string &word) { return word == "and" || word == "or"; }
 
 bool is_word(const std::string &word) {
@@ -84,7 +78,7 @@ bool is_name(std::string_view text) {
   return !text.empty() && is_cid_list(text) && text[0] != '!' && text[0] != '*' && text.find(',') == std::string::npos;
 }
 
-bool begins_with_digit(std::string_view text) { return !text.empty() && text[0] >= '0' && text[0] <= '9'; }
+bool begins_with_digit(std::string_view text) { return !text.empty() && is_digit(text[0]); }
 
 std::shared_ptr<const gemmi::Selection> read_cid(const std::string &cid) {
   auto selection = std::make_shared<gemmi::Selection>(cid);
@@ -101,7 +95,7 @@ bool read_place(std::string_view &text, ResiduePlace &place) {
   if (!parse_integer(text.substr(0, digits), place.first)) return false;
   text.remove_prefix(digits);
   place.second = ' ';
-  if (!text.empty() && to_upper(text[0]) >= 'A' && to_upper(text[0]) <= 'Z') {
+  if (!text.empty() && is_letter(text[0])) {
     place.second = text[0];
     text.remove_prefix(1);
   }
@@ -153,7 +147,7 @@ class Parser {
     return word;
   }
   bool take_word(const char *word) {
-    if (lower(peek()) != word) return false;
+    if (lowered(peek()) != word) return false;
     take();
     return true;
   }
@@ -244,7 +238,7 @@ class Parser {
     const std::string_view inside = std::string_view(text_).substr(begin + 1, end - begin - 1);
     if (text_[end] == '(' || inside.empty() || !is_cid_list(inside)) return false;
     const bool ends = end + 1 == text_.size() || is_blank(text_[end + 1]) || text_[end + 1] == ')';
-    const KnownWord *const plain = find_word(kPlainWords, lower(inside));
+    const KnownWord *const plain = find_word(kPlainWords, lowered(inside));
     if (!ends || !plain) {
       term = cid_from(begin);
       return true;
@@ -268,7 +262,7 @@ class Parser {
     const size_t begin = at_;
     if (text_[at_] == ')') fail_at(at_, "something is missing before ')'");
     const std::string_view raw = take();
-    const std::string word = lower(raw);
+    const std::string word = lowered(raw);
     if (is_joining_word(word)) fail_at(begin, "something is missing before " + quoted(raw));
     if (const KnownWord *const plain = find_word(kPlainWords, word)) return SelectionTerm(plain->kind);
     if (const KnownWord *const naming = find_word(kNamingWords, word)) return named(naming->kind, word);
@@ -313,8 +307,8 @@ class Parser {
     while (!at_end()) {
       const std::string_view raw = peek();
       const bool is_list = raw.find(',') != std::string::npos;
-      if (raw == "(" || raw == ")" || is_joining_word(lower(raw))) break;
-      if (!is_first && !is_list && is_word(lower(raw))) break;
+      if (raw == "(" || raw == ")" || is_joining_word(lowered(raw))) break;
+      if (!is_first && !is_list && is_word(lowered(raw))) break;
       const size_t place = at_;
       take();
       for (const std::string &name : split(std::string(raw), ','))
@@ -372,7 +366,7 @@ class Parser {
       term.indices.push_back(range);
     } else if (term.kind == Kind::kElements) {
       const gemmi::El element = name.size() <= 2 ? gemmi::find_element(name.c_str()) : gemmi::El::X;
-      if (element == gemmi::El::X && lower(name) != "x") fail_at(place, quoted(name) + " is no element");
+      if (element == gemmi::El::X && lowered(name) != "x") fail_at(place, quoted(name) + " is no element");
       term.elements.push_back(element);
     } else {
       if (term.kind == Kind::kLocations && name.size() != 1)
@@ -403,7 +397,7 @@ std::shared_ptr<const gemmi::Selection> read_whole_cid(const std::string &text) 
 
 void check_lone_word(const std::string &word) {
   constexpr size_t kShortest = 3;  // a chain is more likely meant by less
-  if (is_word(lower(word)) || (word.size() >= kShortest && !nearest_selection_word(word).empty()))
+  if (is_word(lowered(word)) || (word.size() >= kShortest && !nearest_selection_word(word).empty()))
     Parser(word).parse();  // which tells what is wrong
 }
 
@@ -412,7 +406,7 @@ SelectionTerm parse_selection(const std::string &text) {
   const bool is_parenthesised = text.size() > 2 && text.front() == '(' && text.back() == ')';
   const std::string inside = is_parenthesised ? text.substr(1, text.size() - 2) : text;
   if (is_name(inside) && !begins_with_digit(inside)) {
-    const KnownWord *const plain = find_word(kPlainWords, lower(inside));
+    const KnownWord *const plain = find_word(kPlainWords, lowered(inside));
     if (!is_parenthesised || plain) {
       term.kind = is_parenthesised ? Kind::kLoneResidue : Kind::kLoneName;
       term.names.push_back(inside);

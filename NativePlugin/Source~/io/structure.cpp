@@ -15,6 +15,7 @@
 #include "io/error.h"
 #include "io/file_bytes.h"
 #include "io/file_path.h"
+#include "io/limits.h"
 #include "io/pdb_lines.h"
 #include "io/text.h"
 
@@ -46,8 +47,7 @@ bool format_of_content(std::string_view text, StructureFormat &format) {
 void refuse_web_page(const std::string &path, const std::string &text) {
   const size_t begin = text.find_first_not_of(" \t\r\n");
   if (begin == std::string::npos || text[begin] != '<') return;
-  std::string head = text.substr(begin, 1024);
-  for (char &c : head) c = to_lower(c);
+  const std::string head = lowered(std::string_view(text).substr(begin, 1024));
   if (head.find("<!doctype html") != std::string::npos || head.find("<html") != std::string::npos)
     fail_input("'" + path +
                "' looks like a web page, not like a structure: the address that it was loaded from may be wrong");
@@ -130,9 +130,7 @@ struct Filter {
   bool is_any() const { return !options.water || !options.hetero || !options.hydrogen || !selection.is_everything(); }
 };
 
-constexpr double kMaxCoordinate = 1e6;  // Å, what the surface library takes
-
-bool is_near(double x) { return std::abs(x) <= kMaxCoordinate; }
+bool is_near(double x) { return std::abs(x) <= kFarthest; }
 
 [[noreturn]] void fail_far_away(const std::string &path, const AtomInfo &info) {
   fail_input("'" + path + "': atom " + std::to_string(info.file_index + 1) +
@@ -161,7 +159,7 @@ void build_assembly(RawFile &file, StructureFormat format, const std::string &te
 Structure flatten(const RawModel &raw, const Filter &filter, std::string &warning) {
   Structure structure;
   structure.model = raw.number;
-  structure.model_name = raw.model.name;
+  structure.model_name = printable(raw.model.name);
   structure.has_names = raw.has_names;
   structure.file_atom_count = raw.atom_count;
   structure.file_elements.resize(raw.atom_count);

@@ -21,6 +21,18 @@ inline bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c 
 inline char to_upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
 inline char to_lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
+inline std::string raised(std::string_view text) {
+  std::string word(text);
+  std::transform(word.begin(), word.end(), word.begin(), to_upper);
+  return word;
+}
+
+inline std::string lowered(std::string_view text) {
+  std::string word(text);
+  std::transform(word.begin(), word.end(), word.begin(), to_lower);
+  return word;
+}
+
 inline bool is_one_of(std::string_view word, std::initializer_list<std::string_view> list) {
   return std::find(list.begin(), list.end(), word) != list.end();
 }
@@ -80,7 +92,8 @@ inline std::vector<std::string> split(const std::string &text, char separator) {
   return parts;
 }
 
-inline bool parse_integer(std::string_view text, int &value) {
+template <typename Integer>
+bool parse_integer(std::string_view text, Integer &value) {
   text = trim(text);
   const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
   return result.ec == std::errc() && result.ptr == text.data() + text.size();
@@ -89,6 +102,16 @@ inline bool parse_integer(std::string_view text, int &value) {
 // "1 atom", "2 atoms". many: where it is not the one with an s.
 inline std::string counted(uint64_t count, const std::string &one, const std::string &many = "") {
   return std::to_string(count) + " " + (count == 1 ? one : many.empty() ? one + "s" : many);
+}
+
+// "HEM, NAG and ZN"; of more than nine the first eight "and 3 more".
+inline std::string list_of(const std::vector<std::string> &names) {
+  constexpr size_t kMost = 8;
+  const size_t shown = names.size() > kMost + 1 ? kMost : names.size();
+  std::string list;
+  for (size_t k = 0; k < shown; ++k)
+    list += (k == 0 ? "" : k + 1 == names.size() ? " and " : ", ") + (names[k].empty() ? "''" : names[k]);
+  return shown == names.size() ? list : list + " and " + std::to_string(names.size() - shown) + " more";
 }
 
 // "there is 1 atom", "there are 2 atoms"

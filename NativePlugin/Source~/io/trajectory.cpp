@@ -10,6 +10,7 @@
 #include "io/dcd_reader.h"
 #include "io/file_bytes.h"
 #include "io/file_path.h"
+#include "io/limits.h"
 #include "io/netcdf_header.h"
 #include "io/netcdf_reader.h"
 #include "io/pdb_frames.h"
@@ -20,8 +21,6 @@
 
 namespace quickses::io {
 namespace {
-
-constexpr float kMaxCoordinate = 1e6f;  // Å, what the surface library takes
 
 TrajectoryFormat find_format(const std::string &path, const ByteSource &source) {
   const std::string extension = lower_extension_of_content(path_of(path));
@@ -163,7 +162,7 @@ void Trajectory::read_as_it_is(size_t frame, float *xyz) const {
 void Trajectory::check_positions(size_t frame, const float *xyz) const {
   const Part &part = part_of(frame);
   const size_t count = 3 * atom_count();
-  const float *bad = std::find_if(xyz, xyz + count, [](float x) { return !(std::abs(x) <= kMaxCoordinate); });
+  const float *bad = std::find_if(xyz, xyz + count, [](float x) { return !(std::abs(x) <= kFarthest); });
   if (bad == xyz + count) return;
   const size_t place = static_cast<size_t>(bad - xyz);
   fail_input("'" + part.reader->name() + "': frame " + std::to_string(frame - part.first) + ": atom " +

@@ -3,6 +3,7 @@
 // the file, they are printable ASCII.
 #include "io/readers.h"  // first: settles how gemmi formats numbers
 
+#include "io/limits.h"
 #include "io/structure_fixture.h"
 
 namespace quickses::io {
@@ -13,6 +14,7 @@ void expect_printable(const std::string &text, StructureFormat format) {
   for (const AtomInfo &atom : structure.atoms)
     for (const std::string &name : {atom.name, atom.residue_name, atom.chain})
       for (const char c : name) EXPECT_TRUE(c > ' ' && c <= '~') << name;
+  for (const char c : structure.model_name) EXPECT_TRUE(c > ' ' && c <= '~') << structure.model_name;
 }
 
 TEST(Readers, NamesArePrintable) {
@@ -25,7 +27,8 @@ TEST(Readers, NamesArePrintable) {
   expect_printable("t\n1\n    1\x1b[2J   C\x9b\xff    1   0.125   1.000  -2.000\n 5 5 5\n", StructureFormat::kGro);
   expect_printable(
       "data_x\nloop_\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n_atom_site.label_atom_id\n"
-      "_atom_site.label_comp_id\n_atom_site.label_asym_id\n0 0 0 'C\t1' 'A\tB' '\tA'\n",
+      "_atom_site.label_comp_id\n_atom_site.label_asym_id\n_atom_site.pdbx_PDB_model_num\n0 0 0 'C\t1' 'A\tB' '\tA' "
+      "'\t1'\n",
       StructureFormat::kMmcif);
 }
 
