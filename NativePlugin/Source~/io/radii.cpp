@@ -58,7 +58,8 @@ Radii read_radii(const std::string &path) {
     // "C1" is an atom whose residue was forgotten.
     const bool has_digit = std::any_of(symbol.begin(), symbol.end(), is_digit);
     const gemmi::Element element(has_digit ? gemmi::El::X : parse_element(symbol));
-    if (element == gemmi::El::X && symbol != "X") fail_input(at_line(path, number) + "'" + symbol + "' is no element");
+    if (element == gemmi::El::X && raised(symbol) != "X")
+      fail_input(at_line(path, number) + "'" + symbol + "' is no element");
     radii.by_element[element.atomic_number()] = radius;
     named[element.atomic_number()] = true;
   }

@@ -20,9 +20,10 @@ float radius_of(const Radii &radii, const char *residue, const char *atom, uint8
 }
 
 TEST_F(RadiiTest, Elements) {
-  const Radii radii = read("# mine\nC 2.5\nzn 1.1 # zinc\n");
+  const Radii radii = read("# mine\nC 2.5\nzn 1.1 # zinc\nx 1.7 # unknown\n");
   EXPECT_EQ(radii.by_element[6], 2.5f);
   EXPECT_EQ(radii.by_element[30], 1.1f);
+  EXPECT_EQ(radii.by_element[0], 1.7f);
   EXPECT_EQ(radii.by_element[8], 1.52f);
   for (const char *others : {"C 2.5\n* 1.0\n", "* * 1.0\nC 2.5\n"}) {
     const Radii all = read(others);
