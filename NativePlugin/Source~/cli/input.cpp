@@ -30,17 +30,18 @@ bool has_one_chain(const io::Structure &structure) {
 }
 
 // The number that the file gives it may be another one.
-void hint_at_number(const Options &options, const io::Structure &structure) {
+void hint_at_number(const Options &options, const io::StructureFile &file) {
+  const io::Structure &structure = file.models.front();
   if (!options.model_given || options.read.model == 0 || structure.model_name == std::to_string(structure.model))
     return;
-  std::fprintf(stderr, "quickses: '%s': --model %d is the model that the file gives the number %s\n",
-               options.input.c_str(), structure.model, structure.model_name.c_str());
+  std::fprintf(stderr, "quickses: '%s': --model %d is the model that the file gives the number %s\n", file.name.c_str(),
+               structure.model, structure.model_name.c_str());
 }
 
 // The frames of a trajectory are taken whatever models the structure has.
 void hint_at_models(const Options &options, const io::StructureFile &file) {
   if (file.model_count == 1 || options.model_given || !options.trajectories.empty()) return;
-  std::fprintf(stderr, "quickses: '%s': model 1 of %d is used%s; --model N chooses another\n", options.input.c_str(),
+  std::fprintf(stderr, "quickses: '%s': model 1 of %d is used%s; --model N chooses another\n", file.name.c_str(),
                file.model_count, file.has_model_records ? "" : " (END and ENDMDL end a model)");
 }
 
@@ -50,7 +51,7 @@ io::StructureFile load(const std::string &path, const Options &options, bool qui
   io::StructureFile file = read(path, options);
   const ComputeOptions &compute = options.compute;
   if (io::has_own_radii(file.format) && compute.radii_given)
-    throw Failure(kUsage, "--radii: '" + path + "' has radii of its own");
+    throw Failure(kUsage, "--radii: '" + file.name + "' has radii of its own");
   io::assign_radii(file, compute.radii_given ? compute.radii : "");
   if (!quiet)
     for (const std::string &warning : file.warnings) std::fprintf(stderr, "quickses: warning: %s\n", warning.c_str());
@@ -66,7 +67,7 @@ Input::Input(const Options &given, bool quiet) : options(given) {
     options.mesh.colors = has_one_chain(file.models.front()) ? MeshColors::kElement : MeshColors::kChain;
   if (!quiet) {
     hint_at_models(options, file);
-    hint_at_number(options, file.models.front());
+    hint_at_number(options, file);
     hint_at_water(options, file.models.front());
   }
   for (const io::Structure &structure : file.models) check_has_residues(options, structure);

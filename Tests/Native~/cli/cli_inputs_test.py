@@ -131,6 +131,12 @@ class StandardInput(InputTest):
         self.assertIn(b"12 atoms", self.run_with(text, "bench", "-", "--repeat", 1).stdout)
         self.assertIn(b"3 frames of 12 atoms", self.run_with(text, "-", "--trajectory", "t.dcd", "--csv", "a.csv").stdout)
 
+    def test_hints_name_it(self):
+        text = (self.folder / self.names[0]).read_bytes()
+        models = b"".join(b"MODEL     %4d\n%sENDMDL\n" % (number, text.replace(b"END\n", b"")) for number in (7, 8))
+        self.assertIn(b"'standard input': model 1 of 2", self.run_with(models, "measure", "-").stderr)
+        self.assertIn(b"'standard input': --model 2", self.run_with(models, "measure", "-", "--model", "2").stderr)
+
     def test_formats_that_content_does_not_tell(self):
         report = json.loads(self.run_with(b"0 0 0 1.5\n", "-", "--input-format", "xyzr", "--json", "-").stdout)
         self.assertEqual(report["atoms"], 1)
