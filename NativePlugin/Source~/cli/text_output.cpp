@@ -8,6 +8,11 @@
 
 #include "cli/exit_code.h"
 
+#if defined(_WIN32)
+#include <fcntl.h>
+#include <io.h>
+#endif
+
 namespace quickses::cli {
 
 void flush_standard_output() {
@@ -18,6 +23,9 @@ void flush_standard_output() {
 }
 
 TextOutput::TextOutput(const std::string &path) : to_standard_output_(path == "-") {
+#if defined(_WIN32)
+  if (to_standard_output_) _setmode(_fileno(stdout), _O_BINARY);  // lines end as in files
+#endif
   if (!path.empty() && !to_standard_output_) file_ = std::make_unique<io::AtomicFile>(path);
 }
 
