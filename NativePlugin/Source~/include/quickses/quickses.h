@@ -542,7 +542,7 @@ typedef enum qses_measured_by {
                                        across (settings.creases) */
   QSES_MEASURED_BY_ATOMS = 3 /* exact, from what the others leave free of each atom, the same at every spacing: SAS and
                                 VDW, and the SES of a probe below 0.05 Å. A molecule that is turned or moved has the
-                                same within 1e-6, many small balls on a large one within 5e-6; where balls touch or
+                                same within 1e-6, many small balls on a large one within 2e-5; where balls touch or
                                 just close, as in ideal lattices, 2e-4 */
 } qses_measured_by;
 
