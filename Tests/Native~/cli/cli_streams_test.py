@@ -70,7 +70,7 @@ class Descriptors(FilesTest):
         self.table = (self.folder / "t.csv").read_text()
 
     def shell(self, script):
-        result = subprocess.run(["sh", "-c", script, "sh", cli_test.PROGRAM], cwd=self.folder, capture_output=True,
+        result = subprocess.run(["sh", "-c", script, "sh", cli_test.PROGRAM, "--backend", "cpu"], cwd=self.folder, capture_output=True,
                                 encoding="utf-8", timeout=cli_test.PATIENCE)
         self.assertEqual(result.stderr, "")
         return result.stdout
@@ -81,13 +81,13 @@ class Descriptors(FilesTest):
             for begin in (">", ">>"):
                 with self.subTest(name=name, begin=begin):
                     self.write("out.txt", "old\n")
-                    self.shell(f'{{ echo header; "$1" p.pdb --per-atom {name} --quiet; echo footer; }} {begin} out.txt')
+                    self.shell(f'{{ echo header; "$@" p.pdb --per-atom {name} --quiet; echo footer; }} {begin} out.txt')
                     expected = f"header\n{self.table}footer\n"
                     self.assertEqual((self.folder / "out.txt").read_text(), ("old\n" if begin == ">>" else "") + expected)
 
     def test_other_descriptors(self):
         for number in (2, 3):
-            self.shell(f'{{ echo header >&{number}; "$1" p.pdb --per-atom /dev/fd/{number}; "$1" nowhere.pdb 2>&{number}; }} '
+            self.shell(f'{{ echo header >&{number}; "$@" p.pdb --per-atom /dev/fd/{number}; "$@" nowhere.pdb 2>&{number}; }} '
                        f'{number}> out.txt')
             text = (self.folder / "out.txt").read_text()
             self.assertTrue(text.startswith(f"header\n{self.table}"))
@@ -97,13 +97,13 @@ class Descriptors(FilesTest):
     def test_meshes(self):
         self.run_cpu("p.pdb", "-v", "2", "-o", "a.ply")
         (self.folder / "out.ply").symlink_to("/dev/stdout")
-        self.shell('{ echo header; "$1" p.pdb -v 2 -o out.ply; } > out.txt')
+        self.shell('{ echo header; "$@" p.pdb -v 2 -o out.ply; } > out.txt')
         self.assertEqual((self.folder / "out.txt").read_bytes(), b"header\n" + (self.folder / "a.ply").read_bytes())
         self.assertTrue((self.folder / "out.ply").is_symlink())
 
     def test_nothing_else_is_printed_there(self):
-        json.loads(self.shell('"$1" p.pdb --json /dev/stdout | cat'))
-        self.assertEqual(self.shell('"$1" p.pdb --per-atom /dev/stdout | cat'), self.table)
+        json.loads(self.shell('"$@" p.pdb --json /dev/stdout | cat'))
+        self.assertEqual(self.shell('"$@" p.pdb --per-atom /dev/stdout | cat'), self.table)
         self.assert_fails(USAGE, ["--per-atom", "--json", "standard output"], "p.pdb", "--per-atom", "-", "--json",
                           "/dev/stdout")
 
