@@ -81,7 +81,7 @@ void SurfaceJob::choose_levels(const SurfaceRequest &request) {
 
 void SurfaceJob::work() {
   const FloatScope floats;
-  stand_back(in_background_);
+  if (in_background_) stand_back();
   std::unique_lock<std::mutex> lock(mutex_);
   for (;;) {
     changed_.wait(lock, [&] { return quit_ || !waiting_.empty(); });

@@ -35,12 +35,10 @@ class CpuThreads {
     // What one thread throws (memory that is refused) ends all of them and is thrown again here.
     std::exception_ptr thrown;
     std::atomic<bool> failed{false};
-    const std::thread::id caller = std::this_thread::get_id();
     const auto work = [&](size_t worker) {
       const WorkScope scope(stop);
       try {
         for (size_t c; !failed && (c = next++) < chunks;) {
-          if (std::this_thread::get_id() != caller) stand_back(in_background_);
           look_for_stop();
           body(worker, c);
         }
@@ -63,7 +61,7 @@ class CpuThreads {
   unsigned usable() {
     if (count_ == 1) return 1;
     try {
-      if (!helpers_) helpers_ = std::make_unique<HelperThreads>(at_a_time() - 1);
+      if (!helpers_) helpers_ = std::make_unique<HelperThreads>(at_a_time() - 1, in_background_);
     } catch (const std::bad_alloc &) {
       return 1;
     }

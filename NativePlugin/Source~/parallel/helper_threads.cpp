@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "parallel/helper_threads.h"
 
+#include "parallel/worker_threads.h"
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -56,12 +58,16 @@ struct HelperThreads::Crew {
   std::vector<std::thread> threads;
 };
 
-HelperThreads::HelperThreads(unsigned helpers) {
+HelperThreads::HelperThreads(unsigned helpers, bool in_background) {
   try {
     crew_ = std::make_unique<Crew>();
     Crew &crew = *crew_;
     crew.threads.reserve(helpers);
-    while (crew.threads.size() < helpers) crew.threads.emplace_back([&crew] { crew.help(); });
+    while (crew.threads.size() < helpers)
+      crew.threads.emplace_back([&crew, in_background] {
+        if (in_background) stand_back();
+        crew.help();
+      });
   } catch (const std::system_error &) {
   } catch (const std::bad_alloc &) {
   }

@@ -14,8 +14,8 @@ namespace quickses {
 // at a time. In a forked child, which they are not in, the caller is alone.
 class HelperThreads {
  public:
-  // Starts so many, or as many as the system gives.
-  explicit HelperThreads(unsigned helpers);
+  // Starts so many, or as many as the system gives. in_background: they stand back.
+  explicit HelperThreads(unsigned helpers, bool in_background = false);
   ~HelperThreads();
   HelperThreads(const HelperThreads &) = delete;
   HelperThreads &operator=(const HelperThreads &) = delete;

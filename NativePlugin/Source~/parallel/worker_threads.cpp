@@ -19,58 +19,6 @@
 #include <thread>
 
 namespace quickses {
-namespace {
-
-#if defined(_WIN32)
-
-struct Priority {
-  bool read() {
-    normal_ = GetThreadPriority(GetCurrentThread());
-    return normal_ != THREAD_PRIORITY_ERROR_RETURN;
-  }
-  bool set(bool in_background) {
-    const int below = normal_ > THREAD_PRIORITY_BELOW_NORMAL ? THREAD_PRIORITY_BELOW_NORMAL : normal_;
-    return SetThreadPriority(GetCurrentThread(), in_background ? below : normal_) != 0;
-  }
-
- private:
-  int normal_ = 0;
-};
-
-#elif defined(__linux__)
-
-struct Priority {
-  bool read() {
-    errno = 0;
-    normal_ = getpriority(PRIO_PROCESS, thread());  // -1 is a priority too
-    return errno == 0;
-  }
-  bool set(bool in_background) {
-    // A tenth of the time of a busy thread of normal priority beside it; half a scale above the least.
-    constexpr int kBelow = 10, kLeast = 19;
-    const int nice = in_background ? normal_ + kBelow : normal_;
-    return setpriority(PRIO_PROCESS, thread(), nice < kLeast ? nice : kLeast) == 0;
-  }
-
- private:
-  // Threads have priorities of their own, under their own numbers.
-  static id_t thread() { return static_cast<id_t>(syscall(SYS_gettid)); }
-  int normal_ = 0;
-};
-
-#else
-
-struct Priority {
-  bool read() { return false; }
-  bool set(bool) { return false; }
-};
-
-#endif
-
-thread_local bool stands_back = false, is_known = false;
-thread_local Priority priority;
-
-}  // namespace
 
 unsigned processors() noexcept {
 #if defined(__linux__)
@@ -81,12 +29,21 @@ unsigned processors() noexcept {
   return std::max(1u, std::thread::hardware_concurrency());
 }
 
-void stand_back(bool in_background) noexcept {
-  if (in_background == stands_back) return;
-  if (!is_known && !priority.read()) return;
-  is_known = true;
-  priority.set(in_background);
-  stands_back = in_background;  // also where it was refused: it would be the next time
+void stand_back() noexcept {
+#if defined(_WIN32)
+  const int own = GetThreadPriority(GetCurrentThread());
+  if (own != THREAD_PRIORITY_ERROR_RETURN && own > THREAD_PRIORITY_BELOW_NORMAL)
+    SetThreadPriority(GetCurrentThread(), THREAD_PRIORITY_BELOW_NORMAL);
+#elif defined(__linux__)
+  // A tenth of the time of a busy thread of normal priority beside it; half a scale above the least. Threads have
+  // priorities of their own, under their own numbers, and begin with that of the thread that started them, which may
+  // stand back already: normal is what the first thread of the process has.
+  constexpr int kBelow = 10, kLeast = 19;
+  const auto thread = static_cast<id_t>(syscall(SYS_gettid));
+  errno = 0;  // -1 is a priority too
+  const int own = getpriority(PRIO_PROCESS, thread), normal = getpriority(PRIO_PROCESS, static_cast<id_t>(getpid()));
+  if (errno == 0 && own < normal + kBelow) setpriority(PRIO_PROCESS, thread, std::min(normal + kBelow, kLeast));
+#endif
 }
 
 }  // namespace quickses

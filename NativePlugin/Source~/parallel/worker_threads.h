@@ -13,9 +13,7 @@ struct WorkerThreads {
 // How many processors the calling thread, and what it starts, may run on; at least 1.
 unsigned processors() noexcept;
 
-// From now on the calling thread, one of the library's, stands back, or does not any more. Nearly free where nothing
-// changes. Linux lets nobody without the right to it raise a priority: there a thread that stood back once does so for
-// good. Never fails loudly.
-void stand_back(bool in_background) noexcept;
+// From now on the calling thread, one of the library's, stands back. Never fails loudly.
+void stand_back() noexcept;
 
 }  // namespace quickses

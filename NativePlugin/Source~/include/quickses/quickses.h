@@ -231,7 +231,8 @@ typedef struct qses_context_options {
   uint32_t struct_size;   /* set by qses_context_options_init */
   qses_backend backend;   /* default AUTO */
   int32_t device;         /* CUDA device ordinal; default 0 */
-  uint32_t threads;       /* CPU threads; 0 (default) = one per hardware thread. With CUDA up to 8 of them, the caller's
+  uint32_t threads;       /* CPU threads, of this context's own; 0 (default) = one per hardware thread. Contexts that
+                             compute at once do best with a part of the processors each. With CUDA up to 8, the caller's
                              among them, copy atoms if there are 16,384 or more; those do not stand back, since the
                              caller waits for them */
   uint64_t memory_budget; /* bytes; 0 (default): what is free at the time (see qses_backend_description.free_memory),
@@ -243,9 +244,7 @@ typedef struct qses_context_options {
   qses_bool background;   /* 1: threads of the library that compute stand back behind those of normal priority (Windows:
                              below normal; Linux: 10 nicer, so a busy thread beside them loses a tenth at most); a
                              caller lends its thread as it is. Kernels of the GPU have the lowest priority either way,
-                             but for those of coarser levels and those that place vertices of large meshes.
-                             Contexts share CPU threads: on Linux, where priorities can't be raised again, those
-                             of a process that have 0 (default) are slowed down by busy programs too once one has 1 */
+                             but for those of coarser levels and those that place vertices of large meshes */
   uint32_t reserved;      /* 0 */
 } qses_context_options;
 
