@@ -34,6 +34,17 @@ std::string output_of_model(const Options &options, int model) {
   return io::utf8_of(path.parent_path() / io::path_of(name));
 }
 
+// Of a mesh without a triangle.
+void say_why_empty(const Options &options) {
+  const auto say = [&](const char *why, double value) {
+    std::fprintf(stderr, "quickses: '%s': there is no surface: %s %g\n", options.input.c_str(), why, value);
+  };
+  if (options.compute.surface == QSES_SURFACE_GAUSSIAN)
+    say("the density is nowhere as high as --isovalue", options.compute.isovalue);
+  else
+    say("all of it lies between the points of a lattice of --spacing", options.compute.spacing);
+}
+
 void print_summary(const Options &options, const io::Structure &structure, const Engine &engine, const qses_mesh &mesh,
                    const MeshSize &written, const qses_report &report) {
   const auto vertices = static_cast<uint32_t>(mesh.vertex_count - mesh.repeated_count);
@@ -107,9 +118,7 @@ class SurfaceRun {
       mesh = engine_->compute(settings);
     }
     const qses_report report = engine_->report();
-    if (mesh.triangle_count == 0 && !options.quiet)
-      std::fprintf(stderr, "quickses: '%s': the density is nowhere as high as --isovalue %g, so there is no surface\n",
-                   options.input.c_str(), options.compute.isovalue);
+    if (mesh.triangle_count == 0 && !options.quiet) say_why_empty(options);
     const auto write_start = Clock::now();
     const float *const centers = structure.positions.data();
     if (output.is_shown()) {

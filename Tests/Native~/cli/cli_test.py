@@ -204,6 +204,11 @@ class Errors(ProgramTest):
         result = self.run_cpu(CRAMBIN, "--surface", "gaussian", "--isovalue", "1000")
         self.assertIn("--isovalue 1000", result.stderr)
         self.assertIn("0 triangles", result.stdout)
+        self.write("tiny.xyzr", "0.3 0.3 0.3 0.05\n")
+        for surface in ("ses", "vdw"):
+            result = self.run_cpu("tiny.xyzr", "--surface", surface, "--spacing", "3")
+            self.assertIn("a lattice of --spacing 3", result.stderr)
+            self.assertNotIn("--isovalue", result.stderr)
 
     def test_no_such_model(self):
         self.assert_fails(USAGE, ["1 model", "7"], CRAMBIN, "--model", "7")
