@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 using System;
-using System.Collections.Generic;
 using System.Globalization;
 
 namespace QuickSes.Editor
@@ -80,25 +79,10 @@ namespace QuickSes.Editor
                 FileAtomCount = structure.FileAtomCount,
                 Model = structure.Model,
                 ModelCount = structure.ModelCount,
-                ChainCount = CountChains(structure),
+                ChainCount = StructureChains.Of(structure).Count,
                 Format = structure.Format,
                 Warnings = warnings
             };
-        }
-
-        private static int CountChains(Structure structure)
-        {
-            var chains = new HashSet<string>();
-            ReadOnlySpan<uint> residues = structure.Residues;
-            for (int i = 0; i < residues.Length; ++i)
-            {
-                if (i > 0 && residues[i] == residues[i - 1])
-                    continue;
-                string chain = structure.GetAtom(i).Chain;
-                if (chain.Length > 0)
-                    chains.Add(chain);
-            }
-            return chains.Count;
         }
     }
 }

@@ -215,9 +215,7 @@ TEST(Components, AreTheSameWithSlicesAndBudgets) {
       s.method = method;
       prepare(unbounded);
       const std::vector<qses_component> expected = components_of(unbounded, s);
-      qses_size_estimate e;
-      qses_size_estimate_init(&e);
-      expect_ok(qses_estimate(unbounded, &s, &e));
+      const qses_size_estimate e = estimate_of(unbounded, s);
       ASSERT_FALSE(expected.empty());
       qses_settings sliced = s;
       sliced.slice_size = 16;

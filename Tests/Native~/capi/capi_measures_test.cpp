@@ -174,9 +174,7 @@ TEST(AtomAreas, SameWhateverTheMemoryAndTheThreads) {
     for (unsigned threads : {1u, 3u}) {
       const Context unbounded(threads);
       set_atoms(unbounded, atoms);
-      qses_size_estimate estimate;
-      qses_size_estimate_init(&estimate);
-      expect_ok(qses_estimate(unbounded, &s, &estimate));
+      const qses_size_estimate estimate = estimate_of(unbounded, s);
       for (uint64_t budget : {uint64_t(0), estimate.smallest_budget / 4 * 5, 2 * estimate.smallest_budget}) {
         const Context other(threads, budget);
         set_atoms(other, atoms);
@@ -285,9 +283,7 @@ TEST(DeliveryNone, IsEstimated) {
   set_atoms(context, crambin());
   for (qses_surface surface : kSurfaces) {
     const qses_settings s = with_areas(surface, QSES_DELIVERY_NONE);
-    qses_size_estimate estimate;
-    qses_size_estimate_init(&estimate);
-    expect_ok(qses_estimate(context, &s, &estimate));
+    const qses_size_estimate estimate = estimate_of(context, s);
     EXPECT_EQ(estimate.mesh_bytes, 0u);
     EXPECT_EQ(estimate.vertices > 0, surface == QSES_SURFACE_SES);
     EXPECT_GT(estimate.smallest_budget, 0u);
@@ -308,9 +304,7 @@ TEST(SmallestBudget, DoesForAnAtomAndALargeProbe) {
     const qses_settings s = settings(0.3, probe);
     const Context any(1);
     set_atoms(any, atom);
-    qses_size_estimate estimate;
-    qses_size_estimate_init(&estimate);
-    expect_ok(qses_estimate(any, &s, &estimate));
+    qses_size_estimate estimate = estimate_of(any, s);
     const Context small(1, estimate.smallest_budget);
     set_atoms(small, atom);
     expect_ok(qses_estimate(small, &s, &estimate));

@@ -270,9 +270,7 @@ TEST(OuterOnly, IsTheSameWithThreadsSlicesAndBudgets) {
       s.outer_only = 1;
       const Whole expected = copy(compute_view(unbounded, s));
       ASSERT_GT(expected.ids.size(), 0u);
-      qses_size_estimate e;
-      qses_size_estimate_init(&e);
-      expect_ok(qses_estimate(unbounded, &s, &e));
+      const qses_size_estimate e = estimate_of(unbounded, s);
       qses_settings sliced = s;
       sliced.slice_size = 16;
       expect_equal(copy(compute_view(unbounded, sliced)), expected);

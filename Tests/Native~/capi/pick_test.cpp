@@ -189,9 +189,7 @@ TEST(Pick, IsTheSameInAllLayoutsAndPieces) {
     const Both compact(context, s);
     s = settings(0.5);
     s.pickable = 1;
-    qses_size_estimate estimate;
-    qses_size_estimate_init(&estimate);
-    expect_ok(qses_estimate(context, &s, &estimate));
+    const qses_size_estimate estimate = estimate_of(context, s);
     const Context small(2, estimate.smallest_budget);
     set_atoms(small, atoms);
     expect_ok(qses_set_visible(small, masked ? visible.data() : nullptr, atoms.size()));

@@ -242,9 +242,7 @@ TEST(WithoutOwners, WithinASmallBudget) {
   qses_settings s = settings(0.25);
   const Copy with = copy(compute_view(unbounded, s));
   s.without_owners = 1;
-  qses_size_estimate e;
-  qses_size_estimate_init(&e);
-  expect_ok(qses_estimate(unbounded, &s, &e));
+  const qses_size_estimate e = estimate_of(unbounded, s);
   const Context context(2, e.smallest_budget);
   set_atoms(context, crambin());
   Copy without = copy(compute_view(context, s));
@@ -352,9 +350,7 @@ TEST(Visible, WithinASmallBudget) {
   expect_ok(qses_set_visible(unbounded, visible.data(), visible.size()));
   const qses_settings s = settings(0.25);
   const Copy expected = copy(compute_view(unbounded, s));
-  qses_size_estimate e;
-  qses_size_estimate_init(&e);
-  expect_ok(qses_estimate(unbounded, &s, &e));
+  const qses_size_estimate e = estimate_of(unbounded, s);
   const Context context(2, e.smallest_budget);
   set_atoms(context, atoms);
   expect_ok(qses_set_visible(context, visible.data(), visible.size()));

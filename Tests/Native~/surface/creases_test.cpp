@@ -214,9 +214,7 @@ TEST_P(Creases, GiveTheSameBytesHoweverTheWorkIsCut) {
   EXPECT_TRUE(same_bytes(first, compute(atoms, sliced)));
   const Context context;
   set_atoms(context, atoms);
-  qses_size_estimate estimate;
-  qses_size_estimate_init(&estimate);
-  expect_ok(qses_estimate(context, &s, &estimate));
+  const qses_size_estimate estimate = estimate_of(context, s);
   const Context tight(2, estimate.smallest_budget * 5 / 4);
   EXPECT_TRUE(same_bytes(first, compute(tight, atoms, s)));
 }

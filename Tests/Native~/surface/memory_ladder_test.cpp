@@ -49,9 +49,7 @@ std::vector<qses_settings> many_settings() {
 }
 
 uint64_t smallest_budget(qses_context *context, const qses_settings &s) {
-  qses_size_estimate e;
-  qses_size_estimate_init(&e);
-  expect_ok(qses_estimate(context, &s, &e));
+  const qses_size_estimate e = estimate_of(context, s);
   return e.smallest_budget;
 }
 
@@ -179,9 +177,7 @@ TEST(MemoryLadder, ForecastsAreWhatIsTaken) {
       const Context context(1, budget);
       set_atoms(context, atoms);
       compute_view(context, s);  // the threads' scratch is there from now on
-      qses_size_estimate e;
-      qses_size_estimate_init(&e);
-      expect_ok(qses_estimate(context, &s, &e));
+      const qses_size_estimate e = estimate_of(context, s);
       compute_view(context, s);
       const double taken = static_cast<double>(report_of(context).work_bytes_peak);
       EXPECT_NEAR(static_cast<double>(e.work_bytes) / taken, 1.0, 0.001)

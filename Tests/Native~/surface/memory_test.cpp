@@ -28,13 +28,6 @@ Atoms crambins(int count) {
   return all;
 }
 
-qses_size_estimate estimate(qses_context *context, const qses_settings &s) {
-  qses_size_estimate e;
-  qses_size_estimate_init(&e);
-  expect_ok(qses_estimate(context, &s, &e));
-  return e;
-}
-
 void expect_close(uint64_t predicted, uint64_t actual, const std::string &what) {
   EXPECT_GE(static_cast<double>(predicted), 0.9 * static_cast<double>(actual)) << what;
   EXPECT_LE(static_cast<double>(predicted), 1.25 * static_cast<double>(actual)) << what;
@@ -144,7 +137,7 @@ TEST(Estimate, IsNearTheTruth) {
   const Context context;
   for (const Case &c : cases()) {
     set_atoms(context, c.atoms);
-    const qses_size_estimate e = estimate(context, c.settings);
+    const qses_size_estimate e = estimate_of(context, c.settings);
     const qses_mesh mesh = compute_view(context, c.settings);
     const qses_report report = report_of(context);
     expect_close(e.vertices, mesh.vertex_count, c.name + ": vertices");
@@ -153,7 +146,7 @@ TEST(Estimate, IsNearTheTruth) {
     expect_close(e.work_bytes, report.work_bytes_peak, c.name + ": work");
     EXPECT_EQ(e.fits, 1) << c.name;
     // The same again now that memory is there; only the scratch of crowded bricks is known better.
-    expect_close(e.smallest_budget, estimate(context, c.settings).smallest_budget, c.name + ": budget");
+    expect_close(e.smallest_budget, estimate_of(context, c.settings).smallest_budget, c.name + ": budget");
     compute_view(context, c.settings);
     // A GPU's further frames do not wait for their counts: they take room for a sixteenth more of each, and for 64
     // bricks and leaves at least, of some 30 KB each at 2 Å.
@@ -169,11 +162,11 @@ TEST(Estimate, AfterACancelledJob) {
   const Context context;
   set_atoms(context, crambins(12));
   const qses_settings s = settings(0.2);
-  const qses_size_estimate before = estimate(context, s);
+  const qses_size_estimate before = estimate_of(context, s);
   for (int trial = 0; trial < 3; ++trial) {
     expect_ok(qses_begin(context, &s));
     expect_ok(qses_cancel(context));
-    EXPECT_EQ(estimate(context, s).vertices, before.vertices);
+    EXPECT_EQ(estimate_of(context, s).vertices, before.vertices);
   }
 }
 
@@ -182,7 +175,7 @@ TEST(Estimate, LeavesTheLastMeshInPlace) {
   set_atoms(context, crambin());
   const qses_mesh before = compute_view(context, settings(0.7));
   const std::vector<float> positions(before.positions, before.positions + 3 * size_t(before.vertex_count));
-  estimate(context, settings(0.3));
+  estimate_of(context, settings(0.3));
   qses_mesh after;
   qses_mesh_init(&after);
   expect_ok(qses_context_mesh(context, &after));
@@ -206,14 +199,14 @@ TEST(Budget, TheSmallestWorksAndGivesTheSameBytes) {
   const Context unbounded;
   for (const Case &c : cases()) {
     set_atoms(unbounded, c.atoms);
-    const uint64_t smallest = estimate(unbounded, c.settings).smallest_budget;
+    const uint64_t smallest = estimate_of(unbounded, c.settings).smallest_budget;
     const qses_mesh expected = compute_view(unbounded, c.settings);
     const qses_report whole = report_of(unbounded);
     for (const uint64_t budget : {smallest, smallest + smallest / 4, 3 * smallest}) {
       const std::string what = c.name + ": " + std::to_string(budget) + " bytes";
       const Context context(2, budget);
       set_atoms(context, c.atoms);
-      EXPECT_EQ(estimate(context, c.settings).fits, 1) << what;
+      EXPECT_EQ(estimate_of(context, c.settings).fits, 1) << what;
       // Twice: the second time all memory is there.
       for (int round = 0; round < 2; ++round) {
         qses_mesh mesh;
@@ -241,7 +234,7 @@ TEST(Budget, IsKeptByTheHeap) {
   for (const Case &c : cases()) {
     const Context unbounded(2);
     set_atoms(unbounded, c.atoms);
-    const uint64_t budget = estimate(unbounded, c.settings).smallest_budget * 5 / 4;
+    const uint64_t budget = estimate_of(unbounded, c.settings).smallest_budget * 5 / 4;
     const uint64_t before = heap_bytes();
     const Context context(2, budget);
     set_atoms(context, c.atoms);
@@ -258,10 +251,10 @@ TEST(Budget, TheEstimateKnowsIt) {
   const Atoms atoms = crambins(12);
   const Context unbounded;
   set_atoms(unbounded, atoms);
-  const uint64_t smallest = estimate(unbounded, settings(0.4)).smallest_budget;
+  const uint64_t smallest = estimate_of(unbounded, settings(0.4)).smallest_budget;
   const Context context(2, smallest + smallest / 8);
   set_atoms(context, atoms);
-  const qses_size_estimate e = estimate(context, settings(0.4));
+  const qses_size_estimate e = estimate_of(context, settings(0.4));
   EXPECT_EQ(e.fits, 1);
   expect_close(e.smallest_budget, smallest, "smallest budget");
   compute_view(context, settings(0.4));
@@ -272,12 +265,12 @@ TEST(Budget, TheEstimateKnowsIt) {
 TEST(Estimate, WithoutABudgetKnowsWhatTheMachineHas) {
   const Context context;
   set_atoms(context, crambins(12));
-  EXPECT_EQ(estimate(context, settings(0.5)).fits, 1);
-  EXPECT_EQ(estimate(context, settings(0.002)).fits, 0);
+  EXPECT_EQ(estimate_of(context, settings(0.5)).fits, 1);
+  EXPECT_EQ(estimate_of(context, settings(0.002)).fits, 0);
   Atoms apart;
   for (int k = 0; k < 400; ++k) apart.add(10.0 * (k % 20), 10.0 * (k / 20), 0, 1.7);
   set_atoms(context, apart);
-  const qses_size_estimate e = estimate(context, settings(0.002, 1.4, QSES_SURFACE_VDW));
+  const qses_size_estimate e = estimate_of(context, settings(0.002, 1.4, QSES_SURFACE_VDW));
   EXPECT_GT(e.triangles, uint64_t(0xffffffff));
   EXPECT_EQ(e.fits, 0);
 }
@@ -292,7 +285,7 @@ TEST(Budget, OfOcclusionKnowsLargeBeads) {
     s.occlusion = 1;
     const Context unbounded;
     set_atoms(unbounded, beads);
-    const qses_size_estimate e = estimate(unbounded, s);
+    const qses_size_estimate e = estimate_of(unbounded, s);
     compute_view(unbounded, s);
     EXPECT_GE(static_cast<double>(e.work_bytes), 0.9 * static_cast<double>(report_of(unbounded).work_bytes_peak));
     const Context context(2, e.smallest_budget);
@@ -330,7 +323,7 @@ TEST(Budget, TooSmallIsRefusedWithOneThatWouldDo) {
   const Context unbounded;
   for (const Case &c : cases()) {
     set_atoms(unbounded, c.atoms);
-    const uint64_t smallest = estimate(unbounded, c.settings).smallest_budget;
+    const uint64_t smallest = estimate_of(unbounded, c.settings).smallest_budget;
     for (const uint64_t budget : {uint64_t(1), smallest / 3, smallest / 3 * 2}) {
       const std::string what = c.name + ": " + std::to_string(budget) + " bytes of " + std::to_string(smallest);
       const Context context(2, budget);
@@ -368,7 +361,7 @@ TEST(Budget, WhatCreasesAddIsKnownOnceItWasFound) {
       const Context unbounded(2);
       set_atoms(unbounded, atoms);
       const qses_mesh expected = compute_view(unbounded, c.settings);
-      const uint64_t smallest = estimate(unbounded, c.settings).smallest_budget;
+      const uint64_t smallest = estimate_of(unbounded, c.settings).smallest_budget;
       const Context bounded(2, smallest);
       set_atoms(bounded, atoms);
       qses_mesh mesh;
@@ -391,7 +384,7 @@ TEST(Budget, LaddersAndFramesKeepIt) {
   const Atoms atoms = crambins(6);
   const Context unbounded;
   set_atoms(unbounded, atoms);
-  const uint64_t budget = estimate(unbounded, settings(0.5)).smallest_budget * 5 / 4;
+  const uint64_t budget = estimate_of(unbounded, settings(0.5)).smallest_budget * 5 / 4;
   const Context context(2, budget);
   set_atoms(context, atoms);
   for (int frame = 0; frame < 3; ++frame) {

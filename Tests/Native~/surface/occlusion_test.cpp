@@ -289,9 +289,7 @@ TEST(Occlusion, FitsIntoTheSmallestBudgetOfAnEstimate) {
       const qses_settings s = lit(settings(1.5, 1.4, surface));
       const Context context(2);
       set_atoms(context, gas);
-      qses_size_estimate estimate;
-      qses_size_estimate_init(&estimate);
-      expect_ok(qses_estimate(context, &s, &estimate));
+      const qses_size_estimate estimate = estimate_of(context, s);
       const Context small(2, estimate.smallest_budget);
       set_atoms(small, gas);
       qses_mesh mesh;

@@ -206,6 +206,13 @@ inline qses_mesh compute_view(qses_context *context, const qses_settings &s) {
   return mesh;
 }
 
+inline qses_size_estimate estimate_of(qses_context *context, const qses_settings &s) {
+  qses_size_estimate estimate;
+  qses_size_estimate_init(&estimate);
+  expect_ok(qses_estimate(context, &s, &estimate));
+  return estimate;
+}
+
 inline qses_report report_of(qses_context *context) {
   qses_report report;
   qses_report_init(&report);

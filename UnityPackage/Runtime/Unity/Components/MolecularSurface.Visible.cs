@@ -113,19 +113,9 @@ namespace QuickSes
         // The first of them, for a sentence.
         private static string ChainsOf(Structure structure)
         {
-            var chains = new List<string>();
-            ReadOnlySpan<uint> residues = structure.Residues;
-            for (int i = 0; i < residues.Length; ++i)
-            {
-                if (i > 0 && residues[i] == residues[i - 1])
-                    continue;
-                string chain = structure.GetAtom(i).Chain;
-                if (chain.Length == 0 || chains.Contains(chain))
-                    continue;
-                if (chains.Count == MostNamedChains)
-                    return $"chains {string.Join(", ", chains)}, ...";
-                chains.Add(chain);
-            }
+            List<string> chains = StructureChains.Of(structure);
+            if (chains.Count > MostNamedChains)
+                return $"chains {string.Join(", ", chains.GetRange(0, MostNamedChains))}, ...";
             string all = string.Join(", ", chains);
             return chains.Count == 0 ? "no chains" : chains.Count == 1 ? $"chain {all}" : $"chains {all}";
         }
