@@ -71,7 +71,7 @@ constexpr size_t kFullThreads = 1024;
 // size, and each goes on with what others would have waited for.
 template <class Executor>
 size_t blocks_in_turns(const Executor &executor) {
-  return size_t(executor.multiprocessors()) * 16;
+  return size_t(executor.multiprocessors()) * 20;
 }
 
 // Steps per multiprocessor.

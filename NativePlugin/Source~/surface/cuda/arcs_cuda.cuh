@@ -101,7 +101,7 @@ __device__ __forceinline__ void stage_circle_of_team(const CircleJob &job, bool 
   if (fits && has) pieces = stage_arc(job, c, exposed.whole ? nullptr : &own, place.first + order);
   __syncwarp();
   pieces = fold_lanes<kArcLanes>(pieces, [](uint32_t a, uint32_t b) { return a + b; });
-  if (fits && rank == 0) job.arc_count[c.number] = pieces;
+  if (fits && rank == 0) count_arcs(job, c, pieces);
 }
 
 static __global__ __launch_bounds__(kArcThreads,
@@ -312,7 +312,7 @@ static __global__ __launch_bounds__(128) void write_arcs_kernel(QueuedItems queu
   const unsigned long long staged = job.counters->staged;
   const bool fits = (staged >> 32) <= job.room.staged_circles && (staged & 0xffffffffu) <= job.room.staged_arcs;
   if (first == 0) {
-    const uint32_t arcs = arc_first[job.room.circles];
+    const uint32_t arcs = arc_first[job.run.size()];
     job.counters->arcs = arcs;
     job.counters->written_arcs = fits && arcs <= job.room.arcs ? arcs : 0;
   }
@@ -322,7 +322,9 @@ static __global__ __launch_bounds__(128) void write_arcs_kernel(QueuedItems queu
     const StagedCircle staged_circle = job.staged[s];
     const OpenCircle c = open_circle(job, staged_circle.circle);
     const Sphere atom = load(job.atoms.items + c.atom);
-    uint32_t place = arc_first[staged_circle.circle];
+    const uint32_t atom_of_run = c.atom - job.run.first;
+    uint32_t place = arc_first[atom_of_run];  // behind the arcs of its circles before: they are few
+    for (uint32_t k = job.circle_first[atom_of_run]; k < c.number; ++k) place += job.arc_count[k];
     for (uint32_t k = 0; k < staged_circle.count; ++k) {
       const ExposedArc arc = job.staged_arcs[staged_circle.first + k];
       const uint32_t pieces = 1u << arc.halvings;
@@ -339,7 +341,7 @@ static __global__ __launch_bounds__(128) void write_arcs_kernel(QueuedItems queu
 struct ArcSearch {
   CircleJob job;
   float max_radius;
-  Span<uint32_t> arc_count, arc_first;
+  Span<uint32_t> arc_first;  // per atom of the run
   Span<Interval> long_memory;
   Span<LongCircleState> long_states;
 };
@@ -358,15 +360,15 @@ template <class E>
 void write_arcs(E &executor, const ArcSearch &search) {
   const CircleJob &job = search.job;
   const FeatureRoom &room = job.room;
-  executor.exclusive_scan(room.circles, LoadCount<uint32_t>{search.arc_count.data}, search.arc_first);
+  executor.exclusive_scan(job.run.size(), LoadCount<uint32_t>{job.atom_arcs}, search.arc_first);
   // A circle's arcs are split into no more pieces than its length in Å, and one for each: max_arc_bound() is 1 Å or
   // more.
   const uint64_t intervals = std::max({uint64_t(kLaneIntervals), uint64_t(kArcLanes), uint64_t(room.intervals)});
   const uint64_t pieces = static_cast<uint64_t>(6.3f * search.max_radius) + intervals;
-  executor.launch(
-      "write_arcs", write_arcs_kernel, std::max(room.staged_circles, size_t(job.run.size())),
-      LaunchShape{128, 128, 32 + 4 * pieces, std::min(job.run.size() / 64 + size_t(1), blocks_in_turns(executor))}, job,
-      search.arc_first.data);
+  executor.launch("write_arcs", write_arcs_kernel, std::max(room.staged_circles, size_t(job.run.size())),
+                  LaunchShape{128, 128, 32 + 4 * pieces + room.longest_row() / 2,
+                              std::min(job.run.size() / 64 + size_t(1), blocks_in_turns(executor))},
+                  job, search.arc_first.data);
 }
 
 // The arcs of a run of atoms from their caps. The counters tell what was not finished.
@@ -376,9 +378,9 @@ ArcSearch find_arcs(E &executor, CircleJob job, float max_radius) {
   const size_t processors = executor.multiprocessors();
   const uint64_t caps = room.longest_row();
   job.names = executor.template allocate<CircleName>(room.circles).data;
-  Span<uint32_t> arc_count = executor.template allocate_zeros<uint32_t>(room.circles);
-  Span<uint32_t> arc_first = executor.template allocate<uint32_t>(room.circles + 1);
-  job.arc_count = arc_count.data;
+  job.arc_count = executor.template allocate<uint32_t>(room.circles).data;
+  job.atom_arcs = executor.template allocate_zeros<uint32_t>(job.run.size()).data;
+  const Span<uint32_t> arc_first = executor.template allocate<uint32_t>(job.run.size() + size_t(1));
   job.staged = executor.template allocate<StagedCircle>(room.staged_circles).data;
   job.staged_arcs = executor.template allocate<ExposedArc>(room.staged_arcs).data;
   if (job.exactly) job.unclear_circles = executor.template allocate<uint32_t>(room.circles).data;
@@ -402,7 +404,7 @@ ArcSearch find_arcs(E &executor, CircleJob job, float max_radius) {
   if (job.exactly)
     executor.launch("find_unclear_arcs", find_unclear_arcs_kernel, room.circles,
                     LaunchShape{kWarp, kWarp, (kCutSteps + kCutAnewSteps) * caps, processors * 32}, job);
-  ArcSearch search{job, max_radius, arc_count, arc_first, {}, {}};
+  ArcSearch search{job, max_radius, arc_first, {}, {}};
   if (room.intervals > 0) {
     search.long_memory = executor.template allocate<Interval>(kLongCircleThreads * room.intervals);
     search.long_states = executor.template allocate<LongCircleState>(kLongCircleThreads);

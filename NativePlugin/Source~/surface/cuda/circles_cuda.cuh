@@ -36,7 +36,8 @@ struct CircleJob {
   bool exactly;         // as if nothing were rounded
   // Made by find_arcs().
   CircleName *names = nullptr;     // of the circles, by atom and rank
-  uint32_t *arc_count = nullptr;   // per circle: pieces of arcs
+  uint32_t *arc_count = nullptr;   // per circle that is listed: pieces of arcs
+  uint32_t *atom_arcs = nullptr;   // per atom of the run: of all its circles
   StagedCircle *staged = nullptr;  // circles with exposed arcs, in any order
   ExposedArc *staged_arcs = nullptr;
   // Circles left to find_unclear_arcs, since single precision can't tell what some cap covers of them; nullptr: none
@@ -71,7 +72,10 @@ static __global__ __launch_bounds__(128) void list_circles_kernel(QueuedItems qu
       const int q = q0 + lane;
       const bool owns = q < range.count && job.neighbors[range.first + static_cast<uint32_t>(q)] > i;
       const uint32_t slot = append_place(owns, &next);
-      if (owns) job.names[slot] = {i, static_cast<uint32_t>(q)};
+      if (owns) {
+        job.names[slot] = {i, static_cast<uint32_t>(q)};
+        job.arc_count[slot] = 0;
+      }
     }
   }
 }
@@ -168,6 +172,11 @@ __device__ __forceinline__ uint32_t stage_arc(const CircleJob &job, const OpenCi
   return 1u << arc.halvings;
 }
 
+__device__ __forceinline__ void count_arcs(const CircleJob &job, const OpenCircle &c, uint32_t pieces) {
+  job.arc_count[c.number] = pieces;
+  atomicAdd(&job.atom_arcs[c.atom - job.run.first], pieces);
+}
+
 // Stages a circle's arcs.
 template <class Storage>
 __device__ __forceinline__ void stage_circle(const CircleJob &job, const OpenCircle &c,
@@ -180,7 +189,7 @@ __device__ __forceinline__ void stage_circle(const CircleJob &job, const OpenCir
     if (!intervals.whole) interval = intervals.interval[static_cast<int>(k)];
     pieces += stage_arc(job, c, intervals.whole ? nullptr : &interval, place.first + k);
   }
-  job.arc_count[c.number] = pieces;
+  count_arcs(job, c, pieces);
 }
 // The same of a lane that has one alone.
 template <class Storage>

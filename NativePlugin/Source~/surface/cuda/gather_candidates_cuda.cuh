@@ -28,6 +28,26 @@ struct GatherJob {
   uint64_t *signs;  // of inactive leaves; nullptr: known already
 };
 
+// A number at the centres of a brick's leaves: that of the first, and what a step along each axis adds, so that it need
+// not be found for each anew.
+struct AtLeaves {
+  float value[kLeavesPerBrick];
+  __device__ __forceinline__ AtLeaves(float first, float x, float y, float z) {
+    value[0] = first;
+    value[1] = first + x;
+#pragma unroll
+    for (int k = 0; k < 2; ++k) value[2 + k] = value[k] + y;
+#pragma unroll
+    for (int k = 0; k < 4; ++k) value[4 + k] = value[k] + z;
+  }
+  __device__ __forceinline__ AtLeaves(float first, const Vec3<float> &each) : AtLeaves(first, each.x, each.y, each.z) {}
+};
+// Squared lengths of the ways there from a point; t: that to the first.
+__device__ __forceinline__ AtLeaves lengths2_at_leaves(const Vec3<float> &t, float step) {
+  const auto more = [&](float along) { return step * (along + along + step); };
+  return {length_squared(t), more(t.x), more(t.y), more(t.z)};
+}
+
 // Sign of a leaf between whose points no surface passes: that of its centre, to which no arc is as near as depth. By a
 // team of lanes for each of several leaves, all teams of a warp together.
 template <int kLanes>
@@ -66,7 +86,8 @@ static __global__ __launch_bounds__(
   const Lattice &lattice = job.bricks.lattice;
   const float h = reach.spacing, extent = 7.f * h;
   const glm::ivec3 first = lattice.first_point(job.bricks.place(job.view.first_brick + b));
-  const Vec3<float> low = lattice.position(first.x, first.y, first.z);
+  const Vec3<float> low = lattice.position(first.x, first.y, first.z), first_center = leaf_center(low, 0, h);
+  const float leaf_step = 4.f * h;
 
   uint32_t active = 0;
   const auto around = [&](const NeighborGridView &grid, const PointBox &box, float look) {
@@ -86,11 +107,10 @@ static __global__ __launch_bounds__(
         const Sphere atom = load(f.atoms.items + k);
         const float surface = atom.radius - reach.depth, shell = reach.leaf_radius + reach.slack;
         const float inner = fmaxf(0.f, surface - shell), outer = surface + shell;
+        const AtLeaves d2 = lengths2_at_leaves(first_center - Vec3<float>(atom.center), leaf_step);
 #pragma unroll
-        for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
-          const float d2 = length_squared(leaf_center(low, leaf, h) - Vec3<float>(atom.center));
-          if (d2 >= inner * inner && d2 <= outer * outer) active |= 1u << leaf;
-        }
+        for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf)
+          active |= ((d2.value[leaf] >= inner * inner) & (d2.value[leaf] <= outer * outer)) ? 1u << leaf : 0u;
         return k;
       });
 
@@ -108,9 +128,14 @@ static __global__ __launch_bounds__(
         const Sphere ball = load(f.arc_bounds.items + k);
         if (points.meets(ball.center, ball.radius + reach.depth + reach.slack)) {
           const Arc arc = load(f.arcs + k);
-#pragma unroll 2
-          for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf)
-            if (arc_distance2(arc, leaf_center(low, leaf, h)) <= reach.sign_arcs2) leaves |= 1u << leaf;
+          const Vec3<float> t = first_center - Vec3<float>(arc.center), middle(arc.middle), side(arc.side);
+          const AtLeaves along_middle(dot(t, middle), middle * leaf_step), along_side(dot(t, side), side * leaf_step),
+              length2 = lengths2_at_leaves(t, leaf_step);
+#pragma unroll
+          for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) {
+            const PlaceAtArc<float> place_there{along_middle.value[leaf], along_side.value[leaf], length2.value[leaf]};
+            leaves |= arc_distance2(arc, place_there) <= reach.sign_arcs2 ? 1u << leaf : 0u;
+          }
         }
         job.view.arc_leaves[place] = static_cast<uint8_t>(leaves);
         active |= leaves;

@@ -6,18 +6,27 @@
 
 namespace quickses {
 
-// Squared distance from x to the arc. With t = x - center, the point of the full circle in the direction of t's
-// in-plane part is nearest if it lies on the arc, else the end on t's side is. On the axis of the circle every point is
-// at the same distance and the formula still gives it.
-// AnyArc: one arc for all the points of x, or one for each.
+// A point t away from the centre of an arc: its coordinates in the plane of the circle, and |t|².
+template <class T>
+struct PlaceAtArc {
+  T along_middle, along_side, length2;
+};
+
+// Squared distance from a point to the arc. The point of the full circle in the direction of t's in-plane part is
+// nearest if it lies on the arc, else the end on t's side is. On the axis of the circle every point is at the same
+// distance and the formula still gives it.
+// AnyArc: one arc for all the points, or one for each.
+template <class AnyArc, class T>
+QSES_FN T arc_distance2(const AnyArc &arc, const PlaceAtArc<T> &t) {
+  const T in_plane = square_root(t.along_middle * t.along_middle + t.along_side * t.along_side);
+  const T reach = select(t.along_middle >= T(arc.cos_half) * in_plane, in_plane,
+                         T(arc.cos_half) * t.along_middle + T(arc.sin_half) * absolute(t.along_side));
+  return t.length2 + T(arc.radius * arc.radius) - T(2.f * arc.radius) * reach;
+}
 template <class AnyArc, class T>
 QSES_FN T arc_distance2(const AnyArc &arc, const Vec3<T> &x) {
   const Vec3<T> t = x - Vec3<T>(arc.center);
-  const T along_middle = dot(t, Vec3<T>(arc.middle)), along_side = dot(t, Vec3<T>(arc.side));
-  const T in_plane = square_root(along_middle * along_middle + along_side * along_side);
-  const T reach = select(along_middle >= T(arc.cos_half) * in_plane, in_plane,
-                         T(arc.cos_half) * along_middle + T(arc.sin_half) * absolute(along_side));
-  return length_squared(t) + T(arc.radius * arc.radius) - T(2.f * arc.radius) * reach;
+  return arc_distance2(arc, PlaceAtArc<T>{dot(t, Vec3<T>(arc.middle)), dot(t, Vec3<T>(arc.side)), length_squared(t)});
 }
 
 struct ArcPoint {

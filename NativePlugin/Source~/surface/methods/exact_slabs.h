@@ -57,10 +57,18 @@ Slabs slabs_of(const Work &work, const BrickSet &bricks) {
 struct TotalsBefore {
   BrickTotals emitted, placed;
 };
-struct TellTotals {
+// By one thread more of the last step of counting: a launch of its own takes three microseconds for each slab.
+struct CountAndTell {
+  CountBorderChanges count;
+  size_t bricks;
   const BrickTotals *emitted, *placed;
   TotalsBefore *out;
-  QSES_HOST_DEVICE void operator()(size_t) const { *out = {*emitted, *placed}; }
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    if (i < bricks)
+      count(i);
+    else
+      *out = {*emitted, *placed};
+  }
 };
 
 template <class Work>
@@ -131,15 +139,17 @@ MeshMemoryView build_in_slabs(Work &work, const BrickSet &bricks, const Slabs &s
                         AddMarks{marks.data + first_leaf, signs.data + first_leaf});
     count_cells(executor, bricks, layout, work.table.triangle_count, owned.data,
                 slabs.newly_final(found, Slabs::kCounts));
-    executor.for_each(emitted.size(),
-                      CountBorderChanges{bricks, layout, emitted.first, slabs.final_bricks(found, Slabs::kCounts)});
+    executor.for_each(emitted.size() + size_t(1),
+                      CountAndTell{{bricks, layout, emitted.first, slabs.final_bricks(found, Slabs::kCounts)},
+                                   emitted.size(),
+                                   layout.base + emitted.last,
+                                   layout.base + (found > 1 ? slabs.end(found - 2) : 0),
+                                   told});
     if (found == slabs.count) {
       executor.turn_counts_to(work.parameters.spacing);
       executor.expect("mesh", layout.totals, MeshTotals{});
     }
     B::emit_triangles(executor, bricks, layout, emitted, work.table, mesh.view);
-    executor.for_each(
-        1, TellTotals{layout.base + emitted.last, layout.base + (found > 1 ? slabs.end(found - 2) : 0), told});
     executor.send_all_counts();
   };
 
