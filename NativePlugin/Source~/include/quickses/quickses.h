@@ -75,8 +75,9 @@
  *   outside (pthread_cancel, TerminateThread): qses_cancel is there for that.
  *   On Linux, threads of the library inherit the processors that the thread is bound to which first computes in a
  *   context, or begins a job there, and are no more than these: let it be one that is not bound. A program of OpenMP
- * with OMP_PROC_BIND or OMP_PLACES has its main thread bound to one processor. qses_context_info tells how many there
- * are where the context is made. After a fork while nothing of the library ran, the child may make contexts on the CPU
+ * with OMP_PROC_BIND or OMP_PLACES has its main thread bound to one processor. Nor are they more than the processors
+ * that the control groups of the process, as of a container, have time for. qses_context_info tells how many there are
+ * where the context is made. After a fork while nothing of the library ran, the child may make contexts on the CPU
  * and compute in them, and in those that were made before, with its calling thread alone; contexts that had jobs
  * (qses_begin) before must be neither used nor destroyed there. Where CUDA was used, no child can use it.
  */
@@ -114,7 +115,8 @@ typedef enum qses_status {
   QSES_BACKEND_UNAVAILABLE = 3, /* the back end asked for can't be used here; the message says why */
   QSES_DEVICE_ERROR = 4,        /* the GPU or its driver reported an error */
   QSES_TOO_FINE = 5,            /* the spacing would need more vertices than 32-bit indices can name, or finer places
-                                   than float32 can tell: atoms may lie 2^21 spacings from the middle of them all */
+                                   than float32 can tell: atoms may lie 2^21 spacings from the middle of them all, and
+                                   with GRID the probe's radius may be 16,384 spacings */
   QSES_NO_RESULT = 6,           /* no mesh has been computed or collected yet */
   QSES_INTERNAL_ERROR = 7,      /* a broken invariant of the library: please report it with the input */
   QSES_CANCELLED = 8,           /* qses_cancel was called meanwhile */
@@ -194,8 +196,8 @@ QSES_API uint32_t qses_abi_version(void);
 typedef struct qses_backend_description {
   uint32_t struct_size; /* set by qses_backend_description_init */
   qses_bool available;  /* whether qses_context_create with this back end can succeed */
-  char device[128];     /* what computes: the GPU's name, or the CPU's instruction set and thread count (the
-                           machine's; from qses_context_info, how many of the context work at a time) */
+  char device[128];     /* what computes: the GPU's name, or the CPU's instruction set and thread count (one for each of
+                           `processors`; from qses_context_info, how many of the context work at a time) */
   char reason[256]; /* if not available: why; with AUTO, why it is not CUDA; if preparing: what is done; else empty */
   uint64_t total_memory; /* bytes of the device, or of the machine; on Linux no more than the control groups of the
                             process may have, as in a container or a batch job */
@@ -203,7 +205,8 @@ typedef struct qses_backend_description {
   qses_bool preparing; /* whether the first qses_context_create for this GPU is loading the kernels, on another thread.
                           For a GPU newer than this library the driver compiles them then, for up to a minute, once
                           per driver version. 0 from a library that does not know the field */
-  uint32_t reserved;   /* 0 */
+  uint32_t processors; /* how many the calling thread may run on; on Linux no more than the control groups of the
+                          process have time for. 0 from a library that does not know the field */
 } qses_backend_description;
 
 /* Empty description with struct_size set. NULL is ignored. */
@@ -231,10 +234,10 @@ typedef struct qses_context_options {
   uint32_t struct_size;   /* set by qses_context_options_init */
   qses_backend backend;   /* default AUTO */
   int32_t device;         /* CUDA device ordinal; default 0 */
-  uint32_t threads;       /* CPU threads, of this context's own; 0 (default) = one per hardware thread. Contexts that
-                             compute at once do best with a part of the processors each. With CUDA up to 8, the caller's
-                             among them, copy atoms if there are 16,384 or more; those do not stand back, since the
-                             caller waits for them */
+  uint32_t threads;       /* CPU threads, of this context's own, at most 4096; 0 (default) = one per hardware thread.
+                             Contexts that compute at once do best with a part of the processors each. With CUDA up to
+                             8, the caller's among them, copy atoms if there are 16,384 or more; those do not stand
+                             back, since the caller waits for them */
   uint64_t memory_budget; /* bytes; 0 (default): what is free at the time (see qses_backend_description.free_memory),
                              on the CPU for the mesh as well. With CUDA it covers everything on the device:
                              where the mesh does not fit, it leaves the device piece by piece. On the CPU it covers
@@ -276,7 +279,7 @@ QSES_API qses_status qses_context_info(const qses_context *context, qses_backend
  *   positions  count positions of three floats x, y, z in Å, each stride bytes after the one before;
  *              stride 0 means tightly packed (12 bytes); else a multiple of 4, at least 12
  *   radii      count van der Waals radii in Å, above 0 and at most 100
- *   count      number of atoms; 0 is allowed and gives an empty mesh
+ *   count      number of atoms, at most 2^31 - 1; 0 is allowed and gives an empty mesh
  * Two atoms at the same place count as the larger of them (of equals, as the first), but in the density of GAUSSIAN,
  * which adds up all there are. An atom inside another one owns no vertex.
  * Errors: INVALID_ARGUMENT (NULL, stride, a position that is NaN or infinite or beyond 1e6 Å, a radius out of range:
@@ -352,14 +355,14 @@ typedef struct qses_settings {
   qses_bool measure;     /* 1 (default): qses_report.area and .volume are computed (see qses_measured_by); 0: they are
                             0 */
   uint32_t tag;          /* any number; comes back in qses_mesh.tag and qses_progress.tag */
-  uint32_t level_count;  /* of levels; default 2 */
-  float levels[QSES_MAX_LEVELS];    /* Å; for qses_begin: coarser spacings, falling, each below the one before. Their
-                                       surfaces come before that of `spacing`, each a complete closed mesh on the true
-                                       surface. Those that are not above `spacing` are left out. Default 2, 1. If each
-                                       of the spacings divides the coarsest one without rest, the lattices of all
-                                       levels have a point at the origin, else only the finest has. qses_compute
-                                       computes no levels, but they decide there too where the lattice lies: with other
-                                       levels its mesh differs by what float32 rounds */
+  uint32_t level_count;  /* of levels, at most QSES_MAX_LEVELS; default 2 */
+  float levels[QSES_MAX_LEVELS]; /* Å, each 0.001 to 100; for qses_begin: coarser spacings, falling, each below the one
+                                    before. Their surfaces come before that of `spacing`, each a complete closed mesh on
+                                    the true surface. Those that are not above `spacing` are left out. Default 2, 1. If
+                                    each of the spacings divides the coarsest one without rest, the lattices of all
+                                    levels have a point at the origin, else only the finest has. qses_compute
+                                    computes no levels, but they decide there too where the lattice lies: with other
+                                    levels its mesh differs by what float32 rounds */
   qses_vertex_layout vertex_layout; /* default SEPARATE */
   qses_bool texcoords;              /* 1: vertices have texture coordinates (see qses_set_texcoords, and occlusion
                                        below); default 0 */
@@ -524,11 +527,12 @@ QSES_API qses_status qses_context_mesh(const qses_context *context, qses_mesh *m
 
 /* An element of an array: it never grows. */
 typedef struct qses_stage_time {
-  char name[24];       /* of the file under surface/ that does the work (the method's own files end in _cpu or _cuda):
-                          "neighbor_grid", "solvent_features", "bricks", "exact_ses", "grid_ses" or
-                          "gaussian_density", "thin_walls", "marching_cubes", "projection", "relaxation", "creases",
-                          "measure" or, if components are asked for, "components", "visible_mask", "hard_edges",
-                          "appearance" (with settings.occlusion: "occlusion"), "pick_boxes", "mesh_memory" */
+  char name[24];       /* of the file under surface/ that does the work, some with _cpu or _cuda behind it ("exact_ses"
+                          stands for the signs of the exact method on either back end): "neighbor_grid",
+                          "solvent_features", "bricks", "exact_ses", "grid_ses" or "gaussian_density", "thin_walls",
+                          "marching_cubes", "projection", "relaxation", "creases", "measure" or, if components are asked
+                          for, "components", "visible_mask", "hard_edges", "appearance" (with settings.occlusion:
+                          "occlusion"), "pick_boxes", "mesh_memory" */
   double milliseconds; /* with CUDA: between events on the stream */
 } qses_stage_time;
 
@@ -701,9 +705,10 @@ QSES_API qses_status qses_wait(qses_context *context, double milliseconds, qses_
  * again: memory goes back to the context it came from, so that frame after frame allocates nothing. A context holds
  * back a few spare buffers, about as much as it needs for its next meshes; the rest goes back to the machine.
  *
- * Threads: one at a time may change a kept mesh (qses_keep, qses_kept_mesh_clear, qses_kept_mesh_destroy), and then no
- * other may use it; any number may look (the other functions) at a time. All this may go on while the contexts compute,
- * or after their end: a kept mesh outlives its context, without holding the context's threads, work memory or GPU. */
+ * Threads: one at a time may change a kept mesh (qses_keep, qses_kept_mesh_download, qses_kept_mesh_clear,
+ * qses_kept_mesh_destroy), and then no other may use it; any number may look (the other functions) at a time. All this
+ * may go on while the contexts compute, or after their end: a kept mesh outlives its context, without holding the
+ * context's threads, work memory or GPU. */
 
 /* Makes an empty one. On success *kept is the caller's, who ends it with qses_kept_mesh_destroy; on failure it is NULL.
  * Errors: INVALID_ARGUMENT, OUT_OF_MEMORY. */
@@ -720,7 +725,8 @@ QSES_API void qses_kept_mesh_clear(qses_kept_mesh *kept);
  * next one. Also while jobs run. Takes some hundred nanoseconds. What it held is still there after an error. With
  * settings.delivery DEVICE or BOTH it keeps the mesh on the device, which counts as the context's until it is given
  * back, for a memory budget too.
- * Errors: INVALID_ARGUMENT (NULL; the mesh was made with settings.delivery NONE, so that there is none), NO_RESULT. */
+ * Errors: INVALID_ARGUMENT (NULL; the mesh was made with settings.delivery NONE, so that there is none), NO_RESULT,
+ * OUT_OF_MEMORY. */
 QSES_API qses_status qses_keep(qses_context *context, qses_kept_mesh *kept);
 
 /* Copies a mesh that is on the device only (settings.delivery DEVICE) into host memory, and waits for that: from then
@@ -836,7 +842,8 @@ typedef struct qses_structure_options {
   uint32_t struct_size; /* set by qses_structure_options_init */
   qses_structure_format format;
   int32_t model;         /* place of the model in the file, from 1 (default); in PDB files END ends one too */
-  qses_bool water;       /* 1 (default): waters are kept; 0: they are left out */
+  qses_bool water;       /* 1 (default): waters are kept; 0: they are left out. XYZR files have no names: with one of
+                            these three 0, or a selection, they are INVALID_ARGUMENT */
   qses_bool hetero;      /* the same for HETATM records, which waters mostly are too */
   qses_bool hydrogen;    /* the same for hydrogen and deuterium */
   const char *selection; /* words, such as "protein and not chain B", or CID, such as "//A/10-40": see "selections"
@@ -845,7 +852,8 @@ typedef struct qses_structure_options {
   const char *radii;     /* "quickses", "bondi", or the name of a text file with lines `ELEMENT radius` (Å; `*` for all
                             others) and `RESIDUE ATOM radius` (either may be `*`), of which the most specific holds:
                             residue and atom, residue, atom, element, `*`. NULL (default) = those of the file (PQR,
-                            XYZR), else "quickses": O 1.52, C 1.70, N 1.55, H 1.20, S 1.80, P 1.80, others 1.40 Å */
+                            XYZR: any others are INVALID_ARGUMENT), else "quickses": O 1.52, C 1.70, N 1.55, H 1.20,
+                            S 1.80, P 1.80, others 1.40 Å */
   const char *assembly;  /* PDB and mmCIF: the name of a biological assembly, mostly "1", which is made of copies of the
                             file's chains. The first copy of a chain keeps its name, others have 2, 3 and so on behind
                             it. Atoms, file_indices, file_atom_count and file_elements are then those of the assembly,
@@ -912,8 +920,8 @@ QSES_API qses_status qses_structure_info(const qses_structure *structure, qses_s
 /* What the file says about one atom. Strings are never NULL; XYZR files have none, so they are empty there. They are
  * the structure's, valid until qses_structure_close. */
 typedef struct qses_atom {
-  uint32_t struct_size; /* set by qses_atom_init */
-  int32_t residue_number;
+  uint32_t struct_size;     /* set by qses_atom_init */
+  int32_t residue_number;   /* also 0 where the file has none, or no number */
   const char *name;         /* such as "CA" */
   const char *residue_name; /* such as "ALA" */
   const char *chain;
