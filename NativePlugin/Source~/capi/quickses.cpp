@@ -7,7 +7,7 @@
 #include "capi/barrier.h"
 #include "capi/context.h"
 #include "capi/structs.h"
-#include "parallel/stay_loaded.h"
+#include "process/stay_loaded.h"
 
 #include <algorithm>
 #include <cmath>

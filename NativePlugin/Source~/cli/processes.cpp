@@ -2,12 +2,18 @@
 // One process that does everything itself.
 #include "cli/processes.h"
 
+#include "quickses/quickses.h"
+
 #include <algorithm>
-#include <thread>
 
 namespace quickses::cli {
 
-unsigned Processes::threads() const { return std::max(1u, std::thread::hardware_concurrency()); }
+unsigned Processes::threads() const {
+  qses_backend_description cpu;
+  qses_backend_description_init(&cpu);
+  qses_backend_info(QSES_BACKEND_CPU, &cpu);
+  return std::max(1u, cpu.processors);
+}
 
 void Processes::agree(const Failure *failure) const {
   if (failure) throw Failure(*failure);

@@ -5,8 +5,8 @@
 #include "parallel/arena.h"
 #include "parallel/cpu_threads.h"
 #include "parallel/executor.h"
-#include "parallel/host_memory.h"
 #include "parallel/working_thread.h"
+#include "process/host_memory.h"
 
 #include <thrust/execution_policy.h>
 #include <thrust/merge.h>

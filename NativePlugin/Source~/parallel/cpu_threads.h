@@ -2,9 +2,9 @@
 // The CPU's threads. Which they are nothing outside this file knows.
 #pragma once
 
-#include "parallel/helper_threads.h"
-#include "parallel/worker_threads.h"
 #include "parallel/working_thread.h"
+#include "process/helper_threads.h"
+#include "process/worker_threads.h"
 
 #include <algorithm>
 #include <atomic>

@@ -6,7 +6,7 @@
 #include "parallel/arena.h"
 #include "parallel/cuda_preparation.h"
 #include "parallel/error.h"
-#include "parallel/touched_pages.h"
+#include "process/touched_pages.h"
 
 #include <cuda_runtime.h>
 

@@ -3,7 +3,7 @@
 // (memory_ladder.h).
 #pragma once
 
-#include "parallel/worker_threads.h"
+#include "process/worker_threads.h"
 #include "quickses/quickses.h"
 #include "surface/memory/atom_set.h"
 #include "surface/mesh/mesh_memory.h"

@@ -140,6 +140,7 @@ namespace QuickSes.Tests
             Assert.That(cpu.Description.IsAvailable, Is.True);
             Assert.That(cpu.Description.Device, Is.Not.Empty);
             Assert.That(cpu.Description.TotalMemory, Is.GreaterThan(cpu.Description.FreeMemory));
+            Assert.That(cpu.Description.Processors, Is.InRange(1u, (uint)Environment.ProcessorCount));
             Assert.That(SurfaceContext.NativeVersion, Does.Match(@"^\d+\.\d+\.\d+"));
 
             bool hasCuda = SurfaceContext.IsSupported(SurfaceBackend.Cuda, out string reason);

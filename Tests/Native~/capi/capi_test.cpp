@@ -9,6 +9,10 @@
 #include <memory>
 #include <thread>
 
+#if defined(__linux__)
+#include <sched.h>
+#endif
+
 namespace {
 
 using namespace capi_fixture;
@@ -31,7 +35,38 @@ TEST(BackendInfo, OfTheCpu) {
   EXPECT_GT(d.total_memory, uint64_t(1) << 20);
   EXPECT_GT(d.free_memory, 0u);
   EXPECT_LE(d.free_memory, d.total_memory);
+  EXPECT_GE(d.processors, 1u);
 }
+
+#if defined(__linux__)
+TEST(BackendInfo, CountsTheProcessorsThatTheThreadMayRunOn) {
+  std::thread([] {
+    cpu_set_t all, one;
+    ASSERT_EQ(sched_getaffinity(0, sizeof all, &all), 0);
+    CPU_ZERO(&one);
+    for (int k = 0; k < CPU_SETSIZE && CPU_COUNT(&one) == 0; ++k)
+      if (CPU_ISSET(k, &all)) CPU_SET(k, &one);
+    ASSERT_EQ(sched_setaffinity(0, sizeof one, &one), 0);
+    for (const qses_backend backend : {QSES_BACKEND_CPU, QSES_BACKEND_CUDA, QSES_BACKEND_AUTO}) {
+      qses_backend_description d = empty_description();
+      ASSERT_EQ(qses_backend_info(backend, &d), QSES_OK);
+      EXPECT_EQ(d.processors, 1u);
+    }
+    // That many threads of a context work, also of one that may have more.
+    qses_context_options options;
+    qses_context_options_init(&options);
+    options.backend = QSES_BACKEND_CPU;
+    options.threads = 7;
+    qses_context *context = nullptr;
+    ASSERT_EQ(qses_context_create(&options, &context), QSES_OK);
+    qses_backend_description d = empty_description();
+    qses_backend used;
+    ASSERT_EQ(qses_context_info(context, &used, &d), QSES_OK);
+    EXPECT_NE(std::string(d.device).find(", 1 thread)"), std::string::npos) << d.device;
+    qses_context_destroy(context);
+  }).join();
+}
+#endif
 
 TEST(BackendInfo, AutoIsOneOfTheOthersAndSaysWhy) {
   qses_backend_description cuda = empty_description(), chosen = cuda, cpu = cuda;

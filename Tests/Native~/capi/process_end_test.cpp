@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A process that ends while threads compute, begin and end: it does end, and with its own status.
-#include "parallel/forked_child.h"
+#include "process/forked_child.h"
 #include "surface/surface_fixture.h"
 
 #include <gtest/gtest.h>

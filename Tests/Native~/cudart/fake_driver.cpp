@@ -5,7 +5,7 @@
 // (-DcuMemAlloc_v2=left_out).
 #include "fake_driver.h"
 
-#include "../parallel/patience.h"
+#include "../process/patience.h"
 
 #include <atomic>
 #include <chrono>

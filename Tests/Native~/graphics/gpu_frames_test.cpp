@@ -3,7 +3,7 @@
 // library's own. What was drawn is the mesh of the frame, byte for byte.
 #include "graphics/graphics_fixture.h"
 #include "graphics/render_thread.h"
-#include "parallel/patience.h"
+#include "process/patience.h"
 
 #include <atomic>
 #include <chrono>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "graphics/gpu_patience.h"
-#include "parallel/patience.h"
+#include "process/patience.h"
 
 // While it lives, meshes wait for their events however long the machine stands still in between.
 class LongGpuPatience {

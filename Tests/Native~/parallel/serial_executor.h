@@ -4,7 +4,7 @@
 
 #include "parallel/arena.h"
 #include "parallel/executor.h"
-#include "parallel/host_memory.h"
+#include "process/host_memory.h"
 
 #include <algorithm>
 #include <cstdlib>

@@ -4,7 +4,7 @@
 // they run in this process.
 #pragma once
 
-#include "parallel/patience.h"
+#include "process/patience.h"
 #include "properties/property_checker.h"
 
 #include <csignal>

@@ -4,7 +4,7 @@
 #include "surface/surface_fixture.h"
 
 #include "parallel/arena.h"
-#include "parallel/host_memory.h"
+#include "process/host_memory.h"
 #include "surface/methods/size_check.h"
 
 #include <gtest/gtest.h>

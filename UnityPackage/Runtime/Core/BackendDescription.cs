@@ -12,6 +12,7 @@ namespace QuickSes
             IsPreparing = native.Preparing != 0;
             TotalMemory = native.TotalMemory;
             FreeMemory = native.FreeMemory;
+            Processors = native.Processors;
             fixed (byte* device = native.Device, reason = native.Reason)
             {
                 Device = NativeText.Read(device);
@@ -44,5 +45,11 @@ namespace QuickSes
 
         /// <summary>Bytes of <see cref="TotalMemory"/> that were free when it was asked for.</summary>
         public ulong FreeMemory { get; }
+
+        /// <summary>
+        /// How many processors the calling thread may run on; on Linux no more than a container or a batch job has time
+        /// for. No context has more threads of the CPU at work.
+        /// </summary>
+        public uint Processors { get; }
     }
 }

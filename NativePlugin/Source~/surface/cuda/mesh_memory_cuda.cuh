@@ -5,7 +5,7 @@
 #pragma once
 
 #include "parallel/cuda_executor.cuh"
-#include "parallel/later_release.h"
+#include "process/later_release.h"
 #include "surface/mesh/mesh_memory.h"
 #include "surface/stages/hot_stages.h"
 #include "surface/stages/measure.h"

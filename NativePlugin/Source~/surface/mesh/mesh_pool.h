@@ -5,7 +5,7 @@
 #pragma once
 
 #include "parallel/growing_buffer.h"
-#include "parallel/host_memory.h"
+#include "process/host_memory.h"
 
 #include <functional>
 #include <memory>

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "parallel/growing_buffer.h"
-#include "parallel/host_memory.h"
+#include "process/host_memory.h"
 #include "surface/mesh/mesh_memory.h"
 #include "surface/stages/component_sums.h"
 #include "surface/stages/host_components.h"

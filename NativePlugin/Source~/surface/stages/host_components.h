@@ -2,7 +2,7 @@
 // The components of a mesh in host memory, found by the CPU's threads: for meshes that did not fit on the GPU.
 #pragma once
 
-#include "parallel/worker_threads.h"
+#include "process/worker_threads.h"
 #include "surface/mesh/mesh_view.h"
 
 #include "quickses/quickses.h"

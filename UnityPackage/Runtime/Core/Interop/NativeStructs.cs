@@ -14,7 +14,7 @@ namespace QuickSes.Interop
         public ulong TotalMemory;
         public ulong FreeMemory;
         public int Preparing;
-        public uint Reserved;
+        public uint Processors;
     }
 
     [StructLayout(LayoutKind.Sequential)]

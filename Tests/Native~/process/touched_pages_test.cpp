@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "parallel/touched_pages.h"
+#include "process/touched_pages.h"
 
-#include "parallel/host_memory.h"
+#include "process/host_memory.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Threads that help: who comes does all of its work before the call returns, and nobody waits for who does not.
-#include "parallel/helper_threads.h"
+#include "process/helper_threads.h"
 
-#include "parallel/forked_child.h"
+#include "process/forked_child.h"
 
 #include <gtest/gtest.h>
 

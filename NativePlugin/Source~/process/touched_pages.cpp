@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "parallel/touched_pages.h"
+#include "process/touched_pages.h"
 
-#include "parallel/host_memory.h"
+#include "process/host_memory.h"
+#include "process/worker_threads.h"
 
 #include <algorithm>
 #include <system_error>
@@ -44,7 +45,7 @@ void *TouchedPages::acquire(size_t bytes) {
   char *const memory = static_cast<char *>(take(bytes));
   if (!memory) return nullptr;
   const size_t pages = (bytes + kLargePage - 1) / kLargePage;
-  const size_t most = bytes < kMuch ? 1 : std::clamp<size_t>(std::thread::hardware_concurrency(), 1, 8);
+  const size_t most = bytes < kMuch ? 1 : std::clamp<size_t>(processors(), 1, 8);
   const size_t share = (pages + most - 1) / most * kLargePage;
   std::vector<std::thread> threads;
   char *next = memory, *const end = memory + bytes;

@@ -10,7 +10,8 @@ struct WorkerThreads {
   bool in_background;  // those that are the library's stand back behind threads of normal priority
 };
 
-// How many processors the calling thread, and what it starts, may run on; at least 1.
+// How many processors the calling thread, and what it starts, may run on, and are given time on; at least 1. A part of
+// one counts as one.
 unsigned processors() noexcept;
 
 // From now on the calling thread, one of the library's, stands back. Never fails loudly.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "parallel/worker_threads.h"
+#include "process/worker_threads.h"
 
 #if defined(_WIN32)
 #ifndef NOMINMAX
@@ -13,6 +13,9 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cmath>
+
+#include "process/control_groups.h"
 #endif
 
 #include <algorithm>
@@ -21,12 +24,16 @@
 namespace quickses {
 
 unsigned processors() noexcept {
+  unsigned count = std::max(1u, std::thread::hardware_concurrency());
 #if defined(__linux__)
-  // hardware_concurrency() counts the machine's.
+  // That counts the machine's.
   cpu_set_t set;
-  if (sched_getaffinity(0, sizeof set, &set) == 0) return static_cast<unsigned>(std::max(1, CPU_COUNT(&set)));
+  if (sched_getaffinity(0, sizeof set, &set) == 0) count = static_cast<unsigned>(std::max(1, CPU_COUNT(&set)));
+  // Threads that are more than there is time for use it up, and then all of them stand still.
+  static const double time_for = read_group_processors(kGroupsOfProcess, kMountedGroups);
+  if (time_for > 0 && time_for < count) count = static_cast<unsigned>(std::ceil(time_for));
 #endif
-  return std::max(1u, std::thread::hardware_concurrency());
+  return count;
 }
 
 void stand_back() noexcept {

@@ -3,7 +3,7 @@
 // plug-in would share them with whoever else in the process has a oneTBB.
 #pragma once
 
-#include "parallel/this_process.h"
+#include "process/this_process.h"
 
 #include <cstddef>
 #include <memory>

@@ -3,7 +3,7 @@
 // loads libraries, since a process of glibc 2.36 that ended meanwhile was seen to do so with 127 (dl-sort-maps.c).
 #pragma once
 
-#include "parallel/this_process.h"
+#include "process/this_process.h"
 
 #include <atomic>
 

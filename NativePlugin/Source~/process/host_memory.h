@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Memory of the host, as the arena takes it, and as Thrust is given some of it.
+// Memory of the machine, as the arena takes it (arena.h), and as Thrust is given some of it.
 #pragma once
 
 #include <cstddef>

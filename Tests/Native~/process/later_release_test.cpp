@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Memory that nobody waits for is given back all the same, once, and not by whoever hands it over; also while the
 // process ends, or a child of it.
-#include "parallel/later_release.h"
+#include "process/later_release.h"
 
-#include "parallel/forked_child.h"
+#include "process/forked_child.h"
 
 #include <gtest/gtest.h>
 

@@ -14,7 +14,7 @@
 #if defined(__linux__) && !defined(QSES_TEST_SANITIZED)
 #define QSES_TEST_FORKS
 
-#include "parallel/patience.h"
+#include "process/patience.h"
 
 #include <sys/wait.h>
 #include <unistd.h>

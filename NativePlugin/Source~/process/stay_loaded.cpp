@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "parallel/stay_loaded.h"
+#include "process/stay_loaded.h"
 
-#include "parallel/work_before_exit.h"
+#include "process/work_before_exit.h"
 
 #include <cstdlib>
 

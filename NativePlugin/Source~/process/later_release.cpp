@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "parallel/later_release.h"
+#include "process/later_release.h"
 
-#include "parallel/work_before_exit.h"
+#include "process/work_before_exit.h"
 
 #include <chrono>
 #include <cstdlib>

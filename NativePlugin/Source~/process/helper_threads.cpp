@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "parallel/helper_threads.h"
+#include "process/helper_threads.h"
 
-#include "parallel/worker_threads.h"
+#include "process/worker_threads.h"
 
 #include <algorithm>
 #include <atomic>

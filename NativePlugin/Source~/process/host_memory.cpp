@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "parallel/host_memory.h"
+#include "process/host_memory.h"
 
 #if defined(_WIN32)
 #include <windows.h>
@@ -9,8 +9,8 @@
 
 #include <unistd.h>
 
-#include "parallel/control_groups.h"
-#include "parallel/small_file.h"
+#include "process/control_groups.h"
+#include "process/small_file.h"
 #endif
 
 namespace quickses {
@@ -43,7 +43,7 @@ HostMemoryStatus describe_host_memory() {
 #if defined(_SC_AVPHYS_PAGES)
   if (status.free == 0) status.free = pages(_SC_AVPHYS_PAGES);
 #endif
-  const ControlGroupMemory group = read_control_groups("/proc/self/cgroup", "/sys/fs/cgroup");
+  const GroupMemory group = read_group_memory(kGroupsOfProcess, kMountedGroups);
   if (group.limit < status.total) status.total = group.limit;
   if (group.free < status.free) status.free = std::max<uint64_t>(1, group.free);  // 0: not known
   return status;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "parallel/work_before_exit.h"
+#include "process/work_before_exit.h"
 
 #include <chrono>
 #include <thread>
