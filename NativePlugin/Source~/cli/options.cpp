@@ -48,7 +48,7 @@ const char kFooter[] =
     "  2  an input file can't be read, or has no atoms (after the filters)\n"
     "  3  an output file can't be written\n"
     "  4  computing failed: memory, the device, a spacing too fine for either, a mesh not closed\n"
-    "  5  the back end asked for can't be used here\n"
+    "  5  the back end, or the CUDA device, asked for can't be used here\n"
     "  6  some frames of a trajectory, or some of several structures, failed; the others are done\n"
     "\n"
     "Owner atoms in PLY and GLB files are 0-based places among the atoms of the input's model (or of\n"
