@@ -13,7 +13,7 @@ namespace QuickSes
         /// <summary>
         /// Holds for the whole process from now on; a larger file gives an error. 0 (default): 4 GiB, but of gzip data
         /// at most 100 times its size or 256 MiB, whichever is larger. Any other number holds for all alike. Frames that
-        /// stay in their file (not gzipped, and not PDB) are not counted.
+        /// stay in their file (not gzipped, and not PDB), and plain bytes that are given in memory, are not counted.
         /// </summary>
         public static void Set(long bytes)
         {

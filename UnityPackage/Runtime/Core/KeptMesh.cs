@@ -9,8 +9,9 @@ namespace QuickSes
     /// A mesh that is held for longer than the context that computed it would (<see cref="SurfaceContext.Keep"/>), also
     /// longer than the context itself: to be shown, painted and picked in. Meant to be filled again and again: its
     /// memory goes back to the context it came from, and nothing is allocated.
-    /// <para>Threads: one at a time may change it (Keep, <see cref="Clear"/>, <see cref="Dispose"/>), and then no other
-    /// may use it; any number may look at it at a time. Contexts may compute meanwhile.</para>
+    /// <para>Threads: one at a time may change it (Keep, <see cref="Download"/>, <see cref="Clear"/>,
+    /// <see cref="Dispose"/>), and then no other may use it; any number may look at it at a time. Contexts may compute
+    /// meanwhile.</para>
     /// <para>Errors: wrong arguments throw. Garbage: none, unless something is wrong.</para>
     /// </summary>
     public sealed unsafe class KeptMesh : IMeshHolder, IDisposable

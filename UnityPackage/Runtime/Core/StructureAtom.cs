@@ -31,7 +31,9 @@ namespace QuickSes
         /// <summary>Name of the chain.</summary>
         public string Chain { get; }
 
-        /// <summary>As in the file.</summary>
+        /// <summary>
+        /// As in the file; 0 also where there is none (<see cref="Structure.Residues"/> tells such residues apart).
+        /// </summary>
         public int ResidueNumber { get; }
 
         /// <summary>' ' if there is none.</summary>

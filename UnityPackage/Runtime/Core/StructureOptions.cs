@@ -30,7 +30,7 @@ namespace QuickSes
         /// <summary>
         /// "quickses", "bondi", or the path of a text file with lines `ELEMENT radius` (Å; `*` for all others) and
         /// `RESIDUE ATOM radius` (either may be `*`), of which the most specific holds. null (default): those of the file
-        /// (PQR, XYZR), else "quickses".
+        /// (PQR, XYZR), else "quickses". Must be null for PQR and XYZR.
         /// </summary>
         public string Radii { get; set; }
 

@@ -10,7 +10,9 @@ namespace QuickSes
         /// <summary>CUDA device, from 0 to <see cref="SurfaceContext.DeviceCount"/> - 1; default 0.</summary>
         public int Device { get; set; }
 
-        /// <summary>CPU threads; 0 (default): one per hardware thread. Games leave some to themselves.</summary>
+        /// <summary>
+        /// CPU threads, at most 4096; 0 (default): one per hardware thread. Games leave some to themselves.
+        /// </summary>
         public uint Threads { get; set; }
 
         /// <summary>
@@ -21,7 +23,8 @@ namespace QuickSes
 
         /// <summary>
         /// Whether the threads that compute stand back behind others of normal priority. Kernels of the GPU have the
-        /// lowest priority either way. A caller of <see cref="SurfaceContext.Compute"/> lends its thread as it is.
+        /// lowest priority either way, but for those of coarser levels and those that place vertices of large meshes. A
+        /// caller of <see cref="SurfaceContext.Compute"/> lends its thread as it is.
         /// </summary>
         public bool Background { get; set; }
     }

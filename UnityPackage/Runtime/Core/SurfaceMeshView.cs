@@ -6,11 +6,12 @@ namespace QuickSes
 {
     /// <summary>
     /// A mesh in memory of a <see cref="SurfaceContext"/> or a <see cref="KeptMesh"/>; nothing is copied. It ends with
-    /// the next <see cref="SurfaceContext.TryCollect"/>, <see cref="SurfaceContext.Compute"/> or
-    /// <see cref="SurfaceContext.Keep"/> that succeeds there, and with Dispose: asking an ended view for memory throws.
-    /// Spans and pointers that were taken before can't tell, so don't keep them; and keep the context or kept mesh
-    /// itself alive while they are used. <c>default</c> is an empty mesh. V is the number of vertices, T that of triangles;
-    /// lengths are in Å, in the coordinates the atoms were given in.
+    /// the next <see cref="SurfaceContext.TryCollect"/>, <see cref="SurfaceContext.TryCollectDevice"/>,
+    /// <see cref="SurfaceContext.Compute"/> or <see cref="SurfaceContext.Keep"/> that succeeds there, of a kept mesh
+    /// also with <see cref="KeptMesh.Clear"/> and <see cref="KeptMesh.Download"/>, and with Dispose: asking an ended
+    /// view for memory throws. Spans and pointers that were taken before can't tell, so don't keep them; and keep the
+    /// context or kept mesh itself alive while they are used. <c>default</c> is an empty mesh. V is the number of
+    /// vertices, T that of triangles; lengths are in Å, in the coordinates the atoms were given in.
     /// </summary>
     public readonly unsafe struct SurfaceMeshView
     {

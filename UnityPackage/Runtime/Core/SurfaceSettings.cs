@@ -198,8 +198,9 @@ namespace QuickSes
         }
 
         /// <summary>
-        /// Sets the spacings, Å, of the coarser levels of a job: falling, at most <see cref="MaxLevels"/>; those not
-        /// above <see cref="Spacing"/> are left out. Empty: only <see cref="Spacing"/>.
+        /// Sets the spacings, Å, of the coarser levels of a job: each 0.001 to 100, falling, at most
+        /// <see cref="MaxLevels"/>; those not above <see cref="Spacing"/> are left out. Empty: only
+        /// <see cref="Spacing"/>.
         /// </summary>
         public unsafe void SetLevels(ReadOnlySpan<float> spacings)
         {

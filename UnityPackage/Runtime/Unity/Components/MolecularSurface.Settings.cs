@@ -78,8 +78,8 @@ namespace QuickSes
         /// <summary>
         /// Whether less light reaches where the surface is closed in (<see cref="SurfaceSettings.Occlusion"/>), with atoms
         /// that move as with those that rest; default yes. Vertices have it as texture coordinate 1: x from 0 (closed in) to
-        /// 1 (open), y is 1. The package's shaders read it (Occlusion Strength), and none for a mesh without. Texture
-        /// coordinates of atoms (<see cref="SetTexcoords(ReadOnlySpan{Vector2})"/>) take its place.
+        /// 1 (open), y is 1. The package's shaders read it (Ambient Occlusion, _OcclusionStrength), and none for a mesh
+        /// without. Texture coordinates of atoms (<see cref="SetTexcoords(ReadOnlySpan{Vector2})"/>) take its place.
         /// </summary>
         public bool AmbientOcclusion
         {

@@ -18,7 +18,7 @@ namespace QuickSes
         private UnityEvent<int> _frameShown = new UnityEvent<int>();
         [SerializeField, Tooltip("An end was passed.")]
         private UnityEvent _looped = new UnityEvent();
-        [SerializeField, Tooltip("It was played once, and is paused on the last frame.")]
+        [SerializeField, Tooltip("It was played once, and is paused at the end.")]
         private UnityEvent _finished = new UnityEvent();
         [SerializeField, Tooltip("A frame is damaged, or nothing can be shown; the text says which and why. If nothing is " +
             "wired here, and no script listens, it is logged.")]

@@ -74,7 +74,8 @@ namespace QuickSes
 
         /// <summary>
         /// Moves atoms by whole box vectors so that every molecule is in one piece; default false. Without a periodic
-        /// box there is a warning, and frames stay as they are. Takes effect with <see cref="Load"/>.
+        /// box there is a warning, and frames stay as they are. Single frames without a box are shown as they are.
+        /// Takes effect with <see cref="Load"/>.
         /// </summary>
         public bool Unwrap { get => _unwrap; set => _unwrap = value; }
 

@@ -56,7 +56,7 @@ namespace QuickSes
             remove => _looped.Remove(value);
         }
 
-        /// <summary>It was played once, and is paused on the last frame.</summary>
+        /// <summary>It was played once, and is paused at the end: with a negative rate, on the first frame.</summary>
         public event Action Finished
         {
             add => _finished.Add(value);

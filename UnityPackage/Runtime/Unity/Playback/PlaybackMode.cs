@@ -8,7 +8,7 @@ namespace QuickSes
         Loop = 0,
         /// <summary>It turns round.</summary>
         PingPong = 1,
-        /// <summary>It stops on the last frame.</summary>
+        /// <summary>It stops at the end: on the last frame, with a negative rate on the first.</summary>
         Once = 2
     }
 }

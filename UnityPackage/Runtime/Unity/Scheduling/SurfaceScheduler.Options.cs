@@ -43,8 +43,8 @@ namespace QuickSes
         }
 
         /// <summary>
-        /// CPU threads of each context made from now on; default: one less than there are, so that the game keeps one,
-        /// but at least two. 0: all.
+        /// CPU threads of each context made from now on, at most 4096; default: one less than there are, so that the
+        /// game keeps one, but at least two. 0: all.
         /// </summary>
         public static uint Threads { get => Options.Threads; set => Options.Threads = value; }
 

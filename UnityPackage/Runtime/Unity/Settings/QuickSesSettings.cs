@@ -6,7 +6,7 @@ namespace QuickSes
     /// <summary>
     /// The project's options of <see cref="SurfaceScheduler"/>: an asset of this name in a folder called Resources, so that
     /// builds have it too. Edit > Project Settings > QuickSES makes and edits it; without it the defaults hold. What
-    /// scripts set at run time overrides it, until play mode begins again.
+    /// scripts set at run time overrides it, until play mode begins again, or the settings are edited.
     /// </summary>
     public sealed class QuickSesSettings : ScriptableObject
     {
