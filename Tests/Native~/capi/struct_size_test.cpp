@@ -300,7 +300,7 @@ constexpr bool is_without_padding(size_t end_of_last_field) {
   return end_of_last_field == sizeof(T) && std::is_trivially_copyable<T>::value;
 }
 #define END(type, field) (offsetof(type, field) + sizeof(type::field))
-static_assert(is_without_padding<qses_backend_description>(END(qses_backend_description, reserved)), "");
+static_assert(is_without_padding<qses_backend_description>(END(qses_backend_description, processors)), "");
 static_assert(is_without_padding<qses_context_options>(END(qses_context_options, reserved)), "");
 static_assert(is_without_padding<qses_settings>(END(qses_settings, without_owners)), "");
 static_assert(is_without_padding<qses_component>(END(qses_component, bounds_max)), "");
