@@ -15,7 +15,7 @@ namespace quickses {
 class CudaCounts {
  public:
   // Of the device: counts, and zeros behind them.
-  static constexpr size_t kBytes = 16384, kZeroBytes = 1536 * 1024, kDeviceBytes = kBytes + kZeroBytes;
+  static constexpr size_t kBytes = 16384, kZeroBytes = 384 * 1024, kDeviceBytes = kBytes + kZeroBytes;
 
   CudaCounts() = default;
   // With the device selected, before anything else.
