@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
 using NUnit.Framework;
 using System;
+using System.Collections.Generic;
 using System.Diagnostics;
+using System.IO;
+using System.Linq;
 using System.Reflection;
 using System.Runtime.CompilerServices;
+using System.Runtime.InteropServices;
 using System.Threading;
 
 namespace QuickSes.Tests
@@ -199,6 +203,43 @@ namespace QuickSes.Tests
             Assert.That(context.TryCollect(out _), Is.False);
             Assert.That(mesh.IsValid, Is.True);
             Assert.That(Meshes.IsClosed(mesh.Indices), Is.True);
+        }
+
+        [Test]
+        public void ThreadsThatComputeStandBackIfAskedTo([Values] bool isBackground)
+        {
+            if (!RuntimeInformation.IsOSPlatform(OSPlatform.Linux))
+                Assert.Ignore("what follows is how Linux tells the priorities of threads");
+            Dictionary<string, int> before = NicenessOfThreads();
+            int own = before[Process.GetCurrentProcess().Id.ToString()];
+            if (own == 19)
+                Assert.Ignore("nothing can stand back behind this process");
+            using var context = new SurfaceContext(
+                new SurfaceContextOptions { Backend = SurfaceBackend.Cpu, Threads = 2, Background = isBackground });
+            context.SetAtoms(new float[3], new[] { 1.5f });
+            Assert.That(context.Begin(SurfaceSettings.Default), Is.EqualTo(QuickSesStatus.Ok));
+            context.Wait();
+            Assert.That(NicenessOfThreads().Any(thread => !before.ContainsKey(thread.Key) && thread.Value > own),
+                Is.EqualTo(isBackground));
+        }
+
+        // By their numbers. One that ends meanwhile has none.
+        private static Dictionary<string, int> NicenessOfThreads()
+        {
+            var found = new Dictionary<string, int>();
+            foreach (string folder in Directory.GetDirectories("/proc/self/task"))
+            {
+                try
+                {
+                    string stat = File.ReadAllText(Path.Combine(folder, "stat"));
+                    string behindName = stat.Substring(stat.LastIndexOf(')') + 2);
+                    found.Add(Path.GetFileName(folder), int.Parse(behindName.Split(' ')[16])); // see proc(5)
+                }
+                catch (IOException)
+                {
+                }
+            }
+            return found;
         }
 
         [Test]

@@ -177,10 +177,13 @@ namespace QuickSes.Tests
             using Structure all = Open(default);
             var mask = new bool[all.AtomCount];
             mask[5] = true;
-            string wrong = "//[[" + new string('x', 500); // longer than what fits on the stack
-            Assert.That(all.TrySelect(wrong, mask, out int count, out QuickSesError error), Is.False);
-            Assert.That((error.Status, count, mask[5]), Is.EqualTo((QuickSesStatus.InvalidArgument, 0, true)));
-            Assert.That(error.Message, Does.Contain(wrong));
+            foreach (int length in new[] { 5, 255, 256, 257, 500 }) // 256 bytes, with a zero at the end, fit on the stack
+            {
+                string wrong = "//[[".PadRight(length, 'x');
+                Assert.That(all.TrySelect(wrong, mask, out int count, out QuickSesError error), Is.False);
+                Assert.That((error.Status, count, mask[5]), Is.EqualTo((QuickSesStatus.InvalidArgument, 0, true)));
+                Assert.That(error.Message, Does.Contain(wrong));
+            }
             QuickSesException thrown = Assert.Throws<QuickSesException>(() => all.Select("//[["));
             Assert.That(thrown.Status, Is.EqualTo(QuickSesStatus.InvalidArgument));
             Assert.That(() => all.Select(null), Throws.ArgumentNullException);
@@ -201,6 +204,12 @@ namespace QuickSes.Tests
                 out Structure structure, out _), Is.True);
             using (structure)
                 Assert.That(structure.GetAtom(0).ToString(), Is.EqualTo("N of GLY -2C"));
+            byte[] lone = System.Text.Encoding.ASCII.GetBytes(
+                "ATOM      1  N           2       9.000   0.000   0.000  1.00  0.00           N\n");
+            Assert.That(Structure.TryOpen(lone, new StructureOptions { Format = StructureFormat.Pdb },
+                out structure, out _), Is.True);
+            using (structure)
+                Assert.That(structure.GetAtom(0).ToString(), Is.EqualTo("N of 2"), "a residue may have no name");
             byte[] nameless = System.Text.Encoding.ASCII.GetBytes("0 0 0 1.5\n");
             Assert.That(Structure.TryOpen(nameless, new StructureOptions { Format = StructureFormat.Xyzr },
                 out structure, out _), Is.True);

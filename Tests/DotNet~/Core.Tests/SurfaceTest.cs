@@ -322,7 +322,8 @@ namespace QuickSes.Tests
                 Assert.That(report.GetStage(k).Name, Does.Match("^[a-z_]+$"));
                 Assert.That(report.GetStage(k).Milliseconds, Is.Not.Negative);
             }
-            Assert.That(() => report.GetStage(report.StageCount), Throws.TypeOf<ArgumentOutOfRangeException>());
+            foreach (int none in new[] { -1, report.StageCount })
+                Assert.That(() => report.GetStage(none), Throws.TypeOf<ArgumentOutOfRangeException>());
         }
 
         [Test]
@@ -343,6 +344,7 @@ namespace QuickSes.Tests
             Assert.That(first.IsValid, Is.False);
             Assert.That(again.IsValid, Is.False);
             Assert.That(() => first.Positions.Length, Throws.InvalidOperationException);
+            Assert.That(() => first.GetComponentAtoms(), Throws.InvalidOperationException);
             Assert.That(second.Tag, Is.EqualTo(42));
             Assert.That(second.Positions.SequenceEqual(positions), Is.True, "same input, same bytes");
         }

@@ -56,7 +56,9 @@ namespace QuickSes
         {
             if (Name.Length == 0 && ResidueName.Length == 0)
                 return "";
-            string place = FormattableString.Invariant($"{Name} of {ResidueName} {ResidueNumber}");
+            string place = FormattableString.Invariant($"{ResidueName} {ResidueNumber}").TrimStart();
+            if (Name.Length > 0)
+                place = $"{Name} of {place}";
             if (InsertionCode != ' ' && InsertionCode != '\0')
                 place += InsertionCode;
             return Chain.Length == 0 ? place : $"{place}, chain {Chain}";
