@@ -20,10 +20,13 @@ namespace QuickSes.Tests
         {
             _rig = SurfaceRig.WithBlob(40, 1);
             yield return _rig.Settle();
-            Mesh mesh = _rig.Surface.Mesh;
+            MolecularSurface surface = _rig.Surface;
+            Mesh mesh = surface.Mesh;
+            Assert.That(surface.OwnerAtomAt(0), Is.InRange(0, 39));
             Object.Destroy(_rig.GameObject);
             yield return SurfaceRig.Frames(2);
             Assert.That(mesh == null);
+            Assert.Throws<MissingReferenceException>(() => surface.OwnerAtomAt(0));
             Assert.That(SurfaceScheduler.WaitingCount, Is.EqualTo(0));
         }
 

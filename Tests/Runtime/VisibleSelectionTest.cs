@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 using NUnit.Framework;
+using System;
 using System.Collections;
 using System.Text.RegularExpressions;
 using UnityEngine;
@@ -148,6 +149,32 @@ namespace QuickSes.Tests
             Assert.That(Surface.VisibleSelectionError, Does.Contain("names none"));
         }
 
+        [TestCase("ABCDEFGHIJKL", "chains A, B, C, D, E, F, G, H, I, J, K, L$")]
+        [TestCase("ABCDEFGHIJKLM", "chains A, B, C, D, E, F, G, H, I, J, K, L, ...$")]
+        public void OfManyChainsTheFirstAreNamed(string chains, string named)
+        {
+            Load(string.Concat(Array.ConvertAll(chains.ToCharArray(),
+                chain => $"ATOM      1  CA  ALA {chain}   1       0.000   0.000   0.000  1.00  0.00           C\n")));
+            Surface.SetVisible("chain Z");
+            Assert.That(Surface.VisibleSelectionError, Does.Match(named.Replace("...", @"\.\.\.")));
+        }
+
+        [Test]
+        public void WhatWasClosedStaysClosedWhenTheSourceIsReadAgain()
+        {
+            string path = System.IO.Path.GetTempFileName();
+            System.IO.File.WriteAllText(path, Chains);
+            Surface.Source.SetFile(path);
+            Surface.Source.Format = StructureFormat.Pdb;
+            Assert.That(Surface.LoadSource());
+            Assert.That(Surface.Structure, Is.Not.Null);
+            Surface.CloseStructure();
+            Assert.That(Surface.LoadSource());
+            System.IO.File.Delete(path);
+            LogAssert.Expect(LogType.Warning, new Regex("can't be read again"));
+            Assert.That(Surface.Structure, Is.Null);
+        }
+
         [Test]
         public void TheStructureStaysOpenWhileSomebodyAsks()
         {
@@ -171,7 +198,7 @@ namespace QuickSes.Tests
             Assert.That(third.IsDisposed);
             Surface.enabled = true;
             third = Surface.Structure;
-            Object.DestroyImmediate(_rig.GameObject);
+            UnityEngine.Object.DestroyImmediate(_rig.GameObject);
             Assert.That(third.IsDisposed);
         }
 

@@ -209,6 +209,11 @@ namespace QuickSes.Tests
             _host.Tick();
             Assert.That(_host.Rests, Is.EqualTo(1));
             Assert.That(_host.Session.IsWaiting, Is.False);
+            _host.SetPositions(Vector3.Zero);
+            _host.Settle();
+            Assert.That(_host.Session.IsWaiting);
+            _host.Session.Clear();
+            Assert.That(_host.Session.IsWaiting, Is.False, "nothing is left that could rest");
         }
 
         [Test]

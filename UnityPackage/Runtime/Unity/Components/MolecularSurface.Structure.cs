@@ -61,7 +61,7 @@ namespace QuickSes
         /// <param name="source">The surface's source, as the player read it; null: it read another one.</param>
         internal void GiveBackStructure(Structure structure, MoleculeSource source)
         {
-            if (_structure != structure || _ownsStructure)
+            if (_structure != structure)
                 return;
             _structure = null;
             _loadedSource = source ?? (_source.IsSet ? _source.Copy() : null);
