@@ -165,6 +165,11 @@ namespace QuickSes.Tests
             yield return SurfaceRig.Until(() => _water.Surface.AtomCount == 1);
             _playing.Pass(0);
             AssertAllAt(5);
+            Player.Unload();
+            _water.Surface.ClearAtoms();
+            int requests = _water.Requests;
+            yield return SurfaceRig.Until(() => _water.Requests > requests);
+            Assert.That(_water.Surface.AtomCount, Is.EqualTo(0), "the player has none any more");
         }
 
         [Test]

@@ -95,6 +95,17 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void TextAssetsMayTakeSeveralFramesToBeCopied()
+        {
+            string remarks = string.Concat(System.Linq.Enumerable.Repeat("REMARK 999".PadRight(80) + "\n", 150000));
+            _playing.UseStructure();
+            Player.TrajectorySource.SetAsset(new TextAsset(remarks + TestFrames.Pdb(4)) { name = "long.pdb" });
+            _playing.Load();
+            Seek(3);
+            _playing.AssertShows(3);
+        }
+
+        [Test]
         public void StructureOfTheSurfaceServesToo()
         {
             _playing.Surface.Source.SetAsset(new TextAsset(TestFrames.Pdb(1)) { name = "structure.pdb" });

@@ -200,6 +200,11 @@ namespace QuickSes.Tests
             Player.enabled = true;
             _playing.TickUntil(() => Player.ShownFrame >= 0, "it is back");
             _playing.AssertShows(3);
+            Player.Unload();
+            Player.Frame = 2;
+            Player.Stop();
+            _playing.Load();
+            _playing.AssertShows(0);
         }
 
         [Test]

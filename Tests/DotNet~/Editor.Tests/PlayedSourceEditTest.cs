@@ -98,6 +98,19 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void AnEditOfThePlayerIsNotForgottenForOneOfTheSurface()
+        {
+            EditSource(3, 2);
+            int loads = 0;
+            _player.Loaded += () => ++loads;
+            _player.PrefetchFrames = 5;
+            _player.FollowEdits();
+            Assert.That(_player.FollowSurfaceSource(), Is.True, "it loads what is set soon");
+            FramesUntil(() => loads == 1);
+            AssertPlays(3);
+        }
+
+        [Test]
         public void ASourceThatIsTakenFromAPlayerTakesTheAtomsAlong()
         {
             EditSource(3, 2);

@@ -7,7 +7,7 @@ namespace UnityEngine
     public class Time
     {
         private static double s_time;
-        private static float s_deltaTime;
+        private static float s_deltaTime, s_unscaledDeltaTime;
 
         public static int frameCount { get; private set; }
 
@@ -22,9 +22,18 @@ namespace UnityEngine
             }
         }
 
-        public static float unscaledDeltaTime => deltaTime;
+        public static float unscaledDeltaTime
+        {
+            get
+            {
+                EngineThread.Require("get_unscaledDeltaTime");
+                return s_unscaledDeltaTime;
+            }
+        }
 
         public static float maximumDeltaTime { get; set; } = 1f / 3;
+
+        public static float timeScale { get; set; } = 1;
 
         /// <summary>Time of the driver's frames, unlike in the engine: a test decides how long a frame takes.</summary>
         public static double realtimeSinceStartupAsDouble
@@ -39,12 +48,14 @@ namespace UnityEngine
         internal static void Reset()
         {
             s_time = 0;
-            s_deltaTime = 0;
+            s_deltaTime = s_unscaledDeltaTime = 0;
+            timeScale = 1;
         }
 
         internal static void Advance(double seconds)
         {
-            s_deltaTime = (float)seconds;
+            s_unscaledDeltaTime = (float)seconds;
+            s_deltaTime = System.Math.Min(s_unscaledDeltaTime, maximumDeltaTime) * timeScale;
             s_time += seconds;
             ++frameCount;
         }
