@@ -78,6 +78,21 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void ModelsOfMmcifAreNotPlayed()
+        {
+            File.WriteAllText(_path,
+                "data_TWO\nloop_\n_atom_site.group_PDB\n_atom_site.id\n_atom_site.type_symbol\n" +
+                "_atom_site.label_atom_id\n_atom_site.label_comp_id\n_atom_site.label_asym_id\n" +
+                "_atom_site.label_seq_id\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n" +
+                "_atom_site.pdbx_PDB_model_num\nATOM 1 C CA ALA A 1 0 0 0 1\nATOM 2 C CA ALA A 1 1 0 0 2\n");
+            var source = new MoleculeSource { Format = StructureFormat.Mmcif };
+            source.SetFile(_path);
+            StructurePreview preview = StructurePreview.Read(source);
+            Assert.That(preview.Summary, Is.EqualTo("1 atoms, 1 chain, model 1 of 2 (MMCIF)"));
+            Assert.That(preview.HasPlayableModels, Is.False, "a player takes PDB files only");
+        }
+
+        [Test]
         public void AFilterThatLeavesNothingIsAnError()
         {
             var source = new MoleculeSource { Selection = "//Z" };

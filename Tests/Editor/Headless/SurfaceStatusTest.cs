@@ -32,7 +32,9 @@ namespace QuickSes.Tests
             Assert.That(SurfaceStatus.Level(0, 3, 0.25f), Is.EqualTo("1 of 3, 0.25 Å"));
 
         [TestCase(0.0421, "0.042 ms")]
+        [TestCase(1, "1.0 ms")]
         [TestCase(12.34, "12.3 ms")]
+        [TestCase(100, "100 ms")]
         [TestCase(12345.6, "12,346 ms")]
         public void MillisecondsHaveThreeDigits(double milliseconds, string text) =>
             Assert.That(SurfaceStatus.Milliseconds(milliseconds), Is.EqualTo(text));
