@@ -134,6 +134,40 @@ namespace QuickSes.Tests
             Settle();
             AssertPlays(3);
             Assert.That(_surface.Mesh.colors32, Has.None.EqualTo(_surface.BaseColor));
+            _surface.Source.ColorScheme = AtomColorScheme.Uniform; // as it was loaded
+            Edit();
+            Settle();
+            Assert.That(_surface.Mesh.colors32, Has.All.EqualTo(_surface.BaseColor));
+        }
+
+        [Test]
+        public void EachEditOfSurfacesThatArePlayedIsFollowed()
+        {
+            var other = new GameObject("other").AddComponent<MolecularSurface>();
+            PlayedSurface played = _player.AddSurface(other, "//A/1-2");
+            EditSource(3, 2);
+            Assert.That(other.AtomCount, Is.EqualTo(2));
+            int loads = 0, expected = 0;
+            _player.Loaded += () => ++loads;
+            var edits = new Action[]
+            {
+                () => played.KeepWater = true, () => played.SkipHydrogen = true, () => played.SkipHetero = true,
+                () => played.ColorScheme = AtomColorScheme.Chain, () => played.Selection = "//A/1",
+                () => _player.AddSurface(new GameObject("third").AddComponent<MolecularSurface>()),
+                () => _player.RemoveSurface(_player.Surfaces[1].Surface), () => _player.RemoveSurface(other)
+            };
+            foreach (Action edit in edits)
+            {
+                edit();
+                _player.FollowEdits();
+                Settle();
+                Assert.That(loads, Is.EqualTo(++expected));
+                _player.FollowEdits();
+                Settle();
+                Assert.That(loads, Is.EqualTo(expected), "nothing was edited");
+            }
+            Assert.That(other.IsPlayed, Is.False);
+            Assert.That(other.AtomCount, Is.EqualTo(1), "those it had last");
         }
 
         private void AssertPlays(int atoms)

@@ -54,6 +54,22 @@ namespace QuickSes.Tests
             AssertIsAt(10 * Time.maximumDeltaTime, after: 60);
         }
 
+        [Test]
+        public void WhoJumpsWhileItWaitsPlaysOnFromThere()
+        {
+            _playing.UseEnsemble(200);
+            _playing.Load();
+            // Far from what was read ahead; the thread that reads may be faster.
+            for (int jump = 1; jump < 1000 && !Player.IsWaiting; ++jump)
+            {
+                Player.Frame = 67 * jump % 200;
+                Player.Tick(0);
+            }
+            Player.Frame = 0;
+            Player.Tick(0.1f);
+            Assert.That(Player.Frame, Is.EqualTo(1).Within(1e-5));
+        }
+
         private void AssertIsAt(double place, double after)
         {
             Engine.Frame(after);

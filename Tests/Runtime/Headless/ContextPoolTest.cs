@@ -90,6 +90,33 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void EachHasAContextOfItsOwnAsLongAsThereMayBeMore()
+        {
+            SurfaceScheduler.ReleaseContexts();
+            SurfaceScheduler.MaxContexts = 2;
+            _hosts = Hosts(3, k => TestHost.WithAtom(Place(k, 0), 1.5f));
+            for (int k = 0; k < _hosts.Length; ++k) // one after the other: each could have that of the one before
+            {
+                _hosts[k].Settle();
+                Assert.That(SurfaceScheduler.ContextCount, Is.EqualTo(Math.Min(k + 1, 2)));
+            }
+        }
+
+        [Test]
+        public void WhoWaitsForOneBackEndMayTakeAnother()
+        {
+            SurfaceScheduler.ReleaseContexts();
+            SurfaceScheduler.MaxContexts = 1;
+            _hosts = Hosts(2, k => TestHost.WithAtom(Place(k, 0), 1.5f));
+            TestHost.Until(() => SurfaceScheduler.LentCount == 1, _hosts[0]); // which it keeps until its next frame
+            _hosts[1].Tick();
+            Assert.That(SurfaceScheduler.WaitingCount, Is.EqualTo(1));
+            _hosts[1].Backend = SurfaceBackend.Auto;
+            _hosts[1].Settle();
+            _hosts[1].AssertShowsAtom(Place(1, 0), 1.5f);
+        }
+
+        [Test]
         public void NobodyShowsWhatTheLastUserLeftBehind()
         {
             SurfaceScheduler.ReleaseContexts();

@@ -194,5 +194,27 @@ namespace QuickSes.Tests
             head.Advance(1);
             Assert.That(head.Position, Is.EqualTo(4.5));
         }
+
+        [Test]
+        public void WhatIsOnItsWayBackGoesBackwardsIfItIsReversed()
+        {
+            PlayHead head = Head(5, PlaybackMode.PingPong);
+            head.Advance(5);
+            Assert.That((head.Position, head.Direction), Is.EqualTo((3, -1)));
+            head.SetSign(-1);
+            Assert.That(head.Direction, Is.EqualTo(-1));
+            head.Advance(1);
+            Assert.That(head.Position, Is.EqualTo(2));
+        }
+
+        [Test]
+        public void ALoopThatLingersAtItsEndGoesOnFromThereInAnotherMode()
+        {
+            PlayHead head = Head(5, PlaybackMode.Loop);
+            head.Advance(4.75);
+            head.SetMode(PlaybackMode.PingPong);
+            head.Advance(0.5);
+            Assert.That(head.Position, Is.EqualTo(3.5));
+        }
     }
 }
