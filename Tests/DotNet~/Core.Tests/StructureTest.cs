@@ -177,7 +177,7 @@ namespace QuickSes.Tests
             using Structure all = Open(default);
             var mask = new bool[all.AtomCount];
             mask[5] = true;
-            foreach (int length in new[] { 5, 255, 256, 257, 500 }) // 256 bytes, with a zero at the end, fit on the stack
+            foreach (int length in new[] { 5, 255, 256, 257, 500 }) // 256 with a zero behind it fit on the stack
             {
                 string wrong = "//[[".PadRight(length, 'x');
                 Assert.That(all.TrySelect(wrong, mask, out int count, out QuickSesError error), Is.False);

@@ -38,7 +38,7 @@ namespace QuickSes.Tests
             var looks = new AtomLook[3];
             for (int k = 0; k < looks.Length; ++k)
                 looks[k] = Take();
-            Assert.That(Array.ConvertAll(looks, IsFreed), Is.EqualTo(new[] { true, true, false }), "the last one counts");
+            Assert.That(Array.ConvertAll(looks, IsFreed), Is.EqualTo(new[] { true, true, false }));
             Assert.That(Upload(), Is.EqualTo(UploadStep.Shown));
             Assert.That(IsFreed(looks[2]), Is.False, "it is shown");
             AtomLook dropped = Take();
