@@ -52,7 +52,7 @@ namespace QuickSes
         /// <param name="settings">Gets spacing, levels and frame budget, and keeps creases or loses them.</param>
         /// <param name="ladder">Of <see cref="MakeLadder"/>.</param>
         /// <param name="change">What is new.</param>
-        /// <param name="shownSpacing">Of the surface that is shown, if it is of this shape; else infinite.</param>
+        /// <param name="shownSpacing">Of the surface that is shown, if it is of the newest atoms; else infinite.</param>
         /// <param name="frameBudget">Milliseconds per surface while atoms move; 0: all levels.</param>
         /// <param name="othersWait">Whether other surfaces have nothing new yet.</param>
         public static void Choose(ref SurfaceSettings settings, ReadOnlySpan<float> ladder, SurfaceChange change,

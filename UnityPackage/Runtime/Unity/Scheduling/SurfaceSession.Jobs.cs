@@ -15,7 +15,6 @@ namespace QuickSes
         private ContextSlot _slot; // while a job runs
         private uint _job; // the last that was begun
         private bool _isJobOfNewest; // whether it is of the newest atoms and settings
-        private bool _isJobOfShape; // be it in other places
         private bool _wantsCreases; // for the finest level, when atoms rest
         private SurfaceChange _begunChange; // what was new when it was begun
         private readonly List<JobLook> _looks = new List<JobLook>(4); // of the jobs whose meshes may still come
@@ -106,8 +105,8 @@ namespace QuickSes
                 settings.SetLevels(default);
             else
                 SurfaceJobPlan.Choose(ref settings, Ladder, _pending,
-                    _isArrivalOfShape ? _arrival.Spacing :
-                    _isShapeShown ? CurrentLevel.Spacing : float.PositiveInfinity, _host.FrameBudget,
+                    _isArrivalOfNewest ? _arrival.Spacing :
+                    _isShown ? CurrentLevel.Spacing : float.PositiveInfinity, _host.FrameBudget,
                     Pool.IsAnyUrgent);
             return settings;
         }
@@ -116,7 +115,7 @@ namespace QuickSes
         {
             _job = job;
             NoteLook(job, hasCreases);
-            _isJobOfNewest = _isJobOfShape = true;
+            _isJobOfNewest = true;
             Progress = 0;
         }
 

@@ -14,7 +14,6 @@ namespace QuickSes
         private bool _hasArrival; // a mesh the host has taken and does not show yet
         private SurfaceLevel _arrival;
         private bool _isArrivalOfNewest;
-        private bool _isArrivalOfShape;
         private long _arrivalTime;
         private double _uploadMilliseconds; // what the arrival has taken so far
         private double _share = 1; // how many surfaces of this size are uploaded at a time
@@ -74,7 +73,6 @@ namespace QuickSes
             _arrival = arrival;
             _hasArrival = true;
             _isArrivalOfNewest = isLast && _isJobOfNewest;
-            _isArrivalOfShape = isLast && _isJobOfShape;
             _isHeldReady |= isMoving;
             _uploadMilliseconds = 0;
             _share = ShareMemory * _share + (1 - ShareMemory) * SurfaceScheduler.Uploads.ShareOf(this);
@@ -86,7 +84,6 @@ namespace QuickSes
             CurrentLevel = new SurfaceLevel(_arrival, _isArrivalOfNewest, _uploadMilliseconds,
                 UploadQueue.Milliseconds(Stopwatch.GetTimestamp() - _arrivalTime));
             _isShown = _isArrivalOfNewest;
-            _isShapeShown = _isArrivalOfShape;
             ForgetArrival();
             _hasArrived = _updated = true;
             _finished = IsDone;
@@ -101,7 +98,7 @@ namespace QuickSes
             _host.DropUpload();
         }
 
-        private void ForgetArrival() => _hasArrival = _isArrivalOfNewest = _isArrivalOfShape = false;
+        private void ForgetArrival() => _hasArrival = _isArrivalOfNewest = false;
 
         private void FailUpload(in QuickSesError error)
         {

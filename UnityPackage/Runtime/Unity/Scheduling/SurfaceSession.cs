@@ -18,7 +18,6 @@ namespace QuickSes
         private bool _isTried; // a job was begun, or could not be
         private bool _isStopped; // nothing more will come: it failed, or was cancelled by the user
         private bool _isShown;
-        private bool _isShapeShown; // of these atoms and settings, be it in other places
         private SurfaceChange _pending; // since the last job began
         private double _lastChange;
 
@@ -84,7 +83,7 @@ namespace QuickSes
         /// <summary>Something is new: what is shown will be replaced.</summary>
         public void Change(SurfaceChange change, double now)
         {
-            Outdate(change >= SurfaceChange.Positions);
+            Outdate();
             _lastChange = now;
             if (change > _pending)
                 _pending = change;
@@ -235,7 +234,7 @@ namespace QuickSes
         {
             Drop();
             _isHeldReady = false;
-            Outdate(true);
+            Outdate();
             _pending = SurfaceChange.None;
             Atoms.Clear();
             CurrentLevel = default;
@@ -264,12 +263,7 @@ namespace QuickSes
         }
 
         // What is known of the newest atoms is of older ones from now on.
-        private void Outdate(bool isShapeNew)
-        {
-            _isTried = _isStopped = _isShown = _isJobOfNewest = _isArrivalOfNewest = false;
-            if (isShapeNew)
-                _isShapeShown = _isJobOfShape = _isArrivalOfShape = false;
-        }
+        private void Outdate() => _isTried = _isStopped = _isShown = _isJobOfNewest = _isArrivalOfNewest = false;
 
         // What never rests never gets creases.
         private bool IsBest(in SurfaceLevel level) => level.IsFinest &&
