@@ -117,7 +117,6 @@ class TrrReader : public TrajectoryReader {
       if (sizes[i] < 0 || sizes[i] % 4 != 0) return "is damaged: the sizes of its blocks make no sense";
       if (sizes[i] == 0 || !(i == kBox || i >= kPositions)) continue;
       const uint64_t expected = i == kBox ? 9 : numbers, size = static_cast<uint64_t>(sizes[i]);
-      if (size % expected != 0) return "is damaged: the sizes of its blocks do not fit its number of atoms";
       if (head.number_size == 0) head.number_size = static_cast<size_t>(size / expected);
       if (size != expected * head.number_size || (head.number_size != 4 && head.number_size != 8))
         return "is damaged: the sizes of its blocks do not fit its number of atoms";

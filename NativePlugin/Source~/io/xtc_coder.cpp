@@ -46,9 +46,8 @@ class BitReader {
 
   bool failed() const { return position_ > 8 * static_cast<uint64_t>(size_); }
 
-  // Up to 32 bits as a number.
+  // 1 to 32 bits as a number.
   uint32_t take(int bits) {
-    if (bits == 0) return 0;
     const uint64_t window = next_bits();
     position_ += bits;
     return static_cast<uint32_t>(window >> (64 - bits));

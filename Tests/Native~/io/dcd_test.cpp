@@ -139,6 +139,7 @@ TEST(DcdCellTest, Degrees) {
   expect_cell(box_of({30, 90, 40, 90, 90, 50}), 30, 40, 50, 90, 90, 90);
   expect_cell(box_of({300, 90, 400, 90, 90, 500}, 41), 300, 400, 500, 90, 90, 90);
   expect_cell(box_of({60, 60, 60, 90, 60, 60}, 41), 60, 60, 60, 60, 90, 60);
+  expect_cell(box_of({150, 90, 150, 80, 100, 150}, 41), 150, 150, 150, 100, 80, 90);  // a matrix has no 90 by chance
 }
 
 // CHARMM's own: the symmetric matrix whose rows are the vectors.
@@ -187,6 +188,20 @@ TEST(DcdCellTest, TheFileDecidesWhereTheHeaderIsWrong) {
   EXPECT_FALSE(without.box(1));
 }
 
+// As other programs read it: 1 and nothing else says that there is a fourth dimension.
+TEST(DcdTest, FlagOfTheFourthDimension) {
+  DcdWriter writer;
+  const Positions frame = random_positions(5, 1);
+  for (int32_t flag : {0, 1, 2, -1}) {
+    writer.has_fourth = flag == 1;
+    std::string bytes = writer.header(5) + writer.frame(frame, true) + writer.frame(frame, false);
+    bytes.replace(8 + 4 * 11, 4, raw_bytes(flag, false));
+    const Trajectory trajectory = open_bytes(bytes);
+    EXPECT_EQ(trajectory.frame_count(), 2u) << flag;
+    EXPECT_EQ(frame_of(trajectory, 1), frame) << flag;
+  }
+}
+
 // The coordinates of twelve atoms are as long as a unit cell.
 TEST(DcdCellTest, TwelveAtoms) {
   for (bool has_cell : {false, true}) {
@@ -199,6 +214,19 @@ TEST(DcdCellTest, TwelveAtoms) {
     EXPECT_EQ(frame_of(trajectory, 0), frame);
     EXPECT_EQ(trajectory.box(0).has_value(), has_cell);
   }
+}
+
+TEST(DcdTest, MoreAtomsThanOneChunk) {
+  DcdWriter writer;
+  const Positions first = random_positions(9001, 1), second = random_positions(9001, 2);
+  const Trajectory all = open_bytes(writer.header(9001) + writer.frame(first, true) + writer.frame(second, false));
+  EXPECT_EQ(frame_of(all, 0), first);
+  EXPECT_EQ(frame_of(all, 1), second);
+  for (int32_t atom = 2; atom <= 9001; ++atom) writer.free_atoms.push_back(atom);
+  const Trajectory free = open_bytes(writer.header(9001) + writer.frame(first, true) + writer.frame(second, false));
+  Positions expected = second;
+  std::copy_n(first.begin(), 3, expected.begin());
+  EXPECT_EQ(frame_of(free, 1), expected);
 }
 
 // ---- times and counts
@@ -296,6 +324,12 @@ TEST(DcdTest, RefusesDifferingAtomCounts) {
   const std::string bytes =
       writer.header(3) + writer.frame(random_positions(3, 1), true) + writer.frame(random_positions(4, 2), false);
   EXPECT_HAS(error_of_bytes(bytes), "frame 1 has 4 atoms, but frame 0 has 3");
+  DcdWriter two_free, three_free;  // of five; those that are fixed count
+  two_free.free_atoms = {1, 5};
+  three_free.free_atoms = {1, 2, 5};
+  EXPECT_HAS(error_of_bytes(two_free.header(5) + two_free.frame(random_positions(5, 1), true) +
+                            three_free.frame(random_positions(5, 2), false)),
+             "frame 1 has 6 atoms, but frame 0 has 5");
 }
 
 TEST(DcdTest, JoinedFilesAreReported) {
@@ -330,6 +364,14 @@ TEST(DcdTest, DamageIsReported) {
     EXPECT_EQ(frame_of(trajectory, 0), frame_of(trajectory, 2));
     EXPECT_HAS(error_of(ErrorKind::kInput, [&] { frame_of(trajectory, 1); }), "frame 1 is damaged");
   }
+  const std::string framed = header + writer.frame({1, 2, 3, 4, 5, 6, 7, 8, 9}, true, kCell);
+  std::string open_cell = framed + framed.substr(header.size());
+  open_cell.replace(framed.size() + 52, 4, raw_bytes(uint32_t{11}, false));  // the length behind a unit cell
+  const Trajectory without_cell = open_bytes(open_cell);
+  EXPECT_EQ(without_cell.frame_count(), 1u);
+  ASSERT_EQ(without_cell.warnings().size(), 1u);
+  EXPECT_HAS(without_cell.warnings()[0], "frame 1 is damaged: its unit cell is missing");
+
   EXPECT_HAS(error_of_bytes(with(88, 11)), "its header is damaged");
   EXPECT_HAS(error_of_bytes(with(header.size() - 4, 11)), "number of atoms is damaged");
 }

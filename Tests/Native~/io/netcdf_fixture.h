@@ -13,10 +13,13 @@ struct NetcdfWriter {
   bool is_double = false;  // coordinates and time; boxes always are
   bool is_open = false;    // the number of records is not told
   bool has_box = false, has_time = false;
+  bool is_time_last = false;
   bool has_odd = false;  // variables whose values have to be filled up, before and behind coordinates
   std::vector<double> cell = {30, 40, 50, 90, 90, 90};
   double scale = 1;                // an attribute unless it is 1
+  int scale_count = 1;             // numbers of that attribute, all the same
   std::string units = "angstrom";  // of coordinates; empty: no attribute
+  std::string time_unit = "picosecond";
   std::string name = "coordinates";
 
   // Where each frame ends, of the file written last.
@@ -98,9 +101,10 @@ struct NetcdfWriter {
       for (size_t k = 0; k < frames.size(); ++k) variable.pieces.push_back(piece(k));
     };
     if (has_odd) each(add("letters", {kSpatial}, kChar, ""), [](size_t) { return std::string("abc"); });
-    if (has_time)
-      each(add("time", {}, type, "picosecond"),
-           [&](size_t k) { return real(2.5 * static_cast<double>(k), is_double); });
+    const auto add_time = [&] {
+      each(add("time", {}, type, time_unit), [&](size_t k) { return real(2.5 * static_cast<double>(k), is_double); });
+    };
+    if (has_time && !is_time_last) add_time();
     Variable &coordinates = add(name.c_str(), {kAtom, kSpatial}, type, units);
     coordinates.scale = scale;
     each(coordinates, [&](size_t k) {
@@ -115,6 +119,7 @@ struct NetcdfWriter {
       each(add("cell_angles", {kCellAngular}, kDouble, "degree"),
            [&](size_t) { return real(cell[3], true) + real(cell[4], true) + real(cell[5], true); });
     }
+    if (has_time && is_time_last) add_time();
     return all;
   }
 
@@ -139,7 +144,8 @@ struct NetcdfWriter {
       const uint64_t attributes = (variable.units.empty() ? 0u : 1u) + (variable.scale == 1 ? 0u : 1u);
       bytes += u32(attributes == 0 ? 0 : 12) + size(attributes);
       if (!variable.units.empty()) bytes += text_attribute("units", variable.units);
-      if (variable.scale != 1) bytes += text("scale_factor") + u32(kDouble) + size(1) + raw_bytes(variable.scale, true);
+      if (variable.scale != 1) bytes += text("scale_factor") + u32(kDouble) + size(static_cast<uint64_t>(scale_count));
+      for (int n = 0; variable.scale != 1 && n < scale_count; ++n) bytes += raw_bytes(variable.scale, true);
       bytes += u32(variable.type) + size(filled(variable.pieces[0]).size());
       bytes += version == 1 ? u32(static_cast<uint32_t>(begins[v])) : raw_bytes(begins[v], true);
     }

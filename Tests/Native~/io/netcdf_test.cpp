@@ -134,11 +134,42 @@ TEST(NetcdfTest, NumberOfRecordsLeftOpen) {
   }
 }
 
+// Nothing says that the time comes first: a frame whose time is missing is cut off.
+TEST(NetcdfTest, TimeBehindCoordinates) {
+  for (NetcdfWriter::Layout layout : {kRecords, kFixed}) {
+    NetcdfWriter writer;
+    writer.layout = layout;
+    writer.has_time = writer.is_time_last = true;
+    const std::string bytes = writer.file(some_frames(3));
+    const Trajectory whole = open_bytes(bytes), cut = open_bytes(bytes.substr(0, bytes.size() - 1));
+    EXPECT_EQ(whole.frame_count(), 3u);
+    EXPECT_EQ(whole.time(2), 5.0);
+    EXPECT_EQ(cut.frame_count(), 2u);
+    EXPECT_TRUE(cut.incomplete());
+    EXPECT_EQ(cut.time(1), 2.5);
+  }
+}
+
+TEST(NetcdfTest, TimesAreInPicoseconds) {
+  NetcdfWriter writer;
+  writer.has_time = true;
+  const auto time_in = [&](const std::string &unit) {
+    writer.time_unit = unit;
+    return open_bytes(writer.file(some_frames(2))).time(1);
+  };
+  for (const char *unit : {"picosecond", "picoseconds", "Picosecond", "ps", ""}) EXPECT_EQ(time_in(unit), 2.5) << unit;
+  for (const char *unit : {"femtosecond", "s", "nanosecond"}) EXPECT_FALSE(time_in(unit)) << unit;
+}
+
 TEST(NetcdfTest, ScaleFactor) {
   NetcdfWriter writer;
   writer.scale = 0.25;
   const std::vector<Positions> frames = some_frames(2);
   EXPECT_EQ(frame_of(open_bytes(writer.file(frames)), 1), frames[1]);
+  writer.scale_count = 9;  // which are no factor
+  Positions as_stored = frames[1];
+  for (float &x : as_stored) x *= 4;
+  EXPECT_EQ(frame_of(open_bytes(writer.file(frames)), 1), as_stored);
 }
 
 TEST(NetcdfTest, SkewedBox) {
@@ -213,6 +244,33 @@ TEST(NetcdfTest, RefusesAbsurdCounts) {
     EXPECT_HAS(error_of_bytes(with(writer, list, five, writer.size(UINT32_MAX))), "its header is damaged");
     EXPECT_HAS(error_of_bytes(with(writer, list, five, writer.size(0))), "its header is damaged");
   }
+  // Numbers whose products are 2^64, which is 0 in 64 bits.
+  NetcdfWriter wide;
+  wide.version = 5;
+  wide.scale = 0.25;
+  const std::string one_double = raw_bytes(uint32_t{6}, true) + wide.size(1), quarter = raw_bytes(0.25, true);
+  EXPECT_HAS(error_of_bytes(with(wide, "scale_factor", one_double + quarter,
+                                 raw_bytes(uint32_t{6}, true) + wide.size(uint64_t{1} << 61))),
+             "its header is damaged");
+  wide.layout = kFixed;
+  EXPECT_HAS(error_of_bytes(
+                 with(wide, wide.size(5) + "frame" + std::string(3, '\0'), wide.size(2), wide.size(uint64_t{1} << 62))),
+             "its header is damaged");
+
+  // Variables beside the coordinates, each as large as one may be: together a record of 2^64 bytes and some.
+  NetcdfWriter records;
+  records.version = 5;
+  const std::string angular = "cell_angular", last_dimension = records.size(4);
+  std::string huge = with(records, angular, records.size(3), records.size(uint64_t{1} << 60)), more;
+  for (int k = 0; k < 16; ++k)
+    more += records.size(1) + "x" + std::string(3, '\0') + records.size(2) + records.size(0) + last_dimension +
+            raw_bytes(uint32_t{0}, true) + records.size(0) + raw_bytes(uint32_t{2}, true) + records.size(0) +
+            raw_bytes(uint64_t{4096}, true);
+  const std::string variables = raw_bytes(uint32_t{11}, true);
+  huge.replace(huge.find(variables + records.size(2)), 12, variables + records.size(18));
+  huge.insert(huge.rfind(std::string("xyz\0", 4)), more);
+  EXPECT_HAS(error_of_bytes(huge), "its header is damaged");
+
   // More records than the file has.
   const NetcdfWriter writer;
   std::string bytes = writer.file(some_frames(2));

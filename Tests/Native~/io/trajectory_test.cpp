@@ -124,6 +124,8 @@ TEST_F(TrajectoryTest, PdbErrors) {
   EXPECT_HAS(pdb_error("ATOM      1  CA\n" + pdb_atoms(three)), "'test.pdb', line 1: ");
   const std::string atoms = pdb_atoms(three);
   EXPECT_HAS(pdb_error(atoms.substr(0, 51) + atoms.substr(atoms.find('\n'))), "columns 31 to 54");
+  // The last line is short, but it is a line: nothing is cut off.
+  EXPECT_HAS(pdb_error(atoms + "END\n" + atoms.substr(0, atoms.rfind("HETATM") + 50) + "\n"), "columns 31 to 54");
   EXPECT_EQ(frame_of(open_pdb("\xef\xbb\xbf" + atoms), 0), three);
   std::string mac = atoms;
   std::replace(mac.begin(), mac.end(), '\n', '\r');
@@ -159,6 +161,12 @@ TEST_F(TrajectoryTest, PdbBox) {
   EXPECT_NEAR(trajectory.box(2)->vectors[2][1], 30, 1e-9);
   EXPECT_NEAR(trajectory.box(2)->vectors[2][2], 60 / std::sqrt(2), 1e-9);
   EXPECT_FALSE(trajectory.box(3));
+  const size_t second_line = atoms.find('\n') + 1;  // a record among atoms is that of the frames to come
+  const Trajectory among = open_pdb(cryst1(30, 40, 50, 90, 90, 90) + atoms.substr(0, second_line) +
+                                    cryst1(60, 60, 60, 90, 90, 90) + atoms.substr(second_line) + "END\n" + atoms);
+  ASSERT_TRUE(among.box(0) && among.box(1));
+  EXPECT_EQ(among.box(0)->vectors[0][0], 30);
+  EXPECT_EQ(among.box(1)->vectors[0][0], 60);
 }
 
 TEST_F(TrajectoryTest, PdbMutantsAreSafe) {
@@ -328,6 +336,19 @@ TEST_F(TrajectoryTest, FilesInARowWithFaults) {
   EXPECT_HAS(error_of(ErrorKind::kInput, [&] { Trajectory::open_all({first, path("none.dcd")}); }), "none.dcd");
 }
 
+TEST_F(TrajectoryTest, FilesInARowThatCanNotBeUnwrapped) {
+  constexpr size_t kAtoms = 5000;
+  const Positions crowd(3 * kAtoms, 1.0f);
+  TrrWriter without_box, with_box;
+  with_box.box = {2, 0, 0, 0, 2, 0, 0, 0, 2};
+  const std::string first = write("a.trr", without_box.frame(crowd) + without_box.frame(crowd));
+  const std::string second = write("b.trr", without_box.frame(crowd) + with_box.frame(crowd));
+  Trajectory trajectory = Trajectory::open_all({first, second});
+  const std::vector<uint8_t> carbons(kAtoms, 6);
+  EXPECT_HAS(error_of(ErrorKind::kInput, [&] { trajectory.unwrap(carbons.data()); }),
+             "'" + second + "': frame 1: too many atoms lie on top of each other");
+}
+
 TEST_F(TrajectoryTest, FileThatShrinksWhileItIsOpen) {
   std::vector<Positions> frames;
   std::vector<Sample> files = samples(frames, 2000);
@@ -340,6 +361,39 @@ TEST_F(TrajectoryTest, FileThatShrinksWhileItIsOpen) {
     trajectory.read_frame(0, positions.data());
     EXPECT_NEAR(positions[0], frames[0][0], 1e-5);
   }
+}
+
+// What is written over a file that is open must not be taken for the frames that were there.
+TEST_F(TrajectoryTest, FileThatIsWrittenOverWhileItIsOpen) {
+  const auto error_after = [&](const std::string &name, const std::string &before, const std::string &after,
+                               const std::function<void(const Trajectory &)> &read) {
+    const std::string file = write(name, before);
+    const Trajectory trajectory = Trajectory::open(file);
+    write(name, after);
+    return error_of(ErrorKind::kInput, [&] { read(trajectory); });
+  };
+  const auto read_frame = [](const Trajectory &trajectory) { frame_of(trajectory, 0); };
+  const Positions four = rounded_positions(4, 1), nine = rounded_positions(9, 1);
+  const std::vector<float> four_nm(12, 1.0f), nine_nm(27, 1.0f);
+  const std::string plain = XtcWriter().plain_frame(four_nm), more = XtcWriter().plain_frame(nine_nm);
+  std::vector<int32_t> many(60);
+  for (size_t i = 0; i < many.size(); ++i) many[i] = static_cast<int32_t>(i * 7919 % 60000);
+  const std::string packed = XtcWriter().packed_frame(many);
+  ASSERT_GT(packed.size(), more.size());
+  EXPECT_HAS(error_after("a.xtc", plain, more, read_frame), "frame 0 is damaged: its head has changed");
+  EXPECT_HAS(error_after("a.xtc", packed, more + std::string(packed.size() - more.size(), ' '), read_frame),
+             "frame 0 is damaged: its head has changed");
+  TrrWriter moving;
+  moving.has_velocities = true;
+  const std::string trr = TrrWriter().frame(four);
+  EXPECT_HAS(error_after("a.trr", trr, TrrWriter().frame(nine), read_frame), "its head has changed");
+  EXPECT_HAS(error_after("a.trr", trr, moving.frame(4, {}), read_frame), "its head has changed");
+  const DcdWriter dcd;
+  const std::string with_cell = dcd.header(4) + dcd.frame(four, true, {30, 0, 40, 0, 0, 50});
+  std::string without_cell = with_cell;
+  without_cell.replace(dcd.header(4).size(), 4, std::string(4, ' '));
+  EXPECT_HAS(error_after("a.dcd", with_cell, without_cell, [](const Trajectory &trajectory) { trajectory.box(0); }),
+             "frame 0 is damaged");
 }
 
 TEST_F(TrajectoryTest, ManyThreads) {

@@ -119,6 +119,16 @@ TEST(TrrTest, FramesWithoutPositionsAreLeftOut) {
   EXPECT_HAS(error_of_bytes(empty + empty), "none of its frames has positions");
 }
 
+TEST(TrrTest, TimesThatAreNone) {
+  for (double none : {double{NAN}, double{INFINITY}})
+    for (bool is_double : {false, true}) {
+      TrrWriter writer;
+      writer.is_double = is_double;
+      writer.time = none;
+      EXPECT_FALSE(open_bytes(writer.frame(Positions{1, 2, 3})).time(0));
+    }
+}
+
 TEST(TrrTest, RefusesWhatIsNoTrr) {
   EXPECT_HAS(error_of_bytes(std::string(200, 'x')), "frame 0 does not start as frames of TRR files do");
   const std::string good = TrrWriter().frame(Positions{1, 2, 3});

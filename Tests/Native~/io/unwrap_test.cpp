@@ -144,6 +144,8 @@ TEST(LatticeTest, NoBoxes) {
   EXPECT_FALSE(box_from_edges(10, 10, 10, 0, 90, 90));
   EXPECT_FALSE(box_from_edges(10, 10, 10, 120, 120, 121));  // more than a full turn
   EXPECT_FALSE(box_from_edges(10, 0, 10, 90, 90, 90));
+  EXPECT_FALSE(box_from_edges(10, 2e7, 10, 90, 90, 90));  // longer than any file means
+  EXPECT_TRUE(box_from_edges(10, 9e6, 10, 90, 90, 90));
 }
 
 // ---- bonds
@@ -327,6 +329,14 @@ TEST(UnwrapTest, RefusesCrowds) {
   const Positions positions(600000, 1.0f);
   EXPECT_HAS(error_of(ErrorKind::kInput, [&] { Unwrapper(elements.data(), positions.data(), elements.size(), box); }),
              "on top of each other");
+  // Not that many in any cell, but each has hundreds around it.
+  Random random(6);
+  Positions dense;
+  const Box small{{{{14.5, 0, 0}, {0, 14.5, 0}, {0, 0, 14.5}}}};
+  constexpr size_t kDense = 60000;
+  for (size_t i = 0; i < kDense; ++i) add(dense, random.in_box(small));
+  EXPECT_HAS(error_of(ErrorKind::kInput, [&] { Unwrapper(elements.data(), dense.data(), kDense, small); }),
+             "on top of each other");
 }
 
 // A box far larger than the atoms in it costs no more than another.
@@ -338,6 +348,13 @@ TEST(UnwrapTest, HugeBox) {
   EXPECT_EQ(unwrapper.bond_count(), 1u);
   unwrapper.apply(box, positions.data());
   EXPECT_EQ(positions[3], -0.75f);
+  // More cells than can be told apart, were they as small as elsewhere.
+  const Box largest{{{{9e6, 0, 0}, {0, 9e6, 0}, {0, 0, 9e6}}}};
+  for (size_t axis = 0; axis < 3; ++axis) {
+    Positions pair = {0.5f, 0.5f, 0.5f, 0.5f, 0.5f, 0.5f};
+    pair[axis] = -0.5f;
+    EXPECT_EQ(Unwrapper(elements.data(), pair.data(), 2, largest).bond_count(), 1u) << axis;
+  }
 }
 
 }  // namespace

@@ -252,6 +252,21 @@ TEST(XtcTest, RefusesAbsurdCounts) {
   const std::string head = writer.head(INT32_MAX) + XtcWriter::number(1000.0f) + std::string(28, '\0');
   EXPECT_HAS(error_of_bytes(head + XtcWriter::number(int32_t{64}) + std::string(64, '\0')), "number of bytes");
   EXPECT_HAS(error_of_bytes(head + XtcWriter::number(int32_t{-1}) + std::string(64, '\0')), "frame 0 is cut off");
+  XtcWriter large;
+  large.magic = 2023;
+  const std::string large_head = large.head(INT32_MAX) + XtcWriter::number(1000.0f) + std::string(28, '\0');
+  for (int64_t size : {int64_t{-1}, int64_t{-2}, INT64_MAX, INT64_MIN})  // rounded up, the first ones are nothing
+    EXPECT_HAS(error_of_bytes(large_head + XtcWriter::number(size) + std::string(64, '\0')), "number of bytes");
+}
+
+TEST(XtcTest, Time) {
+  XtcWriter writer;
+  writer.time = 12.5f;
+  EXPECT_EQ(open_bytes(writer.plain_frame({1, 2, 3})).time(0), 12.5);
+  for (float none : {NAN, INFINITY}) {
+    writer.time = none;
+    EXPECT_FALSE(open_bytes(writer.plain_frame({1, 2, 3})).time(0));
+  }
 }
 
 TEST(XtcTest, GarbageAfterFramesIsReported) {
@@ -280,6 +295,29 @@ TEST(XtcTest, DamageInsideOfAFrameIsReported) {
   EXPECT_HAS(read_error(with(84, integer(73))), "the size of its differences");   // after its end
   EXPECT_HAS(read_error(with(84, integer(INT32_MIN))), "the size of its differences");
   EXPECT_HAS(read_error(with(72, integer(INT32_MAX))), "frame 0 is damaged");  // other sizes of everything
+  for (size_t axis = 0; axis < 3; ++axis) {  // of which there is one more than 32 bits can count
+    std::string all = with(60 + 4 * axis, integer(INT32_MIN));
+    EXPECT_HAS(read_error(all.replace(72 + 4 * axis, 4, integer(INT32_MAX))), "its range of coordinates");
+  }
+
+  XtcWriter pairs;  // of each atom in full, at 0, and one that a difference leads to, at 6
+  pairs.small_index = 12;
+  pairs.groups.assign(5, {1, 0});
+  Integers ten(30, 0);
+  for (size_t atom = 0; atom < 10; atom += 2) ten[3 * atom] = 6;
+  const std::string within = pairs.packed_frame(ten);
+  ASSERT_EQ(frame_of(open_bytes(within), 0), to_angstrom(ten, 1000));
+  EXPECT_HAS(read_error(std::string(within).replace(72, 4, integer(5))), "a position is outside of the range");
+
+  Integers wide(30, 0);  // any difference stays within the range
+  for (size_t i = 0; i < 6; ++i) wide[i] = i < 3 ? 18 : 20, wide[6 + i] = i < 3 ? -18 : -20;
+  XtcWriter last;
+  last.groups.assign(5, {1, 0});
+  const std::string whole = last.packed_frame(wide);
+  ASSERT_EQ(whole.substr(88, 4), integer(18));
+  ASSERT_EQ(frame_of(open_bytes(whole), 0), to_angstrom(wide, 1000));
+  for (int32_t size : {17, 16})  // which is the end of the last difference
+    EXPECT_HAS(read_error(std::string(whole).replace(88, 4, integer(size))), "its coordinates end too early");
 
   XtcWriter longer;  // the last run goes on after the last atom
   longer.groups = {{0, 0}, {9, 0}};
