@@ -286,10 +286,7 @@ void AtomicFile::publish() {
   if (temporary_.empty()) return;
   std::error_code error;
   patiently(target_, error, [&] { fs::rename(temporary_, target_, error); });
-  if (error) {
-    close_and_remove();
-    fail_output("'" + path_ + "' can't be written: " + error.message());
-  }
+  if (error) fail_output("'" + path_ + "' can't be written: " + error.message());
   Unfinished &all = unfinished();
   const std::lock_guard<std::mutex> lock(all.mutex);
   all.names.erase(temporary_);

@@ -82,6 +82,18 @@ TEST(Assembly, SelectionsLookAtTheCopies) {
   EXPECT_EQ(structure.atoms[0].file_index, 2u);
 }
 
+// PDB files have the ligands and the water of all chains behind the last one: in copies they are beside their chain.
+TEST(Assembly, LigandsBehindOtherChains) {
+  std::string text = pdb_file();
+  std::string ligand = pdb_atom(" C1 ", ' ', "LIG", 'A', 9, 9, 9);
+  ligand.replace(0, 6, "HETATM");
+  text.insert(text.find("END"), ligand);
+  const Structure structure = parse(text, assembly_named("1"));
+  EXPECT_EQ(structure.positions,
+            (std::vector<float>{1, 2, 0, 3, 4, 0, 9, 9, 0, -1, -2, 7, -3, -4, 7, -9, -9, 7, 5, 5, 0}));
+  EXPECT_EQ(chains_of(structure), (Names{"A", "A", "A", "A2", "A2", "A2", "B"}));
+}
+
 TEST(Assembly, OfEachModel) {
   const std::string text = kRemark + ("MODEL        1\n" + pdb_atom(" CA ", ' ', "ALA", 'A', 1, 1, 2)) +
                            "ENDMDL\nMODEL        2\n" + pdb_atom(" CA ", ' ', "ALA", 'A', 1, 8, 9) + "ENDMDL\n";
@@ -195,6 +207,19 @@ TEST(Assembly, Errors) {
   rows.insert(rows.find("PAU P"), more);
   EXPECT_HAS(error_of(ErrorKind::kInput, [&] { parse(rows, assembly_named("1"), StructureFormat::kMmcif); }),
              "more than 100000 operations");
+  std::string three = cif_file("1");  // the third row is not even looked at
+  const std::string most = "1 (1-3)(1-3)(1-3)(1-3)(1-3)(1-3)(1-3)(1-3)(1-3)(1-3) A\n";
+  std::string large = cif_file("1");  // of more atoms than are taken, before any is copied
+  large.insert(large.find("PAU P"), most);
+  const std::string atom = "1 C CA ALA A X 1 1 2 3\n";
+  std::string atoms;
+  for (int k = 0; k < 1000; ++k) atoms += atom;
+  large.insert(large.find(atom), atoms);
+  EXPECT_HAS(error_of(ErrorKind::kInput, [&] { parse(large, assembly_named("1"), StructureFormat::kMmcif); }),
+             "43770000 atoms");
+  three.insert(three.find("PAU P"), most + most + "1 7 A\n");
+  EXPECT_HAS(error_of(ErrorKind::kInput, [&] { parse(three, assembly_named("1"), StructureFormat::kMmcif); }),
+             "more than 100000 operations");
   std::string many;
   for (int k = 0; k < 100001; ++k) many += "1,";
   EXPECT_HAS(input("(" + many + "1-999999999)"), "more than");
@@ -202,6 +227,13 @@ TEST(Assembly, Errors) {
   input("()");
   EXPECT_HAS(input(" "), "names no operation");
   EXPECT_HAS(input("?"), "names no operation");
+  // Of a PDB file, too; their numbers need not be told apart.
+  std::string remarks = "REMARK 350 BIOMOLECULE: 1\nREMARK 350 APPLY THE FOLLOWING TO CHAINS: A\n";
+  for (int k = 0; k <= 100000; ++k)
+    for (int row = 1; row <= 3; ++row)
+      remarks += "REMARK 350   BIOMT" + std::to_string(row) + "   1  1.000000  0.000000  0.000000        0.00000\n";
+  remarks += pdb_atom(" CA ", ' ', "ALA", 'A', 1, 1, 2);
+  EXPECT_HAS(error_of(ErrorKind::kInput, [&] { parse(remarks, assembly_named("1")); }), "more than 100000 operations");
   std::string other = kRemark;
   other += pdb_atom(" CA ", ' ', "ALA", 'C', 1, 1, 2);
   EXPECT_HAS(error_of(ErrorKind::kInput, [&] { parse(other, assembly_named("1")); }), "no atoms");

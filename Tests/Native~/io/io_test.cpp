@@ -332,6 +332,8 @@ TEST_F(IoTest, GzipIsRead) {
   write_gz("b.pdb.gz", one);
   EXPECT_EQ(only_model(write_gz("b.pdb.gz", pdb_atom(" C  ", ' ', "GLY", 'A', 1, 2, "C"), true)).atoms.size(), 2u);
   EXPECT_HAS(input_error(write("c.pdb.gz", one)), "gzip");
+  EXPECT_HAS(input_error(write_gz("d.pdb.gz", "")), "is empty");
+  EXPECT_HAS(input_error(write_gz("d.xyzr.gz", "")), "is empty");
 }
 
 TEST_F(IoTest, EveryCutGzipIsRefused) {

@@ -292,6 +292,11 @@ TEST_F(MeshFormatsTest, MsmsThatTheDiskHasNoRoomForChangesNothing) {
 }
 #endif
 
+TEST_F(MeshFormatsTest, MsmsOfNothing) {
+  write_mesh(path("a.vert"), MeshView(), MeshFormat::kMsms);
+  for (const char *name : {"a.vert", "a.face"}) EXPECT_HAS(slurp(path(name)), "\n0 0 0.00 0.00\n");
+}
+
 TEST_F(MeshFormatsTest, MsmsWritesBothFilesOrNone) {
   Tetrahedron mesh;
   write("a.vert", "old");
@@ -371,8 +376,9 @@ TEST_F(MeshFormatsTest, GlbLeavesOutNumbersThatFloatsCanNotTellApart) {
 
 TEST_F(MeshFormatsTest, GlbHasNormalsOfUnitLength) {
   Tetrahedron mesh;
-  mesh.normals[0] = 6;  // of length 6.05, then 0
+  mesh.normals[0] = 6;  // of length 6.05, then 0, then infinite
   mesh.normals[6] = 0;
+  mesh.normals[9] = std::numeric_limits<float>::infinity();
   write_mesh(path("a.glb"), mesh.view(), MeshFormat::kGlb);
   const Glb glb = read_glb(slurp(path("a.glb")));
   size_t at = 5 * 12;
@@ -407,6 +413,9 @@ TEST_F(MeshFormatsTest, GlbOfMoreThanItCanHoldIsRefused) {
   view.triangle_count = 130'000'000;
   const std::string message = error_of(ErrorKind::kOutput, [&] { write_mesh(path("a.glb"), view, MeshFormat::kGlb); });
   for (const char *part : {"a.glb", "4158 MiB", "4 GiB", ".ply"}) EXPECT_HAS(message, part);
+  view.vertex_count = 0;  // there must be room for what is said about the arrays, too
+  view.triangle_count = (UINT32_MAX - 1000) / 12;
+  EXPECT_HAS(error_of(ErrorKind::kOutput, [&] { write_mesh(path("a.glb"), view, MeshFormat::kGlb); }), "4095 MiB");
   EXPECT_EQ(file_count(), 0u);
 }
 

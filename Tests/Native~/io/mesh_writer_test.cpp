@@ -11,6 +11,11 @@
 #include "io/io_fixture.h"
 #include "io/mesh_writer.h"
 
+#if defined(__linux__)
+#include <fcntl.h>
+#include <unistd.h>
+#endif
+
 namespace quickses::io {
 namespace {
 
@@ -165,6 +170,12 @@ TEST_F(MeshWriterTest, StlRepeatsCornersUnderThePlanesNormal) {
   for (float expected : {0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 2.f, 0.f, 0.f, 0.f, 3.f, 0.f})
     EXPECT_EQ(take<float>(bytes, at), expected);
   EXPECT_EQ(take<uint16_t>(bytes, at), 0);
+  const std::vector<uint32_t> flat = {0, 1, 1};  // has none, which is said by zeros
+  view.indices = flat.data();
+  write_mesh(path("a.stl"), view, MeshFormat::kStl);
+  const std::string without = slurp(path("a.stl"));
+  at = 84;
+  for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(take<float>(without, at), 0);
 }
 
 TEST_F(MeshWriterTest, MeshesLargerThanTheBufferAreWhole) {
@@ -248,6 +259,43 @@ TEST_F(MeshWriterTest, AFullDiskIsReported) {
   const Tetrahedron mesh;
   for (MeshFormat format : {MeshFormat::kObj, MeshFormat::kPly, MeshFormat::kStl, MeshFormat::kGlb, MeshFormat::kOff})
     EXPECT_HAS(error_of(ErrorKind::kOutput, [&] { write_mesh("/dev/full", mesh.view(), format); }), "/dev/full");
+  for (const size_t size : {size_t{1}, AtomicFile::kBufferSize, AtomicFile::kBufferSize + 1})
+    EXPECT_HAS(error_of(ErrorKind::kOutput,
+                        [&] {
+                          AtomicFile file("/dev/full");
+                          file.write(std::string(size, 'x'));
+                          file.commit();
+                        }),
+               "/dev/full");
+}
+
+// Another machine, or a process that was killed and had the same number, as those of containers often have.
+TEST_F(MeshWriterTest, TemporaryFilesOfOthersStay) {
+  const auto name_of = [](int number) {
+    return ".quickses-" + std::to_string(getpid()) + "-" + std::to_string(number) + ".tmp";
+  };
+  constexpr int kMany = 400;  // more than this program has made by now
+  for (int k = 0; k < kMany; ++k) write(name_of(k), "other");
+  write_mesh(path("a.obj"), Tetrahedron().view(), MeshFormat::kObj);
+  EXPECT_HAS(slurp(path("a.obj")), "QuickSES");
+  for (int k = 0; k < kMany; ++k) ASSERT_EQ(slurp(path(name_of(k))), "other");
+  EXPECT_EQ(file_count(), kMany + 1u);
+}
+
+// What a link of the system leads to may have no name any more.
+TEST_F(MeshWriterTest, AFileWithoutANameIsWrittenDirectly) {
+  const std::string name = write("a.txt", "");
+  const int descriptor = open(name.c_str(), O_RDWR);
+  ASSERT_GE(descriptor, 0);
+  fs::remove(name);
+  AtomicFile file("/proc/thread-self/fd/" + std::to_string(descriptor));
+  file.write("content");
+  file.commit();
+  char bytes[16] = {};
+  EXPECT_EQ(pread(descriptor, bytes, sizeof bytes, 0), 7);
+  EXPECT_STREQ(bytes, "content");
+  close(descriptor);
+  EXPECT_EQ(file_count(), 0u);
 }
 
 TEST_F(MeshWriterTest, LinksStayLinks) {

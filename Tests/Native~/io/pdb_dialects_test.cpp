@@ -187,9 +187,11 @@ TEST(PdbChains, OfTwoLettersAreNotToldByOneNameThatBeginsAsAnAminoAcid) {
 
 // ---- TER
 
-const std::string kinds_in(const std::string &text) {
+std::string kinds_in(const std::string &text, int model = 1) {
   std::string kinds;
-  const StructureFile file = parse(text);
+  ReadOptions options;
+  options.model = model;
+  const StructureFile file = parse(text, options);
   for (const AtomInfo &atom : file.models.at(0).atoms) {
     const char letter = "LPNWI"[static_cast<int>(atom.kind)];
     kinds += letter;
@@ -228,6 +230,22 @@ TEST(PdbTer, WhatIsBehindItInHetatmRecordsIsApart) {
   EXPECT_EQ(kinds_in(chain + ligand + atom("ATOM", "CA", "ALA", 'A', 3) + atom("HETATM", "CA", "MSE", 'A', 4) +
                      atom("ATOM", "CA", "ALA", 'A', 5) + "TER\n"),
             "PLPPP");
+}
+
+TEST(PdbTer, CountsInItsModelOnly) {
+  const std::string peptide = atom("HETATM", "CA", "MSE", 'A', 1) + atom("ATOM", "CA", "ALA", 'A', 2) +
+                              atom("HETATM", "CA", "MSE", 'A', 3) + "TER\n" + atom("HETATM", "CA", "GLY", 'A', 4);
+  const std::string text = "MODEL        1\n" + peptide + "ENDMDL\nMODEL        2\n" + peptide + "ENDMDL\n";
+  ReadOptions all;
+  all.model = 0;
+  const StructureFile file = parse(text, all);
+  ASSERT_EQ(file.models.size(), 2u);
+  for (const Structure &model : file.models)
+    for (size_t i = 0; i < 4; ++i)
+      EXPECT_EQ(model.atoms.at(i).kind, i < 3 ? ResidueKind::kProtein : ResidueKind::kLigand)
+          << "model " << model.model << ", atom " << i;
+  EXPECT_EQ(kinds_in(text, 1), "PPPL");
+  EXPECT_EQ(kinds_in(text, 2), "PPPL");
 }
 
 }  // namespace

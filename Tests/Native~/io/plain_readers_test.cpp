@@ -19,6 +19,8 @@ TEST_F(PlainReadersTest, XyzrGivesPositionsAndRadii) {
   EXPECT_HAS(input_error(write("d.xyzr", "1 2 inf 1\n")), "line 1");
   EXPECT_HAS(input_error(write("e.xyzr", "# nothing\n")), "no atoms");
   EXPECT_HAS(input_error(write("f.xyzr", "1 2 3 0\n")), "radius 0");
+  EXPECT_EQ(only_model(write("g.xyzr", "1 2 3 100\n")).radii, (std::vector<float>{100}));
+  EXPECT_HAS(input_error(write("h.xyzr", "1 2 3 100.01\n")), "line 1: the radius '100.01' is not between 0 and 100");
   ReadOptions options;
   options.water = false;
   EXPECT_HAS(error_of(ErrorKind::kUsage, [&] { read_structure(path("a.xyzr"), options); }), "no names");
@@ -36,6 +38,7 @@ TEST_F(PlainReadersTest, PqrGivesNamesAndRadii) {
   EXPECT_EQ(structure.atoms[2].element, 20);
   EXPECT_EQ(structure.atoms[2].chain, "B");
   EXPECT_HAS(input_error(write("b.pqr", "ATOM 1 N ALA 1 1.0 2.0\n")), "line 1");
+  EXPECT_HAS(input_error(write("c.pqr", "ATOM 1 N ALA 1 1.0 2.0 3.0 0.5\n")), "line 1: expected ATOM");  // no radius
 }
 
 // As PDB2PQR writes it unless asked for blanks between: what fills its columns joins what is before it.
@@ -103,6 +106,13 @@ TEST_F(PlainReadersTest, GroIsReadInAngstrom) {
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_HAS(warnings[0], "the element of 2 atoms was missing");  // the format has none
   EXPECT_HAS(input_error(write("b.gro", text.substr(0, 59))), "cut off");
+  const size_t end_of_second = text.rfind("\n", text.size() - 2);
+  for (size_t less : {1, 9, 18})
+    EXPECT_HAS(input_error(write("b.gro", text.substr(0, end_of_second - less) + text.substr(end_of_second))),
+               "line 4: the line ends before its coordinates");
+  for (const char *count : {"-1", "2.5", "", "two"})
+    EXPECT_HAS(input_error(write("b.gro", "t\n" + std::string(count) + "\n 5 5 5\n")),
+               "line 2: expected the number of atoms");
   // More decimals widen the columns.
   const Structure fine =
       only_model(write("c.gro", "t\n1\n    1ALA     CA    1   0.12500   1.00000  -2.00000\n 5 5 5\n"));

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-// How large pages may become. What is in them is looked at by cli_picture_test.py and page_browser_test.py.
+// How large pages may become, and the form of pictures. What is in them is looked at by cli_picture_test.py and
+// page_browser_test.py.
 #include "render/page.h"
 
 #include "io/io_fixture.h"
+#include "render/picture.h"
 
 namespace quickses::render {
 namespace {
@@ -25,6 +27,8 @@ class PageTest : public io::IoTest {
   }
   uint64_t empty_size_ = 0;
 };
+
+using PictureFileTest = io::IoTest;
 
 TEST_F(PageTest, HoldsWhatItMay) {
   const std::string mesh(100'000, 'x');
@@ -66,6 +70,17 @@ TEST_F(PageTest, TellsFromTheFirstHowManyFit) {
   const std::string larger_mesh(2'000'000, 'x');
   EXPECT_HAS(io::error_of(io::ErrorKind::kOutput, [&] { larger.add(larger_mesh, 9); }),
              "about 5 of its 11 surfaces fit");
+}
+
+// One pixel that lets something through is enough, wherever it is.
+TEST_F(PictureFileTest, HasAlphaWhereItIsNeeded) {
+  for (size_t open = 0; open <= 4; ++open) {
+    Image image{2, 2, std::vector<uint8_t>(16, 255)};
+    if (open < 4) image.rgba[4 * open + 3] = 254;
+    write_png(path("a.png"), image);
+    constexpr size_t kColorType = 25;
+    EXPECT_EQ(io::slurp(path("a.png")).at(kColorType), open < 4 ? 6 : 2) << open;
+  }
 }
 
 }  // namespace
