@@ -104,7 +104,6 @@ void LevelChooser::record(double cost_ms, double shared_ms, double bytes) {
 void LevelChooser::record_failure() {
   Level &level = levels_[current_];
   level.cost = std::numeric_limits<double>::max();
-  level.shared = level.bytes = 0;
   level.frames = 0;
   retreat(level);
 }

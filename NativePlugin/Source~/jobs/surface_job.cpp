@@ -52,7 +52,7 @@ void SurfaceJob::begin(SurfaceRequest request) {
 }
 
 void SurfaceJob::announce(const SurfaceRequest &request) {
-  cancelled_ = superseded_ = false;
+  superseded_ = false;
   stop_now_ = false;
   fraction_ = 0.f;
   levels_finished_ = 0;
@@ -110,7 +110,6 @@ void SurfaceJob::work() {
     state_.state = status != QSES_OK                  ? QSES_JOB_FAILED
                    : levels_finished_ == level_count_ ? QSES_JOB_FINISHED
                                                       : QSES_JOB_CANCELLED;
-    if (!waiting_.empty() && !quit_) state_.state = QSES_JOB_RUNNING;
     changed_.notify_all();
   }
 }
@@ -174,15 +173,7 @@ qses_size_estimate SurfaceJob::estimate(const SurfaceRequest &request) {
   {
     const std::unique_lock<std::mutex> lock = wait_for_turn();
     stop_now_ = false;
-    estimating_ = true;
   }
-  const struct End {
-    SurfaceJob &job;
-    ~End() {
-      const std::lock_guard<std::mutex> lock(job.mutex_);
-      job.estimating_ = false;
-    }
-  } end{*this};
   return engine_->estimate(*request.atoms, *request.appearance, request.settings, stop_now_);
 }
 
@@ -212,7 +203,7 @@ void SurfaceJob::finished(FinishedMesh mesh) {
       view->level_count = ladder_count_;
     }
     state_.levels_finished = ++levels_finished_;
-    if (superseded_ || cancelled_) stop_now_ = true;
+    if (superseded_) stop_now_ = true;
   }
   changed_.notify_all();
 }
@@ -280,13 +271,8 @@ void SurfaceJob::cancel() {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     cancelled_call_ = true;
-    if (estimating_) stop_now_ = true;
-    if (running_) {
-      cancelled_ = true;
-      stop_now_ = true;
-    } else if (!waiting_.empty()) {
-      state_.state = QSES_JOB_CANCELLED;
-    }
+    stop_now_ = true;  // whatever is computed; what is begun later takes it back
+    if (!running_ && !waiting_.empty()) state_.state = QSES_JOB_CANCELLED;
     waiting_ = {};
   }
   changed_.notify_all();

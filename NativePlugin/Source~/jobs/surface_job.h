@@ -91,9 +91,8 @@ class SurfaceJob : private LevelSink {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   SurfaceRequest waiting_;
-  bool running_ = false, quit_ = false, cancelled_ = false, superseded_ = false;
-  bool cancelled_call_ = false;  // while a compute or estimate waits for a job to end
-  bool estimating_ = false;
+  bool running_ = false, quit_ = false, superseded_ = false;
+  bool cancelled_call_ = false;                     // while a compute or estimate waits for a job to end
   uint32_t levels_finished_ = 0, level_count_ = 0;  // of the job
   uint32_t first_level_ = 0, ladder_count_ = 0;     // where they are in the ladder
   SeriesChoosers choosers_;                         // like the next two: of the thread that computes

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Jobs through the C API: levels, replacing, cancelling, and memory that is handed over.
-#include "surface/surface_fixture.h"
-
-#include <gtest/gtest.h>
+#include "jobs/jobs_fixture.h"
 
 #include <atomic>
 #include <chrono>
@@ -11,42 +9,9 @@
 #include <thread>
 #include <utility>
 
-using namespace surface_fixture;
+using namespace jobs_fixture;
 
 namespace {
-
-qses_progress poll(qses_context *context) {
-  qses_progress p;
-  qses_progress_init(&p);
-  expect_ok(qses_poll(context, &p));
-  return p;
-}
-
-void begin(qses_context *context, qses_settings s, uint32_t frame = 0) {
-  s.tag = frame;
-  expect_ok(qses_begin(context, &s));
-}
-
-void wait_for_all(qses_context *context) {
-  int32_t finished = 0;
-  expect_ok(qses_wait(context, -1, &finished));
-  ASSERT_EQ(finished, 1);
-}
-
-// The next level that is finished; a view with level_count 0 if the job ends without one.
-qses_mesh next_level(qses_context *context) {
-  qses_mesh mesh;
-  for (;;) {
-    qses_mesh_init(&mesh);
-    if (qses_collect(context, &mesh) == QSES_OK) return mesh;
-    if (poll(context).state != QSES_JOB_RUNNING) {
-      if (qses_collect(context, &mesh) == QSES_OK) return mesh;
-      qses_mesh_init(&mesh);
-      return mesh;
-    }
-    std::this_thread::yield();
-  }
-}
 
 mesh_checks::Mesh copy(const qses_mesh &m) {
   mesh_checks::Mesh mesh;
@@ -56,33 +21,6 @@ mesh_checks::Mesh copy(const qses_mesh &m) {
   mesh.indices.assign(m.indices, m.indices + 3 * size_t(m.triangle_count));
   return mesh;
 }
-
-// Many atoms, quickly made: a cubic lattice of them.
-Atoms block(int edge) {
-  Atoms atoms;
-  for (int k = 0; k < edge * edge * edge; ++k)
-    atoms.add(2.1 * (k % edge), 2.2 * (k / edge % edge), 2.3 * (k / edge / edge), 1.5 + 0.1 * (k % 4));
-  return atoms;
-}
-
-// Holds whatever is computed when it first tells how far it is: so it is not over before the gate opens. Lives longer
-// than the context.
-class Gate {
- public:
-  void place_in(qses_context *context) { expect_ok(qses_set_progress_callback(context, stop_at, this)); }
-  void wait_until_reached() const {
-    while (!is_reached_) std::this_thread::yield();
-  }
-  void open() { is_open_ = true; }
-
- private:
-  static void stop_at(void *gate, double) {
-    Gate &self = *static_cast<Gate *>(gate);
-    self.is_reached_ = true;
-    while (!self.is_open_) std::this_thread::yield();
-  }
-  std::atomic<bool> is_reached_{false}, is_open_{false};
-};
 
 // Cancels again and again. Whatever is computed stands still until it was cancelled.
 class Cancels {
@@ -463,6 +401,8 @@ TEST(Jobs, BadRequestsAreRefusedAtOnce) {
   s.levels[0] = 1.f;
   s.levels[1] = 2.f;
   s.level_count = 2;
+  EXPECT_EQ(qses_begin(context, &s), QSES_INVALID_ARGUMENT);
+  s.levels[1] = 1.f;  // once more the same
   EXPECT_EQ(qses_begin(context, &s), QSES_INVALID_ARGUMENT);
   s.level_count = QSES_MAX_LEVELS + 1;
   EXPECT_EQ(qses_begin(context, &s), QSES_INVALID_ARGUMENT);

@@ -126,7 +126,9 @@ TEST(LateCancel, OfAJob) {
     stopped.request.ladder.add(0.5f);
     stopped.job->begin(stopped.request);
     EXPECT_TRUE(stopped.job->wait(-1));
-    EXPECT_EQ(stopped.job->progress().state, finished == 2 ? QSES_JOB_FINISHED : QSES_JOB_CANCELLED);
+    const qses_progress progress = stopped.job->progress();
+    EXPECT_EQ(progress.state, finished == 2 ? QSES_JOB_FINISHED : QSES_JOB_CANCELLED);
+    EXPECT_EQ(progress.fraction, finished == 2 ? 1.f : 0.f);
     EXPECT_EQ(stopped.job->collect(), finished > 0);
   }
 }

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <vector>
 
@@ -93,7 +94,40 @@ TEST(LevelChooser, ALevelThatIsTooExpensiveIsTriedLessAndLess) {
     if (levels[k] == 1) tries.push_back(k);
   ASSERT_GE(tries.size(), 3u);
   EXPECT_LE(tries.size(), 14u);
+  const auto later = run(chooser, s, 10, 4000, [](uint32_t level, int) { return Cost{level == 0 ? 4. : 12., 0}; });
+  size_t last = 0, longest = 0;  // it is never given up
+  for (size_t k = 0; k < later.size(); ++k)
+    if (later[k] == 1) longest = std::max(longest, k - last), last = k;
+  EXPECT_LE(std::max(longest, later.size() - last), 1100u);
   for (size_t k = 2; k < tries.size(); ++k) EXPECT_GE(tries[k] - tries[k - 1], tries[k - 1] - tries[k - 2]);
+}
+
+// Failures are forgotten when a level has fitted for long: after the next one it is tried again soon.
+TEST(LevelChooser, ALevelThatHasFittedForLongIsTrusted) {
+  const auto s = subject({1.f, 0.5f});
+  const auto costs = [](double fine) {
+    return [fine](uint32_t level, int) { return Cost{level == 0 ? 4. : fine, 0}; };
+  };
+  LevelChooser chooser;
+  run(chooser, s, 10, 1500, costs(12));  // fails again and again
+  const auto fitting = run(chooser, s, 10, 1500, costs(7));
+  ASSERT_EQ(fitting.back(), 1u);
+  ASSERT_EQ(changes(fitting, 1400), 0);
+  run(chooser, s, 10, 2, costs(30));  // of three costs, the one in the middle counts
+  const auto after = run(chooser, s, 10, 20, costs(7));
+  EXPECT_EQ(after.front(), 0u);
+  EXPECT_EQ(after.back(), 1u);
+}
+
+// What a level cost when it was left does not hide what it costs now.
+TEST(LevelChooser, ALevelThatIsComeBackToIsJudgedByItsFirstFrame) {
+  const auto s = subject({1.f, 0.5f});
+  LevelChooser chooser;
+  const auto cheap = [](uint32_t level, int) { return Cost{level == 0 ? 2. : 8., 0}; };
+  ASSERT_EQ(run(chooser, s, 10, 20, cheap).back(), 1u);
+  ASSERT_EQ(run(chooser, s, 5, 20, cheap).back(), 0u);
+  const auto levels = run(chooser, s, 10, 5, [](uint32_t level, int) { return Cost{level == 0 ? 2. : 30., 0}; });
+  EXPECT_EQ(levels, (std::vector<uint32_t>{1, 0, 0, 0, 0}));
 }
 
 TEST(LevelChooser, NothingHopelessIsTried) {
@@ -203,6 +237,12 @@ TEST(LevelChooser, ABudgetThatGrowsIsUsed) {
   EXPECT_EQ(run(chooser, s, 2.6, 10, costs_of(s, 1, 1)).back(), 1u);
   EXPECT_EQ(run(chooser, s, 30, 10, costs_of(s, 1, 1)).back(), 3u);
   EXPECT_EQ(run(chooser, s, 2.6, 10, costs_of(s, 1, 1)).back(), 1u);
+  // With another budget, what failed with the old one is no failure.
+  const auto two = subject({1.f, 0.5f});
+  const auto costs = [](uint32_t level, int) { return Cost{level == 0 ? 4. : 12., 0}; };
+  LevelChooser often_too_dear;
+  ASSERT_EQ(run(often_too_dear, two, 10, 500, costs).back(), 0u);
+  EXPECT_EQ(run(often_too_dear, two, 16, 1, costs).back(), 1u);
 }
 
 // ---- what it costs to show a mesh

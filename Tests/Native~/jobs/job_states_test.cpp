@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+// What jobs say of themselves, and what becomes of those that others follow, that are cancelled, or that fail.
+#include "jobs/jobs_fixture.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+using namespace jobs_fixture;
+
+namespace {
+
+// Holds a job when its first level is finished, and the job with another tag when it first tells how far it is. Lives
+// longer than the context.
+class TwoGates {
+ public:
+  void place_in(qses_context *context) {
+    context_ = context;
+    expect_ok(qses_set_progress_callback(context, stop_at, this));
+  }
+  void wait_until_reached(uint32_t tag) const {
+    while (reached_ != tag) std::this_thread::yield();
+  }
+  void open(uint32_t tag) { open_ = tag; }  // for the job with this tag
+
+ private:
+  static void stop_at(void *gates, double) {
+    TwoGates &self = *static_cast<TwoGates *>(gates);
+    const qses_progress p = poll(self.context_);
+    if (p.tag == 1 && p.levels_finished == 0) return;
+    self.reached_ = p.tag;
+    while (self.open_ < p.tag) std::this_thread::yield();
+  }
+  qses_context *context_ = nullptr;
+  std::atomic<uint32_t> reached_{0}, open_{0};
+};
+
+// Of a job that another one follows, no more levels are made when one is there to be shown.
+TEST(JobStates, ALevelUnderWayIsGivenUpForTheNextJob) {
+  TwoGates gates;
+  const Context context;
+  set_atoms(context, block(20));
+  gates.place_in(context);
+  begin(context, settings(0.5), 1);
+  gates.wait_until_reached(1);
+  EXPECT_EQ(next_level(context).level, 0u);
+  begin(context, settings(0.5), 2);
+  gates.open(1);
+  gates.wait_until_reached(2);
+  qses_mesh m;
+  qses_mesh_init(&m);
+  EXPECT_EQ(qses_collect(context, &m), QSES_NOTHING_NEW);
+  gates.open(2);
+  wait_for_all(context);
+  expect_ok(qses_collect(context, &m));
+  EXPECT_EQ(m.tag, 2u);
+}
+
+TEST(JobStates, CancelTakesBackWhatWaits) {
+  Gate gate;
+  const Context context;
+  set_atoms(context, block(20));
+  gate.place_in(context);
+  begin(context, settings(0.5), 1);
+  gate.wait_until_reached();
+  begin(context, settings(0.5), 2);
+  expect_ok(qses_cancel(context));
+  gate.open();
+  wait_for_all(context);
+  const qses_progress p = poll(context);
+  EXPECT_EQ(p.state, QSES_JOB_CANCELLED);
+  EXPECT_EQ(p.tag, 1u);
+  EXPECT_EQ(p.mesh_ready, 0);
+}
+
+// Whatever is computed, a job that is finished is all done.
+TEST(JobStates, WhatIsFinishedIsWholeInAllForms) {
+  std::vector<qses_settings> forms(5, settings(0.5));
+  forms[1].delivery = QSES_DELIVERY_NONE;
+  forms[2].surface = QSES_SURFACE_SAS;
+  forms[2].delivery = QSES_DELIVERY_NONE;
+  forms[3].surface = QSES_SURFACE_GAUSSIAN;
+  forms[4].method = QSES_METHOD_GRID;
+  const Context context;
+  for (const Atoms &atoms : {Atoms(), cluster(50, 2)})
+    for (const qses_settings &form : forms) {
+      set_atoms(context, atoms);
+      begin(context, form);
+      wait_for_all(context);
+      EXPECT_EQ(poll(context).state, QSES_JOB_FINISHED);
+      EXPECT_EQ(poll(context).fraction, 1.f);
+    }
+}
+
+TEST(JobStates, NothingIsLeftOfAFailure) {
+  Gate gate;
+  const Context context(2, 2 << 20);
+  set_atoms(context, cluster(5000, 4));
+  begin(context, settings(0.3));
+  wait_for_all(context);
+  ASSERT_EQ(poll(context).state, QSES_JOB_FAILED);
+  gate.place_in(context);
+  set_atoms(context, cluster(50, 4));
+  begin(context, settings(1.0));
+  gate.wait_until_reached();
+  const qses_progress next = poll(context);
+  EXPECT_EQ(next.state, QSES_JOB_RUNNING);
+  EXPECT_EQ(next.status, QSES_OK);
+  EXPECT_EQ(std::string(next.message), "");
+  gate.open();
+  wait_for_all(context);
+  EXPECT_EQ(poll(context).state, QSES_JOB_FINISHED);
+}
+
+// With a frame budget a level that there is no memory for is left, however fast it would be.
+TEST(JobStates, ALevelThatFailsIsLeftForTheNextFrame) {
+  const Context context(2, 4 << 20);
+  set_atoms(context, crambin());
+  qses_settings s = settings(0.1);
+  s.level_count = 1;
+  s.levels[0] = 2.f;
+  s.frame_budget_ms = 60000;
+  std::vector<bool> failed;
+  for (uint32_t frame = 0; frame < 6; ++frame) {
+    begin(context, s, frame);
+    wait_for_all(context);
+    failed.push_back(poll(context).state == QSES_JOB_FAILED);
+    if (failed.back()) continue;
+    qses_mesh m;
+    qses_mesh_init(&m);
+    expect_ok(qses_collect(context, &m));
+    EXPECT_EQ(m.level, 0u);
+  }
+  EXPECT_EQ(failed, (std::vector<bool>{false, true, false, false, false, false}));
+}
+
+}  // namespace
