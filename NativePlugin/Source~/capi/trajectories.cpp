@@ -21,15 +21,10 @@ using quickses::write_struct;
 namespace io = quickses::io;
 
 struct qses_trajectory {
-  explicit qses_trajectory(io::Trajectory opened) : frames(std::move(opened)) {
-    try {
-      has_box = frames.box(0).has_value();
-    } catch (const io::Error &) {  // a damaged frame 0: the others can still be read
-    }
-  }
+  explicit qses_trajectory(io::Trajectory opened) : frames(std::move(opened)), has_box(frames.box(0).has_value()) {}
 
   io::Trajectory frames;
-  bool has_box = false;
+  const bool has_box;
 };
 
 namespace {

@@ -117,6 +117,15 @@ TEST(LastError, LongOnesAreCutBetweenLetters) {
     EXPECT_EQ(message.size(), kMost - begin.size());
     EXPECT_EQ(message, "'" + path.substr(0, message.size() - 1));
   }
+  std::string before;
+  for (size_t size = kMost - 100; size < kMost + 50; ++size) {  // from those that just fit to those that just don't
+    qses_structure *structure = nullptr;
+    ASSERT_EQ(qses_structure_open(std::string(size, 'x').c_str(), nullptr, &structure), QSES_FILE_ERROR);
+    const std::string message = qses_last_error();
+    EXPECT_EQ(message.size(), std::min(kMost, before.empty() ? message.size() : before.size() + 1));
+    before = message;
+  }
+  EXPECT_EQ(before.size(), kMost);
 }
 
 #if !defined(_WIN32)  // where memory of MinGW's thread_local objects, also of this one, is gone before they are

@@ -85,6 +85,17 @@ TEST(Trajectory, StrideLeavesWhatLiesBetween) {
   }
 }
 
+TEST(Trajectory, WhatIsRefusedWritesNothing) {
+  const TrajectoryPointer trajectory = open_bytes(dcd(some_frames(2)));
+  std::vector<float> positions(15, -7.f);
+  qses_frame frame;
+  qses_frame_init(&frame);
+  frame.struct_size = 3;
+  expect_error(qses_trajectory_read_frame(trajectory.get(), 1, positions.data(), 0, 5, &frame), QSES_INVALID_ARGUMENT,
+               {"qses_frame"});
+  EXPECT_EQ(positions, std::vector<float>(15, -7.f));
+}
+
 TEST(Trajectory, TimeAndBox) {
   quickses::io::XtcWriter writer;
   writer.time = 12.5f;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Picking in kept meshes: what all triangles by themselves say, with boxes and without.
 #include "capi/kept_mesh_fixture.h"
+#include "kept/kept_mesh.h"
 
 using namespace kept_mesh_fixture;
 
@@ -320,6 +321,27 @@ TEST(Pick, WrongArgumentsAreNamed) {
     }
   hit.struct_size = 3;
   expect_error(ask(origin, direction), QSES_INVALID_ARGUMENT, {"qses_hit"});
+}
+
+// As on a sharp ridge: where those of the corners cancel each other, it is that of the nearest one.
+TEST(Pick, OppositeNormals) {
+  const float positions[] = {0, 0, 0, 2, 0, 0, 0, 2, 0}, normals[] = {0, 0.6f, 0.8f, 0, -0.6f, -0.8f, 1, 0, 0};
+  const uint32_t indices[] = {0, 1, 2}, owners[] = {5, 6, 7};
+  qses_mesh m = empty_mesh();
+  m.vertex_count = 3;
+  m.triangle_count = 1;
+  m.positions = positions;
+  m.normals = normals;
+  m.indices = indices;
+  m.owners = owners;
+  m.bounds_max[0] = m.bounds_max[1] = 2;
+  const float origin[] = {1, 0, 3}, direction[] = {0, 0, -1};
+  const qses_hit hit = quickses::pick(m, {}, origin, direction, nullptr);
+  ASSERT_EQ(hit.found, 1);
+  EXPECT_EQ(hit.distance, 3.f);
+  EXPECT_EQ(hit.vertex, 0u);
+  EXPECT_EQ(hit.owner, 5u);
+  for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(hit.normal[k], normals[k], 1e-6f);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // A machine that refuses threads or memory, and callers with little stack: this program has functions of the C library
 // of its own, which refuse what they are told to.
 #include "io/own_folder.h"
+#include "parallel/later_release.h"
 #include "surface/surface_fixture.h"
 
 #include <gtest/gtest.h>
@@ -13,8 +14,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <functional>
+#include <thread>
 
 using namespace surface_fixture;
 
@@ -88,6 +91,21 @@ TEST(FewThreads, AnyNumberOfThemThatCanBeHad) {
     const Context context(8);
     expect_same(surface_of(context, atoms, settings()), usual);
   }
+}
+
+// Without a thread that could do it, whoever hands it over releases it: once, also if there are threads again.
+TEST(FewThreads, MemoryIsReleasedWithoutOne) {
+  static std::atomic<int> refused, later;
+  const auto count = [](void *releases) { ++*static_cast<std::atomic<int> *>(releases); };
+  {
+    const Allow none(0);
+    quickses::release_later(count, &refused);
+    EXPECT_EQ(refused, 1);
+  }
+  quickses::release_later(count, &later);
+  while (later == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  EXPECT_EQ(refused, 1);
+  EXPECT_EQ(later, 1);
 }
 
 // ---- no memory

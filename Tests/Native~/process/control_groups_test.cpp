@@ -65,6 +65,27 @@ TEST_F(ControlGroups, OfVersion2) {
   EXPECT_EQ(read("0::/job/step").free, 0u);
 }
 
+// Pages may be counted at two moments.
+TEST_F(ControlGroups, CachesMayBeMoreThanAllThatIsUsed) {
+  write("fs/memory.max", "4000\n");
+  write("fs/memory.current", "100\n");
+  write("fs/memory.stat", "anon 1\ninactive_file 300\n");
+  EXPECT_EQ(read("0::/\n").free, 4000u);
+}
+
+// They are left out, and so is nothing else.
+TEST_F(ControlGroups, LinesAsLongAsNobodyWritesThem) {
+  write("fs/memory/memory.limit_in_bytes", "5000\n");
+  write("fs/memory/memory.usage_in_bytes", "2000\n");
+  std::string path, kinds = "cpu";
+  for (int k = 0; k < 300; ++k) path += "/folder", kinds += ",cpu";
+  EXPECT_EQ(read("4:memory:" + path + "\n").limit, kNone);
+  EXPECT_EQ(read("0::" + path + "\n").limit, kNone);
+  EXPECT_EQ(read("5:" + kinds + ",memory:/\n").limit, kNone);
+  EXPECT_EQ(read("0::" + path + "\n4:memory:/\n").limit, 5000u);
+  EXPECT_EQ(read("5:" + kinds + ":/\n4:memory:/\n").limit, 5000u);
+}
+
 TEST_F(ControlGroups, OfVersion1) {
   write("fs/memory/slurm/memory.limit_in_bytes", "5000\n");
   write("fs/memory/slurm/memory.usage_in_bytes", "2000\n");

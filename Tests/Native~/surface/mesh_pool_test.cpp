@@ -11,6 +11,7 @@ namespace {
 
 using quickses::HostMemory;
 using quickses::MeshBuffer;
+using quickses::MeshLease;
 using quickses::MeshPool;
 
 constexpr size_t kLarge = size_t(64) << 20, kUsual = size_t(1) << 16;
@@ -47,6 +48,40 @@ TEST(MeshPool, KeepsWhatIsUsedInTurn) {
   }
   EXPECT_LE(acquired, 9);
   for (auto &one : shown) pool.give_back(std::move(one));
+}
+
+// Every byte is counted once, with what is said of a mesh besides its arrays, until it is released.
+TEST(MeshPool, CountsWhatThereIs) {
+  const auto pool = std::make_shared<MeshPool>(MeshPool::source<HostMemory>());
+  const std::vector<char> numbers(3 * kUsual);
+  MeshLease lease(pool, kUsual);
+  const uint64_t without = pool->bytes();
+  EXPECT_GE(without, kUsual);
+  lease.add(MeshLease::kComponents, numbers.data(), kUsual);
+  EXPECT_GE(pool->bytes(), without + kUsual);
+  lease.add(MeshLease::kAtomAreas, numbers.data(), numbers.size());
+  const uint64_t with = pool->bytes();
+  EXPECT_GE(with, without + kUsual + numbers.size());
+  lease.add(MeshLease::kComponents, numbers.data(), kUsual / 2);  // there is room
+  EXPECT_EQ(pool->bytes(), with);
+  lease.give_back();
+  EXPECT_EQ(pool->bytes(), with) << "a spare";
+  pool->drop_spares();
+  EXPECT_EQ(pool->bytes(), 0u);
+}
+
+// Of a context that is gone; meshes that were kept may be given back much later.
+TEST(MeshPool, KeepsNothingOnceItIsClosed) {
+  MeshPool pool(MeshPool::source<HostMemory>());
+  std::unique_ptr<MeshBuffer> first = pool.take(kUsual), second = pool.take(2 * kUsual);
+  const uint64_t of_second = second->size;
+  pool.give_back(pool.take(kUsual));
+  pool.close();
+  EXPECT_EQ(pool.bytes(), first->size + of_second);
+  pool.give_back(std::move(first));
+  EXPECT_EQ(pool.bytes(), of_second);
+  pool.give_back(std::move(second));
+  EXPECT_EQ(pool.bytes(), 0u);
 }
 
 }  // namespace
