@@ -106,6 +106,8 @@ class OneFileForTwoThings(FilesTest):
             for name in self.ways_to("t.csv"):
                 self.assert_refused(["--json", name, "--csv"], "p.pdb", "--trajectory", "many.pdb", "--csv", "t.csv",
                                     "--json", name)
+                self.assert_refused(["--per-residue", name, "--per-atom"], "p.pdb", "--per-atom", "t.csv",
+                                    "--per-residue", name)
 
     def test_outputs_over_inputs(self):
         shutil.copy(self.folder / "p.pdb", self.folder / "p.obj")  # known by its content
@@ -139,6 +141,9 @@ class OneFileForTwoThings(FilesTest):
     def test_what_is_no_output_may_be_the_same(self):
         (self.folder / "quickses").write_text("a file of this name is no set of radii")
         self.run_cpu("p.pdb", "-v", "2", "--radii", "quickses", "--json", "quickses")
+        # Meshes of models have numbers behind the name of the input.
+        self.run_cpu("p.pdb", "many.pdb", "--model", "all", "-v", "2", "-o", "%s.ply", "--json", "many.ply")
+        self.assertEqual(len((self.folder / "many.ply").read_text().splitlines()), 1 + MODELS)
         if not IS_WINDOWS:
             self.run_cpu("many.pdb", "--trajectory", "many.pdb", "-v", "2", "--csv", "/dev/null", "--json", "/dev/null")
 
@@ -244,6 +249,18 @@ class Names(FilesTest):
                 for made in folder.iterdir():
                     if made.name not in ("Krambin ü.pdb", "Läufe.pdb", "rädii.txt"):
                         made.unlink()
+
+
+    @unittest.skipIf(IS_WINDOWS, "all names are UTF-16 there")
+    def test_of_bytes_that_are_no_letters(self):
+        """On Linux any bytes may be a name: reports are UTF-8 all the same, with U+FFFD where a name is not."""
+        folder = os.fsencode(self.folder)
+        shutil.copy(CRAMBIN, folder + b"/Caf\xe9.pdb")
+        result = subprocess.run([cli_test.PROGRAM, b"Caf\xe9.pdb", "--json", b"r\xe9sum\xe9.json", "--backend", "cpu", "-v", "2"],
+                                cwd=folder, capture_output=True, timeout=cli_test.PATIENCE)
+        self.assertEqual(result.returncode, OK, result.stderr)
+        with open(folder + b"/r\xe9sum\xe9.json", encoding="utf-8") as report:
+            self.assertEqual(json.load(report)["input"], "Caf\ufffd.pdb")
 
 
 class TwoAtATime(FilesTest):

@@ -80,6 +80,18 @@ class Colors(MeshTest):
         glb = read_glb(self.make("a.glb", "--component-ids"))
         self.assertEqual([row[0] for row in glb.more["_COMPONENT"]], ply.more["component"])
 
+    def test_the_largest_component_has_the_first_colour(self):
+        small, large = "0 0 0 1\n", "20 0 0 3\n"
+        for name, text in (("one", large), ("two", small + large), ("owt", large + small)):
+            self.write(f"{name}.xyzr", text)
+            self.run_cpu(f"{name}.xyzr", "-v", "0.5", "-o", f"{name}.ply", "--color", "component")
+        (first,) = set(colors_of(read_any_ply(self.folder / "one.ply")))
+        for name in ("two", "owt"):
+            ply = read_any_ply(self.folder / f"{name}.ply")
+            colors = {(vertex[0] > 10, color) for vertex, color in zip(ply.vertices, colors_of(ply))}
+            self.assertEqual(len(colors), 2)
+            self.assertIn((True, first), colors)
+
     def test_of_patches(self):
         kinds = [int(line.split()[8]) for line in self.make("a.vert").read_text().splitlines()[3:]]
         ply = read_any_ply(self.make("a.ply", "--color", "patch", "--hard-edges", "off"))

@@ -67,6 +67,7 @@ class Pictures(PictureTest):
         for content, arguments in ((sphere, ["--surface", "gaussian"]), (pair, ["--surface", "gaussian"]),
                                    (sphere, ["--surface", "gaussian", "--radius-scale", "2"]),
                                    (pair, ["--surface", "gaussian", "--isovalue", "0.1"]),
+                                   (sphere, ["--surface", "sas"]), (pair, ["--surface", "sas", "--probe", "3"]),
                                    (sphere, ["--method", "grid", "-v", "1"])):
             with self.subTest(arguments=arguments):
                 seen = self.picture(content, "--size", "80x60", "--background", "transparent", *arguments)
@@ -294,6 +295,7 @@ class Pictures(PictureTest):
                 (["-o", "a.png", "--size", "10"], ["--size", "'10'", "1024x768"]),
                 (["-o", "a.png", "--size", "0x10"], ["--size", "0x10"]),
                 (["-o", "a.png", "--size", "100000x10"], ["--size", "16384"]),
+                (["-o", "a.png", "--size", "10x16385"], ["--size", "16384"]),
                 (["-o", "a.png", "--background", "blue"], ["--background", "blue", "transparent"]),
                 (["-o", "a.png", "--view", "0,0,0"], ["--view", "0,0,0"]),
                 (["-o", "a.png", "--view", "w"], ["--view", "'w'"]),

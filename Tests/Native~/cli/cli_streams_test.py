@@ -8,6 +8,11 @@ import os
 import subprocess
 import unittest
 
+try:
+    import resource
+except ImportError:  # on Windows
+    resource = None
+
 import cli_test
 from cli_files_test import FilesTest
 from cli_test import IS_WINDOWS, OUTPUT, USAGE, is_closed, read_obj
@@ -48,6 +53,10 @@ class StandardOutput(FilesTest):
         # No file takes its place.
         self.assert_can_not_print(["p.pdb", "-v", "2", "-o", "a.obj"], preexec_fn=lambda: os.close(1))
         self.assertTrue(is_closed(read_obj(self.folder / "a.obj")[2]))
+        measure = ["measure", *["p.pdb"] * 40, "--surface", "vdw", "--per-atom"]  # more lines than are kept back
+        self.run_cpu(*measure, "expected.csv")
+        self.assert_can_not_print([*measure, "b.csv"], preexec_fn=lambda: os.close(1))
+        self.assertEqual((self.folder / "b.csv").read_text(), (self.folder / "expected.csv").read_text())
 
     def test_nobody_reads_it(self):
         for arguments in self.PRINTING:
@@ -57,6 +66,22 @@ class StandardOutput(FilesTest):
                 self.assert_can_not_print(arguments, stdout=writer)
             os.close(writer)
         self.assertEqual(sorted(self.content()), ["many.pdb", "p.pdb", "radii.txt"])
+
+
+@unittest.skipIf(IS_WINDOWS, "no such limits")
+class SmallFiles(FilesTest):
+    def test_a_file_that_may_not_be_as_large(self):
+        """The system would end the program by a signal, which is not the way in which it fails."""
+        before = self.content()
+
+        def limit():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))
+        for arguments in (["-v", "2", "-o", "a.obj"], ["--per-atom", "a.csv"], ["-o", "a.png"]):
+            result = subprocess.run([cli_test.PROGRAM, "p.pdb", "--quiet", "--backend", "cpu", *arguments], cwd=self.folder,
+                                    capture_output=True, encoding="utf-8", timeout=cli_test.PATIENCE, preexec_fn=limit)
+            self.assertEqual(result.returncode, OUTPUT, result.stderr)
+            self.assertIn(arguments[-1], result.stderr)
+            self.assertEqual(self.content(), before)
 
 
 @unittest.skipIf(IS_WINDOWS, "descriptors have no names there")

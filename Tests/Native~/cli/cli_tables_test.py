@@ -251,6 +251,16 @@ class Cavities(TablesTest):
             self.assertLess(cavity["volume"], 4 / 3 * math.pi * 6.9 ** 3)
             self.assertNotIn("cavity", cavity)
 
+    def test_the_largest_is_the_first(self):
+        for side in (-30, 30):  # of the lattice, by which components are numbered
+            ball = self.positions[:900]
+            smaller = [tuple(side + 0.8 * c for c in position) for position in ball]
+            self.write("two.pdb", pdb_text([("ATOM", "C", "ALA", 1)] * 1800, ball + smaller))
+            report = json.loads(self.run_cpu("cavities", "two.pdb", "--json", "-").stdout)
+            large, small = report["cavities"]
+            self.assertGreater(large["volume"], 1.5 * small["volume"])
+            self.assertLess(math.dist(large["center"], (0, 0, 0)), 0.2)
+
     def test_the_tables_say_the_same(self):
         report = json.loads(self.run_cpu("cavities", "shells.pdb", "--json", "-").stdout)
         self.run_cpu("cavities", "shells.pdb", "--csv", "c.csv")

@@ -198,6 +198,7 @@ class Errors(ProgramTest):
         self.assertEqual(json.loads((self.folder / "a.json").read_text())["atoms"], 11)
         self.assertIn("--model 2 is the model that the file gives the number 11", result.stderr)
         self.assertEqual(self.run_cpu("m.pdb", "--model", "2", "--quiet").stderr, "")
+        self.assertEqual(self.run_cpu("m.pdb", "--model", "all").stderr, "")
         self.assert_fails(USAGE, ["3 models", "no model 11", "counted from 1"], "m.pdb", "--model", "11")
 
     def test_no_surface(self):
@@ -240,7 +241,8 @@ class Errors(ProgramTest):
     def test_other_values_are_out_of_range(self):
         for flag, value in (("--probe", "-1"), ("--probe", "nan"), ("--steps", "-1"), ("--steps", "1.5"),
                             ("--slice", "0"), ("--threads", "0"), ("--threads", "x"), ("--memory", "0"),
-                            ("--memory", "12Q"), ("--memory", "-5M"), ("--model", "0"), ("--model", "some"),
+                            ("--memory", "12Q"), ("--memory", "-5M"), ("--memory", "8388608T"),
+                            ("--memory", "99999999999G"), ("--model", "0"), ("--model", "some"),
                             ("--device", "-1"), ("--surface", "skin"), ("--method", "fast"), ("--backend", "tpu")):
             with self.subTest(flag=flag, value=value):
                 self.assert_fails(USAGE, [flag, value], CRAMBIN, flag, value)
@@ -294,6 +296,10 @@ class Errors(ProgramTest):
                                 env=environment)
         self.assertEqual(result.returncode, BACKEND, result.stderr)
         self.assertIn("cuda", result.stderr)
+        for command in ([], ["measure"]):  # which is so for all structures, and said once
+            many = subprocess.run([PROGRAM, *command, *[str(CRAMBIN)] * 3, "--backend", "cuda"], capture_output=True,
+                                  encoding="utf-8", env=environment)
+            self.assertEqual((many.returncode, many.stderr), (BACKEND, result.stderr))
         was_built = "no CUDA back end" not in result.stderr
         result = subprocess.run([PROGRAM, str(CRAMBIN)], capture_output=True, encoding="utf-8", env=environment)
         self.assertEqual(result.returncode, OK, result.stderr)

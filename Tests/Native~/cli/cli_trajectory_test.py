@@ -258,6 +258,16 @@ class Faults(TrajectoryTest):
         self.assertFalse((self.folder / "a.csv").exists())
         assert_said(self.make_page("--csv", "a.csv", trajectory="long.dcd", spacing=0.15, code=OUTPUT))
         self.assertEqual(len((self.folder / "a.csv").read_text().splitlines()), 1001)
+        assert_said(self.make_page("--per-atom", "p.csv", trajectory="long.dcd", spacing=0.15, code=OUTPUT))
+        self.assertEqual(len((self.folder / "p.csv").read_text().splitlines()), 1 + 1000 * 24)
+
+    def test_models_that_would_be_too_large_for_a_page(self):
+        self.make_page("--frames", "0")  # or there are no pages
+        apart = pdb_text(self.atoms, [(20.0 * k, 0, 0) for k in range(24)])
+        self.write("models.pdb", "".join(f"MODEL     {k + 1:4d}\n{apart}ENDMDL\n" for k in range(400)))
+        result = self.run_cpu("models.pdb", "--model", "all", "-v", "0.1", "-o", "b.html", code=OUTPUT)
+        self.assertRegex(result.stderr, r"500 MB.* about [1-9][0-9]* of its 400 surfaces fit")
+        self.assertFalse((self.folder / "b.html").exists())
 
     def test_a_damaged_frame_does_not_lose_the_others(self):
         expected = self.table("-o", "good%d.ply")
@@ -280,11 +290,14 @@ class Faults(TrajectoryTest):
 
     def test_a_mesh_that_can_not_be_written_does_not_lose_the_others(self):
         (self.folder / "f2.ply").mkdir()
-        result = self.run_frames("-o", "f%d.ply", code=FRAMES_FAILED)
+        result = self.run_frames("-o", "f%d.ply", "--per-atom", "a.csv", "--per-residue", "r.csv", code=FRAMES_FAILED)
         self.assertIn("frame 2 failed", result.stderr)
         self.assertIn("f2.ply", result.stderr)
         for k in (0, 1, 3, 4, 5, 6):
             self.assertTrue((self.folder / f"f{k}.ply").is_file())
+        for name in ("a.csv", "r.csv"):  # its numbers are left out, too
+            rows = csv.DictReader((self.folder / name).read_text().splitlines())
+            self.assertEqual({row["frame"] for row in rows}, set("013456"))
 
     def test_frames_that_need_too_much_memory_are_reported(self):
         for workers, threads in ((1, 1), (1, 9), (3, 9)):
@@ -293,6 +306,24 @@ class Faults(TrajectoryTest):
             for row in rows:
                 self.assertIn("memory", row["error"])
                 self.assertEqual(f"shared by {workers} frames" in row["error"], workers > 1)
+
+    def test_of_many_messages_the_first_are_shown(self):
+        for count, rest in ((20, None), (21, "1 more message of failed frames is not shown"),
+                            (28, "8 more messages of failed frames are not shown")):
+            self.write("many.dcd", dcd_bytes((4 * self.frames)[:count]))
+            lines = self.run_frames("--memory", "4K", trajectory="many.dcd", code=FRAMES_FAILED).stderr.splitlines()
+            self.assertEqual(len([line for line in lines if " failed: " in line]), 20)
+            self.assertEqual([line for line in lines if " more message" in line], [f"quickses: {rest}"] if rest else [])
+
+    def test_memory_is_shared_by_the_frames_in_flight(self):
+        def run(kilobytes, workers, code):
+            return self.run_frames("--memory", f"{kilobytes}K", "--workers", workers, "--threads", workers, code=code)
+        enough = 64
+        while run(enough, 1, None).returncode != OK:
+            enough *= 2
+        self.assertGreater(enough, 64)
+        self.assertIn("shared by 2 frames", run(enough, 2, FRAMES_FAILED).stderr)
+        run(2 * enough, 2, OK)
 
     def test_a_file_that_is_cut_off_gives_the_frames_that_are_whole(self):
         expected = self.table()
@@ -329,9 +360,11 @@ class Faults(TrajectoryTest):
             self.write(name, (self.folder / "top.pdb").read_bytes())
             self.run_frames("--frames", "5", "-o", "%s_%d.ply", top=name)
             self.assertTrue((self.folder / f"{name[:-4]}_5.ply").exists())
+        self.run_frames("--frames", "5", "-o", "f%020d.ply")  # as wide as it may be
+        self.assertTrue((self.folder / f"f{5:020}.ply").exists())
         self.assert_frames_fail(USAGE, ["--output (-o)", "ftop.ply"], "-o", "f%s.ply")  # all frames in one file
-        for name in ("f.ply", "f%.ply", "f%d_%d.ply", "f%5.2d.ply", "f%-5d.ply", "f%0999d.ply", "f%n.ply",
-                     "f%ld.ply"):
+        for name in ("f.ply", "f%.ply", "f%d_%d.ply", "f%5.2d.ply", "f%-5d.ply", "f%021d.ply", "f%99d.ply",
+                     "f%0999d.ply", "f%n.ply", "f%ld.ply"):
             self.assert_frames_fail(USAGE, ["--output (-o)", name], "-o", name)
         self.assert_frames_fail(USAGE, ["--output (-o)", ".ply"], "-o", "f%d.gif")
 

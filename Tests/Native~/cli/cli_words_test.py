@@ -48,6 +48,8 @@ class Suggestions(ProgramTest):
     def test_commands(self):
         self.assert_suggests("measure", "mesure", CRAMBIN)
         self.assert_suggests("cavities", "cavites", CRAMBIN)
+        for before in (["--quiet"], ["-v", "1", "--quiet"], [CRAMBIN]):
+            self.assert_fails(USAGE, ["measure: its options go behind the word"], *before, "measure", CRAMBIN)
 
     def test_selections(self):
         self.assert_fails(USAGE, ["'protien' at character 1 ", "did you mean 'protein'?"], CRAMBIN, "--select", "protien")
@@ -72,6 +74,9 @@ class Hints(ProgramTest):
         self.write("one.pdb", water(1))
         self.assertEqual(self.hint_of("one.pdb"),
                          "quickses: 1 water molecule is part of the surface; --no-water leaves it out\n")
+        hydrogens = [water(1).replace("  O   HOH", f"  H{k}  HOH").replace("           O", "           H") for k in (1, 2)]
+        self.write("whole.pdb", water(1) + "".join(hydrogens) + water(2))  # molecules are counted, not atoms
+        self.assertEqual(self.hint_of("whole.pdb"), hint)
         self.assertEqual(self.hint_of(CRAMBIN), "")
 
     def test_models(self):

@@ -90,6 +90,22 @@ TEST(FrameLedger, HoldsFramesBackWhileLargeResultsWait) {
   EXPECT_EQ(task.place, 3u);
 }
 
+TEST(FrameLedger, AllThatAResultHoldsCounts) {
+  for (std::string FrameResult::*part : {&FrameResult::csv, &FrameResult::json, &FrameResult::page,
+                                         &FrameResult::per_atom, &FrameResult::per_residue, &FrameResult::error}) {
+    FrameLedger ledger(
+        {0, 1, 10}, 10, [](const FrameResult &) {}, 100);
+    const FrameTask first = *ledger.next(), second = *ledger.next();
+    FrameResult large = result_of(second);
+    large.*part = std::string(101, 'x');
+    ledger.deliver(large);
+    FrameTask task;
+    EXPECT_EQ(ledger.try_next(task), FrameLedger::Answer::kLater);
+    ledger.deliver(result_of(first));
+    EXPECT_EQ(ledger.try_next(task), FrameLedger::Answer::kTask);
+  }
+}
+
 TEST(FrameLedger, ManyWorkers) {
   constexpr size_t kFrames = 2000;
   constexpr size_t kWindow = 6;
@@ -150,6 +166,7 @@ TEST(FrameLedger, AWorkerThatGivesUpWakesThoseThatWait) {
   FrameLedger ledger({0, 1, 100}, 1, [](const FrameResult &) {});
   ASSERT_TRUE(ledger.next());
   std::thread waiting([&] { EXPECT_FALSE(ledger.next()); });
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));  // by then it waits, as a rule
   ledger.give_up(std::make_exception_ptr(std::runtime_error("no memory")));
   waiting.join();
   EXPECT_THROW(ledger.finish(), std::runtime_error);
