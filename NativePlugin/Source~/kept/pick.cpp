@@ -149,9 +149,8 @@ void look_at(const qses_mesh &mesh, size_t first, size_t last, const Ray &given_
     // One jump that is nearly always taken, rather than six that nobody can foresee.
     if (std::min({u, v, w}) < 0 && std::max({u, v, w}) > 0) continue;
     const double sum = u + v + w;
-    if (sum == 0) continue;
     const uint32_t triangle = static_cast<uint32_t>(number);
-    const double distance = (u * a.z + v * b.z + w * c.z) / sum;
+    const double distance = (u * a.z + v * b.z + w * c.z) / sum;  // no number if the ray lies in the triangle's plane
     if (!(distance >= 0) || distance > nearest->distance) continue;
     if (nearest->found && distance == nearest->distance && triangle > nearest->triangle) continue;
     if (visible && !is_shown(mesh, triangle, visible)) continue;

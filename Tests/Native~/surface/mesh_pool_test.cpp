@@ -50,6 +50,31 @@ TEST(MeshPool, KeepsWhatIsUsedInTurn) {
   for (auto &one : shown) pool.give_back(std::move(one));
 }
 
+// A machine with little memory: a mesh takes no more than it needs, at the cost of spares, before it is refused.
+TEST(MeshPool, GivesUpSparesForAMeshThatHasNoRoomBesideThem) {
+  size_t out = 0;
+  MeshPool::Source source = MeshPool::source<HostMemory>();
+  source.acquire = [&out](size_t bytes) -> void * {
+    if (out + bytes > 9 * kUsual) return nullptr;
+    out += bytes;
+    return HostMemory::acquire(bytes);
+  };
+  source.release = [&out](MeshBuffer &buffer) {
+    out -= buffer.size;
+    HostMemory::release(buffer.memory);
+  };
+  MeshPool pool(std::move(source));
+  std::unique_ptr<MeshBuffer> first = pool.take(kUsual), second = pool.take(kUsual);
+  pool.give_back(std::move(first));
+  pool.give_back(std::move(second));
+  std::unique_ptr<MeshBuffer> large = pool.take(8 * kUsual);
+  EXPECT_EQ(large->size, 8 * kUsual);
+  EXPECT_THROW(pool.take(2 * kUsual), quickses::MemoryRefused);
+  EXPECT_EQ(pool.bytes(), large->size);
+  EXPECT_EQ(out, large->size);
+  pool.give_back(std::move(large));
+}
+
 // Every byte is counted once, with what is said of a mesh besides its arrays, until it is released.
 TEST(MeshPool, CountsWhatThereIs) {
   const auto pool = std::make_shared<MeshPool>(MeshPool::source<HostMemory>());
