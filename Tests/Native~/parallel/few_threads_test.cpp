@@ -17,6 +17,7 @@
 #include <chrono>
 #include <cstring>
 #include <functional>
+#include <iterator>
 #include <thread>
 
 using namespace surface_fixture;
@@ -95,17 +96,31 @@ TEST(FewThreads, AnyNumberOfThemThatCanBeHad) {
 
 // Without a thread that could do it, whoever hands it over releases it: once, also if there are threads again.
 TEST(FewThreads, MemoryIsReleasedWithoutOne) {
-  static std::atomic<int> refused, later;
-  const auto count = [](void *releases) { ++*static_cast<std::atomic<int> *>(releases); };
-  {
+  struct Item {
+    std::atomic<int> releases{0};
+    std::atomic<std::thread::id> thread{};
+  };
+  static Item items[100], later;
+  const auto release = [](void *memory) {
+    static_cast<Item *>(memory)->thread = std::this_thread::get_id();
+    ++static_cast<Item *>(memory)->releases;
+  };
+  const auto wait_for = [](const Item &item) {
+    while (item.releases == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  };
+  Item *item = items;
+  for (;; ++item) {  // there may be a thread from before
+    ASSERT_NE(item, std::end(items));
     const Allow none(0);
-    quickses::release_later(count, &refused);
-    EXPECT_EQ(refused, 1);
+    quickses::release_later(release, item);
+    wait_for(*item);
+    if (item->thread.load() == std::this_thread::get_id()) break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  quickses::release_later(count, &later);
-  while (later == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  EXPECT_EQ(refused, 1);
-  EXPECT_EQ(later, 1);
+  quickses::release_later(release, &later);
+  wait_for(later);
+  EXPECT_EQ(item->releases, 1);
+  EXPECT_EQ(later.releases, 1);
 }
 
 // ---- no memory

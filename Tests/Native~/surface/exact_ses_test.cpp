@@ -336,6 +336,19 @@ TEST(Structures, OtherProbes) {
   }
 }
 
+// What it could not reach into is less than rounding: no time is spent on its arcs.
+TEST(Structures, OfATinyProbeAreTheAtomsThemselves) {
+  const Atoms atoms = crambin();
+  const Surface vdw = compute(atoms, settings(0.5, 1.4, QSES_SURFACE_VDW));
+  for (double probe : {0.0, 0.049}) {
+    const Surface ses = compute(atoms, settings(0.5, probe));
+    EXPECT_EQ(ses.mesh.positions, vdw.mesh.positions) << probe;
+    EXPECT_EQ(ses.mesh.indices, vdw.mesh.indices) << probe;
+    EXPECT_EQ(ses.report.area, vdw.report.area) << probe;
+  }
+  EXPECT_NE(compute(atoms, settings(0.5, 0.051)).mesh.positions, vdw.mesh.positions);
+}
+
 TEST(Structures, RelaxationStepsStayOnTheSurface) {
   const Atoms atoms = cluster(120, 5);
   qses_settings s = settings();

@@ -21,6 +21,7 @@ qses_settings hard(qses_settings s) {
 struct HardSurface {
   Surface surface;
   std::vector<uint32_t> repeated, colors;
+  std::vector<qses_component> components;
   size_t own = 0;  // vertices that repeat none
 
   mesh_checks::Mesh merged() const {
@@ -39,6 +40,7 @@ HardSurface compute_hard(qses_context *context, const qses_settings &s) {
   HardSurface h;
   h.surface = copy_surface(context);
   h.own = m.vertex_count - m.repeated_count;
+  if (m.components) h.components.assign(m.components, m.components + m.component_count);
   if (m.repeated) h.repeated.assign(m.repeated, m.repeated + m.repeated_count);
   if (m.colors)
     for (size_t v = 0; v < m.vertex_count; ++v) {
@@ -143,7 +145,7 @@ TEST(HardEdges, RepeatVerticesOfTheSmoothMesh) {
   for (const Atoms &atoms : molecules())
     for (qses_vertex_layout layout : {QSES_VERTICES_SEPARATE, QSES_VERTICES_INTERLEAVED, QSES_VERTICES_COMPACT}) {
       qses_settings s = settings(0.3);
-      s.patch_types = 1;
+      s.patch_types = s.components = 1;
       const Context context;
       set_atoms(context, atoms);
       std::vector<uint32_t> colors(atoms.size());
@@ -161,6 +163,14 @@ TEST(HardEdges, RepeatVerticesOfTheSmoothMesh) {
       crests += view.repeated_count;
       const size_t own = view.vertex_count - view.repeated_count;
       ASSERT_EQ(own, smooth.own);
+      ASSERT_GT(smooth.components.size(), 0u);
+      ASSERT_EQ(view.component_count, smooth.components.size());
+      for (size_t k = 0; k < smooth.components.size(); ++k) {
+        EXPECT_EQ(view.components[k].triangles, smooth.components[k].triangles);
+        const qses_component &same = smooth.components[k];  // but for normals along which it is measured
+        EXPECT_NEAR(view.components[k].area, same.area, 1e-3 * same.area);
+        EXPECT_NEAR(view.components[k].volume, same.volume, 1e-3 * std::abs(same.volume));
+      }
       const size_t step = view.vertex_bytes ? view.vertex_bytes / 4 : 3;
       for (size_t v = 0; v < view.vertex_count; ++v) {
         const size_t from = v < own ? v : view.repeated[v - own];
