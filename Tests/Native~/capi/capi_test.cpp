@@ -312,6 +312,19 @@ TEST(Atoms, WithAStride) {
   }
 }
 
+TEST(Atoms, ThatAreRefusedChangeNothing) {
+  const Context context;
+  const Surface before = compute(context, water(), settings());
+  std::vector<float> positions = water().positions;
+  const std::vector<float> radii(3, 3.f);
+  positions[4] = kNan;
+  expect_error(qses_set_atoms(context, positions.data(), 0, radii.data(), 3), QSES_INVALID_ARGUMENT, {"atom 1"});
+  expect_ok(qses_set_positions(context, water().positions.data(), 0, 3));
+  const qses_settings s = settings();
+  expect_ok(qses_compute(context, &s, nullptr));
+  EXPECT_EQ(copy_surface(context).mesh.positions, before.mesh.positions);
+}
+
 TEST(Atoms, NewPositionsKeepTheRadii) {
   const Context context;
   const Atoms first = cluster(80, 3), moved = turned(first, 4, 5, 6);
