@@ -2,7 +2,7 @@
 // A machine that refuses threads or memory, and callers with little stack: this program has functions of the C library
 // of its own, which refuse what they are told to.
 #include "io/own_folder.h"
-#include "parallel/later_release.h"
+#include "process/later_release.h"
 #include "surface/surface_fixture.h"
 
 #include <gtest/gtest.h>
