@@ -3,6 +3,7 @@
 // little memory nothing is pooled: a first pass only counts, a second one writes everything to its place.
 #pragma once
 
+#include "parallel/atomics.h"
 #include "parallel/growing_buffer.h"
 #include "surface/cpu/cpu_kernel_executor.h"
 
@@ -247,7 +248,7 @@ struct PlaceChunkFeatures {
     uint64_t arc = arc_base[chunk];
     for (size_t i = chunk * atoms_per_chunk; i < end; ++i) {
       StagedRoom{false}.open(s);
-      const bool open = exposed[i] != 0;
+      const bool open = atomic_load(&exposed[i]) != 0;  // others mark it once more meanwhile
       const FinalRoom room{open ? caps + cap_first[i] : nullptr, cap_ranges[i].count, arcs + arc,
                            arc_atoms ? arc_atoms + arc : nullptr, static_cast<int64_t>(arc_base[chunk + 1] - arc)};
       const AtomFeatures found = find_features_of(*kernels, *atoms, *parameters, i, s, exposed, room);
