@@ -262,6 +262,7 @@ qses_status qses_estimate(qses_context *context, const qses_settings *settings, 
   return guarded([&] {
     require(context, "context");
     require(estimate, "estimate");
+    check_struct(estimate, "qses_size_estimate");  // before it waits for a job
     const qses_settings s = read_struct(settings, qses_settings_init, "qses_settings");
     write_struct(estimate, context->job->estimate(make_request(*context, s, false, "qses_estimate")),
                  "qses_size_estimate");

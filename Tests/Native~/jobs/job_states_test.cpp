@@ -56,6 +56,20 @@ TEST(JobStates, ALevelUnderWayIsGivenUpForTheNextJob) {
   EXPECT_EQ(m.tag, 2u);
 }
 
+// What is wrong with its arguments is said while a job runs.
+TEST(JobStates, AnEstimateThatCanNotBeWrittenDoesNotWait) {
+  Gate gate;
+  const Context context;
+  set_atoms(context, block(4));
+  gate.place_in(context);
+  begin(context, settings(0.5));
+  gate.wait_until_reached();
+  qses_size_estimate unprepared{};
+  EXPECT_EQ(qses_estimate(context, nullptr, &unprepared), QSES_INVALID_ARGUMENT);
+  gate.open();
+  wait_for_all(context);
+}
+
 TEST(JobStates, CancelTakesBackWhatWaits) {
   Gate gate;
   const Context context;
