@@ -215,8 +215,36 @@ AtomBounds copy_indexed_atoms(const float *positions, size_t stride, const uint3
                   [&](size_t first, size_t last, Met *met) { copy_each(first, last, at, radii, atoms, met); });
 }
 
-float check_radii(const float *radii, size_t count) {
-  if (count == 0) return 0.f;
+namespace {
+
+// Below this nobody notices how far look-ups reach.
+constexpr float kNoticedRadius = 8.f;  // Å
+// So many are soon looked at, beside what else is near a place.
+constexpr size_t kMostLarge = 32;
+
+// Those at least twice as large as all others, if they are few; again while the others still reach far.
+AtomRadii tell_large_atoms(const float *radii, size_t count, float largest) {
+  AtomRadii found{largest, largest, 0};
+  while (found.usual > kNoticedRadius) {
+    const float half = 0.5f * found.usual;
+    float usual = 0.f;
+    size_t large = 0;
+    for (size_t i = 0; i < count && large <= kMostLarge; ++i)
+      if (radii[i] > half)
+        ++large;
+      else
+        usual = std::max(usual, radii[i]);
+    if (large > std::min(kMostLarge, count / 8)) break;
+    found.usual = usual;
+    found.large = static_cast<uint32_t>(large);
+  }
+  return found;
+}
+
+}  // namespace
+
+AtomRadii check_radii(const float *radii, size_t count) {
+  if (count == 0) return {};
   require(radii, "radii");
   float largest = 0.f;
   for (size_t i = 0; i < count; ++i) {
@@ -228,7 +256,7 @@ float check_radii(const float *radii, size_t count) {
     }
     largest = radii[i] > largest ? radii[i] : largest;
   }
-  return largest;
+  return tell_large_atoms(radii, count, largest);
 }
 
 }  // namespace quickses

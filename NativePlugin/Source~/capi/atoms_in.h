@@ -12,13 +12,13 @@ namespace quickses {
 
 void check_layout(const float *positions, size_t stride, size_t count);
 
-// The largest radius.
-float check_radii(const float *radii, size_t count);
+// How large they are.
+AtomRadii check_radii(const float *radii, size_t count);
 
 // More threads would wait for memory.
 constexpr unsigned kMostCopyThreads = 8;
 
-// Where they throw, what they were to fill is of no use. They return the box of the positions; its max_radius is left
+// Where they throw, what they were to fill is of no use. They return the box of the positions; its radii are left
 // 0. threads: that help with many atoms for a GPU, no more than kMostCopyThreads; or nullptr, for a CPU.
 AtomBounds copy_atoms(const float *positions, size_t stride, const float *radii, size_t count, Sphere *atoms,
                       CpuThreads *threads);

@@ -77,14 +77,14 @@ qses_backend choose_backend(qses_backend asked, int device, qses_backend_descrip
   return QSES_BACKEND_CPU;
 }
 
-// A new set of as many atoms, of the largest radius of the one before.
+// A new set of as many atoms, of the radii of the one before.
 // copy_into(atoms) fills them in, and returns their box.
 template <class CopyInto>
 std::shared_ptr<quickses::AtomSet> next_frame(const qses_context &context, const CopyInto &copy_into) {
   const quickses::AtomSet &before = *context.atoms;
   std::shared_ptr<quickses::AtomSet> set = context.job->engine().make_atoms(before.count);
   set->bounds = copy_into(set->atoms);
-  set->bounds.max_radius = before.bounds.max_radius;
+  set->bounds.radii = before.bounds.radii;
   return set;
 }
 
@@ -196,10 +196,10 @@ qses_status qses_set_atoms(qses_context *context, const float *positions, size_t
     require(context, "context");
     quickses::check_layout(positions, stride, count);
     const std::shared_ptr<quickses::AtomSet> set = context->job->engine().make_atoms(count);
-    const float max_radius = quickses::check_radii(radii, count);
+    const quickses::AtomRadii all_radii = quickses::check_radii(radii, count);
     std::vector<float> kept_radii(radii, radii + count);
     set->bounds = quickses::copy_atoms(positions, stride, radii, count, set->atoms, context->copy_threads.get());
-    set->bounds.max_radius = max_radius;
+    set->bounds.radii = all_radii;
     if (!context->atoms || context->atoms->count != count)
       context->appearance = std::make_shared<quickses::Appearance>();
     context->atoms = set;

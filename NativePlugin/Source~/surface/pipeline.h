@@ -45,7 +45,7 @@ inline SurfaceParameters parameters_of(const FrameInput &in) {
     p.probe = 0.f;
     p.scale = kGaussianReach * s.gaussian_radius_scale;
   }
-  p.max_radius = p.scale * in.atoms.bounds.max_radius + p.probe;
+  p.max_radius = p.scale * in.atoms.bounds.radii.largest + p.probe;
   return p;
 }
 
@@ -136,10 +136,14 @@ void prepare_frame(Work &work, const FrameInput &in) {
   work.appearance = {bring(executor, look.visible.data(), look.visible.size()),
                      bring(executor, look.colors.data(), look.colors.size()),
                      bring(executor, look.texcoords.data(), look.texcoords.size()), set.count};
-  // Gaussians reach far: in smaller cells there are fewer atoms that they do not reach.
-  const float cell =
-      in.settings.surface == QSES_SURFACE_GAUSSIAN ? work.parameters.max_radius / 3.f : work.parameters.max_radius;
-  const CellLayout cells = layout_cells(work.low, work.high, std::max(cell, kSmallestCell));
+  // Gaussians reach far: in smaller cells there are fewer atoms that they do not reach. They know no large atoms, since
+  // each point is the nearest atom's, be it beyond its own reach.
+  const bool is_gaussian = in.settings.surface == QSES_SURFACE_GAUSSIAN;
+  const ItemRadii radii = is_gaussian
+                              ? ItemRadii{work.parameters.max_radius, 0}
+                              : ItemRadii{set.bounds.radii.usual + work.parameters.probe, set.bounds.radii.large};
+  const CellLayout cells = layout_cells(
+      work.low, work.high, std::max(is_gaussian ? radii.in_cells / 3.f : radii.in_cells, kSmallestCell), radii);
   work.atoms = build_neighbor_grid(executor, "crowded cell of atoms", set.count, cells, [&] {
     return CenteredAtomAt{executor.lend(set.atoms), work.lattice.center_x, work.lattice.center_y,
                           work.lattice.center_z,    work.parameters.scale, work.parameters.probe};

@@ -189,4 +189,34 @@ TEST(AtomsIn, CoordinatesAtTheBorderAreAccepted) {
   }
 }
 
+AtomRadii radii_of(size_t count, float radius, const std::vector<float> &others) {
+  std::vector<float> radii(count, radius);
+  radii.insert(radii.begin() + static_cast<std::ptrdiff_t>(count / 2), others.begin(), others.end());
+  return check_radii(radii.data(), radii.size());
+}
+void expect_radii(const AtomRadii &found, float largest, float usual, uint32_t large) {
+  EXPECT_EQ(found.largest, largest);
+  EXPECT_EQ(found.usual, usual);
+  EXPECT_EQ(found.large, large);
+}
+
+TEST(Radii, FewThatAreMuchLargerThanAllOthersAreToldApart) {
+  expect_radii(radii_of(1000, 1.7f, {32.f}), 32.f, 1.7f, 1);
+  expect_radii(radii_of(1000, 1.7f, {32.f, 40.f, 31.f}), 40.f, 1.7f, 3);
+  expect_radii(radii_of(1000, 1.7f, {100.f, 40.f, 9.f}), 100.f, 1.7f, 3);  // each much larger than the next
+  expect_radii(radii_of(1000, 1.7f, std::vector<float>(32, 9.f)), 9.f, 1.7f, 32);
+  expect_radii(radii_of(1000, 6.f, {100.f, 11.f}), 100.f, 11.f, 1);
+}
+
+TEST(Radii, AreAlikeWhereNothingWouldBeGained) {
+  expect_radii(check_radii(nullptr, 0), 0.f, 0.f, 0);
+  expect_radii(radii_of(1000, 1.7f, {}), 1.7f, 1.7f, 0);
+  expect_radii(radii_of(1000, 1.7f, {8.f}), 8.f, 8.f, 0);                           // all look-ups are short
+  expect_radii(radii_of(1000, 1.7f, std::vector<float>(33, 20.f)), 20.f, 20.f, 0);  // many
+  expect_radii(radii_of(1000, 5.f, {9.9f}), 9.9f, 9.9f, 0);                         // less than twice as large
+  expect_radii(radii_of(6, 1.7f, {50.f}), 50.f, 50.f, 0);                           // one of seven
+  expect_radii(radii_of(7, 1.7f, {50.f}), 50.f, 1.7f, 1);                           // and of eight
+  expect_radii(radii_of(0, 1.7f, std::vector<float>(100, 50.f)), 50.f, 50.f, 0);    // no others
+}
+
 }  // namespace

@@ -88,7 +88,7 @@ inline DeviceStages run_device_stages(CudaExecutor &executor, const DeviceTable 
   DeviceStages s;
   executor.arena().reset();
   timer.reset();
-  s.parameters = {options.probe, options.depth, options.spacing, bounds.max_radius + options.probe};
+  s.parameters = {options.probe, options.depth, options.spacing, bounds.radii.largest + options.probe};
   const SurfaceParameters &p = s.parameters;
   timer.begin("neighbor_grid");
   Lattice lattice = center_lattice(bounds, options.spacing);
@@ -158,11 +158,11 @@ inline DeviceStages run_device_stages(CudaExecutor &executor, const DeviceTable 
 }
 
 inline AtomBounds bounds_of(const Molecule &molecule) {
-  AtomBounds b{glm::vec3(1e30f), glm::vec3(-1e30f), 0.f};
+  AtomBounds b{glm::vec3(1e30f), glm::vec3(-1e30f), {}};
   for (const Sphere &a : molecule.atoms) {
     b.low = glm::min(b.low, a.center);
     b.high = glm::max(b.high, a.center);
-    b.max_radius = std::max(b.max_radius, a.radius);
+    b.radii.largest = std::max(b.radii.largest, a.radius);
   }
   return b;
 }

@@ -230,6 +230,26 @@ TEST(Radii, TinyAndHugeTogether) {
   checked_surface(atoms, settings(1.0), limits);
 }
 
+// Of which neighbours of the others know nothing until they meet them; one is within another, one far from all.
+TEST(Radii, AFewMuchLargerThanAllOthers) {
+  Atoms atoms;
+  atoms.add(30, 0, 0, 28);
+  for (size_t k = 0; k < 150; ++k) {
+    const auto c = crambin().center(k);
+    atoms.add(c[0], c[1], c[2], static_cast<double>(crambin().radii[k]));
+  }
+  atoms.add(32, 1, 0, 20).add(-26, 5, 14, 9.5).add(-60, -90, 40, 12);
+  Limits limits;
+  limits.stride = 13;
+  for (const qses_surface kind : {QSES_SURFACE_SES, QSES_SURFACE_SAS}) {
+    const Surface surface = checked_surface(atoms, settings(1.0, 1.4, kind), limits);
+    const std::vector<uint32_t> &owners = surface.mesh.owners;
+    for (const uint32_t large : {0u, 152u, 153u})
+      EXPECT_GT(std::count(owners.begin(), owners.end(), large), 100) << "of atom " << large;
+    EXPECT_EQ(std::count(owners.begin(), owners.end(), 151u), 0);
+  }
+}
+
 TEST(Probe, ZeroIsTheVanDerWaalsSurface) {
   const Atoms atoms = cluster(80, 6);
   const Surface ses = checked_surface(atoms, settings(0.5, 0.0));

@@ -35,20 +35,21 @@ struct ExactRun {
   ExactRun(const surface_fixture::Atoms &given, const qses_settings &s, unsigned threads = 2,
            const CpuKernels &kernels = cpu_kernels())
       : settings(s), executor(threads, kernels), timer(executor), memory(executor) {
-    AtomBounds bounds{glm::vec3(1e9f), glm::vec3(-1e9f), 0.f};
+    AtomBounds bounds{glm::vec3(1e9f), glm::vec3(-1e9f), {}};
+    float largest = 0.f;
     Span<Sphere> raw = executor.allocate<Sphere>(given.size());
     for (size_t i = 0; i < given.size(); ++i) {
       const float *p = &given.positions[3 * i];
       raw[i] = {glm::vec3(p[0], p[1], p[2]), given.radii[i]};
       bounds.low = glm::min(bounds.low, raw[i].center);
       bounds.high = glm::max(bounds.high, raw[i].center);
-      bounds.max_radius = std::max(bounds.max_radius, raw[i].radius);
+      largest = std::max(largest, raw[i].radius);
     }
     const bool vdw = s.surface == QSES_SURFACE_VDW;
     parameters.probe = vdw ? 0.f : s.probe_radius;
     parameters.depth = s.surface == QSES_SURFACE_SES ? s.probe_radius : 0.f;
     parameters.spacing = s.spacing;
-    parameters.max_radius = bounds.max_radius + parameters.probe;
+    parameters.max_radius = largest + parameters.probe;
     lattice = center_lattice(bounds, s.spacing);
     low = to_glm(lattice.from_caller(&bounds.low.x));
     high = to_glm(lattice.from_caller(&bounds.high.x));

@@ -62,7 +62,7 @@ class Levels : public quickses::LevelSink {
 std::shared_ptr<quickses::AtomSet> atoms_of(quickses::SurfaceEngine &engine, const Atoms &atoms) {
   auto set = engine.make_atoms(atoms.size());
   set->bounds = quickses::copy_atoms(atoms.positions.data(), 0, atoms.radii.data(), atoms.size(), set->atoms, nullptr);
-  set->bounds.max_radius = quickses::check_radii(atoms.radii.data(), atoms.size());
+  set->bounds.radii = quickses::check_radii(atoms.radii.data(), atoms.size());
   return set;
 }
 

@@ -21,6 +21,10 @@ struct Items {
     low = glm::min(low, p);
     high = glm::max(high, p);
   }
+  // Radii in another order, each once.
+  void mix_radii() {
+    for (size_t k = 0; k < spheres.size(); ++k) spheres[k].radius = static_cast<float>(k * 7919 % spheres.size());
+  }
 };
 
 Items random_items(size_t count, float extent, unsigned seed) {
@@ -31,17 +35,21 @@ Items random_items(size_t count, float extent, unsigned seed) {
   return items;
 }
 
-// Items of the runs that a box meets. None may come twice.
+// Items of the runs that a box meets, by their number and one after the other. None may come twice.
 std::set<uint32_t> look_up(const NeighborGridView &grid, const glm::vec3 &low, const glm::vec3 &high) {
   const CellBox box = cells_around(grid.cells, Vec3<float>(low), Vec3<float>(high));
-  std::set<uint32_t> found;
-  for (int z = box.z0; z <= box.z1; ++z)
-    for (int y = box.y0; y <= box.y1; ++y) {
-      const ItemRun run = grid.run(box.x0, box.x1, y, z);
-      EXPECT_LE(run.begin, run.end);
-      EXPECT_LE(run.end, grid.count);
-      for (uint32_t k = run.begin; k < run.end; ++k) EXPECT_TRUE(found.insert(grid.order[k]).second);
-    }
+  std::set<uint32_t> found, again;
+  for (int r = 0; r < grid.runs(box); ++r) {
+    const ItemRun run = grid.run(box, r);
+    EXPECT_LE(run.begin, run.end);
+    EXPECT_LE(run.end, grid.count);
+    for (uint32_t k = run.begin; k < run.end; ++k) EXPECT_TRUE(found.insert(grid.order[k]).second);
+  }
+  EXPECT_TRUE(grid.for_each_run(box, [&](const ItemRun &run) {
+    for (uint32_t k = run.begin; k < run.end; ++k) again.insert(grid.order[k]);
+    return true;
+  }));
+  EXPECT_EQ(found, again);
   return found;
 }
 
@@ -51,24 +59,32 @@ struct Remember {
   void operator()(size_t place, size_t i) const { (*from)[place] = static_cast<uint32_t>(i); }
 };
 
-void check_grid(Items items, float edge, bool dense) {
+// large: so many of the items are in no cell.
+void check_grid(Items items, float edge, bool dense, uint32_t large = 0) {
+  if (large > 0) items.mix_radii();
   for (unsigned threads : {1u, 3u}) {
     CpuExecutor executor(threads);
     const size_t n = items.spheres.size();
     std::vector<uint32_t> from(n, ~uint32_t(0));
     const NeighborGridView grid = build_neighbor_grid(
-        executor, "crowded cell", n, layout_cells(items.low, items.high, edge),
+        executor, "crowded cell", n,
+        layout_cells(items.low, items.high, edge, {static_cast<float>(n - 1 - large), large}),
         [&] { return LoadItem{items.spheres.data()}; }, Remember{&from});
     ASSERT_TRUE(std::equal(from.begin(), from.end(), grid.order));
     ASSERT_EQ(grid.starts != nullptr, dense);
     ASSERT_EQ(grid.count, n);
-    // A permutation, sorted by cell; within a cell in the order given.
+    // A permutation, sorted by cell, with the large ones behind; within a cell, and of these, in the order given.
     std::set<uint32_t> numbers(grid.order, grid.order + n);
     ASSERT_EQ(numbers.size(), n);
     ASSERT_TRUE(n == 0 || *numbers.rbegin() == n - 1);
     for (size_t k = 0; k < n; ++k) {
       ASSERT_EQ(grid.items[k].radius, items.spheres[grid.order[k]].radius);
       ASSERT_EQ(grid.items[k].center, items.spheres[grid.order[k]].center);
+      ASSERT_EQ(grid.items[k].radius > static_cast<float>(n - 1 - large), k >= n - large);
+      if (k >= n - large) {
+        ASSERT_TRUE(k == n - large || grid.order[k - 1] < grid.order[k]);
+        continue;
+      }
       const uint64_t cell = grid.cells.hash(grid.items[k].center);
       ASSERT_LT(cell, grid.cells.cells());
       if (!dense) {
@@ -92,6 +108,10 @@ void check_grid(Items items, float edge, bool dense) {
         const glm::vec3 &c = items.spheres[i].center;
         const bool within = glm::all(glm::greaterThanEqual(c, low)) && glm::all(glm::lessThanEqual(c, high));
         ASSERT_TRUE(!within || found.count(i));
+        if (items.spheres[i].radius > static_cast<float>(n - 1 - large)) {  // met wherever it is
+          ASSERT_TRUE(found.count(i));
+          continue;
+        }
         // Nothing further away than a cell on every side is listed. (The grid ends where the items do.)
         const glm::vec3 from = glm::clamp(low, items.low, items.high), to = glm::clamp(high, items.low, items.high);
         const glm::vec3 off = glm::max(from - c, c - to);
@@ -108,6 +128,31 @@ TEST(NeighborGrid, FindsWhatABoxHolds) {
   check_grid(random_items(500, 20.f, 1), 4.6f, true);
   check_grid(random_items(500, 3.f, 2), 4.6f, true);
   check_grid(random_items(30, 100.f, 3), 3.1f, true);
+}
+
+// Counted, sorted, and in a sparse grid.
+TEST(NeighborGrid, LargeItemsAreMetByEveryLookUp) {
+  check_grid(random_items(500, 20.f, 1), 4.6f, true, 7);
+  check_grid(random_items(30, 100.f, 3), 3.1f, true, 29);
+  Items crowded = random_items(500, 20.f, 6);
+  for (uint32_t k = 0; k < kCrowd + 1; ++k) crowded.add(glm::vec3(1.f, 2.f, 3.f));
+  check_grid(crowded, 4.6f, true, 20);
+  Items scattered = random_items(400, 20.f, 4);
+  scattered.add(glm::vec3(20000.f, 100.f, -15000.f));
+  check_grid(scattered, 4.6f, false, 3);
+}
+
+TEST(NeighborGrid, LookUpsEndWhenTheyAreTold) {
+  CpuExecutor executor(1);
+  Items items = random_items(100, 20.f, 1);
+  const NeighborGridView grid = build_neighbor_grid(executor, Span<Sphere>{items.spheres.data(), 100},
+                                                    layout_cells(items.low, items.high, 4.6f, {98.f, 1}));
+  const CellBox all = cells_around(grid.cells, Vec3<float>(items.low), Vec3<float>(items.high));
+  for (int end = 1; end <= grid.runs(all); ++end) {
+    int runs = 0;
+    EXPECT_FALSE(grid.for_each_run(all, [&](const ItemRun &) { return ++runs < end; }));
+    EXPECT_EQ(runs, end);
+  }
 }
 
 // A cell with more items than are counted one against the other, and one with as many as just are.

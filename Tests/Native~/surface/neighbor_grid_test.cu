@@ -48,10 +48,13 @@ std::vector<Sphere> random_spheres(size_t count, float extent, unsigned seed) {
   return spheres;
 }
 
-void compare(CudaExecutor &executor, const std::vector<Sphere> &spheres, size_t real, float extent) {
+// large: so many of the spheres, which are told by their radii, are in no cell.
+void compare(CudaExecutor &executor, std::vector<Sphere> spheres, size_t real, float extent, uint32_t large = 0) {
   SCOPED_TRACE(testing::Message() << real << " of " << spheres.size() << " spheres in a box of " << extent);
   const size_t n = spheres.size();
-  const CellLayout cells = layout_cells(glm::vec3(0.f), glm::vec3(extent), 3.1f);
+  for (size_t k = 0; large > 0 && k < n; ++k) spheres[k].radius = static_cast<float>(k * 7919 % n);
+  const CellLayout cells =
+      layout_cells(glm::vec3(0.f), glm::vec3(extent), 3.1f, {static_cast<float>(n - 1 - large), large});
   SerialExecutor host;
   const NeighborGridView expected = build_neighbor_grid(host, "crowded cell", n, cells, [&] {
     return SomeOf{spheres.data(), real};
@@ -95,7 +98,7 @@ TEST(NeighborGridCuda, IsThatOfPlainLoops) {
         for (int frame = 0; frame < 2; ++frame)
           for (;;) try {
               executor.open_counts(follow ? n + crowd : 0);
-              compare(executor, spheres, spheres.size(), 60.f);
+              compare(executor, spheres, spheres.size(), 60.f, static_cast<uint32_t>(n / 16));
               executor.send_counts();
               executor.verify_counts();
               break;
@@ -104,7 +107,9 @@ TEST(NeighborGridCuda, IsThatOfPlainLoops) {
             }
         executor.open_counts(0);
         compare(executor, spheres, spheres.size() / 2 + 1, 60.f);
+        compare(executor, spheres, spheres.size(), 60.f);
         compare(executor, spheres, spheres.size(), 6000.f);  // too many cells to count in
+        compare(executor, spheres, spheres.size(), 6000.f, static_cast<uint32_t>(n / 16));
       }
 }
 

@@ -91,7 +91,7 @@ QSES_FN BrickCandidates gather_atoms(const FeatureView &f, const Vec3<float> &lo
   BrickCandidates c = cut_columns(scratch);
   const Vec3<float> high(low.x + extent, low.y + extent, low.z + extent);
   const PackBox box(low, high);
-  const CellBox cells = cells_within(f.atoms.cells, low, high, maximum(0.f, f.parameters.max_radius + atom_reach));
+  const CellBox cells = cells_within(f.atoms.cells, low, high, maximum(0.f, f.atoms.cells.radii.in_cells + atom_reach));
   for_item_packs(f.atoms, cells, [&](const ItemPack &p) {
     const WidePack reach = maximum(WidePack(0.f), p.radius + WidePack(atom_reach));
     const uint32_t near = p.lanes & lane_bits(box.distance2(p.x, p.y, p.z) < reach * reach);

@@ -25,19 +25,21 @@ QSES_FN void for_item_packs(const NeighborGridView &grid, const CellBox &box, co
   static_assert(kStep == 8 && kRoom % kWideLanes == 0, "whole packs, and what may be read behind the last item");
   alignas(64) float balls[(kRoom + kWideLanes) * 4];
   int32_t places[kRoom + kWideLanes];
+  // Behind the last layer comes the run of large items, if there are some.
   int y = box.y0, z = box.z0;
+  const int last = box.z1 + (grid.cells.radii.large > 0 ? 1 : 0);
   ItemRun run = grid.run(box.x0, box.x1, y, z);
-  while (z <= box.z1) {
+  while (z <= last) {
     uint32_t n = 0;
-    while (n <= kRoom - kStep && z <= box.z1) {
+    while (n <= kRoom - kStep && z <= last) {
       const uint32_t left = run.end - run.begin;
       std::memcpy(balls + 4 * n, grid.items + run.begin, kStep * sizeof(Sphere));
       store_lane_numbers(places + n, kAllLanes, static_cast<int32_t>(run.begin));
       n += left < kStep ? left : kStep;
       run.begin += kStep;
       if (left > kStep) continue;
-      if (++y > box.y1) y = box.y0, ++z;
-      if (z <= box.z1) run = grid.run(box.x0, box.x1, y, z);
+      if (z > box.z1 || ++y > box.y1) y = box.y0, ++z;
+      if (z <= last) run = z <= box.z1 ? grid.run(box.x0, box.x1, y, z) : grid.large_items();
     }
     for (uint32_t k = 0; k < n; k += kWideLanes) {
       ItemPack pack;

@@ -40,10 +40,10 @@ QSES_FN Columns cut_columns(const AtomScratch &s) {
 }
 
 // Offsets and radii of the atoms whose balls meet the ball of atom i: x, y, z, cosine (radius so far), index.
-int gather_neighbors(const NeighborGridView &atoms, float max_radius, uint32_t i, const Columns &c, int capacity) {
+int gather_neighbors(const NeighborGridView &atoms, uint32_t i, const Columns &c, int capacity) {
   const Sphere self = atoms.items[i];
   const Vec3<float> center(self.center);
-  const float reach = self.radius + max_radius;
+  const float reach = self.radius + atoms.cells.radii.in_cells;
   const Vec3<float> r(reach, reach, reach);
   const CellBox box = cells_around(atoms.cells, center - r, center + r);
   const WidePack x0(center.x), y0(center.y), z0(center.z), r0(self.radius);
@@ -245,7 +245,7 @@ AtomFeatures find_atom_features(const NeighborGridView &atoms, const SurfacePara
   const Sphere self = atoms.items[i];
   if (is_removed(self)) return {0, 0, 0};  // another atom contains it
   const Columns c = cut_columns(scratch);
-  const int near = gather_neighbors(atoms, parameters.max_radius, i, c, scratch.capacity);
+  const int near = gather_neighbors(atoms, i, c, scratch.capacity);
   if (near + kWideLanes > scratch.capacity) return {near + kWideLanes, 0, 0};
   float *const slopes = c.ssin, *const bounds[] = {c.sx, c.sy, c.sz, c.scos};  // not in use yet
   int n = make_caps(self.radius, c, slopes, near);

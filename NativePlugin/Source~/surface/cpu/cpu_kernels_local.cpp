@@ -28,19 +28,17 @@ void store_arc(LocalColumns *c, int k, const Arc &arc) {
 // Calls use(first, ball of each lane, lanes) for all items in the box, until one returns false, or there are too many.
 template <class Use>
 QSES_FN bool for_each_met(const NeighborGridView &grid, const CellBox &box, uint32_t *met, const Use &use) {
-  for (int z = box.z0; z <= box.z1; ++z)
-    for (int y = box.y0; y <= box.y1; ++y) {
-      const ItemRun run = grid.run(box.x0, box.x1, y, z);
-      *met += run.end - run.begin;
-      if (*met > LocalReach::kMostMet) return false;
-      for (uint32_t i = run.begin; i < run.end; i += kPackSize) {
-        PackedBall balls;
-        load_columns(&grid.items[i].center.x, &balls.center.x, &balls.center.y, &balls.center.z, &balls.radius);
-        const uint32_t lanes = first_lanes(run.end - i);
-        if (!use(i, balls, lanes)) return false;
-      }
+  return grid.for_each_run(box, [&](const ItemRun &run) {
+    *met += run.end - run.begin;
+    if (*met > LocalReach::kMostMet) return false;
+    for (uint32_t i = run.begin; i < run.end; i += kPackSize) {
+      PackedBall balls;
+      load_columns(&grid.items[i].center.x, &balls.center.x, &balls.center.y, &balls.center.z, &balls.radius);
+      const uint32_t lanes = first_lanes(run.end - i);
+      if (!use(i, balls, lanes)) return false;
     }
-  return true;
+    return true;
+  });
 }
 
 }  // namespace

@@ -42,10 +42,10 @@ constexpr uint32_t kContainedCap = 0x80000000u;  // flag of a neighbour whose ca
 constexpr int kCapWarps = 4;                     // per block
 
 // Caps of all neighbours of atom i, in grid order; returns their number, which may exceed the room.
-__device__ __forceinline__ int gather_caps(const NeighborGridView &atoms, float max_radius, uint32_t i,
-                                           const Sphere &self, const CapRows &rows, int room) {
+__device__ __forceinline__ int gather_caps(const NeighborGridView &atoms, uint32_t i, const Sphere &self,
+                                           const CapRows &rows, int room) {
   const Vec3<float> center(self.center);
-  const float reach = self.radius + max_radius;
+  const float reach = self.radius + atoms.cells.radii.in_cells;
   const CellLayout &cells = atoms.cells;
   const CellBox box =
       cells_around(cells, center - Vec3<float>(reach, reach, reach), center + Vec3<float>(reach, reach, reach));
@@ -53,6 +53,7 @@ __device__ __forceinline__ int gather_caps(const NeighborGridView &atoms, float 
   // Cells are told apart by rounded arithmetic: coordinates are good to this much.
   const float slack = 1e-3f + 1e-6f * edge * static_cast<float>(cells.count.x + cells.count.y + cells.count.z);
   const auto run_of = [&](int r) {
+    if (r >= box.rows()) return atoms.large_items();
     const auto [y, z] = box.row(r);
     // Only the part of the row that the reach leaves beside the distance to it.
     const float y_low = cells.origin.y + static_cast<float>(y) * edge - self.center.y;
@@ -66,7 +67,7 @@ __device__ __forceinline__ int gather_caps(const NeighborGridView &atoms, float 
                      cells.cell_along(self.center.x + left, cells.origin.x, cells.count.x), y, z);
   };
   int n = 0;
-  visit_runs(box.rows(), run_of, [&](uint32_t k, bool on) {
+  visit_runs(atoms.runs(box), run_of, [&](uint32_t k, bool on) {
     bool meets = false;
     Vec3<float> axis(0.f, 0.f, 0.f);
     float cosine = 0.f;
@@ -282,7 +283,7 @@ __device__ __forceinline__ bool find_caps_of_atom(const CapJob &job, uint32_t i,
     }
     return true;
   }
-  int n = gather_caps(job.atoms, job.max_radius, i, self, rows, room);
+  int n = gather_caps(job.atoms, i, self, rows, room);
   if (n > room) {
     if (lane == 0) atomicMax(&job.counters->neighbors, static_cast<uint32_t>(n));
     return false;

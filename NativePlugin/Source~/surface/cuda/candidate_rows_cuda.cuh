@@ -70,7 +70,7 @@ __device__ __forceinline__ void visit_cells(const GatherTeam<kWarps> &team, cons
   const float beyond = around.extent + reach;
   const CellBox box = cells_around(grid.cells, {low.x - reach, low.y - reach, low.z - reach},
                                    {low.x + beyond, low.y + beyond, low.z + beyond});
-  const int rows = box.rows(), begin = rows * team.rank() / kWarps, end = rows * (team.rank() + 1) / kWarps;
+  const int rows = grid.runs(box), begin = rows * team.rank() / kWarps, end = rows * (team.rank() + 1) / kWarps;
   visit_runs<MarkedRunItems>(
       end - begin, [&](int r) { return grid.run(box, begin + r); }, visit);
 }

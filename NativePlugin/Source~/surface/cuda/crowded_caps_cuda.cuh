@@ -70,7 +70,7 @@ static __global__ __launch_bounds__(kCapWarps *kWarp) void gather_crowded_kernel
   }
   const int room = static_cast<int>(job.rows.room);
   const CapRows caps = job.rows.of(row);
-  int n = gather_caps(job.caps.atoms, job.caps.max_radius, i, load(job.caps.atoms.items + i), caps, room);
+  int n = gather_caps(job.caps.atoms, i, load(job.caps.atoms.items + i), caps, room);
   if (n > room) {
     if (lane_id() == 0) atomicMax(&job.caps.counters->neighbors, static_cast<uint32_t>(n));
     n = 0;  // all will be done again

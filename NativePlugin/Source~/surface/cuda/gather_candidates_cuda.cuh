@@ -96,7 +96,7 @@ static __global__ __launch_bounds__(
   // Atoms whose ball meets the box of the brick's vertices.
   const PointBox atom_box(low, extent, reach.grown);
   const GatheredRow atoms = gather_row(
-      team, around(f.atoms, atom_box, f.parameters.max_radius + reach.slack),
+      team, around(f.atoms, atom_box, f.atoms.cells.radii.in_cells + reach.slack),
       {near_memory[warp], kGatherRoom, job.view.atoms, &job.room.counters->atoms, job.room.atoms},
       [&](uint32_t k) {
         const Sphere atom = load(f.atoms.items + k);

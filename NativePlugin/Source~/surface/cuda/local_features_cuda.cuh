@@ -58,7 +58,7 @@ class GatheredFeatures : public LaneCandidates<kWarp> {
   static __device__ __forceinline__ uint32_t visit(const NeighborGridView &grid, const CellBox &box, uint32_t most,
                                                    const Visit &visit) {
     return visit_runs(
-        box.rows(), [&](int r) { return grid.run(box, r); }, visit, most);
+        grid.runs(box), [&](int r) { return grid.run(box, r); }, visit, most);
   }
   // count: of those kept, which may be more than there is room for.
   static __device__ __forceinline__ void keep(uint32_t item, bool is_kept, uint32_t *out, int room, int *count) {

@@ -12,10 +12,18 @@
 
 namespace quickses {
 
+// How large atoms are, without the probe. Where a few are much larger than all others, they are told apart, so that
+// neighbours of the others need not be looked for as far away (ItemRadii).
+struct AtomRadii {
+  float largest = 0;
+  float usual = 0;  // the largest, but for `large` atoms
+  uint32_t large = 0;
+};
+
 // Everything about the atoms that the host knows before the back end sees them.
 struct AtomBounds {
   glm::vec3 low, high;  // of the centres, caller's coordinates
-  float max_radius;     // without the probe
+  AtomRadii radii;
 };
 
 // The atoms of one frame in memory that the back end reads fast: centres in the caller's coordinates and van der Waals

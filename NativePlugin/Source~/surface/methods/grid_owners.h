@@ -11,21 +11,21 @@ namespace quickses {
 // those before.
 QSES_FN uint32_t nearest_grid_atom(const GridField &f, const Vec3<float> &x, float margin, MetItems met,
                                    uint32_t best) {
-  const float reach = f.parameters.max_radius + margin;
+  const float reach = f.atoms.cells.radii.in_cells + margin;
   const Vec3<float> r(reach, reach, reach);
   const CellBox box = cells_around(f.atoms.cells, x - r, x + r);
   float depth = met.first > 0 ? ball_depth(f.atoms.items[best], x) : kNoDepth;
-  for (int z = box.z0; z <= box.z1; ++z)
-    for (int y = box.y0; y <= box.y1; ++y) {
-      const ItemRun run = met.cut(f.atoms.run(box.x0, box.x1, y, z));
-      for (uint32_t k = run.begin; k < run.end; ++k) {
-        const float d = ball_depth(f.atoms.items[k], x);
-        if (d > depth || (d == depth && f.atoms.order[k] < f.atoms.order[best])) {
-          depth = d;
-          best = k;
-        }
+  f.atoms.for_each_run(box, [&](const ItemRun &whole) {
+    const ItemRun run = met.cut(whole);
+    for (uint32_t k = run.begin; k < run.end; ++k) {
+      const float d = ball_depth(f.atoms.items[k], x);
+      if (d > depth || (d == depth && f.atoms.order[k] < f.atoms.order[best])) {
+        depth = d;
+        best = k;
       }
     }
+    return true;
+  });
   return best;
 }
 

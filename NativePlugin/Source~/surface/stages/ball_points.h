@@ -71,25 +71,25 @@ struct ClassifyBrick {
     const glm::ivec3 first = lattice.first_point(bricks.place(brick));
     const Vec3<float> low = lattice.position(first.x, first.y, first.z);
     const Vec3<float> high = lattice.position(first.x + 7, first.y + 7, first.z + 7);
-    const float reach = balls.radius(balls.max_radius) + slack(lattice.spacing);
+    const float reach = balls.radius(atoms.cells.radii.in_cells) + slack(lattice.spacing);
     const Vec3<float> margin(reach, reach, reach);
     const CellBox box = cells_around(atoms.cells, low - margin, high + margin);
     for (int i = team.rank(); i < kBrickPoints; i += team.size()) scratch.beyond_ball[i] = kFarAway;
     if (team.rank() == 0) scratch.count = 0;
     team.sync();
     MetItems met = part;
-    for (int z = box.z0; z <= box.z1; ++z)
-      for (int y = box.y0; y <= box.y1; ++y) {
-        const ItemRun run = met.cut(atoms.run(box.x0, box.x1, y, z));
-        for (uint32_t begin = run.begin; begin < run.end; begin += ClassifyScratch::kBlock) {
-          const uint32_t end = run.end - begin < ClassifyScratch::kBlock ? run.end : begin + ClassifyScratch::kBlock;
-          list(team, scratch, begin, end, low, high);
-          team.sync();
-          const uint32_t count = scratch.count;
-          team.sync();
-          if (count > ClassifyScratch::kListed - ClassifyScratch::kBlock) apply(team, scratch, count, first);
-        }
+    atoms.for_each_run(box, [&](const ItemRun &whole) {
+      const ItemRun run = met.cut(whole);
+      for (uint32_t begin = run.begin; begin < run.end; begin += ClassifyScratch::kBlock) {
+        const uint32_t end = run.end - begin < ClassifyScratch::kBlock ? run.end : begin + ClassifyScratch::kBlock;
+        list(team, scratch, begin, end, low, high);
+        team.sync();
+        const uint32_t count = scratch.count;
+        team.sync();
+        if (count > ClassifyScratch::kListed - ClassifyScratch::kBlock) apply(team, scratch, count, first);
       }
+      return true;
+    });
     apply(team, scratch, scratch.count, first);
     // Byte by byte, of which there are enough for all threads. (Every machine this runs on is little-endian.)
     uint8_t *const bytes = reinterpret_cast<uint8_t *>(outside + brick * kLeavesPerBrick);

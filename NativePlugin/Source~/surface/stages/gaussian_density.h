@@ -58,11 +58,10 @@ struct GaussianDensity {
   // Calls visit(atom, number) for them, always in the same order.
   template <class Visit>
   QSES_FN void visit_atoms(const CellBox &box, const Visit &visit) const {
-    for (int z = box.z0; z <= box.z1; ++z)
-      for (int y = box.y0; y <= box.y1; ++y) {
-        const ItemRun run = atoms.run(box.x0, box.x1, y, z);
-        for (uint32_t k = run.begin; k < run.end; ++k) visit(load(&atoms.items[k]), k);
-      }
+    atoms.for_each_run(box, [&](const ItemRun &run) {
+      for (uint32_t k = run.begin; k < run.end; ++k) visit(load(&atoms.items[k]), k);
+      return true;
+    });
   }
 
   // Adds what an atom adds at a place, where it reaches that: d from its centre, of which d2 is the square, at most

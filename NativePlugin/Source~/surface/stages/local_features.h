@@ -18,7 +18,7 @@ struct LocalReach {
 
   QSES_FN LocalReach(const FeatureView &f, const Vec3<float> &place, float around)
       : x(place),
-        atom_reach(f.parameters.max_radius + around),
+        atom_reach(f.atoms.cells.radii.in_cells + around),
         slack(2.f * around + 1e-3f),
         far(f.parameters.depth + around + 1e-2f) {
     arc_reach = far + f.max_arc_bound;

@@ -11,21 +11,19 @@ namespace quickses {
 template <class Use>
 QSES_FN bool for_balls_near(const FeatureView &f, const Vec3<float> &a, const Vec3<float> &b, float reach,
                             uint32_t most_met, const Use &use) {
-  const float far = f.parameters.max_radius + reach;
+  const float far = f.atoms.cells.radii.in_cells + reach;
   const Vec3<float> around(far, far, far);
   const Vec3<float> low(minimum(a.x, b.x), minimum(a.y, b.y), minimum(a.z, b.z)),
       high(maximum(a.x, b.x), maximum(a.y, b.y), maximum(a.z, b.z));
   const CellBox box = cells_around(f.atoms.cells, low - around, high + around);
   uint32_t met = 0;
-  for (int z = box.z0; z <= box.z1; ++z)
-    for (int y = box.y0; y <= box.y1; ++y) {
-      const ItemRun run = f.atoms.run(box.x0, box.x1, y, z);
-      met += run.end - run.begin;
-      if (met > most_met) return false;
-      for (uint32_t k = run.begin; k < run.end; ++k)
-        if (!use(k, load(f.atoms.items + k))) return false;
-    }
-  return true;
+  return f.atoms.for_each_run(box, [&](const ItemRun &run) {
+    met += run.end - run.begin;
+    if (met > most_met) return false;
+    for (uint32_t k = run.begin; k < run.end; ++k)
+      if (!use(k, load(f.atoms.items + k))) return false;
+    return true;
+  });
 }
 
 }  // namespace quickses

@@ -14,11 +14,21 @@
 
 namespace quickses {
 
+// How large items are. Look-ups reach as far as the largest item in a cell does; a few that are much larger than all
+// others are in none: they come behind, and every look-up meets them.
+struct ItemRadii {
+  float in_cells;  // the largest
+  uint32_t large;  // number of larger items
+};
+
 // Where the cells of a grid lie. Cells are numbered x fastest.
 struct CellLayout {
   glm::vec3 origin;
   float inverse_edge;
   glm::ivec3 count;
+  ItemRadii radii;
+
+  QSES_FN bool is_large(float radius) const { return radii.large > 0 && radius > radii.in_cells; }
 
   QSES_FN int cell_along(float position, float start, int n) const {
     const float c = (position - start) * inverse_edge, last = static_cast<float>(n - 1);
@@ -92,14 +102,26 @@ struct NeighborGridView {
     const uint32_t begin = lower_bound(sorted_keys, count, first);
     return {begin, begin + lower_bound(sorted_keys + begin, count - begin, last)};
   }
-  // Of those of a box, by the number of the row.
+  // All runs that a look-up in a box meets: one for each row, and that of the large items.
+  QSES_FN int runs(const CellBox &box) const { return box.rows() + (cells.radii.large > 0 ? 1 : 0); }
   QSES_FN ItemRun run(const CellBox &box, int r) const {
+    if (r >= box.rows()) return large_items();
     const CellBox::Row row = box.row(r);
     return run(box.x0, box.x1, row.y, row.z);
   }
+  QSES_FN ItemRun large_items() const { return {count - cells.radii.large, count}; }
+  // The same for one thread: use(run), until it returns false, and then so does this.
+  template <class Use>
+  QSES_FN bool for_each_run(const CellBox &box, const Use &use) const {
+    for (int z = box.z0; z <= box.z1; ++z)
+      for (int y = box.y0; y <= box.y1; ++y)
+        if (!use(run(box.x0, box.x1, y, z))) return false;
+    return cells.radii.large == 0 || use(large_items());
+  }
 };
 
-// Stands where there may have been one more item: in no cell, and behind all others from the start.
+// Stands where there may have been one more item: in no cell, and behind all others from the start. No grid has both
+// such items and large ones.
 QSES_FN bool is_no_item(const Sphere &s) { return s.radius < 0.f; }
 QSES_FN Sphere no_item() { return {glm::vec3(kFarAway), -1.f}; }
 
@@ -112,7 +134,7 @@ constexpr uint32_t kFewInCell = 256;
 using CrowdTally = Tally<uint32_t, kFewInCell>;
 
 struct CellCounts {
-  uint32_t *in_cell = nullptr;  // zeros at first; nullptr: nothing is counted
+  uint32_t *in_cell = nullptr;  // zeros at first, behind the cells for large items; nullptr: nothing is counted
   uint32_t *slots = nullptr;    // of each item, how many of its cell were counted before it
   CrowdTally *fullest = nullptr;
   QSES_FN void add(size_t i, uint64_t cell) const {
@@ -131,7 +153,7 @@ struct HashItems {
   QSES_HOST_DEVICE void operator()(size_t i) const {
     const Sphere item = item_at(i);
     items[i] = item;
-    keys[i] = is_no_item(item) ? cells.cells() : cells.hash(item.center);
+    keys[i] = is_no_item(item) || cells.is_large(item.radius) ? cells.cells() : cells.hash(item.center);
     if (counts.in_cell && !is_no_item(item)) counts.add(i, keys[i]);
   }
 };
@@ -146,10 +168,11 @@ struct CollectNumbers {
   const uint64_t *keys;
   const uint32_t *starts, *slots;
   uint64_t cells;
+  uint32_t large;
   uint32_t *numbers;
   QSES_HOST_DEVICE void operator()(size_t i) const {
     const uint64_t cell = keys[i];
-    if (cell < cells) numbers[starts[cell] + slots[i]] = static_cast<uint32_t>(i);
+    if (cell < cells || large > 0) numbers[starts[cell] + slots[i]] = static_cast<uint32_t>(i);
   }
 };
 
@@ -167,6 +190,7 @@ struct RankItems {
   const uint32_t *starts, *numbers;
   const Sphere *items;
   uint64_t cells;
+  uint32_t large;
   size_t count;
   Sphere *sorted;
   uint32_t *order;
@@ -174,13 +198,13 @@ struct RankItems {
   QSES_HOST_DEVICE void operator()(size_t place) const {
     if (place < kBehindItems) sorted[count + place] = behind_items();
     if (place >= count) return;
-    if (place >= starts[cells]) {  // no item
+    if (place >= starts[cells] + large) {  // no item
       sorted[place] = items[place];
       order[place] = static_cast<uint32_t>(place);
       return;
     }
     const uint32_t i = numbers[place];
-    const uint32_t begin = starts[keys[i]], found = starts[keys[i] + 1] - begin;
+    const uint32_t begin = starts[keys[i]], found = keys[i] < cells ? starts[keys[i] + 1] - begin : large;
     uint32_t rank = begin;
     if (found <= kCrowd)
       for (uint32_t k = 0; k < found; ++k) rank += numbers[begin + k] < i ? 1 : 0;
@@ -241,12 +265,17 @@ constexpr bool dense_table_pays(uint64_t entries, uint64_t items) {
 // Whether to count pays, which goes over all cells.
 constexpr bool counting_pays(uint64_t cells, uint64_t items) { return cells <= 65536 || cells <= 32 * items; }
 
-inline CellLayout layout_cells(const glm::vec3 &low, const glm::vec3 &high, float edge) {
+inline CellLayout layout_cells(const glm::vec3 &low, const glm::vec3 &high, float edge, const ItemRadii &radii) {
   CellLayout cells;
+  cells.radii = radii;
   cells.origin = low;
   cells.inverse_edge = 1.f / edge;
   for (int d = 0; d < 3; ++d) cells.count[d] = static_cast<int>((high[d] - low[d]) / edge) + 1;
   return cells;
+}
+// As wide as the largest item.
+inline CellLayout layout_cells(const glm::vec3 &low, const glm::vec3 &high, float edge) {
+  return layout_cells(low, high, edge, {edge, 0});
 }
 
 // Of items that a look-up meets run by run: those whose places among them are in a range. With very many of them the
@@ -299,7 +328,8 @@ uint64_t most_items_near(Executor &executor, const char *name, const NeighborGri
   auto *const fullest = executor.template take_counts<Tally<uint32_t>>();
   executor.for_each(grid.count, FindFullestCell{grid, fullest});
   const double items = executor.expect(name, fullest, Tally<uint32_t>{grid.count}).count;
-  return static_cast<uint64_t>(std::min(static_cast<double>(grid.count), edges * edges * edges * items));
+  return static_cast<uint64_t>(std::min(static_cast<double>(grid.count),
+                                        edges * edges * edges * items + static_cast<double>(grid.cells.radii.large)));
 }
 
 // The same for the grid of atoms.
@@ -329,7 +359,7 @@ NeighborGridView build_neighbor_grid(Executor &executor, const char *name, size_
   bool is_counted = dense && counting_pays(cells.cells(), n);
   CellCounts counts{};
   if (is_counted) {
-    const Span<uint32_t> in_cell = executor.template allocate_zeros<uint32_t>(cells.cells());
+    const Span<uint32_t> in_cell = executor.template allocate_zeros<uint32_t>(cells.cells() + 1);
     counts = {in_cell.data, executor.template allocate<uint32_t>(n).data, executor.template take_counts<CrowdTally>()};
   }
   const ForEach hash{n, HashItems<std::decay_t<decltype(item_at)>>{cells, item_at, items.data, keys.data, counts}};
@@ -340,11 +370,12 @@ NeighborGridView build_neighbor_grid(Executor &executor, const char *name, size_
   if (is_counted) {
     const Span<uint32_t> numbers = executor.template allocate<uint32_t>(n);
     const auto arrange = [&](const auto &...before) {
-      do_in_turn(
-          executor, before..., Scan{cells.cells(), LoadCount<uint32_t>{counts.in_cell}, starts},
-          ForEach{n, CollectNumbers{keys.data, starts.data, counts.slots, cells.cells(), numbers.data}},
-          ForEach{std::max(n, kBehindItems), RankItems<Bring>{keys.data, starts.data, numbers.data, items.data,
-                                                              cells.cells(), n, sorted.data, order.data, bring}});
+      do_in_turn(executor, before..., Scan{cells.cells(), LoadCount<uint32_t>{counts.in_cell}, starts},
+                 ForEach{n, CollectNumbers{keys.data, starts.data, counts.slots, cells.cells(), cells.radii.large,
+                                           numbers.data}},
+                 ForEach{std::max(n, kBehindItems),
+                         RankItems<Bring>{keys.data, starts.data, numbers.data, items.data, cells.cells(),
+                                          cells.radii.large, n, sorted.data, order.data, bring}});
     };
     if (may_be_crowded)
       arrange();

@@ -66,7 +66,6 @@ struct FeatureView {
 // Which atoms lie within another one, of those in reach.
 struct FindContainedAtoms {
   NeighborGridView atoms;
-  float max_radius;
   uint8_t *contained;    // zeros at first
   uint32_t threads = 1;  // of an atom
   MetItems part{};
@@ -74,18 +73,17 @@ struct FindContainedAtoms {
     const auto [i, rank] = thread_of_item(thread, threads);
     const Sphere self = atoms.items[i];
     const Vec3<float> c(self.center);
-    const float reach = containing_reach(self.radius, max_radius);
+    const float reach = maximum(0.f, containing_reach(self.radius, atoms.cells.radii.in_cells));
     const Vec3<float> r(reach, reach, reach);
     const CellBox box = cells_around(atoms.cells, c - r, c + r);
     MetItems met = part;
-    bool found = false;
-    for (int z = box.z0; z <= box.z1 && !found; ++z)
-      for (int y = box.y0; y <= box.y1 && !found; ++y) {
-        const ItemRun run = met.cut(atoms.run(box.x0, box.x1, y, z));
-        for (uint32_t k = run.begin + rank; k < run.end && !found; k += threads)
-          found = k != i && contains(atoms.items[k], atoms.order[k], self, atoms.order[i]);
-      }
-    if (found) atomic_set(&contained[i]);
+    const bool is_free = atoms.for_each_run(box, [&, i = i, rank = rank](const ItemRun &whole) {
+      const ItemRun run = met.cut(whole);
+      for (uint32_t k = run.begin + rank; k < run.end; k += threads)
+        if (k != i && contains(atoms.items[k], atoms.order[k], self, atoms.order[i])) return false;
+      return true;
+    });
+    if (!is_free) atomic_set(&contained[i]);
   }
 };
 
@@ -110,8 +108,7 @@ void remove_contained_atoms(Executor &executor, const NeighborGridView &atoms, f
   const ForEach remove{atoms.count, RemoveContainedAtoms{contained.data, const_cast<Sphere *>(atoms.items)}};
   for_parts_of_met_items(near, Executor::kIsCuda ? kThreadSteps : near, [&](const MetItems &part, bool is_last) {
     const uint32_t threads = Executor::kIsCuda && atoms.count < kManyItems ? 4 : 1;
-    const ForEach find{atoms.count * size_t(threads),
-                       FindContainedAtoms{atoms, max_radius, contained.data, threads, part},
+    const ForEach find{atoms.count * size_t(threads), FindContainedAtoms{atoms, contained.data, threads, part},
                        std::max(kPlainSteps, std::min(near, kThreadSteps))};
     if (is_last)
       do_in_turn(executor, find, remove);

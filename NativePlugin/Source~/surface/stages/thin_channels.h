@@ -98,10 +98,10 @@ struct BrickBalls {
                     float reach) {
     if (team.rank() == 0) met = count = 0;
     team.sync();
-    const float far = f.parameters.max_radius + reach;
+    const float far = f.atoms.cells.radii.in_cells + reach;
     const Vec3<float> around(far, far, far);
     const CellBox box = cells_around(f.atoms.cells, low - around, high + around);
-    const int rows = box.rows();
+    const int rows = f.atoms.runs(box);
     const int share = team.size() % 8 == 0 ? 8 : 1, own = team.rank() % share;  // so many take turns in a row
     for (int row = team.rank() / share; row < rows; row += team.size() / share) {
       const ItemRun run = f.atoms.run(box, row);
