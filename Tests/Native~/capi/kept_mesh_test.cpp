@@ -193,6 +193,8 @@ TEST(KeptMesh, EmptyOnesAreFine) {
   expect_ok(qses_kept_mesh_paint(kept, nullptr, 4, 0, 0, 0, nullptr));
   expect_ok(qses_kept_mesh_filter(kept, nullptr, 0, 0, 0, nullptr, &triangles));
   EXPECT_EQ(triangles, 0u);
+  qses_kept_mesh_clear(kept);
+  expect_error(qses_kept_mesh_report(kept, &report), QSES_NO_RESULT, {"nothing is kept"});
   qses_kept_mesh_clear(nullptr);
   qses_kept_mesh_destroy(nullptr);
 }

@@ -297,6 +297,19 @@ TEST(Pick, EmptyMeshesAreMetNowhere) {
   EXPECT_TRUE(hit == nothing);
 }
 
+TEST(Pick, ClearedMeshesAreMetNowhereAndHaveNoAtoms) {
+  const KeptSurface kept(water());
+  const Ray ray{{0, 0, -9}, {0, 0, 1}};
+  const std::vector<uint8_t> visible(3, 1);
+  ASSERT_TRUE(pick(kept, ray, visible).found);
+  qses_kept_mesh_clear(kept);
+  EXPECT_FALSE(pick(kept, ray).found);
+  qses_hit hit;
+  qses_hit_init(&hit);
+  expect_error(qses_kept_mesh_pick(kept, ray.origin.data(), ray.direction.data(), visible.data(), 3, &hit),
+               QSES_INVALID_ARGUMENT, {"0 atoms"});
+}
+
 TEST(Pick, WrongArgumentsAreNamed) {
   const KeptSurface kept(water());
   const float origin[3] = {0, 0, 0}, direction[3] = {1, 0, 0};
