@@ -1,78 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Merges of short edges: meshes made by hand, random ones that are folded everywhere, and the surfaces of atoms.
-#include "surface/surface_checks.h"
-
-#include "surface/cpu/cpu_backend.h"
-
-#include "parallel/cpu_stage_timer.h"
-#include "surface/methods/crease_merges.h"
+#include "surface/edge_merge_fixture.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 
 namespace {
 
-using namespace quickses;
-using namespace surface_checks;
-
-constexpr float kSpacing = 0.5f;
-
-struct CreasedSurface {
-  mesh_checks::Mesh mesh;
-  std::vector<float> second_normals;
-  std::vector<uint8_t> on_crease;
-};
-
-// What merges need of a run of the method.
-struct MergeWork {
-  struct Memory {
-    template <class T, class Executor>
-    Span<T> allocate_where_mesh_is(Executor &executor, const MeshMemoryView &, size_t n) {
-      return executor.template allocate<T>(n);
-    }
-  };
-  CpuExecutor executor;
-  Memory memory;
-  SurfaceParameters parameters{};
-  Lattice lattice{};
-  explicit MergeWork(unsigned threads) : executor(threads) {
-    parameters.probe = parameters.depth = 1.4f;
-    parameters.spacing = lattice.spacing = kSpacing;
-  }
-};
-
-mesh_checks::Mesh merged(CreasedSurface from, size_t *merges, unsigned threads = 1) {
-  MergeWork work(threads);
-  mesh_checks::Mesh &mesh = from.mesh;
-  mesh.owners.assign(mesh.vertex_count(), 0);
-  std::vector<uint8_t> near(mesh.triangle_count());
-  MeshView view;
-  view.positions = mesh.positions.data();
-  view.normals = mesh.normals.data();
-  view.second_normals = from.second_normals.data();
-  view.owners = mesh.owners.data();
-  view.indices = mesh.indices.data();
-  GrowingMesh growing{};
-  growing.whole.vertices = mesh.vertex_count();
-  growing.whole.triangles = mesh.triangle_count();
-  growing.view = {view, nullptr, from.on_crease.data(), near.data()};
-  *merges = 0;
-  const KeptParts kept = merge_at_creases(work, growing, merges);
-  mesh_checks::Mesh out;
-  out.positions.resize(3 * (mesh.vertex_count() - *merges));
-  out.normals.resize(out.positions.size());
-  out.owners.resize(out.vertex_count());
-  out.indices.resize(3 * (mesh.triangle_count() - 2 * *merges));
-  MeshView to;
-  to.positions = out.positions.data();
-  to.normals = out.normals.data();
-  to.owners = out.owners.data();
-  to.indices = out.indices.data();
-  keep_parts(work.executor, view, mesh.vertex_count(), mesh.triangle_count(), kept, to);
-  return out;
-}
+using namespace edge_merge_fixture;
 
 size_t pieces_and_handles(const mesh_checks::Mesh &mesh) {  // the same number for the same topology
   return mesh.vertex_count() + mesh.triangle_count() - 3 * mesh.triangle_count() / 2 + 1000 * piece_count(mesh);
@@ -207,15 +143,7 @@ TEST(EdgeMerges, KeepRandomMeshesClosedAndTheirTopology) {
   size_t all = 0;
   for (unsigned seed = 1; seed <= 60; ++seed) {
     SCOPED_TRACE(seed);
-    std::mt19937 random(seed);
-    std::normal_distribution<float> moves(0.f, 0.05f * static_cast<float>(seed % 6 + 1));
-    const Surface surface = compute(cluster(4 + seed, seed), settings(0.5));
-    CreasedSurface s{surface.mesh, surface.mesh.normals, std::vector<uint8_t>(surface.vertex_count(), 0)};
-    for (size_t v = 0; v < surface.vertex_count(); ++v) {
-      s.on_crease[v] = random() % 3 == 0;
-      if (s.on_crease[v]) s.second_normals[3 * v] *= -1;
-      for (size_t k = 0; k < 3; ++k) s.mesh.positions[3 * v + k] += moves(random);
-    }
+    const CreasedSurface s = random_folds(seed, 0.05f * static_cast<float>(seed % 6 + 1));
     size_t merges = 0, again = 0;
     const mesh_checks::Mesh mesh = merged(s, &merges), threaded = merged(s, &again, 4);
     EXPECT_EQ(mesh_checks::manifold_fault(mesh), "");
