@@ -156,15 +156,13 @@ struct MergedEdge {
     uint32_t corners[3];
     float quality, merged;  // as it is, and with the end that it is around in the place of the other one
     bool is_there;
-    bool at_edge;      // it has both ends, and goes with them,
-    bool wants_merge;  // and it is a poor triangle before this one, with that edge as the shortest
+    bool at_edge;  // it has both ends, and goes with them
     bool moves_too_far;
     bool has_common_neighbor;
   };
   uint32_t ends[2];
   bool may_go[2];      // not off a crease
   uint32_t counts[2];  // around the ends; 0 where no merge can be
-  uint32_t poor;
   bool is_settled;
   uint64_t key;
   Around around[kRoom];  // the first half around the first end
@@ -175,8 +173,7 @@ struct MergedEdge {
     counts[0] = counts[1] = 0;
     is_settled = i >= m.listed() || m.is_settled(i, round);
     if (is_settled) return;
-    poor = m.poor[i];
-    const uint32_t *const t = m.mesh.triangle(poor);
+    const uint32_t *const t = m.mesh.triangle(m.poor[i]);
     if (m.is_gone(t)) return;
     const int k = m.shortest_edge(t);
     ends[0] = t[k], ends[1] = t[k == 2 ? 0 : k + 1];
@@ -198,8 +195,7 @@ struct MergedEdge {
     const int e = end_of(k);
     a.is_there = false;
     if (static_cast<uint32_t>(k - e * int(kMostAround)) >= counts[e]) return;
-    const uint32_t number = triangle(m, k), leaving = ends[e],
-                   staying = ends[1 - e], *const t = m.mesh.triangle(number);
+    const uint32_t leaving = ends[e], staying = ends[1 - e], *const t = m.mesh.triangle(triangle(m, k));
     if (m.is_gone(t)) return;
     CreaseEnd c[3];
     for (int j = 0; j < 3; ++j) {
@@ -209,14 +205,8 @@ struct MergedEdge {
     a.is_there = true;
     a.quality = m.quality(c[0], c[1], c[2]);
     a.at_edge = has_corner(t, staying);
-    a.wants_merge = a.moves_too_far = false;
-    if (a.at_edge) {
-      if (number >= poor || !m.mesh.near_marks[number]) return;
-      const int shortest = m.shortest_edge(t);
-      a.wants_merge = t[shortest] == ends[1] && t[shortest == 2 ? 0 : shortest + 1] == ends[0];
-      return;
-    }
-    if (!may_go[e]) return;
+    a.moves_too_far = false;
+    if (a.at_edge || !may_go[e]) return;
     const CreaseEnd from = m.end(leaving), to = m.end(staying);
     for (int j = 0; j < 3; ++j) {
       if (t[j] == leaving)
@@ -240,7 +230,7 @@ struct MergedEdge {
     around[k].has_common_neighbor = has;
   }
 
-  // By how much the least quality grows if that end goes; 0: that must not be, or another triangle sees to it.
+  // By how much the least quality grows if that end goes; 0: that must not be.
   QSES_FN float gain(int leaving) const {
     if (counts[0] == 0 || !may_go[leaving]) return 0.f;
     float before = kEnoughFacing, after = kEnoughFacing;
@@ -252,7 +242,6 @@ struct MergedEdge {
       ++triangles[e];
       before = minimum(before, a.quality);
       if (e == 1) common += a.has_common_neighbor ? 1 : 0;
-      if (a.wants_merge) return 0.f;
       if (a.at_edge) continue;
       if (e == leaving && a.moves_too_far) return 0.f;
       after = minimum(after, e == leaving ? a.merged : a.quality);
@@ -315,7 +304,7 @@ struct ProposeMerges {
   }
 };
 // Those are done that are the best for all triangles around: so no two have a triangle in common, and each finds around
-// it what it was judged by.
+// it what it was judged by. If both triangles at an edge want it to merge, the first one does that.
 struct ChooseMerges {
   EdgeMerges merges;
   QSES_FN void operator()(size_t i) const {
