@@ -164,7 +164,11 @@ GrowingMesh split_at(Work &work, const Sheets &sheets, const MeshMemoryView &pla
   GrowingMesh mesh = begin_to_grow<Sheets>(work, plain, vertex_room, triangle_room);
   const size_t triangles = plain.triangles;
   executor.for_each(plain.vertices, MarkVertices{mesh.view});
-  executor.for_each(triangles, MarkNearTriangles<Sheets>{mesh.view, sheets, false});
+  if constexpr (Sheets::kHasCorners) {
+    executor.for_each(triangles, FindSecondOwners{mesh.view, sheets});
+    executor.for_each(plain.vertices, MarkCircleVertices{mesh.view, sheets});
+  }
+  executor.for_each(triangles, MarkNearTriangles<Sheets>{mesh.view, sheets});
   const Span<uint32_t> near = mesh_room<uint32_t>(work, mesh, triangles);
   size_t listed = executor.compact(triangles, IsMarked{mesh.view.near_marks}, near);
   if (std::decay_t<decltype(executor)>::kCounts)

@@ -8,8 +8,6 @@
 
 namespace quickses {
 
-constexpr uint32_t kNoNumber = ~uint32_t(0);
-
 // Steps of a thread for an edge: it looks at so many atoms and arcs at most, a few times.
 constexpr uint64_t kCreaseSteps = uint64_t(1) << 15;
 
@@ -31,15 +29,14 @@ struct NearTriangles {
   }
 };
 
-// Marks the triangles that have something to do with creases.
+// Marks the triangles that have something to do with creases, in any round: vertices may be on some from the beginning.
 template <class Sheets>
 struct MarkNearTriangles {
   CreasedMesh mesh;
   Sheets sheets;
-  bool along;
   QSES_FN void operator()(size_t i) const {
     const uint32_t t = static_cast<uint32_t>(i);
-    mesh.near_marks[t] = sheets.is_near_crease(mesh, mesh.triangle(t), along) ? 1 : 0;
+    mesh.near_marks[t] = sheets.is_near_crease(mesh, mesh.triangle(t), true) ? 1 : 0;
   }
 };
 struct IsMarked {

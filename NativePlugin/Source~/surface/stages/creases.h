@@ -9,6 +9,8 @@
 
 namespace quickses {
 
+constexpr uint32_t kNoNumber = ~uint32_t(0);
+
 // Sheets whose normals have a larger cosine than this pass smoothly into each other: there is nothing to sharpen.
 constexpr float kSmoothCosine = 0.995f;
 
@@ -51,15 +53,19 @@ QSES_FN CreaseEnd end_of_point(const CreasePoint &p) {
   return {p.position, p.normal, p.second_normal, p.owner, p.second_owner};
 }
 
-// Writes a vertex onto a crease. Positions of a mesh are the caller's.
-QSES_FN void put_on_crease(const CreasedMesh &mesh, const Lattice &lattice, uint32_t vertex, const CreasePoint &p) {
-  store_vec3(mesh.position(vertex), Vec3<float>(lattice.to_caller(p.position)));
+// Writes what there is to say of a vertex that is on a crease.
+QSES_FN void mark_on_crease(const CreasedMesh &mesh, uint32_t vertex, const CreasePoint &p) {
   store_vec3(mesh.normal(vertex), p.normal);
   store_vec3(mesh.second_normal(vertex), p.second_normal);
   mesh.owner(vertex) = p.owner;
   if (mesh.patches) mesh.patch(vertex) = static_cast<uint8_t>(p.patch);
   if (mesh.second_owners) mesh.second_owners[vertex] = p.second_owner;
   mesh.crease_marks[vertex] = 1;
+}
+// Writes a vertex onto a crease. Positions of a mesh are the caller's.
+QSES_FN void put_on_crease(const CreasedMesh &mesh, const Lattice &lattice, uint32_t vertex, const CreasePoint &p) {
+  store_vec3(mesh.position(vertex), Vec3<float>(lattice.to_caller(p.position)));
+  mark_on_crease(mesh, vertex, p);
 }
 
 // What vertices begin with.
@@ -69,7 +75,7 @@ struct MarkVertices {
     const uint32_t v = static_cast<uint32_t>(i);
     const bool on = is_crest_vertex(mesh, v);
     mesh.crease_marks[v] = on ? 1 : 0;
-    if (on && mesh.second_owners) mesh.second_owners[v] = mesh.owner(v);
+    if (mesh.second_owners) mesh.second_owners[v] = on ? mesh.owner(v) : kNoNumber;
   }
 };
 

@@ -4,6 +4,7 @@
 // whose vertices lie on the spheres; what is found is exact.
 #pragma once
 
+#include "parallel/atomics.h"
 #include "surface/stages/creases.h"
 #include "surface/stages/near_balls.h"
 #include "surface/stages/projection.h"
@@ -281,6 +282,36 @@ struct SphereSheets {
   QSES_FN static void set_ends(const CreaseEnd &u, const CreaseEnd &v, CreasePoint *p) {
     p->to_first = square_root(length_squared(p->position - u.position));
     p->to_second = square_root(length_squared(p->position - v.position));
+  }
+};
+
+// ---- vertices that are on a circle from the beginning ----------------------------------------------------------
+
+// A vertex may have been projected onto a circle: then it is on the sphere of a neighbour's atom besides its own. Of
+// several such atoms that with the smallest number counts.
+struct FindSecondOwners {
+  CreasedMesh mesh;
+  SphereSheets sheets;
+  QSES_FN void operator()(size_t i) const {
+    const uint32_t *const t = mesh.triangle(i);
+    const uint32_t owners[3] = {mesh.owner(t[0]), mesh.owner(t[1]), mesh.owner(t[2])};
+    if (owners[0] == owners[1] && owners[0] == owners[2]) return;
+    for (int k = 0; k < 3; ++k)
+      for (const int other : {k == 2 ? 0 : k + 1, k == 0 ? 2 : k - 1})
+        if (owners[other] != owners[k] &&
+            sheets.is_on(sheets.sphere_of(owners[other]), sheets.lattice.from_caller(mesh.position(t[k]))))
+          atomic_min(mesh.second_owners + t[k], owners[other]);
+  }
+};
+struct MarkCircleVertices {
+  CreasedMesh mesh;
+  SphereSheets sheets;
+  QSES_FN void operator()(size_t i) const {
+    const uint32_t v = static_cast<uint32_t>(i), second = mesh.second_owners[v];
+    if (second == kNoNumber || mesh.on_crease(v)) return;
+    const CreasePoint p = sheets.point_on(sheets.places[mesh.owner(v)], sheets.places[second],
+                                          sheets.lattice.from_caller(mesh.position(v)), CreasePoint::kCrossed);
+    if (p.kind != CreasePoint::kNone) mark_on_crease(mesh, v, p);
   }
 };
 
