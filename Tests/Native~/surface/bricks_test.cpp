@@ -184,6 +184,7 @@ TEST(Signs, OnASparseSetOfBricks) {
   }
   EXPECT_GT(inside, 100u);
   EXPECT_GT(outside, 100u);
+  for (uint32_t b = 0; b < bricks.count; ++b) ASSERT_EQ(bricks.find(bricks.place(b)), static_cast<int>(b));
   EXPECT_EQ(bricks.find(glm::ivec3(-1, 0, 0)), -1);
   EXPECT_EQ(bricks.find(run.lattice.brick_count), -1);
 }

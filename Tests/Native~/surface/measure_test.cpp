@@ -230,6 +230,44 @@ TEST(Measure, NormalsThatPointElsewhereAreLeftOut) {
   EXPECT_NEAR(other.volume, sums.flat_volume, 1e-12);
 }
 
+// Once, however many parts the mesh is summed up in.
+TEST(Measure, BringsAnotherNumberAlong) {
+  Mesh m = mesh_shapes::sphere(7);
+  MeshView view;
+  view.positions = m.positions.data();
+  view.indices = m.indices.data();
+  const MeshCounts counts{m.vertex_count(), m.triangle_count()};
+  const uint32_t extra = 7;
+  for (unsigned threads : {1u, 3u}) {
+    CpuExecutor executor(threads);
+    uint64_t with_bounds = 0, with_measures = 0;
+    find_bounds(executor, view, counts, &extra, &with_bounds);
+    measure(executor, view, counts, false, kOrigin, &extra, &with_measures);
+    EXPECT_EQ(with_bounds, 7u);
+    EXPECT_EQ(with_measures, 7u);
+  }
+}
+
+TEST(Measure, AZeroOfTheBoundsHasNoSign) {
+  for (const float zero : {0.f, -0.f}) {
+    Mesh m = mesh_shapes::tetrahedron();
+    for (float &p : m.positions)
+      if (p == 0) p = zero;
+    for (float &p : m.positions)
+      if (p == 1) p = -1;
+    const Flat low = measure_mesh(m);
+    for (float &p : m.positions)
+      if (p == -1) p = 1;
+    const Flat high = measure_mesh(m);
+    for (int d = 0; d < 3; ++d) {
+      EXPECT_EQ(low.bounds.max[d], 0);
+      EXPECT_FALSE(std::signbit(low.bounds.max[d]));
+      EXPECT_EQ(high.bounds.min[d], 0);
+      EXPECT_FALSE(std::signbit(high.bounds.min[d]));
+    }
+  }
+}
+
 TEST(Measure, EmptyMesh) {
   Mesh m;
   const Flat found = measure_mesh(m);
