@@ -70,13 +70,14 @@ namespace QuickSes.Tests
             Vector3[] positions = Positions(100, 5, 1);
             positions[7].x = float.NaN;
             positions[8].y = float.PositiveInfinity;
+            positions[10].z = float.NaN;
             var atoms = new bool[100];
             var chosen = new bool[100];
-            atoms[7] = atoms[8] = true;
+            atoms[7] = atoms[8] = atoms[10] = true;
             Assert.That(_cuts.Within(positions, atoms, 5, chosen), Is.EqualTo(0));
             atoms[9] = true;
-            Assert.That(_cuts.Within(positions, atoms, 1e9f, chosen), Is.EqualTo(98));
-            Assert.That(chosen[7] || chosen[8], Is.False);
+            Assert.That(_cuts.Within(positions, atoms, 1e9f, chosen), Is.EqualTo(97));
+            Assert.That(chosen[7] || chosen[8] || chosen[10], Is.False);
             foreach (float wrong in new[] { -1, float.NaN, float.PositiveInfinity })
                 Assert.That(() => _cuts.Within(positions, atoms, wrong, chosen),
                     Throws.TypeOf<ArgumentOutOfRangeException>());

@@ -22,7 +22,6 @@ namespace QuickSes
         private float _perLength; // cells
         private float _squared; // of the distance
         private float _distance;
-        private bool _isCellWithin; // whoever is in the same cell is near
 
         /// <summary>Takes other points. What is not finite is passed over.</summary>
         /// <param name="points">Any number.</param>
@@ -53,12 +52,9 @@ namespace QuickSes
             if (!isAround)
                 return false;
             int x = Place(p.x - _low.x, _nx), y = Place(p.y - _low.y, _ny), z = Place(p.z - _low.z, _nz);
-            if (IsInside(p))
-            {
-                int own = (z * _ny + y) * _nx + x;
-                if (_isCellWithin ? _begins[own] < _begins[own + 1] : IsNearOne(p, own, own + 1))
-                    return true;
-            }
+            int own = (z * _ny + y) * _nx + x;
+            if (IsNearOne(p, own, own + 1))
+                return true;
             int firstX = Math.Max(x - _reach, 0), lastX = Math.Min(x + _reach, _nx - 1);
             for (int cz = Math.Max(z - _reach, 0); cz <= Math.Min(z + _reach, _nz - 1); ++cz)
                 for (int cy = Math.Max(y - _reach, 0); cy <= Math.Min(y + _reach, _ny - 1); ++cy)
@@ -81,9 +77,6 @@ namespace QuickSes
             }
             return false;
         }
-
-        private bool IsInside(Vector3 p) => p.x >= _low.x && p.x <= _high.x && p.y >= _low.y && p.y <= _high.y &&
-            p.z >= _low.z && p.z <= _high.z;
 
         private int Place(float along, int cells) => Math.Min(Math.Max((int)(along * _perLength), 0), cells - 1);
 
@@ -113,7 +106,6 @@ namespace QuickSes
             CountCells(size, edge);
             _perLength = 1 / edge;
             _reach = (int)Math.Min(Math.Ceiling(_distance * (double)_perLength * 1.0001), 1024);
-            _isCellWithin = edge * Sqrt3 <= _distance * 0.9999f;
         }
 
         private long CountCells(Vector3 size, float edge)
