@@ -43,7 +43,7 @@ namespace QuickSes.Editor
                 if (Error.Length > 0)
                     return "";
                 FormattableString text = AtomCount == FileAtomCount
-                    ? $"{AtomCount:N0} atoms"
+                    ? AtomCount == 1 ? (FormattableString)$"1 atom" : $"{AtomCount:N0} atoms"
                     : (FormattableString)$"{AtomCount:N0} of {FileAtomCount:N0} atoms";
                 string summary = text.ToString(CultureInfo.InvariantCulture);
                 if (ChainCount > 0)

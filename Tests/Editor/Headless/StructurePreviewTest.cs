@@ -75,6 +75,8 @@ namespace QuickSes.Tests
             StructurePreview preview = StructurePreview.Read(source);
             Assert.That(preview.Summary, Is.EqualTo("4 atoms, 1 chain (PDB)"));
             Assert.That(preview.HasPlayableModels, Is.False);
+            File.WriteAllText(_path, Model.Replace(" A ", "   ") + "END\n");
+            Assert.That(StructurePreview.Read(source).Summary, Is.EqualTo("4 atoms (PDB)"));
         }
 
         [Test]
@@ -88,7 +90,7 @@ namespace QuickSes.Tests
             var source = new MoleculeSource { Format = StructureFormat.Mmcif };
             source.SetFile(_path);
             StructurePreview preview = StructurePreview.Read(source);
-            Assert.That(preview.Summary, Is.EqualTo("1 atoms, 1 chain, model 1 of 2 (MMCIF)"));
+            Assert.That(preview.Summary, Is.EqualTo("1 atom, 1 chain, model 1 of 2 (MMCIF)"));
             Assert.That(preview.HasPlayableModels, Is.False, "a player takes PDB files only");
         }
 
