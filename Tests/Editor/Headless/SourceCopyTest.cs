@@ -42,14 +42,18 @@ namespace QuickSes.Tests
             }
         }
 
+        // Those of the class it is derived from are private there, and told by that alone.
         private static FieldInfo[] FieldsOf(Type type) => type
             .GetFields(BindingFlags.Instance | BindingFlags.NonPublic)
+            .Concat(type.BaseType.GetFields(BindingFlags.Instance | BindingFlags.NonPublic))
             .Where(field => field.IsDefined(typeof(SerializeField))).ToArray();
 
         private static object OtherThan(object value, Type type)
         {
             if (type == typeof(TextAsset))
                 return new TextAsset("other");
+            if (type == typeof(MoleculeAsset))
+                return MoleculeAsset.Create("other.pdb", new byte[1]);
             if (type == typeof(string))
                 return value + "other";
             if (type == typeof(bool))
