@@ -92,7 +92,6 @@ namespace QuickSes
         {
             if (!isActiveAndEnabled)
             {
-                CancelLoading();
                 _isScriptFed = false;
                 _isLoadDeferred = true;
                 return;
@@ -113,7 +112,7 @@ namespace QuickSes
             _loadedSource = _source.Copy();
             if (!_loadedSource.TryFind(out MoleculeFile file, out QuickSesError error))
                 return FailToLoad(error);
-            load = new StructureLoad(file, _loadedSource.Copy());
+            load = new StructureLoad(file, _loadedSource);
             return true;
         }
 

@@ -104,7 +104,7 @@ namespace QuickSes
             if (isUnderstood)
                 SetVisible(mask);
             ArrayPool<bool>.Shared.Return(rented);
-            _visibleError = !isUnderstood || named > 0 || count == 0 ? error.Message
+            _visibleError = !isUnderstood || named > 0 ? error.Message
                 : $"no atom is shown: the selection '{VisibleSelection}' names none; the structure has " +
                     ChainsOf(structure);
             return isUnderstood;

@@ -94,8 +94,7 @@ namespace QuickSes
                     return UploadStep.Painted;
                 if (_front.Writer.IsIntact(_front.Mesh))
                     return _painter.Step(_kept, _front, share, out bytes) ? UploadStep.Unfinished : UploadStep.Painted;
-                _painter.Abandon(); // somebody else has changed the mesh
-                _isResting = true;
+                _isResting = true; // somebody else has changed the mesh
                 return UploadStep.Unfinished;
             }
             catch

@@ -115,7 +115,6 @@ namespace QuickSes
             _positions.Resize(0);
             _radii.Resize(0);
             ResetLook();
-            ++_atomsVersion;
         }
 
         /// <summary>Brings a context up to date. Throws <see cref="QuickSesException"/> if an atom is wrong.</summary>

@@ -102,7 +102,7 @@ namespace QuickSes
 
         private void FailUpload(in QuickSesError error)
         {
-            bool isOfNewest = !_hasArrival || _isArrivalOfNewest || _isJobOfNewest;
+            bool isOfNewest = !_hasArrival || _isJobOfNewest;
             Drop();
             Fail(isOfNewest, error);
         }

@@ -255,7 +255,6 @@ namespace QuickSes
                 return;
             IsDisposed = true;
             Drop();
-            SurfaceScheduler.Uploads.Remove(this);
             SurfaceScheduler.Remove(this);
             Atoms.Dispose();
             CurrentLevel = default;
