@@ -19,12 +19,14 @@ namespace QuickSes.Tests
             "HETATM    5 ZN    ZN B   9      15.000   0.000   0.000  1.00  0.00          ZN\nEND\n";
 
         private SurfaceRig _rig;
+        private int _logged;
 
         private MolecularSurface Surface => _rig.Surface;
 
         [SetUp]
         public void SetUp()
         {
+            _logged = 0;
             _rig = new SurfaceRig();
             Surface.Coloring = AtomColoring.Vertices; // where hidden triangles are not in the mesh
         }
@@ -90,10 +92,13 @@ namespace QuickSes.Tests
         public IEnumerator AMaskAndASelectionReplaceEachOther()
         {
             Load(Chains);
+            Surface.SetVisible(new[] { true, false, false, false, false });
+            yield return EditSomethingElse();
+            int ofOne = Triangles();
             Surface.SetVisible("//B");
             Surface.SetVisible(new[] { true, false, false, false, false });
-            yield return _rig.Settle();
-            int ofOne = Triangles();
+            yield return EditSomethingElse();
+            Assert.That(Triangles(), Is.EqualTo(ofOne));
             Surface.SetVisible("//A/1/N");
             yield return _rig.Settle();
             Assert.That(Triangles(), Is.EqualTo(ofOne));
@@ -147,6 +152,10 @@ namespace QuickSes.Tests
             LogAssert.Expect(LogType.Warning, new Regex("no atom.*'chain B'.*chain A$"));
             Load(Chains.Replace(" B ", " A "));
             Assert.That(Surface.VisibleSelectionError, Does.Contain("names none"));
+            Surface.VisibleSelection = "";
+            Load(Chains.Replace(" A ", "   ").Replace(" B ", "   "));
+            Surface.SetVisible("chain A");
+            Assert.That(Surface.VisibleSelectionError, Does.EndWith("no chains"));
         }
 
         [TestCase("ABCDEFGHIJKL", "chains A, B, C, D, E, F, G, H, I, J, K, L$")]
@@ -176,6 +185,22 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void WhatIsAskedForStaysOpenWhenTheSourceIsReadAgain()
+        {
+            string path = System.IO.Path.GetTempFileName();
+            System.IO.File.WriteAllText(path, Chains);
+            Surface.Source.SetFile(path);
+            Surface.Source.Format = StructureFormat.Pdb;
+            Assert.That(Surface.LoadSource());
+            Assert.That(Surface.Structure, Is.Not.Null);
+            Assert.That(Surface.LoadSource());
+            BackgroundThread.SendAllAway(); // which free what nobody needs
+            System.IO.File.Delete(path);
+            Assert.That(Surface.Structure, Is.Not.Null, "it is not read once more");
+            Assert.That(Surface.Structure.GetAtom(4).Name, Is.EqualTo("ZN"));
+        }
+
+        [Test]
         public void TheStructureStaysOpenWhileSomebodyAsks()
         {
             Assert.That(Surface.Structure, Is.Null);
@@ -191,6 +216,9 @@ namespace QuickSes.Tests
             Assert.That(second.GetAtom(4).Name, Is.EqualTo("MG"));
             Surface.CloseStructure();
             Assert.That(second.IsDisposed);
+            Assert.That(Surface.Structure.GetAtom(4).Name, Is.EqualTo("MG"));
+
+            Surface.Structure.Dispose(); // by whoever asked
             Assert.That(Surface.Structure.GetAtom(4).Name, Is.EqualTo("MG"));
 
             Structure third = Surface.Structure;
@@ -234,14 +262,26 @@ namespace QuickSes.Tests
                 System.IO.File.WriteAllText(path, isAsLong ? Chains.Replace("  15.000", "  25.000")
                     : Chains.Substring(Chains.IndexOf('\n') + 1));
                 LogAssert.Expect(LogType.Warning, new Regex(isAsLong ? "other atoms now" : "4 atoms now, not 5"));
+                Application.logMessageReceived += Count;
                 Assert.That(Surface.Structure, Is.Null);
                 Assert.That(Surface.Structure, Is.Null);
                 Assert.That(Surface.SetVisible("//A"), Is.False);
+                Assert.That(_logged, Is.EqualTo(1));
             }
             finally
             {
+                Application.logMessageReceived -= Count;
                 System.IO.File.Delete(path);
             }
+        }
+
+        private void Count(string message, string stack, LogType type) => ++_logged;
+
+        private IEnumerator EditSomethingElse()
+        {
+            Surface.FollowSourceSoon();
+            yield return null;
+            yield return _rig.Settle();
         }
 
         private void Load(string pdb)

@@ -36,6 +36,7 @@ namespace QuickSes.Tests
         {
             Object.DestroyImmediate(_surface.gameObject);
             File.Delete(_path);
+            File.Delete(_path + ".other.pdb");
         }
 
         [Test]
@@ -56,12 +57,28 @@ namespace QuickSes.Tests
         {
             ReadFile();
             Settle();
+            int requests = 0;
+            _surface.AtomsRequested += () => ++requests;
+            Engine.Frame();
+            Assert.That(requests, Is.Zero);
             _surface.Source.Kind = MoleculeSourceKind.None;
             Edit();
             Assert.That(_surface.AtomCount, Is.EqualTo(0));
             Assert.That(_surface.Mesh.vertexCount, Is.EqualTo(0));
+            Assert.That(requests, Is.EqualTo(1), "scripts may give it others");
             ReadFile();
             Assert.That(_surface.AtomCount, Is.EqualTo(1));
+        }
+
+        [Test]
+        public void ASourceThatIsTakenAwayWhileItIsReadBringsNothing()
+        {
+            _surface.Source.SetFile(_path);
+            Edit();
+            Assert.That(_surface.IsLoading, Is.True);
+            _surface.Source.Kind = MoleculeSourceKind.None;
+            Edit();
+            Assert.That(_surface.IsLoading, Is.False);
         }
 
         [Test]
@@ -111,6 +128,75 @@ namespace QuickSes.Tests
             filter.sharedMesh = null;
             Edit();
             Assert.That(filter.sharedMesh, Is.SameAs(_surface.Mesh));
+        }
+
+        [Test]
+        public void AnotherColourSchemeIsNotComputed()
+        {
+            _surface.Coloring = AtomColoring.Vertices;
+            ReadFile();
+            Settle();
+            Color32[] before = _surface.Mesh.colors32;
+            uint jobs = SurfaceScheduler.LastJob;
+            ChooseColors(AtomColorScheme.Chain);
+            Settle();
+            Assert.That(_surface.Mesh.colors32, Is.Not.EqualTo(before));
+            Assert.That(SurfaceScheduler.LastJob, Is.EqualTo(jobs));
+            Edit();
+            Assert.That(_surface.IsLoading, Is.False, "nothing was edited");
+        }
+
+        [Test]
+        public void AColourSchemeThatIsChosenWhileAtomsAreReadDoesNotKeepThemAway()
+        {
+            ReadFile();
+            Settle();
+            Vector3 before = _surface.Positions[0];
+            WriteOther(Atom.Replace("11.639", "21.639"));
+            Edit();
+            Assert.That(_surface.IsLoading, Is.True);
+            ChooseColors(AtomColorScheme.Chain);
+            Settle();
+            Assert.That(_surface.Positions[0], Is.EqualTo(before - 10 * Vector3.right));
+        }
+
+        [Test]
+        public void AColourSchemeForAtomsOfAnotherSourceBringsThoseOfThisOne()
+        {
+            _surface.SetAtoms(new[] { Vector3.zero }, new[] { 1f });
+            File.WriteAllText(_path, "ATOM  nonsense\n");
+            _surface.Source.SetFile(_path);
+            Assert.That(_surface.LoadSource(), Is.False);
+            File.WriteAllText(_path, Atom + "END\n");
+            ChooseColors(AtomColorScheme.Chain);
+            Settle();
+            Assert.That(_surface.Positions[0], Is.Not.EqualTo(Vector3.zero));
+        }
+
+        [Test]
+        public void AColourSchemeForAFileThatHasOtherAtomsByNowBringsThem()
+        {
+            ReadFile();
+            Settle();
+            File.WriteAllText(_path, Atom + Atom.Replace("11.639", "21.639").Replace("A   1", "A   2") + "END\n");
+            ChooseColors(AtomColorScheme.Chain);
+            Settle();
+            Assert.That(_failures, Is.Zero);
+            Assert.That(_surface.AtomCount, Is.EqualTo(2));
+        }
+
+        private void ChooseColors(AtomColorScheme scheme)
+        {
+            _surface.Source.ColorScheme = scheme;
+            Edit();
+        }
+
+        // The same atoms elsewhere, in another file.
+        private void WriteOther(string atom)
+        {
+            string path = _path + ".other.pdb";
+            File.WriteAllText(path, atom + "END\n");
+            _surface.Source.SetFile(path);
         }
 
         private void ReadFile()

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+using QuickSes.EngineDouble;
 using System;
 using System.IO;
 
@@ -7,6 +8,14 @@ namespace UnityEngine
     /// <summary>The driver says what it answers.</summary>
     public class Application
     {
+        static Application() =>
+            EngineLog.Written += entry => logMessageReceived?.Invoke(entry.Message, entry.StackTrace, entry.Type);
+
+        public delegate void LogCallback(string condition, string stackTrace, LogType type);
+
+        /// <summary>Of other threads, too, which the engine's is not.</summary>
+        public static event LogCallback logMessageReceived;
+
         public static event Action quitting;
 
         /// <summary>The double is a player, but for <see cref="isPlaying"/>.</summary>
