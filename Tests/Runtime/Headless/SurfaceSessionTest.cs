@@ -263,6 +263,24 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void WhatIsDoneOrCancelledDoesNotGoOn()
+        {
+            _host = TestHost.WithRow(Many);
+            _host.Settle();
+            uint jobs = SurfaceScheduler.LastJob;
+            _host.Session.Drop();
+            _host.Session.Resume();
+            Assert.That(_host.Session.IsUpToDate, "it is done");
+            _host.SetPositions(TestHost.Row(Many, 1));
+            _host.Session.Stop();
+            _host.Session.Drop();
+            _host.Session.Resume();
+            Assert.That(_host.Session.IsUpToDate, "it was cancelled");
+            _host.Tick();
+            Assert.That(SurfaceScheduler.LastJob, Is.EqualTo(jobs));
+        }
+
+        [Test]
         public void NothingIsLeftOfWhatWasCleared()
         {
             _host = TestHost.WithRow(Many);
@@ -275,6 +293,23 @@ namespace QuickSes.Tests
                 TestHost.Until(() => true, _host);
             Assert.That(_host.Levels.Count, Is.EqualTo(levels));
             Assert.That(_host.Finished, Is.EqualTo(finished));
+        }
+
+        [Test]
+        public void NothingIsToldOfWhatWasCleared()
+        {
+            _host = TestHost.WithAtom(Vector3.Zero, 1.5f);
+            Assert.That(_host.Session.ComputeNow());
+            _host.Session.Clear();
+            _host.Session.RaiseEvents();
+            Assert.That(_host.Levels, Is.Empty);
+            _host.SetAtoms(new[] { new Vector3(float.NaN) }, new[] { 1.5f });
+            Assert.That(_host.Session.ComputeNow(), Is.False);
+            Assert.That(_host.Session.LastError.Status, Is.EqualTo(QuickSesStatus.InvalidArgument));
+            _host.Session.Clear();
+            Assert.That(_host.Session.LastError.Status, Is.EqualTo(QuickSesStatus.Ok));
+            _host.Session.RaiseEvents();
+            Assert.That(_host.Failures, Is.Empty);
         }
 
         [Test]
@@ -323,6 +358,27 @@ namespace QuickSes.Tests
             Assert.That(_host.Failures[0].Message, Does.Contain("no room for it"));
             Assert.That(_host.Levels, Is.Empty);
             Assert.That(SurfaceScheduler.LentCount, Is.EqualTo(0));
+        }
+
+        [Test]
+        public void AMeshThatCantBeTakenIsAFailureAndEndsItsJob()
+        {
+            _host = TestHost.WithRow(20 * Many);
+            _host.TakeRefusal = new InvalidOperationException("no memory for it");
+            ContextSlot slot = SurfaceScheduler.PoolOf(SurfaceBackend.Cpu).LendNow(_host.Session, null, out _);
+            _host.Session.Start(slot);
+            TestHost.Until(() => _host.Failures.Count > 0, _host);
+            slot.Context.Wait();
+            slot.Context.Poll(out SurfaceProgress progress);
+            Assert.That(progress.State, Is.EqualTo(SurfaceJobState.Cancelled), "nobody wants its finer levels");
+            Assert.That(SurfaceScheduler.LentCount, Is.EqualTo(0));
+            Assert.That(_host.Session.IsUpToDate, "it is not tried again and again");
+            Assert.That(_host.Failures.Count, Is.EqualTo(1));
+            Assert.That(_host.Failures[0].Message, Does.Contain("no memory for it"));
+            _host.TakeRefusal = null;
+            _host.SetPositions(TestHost.Row(20 * Many, 1));
+            _host.Settle();
+            Assert.That(_host.Session.CurrentLevel.IsFinest);
         }
 
         [Test]

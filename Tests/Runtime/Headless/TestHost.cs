@@ -25,6 +25,7 @@ namespace QuickSes.Tests
         public float[] CoarserLevels = { 2, 1 };
         public bool SharpCreases;
         public Exception Refusal; // what Upload throws
+        public Exception TakeRefusal;
         public int StepsPerUpload = 1;
         public int Taken;
         public int Rests;
@@ -170,6 +171,8 @@ namespace QuickSes.Tests
         void ISurfaceHost.Take(SurfaceContext context, AtomLook look, bool isMoving)
         {
             Assert.That(_steps, Is.EqualTo(0), "what is being uploaded must not be replaced");
+            if (TakeRefusal != null)
+                throw TakeRefusal;
             int atoms = AtomsOf(context);
             if (atoms > 0)
                 Assert.That(look.Count, Is.EqualTo(atoms));
