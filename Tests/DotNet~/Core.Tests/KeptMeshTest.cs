@@ -82,6 +82,17 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void WhatIsInHostMemoryNeedsNoDownload()
+        {
+            Assert.That(_kept.Download(), Is.EqualTo(QuickSesStatus.NoResult), "nothing is kept");
+            Meshes.Compute(_context, _settings);
+            _context.Keep(_kept);
+            SurfaceMeshView view = _kept.View;
+            Assert.That(_kept.Download(), Is.EqualTo(QuickSesStatus.Ok));
+            Assert.That(view.IsValid, Is.True, "nothing has changed");
+        }
+
+        [Test]
         public void PaintGivesVerticesWhatTheirAtomsHave()
         {
             Meshes.Compute(_context, _settings);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 using NUnit.Framework;
 using QuickSes.Interop;
+using System;
 using System.IO;
 using System.Runtime.InteropServices;
 
@@ -48,6 +49,19 @@ namespace QuickSes.Tests
             file[133] = (byte)(machine >> 8);
             File.WriteAllBytes(Library, file);
             Assert.That(LibraryProbe.OtherArchitecture(Library), Is.EqualTo(name));
+        }
+
+        [TestCase(-5)]
+        [TestCase(4091)]
+        [TestCase(int.MaxValue)]
+        public void HeadersThatPointOutOfTheFileTellNothing(int start)
+        {
+            var file = new byte[4096];
+            file[0] = (byte)'M';
+            file[1] = (byte)'Z';
+            BitConverter.GetBytes(start).CopyTo(file, 60);
+            File.WriteAllBytes(Library, file);
+            Assert.That(LibraryProbe.OtherArchitecture(Library), Is.Empty);
         }
 
         [Test]

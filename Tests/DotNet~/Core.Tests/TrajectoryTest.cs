@@ -90,6 +90,8 @@ namespace QuickSes.Tests
                 Assert.That(new[] { x, y, z }[k], Is.EqualTo(edges[k]).Within(1e-6));
                 Assert.That(Math.Abs(x) + Math.Abs(y) + Math.Abs(z), Is.EqualTo(edges[k]).Within(1e-6));
             }
+            foreach (int none in new[] { -1, 3 })
+                Assert.Throws<ArgumentOutOfRangeException>(() => frame.GetBoxVector(none));
             Assert.That(trajectory.TryUnwrap(Enumerable.Repeat((byte)6, AtomCount).ToArray(), out QuickSesError error),
                 Is.True, error.ToString());
             Assert.That(trajectory.IsUnwrapped, Is.True);
