@@ -94,6 +94,21 @@ namespace QuickSes.Tests
             UnityEngine.Object.DestroyImmediate(scene);
         }
 
+        [Test]
+        public void FilesThatCantBeReadAreALineEachInTheLog()
+        {
+            var scene = new GameObject("quiet");
+            var surface = scene.AddComponent<MolecularSurface>();
+            foreach (string file in new[] { NoFile, NoFile + ".gz" })
+            {
+                LogAssert.Expect(LogType.Error, new Regex("^quiet: .*" + Regex.Escape($"'{file}'")));
+                surface.Source.SetFile(file);
+                Assert.That(surface.LoadSource(), Is.False);
+                Assert.That(surface.LoadSource(), Is.False); // another line would fail the test
+            }
+            UnityEngine.Object.DestroyImmediate(scene);
+        }
+
         [UnityTest]
         public IEnumerator AMeshThatCantBeWrittenIsAFailure()
         {

@@ -59,6 +59,19 @@ namespace QuickSes.Tests
             Assert.That(_rig.Surface.Volume, Is.EqualTo(4 / 3.0 * Math.PI * Math.Pow(1.7, 3)).Within(5).Percent);
         }
 
+        [Test]
+        public void NothingIsKnownOfASurfaceThatWasCleared()
+        {
+            _rig = SurfaceRig.WithBlob(40, 1);
+            Assert.That(_rig.Surface.ComputeNow(), Is.True);
+            Assert.That(_rig.Surface.OwnerAtomAt(0), Is.InRange(0, 39));
+            _rig.Surface.ClearAtoms();
+            Assert.Throws<ArgumentOutOfRangeException>(() => _rig.Surface.OwnerAtomAt(0));
+            Assert.That(_rig.Surface.Owners.Length + _rig.Surface.AtomCount, Is.Zero);
+            Assert.That((_rig.Surface.Area, _rig.Surface.Volume), Is.EqualTo((0.0, 0.0)));
+            Assert.That(_rig.Surface.UsedDelivery, Is.EqualTo(SurfaceDelivery.Auto));
+        }
+
         [UnityTest]
         public IEnumerator LevelsComeFromCoarseToFine()
         {

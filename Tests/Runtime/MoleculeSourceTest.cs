@@ -120,6 +120,7 @@ namespace QuickSes.Tests
         public void MoleculeAssetsAreReadAsFilesAre()
         {
             var source = new MoleculeSource();
+            MoleculeSource before;
             MoleculeAsset asset = MoleculeAsset.Create("folder/small.pdb.gz", Gzipped(TestFrames.Pdb(1)));
             try
             {
@@ -129,7 +130,8 @@ namespace QuickSes.Tests
                 Assert.That(source.IsSet, Is.True);
                 using (Structure structure = Open(source))
                     Assert.That(structure.FileIndices.ToArray(), Is.EqualTo(TestFrames.WithoutWater));
-                Assert.That(source.IsSameAs(source.Copy()), Is.True);
+                before = source.Copy();
+                Assert.That(source.IsSameAs(before), Is.True);
                 MoleculeSource other = source.Copy();
                 other.Molecule = null;
                 Assert.That(source.IsSameAs(other), Is.False);
@@ -140,6 +142,7 @@ namespace QuickSes.Tests
                 Object.DestroyImmediate(asset);
             }
             Assert.That(source.IsSet, Is.False);
+            Assert.That(source.IsSameAs(before), Is.True, "nobody has chosen another one");
             Assert.That(Fail(source).Message, Does.Contain("molecule asset"));
             source.SetAsset(MoleculeAsset.Create("nothing.cif", new byte[0]));
             Assert.That(Fail(source).Message, Does.Contain("nothing.cif").And.Contain("empty"));
@@ -217,6 +220,8 @@ namespace QuickSes.Tests
             source.Kind = MoleculeSourceKind.File;
             Assert.That(source.IsSet, Is.False);
             Assert.That(Fail(source).Message, Does.Contain("path"));
+            source.Path = " ";
+            Assert.That(source.IsSet, Is.False);
             source.Path = Path.Combine(_folder.Root, "no such.pdb");
             Assert.That(source.IsSet, Is.True);
             Assert.That(Fail(source).Status, Is.EqualTo(QuickSesStatus.FileError));

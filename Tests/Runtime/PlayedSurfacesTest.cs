@@ -118,6 +118,24 @@ namespace QuickSes.Tests
             }
         }
 
+        [Test]
+        public void EachLeavesOutWhatItIsToldTo()
+        {
+            string[] lines = TestFrames.Pdb(1).Split('\n');
+            lines[1] = lines[1].Substring(0, lines[1].Length - 2) + " H";
+            lines[5] = "HETATM" + lines[5].Substring(6).Replace("ALA A   1", "LIG A   3");
+            Player.StructureSource.SetAsset(new TextAsset(string.Join("\n", lines)) { name = "structure.pdb" });
+            using (var withoutHydrogen = new SurfaceRig("without hydrogen"))
+            using (var withoutHetero = new SurfaceRig("without ligands"))
+            {
+                Player.AddSurface(withoutHydrogen.Surface, "").SkipHydrogen = true;
+                Player.AddSurface(withoutHetero.Surface, "").SkipHetero = true;
+                _playing.Load();
+                AssertAt(withoutHydrogen.Surface, new[] { 0, 3, 4, 5 }, 0);
+                AssertAt(withoutHetero.Surface, new[] { 0, 1, 3, 4 }, 0);
+            }
+        }
+
         [UnityTest]
         public IEnumerator EachShowsASurfaceInItsColours()
         {
@@ -141,7 +159,20 @@ namespace QuickSes.Tests
             _playing.Load();
             yield return SurfaceRig.Frames(10);
             AssertAllAt(0);
+            _backbone.Surface.Source.SkipWater = false;
+            _backbone.Surface.FollowSourceSoon(); // the inspector wrote it
+            yield return null;
+            Assert.That(_backbone.Surface.IsLoading, Is.False);
             Assert.That(loaded, Is.EqualTo(0));
+        }
+
+        [UnityTest]
+        public IEnumerator TheirOwnSourcesAreNotReadBeforeThereIsAFrame()
+        {
+            _backbone.Surface.Source.SetAsset(new TextAsset(TestFrames.Pdb(1)) { name = "other.pdb" });
+            Assert.That(Player.Load(), Is.True);
+            yield return null;
+            Assert.That(_backbone.Surface.IsLoading, Is.False);
         }
 
         [Test]

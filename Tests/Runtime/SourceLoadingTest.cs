@@ -166,6 +166,17 @@ namespace QuickSes.Tests
             Assert.That(Surface.IsLoading, Is.False);
         }
 
+        [Test]
+        public void WhatIsBeingReadIsComputedNow()
+        {
+            Surface.SetAtoms(new[] { Vector3.zero }, new[] { 1f });
+            Surface.Source.SetAsset(Text(TestFrames.Pdb(1)));
+            Surface.BeginLoadSource();
+            Assert.That(Surface.ComputeNow(), Is.True);
+            Assert.That(Surface.IsLoading, Is.False);
+            AssertShowsFile(0);
+        }
+
         [UnityTest]
         public IEnumerator TheLastOneCounts()
         {
@@ -205,6 +216,7 @@ namespace QuickSes.Tests
             Surface.BeginLoadSource();
             Surface.enabled = false;
             Assert.That(Surface.IsLoading, Is.True);
+            Assert.That(Surface.LoadProgress, Is.EqualTo(0));
             yield return SurfaceRig.Frames(5);
             Assert.That(Surface.AtomCount, Is.EqualTo(0));
             Surface.enabled = true;
@@ -269,6 +281,8 @@ namespace QuickSes.Tests
         [UnityTest]
         public IEnumerator HandlersMayDoAnything()
         {
+            int wired = 0;
+            Surface.Events.Loaded.AddListener(() => ++wired);
             Surface.Source.SetAsset(Text(TestFrames.Pdb(1)));
             Surface.Loaded += () =>
             {
@@ -280,6 +294,7 @@ namespace QuickSes.Tests
             Surface.BeginLoadSource();
             yield return SurfaceRig.Until(() => _rig.GameObject == null);
             Assert.That(_loaded, Is.EqualTo(2));
+            Assert.That(wired, Is.EqualTo(1), "what is destroyed raises nothing");
         }
     }
 }

@@ -58,6 +58,14 @@ namespace QuickSes.Tests
         {
             Put(0, -4, -1, -2);
             Assert.That(Options(), Is.EqualTo((1, s_defaultThreads, 0ul, 0)));
+            foreach (int delivery in new[] { -1, (int)SurfaceDelivery.Device + 1 })
+            {
+                Put(1, 1, 0, 0, (SurfaceDelivery)delivery, float.PositiveInfinity);
+                SurfaceScheduler.ResetOptions();
+                Assert.That(Options(), Is.EqualTo((1, 1u, 0ul, 0)), "which are not");
+                Assert.That(SurfaceScheduler.Delivery, Is.EqualTo(SurfaceDelivery.Host));
+                Assert.That(SurfaceScheduler.UploadBudget, Is.EqualTo(0));
+            }
             Assert.That(() => SurfaceScheduler.MaxContexts = 0, Throws.TypeOf<ArgumentOutOfRangeException>());
             Assert.That(() => SurfaceScheduler.Device = -1, Throws.TypeOf<ArgumentOutOfRangeException>());
             yield return null;
@@ -83,18 +91,21 @@ namespace QuickSes.Tests
         private static (int, uint, ulong, int) Options() => (SurfaceScheduler.MaxContexts, SurfaceScheduler.Threads,
             SurfaceScheduler.MemoryBudget, SurfaceScheduler.Device);
 
-        private static void Put(int maxContexts, int threads, int megabytes, int device)
+        private static void Put(int maxContexts, int threads, int megabytes, int device,
+            SurfaceDelivery delivery = SurfaceDelivery.Host, float uploadBudget = 2)
         {
             var settings = ScriptableObject.CreateInstance<QuickSesSettings>();
             Set(settings, "_maxContexts", maxContexts);
             Set(settings, "_threads", threads);
             Set(settings, "_memoryBudget", megabytes);
             Set(settings, "_device", device);
+            Set(settings, "_delivery", delivery);
+            Set(settings, "_uploadBudget", uploadBudget);
             Engine.PutIntoResources(QuickSesSettings.AssetName, settings);
         }
 
         // As the inspector does.
-        private static void Set(QuickSesSettings settings, string field, int value) => typeof(QuickSesSettings)
+        private static void Set(QuickSesSettings settings, string field, object value) => typeof(QuickSesSettings)
             .GetField(field, BindingFlags.Instance | BindingFlags.NonPublic).SetValue(settings, value);
     }
 }
