@@ -67,9 +67,6 @@ namespace QuickSes
             return taken;
         }
 
-        /// <summary>What <see cref="Colors"/> tell.</summary>
-        public AtomColorScheme ColorScheme { get; private set; }
-
         public ReadOnlySpan<Vector3> Positions => _positions.Span;
 
         public ReadOnlySpan<float> Radii => Structure.Radii;
@@ -78,11 +75,8 @@ namespace QuickSes
         public ReadOnlySpan<Color32> Colors => _colors.Span;
 
         /// <summary>Colours anew, on the calling thread.</summary>
-        public void Color(AtomColorScheme colorScheme)
-        {
+        public void Color(AtomColorScheme colorScheme) =>
             AtomColors.Fill(Structure, colorScheme, default, _colors.Resize(Structure.AtomCount));
-            ColorScheme = colorScheme;
-        }
 
         /// <summary>
         /// Has it disposed of by a thread of its own, since freeing what the library holds of a large molecule takes some
