@@ -207,5 +207,26 @@ namespace QuickSes.Tests
                 Assert.That((_rig.Failures.Count, playing.Failures.Count), Is.EqualTo((1, 1)));
             }
         }
+
+        [Test]
+        public void WhatAHandlerDestroysRaisesNothingMore()
+        {
+            int wired = 0;
+            _rig = SurfaceRig.WithBlob(40, 1);
+            _rig.Surface.Events.SurfaceUpdated.AddListener(() => ++wired);
+            _rig.Surface.SurfaceUpdated += level => _rig.Dispose();
+            _rig.Surface.ComputeNow();
+            _rig = SurfaceRig.WithBlob(40, 1);
+            _rig.Surface.Events.RefinementFinished.AddListener(() => ++wired);
+            _rig.Surface.RefinementFinished += () => _rig.Dispose();
+            _rig.Surface.ComputeNow();
+            _rig = new SurfaceRig();
+            _rig.Surface.Events.Failed.AddListener(message => ++wired);
+            _rig.Surface.Failed += error => _rig.Dispose();
+            _rig.Surface.Source.SetFile("/no/such/file.pdb");
+            Assert.That(_rig.Surface.LoadSource(), Is.False);
+            Assert.That(_rig.GameObject == null);
+            Assert.That(wired, Is.Zero);
+        }
     }
 }

@@ -79,6 +79,7 @@ namespace QuickSes.Tests
             _surface.Source.Kind = MoleculeSourceKind.None;
             Edit();
             Assert.That(_surface.IsLoading, Is.False);
+            Assert.That(_surface.AtomCount, Is.Zero);
         }
 
         [Test]

@@ -29,8 +29,8 @@ namespace QuickSes.Tests
         {
             const int many = 1024 * 1024;
             foreach ((int atoms, int width, int height) in new[]
-                { (0, 1024, 1), (100, 1024, 1), (1024, 1024, 1), (1025, 1024, 2), (many, 1024, 1024), (many + 1, 4096, 257),
-                    (4096 * 1024, 4096, 1024), (3, 1024, 1) })
+                { (0, 1024, 1), (100, 1024, 1), (1024, 1024, 1), (1025, 1024, 2), (many, 1024, 1024),
+                    (257 * 1024, 1024, 257), (many + 1, 4096, 257), (4096 * 1024, 4096, 1024), (3, 1024, 1) })
             {
                 var look = new AtomLook(atoms, 0xff000000u + (uint)atoms);
                 Assert.That(_texture.Show(_renderer, look), Is.True);

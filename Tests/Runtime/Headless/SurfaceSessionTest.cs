@@ -41,6 +41,9 @@ namespace QuickSes.Tests
             Assert.That(_host.Finished, Is.EqualTo(1));
             Assert.That(_host.Session.Progress, Is.EqualTo(1));
             Assert.That(_host.Session.UsedBackend, Is.EqualTo(SurfaceBackend.Cpu));
+            _host.SetPositions(TestHost.Row(Many, 1));
+            _host.Tick();
+            Assert.That(_host.Session.Progress, Is.EqualTo(0), "of the next job");
         }
 
         [Test]
@@ -270,13 +273,15 @@ namespace QuickSes.Tests
             uint jobs = SurfaceScheduler.LastJob;
             _host.Session.Drop();
             _host.Session.Resume();
+            _host.Tick();
             Assert.That(_host.Session.IsUpToDate, "it is done");
+            Assert.That(SurfaceScheduler.LastJob, Is.EqualTo(jobs));
             _host.SetPositions(TestHost.Row(Many, 1));
             _host.Session.Stop();
             _host.Session.Drop();
             _host.Session.Resume();
-            Assert.That(_host.Session.IsUpToDate, "it was cancelled");
             _host.Tick();
+            Assert.That(_host.Session.IsUpToDate, "it was cancelled");
             Assert.That(SurfaceScheduler.LastJob, Is.EqualTo(jobs));
         }
 

@@ -72,6 +72,29 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void WhatTheSystemInterruptsOrIsTinyTellsLittleOfTheSpeed()
+        {
+            long before = _queue.PieceBytes;
+            _queue.Enqueue(new Upload(this, UploadQueue.MinPiece - 1, 1000 * MillisecondsPerByte));
+            NextFrame();
+            Assert.That(_queue.PieceBytes, Is.EqualTo(before));
+            _queue.Enqueue(new Upload(this, UploadQueue.MinPiece, 1000 * MillisecondsPerByte));
+            NextFrame();
+            Assert.That(_queue.PieceBytes, Is.InRange(before / 2, before - 1));
+        }
+
+        [Test]
+        public void APauseOfTheGameIsNoLongFrame()
+        {
+            for (int frame = 0; frame < 100; ++frame)
+                NextFrame();
+            double before = _queue.MillisecondsPerMegabyte;
+            _now += 3600e3;
+            NextFrame();
+            Assert.That(_queue.MillisecondsPerMegabyte, Is.InRange(before, 2 * before));
+        }
+
+        [Test]
         public void TheOldestComesFirst()
         {
             var uploads = new[] { new Upload(this, 5 << 20), new Upload(this, 1 << 10), new Upload(this, 5 << 20) };
