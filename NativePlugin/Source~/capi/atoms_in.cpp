@@ -224,17 +224,18 @@ constexpr size_t kMostLarge = 32;
 
 // Those at least twice as large as all others, if they are few; again while the others still reach far.
 AtomRadii tell_large_atoms(const float *radii, size_t count, float largest) {
+  const size_t most = std::min(kMostLarge, count / 8);
   AtomRadii found{largest, largest, 0};
   while (found.usual > kNoticedRadius) {
     const float half = 0.5f * found.usual;
     float usual = 0.f;
     size_t large = 0;
-    for (size_t i = 0; i < count && large <= kMostLarge; ++i)
+    for (size_t i = 0; i < count && large <= most; ++i)
       if (radii[i] > half)
         ++large;
       else
         usual = std::max(usual, radii[i]);
-    if (large > std::min(kMostLarge, count / 8)) break;
+    if (large > most) break;
     found.usual = usual;
     found.large = static_cast<uint32_t>(large);
   }

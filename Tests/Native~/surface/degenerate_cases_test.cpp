@@ -234,9 +234,10 @@ TEST(Radii, TinyAndHugeTogether) {
 TEST(Radii, AFewMuchLargerThanAllOthers) {
   Atoms atoms;
   atoms.add(30, 0, 0, 28);
+  const Atoms protein = crambin();
   for (size_t k = 0; k < 150; ++k) {
-    const auto c = crambin().center(k);
-    atoms.add(c[0], c[1], c[2], static_cast<double>(crambin().radii[k]));
+    const auto c = protein.center(k);
+    atoms.add(c[0], c[1], c[2], static_cast<double>(protein.radii[k]));
   }
   atoms.add(32, 1, 0, 20).add(-26, 5, 14, 9.5).add(-60, -90, 40, 12);
   Limits limits;
