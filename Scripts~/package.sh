@@ -28,12 +28,21 @@ bash Scripts~/setup.sh "${setup[@]}"
 # Build trees of its own, with the options of now: what somebody chose for another one, an architecture say, isn't in
 # them, nor is what was the default at the run before.
 unset CFLAGS CXXFLAGS CUDAFLAGS LDFLAGS
-for preset in "${presets[@]}"; do
-  build=.build/package/$preset
+build_plugin() { # PRESET
+  local build=.build/package/$1
   rm -f "$build/CMakeCache.txt"
-  cmake --preset "$preset" -B "$build" -DQUICKSES_BUILD_CLI=OFF -DQUICKSES_BUILD_TESTS=OFF
-  cmake --build "$build" --target plugin --parallel "$(nproc)"
+  cmake --preset "$1" -B "$build" -DQUICKSES_BUILD_CLI=OFF -DQUICKSES_BUILD_TESTS=OFF &&
+    cmake --build "$build" --target plugin --parallel "$(nproc)"
+}
+# At once: most of the time goes into one source, of all kernels, for several architectures.
+builds=()
+for preset in "${presets[@]}"; do
+  build_plugin "$preset" &
+  builds+=($!)
 done
+status=0
+for build in "${builds[@]}"; do wait "$build" || status=$?; done
+if [ $status -ne 0 ]; then exit $status; fi
 
 # Checked first, then left where it was asked for.
 mkdir -p .build/package "$folder"

@@ -44,26 +44,28 @@ if capability=$(nvidia-smi --query-gpu=compute_cap --format=csv,noheader 2>/dev/
   architecture=${capability/./}-real
 fi
 
+say() { echo "==== $*, after $((SECONDS / 60)) min"; }
+
+# What has nothing to do with the platform or the back end is tested with the first preset.
+others=(--exclude-regex '^(check_.*|configure|consumer_add_subdirectory|make_package_.*|measure_scripts|page_browser_test|page_paths|release_scripts|rooms|script_help|setup|shaders.*|test_in_unity)$')
+
 for preset in "${presets[@]}"; do
   options=()
   if [ "$preset" = cuda ]; then options=("-DQUICKSES_CUDA_ARCHITECTURES=$architecture"); fi
-  echo "==== $preset: configure"
+  say "$preset: configure"
   cmake --preset "$preset" "${options[@]}"
-  echo "==== $preset: build"
+  say "$preset: build"
   cmake --build --preset "$preset" --parallel "$(nproc)"
-  echo "==== $preset: test"
+  say "$preset: test"
   if [ "$preset" = cuda ] && ! nvidia-smi >/dev/null 2>&1; then
     echo "No CUDA device here: tests of the CUDA back end are skipped."
   fi
-  # What has nothing to do with the back end was tested with the first preset.
-  others=()
-  if [ "$preset" != cpu ]; then
-    others=(--exclude-regex '^(check_.*|configure|consumer_add_subdirectory|make_package_.*|measure_scripts|page_browser_test|release_scripts|script_help|setup|shaders|test_in_unity)$')
-  fi
-  ctest --preset "$preset" --parallel "$(nproc)" "${others[@]}"
+  left_out=()
+  if [ "$preset" != cpu ]; then left_out=("${others[@]}"); fi
+  ctest --preset "$preset" --parallel "$(nproc)" "${left_out[@]}"
   # Those of the CPU back end, which is the same in all of them. With another compiler nothing is judged, which is then said.
   if [ "$preset" = cpu ]; then
-    echo "==== cpu: instructions"
+    say "cpu: instructions"
     python3 -B Scripts~/measure/count-instructions .build/cpu/bin/quickses || [ $? -eq 77 ]
   fi
 done
@@ -78,7 +80,7 @@ if [ "$long" = yes ]; then
       sets=20000
       backend=cuda
     fi
-    echo "==== $preset: $sets random sets"
+    say "$preset: $sets random sets"
     QUICKSES_TEST_BACKEND=$backend QUICKSES_PROPERTY_SETS=$sets QUICKSES_PROPERTY_PROCESSES=$(nproc) \
       ".build/$preset/bin/property_test" --gtest_filter='Properties.*'
   done
@@ -86,11 +88,11 @@ fi
 
 # Of the build with MPI, the program alone: the library is the same.
 if [ "$with_mpi" = yes ]; then
-  echo "==== mpi: configure"
+  say "mpi: configure"
   cmake --preset mpi
-  echo "==== mpi: build"
+  say "mpi: build"
   cmake --build --preset mpi --parallel "$(nproc)" --target quickses_cli
-  echo "==== mpi: test"
+  say "mpi: test"
   ctest --preset mpi --tests-regex '^cli_mpi_test$' --no-tests=error
 fi
 
@@ -110,29 +112,29 @@ if [ "$with_windows" = yes ]; then
   trap '/usr/lib/wine/wineserver -k || true' EXIT # its status would be that of the whole where the server is gone already
   windows=windows options=()
   if [ "${presets[-1]}" = cuda ]; then windows=windows-cuda options=("-DQUICKSES_CUDA_ARCHITECTURES=$architecture"); fi
-  echo "==== $windows: configure"
+  say "$windows: configure"
   cmake --preset "$windows" "${options[@]}"
   # What fails gets one more chance with Wine started anew, tests alone: it may be Wine that failed.
-  echo "==== $windows: build"
+  say "$windows: build"
   if ! cmake --build --preset "$windows" --parallel "$(nproc)"; then
-    echo "==== $windows: build once more"
+    say "$windows: build once more"
     start_wine
     cmake --build --preset "$windows"
   fi
-  echo "==== $windows: test"
-  if ! ctest --preset "$windows" --parallel "$(nproc)"; then
-    echo "==== $windows: test what failed once more"
+  say "$windows: test"
+  if ! ctest --preset "$windows" --parallel "$(nproc)" "${others[@]}"; then
+    say "$windows: test what failed once more"
     start_wine
     ctest --preset "$windows" --rerun-failed
   fi
-  echo "==== $windows: the same mesh"
+  say "$windows: the same mesh"
   .build/cpu/bin/quickses --quiet Tests/Data~/1CRN.pdb -o .build/cpu/1crn.ply
   /usr/lib/wine/wine64 ".build/$windows/bin/quickses.exe" --quiet Tests/Data~/1CRN.pdb -o ".build/$windows/1crn.ply"
   cmp .build/cpu/1crn.ply ".build/$windows/1crn.ply"
 fi
 
 # The package with all that was asked for; with --with-cuda --with-windows it is the one that is released.
-echo "==== package: make and check"
+say "package: make and check"
 mkdir -p .build/package
 rm -f .build/package/org.quickses.unity-*.tgz{,.sha256}
 if [ "$with_windows" = yes ]; then
@@ -146,7 +148,7 @@ else
 fi
 
 # What it takes to make these systems may be missing here, which is then said.
-echo "==== package: where nothing is installed"
+say "package: where nothing is installed"
 bare_systems=(bookworm)
 if [ "$with_windows" = yes ]; then bare_systems+=(wine); fi
 for system in "${bare_systems[@]}"; do
@@ -155,7 +157,7 @@ done
 
 # The C# layers, with the plug-in of that package: what Unity compiles runs against a double of the engine, as in a player
 # and, with collections checks, as in the Editor.
-echo "==== dotnet: test"
+say "dotnet: test"
 export DOTNET_CLI_TELEMETRY_OPTOUT=1 DOTNET_NOLOGO=1
 for_each_dotnet_test() {
   for checks in false true; do
@@ -178,7 +180,7 @@ else
   for_each_dotnet_test dotnet test --no-restore --blame-hang-timeout 10m --blame-hang-dump-type none \
     --results-directory .build/dotnet
   # The runtime that Unity has is a Mono, with another collector; IL2CPP compiles everything beforehand.
-  echo "==== mono: test"
+  say "mono: test"
   has_mono() {
     local needed
     for needed in mono-sgen mono-boehm as ld /usr/lib/mono/4.5/Facades/netstandard.dll; do

@@ -54,8 +54,7 @@ class SurfaceEngine {
 
 // Budgets in bytes, 0 for none; then work beyond what is free when a computation starts is refused.
 std::unique_ptr<SurfaceEngine> make_cpu_engine(const WorkerThreads &threads, uint64_t memory_budget);
-#if defined(QUICKSES_HAS_CUDA)
+// Where CUDA is built.
 std::unique_ptr<SurfaceEngine> make_cuda_engine(int device, const WorkerThreads &threads, uint64_t memory_budget);
-#endif
 
 }  // namespace quickses

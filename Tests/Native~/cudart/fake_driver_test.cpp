@@ -87,6 +87,12 @@ TEST(FakeDriver, Stub) {
 
 // ---- a driver whose calls fail, from any one of them on -------------------------------------------------------------
 
+#if defined(_WIN32)
+constexpr int kStep = 3;  // Wine takes long for it: errors share the calls
+#else
+constexpr int kStep = 1;
+#endif
+
 // Allowed is success, or one of these errors with a sentence.
 void expect_said(qses_status status) {
   if (status == QSES_OK) return;
@@ -242,15 +248,15 @@ TEST_P(FailingDriver, EveryCallMayFailAndTheNextMayNot) {
   EXPECT_GT(tell_driver("fake_driver_graphs_launched"), 0);
   EXPECT_EQ(tell_driver("fake_driver_handles"), handles);
   int failed = 0;
-  for (int good = 0; good < calls; ++good) {
+  for (int good = std::abs(GetParam()) % kStep; good < calls; good += kStep) {
     SCOPED_TRACE(good);
     fail_after(good, GetParam());
     failed += use_everything() ? 0 : 1;
     fail_after(-1, 0);
     ASSERT_FALSE(HasFailure());
   }
-  EXPECT_GT(failed,
-            calls / 8);  // an allocation that is refused once is tried again, and some calls end what is over
+  // An allocation that is refused once is tried again, and some calls end what is over.
+  EXPECT_GT(failed, calls / kStep / 8);
   EXPECT_TRUE(use_everything());
   if (GetParam() < 0) return;
   fail_after(0, GetParam());
@@ -268,7 +274,7 @@ TEST_P(LostDevice, IsSaidForGoodAndTheCpuTakesOver) {
   fail_after(-1, 0);
   ASSERT_TRUE(use_everything());
   const int calls = fail_after(-1, 0);
-  for (int good = 1; good < calls; good += 1 + calls / 12) {
+  for (int good = 1; good < calls; good += 1 + kStep * calls / 12) {
     SCOPED_TRACE(good);
     EXPECT_EXIT(
         {
