@@ -317,7 +317,7 @@ TEST(Allocations, NoneInAThousandFramesThatAreKept) {
       },
       1000);
   for (qses_kept_mesh *one : kept) qses_kept_mesh_destroy(one);
-  EXPECT_GT(vertices, 0u);
+  EXPECT_TRUE(vertices > 0 || IsSkipped());
 }
 
 TEST(Allocations, NoneOnOneThread) {

@@ -41,7 +41,7 @@ struct Pair {
   Case c;
   Result first, other;
   Pair(const Case &wanted, unsigned form) : c(wanted) {
-    const Context context(1, 0, QSES_BACKEND_CPU);
+    const Context context(1);
     c.form = form;
     first = computed(context, c, settings_of_first(c.settings, form), 0);
     other = computed(context, c, settings_of_form(c.settings, form), form);
@@ -188,7 +188,7 @@ TEST(Forms, AreComparedWithWhatAddsUp) {
 TEST(Picks, ThatAreWrongAreSeen) {
   Case c = three_atoms();
   c.settings.pickable = 1;
-  const Context context(1, 0, QSES_BACKEND_CPU);
+  const Context context(1);
   const Result good = computed(context, c, c.settings, 0);
   const Kept kept(context);
   const auto fault_of = [&](const Result &r) {
@@ -209,7 +209,7 @@ TEST(GaussianSurfaces, ThatAreWrongAreSeen) {
   Case c = three_atoms();
   c.settings.surface = QSES_SURFACE_GAUSSIAN;
   c.settings.creases = 0;
-  const Context context(1, 0, QSES_BACKEND_CPU);
+  const Context context(1);
   const Result good = computed(context, c, c.settings, 0);
   const auto fault_of = [](const Case &of, const Result &r) {
     Verdict v;
