@@ -33,7 +33,9 @@ std::string describe_error(cudaError_t error) {
 // CUDA returns the same error until the process ends. After a cudaDeviceReset by others the process might go on, but
 // not with what we have there: to hand it back to the driver ends in a segmentation fault.
 bool is_sticky(cudaError_t error) {
-  switch (error) {
+  constexpr int kContained = 226;  // cudaErrorContained, of CUDA 12.8 and later: by the hardware, or a peer's
+  switch (static_cast<int>(error)) {
+    case kContained:
     case cudaErrorECCUncorrectable:
     case cudaErrorNvlinkUncorrectable:
     case cudaErrorIllegalAddress:
@@ -46,10 +48,22 @@ bool is_sticky(cudaError_t error) {
     case cudaErrorInvalidPc:
     case cudaErrorLaunchFailure:
     case cudaErrorContextIsDestroyed:
+    case cudaErrorMpsClientTerminated:
+    case cudaErrorExternalDevice:
       return true;
     default:
       return false;
   }
+}
+
+// An unknown error may be one of a single call. Windows' drivers report it of all calls where the GPU was reset; then
+// it is one of those.
+bool is_of_lost_device(cudaError_t error) {
+  if (error != cudaErrorUnknown) return is_sticky(error);
+  size_t free = 0, total = 0;
+  const bool is_lost = cudaMemGetInfo(&free, &total) == cudaErrorUnknown;
+  cudaGetLastError();
+  return is_lost;
 }
 
 // The first such error of the process. The sentence is written before the flag is set, and never again.
@@ -80,7 +94,7 @@ CudaPreparations &preparations() {
 // Whether memory was given. After a fault, which any call may be the first to report, less would not do either.
 bool was_granted(cudaError_t error, const char *call) {
   if (error == cudaSuccess) return true;
-  if (is_sticky(error)) check_cuda(error, call);
+  if (is_of_lost_device(error)) check_cuda(error, call);
   cudaGetLastError();
   return false;
 }
@@ -122,7 +136,7 @@ void check_cuda(int error, const char *call) {
   const cudaError_t e = static_cast<cudaError_t>(error);
   if (e == cudaSuccess) return;
   cudaGetLastError();
-  if (is_sticky(e)) fault().remember(e, call);
+  if (is_of_lost_device(e)) fault().remember(e, call);
   refuse_after_fault();
   const std::string message = std::string(call) + " failed: " + describe_error(e);
   if (e == cudaErrorMemoryAllocation) throw MemoryRefused(message);
@@ -136,8 +150,9 @@ bool may_hand_back() {
   if (error == cudaSuccess) error = cudaMemGetInfo(&free, &total);
   if (error == cudaSuccess) return true;
   cudaGetLastError();
-  if (is_sticky(error)) fault().remember(error, "the look at the device");
-  return !is_sticky(error);
+  const bool is_lost = is_of_lost_device(error);
+  if (is_lost) fault().remember(error, "the look at the device");
+  return !is_lost;
 }
 
 void refuse_after_fault() {
@@ -186,7 +201,7 @@ CudaDevice describe_cuda_device(int ordinal) {
     return device;
   }
   cudaGetLastError();
-  if (is_sticky(error)) {
+  if (is_of_lost_device(error)) {
     fault().remember(error, "the look at the device");
     device.reason = fault().sentence;
     return device;
@@ -280,8 +295,17 @@ uint64_t DeviceMemory::free_bytes() {
 
 void *DeviceMemory::acquire(size_t bytes) {
   ++device_requests;
+#if defined(_WIN32)
+  // Where the GPU has no more, Windows' drivers give of the host's memory instead (NVIDIA calls it system memory
+  // fallback), with which all would be slow.
+  size_t free = 0, total = 0;
+  check_cuda(cudaMemGetInfo(&free, &total), "cudaMemGetInfo");
+  if (bytes > free) return nullptr;
+#endif
   void *memory = nullptr;
-  return was_granted(cudaMalloc(&memory, bytes), "cudaMalloc") ? memory : nullptr;
+  const cudaError_t error = cudaMalloc(&memory, bytes);
+  if (error != cudaErrorMemoryAllocation) check_cuda(error, "cudaMalloc");
+  return was_granted(error, "cudaMalloc") ? memory : nullptr;
 }
 
 void DeviceMemory::release(void *memory) { give_back(memory, cudaFree); }
@@ -294,7 +318,7 @@ class LockedPages {
  public:
   // Null where that can't be had: then it is for cudaHostAlloc to say why.
   void *acquire(size_t bytes) {
-    void *const memory = TouchedPages::acquire(bytes);
+    void *const memory = can_lock() ? TouchedPages::acquire(bytes) : nullptr;
     if (!memory) return nullptr;
     if (note(memory)) {
       if (lock(memory, bytes)) return memory;
@@ -315,6 +339,14 @@ class LockedPages {
   }
 
  private:
+  // Kernels write there by the address that the host has, for which Windows' drivers (WDDM) have no way.
+  static bool can_lock() {
+    int device = 0, can = 0;
+    return was_granted(cudaGetDevice(&device), "cudaGetDevice") &&
+           was_granted(cudaDeviceGetAttribute(&can, cudaDevAttrCanUseHostPointerForRegisteredMem, device),
+                       "cudaDeviceGetAttribute") &&
+           can != 0;
+  }
   static bool lock(void *memory, size_t bytes) {
     if (!was_granted(cudaHostRegister(memory, bytes, cudaHostRegisterPortable), "cudaHostRegister")) return false;
     void *on_device = nullptr;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A stand-in for NVIDIA's driver library, with every function that cudart/ asks for. Its GPU has host memory, and its
 // kernels do nothing. FAKE_VERSION: of CUDA, as cuDriverGetVersion counts; 0: it fails as cuInit. FAKE_START: what
-// cuInit returns. FAKE_DEVICES: how many GPUs, else one. To leave a function out, rename it by a macro
+// cuInit returns. FAKE_DEVICES: how many GPUs, else one. FAKE_WDDM: pages of the process have other addresses on the
+// GPU, as with Windows' drivers. To leave a function out, rename it by a macro
 // (-DcuMemAlloc_v2=left_out).
 #include "fake_driver.h"
 
@@ -29,7 +30,7 @@ thread_local CUcontext current = nullptr;
 int contexts[FAKE_DEVICES], the_module, the_function;
 std::atomic<int> retained[FAKE_DEVICES];
 std::atomic<unsigned long long> context_id{1};
-std::atomic<int> handles{0}, graphs_launched{0};
+std::atomic<int> handles{0}, graphs_launched{0}, registrations{0};
 std::atomic<uintptr_t> last_handle{0};
 
 // Of cuModuleLoadData.
@@ -90,7 +91,7 @@ CUresult make(Handle *handle) {
 
 bool is_of_lost_device(CUresult result) {
   return result == CUDA_ERROR_LAUNCH_TIMEOUT || result == CUDA_ERROR_CONTEXT_IS_DESTROYED ||
-         result == CUDA_ERROR_LAUNCH_FAILED;
+         result == CUDA_ERROR_LAUNCH_FAILED || result == CUDA_ERROR_UNKNOWN;
 }
 
 CUresult end_one() {
@@ -132,6 +133,8 @@ FAKE_API int fake_driver_handles() { return handles; }
 // How many graphs were launched.
 FAKE_API int fake_driver_graphs_launched() { return graphs_launched; }
 // Whether the calling thread has one.
+// How often pages of the process were locked.
+FAKE_API int fake_driver_registrations() { return registrations; }
 FAKE_API int fake_driver_has_context() { return current ? 1 : 0; }
 FAKE_API int fake_driver_drop_context() {
   current = nullptr;
@@ -185,7 +188,14 @@ FAKE_API CUresult CUDAAPI cuDeviceGetName(char *name, int, CUdevice) {
   return next();
 }
 FAKE_API CUresult CUDAAPI cuDeviceGetAttribute(int *value, CUdevice_attribute attribute, CUdevice) {
-  *value = attribute == CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MAJOR ? 9 : 4;
+#if defined(FAKE_WDDM)
+  const bool same_addresses = false;
+#else
+  const bool same_addresses = true;
+#endif
+  *value = attribute == CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MAJOR                  ? 9
+           : attribute == CU_DEVICE_ATTRIBUTE_CAN_USE_HOST_POINTER_FOR_REGISTERED_MEM ? same_addresses
+                                                                                      : 4;
   return next();
 }
 FAKE_API CUresult CUDAAPI cuDeviceTotalMem_v2(size_t *bytes, CUdevice) {
@@ -309,6 +319,7 @@ FAKE_API CUresult CUDAAPI cuMemHostRegister_v2(void *memory, size_t bytes, unsig
   bool fails = false;
   const CUresult result = next(&fails);
   if (fails) return result;
+  ++registrations;
   std::memset(memory, 0, bytes);  // nobody has written there yet
   const std::lock_guard<std::mutex> lock(memory_mutex);
   memory_given[address(memory)] = bytes;
